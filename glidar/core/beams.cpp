@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/beams.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+void require_size(std::size_t found, std::size_t size, bool may_be_empty, const char* field) {
+  if (found == size || (may_be_empty && found == 0)) return;
+  throw Error({.where = std::string("beams, ") + field, .found = std::to_string(found) + " entries",
+               .allowed = std::to_string(size) + " (rows x cols)", .remedy = ""});
+}
+
+}  // namespace
+
+void validate(const Beams& beams) {
+  const std::size_t size = std::size_t{beams.rows} * beams.cols;
+  require_size(beams.directions.size(), size, false, "directions");
+  require_size(beams.origins_m.size(), size, true, "origins_m");
+  require_size(beams.times_ns.size(), size, true, "times_ns");
+  require_size(beams.rings.size(), size, true, "rings");
+  constexpr double kUnitTolerance = 1e-12;  // a few roundings of a normalisation in double
+  for (const Eigen::Vector3d& direction : beams.directions) {
+    if (std::isnan(direction.x()) || std::abs(direction.norm() - 1.0) < kUnitTolerance) continue;
+    throw Error({.where = "beams, directions", .found = "a vector of length " +
+                 std::to_string(direction.norm()), .allowed = "unit vectors, or NaN for no beam",
+                 .remedy = "normalise them"});
+  }
+}
+
+}  // namespace glidar

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glidar {
+
+/// A central projection without distortion: pixel (u, v) looks along
+/// ((u + pixel_centre - cx) / fx, (v + pixel_centre - cy) / fy, 1) in the optical frame.
+struct PinholeIntrinsics {
+  std::uint32_t width = 0;    ///< pixels
+  std::uint32_t height = 0;   ///< pixels
+  double fx = 0.0;            ///< pixels
+  double fy = 0.0;            ///< pixels
+  double cx = 0.0;            ///< pixels
+  double cy = 0.0;            ///< pixels
+  double pixel_centre = 0.5;  ///< where in a pixel its ray goes: 0.5 (graphics) or 0 (OpenCV, ROS)
+};
+
+/// What a sensor emits, in its own frame: one straight beam per entry, rows x cols, row by row.
+/// N = rows * cols.
+struct Beams {
+  std::uint32_t rows = 0;
+  std::uint32_t cols = 0;
+  std::string frame_id;                     ///< name of the sensor's frame
+  std::vector<Eigen::Vector3d> directions;  ///< N unit vectors; NaN where there is no beam
+  std::vector<Eigen::Vector3d> origins_m;   ///< N; empty: all zero
+  std::vector<std::uint32_t> times_ns;      ///< N, since the start of the frame; empty: all zero
+  std::vector<std::uint16_t> rings;         ///< N, channel number; empty: the row
+  Eigen::Vector3d boresight = Eigen::Vector3d::UnitZ();  ///< depth is measured along it
+  std::optional<PinholeIntrinsics> pinhole;  ///< the structure the beams were made from, if it is this one
+
+  [[nodiscard]] std::size_t size() const { return directions.size(); }
+};
+
+/// Throws Error unless every array has its stated size and every direction is a unit vector or NaN.
+void validate(const Beams& beams);
+
+}  // namespace glidar

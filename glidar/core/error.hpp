@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace glidar {
+
+/// The four things a user needs to mend bad input.
+struct ErrorParts {
+  std::string where;    ///< file:line:column, field, option or file name
+  std::string found;    ///< what is wrong, with the value found
+  std::string allowed;  ///< what would be right; empty if it says itself
+  std::string remedy;   ///< what to do; empty if it says itself
+};
+
+/// The one exception type of GLIDAR. Thrown where the cause is known, caught once at the border
+/// (`main`, a language binding, a socket). `what()` reads "where: found; allowed: ...; remedy".
+class Error : public std::runtime_error {
+ public:
+  explicit Error(ErrorParts parts);
+  [[nodiscard]] const ErrorParts& parts() const noexcept { return parts_; }
+
+ private:
+  ErrorParts parts_;
+};
+
+/// The candidate closest to `word` by edit distance, or "" when none is near (more than a third of
+/// its letters away). For "did you mean" in error texts.
+std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
+
+}  // namespace glidar

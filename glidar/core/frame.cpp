@@ -1,0 +1,18 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/frame.hpp>
+
+namespace glidar {
+
+std::string_view name(Status status) {
+  switch (status) {
+    case Status::hit: return "hit";
+    case Status::miss: return "miss";
+    case Status::too_near: return "too near";
+    case Status::too_far: return "too far";
+    case Status::no_beam: return "no beam";
+  }
+  return "unknown";
+}
+
+}  // namespace glidar

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/hits.hpp>
+#include <glidar/core/pose.hpp>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glidar {
+
+/// Why a beam has a return, or has none.
+enum class Status : std::uint8_t {
+  hit = 0,
+  miss = 1,       ///< nothing on the beam
+  too_near = 2,   ///< the surface lies before the sensor's near limit
+  too_far = 3,    ///< the surface lies beyond the sensor's far limit
+  no_beam = 4,    ///< the optics have no ray for this pixel
+};
+
+/// The status in words, as files and pictures spell it.
+std::string_view name(Status status);
+
+/// One measurement: what the sensor reports per beam, with the truth attached. N = rows * cols.
+struct Frame {
+  std::uint32_t rows = 0;
+  std::uint32_t cols = 0;
+  std::string frame_id;                  ///< the sensor's frame
+  std::int64_t stamp_ns = 0;             ///< start of the measurement
+  std::uint64_t seed = 0;
+  Pose world_from_sensor = Pose::Identity();
+  std::vector<Pose> world_from_instance;  ///< one per instance of the scene, at stamp_ns
+  std::vector<double> range_m;           ///< N, measured; NaN unless status is hit
+  std::vector<float> intensity;          ///< N, received signal of a full-scale 1; 0 unless hit
+  std::vector<Status> status;            ///< N
+  Hits truth;                            ///< what is there, whether reported or not
+};
+
+}  // namespace glidar

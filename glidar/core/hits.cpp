@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/hits.hpp>
+
+namespace glidar {
+
+void resize(Hits& hits, std::size_t size, const HitFields& fields) {
+  const auto size_if = [size](bool asked) { return asked ? size : std::size_t{0}; };
+  hits.range_m.resize(size);
+  hits.instance.resize(size);
+  hits.primitive.resize(size);
+  hits.depth_m.resize(size_if(fields.depth));
+  hits.normal.resize(size_if(fields.normal));
+  hits.shading_normal.resize(size_if(fields.shading_normal));
+  hits.cos_incidence.resize(size_if(fields.incidence));
+  hits.barycentrics.resize(size_if(fields.barycentrics));
+  hits.colour.resize(size_if(fields.surface));
+  hits.ambient.resize(size_if(fields.surface));
+  hits.specular.resize(size_if(fields.surface));
+  hits.shininess.resize(size_if(fields.surface));
+  hits.object_point_m.resize(size_if(fields.object_point));
+}
+
+}  // namespace glidar

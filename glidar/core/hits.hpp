@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace glidar {
+
+/// "No such instance / primitive": the beam hit nothing.
+inline constexpr std::uint32_t kNoHit = std::numeric_limits<std::uint32_t>::max();
+
+/// Which optional columns of Hits a cast fills. Only what is asked for is computed.
+struct HitFields {
+  bool depth = false;
+  bool normal = false;
+  bool shading_normal = false;
+  bool incidence = false;
+  bool barycentrics = false;
+  bool surface = false;  ///< colour, ambient, specular, shininess
+  bool object_point = false;
+};
+
+/// Geometric truth per beam: no noise, no radiometry. N = number of beams. Range, instance and
+/// primitive are always there; the other columns are empty unless asked for.
+/// A miss has range NaN, ids kNoHit and NaN (colours: 0) in every other column.
+/// Normals are unit vectors in the sensor's frame, turned towards the sensor.
+struct Hits {
+  std::vector<double> range_m;               ///< N, along the beam from its origin
+  std::vector<std::uint32_t> instance;       ///< N, index into Scene::instances
+  std::vector<std::uint32_t> primitive;      ///< N, index into Mesh::triangles
+  std::vector<double> depth_m;               ///< N, range along the boresight from the sensor's origin
+  std::vector<Eigen::Vector3f> normal;       ///< N, of the triangle
+  std::vector<Eigen::Vector3f> shading_normal;  ///< N, interpolated vertex normals bent by the normal map
+  std::vector<float> cos_incidence;          ///< N, cosine between -beam and `normal`, 0..1
+  std::vector<Eigen::Vector2f> barycentrics;  ///< N, weights of corners 1 and 2
+  std::vector<Eigen::Vector3f> colour;       ///< N, diffuse rgb: material x texture x vertex colour
+  std::vector<float> ambient;                ///< N, luminance of the ambient colour x texture
+  std::vector<float> specular;               ///< N, luminance of the specular colour x texture
+  std::vector<float> shininess;              ///< N, exponent
+  std::vector<Eigen::Vector3d> object_point_m;  ///< N, the hit in the object's own frame, before scale
+};
+
+/// Gives every asked-for column `size` entries (contents unspecified) and empties the others'.
+/// Keeps capacity, so a second call of the same size allocates nothing.
+void resize(Hits& hits, std::size_t size, const HitFields& fields);
+
+}  // namespace glidar

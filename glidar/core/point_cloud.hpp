@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+#include <glidar/core/frame.hpp>
+#include <glidar/core/scene.hpp>
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace glidar {
+
+/// One named quantity of every point: `components.size()` numbers a point, point by point.
+struct Column {
+  std::string name;                     ///< e.g. "normal"
+  std::vector<std::string> components;  ///< field names, e.g. normal_x normal_y normal_z
+  std::variant<std::vector<float>, std::vector<double>, std::vector<std::uint8_t>,
+               std::vector<std::uint16_t>, std::vector<std::uint32_t>>
+      values;
+};
+
+/// Columns of a frame in a named coordinate frame. Organised (rows x cols, a miss has NaN
+/// coordinates) unless compacted, which leaves one row.
+struct PointCloud {
+  std::uint32_t rows = 0;
+  std::uint32_t cols = 0;
+  std::string frame_id;
+  Pose world_from_cloud = Pose::Identity();  ///< pose of frame_id
+  std::vector<Column> columns;
+
+  [[nodiscard]] std::size_t size() const { return std::size_t{rows} * cols; }
+};
+
+/// The coordinate frame a cloud is expressed in.
+struct CloudFrame {
+  std::string frame_id;
+  Pose cloud_from_sensor = Pose::Identity();
+};
+
+/// Names make_point_cloud knows, in the order files list them:
+/// xyz intensity range depth normal shading_normal incidence instance class primitive
+/// barycentrics colour object_point status row col
+std::span<const std::string> cloud_column_names();
+
+/// The optional hit columns that these cloud columns need. Throws Error on an unknown name.
+HitFields fields_for(std::span<const std::string> column_names);
+
+/// Fills `cloud` with the named columns of a frame, reusing its memory.
+///  xyz           f64 x3, metres in `cloud_frame`, from the measured range; NaN unless a hit
+///  intensity     f32
+///  range, depth  f64, metres, measured; NaN unless a hit
+///  normal, shading_normal  f32 x3, unit, in `cloud_frame`
+///  incidence     f32, radians
+///  instance, class  u32, the instance's id and class_id; kNoHit where there is none
+///  primitive     u32, triangle of the mesh; kNoHit where there is none
+///  barycentrics  f32 x2; colour f32 x3; object_point f64 x3 in the object's own frame
+///  status        u8, see Status; row, col u32
+/// Throws Error when a column is unknown or the frame was cast without what it needs.
+void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene,
+                      const CloudFrame& cloud_frame, std::span<const std::string> column_names,
+                      PointCloud& cloud);
+
+/// The column of this name, or nullptr.
+const Column* find_column(const PointCloud& cloud, std::string_view name);
+
+/// The points whose x is a number, as one row (needs the column xyz).
+PointCloud compacted(const PointCloud& cloud);
+
+}  // namespace glidar

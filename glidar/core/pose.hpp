@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace glidar {
+
+/// A rigid transform, named `target_from_source`: p_target = target_from_source * p_source.
+/// Right-handed, metres, double precision.
+using Pose = Eigen::Isometry3d;
+
+/// The pose of a camera at `eye` whose boresight (+z) points at `target` and whose image shows
+/// `up` upwards (optical frame, REP-103: x right, y down, z forward).
+/// Throws Error when eye and target coincide or `up` is parallel to the boresight.
+Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up);
+
+/// The pose with this attitude and position; the quaternion is normalised.
+/// Throws Error when it is zero or anything is not finite.
+Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orientation);
+
+/// True when every number is finite and the linear part is a rotation to within `tolerance`.
+bool is_rigid(const Pose& pose, double tolerance = 1e-9);
+
+}  // namespace glidar

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/scene.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+void require(bool holds, const Instance& instance, std::string found, std::string allowed) {
+  if (holds) return;
+  throw Error({.where = "instance '" + instance.name + "'", .found = std::move(found),
+               .allowed = std::move(allowed), .remedy = ""});
+}
+
+void validate(const Instance& instance, const Scene& scene) {
+  require(instance.mesh < scene.meshes.size(), instance,
+          "mesh " + std::to_string(instance.mesh), "an index of the scene's meshes");
+  require(std::isfinite(instance.scale) && instance.scale > 0.0, instance,
+          "scale " + std::to_string(instance.scale), "a finite number above 0");
+  require(is_rigid(instance.world_from_object), instance, "a pose that is not a rigid transform",
+          "finite numbers and a rotation");
+  require(instance.class_id < scene.class_names.size(), instance,
+          "class " + std::to_string(instance.class_id), "an index of the scene's class names");
+  require(instance.materials.size() >= slot_count(scene.meshes[instance.mesh]), instance,
+          std::to_string(instance.materials.size()) + " materials", "one per material slot");
+  for (const std::uint32_t material : instance.materials) {
+    require(material < scene.materials.size(), instance, "material " + std::to_string(material),
+            "an index of the scene's materials");
+  }
+}
+
+void validate(const TextureUse& use, const Scene& scene, const Material& material) {
+  if (!use.used() || static_cast<std::size_t>(use.texture) < scene.textures.size()) return;
+  throw Error({.where = "material '" + material.name + "'",
+               .found = "texture " + std::to_string(use.texture),
+               .allowed = "an index of the scene's textures", .remedy = ""});
+}
+
+}  // namespace
+
+Eigen::AlignedBox3d bounds(const Scene& scene) {
+  Eigen::AlignedBox3d world;
+  for (const Instance& instance : scene.instances) {
+    const Eigen::AlignedBox3d object = bounds(scene.meshes[instance.mesh]);
+    if (object.isEmpty()) continue;
+    for (int corner = 0; corner < 8; ++corner) {
+      const auto type = static_cast<Eigen::AlignedBox3d::CornerType>(corner);
+      world.extend(instance.world_from_object * (instance.scale * object.corner(type)));
+    }
+  }
+  return world;
+}
+
+void validate(const Scene& scene) {
+  for (const Mesh& mesh : scene.meshes) validate(mesh);
+  for (const Instance& instance : scene.instances) validate(instance, scene);
+  for (const Material& material : scene.materials) {
+    validate(material.diffuse_texture, scene, material);
+    validate(material.specular_texture, scene, material);
+    validate(material.alpha_texture, scene, material);
+    validate(material.normal_texture, scene, material);
+  }
+}
+
+}  // namespace glidar

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/model.hpp>
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace glidar {
+
+/// Names after "builtin:".
+std::span<const std::string> builtin_model_names();
+
+/// A closed mesh made in code, the same bytes on every machine:
+///  sphere   radius 1 m, icosphere of 5,120 triangles, smooth normals
+///  box      sides of 2 m, 12 triangles, flat
+///  torus    ring radius 1 m, tube radius 0.4 m
+///  plane    2 m x 2 m at z = 0, front to +z (not closed), with uvs
+///  asteroid cratered rock about 2 m long, 81,920 triangles
+/// Throws Error on an unknown name, with the nearest one.
+Model make_builtin_model(std::string_view name);
+
+}  // namespace glidar

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/cloud_sink.hpp>
+#include <glidar/sensor/sensor.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+
+namespace glidar {
+
+enum class PcdEncoding : std::uint8_t { ascii, binary, binary_compressed };
+
+struct FileSinkOptions {
+  PcdEncoding pcd = PcdEncoding::binary;
+  bool ply_ascii = false;
+  bool dense = false;                ///< point formats leave misses out
+  bool sidecar = true;               ///< write FILE.json beside a cloud
+  double depth_png_units_per_m = 1000.0;  ///< 16-bit depth PNG: 1000 = millimetres
+};
+
+/// What the sidecar tells besides the frame; must outlive the sink.
+struct SidecarContext {
+  const Scene& scene;
+  const Sensor& sensor;
+  const Beams& beams;
+  std::string renderer;
+};
+
+/// One output format.
+struct FileFormat {
+  std::string suffix;       ///< ".pcd", ".depth.png" ... ; the longest that matches a path wins
+  std::string description;  ///< for --help
+  std::vector<std::string> columns;  ///< cloud columns it needs at least
+};
+
+/// All formats, for help and errors.
+std::span<const FileFormat> file_formats();
+
+/// The format for a path by its suffix. Throws Error naming all suffixes and the nearest.
+const FileFormat& format_for(const std::filesystem::path& path);
+
+/// A sink that writes one file (and its sidecar) per cloud: to a temporary name beside it, then
+/// renamed, so that a path either holds a whole file or is as it was.
+/// Throws Error at once when the suffix is unknown or the folder does not exist.
+std::unique_ptr<CloudSink> make_file_sink(const std::filesystem::path& path,
+                                          const FileSinkOptions& options,
+                                          const SidecarContext& context);
+
+}  // namespace glidar

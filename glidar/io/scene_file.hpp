@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/report.hpp>
+#include <glidar/io/model.hpp>
+#include <glidar/sensor/sensor.hpp>
+
+#include <filesystem>
+#include <optional>
+
+namespace glidar {
+
+/// What a scene file holds: the world, and perhaps a sensor and where it stands.
+struct SceneFile {
+  Scene scene;
+  std::optional<Sensor> sensor;
+  std::optional<Pose> world_from_sensor;
+};
+
+/// Reads a scene from YAML (docs/files.md) and loads the models it names, each file once.
+/// Paths are relative to the file. Every error names file:line:column, the field, what is allowed
+/// and the nearest known key.
+SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions& defaults,
+                          const Report& report);
+
+}  // namespace glidar

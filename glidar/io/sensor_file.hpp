@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/sensor/sensor.hpp>
+
+#include <filesystem>
+
+namespace glidar {
+
+/// Reads a sensor from YAML (docs/files.md). Every error names file:line:column, the field, what is
+/// allowed and the nearest known key.
+Sensor load_sensor_file(const std::filesystem::path& path);
+
+}  // namespace glidar

@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+#include <glidar/core/hits.hpp>
+#include <glidar/core/report.hpp>
+#include <glidar/core/scene.hpp>
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace glidar {
+
+/// One cast: beams from a pose into the scene as it stands.
+struct CastRequest {
+  const Beams& beams;
+  Pose world_from_sensor = Pose::Identity();
+  std::span<const Pose> world_from_instance;  ///< one per instance; empty: where the scene puts them
+  HitFields fields;
+  bool cull_back_faces = false;
+};
+
+/// Finds what beams hit first. Two implementations, chosen at run time.
+class Renderer {
+ public:
+  Renderer() = default;
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+  virtual ~Renderer() = default;
+
+  [[nodiscard]] virtual std::string_view name() const = 0;
+
+  /// Fills `hits`. The result does not depend on the number of threads. A second cast of the same
+  /// size allocates nothing.
+  virtual void cast(const CastRequest& request, Hits& hits) = 0;
+};
+
+struct RendererOptions {
+  std::string kind = "embree";
+  unsigned threads = 0;  ///< 0: all processors
+};
+
+/// Builds a renderer over a valid scene, which must outlive it. Moving instances is done per cast;
+/// meshes are not rebuilt. Throws Error on an unknown kind, naming those there are.
+std::unique_ptr<Renderer> make_renderer(const Scene& scene, const RendererOptions& options);
+
+}  // namespace glidar

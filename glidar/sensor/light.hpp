@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+#include <glidar/core/frame.hpp>
+
+namespace glidar {
+
+/// The paper's light: a lamp at the sensor. Equation (3): a = 1 / (constant + linear d + quadratic d^2).
+/// The defaults are those of the 2015 program.
+struct Light {
+  double attenuation_constant = 1.0;
+  double attenuation_linear_per_m = 1e-4;
+  double attenuation_quadratic_per_m2 = 1e-8;
+  double ambient = 0.2;  ///< of the whole scene, multiplies the materials' ambient colour
+};
+
+/// Throws Error unless the attenuation is finite, not negative and not all zero.
+void validate(const Light& light);
+
+/// Fills frame.intensity from frame.truth by the paper's equations (3) to (5) with h of (2), for
+/// the beams whose status is hit; 0 elsewhere. Needs shading_normal and surface in frame.truth.
+void measure_intensity(const Light& light, const Beams& beams, Frame& frame);
+
+}  // namespace glidar

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/simulate.hpp>
+
+namespace glidar {
+namespace {
+
+/// What the sensor says of one true range.
+Status judge(double depth_m, const DepthLimits& limits) {
+  if (depth_m < limits.near_m) return Status::too_near;
+  if (depth_m > limits.far_m) return Status::too_far;
+  return Status::hit;
+}
+
+/// Range and status from the truth.
+void measure_range(const DepthLimits& limits, const Beams& beams, Frame& frame) {
+  frame.range_m.resize(beams.size());
+  frame.status.resize(beams.size());
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const double range_m = frame.truth.range_m[i];
+    Status status = Status::miss;
+    if (range_m == range_m) {
+      const double depth_m = range_m * beams.directions[i].dot(beams.boresight);
+      status = judge(depth_m, limits);
+    } else if (beams.directions[i].x() != beams.directions[i].x()) {
+      status = Status::no_beam;
+    }
+    frame.status[i] = status;
+    frame.range_m[i] = status == Status::hit ? range_m : std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+}  // namespace
+
+void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
+  frame.rows = setup.beams.rows;
+  frame.cols = setup.beams.cols;
+  frame.frame_id = setup.beams.frame_id;
+  place(setup.motion, frame);
+
+  HitFields needed = fields;
+  needed.shading_normal = true;  // the light needs them
+  needed.surface = true;
+  setup.renderer.cast({.beams = setup.beams,
+                       .world_from_sensor = frame.world_from_sensor,
+                       .world_from_instance = frame.world_from_instance,
+                       .fields = needed,
+                       .cull_back_faces = setup.sensor.cull_back_faces},
+                      frame.truth);
+
+  measure_range(setup.sensor.limits, setup.beams, frame);
+  measure_intensity(setup.sensor.light, setup.beams, frame);
+}
+
+}  // namespace glidar
