@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate.hpp>
 
+#include <cmath>
+
 namespace glidar {
 namespace {
 
@@ -19,10 +21,10 @@ void measure_range(const DepthLimits& limits, const Beams& beams, Frame& frame) 
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const double range_m = frame.truth.range_m[i];
     Status status = Status::miss;
-    if (range_m == range_m) {
+    if (!std::isnan(range_m)) {
       const double depth_m = range_m * beams.directions[i].dot(beams.boresight);
       status = judge(depth_m, limits);
-    } else if (beams.directions[i].x() != beams.directions[i].x()) {
+    } else if (std::isnan(beams.directions[i].x())) {
       status = Status::no_beam;
     }
     frame.status[i] = status;

@@ -11,8 +11,10 @@ namespace {
 
 void require_size(std::size_t found, std::size_t size, bool may_be_empty, const char* field) {
   if (found == size || (may_be_empty && found == 0)) return;
-  throw Error({.where = std::string("beams, ") + field, .found = std::to_string(found) + " entries",
-               .allowed = std::to_string(size) + " (rows x cols)", .remedy = ""});
+  throw Error({.where = std::string("beams, ") + field,
+               .found = std::to_string(found) + " entries",
+               .allowed = std::to_string(size) + " (rows x cols)",
+               .remedy = ""});
 }
 
 }  // namespace
@@ -26,8 +28,9 @@ void validate(const Beams& beams) {
   constexpr double kUnitTolerance = 1e-12;  // a few roundings of a normalisation in double
   for (const Eigen::Vector3d& direction : beams.directions) {
     if (std::isnan(direction.x()) || std::abs(direction.norm() - 1.0) < kUnitTolerance) continue;
-    throw Error({.where = "beams, directions", .found = "a vector of length " +
-                 std::to_string(direction.norm()), .allowed = "unit vectors, or NaN for no beam",
+    throw Error({.where = "beams, directions",
+                 .found = "a vector of length " + std::to_string(direction.norm()),
+                 .allowed = "unit vectors, or NaN for no beam",
                  .remedy = "normalise them"});
   }
 }

@@ -34,7 +34,8 @@ struct Beams {
   std::vector<std::uint32_t> times_ns;      ///< N, since the start of the frame; empty: all zero
   std::vector<std::uint16_t> rings;         ///< N, channel number; empty: the row
   Eigen::Vector3d boresight = Eigen::Vector3d::UnitZ();  ///< depth is measured along it
-  std::optional<PinholeIntrinsics> pinhole;  ///< the structure the beams were made from, if it is this one
+  std::optional<PinholeIntrinsics>
+      pinhole;  ///< the structure the beams were made from, if it is this one
 
   [[nodiscard]] std::size_t size() const { return directions.size(); }
 };

@@ -6,11 +6,16 @@ namespace glidar {
 
 std::string_view name(Status status) {
   switch (status) {
-    case Status::hit: return "hit";
-    case Status::miss: return "miss";
-    case Status::too_near: return "too near";
-    case Status::too_far: return "too far";
-    case Status::no_beam: return "no beam";
+    case Status::hit:
+      return "hit";
+    case Status::miss:
+      return "miss";
+    case Status::too_near:
+      return "too near";
+    case Status::too_far:
+      return "too far";
+    case Status::no_beam:
+      return "no beam";
   }
   return "unknown";
 }

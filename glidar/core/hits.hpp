@@ -28,19 +28,21 @@ struct HitFields {
 /// A miss has range NaN, ids kNoHit and NaN (colours: 0) in every other column.
 /// Normals are unit vectors in the sensor's frame, turned towards the sensor.
 struct Hits {
-  std::vector<double> range_m;               ///< N, along the beam from its origin
-  std::vector<std::uint32_t> instance;       ///< N, index into Scene::instances
-  std::vector<std::uint32_t> primitive;      ///< N, index into Mesh::triangles
-  std::vector<double> depth_m;               ///< N, range along the boresight from the sensor's origin
-  std::vector<Eigen::Vector3f> normal;       ///< N, of the triangle
-  std::vector<Eigen::Vector3f> shading_normal;  ///< N, interpolated vertex normals bent by the normal map
-  std::vector<float> cos_incidence;          ///< N, cosine between -beam and `normal`, 0..1
+  std::vector<double> range_m;           ///< N, along the beam from its origin
+  std::vector<std::uint32_t> instance;   ///< N, index into Scene::instances
+  std::vector<std::uint32_t> primitive;  ///< N, index into Mesh::triangles
+  std::vector<double> depth_m;           ///< N, range along the boresight from the sensor's origin
+  std::vector<Eigen::Vector3f> normal;   ///< N, of the triangle
+  std::vector<Eigen::Vector3f>
+      shading_normal;                ///< N, interpolated vertex normals bent by the normal map
+  std::vector<float> cos_incidence;  ///< N, cosine between -beam and `normal`, 0..1
   std::vector<Eigen::Vector2f> barycentrics;  ///< N, weights of corners 1 and 2
-  std::vector<Eigen::Vector3f> colour;       ///< N, diffuse rgb: material x texture x vertex colour
-  std::vector<float> ambient;                ///< N, luminance of the ambient colour x texture
-  std::vector<float> specular;               ///< N, luminance of the specular colour x texture
-  std::vector<float> shininess;              ///< N, exponent
-  std::vector<Eigen::Vector3d> object_point_m;  ///< N, the hit in the object's own frame, before scale
+  std::vector<Eigen::Vector3f> colour;  ///< N, diffuse rgb: material x texture x vertex colour
+  std::vector<float> ambient;           ///< N, luminance of the ambient colour x texture
+  std::vector<float> specular;          ///< N, luminance of the specular colour x texture
+  std::vector<float> shininess;         ///< N, exponent
+  std::vector<Eigen::Vector3d>
+      object_point_m;  ///< N, the hit in the object's own frame, before scale
 };
 
 /// Gives every asked-for column `size` entries (contents unspecified) and empties the others'.

@@ -11,7 +11,8 @@ namespace {
 /// Texel index for any integer coordinate under a wrap mode.
 std::uint32_t wrapped(std::int64_t index, std::uint32_t size, Wrap wrap) {
   const auto n = static_cast<std::int64_t>(size);
-  if (wrap == Wrap::clamp) return static_cast<std::uint32_t>(std::clamp<std::int64_t>(index, 0, n - 1));
+  if (wrap == Wrap::clamp)
+    return static_cast<std::uint32_t>(std::clamp<std::int64_t>(index, 0, n - 1));
   const std::int64_t period = wrap == Wrap::repeat ? n : 2 * n;
   std::int64_t i = index % period;
   if (i < 0) i += period;
@@ -25,10 +26,14 @@ Eigen::Vector4f texel(const Texture& texture, std::uint32_t row, std::uint32_t c
     return static_cast<float>(texture.texels[first + channel]) / 255.0F;
   };
   switch (texture.channels) {
-    case 1: return {value(0), value(0), value(0), 1.0F};
-    case 2: return {value(0), value(0), value(0), value(1)};
-    case 3: return {value(0), value(1), value(2), 1.0F};
-    default: return {value(0), value(1), value(2), value(3)};
+    case 1:
+      return {value(0), value(0), value(0), 1.0F};
+    case 2:
+      return {value(0), value(0), value(0), value(1)};
+    case 3:
+      return {value(0), value(1), value(2), 1.0F};
+    default:
+      return {value(0), value(1), value(2), value(3)};
   }
 }
 

@@ -11,18 +11,18 @@ namespace glidar {
 
 /// A decoded image. Row 0 is the top row; `texels` holds height x width x channels bytes.
 struct Texture {
-  std::string name;         ///< the file it came from, as the model names it
+  std::string name;  ///< the file it came from, as the model names it
   std::uint32_t width = 0;
   std::uint32_t height = 0;
-  std::uint32_t channels = 0;         ///< 1 grey, 2 grey+alpha, 3 rgb, 4 rgba
+  std::uint32_t channels = 0;  ///< 1 grey, 2 grey+alpha, 3 rgb, 4 rgba
   std::vector<std::uint8_t> texels;
 };
 
 enum class Wrap : std::uint8_t { repeat, mirror, clamp };
 enum class Filter : std::uint8_t { linear, nearest };
 
-/// How a material uses a texture. The texel at uv is looked up at `uv_scale_rotate * uv + uv_offset`,
-/// with v upwards (row = (1 - v) * height).
+/// How a material uses a texture. The texel at uv is looked up at `uv_scale_rotate * uv +
+/// uv_offset`, with v upwards (row = (1 - v) * height).
 struct TextureUse {
   static constexpr std::int32_t kNone = -1;
   std::int32_t texture = kNone;  ///< index into Scene::textures, kNone: not used
@@ -40,7 +40,8 @@ struct TextureUse {
 /// the file (no gamma is applied, as in fixed-function OpenGL). A texture multiplies its colour.
 struct Material {
   std::string name = "default";
-  Eigen::Vector3f ambient = Eigen::Vector3f::Constant(0.8F);  ///< multiplied by the diffuse texture too
+  Eigen::Vector3f ambient =
+      Eigen::Vector3f::Constant(0.8F);  ///< multiplied by the diffuse texture too
   Eigen::Vector3f diffuse = Eigen::Vector3f::Constant(0.8F);
   Eigen::Vector3f specular = Eigen::Vector3f::Zero();
   float shininess = 0.0F;     ///< exponent s of equation 5, 0..128
@@ -50,7 +51,8 @@ struct Material {
   TextureUse diffuse_texture;
   TextureUse specular_texture;
   TextureUse alpha_texture;   ///< last channel of the texture (alpha, or grey) is the opacity
-  TextureUse normal_texture;  ///< tangent-space normals, n = 2 rgb - 1 (height maps are converted on loading)
+  TextureUse normal_texture;  ///< tangent-space normals, n = 2 rgb - 1 (height maps are converted
+                              ///< on loading)
 };
 
 /// The texel values at a uv, 0..1: grey is spread to rgb, a missing alpha is 1.

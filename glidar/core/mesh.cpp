@@ -15,7 +15,8 @@ void require_size(const Mesh& mesh, const std::vector<T>& values, std::size_t si
   if (values.empty() || values.size() == size) return;
   throw Error({.where = "mesh '" + mesh.name + "', " + field,
                .found = std::to_string(values.size()) + " entries",
-               .allowed = "0 or " + std::to_string(size), .remedy = ""});
+               .allowed = "0 or " + std::to_string(size),
+               .remedy = ""});
 }
 
 }  // namespace
@@ -47,13 +48,16 @@ void validate(const Mesh& mesh) {
       if (corner < vertices) continue;
       throw Error({.where = "mesh '" + mesh.name + "', triangles",
                    .found = "a corner is vertex " + std::to_string(corner),
-                   .allowed = "below " + std::to_string(vertices), .remedy = ""});
+                   .allowed = "below " + std::to_string(vertices),
+                   .remedy = ""});
     }
   }
   for (const Eigen::Vector3f& position : mesh.positions_m) {
     if (position.allFinite()) continue;
     throw Error({.where = "mesh '" + mesh.name + "', positions_m",
-                 .found = "a coordinate is not finite", .allowed = "finite metres", .remedy = ""});
+                 .found = "a coordinate is not finite",
+                 .allowed = "finite metres",
+                 .remedy = ""});
   }
 }
 

@@ -20,13 +20,15 @@ using Triangle = std::array<std::uint32_t, 3>;
 struct Mesh {
   std::string name;
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3f> positions_m;          ///< V
-  std::vector<Eigen::Vector3f> normals;              ///< V unit vectors; empty: flat shading
-  std::array<std::vector<Eigen::Vector2f>, 2> uvs;   ///< two sets of V, v upwards; empty: none
-  std::vector<Eigen::Vector4f> tangents;             ///< V, xyz along +u, w = sign of the bitangent; empty: none
-  std::vector<Eigen::Vector3f> colours;              ///< V, rgb 0..1, multiplies the diffuse colour; empty: white
-  std::vector<Triangle> triangles;                   ///< T, each corner < V
-  std::vector<std::uint16_t> material_slots;         ///< T, index into Instance::materials; empty: all 0
+  std::vector<Eigen::Vector3f> positions_m;         ///< V
+  std::vector<Eigen::Vector3f> normals;             ///< V unit vectors; empty: flat shading
+  std::array<std::vector<Eigen::Vector2f>, 2> uvs;  ///< two sets of V, v upwards; empty: none
+  std::vector<Eigen::Vector4f>
+      tangents;  ///< V, xyz along +u, w = sign of the bitangent; empty: none
+  std::vector<Eigen::Vector3f>
+      colours;                      ///< V, rgb 0..1, multiplies the diffuse colour; empty: white
+  std::vector<Triangle> triangles;  ///< T, each corner < V
+  std::vector<std::uint16_t> material_slots;  ///< T, index into Instance::materials; empty: all 0
 };
 
 /// The box around all finite vertices, in the object frame; empty box for an empty mesh.

@@ -10,13 +10,17 @@ Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Ei
   const Eigen::Vector3d forward = target - eye;
   const Eigen::Vector3d right = forward.cross(up);
   if (!(forward.norm() > 0.0)) {
-    throw Error({.where = "look_at", .found = "eye and target are the same point",
-                 .allowed = "two distinct points", .remedy = ""});
+    throw Error({.where = "look_at",
+                 .found = "eye and target are the same point",
+                 .allowed = "two distinct points",
+                 .remedy = ""});
   }
   constexpr double kSmallestSine = 1e-9;  // below it the roll angle is not defined
   if (!(right.norm() > kSmallestSine * forward.norm() * up.norm())) {
-    throw Error({.where = "look_at", .found = "the up vector is parallel to the line of sight",
-                 .allowed = "an up vector that is not", .remedy = "choose another up vector"});
+    throw Error({.where = "look_at",
+                 .found = "the up vector is parallel to the line of sight",
+                 .allowed = "an up vector that is not",
+                 .remedy = "choose another up vector"});
   }
   Pose world_from_camera = Pose::Identity();
   const Eigen::Vector3d z = forward.normalized();
@@ -29,8 +33,10 @@ Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Ei
 Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orientation) {
   const double norm = orientation.norm();
   if (!position_m.allFinite() || !orientation.coeffs().allFinite() || !(norm > 0.0)) {
-    throw Error({.where = "pose", .found = "a number is not finite or the quaternion is zero",
-                 .allowed = "finite metres and a quaternion of any length but zero", .remedy = ""});
+    throw Error({.where = "pose",
+                 .found = "a number is not finite or the quaternion is zero",
+                 .allowed = "finite metres and a quaternion of any length but zero",
+                 .remedy = ""});
   }
   Pose pose = Pose::Identity();
   pose.linear() = orientation.normalized().toRotationMatrix();

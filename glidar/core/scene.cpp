@@ -11,13 +11,15 @@ namespace {
 
 void require(bool holds, const Instance& instance, std::string found, std::string allowed) {
   if (holds) return;
-  throw Error({.where = "instance '" + instance.name + "'", .found = std::move(found),
-               .allowed = std::move(allowed), .remedy = ""});
+  throw Error({.where = "instance '" + instance.name + "'",
+               .found = std::move(found),
+               .allowed = std::move(allowed),
+               .remedy = ""});
 }
 
 void validate(const Instance& instance, const Scene& scene) {
-  require(instance.mesh < scene.meshes.size(), instance,
-          "mesh " + std::to_string(instance.mesh), "an index of the scene's meshes");
+  require(instance.mesh < scene.meshes.size(), instance, "mesh " + std::to_string(instance.mesh),
+          "an index of the scene's meshes");
   require(std::isfinite(instance.scale) && instance.scale > 0.0, instance,
           "scale " + std::to_string(instance.scale), "a finite number above 0");
   require(is_rigid(instance.world_from_object), instance, "a pose that is not a rigid transform",
@@ -36,7 +38,8 @@ void validate(const TextureUse& use, const Scene& scene, const Material& materia
   if (!use.used() || static_cast<std::size_t>(use.texture) < scene.textures.size()) return;
   throw Error({.where = "material '" + material.name + "'",
                .found = "texture " + std::to_string(use.texture),
-               .allowed = "an index of the scene's textures", .remedy = ""});
+               .allowed = "an index of the scene's textures",
+               .remedy = ""});
 }
 
 }  // namespace

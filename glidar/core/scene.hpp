@@ -15,12 +15,12 @@ namespace glidar {
 /// One placed mesh: p_world = world_from_object * (scale * p_object).
 struct Instance {
   std::string name;
-  std::uint32_t mesh = 0;                  ///< index into Scene::meshes
+  std::uint32_t mesh = 0;  ///< index into Scene::meshes
   Pose world_from_object = Pose::Identity();
-  double scale = 1.0;                      ///< > 0, uniform
-  std::uint32_t id = 0;                    ///< the user's number for it, written to clouds
-  std::uint32_t class_id = 0;              ///< index into Scene::class_names
-  std::vector<std::uint32_t> materials;    ///< material slot -> index into Scene::materials
+  double scale = 1.0;                    ///< > 0, uniform
+  std::uint32_t id = 0;                  ///< the user's number for it, written to clouds
+  std::uint32_t class_id = 0;            ///< index into Scene::class_names
+  std::vector<std::uint32_t> materials;  ///< material slot -> index into Scene::materials
 };
 
 /// Where a mesh came from; what the sidecar tells.
@@ -32,7 +32,7 @@ struct MeshSource {
 /// All there is to see, as plain arrays and indices.
 struct Scene {
   std::vector<Mesh> meshes;
-  std::vector<MeshSource> sources;         ///< one per mesh
+  std::vector<MeshSource> sources;  ///< one per mesh
   std::vector<Material> materials;
   std::vector<Texture> textures;
   std::vector<Instance> instances;

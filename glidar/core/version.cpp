@@ -4,6 +4,8 @@
 
 namespace glidar {
 
-const char* version() { return GLIDAR_VERSION; }
+const char* version() {
+  return GLIDAR_VERSION;
+}
 
 }  // namespace glidar

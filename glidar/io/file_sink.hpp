@@ -17,8 +17,8 @@ enum class PcdEncoding : std::uint8_t { ascii, binary, binary_compressed };
 struct FileSinkOptions {
   PcdEncoding pcd = PcdEncoding::binary;
   bool ply_ascii = false;
-  bool dense = false;                ///< point formats leave misses out
-  bool sidecar = true;               ///< write FILE.json beside a cloud
+  bool dense = false;                     ///< point formats leave misses out
+  bool sidecar = true;                    ///< write FILE.json beside a cloud
   double depth_png_units_per_m = 1000.0;  ///< 16-bit depth PNG: 1000 = millimetres
 };
 

@@ -16,9 +16,10 @@ namespace glidar {
 enum class Axis : std::uint8_t { x, y, z };
 
 struct ModelOptions {
-  double metres_per_unit = 1.0;          ///< what one unit of the file is
-  std::optional<Axis> up;                ///< this axis of the file becomes z; none: axes as in the file
-  double crease_angle_rad = 0.785398163397448310;  ///< made normals do not smooth over sharper edges
+  double metres_per_unit = 1.0;  ///< what one unit of the file is
+  std::optional<Axis> up;        ///< this axis of the file becomes z; none: axes as in the file
+  double crease_angle_rad =
+      0.785398163397448310;  ///< made normals do not smooth over sharper edges
   bool use_cache = true;
   std::filesystem::path cache_folder;    ///< empty: $XDG_CACHE_HOME/glidar or ~/.cache/glidar
   double time_limit_s = 120.0;           ///< for the import process
@@ -41,20 +42,21 @@ struct MissingTexture {
 /// One loaded model: all its meshes with node transforms applied, in one object frame.
 /// Triangles keep the order of a depth-first walk over the file's nodes.
 struct Model {
-  std::string source;               ///< path or "builtin:NAME"
-  std::string hash;                 ///< of all files it was read from, hexadecimal; empty: built in
-  std::string format;               ///< of the file, e.g. "Stanford Polygon Library (PLY)"
+  std::string source;  ///< path or "builtin:NAME"
+  std::string hash;    ///< of all files it was read from, hexadecimal; empty: built in
+  std::string format;  ///< of the file, e.g. "Stanford Polygon Library (PLY)"
   Mesh mesh;
   std::vector<Material> materials;  ///< slot -> material
   std::vector<Texture> textures;
   std::vector<ModelPart> parts;
   std::vector<MissingTexture> missing_textures;
-  std::vector<std::string> notes;   ///< what was left out or repaired, in words
+  std::vector<std::string> notes;  ///< what was left out or repaired, in words
   bool from_cache = false;
 };
 
 /// Loads a file of any format that Assimp reads, or "builtin:asteroid|sphere|box|torus|plane".
-/// Throws Error: unknown format, broken, no triangles, time or memory limit, import process crashed.
+/// Throws Error: unknown format, broken, no triangles, time or memory limit, import process
+/// crashed.
 Model load_model(const std::string& source, const ModelOptions& options, const Report& report);
 
 /// Appends the model's mesh, materials and textures to the scene and one instance of it with

@@ -5,7 +5,9 @@
 namespace glidar {
 namespace {
 
-Pose evaluate(const ConstantPose& constant, std::int64_t /*t_ns*/) { return constant.pose; }
+Pose evaluate(const ConstantPose& constant, std::int64_t /*t_ns*/) {
+  return constant.pose;
+}
 
 }  // namespace
 

@@ -18,7 +18,8 @@ namespace glidar {
 struct CastRequest {
   const Beams& beams;
   Pose world_from_sensor = Pose::Identity();
-  std::span<const Pose> world_from_instance;  ///< one per instance; empty: where the scene puts them
+  std::span<const Pose>
+      world_from_instance;  ///< one per instance; empty: where the scene puts them
   HitFields fields;
   bool cull_back_faces = false;
 };

@@ -7,8 +7,8 @@
 
 namespace glidar {
 
-/// The paper's light: a lamp at the sensor. Equation (3): a = 1 / (constant + linear d + quadratic d^2).
-/// The defaults are those of the 2015 program.
+/// The paper's light: a lamp at the sensor. Equation (3): a = 1 / (constant + linear d + quadratic
+/// d^2). The defaults are those of the 2015 program.
 struct Light {
   double attenuation_constant = 1.0;
   double attenuation_linear_per_m = 1e-4;

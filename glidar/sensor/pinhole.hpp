@@ -11,7 +11,8 @@ namespace glidar {
 struct NoDistortion {};
 
 /// OpenCV's rational radial-tangential model (calib3d documentation, "Detailed Description"):
-/// x'' = x' (1+k1 r2+k2 r4+k3 r6)/(1+k4 r2+k5 r4+k6 r6) + 2 p1 x'y' + p2 (r2 + 2 x'2), y'' likewise.
+/// x'' = x' (1+k1 r2+k2 r4+k3 r6)/(1+k4 r2+k5 r4+k6 r6) + 2 p1 x'y' + p2 (r2 + 2 x'2), y''
+/// likewise.
 struct RadialTangential {
   double k1 = 0.0;
   double k2 = 0.0;

@@ -1,0 +1,301 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/point_cloud.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+/// All that columns are made of.
+struct Source {
+  const Frame& frame;
+  const Beams& beams;
+  const Scene& scene;
+  const Pose cloud_from_sensor;
+};
+
+using Fill = void (*)(const Source&, Column&);
+
+/// A column of the closed set: its fields, what the cast must have kept, and how it is filled.
+struct ColumnKind {
+  std::string name;
+  std::vector<std::string> components;
+  HitFields needs;
+  Fill fill;
+};
+
+/// The column's numbers as vector<T> of `count` entries, reusing memory.
+template <class T>
+std::vector<T>& numbers(Column& column, std::size_t count) {
+  if (!std::holds_alternative<std::vector<T>>(column.values))
+    column.values.emplace<std::vector<T>>();
+  auto& values = std::get<std::vector<T>>(column.values);
+  values.resize(count);
+  return values;
+}
+
+/// One number a point, from a function of the beam's index.
+template <class T, class Function>
+void fill_each(const Source& source, Column& column, Function value_of) {
+  std::vector<T>& values = numbers<T>(column, source.beams.size());
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = value_of(i);
+}
+
+/// Components of a fixed-size vector a point, from a function of the beam's index.
+template <class T, int kSize, class Function>
+void fill_vectors(const Source& source, Column& column, Function vector_of) {
+  std::vector<T>& values = numbers<T>(column, source.beams.size() * kSize);
+  for (std::size_t i = 0; i < source.beams.size(); ++i) {
+    Eigen::Map<Eigen::Matrix<T, kSize, 1>>(&values[i * kSize]) = vector_of(i);
+  }
+}
+
+void fill_xyz(const Source& s, Column& column) {
+  const Eigen::Matrix3d rotation = s.cloud_from_sensor.linear();
+  const Eigen::Vector3d translation = s.cloud_from_sensor.translation();
+  fill_vectors<double, 3>(s, column, [&](std::size_t i) -> Eigen::Vector3d {
+    Eigen::Vector3d in_sensor = s.frame.range_m[i] * s.beams.directions[i];
+    if (!s.beams.origins_m.empty()) in_sensor += s.beams.origins_m[i];
+    return rotation * in_sensor + translation;
+  });
+}
+
+void fill_intensity(const Source& s, Column& column) {
+  fill_each<float>(s, column, [&](std::size_t i) { return s.frame.intensity[i]; });
+}
+
+void fill_range(const Source& s, Column& column) {
+  fill_each<double>(s, column, [&](std::size_t i) { return s.frame.range_m[i]; });
+}
+
+void fill_depth(const Source& s, Column& column) {
+  fill_each<double>(s, column, [&](std::size_t i) {
+    double depth = s.frame.range_m[i] * s.beams.directions[i].dot(s.beams.boresight);
+    if (!s.beams.origins_m.empty()) depth += s.beams.origins_m[i].dot(s.beams.boresight);
+    return depth;
+  });
+}
+
+void fill_directions(const Source& s, Column& column, const std::vector<Eigen::Vector3f>& normals) {
+  const Eigen::Matrix3f rotation = s.cloud_from_sensor.linear().cast<float>();
+  fill_vectors<float, 3>(s, column,
+                         [&](std::size_t i) -> Eigen::Vector3f { return rotation * normals[i]; });
+}
+
+void fill_normal(const Source& s, Column& column) {
+  fill_directions(s, column, s.frame.truth.normal);
+}
+
+void fill_shading_normal(const Source& s, Column& column) {
+  fill_directions(s, column, s.frame.truth.shading_normal);
+}
+
+void fill_incidence(const Source& s, Column& column) {
+  fill_each<float>(s, column, [&](std::size_t i) {
+    return std::acos(std::min(s.frame.truth.cos_incidence[i], 1.0F));
+  });
+}
+
+/// A number of the instance that each beam hit.
+template <class Function>
+void fill_of_instance(const Source& s, Column& column, Function number_of) {
+  fill_each<std::uint32_t>(s, column, [&](std::size_t i) {
+    const std::uint32_t instance = s.frame.truth.instance[i];
+    return instance == kNoHit ? kNoHit : number_of(s.scene.instances[instance]);
+  });
+}
+
+void fill_instance(const Source& s, Column& column) {
+  fill_of_instance(s, column, [](const Instance& instance) { return instance.id; });
+}
+
+void fill_class(const Source& s, Column& column) {
+  fill_of_instance(s, column, [](const Instance& instance) { return instance.class_id; });
+}
+
+void fill_primitive(const Source& s, Column& column) {
+  fill_each<std::uint32_t>(s, column, [&](std::size_t i) { return s.frame.truth.primitive[i]; });
+}
+
+void fill_barycentrics(const Source& s, Column& column) {
+  fill_vectors<float, 2>(s, column, [&](std::size_t i) { return s.frame.truth.barycentrics[i]; });
+}
+
+void fill_colour(const Source& s, Column& column) {
+  fill_vectors<float, 3>(s, column, [&](std::size_t i) { return s.frame.truth.colour[i]; });
+}
+
+void fill_object_point(const Source& s, Column& column) {
+  fill_vectors<double, 3>(s, column,
+                          [&](std::size_t i) { return s.frame.truth.object_point_m[i]; });
+}
+
+void fill_status(const Source& s, Column& column) {
+  fill_each<std::uint8_t>(
+      s, column, [&](std::size_t i) { return static_cast<std::uint8_t>(s.frame.status[i]); });
+}
+
+void fill_row(const Source& s, Column& column) {
+  fill_each<std::uint32_t>(
+      s, column, [&](std::size_t i) { return static_cast<std::uint32_t>(i / s.beams.cols); });
+}
+
+void fill_col(const Source& s, Column& column) {
+  fill_each<std::uint32_t>(
+      s, column, [&](std::size_t i) { return static_cast<std::uint32_t>(i % s.beams.cols); });
+}
+
+const std::vector<ColumnKind>& column_kinds() {
+  static const std::vector<ColumnKind> kinds = {
+      {"xyz", {"x", "y", "z"}, {}, fill_xyz},
+      {"intensity", {"intensity"}, {}, fill_intensity},
+      {"range", {"range"}, {}, fill_range},
+      {"depth", {"depth"}, {}, fill_depth},
+      {"normal", {"normal_x", "normal_y", "normal_z"}, {.normal = true}, fill_normal},
+      {"shading_normal",
+       {"shading_normal_x", "shading_normal_y", "shading_normal_z"},
+       {.shading_normal = true},
+       fill_shading_normal},
+      {"incidence", {"incidence"}, {.incidence = true}, fill_incidence},
+      {"instance", {"instance"}, {}, fill_instance},
+      {"class", {"class"}, {}, fill_class},
+      {"primitive", {"primitive"}, {}, fill_primitive},
+      {"barycentrics", {"bary_1", "bary_2"}, {.barycentrics = true}, fill_barycentrics},
+      {"colour", {"red", "green", "blue"}, {.surface = true}, fill_colour},
+      {"object_point",
+       {"object_x", "object_y", "object_z"},
+       {.object_point = true},
+       fill_object_point},
+      {"status", {"status"}, {}, fill_status},
+      {"row", {"row"}, {}, fill_row},
+      {"col", {"col"}, {}, fill_col},
+  };
+  return kinds;
+}
+
+const ColumnKind& kind_named(std::string_view name) {
+  for (const ColumnKind& kind : column_kinds()) {
+    if (kind.name == name) return kind;
+  }
+  std::string allowed;
+  for (const std::string& known : cloud_column_names())
+    allowed += (allowed.empty() ? "" : " ") + known;
+  const std::string nearest = nearest_word(name, cloud_column_names());
+  throw Error({.where = "cloud column",
+               .found = "'" + std::string(name) + "' is not known",
+               .allowed = allowed,
+               .remedy = nearest.empty() ? "" : "did you mean '" + nearest + "'?"});
+}
+
+/// True when the frame kept what the column needs.
+bool has(const Frame& frame, const HitFields& needs) {
+  const Hits& truth = frame.truth;
+  const std::size_t size = frame.range_m.size();
+  const auto kept = [size](bool needed, std::size_t found) { return !needed || found == size; };
+  return kept(needs.normal, truth.normal.size()) &&
+         kept(needs.shading_normal, truth.shading_normal.size()) &&
+         kept(needs.incidence, truth.cos_incidence.size()) &&
+         kept(needs.barycentrics, truth.barycentrics.size()) &&
+         kept(needs.surface, truth.colour.size()) &&
+         kept(needs.object_point, truth.object_point_m.size());
+}
+
+/// The points of one column whose index is in `kept`.
+Column selected(const Column& column, const std::vector<std::size_t>& kept) {
+  Column result{column.name, column.components, {}};
+  const std::size_t width = column.components.size();
+  std::visit(
+      [&](const auto& values) {
+        std::decay_t<decltype(values)> chosen;
+        chosen.reserve(kept.size() * width);
+        for (const std::size_t point : kept) {
+          const auto first = values.begin() + static_cast<std::ptrdiff_t>(point * width);
+          chosen.insert(chosen.end(), first, first + static_cast<std::ptrdiff_t>(width));
+        }
+        result.values = std::move(chosen);
+      },
+      column.values);
+  return result;
+}
+
+}  // namespace
+
+std::span<const std::string> cloud_column_names() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const ColumnKind& kind : column_kinds()) all.push_back(kind.name);
+    return all;
+  }();
+  return names;
+}
+
+HitFields fields_for(std::span<const std::string> column_names) {
+  HitFields fields;
+  for (const std::string& name : column_names) {
+    const HitFields& needs = kind_named(name).needs;
+    fields.normal |= needs.normal;
+    fields.shading_normal |= needs.shading_normal;
+    fields.incidence |= needs.incidence;
+    fields.barycentrics |= needs.barycentrics;
+    fields.surface |= needs.surface;
+    fields.object_point |= needs.object_point;
+  }
+  return fields;
+}
+
+void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene,
+                      const CloudFrame& cloud_frame, std::span<const std::string> column_names,
+                      PointCloud& cloud) {
+  cloud.rows = frame.rows;
+  cloud.cols = frame.cols;
+  cloud.frame_id = cloud_frame.frame_id;
+  cloud.world_from_cloud = frame.world_from_sensor * cloud_frame.cloud_from_sensor.inverse();
+  cloud.columns.resize(column_names.size());
+  const Source source{frame, beams, scene, cloud_frame.cloud_from_sensor};
+  for (std::size_t c = 0; c < column_names.size(); ++c) {
+    const ColumnKind& kind = kind_named(column_names[c]);
+    if (!has(frame, kind.needs)) {
+      throw Error({.where = "cloud column '" + kind.name + "'",
+                   .found = "the frame was cast without it",
+                   .allowed = "",
+                   .remedy = "pass fields_for() of the columns to simulate()"});
+    }
+    cloud.columns[c].name = kind.name;
+    cloud.columns[c].components = kind.components;
+    kind.fill(source, cloud.columns[c]);
+  }
+}
+
+const Column* find_column(const PointCloud& cloud, std::string_view name) {
+  const auto found = std::find_if(cloud.columns.begin(), cloud.columns.end(),
+                                  [name](const Column& column) { return column.name == name; });
+  return found == cloud.columns.end() ? nullptr : &*found;
+}
+
+PointCloud compacted(const PointCloud& cloud) {
+  const Column* xyz = find_column(cloud, "xyz");
+  if (xyz == nullptr) {
+    throw Error({.where = "cloud",
+                 .found = "no column 'xyz'",
+                 .allowed = "a cloud with coordinates",
+                 .remedy = "add the column"});
+  }
+  const auto& coordinates = std::get<std::vector<double>>(xyz->values);
+  std::vector<std::size_t> kept;
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (!std::isnan(coordinates[3 * i])) kept.push_back(i);
+  }
+  PointCloud result;
+  result.rows = 1;
+  result.cols = static_cast<std::uint32_t>(kept.size());
+  result.frame_id = cloud.frame_id;
+  result.world_from_cloud = cloud.world_from_cloud;
+  for (const Column& column : cloud.columns) result.columns.push_back(selected(column, kept));
+  return result;
+}
+
+}  // namespace glidar

@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/renderer.hpp>
+
+namespace glidar {
+
+/// Ray casting on the CPU by Intel Embree, in packets over 4x4 tiles of the beam grid.
+std::unique_ptr<Renderer> make_embree_renderer(const Scene& scene, const RendererOptions& options);
+
+}  // namespace glidar
