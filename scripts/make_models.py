@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Makes the models of the models/ folder. Needs numpy and Pillow. Every run gives the same files."""
+"""Makes the models of the models/ folder, the same each time. Needs numpy and Pillow."""
 
 import argparse
 from pathlib import Path

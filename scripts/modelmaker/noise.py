@@ -40,7 +40,7 @@ def directions(seed, count):
 
 
 def gradient_noise(points, seed, period=None):
-    """Perlin's gradient noise, about -1..1, at points (..., 3); period in lattice cells, or none."""
+    """Perlin's gradient noise, about -1..1, at points (..., 3); period in lattice cells."""
     points = np.asarray(points, dtype=np.float64)
     cell = np.floor(points)
     part = points - cell

@@ -33,7 +33,7 @@ MATERIALS = {
                           map_Kd="foil.png", norm="foil_normals.png"),
     "solar_cells": material((1, 1, 1), (0.7, 0.7, 0.8), 90, map_Kd="cells.png",
                             map_Ks="cells_gloss.png", norm="cells_normals.png"),
-    "panel_back": material((0.16, 0.16, 0.17), (0.25, 0.25, 0.25), 20,
+    "panel_back": material((0.22, 0.22, 0.23), (0.25, 0.25, 0.25), 20,
                            map_bump="weave_height.png"),
     "white_paint": material((0.86, 0.86, 0.84), (0.10, 0.10, 0.10), 12),
     "aluminium": material((0.55, 0.56, 0.58), (0.50, 0.50, 0.50), 50),
@@ -52,11 +52,14 @@ def bus():
     for name, y in (("left", 0.512), ("right", -0.512)):
         plate = box(f"radiator_{name}", (0.72, 0.02, 0.34), "radiator", 10.0)
         parts.append(placed(plate, (0.05, y, -0.26)))
-    parts.append(placed(box("service_panel", (0.012, 0.34, 0.22), "aluminium"), (-0.610, 0.0, 0.36)))
-    parts.append(placed(box("electronics", (0.30, 0.22, 0.10), "black_paint"), (-0.32, 0.27, 0.55)))
-    parts.append(placed(box("patch_antenna", (0.14, 0.14, 0.03), "white_paint"), (0.42, 0.34, 0.522)))
-    parts.append(strut("whip_left", (-0.5, 0.42, 0.48), (-0.78, 0.62, 0.98), 0.006, "aluminium", 8))
-    parts.append(strut("whip_right", (-0.5, -0.42, 0.48), (-0.78, -0.62, 0.98), 0.006, "aluminium", 8))
+    for name, size, paint, place in (
+            ("service_panel", (0.012, 0.34, 0.22), "aluminium", (-0.61, 0.0, 0.36)),
+            ("electronics", (0.30, 0.22, 0.10), "black_paint", (-0.32, 0.27, 0.55)),
+            ("patch_antenna", (0.14, 0.14, 0.03), "white_paint", (0.42, 0.34, 0.522))):
+        parts.append(placed(box(name, size, paint), place))
+    for name, side in (("left", 1), ("right", -1)):
+        start, end = (-0.5, 0.42 * side, 0.48), (-0.78, 0.62 * side, 0.98)
+        parts.append(strut(f"whip_{name}", start, end, 0.006, "aluminium"))
     return parts
 
 
@@ -68,7 +71,8 @@ def wing(name):
     for side, x in (("a", 0.36), ("b", -0.36)):
         parts.append(strut(f"{name}_yoke_{side}", (0.0, 0.59, 0.0), (x, 0.96, 0.0), 0.016,
                            "aluminium"))
-    parts.append(strut(f"{name}_yoke_bar", (-0.42, 0.96, 0.0), (0.42, 0.96, 0.0), 0.018, "aluminium"))
+    parts.append(strut(f"{name}_yoke_bar", (-0.42, 0.96, 0.0), (0.42, 0.96, 0.0), 0.018,
+                       "aluminium"))
     faces = ["aluminium"] * 4 + ["solar_cells", "panel_back"]
     for n in range(3):
         y = 0.98 + n * (PANEL_M[1] + 0.03)
@@ -125,8 +129,9 @@ def propulsion():
         cone = [(0.0, 0.0), (0.012, 0.0), (0.028, 0.055), (0.024, 0.055), (0.008, 0.006),
                 (0.0, 0.006)]
         turns = (BACKWARD, rotation(0, -90.0 * y), rotation(0, 0.0 if z > 0 else 180.0))
-        for n, (turn, axis) in enumerate(zip(turns, ((-1, 0, 0), (0, y, 0), (0, 0, z)), strict=True)):
-            jet = lathe(f"thruster_{k + 1}{'abc'[n]}", cone, 10, "nozzle")
+        axes = ((-1, 0, 0), (0, y, 0), (0, 0, z))
+        for letter, turn, axis in zip("abc", turns, axes, strict=True):
+            jet = lathe(f"thruster_{k + 1}{letter}", cone, 10, "nozzle")
             offset = np.array(axis) * np.array((0.034, 0.044, 0.044))
             parts.append(placed(jet, place + offset, turn))
     return parts
@@ -154,7 +159,8 @@ def instruments():
     for name, y in (("out", -0.305), ("in", -0.185)):
         window = cylinder(f"lidar_window_{name}", 0.042, 0.012, 24, ["black_paint"] * 2 + ["lens"])
         parts.append(placed(window, (0.738, y, 0.14), FORWARD))
-    parts.append(placed(box("radar_altimeter", (0.05, 0.42, 0.20), "aluminium"), (0.62, 0.0, -0.28)))
+    radar = box("radar_altimeter", (0.05, 0.42, 0.20), "aluminium")
+    parts.append(placed(radar, (0.62, 0.0, -0.28)))
     for k in range(3):
         patch = box(f"radar_patch_{k + 1}", (0.012, 0.11, 0.15), "copper")
         parts.append(placed(patch, (0.65, -0.135 + 0.135 * k, -0.28)))

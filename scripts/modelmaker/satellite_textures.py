@@ -34,7 +34,7 @@ def foil():
     seam = (np.minimum(x, FOIL - x) < 2.0) | (np.minimum(y, FOIL - y) < 2.0)
     shade = np.where(seam, 0.72, shade)
     colour = shade[..., None] * np.array([1.0, 0.98, 0.94])
-    return colour, normals_of_heights(height, 6.5)
+    return colour, normals_of_heights(height, 8.5)
 
 
 def solar_cells():

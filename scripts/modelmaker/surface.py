@@ -69,16 +69,23 @@ def make_boulders(coarse):
 
 
 def local_frame(features, k, points, reach):
-    """Points within reach x radius of feature k: their indices and local (right, ahead) in radii."""
-    offset = points - features.centres_m[k]
-    distance2 = np.sum(offset * offset, axis=-1) / features.radii_m[k] ** 2
+    """Points within reach x radius of feature k: their indices, distance, right and ahead in radii.
+
+    The points are sorted by x, so that only a slice of them is looked at.
+    """
+    centre, radius = features.centres_m[k], features.radii_m[k]
+    first, last = np.searchsorted(points[:, 0], centre[0] + np.array([-reach, reach]) * radius)
+    offset = (points[first:last] - centre) / radius
+    distance2 = np.sum(offset * offset, axis=-1)
     near = np.nonzero(distance2 < reach * reach)[0]
-    offset = offset[near] / features.radii_m[k]
-    return near, np.sqrt(distance2[near]), offset @ features.right[k], offset @ features.ahead[k]
+    offset = offset[near]
+    right = np.sum(offset * features.right[k], axis=-1)
+    ahead = np.sum(offset * features.ahead[k], axis=-1)
+    return first + near, np.sqrt(distance2[near]), right, ahead
 
 
 def crater_height(x, radius_m, character):
-    """A bowl, a rim and an ejecta blanket over x = distance / radius (smooth minimum of the two)."""
+    """Bowl, rim and ejecta blanket (smooth minimum) over x = distance / radius."""
     depth = (0.13 + 0.20 * character) * radius_m
     rim = (0.05 + 0.05 * character) * radius_m
     bowl = -depth + (depth + rim) * np.minimum(x, 1.6) ** 2.2
@@ -138,6 +145,8 @@ def surface(direction, fine):
     Without fine, only what the mesh can hold is there: nothing much smaller than its edges.
     """
     radius = body_radius_m(direction)
+    order = np.argsort(direction[:, 0] * radius, kind="stable")
+    direction, radius = direction[order], radius[order]
     smooth_points = direction * radius[:, None]
     ground = smoothness(direction)
     height, tone = np.zeros(len(direction)), np.zeros(len(direction))
@@ -153,4 +162,5 @@ def surface(direction, fine):
         tone += 0.06 * rough - 0.07 * ground + 0.08 * fractal_noise(smooth_points / 70.0, 53, 3)
     points = direction * (radius + height)[:, None]
     points[:, 1] += BEND_PER_M * points[:, 0] ** 2
-    return points, tone
+    back = np.argsort(order)
+    return points[back], tone[back]
