@@ -113,23 +113,30 @@ std::vector<Crater> make_craters() {
     const double freshness = uniform(words[1]);
     craters[i] = {.centre = on_ellipsoid(random_direction(i)),
                   .radius = radius * (0.75 + 0.25 * uniform(words[2])),
-                  .depth = radius * (0.12 + 0.26 * freshness),
-                  .rim = radius * (0.015 + 0.065 * freshness)};
+                  .depth = radius * (0.12 + 0.24 * freshness),
+                  .rim = radius * (0.025 + 0.075 * freshness)};
   }
   return craters;
 }
 
-/// Adds a crater to the height so far. It wipes out half of the older relief inside it. `t` is the
-/// distance from its centre in crater radii, below kReach.
-constexpr double kReach = 1.9;  // where the blanket of thrown-out rock ends
+/// The smaller of two numbers, rounded off where they meet to within `width` (I. Quilez's quadratic
+/// smooth minimum).
+double soft_min(double a, double b, double width) {
+  const double overlap = std::max(width - std::abs(a - b), 0.0) / width;
+  return std::min(a, b) - overlap * overlap * width / 4.0;
+}
+
+constexpr double kReach = 1.9;       // crater radii to where the blanket of thrown-out rock ends
+constexpr double kCrestWidth = 0.1;  // of the radius; a sharper crest would be a saw on this mesh
+
+/// Adds a crater to the height so far: a bowl that meets the blanket at the rim. It wipes out half
+/// of the older relief inside it. `t` is the distance from its centre in crater radii.
 double cratered(double height, const Crater& crater, double t) {
-  if (t >= 1.0) {
-    const double s = (kReach - t) / (kReach - 1.0);
-    return height + crater.rim * s * s * s;
-  }
-  const double bowl = -crater.depth + (crater.depth + crater.rim) * t * t * (0.6 + 0.4 * t * t);
-  const double wiped = 0.5 * (1.0 - t * t);
-  return height * (1.0 - wiped) + bowl;
+  const double s = (kReach - t) / (kReach - 1.0);
+  const double blanket = crater.rim * s * s * s;
+  const double bowl = (crater.depth + crater.rim) * t * t - crater.depth;
+  const double wiped = 0.5 * std::max(1.0 - t * t, 0.0);
+  return height * (1.0 - wiped) + soft_min(bowl, blanket, kCrestWidth * crater.radius);
 }
 
 double crater_height(const Eigen::Vector3d& p, const std::vector<Crater>& craters) {
