@@ -59,8 +59,10 @@ struct Target {
 };
 
 zip_int64_t seek(Target& target, void* data, zip_uint64_t length) {
-  const zip_int64_t offset = zip_source_seek_compute_offset(
-      target.file.position(), target.file.position(), data, length, &target.error);
+  // libzip seeks from the start or from here, never from the end: no length is kept for that
+  constexpr auto kNoEnd = static_cast<zip_uint64_t>(ZIP_INT64_MAX);
+  const zip_int64_t offset = zip_source_seek_compute_offset(target.file.position(), kNoEnd, data,
+                                                            length, &target.error);
   if (offset >= 0) target.file.seek(static_cast<std::uint64_t>(offset));
   return offset < 0 ? -1 : 0;
 }
@@ -86,6 +88,8 @@ zip_int64_t answer(Target& target, void* data, zip_uint64_t length, zip_source_c
       return seek(target, data, length);
     case ZIP_SOURCE_TELL_WRITE:
       return static_cast<zip_int64_t>(target.file.position());
+    case ZIP_SOURCE_OPEN:
+    case ZIP_SOURCE_CLOSE:
     case ZIP_SOURCE_BEGIN_WRITE:
     case ZIP_SOURCE_COMMIT_WRITE:
     case ZIP_SOURCE_ROLLBACK_WRITE:
