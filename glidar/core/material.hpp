@@ -55,6 +55,11 @@ struct Material {
                               ///< on loading)
 };
 
+/// Brightness of a colour as a monochrome sensor sees it: the weights of Rec. ITU-R BT.709.
+inline float luminance(const Eigen::Vector3f& rgb) {
+  return 0.2126F * rgb.x() + 0.7152F * rgb.y() + 0.0722F * rgb.z();
+}
+
 /// The texel values at a uv, 0..1: grey is spread to rgb, a missing alpha is 1.
 /// An unused TextureUse gives white.
 Eigen::Vector4f sample(const TextureUse& use, const std::vector<Texture>& textures,

@@ -30,7 +30,7 @@ struct ColumnKind {
 
 /// The column's numbers as vector<T> of `count` entries, reusing memory.
 template <class T>
-std::vector<T>& numbers(Column& column, std::size_t count) {
+std::vector<T>& sized(Column& column, std::size_t count) {
   if (!std::holds_alternative<std::vector<T>>(column.values))
     column.values.emplace<std::vector<T>>();
   auto& values = std::get<std::vector<T>>(column.values);
@@ -41,16 +41,17 @@ std::vector<T>& numbers(Column& column, std::size_t count) {
 /// One number a point, from a function of the beam's index.
 template <class T, class Function>
 void fill_each(const Source& source, Column& column, Function value_of) {
-  std::vector<T>& values = numbers<T>(column, source.beams.size());
+  auto& values = sized<T>(column, source.beams.size());
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = value_of(i);
 }
 
 /// Components of a fixed-size vector a point, from a function of the beam's index.
 template <class T, int kSize, class Function>
 void fill_vectors(const Source& source, Column& column, Function vector_of) {
-  std::vector<T>& values = numbers<T>(column, source.beams.size() * kSize);
+  auto& values = sized<T>(column, source.beams.size() * kSize);
   for (std::size_t i = 0; i < source.beams.size(); ++i) {
-    Eigen::Map<Eigen::Matrix<T, kSize, 1>>(&values[i * kSize]) = vector_of(i);
+    Eigen::Map<Eigen::Matrix<T, kSize, 1>> target(values.data() + i * kSize);
+    target = vector_of(i);
   }
 }
 

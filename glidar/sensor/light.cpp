@@ -3,17 +3,13 @@
 #include <glidar/sensor/light.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/material.hpp>
 
 #include <algorithm>
 #include <cmath>
 
 namespace glidar {
 namespace {
-
-/// Luminance weights of Rec. ITU-R BT.709: the paper's sensor is monochrome.
-float luminance(const Eigen::Vector3f& rgb) {
-  return 0.2126F * rgb.x() + 0.7152F * rgb.y() + 0.0722F * rgb.z();
-}
 
 /// Equation (3): attenuation over the distance d between surface and sensor.
 double attenuation(const Light& light, double d) {

@@ -68,7 +68,7 @@ constexpr double kConverged =
 
 /// The ray through a point of the normalised image plane; NaN when there is none.
 Eigen::Vector3d ray(const NoDistortion& /*none*/, const Eigen::Vector2d& plane) {
-  return plane.homogeneous();
+  return {plane.x(), plane.y(), 1.0};
 }
 
 /// Newton's method from the distorted point. The solution must lie on the branch that contains the
@@ -81,7 +81,7 @@ Eigen::Vector3d ray(const RadialTangential& k, const Eigen::Vector2d& plane) {
     const Eigen::Vector2d residual = distorted(k, p) - plane;
     const Eigen::Matrix2d jacobian = distortion_jacobian(k, p);
     if (!(jacobian.determinant() > 0.0)) break;
-    if (residual.norm() <= tolerance) return p.homogeneous();
+    if (residual.norm() <= tolerance) return {p.x(), p.y(), 1.0};
     p -= jacobian.inverse() * residual;
   }
   return {kNaN, kNaN, kNaN};

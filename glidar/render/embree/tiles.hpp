@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+
+#include <cstddef>
+#include <limits>
+
+namespace glidar::embree {
+
+/// A small rectangle of the beam grid: neighbours travel together, lane by lane, row by row.
+struct Tile {
+  static constexpr std::size_t kOutside = std::numeric_limits<std::size_t>::max();
+  std::uint32_t first_row;
+  std::uint32_t first_col;
+  std::uint32_t width_shift;  ///< log2 of the tile's width
+  std::uint32_t rows;         ///< of the whole grid
+  std::uint32_t cols;
+
+  /// Index of a lane's beam, or kOutside beyond the grid's border.
+  [[nodiscard]] std::size_t beam(std::uint32_t lane) const {
+    const std::uint32_t row = first_row + (lane >> width_shift);
+    const std::uint32_t col = first_col + (lane & ((1U << width_shift) - 1U));
+    return row < rows && col < cols ? std::size_t{row} * cols + col : kOutside;
+  }
+};
+
+/// The beam grid cut into tiles of a packet's width: square (4x4, 4x2) in an image, flat where the
+/// grid has fewer rows.
+class Tiling {
+ public:
+  Tiling(const Beams& beams, std::uint32_t lanes) : rows_(beams.rows), cols_(beams.cols) {
+    std::uint32_t height = lanes >= 16 ? 4 : 2;
+    while (height > 1 && height > rows_) height /= 2;
+    height_ = height;
+    while ((1U << width_shift_) * height < lanes) ++width_shift_;
+    tile_cols_ = (cols_ + (1U << width_shift_) - 1U) >> width_shift_;
+    tile_rows_ = (rows_ + height_ - 1U) / height_;
+  }
+
+  [[nodiscard]] std::size_t size() const { return std::size_t{tile_rows_} * tile_cols_; }
+
+  [[nodiscard]] Tile tile(std::size_t index) const {
+    const auto row = static_cast<std::uint32_t>(index / tile_cols_);
+    const auto col = static_cast<std::uint32_t>(index % tile_cols_);
+    return {row * height_, col << width_shift_, width_shift_, rows_, cols_};
+  }
+
+ private:
+  std::uint32_t rows_;
+  std::uint32_t cols_;
+  std::uint32_t height_ = 1;
+  std::uint32_t width_shift_ = 0;
+  std::uint32_t tile_rows_ = 0;
+  std::uint32_t tile_cols_ = 0;
+};
+
+}  // namespace glidar::embree

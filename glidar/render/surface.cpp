@@ -1,0 +1,96 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/surface.hpp>
+
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+/// A per-vertex attribute interpolated over the triangle.
+template <class Vector>
+Vector interpolate(const std::vector<Vector>& values, const SurfacePlace& place) {
+  const Triangle& corners = place.mesh.triangles[place.triangle];
+  const float w1 = place.weights.x();
+  const float w2 = place.weights.y();
+  return (1.0F - w1 - w2) * values[corners[0]] + w1 * values[corners[1]] + w2 * values[corners[2]];
+}
+
+/// The texel of a material's texture at a place; white when the texture is not used.
+Eigen::Vector4f texel_at(const Scene& scene, const SurfacePlace& place, const TextureUse& use) {
+  if (!use.used()) return Eigen::Vector4f::Ones();
+  return sample(use, scene.textures, uv_at(place, use.uv_set));
+}
+
+/// A tangent-space normal n = 2 rgb - 1 carried into the object frame by the vertex tangents.
+Eigen::Vector3f bent(const Scene& scene, const SurfacePlace& place, const Material& material,
+                     const Eigen::Vector3f& normal) {
+  const Eigen::Vector4f tangent4 = interpolate(place.mesh.tangents, place);
+  const Eigen::Vector3f raw = tangent4.head<3>();
+  const Eigen::Vector3f along = raw - normal * normal.dot(raw);
+  const float length = along.norm();
+  constexpr float kShortest = 1e-6F;  // below it the direction of +u is not defined here
+  if (!(length > kShortest)) return normal;
+  const Eigen::Vector3f tangent = along / length;
+  const float sign = tangent4.w() < 0.0F ? -1.0F : 1.0F;
+  const Eigen::Vector3f bitangent = sign * normal.cross(tangent);
+  const Eigen::Vector3f rgb = texel_at(scene, place, material.normal_texture).head<3>();
+  const Eigen::Vector3f local = 2.0F * rgb - Eigen::Vector3f::Ones();
+  return tangent * (local.x() * material.normal_scale) +
+         bitangent * (local.y() * material.normal_scale) + normal * local.z();
+}
+
+}  // namespace
+
+const Material& material_at(const Scene& scene, const SurfacePlace& place) {
+  const std::uint16_t slot = material_slot(place.mesh, place.triangle);
+  return scene.materials[place.instance.materials[slot]];
+}
+
+Eigen::Vector2f uv_at(const SurfacePlace& place, std::uint8_t uv_set) {
+  const std::vector<Eigen::Vector2f>& uvs = place.mesh.uvs[uv_set];
+  return uvs.empty() ? Eigen::Vector2f::Zero() : interpolate(uvs, place);
+}
+
+bool is_cut_out(const Scene& scene, const SurfacePlace& place) {
+  const Material& material = material_at(scene, place);
+  if (!(material.alpha_cutoff > 0.0F)) return false;
+  const Eigen::Vector2f uv = uv_at(place, material.alpha_texture.uv_set);
+  return opacity_at(material, scene.textures, uv) < material.alpha_cutoff;
+}
+
+Eigen::Vector3f shading_normal_at(const Scene& scene, const SurfacePlace& place,
+                                  const Eigen::Vector3f& flat) {
+  if (place.mesh.normals.empty()) return flat;
+  const Eigen::Vector3f sum = interpolate(place.mesh.normals, place);
+  const float length = sum.norm();
+  constexpr float kShortest = 1e-6F;  // opposite normals cancel out
+  if (!(length > kShortest)) return flat;
+  const Eigen::Vector3f smooth = sum / length;
+  const Material& material = material_at(scene, place);
+  if (!material.normal_texture.used() || place.mesh.tangents.empty()) return smooth;
+  const Eigen::Vector3f normal = bent(scene, place, material, smooth);
+  const float bent_length = normal.norm();
+  return bent_length > kShortest ? Eigen::Vector3f(normal / bent_length) : smooth;
+}
+
+SurfaceColour colour_at(const Scene& scene, const SurfacePlace& place) {
+  const Material& material = material_at(scene, place);
+  Eigen::Vector3f tint = Eigen::Vector3f::Ones();
+  if (material.diffuse_texture.used()) {
+    tint = texel_at(scene, place, material.diffuse_texture).head<3>();
+  }
+  if (!place.mesh.colours.empty()) {
+    tint = tint.cwiseProduct(interpolate(place.mesh.colours, place)).eval();
+  }
+  Eigen::Vector3f specular = material.specular;
+  if (material.specular_texture.used()) {
+    specular = specular.cwiseProduct(texel_at(scene, place, material.specular_texture).head<3>());
+  }
+  return {.diffuse = material.diffuse.cwiseProduct(tint),
+          .ambient = luminance(material.ambient.cwiseProduct(tint)),
+          .specular = luminance(specular),
+          .shininess = material.shininess};
+}
+
+}  // namespace glidar

@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/scene.hpp>
+
+#include <cstdint>
+
+namespace glidar {
+
+/// A place on a mesh: a triangle and the weights of its corners 1 and 2.
+struct SurfacePlace {
+  const Mesh& mesh;
+  const Instance& instance;
+  std::uint32_t triangle;
+  Eigen::Vector2f weights;
+};
+
+/// The material at a place.
+const Material& material_at(const Scene& scene, const SurfacePlace& place);
+
+/// The texture coordinate at a place; zero where the mesh has none.
+Eigen::Vector2f uv_at(const SurfacePlace& place, std::uint8_t uv_set);
+
+/// True when the material's alpha mask lets a beam through at the place.
+bool is_cut_out(const Scene& scene, const SurfacePlace& place);
+
+/// Vertex normals interpolated over the triangle (as the paper's section 2.1) and bent by the
+/// normal map, in the object frame on the front side; `flat` where the mesh has none or they cancel
+/// out.
+Eigen::Vector3f shading_normal_at(const Scene& scene, const SurfacePlace& place,
+                                  const Eigen::Vector3f& flat);
+
+/// The colours of equation (5) at a place.
+struct SurfaceColour {
+  Eigen::Vector3f diffuse;
+  float ambient;   ///< luminance
+  float specular;  ///< luminance
+  float shininess;
+};
+
+SurfaceColour colour_at(const Scene& scene, const SurfacePlace& place);
+
+}  // namespace glidar
