@@ -66,7 +66,7 @@ Eigen::Vector3f shading_normal_at(const Scene& scene, const SurfacePlace& place,
   const float length = sum.norm();
   constexpr float kShortest = 1e-6F;  // opposite normals cancel out
   if (!(length > kShortest)) return flat;
-  const Eigen::Vector3f smooth = sum / length;
+  Eigen::Vector3f smooth = sum / length;
   const Material& material = material_at(scene, place);
   if (!material.normal_texture.used() || place.mesh.tangents.empty()) return smooth;
   const Eigen::Vector3f normal = bent(scene, place, material, smooth);
