@@ -116,7 +116,7 @@ Layout make_layout(const PointCloud& cloud, const std::array<Panel, 2>& panels) 
   layout.zoom = std::max<std::size_t>(1, kUsual / longer);
   const std::size_t width = cloud.cols * layout.zoom;
   layout.dot = std::clamp<std::size_t>((width + 768) / 512, 1, 6);
-  layout.gap = 5 * layout.dot;
+  layout.gap = 8 * layout.dot;
   layout.footer = (kTextHeightDots + 4) * layout.dot;
   layout.cell_width = width;
   for (const Panel& panel : panels) {
