@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/material.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+struct aiTexture;
+
+namespace glidar::import {
+
+/// A decoded image, or why there is none.
+struct Decoded {
+  Texture texture;
+  std::string reason;  ///< empty: decoded
+};
+
+/// Decodes PNG, JPEG, BMP, TGA, GIF, PSD, HDR or PNM to 8 bits; the size is judged before any
+/// memory is taken: no side above 16384, no more than 256 MiB decoded and no more than `budget`
+/// bytes. An alpha channel that is opaque everywhere is dropped.
+Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget);
+
+/// An image inside the model file: compressed bytes, or raw texels.
+Decoded decode_embedded(const aiTexture& texture, std::uint64_t budget);
+
+/// "data:image/png;base64,...".
+Decoded decode_data_uri(const std::string& uri, std::uint64_t budget);
+
+}  // namespace glidar::import

@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <import/import_model.hpp>
+
+#include <import/bake_mesh.hpp>
+#include <import/confined_io.hpp>
+#include <import/read_materials.hpp>
+
+#include <assimp/importerdesc.h>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+#include <assimp/Importer.hpp>
+#include <assimp/ProgressHandler.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <memory>
+#include <new>
+#include <string_view>
+
+namespace glidar::import {
+namespace {
+
+// Identical vertices are merged later, exactly: Assimp's own step merges what is nearly equal.
+constexpr unsigned kSteps = aiProcess_ValidateDataStructure | aiProcess_Triangulate |
+                            aiProcess_SortByPType | aiProcess_GenUVCoords;
+
+class Progress : public Assimp::ProgressHandler {
+ public:
+  explicit Progress(std::function<void(double)> tell) : tell_(std::move(tell)) {}
+  bool Update(float fraction) override {
+    if (fraction >= 0.0F) tell_(fraction);
+    return true;
+  }
+
+ private:
+  std::function<void(double)> tell_;
+};
+
+std::string importer_name(const Assimp::Importer& importer) {
+  const int index = importer.GetPropertyInteger("importerIndex", -1);
+  const aiImporterDesc* about =
+      index < 0 ? nullptr : importer.GetImporterInfo(static_cast<std::size_t>(index));
+  std::string name = about == nullptr ? "unknown" : about->mName;
+  for (const std::string_view tail : {" Importer", " importer", " Reader", " Mesh", "\n"}) {
+    if (name.ends_with(tail)) name.resize(name.size() - tail.size());
+  }
+  return name;
+}
+
+[[noreturn]] void refuse(std::string why, const FileLog& log) {
+  if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
+  for (const char* empty : {"contains no faces", "contains no vertices", "mNumMeshes is 0"}) {
+    if (why.find(empty) != std::string::npos) throw no_triangles("");
+  }
+  std::replace(why.begin(), why.end(), '\n', ' ');
+  for (const std::string& note : log.notes) why += "; " + note;
+  if (why.find("No suitable reader") != std::string::npos) {
+    throw Refusal{"not a model file of a known format",
+                  "GLIDAR reads PLY, OBJ, STL, glTF, GLB, COLLADA, FBX, 3DS, OFF, LWO, X, 3MF and "
+                  "other 3D formats"};
+  }
+  throw Refusal{"cannot be read: " + (why.empty() ? "unknown error" : why),
+                "the file is damaged or of a kind that the importer does not know"};
+}
+
+/// Reads the used materials, in the file's order, and gives them slots.
+void read_materials(const aiScene& scene, const Walk& walk, const MaterialContext& context,
+                    Model& model, BakeOptions& bake_options) {
+  std::vector<bool> used(scene.mNumMaterials, false);
+  for (const Placed& placed : walk.placed) used.at(placed.mesh->mMaterialIndex) = true;
+  bake_options.slot_of_material.resize(used.size(), 0);
+  for (unsigned i = 0; i < scene.mNumMaterials; ++i) {
+    if (!used[i]) continue;
+    if (model.materials.size() > std::numeric_limits<std::uint16_t>::max()) {
+      throw Refusal{"it uses more than 65536 materials", "make the model smaller"};
+    }
+    bake_options.slot_of_material[i] = static_cast<std::uint16_t>(model.materials.size());
+    model.materials.push_back(read_material(*scene.mMaterials[i], context, model));
+    const TextureUse& normals = model.materials.back().normal_texture;
+    bake_options.needs.push_back({normals.used(), normals.uv_set});
+  }
+}
+
+/// FBX tells its unit (in centimetres) and Assimp does not apply it: the user decides.
+void note_unit(const aiScene& scene, Model& model) {
+  double centimetres = 0.0;
+  float single = 0.0F;
+  if (scene.mMetaData == nullptr) return;
+  if (!scene.mMetaData->Get("UnitScaleFactor", centimetres)) {
+    if (!scene.mMetaData->Get("UnitScaleFactor", single)) return;
+    centimetres = double{single};
+  }
+  model.notes.push_back(
+      fmt::format("the file says that its unit is {:g} m; coordinates are taken as they are",
+                  centimetres / 100));
+}
+
+}  // namespace
+
+ImportedModel import_model(const std::filesystem::path& canonical_model, double crease_angle_rad,
+                           const std::function<void(double)>& progress) {
+  const ModelFolder folder = model_folder(canonical_model);
+  const auto log = std::make_shared<FileLog>();
+  // Never destroyed: taking a deep tree apart recurses, and the process ends anyway.
+  auto& importer = *new Assimp::Importer;
+  importer.SetIOHandler(new ConfinedIo(folder, log));
+  importer.SetProgressHandler(new Progress(progress));
+  const aiScene* scene = importer.ReadFile(canonical_model.string(), kSteps);
+  if (scene == nullptr) refuse(importer.GetErrorString(), *log);
+  ImportedModel imported;
+  Model& model = imported.model;
+  model.format = importer_name(importer);
+  const Walk walked = walk(*scene);
+  const MtlOptions mtl = read_mtl_options(log->read);
+  TextureStore textures(*scene, folder, *log, imported);
+  const bool gltf = model.format.find("glTF") != std::string::npos;
+  BakeOptions options;
+  options.crease_angle_rad = crease_angle_rad;
+  options.facet_normals = model.format.find("(STL)") != std::string::npos;
+  read_materials(*scene, walked, {textures, mtl, gltf}, model, options);
+  model.notes.insert(model.notes.end(), log->notes.begin(), log->notes.end());
+  note_unit(*scene, model);
+  bake(walked, options, model);
+  imported.absent = log->absent;
+  imported.files = log->read;
+  const auto own =
+      std::find(imported.files.begin(), imported.files.end(), canonical_model.string());
+  if (own == imported.files.end()) {
+    imported.files.insert(imported.files.begin(), canonical_model.string());
+  } else {
+    std::rotate(imported.files.begin(), own, own + 1);
+  }
+  return imported;
+}
+
+}  // namespace glidar::import

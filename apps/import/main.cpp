@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// glidar-import MODEL CREASE_ANGLE_RAD MEMORY_BYTES TIME_S PARENT
+// Reads one model and writes one frame (glidar/io/mesh_blob.hpp) to descriptor 3: the model, or why
+// there is none. Percents of progress go to descriptor 4, one byte each. The GLIDAR library starts
+// it; it is of no use by hand.
+
+#include <import/import_model.hpp>
+#include <import/process_limits.hpp>
+
+#include <glidar/io/mesh_blob.hpp>
+
+#include <unistd.h>
+
+#include <cstdlib>
+#include <exception>
+#include <new>
+#include <string>
+
+namespace glidar::import {
+namespace {
+
+constexpr int kAnswerFd = 3;
+constexpr int kProgressFd = 4;
+constexpr int kExitAnswered = 0;
+constexpr int kExitFailed = 2;
+constexpr int kExitNoMemory = 3;
+
+void tell_progress(double fraction) {
+  const auto percent = static_cast<unsigned char>(fraction <= 1.0 ? fraction * 100.0 : 100.0);
+  // Progress is a courtesy: a full or closed pipe must not stop the work.
+  [[maybe_unused]] const ssize_t written = ::write(kProgressFd, &percent, 1);
+}
+
+int answer(const char* const* arguments) {
+  try {
+    write_model(kAnswerFd,
+                import_model(arguments[1], std::strtod(arguments[2], nullptr), tell_progress));
+  } catch (const Refusal& refusal) {
+    write_failure(kAnswerFd, {refusal.found, refusal.remedy});
+  }
+  return kExitAnswered;
+}
+
+int run(int argc, const char* const* argv) {
+  constexpr int kArguments = 6;
+  if (argc != kArguments) return kExitFailed;
+  const ProcessLimits limits{std::strtoull(argv[3], nullptr, 10), std::strtod(argv[4], nullptr),
+                             std::strtoll(argv[5], nullptr, 10)};
+  if (!apply(limits)) return kExitFailed;
+  try {
+    return answer(argv);
+  } catch (const std::bad_alloc&) {
+    return kExitNoMemory;
+  } catch (const std::exception&) {
+    return kExitFailed;  // the parent tells that there is no answer
+  }
+}
+
+}  // namespace
+}  // namespace glidar::import
+
+int main(int argc, char** argv) {
+  // Without destructors: the answer is written, and what hostile data left behind may not fall
+  // apart well.
+  ::_exit(glidar::import::run(argc, argv));
+}

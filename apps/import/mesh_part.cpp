@@ -1,0 +1,212 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <import/mesh_part.hpp>
+
+#include <glidar/io/crease_normals.hpp>
+#include <glidar/io/tangents.hpp>
+#include <glidar/io/vertex_weld.hpp>
+
+#include <assimp/mesh.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar::import {
+namespace {
+
+Eigen::Vector3d vector(const aiVector3D& v) {
+  return {v.x, v.y, v.z};
+}
+
+Eigen::Vector3d moved(const Placed& placed, const aiVector3D& v) {
+  return placed.model_from_mesh.topLeftCorner<3, 3>() * vector(v) +
+         placed.model_from_mesh.topRightCorner<3, 1>();
+}
+
+/// A triangle of valid corners; anything else is left by the steps before, or by damage.
+bool is_triangle(const aiFace& face, unsigned vertices) {
+  return face.mNumIndices == 3 && face.mIndices[0] < vertices && face.mIndices[1] < vertices &&
+         face.mIndices[2] < vertices;
+}
+
+/// -0 and +0 are the same place; comparing bits later must see that.
+Eigen::Vector3f plain(const Eigen::Vector3d& v) {
+  return (v.cast<float>().array() + 0.0F).matrix();
+}
+
+Eigen::Vector2f finite_uv(const aiVector3D& uv) {
+  return {std::isfinite(uv.x) ? uv.x : 0.0F, std::isfinite(uv.y) ? uv.y : 0.0F};
+}
+
+float unit_range(float value) {
+  return std::isnan(value) ? 1.0F : std::clamp(value, 0.0F, 1.0F);
+}
+
+Eigen::Vector3f unit_or_zero(const Eigen::Vector3d& v) {
+  const double length = v.norm();
+  if (!std::isfinite(length) || length < 1e-30) return Eigen::Vector3f::Zero();
+  return (v / length).cast<float>();
+}
+
+struct Linear {
+  Eigen::Matrix3d directions;  ///< for tangents
+  Eigen::Matrix3d normals;     ///< inverse transpose, up to a positive factor
+  double handedness = 1.0;     ///< -1: mirrored
+};
+
+Linear linear_part(const Placed& placed) {
+  const Eigen::Matrix3d m = placed.model_from_mesh.topLeftCorner<3, 3>();
+  Linear linear;
+  linear.directions = m;
+  linear.handedness = m.determinant() < 0.0 ? -1.0 : 1.0;
+  // The cofactor matrix is det(m) times the inverse transpose, and exists for flat parts too.
+  linear.normals.col(0) = m.col(1).cross(m.col(2));
+  linear.normals.col(1) = m.col(2).cross(m.col(0));
+  linear.normals.col(2) = m.col(0).cross(m.col(1));
+  linear.normals *= linear.handedness;
+  return linear;
+}
+
+/// Positions relative to the origin. False where one is not finite, in any of the three frames.
+std::vector<bool> take_positions(const Placed& placed, const Eigen::Vector3d& origin, Mesh& part) {
+  const aiMesh& mesh = *placed.mesh;
+  std::vector<bool> finite(mesh.mNumVertices);
+  part.positions_m.resize(mesh.mNumVertices);
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    const Eigen::Vector3f p = plain(moved(placed, mesh.mVertices[v]) - origin);
+    finite[v] = p.allFinite();
+    part.positions_m[v] = finite[v] ? p : Eigen::Vector3f::Zero();
+  }
+  return finite;
+}
+
+void take_triangles(const aiMesh& mesh, const std::vector<bool>& finite, bool mirrored, Mesh& part,
+                    Repairs& repairs) {
+  part.triangles.reserve(mesh.mNumFaces);
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    if (!is_triangle(face, mesh.mNumVertices)) continue;
+    const unsigned a = face.mIndices[0];
+    const unsigned b = face.mIndices[mirrored ? 2 : 1];
+    const unsigned c = face.mIndices[mirrored ? 1 : 2];
+    if (finite[a] && finite[b] && finite[c]) {
+      part.triangles.push_back({a, b, c});
+    } else {
+      ++repairs.not_finite;
+    }
+  }
+}
+
+void take_normals(const aiMesh& mesh, const Linear& linear, Mesh& part) {
+  part.normals.resize(mesh.mNumVertices);
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    part.normals[v] = unit_or_zero(linear.normals * vector(mesh.mNormals[v]));
+  }
+}
+
+/// The file's tangents; w tells on which side of (normal, tangent) its bitangents lie.
+void take_tangents(const aiMesh& mesh, const Linear& linear, Mesh& part) {
+  part.tangents.resize(mesh.mNumVertices);
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    const Eigen::Vector3d t = vector(mesh.mTangents[v]);
+    const Eigen::Vector3d b = vector(mesh.mBitangents[v]);
+    const double side = vector(mesh.mNormals[v]).cross(t).dot(b) < 0.0 ? -1.0 : 1.0;
+    Eigen::Vector3f u = unit_or_zero(linear.directions * t);
+    if (u.isZero(0.0F)) u = Eigen::Vector3f::UnitX();
+    part.tangents[v] << u, static_cast<float>(side * linear.handedness);
+  }
+}
+
+void take_uvs_and_colours(const aiMesh& mesh, Mesh& part) {
+  for (unsigned set = 0; set < part.uvs.size(); ++set) {
+    if (!mesh.HasTextureCoords(set)) continue;
+    part.uvs[set].resize(mesh.mNumVertices);
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      part.uvs[set][v] = finite_uv(mesh.mTextureCoords[set][v]);
+    }
+  }
+  if (!mesh.HasVertexColors(0)) return;
+  part.colours.resize(mesh.mNumVertices);
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    const aiColor4D& c = mesh.mColors[0][v];
+    part.colours[v] = {unit_range(c.r), unit_range(c.g), unit_range(c.b)};
+  }
+}
+
+/// Replaces unusable normals by those of the faces around them.
+void mend_normals(Mesh& part, Repairs& repairs) {
+  std::vector<bool> bad(part.normals.size());
+  std::uint64_t count = 0;
+  for (std::size_t v = 0; v < bad.size(); ++v) {
+    bad[v] = part.normals[v].isZero(0.0F);
+    count += bad[v] ? 1 : 0;
+  }
+  if (count == 0) return;
+  repairs.bad_normals += count;
+  std::vector<Eigen::Vector3f> sums(part.normals.size(), Eigen::Vector3f::Zero());
+  for (const Triangle& t : part.triangles) {
+    const Eigen::Vector3f& a = part.positions_m[t[0]];
+    const Eigen::Vector3f n = (part.positions_m[t[1]] - a).cross(part.positions_m[t[2]] - a);
+    for (const std::uint32_t v : t) sums[v] += n;
+  }
+  for (std::size_t v = 0; v < bad.size(); ++v) {
+    if (!bad[v]) continue;
+    const Eigen::Vector3f made = unit_or_zero(sums[v].cast<double>());
+    part.normals[v] = made.isZero(0.0F) ? Eigen::Vector3f::UnitZ().eval() : made;
+  }
+}
+
+std::uint64_t unused(const aiMesh& mesh, const Mesh& part) {
+  std::vector<bool> used(mesh.mNumVertices, false);
+  for (const Triangle& t : part.triangles) {
+    for (const std::uint32_t v : t) used[v] = true;
+  }
+  return static_cast<std::uint64_t>(std::count(used.begin(), used.end(), false));
+}
+
+}  // namespace
+
+std::size_t material_of(const Placed& placed) {
+  return placed.mesh->mMaterialIndex;
+}
+
+void extend_box(Eigen::AlignedBox3d& box, const Placed& placed) {
+  const aiMesh& mesh = *placed.mesh;
+  std::vector<bool> used(mesh.mNumVertices, false);
+  for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+    const aiFace& face = mesh.mFaces[f];
+    if (!is_triangle(face, mesh.mNumVertices)) continue;
+    for (unsigned k = 0; k < 3; ++k) used[face.mIndices[k]] = true;
+  }
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    if (!used[v]) continue;
+    const Eigen::Vector3d p = moved(placed, mesh.mVertices[v]);
+    if (p.allFinite()) box.extend(p);
+  }
+}
+
+Mesh make_part(const Placed& placed, const Eigen::Vector3d& origin, const BakeOptions& options,
+               const SlotNeeds& needs, Repairs& repairs) {
+  const aiMesh& mesh = *placed.mesh;
+  const Linear linear = linear_part(placed);
+  const bool file_normals = mesh.HasNormals() && !options.facet_normals;
+  Mesh part;
+  const std::vector<bool> finite = take_positions(placed, origin, part);
+  take_triangles(mesh, finite, linear.handedness < 0.0, part, repairs);
+  repairs.unused_vertices += unused(mesh, part);
+  take_uvs_and_colours(mesh, part);
+  if (file_normals) take_normals(mesh, linear, part);
+  if (file_normals && mesh.HasTangentsAndBitangents()) take_tangents(mesh, linear, part);
+  weld_vertices(part);
+  if (file_normals) {
+    mend_normals(part, repairs);
+  } else {
+    make_normals(part, options.crease_angle_rad);
+  }
+  const bool can_have_tangents = needs.tangents && !part.uvs[needs.normal_uv].empty();
+  if (can_have_tangents && part.tangents.empty()) make_tangents(part, needs.normal_uv);
+  if (!needs.tangents) part.tangents.clear();
+  return part;
+}
+
+}  // namespace glidar::import

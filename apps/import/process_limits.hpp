@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+namespace glidar::import {
+
+struct ProcessLimits {
+  std::uint64_t memory_bytes = 0;  ///< address space, and size of any file written
+  double time_s = 0.0;             ///< of the processor; the parent watches the wall clock
+  std::int64_t parent = 0;         ///< process id; without it this process has nothing to do
+};
+
+/// Puts this process under the limits, for good: no core dumps, no new privileges, killed when the
+/// parent dies. False when one of them cannot be had.
+bool apply(const ProcessLimits& limits);
+
+}  // namespace glidar::import

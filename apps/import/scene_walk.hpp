@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+struct aiMesh;
+struct aiScene;
+
+namespace glidar::import {
+
+/// Raised when a file cannot become a model; the texts go into the user's error.
+struct Refusal {
+  std::string found;
+  std::string remedy;
+};
+
+/// The file has no surface; `instead`: what it has, "" or ", only ...".
+Refusal no_triangles(const std::string& instead);
+
+/// One mesh of the file at one place in its tree.
+struct Placed {
+  const aiMesh* mesh = nullptr;
+  Eigen::Matrix4d model_from_mesh = Eigen::Matrix4d::Identity();
+  std::string name;
+};
+
+struct Walk {
+  std::vector<Placed> placed;  ///< meshes with triangles; nodes depth first, parents first
+  std::uint64_t triangles = 0;
+  std::uint64_t lines_and_points = 0;  ///< left out
+  std::uint64_t skinned = 0;           ///< meshes with a skeleton
+};
+
+/// Walks the file's tree. Throws Refusal when it holds no triangles, or more than can be had.
+Walk walk(const aiScene& scene);
+
+}  // namespace glidar::import

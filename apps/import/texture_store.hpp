@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <import/confined_io.hpp>
+
+#include <glidar/io/imported_model.hpp>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+
+struct aiScene;
+
+namespace glidar::import {
+
+/// Finds and decodes the textures that materials name, each once, into the model.
+class TextureStore {
+ public:
+  TextureStore(const aiScene& scene, ModelFolder folder, FileLog& log, ImportedModel& imported);
+
+  /// Index of the texture, TextureUse::kNone when it cannot be had (and is listed as missing).
+  std::int32_t colours(const std::string& name);
+
+  struct NormalMap {
+    std::int32_t texture = TextureUse::kNone;
+    float scale = 1.0F;  ///< for Material::normal_scale
+  };
+  /// The same as tangent-space normals; an image that shows heights is converted.
+  NormalMap normals(const std::string& name);
+
+ private:
+  std::int32_t keep(Texture texture);
+  std::int32_t decode(const std::string& name);
+
+  const aiScene& scene_;
+  ModelFolder folder_;
+  FileLog& log_;
+  ImportedModel& imported_;
+  std::uint64_t budget_ = std::uint64_t{512} << 20U;
+  std::map<std::string, std::int32_t> by_name_;
+  std::map<std::string, std::int32_t> by_file_;
+  std::map<std::int32_t, NormalMap> normals_;  ///< of the image with this index
+};
+
+}  // namespace glidar::import

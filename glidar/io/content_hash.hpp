@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+namespace glidar {
+
+using Hash128 = std::array<std::uint64_t, 2>;
+
+/// XXH3-128 over bytes that arrive in pieces. Not cryptographic: it finds changes and damage.
+class ContentHash {
+ public:
+  ContentHash();
+  ~ContentHash();
+  ContentHash(ContentHash&&) noexcept;
+  ContentHash& operator=(ContentHash&&) noexcept;
+  void add(const void* bytes, std::size_t size);
+  [[nodiscard]] Hash128 value() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// 32 hexadecimal digits.
+std::string hex(const Hash128& hash);
+
+/// Hash of a regular file's content; none when it cannot be read or is no regular file.
+std::optional<Hash128> hash_file(const std::filesystem::path& path);
+
+}  // namespace glidar

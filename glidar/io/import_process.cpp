@@ -1,0 +1,236 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/import_process.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/mesh_blob.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+extern char** environ;
+
+namespace glidar {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t kGiB = std::uint64_t{1} << 30U;
+constexpr double kQuietSeconds = 0.5;    // faster loads show no progress
+constexpr int kSliceMilliseconds = 100;  // between two looks at the clock
+constexpr int kAnswerFd = 3;
+constexpr int kProgressFd = 4;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+[[noreturn]] void cannot_start(const std::string& program, int error) {
+  throw Error({.where = program,
+               .found = std::string("cannot be started: ") + std::strerror(error),
+               .allowed = "",
+               .remedy = ""});
+}
+
+/// Its standard streams lead nowhere, descriptors 3 and 4 are ours, all others are closed.
+class SpawnPlan {
+ public:
+  SpawnPlan(int answer, int progress) {
+    posix_spawn_file_actions_init(&actions_);
+    for (const int standard : {0, 1, 2}) {
+      posix_spawn_file_actions_addopen(&actions_, standard, "/dev/null", O_RDWR, 0);
+    }
+    posix_spawn_file_actions_adddup2(&actions_, answer, kAnswerFd);
+    posix_spawn_file_actions_adddup2(&actions_, progress, kProgressFd);
+    posix_spawn_file_actions_addclosefrom_np(&actions_, kProgressFd + 1);
+  }
+  SpawnPlan(const SpawnPlan&) = delete;
+  SpawnPlan& operator=(const SpawnPlan&) = delete;
+  ~SpawnPlan() { posix_spawn_file_actions_destroy(&actions_); }
+
+  pid_t start(const std::string& program, std::vector<std::string> arguments) const {
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    pid_t child = 0;
+    const int error =
+        ::posix_spawn(&child, program.c_str(), &actions_, nullptr, argv.data(), environ);
+    if (error != 0) cannot_start(program, error);
+    return child;
+  }
+
+ private:
+  posix_spawn_file_actions_t actions_{};
+};
+
+struct ProgressPipe {
+  UniqueFd read_end;
+  UniqueFd write_end;
+};
+
+/// Moved above the descriptors that the child gets, so that the moves there cannot collide.
+UniqueFd moved_up(int fd) {
+  const UniqueFd low(fd);
+  return UniqueFd(::fcntl(low.get(), F_DUPFD_CLOEXEC, kProgressFd + 1));
+}
+
+ProgressPipe make_pipe(const std::string& program) {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) cannot_start(program, errno);
+  ProgressPipe pipe{moved_up(ends[0]), moved_up(ends[1])};
+  if (!pipe.read_end || !pipe.write_end) cannot_start(program, errno);
+  return pipe;
+}
+
+UniqueFd make_answer(const std::string& program) {
+  UniqueFd answer = moved_up(::memfd_create("glidar-import", MFD_CLOEXEC));
+  if (!answer) cannot_start(program, errno);
+  return answer;
+}
+
+/// True when the child has ended; it is not reaped yet. An unknown child counts as ended.
+bool has_ended(pid_t child) {
+  siginfo_t info{};
+  if (::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) != 0) {
+    return errno != EINTR;
+  }
+  return info.si_pid == child;
+}
+
+/// Reads percent bytes until the process closes its end, which it does by ending.
+/// False when the time ran out first.
+bool wait_for_end(pid_t child, const ProgressPipe& pipe, const ImportRequest& request,
+                  const Report& report) {
+  const Clock::time_point start = Clock::now();
+  const std::string task = "loading " + request.model.filename().string();
+  double fraction = -1.0;
+  for (;;) {
+    const double left_s = request.time_limit_s - seconds_since(start);
+    if (left_s <= 0.0) return false;
+    pollfd watched{pipe.read_end.get(), POLLIN, 0};
+    const int slice = std::min(kSliceMilliseconds, static_cast<int>(left_s * 1000.0) + 1);
+    const int ready = ::poll(&watched, 1, slice);
+    // Should a process forked elsewhere hold the pipe's other end, the end itself still tells.
+    if (ready == 0 && has_ended(child)) return true;
+    if (ready > 0) {
+      std::array<unsigned char, 256> percents{};
+      const ssize_t got = ::read(pipe.read_end.get(), percents.data(), percents.size());
+      if (got == 0 || (got < 0 && errno != EINTR)) return true;
+      if (got > 0) fraction = std::min(1.0, percents[static_cast<std::size_t>(got) - 1] / 100.0);
+    }
+    if (report.progress && seconds_since(start) > kQuietSeconds) report.progress(task, fraction);
+  }
+}
+
+std::string signal_name(int signal) {
+  const char* name = ::sigabbrev_np(signal);
+  const char* words = ::sigdescr_np(signal);
+  return fmt::format("signal SIG{}, {}", name != nullptr ? name : std::to_string(signal),
+                     words != nullptr ? words : "unknown");
+}
+
+[[noreturn]] void fail(const ImportRequest& request, std::string found, std::string remedy) {
+  throw Error({.where = request.model.string(),
+               .found = std::move(found),
+               .allowed = "",
+               .remedy = std::move(remedy)});
+}
+
+/// Exit status of the import program when memory ran out before it could say so in a frame.
+constexpr int kExitNoMemory = 3;
+
+void classify(ImportRun& run, int status) {
+  if (WIFEXITED(status)) {
+    const int code = WEXITSTATUS(status);
+    run.end = code == 0               ? ImportEnd::answered
+              : code == kExitNoMemory ? ImportEnd::out_of_memory
+                                      : ImportEnd::crashed;
+    return;
+  }
+  run.signal = WTERMSIG(status);
+  run.end = run.signal == SIGXCPU ? ImportEnd::out_of_time : ImportEnd::crashed;
+}
+
+}  // namespace
+
+std::uint64_t default_memory_limit(std::uint64_t file_bytes) {
+  constexpr std::uint64_t kUnfolding = 40;
+  return std::max(kGiB, file_bytes > kGiB * kGiB / kUnfolding ? kGiB : file_bytes * kUnfolding);
+}
+
+ImportRun run_import(const ImportRequest& request, const Report& report) {
+  const std::string program = import_program().string();
+  ImportRun run;
+  run.memory_limit_bytes = request.memory_limit_bytes != 0
+                               ? request.memory_limit_bytes
+                               : default_memory_limit(fs::file_size(request.model));
+  run.answer = make_answer(program);
+  ProgressPipe pipe = make_pipe(program);
+  const Clock::time_point start = Clock::now();
+  const pid_t child =
+      SpawnPlan(run.answer.get(), pipe.write_end.get())
+          .start(program,
+                 {program, request.model.string(), fmt::format("{:.17g}", request.crease_angle_rad),
+                  std::to_string(run.memory_limit_bytes),
+                  fmt::format("{:.3f}", request.time_limit_s), std::to_string(::getpid())});
+  pipe.write_end.reset();
+  const bool in_time = wait_for_end(child, pipe, request, report);
+  if (!in_time) ::kill(child, SIGKILL);
+  int status = 0;
+  rusage usage{};
+  while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
+  }
+  run.seconds = seconds_since(start);
+  run.peak_memory_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024U;
+  classify(run, status);
+  if (!in_time) run.end = ImportEnd::out_of_time;
+  ::lseek(run.answer.get(), 0, SEEK_SET);
+  return run;
+}
+
+ImportedModel take_model(const ImportRun& run, const ImportRequest& request) {
+  switch (run.end) {
+    case ImportEnd::out_of_time:
+      fail(request, fmt::format("reading it took longer than {:g} s", request.time_limit_s),
+           "raise the time limit, or save the model in another format");
+    case ImportEnd::out_of_memory:
+      fail(request,
+           fmt::format("reading it needs more memory than {} MiB", run.memory_limit_bytes >> 20U),
+           "raise the memory limit if you trust the file, or make the model smaller");
+    case ImportEnd::crashed:
+      fail(request,
+           run.signal != 0 ? "the import process crashed (" + signal_name(run.signal) + ")"
+                           : "the import process gave up without an answer",
+           "the file is damaged or uses what the importer cannot read; save it in another format "
+           "(PLY, OBJ or glTF)");
+    case ImportEnd::answered:
+      break;
+  }
+  std::optional<ImportFailure> failure;
+  try {
+    FrameReader frame(run.answer.get());
+    if (frame.kind() == FrameKind::model) return read_model(frame);
+    failure = read_failure(frame);
+  } catch (const Error& error) {
+    fail(request, "the import process gave a damaged answer (" + error.parts().found + ")",
+         "save the model in another format (PLY, OBJ or glTF)");
+  }
+  fail(request, failure->found, failure->remedy);
+}
+
+}  // namespace glidar

@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/mesh_blob.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace glidar {
+namespace {
+
+[[noreturn]] void refuse(const std::string& found) {
+  throw Error({.where = "imported data", .found = found, .allowed = "", .remedy = ""});
+}
+
+// One list of fields serves both directions: `visit(archive, field)` with an archive that either
+// takes bytes out of the field or puts them in.
+
+struct Out {
+  static constexpr bool kReads = false;
+  FrameWriter& frame;
+  void raw(const void* data, std::size_t size) { frame.bytes(data, size); }
+};
+
+struct In {
+  static constexpr bool kReads = true;
+  FrameReader& frame;
+  void raw(void* data, std::size_t size) { frame.bytes(data, size); }
+};
+
+template <class T>
+concept Scalar = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+template <class T, class Wanted>
+concept Is = std::is_same_v<std::remove_const_t<T>, Wanted>;
+
+template <class A, class T>
+requires Scalar<std::remove_const_t<T>>
+void visit(A& archive, T& value) {
+  archive.raw(&value, sizeof value);
+}
+
+/// Elements of plain numbers: their memory as it is.
+template <class T>
+inline constexpr bool kPlain = std::is_arithmetic_v<T>;
+template <class T, int R, int C>
+inline constexpr bool kPlain<Eigen::Matrix<T, R, C>> = true;
+template <>
+inline constexpr bool kPlain<Triangle> = true;
+
+template <class A, class T, int R, int C>
+void visit(A& archive, Eigen::Matrix<T, R, C>& value) {
+  archive.raw(value.data(), sizeof(T) * static_cast<std::size_t>(R * C));
+}
+template <class A, class T, int R, int C>
+void visit(A& archive, const Eigen::Matrix<T, R, C>& value) {
+  archive.raw(value.data(), sizeof(T) * static_cast<std::size_t>(R * C));
+}
+
+template <class A, class T>
+requires Is<T, std::string>
+void visit(A& archive, T& text) {
+  std::uint64_t size = text.size();
+  visit(archive, size);
+  if constexpr (A::kReads) {
+    if (size > archive.frame.remaining()) refuse("a text longer than the data");
+    text.resize(size);
+  }
+  archive.raw(text.data(), size);
+}
+
+template <class T>
+inline constexpr bool kVector = false;
+template <class T>
+inline constexpr bool kVector<std::vector<T>> = true;
+
+template <class A, class V>
+requires kVector<std::remove_const_t<V>>
+void visit(A& archive, V& values) {
+  using T = typename V::value_type;
+  std::uint64_t size = values.size();
+  visit(archive, size);
+  if constexpr (A::kReads) {
+    // A record starts with a text's length, and takes more memory than bytes: a small limit for
+    // them.
+    const std::uint64_t each = kPlain<T> ? sizeof(T) : sizeof(std::uint64_t);
+    if (size > archive.frame.remaining() / each || (!kPlain<T> && size > kMostRecords)) {
+      refuse("an array longer than the data");
+    }
+    values.resize(size);
+  }
+  if constexpr (kPlain<T>) {
+    if (!values.empty()) archive.raw(values.data(), values.size() * sizeof(T));
+  } else {
+    for (auto& value : values) visit(archive, value);
+  }
+}
+
+template <class A, class... T>
+void visit_all(A& archive, T&... fields) {
+  (visit(archive, fields), ...);
+}
+
+template <class A, class T>
+requires Is<T, Texture>
+void visit(A& archive, T& t) {
+  visit_all(archive, t.name, t.width, t.height, t.channels, t.texels);
+}
+
+template <class A, class T>
+requires Is<T, TextureUse>
+void visit(A& archive, T& use) {
+  visit_all(archive, use.texture, use.uv_set, use.wrap_u, use.wrap_v, use.filter,
+            use.uv_scale_rotate, use.uv_offset);
+}
+
+template <class A, class T>
+requires Is<T, Material>
+void visit(A& archive, T& m) {
+  visit_all(archive, m.name, m.ambient, m.diffuse, m.specular, m.shininess, m.opacity,
+            m.alpha_cutoff, m.normal_scale, m.diffuse_texture, m.specular_texture, m.alpha_texture,
+            m.normal_texture);
+}
+
+template <class A, class T>
+requires Is<T, Mesh>
+void visit(A& archive, T& m) {
+  visit_all(archive, m.name, m.origin_m, m.positions_m, m.normals, m.uvs[0], m.uvs[1], m.tangents,
+            m.colours, m.triangles, m.material_slots);
+}
+
+template <class A, class T>
+requires Is<T, ModelPart>
+void visit(A& archive, T& part) {
+  visit_all(archive, part.name, part.first_triangle, part.triangle_count);
+}
+
+template <class A, class T>
+requires Is<T, MissingTexture>
+void visit(A& archive, T& missing) {
+  visit_all(archive, missing.name, missing.reason);
+}
+
+template <class A, class T>
+requires Is<T, TextureLookup>
+void visit(A& archive, T& lookup) {
+  visit_all(archive, lookup.name, lookup.found, lookup.reason);
+}
+
+template <class A, class T>
+requires Is<T, ImportedModel>
+void visit(A& archive, T& imported) {
+  auto& model = imported.model;
+  visit_all(archive, model.format, model.mesh, model.materials, model.textures, model.parts,
+            model.missing_textures, model.notes, imported.files, imported.absent, imported.lookups);
+}
+
+template <class A, class T>
+requires Is<T, ImportFailure>
+void visit(A& archive, T& failure) {
+  visit_all(archive, failure.found, failure.remedy);
+}
+
+template <class A, class T>
+requires Is<T, CacheIndex>
+void visit(A& archive, T& index) {
+  visit_all(archive, index.importer, index.files, index.hashes, index.absent, index.lookups,
+            index.root, index.folder);
+}
+
+template <class T>
+void write_frame(int fd, FrameKind kind, const T& value) {
+  FrameWriter frame(fd, kind);
+  Out archive{frame};
+  visit(archive, value);
+  frame.finish();
+}
+
+template <class T>
+T read_frame(FrameReader& frame, FrameKind kind) {
+  if (frame.kind() != kind) refuse("a frame of another kind");
+  T value;
+  In archive{frame};
+  visit(archive, value);
+  frame.finish();
+  return value;
+}
+
+// What the type system does not promise about a model that was read.
+
+void check(const TextureUse& use, std::size_t textures) {
+  const bool sound = use.texture >= TextureUse::kNone &&
+                     (!use.used() || static_cast<std::size_t>(use.texture) < textures) &&
+                     use.uv_set <= 1 && use.wrap_u <= Wrap::clamp && use.wrap_v <= Wrap::clamp &&
+                     use.filter <= Filter::nearest && use.uv_scale_rotate.allFinite() &&
+                     use.uv_offset.allFinite();
+  if (!sound) refuse("a material uses a texture in an impossible way");
+}
+
+bool in_unit_range(const Eigen::Vector3f& colour) {
+  return (colour.array() >= 0.0F).all() && (colour.array() <= 1.0F).all();
+}
+
+void check(const Material& m, std::size_t textures) {
+  const bool sound = in_unit_range(m.ambient) && in_unit_range(m.diffuse) &&
+                     in_unit_range(m.specular) && m.shininess >= 0.0F && m.shininess <= 128.0F &&
+                     m.opacity >= 0.0F && m.opacity <= 1.0F && m.alpha_cutoff >= 0.0F &&
+                     m.alpha_cutoff <= 1.0F && std::isfinite(m.normal_scale);
+  if (!sound) refuse("material '" + m.name + "' has an impossible number");
+  for (const TextureUse* use :
+       {&m.diffuse_texture, &m.specular_texture, &m.alpha_texture, &m.normal_texture}) {
+    check(*use, textures);
+  }
+}
+
+void check(const Texture& texture) {
+  const std::uint64_t texels = std::uint64_t{texture.width} * texture.height;
+  const bool sound = texture.channels >= 1 && texture.channels <= 4 && texels > 0 &&
+                     texels <= texture.texels.size() &&
+                     texels * texture.channels == texture.texels.size();
+  if (!sound) refuse("texture '" + texture.name + "' has an impossible size");
+}
+
+template <class V>
+void check_finite(const std::vector<V>& values, const char* what) {
+  const bool finite =
+      std::all_of(values.begin(), values.end(), [](const V& v) { return v.allFinite(); });
+  if (!finite) refuse(std::string(what) + " that are not finite");
+}
+
+void check(const Mesh& mesh) {
+  validate(mesh);
+  check_finite(mesh.normals, "normals");
+  check_finite(mesh.tangents, "tangents");
+  check_finite(mesh.uvs[0], "uvs");
+  check_finite(mesh.uvs[1], "uvs");
+  check_finite(mesh.colours, "colours");
+  if (!mesh.origin_m.allFinite()) refuse("an origin that is not finite");
+  if (mesh.triangles.empty()) refuse("no triangles");
+}
+
+void check(const Model& model) {
+  check(model.mesh);
+  if (model.materials.size() < slot_count(model.mesh)) refuse("a triangle without a material");
+  for (const Material& material : model.materials) check(material, model.textures.size());
+  for (const Texture& texture : model.textures) check(texture);
+  for (const ModelPart& part : model.parts) {
+    const std::uint64_t end = std::uint64_t{part.first_triangle} + part.triangle_count;
+    if (end > model.mesh.triangles.size()) refuse("part '" + part.name + "' beyond the triangles");
+  }
+}
+
+}  // namespace
+
+void write_model(int fd, const ImportedModel& imported) {
+  write_frame(fd, FrameKind::model, imported);
+}
+
+ImportedModel read_model(FrameReader& frame) {
+  auto imported = read_frame<ImportedModel>(frame, FrameKind::model);
+  check(imported.model);
+  if (imported.files.empty()) refuse("no file that it was read from");
+  return imported;
+}
+
+void write_failure(int fd, const ImportFailure& failure) {
+  write_frame(fd, FrameKind::failure, failure);
+}
+
+ImportFailure read_failure(FrameReader& frame) {
+  return read_frame<ImportFailure>(frame, FrameKind::failure);
+}
+
+void write_cache_index(int fd, const CacheIndex& index) {
+  write_frame(fd, FrameKind::cache_index, index);
+}
+
+CacheIndex read_cache_index(FrameReader& frame) {
+  auto index = read_frame<CacheIndex>(frame, FrameKind::cache_index);
+  if (index.files.empty() || index.files.size() != index.hashes.size()) {
+    refuse("a cache without its files' hashes");
+  }
+  return index;
+}
+
+}  // namespace glidar

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/model.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/builtin_models.hpp>
+#include <glidar/io/import_process.hpp>
+#include <glidar/io/model_cache.hpp>
+#include <glidar/io/model_place.hpp>
+
+#include <cmath>
+#include <numbers>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kBuiltin = "builtin:";
+
+void require(bool holds, const char* option, double found, const char* allowed) {
+  if (holds) return;
+  throw Error({.where = option, .found = std::to_string(found), .allowed = allowed, .remedy = ""});
+}
+
+void check(const ModelOptions& options) {
+  require(std::isfinite(options.metres_per_unit) && options.metres_per_unit > 0.0,
+          "metres_per_unit", options.metres_per_unit, "a finite number above 0");
+  require(options.crease_angle_rad >= 0.0 && options.crease_angle_rad <= std::numbers::pi,
+          "crease_angle_rad", options.crease_angle_rad, "0 to pi");
+  require(options.time_limit_s > 0.0 && options.time_limit_s <= 1e6, "time_limit_s",
+          options.time_limit_s, "above 0, up to 1e6");
+}
+
+[[noreturn]] void no_model(const std::string& source, std::string found, std::string remedy) {
+  throw Error(
+      {.where = source, .found = std::move(found), .allowed = "", .remedy = std::move(remedy)});
+}
+
+/// "did you mean X" from the files beside a path that does not exist.
+std::string neighbour(const fs::path& path) {
+  const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator entry(parent, error), end; !error && entry != end;
+       entry.increment(error)) {
+    names.push_back(entry->path().filename().string());
+  }
+  const std::string nearest = nearest_word(path.filename().string(), names);
+  return nearest.empty() ? "check the path" : "did you mean " + nearest + "?";
+}
+
+fs::path model_file(const std::string& source) {
+  if (source.empty() || source.find('\0') != std::string::npos) {
+    no_model("model", "an empty or impossible path", "name a model file or builtin:NAME");
+  }
+  std::error_code error;
+  fs::path real = fs::canonical(source, error);
+  if (error) no_model(source, "cannot be opened: " + error.message(), neighbour(source));
+  if (!fs::is_regular_file(real, error)) no_model(source, "not a file", "name a model file");
+  if (fs::file_size(real, error) == 0 || error) no_model(source, "the file is empty", "");
+  return real;
+}
+
+struct Loaded {
+  ImportedModel imported;
+  std::string hash;
+  bool from_cache = false;
+};
+
+Loaded import(const fs::path& file, const ModelOptions& options, const Report& report,
+              const std::optional<CacheEntry>& entry) {
+  const ImportRequest request{file, options.crease_angle_rad, options.time_limit_s,
+                              options.memory_limit_bytes};
+  Loaded loaded;
+  {
+    const ImportRun run = run_import(request, report);
+    loaded.imported = take_model(run, request);
+  }
+  const std::vector<std::string> hashes = hash_files(loaded.imported, file);
+  loaded.hash = combined_hash(hashes);
+  if (!entry) return loaded;
+  const std::string unwritten = write_cache(*entry, loaded.imported, hashes, file);
+  if (!unwritten.empty()) report.info(unwritten);
+  return loaded;
+}
+
+Loaded load_file(const fs::path& file, const ModelOptions& options, const Report& report) {
+  const auto entry = options.use_cache ? cache_entry(file, options) : std::nullopt;
+  if (entry) {
+    if (auto cached = read_cache(*entry, file)) {
+      return {std::move(cached->imported), std::move(cached->hash), true};
+    }
+  }
+  return import(file, options, report, entry);
+}
+
+void tell(const Model& model, const Report& report) {
+  for (const std::string& note : model.notes) report.info(model.source + ": " + note);
+  if (model.missing_textures.empty()) return;
+  std::string text = model.source + ": textures missing:";
+  for (const MissingTexture& missing : model.missing_textures) {
+    constexpr std::size_t kShown = 80;
+    const bool longer = missing.name.size() > kShown;
+    text += " '" + missing.name.substr(0, kShown) + (longer ? "..." : "") + "' (" + missing.reason +
+            ")";
+  }
+  report.warn(text);
+}
+
+}  // namespace
+
+Model load_model(const std::string& source, const ModelOptions& options, const Report& report) {
+  check(options);
+  if (source.starts_with(kBuiltin)) {
+    Model model = make_builtin_model(std::string_view(source).substr(kBuiltin.size()));
+    place_mesh(model.mesh, options);
+    return model;
+  }
+  const fs::path file = model_file(source);
+  Loaded loaded = load_file(file, options, report);
+  Model model = std::move(loaded.imported.model);
+  model.source = source;
+  model.hash = std::move(loaded.hash);
+  model.from_cache = loaded.from_cache;
+  model.mesh.name = fs::path(source).stem().string();
+  place_mesh(model.mesh, options);
+  tell(model, report);
+  return model;
+}
+
+std::size_t add_model(Scene& scene, Model model) {
+  const auto first_material = static_cast<std::uint32_t>(scene.materials.size());
+  const auto first_texture = static_cast<std::int32_t>(scene.textures.size());
+  Instance instance;
+  instance.name = model.mesh.name;
+  instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+  for (Material& material : model.materials) {
+    for (TextureUse* use : {&material.diffuse_texture, &material.specular_texture,
+                            &material.alpha_texture, &material.normal_texture}) {
+      if (use->used()) use->texture += first_texture;
+    }
+    instance.materials.push_back(first_material +
+                                 static_cast<std::uint32_t>(instance.materials.size()));
+    scene.materials.push_back(std::move(material));
+  }
+  std::move(model.textures.begin(), model.textures.end(), std::back_inserter(scene.textures));
+  scene.meshes.push_back(std::move(model.mesh));
+  scene.sources.push_back({std::move(model.source), std::move(model.hash)});
+  scene.instances.push_back(std::move(instance));
+  return scene.instances.size() - 1;
+}
+
+}  // namespace glidar

@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/model_folder.hpp>
+
+#include <algorithm>
+#include <system_error>
+
+namespace glidar {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// True when `path` is `root` or lies below it; both absolute and normalised.
+bool inside(const fs::path& path, const fs::path& root) {
+  const auto [in_root, in_path] = std::mismatch(root.begin(), root.end(), path.begin(), path.end());
+  return in_root == root.end();
+}
+
+}  // namespace
+
+ModelFolder model_folder(const fs::path& canonical_model) {
+  const fs::path folder = canonical_model.parent_path();
+  const fs::path parent = folder.parent_path();
+  std::error_code ignored;  // a folder that cannot be looked at is no package
+  const bool package =
+      fs::is_regular_file(parent / "model.config", ignored) ||
+      (folder.filename() == "meshes" && fs::is_directory(parent / "materials", ignored));
+  return {folder, package ? parent : folder};
+}
+
+ConfinedFile confine(const fs::path& wanted, const ModelFolder& folder) {
+  if (wanted.native().find('\0') != std::string::npos) return {Access::absent, {}};
+  const fs::path lexical = (folder.folder / wanted).lexically_normal();
+  if (!inside(lexical, folder.root)) return {Access::outside, {}};
+  std::error_code error;
+  const fs::path real = fs::canonical(lexical, error);
+  if (error) return {Access::absent, {}};
+  if (!inside(real, folder.root)) return {Access::outside, {}};
+  if (!fs::is_regular_file(real, error) || error) return {Access::not_a_file, {}};
+  return {Access::granted, real};
+}
+
+std::string reason(Access access) {
+  switch (access) {
+    case Access::granted:
+      return "";
+    case Access::absent:
+      return "not found";
+    case Access::outside:
+      return "outside the model's folder";
+    case Access::not_a_file:
+      return "not a file";
+  }
+  return "";
+}
+
+}  // namespace glidar
