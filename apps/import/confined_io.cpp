@@ -40,7 +40,10 @@ class ReadStream : public Assimp::IOStream {
   std::size_t size_;
 };
 
-std::string shown(std::string name) {
+/// For messages: without the model's folder, and not too long.
+std::string shown(std::string name, const ModelFolder& folder) {
+  const std::string prefix = folder.folder.string() + "/";
+  if (name.starts_with(prefix)) name.erase(0, prefix.size());
   constexpr std::size_t kLongest = 120;
   if (name.size() > kLongest) name = name.substr(0, kLongest) + "...";
   return name;
@@ -75,12 +78,12 @@ Assimp::IOStream* ConfinedIo::Open(const char* path, const char* mode) {
   if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos) return nullptr;
   const ConfinedFile file = find(path);
   if (file.access != Access::granted) {
-    add_once(log_->notes, "'" + shown(path) + "' is not read: " + reason(file.access));
+    add_once(log_->notes, "'" + shown(path, folder_) + "' is not read: " + reason(file.access));
     return nullptr;
   }
   std::FILE* opened = std::fopen(file.path.c_str(), "rbe");
   if (opened == nullptr) {
-    add_once(log_->notes, "'" + shown(path) + "' cannot be opened");
+    add_once(log_->notes, "'" + shown(path, folder_) + "' cannot be opened");
     add_once(log_->absent, path);
     return nullptr;
   }

@@ -51,6 +51,9 @@ std::string importer_name(const Assimp::Importer& importer) {
 
 [[noreturn]] void refuse(std::string why, const FileLog& log) {
   if (why.find("bad_alloc") != std::string::npos) throw std::bad_alloc();
+  for (const char* empty : {"contains no faces", "contains no vertices", "mNumMeshes is 0"}) {
+    if (why.find(empty) != std::string::npos) throw no_triangles("");
+  }
   std::replace(why.begin(), why.end(), '\n', ' ');
   for (const std::string& note : log.notes) why += "; " + note;
   if (why.find("No suitable reader") != std::string::npos) {

@@ -172,13 +172,16 @@ std::size_t material_of(const Placed& placed) {
 
 void extend_box(Eigen::AlignedBox3d& box, const Placed& placed) {
   const aiMesh& mesh = *placed.mesh;
+  std::vector<bool> used(mesh.mNumVertices, false);
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
     const aiFace& face = mesh.mFaces[f];
     if (!is_triangle(face, mesh.mNumVertices)) continue;
-    for (unsigned k = 0; k < 3; ++k) {
-      const Eigen::Vector3d p = moved(placed, mesh.mVertices[face.mIndices[k]]);
-      if (p.allFinite()) box.extend(p);
-    }
+    for (unsigned k = 0; k < 3; ++k) used[face.mIndices[k]] = true;
+  }
+  for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+    if (!used[v]) continue;
+    const Eigen::Vector3d p = moved(placed, mesh.mVertices[v]);
+    if (p.allFinite()) box.extend(p);
   }
 }
 

@@ -21,6 +21,9 @@ bool limit(__rlimit_resource resource, std::uint64_t value) {
   return ::setrlimit(resource, &wanted) == 0;
 }
 
+// Importers recurse over the file's tree; the kernel keeps 128 MiB of addresses free for the stack.
+constexpr std::uint64_t kStackBytes = std::uint64_t{100} << 20U;
+
 // The sanitizers reserve terabytes of addresses.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kLimitAddresses = false;
@@ -32,8 +35,8 @@ constexpr bool kLimitAddresses = true;
 
 bool apply(const ProcessLimits& limits) {
   const auto seconds = static_cast<std::uint64_t>(std::ceil(limits.time_s)) + 1;
-  const bool limited = limit(RLIMIT_CORE, 0) && limit(RLIMIT_CPU, seconds) &&
-                       limit(RLIMIT_FSIZE, limits.memory_bytes) &&
+  const bool limited = limit(RLIMIT_CORE, 0) && limit(RLIMIT_STACK, kStackBytes) &&
+                       limit(RLIMIT_CPU, seconds) && limit(RLIMIT_FSIZE, limits.memory_bytes) &&
                        (!kLimitAddresses || limit(RLIMIT_AS, limits.memory_bytes));
   const bool bound =
       ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && ::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0;

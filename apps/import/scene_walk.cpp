@@ -50,6 +50,13 @@ void place_meshes(const aiScene& scene, const aiNode& node, const Eigen::Matrix4
 
 }  // namespace
 
+Refusal no_triangles(const std::string& instead) {
+  return {
+      "no triangles" + instead,
+      "GLIDAR needs surfaces: name a model with triangles or polygons (of a point cloud, make a "
+      "mesh first)"};
+}
+
 Walk walk(const aiScene& scene) {
   Walk result;
   // A stack of our own: hostile trees are deep.
@@ -70,10 +77,9 @@ Walk walk(const aiScene& scene) {
     }
   }
   if (result.triangles > 0) return result;
-  throw Refusal{result.lines_and_points > 0
-                    ? fmt::format("no triangles, only {} points and lines", result.lines_and_points)
-                    : "no triangles",
-                "GLIDAR needs surfaces: name a model with triangles or polygons"};
+  throw no_triangles(result.lines_and_points > 0
+                         ? fmt::format(", only {} points and lines", result.lines_and_points)
+                         : "");
 }
 
 }  // namespace glidar::import

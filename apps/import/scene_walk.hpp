@@ -18,6 +18,9 @@ struct Refusal {
   std::string remedy;
 };
 
+/// The file has no surface; `instead`: what it has, "" or ", only ...".
+Refusal no_triangles(const std::string& instead);
+
 /// One mesh of the file at one place in its tree.
 struct Placed {
   const aiMesh* mesh = nullptr;
