@@ -175,8 +175,11 @@ TEST(BuiltinModels, AsteroidIsAnElongatedRockAroundItsCentreOfVolume) {
 
 // Golden values: models are the same bytes with every compiler, build type and machine.
 TEST(BuiltinModels, AreTheSameBytesEverywhere) {
-  const std::map<std::string, std::uint64_t> golden = {
-      {"asteroid", 0}, {"sphere", 0}, {"box", 0}, {"torus", 0}, {"plane", 0}};
+  const std::map<std::string, std::uint64_t> golden = {{"asteroid", 0x345d0cbe2f2885c8U},
+                                                       {"sphere", 0x9ac788fb862b5171U},
+                                                       {"box", 0xb639d035e8732525U},
+                                                       {"torus", 0xb0c44da2db3b196dU},
+                                                       {"plane", 0xf22c6318a6264fc7U}};
   for (const std::string& name : builtin_model_names()) {
     EXPECT_EQ(hash(make_builtin_model(name).mesh), golden.at(name)) << name;
   }
