@@ -300,5 +300,24 @@ TEST(SceneFile, ExampleLoads) {
             std::tan(kPi / 18.0) * 1.3);
 }
 
+/// The n-th block of YAML in docs/files.md.
+std::string documented(int n) {
+  std::ifstream stream(std::filesystem::path(GLIDAR_SOURCE_FOLDER) / "docs/files.md");
+  const std::string text(std::istreambuf_iterator<char>(stream), {});
+  const std::string fence = "```yaml\n";
+  std::size_t begin = 0;
+  for (int i = 0; i <= n; ++i) begin = text.find(fence, begin) + fence.size();
+  return text.substr(begin, text.find("```", begin) - begin);
+}
+
+TEST(SceneFile, DocumentedExamplesAreRight) {
+  const TestFolder folder;
+  (void)folder.write("camera.yaml", documented(0));
+  const ScenePlan scene = plan(folder, documented(1));
+  EXPECT_EQ(scene.sensor->name, "my camera");
+  ASSERT_EQ(scene.instances.size(), 2U);
+  EXPECT_EQ(scene.instances[0].overrides.size(), 2U);
+}
+
 }  // namespace
 }  // namespace glidar
