@@ -188,11 +188,17 @@ std::vector<TrianglePlane> triangle_planes(const Mesh& mesh) {
 
 InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
                      const Pose& world_from_sensor) {
+  using Wide = Eigen::Matrix<long double, 3, 1>;
   const Eigen::Matrix3d object_from_world = world_from_object.linear().transpose();
-  // The difference of two far-away positions first: it is exact where their sum would not be.
-  const Eigen::Vector3d offset = world_from_sensor.translation() - world_from_object.translation();
+  // The differences of far-away positions first, and in extended precision: a mesh whose vertices
+  // lie 1000 km from its zero would lose 1e-10 m when that offset is rotated in double.
+  const Wide offset = world_from_sensor.translation().cast<long double>() -
+                      world_from_object.translation().cast<long double>();
+  const Wide origin =
+      world_from_object.linear().cast<long double>() *
+      (static_cast<long double>(instance.scale) * mesh.origin_m.cast<long double>());
   return {.object_from_sensor = object_from_world * world_from_sensor.linear(),
-          .sensor_in_object = object_from_world * offset / instance.scale - mesh.origin_m,
+          .sensor_in_object = object_from_world * (offset - origin).cast<double>() / instance.scale,
           .scale = instance.scale};
 }
 
