@@ -11,18 +11,24 @@ target_compile_options(
             -ffp-contract=off
             $<$<BOOL:${GLIDAR_WARNINGS_AS_ERRORS}>:-Werror>)
 
-# glidar_layer(NAME PUBLIC layers... PRIVATE libraries...): one library per folder of glidar/, from
-# all its sources.
+# glidar_layer(NAME SOURCES files... PUBLIC layers... PRIVATE libraries...): one library per layer,
+# by default from all sources of the folder of its name.
 function(glidar_layer name)
-  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
-  file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
-  add_library(glidar_${name} ${sources})
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  if(NOT ARG_SOURCES)
+    file(GLOB_RECURSE ARG_SOURCES CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
+  endif()
+  add_library(glidar_${name} ${ARG_SOURCES})
   add_library(glidar::${name} ALIAS glidar_${name})
-  set_target_properties(glidar_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  set_target_properties(
+    glidar_${name} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON
+                              VERSION ${PROJECT_VERSION}
+                              SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
   target_include_directories(
     glidar_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
                           $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(glidar_${name} PUBLIC ${ARG_PUBLIC}
                         PRIVATE $<BUILD_INTERFACE:glidar_settings> ${ARG_PRIVATE})
   target_compile_features(glidar_${name} PUBLIC cxx_std_20)
+  set_property(GLOBAL APPEND PROPERTY GLIDAR_LAYER_TARGETS glidar_${name})
 endfunction()

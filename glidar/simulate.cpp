@@ -7,6 +7,8 @@
 namespace glidar {
 namespace {
 
+constexpr std::size_t kBeamsPerTask = 4096;  // some 50 microseconds of work
+
 /// What the sensor says of one true range.
 Status judge(double depth_m, const DepthLimits& limits) {
   if (depth_m < limits.near_m) return Status::too_near;
@@ -14,16 +16,13 @@ Status judge(double depth_m, const DepthLimits& limits) {
   return Status::hit;
 }
 
-/// Range and status from the truth.
-void measure_range(const DepthLimits& limits, const Beams& beams, Frame& frame) {
-  frame.range_m.resize(beams.size());
-  frame.status.resize(beams.size());
-  for (std::size_t i = 0; i < beams.size(); ++i) {
+/// Range and status of beams [begin, end) from the truth.
+void measure_range(const DepthLimits& limits, const Beams& beams, BeamRange range, Frame& frame) {
+  for (std::size_t i = range.begin; i < range.end; ++i) {
     const double range_m = frame.truth.range_m[i];
     Status status = Status::miss;
     if (!std::isnan(range_m)) {
-      const double depth_m = range_m * beams.directions[i].dot(beams.boresight);
-      status = judge(depth_m, limits);
+      status = judge(range_m * beams.directions[i].dot(beams.boresight), limits);
     } else if (std::isnan(beams.directions[i].x())) {
       status = Status::no_beam;
     }
@@ -42,7 +41,7 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
 
   HitFields needed = fields;
   needed.shading_normal = true;  // the light needs them
-  needed.surface = true;
+  needed.reflectance = true;
   setup.renderer.cast({.beams = setup.beams,
                        .world_from_sensor = frame.world_from_sensor,
                        .world_from_instance = frame.world_from_instance,
@@ -50,8 +49,13 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
                        .cull_back_faces = setup.sensor.cull_back_faces},
                       frame.truth);
 
-  measure_range(setup.sensor.limits, setup.beams, frame);
-  measure_intensity(setup.sensor.light, setup.beams, frame);
+  resize(frame, setup.beams.size());
+  setup.renderer.workers().for_ranges(
+      setup.beams.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
+        const BeamRange range{begin, end};
+        measure_range(setup.sensor.limits, setup.beams, range, frame);
+        measure_intensity(setup.sensor.light, setup.beams, range, frame);
+      });
 }
 
 }  // namespace glidar

@@ -1,10 +1,120 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/commands.hpp>
+#include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/interrupt.hpp>
+#include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
 
-#include <cstdio>
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
 
-int main() {
-  std::puts(glidar::version());
-  return 0;
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glidar::app {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  glidar render builtin:asteroid -o asteroid.pcd -o asteroid.png
+  glidar info builtin:torus
+  glidar verify
+More: glidar render --help, glidar info --help, glidar verify --help)";
+
+using Commands = std::vector<std::pair<std::string, Command>>;
+
+const CLI::App& chosen(const CLI::App& program) {
+  const std::vector<const CLI::App*> subcommands =
+      program.get_subcommands([](const CLI::App* command) { return command->parsed(); });
+  return subcommands.empty() ? program : *subcommands.front();
+}
+
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  }
+  return names;
+}
+
+/// A word that is no option, no subcommand and not expected: what might have been meant.
+std::string explain_extra(const CLI::App& program, const Commands& commands, std::string word) {
+  const CLI::App& command = chosen(program);
+  word = word.substr(0, word.find('='));
+  if (word.starts_with("-")) {
+    const std::string nearest = nearest_word(word, option_names(command));
+    return nearest.empty() ? fmt::format("unknown option {}; see --help", word)
+                           : fmt::format("unknown option {}; did you mean {}?", word, nearest);
+  }
+  if (&command != &program) return fmt::format("unexpected word '{}'; see --help", word);
+  std::vector<std::string> names;
+  for (const auto& [name, run] : commands) names.push_back(name);
+  const std::string nearest = nearest_word(word, names);
+  return nearest.empty()
+             ? fmt::format(
+                   "'{0}' is no subcommand; to measure a model: glidar render {0} -o cloud.pcd",
+                   word)
+             : fmt::format("'{}' is no subcommand; did you mean {}?", word, nearest);
+}
+
+int fail(const std::string& message) {
+  std::fputs(fmt::format("glidar: error: {}\n", message).c_str(), stderr);
+  return kBadInput;
+}
+
+/// The words that CLI11 could not place, options first: theirs is the better explanation.
+std::string first_extra(const CLI::App& program) {
+  const std::vector<std::string> extras = program.remaining(true);
+  const auto option = std::find_if(extras.begin(), extras.end(), [](const std::string& word) {
+    return word.size() > 1 && word.starts_with("-");
+  });
+  if (option != extras.end()) return *option;
+  return extras.empty() ? "" : extras.front();
+}
+
+int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** argv) {
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& help_or_version) {
+    return program.exit(help_or_version);
+  } catch (const CLI::ParseError& error) {
+    const std::string extra = first_extra(program);
+    return fail(extra.empty() ? error.what() : explain_extra(program, commands, extra));
+  }
+  for (const auto& [name, run] : commands) {
+    if (program.got_subcommand(name)) return run();
+  }
+  return kBadInput;  // cannot be: parse() requires one
+}
+
+int run(int argc, char** argv) {
+  CLI::App program("Simulator of 3D sensors: from a model file to a true point cloud", "glidar");
+  constexpr std::size_t kNameColumn = 36;
+  program.get_formatter()->column_width(kNameColumn);
+  program.set_version_flag("--version", std::string("glidar ") + version());
+  program.require_subcommand(1);
+  program.footer(kExamples);
+  const Commands commands = {{"render", add_render(program)},
+                             {"info", add_info(program)},
+                             {"verify", add_verify(program)}};
+  return parse_and_run(program, commands, argc, argv);
+}
+
+}  // namespace
+}  // namespace glidar::app
+
+int main(int argc, char** argv) {
+  try {
+    glidar::app::end_cleanly_on_interrupt();
+    return glidar::app::run(argc, argv);
+  } catch (const std::bad_alloc&) {
+    return glidar::app::fail("out of memory; use a smaller image or a smaller model");
+  } catch (const std::exception& error) {
+    return glidar::app::fail(error.what());
+  }
 }

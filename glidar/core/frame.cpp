@@ -20,4 +20,10 @@ std::string_view name(Status status) {
   return "unknown";
 }
 
+void resize(Frame& frame, std::size_t size) {
+  frame.range_m.resize(size);
+  frame.intensity.resize(size);
+  frame.status.resize(size);
+}
+
 }  // namespace glidar

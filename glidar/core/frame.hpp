@@ -39,4 +39,13 @@ struct Frame {
   Hits truth;                             ///< what is there, whether reported or not
 };
 
+/// Gives the measured columns `size` entries (contents unspecified).
+void resize(Frame& frame, std::size_t size);
+
+/// A run of beams, for work shared out among threads.
+struct BeamRange {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
 }  // namespace glidar

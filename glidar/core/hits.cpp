@@ -14,10 +14,8 @@ void resize(Hits& hits, std::size_t size, const HitFields& fields) {
   hits.shading_normal.resize(size_if(fields.shading_normal));
   hits.cos_incidence.resize(size_if(fields.incidence));
   hits.barycentrics.resize(size_if(fields.barycentrics));
-  hits.colour.resize(size_if(fields.surface));
-  hits.ambient.resize(size_if(fields.surface));
-  hits.specular.resize(size_if(fields.surface));
-  hits.shininess.resize(size_if(fields.surface));
+  hits.colour.resize(size_if(fields.colour));
+  hits.reflectance.resize(size_if(fields.reflectance));
   hits.object_point_m.resize(size_if(fields.object_point));
 }
 

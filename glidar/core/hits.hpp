@@ -19,13 +19,23 @@ struct HitFields {
   bool shading_normal = false;
   bool incidence = false;
   bool barycentrics = false;
-  bool surface = false;  ///< colour, ambient, specular, shininess
+  bool colour = false;
+  bool reflectance = false;
   bool object_point = false;
+};
+
+/// What a surface does with the paper's light (equation 5): luminances after textures, and the
+/// exponent. All zero where nothing was hit.
+struct Reflectance {
+  float diffuse = 0.0F;
+  float ambient = 0.0F;
+  float specular = 0.0F;
+  float shininess = 0.0F;
 };
 
 /// Geometric truth per beam: no noise, no radiometry. N = number of beams. Range, instance and
 /// primitive are always there; the other columns are empty unless asked for.
-/// A miss has range NaN, ids kNoHit and NaN (colours: 0) in every other column.
+/// A miss has range NaN, ids kNoHit and NaN (colour and reflectance: 0) in every other column.
 /// Normals are unit vectors in the sensor's frame, turned towards the sensor.
 struct Hits {
   std::vector<double> range_m;           ///< N, along the beam from its origin
@@ -37,10 +47,8 @@ struct Hits {
       shading_normal;                ///< N, interpolated vertex normals bent by the normal map
   std::vector<float> cos_incidence;  ///< N, cosine between -beam and `normal`, 0..1
   std::vector<Eigen::Vector2f> barycentrics;  ///< N, weights of corners 1 and 2
-  std::vector<Eigen::Vector3f> colour;  ///< N, diffuse rgb: material x texture x vertex colour
-  std::vector<float> ambient;           ///< N, luminance of the ambient colour x texture
-  std::vector<float> specular;          ///< N, luminance of the specular colour x texture
-  std::vector<float> shininess;         ///< N, exponent
+  std::vector<Eigen::Vector3f> colour;   ///< N, diffuse rgb: material x texture x vertex colour
+  std::vector<Reflectance> reflectance;  ///< N
   std::vector<Eigen::Vector3d>
       object_point_m;  ///< N, the hit in the object's own frame, before scale
 };

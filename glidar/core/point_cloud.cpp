@@ -166,7 +166,7 @@ const std::vector<ColumnKind>& column_kinds() {
       {"class", {"class"}, {}, fill_class},
       {"primitive", {"primitive"}, {}, fill_primitive},
       {"barycentrics", {"bary_1", "bary_2"}, {.barycentrics = true}, fill_barycentrics},
-      {"colour", {"red", "green", "blue"}, {.surface = true}, fill_colour},
+      {"colour", {"red", "green", "blue"}, {.colour = true}, fill_colour},
       {"object_point",
        {"object_x", "object_y", "object_z"},
        {.object_point = true},
@@ -201,7 +201,7 @@ bool has(const Frame& frame, const HitFields& needs) {
          kept(needs.shading_normal, truth.shading_normal.size()) &&
          kept(needs.incidence, truth.cos_incidence.size()) &&
          kept(needs.barycentrics, truth.barycentrics.size()) &&
-         kept(needs.surface, truth.colour.size()) &&
+         kept(needs.colour, truth.colour.size()) &&
          kept(needs.object_point, truth.object_point_m.size());
 }
 
@@ -242,7 +242,7 @@ HitFields fields_for(std::span<const std::string> column_names) {
     fields.shading_normal |= needs.shading_normal;
     fields.incidence |= needs.incidence;
     fields.barycentrics |= needs.barycentrics;
-    fields.surface |= needs.surface;
+    fields.colour |= needs.colour;
     fields.object_point |= needs.object_point;
   }
   return fields;

@@ -142,9 +142,12 @@ double cratered(double height, const Crater& crater, double t) {
 double crater_height(const Eigen::Vector3d& p, const std::vector<Crater>& craters) {
   double height = 0.0;
   for (const Crater& crater : craters) {
-    const Eigen::Vector3d away = p - crater.centre;
-    const double squared = dot(away, away);
+    // By components: this line runs 17 million times, unoptimised builds included.
+    const double dx = p.x() - crater.centre.x();
     const double reach = kReach * crater.radius;
+    if (std::abs(dx) >= reach) continue;
+    const Eigen::Vector3d away(dx, p.y() - crater.centre.y(), p.z() - crater.centre.z());
+    const double squared = dot(away, away);
     if (squared >= reach * reach) continue;
     height = cratered(height, crater, std::sqrt(squared) / crater.radius);
   }

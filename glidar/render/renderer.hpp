@@ -4,8 +4,8 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/core/hits.hpp>
-#include <glidar/core/report.hpp>
 #include <glidar/core/scene.hpp>
+#include <glidar/core/workers.hpp>
 
 #include <memory>
 #include <span>
@@ -33,6 +33,9 @@ class Renderer {
   virtual ~Renderer() = default;
 
   [[nodiscard]] virtual std::string_view name() const = 0;
+
+  /// The threads it runs on; for other work on the same frame.
+  virtual Workers& workers() = 0;
 
   /// Fills `hits`. The result does not depend on the number of threads. A second cast of the same
   /// size allocates nothing.

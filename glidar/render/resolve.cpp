@@ -2,9 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/resolve.hpp>
 
-#include <glidar/render/surface.hpp>
+#include <glidar/render/simd.hpp>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -18,34 +19,156 @@ Eigen::Vector3d corner(const Mesh& mesh, std::uint32_t triangle, std::size_t k) 
   return mesh.positions_m[mesh.triangles[triangle][k]].cast<double>();
 }
 
-/// Everything of one hit that the optional columns are made of.
-struct ExactHit {
-  const InstanceView& view;
-  const TrianglePlane& plane;
-  bool from_behind;       ///< the beam meets the back of the triangle
-  Eigen::Vector3d point;  ///< object units, relative to the mesh's origin
-};
-
-/// A vector of the object's front side, in the sensor's frame and turned to the sensor.
-Eigen::Vector3f to_sensor(const ExactHit& hit, const Eigen::Vector3d& in_object) {
-  const Eigen::Vector3d in_sensor = hit.view.object_from_sensor.transpose() * in_object;
-  return (hit.from_behind ? -in_sensor : in_sensor).cast<float>();
+/// Calls body(lane) for every lane of a mask.
+template <class Body>
+void for_lanes(std::uint32_t mask, const Body& body) {
+  for (; mask != 0; mask &= mask - 1) body(static_cast<unsigned>(std::countr_zero(mask)));
 }
 
-/// The columns that need the place on the triangle.
-void write_surface(const Scene& scene, const HitFields& fields, const SurfacePlace& place,
-                   const ExactHit& hit, std::size_t beam, Hits& hits) {
-  if (fields.barycentrics) hits.barycentrics[beam] = place.weights;
-  if (fields.shading_normal) {
-    const Eigen::Vector3f normal = shading_normal_at(scene, place, hit.plane.normal.cast<float>());
-    hits.shading_normal[beam] = to_sensor(hit, normal.cast<double>());
+/// Depth of a beam's point: along the boresight, from the sensor's origin.
+double depth_of(const Beams& beams, std::size_t beam, double range_m) {
+  Eigen::Vector3d point = range_m * beams.directions[beam];
+  if (!beams.origins_m.empty()) point += beams.origins_m[beam];
+  return point.dot(beams.boresight);
+}
+
+double longest_edge(const Mesh& mesh, std::uint32_t triangle) {
+  const Eigen::Vector3d v0 = corner(mesh, triangle, 0);
+  const Eigen::Vector3d v1 = corner(mesh, triangle, 1);
+  const Eigen::Vector3d v2 = corner(mesh, triangle, 2);
+  return std::max({(v1 - v0).norm(), (v2 - v1).norm(), (v0 - v2).norm()});
+}
+
+bool is_one_instance(const HitBlock& block) {
+  return std::all_of(block.instance.begin(), block.instance.end(),
+                     [&](std::uint32_t instance) { return instance == block.instance[0]; });
+}
+
+/// The beams of a sensor whose beams share one origin, in the frame of one instance.
+GLIDAR_SIMD void look_from_one(const InstanceView& view, const Lanes3<double>& in_sensor,
+                               ExactBlock& exact) {
+  rotate(view.object_from_sensor, in_sensor, exact.direction);
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.x[i] = view.sensor_in_object.x();
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.y[i] = view.sensor_in_object.y();
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.z[i] = view.sensor_in_object.z();
+}
+
+/// cosine = n.d, distance = (offset - n.o) / (n.d), as distance_to().
+GLIDAR_SIMD void intersect_planes(ExactBlock& e) {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const double above =
+        e.offset[i] - (e.normal.x[i] * e.origin.x[i] + e.normal.y[i] * e.origin.y[i] +
+                       e.normal.z[i] * e.origin.z[i]);
+    const double cosine = e.normal.x[i] * e.direction.x[i] + e.normal.y[i] * e.direction.y[i] +
+                          e.normal.z[i] * e.direction.z[i];
+    e.cosine[i] = cosine;
+    e.distance[i] = above / cosine;
   }
-  if (fields.surface) {
-    const SurfaceColour colour = colour_at(scene, place);
-    hits.colour[beam] = colour.diffuse;
-    hits.ambient[beam] = colour.ambient;
-    hits.specular[beam] = colour.specular;
-    hits.shininess[beam] = colour.shininess;
+}
+
+/// Front normals of one instance into the sensor's frame, turned towards the sensor.
+GLIDAR_SIMD void turn_to_sensor(const Eigen::Matrix3d& sensor_from_object, const Lanes3<double>& in,
+                                const Lanes<double>& cosine, Lanes3<float>& out) {
+  Lanes3<double> turned;
+  rotate(sensor_from_object, in, turned);
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const double sign = cosine[i] > 0.0 ? -1.0 : 1.0;
+    out.x[i] = static_cast<float>(sign * turned.x[i]);
+    out.y[i] = static_cast<float>(sign * turned.y[i]);
+    out.z[i] = static_cast<float>(sign * turned.z[i]);
+  }
+}
+
+/// A vector at each corner of a block's triangles.
+struct CornerBlock {
+  Lanes3<float> c0;
+  Lanes3<float> c1;
+  Lanes3<float> c2;
+};
+
+/// Weights of corners 1 and 2 of the hit point: areas of the parts around it, signed along the
+/// normal, over the whole. The corners are first taken relative to the hit point, in double, so
+/// that single precision suits the rest.
+GLIDAR_SIMD void weigh(const ExactBlock& e, CornerBlock& c, Lanes<float>& w1, Lanes<float>& w2) {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const double x = e.origin.x[i] + e.distance[i] * e.direction.x[i];
+    const double y = e.origin.y[i] + e.distance[i] * e.direction.y[i];
+    const double z = e.origin.z[i] + e.distance[i] * e.direction.z[i];
+    const auto ax = static_cast<float>(c.c0.x[i] - x);
+    const auto ay = static_cast<float>(c.c0.y[i] - y);
+    const auto az = static_cast<float>(c.c0.z[i] - z);
+    const auto bx = static_cast<float>(c.c1.x[i] - x);
+    const auto by = static_cast<float>(c.c1.y[i] - y);
+    const auto bz = static_cast<float>(c.c1.z[i] - z);
+    const auto cx = static_cast<float>(c.c2.x[i] - x);
+    const auto cy = static_cast<float>(c.c2.y[i] - y);
+    const auto cz = static_cast<float>(c.c2.z[i] - z);
+    const auto nx = static_cast<float>(e.normal.x[i]);
+    const auto ny = static_cast<float>(e.normal.y[i]);
+    const auto nz = static_cast<float>(e.normal.z[i]);
+    const float at_0 =
+        nx * (by * cz - bz * cy) + ny * (bz * cx - bx * cz) + nz * (bx * cy - by * cx);
+    const float at_1 =
+        nx * (cy * az - cz * ay) + ny * (cz * ax - cx * az) + nz * (cx * ay - cy * ax);
+    const float at_2 =
+        nx * (ay * bz - az * by) + ny * (az * bx - ax * bz) + nz * (ax * by - ay * bx);
+    const float whole = at_0 + at_1 + at_2;
+    w1[i] = at_1 / whole;
+    w2[i] = at_2 / whole;
+  }
+}
+
+/// w0 a + w1 b + w2 c, normalised; `flat` where that has no length.
+GLIDAR_SIMD void blend_normals(const CornerBlock& n, const Lanes<float>& w1, const Lanes<float>& w2,
+                               const Lanes3<double>& flat, Lanes3<double>& out) {
+  constexpr float kShortest = 1e-12F;  // squared; opposite normals cancel out
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const float w0 = 1.0F - w1[i] - w2[i];
+    const float x = w0 * n.c0.x[i] + w1[i] * n.c1.x[i] + w2[i] * n.c2.x[i];
+    const float y = w0 * n.c0.y[i] + w1[i] * n.c1.y[i] + w2[i] * n.c2.y[i];
+    const float z = w0 * n.c0.z[i] + w1[i] * n.c1.z[i] + w2[i] * n.c2.z[i];
+    const float squared = x * x + y * y + z * z;
+    const bool has_length = squared > kShortest;
+    const float inverse = 1.0F / std::sqrt(has_length ? squared : 1.0F);
+    out.x[i] = has_length ? static_cast<double>(x * inverse) : flat.x[i];
+    out.y[i] = has_length ? static_cast<double>(y * inverse) : flat.y[i];
+    out.z[i] = has_length ? static_cast<double>(z * inverse) : flat.z[i];
+  }
+}
+
+void prefetch_corners(const Resolver& resolver, const HitBlock& block) {
+  for_lanes(block.mask, [&](unsigned i) {
+    const Mesh& mesh = resolver.mesh(block.instance[i]);
+    for (const std::uint32_t vertex : mesh.triangles[block.primitive[i]]) {
+      __builtin_prefetch(&mesh.positions_m[vertex]);
+      if (!mesh.normals.empty()) __builtin_prefetch(&mesh.normals[vertex]);
+    }
+  });
+}
+
+void gather_corners(const Resolver& resolver, const HitBlock& block, CornerBlock& corners) {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const Mesh& mesh = resolver.mesh(block.instance[i]);
+    const Triangle& t = mesh.triangles[block.primitive[i]];
+    corners.c0.set(i, mesh.positions_m[t[0]]);
+    corners.c1.set(i, mesh.positions_m[t[1]]);
+    corners.c2.set(i, mesh.positions_m[t[2]]);
+  }
+}
+
+void gather_normals(const Resolver& resolver, const HitBlock& block, CornerBlock& normals) {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const Mesh& mesh = resolver.mesh(block.instance[i]);
+    if (mesh.normals.empty()) {
+      normals.c0.set(i, Eigen::Vector3f::Zero());  // no length: the flat normal is taken
+      normals.c1.set(i, Eigen::Vector3f::Zero());
+      normals.c2.set(i, Eigen::Vector3f::Zero());
+      continue;
+    }
+    const Triangle& t = mesh.triangles[block.primitive[i]];
+    normals.c0.set(i, mesh.normals[t[0]]);
+    normals.c1.set(i, mesh.normals[t[1]]);
+    normals.c2.set(i, mesh.normals[t[2]]);
   }
 }
 
@@ -58,6 +181,7 @@ std::vector<TrianglePlane> triangle_planes(const Mesh& mesh) {
     const Eigen::Vector3d cross = (corner(mesh, i, 1) - v0).cross(corner(mesh, i, 2) - v0);
     planes[i].normal = cross / cross.norm();
     planes[i].offset = planes[i].normal.dot(v0);
+    planes[i].narrowness = static_cast<float>(longest_edge(mesh, i) / cross.norm());
   }
   return planes;
 }
@@ -80,22 +204,23 @@ ObjectRay ray_in(const InstanceView& view, const Beams& beams, std::size_t beam)
   return ray;
 }
 
-Eigen::Vector2d barycentrics(const Mesh& mesh, std::uint32_t triangle, const TrianglePlane& plane,
-                             const Eigen::Vector3d& point) {
-  const Eigen::Vector3d v0 = corner(mesh, triangle, 0);
-  const Eigen::Vector3d e1 = corner(mesh, triangle, 1) - v0;
-  const Eigen::Vector3d e2 = corner(mesh, triangle, 2) - v0;
-  const Eigen::Vector3d w = point - v0;
-  const double twice_area = plane.normal.dot(e1.cross(e2));
-  return {plane.normal.dot(w.cross(e2)) / twice_area, plane.normal.dot(e1.cross(w)) / twice_area};
-}
-
 Resolver::Resolver(const Scene& scene) : scene_(scene) {
   planes_.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) planes_.push_back(triangle_planes(mesh));
   planes_of_instance_.reserve(scene.instances.size());
   for (const Instance& instance : scene.instances) {
-    planes_of_instance_.push_back(&planes_[instance.mesh]);
+    planes_of_instance_.push_back(planes_[instance.mesh].data());
+  }
+  looks_.reserve(scene.instances.size());
+  for (const Instance& instance : scene.instances) {
+    std::vector<SlotLook>& looks = looks_.emplace_back();
+    for (const std::uint32_t index : instance.materials) {
+      const Material& material = scene.materials[index];
+      const Mesh& mesh = scene.meshes[instance.mesh];
+      looks.push_back({.plain = plain_colour(material),
+                       .has_texture = has_texture(material, mesh),
+                       .has_normal_map = has_normal_map(material, mesh)});
+    }
   }
 }
 
@@ -109,33 +234,118 @@ void Resolver::set_poses(const Pose& world_from_sensor, std::span<const Pose> wo
   }
 }
 
-void Resolver::write_hit(const Beams& beams, const HitFields& fields, std::size_t beam,
-                         std::uint32_t instance, std::uint32_t primitive, Hits& hits) const {
-  const InstanceView& in = views_[instance];
-  const TrianglePlane& triangle = plane(instance, primitive);
-  const ObjectRay ray = ray_in(in, beams, beam);
-  const double cosine = triangle.normal.dot(ray.direction);
-  const double distance = (triangle.offset - triangle.normal.dot(ray.origin)) / cosine;
+void Resolver::measure(const Beams& beams, const Lanes3<double>& in_sensor, HitBlock& block,
+                       ExactBlock& exact) const {
+  const auto first = static_cast<unsigned>(std::countr_zero(block.mask));
+  for (unsigned i = 0; i < kLanes; ++i) {
+    if ((block.mask >> i & 1U) != 0) continue;
+    block.instance[i] = block.instance[first];
+    block.primitive[i] = block.primitive[first];
+  }
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const TrianglePlane& triangle = plane(block.instance[i], block.primitive[i]);
+    exact.normal.set(i, triangle.normal);
+    exact.offset[i] = triangle.offset;
+    exact.narrowness[i] = triangle.narrowness;
+  }
+  if (beams.origins_m.empty() && is_one_instance(block)) {
+    look_from_one(views_[block.instance[0]], in_sensor, exact);
+  } else {
+    for_lanes(block.mask, [&](unsigned i) {
+      const ObjectRay ray = ray_in(views_[block.instance[i]], beams, block.beam[i]);
+      exact.origin.set(i, ray.origin);
+      exact.direction.set(i, ray.direction);
+    });
+  }
+  intersect_planes(exact);
+}
 
-  hits.range_m[beam] = distance * in.scale;
-  hits.instance[beam] = instance;
-  hits.primitive[beam] = primitive;
-  if (fields.incidence) hits.cos_incidence[beam] = static_cast<float>(std::abs(cosine));
-  const ExactHit hit{in, triangle, cosine > 0.0, ray.origin + distance * ray.direction};
-  if (fields.normal) hits.normal[beam] = to_sensor(hit, triangle.normal);
-  if (fields.depth) {
-    Eigen::Vector3d in_sensor = hits.range_m[beam] * beams.directions[beam];
-    if (!beams.origins_m.empty()) in_sensor += beams.origins_m[beam];
-    hits.depth_m[beam] = in_sensor.dot(beams.boresight);
+void Resolver::write(const Beams& beams, const HitFields& fields, const HitBlock& block,
+                     const ExactBlock& exact, Hits& hits) const {
+  const bool on_triangle =
+      fields.barycentrics || fields.shading_normal || fields.colour || fields.reflectance;
+  if (on_triangle) prefetch_corners(*this, block);
+  for_lanes(block.mask, [&](unsigned i) {
+    const std::size_t beam = block.beam[i];
+    hits.range_m[beam] = exact.distance[i] * views_[block.instance[i]].scale;
+    hits.instance[beam] = block.instance[i];
+    hits.primitive[beam] = block.primitive[i];
+    if (fields.incidence) hits.cos_incidence[beam] = static_cast<float>(std::abs(exact.cosine[i]));
+    if (fields.depth) hits.depth_m[beam] = depth_of(beams, beam, hits.range_m[beam]);
+    if (!fields.object_point) return;
+    hits.object_point_m[beam] = mesh(block.instance[i]).origin_m +
+                                (exact.origin.get(i) + exact.distance[i] * exact.direction.get(i));
+  });
+  if (fields.normal) write_directions(block, exact.normal, exact.cosine, hits.normal);
+  if (on_triangle) write_surface(fields, block, exact, hits);
+}
+
+void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& front,
+                                const Lanes<double>& cosine,
+                                std::vector<Eigen::Vector3f>& column) const {
+  if (is_one_instance(block)) {
+    Lanes3<float> turned;
+    turn_to_sensor(views_[block.instance[0]].object_from_sensor.transpose(), front, cosine, turned);
+    for_lanes(block.mask, [&](unsigned i) { column[block.beam[i]] = turned.get(i); });
+    return;
   }
-  const Mesh& hit_mesh = mesh(instance);
-  if (fields.object_point) hits.object_point_m[beam] = hit_mesh.origin_m + hit.point;
-  if (fields.barycentrics || fields.shading_normal || fields.surface) {
-    const Eigen::Vector2f weights =
-        barycentrics(hit_mesh, primitive, triangle, hit.point).cast<float>();
-    write_surface(scene_, fields, {hit_mesh, scene_.instances[instance], primitive, weights}, hit,
-                  beam, hits);
+  for_lanes(block.mask, [&](unsigned i) {
+    const Eigen::Vector3d turned =
+        views_[block.instance[i]].object_from_sensor.transpose() * front.get(i);
+    column[block.beam[i]] = (cosine[i] > 0.0 ? -turned : turned).cast<float>();
+  });
+}
+
+void Resolver::write_surface(const HitFields& fields, const HitBlock& block,
+                             const ExactBlock& exact, Hits& hits) const {
+  CornerBlock corners;
+  Lanes<float> w1;
+  Lanes<float> w2;
+  gather_corners(*this, block, corners);
+  weigh(exact, corners, w1, w2);
+  if (fields.barycentrics) {
+    for_lanes(block.mask, [&](unsigned i) { hits.barycentrics[block.beam[i]] = {w1[i], w2[i]}; });
   }
+  if (fields.shading_normal) {
+    Lanes3<double> smooth;
+    gather_normals(*this, block, corners);
+    blend_normals(corners, w1, w2, exact.normal, smooth);
+    bend_normals(block, w1, w2, smooth);
+    write_directions(block, smooth, exact.cosine, hits.shading_normal);
+  }
+  if (fields.colour || fields.reflectance) write_colours(fields, block, w1, w2, hits);
+}
+
+SurfacePlace Resolver::place_of(const HitBlock& block, unsigned lane, const Lanes<float>& w1,
+                                const Lanes<float>& w2) const {
+  return {mesh(block.instance[lane]), scene_.instances[block.instance[lane]], block.primitive[lane],
+          Eigen::Vector2f(w1[lane], w2[lane])};
+}
+
+void Resolver::bend_normals(const HitBlock& block, const Lanes<float>& w1, const Lanes<float>& w2,
+                            Lanes3<double>& normals) const {
+  for_lanes(block.mask, [&](unsigned i) {
+    if (!look(block, i).has_normal_map) return;
+    const SurfacePlace place = place_of(block, i, w1, w2);
+    const Eigen::Vector3f smooth = normals.get(i).cast<float>();
+    normals.set(i, bent_normal(scene_, place, smooth).cast<double>());
+  });
+}
+
+void Resolver::write_colours(const HitFields& fields, const HitBlock& block, const Lanes<float>& w1,
+                             const Lanes<float>& w2, Hits& hits) const {
+  for_lanes(block.mask, [&](unsigned i) {
+    const SlotLook& known = look(block, i);
+    const std::size_t beam = block.beam[i];
+    if (!known.has_texture) {
+      if (fields.colour) hits.colour[beam] = known.plain.rgb;
+      if (fields.reflectance) hits.reflectance[beam] = known.plain.reflectance;
+      return;
+    }
+    const SurfaceColour colour = colour_at(scene_, place_of(block, i, w1, w2));
+    if (fields.colour) hits.colour[beam] = colour.rgb;
+    if (fields.reflectance) hits.reflectance[beam] = colour.reflectance;
+  });
 }
 
 void Resolver::write_miss(const HitFields& fields, std::size_t beam, Hits& hits) {
@@ -148,11 +358,8 @@ void Resolver::write_miss(const HitFields& fields, std::size_t beam, Hits& hits)
   if (fields.incidence) hits.cos_incidence[beam] = kNaNf;
   if (fields.barycentrics) hits.barycentrics[beam].setConstant(kNaNf);
   if (fields.object_point) hits.object_point_m[beam].setConstant(kNaN);
-  if (!fields.surface) return;
-  hits.colour[beam].setZero();
-  hits.ambient[beam] = 0.0F;
-  hits.specular[beam] = 0.0F;
-  hits.shininess[beam] = 0.0F;
+  if (fields.colour) hits.colour[beam].setZero();
+  if (fields.reflectance) hits.reflectance[beam] = {};
 }
 
 }  // namespace glidar

@@ -5,8 +5,9 @@
 #include <glidar/core/beams.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/scene.hpp>
+#include <glidar/render/lanes.hpp>
+#include <glidar/render/surface.hpp>
 
-#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -18,6 +19,7 @@ namespace glidar {
 struct TrianglePlane {
   Eigen::Vector3d normal;
   double offset;
+  float narrowness;  ///< 1 / smallest height of the triangle
 };
 
 /// One per triangle, in double from the mesh's vertices.
@@ -46,14 +48,31 @@ inline double distance_to(const TrianglePlane& plane, const ObjectRay& ray) {
   return (plane.offset - plane.normal.dot(ray.origin)) / plane.normal.dot(ray.direction);
 }
 
-/// Weights of the triangle's corners 1 and 2 at a point of its plane, in double.
-Eigen::Vector2d barycentrics(const Mesh& mesh, std::uint32_t triangle, const TrianglePlane& plane,
-                             const Eigen::Vector3d& point);
+/// Up to kLanes hits: who was hit by which beam. Only lanes of the mask count.
+struct HitBlock {
+  std::uint32_t mask = 0;  ///< bit i: lane i holds a hit
+  std::array<std::size_t, kLanes> beam;
+  std::array<std::uint32_t, kLanes> instance;
+  std::array<std::uint32_t, kLanes> primitive;
+};
 
-/// The smallest weight of the three; negative outside the triangle.
-inline double inside_margin(const Eigen::Vector2d& weights) {
-  return std::min({weights.x(), weights.y(), 1.0 - weights.x() - weights.y()});
-}
+/// The exact geometry of a block's hits, in the objects' frames and units.
+struct ExactBlock {
+  Lanes3<double> normal;     ///< of the triangle's front
+  Lanes3<double> origin;     ///< of the beam
+  Lanes3<double> direction;  ///< of the beam
+  Lanes<double> offset;      ///< of the triangle's plane
+  Lanes<double> cosine;      ///< of normal and direction; positive: seen from behind
+  Lanes<double> distance;    ///< along the beam
+  Lanes<float> narrowness;   ///< of the triangle, see TrianglePlane
+};
+
+/// What is known beforehand of the material in one slot of an instance.
+struct SlotLook {
+  SurfaceColour plain;
+  bool has_texture;
+  bool has_normal_map;
+};
 
 /// Turns (beam, instance, primitive) into exact hit columns. Shared by all renderers, so that the
 /// numbers do not depend on who found the triangle.
@@ -68,24 +87,52 @@ class Resolver {
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const InstanceView& view(std::uint32_t instance) const { return views_[instance]; }
   [[nodiscard]] const TrianglePlane& plane(std::uint32_t instance, std::uint32_t primitive) const {
-    return (*planes_of_instance_[instance])[primitive];
+    return planes_of_instance_[instance][primitive];
   }
   [[nodiscard]] const Mesh& mesh(std::uint32_t instance) const {
     return scene_.meshes[scene_.instances[instance].mesh];
   }
 
-  /// Writes a hit's columns at index `beam`. `hits` has been resized with `fields`.
-  void write_hit(const Beams& beams, const HitFields& fields, std::size_t beam,
-                 std::uint32_t instance, std::uint32_t primitive, Hits& hits) const;
+  /// Asks the memory for what measure() and write() will read of a lane's triangle.
+  void prefetch(const HitBlock& block, unsigned lane) const {
+    const std::uint32_t primitive = block.primitive[lane];
+    __builtin_prefetch(&plane(block.instance[lane], primitive));
+    __builtin_prefetch(&mesh(block.instance[lane]).triangles[primitive]);
+  }
+
+  /// Exact range and incidence of a block with at least one hit, from its beams' directions in the
+  /// sensor's frame. Lanes without a hit take the ids of one that has.
+  void measure(const Beams& beams, const Lanes3<double>& in_sensor, HitBlock& block,
+               ExactBlock& exact) const;
+
+  /// Writes the columns of a measured block.
+  void write(const Beams& beams, const HitFields& fields, const HitBlock& block,
+             const ExactBlock& exact, Hits& hits) const;
 
   /// Writes a miss.
   static void write_miss(const HitFields& fields, std::size_t beam, Hits& hits);
 
  private:
+  void write_directions(const HitBlock& block, const Lanes3<double>& front,
+                        const Lanes<double>& cosine, std::vector<Eigen::Vector3f>& column) const;
+  void write_surface(const HitFields& fields, const HitBlock& block, const ExactBlock& exact,
+                     Hits& hits) const;
+  [[nodiscard]] const SlotLook& look(const HitBlock& block, unsigned lane) const {
+    const std::uint32_t instance = block.instance[lane];
+    return looks_[instance][material_slot(mesh(instance), block.primitive[lane])];
+  }
+  [[nodiscard]] SurfacePlace place_of(const HitBlock& block, unsigned lane, const Lanes<float>& w1,
+                                      const Lanes<float>& w2) const;
+  void bend_normals(const HitBlock& block, const Lanes<float>& w1, const Lanes<float>& w2,
+                    Lanes3<double>& normals) const;
+  void write_colours(const HitFields& fields, const HitBlock& block, const Lanes<float>& w1,
+                     const Lanes<float>& w2, Hits& hits) const;
+
   const Scene& scene_;
-  std::vector<std::vector<TrianglePlane>> planes_;                     ///< per mesh
-  std::vector<const std::vector<TrianglePlane>*> planes_of_instance_;  ///< per instance
-  std::vector<InstanceView> views_;                                    ///< per instance
+  std::vector<std::vector<TrianglePlane>> planes_;        ///< per mesh
+  std::vector<const TrianglePlane*> planes_of_instance_;  ///< per instance
+  std::vector<std::vector<SlotLook>> looks_;              ///< per instance and material slot
+  std::vector<InstanceView> views_;                       ///< per instance
 };
 
 }  // namespace glidar

@@ -22,24 +22,6 @@ Eigen::Vector4f texel_at(const Scene& scene, const SurfacePlace& place, const Te
   return sample(use, scene.textures, uv_at(place, use.uv_set));
 }
 
-/// A tangent-space normal n = 2 rgb - 1 carried into the object frame by the vertex tangents.
-Eigen::Vector3f bent(const Scene& scene, const SurfacePlace& place, const Material& material,
-                     const Eigen::Vector3f& normal) {
-  const Eigen::Vector4f tangent4 = interpolate(place.mesh.tangents, place);
-  const Eigen::Vector3f raw = tangent4.head<3>();
-  const Eigen::Vector3f along = raw - normal * normal.dot(raw);
-  const float length = along.norm();
-  constexpr float kShortest = 1e-6F;  // below it the direction of +u is not defined here
-  if (!(length > kShortest)) return normal;
-  const Eigen::Vector3f tangent = along / length;
-  const float sign = tangent4.w() < 0.0F ? -1.0F : 1.0F;
-  const Eigen::Vector3f bitangent = sign * normal.cross(tangent);
-  const Eigen::Vector3f rgb = texel_at(scene, place, material.normal_texture).head<3>();
-  const Eigen::Vector3f local = 2.0F * rgb - Eigen::Vector3f::Ones();
-  return tangent * (local.x() * material.normal_scale) +
-         bitangent * (local.y() * material.normal_scale) + normal * local.z();
-}
-
 }  // namespace
 
 const Material& material_at(const Scene& scene, const SurfacePlace& place) {
@@ -59,19 +41,42 @@ bool is_cut_out(const Scene& scene, const SurfacePlace& place) {
   return opacity_at(material, scene.textures, uv) < material.alpha_cutoff;
 }
 
-Eigen::Vector3f shading_normal_at(const Scene& scene, const SurfacePlace& place,
-                                  const Eigen::Vector3f& flat) {
-  if (place.mesh.normals.empty()) return flat;
-  const Eigen::Vector3f sum = interpolate(place.mesh.normals, place);
-  const float length = sum.norm();
-  constexpr float kShortest = 1e-6F;  // opposite normals cancel out
-  if (!(length > kShortest)) return flat;
-  const Eigen::Vector3f smooth = sum / length;
+bool has_normal_map(const Material& material, const Mesh& mesh) {
+  return material.normal_texture.used() && !mesh.tangents.empty();
+}
+
+Eigen::Vector3f bent_normal(const Scene& scene, const SurfacePlace& place,
+                            const Eigen::Vector3f& smooth) {
   const Material& material = material_at(scene, place);
-  if (!material.normal_texture.used() || place.mesh.tangents.empty()) return smooth;
-  const Eigen::Vector3f normal = bent(scene, place, material, smooth);
+  const Eigen::Vector4f tangent4 = interpolate(place.mesh.tangents, place);
+  const Eigen::Vector3f raw = tangent4.head<3>();
+  const Eigen::Vector3f along = raw - smooth * smooth.dot(raw);
+  const float length = along.norm();
+  constexpr float kShortest = 1e-6F;  // below it the direction of +u is not defined here
+  if (!(length > kShortest)) return smooth;
+  const Eigen::Vector3f tangent = along / length;
+  const float sign = tangent4.w() < 0.0F ? -1.0F : 1.0F;
+  const Eigen::Vector3f bitangent = sign * smooth.cross(tangent);
+  const Eigen::Vector3f rgb = texel_at(scene, place, material.normal_texture).head<3>();
+  const Eigen::Vector3f local = 2.0F * rgb - Eigen::Vector3f::Ones();  // n = 2 rgb - 1
+  const Eigen::Vector3f normal = tangent * (local.x() * material.normal_scale) +
+                                 bitangent * (local.y() * material.normal_scale) +
+                                 smooth * local.z();
   const float bent_length = normal.norm();
   return bent_length > kShortest ? Eigen::Vector3f(normal / bent_length) : smooth;
+}
+
+SurfaceColour plain_colour(const Material& material) {
+  return {.rgb = material.diffuse,
+          .reflectance = {.diffuse = luminance(material.diffuse),
+                          .ambient = luminance(material.ambient),
+                          .specular = luminance(material.specular),
+                          .shininess = material.shininess}};
+}
+
+bool has_texture(const Material& material, const Mesh& mesh) {
+  return material.diffuse_texture.used() || material.specular_texture.used() ||
+         !mesh.colours.empty();
 }
 
 SurfaceColour colour_at(const Scene& scene, const SurfacePlace& place) {
@@ -87,10 +92,12 @@ SurfaceColour colour_at(const Scene& scene, const SurfacePlace& place) {
   if (material.specular_texture.used()) {
     specular = specular.cwiseProduct(texel_at(scene, place, material.specular_texture).head<3>());
   }
-  return {.diffuse = material.diffuse.cwiseProduct(tint),
-          .ambient = luminance(material.ambient.cwiseProduct(tint)),
-          .specular = luminance(specular),
-          .shininess = material.shininess};
+  const Eigen::Vector3f diffuse = material.diffuse.cwiseProduct(tint);
+  return {.rgb = diffuse,
+          .reflectance = {.diffuse = luminance(diffuse),
+                          .ambient = luminance(material.ambient.cwiseProduct(tint)),
+                          .specular = luminance(specular),
+                          .shininess = material.shininess}};
 }
 
 }  // namespace glidar

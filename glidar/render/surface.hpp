@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/hits.hpp>
 #include <glidar/core/scene.hpp>
 
 #include <cstdint>
@@ -25,20 +26,27 @@ Eigen::Vector2f uv_at(const SurfacePlace& place, std::uint8_t uv_set);
 /// True when the material's alpha mask lets a beam through at the place.
 bool is_cut_out(const Scene& scene, const SurfacePlace& place);
 
-/// Vertex normals interpolated over the triangle (as the paper's section 2.1) and bent by the
-/// normal map, in the object frame on the front side; `flat` where the mesh has none or they cancel
-/// out.
-Eigen::Vector3f shading_normal_at(const Scene& scene, const SurfacePlace& place,
-                                  const Eigen::Vector3f& flat);
+/// True when a normal map bends the normals at a place.
+bool has_normal_map(const Material& material, const Mesh& mesh);
+
+/// The unit normal `smooth` bent by the material's normal map, in the object frame on the front
+/// side.
+Eigen::Vector3f bent_normal(const Scene& scene, const SurfacePlace& place,
+                            const Eigen::Vector3f& smooth);
 
 /// The colours of equation (5) at a place.
 struct SurfaceColour {
-  Eigen::Vector3f diffuse;
-  float ambient;   ///< luminance
-  float specular;  ///< luminance
-  float shininess;
+  Eigen::Vector3f rgb;  ///< diffuse
+  Reflectance reflectance;
 };
 
+/// The material's own colours.
+SurfaceColour plain_colour(const Material& material);
+
+/// True when a texture or vertex colours change the material's own colours.
+bool has_texture(const Material& material, const Mesh& mesh);
+
+/// Colours after textures and vertex colours.
 SurfaceColour colour_at(const Scene& scene, const SurfacePlace& place);
 
 }  // namespace glidar

@@ -3,7 +3,6 @@
 #include <glidar/sensor/light.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/material.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,10 +17,10 @@ double attenuation(const Light& light, double d) {
 }
 
 /// Equation (5) for one beam: ambient, diffuse and specular, with the half-vector h = l of (2).
-float surface_light(const Hits& truth, std::size_t i, float ambient, float n_dot_h) {
+float surface_light(const Reflectance& surface, float ambient, float n_dot_h) {
   const float lit = std::max(n_dot_h, 0.0F);
-  float colour = ambient * truth.ambient[i] + luminance(truth.colour[i]) * lit;
-  if (truth.specular[i] > 0.0F) colour += truth.specular[i] * std::pow(lit, truth.shininess[i]);
+  float colour = ambient * surface.ambient + surface.diffuse * lit;
+  if (surface.specular > 0.0F) colour += surface.specular * std::pow(lit, surface.shininess);
   return colour;
 }
 
@@ -41,17 +40,17 @@ void validate(const Light& light) {
                .remedy = ""});
 }
 
-void measure_intensity(const Light& light, const Beams& beams, Frame& frame) {
+void measure_intensity(const Light& light, const Beams& beams, BeamRange range, Frame& frame) {
   const Hits& truth = frame.truth;
   const auto ambient = static_cast<float>(light.ambient);
-  frame.intensity.resize(beams.size());
-  for (std::size_t i = 0; i < beams.size(); ++i) {
+  for (std::size_t i = range.begin; i < range.end; ++i) {
     if (frame.status[i] != Status::hit) {
       frame.intensity[i] = 0.0F;
       continue;
     }
     const Eigen::Vector3f h = -beams.directions[i].cast<float>();  // equation (2), l = v
-    const float colour = surface_light(truth, i, ambient, truth.shading_normal[i].dot(h));
+    const float colour =
+        surface_light(truth.reflectance[i], ambient, truth.shading_normal[i].dot(h));
     frame.intensity[i] = static_cast<float>(attenuation(light, truth.range_m[i])) * colour;  // (4)
   }
 }

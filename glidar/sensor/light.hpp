@@ -19,8 +19,9 @@ struct Light {
 /// Throws Error unless the attenuation is finite, not negative and not all zero.
 void validate(const Light& light);
 
-/// Fills frame.intensity from frame.truth by the paper's equations (3) to (5) with h of (2), for
-/// the beams whose status is hit; 0 elsewhere. Needs shading_normal and surface in frame.truth.
-void measure_intensity(const Light& light, const Beams& beams, Frame& frame);
+/// Fills a range of frame.intensity from frame.truth by the paper's equations (3) to (5) with h of
+/// (2), for the beams whose status is hit; 0 elsewhere. Needs shading_normal and reflectance in
+/// frame.truth.
+void measure_intensity(const Light& light, const Beams& beams, BeamRange range, Frame& frame);
 
 }  // namespace glidar

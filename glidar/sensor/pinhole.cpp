@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 
+#include <Eigen/LU>
 #include <cmath>
 #include <limits>
 #include <numbers>

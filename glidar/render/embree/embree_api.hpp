@@ -3,36 +3,22 @@
 #pragma once
 
 // The one place that knows which Embree this is. Written for 3.13. In 4.x the header is
-// <embree4/rtcore.h>, the context moves into RTCIntersectArguments, the packet calls lose their
-// context argument, and filter functions must be allowed by
-// RTC_RAY_QUERY_FLAG_INVOKE_ARGUMENT_FILTER or set per geometry as here.
+// <embree4/rtcore.h>, the context moves into RTCIntersectArguments and the packet calls lose their
+// context argument; filter functions set per geometry, as here, stay.
+
+#include <glidar/render/lanes.hpp>
 
 #include <embree3/rtcore.h>
 
-#include <cstdint>
-
 namespace glidar::embree {
 
-/// Packets by width.
-template <int kWidth>
-struct Packet;
+/// Rays and hits of all lanes, in Embree's order of arrays.
+using RayHits = RTCRayHit16;
+static_assert(kLanes == 16);
 
-template <>
-struct Packet<8> {
-  using RayHit = RTCRayHit8;
-  static void intersect(const int* valid, RTCScene scene, RTCIntersectContext* context,
-                        RayHit* packet) {
-    rtcIntersect8(valid, scene, context, packet);
-  }
-};
-
-template <>
-struct Packet<16> {
-  using RayHit = RTCRayHit16;
-  static void intersect(const int* valid, RTCScene scene, RTCIntersectContext* context,
-                        RayHit* packet) {
-    rtcIntersect16(valid, scene, context, packet);
-  }
-};
+/// Intersects the lanes whose `valid` is -1, as one packet of 16 where the processor has registers
+/// that wide, else as two of 8.
+void intersect(RTCScene scene, RTCIntersectContext& context, bool has_wide_packets,
+               const Lanes<int>& valid, RayHits& rays);
 
 }  // namespace glidar::embree

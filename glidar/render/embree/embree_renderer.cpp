@@ -7,132 +7,139 @@
 #include <glidar/render/embree/tiles.hpp>
 #include <glidar/render/resolve.hpp>
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-#include <tbb/task_arena.h>
-
-#include <array>
-#include <cmath>
-#include <limits>
+#include <bit>
+#include <memory>
 
 namespace glidar {
 namespace {
-
-using embree::FilterContext;
-using embree::Probe;
-using embree::Tile;
-using embree::TraceSpace;
 
 /// What one cast hands to every tile.
 struct Job {
   const Beams& beams;
   const HitFields& fields;
   const Resolver& resolver;
-  const Probe probe;
+  const embree::Probe& probe;
+  bool has_wide_packets;
   Hits& hits;
 };
 
-/// Rays of a tile in Embree's order of arrays; lanes without a beam are not valid.
-template <int kWidth>
-struct TileRays {
-  alignas(64) std::array<int, kWidth> valid;
-  alignas(64) typename embree::Packet<kWidth>::RayHit packet;
+/// All that is worked out for one tile.
+struct TileWork {
+  HitBlock block;
+  Lanes3<double> in_sensor;  ///< directions
+  Lanes<int> valid;          ///< -1: the lane has a beam
+  embree::RayHits rays;
+  ExactBlock exact;
 };
 
-template <int kWidth>
-void fill_rays(const Job& job, const Tile& tile, TileRays<kWidth>& rays) {
-  auto& ray = rays.packet.ray;
-  for (unsigned lane = 0; lane < kWidth; ++lane) {
+/// Collects the tile's beams; lanes beyond the grid's border repeat the first and are not valid.
+void gather_beams(const Beams& beams, const embree::Tile& tile, TileWork& work) {
+  for (unsigned lane = 0; lane < kLanes; ++lane) {
     const std::size_t beam = tile.beam(lane);
-    rays.valid[lane] = 0;
-    if (beam == Tile::kOutside) continue;
-    const embree::TraceRay start = job.probe.ray(beam);
-    if (std::isnan(start.direction.x())) continue;  // the optics have no beam here
-    rays.valid[lane] = -1;
-    ray.org_x[lane] = start.origin.x();
-    ray.org_y[lane] = start.origin.y();
-    ray.org_z[lane] = start.origin.z();
-    ray.dir_x[lane] = start.direction.x();
-    ray.dir_y[lane] = start.direction.y();
-    ray.dir_z[lane] = start.direction.z();
-    ray.tnear[lane] = 0.0F;
-    ray.tfar[lane] = std::numeric_limits<float>::infinity();
-    ray.time[lane] = 0.0F;
-    ray.mask[lane] = ~0U;  // packaged Embree is built with ray masks
-    ray.id[lane] = static_cast<unsigned>(beam);
-    ray.flags[lane] = 0;
-    rays.packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-    rays.packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+    const bool inside = beam != embree::Tile::kOutside;
+    work.valid[lane] = inside ? -1 : 0;
+    work.block.beam[lane] = inside ? beam : tile.beam(0);
+    work.in_sensor.set(lane, beams.directions[work.block.beam[lane]]);
   }
 }
 
-/// Casts and writes one tile.
-template <int kWidth>
-void cast_tile(const Job& job, const Tile& tile) {
-  TileRays<kWidth> rays;
-  fill_rays(job, tile, rays);
-  FilterContext context = job.probe.context();
-  context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  embree::Packet<kWidth>::intersect(rays.valid.data(), job.probe.space().scene, &context.embree,
-                                    &rays.packet);
-  const auto& hit = rays.packet.hit;
-  for (unsigned lane = 0; lane < kWidth; ++lane) {
+/// Asks the memory for a tile's beams ahead of time.
+void prefetch(const Beams& beams, const embree::Tile& tile) {
+  for (unsigned lane = 0; lane < kLanes; lane += 2) {  // two directions and a half per cache line
     const std::size_t beam = tile.beam(lane);
-    if (beam == Tile::kOutside) continue;
-    if (rays.valid[lane] == 0 || hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) {
-      Resolver::write_miss(job.fields, beam, job.hits);
-      continue;
+    if (beam != embree::Tile::kOutside) __builtin_prefetch(&beams.directions[beam]);
+  }
+}
+
+/// Traces the beams: sets the block's mask and, per lane, instance and primitive.
+void trace(const Job& job, TileWork& work) {
+  job.probe.set_rays(work.block.beam, work.in_sensor, work.valid, work.rays);
+  embree::FilterContext context = job.probe.context();
+  context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  embree::intersect(job.probe.space().scene, context.embree, job.has_wide_packets, work.valid,
+                    work.rays);
+  const RTCHit16& hit = work.rays.hit;
+  work.block.mask = 0;
+  for (unsigned lane = 0; lane < kLanes; ++lane) {
+    const bool is_hit = work.valid[lane] != 0 && hit.geomID[lane] != RTC_INVALID_GEOMETRY_ID;
+    work.block.mask |= static_cast<std::uint32_t>(is_hit) << lane;
+    const unsigned instance = hit.instID[0][lane];
+    work.block.instance[lane] = instance == RTC_INVALID_GEOMETRY_ID ? 0U : instance;
+    work.block.primitive[lane] = hit.primID[lane];
+    if (is_hit) job.resolver.prefetch(work.block, lane);
+  }
+}
+
+/// Puts right the lanes in doubt; true when that changed the block.
+bool settle(const Job& job, std::uint32_t doubtful, HitBlock& block) {
+  bool changed = false;
+  for (; doubtful != 0; doubtful &= doubtful - 1) {
+    const auto lane = static_cast<unsigned>(std::countr_zero(doubtful));
+    const embree::Found before{block.instance[lane], block.primitive[lane]};
+    const embree::Found after = job.probe.settle(block.beam[lane], before);
+    if (after.instance == before.instance && after.primitive == before.primitive) continue;
+    changed = true;
+    block.instance[lane] = after.instance;
+    block.primitive[lane] = after.primitive;
+    if (after.instance == kNoHit) block.mask &= ~(1U << lane);
+  }
+  return changed;
+}
+
+/// Casts the beams of one tile and writes their hits.
+void cast_tile(const Job& job, const embree::Tile& tile, TileWork& work) {
+  HitBlock& block = work.block;
+  gather_beams(job.beams, tile, work);
+  trace(job, work);
+  if (block.mask != 0) {
+    job.resolver.measure(job.beams, work.in_sensor, block, work.exact);
+    const std::uint32_t doubtful = job.probe.doubtful(block, work.exact, work.rays);
+    if (doubtful != 0 && settle(job, doubtful, block) && block.mask != 0) {
+      job.resolver.measure(job.beams, work.in_sensor, block, work.exact);
     }
-    embree::Found found = embree::found_in(hit, lane);
-    if (job.probe.is_doubtful(beam, found)) found = job.probe.settle(beam, found);
-    if (found.instance == kNoHit) {
+  }
+  if (block.mask != 0) job.resolver.write(job.beams, job.fields, block, work.exact, job.hits);
+  for (unsigned lane = 0; lane < kLanes; ++lane) {
+    const std::size_t beam = tile.beam(lane);
+    if ((block.mask >> lane & 1U) == 0 && beam != embree::Tile::kOutside) {
       Resolver::write_miss(job.fields, beam, job.hits);
-    } else {
-      job.resolver.write_hit(job.beams, job.fields, beam, found.instance, found.primitive,
-                             job.hits);
     }
   }
 }
 
 class EmbreeRenderer final : public Renderer {
  public:
-  EmbreeRenderer(const Scene& scene, unsigned threads)
-      : arena_(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads)),
-        resolver_(scene),
-        world_(arena_.execute([&scene] { return std::make_unique<embree::World>(scene); })) {}
+  EmbreeRenderer(const Scene& scene, unsigned threads) : workers_(threads), resolver_(scene) {
+    workers_.execute([&] { world_ = std::make_unique<embree::World>(scene); });
+  }
 
   [[nodiscard]] std::string_view name() const override { return "embree"; }
+  [[nodiscard]] Workers& workers() override { return workers_; }
 
   void cast(const CastRequest& request, Hits& hits) override {
     resize(hits, request.beams.size(), request.fields);
-    arena_.execute([&] {
+    resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
+    workers_.execute([&] {
       if (request.cull_back_faces) world_->filter_everything();
-      resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
       world_->place(request.world_from_sensor, request.world_from_instance);
-      const Job job{request.beams, request.fields, resolver_,
-                    Probe(world_->space(), resolver_, request.beams, request.cull_back_faces),
-                    hits};
-      if (world_->has_wide_packets()) {
-        cast_tiles<16>(job);
-      } else {
-        cast_tiles<8>(job);
+    });
+    const embree::Probe probe(world_->space(), resolver_, request.beams, request.cull_back_faces);
+    const Job job{request.beams, request.fields, resolver_, probe, world_->has_wide_packets(),
+                  hits};
+    const embree::Tiling tiling(request.beams);
+    workers_.for_ranges(tiling.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
+      TileWork work;
+      for (std::size_t i = begin; i < end; ++i) {
+        if (i + 1 < end) prefetch(request.beams, tiling.tile(i + 1));
+        cast_tile(job, tiling.tile(i), work);
       }
     });
   }
 
  private:
-  template <int kWidth>
-  static void cast_tiles(const Job& job) {
-    const embree::Tiling tiling(job.beams, kWidth);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tiling.size()),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                          cast_tile<kWidth>(job, tiling.tile(i));
-                        }
-                      });
-  }
+  static constexpr std::size_t kTilesPerTask = 64;  // about 50 microseconds of work
 
-  tbb::task_arena arena_;
+  Workers workers_;
   Resolver resolver_;
   std::unique_ptr<embree::World> world_;
 };

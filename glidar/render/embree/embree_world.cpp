@@ -22,6 +22,14 @@ void require(bool done, RTCDevice device, const char* what) {
        .remedy = code == RTC_ERROR_OUT_OF_MEMORY ? "memory ran out: use a smaller model" : ""});
 }
 
+/// True when the beam comes to the triangle from behind.
+bool seen_from_behind(const FilterContext& context, std::uint32_t beam, std::uint32_t instance,
+                      std::uint32_t primitive) {
+  const Eigen::Vector3d direction =
+      context.resolver->view(instance).object_from_sensor * context.beams->directions[beam];
+  return context.resolver->plane(instance, primitive).normal.dot(direction) > 0.0;
+}
+
 /// Takes away hits on culled back faces and on cut-out texels, lane by lane.
 void filter(const RTCFilterFunctionNArguments* args) {
   const auto* context = reinterpret_cast<const FilterContext*>(args->context);
@@ -31,14 +39,10 @@ void filter(const RTCFilterFunctionNArguments* args) {
     const unsigned found = RTCHitN_instID(args->hit, args->N, lane, 0);
     const std::uint32_t instance = found == RTC_INVALID_GEOMETRY_ID ? 0 : found;
     const std::uint32_t primitive = RTCHitN_primID(args->hit, args->N, lane);
-    if (context->cull_back_faces) {
-      const std::uint32_t beam = RTCRayN_id(args->ray, args->N, lane);
-      const Eigen::Vector3d direction =
-          context->resolver->view(instance).object_from_sensor * context->beams->directions[beam];
-      if (context->resolver->plane(instance, primitive).normal.dot(direction) > 0.0) {
-        args->valid[lane] = 0;
-        continue;
-      }
+    const std::uint32_t beam = RTCRayN_id(args->ray, args->N, lane);
+    if (context->cull_back_faces && seen_from_behind(*context, beam, instance, primitive)) {
+      args->valid[lane] = 0;
+      continue;
     }
     const Eigen::Vector2f weights(RTCHitN_u(args->hit, args->N, lane),
                                   RTCHitN_v(args->hit, args->N, lane));

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/embree/settle.hpp>
 
+#include <glidar/render/simd.hpp>
+
 #include <array>
 #include <cmath>
 #include <limits>
@@ -14,27 +16,81 @@ namespace {
 // by a few of those; the hair is 16 times one.
 constexpr double kHairPerRadius = 0x1p-20;
 constexpr double kSlackPerLength = 0x1p-44;  // 256 roundings of a coordinate in double
-// A beam this far inside (as a barycentric weight) is certain when the triangle is at least
-// kCertainHairs hairs wide as the beam sees it.
-constexpr float kCertainMargin = 1.0F / 64.0F;
-constexpr double kCertainHairs = 256.0;
+constexpr double kClear =
+    1.001;  // rays start outside the sphere around the geometry, also after rounding
+// A beam this far inside its triangle is certain: the hair itself, and as much for the rounding of
+// Embree's weights and normal.
+constexpr double kCertainHairs = 4.0;
 constexpr int kRingSteps = 8;
 constexpr double kRingHairs = 2.0;
 
-/// Two unit vectors that with the direction make a right-handed frame.
-std::array<Eigen::Vector3d, 2> across(const Eigen::Vector3d& direction) {
-  // No axis of a grid is parallel to this one, so that the hair never runs along its edges.
+/// An axis far from the direction and from the axes of any grid, so that a hair across both never
+/// runs along a grid's edges.
+Eigen::Vector3d axis_across(const Eigen::Vector3d& direction) {
   static const Eigen::Vector3d kOblique = Eigen::Vector3d(0.786, 0.334, 0.520).normalized();
   static const Eigen::Vector3d kOther = Eigen::Vector3d(-0.334, 0.786, 0.520).normalized();
-  Eigen::Vector3d first = direction.cross(kOblique);
-  constexpr double kTooParallel = 0.01;  // squared sine
-  if (first.squaredNorm() < kTooParallel) first = direction.cross(kOther);
-  first.normalize();
-  return {first, direction.cross(first)};
+  constexpr double kTooParallel = 0.8;
+  return std::abs(direction.dot(kOblique)) > kTooParallel ? kOther : kOblique;
 }
 
-TraceRay rounded(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  return {origin.cast<float>(), direction.cast<float>()};
+/// What the rays of a tile have in common.
+struct Launch {
+  Eigen::Matrix3d trace_from_sensor;
+  Eigen::Vector3d centre;
+  double clear_radius;
+  Eigen::Vector3f hair;  ///< its length times axis_across()
+};
+
+/// Directions into the trace space; origins along them to where the geometry may begin, and a hair
+/// to the side. A lane is valid where its direction is a number.
+GLIDAR_SIMD void launch_rays(const Launch& launch, const Lanes3<double>& in_sensor,
+                             const Lanes3<double>& origin, Lanes<int>& valid, RayHits& rays) {
+  Lanes3<double> d;
+  rotate(launch.trace_from_sensor, in_sensor, d);
+  const Eigen::Vector3d& c = launch.centre;
+  const Eigen::Vector3f& h = launch.hair;
+  RTCRay16& ray = rays.ray;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const double along = (c.x() - origin.x[i]) * d.x[i] + (c.y() - origin.y[i]) * d.y[i] +
+                         (c.z() - origin.z[i]) * d.z[i] - launch.clear_radius;
+    const double start = along > 0.0 ? along : 0.0;
+    const auto x = static_cast<float>(d.x[i]);
+    const auto y = static_cast<float>(d.y[i]);
+    const auto z = static_cast<float>(d.z[i]);
+    ray.dir_x[i] = x;
+    ray.dir_y[i] = y;
+    ray.dir_z[i] = z;
+    ray.org_x[i] = static_cast<float>(origin.x[i] + start * d.x[i]) + (y * h.z() - z * h.y());
+    ray.org_y[i] = static_cast<float>(origin.y[i] + start * d.y[i]) + (z * h.x() - x * h.z());
+    ray.org_z[i] = static_cast<float>(origin.z[i] + start * d.z[i]) + (x * h.y() - y * h.x());
+    valid[i] = x == x ? valid[i] : 0;
+  }
+  for (unsigned i = 0; i < kLanes; ++i) ray.tnear[i] = 0.0F;
+  for (unsigned i = 0; i < kLanes; ++i) ray.tfar[i] = std::numeric_limits<float>::infinity();
+  for (unsigned i = 0; i < kLanes; ++i) ray.time[i] = 0.0F;
+  for (unsigned i = 0; i < kLanes; ++i) ray.mask[i] = ~0U;  // packaged Embree has ray masks
+  for (unsigned i = 0; i < kLanes; ++i) ray.flags[i] = 0;
+  for (unsigned i = 0; i < kLanes; ++i) rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+  for (unsigned i = 0; i < kLanes; ++i) rays.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+}
+
+/// A bit for every lane whose distance to its triangle's border, as the beam sees it, may be under
+/// `needed` (object units): smallest weight times smallest height times the cosine.
+GLIDAR_SIMD std::uint32_t doubt(const RTCHit16& hit, const ExactBlock& exact,
+                                const Lanes<float>& needed) {
+  Lanes<std::uint32_t> bits;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const float u = hit.u[i];
+    const float v = hit.v[i];
+    const float uv = u < v ? u : v;
+    const float margin = 1.0F - u - v < uv ? 1.0F - u - v : uv;
+    const auto cosine = static_cast<float>(exact.cosine[i]);
+    const float seen = margin * (cosine < 0.0F ? -cosine : cosine);
+    bits[i] = static_cast<std::uint32_t>(!(seen >= needed[i] * exact.narrowness[i])) << i;
+  }
+  std::uint32_t mask = 0;
+  for (unsigned i = 0; i < kLanes; ++i) mask |= bits[i];
+  return mask;
 }
 
 /// How far inside the triangle a point of its plane lies: the smallest signed distance to an edge.
@@ -71,96 +127,117 @@ FilterContext Probe::context() const {
   return context;
 }
 
-Probe::ExactRay Probe::exact_ray(std::size_t beam) const {
-  ExactRay ray{space_.sensor_in_trace, space_.trace_from_sensor * beams_.directions[beam]};
+ObjectRay Probe::exact_ray(std::size_t beam) const {
+  ObjectRay ray{space_.sensor_in_trace, space_.trace_from_sensor * beams_.directions[beam]};
   if (!beams_.origins_m.empty()) {
     ray.origin += space_.trace_from_sensor * beams_.origins_m[beam] / space_.metres_per_unit;
   }
-  constexpr double kClear = 1.001;  // the start must stay outside the sphere after rounding
-  const double start = (space_.centre - ray.origin).dot(ray.direction) - kClear * space_.radius;
-  if (start > 0.0) ray.origin += start * ray.direction;
   return ray;
 }
 
-TraceRay Probe::ray(std::size_t beam) const {
-  const ExactRay exact = exact_ray(beam);
-  return rounded(exact.origin + hair_ * across(exact.direction)[0], exact.direction);
+void Probe::set_rays(const std::array<std::size_t, kLanes>& beam, const Lanes3<double>& in_sensor,
+                     Lanes<int>& valid, RayHits& rays) const {
+  Lanes3<double> origin;
+  for (unsigned i = 0; i < kLanes; ++i) origin.x[i] = space_.sensor_in_trace.x();
+  for (unsigned i = 0; i < kLanes; ++i) origin.y[i] = space_.sensor_in_trace.y();
+  for (unsigned i = 0; i < kLanes; ++i) origin.z[i] = space_.sensor_in_trace.z();
+  for (unsigned i = 0; i < kLanes; ++i) {
+    rays.ray.id[i] = static_cast<unsigned>(beam[i]);
+    if (!beams_.origins_m.empty() && valid[i] != 0) origin.set(i, exact_ray(beam[i]).origin);
+  }
+  const Eigen::Vector3d middle = space_.trace_from_sensor * in_sensor.get(0);
+  launch_rays({.trace_from_sensor = space_.trace_from_sensor,
+               .centre = space_.centre,
+               .clear_radius = kClear * space_.radius,
+               .hair = (hair_ * axis_across(middle)).cast<float>()},
+              in_sensor, origin, valid, rays);
 }
 
-bool Probe::is_doubtful(std::size_t beam, const Found& found) const {
-  if (found.margin < kCertainMargin) return true;
-  const InstanceView& view = resolver_.view(found.instance);
-  const double cosine = resolver_.plane(found.instance, found.primitive)
-                            .normal.dot(view.object_from_sensor * beams_.directions[beam]);
-  const double hairs = hair_ * space_.metres_per_unit / view.scale * kCertainHairs;
-  return double{found.twice_area} * cosine * cosine < hairs * hairs;
+std::uint32_t Probe::doubtful(const HitBlock& block, const ExactBlock& exact,
+                              const RayHits& rays) const {
+  Lanes<float> needed;
+  const double hairs_m = kCertainHairs * hair_ * space_.metres_per_unit;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    needed[i] = static_cast<float>(hairs_m / resolver_.view(block.instance[i]).scale);
+  }
+  return doubt(rays.hit, exact, needed) & block.mask;
 }
 
-Found Probe::trace(std::size_t beam, const TraceRay& ray) const {
+Found Probe::trace(std::size_t beam, const Eigen::Vector3d& origin,
+                   const Eigen::Vector3d& direction) const {
   FilterContext filter = context();
   RTCRayHit one{};
-  one.ray.org_x = ray.origin.x();
-  one.ray.org_y = ray.origin.y();
-  one.ray.org_z = ray.origin.z();
-  one.ray.dir_x = ray.direction.x();
-  one.ray.dir_y = ray.direction.y();
-  one.ray.dir_z = ray.direction.z();
+  one.ray.org_x = static_cast<float>(origin.x());
+  one.ray.org_y = static_cast<float>(origin.y());
+  one.ray.org_z = static_cast<float>(origin.z());
+  one.ray.dir_x = static_cast<float>(direction.x());
+  one.ray.dir_y = static_cast<float>(direction.y());
+  one.ray.dir_z = static_cast<float>(direction.z());
   one.ray.tfar = std::numeric_limits<float>::infinity();
   one.ray.mask = ~0U;
   one.ray.id = static_cast<unsigned>(beam);
   one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   rtcIntersect1(space_.scene, &filter.embree, &one);
-  if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {kNoHit, kNoHit, 0.0F, 0.0F};
+  if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   const unsigned instance = one.hit.instID[0];
-  return {instance == RTC_INVALID_GEOMETRY_ID ? 0U : instance, one.hit.primID, 0.0F, 0.0F};
+  return {instance == RTC_INVALID_GEOMETRY_ID ? 0U : instance, one.hit.primID};
 }
 
-Found Probe::settle(std::size_t beam, const Found& found) const {
-  Found nearest{kNoHit, kNoHit, 0.0F, 0.0F};
-  Found closest = found;
-  double nearest_range = std::numeric_limits<double>::infinity();
-  double closest_inside = -std::numeric_limits<double>::infinity();
-  const auto consider = [&](const Found& candidate) {
-    const InstanceView& view = resolver_.view(candidate.instance);
-    const TrianglePlane& plane = resolver_.plane(candidate.instance, candidate.primitive);
-    const ObjectRay ray = ray_in(view, beams_, beam);
+/// Weighs candidates for one beam.
+struct Probe::Judgement {
+  const Probe& probe;
+  std::size_t beam;
+  Found nearest;  ///< of those the beam meets
+  Found closest;  ///< to the beam, of those it misses by more than rounding
+  double nearest_range_m = std::numeric_limits<double>::infinity();
+  double closest_inside_m = -std::numeric_limits<double>::infinity();
+
+  void consider(const Found& candidate) {
+    const InstanceView& view = probe.resolver_.view(candidate.instance);
+    const TrianglePlane& plane = probe.resolver_.plane(candidate.instance, candidate.primitive);
+    const ObjectRay ray = ray_in(view, probe.beams_, beam);
     const double distance = distance_to(plane, ray);
-    const double inside =
-        view.scale * distance_inside(resolver_.mesh(candidate.instance), candidate.primitive,
+    if (!(distance >= 0.0)) return;
+    const double inside_m =
+        view.scale * distance_inside(probe.resolver_.mesh(candidate.instance), candidate.primitive,
                                      plane.normal, ray.origin + distance * ray.direction);
-    if (!(distance >= 0.0)) return false;
-    if (inside > closest_inside) {
-      closest_inside = inside;
+    if (inside_m > closest_inside_m) {
+      closest_inside_m = inside_m;
       closest = candidate;
     }
-    if (inside < -slack_ * space_.metres_per_unit || !(view.scale * distance < nearest_range)) {
-      return false;
+    const bool meets = inside_m >= -probe.slack_ * probe.space_.metres_per_unit;
+    if (meets && view.scale * distance < nearest_range_m) {
+      nearest_range_m = view.scale * distance;
+      nearest = candidate;
     }
-    nearest_range = view.scale * distance;
-    nearest = candidate;
-    return true;
-  };
-  if (consider(found)) return found;
+  }
+};
 
-  const ExactRay exact = exact_ray(beam);
-  const auto [side, up] = across(exact.direction);
+Found Probe::settle(std::size_t beam, const Found& found) const {
+  Judgement judgement{.probe = *this, .beam = beam, .nearest = {}, .closest = found};
+  judgement.consider(found);
+  if (judgement.nearest.instance != kNoHit) return found;
+
+  ObjectRay ray = exact_ray(beam);
+  const double along = (space_.centre - ray.origin).dot(ray.direction) - kClear * space_.radius;
+  if (along > 0.0) ray.origin += along * ray.direction;
+  const Eigen::Vector3d side = ray.direction.cross(axis_across(ray.direction)).normalized();
+  const Eigen::Vector3d up = ray.direction.cross(side);
   bool passes = false;
   for (int step = 0; step <= kRingSteps; ++step) {
-    Eigen::Vector3d origin = exact.origin;
-    if (step > 0) {
-      const double angle = 2.0 * std::numbers::pi * (step - 0.5) / kRingSteps;
-      origin += kRingHairs * hair_ * (std::cos(angle) * side + std::sin(angle) * up);
-    }
-    const Found candidate = trace(beam, rounded(origin, exact.direction));
+    const double angle = 2.0 * std::numbers::pi * (step - 0.5) / kRingSteps;
+    const double away = step == 0 ? 0.0 : kRingHairs * hair_;
+    const Eigen::Vector3d beside = away * (std::cos(angle) * side + std::sin(angle) * up);
+    const Found candidate = trace(beam, ray.origin + beside, ray.direction);
     if (candidate.instance == kNoHit) {
       passes = true;
     } else {
-      consider(candidate);
+      judgement.consider(candidate);
     }
   }
-  if (nearest.instance != kNoHit) return nearest;
-  return passes ? Found{kNoHit, kNoHit, 0.0F, 0.0F} : closest;
+  if (judgement.nearest.instance != kNoHit) return judgement.nearest;
+  return passes ? Found{} : judgement.closest;
 }
 
 }  // namespace glidar::embree

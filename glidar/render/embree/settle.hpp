@@ -5,34 +5,15 @@
 #include <glidar/render/embree/embree_world.hpp>
 #include <glidar/render/resolve.hpp>
 
-#include <algorithm>
 #include <cstdint>
 
 namespace glidar::embree {
 
-/// A ray as Embree takes it, starting near the geometry.
-struct TraceRay {
-  Eigen::Vector3f origin;
-  Eigen::Vector3f direction;
-};
-
-/// What Embree says of one ray.
+/// Who was hit; instance kNoHit: nobody.
 struct Found {
-  std::uint32_t instance;  ///< kNoHit: nothing
-  std::uint32_t primitive;
-  float margin;      ///< smallest of the three barycentric weights
-  float twice_area;  ///< of the triangle, object units squared
+  std::uint32_t instance = kNoHit;
+  std::uint32_t primitive = kNoHit;
 };
-
-template <class HitPacket>
-Found found_in(const HitPacket& hit, unsigned lane) {
-  const unsigned instance = hit.instID[0][lane];
-  const Eigen::Vector3f cross(hit.Ng_x[lane], hit.Ng_y[lane], hit.Ng_z[lane]);
-  return {.instance = instance == RTC_INVALID_GEOMETRY_ID ? 0U : instance,
-          .primitive = hit.primID[lane],
-          .margin = std::min({hit.u[lane], hit.v[lane], 1.0F - hit.u[lane] - hit.v[lane]}),
-          .twice_area = cross.norm()};
-}
 
 /// Makes Embree's single-precision answers watertight and exact.
 ///
@@ -49,23 +30,23 @@ class Probe {
   [[nodiscard]] const TraceSpace& space() const { return space_; }
   [[nodiscard]] FilterContext context() const;
 
-  /// The ray to trace for a beam, beside it by one hair.
-  [[nodiscard]] TraceRay ray(std::size_t beam) const;
+  /// Sets the lanes' rays beside their beams, starting near the geometry. `valid` (-1 or 0) tells
+  /// which lanes have a beam; those whose direction is NaN lose it.
+  void set_rays(const std::array<std::size_t, kLanes>& beam, const Lanes3<double>& in_sensor,
+                Lanes<int>& valid, RayHits& rays) const;
 
-  /// True when the hair could have changed the triangle.
-  [[nodiscard]] bool is_doubtful(std::size_t beam, const Found& found) const;
+  /// The lanes of a block whose triangle the hair could have changed.
+  [[nodiscard]] std::uint32_t doubtful(const HitBlock& block, const ExactBlock& exact,
+                                       const RayHits& rays) const;
 
-  /// The true beam's triangle among those around; instance kNoHit when the beam passes them all.
+  /// The true beam's triangle among those around the one found.
   [[nodiscard]] Found settle(std::size_t beam, const Found& found) const;
 
  private:
-  /// The beam in the trace space, in double, from near the geometry.
-  struct ExactRay {
-    Eigen::Vector3d origin;
-    Eigen::Vector3d direction;
-  };
-  [[nodiscard]] ExactRay exact_ray(std::size_t beam) const;
-  [[nodiscard]] Found trace(std::size_t beam, const TraceRay& ray) const;
+  struct Judgement;
+  [[nodiscard]] ObjectRay exact_ray(std::size_t beam) const;
+  [[nodiscard]] Found trace(std::size_t beam, const Eigen::Vector3d& origin,
+                            const Eigen::Vector3d& direction) const;
 
   const TraceSpace& space_;
   const Resolver& resolver_;

@@ -3,7 +3,9 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
+#include <glidar/render/lanes.hpp>
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 
@@ -26,16 +28,13 @@ struct Tile {
   }
 };
 
-/// The beam grid cut into tiles of a packet's width: square (4x4, 4x2) in an image, flat where the
-/// grid has fewer rows.
+/// The beam grid cut into tiles of kLanes beams: 4x4, flatter where the grid has fewer rows.
 class Tiling {
  public:
-  Tiling(const Beams& beams, std::uint32_t lanes) : rows_(beams.rows), cols_(beams.cols) {
-    std::uint32_t height = lanes >= 16 ? 4 : 2;
-    while (height > 1 && height > rows_) height /= 2;
-    height_ = height;
-    while ((1U << width_shift_) * height < lanes) ++width_shift_;
-    tile_cols_ = (cols_ + (1U << width_shift_) - 1U) >> width_shift_;
+  explicit Tiling(const Beams& beams) : rows_(beams.rows), cols_(beams.cols) {
+    while (height_ > 1 && height_ > rows_) height_ /= 2;
+    while ((height_ << width_shift_) < kLanes) ++width_shift_;
+    tile_cols_ = std::max<std::uint32_t>(1, (cols_ + (1U << width_shift_) - 1U) >> width_shift_);
     tile_rows_ = (rows_ + height_ - 1U) / height_;
   }
 
@@ -50,7 +49,7 @@ class Tiling {
  private:
   std::uint32_t rows_;
   std::uint32_t cols_;
-  std::uint32_t height_ = 1;
+  std::uint32_t height_ = 4;
   std::uint32_t width_shift_ = 0;
   std::uint32_t tile_rows_ = 0;
   std::uint32_t tile_cols_ = 0;

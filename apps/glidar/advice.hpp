@@ -1,0 +1,44 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+#include <glidar/core/frame.hpp>
+#include <glidar/core/scene.hpp>
+#include <glidar/sensor/sensor.hpp>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace glidar::app {
+
+/// A measurement and what it was made of.
+struct View {
+  const Scene& scene;
+  const Sensor& sensor;
+  const Beams& beams;
+  const Frame& frame;
+};
+
+/// Counts and extremes of a measurement.
+struct FrameSummary {
+  std::size_t beams = 0;  ///< pixels that have one
+  std::size_t hits = 0;
+  std::size_t too_near = 0;
+  std::size_t too_far = 0;
+  double nearest_m = 0.0;  ///< of the hits' ranges; NaN without hits
+  double farthest_m = 0.0;
+};
+
+FrameSummary summarise(const Frame& frame);
+
+/// What the user should know about a model of doubtful size; `sized` tells that the unit or the
+/// scale was given. Empty: nothing.
+std::vector<std::string> size_advice(const Scene& scene, bool sized);
+
+/// What the user should know about where the sensor stands: inside a model, too near or too far for
+/// its size, or nothing hit and why.
+std::vector<std::string> view_advice(const View& view);
+
+}  // namespace glidar::app

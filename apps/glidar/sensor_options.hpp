@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/sensor/sensor.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace CLI {
+class App;
+}
+
+namespace glidar::app {
+
+/// The sensor as given on the command line.
+struct SensorFlags {
+  std::string file;
+  std::optional<std::int64_t> width;
+  std::optional<std::int64_t> height;
+  std::optional<double> fov_deg;
+  std::optional<double> fx;
+  std::optional<double> fy;
+  std::optional<double> cx;
+  std::optional<double> cy;
+  std::optional<double> near_m;
+  std::optional<double> far_m;
+  std::optional<double> ambient;
+  std::string attenuation;  ///< empty: not given
+  bool cull_back_faces = false;
+};
+
+void add_sensor_flags(CLI::App& command, SensorFlags& flags);
+
+/// The sensor file if one is given, else the camera described by the flags, else the scene file's
+/// sensor, else a camera of 256 x 256 pixels and 20 degrees; then with the flags for limits and
+/// light. Throws Error, also when a frame of it would not fit into this machine's memory.
+Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_scene_file);
+
+}  // namespace glidar::app

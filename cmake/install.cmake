@@ -1,0 +1,39 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+
+# What `cmake --install` puts where, and the package that find_package(glidar) finds.
+include(CMakePackageConfigHelpers)
+
+set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/glidar)
+
+get_property(layers GLOBAL PROPERTY GLIDAR_LAYER_TARGETS)
+add_library(glidar_all INTERFACE)
+add_library(glidar::glidar ALIAS glidar_all)
+set_target_properties(glidar_all PROPERTIES EXPORT_NAME glidar)
+target_link_libraries(glidar_all INTERFACE ${layers})
+
+install(TARGETS ${layers} glidar_all EXPORT glidar-targets)
+install(EXPORT glidar-targets FILE glidarTargets.cmake NAMESPACE glidar:: DESTINATION ${package_folder})
+
+# The headers users may include are listed in one file; the others are not installed.
+set(header_list ${PROJECT_SOURCE_DIR}/glidar/public_headers.txt)
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header_list})
+file(STRINGS ${header_list} public_headers REGEX "^[^#]")
+foreach(header IN LISTS public_headers)
+  cmake_path(GET header PARENT_PATH folder)
+  install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
+endforeach()
+
+configure_package_config_file(cmake/glidarConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/glidarConfig.cmake
+                              INSTALL_DESTINATION ${package_folder} PATH_VARS CMAKE_INSTALL_DATADIR)
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/glidarConfigVersion.cmake
+                                 COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/glidarConfig.cmake
+              ${CMAKE_CURRENT_BINARY_DIR}/glidarConfigVersion.cmake DESTINATION ${package_folder})
+
+foreach(folder models sensors)
+  if(EXISTS ${PROJECT_SOURCE_DIR}/${folder})
+    install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/glidar)
+  endif()
+endforeach()
+install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

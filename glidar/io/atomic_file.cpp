@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/atomic_file.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <system_error>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
+constexpr std::size_t kSlots = 32;
+constexpr std::size_t kSlotPathBytes = 4096;
+
+enum SlotState : int { kFree, kFilling, kListed, kRemoving };
+
+/// A temporary file's name where a signal handler can read it: no allocation, no lock.
+struct Slot {
+  std::atomic<int> state{kFree};
+  std::array<char, kSlotPathBytes> path{};
+};
+static_assert(std::atomic<int>::is_always_lock_free, "used in signal handlers");
+
+// A signal handler takes no arguments, so this list has to be the process's own.
+constinit std::array<Slot, kSlots> unfinished{};
+
+int list_unfinished(const std::string& path) {
+  if (path.size() >= kSlotPathBytes) return -1;
+  for (std::size_t i = 0; i < kSlots; ++i) {
+    int expected = kFree;
+    if (!unfinished[i].state.compare_exchange_strong(expected, kFilling)) continue;
+    std::memcpy(unfinished[i].path.data(), path.c_str(), path.size() + 1);
+    unfinished[i].state.store(kListed);
+    return static_cast<int>(i);
+  }
+  return -1;
+}
+
+/// A slot that a handler is reading is left alone: the process is ending.
+void unlist(int slot) {
+  if (slot < 0) return;
+  int expected = kListed;
+  unfinished[static_cast<std::size_t>(slot)].state.compare_exchange_strong(expected, kFree);
+}
+
+[[noreturn]] void fail(const std::filesystem::path& path, const char* what, int code) {
+  const std::string reason = std::generic_category().message(code);
+  std::string remedy;
+  if (code == ENOSPC || code == EDQUOT || code == EFBIG)
+    remedy = "make room or write to another folder; nothing was left behind";
+  if (code == ENOENT) remedy = "make the folder first";
+  if (code == EACCES || code == EPERM || code == EROFS) remedy = "write to another folder";
+  throw Error({path.string(), fmt::format("cannot {}: {}", what, reason), "", remedy});
+}
+
+/// A new file in `folder` that nobody else has open; its name and descriptor.
+std::pair<std::filesystem::path, int> open_temporary(const std::filesystem::path& folder,
+                                                     const std::filesystem::path& wanted) {
+  for (unsigned attempt = 0;; ++attempt) {
+    std::filesystem::path name = folder / fmt::format(".glidar-{}-{}.tmp", ::getpid(), attempt);
+    const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0) return {std::move(name), descriptor};
+    if (errno != EEXIST && errno != EINTR) fail(wanted, "create a file in this folder", errno);
+  }
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path) {
+  std::error_code ignored;  // a path that cannot be looked at fails below, with the reason
+  if (std::filesystem::is_directory(path, ignored))
+    throw Error({path.string(), "is a folder", "a file name", ""});
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  buffer_.reserve(kBufferBytes);
+  std::tie(temporary_, descriptor_) = open_temporary(folder, path);
+  slot_ = list_unfinished(temporary_.native());
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  unlist(slot_);
+}
+
+void AtomicFile::write(std::span<const std::byte> bytes) {
+  if (buffer_.size() + bytes.size() > kBufferBytes) flush();
+  if (bytes.size() >= kBufferBytes) {
+    write_through(bytes);
+  } else {
+    buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+  }
+  position_ += bytes.size();
+}
+
+void AtomicFile::write(std::string_view text) {
+  write(std::as_bytes(std::span(text)));
+}
+
+void AtomicFile::seek(std::uint64_t offset) {
+  flush();
+  if (::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0) fail(path_, "seek", errno);
+  position_ = offset;
+}
+
+void AtomicFile::finish() {
+  if (descriptor_ < 0) return;
+  flush();
+  // Some file systems report a full disk or quota only on closing.
+  if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(path_, "close", errno);
+}
+
+void AtomicFile::commit() {
+  finish();
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, "put in place", errno);
+  temporary_.clear();
+  unlist(std::exchange(slot_, -1));
+}
+
+void AtomicFile::flush() {
+  write_through(buffer_);
+  buffer_.clear();
+}
+
+void AtomicFile::write_through(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(path_, "write", errno);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void remove_unfinished_files() noexcept {
+  const int saved_errno = errno;
+  for (Slot& slot : unfinished) {
+    int expected = kListed;
+    if (slot.state.compare_exchange_strong(expected, kRemoving)) ::unlink(slot.path.data());
+  }
+  errno = saved_errno;
+}
+
+}  // namespace glidar

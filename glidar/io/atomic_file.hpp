@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace glidar {
+
+/// A file that appears under its name only when it is whole: bytes go to a temporary file in the
+/// same folder, commit() renames it. Without commit() the destructor removes the temporary file and
+/// whatever stood under the name stays. Small writes are gathered, large ones go straight through.
+class AtomicFile {
+ public:
+  /// Throws Error when `path` is a folder or no file can be made beside it.
+  explicit AtomicFile(const std::filesystem::path& path);
+  ~AtomicFile();
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+
+  /// Appends at the current position. Throws Error (disk full, quota, input/output error).
+  void write(std::span<const std::byte> bytes);
+  void write(std::string_view text);
+
+  /// Moves to a byte offset from the start. Throws Error when the file cannot seek.
+  void seek(std::uint64_t offset);
+  [[nodiscard]] std::uint64_t position() const { return position_; }
+
+  /// Hands everything to the system and closes the temporary file, so that of several files all can
+  /// be complete before the first is renamed. Throws Error when a byte could not be stored.
+  void finish();
+
+  /// finish(), then gives the file its name, replacing what was there in one step.
+  void commit();
+
+  /// The name the file will have.
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  void flush();
+  void write_through(std::span<const std::byte> bytes);
+
+  std::filesystem::path path_;
+  std::filesystem::path temporary_;  ///< absolute; empty once committed
+  int descriptor_ = -1;              ///< -1 once finished
+  int slot_ = -1;                    ///< in the list for remove_unfinished_files, -1: not in it
+  std::uint64_t position_ = 0;
+  std::vector<std::byte> buffer_;
+};
+
+/// Removes the temporary files of every AtomicFile that is not committed. For a program that is
+/// about to end because of a signal: it is async-signal-safe. Afterwards commit() of those fails.
+/// Covers the first 32 files open at a time with paths below 4096 bytes.
+void remove_unfinished_files() noexcept;
+
+}  // namespace glidar

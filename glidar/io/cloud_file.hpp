@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/atomic_file.hpp>
+#include <glidar/io/file_sink.hpp>
+
+#include <filesystem>
+#include <string>
+
+namespace glidar {
+
+/// What the writer of a format gets: the cloud as it goes into the file (compacted where asked for)
+/// with the columns its FileFormat names, each of its right size.
+struct CloudFile {
+  const PointCloud& cloud;
+  const Frame& frame;
+  const FileSinkOptions& options;
+  const SidecarContext& context;
+};
+
+/// Point Cloud Library, format 0.7: https://pcl.readthedocs.io (The PCD file format). Always
+/// float32 for real numbers, as PCL's point types need it; f64 columns are rounded: NPZ and CSV
+/// keep them. The viewpoint is the sensor's pose in the cloud's frame. Colour is PCL's packed
+/// `rgb`.
+void write_pcd(const CloudFile& job, AtomicFile& file);
+
+/// Stanford polygon file, little-endian or ascii, vertices only. x y z are float unless that moves
+/// a point by more than 0.1 mm, then double; other columns keep their types; normals are nx ny nz,
+/// colour is uchar red green blue. An organised cloud says its size as PCL does: `obj_info
+/// num_cols`.
+void write_ply(const CloudFile& job, AtomicFile& file);
+
+/// NumPy archive, stored: every column as (rows, cols) or (rows, cols, components), poses 4x4
+/// (world_from_sensor, world_from_cloud, world_from_instance (k, 4, 4)), stamp_ns, seed.
+void write_npz(const CloudFile& job, AtomicFile& file);
+
+/// A line of field names, then a point per line, the shortest digits that read back the same.
+void write_csv(const CloudFile& job, AtomicFile& file);
+
+/// KITTI Velodyne: float32 x y z intensity per point, no header, no misses.
+void write_kitti(const CloudFile& job, AtomicFile& file);
+
+/// NumPy array rows x cols of float32 depth in metres, NaN where there is no return.
+void write_depth_npy(const CloudFile& job, AtomicFile& file);
+
+/// 16-bit grey image: depth times options.depth_png_units_per_m, rounded, at least 1; 0 = no
+/// return. Throws Error when a depth is behind the sensor or above 65535 units.
+void write_depth_png(const CloudFile& job, AtomicFile& file);
+
+/// A picture for people: coloured depth and grey intensity with their scales.
+void write_preview(const CloudFile& job, AtomicFile& file);
+
+/// cloud_from_object of the first instance without its scale, 4x4, a row per line, 17 digits.
+/// Throws Error when the frame has no instance.
+void write_transform(const CloudFile& job, AtomicFile& file);
+
+/// The JSON that stands beside a cloud written to `path`; docs/files.md lists its fields.
+std::string sidecar_text(const CloudFile& job, const std::filesystem::path& path);
+
+}  // namespace glidar

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/cloud_file.hpp>
+#include <glidar/io/point_rows.hpp>
+
+namespace glidar {
+
+void write_csv(const CloudFile& job, AtomicFile& file) {
+  std::vector<Field> fields;
+  for (const Column& column : job.cloud.columns) append_fields(column, fields);
+  file.write(joined_names(fields, ',') + "\n");
+  write_text_rows(fields, job.cloud.size(), ',', file);
+}
+
+}  // namespace glidar

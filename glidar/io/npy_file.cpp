@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/cloud_file.hpp>
+#include <glidar/io/npy.hpp>
+#include <glidar/io/point_rows.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <iterator>
+
+namespace glidar {
+
+std::string npy_header(std::string_view type, std::span<const std::size_t> shape) {
+  constexpr std::size_t kAlignment = 64;
+  std::string sizes;
+  for (const std::size_t size : shape) fmt::format_to(std::back_inserter(sizes), "{}, ", size);
+  std::string dictionary =
+      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, sizes);
+  std::string head = "\x93NUMPY";
+  head.append({'\x01', '\x00'});
+  const std::size_t before = head.size() + 2;
+  const std::size_t total = (before + dictionary.size() + kAlignment) / kAlignment * kAlignment;
+  dictionary.resize(total - before, ' ');
+  dictionary.back() = '\n';
+  head += static_cast<char>(dictionary.size() & 0xFFU);
+  head += static_cast<char>(dictionary.size() >> 8U);
+  return head + dictionary;
+}
+
+void write_depth_npy(const CloudFile& job, AtomicFile& file) {
+  const std::array<std::size_t, 2> shape = {job.cloud.rows, job.cloud.cols};
+  file.write(npy_header("<f4", shape));
+  const Field depth = {"depth", find_column(job.cloud, "depth"), 0, Stored::f32};
+  write_binary_rows(std::span(&depth, 1), job.cloud.size(), file);
+}
+
+}  // namespace glidar

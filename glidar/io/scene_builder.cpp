@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/scene_builder.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+namespace glidar {
+namespace {
+
+/// Instances that agree in these share one mesh.
+using LoadKey = std::tuple<std::string, double, std::optional<Axis>>;
+
+LoadKey load_key(const PlannedInstance& planned) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(planned.source, error);
+  return {error ? planned.source : real.string(), planned.options.metres_per_unit,
+          planned.options.up};
+}
+
+Model load_for(const PlannedInstance& planned, const ModelLoader& load) {
+  try {
+    return load(planned.source, planned.options);
+  } catch (const Error& error) {
+    const ErrorParts& parts = error.parts();
+    const std::string place = parts.where.empty() ? "" : parts.where + ": ";
+    throw Error({planned.where, place + parts.found, parts.allowed, parts.remedy});
+  }
+}
+
+void apply(const MaterialOverride& change, Material& material) {
+  material.ambient = change.ambient.value_or(material.ambient);
+  material.diffuse = change.diffuse.value_or(material.diffuse);
+  material.specular = change.specular.value_or(material.specular);
+  material.shininess = change.shininess.value_or(material.shininess);
+  material.opacity = change.opacity.value_or(material.opacity);
+}
+
+bool concerns(const MaterialOverride& change, const Material& material) {
+  return change.material == "*" || change.material == material.name;
+}
+
+void require_known(const MaterialOverride& change, const Instance& instance, const Scene& scene) {
+  std::vector<std::string> names;
+  std::string listed;
+  for (const std::uint32_t index : instance.materials) {
+    if (concerns(change, scene.materials[index])) return;
+    const std::string& name = scene.materials[index].name;
+    if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+    names.push_back(name);
+    listed += (listed.empty() ? "'" : ", '") + name + "'";
+  }
+  const std::string nearest = nearest_word(change.material, names);
+  throw Error({change.where, "the model has no material '" + change.material + "'",
+               listed + ", or '*' for all",
+               nearest.empty() ? "" : "did you mean '" + nearest + "'?"});
+}
+
+/// Gives the instance copies of the materials that change: others may share the originals.
+void override_materials(const PlannedInstance& planned, Instance& instance, Scene& scene) {
+  for (const MaterialOverride& change : planned.overrides) {
+    require_known(change, instance, scene);
+  }
+  for (std::uint32_t& index : instance.materials) {
+    Material changed = scene.materials[index];
+    bool is_changed = false;
+    for (const MaterialOverride& change : planned.overrides) {
+      if (!concerns(change, changed)) continue;
+      apply(change, changed);
+      is_changed = true;
+    }
+    if (!is_changed) continue;
+    index = static_cast<std::uint32_t>(scene.materials.size());
+    scene.materials.push_back(std::move(changed));
+  }
+}
+
+std::uint32_t class_index(const std::string& name, std::vector<std::string>& names) {
+  if (name.empty()) return 0;
+  const auto at = std::find(names.begin(), names.end(), name);
+  const auto index = static_cast<std::uint32_t>(at - names.begin());
+  if (at == names.end()) names.push_back(name);
+  return index;
+}
+
+}  // namespace
+
+Scene build_scene(const ScenePlan& plan, const ModelLoader& load) {
+  Scene scene;
+  std::map<LoadKey, Instance> loaded;  // as the model came, before this file's changes
+  for (const PlannedInstance& planned : plan.instances) {
+    const LoadKey key = load_key(planned);
+    if (!loaded.contains(key)) {
+      const std::size_t first = add_model(scene, load_for(planned, load));
+      loaded[key] = scene.instances[first];
+      scene.instances.pop_back();
+    }
+    Instance instance = loaded.at(key);
+    instance.name = planned.name;
+    instance.world_from_object = planned.world_from_object;
+    instance.scale = planned.scale;
+    instance.id = planned.id;
+    instance.class_id = class_index(planned.class_name, scene.class_names);
+    override_materials(planned, instance, scene);
+    scene.instances.push_back(std::move(instance));
+  }
+  validate(scene);
+  return scene;
+}
+
+}  // namespace glidar

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io: a scene file as plain data, and how it becomes a scene.
+
+#include <glidar/io/model.hpp>
+#include <glidar/io/scene_file.hpp>
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glidar {
+
+/// What an instance changes of one of its model's materials.
+struct MaterialOverride {
+  std::string material;  ///< name in the model, "*" for all
+  std::string where;     ///< for errors
+  std::optional<Eigen::Vector3f> ambient;
+  std::optional<Eigen::Vector3f> diffuse;
+  std::optional<Eigen::Vector3f> specular;
+  std::optional<float> shininess;
+  std::optional<float> opacity;
+};
+
+/// One entry of `models`.
+struct PlannedInstance {
+  std::string source;  ///< as load_model takes it; relative paths are resolved already
+  std::string where;   ///< the field `model`, for errors
+  ModelOptions options;
+  std::string name;  ///< unique in the scene
+  double scale = 1.0;
+  Pose world_from_object = Pose::Identity();
+  std::uint32_t id = 0;
+  std::string class_name;                   ///< empty: unlabelled
+  std::vector<MaterialOverride> overrides;  ///< those for "*" first
+};
+
+/// All that a scene file says, checked, before any model is loaded.
+struct ScenePlan {
+  std::vector<PlannedInstance> instances;
+  std::optional<Sensor> sensor;
+  std::optional<Pose> world_from_sensor;
+};
+
+/// Reads a scene file and the sensor file it names; loads no model.
+ScenePlan read_scene_plan(const std::filesystem::path& path, const ModelOptions& defaults);
+
+using ModelLoader = std::function<Model(const std::string& source, const ModelOptions& options)>;
+
+/// Loads every model once and places its instances. Errors of `load` are told with their place in
+/// the scene file.
+Scene build_scene(const ScenePlan& plan, const ModelLoader& load);
+
+}  // namespace glidar

@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/hits.hpp>
+#include <glidar/io/pose_yaml.hpp>
+#include <glidar/io/scene_builder.hpp>
+#include <glidar/io/sensor_file.hpp>
+#include <glidar/io/sensor_yaml.hpp>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <set>
+
+namespace glidar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kBuiltin = "builtin:";
+constexpr NumberRule kShininess = {0.0, 128.0, false, "a number from 0 to 128"};
+
+/// A path of the file, seen from the file's own folder.
+std::string resolved(const YamlField& field) {
+  const std::string source = text(field);
+  if (source.starts_with(kBuiltin)) return source;
+  return (fs::path(field.file).parent_path() / source).lexically_normal().string();
+}
+
+std::string stem(const std::string& source) {
+  if (source.starts_with(kBuiltin)) return source.substr(kBuiltin.size());
+  return fs::path(source).stem().string();
+}
+
+ModelOptions read_options(const YamlField& model, const ModelOptions& defaults) {
+  constexpr std::array<double, 4> kMetres = {0.001, 0.01, 1.0, 0.0254};
+  ModelOptions options = defaults;
+  if (const auto unit = find(model, "unit")) {
+    options.metres_per_unit = kMetres[one_of(*unit, {"mm", "cm", "m", "in"})];
+  }
+  if (const auto up = find(model, "up")) {
+    options.up = static_cast<Axis>(one_of(*up, {"x", "y", "z"}));
+  }
+  return options;
+}
+
+MaterialOverride read_override(const std::string& material, const YamlField& field) {
+  require_map(field, {"ambient", "diffuse", "specular", "shininess", "opacity"});
+  MaterialOverride change;
+  change.material = material;
+  change.where = where(field);
+  const auto colour = [&](const char* key, std::optional<Eigen::Vector3f>& rgb) {
+    if (const auto value = find(field, key)) rgb = triple(*value, kZeroToOne).cast<float>();
+  };
+  const auto scalar = [&](const char* key, const NumberRule& rule, std::optional<float>& to) {
+    if (const auto value = find(field, key)) to = static_cast<float>(number(*value, rule));
+  };
+  colour("ambient", change.ambient);
+  colour("diffuse", change.diffuse);
+  colour("specular", change.specular);
+  scalar("shininess", kShininess, change.shininess);
+  scalar("opacity", kZeroToOne, change.opacity);
+  return change;
+}
+
+std::vector<MaterialOverride> read_overrides(const YamlField& field) {
+  std::vector<MaterialOverride> changes;
+  for (const auto& [material, value] : entries(field)) {
+    changes.push_back(read_override(material, value));
+  }
+  // What is said of one material wins over what is said of all, wherever it stands.
+  std::stable_partition(changes.begin(), changes.end(),
+                        [](const MaterialOverride& change) { return change.material == "*"; });
+  return changes;
+}
+
+PlannedInstance read_model(const YamlField& field, const ModelOptions& defaults) {
+  require_map(field, {"model", "name", "unit", "up", "scale", "pose", "id", "class", "materials"});
+  const YamlField model = need(field, "model");
+  PlannedInstance planned;
+  planned.source = resolved(model);
+  planned.where = where(model);
+  planned.options = read_options(field, defaults);
+  planned.scale = number_or(field, "scale", kAboveZero, 1.0);
+  if (const auto pose = find(field, "pose")) planned.world_from_object = read_pose(*pose);
+  if (const auto name = find(field, "class")) planned.class_name = text(*name);
+  if (const auto materials = find(field, "materials")) {
+    planned.overrides = read_overrides(*materials);
+  }
+  return planned;
+}
+
+/// Names given in the file stand; the others get their file's name, with a number where it is
+/// taken.
+void read_names(const std::vector<YamlField>& models, std::vector<PlannedInstance>& planned) {
+  std::set<std::string> taken;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const auto field = find(models[i], "name");
+    if (!field) continue;
+    planned[i].name = text(*field);
+    if (taken.insert(planned[i].name).second) continue;
+    reject(*field, "the name '" + planned[i].name + "' is given twice", "each name once",
+           "choose another name");
+  }
+  for (PlannedInstance& instance : planned) {
+    if (!instance.name.empty()) continue;
+    const std::string base = stem(instance.source);
+    instance.name = base;
+    for (int n = 2; !taken.insert(instance.name).second; ++n) {
+      instance.name = base + "_" + std::to_string(n);
+    }
+  }
+}
+
+/// Without an id of its own, a model gets its position in the list, counted from 1.
+void read_ids(const std::vector<YamlField>& models, std::vector<PlannedInstance>& planned) {
+  std::map<std::uint32_t, std::size_t> taken;
+  for (std::size_t i = 0; i < models.size(); ++i) {
+    const auto field = find(models[i], "id");
+    planned[i].id = field ? whole_number(*field, 0, kNoHit - 1) : static_cast<std::uint32_t>(i + 1);
+    const auto [other, is_new] = taken.try_emplace(planned[i].id, i);
+    if (is_new) continue;
+    reject(field ? *field : models[i],
+           "id " + std::to_string(planned[i].id) + ", which models[" +
+               std::to_string(other->second) + "] has",
+           "each id once (without 'id' it is the place in the list, from 1)",
+           "give one of them another id");
+  }
+}
+
+std::vector<PlannedInstance> read_models(const YamlField& field, const ModelOptions& defaults) {
+  const std::vector<YamlField> models = items(field);
+  if (models.empty()) reject(field, "an empty list", "at least one model");
+  std::vector<PlannedInstance> planned;
+  for (const YamlField& model : models) planned.push_back(read_model(model, defaults));
+  read_names(models, planned);
+  read_ids(models, planned);
+  return planned;
+}
+
+/// The sensor beside the world: a map, or the name of a sensor file.
+Sensor read_scene_sensor(const YamlField& field) {
+  if (field.node.IsMap()) return read_sensor(field);
+  if (!field.node.IsScalar() || field.node.Scalar().empty()) {
+    reject(field, describe(field), "a map, or the path of a sensor file");
+  }
+  const std::string file = resolved(field);
+  if (!fs::exists(file)) {
+    reject(field, "no such file: " + file, "a map, or the path of a sensor file",
+           "paths are relative to the folder of this file");
+  }
+  return load_sensor_file(file);
+}
+
+}  // namespace
+
+ScenePlan read_scene_plan(const fs::path& path, const ModelOptions& defaults) {
+  const YamlField root = read_yaml(path);
+  require_map(root, {"models", "sensor", "sensor_pose"});
+  ScenePlan plan;
+  plan.instances = read_models(need(root, "models"), defaults);
+  if (const auto sensor = find(root, "sensor")) plan.sensor = read_scene_sensor(*sensor);
+  if (const auto pose = find(root, "sensor_pose")) plan.world_from_sensor = read_sensor_pose(*pose);
+  return plan;
+}
+
+}  // namespace glidar

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/version.hpp>
+#include <glidar/io/cloud_file.hpp>
+#include <glidar/io/point_rows.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <array>
+
+namespace glidar {
+namespace {
+
+// Keys stay in the order of writing. Numbers that JSON has no word for (NaN, infinity) become null.
+using Json = nlohmann::ordered_json;
+
+Json vector_json(const Eigen::Vector3d& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+Json pose_json(const Pose& pose) {
+  Json matrix = Json::array();
+  for (Eigen::Index row = 0; row < 4; ++row) {
+    const Eigen::RowVector4d r = pose.matrix().row(row);
+    matrix.push_back({r[0], r[1], r[2], r[3]});
+  }
+  Eigen::Quaterniond q(pose.linear());
+  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+  return {{"matrix", matrix},
+          {"position_m", vector_json(pose.translation())},
+          {"orientation", {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}}}};
+}
+
+Json distortion_json(const NoDistortion& /*none*/) {
+  return {{"model", "none"}};
+}
+
+Json distortion_json(const RadialTangential& d) {
+  return {{"model", "radial_tangential"},
+          {"k1", d.k1},
+          {"k2", d.k2},
+          {"p1", d.p1},
+          {"p2", d.p2},
+          {"k3", d.k3},
+          {"k4", d.k4},
+          {"k5", d.k5},
+          {"k6", d.k6}};
+}
+
+Json distortion_json(const Fisheye& d) {
+  return {{"model", "fisheye"}, {"k1", d.k1}, {"k2", d.k2}, {"k3", d.k3}, {"k4", d.k4}};
+}
+
+Json optics_json(const Pinhole& pinhole) {
+  const PinholeIntrinsics& i = pinhole.intrinsics;
+  return {{"type", "pinhole"},
+          {"width", i.width},
+          {"height", i.height},
+          {"fx", i.fx},
+          {"fy", i.fy},
+          {"cx", i.cx},
+          {"cy", i.cy},
+          {"pixel_centre", i.pixel_centre},
+          {"distortion",
+           std::visit([](const auto& d) { return distortion_json(d); }, pinhole.distortion)}};
+}
+
+Json sensor_json(const CloudFile& job) {
+  const Sensor& sensor = job.context.sensor;
+  const Light& light = sensor.light;
+  return {{"name", sensor.name},
+          {"frame_id", job.frame.frame_id},
+          {"rows", job.frame.rows},
+          {"cols", job.frame.cols},
+          {"boresight", vector_json(job.context.beams.boresight)},
+          {"optics", std::visit([](const auto& o) { return optics_json(o); }, sensor.optics)},
+          {"limits", {{"near_m", sensor.limits.near_m}, {"far_m", sensor.limits.far_m}}},
+          {"light",
+           {{"attenuation_constant", light.attenuation_constant},
+            {"attenuation_linear_per_m", light.attenuation_linear_per_m},
+            {"attenuation_quadratic_per_m2", light.attenuation_quadratic_per_m2},
+            {"ambient", light.ambient}}},
+          {"cull_back_faces", sensor.cull_back_faces},
+          {"world_from_sensor", pose_json(job.frame.world_from_sensor)}};
+}
+
+/// The types that make_point_cloud gives; a format may store them shorter.
+Json columns_json(const PointCloud& cloud) {
+  constexpr std::array kTypes = {"f32", "f64", "u8", "u16", "u32"};
+  static_assert(kTypes.size() == std::variant_size_v<decltype(Column::values)>);
+  Json columns = Json::array();
+  for (const Column& column : cloud.columns) {
+    columns.push_back({{"name", column.name},
+                       {"type", kTypes[column.values.index()]},
+                       {"components", column.components}});
+  }
+  return columns;
+}
+
+Json cloud_json(const CloudFile& job, const std::filesystem::path& path) {
+  return {{"file", path.filename().string()},
+          {"rows", job.cloud.rows},
+          {"cols", job.cloud.cols},
+          {"frame_id", job.cloud.frame_id},
+          {"world_from_cloud", pose_json(job.cloud.world_from_cloud)},
+          {"columns", columns_json(job.cloud)}};
+}
+
+Json instances_json(const CloudFile& job) {
+  const Scene& scene = job.context.scene;
+  Json instances = Json::array();
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    const MeshSource& source = scene.sources.at(instance.mesh);
+    Json told = {{"name", instance.name},
+                 {"id", instance.id},
+                 {"class_id", instance.class_id},
+                 {"class", scene.class_names.at(instance.class_id)},
+                 {"model", source.path},
+                 {"model_hash", source.hash.empty() ? Json() : Json(source.hash)},
+                 {"scale", instance.scale}};
+    told["world_from_object"] = pose_json(job.frame.world_from_instance.at(i));
+    instances.push_back(told);
+  }
+  return instances;
+}
+
+Json status_json(const Frame& frame) {
+  std::array<std::size_t, 256> counts{};
+  for (const Status status : frame.status) ++counts[static_cast<std::size_t>(status)];
+  constexpr auto kLast = static_cast<std::size_t>(Status::no_beam);
+  Json told = Json::object();
+  for (std::size_t s = 0; s <= kLast; ++s)
+    told[std::string(name(static_cast<Status>(s)))] = counts[s];
+  return told;
+}
+
+}  // namespace
+
+std::string sidecar_text(const CloudFile& job, const std::filesystem::path& path) {
+  const Json all = {{"glidar", version()},
+                    {"renderer", job.context.renderer},
+                    {"seed", job.frame.seed},
+                    {"stamp_ns", job.frame.stamp_ns},
+                    {"cloud", cloud_json(job, path)},
+                    {"sensor", sensor_json(job)},
+                    {"instances", instances_json(job)},
+                    {"beams_by_status", status_json(job.frame)}};
+  // names and paths may hold bytes that are no UTF-8
+  return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace glidar

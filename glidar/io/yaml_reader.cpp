@@ -1,0 +1,296 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/yaml_reader.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <yaml-cpp/depthguard.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+namespace fs = std::filesystem;
+
+// yaml-cpp takes about 250 bytes of memory for each byte of a hostile file: half a GiB in all.
+constexpr std::uintmax_t kLargestFile_bytes = 2U << 20U;
+
+std::string position(const std::string& file, const YAML::Mark& mark) {
+  if (mark.is_null()) return file;
+  return file + ":" + std::to_string(mark.line + 1) + ":" + std::to_string(mark.column + 1);
+}
+
+/// A word of the file, cut and without control characters, fit for one line of an error.
+std::string shown(std::string_view word) {
+  constexpr std::size_t kShown = 60;
+  std::string out(word.substr(0, kShown));
+  for (char& c : out) {
+    if (static_cast<unsigned char>(c) < 0x20U || c == 0x7F) c = '?';
+  }
+  return word.size() > kShown ? out + "..." : out;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::string neighbour(const fs::path& file) {
+  std::error_code error;
+  std::vector<std::string> names;
+  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());  // the order of a folder is not the same everywhere
+  return suggestion(file.filename().string(), names);
+}
+
+std::string read_text(const fs::path& file) {
+  const auto fail = [&](std::string found, std::string allowed, std::string remedy) {
+    throw Error({file.string(), std::move(found), std::move(allowed), std::move(remedy)});
+  };
+  std::error_code error;
+  const fs::file_status status = fs::status(file, error);
+  if (status.type() == fs::file_type::not_found) fail("no such file", "", neighbour(file));
+  if (fs::is_directory(status)) fail("a folder", "a YAML file", "");
+  if (!fs::is_regular_file(status)) fail("not a regular file", "a YAML file", "");
+  if (fs::file_size(file, error) > kLargestFile_bytes) {
+    fail("a file of more than 2 MiB", "a YAML file of at most 2 MiB",
+         "name models by their path, do not put them into the file");
+  }
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream bytes;
+  bytes << stream.rdbuf();
+  std::string content = std::move(bytes).str();
+  if (!stream.is_open()) fail("cannot be opened", "a file you may read", "");
+  if (content.find('\0') != std::string::npos) fail("binary data", "a YAML text file", "");
+  return content;
+}
+
+/// The advice for a syntax error: a tab in the indentation is the one most people cannot see.
+std::string advice(const std::string& content, int line) {
+  std::istringstream lines(content);
+  std::string text;
+  for (int i = 0; i <= line; ++i) std::getline(lines, text);
+  const std::string indentation = text.substr(0, text.find_first_not_of(" \t"));
+  return indentation.find('\t') != std::string::npos ? "indent with spaces, not with tabs" : "";
+}
+
+std::vector<YAML::Node> parse(const std::string& file, const std::string& content) {
+  try {
+    return YAML::LoadAll(content);
+  } catch (const YAML::DeepRecursion& error) {
+    throw Error({position(file, error.mark), "nested too deeply", "a sensor or scene file", ""});
+  } catch (const YAML::Exception& error) {
+    throw Error({position(file, error.mark), "not YAML: " + error.msg, "",
+                 advice(content, error.mark.line)});
+  }
+}
+
+YamlField child(const YamlField& parent, std::string path, const YAML::Mark& before,
+                const YAML::Node& node) {
+  // yaml-cpp marks an absent value at the next token, which may be far below its key.
+  return {parent.file, std::move(path), node.IsNull() ? before : node.Mark(), node};
+}
+
+std::string child_path(const YamlField& parent, const std::string& key) {
+  return parent.path.empty() ? shown(key) : parent.path + "." + shown(key);
+}
+
+struct Entry {
+  std::string key;
+  YAML::Mark key_mark;
+  YamlField value;
+};
+
+std::vector<Entry> checked_entries(const YamlField& field) {
+  if (!field.node.IsMap()) reject(field, describe(field), "a map (key: value)");
+  std::vector<Entry> result;
+  std::set<std::string> seen;
+  for (const auto& pair : field.node) {
+    const YamlField key_field = child(field, field.path, field.mark, pair.first);
+    if (!pair.first.IsScalar()) reject(key_field, "a key that is no word", "words as keys");
+    const std::string& key = pair.first.Scalar();
+    Entry entry{key, pair.first.Mark(),
+                child(field, child_path(field, key), pair.first.Mark(), pair.second)};
+    if (!seen.insert(key).second) {
+      entry.value.mark = entry.key_mark;
+      reject(entry.value, "the key is given twice", "each key once", "remove one of them");
+    }
+    result.push_back(std::move(entry));
+  }
+  return result;
+}
+
+/// The number a plain scalar spells, if it does. Quoted scalars are texts.
+std::optional<double> spelled_number(const YAML::Node& node) {
+  if (!node.IsScalar() || node.Tag() == "!") return std::nullopt;
+  static const std::set<std::string> kInfinite = {".inf", ".Inf", ".INF", "+.inf", "-.inf"};
+  static const std::set<std::string> kNaN = {".nan", ".NaN", ".NAN"};
+  std::string_view word = node.Scalar();
+  if (kInfinite.contains(node.Scalar())) return std::numeric_limits<double>::infinity();
+  if (kNaN.contains(node.Scalar())) return std::numeric_limits<double>::quiet_NaN();
+  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (end != word.data() + word.size() || word.empty()) return std::nullopt;
+  if (problem == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
+  return problem == std::errc{} ? std::optional(value) : std::nullopt;
+}
+
+bool keeps(const NumberRule& rule, double value) {
+  if (!std::isfinite(value)) return false;
+  if (rule.without_ends) return value > rule.least && value < rule.most;
+  return value >= rule.least && value <= rule.most;
+}
+
+}  // namespace
+
+YamlField read_yaml(const fs::path& file) {
+  const std::string content = read_text(file);
+  const std::string name = file.string();
+  const std::vector<YAML::Node> documents = parse(name, content);
+  if (documents.empty() || documents[0].IsNull()) {
+    throw Error({name, "the file is empty", "a YAML map (key: value)", "see docs/files.md"});
+  }
+  const YamlField root{name, "", documents[0].Mark(), documents[0]};
+  if (documents.size() > 1) {
+    const YAML::Mark& second = documents[1].Mark();
+    throw Error({position(name, second), "a second document", "one document in a file",
+                 "remove the line '---' before it"});
+  }
+  if (!root.node.IsMap()) reject(root, describe(root), "a map (key: value)", "see docs/files.md");
+  return root;
+}
+
+std::string where(const YamlField& field) {
+  const std::string place = position(field.file, field.mark);
+  return field.path.empty() ? place : place + ": " + field.path;
+}
+
+void reject(const YamlField& field, std::string found, std::string allowed, std::string remedy) {
+  throw Error({where(field), std::move(found), std::move(allowed), std::move(remedy)});
+}
+
+std::string describe(const YamlField& field) {
+  switch (field.node.Type()) {
+    case YAML::NodeType::Null:
+      return "no value";
+    case YAML::NodeType::Map:
+      return "a map";
+    case YAML::NodeType::Sequence:
+      return "a list of " + std::to_string(field.node.size());
+    default:
+      break;
+  }
+  const std::string word = shown(field.node.Scalar());
+  if (field.node.Tag() == "!") return "the text \"" + word + "\"";
+  return spelled_number(field.node) ? word : "'" + word + "'";
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
+  const std::string nearest = nearest_word(word, known);
+  return nearest.empty() ? "" : "did you mean '" + nearest + "'?";
+}
+
+void require_map(const YamlField& field, const std::vector<std::string>& known) {
+  for (const Entry& entry : checked_entries(field)) {
+    if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
+    YamlField at_key = entry.value;
+    at_key.mark = entry.key_mark;
+    reject(at_key, "unknown key '" + shown(entry.key) + "'", joined(known),
+           suggestion(entry.key, known));
+  }
+}
+
+std::vector<std::pair<std::string, YamlField>> entries(const YamlField& field) {
+  std::vector<std::pair<std::string, YamlField>> result;
+  for (Entry& entry : checked_entries(field)) {
+    result.emplace_back(std::move(entry.key), std::move(entry.value));
+  }
+  return result;
+}
+
+std::vector<YamlField> items(const YamlField& field) {
+  if (!field.node.IsSequence()) reject(field, describe(field), "a list");
+  std::vector<YamlField> result;
+  for (const YAML::Node& item : field.node) {
+    const std::string path = field.path + "[" + std::to_string(result.size()) + "]";
+    result.push_back(child(field, path, field.mark, item));
+  }
+  return result;
+}
+
+std::optional<YamlField> find(const YamlField& map, std::string_view key) {
+  for (const auto& pair : map.node) {
+    if (!pair.first.IsScalar() || pair.first.Scalar() != key) continue;
+    return child(map, child_path(map, pair.first.Scalar()), pair.first.Mark(), pair.second);
+  }
+  return std::nullopt;
+}
+
+YamlField need(const YamlField& map, std::string_view key) {
+  if (auto field = find(map, key)) return *std::move(field);
+  const std::string word(key);
+  reject(map, "the key '" + word + "' is missing", "", "add '" + word + ": ...'");
+}
+
+double number(const YamlField& field, const NumberRule& rule) {
+  const std::optional<double> value = spelled_number(field.node);
+  if (value && keeps(rule, *value)) return *value;
+  const bool quoted = field.node.IsScalar() && field.node.Tag() == "!";
+  reject(field, describe(field), rule.allowed, quoted ? "remove the quotes" : "");
+}
+
+double number_or(const YamlField& map, std::string_view key, const NumberRule& rule,
+                 double otherwise) {
+  const auto field = find(map, key);
+  return field ? number(*field, rule) : otherwise;
+}
+
+std::uint32_t whole_number(const YamlField& field, std::uint32_t least, std::uint32_t most) {
+  const std::string allowed =
+      "a whole number from " + std::to_string(least) + " to " + std::to_string(most);
+  const double value = number(field, {least * 1.0, most * 1.0, false, allowed.c_str()});
+  if (value != std::floor(value)) reject(field, describe(field), allowed);
+  return static_cast<std::uint32_t>(value);
+}
+
+bool boolean(const YamlField& field) {
+  return one_of(field, {"false", "true"}) == 1;
+}
+
+std::string text(const YamlField& field) {
+  if (!field.node.IsScalar() || field.node.Scalar().empty()) {
+    reject(field, describe(field), "a text");
+  }
+  return field.node.Scalar();
+}
+
+std::size_t one_of(const YamlField& field, const std::vector<std::string>& words) {
+  const std::string word = field.node.IsScalar() ? field.node.Scalar() : "";
+  const auto at = std::find(words.begin(), words.end(), word);
+  if (at == words.end()) {
+    reject(field, describe(field), joined(words), word.empty() ? "" : suggestion(word, words));
+  }
+  return static_cast<std::size_t>(at - words.begin());
+}
+
+Eigen::Vector3d triple(const YamlField& field, const NumberRule& rule) {
+  if (!field.node.IsSequence() || field.node.size() != 3) {
+    reject(field, describe(field), "a list of 3 numbers");
+  }
+  const std::vector<YamlField> parts = items(field);
+  return {number(parts[0], rule), number(parts[1], rule), number(parts[2], rule)};
+}
+
+}  // namespace glidar

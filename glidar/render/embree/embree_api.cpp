@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/embree/embree_api.hpp>
+
+#include <algorithm>
+
+namespace glidar::embree {
+namespace {
+
+constexpr unsigned kHalf = 8;
+// RTCRay8 and RTCRay16 are the same arrays of 4-byte numbers, of 8 and of 16 lanes.
+constexpr unsigned kRayArrays = sizeof(RTCRay8) / (kHalf * sizeof(float));
+constexpr unsigned kHitArrays = sizeof(RTCHit8) / (kHalf * sizeof(float));
+static_assert(sizeof(RTCRay16) == kRayArrays * kLanes * sizeof(float));
+static_assert(sizeof(RTCHit16) == kHitArrays * kLanes * sizeof(float));
+
+void copy_half(const void* from, std::size_t from_lanes, void* to, std::size_t to_lanes,
+               unsigned arrays) {
+  for (unsigned i = 0; i < arrays; ++i) {
+    std::copy_n(static_cast<const std::byte*>(from) + i * from_lanes * sizeof(float),
+                kHalf * sizeof(float), static_cast<std::byte*>(to) + i * to_lanes * sizeof(float));
+  }
+}
+
+}  // namespace
+
+void intersect(RTCScene scene, RTCIntersectContext& context, bool has_wide_packets,
+               const Lanes<int>& valid, RayHits& rays) {
+  if (has_wide_packets) {
+    rtcIntersect16(valid.at.data(), scene, &context, &rays);
+    return;
+  }
+  for (unsigned first = 0; first < kLanes; first += kHalf) {
+    RTCRayHit8 half;
+    alignas(32) std::array<int, kHalf> half_valid;
+    std::copy_n(valid.at.begin() + first, kHalf, half_valid.begin());
+    copy_half(&rays.ray.org_x[first], kLanes, &half.ray, kHalf, kRayArrays);
+    copy_half(&rays.hit.Ng_x[first], kLanes, &half.hit, kHalf, kHitArrays);
+    rtcIntersect8(half_valid.data(), scene, &context, &half);
+    copy_half(&half.ray, kHalf, &rays.ray.org_x[first], kLanes, kRayArrays);
+    copy_half(&half.hit, kHalf, &rays.hit.Ng_x[first], kLanes, kHitArrays);
+  }
+}
+
+}  // namespace glidar::embree

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+namespace glidar {
+
+/// How many beams are worked on together.
+inline constexpr unsigned kLanes = 16;
+
+/// One number per lane.
+template <class T>
+struct alignas(64) Lanes {
+  std::array<T, kLanes> at;
+  T& operator[](unsigned lane) { return at[lane]; }
+  const T& operator[](unsigned lane) const { return at[lane]; }
+};
+
+/// One vector per lane, component by component.
+template <class T>
+struct Lanes3 {
+  Lanes<T> x;
+  Lanes<T> y;
+  Lanes<T> z;
+
+  void set(unsigned lane, const Eigen::Matrix<T, 3, 1>& v) {
+    x[lane] = v.x();
+    y[lane] = v.y();
+    z[lane] = v.z();
+  }
+  [[nodiscard]] Eigen::Matrix<T, 3, 1> get(unsigned lane) const {
+    return {x[lane], y[lane], z[lane]};
+  }
+};
+
+/// out = matrix * in, lane by lane.
+template <class T>
+inline void rotate(const Eigen::Matrix<T, 3, 3>& matrix, const Lanes3<T>& in, Lanes3<T>& out) {
+  const T* m = matrix.data();  // column by column
+  for (unsigned i = 0; i < kLanes; ++i) {
+    out.x[i] = m[0] * in.x[i] + m[3] * in.y[i] + m[6] * in.z[i];
+    out.y[i] = m[1] * in.x[i] + m[4] * in.y[i] + m[7] * in.z[i];
+    out.z[i] = m[2] * in.x[i] + m[5] * in.y[i] + m[8] * in.z[i];
+  }
+}
+
+}  // namespace glidar

@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+#include <glidar/core/pose.hpp>
+#include <glidar/core/scene.hpp>
+
+namespace glidar {
+
+/// How much of the image's half width or height frame_view leaves free on each side.
+inline constexpr double kFramingMargin = 0.05;
+
+/// The nearest pose (world_from_sensor) of a camera from which every vertex of the scene lies in
+/// its image, with kFramingMargin left free. The camera stands on the side `from_direction` (world,
+/// from the scene to the camera, any length) and looks the other way; `up` (world) points up in the
+/// image. It is shifted sideways so that the scene stands in the middle, wherever the principal
+/// point is.
+/// The image is the rectangle of its pixels; with distorted optics the largest upright rectangle
+/// that the outermost beams enclose, or, when these look backwards or are missing (fisheye), the
+/// cone about the middle beam that they enclose.
+/// Throws Error when the scene has no triangles or no size, when the beams are not those of a
+/// camera (boresight +z, an image with an area), and where look_at does.
+Pose frame_view(const Beams& beams, const Scene& scene, const Eigen::Vector3d& from_direction,
+                const Eigen::Vector3d& up);
+
+}  // namespace glidar

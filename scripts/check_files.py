@@ -1,0 +1,52 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Checks every tracked source file: licence head, length.
+
+usage: check_files.py; exit status 1 when a file breaks a rule.
+"""
+
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+LICENCE = "SPDX-License-Identifier: BSD-3-Clause"
+COPYRIGHT = "SPDX-FileCopyrightText: 2026 The GLIDAR developers"
+SOURCES = {".cpp", ".hpp", ".py", ".sh", ".cmake", ".glsl"}
+NAMES = {"dev", "run", "CMakeLists.txt"}
+MAX_LINES = 400
+TABLES = set()  # files that are long because they hold data, one path each
+
+
+def is_source(path):
+    return path.suffix in SOURCES or path.name in NAMES
+
+
+def check_text(path, text):
+    """All complaints about a file's text."""
+    lines = text.splitlines()
+    complaints = []
+    head = "\n".join(lines[:4])
+    if COPYRIGHT not in head or LICENCE not in head:
+        complaints.append(f"{path}:1: the two SPDX lines are missing at the top")
+    if len(lines) > MAX_LINES and path not in TABLES:
+        complaints.append(f"{path}:{MAX_LINES}: {len(lines)} lines, allowed are {MAX_LINES}; split it")
+    return complaints
+
+
+def main():
+    listed = subprocess.run(
+        ["git", "ls-files", "-z"], cwd=ROOT, check=True, capture_output=True, text=True
+    ).stdout
+    complaints = []
+    for path in filter(None, listed.split("\0")):
+        if is_source(Path(path)) and (ROOT / path).is_file():
+            complaints += check_text(path, (ROOT / path).read_text(encoding="utf-8"))
+    for complaint in complaints:
+        print(complaint)
+    return 1 if complaints else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

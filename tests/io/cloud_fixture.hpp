@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/file_sink.hpp>
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+namespace glidar {
+
+/// A cloud whose numbers are formulas of the point's index; readers_test.py has the same formulas.
+/// Every third beam misses.
+struct CloudFixture {
+  std::uint32_t rows = 4;
+  std::uint32_t cols = 5;
+  Scene scene;
+  Sensor sensor;
+  Beams beams;
+  Frame frame;
+  PointCloud cloud;
+
+  [[nodiscard]] SidecarContext context() const { return {scene, sensor, beams, "embree"}; }
+};
+
+inline bool is_miss(std::size_t i) {
+  return i % 3 == 2;
+}
+
+namespace fixture {
+
+template <class T, class Function>
+void add_column(PointCloud& cloud, std::string name, std::vector<std::string> components,
+                Function value_of) {
+  std::vector<T> values;
+  for (std::size_t i = 0; i < cloud.size(); ++i)
+    for (std::size_t c = 0; c < components.size(); ++c) values.push_back(value_of(i, c));
+  cloud.columns.push_back({std::move(name), std::move(components), std::move(values)});
+}
+
+inline void add_columns(PointCloud& cloud) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
+  add_column<double>(cloud, "xyz", {"x", "y", "z"}, [](std::size_t i, std::size_t c) {
+    const double at = static_cast<double>(i);
+    const double xyz[3] = {at * 0.125 + 1.0 / 3.0, -at / 7.0, 2.0 + at * 0.01};
+    return is_miss(i) ? kNan : xyz[c];
+  });
+  add_column<float>(cloud, "intensity", {"intensity"}, [](std::size_t i, std::size_t) {
+    return is_miss(i) ? 0.0F : static_cast<float>(i) / 20.0F;
+  });
+  add_column<double>(cloud, "depth", {"depth"}, [](std::size_t i, std::size_t) {
+    return is_miss(i) ? kNan : 1.0 + static_cast<double>(i % 100) / 3.0;
+  });
+  add_column<float>(cloud, "normal", {"normal_x", "normal_y", "normal_z"},
+                    [](std::size_t i, std::size_t c) {
+                      const float normal[3] = {0.6F, -0.8F, 0.0F};
+                      return is_miss(i) ? kNanF : normal[c];
+                    });
+  add_column<float>(cloud, "colour", {"red", "green", "blue"}, [](std::size_t i, std::size_t c) {
+    const float at = static_cast<float>(i) / 20.0F;
+    const float rgb[3] = {at, 1.0F - at, 0.5F};
+    return is_miss(i) ? 0.0F : rgb[c];
+  });
+  add_column<std::uint32_t>(cloud, "instance", {"instance"}, [](std::size_t i, std::size_t) {
+    return is_miss(i) ? kNoHit : static_cast<std::uint32_t>(i + 7);
+  });
+  add_column<std::uint16_t>(cloud, "ring", {"ring"}, [](std::size_t i, std::size_t) {
+    return static_cast<std::uint16_t>(i * 1000);
+  });
+  add_column<std::uint8_t>(cloud, "status", {"status"}, [](std::size_t i, std::size_t) {
+    return static_cast<std::uint8_t>(is_miss(i) ? Status::miss : Status::hit);
+  });
+}
+
+inline void set_frame(CloudFixture& made) {
+  Frame& frame = made.frame;
+  const std::size_t count = std::size_t{made.rows} * made.cols;
+  frame.rows = made.rows;
+  frame.cols = made.cols;
+  frame.frame_id = "camera";
+  frame.stamp_ns = -1234567890123456789;
+  frame.seed = 18446744073709551615U;
+  frame.world_from_sensor = make_pose({1.0, 2.0, 3.0}, Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5));
+  frame.world_from_instance = {make_pose({10.0, 0.0, 0.0}, Eigen::Quaterniond(0.0, 0.0, 0.0, 1.0)),
+                               Pose::Identity()};
+  for (std::size_t i = 0; i < count; ++i)
+    frame.status.push_back(is_miss(i) ? Status::miss : Status::hit);
+}
+
+}  // namespace fixture
+
+inline CloudFixture make_fixture(std::uint32_t rows = 4, std::uint32_t cols = 5) {
+  CloudFixture made;
+  made.rows = rows;
+  made.cols = cols;
+  made.scene.meshes.resize(1);
+  made.scene.sources = {{"rock.ply", "0123abcd"}};
+  made.scene.instances.resize(2);
+  made.scene.instances[0].name = "rock";
+  made.scene.instances[0].id = 7;
+  made.scene.instances[0].scale = 2.5;
+  made.scene.instances[1].name = "other rock";
+  fixture::set_frame(made);
+  made.cloud.rows = rows;
+  made.cloud.cols = cols;
+  made.cloud.frame_id = "map";
+  made.cloud.world_from_cloud =
+      make_pose({0.0, 0.0, -1.0}, Eigen::Quaterniond(std::sqrt(0.5), 0.0, 0.0, std::sqrt(0.5)));
+  fixture::add_columns(made.cloud);
+  return made;
+}
+
+inline void write_cloud(const CloudFixture& made, const std::filesystem::path& path,
+                        const FileSinkOptions& options = {}) {
+  const SidecarContext context = made.context();
+  make_file_sink(path, options, context)->write(made.cloud, made.frame);
+}
+
+inline void drop_column(PointCloud& cloud, std::string_view name) {
+  std::erase_if(cloud.columns, [&](const Column& column) { return column.name == name; });
+}
+
+inline std::string file_bytes(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+/// An empty folder that goes away with its owner.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "glidar-test-XXXXXX").string();
+    if (::mkdtemp(name.data()) == nullptr)
+      throw std::filesystem::filesystem_error("cannot make a folder", name,
+                                              std::error_code(errno, std::generic_category()));
+    path_ = name;
+  }
+  ~ScratchFolder() { std::filesystem::remove_all(path_); }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  [[nodiscard]] std::filesystem::path operator/(const std::string& name) const {
+    return path_ / name;
+  }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] std::vector<std::string> names() const {
+    std::vector<std::string> all;
+    for (const auto& entry : std::filesystem::directory_iterator(path_))
+      all.push_back(entry.path().filename().string());
+    std::sort(all.begin(), all.end());
+    return all;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace glidar

@@ -1,0 +1,44 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What README.md shows works: its marked shell blocks run, its C++ is that of examples/render.cpp."""
+
+import re
+import subprocess
+import tempfile
+import textwrap
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+TIME_LIMIT_S = 300
+
+
+class Readme(unittest.TestCase):
+    def test_marked_shell_blocks_run(self):
+        blocks = re.findall(r"<!-- run by tests/readme_test.py -->\n```sh\n(.*?)```", README, re.DOTALL)
+        self.assertGreaterEqual(len(blocks), 1)
+        with tempfile.TemporaryDirectory() as folder:
+            (Path(folder) / "models").symlink_to(ROOT / "models")
+            for block in blocks:
+                done = subprocess.run(
+                    ["bash", "-euo", "pipefail", "-c", block],
+                    cwd=folder, capture_output=True, text=True, timeout=TIME_LIMIT_S, check=False,
+                )  # fmt: skip
+                self.assertEqual(done.returncode, 0, f"{block}\n{done.stdout}\n{done.stderr}")
+                for output in re.findall(r" -o (\S+)", block):
+                    self.assertGreater((Path(folder) / output).stat().st_size, 0, output)
+
+    def test_cpp_is_the_compiled_example(self):
+        example = (ROOT / "examples/render.cpp").read_text(encoding="utf-8")
+        shown = re.search(r"// \[README\]\n(.*?) *// \[README\]", example, re.DOTALL)[1]
+        self.assertIn(f"```cpp\n{textwrap.dedent(shown)}```", README)
+
+    def test_files_it_links_to_exist(self):
+        for target in re.findall(r"\]\(([^)#:]+)\)", README):
+            self.assertTrue((ROOT / target).exists(), target)
+
+
+if __name__ == "__main__":
+    unittest.main()
