@@ -16,7 +16,13 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 
 constexpr std::uint64_t kGiB = std::uint64_t{1} << 30U;
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kMeasurable = false;  // the sanitizers' own memory counts too
+constexpr double kTimeLimit = 60.0;
+#else
+constexpr bool kMeasurable = true;
 constexpr double kTimeLimit = 10.0;
+#endif
 
 std::vector<fs::path> files_below(const fs::path& folder) {
   std::vector<fs::path> files;
@@ -41,7 +47,9 @@ void expect_tamed(const fs::path& file) {
   SCOPED_TRACE(file.string());
   const ImportRequest request{file, 0.785, kTimeLimit, 0};
   const ImportRun run = run_import(request, {});
-  EXPECT_LE(run.peak_memory_bytes, kGiB);
+  if (kMeasurable) {
+    EXPECT_LE(run.peak_memory_bytes, kGiB);
+  }
   EXPECT_LT(run.seconds, kTimeLimit + 1.0);
   try {
     const ImportedModel imported = take_model(run, request);
@@ -110,6 +118,7 @@ TEST(HostileModels, TheTiniestTriangleKeepsItsCorners) {
 }
 
 TEST(HostileModels, ACrashIsToldWithItsSignal) {
+  GLIDAR_SKIP_SANITIZED();
   GLIDAR_NEED_DATA();
   const std::string text = testing::load_error(
       (testing::data_folder() / "hostile/synthetic/3mf/component_cycle.3mf").string());
@@ -119,6 +128,7 @@ TEST(HostileModels, ACrashIsToldWithItsSignal) {
 }
 
 TEST(HostileModels, ABombIsToldWithItsLimit) {
+  GLIDAR_SKIP_SANITIZED();
   GLIDAR_NEED_DATA();
   const std::string text = testing::load_error(
       (testing::data_folder() / "hostile/synthetic/dae/instance_bomb.dae").string());

@@ -68,8 +68,9 @@ TEST(DataModels, GazeboTexturesAreFoundInTheirPackage) {
 
 TEST(DataModels, WindowsPathsAreFound) {
   GLIDAR_NEED_DATA();
-  for (const char* path : {"textured/assimp/OBJ/spider.obj", "textured/obj_mtl/obj2gltf/box-windows-paths/box-windows-paths.obj", "textured/trimesh/fuze.ply",
-                           "textured/trimesh/fuze.obj"}) {
+  for (const char* path : {"textured/assimp/OBJ/spider.obj",
+                           "textured/obj_mtl/obj2gltf/box-windows-paths/box-windows-paths.obj",
+                           "textured/trimesh/fuze.ply", "textured/trimesh/fuze.obj"}) {
     const Model model = load(data_folder() / path);
     EXPECT_FALSE(model.textures.empty()) << path;
     EXPECT_TRUE(model.missing_textures.empty()) << path;

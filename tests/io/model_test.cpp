@@ -308,6 +308,7 @@ TEST(LoadModel, FilesThatAreNoModelsSaySo) {
 }
 
 TEST(LoadModel, LimitsAreKept) {
+  GLIDAR_SKIP_SANITIZED();
   const TempFolder temp;
   const std::string file = temp.write("a.obj", kTriangle).string();
   ModelOptions options = without_cache();

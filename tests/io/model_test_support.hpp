@@ -106,6 +106,13 @@ inline std::string quad_obj(const std::string& mtllib) {
 
 }  // namespace glidar::testing
 
+/// The sanitizers' own memory and signal handling hide what a test is about.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define GLIDAR_SKIP_SANITIZED() GTEST_SKIP() << "not under a sanitizer"
+#else
+#define GLIDAR_SKIP_SANITIZED() static_cast<void>(0)
+#endif
+
 /// Skips the test, saying so, without real data.
 #define GLIDAR_NEED_DATA()                                                         \
   if (::glidar::testing::data_folder().empty()) {                                  \
