@@ -136,14 +136,8 @@ GLIDAR_SIMD void blend_normals(const CornerBlock& n, const Lanes<float>& w1, con
   }
 }
 
-void prefetch_corners(const Resolver& resolver, const HitBlock& block) {
-  for_lanes(block.mask, [&](unsigned i) {
-    const Mesh& mesh = resolver.mesh(block.instance[i]);
-    for (const std::uint32_t vertex : mesh.triangles[block.primitive[i]]) {
-      __builtin_prefetch(&mesh.positions_m[vertex]);
-      if (!mesh.normals.empty()) __builtin_prefetch(&mesh.normals[vertex]);
-    }
-  });
+bool needs_corners(const HitFields& fields) {
+  return fields.barycentrics || fields.shading_normal || fields.colour || fields.reflectance;
 }
 
 void gather_corners(const Resolver& resolver, const HitBlock& block, CornerBlock& corners) {
@@ -243,6 +237,17 @@ void Resolver::set_poses(const Pose& world_from_sensor, std::span<const Pose> wo
   }
 }
 
+void Resolver::prefetch_corners(const HitBlock& block, const HitFields& fields) const {
+  if (!needs_corners(fields)) return;
+  for_lanes(block.mask, [&](unsigned i) {
+    const Mesh& of = mesh(block.instance[i]);
+    for (const std::uint32_t vertex : of.triangles[block.primitive[i]]) {
+      __builtin_prefetch(&of.positions_m[vertex]);
+      if (!of.normals.empty()) __builtin_prefetch(&of.normals[vertex]);
+    }
+  });
+}
+
 void Resolver::measure(const Beams& beams, const Lanes3<double>& in_sensor, HitBlock& block,
                        ExactBlock& exact) const {
   const auto first = static_cast<unsigned>(std::countr_zero(block.mask));
@@ -271,9 +276,6 @@ void Resolver::measure(const Beams& beams, const Lanes3<double>& in_sensor, HitB
 
 void Resolver::write(const Beams& beams, const HitFields& fields, const HitBlock& block,
                      const ExactBlock& exact, Hits& hits) const {
-  const bool on_triangle =
-      fields.barycentrics || fields.shading_normal || fields.colour || fields.reflectance;
-  if (on_triangle) prefetch_corners(*this, block);
   for_lanes(block.mask, [&](unsigned i) {
     const std::size_t beam = block.beam[i];
     hits.range_m[beam] = exact.distance[i] * views_[block.instance[i]].scale;
@@ -286,7 +288,7 @@ void Resolver::write(const Beams& beams, const HitFields& fields, const HitBlock
                                 (exact.origin.get(i) + exact.distance[i] * exact.direction.get(i));
   });
   if (fields.normal) write_directions(block, exact.normal, exact.cosine, hits.normal);
-  if (on_triangle) write_surface(fields, block, exact, hits);
+  if (needs_corners(fields)) write_surface(fields, block, exact, hits);
 }
 
 void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& front,

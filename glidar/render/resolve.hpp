@@ -105,12 +105,15 @@ class Resolver {
     return twins.empty() ? primitive : twins[primitive];
   }
 
-  /// Asks the memory for what measure() and write() will read of a lane's triangle.
+  /// Asks the memory for a lane's triangle.
   void prefetch(const HitBlock& block, unsigned lane) const {
     const std::uint32_t primitive = block.primitive[lane];
     __builtin_prefetch(&plane(block.instance[lane], primitive));
     __builtin_prefetch(&mesh(block.instance[lane]).triangles[primitive]);
   }
+
+  /// Asks the memory for the corners of a block's triangles, as far as the fields need them.
+  void prefetch_corners(const HitBlock& block, const HitFields& fields) const;
 
   /// Exact range and incidence of a block with at least one hit, from its beams' directions in the
   /// sensor's frame. Lanes without a hit take the ids of one that has.

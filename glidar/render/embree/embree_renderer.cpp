@@ -7,6 +7,7 @@
 #include <glidar/render/embree/tiles.hpp>
 #include <glidar/render/resolve.hpp>
 
+#include <array>
 #include <bit>
 #include <memory>
 
@@ -29,17 +30,24 @@ struct TileWork {
   HitBlock block;
   Lanes3<double> in_sensor;  ///< directions
   Lanes<int> valid;          ///< -1: the lane has a beam
+  std::uint32_t inside;      ///< bit i: lane i lies in the grid
   embree::RayHits rays;
   ExactBlock exact;
 };
 
 /// Collects the tile's beams; lanes beyond the grid's border repeat the first and are not valid.
 void gather_beams(const Beams& beams, const embree::Tile& tile, TileWork& work) {
+  const bool whole = tile.is_whole(kLanes);
+  const std::size_t first = tile.beam(0);
+  const std::uint32_t column_mask = (1U << tile.width_shift) - 1U;
+  work.inside = 0;
   for (unsigned lane = 0; lane < kLanes; ++lane) {
-    const std::size_t beam = tile.beam(lane);
-    const bool inside = beam != embree::Tile::kOutside;
+    const std::size_t beam =
+        first + std::size_t{lane >> tile.width_shift} * tile.cols + (lane & column_mask);
+    const bool inside = whole || tile.beam(lane) != embree::Tile::kOutside;
+    work.inside |= static_cast<std::uint32_t>(inside) << lane;
     work.valid[lane] = inside ? -1 : 0;
-    work.block.beam[lane] = inside ? beam : tile.beam(0);
+    work.block.beam[lane] = inside ? beam : first;
     work.in_sensor.set(lane, beams.directions[work.block.beam[lane]]);
   }
 }
@@ -96,11 +104,9 @@ bool settle(const Job& job, std::uint32_t doubtful, HitBlock& block) {
   return changed;
 }
 
-/// Casts the beams of one tile and writes their hits.
-void cast_tile(const Job& job, const embree::Tile& tile, TileWork& work) {
+/// Writes the hits and misses of a traced tile.
+void finish(const Job& job, TileWork& work) {
   HitBlock& block = work.block;
-  gather_beams(job.beams, tile, work);
-  trace(job, work);
   if (block.mask != 0) {
     job.resolver.measure(job.beams, work.in_sensor, block, work.exact);
     const std::uint32_t doubtful = job.probe.doubtful(block, work.exact, work.rays);
@@ -109,11 +115,27 @@ void cast_tile(const Job& job, const embree::Tile& tile, TileWork& work) {
     }
   }
   if (block.mask != 0) job.resolver.write(job.beams, job.fields, block, work.exact, job.hits);
-  for (unsigned lane = 0; lane < kLanes; ++lane) {
-    const std::size_t beam = tile.beam(lane);
-    if ((block.mask >> lane & 1U) == 0 && beam != embree::Tile::kOutside) {
-      Resolver::write_miss(job.fields, beam, job.hits);
+  for (std::uint32_t missed = work.inside & ~block.mask; missed != 0; missed &= missed - 1) {
+    const auto lane = static_cast<unsigned>(std::countr_zero(missed));
+    Resolver::write_miss(job.fields, block.beam[lane], job.hits);
+  }
+}
+
+/// Casts tiles [begin, end). Three are under way at a time, so that what the later steps of one
+/// read from memory (planes and corners of its triangles) comes while the next is traced.
+void cast_tiles(const Job& job, const embree::Tiling& tiling, std::size_t begin, std::size_t end) {
+  std::array<TileWork, 3> ring;
+  for (std::size_t i = begin; i < end + 2; ++i) {
+    if (i < end) {
+      TileWork& work = ring[i % ring.size()];
+      gather_beams(job.beams, tiling.tile(i), work);
+      if (i + 1 < end) prefetch(job.beams, tiling.tile(i + 1));
+      trace(job, work);
     }
+    if (i >= begin + 1 && i - 1 < end) {
+      job.resolver.prefetch_corners(ring[(i - 1) % ring.size()].block, job.fields);
+    }
+    if (i >= begin + 2) finish(job, ring[(i - 2) % ring.size()]);
   }
 }
 
@@ -143,11 +165,7 @@ class EmbreeRenderer final : public Renderer {
                   .hits = hits};
     const embree::Tiling tiling(request.beams);
     workers_.for_ranges(tiling.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
-      TileWork work;
-      for (std::size_t i = begin; i < end; ++i) {
-        if (i + 1 < end) prefetch(request.beams, tiling.tile(i + 1));
-        cast_tile(job, tiling.tile(i), work);
-      }
+      cast_tiles(job, tiling, begin, end);
     });
   }
 

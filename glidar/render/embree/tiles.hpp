@@ -20,6 +20,10 @@ struct Tile {
   std::uint32_t rows;         ///< of the whole grid
   std::uint32_t cols;
 
+  [[nodiscard]] bool is_whole(std::uint32_t lanes) const {
+    return first_row + (lanes >> width_shift) <= rows && first_col + (1U << width_shift) <= cols;
+  }
+
   /// Index of a lane's beam, or kOutside beyond the grid's border.
   [[nodiscard]] std::size_t beam(std::uint32_t lane) const {
     const std::uint32_t row = first_row + (lane >> width_shift);

@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace glidar::bench {
+
+/// A promise about two benchmarks of one run: median time of `baseline` over that of `ours`.
+struct Ratio {
+  std::string what;
+  std::string baseline;
+  std::string ours;
+  double goal;  ///< at least
+};
+
+/// Google Benchmark's console output, and after it the ratios with their goals.
+class RatioReporter : public benchmark::ConsoleReporter {
+ public:
+  explicit RatioReporter(std::vector<Ratio> ratios) : ratios_(std::move(ratios)) {}
+  void ReportRuns(const std::vector<Run>& runs) override;
+  void Finalize() override;
+
+ private:
+  std::vector<Ratio> ratios_;
+  std::map<std::string, std::vector<double>> seconds_;  ///< per benchmark, one per repetition
+};
+
+/// Runs all registered benchmarks, repetitions of all taken in turn, and prints the ratios.
+int run(int argc, char** argv, std::vector<Ratio> ratios);
+
+}  // namespace glidar::bench
