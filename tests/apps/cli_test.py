@@ -173,7 +173,7 @@ class Refusals(CliTest):
 
     def test_an_error_while_loading_leaves_old_files_alone(self):
         self.write("x.pcd", "old")
-        self.write("broken.ply", "ply\nformat ascii 1.0\nelement vertex 9\n")
+        self.write("broken.ply", "neither a header nor triangles\n")
         self.refused("render", "broken.ply", "-o", "x.pcd")
         with open(os.path.join(self.folder, "x.pcd"), encoding="utf-8") as file:
             self.assertEqual(file.read(), "old")
@@ -348,7 +348,7 @@ class Verify(CliTest):
 class Interrupt(CliTest):
     def test_ctrl_c_leaves_no_files(self):
         with subprocess.Popen(
-                ["glidar", "render", "builtin:asteroid", "-w", "3000", "--height", "3000",
+                ["glidar", "render", "builtin:asteroid", "-w", "1200", "--height", "1200",
                  "--columns", "all", "-o", "a.csv", "-o", "b.csv"],
                 cwd=self.folder, env=self.environment, stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE, text=True) as program:
