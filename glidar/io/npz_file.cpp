@@ -61,8 +61,8 @@ struct Target {
 zip_int64_t seek(Target& target, void* data, zip_uint64_t length) {
   // libzip seeks from the start or from here, never from the end: no length is kept for that
   constexpr auto kNoEnd = static_cast<zip_uint64_t>(ZIP_INT64_MAX);
-  const zip_int64_t offset = zip_source_seek_compute_offset(target.file.position(), kNoEnd, data,
-                                                            length, &target.error);
+  const zip_int64_t offset =
+      zip_source_seek_compute_offset(target.file.position(), kNoEnd, data, length, &target.error);
   if (offset >= 0) target.file.seek(static_cast<std::uint64_t>(offset));
   return offset < 0 ? -1 : 0;
 }

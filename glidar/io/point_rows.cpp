@@ -31,19 +31,37 @@ struct Places {
   std::size_t count;
 };
 
-/// The one inner loop of all writers: `from` advances by `step` numbers a point.
-template <class To, class From, class Convert>
+/// The one inner loop of all writers: `from` advances by `step` numbers a point, of which the first
+/// kCount are stored side by side.
+template <class To, std::size_t kCount, class From, class Convert>
 void store_each(const From* from, std::size_t step, const Places& to, Convert convert) {
   std::byte* place = to.first;
   for (std::size_t i = 0; i < to.count; ++i, from += step, place += to.stride) {
-    const To value = convert(from);
-    std::memcpy(place, &value, sizeof(To));
+    std::array<To, kCount> values;
+    for (std::size_t c = 0; c < kCount; ++c) values[c] = convert(from + c);
+    std::memcpy(place, values.data(), sizeof(values));
+  }
+}
+
+/// Three at a time, as most columns have them.
+template <class To, class From, class Convert>
+void store_run(const From* from, std::size_t step, std::size_t run, Places to, Convert convert) {
+  while (run > 0) {
+    const std::size_t now = run >= 3 ? 3 : 1;
+    if (now == 3) {
+      store_each<To, 3>(from, step, to, convert);
+    } else {
+      store_each<To, 1>(from, step, to, convert);
+    }
+    from += now;
+    run -= now;
+    to.first += now * sizeof(To);
   }
 }
 
 template <class To, class From>
-void store_cast(const From* from, std::size_t step, const Places& to) {
-  store_each<To>(from, step, to, [](const From* value) { return static_cast<To>(*value); });
+void store_cast(const From* from, std::size_t step, std::size_t run, const Places& to) {
+  store_run<To>(from, step, run, to, [](const From* value) { return static_cast<To>(*value); });
 }
 
 /// NaN gives 0.
@@ -57,36 +75,51 @@ std::uint32_t packed_rgb(const float* rgb) {
 }
 
 template <class From>
-void store_field(const From* from, std::size_t step, Stored stored, const Places& to) {
-  switch (stored) {
+void store_fields(const From* from, std::size_t step, std::span<const Field> same,
+                  const Places& to) {
+  const std::size_t run = same.size();
+  switch (same.front().stored) {
     case Stored::f32:
-      return store_cast<float>(from, step, to);
+      return store_cast<float>(from, step, run, to);
     case Stored::f64:
-      return store_cast<double>(from, step, to);
+      return store_cast<double>(from, step, run, to);
     case Stored::u8:
-      return store_cast<std::uint8_t>(from, step, to);
+      return store_cast<std::uint8_t>(from, step, run, to);
     case Stored::u16:
-      return store_cast<std::uint16_t>(from, step, to);
+      return store_cast<std::uint16_t>(from, step, run, to);
     case Stored::u32:
-      return store_cast<std::uint32_t>(from, step, to);
+      return store_cast<std::uint32_t>(from, step, run, to);
     case Stored::colour_byte:
     case Stored::packed_rgb:
       break;
   }
   if constexpr (std::is_same_v<From, float>) {
-    if (stored == Stored::packed_rgb) return store_each<std::uint32_t>(from, step, to, packed_rgb);
-    store_each<std::uint8_t>(from, step, to,
-                             [](const float* value) { return colour_byte(*value); });
+    if (same.front().stored == Stored::packed_rgb)
+      return store_run<std::uint32_t>(from, step, run, to, packed_rgb);
+    store_run<std::uint8_t>(from, step, run, to,
+                            [](const float* value) { return colour_byte(*value); });
   }
 }
 
-void pack_field(const Field& field, std::size_t first_row, const Places& to) {
+void pack_fields(std::span<const Field> same, std::size_t first_row, const Places& to) {
+  const Field& field = same.front();
   const std::size_t step = field.column->components.size();
   std::visit(
       [&](const auto& values) {
-        store_field(values.data() + first_row * step + field.component, step, field.stored, to);
+        store_fields(values.data() + first_row * step + field.component, step, same, to);
       },
       field.column->values);
+}
+
+/// How many fields from the first on are neighbours in one column and stored alike, so that one
+/// pass can move them together.
+std::size_t run_length(std::span<const Field> fields) {
+  std::size_t run = 1;
+  while (run < fields.size() && fields[run].column == fields[0].column &&
+         fields[run].stored == fields[0].stored &&
+         fields[run].component == fields[0].component + run)
+    ++run;
+  return run;
 }
 
 template <class T>
@@ -178,9 +211,12 @@ void pack_rows(std::span<const Field> fields, std::size_t first, std::size_t cou
   const std::size_t stride = row_bytes(fields);
   for (std::size_t done = 0; done < count; done += kBlockRows) {
     Places to = {rows.data() + done * stride, stride, std::min(kBlockRows, count - done)};
-    for (const Field& field : fields) {
-      pack_field(field, first + done, to);
-      to.first += size_of(field.stored);
+    std::span<const Field> left = fields;
+    while (!left.empty()) {
+      const std::span<const Field> same = left.first(run_length(left));
+      pack_fields(same, first + done, to);
+      to.first += row_bytes(same);
+      left = left.subspan(same.size());
     }
   }
 }

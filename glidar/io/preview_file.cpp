@@ -110,13 +110,13 @@ std::array<std::string, 2> scale_texts(const Panel& panel) {
 }
 
 Layout make_layout(const PointCloud& cloud, const std::array<Panel, 2>& panels) {
-  constexpr std::size_t kSmallest = 256;
+  constexpr std::size_t kUsual = 512;
   const std::size_t longer = std::max<std::size_t>({cloud.rows, cloud.cols, 1});
   Layout layout{};
-  layout.zoom = std::max<std::size_t>(1, kSmallest / longer);
+  layout.zoom = std::max<std::size_t>(1, kUsual / longer);
   const std::size_t width = cloud.cols * layout.zoom;
-  layout.dot = std::clamp<std::size_t>((width + 160) / 320, 1, 6);
-  layout.gap = 4 * layout.dot;
+  layout.dot = std::clamp<std::size_t>((width + 768) / 512, 1, 6);
+  layout.gap = 8 * layout.dot;
   layout.footer = (kTextHeightDots + 4) * layout.dot;
   layout.cell_width = width;
   for (const Panel& panel : panels) {

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <array>
 
 namespace glidar {
@@ -126,13 +127,42 @@ Json instances_json(const CloudFile& job) {
 }
 
 Json status_json(const Frame& frame) {
-  std::array<std::size_t, 256> counts{};
-  for (const Status status : frame.status) ++counts[static_cast<std::size_t>(status)];
+  // Neighbours mostly have the same status: counters of their own keep them from waiting for each
+  // other.
+  constexpr std::size_t kLanes = 4;
+  std::array<std::array<std::size_t, 256>, kLanes> counts{};
+  for (std::size_t i = 0; i < frame.status.size(); ++i)
+    ++counts[i % kLanes][static_cast<std::size_t>(frame.status[i])];
   constexpr auto kLast = static_cast<std::size_t>(Status::no_beam);
   Json told = Json::object();
-  for (std::size_t s = 0; s <= kLast; ++s)
-    told[std::string(name(static_cast<Status>(s)))] = counts[s];
+  for (std::size_t s = 0; s <= kLast; ++s) {
+    told[std::string(name(static_cast<Status>(s)))] =
+        counts[0][s] + counts[1][s] + counts[2][s] + counts[3][s];
+  }
   return told;
+}
+
+// names and paths may hold bytes that are no UTF-8
+std::string on_one_line(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Indented, but a list of plain values stays on one line, so that a matrix reads as one.
+void append_text(const Json& value, std::size_t indent, std::string& text) {
+  const auto nested = [](const Json& part) { return part.is_structured(); };
+  if (!value.is_object() && std::none_of(value.begin(), value.end(), nested)) {
+    text += on_one_line(value);
+    return;
+  }
+  const std::string margin(indent + 2, ' ');
+  std::string_view before = value.is_object() ? "{\n" : "[\n";
+  for (const auto& [key, part] : value.items()) {
+    text.append(before).append(margin);
+    if (value.is_object()) text += on_one_line(key) + ": ";
+    append_text(part, indent + 2, text);
+    before = ",\n";
+  }
+  text.append("\n").append(indent, ' ').append(value.is_object() ? "}" : "]");
 }
 
 }  // namespace
@@ -146,8 +176,9 @@ std::string sidecar_text(const CloudFile& job, const std::filesystem::path& path
                     {"sensor", sensor_json(job)},
                     {"instances", instances_json(job)},
                     {"beams_by_status", status_json(job.frame)}};
-  // names and paths may hold bytes that are no UTF-8
-  return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  std::string text;
+  append_text(all, 0, text);
+  return text + "\n";
 }
 
 }  // namespace glidar

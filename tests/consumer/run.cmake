@@ -17,4 +17,7 @@ run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR} -B ${WORK_DIR}/build -G Ninja
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/build)
 run(${WORK_DIR}/build/consumer_core)
 run(${WORK_DIR}/build/consumer)
-run(${prefix}/${BINDIR}/glidar --version)
+
+# the installed program finds the installed import program beside it, and the installed models
+set(ENV{XDG_CACHE_HOME} ${WORK_DIR}/cache)
+run(${prefix}/${BINDIR}/glidar info ${prefix}/${DATADIR}/glidar/models/satellite/satellite.obj)

@@ -174,7 +174,7 @@ class Formats(unittest.TestCase):
 
     def test_preview(self):
         image, _ = formats.read_png(FOLDER / "small" / "a.png")
-        zoom, gap = 256 // 5, 4
+        zoom, gap = 512 // 5, 16
         panel = image[gap + zoom // 2 :: zoom, gap + zoom // 2 :: zoom][:4, :5].astype(int)
         light = panel.sum(2).reshape(-1)
         miss = np.arange(20) % 3 == 2

@@ -1,0 +1,130 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/error.hpp>
+#include <glidar/core/point_cloud.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace glidar {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Two beams: the first hits at 2 m, the second misses.
+struct Fixture {
+  Beams beams;
+  Frame frame;
+  Scene scene;
+
+  Fixture() {
+    beams.rows = 1;
+    beams.cols = 2;
+    beams.frame_id = "camera_optical_frame";
+    beams.directions = {Eigen::Vector3d(0.6, 0.0, 0.8), Eigen::Vector3d::UnitZ()};
+    scene.class_names = {"unlabelled", "rock"};
+    scene.instances.push_back({.name = "a", .id = 7, .class_id = 1, .materials = {}});
+    frame.rows = 1;
+    frame.cols = 2;
+    frame.frame_id = beams.frame_id;
+    frame.range_m = {2.0, kNaN};
+    frame.intensity = {0.5F, 0.0F};
+    frame.status = {Status::hit, Status::miss};
+    frame.truth.range_m = frame.range_m;
+    frame.truth.instance = {0, kNoHit};
+    frame.truth.primitive = {42, kNoHit};
+  }
+
+  PointCloud cloud(const std::vector<std::string>& columns,
+                   const CloudFrame& in = {"c", Pose::Identity()}) {
+    PointCloud made;
+    make_point_cloud(frame, beams, scene, in, columns, made);
+    return made;
+  }
+};
+
+template <class T>
+const std::vector<T>& values(const PointCloud& cloud, std::string_view name) {
+  return std::get<std::vector<T>>(find_column(cloud, name)->values);
+}
+
+TEST(PointCloud, PutsPointsAlongTheirBeams) {
+  const PointCloud cloud = Fixture().cloud({"xyz", "depth", "range"});
+  const auto& xyz = values<double>(cloud, "xyz");
+  EXPECT_DOUBLE_EQ(xyz[0], 1.2);
+  EXPECT_DOUBLE_EQ(xyz[2], 1.6);
+  EXPECT_TRUE(std::isnan(xyz[3]));
+  EXPECT_DOUBLE_EQ(values<double>(cloud, "depth")[0], 1.6);
+  EXPECT_DOUBLE_EQ(values<double>(cloud, "range")[0], 2.0);
+}
+
+TEST(PointCloud, CountsTheBeamsOrigin) {
+  Fixture f;
+  f.beams.origins_m = {Eigen::Vector3d(0.0, 1.0, 0.5), Eigen::Vector3d::Zero()};
+  const PointCloud cloud = f.cloud({"xyz", "depth"});
+  EXPECT_DOUBLE_EQ(values<double>(cloud, "xyz")[1], 1.0);
+  EXPECT_DOUBLE_EQ(values<double>(cloud, "depth")[0], 2.1);
+}
+
+TEST(PointCloud, StandsInTheNamedFrame) {
+  Fixture f;
+  f.frame.world_from_sensor.translation() = Eigen::Vector3d(0.0, 0.0, 10.0);
+  const CloudFrame world{"world", f.frame.world_from_sensor};
+  const PointCloud cloud = f.cloud({"xyz"}, world);
+  EXPECT_EQ(cloud.frame_id, "world");
+  EXPECT_DOUBLE_EQ(values<double>(cloud, "xyz")[2], 11.6);
+  EXPECT_TRUE(cloud.world_from_cloud.isApprox(Pose::Identity()));
+}
+
+TEST(PointCloud, TellsIdsOfHitsAndOfMisses) {
+  const PointCloud cloud =
+      Fixture().cloud({"instance", "class", "primitive", "status", "row", "col"});
+  EXPECT_THAT(values<std::uint32_t>(cloud, "instance"), ::testing::ElementsAre(7, kNoHit));
+  EXPECT_THAT(values<std::uint32_t>(cloud, "class"), ::testing::ElementsAre(1, kNoHit));
+  EXPECT_THAT(values<std::uint32_t>(cloud, "primitive"), ::testing::ElementsAre(42, kNoHit));
+  EXPECT_THAT(values<std::uint8_t>(cloud, "status"), ::testing::ElementsAre(0, 1));
+  EXPECT_THAT(values<std::uint32_t>(cloud, "col"), ::testing::ElementsAre(0, 1));
+}
+
+TEST(PointCloud, RefusesUnknownAndUncastColumns) {
+  Fixture f;
+  try {
+    f.cloud({"intensty"});
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("did you mean 'intensity'?"));
+  }
+  try {
+    f.cloud({"normal"});
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("the frame was cast without it"));
+  }
+}
+
+TEST(PointCloud, AsksForTheFieldsOfItsColumns) {
+  const std::vector<std::string> names = {"xyz", "normal", "colour"};
+  const HitFields fields = fields_for(names);
+  EXPECT_TRUE(fields.normal);
+  EXPECT_TRUE(fields.colour);
+  EXPECT_FALSE(fields.shading_normal);
+  EXPECT_FALSE(fields.object_point);
+}
+
+TEST(Compacted, KeepsTheHitsOnly) {
+  const PointCloud cloud = compacted(Fixture().cloud({"xyz", "instance"}));
+  EXPECT_EQ(cloud.rows, 1U);
+  EXPECT_EQ(cloud.cols, 1U);
+  EXPECT_THAT(values<std::uint32_t>(cloud, "instance"), ::testing::ElementsAre(7));
+  EXPECT_EQ(values<double>(cloud, "xyz").size(), 3U);
+}
+
+TEST(Compacted, NeedsCoordinates) {
+  EXPECT_THROW(compacted(Fixture().cloud({"range"})), Error);
+}
+
+}  // namespace
+}  // namespace glidar

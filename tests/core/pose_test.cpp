@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/error.hpp>
+#include <glidar/core/pose.hpp>
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace glidar {
+namespace {
+
+TEST(LookAt, PutsTheTargetAheadAndUpUpwards) {
+  const Pose pose = look_at({1.0, 2.0, 3.0}, {1.0, 7.0, 3.0}, Eigen::Vector3d::UnitZ());
+  EXPECT_TRUE(is_rigid(pose));
+  EXPECT_LT(
+      (pose.inverse() * Eigen::Vector3d(1.0, 7.0, 3.0) - Eigen::Vector3d(0.0, 0.0, 5.0)).norm(),
+      1e-12);
+  EXPECT_LT(
+      (pose.linear().transpose() * Eigen::Vector3d::UnitZ() + Eigen::Vector3d::UnitY()).norm(),
+      1e-12);  // the world's up is the image's -y
+}
+
+TEST(LookAt, RefusesWhatHasNoDirection) {
+  const Eigen::Vector3d here = Eigen::Vector3d::Zero();
+  EXPECT_THROW(look_at(here, here, Eigen::Vector3d::UnitZ()), Error);
+  EXPECT_THROW(look_at(here, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ()), Error);
+  EXPECT_THROW(look_at(here, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()), Error);
+}
+
+TEST(MakePose, NormalisesTheQuaternion) {
+  const Pose pose = make_pose({0.0, 0.0, 0.0}, Eigen::Quaterniond(2.0, 0.0, 0.0, 2.0));
+  EXPECT_LT((pose * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-15);
+}
+
+TEST(MakePose, RefusesZeroAndNotANumber) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(make_pose({0.0, 0.0, 0.0}, Eigen::Quaterniond(0.0, 0.0, 0.0, 0.0)), Error);
+  EXPECT_THROW(make_pose({nan, 0.0, 0.0}, Eigen::Quaterniond::Identity()), Error);
+  EXPECT_THROW(make_pose({0.0, 0.0, 0.0}, Eigen::Quaterniond(nan, 0.0, 0.0, 1.0)), Error);
+}
+
+TEST(IsRigid, TellsMirrorsScalesAndNotANumber) {
+  Pose pose = Pose::Identity();
+  EXPECT_TRUE(is_rigid(pose));
+  pose.linear()(0, 0) = -1.0;
+  EXPECT_FALSE(is_rigid(pose));
+  pose.linear()(0, 0) = 1.001;
+  EXPECT_FALSE(is_rigid(pose));
+  pose.linear()(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE(is_rigid(pose));
+}
+
+}  // namespace
+}  // namespace glidar

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/error.hpp>
+#include <glidar/core/scene.hpp>
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+namespace glidar {
+namespace {
+
+Mesh triangle() {
+  Mesh mesh;
+  mesh.name = "t";
+  mesh.origin_m = {10.0, 0.0, 0.0};
+  mesh.positions_m = {{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {0.0F, 2.0F, 0.0F}};
+  mesh.triangles = {{0, 1, 2}};
+  return mesh;
+}
+
+Scene one_triangle() {
+  Scene scene;
+  scene.meshes.push_back(triangle());
+  scene.sources.emplace_back();
+  scene.materials.emplace_back();
+  scene.instances.push_back({.name = "i", .materials = {0}});
+  return scene;
+}
+
+std::string error_of(const std::function<void(Scene&)>& spoil) {
+  Scene scene = one_triangle();
+  spoil(scene);
+  try {
+    validate(scene);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(MeshBounds, CountTheOrigin) {
+  const Eigen::AlignedBox3d box = bounds(triangle());
+  EXPECT_EQ(box.min(), Eigen::Vector3d(10.0, 0.0, 0.0));
+  EXPECT_EQ(box.max(), Eigen::Vector3d(11.0, 2.0, 0.0));
+  EXPECT_TRUE(bounds(Mesh{}).isEmpty());
+}
+
+TEST(SceneBounds, CountPoseAndScale) {
+  Scene scene = one_triangle();
+  scene.instances[0].scale = 2.0;
+  scene.instances[0].world_from_object.translation() = Eigen::Vector3d(0.0, 0.0, 5.0);
+  EXPECT_EQ(bounds(scene).min(), Eigen::Vector3d(20.0, 0.0, 5.0));
+  EXPECT_EQ(bounds(scene).max(), Eigen::Vector3d(22.0, 4.0, 5.0));
+  EXPECT_TRUE(bounds(Scene{}).isEmpty());
+}
+
+TEST(SceneValidate, AcceptsAGoodScene) {
+  EXPECT_EQ(error_of([](Scene&) {}), "");
+}
+
+TEST(SceneValidate, NamesWhatIsWrong) {
+  EXPECT_EQ(error_of([](Scene& s) { s.instances[0].scale = 0.0; }),
+            "instance 'i': scale 0.000000; allowed: a finite number above 0");
+  EXPECT_EQ(error_of([](Scene& s) { s.instances[0].mesh = 1; }),
+            "instance 'i': mesh 1; allowed: an index of the scene's meshes");
+  EXPECT_EQ(error_of([](Scene& s) { s.instances[0].world_from_object.linear()(0, 0) = 3.0; }),
+            "instance 'i': a pose that is not a rigid transform; allowed: finite numbers and a "
+            "rotation");
+  EXPECT_EQ(error_of([](Scene& s) { s.instances[0].materials = {}; }),
+            "instance 'i': 0 materials; allowed: one per material slot");
+  EXPECT_EQ(error_of([](Scene& s) { s.instances[0].class_id = 4; }),
+            "instance 'i': class 4; allowed: an index of the scene's class names");
+  EXPECT_EQ(error_of([](Scene& s) { s.materials[0].alpha_texture.texture = 2; }),
+            "material 'default': texture 2; allowed: an index of the scene's textures");
+  EXPECT_EQ(error_of([](Scene& s) { s.meshes[0].triangles[0][1] = 3; }),
+            "mesh 't', triangles: a corner is vertex 3; allowed: below 3");
+  EXPECT_EQ(error_of([](Scene& s) { s.meshes[0].normals.resize(2); }),
+            "mesh 't', normals: 2 entries; allowed: 0 or 3");
+  EXPECT_EQ(error_of([](Scene& s) {
+              s.meshes[0].positions_m[0].x() = std::numeric_limits<float>::quiet_NaN();
+            }),
+            "mesh 't', positions_m: a coordinate is not finite; allowed: finite metres");
+}
+
+}  // namespace
+}  // namespace glidar

@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/file_sink.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <io/cloud_fixture.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <thread>
+
+namespace glidar {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+std::string error_text(const auto& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(FileFormats, TheLongestSuffixWins) {
+  EXPECT_EQ(format_for("a.png").suffix, ".png");
+  EXPECT_EQ(format_for("a.depth.png").suffix, ".depth.png");
+  EXPECT_EQ(format_for("out.d/scan.2.pcd").suffix, ".pcd");
+  EXPECT_EQ(format_for("A.PCD").suffix, ".pcd");
+}
+
+TEST(FileFormats, AnUnknownSuffixTellsAllAndTheNearest) {
+  const std::string text = error_text([] { format_for("a.pdc"); });
+  EXPECT_THAT(text,
+              AllOf(HasSubstr("no format has the suffix .pdc"), HasSubstr("did you mean .pcd?"),
+                    HasSubstr(".pcd .ply .npz .csv .bin .npy .depth.png .png .transform")));
+  EXPECT_THAT(error_text([] { format_for("cloud"); }), HasSubstr("the name has no suffix"));
+  EXPECT_THAT(error_text([] { format_for("out/.pcd"); }), HasSubstr("the name has no suffix"));
+}
+
+TEST(FileSink, RefusesBadPlacesAtOnce) {
+  const ScratchFolder folder;
+  const CloudFixture made = make_fixture();
+  const SidecarContext context = made.context();
+  const auto make = [&](const std::filesystem::path& path) {
+    return error_text([&] { make_file_sink(path, {}, context); });
+  };
+  EXPECT_THAT(make(folder / "none/a.pcd"), HasSubstr("there is no folder"));
+  std::filesystem::create_directory(folder / "folder.pcd");
+  EXPECT_THAT(make(folder / "folder.pcd"), HasSubstr("is a folder"));
+  FileSinkOptions options;
+  options.depth_png_units_per_m = 0.0;
+  EXPECT_THROW(make_file_sink(folder / "a.depth.png", options, context), Error);
+}
+
+TEST(FileSink, WritesCloudAndSidecarAndNothingElse) {
+  const ScratchFolder folder;
+  write_cloud(make_fixture(), folder / "a.pcd");
+  EXPECT_THAT(folder.names(), ElementsAre("a.pcd", "a.pcd.json"));
+}
+
+TEST(FileSink, ImagesAndPosesHaveNoSidecar) {
+  const ScratchFolder folder;
+  for (const char* name : {"a.npy", "a.png", "a.depth.png", "a.transform"})
+    write_cloud(make_fixture(), folder / name);
+  EXPECT_EQ(folder.names().size(), 4U);
+}
+
+TEST(FileSink, TheSidecarCanBeLeftOut) {
+  const ScratchFolder folder;
+  FileSinkOptions options;
+  options.sidecar = false;
+  write_cloud(make_fixture(), folder / "a.ply", options);
+  EXPECT_THAT(folder.names(), ElementsAre("a.ply"));
+}
+
+TEST(FileSink, AMissingColumnIsToldAndNothingIsLeft) {
+  const ScratchFolder folder;
+  CloudFixture made = make_fixture();
+  drop_column(made.cloud, "intensity");
+  const std::string text = error_text([&] { write_cloud(made, folder / "a.bin"); });
+  EXPECT_THAT(text, AllOf(HasSubstr("a.bin: the cloud has no column intensity"),
+                          HasSubstr("allowed: .bin needs xyz intensity"),
+                          HasSubstr("it has: xyz depth normal")));
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+TEST(FileSink, AColumnOfWrongSizeOrTypeIsTold) {
+  const ScratchFolder folder;
+  CloudFixture made = make_fixture();
+  made.cloud.columns[0].values = std::vector<double>(59, 0.0);
+  EXPECT_THAT(error_text([&] { write_cloud(made, folder / "a.pcd"); }),
+              HasSubstr("column xyz has 59 numbers; allowed: 60"));
+  made.cloud.columns[0].values = std::vector<float>(60, 0.0F);
+  EXPECT_THAT(error_text([&] { write_cloud(made, folder / "a.pcd"); }),
+              HasSubstr("column xyz is of another type; allowed: three doubles a point"));
+}
+
+TEST(FileSink, AnErrorLeavesTheOldFilesAsTheyWere) {
+  const ScratchFolder folder;
+  CloudFixture made = make_fixture();
+  write_cloud(made, folder / "a.pcd");
+  const std::string cloud = file_bytes(folder / "a.pcd");
+  const std::string sidecar = file_bytes(folder / "a.pcd.json");
+  std::filesystem::remove(folder / "a.pcd.json");
+  std::filesystem::create_directory(folder / "a.pcd.json");
+  made.cloud.frame_id = "another";
+  EXPECT_THROW(write_cloud(made, folder / "a.pcd"), Error);
+  EXPECT_EQ(file_bytes(folder / "a.pcd"), cloud);
+  EXPECT_THAT(folder.names(), ElementsAre("a.pcd", "a.pcd.json"));
+}
+
+TEST(FileSink, TheSameCloudGivesTheSameBytesInEveryFormat) {
+  const ScratchFolder folder;
+  const CloudFixture made = make_fixture(60, 70);
+  const CloudFixture other = make_fixture(31, 17);
+  FileSinkOptions options;
+  options.pcd = PcdEncoding::binary_compressed;
+  for (const FileFormat& format : file_formats()) {
+    write_cloud(made, folder / ("a" + format.suffix), options);
+    write_cloud(other, folder / ("between" + format.suffix), options);
+    write_cloud(made, folder / ("b" + format.suffix), options);
+    EXPECT_EQ(file_bytes(folder / ("a" + format.suffix)),
+              file_bytes(folder / ("b" + format.suffix)))
+        << format.suffix;
+  }
+}
+
+TEST(FileSink, TwoSinksOfOnePathLeaveAWholeFile) {
+  const ScratchFolder folder;
+  const CloudFixture small = make_fixture(2, 2);
+  const CloudFixture large = make_fixture(200, 200);
+  const auto write_often = [&](const CloudFixture& made) {
+    for (int i = 0; i < 20; ++i) write_cloud(made, folder / "a.bin");
+  };
+  std::thread other(write_often, small);
+  write_often(large);
+  other.join();
+  const std::size_t size = file_bytes(folder / "a.bin").size();
+  EXPECT_TRUE(size == 3 * 16 || size == std::size_t{200 * 200 - 200 * 200 / 3} * 16) << size;
+  EXPECT_THAT(folder.names(), ElementsAre("a.bin", "a.bin.json"));
+}
+
+TEST(FileSink, PathsMayHoldSpacesAndAnyLetters) {
+  const ScratchFolder folder;
+  const std::string name = "größe mit leer — 点群 'q\".pcd";
+  write_cloud(make_fixture(), folder / name);
+  EXPECT_FALSE(file_bytes(folder / name).empty());
+  const auto told = nlohmann::json::parse(file_bytes(folder / (name + ".json")));
+  EXPECT_EQ(told.at("cloud").at("file"), name);
+}
+
+TEST(FileSink, ABareFileNameGoesToTheCurrentFolder) {
+  const ScratchFolder folder;
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(folder.path());
+  write_cloud(make_fixture(), "a.csv");
+  std::filesystem::current_path(before);
+  EXPECT_THAT(folder.names(), ElementsAre("a.csv", "a.csv.json"));
+}
+
+TEST(FileSink, NoHitAtAllMakesValidDenseFiles) {
+  const ScratchFolder folder;
+  CloudFixture made = make_fixture(2, 2);
+  for (double& value : std::get<std::vector<double>>(made.cloud.columns[0].values))
+    value = std::nan("");
+  FileSinkOptions options;
+  options.dense = true;
+  write_cloud(made, folder / "a.pcd", options);
+  EXPECT_THAT(file_bytes(folder / "a.pcd"),
+              AllOf(HasSubstr("WIDTH 0\nHEIGHT 1\n"), HasSubstr("POINTS 0\nDATA binary\n")));
+  write_cloud(made, folder / "a.ply", options);
+  EXPECT_THAT(file_bytes(folder / "a.ply"), HasSubstr("element vertex 0\n"));
+  write_cloud(made, folder / "a.bin", options);
+  EXPECT_EQ(file_bytes(folder / "a.bin"), "");
+}
+
+}  // namespace
+}  // namespace glidar

@@ -1,0 +1,222 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Exact bytes of small files and error texts; tests/io/readers checks every number of every format.
+#include <glidar/core/error.hpp>
+#include <glidar/core/version.hpp>
+
+#include <io/cloud_fixture.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <bit>
+#include <cstring>
+
+namespace glidar {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
+
+/// Two points, the second a miss, with x y z and intensity, in a frame that is the sensor's.
+CloudFixture two_points() {
+  CloudFixture made = make_fixture(1, 2);
+  for (const char* name : {"depth", "normal", "colour", "instance", "ring", "status"})
+    drop_column(made.cloud, name);
+  made.cloud.columns[0].values =
+      std::vector<double>{0.5, -1.25, 3.0, std::nan(""), -std::nan(""), std::nan("")};
+  made.cloud.columns[1].values = std::vector<float>{0.1F, 0.0F};
+  made.cloud.world_from_cloud = made.frame.world_from_sensor;
+  made.cloud.frame_id = "my\nframe";
+  return made;
+}
+
+std::string written(const CloudFixture& made, const char* name,
+                    const FileSinkOptions& options = {}) {
+  const ScratchFolder folder;
+  write_cloud(made, folder / name, options);
+  return file_bytes(folder / name);
+}
+
+std::string error_text(const CloudFixture& made, const char* name) {
+  try {
+    written(made, name);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+std::string pcd_head(const char* data) {
+  return std::string("# .PCD v0.7 - Point Cloud Data file format\n# glidar ") + version() +
+         ", metres in the frame my frame\nVERSION 0.7\nFIELDS x y z intensity\nSIZE 4 4 4 4\n"
+         "TYPE F F F F\nCOUNT 1 1 1 1\nWIDTH 2\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS "
+         "2\nDATA " +
+         data + "\n";
+}
+
+TEST(PcdFile, AsciiIsThisText) {
+  FileSinkOptions options;
+  options.pcd = PcdEncoding::ascii;
+  EXPECT_EQ(written(two_points(), "a.pcd", options),
+            pcd_head("ascii") + "0.5 -1.25 3 0.1\nnan nan nan 0\n");
+}
+
+TEST(PcdFile, BinaryIsFloatsPointByPoint) {
+  const std::string found = written(two_points(), "a.pcd");
+  const std::string head = pcd_head("binary");
+  ASSERT_EQ(found.size(), head.size() + 32);
+  EXPECT_THAT(found, StartsWith(head));
+  float numbers[8];
+  std::memcpy(numbers, found.data() + head.size(), sizeof(numbers));
+  EXPECT_EQ(numbers[0], 0.5F);
+  EXPECT_EQ(numbers[1], -1.25F);
+  EXPECT_EQ(numbers[2], 3.0F);
+  EXPECT_EQ(numbers[3], 0.1F);
+  EXPECT_TRUE(std::isnan(numbers[4]) && std::isnan(numbers[5]) && std::isnan(numbers[6]));
+  EXPECT_EQ(numbers[7], 0.0F);
+}
+
+TEST(PcdFile, TheViewpointIsTheSensorInTheCloudsFrame) {
+  CloudFixture made = two_points();
+  made.cloud.world_from_cloud = Pose::Identity();
+  EXPECT_THAT(written(made, "a.pcd"), HasSubstr("VIEWPOINT 1 2 3 0.5 0.5 -0.5 0.5\n"));
+}
+
+TEST(PcdFile, CompressedDoesNotGrowMuchOnNoise) {
+  CloudFixture made = make_fixture(100, 100);
+  std::uint32_t state = 1;
+  for (float& value : std::get<std::vector<float>>(made.cloud.columns[1].values)) {
+    state = state * 1664525U + 1013904223U;
+    value = std::bit_cast<float>(state & 0xFF7FFFFFU);
+  }
+  made.cloud.columns.resize(2);
+  FileSinkOptions options;
+  options.pcd = PcdEncoding::binary_compressed;
+  const std::size_t binary = written(made, "a.pcd").size();
+  EXPECT_LT(written(made, "a.pcd", options).size(), binary + binary / 16);
+}
+
+TEST(PlyFile, AsciiIsThisText) {
+  FileSinkOptions options;
+  options.ply_ascii = true;
+  EXPECT_EQ(written(two_points(), "a.ply", options),
+            std::string("ply\nformat ascii 1.0\ncomment glidar ") + version() +
+                ", metres in the frame my frame\nelement vertex 2\nproperty float x\n"
+                "property float y\nproperty float z\nproperty float intensity\nend_header\n"
+                "0.5 -1.25 3 0.1\nnan nan nan 0\n");
+}
+
+TEST(PlyFile, FarCoordinatesAreDouble) {
+  CloudFixture made = two_points();
+  auto& xyz = std::get<std::vector<double>>(made.cloud.columns[0].values);
+  xyz[1] = -2047.9;
+  EXPECT_THAT(written(made, "a.ply"), HasSubstr("property float x\n"));
+  xyz[1] = -2048.1;
+  EXPECT_THAT(written(made, "a.ply"),
+              AllOf(HasSubstr("property double x\n"), HasSubstr("property float intensity\n")));
+}
+
+TEST(CsvFile, KeepsEveryDigitAndHasAHeader) {
+  CloudFixture made = two_points();
+  std::get<std::vector<double>>(made.cloud.columns[0].values)[0] = 1.0 / 3.0;
+  EXPECT_EQ(written(made, "a.csv"),
+            "x,y,z,intensity\n0.3333333333333333,-1.25,3,0.1\nnan,nan,nan,0\n");
+}
+
+TEST(KittiFile, LeavesMissesOutAlways) {
+  const std::string found = written(two_points(), "a.bin");
+  ASSERT_EQ(found.size(), 16U);
+  float numbers[4];
+  std::memcpy(numbers, found.data(), sizeof(numbers));
+  EXPECT_EQ(numbers[1], -1.25F);
+  EXPECT_EQ(numbers[3], 0.1F);
+}
+
+TEST(DepthNpy, StartsOnAMultipleOf64WithNumPysHead) {
+  const std::string found = written(make_fixture(), "a.npy");
+  EXPECT_THAT(found, StartsWith("\x93NUMPY\x01"));
+  EXPECT_THAT(found, HasSubstr("{'descr': '<f4', 'fortran_order': False, 'shape': (4, 5, ), }"));
+  EXPECT_EQ((found.size() - 4 * 20) % 64, 0U);
+}
+
+TEST(DepthPng, ADepthOutOfRangeIsAnErrorWithTheScaleThatFits) {
+  CloudFixture made = make_fixture();
+  auto& depths_m = std::get<std::vector<double>>(made.cloud.columns[2].values);
+  depths_m[0] = 65.535;
+  EXPECT_EQ(error_text(made, "a.depth.png"), "no error");
+  depths_m[0] = 80.0;
+  EXPECT_THAT(
+      error_text(made, "a.depth.png"),
+      AllOf(HasSubstr("the largest depth, 80 m, does not fit 16 bits at 1000 units per metre"),
+            HasSubstr("up to 65.535 m"), HasSubstr("use 810 units per metre")));
+  depths_m[0] = -2.0;
+  EXPECT_THAT(error_text(made, "a.depth.png"), HasSubstr("a depth of -2 m, behind the sensor"));
+}
+
+TEST(TransformFile, IsTheFirstObjectInTheCloudsFrameWithoutScale) {
+  CloudFixture made = make_fixture();
+  made.cloud.world_from_cloud = make_pose({1.0, 2.0, 3.0}, Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0));
+  EXPECT_EQ(written(made, "a.transform"), "-1 0 0 9\n0 1 0 2\n0 0 -1 3\n0 0 0 1\n");
+  made.frame.world_from_instance[0].translation().x() = 1.1;
+  EXPECT_THAT(written(made, "a.transform"), HasSubstr("-1 0 0 0.10000000000000009\n"));
+}
+
+TEST(TransformFile, NeedsAnObject) {
+  CloudFixture made = make_fixture();
+  made.frame.world_from_instance.clear();
+  EXPECT_THAT(error_text(made, "a.transform"), HasSubstr("the scene has no object"));
+}
+
+nlohmann::json sidecar_of(const CloudFixture& made) {
+  const ScratchFolder folder;
+  write_cloud(made, folder / "a.pcd");
+  return nlohmann::json::parse(file_bytes(folder / "a.pcd.json"));
+}
+
+TEST(Sidecar, TellsSensorPosesSeedModelAndCounts) {
+  CloudFixture made = make_fixture();
+  Pinhole pinhole;
+  pinhole.intrinsics.fx = 123.25;
+  pinhole.distortion = RadialTangential{.k1 = 0.125, .k6 = -2.0};
+  made.sensor.optics = pinhole;
+  made.sensor.name = "bad \xFF utf-8 \"quoted\"\n";
+  const nlohmann::json told = sidecar_of(made);
+  EXPECT_EQ(told.at("glidar"), version());
+  EXPECT_EQ(told.at("renderer"), "embree");
+  EXPECT_EQ(told.at("seed"), made.frame.seed);
+  EXPECT_EQ(told.at("stamp_ns"), made.frame.stamp_ns);
+  EXPECT_EQ(told.at("sensor").at("optics").at("fx"), 123.25);
+  EXPECT_EQ(told.at("sensor").at("optics").at("distortion").at("model"), "radial_tangential");
+  EXPECT_EQ(told.at("sensor").at("optics").at("distortion").at("k6"), -2.0);
+  EXPECT_TRUE(told.at("sensor").at("limits").at("far_m").is_null());
+  EXPECT_EQ(told.at("sensor").at("world_from_sensor").at("position_m"),
+            nlohmann::json({1.0, 2.0, 3.0}));
+  EXPECT_EQ(told.at("sensor").at("world_from_sensor").at("orientation").at("y"), -0.5);
+  EXPECT_EQ(told.at("sensor").at("world_from_sensor").at("matrix").at(0),
+            nlohmann::json({0.0, -1.0, 0.0, 1.0}));
+  EXPECT_EQ(told.at("cloud").at("frame_id"), "map");
+  EXPECT_EQ(told.at("cloud").at("columns").at(0).at("type"), "f64");
+  EXPECT_EQ(told.at("instances").at(0).at("model_hash"), "0123abcd");
+  EXPECT_EQ(told.at("instances").at(0).at("scale"), 2.5);
+  EXPECT_EQ(told.at("instances").at(0).at("class"), "unlabelled");
+  EXPECT_EQ(told.at("beams_by_status").at("hit"), 14);
+  EXPECT_EQ(told.at("beams_by_status").at("miss"), 6);
+}
+
+TEST(Sidecar, NeverHoldsAWordThatJsonHasNot) {
+  CloudFixture made = make_fixture();
+  made.sensor.light.ambient = std::nan("");
+  const ScratchFolder folder;
+  write_cloud(made, folder / "a.npz");
+  const std::string text = file_bytes(folder / "a.npz.json");
+  EXPECT_TRUE(nlohmann::json::accept(text));
+  EXPECT_THAT(text, AllOf(Not(HasSubstr("nan")), Not(HasSubstr("inf"))));
+}
+
+}  // namespace
+}  // namespace glidar

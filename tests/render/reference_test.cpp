@@ -1,0 +1,289 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Truth computed elsewhere: double-precision brute force, another program's OpenGL images, and a
+// real scanner.
+#include <glidar/render/renderer.hpp>
+#include <support/data.hpp>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace glidar {
+namespace {
+
+using nlohmann::json;
+
+json read_json(const std::filesystem::path& path) {
+  std::ifstream file(path);
+  return json::parse(file);
+}
+
+Pose pose_from(const json& rows) {
+  Pose pose = Pose::Identity();
+  for (int r = 0; r < 3; ++r) {
+    for (int c = 0; c < 4; ++c) pose.matrix()(r, c) = rows[r][c].get<double>();
+  }
+  return pose;
+}
+
+Beams pinhole_beams(const json& k, double pixel_centre) {
+  Beams beams;
+  beams.rows = k["height"];
+  beams.cols = k["width"];
+  beams.frame_id = "camera_optical_frame";
+  for (std::uint32_t v = 0; v < beams.rows; ++v) {
+    for (std::uint32_t u = 0; u < beams.cols; ++u) {
+      const double x = (u + pixel_centre - k["cx"].get<double>()) / k["fx"].get<double>();
+      const double y = (v + pixel_centre - k["cy"].get<double>()) / k["fy"].get<double>();
+      beams.directions.push_back(Eigen::Vector3d(x, y, 1.0).normalized());
+    }
+  }
+  return beams;
+}
+
+Beams spinning_beams(const json& params) {
+  Beams beams;
+  const std::string azimuths = params["azimuth_deg"];  // "yaw0 + i*360/N, i=0..N-1"
+  beams.cols = static_cast<std::uint32_t>(std::stoul(azimuths.substr(azimuths.find('/') + 1)));
+  beams.rows = static_cast<std::uint32_t>(params["elevation_deg"].size());
+  beams.frame_id = "lidar";
+  const bool y_up = params["up_axis"] == "y";
+  const double degree = std::numbers::pi / 180.0;
+  for (const double elevation_deg : params["elevation_deg"]) {
+    for (std::uint32_t i = 0; i < beams.cols; ++i) {
+      const double e = elevation_deg * degree;
+      const double a = (params["yaw0_deg"].get<double>() + i * 360.0 / beams.cols) * degree;
+      const Eigen::Vector3d z_up(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+      const Eigen::Vector3d direction =
+          y_up ? Eigen::Vector3d(z_up.x(), z_up.z(), -z_up.y()) : z_up;
+      beams.directions.push_back(direction.normalized());
+    }
+  }
+  return beams;
+}
+
+constexpr double kSingle = 6e-8;  // one rounding to single precision
+
+/// How far outside a triangle a point of its plane lies; negative inside.
+double outside_m(const Mesh& mesh, std::uint32_t triangle, const Eigen::Vector3d& point) {
+  std::array<Eigen::Vector3d, 3> v;
+  for (std::size_t k = 0; k < 3; ++k) {
+    v[k] = mesh.origin_m + mesh.positions_m[mesh.triangles[triangle][k]].cast<double>();
+  }
+  const Eigen::Vector3d normal = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
+  double outside = std::abs(normal.dot(point - v[0]));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3d edge = v[(k + 1) % 3] - v[k];
+    outside = std::max(outside, -normal.dot(edge.cross(point - v[k])) / edge.norm());
+  }
+  return outside;
+}
+
+class ReferenceCase : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(ReferenceCase, EveryStableBeamMeetsTheSameTriangleAtTheSameDepth) {
+  GLIDAR_NEEDS_DATA();
+  const std::filesystem::path folder = testing::data_folder() / "reference/core" / GetParam();
+  const json params = read_json(folder / "params.json");
+  const bool pinhole = params["type"] == "pinhole";
+  const Beams beams = pinhole ? pinhole_beams(params, 0.5) : spinning_beams(params);
+  Pose world_from_sensor = Pose::Identity();
+  if (pinhole) {
+    world_from_sensor = pose_from(params["camera_to_world"]);
+  } else {
+    for (int k = 0; k < 3; ++k) world_from_sensor.translation()[k] = params["origin"][k];
+  }
+  const Scene scene = testing::scene_of(testing::load_data_model(params["model"]));
+  ASSERT_EQ(scene.meshes[0].triangles.size(), params["triangles"].get<std::size_t>());
+  Hits hits;
+  make_renderer(scene, {})->cast(
+      {.beams = beams,
+       .world_from_sensor = world_from_sensor,
+       .world_from_instance = {},
+       .fields = {.depth = true, .incidence = true, .object_point = true}},
+      hits);
+
+  const auto depth = testing::read_npy<float>(folder / (pinhole ? "depth_z.npy" : "range.npy"));
+  const auto triangle = testing::read_npy<std::int32_t>(folder / "triangle_id.npy");
+  const auto stable = testing::read_npy<std::uint8_t>(folder / "stable_mask.npy");
+  const auto cosine = testing::read_npy<float>(folder / "abs_cos_incidence.npy");
+  ASSERT_EQ(depth.size(), beams.size());
+  // The reference rounds depths and vertices to single precision: a few roundings of the largest
+  // coordinate, seen along the surface at up to 1 / cosine.
+  const double coordinate =
+      bounds(scene).max().cwiseAbs().cwiseMax(bounds(scene).min().cwiseAbs()).maxCoeff();
+  std::size_t compared = 0;
+  std::size_t on_both = 0;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (stable[i] == 0) continue;
+    ++compared;
+    const bool hit = depth[i] != 0.0F;
+    ASSERT_EQ(hits.instance[i] != kNoHit, hit) << "beam " << i;
+    if (!hit) continue;
+    const auto theirs = static_cast<std::uint32_t>(triangle[i]);
+    if (hits.primitive[i] != theirs) {
+      // Right only where both hold the beam's point, as far as single precision tells: on a common
+      // border, or where one sheet lies on another.
+      ++on_both;
+      EXPECT_LT(outside_m(scene.meshes[0], hits.primitive[i], hits.object_point_m[i]), 1e-12);
+      EXPECT_LT(outside_m(scene.meshes[0], theirs, hits.object_point_m[i]), kSingle * depth[i])
+          << "beam " << i;
+      continue;
+    }
+    const double found = pinhole ? hits.depth_m[i] : hits.range_m[i];
+    const double tolerance =
+        4.0 * kSingle * (coordinate / std::max<double>(cosine[i], 0.01) + depth[i]);
+    EXPECT_NEAR(found, depth[i], tolerance) << "beam " << i;
+    EXPECT_NEAR(hits.cos_incidence[i], cosine[i], 1e-3) << "beam " << i;
+  }
+  EXPECT_GT(compared, beams.size() / 2);
+  // Zarya and the apartment have sheets that lie on each other to within single precision.
+  EXPECT_LE(on_both, compared / 100);
+}
+
+INSTANTIATE_TEST_SUITE_P(Core, ReferenceCase,
+                         ::testing::Values("apartment_vlp16", "bunny_front", "bunny_top",
+                                           "bunny_wide120", "dragon_full", "duck_texture",
+                                           "fuze_texture", "itokawa", "orientation_test",
+                                           "rmagine_sphere_inside", "toyblocks_cube", "zarya"),
+                         [](const auto& test) { return test.param; });
+
+/// Colours at the hits against nearest-texel look-ups made elsewhere.
+class TextureCase : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(TextureCase, UvsInterpolateAsInTheReference) {
+  GLIDAR_NEEDS_DATA();
+  const std::filesystem::path folder = testing::data_folder() / "reference/core" / GetParam();
+  const json params = read_json(folder / "params.json");
+  const Beams beams = pinhole_beams(params, 0.5);
+  const Scene scene = testing::scene_of(testing::load_data_model(params["model"]));
+  Hits hits;
+  make_renderer(scene, {})->cast({.beams = beams,
+                                  .world_from_sensor = pose_from(params["camera_to_world"]),
+                                  .world_from_instance = {},
+                                  .fields = {.barycentrics = true}},
+                                 hits);
+  const auto uv = testing::read_npy<float>(folder / "uv.npy");
+  const auto stable = testing::read_npy<std::uint8_t>(folder / "stable_mask.npy");
+  const Mesh& mesh = scene.meshes[0];
+  std::size_t compared = 0;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (stable[i] == 0 || hits.instance[i] == kNoHit) continue;
+    ++compared;
+    const Triangle& t = mesh.triangles[hits.primitive[i]];
+    const Eigen::Vector2f w = hits.barycentrics[i];
+    const Eigen::Vector2f found = (1.0F - w.x() - w.y()) * mesh.uvs[0][t[0]] +
+                                  w.x() * mesh.uvs[0][t[1]] + w.y() * mesh.uvs[0][t[2]];
+    EXPECT_NEAR(found.x(), uv[2 * i], 2e-4) << "beam " << i;
+    EXPECT_NEAR(found.y(), uv[2 * i + 1], 2e-4) << "beam " << i;
+  }
+  EXPECT_GT(compared, 3000U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Core, TextureCase, ::testing::Values("duck_texture", "fuze_texture"),
+                         [](const auto& test) { return test.param; });
+
+TEST(M3tOpengl, ItsDepthImageAndSilhouetteAreOurs) {
+  GLIDAR_NEEDS_DATA();
+  const std::filesystem::path folder = testing::data_folder() / "reference/m3t_opengl";
+  const json params = read_json(folder / "params.json");
+  const Beams beams = pinhole_beams(params["intrinsics"], 0.0);  // pixel centres at integers there
+  Scene scene;
+  for (const char* name : {"triangle", "schauma"}) {
+    const json& body = params["bodies"][name];
+    const std::size_t i = add_model(scene, testing::load_data_model(body["mesh"]));
+    scene.instances[i].world_from_object =
+        pose_from(body["world2body"]).inverse(Eigen::Affine) * pose_from(body["geometry2body"]);
+    // Printed with six digits: made a rotation again.
+    Eigen::Matrix3d rotation = scene.instances[i].world_from_object.linear();
+    rotation = Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
+    scene.instances[i].world_from_object.linear() = rotation;
+  }
+  Hits hits;
+  make_renderer(scene, {})->cast(
+      {.beams = beams,
+       .world_from_sensor = pose_from(params["world2camera"]).inverse(Eigen::Affine),
+       .world_from_instance = {},
+       .fields = {.depth = true},
+       .cull_back_faces = true},
+      hits);
+  const auto depth = testing::read_npy<float>(folder / "depth_z_m.npy");
+  std::size_t both = 0;
+  std::size_t differ = 0;
+  double largest = 0.0;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const bool theirs = std::isfinite(depth[i]) && depth[i] > 0.0F && depth[i] < 1.99F;
+    const bool ours = hits.instance[i] != kNoHit;
+    if (theirs != ours) ++differ;
+    if (!theirs || !ours) continue;
+    ++both;
+    largest = std::max(largest, std::abs(hits.depth_m[i] - depth[i]));
+  }
+  EXPECT_EQ(both + differ, 27335U);
+  EXPECT_LE(differ, 3U);       // the poses are known to six digits only
+  EXPECT_LT(largest, 0.2e-3);  // the program's 16-bit depth steps are up to 0.06 mm here
+}
+
+TEST(StanfordScan, TheBunnySeenAsTheScannerSawItLiesOnTheScan) {
+  GLIDAR_NEEDS_DATA();
+  const std::filesystem::path folder = testing::data_folder() / "recordings/stanford_bunny_scans";
+  std::ifstream file(folder / "bun000.ply");
+  std::string line;
+  std::size_t points = 0;
+  while (std::getline(file, line) && line.rfind("end_header", 0) != 0) {
+    if (line.rfind("element vertex", 0) == 0) points = std::stoul(line.substr(15));
+  }
+  // bun.conf places bun000 at the identity; the scanner looks along -z, all its beams parallel.
+  Beams beams;
+  beams.rows = 1;
+  beams.cols = static_cast<std::uint32_t>(points);
+  beams.frame_id = "scanner";
+  std::vector<double> scanned_z;
+  constexpr double kStart = 1.0;
+  for (std::size_t i = 0; i < points; ++i) {
+    std::getline(file, line);
+    std::istringstream numbers(line);
+    Eigen::Vector3d p;
+    numbers >> p.x() >> p.y() >> p.z();
+    beams.origins_m.push_back({p.x(), p.y(), kStart});
+    beams.directions.push_back(-Eigen::Vector3d::UnitZ());
+    scanned_z.push_back(p.z());
+  }
+  const Scene scene = testing::scene_of(testing::load_data_model("models/stanford/bun_zipper.ply"));
+  Hits hits;
+  make_renderer(scene, {})->cast({.beams = beams,
+                                  .world_from_sensor = Pose::Identity(),
+                                  .world_from_instance = {},
+                                  .fields = {}},
+                                 hits);
+  std::vector<double> distance;
+  for (std::size_t i = 0; i < points; ++i) {
+    if (hits.instance[i] != kNoHit) {
+      distance.push_back(std::abs(kStart - hits.range_m[i] - scanned_z[i]));
+    }
+  }
+  ASSERT_GT(distance.size(), points * 98 / 100);
+  std::vector<double> signed_distance;
+  for (std::size_t i = 0; i < points; ++i) {
+    if (hits.instance[i] != kNoHit) {
+      signed_distance.push_back(kStart - hits.range_m[i] - scanned_z[i]);
+    }
+  }
+  std::nth_element(
+      signed_distance.begin(),
+      signed_distance.begin() + static_cast<std::ptrdiff_t>(signed_distance.size() / 2),
+      signed_distance.end());
+  EXPECT_LT(std::abs(signed_distance[signed_distance.size() / 2]), 0.05e-3);
+  std::nth_element(distance.begin(),
+                   distance.begin() + static_cast<std::ptrdiff_t>(distance.size() * 9 / 10),
+                   distance.end());
+  EXPECT_LT(distance[distance.size() * 9 / 10], 0.4e-3);
+}
+
+}  // namespace
+}  // namespace glidar

@@ -1,0 +1,478 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Promises every renderer keeps. A new renderer joins by its name at the end.
+#include <glidar/core/error.hpp>
+#include <glidar/core/random.hpp>
+#include <glidar/io/builtin_models.hpp>
+#include <glidar/render/renderer.hpp>
+#include <glidar/render/resolve.hpp>
+#include <support/brute_force.hpp>
+#include <support/data.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <map>
+#include <numbers>
+
+namespace glidar {
+namespace {
+
+using testing::Judged;
+
+/// Draws for test rays: always the same.
+class Draws {
+ public:
+  explicit Draws(std::uint64_t seed) : draw_{.seed = seed} {}
+  double next() {
+    if (used_ == 4) {
+      ++draw_.block;
+      used_ = 0;
+    }
+    if (used_ == 0) words_ = random_words(draw_);
+    return uniform(words_[used_++]);
+  }
+  Eigen::Vector3d direction() {
+    const double z = 2.0 * next() - 1.0;
+    const double angle = 2.0 * std::numbers::pi * next();
+    const double radius = std::sqrt(1.0 - z * z);
+    return Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), z).normalized();
+  }
+
+ private:
+  Draw draw_;
+  RandomWords words_{};
+  unsigned used_ = 0;
+};
+
+Beams loose_beams(std::vector<Eigen::Vector3d> directions, std::vector<Eigen::Vector3d> origins) {
+  Beams beams;
+  beams.rows = 1;
+  beams.cols = static_cast<std::uint32_t>(directions.size());
+  beams.frame_id = "test";
+  beams.directions = std::move(directions);
+  beams.origins_m = std::move(origins);
+  return beams;
+}
+
+Beams camera_beams(std::uint32_t width, std::uint32_t height, double focal_px) {
+  Beams beams;
+  beams.rows = height;
+  beams.cols = width;
+  beams.frame_id = "camera_optical_frame";
+  for (std::uint32_t v = 0; v < height; ++v) {
+    for (std::uint32_t u = 0; u < width; ++u) {
+      beams.directions.push_back(Eigen::Vector3d((u + 0.5 - 0.5 * width) / focal_px,
+                                                 (v + 0.5 - 0.5 * height) / focal_px, 1.0)
+                                     .normalized());
+    }
+  }
+  return beams;
+}
+
+Pose turned(double angle, const Eigen::Vector3d& axis, const Eigen::Vector3d& position) {
+  return make_pose(position, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized())));
+}
+
+Scene builtin_scene(const char* name) {
+  return testing::scene_of(make_builtin_model(name));
+}
+
+constexpr HitFields kEverything{.depth = true,
+                                .normal = true,
+                                .shading_normal = true,
+                                .incidence = true,
+                                .barycentrics = true,
+                                .colour = true,
+                                .reflectance = true,
+                                .object_point = true};
+
+class RendererSuite : public ::testing::TestWithParam<std::string> {
+ protected:
+  static std::unique_ptr<Renderer> renderer(const Scene& scene, unsigned threads = 2) {
+    return make_renderer(scene, {.kind = GetParam(), .threads = threads});
+  }
+
+  static Hits cast(const Scene& scene, const Beams& beams, const Pose& world_from_sensor,
+                   bool cull_back_faces = false) {
+    Hits hits;
+    renderer(scene)->cast({.beams = beams,
+                           .world_from_sensor = world_from_sensor,
+                           .world_from_instance = {},
+                           .fields = kEverything,
+                           .cull_back_faces = cull_back_faces},
+                          hits);
+    return hits;
+  }
+};
+
+/// A beam this near a border (relative to the scene's size) may be told to the neighbour.
+constexpr double kBorder = 1e-5;
+/// Both sides compute the range in double, by different formulas.
+constexpr double kRangeTolerance = 1e-12;
+
+/// Compares every beam with the judge; returns how many were compared (not near a border).
+std::size_t expect_judged(const Scene& scene, const Beams& beams, const Pose& world_from_sensor,
+                          const Hits& hits) {
+  const double size = bounds(scene).diagonal().norm();
+  std::size_t compared = 0;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const Eigen::Vector3d offset =
+        beams.origins_m.empty() ? Eigen::Vector3d::Zero() : beams.origins_m[i];
+    const Eigen::Vector3d direction = world_from_sensor.linear() * beams.directions[i];
+    const Judged truth = testing::judge(scene, world_from_sensor * offset, direction);
+    if (truth.border_m < kBorder * size) continue;
+    ++compared;
+    EXPECT_EQ(hits.instance[i], truth.instance) << "beam " << i;
+    EXPECT_EQ(hits.primitive[i], truth.primitive) << "beam " << i;
+    if (truth.instance == kNoHit) {
+      EXPECT_TRUE(std::isnan(hits.range_m[i])) << "beam " << i;
+      continue;
+    }
+    EXPECT_NEAR(hits.range_m[i], truth.range_m,
+                kRangeTolerance * (size + world_from_sensor.translation().norm()))
+        << "beam " << i;
+    const Eigen::Vector3d towards =
+        truth.normal.dot(direction) > 0.0 ? Eigen::Vector3d(-truth.normal) : truth.normal;
+    const Eigen::Vector3d expected = world_from_sensor.linear().transpose() * towards;
+    EXPECT_LT((hits.normal[i].cast<double>() - expected).norm(), 1e-6) << "beam " << i;
+    EXPECT_NEAR(hits.cos_incidence[i], std::abs(truth.normal.dot(direction)), 1e-6);
+  }
+  return compared;
+}
+
+TEST_P(RendererSuite, SeesTheSameTrianglesAsBruteForceOnASphere) {
+  const Scene scene = builtin_scene("sphere");
+  const Beams beams = camera_beams(61, 43, 60.0);  // odd sizes: tiles that hang over the border
+  const Pose pose = look_at({2.0, 1.0, 1.5}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
+  const Hits hits = cast(scene, beams, pose);
+  EXPECT_GT(expect_judged(scene, beams, pose, hits), beams.size() * 9 / 10);
+}
+
+TEST_P(RendererSuite, SeesTheSameTrianglesAsBruteForceAmongMovedScaledAndMixedInstances) {
+  Scene scene = builtin_scene("torus");
+  add_model(scene, make_builtin_model("box"));
+  add_model(scene, make_builtin_model("sphere"));
+  scene.instances[0].world_from_object = turned(0.7, {1.0, 2.0, 3.0}, {0.4, -0.2, 3.0});
+  scene.instances[1].world_from_object = turned(1.9, {-1.0, 0.3, 0.1}, {-1.0, 0.5, 5.0});
+  scene.instances[1].scale = 0.75;
+  scene.instances[2].world_from_object.translation() = Eigen::Vector3d(1.5, 1.0, 6.0);
+  scene.instances[2].scale = 1.7;
+  const Beams beams = camera_beams(48, 48, 50.0);
+  const Hits hits = cast(scene, beams, Pose::Identity());
+  EXPECT_GT(expect_judged(scene, beams, Pose::Identity(), hits), beams.size() * 9 / 10);
+}
+
+TEST_P(RendererSuite, FollowsBeamOriginsAndDirectionsInAllDirections) {
+  const Scene scene = builtin_scene("box");
+  Draws draws(7);
+  std::vector<Eigen::Vector3d> directions;
+  std::vector<Eigen::Vector3d> origins;
+  for (int i = 0; i < 500; ++i) {
+    directions.push_back(draws.direction());
+    origins.push_back(0.8 * draws.direction());
+  }
+  const Beams beams = loose_beams(directions, origins);
+  const Pose pose = turned(0.3, {0.0, 1.0, 1.0}, {0.05, 0.02, -0.03});
+  const Hits hits = cast(scene, beams, pose);
+  EXPECT_GT(expect_judged(scene, beams, pose, hits), beams.size() * 9 / 10);
+  for (const std::uint32_t instance : hits.instance) EXPECT_EQ(instance, 0U);  // it is closed
+}
+
+TEST_P(RendererSuite, LosesNothingTenKilometresAwayFromAMillionMetresOff) {
+  Scene scene = builtin_scene("box");
+  scene.instances[0].world_from_object = turned(0.4, {0.2, 0.5, 1.0}, {1.0e6, -5.0e5, 2.5e5});
+  const Eigen::Vector3d object = scene.instances[0].world_from_object.translation();
+  const Pose pose =
+      look_at(object + Eigen::Vector3d(6.0e3, 8.0e3, 0.0), object, Eigen::Vector3d::UnitZ());
+  const Beams beams = camera_beams(40, 40, 40.0 / (4.0e-4));
+  const Hits hits = cast(scene, beams, pose);
+  std::size_t on_object = 0;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (hits.instance[i] == kNoHit) continue;
+    ++on_object;
+    // The hit point lies on the box of half side 1: one coordinate is exactly 1, none is larger.
+    const double largest = hits.object_point_m[i].cwiseAbs().maxCoeff();
+    EXPECT_NEAR(largest, 1.0, 4e-10);  // a position of 1e6 m is known to 1.2e-10 m in double
+  }
+  EXPECT_GT(on_object, beams.size() / 4);
+}
+
+TEST_P(RendererSuite, EveryColumnTellsOneStory) {
+  Scene scene = builtin_scene("torus");
+  scene.instances[0].scale = 2.0;
+  scene.instances[0].world_from_object = turned(1.0, {1.0, 0.0, 0.2}, {0.0, 0.1, 7.0});
+  const Beams beams = camera_beams(32, 32, 30.0);
+  const Hits hits = cast(scene, beams, Pose::Identity());
+  const Mesh& mesh = scene.meshes[0];
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (hits.instance[i] == kNoHit) {
+      EXPECT_TRUE(std::isnan(hits.depth_m[i]));
+      EXPECT_TRUE(std::isnan(hits.normal[i].x()));
+      EXPECT_TRUE(std::isnan(hits.object_point_m[i].x()));
+      EXPECT_EQ(hits.colour[i], Eigen::Vector3f::Zero());
+      continue;
+    }
+    const Eigen::Vector3d point = hits.range_m[i] * beams.directions[i];
+    EXPECT_NEAR(hits.depth_m[i], point.z(), 1e-12);
+    const Eigen::Vector3d seen =
+        scene.instances[0].world_from_object * (2.0 * hits.object_point_m[i]);
+    EXPECT_LT((seen - point).norm(), 1e-12);
+    const Triangle& corners = mesh.triangles[hits.primitive[i]];
+    const Eigen::Vector2f w = hits.barycentrics[i];
+    const Eigen::Vector3f blended = (1.0F - w.x() - w.y()) * mesh.positions_m[corners[0]] +
+                                    w.x() * mesh.positions_m[corners[1]] +
+                                    w.y() * mesh.positions_m[corners[2]];
+    EXPECT_LT((blended.cast<double>() + mesh.origin_m - hits.object_point_m[i]).norm(), 1e-6);
+    EXPECT_LE(hits.normal[i].cast<double>().dot(beams.directions[i]),
+              1e-6);  // turned to the sensor
+    EXPECT_NEAR(hits.shading_normal[i].norm(), 1.0F, 1e-5F);
+    EXPECT_NEAR(-hits.normal[i].cast<double>().dot(beams.directions[i]), hits.cos_incidence[i],
+                1e-6);
+  }
+}
+
+TEST_P(RendererSuite, CullsBackFacesOnlyWhenAsked) {
+  const Scene scene = builtin_scene("box");
+  const Beams beams = camera_beams(8, 8, 8.0);
+  const Hits both = cast(scene, beams, Pose::Identity());  // from inside: only backs
+  for (const double range : both.range_m) EXPECT_FALSE(std::isnan(range));
+  const Hits fronts = cast(scene, beams, Pose::Identity(), true);
+  for (const double range : fronts.range_m) EXPECT_TRUE(std::isnan(range));
+}
+
+TEST_P(RendererSuite, CanCullAfterCastingWithout) {
+  const Scene scene = builtin_scene("sphere");
+  const Beams beams = camera_beams(9, 9, 20.0);
+  const Pose pose = look_at({3.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
+  const std::unique_ptr<Renderer> one = renderer(scene);
+  Hits before;
+  Hits culled;
+  one->cast({.beams = beams, .world_from_sensor = pose, .world_from_instance = {}, .fields = {}},
+            before);
+  one->cast({.beams = beams,
+             .world_from_sensor = pose,
+             .world_from_instance = {},
+             .fields = {},
+             .cull_back_faces = true},
+            culled);
+  EXPECT_EQ(before.primitive, culled.primitive);  // from outside fronts come first
+}
+
+TEST_P(RendererSuite, InstancesMoveWithTheRequestedPoses) {
+  Scene scene = builtin_scene("sphere");
+  add_model(scene, make_builtin_model("sphere"));
+  const Beams beams = camera_beams(1, 1, 1.0);
+  const std::unique_ptr<Renderer> one = renderer(scene);
+  Hits hits;
+  for (const double distance : {3.0, 8.0, 5.5}) {
+    const std::vector<Pose> poses = {Pose(Eigen::Translation3d(0.0, 0.0, distance)),
+                                     Pose(Eigen::Translation3d(100.0, 0.0, 0.0))};
+    one->cast({.beams = beams,
+               .world_from_sensor = Pose::Identity(),
+               .world_from_instance = poses,
+               .fields = {}},
+              hits);
+    EXPECT_EQ(hits.instance[0], 0U);
+    EXPECT_NEAR(hits.range_m[0], distance - 1.0, 2e-3);  // the facets lie just inside the sphere
+  }
+}
+
+TEST_P(RendererSuite, CutOutTexelsLetTheBeamThrough) {
+  Scene scene = builtin_scene("plane");
+  scene.textures.push_back(
+      {.name = "mask", .width = 2, .height = 1, .channels = 1, .texels = {0, 255}});
+  Material& material = scene.materials[scene.instances[0].materials[0]];
+  material.alpha_cutoff = 0.5F;
+  material.alpha_texture = {.texture = 0, .wrap_u = Wrap::clamp, .filter = Filter::nearest};
+  const Beams beams = camera_beams(16, 16, 16.0);
+  const Pose pose = look_at({0.0, 0.0, 1.5}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitY());
+  const Hits hits = cast(scene, beams, pose);
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const Eigen::Vector3d in_world = pose.linear() * beams.directions[i];
+    const Eigen::Vector3d point = pose.translation() + in_world * (-1.5 / in_world.z());
+    EXPECT_EQ(hits.instance[i] != kNoHit, point.x() > 0.0) << point.transpose();
+  }
+}
+
+TEST_P(RendererSuite, TellsTheFirstOfTrianglesThatLieOnEachOther) {
+  Scene scene = builtin_scene("sphere");
+  Mesh& mesh = scene.meshes[0];
+  const std::vector<Triangle> once = mesh.triangles;
+  for (const Triangle& t : once) mesh.triangles.push_back({t[1], t[0], t[2]});  // the inner side
+  const Pose pose = look_at({2.0, 1.0, 1.5}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
+  const Hits hits = cast(scene, camera_beams(60, 60, 60.0), pose);
+  std::size_t found = 0;
+  for (const std::uint32_t primitive : hits.primitive) {
+    if (primitive == kNoHit) continue;
+    ++found;
+    EXPECT_LT(primitive, once.size());
+  }
+  EXPECT_GT(found, 500U);
+}
+
+TEST_P(RendererSuite, ABeamWithoutDirectionHitsNothing) {
+  const Scene scene = builtin_scene("sphere");
+  Beams beams = camera_beams(4, 4, 4.0);
+  beams.directions[5].setConstant(std::numeric_limits<double>::quiet_NaN());
+  const Hits hits = cast(scene, beams, Pose::Identity());
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    EXPECT_EQ(hits.instance[i] == kNoHit, i == 5);
+  }
+}
+
+TEST_P(RendererSuite, AnEmptySceneIsAllMisses) {
+  const Scene scene;
+  const Hits hits = cast(scene, camera_beams(5, 3, 4.0), Pose::Identity());
+  ASSERT_EQ(hits.range_m.size(), 15U);
+  for (const double range : hits.range_m) EXPECT_TRUE(std::isnan(range));
+}
+
+TEST_P(RendererSuite, TheSameBytesForAnyNumberOfThreads) {
+  const Scene scene = builtin_scene("asteroid");
+  const Beams beams = camera_beams(200, 150, 150.0);
+  const Pose pose = look_at({3.0, 1.0, 1.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
+  const CastRequest request{
+      .beams = beams, .world_from_sensor = pose, .world_from_instance = {}, .fields = kEverything};
+  Hits one;
+  Hits many;
+  renderer(scene, 1)->cast(request, one);
+  renderer(scene, 3)->cast(request, many);
+  const auto same = [](const auto& a, const auto& b) {
+    return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(a[0])) == 0;
+  };
+  EXPECT_TRUE(same(one.range_m, many.range_m));
+  EXPECT_TRUE(same(one.primitive, many.primitive));
+  EXPECT_TRUE(same(one.normal, many.normal));
+  EXPECT_TRUE(same(one.shading_normal, many.shading_normal));
+  EXPECT_TRUE(same(one.barycentrics, many.barycentrics));
+  EXPECT_TRUE(same(one.reflectance, many.reflectance));
+  EXPECT_TRUE(same(one.object_point_m, many.object_point_m));
+}
+
+/// A vertex or the middle of an edge, and the triangles around it.
+struct Target {
+  Eigen::Vector3d point;
+  std::vector<std::uint32_t> around;
+  bool on_border = false;  ///< of the mesh: a beam there may rightly pass by
+};
+
+std::vector<Target> targets_of(const Mesh& mesh) {
+  std::vector<Target> targets(mesh.positions_m.size());
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    targets[i].point = mesh.origin_m + mesh.positions_m[i].cast<double>();
+  }
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> edges;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Triangle& corners = mesh.triangles[t];
+    for (std::size_t k = 0; k < 3; ++k) {
+      targets[corners[k]].around.push_back(t);
+      edges[std::minmax(corners[k], corners[(k + 1) % 3])].push_back(t);
+    }
+  }
+  for (const auto& [ends, around] : edges) {
+    const bool on_border = around.size() != 2;
+    targets[ends.first].on_border |= on_border;
+    targets[ends.second].on_border |= on_border;
+    targets.push_back(
+        {0.5 * (targets[ends.first].point + targets[ends.second].point), around, on_border});
+  }
+  return targets;
+}
+
+/// Casts one beam from outside at every target with only fronts around it; counts those that go
+/// past.
+struct Aimed {
+  std::size_t beams = 0;
+  std::size_t leaked = 0;
+};
+
+Aimed aim_at(Renderer& renderer, const Scene& scene, const std::vector<Target>& targets,
+             const std::vector<TrianglePlane>& planes, const Eigen::Vector3d& eye) {
+  constexpr double kRim = 0.02;  // cosine: more grazing triangles count as the rim of what is seen
+  const Mesh& mesh = scene.meshes[0];
+  std::vector<bool> faces_eye(planes.size());
+  for (std::size_t t = 0; t < planes.size(); ++t) {
+    const Eigen::Vector3d way =
+        mesh.origin_m + mesh.positions_m[mesh.triangles[t][0]].cast<double>() - eye;
+    faces_eye[t] = planes[t].normal.dot(way) < -kRim * way.norm();
+  }
+  std::vector<Eigen::Vector3d> directions;
+  std::vector<double> ranges;
+  for (const Target& target : targets) {
+    if (target.on_border || target.around.empty()) continue;
+    if (!std::all_of(target.around.begin(), target.around.end(),
+                     [&](std::uint32_t t) { return faces_eye[t]; })) {
+      continue;
+    }
+    directions.push_back((target.point - eye).normalized());
+    ranges.push_back((target.point - eye).norm());
+  }
+  Pose pose = Pose::Identity();
+  pose.translation() = eye;
+  Hits hits;
+  const Beams beams = loose_beams(directions, {});
+  renderer.cast(
+      {.beams = beams, .world_from_sensor = pose, .world_from_instance = {}, .fields = {}}, hits);
+  const double tolerance = 1e-6 * bounds(scene).diagonal().norm();
+  Aimed aimed{.beams = ranges.size(), .leaked = 0};
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    // Something nearer may rightly hide the target; going past it is the leak.
+    if (!(hits.range_m[i] <= ranges[i] + tolerance)) ++aimed.leaked;
+  }
+  return aimed;
+}
+
+/// Aims at all vertices and edge midpoints from many eyes until a million beams are cast.
+void expect_no_leak(Renderer& renderer, const Scene& scene) {
+  const std::vector<Target> targets = targets_of(scene.meshes[0]);
+  const std::vector<TrianglePlane> planes = triangle_planes(scene.meshes[0]);
+  const double size = bounds(scene).diagonal().norm();
+  const Eigen::Vector3d middle = bounds(scene).center();
+  Draws draws(11);
+  Aimed all;
+  for (int eye = 0; all.beams < 1'000'000; ++eye) {
+    const Eigen::Vector3d axis = (eye < 3 ? 1.0 : -1.0) * Eigen::Vector3d::Unit(eye % 3);
+    const Eigen::Vector3d from = eye < 6 ? axis : draws.direction();
+    const Aimed aimed = aim_at(renderer, scene, targets, planes, middle + 1.5 * size * from);
+    all.beams += aimed.beams;
+    all.leaked += aimed.leaked;
+    ASSERT_LT(eye, 1000) << "the eyes see nothing";
+  }
+  EXPECT_EQ(all.leaked, 0U) << "of " << all.beams;
+}
+
+TEST_P(RendererSuite, AMillionBeamsAtVerticesAndEdgesOfASphereDoNotLeak) {
+  const Scene scene = builtin_scene("sphere");
+  expect_no_leak(*renderer(scene), scene);
+}
+
+TEST_P(RendererSuite, AMillionBeamsAtVerticesAndEdgesOfTheBunnyDoNotLeak) {
+  GLIDAR_NEEDS_DATA();
+  const Scene scene = testing::scene_of(testing::load_data_model("models/stanford/bun_zipper.ply"));
+  expect_no_leak(*renderer(scene), scene);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, RendererSuite, ::testing::Values("embree"),
+                         [](const auto& test) { return test.param; });
+
+TEST(MakeRenderer, NamesTheKindsThereAre) {
+  const Scene scene;
+  try {
+    make_renderer(scene, {.kind = "opengel"});
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "renderer: 'opengel' is not known; allowed: embree");
+  }
+}
+
+TEST(MakeRenderer, RefusesABrokenScene) {
+  Scene scene = builtin_scene("box");
+  scene.instances[0].mesh = 3;
+  EXPECT_THROW(make_renderer(scene, {}), Error);
+}
+
+}  // namespace
+}  // namespace glidar

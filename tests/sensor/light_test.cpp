@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/error.hpp>
+#include <glidar/sensor/light.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+namespace glidar {
+namespace {
+
+/// One beam along z that meets a surface whose shading normal makes `cosine` with it.
+float intensity(const Light& light, const Reflectance& reflectance, double range_m, float cosine) {
+  Beams beams;
+  beams.rows = beams.cols = 1;
+  beams.directions = {Eigen::Vector3d::UnitZ()};
+  Frame frame;
+  resize(frame, 1);
+  frame.status = {Status::hit};
+  frame.truth.range_m = {range_m};
+  frame.truth.shading_normal = {{std::sqrt(1.0F - cosine * cosine), 0.0F, -cosine}};
+  frame.truth.reflectance = {reflectance};
+  measure_intensity(light, beams, {0, 1}, frame);
+  return frame.intensity[0];
+}
+
+TEST(Light, IsThePapersEquationsThreeToFive) {
+  const Light light{.attenuation_constant = 1.5,
+                    .attenuation_linear_per_m = 0.2,
+                    .attenuation_quadratic_per_m2 = 0.03,
+                    .ambient = 0.2};
+  const Reflectance surface{.diffuse = 0.6F, .ambient = 0.5F, .specular = 0.3F, .shininess = 12.0F};
+  const double d = 4.0;
+  const double c = 0.8;
+  const double a = 1.0 / (1.5 + 0.2 * d + 0.03 * d * d);                // (3)
+  const double colour = 0.2 * 0.5 + 0.6 * c + 0.3 * std::pow(c, 12.0);  // (5)
+  EXPECT_NEAR(intensity(light, surface, d, 0.8F), a * colour, 1e-6);    // (4)
+}
+
+TEST(Light, FromBehindOnlyTheAmbientIsLeft) {
+  const Light light{.attenuation_linear_per_m = 0.0, .attenuation_quadratic_per_m2 = 0.0};
+  const Reflectance surface{.diffuse = 1.0F, .ambient = 0.5F, .specular = 1.0F, .shininess = 2.0F};
+  EXPECT_FLOAT_EQ(intensity(light, surface, 3.0, -0.5F), 0.2F * 0.5F);
+}
+
+TEST(Light, ShininessZeroMakesTheSpecularConstant) {
+  const Light light{
+      .attenuation_linear_per_m = 0.0, .attenuation_quadratic_per_m2 = 0.0, .ambient = 0.0};
+  EXPECT_FLOAT_EQ(intensity(light, {.specular = 0.4F}, 1.0, 0.3F), 0.4F);
+}
+
+TEST(Light, IsZeroWhereNothingIsReported) {
+  Beams beams;
+  beams.rows = beams.cols = 1;
+  beams.directions = {Eigen::Vector3d::UnitZ()};
+  Frame frame;
+  resize(frame, 1);
+  frame.status = {Status::too_far};
+  measure_intensity({}, beams, {0, 1}, frame);
+  EXPECT_EQ(frame.intensity[0], 0.0F);
+}
+
+TEST(Light, RefusesNegativeAndUndefinedNumbers) {
+  EXPECT_NO_THROW(validate(Light{}));
+  EXPECT_THROW(validate(Light{.attenuation_linear_per_m = -1.0}), Error);
+  EXPECT_THROW(validate(Light{.ambient = std::numeric_limits<double>::quiet_NaN()}), Error);
+  EXPECT_THROW(validate(Light{.attenuation_constant = 0.0,
+                              .attenuation_linear_per_m = 0.0,
+                              .attenuation_quadratic_per_m2 = 0.0}),
+               Error);
+}
+
+}  // namespace
+}  // namespace glidar

@@ -1,0 +1,122 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/builtin_models.hpp>
+#include <glidar/simulate.hpp>
+#include <support/data.hpp>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstdlib>
+#include <new>
+
+namespace {
+
+std::atomic<std::size_t> allocations{0};
+
+}  // namespace
+
+// Counted, to show that a frame in the steady state allocates nothing.
+void* operator new(std::size_t size) {
+  ++allocations;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+
+namespace glidar {
+namespace {
+
+/// A depth camera 5 m before a plane of 2 m x 2 m.
+struct Stage {
+  Scene scene = testing::scene_of(make_builtin_model("plane"));
+  Sensor sensor;
+  Beams beams;
+  Motion motion;
+  std::unique_ptr<Renderer> renderer;
+
+  explicit Stage(std::uint32_t size = 16) {
+    sensor.optics = pinhole_from_fov(size, size, 0.5);
+    beams = make_beams(sensor);
+    motion =
+        standing_still(scene, look_at({0.0, 0.0, 5.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitY()));
+    renderer = make_renderer(scene, {.threads = 2});
+  }
+  Frame shoot(const HitFields& fields = {}) {
+    Frame frame;
+    simulate({scene, sensor, beams, motion, *renderer}, fields, frame);
+    return frame;
+  }
+};
+
+TEST(Simulate, MeasuresAPlaneExactly) {
+  Stage stage;
+  const Frame frame = stage.shoot();
+  std::size_t hits = 0;
+  for (std::size_t i = 0; i < frame.range_m.size(); ++i) {
+    if (frame.status[i] != Status::hit) {
+      EXPECT_EQ(frame.status[i], Status::miss);
+      EXPECT_TRUE(std::isnan(frame.range_m[i]));
+      EXPECT_EQ(frame.intensity[i], 0.0F);
+      continue;
+    }
+    ++hits;
+    EXPECT_NEAR(frame.range_m[i] * stage.beams.directions[i].z(), 5.0, 1e-14);
+  }
+  EXPECT_GT(hits, 100U);
+  EXPECT_LT(hits, 256U);  // the field of view is wider than the plane
+}
+
+TEST(Simulate, LightsAPlaneByThePapersEquations) {
+  Stage stage;
+  const Frame frame = stage.shoot();
+  const Material& material = stage.scene.materials[stage.scene.instances[0].materials[0]];
+  for (std::size_t i = 0; i < frame.range_m.size(); ++i) {
+    if (frame.status[i] != Status::hit) continue;
+    const double d = frame.range_m[i];
+    const double cosine = stage.beams.directions[i].z();
+    const double a = 1.0 / (1.0 + 1e-4 * d + 1e-8 * d * d);
+    const double c = 0.2 * luminance(material.ambient) + luminance(material.diffuse) * cosine +
+                     luminance(material.specular) * std::pow(cosine, material.shininess);
+    EXPECT_NEAR(frame.intensity[i], a * c, 2e-6);
+  }
+}
+
+TEST(Simulate, TellsWhatLiesOutsideTheDepthLimitsAndKeepsItsTruth) {
+  Stage stage;
+  stage.sensor.limits = {.near_m = 6.0};
+  Frame frame = stage.shoot();
+  const std::size_t middle = 16 * 8 + 8;
+  EXPECT_EQ(frame.status[middle], Status::too_near);
+  EXPECT_TRUE(std::isnan(frame.range_m[middle]));
+  EXPECT_FALSE(std::isnan(frame.truth.range_m[middle]));
+  stage.sensor.limits = {.far_m = 4.0};
+  frame = stage.shoot();
+  EXPECT_EQ(frame.status[middle], Status::too_far);
+}
+
+TEST(Simulate, TellsPixelsWithoutABeam) {
+  Stage stage;
+  stage.beams.directions[3].setConstant(std::nan(""));
+  EXPECT_EQ(stage.shoot().status[3], Status::no_beam);
+}
+
+TEST(Simulate, AllocatesNothingInTheSteadyState) {
+  Stage stage(64);
+  const glidar::Setup setup{stage.scene, stage.sensor, stage.beams, stage.motion, *stage.renderer};
+  const HitFields fields{.depth = true, .normal = true, .object_point = true};
+  Frame frame;
+  for (int warm_up = 0; warm_up < 3; ++warm_up) simulate(setup, fields, frame);
+  const std::size_t before = allocations;
+  for (int i = 0; i < 10; ++i) simulate(setup, fields, frame);
+  EXPECT_EQ(allocations - before, 0U);
+}
+
+}  // namespace
+}  // namespace glidar
