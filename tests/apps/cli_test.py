@@ -277,6 +277,46 @@ class Render(CliTest):
         self.assertEqual(done.stderr, "")
 
 
+class SceneFiles(CliTest):
+    SCENE = """models:
+  - {model: builtin:box, name: left, pose: {position: [-3, 0, 0]}, id: 7}
+  - {model: builtin:sphere, name: right, pose: {position: [3, 0, 0]}, id: 9}
+sensor:
+  optics: {type: pinhole, width: 60, height: 20, fov_deg: 30}
+sensor_pose:
+  look_at: {eye: [0, -20, 0], target: [0, 0, 0]}
+"""
+
+    def ids(self, *arguments):
+        self.write("scene.yaml", self.SCENE)
+        done = self.succeed("render", "scene.yaml", *arguments, "--dense", "--columns", "xyz,instance",
+                            "-o", "a.csv")
+        with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
+            lines = [line for line in file.read().split("\n") if line and line[0] != "#"]
+        return {line.split(",")[3] for line in lines[1:]}, done.stdout
+
+    def test_sensor_and_pose_of_the_file_are_used(self):
+        ids, summary = self.ids()
+        self.assertEqual(ids, {"7", "9"})
+        self.assertIn("60 x 20 beams", summary)
+
+    def test_options_win_over_the_file(self):
+        ids, summary = self.ids("-w", "30", "--height", "40", "--eye", "-3,-8,0", "--target", "-3,0,0")
+        self.assertEqual(ids, {"7"})
+        self.assertIn("30 x 40 beams", summary)
+
+    def test_sensor_file_wins_over_the_scene_file(self):
+        self.write("sensor.yaml", "optics: {type: pinhole, width: 33, height: 11, fov_deg: 30}\n")
+        self.assertIn("33 x 11 beams", self.ids("--sensor", "sensor.yaml")[1])
+        self.assertIn("write them into sensor.yaml",
+                      self.refused("render", "scene.yaml", "--sensor", "sensor.yaml", "--fov", "9",
+                                   "-o", "x.pcd"))
+
+    def test_options_for_one_model_are_refused(self):
+        self.write("scene.yaml", self.SCENE)
+        self.assertIn("2 objects", self.refused("render", "scene.yaml", "--scale", "2", "-o", "x.pcd"))
+
+
 class Advice(CliTest):
     def test_nothing_hit_and_why(self):
         for arguments, text in (
