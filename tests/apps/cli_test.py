@@ -15,6 +15,7 @@ import unittest
 
 from cli_support import BOX, CliTest, box_of
 
+
 class Help(CliTest):
     def test_version(self):
         self.assertRegex(self.succeed("--version").stdout, r"^glidar \d+\.\d+\.\d+\n$")
