@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <functional>
+#include <apps/glidar/cli_fwd.hpp>
 
-namespace CLI {
-class App;
-}
+#include <functional>
 
 namespace glidar::app {
 

@@ -4,11 +4,9 @@
 
 namespace glidar::app {
 
-/// What the program returns; an interrupt returns 130.
-enum ExitCode : int {
-  kDone = 0,
-  kCheckFailed = 1,  ///< `verify` found errors over its bounds
-  kBadInput = 2,     ///< options, files, values
-};
+// What the program returns; an interrupt returns 130.
+inline constexpr int kDone = 0;
+inline constexpr int kCheckFailed = 1;  ///< `verify` found errors over its bounds
+inline constexpr int kBadInput = 2;     ///< options, files, values
 
 }  // namespace glidar::app

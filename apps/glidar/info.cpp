@@ -182,7 +182,9 @@ Json json_of(const ModelReport& report) {
 
 int run(const InfoFlags& flags) {
   Console console;
-  const Model model = load_model(flags.input, model_options(flags.model), console.report());
+  Report report_to_console = console.report();
+  report_to_console.log = nullptr;  // all it would say is in the table
+  const Model model = load_model(flags.input, model_options(flags.model), report_to_console);
   console.clear();
   const ModelReport report = inspect(model);
   if (flags.json) {

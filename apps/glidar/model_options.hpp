@@ -2,13 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <apps/glidar/cli_fwd.hpp>
 #include <glidar/io/model.hpp>
 
 #include <string>
-
-namespace CLI {
-class App;
-}
 
 namespace glidar::app {
 

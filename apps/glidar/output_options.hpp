@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <apps/glidar/cli_fwd.hpp>
 #include <glidar/core/cloud_sink.hpp>
 #include <glidar/io/file_sink.hpp>
 
@@ -9,10 +10,6 @@
 #include <memory>
 #include <string>
 #include <vector>
-
-namespace CLI {
-class App;
-}
 
 namespace glidar::app {
 

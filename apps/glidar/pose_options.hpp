@@ -2,16 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <apps/glidar/cli_fwd.hpp>
 #include <glidar/core/beams.hpp>
 #include <glidar/core/pose.hpp>
 #include <glidar/core/scene.hpp>
 
 #include <optional>
 #include <string>
-
-namespace CLI {
-class App;
-}
 
 namespace glidar::app {
 

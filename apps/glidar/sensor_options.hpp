@@ -2,15 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <apps/glidar/cli_fwd.hpp>
 #include <glidar/sensor/sensor.hpp>
 
 #include <cstdint>
 #include <optional>
 #include <string>
-
-namespace CLI {
-class App;
-}
 
 namespace glidar::app {
 

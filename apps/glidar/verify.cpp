@@ -40,19 +40,24 @@ struct Row {
   VerifyResult result;
 };
 
+Row run_row(const std::vector<Shape>& shapes, std::size_t shape, double distance_m,
+            const RendererOptions& options) {
+  Row row{.shape = shapes[shape].name, .distance_m = distance_m, .result = {}};
+  for (const VerifyCase& c : make_cases(shape, distance_m)) {
+    row.result.add(run_case(c, shapes[shape], options));
+  }
+  return row;
+}
+
 std::vector<Row> run_all(const RendererOptions& options, Console& console) {
   const std::vector<Shape> shapes = make_shapes();
   const std::vector<double>& distances = verify_distances();
+  const auto count = static_cast<double>(shapes.size() * distances.size());
   std::vector<Row> rows;
   for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
     for (const double distance_m : distances) {
-      Row row{.shape = shapes[shape].name, .distance_m = distance_m, .result = {}};
-      for (const VerifyCase& c : make_cases(shape, distance_m)) {
-        row.result.add(run_case(c, shapes[shape], options));
-      }
-      rows.push_back(row);
-      console.progress("verifying", static_cast<double>(rows.size()) /
-                                        static_cast<double>(shapes.size() * distances.size()));
+      rows.push_back(run_row(shapes, shape, distance_m, options));
+      console.progress("verifying", static_cast<double>(rows.size()) / count);
     }
   }
   console.clear();

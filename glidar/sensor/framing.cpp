@@ -35,17 +35,21 @@ struct Window {
   Eigen::Vector2d high;
 };
 
-/// Calls visit(vertex in the world) for every corner of every triangle.
+/// Calls visit(vertex in the world) for every corner of the instance's triangles.
+template <typename Visit>
+void visit_corners(const Instance& instance, const Mesh& mesh, const Visit& visit) {
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) {
+      const Eigen::Vector3d in_object = mesh.origin_m + mesh.positions_m[corner].cast<double>();
+      visit(instance.world_from_object * (instance.scale * in_object));
+    }
+  }
+}
+
 template <typename Visit>
 void for_each_corner(const Scene& scene, const Visit& visit) {
   for (const Instance& instance : scene.instances) {
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    for (const Triangle& triangle : mesh.triangles) {
-      for (const std::uint32_t corner : triangle) {
-        const Eigen::Vector3d in_object = mesh.origin_m + mesh.positions_m[corner].cast<double>();
-        visit(instance.world_from_object * (instance.scale * in_object));
-      }
-    }
+    visit_corners(instance, scene.meshes[instance.mesh], visit);
   }
 }
 

@@ -10,75 +10,10 @@ import shlex
 import signal
 import struct
 import subprocess
-import tempfile
 import time
 import unittest
 
-BOX = """o box
-v -1 -1 -1
-v 1 -1 -1
-v 1 1 -1
-v -1 1 -1
-v -1 -1 1
-v 1 -1 1
-v 1 1 1
-v -1 1 1
-f 1 4 3 2
-f 5 6 7 8
-f 1 2 6 5
-f 3 4 8 7
-f 2 3 7 6
-f 1 5 8 4
-"""
-
-
-def box_of(size):
-    """The text of a cube with this side."""
-    return re.sub(r"(?m)^v (.*)$", lambda m: "v " + " ".join(
-        repr(float(x) * size / 2) for x in m.group(1).split()), BOX)
-
-
-class CliTest(unittest.TestCase):
-    def setUp(self):
-        self._folder = tempfile.TemporaryDirectory()
-        self.addCleanup(self._folder.cleanup)
-        self.folder = self._folder.name
-        self.environment = dict(os.environ, XDG_CACHE_HOME=os.path.join(self.folder, ".cache"))
-
-    def run_program(self, *arguments):
-        return subprocess.run(["glidar", *arguments], cwd=self.folder, env=self.environment,
-                              capture_output=True, text=True, timeout=300, check=False)
-
-    def succeed(self, *arguments):
-        done = self.run_program(*arguments)
-        self.assertEqual(done.returncode, 0, done.stderr)
-        return done
-
-    def warned(self, *arguments):
-        done = self.succeed("render", *arguments, "-o", "x.pcd")
-        self.assertIn("glidar: warning:", done.stderr)
-        self.assertNotIn("warning", done.stdout)
-        return done.stderr
-
-    def refused(self, *arguments):
-        """The error of bad input: one line, exit code 2, nothing written."""
-        before = sorted(os.listdir(self.folder))
-        done = self.run_program(*arguments)
-        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
-        self.assertTrue(done.stderr.startswith("glidar: error: "), done.stderr)
-        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
-        self.assertEqual(done.stdout, "")
-        after = [name for name in sorted(os.listdir(self.folder)) if name != ".cache"]
-        self.assertEqual(after, [name for name in before if name != ".cache"])
-        return done.stderr
-
-    def write(self, name, text):
-        with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
-            file.write(text)
-        return name
-
-    def files(self):
-        return sorted(name for name in os.listdir(self.folder) if name != ".cache")
+from cli_support import BOX, CliTest, box_of
 
 
 class Help(CliTest):
@@ -173,7 +108,7 @@ class Refusals(CliTest):
 
     def test_an_error_while_loading_leaves_old_files_alone(self):
         self.write("x.pcd", "old")
-        self.write("broken.ply", "ply\nformat ascii 1.0\nelement vertex 9\n")
+        self.write("broken.ply", "neither a header nor triangles\n")
         self.refused("render", "broken.ply", "-o", "x.pcd")
         with open(os.path.join(self.folder, "x.pcd"), encoding="utf-8") as file:
             self.assertEqual(file.read(), "old")
@@ -277,6 +212,46 @@ class Render(CliTest):
         self.assertEqual(done.stderr, "")
 
 
+class SceneFiles(CliTest):
+    SCENE = """models:
+  - {model: builtin:box, name: left, pose: {position: [-3, 0, 0]}, id: 7}
+  - {model: builtin:sphere, name: right, pose: {position: [3, 0, 0]}, id: 9}
+sensor:
+  optics: {type: pinhole, width: 60, height: 20, fov_deg: 30}
+sensor_pose:
+  look_at: {eye: [0, -20, 0], target: [0, 0, 0]}
+"""
+
+    def ids(self, *arguments):
+        self.write("scene.yaml", self.SCENE)
+        done = self.succeed("render", "scene.yaml", *arguments, "--dense", "--columns", "xyz,instance",
+                            "-o", "a.csv")
+        with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
+            lines = [line for line in file.read().split("\n") if line and line[0] != "#"]
+        return {line.split(",")[3] for line in lines[1:]}, done.stdout
+
+    def test_sensor_and_pose_of_the_file_are_used(self):
+        ids, summary = self.ids()
+        self.assertEqual(ids, {"7", "9"})
+        self.assertIn("60 x 20 beams", summary)
+
+    def test_options_win_over_the_file(self):
+        ids, summary = self.ids("-w", "30", "--height", "40", "--eye", "-3,-8,0", "--target", "-3,0,0")
+        self.assertEqual(ids, {"7"})
+        self.assertIn("30 x 40 beams", summary)
+
+    def test_sensor_file_wins_over_the_scene_file(self):
+        self.write("sensor.yaml", "optics: {type: pinhole, width: 33, height: 11, fov_deg: 30}\n")
+        self.assertIn("33 x 11 beams", self.ids("--sensor", "sensor.yaml")[1])
+        self.assertIn("write them into sensor.yaml",
+                      self.refused("render", "scene.yaml", "--sensor", "sensor.yaml", "--fov", "9",
+                                   "-o", "x.pcd"))
+
+    def test_options_for_one_model_are_refused(self):
+        self.write("scene.yaml", self.SCENE)
+        self.assertIn("2 objects", self.refused("render", "scene.yaml", "--scale", "2", "-o", "x.pcd"))
+
+
 class Advice(CliTest):
     def test_nothing_hit_and_why(self):
         for arguments, text in (
@@ -348,7 +323,7 @@ class Verify(CliTest):
 class Interrupt(CliTest):
     def test_ctrl_c_leaves_no_files(self):
         with subprocess.Popen(
-                ["glidar", "render", "builtin:asteroid", "-w", "3000", "--height", "3000",
+                ["glidar", "render", "builtin:asteroid", "-w", "1200", "--height", "1200",
                  "--columns", "all", "-o", "a.csv", "-o", "b.csv"],
                 cwd=self.folder, env=self.environment, stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE, text=True) as program:

@@ -1,0 +1,75 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Running the built program, found in PATH, in a folder of its own."""
+
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+
+BOX = """o box
+v -1 -1 -1
+v 1 -1 -1
+v 1 1 -1
+v -1 1 -1
+v -1 -1 1
+v 1 -1 1
+v 1 1 1
+v -1 1 1
+f 1 4 3 2
+f 5 6 7 8
+f 1 2 6 5
+f 3 4 8 7
+f 2 3 7 6
+f 1 5 8 4
+"""
+
+
+def box_of(size):
+    """The text of a cube with this side."""
+    return re.sub(r"(?m)^v (.*)$", lambda m: "v " + " ".join(
+        repr(float(x) * size / 2) for x in m.group(1).split()), BOX)
+
+
+class CliTest(unittest.TestCase):
+    def setUp(self):
+        self._folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self._folder.cleanup)
+        self.folder = self._folder.name
+        self.environment = dict(os.environ, XDG_CACHE_HOME=os.path.join(self.folder, ".cache"))
+
+    def run_program(self, *arguments):
+        return subprocess.run(["glidar", *arguments], cwd=self.folder, env=self.environment,
+                              capture_output=True, text=True, timeout=300, check=False)
+
+    def succeed(self, *arguments):
+        done = self.run_program(*arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def warned(self, *arguments):
+        done = self.succeed("render", *arguments, "-o", "x.pcd")
+        self.assertIn("glidar: warning:", done.stderr)
+        self.assertNotIn("warning", done.stdout)
+        return done.stderr
+
+    def refused(self, *arguments):
+        """The error of bad input: one line, exit code 2, nothing written."""
+        before = sorted(os.listdir(self.folder))
+        done = self.run_program(*arguments)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertTrue(done.stderr.startswith("glidar: error: "), done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertEqual(done.stdout, "")
+        after = [name for name in sorted(os.listdir(self.folder)) if name != ".cache"]
+        self.assertEqual(after, [name for name in before if name != ".cache"])
+        return done.stderr
+
+    def write(self, name, text):
+        with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
+            file.write(text)
+        return name
+
+    def files(self):
+        return sorted(name for name in os.listdir(self.folder) if name != ".cache")
