@@ -62,30 +62,33 @@ std::uint32_t repeat_vertex(Mesh& mesh, std::uint32_t vertex) {
   return static_cast<std::uint32_t>(mesh.positions_m.size() - 1);
 }
 
+/// Vertices that unmirrored faces use.
+std::vector<bool> used_plainly(const Mesh& mesh, const std::vector<FaceTangent>& faces) {
+  std::vector<bool> plain(mesh.positions_m.size(), false);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    if (faces[f].mirrored) continue;
+    for (const std::uint32_t v : mesh.triangles[f]) plain[v] = true;
+  }
+  return plain;
+}
+
 /// Gives corners of mirrored faces their own vertices where unmirrored ones use them too.
 /// Returns for every vertex whether its uvs are mirrored.
 std::vector<bool> split_mirrored(Mesh& mesh, const std::vector<FaceTangent>& faces) {
-  std::vector<std::uint32_t> twin(mesh.positions_m.size(), kNone);
-  std::vector<bool> plain(mesh.positions_m.size(), false);
-  std::vector<bool> mirrored(mesh.positions_m.size(), false);
-  for (std::size_t f = 0; f < faces.size(); ++f) {
-    for (const std::uint32_t v : mesh.triangles[f]) {
-      if (!faces[f].mirrored) plain[v] = true;
+  const std::vector<bool> plain = used_plainly(mesh, faces);
+  std::vector<std::uint32_t> twin(plain.size(), kNone);
+  std::vector<bool> mirrored(plain.size(), false);
+  const auto twin_of = [&](std::uint32_t v) {
+    if (plain[v] && twin[v] == kNone) {
+      twin[v] = repeat_vertex(mesh, v);
+      mirrored.push_back(true);
     }
-  }
+    if (!plain[v]) mirrored[v] = true;
+    return plain[v] ? twin[v] : v;
+  };
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (!faces[f].mirrored) continue;
-    for (std::uint32_t& v : mesh.triangles[f]) {
-      if (!plain[v]) {
-        mirrored[v] = true;
-        continue;
-      }
-      if (twin[v] == kNone) {
-        twin[v] = repeat_vertex(mesh, v);
-        mirrored.push_back(true);
-      }
-      v = twin[v];
-    }
+    for (std::uint32_t& v : mesh.triangles[f]) v = twin_of(v);
   }
   return mirrored;
 }
