@@ -111,7 +111,9 @@ std::string reason_for_no_hits(const View& view, const FrameSummary& summary) {
         "turn the sensor, or {}",
         sight.distance_m, sight.depth_m, kFrameIt);
   }
-  const double half_size_rad = std::atan2(0.5 * sight.size_m, sight.distance_m);
+  const bool around = sight.distance_m <= 0.5 * sight.size_m;  // it may be on every side
+  const double half_size_rad =
+      around ? std::numbers::pi : std::asin(0.5 * sight.size_m / sight.distance_m);
   if (sight.off_axis_rad - half_size_rad > sight.view_rad) {
     return fmt::format(
         "the scene is outside the view: its middle is {:.1f} degrees off the "

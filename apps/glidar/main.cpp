@@ -67,13 +67,15 @@ int fail(const std::string& message) {
   return kBadInput;
 }
 
-/// The words that CLI11 could not place, options first: theirs is the better explanation.
+/// The word that explains best what CLI11 could not place: within a subcommand an option, before
+/// one the word that stands in its place.
 std::string first_extra(const CLI::App& program) {
   const std::vector<std::string> extras = program.remaining(true);
-  const auto option = std::find_if(extras.begin(), extras.end(), [](const std::string& word) {
-    return word.size() > 1 && word.starts_with("-");
+  const bool options_first = &chosen(program) != &program;
+  const auto best = std::find_if(extras.begin(), extras.end(), [&](const std::string& word) {
+    return (word.size() > 1 && word.starts_with("-")) == options_first;
   });
-  if (option != extras.end()) return *option;
+  if (best != extras.end()) return *best;
   return extras.empty() ? "" : extras.front();
 }
 
@@ -82,6 +84,8 @@ int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** 
     program.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {
     return program.exit(help_or_version);
+  } catch (const CLI::ConversionError& error) {
+    return fail(std::string(error.what()) + "; see --help for what it takes");
   } catch (const CLI::ParseError& error) {
     const std::string extra = first_extra(program);
     return fail(extra.empty() ? error.what() : explain_extra(program, commands, extra));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/output_options.hpp>
 
+#include <apps/glidar/help_text.hpp>
 #include <apps/glidar/numbers.hpp>
 #include <apps/glidar/pose_options.hpp>
 #include <glidar/core/error.hpp>
@@ -99,27 +100,30 @@ std::string suffix_list() {
 void add_output_flags(CLI::App& command, OutputFlags& flags) {
   const std::string group = "Output";
   command
-      .add_option("-o,--output", flags.paths, "Output file, repeatable; by suffix:" + suffix_list())
+      .add_option("-o,--output", flags.paths,
+                  wrapped("Output file, repeatable; the suffix says what:" + suffix_list()))
       ->type_name("OUT")
       ->allow_extra_args(false)
       ->group(group);
   command
-      .add_option("--pcd", flags.legacy_name,
-                  "As in the 2015 program: NAME.pcd (x left, y up, z forward) and NAME.transform")
+      .add_option(
+          "--pcd", flags.legacy_name,
+          wrapped("As in the 2015 program: NAME.pcd (x left, y up, z forward) and NAME.transform"))
       ->type_name("NAME")
       ->group(group);
   command
-      .add_option(
-          "--columns", flags.columns,
-          fmt::format("Columns of clouds: all, default or a list of {} [default = {}]",
-                      fmt::join(cloud_column_names(), " "), fmt::join(default_columns(), ",")))
+      .add_option("--columns", flags.columns,
+                  wrapped(fmt::format(
+                      "Columns of clouds: all, default or a list a,b,c of {} [default: {}]",
+                      fmt::join(cloud_column_names(), " "), fmt::join(default_columns(), " "))))
       ->type_name("LIST")
       ->group(group);
   command
       .add_option(
           "--cloud-frame", flags.cloud_frame,
-          "Axes of clouds: optical (x right, y down, z forward), ros (x forward, y left, z "
-          "up), gl (x right, y up, z back), legacy (x left, y up, z forward), world [optical]")
+          wrapped(
+              "Axes of clouds: optical (x right, y down, z forward), ros (x forward, y left, z "
+              "up), gl (x right, y up, z back), legacy (x left, y up, z forward), world [optical]"))
       ->check(CLI::IsMember({"optical", "ros", "gl", "world", "legacy"}))
       ->type_name("NAME")
       ->group(group);

@@ -17,16 +17,16 @@ namespace glidar::app {
 
 /// Where sensor and model stand, as given; empty: not given.
 struct PoseFlags {
-  std::string eye;
-  std::string target;
-  std::string up_vector;
-  std::string sensor_pose;
-  std::string model_q;
-  std::string model_r;
-  std::string camera_q;
-  std::string camera_r;
-  std::optional<double> camera_z;
-  std::optional<double> scale;
+  std::string eye = {};
+  std::string target = {};
+  std::string up_vector = {};
+  std::string sensor_pose = {};
+  std::string model_q = {};
+  std::string model_r = {};
+  std::string camera_q = {};
+  std::string camera_r = {};
+  std::optional<double> camera_z = {};
+  std::optional<double> scale = {};
 };
 
 void add_pose_flags(CLI::App& command, PoseFlags& flags);

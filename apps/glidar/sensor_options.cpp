@@ -156,7 +156,7 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
   add("--far", flags.far_m, "M", "Greatest depth that is reported [inf]");
   command
       .add_flag("--cull-back-faces", flags.cull_back_faces,
-                "Triangles seen from behind let beams through [both sides are seen]")
+                "Triangles seen from behind let beams through [they are seen]")
       ->group(group);
   add("--ambient", flags.ambient, "A", "Ambient light of the scene [0.2]");
   add("--attenuation", flags.attenuation, "C,L,Q",

@@ -186,7 +186,8 @@ TrueHit intersect_solid(const ClosedForm& form, const RealVector& origin,
   result.hit = c.outside <= 0.0L && c.enter <= c.leave && c.enter > 0.0L;
   if (!result.hit) {
     const bool behind = c.leave < 0.0L;
-    result.clear = c.outside > tolerance || behind || margin > tolerance;
+    const bool apart = c.enter > c.leave && margin > tolerance;
+    result.clear = c.outside > tolerance || behind || apart;
     return result;
   }
   result.range_m = c.enter;

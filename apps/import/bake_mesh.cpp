@@ -73,7 +73,10 @@ void note_repairs(const Walk& walk, const Repairs& repairs, Model& model) {
 
 /// Formats keep single precision: far from zero it is coarse, and the file's detail may be lost.
 void note_precision(const Eigen::AlignedBox3d& box, Model& model) {
-  if (box.isEmpty() || box.sizes().maxCoeff() == 0.0) return;
+  if (box.sizes().maxCoeff() == 0.0) {
+    model.notes.emplace_back("the model has no extent: all its triangles lie in one point");
+    return;
+  }
   const double far = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
   const double step = far * std::ldexp(1.0, -23);
   constexpr double kCoarse = 1e-4;

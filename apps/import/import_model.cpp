@@ -83,6 +83,17 @@ void read_materials(const aiScene& scene, const Walk& walk, const MaterialContex
   }
 }
 
+/// Material files name textures from where they stand.
+std::vector<std::string> texture_folders(const std::vector<std::string>& read,
+                                         const ModelFolder& folder) {
+  std::vector<std::string> folders;
+  for (const std::string& file : read) {
+    const std::filesystem::path parent = std::filesystem::path(file).parent_path();
+    if (parent != folder.folder) add_once(folders, parent.string());
+  }
+  return folders;
+}
+
 /// FBX tells its unit (in centimetres) and Assimp does not apply it: the user decides.
 void note_unit(const aiScene& scene, Model& model) {
   double centimetres = 0.0;
@@ -101,7 +112,7 @@ void note_unit(const aiScene& scene, Model& model) {
 
 ImportedModel import_model(const std::filesystem::path& canonical_model, double crease_angle_rad,
                            const std::function<void(double)>& progress) {
-  const ModelFolder folder = model_folder(canonical_model);
+  ModelFolder folder = model_folder(canonical_model);
   const auto log = std::make_shared<FileLog>();
   // Never destroyed: taking a deep tree apart recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
@@ -114,6 +125,8 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   model.format = importer_name(importer);
   const Walk walked = walk(*scene);
   const MtlOptions mtl = read_mtl_options(log->read);
+  imported.texture_folders = texture_folders(log->read, folder);
+  folder.also.assign(imported.texture_folders.begin(), imported.texture_folders.end());
   TextureStore textures(*scene, folder, *log, imported);
   const bool gltf = model.format.find("glTF") != std::string::npos;
   BakeOptions options;

@@ -5,11 +5,12 @@
 #include <assimp/material.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cstdlib>
 #include <fstream>
-#include <sstream>
 #include <string_view>
+#include <utility>
 
 namespace glidar::import {
 namespace {
@@ -20,21 +21,76 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// Up to two numbers at the stream's position; a third is for 3D textures and is skipped.
-/// What is no number stays in the stream.
-void read_pair(std::istringstream& words, Eigen::Vector2f& pair) {
+bool is_space(char c) {
+  return std::isspace(static_cast<unsigned char>(c)) != 0;
+}
+
+std::string_view trimmed(std::string_view text) {
+  while (!text.empty() && is_space(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_space(text.back())) text.remove_suffix(1);
+  return text;
+}
+
+/// Takes the first word off the text.
+std::string take_word(std::string_view& text) {
+  text = trimmed(text);
+  const auto end = std::find_if(text.begin(), text.end(), is_space);
+  std::string word(text.begin(), end);
+  text.remove_prefix(word.size());
+  return word;
+}
+
+/// Takes a number off the text if one stands there.
+std::optional<float> take_number(std::string_view& text) {
+  std::string_view rest = text;
+  const std::string word = take_word(rest);
+  char* end = nullptr;
+  const float value = std::strtof(word.c_str(), &end);
+  if (word.empty() || *end != '\0') return std::nullopt;
+  text = rest;
+  return value;
+}
+
+/// One to three numbers; the third is for 3D textures.
+void take_pair(std::string_view& text, Eigen::Vector2f& pair) {
   for (int i = 0; i < 3; ++i) {
-    const auto before = words.tellg();
-    std::string word;
-    words >> word;
-    char* end = nullptr;
-    const float value = std::strtof(word.c_str(), &end);
-    if (word.empty() || *end != '\0') {
-      words.clear();
-      words.seekg(before);
-      return;
-    }
-    if (i < 2) pair[i] = value;
+    const auto value = take_number(text);
+    if (!value) return;
+    if (i < 2) pair[i] = *value;
+  }
+}
+
+/// Takes the values of an option off the text. False for what is no option.
+bool take_option(const std::string& option, std::string_view& text, MtlTexture& texture) {
+  constexpr std::array<std::string_view, 8> kOneWord = {
+      "-blendu", "-blendv", "-cc", "-texres", "-boost", "-imfchan", "-type", "-colorspace"};
+  Eigen::Vector2f unused;
+  if (option == "-s") {
+    take_pair(text, texture.scale);
+  } else if (option == "-o") {
+    take_pair(text, texture.offset);
+  } else if (option == "-t" || option == "-mm") {
+    take_pair(text, unused);
+  } else if (option == "-bm") {
+    texture.bump = take_number(text);
+  } else if (option == "-clamp") {
+    texture.clamp = take_word(text) == "on";
+  } else if (std::find(kOneWord.begin(), kOneWord.end(), option) != kOneWord.end()) {
+    take_word(text);
+  } else {
+    return false;
+  }
+  return true;
+}
+
+/// Options stand before the name; some writers put them after it.
+bool take_options(std::string_view& text, MtlTexture& texture) {
+  bool any = false;
+  for (;;) {
+    std::string_view rest = text;
+    if (!take_option(take_word(rest), rest, texture)) return any;
+    text = rest;
+    any = true;
   }
 }
 
@@ -59,38 +115,35 @@ std::vector<std::string_view> keywords_of(unsigned type) {
   }
 }
 
-void read_line(const std::string& line, std::string& material, MtlOptions& options) {
-  std::istringstream words(line);
-  std::string keyword;
-  words >> keyword;
-  keyword = lower(keyword);
-  if (keyword == "newmtl") {
-    std::getline(words >> std::ws, material);
-    while (!material.empty() && std::isspace(static_cast<unsigned char>(material.back())) != 0) {
-      material.pop_back();
+void read_texture(std::string_view text, MtlTexture texture, MtlOptions& options) {
+  bool any = take_options(text, texture);
+  text = trimmed(text);
+  if (const std::size_t after = text.find(" -"); after != std::string_view::npos) {
+    std::string_view tail = text.substr(after);
+    if (take_options(tail, texture)) {
+      text = trimmed(text.substr(0, after));
+      any = true;
     }
   }
-  if (!names_map(keyword)) return;
-  MtlTexture texture{material, keyword, Eigen::Vector2f::Ones(), Eigen::Vector2f::Zero()};
-  bool given = false;
-  for (std::string word; words >> word;) {
-    if (word != "-s" && word != "-o") continue;
-    read_pair(words, word == "-s" ? texture.scale : texture.offset);
-    given = true;
-  }
-  if (given && texture.scale.allFinite() && texture.offset.allFinite()) {
+  texture.name = text;
+  if (any && !texture.name.empty() && texture.scale.allFinite() && texture.offset.allFinite()) {
     options.textures.push_back(std::move(texture));
   }
 }
 
 }  // namespace
 
-void MtlOptions::refine(const std::string& material, unsigned type, NamedTexture& texture) const {
+void MtlOptions::refine(const std::string& material, unsigned type,
+                        std::optional<NamedTexture>& texture) const {
   for (const std::string_view keyword : keywords_of(type)) {
     for (const MtlTexture& line : textures) {
       if (line.material != material || line.map != keyword) continue;
-      texture.use.uv_scale_rotate = line.scale.asDiagonal();
-      texture.use.uv_offset = line.offset;
+      if (!texture) texture.emplace();
+      texture->name = line.name;
+      texture->bump = line.bump;
+      texture->use.uv_scale_rotate = line.scale.asDiagonal();
+      texture->use.uv_offset = line.offset;
+      if (line.clamp) texture->use.wrap_u = texture->use.wrap_v = Wrap::clamp;
     }
   }
 }
@@ -101,7 +154,16 @@ MtlOptions read_mtl_options(const std::vector<std::string>& files) {
     if (!lower(path).ends_with(".mtl")) continue;
     std::ifstream file(path);
     std::string material;
-    for (std::string line; std::getline(file, line);) read_line(line, material, options);
+    for (std::string line; std::getline(file, line);) {
+      std::string_view text = line;
+      const std::string keyword = lower(take_word(text));
+      if (keyword == "newmtl") material = trimmed(text);
+      if (!names_map(keyword)) continue;
+      MtlTexture texture;
+      texture.material = material;
+      texture.map = keyword;
+      read_texture(text, std::move(texture), options);
+    }
   }
   return options;
 }

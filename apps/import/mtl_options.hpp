@@ -5,25 +5,31 @@
 #include <import/texture_use.hpp>
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
 namespace glidar::import {
 
-/// One `map_...` line of a Wavefront material file.
+/// One texture line of a Wavefront material file that has options.
 struct MtlTexture {
   std::string material;
-  std::string map;  ///< lower case: "map_kd"
-  Eigen::Vector2f scale = Eigen::Vector2f::Ones();
-  Eigen::Vector2f offset = Eigen::Vector2f::Zero();
+  std::string map;                                   ///< lower case: "map_kd"
+  std::string name;                                  ///< of the image
+  Eigen::Vector2f scale = Eigen::Vector2f::Ones();   ///< -s
+  Eigen::Vector2f offset = Eigen::Vector2f::Zero();  ///< -o
+  std::optional<float> bump;                         ///< -bm
+  bool clamp = false;                                ///< -clamp on
 };
 
-/// The options `-s` and `-o` of texture lines, which Assimp skips: u' = s u + o.
+/// Texture lines with options. Assimp skips `-s` and `-o`, and loses the name after options that it
+/// does not know or that have fewer numbers than it expects.
 struct MtlOptions {
-  std::vector<MtlTexture> textures;  ///< only those with such options
+  std::vector<MtlTexture> textures;
 
-  /// Sets the transform that the file gives for this texture of this material.
-  void refine(const std::string& material, unsigned type, NamedTexture& texture) const;
+  /// Corrects what Assimp read of this texture of this material: its name, u' = s u + o, clamping.
+  void refine(const std::string& material, unsigned type,
+              std::optional<NamedTexture>& texture) const;
 };
 
 /// Reads the material files among those that were read for a model.

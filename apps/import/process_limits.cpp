@@ -24,9 +24,19 @@ bool limit(__rlimit_resource resource, std::uint64_t value) {
 // Importers recurse over the file's tree; the kernel keeps 128 MiB of addresses free for the stack.
 constexpr std::uint64_t kStackBytes = std::uint64_t{100} << 20U;
 
-// The sanitizers reserve terabytes of addresses.
+// The sanitizers reserve terabytes of addresses; they watch the resident memory themselves.
+// Importers mix allocation functions and come from a library that is not instrumented.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kLimitAddresses = false;
+constexpr const char* kSanitizerOptions =
+    "hard_rss_limit_mb=2048:allocator_may_return_null=1:alloc_dealloc_mismatch=0:"
+    "detect_container_overflow=0";
+extern "C" const char* __asan_default_options() {
+  return kSanitizerOptions;
+}
+extern "C" const char* __tsan_default_options() {
+  return "hard_rss_limit_mb=2048";
+}
 #else
 constexpr bool kLimitAddresses = true;
 #endif

@@ -87,9 +87,8 @@ std::optional<NamedTexture> first_of(const aiMaterial& source,
                                      const MaterialContext& context) {
   for (const aiTextureType type : types) {
     auto named = texture_of(source, type, context.gltf);
-    if (!named) continue;
-    context.mtl.refine(source.GetName().C_Str(), type, *named);
-    return named;
+    context.mtl.refine(source.GetName().C_Str(), type, named);
+    if (named) return named;
   }
   return std::nullopt;
 }
@@ -138,7 +137,8 @@ void read_cutout(const aiMaterial& source, int diffuse_flags, const MaterialCont
 }
 
 /// Strength of bumps: OBJ's -bm, or the key of other formats, or glTF's normal scale.
-float bump_strength(const aiMaterial& source) {
+float bump_strength(const aiMaterial& source, const NamedTexture& texture) {
+  if (texture.bump) return *texture.bump;
   for (const aiTextureType type : {aiTextureType_HEIGHT, aiTextureType_NORMALS}) {
     if (const auto bm = number(source, _AI_MATKEY_OBJ_BUMPMULT_BASE, type)) return *bm;
   }
@@ -156,7 +156,7 @@ void read_normals(const aiMaterial& source, const MaterialContext& context, Mate
   if (map.texture == TextureUse::kNone) return;
   m.normal_texture = named->use;
   m.normal_texture.texture = map.texture;
-  const float scale = map.scale * bump_strength(source);
+  const float scale = map.scale * bump_strength(source, *named);
   m.normal_scale = std::isfinite(scale) ? scale : map.scale;
 }
 

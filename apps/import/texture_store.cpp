@@ -86,11 +86,12 @@ TextureStore::NormalMap TextureStore::normals(const std::string& name) {
   if (const auto known = normals_.find(image); known != normals_.end()) return known->second;
   NormalMap map{image, 1.0F};
   const Texture& texture = imported_.model.textures[static_cast<std::size_t>(image)];
+  const bool heights = !looks_like_normal_map(texture);
   const std::uint64_t bytes = std::uint64_t{texture.width} * texture.height * 3;
-  if (!looks_like_normal_map(texture) && bytes > budget_) {
+  if (heights && bytes > budget_) {
     imported_.model.missing_textures.push_back({texture.name, "no memory to convert its heights"});
     map.texture = TextureUse::kNone;
-  } else if (!looks_like_normal_map(texture)) {
+  } else if (heights) {
     HeightNormals converted = normals_from_heights(texture);
     map = {keep(std::move(converted.texture)), converted.normal_scale};
   }

@@ -14,8 +14,9 @@ namespace glidar::import {
 /// A texture as a material of the file names it.
 struct NamedTexture {
   std::string name;
-  TextureUse use;  ///< all but the texture's index
-  int flags = 0;   ///< aiTextureFlags
+  TextureUse use;             ///< all but the texture's index
+  int flags = 0;              ///< aiTextureFlags
+  std::optional<float> bump;  ///< strength, where the texture's own line tells it
 };
 
 /// The first texture of an aiTextureType of a material; none when it has none.

@@ -24,7 +24,11 @@ constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
 constexpr std::size_t kSlots = 32;
 constexpr std::size_t kSlotPathBytes = 4096;
 
-enum SlotState : int { kFree, kFilling, kListed, kRemoving };
+// States of a slot; int, because only plain atomics are sure to work in a signal handler.
+constexpr int kFree = 0;
+constexpr int kFilling = 1;
+constexpr int kListed = 2;
+constexpr int kRemoving = 3;
 
 /// A temporary file's name where a signal handler can read it: no allocation, no lock.
 struct Slot {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <span>
@@ -144,10 +145,13 @@ class Smoother {
       made_.push_back({from, from});
       return;
     }
-    const auto same = std::find_if(made_.begin(), made_.end(), [&](const Made& made) {
+    // Of very many, only the first are searched for an equal one: the search is quadratic too.
+    const auto searched =
+        made_.begin() + static_cast<std::ptrdiff_t>(std::min(made_.size(), kManyFaces));
+    const auto same = std::find_if(made_.begin(), searched, [&](const Made& made) {
       return made.from == from && mesh_.normals[made.to] == normal;
     });
-    if (same != made_.end()) {
+    if (same != searched) {
       vertex(corner) = same->to;
       return;
     }

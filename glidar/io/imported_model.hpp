@@ -17,7 +17,8 @@ struct ImportedModel {
   Model model;
   std::vector<std::string> files;   ///< canonical paths of all files read, the model itself first
   std::vector<std::string> absent;  ///< paths that were looked for and are no files inside the root
-  std::vector<TextureLookup> lookups;  ///< every texture file that was searched
+  std::vector<std::string> texture_folders;  ///< ModelFolder::also of the searches
+  std::vector<TextureLookup> lookups;        ///< every texture file that was searched
 };
 
 }  // namespace glidar

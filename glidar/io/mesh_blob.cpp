@@ -154,7 +154,8 @@ requires Is<T, ImportedModel>
 void visit(A& archive, T& imported) {
   auto& model = imported.model;
   visit_all(archive, model.format, model.mesh, model.materials, model.textures, model.parts,
-            model.missing_textures, model.notes, imported.files, imported.absent, imported.lookups);
+            model.missing_textures, model.notes, imported.files, imported.absent,
+            imported.texture_folders, imported.lookups);
 }
 
 template <class A, class T>
@@ -166,8 +167,8 @@ void visit(A& archive, T& failure) {
 template <class A, class T>
 requires Is<T, CacheIndex>
 void visit(A& archive, T& index) {
-  visit_all(archive, index.importer, index.files, index.hashes, index.absent, index.lookups,
-            index.root, index.folder);
+  visit_all(archive, index.importer, index.files, index.hashes, index.absent, index.texture_folders,
+            index.lookups, index.root, index.folder);
 }
 
 template <class T>

@@ -38,6 +38,7 @@ struct CacheIndex {
   std::vector<std::string> files;   ///< paths
   std::vector<std::string> hashes;  ///< of their content, hexadecimal; one per file
   std::vector<std::string> absent;
+  std::vector<std::string> texture_folders;
   std::vector<TextureLookup> lookups;
   std::string root;  ///< folder and root that the lookups were made in
   std::string folder;

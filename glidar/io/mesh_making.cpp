@@ -9,31 +9,38 @@
 namespace glidar {
 namespace {
 
-PointMesh icosahedron() {
+/// The three corners as a triangle whose front looks away from the origin.
+Triangle outwards(const std::vector<Eigen::Vector3d>& points, const Triangle& corners) {
+  const auto& [i, j, k] = corners;
+  const Eigen::Vector3d normal = (points[j] - points[i]).cross(points[k] - points[i]);
+  return dot(normal, points[i]) > 0.0 ? corners : Triangle{i, k, j};
+}
+
+std::vector<Eigen::Vector3d> icosahedron_corners() {
   const double golden = (1.0 + std::sqrt(5.0)) / 2.0;
-  PointMesh mesh;
+  std::vector<Eigen::Vector3d> corners;
   for (const double a : {-1.0, 1.0}) {
     for (const double b : {-golden, golden}) {
-      mesh.points_m.push_back(unit({0.0, a, b}));
-      mesh.points_m.push_back(unit({a, b, 0.0}));
-      mesh.points_m.push_back(unit({b, 0.0, a}));
+      corners.push_back(unit({0.0, a, b}));
+      corners.push_back(unit({a, b, 0.0}));
+      corners.push_back(unit({b, 0.0, a}));
     }
   }
-  // A face is any three corners one edge apart. The squared edge of the unit icosahedron is
-  // 4 / (1 + golden^2) = 1.106, the next distance 2.894.
+  return corners;
+}
+
+/// A face is any three corners that are one edge apart.
+PointMesh icosahedron() {
+  PointMesh mesh{icosahedron_corners(), {}};
   const auto joined = [&](std::uint32_t i, std::uint32_t j) {
     const Eigen::Vector3d edge = mesh.points_m[i] - mesh.points_m[j];
-    return dot(edge, edge) < 2.0;
+    return dot(edge, edge) < 2.0;  // a squared edge is 1.106, the next distance 2.894
   };
-  for (std::uint32_t i = 0; i < 12; ++i) {
-    for (std::uint32_t j = i + 1; j < 12; ++j) {
-      for (std::uint32_t k = j + 1; k < 12; ++k) {
-        if (!joined(i, j) || !joined(j, k) || !joined(k, i)) continue;
-        const Eigen::Vector3d& a = mesh.points_m[i];
-        const Eigen::Vector3d normal = (mesh.points_m[j] - a).cross(mesh.points_m[k] - a);
-        mesh.triangles.push_back(dot(normal, a) > 0.0 ? Triangle{i, j, k} : Triangle{i, k, j});
-      }
-    }
+  for (std::uint32_t triple = 0; triple < 12 * 12 * 12; ++triple) {
+    const Triangle corners = {triple / 144, triple / 12 % 12, triple % 12};
+    const auto& [i, j, k] = corners;
+    const bool is_face = i < j && j < k && joined(i, j) && joined(j, k) && joined(k, i);
+    if (is_face) mesh.triangles.push_back(outwards(mesh.points_m, corners));
   }
   return mesh;
 }

@@ -55,6 +55,16 @@ struct Model {
 };
 
 /// Loads a file of any format that Assimp reads, or "builtin:asteroid|sphere|box|torus|plane".
+/// The importer runs in a process of its own (glidar-import) with limits on time and memory, and
+/// reads only below the model's folder (in a model package with `model.config`, or with `meshes`
+/// and `materials` side by side, below the package's).
+/// Coordinates are as the file has them, with node transforms; COLLADA's unit is applied by the
+/// importer, FBX' is not (Model::notes tells it); z-up COLLADA and FBX come out y-up. Then
+/// metres_per_unit and up act. The mesh's origin is away from zero only along axes on which the
+/// model is, so that no single-precision coordinate of the file is rounded. Normals of STL are its
+/// facets' and count as missing; points and lines are left out and told in notes.
+/// Missing textures and notes are told through report, and progress when it takes over half a
+/// second: "loading NAME" with a fraction, negative while unknown.
 /// Throws Error: unknown format, broken, no triangles, time or memory limit, import process
 /// crashed.
 Model load_model(const std::string& source, const ModelOptions& options, const Report& report);

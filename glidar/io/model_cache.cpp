@@ -51,7 +51,8 @@ bool still_absent(const std::string& path, const ModelFolder& folder) {
 
 /// True when importing now would read the very same bytes.
 bool holds(const CacheIndex& index, const CacheEntry& entry, const fs::path& canonical_model) {
-  const ModelFolder folder = model_folder(canonical_model);
+  ModelFolder folder = model_folder(canonical_model);
+  folder.also.assign(index.texture_folders.begin(), index.texture_folders.end());
   if (index.importer != entry.importer || index.importer.empty() ||
       index.files.front() != canonical_model.string() || index.root != folder.root.string() ||
       index.folder != folder.folder.string()) {
@@ -138,7 +139,8 @@ std::string write_cache(const CacheEntry& entry, const ImportedModel& imported,
   const ModelFolder folder = model_folder(canonical_model);
   try {
     write_cache_index(fd.get(), {entry.importer, imported.files, hashes, imported.absent,
-                                 imported.lookups, folder.root.string(), folder.folder.string()});
+                                 imported.texture_folders, imported.lookups, folder.root.string(),
+                                 folder.folder.string()});
     write_model(fd.get(), imported);
   } catch (const Error& failure) {
     fs::remove(temporary, error);

@@ -25,7 +25,7 @@ ModelFolder model_folder(const fs::path& canonical_model) {
   const bool package =
       fs::is_regular_file(parent / "model.config", ignored) ||
       (folder.filename() == "meshes" && fs::is_directory(parent / "materials", ignored));
-  return {folder, package ? parent : folder};
+  return {folder, package ? parent : folder, {}};
 }
 
 ConfinedFile confine(const fs::path& wanted, const ModelFolder& folder) {

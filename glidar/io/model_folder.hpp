@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 namespace glidar {
 
@@ -12,6 +13,8 @@ namespace glidar {
 struct ModelFolder {
   std::filesystem::path folder;  ///< of the model file itself, canonical
   std::filesystem::path root;    ///< nothing outside is ever opened; `folder` or its parent
+  std::vector<std::filesystem::path> also;  ///< more folders to look for textures in: those of the
+                                            ///< material files that the model names
 };
 
 /// The folders of a model, given its canonical path. The root is the model's own folder, except in

@@ -105,8 +105,15 @@ bool has_scheme(const std::string& name) {
   return name.find("://") != std::string::npos && !name.starts_with("file://");
 }
 
-bool place_allowed(std::string_view place, const ModelFolder& folder) {
-  return !place.starts_with("..") || folder.root != folder.folder;
+/// Folders to look in, in this order.
+std::vector<fs::path> places(const ModelFolder& folder) {
+  std::vector<fs::path> all;
+  for (const std::string_view place : kPlaces) {
+    if (!place.starts_with("..") || folder.root != folder.folder)
+      all.push_back(folder.folder / place);
+  }
+  all.insert(all.end(), folder.also.begin(), folder.also.end());
+  return all;
 }
 
 }  // namespace
@@ -124,14 +131,14 @@ TextureLookup find_texture(const std::string& name, const ModelFolder& folder) {
     }
     return file.access == Access::granted;
   };
+  const std::vector<fs::path> look_in = places(folder);
   for (const std::string& spelling : wanted) {
-    for (const std::string_view place : kPlaces) {
-      if (place_allowed(place, folder) && take(fs::path(place) / spelling)) return result;
+    for (const fs::path& place : look_in) {
+      if (take(place / spelling)) return result;
     }
   }
-  for (const std::string_view place : kPlaces) {
-    if (wanted.empty() || !place_allowed(place, folder)) continue;
-    const auto match = any_case(folder.folder / place, base_name(wanted.front()));
+  for (const fs::path& place : look_in) {
+    const auto match = wanted.empty() ? std::nullopt : any_case(place, base_name(wanted.front()));
     if (match && take(*match)) return result;
   }
   return result;

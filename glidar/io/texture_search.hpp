@@ -21,7 +21,8 @@ struct TextureLookup {
 /// The name is tidied (spaces around it, backslashes, `file://`, %20), absolute and `C:\` paths are
 /// cut to their base name, and it is looked for as given, then by its base name, in the model's
 /// folder, `textures/`, `materials/textures/` and, in a model package, `../materials/textures/`
-/// and `../textures/`; at last in the same places in any letter case.
+/// and `../textures/`, then beside the material files; at last in the same places in any letter
+/// case.
 TextureLookup find_texture(const std::string& name, const ModelFolder& folder);
 
 }  // namespace glidar

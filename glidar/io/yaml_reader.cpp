@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kLargestFile_bytes = 16U << 20U;
+// yaml-cpp takes about 250 bytes of memory for each byte of a hostile file: half a GiB in all.
+constexpr std::uintmax_t kLargestFile_bytes = 2U << 20U;
 
 std::string position(const std::string& file, const YAML::Mark& mark) {
   if (mark.is_null()) return file;
@@ -63,7 +64,7 @@ std::string read_text(const fs::path& file) {
   if (fs::is_directory(status)) fail("a folder", "a YAML file", "");
   if (!fs::is_regular_file(status)) fail("not a regular file", "a YAML file", "");
   if (fs::file_size(file, error) > kLargestFile_bytes) {
-    fail("a file of more than 16 MiB", "a YAML file of at most 16 MiB",
+    fail("a file of more than 2 MiB", "a YAML file of at most 2 MiB",
          "name models by their path, do not put them into the file");
   }
   std::ifstream stream(file, std::ios::binary);

@@ -41,7 +41,7 @@ inline constexpr NumberRule kFromZero = {0.0, std::numeric_limits<double>::max()
                                          "a finite number from 0"};
 inline constexpr NumberRule kZeroToOne = {0.0, 1.0, false, "a number from 0 to 1"};
 
-/// Reads a file that holds one YAML map. Throws Error: missing, not a file, over 16 MiB, empty, bad
+/// Reads a file that holds one YAML map. Throws Error: missing, not a file, over 2 MiB, empty, bad
 /// syntax, nested too deeply, several documents, not a map.
 YamlField read_yaml(const std::filesystem::path& file);
 

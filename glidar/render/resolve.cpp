@@ -212,7 +212,10 @@ ObjectRay ray_in(const InstanceView& view, const Beams& beams, std::size_t beam)
 
 Resolver::Resolver(const Scene& scene) : scene_(scene) {
   planes_.reserve(scene.meshes.size());
-  for (const Mesh& mesh : scene.meshes) planes_.push_back(triangle_planes(mesh));
+  for (const Mesh& mesh : scene.meshes) {
+    planes_.push_back(triangle_planes(mesh));
+    twins_.push_back(first_twins(mesh));
+  }
   planes_of_instance_.reserve(scene.instances.size());
   for (const Instance& instance : scene.instances) {
     planes_of_instance_.push_back(planes_[instance.mesh].data());

@@ -25,6 +25,11 @@ struct TrianglePlane {
 /// One per triangle, in double from the mesh's vertices.
 std::vector<TrianglePlane> triangle_planes(const Mesh& mesh);
 
+/// For meshes with triangles that lie on each other, corner on corner (a sheet modelled twice): per
+/// triangle the first of its kind, so that every renderer tells the same one. Empty when all
+/// differ.
+std::vector<std::uint32_t> first_twins(const Mesh& mesh);
+
 /// The sensor as one instance sees it: object units, relative to the mesh's origin.
 struct InstanceView {
   Eigen::Matrix3d object_from_sensor;  ///< rotation
@@ -93,6 +98,13 @@ class Resolver {
     return scene_.meshes[scene_.instances[instance].mesh];
   }
 
+  /// The triangle to tell for one found: itself, or the first of those that lie on it. Sides count
+  /// when back faces are culled, so then it is itself.
+  [[nodiscard]] std::uint32_t told(std::uint32_t instance, std::uint32_t primitive) const {
+    const std::vector<std::uint32_t>& twins = twins_[scene_.instances[instance].mesh];
+    return twins.empty() ? primitive : twins[primitive];
+  }
+
   /// Asks the memory for what measure() and write() will read of a lane's triangle.
   void prefetch(const HitBlock& block, unsigned lane) const {
     const std::uint32_t primitive = block.primitive[lane];
@@ -130,6 +142,7 @@ class Resolver {
 
   const Scene& scene_;
   std::vector<std::vector<TrianglePlane>> planes_;        ///< per mesh
+  std::vector<std::vector<std::uint32_t>> twins_;         ///< per mesh
   std::vector<const TrianglePlane*> planes_of_instance_;  ///< per instance
   std::vector<std::vector<SlotLook>> looks_;              ///< per instance and material slot
   std::vector<InstanceView> views_;                       ///< per instance

@@ -27,7 +27,7 @@ TEST(Error, LeavesOutWhatIsEmpty) {
 TEST(NearestWord, FindsTheTypo) {
   const std::vector<std::string> known = {"width", "height", "fov_deg"};
   EXPECT_EQ(nearest_word("widht", known), "width");
-  EXPECT_EQ(nearest_word("fov_rad", known), "fov_deg");
+  EXPECT_EQ(nearest_word("fov_dge", known), "fov_deg");
 }
 
 TEST(NearestWord, SaysNothingWhenNothingIsNear) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -66,6 +67,23 @@ Beams spinning_beams(const json& params) {
   return beams;
 }
 
+constexpr double kSingle = 6e-8;  // one rounding to single precision
+
+/// How far outside a triangle a point of its plane lies; negative inside.
+double outside_m(const Mesh& mesh, std::uint32_t triangle, const Eigen::Vector3d& point) {
+  std::array<Eigen::Vector3d, 3> v;
+  for (std::size_t k = 0; k < 3; ++k) {
+    v[k] = mesh.origin_m + mesh.positions_m[mesh.triangles[triangle][k]].cast<double>();
+  }
+  const Eigen::Vector3d normal = (v[1] - v[0]).cross(v[2] - v[0]).normalized();
+  double outside = std::abs(normal.dot(point - v[0]));
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3d edge = v[(k + 1) % 3] - v[k];
+    outside = std::max(outside, -normal.dot(edge.cross(point - v[k])) / edge.norm());
+  }
+  return outside;
+}
+
 class ReferenceCase : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(ReferenceCase, EveryStableBeamMeetsTheSameTriangleAtTheSameDepth) {
@@ -83,11 +101,12 @@ TEST_P(ReferenceCase, EveryStableBeamMeetsTheSameTriangleAtTheSameDepth) {
   const Scene scene = testing::scene_of(testing::load_data_model(params["model"]));
   ASSERT_EQ(scene.meshes[0].triangles.size(), params["triangles"].get<std::size_t>());
   Hits hits;
-  make_renderer(scene, {})->cast({.beams = beams,
-                                  .world_from_sensor = world_from_sensor,
-                                  .world_from_instance = {},
-                                  .fields = {.depth = true, .incidence = true}},
-                                 hits);
+  make_renderer(scene, {})->cast(
+      {.beams = beams,
+       .world_from_sensor = world_from_sensor,
+       .world_from_instance = {},
+       .fields = {.depth = true, .incidence = true, .object_point = true}},
+      hits);
 
   const auto depth = testing::read_npy<float>(folder / (pinhole ? "depth_z.npy" : "range.npy"));
   const auto triangle = testing::read_npy<std::int32_t>(folder / "triangle_id.npy");
@@ -99,20 +118,32 @@ TEST_P(ReferenceCase, EveryStableBeamMeetsTheSameTriangleAtTheSameDepth) {
   const double coordinate =
       bounds(scene).max().cwiseAbs().cwiseMax(bounds(scene).min().cwiseAbs()).maxCoeff();
   std::size_t compared = 0;
+  std::size_t on_both = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     if (stable[i] == 0) continue;
     ++compared;
     const bool hit = depth[i] != 0.0F;
     ASSERT_EQ(hits.instance[i] != kNoHit, hit) << "beam " << i;
     if (!hit) continue;
-    EXPECT_EQ(static_cast<std::int32_t>(hits.primitive[i]), triangle[i]) << "beam " << i;
+    const auto theirs = static_cast<std::uint32_t>(triangle[i]);
+    if (hits.primitive[i] != theirs) {
+      // Right only where both hold the beam's point, as far as single precision tells: on a common
+      // border, or where one sheet lies on another.
+      ++on_both;
+      EXPECT_LT(outside_m(scene.meshes[0], hits.primitive[i], hits.object_point_m[i]), 1e-12);
+      EXPECT_LT(outside_m(scene.meshes[0], theirs, hits.object_point_m[i]), kSingle * depth[i])
+          << "beam " << i;
+      continue;
+    }
     const double found = pinhole ? hits.depth_m[i] : hits.range_m[i];
     const double tolerance =
-        4.0 * 6e-8 * (coordinate / std::max<double>(cosine[i], 0.01) + depth[i]);
+        4.0 * kSingle * (coordinate / std::max<double>(cosine[i], 0.01) + depth[i]);
     EXPECT_NEAR(found, depth[i], tolerance) << "beam " << i;
     EXPECT_NEAR(hits.cos_incidence[i], cosine[i], 1e-3) << "beam " << i;
   }
   EXPECT_GT(compared, beams.size() / 2);
+  // Zarya and the apartment have sheets that lie on each other to within single precision.
+  EXPECT_LE(on_both, compared / 100);
 }
 
 INSTANTIATE_TEST_SUITE_P(Core, ReferenceCase,
@@ -120,7 +151,7 @@ INSTANTIATE_TEST_SUITE_P(Core, ReferenceCase,
                                            "bunny_wide120", "dragon_full", "duck_texture",
                                            "fuze_texture", "itokawa", "orientation_test",
                                            "rmagine_sphere_inside", "toyblocks_cube", "zarya"),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& test) { return test.param; });
 
 /// Colours at the hits against nearest-texel look-ups made elsewhere.
 class TextureCase : public ::testing::TestWithParam<std::string> {};
@@ -155,7 +186,7 @@ TEST_P(TextureCase, UvsInterpolateAsInTheReference) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Core, TextureCase, ::testing::Values("duck_texture", "fuze_texture"),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& test) { return test.param; });
 
 TEST(M3tOpengl, ItsDepthImageAndSilhouetteAreOurs) {
   GLIDAR_NEEDS_DATA();
@@ -204,7 +235,7 @@ TEST(StanfordScan, TheBunnySeenAsTheScannerSawItLiesOnTheScan) {
   std::ifstream file(folder / "bun000.ply");
   std::string line;
   std::size_t points = 0;
-  while (std::getline(file, line) && line != "end_header") {
+  while (std::getline(file, line) && line.rfind("end_header", 0) != 0) {
     if (line.rfind("element vertex", 0) == 0) points = std::stoul(line.substr(15));
   }
   // bun.conf places bun000 at the identity; the scanner looks along -z, all its beams parallel.

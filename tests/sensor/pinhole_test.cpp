@@ -25,13 +25,9 @@ TEST(Pinhole, FillsItsFieldOfView) {
 }
 
 TEST(Pinhole, PutsPixelCentresWhereTold) {
-  Pinhole pinhole{.intrinsics = {.width = 3,
-                                 .height = 1,
-                                 .fx = 100.0,
-                                 .fy = 100.0,
-                                 .cx = 1.0,
-                                 .cy = 0.0,
-                                 .pixel_centre = 0.0}};
+  Pinhole pinhole;
+  pinhole.intrinsics = {.width = 3, .height = 1, .fx = 100.0, .fy = 100.0, .cx = 1.0, .cy = 0.0};
+  pinhole.intrinsics.pixel_centre = 0.0;
   const Beams beams = make_beams(pinhole);
   EXPECT_EQ(beams.directions[1], Eigen::Vector3d::UnitZ());
   EXPECT_NEAR(beams.directions[2].x() / beams.directions[2].z(), 0.01, 1e-16);

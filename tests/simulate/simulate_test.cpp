@@ -109,7 +109,7 @@ TEST(Simulate, TellsPixelsWithoutABeam) {
 
 TEST(Simulate, AllocatesNothingInTheSteadyState) {
   Stage stage(64);
-  const Setup setup{stage.scene, stage.sensor, stage.beams, stage.motion, *stage.renderer};
+  const glidar::Setup setup{stage.scene, stage.sensor, stage.beams, stage.motion, *stage.renderer};
   const HitFields fields{.depth = true, .normal = true, .object_point = true};
   Frame frame;
   for (int warm_up = 0; warm_up < 3; ++warm_up) simulate(setup, fields, frame);

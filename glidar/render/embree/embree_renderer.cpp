@@ -19,6 +19,7 @@ struct Job {
   const HitFields& fields;
   const Resolver& resolver;
   const embree::Probe& probe;
+  bool cull_back_faces;
   bool has_wide_packets;
   Hits& hits;
 };
@@ -51,6 +52,11 @@ void prefetch(const Beams& beams, const embree::Tile& tile) {
   }
 }
 
+/// The triangle to tell for one found, see Resolver::told.
+std::uint32_t told(const Job& job, std::uint32_t instance, std::uint32_t primitive) {
+  return job.cull_back_faces ? primitive : job.resolver.told(instance, primitive);
+}
+
 /// Traces the beams: sets the block's mask and, per lane, instance and primitive.
 void trace(const Job& job, TileWork& work) {
   job.probe.set_rays(work.block.beam, work.in_sensor, work.valid, work.rays);
@@ -65,8 +71,9 @@ void trace(const Job& job, TileWork& work) {
     work.block.mask |= static_cast<std::uint32_t>(is_hit) << lane;
     const unsigned instance = hit.instID[0][lane];
     work.block.instance[lane] = instance == RTC_INVALID_GEOMETRY_ID ? 0U : instance;
-    work.block.primitive[lane] = hit.primID[lane];
-    if (is_hit) job.resolver.prefetch(work.block, lane);
+    if (!is_hit) continue;
+    work.block.primitive[lane] = told(job, work.block.instance[lane], hit.primID[lane]);
+    job.resolver.prefetch(work.block, lane);
   }
 }
 
@@ -79,9 +86,12 @@ bool settle(const Job& job, std::uint32_t doubtful, HitBlock& block) {
     const embree::Found after = job.probe.settle(block.beam[lane], before);
     if (after.instance == before.instance && after.primitive == before.primitive) continue;
     changed = true;
+    if (after.instance == kNoHit) {
+      block.mask &= ~(1U << lane);
+      continue;
+    }
     block.instance[lane] = after.instance;
-    block.primitive[lane] = after.primitive;
-    if (after.instance == kNoHit) block.mask &= ~(1U << lane);
+    block.primitive[lane] = told(job, after.instance, after.primitive);
   }
   return changed;
 }
@@ -124,8 +134,13 @@ class EmbreeRenderer final : public Renderer {
       world_->place(request.world_from_sensor, request.world_from_instance);
     });
     const embree::Probe probe(world_->space(), resolver_, request.beams, request.cull_back_faces);
-    const Job job{request.beams, request.fields, resolver_, probe, world_->has_wide_packets(),
-                  hits};
+    const Job job{.beams = request.beams,
+                  .fields = request.fields,
+                  .resolver = resolver_,
+                  .probe = probe,
+                  .cull_back_faces = request.cull_back_faces,
+                  .has_wide_packets = world_->has_wide_packets(),
+                  .hits = hits};
     const embree::Tiling tiling(request.beams);
     workers_.for_ranges(tiling.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
       TileWork work;

@@ -1,0 +1,76 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/resolve.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <numeric>
+
+namespace glidar {
+namespace {
+
+/// A well-mixed number of a position's bits (finaliser of SplitMix64); -0 counts as 0.
+std::uint64_t mixed(const Eigen::Vector3f& p) {
+  std::uint64_t hash = 0;
+  for (int k = 0; k < 3; ++k) {
+    hash += std::bit_cast<std::uint32_t>(p[k] + 0.0F) + 0x9e3779b97f4a7c15U;
+    hash = (hash ^ (hash >> 30U)) * 0xbf58476d1ce4e5b9U;
+    hash = (hash ^ (hash >> 27U)) * 0x94d049bb133111ebU;
+    hash ^= hash >> 31U;
+  }
+  return hash;
+}
+
+/// The corners' positions in an order of their own.
+std::array<std::array<float, 3>, 3> sorted_corners(const Mesh& mesh, std::uint32_t triangle) {
+  std::array<std::array<float, 3>, 3> corners;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Eigen::Vector3f& p = mesh.positions_m[mesh.triangles[triangle][k]];
+    corners[k] = {p.x(), p.y(), p.z()};
+  }
+  std::sort(corners.begin(), corners.end());
+  return corners;
+}
+
+struct Key {
+  std::uint64_t hash;
+  std::uint32_t triangle;
+};
+
+/// Triangles by a hash of their corners that does not depend on the corners' order, then by index.
+std::vector<Key> sorted_keys(const Mesh& mesh) {
+  std::vector<std::uint64_t> vertex_hash(mesh.positions_m.size());
+  std::transform(mesh.positions_m.begin(), mesh.positions_m.end(), vertex_hash.begin(), mixed);
+  std::vector<Key> keys(mesh.triangles.size());
+  for (std::uint32_t i = 0; i < keys.size(); ++i) {
+    const Triangle& t = mesh.triangles[i];
+    keys[i] = {vertex_hash[t[0]] + vertex_hash[t[1]] + vertex_hash[t[2]], i};
+  }
+  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+    return a.hash != b.hash ? a.hash < b.hash : a.triangle < b.triangle;
+  });
+  return keys;
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> first_twins(const Mesh& mesh) {
+  const std::vector<Key> keys = sorted_keys(mesh);
+  std::vector<std::uint32_t> first;
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    // Back through those of the same hash, which are few unless they are true twins.
+    for (std::size_t j = i; j-- > 0 && keys[j].hash == keys[i].hash;) {
+      if (sorted_corners(mesh, keys[j].triangle) != sorted_corners(mesh, keys[i].triangle))
+        continue;
+      if (first.empty()) {
+        first.resize(mesh.triangles.size());
+        std::iota(first.begin(), first.end(), 0U);
+      }
+      first[keys[i].triangle] = first[keys[j].triangle];
+      break;
+    }
+  }
+  return first;
+}
+
+}  // namespace glidar

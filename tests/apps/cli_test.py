@@ -1,0 +1,367 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The command line as its users meet it. The built program is found in PATH."""
+
+import json
+import math
+import os
+import re
+import shlex
+import signal
+import struct
+import subprocess
+import tempfile
+import time
+import unittest
+
+BOX = """o box
+v -1 -1 -1
+v 1 -1 -1
+v 1 1 -1
+v -1 1 -1
+v -1 -1 1
+v 1 -1 1
+v 1 1 1
+v -1 1 1
+f 1 4 3 2
+f 5 6 7 8
+f 1 2 6 5
+f 3 4 8 7
+f 2 3 7 6
+f 1 5 8 4
+"""
+
+
+def box_of(size):
+    """The text of a cube with this side."""
+    return re.sub(r"(?m)^v (.*)$", lambda m: "v " + " ".join(
+        repr(float(x) * size / 2) for x in m.group(1).split()), BOX)
+
+
+class CliTest(unittest.TestCase):
+    def setUp(self):
+        self._folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self._folder.cleanup)
+        self.folder = self._folder.name
+        self.environment = dict(os.environ, XDG_CACHE_HOME=os.path.join(self.folder, ".cache"))
+
+    def run_program(self, *arguments):
+        return subprocess.run(["glidar", *arguments], cwd=self.folder, env=self.environment,
+                              capture_output=True, text=True, timeout=300, check=False)
+
+    def succeed(self, *arguments):
+        done = self.run_program(*arguments)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done
+
+    def warned(self, *arguments):
+        done = self.succeed("render", *arguments, "-o", "x.pcd")
+        self.assertIn("glidar: warning:", done.stderr)
+        self.assertNotIn("warning", done.stdout)
+        return done.stderr
+
+    def refused(self, *arguments):
+        """The error of bad input: one line, exit code 2, nothing written."""
+        before = sorted(os.listdir(self.folder))
+        done = self.run_program(*arguments)
+        self.assertEqual(done.returncode, 2, done.stdout + done.stderr)
+        self.assertTrue(done.stderr.startswith("glidar: error: "), done.stderr)
+        self.assertEqual(done.stderr.count("\n"), 1, done.stderr)
+        self.assertEqual(done.stdout, "")
+        after = [name for name in sorted(os.listdir(self.folder)) if name != ".cache"]
+        self.assertEqual(after, [name for name in before if name != ".cache"])
+        return done.stderr
+
+    def write(self, name, text):
+        with open(os.path.join(self.folder, name), "w", encoding="utf-8") as file:
+            file.write(text)
+        return name
+
+    def files(self):
+        return sorted(name for name in os.listdir(self.folder) if name != ".cache")
+
+
+class Help(CliTest):
+    def test_version(self):
+        self.assertRegex(self.succeed("--version").stdout, r"^glidar \d+\.\d+\.\d+\n$")
+
+    def test_examples_of_every_help_run_literally(self):
+        count = 0
+        for level in ([], ["render"], ["info"], ["verify"]):
+            text = self.succeed(*level, "--help").stdout
+            own = text[text.index("Examples:"):].split("With your own files:")[0]
+            for line in re.findall(r"(?m)^  (glidar .*)$", own):
+                with self.subTest(line):
+                    self.succeed(*shlex.split(line)[1:])
+                    count += 1
+        self.assertGreaterEqual(count, 10)
+
+    def test_h_is_help_and_all_formats_are_listed(self):
+        text = self.succeed("render", "-h").stdout
+        for suffix in (".pcd", ".ply", ".npz", ".csv", ".bin", ".npy", ".depth.png", ".transform"):
+            self.assertIn(suffix, text)
+
+
+class Refusals(CliTest):
+    def test_unknown_words_name_the_nearest(self):
+        self.assertIn("did you mean --camera-z?",
+                      self.refused("render", "builtin:box", "--camra-z", "5", "-o", "x.pcd"))
+        self.assertIn("unknown option --port",
+                      self.refused("render", "builtin:box", "--port=99", "-o", "x.pcd"))
+        self.assertIn("did you mean render?", self.refused("rendr", "builtin:box"))
+        self.assertIn("glidar render bunny.ply -o", self.refused("bunny.ply", "--pcd", "x"))
+        self.assertIn("unexpected word 'b'", self.refused("render", "a", "b", "-o", "x.pcd"))
+        self.assertIn("did you mean 'builtin:box'?",
+                      self.refused("render", "builtin:bx", "-o", "x.pcd"))
+
+    def test_missing_things(self):
+        self.assertIn("nofile.ply", self.refused("render", "nofile.ply", "-o", "x.pcd"))
+        self.assertIn("nofile.yaml", self.refused("render", "nofile.yaml", "-o", "x.pcd"))
+        self.assertIn("nofile.yaml",
+                      self.refused("render", "builtin:box", "--sensor", "nofile.yaml", "-o", "x.pcd"))
+        self.assertIn("nofile.ply", self.refused("info", "nofile.ply"))
+        self.assertIn("input is required", self.refused("render"))
+        self.refused()
+
+    def test_outputs_are_checked_before_anything_is_loaded(self):
+        error = self.refused("render", "nofile.ply", "-o", "x.pdc")
+        self.assertIn("did you mean .pcd?", error)
+        self.assertNotIn("nofile.ply", error)
+        self.assertIn("no folder", self.refused("render", "builtin:box", "-o", "no/such/x.pcd"))
+        self.assertIn("-o cloud.pcd", self.refused("render", "builtin:box"))
+        self.assertIn("given twice", self.refused("render", "builtin:box", "-o", "a.pcd", "-o", "./a.pcd"))
+        self.write("box.obj", BOX)
+        os.rename(os.path.join(self.folder, "box.obj"), os.path.join(self.folder, "in.ply"))
+        self.assertIn("is the input", self.refused("render", "in.ply", "-o", "in.ply"))
+        self.assertIn("did you mean 'intensity'?",
+                      self.refused("render", "builtin:box", "-o", "x.pcd", "--columns", "xyz,intensty"))
+
+    def test_numbers(self):
+        render = ("render", "builtin:box", "-o", "x.pcd")
+        for arguments, text in (
+                (("--width", "0"), "1 to 65536"),
+                (("--height", "-3"), "1 to 65536"),
+                (("--width", "1000000"), "65536"),
+                (("--width", "1000000"), "memory"),
+                (("--width", "65000", "--height", "65000"), "this machine's memory"),
+                (("--width", "abc"), "--width"),
+                (("--width", "2.5"), "--width"),
+                (("--fov", "nan"), "above 0 and below 180"),
+                (("--fov", "180"), "above 0 and below 180"),
+                (("--fov", "20", "--fx", "100"), "give one of them"),
+                (("--fx", "-1"), "finite number above 0"),
+                (("--cx", "nan"), "finite"),
+                (("--near", "3", "--far", "2"), "near below far"),
+                (("--near", "-1"), "0 or above"),
+                (("--far", "nan"), "--far"),
+                (("--ambient", "inf"), "--ambient"),
+                (("--attenuation", "1,2"), "3 finite numbers"),
+                (("--attenuation", "0,0,0"), "attenuation"),
+                (("--eye", "1,2,nan"), "finite"),
+                (("--scale", "0"), "above 0"),
+                (("--model-q", "0,0,0,0"), "length 0"),
+                (("--camera-z", "inf"), "--camera-z"),
+                (("--eye", "1,1,1", "--camera-z", "4"), "several ways"),
+                (("--depth-scale", "0"), "above 0"),
+                (("--threads", "-1"), "--threads"),
+                (("--unit", "km"), "--unit"),
+                (("--up", "w"), "--up"),
+                (("--cloud-frame", "body"), "--cloud-frame"),
+                (("--renderer", "magic"), "embree")):
+            with self.subTest(arguments):
+                self.assertIn(text, self.refused(*render, *arguments))
+
+    def test_an_error_while_loading_leaves_old_files_alone(self):
+        self.write("x.pcd", "old")
+        self.write("broken.ply", "ply\nformat ascii 1.0\nelement vertex 9\n")
+        self.refused("render", "broken.ply", "-o", "x.pcd")
+        with open(os.path.join(self.folder, "x.pcd"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), "old")
+
+
+class Render(CliTest):
+    def test_summary_and_files(self):
+        done = self.succeed("render", "builtin:box", "-w", "40", "--height", "30",
+                            "-o", "a.pcd", "-o", "b.ply", "-o", "c.png")
+        self.assertRegex(done.stdout, r"40 x 30 beams, \d+ hits \(\d+\.\d %\), range [\d.]+ to [\d.]+ m")
+        self.assertIn("wrote a.pcd b.ply c.png", done.stdout)
+        self.assertEqual(done.stderr, "")
+        self.assertEqual(self.files(), ["a.pcd", "a.pcd.json", "b.ply", "b.ply.json", "c.png"])
+
+    def test_quiet_and_no_sidecar(self):
+        done = self.succeed("render", "builtin:box", "-o", "a.pcd", "--quiet", "--no-sidecar")
+        self.assertEqual((done.stdout, done.stderr), ("", ""))
+        self.assertEqual(self.files(), ["a.pcd"])
+
+    def test_framed_view_is_filled_but_not_cut(self):
+        for size in (("64", "64"), ("200", "20"), ("20", "200")):
+            self.succeed("render", "builtin:box", "-w", size[0], "--height", size[1],
+                         "-o", "a.csv", "--columns", "xyz,row,col,status")
+            with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
+                lines = [line for line in file.read().split("\n") if line and line[0] != "#"]
+            names = lines[0].split(",")
+            rows, cols = [], []
+            for line in lines[1:]:
+                point = dict(zip(names, line.split(",")))
+                if not math.isnan(float(point["x"])):
+                    rows.append(int(point["row"]))
+                    cols.append(int(point["col"]))
+            width, height = int(size[0]), int(size[1])
+            self.assertGreater(min(rows + cols), 0 if min(width, height) > 40 else -1)
+            self.assertLess(max(cols), width)
+            filled = max((max(cols) - min(cols) + 1) / width, (max(rows) - min(rows) + 1) / height)
+            self.assertGreater(filled, 0.85)
+
+    def test_same_bytes_for_any_number_of_threads(self):
+        contents = []
+        for threads in ("1", "2"):
+            self.succeed("render", "builtin:asteroid", "--threads", threads, "--columns", "all",
+                         "-o", "a.pcd")
+            with open(os.path.join(self.folder, "a.pcd"), "rb") as file:
+                contents.append(file.read())
+        self.assertEqual(contents[0], contents[1])
+
+    def read_legacy(self, name):
+        with open(os.path.join(self.folder, name + ".pcd"), "rb") as file:
+            head, body = file.read().split(b"DATA binary\n", 1)
+        with open(os.path.join(self.folder, name + ".transform"), encoding="utf-8") as file:
+            rows = [[float(x) for x in line.split()] for line in file if line.strip()]
+        points = [struct.unpack_from("<4f", body, i) for i in range(0, len(body), 16)]
+        return head.decode(), points, rows
+
+    def test_pcd_of_2015(self):
+        self.succeed("render", "builtin:box", "--model-r", "0.4,1,2,3", "--camera-r",
+                     "0.1,-0.2,0.5,0.7", "--camera-z", "9", "--fov", "60", "--pcd", "view")
+        self.assertEqual(self.files(), ["view.pcd", "view.transform"])
+        head, points, rows = self.read_legacy("view")
+        self.assertIn("FIELDS x y z intensity\n", head)
+        self.assertIn("HEIGHT 1\n", head)
+        self.assertGreater(len(points), 1000)
+        self.assertEqual(len(rows), 4)
+        # with the saved transform every point comes back to the surface of the box of 2 m
+        for x, y, z, _ in points:
+            p = [x - rows[0][3], y - rows[1][3], z - rows[2][3]]
+            back = [abs(sum(rows[k][i] * p[k] for k in range(3))) for i in range(3)]
+            self.assertAlmostEqual(max(back), 1.0, delta=1e-5)
+
+    def test_pcd_of_2015_knows_left_from_right(self):
+        # the object's +x is at the left, +y up, +z away: a corner cut off by moving the model
+        self.write("three.obj", "v 1 0 0\nv 1 0.2 0\nv 1 0 0.2\nv 1.2 0.1 0\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 1 3 2\n")
+        self.succeed("render", "three.obj", "--camera-z", "10", "--fov", "30", "--pcd", "view")
+        _, points, rows = self.read_legacy("view")
+        self.assertTrue(points)
+        for x, y, z, _ in points:
+            self.assertTrue(0.99 < x < 1.21 and -0.01 < y < 0.21 and 9.99 < z < 10.21, (x, y, z))
+        self.assertEqual([row[3] for row in rows], [0.0, 0.0, 10.0, 1.0])
+
+    def test_cloud_frames_are_named_in_the_files(self):
+        for frame, name in (("optical", "optical"), ("ros", "camera_frame"), ("gl", "gl"),
+                            ("world", "world"), ("legacy", "legacy")):
+            self.succeed("render", "builtin:box", "--cloud-frame", frame, "-o", "a.pcd")
+            with open(os.path.join(self.folder, "a.pcd.json"), encoding="utf-8") as file:
+                self.assertIn(name, json.dumps(json.load(file)))
+
+    def test_world_cloud_lies_on_the_model(self):
+        self.succeed("render", "builtin:box", "--cloud-frame", "world", "--dense", "-o", "a.csv",
+                     "--columns", "xyz")
+        with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
+            lines = [line for line in file.read().split("\n") if line and line[0] != "#"]
+        for line in lines[1:]:
+            self.assertAlmostEqual(max(abs(float(x)) for x in line.split(",")[:3]), 1.0, delta=1e-5)
+
+    def test_unit_and_up(self):
+        self.write("box.obj", box_of(2000))
+        text = self.succeed("info", "box.obj", "--unit", "mm", "--json").stdout
+        self.assertEqual(json.loads(text)["size_m"], [2.0, 2.0, 2.0])
+        done = self.succeed("render", "box.obj", "--unit", "mm", "--up", "y", "-o", "x.pcd")
+        self.assertEqual(done.stderr, "")
+
+
+class Advice(CliTest):
+    def test_nothing_hit_and_why(self):
+        for arguments, text in (
+                (("--sensor-pose", "0,0,5,1,0,0,0"), "behind the sensor"),
+                (("--eye", "5,0,0", "--target", "5,9,0"), "outside the view"),
+                (("--far", "1"), "depth limits"),
+                (("--near", "100"), "depth limits"),
+                (("--eye", "50000,0,0"), "too small"),
+                (("--eye", "0.1,0,0", "--target", "1,0,0", "--cull-back-faces"), "--cull-back-faces")):
+            with self.subTest(arguments):
+                text_found = self.warned("builtin:box", *arguments)
+                self.assertIn("nothing was measured", text_found)
+                self.assertIn(text, text_found)
+
+    def test_sensor_inside_the_model(self):
+        self.assertIn("inside 'box' and sees the backs",
+                      self.warned("builtin:box", "--eye", "0.1,0,0", "--target", "1,0,0"))
+        self.assertIn("inside the bounding box",
+                      self.warned("builtin:torus", "--eye", "0,0,0", "--target", "1,0,0"))
+
+    def test_model_a_thousand_times_too_big_or_small(self):
+        big = self.write("big.obj", box_of(2000))
+        self.assertIn("--unit mm", self.warned(big))
+        self.assertNotIn("warning", self.succeed("render", big, "--unit", "m", "-o", "x.pcd").stderr)
+        small = self.write("small.obj", box_of(0.0004))
+        self.assertIn("--scale 1000", self.warned(small))
+
+    def test_model_far_too_big_for_its_distance(self):
+        ground = self.write("ground.obj", "v -400 -400 0\nv 400 -400 0\nv 400 400 0\nv -400 400 0\n"
+                            "f 1 2 3\nf 1 3 4\n")
+        self.assertIn("--unit mm", self.warned(ground, "--eye", "0,0,0.3", "--up-vector", "0,1,0"))
+
+
+class Info(CliTest):
+    def test_table_and_json_tell_the_same(self):
+        table = self.succeed("info", "builtin:torus").stdout
+        report = json.loads(self.succeed("info", "builtin:torus", "--json").stdout)
+        self.assertIn(f"triangles      {report['triangles']}\n", table)
+        self.assertIn("closed, winding outward", table)
+        self.assertTrue(report["closed"])
+        self.assertEqual(report["winding"], "outward")
+
+    def test_faults_and_missing_textures_are_told(self):
+        self.write("a.mtl", "newmtl red\nKd 1 0 0\nmap_Kd gone.png\n")
+        self.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
+                   "usemtl red\nf 1/1 2/2 3/3\n")
+        table = self.succeed("info", "a.obj").stdout
+        self.assertIn("gone.png", table)
+        self.assertIn("3 open edges", table)
+        report = json.loads(self.succeed("info", "a.obj", "--json").stdout)
+        self.assertEqual([t["name"] for t in report["missing_textures"]], ["gone.png"])
+
+
+class Verify(CliTest):
+    def test_json_holds_every_shape_and_distance(self):
+        report = json.loads(self.succeed("verify", "--json").stdout)
+        self.assertTrue(report["passed"])
+        rows = report["rows"]
+        self.assertEqual(len({row["shape"] for row in rows}), 5)
+        self.assertEqual(sorted({row["distance_m"] for row in rows}),
+                         [0.1, 1.0, 10.0, 100.0, 1000.0, 10000.0])
+        self.assertTrue(all(row["max_range_error_ulp"] <= 1.0 for row in rows))
+        self.assertTrue(all(row["judged_hits"] > 1000 for row in rows))
+
+    def test_unknown_renderer(self):
+        self.assertIn("embree", self.refused("verify", "--renderer", "magic"))
+
+
+class Interrupt(CliTest):
+    def test_ctrl_c_leaves_no_files(self):
+        with subprocess.Popen(
+                ["glidar", "render", "builtin:asteroid", "-w", "3000", "--height", "3000",
+                 "--columns", "all", "-o", "a.csv", "-o", "b.csv"],
+                cwd=self.folder, env=self.environment, stdout=subprocess.PIPE,
+                stderr=subprocess.PIPE, text=True) as program:
+            deadline = time.monotonic() + 120.0
+            while not self.files() and time.monotonic() < deadline:  # until it is writing
+                time.sleep(0.02)
+            self.assertIsNone(program.poll(), "the program ended before it could be interrupted")
+            program.send_signal(signal.SIGINT)
+            _, error = program.communicate(timeout=60)
+        self.assertEqual(program.returncode, 130, error)
+        self.assertIn("interrupted", error)
+        self.assertEqual(self.files(), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/output_options.hpp>
+#include <apps/glidar/pose_options.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/sensor/pinhole.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace glidar::app {
+namespace {
+
+constexpr double kExact = 1e-12;
+
+Scene one_triangle() {
+  Scene scene;
+  Mesh mesh;
+  mesh.positions_m = {{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}};
+  mesh.triangles = {{0, 1, 2}};
+  scene.meshes.push_back(mesh);
+  scene.sources.emplace_back();
+  scene.materials.emplace_back();
+  scene.instances.push_back({.name = "triangle", .materials = {0}});
+  return scene;
+}
+
+Beams camera() {
+  return make_beams(pinhole_from_fov(8, 8, 0.35));
+}
+
+/// Where a point of the object appears in the 2015 program's sensor frame.
+Eigen::Vector3d legacy_point(const PoseFlags& flags, const Eigen::Vector3d& object_point) {
+  Scene scene = one_triangle();
+  pose_model(flags, scene);
+  const Pose world_from_sensor = pose_sensor(flags, {}, camera(), scene);
+  return legacy_from_optical() * world_from_sensor.inverse() *
+         scene.instances[0].world_from_object * object_point;
+}
+
+TEST(LegacyPose, IdentityPutsTheObjectAtDOnTheBoresight) {
+  const Eigen::Vector3d p = legacy_point({.camera_z = 7.0}, {0.1, 0.2, 0.3});
+  EXPECT_LT((p - Eigen::Vector3d(0.1, 0.2, 7.3)).norm(), kExact);
+}
+
+TEST(LegacyPose, CameraAttitudeAloneKeepsTheDistanceOf2015) {
+  const Eigen::Vector3d p = legacy_point({.camera_q = "1,0,0,0"}, {0.0, 0.0, 0.0});
+  EXPECT_LT((p - Eigen::Vector3d(0.0, 0.0, 1000.0)).norm(), kExact);
+}
+
+TEST(LegacyPose, ModelQuaternionTakesInertialVectorsIntoTheBody) {
+  // a quarter turn about z: R(q) x = y, so that the body's y axis is seen along the inertial x
+  const double h = std::sqrt(0.5);
+  PoseFlags flags{.camera_z = 5.0};
+  flags.model_q = std::to_string(h) + ",0,0," + std::to_string(h);
+  const Eigen::Vector3d p = legacy_point(flags, {0.0, 1.0, 0.0});
+  EXPECT_LT((p - Eigen::Vector3d(1.0, 0.0, 5.0)).norm(), kExact);
+}
+
+TEST(LegacyPose, SensorQuaternionTakesInertialVectorsIntoTheSensor) {
+  // R(q) z = x: the object, straight ahead of an identity sensor, appears on the sensor's x (left)
+  PoseFlags flags{.camera_z = 5.0};
+  flags.camera_r = std::to_string(std::numbers::pi / 2.0) + ",0,1,0";
+  const Eigen::Vector3d p = legacy_point(flags, {0.0, 0.0, 0.0});
+  EXPECT_LT((p - Eigen::Vector3d(5.0, 0.0, 0.0)).norm(), 1e-5);  // to_string keeps 6 digits
+}
+
+TEST(LegacyPose, GeneralAttitudesFollowTheFormula) {
+  const Eigen::Quaterniond model_q = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized();
+  const Eigen::Quaterniond camera_q = Eigen::Quaterniond(0.9, 0.1, -0.2, 0.3).normalized();
+  const PoseFlags flags{
+      .model_q = "0.3,-0.5,0.7,0.2", .camera_q = "0.9,0.1,-0.2,0.3", .camera_z = 12.0};
+  const Eigen::Vector3d object_point(0.4, -0.6, 1.1);
+  const Eigen::Vector3d expected =
+      camera_q * (model_q.conjugate() * object_point + Eigen::Vector3d(0.0, 0.0, 12.0));
+  EXPECT_LT((legacy_point(flags, object_point) - expected).norm(), kExact);
+}
+
+TEST(LegacyPose, LegacyFrameIsTheOpticalFrameTurnedAboutTheBoresight) {
+  const Eigen::Vector3d legacy = legacy_from_optical() * Eigen::Vector3d(1.0, 2.0, 3.0);
+  EXPECT_EQ(legacy, Eigen::Vector3d(-1.0, -2.0, 3.0));
+  EXPECT_TRUE(is_rigid(legacy_from_optical()));
+}
+
+TEST(PoseOptions, EyeLooksAtTheTarget) {
+  const Scene scene = one_triangle();
+  const Pose pose =
+      pose_sensor({.eye = "1,2,3", .target = "1,2,9", .up_vector = "0,1,0"}, {}, camera(), scene);
+  EXPECT_LT(
+      (pose.inverse() * Eigen::Vector3d(1.0, 3.0, 5.0) - Eigen::Vector3d(0.0, -1.0, 2.0)).norm(),
+      kExact);
+}
+
+TEST(PoseOptions, EyeAloneLooksAtTheMiddleOfTheScene) {
+  const Pose pose = pose_sensor({.eye = "3,-4,2"}, {}, camera(), one_triangle());
+  const Eigen::Vector3d middle = pose.inverse() * Eigen::Vector3d(0.5, 0.5, 0.0);
+  EXPECT_NEAR(middle.x(), 0.0, kExact);
+  EXPECT_NEAR(middle.y(), 0.0, kExact);
+  EXPECT_GT(middle.z(), 0.0);
+}
+
+TEST(PoseOptions, SensorPoseIsTakenAsGiven) {
+  const Pose pose = pose_sensor({.sensor_pose = "1,2,3,0,0,0,2"}, {}, camera(), one_triangle());
+  const Eigen::Vector3d world = pose * Eigen::Vector3d(1.0, 0.0, 0.0);
+  EXPECT_LT((world - Eigen::Vector3d(0.0, 2.0, 3.0)).norm(), kExact);
+}
+
+TEST(PoseOptions, FlagsComeBeforeTheSceneFileAndThatBeforeFraming) {
+  const Scene scene = one_triangle();
+  const Pose from_file = make_pose({7.0, 8.0, 9.0}, Eigen::Quaterniond::Identity());
+  EXPECT_EQ(pose_sensor({}, from_file, camera(), scene).translation(), from_file.translation());
+  EXPECT_EQ(pose_sensor({.eye = "1,2,3"}, from_file, camera(), scene).translation(),
+            Eigen::Vector3d(1.0, 2.0, 3.0));
+  const Pose framed = pose_sensor({}, {}, camera(), scene);
+  EXPECT_GT((framed.inverse() * Eigen::Vector3d(0.5, 0.5, 0.0)).z(), 1.0);
+}
+
+TEST(PoseOptions, ScaleIsThatOfTheInstance) {
+  Scene scene = one_triangle();
+  pose_model({.scale = 2.5}, scene);
+  EXPECT_EQ(scene.instances[0].scale, 2.5);
+}
+
+void expect_sensor_error(const PoseFlags& flags, const std::string& text) {
+  try {
+    pose_sensor(flags, {}, camera(), one_triangle());
+    FAIL() << "no error, expected: " << text;
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr(text));
+  }
+}
+
+TEST(PoseOptions, SayWhatIsWrong) {
+  expect_sensor_error({.eye = "1,2,3", .camera_z = 5.0}, "several ways");
+  expect_sensor_error({.target = "1,2,3"}, "no --eye");
+  expect_sensor_error({.eye = "1,2"}, "--eye: '1,2' (2 numbers)");
+  expect_sensor_error({.eye = "1,,2"}, "empty part");
+  expect_sensor_error({.eye = "1,2,x"}, "'x'");
+  expect_sensor_error({.eye = "1,2,inf"}, "finite");
+  expect_sensor_error({.eye = "1,2,3 "}, "'3 '");
+  expect_sensor_error({.sensor_pose = "0,0,0,0,0,0,0"}, "quaternion is zero");
+  expect_sensor_error({.camera_r = "1,0,0,0"}, "axis of length 0");
+  expect_sensor_error({.camera_q = "1,0,0,0", .camera_r = "1,0,0,1"}, "both are given");
+  expect_sensor_error({.up_vector = "0,1,0", .camera_z = 5.0}, "--up-vector");
+}
+
+TEST(PoseOptions, ModelOptionsAreRefusedForScenesOfSeveralObjects) {
+  Scene scene = one_triangle();
+  scene.instances.push_back(scene.instances[0]);
+  EXPECT_THROW(pose_model({.model_q = "1,0,0,0"}, scene), Error);
+  EXPECT_THROW(pose_model({.scale = 2.0}, scene), Error);
+  EXPECT_NO_THROW(pose_model({}, scene));
+  scene.instances.pop_back();
+  EXPECT_THROW(pose_model({.scale = 0.0}, scene), Error);
+}
+
+TEST(CloudFrames, AxesAreThoseTheirNamesSay) {
+  const Beams beams = camera();
+  const Eigen::Vector3d right_down_forward(1.0, 2.0, 3.0);
+  const Pose pose = make_pose({10.0, 0.0, 0.0}, Eigen::Quaterniond::Identity());
+  const auto in = [&](const std::string& name) -> Eigen::Vector3d {
+    const CloudFrame frame = cloud_frame(name, beams, pose);
+    EXPECT_TRUE(is_rigid(frame.cloud_from_sensor));
+    return frame.cloud_from_sensor * right_down_forward;
+  };
+  EXPECT_EQ(in("optical"), right_down_forward);
+  EXPECT_EQ(in("ros"), Eigen::Vector3d(3.0, -1.0, -2.0));
+  EXPECT_EQ(in("gl"), Eigen::Vector3d(1.0, -2.0, -3.0));
+  EXPECT_EQ(in("legacy"), Eigen::Vector3d(-1.0, -2.0, 3.0));
+  EXPECT_EQ(in("world"), Eigen::Vector3d(11.0, 2.0, 3.0));
+}
+
+}  // namespace
+}  // namespace glidar::app

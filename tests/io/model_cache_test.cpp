@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/model_cache.hpp>
+
+#include <glidar/io/mesh_blob.hpp>
+
+#include <io/model_test_support.hpp>
+
+#include <gmock/gmock.h>
+
+#include <thread>
+
+namespace glidar {
+namespace {
+
+using testing::TempFolder;
+namespace fs = std::filesystem;
+
+/// A model with a material file and one texture found, one missing; and a cache folder.
+class ModelCache : public ::testing::Test {
+ protected:
+  ModelCache() {
+    options_.cache_folder = cache_.path() / "models";
+    temp_.write("a.mtl", "newmtl paint\nmap_Kd paint.ppm\nmap_Ks shine.ppm\n");
+    temp_.write("paint.ppm", testing::ppm(1, 1, "abc"));
+    file_ = temp_.write("a.obj", testing::quad_obj("a.mtl"));
+  }
+
+  Model load() const { return testing::load(file_, options_); }
+  fs::path cache_file() const { return fs::directory_iterator(options_.cache_folder)->path(); }
+  std::size_t cache_files() const {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(options_.cache_folder), {}));
+  }
+
+  TempFolder temp_;
+  TempFolder cache_;
+  ModelOptions options_;
+  fs::path file_;
+};
+
+std::string bytes(const Model& model) {
+  const TempFolder temp;
+  const fs::path file = temp.write("blob", "");
+  std::FILE* opened = std::fopen(file.c_str(), "wb");
+  ImportedModel imported;
+  imported.model = model;
+  write_model(::fileno(opened), imported);
+  std::fclose(opened);
+  return testing::read_file(file);
+}
+
+TEST_F(ModelCache, TheSecondLoadIsTheSameModel) {
+  const Model first = load();
+  const Model second = load();
+  EXPECT_FALSE(first.from_cache);
+  EXPECT_TRUE(second.from_cache);
+  EXPECT_EQ(first.hash, second.hash);
+  EXPECT_EQ(first.missing_textures.size(), second.missing_textures.size());
+  EXPECT_EQ(bytes(first), bytes(second));
+  EXPECT_EQ(cache_files(), 1U);
+}
+
+TEST_F(ModelCache, SwitchedOffItIsNeitherReadNorWritten) {
+  options_.use_cache = false;
+  const Model model = load();
+  EXPECT_FALSE(fs::exists(options_.cache_folder));
+  options_.use_cache = true;
+  EXPECT_EQ(load().hash, model.hash);
+  options_.use_cache = false;
+  EXPECT_FALSE(load().from_cache);
+}
+
+TEST_F(ModelCache, AnyChangedFileVoidsIt) {
+  const std::string before = load().hash;
+  temp_.write("paint.ppm", testing::ppm(1, 1, "xyz"));
+  const Model repainted = load();
+  EXPECT_FALSE(repainted.from_cache);
+  EXPECT_NE(repainted.hash, before);
+  EXPECT_EQ(repainted.textures.at(0).texels.at(0), 'x');
+  EXPECT_TRUE(load().from_cache);
+  temp_.write("a.mtl", "newmtl paint\nKd 1 0 0\n");
+  EXPECT_FALSE(load().from_cache);
+  EXPECT_EQ(load().materials.at(0).diffuse, Eigen::Vector3f(1, 0, 0));
+  temp_.write("a.obj", testing::quad_obj("a.mtl") + "f 1/1 2/2 3/3\n");
+  EXPECT_EQ(load().mesh.triangles.size(), 3U);
+}
+
+TEST_F(ModelCache, ATextureThatAppearsVoidsIt) {
+  EXPECT_EQ(load().missing_textures.size(), 1U);
+  temp_.write("shine.ppm", testing::ppm(1, 1, "abc"));
+  const Model model = load();
+  EXPECT_FALSE(model.from_cache);
+  EXPECT_TRUE(model.missing_textures.empty());
+}
+
+TEST_F(ModelCache, ATextureThatAppearsInOtherCaseVoidsIt) {
+  EXPECT_EQ(load().missing_textures.size(), 1U);
+  temp_.write("SHINE.PPM", testing::ppm(1, 1, "abc"));
+  EXPECT_TRUE(load().missing_textures.empty());
+}
+
+TEST_F(ModelCache, AMaterialFileThatAppearsVoidsIt) {
+  const fs::path bare = temp_.write("b.obj", testing::quad_obj("b.mtl"));
+  EXPECT_NE(testing::load(bare, options_).materials.at(0).diffuse, Eigen::Vector3f(0, 1, 0));
+  EXPECT_TRUE(testing::load(bare, options_).from_cache);
+  temp_.write("b.mtl", "newmtl paint\nKd 0 1 0\n");
+  EXPECT_EQ(testing::load(bare, options_).materials.at(0).diffuse, Eigen::Vector3f(0, 1, 0));
+}
+
+TEST_F(ModelCache, ATextureThatGoesAwayVoidsIt) {
+  EXPECT_EQ(load().textures.size(), 1U);
+  fs::remove(temp_.path() / "paint.ppm");
+  EXPECT_EQ(load().textures.size(), 0U);
+}
+
+TEST_F(ModelCache, OptionsThatShapeTheModelHaveTheirOwnEntries) {
+  load();
+  options_.crease_angle_rad = 0.1;
+  EXPECT_FALSE(load().from_cache);
+  EXPECT_EQ(cache_files(), 2U);
+  options_.metres_per_unit = 0.001;  // applied afterwards
+  options_.up = Axis::y;
+  EXPECT_TRUE(load().from_cache);
+}
+
+TEST_F(ModelCache, ADamagedFileIsMadeAnew) {
+  load();
+  const std::string whole = testing::read_file(cache_file());
+  for (const std::size_t size :
+       {std::size_t{0}, std::size_t{10}, whole.size() / 2, whole.size() - 1}) {
+    fs::resize_file(cache_file(), size);
+    EXPECT_FALSE(load().from_cache) << size;
+    EXPECT_TRUE(load().from_cache) << size;
+  }
+  std::string damaged = whole;
+  damaged[damaged.size() - 20] ^= 1;
+  std::ofstream(cache_file(), std::ios::binary) << damaged;
+  EXPECT_FALSE(load().from_cache);
+  EXPECT_EQ(testing::read_file(cache_file()), whole);
+}
+
+TEST_F(ModelCache, AnotherImporterMakesItAnew) {
+  load();
+  auto entry = cache_entry(fs::canonical(file_), options_);
+  ASSERT_TRUE(entry);
+  EXPECT_TRUE(read_cache(*entry, fs::canonical(file_)).has_value());
+  entry->importer += "x";
+  EXPECT_FALSE(read_cache(*entry, fs::canonical(file_)).has_value());
+}
+
+TEST_F(ModelCache, AFolderThatCannotBeWrittenIsOnlyTold) {
+  cache_.write("models", "a file in its place");
+  std::string told;
+  const Report report{[&told](Severity, std::string_view text) { told += text; }, {}};
+  const Model model = load_model(file_.string(), options_, report);
+  EXPECT_EQ(model.mesh.triangles.size(), 2U);
+  EXPECT_THAT(told, ::testing::HasSubstr("cache"));
+}
+
+TEST_F(ModelCache, TwoAtOnceBothGetTheModel) {
+  std::vector<std::thread> threads;
+  std::vector<std::string> hashes(4);
+  for (std::string& hash : hashes) threads.emplace_back([&] { hash = load().hash; });
+  for (std::thread& thread : threads) thread.join();
+  for (const std::string& hash : hashes) EXPECT_EQ(hash, hashes.front());
+  EXPECT_EQ(cache_files(), 1U);
+  EXPECT_TRUE(load().from_cache);
+}
+
+TEST_F(ModelCache, TheHashIsThatOfTheContentNotOfThePlace) {
+  const std::string here = load().hash;
+  const TempFolder other;
+  fs::copy(temp_.path(), other.path(), fs::copy_options::recursive);
+  EXPECT_EQ(testing::load(other.path() / "a.obj", options_).hash, here);
+}
+
+}  // namespace
+}  // namespace glidar

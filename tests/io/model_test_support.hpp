@@ -1,0 +1,121 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/model.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace glidar::testing {
+
+/// A folder of its own for one test, gone with it.
+class TempFolder {
+ public:
+  TempFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "glidar-test-XXXXXX").string();
+    path_ = std::filesystem::canonical(::mkdtemp(name.data()));
+  }
+  TempFolder(const TempFolder&) = delete;
+  TempFolder& operator=(const TempFolder&) = delete;
+  ~TempFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Writes a file, with its folders; returns its path.
+  std::filesystem::path write(const std::string& name, const std::string& content) const {
+    const std::filesystem::path file = path_ / name;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file, std::ios::binary) << content;
+    return file;
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+inline std::string read_file(const std::filesystem::path& path) {
+  std::ostringstream content;
+  content << std::ifstream(path, std::ios::binary).rdbuf();
+  return content.str();
+}
+
+/// The folder of real data; empty where GLIDAR_DATA is unset.
+inline std::filesystem::path data_folder() {
+  const char* folder = std::getenv("GLIDAR_DATA");
+  return folder != nullptr ? folder : "";
+}
+
+inline ModelOptions without_cache() {
+  ModelOptions options;
+  options.use_cache = false;
+  options.time_limit_s = 30.0;
+  return options;
+}
+
+inline Model load(const std::filesystem::path& path,
+                  const ModelOptions& options = without_cache()) {
+  return load_model(path.string(), options, {});
+}
+
+/// The text of the Error that loading gives; "" when it loads.
+inline std::string load_error(const std::string& source,
+                              const ModelOptions& options = without_cache()) {
+  try {
+    load_model(source, options, {});
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A picture that stb_image reads: binary PPM of one colour.
+inline std::string ppm(int width, int height, const std::string& rgb) {
+  std::string image = "P6 " + std::to_string(width) + " " + std::to_string(height) + " 255\n";
+  for (int i = 0; i < width * height; ++i) image += rgb;
+  return image;
+}
+
+/// A 24- or 32-bit TGA of one colour, for pictures with alpha; `bgra` holds 3 or 4 bytes.
+inline std::string tga(int width, int height, const std::string& bgra) {
+  std::string image(18, '\0');
+  image[2] = 2;
+  image[12] = static_cast<char>(width);
+  image[14] = static_cast<char>(height);
+  image[16] = static_cast<char>(bgra.size() * 8);
+  image[17] = static_cast<char>(0x20 | (bgra.size() == 4 ? 8 : 0));  // rows from the top
+  for (int i = 0; i < width * height; ++i) image += bgra;
+  return image;
+}
+
+/// Two triangles with uvs and a material.
+inline std::string quad_obj(const std::string& mtllib) {
+  return "mtllib " + mtllib +
+         "\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+         "usemtl paint\nf 1/1 2/2 3/3 4/4\n";
+}
+
+}  // namespace glidar::testing
+
+/// The sanitizers' own memory and signal handling hide what a test is about.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define GLIDAR_SKIP_SANITIZED() GTEST_SKIP() << "not under a sanitizer"
+#else
+#define GLIDAR_SKIP_SANITIZED() static_cast<void>(0)
+#endif
+
+/// Skips the test, saying so, without real data.
+#define GLIDAR_NEED_DATA()                                                         \
+  if (::glidar::testing::data_folder().empty()) {                                  \
+    GTEST_SKIP() << "set GLIDAR_DATA to the folder of real data to run this test"; \
+  }                                                                                \
+  static_cast<void>(0)

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/scene_builder.hpp>
+
+#include "yaml_files.hpp"
+
+namespace glidar {
+namespace {
+
+class SceneFileError : public testing::TestWithParam<BadFile> {};
+
+TEST_P(SceneFileError, NamesPlaceFieldAndCure) {
+  const TestFolder folder;
+  const auto file = folder.write("s.yaml", GetParam().content);
+  EXPECT_EQ(error_of(folder, [&] { read_scene_plan(file, {}); }), GetParam().error);
+}
+
+std::string model(const std::string& rest) {
+  return "models:\n  - model: a\n    " + rest + "\n";
+}
+std::string with_model(const std::string& rest) {
+  return "models: [{model: a}]\n" + rest + "\n";
+}
+
+const std::string kPoseKeys = "position, orientation, rotation_vector, euler_deg";
+
+const BadFile kBadScenes[] = {
+    {"NoModels", "sensor: c.yaml\n", "s.yaml:1:1: the key 'models' is missing; add 'models: ...'"},
+    {"UnknownTopKey", with_model("sensr: c.yaml"),
+     "s.yaml:2:1: sensr: unknown key 'sensr'; allowed: models, sensor, sensor_pose; did you mean "
+     "'sensor'?"},
+    {"ModelsIsAMap", "models: {model: a}\n", "s.yaml:1:9: models: a map; allowed: a list"},
+    {"ModelsIsEmpty", "models: []\n",
+     "s.yaml:1:9: models: an empty list; allowed: at least one model"},
+    {"ModelsHasNoValue", "models:\n", "s.yaml:1:1: models: no value; allowed: a list"},
+    {"ModelIsAWord", "models: [rock.obj]\n",
+     "s.yaml:1:10: models[0]: 'rock.obj'; allowed: a map (key: value)"},
+    {"ModelWithoutFile", "models:\n  - {model: a}\n  - {name: b}\n",
+     "s.yaml:3:5: models[1]: the key 'model' is missing; add 'model: ...'"},
+    {"UnknownModelKey", model("scal: 2"),
+     "s.yaml:3:5: models[0].scal: unknown key 'scal'; allowed: model, name, unit, up, scale, pose, "
+     "id, class, materials; did you mean 'scale'?"},
+    {"UnknownUnit", model("unit: inch"),
+     "s.yaml:3:11: models[0].unit: 'inch'; allowed: mm, cm, m, in; did you mean 'in'?"},
+    {"UnknownAxis", model("up: w"),
+     "s.yaml:3:9: models[0].up: 'w'; allowed: x, y, z; did you "
+     "mean 'x'?"},
+    {"ScaleZero", model("scale: 0"),
+     "s.yaml:3:12: models[0].scale: 0; allowed: a finite number above 0"},
+    {"ScaleNan", model("scale: .nan"),
+     "s.yaml:3:12: models[0].scale: .nan; allowed: a finite number above 0"},
+    {"IdNegative", model("id: -1"),
+     "s.yaml:3:9: models[0].id: -1; allowed: a whole number from 0 to 4294967294"},
+    {"IdReserved", model("id: 4294967295"),
+     "s.yaml:3:9: models[0].id: 4294967295; allowed: a whole number from 0 to 4294967294"},
+    {"IdTwice", "models: [{model: a, id: 2}, {model: a}]\n",
+     "s.yaml:1:29: models[1]: id 2, which models[0] has; allowed: each id once (without 'id' it is "
+     "the place in the list, from 1); give one of them another id"},
+    {"NameTwice", "models: [{model: a, name: b}, {model: a, name: b}]\n",
+     "s.yaml:1:48: models[1].name: the name 'b' is given twice; allowed: each name once; choose "
+     "another name"},
+    {"PositionOfTwo", model("pose: {position: [1, 2]}"),
+     "s.yaml:3:22: models[0].pose.position: a list of 2; allowed: a list of 3 numbers"},
+    {"PositionInfinite", model("pose: {position: [1, 2, .inf]}"),
+     "s.yaml:3:29: models[0].pose.position[2]: .inf; allowed: a finite number"},
+    {"PositionNamed", model("pose: {position: {x: 1, y: 2, z: 3}}"),
+     "s.yaml:3:22: models[0].pose.position: a map; allowed: a list of 3 numbers"},
+    {"PoseUnknownKey", model("pose: {orientaton: {}}"),
+     "s.yaml:3:12: models[0].pose.orientaton: unknown key 'orientaton'; allowed: " + kPoseKeys +
+         "; did you mean 'orientation'?"},
+    {"TwoRotations", model("pose: {orientation: {w: 1, x: 0, y: 0, z: 0}, euler_deg: {yaw: 1}}"),
+     "s.yaml:3:62: models[0].pose.euler_deg: given beside 'orientation'; allowed: one of "
+     "orientation, rotation_vector, euler_deg; remove one of them"},
+    {"QuaternionAsAList", model("pose: {orientation: [1, 0, 0, 0]}"),
+     "s.yaml:3:25: models[0].pose.orientation: a list of 4; allowed: a map with the keys w, x, y, "
+     "z; name the parts: {w: 1, x: 0, y: 0, z: 0}; their order in a list is ambiguous"},
+    {"QuaternionWithoutW", model("pose: {orientation: {x: 0, y: 0, z: 0}}"),
+     "s.yaml:3:25: models[0].pose.orientation: the key 'w' is missing; add 'w: ...'"},
+    {"QuaternionOfZeros", model("pose: {orientation: {w: 0, x: 0, y: 0, z: 0}}"),
+     "s.yaml:3:25: models[0].pose.orientation: a quaternion of zeros; allowed: a quaternion of any "
+     "other length"},
+    {"EulerUnknownAngle", model("pose: {euler_deg: {rol: 1}}"),
+     "s.yaml:3:24: models[0].pose.euler_deg.rol: unknown key 'rol'; allowed: roll, pitch, yaw; did "
+     "you mean 'roll'?"},
+    {"ColourAboveOne", model("materials: {A: {diffuse: [0, 255, 0]}}"),
+     "s.yaml:3:34: models[0].materials.A.diffuse[1]: 255; allowed: a number from 0 to 1"},
+    {"ColourAsANumber", model("materials: {A: {diffuse: 0.5}}"),
+     "s.yaml:3:30: models[0].materials.A.diffuse: 0.5; allowed: a list of 3 numbers"},
+    {"ShininessTooLarge", model("materials: {A: {shininess: 129}}"),
+     "s.yaml:3:32: models[0].materials.A.shininess: 129; allowed: a number from 0 to 128"},
+    {"OpacityNegative", model("materials: {A: {opacity: -0.1}}"),
+     "s.yaml:3:30: models[0].materials.A.opacity: -0.1; allowed: a number from 0 to 1"},
+    {"MaterialTwice", model("materials: {A: {}, A: {}}"),
+     "s.yaml:3:24: models[0].materials.A: the key is given twice; allowed: each key once; remove "
+     "one of them"},
+    {"MaterialUnknownKey", model("materials: {A: {difuse: [1, 1, 1]}}"),
+     "s.yaml:3:21: models[0].materials.A.difuse: unknown key 'difuse'; allowed: ambient, diffuse, "
+     "specular, shininess, opacity; did you mean 'diffuse'?"},
+    {"SensorIsAList", with_model("sensor: [a]"),
+     "s.yaml:2:9: sensor: a list of 1; allowed: a map, or the path of a sensor file"},
+    {"SensorFileIsMissing", with_model("sensor: c.yaml"),
+     "s.yaml:2:9: sensor: no such file: c.yaml; allowed: a map, or the path of a sensor file; "
+     "paths are relative to the folder of this file"},
+    {"SensorInTheSceneIsWrong", with_model("sensor: {optics: {widht: 3}}"),
+     "s.yaml:2:19: sensor.optics.widht: unknown key 'widht'; allowed: type, width, height, "
+     "fov_deg, fov_x_deg, fx, fy, cx, cy, pixel_centre, distortion; did you mean 'width'?"},
+    {"LookAtBesidePosition",
+     with_model("sensor_pose: {position: [0, 0, 0], look_at: {eye: [0, 0, 0], target: [1, 0, 0]}}"),
+     "s.yaml:2:45: sensor_pose.look_at: given beside other keys; allowed: look_at alone, or a "
+     "position and a rotation; remove one of them"},
+    {"LookAtNothing", with_model("sensor_pose: {look_at: {eye: [1, 0, 0], target: [1, 0, 0]}}"),
+     "s.yaml:2:24: sensor_pose.look_at: eye and target are the same point; allowed: two distinct "
+     "points"},
+    {"LookAtAlongUp", with_model("sensor_pose: {look_at: {eye: [0, 0, 5], target: [0, 0, 0]}}"),
+     "s.yaml:2:24: sensor_pose.look_at: the up vector is parallel to the line of sight; allowed: "
+     "an up vector that is not; choose another up vector"},
+    {"LookAtWithoutTarget", with_model("sensor_pose: {look_at: {eye: [0, 0, 5]}}"),
+     "s.yaml:2:24: sensor_pose.look_at: the key 'target' is missing; add 'target: ...'"},
+};
+
+INSTANTIATE_TEST_SUITE_P(All, SceneFileError, testing::ValuesIn(kBadScenes), bad_file_name);
+
+TEST(SceneFileErrors, ErrorsInTheSensorFileNameThatFile) {
+  const TestFolder folder;
+  (void)folder.write("c.yaml", "optics:\n  width: 0\n");
+  const auto file = folder.write("s.yaml", with_model("sensor: c.yaml"));
+  EXPECT_EQ(error_of(folder, [&] { read_scene_plan(file, {}); }),
+            "c.yaml:2:10: optics.width: 0; allowed: a whole number from 1 to 65536");
+}
+
+}  // namespace
+}  // namespace glidar
