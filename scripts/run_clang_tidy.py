@@ -62,9 +62,10 @@ def main():
         if not stamp.exists():
             waiting.append((file, stamp))
     with ThreadPoolExecutor(jobs) as pool:
-        results = pool.map(lambda item: check(build, *item), waiting)
-        complaints = [text for text in results if text]
-    print("".join(complaints), end="")
+        complaints = 0
+        for text in pool.map(lambda item: check(build, *item), waiting):
+            print(text, end="", flush=True)
+            complaints += bool(text)
     return 1 if complaints else 0
 
 

@@ -3,6 +3,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What README.md shows works: its marked shell blocks run, its C++ is that of examples/render.cpp."""
 
+import os
 import re
 import subprocess
 import tempfile
@@ -20,12 +21,18 @@ class Readme(unittest.TestCase):
         blocks = re.findall(r"<!-- run by tests/readme_test.py -->\n```sh\n(.*?)```", README, re.DOTALL)
         self.assertGreaterEqual(len(blocks), 1)
         with tempfile.TemporaryDirectory() as folder:
-            (Path(folder) / "models").symlink_to(ROOT / "models")
+            for shown in ("models", "examples", "sensors"):
+                (Path(folder) / shown).symlink_to(ROOT / shown)
             for block in blocks:
                 done = subprocess.run(
                     ["bash", "-euo", "pipefail", "-c", block],
-                    cwd=folder, capture_output=True, text=True, timeout=TIME_LIMIT_S, check=False,
-                )  # fmt: skip
+                    cwd=folder,
+                    env={**os.environ, "XDG_CACHE_HOME": folder},
+                    capture_output=True,
+                    text=True,
+                    timeout=TIME_LIMIT_S,
+                    check=False,
+                )
                 self.assertEqual(done.returncode, 0, f"{block}\n{done.stdout}\n{done.stderr}")
                 for output in re.findall(r" -o (\S+)", block):
                     self.assertGreater((Path(folder) / output).stat().st_size, 0, output)
