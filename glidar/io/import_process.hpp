@@ -18,7 +18,7 @@ namespace glidar {
 struct ImportRequest {
   std::filesystem::path model;  ///< canonical path
   double crease_angle_rad = 0.785398163397448310;
-  double time_limit_s = 120.0;
+  double time_limit_s = 20.0;
   std::uint64_t memory_limit_bytes =
       0;  ///< address space; 0: default_memory_limit of the file's size
 };
@@ -34,6 +34,9 @@ struct ImportRun {
   std::uint64_t memory_limit_bytes = 0;
   double seconds = 0.0;
 };
+
+/// 20 s, and 2 s more for every megabyte.
+double default_time_limit_s(std::uint64_t file_bytes);
 
 /// 1 GiB, or 40 times the file for big ones: text formats unfold that much.
 std::uint64_t default_memory_limit(std::uint64_t file_bytes);

@@ -31,8 +31,8 @@ void check(const ModelOptions& options) {
           "metres_per_unit", options.metres_per_unit, "a finite number above 0");
   require(options.crease_angle_rad >= 0.0 && options.crease_angle_rad <= std::numbers::pi,
           "crease_angle_rad", options.crease_angle_rad, "0 to pi");
-  require(options.time_limit_s > 0.0 && options.time_limit_s <= 1e6, "time_limit_s",
-          options.time_limit_s, "above 0, up to 1e6");
+  require(options.time_limit_s >= 0.0 && options.time_limit_s <= 1e6, "time_limit_s",
+          options.time_limit_s, "0 (by the file's size) to 1e6");
 }
 
 [[noreturn]] void no_model(const std::string& source, std::string found, std::string remedy) {
@@ -73,7 +73,9 @@ struct Loaded {
 
 Loaded import(const fs::path& file, const ModelOptions& options, const Report& report,
               const std::optional<CacheEntry>& entry) {
-  const ImportRequest request{file, options.crease_angle_rad, options.time_limit_s,
+  const double time_limit_s =
+      options.time_limit_s > 0.0 ? options.time_limit_s : default_time_limit_s(fs::file_size(file));
+  const ImportRequest request{file, options.crease_angle_rad, time_limit_s,
                               options.memory_limit_bytes};
   Loaded loaded;
   {

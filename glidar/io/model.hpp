@@ -22,7 +22,7 @@ struct ModelOptions {
       0.785398163397448310;  ///< made normals do not smooth over sharper edges
   bool use_cache = true;
   std::filesystem::path cache_folder;    ///< empty: $XDG_CACHE_HOME/glidar or ~/.cache/glidar
-  double time_limit_s = 120.0;           ///< for the import process
+  double time_limit_s = 0.0;             ///< for the import process; 0: 20 s, more for big files
   std::uint64_t memory_limit_bytes = 0;  ///< for the import process; 0: 1 GiB, more for big files
 };
 

@@ -104,7 +104,7 @@ TEST(LoadModel, ImpossibleOptionsAreErrors) {
     EXPECT_THAT(load_error("builtin:box", options), HasSubstr("metres_per_unit"));
   }
   ModelOptions options = without_cache();
-  options.time_limit_s = 0.0;
+  options.time_limit_s = -1.0;
   EXPECT_THAT(load_error("builtin:box", options), HasSubstr("time_limit_s"));
   options = without_cache();
   options.crease_angle_rad = 4.0;

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// The same bytes from every build type and any number of threads.
+#include <glidar/io/builtin_models.hpp>
+#include <glidar/simulate.hpp>
+#include <support/data.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+namespace glidar {
+namespace {
+
+/// FNV-1a over the bytes of a column.
+template <class T>
+std::uint64_t hash_of(const std::vector<T>& values) {
+  std::uint64_t hash = 0xcbf29ce484222325U;
+  const auto* bytes = reinterpret_cast<const unsigned char*>(values.data());
+  for (std::size_t i = 0; i < values.size() * sizeof(T); ++i) {
+    hash = (hash ^ bytes[i]) * 0x100000001b3U;
+  }
+  return hash;
+}
+
+TEST(Golden, TheAsteroidsFrameHasTheRecordedBytes) {
+  Scene scene = testing::scene_of(make_builtin_model("asteroid"));
+  for (Material& material : scene.materials) material.specular.setZero();  // no pow: libm's varies
+  Sensor sensor;
+  sensor.optics = pinhole_from_fov(96, 64, 0.5);
+  const Beams beams = make_beams(sensor);
+  const Motion motion =
+      standing_still(scene, look_at({4.0, -3.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()));
+  const auto renderer = make_renderer(scene, {});
+  Frame frame;
+  simulate({scene, sensor, beams, motion, *renderer}, {.normal = true, .object_point = true},
+           frame);
+  EXPECT_EQ(hash_of(frame.range_m), 9726207806536911748U);
+  EXPECT_EQ(hash_of(frame.intensity), 14754296435821149897U);
+  EXPECT_EQ(hash_of(frame.truth.primitive), 9915169409929839669U);
+  EXPECT_EQ(hash_of(frame.truth.normal), 14283022333936143779U);
+  EXPECT_EQ(hash_of(frame.truth.shading_normal), 884859711244796085U);
+  EXPECT_EQ(hash_of(frame.truth.object_point_m), 13269653441643021824U);
+}
+
+}  // namespace
+}  // namespace glidar
