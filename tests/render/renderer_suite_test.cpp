@@ -2,111 +2,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Promises every renderer keeps. A new renderer joins by its name at the end.
 #include <glidar/core/error.hpp>
-#include <glidar/core/random.hpp>
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/render/renderer.hpp>
-#include <glidar/render/resolve.hpp>
-#include <support/brute_force.hpp>
-#include <support/data.hpp>
-
-#include <gtest/gtest.h>
+#include <render/renderer_suite.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <map>
-#include <numbers>
 
 namespace glidar {
 namespace {
 
+using testing::builtin_scene;
+using testing::camera_beams;
+using testing::Draws;
 using testing::Judged;
-
-/// Draws for test rays: always the same.
-class Draws {
- public:
-  explicit Draws(std::uint64_t seed) : draw_{.seed = seed} {}
-  double next() {
-    if (used_ == 4) {
-      ++draw_.block;
-      used_ = 0;
-    }
-    if (used_ == 0) words_ = random_words(draw_);
-    return uniform(words_[used_++]);
-  }
-  Eigen::Vector3d direction() {
-    const double z = 2.0 * next() - 1.0;
-    const double angle = 2.0 * std::numbers::pi * next();
-    const double radius = std::sqrt(1.0 - z * z);
-    return Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), z).normalized();
-  }
-
- private:
-  Draw draw_;
-  RandomWords words_{};
-  unsigned used_ = 0;
-};
-
-Beams loose_beams(std::vector<Eigen::Vector3d> directions, std::vector<Eigen::Vector3d> origins) {
-  Beams beams;
-  beams.rows = 1;
-  beams.cols = static_cast<std::uint32_t>(directions.size());
-  beams.frame_id = "test";
-  beams.directions = std::move(directions);
-  beams.origins_m = std::move(origins);
-  return beams;
-}
-
-Beams camera_beams(std::uint32_t width, std::uint32_t height, double focal_px) {
-  Beams beams;
-  beams.rows = height;
-  beams.cols = width;
-  beams.frame_id = "camera_optical_frame";
-  for (std::uint32_t v = 0; v < height; ++v) {
-    for (std::uint32_t u = 0; u < width; ++u) {
-      beams.directions.push_back(Eigen::Vector3d((u + 0.5 - 0.5 * width) / focal_px,
-                                                 (v + 0.5 - 0.5 * height) / focal_px, 1.0)
-                                     .normalized());
-    }
-  }
-  return beams;
-}
-
-Pose turned(double angle, const Eigen::Vector3d& axis, const Eigen::Vector3d& position) {
-  return make_pose(position, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized())));
-}
-
-Scene builtin_scene(const char* name) {
-  return testing::scene_of(make_builtin_model(name));
-}
-
-constexpr HitFields kEverything{.depth = true,
-                                .normal = true,
-                                .shading_normal = true,
-                                .incidence = true,
-                                .barycentrics = true,
-                                .colour = true,
-                                .reflectance = true,
-                                .object_point = true};
-
-class RendererSuite : public ::testing::TestWithParam<std::string> {
- protected:
-  static std::unique_ptr<Renderer> renderer(const Scene& scene, unsigned threads = 2) {
-    return make_renderer(scene, {.kind = GetParam(), .threads = threads});
-  }
-
-  static Hits cast(const Scene& scene, const Beams& beams, const Pose& world_from_sensor,
-                   bool cull_back_faces = false) {
-    Hits hits;
-    renderer(scene)->cast({.beams = beams,
-                           .world_from_sensor = world_from_sensor,
-                           .world_from_instance = {},
-                           .fields = kEverything,
-                           .cull_back_faces = cull_back_faces},
-                          hits);
-    return hits;
-  }
-};
+using testing::kEverything;
+using testing::loose_beams;
+using testing::RendererSuite;
+using testing::turned;
 
 /// A beam this near a border (relative to the scene's size) may be told to the neighbour.
 constexpr double kBorder = 1e-5;
@@ -350,109 +262,6 @@ TEST_P(RendererSuite, TheSameBytesForAnyNumberOfThreads) {
   EXPECT_TRUE(same(one.barycentrics, many.barycentrics));
   EXPECT_TRUE(same(one.reflectance, many.reflectance));
   EXPECT_TRUE(same(one.object_point_m, many.object_point_m));
-}
-
-/// A vertex or the middle of an edge, and the triangles around it.
-struct Target {
-  Eigen::Vector3d point;
-  std::vector<std::uint32_t> around;
-  bool on_border = false;  ///< of the mesh: a beam there may rightly pass by
-};
-
-std::vector<Target> targets_of(const Mesh& mesh) {
-  std::vector<Target> targets(mesh.positions_m.size());
-  for (std::size_t i = 0; i < targets.size(); ++i) {
-    targets[i].point = mesh.origin_m + mesh.positions_m[i].cast<double>();
-  }
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<std::uint32_t>> edges;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const Triangle& corners = mesh.triangles[t];
-    for (std::size_t k = 0; k < 3; ++k) {
-      targets[corners[k]].around.push_back(t);
-      edges[std::minmax(corners[k], corners[(k + 1) % 3])].push_back(t);
-    }
-  }
-  for (const auto& [ends, around] : edges) {
-    const bool on_border = around.size() != 2;
-    targets[ends.first].on_border |= on_border;
-    targets[ends.second].on_border |= on_border;
-    targets.push_back(
-        {0.5 * (targets[ends.first].point + targets[ends.second].point), around, on_border});
-  }
-  return targets;
-}
-
-/// Casts one beam from outside at every target with only fronts around it; counts those that go
-/// past.
-struct Aimed {
-  std::size_t beams = 0;
-  std::size_t leaked = 0;
-};
-
-Aimed aim_at(Renderer& renderer, const Scene& scene, const std::vector<Target>& targets,
-             const std::vector<TrianglePlane>& planes, const Eigen::Vector3d& eye) {
-  constexpr double kRim = 0.02;  // cosine: more grazing triangles count as the rim of what is seen
-  const Mesh& mesh = scene.meshes[0];
-  std::vector<bool> faces_eye(planes.size());
-  for (std::size_t t = 0; t < planes.size(); ++t) {
-    const Eigen::Vector3d way =
-        mesh.origin_m + mesh.positions_m[mesh.triangles[t][0]].cast<double>() - eye;
-    faces_eye[t] = planes[t].normal.dot(way) < -kRim * way.norm();
-  }
-  std::vector<Eigen::Vector3d> directions;
-  std::vector<double> ranges;
-  for (const Target& target : targets) {
-    if (target.on_border || target.around.empty()) continue;
-    if (!std::all_of(target.around.begin(), target.around.end(),
-                     [&](std::uint32_t t) { return faces_eye[t]; })) {
-      continue;
-    }
-    directions.push_back((target.point - eye).normalized());
-    ranges.push_back((target.point - eye).norm());
-  }
-  Pose pose = Pose::Identity();
-  pose.translation() = eye;
-  Hits hits;
-  const Beams beams = loose_beams(directions, {});
-  renderer.cast(
-      {.beams = beams, .world_from_sensor = pose, .world_from_instance = {}, .fields = {}}, hits);
-  const double tolerance = 1e-6 * bounds(scene).diagonal().norm();
-  Aimed aimed{.beams = ranges.size(), .leaked = 0};
-  for (std::size_t i = 0; i < ranges.size(); ++i) {
-    // Something nearer may rightly hide the target; going past it is the leak.
-    if (!(hits.range_m[i] <= ranges[i] + tolerance)) ++aimed.leaked;
-  }
-  return aimed;
-}
-
-/// Aims at all vertices and edge midpoints from many eyes until a million beams are cast.
-void expect_no_leak(Renderer& renderer, const Scene& scene) {
-  const std::vector<Target> targets = targets_of(scene.meshes[0]);
-  const std::vector<TrianglePlane> planes = triangle_planes(scene.meshes[0]);
-  const double size = bounds(scene).diagonal().norm();
-  const Eigen::Vector3d middle = bounds(scene).center();
-  Draws draws(11);
-  Aimed all;
-  for (int eye = 0; all.beams < 1'000'000; ++eye) {
-    const Eigen::Vector3d axis = (eye < 3 ? 1.0 : -1.0) * Eigen::Vector3d::Unit(eye % 3);
-    const Eigen::Vector3d from = eye < 6 ? axis : draws.direction();
-    const Aimed aimed = aim_at(renderer, scene, targets, planes, middle + 1.5 * size * from);
-    all.beams += aimed.beams;
-    all.leaked += aimed.leaked;
-    ASSERT_LT(eye, 1000) << "the eyes see nothing";
-  }
-  EXPECT_EQ(all.leaked, 0U) << "of " << all.beams;
-}
-
-TEST_P(RendererSuite, AMillionBeamsAtVerticesAndEdgesOfASphereDoNotLeak) {
-  const Scene scene = builtin_scene("sphere");
-  expect_no_leak(*renderer(scene), scene);
-}
-
-TEST_P(RendererSuite, AMillionBeamsAtVerticesAndEdgesOfTheBunnyDoNotLeak) {
-  GLIDAR_NEEDS_DATA();
-  const Scene scene = testing::scene_of(testing::load_data_model("models/stanford/bun_zipper.ply"));
-  expect_no_leak(*renderer(scene), scene);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, RendererSuite, ::testing::Values("embree"),

@@ -1,0 +1,110 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// What the tests that every renderer passes share.
+#include <glidar/core/random.hpp>
+#include <glidar/io/builtin_models.hpp>
+#include <glidar/render/renderer.hpp>
+#include <support/brute_force.hpp>
+#include <support/data.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glidar::testing {
+
+/// Draws for test rays: always the same.
+class Draws {
+ public:
+  explicit Draws(std::uint64_t seed) : draw_{.seed = seed} {}
+  double next() {
+    if (used_ == 4) {
+      ++draw_.block;
+      used_ = 0;
+    }
+    if (used_ == 0) words_ = random_words(draw_);
+    return uniform(words_[used_++]);
+  }
+  Eigen::Vector3d direction() {
+    const double z = 2.0 * next() - 1.0;
+    const double angle = 2.0 * std::numbers::pi * next();
+    const double radius = std::sqrt(1.0 - z * z);
+    return Eigen::Vector3d(radius * std::cos(angle), radius * std::sin(angle), z).normalized();
+  }
+
+ private:
+  Draw draw_;
+  RandomWords words_{};
+  unsigned used_ = 0;
+};
+
+inline Beams loose_beams(std::vector<Eigen::Vector3d> directions,
+                         std::vector<Eigen::Vector3d> origins) {
+  Beams beams;
+  beams.rows = 1;
+  beams.cols = static_cast<std::uint32_t>(directions.size());
+  beams.frame_id = "test";
+  beams.directions = std::move(directions);
+  beams.origins_m = std::move(origins);
+  return beams;
+}
+
+inline Beams camera_beams(std::uint32_t width, std::uint32_t height, double focal_px) {
+  Beams beams;
+  beams.rows = height;
+  beams.cols = width;
+  beams.frame_id = "camera_optical_frame";
+  for (std::uint32_t v = 0; v < height; ++v) {
+    for (std::uint32_t u = 0; u < width; ++u) {
+      beams.directions.push_back(Eigen::Vector3d((u + 0.5 - 0.5 * width) / focal_px,
+                                                 (v + 0.5 - 0.5 * height) / focal_px, 1.0)
+                                     .normalized());
+    }
+  }
+  return beams;
+}
+
+inline Pose turned(double angle, const Eigen::Vector3d& axis, const Eigen::Vector3d& position) {
+  return make_pose(position, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized())));
+}
+
+inline Scene builtin_scene(const char* name) {
+  return scene_of(make_builtin_model(name));
+}
+
+inline constexpr HitFields kEverything{.depth = true,
+                                       .normal = true,
+                                       .shading_normal = true,
+                                       .incidence = true,
+                                       .barycentrics = true,
+                                       .colour = true,
+                                       .reflectance = true,
+                                       .object_point = true};
+
+class RendererSuite : public ::testing::TestWithParam<std::string> {
+ protected:
+  static std::unique_ptr<Renderer> renderer(const Scene& scene, unsigned threads = 2) {
+    return make_renderer(scene, {.kind = GetParam(), .threads = threads});
+  }
+
+  static Hits cast(const Scene& scene, const Beams& beams, const Pose& world_from_sensor,
+                   bool cull_back_faces = false) {
+    Hits hits;
+    renderer(scene)->cast({.beams = beams,
+                           .world_from_sensor = world_from_sensor,
+                           .world_from_instance = {},
+                           .fields = kEverything,
+                           .cull_back_faces = cull_back_faces},
+                          hits);
+    return hits;
+  }
+};
+
+}  // namespace glidar::testing
