@@ -14,7 +14,7 @@ void write_transform(const CloudFile& job, AtomicFile& file) {
   }
   const Pose cloud_from_object =
       job.cloud.world_from_cloud.inverse() * job.frame.world_from_instance.front();
-  const Eigen::Matrix4d matrix = cloud_from_object.matrix();
+  const Eigen::Matrix4d& matrix = cloud_from_object.matrix();
   for (Eigen::Index row = 0; row < 4; ++row) {
     // + 0.0 turns -0 into 0
     file.write(fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}\n", matrix(row, 0) + 0.0,

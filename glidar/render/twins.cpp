@@ -52,23 +52,29 @@ std::vector<Key> sorted_keys(const Mesh& mesh) {
   return keys;
 }
 
+/// The nearest earlier key of the same triangle, or i where there is none.
+std::size_t earlier_twin(const Mesh& mesh, const std::vector<Key>& keys, std::size_t i) {
+  const auto corners = sorted_corners(mesh, keys[i].triangle);
+  // Back through those of the same hash, which are few unless they are true twins.
+  for (std::size_t j = i; j-- > 0 && keys[j].hash == keys[i].hash;) {
+    if (sorted_corners(mesh, keys[j].triangle) == corners) return j;
+  }
+  return i;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> first_twins(const Mesh& mesh) {
   const std::vector<Key> keys = sorted_keys(mesh);
   std::vector<std::uint32_t> first;
   for (std::size_t i = 1; i < keys.size(); ++i) {
-    // Back through those of the same hash, which are few unless they are true twins.
-    for (std::size_t j = i; j-- > 0 && keys[j].hash == keys[i].hash;) {
-      if (sorted_corners(mesh, keys[j].triangle) != sorted_corners(mesh, keys[i].triangle))
-        continue;
-      if (first.empty()) {
-        first.resize(mesh.triangles.size());
-        std::iota(first.begin(), first.end(), 0U);
-      }
-      first[keys[i].triangle] = first[keys[j].triangle];
-      break;
+    const std::size_t j = earlier_twin(mesh, keys, i);
+    if (j == i) continue;
+    if (first.empty()) {
+      first.resize(mesh.triangles.size());
+      std::iota(first.begin(), first.end(), 0U);
     }
+    first[keys[i].triangle] = first[keys[j].triangle];
   }
   return first;
 }

@@ -108,6 +108,20 @@ Eigen::Vector3d ray(const Fisheye& k, const Eigen::Vector2d& plane) {
   return {kNaN, kNaN, kNaN};
 }
 
+/// The unit direction of every pixel, row by row.
+template <class Model>
+void fill_directions(const PinholeIntrinsics& k, const Model& distortion,
+                     std::vector<Eigen::Vector3d>& directions) {
+  std::size_t i = 0;
+  for (std::uint32_t v = 0; v < k.height; ++v) {
+    for (std::uint32_t u = 0; u < k.width; ++u) {
+      const Eigen::Vector2d plane((u + k.pixel_centre - k.cx) / k.fx,
+                                  (v + k.pixel_centre - k.cy) / k.fy);
+      directions[i++] = ray(distortion, plane).normalized();
+    }
+  }
+}
+
 }  // namespace
 
 Pinhole pinhole_from_fov(std::uint32_t width, std::uint32_t height, double fov_y_rad) {
@@ -134,18 +148,8 @@ Beams make_beams(const Pinhole& pinhole) {
   beams.cols = k.width;
   beams.frame_id = "camera_optical_frame";
   beams.directions.resize(std::size_t{k.height} * k.width);
-  std::visit(
-      [&](const auto& distortion) {
-        std::size_t i = 0;
-        for (std::uint32_t v = 0; v < k.height; ++v) {
-          for (std::uint32_t u = 0; u < k.width; ++u) {
-            const Eigen::Vector2d plane((u + k.pixel_centre - k.cx) / k.fx,
-                                        (v + k.pixel_centre - k.cy) / k.fy);
-            beams.directions[i++] = ray(distortion, plane).normalized();
-          }
-        }
-      },
-      pinhole.distortion);
+  std::visit([&](const auto& distortion) { fill_directions(k, distortion, beams.directions); },
+             pinhole.distortion);
   if (std::holds_alternative<NoDistortion>(pinhole.distortion)) beams.pinhole = k;
   return beams;
 }

@@ -2,62 +2,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Promises every renderer keeps. A new renderer joins by its name at the end.
 #include <glidar/core/error.hpp>
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/render/renderer.hpp>
-#include <support/beams.hpp>
-#include <support/brute_force.hpp>
-#include <support/data.hpp>
-
-#include <gtest/gtest.h>
+#include <render/renderer_suite.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numbers>
 
 namespace glidar {
 namespace {
 
+using testing::builtin_scene;
 using testing::camera_beams;
 using testing::Draws;
 using testing::Judged;
+using testing::kEverything;
 using testing::loose_beams;
-
-Pose turned(double angle, const Eigen::Vector3d& axis, const Eigen::Vector3d& position) {
-  return make_pose(position, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized())));
-}
-
-Scene builtin_scene(const char* name) {
-  return testing::scene_of(make_builtin_model(name));
-}
-
-constexpr HitFields kEverything{.depth = true,
-                                .normal = true,
-                                .shading_normal = true,
-                                .incidence = true,
-                                .barycentrics = true,
-                                .colour = true,
-                                .reflectance = true,
-                                .object_point = true};
-
-class RendererSuite : public ::testing::TestWithParam<std::string> {
- protected:
-  static std::unique_ptr<Renderer> renderer(const Scene& scene, unsigned threads = 2) {
-    return make_renderer(scene, {.kind = GetParam(), .threads = threads});
-  }
-
-  static Hits cast(const Scene& scene, const Beams& beams, const Pose& world_from_sensor,
-                   bool cull_back_faces = false) {
-    Hits hits;
-    renderer(scene)->cast({.beams = beams,
-                           .world_from_sensor = world_from_sensor,
-                           .world_from_instance = {},
-                           .fields = kEverything,
-                           .cull_back_faces = cull_back_faces},
-                          hits);
-    return hits;
-  }
-};
+using testing::RendererSuite;
+using testing::turned;
 
 /// A beam this near a border (relative to the scene's size) may be told to the neighbour.
 constexpr double kBorder = 1e-5;

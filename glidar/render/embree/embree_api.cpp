@@ -7,16 +7,16 @@
 namespace glidar::embree {
 namespace {
 
-constexpr unsigned kHalf = 8;
+constexpr std::size_t kHalf = 8;
 // RTCRay8 and RTCRay16 are the same arrays of 4-byte numbers, of 8 and of 16 lanes.
-constexpr unsigned kRayArrays = sizeof(RTCRay8) / (kHalf * sizeof(float));
-constexpr unsigned kHitArrays = sizeof(RTCHit8) / (kHalf * sizeof(float));
+constexpr std::size_t kRayArrays = sizeof(RTCRay8) / (kHalf * sizeof(float));
+constexpr std::size_t kHitArrays = sizeof(RTCHit8) / (kHalf * sizeof(float));
 static_assert(sizeof(RTCRay16) == kRayArrays * kLanes * sizeof(float));
 static_assert(sizeof(RTCHit16) == kHitArrays * kLanes * sizeof(float));
 
 void copy_half(const void* from, std::size_t from_lanes, void* to, std::size_t to_lanes,
-               unsigned arrays) {
-  for (unsigned i = 0; i < arrays; ++i) {
+               std::size_t arrays) {
+  for (std::size_t i = 0; i < arrays; ++i) {
     std::copy_n(static_cast<const std::byte*>(from) + i * from_lanes * sizeof(float),
                 kHalf * sizeof(float), static_cast<std::byte*>(to) + i * to_lanes * sizeof(float));
   }

@@ -1,14 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Closed meshes do not leak: beams aimed exactly at vertices and edges, where single precision
-// alone lets some slip through.
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/render/renderer.hpp>
+// Closed meshes do not leak, in any renderer. A new renderer joins by its name at the end.
 #include <glidar/render/resolve.hpp>
-#include <support/beams.hpp>
-#include <support/data.hpp>
-
-#include <gtest/gtest.h>
+#include <render/renderer_suite.hpp>
 
 #include <algorithm>
 #include <map>
@@ -16,10 +10,11 @@
 namespace glidar {
 namespace {
 
+using testing::builtin_scene;
 using testing::Draws;
 using testing::loose_beams;
 
-class Watertight : public ::testing::TestWithParam<std::string> {};
+class RendererLeak : public testing::RendererSuite {};
 
 /// A vertex or the middle of an edge, and the triangles around it.
 struct Target {
@@ -113,18 +108,18 @@ void expect_no_leak(Renderer& renderer, const Scene& scene) {
   EXPECT_EQ(all.leaked, 0U) << "of " << all.beams;
 }
 
-TEST_P(Watertight, AMillionBeamsAtVerticesAndEdgesOfASphereDoNotLeak) {
-  const Scene scene = testing::scene_of(make_builtin_model("sphere"));
-  expect_no_leak(*make_renderer(scene, {.kind = GetParam(), .threads = 2}), scene);
+TEST_P(RendererLeak, AMillionBeamsAtVerticesAndEdgesOfASphereDoNotLeak) {
+  const Scene scene = builtin_scene("sphere");
+  expect_no_leak(*renderer(scene), scene);
 }
 
-TEST_P(Watertight, AMillionBeamsAtVerticesAndEdgesOfTheBunnyDoNotLeak) {
+TEST_P(RendererLeak, AMillionBeamsAtVerticesAndEdgesOfTheBunnyDoNotLeak) {
   GLIDAR_NEEDS_DATA();
   const Scene scene = testing::scene_of(testing::load_data_model("models/stanford/bun_zipper.ply"));
-  expect_no_leak(*make_renderer(scene, {.kind = GetParam(), .threads = 2}), scene);
+  expect_no_leak(*renderer(scene), scene);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Watertight, ::testing::Values("embree"),
+INSTANTIATE_TEST_SUITE_P(All, RendererLeak, ::testing::Values("embree"),
                          [](const auto& test) { return test.param; });
 
 }  // namespace

@@ -2,11 +2,19 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/beams.hpp>
+// What the tests that every renderer passes share.
 #include <glidar/core/random.hpp>
+#include <glidar/io/builtin_models.hpp>
+#include <glidar/render/renderer.hpp>
+#include <support/brute_force.hpp>
+#include <support/data.hpp>
+
+#include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 #include <numbers>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -37,7 +45,6 @@ class Draws {
   unsigned used_ = 0;
 };
 
-/// Beams of no pattern.
 inline Beams loose_beams(std::vector<Eigen::Vector3d> directions,
                          std::vector<Eigen::Vector3d> origins) {
   Beams beams;
@@ -49,7 +56,6 @@ inline Beams loose_beams(std::vector<Eigen::Vector3d> directions,
   return beams;
 }
 
-/// A pinhole camera with the principal point in the middle.
 inline Beams camera_beams(std::uint32_t width, std::uint32_t height, double focal_px) {
   Beams beams;
   beams.rows = height;
@@ -64,5 +70,41 @@ inline Beams camera_beams(std::uint32_t width, std::uint32_t height, double foca
   }
   return beams;
 }
+
+inline Pose turned(double angle, const Eigen::Vector3d& axis, const Eigen::Vector3d& position) {
+  return make_pose(position, Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis.normalized())));
+}
+
+inline Scene builtin_scene(const char* name) {
+  return scene_of(make_builtin_model(name));
+}
+
+inline constexpr HitFields kEverything{.depth = true,
+                                       .normal = true,
+                                       .shading_normal = true,
+                                       .incidence = true,
+                                       .barycentrics = true,
+                                       .colour = true,
+                                       .reflectance = true,
+                                       .object_point = true};
+
+class RendererSuite : public ::testing::TestWithParam<std::string> {
+ protected:
+  static std::unique_ptr<Renderer> renderer(const Scene& scene, unsigned threads = 2) {
+    return make_renderer(scene, {.kind = GetParam(), .threads = threads});
+  }
+
+  static Hits cast(const Scene& scene, const Beams& beams, const Pose& world_from_sensor,
+                   bool cull_back_faces = false) {
+    Hits hits;
+    renderer(scene)->cast({.beams = beams,
+                           .world_from_sensor = world_from_sensor,
+                           .world_from_instance = {},
+                           .fields = kEverything,
+                           .cull_back_faces = cull_back_faces},
+                          hits);
+    return hits;
+  }
+};
 
 }  // namespace glidar::testing
