@@ -9,6 +9,9 @@ target_compile_options(
   INTERFACE -Wall -Wextra -Wshadow -Wconversion
             # no fused multiply-add behind our back: the same bytes from every build type
             -ffp-contract=off
+            # nobody reads errno or the exception flags after arithmetic; loops may become vectors,
+            # with the same results
+            -fno-math-errno -fno-trapping-math
             $<$<BOOL:${GLIDAR_WARNINGS_AS_ERRORS}>:-Werror>)
 
 # glidar_layer(NAME SOURCES files... PUBLIC layers... PRIVATE libraries...): one library per layer,

@@ -9,8 +9,9 @@ namespace {
 
 constexpr std::size_t kBeamsPerTask = 4096;  // some 50 microseconds of work
 
-/// What the sensor says of one true range.
-Status judge(double depth_m, const DepthLimits& limits) {
+/// What the sensor says of a surface at this true range.
+Status judge(const DepthLimits& limits, const Beams& beams, std::size_t beam, double range_m) {
+  const double depth_m = range_m * beams.directions[beam].dot(beams.boresight);
   if (depth_m < limits.near_m) return Status::too_near;
   if (depth_m > limits.far_m) return Status::too_far;
   return Status::hit;
@@ -18,11 +19,12 @@ Status judge(double depth_m, const DepthLimits& limits) {
 
 /// Range and status of beams [begin, end) from the truth.
 void measure_range(const DepthLimits& limits, const Beams& beams, BeamRange range, Frame& frame) {
+  const bool sees_all = limits.near_m <= 0.0 && std::isinf(limits.far_m);
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const double range_m = frame.truth.range_m[i];
     Status status = Status::miss;
     if (!std::isnan(range_m)) {
-      status = judge(range_m * beams.directions[i].dot(beams.boresight), limits);
+      status = sees_all ? Status::hit : judge(limits, beams, i, range_m);
     } else if (std::isnan(beams.directions[i].x())) {
       status = Status::no_beam;
     }

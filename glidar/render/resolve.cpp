@@ -210,9 +210,14 @@ Resolver::Resolver(const Scene& scene) : scene_(scene) {
     planes_.push_back(triangle_planes(mesh));
     twins_.push_back(first_twins(mesh));
   }
-  planes_of_instance_.reserve(scene.instances.size());
+  known_.reserve(scene.instances.size());
   for (const Instance& instance : scene.instances) {
-    planes_of_instance_.push_back(planes_[instance.mesh].data());
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const std::vector<std::uint32_t>& twins = twins_[instance.mesh];
+    known_.push_back({.mesh = &mesh,
+                      .triangles = mesh.triangles.data(),
+                      .planes = planes_[instance.mesh].data(),
+                      .twins = twins.empty() ? nullptr : twins.data()});
   }
   looks_.reserve(scene.instances.size());
   for (const Instance& instance : scene.instances) {
@@ -359,18 +364,23 @@ void Resolver::write_colours(const HitFields& fields, const HitBlock& block, con
   });
 }
 
-void Resolver::write_miss(const HitFields& fields, std::size_t beam, Hits& hits) {
-  hits.range_m[beam] = kNaN;
-  hits.instance[beam] = kNoHit;
-  hits.primitive[beam] = kNoHit;
-  if (fields.depth) hits.depth_m[beam] = kNaN;
-  if (fields.normal) hits.normal[beam].setConstant(kNaNf);
-  if (fields.shading_normal) hits.shading_normal[beam].setConstant(kNaNf);
-  if (fields.incidence) hits.cos_incidence[beam] = kNaNf;
-  if (fields.barycentrics) hits.barycentrics[beam].setConstant(kNaNf);
-  if (fields.object_point) hits.object_point_m[beam].setConstant(kNaN);
-  if (fields.colour) hits.colour[beam].setZero();
-  if (fields.reflectance) hits.reflectance[beam] = {};
+void Resolver::write_misses(const HitFields& fields, std::size_t first, std::size_t count,
+                            Hits& hits) {
+  const auto fill = [first, count](bool asked, auto& column, const auto& value) {
+    if (asked) std::fill_n(column.begin() + static_cast<std::ptrdiff_t>(first), count, value);
+  };
+  static const Eigen::Vector3f kNowhere(kNaNf, kNaNf, kNaNf);
+  fill(true, hits.range_m, kNaN);
+  fill(true, hits.instance, kNoHit);
+  fill(true, hits.primitive, kNoHit);
+  fill(fields.depth, hits.depth_m, kNaN);
+  fill(fields.normal, hits.normal, kNowhere);
+  fill(fields.shading_normal, hits.shading_normal, kNowhere);
+  fill(fields.incidence, hits.cos_incidence, kNaNf);
+  fill(fields.barycentrics, hits.barycentrics, Eigen::Vector2f(kNaNf, kNaNf));
+  fill(fields.object_point, hits.object_point_m, Eigen::Vector3d(kNaN, kNaN, kNaN));
+  fill(fields.colour, hits.colour, Eigen::Vector3f(0.0F, 0.0F, 0.0F));
+  fill(fields.reflectance, hits.reflectance, Reflectance{});
 }
 
 }  // namespace glidar

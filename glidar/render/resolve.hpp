@@ -92,24 +92,22 @@ class Resolver {
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const InstanceView& view(std::uint32_t instance) const { return views_[instance]; }
   [[nodiscard]] const TrianglePlane& plane(std::uint32_t instance, std::uint32_t primitive) const {
-    return planes_of_instance_[instance][primitive];
+    return known_[instance].planes[primitive];
   }
-  [[nodiscard]] const Mesh& mesh(std::uint32_t instance) const {
-    return scene_.meshes[scene_.instances[instance].mesh];
-  }
+  [[nodiscard]] const Mesh& mesh(std::uint32_t instance) const { return *known_[instance].mesh; }
 
   /// The triangle to tell for one found: itself, or the first of those that lie on it. Sides count
   /// when back faces are culled, so then it is itself.
   [[nodiscard]] std::uint32_t told(std::uint32_t instance, std::uint32_t primitive) const {
-    const std::vector<std::uint32_t>& twins = twins_[scene_.instances[instance].mesh];
-    return twins.empty() ? primitive : twins[primitive];
+    const std::uint32_t* twins = known_[instance].twins;
+    return twins == nullptr ? primitive : twins[primitive];
   }
 
   /// Asks the memory for a lane's triangle.
   void prefetch(const HitBlock& block, unsigned lane) const {
     const std::uint32_t primitive = block.primitive[lane];
     __builtin_prefetch(&plane(block.instance[lane], primitive));
-    __builtin_prefetch(&mesh(block.instance[lane]).triangles[primitive]);
+    __builtin_prefetch(known_[block.instance[lane]].triangles + primitive);
   }
 
   /// Asks the memory for the corners of a block's triangles, as far as the fields need them.
@@ -124,8 +122,9 @@ class Resolver {
   void write(const Beams& beams, const HitFields& fields, const HitBlock& block,
              const ExactBlock& exact, Hits& hits) const;
 
-  /// Writes a miss.
-  static void write_miss(const HitFields& fields, std::size_t beam, Hits& hits);
+  /// Writes misses at beams [first, first + count).
+  static void write_misses(const HitFields& fields, std::size_t first, std::size_t count,
+                           Hits& hits);
 
  private:
   void write_directions(const HitBlock& block, const Lanes3<double>& front,
@@ -143,12 +142,20 @@ class Resolver {
   void write_colours(const HitFields& fields, const HitBlock& block, const Lanes<float>& w1,
                      const Lanes<float>& w2, Hits& hits) const;
 
+  /// Where an instance's data lie, for few hops from a hit to its triangle.
+  struct Known {
+    const Mesh* mesh;
+    const Triangle* triangles;
+    const TrianglePlane* planes;
+    const std::uint32_t* twins;  ///< nullptr: all triangles differ
+  };
+
   const Scene& scene_;
-  std::vector<std::vector<TrianglePlane>> planes_;        ///< per mesh
-  std::vector<std::vector<std::uint32_t>> twins_;         ///< per mesh
-  std::vector<const TrianglePlane*> planes_of_instance_;  ///< per instance
-  std::vector<std::vector<SlotLook>> looks_;              ///< per instance and material slot
-  std::vector<InstanceView> views_;                       ///< per instance
+  std::vector<std::vector<TrianglePlane>> planes_;  ///< per mesh
+  std::vector<std::vector<std::uint32_t>> twins_;   ///< per mesh
+  std::vector<Known> known_;                        ///< per instance
+  std::vector<std::vector<SlotLook>> looks_;        ///< per instance and material slot
+  std::vector<InstanceView> views_;                 ///< per instance
 };
 
 }  // namespace glidar

@@ -104,6 +104,21 @@ bool settle(const Job& job, std::uint32_t doubtful, HitBlock& block) {
   return changed;
 }
 
+/// Writes the misses of a tile, neighbours together.
+void write_misses(const Job& job, const TileWork& work) {
+  std::uint32_t missed = work.inside & ~work.block.mask;
+  while (missed != 0) {
+    const auto lane = static_cast<unsigned>(std::countr_zero(missed));
+    unsigned count = 1;
+    while (lane + count < kLanes && (missed >> (lane + count) & 1U) != 0 &&
+           work.block.beam[lane + count] == work.block.beam[lane] + count) {
+      ++count;
+    }
+    Resolver::write_misses(job.fields, work.block.beam[lane], count, job.hits);
+    missed &= ~(((1U << count) - 1U) << lane);
+  }
+}
+
 /// Writes the hits and misses of a traced tile.
 void finish(const Job& job, TileWork& work) {
   HitBlock& block = work.block;
@@ -115,10 +130,7 @@ void finish(const Job& job, TileWork& work) {
     }
   }
   if (block.mask != 0) job.resolver.write(job.beams, job.fields, block, work.exact, job.hits);
-  for (std::uint32_t missed = work.inside & ~block.mask; missed != 0; missed &= missed - 1) {
-    const auto lane = static_cast<unsigned>(std::countr_zero(missed));
-    Resolver::write_miss(job.fields, block.beam[lane], job.hits);
-  }
+  write_misses(job, work);
 }
 
 /// Casts tiles [begin, end). Three are under way at a time, so that what the later steps of one
