@@ -93,7 +93,8 @@ class RawEmbree {
     alignas(64) int valid[16];
     for (unsigned lane = 0; lane < 16; ++lane) {
       const float x = static_cast<float>(first_col + lane % 4) + 0.5F - 0.5F * kSide;
-      const float y = static_cast<float>(first_row + lane / 4) + 0.5F - 0.5F * kSide;
+      const unsigned row = first_row + lane / 4;
+      const float y = static_cast<float>(row) + 0.5F - 0.5F * kSide;
       const Eigen::Vector3f direction =
           rotation * Eigen::Vector3f(x / focal, y / focal, 1.0F).normalized();
       valid[lane] = -1;
