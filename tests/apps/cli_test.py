@@ -67,7 +67,7 @@ class Refusals(CliTest):
         self.assertIn("given twice", self.refused("render", "builtin:box", "-o", "a.pcd", "-o", "./a.pcd"))
         self.write("box.obj", BOX)
         os.rename(os.path.join(self.folder, "box.obj"), os.path.join(self.folder, "in.ply"))
-        self.assertIn("is the input", self.refused("render", "in.ply", "-o", "in.ply"))
+        self.assertIn("is an input", self.refused("render", "in.ply", "-o", "in.ply"))
         self.assertIn("did you mean 'intensity'?",
                       self.refused("render", "builtin:box", "-o", "x.pcd", "--columns", "xyz,intensty"))
 

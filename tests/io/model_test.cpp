@@ -344,7 +344,7 @@ TEST(LoadModel, MaterialsOutsideTheFolderAreNotOpened) {
 TEST(AddModel, AppendsWithItsOwnMaterialsAndTextures) {
   Scene scene;
   Model first = load_model("builtin:box", without_cache(), {});
-  first.textures.resize(2);
+  first.textures.assign(2, {"other", 1, 1, 1, {3}});
   Model second = load_model("builtin:plane", without_cache(), {});
   second.textures.push_back({"t", 1, 1, 1, {7}});
   second.materials.at(0).diffuse_texture.texture = 0;
