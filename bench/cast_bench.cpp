@@ -168,7 +168,7 @@ void register_stage(const Stage& stage, unsigned threads, std::vector<Ratio>& ra
     const Motion motion = standing_still(stage.scene, stage.world_from_sensor);
     const Setup setup{stage.scene, stage.sensor, stage.beams, motion, *renderer};
     Frame frame;
-    for (auto _ : state) simulate(setup, {.normal = true}, frame);
+    for (auto _ : state) simulate(setup, {}, frame);
     count_rays(state);
   })->UseRealTime();
   ratios.push_back({at + "cast / raw Embree", at + "raw", at + "cast", 0.85});

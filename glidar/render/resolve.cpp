@@ -209,16 +209,6 @@ Resolver::Resolver(const Scene& scene) : scene_(scene) {
     planes_.push_back(triangle_planes(mesh));
     twins_.push_back(first_twins(mesh));
   }
-  known_.reserve(scene.instances.size());
-  for (const Instance& instance : scene.instances) {
-    const Mesh& mesh = scene.meshes[instance.mesh];
-    const std::vector<std::uint32_t>& twins = twins_[instance.mesh];
-    known_.push_back(
-        {.mesh = &mesh,
-         .triangles = mesh.triangles.data(),
-         .planes = planes_[instance.mesh].data(),
-         .twins = twins.empty() || has_mask(scene, instance) ? nullptr : twins.data()});
-  }
   looks_.reserve(scene.instances.size());
   for (const Instance& instance : scene.instances) {
     std::vector<SlotLook>& looks = looks_.emplace_back();
@@ -229,6 +219,22 @@ Resolver::Resolver(const Scene& scene) : scene_(scene) {
                        .has_texture = has_texture(material, mesh),
                        .has_normal_map = has_normal_map(material, mesh)});
     }
+  }
+  known_.reserve(scene.instances.size());
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const std::vector<std::uint32_t>& twins = twins_[instance.mesh];
+    const bool may_swap = !twins.empty() && !has_mask(scene, instance);
+    known_.push_back(
+        {.mesh = &mesh,
+         .triangles = mesh.triangles.data(),
+         .planes = planes_[instance.mesh].data(),
+         .twins = may_swap ? twins.data() : nullptr,
+         .slots = mesh.material_slots.empty() ? nullptr : mesh.material_slots.data(),
+         .looks = looks_[i].data(),
+         .has_normal_map = std::any_of(looks_[i].begin(), looks_[i].end(),
+                                       [](const SlotLook& look) { return look.has_normal_map; })});
   }
 }
 
@@ -341,7 +347,7 @@ SurfacePlace Resolver::place_of(const HitBlock& block, unsigned lane, const Lane
 void Resolver::bend_normals(const HitBlock& block, const Lanes<float>& w1, const Lanes<float>& w2,
                             Lanes3<double>& normals) const {
   for_lanes(block.mask, [&](unsigned i) {
-    if (!look(block, i).has_normal_map) return;
+    if (!known_[block.instance[i]].has_normal_map || !look(block, i).has_normal_map) return;
     const SurfacePlace place = place_of(block, i, w1, w2);
     const Eigen::Vector3f smooth = normals.get(i).cast<float>();
     normals.set(i, bent_normal(scene_, place, smooth).cast<double>());

@@ -132,8 +132,8 @@ class Resolver {
   void write_surface(const HitFields& fields, const HitBlock& block, const ExactBlock& exact,
                      Hits& hits) const;
   [[nodiscard]] const SlotLook& look(const HitBlock& block, unsigned lane) const {
-    const std::uint32_t instance = block.instance[lane];
-    return looks_[instance][material_slot(mesh(instance), block.primitive[lane])];
+    const Known& known = known_[block.instance[lane]];
+    return known.looks[known.slots == nullptr ? 0 : known.slots[block.primitive[lane]]];
   }
   [[nodiscard]] SurfacePlace place_of(const HitBlock& block, unsigned lane, const Lanes<float>& w1,
                                       const Lanes<float>& w2) const;
@@ -148,6 +148,9 @@ class Resolver {
     const Triangle* triangles;
     const TrianglePlane* planes;
     const std::uint32_t* twins;  ///< nullptr: all triangles differ
+    const std::uint16_t* slots;  ///< nullptr: all triangles have material slot 0
+    const SlotLook* looks;       ///< per material slot
+    bool has_normal_map;         ///< in any slot
   };
 
   const Scene& scene_;

@@ -65,9 +65,12 @@ GLIDAR_SIMD void launch_rays(const Launch& launch, const Lanes3<double>& in_sens
     ray.org_x[i] = static_cast<float>(origin.x[i] + start * d.x[i]) + (y * h.z() - z * h.y());
     ray.org_y[i] = static_cast<float>(origin.y[i] + start * d.y[i]) + (z * h.x() - x * h.z());
     ray.org_z[i] = static_cast<float>(origin.z[i] + start * d.z[i]) + (x * h.y() - y * h.x());
-    const float reach = std::max(
-        {std::abs(ray.org_x[i]), std::abs(ray.org_y[i]), std::abs(ray.org_z[i]), std::abs(x)});
-    valid[i] = reach < kLargestCoordinate ? valid[i] : 0;  // NaN compares false
+    // Bitwise, so that the loop stays one of vectors; NaN compares false.
+    const int reached = static_cast<int>(std::abs(ray.org_x[i]) < kLargestCoordinate) &
+                        static_cast<int>(std::abs(ray.org_y[i]) < kLargestCoordinate) &
+                        static_cast<int>(std::abs(ray.org_z[i]) < kLargestCoordinate) &
+                        static_cast<int>(x == x);
+    valid[i] &= -reached;
   }
   for (unsigned i = 0; i < kLanes; ++i) ray.tnear[i] = 0.0F;
   for (unsigned i = 0; i < kLanes; ++i) ray.tfar[i] = std::numeric_limits<float>::infinity();
@@ -91,8 +94,9 @@ GLIDAR_SIMD std::uint32_t doubt(const RTCHit16& hit, const ExactBlock& exact,
     const float margin = 1.0F - u - v < uv ? 1.0F - u - v : uv;
     const auto cosine = static_cast<float>(exact.cosine[i]);
     const float seen = margin * (cosine < 0.0F ? -cosine : cosine);
-    const bool certain = seen >= needed[i] * exact.narrowness[i] && exact.distance[i] > 0.0;
-    bits[i] = static_cast<std::uint32_t>(!certain) << i;
+    const int ahead = static_cast<int>(static_cast<float>(exact.distance[i]) > 0.0F);
+    const int certain = static_cast<int>(seen >= needed[i] * exact.narrowness[i]) & ahead;
+    bits[i] = static_cast<std::uint32_t>(certain ^ 1) << i;
   }
   std::uint32_t mask = 0;
   for (unsigned i = 0; i < kLanes; ++i) mask |= bits[i];
