@@ -11,7 +11,6 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
-#include <limits>
 #include <type_traits>
 
 namespace glidar {
@@ -202,15 +201,12 @@ void append_fields(const Column& column, std::vector<Field>& fields) {
 }
 
 bool float_is_enough(const Column& xyz) {
-  constexpr double kLargestRounding_m = 1e-4;
-  double largest = 0.0;
+  constexpr double kFirstCoarse_m = 2048.0;  // from here on half a float's step is over 0.1 mm
+  int coarse = 0;                            // no early end, so that the loop is one of vectors
   for (const double value : std::get<std::vector<double>>(xyz.values)) {
-    const double size = std::abs(value);
-    if (size > largest) largest = size;
+    coarse |= static_cast<int>(std::abs(value) >= kFirstCoarse_m);
   }
-  const auto rounded = static_cast<float>(largest);
-  const float next = std::nextafter(rounded, std::numeric_limits<float>::infinity());
-  return (double{next} - double{rounded}) / 2.0 <= kLargestRounding_m;
+  return coarse == 0;
 }
 
 std::size_t row_bytes(std::span<const Field> fields) {
