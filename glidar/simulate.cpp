@@ -11,9 +11,9 @@ constexpr std::size_t kBeamsPerTask = 4096;  // some 50 microseconds of work
 
 /// What the sensor says of a surface at this true range.
 Status judge(const DepthLimits& limits, const Beams& beams, std::size_t beam, double range_m) {
-  const double depth_m = range_m * beams.directions[beam].dot(beams.boresight);
-  if (depth_m < limits.near_m) return Status::too_near;
-  if (depth_m > limits.far_m) return Status::too_far;
+  const double depth = depth_m(beams, beam, range_m);
+  if (depth < limits.near_m) return Status::too_near;
+  if (depth > limits.far_m) return Status::too_far;
   return Status::hit;
 }
 

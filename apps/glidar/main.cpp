@@ -115,7 +115,11 @@ int run(int argc, char** argv) {
 int main(int argc, char** argv) {
   try {
     glidar::app::end_cleanly_on_interrupt();
-    return glidar::app::run(argc, argv);
+    const int status = glidar::app::run(argc, argv);
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+      return glidar::app::fail("standard output could not be written; is the disk full?");
+    }
+    return status;
   } catch (const std::bad_alloc&) {
     return glidar::app::fail("out of memory; use a smaller image or a smaller model");
   } catch (const std::exception& error) {

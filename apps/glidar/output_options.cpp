@@ -41,9 +41,7 @@ std::vector<std::string> asked_columns(const std::string& text) {
 /// Formats that hold no points (images, poses) take what they need and nothing else.
 std::vector<std::string> columns_of(const FileFormat& format,
                                     const std::vector<std::string>& asked) {
-  const bool points =
-      std::find(format.columns.begin(), format.columns.end(), "xyz") != format.columns.end();
-  if (!points) return format.columns;
+  if (!format.takes_more) return format.columns;
   std::vector<std::string> columns = asked;
   for (const std::string& name : format.columns) add_missing(name, columns);
   return columns;
@@ -74,16 +72,24 @@ void plan_legacy(const std::string& name, const SidecarContext& context,
   }
 }
 
-void check_names(const std::vector<Output>& outputs, const std::string& input) {
+/// True when the path is a file that was read: the input itself or a model of the scene.
+bool was_read(const std::filesystem::path& path, const std::string& input, const Scene& scene) {
+  std::error_code no_such_file;  // then it was not read either
+  if (std::filesystem::equivalent(path, input, no_such_file)) return true;
+  return std::any_of(scene.sources.begin(), scene.sources.end(), [&](const MeshSource& source) {
+    return std::filesystem::equivalent(path, source.path, no_such_file);
+  });
+}
+
+void check_names(const std::vector<Output>& outputs, const std::string& input, const Scene& scene) {
   std::set<std::filesystem::path> seen;
   for (const Output& output : outputs) {
-    std::error_code no_such_file;  // then it is not the input either
-    const bool is_input = std::filesystem::equivalent(output.path, input, no_such_file);
+    const bool is_input = was_read(output.path, input, scene);
     const bool twice =
         !seen.insert(std::filesystem::absolute(output.path).lexically_normal()).second;
     if (!is_input && !twice) continue;
     throw Error({.where = output.path.string(),
-                 .found = is_input ? "is the input file" : "is given twice as output",
+                 .found = is_input ? "is an input file" : "is given twice as output",
                  .allowed = "",
                  .remedy = "choose another name"});
   }
@@ -161,7 +167,7 @@ std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& in
                        .sink = make_file_sink(path, sink_options(flags), context)});
   }
   if (!flags.legacy_name.empty()) plan_legacy(flags.legacy_name, context, outputs);
-  check_names(outputs, input);
+  check_names(outputs, input, context.scene);
   return outputs;
 }
 

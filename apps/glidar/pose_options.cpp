@@ -137,7 +137,12 @@ void pose_model(const PoseFlags& flags, Scene& scene) {
     require_positive("--scale", *flags.scale);
     scene.instances[0].scale *= *flags.scale;
   }
-  if (model_q) scene.instances[0].world_from_object = legacy_world_from_object(*model_q);
+  if (!model_q) return;
+  if (!scene.instances[0].world_from_object.isApprox(Pose::Identity())) {
+    fail("--model-q, --model-r", "the scene file already gives the model's pose",
+         "turn it in the scene file");
+  }
+  scene.instances[0].world_from_object = legacy_world_from_object(*model_q);
 }
 
 bool sensor_pose_given(const PoseFlags& flags) {

@@ -8,12 +8,14 @@
 #include <apps/glidar/output_options.hpp>
 #include <apps/glidar/pose_options.hpp>
 #include <apps/glidar/sensor_options.hpp>
+#include <glidar/core/error.hpp>
 #include <glidar/io/scene_file.hpp>
 #include <glidar/simulate.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <charconv>
 #include <memory>
 
 namespace glidar::app {
@@ -43,7 +45,7 @@ struct RenderFlags {
   OutputFlags output;
   std::string renderer = "embree";
   unsigned threads = 0;
-  std::uint64_t seed = 1;
+  std::string seed_text = "1";
   bool quiet = false;
 };
 
@@ -63,10 +65,22 @@ void tell(const std::vector<std::string>& advice, Console& console) {
   for (const std::string& sentence : advice) console.warn(sentence);
 }
 
+/// The seed as a whole number; the command line library would take -1 for a large one.
+std::uint64_t seed_of(const std::string& text) {
+  std::uint64_t seed = 0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, seed);
+  if (error == std::errc() && stop == end) return seed;
+  throw Error({.where = "--seed",
+               .found = "'" + text + "'",
+               .allowed = "a whole number from 0 to 18446744073709551615",
+               .remedy = ""});
+}
+
 void measure(const RenderFlags& flags, const Setup& setup, const HitFields& fields,
              Console& console, Frame& frame) {
   const Working working(console, fmt::format("casting {} beams", setup.beams.size()));
-  frame.seed = flags.seed;
+  frame.seed = seed_of(flags.seed_text);
   simulate(setup, fields, frame);
 }
 
@@ -138,7 +152,7 @@ Command add_render(CLI::App& program) {
       ->check(CLI::Range(0, 1024))
       ->type_name("N")
       ->group(group);
-  command.add_option("--seed", flags->seed, "Seed of random numbers, kept in the sidecar [1]")
+  command.add_option("--seed", flags->seed_text, "Seed of random numbers, kept in the sidecar [1]")
       ->type_name("N")
       ->group(group);
   command.add_flag("--quiet", flags->quiet, "No summary and no progress; warnings stay")

@@ -40,6 +40,13 @@ struct Beams {
   [[nodiscard]] std::size_t size() const { return directions.size(); }
 };
 
+/// Depth of a point at a range on a beam: along the boresight, from the sensor's origin.
+inline double depth_m(const Beams& beams, std::size_t beam, double range_m) {
+  const double along_beam = range_m * beams.directions[beam].dot(beams.boresight);
+  return beams.origins_m.empty() ? along_beam
+                                 : along_beam + beams.origins_m[beam].dot(beams.boresight);
+}
+
 /// Throws Error unless every array has its stated size and every direction is a unit vector or NaN.
 void validate(const Beams& beams);
 

@@ -74,11 +74,8 @@ void fill_range(const Source& s, Column& column) {
 }
 
 void fill_depth(const Source& s, Column& column) {
-  fill_each<double>(s, column, [&](std::size_t i) {
-    double depth = s.frame.range_m[i] * s.beams.directions[i].dot(s.beams.boresight);
-    if (!s.beams.origins_m.empty()) depth += s.beams.origins_m[i].dot(s.beams.boresight);
-    return depth;
-  });
+  fill_each<double>(s, column,
+                    [&](std::size_t i) { return depth_m(s.beams, i, s.frame.range_m[i]); });
 }
 
 void fill_directions(const Source& s, Column& column, const std::vector<Eigen::Vector3f>& normals) {

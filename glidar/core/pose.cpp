@@ -5,8 +5,21 @@
 #include <glidar/core/error.hpp>
 
 namespace glidar {
+namespace {
+
+bool is_within_reach(const Eigen::Vector3d& position_m) {
+  return position_m.cwiseAbs().maxCoeff() <= kLargestCoordinate_m && position_m.allFinite();
+}
+
+}  // namespace
 
 Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up) {
+  if (!is_within_reach(eye) || !is_within_reach(target) || !up.allFinite()) {
+    throw Error({.where = "look_at",
+                 .found = "a number is not finite or too large",
+                 .allowed = "coordinates up to 1e15 m",
+                 .remedy = ""});
+  }
   const Eigen::Vector3d forward = target - eye;
   const Eigen::Vector3d right = forward.cross(up);
   if (!(forward.norm() > 0.0)) {
@@ -32,10 +45,10 @@ Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Ei
 
 Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orientation) {
   const double norm = orientation.norm();
-  if (!position_m.allFinite() || !orientation.coeffs().allFinite() || !(norm > 0.0)) {
+  if (!is_within_reach(position_m) || !orientation.coeffs().allFinite() || !(norm > 0.0)) {
     throw Error({.where = "pose",
-                 .found = "a number is not finite or the quaternion is zero",
-                 .allowed = "finite metres and a quaternion of any length but zero",
+                 .found = "a number is not finite or too large, or the quaternion is zero",
+                 .allowed = "metres up to 1e15 and a quaternion of any length but zero",
                  .remedy = ""});
   }
   Pose pose = Pose::Identity();

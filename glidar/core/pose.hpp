@@ -10,13 +10,18 @@ namespace glidar {
 /// Right-handed, metres, double precision.
 using Pose = Eigen::Isometry3d;
 
+/// The largest coordinate and scale that poses may have; beyond, squares no longer fit single
+/// precision.
+inline constexpr double kLargestCoordinate_m = 1e15;
+
 /// The pose of a camera at `eye` whose boresight (+z) points at `target` and whose image shows
 /// `up` upwards (optical frame, REP-103: x right, y down, z forward).
-/// Throws Error when eye and target coincide or `up` is parallel to the boresight.
+/// Throws Error when a number is not finite or too large, eye and target coincide or `up` is
+/// parallel to the boresight.
 Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up);
 
 /// The pose with this attitude and position; the quaternion is normalised.
-/// Throws Error when it is zero or anything is not finite.
+/// Throws Error when it is zero or anything is not finite or beyond kLargestCoordinate_m.
 Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orientation);
 
 /// True when every number is finite and the linear part is a rotation to within `tolerance`.

@@ -20,10 +20,12 @@ void require(bool holds, const Instance& instance, std::string found, std::strin
 void validate(const Instance& instance, const Scene& scene) {
   require(instance.mesh < scene.meshes.size(), instance, "mesh " + std::to_string(instance.mesh),
           "an index of the scene's meshes");
-  require(std::isfinite(instance.scale) && instance.scale > 0.0, instance,
-          "scale " + std::to_string(instance.scale), "a finite number above 0");
+  require(instance.scale > 0.0 && instance.scale <= kLargestCoordinate_m, instance,
+          "scale " + std::to_string(instance.scale), "a number above 0, up to 1e15");
   require(is_rigid(instance.world_from_object), instance, "a pose that is not a rigid transform",
           "finite numbers and a rotation");
+  require(instance.world_from_object.translation().cwiseAbs().maxCoeff() <= kLargestCoordinate_m,
+          instance, "a position beyond reach", "up to 1e15 m from the world's origin");
   require(instance.class_id < scene.class_names.size(), instance,
           "class " + std::to_string(instance.class_id), "an index of the scene's class names");
   require(instance.materials.size() >= slot_count(scene.meshes[instance.mesh]), instance,
@@ -34,7 +36,22 @@ void validate(const Instance& instance, const Scene& scene) {
   }
 }
 
+void validate(const Texture& texture) {
+  const std::size_t size = std::size_t{texture.width} * texture.height * texture.channels;
+  if (size > 0 && texture.channels <= 4 && texture.texels.size() == size) return;
+  throw Error({.where = "texture '" + texture.name + "'",
+               .found = std::to_string(texture.texels.size()) + " bytes",
+               .allowed = "width x height x channels bytes, 1 to 4 channels, at least one texel",
+               .remedy = ""});
+}
+
 void validate(const TextureUse& use, const Scene& scene, const Material& material) {
+  if (use.uv_set > 1) {
+    throw Error({.where = "material '" + material.name + "'",
+                 .found = "uv set " + std::to_string(use.uv_set),
+                 .allowed = "0 or 1",
+                 .remedy = ""});
+  }
   if (!use.used() || static_cast<std::size_t>(use.texture) < scene.textures.size()) return;
   throw Error({.where = "material '" + material.name + "'",
                .found = "texture " + std::to_string(use.texture),
@@ -58,7 +75,14 @@ Eigen::AlignedBox3d bounds(const Scene& scene) {
 }
 
 void validate(const Scene& scene) {
+  if (scene.sources.size() != scene.meshes.size()) {
+    throw Error({.where = "scene, sources",
+                 .found = std::to_string(scene.sources.size()) + " entries",
+                 .allowed = std::to_string(scene.meshes.size()) + " (one per mesh)",
+                 .remedy = ""});
+  }
   for (const Mesh& mesh : scene.meshes) validate(mesh);
+  for (const Texture& texture : scene.textures) validate(texture);
   for (const Instance& instance : scene.instances) validate(instance, scene);
   for (const Material& material : scene.materials) {
     validate(material.diffuse_texture, scene, material);

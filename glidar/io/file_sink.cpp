@@ -35,15 +35,19 @@ struct Format {
 
 const std::vector<Format>& formats() {
   static const std::vector<Format> kFormats = {
-      {{".pcd", "Point Cloud Library", {"xyz"}}, Content::points, write_pcd},
-      {{".ply", "Stanford polygon file", {"xyz"}}, Content::points, write_ply},
-      {{".npz", "NumPy archive of all columns", {"xyz"}}, Content::points, write_npz},
-      {{".csv", "text table", {"xyz"}}, Content::points, write_csv},
-      {{".bin", "KITTI Velodyne", {"xyz", "intensity"}}, Content::hits_only, write_kitti},
-      {{".npy", "NumPy depth image, metres", {"depth"}}, Content::per_beam, write_depth_npy},
-      {{".depth.png", "16-bit depth image", {"depth"}}, Content::per_beam, write_depth_png},
-      {{".png", "preview picture", {"depth", "intensity"}}, Content::per_beam, write_preview},
-      {{".transform", "4x4 pose of the first object", {}}, Content::per_beam, write_transform},
+      {{".pcd", "Point Cloud Library", {"xyz"}, true}, Content::points, write_pcd},
+      {{".ply", "Stanford polygon file", {"xyz"}, true}, Content::points, write_ply},
+      {{".npz", "NumPy archive of all columns", {"xyz"}, true}, Content::points, write_npz},
+      {{".csv", "text table", {"xyz"}, true}, Content::points, write_csv},
+      {{".bin", "KITTI Velodyne", {"xyz", "intensity"}, false}, Content::hits_only, write_kitti},
+      {{".npy", "NumPy depth image, metres", {"depth"}, false}, Content::per_beam, write_depth_npy},
+      {{".depth.png", "16-bit depth image", {"depth"}, false}, Content::per_beam, write_depth_png},
+      {{".png", "preview picture", {"depth", "intensity"}, false},
+       Content::per_beam,
+       write_preview},
+      {{".transform", "4x4 pose of the first object", {}, false},
+       Content::per_beam,
+       write_transform},
   };
   return kFormats;
 }

@@ -35,6 +35,7 @@ struct FileFormat {
   std::string suffix;       ///< ".pcd", ".depth.png" ... ; the longest that matches a path wins
   std::string description;  ///< for --help
   std::vector<std::string> columns;  ///< cloud columns it needs at least
+  bool takes_more = false;           ///< keeps any other columns of the cloud too
 };
 
 /// All formats, for help and errors.

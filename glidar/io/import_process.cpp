@@ -213,11 +213,11 @@ ImportedModel take_model(const ImportRun& run, const ImportRequest& request) {
   switch (run.end) {
     case ImportEnd::out_of_time:
       fail(request, fmt::format("reading it took longer than {:g} s", request.time_limit_s),
-           "raise the time limit, or save the model in another format");
+           "save the model in another format, or make it smaller");
     case ImportEnd::out_of_memory:
       fail(request,
            fmt::format("reading it needs more memory than {} MiB", run.memory_limit_bytes >> 20U),
-           "raise the memory limit if you trust the file, or make the model smaller");
+           "the file may be broken; else save the model in another format, or make it smaller");
     case ImportEnd::crashed:
       fail(request,
            run.signal != 0 ? "the import process crashed (" + signal_name(run.signal) + ")"

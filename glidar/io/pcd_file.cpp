@@ -27,8 +27,11 @@ std::vector<Field> pcd_fields(const PointCloud& cloud) {
       append_fields(column, fields);
     }
   }
-  for (Field& field : fields)
-    if (field.stored == Stored::f64) field.stored = Stored::f32;
+  for (Field& field : fields) {
+    // PCL's own points are float; only coordinates that float would move get 8 bytes.
+    const bool keep = field.column->name == "xyz" && !float_is_enough(*field.column);
+    if (field.stored == Stored::f64 && !keep) field.stored = Stored::f32;
+  }
   return fields;
 }
 
@@ -36,7 +39,7 @@ std::vector<Field> pcd_fields(const PointCloud& cloud) {
 /// most of these bit patterns are denormal floats, which text readers refuse.
 char pcd_type(Stored stored, PcdEncoding encoding) {
   if (stored == Stored::packed_rgb) return encoding == PcdEncoding::ascii ? 'U' : 'F';
-  return stored == Stored::f32 ? 'F' : 'U';
+  return stored == Stored::f32 || stored == Stored::f64 ? 'F' : 'U';
 }
 
 std::string viewpoint(const CloudFile& job) {

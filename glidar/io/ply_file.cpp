@@ -14,20 +14,6 @@
 namespace glidar {
 namespace {
 
-constexpr double kLargestRounding_m = 1e-4;
-
-/// True when rounding to float moves no coordinate by more than 0.1 mm.
-bool float_is_enough(const Column& xyz) {
-  double largest = 0.0;
-  for (const double value : std::get<std::vector<double>>(xyz.values)) {
-    const double size = std::abs(value);
-    if (size > largest) largest = size;
-  }
-  const auto rounded = static_cast<float>(largest);
-  const float next = std::nextafter(rounded, std::numeric_limits<float>::infinity());
-  return (double{next} - double{rounded}) / 2.0 <= kLargestRounding_m;
-}
-
 /// Readers know normals and colours by these names.
 void append_renamed(const Column& column, const std::array<const char*, 3>& names, Stored stored,
                     std::vector<Field>& fields) {

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstring>
 #include <iterator>
+#include <limits>
 #include <type_traits>
 
 namespace glidar {
@@ -198,6 +199,18 @@ bool is_colour(const Column& column) {
 void append_fields(const Column& column, std::vector<Field>& fields) {
   for (std::size_t c = 0; c < column.components.size(); ++c)
     fields.push_back({column.components[c], &column, c, native_type(column)});
+}
+
+bool float_is_enough(const Column& xyz) {
+  constexpr double kLargestRounding_m = 1e-4;
+  double largest = 0.0;
+  for (const double value : std::get<std::vector<double>>(xyz.values)) {
+    const double size = std::abs(value);
+    if (size > largest) largest = size;
+  }
+  const auto rounded = static_cast<float>(largest);
+  const float next = std::nextafter(rounded, std::numeric_limits<float>::infinity());
+  return (double{next} - double{rounded}) / 2.0 <= kLargestRounding_m;
 }
 
 std::size_t row_bytes(std::span<const Field> fields) {

@@ -45,6 +45,9 @@ bool is_colour(const Column& column);
 /// Appends a field per component, in the column's own names and type.
 void append_fields(const Column& column, std::vector<Field>& fields);
 
+/// True when rounding the coordinates to float moves none by more than 0.1 mm.
+bool float_is_enough(const Column& xyz);
+
 /// Bytes of one point with these fields side by side.
 std::size_t row_bytes(std::span<const Field> fields);
 

@@ -36,7 +36,11 @@ void apply(const MaterialOverride& change, Material& material) {
   material.diffuse = change.diffuse.value_or(material.diffuse);
   material.specular = change.specular.value_or(material.specular);
   material.shininess = change.shininess.value_or(material.shininess);
-  material.opacity = change.opacity.value_or(material.opacity);
+  if (change.opacity) {
+    constexpr float kCutoff = 0.5F;  // a beam passes or it does not: nothing is half there
+    material.opacity = *change.opacity;
+    material.alpha_cutoff = std::max(material.alpha_cutoff, kCutoff);
+  }
 }
 
 bool concerns(const MaterialOverride& change, const Material& material) {

@@ -24,6 +24,24 @@ const std::array<Kind, 1>& kinds() {
 
 }  // namespace
 
+void check(const CastRequest& request, const Scene& scene) {
+  const auto require = [](bool holds, const char* found, const char* allowed) {
+    if (holds) return;
+    throw Error({.where = "cast", .found = found, .allowed = allowed, .remedy = ""});
+  };
+  const Beams& beams = request.beams;
+  require(beams.directions.size() == std::size_t{beams.rows} * beams.cols,
+          "the beams are not as many as their rows and columns say", "rows x cols directions");
+  require(beams.origins_m.empty() || beams.origins_m.size() == beams.size(),
+          "origins of other beams", "one origin per beam, or none");
+  require(request.world_from_instance.empty() ||
+              request.world_from_instance.size() == scene.instances.size(),
+          "poses of other instances", "one pose per instance, or none");
+  const Eigen::Vector3d sensor = request.world_from_sensor.translation();
+  require(sensor.cwiseAbs().maxCoeff() <= kLargestCoordinate_m && sensor.allFinite(),
+          "the sensor stands out of reach", "up to 1e15 m from the world's origin");
+}
+
 std::unique_ptr<Renderer> make_renderer(const Scene& scene, const RendererOptions& options) {
   std::string names;
   for (const Kind& kind : kinds()) {

@@ -24,6 +24,10 @@ struct CastRequest {
   bool cull_back_faces = false;
 };
 
+/// Throws Error unless there is a beam for every row and column, a pose for every instance (or
+/// none), and the sensor stands within reach.
+void check(const CastRequest& request, const Scene& scene);
+
 /// Finds what beams hit first. Two implementations, chosen at run time.
 class Renderer {
  public:

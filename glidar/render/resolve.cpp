@@ -25,13 +25,6 @@ void for_lanes(std::uint32_t mask, const Body& body) {
   for (; mask != 0; mask &= mask - 1) body(static_cast<unsigned>(std::countr_zero(mask)));
 }
 
-/// Depth of a beam's point: along the boresight, from the sensor's origin.
-double depth_of(const Beams& beams, std::size_t beam, double range_m) {
-  Eigen::Vector3d point = range_m * beams.directions[beam];
-  if (!beams.origins_m.empty()) point += beams.origins_m[beam];
-  return point.dot(beams.boresight);
-}
-
 double longest_edge(const Mesh& mesh, std::uint32_t triangle) {
   const Eigen::Vector3d v0 = corner(mesh, triangle, 0);
   const Eigen::Vector3d v1 = corner(mesh, triangle, 1);
@@ -136,6 +129,12 @@ GLIDAR_SIMD void blend_normals(const CornerBlock& n, const Lanes<float>& w1, con
   }
 }
 
+/// True when a material of the instance has an alpha mask: then twins may differ in their holes.
+bool has_mask(const Scene& scene, const Instance& instance) {
+  return std::any_of(instance.materials.begin(), instance.materials.end(),
+                     [&](std::uint32_t m) { return scene.materials[m].alpha_cutoff > 0.0F; });
+}
+
 bool needs_corners(const HitFields& fields) {
   return fields.barycentrics || fields.shading_normal || fields.colour || fields.reflectance;
 }
@@ -214,10 +213,11 @@ Resolver::Resolver(const Scene& scene) : scene_(scene) {
   for (const Instance& instance : scene.instances) {
     const Mesh& mesh = scene.meshes[instance.mesh];
     const std::vector<std::uint32_t>& twins = twins_[instance.mesh];
-    known_.push_back({.mesh = &mesh,
-                      .triangles = mesh.triangles.data(),
-                      .planes = planes_[instance.mesh].data(),
-                      .twins = twins.empty() ? nullptr : twins.data()});
+    known_.push_back(
+        {.mesh = &mesh,
+         .triangles = mesh.triangles.data(),
+         .planes = planes_[instance.mesh].data(),
+         .twins = twins.empty() || has_mask(scene, instance) ? nullptr : twins.data()});
   }
   looks_.reserve(scene.instances.size());
   for (const Instance& instance : scene.instances) {
@@ -287,7 +287,7 @@ void Resolver::write(const Beams& beams, const HitFields& fields, const HitBlock
     hits.instance[beam] = block.instance[i];
     hits.primitive[beam] = block.primitive[i];
     if (fields.incidence) hits.cos_incidence[beam] = static_cast<float>(std::abs(exact.cosine[i]));
-    if (fields.depth) hits.depth_m[beam] = depth_of(beams, beam, hits.range_m[beam]);
+    if (fields.depth) hits.depth_m[beam] = depth_m(beams, beam, hits.range_m[beam]);
     if (!fields.object_point) return;
     hits.object_point_m[beam] = mesh(block.instance[i]).origin_m +
                                 (exact.origin.get(i) + exact.distance[i] * exact.direction.get(i));

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint32_t kLargestSide = 65536;
+constexpr double kLargestPixels = 1e9;
 
 void require(bool holds, const char* field, double found, const char* allowed) {
   if (holds) return;
@@ -26,10 +27,10 @@ void require(bool holds, const char* field, double found, const char* allowed) {
 void validate(const PinholeIntrinsics& k) {
   require(k.width >= 1 && k.width <= kLargestSide, "width", k.width, "1 to 65536 pixels");
   require(k.height >= 1 && k.height <= kLargestSide, "height", k.height, "1 to 65536 pixels");
-  require(std::isfinite(k.fx) && k.fx > 0.0, "fx", k.fx, "a finite number of pixels above 0");
-  require(std::isfinite(k.fy) && k.fy > 0.0, "fy", k.fy, "a finite number of pixels above 0");
-  require(std::isfinite(k.cx), "cx", k.cx, "a finite number of pixels");
-  require(std::isfinite(k.cy), "cy", k.cy, "a finite number of pixels");
+  require(k.fx > 0.0 && k.fx <= kLargestPixels, "fx", k.fx, "above 0, up to 1e9 pixels");
+  require(k.fy > 0.0 && k.fy <= kLargestPixels, "fy", k.fy, "above 0, up to 1e9 pixels");
+  require(std::abs(k.cx) <= kLargestPixels, "cx", k.cx, "-1e9 to 1e9 pixels");
+  require(std::abs(k.cy) <= kLargestPixels, "cy", k.cy, "-1e9 to 1e9 pixels");
   require(k.pixel_centre >= 0.0 && k.pixel_centre < 1.0, "pixel_centre", k.pixel_centre, "0 to 1");
 }
 

@@ -36,6 +36,8 @@ TEST(MakePose, NormalisesTheQuaternion) {
 TEST(MakePose, RefusesZeroAndNotANumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(make_pose({0.0, 0.0, 0.0}, Eigen::Quaterniond(0.0, 0.0, 0.0, 0.0)), Error);
+  EXPECT_THROW(make_pose({1e30, 0.0, 0.0}, Eigen::Quaterniond::Identity()), Error);
+  EXPECT_THROW(look_at({1e30, 0.0, 0.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()), Error);
   EXPECT_THROW(make_pose({nan, 0.0, 0.0}, Eigen::Quaterniond::Identity()), Error);
   EXPECT_THROW(make_pose({0.0, 0.0, 0.0}, Eigen::Quaterniond(nan, 0.0, 0.0, 1.0)), Error);
 }

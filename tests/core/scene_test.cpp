@@ -62,7 +62,7 @@ TEST(SceneValidate, AcceptsAGoodScene) {
 
 TEST(SceneValidate, NamesWhatIsWrong) {
   EXPECT_EQ(error_of([](Scene& s) { s.instances[0].scale = 0.0; }),
-            "instance 'i': scale 0.000000; allowed: a finite number above 0");
+            "instance 'i': scale 0.000000; allowed: a number above 0, up to 1e15");
   EXPECT_EQ(error_of([](Scene& s) { s.instances[0].mesh = 1; }),
             "instance 'i': mesh 1; allowed: an index of the scene's meshes");
   EXPECT_EQ(error_of([](Scene& s) { s.instances[0].world_from_object.linear()(0, 0) = 3.0; }),
@@ -74,6 +74,15 @@ TEST(SceneValidate, NamesWhatIsWrong) {
             "instance 'i': class 4; allowed: an index of the scene's class names");
   EXPECT_EQ(error_of([](Scene& s) { s.materials[0].alpha_texture.texture = 2; }),
             "material 'default': texture 2; allowed: an index of the scene's textures");
+  EXPECT_EQ(error_of([](Scene& s) { s.materials[0].diffuse_texture.uv_set = 2; }),
+            "material 'default': uv set 2; allowed: 0 or 1");
+  EXPECT_EQ(error_of([](Scene& s) { s.textures.emplace_back().name = "t"; }),
+            "texture 't': 0 bytes; allowed: width x height x channels bytes, 1 to 4 channels, at "
+            "least one texel");
+  EXPECT_EQ(error_of([](Scene& s) { s.sources.clear(); }),
+            "scene, sources: 0 entries; allowed: 1 (one per mesh)");
+  EXPECT_EQ(error_of([](Scene& s) { s.instances[0].world_from_object.translation().x() = 1e30; }),
+            "instance 'i': a position beyond reach; allowed: up to 1e15 m from the world's origin");
   EXPECT_EQ(error_of([](Scene& s) { s.meshes[0].triangles[0][1] = 3; }),
             "mesh 't', triangles: a corner is vertex 3; allowed: below 3");
   EXPECT_EQ(error_of([](Scene& s) { s.meshes[0].normals.resize(2); }),

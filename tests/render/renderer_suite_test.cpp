@@ -235,6 +235,34 @@ TEST_P(RendererSuite, ABeamWithoutDirectionHitsNothing) {
   }
 }
 
+TEST_P(RendererSuite, RefusesRequestsThatDoNotFit) {
+  const Scene scene = builtin_scene("box");
+  Beams beams = camera_beams(4, 4, 4.0);
+  beams.cols = 5;
+  EXPECT_THROW(cast(scene, beams, Pose::Identity()), Error);
+  beams.cols = 4;
+  Pose far = Pose::Identity();
+  far.translation().x() = 1e30;
+  EXPECT_THROW(cast(scene, beams, far), Error);
+}
+
+TEST_P(RendererSuite, AtTheEdgeOfReachItMissesInsteadOfStopping) {
+  const Scene scene = builtin_scene("box");
+  Pose far = Pose::Identity();
+  far.translation().x() = 1e15;
+  for (const double range : cast(scene, camera_beams(4, 4, 4.0), far).range_m) {
+    EXPECT_TRUE(std::isnan(range));
+  }
+}
+
+TEST_P(RendererSuite, ABeamThatStartsOnASurfaceDoesNotSeeIt) {
+  const Scene scene = builtin_scene("plane");
+  const Pose pose = look_at({0.1, 0.1, 0.0}, {0.1, 0.1, -5.0}, Eigen::Vector3d::UnitY());
+  for (const double range : cast(scene, camera_beams(8, 8, 8.0), pose).range_m) {
+    EXPECT_TRUE(std::isnan(range));
+  }
+}
+
 TEST_P(RendererSuite, AnEmptySceneIsAllMisses) {
   const Scene scene;
   const Hits hits = cast(scene, camera_beams(5, 3, 4.0), Pose::Identity());

@@ -161,6 +161,7 @@ class EmbreeRenderer final : public Renderer {
   [[nodiscard]] Workers& workers() override { return workers_; }
 
   void cast(const CastRequest& request, Hits& hits) override {
+    check(request, resolver_.scene());
     resize(hits, request.beams.size(), request.fields);
     resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
     workers_.execute([&] {

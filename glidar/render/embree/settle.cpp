@@ -4,6 +4,7 @@
 
 #include <glidar/render/simd.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -21,6 +22,7 @@ constexpr double kClear =
 // A beam this far inside its triangle is certain: the hair itself, and as much for the rounding of
 // Embree's weights and normal.
 constexpr double kCertainHairs = 4.0;
+constexpr float kLargestCoordinate = 1e18F;  // Embree stops the program at numbers it cannot square
 constexpr int kRingSteps = 8;
 constexpr double kRingHairs = 2.0;
 
@@ -63,7 +65,9 @@ GLIDAR_SIMD void launch_rays(const Launch& launch, const Lanes3<double>& in_sens
     ray.org_x[i] = static_cast<float>(origin.x[i] + start * d.x[i]) + (y * h.z() - z * h.y());
     ray.org_y[i] = static_cast<float>(origin.y[i] + start * d.y[i]) + (z * h.x() - x * h.z());
     ray.org_z[i] = static_cast<float>(origin.z[i] + start * d.z[i]) + (x * h.y() - y * h.x());
-    valid[i] = x == x ? valid[i] : 0;
+    const float reach = std::max(
+        {std::abs(ray.org_x[i]), std::abs(ray.org_y[i]), std::abs(ray.org_z[i]), std::abs(x)});
+    valid[i] = reach < kLargestCoordinate ? valid[i] : 0;  // NaN compares false
   }
   for (unsigned i = 0; i < kLanes; ++i) ray.tnear[i] = 0.0F;
   for (unsigned i = 0; i < kLanes; ++i) ray.tfar[i] = std::numeric_limits<float>::infinity();
@@ -75,7 +79,8 @@ GLIDAR_SIMD void launch_rays(const Launch& launch, const Lanes3<double>& in_sens
 }
 
 /// A bit for every lane whose distance to its triangle's border, as the beam sees it, may be under
-/// `needed` (object units): smallest weight times smallest height times the cosine.
+/// `needed` (object units): smallest weight times smallest height times the cosine. Also for lanes
+/// whose beam starts on the triangle.
 GLIDAR_SIMD std::uint32_t doubt(const RTCHit16& hit, const ExactBlock& exact,
                                 const Lanes<float>& needed) {
   Lanes<std::uint32_t> bits;
@@ -86,7 +91,8 @@ GLIDAR_SIMD std::uint32_t doubt(const RTCHit16& hit, const ExactBlock& exact,
     const float margin = 1.0F - u - v < uv ? 1.0F - u - v : uv;
     const auto cosine = static_cast<float>(exact.cosine[i]);
     const float seen = margin * (cosine < 0.0F ? -cosine : cosine);
-    bits[i] = static_cast<std::uint32_t>(!(seen >= needed[i] * exact.narrowness[i])) << i;
+    const bool certain = seen >= needed[i] * exact.narrowness[i] && exact.distance[i] > 0.0;
+    bits[i] = static_cast<std::uint32_t>(!certain) << i;
   }
   std::uint32_t mask = 0;
   for (unsigned i = 0; i < kLanes; ++i) mask |= bits[i];
@@ -198,7 +204,7 @@ struct Probe::Judgement {
     const TrianglePlane& plane = probe.resolver_.plane(candidate.instance, candidate.primitive);
     const ObjectRay ray = ray_in(view, probe.beams_, beam);
     const double distance = distance_to(plane, ray);
-    if (!(distance >= 0.0)) return;
+    if (!(distance > 0.0)) return;
     const double inside_m =
         view.scale * distance_inside(probe.resolver_.mesh(candidate.instance), candidate.primitive,
                                      plane.normal, ray.origin + distance * ray.direction);
@@ -215,7 +221,7 @@ struct Probe::Judgement {
 };
 
 Found Probe::settle(std::size_t beam, const Found& found) const {
-  Judgement judgement{.probe = *this, .beam = beam, .nearest = {}, .closest = found};
+  Judgement judgement{.probe = *this, .beam = beam, .nearest = {}, .closest = {}};
   judgement.consider(found);
   if (judgement.nearest.instance != kNoHit) return found;
 
