@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/point_rows.hpp>
 
+#include <glidar/core/simd.hpp>
+
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
@@ -21,7 +23,6 @@ static_assert(std::endian::native == std::endian::little, "files are written in 
 /// Small enough that a block of source and target stays in the first-level cache while each field
 /// passes over it.
 constexpr std::size_t kBlockRows = 512;
-constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 constexpr std::size_t kTextChunkRows = 4096;
 
 /// Every `stride` bytes from `first`, `count` times.
@@ -200,7 +201,7 @@ void append_fields(const Column& column, std::vector<Field>& fields) {
     fields.push_back({column.components[c], &column, c, native_type(column)});
 }
 
-bool float_is_enough(const Column& xyz) {
+GLIDAR_SIMD bool float_is_enough(const Column& xyz) {
   constexpr double kFirstCoarse_m = 2048.0;  // from here on half a float's step is over 0.1 mm
   int coarse = 0;                            // no early end, so that the loop is one of vectors
   for (const double value : std::get<std::vector<double>>(xyz.values)) {
@@ -233,12 +234,12 @@ void pack_rows(std::span<const Field> fields, std::size_t first, std::size_t cou
 void write_binary_rows(std::span<const Field> fields, std::size_t count, AtomicFile& file) {
   const std::size_t stride = row_bytes(fields);
   if (stride == 0) return;
-  const std::size_t chunk_rows = std::min(count, kChunkBytes / stride + 1);
-  std::vector<std::byte> rows(chunk_rows * stride);
-  for (std::size_t first = 0; first < count; first += chunk_rows) {
-    const std::size_t now = std::min(chunk_rows, count - first);
+  for (std::size_t first = 0; first < count;) {
+    const std::span<std::byte> rows = file.room(kBlockRows * stride);
+    const std::size_t now = std::min(count - first, rows.size() / stride);
     pack_rows(fields, first, now, rows);
-    file.write(std::span<const std::byte>(rows).first(now * stride));
+    file.take(now * stride);
+    first += now;
   }
 }
 
