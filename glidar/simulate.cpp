@@ -11,15 +11,16 @@ namespace {
 constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
 
 /// What the sensor says of a surface at this true range.
-Status judge(const DepthLimits& limits, const Beams& beams, std::size_t beam, double range_m) {
-  const double depth = depth_m(beams, beam, range_m);
-  if (depth < limits.near_m) return Status::too_near;
-  if (depth > limits.far_m) return Status::too_far;
+Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double range_m) {
+  const double distance = limits.along == Limits::Along::depth ? depth_m(beams, beam, range_m)
+                                                               : range_m + beams.range_offset_m;
+  if (distance < limits.near_m) return Status::too_near;
+  if (distance > limits.far_m) return Status::too_far;
   return Status::hit;
 }
 
 /// Range and status of a run of beams from the truth.
-void measure_range(const DepthLimits& limits, const Beams& beams, BeamRange range, Frame& frame) {
+void measure_range(const Limits& limits, const Beams& beams, BeamRange range, Frame& frame) {
   const bool sees_all = limits.near_m <= 0.0 && std::isinf(limits.far_m);
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const double range_m = frame.truth.range_m[i];

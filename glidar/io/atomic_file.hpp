@@ -13,8 +13,8 @@ namespace glidar {
 
 /// A file that appears under its name only when it is whole: bytes go to a temporary file in the
 /// same folder, commit() renames it. Without commit() the destructor removes the temporary file and
-/// whatever stood under the name stays. Writes are gathered and go out in large pieces that start at
-/// multiples of their size, which file systems take fastest.
+/// whatever stood under the name stays. Writes are gathered and go out in large pieces that start
+/// at multiples of their size, which file systems take fastest.
 class AtomicFile {
  public:
   /// Throws Error when `path` is a folder or no file can be made beside it.

@@ -19,13 +19,16 @@ inline double attenuation(const Light& light, double d) {
 
 /// max(n . h, 0) with the half-vector h = l of equation (2): l = v = -direction.
 inline float lit(const Eigen::Vector3f& n, const Eigen::Vector3d& direction) {
-  const float n_dot_h = -(n.x() * static_cast<float>(direction.x()) +
-                          n.y() * static_cast<float>(direction.y()) +
-                          n.z() * static_cast<float>(direction.z()));
+  const float n_dot_h = -n.dot(direction.cast<float>());
   return n_dot_h > 0.0F ? n_dot_h : 0.0F;
 }
 
-/// Ambient and diffuse part of equation (5), attenuated (4). True when a surface is specular too.
+/// Ambient and diffuse part of equation (5).
+inline float matte_colour(const Reflectance& surface, float ambient, float n_dot_h) {
+  return ambient * surface.ambient + surface.diffuse * n_dot_h;
+}
+
+/// Equations (3) to (5) without the specular part. True when a surface has one.
 GLIDAR_SIMD bool measure_matte(const Light& light, const Beams& beams, BeamRange range,
                                Frame& frame) {
   const Hits& truth = frame.truth;
@@ -33,24 +36,26 @@ GLIDAR_SIMD bool measure_matte(const Light& light, const Beams& beams, BeamRange
   unsigned specular = 0;
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const Reflectance& surface = truth.reflectance[i];
-    const float colour = ambient * surface.ambient +
-                         surface.diffuse * lit(truth.shading_normal[i], beams.directions[i]);
-    const auto received = static_cast<float>(attenuation(light, truth.range_m[i])) * colour;
+    const float n_dot_h = lit(truth.shading_normal[i], beams.directions[i]);
+    const auto received = static_cast<float>(attenuation(light, truth.range_m[i])) *
+                          matte_colour(surface, ambient, n_dot_h);
     frame.intensity[i] = frame.status[i] == Status::hit ? received : 0.0F;
     specular |= static_cast<unsigned>(surface.specular > 0.0F);
   }
   return specular != 0;
 }
 
-/// Adds the specular part of equation (5), attenuated (4).
-void add_specular(const Light& light, const Beams& beams, BeamRange range, Frame& frame) {
+/// Equations (3) to (5) for the surfaces that have a specular part.
+void measure_specular(const Light& light, const Beams& beams, BeamRange range, Frame& frame) {
   const Hits& truth = frame.truth;
+  const auto ambient = static_cast<float>(light.ambient);
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const Reflectance& surface = truth.reflectance[i];
     if (frame.status[i] != Status::hit || !(surface.specular > 0.0F)) continue;
-    const float glance = lit(truth.shading_normal[i], beams.directions[i]);
-    frame.intensity[i] += static_cast<float>(attenuation(light, truth.range_m[i])) *
-                          surface.specular * std::pow(glance, surface.shininess);
+    const float n_dot_h = lit(truth.shading_normal[i], beams.directions[i]);
+    const float colour = matte_colour(surface, ambient, n_dot_h) +
+                         surface.specular * std::pow(n_dot_h, surface.shininess);
+    frame.intensity[i] = static_cast<float>(attenuation(light, truth.range_m[i])) * colour;
   }
 }
 
@@ -71,7 +76,7 @@ void validate(const Light& light) {
 }
 
 void measure_intensity(const Light& light, const Beams& beams, BeamRange range, Frame& frame) {
-  if (measure_matte(light, beams, range, frame)) add_specular(light, beams, range, frame);
+  if (measure_matte(light, beams, range, frame)) measure_specular(light, beams, range, frame);
 }
 
 }  // namespace glidar
