@@ -8,6 +8,7 @@
 namespace glidar {
 namespace {
 
+constexpr std::size_t kBeamsPerTask = 4096;  // some 50 microseconds of measuring
 constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
 
 /// What the sensor says of a surface at this true range.
@@ -34,6 +35,22 @@ void measure_range(const Limits& limits, const Beams& beams, BeamRange range, Fr
   }
 }
 
+/// The truth of a frame, each beam at its own firing time.
+void cast(const CastRequest& request, const Setup& setup, Frame& frame) {
+  if (!moves_during_frame(setup.motion, setup.beams)) {
+    frame.deskewed = {};
+    setup.renderer.cast(request, frame.truth);
+    return;
+  }
+  MovingCastMemory own;
+  cast_moving(setup.renderer, request, setup.scene, setup.motion,
+              setup.memory != nullptr ? *setup.memory : own, frame);
+  setup.renderer.workers().for_ranges(setup.beams.size(), kBeamsPerTask,
+                                      [&](std::size_t begin, std::size_t end) {
+                                        request.then({begin, end});
+                                      });
+}
+
 }  // namespace
 
 void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
@@ -50,13 +67,13 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
     measure_range(setup.sensor.limits, setup.beams, range, frame);
     measure_intensity(setup.sensor.light, setup.beams, range, frame);
   };
-  setup.renderer.cast({.beams = setup.beams,
-                       .world_from_sensor = frame.world_from_sensor,
-                       .world_from_instance = frame.world_from_instance,
-                       .fields = needed,
-                       .cull_back_faces = setup.sensor.cull_back_faces,
-                       .then = FunctionRef<void(BeamRange)>(measure)},
-                      frame.truth);
+  cast({.beams = setup.beams,
+        .world_from_sensor = frame.world_from_sensor,
+        .world_from_instance = frame.world_from_instance,
+        .fields = needed,
+        .cull_back_faces = setup.sensor.cull_back_faces,
+        .then = FunctionRef<void(BeamRange)>(measure)},
+       setup, frame);
 }
 
 }  // namespace glidar

@@ -5,6 +5,7 @@
 #include <glidar/core/frame.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/motion/motion.hpp>
+#include <glidar/moving_cast.hpp>
 #include <glidar/render/renderer.hpp>
 #include <glidar/sensor/sensor.hpp>
 
@@ -17,6 +18,7 @@ struct Setup {
   const Beams& beams;  ///< make_beams(sensor)
   const Motion& motion;
   Renderer& renderer;
+  MovingCastMemory* memory = nullptr;  ///< kept between frames; nullptr: taken anew for each
 };
 
 /// Measures the scene once: frame.stamp_ns and frame.seed say when and with which random numbers,

@@ -17,7 +17,8 @@ ALLOWED = {
     "sensor": {"core", "sensor"},
     "motion": {"core", "motion"},
     "render": {"core", "render"},
-    "simulate": {"core", "sensor", "motion", "render", "simulate"},
+    "moving_cast": {"core", "motion", "render", "moving_cast"},
+    "simulate": {"core", "sensor", "motion", "render", "moving_cast", "simulate"},
     "io": {"core", "sensor", "io"},
     "link": {"core", "io", "link"},
 }

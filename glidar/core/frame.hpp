@@ -45,7 +45,15 @@ struct Frame {
   std::vector<float> intensity;           ///< N, received signal of a full-scale 1; 0 unless hit
   std::vector<Status> status;             ///< N
   std::vector<float> sigma_m;  ///< N, standard deviation of the random error of range_m; empty: 0
-  Hits truth;                  ///< what is there, whether reported or not
+  /// When the sensor moves during the frame: the beams as seen from its pose at stamp_ns. With them
+  /// points lie where they were measured. Empty when it does not: as the sensor's own beams.
+  struct Deskewed {
+    std::vector<Eigen::Vector3d> directions;            ///< N, unit vectors
+    std::vector<Eigen::Vector3d> origins_m;             ///< N
+    std::vector<Eigen::Quaternionf> start_from_sensor;  ///< N, rotation since stamp_ns
+  };
+  Deskewed deskewed;
+  Hits truth;  ///< what is there, whether reported or not
 };
 
 /// Gives the measured columns `size` entries (contents unspecified).

@@ -16,6 +16,7 @@ struct Source {
   const Beams& beams;
   const Scene& scene;
   const Pose cloud_from_sensor;
+  bool deskew;
 };
 
 using Fill = void (*)(const Source&, Column&);
@@ -55,14 +56,38 @@ void fill_vectors(const Source& source, Column& column, Function vector_of) {
   }
 }
 
-void fill_xyz(const Source& s, Column& column) {
+/// Points at these ranges; `deskew`: on the beams as fired from where the sensor was.
+void fill_points(const Source& s, const std::vector<double>& ranges_m, bool deskew,
+                 Column& column) {
+  const Frame::Deskewed& moved = s.frame.deskewed;
+  const bool use_moved = deskew && !moved.directions.empty();
+  const std::vector<Eigen::Vector3d>& directions =
+      use_moved ? moved.directions : s.beams.directions;
+  const std::vector<Eigen::Vector3d>& origins_m = use_moved ? moved.origins_m : s.beams.origins_m;
   const Eigen::Matrix3d rotation = s.cloud_from_sensor.linear();
   const Eigen::Vector3d translation = s.cloud_from_sensor.translation();
   fill_vectors<double, 3>(s, column, [&](std::size_t i) -> Eigen::Vector3d {
-    Eigen::Vector3d in_sensor = s.frame.range_m[i] * s.beams.directions[i];
-    if (!s.beams.origins_m.empty()) in_sensor += s.beams.origins_m[i];
+    Eigen::Vector3d in_sensor = ranges_m[i] * directions[i];
+    if (!origins_m.empty()) in_sensor += origins_m[i];
     return rotation * in_sensor + translation;
   });
+}
+
+void fill_xyz(const Source& s, Column& column) {
+  fill_points(s, s.frame.range_m, s.deskew, column);
+}
+
+void fill_true_xyz(const Source& s, Column& column) {
+  fill_points(s, s.frame.truth.range_m, true, column);
+}
+
+void fill_true_range(const Source& s, Column& column) {
+  fill_each<double>(s, column, [&](std::size_t i) { return s.frame.truth.range_m[i]; });
+}
+
+void fill_sigma(const Source& s, Column& column) {
+  const std::vector<float>& sigmas_m = s.frame.sigma_m;
+  fill_each<float>(s, column, [&](std::size_t i) { return sigmas_m.empty() ? 0.0F : sigmas_m[i]; });
 }
 
 void fill_intensity(const Source& s, Column& column) {
@@ -80,8 +105,12 @@ void fill_depth(const Source& s, Column& column) {
 
 void fill_directions(const Source& s, Column& column, const std::vector<Eigen::Vector3f>& normals) {
   const Eigen::Matrix3f rotation = s.cloud_from_sensor.linear().cast<float>();
-  fill_vectors<float, 3>(s, column,
-                         [&](std::size_t i) -> Eigen::Vector3f { return rotation * normals[i]; });
+  const std::vector<Eigen::Quaternionf>& turns = s.frame.deskewed.start_from_sensor;
+  const bool turn = s.deskew && !turns.empty();
+  fill_vectors<float, 3>(s, column, [&](std::size_t i) -> Eigen::Vector3f {
+    return turn ? Eigen::Vector3f(rotation * (turns[i] * normals[i]))
+                : Eigen::Vector3f(rotation * normals[i]);
+  });
 }
 
 void fill_normal(const Source& s, Column& column) {
@@ -150,8 +179,11 @@ void fill_col(const Source& s, Column& column) {
 const std::vector<ColumnKind>& column_kinds() {
   static const std::vector<ColumnKind> kinds = {
       {"xyz", {"x", "y", "z"}, {}, fill_xyz},
+      {"true_xyz", {"true_x", "true_y", "true_z"}, {}, fill_true_xyz},
       {"intensity", {"intensity"}, {}, fill_intensity},
       {"range", {"range"}, {}, fill_range},
+      {"true_range", {"true_range"}, {}, fill_true_range},
+      {"sigma", {"sigma"}, {}, fill_sigma},
       {"depth", {"depth"}, {}, fill_depth},
       {"normal", {"normal_x", "normal_y", "normal_z"}, {.normal = true}, fill_normal},
       {"shading_normal",
@@ -253,7 +285,7 @@ void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene
   cloud.frame_id = cloud_frame.frame_id;
   cloud.world_from_cloud = frame.world_from_sensor * cloud_frame.cloud_from_sensor.inverse();
   cloud.columns.resize(column_names.size());
-  const Source source{frame, beams, scene, cloud_frame.cloud_from_sensor};
+  const Source source{frame, beams, scene, cloud_frame.cloud_from_sensor, cloud_frame.deskew};
   for (std::size_t c = 0; c < column_names.size(); ++c) {
     const ColumnKind& kind = kind_named(column_names[c]);
     if (!has(frame, kind.needs)) {

@@ -38,12 +38,13 @@ struct PointCloud {
 /// The coordinate frame a cloud is expressed in.
 struct CloudFrame {
   std::string frame_id;
-  Pose cloud_from_sensor = Pose::Identity();
+  Pose cloud_from_sensor = Pose::Identity();  ///< of the sensor at the start of the frame
+  bool deskew = false;  ///< true: xyz as fired from where the sensor was; false: as if it stood
 };
 
 /// Names make_point_cloud knows, in the order files list them:
-/// xyz intensity range depth normal shading_normal incidence instance class primitive
-/// barycentrics colour object_point status row col
+/// xyz true_xyz intensity range true_range sigma depth normal shading_normal incidence instance
+/// class primitive barycentrics colour object_point status row col
 std::span<const std::string> cloud_column_names();
 
 /// The optional hit columns that these cloud columns need. Throws Error on an unknown name.
@@ -51,8 +52,12 @@ HitFields fields_for(std::span<const std::string> column_names);
 
 /// Fills `cloud` with the named columns of a frame, reusing its memory.
 ///  xyz           f64 x3, metres in `cloud_frame`, from the measured range; NaN unless a hit
+///  true_xyz      f64 x3, the same of what is truly there, whether reported or not, as fired from
+///                where the sensor was
 ///  intensity     f32
 ///  range, depth  f64, metres, measured; NaN unless a hit
+///  true_range    f64, metres, of what is there; NaN for a miss
+///  sigma         f32, metres, standard deviation of the range's random error
 ///  normal, shading_normal  f32 x3, unit, in `cloud_frame`
 ///  incidence     f32, radians
 ///  instance, class  u32, the instance's id and class_id; kNoHit where there is none

@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/render/embree/embree_renderer.hpp>
 
+#include <algorithm>
 #include <array>
 
 namespace glidar {
@@ -24,6 +25,12 @@ const std::array<Kind, 1>& kinds() {
 
 }  // namespace
 
+bool is_anything_present(const CastRequest& request, const Scene& scene) {
+  if (request.present.empty()) return !scene.instances.empty();
+  return std::any_of(request.present.begin(), request.present.end(),
+                     [](std::uint8_t present) { return present != 0; });
+}
+
 void check(const CastRequest& request, const Scene& scene) {
   const auto require = [](bool holds, const char* found, const char* allowed) {
     if (holds) return;
@@ -37,6 +44,8 @@ void check(const CastRequest& request, const Scene& scene) {
   require(request.world_from_instance.empty() ||
               request.world_from_instance.size() == scene.instances.size(),
           "poses of other instances", "one pose per instance, or none");
+  require(request.present.empty() || request.present.size() == scene.instances.size(),
+          "presence of other instances", "one entry per instance, or none");
   const Eigen::Vector3d sensor = request.world_from_sensor.translation();
   require(sensor.cwiseAbs().maxCoeff() <= kLargestCoordinate_m && sensor.allFinite(),
           "the sensor stands out of reach", "up to 1e15 m from the world's origin");

@@ -24,10 +24,15 @@ struct CastRequest {
       world_from_instance;  ///< one per instance; empty: where the scene puts them
   HitFields fields;
   bool cull_back_faces = false;
+  /// One per instance, 0: it is not there for this cast; empty: all are.
+  std::span<const std::uint8_t> present = {};
   /// Called for every beam once, in runs, when the beams' hits are known, by the thread that found
   /// them and so while they are near in memory. Empty: not called.
   FunctionRef<void(BeamRange)> then = {};
 };
+
+/// True when some instance is there.
+bool is_anything_present(const CastRequest& request, const Scene& scene);
 
 /// Throws Error unless there is a beam for every row and column, a pose for every instance (or
 /// none), and the sensor stands within reach.

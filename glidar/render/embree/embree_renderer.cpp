@@ -178,10 +178,15 @@ class EmbreeRenderer final : public Renderer {
   void cast(const CastRequest& request, Hits& hits) override {
     check(request, resolver_.scene());
     resize(hits, request.beams.size(), request.fields);
+    if (!is_anything_present(request, resolver_.scene())) {
+      Resolver::write_misses(request.fields, 0, request.beams.size(), hits);
+      if (request.then) request.then({0, request.beams.size()});
+      return;
+    }
     resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
     workers_.execute([&] {
       if (request.cull_back_faces) world_->filter_everything();
-      world_->place(request.world_from_sensor, request.world_from_instance);
+      world_->place(request);
     });
     const embree::Probe probe(world_->space(), resolver_, request.beams, request.cull_back_faces);
     const Job job{.beams = request.beams,

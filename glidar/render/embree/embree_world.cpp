@@ -72,6 +72,15 @@ std::array<float, 12> embree_transform(const Instance& instance, const Mesh& mes
   return numbers;
 }
 
+const Pose& pose_of(const Scene& scene, const CastRequest& request, std::size_t instance) {
+  return request.world_from_instance.empty() ? scene.instances[instance].world_from_object
+                                             : request.world_from_instance[instance];
+}
+
+bool is_present(const CastRequest& request, std::size_t instance) {
+  return request.present.empty() || request.present[instance] != 0;
+}
+
 }  // namespace
 
 World::World(const Scene& scene) : scene_(scene), device_(rtcNewDevice(nullptr)) {
@@ -136,14 +145,11 @@ void World::filter_everything() {
   placed_.clear();  // the instances must be committed again over the changed trees
 }
 
-void World::place(const Pose& world_from_sensor, std::span<const Pose> world_from_instance) {
-  const std::size_t count = scene_.instances.size();
-  if (count == 1) {
-    place_single(world_from_sensor, world_from_instance.empty()
-                                        ? scene_.instances[0].world_from_object
-                                        : world_from_instance[0]);
+void World::place(const CastRequest& request) {
+  if (scene_.instances.size() == 1) {
+    place_single(request.world_from_sensor, pose_of(scene_, request, 0));
   } else {
-    place_many(world_from_sensor, world_from_instance);
+    place_many(request);
   }
 }
 
@@ -162,49 +168,56 @@ void World::place_single(const Pose& world_from_sensor, const Pose& world_from_o
       .radius = empty ? 0.0 : 0.5 * box.diagonal().norm()};
 }
 
-void World::place_many(const Pose& world_from_sensor, std::span<const Pose> poses) {
-  const auto pose_of = [&](std::size_t i) -> const Pose& {
-    return poses.empty() ? scene_.instances[i].world_from_object : poses[i];
-  };
+void World::place_many(const CastRequest& request) {
   Eigen::AlignedBox3d all;
   for (std::size_t i = 0; i < scene_.instances.size(); ++i) {
     const Instance& instance = scene_.instances[i];
     const Eigen::AlignedBox3d& box = mesh_boxes_[instance.mesh];
-    if (box.isEmpty()) continue;
+    if (box.isEmpty() || !is_present(request, i)) continue;
     const double reach = instance.scale * 0.5 * box.diagonal().norm();
-    const Eigen::Vector3d middle = pose_of(i) * (instance.scale * box.center());
+    const Eigen::Vector3d middle = pose_of(scene_, request, i) * (instance.scale * box.center());
     all.extend(Eigen::AlignedBox3d(middle.array() - reach, middle.array() + reach));
   }
-  const Eigen::Vector3d sensor = world_from_sensor.translation();
+  const Eigen::Vector3d sensor = request.world_from_sensor.translation();
   // The point of the scene next to the sensor: what is near it keeps the most digits.
   const Eigen::Vector3d origin =
       all.isEmpty() ? sensor : Eigen::Vector3d(sensor.cwiseMax(all.min()).cwiseMin(all.max()));
-  bool moved = placed_.size() != scene_.instances.size() || origin != trace_origin_;
+  bool changed = placed_.size() != scene_.instances.size() || origin != trace_origin_;
   trace_origin_ = origin;
-  for (std::size_t i = 0; i < placed_.size() && !moved; ++i) {
-    moved = placed_[i].matrix() != pose_of(i).matrix();
+  for (std::size_t i = 0; i < placed_.size() && !changed; ++i) {
+    changed = placed_[i].matrix() != pose_of(scene_, request, i).matrix() ||
+              (present_[i] != 0) != is_present(request, i);
   }
-  if (moved) {
-    placed_.resize(scene_.instances.size());
-    for (std::size_t i = 0; i < placed_.size(); ++i) {
-      const Instance& instance = scene_.instances[i];
-      placed_[i] = pose_of(i);
-      const std::array<float, 12> transform =
-          embree_transform(instance, scene_.meshes[instance.mesh], placed_[i], trace_origin_);
-      const RTCGeometry geometry = rtcGetGeometry(top_scene_.get(), static_cast<unsigned>(i));
-      rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
-      rtcCommitGeometry(geometry);
-    }
-    rtcCommitScene(top_scene_.get());
-    require(rtcGetDeviceError(device_.get()) == RTC_ERROR_NONE, device_.get(), "placing instances");
-  }
+  if (changed) commit_instances(request);
   const bool empty = all.isEmpty();
   space_ = {.scene = top_scene_.get(),
-            .trace_from_sensor = world_from_sensor.linear(),
+            .trace_from_sensor = request.world_from_sensor.linear(),
             .sensor_in_trace = sensor - origin,
             .metres_per_unit = 1.0,
             .centre = empty ? Eigen::Vector3d::Zero() : Eigen::Vector3d(all.center() - origin),
             .radius = empty ? 0.0 : 0.5 * all.diagonal().norm()};
+}
+
+void World::commit_instances(const CastRequest& request) {
+  placed_.resize(scene_.instances.size());
+  present_.resize(scene_.instances.size());
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    const Instance& instance = scene_.instances[i];
+    placed_[i] = pose_of(scene_, request, i);
+    present_[i] = static_cast<std::uint8_t>(is_present(request, i));
+    const std::array<float, 12> transform =
+        embree_transform(instance, scene_.meshes[instance.mesh], placed_[i], trace_origin_);
+    const RTCGeometry geometry = rtcGetGeometry(top_scene_.get(), static_cast<unsigned>(i));
+    rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR, transform.data());
+    if (present_[i] != 0) {
+      rtcEnableGeometry(geometry);
+    } else {
+      rtcDisableGeometry(geometry);
+    }
+    rtcCommitGeometry(geometry);
+  }
+  rtcCommitScene(top_scene_.get());
+  require(rtcGetDeviceError(device_.get()) == RTC_ERROR_NONE, device_.get(), "placing instances");
 }
 
 }  // namespace glidar::embree

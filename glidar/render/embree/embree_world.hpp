@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/render/embree/embree_api.hpp>
+#include <glidar/render/renderer.hpp>
 #include <glidar/render/resolve.hpp>
 
 #include <memory>
@@ -37,7 +38,7 @@ class World {
   explicit World(const Scene& scene);
 
   /// Takes the poses of the next cast from the resolver's arguments. Meshes are not rebuilt.
-  void place(const Pose& world_from_sensor, std::span<const Pose> world_from_instance);
+  void place(const CastRequest& request);
 
   /// Lets a filter see every triangle, not only those of materials with an alpha mask.
   void filter_everything();
@@ -58,7 +59,8 @@ class World {
   void add_mesh(const Mesh& mesh, bool filtered);
   void add_instances();
   void place_single(const Pose& world_from_sensor, const Pose& world_from_object);
-  void place_many(const Pose& world_from_sensor, std::span<const Pose> poses);
+  void place_many(const CastRequest& request);
+  void commit_instances(const CastRequest& request);
 
   const Scene& scene_;
   Device device_;
@@ -67,6 +69,7 @@ class World {
   std::vector<OwnedScene> mesh_scenes_;          ///< per mesh
   std::vector<Eigen::AlignedBox3d> mesh_boxes_;  ///< per mesh, object frame
   OwnedScene top_scene_;                         ///< of instances
+  std::vector<std::uint8_t> present_;            ///< per instance, as last given to Embree
   std::vector<Pose> placed_;                     ///< per instance, as last given to Embree
   Eigen::Vector3d trace_origin_ =
       Eigen::Vector3d::Zero();  ///< of the instances' frame, in the world

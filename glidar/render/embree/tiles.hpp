@@ -51,7 +51,8 @@ class Tiling {
     return {row * height_, col << width_shift_, width_shift_, rows_, cols_};
   }
 
-  /// End of the tiles from `begin` on that lie in one row of tiles, at most `most` and before `end`.
+  /// End of the tiles from `begin` on that lie in one row of tiles, at most `most` and before
+  /// `end`.
   [[nodiscard]] std::size_t end_of_run(std::size_t begin, std::size_t end, std::size_t most) const {
     const std::size_t end_of_row = (begin / tile_cols_ + 1) * tile_cols_;
     return std::min({end, begin + most, end_of_row});

@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/moving_cast.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace glidar {
+namespace {
+
+constexpr std::size_t kBeamsPerTask = 1024;
+
+bool stands(const Trajectory& trajectory) {
+  return std::holds_alternative<ConstantPose>(trajectory);
+}
+
+/// A sphere around an instance, where it is at the start of the frame, in the sensor's frame then.
+struct Sphere {
+  Eigen::Vector3d centre;
+  double radius = std::numeric_limits<double>::infinity();
+};
+
+Sphere sphere_around(const Scene& scene, std::uint32_t index, const Pose& world_from_object,
+                     const Pose& world_from_sensor) {
+  constexpr double kClear = 1.001;  // also after rounding
+  const Instance& instance = scene.instances[index];
+  const Eigen::AlignedBox3d box = bounds(scene.meshes[instance.mesh]);
+  if (box.isEmpty()) return {Eigen::Vector3d::Zero(), 0.0};
+  const Eigen::Vector3d middle =
+      world_from_object.linear() * (instance.scale * box.center()) +
+      (world_from_object.translation() - world_from_sensor.translation());
+  return {world_from_sensor.linear().transpose() * middle,
+          kClear * instance.scale * 0.5 * box.diagonal().norm()};
+}
+
+bool may_meet(const Sphere& sphere, const Eigen::Vector3d& origin,
+              const Eigen::Vector3d& direction) {
+  if (std::isinf(sphere.radius)) return true;
+  const Eigen::Vector3d to_centre = sphere.centre - origin;
+  const double along = std::max(0.0, to_centre.dot(direction));
+  return (to_centre - along * direction).squaredNorm() <= sphere.radius * sphere.radius;
+}
+
+/// One rigid part of the world and where it is while a frame is taken.
+struct Body {
+  const Trajectory* world_from_body = nullptr;  ///< nullptr: what stands still
+  Pose at_start = Pose::Identity();
+  Sphere sphere = {};
+};
+
+/// The sensor at time t as the resting body sees it, in the frame of the sensor at the start:
+/// S0^-1 * B0 * B(t)^-1 * S(t). Differences of positions come first, so that a world far from its
+/// zero loses nothing.
+Pose start_from_sensor(const Body& body, const Pose& s0, const Pose& s, std::int64_t t_ns) {
+  Pose pose = Pose::Identity();
+  const Eigen::Matrix3d back = s0.linear().transpose();
+  if (body.world_from_body == nullptr) {
+    pose.linear() = back * s.linear();
+    pose.translation() = back * (s.translation() - s0.translation());
+    return pose;
+  }
+  const Pose& b0 = body.at_start;
+  const Pose b = pose_at(*body.world_from_body, t_ns);
+  const Eigen::Matrix3d held = b0.linear() * b.linear().transpose();
+  pose.linear() = back * held * s.linear();
+  pose.translation() =
+      back * (held * (s.translation() - b.translation()) + (b0.translation() - s0.translation()));
+  return pose;
+}
+
+/// Expresses beams [begin, end) in the frame in which a body rests; those that cannot meet it get
+/// no direction.
+void move_beams(const CastRequest& request, const Motion& motion, const Body& body,
+                std::int64_t stamp_ns, BeamRange range, MovingCastMemory& memory) {
+  const Beams& beams = request.beams;
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    const std::int64_t t_ns = stamp_ns + (beams.times_ns.empty() ? 0 : beams.times_ns[i]);
+    const Pose sensor = pose_at(motion.world_from_sensor, t_ns);
+    const Pose pose = start_from_sensor(body, request.world_from_sensor, sensor, t_ns);
+    memory.start_from[i] = pose;
+    Eigen::Vector3d& direction = memory.beams.directions[i];
+    Eigen::Vector3d& origin = memory.beams.origins_m[i];
+    direction = (pose.linear() * beams.directions[i]).normalized();
+    origin =
+        beams.origins_m.empty() ? Eigen::Vector3d(pose.translation()) : pose * beams.origins_m[i];
+    if (!may_meet(body.sphere, origin, direction)) {
+      direction.setConstant(std::numeric_limits<double>::quiet_NaN());
+    }
+  }
+}
+
+/// Puts what depends on the sensor's frame into the one of the beam's own time.
+void turn_back(const CastRequest& request, const MovingCastMemory& memory, BeamRange range,
+               Hits& hits) {
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    if (hits.instance[i] == kNoHit) continue;
+    const Eigen::Matrix3d back = memory.start_from[i].linear().transpose();
+    const auto turn = [&](Eigen::Vector3f& v) { v = (back * v.cast<double>()).cast<float>(); };
+    if (request.fields.normal) turn(hits.normal[i]);
+    if (request.fields.shading_normal) turn(hits.shading_normal[i]);
+    if (request.fields.depth) hits.depth_m[i] = depth_m(request.beams, i, hits.range_m[i]);
+  }
+}
+
+void copy_hit(const Hits& from, std::size_t i, const HitFields& fields, Hits& to) {
+  to.range_m[i] = from.range_m[i];
+  to.instance[i] = from.instance[i];
+  to.primitive[i] = from.primitive[i];
+  if (fields.depth) to.depth_m[i] = from.depth_m[i];
+  if (fields.normal) to.normal[i] = from.normal[i];
+  if (fields.shading_normal) to.shading_normal[i] = from.shading_normal[i];
+  if (fields.incidence) to.cos_incidence[i] = from.cos_incidence[i];
+  if (fields.barycentrics) to.barycentrics[i] = from.barycentrics[i];
+  if (fields.colour) to.colour[i] = from.colour[i];
+  if (fields.reflectance) to.reflectance[i] = from.reflectance[i];
+  if (fields.object_point) to.object_point_m[i] = from.object_point_m[i];
+}
+
+/// Keeps the nearer of two hits; at the same range that of the body cast first.
+void merge(const Hits& from, const HitFields& fields, BeamRange range, Hits& to) {
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    if (from.instance[i] == kNoHit) continue;
+    if (to.instance[i] == kNoHit || from.range_m[i] < to.range_m[i]) copy_hit(from, i, fields, to);
+  }
+}
+
+/// The beams of `memory` sized and filled with what all bodies share.
+void prepare(const Beams& beams, MovingCastMemory& memory) {
+  memory.beams.rows = beams.rows;
+  memory.beams.cols = beams.cols;
+  memory.beams.frame_id = beams.frame_id;
+  memory.beams.boresight = beams.boresight;
+  memory.beams.directions.resize(beams.size());
+  memory.beams.origins_m.resize(beams.size());
+  memory.start_from.resize(beams.size());
+}
+
+void keep_deskewed(bool sensor_stands, const MovingCastMemory& memory, Frame::Deskewed& deskewed) {
+  deskewed.directions.clear();
+  deskewed.origins_m.clear();
+  deskewed.start_from_sensor.clear();
+  if (sensor_stands) return;
+  deskewed.directions = memory.beams.directions;
+  deskewed.origins_m = memory.beams.origins_m;
+  deskewed.start_from_sensor.reserve(memory.start_from.size());
+  for (const Pose& pose : memory.start_from) {
+    deskewed.start_from_sensor.emplace_back(Eigen::Quaterniond(pose.linear()).cast<float>());
+  }
+}
+
+}  // namespace
+
+bool moves_during_frame(const Motion& motion, const Beams& beams) {
+  if (beams.times_ns.empty()) return false;
+  return !stands(motion.world_from_sensor) ||
+         !std::all_of(motion.world_from_instance.begin(), motion.world_from_instance.end(), stands);
+}
+
+void cast_moving(Renderer& renderer, const CastRequest& request, const Scene& scene,
+                 const Motion& motion, MovingCastMemory& memory, Frame& frame) {
+  prepare(request.beams, memory);
+  const bool sensor_stands = stands(motion.world_from_sensor);
+  bool is_first = true;
+  const auto cast_body = [&](const Body& body) {
+    const auto in_runs = [&](const auto& work) {
+      renderer.workers().for_ranges(request.beams.size(), kBeamsPerTask,
+                                    [&](std::size_t begin, std::size_t end) {
+                                      work(BeamRange{begin, end});
+                                    });
+    };
+    in_runs(
+        [&](BeamRange range) { move_beams(request, motion, body, frame.stamp_ns, range, memory); });
+    Hits& hits = is_first ? frame.truth : memory.hits;
+    renderer.cast({.beams = memory.beams,
+                   .world_from_sensor = request.world_from_sensor,
+                   .world_from_instance = request.world_from_instance,
+                   .fields = request.fields,
+                   .cull_back_faces = request.cull_back_faces,
+                   .present = memory.present},
+                  hits);
+    in_runs([&](BeamRange range) {
+      turn_back(request, memory, range, hits);
+      if (!is_first) merge(hits, request.fields, range, frame.truth);
+    });
+    is_first = false;
+  };
+
+  // What stands still comes first, also when it is nothing: its beams are the deskewed ones.
+  memory.present.assign(scene.instances.size(), 0);
+  for (std::size_t i = 0; i < memory.present.size(); ++i) {
+    memory.present[i] = static_cast<std::uint8_t>(stands(motion.world_from_instance[i]));
+  }
+  cast_body({});
+  keep_deskewed(sensor_stands, memory, frame.deskewed);
+  for (std::uint32_t i = 0; i < memory.present.size(); ++i) {
+    if (stands(motion.world_from_instance[i])) continue;
+    memory.present.assign(scene.instances.size(), 0);
+    memory.present[i] = 1;
+    cast_body({.world_from_body = &motion.world_from_instance[i],
+               .at_start = request.world_from_instance[i],
+               .sphere = sphere_around(scene, i, request.world_from_instance[i],
+                                       request.world_from_sensor)});
+  }
+}
+
+}  // namespace glidar
