@@ -155,7 +155,7 @@ void visit(A& archive, T& imported) {
   auto& model = imported.model;
   visit_all(archive, model.format, model.mesh, model.materials, model.textures, model.parts,
             model.missing_textures, model.notes, imported.files, imported.absent,
-            imported.texture_folders, imported.lookups);
+            imported.texture_folders, imported.lookups, imported.libraries);
 }
 
 template <class A, class T>
@@ -168,7 +168,7 @@ template <class A, class T>
 requires Is<T, CacheIndex>
 void visit(A& archive, T& index) {
   visit_all(archive, index.importer, index.files, index.hashes, index.absent, index.texture_folders,
-            index.lookups, index.root, index.folder);
+            index.lookups, index.root, index.folder, index.libraries, index.library_states);
 }
 
 template <class T>
@@ -283,6 +283,8 @@ CacheIndex read_cache_index(FrameReader& frame) {
   if (index.files.empty() || index.files.size() != index.hashes.size()) {
     refuse("a cache without its files' hashes");
   }
+  if (index.libraries.size() != index.library_states.size())
+    refuse("a cache without its libraries' states");
   return index;
 }
 
