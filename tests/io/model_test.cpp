@@ -97,6 +97,15 @@ TEST(LoadModel, ImpossibleOptionsAreErrors) {
   EXPECT_THAT(load_error("builtin:box", options), HasSubstr("crease_angle_rad"));
 }
 
+TEST(LoadModel, HugeNumbersInErrorsAreShort) {
+  ModelOptions options = without_cache();
+  options.metres_per_unit = 1e300;
+  EXPECT_THAT(load_error("builtin:box", options), HasSubstr("1e+300 makes"));
+  options.metres_per_unit = -1e300;
+  EXPECT_THAT(load_error("builtin:box", options), HasSubstr("-1e+300"));
+  EXPECT_LT(load_error("builtin:box", options).size(), 120U);
+}
+
 TEST(LoadModel, NodesAreAppliedAndMirrorsKeepTheirFronts) {
   const TempFolder temp;
   const Model model = load(temp.write(
