@@ -3,33 +3,34 @@
 #include <glidar/simulate.hpp>
 
 #include <cmath>
+#include <limits>
 
 namespace glidar {
 namespace {
 
-constexpr std::size_t kBeamsPerTask = 4096;  // some 50 microseconds of work
+constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
 
 /// What the sensor says of a surface at this true range.
-Status judge(const DepthLimits& limits, const Beams& beams, std::size_t beam, double range_m) {
-  const double depth = depth_m(beams, beam, range_m);
-  if (depth < limits.near_m) return Status::too_near;
-  if (depth > limits.far_m) return Status::too_far;
+Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double range_m) {
+  const double distance = limits.along == Limits::Along::depth ? depth_m(beams, beam, range_m)
+                                                               : range_m + beams.range_offset_m;
+  if (distance < limits.near_m) return Status::too_near;
+  if (distance > limits.far_m) return Status::too_far;
   return Status::hit;
 }
 
-/// Range and status of beams [begin, end) from the truth.
-void measure_range(const DepthLimits& limits, const Beams& beams, BeamRange range, Frame& frame) {
+/// Range and status of a run of beams from the truth.
+void measure_range(const Limits& limits, const Beams& beams, BeamRange range, Frame& frame) {
   const bool sees_all = limits.near_m <= 0.0 && std::isinf(limits.far_m);
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const double range_m = frame.truth.range_m[i];
-    Status status = Status::miss;
+    frame.range_m[i] = range_m;
     if (!std::isnan(range_m)) {
-      status = sees_all ? Status::hit : judge(limits, beams, i, range_m);
-    } else if (std::isnan(beams.directions[i].x())) {
-      status = Status::no_beam;
+      frame.status[i] = sees_all ? Status::hit : judge(limits, beams, i, range_m);
+      if (frame.status[i] != Status::hit) frame.range_m[i] = kNoRange;
+    } else {
+      frame.status[i] = std::isnan(beams.directions[i].x()) ? Status::no_beam : Status::miss;
     }
-    frame.status[i] = status;
-    frame.range_m[i] = status == Status::hit ? range_m : std::numeric_limits<double>::quiet_NaN();
   }
 }
 
@@ -40,24 +41,22 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
   frame.cols = setup.beams.cols;
   frame.frame_id = setup.beams.frame_id;
   place(setup.motion, frame);
+  resize(frame, setup.beams.size());
 
   HitFields needed = fields;
   needed.shading_normal = true;  // the light needs them
   needed.reflectance = true;
+  const auto measure = [&](BeamRange range) {
+    measure_range(setup.sensor.limits, setup.beams, range, frame);
+    measure_intensity(setup.sensor.light, setup.beams, range, frame);
+  };
   setup.renderer.cast({.beams = setup.beams,
                        .world_from_sensor = frame.world_from_sensor,
                        .world_from_instance = frame.world_from_instance,
                        .fields = needed,
-                       .cull_back_faces = setup.sensor.cull_back_faces},
+                       .cull_back_faces = setup.sensor.cull_back_faces,
+                       .then = FunctionRef<void(BeamRange)>(measure)},
                       frame.truth);
-
-  resize(frame, setup.beams.size());
-  setup.renderer.workers().for_ranges(
-      setup.beams.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
-        const BeamRange range{begin, end};
-        measure_range(setup.sensor.limits, setup.beams, range, frame);
-        measure_intensity(setup.sensor.light, setup.beams, range, frame);
-      });
 }
 
 }  // namespace glidar

@@ -103,7 +103,7 @@ Pinhole make_pinhole(const SensorFlags& flags) {
   return pinhole;
 }
 
-void apply_limits(const SensorFlags& flags, DepthLimits& limits) {
+void apply_limits(const SensorFlags& flags, Limits& limits) {
   if (flags.near_m) {
     require_positive("--near", *flags.near_m, true);
     limits.near_m = *flags.near_m;

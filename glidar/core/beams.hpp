@@ -33,6 +33,9 @@ struct Beams {
   std::vector<Eigen::Vector3d> origins_m;   ///< N; empty: all zero
   std::vector<std::uint32_t> times_ns;      ///< N, since the start of the frame; empty: all zero
   std::vector<std::uint16_t> rings;         ///< N, channel number; empty: the row
+  /// Added to the distance from a beam's origin when its range is reported: some sensors count from
+  /// elsewhere (Ouster: from the axis of rotation).
+  double range_offset_m = 0.0;
   Eigen::Vector3d boresight = Eigen::Vector3d::UnitZ();  ///< depth is measured along it
   std::optional<PinholeIntrinsics>
       pinhole;  ///< the structure the beams were made from, if it is this one

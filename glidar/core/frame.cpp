@@ -16,6 +16,18 @@ std::string_view name(Status status) {
       return "too far";
     case Status::no_beam:
       return "no beam";
+    case Status::below_threshold:
+      return "below threshold";
+    case Status::dropped:
+      return "dropped";
+    case Status::occluded:
+      return "occluded";
+    case Status::wrapped:
+      return "wrapped";
+    case Status::saturated:
+      return "saturated";
+    case Status::weather:
+      return "weather";
   }
   return "unknown";
 }

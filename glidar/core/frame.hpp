@@ -15,10 +15,16 @@ namespace glidar {
 /// Why a beam has a return, or has none.
 enum class Status : std::uint8_t {
   hit = 0,
-  miss = 1,      ///< nothing on the beam
-  too_near = 2,  ///< the surface lies before the sensor's near limit
-  too_far = 3,   ///< the surface lies beyond the sensor's far limit
-  no_beam = 4,   ///< the optics have no ray for this pixel
+  miss = 1,             ///< nothing on the beam
+  too_near = 2,         ///< the surface lies before the sensor's near limit
+  too_far = 3,          ///< the surface lies beyond the sensor's far limit
+  no_beam = 4,          ///< the optics have no ray for this pixel
+  below_threshold = 5,  ///< the echo is too weak to be told from noise
+  dropped = 6,          ///< lost at random
+  occluded = 7,         ///< the projector or the second camera does not see the surface
+  wrapped = 8,          ///< the phase is not plausible: the distance is ambiguous
+  saturated = 9,        ///< the echo is too strong to be timed
+  weather = 10,         ///< rain, snow or fog took the return
 };
 
 /// The status in words, as files and pictures spell it.
@@ -28,15 +34,18 @@ std::string_view name(Status status);
 struct Frame {
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
-  std::string frame_id;       ///< the sensor's frame
-  std::int64_t stamp_ns = 0;  ///< start of the measurement
-  std::uint64_t seed = 0;
+  std::string frame_id;         ///< the sensor's frame
+  std::int64_t stamp_ns = 0;    ///< start of the measurement
+  std::uint64_t seed = 0;       ///< of all random numbers
+  std::uint32_t sensor_id = 0;  ///< sensors of one rig draw different numbers
+  std::uint32_t number = 0;     ///< of the frame in its sequence; frames draw different numbers
   Pose world_from_sensor = Pose::Identity();
   std::vector<Pose> world_from_instance;  ///< one per instance of the scene, at stamp_ns
   std::vector<double> range_m;            ///< N, measured; NaN unless status is hit
   std::vector<float> intensity;           ///< N, received signal of a full-scale 1; 0 unless hit
   std::vector<Status> status;             ///< N
-  Hits truth;                             ///< what is there, whether reported or not
+  std::vector<float> sigma_m;  ///< N, standard deviation of the random error of range_m; empty: 0
+  Hits truth;                  ///< what is there, whether reported or not
 };
 
 /// Gives the measured columns `size` entries (contents unspecified).

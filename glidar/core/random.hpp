@@ -14,7 +14,13 @@ using RandomWords = std::array<std::uint32_t, 4>;
 RandomWords philox4x32(RandomWords counter, std::array<std::uint32_t, 2> key);
 
 /// What a random number is for; part of its counter, so that purposes never share numbers.
-enum class Purpose : std::uint8_t { probe = 0 };
+enum class Purpose : std::uint8_t {
+  probe = 0,
+  detection = 1,
+  false_alarm = 2,
+  weather = 3,
+  first_noise_step = 32,  ///< step k of a sensor's list of noise draws with first_noise_step + k
+};
 
 /// Identifies one draw: same identity, same numbers, on any machine and any number of threads.
 struct Draw {

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -20,7 +21,8 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
+/// A piece stays in a core's own cache until the system has copied it.
+constexpr std::size_t kPieceBytes = std::size_t{1} << 18;
 constexpr std::size_t kSlots = 32;
 constexpr std::size_t kSlotPathBytes = 4096;
 
@@ -87,7 +89,7 @@ AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path) {
   if (std::filesystem::is_directory(path, ignored))
     throw Error({path.string(), "is a folder", "a file name", ""});
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  buffer_.reserve(kBufferBytes);
+  buffer_.resize(kPieceBytes);
   std::tie(temporary_, descriptor_) = open_temporary(folder, path);
   slot_ = list_unfinished(temporary_.native());
 }
@@ -99,13 +101,24 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::write(std::span<const std::byte> bytes) {
-  if (buffer_.size() + bytes.size() > kBufferBytes) flush();
-  if (bytes.size() >= kBufferBytes) {
-    write_through(bytes);
-  } else {
-    buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+  while (!bytes.empty()) {
+    const std::span<std::byte> to = room(1);
+    const std::size_t now = std::min(to.size(), bytes.size());
+    std::memcpy(to.data(), bytes.data(), now);
+    take(now);
+    bytes = bytes.subspan(now);
   }
-  position_ += bytes.size();
+}
+
+std::span<std::byte> AtomicFile::room(std::size_t least) {
+  write_whole_pieces();
+  if (buffer_.size() - filled_ < least) buffer_.resize(filled_ + least);
+  return std::span(buffer_).subspan(filled_);
+}
+
+void AtomicFile::take(std::size_t count) {
+  filled_ += count;
+  position_ += count;
 }
 
 void AtomicFile::write(std::string_view text) {
@@ -133,8 +146,16 @@ void AtomicFile::commit() {
 }
 
 void AtomicFile::flush() {
-  write_through(buffer_);
-  buffer_.clear();
+  write_through(std::span(buffer_).first(filled_));
+  filled_ = 0;
+}
+
+void AtomicFile::write_whole_pieces() {
+  const std::size_t whole = filled_ / kPieceBytes * kPieceBytes;
+  if (whole == 0) return;
+  write_through(std::span(buffer_).first(whole));
+  std::memmove(buffer_.data(), buffer_.data() + whole, filled_ - whole);
+  filled_ -= whole;
 }
 
 void AtomicFile::write_through(std::span<const std::byte> bytes) {

@@ -13,7 +13,8 @@ namespace glidar {
 
 /// A file that appears under its name only when it is whole: bytes go to a temporary file in the
 /// same folder, commit() renames it. Without commit() the destructor removes the temporary file and
-/// whatever stood under the name stays. Small writes are gathered, large ones go straight through.
+/// whatever stood under the name stays. Writes are gathered and go out in large pieces that start
+/// at multiples of their size, which file systems take fastest.
 class AtomicFile {
  public:
   /// Throws Error when `path` is a folder or no file can be made beside it.
@@ -25,6 +26,11 @@ class AtomicFile {
   /// Appends at the current position. Throws Error (disk full, quota, input/output error).
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
+
+  /// Room for the next bytes, at least `least` of them, to be filled in place; take() then appends
+  /// the first `count`. Throws as write() does.
+  std::span<std::byte> room(std::size_t least);
+  void take(std::size_t count);
 
   /// Moves to a byte offset from the start. Throws Error when the file cannot seek.
   void seek(std::uint64_t offset);
@@ -42,6 +48,7 @@ class AtomicFile {
 
  private:
   void flush();
+  void write_whole_pieces();
   void write_through(std::span<const std::byte> bytes);
 
   std::filesystem::path path_;
@@ -49,7 +56,8 @@ class AtomicFile {
   int descriptor_ = -1;              ///< -1 once finished
   int slot_ = -1;                    ///< in the list for remove_unfinished_files, -1: not in it
   std::uint64_t position_ = 0;
-  std::vector<std::byte> buffer_;
+  std::vector<std::byte> buffer_;  ///< a piece, and room beyond it for what straddles its end
+  std::size_t filled_ = 0;         ///< bytes of the buffer in use
 };
 
 /// Removes the temporary files of every AtomicFile that is not committed. For a program that is

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/point_rows.hpp>
 
+#include <glidar/core/simd.hpp>
+
 #include <fmt/compile.h>
 #include <fmt/format.h>
 
@@ -21,7 +23,6 @@ static_assert(std::endian::native == std::endian::little, "files are written in 
 /// Small enough that a block of source and target stays in the first-level cache while each field
 /// passes over it.
 constexpr std::size_t kBlockRows = 512;
-constexpr std::size_t kChunkBytes = std::size_t{1} << 20;
 constexpr std::size_t kTextChunkRows = 4096;
 
 /// Every `stride` bytes from `first`, `count` times.
@@ -206,7 +207,7 @@ std::vector<Field> native_fields(const PointCloud& cloud) {
   return fields;
 }
 
-bool float_is_enough(const Column& column) {
+GLIDAR_SIMD bool float_is_enough(const Column& column) {
   constexpr double kFirstCoarse_m = 2048.0;
   constexpr double kHalfStep = 0.5 / (1 << 23);  // of a float, per power of two
   static_assert(kFirstCoarse_m * kHalfStep > kFinePosition_m);
@@ -242,12 +243,12 @@ void pack_rows(std::span<const Field> fields, std::size_t first, std::size_t cou
 void write_binary_rows(std::span<const Field> fields, std::size_t count, AtomicFile& file) {
   const std::size_t stride = row_bytes(fields);
   if (stride == 0) return;
-  const std::size_t chunk_rows = std::min(count, kChunkBytes / stride + 1);
-  std::vector<std::byte> rows(chunk_rows * stride);
-  for (std::size_t first = 0; first < count; first += chunk_rows) {
-    const std::size_t now = std::min(chunk_rows, count - first);
+  for (std::size_t first = 0; first < count;) {
+    const std::span<std::byte> rows = file.room(kBlockRows * stride);
+    const std::size_t now = std::min(count - first, rows.size() / stride);
     pack_rows(fields, first, now, rows);
-    file.write(std::span<const std::byte>(rows).first(now * stride));
+    file.take(now * stride);
+    first += now;
   }
 }
 

@@ -122,9 +122,9 @@ Optics read_optics(const YamlField& field) {
   return pinhole;
 }
 
-DepthLimits read_depth_limits(const YamlField& field) {
+Limits read_depth_limits(const YamlField& field) {
   require_map(field, {"near_m", "far_m"});
-  DepthLimits limits;
+  Limits limits;
   limits.near_m = number_or(field, "near_m", kFromZero, limits.near_m);
   const auto far = find(field, "far_m");
   if (!far) return limits;

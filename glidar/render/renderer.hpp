@@ -3,6 +3,8 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
+#include <glidar/core/frame.hpp>
+#include <glidar/core/function_ref.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/core/workers.hpp>
@@ -22,6 +24,9 @@ struct CastRequest {
       world_from_instance;  ///< one per instance; empty: where the scene puts them
   HitFields fields;
   bool cull_back_faces = false;
+  /// Called for every beam once, in runs, when the beams' hits are known, by the thread that found
+  /// them and so while they are near in memory. Empty: not called.
+  FunctionRef<void(BeamRange)> then = {};
 };
 
 /// Throws Error unless there is a beam for every row and column, a pose for every instance (or

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/resolve.hpp>
 
-#include <glidar/render/simd.hpp>
+#include <glidar/core/simd.hpp>
 
 #include <algorithm>
 #include <bit>

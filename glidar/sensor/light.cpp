@@ -3,6 +3,7 @@
 #include <glidar/sensor/light.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/simd.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,17 +12,51 @@ namespace glidar {
 namespace {
 
 /// Equation (3): attenuation over the distance d between surface and sensor.
-double attenuation(const Light& light, double d) {
+inline double attenuation(const Light& light, double d) {
   return 1.0 / (light.attenuation_constant + light.attenuation_linear_per_m * d +
                 light.attenuation_quadratic_per_m2 * d * d);
 }
 
-/// Equation (5) for one beam: ambient, diffuse and specular, with the half-vector h = l of (2).
-float surface_light(const Reflectance& surface, float ambient, float n_dot_h) {
-  const float lit = std::max(n_dot_h, 0.0F);
-  float colour = ambient * surface.ambient + surface.diffuse * lit;
-  if (surface.specular > 0.0F) colour += surface.specular * std::pow(lit, surface.shininess);
-  return colour;
+/// max(n . h, 0) with the half-vector h = l of equation (2): l = v = -direction.
+inline float lit(const Eigen::Vector3f& n, const Eigen::Vector3d& direction) {
+  const float n_dot_h = -n.dot(direction.cast<float>());
+  return n_dot_h > 0.0F ? n_dot_h : 0.0F;
+}
+
+/// Ambient and diffuse part of equation (5).
+inline float matte_colour(const Reflectance& surface, float ambient, float n_dot_h) {
+  return ambient * surface.ambient + surface.diffuse * n_dot_h;
+}
+
+/// Equations (3) to (5) without the specular part. True when a surface has one.
+GLIDAR_SIMD bool measure_matte(const Light& light, const Beams& beams, BeamRange range,
+                               Frame& frame) {
+  const Hits& truth = frame.truth;
+  const auto ambient = static_cast<float>(light.ambient);
+  unsigned specular = 0;
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    const Reflectance& surface = truth.reflectance[i];
+    const float n_dot_h = lit(truth.shading_normal[i], beams.directions[i]);
+    const auto received = static_cast<float>(attenuation(light, truth.range_m[i])) *
+                          matte_colour(surface, ambient, n_dot_h);
+    frame.intensity[i] = frame.status[i] == Status::hit ? received : 0.0F;
+    specular |= static_cast<unsigned>(surface.specular > 0.0F);
+  }
+  return specular != 0;
+}
+
+/// Equations (3) to (5) for the surfaces that have a specular part.
+void measure_specular(const Light& light, const Beams& beams, BeamRange range, Frame& frame) {
+  const Hits& truth = frame.truth;
+  const auto ambient = static_cast<float>(light.ambient);
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    const Reflectance& surface = truth.reflectance[i];
+    if (frame.status[i] != Status::hit || !(surface.specular > 0.0F)) continue;
+    const float n_dot_h = lit(truth.shading_normal[i], beams.directions[i]);
+    const float colour = matte_colour(surface, ambient, n_dot_h) +
+                         surface.specular * std::pow(n_dot_h, surface.shininess);
+    frame.intensity[i] = static_cast<float>(attenuation(light, truth.range_m[i])) * colour;
+  }
 }
 
 }  // namespace
@@ -41,18 +76,7 @@ void validate(const Light& light) {
 }
 
 void measure_intensity(const Light& light, const Beams& beams, BeamRange range, Frame& frame) {
-  const Hits& truth = frame.truth;
-  const auto ambient = static_cast<float>(light.ambient);
-  for (std::size_t i = range.begin; i < range.end; ++i) {
-    if (frame.status[i] != Status::hit) {
-      frame.intensity[i] = 0.0F;
-      continue;
-    }
-    const Eigen::Vector3f h = -beams.directions[i].cast<float>();  // equation (2), l = v
-    const float colour =
-        surface_light(truth.reflectance[i], ambient, truth.shading_normal[i].dot(h));
-    frame.intensity[i] = static_cast<float>(attenuation(light, truth.range_m[i])) * colour;  // (4)
-  }
+  if (measure_matte(light, beams, range, frame)) measure_specular(light, beams, range, frame);
 }
 
 }  // namespace glidar

@@ -143,7 +143,7 @@ Pinhole pinhole_from_fov(std::uint32_t width, std::uint32_t height, double fov_y
   return pinhole;
 }
 
-Beams make_beams(const Pinhole& pinhole) {
+Beams make_beams(const Pinhole& pinhole, const ScanWindow& /*window*/) {
   const PinholeIntrinsics& k = pinhole.intrinsics;
   validate(k);
   Beams beams;

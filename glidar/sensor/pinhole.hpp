@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
+#include <glidar/sensor/scan.hpp>
 
 #include <cstdint>
 #include <variant>
@@ -54,8 +55,8 @@ double focal_length_px(std::uint32_t pixels, double fov_rad);
 /// Throws Error unless 0 < fov_y_rad < pi and both sizes are at least 1.
 Pinhole pinhole_from_fov(std::uint32_t width, std::uint32_t height, double fov_y_rad);
 
-/// One beam per pixel. A pixel that the distortion model cannot invert has no beam.
-/// Throws Error when a number is out of range.
-Beams make_beams(const Pinhole& pinhole);
+/// One beam per pixel, all at the start of the window. A pixel that the distortion model cannot
+/// invert has no beam. Throws Error when a number is out of range.
+Beams make_beams(const Pinhole& pinhole, const ScanWindow& window = {});
 
 }  // namespace glidar

@@ -2,10 +2,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/sensor.hpp>
 
+#include <cmath>
+
 namespace glidar {
 
+ScanWindow scan_window(const Sensor& sensor, std::uint32_t frame) {
+  constexpr double kNanoseconds = 1e9;
+  const auto start_of = [&](double count) {
+    return static_cast<std::int64_t>(std::llround(count * kNanoseconds / sensor.rate_hz));
+  };
+  return {start_of(frame), start_of(frame + 1.0)};
+}
+
+Beams make_beams(const Sensor& sensor, const ScanWindow& window) {
+  return std::visit([&](const auto& optics) { return make_beams(optics, window); }, sensor.optics);
+}
+
 Beams make_beams(const Sensor& sensor) {
-  return std::visit([](const auto& optics) { return make_beams(optics); }, sensor.optics);
+  return make_beams(sensor, scan_window(sensor, 0));
 }
 
 }  // namespace glidar

@@ -13,22 +13,31 @@ namespace glidar {
 
 using Optics = std::variant<Pinhole>;
 
-/// Depths that the sensor can report, along the boresight. A surface outside still blocks the beam.
-struct DepthLimits {
+/// What the sensor can report. A surface outside still blocks the beam.
+struct Limits {
+  enum class Along : std::uint8_t { depth, range };
   double near_m = 0.0;
   double far_m = std::numeric_limits<double>::infinity();
+  Along along = Along::depth;  ///< what the limits are about: along the boresight or the beam
 };
 
 /// A 3D sensor, as plain numbers.
 struct Sensor {
   std::string name = "depth camera";
   Optics optics = Pinhole{};
-  DepthLimits limits;
+  double rate_hz = 30.0;  ///< frames per second; of a turning sensor: turns per second
+  Limits limits;
   Light light;
   bool cull_back_faces = false;  ///< true: triangles seen from behind let the beam through
 };
 
-/// What the sensor emits, in its own frame.
+/// The window of a frame, by the sensor's own rate. Frames join.
+ScanWindow scan_window(const Sensor& sensor, std::uint32_t frame);
+
+/// What the sensor emits in a window, in its own frame; times count from the window's start.
+Beams make_beams(const Sensor& sensor, const ScanWindow& window);
+
+/// The same for the first window.
 Beams make_beams(const Sensor& sensor);
 
 }  // namespace glidar

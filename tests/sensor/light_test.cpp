@@ -57,6 +57,9 @@ TEST(Light, IsZeroWhereNothingIsReported) {
   beams.directions = {Eigen::Vector3d::UnitZ()};
   Frame frame;
   resize(frame, 1);
+  frame.truth.range_m = {1.0};
+  frame.truth.shading_normal = {-Eigen::Vector3f::UnitZ()};
+  frame.truth.reflectance = {{.diffuse = 1.0F, .ambient = 1.0F, .specular = 1.0F}};
   frame.status = {Status::too_far};
   measure_intensity({}, beams, {0, 1}, frame);
   EXPECT_EQ(frame.intensity[0], 0.0F);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
+#include <glidar/core/frame.hpp>
 #include <glidar/render/lanes.hpp>
 
 #include <algorithm>
@@ -48,6 +49,25 @@ class Tiling {
     const auto row = static_cast<std::uint32_t>(index / tile_cols_);
     const auto col = static_cast<std::uint32_t>(index % tile_cols_);
     return {row * height_, col << width_shift_, width_shift_, rows_, cols_};
+  }
+
+  /// End of the tiles from `begin` on that lie in one row of tiles, at most `most` and before `end`.
+  [[nodiscard]] std::size_t end_of_run(std::size_t begin, std::size_t end, std::size_t most) const {
+    const std::size_t end_of_row = (begin / tile_cols_ + 1) * tile_cols_;
+    return std::min({end, begin + most, end_of_row});
+  }
+
+  /// Calls body(BeamRange) for each row of beams in tiles [begin, end) of one row of tiles.
+  template <class Body>
+  void for_beam_rows(std::size_t begin, std::size_t end, const Body& body) const {
+    const Tile first = tile(begin);
+    const Tile last = tile(end - 1);
+    const std::uint32_t end_col = std::min(cols_, last.first_col + (1U << width_shift_));
+    const std::uint32_t end_row = std::min(rows_, first.first_row + height_);
+    for (std::uint32_t row = first.first_row; row < end_row; ++row) {
+      const std::size_t start = std::size_t{row} * cols_;
+      body(BeamRange{start + first.first_col, start + end_col});
+    }
   }
 
  private:
