@@ -60,7 +60,7 @@ FileSinkOptions sink_options(const OutputFlags& flags) {
 }
 
 /// NAME.pcd and NAME.transform as the 2015 program wrote them.
-void plan_legacy(const std::string& name, const SidecarContext& context,
+void plan_legacy(const std::string& name, const SidecarContext& context, const Report& report,
                  std::vector<Output>& outputs) {
   const FileSinkOptions options{.dense = true, .sidecar = false};
   for (const char* suffix : {".pcd", ".transform"}) {
@@ -68,23 +68,19 @@ void plan_legacy(const std::string& name, const SidecarContext& context,
     outputs.push_back({.path = path,
                        .columns = columns_of(format_for(path), {"xyz", "intensity"}),
                        .cloud_frame = "legacy",
-                       .sink = make_file_sink(path, options, context)});
+                       .sink = make_file_sink(path, options, context, report)});
   }
 }
 
-/// True when the path is a file that was read: the input itself or a model of the scene.
-bool was_read(const std::filesystem::path& path, const std::string& input, const Scene& scene) {
-  std::error_code no_such_file;  // then it was not read either
-  if (std::filesystem::equivalent(path, input, no_such_file)) return true;
-  return std::any_of(scene.sources.begin(), scene.sources.end(), [&](const MeshSource& source) {
-    return std::filesystem::equivalent(path, source.path, no_such_file);
-  });
+bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  std::error_code no_such_file;  // then it is not the same either
+  return std::filesystem::equivalent(a, b, no_such_file);
 }
 
-void check_names(const std::vector<Output>& outputs, const std::string& input, const Scene& scene) {
+void check_names(const std::vector<Output>& outputs, const std::string& input) {
   std::set<std::filesystem::path> seen;
   for (const Output& output : outputs) {
-    const bool is_input = was_read(output.path, input, scene);
+    const bool is_input = same_file(output.path, input);
     const bool twice =
         !seen.insert(std::filesystem::absolute(output.path).lexically_normal()).second;
     if (!is_input && !twice) continue;
@@ -150,7 +146,7 @@ void add_output_flags(CLI::App& command, OutputFlags& flags) {
 }
 
 std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& input,
-                                 const SidecarContext& context) {
+                                 const SidecarContext& context, const Report& report) {
   if (flags.paths.empty() && flags.legacy_name.empty()) {
     throw Error({.where = "output",
                  .found = "there is no -o, so nothing would be written",
@@ -164,11 +160,22 @@ std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& in
     outputs.push_back({.path = path,
                        .columns = columns_of(format_for(path), asked),
                        .cloud_frame = flags.cloud_frame,
-                       .sink = make_file_sink(path, sink_options(flags), context)});
+                       .sink = make_file_sink(path, sink_options(flags), context, report)});
   }
-  if (!flags.legacy_name.empty()) plan_legacy(flags.legacy_name, context, outputs);
-  check_names(outputs, input, context.scene);
+  if (!flags.legacy_name.empty()) plan_legacy(flags.legacy_name, context, report, outputs);
+  check_names(outputs, input);
   return outputs;
+}
+
+void protect_files(const std::vector<std::string>& read, const std::vector<Output>& outputs) {
+  for (const Output& output : outputs) {
+    const auto same = [&](const std::string& file) { return same_file(output.path, file); };
+    if (std::none_of(read.begin(), read.end(), same)) continue;
+    throw Error({.where = output.path.string(),
+                 .found = "is an input file: the scene was read from it",
+                 .allowed = "",
+                 .remedy = "choose another name"});
+  }
 }
 
 HitFields fields_for(const std::vector<Output>& outputs) {

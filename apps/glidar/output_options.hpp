@@ -4,6 +4,7 @@
 
 #include <apps/glidar/cli_fwd.hpp>
 #include <glidar/core/cloud_sink.hpp>
+#include <glidar/core/report.hpp>
 #include <glidar/io/file_sink.hpp>
 
 #include <filesystem>
@@ -37,9 +38,12 @@ struct Output {
 };
 
 /// All files, checked as far as possible before anything is computed: suffix, folder, column names,
-/// no name twice, not the input itself. The context is read when writing.
+/// no name twice, not the input itself. The context is read when writing, warnings go to `report`.
 std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& input,
-                                 const SidecarContext& context);
+                                 const SidecarContext& context, const Report& report);
+
+/// Throws Error when one of the outputs is a file that was read: known once the input is loaded.
+void protect_files(const std::vector<std::string>& read, const std::vector<Output>& outputs);
 
 /// The hit columns that all outputs together need.
 HitFields fields_for(const std::vector<Output>& outputs);

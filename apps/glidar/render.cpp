@@ -61,6 +61,15 @@ SceneFile load(const RenderFlags& flags, const Report& report) {
   return loaded;
 }
 
+/// Scene and sensor files, models and what belongs to these: textures, materials, buffers.
+std::vector<std::string> files_read(const RenderFlags& flags, const SceneFile& loaded) {
+  std::vector<std::string> files = loaded.files;
+  if (!flags.sensor.file.empty()) files.push_back(flags.sensor.file);
+  for (const MeshSource& source : loaded.scene.sources)
+    files.insert(files.end(), source.files.begin(), source.files.end());
+  return files;
+}
+
 void tell(const std::vector<std::string>& advice, Console& console) {
   for (const std::string& sentence : advice) console.warn(sentence);
 }
@@ -103,11 +112,13 @@ int run(const RenderFlags& flags) {
   Sensor sensor;
   const std::vector<Output> outputs =
       plan_outputs(flags.output, flags.input,
-                   {.scene = scene, .sensor = sensor, .beams = beams, .renderer = flags.renderer});
+                   {.scene = scene, .sensor = sensor, .beams = beams, .renderer = flags.renderer},
+                   console.report());
   if (!is_scene_file(flags.input)) sensor = make_sensor(flags.sensor, {});  // before a long load
 
   SceneFile loaded = load(flags, console.report());
   console.clear();
+  protect_files(files_read(flags, loaded), outputs);
   scene = std::move(loaded.scene);
   sensor = make_sensor(flags.sensor, loaded.sensor);
   beams = make_beams(sensor);

@@ -20,8 +20,7 @@ namespace {
 
 constexpr std::int64_t kDefaultSide = 256;  // of the 2015 program, like the field of view
 constexpr double kDefaultFov_deg = 20.0;
-constexpr std::int64_t kLargestSide = 65536;  // what make_beams takes
-constexpr double kBytesPerBeam = 250.0;       // beam, truth, measurement and cloud together
+constexpr double kBytesPerBeam = 250.0;  // beam, truth, measurement and cloud together
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 
 double memory_bytes() {
@@ -29,11 +28,11 @@ double memory_bytes() {
 }
 
 void require_side(const char* option, std::int64_t pixels) {
-  if (pixels >= 1 && pixels <= kLargestSide) return;
+  if (pixels >= 1 && pixels <= kLargestImageSide) return;
   throw Error(
       {.where = option,
        .found = fmt::format("{} pixels", pixels),
-       .allowed = fmt::format("1 to {}", kLargestSide),
+       .allowed = fmt::format("1 to {}", kLargestImageSide),
        .remedy = fmt::format("a frame also has to fit into memory, at about {} bytes a pixel",
                              kBytesPerBeam)});
 }

@@ -2,16 +2,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/confined_io.hpp>
 
+#include <fmt/format.h>
 #include <assimp/IOStream.hpp>
 
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
 namespace glidar::import {
 namespace {
+
+/// Some importers ask for the next line of a file that has ended until one comes. Honest ones
+/// notice the end after a few attempts.
+constexpr unsigned kMostReadsOfNothing = 10'000;
+
+/// Ends such an importer: Assimp takes its words for the reason of failure.
+class EndlessReading : public std::runtime_error {
+ public:
+  EndlessReading() : std::runtime_error("the file ends too early, its data is cut off") {}
+};
 
 class ReadStream : public Assimp::IOStream {
  public:
@@ -21,7 +33,11 @@ class ReadStream : public Assimp::IOStream {
   ReadStream& operator=(const ReadStream&) = delete;
 
   std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
-    return size == 0 || count == 0 ? 0 : std::fread(buffer, size, count, file_);
+    if (size == 0 || count == 0) return 0;
+    const std::size_t got = std::fread(buffer, size, count, file_);
+    reads_of_nothing_ = got > 0 ? 0 : reads_of_nothing_ + 1;
+    if (reads_of_nothing_ > kMostReadsOfNothing) throw EndlessReading();
+    return got;
   }
   std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
   aiReturn Seek(std::size_t offset, aiOrigin origin) override {
@@ -38,6 +54,7 @@ class ReadStream : public Assimp::IOStream {
  private:
   std::FILE* file_;
   std::size_t size_;
+  unsigned reads_of_nothing_ = 0;  ///< one after another, whatever was sought in between
 };
 
 /// For messages: without the model's folder, and not too long.
@@ -78,12 +95,13 @@ Assimp::IOStream* ConfinedIo::Open(const char* path, const char* mode) {
   if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos) return nullptr;
   const ConfinedFile file = find(path);
   if (file.access != Access::granted) {
-    add_once(log_->notes, "'" + shown(path, folder_) + "' is not read: " + reason(file.access));
+    add_once(log_->notes,
+             fmt::format("'{}' is not read: {}", shown(path, folder_), reason(file.access)));
     return nullptr;
   }
   std::FILE* opened = std::fopen(file.path.c_str(), "rbe");
   if (opened == nullptr) {
-    add_once(log_->notes, "'" + shown(path, folder_) + "' cannot be opened");
+    add_once(log_->notes, fmt::format("'{}' cannot be opened", shown(path, folder_)));
     add_once(log_->absent, path);
     return nullptr;
   }

@@ -4,8 +4,10 @@
 
 #include <import/bake_mesh.hpp>
 #include <import/confined_io.hpp>
+#include <import/loaded_libraries.hpp>
 #include <import/read_materials.hpp>
 
+#include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -117,6 +119,8 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   // Never destroyed: taking a deep tree apart recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
   importer.SetIOHandler(new ConfinedIo(folder, log));
+  // The file's own axes; without it z-up files would be turned, though not those of other formats.
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetProgressHandler(new Progress(progress));
   const aiScene* scene = importer.ReadFile(canonical_model.string(), kSteps);
   if (scene == nullptr) refuse(importer.GetErrorString(), *log);
@@ -138,6 +142,7 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   bake(walked, options, model);
   imported.absent = log->absent;
   imported.files = log->read;
+  imported.libraries = loaded_libraries();
   const auto own =
       std::find(imported.files.begin(), imported.files.end(), canonical_model.string());
   if (own == imported.files.end()) {

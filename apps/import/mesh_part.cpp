@@ -113,7 +113,7 @@ void take_tangents(const aiMesh& mesh, const Linear& linear, Mesh& part) {
     const double side = vector(mesh.mNormals[v]).cross(t).dot(b) < 0.0 ? -1.0 : 1.0;
     Eigen::Vector3f u = unit_or_zero(linear.directions * t);
     if (u.isZero(0.0F)) u = Eigen::Vector3f::UnitX();
-    part.tangents[v] << u, static_cast<float>(side * linear.handedness);
+    part.tangents[v] = {u.x(), u.y(), u.z(), static_cast<float>(side * linear.handedness)};
   }
 }
 

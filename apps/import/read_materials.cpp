@@ -105,12 +105,19 @@ bool has_alpha(const TextureUse& use, const Model& model) {
   return channels == 2 || channels == 4;
 }
 
+/// Beams pass a surface or they do not; what lets some of the light through is solid to them.
+void note_solid(Model& model) {
+  add_once(model.notes,
+           "blended transparency is shown solid (`opacity` in a scene file lets beams through)");
+}
+
 /// What of a glTF material's alpha counts: the cutoff of MASK.
 std::optional<float> gltf_cutoff(const aiMaterial& source, const Material& m, Model& model) {
   aiString mode;
   if (source.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != aiReturn_SUCCESS) return std::nullopt;
-  if (std::string_view(mode.C_Str()) == "BLEND" && has_alpha(m.diffuse_texture, model)) {
-    add_once(model.notes, "blended transparency is shown solid");
+  if (std::string_view(mode.C_Str()) == "BLEND" &&
+      (m.opacity < 1.0F || has_alpha(m.diffuse_texture, model))) {
+    note_solid(model);
   }
   if (std::string_view(mode.C_Str()) != "MASK") return std::nullopt;
   return within(number(source, key_of(AI_MATKEY_GLTF_ALPHACUTOFF)).value_or(kCutoff), 0.0F, 1.0F);
@@ -133,6 +140,8 @@ void read_cutout(const aiMaterial& source, int diffuse_flags, const MaterialCont
     m.alpha_cutoff = kCutoff;
     // The image says where it is cut; a factor beside it (often 0 by mistake) must not cut it all.
     m.opacity = 1.0F;
+  } else if (m.opacity < 1.0F && !context.gltf) {
+    note_solid(model);
   }
 }
 

@@ -27,6 +27,8 @@ struct Instance {
 struct MeshSource {
   std::string path;  ///< the file, or "builtin:NAME"
   std::string hash;  ///< hash of the file's content, hexadecimal; empty for built-in meshes
+  std::vector<std::string> files =
+      {};  ///< all that it was read from, textures too; canonical paths
 };
 
 /// All there is to see, as plain arrays and indices.

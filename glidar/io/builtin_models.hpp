@@ -10,7 +10,10 @@
 
 namespace glidar {
 
-/// Names after "builtin:".
+/// What the name of a built-in model starts with where a file could be named too.
+inline constexpr std::string_view kBuiltinPrefix = "builtin:";
+
+/// Names after kBuiltinPrefix.
 std::span<const std::string> builtin_model_names();
 
 /// A closed mesh made in code, the same bytes on every machine:

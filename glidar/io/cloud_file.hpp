@@ -4,9 +4,12 @@
 
 #include <glidar/io/atomic_file.hpp>
 #include <glidar/io/file_sink.hpp>
+#include <glidar/io/point_rows.hpp>
 
 #include <filesystem>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace glidar {
 
@@ -17,18 +20,29 @@ struct CloudFile {
   const Frame& frame;
   const FileSinkOptions& options;
   const SidecarContext& context;
+  std::span<const Field> fields;  ///< what of each point goes into the file; the sidecar tells it
 };
 
-/// Point Cloud Library, format 0.7: https://pcl.readthedocs.io (The PCD file format). Always
-/// float32 for real numbers, as PCL's point types need it; f64 columns are rounded: NPZ and CSV
-/// keep them. The viewpoint is the sensor's pose in the cloud's frame. Colour is PCL's packed
-/// `rgb`.
+// What each format stores of a cloud. A writer stores exactly these fields, so that whoever reads
+// the list knows the file.
+
+/// Real numbers as float, as PCL's point types need it, but for a column of doubles of which that
+/// would move a number by more than 0.1 mm; colour is PCL's packed `rgb`.
+std::vector<Field> pcd_fields(const PointCloud& cloud);
+/// x y z are float unless that moves a point by more than 0.1 mm, then double; other columns keep
+/// their types; normals are nx ny nz, colour is uchar red green blue.
+std::vector<Field> ply_fields(const PointCloud& cloud);
+/// x y z intensity as float.
+std::vector<Field> kitti_fields(const PointCloud& cloud);
+/// depth as float.
+std::vector<Field> depth_fields(const PointCloud& cloud);
+
+/// Point Cloud Library, format 0.7: https://pcl.readthedocs.io (The PCD file format). The
+/// viewpoint is the sensor's pose in the cloud's frame.
 void write_pcd(const CloudFile& job, AtomicFile& file);
 
-/// Stanford polygon file, little-endian or ascii, vertices only. x y z are float unless that moves
-/// a point by more than 0.1 mm, then double; other columns keep their types; normals are nx ny nz,
-/// colour is uchar red green blue. An organised cloud says its size as PCL does: `obj_info
-/// num_cols`.
+/// Stanford polygon file, little-endian or ascii, vertices only. An organised cloud says its size
+/// as PCL does: `obj_info num_cols`.
 void write_ply(const CloudFile& job, AtomicFile& file);
 
 /// NumPy archive, stored: every column as (rows, cols) or (rows, cols, components), poses 4x4

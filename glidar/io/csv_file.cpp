@@ -6,10 +6,8 @@
 namespace glidar {
 
 void write_csv(const CloudFile& job, AtomicFile& file) {
-  std::vector<Field> fields;
-  for (const Column& column : job.cloud.columns) append_fields(column, fields);
-  file.write(joined_names(fields, ',') + "\n");
-  write_text_rows(fields, job.cloud.size(), ',', file);
+  file.write(joined_names(job.fields, ',') + "\n");
+  write_text_rows(job.fields, job.cloud.size(), ',', file);
 }
 
 }  // namespace glidar

@@ -4,7 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/cloud_file.hpp>
-#include <glidar/io/point_rows.hpp>
+#include <glidar/io/stored_columns.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -30,23 +30,43 @@ enum class Content : std::uint8_t {
 struct Format {
   FileFormat told;
   Content content;
+  std::vector<Field> (*fields)(const PointCloud&);  ///< what it stores of each point
   void (*write)(const CloudFile&, AtomicFile&);
 };
 
+/// Of formats that are no table of points.
+std::vector<Field> no_fields(const PointCloud& /*cloud*/) {
+  return {};
+}
+
 const std::vector<Format>& formats() {
   static const std::vector<Format> kFormats = {
-      {{".pcd", "Point Cloud Library", {"xyz"}, true}, Content::points, write_pcd},
-      {{".ply", "Stanford polygon file", {"xyz"}, true}, Content::points, write_ply},
-      {{".npz", "NumPy archive of all columns", {"xyz"}, true}, Content::points, write_npz},
-      {{".csv", "text table", {"xyz"}, true}, Content::points, write_csv},
-      {{".bin", "KITTI Velodyne", {"xyz", "intensity"}, false}, Content::hits_only, write_kitti},
-      {{".npy", "NumPy depth image, metres", {"depth"}, false}, Content::per_beam, write_depth_npy},
-      {{".depth.png", "16-bit depth image", {"depth"}, false}, Content::per_beam, write_depth_png},
+      {{".pcd", "Point Cloud Library", {"xyz"}, true}, Content::points, pcd_fields, write_pcd},
+      {{".ply", "Stanford polygon file", {"xyz"}, true}, Content::points, ply_fields, write_ply},
+      {{".npz", "NumPy archive of all columns", {"xyz"}, true},
+       Content::points,
+       native_fields,
+       write_npz},
+      {{".csv", "text table", {"xyz"}, true}, Content::points, native_fields, write_csv},
+      {{".bin", "KITTI Velodyne", {"xyz", "intensity"}, false},
+       Content::hits_only,
+       kitti_fields,
+       write_kitti},
+      {{".npy", "NumPy depth image, metres", {"depth"}, false},
+       Content::per_beam,
+       depth_fields,
+       write_depth_npy},
+      {{".depth.png", "16-bit depth image", {"depth"}, false},
+       Content::per_beam,
+       no_fields,
+       write_depth_png},
       {{".png", "preview picture", {"depth", "intensity"}, false},
        Content::per_beam,
+       no_fields,
        write_preview},
       {{".transform", "4x4 pose of the first object", {}, false},
        Content::per_beam,
+       no_fields,
        write_transform},
   };
   return kFormats;
@@ -139,8 +159,12 @@ void check_needed_columns(const FileFormat& format, const PointCloud& cloud,
 class FileSink : public CloudSink {
  public:
   FileSink(std::filesystem::path path, const Format& format, const FileSinkOptions& options,
-           SidecarContext context)
-      : path_(std::move(path)), format_(format), options_(options), context_(std::move(context)) {}
+           SidecarContext context, Report report)
+      : path_(std::move(path)),
+        format_(format),
+        options_(options),
+        context_(std::move(context)),
+        report_(std::move(report)) {}
 
   void write(const PointCloud& cloud, const Frame& frame) override {
     check_column_sizes(cloud, path_);
@@ -149,16 +173,18 @@ class FileSink : public CloudSink {
     const bool dense = format_.content == Content::hits_only ||
                        (format_.content == Content::points && options_.dense);
     if (dense) {
-      deliver({compacted(cloud), frame, options_, context_});
+      deliver(compacted(cloud), frame);
     } else {
-      deliver({cloud, frame, options_, context_});
+      deliver(cloud, frame);
     }
   }
 
  private:
   /// Both files are complete before either gets its name; the sidecar first, so that whoever
   /// waits for the cloud finds it.
-  void deliver(const CloudFile& job) const {
+  void deliver(const PointCloud& cloud, const Frame& frame) const {
+    const std::vector<Field> fields = format_.fields(cloud);
+    const CloudFile job{cloud, frame, options_, context_, fields};
     AtomicFile file(path_);
     format_.write(job, file);
     file.finish();
@@ -168,12 +194,15 @@ class FileSink : public CloudSink {
       sidecar.commit();
     }
     file.commit();
+    const std::string told = rounding_told(fields);
+    if (!told.empty()) report_.warn(path_.string() + ": " + told);
   }
 
   std::filesystem::path path_;
   const Format& format_;
   FileSinkOptions options_;
   SidecarContext context_;
+  Report report_;
 };
 
 }  // namespace
@@ -193,14 +222,14 @@ const FileFormat& format_for(const std::filesystem::path& path) {
 
 std::unique_ptr<CloudSink> make_file_sink(const std::filesystem::path& path,
                                           const FileSinkOptions& options,
-                                          const SidecarContext& context) {
+                                          const SidecarContext& context, Report report) {
   const Format& format = find_format(path);
   check_folder(path);
   if (!(options.depth_png_units_per_m > 0.0) || std::isinf(options.depth_png_units_per_m)) {
     throw Error({"depth_png_units_per_m", fmt::format("{}", options.depth_png_units_per_m),
                  "a number above 0", "1000 for millimetres"});
   }
-  return std::make_unique<FileSink>(path, format, options, context);
+  return std::make_unique<FileSink>(path, format, options, context, std::move(report));
 }
 
 }  // namespace glidar

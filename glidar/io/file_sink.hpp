@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/core/cloud_sink.hpp>
+#include <glidar/core/report.hpp>
 #include <glidar/sensor/sensor.hpp>
 
 #include <filesystem>
@@ -47,8 +48,10 @@ const FileFormat& format_for(const std::filesystem::path& path);
 /// A sink that writes one file (and its sidecar) per cloud: to a temporary name beside it, then
 /// renamed, so that a path either holds a whole file or is as it was.
 /// Throws Error at once when the suffix is unknown or the folder does not exist.
+/// Warns through `report` when the format's float32 moves a coordinate or depth by more than 0.1
+/// mm.
 std::unique_ptr<CloudSink> make_file_sink(const std::filesystem::path& path,
                                           const FileSinkOptions& options,
-                                          const SidecarContext& context);
+                                          const SidecarContext& context, Report report = {});
 
 }  // namespace glidar

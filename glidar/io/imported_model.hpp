@@ -19,6 +19,7 @@ struct ImportedModel {
   std::vector<std::string> absent;  ///< paths that were looked for and are no files inside the root
   std::vector<std::string> texture_folders;  ///< ModelFolder::also of the searches
   std::vector<TextureLookup> lookups;        ///< every texture file that was searched
+  std::vector<std::string> libraries;        ///< paths of those that the import program ran with
 };
 
 }  // namespace glidar

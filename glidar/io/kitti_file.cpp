@@ -5,12 +5,16 @@
 
 namespace glidar {
 
-void write_kitti(const CloudFile& job, AtomicFile& file) {
+std::vector<Field> kitti_fields(const PointCloud& cloud) {
   std::vector<Field> fields;
-  append_fields(*find_column(job.cloud, "xyz"), fields);
-  append_fields(*find_column(job.cloud, "intensity"), fields);
+  append_fields(*find_column(cloud, "xyz"), fields);
+  append_fields(*find_column(cloud, "intensity"), fields);
   for (Field& field : fields) field.stored = Stored::f32;
-  write_binary_rows(fields, job.cloud.size(), file);
+  return fields;
+}
+
+void write_kitti(const CloudFile& job, AtomicFile& file) {
+  write_binary_rows(job.fields, job.cloud.size(), file);
 }
 
 }  // namespace glidar

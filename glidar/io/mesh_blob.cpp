@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <type_traits>
 
 namespace glidar {
@@ -98,77 +99,62 @@ void visit(A& archive, V& values) {
   }
 }
 
-template <class A, class... T>
-void visit_all(A& archive, T&... fields) {
-  (visit(archive, fields), ...);
+// The fields of every record, in the order of the layout.
+
+auto fields(Is<Texture> auto& t) {
+  return std::tie(t.name, t.width, t.height, t.channels, t.texels);
 }
 
-template <class A, class T>
-requires Is<T, Texture>
-void visit(A& archive, T& t) {
-  visit_all(archive, t.name, t.width, t.height, t.channels, t.texels);
+auto fields(Is<TextureUse> auto& use) {
+  return std::tie(use.texture, use.uv_set, use.wrap_u, use.wrap_v, use.filter, use.uv_scale_rotate,
+                  use.uv_offset);
 }
 
-template <class A, class T>
-requires Is<T, TextureUse>
-void visit(A& archive, T& use) {
-  visit_all(archive, use.texture, use.uv_set, use.wrap_u, use.wrap_v, use.filter,
-            use.uv_scale_rotate, use.uv_offset);
+auto fields(Is<Material> auto& m) {
+  return std::tie(m.name, m.ambient, m.diffuse, m.specular, m.shininess, m.opacity, m.alpha_cutoff,
+                  m.normal_scale, m.diffuse_texture, m.specular_texture, m.alpha_texture,
+                  m.normal_texture);
 }
 
-template <class A, class T>
-requires Is<T, Material>
-void visit(A& archive, T& m) {
-  visit_all(archive, m.name, m.ambient, m.diffuse, m.specular, m.shininess, m.opacity,
-            m.alpha_cutoff, m.normal_scale, m.diffuse_texture, m.specular_texture, m.alpha_texture,
-            m.normal_texture);
+auto fields(Is<Mesh> auto& m) {
+  return std::tie(m.name, m.origin_m, m.positions_m, m.normals, m.uvs[0], m.uvs[1], m.tangents,
+                  m.colours, m.triangles, m.material_slots);
 }
 
-template <class A, class T>
-requires Is<T, Mesh>
-void visit(A& archive, T& m) {
-  visit_all(archive, m.name, m.origin_m, m.positions_m, m.normals, m.uvs[0], m.uvs[1], m.tangents,
-            m.colours, m.triangles, m.material_slots);
+auto fields(Is<ModelPart> auto& part) {
+  return std::tie(part.name, part.first_triangle, part.triangle_count);
 }
 
-template <class A, class T>
-requires Is<T, ModelPart>
-void visit(A& archive, T& part) {
-  visit_all(archive, part.name, part.first_triangle, part.triangle_count);
+auto fields(Is<MissingTexture> auto& missing) {
+  return std::tie(missing.name, missing.reason);
 }
 
-template <class A, class T>
-requires Is<T, MissingTexture>
-void visit(A& archive, T& missing) {
-  visit_all(archive, missing.name, missing.reason);
+auto fields(Is<TextureLookup> auto& lookup) {
+  return std::tie(lookup.name, lookup.found, lookup.reason);
 }
 
-template <class A, class T>
-requires Is<T, TextureLookup>
-void visit(A& archive, T& lookup) {
-  visit_all(archive, lookup.name, lookup.found, lookup.reason);
-}
-
-template <class A, class T>
-requires Is<T, ImportedModel>
-void visit(A& archive, T& imported) {
+auto fields(Is<ImportedModel> auto& imported) {
   auto& model = imported.model;
-  visit_all(archive, model.format, model.mesh, model.materials, model.textures, model.parts,
-            model.missing_textures, model.notes, imported.files, imported.absent,
-            imported.texture_folders, imported.lookups);
+  return std::tie(model.format, model.mesh, model.materials, model.textures, model.parts,
+                  model.missing_textures, model.notes, imported.files, imported.absent,
+                  imported.texture_folders, imported.lookups, imported.libraries);
+}
+
+auto fields(Is<ImportFailure> auto& failure) {
+  return std::tie(failure.found, failure.remedy);
+}
+
+auto fields(Is<CacheIndex> auto& index) {
+  return std::tie(index.importer, index.files, index.hashes, index.absent, index.texture_folders,
+                  index.lookups, index.root, index.folder, index.libraries, index.library_states);
 }
 
 template <class A, class T>
-requires Is<T, ImportFailure>
-void visit(A& archive, T& failure) {
-  visit_all(archive, failure.found, failure.remedy);
+requires requires(T& record) {
+  fields(record);
 }
-
-template <class A, class T>
-requires Is<T, CacheIndex>
-void visit(A& archive, T& index) {
-  visit_all(archive, index.importer, index.files, index.hashes, index.absent, index.texture_folders,
-            index.lookups, index.root, index.folder);
+void visit(A& archive, T& record) {
+  std::apply([&archive](auto&... field) { (visit(archive, field), ...); }, fields(record));
 }
 
 template <class T>
@@ -283,6 +269,8 @@ CacheIndex read_cache_index(FrameReader& frame) {
   if (index.files.empty() || index.files.size() != index.hashes.size()) {
     refuse("a cache without its files' hashes");
   }
+  if (index.libraries.size() != index.library_states.size())
+    refuse("a cache without its libraries' states");
   return index;
 }
 

@@ -7,6 +7,7 @@
 #include <glidar/io/import_process.hpp>
 #include <glidar/io/model_cache.hpp>
 #include <glidar/io/model_place.hpp>
+#include <glidar/io/nearest_file.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -19,11 +20,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kBuiltin = "builtin:";
-
 void require(bool holds, const char* option, double found, const char* allowed) {
   if (holds) return;
-  throw Error({.where = option, .found = std::to_string(found), .allowed = allowed, .remedy = ""});
+  throw Error({.where = option, .found = number_text(found), .allowed = allowed, .remedy = ""});
 }
 
 void check(const ModelOptions& options) {
@@ -40,26 +39,17 @@ void check(const ModelOptions& options) {
       {.where = source, .found = std::move(found), .allowed = "", .remedy = std::move(remedy)});
 }
 
-/// "did you mean X" from the files beside a path that does not exist.
-std::string neighbour(const fs::path& path) {
-  const fs::path parent = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  std::vector<std::string> names;
-  std::error_code error;
-  for (fs::directory_iterator entry(parent, error), end; !error && entry != end;
-       entry.increment(error)) {
-    names.push_back(entry->path().filename().string());
-  }
-  const std::string nearest = nearest_word(path.filename().string(), names);
-  return nearest.empty() ? "check the path" : "did you mean " + nearest + "?";
-}
-
 fs::path model_file(const std::string& source) {
   if (source.empty() || source.find('\0') != std::string::npos) {
     no_model("model", "an empty or impossible path", "name a model file or builtin:NAME");
   }
   std::error_code error;
   fs::path real = fs::canonical(source, error);
-  if (error) no_model(source, "cannot be opened: " + error.message(), neighbour(source));
+  if (error) {
+    const std::string nearest = nearest_file(source);
+    no_model(source, "cannot be opened: " + error.message(),
+             nearest.empty() ? "check the path" : "did you mean " + nearest + "?");
+  }
   if (!fs::is_regular_file(real, error)) no_model(source, "not a file", "name a model file");
   if (fs::file_size(real, error) == 0 || error) no_model(source, "the file is empty", "");
   return real;
@@ -117,8 +107,8 @@ void tell(const Model& model, const Report& report) {
 
 Model load_model(const std::string& source, const ModelOptions& options, const Report& report) {
   check(options);
-  if (source.starts_with(kBuiltin)) {
-    Model model = make_builtin_model(std::string_view(source).substr(kBuiltin.size()));
+  if (source.starts_with(kBuiltinPrefix)) {
+    Model model = make_builtin_model(std::string_view(source).substr(kBuiltinPrefix.size()));
     place_mesh(model.mesh, options);
     return model;
   }
@@ -127,6 +117,7 @@ Model load_model(const std::string& source, const ModelOptions& options, const R
   Model model = std::move(loaded.imported.model);
   model.source = source;
   model.hash = std::move(loaded.hash);
+  model.files = std::move(loaded.imported.files);
   model.from_cache = loaded.from_cache;
   model.mesh.name = fs::path(source).stem().string();
   place_mesh(model.mesh, options);
@@ -151,7 +142,7 @@ std::size_t add_model(Scene& scene, Model model) {
   }
   std::move(model.textures.begin(), model.textures.end(), std::back_inserter(scene.textures));
   scene.meshes.push_back(std::move(model.mesh));
-  scene.sources.push_back({std::move(model.source), std::move(model.hash)});
+  scene.sources.push_back({std::move(model.source), std::move(model.hash), std::move(model.files)});
   scene.instances.push_back(std::move(instance));
   return scene.instances.size() - 1;
 }

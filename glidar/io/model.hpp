@@ -42,9 +42,10 @@ struct MissingTexture {
 /// One loaded model: all its meshes with node transforms applied, in one object frame.
 /// Triangles keep the order of a depth-first walk over the file's nodes.
 struct Model {
-  std::string source;  ///< path or "builtin:NAME"
-  std::string hash;    ///< of all files it was read from, hexadecimal; empty: built in
-  std::string format;  ///< of the file, e.g. "Stanford Polygon Library (PLY)"
+  std::string source;              ///< path or "builtin:NAME"
+  std::string hash;                ///< of all files it was read from, hexadecimal; empty: built in
+  std::vector<std::string> files;  ///< canonical paths of all files it was read from, itself first
+  std::string format;              ///< of the file, e.g. "Stanford Polygon Library (PLY)"
   Mesh mesh;
   std::vector<Material> materials;  ///< slot -> material
   std::vector<Texture> textures;
@@ -58,8 +59,8 @@ struct Model {
 /// The importer runs in a process of its own (glidar-import) with limits on time and memory, and
 /// reads only below the model's folder (in a model package with `model.config`, or with `meshes`
 /// and `materials` side by side, below the package's).
-/// Coordinates are as the file has them, with node transforms; COLLADA's unit is applied by the
-/// importer, FBX' is not (Model::notes tells it); z-up COLLADA and FBX come out y-up. Then
+/// Coordinates and axes are as the file has them, with node transforms, whichever axis it says is
+/// up; COLLADA's unit is applied by the importer, FBX' is not (Model::notes tells it). Then
 /// metres_per_unit and up act. The mesh's origin is away from zero only along axes on which the
 /// model is, so that no single-precision coordinate of the file is rounded. Normals of STL are its
 /// facets' and count as missing; points and lines are left out and told in notes.

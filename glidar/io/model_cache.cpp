@@ -36,13 +36,27 @@ std::optional<fs::path> cache_folder(const ModelOptions& options) {
   return std::nullopt;
 }
 
-/// The import program as installed: size and time of change tell a new one.
-std::string importer_version() {
+/// Tells a new version of an installed program or library without reading it; empty: not there.
+std::string file_state(const fs::path& path) {
   struct stat info {};
-  const fs::path program = import_program();
-  if (::stat(program.c_str(), &info) != 0) return "";
-  return fmt::format("{} {} {}.{}", version(), info.st_size, info.st_mtim.tv_sec,
+  if (::stat(path.c_str(), &info) != 0) return "";
+  return fmt::format("{} {} {}.{}", info.st_ino, info.st_size, info.st_mtim.tv_sec,
                      info.st_mtim.tv_nsec);
+}
+
+/// The import program as installed, and where it looks for libraries before all other places. The
+/// libraries themselves are known once it has run.
+std::string importer_version() {
+  const std::string state = file_state(import_program());
+  if (state.empty()) return "";
+  const char* libraries = std::getenv("LD_LIBRARY_PATH");
+  return fmt::format("{} {} {}", version(), state, libraries != nullptr ? libraries : "");
+}
+
+std::vector<std::string> file_states(const std::vector<std::string>& paths) {
+  std::vector<std::string> states;
+  for (const std::string& path : paths) states.push_back(file_state(path));
+  return states;
 }
 
 bool still_absent(const std::string& path, const ModelFolder& folder) {
@@ -55,7 +69,8 @@ bool holds(const CacheIndex& index, const CacheEntry& entry, const fs::path& can
   folder.also.assign(index.texture_folders.begin(), index.texture_folders.end());
   if (index.importer != entry.importer || index.importer.empty() ||
       index.files.front() != canonical_model.string() || index.root != folder.root.string() ||
-      index.folder != folder.folder.string()) {
+      index.folder != folder.folder.string() ||
+      index.library_states != file_states(index.libraries)) {
     return false;
   }
   for (const std::string& path : index.absent) {
@@ -138,9 +153,10 @@ std::string write_cache(const CacheEntry& entry, const ImportedModel& imported,
   if (!fd) return why(entry.file, errno);
   const ModelFolder folder = model_folder(canonical_model);
   try {
-    write_cache_index(fd.get(), {entry.importer, imported.files, hashes, imported.absent,
-                                 imported.texture_folders, imported.lookups, folder.root.string(),
-                                 folder.folder.string()});
+    write_cache_index(
+        fd.get(), {entry.importer, imported.files, hashes, imported.absent,
+                   imported.texture_folders, imported.lookups, folder.root.string(),
+                   folder.folder.string(), imported.libraries, file_states(imported.libraries)});
     write_model(fd.get(), imported);
   } catch (const Error& failure) {
     fs::remove(temporary, error);

@@ -13,7 +13,7 @@ namespace glidar {
 /// One model's file in the cache folder.
 struct CacheEntry {
   std::filesystem::path file;
-  std::string importer;  ///< version of all that shapes the blob; another one makes the file void
+  std::string importer;  ///< version of the import program; another one makes the file void
 };
 
 /// Where this model with these options is cached. Not an error, but none, when there is no folder
@@ -26,8 +26,9 @@ struct CachedModel {
   std::string hash;  ///< over the content of its files
 };
 
-/// The cached model, if the file is whole and every file that the model was read from has the same
-/// content, every absent one is still absent and every texture search still ends the same way.
+/// The cached model, if the file is whole, the import program and its libraries (Assimp) are the
+/// same as then, every file that the model was read from has the same content, every absent one is
+/// still absent and every texture search still ends the same way.
 std::optional<CachedModel> read_cache(const CacheEntry& entry,
                                       const std::filesystem::path& canonical_model);
 

@@ -47,7 +47,7 @@ std::string reason(Access access) {
     case Access::absent:
       return "not found";
     case Access::outside:
-      return "outside the model's folder";
+      return "outside the model's folder, beyond which nothing is read; copy it in there";
     case Access::not_a_file:
       return "not a file";
   }

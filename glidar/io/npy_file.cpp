@@ -8,6 +8,7 @@
 
 #include <array>
 #include <iterator>
+#include <vector>
 
 namespace glidar {
 
@@ -28,11 +29,14 @@ std::string npy_header(std::string_view type, std::span<const std::size_t> shape
   return head + dictionary;
 }
 
+std::vector<Field> depth_fields(const PointCloud& cloud) {
+  return {{"depth", find_column(cloud, "depth"), 0, Stored::f32}};
+}
+
 void write_depth_npy(const CloudFile& job, AtomicFile& file) {
   const std::array<std::size_t, 2> shape = {job.cloud.rows, job.cloud.cols};
   file.write(npy_header("<f4", shape));
-  const Field depth = {"depth", find_column(job.cloud, "depth"), 0, Stored::f32};
-  write_binary_rows(std::span(&depth, 1), job.cloud.size(), file);
+  write_binary_rows(job.fields, job.cloud.size(), file);
 }
 
 }  // namespace glidar

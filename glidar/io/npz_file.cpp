@@ -3,6 +3,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/cloud_file.hpp>
 #include <glidar/io/npy.hpp>
+#include <glidar/io/stored_columns.hpp>
 
 #include <fmt/format.h>
 #include <zip.h>
@@ -184,7 +185,8 @@ void write_npz(const CloudFile& job, AtomicFile& file) {
     world_from_instance.insert(world_from_instance.end(), matrix.data(), matrix.data() + 16);
   }
   std::vector<Array> arrays;
-  for (const Column& column : job.cloud.columns) arrays.push_back(array_of(job.cloud, column));
+  for (const StoredColumn& stored : stored_columns(job.fields))
+    arrays.push_back(array_of(job.cloud, *stored.column));
   arrays.push_back(array_of("world_from_sensor", {4, 4}, numbers(world_from_sensor)));
   arrays.push_back(array_of("world_from_cloud", {4, 4}, numbers(world_from_cloud)));
   arrays.push_back(array_of("world_from_instance", {frame.world_from_instance.size(), 4, 4},

@@ -18,23 +18,6 @@ namespace {
 
 constexpr std::size_t kLargestBlock = std::numeric_limits<std::uint32_t>::max();
 
-std::vector<Field> pcd_fields(const PointCloud& cloud) {
-  std::vector<Field> fields;
-  for (const Column& column : cloud.columns) {
-    if (is_colour(column)) {
-      fields.push_back({"rgb", &column, 0, Stored::packed_rgb});
-    } else {
-      append_fields(column, fields);
-    }
-  }
-  for (Field& field : fields) {
-    // PCL's own points are float; only coordinates that float would move get 8 bytes.
-    const bool keep = field.column->name == "xyz" && !float_is_enough(*field.column);
-    if (field.stored == Stored::f64 && !keep) field.stored = Stored::f32;
-  }
-  return fields;
-}
-
 /// PCL declares packed colour a float in binary files; in text it has to be the integer, because
 /// most of these bit patterns are denormal floats, which text readers refuse.
 char pcd_type(Stored stored, PcdEncoding encoding) {
@@ -108,8 +91,24 @@ void write_compressed(std::span<const Field> fields, std::size_t count, AtomicFi
 
 }  // namespace
 
+std::vector<Field> pcd_fields(const PointCloud& cloud) {
+  std::vector<Field> fields;
+  for (const Column& column : cloud.columns) {
+    if (is_colour(column)) {
+      fields.push_back({"rgb", &column, 0, Stored::packed_rgb});
+      continue;
+    }
+    const std::size_t first = fields.size();
+    append_fields(column, fields);
+    // PCL's own points are float; only numbers that float would move get 8 bytes.
+    if (native_type(column) != Stored::f64 || !float_is_enough(column)) continue;
+    for (std::size_t f = first; f < fields.size(); ++f) fields[f].stored = Stored::f32;
+  }
+  return fields;
+}
+
 void write_pcd(const CloudFile& job, AtomicFile& file) {
-  const std::vector<Field> fields = pcd_fields(job.cloud);
+  const std::span<const Field> fields = job.fields;
   file.write(header(job, fields));
   switch (job.options.pcd) {
     case PcdEncoding::ascii:

@@ -20,23 +20,6 @@ void append_renamed(const Column& column, const std::array<const char*, 3>& name
   for (std::size_t c = 0; c < names.size(); ++c) fields.push_back({names[c], &column, c, stored});
 }
 
-std::vector<Field> ply_fields(const PointCloud& cloud) {
-  std::vector<Field> fields;
-  for (const Column& column : cloud.columns) {
-    if (column.name == "xyz") {
-      const Stored stored = float_is_enough(column) ? Stored::f32 : Stored::f64;
-      append_renamed(column, {"x", "y", "z"}, stored, fields);
-    } else if (column.name == "normal") {
-      append_renamed(column, {"nx", "ny", "nz"}, native_type(column), fields);
-    } else if (is_colour(column)) {
-      append_renamed(column, {"red", "green", "blue"}, Stored::colour_byte, fields);
-    } else {
-      append_fields(column, fields);
-    }
-  }
-  return fields;
-}
-
 std::string_view ply_type(Stored stored) {
   switch (stored) {
     case Stored::f32:
@@ -73,8 +56,25 @@ std::string header(const CloudFile& job, std::span<const Field> fields) {
 
 }  // namespace
 
+std::vector<Field> ply_fields(const PointCloud& cloud) {
+  std::vector<Field> fields;
+  for (const Column& column : cloud.columns) {
+    if (column.name == "xyz") {
+      const Stored stored = float_is_enough(column) ? Stored::f32 : Stored::f64;
+      append_renamed(column, {"x", "y", "z"}, stored, fields);
+    } else if (column.name == "normal") {
+      append_renamed(column, {"nx", "ny", "nz"}, native_type(column), fields);
+    } else if (is_colour(column)) {
+      append_renamed(column, {"red", "green", "blue"}, Stored::colour_byte, fields);
+    } else {
+      append_fields(column, fields);
+    }
+  }
+  return fields;
+}
+
 void write_ply(const CloudFile& job, AtomicFile& file) {
-  const std::vector<Field> fields = ply_fields(job.cloud);
+  const std::span<const Field> fields = job.fields;
   file.write(header(job, fields));
   if (job.options.ply_ascii) {
     write_text_rows(fields, job.cloud.size(), ' ', file);

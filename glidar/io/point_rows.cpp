@@ -201,12 +201,21 @@ void append_fields(const Column& column, std::vector<Field>& fields) {
     fields.push_back({column.components[c], &column, c, native_type(column)});
 }
 
-GLIDAR_SIMD bool float_is_enough(const Column& xyz) {
-  constexpr double kFirstCoarse_m = 2048.0;  // from here on half a float's step is over 0.1 mm
-  int coarse = 0;                            // no early end, so that the loop is one of vectors
-  for (const double value : std::get<std::vector<double>>(xyz.values)) {
-    coarse |= static_cast<int>(std::abs(value) >= kFirstCoarse_m);
-  }
+std::vector<Field> native_fields(const PointCloud& cloud) {
+  std::vector<Field> fields;
+  for (const Column& column : cloud.columns) append_fields(column, fields);
+  return fields;
+}
+
+GLIDAR_SIMD bool float_is_enough(const Column& column) {
+  constexpr double kFirstCoarse_m = 2048.0;
+  constexpr double kHalfStep = 0.5 / (1 << 23);  // of a float, per power of two
+  static_assert(kFirstCoarse_m * kHalfStep > kFinePosition_m);
+  static_assert(kFirstCoarse_m / 2.0 * kHalfStep <= kFinePosition_m);
+  const auto* values = std::get_if<std::vector<double>>(&column.values);
+  if (values == nullptr) return true;
+  int coarse = 0;  // no early end, so that the loop is one of vectors
+  for (const double value : *values) coarse |= static_cast<int>(std::abs(value) >= kFirstCoarse_m);
   return coarse == 0;
 }
 

@@ -45,8 +45,15 @@ bool is_colour(const Column& column);
 /// Appends a field per component, in the column's own names and type.
 void append_fields(const Column& column, std::vector<Field>& fields);
 
-/// True when rounding the coordinates to float moves none by more than 0.1 mm.
-bool float_is_enough(const Column& xyz);
+/// Appends a field per component of every column: the cloud as it is.
+std::vector<Field> native_fields(const PointCloud& cloud);
+
+/// How far a file may move a point without a word.
+inline constexpr double kFinePosition_m = 1e-4;
+
+/// False when rounding to float can move a number of this column by more than kFinePosition_m;
+/// columns that are not of doubles need no more than float.
+bool float_is_enough(const Column& column);
 
 /// Bytes of one point with these fields side by side.
 std::size_t row_bytes(std::span<const Field> fields);

@@ -64,13 +64,13 @@ Pose pose_of(const YamlField& field) {
     chosen = key;
     rotation = read(*given);
   }
-  return make_pose(position ? triple(*position, kFinite) : Eigen::Vector3d::Zero(), rotation);
+  return make_pose(position ? triple(*position, kCoordinate) : Eigen::Vector3d::Zero(), rotation);
 }
 
 Pose read_look_at(const YamlField& field) {
   require_map(field, {"eye", "target", "up"});
-  const Eigen::Vector3d eye = triple(need(field, "eye"), kFinite);
-  const Eigen::Vector3d target = triple(need(field, "target"), kFinite);
+  const Eigen::Vector3d eye = triple(need(field, "eye"), kCoordinate);
+  const Eigen::Vector3d target = triple(need(field, "target"), kCoordinate);
   const auto up = find(field, "up");
   try {
     return look_at(eye, target, up ? triple(*up, kFinite) : Eigen::Vector3d::UnitZ());

@@ -44,6 +44,7 @@ struct ScenePlan {
   std::vector<PlannedInstance> instances;
   std::optional<Sensor> sensor;
   std::optional<Pose> world_from_sensor;
+  std::vector<std::string> files;  ///< the scene file, and the sensor file if it names one
 };
 
 /// Reads a scene file and the sensor file it names; loads no model.

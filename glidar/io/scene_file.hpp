@@ -8,6 +8,8 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace glidar {
 
@@ -16,6 +18,7 @@ struct SceneFile {
   Scene scene;
   std::optional<Sensor> sensor;
   std::optional<Pose> world_from_sensor;
+  std::vector<std::string> files;  ///< this file and the sensor file that it names
 };
 
 /// Reads a scene from YAML (docs/files.md) and loads the models it names, each file once.

@@ -1,13 +1,14 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/hits.hpp>
+#include <glidar/io/builtin_models.hpp>
+#include <glidar/io/length_unit.hpp>
 #include <glidar/io/pose_yaml.hpp>
 #include <glidar/io/scene_builder.hpp>
 #include <glidar/io/sensor_file.hpp>
 #include <glidar/io/sensor_yaml.hpp>
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <set>
 
@@ -16,26 +17,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kBuiltin = "builtin:";
+constexpr NumberRule kScale = {0.0, kLargestCoordinate_m, true, "a number above 0 and below 1e15"};
 constexpr NumberRule kShininess = {0.0, 128.0, false, "a number from 0 to 128"};
 
 /// A path of the file, seen from the file's own folder.
 std::string resolved(const YamlField& field) {
   const std::string source = text(field);
-  if (source.starts_with(kBuiltin)) return source;
+  if (source.starts_with(kBuiltinPrefix)) return source;
   return (fs::path(field.file).parent_path() / source).lexically_normal().string();
 }
 
 std::string stem(const std::string& source) {
-  if (source.starts_with(kBuiltin)) return source.substr(kBuiltin.size());
+  if (source.starts_with(kBuiltinPrefix)) return source.substr(kBuiltinPrefix.size());
   return fs::path(source).stem().string();
 }
 
 ModelOptions read_options(const YamlField& model, const ModelOptions& defaults) {
-  constexpr std::array<double, 4> kMetres = {0.001, 0.01, 1.0, 0.0254};
   ModelOptions options = defaults;
   if (const auto unit = find(model, "unit")) {
-    options.metres_per_unit = kMetres[one_of(*unit, {"mm", "cm", "m", "in"})];
+    options.metres_per_unit = kLengthUnits[one_of(*unit, length_unit_names())].metres;
   }
   if (const auto up = find(model, "up")) {
     options.up = static_cast<Axis>(one_of(*up, {"x", "y", "z"}));
@@ -80,7 +80,7 @@ PlannedInstance read_model(const YamlField& field, const ModelOptions& defaults)
   planned.source = resolved(model);
   planned.where = where(model);
   planned.options = read_options(field, defaults);
-  planned.scale = number_or(field, "scale", kAboveZero, 1.0);
+  planned.scale = number_or(field, "scale", kScale, 1.0);
   if (const auto pose = find(field, "pose")) planned.world_from_object = read_pose(*pose);
   if (const auto name = find(field, "class")) planned.class_name = text(*name);
   if (const auto materials = find(field, "materials")) {
@@ -138,7 +138,7 @@ std::vector<PlannedInstance> read_models(const YamlField& field, const ModelOpti
 }
 
 /// The sensor beside the world: a map, or the name of a sensor file.
-Sensor read_scene_sensor(const YamlField& field) {
+Sensor read_scene_sensor(const YamlField& field, std::vector<std::string>& files) {
   if (field.node.IsMap()) return read_sensor(field);
   if (!field.node.IsScalar() || field.node.Scalar().empty()) {
     reject(field, describe(field), "a map, or the path of a sensor file");
@@ -148,6 +148,7 @@ Sensor read_scene_sensor(const YamlField& field) {
     reject(field, "no such file: " + file, "a map, or the path of a sensor file",
            "paths are relative to the folder of this file");
   }
+  files.push_back(file);
   return load_sensor_file(file);
 }
 
@@ -157,8 +158,11 @@ ScenePlan read_scene_plan(const fs::path& path, const ModelOptions& defaults) {
   const YamlField root = read_yaml(path);
   require_map(root, {"models", "sensor", "sensor_pose"});
   ScenePlan plan;
+  plan.files.push_back(path.string());
   plan.instances = read_models(need(root, "models"), defaults);
-  if (const auto sensor = find(root, "sensor")) plan.sensor = read_scene_sensor(*sensor);
+  if (const auto sensor = find(root, "sensor")) {
+    plan.sensor = read_scene_sensor(*sensor, plan.files);
+  }
   if (const auto pose = find(root, "sensor_pose")) plan.world_from_sensor = read_sensor_pose(*pose);
   return plan;
 }

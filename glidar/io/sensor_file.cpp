@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/sensor_file.hpp>
 
+#include <glidar/core/error.hpp>
 #include <glidar/io/sensor_yaml.hpp>
 
 #include <limits>
@@ -10,15 +11,22 @@
 namespace glidar {
 namespace {
 
-constexpr std::uint32_t kLargestSide = 65536;
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr NumberRule kFieldOfView = {0.0, 180.0, true, "degrees above 0 and below 180"};
 
 constexpr NumberRule kPixelCentre = {0.0, 1.0 - std::numeric_limits<double>::epsilon(), false,
                                      "a number from 0 to below 1; 0.5 and 0 are usual"};
 
-double read_fov_rad(const YamlField& field) {
-  return number(field, kFieldOfView) * kDegree;
+constexpr NumberRule kFocalLength = {0.0, kFarthestPixel, true, "pixels above 0 and below 1e9"};
+constexpr NumberRule kPrincipalPoint = {-kFarthestPixel, kFarthestPixel, false,
+                                        "pixels from -1e9 to 1e9"};
+
+/// Of an image with this many pixels along the side that the field of view spans.
+double read_focal_length(const YamlField& field, std::uint32_t side) {
+  const double focal = focal_length_px(side, number(field, kFieldOfView) * kDegree);
+  if (focal > 0.0 && focal < kFarthestPixel) return focal;
+  reject(field, describe(field) + ", a focal length of " + number_text(focal) + " pixels",
+         "a field of view that gives pixels above 0 and below 1e9");
 }
 
 /// Coefficients by key; those not given are 0.
@@ -85,25 +93,21 @@ void reject_beside_fov(const YamlField& optics, const std::string& fov_key) {
 
 PinholeIntrinsics read_intrinsics(const YamlField& optics) {
   PinholeIntrinsics k;
-  k.width = whole_number(need(optics, "width"), 1, kLargestSide);
-  k.height = whole_number(need(optics, "height"), 1, kLargestSide);
+  k.width = whole_number(need(optics, "width"), 1, kLargestImageSide);
+  k.height = whole_number(need(optics, "height"), 1, kLargestImageSide);
   k.pixel_centre = number_or(optics, "pixel_centre", kPixelCentre, k.pixel_centre);
   const std::string key = focal_key(optics);
   if (key == "fx") {
-    k.fx = number(need(optics, "fx"), kAboveZero);
-    k.fy = number(need(optics, "fy"), kAboveZero);
+    k.fx = number(need(optics, "fx"), kFocalLength);
+    k.fy = number(need(optics, "fy"), kFocalLength);
   } else {
     reject_beside_fov(optics, key);
-    const double fov_rad = read_fov_rad(need(optics, key));
-    // The horizontal angle gives the focal length of the image turned by 90 degrees.
-    const Pinhole pinhole = key == "fov_deg" ? pinhole_from_fov(k.width, k.height, fov_rad)
-                                             : pinhole_from_fov(k.height, k.width, fov_rad);
-    k.fx = k.fy = pinhole.intrinsics.fy;
+    k.fx = k.fy = read_focal_length(need(optics, key), key == "fov_deg" ? k.height : k.width);
   }
   // The middle of the image: half its width from the left edge of pixel 0, whose centre has the
   // coordinate pixel_centre.
-  k.cx = number_or(optics, "cx", kFinite, 0.5 * k.width - 0.5 + k.pixel_centre);
-  k.cy = number_or(optics, "cy", kFinite, 0.5 * k.height - 0.5 + k.pixel_centre);
+  k.cx = number_or(optics, "cx", kPrincipalPoint, 0.5 * k.width - 0.5 + k.pixel_centre);
+  k.cy = number_or(optics, "cy", kPrincipalPoint, 0.5 * k.height - 0.5 + k.pixel_centre);
   return k;
 }
 

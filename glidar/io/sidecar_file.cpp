@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/version.hpp>
 #include <glidar/io/cloud_file.hpp>
-#include <glidar/io/point_rows.hpp>
+#include <glidar/io/stored_columns.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -85,15 +85,13 @@ Json sensor_json(const CloudFile& job) {
           {"world_from_sensor", pose_json(job.frame.world_from_sensor)}};
 }
 
-/// The types that make_point_cloud gives; a format may store them shorter.
-Json columns_json(const PointCloud& cloud) {
-  constexpr std::array kTypes = {"f32", "f64", "u8", "u16", "u32"};
-  static_assert(kTypes.size() == std::variant_size_v<decltype(Column::values)>);
+/// As the file holds them, which may be shorter, renamed or fewer than the cloud's.
+Json columns_json(std::span<const Field> fields) {
   Json columns = Json::array();
-  for (const Column& column : cloud.columns) {
-    columns.push_back({{"name", column.name},
-                       {"type", kTypes[column.values.index()]},
-                       {"components", column.components}});
+  for (const StoredColumn& stored : stored_columns(fields)) {
+    columns.push_back({{"name", stored.column->name},
+                       {"type", type_name(stored.stored)},
+                       {"components", stored.fields}});
   }
   return columns;
 }
@@ -104,7 +102,7 @@ Json cloud_json(const CloudFile& job, const std::filesystem::path& path) {
           {"cols", job.cloud.cols},
           {"frame_id", job.cloud.frame_id},
           {"world_from_cloud", pose_json(job.cloud.world_from_cloud)},
-          {"columns", columns_json(job.cloud)}};
+          {"columns", columns_json(job.fields)}};
 }
 
 Json instances_json(const CloudFile& job) {

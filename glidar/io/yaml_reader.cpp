@@ -3,6 +3,7 @@
 #include <glidar/io/yaml_reader.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/nearest_file.hpp>
 
 #include <yaml-cpp/depthguard.h>
 
@@ -43,24 +44,16 @@ std::string joined(const std::vector<std::string>& words) {
   return text;
 }
 
-std::string neighbour(const fs::path& file) {
-  std::error_code error;
-  std::vector<std::string> names;
-  const fs::path folder = file.has_parent_path() ? file.parent_path() : fs::path(".");
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    names.push_back(entry.path().filename().string());
-  }
-  std::sort(names.begin(), names.end());  // the order of a folder is not the same everywhere
-  return suggestion(file.filename().string(), names);
-}
-
 std::string read_text(const fs::path& file) {
   const auto fail = [&](std::string found, std::string allowed, std::string remedy) {
     throw Error({file.string(), std::move(found), std::move(allowed), std::move(remedy)});
   };
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
-  if (status.type() == fs::file_type::not_found) fail("no such file", "", neighbour(file));
+  if (status.type() == fs::file_type::not_found) {
+    const std::string nearest = nearest_file(file);
+    fail("no such file", "", nearest.empty() ? "" : "did you mean '" + nearest + "'?");
+  }
   if (fs::is_directory(status)) fail("a folder", "a YAML file", "");
   if (!fs::is_regular_file(status)) fail("not a regular file", "a YAML file", "");
   if (fs::file_size(file, error) > kLargestFile_bytes) {
@@ -271,7 +264,7 @@ bool boolean(const YamlField& field) {
 
 std::string text(const YamlField& field) {
   if (!field.node.IsScalar() || field.node.Scalar().empty()) {
-    reject(field, describe(field), "a text");
+    reject(field, describe(field), "a text that is not empty");
   }
   return field.node.Scalar();
 }

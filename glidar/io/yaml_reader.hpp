@@ -4,6 +4,8 @@
 
 // Private to glidar/io: reading YAML so that every error tells file:line:column and the field.
 
+#include <glidar/core/pose.hpp>
+
 #include <yaml-cpp/yaml.h>
 #include <Eigen/Core>
 
@@ -39,6 +41,8 @@ inline constexpr NumberRule kAboveZero = {0.0, std::numeric_limits<double>::max(
                                           "a finite number above 0"};
 inline constexpr NumberRule kFromZero = {0.0, std::numeric_limits<double>::max(), false,
                                          "a finite number from 0"};
+inline constexpr NumberRule kCoordinate = {-kLargestCoordinate_m, kLargestCoordinate_m, false,
+                                           "a number from -1e15 to 1e15"};
 inline constexpr NumberRule kZeroToOne = {0.0, 1.0, false, "a number from 0 to 1"};
 
 /// Reads a file that holds one YAML map. Throws Error: missing, not a file, over 2 MiB, empty, bad

@@ -13,24 +13,22 @@ namespace glidar {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::uint32_t kLargestSide = 65536;
-constexpr double kLargestPixels = 1e9;
 
 void require(bool holds, const char* field, double found, const char* allowed) {
   if (holds) return;
   throw Error({.where = std::string("pinhole, ") + field,
-               .found = std::to_string(found),
+               .found = number_text(found),
                .allowed = allowed,
                .remedy = ""});
 }
 
 void validate(const PinholeIntrinsics& k) {
-  require(k.width >= 1 && k.width <= kLargestSide, "width", k.width, "1 to 65536 pixels");
-  require(k.height >= 1 && k.height <= kLargestSide, "height", k.height, "1 to 65536 pixels");
-  require(k.fx > 0.0 && k.fx <= kLargestPixels, "fx", k.fx, "above 0, up to 1e9 pixels");
-  require(k.fy > 0.0 && k.fy <= kLargestPixels, "fy", k.fy, "above 0, up to 1e9 pixels");
-  require(std::abs(k.cx) <= kLargestPixels, "cx", k.cx, "-1e9 to 1e9 pixels");
-  require(std::abs(k.cy) <= kLargestPixels, "cy", k.cy, "-1e9 to 1e9 pixels");
+  require(k.width >= 1 && k.width <= kLargestImageSide, "width", k.width, "1 to 65536 pixels");
+  require(k.height >= 1 && k.height <= kLargestImageSide, "height", k.height, "1 to 65536 pixels");
+  require(k.fx > 0.0 && k.fx <= kFarthestPixel, "fx", k.fx, "above 0, up to 1e9 pixels");
+  require(k.fy > 0.0 && k.fy <= kFarthestPixel, "fy", k.fy, "above 0, up to 1e9 pixels");
+  require(std::abs(k.cx) <= kFarthestPixel, "cx", k.cx, "-1e9 to 1e9 pixels");
+  require(std::abs(k.cy) <= kFarthestPixel, "cy", k.cy, "-1e9 to 1e9 pixels");
   require(k.pixel_centre >= 0.0 && k.pixel_centre < 1.0, "pixel_centre", k.pixel_centre, "0 to 1");
 }
 
@@ -125,10 +123,14 @@ void fill_directions(const PinholeIntrinsics& k, const Model& distortion,
 
 }  // namespace
 
+double focal_length_px(std::uint32_t pixels, double fov_rad) {
+  return static_cast<double>(pixels) / (2.0 * std::tan(fov_rad / 2.0));
+}
+
 Pinhole pinhole_from_fov(std::uint32_t width, std::uint32_t height, double fov_y_rad) {
   require(fov_y_rad > 0.0 && fov_y_rad < std::numbers::pi, "fov_y_rad", fov_y_rad,
           "above 0 and below pi");
-  const double focal = static_cast<double>(height) / (2.0 * std::tan(fov_y_rad / 2.0));
+  const double focal = focal_length_px(height, fov_y_rad);
   Pinhole pinhole{.intrinsics = {.width = width,
                                  .height = height,
                                  .fx = focal,

@@ -5,6 +5,7 @@
 #include <glidar/core/beams.hpp>
 #include <glidar/sensor/scan.hpp>
 
+#include <cstdint>
 #include <variant>
 
 namespace glidar {
@@ -41,6 +42,14 @@ struct Pinhole {
   PinholeIntrinsics intrinsics;
   Distortion distortion;
 };
+
+/// Most pixels along one side of an image.
+inline constexpr std::uint32_t kLargestImageSide = 65536;
+/// Farthest that focal lengths and principal points go, in pixels.
+inline constexpr double kFarthestPixel = 1e9;
+
+/// The focal length in pixels of an image that spans this angle over this many pixels.
+double focal_length_px(std::uint32_t pixels, double fov_rad);
 
 /// Square pixels, principal point in the middle: fy = height / (2 tan(fov_y / 2)).
 /// Throws Error unless 0 < fov_y_rad < pi and both sizes are at least 1.

@@ -71,6 +71,22 @@ class Refusals(CliTest):
         self.assertIn("did you mean 'intensity'?",
                       self.refused("render", "builtin:box", "-o", "x.pcd", "--columns", "xyz,intensty"))
 
+    def test_files_of_the_scene_are_never_overwritten(self):
+        self.write("paint.npy", "P6 1 1 255\nabc")
+        self.write("paint.mtl", "newmtl paint\nmap_Kd paint.npy\n")
+        self.write("box.obj", "mtllib paint.mtl\nusemtl paint\n" + BOX)
+        self.write("sensor.bin", "optics: {width: 9, height: 9, fov_deg: 30}\n")
+        self.write("scene.yaml", "models: [{model: box.obj}]\nsensor: sensor.bin\n")
+        os.symlink("paint.mtl", os.path.join(self.folder, "link.csv"))
+        os.link(os.path.join(self.folder, "box.obj"), os.path.join(self.folder, "box.ply"))
+        for name in ("paint.npy", "link.csv", "sensor.bin", "box.ply"):
+            for command in (("box.obj", "--sensor", "sensor.bin"), ("scene.yaml",)):
+                with self.subTest(name, command=command):
+                    error = self.refused("render", *command, "-o", name)
+                    self.assertIn(name, error)
+                    self.assertIn("is an input file", error)
+                    self.assertIn("choose another name", error)
+
     def test_numbers(self):
         render = ("render", "builtin:box", "-o", "x.pcd")
         for arguments, text in (
@@ -155,6 +171,20 @@ class Render(CliTest):
             with open(os.path.join(self.folder, "a.pcd"), "rb") as file:
                 contents.append(file.read())
         self.assertEqual(contents[0], contents[1])
+
+    def test_same_bytes_with_and_without_the_cache(self):
+        self.write("paint.ppm", "P6 2 2 255\na c!e~ghijkl")
+        self.write("paint.mtl", "newmtl paint\nKs 1 1 1\nNs 9\nmap_Kd paint.ppm\nmap_bump paint.ppm\n")
+        corners = re.sub(r"(?m)^v (\S+)", lambda m: f"v {float(m.group(1)) + 123456.7}", BOX)
+        faces = re.sub(r"(?m)^f (\d) (\d) (\d) (\d)", r"f \1/1 \2/2 \3/3 \4/4", corners)
+        self.write("box.obj", "mtllib paint.mtl\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl paint\n" + faces)
+        contents = []
+        for arguments in (("--no-cache",), ("--no-cache",), (), (), ("--cache-folder", "other")):
+            self.succeed("render", "box.obj", *arguments, "--columns", "all", "-o", "a.npz")
+            with open(os.path.join(self.folder, "a.npz"), "rb") as file:
+                contents.append(file.read())
+        self.assertIn('"from_cache": true', self.succeed("info", "box.obj", "--json").stdout)
+        self.assertEqual(set(contents), {contents[0]})
 
     def read_legacy(self, name):
         with open(os.path.join(self.folder, name + ".pcd"), "rb") as file:

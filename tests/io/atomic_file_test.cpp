@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 
 #include <io/cloud_fixture.hpp>
+#include <support/error_text.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -41,15 +42,6 @@ class FullDisk {
   rlimit before_{};
   void (*handler_)(int);
 };
-
-std::string error_text(const auto& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   const ScratchFolder folder;

@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 
 #include <io/cloud_fixture.hpp>
+#include <support/error_text.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,15 +20,6 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-std::string error_text(const auto& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
-}
 
 TEST(FileFormats, TheLongestSuffixWins) {
   EXPECT_EQ(format_for("a.png").suffix, ".png");
@@ -131,6 +123,41 @@ TEST(FileSink, TheSameCloudGivesTheSameBytesInEveryFormat) {
               file_bytes(folder / ("b" + format.suffix)))
         << format.suffix;
   }
+}
+
+/// What is reported when a cloud whose first coordinate and depth are these is written.
+std::string told_of(const char* name, double x_m, double depth_m) {
+  const ScratchFolder folder;
+  CloudFixture made = make_fixture();
+  std::get<std::vector<double>>(made.cloud.columns[0].values)[0] = x_m;
+  std::get<std::vector<double>>(made.cloud.columns[2].values)[0] = depth_m;
+  std::string told;
+  const Report report{[&told](Severity severity, std::string_view text) {
+                        EXPECT_EQ(severity, Severity::warning);
+                        told += text;
+                      },
+                      {}};
+  const SidecarContext context = made.context();
+  make_file_sink(folder / name, {}, context, report)->write(made.cloud, made.frame);
+  return told;
+}
+
+TEST(FileSink, PointsThatFloatMovesAreToldWithHowFarAndWhatToDo) {
+  // Floats near 10 km are 0.977 mm apart.
+  EXPECT_THAT(told_of("a.bin", 10000.0004, 1.0),
+              AllOf(HasSubstr("a.bin: rounding to float32 moves its points by up to 0.0004 m"),
+                    HasSubstr("write .npz, .csv, .pcd or .ply")));
+  EXPECT_THAT(told_of("a.npy", 1.0, 10000.0004), HasSubstr("its depth by up to 0.0004 m"));
+}
+
+TEST(FileSink, NothingIsToldWherePointsStayWithinATenthOfAMillimetre) {
+  for (const char* name : {"a.bin", "a.npy"}) {
+    EXPECT_EQ(told_of(name, 2000.0001, 2000.0001), "") << name;
+    EXPECT_EQ(told_of(name, 4096.0, 4096.0), "") << name;
+    EXPECT_EQ(told_of(name, 3000.00005, 3000.00005), "") << name;
+  }
+  for (const char* name : {"a.pcd", "a.ply", "a.npz", "a.csv"})
+    EXPECT_EQ(told_of(name, 10000.0004, 10000.0004), "") << name;
 }
 
 TEST(FileSink, TwoSinksOfOnePathLeaveAWholeFile) {

@@ -6,6 +6,7 @@
 #include <glidar/core/version.hpp>
 
 #include <io/cloud_fixture.hpp>
+#include <support/error_text.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,13 +43,8 @@ std::string written(const CloudFixture& made, const char* name,
   return file_bytes(folder / name);
 }
 
-std::string error_text(const CloudFixture& made, const char* name) {
-  try {
-    written(made, name);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "no error";
+std::string write_error(const CloudFixture& made, const char* name) {
+  return error_text([&] { written(made, name); });
 }
 
 std::string pcd_head(const char* data) {
@@ -101,6 +97,14 @@ TEST(PcdFile, CompressedDoesNotGrowMuchOnNoise) {
   EXPECT_LT(written(made, "a.pcd", options).size(), binary + binary / 16);
 }
 
+TEST(PcdFile, FarNumbersAreDouble) {
+  CloudFixture made = make_fixture(1, 2);
+  for (const char* name : {"normal", "colour", "instance", "ring", "status"})
+    drop_column(made.cloud, name);
+  std::get<std::vector<double>>(made.cloud.columns[2].values)[0] = 2048.1;
+  EXPECT_THAT(written(made, "a.pcd"), HasSubstr("FIELDS x y z intensity depth\nSIZE 4 4 4 4 8\n"));
+}
+
 TEST(PlyFile, AsciiIsThisText) {
   FileSinkOptions options;
   options.ply_ascii = true;
@@ -148,14 +152,14 @@ TEST(DepthPng, ADepthOutOfRangeIsAnErrorWithTheScaleThatFits) {
   CloudFixture made = make_fixture();
   auto& depths_m = std::get<std::vector<double>>(made.cloud.columns[2].values);
   depths_m[0] = 65.535;
-  EXPECT_EQ(error_text(made, "a.depth.png"), "no error");
+  EXPECT_EQ(write_error(made, "a.depth.png"), "no error");
   depths_m[0] = 80.0;
   EXPECT_THAT(
-      error_text(made, "a.depth.png"),
+      write_error(made, "a.depth.png"),
       AllOf(HasSubstr("the largest depth, 80 m, does not fit 16 bits at 1000 units per metre"),
             HasSubstr("up to 65.535 m"), HasSubstr("use 810 units per metre")));
   depths_m[0] = -2.0;
-  EXPECT_THAT(error_text(made, "a.depth.png"), HasSubstr("a depth of -2 m, behind the sensor"));
+  EXPECT_THAT(write_error(made, "a.depth.png"), HasSubstr("a depth of -2 m, behind the sensor"));
 }
 
 TEST(TransformFile, IsTheFirstObjectInTheCloudsFrameWithoutScale) {
@@ -169,13 +173,13 @@ TEST(TransformFile, IsTheFirstObjectInTheCloudsFrameWithoutScale) {
 TEST(TransformFile, NeedsAnObject) {
   CloudFixture made = make_fixture();
   made.frame.world_from_instance.clear();
-  EXPECT_THAT(error_text(made, "a.transform"), HasSubstr("the scene has no object"));
+  EXPECT_THAT(write_error(made, "a.transform"), HasSubstr("the scene has no object"));
 }
 
-nlohmann::json sidecar_of(const CloudFixture& made) {
+nlohmann::json sidecar_of(const CloudFixture& made, const std::string& name = "a.pcd") {
   const ScratchFolder folder;
-  write_cloud(made, folder / "a.pcd");
-  return nlohmann::json::parse(file_bytes(folder / "a.pcd.json"));
+  write_cloud(made, folder / name);
+  return nlohmann::json::parse(file_bytes(folder / (name + ".json")));
 }
 
 TEST(Sidecar, TellsSensorPosesSeedModelAndCounts) {
@@ -200,12 +204,35 @@ TEST(Sidecar, TellsSensorPosesSeedModelAndCounts) {
   EXPECT_EQ(told.at("sensor").at("world_from_sensor").at("matrix").at(0),
             nlohmann::json({0.0, -1.0, 0.0, 1.0}));
   EXPECT_EQ(told.at("cloud").at("frame_id"), "map");
-  EXPECT_EQ(told.at("cloud").at("columns").at(0).at("type"), "f64");
+  EXPECT_EQ(
+      told.at("cloud").at("columns").at(0),
+      nlohmann::json::parse(R"({"name": "xyz", "type": "f32", "components": ["x", "y", "z"]})"));
   EXPECT_EQ(told.at("instances").at(0).at("model_hash"), "0123abcd");
   EXPECT_EQ(told.at("instances").at(0).at("scale"), 2.5);
   EXPECT_EQ(told.at("instances").at(0).at("class"), "unlabelled");
   EXPECT_EQ(told.at("beams_by_status").at("hit"), 14);
   EXPECT_EQ(told.at("beams_by_status").at("miss"), 6);
+}
+
+// readers_test.py compares the columns of every sidecar with the header of the file beside it.
+TEST(Sidecar, TellsOnlyColumnsThatTheFileHolds) {
+  EXPECT_EQ(sidecar_of(make_fixture(), "a.bin").at("cloud").at("columns"),
+            nlohmann::json::parse(R"([
+    {"name": "xyz", "type": "f32", "components": ["x", "y", "z"]},
+    {"name": "intensity", "type": "f32", "components": ["intensity"]}])"));
+}
+
+TEST(Sidecar, TellsNamesAndTypesAsTheFileHasThem) {
+  const auto column = [](const char* file, std::size_t i) {
+    const nlohmann::json told = sidecar_of(make_fixture(), file).at("cloud").at("columns").at(i);
+    return told.at("type").get<std::string>() + " " + told.at("components").dump();
+  };
+  EXPECT_EQ(column("a.pcd", 2), R"(f32 ["depth"])");
+  EXPECT_EQ(column("a.pcd", 4), R"(packed_rgb ["rgb"])");
+  EXPECT_EQ(column("a.ply", 3), R"(f32 ["nx","ny","nz"])");
+  EXPECT_EQ(column("a.ply", 4), R"(u8 ["red","green","blue"])");
+  EXPECT_EQ(column("a.npz", 0), R"(f64 ["x","y","z"])");
+  EXPECT_EQ(column("a.csv", 6), R"(u16 ["ring"])");
 }
 
 TEST(Sidecar, NeverHoldsAWordThatJsonHasNot) {

@@ -8,6 +8,11 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
 #include <thread>
 
 namespace glidar {
@@ -147,6 +152,52 @@ TEST_F(ModelCache, AnotherImporterMakesItAnew) {
   EXPECT_TRUE(read_cache(*entry, fs::canonical(file_)).has_value());
   entry->importer += "x";
   EXPECT_FALSE(read_cache(*entry, fs::canonical(file_)).has_value());
+}
+
+/// The environment variable has this value while it lives.
+class Variable {
+ public:
+  Variable(const char* name, const std::string& value) : name_(name) {
+    if (const char* old = std::getenv(name)) old_ = old;
+    ::setenv(name, value.c_str(), 1);
+  }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+  ~Variable() {
+    if (old_) {
+      ::setenv(name_, old_->c_str(), 1);
+    } else {
+      ::unsetenv(name_);
+    }
+  }
+
+ private:
+  const char* name_;
+  std::optional<std::string> old_;
+};
+
+TEST_F(ModelCache, AnUpgradedImporterLibraryMakesItAnew) {
+  load();
+  std::FILE* opened = std::fopen(cache_file().c_str(), "rb");
+  FrameReader head(::fileno(opened));
+  const CacheIndex index = read_cache_index(head);
+  std::fclose(opened);
+  const auto assimp = std::find_if(
+      index.libraries.begin(), index.libraries.end(),
+      [](const std::string& path) { return path.find("libassimp") != std::string::npos; });
+  ASSERT_NE(assimp, index.libraries.end());
+
+  const TempFolder libraries;
+  const fs::path copy = libraries.path() / fs::path(*assimp).filename();
+  fs::copy_file(*assimp, copy);
+  const Variable path("LD_LIBRARY_PATH", libraries.path().string());
+  EXPECT_FALSE(load().from_cache);
+  EXPECT_TRUE(load().from_cache);
+  fs::last_write_time(copy, fs::last_write_time(copy) + std::chrono::seconds(1));
+  EXPECT_FALSE(load().from_cache);
+  EXPECT_TRUE(load().from_cache);
+  fs::remove(copy);  // then the system's own is used again
+  EXPECT_FALSE(load().from_cache);
 }
 
 TEST_F(ModelCache, AFolderThatCannotBeWrittenIsOnlyTold) {

@@ -71,6 +71,10 @@ std::vector<Ray> pinhole_rays(const nlohmann::json& p) {
 std::vector<Ray> lidar_rays(const nlohmann::json& p, std::size_t count) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   const std::size_t columns = count / p["elevation_deg"].size();
+  const Eigen::Vector3d told = vector(p["origin"]);
+  // Files of z up were turned to y up for the reference.
+  const Eigen::Vector3d origin =
+      p["up_axis"] == "y" ? Eigen::Vector3d(told.x(), -told.z(), told.y()) : told;
   std::vector<Ray> rays;
   for (const nlohmann::json& elevation_deg : p["elevation_deg"]) {
     const double elevation = elevation_deg.get<double>();
@@ -81,9 +85,7 @@ std::vector<Ray> lidar_rays(const nlohmann::json& p, std::size_t count) {
       const double se = std::sin(elevation * kDegree);
       const double ca = std::cos(azimuth * kDegree);
       const double sa = std::sin(azimuth * kDegree);
-      const bool y_up = p["up_axis"] == "y";
-      rays.push_back({vector(p["origin"]), y_up ? Eigen::Vector3d(ce * ca, se, -ce * sa)
-                                                : Eigen::Vector3d(ce * ca, ce * sa, se)});
+      rays.push_back({origin, {ce * ca, ce * sa, se}});
     }
   }
   return rays;

@@ -12,6 +12,7 @@
 namespace glidar {
 namespace {
 
+using testing::gltf;
 using ::testing::HasSubstr;
 using testing::load;
 using testing::load_error;
@@ -28,21 +29,6 @@ Eigen::Vector3d place(const Mesh& mesh, std::size_t triangle, std::size_t corner
 
 Eigen::Vector3d front(const Mesh& mesh, std::size_t t) {
   return (place(mesh, t, 1) - place(mesh, t, 0)).cross(place(mesh, t, 2) - place(mesh, t, 0));
-}
-
-/// A glTF of one triangle in the xy plane with the given nodes and material parts.
-std::string gltf(const std::string& nodes, const std::string& materials = "{}",
-                 const std::string& more = "") {
-  // Three float3 corners, three float2 uvs: (0,0,0) (1,0,0) (0,1,0); (0,0) (1,0) (0,1).
-  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
-         R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"material":0}]}],
-"materials":[)" +
-         materials + R"(],
-"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
-{"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"}],
-"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24}],
-"buffers":[{"byteLength":60,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/"}])" +
-         more + "}";
 }
 
 TEST(LoadModel, ReadsPositionsAndOrderAsTheyStand) {
@@ -109,6 +95,15 @@ TEST(LoadModel, ImpossibleOptionsAreErrors) {
   options = without_cache();
   options.crease_angle_rad = 4.0;
   EXPECT_THAT(load_error("builtin:box", options), HasSubstr("crease_angle_rad"));
+}
+
+TEST(LoadModel, HugeNumbersInErrorsAreShort) {
+  ModelOptions options = without_cache();
+  options.metres_per_unit = 1e300;
+  EXPECT_THAT(load_error("builtin:box", options), HasSubstr("1e+300 makes"));
+  options.metres_per_unit = -1e300;
+  EXPECT_THAT(load_error("builtin:box", options), HasSubstr("-1e+300"));
+  EXPECT_LT(load_error("builtin:box", options).size(), 120U);
 }
 
 TEST(LoadModel, NodesAreAppliedAndMirrorsKeepTheirFronts) {

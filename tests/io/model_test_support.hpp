@@ -104,6 +104,21 @@ inline std::string quad_obj(const std::string& mtllib) {
          "usemtl paint\nf 1/1 2/2 3/3 4/4\n";
 }
 
+/// A glTF of one triangle in the xy plane with the given nodes and material parts.
+inline std::string gltf(const std::string& nodes, const std::string& materials = "{}",
+                        const std::string& more = "") {
+  // Three float3 corners, three float2 uvs: (0,0,0) (1,0,0) (0,1,0); (0,0) (1,0) (0,1).
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":)" + nodes +
+         R"(,"meshes":[{"primitives":[{"attributes":{"POSITION":0,"TEXCOORD_0":1},"material":0}]}],
+"materials":[)" +
+         materials + R"(],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]},
+{"bufferView":1,"componentType":5126,"count":3,"type":"VEC2"}],
+"bufferViews":[{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":24}],
+"buffers":[{"byteLength":60,"uri":"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAAAAAAAAAAAAIA/"}])" +
+         more + "}";
+}
+
 }  // namespace glidar::testing
 
 /// The sanitizers' own memory and signal handling hide what a test is about.

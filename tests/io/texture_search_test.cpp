@@ -4,6 +4,8 @@
 
 #include <io/model_test_support.hpp>
 
+#include <gmock/gmock.h>
+
 namespace glidar {
 namespace {
 
@@ -79,7 +81,7 @@ TEST(TextureSearch, NothingOutsideTheRootIsFound) {
   const fs::path model = temp.write("inner/a.obj", "x");
   const TextureLookup lookup = find_texture("../secret.png", model_folder(model));
   EXPECT_EQ(lookup.found, "");
-  EXPECT_EQ(lookup.reason, "outside the model's folder");
+  EXPECT_THAT(lookup.reason, ::testing::StartsWith("outside the model's folder"));
 }
 
 TEST(TextureSearch, ALinkOutOfTheRootIsRefused) {
@@ -88,7 +90,8 @@ TEST(TextureSearch, ALinkOutOfTheRootIsRefused) {
   const fs::path model = temp.write("inner/a.obj", "x");
   fs::create_symlink("../secret.png", temp.path() / "inner" / "link.png");
   EXPECT_EQ(find_texture("link.png", model_folder(model)).found, "");
-  EXPECT_EQ(find_texture("link.png", model_folder(model)).reason, "outside the model's folder");
+  EXPECT_THAT(find_texture("link.png", model_folder(model)).reason,
+              ::testing::StartsWith("outside the model's folder"));
 }
 
 TEST(TextureSearch, FoldersAndDevicesAreNoTextures) {

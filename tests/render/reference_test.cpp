@@ -52,19 +52,26 @@ Beams spinning_beams(const json& params) {
   beams.cols = static_cast<std::uint32_t>(std::stoul(azimuths.substr(azimuths.find('/') + 1)));
   beams.rows = static_cast<std::uint32_t>(params["elevation_deg"].size());
   beams.frame_id = "lidar";
-  const bool y_up = params["up_axis"] == "y";
   const double degree = std::numbers::pi / 180.0;
   for (const double elevation_deg : params["elevation_deg"]) {
     for (std::uint32_t i = 0; i < beams.cols; ++i) {
       const double e = elevation_deg * degree;
       const double a = (params["yaw0_deg"].get<double>() + i * 360.0 / beams.cols) * degree;
-      const Eigen::Vector3d z_up(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
-      const Eigen::Vector3d direction =
-          y_up ? Eigen::Vector3d(z_up.x(), z_up.z(), -z_up.y()) : z_up;
-      beams.directions.push_back(direction.normalized());
+      beams.directions.push_back(
+          Eigen::Vector3d(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e))
+              .normalized());
     }
   }
   return beams;
+}
+
+/// Where a scanner stood in the model's own axes. Files of z up were turned to y up for the
+/// reference.
+Eigen::Vector3d scanner_origin(const json& params) {
+  const json& o = params["origin"];
+  if (params["up_axis"] == "y")
+    return {o[0].get<double>(), -o[2].get<double>(), o[1].get<double>()};
+  return {o[0].get<double>(), o[1].get<double>(), o[2].get<double>()};
 }
 
 constexpr double kSingle = 6e-8;  // one rounding to single precision
@@ -96,7 +103,7 @@ TEST_P(ReferenceCase, EveryStableBeamMeetsTheSameTriangleAtTheSameDepth) {
   if (pinhole) {
     world_from_sensor = pose_from(params["camera_to_world"]);
   } else {
-    for (int k = 0; k < 3; ++k) world_from_sensor.translation()[k] = params["origin"][k];
+    world_from_sensor.translation() = scanner_origin(params);
   }
   const Scene scene = testing::scene_of(testing::load_data_model(params["model"]));
   ASSERT_EQ(scene.meshes[0].triangles.size(), params["triangles"].get<std::size_t>());

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+
+// What single formats say of axes, transparency and textures, and what becomes of it.
+#include <glidar/io/import_process.hpp>
+
+#include <io/model_test_support.hpp>
+
+#include <gmock/gmock.h>
+
+#include <numbers>
+
+namespace glidar {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::Contains;
+using testing::gltf;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using testing::load;
+using testing::TempFolder;
+namespace fs = std::filesystem;
+
+/// One triangle (1 2 3) (4 2 3) (1 7 9) with this axis up.
+std::string collada(const std::string& up_axis) {
+  return R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="meter" meter="1"/><up_axis>)" +
+         up_axis + R"(</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="9">1 2 3 4 2 3 1 7 9</float_array>
+<technique_common><accessor source="#a" count="3" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node>
+</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+TEST(ModelFormats, ColladaKeepsTheAxesOfTheFileWhicheverIsUp) {
+  const TempFolder temp;
+  for (const char* up : {"X_UP", "Y_UP", "Z_UP"}) {
+    const Mesh mesh = load(temp.write("a.dae", collada(up))).mesh;
+    const auto corner = [&](std::size_t i) -> Eigen::Vector3d {
+      return mesh.origin_m + mesh.positions_m[mesh.triangles.at(0)[i]].cast<double>();
+    };
+    EXPECT_EQ(corner(0), Eigen::Vector3d(1, 2, 3)) << up;
+    EXPECT_EQ(corner(1), Eigen::Vector3d(4, 2, 3)) << up;
+    EXPECT_EQ(corner(2), Eigen::Vector3d(1, 7, 9)) << up;
+  }
+}
+
+TEST(ModelFormats, AZUpColladaBarrierStandsOnTheGround) {
+  GLIDAR_NEED_DATA();
+  const Eigen::AlignedBox3d box = bounds(
+      load(testing::data_folder() / "scenes/gazebo/jersey_barrier/meshes/jersey_barrier.dae").mesh);
+  EXPECT_NEAR(box.min().z(), 0.0, 1e-3);
+  EXPECT_NEAR(box.max().z(), 1.143, 1e-3);  // the height in the package's model.sdf
+}
+
+std::vector<std::string> notes_of_mtl(const std::string& material) {
+  const TempFolder temp;
+  temp.write("a.mtl", "newmtl paint\n" + material + "\n");
+  temp.write("mask.ppm", testing::ppm(1, 1, "abc"));
+  return load(temp.write("a.obj", testing::quad_obj("a.mtl"))).notes;
+}
+
+TEST(ModelFormats, UniformTranslucencyIsToldToBeSolid) {
+  EXPECT_THAT(notes_of_mtl("d 0.3"), Contains(HasSubstr("transparency is shown solid")));
+  EXPECT_THAT(notes_of_mtl("Tr 0.7"), Contains(HasSubstr("transparency is shown solid")));
+  EXPECT_THAT(notes_of_mtl("d 1"), IsEmpty());
+  EXPECT_THAT(notes_of_mtl("d 0.3\nmap_d mask.ppm"), IsEmpty());  // the mask says where it is cut
+}
+
+TEST(ModelFormats, GltfIsToldToBeSolidOnlyWhereItBlends) {
+  const TempFolder temp;
+  const auto notes = [&](const std::string& mode) {
+    const std::string material =
+        R"({"alphaMode":")" + mode + R"(","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.3]}})";
+    return load(temp.write("a.gltf", gltf(R"([{"mesh":0}])", material))).notes;
+  };
+  EXPECT_THAT(notes("BLEND"), Contains(HasSubstr("transparency is shown solid")));
+  EXPECT_THAT(notes("OPAQUE"), IsEmpty());
+  EXPECT_THAT(notes("MASK"), IsEmpty());
+}
+
+TEST(ModelFormats, APlyCutOffInItsHeaderIsRefusedBeforeTheTimeRunsOut) {
+  const TempFolder temp;
+  for (const char* text :
+       {"ply\nformat ascii 1.0", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n",
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x"}) {
+    const ImportRequest request{fs::canonical(temp.write("a.ply", text)), 0.7, 30.0, 0};
+    const ImportRun run = run_import(request, {});
+    EXPECT_EQ(run.end, ImportEnd::answered) << text;
+    EXPECT_THAT(testing::load_error(request.model.string()),
+                AllOf(HasSubstr("the file ends too early"), HasSubstr("damaged")))
+        << text;
+  }
+}
+
+TEST(ModelFormats, ATextureOfASiblingFolderIsMissingWithTheRemedy) {
+  const TempFolder temp;
+  temp.write("pictures/paint.ppm", testing::ppm(1, 1, "abc"));
+  temp.write("model/a.mtl", "newmtl paint\nmap_Kd ../pictures/paint.ppm\n");
+  const Model model = load(temp.write("model/a.obj", testing::quad_obj("a.mtl")));
+  ASSERT_EQ(model.missing_textures.size(), 1U);
+  EXPECT_EQ(model.missing_textures[0].name, "../pictures/paint.ppm");
+  EXPECT_THAT(model.missing_textures[0].reason,
+              AllOf(HasSubstr("outside the model's folder"), HasSubstr("copy it in there")));
+  temp.write("model/paint.ppm", testing::ppm(1, 1, "abc"));
+  EXPECT_THAT(load(temp.path() / "model/a.obj").missing_textures, IsEmpty());
+}
+
+// KHR_texture_transform, "Example JSON": offset (0, 1), a quarter turn and half size show "only the
+// lower left quadrant of the source image, rotated clockwise 90 degrees".
+TEST(ModelFormats, TheTextureTransformExampleOfTheGltfExtensionShowsTheLowerLeftQuadrant) {
+  const TempFolder temp;
+  temp.write("t.ppm", testing::ppm(1, 1, "abc"));
+  const std::string material =
+      R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":
+{"offset":[0,1],"rotation":1.57079632679,"scale":[0.5,0.5]}}}}})";
+  const std::string more =
+      R"(,"extensionsUsed":["KHR_texture_transform"],"textures":[{"source":0}],"images":[{"uri":"t.ppm"}])";
+  const TextureUse use = load(temp.write("a.gltf", gltf(R"([{"mesh":0}])", material, more)))
+                             .materials.at(0)
+                             .diffuse_texture;
+  ASSERT_TRUE(use.used());
+  const auto shown = [&](float u, float v) -> Eigen::Vector2f {
+    return use.uv_scale_rotate * Eigen::Vector2f(u, v) + use.uv_offset;
+  };
+  // With v up. Turned clockwise, the image's lower left corner is seen at the upper left.
+  EXPECT_LT((shown(0, 1) - Eigen::Vector2f(0, 0)).norm(), 1e-6F);
+  EXPECT_LT((shown(1, 1) - Eigen::Vector2f(0, 0.5F)).norm(), 1e-6F);
+  EXPECT_LT((shown(1, 0) - Eigen::Vector2f(0.5F, 0.5F)).norm(), 1e-6F);
+  EXPECT_LT((shown(0, 0) - Eigen::Vector2f(0.5F, 0)).norm(), 1e-6F);
+}
+
+TEST(ModelFormats, EveryFileThatAModelWasReadFromIsTold) {
+  const TempFolder temp;
+  ModelOptions options;
+  options.cache_folder = temp.path() / "cache";
+  temp.write("a.mtl", "newmtl paint\nmap_Kd paint.ppm\n");
+  temp.write("paint.ppm", testing::ppm(1, 1, "abc"));
+  const fs::path file = temp.write("a.obj", testing::quad_obj("a.mtl"));
+  for (const bool from_cache : {false, true}) {
+    const Model model = load(file, options);
+    EXPECT_EQ(model.from_cache, from_cache);
+    EXPECT_THAT(model.files, ::testing::ElementsAre(file.string(), (temp.path() / "a.mtl").string(),
+                                                    (temp.path() / "paint.ppm").string()));
+  }
+}
+
+}  // namespace
+}  // namespace glidar
