@@ -29,7 +29,7 @@ void validate(const Beams& beams) {
   for (const Eigen::Vector3d& direction : beams.directions) {
     if (std::isnan(direction.x()) || std::abs(direction.norm() - 1.0) < kUnitTolerance) continue;
     throw Error({.where = "beams, directions",
-                 .found = "a vector of length " + std::to_string(direction.norm()),
+                 .found = "a vector of length " + number_text(direction.norm()),
                  .allowed = "unit vectors, or NaN for no beam",
                  .remedy = "normalise them"});
   }

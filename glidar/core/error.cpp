@@ -3,6 +3,8 @@
 #include <glidar/core/error.hpp>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -36,6 +38,12 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 Error::Error(ErrorParts parts) : std::runtime_error(sentence(parts)), parts_(std::move(parts)) {}
+
+std::string number_text(double value) {
+  std::array<char, 32> text{};  // the longest double takes 24
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  return {text.data(), end};
+}
 
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
   std::string best;

@@ -28,6 +28,9 @@ class Error : public std::runtime_error {
   ErrorParts parts_;
 };
 
+/// The shortest digits that read back the same, for numbers in error texts: 0.1, 1e+300.
+std::string number_text(double value);
+
 /// The candidate closest to `word` by edit distance, or "" when none is near (more than a third of
 /// its letters away). For "did you mean" in error texts.
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates);

@@ -21,7 +21,7 @@ void validate(const Instance& instance, const Scene& scene) {
   require(instance.mesh < scene.meshes.size(), instance, "mesh " + std::to_string(instance.mesh),
           "an index of the scene's meshes");
   require(instance.scale > 0.0 && instance.scale <= kLargestCoordinate_m, instance,
-          "scale " + std::to_string(instance.scale), "a number above 0, up to 1e15");
+          "scale " + number_text(instance.scale), "a number above 0, up to 1e15");
   require(is_rigid(instance.world_from_object), instance, "a pose that is not a rigid transform",
           "finite numbers and a rotation");
   require(instance.world_from_object.translation().cwiseAbs().maxCoeff() <= kLargestCoordinate_m,

@@ -23,7 +23,7 @@ constexpr std::string_view kBuiltin = "builtin:";
 
 void require(bool holds, const char* option, double found, const char* allowed) {
   if (holds) return;
-  throw Error({.where = option, .found = std::to_string(found), .allowed = allowed, .remedy = ""});
+  throw Error({.where = option, .found = number_text(found), .allowed = allowed, .remedy = ""});
 }
 
 void check(const ModelOptions& options) {

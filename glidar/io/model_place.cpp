@@ -32,7 +32,7 @@ void place_mesh(Mesh& mesh, const ModelOptions& options) {
   const double scale = options.metres_per_unit;
   if (!std::isfinite(scale) || scale <= 0.0) {
     throw Error({.where = "metres_per_unit",
-                 .found = std::to_string(scale),
+                 .found = number_text(scale),
                  .allowed = "a finite number above 0",
                  .remedy = ""});
   }
@@ -48,11 +48,11 @@ void place_mesh(Mesh& mesh, const ModelOptions& options) {
   const bool in_range = std::all_of(mesh.positions_m.begin(), mesh.positions_m.end(),
                                     [](const Eigen::Vector3f& v) { return v.allFinite(); });
   if (!in_range || !mesh.origin_m.allFinite()) {
-    throw Error({.where = "metres_per_unit",
-                 .found = std::to_string(scale) + " makes '" + mesh.name +
-                          "' too large for single precision",
-                 .allowed = "",
-                 .remedy = "use a smaller scale"});
+    throw Error(
+        {.where = "metres_per_unit",
+         .found = number_text(scale) + " makes '" + mesh.name + "' too large for single precision",
+         .allowed = "",
+         .remedy = "use a smaller scale"});
   }
 }
 

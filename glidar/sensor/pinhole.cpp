@@ -19,7 +19,7 @@ constexpr double kLargestPixels = 1e9;
 void require(bool holds, const char* field, double found, const char* allowed) {
   if (holds) return;
   throw Error({.where = std::string("pinhole, ") + field,
-               .found = std::to_string(found),
+               .found = number_text(found),
                .allowed = allowed,
                .remedy = ""});
 }

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <vector>
 
 namespace glidar {
@@ -22,6 +23,14 @@ TEST(Error, SaysWhereWhatAllowedAndWhatToDo) {
 TEST(Error, LeavesOutWhatIsEmpty) {
   EXPECT_STREQ(Error({.where = "", .found = "broken", .allowed = "", .remedy = ""}).what(),
                "broken");
+}
+
+TEST(NumberText, IsTheShortestThatReadsBackTheSame) {
+  EXPECT_EQ(number_text(0.1), "0.1");
+  EXPECT_EQ(number_text(1e300), "1e+300");
+  EXPECT_EQ(number_text(-2.0), "-2");
+  EXPECT_EQ(number_text(std::nan("")), "nan");
+  EXPECT_EQ(number_text(-2.2250738585072014e-308), "-2.2250738585072014e-308");
 }
 
 TEST(NearestWord, FindsTheTypo) {

@@ -62,7 +62,7 @@ TEST(SceneValidate, AcceptsAGoodScene) {
 
 TEST(SceneValidate, NamesWhatIsWrong) {
   EXPECT_EQ(error_of([](Scene& s) { s.instances[0].scale = 0.0; }),
-            "instance 'i': scale 0.000000; allowed: a number above 0, up to 1e15");
+            "instance 'i': scale 0; allowed: a number above 0, up to 1e15");
   EXPECT_EQ(error_of([](Scene& s) { s.instances[0].mesh = 1; }),
             "instance 'i': mesh 1; allowed: an index of the scene's meshes");
   EXPECT_EQ(error_of([](Scene& s) { s.instances[0].world_from_object.linear()(0, 0) = 3.0; }),
