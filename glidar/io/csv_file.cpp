@@ -9,7 +9,7 @@ void write_csv(const CloudFile& job, AtomicFile& file) {
   std::vector<Field> fields;
   for (const Column& column : job.cloud.columns) append_fields(column, fields);
   file.write(joined_names(fields, ',') + "\n");
-  write_text_rows(fields, job.cloud.size(), ',', file);
+  write_text_rows(fields, job.cloud.size(), ',', file, job.options.progress);
 }
 
 }  // namespace glidar

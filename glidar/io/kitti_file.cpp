@@ -10,7 +10,7 @@ void write_kitti(const CloudFile& job, AtomicFile& file) {
   append_fields(*find_column(job.cloud, "xyz"), fields);
   append_fields(*find_column(job.cloud, "intensity"), fields);
   for (Field& field : fields) field.stored = Stored::f32;
-  write_binary_rows(fields, job.cloud.size(), file);
+  write_binary_rows(fields, job.cloud.size(), file, job.options.progress);
 }
 
 }  // namespace glidar
