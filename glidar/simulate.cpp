@@ -72,7 +72,8 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
         .world_from_instance = frame.world_from_instance,
         .fields = needed,
         .cull_back_faces = setup.sensor.cull_back_faces,
-        .then = FunctionRef<void(BeamRange)>(measure)},
+        .then = FunctionRef<void(BeamRange)>(measure),
+        .progress = setup.progress},
        setup, frame);
 }
 
