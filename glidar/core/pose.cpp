@@ -4,6 +4,8 @@
 
 #include <glidar/core/error.hpp>
 
+#include <cmath>
+
 namespace glidar {
 namespace {
 
@@ -54,6 +56,24 @@ Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orie
   Pose pose = Pose::Identity();
   pose.linear() = orientation.normalized().toRotationMatrix();
   pose.translation() = position_m;
+  return pose;
+}
+
+Pose exponential(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& translation_m) {
+  const double angle = rotation_rad.stableNorm();
+  Pose pose = Pose::Identity();
+  pose.translation() = translation_m;
+  if (angle == 0.0) return pose;
+  pose.linear() = Eigen::AngleAxisd(angle, rotation_rad / angle).toRotationMatrix();
+  // of the axis times the angle: a = (1 - cos) / angle^2, b = (angle - sin) / angle^3, without
+  // cancellation
+  constexpr double kSmall = 0.1;  // there the first term left out is 3e-16
+  const double x = angle * angle;
+  const double half = std::sin(0.5 * angle) / angle;
+  const double b = angle < kSmall ? 1.0 / 6.0 - x / 120.0 + x * x / 5040.0 - x * x * x / 362880.0
+                                  : (angle - std::sin(angle)) / (angle * x);
+  const Eigen::Vector3d once = rotation_rad.cross(translation_m);
+  pose.translation() += 2.0 * half * half * once + b * rotation_rad.cross(once);
   return pose;
 }
 

@@ -24,6 +24,11 @@ Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Ei
 /// Throws Error when it is zero or anything is not finite or beyond kLargestCoordinate_m.
 Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orientation);
 
+/// The exponential of a twist, in SE(3): the motion of a screw that turns by `rotation_rad` (axis
+/// times angle) while the body's origin moves on by `translation_m` as seen from the moving body.
+/// Lynch & Park, "Modern Robotics" (2017), equation 3.88.
+Pose exponential(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& translation_m);
+
 /// True when every number is finite and the linear part is a rotation to within `tolerance`.
 bool is_rigid(const Pose& pose, double tolerance = 1e-9);
 

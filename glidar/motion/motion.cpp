@@ -2,17 +2,89 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/motion/motion.hpp>
 
+#include <glidar/core/error.hpp>
+
+#include <string>
+
 namespace glidar {
 namespace {
 
-Pose evaluate(const ConstantPose& constant, std::int64_t /*t_ns*/) {
+Pose pose_at(const ConstantPose& constant, std::int64_t /*t_ns*/) {
   return constant.pose;
+}
+
+Pose pose_at(const TimedPoses& poses, std::int64_t t_ns) {
+  return poses.pose_at(t_ns);
+}
+
+Pose pose_at(const Tumbling& tumbling, std::int64_t t_ns) {
+  return tumbling.pose_at(t_ns);
+}
+
+void require(bool holds, const char* where, const char* found) {
+  if (holds) return;
+  throw Error({where, found, "finite numbers, and poses that are rigid transforms", ""});
+}
+
+void check(const ConstantPose& constant) {
+  require(is_rigid(constant.pose), "constant pose", "not a rigid transform");
+}
+
+void check(const ConstantTwist& twist) {
+  require(is_rigid(twist.pose), "constant twist, pose", "not a rigid transform");
+  require(twist.angular_rad_s.allFinite(), "constant twist, angular velocity", "not finite");
+  require(twist.linear_m_s.allFinite(), "constant twist, linear velocity", "not finite");
+}
+
+void check(const Spin& spin) {
+  require(is_rigid(spin.pose), "spin, pose", "not a rigid transform");
+  require(spin.rate_rad_s.allFinite(), "spin, rate", "not finite");
+}
+
+void check(const TimedPoses& /*checked when made*/) {}
+void check(const Tumbling& /*checked when made*/) {}
+
+std::string seconds_text(std::int64_t t_ns) {
+  return std::to_string(static_cast<double>(t_ns) / 1e9) + " s";
 }
 
 }  // namespace
 
 Pose pose_at(const Trajectory& trajectory, std::int64_t t_ns) {
-  return std::visit([t_ns](const auto& kind) { return evaluate(kind, t_ns); }, trajectory);
+  return std::visit([t_ns](const auto& kind) { return pose_at(kind, t_ns); }, trajectory);
+}
+
+void poses_at(const Trajectory& trajectory, std::span<const std::int64_t> t_ns,
+              std::span<Pose> out) {
+  if (t_ns.size() != out.size()) {
+    throw Error({"poses_at", std::to_string(out.size()) + " poses",
+                 std::to_string(t_ns.size()) + ", one per time", ""});
+  }
+  if (const auto* timed = std::get_if<TimedPoses>(&trajectory)) return timed->poses_at(t_ns, out);
+  std::visit(
+      [&](const auto& kind) {
+        for (std::size_t i = 0; i < t_ns.size(); ++i) out[i] = pose_at(kind, t_ns[i]);
+      },
+      trajectory);
+}
+
+void validate(const Trajectory& trajectory) {
+  std::visit([](const auto& kind) { check(kind); }, trajectory);
+}
+
+TimeSpan known_times(const Trajectory& trajectory) {
+  const auto* timed = std::get_if<TimedPoses>(&trajectory);
+  return timed != nullptr ? TimeSpan{timed->first_ns(), timed->last_ns()} : TimeSpan{};
+}
+
+void warn_of_held_poses(const Trajectory& trajectory, std::string_view name, const TimeSpan& asked,
+                        const Report& report) {
+  const TimeSpan known = known_times(trajectory);
+  if (asked.first_ns >= known.first_ns && asked.last_ns <= known.last_ns) return;
+  report.warn(std::string(name) + ": the trajectory is known from " + seconds_text(known.first_ns) +
+              " to " + seconds_text(known.last_ns) + ", asked for is " +
+              seconds_text(asked.first_ns) + " to " + seconds_text(asked.last_ns) +
+              "; outside, the pose at its end holds");
 }
 
 Motion standing_still(const Scene& scene, const Pose& world_from_sensor) {
@@ -21,6 +93,19 @@ Motion standing_still(const Scene& scene, const Pose& world_from_sensor) {
   for (const Instance& instance : scene.instances) {
     motion.world_from_instance.emplace_back(ConstantPose{instance.world_from_object});
   }
+  return motion;
+}
+
+Motion moving(const Scene& scene, const Trajectory& world_from_sensor,
+              const std::vector<Trajectory>& world_from_instance) {
+  Motion motion = standing_still(scene, Pose::Identity());
+  motion.world_from_sensor = world_from_sensor;
+  if (world_from_instance.empty()) return motion;
+  if (world_from_instance.size() != scene.instances.size()) {
+    throw Error({"motion", std::to_string(world_from_instance.size()) + " trajectories",
+                 std::to_string(scene.instances.size()) + ", one per instance, or none", ""});
+  }
+  motion.world_from_instance = world_from_instance;
   return motion;
 }
 

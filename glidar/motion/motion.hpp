@@ -3,8 +3,17 @@
 #pragma once
 
 #include <glidar/core/frame.hpp>
+#include <glidar/core/report.hpp>
 #include <glidar/core/scene.hpp>
+#include <glidar/motion/constant_twist.hpp>
+#include <glidar/motion/spin.hpp>
+#include <glidar/motion/timed_poses.hpp>
+#include <glidar/motion/tumbling.hpp>
 
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -16,9 +25,31 @@ struct ConstantPose {
 };
 
 /// A pose as a function of time.
-using Trajectory = std::variant<ConstantPose>;
+using Trajectory = std::variant<ConstantPose, ConstantTwist, Spin, TimedPoses, Tumbling>;
 
+/// A pure function: the same time gives the same bits, in any order of asking.
 Pose pose_at(const Trajectory& trajectory, std::int64_t t_ns);
+
+/// The poses at many times, the same as one by one; quickest when the times increase.
+/// Throws Error when the two are not of one size.
+void poses_at(const Trajectory& trajectory, std::span<const std::int64_t> t_ns,
+              std::span<Pose> out);
+
+/// Throws Error, naming the field, unless every number is finite and poses are rigid.
+void validate(const Trajectory& trajectory);
+
+/// From the first to the last time, both included.
+struct TimeSpan {
+  std::int64_t first_ns = std::numeric_limits<std::int64_t>::min();
+  std::int64_t last_ns = std::numeric_limits<std::int64_t>::max();
+};
+
+/// The times for which the trajectory is known; all, except for timed poses.
+TimeSpan known_times(const Trajectory& trajectory);
+
+/// Warns when some of the times asked for lie outside those known, where the end pose holds.
+void warn_of_held_poses(const Trajectory& trajectory, std::string_view name, const TimeSpan& asked,
+                        const Report& report);
 
 /// Where everything is at any time.
 struct Motion {
@@ -28,6 +59,11 @@ struct Motion {
 
 /// The sensor at this pose, every instance where the scene puts it.
 Motion standing_still(const Scene& scene, const Pose& world_from_sensor);
+
+/// The scene's instances on these trajectories, the sensor on its own; none: every instance stands
+/// still. Throws Error unless there are none or one per instance.
+Motion moving(const Scene& scene, const Trajectory& world_from_sensor,
+              const std::vector<Trajectory>& world_from_instance);
 
 /// Writes the poses of all at frame.stamp_ns into the frame.
 void place(const Motion& motion, Frame& frame);

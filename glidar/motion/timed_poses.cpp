@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/motion/timed_poses.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/motion/times.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+Pose as_pose(const TimedPose& timed) {
+  Pose pose = Pose::Identity();
+  pose.linear() = timed.orientation.toRotationMatrix();
+  pose.translation() = timed.position_m;
+  return pose;
+}
+
+}  // namespace
+
+std::optional<TimedPoseFault> fault_of(const TimedPose* before, const TimedPose& next) {
+  using Part = TimedPoseFault::Part;
+  if (before != nullptr && next.t_ns == before->t_ns) {
+    return TimedPoseFault{Part::time, "the time of the pose before again", "times that increase"};
+  }
+  if (before != nullptr && next.t_ns < before->t_ns) {
+    return TimedPoseFault{Part::time, "a time before that of the pose before",
+                          "times that increase"};
+  }
+  if (!next.position_m.allFinite() ||
+      next.position_m.cwiseAbs().maxCoeff() > kLargestCoordinate_m) {
+    return TimedPoseFault{Part::position, "a position that is not finite or too large",
+                          "coordinates up to 1e15 m"};
+  }
+  const double length = next.orientation.norm();
+  if (!(std::abs(length - 1.0) <= kQuaternionTolerance)) {
+    return TimedPoseFault{Part::orientation, "a quaternion of length " + std::to_string(length),
+                          "length 1 to within 0.001"};
+  }
+  return std::nullopt;
+}
+
+TimedPoses::TimedPoses(std::vector<TimedPose> poses) : poses_(std::move(poses)) {
+  if (poses_.empty()) throw Error({"timed poses", "there is none", "at least one pose", ""});
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    const auto fault = fault_of(i == 0 ? nullptr : &poses_[i - 1], poses_[i]);
+    if (fault) {
+      throw Error(
+          {"timed poses, entry " + std::to_string(i + 1), fault->found, fault->allowed, ""});
+    }
+    poses_[i].orientation.normalize();
+  }
+}
+
+std::size_t TimedPoses::next_after(std::int64_t t_ns) const {
+  const auto later = [](std::int64_t t, const TimedPose& pose) { return t < pose.t_ns; };
+  return static_cast<std::size_t>(std::upper_bound(poses_.begin(), poses_.end(), t_ns, later) -
+                                  poses_.begin());
+}
+
+/// The pose between entry next - 1 and entry next, which are those around t_ns.
+Pose TimedPoses::between(std::size_t next, std::int64_t t_ns) const {
+  if (next == 0) return as_pose(poses_.front());
+  const TimedPose& before = poses_[next - 1];
+  if (next == poses_.size() || before.t_ns == t_ns) return as_pose(before);
+  const TimedPose& after = poses_[next];
+  const double fraction =
+      seconds_between(before.t_ns, t_ns) / seconds_between(before.t_ns, after.t_ns);
+  TimedPose middle;
+  middle.position_m = before.position_m + fraction * (after.position_m - before.position_m);
+  middle.orientation = before.orientation.slerp(fraction, after.orientation).normalized();
+  return as_pose(middle);
+}
+
+Pose TimedPoses::pose_at(std::int64_t t_ns) const {
+  return between(next_after(t_ns), t_ns);
+}
+
+void TimedPoses::poses_at(std::span<const std::int64_t> t_ns, std::span<Pose> out) const {
+  constexpr std::size_t kSteps = 8;  // farther ahead, halving finds it sooner than walking
+  std::size_t next = 0;
+  for (std::size_t i = 0; i < t_ns.size(); ++i) {
+    const std::int64_t t = t_ns[i];
+    const bool back = next > 0 && t < poses_[next - 1].t_ns;
+    const std::size_t stop = std::min(next + kSteps, poses_.size());
+    while (!back && next < stop && poses_[next].t_ns <= t) ++next;
+    const bool found = !back && (next == poses_.size() || t < poses_[next].t_ns);
+    if (!found) next = next_after(t);
+    out[i] = between(next, t);
+  }
+}
+
+}  // namespace glidar

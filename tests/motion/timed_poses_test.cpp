@@ -1,0 +1,141 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/error.hpp>
+#include <glidar/motion/motion.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace glidar {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kExact = 1e-14;
+
+Eigen::Quaterniond about_z(double angle_rad) {
+  return Eigen::Quaterniond(Eigen::AngleAxisd(angle_rad, Eigen::Vector3d::UnitZ()));
+}
+
+TimedPoses two() {
+  return TimedPoses({{.t_ns = 1000, .position_m = {0.0, 0.0, 0.0}, .orientation = about_z(0.2)},
+                     {.t_ns = 2000, .position_m = {2.0, 4.0, -6.0}, .orientation = about_z(1.2)}});
+}
+
+TEST(TimedPoses, GoStraightAndTurnEvenlyBetween) {
+  const Pose quarter = two().pose_at(1250);
+  EXPECT_LT((quarter.translation() - Eigen::Vector3d(0.5, 1.0, -1.5)).norm(), kExact);
+  EXPECT_LT((quarter.linear() - about_z(0.45).toRotationMatrix()).norm(), kExact);
+}
+
+TEST(TimedPoses, HoldTheEndPosesOutside) {
+  EXPECT_EQ(two().pose_at(-5).matrix(), two().pose_at(1000).matrix());
+  EXPECT_EQ(two().pose_at(999'999).matrix(), two().pose_at(2000).matrix());
+}
+
+TEST(TimedPoses, TurnTheShortWayWhateverTheSign) {
+  Eigen::Quaterniond minus = about_z(1.0);
+  minus.coeffs() = -minus.coeffs();
+  const TimedPoses poses(
+      {{.t_ns = 0, .orientation = about_z(0.0)}, {.t_ns = 10, .orientation = minus}});
+  EXPECT_LT((poses.pose_at(5).linear() - about_z(0.5).toRotationMatrix()).norm(), kExact);
+}
+
+TEST(TimedPoses, KeepNanosecondsOfTimesSinceTheEpoch) {
+  const std::int64_t t = 1'403'636'579'763'555'584;
+  const TimedPoses poses({{.t_ns = t}, {.t_ns = t + 8, .position_m = {8.0, 0.0, 0.0}}});
+  EXPECT_DOUBLE_EQ(poses.pose_at(t + 3).translation().x(), 3.0);
+}
+
+std::string error_of(std::vector<TimedPose> poses) {
+  try {
+    const TimedPoses made(std::move(poses));
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(TimedPoses, NameTheEntryAndItsFault) {
+  EXPECT_THAT(error_of({}), HasSubstr("there is none"));
+  EXPECT_THAT(error_of({{.t_ns = 5}, {.t_ns = 5}}),
+              HasSubstr("entry 2: the time of the pose before"));
+  EXPECT_THAT(error_of({{.t_ns = 5}, {.t_ns = 4}}), HasSubstr("entry 2: a time before"));
+  EXPECT_THAT(error_of({{.t_ns = 5, .position_m = {0.0, std::nan(""), 0.0}}}),
+              HasSubstr("entry 1"));
+  EXPECT_THAT(error_of({{.t_ns = 5, .orientation = Eigen::Quaterniond(0.5, 0.0, 0.0, 0.0)}}),
+              HasSubstr("a quaternion of length 0.5"));
+  EXPECT_THAT(
+      error_of({{.t_ns = 5, .orientation = Eigen::Quaterniond(std::nan(""), 0.0, 0.0, 0.0)}}),
+      HasSubstr("length 1"));
+}
+
+TEST(Trajectory, ManyTimesAtOnceAreTheSameAsOneByOne) {
+  std::vector<TimedPose> poses;
+  for (int i = 0; i < 200; ++i) {
+    poses.push_back({.t_ns = 1000 * i + 13 * (i % 7),
+                     .position_m = {std::sin(0.1 * i), 0.2 * i, 0.0},
+                     .orientation = about_z(0.3 * i)});
+  }
+  const std::vector<Trajectory> kinds = {
+      ConstantPose{}, ConstantTwist{.angular_rad_s = {0.1, 0.2, 0.3}},
+      Spin{.rate_rad_s = {0.1, 0.2, 0.3}}, TimedPoses(poses),
+      Tumbling({.moments_kg_m2 = {1.0, 2.0, 2.5}, .rate_rad_s = {0.1, 0.2, 0.3}})};
+  std::vector<std::int64_t> times;  // rising in small and large steps, falling, outside, on a pose
+  for (int i = -20; i < 3000; ++i) times.push_back(70 * i);
+  for (int i = 0; i < 500; ++i) times.push_back((i * 7919) % 200'000);
+  for (int i = 0; i < 100; ++i) times.push_back(20'000LL * i);
+  for (const TimedPose& pose : poses) times.push_back(pose.t_ns);
+  for (const Trajectory& trajectory : kinds) {
+    std::vector<Pose> out(times.size());
+    poses_at(trajectory, times, out);
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      ASSERT_EQ(out[i].matrix(), pose_at(trajectory, times[i]).matrix()) << times[i];
+    }
+  }
+  std::vector<Pose> short_by_one(times.size() - 1);
+  EXPECT_THROW(poses_at(kinds[0], times, short_by_one), Error);
+}
+
+TEST(Trajectory, HeldPosesAreTold) {
+  std::string said;
+  const Report report{.log = [&](Severity, std::string_view text) { said = text; }, .progress = {}};
+  warn_of_held_poses(two(), "rock", {.first_ns = 1000, .last_ns = 2000}, report);
+  warn_of_held_poses(Spin{}, "rock", {.first_ns = -1000, .last_ns = 2000}, report);
+  EXPECT_EQ(said, "");
+  warn_of_held_poses(two(), "rock", {.first_ns = 1000, .last_ns = 2001}, report);
+  EXPECT_THAT(said, HasSubstr("rock: the trajectory is known from 0.000001 s to 0.000002 s"));
+  EXPECT_THAT(said, HasSubstr("the pose at its end holds"));
+}
+
+TEST(Trajectory, NumbersThatAreNoneAreRefused) {
+  const Eigen::Vector3d bad(0.0, std::nan(""), 0.0);
+  EXPECT_THROW(validate(Spin{.rate_rad_s = bad}), Error);
+  EXPECT_THROW(validate(ConstantTwist{.angular_rad_s = bad}), Error);
+  EXPECT_THROW(validate(ConstantTwist{.linear_m_s = bad}), Error);
+  Pose scaled = Pose::Identity();
+  scaled.linear() *= 2.0;
+  EXPECT_THROW(validate(ConstantPose{scaled}), Error);
+  EXPECT_NO_THROW(validate(Spin{}));
+}
+
+TEST(Moving, TakesOneTrajectoryPerInstanceOrNone) {
+  Scene scene;
+  scene.instances.push_back({.name = "a", .materials = {}});
+  scene.instances[0].world_from_object.translation().x() = 4.0;
+  const Motion still = moving(scene, ConstantPose{}, {});
+  EXPECT_EQ(pose_at(still.world_from_instance.at(0), 7).translation().x(), 4.0);
+  const Motion turning =
+      moving(scene, ConstantPose{}, {ConstantTwist{.linear_m_s = {1.0, 0.0, 0.0}}});
+  Frame frame;
+  frame.stamp_ns = 2'000'000'000;
+  place(turning, frame);
+  EXPECT_DOUBLE_EQ(frame.world_from_instance.at(0).translation().x(), 2.0);
+  EXPECT_THROW(moving(scene, ConstantPose{}, {Spin{}, Spin{}}), Error);
+}
+
+}  // namespace
+}  // namespace glidar
