@@ -174,9 +174,18 @@ std::vector<TrianglePlane> triangle_planes(const Mesh& mesh) {
     const Eigen::Vector3d cross = (corner(mesh, i, 1) - v0).cross(corner(mesh, i, 2) - v0);
     planes[i].normal = cross / cross.norm();
     planes[i].offset = planes[i].normal.dot(v0);
-    planes[i].narrowness = static_cast<float>(longest_edge(mesh, i) / cross.norm());
   }
   return planes;
+}
+
+std::vector<float> triangle_narrowness(const Mesh& mesh) {
+  std::vector<float> narrowness(mesh.triangles.size());
+  for (std::uint32_t i = 0; i < narrowness.size(); ++i) {
+    const Eigen::Vector3d v0 = corner(mesh, i, 0);
+    const Eigen::Vector3d cross = (corner(mesh, i, 1) - v0).cross(corner(mesh, i, 2) - v0);
+    narrowness[i] = static_cast<float>(longest_edge(mesh, i) / cross.norm());
+  }
+  return narrowness;
 }
 
 InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
@@ -207,6 +216,7 @@ Resolver::Resolver(const Scene& scene) : scene_(scene) {
   planes_.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
     planes_.push_back(triangle_planes(mesh));
+    narrowness_.push_back(triangle_narrowness(mesh));
     twins_.push_back(first_twins(mesh));
   }
   looks_.reserve(scene.instances.size());
@@ -230,6 +240,7 @@ Resolver::Resolver(const Scene& scene) : scene_(scene) {
         {.mesh = &mesh,
          .triangles = mesh.triangles.data(),
          .planes = planes_[instance.mesh].data(),
+         .narrowness = narrowness_[instance.mesh].data(),
          .twins = may_swap ? twins.data() : nullptr,
          .slots = mesh.material_slots.empty() ? nullptr : mesh.material_slots.data(),
          .looks = looks_[i].data(),
@@ -271,7 +282,7 @@ void Resolver::measure(const Beams& beams, const Lanes3<double>& in_sensor, HitB
     const TrianglePlane& triangle = plane(block.instance[i], block.primitive[i]);
     exact.normal.set(i, triangle.normal);
     exact.offset[i] = triangle.offset;
-    exact.narrowness[i] = triangle.narrowness;
+    exact.narrowness[i] = known_[block.instance[i]].narrowness[block.primitive[i]];
   }
   if (beams.origins_m.empty() && is_one_instance(block)) {
     look_from_one(views_[block.instance[0]], in_sensor, exact);

@@ -19,11 +19,14 @@ namespace glidar {
 struct TrianglePlane {
   Eigen::Vector3d normal;
   double offset;
-  float narrowness;  ///< 1 / smallest height of the triangle
 };
 
 /// One per triangle, in double from the mesh's vertices.
 std::vector<TrianglePlane> triangle_planes(const Mesh& mesh);
+
+/// 1 / smallest height of every triangle; infinite or NaN for one without area. Apart from the
+/// planes, so that these are 32 bytes.
+std::vector<float> triangle_narrowness(const Mesh& mesh);
 
 /// For meshes with triangles that lie on each other, corner on corner (a sheet modelled twice): per
 /// triangle the first of its kind, so that every renderer tells the same one. Empty when all
@@ -69,7 +72,7 @@ struct ExactBlock {
   Lanes<double> offset;      ///< of the triangle's plane
   Lanes<double> cosine;      ///< of normal and direction; positive: seen from behind
   Lanes<double> distance;    ///< along the beam
-  Lanes<float> narrowness;   ///< of the triangle, see TrianglePlane
+  Lanes<float> narrowness;   ///< of the triangle, see triangle_narrowness()
 };
 
 /// What is known beforehand of the material in one slot of an instance.
@@ -107,6 +110,7 @@ class Resolver {
   void prefetch(const HitBlock& block, unsigned lane) const {
     const std::uint32_t primitive = block.primitive[lane];
     __builtin_prefetch(&plane(block.instance[lane], primitive));
+    __builtin_prefetch(known_[block.instance[lane]].narrowness + primitive);
     __builtin_prefetch(known_[block.instance[lane]].triangles + primitive);
   }
 
@@ -147,6 +151,7 @@ class Resolver {
     const Mesh* mesh;
     const Triangle* triangles;
     const TrianglePlane* planes;
+    const float* narrowness;
     const std::uint32_t* twins;  ///< nullptr: all triangles differ
     const std::uint16_t* slots;  ///< nullptr: all triangles have material slot 0
     const SlotLook* looks;       ///< per material slot
@@ -155,6 +160,7 @@ class Resolver {
 
   const Scene& scene_;
   std::vector<std::vector<TrianglePlane>> planes_;  ///< per mesh
+  std::vector<std::vector<float>> narrowness_;      ///< per mesh
   std::vector<std::vector<std::uint32_t>> twins_;   ///< per mesh
   std::vector<Known> known_;                        ///< per instance
   std::vector<std::vector<SlotLook>> looks_;        ///< per instance and material slot
