@@ -6,6 +6,7 @@
 #include <glidar/core/hits.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/render/lanes.hpp>
+#include <glidar/render/planes.hpp>
 #include <glidar/render/surface.hpp>
 
 #include <cstdint>
@@ -13,20 +14,6 @@
 #include <vector>
 
 namespace glidar {
-
-/// The plane of a triangle, n . p = offset, in the mesh's frame relative to Mesh::origin_m.
-/// n is the unit normal of the front; NaN for a triangle without area.
-struct TrianglePlane {
-  Eigen::Vector3d normal;
-  double offset;
-};
-
-/// One per triangle, in double from the mesh's vertices.
-std::vector<TrianglePlane> triangle_planes(const Mesh& mesh);
-
-/// 1 / smallest height of every triangle; infinite or NaN for one without area. Apart from the
-/// planes, so that these are 32 bytes.
-std::vector<float> triangle_narrowness(const Mesh& mesh);
 
 /// For meshes with triangles that lie on each other, corner on corner (a sheet modelled twice): per
 /// triangle the first of its kind, so that every renderer tells the same one. Empty when all
