@@ -43,20 +43,26 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
   place(setup.motion, frame);
   resize(frame, setup.beams.size());
 
+  const Sensor& sensor = setup.sensor;
+  Workers& workers = setup.renderer.workers();
+  const Beams& beams = aimed_beams(sensor.noise, setup.beams, workers, frame);
+
   HitFields needed = fields;
   needed.shading_normal = true;  // the light needs them
   needed.reflectance = true;
+  add_needs(sensor.noise, needed);
   const auto measure = [&](BeamRange range) {
-    measure_range(setup.sensor.limits, setup.beams, range, frame);
-    measure_intensity(setup.sensor.light, setup.beams, range, frame);
+    measure_range(sensor.limits, beams, range, frame);
+    measure_intensity(sensor.light, beams, range, frame);
   };
-  setup.renderer.cast({.beams = setup.beams,
+  setup.renderer.cast({.beams = beams,
                        .world_from_sensor = frame.world_from_sensor,
                        .world_from_instance = frame.world_from_instance,
                        .fields = needed,
-                       .cull_back_faces = setup.sensor.cull_back_faces,
+                       .cull_back_faces = sensor.cull_back_faces,
                        .then = FunctionRef<void(BeamRange)>(measure)},
                       frame.truth);
+  apply_noise(sensor.noise, 1.0 / sensor.rate_hz, setup.beams, workers, frame);
 }
 
 }  // namespace glidar

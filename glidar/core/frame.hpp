@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/beams.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/pose.hpp>
 
@@ -30,6 +31,13 @@ enum class Status : std::uint8_t {
 /// The status in words, as files and pictures spell it.
 std::string_view name(Status status);
 
+/// Memory that steps of a measurement reuse from frame to frame; nothing to read for others.
+struct Scratch {
+  Beams aimed;                   ///< the beams with their errors of pointing
+  std::vector<double> before;    ///< N, ranges or depths as they were before a step
+  std::vector<float> amplitude;  ///< N, intensities as they were before a step
+};
+
 /// One measurement: what the sensor reports per beam, with the truth attached. N = rows * cols.
 struct Frame {
   std::uint32_t rows = 0;
@@ -46,6 +54,7 @@ struct Frame {
   std::vector<Status> status;             ///< N
   std::vector<float> sigma_m;  ///< N, standard deviation of the random error of range_m; empty: 0
   Hits truth;                  ///< what is there, whether reported or not
+  Scratch scratch;
 };
 
 /// Gives the measured columns `size` entries (contents unspecified).
