@@ -125,7 +125,8 @@ bool has_mask(const Scene& scene, const Instance& instance) {
 }
 
 bool needs_corners(const HitFields& fields) {
-  return fields.barycentrics || fields.shading_normal || fields.colour || fields.reflectance;
+  return fields.barycentrics || fields.shading_normal || fields.colour || fields.reflectance ||
+         fields.noise_scale;
 }
 
 void gather_corners(const Resolver& resolver, const HitBlock& block, CornerBlock& corners) {
@@ -314,7 +315,8 @@ void Resolver::write_surface(const HitFields& fields, const HitBlock& block,
     bend_normals(block, w1, w2, smooth);
     write_directions(block, smooth, exact.cosine, hits.shading_normal);
   }
-  if (fields.colour || fields.reflectance) write_colours(fields, block, w1, w2, hits);
+  if (fields.colour || fields.reflectance || fields.noise_scale)
+    write_colours(fields, block, w1, w2, hits);
 }
 
 SurfacePlace Resolver::place_of(const HitBlock& block, unsigned lane, const Lanes<float>& w1,
@@ -341,11 +343,13 @@ void Resolver::write_colours(const HitFields& fields, const HitBlock& block, con
     if (!known.has_texture) {
       if (fields.colour) hits.colour[beam] = known.plain.rgb;
       if (fields.reflectance) hits.reflectance[beam] = known.plain.reflectance;
+      if (fields.noise_scale) hits.noise_scale[beam] = known.plain.noise_scale;
       return;
     }
     const SurfaceColour colour = colour_at(scene_, place_of(block, i, w1, w2));
     if (fields.colour) hits.colour[beam] = colour.rgb;
     if (fields.reflectance) hits.reflectance[beam] = colour.reflectance;
+    if (fields.noise_scale) hits.noise_scale[beam] = colour.noise_scale;
   });
 }
 
@@ -366,6 +370,7 @@ void Resolver::write_misses(const HitFields& fields, std::size_t first, std::siz
   fill(fields.object_point, hits.object_point_m, Eigen::Vector3d(kNaN, kNaN, kNaN));
   fill(fields.colour, hits.colour, Eigen::Vector3f(0.0F, 0.0F, 0.0F));
   fill(fields.reflectance, hits.reflectance, Reflectance{});
+  fill(fields.noise_scale, hits.noise_scale, 1.0F);
 }
 
 }  // namespace glidar

@@ -27,7 +27,6 @@ struct Stage {
   Beams beams;
   Motion motion;
   std::unique_ptr<Renderer> renderer;
-  MovingCastMemory memory;
 
   explicit Stage(Scene what) : scene(std::move(what)) {
     sensor.optics = pinhole_from_fov(24, 16, 0.6);
@@ -36,7 +35,7 @@ struct Stage {
     motion = standing_still(scene, look_at({0.4, -0.3, 5.0}, {0, 0, 0}, Eigen::Vector3d::UnitY()));
     renderer = make_renderer(scene, {.threads = 2});
   }
-  Setup setup() { return {scene, sensor, beams, motion, *renderer, &memory}; }
+  Setup setup() { return {scene, sensor, beams, motion, *renderer}; }
   Frame shoot(std::int64_t stamp_ns = 0) {
     Frame frame;
     frame.stamp_ns = stamp_ns;
@@ -192,10 +191,10 @@ TEST(MovingCast, AllocatesNoSecondTime) {
       ConstantTwist{.pose = pose_at(stage.motion.world_from_sensor, 0), .linear_m_s = {1, 0, 0}};
   Frame frame;
   simulate(stage.setup(), kEverything, frame);
-  const void* const before = stage.memory.beams.directions.data();
+  const void* const before = frame.scratch.moved.directions.data();
   const void* const deskewed = frame.deskewed.directions.data();
   simulate(stage.setup(), kEverything, frame);
-  EXPECT_EQ(stage.memory.beams.directions.data(), before);
+  EXPECT_EQ(frame.scratch.moved.directions.data(), before);
   EXPECT_EQ(frame.deskewed.directions.data(), deskewed);
 }
 
