@@ -4,7 +4,9 @@
 #include <apps/glidar/commands.hpp>
 #include <apps/glidar/console.hpp>
 #include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/information_options.hpp>
 #include <apps/glidar/model_options.hpp>
+#include <apps/glidar/motion_options.hpp>
 #include <apps/glidar/output_options.hpp>
 #include <apps/glidar/pose_options.hpp>
 #include <apps/glidar/sensor_options.hpp>
@@ -42,7 +44,9 @@ struct RenderFlags {
   ModelFlags model;
   SensorFlags sensor;
   PoseFlags pose;
+  MotionFlags motion;
   OutputFlags output;
+  InformationFlags information;
   std::string renderer = "embree";
   unsigned threads = 0;
   std::string seed_text = "1";
@@ -65,6 +69,7 @@ SceneFile load(const RenderFlags& flags, const Report& report) {
 std::vector<std::string> files_read(const RenderFlags& flags, const SceneFile& loaded) {
   std::vector<std::string> files = loaded.files;
   if (!flags.sensor.file.empty()) files.push_back(flags.sensor.file);
+  for (const std::string& file : files_of(flags.motion)) files.push_back(file);
   for (const MeshSource& source : loaded.scene.sources)
     files.insert(files.end(), source.files.begin(), source.files.end());
   return files;
@@ -105,8 +110,31 @@ void print_summary(const View& view, const std::vector<Output>& outputs) {
   fmt::print("\n");
 }
 
+/// How all moves; tells which poses at time 0 are only the end of a trajectory.
+Motion make_motion(const RenderFlags& flags, const SceneFile& loaded, const Scene& scene,
+                   const Pose& world_from_sensor, const Report& report) {
+  const Motion motion =
+      moving(scene,
+             sensor_trajectory(flags.motion, world_from_sensor, sensor_pose_given(flags.pose),
+                               loaded.sensor_motion),
+             instance_trajectories(flags.motion, scene, loaded.world_from_instance));
+  constexpr TimeSpan kNow = {.first_ns = 0, .last_ns = 0};
+  warn_of_held_poses(motion.world_from_sensor, "sensor", kNow, report);
+  for (std::size_t i = 0; i < motion.world_from_instance.size(); ++i) {
+    warn_of_held_poses(motion.world_from_instance[i], scene.instances[i].name, kNow, report);
+  }
+  return motion;
+}
+
+HitFields fields_for(const RenderFlags& flags, const std::vector<Output>& outputs) {
+  HitFields fields = fields_for(outputs);
+  fields.normal = fields.normal || flags.information.wanted;
+  return fields;
+}
+
 int run(const RenderFlags& flags) {
   Console console(flags.quiet);
+  check(flags.information);
   Scene scene;
   Beams beams;
   Sensor sensor;
@@ -127,9 +155,10 @@ int run(const RenderFlags& flags) {
   const Pose world_from_sensor = pose_sensor(flags.pose, loaded.world_from_sensor, beams, scene);
 
   const auto renderer = make_renderer(scene, {.kind = flags.renderer, .threads = flags.threads});
-  const Motion motion = standing_still(scene, world_from_sensor);
+  const Motion motion = make_motion(flags, loaded, scene, world_from_sensor, console.report());
   Frame frame;
-  measure(flags, {scene, sensor, beams, motion, *renderer}, fields_for(outputs), console, frame);
+  measure(flags, {scene, sensor, beams, motion, *renderer}, fields_for(flags, outputs), console,
+          frame);
 
   const View view{scene, sensor, beams, frame};
   tell(view_advice(view), console);
@@ -138,6 +167,7 @@ int run(const RenderFlags& flags) {
     write_outputs(outputs, frame, beams, scene);
   }
   if (!flags.quiet) print_summary(view, outputs);
+  tell_information(flags.information, frame, beams, outputs, flags.quiet);
   return kDone;
 }
 
@@ -152,8 +182,10 @@ Command add_render(CLI::App& program) {
       ->required()
       ->type_name("MODEL|SCENE.yaml");
   add_output_flags(command, flags->output);
+  add_information_flags(command, flags->information);
   add_sensor_flags(command, flags->sensor);
   add_pose_flags(command, flags->pose);
+  add_motion_flags(command, flags->motion);
   add_model_flags(command, flags->model);
   const std::string group = "Run";
   command.add_option("--renderer", flags->renderer, "Renderer: embree [embree]")
