@@ -19,7 +19,7 @@ ALLOWED = {
     "render": {"core", "render"},
     "moving_cast": {"core", "motion", "render", "moving_cast"},
     "simulate": {"core", "sensor", "motion", "render", "moving_cast", "simulate"},
-    "io": {"core", "sensor", "io"},
+    "io": {"core", "sensor", "motion", "io"},
     "link": {"core", "io", "link"},
 }
 PUBLIC_LIST = "glidar/public_headers.txt"

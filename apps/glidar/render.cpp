@@ -4,7 +4,9 @@
 #include <apps/glidar/commands.hpp>
 #include <apps/glidar/console.hpp>
 #include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/information_options.hpp>
 #include <apps/glidar/model_options.hpp>
+#include <apps/glidar/motion_options.hpp>
 #include <apps/glidar/option_kinds.hpp>
 #include <apps/glidar/output_options.hpp>
 #include <apps/glidar/pose_options.hpp>
@@ -46,7 +48,9 @@ struct RenderFlags {
   ModelFlags model;
   SensorFlags sensor;
   PoseFlags pose;
+  MotionFlags motion;
   OutputFlags output;
+  InformationFlags information;
   RendererOptions renderer;
   std::uint64_t seed = 1;
   bool quiet = false;
@@ -79,6 +83,7 @@ SceneFile load(const RenderFlags& flags, Console& console) {
 std::vector<std::string> files_read(const RenderFlags& flags, const SceneFile& loaded) {
   std::vector<std::string> files = loaded.files;
   if (!flags.sensor.file.empty()) files.push_back(flags.sensor.file);
+  for (const std::string& file : files_of(flags.motion)) files.push_back(file);
   for (const MeshSource& source : loaded.scene.sources)
     files.insert(files.end(), source.files.begin(), source.files.end());
   return files;
@@ -101,11 +106,10 @@ std::uint64_t parse_seed(std::string_view option, const std::string& text) {
 }
 
 /// Measures the scene; the console shows how far that is.
-void measure(const RenderFlags& flags, const View& view, const Pose& world_from_sensor,
+void measure(const RenderFlags& flags, const View& view, const Motion& motion,
              const HitFields& fields, Console& console, Frame& frame) {
   const Working working(console, "preparing the scene");
   const auto renderer = make_renderer(view.scene, flags.renderer);
-  const Motion motion = standing_still(view.scene, world_from_sensor);
   console.tell(fmt::format("casting {} beams", view.beams.size()), 0.0);
   frame.seed = flags.seed;
   simulate({.scene = view.scene,
@@ -138,8 +142,31 @@ Beams aim(const RenderFlags& flags, const Sensor& sensor, const Scene& scene,
   return beams;
 }
 
+/// How all moves; tells which poses at time 0 are only the end of a trajectory.
+Motion make_motion(const RenderFlags& flags, const SceneFile& loaded, const Scene& scene,
+                   const Pose& world_from_sensor, const Report& report) {
+  const Motion motion =
+      moving(scene,
+             sensor_trajectory(flags.motion, world_from_sensor, sensor_pose_given(flags.pose),
+                               loaded.sensor_motion),
+             instance_trajectories(flags.motion, scene, loaded.world_from_instance));
+  constexpr TimeSpan kNow = {.first_ns = 0, .last_ns = 0};
+  warn_of_held_poses(motion.world_from_sensor, "sensor", kNow, report);
+  for (std::size_t i = 0; i < motion.world_from_instance.size(); ++i) {
+    warn_of_held_poses(motion.world_from_instance[i], scene.instances[i].name, kNow, report);
+  }
+  return motion;
+}
+
+HitFields fields_for(const RenderFlags& flags, const std::vector<Output>& outputs) {
+  HitFields fields = fields_for(outputs);
+  fields.normal = fields.normal || flags.information.wanted;
+  return fields;
+}
+
 int run(const RenderFlags& flags) {
   Console console(flags.quiet);
+  check(flags.information);
   Scene scene;
   Beams beams;
   Sensor sensor;
@@ -158,15 +185,17 @@ int run(const RenderFlags& flags) {
   Pose world_from_sensor = Pose::Identity();
   beams = aim(flags, sensor, scene, loaded.world_from_sensor, console, world_from_sensor);
 
+  const Motion motion = make_motion(flags, loaded, scene, world_from_sensor, console.report());
   Frame frame;
   const View view{scene, sensor, beams, frame};
-  measure(flags, view, world_from_sensor, fields_for(outputs), console, frame);
+  measure(flags, view, motion, fields_for(flags, outputs), console, frame);
   tell(view_advice(view), console);
   {
     const Working working(console, "writing");
     write_outputs(outputs, frame, beams, scene, console.report());
   }
   if (!flags.quiet) print_summary(view, outputs);
+  tell_information(flags.information, frame, beams, outputs, flags.quiet);
   return kDone;
 }
 
@@ -181,8 +210,10 @@ Command add_render(CLI::App& program) {
       ->required()
       ->type_name("");
   add_output_flags(command, flags->output);
+  add_information_flags(command, flags->information);
   add_sensor_flags(command, flags->sensor);
   add_pose_flags(command, flags->pose);
+  add_motion_flags(command, flags->motion);
   add_model_flags(command, flags->model);
   const std::string group = "Run";
   add_run_flags(command, flags->renderer, group);

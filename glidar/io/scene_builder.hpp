@@ -34,6 +34,7 @@ struct PlannedInstance {
   std::string name;  ///< unique in the scene
   double scale = 1.0;
   Pose world_from_object = Pose::Identity();
+  std::optional<Trajectory> motion;  ///< empty: it stands still
   std::uint32_t id = 0;
   std::string class_name;                   ///< empty: unlabelled
   std::vector<MaterialOverride> overrides;  ///< those for "*" first
@@ -44,7 +45,8 @@ struct ScenePlan {
   std::vector<PlannedInstance> instances;
   std::optional<Sensor> sensor;
   std::optional<Pose> world_from_sensor;
-  std::vector<std::string> files;  ///< the scene file, and the sensor file if it names one
+  std::optional<Trajectory> sensor_motion;  ///< empty: it stands still
+  std::vector<std::string> files;           ///< the scene file, and the sensor file if it names one
 };
 
 /// Reads a scene file and the sensor file it names; loads no model.

@@ -4,7 +4,22 @@
 
 #include <glidar/io/scene_builder.hpp>
 
+#include <algorithm>
+
 namespace glidar {
+namespace {
+
+std::vector<Trajectory> trajectories(const ScenePlan& plan) {
+  const auto moves = [](const PlannedInstance& planned) { return planned.motion.has_value(); };
+  if (std::none_of(plan.instances.begin(), plan.instances.end(), moves)) return {};
+  std::vector<Trajectory> all;
+  for (const PlannedInstance& planned : plan.instances) {
+    all.push_back(planned.motion.value_or(ConstantPose{planned.world_from_object}));
+  }
+  return all;
+}
+
+}  // namespace
 
 SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions& defaults,
                           const Report& report) {
@@ -12,7 +27,8 @@ SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions&
   const auto load = [&](const std::string& source, const ModelOptions& options) {
     return load_model(source, options, report);
   };
-  return {build_scene(plan, load), plan.sensor, plan.world_from_sensor, plan.files};
+  return {build_scene(plan, load), plan.sensor,       plan.world_from_sensor, plan.files,
+          trajectories(plan),      plan.sensor_motion};
 }
 
 }  // namespace glidar

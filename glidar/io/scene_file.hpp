@@ -4,6 +4,7 @@
 
 #include <glidar/core/report.hpp>
 #include <glidar/io/model.hpp>
+#include <glidar/motion/motion.hpp>
 #include <glidar/sensor/sensor.hpp>
 
 #include <filesystem>
@@ -13,12 +14,14 @@
 
 namespace glidar {
 
-/// What a scene file holds: the world, and perhaps a sensor and where it stands.
+/// What a scene file holds: the world and how it moves, and perhaps a sensor and where it is.
 struct SceneFile {
-  Scene scene;
+  Scene scene;  ///< poses are those at time 0
   std::optional<Sensor> sensor;
-  std::optional<Pose> world_from_sensor;
-  std::vector<std::string> files;  ///< this file and the sensor file that it names
+  std::optional<Pose> world_from_sensor;  ///< at time 0
+  std::vector<std::string> files;  ///< this file, and the sensor and trajectory files it names
+  std::vector<Trajectory> world_from_instance = {};  ///< one per instance; empty: all stand still
+  std::optional<Trajectory> sensor_motion = {};      ///< empty: the sensor stands still
 };
 
 /// Reads a scene from YAML (docs/files.md) and loads the models it names, each file once.

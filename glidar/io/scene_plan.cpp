@@ -3,6 +3,7 @@
 #include <glidar/core/hits.hpp>
 #include <glidar/io/builtin_models.hpp>
 #include <glidar/io/length_unit.hpp>
+#include <glidar/io/motion_yaml.hpp>
 #include <glidar/io/pose_yaml.hpp>
 #include <glidar/io/scene_builder.hpp>
 #include <glidar/io/sensor_file.hpp>
@@ -73,15 +74,29 @@ std::vector<MaterialOverride> read_overrides(const YamlField& field) {
   return changes;
 }
 
-PlannedInstance read_model(const YamlField& field, const ModelOptions& defaults) {
-  require_map(field, {"model", "name", "unit", "up", "scale", "pose", "id", "class", "materials"});
+/// Where the model is at time 0, and how it moves.
+void read_placing(const YamlField& field, PlannedInstance& planned,
+                  std::vector<std::string>& files) {
+  std::optional<Pose> start;
+  if (const auto pose = find(field, "pose")) start = read_pose(*pose);
+  planned.world_from_object = start.value_or(Pose::Identity());
+  const auto motion = find(field, "motion");
+  if (!motion) return;
+  planned.motion = read_motion(*motion, start, files);
+  planned.world_from_object = pose_at(*planned.motion, 0);
+}
+
+PlannedInstance read_model(const YamlField& field, const ModelOptions& defaults,
+                           std::vector<std::string>& files) {
+  require_map(field, {"model", "name", "unit", "up", "scale", "pose", "id", "class", "materials",
+                      "motion"});
   const YamlField model = need(field, "model");
   PlannedInstance planned;
   planned.source = resolved(model);
   planned.where = where(model);
   planned.options = read_options(field, defaults);
   planned.scale = number_or(field, "scale", kScale, 1.0);
-  if (const auto pose = find(field, "pose")) planned.world_from_object = read_pose(*pose);
+  read_placing(field, planned, files);
   if (const auto name = find(field, "class")) planned.class_name = text(*name);
   if (const auto materials = find(field, "materials")) {
     planned.overrides = read_overrides(*materials);
@@ -127,11 +142,12 @@ void read_ids(const std::vector<YamlField>& models, std::vector<PlannedInstance>
   }
 }
 
-std::vector<PlannedInstance> read_models(const YamlField& field, const ModelOptions& defaults) {
+std::vector<PlannedInstance> read_models(const YamlField& field, const ModelOptions& defaults,
+                                         std::vector<std::string>& files) {
   const std::vector<YamlField> models = items(field);
   if (models.empty()) reject(field, "an empty list", "at least one model");
   std::vector<PlannedInstance> planned;
-  for (const YamlField& model : models) planned.push_back(read_model(model, defaults));
+  for (const YamlField& model : models) planned.push_back(read_model(model, defaults, files));
   read_names(models, planned);
   read_ids(models, planned);
   return planned;
@@ -152,18 +168,30 @@ Sensor read_scene_sensor(const YamlField& field, std::vector<std::string>& files
   return load_sensor_file(file);
 }
 
+void read_sensor_motion(const YamlField& root, ScenePlan& plan) {
+  const auto motion = find(root, "sensor_motion");
+  if (!motion) return;
+  plan.sensor_motion = read_motion(*motion, plan.world_from_sensor, plan.files);
+  if (!plan.world_from_sensor && !std::holds_alternative<TimedPoses>(*plan.sensor_motion)) {
+    reject(*motion, "the pose at which it starts is missing", "",
+           "add 'sensor_pose: ...' beside sensor_motion");
+  }
+  plan.world_from_sensor = pose_at(*plan.sensor_motion, 0);
+}
+
 }  // namespace
 
 ScenePlan read_scene_plan(const fs::path& path, const ModelOptions& defaults) {
   const YamlField root = read_yaml(path);
-  require_map(root, {"models", "sensor", "sensor_pose"});
+  require_map(root, {"models", "sensor", "sensor_pose", "sensor_motion"});
   ScenePlan plan;
   plan.files.push_back(path.string());
-  plan.instances = read_models(need(root, "models"), defaults);
+  plan.instances = read_models(need(root, "models"), defaults, plan.files);
   if (const auto sensor = find(root, "sensor")) {
     plan.sensor = read_scene_sensor(*sensor, plan.files);
   }
   if (const auto pose = find(root, "sensor_pose")) plan.world_from_sensor = read_sensor_pose(*pose);
+  read_sensor_motion(root, plan);
   return plan;
 }
 

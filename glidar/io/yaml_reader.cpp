@@ -3,14 +3,13 @@
 #include <glidar/io/yaml_reader.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/nearest_file.hpp>
+#include <glidar/io/text_file.hpp>
 
 #include <yaml-cpp/depthguard.h>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <set>
 #include <sstream>
 #include <utility>
@@ -21,52 +20,17 @@ namespace {
 namespace fs = std::filesystem;
 
 // yaml-cpp takes about 250 bytes of memory for each byte of a hostile file: half a GiB in all.
-constexpr std::uintmax_t kLargestFile_bytes = 2U << 20U;
+constexpr std::uintmax_t kLargestFile_mib = 2;
 
 std::string position(const std::string& file, const YAML::Mark& mark) {
   if (mark.is_null()) return file;
   return file + ":" + std::to_string(mark.line + 1) + ":" + std::to_string(mark.column + 1);
 }
 
-/// A word of the file, cut and without control characters, fit for one line of an error.
-std::string shown(std::string_view word) {
-  constexpr std::size_t kShown = 60;
-  std::string out(word.substr(0, kShown));
-  for (char& c : out) {
-    if (static_cast<unsigned char>(c) < 0x20U || c == 0x7F) c = '?';
-  }
-  return word.size() > kShown ? out + "..." : out;
-}
-
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
   return text;
-}
-
-std::string read_text(const fs::path& file) {
-  const auto fail = [&](std::string found, std::string allowed, std::string remedy) {
-    throw Error({file.string(), std::move(found), std::move(allowed), std::move(remedy)});
-  };
-  std::error_code error;
-  const fs::file_status status = fs::status(file, error);
-  if (status.type() == fs::file_type::not_found) {
-    const std::string nearest = nearest_file(file);
-    fail("no such file", "", nearest.empty() ? "" : "did you mean '" + nearest + "'?");
-  }
-  if (fs::is_directory(status)) fail("a folder", "a YAML file", "");
-  if (!fs::is_regular_file(status)) fail("not a regular file", "a YAML file", "");
-  if (fs::file_size(file, error) > kLargestFile_bytes) {
-    fail("a file of more than 2 MiB", "a YAML file of at most 2 MiB",
-         "name models by their path, do not put them into the file");
-  }
-  std::ifstream stream(file, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << stream.rdbuf();
-  std::string content = std::move(bytes).str();
-  if (!stream.is_open()) fail("cannot be opened", "a file you may read", "");
-  if (content.find('\0') != std::string::npos) fail("binary data", "a YAML text file", "");
-  return content;
 }
 
 /// The advice for a syntax error: a tab in the indentation is the one most people cannot see.
@@ -149,7 +113,9 @@ bool keeps(const NumberRule& rule, double value) {
 }  // namespace
 
 YamlField read_yaml(const fs::path& file) {
-  const std::string content = read_text(file);
+  const std::string content =
+      read_text_file(file, {"a YAML file", kLargestFile_mib,
+                            "name models by their path, do not put them into the file"});
   const std::string name = file.string();
   const std::vector<YAML::Node> documents = parse(name, content);
   if (documents.empty() || documents[0].IsNull()) {

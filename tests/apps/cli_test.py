@@ -201,6 +201,30 @@ class Render(CliTest):
         self.assertEqual(done.stderr, "")
 
 
+class Motion(CliTest):
+    def test_information_stands_beside_the_output(self):
+        told = self.succeed("render", "builtin:plane", "--eye", "0,0,5", "--target", "0,0,0",
+                            "--up-vector", "0,1,0", "--information", "-o", "view.pcd").stdout
+        self.assertIn("sigma of ranges assumed: 0.01 m", told)
+        self.assertIn("DEGENERATE   translation along x", told)
+        with open(os.path.join(self.folder, "view.information.json"), encoding="utf-8") as file:
+            information = json.load(file)
+        self.assertEqual(sum(d["degenerate"] for d in information["directions"]), 3)
+        self.assertIn("give --information too", self.refused(
+            "render", "builtin:box", "--information-sigma", "0.1", "-o", "x.pcd"))
+
+    def test_trajectory_places_the_sensor_at_time_zero(self):
+        self.write("path.tum", "0 0 0 -7 0 0 0 1\n1 0 0 -6 0 0 0 1\n")
+        self.succeed("render", "builtin:box", "--trajectory", "path.tum", "-o", "x.pcd")
+        with open(os.path.join(self.folder, "x.pcd.json"), encoding="utf-8") as file:
+            pose = json.load(file)["sensor"]["world_from_sensor"]
+        self.assertEqual(pose["position_m"], [0, 0, -7])
+        late = self.write("late.tum", "5 0 0 -7 0 0 0 1\n")
+        self.assertIn("the pose at its end holds", self.warned("builtin:box", "--trajectory", late))
+        self.assertIn("where the sensor is", self.refused(
+            "render", "builtin:box", "--trajectory", "path.tum", "--camera-z", "5", "-o", "y.pcd"))
+
+
 class SceneFiles(CliTest):
     SCENE = """models:
   - {model: builtin:box, name: left, pose: {position: [-3, 0, 0]}, id: 7}

@@ -27,7 +27,8 @@ const std::string kPoseKeys = "position, orientation, rotation_vector, euler_deg
 const BadFile kBadScenes[] = {
     {"NoModels", "sensor: c.yaml\n", "s.yaml:1:1: the key 'models' is missing; add 'models: ...'"},
     {"UnknownTopKey", with_model("sensr: c.yaml"),
-     "s.yaml:2:1: sensr: unknown key 'sensr'; allowed: models, sensor, sensor_pose; did you mean "
+     "s.yaml:2:1: sensr: unknown key 'sensr'; allowed: models, sensor, sensor_pose, "
+     "sensor_motion; did you mean "
      "'sensor'?"},
     {"ModelsIsAMap", "models: {model: a}\n", "s.yaml:1:9: models: a map; allowed: a list"},
     {"ModelsIsEmpty", "models: []\n",
@@ -39,7 +40,7 @@ const BadFile kBadScenes[] = {
      "s.yaml:3:5: models[1]: the key 'model' is missing; add 'model: ...'"},
     {"UnknownModelKey", model("scal: 2"),
      "s.yaml:3:5: models[0].scal: unknown key 'scal'; allowed: model, name, unit, up, scale, pose, "
-     "id, class, materials; did you mean 'scale'?"},
+     "id, class, materials, motion; did you mean 'scale'?"},
     {"UnknownUnit", model("unit: inch"),
      "s.yaml:3:11: models[0].unit: 'inch'; allowed: mm, cm, m, in; did you mean 'in'?"},
     {"UnknownAxis", model("up: w"),
@@ -108,6 +109,31 @@ const BadFile kBadScenes[] = {
     {"MaterialUnknownKey", model("materials: {A: {difuse: [1, 1, 1]}}"),
      "s.yaml:3:21: models[0].materials.A.difuse: unknown key 'difuse'; allowed: ambient, diffuse, "
      "specular, shininess, opacity; did you mean 'diffuse'?"},
+    {"TwoMotions", model("motion: {spin: {rate_rad_s: [0, 0, 1]}, trajectory: t.tum}"),
+     "s.yaml:3:13: models[0].motion: 2 kinds of motion; allowed: one of spin, twist, tumbling, "
+     "trajectory"},
+    {"SpinWithoutRate", model("motion: {spin: {}}"),
+     "s.yaml:3:20: models[0].motion.spin: the rate is missing; allowed: rate_rad_s or rate_deg_s; "
+     "add 'rate_rad_s: [0, 0, 0.1]'"},
+    {"SpinInTwoUnits", model("motion: {spin: {rate_rad_s: [0, 0, 1], rate_deg_s: [0, 0, 1]}}"),
+     "s.yaml:3:56: models[0].motion.spin.rate_deg_s: given beside 'rate_rad_s'; allowed: one of "
+     "rate_rad_s, rate_deg_s; remove one of them"},
+    {"TwistInAnotherFrame", model("motion: {twist: {frame: wrld}}"),
+     "s.yaml:3:29: models[0].motion.twist.frame: 'wrld'; allowed: body, world; did you mean "
+     "'world'?"},
+    {"TumblingLikeNoBody",
+     model("motion: {tumbling: {moments_kg_m2: [1, 1, 3], rate_rad_s: [0, 0, 1]}}"),
+     "s.yaml:3:40: models[0].motion.tumbling.moments_kg_m2: one is larger than the two others "
+     "together; allowed: moments of a body: none above the sum of the others"},
+    {"TrajectoryBesidePose", model("pose: {}\n    motion: {trajectory: t.tum}"),
+     "s.yaml:4:26: models[0].motion.trajectory: given beside a pose; allowed: a pose, or a "
+     "trajectory, which gives the poses itself; remove one of them"},
+    {"TrajectoryIsMissing", model("motion: {trajectory: t.tum}"),
+     "s.yaml:3:26: models[0].motion.trajectory: no such file: t.tum; allowed: the path of a "
+     "trajectory file; paths are relative to the folder of this file"},
+    {"SensorMotionWithoutStart", with_model("sensor_motion: {spin: {rate_deg_s: [0, 0, 1]}}"),
+     "s.yaml:2:16: sensor_motion: the pose at which it starts is missing; add 'sensor_pose: ...' "
+     "beside sensor_motion"},
     {"SensorIsAList", with_model("sensor: [a]"),
      "s.yaml:2:9: sensor: a list of 1; allowed: a map, or the path of a sensor file"},
     {"SensorFileIsMissing", with_model("sensor: c.yaml"),

@@ -276,7 +276,7 @@ const BadFile kBadFiles[] = {
     {"TwoDocuments", "name: a\n---\nname: b\n",
      "s.yaml:3:1: a second document; allowed: one document in a file; remove the line '---' "
      "before it"},
-    {"Binary", std::string("name: a\0b\n", 10), "s.yaml: binary data; allowed: a YAML text file"},
+    {"Binary", std::string("name: a\0b\n", 10), "s.yaml: binary data; allowed: a YAML file"},
     {"DeeplyNestedFlow", std::string(200000, '['),
      "s.yaml:1:1: nested too deeply; allowed: a sensor or scene file"},
     {"HugeFile", std::string((2U << 20U) + 1, ' '),

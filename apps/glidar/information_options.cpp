@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/information_options.hpp>
+
+#include <apps/glidar/numbers.hpp>
+#include <apps/glidar/option_kinds.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/io/information_file.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+
+namespace glidar::app {
+
+void add_information_flags(CLI::App& command, InformationFlags& flags) {
+  const std::string group = "Pose information";
+  command
+      .add_flag("--information", flags.wanted,
+                "Tell what the scan says about the pose; NAME.information.json")
+      ->group(group);
+  add_number(command,
+             {"--information-sigma", "M", "Ranges' standard deviation for that, m [0.01]", group},
+             flags.sigma_m);
+}
+
+void check(const InformationFlags& flags) {
+  if (!flags.sigma_m) return;
+  require(*flags.sigma_m > 0.0 && std::isfinite(*flags.sigma_m), "--information-sigma",
+          *flags.sigma_m, "metres above 0");
+  if (flags.wanted) return;
+  throw Error({"--information-sigma", "there is no --information", "", "give --information too"});
+}
+
+std::filesystem::path information_path(const std::filesystem::path& output) {
+  const std::string name = output.string();
+  return name.substr(0, name.size() - format_for(output).suffix.size()) + ".information.json";
+}
+
+void tell_information(const InformationFlags& flags, const Frame& frame, const Beams& beams,
+                      const std::vector<Output>& outputs, bool quiet) {
+  if (!flags.wanted) return;
+  InformationOptions options;
+  options.sigma_m = flags.sigma_m.value_or(options.sigma_m);
+  const PoseInformation information = pose_information(frame, beams, options);
+  const std::filesystem::path path = information_path(outputs.front().path);
+  write_information(information, path);
+  if (!quiet) fmt::print("{}wrote {}\n", information_text(information), path.string());
+}
+
+}  // namespace glidar::app

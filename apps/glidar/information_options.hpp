@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/glidar/cli_fwd.hpp>
+#include <apps/glidar/output_options.hpp>
+
+#include <filesystem>
+#include <optional>
+
+namespace glidar::app {
+
+/// Whether to tell what a scan says about the sensor's pose, as given.
+struct InformationFlags {
+  bool wanted = false;
+  std::optional<double> sigma_m = {};  ///< of ranges when the sensor has no noise of its own
+};
+
+void add_information_flags(CLI::App& command, InformationFlags& flags);
+
+/// Throws Error when a flag is out of range or given without the other.
+void check(const InformationFlags& flags);
+
+/// NAME.information.json beside an output NAME.SUFFIX.
+std::filesystem::path information_path(const std::filesystem::path& output);
+
+/// If wanted: writes the file beside the first output and prints the table unless `quiet`.
+void tell_information(const InformationFlags& flags, const Frame& frame, const Beams& beams,
+                      const std::vector<Output>& outputs, bool quiet);
+
+}  // namespace glidar::app

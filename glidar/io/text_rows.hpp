@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io: rows of numbers in a text file, with what an error needs to point at them.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glidar {
+
+/// A word and the place of its first character, counted from 1.
+struct Word {
+  std::string_view text;
+  std::size_t column = 1;
+};
+
+/// The rows of a text, without blank lines and comments ('#' to the end of the line).
+class TextRows {
+ public:
+  /// `content` must outlive the rows.
+  TextRows(std::string file, std::string_view content);
+
+  /// Goes to the next row; false at the end.
+  bool next();
+
+  /// The parts of the row between commas, trimmed, if it has any commas, else between blanks. At
+  /// most 64; a longer row has 65.
+  [[nodiscard]] const std::vector<Word>& words() const { return words_; }
+  [[nodiscard]] bool has_commas() const { return has_commas_; }
+  [[nodiscard]] std::size_t line() const { return line_; }
+
+  /// Throws Error at this word: "file:line:column: found; allowed: ...".
+  [[noreturn]] void reject(const Word& word, std::string found, std::string allowed,
+                           std::string remedy = "") const;
+
+  /// The finite number that the word spells; throws Error when it spells none.
+  [[nodiscard]] double number(const Word& word) const;
+
+  /// Seconds as nanoseconds, exact for decimals of up to nine places; throws Error when the word is
+  /// no number or beyond 290 years.
+  [[nodiscard]] std::int64_t time_ns(const Word& word) const;
+
+ private:
+  void split(std::string_view row);
+
+  std::string file_;
+  std::string_view rest_;
+  std::size_t line_ = 0;
+  std::vector<Word> words_;
+  bool has_commas_ = false;
+};
+
+}  // namespace glidar
