@@ -114,6 +114,7 @@ void copy_hit(const Hits& from, std::size_t i, const HitFields& fields, Hits& to
   if (fields.colour) to.colour[i] = from.colour[i];
   if (fields.reflectance) to.reflectance[i] = from.reflectance[i];
   if (fields.object_point) to.object_point_m[i] = from.object_point_m[i];
+  if (fields.noise_scale) to.noise_scale[i] = from.noise_scale[i];
 }
 
 /// Keeps the nearer of two hits; at the same range that of the body cast first.

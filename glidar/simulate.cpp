@@ -35,6 +35,16 @@ void measure_range(const Limits& limits, const Beams& beams, BeamRange range, Fr
   }
 }
 
+/// Intensity, and what it takes away, of a run of beams from the truth.
+void measure_light(const Setup& setup, const Beams& beams, BeamRange range, Frame& frame) {
+  const Sensor& sensor = setup.sensor;
+  if (sensor.pulse) {
+    measure_signal(*sensor.pulse, setup.scene, beams, 905e-9, range, frame);
+  } else {
+    measure_intensity(sensor.light, beams, range, frame);
+  }
+}
+
 /// The truth of a frame, each beam at its own firing time.
 void cast(const CastRequest& request, const Setup& setup, Frame& frame) {
   if (!moves_during_frame(setup.motion, setup.beams)) {
@@ -68,7 +78,7 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
   add_needs(sensor.noise, needed);
   const auto measure = [&](BeamRange range) {
     measure_range(sensor.limits, beams, range, frame);
-    measure_intensity(sensor.light, beams, range, frame);
+    measure_light(setup, beams, range, frame);
   };
   cast({.beams = beams,
         .world_from_sensor = frame.world_from_sensor,

@@ -5,8 +5,10 @@
 #include <glidar/sensor/light.hpp>
 #include <glidar/sensor/noise.hpp>
 #include <glidar/sensor/pinhole.hpp>
+#include <glidar/sensor/signal.hpp>
 
 #include <limits>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -29,7 +31,8 @@ struct Sensor {
   Optics optics = Pinhole{};
   double rate_hz = 30.0;  ///< frames per second; of a turning sensor: turns per second
   Limits limits;
-  Light light;
+  Light light;                      ///< the paper's
+  std::optional<PulseLight> pulse;  ///< the range equation in its place
   std::vector<NoiseStep> noise;  ///< in the order in which the sensor makes its errors
   bool cull_back_faces = false;  ///< true: triangles seen from behind let the beam through
 };

@@ -1,0 +1,204 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/signal.hpp>
+
+#include <glidar/core/elementary.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/core/gaussian.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace glidar {
+namespace {
+
+double power(double base, double exponent) {
+  if (exponent == 0.0) return 1.0;
+  return base > 0.0 ? natural_exp(exponent * natural_log(base)) : 0.0;
+}
+
+double incidence_rad(double cosine) {
+  const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  return 2.0 * std::numbers::pi * turns_of(sine, cosine);
+}
+
+double relative(const Lambert& /*surface*/, double cosine) {
+  return cosine;
+}
+
+double relative(const PhongLike& s, double cosine) {
+  const double lobe = power(std::abs(2.0 * cosine * cosine - 1.0), s.exponent);  // cos 2 theta
+  return (1.0 - s.specular_share) * cosine + s.specular_share * lobe;
+}
+
+double relative(const OrenNayar& s, double cosine) {
+  const double s2 = s.roughness_rad * s.roughness_rad;
+  const double a = 1.0 - 0.5 * s2 / (s2 + 0.33);
+  const double b = 0.45 * s2 / (s2 + 0.09);
+  return a * cosine + b * (1.0 - cosine * cosine);
+}
+
+double relative(const RetroReflector& s, double cosine) {
+  const double x = incidence_rad(cosine) / s.width_rad;
+  return s.gain * power(std::numbers::e, -x * x);
+}
+
+double relative(const Glossy& s, double cosine) {
+  const double x = incidence_rad(cosine) / s.width_rad;
+  return s.matt_share * cosine + s.lobe_gain * power(std::numbers::e, -0.5 * x * x);
+}
+
+/// The table's value at x: linear between entries, held outside.
+double interpolate(const std::vector<std::array<double, 2>>& table, double x, double otherwise) {
+  if (table.empty()) return otherwise;
+  const auto above = std::upper_bound(
+      table.begin(), table.end(), x,
+      [](double value, const std::array<double, 2>& entry) { return value < entry[0]; });
+  if (above == table.begin()) return table.front()[1];
+  if (above == table.end()) return table.back()[1];
+  const auto& [x0, y0] = *(above - 1);
+  const auto& [x1, y1] = *above;
+  return y0 + (y1 - y0) * (x - x0) / (x1 - x0);
+}
+
+void require(bool holds, const char* field, double found, const char* allowed) {
+  if (holds) return;
+  throw Error({.where = std::string("pulse light, ") + field,
+               .found = number_text(found),
+               .allowed = allowed,
+               .remedy = ""});
+}
+
+const Material& material_of(const Scene& scene, const Hits& truth, std::size_t beam) {
+  const Instance& instance = scene.instances[truth.instance[beam]];
+  const std::uint16_t slot = material_slot(scene.meshes[instance.mesh], truth.primitive[beam]);
+  return scene.materials[instance.materials[slot]];
+}
+
+/// The reflectance where a beam hit: the material's, times what its texture and the vertex colours
+/// make of the diffuse colour.
+double reflectance_of_hit(const Material& material, float diffuse, double wavelength_m) {
+  if (material.spectrum.empty()) return diffuse;
+  const float plain = luminance(material.diffuse);
+  const double darkening = plain > 0.0F ? std::min(1.0F, diffuse / plain) : 1.0;
+  return darkening * reflectance_at(material, wavelength_m);
+}
+
+void lose(Frame& frame, std::size_t beam, Status why) {
+  frame.status[beam] = why;
+  frame.range_m[beam] = std::numeric_limits<double>::quiet_NaN();
+  frame.intensity[beam] = 0.0F;
+}
+
+/// What noise alone makes of a beam that met nothing.
+void measure_nothing(const PulseLight& light, double noise, double place, std::size_t beam,
+                     Frame& frame) {
+  frame.intensity[beam] = 0.0F;
+  if (!(light.false_alarm_range_m > 0.0) || frame.status[beam] != Status::miss || noise < 1.0) {
+    return;
+  }
+  frame.status[beam] = Status::hit;
+  frame.range_m[beam] = place * light.false_alarm_range_m;
+  frame.intensity[beam] = static_cast<float>(noise);
+}
+
+}  // namespace
+
+void validate(const PulseLight& light) {
+  const auto positive = [](double x) { return x > 0.0 && std::isfinite(x); };
+  const auto from_zero = [](double x) { return x >= 0.0 && std::isfinite(x); };
+  require(positive(light.reference_reflectance), "reference_reflectance",
+          light.reference_reflectance, "above 0");
+  require(positive(light.reference_range_m), "reference_range_m", light.reference_range_m,
+          "metres above 0");
+  require(from_zero(light.range_exponent), "range_exponent", light.range_exponent, "0 or above");
+  require(from_zero(light.extinction_per_m), "extinction_per_m", light.extinction_per_m,
+          "0 or above");
+  require(from_zero(light.noise_sigma), "noise_sigma", light.noise_sigma, "0 or above");
+  require(from_zero(light.saturation), "saturation", light.saturation, "0 or above");
+  require(from_zero(light.false_alarm_range_m), "false_alarm_range_m", light.false_alarm_range_m,
+          "0 or above");
+  for (std::size_t i = 0; i < light.overlap.size(); ++i) {
+    const auto [range_m, share] = light.overlap[i];
+    require(from_zero(range_m) && (i == 0 || range_m > light.overlap[i - 1][0]), "overlap", range_m,
+            "ranges that rise from 0 or above");
+    require(from_zero(share), "overlap", share, "shares of 0 or above");
+  }
+  require(interpolate(light.overlap, light.reference_range_m, 1.0) > 0.0, "overlap", 0.0,
+          "a share above 0 at the reference range");
+}
+
+double sent_back(const Backscatter& surface, double reflectance, double cosine) {
+  return reflectance * std::visit([&](const auto& s) { return relative(s, cosine); }, surface);
+}
+
+double reflectance_at(const Material& material, double wavelength_m) {
+  return interpolate(material.spectrum, wavelength_m, luminance(material.diffuse));
+}
+
+double signal_of(const PulseLight& light, double sent_back, double range_m) {
+  const double ratio = light.reference_range_m / range_m;
+  const double spread =
+      light.range_exponent == 2.0 ? ratio * ratio : power(ratio, light.range_exponent);
+  double signal = sent_back / light.reference_reflectance * spread;
+  if (light.extinction_per_m > 0.0) {
+    const double depth = -2.0 * light.extinction_per_m * (range_m - light.reference_range_m);
+    signal *= natural_exp(std::clamp(depth, -600.0, 600.0));  // beyond, it is 0 or endless anyway
+  }
+  if (!light.overlap.empty()) {
+    signal *= interpolate(light.overlap, range_m, 1.0) /
+              interpolate(light.overlap, light.reference_range_m, 1.0);
+  }
+  return signal;
+}
+
+double detection_probability(const PulseLight& light, double signal) {
+  if (light.noise_sigma == 0.0) return signal >= 1.0 ? 1.0 : 0.0;
+  return 0.5 * std::erfc((1.0 - signal) / (light.noise_sigma * std::numbers::sqrt2));
+}
+
+double noise_sigma_of(double range50_m, double range90_m, double exponent) {
+  constexpr double kNinety = 1.2815515655446004;  // Phi of it is 0.9
+  return (std::pow(range50_m / range90_m, exponent) - 1.0) / kNinety;
+}
+
+double range_exponent(double reflectance_a, double range_a_m, double reflectance_b,
+                      double range_b_m) {
+  return std::log(reflectance_a / reflectance_b) / std::log(range_a_m / range_b_m);
+}
+
+void measure_signal(const PulseLight& light, const Scene& scene, const Beams& beams,
+                    double wavelength_m, BeamRange range, Frame& frame) {
+  const Hits& truth = frame.truth;
+  Batch<double> noise{};
+  PairBatch places{};
+  Draw draw{.seed = frame.seed, .sensor = frame.sensor_id, .frame = frame.number};
+  for (std::size_t first = range.begin; first < range.end; first += kDrawBatch) {
+    draw.beam = static_cast<std::uint32_t>(first);
+    draw.purpose = Purpose::detection;
+    if (light.noise_sigma > 0.0) draw_normals(draw, noise);
+    draw.purpose = Purpose::false_alarm;
+    if (light.false_alarm_range_m > 0.0) draw_uniforms(draw, places);
+    for (std::size_t i = first; i < std::min(range.end, first + kDrawBatch); ++i) {
+      const double error = light.noise_sigma * noise[i - first];
+      if (frame.status[i] != Status::hit) {
+        measure_nothing(light, error, places.first[i - first], i, frame);
+        continue;
+      }
+      const Material& material = material_of(scene, truth, i);
+      const double cosine =
+          std::clamp(-truth.shading_normal[i].cast<double>().dot(beams.directions[i]), 0.0, 1.0);
+      const double rho = reflectance_of_hit(material, truth.reflectance[i].diffuse, wavelength_m);
+      const double signal =
+          signal_of(light, sent_back(material.backscatter, rho, cosine), truth.range_m[i]);
+      const double received = signal + error;
+      frame.intensity[i] = static_cast<float>(received);
+      if (received < 1.0) lose(frame, i, Status::below_threshold);
+      if (light.saturation > 0.0 && received >= light.saturation) lose(frame, i, Status::saturated);
+    }
+  }
+}
+
+}  // namespace glidar

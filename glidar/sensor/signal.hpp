@@ -1,0 +1,66 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+#include <glidar/core/frame.hpp>
+#include <glidar/core/scene.hpp>
+
+#include <array>
+#include <vector>
+
+namespace glidar {
+
+/// What a pulse brings back, by the range equation of an extended target (Wagner, ISPRS J. 60
+/// (2006) 100-112): P = P_t rho(theta) D^2 eta exp(-2 alpha R) / (4 R^2). Data sheets give no watts
+/// but ranges, so the signal is told in units of the one that is seen with probability 1/2, and one
+/// pair of a sheet fixes the scale:
+///   S = rho(theta) / rho_ref  O(R) / O(R_ref)  exp(-2 alpha (R - R_ref))  (R_ref / R)^q.
+struct PulseLight {
+  double reference_reflectance = 0.8;  ///< rho_ref, of a matt surface seen square on
+  double reference_range_m = 100.0;    ///< R_ref, where it is seen with probability 1/2
+  double range_exponent = 2.0;  ///< q; sheets of two reflectances tell it, see range_exponent
+  std::vector<std::array<double, 2>> overlap = {};  ///< (range in m, O) with ranges rising; linear
+                                                    ///< between, held outside; empty: 1
+  double extinction_per_m = 0.0;                    ///< alpha
+  /// Standard deviation of the signal's noise: a signal S is reported when S + sigma x >= 1 with a
+  /// normal x. 0: every signal of 1 and more is.
+  double noise_sigma = 0.0;
+  /// Noise alone is reported when sigma x >= 1, at a range uniform up to here; 0: never.
+  double false_alarm_range_m = 0.0;
+  double saturation = 0.0;  ///< signals from here on are not timed: saturated; 0: none
+};
+
+/// Throws Error naming the number that is out of range.
+void validate(const PulseLight& light);
+
+/// What a surface sends straight back, relative to a white matt surface seen square on; the forms
+/// are told at core/backscatter.hpp. `cosine` is that of the incidence, 0..1.
+double sent_back(const Backscatter& surface, double reflectance, double cosine);
+
+/// A material's reflectance at a wavelength: from its spectrum, linear between the entries and held
+/// outside; without one, the luminance of its diffuse colour.
+double reflectance_at(const Material& material, double wavelength_m);
+
+/// S for what a surface sends back over a range.
+double signal_of(const PulseLight& light, double sent_back, double range_m);
+
+/// Probability that a signal is reported: Phi((S - 1) / sigma).
+double detection_probability(const PulseLight& light, double signal);
+
+/// The noise of a receiver that reports a surface with probability 1/2 at range50_m and 0.9 at
+/// range90_m: with S = (R50 / R)^q it is (S - 1) / 1.2816.
+double noise_sigma_of(double range50_m, double range90_m, double range_exponent);
+
+/// q from the ranges of two reflectances: ln(rho_a / rho_b) / ln(R_a / R_b).
+double range_exponent(double reflectance_a, double range_a_m, double reflectance_b,
+                      double range_b_m);
+
+/// Fills a run of frame.intensity with signals as the receiver has them, noise included, and takes
+/// away what is too weak or too strong (status below_threshold or saturated, range_m NaN, intensity
+/// 0). A false alarm gives a beam that met nothing a range; its truth stays a miss. Needs
+/// shading_normal and reflectance in frame.truth; draws with Purpose::detection and false_alarm.
+void measure_signal(const PulseLight& light, const Scene& scene, const Beams& beams,
+                    double wavelength_m, BeamRange range, Frame& frame);
+
+}  // namespace glidar

@@ -1,0 +1,246 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/signal.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+namespace glidar {
+namespace {
+
+constexpr double kSame = 1e-12;  // relative; a few roundings and the elementary functions' own
+
+double cos_deg(double angle) {
+  return std::cos(angle * std::numbers::pi / 180.0);
+}
+
+TEST(SentBack, OfAMattSurfaceFallsAsTheCosine) {
+  EXPECT_EQ(sent_back(Lambert{}, 0.4, 1.0), 0.4);
+  EXPECT_NEAR(sent_back(Lambert{}, 0.4, cos_deg(60.0)), 0.2, kSame);
+  EXPECT_EQ(sent_back(Lambert{}, 0.4, 0.0), 0.0);
+}
+
+TEST(SentBack, FollowsThePublishedFormsAtAnyAngle) {
+  for (const double theta : {0.0, 0.2, 0.7, 1.2, 1.57}) {
+    const double c = std::cos(theta);
+    const double s = std::sin(theta);
+    EXPECT_NEAR(sent_back(PhongLike{0.3, 7.5}, 0.5, c),
+                0.5 * (0.7 * c + 0.3 * std::pow(std::abs(std::cos(2.0 * theta)), 7.5)), kSame);
+    const double rough = 0.4 * 0.4;
+    EXPECT_NEAR(
+        sent_back(OrenNayar{0.4}, 0.5, c),
+        0.5 * ((1.0 - 0.5 * rough / (rough + 0.33)) * c + 0.45 * rough / (rough + 0.09) * s * s),
+        kSame);
+    EXPECT_NEAR(sent_back(RetroReflector{200.0, 0.5}, 0.9, c),
+                0.9 * 200.0 * std::exp(-(theta / 0.5) * (theta / 0.5)), 200.0 * 1e-9);
+    EXPECT_NEAR(sent_back(Glossy{0.05, 10.0, 0.05}, 0.9, c),
+                0.9 * (0.05 * c + 10.0 * std::exp(-theta * theta / (2.0 * 0.05 * 0.05))), 1e-9);
+  }
+}
+
+TEST(SentBack, OfASmoothOrenNayarSurfaceIsLamberts) {
+  EXPECT_NEAR(sent_back(OrenNayar{0.0}, 0.7, 0.6), sent_back(Lambert{}, 0.7, 0.6), kSame);
+}
+
+TEST(Signal, IsOneForTheReferencePair) {
+  const PulseLight light{.reference_reflectance = 0.1,
+                         .reference_range_m = 45.0,
+                         .range_exponent = 2.6,
+                         .overlap = {{0.0, 0.0}, {90.0, 1.0}},
+                         .extinction_per_m = 0.01};
+  EXPECT_NEAR(signal_of(light, 0.1, 45.0), 1.0, kSame);
+}
+
+TEST(Signal, TimesTheSquareOfTheRangeIsConstant) {
+  const PulseLight light;
+  const double expected = signal_of(light, 0.5, 10.0) * 100.0;
+  for (const double range_m : {0.5, 3.0, 47.0, 1234.5}) {
+    EXPECT_NEAR(signal_of(light, 0.5, range_m) * range_m * range_m, expected, kSame * expected);
+  }
+}
+
+TEST(Signal, ReachesTheThresholdAtARangeThatGrowsAsTheRootOfReflectance) {
+  const PulseLight light{.reference_reflectance = 0.8, .reference_range_m = 120.0};
+  for (const double rho : {0.05, 0.1, 0.8, 1.0}) {
+    EXPECT_NEAR(signal_of(light, rho, 120.0 * std::sqrt(rho / 0.8)), 1.0, kSame);
+  }
+}
+
+TEST(Signal, FallsByTheTwoWayTransmissionOfTheAir) {
+  // Kim's extinction at 905 nm: two-way transmission over 100 m 0.5434 at a visibility of 1 km.
+  const double alpha = 3.050e-3;
+  const PulseLight clear;
+  PulseLight hazy;
+  hazy.extinction_per_m = alpha;
+  const double kept = signal_of(hazy, 0.5, 100.0 + 100.0) / signal_of(hazy, 0.5, 100.0) /
+                      (signal_of(clear, 0.5, 200.0) / signal_of(clear, 0.5, 100.0));
+  EXPECT_NEAR(kept, 0.5434, 5e-5);
+}
+
+TEST(Signal, FollowsTheOverlapTableAndHoldsItsEnds) {
+  const PulseLight light{.reference_range_m = 10.0,
+                         .overlap = {{0.9, 0.0}, {1.0, 1.0}}};  // Hahner et al., ICCV 2021
+  EXPECT_EQ(signal_of(light, 0.8, 0.5), 0.0);
+  EXPECT_NEAR(signal_of(light, 0.8, 0.95), 0.5 * (10.0 / 0.95) * (10.0 / 0.95), 1e-10);
+  EXPECT_NEAR(signal_of(light, 0.8, 20.0), 0.25, kSame);
+}
+
+// Data sheets of Ouster, revision 6: ranges of 50 and 90 % probability.
+struct SheetPair {
+  const char* name;
+  double reflectance;
+  double range50_m;
+  double range90_m;
+  double noise_to_signal;  ///< threshold over noise, as the sheets' pairs give it
+};
+
+class DetectionOfSheets : public testing::TestWithParam<SheetPair> {};
+
+TEST_P(DetectionOfSheets, ReproducesBothRanges) {
+  const SheetPair& sheet = GetParam();
+  const PulseLight light{.reference_reflectance = sheet.reflectance,
+                         .reference_range_m = sheet.range50_m,
+                         .noise_sigma = noise_sigma_of(sheet.range50_m, sheet.range90_m, 2.0)};
+  EXPECT_NEAR(1.0 / light.noise_sigma, sheet.noise_to_signal, 0.05);
+  const auto probability = [&](double range_m) {
+    return detection_probability(light, signal_of(light, sheet.reflectance, range_m));
+  };
+  EXPECT_NEAR(probability(sheet.range50_m), 0.5, 1e-9);
+  EXPECT_NEAR(probability(sheet.range90_m), 0.9, 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Ouster, DetectionOfSheets,
+                         testing::Values(SheetPair{"OS0", 0.1, 20.0, 15.0, 1.65},
+                                         SheetPair{"OS0", 0.8, 50.0, 45.0, 5.5},
+                                         SheetPair{"OS1", 0.1, 55.0, 45.0, 2.6},
+                                         SheetPair{"OS1", 0.8, 120.0, 100.0, 2.9},
+                                         SheetPair{"OS2", 0.1, 100.0, 80.0, 2.3},
+                                         SheetPair{"OS2", 0.8, 240.0, 210.0, 4.2}));
+
+TEST(Signal, TakesItsExponentFromTwoReflectances) {
+  EXPECT_NEAR(range_exponent(0.8, 120.0, 0.1, 40.0), 1.89, 0.005);   // OS1, first generation
+  EXPECT_NEAR(range_exponent(0.8, 100.0, 0.1, 45.0), 2.60, 0.005);   // OS1, revision 6
+  EXPECT_NEAR(range_exponent(0.8, 350.0, 0.1, 200.0), 3.72, 0.005);  // OS2, revision 7
+}
+
+/// Beams straight at a matt plane: reflectance 0.8, a signal per beam by its range.
+struct Stage {
+  Scene scene;
+  Beams beams;
+  Frame frame;
+
+  explicit Stage(std::size_t size, double range_m) {
+    Mesh mesh;
+    mesh.triangles.resize(1);
+    scene.meshes.push_back(mesh);
+    scene.materials.emplace_back();
+    scene.instances.emplace_back().materials = {0};
+    beams.rows = 1;
+    beams.cols = static_cast<std::uint32_t>(size);
+    beams.directions.assign(size, Eigen::Vector3d::UnitZ());
+    resize(frame, size);
+    frame.seed = 7;
+    frame.status.assign(size, Status::hit);
+    frame.range_m.assign(size, range_m);
+    frame.truth.range_m.assign(size, range_m);
+    frame.truth.instance.assign(size, 0);
+    frame.truth.primitive.assign(size, 0);
+    frame.truth.shading_normal.assign(size, -Eigen::Vector3f::UnitZ());
+    frame.truth.reflectance.assign(size, {.diffuse = 0.8F});
+  }
+  void measure(const PulseLight& light) {
+    measure_signal(light, scene, beams, 905e-9, {0, beams.size()}, frame);
+  }
+  [[nodiscard]] double share_of(Status status) const {
+    return static_cast<double>(std::count(frame.status.begin(), frame.status.end(), status)) /
+           static_cast<double>(beams.size());
+  }
+};
+
+TEST(MeasureSignal, ReportsWithTheProbabilityOfTheSheet) {
+  constexpr std::size_t kBeams = 100000;
+  const PulseLight light{.reference_reflectance = 0.8,
+                         .reference_range_m = 120.0,
+                         .noise_sigma = noise_sigma_of(120.0, 100.0, 2.0)};
+  for (const auto& [range_m, probability] : {std::pair{120.0, 0.5}, std::pair{100.0, 0.9}}) {
+    Stage stage(kBeams, range_m);
+    stage.measure(light);
+    const double deviation = std::sqrt(probability * (1.0 - probability) / kBeams);
+    EXPECT_NEAR(stage.share_of(Status::hit), probability, 4.0 * deviation);
+    EXPECT_NEAR(stage.share_of(Status::below_threshold), 1.0 - probability, 4.0 * deviation);
+  }
+}
+
+TEST(MeasureSignal, DependsOnTheBeamAndNotOnHowBeamsAreShared) {
+  const PulseLight light{.reference_range_m = 100.0, .noise_sigma = 0.3};
+  Stage whole(1000, 95.0);
+  Stage parts(1000, 95.0);
+  whole.measure(light);
+  for (const auto& [begin, end] :
+       {std::pair{300U, 1000U}, std::pair{0U, 17U}, std::pair{17U, 300U}}) {
+    measure_signal(light, parts.scene, parts.beams, 905e-9, {begin, end}, parts.frame);
+  }
+  EXPECT_EQ(whole.frame.status, parts.frame.status);
+  EXPECT_EQ(whole.frame.intensity, parts.frame.intensity);
+}
+
+TEST(MeasureSignal, RaisesFalseAlarmsAsOftenAsNoiseAlonePassesTheThreshold) {
+  constexpr std::size_t kBeams = 200000;
+  const PulseLight light{.noise_sigma = 1.0 / 2.5, .false_alarm_range_m = 80.0};
+  Stage stage(kBeams, 1.0);
+  stage.frame.status.assign(kBeams, Status::miss);
+  stage.measure(light);
+  const double probability = 0.5 * std::erfc(2.5 / std::numbers::sqrt2);
+  const double deviation = std::sqrt(probability / kBeams);
+  EXPECT_NEAR(stage.share_of(Status::hit), probability, 4.0 * deviation);
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t i = 0; i < kBeams; ++i) {
+    if (stage.frame.status[i] != Status::hit) continue;
+    EXPECT_GT(stage.frame.range_m[i], 0.0);
+    EXPECT_LT(stage.frame.range_m[i], 80.0);
+    sum += stage.frame.range_m[i];
+    ++count;
+  }
+  EXPECT_NEAR(sum / count, 40.0, 4.0 * 80.0 / std::sqrt(12.0 * count));  // uniform
+}
+
+TEST(MeasureSignal, TellsWhatIsTooStrongAndKeepsItsTruth) {
+  Stage stage(1, 1.0);
+  stage.measure({.reference_range_m = 100.0, .saturation = 50.0});
+  EXPECT_EQ(stage.frame.status[0], Status::saturated);
+  EXPECT_TRUE(std::isnan(stage.frame.range_m[0]));
+  EXPECT_EQ(stage.frame.truth.range_m[0], 1.0);
+}
+
+TEST(MeasureSignal, TakesTheReflectanceAtTheSensorsWavelength) {
+  Stage stage(1, 100.0);
+  Material& material = stage.scene.materials[0];
+  material.spectrum = {{850e-9, 0.2}, {950e-9, 0.4}};
+  EXPECT_NEAR(reflectance_at(material, 905e-9), 0.31, kSame);
+  EXPECT_EQ(reflectance_at(material, 500e-9), 0.2);
+  EXPECT_EQ(reflectance_at(material, 1550e-9), 0.4);
+  stage.measure({.reference_reflectance = 0.1, .reference_range_m = 100.0});
+  EXPECT_NEAR(stage.frame.intensity[0], 3.1F, 1e-6F);
+  stage.frame.truth.reflectance[0].diffuse = 0.4F;  // a texture that halves it
+  stage.measure({.reference_reflectance = 0.1, .reference_range_m = 100.0});
+  EXPECT_NEAR(stage.frame.intensity[0], 1.55F, 1e-6F);
+}
+
+TEST(PulseLight, RefusesNumbersThatMeanNothing) {
+  EXPECT_NO_THROW(validate(PulseLight{}));
+  EXPECT_THROW(validate(PulseLight{.reference_reflectance = 0.0}), Error);
+  EXPECT_THROW(validate(PulseLight{.reference_range_m = -1.0}), Error);
+  EXPECT_THROW(validate(PulseLight{.range_exponent = std::nan("")}), Error);
+  EXPECT_THROW(validate(PulseLight{.overlap = {{2.0, 1.0}, {1.0, 1.0}}}), Error);
+  EXPECT_THROW(validate(PulseLight{.reference_range_m = 1.0, .overlap = {{5.0, 0.0}, {6.0, 1.0}}}),
+               Error);
+  EXPECT_THROW(validate(PulseLight{.noise_sigma = -0.1}), Error);
+}
+
+}  // namespace
+}  // namespace glidar
