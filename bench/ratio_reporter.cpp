@@ -38,6 +38,11 @@ void RatioReporter::Finalize() {
   }
 }
 
+void print_at_most(const std::string& what, double found, double goal) {
+  std::printf("%-58s %8.3f %8.2f at most %s\n", what.c_str(), found, goal,
+              found <= goal ? "" : "  above");
+}
+
 int run(int argc, char** argv, std::vector<Ratio> ratios) {
   std::vector<char*> arguments(argv, argv + argc);
   std::string interleaved = "--benchmark_enable_random_interleaving=true";

@@ -30,6 +30,9 @@ class RatioReporter : public benchmark::ConsoleReporter {
   std::map<std::string, std::vector<double>> seconds_;  ///< per benchmark, one per repetition
 };
 
+/// The line of a ratio that must not be above its goal.
+void print_at_most(const std::string& what, double found, double goal);
+
 /// Runs all registered benchmarks, repetitions of all taken in turn, and prints the ratios.
 int run(int argc, char** argv, std::vector<Ratio> ratios);
 

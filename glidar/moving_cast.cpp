@@ -72,15 +72,15 @@ Pose start_from_sensor(const Body& body, const Pose& s0, const Pose& s, std::int
 /// Expresses beams [begin, end) in the frame in which a body rests; those that cannot meet it get
 /// no direction.
 void move_beams(const CastRequest& request, const Motion& motion, const Body& body,
-                std::int64_t stamp_ns, BeamRange range, MovingCastMemory& memory) {
+                std::int64_t stamp_ns, BeamRange range, Scratch& memory) {
   const Beams& beams = request.beams;
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const std::int64_t t_ns = stamp_ns + (beams.times_ns.empty() ? 0 : beams.times_ns[i]);
     const Pose sensor = pose_at(motion.world_from_sensor, t_ns);
     const Pose pose = start_from_sensor(body, request.world_from_sensor, sensor, t_ns);
-    memory.start_from[i] = pose;
-    Eigen::Vector3d& direction = memory.beams.directions[i];
-    Eigen::Vector3d& origin = memory.beams.origins_m[i];
+    memory.start_from_sensor[i] = pose;
+    Eigen::Vector3d& direction = memory.moved.directions[i];
+    Eigen::Vector3d& origin = memory.moved.origins_m[i];
     direction = (pose.linear() * beams.directions[i]).normalized();
     origin =
         beams.origins_m.empty() ? Eigen::Vector3d(pose.translation()) : pose * beams.origins_m[i];
@@ -91,11 +91,10 @@ void move_beams(const CastRequest& request, const Motion& motion, const Body& bo
 }
 
 /// Puts what depends on the sensor's frame into the one of the beam's own time.
-void turn_back(const CastRequest& request, const MovingCastMemory& memory, BeamRange range,
-               Hits& hits) {
+void turn_back(const CastRequest& request, const Scratch& memory, BeamRange range, Hits& hits) {
   for (std::size_t i = range.begin; i < range.end; ++i) {
     if (hits.instance[i] == kNoHit) continue;
-    const Eigen::Matrix3d back = memory.start_from[i].linear().transpose();
+    const Eigen::Matrix3d back = memory.start_from_sensor[i].linear().transpose();
     const auto turn = [&](Eigen::Vector3f& v) { v = (back * v.cast<double>()).cast<float>(); };
     if (request.fields.normal) turn(hits.normal[i]);
     if (request.fields.shading_normal) turn(hits.shading_normal[i]);
@@ -126,27 +125,38 @@ void merge(const Hits& from, const HitFields& fields, BeamRange range, Hits& to)
 }
 
 /// The beams of `memory` sized and filled with what all bodies share.
-void prepare(const Beams& beams, MovingCastMemory& memory) {
-  memory.beams.rows = beams.rows;
-  memory.beams.cols = beams.cols;
-  memory.beams.frame_id = beams.frame_id;
-  memory.beams.boresight = beams.boresight;
-  memory.beams.directions.resize(beams.size());
-  memory.beams.origins_m.resize(beams.size());
-  memory.start_from.resize(beams.size());
+void prepare(const Beams& beams, Scratch& memory) {
+  memory.moved.rows = beams.rows;
+  memory.moved.cols = beams.cols;
+  memory.moved.frame_id = beams.frame_id;
+  memory.moved.boresight = beams.boresight;
+  memory.moved.directions.resize(beams.size());
+  memory.moved.origins_m.resize(beams.size());
+  memory.start_from_sensor.resize(beams.size());
 }
 
-void keep_deskewed(bool sensor_stands, const MovingCastMemory& memory, Frame::Deskewed& deskewed) {
+/// The nominal beams as seen from the sensor's pose at the start of the frame; and the true ones,
+/// which `memory` holds, where these differ.
+void keep_deskewed(const Beams& nominal, bool is_nominal, const Scratch& memory,
+                   Frame::Deskewed& deskewed) {
+  const std::size_t size = nominal.size();
+  deskewed.directions.resize(size);
+  deskewed.origins_m = memory.moved.origins_m;
+  deskewed.start_from_sensor.resize(size);
+  deskewed.true_directions.clear();
+  if (!is_nominal) deskewed.true_directions = memory.moved.directions;
+  for (std::size_t i = 0; i < size; ++i) {
+    const Eigen::Matrix3d turn = memory.start_from_sensor[i].linear();
+    deskewed.directions[i] = (turn * nominal.directions[i]).normalized();
+    deskewed.start_from_sensor[i] = Eigen::Quaterniond(turn).cast<float>();
+  }
+}
+
+void clear(Frame::Deskewed& deskewed) {
   deskewed.directions.clear();
+  deskewed.true_directions.clear();
   deskewed.origins_m.clear();
   deskewed.start_from_sensor.clear();
-  if (sensor_stands) return;
-  deskewed.directions = memory.beams.directions;
-  deskewed.origins_m = memory.beams.origins_m;
-  deskewed.start_from_sensor.reserve(memory.start_from.size());
-  for (const Pose& pose : memory.start_from) {
-    deskewed.start_from_sensor.emplace_back(Eigen::Quaterniond(pose.linear()).cast<float>());
-  }
 }
 
 }  // namespace
@@ -157,8 +167,9 @@ bool moves_during_frame(const Motion& motion, const Beams& beams) {
          !std::all_of(motion.world_from_instance.begin(), motion.world_from_instance.end(), stands);
 }
 
-void cast_moving(Renderer& renderer, const CastRequest& request, const Scene& scene,
-                 const Motion& motion, MovingCastMemory& memory, Frame& frame) {
+void cast_moving(Renderer& renderer, const CastRequest& request, const Beams& nominal,
+                 const Scene& scene, const Motion& motion, Frame& frame) {
+  Scratch& memory = frame.scratch;
   prepare(request.beams, memory);
   const bool sensor_stands = stands(motion.world_from_sensor);
   bool is_first = true;
@@ -171,8 +182,8 @@ void cast_moving(Renderer& renderer, const CastRequest& request, const Scene& sc
     };
     in_runs(
         [&](BeamRange range) { move_beams(request, motion, body, frame.stamp_ns, range, memory); });
-    Hits& hits = is_first ? frame.truth : memory.hits;
-    renderer.cast({.beams = memory.beams,
+    Hits& hits = is_first ? frame.truth : memory.body_hits;
+    renderer.cast({.beams = memory.moved,
                    .world_from_sensor = request.world_from_sensor,
                    .world_from_instance = request.world_from_instance,
                    .fields = request.fields,
@@ -192,7 +203,11 @@ void cast_moving(Renderer& renderer, const CastRequest& request, const Scene& sc
     memory.present[i] = static_cast<std::uint8_t>(stands(motion.world_from_instance[i]));
   }
   cast_body({});
-  keep_deskewed(sensor_stands, memory, frame.deskewed);
+  if (sensor_stands) {
+    clear(frame.deskewed);
+  } else {
+    keep_deskewed(nominal, &nominal == &request.beams, memory, frame.deskewed);
+  }
   for (std::uint32_t i = 0; i < memory.present.size(); ++i) {
     if (stands(motion.world_from_instance[i])) continue;
     memory.present.assign(scene.instances.size(), 0);

@@ -6,18 +6,7 @@
 #include <glidar/motion/motion.hpp>
 #include <glidar/render/renderer.hpp>
 
-#include <cstdint>
-#include <vector>
-
 namespace glidar {
-
-/// Memory that successive casts reuse.
-struct MovingCastMemory {
-  Beams beams;                        ///< as one body sees them
-  Hits hits;                          ///< on one body
-  std::vector<Pose> start_from;       ///< per beam, see cast_moving
-  std::vector<std::uint8_t> present;  ///< per instance
-};
 
 /// True when the beams of a frame leave at different times while something moves.
 bool moves_during_frame(const Motion& motion, const Beams& beams);
@@ -29,8 +18,9 @@ bool moves_during_frame(const Motion& motion, const Beams& beams);
 /// `request` is that of a frame at rest: beams in the sensor's frame, poses at frame.stamp_ns. Hits
 /// come out as if each beam had been cast alone at stamp_ns + times_ns: normals in the sensor's
 /// frame of that time, depth along its boresight. When the sensor moves, frame.deskewed holds the
-/// beams as seen from the sensor's pose at stamp_ns. request.then is not called.
-void cast_moving(Renderer& renderer, const CastRequest& request, const Scene& scene,
-                 const Motion& motion, MovingCastMemory& memory, Frame& frame);
+/// `nominal` beams (those of the request, but for errors of pointing) as seen from the sensor's
+/// pose at stamp_ns. request.then is not called.
+void cast_moving(Renderer& renderer, const CastRequest& request, const Beams& nominal,
+                 const Scene& scene, const Motion& motion, Frame& frame);
 
 }  // namespace glidar

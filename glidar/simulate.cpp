@@ -42,9 +42,7 @@ void cast(const CastRequest& request, const Setup& setup, Frame& frame) {
     setup.renderer.cast(request, frame.truth);
     return;
   }
-  MovingCastMemory own;
-  cast_moving(setup.renderer, request, setup.scene, setup.motion,
-              setup.memory != nullptr ? *setup.memory : own, frame);
+  cast_moving(setup.renderer, request, setup.beams, setup.scene, setup.motion, frame);
   setup.renderer.workers().for_ranges(setup.beams.size(), kBeamsPerTask,
                                       [&](std::size_t begin, std::size_t end) {
                                         request.then({begin, end});
@@ -60,20 +58,27 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
   place(setup.motion, frame);
   resize(frame, setup.beams.size());
 
+  const Sensor& sensor = setup.sensor;
+  Workers& workers = setup.renderer.workers();
+  const Beams& beams = aimed_beams(sensor.noise, setup.beams, workers, frame);
+
   HitFields needed = fields;
   needed.shading_normal = true;  // the light needs them
   needed.reflectance = true;
+  add_needs(sensor.noise, needed);
   const auto measure = [&](BeamRange range) {
-    measure_range(setup.sensor.limits, setup.beams, range, frame);
-    measure_intensity(setup.sensor.light, setup.beams, range, frame);
+    measure_range(sensor.limits, beams, range, frame);
+    measure_intensity(sensor.light, beams, range, frame);
   };
-  cast({.beams = setup.beams,
+  cast({.beams = beams,
         .world_from_sensor = frame.world_from_sensor,
         .world_from_instance = frame.world_from_instance,
         .fields = needed,
-        .cull_back_faces = setup.sensor.cull_back_faces,
-        .then = FunctionRef<void(BeamRange)>(measure)},
+        .cull_back_faces = sensor.cull_back_faces,
+        .then = FunctionRef<void(BeamRange)>(measure),
+        .progress = setup.progress},
        setup, frame);
+  apply_noise(sensor.noise, 1.0 / sensor.rate_hz, setup.beams, workers, frame);
 }
 
 }  // namespace glidar

@@ -18,7 +18,7 @@ struct Setup {
   const Beams& beams;  ///< make_beams(sensor)
   const Motion& motion;
   Renderer& renderer;
-  MovingCastMemory* memory = nullptr;  ///< kept between frames; nullptr: taken anew for each
+  Progress progress = {};  ///< of a measurement
 };
 
 /// Measures the scene once: frame.stamp_ns and frame.seed say when and with which random numbers,

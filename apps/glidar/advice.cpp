@@ -198,6 +198,19 @@ void add_ratio_advice(const Sight& sight, std::vector<std::string>& advice) {
   }
 }
 
+/// True when a box from `least` to `most` stands on zero or hovers above it.
+bool stands_on_zero(double least, double most) {
+  constexpr double kSunk = 0.02;  // part of its height that may be below
+  return most > least && least >= -kSunk * (most - least);
+}
+
+/// True when zero lies well within.
+bool straddles_zero(double least, double most) {
+  constexpr double kLeastPart = 0.1;
+  const double part = kLeastPart * (most - least);
+  return least < -part && most > part;
+}
+
 }  // namespace
 
 FrameSummary summarise(const Frame& frame) {
@@ -233,6 +246,24 @@ std::vector<std::string> size_advice(const Scene& scene, bool sized) {
                     size_m)};
   }
   return {};
+}
+
+std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box) {
+  if (format.starts_with("glTF")) {
+    return "in glTF files y is up; --up y makes that +z, which is up here";
+  }
+  const bool says_nothing_of_up = format.find("PLY") != std::string::npos ||
+                                  format.find("STL") != std::string::npos ||
+                                  format.starts_with("Wavefront") || format == "OFF";
+  if (!says_nothing_of_up || box.isEmpty()) return "";
+  const Eigen::Vector3d& least = box.min();
+  const Eigen::Vector3d& most = box.max();
+  if (stands_on_zero(least.y(), most.y()) && straddles_zero(least.x(), most.x()) &&
+      straddles_zero(least.z(), most.z())) {
+    return "a guess: y is up in this file, since the model stands on or above y = 0 and around x = "
+           "z = 0; if so, --up y makes that +z, which is up here";
+  }
+  return "";
 }
 
 std::vector<std::string> view_advice(const View& view) {

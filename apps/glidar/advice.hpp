@@ -37,6 +37,10 @@ FrameSummary summarise(const Frame& frame);
 /// scale was given. Empty: nothing.
 std::vector<std::string> size_advice(const Scene& scene, bool sized);
 
+/// A hint at --up, for models whose up is not +z by their format or, as a guess, by how they stand:
+/// on or above zero along one axis, and across it along the others. Empty: none.
+std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box);
+
 /// What the user should know about where the sensor stands: inside a model, too near or too far for
 /// its size, or nothing hit and why.
 std::vector<std::string> view_advice(const View& view);

@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/console.hpp>
 
+#include <apps/glidar/progress_line.hpp>
+
 #include <fmt/format.h>
 
+#include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 
 namespace glidar::app {
@@ -14,20 +16,26 @@ namespace {
 
 constexpr auto kPatience = std::chrono::seconds(2);
 constexpr auto kRedraw = std::chrono::milliseconds(100);
-constexpr int kBarWidth = 30;
 
 void print(const std::string& text) {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
 
+/// Of the terminal; a longer line would wrap, and then it could not be taken away.
+std::size_t terminal_columns() {
+  constexpr std::size_t kUsual = 80;
+  winsize size{};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col < 2) return kUsual;
+  return size.ws_col;
+}
+
 }  // namespace
 
-Console::Console(bool quiet)
-    : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1 && !quiet), started_(Clock::now()) {}
+Console::Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1 && !quiet) {}
 
 Console::~Console() {
-  clear();
+  end();
 }
 
 void Console::info(std::string_view message) {
@@ -43,30 +51,18 @@ void Console::warn(std::string_view message) {
   print(fmt::format("glidar: warning: {}\n", message));
 }
 
-void Console::progress(std::string_view task, double fraction_done) {
+void Console::tell(double fraction_done) {
   const std::lock_guard lock(mutex_);
-  if (!due(task)) return;
-  const double fraction = std::clamp(fraction_done, 0.0, 1.0);
-  if (fraction == 1.0) {
-    erase();
-    return;
+  fraction_ = fraction_done;
+}
+
+void Console::tell(std::string_view task, double fraction_done) {
+  const std::lock_guard lock(mutex_);
+  if (task != task_) {
+    task_ = task;
+    task_started_ = Clock::now();
   }
-  const auto filled = static_cast<int>(fraction * kBarWidth);
-  draw(fmt::format("{} [{:#<{}}{:.<{}}] {:3.0f} %", task, "", filled, "", kBarWidth - filled,
-                   100.0 * fraction));
-}
-
-void Console::working(std::string_view task) {
-  const std::lock_guard lock(mutex_);
-  if (!due(task)) return;
-  draw(fmt::format("{} ... {:.0f} s", task,
-                   std::chrono::duration<double>(Clock::now() - started_).count()));
-}
-
-void Console::clear() {
-  const std::lock_guard lock(mutex_);
-  erase();
-  task_.clear();
+  fraction_ = fraction_done;
 }
 
 Report Console::report() {
@@ -75,25 +71,29 @@ Report Console::report() {
                 severity == Severity::warning ? warn(message) : info(message);
               },
           .progress = [this](std::string_view task,
-                             double fraction_done) { progress(task, fraction_done); }};
+                             double fraction_done) { tell(task, fraction_done); }};
 }
 
-/// True when this task has taken long enough for a line, and the last one is old enough.
-bool Console::due(std::string_view task) {
-  if (!terminal_) return false;
+void Console::begin(std::string_view task) {
+  const std::lock_guard lock(mutex_);
+  task_ = task;
+  fraction_ = -1.0;
+  work_started_ = task_started_ = Clock::now();
+}
+
+void Console::redraw() {
+  const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
-  if (task != task_) {
-    erase();
-    task_ = task;
-    started_ = now;
-  }
-  return now - started_ >= kPatience && now - last_drawn_ >= kRedraw;
+  if (now - work_started_ < kPatience) return;
+  const double elapsed_s = std::chrono::duration<double>(now - task_started_).count();
+  // back to the line's start, and empty it
+  print("\r\033[K" + progress_line(task_, fraction_, elapsed_s, terminal_columns() - 1));
+  drawn_ = true;
 }
 
-void Console::draw(const std::string& line) {
-  print("\r\033[K" + line);  // back to the line's start, and empty it
-  drawn_ = true;
-  last_drawn_ = Clock::now();
+void Console::end() {
+  const std::lock_guard lock(mutex_);
+  erase();
 }
 
 void Console::erase() {
@@ -101,21 +101,24 @@ void Console::erase() {
   drawn_ = false;
 }
 
-Working::Working(Console& console, std::string task) : console_(console), task_(std::move(task)) {
+Working::Working(Console& console, std::string_view task) : console_(console) {
+  if (!console_.terminal_) return;
+  console_.begin(task);
   ticker_ = std::thread([this] {
     std::unique_lock lock(mutex_);
-    while (!changed_.wait_for(lock, kRedraw, [this] { return done_; })) console_.working(task_);
+    while (!changed_.wait_for(lock, kRedraw, [this] { return done_; })) console_.redraw();
   });
 }
 
 Working::~Working() {
+  if (!ticker_.joinable()) return;
   {
     const std::lock_guard lock(mutex_);
     done_ = true;
   }
   changed_.notify_one();
   ticker_.join();
-  console_.clear();
+  console_.end();
 }
 
 }  // namespace glidar::app

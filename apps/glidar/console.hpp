@@ -14,7 +14,8 @@
 namespace glidar::app {
 
 /// The terminal: results go to standard output, everything else to standard error. Keeps messages
-/// and the progress bar from running into each other; every function may be called from any thread.
+/// and the progress display from running into each other; every function may be called from any
+/// thread.
 class Console {
  public:
   explicit Console(bool quiet = false);
@@ -26,22 +27,21 @@ class Console {
   void info(std::string_view message);
   /// Says what the user should know; never left out.
   void warn(std::string_view message);
-  /// Shows how far a task is. Appears only on a terminal, and only once the task has taken two
-  /// seconds; goes away at `fraction_done` 1 or when another task starts.
-  void progress(std::string_view task, double fraction_done);
-  /// Shows how long a task has taken whose end is not known; same conditions.
-  void working(std::string_view task);
-  /// Takes the bar away.
-  void clear();
+  /// How far the work is that is under way (see Working), negative: unknown. Costs little.
+  void tell(double fraction_done);
+  /// The same of a part of that work that has a name of its own.
+  void tell(std::string_view task, double fraction_done);
 
   /// The library's way to all of the above; must not outlive the console.
   Report report();
 
  private:
+  friend class Working;
   using Clock = std::chrono::steady_clock;
 
-  bool due(std::string_view task);
-  void draw(const std::string& line);
+  void begin(std::string_view task);
+  void redraw();
+  void end();
   void erase();
 
   std::mutex mutex_;
@@ -49,21 +49,22 @@ class Console {
   bool terminal_;
   bool drawn_ = false;
   std::string task_;
-  Clock::time_point started_;
-  Clock::time_point last_drawn_;
+  double fraction_ = -1.0;
+  Clock::time_point work_started_;
+  Clock::time_point task_started_;
 };
 
-/// While it lives, the console tells how long the task has been going.
+/// While it lives, the console shows how far this work is: on a terminal only, and only once it has
+/// taken two seconds. One at a time.
 class Working {
  public:
-  Working(Console& console, std::string task);
+  Working(Console& console, std::string_view task);
   Working(const Working&) = delete;
   Working& operator=(const Working&) = delete;
   ~Working();
 
  private:
   Console& console_;
-  std::string task_;
   std::mutex mutex_;
   std::condition_variable changed_;
   bool done_ = false;

@@ -2,22 +2,56 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/help_text.hpp>
 
-namespace glidar::app {
+#include <CLI/CLI.hpp>
 
-std::string wrapped(std::string_view text) {
-  constexpr std::size_t kWidth = 64;  // 100 columns less those of the names
-  std::string lines;
-  std::size_t line_length = 0;
-  while (!text.empty()) {
-    const std::size_t space = text.find(' ');
-    const std::string_view word = text.substr(0, space);
-    text.remove_prefix(space == std::string_view::npos ? text.size() : space + 1);
-    const bool fits = line_length + 1 + word.size() <= kWidth;
-    if (line_length > 0) lines += fits ? ' ' : '\n';
-    line_length = line_length > 0 && fits ? line_length + 1 + word.size() : word.size();
-    lines += word;
+#include <memory>
+#include <utility>
+
+namespace glidar::app {
+namespace {
+
+/// CLI11's layout, without its remarks on types and with one empty line between groups.
+class HelpLayout final : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override {
+    std::string text = CLI::Formatter::make_help(app, std::move(name), mode);
+    for (std::size_t at = text.find("\n\n\n"); at != std::string::npos; at = text.find("\n\n\n")) {
+      text.erase(at, 1);
+    }
+    return text;
   }
-  return lines;
+  std::string make_option_opts(const CLI::Option* option) const override {
+    return option->get_type_size() == 0 ? "" : " " + option->get_type_name();
+  }
+};
+
+}  // namespace
+
+std::string indented(std::string_view words) {
+  constexpr std::size_t kWidth = 100;
+  std::string text;
+  std::string line = " ";
+  while (!words.empty()) {
+    const std::string_view word = words.substr(0, words.find(' '));
+    words.remove_prefix(word.size() == words.size() ? word.size() : word.size() + 1);
+    if (line.size() + 1 + word.size() > kWidth) {
+      text += line + "\n";
+      line = " ";
+    }
+    line += " ";
+    line += word;
+  }
+  return text + line + "\n";
+}
+
+void use_help_layout(CLI::App& program) {
+  constexpr std::size_t kNameColumn = 36;
+  const auto layout = std::make_shared<HelpLayout>();
+  layout->column_width(kNameColumn);
+  layout->label("Positionals", "Input");
+  program.formatter(layout);
+  program.set_help_flag("-h,--help", "Print this text");
 }
 
 }  // namespace glidar::app

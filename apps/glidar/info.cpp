@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/advice.hpp>
 #include <apps/glidar/commands.hpp>
 #include <apps/glidar/console.hpp>
 #include <apps/glidar/exit_code.hpp>
@@ -99,7 +100,7 @@ void print_lists(const ModelReport& report) {
   list("note", report.notes, [](const std::string& note) { return note; });
 }
 
-void print_table(const ModelReport& report) {
+void print_table(const ModelReport& report, const std::string& up_hint) {
   line("model", report.source + (report.from_cache ? " (from the cache)" : ""));
   line("format", report.format);
   if (!report.hash.empty()) line("hash", report.hash);
@@ -109,6 +110,7 @@ void print_table(const ModelReport& report) {
   line("from", vector_text(report.min_m, ", ") + " m");
   line("to", vector_text(report.max_m, ", ") + " m");
   line("unit", report.unit_guess);
+  if (!up_hint.empty()) line("up", up_hint);
   line("surface", fmt::format("{}, winding {}, area {:.6g} m2", report.closed ? "closed" : "open",
                               to_string(report.winding), report.check.area_m2));
   line("faults", fault_text(report.check));
@@ -141,7 +143,7 @@ Json json_list(const std::vector<Entry>& entries, const Function& object) {
   return list;
 }
 
-Json json_of(const ModelReport& report) {
+Json json_of(const ModelReport& report, const std::string& up_hint) {
   Json json = {{"source", report.source},
                {"format", report.format},
                {"hash", report.hash},
@@ -152,6 +154,7 @@ Json json_of(const ModelReport& report) {
                {"max_m", json_of(report.max_m)},
                {"size_m", json_of(report.size_m)},
                {"unit_guess", report.unit_guess},
+               {"up_guess", up_hint},
                {"closed", report.closed},
                {"winding", to_string(report.winding)},
                {"check", json_of(report.check)}};
@@ -180,18 +183,29 @@ Json json_of(const ModelReport& report) {
   return json;
 }
 
-int run(const InfoFlags& flags) {
+/// The model and what is found in it; up to here the console shows how far that is.
+ModelReport examine(const InfoFlags& flags) {
   Console console;
+  const Working working(console, "reading " + flags.input);
   Report report_to_console = console.report();
   report_to_console.log = nullptr;  // all it would say is in the table
   const Model model = load_model(flags.input, model_options(flags.model), report_to_console);
-  console.clear();
-  const ModelReport report = inspect(model);
+  console.tell("examining " + flags.input, -1.0);
+  return inspect(model);
+}
+
+int run(const InfoFlags& flags) {
+  const ModelReport report = examine(flags);
+  const std::string up_hint =
+      flags.model.up.empty()
+          ? up_advice(report.format, Eigen::AlignedBox3d(report.min_m, report.max_m))
+          : "";
   if (flags.json) {
     // names in files need not be UTF-8; what is not is replaced rather than refused
-    fmt::print("{}\n", json_of(report).dump(2, ' ', false, Json::error_handler_t::replace));
+    fmt::print("{}\n",
+               json_of(report, up_hint).dump(2, ' ', false, Json::error_handler_t::replace));
   } else {
-    print_table(report);
+    print_table(report, up_hint);
   }
   return kDone;
 }
@@ -202,9 +216,9 @@ Command add_info(CLI::App& program) {
   CLI::App& command = *program.add_subcommand("info", "Tell what a model file holds");
   const auto flags = std::make_shared<InfoFlags>();
   command.footer(kExamples);
-  command.add_option("model", flags->input, "Model file or builtin:NAME")
+  command.add_option("MODEL", flags->input, "Model file or builtin:NAME")
       ->required()
-      ->type_name("MODEL");
+      ->type_name("");
   add_model_flags(command, flags->model);
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
   return [flags] { return run(*flags); };

@@ -2,36 +2,37 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/information_options.hpp>
 
-#include <apps/glidar/help_text.hpp>
 #include <apps/glidar/numbers.hpp>
+#include <apps/glidar/option_kinds.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/information_file.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <cmath>
+
 namespace glidar::app {
 
 void add_information_flags(CLI::App& command, InformationFlags& flags) {
   const std::string group = "Output";
   command
-      .add_flag(
-          "--information", flags.wanted,
-          wrapped("Tell what the scan says about the sensor's pose: least standard deviations "
-                  "and degenerate directions; also as NAME.information.json beside the first "
-                  "output"))
+      .add_flag("--information", flags.wanted,
+                "Tell what the scan says about the sensor's pose; also as\n"
+                "NAME.information.json beside the first output")
       ->group(group);
-  command
-      .add_option("--information-sigma", flags.sigma_m,
-                  wrapped("Standard deviation of ranges for that, m, of a sensor without noise of "
-                          "its own [0.01]"))
-      ->type_name("M")
-      ->group(group);
+  add_number(command,
+             {"--information-sigma", "M",
+              "Standard deviation of ranges for that, m, of a sensor without noise of its own "
+              "[0.01]",
+              group},
+             flags.sigma_m);
 }
 
 void check(const InformationFlags& flags) {
   if (!flags.sigma_m) return;
-  require_positive("--information-sigma", *flags.sigma_m);
+  require(std::isfinite(*flags.sigma_m) && *flags.sigma_m > 0.0, "--information-sigma",
+          *flags.sigma_m, "a finite number above 0");
   if (flags.wanted) return;
   throw Error({"--information-sigma", "there is no --information", "", "give --information too"});
 }

@@ -28,6 +28,10 @@ void end_cleanly_on_interrupt() {
   action.sa_handler = end_now;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction before {};
+  sigaction(SIGHUP, nullptr, &before);
+  if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup ignores it
+  signal(SIGXFSZ, SIG_IGN);  // write() then fails, and says why
 }
 
 }  // namespace glidar::app

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands.hpp>
 #include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/help_text.hpp>
 #include <apps/glidar/interrupt.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
@@ -52,7 +53,7 @@ std::string explain_extra(const CLI::App& program, const Commands& commands, std
                            : fmt::format("unknown option {}; did you mean {}?", word, nearest);
   }
   if (&command != &program) return fmt::format("unexpected word '{}'; see --help", word);
-  std::vector<std::string> names;
+  std::vector<std::string> names = {"--help"};
   for (const auto& [name, run] : commands) names.push_back(name);
   const std::string nearest = nearest_word(word, names);
   return nearest.empty()
@@ -60,6 +61,15 @@ std::string explain_extra(const CLI::App& program, const Commands& commands, std
                    "'{0}' is no subcommand; to measure a model: glidar render {0} -o cloud.pcd",
                    word)
              : fmt::format("'{}' is no subcommand; did you mean {}?", word, nearest);
+}
+
+/// CLI11's "--fov: 1 required DEG missing" and "--fov: At Most 1 required but received 2" in words.
+std::string explain_mismatch(const std::string& text) {
+  const std::string option = text.substr(0, text.find(':'));
+  if (text.find("received") != std::string::npos) {
+    return fmt::format("{}: given more than once; allowed: once", option);
+  }
+  return fmt::format("{}: there is no value after it; see --help for what it takes", option);
 }
 
 int fail(const std::string& message) {
@@ -84,11 +94,17 @@ int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** 
     program.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {
     return program.exit(help_or_version);
+  } catch (const CLI::ArgumentMismatch& error) {
+    return fail(explain_mismatch(error.what()));
   } catch (const CLI::ConversionError& error) {
     return fail(std::string(error.what()) + "; see --help for what it takes");
   } catch (const CLI::ParseError& error) {
     const std::string extra = first_extra(program);
-    return fail(extra.empty() ? error.what() : explain_extra(program, commands, extra));
+    if (!extra.empty()) return fail(explain_extra(program, commands, extra));
+    return fail(fmt::format("{}; see {}--help", error.what(),
+                            &chosen(program) == &program
+                                ? "glidar "
+                                : fmt::format("glidar {} ", chosen(program).get_name())));
   }
   for (const auto& [name, run] : commands) {
     if (program.got_subcommand(name)) return run();
@@ -98,9 +114,8 @@ int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** 
 
 int run(int argc, char** argv) {
   CLI::App program("Simulator of 3D sensors: from a model file to a true point cloud", "glidar");
-  constexpr std::size_t kNameColumn = 36;
-  program.get_formatter()->column_width(kNameColumn);
-  program.set_version_flag("--version", std::string("glidar ") + version());
+  use_help_layout(program);
+  program.set_version_flag("--version", std::string("glidar ") + version(), "Print the version");
   program.require_subcommand(1);
   program.footer(kExamples);
   const Commands commands = {{"render", add_render(program)},

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/model_options.hpp>
 
+#include <apps/glidar/option_kinds.hpp>
 #include <glidar/io/length_unit.hpp>
 
 #include <CLI/CLI.hpp>
@@ -9,20 +10,16 @@
 namespace glidar::app {
 
 void add_model_flags(CLI::App& command, ModelFlags& flags) {
-  command.add_option("--unit", flags.unit, "Unit of the model file's numbers: mm cm m in [m]")
-      ->check(CLI::IsMember(length_unit_names()))
-      ->type_name("UNIT")
-      ->group("Model");
-  command.add_option("--up", flags.up, "Axis of the file that points up: x y z; it becomes +z")
-      ->check(CLI::IsMember({"x", "y", "z"}))
-      ->type_name("AXIS")
-      ->group("Model");
-  command
-      .add_flag("--no-cache", flags.no_cache, "Neither read nor write the cache of loaded models")
-      ->group("Model");
-  command.add_option("--cache-folder", flags.cache_folder, "Where that cache is [~/.cache/glidar]")
-      ->type_name("DIR")
-      ->group("Model");
+  const std::string group = "Model";
+  add_choice(command, {"--unit", "UNIT", "Unit of the model file: mm, cm, m or in [m]", group},
+             {"mm", "cm", "m", "in"}, flags.unit);
+  add_choice(command,
+             {"--up", "AXIS", "Axis of the model file that points up: x, y or z [z]", group},
+             {"x", "y", "z"}, flags.up);
+  command.add_flag("--no-cache", flags.no_cache, "Neither read nor write the cache of models")
+      ->group(group);
+  add_text(command, {"--cache-folder", "DIR", "Folder of that cache [~/.cache/glidar]", group},
+           flags.cache_folder);
 }
 
 ModelOptions model_options(const ModelFlags& flags) {

@@ -2,13 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/motion_options.hpp>
 
-#include <apps/glidar/help_text.hpp>
 #include <apps/glidar/numbers.hpp>
+#include <apps/glidar/option_kinds.hpp>
 #include <apps/glidar/pose_options.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/trajectory_file.hpp>
-
-#include <CLI/CLI.hpp>
 
 #include <cmath>
 #include <utility>
@@ -20,11 +18,11 @@ namespace {
   throw Error({std::move(where), std::move(found), "", std::move(remedy)});
 }
 
-Eigen::Vector3d parse_rate(const std::string& option, const std::string& text) {
+Eigen::Vector3d parse_rate(std::string_view option, const std::string& text) {
   constexpr double kMost_rad_s = 1e9;
   const Eigen::Vector3d rate = parse_vector(option, text);
   if (rate.cwiseAbs().maxCoeff() <= kMost_rad_s) return rate;
-  throw Error({option, "'" + text + "'", "rad/s from -1e9 to 1e9", ""});
+  throw Error({std::string(option), "'" + text + "'", "rad/s from -1e9 to 1e9", ""});
 }
 
 TimedPoses load_sensor_poses(const MotionFlags& flags) {
@@ -58,37 +56,32 @@ void check(const MotionFlags& flags, bool pose_given) {
 
 void add_motion_flags(CLI::App& command, MotionFlags& flags) {
   const std::string group = "Motion";
-  command
-      .add_option("--trajectory", flags.trajectory,
-                  wrapped("Poses of the sensor (world_from_sensor, optical frame) over time: TUM, "
-                          "KITTI or CSV, see docs/files.md"))
-      ->type_name("FILE")
-      ->group(group);
-  command
-      .add_option("--trajectory-rate", flags.trajectory_rate_hz,
-                  "Poses per second of a KITTI file, Hz")
-      ->type_name("HZ")
-      ->group(group);
-  command
-      .add_option("--trajectory-times", flags.trajectory_times, "Times of a KITTI file, one a line")
-      ->type_name("FILE")
-      ->group(group);
-  command
-      .add_option("--trajectory-start", flags.trajectory_start_s,
-                  "Move its times so that the first is this, s [as in the file]")
-      ->type_name("S")
-      ->group(group);
-  command
-      .add_option("--model-dr", flags.model_dr,
-                  wrapped("As in 2015: the model turns, rad/s about its own x, y, z"))
-      ->type_name("X,Y,Z")
-      ->group(group);
-  command
-      .add_option("--camera-dr", flags.camera_dr,
-                  wrapped("As in 2015: the sensor turns, rad/s about its own axes x left, y up, z "
-                          "forward"))
-      ->type_name("X,Y,Z")
-      ->group(group);
+  add_text(command,
+           {"--trajectory", "FILE",
+            "Poses of the sensor (world_from_sensor, optical frame) over time: TUM, KITTI or CSV, "
+            "see docs/files.md",
+            group},
+           flags.trajectory);
+  add_number(command, {"--trajectory-rate", "HZ", "Poses per second of a KITTI file, Hz", group},
+             flags.trajectory_rate_hz);
+  add_text(command, {"--trajectory-times", "FILE", "Times of a KITTI file, one a line", group},
+           flags.trajectory_times);
+  add_number(command,
+             {"--trajectory-start", "S",
+              "Move its times so that the first is this, s [as in the file]", group},
+             flags.trajectory_start_s);
+  const auto check_rate = [](std::string_view option, const std::string& text) {
+    (void)parse_rate(option, text);
+  };
+  add_text(
+      command,
+      {"--model-dr", "X,Y,Z", "As in 2015: the model turns, rad/s about its own x, y, z", group},
+      flags.model_dr, check_rate);
+  add_text(
+      command,
+      {"--camera-dr", "X,Y,Z",
+       "As in 2015: the sensor turns, rad/s about its own axes x left, y up, z forward", group},
+      flags.camera_dr, check_rate);
 }
 
 Trajectory sensor_trajectory(const MotionFlags& flags, const Pose& world_from_sensor,

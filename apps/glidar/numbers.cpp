@@ -3,11 +3,13 @@
 #include <apps/glidar/numbers.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/pose.hpp>
 
 #include <fmt/format.h>
 
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <system_error>
 
 namespace glidar::app {
@@ -20,16 +22,22 @@ namespace {
                .remedy = ""});
 }
 
-/// A finite number, all of the text; NaN when it is none.
-double number(std::string_view text) {
+/// A number, all of the text.
+std::optional<double> number(std::string_view text) {
   if (!text.empty() && text.front() == '+') text.remove_prefix(1);
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool whole = error == std::errc() && end == text.data() + text.size();
-  return whole && std::isfinite(value) ? value : std::nan("");
+  return whole ? std::optional(value) : std::nullopt;
 }
 
 }  // namespace
+
+double parse_number(std::string_view option, std::string_view text) {
+  const std::optional<double> value = number(text);
+  if (!value) fail(option, fmt::format("'{}'", text), "a number");
+  return *value;
+}
 
 std::vector<std::string> parse_list(std::string_view option, std::string_view text) {
   std::vector<std::string> parts;
@@ -51,8 +59,9 @@ std::vector<double> parse_numbers(std::string_view option, std::string_view text
       fmt::format("{} finite numbers {}, with commas and no spaces", count, form);
   std::vector<double> numbers;
   for (const std::string& part : parse_list(option, text)) {
-    numbers.push_back(number(part));
-    if (std::isnan(numbers.back())) fail(option, fmt::format("'{}'", part), allowed);
+    const std::optional<double> value = number(part);
+    if (!value || !std::isfinite(*value)) fail(option, fmt::format("'{}'", part), allowed);
+    numbers.push_back(*value);
   }
   if (numbers.size() != count) {
     fail(option, fmt::format("'{}' ({} numbers)", text, numbers.size()), allowed);
@@ -65,24 +74,40 @@ Eigen::Vector3d parse_vector(std::string_view option, std::string_view text) {
   return {n[0], n[1], n[2]};
 }
 
+void check_reach(std::string_view option, const Eigen::Vector3d& position_m) {
+  for (const double coordinate : position_m) {
+    require(std::abs(coordinate) <= kLargestCoordinate_m, option, coordinate,
+            "coordinates from -1e15 to 1e15 m");
+  }
+}
+
+Eigen::Vector3d parse_position(std::string_view option, std::string_view text) {
+  const Eigen::Vector3d position = parse_vector(option, text);
+  check_reach(option, position);
+  return position;
+}
+
+Eigen::Quaterniond unit_quaternion(std::string_view option, const std::array<double, 4>& wxyz) {
+  Eigen::Vector4d n(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  if (n.isZero(0.0)) fail(option, "a quaternion of length 0", "any other length");
+  n.stableNormalize();  // the squares of 1e300 and 1e-300 are beyond double
+  return {n[0], n[1], n[2], n[3]};
+}
+
 Eigen::Quaterniond parse_quaternion(std::string_view option, std::string_view text) {
   const std::vector<double> n = parse_numbers(option, text, 4, "w,x,y,z");
-  const Eigen::Quaterniond q(n[0], n[1], n[2], n[3]);
-  if (!(q.norm() > 0.0)) fail(option, "a quaternion of length 0", "any other length");
-  return q.normalized();
+  return unit_quaternion(option, {n[0], n[1], n[2], n[3]});
 }
 
 Eigen::Quaterniond parse_angle_axis(std::string_view option, std::string_view text) {
   const std::vector<double> n = parse_numbers(option, text, 4, "angle,x,y,z (radians, axis)");
   const Eigen::Vector3d axis(n[1], n[2], n[3]);
-  if (!(axis.norm() > 0.0)) fail(option, "an axis of length 0", "any other length");
-  return Eigen::Quaterniond(Eigen::AngleAxisd(n[0], axis.normalized()));
+  if (axis.isZero(0.0)) fail(option, "an axis of length 0", "any other length");
+  return Eigen::Quaterniond(Eigen::AngleAxisd(n[0], axis.stableNormalized()));
 }
 
-void require_positive(std::string_view option, double value, bool zero_allowed) {
-  if (std::isfinite(value) && (value > 0.0 || (zero_allowed && value == 0.0))) return;
-  fail(option, fmt::format("{}", value),
-       zero_allowed ? "a finite number, 0 or above" : "a finite number above 0");
+void require(bool holds, std::string_view option, double value, std::string_view allowed) {
+  if (!holds) fail(option, number_text(value), std::string(allowed));
 }
 
 }  // namespace glidar::app

@@ -4,15 +4,15 @@
 
 #include <apps/glidar/help_text.hpp>
 #include <apps/glidar/numbers.hpp>
+#include <apps/glidar/option_kinds.hpp>
 #include <apps/glidar/pose_options.hpp>
 #include <glidar/core/error.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <array>
+#include <cmath>
 #include <set>
 
 namespace glidar::app {
@@ -28,13 +28,25 @@ void add_missing(const std::string& name, std::vector<std::string>& names) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
 }
 
+/// Lets an error of `work` name the option too.
+template <typename Work>
+void naming(const char* option, const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    ErrorParts parts = error.parts();
+    parts.where = std::string(option) + (parts.where.empty() ? " ''" : ", " + parts.where);
+    throw Error(parts);
+  }
+}
+
 /// The columns asked for, every name known.
 std::vector<std::string> asked_columns(const std::string& text) {
   if (text == "default") return default_columns();
   if (text == "all") return {cloud_column_names().begin(), cloud_column_names().end()};
   std::vector<std::string> columns;
   for (const std::string& name : parse_list("--columns", text)) add_missing(name, columns);
-  glidar::fields_for(columns);  // throws on an unknown name
+  naming("--columns", [&] { glidar::fields_for(columns); });  // throws on an unknown name
   return columns;
 }
 
@@ -55,7 +67,9 @@ FileSinkOptions sink_options(const OutputFlags& flags) {
   options.ply_ascii = flags.ply_ascii;
   options.dense = flags.dense;
   options.sidecar = !flags.no_sidecar;
-  options.depth_png_units_per_m = flags.depth_scale;
+  const double scale = flags.depth_scale.value_or(options.depth_png_units_per_m);
+  require(scale > 0.0 && std::isfinite(scale), "--depth-scale", scale, "a finite number above 0");
+  options.depth_png_units_per_m = scale;
   return options;
 }
 
@@ -84,7 +98,7 @@ void check_names(const std::vector<Output>& outputs, const std::string& input) {
     const bool twice =
         !seen.insert(std::filesystem::absolute(output.path).lexically_normal()).second;
     if (!is_input && !twice) continue;
-    throw Error({.where = output.path.string(),
+    throw Error({.where = "--output, " + output.path.string(),
                  .found = is_input ? "is an input file" : "is given twice as output",
                  .allowed = "",
                  .remedy = "choose another name"});
@@ -100,69 +114,77 @@ std::string suffix_list() {
 }  // namespace
 
 void add_output_flags(CLI::App& command, OutputFlags& flags) {
-  const std::string group = "Output";
-  command
-      .add_option("-o,--output", flags.paths,
-                  wrapped("Output file, repeatable; the suffix says what:" + suffix_list()))
-      ->type_name("OUT")
+  const std::string group = "Output (names are explained below)";
+  command.add_option("-o,--output", flags.paths, "File to write, repeatable; its suffix says what")
+      ->type_name("FILE")
       ->allow_extra_args(false)
       ->group(group);
-  command
-      .add_option(
-          "--pcd", flags.legacy_name,
-          wrapped("As in the 2015 program: NAME.pcd (x left, y up, z forward) and NAME.transform"))
-      ->type_name("NAME")
-      ->group(group);
-  command
-      .add_option("--columns", flags.columns,
-                  wrapped(fmt::format(
-                      "Columns of clouds: all, default or a list a,b,c of {} [default: {}]",
-                      fmt::join(cloud_column_names(), " "), fmt::join(default_columns(), " "))))
-      ->type_name("LIST")
-      ->group(group);
-  command
-      .add_option(
-          "--cloud-frame", flags.cloud_frame,
-          wrapped(
-              "Axes of clouds: optical (x right, y down, z forward), ros (x forward, y left, z "
-              "up), gl (x right, y up, z back), legacy (x left, y up, z forward), world [optical]"))
-      ->check(CLI::IsMember({"optical", "ros", "gl", "world", "legacy"}))
-      ->type_name("NAME")
-      ->group(group);
+  add_text(command, {"--pcd", "NAME", "As in the 2015 program: NAME.pcd and NAME.transform", group},
+           flags.legacy_name);
+  add_text(command, {"--columns", "LIST", "Columns of clouds: a,b,c or all or default", group},
+           flags.columns, [](std::string_view, const std::string& text) { asked_columns(text); });
+  add_choice(command,
+             {"--cloud-frame", "NAME", "Axes: optical, ros, gl, legacy or world [optical]", group},
+             {"optical", "ros", "gl", "world", "legacy"}, flags.cloud_frame);
   command.add_flag("--dense", flags.dense, "Leave misses out of clouds")->group(group);
-  command
-      .add_option("--pcd-encoding", flags.pcd_encoding, "ascii, binary, binary_compressed [binary]")
-      ->check(CLI::IsMember({"ascii", "binary", "binary_compressed"}))
-      ->type_name("NAME")
-      ->group(group);
+  add_choice(command,
+             {"--pcd-encoding", "NAME", "ascii, binary or binary_compressed [binary]", group},
+             {"ascii", "binary", "binary_compressed"}, flags.pcd_encoding);
   command.add_flag("--ply-ascii", flags.ply_ascii, "PLY as text")->group(group);
-  command
-      .add_option("--depth-scale", flags.depth_scale,
-                  "Units per metre in 16-bit depth images [1000, millimetres]")
-      ->type_name("UNITS")
-      ->group(group);
-  command.add_flag("--no-sidecar", flags.no_sidecar, "Write no OUT.json beside clouds")
+  add_number(command,
+             {"--depth-scale", "UNITS", "Units per metre in 16-bit depth images [1000]", group},
+             flags.depth_scale);
+  command.add_flag("--no-sidecar", flags.no_sidecar, "Write no FILE.json beside clouds")
       ->group(group);
 }
 
+std::string output_names_text() {
+  std::string text = "Output files by suffix:\n";
+  for (const FileFormat& format : file_formats()) {
+    text += fmt::format("  {:<12} {}\n", format.suffix, format.description);
+  }
+  text += "\nColumns of clouds (* those of default):\n";
+  std::string names;
+  for (const std::string& name : cloud_column_names()) {
+    const bool usual = std::find(default_columns().begin(), default_columns().end(), name) !=
+                       default_columns().end();
+    names += (names.empty() ? "" : " ") + name + (usual ? "*" : "");
+  }
+  text += indented(names);
+  text +=
+      "\nAxes of clouds:\n"
+      "  optical      x right, y down, z forward\n"
+      "  ros          x forward, y left, z up\n"
+      "  gl           x right, y up, z back\n"
+      "  legacy       x left, y up, z forward\n"
+      "  world        those of the scene\n\n";
+  return text;
+}
+
 std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& input,
-                                 const SidecarContext& context, const Report& report) {
+                                 const SidecarContext& context, const Report& report,
+                                 const Progress& progress) {
   if (flags.paths.empty() && flags.legacy_name.empty()) {
-    throw Error({.where = "output",
+    throw Error({.where = "--output",
                  .found = "there is no -o, so nothing would be written",
                  .allowed = "files by suffix:" + suffix_list(),
                  .remedy = "for example: glidar render " + input + " -o cloud.pcd -o picture.png"});
   }
-  require_positive("--depth-scale", flags.depth_scale);
+  FileSinkOptions options = sink_options(flags);
+  options.progress = progress;
   const std::vector<std::string> asked = asked_columns(flags.columns);
   std::vector<Output> outputs;
   for (const std::string& path : flags.paths) {
-    outputs.push_back({.path = path,
-                       .columns = columns_of(format_for(path), asked),
-                       .cloud_frame = flags.cloud_frame,
-                       .sink = make_file_sink(path, sink_options(flags), context, report)});
+    naming("--output", [&] {
+      outputs.push_back({.path = path,
+                         .columns = columns_of(format_for(path), asked),
+                         .cloud_frame = flags.cloud_frame,
+                         .sink = make_file_sink(path, options, context, report)});
+    });
   }
-  if (!flags.legacy_name.empty()) plan_legacy(flags.legacy_name, context, report, outputs);
+  if (!flags.legacy_name.empty()) {
+    naming("--pcd", [&] { plan_legacy(flags.legacy_name, context, report, outputs); });
+  }
   check_names(outputs, input);
   return outputs;
 }
@@ -204,10 +226,11 @@ CloudFrame cloud_frame(const std::string& name, const Beams& beams, const Pose& 
 }
 
 void write_outputs(const std::vector<Output>& outputs, const Frame& frame, const Beams& beams,
-                   const Scene& scene) {
+                   const Scene& scene, const Report& report) {
   PointCloud cloud;
   const Output* made_for = nullptr;
   for (const Output& output : outputs) {
+    if (report.progress) report.progress("writing " + output.path.string(), -1.0);
     const bool same = made_for != nullptr && made_for->columns == output.columns &&
                       made_for->cloud_frame == output.cloud_frame;
     if (!same) {

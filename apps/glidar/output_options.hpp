@@ -9,6 +9,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -24,10 +25,13 @@ struct OutputFlags {
   bool dense = false;
   bool ply_ascii = false;
   bool no_sidecar = false;
-  double depth_scale = 1000.0;
+  std::optional<double> depth_scale;
 };
 
 void add_output_flags(CLI::App& command, OutputFlags& flags);
+
+/// What the names of suffixes, columns and axes mean, for the end of --help.
+std::string output_names_text();
 
 /// One file to be written.
 struct Output {
@@ -38,9 +42,11 @@ struct Output {
 };
 
 /// All files, checked as far as possible before anything is computed: suffix, folder, column names,
-/// no name twice, not the input itself. The context is read when writing, warnings go to `report`.
+/// no name twice, not the input itself. The context is read and `progress` told when writing,
+/// warnings go to `report`.
 std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& input,
-                                 const SidecarContext& context, const Report& report);
+                                 const SidecarContext& context, const Report& report,
+                                 const Progress& progress = {});
 
 /// Throws Error when one of the outputs is a file that was read: known once the input is loaded.
 void protect_files(const std::vector<std::string>& read, const std::vector<Output>& outputs);
@@ -51,8 +57,8 @@ HitFields fields_for(const std::vector<Output>& outputs);
 /// The coordinate frame of this name for a camera's frame.
 CloudFrame cloud_frame(const std::string& name, const Beams& beams, const Pose& world_from_sensor);
 
-/// Writes them all.
+/// Writes them all; tells `report` which one is being written.
 void write_outputs(const std::vector<Output>& outputs, const Frame& frame, const Beams& beams,
-                   const Scene& scene);
+                   const Scene& scene, const Report& report = {});
 
 }  // namespace glidar::app

@@ -3,6 +3,7 @@
 #include <apps/glidar/pose_options.hpp>
 
 #include <apps/glidar/numbers.hpp>
+#include <apps/glidar/option_kinds.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/sensor/framing.hpp>
 
@@ -14,6 +15,8 @@
 namespace glidar::app {
 namespace {
 
+constexpr double kSmallestScale = 1e-15;
+constexpr double kLargestScale = 1e15;        // what a scene takes
 constexpr double kLegacyDistance_m = 1000.0;  // --camera-z of the 2015 program
 
 /// From the front right and above, for models whose up is +z and whose front is -y.
@@ -48,66 +51,88 @@ bool eye_given(const PoseFlags& flags) {
   return !flags.eye.empty() || !flags.target.empty();
 }
 
+std::string text_of(const Eigen::Vector3d& v) {
+  return number_text(v.x()) + "," + number_text(v.y()) + "," + number_text(v.z());
+}
+
+/// Throws Error naming the options unless an image that looks this way has a definite upright.
+void check_upright(const char* options, const Eigen::Vector3d& forward, const Eigen::Vector3d& up) {
+  constexpr double kSmallestSine = 1e-9;  // as look_at has it
+  const Eigen::Vector3d z = forward.stableNormalized();
+  if (z.cross(up.stableNormalized()).norm() > kSmallestSine) return;
+  Eigen::Index flattest = 0;
+  z.cwiseAbs().minCoeff(&flattest);
+  throw Error({.where = options,
+               .found = "the sensor looks along " + text_of(z) + ", parallel to its up vector " +
+                        text_of(up),
+               .allowed = "an up vector that is neither 0 nor parallel to the line of sight",
+               .remedy = "for example --up-vector " +
+                         text_of(Eigen::Vector3d(Eigen::Vector3d::Unit(flattest)))});
+}
+
 Pose eye_pose(const PoseFlags& flags, const Scene& scene, const Eigen::Vector3d& up) {
   if (flags.eye.empty()) fail("--target", "there is no --eye", "give --eye x,y,z too");
-  const Eigen::Vector3d eye = parse_vector("--eye", flags.eye);
+  const Eigen::Vector3d eye = parse_position("--eye", flags.eye);
   const Eigen::AlignedBox3d box = bounds(scene);
   const Eigen::Vector3d middle =
       box.isEmpty() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(box.center());
-  return look_at(eye, flags.target.empty() ? middle : parse_vector("--target", flags.target), up);
+  const Eigen::Vector3d target =
+      flags.target.empty() ? middle : parse_position("--target", flags.target);
+  if (eye == target) {
+    fail("--eye", "'" + flags.eye + "' is the point looked at", "give another --eye or --target");
+  }
+  check_upright("--eye, --target and --up-vector", target - eye, up);
+  return look_at(eye, target, up);
 }
 
-Pose explicit_pose(const PoseFlags& flags) {
-  const std::vector<double> n =
-      parse_numbers("--sensor-pose", flags.sensor_pose, 7, "x,y,z,qw,qx,qy,qz");
-  return make_pose({n[0], n[1], n[2]}, Eigen::Quaterniond(n[3], n[4], n[5], n[6]));
+Pose parse_pose(std::string_view option, const std::string& text) {
+  const std::vector<double> n = parse_numbers(option, text, 7, "x,y,z,qw,qx,qy,qz");
+  const Eigen::Vector3d position(n[0], n[1], n[2]);
+  check_reach(option, position);
+  return make_pose(position, unit_quaternion(option, {n[3], n[4], n[5], n[6]}));
 }
 
 Pose legacy_pose(const PoseFlags& flags) {
   const double distance_m = flags.camera_z.value_or(kLegacyDistance_m);
-  if (!std::isfinite(distance_m)) fail("--camera-z", "not a finite number", "give metres");
+  require(std::abs(distance_m) <= kLargestCoordinate_m, "--camera-z", distance_m,
+          "metres from -1e15 to 1e15");
   const auto camera_q = attitude("--camera", flags.camera_q, flags.camera_r);
   return legacy_world_from_optical(camera_q.value_or(Eigen::Quaterniond::Identity()), distance_m);
 }
 
-CLI::Option* add_text(CLI::App& command, const std::string& name, std::string& text,
-                      const std::string& form, const std::string& description) {
-  return command.add_option(name, text, description)->type_name(form);
-}
-
 void add_legacy_flags(CLI::App& command, PoseFlags& flags) {
   const std::string group = "Pose as in the 2015 program";
-  add_text(command, "--model-q", flags.model_q, "W,X,Y,Z", "Model attitude, quaternion")
-      ->group(group);
-  add_text(command, "--model-r", flags.model_r, "ANGLE,X,Y,Z", "Model attitude, radians and axis")
-      ->group(group);
-  add_text(command, "--camera-q", flags.camera_q, "W,X,Y,Z", "Sensor attitude, quaternion")
-      ->group(group);
-  add_text(command, "--camera-r", flags.camera_r, "ANGLE,X,Y,Z",
-           "Sensor attitude, radians and axis")
-      ->group(group);
-  command.add_option("--camera-z", flags.camera_z, "Distance D from sensor to object, m [1000]")
-      ->type_name("D")
-      ->group(group);
+  const std::string axis_form = "ANGLE,X,Y,Z";
+  add_text(command, {"--model-q", "W,X,Y,Z", "Model attitude, quaternion", group}, flags.model_q,
+           parse_quaternion);
+  add_text(command, {"--model-r", axis_form, "Model attitude, radians and axis", group},
+           flags.model_r, parse_angle_axis);
+  add_text(command, {"--camera-q", "W,X,Y,Z", "Sensor attitude, quaternion", group}, flags.camera_q,
+           parse_quaternion);
+  add_text(command, {"--camera-r", axis_form, "Sensor attitude, radians and axis", group},
+           flags.camera_r, parse_angle_axis);
+  add_number(command, {"--camera-z", "D", "Distance from sensor to object, m [1000]", group},
+             flags.camera_z);
 }
 
 }  // namespace
 
 void add_pose_flags(CLI::App& command, PoseFlags& flags) {
   const std::string group = "Pose (default: the scene fills the view, seen from 2,-3,2)";
-  add_text(command, "--eye", flags.eye, "X,Y,Z", "Sensor position in the world, m")->group(group);
-  add_text(command, "--target", flags.target, "X,Y,Z",
-           "Point the sensor looks at, m [the scene's middle]")
-      ->group(group);
-  add_text(command, "--up-vector", flags.up_vector, "X,Y,Z",
-           "World direction that is up in the image [0,0,1]")
-      ->group(group);
-  add_text(command, "--sensor-pose", flags.sensor_pose, "X,Y,Z,QW,QX,QY,QZ",
-           "world_from_sensor: position in m, attitude of the optical frame")
-      ->group(group);
-  command.add_option("--scale", flags.scale, "Scale of the model, after --unit [1]")
-      ->type_name("S")
-      ->group("Model");
+  add_text(command, {"--eye", "X,Y,Z", "Sensor position in the world, m", group}, flags.eye,
+           parse_position);
+  add_text(command,
+           {"--target", "X,Y,Z", "Point the sensor looks at, m [the scene's middle]", group},
+           flags.target, parse_position);
+  add_text(command,
+           {"--up-vector", "X,Y,Z", "World direction that is up in the image [0,0,1]", group},
+           flags.up_vector, parse_vector);
+  add_text(command,
+           {"--sensor-pose", "X,Y,Z,QW,QX,QY,QZ",
+            "Position in the world, m, and attitude of the optical frame", group},
+           flags.sensor_pose, parse_pose);
+  add_number(command, {"--scale", "S", "Scale of the model, after --unit [1]", "Model"},
+             flags.scale);
   add_legacy_flags(command, flags);
 }
 
@@ -134,7 +159,8 @@ void pose_model(const PoseFlags& flags, Scene& scene) {
          "these options move a single model; write poses and scales into the scene file");
   }
   if (flags.scale) {
-    require_positive("--scale", *flags.scale);
+    require(*flags.scale >= kSmallestScale && *flags.scale <= kLargestScale, "--scale",
+            *flags.scale, "a number above 0, from 1e-15 to 1e15");
     scene.instances[0].scale *= *flags.scale;
   }
   if (!model_q) return;
@@ -154,7 +180,7 @@ Pose pose_sensor(const PoseFlags& flags, const std::optional<Pose>& from_scene_f
   const int ways =
       int{eye_given(flags)} + int{legacy_given(flags)} + int{!flags.sensor_pose.empty()};
   if (ways > 1) {
-    fail("sensor pose", "it is given in several ways",
+    fail("--eye, --sensor-pose and --camera-z", "the pose is given in several ways",
          "give --eye and --target, or --sensor-pose, or --camera-z with --camera-q");
   }
   const bool up_used = eye_given(flags) || (ways == 0 && !from_scene_file);
@@ -165,8 +191,9 @@ Pose pose_sensor(const PoseFlags& flags, const std::optional<Pose>& from_scene_f
                                                      : parse_vector("--up-vector", flags.up_vector);
   if (eye_given(flags)) return eye_pose(flags, scene, up);
   if (legacy_given(flags)) return legacy_pose(flags);
-  if (!flags.sensor_pose.empty()) return explicit_pose(flags);
+  if (!flags.sensor_pose.empty()) return parse_pose("--sensor-pose", flags.sensor_pose);
   if (from_scene_file) return *from_scene_file;
+  check_upright("--up-vector", -three_quarters(), up);
   return frame_view(beams, scene, three_quarters(), up);
 }
 

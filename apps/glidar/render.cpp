@@ -7,8 +7,10 @@
 #include <apps/glidar/information_options.hpp>
 #include <apps/glidar/model_options.hpp>
 #include <apps/glidar/motion_options.hpp>
+#include <apps/glidar/option_kinds.hpp>
 #include <apps/glidar/output_options.hpp>
 #include <apps/glidar/pose_options.hpp>
+#include <apps/glidar/run_options.hpp>
 #include <apps/glidar/sensor_options.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/scene_file.hpp>
@@ -18,7 +20,9 @@
 #include <CLI/CLI.hpp>
 
 #include <charconv>
+#include <cstdint>
 #include <memory>
+#include <optional>
 
 namespace glidar::app {
 namespace {
@@ -47,9 +51,8 @@ struct RenderFlags {
   MotionFlags motion;
   OutputFlags output;
   InformationFlags information;
-  std::string renderer = "embree";
-  unsigned threads = 0;
-  std::string seed_text = "1";
+  RendererOptions renderer;
+  std::uint64_t seed = 1;
   bool quiet = false;
 };
 
@@ -57,11 +60,22 @@ bool is_scene_file(const std::string& input) {
   return input.ends_with(".yaml") || input.ends_with(".yml");
 }
 
-SceneFile load(const RenderFlags& flags, const Report& report) {
+/// Whether the view is chosen by us: then it matters what is up.
+bool is_framed(const RenderFlags& flags) {
+  return flags.model.up.empty() && flags.pose.model_q.empty() && flags.pose.model_r.empty() &&
+         flags.pose.up_vector.empty() && !sensor_pose_given(flags.pose);
+}
+
+SceneFile load(const RenderFlags& flags, Console& console) {
+  const Working working(console, "loading " + flags.input);
   const ModelOptions options = model_options(flags.model);
-  if (is_scene_file(flags.input)) return load_scene_file(flags.input, options, report);
+  if (is_scene_file(flags.input)) return load_scene_file(flags.input, options, console.report());
   SceneFile loaded;
-  add_model(loaded.scene, load_model(flags.input, options, report));
+  Model model = load_model(flags.input, options, console.report());
+  const std::string up_hint =
+      is_framed(flags) ? up_advice(model.format, bounds(model.mesh)) : std::string();
+  if (!up_hint.empty()) console.info(up_hint);
+  add_model(loaded.scene, std::move(model));
   return loaded;
 }
 
@@ -80,22 +94,31 @@ void tell(const std::vector<std::string>& advice, Console& console) {
 }
 
 /// The seed as a whole number; the command line library would take -1 for a large one.
-std::uint64_t seed_of(const std::string& text) {
+std::uint64_t parse_seed(std::string_view option, const std::string& text) {
   std::uint64_t seed = 0;
   const char* end = text.data() + text.size();
   const auto [stop, error] = std::from_chars(text.data(), end, seed);
   if (error == std::errc() && stop == end) return seed;
-  throw Error({.where = "--seed",
+  throw Error({.where = std::string(option),
                .found = "'" + text + "'",
                .allowed = "a whole number from 0 to 18446744073709551615",
                .remedy = ""});
 }
 
-void measure(const RenderFlags& flags, const Setup& setup, const HitFields& fields,
-             Console& console, Frame& frame) {
-  const Working working(console, fmt::format("casting {} beams", setup.beams.size()));
-  frame.seed = seed_of(flags.seed_text);
-  simulate(setup, fields, frame);
+/// Measures the scene; the console shows how far that is.
+void measure(const RenderFlags& flags, const View& view, const Motion& motion,
+             const HitFields& fields, Console& console, Frame& frame) {
+  const Working working(console, "preparing the scene");
+  const auto renderer = make_renderer(view.scene, flags.renderer);
+  console.tell(fmt::format("casting {} beams", view.beams.size()), 0.0);
+  frame.seed = flags.seed;
+  simulate({.scene = view.scene,
+            .sensor = view.sensor,
+            .beams = view.beams,
+            .motion = motion,
+            .renderer = *renderer,
+            .progress = [&console](double fraction) { console.tell(fraction); }},
+           fields, frame);
 }
 
 void print_summary(const View& view, const std::vector<Output>& outputs) {
@@ -108,6 +131,15 @@ void print_summary(const View& view, const std::vector<Output>& outputs) {
   fmt::print("\nwrote");
   for (const Output& output : outputs) fmt::print(" {}", output.path.string());
   fmt::print("\n");
+}
+
+/// The beams and where they start; the console shows how long that takes.
+Beams aim(const RenderFlags& flags, const Sensor& sensor, const Scene& scene,
+          const std::optional<Pose>& from_scene_file, Console& console, Pose& world_from_sensor) {
+  const Working working(console, "aiming the sensor");
+  Beams beams = make_beams(sensor);
+  world_from_sensor = pose_sensor(flags.pose, from_scene_file, beams, scene);
+  return beams;
 }
 
 /// How all moves; tells which poses at time 0 are only the end of a trajectory.
@@ -126,7 +158,7 @@ Motion make_motion(const RenderFlags& flags, const SceneFile& loaded, const Scen
   return motion;
 }
 
-HitFields fields_for(const RenderFlags& flags, const std::vector<Output>& outputs) {
+HitFields needed_fields(const RenderFlags& flags, const std::vector<Output>& outputs) {
   HitFields fields = fields_for(outputs);
   fields.normal = fields.normal || flags.information.wanted;
   return fields;
@@ -138,33 +170,29 @@ int run(const RenderFlags& flags) {
   Scene scene;
   Beams beams;
   Sensor sensor;
-  const std::vector<Output> outputs =
-      plan_outputs(flags.output, flags.input,
-                   {.scene = scene, .sensor = sensor, .beams = beams, .renderer = flags.renderer},
-                   console.report());
+  const std::vector<Output> outputs = plan_outputs(
+      flags.output, flags.input,
+      {.scene = scene, .sensor = sensor, .beams = beams, .renderer = flags.renderer.kind},
+      console.report(), [&console](double fraction) { console.tell(fraction); });
   if (!is_scene_file(flags.input)) sensor = make_sensor(flags.sensor, {});  // before a long load
 
-  SceneFile loaded = load(flags, console.report());
-  console.clear();
+  SceneFile loaded = load(flags, console);
   protect_files(files_read(flags, loaded), outputs);
   scene = std::move(loaded.scene);
   sensor = make_sensor(flags.sensor, loaded.sensor);
-  beams = make_beams(sensor);
   pose_model(flags.pose, scene);
   tell(size_advice(scene, !flags.model.unit.empty() || flags.pose.scale), console);
-  const Pose world_from_sensor = pose_sensor(flags.pose, loaded.world_from_sensor, beams, scene);
+  Pose world_from_sensor = Pose::Identity();
+  beams = aim(flags, sensor, scene, loaded.world_from_sensor, console, world_from_sensor);
 
-  const auto renderer = make_renderer(scene, {.kind = flags.renderer, .threads = flags.threads});
-  const Motion motion = make_motion(flags, loaded, scene, world_from_sensor, console.report());
   Frame frame;
-  measure(flags, {scene, sensor, beams, motion, *renderer}, fields_for(flags, outputs), console,
-          frame);
-
   const View view{scene, sensor, beams, frame};
+  const Motion motion = make_motion(flags, loaded, scene, world_from_sensor, console.report());
+  measure(flags, view, motion, needed_fields(flags, outputs), console, frame);
   tell(view_advice(view), console);
   {
     const Working working(console, "writing");
-    write_outputs(outputs, frame, beams, scene);
+    write_outputs(outputs, frame, beams, scene, console.report());
   }
   if (!flags.quiet) print_summary(view, outputs);
   tell_information(flags.information, frame, beams, outputs, flags.quiet);
@@ -177,10 +205,10 @@ Command add_render(CLI::App& program) {
   CLI::App& command =
       *program.add_subcommand("render", "Measure a model or scene with a 3D sensor");
   const auto flags = std::make_shared<RenderFlags>();
-  command.footer(kExamples);
-  command.add_option("input", flags->input, "Model file, builtin:NAME or scene file (.yaml)")
+  command.footer(output_names_text() + kExamples);
+  command.add_option("MODEL", flags->input, "Model file, builtin:NAME or scene file (.yaml)")
       ->required()
-      ->type_name("MODEL|SCENE.yaml");
+      ->type_name("");
   add_output_flags(command, flags->output);
   add_information_flags(command, flags->information);
   add_sensor_flags(command, flags->sensor);
@@ -188,16 +216,11 @@ Command add_render(CLI::App& program) {
   add_motion_flags(command, flags->motion);
   add_model_flags(command, flags->model);
   const std::string group = "Run";
-  command.add_option("--renderer", flags->renderer, "Renderer: embree [embree]")
-      ->type_name("NAME")
-      ->group(group);
-  command.add_option("--threads", flags->threads, "Threads, 0: all processors [0]")
-      ->check(CLI::Range(0, 1024))
-      ->type_name("N")
-      ->group(group);
-  command.add_option("--seed", flags->seed_text, "Seed of random numbers, kept in the sidecar [1]")
-      ->type_name("N")
-      ->group(group);
+  add_run_flags(command, flags->renderer, group);
+  add_option(command, {"--seed", "N", "Seed of random numbers, kept in the sidecar [1]", group},
+             [&seed = flags->seed](std::string_view option, const std::string& text) {
+               seed = parse_seed(option, text);
+             });
   command.add_flag("--quiet", flags->quiet, "No summary and no progress; warnings stay")
       ->group(group);
   return [flags] { return run(*flags); };

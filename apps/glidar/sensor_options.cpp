@@ -3,6 +3,7 @@
 #include <apps/glidar/sensor_options.hpp>
 
 #include <apps/glidar/numbers.hpp>
+#include <apps/glidar/option_kinds.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/sensor_file.hpp>
 
@@ -11,6 +12,7 @@
 
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -20,21 +22,13 @@ namespace {
 
 constexpr std::int64_t kDefaultSide = 256;  // of the 2015 program, like the field of view
 constexpr double kDefaultFov_deg = 20.0;
+constexpr double kLargestPixels = 1e9;   // likewise
+constexpr double kLargestAmbient = 1e6;  // keeps intensities far from float's end
 constexpr double kBytesPerBeam = 250.0;  // beam, truth, measurement and cloud together
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 
 double memory_bytes() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-}
-
-void require_side(const char* option, std::int64_t pixels) {
-  if (pixels >= 1 && pixels <= kLargestImageSide) return;
-  throw Error(
-      {.where = option,
-       .found = fmt::format("{} pixels", pixels),
-       .allowed = fmt::format("1 to {}", kLargestImageSide),
-       .remedy = fmt::format("a frame also has to fit into memory, at about {} bytes a pixel",
-                             kBytesPerBeam)});
 }
 
 void require_memory(std::int64_t width, std::int64_t height) {
@@ -52,15 +46,14 @@ bool camera_given(const SensorFlags& f) {
   return f.width || f.height || f.fov_deg || f.fx || f.fy || f.cx || f.cy;
 }
 
-double field_of_view_rad(const SensorFlags& flags) {
+double field_of_view_rad(const SensorFlags& flags, std::int64_t height) {
   const double fov_deg = flags.fov_deg.value_or(kDefaultFov_deg);
-  if (!(fov_deg > 0.0 && fov_deg < 180.0)) {
-    throw Error({.where = "--fov",
-                 .found = fmt::format("{}", fov_deg),
-                 .allowed = "degrees above 0 and below 180",
-                 .remedy = ""});
-  }
-  return fov_deg * std::numbers::pi / 180.0;
+  require(fov_deg > 0.0 && fov_deg < 180.0, "--fov", fov_deg, "degrees above 0 and below 180");
+  const double fov_rad = fov_deg * std::numbers::pi / 180.0;
+  const double focal_px = 0.5 * static_cast<double>(height) / std::tan(0.5 * fov_rad);
+  require(focal_px <= kLargestPixels, "--fov", fov_deg,
+          "a view so wide that the focal length is at most 1e9 pixels");
+  return fov_rad;
 }
 
 void check_focal_lengths(const SensorFlags& flags) {
@@ -70,29 +63,32 @@ void check_focal_lengths(const SensorFlags& flags) {
                  .allowed = "",
                  .remedy = "give one of them"});
   }
-  if (flags.fx) require_positive("--fx", *flags.fx);
-  if (flags.fy) require_positive("--fy", *flags.fy);
+  const auto require_focal = [](const char* option, const std::optional<double>& value) {
+    if (value) {
+      require(*value > 0.0 && *value <= kLargestPixels, option, *value,
+              "pixels above 0, up to 1e9");
+    }
+  };
+  require_focal("--fx", flags.fx);
+  require_focal("--fy", flags.fy);
 }
 
-void require_finite(const char* option, const std::optional<double>& value) {
-  if (!value || std::isfinite(*value)) return;
-  throw Error({.where = option,
-               .found = fmt::format("{}", *value),
-               .allowed = "a finite number of pixels",
-               .remedy = ""});
+void require_centre(const char* option, const std::optional<double>& value) {
+  if (value) {
+    require(std::abs(*value) <= kLargestPixels, option, *value, "pixels from -1e9 to 1e9");
+  }
 }
 
 Pinhole make_pinhole(const SensorFlags& flags) {
   const std::int64_t width = flags.width.value_or(kDefaultSide);
   const std::int64_t height = flags.height.value_or(kDefaultSide);
-  require_side("--width", width);
-  require_side("--height", height);
   require_memory(width, height);
   check_focal_lengths(flags);
-  require_finite("--cx", flags.cx);
-  require_finite("--cy", flags.cy);
-  Pinhole pinhole = pinhole_from_fov(static_cast<std::uint32_t>(width),
-                                     static_cast<std::uint32_t>(height), field_of_view_rad(flags));
+  require_centre("--cx", flags.cx);
+  require_centre("--cy", flags.cy);
+  Pinhole pinhole =
+      pinhole_from_fov(static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height),
+                       field_of_view_rad(flags, height));
   PinholeIntrinsics& k = pinhole.intrinsics;
   if (flags.fx || flags.fy) {
     k.fx = flags.fx.value_or(flags.fy.value_or(0.0));  // one given: square pixels
@@ -105,11 +101,12 @@ Pinhole make_pinhole(const SensorFlags& flags) {
 
 void apply_limits(const SensorFlags& flags, Limits& limits) {
   if (flags.near_m) {
-    require_positive("--near", *flags.near_m, true);
+    require(*flags.near_m >= 0.0 && std::isfinite(*flags.near_m), "--near", *flags.near_m,
+            "metres, 0 or above");
     limits.near_m = *flags.near_m;
   }
   if (flags.far_m) {
-    if (!std::isinf(*flags.far_m)) require_positive("--far", *flags.far_m);
+    require(*flags.far_m > 0.0, "--far", *flags.far_m, "metres above 0, or inf");
     limits.far_m = *flags.far_m;
   }
   if (limits.near_m < limits.far_m) return;
@@ -119,13 +116,25 @@ void apply_limits(const SensorFlags& flags, Limits& limits) {
                .remedy = ""});
 }
 
+/// "c,l,q".
+std::vector<double> parse_attenuation(std::string_view option, const std::string& text) {
+  std::vector<double> n = parse_numbers(option, text, 3, "c,l,q");
+  const bool none_below = *std::min_element(n.begin(), n.end()) >= 0.0;
+  if (none_below && *std::max_element(n.begin(), n.end()) > 0.0) return n;
+  throw Error({.where = std::string(option),
+               .found = "'" + text + "'",
+               .allowed = "3 numbers from 0, at least one of them above 0",
+               .remedy = ""});
+}
+
 void apply_light(const SensorFlags& flags, Light& light) {
   if (flags.ambient) {
-    require_positive("--ambient", *flags.ambient, true);
+    require(*flags.ambient >= 0.0 && *flags.ambient <= kLargestAmbient, "--ambient", *flags.ambient,
+            "a number from 0 to 1e6");
     light.ambient = *flags.ambient;
   }
   if (!flags.attenuation.empty()) {
-    const std::vector<double> n = parse_numbers("--attenuation", flags.attenuation, 3, "c,l,q");
+    const std::vector<double> n = parse_attenuation("--attenuation", flags.attenuation);
     light.attenuation_constant = n[0];
     light.attenuation_linear_per_m = n[1];
     light.attenuation_quadratic_per_m2 = n[2];
@@ -137,29 +146,35 @@ void apply_light(const SensorFlags& flags, Light& light) {
 
 void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
   const std::string group = "Sensor";
-  command.add_option("--sensor", flags.file, "Sensor file (YAML) instead of the camera options")
-      ->type_name("FILE")
-      ->group(group);
-  const auto add = [&](const std::string& name, auto& value, const std::string& type,
-                       const std::string& text) {
-    command.add_option(name, value, text)->type_name(type)->group(group);
+  const auto number = [&](const std::string& name, const std::string& form, const std::string& help,
+                          std::optional<double>& value) {
+    add_number(command, {name, form, help, group}, value);
   };
-  add("-w,--width", flags.width, "PX", "Image width [256]");
-  add("--height", flags.height, "PX", "Image height (-h is help) [256]");
-  add("--fov", flags.fov_deg, "DEG", "Vertical field of view [20]");
-  add("--fx", flags.fx, "PX", "Focal length along the width [= fy]");
-  add("--fy", flags.fy, "PX", "Focal length along the height [= fx]");
-  add("--cx", flags.cx, "PX", "Principal point [width / 2]");
-  add("--cy", flags.cy, "PX", "Principal point [height / 2]");
-  add("--near", flags.near_m, "M", "Least depth that is reported [0]");
-  add("--far", flags.far_m, "M", "Greatest depth that is reported [inf]");
+  const auto side = [&](const std::string& names, const std::string& help,
+                        std::optional<std::int64_t>& value) {
+    add_whole(command, {names, "PX", help, group}, {1, kLargestImageSide},
+              [&value](std::int64_t pixels) { value = pixels; });
+  };
+  add_text(command,
+           {"--sensor", "FILE", "Sensor file (YAML) instead of these camera options", group},
+           flags.file);
+  side("-w,--width", "Image width [256]", flags.width);
+  side("--height", "Image height (-h is help) [256]", flags.height);
+  number("--fov", "DEG", "Vertical field of view [20]", flags.fov_deg);
+  number("--fx", "PX", "Focal length along the width [= fy]", flags.fx);
+  number("--fy", "PX", "Focal length along the height [= fx]", flags.fy);
+  number("--cx", "PX", "Column of the principal point [width / 2]", flags.cx);
+  number("--cy", "PX", "Row of the principal point [height / 2]", flags.cy);
+  number("--near", "M", "Least depth that is reported [0]", flags.near_m);
+  number("--far", "M", "Greatest depth that is reported [inf]", flags.far_m);
   command
       .add_flag("--cull-back-faces", flags.cull_back_faces,
                 "Triangles seen from behind let beams through [they are seen]")
       ->group(group);
-  add("--ambient", flags.ambient, "A", "Ambient light of the scene [0.2]");
-  add("--attenuation", flags.attenuation, "C,L,Q",
-      "Light falls as 1/(C + L d + Q d^2) [1,1e-4,1e-8]");
+  number("--ambient", "A", "Ambient light of the scene [0.2]", flags.ambient);
+  add_text(command,
+           {"--attenuation", "C,L,Q", "Light falls as 1/(C + L d + Q d^2) [1,1e-4,1e-8]", group},
+           flags.attenuation, parse_attenuation);
 }
 
 Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_scene_file) {

@@ -3,6 +3,7 @@
 #include <apps/glidar/commands.hpp>
 #include <apps/glidar/console.hpp>
 #include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/run_options.hpp>
 #include <apps/glidar/verify_cases.hpp>
 #include <glidar/core/version.hpp>
 
@@ -52,15 +53,15 @@ Row run_row(const std::vector<Shape>& shapes, std::size_t shape, double distance
 std::vector<Row> run_all(const RendererOptions& options, Console& console) {
   const std::vector<Shape> shapes = make_shapes();
   const std::vector<double>& distances = verify_distances();
+  const Working working(console, "verifying");
   const auto count = static_cast<double>(shapes.size() * distances.size());
   std::vector<Row> rows;
   for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
     for (const double distance_m : distances) {
       rows.push_back(run_row(shapes, shape, distance_m, options));
-      console.progress("verifying", static_cast<double>(rows.size()) / count);
+      console.tell(static_cast<double>(rows.size()) / count);
     }
   }
-  console.clear();
   return rows;
 }
 
@@ -136,11 +137,7 @@ Command add_verify(CLI::App& program) {
       *program.add_subcommand("verify", "Prove the accuracy of ranges and normals on this machine");
   const auto flags = std::make_shared<VerifyFlags>();
   command.footer(kExamples);
-  command.add_option("--renderer", flags->renderer.kind, "Renderer: embree [embree]")
-      ->type_name("NAME");
-  command.add_option("--threads", flags->renderer.threads, "Threads, 0: all processors [0]")
-      ->check(CLI::Range(0, 1024))
-      ->type_name("N");
+  add_run_flags(command, flags->renderer, "Options");
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
   return [flags] { return run(*flags); };
 }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/beams.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/pose.hpp>
 
@@ -30,6 +31,17 @@ enum class Status : std::uint8_t {
 /// The status in words, as files and pictures spell it.
 std::string_view name(Status status);
 
+/// Memory that steps of a measurement reuse from frame to frame; nothing to read for others.
+struct Scratch {
+  Beams aimed;                   ///< the beams with their errors of pointing; no directions: none
+  std::vector<double> before;    ///< N, ranges or depths as they were before a step
+  std::vector<float> amplitude;  ///< N, intensities as they were before a step
+  Beams moved;                   ///< the beams as a body of a moving scene sees them
+  std::vector<Pose> start_from_sensor;  ///< N, the sensor at each beam's time, likewise
+  Hits body_hits;                       ///< on one body
+  std::vector<std::uint8_t> present;    ///< per instance
+};
+
 /// One measurement: what the sensor reports per beam, with the truth attached. N = rows * cols.
 struct Frame {
   std::uint32_t rows = 0;
@@ -49,11 +61,13 @@ struct Frame {
   /// points lie where they were measured. Empty when it does not: as the sensor's own beams.
   struct Deskewed {
     std::vector<Eigen::Vector3d> directions;            ///< N, unit vectors
+    std::vector<Eigen::Vector3d> true_directions;       ///< N, with errors of pointing; empty: same
     std::vector<Eigen::Vector3d> origins_m;             ///< N
     std::vector<Eigen::Quaternionf> start_from_sensor;  ///< N, rotation since stamp_ns
   };
   Deskewed deskewed;
   Hits truth;  ///< what is there, whether reported or not
+  Scratch scratch;
 };
 
 /// Gives the measured columns `size` entries (contents unspecified).

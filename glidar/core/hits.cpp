@@ -17,6 +17,7 @@ void resize(Hits& hits, std::size_t size, const HitFields& fields) {
   hits.colour.resize(size_if(fields.colour));
   hits.reflectance.resize(size_if(fields.reflectance));
   hits.object_point_m.resize(size_if(fields.object_point));
+  hits.noise_scale.resize(size_if(fields.noise_scale));
 }
 
 }  // namespace glidar

@@ -22,6 +22,7 @@ struct HitFields {
   bool colour = false;
   bool reflectance = false;
   bool object_point = false;
+  bool noise_scale = false;
 };
 
 /// What a surface does with the paper's light (equation 5): luminances after textures, and the
@@ -35,8 +36,8 @@ struct Reflectance {
 
 /// Geometric truth per beam: no noise, no radiometry. N = number of beams. Range, instance and
 /// primitive are always there; the other columns are empty unless asked for.
-/// A miss has range NaN, ids kNoHit and NaN (colour and reflectance: 0) in every other column.
-/// Normals are unit vectors in the sensor's frame, turned towards the sensor.
+/// A miss has range NaN, ids kNoHit and NaN (colour and reflectance: 0, noise scale: 1) in every
+/// other column. Normals are unit vectors in the sensor's frame, turned towards the sensor.
 struct Hits {
   std::vector<double> range_m;           ///< N, along the beam from its origin
   std::vector<std::uint32_t> instance;   ///< N, index into Scene::instances
@@ -50,7 +51,8 @@ struct Hits {
   std::vector<Eigen::Vector3f> colour;   ///< N, diffuse rgb: material x texture x vertex colour
   std::vector<Reflectance> reflectance;  ///< N
   std::vector<Eigen::Vector3d>
-      object_point_m;  ///< N, the hit in the object's own frame, before scale
+      object_point_m;              ///< N, the hit in the object's own frame, before scale
+  std::vector<float> noise_scale;  ///< N, what the surface multiplies a sensor's random errors by
 };
 
 /// Gives every asked-for column `size` entries (contents unspecified) and empties the others'.

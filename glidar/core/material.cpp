@@ -37,6 +37,15 @@ Eigen::Vector4f texel(const Texture& texture, std::uint32_t row, std::uint32_t c
   }
 }
 
+/// Alpha where the texture has it, else grey or red; 1 when it is not used.
+float last_channel(const TextureUse& use, const std::vector<Texture>& textures,
+                   const Eigen::Vector2f& uv) {
+  if (!use.used()) return 1.0F;
+  const std::uint32_t channels = textures[static_cast<std::size_t>(use.texture)].channels;
+  const Eigen::Vector4f rgba = sample(use, textures, uv);
+  return channels == 2 || channels == 4 ? rgba.w() : rgba.x();
+}
+
 }  // namespace
 
 Eigen::Vector4f sample(const TextureUse& use, const std::vector<Texture>& textures,
@@ -66,11 +75,12 @@ Eigen::Vector4f sample(const TextureUse& use, const std::vector<Texture>& textur
 
 float opacity_at(const Material& material, const std::vector<Texture>& textures,
                  const Eigen::Vector2f& uv) {
-  if (!material.alpha_texture.used()) return material.opacity;
-  const Texture& texture = textures[static_cast<std::size_t>(material.alpha_texture.texture)];
-  const Eigen::Vector4f rgba = sample(material.alpha_texture, textures, uv);
-  const bool has_alpha = texture.channels == 2 || texture.channels == 4;
-  return material.opacity * (has_alpha ? rgba.w() : rgba.x());
+  return material.opacity * last_channel(material.alpha_texture, textures, uv);
+}
+
+float noise_scale_at(const Material& material, const std::vector<Texture>& textures,
+                     const Eigen::Vector2f& uv) {
+  return material.noise_scale * last_channel(material.noise_texture, textures, uv);
 }
 
 }  // namespace glidar

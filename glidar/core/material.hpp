@@ -47,12 +47,14 @@ struct Material {
   float shininess = 0.0F;     ///< exponent s of equation 5, 0..128
   float opacity = 1.0F;       ///< multiplied by the alpha texture
   float alpha_cutoff = 0.0F;  ///< a texel whose opacity is below lets the ray through; 0: solid
+  float noise_scale = 1.0F;   ///< multiplies random errors of sensors; times the noise texture
   float normal_scale = 1.0F;  ///< strength of the normal map's x and y
   TextureUse diffuse_texture;
   TextureUse specular_texture;
   TextureUse alpha_texture;   ///< last channel of the texture (alpha, or grey) is the opacity
   TextureUse normal_texture;  ///< tangent-space normals, n = 2 rgb - 1 (height maps are converted
                               ///< on loading)
+  TextureUse noise_texture;   ///< last channel of the texture (alpha, or grey), 0..1
 };
 
 /// Brightness of a colour as a monochrome sensor sees it: the weights of Rec. ITU-R BT.709.
@@ -64,6 +66,10 @@ inline float luminance(const Eigen::Vector3f& rgb) {
 /// An unused TextureUse gives white.
 Eigen::Vector4f sample(const TextureUse& use, const std::vector<Texture>& textures,
                        const Eigen::Vector2f& uv);
+
+/// Material::noise_scale times the last channel of its noise texture at a uv.
+float noise_scale_at(const Material& material, const std::vector<Texture>& textures,
+                     const Eigen::Vector2f& uv);
 
 /// Opacity of the material at a uv: Material::opacity times the last channel of its alpha texture.
 float opacity_at(const Material& material, const std::vector<Texture>& textures,

@@ -56,14 +56,11 @@ void fill_vectors(const Source& source, Column& column, Function vector_of) {
   }
 }
 
-/// Points at these ranges; `deskew`: on the beams as fired from where the sensor was.
-void fill_points(const Source& s, const std::vector<double>& ranges_m, bool deskew,
-                 Column& column) {
-  const Frame::Deskewed& moved = s.frame.deskewed;
-  const bool use_moved = deskew && !moved.directions.empty();
-  const std::vector<Eigen::Vector3d>& directions =
-      use_moved ? moved.directions : s.beams.directions;
-  const std::vector<Eigen::Vector3d>& origins_m = use_moved ? moved.origins_m : s.beams.origins_m;
+using Vectors = std::vector<Eigen::Vector3d>;
+
+/// Points at these ranges on beams.
+void fill_points(const Source& s, const std::vector<double>& ranges_m, const Vectors& directions,
+                 const Vectors& origins_m, Column& column) {
   const Eigen::Matrix3d rotation = s.cloud_from_sensor.linear();
   const Eigen::Vector3d translation = s.cloud_from_sensor.translation();
   fill_vectors<double, 3>(s, column, [&](std::size_t i) -> Eigen::Vector3d {
@@ -74,11 +71,22 @@ void fill_points(const Source& s, const std::vector<double>& ranges_m, bool desk
 }
 
 void fill_xyz(const Source& s, Column& column) {
-  fill_points(s, s.frame.range_m, s.deskew, column);
+  const Frame::Deskewed& moved = s.frame.deskewed;
+  const bool use_moved = s.deskew && !moved.directions.empty();
+  fill_points(s, s.frame.range_m, use_moved ? moved.directions : s.beams.directions,
+              use_moved ? moved.origins_m : s.beams.origins_m, column);
 }
 
 void fill_true_xyz(const Source& s, Column& column) {
-  fill_points(s, s.frame.truth.range_m, true, column);
+  const Frame::Deskewed& moved = s.frame.deskewed;
+  const Vectors& aimed = s.frame.scratch.aimed.directions;
+  if (moved.directions.empty()) {
+    return fill_points(s, s.frame.truth.range_m, aimed.empty() ? s.beams.directions : aimed,
+                       s.beams.origins_m, column);
+  }
+  fill_points(s, s.frame.truth.range_m,
+              moved.true_directions.empty() ? moved.directions : moved.true_directions,
+              moved.origins_m, column);
 }
 
 void fill_true_range(const Source& s, Column& column) {

@@ -2,37 +2,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/random.hpp>
 
+#include <glidar/core/philox.hpp>
+
 namespace glidar {
-namespace {
-
-// Multipliers and Weyl increments of Philox4x32 (SC'11 paper, table 2; Random123 philox.h).
-constexpr std::uint64_t kMultiplier0 = 0xD2511F53U;
-constexpr std::uint64_t kMultiplier1 = 0xCD9E8D57U;
-constexpr std::uint32_t kWeyl0 = 0x9E3779B9U;
-constexpr std::uint32_t kWeyl1 = 0xBB67AE85U;
-constexpr int kRounds = 10;
-
-}  // namespace
 
 RandomWords philox4x32(RandomWords counter, std::array<std::uint32_t, 2> key) {
-  for (int round = 0; round < kRounds; ++round) {
-    const std::uint64_t p0 = kMultiplier0 * counter[0];
-    const std::uint64_t p1 = kMultiplier1 * counter[2];
-    counter = {static_cast<std::uint32_t>(p1 >> 32U) ^ counter[1] ^ key[0],
-               static_cast<std::uint32_t>(p1),
-               static_cast<std::uint32_t>(p0 >> 32U) ^ counter[3] ^ key[1],
-               static_cast<std::uint32_t>(p0)};
-    key[0] += kWeyl0;
-    key[1] += kWeyl1;
-  }
-  return counter;
+  PhiloxState state{counter[0], counter[1], counter[2], counter[3]};
+  philox_rounds(state, key[0], key[1]);
+  return {state.c0, state.c1, state.c2, state.c3};
+}
+
+RandomWords counter_of(const Draw& draw) {
+  const auto purpose = static_cast<std::uint32_t>(draw.purpose) << 24U;
+  return {draw.beam, purpose, draw.frame, draw.block};
+}
+
+std::array<std::uint32_t, 2> key_of(const Draw& draw) {
+  return {static_cast<std::uint32_t>(draw.seed),
+          static_cast<std::uint32_t>(draw.seed >> 32U) ^ draw.sensor};
 }
 
 RandomWords random_words(const Draw& draw) {
-  const auto purpose = static_cast<std::uint32_t>(draw.purpose) << 24U;
-  return philox4x32({draw.beam, purpose, draw.frame, draw.block},
-                    {static_cast<std::uint32_t>(draw.seed),
-                     static_cast<std::uint32_t>(draw.seed >> 32U) ^ draw.sensor});
+  return philox4x32(counter_of(draw), key_of(draw));
 }
 
 double uniform(std::uint32_t word) {

@@ -32,8 +32,16 @@ struct Draw {
   std::uint32_t block = 0;  ///< successive blocks of four words of the same draw
 };
 
-/// The four words of a draw: counter (beam, purpose << 24, frame, block), key (seed low,
-/// seed high xor sensor).
+/// The counter of a draw: (beam, purpose << 24, frame, block).
+RandomWords counter_of(const Draw& draw);
+
+/// The key of a draw: (seed low, seed high xor sensor).
+std::array<std::uint32_t, 2> key_of(const Draw& draw);
+
+/// The frame of draws that stay the same for all frames of a sensor.
+inline constexpr std::uint32_t kEveryFrame = 0xFFFFFFFFU;
+
+/// The four words of a draw: philox4x32 of its counter and key.
 RandomWords random_words(const Draw& draw);
 
 /// A word as a double strictly between 0 and 1: (x + 0.5) / 2^32, exact.

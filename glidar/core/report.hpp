@@ -7,10 +7,15 @@
 
 namespace glidar {
 
+/// Told how much of a work is done, from 0 to 1; empty: nobody asks. Called from the threads that
+/// do the work, one call at a time.
+using Progress = std::function<void(double fraction_done)>;
+
 enum class Severity { info, warning };
 
 /// How the library talks: it prints nothing, it calls these. Empty functions mean silence.
-/// `progress` may be called from worker threads, one call at a time.
+/// `progress` may be called from worker threads, one call at a time; a negative fraction means that
+/// it is not known.
 struct Report {
   std::function<void(Severity, std::string_view message)> log;
   std::function<void(std::string_view task, double fraction_done)> progress;

@@ -7,7 +7,7 @@ namespace glidar {
 
 void write_csv(const CloudFile& job, AtomicFile& file) {
   file.write(joined_names(job.fields, ',') + "\n");
-  write_text_rows(job.fields, job.cloud.size(), ',', file);
+  write_text_rows(job.fields, job.cloud.size(), ',', file, job.options.progress);
 }
 
 }  // namespace glidar

@@ -116,6 +116,9 @@ void check_folder(const std::filesystem::path& path) {
   }
   if (std::filesystem::is_directory(path, ignored))
     throw Error({path.string(), "is a folder", "a file name", ""});
+  // a pipe or device would be replaced, not written to
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
+    throw Error({path.string(), "is a pipe, a device or a socket", "a file name", ""});
 }
 
 void check_column_sizes(const PointCloud& cloud, const std::filesystem::path& path) {

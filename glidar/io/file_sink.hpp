@@ -21,6 +21,7 @@ struct FileSinkOptions {
   bool dense = false;                     ///< point formats leave misses out
   bool sidecar = true;                    ///< write FILE.json beside a cloud
   double depth_png_units_per_m = 1000.0;  ///< 16-bit depth PNG: 1000 = millimetres
+  Progress progress = {};  ///< of one file, by its points; images and NPZ do not tell
 };
 
 /// What the sidecar tells besides the frame; must outlive the sink.

@@ -14,7 +14,7 @@ std::vector<Field> kitti_fields(const PointCloud& cloud) {
 }
 
 void write_kitti(const CloudFile& job, AtomicFile& file) {
-  write_binary_rows(job.fields, job.cloud.size(), file);
+  write_binary_rows(job.fields, job.cloud.size(), file, job.options.progress);
 }
 
 }  // namespace glidar

@@ -112,9 +112,9 @@ void write_pcd(const CloudFile& job, AtomicFile& file) {
   file.write(header(job, fields));
   switch (job.options.pcd) {
     case PcdEncoding::ascii:
-      return write_text_rows(fields, job.cloud.size(), ' ', file);
+      return write_text_rows(fields, job.cloud.size(), ' ', file, job.options.progress);
     case PcdEncoding::binary:
-      return write_binary_rows(fields, job.cloud.size(), file);
+      return write_binary_rows(fields, job.cloud.size(), file, job.options.progress);
     case PcdEncoding::binary_compressed:
       return write_compressed(fields, job.cloud.size(), file);
   }

@@ -77,9 +77,9 @@ void write_ply(const CloudFile& job, AtomicFile& file) {
   const std::span<const Field> fields = job.fields;
   file.write(header(job, fields));
   if (job.options.ply_ascii) {
-    write_text_rows(fields, job.cloud.size(), ' ', file);
+    write_text_rows(fields, job.cloud.size(), ' ', file, job.options.progress);
   } else {
-    write_binary_rows(fields, job.cloud.size(), file);
+    write_binary_rows(fields, job.cloud.size(), file, job.options.progress);
   }
 }
 

@@ -166,6 +166,10 @@ void append_row(fmt::memory_buffer& text, std::span<const Field> fields, const s
   text.push_back('\n');
 }
 
+void tell(const Progress& progress, std::size_t done, std::size_t count) {
+  if (progress) progress(static_cast<double>(done) / static_cast<double>(count));
+}
+
 }  // namespace
 
 std::size_t size_of(Stored stored) {
@@ -240,7 +244,8 @@ void pack_rows(std::span<const Field> fields, std::size_t first, std::size_t cou
   }
 }
 
-void write_binary_rows(std::span<const Field> fields, std::size_t count, AtomicFile& file) {
+void write_binary_rows(std::span<const Field> fields, std::size_t count, AtomicFile& file,
+                       const Progress& progress) {
   const std::size_t stride = row_bytes(fields);
   if (stride == 0) return;
   for (std::size_t first = 0; first < count;) {
@@ -249,11 +254,12 @@ void write_binary_rows(std::span<const Field> fields, std::size_t count, AtomicF
     pack_rows(fields, first, now, rows);
     file.take(now * stride);
     first += now;
+    tell(progress, first, count);
   }
 }
 
 void write_text_rows(std::span<const Field> fields, std::size_t count, char separator,
-                     AtomicFile& file) {
+                     AtomicFile& file, const Progress& progress) {
   const std::size_t stride = row_bytes(fields);
   if (stride == 0) return;
   std::vector<std::byte> rows(std::min(count, kTextChunkRows) * stride);
@@ -265,6 +271,7 @@ void write_text_rows(std::span<const Field> fields, std::size_t count, char sepa
     for (std::size_t i = 0; i < now; ++i)
       append_row(text, fields, rows.data() + i * stride, separator);
     file.write(std::string_view(text.data(), text.size()));
+    tell(progress, first + now, count);
   }
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/core/point_cloud.hpp>
+#include <glidar/core/report.hpp>
 #include <glidar/io/atomic_file.hpp>
 
 #include <cstddef>
@@ -62,12 +63,13 @@ std::size_t row_bytes(std::span<const Field> fields);
 void pack_rows(std::span<const Field> fields, std::size_t first, std::size_t count,
                std::span<std::byte> rows);
 
-/// `count` points, point by point, to the file.
-void write_binary_rows(std::span<const Field> fields, std::size_t count, AtomicFile& file);
+/// `count` points, point by point, to the file; `progress` is told of them.
+void write_binary_rows(std::span<const Field> fields, std::size_t count, AtomicFile& file,
+                       const Progress& progress = {});
 
 /// `count` points as text, a line each: the shortest digits that read back the same; "nan".
 void write_text_rows(std::span<const Field> fields, std::size_t count, char separator,
-                     AtomicFile& file);
+                     AtomicFile& file, const Progress& progress = {});
 
 /// The fields' names with `separator` between.
 std::string joined_names(std::span<const Field> fields, char separator);

@@ -51,6 +51,15 @@ void check(const CastRequest& request, const Scene& scene) {
           "the sensor stands out of reach", "up to 1e15 m from the world's origin");
 }
 
+const std::vector<std::string>& renderer_kinds() {
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all;
+    for (const Kind& kind : kinds()) all.push_back(kind.name);
+    return all;
+  }();
+  return names;
+}
+
 std::unique_ptr<Renderer> make_renderer(const Scene& scene, const RendererOptions& options) {
   std::string names;
   for (const Kind& kind : kinds()) {

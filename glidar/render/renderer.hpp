@@ -6,6 +6,7 @@
 #include <glidar/core/frame.hpp>
 #include <glidar/core/function_ref.hpp>
 #include <glidar/core/hits.hpp>
+#include <glidar/core/report.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/core/workers.hpp>
 
@@ -13,6 +14,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace glidar {
 
@@ -29,6 +31,7 @@ struct CastRequest {
   /// Called for every beam once, in runs, when the beams' hits are known, by the thread that found
   /// them and so while they are near in memory. Empty: not called.
   FunctionRef<void(BeamRange)> then = {};
+  Progress progress = {};  ///< told while the beams are cast
 };
 
 /// True when some instance is there.
@@ -60,6 +63,9 @@ struct RendererOptions {
   std::string kind = "embree";
   unsigned threads = 0;  ///< 0: all processors
 };
+
+/// The kinds there are.
+const std::vector<std::string>& renderer_kinds();
 
 /// Builds a renderer over a valid scene, which must outlive it. Moving instances is done per cast;
 /// meshes are not rebuilt. Throws Error on an unknown kind, naming those there are.

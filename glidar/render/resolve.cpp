@@ -15,21 +15,10 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr float kNaNf = std::numeric_limits<float>::quiet_NaN();
 
-Eigen::Vector3d corner(const Mesh& mesh, std::uint32_t triangle, std::size_t k) {
-  return mesh.positions_m[mesh.triangles[triangle][k]].cast<double>();
-}
-
 /// Calls body(lane) for every lane of a mask.
 template <class Body>
 void for_lanes(std::uint32_t mask, const Body& body) {
   for (; mask != 0; mask &= mask - 1) body(static_cast<unsigned>(std::countr_zero(mask)));
-}
-
-double longest_edge(const Mesh& mesh, std::uint32_t triangle) {
-  const Eigen::Vector3d v0 = corner(mesh, triangle, 0);
-  const Eigen::Vector3d v1 = corner(mesh, triangle, 1);
-  const Eigen::Vector3d v2 = corner(mesh, triangle, 2);
-  return std::max({(v1 - v0).norm(), (v2 - v1).norm(), (v0 - v2).norm()});
 }
 
 bool is_one_instance(const HitBlock& block) {
@@ -136,7 +125,8 @@ bool has_mask(const Scene& scene, const Instance& instance) {
 }
 
 bool needs_corners(const HitFields& fields) {
-  return fields.barycentrics || fields.shading_normal || fields.colour || fields.reflectance;
+  return fields.barycentrics || fields.shading_normal || fields.colour || fields.reflectance ||
+         fields.noise_scale;
 }
 
 void gather_corners(const Resolver& resolver, const HitBlock& block, CornerBlock& corners) {
@@ -167,18 +157,6 @@ void gather_normals(const Resolver& resolver, const HitBlock& block, CornerBlock
 
 }  // namespace
 
-std::vector<TrianglePlane> triangle_planes(const Mesh& mesh) {
-  std::vector<TrianglePlane> planes(mesh.triangles.size());
-  for (std::uint32_t i = 0; i < planes.size(); ++i) {
-    const Eigen::Vector3d v0 = corner(mesh, i, 0);
-    const Eigen::Vector3d cross = (corner(mesh, i, 1) - v0).cross(corner(mesh, i, 2) - v0);
-    planes[i].normal = cross / cross.norm();
-    planes[i].offset = planes[i].normal.dot(v0);
-    planes[i].narrowness = static_cast<float>(longest_edge(mesh, i) / cross.norm());
-  }
-  return planes;
-}
-
 InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
                      const Pose& world_from_sensor) {
   using Wide = Eigen::Matrix<long double, 3, 1>;
@@ -207,6 +185,7 @@ Resolver::Resolver(const Scene& scene) : scene_(scene) {
   planes_.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
     planes_.push_back(triangle_planes(mesh));
+    narrowness_.push_back(triangle_narrowness(mesh));
     twins_.push_back(first_twins(mesh));
   }
   looks_.reserve(scene.instances.size());
@@ -230,6 +209,7 @@ Resolver::Resolver(const Scene& scene) : scene_(scene) {
         {.mesh = &mesh,
          .triangles = mesh.triangles.data(),
          .planes = planes_[instance.mesh].data(),
+         .narrowness = narrowness_[instance.mesh].data(),
          .twins = may_swap ? twins.data() : nullptr,
          .slots = mesh.material_slots.empty() ? nullptr : mesh.material_slots.data(),
          .looks = looks_[i].data(),
@@ -271,7 +251,7 @@ void Resolver::measure(const Beams& beams, const Lanes3<double>& in_sensor, HitB
     const TrianglePlane& triangle = plane(block.instance[i], block.primitive[i]);
     exact.normal.set(i, triangle.normal);
     exact.offset[i] = triangle.offset;
-    exact.narrowness[i] = triangle.narrowness;
+    exact.narrowness[i] = known_[block.instance[i]].narrowness[block.primitive[i]];
   }
   if (beams.origins_m.empty() && is_one_instance(block)) {
     look_from_one(views_[block.instance[0]], in_sensor, exact);
@@ -335,7 +315,8 @@ void Resolver::write_surface(const HitFields& fields, const HitBlock& block,
     bend_normals(block, w1, w2, smooth);
     write_directions(block, smooth, exact.cosine, hits.shading_normal);
   }
-  if (fields.colour || fields.reflectance) write_colours(fields, block, w1, w2, hits);
+  if (fields.colour || fields.reflectance || fields.noise_scale)
+    write_colours(fields, block, w1, w2, hits);
 }
 
 SurfacePlace Resolver::place_of(const HitBlock& block, unsigned lane, const Lanes<float>& w1,
@@ -362,11 +343,13 @@ void Resolver::write_colours(const HitFields& fields, const HitBlock& block, con
     if (!known.has_texture) {
       if (fields.colour) hits.colour[beam] = known.plain.rgb;
       if (fields.reflectance) hits.reflectance[beam] = known.plain.reflectance;
+      if (fields.noise_scale) hits.noise_scale[beam] = known.plain.noise_scale;
       return;
     }
     const SurfaceColour colour = colour_at(scene_, place_of(block, i, w1, w2));
     if (fields.colour) hits.colour[beam] = colour.rgb;
     if (fields.reflectance) hits.reflectance[beam] = colour.reflectance;
+    if (fields.noise_scale) hits.noise_scale[beam] = colour.noise_scale;
   });
 }
 
@@ -387,6 +370,7 @@ void Resolver::write_misses(const HitFields& fields, std::size_t first, std::siz
   fill(fields.object_point, hits.object_point_m, Eigen::Vector3d(kNaN, kNaN, kNaN));
   fill(fields.colour, hits.colour, Eigen::Vector3f(0.0F, 0.0F, 0.0F));
   fill(fields.reflectance, hits.reflectance, Reflectance{});
+  fill(fields.noise_scale, hits.noise_scale, 1.0F);
 }
 
 }  // namespace glidar

@@ -6,6 +6,7 @@
 #include <glidar/core/hits.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/render/lanes.hpp>
+#include <glidar/render/planes.hpp>
 #include <glidar/render/surface.hpp>
 
 #include <cstdint>
@@ -13,17 +14,6 @@
 #include <vector>
 
 namespace glidar {
-
-/// The plane of a triangle, n . p = offset, in the mesh's frame relative to Mesh::origin_m.
-/// n is the unit normal of the front; NaN for a triangle without area.
-struct TrianglePlane {
-  Eigen::Vector3d normal;
-  double offset;
-  float narrowness;  ///< 1 / smallest height of the triangle
-};
-
-/// One per triangle, in double from the mesh's vertices.
-std::vector<TrianglePlane> triangle_planes(const Mesh& mesh);
 
 /// For meshes with triangles that lie on each other, corner on corner (a sheet modelled twice): per
 /// triangle the first of its kind, so that every renderer tells the same one. Empty when all
@@ -69,7 +59,7 @@ struct ExactBlock {
   Lanes<double> offset;      ///< of the triangle's plane
   Lanes<double> cosine;      ///< of normal and direction; positive: seen from behind
   Lanes<double> distance;    ///< along the beam
-  Lanes<float> narrowness;   ///< of the triangle, see TrianglePlane
+  Lanes<float> narrowness;   ///< of the triangle, see triangle_narrowness()
 };
 
 /// What is known beforehand of the material in one slot of an instance.
@@ -107,6 +97,7 @@ class Resolver {
   void prefetch(const HitBlock& block, unsigned lane) const {
     const std::uint32_t primitive = block.primitive[lane];
     __builtin_prefetch(&plane(block.instance[lane], primitive));
+    __builtin_prefetch(known_[block.instance[lane]].narrowness + primitive);
     __builtin_prefetch(known_[block.instance[lane]].triangles + primitive);
   }
 
@@ -147,6 +138,7 @@ class Resolver {
     const Mesh* mesh;
     const Triangle* triangles;
     const TrianglePlane* planes;
+    const float* narrowness;
     const std::uint32_t* twins;  ///< nullptr: all triangles differ
     const std::uint16_t* slots;  ///< nullptr: all triangles have material slot 0
     const SlotLook* looks;       ///< per material slot
@@ -155,6 +147,7 @@ class Resolver {
 
   const Scene& scene_;
   std::vector<std::vector<TrianglePlane>> planes_;  ///< per mesh
+  std::vector<std::vector<float>> narrowness_;      ///< per mesh
   std::vector<std::vector<std::uint32_t>> twins_;   ///< per mesh
   std::vector<Known> known_;                        ///< per instance
   std::vector<std::vector<SlotLook>> looks_;        ///< per instance and material slot

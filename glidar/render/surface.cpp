@@ -71,12 +71,13 @@ SurfaceColour plain_colour(const Material& material) {
           .reflectance = {.diffuse = luminance(material.diffuse),
                           .ambient = luminance(material.ambient),
                           .specular = luminance(material.specular),
-                          .shininess = material.shininess}};
+                          .shininess = material.shininess},
+          .noise_scale = material.noise_scale};
 }
 
 bool has_texture(const Material& material, const Mesh& mesh) {
   return material.diffuse_texture.used() || material.specular_texture.used() ||
-         !mesh.colours.empty();
+         material.noise_texture.used() || !mesh.colours.empty();
 }
 
 SurfaceColour colour_at(const Scene& scene, const SurfacePlace& place) {
@@ -97,7 +98,9 @@ SurfaceColour colour_at(const Scene& scene, const SurfacePlace& place) {
           .reflectance = {.diffuse = luminance(diffuse),
                           .ambient = luminance(material.ambient.cwiseProduct(tint)),
                           .specular = luminance(specular),
-                          .shininess = material.shininess}};
+                          .shininess = material.shininess},
+          .noise_scale = noise_scale_at(material, scene.textures,
+                                        uv_at(place, material.noise_texture.uv_set))};
 }
 
 }  // namespace glidar

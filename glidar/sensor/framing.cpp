@@ -19,7 +19,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kWidestHalfAngle_rad = std::numbers::pi / 3.0;
 
 /// Fraction of the scene's half diagonal that always lies between the camera and the nearest
-/// vertex; matters for shapes that are lines or points when seen along the boresight.
+/// vertex, and around the scene's box. Matters for shapes that are lines or points when seen along
+/// the boresight, and for wide views.
 constexpr double kLeastGap = 0.02;
 
 [[noreturn]] void fail(std::string found, std::string remedy) {
@@ -87,12 +88,18 @@ std::optional<Window> find_window(const Beams& beams) {
   return beams.pinhole ? window_of(*beams.pinhole) : window_of_border(beams);
 }
 
-/// The camera's position relative to `centre` in camera axes, for an image that is a rectangle.
-/// With the camera at (s, t, -d), a vertex (X, Y, Z) is inside when
-/// low (Z + d) <= (X - s, Y - t) <= high (Z + d). Both sides of each axis are linear in d, so the
-/// least d follows directly from the extremes over all vertices.
-Eigen::Vector3d fit_window(const Window& window, const Scene& scene,
-                           const Pose& world_from_camera) {
+/// Where a camera may stand (camera axes, relative to the pose that these belong to): at
+/// start + distance * way, from this distance on.
+struct Retreat {
+  Eigen::Vector3d start;
+  Eigen::Vector3d way;
+  double distance;
+};
+
+/// The retreat for an image that is a rectangle. With the camera at (s, t, -d), a vertex (X, Y, Z)
+/// is inside when low (Z + d) <= (X - s, Y - t) <= high (Z + d). Both sides of each axis are linear
+/// in d, so the least d follows directly from the extremes over all vertices.
+Retreat fit_window(const Window& window, const Scene& scene, const Pose& world_from_camera) {
   const Eigen::Vector2d middle = 0.5 * (window.low + window.high);
   const Eigen::Vector2d half = (1.0 - kFramingMargin) * 0.5 * (window.high - window.low);
   const Eigen::Vector2d low = middle - half;
@@ -110,14 +117,13 @@ Eigen::Vector3d fit_window(const Window& window, const Scene& scene,
   const Eigen::Array2d needed = (above_high - above_low) / (high - low).array();
   const double gap = kLeastGap * 0.5 * bounds(scene).diagonal().norm();
   const double distance = std::max(needed.maxCoeff(), gap - nearest);
-  const Eigen::Array2d shift =
-      0.5 * (above_low - low.array() * distance + above_high - high.array() * distance);
-  return {shift.x(), shift.y(), -distance};
+  const Eigen::Array2d shift = 0.5 * (above_low + above_high);
+  return {{shift.x(), shift.y(), 0.0}, {-middle.x(), -middle.y(), -1.0}, distance};
 }
 
 /// The same for an image that is a cone about `axis` (camera axes): no sideways shift.
-Eigen::Vector3d fit_cone(const Eigen::Vector3d& axis, double half_angle_rad, const Scene& scene,
-                         const Pose& world_from_camera) {
+Retreat fit_cone(const Eigen::Vector3d& axis, double half_angle_rad, const Scene& scene,
+                 const Pose& world_from_camera) {
   const double slope =
       (1.0 - kFramingMargin) * std::tan(std::min(half_angle_rad, kWidestHalfAngle_rad));
   const Pose camera_from_world = world_from_camera.inverse();
@@ -130,7 +136,29 @@ Eigen::Vector3d fit_cone(const Eigen::Vector3d& axis, double half_angle_rad, con
     nearest = std::min(nearest, along);
   });
   const double gap = kLeastGap * 0.5 * bounds(scene).diagonal().norm();
-  return -std::max(distance, gap - nearest) * axis;
+  return {Eigen::Vector3d::Zero(), -axis, std::max(distance, gap - nearest)};
+}
+
+/// The first position of the retreat that lies outside the scene's box, with some room between.
+Eigen::Vector3d clear_of_box(const Retreat& retreat, const Scene& scene,
+                             const Pose& world_from_camera) {
+  Eigen::AlignedBox3d box = bounds(scene);
+  const Eigen::Vector3d gap = Eigen::Vector3d::Constant(kLeastGap * 0.5 * box.diagonal().norm());
+  box = Eigen::AlignedBox3d(box.min() - gap, box.max() + gap);
+  const Eigen::Vector3d start = world_from_camera * retreat.start;
+  const Eigen::Vector3d way = world_from_camera.linear() * retreat.way;
+  double distance = retreat.distance;
+  if (box.contains(start + distance * way)) {
+    // all slabs hold it, so it leaves the box where it leaves the first of them
+    double leaving = kInfinity;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (way[axis] == 0.0) continue;
+      const double side = way[axis] > 0.0 ? box.max()[axis] : box.min()[axis];
+      leaving = std::min(leaving, (side - start[axis]) / way[axis]);
+    }
+    distance = std::max(distance, leaving);
+  }
+  return retreat.start + distance * retreat.way;
 }
 
 bool is_beam(const Beams& beams, std::int64_t row, std::int64_t col) {
@@ -176,7 +204,7 @@ Pose frame_view(const Beams& beams, const Scene& scene, const Eigen::Vector3d& f
   Pose pose = look_at(box.center() + from_direction, box.center(), up);
   pose.translation() = box.center();
   if (const std::optional<Window> window = find_window(beams)) {
-    return pose * Eigen::Translation3d(fit_window(*window, scene, pose));
+    return pose * Eigen::Translation3d(clear_of_box(fit_window(*window, scene, pose), scene, pose));
   }
   const Eigen::Vector3d axis =
       beams.directions[std::size_t{beams.rows / 2} * beams.cols + beams.cols / 2];
@@ -184,7 +212,8 @@ Pose frame_view(const Beams& beams, const Scene& scene, const Eigen::Vector3d& f
   if (!(half_angle_rad > 0.0)) {
     fail("the image has no area around its middle", "give the sensor's pose");
   }
-  return pose * Eigen::Translation3d(fit_cone(axis, half_angle_rad, scene, pose));
+  const Retreat retreat = fit_cone(axis, half_angle_rad, scene, pose);
+  return pose * Eigen::Translation3d(clear_of_box(retreat, scene, pose));
 }
 
 }  // namespace glidar

@@ -11,8 +11,9 @@ namespace glidar {
 /// How much of the image's half width or height frame_view leaves free on each side.
 inline constexpr double kFramingMargin = 0.05;
 
-/// The nearest pose (world_from_sensor) of a camera from which every vertex of the scene lies in
-/// its image, with kFramingMargin left free. The camera stands on the side `from_direction` (world,
+/// The nearest pose (world_from_sensor) of a camera outside the box around the scene from which
+/// every vertex lies in its image, with kFramingMargin left free; more is left free where so wide a
+/// view would fill only from within the box. The camera stands on the side `from_direction` (world,
 /// from the scene to the camera, any length) and looks the other way; `up` (world) points up in the
 /// image. It is shifted sideways so that the scene stands in the middle, wherever the principal
 /// point is.

@@ -3,11 +3,13 @@
 #pragma once
 
 #include <glidar/sensor/light.hpp>
+#include <glidar/sensor/noise.hpp>
 #include <glidar/sensor/pinhole.hpp>
 
 #include <limits>
 #include <string>
 #include <variant>
+#include <vector>
 
 namespace glidar {
 
@@ -28,6 +30,7 @@ struct Sensor {
   double rate_hz = 30.0;  ///< frames per second; of a turning sensor: turns per second
   Limits limits;
   Light light;
+  std::vector<NoiseStep> noise;  ///< in the order in which the sensor makes its errors
   bool cull_back_faces = false;  ///< true: triangles seen from behind let the beam through
 };
 

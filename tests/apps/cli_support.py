@@ -71,5 +71,9 @@ class CliTest(unittest.TestCase):
             file.write(text)
         return name
 
+    def bytes_of(self, name):
+        with open(os.path.join(self.folder, name), "rb") as file:
+            return file.read()
+
     def files(self):
         return sorted(name for name in os.listdir(self.folder) if name != ".cache")

@@ -12,6 +12,7 @@ import struct
 import subprocess
 import time
 import unittest
+import zipfile
 
 from cli_support import BOX, CliTest, box_of
 
@@ -31,103 +32,21 @@ class Help(CliTest):
                     count += 1
         self.assertGreaterEqual(count, 10)
 
+    def test_help_takes_one_plain_line_per_option(self):
+        for level in (["render"], ["info"], ["verify"]):
+            text = self.succeed(*level, "--help").stdout
+            self.assertNotRegex(text, r"[{}]|INT|FLOAT|TEXT|REQUIRED")
+            self.assertLessEqual(max(len(line) for line in text.split("\n")), 100)
+            self.assertNotRegex(text, r"(?m)^ {20}", "an option takes a second line")
+            options = re.findall(r"(?m)^  -.*$", text)
+            self.assertGreaterEqual(len(options), 4)
+            for option in options:
+                self.assertRegex(option, r"^  -\S+( \S+)?  +[A-Za-z0-9]")
+
     def test_h_is_help_and_all_formats_are_listed(self):
         text = self.succeed("render", "-h").stdout
         for suffix in (".pcd", ".ply", ".npz", ".csv", ".bin", ".npy", ".depth.png", ".transform"):
             self.assertIn(suffix, text)
-
-
-class Refusals(CliTest):
-    def test_unknown_words_name_the_nearest(self):
-        self.assertIn("did you mean --camera-z?",
-                      self.refused("render", "builtin:box", "--camra-z", "5", "-o", "x.pcd"))
-        self.assertIn("unknown option --port",
-                      self.refused("render", "builtin:box", "--port=99", "-o", "x.pcd"))
-        self.assertIn("did you mean render?", self.refused("rendr", "builtin:box"))
-        self.assertIn("glidar render bunny.ply -o", self.refused("bunny.ply", "--pcd", "x"))
-        self.assertIn("unexpected word 'b'", self.refused("render", "a", "b", "-o", "x.pcd"))
-        self.assertIn("did you mean 'builtin:box'?",
-                      self.refused("render", "builtin:bx", "-o", "x.pcd"))
-
-    def test_missing_things(self):
-        self.assertIn("nofile.ply", self.refused("render", "nofile.ply", "-o", "x.pcd"))
-        self.assertIn("nofile.yaml", self.refused("render", "nofile.yaml", "-o", "x.pcd"))
-        self.assertIn("nofile.yaml",
-                      self.refused("render", "builtin:box", "--sensor", "nofile.yaml", "-o", "x.pcd"))
-        self.assertIn("nofile.ply", self.refused("info", "nofile.ply"))
-        self.assertIn("input is required", self.refused("render"))
-        self.refused()
-
-    def test_outputs_are_checked_before_anything_is_loaded(self):
-        error = self.refused("render", "nofile.ply", "-o", "x.pdc")
-        self.assertIn("did you mean .pcd?", error)
-        self.assertNotIn("nofile.ply", error)
-        self.assertIn("no folder", self.refused("render", "builtin:box", "-o", "no/such/x.pcd"))
-        self.assertIn("-o cloud.pcd", self.refused("render", "builtin:box"))
-        self.assertIn("given twice", self.refused("render", "builtin:box", "-o", "a.pcd", "-o", "./a.pcd"))
-        self.write("box.obj", BOX)
-        os.rename(os.path.join(self.folder, "box.obj"), os.path.join(self.folder, "in.ply"))
-        self.assertIn("is an input", self.refused("render", "in.ply", "-o", "in.ply"))
-        self.assertIn("did you mean 'intensity'?",
-                      self.refused("render", "builtin:box", "-o", "x.pcd", "--columns", "xyz,intensty"))
-
-    def test_files_of_the_scene_are_never_overwritten(self):
-        self.write("paint.npy", "P6 1 1 255\nabc")
-        self.write("paint.mtl", "newmtl paint\nmap_Kd paint.npy\n")
-        self.write("box.obj", "mtllib paint.mtl\nusemtl paint\n" + BOX)
-        self.write("sensor.bin", "optics: {width: 9, height: 9, fov_deg: 30}\n")
-        self.write("scene.yaml", "models: [{model: box.obj}]\nsensor: sensor.bin\n")
-        os.symlink("paint.mtl", os.path.join(self.folder, "link.csv"))
-        os.link(os.path.join(self.folder, "box.obj"), os.path.join(self.folder, "box.ply"))
-        for name in ("paint.npy", "link.csv", "sensor.bin", "box.ply"):
-            for command in (("box.obj", "--sensor", "sensor.bin"), ("scene.yaml",)):
-                with self.subTest(name, command=command):
-                    error = self.refused("render", *command, "-o", name)
-                    self.assertIn(name, error)
-                    self.assertIn("is an input file", error)
-                    self.assertIn("choose another name", error)
-
-    def test_numbers(self):
-        render = ("render", "builtin:box", "-o", "x.pcd")
-        for arguments, text in (
-                (("--width", "0"), "1 to 65536"),
-                (("--height", "-3"), "1 to 65536"),
-                (("--width", "1000000"), "65536"),
-                (("--width", "1000000"), "memory"),
-                (("--width", "65000", "--height", "65000"), "this machine's memory"),
-                (("--width", "abc"), "--width"),
-                (("--width", "2.5"), "--width"),
-                (("--fov", "nan"), "above 0 and below 180"),
-                (("--fov", "180"), "above 0 and below 180"),
-                (("--fov", "20", "--fx", "100"), "give one of them"),
-                (("--fx", "-1"), "finite number above 0"),
-                (("--cx", "nan"), "finite"),
-                (("--near", "3", "--far", "2"), "near below far"),
-                (("--near", "-1"), "0 or above"),
-                (("--far", "nan"), "--far"),
-                (("--ambient", "inf"), "--ambient"),
-                (("--attenuation", "1,2"), "3 finite numbers"),
-                (("--attenuation", "0,0,0"), "attenuation"),
-                (("--eye", "1,2,nan"), "finite"),
-                (("--scale", "0"), "above 0"),
-                (("--model-q", "0,0,0,0"), "length 0"),
-                (("--camera-z", "inf"), "--camera-z"),
-                (("--eye", "1,1,1", "--camera-z", "4"), "several ways"),
-                (("--depth-scale", "0"), "above 0"),
-                (("--threads", "-1"), "--threads"),
-                (("--unit", "km"), "--unit"),
-                (("--up", "w"), "--up"),
-                (("--cloud-frame", "body"), "--cloud-frame"),
-                (("--renderer", "magic"), "embree")):
-            with self.subTest(arguments):
-                self.assertIn(text, self.refused(*render, *arguments))
-
-    def test_an_error_while_loading_leaves_old_files_alone(self):
-        self.write("x.pcd", "old")
-        self.write("broken.ply", "neither a header nor triangles\n")
-        self.refused("render", "broken.ply", "-o", "x.pcd")
-        with open(os.path.join(self.folder, "x.pcd"), encoding="utf-8") as file:
-            self.assertEqual(file.read(), "old")
 
 
 class Render(CliTest):
@@ -163,14 +82,37 @@ class Render(CliTest):
             filled = max((max(cols) - min(cols) + 1) / width, (max(rows) - min(rows) + 1) / height)
             self.assertGreater(filled, 0.85)
 
-    def test_same_bytes_for_any_number_of_threads(self):
-        contents = []
-        for threads in ("1", "2"):
-            self.succeed("render", "builtin:asteroid", "--threads", threads, "--columns", "all",
-                         "-o", "a.pcd")
-            with open(os.path.join(self.folder, "a.pcd"), "rb") as file:
-                contents.append(file.read())
-        self.assertEqual(contents[0], contents[1])
+    def test_same_bytes_for_any_number_of_threads_with_and_without_cache(self):
+        names = ("a.pcd", "a.ply", "a.npz")
+        self.write("box.obj", BOX)
+        contents = {}
+        for name, arguments in (("1 thread", ("--threads", "1", "--no-cache")),
+                                ("2 threads", ("--threads", "2", "--no-cache")),
+                                ("fills the cache", ("--threads", "1")),
+                                ("from the cache", ("--threads", "2"))):
+            outputs = [word for output in names for word in ("-o", output)]
+            self.succeed("render", "box.obj", "-w", "301", "--height", "203", *arguments,
+                         "--columns", "all", *outputs)
+            contents[name] = [self.bytes_of(output) for output in names]
+            self.assertEqual(contents[name], contents["1 thread"], name)
+        self.assertIn("(from the cache)", self.succeed("info", "box.obj").stdout)
+
+    def test_npz_holds_no_times_of_day(self):
+        self.succeed("render", "builtin:box", "-o", "a.npz")
+        with zipfile.ZipFile(os.path.join(self.folder, "a.npz")) as archive:
+            self.assertGreater(len(archive.infolist()), 5)
+            for entry in archive.infolist():
+                self.assertEqual(entry.date_time, (1980, 1, 1, 0, 0, 0), entry.filename)
+                self.assertEqual(entry.extra, b"", entry.filename)
+
+    def test_two_runs_that_write_the_same_file_leave_a_whole_one(self):
+        command = ["glidar", "render", "builtin:box", "--quiet", "-o", "same.pcd"]
+        runs = [subprocess.Popen(command, cwd=self.folder, env=self.environment) for _ in range(4)]
+        self.assertEqual([run.wait(timeout=60) for run in runs], [0] * len(runs))
+        self.assertEqual(self.files(), ["same.pcd", "same.pcd.json"])
+        together = self.bytes_of("same.pcd")
+        self.succeed(*command[1:])
+        self.assertEqual(self.bytes_of("same.pcd"), together)
 
     def test_same_bytes_with_and_without_the_cache(self):
         self.write("paint.ppm", "P6 2 2 255\na c!e~ghijkl")
@@ -233,6 +175,23 @@ class Render(CliTest):
             lines = [line for line in file.read().split("\n") if line and line[0] != "#"]
         for line in lines[1:]:
             self.assertAlmostEqual(max(abs(float(x)) for x in line.split(",")[:3]), 1.0, delta=1e-5)
+
+    def test_wide_views_are_framed_from_outside_the_model(self):
+        for fov in ("100", "150", "179"):
+            done = self.succeed("render", "builtin:box", "--fov", fov, "-o", "x.pcd")
+            self.assertEqual(done.stderr, "", fov)
+
+    def test_a_hint_at_up_for_models_that_stand_on_y(self):
+        standing = re.sub(r"(?m)^v (\S+) -1 ", r"v \1 0 ", BOX)  # y from 0 to 1
+        self.write("y.obj", standing)
+        self.assertIn("a guess", self.succeed("info", "y.obj").stdout)
+        self.assertIn("--up y", self.succeed("render", "y.obj", "-o", "x.pcd").stderr)
+        self.assertNotIn("warning", self.succeed("render", "y.obj", "-o", "x.pcd").stderr)
+        for arguments in (("--up", "y"), ("--eye", "5,5,5"), ("--quiet",)):
+            done = self.succeed("render", "y.obj", "-o", "x.pcd", *arguments)
+            self.assertEqual(done.stderr, "", arguments)
+        self.write("both.obj", BOX)
+        self.assertNotIn("--up", self.succeed("info", "both.obj").stdout)
 
     def test_unit_and_up(self):
         self.write("box.obj", box_of(2000))

@@ -142,10 +142,24 @@ TEST(PoseOptions, SayWhatIsWrong) {
   expect_sensor_error({.eye = "1,2,x"}, "'x'");
   expect_sensor_error({.eye = "1,2,inf"}, "finite");
   expect_sensor_error({.eye = "1,2,3 "}, "'3 '");
-  expect_sensor_error({.sensor_pose = "0,0,0,0,0,0,0"}, "quaternion is zero");
+  expect_sensor_error({.sensor_pose = "0,0,0,0,0,0,0"}, "--sensor-pose: a quaternion of length 0");
   expect_sensor_error({.camera_r = "1,0,0,0"}, "axis of length 0");
   expect_sensor_error({.camera_q = "1,0,0,0", .camera_r = "1,0,0,1"}, "both are given");
   expect_sensor_error({.up_vector = "0,1,0", .camera_z = 5.0}, "--up-vector");
+  expect_sensor_error({.sensor_pose = "1e300,0,0,1,0,0,0"}, "--sensor-pose: 1e+300; allowed");
+  expect_sensor_error({.eye = "1e16,0,0"}, "--eye: 1e+16; allowed");
+  expect_sensor_error({.eye = "1,2,3", .target = "1,2,3"}, "--eye: '1,2,3' is the point looked at");
+  expect_sensor_error({.eye = "0,0,5", .target = "0,0,0"}, "for example --up-vector 1,0,0");
+  expect_sensor_error({.eye = "5,0,0", .up_vector = "0,0,0"}, "--up-vector: the sensor looks");
+  expect_sensor_error({.up_vector = "2,-3,2"}, "parallel to its up vector 2,-3,2");
+  expect_sensor_error({.camera_z = 1e300}, "--camera-z: 1e+300; allowed");
+}
+
+TEST(PoseOptions, QuaternionsOfAnyLengthButZeroAreTaken) {
+  for (const char* text : {"1e300,0,0,1e300", "1e-300,0,0,1e-300"}) {
+    const Pose pose = pose_sensor({.sensor_pose = std::string("0,0,0,") + text}, {}, camera(), {});
+    EXPECT_TRUE(is_rigid(pose)) << text;
+  }
 }
 
 TEST(PoseOptions, ModelOptionsAreRefusedForScenesOfSeveralObjects) {

@@ -88,7 +88,31 @@ TEST(Framing, WideAndTallImagesAreFilledToTheMargin) {
 
 TEST(Framing, NarrowAndWideFieldsAreFilledToTheMargin) {
   expect_fills(pinhole_from_fov(64, 48, 1e-4), tetrahedron());
-  expect_fills(pinhole_from_fov(64, 48, 2.8), tetrahedron());
+  expect_fills(pinhole_from_fov(64, 48, 1.2), tetrahedron());
+}
+
+// A view so wide could be filled only from within the box, where one sees parts of the model.
+TEST(Framing, VeryWideFieldsStayOutsideTheBoxAndContainEverything) {
+  for (const double fov_rad : {2.0, 2.8, 3.12, 3.1415}) {
+    const Pinhole camera = pinhole_from_fov(64, 48, fov_rad);
+    const Scene scene = tetrahedron();
+    const Pose pose = frame_view(make_beams(camera), scene, kFrom, kUp);
+    const Eigen::AlignedBox3d box = bounds(scene);
+    const double size = box.diagonal().norm();
+    EXPECT_GT(box.exteriorDistance(Eigen::Vector3d(pose.translation())), 0.009 * size) << fov_rad;
+    const Eigen::AlignedBox2d image = filled(camera.intrinsics, seen(scene, pose));
+    EXPECT_LT(image.max().cwiseAbs().maxCoeff(), 1.0) << fov_rad;
+    EXPECT_LT(image.min().cwiseAbs().maxCoeff(), 1.0) << fov_rad;
+  }
+}
+
+TEST(Framing, FisheyeStaysOutsideTheBox) {
+  Pinhole camera;
+  camera.intrinsics = {.width = 80, .height = 60, .fx = 20.0, .fy = 20.0, .cx = 40.0, .cy = 30.0};
+  camera.distortion = Fisheye{};
+  const Scene scene = tetrahedron({1.0, 1.0, 0.05});
+  const Pose pose = frame_view(make_beams(camera), scene, kFrom, kUp);
+  EXPECT_FALSE(bounds(scene).contains(Eigen::Vector3d(pose.translation())));
 }
 
 TEST(Framing, PrincipalPointOffTheCentreIsFilledToTheMargin) {

@@ -6,9 +6,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <new>
 
 namespace {
@@ -23,10 +25,22 @@ void* operator new(std::size_t size) {
   if (void* memory = std::malloc(size)) return memory;
   throw std::bad_alloc();
 }
+void* operator new(std::size_t size, std::align_val_t alignment) {
+  ++allocations;
+  const auto step = static_cast<std::size_t>(alignment);
+  if (void* memory = std::aligned_alloc(step, (size + step - 1) / step * step)) return memory;
+  throw std::bad_alloc();
+}
 void operator delete(void* memory) noexcept {
   std::free(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::align_val_t) noexcept {
+  std::free(memory);
+}
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
   std::free(memory);
 }
 
@@ -116,6 +130,29 @@ TEST(Simulate, AllocatesNothingInTheSteadyState) {
   const std::size_t before = allocations;
   for (int i = 0; i < 10; ++i) simulate(setup, fields, frame);
   EXPECT_EQ(allocations - before, 0U);
+}
+
+TEST(Simulate, TellsItsProgressFromBeginningToEndAndMeasuresTheSame) {
+  Stage stage(512);
+  std::vector<double> told;
+  Frame frame;
+  simulate({.scene = stage.scene,
+            .sensor = stage.sensor,
+            .beams = stage.beams,
+            .motion = stage.motion,
+            .renderer = *stage.renderer,
+            .progress = [&](double fraction) { told.push_back(fraction); }},
+           {}, frame);
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_GT(told.size(), 5U);
+  EXPECT_GT(told.front(), 0.0);
+  EXPECT_LT(told.front(), 0.5);
+  EXPECT_EQ(told.back(), 1.0);
+  const Frame silent = stage.shoot();
+  EXPECT_EQ(std::memcmp(frame.range_m.data(), silent.range_m.data(),
+                        silent.range_m.size() * sizeof(double)),
+            0);
+  EXPECT_EQ(frame.intensity, silent.intensity);
 }
 
 }  // namespace

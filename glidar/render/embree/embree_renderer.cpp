@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/embree/embree_renderer.hpp>
 
+#include <glidar/core/work_count.hpp>
 #include <glidar/render/embree/embree_world.hpp>
 #include <glidar/render/embree/settle.hpp>
 #include <glidar/render/embree/tiles.hpp>
@@ -197,14 +198,17 @@ class EmbreeRenderer final : public Renderer {
                   .has_wide_packets = world_->has_wide_packets(),
                   .hits = hits};
     const embree::Tiling tiling(request.beams);
+    WorkCount count(request.progress, tiling.size());
     workers_.for_ranges(tiling.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
       while (begin < end) {
         const std::size_t run_end = tiling.end_of_run(begin, end, kTilesPerTask);
         cast_tiles(job, tiling, begin, run_end);
         if (request.then) tiling.for_beam_rows(begin, run_end, request.then);
+        count.add(run_end - begin);
         begin = run_end;
       }
     });
+    count.finish();
   }
 
  private:

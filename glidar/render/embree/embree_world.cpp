@@ -101,14 +101,7 @@ void World::add_mesh(const Mesh& mesh, bool filtered) {
   rtcSetSceneFlags(owned.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(owned.get(), RTC_BUILD_QUALITY_MEDIUM);
   const RTCGeometry geometry = rtcNewGeometry(device_.get(), RTC_GEOMETRY_TYPE_TRIANGLE);
-  // Vertices are copied, since Embree reads 16 bytes of the last one; triangles are shared.
-  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                           sizeof(Eigen::Vector3f), mesh.positions_m.size());
-  if (!mesh.positions_m.empty()) {
-    require(vertices != nullptr, device_.get(), "storing vertices");
-    std::copy(mesh.positions_m.begin(), mesh.positions_m.end(),
-              static_cast<Eigen::Vector3f*>(vertices));
-  }
+  give_vertices(mesh, geometry);
   rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                              mesh.triangles.data(), 0, sizeof(Triangle), mesh.triangles.size());
   if (filtered) rtcSetGeometryIntersectFilterFunction(geometry, filter);
@@ -119,6 +112,21 @@ void World::add_mesh(const Mesh& mesh, bool filtered) {
   require(rtcGetDeviceError(device_.get()) == RTC_ERROR_NONE, device_.get(), "building a mesh");
   mesh_scenes_.push_back(std::move(owned));
   mesh_boxes_.push_back(bounds(mesh));
+}
+
+/// Embree reads 16 bytes of the last vertex: shared when there is room behind it, else copied.
+void World::give_vertices(const Mesh& mesh, RTCGeometry geometry) const {
+  const std::vector<Eigen::Vector3f>& positions = mesh.positions_m;
+  if (positions.capacity() > positions.size()) {
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               positions.data(), 0, sizeof(Eigen::Vector3f), positions.size());
+    return;
+  }
+  void* vertices = rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                           sizeof(Eigen::Vector3f), positions.size());
+  if (positions.empty()) return;
+  require(vertices != nullptr, device_.get(), "storing vertices");
+  std::copy(positions.begin(), positions.end(), static_cast<Eigen::Vector3f*>(vertices));
 }
 
 void World::add_instances() {

@@ -57,6 +57,7 @@ class World {
   using OwnedScene = std::unique_ptr<std::remove_pointer_t<RTCScene>, ReleaseScene>;
 
   void add_mesh(const Mesh& mesh, bool filtered);
+  void give_vertices(const Mesh& mesh, RTCGeometry geometry) const;
   void add_instances();
   void place_single(const Pose& world_from_sensor, const Pose& world_from_object);
   void place_many(const CastRequest& request);

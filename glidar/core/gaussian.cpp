@@ -1,0 +1,90 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/gaussian.hpp>
+
+#include <glidar/core/elementary.hpp>
+#include <glidar/core/philox.hpp>
+#include <glidar/core/simd.hpp>
+
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+/// uniform() by bits, for loops that become vectors.
+inline double uniform_of(std::uint32_t word) {
+  return (double_of(word) + 0.5) * 0x1p-32;
+}
+
+/// The radius of Box and Muller.
+inline double radius(std::uint32_t word) {
+  return std::sqrt(-2.0 * natural_log(uniform_of(word)));
+}
+
+GLIDAR_SIMD void fill_words(const RandomWords& counter, const std::array<std::uint32_t, 2>& key,
+                            WordBatch& words) {
+  for (std::uint32_t i = 0; i < kDrawBatch; ++i) {
+    PhiloxState state{counter[0] + i, counter[1], counter[2], counter[3]};
+    philox_rounds(state, key[0], key[1]);
+    words.word[0][i] = state.c0;
+    words.word[1][i] = state.c1;
+    words.word[2][i] = state.c2;
+    words.word[3][i] = state.c3;
+  }
+}
+
+GLIDAR_SIMD void fill_first(const WordBatch& words, Batch<double>& out) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    out[i] = radius(words.word[0][i]) * of_turns(uniform_of(words.word[1][i])).cosine;
+  }
+}
+
+GLIDAR_SIMD void fill_pairs(const WordBatch& words, PairBatch& out) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double r = radius(words.word[0][i]);
+    const SineCosine angle = of_turns(uniform_of(words.word[1][i]));
+    out.first[i] = r * angle.cosine;
+    out.second[i] = r * angle.sine;
+  }
+}
+
+GLIDAR_SIMD void fill_uniforms(const WordBatch& words, PairBatch& out) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    out.first[i] = uniform_of(words.word[0][i]);
+    out.second[i] = uniform_of(words.word[1][i]);
+  }
+}
+
+}  // namespace
+
+std::array<double, 4> normals(const RandomWords& words) {
+  const double r0 = radius(words[0]);
+  const double r1 = radius(words[2]);
+  const SineCosine angle0 = of_turns(uniform_of(words[1]));
+  const SineCosine angle1 = of_turns(uniform_of(words[3]));
+  return {r0 * angle0.cosine, r0 * angle0.sine, r1 * angle1.cosine, r1 * angle1.sine};
+}
+
+void draw_words(const Draw& first, WordBatch& words) {
+  fill_words(counter_of(first), key_of(first), words);
+}
+
+void draw_normals(const Draw& first, Batch<double>& normals) {
+  WordBatch words;
+  draw_words(first, words);
+  fill_first(words, normals);
+}
+
+void draw_normals(const Draw& first, PairBatch& normals) {
+  WordBatch words;
+  draw_words(first, words);
+  fill_pairs(words, normals);
+}
+
+void draw_uniforms(const Draw& first, PairBatch& uniforms) {
+  WordBatch words;
+  draw_words(first, words);
+  fill_uniforms(words, uniforms);
+}
+
+}  // namespace glidar

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/mesh.hpp>
+
+#include <vector>
+
+namespace glidar {
+
+/// The plane of a triangle, n . p = offset, in the mesh's frame relative to Mesh::origin_m.
+/// n is the unit normal of the front; NaN for a triangle without area.
+struct TrianglePlane {
+  Eigen::Vector3d normal;
+  double offset;
+};
+
+/// One per triangle, in double from the mesh's vertices.
+std::vector<TrianglePlane> triangle_planes(const Mesh& mesh);
+
+/// 1 / smallest height of every triangle; infinite or NaN for one without area. Apart from the
+/// planes, so that these are 32 bytes.
+std::vector<float> triangle_narrowness(const Mesh& mesh);
+
+}  // namespace glidar

@@ -1,0 +1,58 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+namespace glidar {
+
+struct NoiseBatch;
+struct NoiseView;
+
+/// A function by its values at rising places, straight between them and constant outside.
+struct Table {
+  std::vector<double> at;
+  std::vector<double> value;
+};
+
+/// The table's value at x; 0 for an empty table.
+double look_up(const Table& table, double x);
+
+/// Returns lost at random, with the probability 1 - (1 - p) (1 - p(R)) (1 - p(incidence)).
+struct Dropout {
+  double probability = 0.0;
+  Table by_range_m;
+  Table by_incidence_rad;
+};
+
+/// An echo is told from noise when intensity + sigma x reaches the threshold, x being a standard
+/// normal: it is detected with the probability Phi((I - threshold) / sigma).
+struct Detection {
+  double threshold = 0.0;
+  double sigma = 0.0;
+};
+
+/// With this probability a beam reports, in the place of its range, one that is uniform from near
+/// to the range of another beam of its column (of another channel, which fires close in time).
+struct Crosstalk {
+  double probability = 0.0;
+  double near_m = 0.0;
+};
+
+/// Foreign pulses and false alarms arrive at a constant rate while the gate, from near to far, is
+/// open. One that arrives before the beam's own echo is reported in its place, or where there is
+/// no echo at all. The first arrival is exponentially distributed.
+struct FalseEchoes {
+  double rate_hz = 0.0;
+  double near_m = 0.0;
+  double far_m = 0.0;
+  double intensity = 0.0;
+};
+
+void apply(const Dropout& step, const NoiseView& view, NoiseBatch& batch);
+void apply(const Detection& step, const NoiseView& view, NoiseBatch& batch);
+void prepare(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch);
+void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch);
+void apply(const FalseEchoes& step, const NoiseView& view, NoiseBatch& batch);
+
+}  // namespace glidar

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/intensity_noise.hpp>
+
+#include <glidar/core/elementary.hpp>
+#include <glidar/core/simd.hpp>
+#include <glidar/sensor/noise_batch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+GLIDAR_SIMD void disturb(const IntensityGaussian& step, const Batch<double>& normal,
+                         NoiseBatch& b) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double sigma = (step.sigma + step.relative * b.intensity[i]) * b.scale[i];
+    const double disturbed = b.intensity[i] + sigma * normal[i];
+    b.intensity[i] = disturbed > 0.0 ? disturbed : 0.0;
+  }
+}
+
+}  // namespace
+
+double vendor_intensity(double reflectance, double largest) {
+  if (!(reflectance > 0.0)) return 0.0;
+  if (reflectance <= 1.0) return std::floor(100.0 * reflectance + 0.5);
+  const double share = natural_log(reflectance) / natural_log(largest);
+  return 101.0 + std::floor(154.0 * std::min(share, 1.0) + 0.5);
+}
+
+void apply(const IntensityGaussian& step, const NoiseView& /*view*/, NoiseBatch& batch) {
+  Batch<double> normal;
+  draw_normals(batch.draw, normal);
+  disturb(step, normal, batch);
+}
+
+void apply(const IntensityScale& step, const NoiseView& /*view*/, NoiseBatch& batch) {
+  const bool compensates = step.reference_m > 0.0;
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    if (!is_hit(batch, i)) continue;
+    const double times = compensates ? batch.range_m[i] / step.reference_m : 1.0;
+    const double reflectance = step.gain * batch.intensity[i] * times * times;
+    batch.intensity[i] = step.kind == IntensityScale::Kind::vendor
+                             ? vendor_intensity(reflectance, step.largest)
+                             : std::clamp(reflectance, 0.0, 1.0);
+  }
+}
+
+}  // namespace glidar

@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/noise.hpp>
+
+#include <glidar/core/simd.hpp>
+#include <glidar/sensor/noise_batch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace glidar {
+namespace {
+
+constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kGrain = 8 * kDrawBatch;
+
+template <class Step>
+constexpr bool kTurnsBeams =
+    std::is_same_v<Step, PointingJitter> || std::is_same_v<Step, EncoderError>;
+
+template <class Step>
+constexpr bool kUsesDepth =
+    std::is_same_v<Step, DisparityQuantum> || std::is_same_v<Step, KinectV1> ||
+    std::is_same_v<Step, Khoshelham> || std::is_same_v<Step, NguyenAxial> ||
+    std::is_same_v<Step, NguyenLateral> || std::is_same_v<Step, IclKinect> ||
+    std::is_same_v<Step, Stereo>;
+
+template <class Step>
+constexpr bool kUsesIncidence =
+    std::is_same_v<Step, NguyenAxial> || std::is_same_v<Step, NguyenLateral> ||
+    std::is_same_v<Step, Dropout>;
+
+/// Steps that look at other beams too: all of the frame is prepared before any of it changes.
+template <class Step>
+constexpr bool kLooksAround = requires(const Step& step, const NoiseView& view, NoiseBatch& batch) {
+  prepare(step, view, batch);
+};
+
+bool turns_beams(const NoiseStep& step) {
+  return std::visit([](const auto& s) { return kTurnsBeams<std::decay_t<decltype(s)>>; }, step);
+}
+
+bool uses_depth(const NoiseStep& step) {
+  return std::visit([](const auto& s) { return kUsesDepth<std::decay_t<decltype(s)>>; }, step);
+}
+
+bool looks_around(const NoiseStep& step) {
+  return std::visit([](const auto& s) { return kLooksAround<std::decay_t<decltype(s)>>; }, step);
+}
+
+Draw draw_of(const Frame& frame, std::size_t step, std::size_t beam) {
+  const auto first = static_cast<std::size_t>(Purpose::first_noise_step);
+  return {.seed = frame.seed,
+          .sensor = frame.sensor_id,
+          .frame = frame.number,
+          .beam = static_cast<std::uint32_t>(beam),
+          .purpose = static_cast<Purpose>(first + step)};
+}
+
+/// Copies a run of a column into a batch, and fills up the rest.
+template <class From, class To>
+void load_column(const std::vector<From>& column, const NoiseBatch& batch, To rest,
+                 Batch<To>& out) {
+  if (column.empty()) {
+    out.fill(rest);
+    return;
+  }
+  const From* from = column.data() + batch.first;
+  for (std::size_t i = 0; i < batch.count; ++i) out[i] = static_cast<To>(from[i]);
+  std::fill(out.begin() + static_cast<std::ptrdiff_t>(batch.count), out.end(), rest);
+}
+
+void load_depth(const Beams& beams, NoiseBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const std::size_t beam = batch.first + i;
+    batch.depth_per_m[i] = beams.directions[beam].dot(beams.boresight);
+    batch.depth_at_zero[i] =
+        beams.origins_m.empty() ? 0.0 : beams.origins_m[beam].dot(beams.boresight);
+  }
+}
+
+/// Steps [begin, end) of a list; the first of them may look around, the others do not.
+struct Stretch {
+  const std::vector<NoiseStep>& noise;
+  std::size_t begin;
+  std::size_t end;
+  double frame_s;
+};
+
+void load(const Stretch& stretch, const NoiseView& view, NoiseBatch& batch) {
+  const Frame& frame = view.frame;
+  batch.frame_s = stretch.frame_s;
+  load_column(frame.range_m, batch, kNoRange, batch.range_m);
+  load_column(frame.sigma_m, batch, 0.0, batch.variance_m2);
+  for (double& value : batch.variance_m2) value *= value;
+  load_column(frame.intensity, batch, 0.0, batch.intensity);
+  load_column(frame.truth.noise_scale, batch, 1.0, batch.scale);
+  load_column(frame.truth.cos_incidence, batch, 1.0, batch.cosine);
+  load_column(frame.status, batch, Status::no_beam, batch.status);
+  batch.depth_per_m.fill(1.0);
+  batch.depth_at_zero.fill(0.0);
+  const auto first = stretch.noise.begin() + static_cast<std::ptrdiff_t>(stretch.begin);
+  const auto last = stretch.noise.begin() + static_cast<std::ptrdiff_t>(stretch.end);
+  if (std::any_of(first, last, uses_depth)) load_depth(view.beams, batch);
+}
+
+void store(const NoiseView& view, NoiseBatch& batch) {
+  Frame& frame = view.frame;
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    if (is_hit(batch, i) && !(batch.range_m[i] > 0.0)) lose(batch, i, Status::too_near);
+  }
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const std::size_t beam = batch.first + i;
+    const double sigma_m = std::sqrt(batch.variance_m2[i]);
+    frame.range_m[beam] = batch.range_m[i];
+    frame.status[beam] = batch.status[i];
+    frame.intensity[beam] = static_cast<float>(batch.intensity[i]);
+    frame.sigma_m[beam] = std::isnan(batch.range_m[i]) ? 0.0F : static_cast<float>(sigma_m);
+  }
+}
+
+/// Calls body(batch) for all runs of a frame, loaded.
+template <class Body>
+void for_batches(const Stretch& stretch, const NoiseView& view, Workers& workers,
+                 const Body& body) {
+  const std::size_t size = view.frame.range_m.size();
+  const std::size_t runs = (size + kDrawBatch - 1) / kDrawBatch;
+  workers.for_ranges(runs, kGrain / kDrawBatch, [&](std::size_t begin, std::size_t end) {
+    NoiseBatch batch;
+    for (std::size_t run = begin; run < end; ++run) {
+      batch.first = run * kDrawBatch;
+      batch.count = std::min(kDrawBatch, size - batch.first);
+      load(stretch, view, batch);
+      body(batch);
+    }
+  });
+}
+
+void prepare_step(const Stretch& stretch, const NoiseView& view, NoiseBatch& batch) {
+  batch.draw = draw_of(view.frame, stretch.begin, batch.first);
+  std::visit(
+      [&](const auto& step) {
+        if constexpr (kLooksAround<std::decay_t<decltype(step)>>) prepare(step, view, batch);
+      },
+      stretch.noise[stretch.begin]);
+}
+
+void apply_steps(const Stretch& stretch, const NoiseView& view, NoiseBatch& batch) {
+  for (std::size_t k = stretch.begin; k < stretch.end; ++k) {
+    batch.draw = draw_of(view.frame, k, batch.first);
+    std::visit(
+        [&](const auto& step) {
+          if constexpr (!kTurnsBeams<std::decay_t<decltype(step)>>) apply(step, view, batch);
+        },
+        stretch.noise[k]);
+  }
+}
+
+void turn_beams(const std::vector<NoiseStep>& noise, const Frame& frame, BeamRange range,
+                Beams& beams) {
+  for (std::size_t k = 0; k < noise.size(); ++k) {
+    const Draw draw = draw_of(frame, k, 0);
+    std::visit(
+        [&](const auto& step) {
+          if constexpr (kTurnsBeams<std::decay_t<decltype(step)>>) {
+            turn(step, draw, range.begin, range.end - range.begin, beams);
+          }
+        },
+        noise[k]);
+  }
+}
+
+}  // namespace
+
+void add_needs(const std::vector<NoiseStep>& noise, HitFields& fields) {
+  fields.noise_scale = fields.noise_scale || !noise.empty();
+  fields.incidence =
+      fields.incidence || std::any_of(noise.begin(), noise.end(), [](const NoiseStep& step) {
+        return std::visit([](const auto& s) { return kUsesIncidence<std::decay_t<decltype(s)>>; },
+                          step);
+      });
+}
+
+const Beams& aimed_beams(const std::vector<NoiseStep>& noise, const Beams& beams, Workers& workers,
+                         Frame& frame) {
+  Beams& aimed = frame.scratch.aimed;
+  if (std::none_of(noise.begin(), noise.end(), turns_beams)) {
+    aimed.directions.clear();
+    return beams;
+  }
+  aimed = beams;
+  aimed.pinhole.reset();  // no longer a straight grid
+  const std::size_t runs = (beams.size() + kDrawBatch - 1) / kDrawBatch;
+  workers.for_ranges(runs, kGrain / kDrawBatch, [&](std::size_t begin, std::size_t end) {
+    turn_beams(noise, frame, {begin * kDrawBatch, std::min(end * kDrawBatch, aimed.size())}, aimed);
+  });
+  return aimed;
+}
+
+void apply_noise(const std::vector<NoiseStep>& noise, double frame_s, const Beams& beams,
+                 Workers& workers, Frame& frame) {
+  if (std::all_of(noise.begin(), noise.end(), turns_beams)) {
+    frame.sigma_m.clear();
+    return;
+  }
+  frame.sigma_m.assign(frame.range_m.size(), 0.0F);
+  if (std::any_of(noise.begin(), noise.end(), looks_around)) {
+    frame.scratch.before.resize(frame.range_m.size());
+    frame.scratch.amplitude.resize(frame.range_m.size());
+  }
+  const NoiseView view{beams, frame};
+  for (std::size_t begin = 0, end = 0; begin < noise.size(); begin = end) {
+    const auto next = std::find_if(noise.begin() + static_cast<std::ptrdiff_t>(begin) + 1,
+                                   noise.end(), looks_around);
+    end = static_cast<std::size_t>(next - noise.begin());
+    const Stretch stretch{noise, begin, end, frame_s};
+    if (looks_around(noise[begin])) {
+      for_batches(stretch, view, workers,
+                  [&](NoiseBatch& batch) { prepare_step(stretch, view, batch); });
+    }
+    for_batches(stretch, view, workers, [&](NoiseBatch& batch) {
+      apply_steps(stretch, view, batch);
+      store(view, batch);
+    });
+  }
+}
+
+}  // namespace glidar

@@ -1,0 +1,146 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What the command line says of bad input. The built program is found in PATH."""
+
+import os
+import resource
+import subprocess
+import unittest
+
+from cli_support import BOX, CliTest
+
+
+class Refusals(CliTest):
+    def test_unknown_words_name_the_nearest(self):
+        self.assertIn("did you mean --camera-z?",
+                      self.refused("render", "builtin:box", "--camra-z", "5", "-o", "x.pcd"))
+        self.assertIn("unknown option --port",
+                      self.refused("render", "builtin:box", "--port=99", "-o", "x.pcd"))
+        self.assertIn("did you mean render?", self.refused("rendr", "builtin:box"))
+        self.assertIn("glidar render bunny.ply -o", self.refused("bunny.ply", "--pcd", "x"))
+        self.assertIn("unexpected word 'b'", self.refused("render", "a", "b", "-o", "x.pcd"))
+        self.assertIn("did you mean 'builtin:box'?",
+                      self.refused("render", "builtin:bx", "-o", "x.pcd"))
+
+    def test_missing_things(self):
+        self.assertIn("nofile.ply", self.refused("render", "nofile.ply", "-o", "x.pcd"))
+        self.assertIn("nofile.yaml", self.refused("render", "nofile.yaml", "-o", "x.pcd"))
+        self.assertIn("nofile.yaml",
+                      self.refused("render", "builtin:box", "--sensor", "nofile.yaml", "-o", "x.pcd"))
+        self.assertIn("nofile.ply", self.refused("info", "nofile.ply"))
+        self.assertIn("MODEL is required", self.refused("render"))
+        self.refused()
+
+    def test_outputs_are_checked_before_anything_is_loaded(self):
+        error = self.refused("render", "nofile.ply", "-o", "x.pdc")
+        self.assertIn("did you mean .pcd?", error)
+        self.assertNotIn("nofile.ply", error)
+        self.assertIn("no folder", self.refused("render", "builtin:box", "-o", "no/such/x.pcd"))
+        self.assertIn("-o cloud.pcd", self.refused("render", "builtin:box"))
+        self.assertIn("given twice", self.refused("render", "builtin:box", "-o", "a.pcd", "-o", "./a.pcd"))
+        self.write("box.obj", BOX)
+        os.rename(os.path.join(self.folder, "box.obj"), os.path.join(self.folder, "in.ply"))
+        self.assertIn("is an input", self.refused("render", "in.ply", "-o", "in.ply"))
+        self.assertIn("did you mean 'intensity'?",
+                      self.refused("render", "builtin:box", "-o", "x.pcd", "--columns", "xyz,intensty"))
+
+    def test_files_of_the_scene_are_never_overwritten(self):
+        self.write("paint.npy", "P6 1 1 255\nabc")
+        self.write("paint.mtl", "newmtl paint\nmap_Kd paint.npy\n")
+        self.write("box.obj", "mtllib paint.mtl\nusemtl paint\n" + BOX)
+        self.write("sensor.bin", "optics: {width: 9, height: 9, fov_deg: 30}\n")
+        self.write("scene.yaml", "models: [{model: box.obj}]\nsensor: sensor.bin\n")
+        os.symlink("paint.mtl", os.path.join(self.folder, "link.csv"))
+        os.link(os.path.join(self.folder, "box.obj"), os.path.join(self.folder, "box.ply"))
+        for name in ("paint.npy", "link.csv", "sensor.bin", "box.ply"):
+            for command in (("box.obj", "--sensor", "sensor.bin"), ("scene.yaml",)):
+                with self.subTest(name, command=command):
+                    error = self.refused("render", *command, "-o", name)
+                    self.assertIn(name, error)
+                    self.assertIn("is an input file", error)
+                    self.assertIn("choose another name", error)
+
+    def test_numbers(self):
+        render = ("render", "builtin:box", "-o", "x.pcd")
+        for arguments, text in (
+                (("--width", "0"), "1 to 65536"),
+                (("--height", "-3"), "1 to 65536"),
+                (("--width", "1000000"), "65536"),
+                (("--width", "65000", "--height", "65000"), "this machine's memory"),
+                (("--width", "abc"), "--width"),
+                (("--width", "2.5"), "--width"),
+                (("--fov", "nan"), "above 0 and below 180"),
+                (("--fov", "180"), "above 0 and below 180"),
+                (("--fov", "20", "--fx", "100"), "give one of them"),
+                (("--fx", "-1"), "--fx: -1; allowed: pixels above 0"),
+                (("--cx", "nan"), "--cx: nan"),
+                (("--near", "3", "--far", "2"), "near below far"),
+                (("--near", "-1"), "0 or above"),
+                (("--far", "nan"), "--far"),
+                (("--ambient", "inf"), "--ambient"),
+                (("--attenuation", "1,2"), "3 finite numbers"),
+                (("--attenuation", "0,0,0"), "attenuation"),
+                (("--eye", "1,2,nan"), "finite"),
+                (("--scale", "0"), "above 0"),
+                (("--model-q", "0,0,0,0"), "length 0"),
+                (("--camera-z", "inf"), "--camera-z"),
+                (("--eye", "1,1,1", "--camera-z", "4"), "several ways"),
+                (("--depth-scale", "0"), "above 0"),
+                (("--threads", "-1"), "--threads"),
+                (("--unit", "km"), "--unit"),
+                (("--up", "w"), "--up"),
+                (("--cloud-frame", "body"), "--cloud-frame"),
+                (("--width", "1.5"), "--width: '1.5'; allowed: a whole number"),
+                (("--width", ""), "--width"),
+                (("--pcd", ""), "--pcd"),
+                (("--fov", "abc"), "--fov: 'abc'; allowed: a number"),
+                (("--fov", "1e-300"), "--fov: 1e-300"),
+                (("--fov", "20", "--fov", "30"), "--fov: given more than once"),
+                (("--fov",), "--fov: there is no value"),
+                (("--fx", "1e300"), "--fx: 1e+300"),
+                (("--scale", "1e300"), "--scale: 1e+300"),
+                (("--ambient", "1e300"), "--ambient: 1e+300"),
+                (("--attenuation", "-1,0,1"), "--attenuation: '-1,0,1'"),
+                (("--columns", "xyz,foo"), "--columns"),
+                (("--sensor-pose", "0,0,0,0,0,0,0"), "--sensor-pose"),
+                (("--sensor-pose", "nan,0,0,1,0,0,0"), "--sensor-pose"),
+                (("--eye", "0,0,5"), "--up-vector 1,0,0"),
+                (("--cloud-frame", "rso"), "did you mean ros?"),
+                (("--renderer", "magic"), "embree")):
+            with self.subTest(arguments):
+                self.assertIn(text, self.refused(*render, *arguments))
+
+    def test_options_are_checked_before_anything_is_loaded(self):
+        for arguments, text in ((("--renderer", "magic"), "--renderer: 'magic'; allowed: embree"),
+                                (("--eye", "1,2"), "--eye"),
+                                (("--fov", "200"), "--fov")):
+            error = self.refused("render", "nofile.ply", "-o", "x.pcd", *arguments)
+            self.assertIn(text, error)
+            self.assertNotIn("nofile.ply", error)
+
+    def test_errors_of_outputs_name_the_option(self):
+        self.assertIn("--output, x.pdc", self.refused("render", "builtin:box", "-o", "x.pdc"))
+        self.assertIn("--pcd, no/x.pcd", self.refused("render", "builtin:box", "--pcd", "no/x"))
+        os.mkfifo(os.path.join(self.folder, "pipe.pcd"))
+        self.assertIn("--output, pipe.pcd: is a pipe",
+                      self.refused("render", "builtin:box", "-o", "pipe.pcd"))
+
+    def test_a_limit_on_file_size_is_an_error_and_leaves_nothing(self):
+        done = subprocess.run(["glidar", "render", "builtin:box", "-o", "x.csv"], cwd=self.folder,
+                              env=self.environment, capture_output=True, text=True, check=False,
+                              preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE,
+                                                                    (65536, 65536)))
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("x.csv: cannot write: File too large", done.stderr)
+        self.assertEqual(self.files(), [])
+
+    def test_an_error_while_loading_leaves_old_files_alone(self):
+        self.write("x.pcd", "old")
+        self.write("broken.ply", "neither a header nor triangles\n")
+        self.refused("render", "broken.ply", "-o", "x.pcd")
+        with open(os.path.join(self.folder, "x.pcd"), encoding="utf-8") as file:
+            self.assertEqual(file.read(), "old")
+
+
+if __name__ == "__main__":
+    unittest.main()

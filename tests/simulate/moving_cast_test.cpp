@@ -1,0 +1,202 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/point_cloud.hpp>
+#include <glidar/io/builtin_models.hpp>
+#include <glidar/simulate.hpp>
+#include <support/data.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+constexpr HitFields kEverything = {.depth = true,
+                                   .normal = true,
+                                   .shading_normal = true,
+                                   .incidence = true,
+                                   .barycentrics = true,
+                                   .colour = true,
+                                   .object_point = true};
+
+/// A camera whose pixels fire one after another, 1 ms apart.
+struct Stage {
+  Scene scene;
+  Sensor sensor;
+  Beams beams;
+  Motion motion;
+  std::unique_ptr<Renderer> renderer;
+
+  explicit Stage(Scene what) : scene(std::move(what)) {
+    sensor.optics = pinhole_from_fov(24, 16, 0.6);
+    beams = make_beams(sensor);
+    for (std::uint32_t i = 0; i < beams.size(); ++i) beams.times_ns.push_back(i * 1'000'000U);
+    motion = standing_still(scene, look_at({0.4, -0.3, 5.0}, {0, 0, 0}, Eigen::Vector3d::UnitY()));
+    renderer = make_renderer(scene, {.threads = 2});
+  }
+  Setup setup() { return {scene, sensor, beams, motion, *renderer}; }
+  Frame shoot(std::int64_t stamp_ns = 0) {
+    Frame frame;
+    frame.stamp_ns = stamp_ns;
+    simulate(setup(), kEverything, frame);
+    return frame;
+  }
+};
+
+Scene plane() {
+  Scene scene = testing::scene_of(make_builtin_model("plane"));
+  scene.instances[0].scale = 20.0;
+  return scene;
+}
+
+/// A plane and two asteroids above it.
+Scene plane_and_asteroids() {
+  Scene scene = plane();
+  add_model(scene, make_builtin_model("asteroid"));
+  scene.instances[1].world_from_object.translation() << -0.8, 0.2, 1.5;
+  scene.instances.push_back(scene.instances[1]);
+  scene.instances[2].world_from_object.translation() << 0.9, -0.3, 2.0;
+  scene.instances[2].id = 2;
+  return scene;
+}
+
+std::int64_t time_of(const Frame& frame, const Beams& beams, std::size_t beam) {
+  return frame.stamp_ns + beams.times_ns[beam];
+}
+
+/// Every beam cast alone, with everything standing where it is at the beam's time.
+void expect_as_if_cast_alone(Stage& stage, const Frame& frame) {
+  constexpr double kRounding_m = 1e-13;  // poses are composed in another order
+  for (std::size_t i = 0; i < stage.beams.size(); ++i) {
+    const std::int64_t t_ns = time_of(frame, stage.beams, i);
+    Beams one;
+    one.rows = one.cols = 1;
+    one.directions = {stage.beams.directions[i]};
+    std::vector<Pose> poses;
+    for (const Trajectory& path : stage.motion.world_from_instance) {
+      poses.push_back(pose_at(path, t_ns));
+    }
+    Hits hits;
+    stage.renderer->cast({.beams = one,
+                          .world_from_sensor = pose_at(stage.motion.world_from_sensor, t_ns),
+                          .world_from_instance = poses,
+                          .fields = kEverything},
+                         hits);
+    ASSERT_EQ(frame.truth.instance[i], hits.instance[0]) << "beam " << i;
+    if (hits.instance[0] == kNoHit) continue;
+    EXPECT_EQ(frame.truth.primitive[i], hits.primitive[0]);
+    EXPECT_NEAR(frame.truth.range_m[i], hits.range_m[0], kRounding_m);
+    EXPECT_NEAR(frame.truth.depth_m[i], hits.depth_m[0], kRounding_m);
+    EXPECT_LT((frame.truth.normal[i] - hits.normal[0]).norm(), 1e-6F);
+    EXPECT_LT((frame.truth.shading_normal[i] - hits.shading_normal[0]).norm(), 1e-5F);
+    EXPECT_NEAR(frame.truth.cos_incidence[i], hits.cos_incidence[0], 1e-6F);
+    EXPECT_LT((frame.truth.object_point_m[i] - hits.object_point_m[0]).norm(), 1e-12);
+  }
+}
+
+TEST(MovingCast, PutsADeskewedScanOfAPlaneOnThePlane) {
+  Stage stage(plane());
+  stage.motion.world_from_sensor = ConstantTwist{.pose = pose_at(stage.motion.world_from_sensor, 0),
+                                                 .angular_rad_s = {0.3, -0.4, 0.8},
+                                                 .linear_m_s = {1.0, -2.0, 0.5}};
+  const Frame frame = stage.shoot();
+  PointCloud raw;
+  PointCloud deskewed;
+  const std::vector<std::string> columns = {"xyz", "normal"};
+  const CloudFrame world{.frame_id = "world", .cloud_from_sensor = frame.world_from_sensor};
+  CloudFrame deskewed_world = world;
+  deskewed_world.deskew = true;
+  make_point_cloud(frame, stage.beams, stage.scene, world, columns, raw);
+  make_point_cloud(frame, stage.beams, stage.scene, deskewed_world, columns, deskewed);
+  double furthest_raw = 0.0;
+  for (std::size_t i = 0; i < stage.beams.size(); ++i) {
+    ASSERT_EQ(frame.status[i], Status::hit);
+    const auto& xyz = std::get<std::vector<double>>(deskewed.columns[0].values);
+    const auto& normals = std::get<std::vector<float>>(deskewed.columns[1].values);
+    EXPECT_NEAR(xyz[3 * i + 2], 0.0, 1e-12);
+    EXPECT_NEAR(normals[3 * i + 2], 1.0F, 1e-6F);
+    furthest_raw = std::max(
+        furthest_raw, std::abs(std::get<std::vector<double>>(raw.columns[0].values)[3 * i + 2]));
+  }
+  EXPECT_GT(furthest_raw, 0.1);  // what deskewing has put right
+}
+
+TEST(MovingCast, MeetsAnApproachingPlaneWhereItIsWhenTheBeamLeaves) {
+  Stage stage(plane());
+  constexpr double kSpeed_m_s = 2.0;
+  stage.motion.world_from_instance[0] =
+      ConstantTwist{.linear_m_s = {0.0, 0.0, kSpeed_m_s}, .frame = TwistFrame::world};
+  stage.motion.world_from_sensor =
+      ConstantPose{look_at({0, 0, 5.0}, {0, 0, 0}, Eigen::Vector3d::UnitY())};
+  const Frame frame = stage.shoot(250'000'000);
+  for (std::size_t i = 0; i < stage.beams.size(); ++i) {
+    const double t_s = static_cast<double>(time_of(frame, stage.beams, i)) * 1e-9;
+    EXPECT_NEAR(frame.truth.depth_m[i], 5.0 - kSpeed_m_s * t_s, 1e-13);
+  }
+  EXPECT_TRUE(frame.deskewed.directions.empty()) << "the sensor stands still";
+}
+
+TEST(MovingCast, SeesEveryBodyAtTheBeamsOwnTime) {
+  Stage stage(plane_and_asteroids());
+  stage.motion.world_from_sensor = ConstantTwist{.pose = pose_at(stage.motion.world_from_sensor, 0),
+                                                 .angular_rad_s = {0.05, -0.04, 0.1},
+                                                 .linear_m_s = {0.2, 0.1, -0.3}};
+  for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
+    stage.motion.world_from_instance[i] =
+        ConstantTwist{.pose = stage.scene.instances[i].world_from_object,
+                      .angular_rad_s = {1.0, 2.0, -1.5},
+                      .linear_m_s = {0.5, 0.0, -0.2}};
+  }
+  const Frame frame = stage.shoot(10'000'000);
+  expect_as_if_cast_alone(stage, frame);
+  std::array<std::size_t, 3> seen{};
+  for (const std::uint32_t instance : frame.truth.instance) {
+    if (instance != kNoHit) ++seen[instance];
+  }
+  EXPECT_GT(seen[0], 20U);
+  EXPECT_GT(seen[1], 20U);
+  EXPECT_GT(seen[2], 20U);
+}
+
+TEST(MovingCast, SeesALoneMovingBody) {
+  Stage stage(testing::scene_of(make_builtin_model("asteroid")));
+  stage.motion.world_from_instance[0] =
+      ConstantTwist{.angular_rad_s = {2.0, -1.0, 3.0}, .linear_m_s = {0.3, 0.1, 0.0}};
+  const Frame frame = stage.shoot();
+  expect_as_if_cast_alone(stage, frame);
+}
+
+TEST(MovingCast, LosesNothingFarFromTheWorldsZero) {
+  Stage stage(plane());
+  const Eigen::Vector3d far(1e6, -2e6, 5e5);
+  Pose pose = pose_at(stage.motion.world_from_sensor, 0);
+  pose.translation() += far;
+  stage.scene.instances[0].world_from_object.translation() += far;
+  stage.motion.world_from_instance[0] = ConstantPose{stage.scene.instances[0].world_from_object};
+  stage.motion.world_from_sensor = ConstantTwist{.pose = pose, .linear_m_s = {0.0, 0.0, 1.0}};
+  const Frame frame = stage.shoot();
+  for (std::size_t i = 0; i < stage.beams.size(); ++i) {
+    ASSERT_EQ(frame.status[i], Status::hit);
+    const Eigen::Vector3d point =
+        frame.deskewed.origins_m[i] + frame.range_m[i] * frame.deskewed.directions[i];
+    // A pose at 2e6 m is itself rounded to 2.3e-10 m in double.
+    EXPECT_NEAR((pose * point - far).z(), 0.0, 1e-9);
+  }
+}
+
+TEST(MovingCast, AllocatesNoSecondTime) {
+  Stage stage(plane());
+  stage.motion.world_from_sensor =
+      ConstantTwist{.pose = pose_at(stage.motion.world_from_sensor, 0), .linear_m_s = {1, 0, 0}};
+  Frame frame;
+  simulate(stage.setup(), kEverything, frame);
+  const void* const before = frame.scratch.moved.directions.data();
+  const void* const deskewed = frame.deskewed.directions.data();
+  simulate(stage.setup(), kEverything, frame);
+  EXPECT_EQ(frame.scratch.moved.directions.data(), before);
+  EXPECT_EQ(frame.deskewed.directions.data(), deskewed);
+}
+
+}  // namespace
+}  // namespace glidar
