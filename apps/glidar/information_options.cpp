@@ -18,14 +18,11 @@ void add_information_flags(CLI::App& command, InformationFlags& flags) {
   const std::string group = "Output";
   command
       .add_flag("--information", flags.wanted,
-                "Tell what the scan says about the sensor's pose; also as\n"
-                "NAME.information.json beside the first output")
+                "Bounds of the sensor's pose; also to NAME.information.json")
       ->group(group);
   add_number(command,
              {"--information-sigma", "M",
-              "Standard deviation of ranges for that, m, of a sensor without noise of its own "
-              "[0.01]",
-              group},
+              "Its sigma of ranges if the sensor has no noise, m [0.01]", group},
              flags.sigma_m);
 }
 

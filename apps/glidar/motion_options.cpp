@@ -58,29 +58,24 @@ void add_motion_flags(CLI::App& command, MotionFlags& flags) {
   const std::string group = "Motion";
   add_text(command,
            {"--trajectory", "FILE",
-            "Poses of the sensor (world_from_sensor, optical frame) over time: TUM, KITTI or CSV, "
-            "see docs/files.md",
-            group},
+            "Poses of the sensor over time: TUM, KITTI, CSV (docs/files.md)", group},
            flags.trajectory);
   add_number(command, {"--trajectory-rate", "HZ", "Poses per second of a KITTI file, Hz", group},
              flags.trajectory_rate_hz);
   add_text(command, {"--trajectory-times", "FILE", "Times of a KITTI file, one a line", group},
            flags.trajectory_times);
   add_number(command,
-             {"--trajectory-start", "S",
-              "Move its times so that the first is this, s [as in the file]", group},
+             {"--trajectory-start", "S", "Its first time becomes this, s [as in the file]", group},
              flags.trajectory_start_s);
   const auto check_rate = [](std::string_view option, const std::string& text) {
     (void)parse_rate(option, text);
   };
+  add_text(command,
+           {"--model-dr", "X,Y,Z", "As in 2015: the model turns, rad/s about its axes", group},
+           flags.model_dr, check_rate);
   add_text(
       command,
-      {"--model-dr", "X,Y,Z", "As in 2015: the model turns, rad/s about its own x, y, z", group},
-      flags.model_dr, check_rate);
-  add_text(
-      command,
-      {"--camera-dr", "X,Y,Z",
-       "As in 2015: the sensor turns, rad/s about its own axes x left, y up, z forward", group},
+      {"--camera-dr", "X,Y,Z", "As in 2015: the sensor turns, rad/s (left, up, forward)", group},
       flags.camera_dr, check_rate);
 }
 
