@@ -18,17 +18,18 @@ void add_information_flags(CLI::App& command, InformationFlags& flags) {
   const std::string group = "Pose information";
   command
       .add_flag("--information", flags.wanted,
-                "Tell what the scan says about the pose; NAME.information.json")
+                "Bounds of the sensor's pose; also to NAME.information.json")
       ->group(group);
   add_number(command,
-             {"--information-sigma", "M", "Ranges' standard deviation for that, m [0.01]", group},
+             {"--information-sigma", "M",
+              "Its sigma of ranges if the sensor has no noise, m [0.01]", group},
              flags.sigma_m);
 }
 
 void check(const InformationFlags& flags) {
   if (!flags.sigma_m) return;
-  require(*flags.sigma_m > 0.0 && std::isfinite(*flags.sigma_m), "--information-sigma",
-          *flags.sigma_m, "metres above 0");
+  require(std::isfinite(*flags.sigma_m) && *flags.sigma_m > 0.0, "--information-sigma",
+          *flags.sigma_m, "a finite number above 0");
   if (flags.wanted) return;
   throw Error({"--information-sigma", "there is no --information", "", "give --information too"});
 }

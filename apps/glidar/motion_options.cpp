@@ -8,8 +8,6 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/trajectory_file.hpp>
 
-#include <CLI/CLI.hpp>
-
 #include <cmath>
 #include <utility>
 
@@ -20,11 +18,11 @@ namespace {
   throw Error({std::move(where), std::move(found), "", std::move(remedy)});
 }
 
-Eigen::Vector3d parse_rate(const std::string& option, const std::string& text) {
+Eigen::Vector3d parse_rate(std::string_view option, const std::string& text) {
   constexpr double kMost_rad_s = 1e9;
   const Eigen::Vector3d rate = parse_vector(option, text);
   if (rate.cwiseAbs().maxCoeff() <= kMost_rad_s) return rate;
-  throw Error({option, "'" + text + "'", "rad/s from -1e9 to 1e9", ""});
+  throw Error({std::string(option), "'" + text + "'", "rad/s from -1e9 to 1e9", ""});
 }
 
 TimedPoses load_sensor_poses(const MotionFlags& flags) {
@@ -59,24 +57,26 @@ void check(const MotionFlags& flags, bool pose_given) {
 void add_motion_flags(CLI::App& command, MotionFlags& flags) {
   const std::string group = "Motion";
   add_text(command,
-           {"--trajectory", "FILE", "Sensor's poses over time: TUM, KITTI or CSV (docs/files.md)",
-            group},
+           {"--trajectory", "FILE",
+            "Poses of the sensor over time: TUM, KITTI, CSV (docs/files.md)", group},
            flags.trajectory);
-  add_number(command, {"--trajectory-rate", "HZ", "Poses per second of a KITTI file", group},
+  add_number(command, {"--trajectory-rate", "HZ", "Poses per second of a KITTI file, Hz", group},
              flags.trajectory_rate_hz);
   add_text(command, {"--trajectory-times", "FILE", "Times of a KITTI file, one a line", group},
            flags.trajectory_times);
-  add_number(
+  add_number(command,
+             {"--trajectory-start", "S", "Its first time becomes this, s [as in the file]", group},
+             flags.trajectory_start_s);
+  const auto check_rate = [](std::string_view option, const std::string& text) {
+    (void)parse_rate(option, text);
+  };
+  add_text(command,
+           {"--model-dr", "X,Y,Z", "As in 2015: the model turns, rad/s about its axes", group},
+           flags.model_dr, check_rate);
+  add_text(
       command,
-      {"--trajectory-start", "S", "Move its times: the first is this [as in the file]", group},
-      flags.trajectory_start_s);
-  add_text(command,
-           {"--model-dr", "X,Y,Z", "The model turns, rad/s about its own x, y, z (2015)", group},
-           flags.model_dr);
-  add_text(command,
-           {"--camera-dr", "X,Y,Z", "The sensor turns, rad/s about x left, y up, z forward (2015)",
-            group},
-           flags.camera_dr);
+      {"--camera-dr", "X,Y,Z", "As in 2015: the sensor turns, rad/s (left, up, forward)", group},
+      flags.camera_dr, check_rate);
 }
 
 Trajectory sensor_trajectory(const MotionFlags& flags, const Pose& world_from_sensor,

@@ -158,7 +158,7 @@ Motion make_motion(const RenderFlags& flags, const SceneFile& loaded, const Scen
   return motion;
 }
 
-HitFields fields_for(const RenderFlags& flags, const std::vector<Output>& outputs) {
+HitFields needed_fields(const RenderFlags& flags, const std::vector<Output>& outputs) {
   HitFields fields = fields_for(outputs);
   fields.normal = fields.normal || flags.information.wanted;
   return fields;
@@ -185,10 +185,10 @@ int run(const RenderFlags& flags) {
   Pose world_from_sensor = Pose::Identity();
   beams = aim(flags, sensor, scene, loaded.world_from_sensor, console, world_from_sensor);
 
-  const Motion motion = make_motion(flags, loaded, scene, world_from_sensor, console.report());
   Frame frame;
   const View view{scene, sensor, beams, frame};
-  measure(flags, view, motion, fields_for(flags, outputs), console, frame);
+  const Motion motion = make_motion(flags, loaded, scene, world_from_sensor, console.report());
+  measure(flags, view, motion, needed_fields(flags, outputs), console, frame);
   tell(view_advice(view), console);
   {
     const Working working(console, "writing");
