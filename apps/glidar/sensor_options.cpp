@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/sensor_options.hpp>
 
+#include <apps/glidar/help_text.hpp>
 #include <apps/glidar/numbers.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/sensor_file.hpp>
+#include <glidar/io/sensor_presets.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -104,6 +106,24 @@ Pinhole make_pinhole(const SensorFlags& flags) {
   return pinhole;
 }
 
+void apply_scan(const SensorFlags& flags, Sensor& sensor) {
+  if (flags.rate_hz) {
+    require_positive("--rate", *flags.rate_hz);
+    set_rate(sensor, *flags.rate_hz);
+  }
+  if (!flags.columns_per_turn) return;
+  auto* spinning = std::get_if<Spinning>(&sensor.optics);
+  constexpr std::int64_t kMost = 1 << 20;
+  if (spinning == nullptr || *flags.columns_per_turn < 1 || *flags.columns_per_turn > kMost) {
+    throw Error({.where = "--columns-per-turn",
+                 .found = spinning == nullptr ? "the sensor does not spin"
+                                              : fmt::format("{}", *flags.columns_per_turn),
+                 .allowed = "1 to 1048576, with a spinning sensor",
+                 .remedy = ""});
+  }
+  spinning->columns_per_turn = static_cast<std::uint32_t>(*flags.columns_per_turn);
+}
+
 void apply_limits(const SensorFlags& flags, Limits& limits) {
   if (flags.near_m) {
     require_positive("--near", *flags.near_m, true);
@@ -138,8 +158,12 @@ void apply_light(const SensorFlags& flags, Light& light) {
 
 void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
   const std::string group = "Sensor";
-  command.add_option("--sensor", flags.file, "Sensor file (YAML) instead of the camera options")
-      ->type_name("FILE")
+  command
+      .add_option(
+          "--sensor", flags.file,
+          wrapped("Sensor by name (see glidar sensors) or sensor file (YAML), instead of the "
+                  "camera options"))
+      ->type_name("NAME|FILE")
       ->group(group);
   const auto add = [&](const std::string& name, auto& value, const std::string& type,
                        const std::string& text) {
@@ -152,8 +176,11 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
   add("--fy", flags.fy, "PX", "Focal length along the height [= fx]");
   add("--cx", flags.cx, "PX", "Principal point [width / 2]");
   add("--cy", flags.cy, "PX", "Principal point [height / 2]");
-  add("--near", flags.near_m, "M", "Least depth that is reported [0]");
-  add("--far", flags.far_m, "M", "Greatest depth that is reported [inf]");
+  add("--near", flags.near_m, "M", "Least depth (LiDAR: range) that is reported [0]");
+  add("--far", flags.far_m, "M", "Greatest depth (LiDAR: range) that is reported [inf]");
+  add("--rate", flags.rate_hz, "HZ", "Frames per second; of a spinning sensor: turns");
+  add("--columns-per-turn", flags.columns_per_turn, "N",
+      "Columns of a spinning sensor, for example 2048");
   command
       .add_flag("--cull-back-faces", flags.cull_back_faces,
                 "Triangles seen from behind let beams through [they are seen]")
@@ -172,7 +199,7 @@ Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_s
                    .allowed = "",
                    .remedy = "write them into " + flags.file + ", or leave --sensor out"});
     }
-    sensor = load_sensor_file(flags.file);
+    sensor = load_sensor_file(find_sensor_file(flags.file));
   } else if (camera_given(flags) || !from_scene_file) {
     sensor.optics = make_pinhole(flags);
   } else {
@@ -181,6 +208,7 @@ Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_s
   if (const auto* pinhole = std::get_if<Pinhole>(&sensor.optics)) {
     require_memory(pinhole->intrinsics.width, pinhole->intrinsics.height);
   }
+  apply_scan(flags, sensor);
   apply_limits(flags, sensor.limits);
   apply_light(flags, sensor.light);
   sensor.cull_back_faces = sensor.cull_back_faces || flags.cull_back_faces;
