@@ -37,6 +37,9 @@ FrameSummary summarise(const Frame& frame);
 /// scale was given. Empty: nothing.
 std::vector<std::string> size_advice(const Scene& scene, bool sized);
 
+/// Where a LiDAR was put that no option placed.
+std::string beside_advice(const Scene& scene, const Pose& world_from_sensor);
+
 /// What the user should know about where the sensor stands: inside a model, too near or too far for
 /// its size, or nothing hit and why.
 std::vector<std::string> view_advice(const View& view);

@@ -43,7 +43,7 @@ struct CloudFrame {
 
 /// Names make_point_cloud knows, in the order files list them:
 /// xyz intensity range depth normal shading_normal incidence instance class primitive
-/// barycentrics colour object_point status row col
+/// barycentrics colour object_point status row col ring time
 std::span<const std::string> cloud_column_names();
 
 /// The optional hit columns that these cloud columns need. Throws Error on an unknown name.
@@ -52,13 +52,15 @@ HitFields fields_for(std::span<const std::string> column_names);
 /// Fills `cloud` with the named columns of a frame, reusing its memory.
 ///  xyz           f64 x3, metres in `cloud_frame`, from the measured range; NaN unless a hit
 ///  intensity     f32
-///  range, depth  f64, metres, measured; NaN unless a hit
+///  range, depth  f64, metres, measured; NaN unless a hit. Ranges count from where the sensor's do
+///                (Beams::range_offset_m); coordinates do not care
 ///  normal, shading_normal  f32 x3, unit, in `cloud_frame`
 ///  incidence     f32, radians
 ///  instance, class  u32, the instance's id and class_id; kNoHit where there is none
 ///  primitive     u32, triangle of the mesh; kNoHit where there is none
 ///  barycentrics  f32 x2; colour f32 x3; object_point f64 x3 in the object's own frame
 ///  status        u8, see Status; row, col u32
+///  ring          u16, channel number; time u32, ns since the frame's start
 /// Throws Error when a column is unknown or the frame was cast without what it needs.
 void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene,
                       const CloudFrame& cloud_frame, std::span<const std::string> column_names,

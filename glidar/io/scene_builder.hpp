@@ -44,6 +44,7 @@ struct ScenePlan {
   std::vector<PlannedInstance> instances;
   std::optional<Sensor> sensor;
   std::optional<Pose> world_from_sensor;
+  bool looks_at = false;  ///< see SceneFile
 };
 
 /// Reads a scene file and the sensor file it names; loads no model.

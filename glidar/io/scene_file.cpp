@@ -12,7 +12,7 @@ SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions&
   const auto load = [&](const std::string& source, const ModelOptions& options) {
     return load_model(source, options, report);
   };
-  return {build_scene(plan, load), plan.sensor, plan.world_from_sensor};
+  return {build_scene(plan, load), plan.sensor, plan.world_from_sensor, plan.looks_at};
 }
 
 }  // namespace glidar

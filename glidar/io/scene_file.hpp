@@ -16,6 +16,7 @@ struct SceneFile {
   Scene scene;
   std::optional<Sensor> sensor;
   std::optional<Pose> world_from_sensor;
+  bool looks_at = false;  ///< the pose is that of look_at(), for a boresight +z
 };
 
 /// Reads a scene from YAML (docs/files.md) and loads the models it names, each file once.

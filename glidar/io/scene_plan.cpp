@@ -163,7 +163,10 @@ ScenePlan read_scene_plan(const fs::path& path, const ModelOptions& defaults) {
   ScenePlan plan;
   plan.instances = read_models(need(root, "models"), defaults);
   if (const auto sensor = find(root, "sensor")) plan.sensor = read_scene_sensor(*sensor);
-  if (const auto pose = find(root, "sensor_pose")) plan.world_from_sensor = read_sensor_pose(*pose);
+  if (const auto pose = find(root, "sensor_pose")) {
+    plan.world_from_sensor = read_sensor_pose(*pose);
+    plan.looks_at = find(*pose, "look_at").has_value();
+  }
   return plan;
 }
 
