@@ -101,9 +101,11 @@ std::string reason_for_no_hits(const View& view, const FrameSummary& summary) {
   if (summary.beams == 0) return "the optics have no beam for any pixel; check the distortion";
   if (summary.too_near + summary.too_far > 0) {
     return fmt::format(
-        "{} beams meet surfaces outside the sensor's limits: these lie at {}, the limits are "
+        "{} beams meet surfaces outside the sensor's {} limits: these lie at {}, the limits are "
         "{} to {} m; change --near and --far",
-        summary.too_near + summary.too_far, true_distances(view), view.sensor.limits.near_m,
+        summary.too_near + summary.too_far,
+        view.sensor.limits.along == Limits::Along::depth ? "depth" : "range", true_distances(view),
+        view.sensor.limits.near_m,
         view.sensor.limits.far_m);
   }
   const Sight sight = look(view);

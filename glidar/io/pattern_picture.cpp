@@ -48,10 +48,16 @@ struct Axis {
 };
 
 /// Every so many rows and columns of an image, so that dots stay apart.
-std::size_t stride_of(const Beams& beams, std::size_t count) {
+std::size_t stride_of(const Beams& beams) {
   constexpr std::size_t kMostAcross = 64;
   const bool image = beams.times_ns.empty() && beams.rows > 1;
-  return image ? std::max<std::size_t>(1, count / kMostAcross) : 1;
+  return image ? std::max<std::size_t>(1, std::max(beams.rows, beams.cols) / kMostAcross) : 1;
+}
+
+/// The darkest colours would be lost before the ground.
+Colour mark_colour(double t) {
+  constexpr double kDarkest = 0.2;
+  return viridis(kDarkest + (1.0 - kDarkest) * t);
 }
 
 double value_of(const Beams& beams, std::size_t i) {
@@ -66,10 +72,9 @@ std::vector<Mark> marks_of(const Beams& beams) {
       camera ? Eigen::Matrix3d(optical_from_body().linear().transpose())
              : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
   std::vector<Mark> marks;
-  const std::size_t row_step = stride_of(beams, beams.rows);
-  const std::size_t col_step = stride_of(beams, beams.cols);
-  for (std::size_t row = 0; row < beams.rows; row += row_step) {
-    for (std::size_t col = 0; col < beams.cols; col += col_step) {
+  const std::size_t step = stride_of(beams);
+  for (std::size_t row = 0; row < beams.rows; row += step) {
+    for (std::size_t col = 0; col < beams.cols; col += step) {
       const std::size_t i = row * beams.cols + col;
       const Eigen::Vector3d d = body_from_sensor * beams.directions[i];
       if (std::isnan(d.x())) continue;
@@ -162,7 +167,7 @@ void draw_marks(Picture& picture, const std::vector<Mark>& marks, const Axis& ac
     const auto right = static_cast<std::size_t>(std::lround(across.place(mark.left_deg)));
     const auto up = static_cast<std::size_t>(std::lround(upright.place(mark.up_deg)));
     fill(picture, {kLeft + across.pixels - 1 - right, kTop + upright.pixels - 1 - up, size, size},
-         viridis(high > low ? (mark.value - low) / (high - low) : 1.0));
+         mark_colour(high > low ? (mark.value - low) / (high - low) : 1.0));
   }
 }
 
@@ -175,7 +180,7 @@ void draw_legend(Picture& picture, const std::vector<Mark>& marks, bool times, s
   draw_text(picture, {kLeft, y, kDot, kDot}, left, kInk);
   for (std::size_t i = 0; i < kBar; ++i) {
     fill(picture, {start + i, y, 1, kTextHeightDots * kDot},
-         viridis(static_cast<double>(i) / (kBar - 1.0)));
+         mark_colour(static_cast<double>(i) / (kBar - 1.0)));
   }
   draw_text(picture, {start + kBar + 6 * kDot, y, kDot, kDot}, right, kInk);
 }
