@@ -105,8 +105,7 @@ std::string reason_for_no_hits(const View& view, const FrameSummary& summary) {
         "{} to {} m; change --near and --far",
         summary.too_near + summary.too_far,
         view.sensor.limits.along == Limits::Along::depth ? "depth" : "range", true_distances(view),
-        view.sensor.limits.near_m,
-        view.sensor.limits.far_m);
+        view.sensor.limits.near_m, view.sensor.limits.far_m);
   }
   const Sight sight = look(view);
   if (sight.deepest_m < 0.0 && sight.view_rad < 0.5 * std::numbers::pi) {

@@ -63,7 +63,8 @@ Colour mark_colour(double t) {
 double value_of(const Beams& beams, std::size_t i) {
   if (!beams.times_ns.empty()) return 1e-6 * beams.times_ns[i];  // milliseconds
   if (!beams.rings.empty()) return beams.rings[i];
-  return static_cast<double>(i / beams.cols);
+  const std::size_t row = i / beams.cols;
+  return static_cast<double>(row);
 }
 
 std::vector<Mark> marks_of(const Beams& beams) {

@@ -144,24 +144,27 @@ void require_entry(const YamlField& at, const std::string& key,
          suggestion(key, known));
 }
 
+void set_source(const std::string& key, const std::string& source, std::vector<SheetEntry>& sheet) {
+  for (SheetEntry& entry : sheet) {
+    if (covers(key, entry.key)) entry.source = source;
+  }
+}
+
 void add_sources(const YamlField& root, std::vector<SheetEntry>& sheet) {
   const auto sources = find(root, "source");
-  if (sources) {
-    std::size_t longest = 0;
-    for (const auto& [key, value] : entries(*sources)) {
-      require_entry(value, key, sheet);
-      longest = std::max(longest, key.size());
-    }
-    // nearer keys win: the long ones come last
-    for (std::size_t length = 0; length <= longest; ++length) {
-      for (const auto& [key, value] : entries(*sources)) {
-        if (key.size() != length) continue;
-        for (SheetEntry& entry : sheet) {
-          if (covers(key, entry.key)) entry.source = text(value);
-        }
-      }
-    }
+  if (!sources) return;
+  auto all = entries(*sources);
+  // nearer keys win: the long ones come last
+  std::stable_sort(all.begin(), all.end(), [](const auto& one, const auto& other) {
+    return one.first.size() < other.first.size();
+  });
+  for (const auto& [key, value] : all) {
+    require_entry(value, key, sheet);
+    set_source(key, text(value), sheet);
   }
+}
+
+void mark_unverified(const YamlField& root, std::vector<SheetEntry>& sheet) {
   const auto unverified = find(root, "unverified");
   if (!unverified) return;
   for (const YamlField& item : items(*unverified)) {
@@ -175,6 +178,7 @@ std::vector<SheetEntry> read_entries(const YamlField& root) {
   std::vector<SheetEntry> sheet;
   add_entries(root, sheet);
   add_sources(root, sheet);
+  mark_unverified(root, sheet);
   return sheet;
 }
 
