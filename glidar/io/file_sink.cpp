@@ -42,7 +42,7 @@ const std::vector<Format>& formats() {
       {{".bin", "KITTI Velodyne", {"xyz", "intensity"}, false}, Content::hits_only, write_kitti},
       {{".npy", "NumPy depth image, metres", {"depth"}, false}, Content::per_beam, write_depth_npy},
       {{".depth.png", "16-bit depth image", {"depth"}, false}, Content::per_beam, write_depth_png},
-      {{".png", "preview picture", {"depth", "range", "intensity"}, false},
+      {{".png", "preview picture", {"depth", "intensity"}, false},
        Content::per_beam,
        write_preview},
       {{".transform", "4x4 pose of the first object", {}, false},

@@ -175,7 +175,11 @@ void write_preview(const CloudFile& job, AtomicFile& file) {
   // the depth of what lies behind a scanner would be negative
   const bool camera = job.context.beams.boresight.isApprox(Eigen::Vector3d::UnitZ());
   const std::string title = camera ? "depth" : "range";
-  const auto& depths_m = std::get<std::vector<double>>(find_column(cloud, title)->values);
+  std::vector<double> depths_m = std::get<std::vector<double>>(find_column(cloud, "depth")->values);
+  if (!camera) {
+    depths_m = job.frame.range_m;
+    for (double& range_m : depths_m) range_m += job.context.beams.range_offset_m;
+  }
   const auto& intensity = std::get<std::vector<float>>(find_column(cloud, "intensity")->values);
   const std::array<Panel, 2> panels = {distance_panel(title, depths_m),
                                        intensity_panel(depths_m, intensity)};
