@@ -39,7 +39,7 @@ void measure_range(const Limits& limits, const Beams& beams, BeamRange range, Fr
 void measure_light(const Setup& setup, const Beams& beams, BeamRange range, Frame& frame) {
   const Sensor& sensor = setup.sensor;
   if (sensor.pulse) {
-    measure_signal(*sensor.pulse, setup.scene, beams, 905e-9, range, frame);
+    measure_signal(*sensor.pulse, setup.scene, beams, sensor.wavelength_m, range, frame);
   } else {
     measure_intensity(sensor.light, beams, range, frame);
   }

@@ -79,16 +79,18 @@ double degrees(double angle) {
   return angle * 180.0 / std::numbers::pi;
 }
 
-/// The nearest and farthest depth of what was hit, reported or not.
-std::string true_depths(const View& view) {
+/// The nearest and farthest distance of what was hit, reported or not, as the limits count it.
+std::string true_distances(const View& view) {
   double nearest = std::numeric_limits<double>::infinity();
   double farthest = 0.0;
   for (std::size_t i = 0; i < view.beams.size(); ++i) {
     if (view.frame.truth.instance[i] == kNoHit) continue;
-    const double depth =
-        view.frame.truth.range_m[i] * view.beams.directions[i].dot(view.beams.boresight);
-    nearest = std::min(nearest, depth);
-    farthest = std::max(farthest, depth);
+    const double range_m = view.frame.truth.range_m[i];
+    const double distance = view.sensor.limits.along == Limits::Along::range
+                                ? range_m + view.beams.range_offset_m
+                                : depth_m(view.beams, i, range_m);
+    nearest = std::min(nearest, distance);
+    farthest = std::max(farthest, distance);
   }
   return fmt::format("{:.6g} to {:.6g} m", nearest, farthest);
 }
@@ -99,13 +101,14 @@ std::string reason_for_no_hits(const View& view, const FrameSummary& summary) {
   if (summary.beams == 0) return "the optics have no beam for any pixel; check the distortion";
   if (summary.too_near + summary.too_far > 0) {
     return fmt::format(
-        "{} beams meet surfaces outside the sensor's depth limits: these lie at {}, the limits are "
+        "{} beams meet surfaces outside the sensor's {} limits: these lie at {}, the limits are "
         "{} to {} m; change --near and --far",
-        summary.too_near + summary.too_far, true_depths(view), view.sensor.limits.near_m,
-        view.sensor.limits.far_m);
+        summary.too_near + summary.too_far,
+        view.sensor.limits.along == Limits::Along::depth ? "depth" : "range", true_distances(view),
+        view.sensor.limits.near_m, view.sensor.limits.far_m);
   }
   const Sight sight = look(view);
-  if (sight.deepest_m < 0.0) {
+  if (sight.deepest_m < 0.0 && sight.view_rad < 0.5 * std::numbers::pi) {
     return fmt::format(
         "the scene is behind the sensor: its middle is {:.6g} m away at depth {:.6g} m; "
         "turn the sensor, or {}",
@@ -264,6 +267,15 @@ std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box)
            "z = 0; if so, --up y makes that +z, which is up here";
   }
   return "";
+}
+
+std::string beside_advice(const Scene& scene, const Pose& world_from_sensor) {
+  const Eigen::Vector3d at = world_from_sensor.translation();
+  return fmt::format(
+      "the sensor stands upright beside the scene, {:.4g} m from its middle, at "
+      "{:.4g},{:.4g},{:.4g};"
+      " --eye x,y,z puts it elsewhere, for example into a room",
+      (at - bounds(scene).center()).norm(), at.x(), at.y(), at.z());
 }
 
 std::vector<std::string> view_advice(const View& view) {

@@ -40,6 +40,8 @@ std::vector<std::string> size_advice(const Scene& scene, bool sized);
 /// A hint at --up, for models whose up is not +z by their format or, as a guess, by how they stand:
 /// on or above zero along one axis, and across it along the others. Empty: none.
 std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box);
+/// Where a LiDAR was put that no option placed.
+std::string beside_advice(const Scene& scene, const Pose& world_from_sensor);
 
 /// What the user should know about where the sensor stands: inside a model, too near or too far for
 /// its size, or nothing hit and why.

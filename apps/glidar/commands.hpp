@@ -14,6 +14,7 @@ using Command = std::function<int()>;
 
 Command add_render(CLI::App& program);
 Command add_info(CLI::App& program);
+Command add_sensors(CLI::App& program);
 Command add_verify(CLI::App& program);
 
 }  // namespace glidar::app

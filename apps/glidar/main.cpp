@@ -24,8 +24,9 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   glidar render builtin:asteroid -o asteroid.pcd -o asteroid.png
   glidar info builtin:torus
+  glidar sensors
   glidar verify
-More: glidar render --help, glidar info --help, glidar verify --help)";
+More: glidar render --help, and the same for info, sensors and verify)";
 
 using Commands = std::vector<std::pair<std::string, Command>>;
 
@@ -120,6 +121,7 @@ int run(int argc, char** argv) {
   program.footer(kExamples);
   const Commands commands = {{"render", add_render(program)},
                              {"info", add_info(program)},
+                             {"sensors", add_sensors(program)},
                              {"verify", add_verify(program)}};
   return parse_and_run(program, commands, argc, argv);
 }

@@ -123,9 +123,10 @@ void add_output_flags(CLI::App& command, OutputFlags& flags) {
            flags.legacy_name);
   add_text(command, {"--columns", "LIST", "Columns of clouds: a,b,c or all or default", group},
            flags.columns, [](std::string_view, const std::string& text) { asked_columns(text); });
-  add_choice(command,
-             {"--cloud-frame", "NAME", "Axes: optical, ros, gl, legacy or world [optical]", group},
-             {"optical", "ros", "gl", "world", "legacy"}, flags.cloud_frame);
+  add_choice(
+      command,
+      {"--cloud-frame", "NAME", "Axes: sensor, optical, ros, gl, legacy or world [sensor]", group},
+      {"sensor", "optical", "ros", "gl", "world", "legacy"}, flags.cloud_frame);
   command.add_flag("--dense", flags.dense, "Leave misses out of clouds")->group(group);
   add_choice(command,
              {"--pcd-encoding", "NAME", "ascii, binary or binary_compressed [binary]", group},
@@ -209,20 +210,28 @@ HitFields fields_for(const std::vector<Output>& outputs) {
 }
 
 CloudFrame cloud_frame(const std::string& name, const Beams& beams, const Pose& world_from_sensor) {
-  Pose pose = Pose::Identity();
+  const bool lidar = heads_along_x(beams);
+  const std::string prefix = lidar ? "lidar" : "camera";
+  const Pose optical_from_sensor = lidar ? optical_from_body() : Pose::Identity();
+  if (name == "world") return {.frame_id = "world", .cloud_from_sensor = world_from_sensor};
   if (name == "ros") {
-    pose.linear() << 0, 0, 1, -1, 0, 0, 0, -1, 0;
-    return {.frame_id = "camera_frame", .cloud_from_sensor = pose};
+    const Pose body_from_sensor = optical_from_body().inverse() * optical_from_sensor;
+    return {.frame_id = prefix + "_frame", .cloud_from_sensor = body_from_sensor};
   }
   if (name == "gl") {
-    pose.linear().diagonal() = Eigen::Vector3d(1.0, -1.0, -1.0);
-    return {.frame_id = "camera_gl_frame", .cloud_from_sensor = pose};
+    Pose gl_from_optical = Pose::Identity();
+    gl_from_optical.linear().diagonal() = Eigen::Vector3d(1.0, -1.0, -1.0);
+    return {.frame_id = prefix + "_gl_frame",
+            .cloud_from_sensor = gl_from_optical * optical_from_sensor};
   }
   if (name == "legacy") {
-    return {.frame_id = "camera_legacy_frame", .cloud_from_sensor = legacy_from_optical()};
+    return {.frame_id = prefix + "_legacy_frame",
+            .cloud_from_sensor = legacy_from_optical() * optical_from_sensor};
   }
-  if (name == "world") return {.frame_id = "world", .cloud_from_sensor = world_from_sensor};
-  return {.frame_id = beams.frame_id, .cloud_from_sensor = pose};
+  if (name == "optical") {
+    return {.frame_id = prefix + "_optical_frame", .cloud_from_sensor = optical_from_sensor};
+  }
+  return {.frame_id = beams.frame_id, .cloud_from_sensor = Pose::Identity()};
 }
 
 void write_outputs(const std::vector<Output>& outputs, const Frame& frame, const Beams& beams,

@@ -20,7 +20,7 @@ struct OutputFlags {
   std::vector<std::string> paths;
   std::string legacy_name;  ///< --pcd NAME; empty: not given
   std::string columns = "default";
-  std::string cloud_frame = "optical";
+  std::string cloud_frame = "sensor";
   std::string pcd_encoding = "binary";
   bool dense = false;
   bool ply_ascii = false;

@@ -70,14 +70,25 @@ void check_upright(const char* options, const Eigen::Vector3d& forward, const Ei
                          text_of(Eigen::Vector3d(Eigen::Vector3d::Unit(flattest)))});
 }
 
-Pose eye_pose(const PoseFlags& flags, const Scene& scene, const Eigen::Vector3d& up) {
-  if (flags.eye.empty()) fail("--target", "there is no --eye", "give --eye x,y,z too");
-  const Eigen::Vector3d eye = parse_position("--eye", flags.eye);
+/// The point that --eye without --target heads for. A LiDAR stays upright.
+Eigen::Vector3d usual_target(const Eigen::Vector3d& eye, const Scene& scene,
+                             const Eigen::Vector3d& up, bool upright) {
   const Eigen::AlignedBox3d box = bounds(scene);
   const Eigen::Vector3d middle =
       box.isEmpty() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(box.center());
-  const Eigen::Vector3d target =
-      flags.target.empty() ? middle : parse_position("--target", flags.target);
+  if (!upright) return middle;
+  const Eigen::Vector3d z = up.normalized();
+  const Eigen::Vector3d way = middle - eye;
+  const Eigen::Vector3d level = way - way.dot(z) * z;
+  constexpr double kStraightBelow = 1e-9;
+  return eye + (level.norm() > kStraightBelow * way.norm() ? level : z.unitOrthogonal());
+}
+
+Pose eye_pose(const PoseFlags& flags, const Scene& scene, const Eigen::Vector3d& up, bool upright) {
+  if (flags.eye.empty()) fail("--target", "there is no --eye", "give --eye x,y,z too");
+  const Eigen::Vector3d eye = parse_position("--eye", flags.eye);
+  const Eigen::Vector3d target = flags.target.empty() ? usual_target(eye, scene, up, upright)
+                                                      : parse_position("--target", flags.target);
   if (eye == target) {
     fail("--eye", "'" + flags.eye + "' is the point looked at", "give another --eye or --target");
   }
@@ -121,15 +132,16 @@ void add_pose_flags(CLI::App& command, PoseFlags& flags) {
   const std::string group = "Pose (default: the scene fills the view, seen from 2,-3,2)";
   add_text(command, {"--eye", "X,Y,Z", "Sensor position in the world, m", group}, flags.eye,
            parse_position);
-  add_text(command,
-           {"--target", "X,Y,Z", "Point the sensor looks at, m [the scene's middle]", group},
-           flags.target, parse_position);
+  add_text(
+      command,
+      {"--target", "X,Y,Z", "Point the sensor looks at, m [scene's middle; LiDARs: level]", group},
+      flags.target, parse_position);
   add_text(command,
            {"--up-vector", "X,Y,Z", "World direction that is up in the image [0,0,1]", group},
            flags.up_vector, parse_vector);
   add_text(command,
            {"--sensor-pose", "X,Y,Z,QW,QX,QY,QZ",
-            "Position in the world, m, and attitude of the optical frame", group},
+            "Position in the world, m, and attitude of the sensor's frame", group},
            flags.sensor_pose, parse_pose);
   add_number(command, {"--scale", "S", "Scale of the model, after --unit [1]", "Model"},
              flags.scale);
@@ -175,26 +187,36 @@ bool sensor_pose_given(const PoseFlags& flags) {
   return eye_given(flags) || legacy_given(flags) || !flags.sensor_pose.empty();
 }
 
-Pose pose_sensor(const PoseFlags& flags, const std::optional<Pose>& from_scene_file,
-                 const Beams& beams, const Scene& scene) {
+bool heads_along_x(const Beams& beams) {
+  return beams.boresight.isApprox(Eigen::Vector3d::UnitX());
+}
+
+Pose pose_sensor(const PoseFlags& flags, const ScenePose& from_scene_file, const Beams& beams,
+                 const Scene& scene) {
   const int ways =
       int{eye_given(flags)} + int{legacy_given(flags)} + int{!flags.sensor_pose.empty()};
   if (ways > 1) {
     fail("--eye, --sensor-pose and --camera-z", "the pose is given in several ways",
          "give --eye and --target, or --sensor-pose, or --camera-z with --camera-q");
   }
-  const bool up_used = eye_given(flags) || (ways == 0 && !from_scene_file);
+  const bool up_used = eye_given(flags) || (ways == 0 && !from_scene_file.world_from_sensor);
   if (!up_used && !flags.up_vector.empty()) {
     fail("--up-vector", "the pose is already complete", "leave it out, or give --eye");
   }
   const Eigen::Vector3d up = flags.up_vector.empty() ? Eigen::Vector3d(Eigen::Vector3d::UnitZ())
                                                      : parse_vector("--up-vector", flags.up_vector);
-  if (eye_given(flags)) return eye_pose(flags, scene, up);
-  if (legacy_given(flags)) return legacy_pose(flags);
+  const bool along_x = heads_along_x(beams);
+  const Pose optical_from_sensor = along_x ? optical_from_body() : Pose::Identity();
+  if (eye_given(flags)) return eye_pose(flags, scene, up, along_x) * optical_from_sensor;
+  if (legacy_given(flags)) return legacy_pose(flags) * optical_from_sensor;
   if (!flags.sensor_pose.empty()) return parse_pose("--sensor-pose", flags.sensor_pose);
-  if (from_scene_file) return *from_scene_file;
+  if (from_scene_file.world_from_sensor) {
+    return from_scene_file.looks_at ? *from_scene_file.world_from_sensor * optical_from_sensor
+                                    : *from_scene_file.world_from_sensor;
+  }
   check_upright("--up-vector", -three_quarters(), up);
-  return frame_view(beams, scene, three_quarters(), up);
+  return along_x ? stand_beside(beams, scene, three_quarters(), up)
+                 : frame_view(beams, scene, three_quarters(), up);
 }
 
 }  // namespace glidar::app

@@ -26,6 +26,12 @@ struct PoseFlags {
   std::optional<double> scale = {};
 };
 
+/// The sensor's pose in a scene file.
+struct ScenePose {
+  std::optional<Pose> world_from_sensor = {};
+  bool looks_at = false;  ///< it was given by look_at, for a boresight +z
+};
+
 void add_pose_flags(CLI::App& command, PoseFlags& flags);
 
 /// The 2015 program's sensor frame: x left, y up, z forward. The optical frame (x right, y down)
@@ -48,8 +54,13 @@ void pose_model(const PoseFlags& flags, Scene& scene);
 
 /// The sensor's pose by the flags; else `from_scene_file`; else the scene framed by these beams.
 /// Throws Error when flags contradict each other.
-Pose pose_sensor(const PoseFlags& flags, const std::optional<Pose>& from_scene_file,
-                 const Beams& beams, const Scene& scene);
+/// A sensor whose boresight is +x (LiDAR) is aimed with it; --eye without --target and the framing
+/// leave it upright.
+Pose pose_sensor(const PoseFlags& flags, const ScenePose& from_scene_file, const Beams& beams,
+                 const Scene& scene);
+
+/// True when the sensor looks along +x of its frame, like LiDARs, not along +z, like cameras.
+bool heads_along_x(const Beams& beams);
 
 /// True when any flag says where the sensor is.
 bool sensor_pose_given(const PoseFlags& flags);

@@ -32,6 +32,7 @@ constexpr const char* kExamples = R"(Examples:
   glidar render builtin:box --eye 4,-6,3 --target 0,0,0 --width 640 --height 480 --fov 40 -o box.ply
   glidar render builtin:torus --fx 500 --cx 300 --cy 250 -w 640 --height 480 -o torus.depth.png
   glidar render builtin:sphere --columns all -o sphere.npz
+  glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --columns all -o room.pcd -o room.png
   glidar render builtin:asteroid --model-q 0.7,0,0.7,0 --camera-z 10 --pcd view
 With your own files:
   glidar render part.stl --unit mm --up y -o part.pcd
@@ -127,7 +128,10 @@ void print_summary(const View& view, const std::vector<Output>& outputs) {
       100.0 * static_cast<double>(s.hits) / static_cast<double>(view.beams.size());
   fmt::print("{} x {} beams, {} hits ({:.1f} %)", view.beams.cols, view.beams.rows, s.hits,
              percent);
-  if (s.hits > 0) fmt::print(", range {:.6g} to {:.6g} m", s.nearest_m, s.farthest_m);
+  const double offset_m = view.beams.range_offset_m;
+  if (s.hits > 0) {
+    fmt::print(", range {:.6g} to {:.6g} m", s.nearest_m + offset_m, s.farthest_m + offset_m);
+  }
   fmt::print("\nwrote");
   for (const Output& output : outputs) fmt::print(" {}", output.path.string());
   fmt::print("\n");
@@ -135,10 +139,13 @@ void print_summary(const View& view, const std::vector<Output>& outputs) {
 
 /// The beams and where they start; the console shows how long that takes.
 Beams aim(const RenderFlags& flags, const Sensor& sensor, const Scene& scene,
-          const std::optional<Pose>& from_scene_file, Console& console, Pose& world_from_sensor) {
+          const ScenePose& scene_pose, Console& console, Pose& world_from_sensor) {
   const Working working(console, "aiming the sensor");
   Beams beams = make_beams(sensor);
-  world_from_sensor = pose_sensor(flags.pose, from_scene_file, beams, scene);
+  world_from_sensor = pose_sensor(flags.pose, scene_pose, beams, scene);
+  if (heads_along_x(beams) && !scene_pose.world_from_sensor && !sensor_pose_given(flags.pose)) {
+    console.info(beside_advice(scene, world_from_sensor));
+  }
   return beams;
 }
 
@@ -183,7 +190,8 @@ int run(const RenderFlags& flags) {
   pose_model(flags.pose, scene);
   tell(size_advice(scene, !flags.model.unit.empty() || flags.pose.scale), console);
   Pose world_from_sensor = Pose::Identity();
-  beams = aim(flags, sensor, scene, loaded.world_from_sensor, console, world_from_sensor);
+  beams = aim(flags, sensor, scene, {loaded.world_from_sensor, loaded.looks_at}, console,
+              world_from_sensor);
 
   Frame frame;
   const View view{scene, sensor, beams, frame};

@@ -6,6 +6,7 @@
 #include <apps/glidar/option_kinds.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/sensor_file.hpp>
+#include <glidar/io/sensor_presets.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -22,7 +23,8 @@ namespace {
 
 constexpr std::int64_t kDefaultSide = 256;  // of the 2015 program, like the field of view
 constexpr double kDefaultFov_deg = 20.0;
-constexpr double kLargestPixels = 1e9;   // likewise
+constexpr double kLargestPixels = 1e9;  // likewise
+constexpr std::int64_t kMostColumnsPerTurn = 1 << 20;
 constexpr double kLargestAmbient = 1e6;  // keeps intensities far from float's end
 constexpr double kBytesPerBeam = 250.0;  // beam, truth, measurement and cloud together
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
@@ -99,6 +101,23 @@ Pinhole make_pinhole(const SensorFlags& flags) {
   return pinhole;
 }
 
+void apply_scan(const SensorFlags& flags, Sensor& sensor) {
+  if (flags.rate_hz) {
+    require(*flags.rate_hz > 0.0 && std::isfinite(*flags.rate_hz), "--rate", *flags.rate_hz,
+            "hertz above 0");
+    set_rate(sensor, *flags.rate_hz);
+  }
+  if (!flags.columns_per_turn) return;
+  auto* spinning = std::get_if<Spinning>(&sensor.optics);
+  if (spinning == nullptr) {
+    throw Error({.where = "--columns-per-turn",
+                 .found = "the sensor does not spin",
+                 .allowed = "a spinning sensor",
+                 .remedy = "leave it out, or choose a sensor that spins (glidar sensors)"});
+  }
+  spinning->columns_per_turn = static_cast<std::uint32_t>(*flags.columns_per_turn);
+}
+
 void apply_limits(const SensorFlags& flags, Limits& limits) {
   if (flags.near_m) {
     require(*flags.near_m >= 0.0 && std::isfinite(*flags.near_m), "--near", *flags.near_m,
@@ -155,9 +174,10 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
     add_whole(command, {names, "PX", help, group}, {1, kLargestImageSide},
               [&value](std::int64_t pixels) { value = pixels; });
   };
-  add_text(command,
-           {"--sensor", "FILE", "Sensor file (YAML) instead of these camera options", group},
-           flags.file);
+  add_text(
+      command,
+      {"--sensor", "NAME|FILE", "Sensor by name (glidar sensors) or sensor file (YAML)", group},
+      flags.file);
   side("-w,--width", "Image width [256]", flags.width);
   side("--height", "Image height (-h is help) [256]", flags.height);
   number("--fov", "DEG", "Vertical field of view [20]", flags.fov_deg);
@@ -165,8 +185,13 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
   number("--fy", "PX", "Focal length along the height [= fx]", flags.fy);
   number("--cx", "PX", "Column of the principal point [width / 2]", flags.cx);
   number("--cy", "PX", "Row of the principal point [height / 2]", flags.cy);
-  number("--near", "M", "Least depth that is reported [0]", flags.near_m);
-  number("--far", "M", "Greatest depth that is reported [inf]", flags.far_m);
+  number("--near", "M", "Least depth (LiDAR: range) that is reported [0]", flags.near_m);
+  number("--far", "M", "Greatest depth (LiDAR: range) that is reported [inf]", flags.far_m);
+  number("--rate", "HZ", "Frames per second; of a spinning sensor: turns", flags.rate_hz);
+  add_whole(command,
+            {"--columns-per-turn", "N", "Columns of a spinning sensor, for example 2048", group},
+            {1, kMostColumnsPerTurn},
+            [&flags](std::int64_t columns) { flags.columns_per_turn = columns; });
   command
       .add_flag("--cull-back-faces", flags.cull_back_faces,
                 "Triangles seen from behind let beams through [they are seen]")
@@ -186,7 +211,7 @@ Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_s
                    .allowed = "",
                    .remedy = "write them into " + flags.file + ", or leave --sensor out"});
     }
-    sensor = load_sensor_file(flags.file);
+    sensor = load_sensor_file(find_sensor_file(flags.file));
   } else if (camera_given(flags) || !from_scene_file) {
     sensor.optics = make_pinhole(flags);
   } else {
@@ -195,6 +220,7 @@ Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_s
   if (const auto* pinhole = std::get_if<Pinhole>(&sensor.optics)) {
     require_memory(pinhole->intrinsics.width, pinhole->intrinsics.height);
   }
+  apply_scan(flags, sensor);
   apply_limits(flags, sensor.limits);
   apply_light(flags, sensor.light);
   sensor.cull_back_faces = sensor.cull_back_faces || flags.cull_back_faces;

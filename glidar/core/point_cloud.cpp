@@ -90,7 +90,8 @@ void fill_true_xyz(const Source& s, Column& column) {
 }
 
 void fill_true_range(const Source& s, Column& column) {
-  fill_each<double>(s, column, [&](std::size_t i) { return s.frame.truth.range_m[i]; });
+  fill_each<double>(
+      s, column, [&](std::size_t i) { return s.frame.truth.range_m[i] + s.beams.range_offset_m; });
 }
 
 void fill_sigma(const Source& s, Column& column) {
@@ -103,7 +104,8 @@ void fill_intensity(const Source& s, Column& column) {
 }
 
 void fill_range(const Source& s, Column& column) {
-  fill_each<double>(s, column, [&](std::size_t i) { return s.frame.range_m[i]; });
+  const double offset_m = s.beams.range_offset_m;  // ranges are reported from where it says
+  fill_each<double>(s, column, [&](std::size_t i) { return s.frame.range_m[i] + offset_m; });
 }
 
 void fill_depth(const Source& s, Column& column) {
@@ -184,6 +186,18 @@ void fill_col(const Source& s, Column& column) {
       s, column, [&](std::size_t i) { return static_cast<std::uint32_t>(i % s.beams.cols); });
 }
 
+void fill_ring(const Source& s, Column& column) {
+  fill_each<std::uint16_t>(s, column, [&](std::size_t i) {
+    return s.beams.rings.empty() ? static_cast<std::uint16_t>(i / s.beams.cols) : s.beams.rings[i];
+  });
+}
+
+void fill_time(const Source& s, Column& column) {
+  fill_each<std::uint32_t>(s, column, [&](std::size_t i) {
+    return s.beams.times_ns.empty() ? 0U : s.beams.times_ns[i];
+  });
+}
+
 const std::vector<ColumnKind>& column_kinds() {
   static const std::vector<ColumnKind> kinds = {
       {"xyz", {"x", "y", "z"}, {}, fill_xyz},
@@ -211,6 +225,8 @@ const std::vector<ColumnKind>& column_kinds() {
       {"status", {"status"}, {}, fill_status},
       {"row", {"row"}, {}, fill_row},
       {"col", {"col"}, {}, fill_col},
+      {"ring", {"ring"}, {}, fill_ring},
+      {"time", {"time"}, {}, fill_time},
   };
   return kinds;
 }

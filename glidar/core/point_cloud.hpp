@@ -44,7 +44,7 @@ struct CloudFrame {
 
 /// Names make_point_cloud knows, in the order files list them:
 /// xyz true_xyz intensity range true_range sigma depth normal shading_normal incidence instance
-/// class primitive barycentrics colour object_point status row col
+/// class primitive barycentrics colour object_point status row col ring time
 std::span<const std::string> cloud_column_names();
 
 /// The optional hit columns that these cloud columns need. Throws Error on an unknown name.
@@ -55,8 +55,9 @@ HitFields fields_for(std::span<const std::string> column_names);
 ///  true_xyz      f64 x3, the same of what is truly there, whether reported or not, as fired from
 ///                where the sensor was
 ///  intensity     f32
-///  range, depth  f64, metres, measured; NaN unless a hit
-///  true_range    f64, metres, of what is there; NaN for a miss
+///  range, depth  f64, metres, measured; NaN unless a hit. Ranges count from where the sensor's do
+///                (Beams::range_offset_m); coordinates do not care
+///  true_range    f64, metres, of what is there, counted likewise; NaN for a miss
 ///  sigma         f32, metres, standard deviation of the range's random error
 ///  normal, shading_normal  f32 x3, unit, in `cloud_frame`
 ///  incidence     f32, radians
@@ -64,6 +65,7 @@ HitFields fields_for(std::span<const std::string> column_names);
 ///  primitive     u32, triangle of the mesh; kNoHit where there is none
 ///  barycentrics  f32 x2; colour f32 x3; object_point f64 x3 in the object's own frame
 ///  status        u8, see Status; row, col u32
+///  ring          u16, channel number; time u32, ns since the frame's start
 /// Throws Error when a column is unknown or the frame was cast without what it needs.
 void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene,
                       const CloudFrame& cloud_frame, std::span<const std::string> column_names,

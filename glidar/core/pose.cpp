@@ -45,6 +45,12 @@ Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Ei
   return world_from_camera;
 }
 
+Pose optical_from_body() {
+  Pose pose = Pose::Identity();
+  pose.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+  return pose;
+}
+
 Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orientation) {
   const double norm = orientation.norm();
   if (!is_within_reach(position_m) || !orientation.coeffs().allFinite() || !(norm > 0.0)) {

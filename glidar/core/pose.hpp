@@ -20,6 +20,11 @@ inline constexpr double kLargestCoordinate_m = 1e15;
 /// parallel to the boresight.
 Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up);
 
+/// Turns the axes of bodies and LiDARs (x forward, y left, z up) into the optical frame's (x right,
+/// y down, z forward), REP-103. look_at(...) * optical_from_body() aims a sensor whose boresight is
+/// +x.
+Pose optical_from_body();
+
 /// The pose with this attitude and position; the quaternion is normalised.
 /// Throws Error when it is zero or anything is not finite or beyond kLargestCoordinate_m.
 Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orientation);

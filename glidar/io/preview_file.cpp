@@ -33,7 +33,8 @@ struct Panel {
 
 /// All lengths in pixels.
 struct Layout {
-  std::size_t zoom;  ///< pixels per beam, so that small images can be seen
+  std::size_t zoom;  ///< pixels per beam across, so that small images can be seen
+  std::size_t tall;  ///< and upright: scanners have few rows and many columns
   std::size_t dot;   ///< of the letters
   std::size_t gap;
   std::size_t footer;  ///< height of the scale below a panel
@@ -62,8 +63,8 @@ void colour_pixels(Panel& panel, const std::vector<double>& depths_m, const auto
   }
 }
 
-Panel depth_panel(const std::vector<double>& depths_m) {
-  Panel panel{"depth",
+Panel distance_panel(std::string title, const std::vector<double>& depths_m) {
+  Panel panel{std::move(title),
               " m",
               depth_ramp,
               std::numeric_limits<double>::infinity(),
@@ -114,7 +115,11 @@ Layout make_layout(const PointCloud& cloud, const std::array<Panel, 2>& panels) 
   const std::size_t longer = std::max<std::size_t>({cloud.rows, cloud.cols, 1});
   Layout layout{};
   layout.zoom = std::max<std::size_t>(1, kUsual / longer);
+  constexpr std::size_t kLeastShape = 8;  // a picture is at most so many times as wide as high
+  constexpr std::size_t kTallest = 64;
   const std::size_t width = cloud.cols * layout.zoom;
+  layout.tall = std::clamp<std::size_t>(width / (kLeastShape * std::max(1U, cloud.rows)),
+                                        layout.zoom, std::max(layout.zoom, kTallest));
   layout.dot = std::clamp<std::size_t>((width + 768) / 512, 1, 6);
   layout.gap = 8 * layout.dot;
   layout.footer = (kTextHeightDots + 4) * layout.dot;
@@ -125,7 +130,7 @@ Layout make_layout(const PointCloud& cloud, const std::array<Panel, 2>& panels) 
     layout.cell_width = std::max(
         layout.cell_width, text_width(left, layout.dot) + bar + text_width(right, layout.dot));
   }
-  layout.cell_height = cloud.rows * layout.zoom + layout.footer;
+  layout.cell_height = cloud.rows * layout.tall + layout.footer;
   layout.stacked = cloud.cols > 2 * cloud.rows;
   return layout;
 }
@@ -156,7 +161,8 @@ void draw_panel(Picture& picture, const Panel& panel, const Layout& layout, cons
   const std::size_t cols = place.width / zoom;
   const std::size_t left = place.x + (layout.cell_width - place.width) / 2;
   for (std::size_t i = 0; i < panel.pixels.size(); ++i) {
-    fill(picture, {left + i % cols * zoom, place.y + i / cols * zoom, zoom, zoom}, panel.pixels[i]);
+    fill(picture, {left + i % cols * zoom, place.y + i / cols * layout.tall, zoom, layout.tall},
+         panel.pixels[i]);
   }
   draw_scale(picture, panel, layout,
              {place.x, place.y + place.height + 4 * layout.dot, layout.cell_width, layout.footer});
@@ -166,9 +172,17 @@ void draw_panel(Picture& picture, const Panel& panel, const Layout& layout, cons
 
 void write_preview(const CloudFile& job, AtomicFile& file) {
   const PointCloud& cloud = job.cloud;
-  const auto& depths_m = std::get<std::vector<double>>(find_column(cloud, "depth")->values);
+  // the depth of what lies behind a scanner would be negative
+  const bool camera = job.context.beams.boresight.isApprox(Eigen::Vector3d::UnitZ());
+  const std::string title = camera ? "depth" : "range";
+  std::vector<double> depths_m = std::get<std::vector<double>>(find_column(cloud, "depth")->values);
+  if (!camera) {
+    depths_m = job.frame.range_m;
+    for (double& range_m : depths_m) range_m += job.context.beams.range_offset_m;
+  }
   const auto& intensity = std::get<std::vector<float>>(find_column(cloud, "intensity")->values);
-  const std::array<Panel, 2> panels = {depth_panel(depths_m), intensity_panel(depths_m, intensity)};
+  const std::array<Panel, 2> panels = {distance_panel(title, depths_m),
+                                       intensity_panel(depths_m, intensity)};
   const Layout layout = make_layout(cloud, panels);
   const std::size_t step_x = layout.stacked ? 0 : layout.cell_width + layout.gap;
   const std::size_t step_y = layout.stacked ? layout.cell_height + layout.gap : 0;
@@ -177,11 +191,11 @@ void write_preview(const CloudFile& job, AtomicFile& file) {
   for (std::size_t i = 0; i < panels.size(); ++i) {
     draw_panel(picture, panels[i], layout,
                {layout.gap + i * step_x, layout.gap + i * step_y, cloud.cols * layout.zoom,
-                cloud.rows * layout.zoom});
+                cloud.rows * layout.tall});
   }
   write_png({PngKind::rgb8, static_cast<std::uint32_t>(picture.width),
              static_cast<std::uint32_t>(picture.height), std::as_bytes(std::span(picture.pixels)),
-             "depth beside intensity"},
+             title + " beside intensity"},
             file);
 }
 

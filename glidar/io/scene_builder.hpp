@@ -45,6 +45,7 @@ struct ScenePlan {
   std::vector<PlannedInstance> instances;
   std::optional<Sensor> sensor;
   std::optional<Pose> world_from_sensor;
+  bool looks_at = false;                    ///< see SceneFile
   std::optional<Trajectory> sensor_motion;  ///< empty: it stands still
   std::vector<std::string> files;           ///< the scene file, and the sensor file if it names one
 };

@@ -27,8 +27,13 @@ SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions&
   const auto load = [&](const std::string& source, const ModelOptions& options) {
     return load_model(source, options, report);
   };
-  return {build_scene(plan, load), plan.sensor,       plan.world_from_sensor, plan.files,
-          trajectories(plan),      plan.sensor_motion};
+  return {.scene = build_scene(plan, load),
+          .sensor = plan.sensor,
+          .world_from_sensor = plan.world_from_sensor,
+          .looks_at = plan.looks_at,
+          .files = plan.files,
+          .world_from_instance = trajectories(plan),
+          .sensor_motion = plan.sensor_motion};
 }
 
 }  // namespace glidar

@@ -19,6 +19,7 @@ struct SceneFile {
   Scene scene;  ///< poses are those at time 0
   std::optional<Sensor> sensor;
   std::optional<Pose> world_from_sensor;  ///< at time 0
+  bool looks_at = false;                  ///< the pose is that of look_at(), for a boresight +z
   std::vector<std::string> files;  ///< this file, and the sensor and trajectory files it names
   std::vector<Trajectory> world_from_instance = {};  ///< one per instance; empty: all stand still
   std::optional<Trajectory> sensor_motion = {};      ///< empty: the sensor stands still

@@ -7,6 +7,7 @@
 #include <glidar/io/pose_yaml.hpp>
 #include <glidar/io/scene_builder.hpp>
 #include <glidar/io/sensor_file.hpp>
+#include <glidar/io/sensor_presets.hpp>
 #include <glidar/io/sensor_yaml.hpp>
 
 #include <algorithm>
@@ -153,13 +154,16 @@ std::vector<PlannedInstance> read_models(const YamlField& field, const ModelOpti
   return planned;
 }
 
-/// The sensor beside the world: a map, or the name of a sensor file.
+/// The sensor beside the world: a map, a sensor file, or the name of a sensor that comes along.
 Sensor read_scene_sensor(const YamlField& field, std::vector<std::string>& files) {
   if (field.node.IsMap()) return read_sensor(field);
   if (!field.node.IsScalar() || field.node.Scalar().empty()) {
     reject(field, describe(field), "a map, or the path of a sensor file");
   }
   const std::string file = resolved(field);
+  const fs::path named = field.node.Scalar();
+  const bool is_name = !named.has_parent_path() && !named.has_extension() && !fs::exists(file);
+  if (is_name) return load_sensor_file(find_sensor_file(field.node.Scalar()));
   if (!fs::exists(file)) {
     reject(field, "no such file: " + file, "a map, or the path of a sensor file",
            "paths are relative to the folder of this file");
@@ -190,7 +194,10 @@ ScenePlan read_scene_plan(const fs::path& path, const ModelOptions& defaults) {
   if (const auto sensor = find(root, "sensor")) {
     plan.sensor = read_scene_sensor(*sensor, plan.files);
   }
-  if (const auto pose = find(root, "sensor_pose")) plan.world_from_sensor = read_sensor_pose(*pose);
+  if (const auto pose = find(root, "sensor_pose")) {
+    plan.world_from_sensor = read_sensor_pose(*pose);
+    plan.looks_at = find(*pose, "look_at").has_value();
+  }
   read_sensor_motion(root, plan);
   return plan;
 }

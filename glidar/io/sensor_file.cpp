@@ -2,136 +2,80 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/sensor_file.hpp>
 
-#include <glidar/core/error.hpp>
+#include <glidar/io/optics_yaml.hpp>
+#include <glidar/io/sensor_presets.hpp>
 #include <glidar/io/sensor_yaml.hpp>
 
-#include <limits>
-#include <numbers>
+#include <algorithm>
 
 namespace glidar {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr NumberRule kFieldOfView = {0.0, 180.0, true, "degrees above 0 and below 180"};
-
-constexpr NumberRule kPixelCentre = {0.0, 1.0 - std::numeric_limits<double>::epsilon(), false,
-                                     "a number from 0 to below 1; 0.5 and 0 are usual"};
-
-constexpr NumberRule kFocalLength = {0.0, kFarthestPixel, true, "pixels above 0 and below 1e9"};
-constexpr NumberRule kPrincipalPoint = {-kFarthestPixel, kFarthestPixel, false,
-                                        "pixels from -1e9 to 1e9"};
-
-/// Of an image with this many pixels along the side that the field of view spans.
-double read_focal_length(const YamlField& field, std::uint32_t side) {
-  const double focal = focal_length_px(side, number(field, kFieldOfView) * kDegree);
-  if (focal > 0.0 && focal < kFarthestPixel) return focal;
-  reject(field, describe(field) + ", a focal length of " + number_text(focal) + " pixels",
-         "a field of view that gives pixels above 0 and below 1e9");
-}
-
-/// Coefficients by key; those not given are 0.
-void read_coefficients(const YamlField& field,
-                       const std::vector<std::pair<std::string, double*>>& coefficients) {
-  std::vector<std::string> known = {"model"};
-  for (const auto& [key, value] : coefficients) known.push_back(key);
-  require_map(field, known);
-  for (const auto& [key, value] : coefficients) *value = number_or(field, key, kFinite, 0.0);
-}
-
-Distortion read_distortion(const YamlField& field) {
-  static const std::vector<std::string> kModels = {"none", "radial_tangential", "fisheye"};
-  if (!field.node.IsMap()) reject(field, describe(field), "a map with the key 'model'");
-  const std::size_t model = one_of(need(field, "model"), kModels);
-  if (model == 1) {
-    RadialTangential k;
-    read_coefficients(field, {{"k1", &k.k1},
-                              {"k2", &k.k2},
-                              {"p1", &k.p1},
-                              {"p2", &k.p2},
-                              {"k3", &k.k3},
-                              {"k4", &k.k4},
-                              {"k5", &k.k5},
-                              {"k6", &k.k6}});
-    return k;
-  }
-  if (model == 2) {
-    Fisheye k;
-    read_coefficients(field, {{"k1", &k.k1}, {"k2", &k.k2}, {"k3", &k.k3}, {"k4", &k.k4}});
-    return k;
-  }
-  read_coefficients(field, {});
-  return NoDistortion{};
-}
-
-/// The one way in which the map gives the focal length.
-std::string focal_key(const YamlField& optics) {
-  std::string chosen;
-  for (const char* key : {"fov_deg", "fov_x_deg", "fx"}) {
-    const auto field = find(optics, key);
-    if (!field) continue;
-    if (!chosen.empty()) {
-      reject(*field, "given beside '" + chosen + "'", "one of fov_deg, fov_x_deg, or fx with fy",
-             "remove one of them");
-    }
-    chosen = key;
-  }
-  if (!chosen.empty()) return chosen;
-  reject(optics, "the focal length is missing", "one of fov_deg, fov_x_deg, or fx with fy",
-         "add 'fov_deg: ...'");
-}
-
-/// fy, cx and cy belong to fx: with a field of view the pixels are square and the principal point
-/// is in the middle.
-void reject_beside_fov(const YamlField& optics, const std::string& fov_key) {
-  for (const char* key : {"fy", "cx", "cy"}) {
-    const auto field = find(optics, key);
-    if (!field) continue;
-    reject(*field, "given beside '" + fov_key + "'", "fy, cx and cy only together with fx",
-           "remove it, or give fx and fy in the place of " + fov_key);
-  }
-}
-
-PinholeIntrinsics read_intrinsics(const YamlField& optics) {
-  PinholeIntrinsics k;
-  k.width = whole_number(need(optics, "width"), 1, kLargestImageSide);
-  k.height = whole_number(need(optics, "height"), 1, kLargestImageSide);
-  k.pixel_centre = number_or(optics, "pixel_centre", kPixelCentre, k.pixel_centre);
-  const std::string key = focal_key(optics);
-  if (key == "fx") {
-    k.fx = number(need(optics, "fx"), kFocalLength);
-    k.fy = number(need(optics, "fy"), kFocalLength);
-  } else {
-    reject_beside_fov(optics, key);
-    k.fx = k.fy = read_focal_length(need(optics, key), key == "fov_deg" ? k.height : k.width);
-  }
-  // The middle of the image: half its width from the left edge of pixel 0, whose centre has the
-  // coordinate pixel_centre.
-  k.cx = number_or(optics, "cx", kPrincipalPoint, 0.5 * k.width - 0.5 + k.pixel_centre);
-  k.cy = number_or(optics, "cy", kPrincipalPoint, 0.5 * k.height - 0.5 + k.pixel_centre);
-  return k;
-}
+constexpr double kUsualLidarRate_hz = 10.0;
+constexpr NumberRule kWavelength = {100.0, 20000.0, false, "nanometres from 100 to 20000"};
 
 Optics read_optics(const YamlField& field) {
-  require_map(field, {"type", "width", "height", "fov_deg", "fov_x_deg", "fx", "fy", "cx", "cy",
-                      "pixel_centre", "distortion"});
-  if (const auto type = find(field, "type")) one_of(*type, {"pinhole"});
-  Pinhole pinhole{.intrinsics = read_intrinsics(field), .distortion = NoDistortion{}};
-  if (const auto distortion = find(field, "distortion")) {
-    pinhole.distortion = read_distortion(*distortion);
+  static const std::vector<std::string> kTypes = {"pinhole", "spinning", "raster",
+                                                  "prism",   "table",    "ouster"};
+  if (!field.node.IsMap()) reject(field, describe(field), "a map with the key 'type'");
+  const auto type = find(field, "type");
+  switch (type ? one_of(*type, kTypes) : 0) {
+    case 1:
+      return read_spinning(field);
+    case 2:
+      return read_raster(field);
+    case 3:
+      return read_prism(field);
+    case 4:
+      return read_beam_table(field);
+    case 5:
+      return read_ouster(field);
+    default:
+      return read_pinhole(field);
   }
-  return pinhole;
 }
 
-Limits read_depth_limits(const YamlField& field) {
-  require_map(field, {"near_m", "far_m"});
-  Limits limits;
+bool is_camera(const Sensor& sensor) {
+  return std::holds_alternative<Pinhole>(sensor.optics);
+}
+
+/// The rate that the optics bring along, or what is usual for their kind.
+double usual_rate_hz(const Sensor& sensor) {
+  if (const auto* spinning = std::get_if<Spinning>(&sensor.optics)) return spinning->rotation_hz;
+  return is_camera(sensor) ? sensor.rate_hz : kUsualLidarRate_hz;
+}
+
+void read_ends(const YamlField& field, Limits& limits) {
   limits.near_m = number_or(field, "near_m", kFromZero, limits.near_m);
   const auto far = find(field, "far_m");
-  if (!far) return limits;
+  if (!far) return;
   limits.far_m = number(*far, kAboveZero);
   if (limits.far_m <= limits.near_m) {
     reject(*far, describe(*far) + ", not beyond near_m", "a finite number above near_m");
   }
+}
+
+/// `limits`, or `depth_limits` for limits along the depth.
+Limits read_limits(const YamlField& sensor_field, const Sensor& sensor) {
+  const auto general = find(sensor_field, "limits");
+  const auto depth = find(sensor_field, "depth_limits");
+  Limits limits;
+  limits.along = is_camera(sensor) ? Limits::Along::depth : Limits::Along::range;
+  if (general && depth) {
+    reject(*depth, "given beside 'limits'", "one of the two", "remove one of them");
+  }
+  if (depth) {
+    require_map(*depth, {"near_m", "far_m"});
+    limits.along = Limits::Along::depth;
+    read_ends(*depth, limits);
+  }
+  if (!general) return limits;
+  require_map(*general, {"near_m", "far_m", "along"});
+  if (const auto along = find(*general, "along")) {
+    limits.along =
+        one_of(*along, {"depth", "range"}) == 0 ? Limits::Along::depth : Limits::Along::range;
+  }
+  read_ends(*general, limits);
   return limits;
 }
 
@@ -155,21 +99,120 @@ Light read_light(const YamlField& field) {
   return light;
 }
 
+/// "optics.elevation_deg" and all that it stands under: "optics".
+bool covers(const std::string& key, const std::string& path) {
+  return path == key || path.starts_with(key + ".") || path.starts_with(key + "[");
+}
+
+std::string value_text(const YamlField& field) {
+  if (field.node.IsScalar()) return field.node.Scalar();
+  if (!field.node.IsSequence()) return describe(field);
+  constexpr std::size_t kShown = 8;
+  std::string shown;
+  const std::size_t count = field.node.size();
+  for (std::size_t i = 0; i < count && i < kShown; ++i) {
+    if (!field.node[i].IsScalar()) return describe(field);
+    shown += (i > 0 ? ", " : "") + field.node[i].Scalar();
+  }
+  return count > kShown ? shown + ", ... (" + std::to_string(count) + " in all)" : shown;
+}
+
+/// The file's values, flat; a list of plain values is one entry.
+void add_entries(const YamlField& field, std::vector<SheetEntry>& sheet) {
+  const bool list_of_maps =
+      field.node.IsSequence() && field.node.size() > 0 && !field.node[0].IsScalar();
+  if (field.node.IsMap()) {
+    for (const auto& [key, value] : entries(field)) {
+      const bool told_apart = field.path.empty() && (key == "source" || key == "unverified");
+      if (!told_apart) add_entries(value, sheet);
+    }
+  } else if (list_of_maps) {
+    for (const YamlField& item : items(field)) add_entries(item, sheet);
+  } else {
+    sheet.push_back({field.path, value_text(field), "", true});
+  }
+}
+
+/// Every key that `source` and `unverified` name must be there: a misspelt one would be lost.
+void require_entry(const YamlField& at, const std::string& key,
+                   const std::vector<SheetEntry>& sheet) {
+  const auto covered = [&](const SheetEntry& entry) { return covers(key, entry.key); };
+  if (std::any_of(sheet.begin(), sheet.end(), covered)) return;
+  std::vector<std::string> known;
+  for (const SheetEntry& entry : sheet) known.push_back(entry.key);
+  reject(at, "'" + key + "' is no key of this file", "a key such as optics.elevation_deg",
+         suggestion(key, known));
+}
+
+void set_source(const std::string& key, const std::string& source, std::vector<SheetEntry>& sheet) {
+  for (SheetEntry& entry : sheet) {
+    if (covers(key, entry.key)) entry.source = source;
+  }
+}
+
+void add_sources(const YamlField& root, std::vector<SheetEntry>& sheet) {
+  const auto sources = find(root, "source");
+  if (!sources) return;
+  auto all = entries(*sources);
+  // nearer keys win: the long ones come last
+  std::stable_sort(all.begin(), all.end(), [](const auto& one, const auto& other) {
+    return one.first.size() < other.first.size();
+  });
+  for (const auto& [key, value] : all) {
+    require_entry(value, key, sheet);
+    set_source(key, text(value), sheet);
+  }
+}
+
+void mark_unverified(const YamlField& root, std::vector<SheetEntry>& sheet) {
+  const auto unverified = find(root, "unverified");
+  if (!unverified) return;
+  for (const YamlField& item : items(*unverified)) {
+    const std::string key = text(item);
+    require_entry(item, key, sheet);
+    for (SheetEntry& entry : sheet) entry.verified = entry.verified && !covers(key, entry.key);
+  }
+}
+
+std::vector<SheetEntry> read_entries(const YamlField& root) {
+  std::vector<SheetEntry> sheet;
+  add_entries(root, sheet);
+  add_sources(root, sheet);
+  mark_unverified(root, sheet);
+  return sheet;
+}
+
 }  // namespace
 
 Sensor read_sensor(const YamlField& field) {
-  require_map(field, {"name", "optics", "depth_limits", "light", "cull_back_faces"});
+  require_map(field, {"name", "optics", "rate_hz", "wavelength_nm", "limits", "depth_limits",
+                      "light", "cull_back_faces", "source", "unverified"});
   Sensor sensor;
-  if (const auto name = find(field, "name")) sensor.name = text(*name);
   sensor.optics = read_optics(need(field, "optics"));
-  if (const auto limits = find(field, "depth_limits")) sensor.limits = read_depth_limits(*limits);
+  if (!is_camera(sensor)) sensor.name = "lidar";
+  if (const auto name = find(field, "name")) sensor.name = text(*name);
+  set_rate(sensor, number_or(field, "rate_hz", kAboveZero, usual_rate_hz(sensor)));
+  if (const auto wavelength = find(field, "wavelength_nm")) {
+    sensor.wavelength_m = number(*wavelength, kWavelength) * 1e-9;
+  }
+  sensor.limits = read_limits(field, sensor);
   if (const auto light = find(field, "light")) sensor.light = read_light(*light);
   if (const auto cull = find(field, "cull_back_faces")) sensor.cull_back_faces = boolean(*cull);
+  if (find(field, "source") || find(field, "unverified")) {
+    YamlField root = field;
+    root.path.clear();  // keys count from the sensor's own map
+    read_entries(root);
+  }
   return sensor;
 }
 
 Sensor load_sensor_file(const std::filesystem::path& path) {
   return read_sensor(read_yaml(path));
+}
+
+SensorSheet load_sensor_sheet(const std::filesystem::path& path) {
+  const YamlField root = read_yaml(path);
+  return {path.stem().string(), read_sensor(root), read_entries(root)};
 }
 
 }  // namespace glidar

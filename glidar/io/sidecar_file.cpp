@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/version.hpp>
 #include <glidar/io/cloud_file.hpp>
+#include <glidar/io/optics_json.hpp>
 #include <glidar/io/stored_columns.hpp>
 
 #include <nlohmann/json.hpp>
@@ -32,40 +33,6 @@ Json pose_json(const Pose& pose) {
           {"orientation", {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}}}};
 }
 
-Json distortion_json(const NoDistortion& /*none*/) {
-  return {{"model", "none"}};
-}
-
-Json distortion_json(const RadialTangential& d) {
-  return {{"model", "radial_tangential"},
-          {"k1", d.k1},
-          {"k2", d.k2},
-          {"p1", d.p1},
-          {"p2", d.p2},
-          {"k3", d.k3},
-          {"k4", d.k4},
-          {"k5", d.k5},
-          {"k6", d.k6}};
-}
-
-Json distortion_json(const Fisheye& d) {
-  return {{"model", "fisheye"}, {"k1", d.k1}, {"k2", d.k2}, {"k3", d.k3}, {"k4", d.k4}};
-}
-
-Json optics_json(const Pinhole& pinhole) {
-  const PinholeIntrinsics& i = pinhole.intrinsics;
-  return {{"type", "pinhole"},
-          {"width", i.width},
-          {"height", i.height},
-          {"fx", i.fx},
-          {"fy", i.fy},
-          {"cx", i.cx},
-          {"cy", i.cy},
-          {"pixel_centre", i.pixel_centre},
-          {"distortion",
-           std::visit([](const auto& d) { return distortion_json(d); }, pinhole.distortion)}};
-}
-
 Json sensor_json(const CloudFile& job) {
   const Sensor& sensor = job.context.sensor;
   const Light& light = sensor.light;
@@ -74,8 +41,14 @@ Json sensor_json(const CloudFile& job) {
           {"rows", job.frame.rows},
           {"cols", job.frame.cols},
           {"boresight", vector_json(job.context.beams.boresight)},
-          {"optics", std::visit([](const auto& o) { return optics_json(o); }, sensor.optics)},
-          {"limits", {{"near_m", sensor.limits.near_m}, {"far_m", sensor.limits.far_m}}},
+          {"optics", optics_json(sensor.optics)},
+          {"rate_hz", sensor.rate_hz},
+          {"wavelength_nm", sensor.wavelength_m * 1e9},
+          {"range_offset_m", job.context.beams.range_offset_m},
+          {"limits",
+           {{"near_m", sensor.limits.near_m},
+            {"far_m", sensor.limits.far_m},
+            {"along", sensor.limits.along == Limits::Along::depth ? "depth" : "range"}}},
           {"light",
            {{"attenuation_constant", light.attenuation_constant},
             {"attenuation_linear_per_m", light.attenuation_linear_per_m},

@@ -25,4 +25,13 @@ inline constexpr double kFramingMargin = 0.05;
 Pose frame_view(const Beams& beams, const Scene& scene, const Eigen::Vector3d& from_direction,
                 const Eigen::Vector3d& up);
 
+/// The pose of a LiDAR (boresight +x) that stands upright beside the scene, heading for its middle:
+/// on the side `from_direction` (what is left of it along `up` does not count), so far away that
+/// the sphere about the scene's box lies between its lowest and highest beams, its middle at the
+/// middle elevation. A scanner of one line stands at twice the sphere's radius.
+/// Throws Error when the scene has no size, the beams are not those of a LiDAR, or from_direction
+/// is parallel to `up`.
+Pose stand_beside(const Beams& beams, const Scene& scene, const Eigen::Vector3d& from_direction,
+                  const Eigen::Vector3d& up);
+
 }  // namespace glidar

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 
 namespace glidar {
@@ -13,5 +15,37 @@ struct ScanWindow {
   std::int64_t start_ns = 0;
   std::int64_t end_ns = 0;
 };
+
+/// Events that repeat for ever: number k is at first_ns + k period_ns, k = 0 the first one of all
+/// time that matters, negative k before it.
+struct Ticks {
+  double first_ns = 0.0;
+  double period_ns = 1.0;
+};
+
+/// Numbers of the ticks in a window: [begin, end).
+struct TickRange {
+  std::int64_t begin = 0;
+  std::int64_t end = 0;
+
+  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(end - begin); }
+};
+
+/// When tick k is, to the nanosecond.
+std::int64_t tick_ns(const Ticks& ticks, std::int64_t k);
+
+/// The ticks in a window. Each tick is in one of two adjoining windows.
+/// Throws Error when the window is longer than beam times can count (4.29 s), ends before it
+/// starts, or lies more than 100 days from zero, and when it has more than `most` ticks.
+TickRange ticks_in(const Ticks& ticks, const ScanWindow& window, std::size_t most);
+
+/// The unit vector at these angles: azimuth from +x to the left, elevation from the horizon up.
+Eigen::Vector3d direction_at(double azimuth_rad, double elevation_rad);
+
+/// The most beams that one window may have.
+inline constexpr std::size_t kMostBeams = std::size_t{1} << 27U;
+
+/// Throws Error "OPTICS, FIELD" unless `holds`.
+void require_optics(bool holds, const char* field, double found, const char* allowed);
 
 }  // namespace glidar

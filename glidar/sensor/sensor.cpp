@@ -6,6 +6,14 @@
 
 namespace glidar {
 
+void set_rate(Sensor& sensor, double rate_hz) {
+  require_optics(rate_hz > 0.0 && std::isfinite(rate_hz), "rate", rate_hz,
+                 "a finite number of frames per second above 0");
+  sensor.rate_hz = rate_hz;
+  if (auto* spinning = std::get_if<Spinning>(&sensor.optics)) spinning->rotation_hz = rate_hz;
+  if (auto* raster = std::get_if<Raster>(&sensor.optics)) raster->scan_hz = rate_hz;
+}
+
 ScanWindow scan_window(const Sensor& sensor, std::uint32_t frame) {
   constexpr double kNanoseconds = 1e9;
   const auto start_of = [&](double count) {

@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/sensor/beam_table.hpp>
 #include <glidar/sensor/light.hpp>
 #include <glidar/sensor/noise.hpp>
 #include <glidar/sensor/pinhole.hpp>
+#include <glidar/sensor/prism.hpp>
+#include <glidar/sensor/raster.hpp>
 #include <glidar/sensor/signal.hpp>
+#include <glidar/sensor/spinning.hpp>
 
 #include <limits>
 #include <optional>
@@ -15,7 +19,7 @@
 
 namespace glidar {
 
-using Optics = std::variant<Pinhole>;
+using Optics = std::variant<Pinhole, Spinning, Raster, Prism, BeamTable>;
 
 /// What the sensor can report. A surface outside still blocks the beam.
 struct Limits {
@@ -29,13 +33,18 @@ struct Limits {
 struct Sensor {
   std::string name = "depth camera";
   Optics optics = Pinhole{};
-  double rate_hz = 30.0;  ///< frames per second; of a turning sensor: turns per second
+  double rate_hz = 30.0;      ///< frames per second; see set_rate
+  double wavelength_m = 0.0;  ///< of the light; 0: not known
   Limits limits;
   Light light;                      ///< the paper's
   std::optional<PulseLight> pulse;  ///< the range equation in its place
-  std::vector<NoiseStep> noise;  ///< in the order in which the sensor makes its errors
-  bool cull_back_faces = false;  ///< true: triangles seen from behind let the beam through
+  std::vector<NoiseStep> noise;     ///< in the order in which the sensor makes its errors
+  bool cull_back_faces = false;     ///< true: triangles seen from behind let the beam through
 };
+
+/// Sets the frame rate, and with it what follows from it: the turns per second of a spinning sensor
+/// and the scans per second of a raster. Throws Error unless it is finite and above 0.
+void set_rate(Sensor& sensor, double rate_hz);
 
 /// The window of a frame, by the sensor's own rate. Frames join.
 ScanWindow scan_window(const Sensor& sensor, std::uint32_t frame);

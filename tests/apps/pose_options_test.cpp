@@ -4,6 +4,7 @@
 #include <apps/glidar/pose_options.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/sensor/pinhole.hpp>
+#include <glidar/sensor/spinning.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -112,8 +113,8 @@ TEST(PoseOptions, SensorPoseIsTakenAsGiven) {
 TEST(PoseOptions, FlagsComeBeforeTheSceneFileAndThatBeforeFraming) {
   const Scene scene = one_triangle();
   const Pose from_file = make_pose({7.0, 8.0, 9.0}, Eigen::Quaterniond::Identity());
-  EXPECT_EQ(pose_sensor({}, from_file, camera(), scene).translation(), from_file.translation());
-  EXPECT_EQ(pose_sensor({.eye = "1,2,3"}, from_file, camera(), scene).translation(),
+  EXPECT_EQ(pose_sensor({}, {from_file}, camera(), scene).translation(), from_file.translation());
+  EXPECT_EQ(pose_sensor({.eye = "1,2,3"}, {from_file}, camera(), scene).translation(),
             Eigen::Vector3d(1.0, 2.0, 3.0));
   const Pose framed = pose_sensor({}, {}, camera(), scene);
   EXPECT_GT((framed.inverse() * Eigen::Vector3d(0.5, 0.5, 0.0)).z(), 1.0);
@@ -186,6 +187,71 @@ TEST(CloudFrames, AxesAreThoseTheirNamesSay) {
   EXPECT_EQ(in("gl"), Eigen::Vector3d(1.0, -2.0, -3.0));
   EXPECT_EQ(in("legacy"), Eigen::Vector3d(-1.0, -2.0, 3.0));
   EXPECT_EQ(in("world"), Eigen::Vector3d(11.0, 2.0, 3.0));
+}
+
+/// Beams of a LiDAR between these elevations, all round.
+Beams lidar(double low_rad, double high_rad) {
+  Spinning spinning;
+  spinning.channels.resize(2);
+  spinning.channels[0].elevation_rad = low_rad;
+  spinning.channels[1].elevation_rad = high_rad;
+  spinning.columns_per_turn = 36;
+  return make_beams(spinning, {0, 100'000'000});
+}
+
+TEST(CloudFrames, OfALidarHaveTheSameAxes) {
+  const Beams beams = lidar(-0.2, 0.2);
+  const Eigen::Vector3d forward_left_up(3.0, -1.0, -2.0);
+  const auto in = [&](const std::string& name) -> Eigen::Vector3d {
+    return cloud_frame(name, beams, Pose::Identity()).cloud_from_sensor * forward_left_up;
+  };
+  EXPECT_EQ(in("sensor"), forward_left_up);
+  EXPECT_EQ(in("ros"), forward_left_up);
+  EXPECT_EQ(in("optical"), Eigen::Vector3d(1.0, 2.0, 3.0));
+  EXPECT_EQ(in("gl"), Eigen::Vector3d(1.0, -2.0, -3.0));
+  EXPECT_EQ(in("legacy"), Eigen::Vector3d(-1.0, -2.0, 3.0));
+  EXPECT_EQ(cloud_frame("sensor", beams, Pose::Identity()).frame_id, "lidar_frame");
+}
+
+TEST(LidarPose, EyeAndTargetAimTheXAxis) {
+  const Scene scene = one_triangle();
+  const Pose pose = pose_sensor({.eye = "1,2,3", .target = "5,2,6"}, {}, lidar(-0.2, 0.2), scene);
+  EXPECT_LT((pose * Eigen::Vector3d(5.0, 0.0, 0.0) - Eigen::Vector3d(5.0, 2.0, 6.0)).norm(),
+            kExact);
+  EXPECT_NEAR((pose.linear() * Eigen::Vector3d::UnitY()).z(), 0.0, kExact);  // no roll
+}
+
+TEST(LidarPose, EyeAloneStandsUprightAndHeadsForTheMiddle) {
+  const Pose pose = pose_sensor({.eye = "4,0.5,7"}, {}, lidar(-0.2, 0.2), one_triangle());
+  EXPECT_LT((pose.linear() * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitZ()).norm(), kExact);
+  EXPECT_LT((pose.linear() * Eigen::Vector3d::UnitX() + Eigen::Vector3d::UnitX()).norm(), kExact);
+}
+
+TEST(LidarPose, LookAtOfASceneFileAimsTheXAxis) {
+  const Pose optical = look_at({0, 0, 0}, {0, 3, 0}, Eigen::Vector3d::UnitZ());
+  const Scene scene = one_triangle();
+  const Pose aimed = pose_sensor({}, {optical, true}, lidar(-0.2, 0.2), scene);
+  EXPECT_LT((aimed * Eigen::Vector3d(3, 0, 0) - Eigen::Vector3d(0, 3, 0)).norm(), kExact);
+  const Pose given = pose_sensor({}, {optical, false}, lidar(-0.2, 0.2), scene);
+  EXPECT_TRUE(given.isApprox(optical));
+}
+
+TEST(LidarPose, WithoutPoseItStandsBesideTheSceneWithinItsElevations) {
+  const Scene scene = one_triangle();
+  for (const auto& [low_rad, high_rad] :
+       {std::pair{-0.26, 0.26}, std::pair{-0.53, 0.19}, std::pair{0.0, 0.0}}) {
+    const Pose pose = pose_sensor({}, {}, lidar(low_rad, high_rad), scene);
+    EXPECT_LT((pose.linear() * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitZ()).norm(), kExact);
+    const Eigen::AlignedBox3d box = bounds(scene);
+    const Eigen::Vector3d middle = pose.inverse() * box.center();
+    EXPECT_GT(middle.x(), 0.0);
+    EXPECT_NEAR(middle.y(), 0.0, kExact);
+    const double elevation_rad = std::asin(middle.z() / middle.norm());
+    EXPECT_NEAR(elevation_rad, 0.5 * (low_rad + high_rad), kExact);
+    const double half_rad = std::asin(0.5 * box.diagonal().norm() / middle.norm());
+    EXPECT_NEAR(half_rad, low_rad < high_rad ? 0.5 * (high_rad - low_rad) : std::numbers::pi / 6.0,
+                kExact);
+  }
 }
 
 }  // namespace

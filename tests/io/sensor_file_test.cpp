@@ -163,8 +163,8 @@ const BadFile kBadFiles[] = {
      "s.yaml:2:3: optics.widht: unknown key 'widht'; allowed: type, width, height, fov_deg, "
      "fov_x_deg, fx, fy, cx, cy, pixel_centre, distortion; did you mean 'width'?"},
     {"UnknownKeyFarFromAny", with_good_optics("zzzzzzzzz: 1\n"),
-     "s.yaml:2:1: zzzzzzzzz: unknown key 'zzzzzzzzz'; allowed: name, optics, depth_limits, light, "
-     "cull_back_faces"},
+     "s.yaml:2:1: zzzzzzzzz: unknown key 'zzzzzzzzz'; allowed: name, optics, rate_hz, "
+     "wavelength_nm, limits, depth_limits, light, cull_back_faces, source, unverified"},
     {"DuplicateKey", optics("width: 4, height: 2, width: 5, fov_deg: 20"),
      "s.yaml:1:31: optics.width: the key is given twice; allowed: each key once; remove one of "
      "them"},
@@ -229,7 +229,8 @@ const BadFile kBadFiles[] = {
      "s.yaml:1:58: optics.pixel_centre: 1; allowed: a number from 0 to below 1; 0.5 and 0 are "
      "usual"},
     {"UnknownOptics", optics("type: pinhoel, width: 4"),
-     "s.yaml:1:16: optics.type: 'pinhoel'; allowed: pinhole; did you mean 'pinhole'?"},
+     "s.yaml:1:16: optics.type: 'pinhoel'; allowed: pinhole, spinning, raster, prism, table, "
+     "ouster; did you mean 'pinhole'?"},
     {"UnknownDistortion", optics("width: 4, height: 2, fov_deg: 20, distortion: {model: fish_eye}"),
      "s.yaml:1:64: optics.distortion.model: 'fish_eye'; allowed: none, radial_tangential, fisheye; "
      "did you mean 'fisheye'?"},
@@ -283,8 +284,8 @@ const BadFile kBadFiles[] = {
      "s.yaml: a file of more than 2 MiB; allowed: a YAML file of at most 2 MiB; name models by "
      "their path, do not put them into the file"},
     {"ControlCharactersAreNotPrinted", "\"a\\n\\e\": 1\n",
-     "s.yaml:1:1: a?\?: unknown key 'a?\?'; allowed: name, optics, depth_limits, light, "
-     "cull_back_faces"},
+     "s.yaml:1:1: a?\?: unknown key 'a?\?'; allowed: name, optics, rate_hz, "
+     "wavelength_nm, limits, depth_limits, light, cull_back_faces, source, unverified"},
 };
 
 INSTANTIATE_TEST_SUITE_P(All, SensorFileError, testing::ValuesIn(kBadFiles), bad_file_name);

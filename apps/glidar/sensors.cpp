@@ -1,0 +1,206 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/commands.hpp>
+#include <apps/glidar/exit_code.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/io/pattern_picture.hpp>
+#include <glidar/io/sensor_presets.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+
+namespace glidar::app {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  glidar sensors
+  glidar sensors VLP-16
+  glidar sensors Livox-Mid-40 -o pattern.png
+  glidar sensors OS1-128 --json
+
+A name goes with 'glidar render MODEL --sensor NAME'. Numbers marked * are not verified against the
+maker's documents.
+Exit codes: 0 done, 2 no such sensor.)";
+
+struct SensorsFlags {
+  std::string name;
+  std::string picture;
+  bool json = false;
+};
+
+/// What the list tells of a sensor.
+struct Summary {
+  std::string kind;
+  std::uint32_t rows = 0;
+  std::uint32_t cols = 0;
+  double across_deg = 0.0;
+  double upright_deg = 0.0;
+  double points_per_s = 0.0;
+  std::size_t unverified = 0;
+};
+
+std::string kind_of(const Optics& optics) {
+  static const std::vector<std::string> kNames = {"camera", "spinning", "raster", "prism", "table"};
+  return kNames.at(optics.index());
+}
+
+/// Angles between the outermost beams about the boresight; of a camera between its image's edges.
+void measure_view(const Sensor& sensor, const Beams& beams, Summary& summary) {
+  constexpr double kDegrees = 180.0 / std::numbers::pi;
+  if (beams.pinhole) {
+    summary.across_deg = 2.0 * kDegrees * std::atan(0.5 * beams.pinhole->width / beams.pinhole->fx);
+    summary.upright_deg =
+        2.0 * kDegrees * std::atan(0.5 * beams.pinhole->height / beams.pinhole->fy);
+    return;
+  }
+  const bool along_z = beams.boresight.isApprox(Eigen::Vector3d::UnitZ());
+  Eigen::Array2d low(1e9, 1e9);
+  Eigen::Array2d high = -low;
+  for (const Eigen::Vector3d& d : beams.directions) {
+    if (std::isnan(d.x())) continue;
+    const Eigen::Vector3d b = along_z ? Eigen::Vector3d(d.z(), -d.x(), -d.y()) : d;
+    const Eigen::Array2d angles(std::atan2(b.y(), b.x()), std::asin(std::clamp(b.z(), -1.0, 1.0)));
+    low = low.min(angles);
+    high = high.max(angles);
+  }
+  const auto* spinning = std::get_if<Spinning>(&sensor.optics);
+  const bool whole_turn =
+      spinning != nullptr && spinning->sector_width_rad >= 2.0 * std::numbers::pi;
+  summary.across_deg = whole_turn ? 360.0 : kDegrees * std::max(0.0, high.x() - low.x());
+  summary.upright_deg = kDegrees * std::max(0.0, high.y() - low.y());
+}
+
+Summary summarise(const SensorSheet& sheet, const Beams& beams) {
+  Summary summary;
+  summary.kind = kind_of(sheet.sensor.optics);
+  summary.rows = beams.rows;
+  summary.cols = beams.cols;
+  summary.points_per_s = static_cast<double>(beams.size()) * sheet.sensor.rate_hz;
+  measure_view(sheet.sensor, beams, summary);
+  summary.unverified = static_cast<std::size_t>(std::count_if(
+      sheet.entries.begin(), sheet.entries.end(), [](const auto& e) { return !e.verified; }));
+  return summary;
+}
+
+std::string range_text(const Limits& limits) {
+  if (std::isinf(limits.far_m)) return fmt::format("from {:g} m", limits.near_m);
+  return fmt::format("{:g}-{:g} m", limits.near_m, limits.far_m);
+}
+
+void print_row(const SensorSheet& sheet, const Summary& s) {
+  fmt::print("{:<22} {:<9} {:>5} x {:<6} {:>5.1f} x {:<6.1f} {:>4g} Hz {:>9.0f} {:>14}  {}\n",
+             sheet.name, s.kind, s.rows, s.cols, s.across_deg, s.upright_deg, sheet.sensor.rate_hz,
+             s.points_per_s, range_text(sheet.sensor.limits),
+             s.unverified == 0 ? "yes" : fmt::format("no ({})", s.unverified));
+}
+
+void print_heading() {
+  fmt::print("{:<22} {:<9} {:>5} x {:<6} {:>14} {:>7} {:>9} {:>14}  {}\n", "name", "kind", "rows",
+             "cols", "view, degrees", "rate", "points/s", "range", "verified");
+}
+
+void print_sheet(const SensorSheet& sheet, const Summary& s) {
+  fmt::print("{}\n\n", sheet.sensor.name);
+  print_heading();
+  print_row(sheet, s);
+  fmt::print("\n");
+  for (const SheetEntry& entry : sheet.entries) {
+    fmt::print("{}{} = {}\n", entry.verified ? "  " : "* ", entry.key, entry.value);
+    if (!entry.source.empty()) fmt::print("      {}\n", entry.source);
+  }
+  if (s.unverified > 0) fmt::print("\n* not verified against the maker's documents\n");
+}
+
+using Json = nlohmann::ordered_json;
+
+/// Limits of no end become null.
+Json json_of(const SensorSheet& sheet, const Summary& s) {
+  const Limits& limits = sheet.sensor.limits;
+  return {{"name", sheet.name},
+          {"sensor", sheet.sensor.name},
+          {"kind", s.kind},
+          {"rows", s.rows},
+          {"cols", s.cols},
+          {"view_deg", {s.across_deg, s.upright_deg}},
+          {"rate_hz", sheet.sensor.rate_hz},
+          {"points_per_s", s.points_per_s},
+          {"near_m", limits.near_m},
+          {"far_m", limits.far_m},
+          {"unverified", s.unverified}};
+}
+
+Json json_of(const std::vector<SheetEntry>& entries) {
+  Json list = Json::array();
+  for (const SheetEntry& e : entries) {
+    list.push_back(
+        {{"key", e.key}, {"value", e.value}, {"source", e.source}, {"verified", e.verified}});
+  }
+  return list;
+}
+
+void print_json(const Json& json) {
+  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+int list_all(const SensorsFlags& flags) {
+  if (!flags.picture.empty()) {
+    throw Error({.where = "-o",
+                 .found = "no sensor is named",
+                 .allowed = "",
+                 .remedy = "for example: glidar sensors VLP-16 -o pattern.png"});
+  }
+  Json json = Json::array();
+  if (!flags.json) print_heading();
+  for (const auto& file : preset_files()) {
+    const SensorSheet sheet = load_sensor_sheet(file);
+    const Summary summary = summarise(sheet, make_beams(sheet.sensor));
+    if (flags.json) {
+      json.push_back(json_of(sheet, summary));
+    } else {
+      print_row(sheet, summary);
+    }
+  }
+  if (flags.json) print_json(json);
+  return kDone;
+}
+
+int run(const SensorsFlags& flags) {
+  if (flags.name.empty()) return list_all(flags);
+  const SensorSheet sheet = load_sensor_sheet(find_sensor_file(flags.name));
+  const Beams beams = make_beams(sheet.sensor);
+  const Summary summary = summarise(sheet, beams);
+  if (flags.json) {
+    Json json = json_of(sheet, summary);
+    json["numbers"] = json_of(sheet.entries);
+    print_json(json);
+  } else {
+    print_sheet(sheet, summary);
+  }
+  if (flags.picture.empty()) return kDone;
+  write_pattern_picture(beams, flags.picture);
+  if (!flags.json) fmt::print("\nwrote {}\n", flags.picture);
+  return kDone;
+}
+
+}  // namespace
+
+Command add_sensors(CLI::App& program) {
+  CLI::App& command =
+      *program.add_subcommand("sensors", "List the sensors that come along, or tell about one");
+  const auto flags = std::make_shared<SensorsFlags>();
+  command.footer(kExamples);
+  command.add_option("name", flags->name, "Name of a sensor, or a sensor file")->type_name("NAME");
+  command.add_option("-o,--output", flags->picture, "Picture of its beams' directions (PNG)")
+      ->type_name("OUT.png");
+  command.add_flag("--json", flags->json, "Print JSON instead of a table");
+  return [flags] { return run(*flags); };
+}
+
+}  // namespace glidar::app

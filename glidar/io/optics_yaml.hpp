@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io: the optics of sensor files, one function for each `type`.
+
+#include <glidar/io/yaml_reader.hpp>
+#include <glidar/sensor/sensor.hpp>
+
+namespace glidar {
+
+inline constexpr double kDegree = std::numbers::pi / 180.0;
+
+Pinhole read_pinhole(const YamlField& field);
+Spinning read_spinning(const YamlField& field);
+Raster read_raster(const YamlField& field);
+Prism read_prism(const YamlField& field);
+/// Beams from a file of rays or directions.
+BeamTable read_beam_table(const YamlField& field);
+/// A spinning sensor from the metadata that Ouster sensors give of themselves.
+Spinning read_ouster(const YamlField& field);
+
+/// Every number of a list of 1 to `most`.
+std::vector<double> numbers(const YamlField& field, const NumberRule& rule, std::size_t most);
+
+/// The file that the field names, relative to the folder of the file it stands in.
+std::filesystem::path file_named(const YamlField& field);
+
+}  // namespace glidar

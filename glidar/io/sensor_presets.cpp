@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/sensor_presets.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+
+namespace glidar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kVariable = "GLIDAR_SENSORS";
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+/// Beside the running program first, so that a moved installation finds its own.
+fs::path preset_folder() {
+  std::error_code error;
+  if (const char* named = std::getenv(kVariable); named != nullptr && *named != '\0') {
+    if (fs::is_directory(named, error)) return named;
+    throw Error({kVariable, std::string(named) + " is no folder", "a folder of sensor files", ""});
+  }
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  const std::vector<fs::path> places = {
+      self.parent_path().parent_path() / "share" / "glidar" / "sensors", GLIDAR_SENSORS_SOURCE_PATH,
+      GLIDAR_SENSORS_INSTALL_PATH};
+  for (const fs::path& place : places) {
+    if (fs::is_directory(place, error)) return place;
+  }
+  throw Error({"the sensors that come with GLIDAR", "not found in " + places.back().string(), "",
+               std::string("install GLIDAR whole, or set ") + kVariable});
+}
+
+bool is_yaml(const fs::path& path) {
+  const std::string ending = lower(path.extension().string());
+  return ending == ".yaml" || ending == ".yml";
+}
+
+std::string all_names(const std::vector<fs::path>& files) {
+  std::string names;
+  for (const fs::path& file : files) names += (names.empty() ? "" : ", ") + file.stem().string();
+  return names;
+}
+
+}  // namespace
+
+std::vector<fs::path> preset_files() {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(preset_folder(), error)) {
+    if (is_yaml(entry.path())) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());  // the order of a folder is not the same everywhere
+  return files;
+}
+
+fs::path find_sensor_file(const std::string& name_or_path) {
+  const fs::path path = name_or_path;
+  if (path.has_parent_path() || is_yaml(path)) return path;
+  const std::vector<fs::path> files = preset_files();
+  std::vector<std::string> names;
+  for (const fs::path& file : files) {
+    names.push_back(lower(file.stem().string()));
+    if (names.back() == lower(name_or_path)) return file;
+  }
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) return path;
+  const std::string nearest = nearest_word(lower(name_or_path), names);
+  const auto at = std::find(names.begin(), names.end(), nearest);
+  throw Error(
+      {.where = "sensor",
+       .found = "'" + name_or_path + "' is neither a file nor the name of a sensor",
+       .allowed = "a sensor file (.yaml), or one of " + all_names(files),
+       .remedy = nearest.empty()
+                     ? "see 'glidar sensors'"
+                     : "did you mean " +
+                           files[static_cast<std::size_t>(at - names.begin())].stem().string() +
+                           "?"});
+}
+
+}  // namespace glidar

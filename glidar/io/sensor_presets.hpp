@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/sensor/sensor.hpp>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace glidar {
+
+/// One value of a sensor file and where it comes from.
+struct SheetEntry {
+  std::string key;     ///< e.g. "optics.elevation_deg"
+  std::string value;   ///< as written; long lists shortened
+  std::string source;  ///< empty: the file does not tell
+  bool verified = true;
+};
+
+/// A sensor with the provenance of its numbers.
+struct SensorSheet {
+  std::string name;  ///< of the file, without folder and ending: what a preset is found by
+  Sensor sensor;
+  std::vector<SheetEntry> entries;  ///< in the order of the file
+};
+
+/// Like load_sensor_file, with the sources that the file gives.
+SensorSheet load_sensor_sheet(const std::filesystem::path& path);
+
+/// The sensor files that come with GLIDAR, by name. They lie in sensors/ of the source, in
+/// share/glidar/sensors where it is installed, or where the variable GLIDAR_SENSORS says.
+/// Throws Error when there is no such folder.
+std::vector<std::filesystem::path> preset_files();
+
+/// The file of a sensor given by name or path: a path if it has a folder or an ending .yaml or
+/// .yml, else the name of a preset, in capitals or not.
+/// Throws Error naming the nearest presets.
+std::filesystem::path find_sensor_file(const std::string& name_or_path);
+
+}  // namespace glidar

@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/error.hpp>
+#include <glidar/sensor/framing.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace glidar {
+namespace {
+
+/// A wider fan is treated as this one: from nearer little of the scene would be before the sensor.
+constexpr double kWidestHalfAngle_rad = std::numbers::pi / 3.0;
+constexpr double kHalfAngleOfALine_rad = std::numbers::pi / 6.0;  // at twice the radius
+constexpr double kLeastHalfAngle_rad = 1e-3;
+
+struct Elevations {
+  double middle_rad = 0.0;
+  double half_rad = 0.0;
+};
+
+[[noreturn]] void fail(std::string found, std::string remedy) {
+  throw Error({.where = "placing the sensor beside the scene",
+               .found = std::move(found),
+               .allowed = "",
+               .remedy = std::move(remedy)});
+}
+
+/// Elevations between the lowest and the highest beam, and no more than its sides are wide.
+Elevations elevations_of(const Beams& beams) {
+  double low_rad = std::numbers::pi;
+  double high_rad = -std::numbers::pi;
+  double side_rad = 0.0;
+  for (const Eigen::Vector3d& d : beams.directions) {
+    if (std::isnan(d.x())) continue;
+    const double elevation_rad = std::asin(std::clamp(d.z(), -1.0, 1.0));
+    low_rad = std::min(low_rad, elevation_rad);
+    high_rad = std::max(high_rad, elevation_rad);
+    side_rad = std::max(side_rad, std::abs(std::atan2(d.y(), d.x())));
+  }
+  if (low_rad > high_rad) fail("the sensor has no beams", "");
+  const double half_rad = 0.5 * (high_rad - low_rad);
+  const double fan_rad = half_rad > kLeastHalfAngle_rad ? half_rad : kHalfAngleOfALine_rad;
+  return {0.5 * (low_rad + high_rad),
+          std::min({fan_rad, std::max(side_rad, kLeastHalfAngle_rad), kWidestHalfAngle_rad})};
+}
+
+}  // namespace
+
+Pose stand_beside(const Beams& beams, const Scene& scene, const Eigen::Vector3d& from_direction,
+                  const Eigen::Vector3d& up) {
+  if (beams.size() == 0 || !beams.boresight.isApprox(Eigen::Vector3d::UnitX())) {
+    fail("the sensor is no LiDAR that heads for +x", "give the sensor's pose");
+  }
+  const Eigen::AlignedBox3d box = bounds(scene);
+  if (box.isEmpty() || !(box.diagonal().norm() > 0.0)) {
+    fail("the scene has no triangles or no size", "give the sensor's pose");
+  }
+  const Elevations fan = elevations_of(beams);
+  const Eigen::Vector3d z = up.normalized();
+  const Eigen::Vector3d side = from_direction - from_direction.dot(z) * z;
+  if (!(side.norm() > 1e-9 * from_direction.norm())) {
+    fail("the up vector is parallel to the line of sight", "choose another up vector");
+  }
+  const double distance_m = 0.5 * box.diagonal().norm() / std::sin(fan.half_rad);
+  const Eigen::Vector3d eye =
+      box.center() +
+      distance_m * (std::cos(fan.middle_rad) * side.normalized() - std::sin(fan.middle_rad) * z);
+  return look_at(eye, eye - side, z) * optical_from_body();
+}
+
+}  // namespace glidar

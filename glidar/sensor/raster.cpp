@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/raster.hpp>
+
+#include <glidar/sensor/beam_table.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+constexpr double kNanoseconds = 1e9;
+
+bool all_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+void validate(const Raster& r) {
+  const std::size_t lines = r.elevations_rad.size();
+  const std::size_t points = r.azimuths_rad.size();
+  require_optics(lines >= 1 && lines <= kMostBeams, "number of lines", static_cast<double>(lines),
+                 "at least 1");
+  require_optics(points >= 1 && points <= kMostBeams / lines, "number of points in a line",
+                 static_cast<double>(points), "at least 1, 134217728 beams in all");
+  require_optics(all_finite(r.elevations_rad) && all_finite(r.azimuths_rad), "angles", 0.0,
+                 "finite angles");
+  require_optics(r.scan_hz > 0.0 && std::isfinite(r.scan_hz), "scans per second", r.scan_hz,
+                 "above 0");
+  const double line_lasts_ns = static_cast<double>(points - 1) * r.point_ns;
+  require_optics(r.point_ns >= 0.0 && (lines == 1 || r.line_ns >= line_lasts_ns), "time of a line",
+                 r.line_ns, "at least that of its points");
+}
+
+/// The pattern in the order of time.
+BeamTable in_order(const Raster& r) {
+  BeamTable table;
+  table.rows = static_cast<std::uint32_t>(r.elevations_rad.size());
+  table.cols = static_cast<std::uint32_t>(r.azimuths_rad.size());
+  table.period_ns = kNanoseconds / r.scan_hz;
+  for (std::size_t line = 0; line < table.rows; ++line) {
+    const bool backwards = r.to_and_fro && line % 2 == 1;
+    for (std::size_t point = 0; point < table.cols; ++point) {
+      const std::size_t col = backwards ? table.cols - 1 - point : point;
+      table.directions.push_back(direction_at(r.azimuths_rad[col], r.elevations_rad[line]));
+      table.times_ns.push_back(static_cast<double>(line) * r.line_ns +
+                               static_cast<double>(point) * r.point_ns);
+    }
+  }
+  return table;
+}
+
+/// Lines that were scanned from their end, put with column 0 first.
+void turn_back_lines(Beams& beams) {
+  for (std::size_t line = 1; line < beams.rows; line += 2) {
+    const auto first = static_cast<std::ptrdiff_t>(line * beams.cols);
+    const auto last = first + static_cast<std::ptrdiff_t>(beams.cols);
+    std::reverse(beams.directions.begin() + first, beams.directions.begin() + last);
+    std::reverse(beams.times_ns.begin() + first, beams.times_ns.begin() + last);
+  }
+}
+
+}  // namespace
+
+Beams make_beams(const Raster& raster, const ScanWindow& window) {
+  validate(raster);
+  Beams beams = make_beams(in_order(raster), window);
+  const bool grid = beams.rows == raster.elevations_rad.size();
+  if (grid && raster.to_and_fro) turn_back_lines(beams);
+  return beams;
+}
+
+}  // namespace glidar

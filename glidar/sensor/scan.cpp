@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/scan.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace glidar {
+namespace {
+
+constexpr std::int64_t kLongest_ns = std::numeric_limits<std::uint32_t>::max();
+constexpr std::int64_t kFarthest_ns = 100LL * 24 * 3600 * 1'000'000'000;  // a double holds each ns
+
+void check(const ScanWindow& window) {
+  const std::int64_t length_ns = window.end_ns - window.start_ns;
+  if (length_ns >= 0 && length_ns <= kLongest_ns && std::abs(window.start_ns) <= kFarthest_ns) {
+    return;
+  }
+  throw Error(
+      {.where = "scan window",
+       .found = std::to_string(window.start_ns) + " to " + std::to_string(window.end_ns) + " ns",
+       .allowed = "up to 4.29 s long, within 100 days of zero",
+       .remedy = "choose a frame rate of at least 0.24 Hz"});
+}
+
+/// The first tick at or after a time.
+std::int64_t first_from(const Ticks& ticks, std::int64_t time_ns) {
+  auto k = static_cast<std::int64_t>(
+      std::floor((static_cast<double>(time_ns) - ticks.first_ns) / ticks.period_ns));
+  while (tick_ns(ticks, k - 1) >= time_ns) --k;  // the division is rounded
+  while (tick_ns(ticks, k) < time_ns) ++k;
+  return k;
+}
+
+}  // namespace
+
+std::int64_t tick_ns(const Ticks& ticks, std::int64_t k) {
+  return std::llround(ticks.first_ns + static_cast<double>(k) * ticks.period_ns);
+}
+
+TickRange ticks_in(const Ticks& ticks, const ScanWindow& window, std::size_t most) {
+  check(window);
+  constexpr double kLeastPeriod_ns = 1.0;
+  require_optics(ticks.period_ns >= kLeastPeriod_ns && std::isfinite(ticks.period_ns), "period",
+                 ticks.period_ns, "1 ns or more");
+  const TickRange range = {first_from(ticks, window.start_ns), first_from(ticks, window.end_ns)};
+  require_optics(range.size() <= most, "shots in a frame", static_cast<double>(range.size()),
+                 "134217728 beams in all");
+  return range;
+}
+
+Eigen::Vector3d direction_at(double azimuth_rad, double elevation_rad) {
+  const double level = std::cos(elevation_rad);
+  return {level * std::cos(azimuth_rad), level * std::sin(azimuth_rad), std::sin(elevation_rad)};
+}
+
+void require_optics(bool holds, const char* field, double found, const char* allowed) {
+  if (holds) return;
+  throw Error({.where = std::string("optics, ") + field,
+               .found = std::to_string(found),
+               .allowed = allowed,
+               .remedy = ""});
+}
+
+}  // namespace glidar

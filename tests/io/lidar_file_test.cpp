@@ -1,0 +1,219 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "yaml_files.hpp"
+
+#include <glidar/io/npy.hpp>
+#include <glidar/io/sensor_file.hpp>
+#include <support/data.hpp>
+
+#include <array>
+#include <cstring>
+
+namespace glidar {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+Sensor load(const std::string& content) {
+  const TestFolder folder;
+  return load_sensor_file(folder.write("s.yaml", content));
+}
+
+TEST(LidarFile, ReadsEveryKeyOfSpinningOptics) {
+  const Sensor sensor = load(R"(
+rate_hz: 20
+wavelength_nm: 905
+limits: {near_m: 0.5, far_m: 50, along: depth}
+optics:
+  type: spinning
+  turn: counterclockwise
+  start_azimuth_deg: 90
+  sequence_us: 50
+  elevation_deg: [-10, 10]
+  azimuth_right_deg: [1, -2]
+  fire_time_us: [0, 2.5]
+  ring: rising_elevation
+  origin_out_mm: 1
+  origin_left_mm: [2, 3]
+  origin_up_mm: 4
+  beam_origin_mm: 15
+  sector: {from_deg: -60, to_deg: 30}
+)");
+  EXPECT_EQ(sensor.rate_hz, 20.0);
+  EXPECT_DOUBLE_EQ(sensor.wavelength_m, 905e-9);
+  EXPECT_EQ(sensor.limits.along, Limits::Along::depth);
+  const auto& s = std::get<Spinning>(sensor.optics);
+  EXPECT_EQ(s.rotation_hz, 20.0);
+  EXPECT_EQ(s.turn, Spinning::Turn::counterclockwise);
+  EXPECT_DOUBLE_EQ(s.start_azimuth_rad, 90 * kDegree);
+  EXPECT_EQ(s.sequence_ns, 50'000.0);
+  ASSERT_EQ(s.channels.size(), 2U);
+  EXPECT_DOUBLE_EQ(s.channels[0].elevation_rad, -10 * kDegree);
+  EXPECT_DOUBLE_EQ(s.channels[1].azimuth_offset_rad, 2 * kDegree);  // right is negative
+  EXPECT_EQ(s.channels[1].fire_time_ns, 2500.0);
+  EXPECT_EQ(s.channels[1].ring, 1U);
+  EXPECT_TRUE(s.channels[1].origin_m.isApprox(Eigen::Vector3d(0.001, 0.003, 0.004)));
+  EXPECT_DOUBLE_EQ(s.beam_origin_m, 0.015);
+  EXPECT_DOUBLE_EQ(s.sector_start_rad, -60 * kDegree);
+  EXPECT_DOUBLE_EQ(s.sector_width_rad, 90 * kDegree);
+}
+
+TEST(LidarFile, ReadsRastersAndPrisms) {
+  const Sensor sensor = load(
+      "rate_hz: 15\noptics: {type: raster, azimuth_deg: {from: -1, to: 1, count: 3}, "
+      "elevation_deg: [5, 6], point_us: 10, line_us: 100, to_and_fro: true}\n");
+  const auto& raster = std::get<Raster>(sensor.optics);
+  EXPECT_EQ(raster.scan_hz, 15.0);
+  ASSERT_EQ(raster.azimuths_rad.size(), 3U);
+  EXPECT_DOUBLE_EQ(raster.azimuths_rad[2], kDegree);
+  EXPECT_DOUBLE_EQ(raster.elevations_rad[1], 6 * kDegree);
+  EXPECT_EQ(raster.line_ns, 100'000.0);
+  EXPECT_TRUE(raster.to_and_fro);
+  const Sensor livox = load(
+      "optics: {type: prism, pulse_hz: 1000, incident_right: [0.1, 0.2], prisms: "
+      "[{rotation_hz: -3, apex_deg: 20, phase_deg: 90, refractive_index: 1.4, slope: exit}]}\n");
+  const auto& prism = std::get<Prism>(livox.optics);
+  EXPECT_EQ(livox.rate_hz, 10.0);
+  EXPECT_EQ(prism.incident_right[1], 0.2);
+  EXPECT_EQ(prism.prisms[0].rotation_hz, -3.0);
+  EXPECT_DOUBLE_EQ(prism.prisms[0].phase_rad, 90 * kDegree);
+  EXPECT_EQ(prism.prisms[0].slope, RisleyPrism::Slope::exit);
+}
+
+TEST(LidarFile, ReadsLivoxTables) {
+  const TestFolder folder;
+  (void)folder.write("scan.csv",
+                     "Time/s,Azimuth/deg,Zenith/deg\r\n0.1,0,90\r\n0.2,90,60\r\n"
+                     "0.3,10,100\r\n0.4,20,80\r\n");
+  const auto file = folder.write("s.yaml", "optics: {type: table, file: scan.csv}\n");
+  const auto table = std::get<BeamTable>(load_sensor_file(file).optics);
+  ASSERT_EQ(table.cols, 4U);
+  EXPECT_LT((table.directions[0] - Eigen::Vector3d::UnitX()).norm(), 1e-15);
+  EXPECT_LT((table.directions[1] - direction_at(90 * kDegree, 30 * kDegree)).norm(), 1e-15);
+  EXPECT_NEAR(table.times_ns[3], 0.3e9, 1e-3);
+  EXPECT_NEAR(table.period_ns, 0.4e9, 1e-3);  // the first shot comes one step after the last
+  const auto timed =
+      folder.write("t.yaml", "optics: {type: table, file: scan.csv, point_us: 10, rows: 2}\n");
+  const auto other = std::get<BeamTable>(load_sensor_file(timed).optics);
+  EXPECT_EQ(other.rows, 2U);
+  EXPECT_EQ(other.times_ns[3], 30'000.0);
+}
+
+std::string npy(std::vector<std::size_t> shape, const std::vector<double>& numbers) {
+  std::string bytes = npy_header("<f8", shape);
+  bytes.append(reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(double));
+  return bytes;
+}
+
+TEST(LidarFile, ReadsArraysOfRays) {
+  const TestFolder folder;
+  (void)folder.write("rays.npy", npy({2, 6}, {1, 2, 3, 0, 0, 1, 4, 5, 6, 0, 2, 0}));
+  const auto file = folder.write("s.yaml", "optics: {type: table, file: rays.npy}\n");
+  const auto table = std::get<BeamTable>(load_sensor_file(file).optics);
+  EXPECT_EQ(table.origins_m[1], Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(table.directions[1], Eigen::Vector3d(0, 2, 0));
+  (void)folder.write("rays.npy", npy({2, 1, 3}, {1, 0, 0, 0, 1, 0}));
+  const auto grid = std::get<BeamTable>(load_sensor_file(file).optics);
+  EXPECT_EQ(grid.rows, 2U);
+  EXPECT_TRUE(grid.origins_m.empty());
+}
+
+TEST(LidarFile, HostileRayFilesAreRefused) {
+  const TestFolder folder;
+  const auto file = folder.write("s.yaml", "optics: {type: table, file: rays.npy}\n");
+  const std::string good = npy({1, 3}, {1, 0, 0});
+  std::string huge = npy_header("<f8", std::array<std::size_t, 2>{std::size_t{1} << 60U, 3});
+  for (const std::string& bytes :
+       {std::string(), std::string("no array at all"), good.substr(0, 20),
+        good.substr(0, good.size() - 1), npy({3, 1}, {1, 0, 0}), npy({0, 3}, {}), huge,
+        npy_header("<i4", std::array<std::size_t, 2>{1, 3}) + std::string(12, '\0')}) {
+    (void)folder.write("rays.npy", bytes);
+    EXPECT_NE(error_of(folder, [&] { load_sensor_file(file); }).find("rays.npy"),
+              std::string::npos);
+  }
+}
+
+struct BadLidarFile : ::testing::TestWithParam<BadFile> {};
+
+TEST_P(BadLidarFile, SaysWhereAndWhy) {
+  const TestFolder folder;
+  (void)folder.write("bad.csv", "Time/s,Azimuth/deg,Zenith/deg\n0,1,2\n0,x,2\n");
+  (void)folder.write("falling.csv", "1,1,2\n0,1,2\n");
+  const auto file = folder.write("s.yaml", GetParam().content);
+  EXPECT_EQ(error_of(folder, [&] { load_sensor_file(file); }), GetParam().error);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadLidarFile,
+    ::testing::Values(
+        BadFile{"type", "optics: {type: spining}\n",
+                "s.yaml:1:16: optics.type: 'spining'; allowed: pinhole, spinning, raster, prism, "
+                "table, ouster; did you mean 'spinning'?"},
+        BadFile{"counts",
+                "optics: {type: spinning, sequence_us: 5, elevation_deg: [1, 2], "
+                "fire_time_us: [0]}\n",
+                "s.yaml:1:79: optics.fire_time_us: a list of 1; allowed: one number, or 2: one "
+                "for each of elevation_deg"},
+        BadFile{"both",
+                "optics: {type: spinning, sequence_us: 5, columns_per_turn: 9, elevation_deg: "
+                "[1]}\n",
+                "s.yaml:1:39: optics.sequence_us: given beside 'columns_per_turn'; allowed: one "
+                "of columns_per_turn and sequence_us; remove one of them"},
+        BadFile{"csv", "optics: {type: table, file: bad.csv}\n",
+                "bad.csv:3: no three numbers; allowed: Time/s,Azimuth/deg,Zenith/deg"},
+        BadFile{"falling", "optics: {type: table, file: falling.csv}\n",
+                "falling.csv: the times fall at shot 2; allowed: times that rise; give "
+                "'point_us', the time from shot to shot, to ignore the file's"},
+        BadFile{"missing", "optics: {type: table, file: none.csv}\n", "none.csv: no such file"},
+        BadFile{"limits",
+                "limits: {far_m: 1}\ndepth_limits: {far_m: 1}\noptics: {width: 1, height: 1, "
+                "fov_deg: 9}\n",
+                "s.yaml:2:15: depth_limits: given beside 'limits'; allowed: one of the two; remove "
+                "one of them"},
+        BadFile{"source", "optics: {width: 1, height: 1, fov_deg: 9}\nsource: {optics.wdth: x}\n",
+                "s.yaml:2:23: source.optics.wdth: 'optics.wdth' is no key of this file; allowed: "
+                "a key such as optics.elevation_deg; did you mean 'optics.width'?"}),
+    bad_file_name);
+
+TEST(OusterFile, ReadsWhatSensorsGiveOfThemselves) {
+  GLIDAR_NEEDS_DATA();
+  const TestFolder folder;
+  const auto read = [&](const std::string& name) {
+    const auto path = testing::data_folder() / "recordings/ouster" / name;
+    return load_sensor_file(
+        folder.write("s.yaml", "optics: {type: ouster, file: " + path.string() + "}\n"));
+  };
+  const Sensor old_layout = read("OS-1-128_v2.3.0_1024x10.json");
+  const auto& s = std::get<Spinning>(old_layout.optics);
+  EXPECT_EQ(old_layout.rate_hz, 10.0);
+  EXPECT_EQ(s.columns_per_turn, 1024U);
+  EXPECT_DOUBLE_EQ(s.beam_origin_m, 0.015806);
+  ASSERT_EQ(s.channels.size(), 128U);
+  EXPECT_DOUBLE_EQ(s.channels[0].elevation_rad, 20.95 * kDegree);
+  EXPECT_DOUBLE_EQ(s.channels[0].azimuth_offset_rad, -4.21 * kDegree);
+  EXPECT_EQ(make_beams(old_layout).cols, 1024U);
+  const Sensor new_layout = read("crc_test.json");
+  EXPECT_EQ(make_beams(new_layout).cols, 512U);
+  EXPECT_DOUBLE_EQ(std::get<Spinning>(new_layout.optics).beam_origin_m, 0.027116);
+}
+
+TEST(OusterFile, HostileMetadataIsRefused) {
+  const TestFolder folder;
+  const auto file = folder.write("s.yaml", "optics: {type: ouster, file: m.json}\n");
+  const std::string rest =
+      R"("beam_azimuth_angles": [0], "lidar_origin_to_beam_origin_mm": 1, "lidar_mode": )";
+  for (const std::string& text :
+       {std::string("[[[["), std::string("{}"), std::string(R"({"beam_altitude_angles": 3})"),
+        R"({"beam_altitude_angles": [1, 2], )" + rest + R"("1024x10"})",
+        R"({"beam_altitude_angles": ["x"], )" + rest + R"("1024x10"})",
+        R"({"beam_altitude_angles": [1], )" + rest + R"("99999999999x10"})",
+        R"({"beam_altitude_angles": [1], )" + rest + R"("1024x10", "data_format": )" +
+            R"({"column_window": [0, 4096]}})"}) {
+    (void)folder.write("m.json", text);
+    EXPECT_NE(error_of(folder, [&] { load_sensor_file(file); }).find("m.json"), std::string::npos)
+        << text;
+  }
+}
+
+}  // namespace
+}  // namespace glidar
