@@ -109,6 +109,8 @@ TEST(Simulate, TellsPixelsWithoutABeam) {
 
 TEST(Simulate, AllocatesNothingInTheSteadyState) {
   Stage stage(64);
+  stage.sensor.noise = {PointingJitter{.sigma_azimuth_rad = 1e-4}, RangeGaussian{.sigma_m = 0.01},
+                        KinectV1{}, Dropout{.probability = 0.1}};
   const glidar::Setup setup{stage.scene, stage.sensor, stage.beams, stage.motion, *stage.renderer};
   const HitFields fields{.depth = true, .normal = true, .object_point = true};
   Frame frame;
