@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/sensor_file.hpp>
 
+#include <glidar/io/noise_yaml.hpp>
 #include <glidar/io/sensor_yaml.hpp>
 
 #include <limits>
@@ -154,12 +155,13 @@ Light read_light(const YamlField& field) {
 }  // namespace
 
 Sensor read_sensor(const YamlField& field) {
-  require_map(field, {"name", "optics", "depth_limits", "light", "cull_back_faces"});
+  require_map(field, {"name", "optics", "depth_limits", "light", "noise", "cull_back_faces"});
   Sensor sensor;
   if (const auto name = find(field, "name")) sensor.name = text(*name);
   sensor.optics = read_optics(need(field, "optics"));
   if (const auto limits = find(field, "depth_limits")) sensor.limits = read_depth_limits(*limits);
   if (const auto light = find(field, "light")) sensor.light = read_light(*light);
+  if (const auto noise = find(field, "noise")) sensor.noise = read_noise(*noise);
   if (const auto cull = find(field, "cull_back_faces")) sensor.cull_back_faces = boolean(*cull);
   return sensor;
 }

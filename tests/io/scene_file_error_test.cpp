@@ -95,7 +95,8 @@ const BadFile kBadScenes[] = {
      "one of them"},
     {"MaterialUnknownKey", model("materials: {A: {difuse: [1, 1, 1]}}"),
      "s.yaml:3:21: models[0].materials.A.difuse: unknown key 'difuse'; allowed: ambient, diffuse, "
-     "specular, shininess, opacity; did you mean 'diffuse'?"},
+     "specular, shininess, opacity, noise_scale, "
+     "noise_texture; did you mean 'diffuse'?"},
     {"SensorIsAList", with_model("sensor: [a]"),
      "s.yaml:2:9: sensor: a list of 1; allowed: a map, or the path of a sensor file"},
     {"SensorFileIsMissing", with_model("sensor: c.yaml"),

@@ -164,6 +164,7 @@ const BadFile kBadFiles[] = {
      "fov_x_deg, fx, fy, cx, cy, pixel_centre, distortion; did you mean 'width'?"},
     {"UnknownKeyFarFromAny", with_good_optics("zzzzzzzzz: 1\n"),
      "s.yaml:2:1: zzzzzzzzz: unknown key 'zzzzzzzzz'; allowed: name, optics, depth_limits, light, "
+     "noise, "
      "cull_back_faces"},
     {"DuplicateKey", optics("width: 4, height: 2, width: 5, fov_deg: 20"),
      "s.yaml:1:31: optics.width: the key is given twice; allowed: each key once; remove one of "
@@ -276,7 +277,7 @@ const BadFile kBadFiles[] = {
      "s.yaml: a file of more than 2 MiB; allowed: a YAML file of at most 2 MiB; name models by "
      "their path, do not put them into the file"},
     {"ControlCharactersAreNotPrinted", "\"a\\n\\e\": 1\n",
-     "s.yaml:1:1: a?\?: unknown key 'a?\?'; allowed: name, optics, depth_limits, light, "
+     "s.yaml:1:1: a?\?: unknown key 'a?\?'; allowed: name, optics, depth_limits, light, noise, "
      "cull_back_faces"},
 };
 
