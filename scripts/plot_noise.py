@@ -59,7 +59,7 @@ def measured_mm(program, step, depth_m, folder):
         z = 1.0 / (1.0 / depth_m + k / 6 / 351.3)
         subprocess.run(
             [program, "render", "scene.yaml", "--sensor", "sensor.yaml", "--eye", f"0,0,{z!r}",
-             "--target", "0,0,0", "--columns", "depth", "--seed", str(k),
+             "--target", "0,0,0", "--up-vector", "0,1,0", "--columns", "depth", "--seed", str(k),
              "--quiet", "-o", "cloud.npz"], cwd=folder, check=True)
         errors.append(np.load(folder / "cloud.npz")["depth"].ravel() - z)
     return 1e3 * float(np.nanstd(np.concatenate(errors)))
