@@ -80,7 +80,7 @@ def draw_panel(draw, corner, title, points, law):
     for z in range(6):
         x, y = place(z, 0)
         draw.line([(x, y), (x, y + 3)], fill="black")
-        draw.text((x - 3, y + 4), f"{z} m" if z == 5 else str(z), fill="black")
+        draw.text((x - (13 if z == 5 else 3), y + 4), f"{z} m" if z == 5 else str(z), fill="black")
     for share in (0.5, 1.0):
         x, y = place(0, share * highest / 1.15)
         draw.line([(x - 3, y), (x, y)], fill="black")

@@ -53,12 +53,16 @@ std::int32_t place_of(const MaterialOverride& change, TexturePlaces& places, Sce
   return next;
 }
 
-void apply(const MaterialOverride& change, Material& material) {
+void apply(const MaterialOverride& change, TexturePlaces& places, Scene& scene,
+           Material& material) {
   material.noise_scale = change.noise_scale.value_or(material.noise_scale);
   material.ambient = change.ambient.value_or(material.ambient);
   material.diffuse = change.diffuse.value_or(material.diffuse);
   material.specular = change.specular.value_or(material.specular);
   material.shininess = change.shininess.value_or(material.shininess);
+  if (!change.noise_texture.empty()) {
+    material.noise_texture = {.texture = place_of(change, places, scene)};
+  }
   if (change.opacity) {
     constexpr float kCutoff = 0.5F;  // a beam passes or it does not: nothing is half there
     material.opacity = *change.opacity;
@@ -97,10 +101,7 @@ void override_materials(const PlannedInstance& planned, TexturePlaces& places, I
     bool is_changed = false;
     for (const MaterialOverride& change : planned.overrides) {
       if (!concerns(change, changed)) continue;
-      apply(change, changed);
-      if (!change.noise_texture.empty()) {
-        changed.noise_texture = {.texture = place_of(change, places, scene)};
-      }
+      apply(change, places, scene, changed);
       is_changed = true;
     }
     if (!is_changed) continue;

@@ -6,6 +6,7 @@
 #include <support/data.hpp>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <cmath>
 #include <cstring>
@@ -66,6 +67,9 @@ struct Stage {
     return frame;
   }
 };
+
+/// Lets there be eight threads on machines of fewer processors too.
+const tbb::global_control kEightThreads(tbb::global_control::max_allowed_parallelism, 8);
 
 /// Bytes, so that NaN equals NaN.
 template <class T>
