@@ -89,6 +89,12 @@ void validate(const Scene& scene) {
     validate(material.specular_texture, scene, material);
     validate(material.alpha_texture, scene, material);
     validate(material.normal_texture, scene, material);
+    validate(material.noise_texture, scene, material);
+    if (material.noise_scale >= 0.0F) continue;
+    throw Error({.where = "material '" + material.name + "'",
+                 .found = "a noise scale of " + std::to_string(material.noise_scale),
+                 .allowed = "a number from 0",
+                 .remedy = ""});
   }
 }
 

@@ -132,8 +132,9 @@ std::size_t add_model(Scene& scene, Model model) {
   instance.name = model.mesh.name;
   instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
   for (Material& material : model.materials) {
-    for (TextureUse* use : {&material.diffuse_texture, &material.specular_texture,
-                            &material.alpha_texture, &material.normal_texture}) {
+    for (TextureUse* use :
+         {&material.diffuse_texture, &material.specular_texture, &material.alpha_texture,
+          &material.normal_texture, &material.noise_texture}) {
       if (use->used()) use->texture += first_texture;
     }
     instance.materials.push_back(first_material +

@@ -3,6 +3,7 @@
 #include <glidar/io/scene_builder.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/png_texture.hpp>
 
 #include <algorithm>
 #include <map>
@@ -21,21 +22,47 @@ LoadKey load_key(const PlannedInstance& planned) {
           planned.options.up};
 }
 
+/// Where in Scene::textures the files lie that this scene names.
+using TexturePlaces = std::map<std::string, std::int32_t>;
+
+/// Says where in the scene file the matter is.
+[[noreturn]] void tell_at(const std::string& where, const Error& error) {
+  const ErrorParts& parts = error.parts();
+  const std::string place = parts.where.empty() ? "" : parts.where + ": ";
+  throw Error({where, place + parts.found, parts.allowed, parts.remedy});
+}
+
 Model load_for(const PlannedInstance& planned, const ModelLoader& load) {
   try {
     return load(planned.source, planned.options);
   } catch (const Error& error) {
-    const ErrorParts& parts = error.parts();
-    const std::string place = parts.where.empty() ? "" : parts.where + ": ";
-    throw Error({planned.where, place + parts.found, parts.allowed, parts.remedy});
+    tell_at(planned.where, error);
   }
 }
 
-void apply(const MaterialOverride& change, Material& material) {
+/// The texture of a file, loaded when it is named for the first time.
+std::int32_t place_of(const MaterialOverride& change, TexturePlaces& places, Scene& scene) {
+  const auto next = static_cast<std::int32_t>(scene.textures.size());
+  const auto [place, is_new] = places.try_emplace(change.noise_texture, next);
+  if (!is_new) return place->second;
+  try {
+    scene.textures.push_back(read_png_texture(change.noise_texture));
+  } catch (const Error& error) {
+    tell_at(change.where_noise_texture, error);
+  }
+  return next;
+}
+
+void apply(const MaterialOverride& change, TexturePlaces& places, Scene& scene,
+           Material& material) {
+  material.noise_scale = change.noise_scale.value_or(material.noise_scale);
   material.ambient = change.ambient.value_or(material.ambient);
   material.diffuse = change.diffuse.value_or(material.diffuse);
   material.specular = change.specular.value_or(material.specular);
   material.shininess = change.shininess.value_or(material.shininess);
+  if (!change.noise_texture.empty()) {
+    material.noise_texture = {.texture = place_of(change, places, scene)};
+  }
   if (change.opacity) {
     constexpr float kCutoff = 0.5F;  // a beam passes or it does not: nothing is half there
     material.opacity = *change.opacity;
@@ -64,7 +91,8 @@ void require_known(const MaterialOverride& change, const Instance& instance, con
 }
 
 /// Gives the instance copies of the materials that change: others may share the originals.
-void override_materials(const PlannedInstance& planned, Instance& instance, Scene& scene) {
+void override_materials(const PlannedInstance& planned, TexturePlaces& places, Instance& instance,
+                        Scene& scene) {
   for (const MaterialOverride& change : planned.overrides) {
     require_known(change, instance, scene);
   }
@@ -73,7 +101,7 @@ void override_materials(const PlannedInstance& planned, Instance& instance, Scen
     bool is_changed = false;
     for (const MaterialOverride& change : planned.overrides) {
       if (!concerns(change, changed)) continue;
-      apply(change, changed);
+      apply(change, places, scene, changed);
       is_changed = true;
     }
     if (!is_changed) continue;
@@ -94,6 +122,7 @@ std::uint32_t class_index(const std::string& name, std::vector<std::string>& nam
 
 Scene build_scene(const ScenePlan& plan, const ModelLoader& load) {
   Scene scene;
+  TexturePlaces places;
   std::map<LoadKey, Instance> loaded;  // as the model came, before this file's changes
   for (const PlannedInstance& planned : plan.instances) {
     const LoadKey key = load_key(planned);
@@ -108,7 +137,7 @@ Scene build_scene(const ScenePlan& plan, const ModelLoader& load) {
     instance.scale = planned.scale;
     instance.id = planned.id;
     instance.class_id = class_index(planned.class_name, scene.class_names);
-    override_materials(planned, instance, scene);
+    override_materials(planned, places, instance, scene);
     scene.instances.push_back(std::move(instance));
   }
   validate(scene);

@@ -24,6 +24,9 @@ struct MaterialOverride {
   std::optional<Eigen::Vector3f> specular;
   std::optional<float> shininess;
   std::optional<float> opacity;
+  std::optional<float> noise_scale;
+  std::string noise_texture;        ///< path of a PNG file; empty: as it was
+  std::string where_noise_texture;  ///< for errors
 };
 
 /// One entry of `models`.

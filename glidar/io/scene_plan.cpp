@@ -46,7 +46,8 @@ ModelOptions read_options(const YamlField& model, const ModelOptions& defaults) 
 }
 
 MaterialOverride read_override(const std::string& material, const YamlField& field) {
-  require_map(field, {"ambient", "diffuse", "specular", "shininess", "opacity"});
+  require_map(field, {"ambient", "diffuse", "specular", "shininess", "opacity", "noise_scale",
+                      "noise_texture"});
   MaterialOverride change;
   change.material = material;
   change.where = where(field);
@@ -61,6 +62,11 @@ MaterialOverride read_override(const std::string& material, const YamlField& fie
   colour("specular", change.specular);
   scalar("shininess", kShininess, change.shininess);
   scalar("opacity", kZeroToOne, change.opacity);
+  scalar("noise_scale", kFromZero, change.noise_scale);
+  if (const auto texture = find(field, "noise_texture")) {
+    change.noise_texture = resolved(*texture);
+    change.where_noise_texture = where(*texture);
+  }
   return change;
 }
 

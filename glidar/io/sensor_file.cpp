@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/sensor_file.hpp>
 
+#include <glidar/io/noise_yaml.hpp>
 #include <glidar/io/optics_yaml.hpp>
 #include <glidar/io/sensor_presets.hpp>
 #include <glidar/io/sensor_yaml.hpp>
@@ -186,7 +187,7 @@ std::vector<SheetEntry> read_entries(const YamlField& root) {
 
 Sensor read_sensor(const YamlField& field) {
   require_map(field, {"name", "optics", "rate_hz", "wavelength_nm", "limits", "depth_limits",
-                      "light", "cull_back_faces", "source", "unverified"});
+                      "light", "noise", "cull_back_faces", "source", "unverified"});
   Sensor sensor;
   sensor.optics = read_optics(need(field, "optics"));
   if (!is_camera(sensor)) sensor.name = "lidar";
@@ -197,6 +198,7 @@ Sensor read_sensor(const YamlField& field) {
   }
   sensor.limits = read_limits(field, sensor);
   if (const auto light = find(field, "light")) sensor.light = read_light(*light);
+  if (const auto noise = find(field, "noise")) sensor.noise = read_noise(*noise);
   if (const auto cull = find(field, "cull_back_faces")) sensor.cull_back_faces = boolean(*cull);
   if (find(field, "source") || find(field, "unverified")) {
     YamlField root = field;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/version.hpp>
 #include <glidar/io/cloud_file.hpp>
+#include <glidar/io/noise_yaml.hpp>
 #include <glidar/io/optics_json.hpp>
 #include <glidar/io/stored_columns.hpp>
 
@@ -54,6 +55,7 @@ Json sensor_json(const CloudFile& job) {
             {"attenuation_linear_per_m", light.attenuation_linear_per_m},
             {"attenuation_quadratic_per_m2", light.attenuation_quadratic_per_m2},
             {"ambient", light.ambient}}},
+          {"noise", noise_json(sensor.noise)},
           {"cull_back_faces", sensor.cull_back_faces},
           {"world_from_sensor", pose_json(job.frame.world_from_sensor)}};
 }
@@ -104,7 +106,7 @@ Json status_json(const Frame& frame) {
   std::array<std::array<std::size_t, 256>, kLanes> counts{};
   for (std::size_t i = 0; i < frame.status.size(); ++i)
     ++counts[i % kLanes][static_cast<std::size_t>(frame.status[i])];
-  constexpr auto kLast = static_cast<std::size_t>(Status::no_beam);
+  constexpr auto kLast = static_cast<std::size_t>(Status::weather);
   Json told = Json::object();
   for (std::size_t s = 0; s <= kLast; ++s) {
     told[std::string(name(static_cast<Status>(s)))] =

@@ -21,8 +21,8 @@ double look_up(const Table& table, double x);
 /// Returns lost at random, with the probability 1 - (1 - p) (1 - p(R)) (1 - p(incidence)).
 struct Dropout {
   double probability = 0.0;
-  Table by_range_m;
-  Table by_incidence_rad;
+  Table by_range_m{};
+  Table by_incidence_rad{};
 };
 
 /// An echo is told from noise when intensity + sigma x reaches the threshold, x being a standard

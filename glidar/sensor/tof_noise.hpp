@@ -20,13 +20,13 @@ struct NoiseView;
 /// frequency, or where the phases fit no distance (rms above largest_misfit turns), the status is
 /// wrapped.
 struct ContinuousWave {
-  std::vector<double> frequencies_hz;
+  std::vector<double> frequencies_hz{};
   double electrons_at_full_scale = 0.0;  ///< of an intensity of 1
   double background_electrons = 0.0;
   double contrast = 1.0;
   double mixing = 0.0;
   double least_coherence = 0.6;
-  double largest_misfit = 0.25;
+  double largest_misfit = 0.1;
 };
 
 /// Light of one distance in a pixel.

@@ -249,6 +249,49 @@ models:
   EXPECT_EQ(changed.materials[1], plain.materials[1]);
 }
 
+TEST(SceneFile, MaterialsScaleTheNoiseByNumberAndTexture) {
+  const TestFolder folder;
+  // 2 x 1 pixels, grey, 8 bits: 64 and 255
+  constexpr unsigned char kPng[] = {
+      0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48,
+      0x44, 0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x01, 0x08, 0x00, 0x00, 0x00,
+      0x00, 0xd1, 0x49, 0x20, 0x56, 0x00, 0x00, 0x00, 0x0b, 0x49, 0x44, 0x41, 0x54, 0x78,
+      0x9c, 0x63, 0x70, 0xf8, 0x0f, 0x00, 0x01, 0x82, 0x01, 0x40, 0xa9, 0xec, 0xd7, 0x53,
+      0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
+  const auto map_file =
+      folder.write("t/map.png", std::string(reinterpret_cast<const char*>(kPng), sizeof kPng));
+  ASSERT_TRUE(std::filesystem::exists(map_file));
+  Loader loader;
+  const Scene scene = build_scene(plan(folder, R"(
+models:
+  - {model: a, materials: {Bus: {noise_scale: 2.5, noise_texture: t/map.png}}}
+  - {model: a, materials: {Panels: {noise_texture: t/../t/map.png}}}
+)"),
+                                  std::ref(loader));
+  const Material& bus = scene.materials[scene.instances[0].materials[0]];
+  const Material& panels = scene.materials[scene.instances[1].materials[1]];
+  EXPECT_EQ(bus.noise_scale, 2.5F);
+  EXPECT_EQ(panels.noise_scale, 1.0F);
+  ASSERT_TRUE(bus.noise_texture.used());
+  EXPECT_EQ(bus.noise_texture.texture, panels.noise_texture.texture);  // loaded once
+  const Texture& map = scene.textures[static_cast<std::size_t>(bus.noise_texture.texture)];
+  EXPECT_EQ(map.width, 2U);
+  EXPECT_EQ(map.channels, 1U);
+  EXPECT_EQ(map.texels, (std::vector<std::uint8_t>{64, 255}));
+}
+
+TEST(SceneFile, AMissingNoiseTextureIsToldWithItsPlace) {
+  const TestFolder folder;
+  Loader loader;
+  const std::string error = error_of(folder, [&] {
+    build_scene(plan(folder, "models: [{model: a, materials: {Bus: {noise_texture: no.png}}}]\n"),
+                std::ref(loader));
+  });
+  EXPECT_TRUE(error.starts_with(
+      "scene.yaml:1:54: models[0].materials.Bus.noise_texture: no.png: No such file"))
+      << error;
+}
+
 TEST(SceneFile, AnOverrideByNameWinsOverTheOneForAll) {
   const Scene scene = build(R"(
 models:

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Steps of noise in beams per second on one core. The yardstick of those that draw normals is the
+// standard library: a Mersenne twister and std::normal_distribution, added to every range.
+#include "ratio_reporter.hpp"
+
+#include <glidar/sensor/noise.hpp>
+
+#include <random>
+
+namespace glidar::bench {
+namespace {
+
+constexpr std::uint32_t kSide = 512;
+
+/// A camera's frame on one thread; every column that steps read is there.
+struct Stage {
+  Beams beams;
+  Frame frame;
+  Workers workers{1};
+
+  Stage() {
+    const std::size_t size = std::size_t{kSide} * kSide;
+    beams.rows = kSide;
+    beams.cols = kSide;
+    beams.directions.assign(size, Eigen::Vector3d(0.0, 0.6, 0.8));
+    resize(frame, size);
+    frame.truth.cos_incidence.assign(size, 0.8F);
+    frame.truth.noise_scale.assign(size, 1.0F);
+    refill();
+  }
+
+  /// As measured; most steps move ranges a little, so that this is not needed between runs.
+  void refill() {
+    std::fill(frame.range_m.begin(), frame.range_m.end(), 2.5);
+    std::fill(frame.intensity.begin(), frame.intensity.end(), 0.5F);
+    std::fill(frame.status.begin(), frame.status.end(), Status::hit);
+  }
+};
+
+void count_beams(benchmark::State& state) {
+  state.counters["beams/s"] = benchmark::Counter(
+      static_cast<double>(state.iterations()) * kSide * kSide, benchmark::Counter::kIsRate);
+}
+
+void bench_step(const std::string& name, const std::vector<NoiseStep>& noise) {
+  benchmark::RegisterBenchmark(name.c_str(), [noise](benchmark::State& state) {
+    Stage stage;
+    for (auto _ : state) {
+      stage.refill();
+      benchmark::DoNotOptimize(&aimed_beams(noise, stage.beams, stage.workers, stage.frame));
+      apply_noise(noise, 0.1, stage.beams, stage.workers, stage.frame);
+    }
+    count_beams(state);
+  });
+}
+
+void bench_standard_library() {
+  benchmark::RegisterBenchmark("std::normal_distribution", [](benchmark::State& state) {
+    Stage stage;
+    std::mt19937_64 generator(1);
+    std::normal_distribution<double> normal(0.0, 0.02);
+    for (auto _ : state) {
+      stage.refill();
+      for (double& range_m : stage.frame.range_m) range_m += normal(generator);
+      benchmark::DoNotOptimize(stage.frame.range_m.data());
+    }
+    count_beams(state);
+  });
+}
+
+void register_steps() {
+  bench_step("refill and nothing", {});
+  bench_step("range_gaussian", {RangeGaussian{.sigma_m = 0.02}});
+  bench_step("range_snr", {RangeSnr{.floor_m = 0.01, .k_m = 0.3, .snr_at_full_scale = 250.0}});
+  bench_step("range_2015 uniform", {Range2015{.additive_m = 0.01}});
+  bench_step("range_quantum", {RangeQuantum{.step_m = 0.002}});
+  bench_step("range_bias", {RangeBias{.sigma_m = 0.01}});
+  bench_step("range_drift", {RangeDrift{.sigma_m = 0.01, .tau_s = 60.0}});
+  bench_step("dropout", {Dropout{.probability = 0.01}});
+  bench_step("detection", {Detection{.threshold = 0.1, .sigma = 0.02}});
+  bench_step("crosstalk", {Crosstalk{.probability = 0.01}});
+  bench_step("false_echoes", {FalseEchoes{.rate_hz = 1e4, .far_m = 100.0}});
+  bench_step("disparity_quantum", {DisparityQuantum{.k_m = 351.3}});
+  bench_step("khoshelham", {Khoshelham{}});
+  bench_step("nguyen_axial", {NguyenAxial{}});
+  bench_step("nguyen_lateral", {NguyenLateral{}});
+  bench_step("icl_kinect", {IclKinect{}});
+  bench_step("kinect_v1", {KinectV1{}});
+  bench_step("stereo", {Stereo{.focal_px = 674.0, .baseline_m = 0.05, .sigma_px = 0.08}});
+  bench_step("continuous_wave", {ContinuousWave{.frequencies_hz = {80e6, 16e6, 120e6},
+                                                .electrons_at_full_scale = 2e4}});
+  bench_step("intensity_gaussian", {IntensityGaussian{.sigma = 0.01}});
+  bench_step("intensity_scale", {IntensityScale{}});
+  bench_step("pointing_jitter", {PointingJitter{.sigma_azimuth_rad = 1e-3}});
+  bench_step("encoder_error", {EncoderError{.step_rad = 1e-4}});
+  bench_step("five steps of a lidar",
+             {RangeBias{.sigma_m = 0.01}, RangeSnr{.k_m = 0.3, .snr_at_full_scale = 250.0},
+              Dropout{.probability = 0.01}, RangeQuantum{.step_m = 0.002},
+              IntensityGaussian{.sigma = 0.01}});
+}
+
+}  // namespace
+}  // namespace glidar::bench
+
+int main(int argc, char** argv) {
+  glidar::bench::bench_standard_library();
+  glidar::bench::register_steps();
+  return glidar::bench::run(
+      argc, argv,
+      {{"range_gaussian / std::normal_distribution", "std::normal_distribution", "range_gaussian",
+        1.5},
+       {"range_snr / std::normal_distribution", "std::normal_distribution", "range_snr", 1.5}});
+}

@@ -1,0 +1,208 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/noise_yaml.hpp>
+
+#include <glidar/io/noise_fields.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+constexpr std::size_t kMostFrequencies = 8;
+constexpr std::uint32_t kWidestWindow = 33;
+constexpr NumberRule kFrequency = {1.0, 1e12, false, "hertz from 1 to 1e12"};
+
+/// What a step's map holds beside its numbers; most hold nothing.
+template <class Step>
+std::vector<std::string> other_keys(const Step& /*step*/) {
+  return {};
+}
+template <class Step>
+void read_others(const YamlField& /*field*/, Step& /*step*/) {}
+
+std::vector<std::string> other_keys(const Range2015& /*step*/) {
+  return {"distribution"};
+}
+void read_others(const YamlField& field, Range2015& step) {
+  if (const auto kind = find(field, "distribution")) {
+    step.distribution = static_cast<Range2015::Distribution>(one_of(*kind, {"uniform", "normal"}));
+  }
+}
+
+std::vector<std::string> other_keys(const RangeDrift& /*step*/) {
+  return {"per_ring"};
+}
+void read_others(const YamlField& field, RangeDrift& step) {
+  if (const auto per_ring = find(field, "per_ring")) step.per_ring = boolean(*per_ring);
+}
+
+/// A list of [place, probability] with rising places.
+Table read_table(const YamlField& field, double unit) {
+  Table table;
+  for (const YamlField& pair : items(field)) {
+    if (!pair.node.IsSequence() || pair.node.size() != 2) {
+      reject(pair, describe(pair), "a list of 2 numbers, a place and a probability");
+    }
+    const std::vector<YamlField> parts = items(pair);
+    const double at = number(parts[0], kFromZero) * unit;
+    if (!table.at.empty() && at <= table.at.back()) {
+      reject(parts[0], describe(parts[0]), "a number above that of the pair before");
+    }
+    table.at.push_back(at);
+    table.value.push_back(number(parts[1], kZeroToOne));
+  }
+  if (table.at.empty()) reject(field, "an empty list", "at least one pair");
+  return table;
+}
+
+std::vector<std::string> other_keys(const Dropout& /*step*/) {
+  return {"by_range_m", "by_incidence_deg"};
+}
+void read_others(const YamlField& field, Dropout& step) {
+  if (const auto table = find(field, "by_range_m")) step.by_range_m = read_table(*table, 1.0);
+  if (const auto table = find(field, "by_incidence_deg")) {
+    step.by_incidence_rad = read_table(*table, kDegree_rad);
+  }
+}
+
+void read_others(const YamlField& field, FalseEchoes& step) {
+  if (step.far_m > step.near_m) return;
+  const YamlField far = need(field, "far_m");
+  reject(far, describe(far) + ", not beyond near_m", "a finite number above near_m");
+}
+
+std::vector<std::string> other_keys(const KinectV1& /*step*/) {
+  return {"window"};
+}
+void read_others(const YamlField& field, KinectV1& step) {
+  const auto window = find(field, "window");
+  if (!window) return;
+  step.window = whole_number(*window, 1, kWidestWindow);
+  if (step.window % 2 == 0) reject(*window, describe(*window), "an odd number from 1 to 33");
+}
+
+std::vector<std::string> other_keys(const ContinuousWave& /*step*/) {
+  return {"frequencies_hz"};
+}
+void read_others(const YamlField& field, ContinuousWave& step) {
+  const YamlField list = need(field, "frequencies_hz");
+  for (const YamlField& item : items(list)) {
+    step.frequencies_hz.push_back(number(item, kFrequency));
+  }
+  const std::size_t count = step.frequencies_hz.size();
+  if (count == 0 || count > kMostFrequencies) reject(list, describe(list), "1 to 8 frequencies");
+  const double finest = *std::max_element(step.frequencies_hz.begin(), step.frequencies_hz.end());
+  constexpr double kMostWaves = 1000.0;  // tried one by one for every pixel
+  if (finest * unambiguous_m(step.frequencies_hz) > kMostWaves * 0.5 * 299792458.0) {
+    reject(list, "their greatest common divisor is below a thousandth of the greatest",
+           "frequencies in simple ratios", "round them to whole MHz");
+  }
+}
+
+std::vector<std::string> other_keys(const IntensityScale& /*step*/) {
+  return {"kind"};
+}
+void read_others(const YamlField& field, IntensityScale& step) {
+  if (const auto kind = find(field, "kind")) {
+    step.kind = static_cast<IntensityScale::Kind>(one_of(*kind, {"unit", "vendor"}));
+  }
+}
+
+template <class Step>
+NoiseStep read_step_of(const YamlField& field) {
+  Step step;
+  std::vector<std::string> known = {"type"};
+  for (const auto& n : numbers_of(step)) known.emplace_back(n.key);
+  for (std::string& key : other_keys(step)) known.push_back(std::move(key));
+  require_map(field, known);
+  for (const auto& n : numbers_of(step)) {
+    const auto value = n.is_needed ? need(field, n.key) : find(field, n.key);
+    if (value) step.*n.number = number(*value, n.rule) * n.unit;
+  }
+  read_others(field, step);
+  return step;
+}
+
+template <std::size_t... kIndex>
+NoiseStep read_step(const YamlField& field, std::size_t type,
+                    std::index_sequence<kIndex...> /*all*/) {
+  using Read = NoiseStep (*)(const YamlField&);
+  constexpr std::array<Read, sizeof...(kIndex)> kReaders = {
+      &read_step_of<std::variant_alternative_t<kIndex, NoiseStep>>...};
+  return kReaders[type](field);
+}
+
+using Json = nlohmann::ordered_json;
+
+template <class Step>
+void tell_others(const Step& /*step*/, Json& /*told*/) {}
+
+void tell_others(const Range2015& step, Json& told) {
+  told["distribution"] =
+      step.distribution == Range2015::Distribution::uniform ? "uniform" : "normal";
+}
+
+void tell_others(const RangeDrift& step, Json& told) {
+  told["per_ring"] = step.per_ring;
+}
+
+Json table_json(const Table& table, double unit) {
+  Json pairs = Json::array();
+  for (std::size_t i = 0; i < table.at.size(); ++i) {
+    pairs.push_back(Json::array({table.at[i] / unit, table.value[i]}));
+  }
+  return pairs;
+}
+
+void tell_others(const Dropout& step, Json& told) {
+  told["by_range_m"] = table_json(step.by_range_m, 1.0);
+  told["by_incidence_deg"] = table_json(step.by_incidence_rad, kDegree_rad);
+}
+
+void tell_others(const KinectV1& step, Json& told) {
+  told["window"] = step.window;
+}
+
+void tell_others(const ContinuousWave& step, Json& told) {
+  told["frequencies_hz"] = step.frequencies_hz;
+}
+
+void tell_others(const IntensityScale& step, Json& told) {
+  told["kind"] = step.kind == IntensityScale::Kind::unit ? "unit" : "vendor";
+}
+
+}  // namespace
+
+std::vector<NoiseStep> read_noise(const YamlField& field) {
+  static const std::vector<std::string> kTypes(kNoiseTypes.begin(), kNoiseTypes.end());
+  std::vector<NoiseStep> noise;
+  for (const YamlField& item : items(field)) {
+    if (!item.node.IsMap()) reject(item, describe(item), "a map with the key 'type'");
+    const std::size_t type = one_of(need(item, "type"), kTypes);
+    noise.push_back(
+        read_step(item, type, std::make_index_sequence<std::variant_size_v<NoiseStep>>()));
+  }
+  if (noise.size() > kMostNoiseSteps) {
+    reject(field, describe(field), "at most " + std::to_string(kMostNoiseSteps) + " steps");
+  }
+  return noise;
+}
+
+nlohmann::ordered_json noise_json(const std::vector<NoiseStep>& noise) {
+  Json list = Json::array();
+  for (const NoiseStep& step : noise) {
+    Json told = {{"type", kNoiseTypes.at(step.index())}};
+    std::visit(
+        [&](const auto& s) {
+          for (const auto& n : numbers_of(s)) told[n.key] = s.*n.number / n.unit;
+          tell_others(s, told);
+        },
+        step);
+    list.push_back(told);
+  }
+  return list;
+}
+
+}  // namespace glidar

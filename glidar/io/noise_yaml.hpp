@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io.
+
+#include <glidar/io/yaml_reader.hpp>
+#include <glidar/sensor/noise.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <vector>
+
+namespace glidar {
+
+/// Reads a list of steps, each a map with the key 'type' and the numbers of its kind.
+std::vector<NoiseStep> read_noise(const YamlField& field);
+
+/// The list as the sidecar tells it, with every number, those by default too.
+nlohmann::ordered_json noise_json(const std::vector<NoiseStep>& noise);
+
+}  // namespace glidar

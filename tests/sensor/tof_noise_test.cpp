@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "noise_stage.hpp"
+
+#include <complex>
+#include <numbers>
+
+namespace glidar {
+namespace {
+
+using testing::expect_normal;
+using testing::moments;
+using testing::NoiseStage;
+
+constexpr double kLight_m_per_s = 299792458.0;
+
+/// Kinect v2's frequencies, and electrons that give an error of a few millimetres.
+ContinuousWave kinect_v2() {
+  ContinuousWave law;
+  law.frequencies_hz = {80e6, 16e6, 120e6};
+  law.electrons_at_full_scale = 20000.0;
+  law.background_electrons = 5000.0;
+  law.contrast = 0.6;
+  return law;
+}
+
+TEST(MixedPhasor, IsTheSumOfTheWaves) {
+  const std::array<Echo, 2> echoes = {{{0.7, 1.3}, {0.4, 1.62}}};
+  for (const double f : {16e6, 80e6, 120e6}) {
+    const auto wave = [&](const Echo& e) {
+      return std::polar(e.amplitude, 4.0 * std::numbers::pi * f * e.range_m / kLight_m_per_s);
+    };
+    const std::complex<double> sum = wave(echoes[0]) + wave(echoes[1]);
+    const Phasor found = mixed_phasor(echoes, f);
+    const double expected = std::arg(sum) / (2.0 * std::numbers::pi);
+    EXPECT_NEAR(found.turns, expected < 0.0 ? expected + 1.0 : expected, 1e-12);
+    EXPECT_NEAR(found.coherence, std::abs(sum) / 1.1, 1e-12);
+  }
+}
+
+TEST(ContinuousWave, UnambiguousRangesAreThoseOfTheFrequencies) {
+  EXPECT_NEAR(unambiguous_m({80e6}), 1.874, 5e-4);
+  EXPECT_NEAR(unambiguous_m({16e6}), 9.369, 5e-4);
+  EXPECT_NEAR(unambiguous_m({120e6}), 1.249, 5e-4);
+  EXPECT_NEAR(unambiguous_m({80e6, 16e6, 120e6}), 18.74, 5e-3);
+}
+
+TEST(ContinuousWave, HasTheSpreadOfLangeAndSeitz) {
+  ContinuousWave law = kinect_v2();
+  law.frequencies_hz = {16e6};
+  NoiseStage stage(100, 1000, 4.0, 0.5);
+  stage.apply({law});
+  // sigma_z = c / (4 sqrt 2 pi f) sqrt(B + A) / (C A), A = 10000
+  const double sigma_m = kLight_m_per_s / (4.0 * std::numbers::sqrt2 * std::numbers::pi * 16e6) *
+                         std::sqrt(15000.0) / (0.6 * 10000.0);
+  expect_normal(moments(stage.frame.range_m), 4.0, sigma_m);
+  EXPECT_NEAR(stage.frame.sigma_m[0], sigma_m, 1e-6);
+}
+
+TEST(ContinuousWave, SeveralFrequenciesGiveTheMeanOfLeastVariance) {
+  NoiseStage stage(100, 1000, 11.7, 0.5);
+  stage.apply({kinect_v2()});
+  double inverse = 0.0;
+  for (const double f : {80e6, 16e6, 120e6}) {
+    const double sigma_m = kLight_m_per_s / (4.0 * std::numbers::sqrt2 * std::numbers::pi * f) *
+                           std::sqrt(15000.0) / (0.6 * 10000.0);
+    inverse += 1.0 / (sigma_m * sigma_m);
+  }
+  expect_normal(moments(stage.frame.range_m), 11.7, 1.0 / std::sqrt(inverse));
+}
+
+TEST(ContinuousWave, RangesBeyondTheUnambiguousWrapAround) {
+  ContinuousWave law = kinect_v2();
+  law.electrons_at_full_scale = 1e12;  // hardly any error
+  NoiseStage stage(1, 4, 20.0);
+  stage.apply({law});
+  EXPECT_NEAR(stage.frame.range_m[0], 20.0 - 18.737028625, 1e-5);
+  law.frequencies_hz = {80e6};
+  stage.reset(20.0);
+  stage.apply({law});
+  EXPECT_NEAR(stage.frame.range_m[0], 20.0 - 10.0 * 1.8737028625, 1e-5);
+}
+
+TEST(ContinuousWave, WeakLightTakesTheWrongWrapOrNone) {
+  ContinuousWave law = kinect_v2();
+  law.electrons_at_full_scale = 300.0;
+  law.background_electrons = 20000.0;
+  law.largest_misfit = 0.03;
+  NoiseStage stage(100, 100, 6.0);
+  stage.apply({law});
+  double wrong = 0.0;
+  double wrapped = 0.0;
+  for (std::size_t i = 0; i < 10000; ++i) {
+    if (stage.frame.status[i] == Status::wrapped) wrapped += 1.0;
+    if (std::abs(stage.frame.range_m[i] - 6.0) > 0.6) wrong += 1.0;
+  }
+  EXPECT_GT(wrong, 100.0);
+  EXPECT_GT(wrapped, 100.0);
+}
+
+TEST(ContinuousWave, AnEdgeMixesToThePhasorMeanOrIsInvalid) {
+  // one frequency, two distances: the phase of the sum of the waves, and a test of its length
+  ContinuousWave law = kinect_v2();
+  law.frequencies_hz = {16e6};
+  law.electrons_at_full_scale = 1e12;
+  law.mixing = 0.8;
+  NoiseStage stage(3, 5, 2.0);
+  const auto set = [&](double near_m, double far_m) {
+    stage.reset(near_m);
+    for (std::size_t i = 0; i < 15; ++i) {
+      if (i % 5 >= 3) stage.frame.range_m[i] = far_m;
+    }
+  };
+  set(2.0, 3.0);
+  stage.apply({law});
+  // of the pixel in the middle: itself 0.2, five near neighbours and three far ones of 0.1 each
+  const double k = 4.0 * std::numbers::pi * 16e6 / kLight_m_per_s;
+  const std::complex<double> sum = std::polar(0.7, k * 2.0) + std::polar(0.3, k * 3.0);
+  EXPECT_NEAR(stage.frame.range_m[7], std::arg(sum) / k, 1e-5);
+  EXPECT_NEAR(stage.frame.range_m[6], 2.0, 1e-5);
+  set(2.0, 2.0 + 9.368514 / 2.0);  // half a wave apart: 0.7 - 0.3 of 1
+  stage.apply({law});
+  EXPECT_EQ(stage.frame.status[7], Status::wrapped);
+  EXPECT_EQ(stage.frame.status[6], Status::hit);
+  law.least_coherence = 0.39;
+  set(2.0, 2.0 + 9.368514 / 2.0);
+  stage.apply({law});
+  EXPECT_EQ(stage.frame.status[7], Status::hit);
+}
+
+}  // namespace
+}  // namespace glidar
