@@ -160,6 +160,43 @@ void clear(Frame::Deskewed& deskewed) {
   deskewed.start_from_sensor.clear();
 }
 
+/// One cast that is in progress.
+struct MovingCast {
+  Renderer& renderer;
+  const CastRequest& request;
+  const Motion& motion;
+  Frame& frame;
+
+  template <class Work>
+  void in_runs(const Work& work) const {
+    renderer.workers().for_ranges(request.beams.size(), kBeamsPerTask,
+                                  [&](std::size_t begin, std::size_t end) {
+                                    work(BeamRange{begin, end});
+                                  });
+  }
+};
+
+/// Casts at what of scratch.present belongs to the body. The first fills frame.truth.
+void cast_body(const MovingCast& job, const Body& body, bool is_first) {
+  Scratch& memory = job.frame.scratch;
+  const CastRequest& request = job.request;
+  Hits& hits = is_first ? job.frame.truth : memory.body_hits;
+  job.in_runs([&](BeamRange range) {
+    move_beams(request, job.motion, body, job.frame.stamp_ns, range, memory);
+  });
+  job.renderer.cast({.beams = memory.moved,
+                     .world_from_sensor = request.world_from_sensor,
+                     .world_from_instance = request.world_from_instance,
+                     .fields = request.fields,
+                     .cull_back_faces = request.cull_back_faces,
+                     .present = memory.present},
+                    hits);
+  job.in_runs([&](BeamRange range) {
+    turn_back(request, memory, range, hits);
+    if (!is_first) merge(hits, request.fields, range, job.frame.truth);
+  });
+}
+
 }  // namespace
 
 bool moves_during_frame(const Motion& motion, const Beams& beams) {
@@ -172,39 +209,15 @@ void cast_moving(Renderer& renderer, const CastRequest& request, const Beams& no
                  const Scene& scene, const Motion& motion, Frame& frame) {
   Scratch& memory = frame.scratch;
   prepare(request.beams, memory);
-  const bool sensor_stands = stands(motion.world_from_sensor);
-  bool is_first = true;
-  const auto cast_body = [&](const Body& body) {
-    const auto in_runs = [&](const auto& work) {
-      renderer.workers().for_ranges(request.beams.size(), kBeamsPerTask,
-                                    [&](std::size_t begin, std::size_t end) {
-                                      work(BeamRange{begin, end});
-                                    });
-    };
-    in_runs(
-        [&](BeamRange range) { move_beams(request, motion, body, frame.stamp_ns, range, memory); });
-    Hits& hits = is_first ? frame.truth : memory.body_hits;
-    renderer.cast({.beams = memory.moved,
-                   .world_from_sensor = request.world_from_sensor,
-                   .world_from_instance = request.world_from_instance,
-                   .fields = request.fields,
-                   .cull_back_faces = request.cull_back_faces,
-                   .present = memory.present},
-                  hits);
-    in_runs([&](BeamRange range) {
-      turn_back(request, memory, range, hits);
-      if (!is_first) merge(hits, request.fields, range, frame.truth);
-    });
-    is_first = false;
-  };
+  const MovingCast job{renderer, request, motion, frame};
 
   // What stands still comes first, also when it is nothing: its beams are the deskewed ones.
   memory.present.assign(scene.instances.size(), 0);
   for (std::size_t i = 0; i < memory.present.size(); ++i) {
     memory.present[i] = static_cast<std::uint8_t>(stands(motion.world_from_instance[i]));
   }
-  cast_body({});
-  if (sensor_stands) {
+  cast_body(job, {}, true);
+  if (stands(motion.world_from_sensor)) {
     clear(frame.deskewed);
   } else {
     keep_deskewed(nominal, &nominal == &request.beams, memory, frame.deskewed);
@@ -213,10 +226,12 @@ void cast_moving(Renderer& renderer, const CastRequest& request, const Beams& no
     if (stands(motion.world_from_instance[i])) continue;
     memory.present.assign(scene.instances.size(), 0);
     memory.present[i] = 1;
-    cast_body({.world_from_body = &motion.world_from_instance[i],
+    cast_body(job,
+              {.world_from_body = &motion.world_from_instance[i],
                .at_start = request.world_from_instance[i],
                .sphere = sphere_around(scene, i, request.world_from_instance[i],
-                                       request.world_from_sensor)});
+                                       request.world_from_sensor)},
+              false);
   }
 }
 

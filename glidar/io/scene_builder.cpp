@@ -60,6 +60,8 @@ void apply(const MaterialOverride& change, TexturePlaces& places, Scene& scene,
   material.diffuse = change.diffuse.value_or(material.diffuse);
   material.specular = change.specular.value_or(material.specular);
   material.shininess = change.shininess.value_or(material.shininess);
+  material.backscatter = change.backscatter.value_or(material.backscatter);
+  if (!change.spectrum.empty()) material.spectrum = change.spectrum;
   if (!change.noise_texture.empty()) {
     material.noise_texture = {.texture = place_of(change, places, scene)};
   }

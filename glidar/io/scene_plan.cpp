@@ -5,6 +5,7 @@
 #include <glidar/io/length_unit.hpp>
 #include <glidar/io/motion_yaml.hpp>
 #include <glidar/io/pose_yaml.hpp>
+#include <glidar/io/pulse_yaml.hpp>
 #include <glidar/io/scene_builder.hpp>
 #include <glidar/io/sensor_file.hpp>
 #include <glidar/io/sensor_presets.hpp>
@@ -47,7 +48,7 @@ ModelOptions read_options(const YamlField& model, const ModelOptions& defaults) 
 
 MaterialOverride read_override(const std::string& material, const YamlField& field) {
   require_map(field, {"ambient", "diffuse", "specular", "shininess", "opacity", "noise_scale",
-                      "noise_texture"});
+                      "noise_texture", "backscatter", "spectrum"});
   MaterialOverride change;
   change.material = material;
   change.where = where(field);
@@ -63,6 +64,8 @@ MaterialOverride read_override(const std::string& material, const YamlField& fie
   scalar("shininess", kShininess, change.shininess);
   scalar("opacity", kZeroToOne, change.opacity);
   scalar("noise_scale", kFromZero, change.noise_scale);
+  if (const auto value = find(field, "backscatter")) change.backscatter = read_backscatter(*value);
+  if (const auto value = find(field, "spectrum")) change.spectrum = read_spectrum(*value);
   if (const auto texture = find(field, "noise_texture")) {
     change.noise_texture = resolved(*texture);
     change.where_noise_texture = where(*texture);

@@ -4,6 +4,7 @@
 
 #include <glidar/io/noise_yaml.hpp>
 #include <glidar/io/optics_yaml.hpp>
+#include <glidar/io/pulse_yaml.hpp>
 #include <glidar/io/sensor_presets.hpp>
 #include <glidar/io/sensor_yaml.hpp>
 
@@ -187,7 +188,7 @@ std::vector<SheetEntry> read_entries(const YamlField& root) {
 
 Sensor read_sensor(const YamlField& field) {
   require_map(field, {"name", "optics", "rate_hz", "wavelength_nm", "limits", "depth_limits",
-                      "light", "noise", "cull_back_faces", "source", "unverified"});
+                      "light", "pulse_light", "noise", "cull_back_faces", "source", "unverified"});
   Sensor sensor;
   sensor.optics = read_optics(need(field, "optics"));
   if (!is_camera(sensor)) sensor.name = "lidar";
@@ -198,6 +199,7 @@ Sensor read_sensor(const YamlField& field) {
   }
   sensor.limits = read_limits(field, sensor);
   if (const auto light = find(field, "light")) sensor.light = read_light(*light);
+  if (const auto pulse = find(field, "pulse_light")) sensor.pulse = read_pulse_light(*pulse);
   if (const auto noise = find(field, "noise")) sensor.noise = read_noise(*noise);
   if (const auto cull = find(field, "cull_back_faces")) sensor.cull_back_faces = boolean(*cull);
   if (find(field, "source") || find(field, "unverified")) {

@@ -34,6 +34,17 @@ Json pose_json(const Pose& pose) {
           {"orientation", {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}}}};
 }
 
+Json pulse_json(const PulseLight& light) {
+  return {{"reference_reflectance", light.reference_reflectance},
+          {"reference_range_m", light.reference_range_m},
+          {"range_exponent", light.range_exponent},
+          {"overlap", light.overlap},
+          {"extinction_per_m", light.extinction_per_m},
+          {"noise_sigma", light.noise_sigma},
+          {"false_alarm_range_m", light.false_alarm_range_m},
+          {"saturation", light.saturation}};
+}
+
 Json sensor_json(const CloudFile& job) {
   const Sensor& sensor = job.context.sensor;
   const Light& light = sensor.light;
@@ -55,6 +66,7 @@ Json sensor_json(const CloudFile& job) {
             {"attenuation_linear_per_m", light.attenuation_linear_per_m},
             {"attenuation_quadratic_per_m2", light.attenuation_quadratic_per_m2},
             {"ambient", light.ambient}}},
+          {"pulse_light", sensor.pulse ? pulse_json(*sensor.pulse) : Json()},
           {"noise", noise_json(sensor.noise)},
           {"cull_back_faces", sensor.cull_back_faces},
           {"world_from_sensor", pose_json(job.frame.world_from_sensor)}};

@@ -59,8 +59,9 @@ void look_aside(const PairBatch& shift_px, const NoiseView& view, NoiseBatch& ba
   for (std::size_t i = 0; i < batch.count; ++i) {
     if (!is_hit(batch, i)) continue;
     const std::size_t beam = batch.first + i;
+    const std::size_t whole_row = beam / view.beams.cols;
     const double col = static_cast<double>(beam % view.beams.cols) + shift_px.first[i];
-    const double row = static_cast<double>(beam / view.beams.cols) + shift_px.second[i];
+    const double row = static_cast<double>(whole_row) + shift_px.second[i];
     const double depth = depth_between(view, std::clamp(row, 0.0, view.beams.rows - 1.0),
                                        std::clamp(col, 0.0, view.beams.cols - 1.0));
     if (std::isnan(depth)) {

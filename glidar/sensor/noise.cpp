@@ -157,18 +157,29 @@ void apply_steps(const Stretch& stretch, const NoiseView& view, NoiseBatch& batc
   }
 }
 
+template <class Step>
+void turn_if_it_turns(const Step& step, const Draw& draw, BeamRange range, Beams& beams) {
+  if constexpr (kTurnsBeams<Step>) turn(step, draw, range.begin, range.end - range.begin, beams);
+}
+
 void turn_beams(const std::vector<NoiseStep>& noise, const Frame& frame, BeamRange range,
                 Beams& beams) {
   for (std::size_t k = 0; k < noise.size(); ++k) {
     const Draw draw = draw_of(frame, k, 0);
-    std::visit(
-        [&](const auto& step) {
-          if constexpr (kTurnsBeams<std::decay_t<decltype(step)>>) {
-            turn(step, draw, range.begin, range.end - range.begin, beams);
-          }
-        },
-        noise[k]);
+    std::visit([&](const auto& step) { turn_if_it_turns(step, draw, range, beams); }, noise[k]);
   }
+}
+
+/// Applies steps of which at most the first looks around.
+void apply_stretch(const Stretch& stretch, const NoiseView& view, Workers& workers) {
+  if (looks_around(stretch.noise[stretch.begin])) {
+    for_batches(stretch, view, workers,
+                [&](NoiseBatch& batch) { prepare_step(stretch, view, batch); });
+  }
+  for_batches(stretch, view, workers, [&](NoiseBatch& batch) {
+    apply_steps(stretch, view, batch);
+    store(view, batch);
+  });
 }
 
 }  // namespace
@@ -214,15 +225,7 @@ void apply_noise(const std::vector<NoiseStep>& noise, double frame_s, const Beam
     const auto next = std::find_if(noise.begin() + static_cast<std::ptrdiff_t>(begin) + 1,
                                    noise.end(), looks_around);
     end = static_cast<std::size_t>(next - noise.begin());
-    const Stretch stretch{noise, begin, end, frame_s};
-    if (looks_around(noise[begin])) {
-      for_batches(stretch, view, workers,
-                  [&](NoiseBatch& batch) { prepare_step(stretch, view, batch); });
-    }
-    for_batches(stretch, view, workers, [&](NoiseBatch& batch) {
-      apply_steps(stretch, view, batch);
-      store(view, batch);
-    });
+    apply_stretch({noise, begin, end, frame_s}, view, workers);
   }
 }
 

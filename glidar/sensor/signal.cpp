@@ -104,6 +104,35 @@ void measure_nothing(const PulseLight& light, double noise, double place, std::s
   frame.intensity[beam] = static_cast<float>(noise);
 }
 
+/// What a beam brings back from where it hit, without noise.
+double signal_of_hit(const PulseLight& light, const Scene& scene, const Beams& beams,
+                     double wavelength_m, std::size_t beam, const Hits& truth) {
+  const Material& material = material_of(scene, truth, beam);
+  const double facing = -truth.shading_normal[beam].cast<double>().dot(beams.directions[beam]);
+  const double rho = reflectance_of_hit(material, truth.reflectance[beam].diffuse, wavelength_m);
+  return signal_of(light, sent_back(material.backscatter, rho, std::clamp(facing, 0.0, 1.0)),
+                   truth.range_m[beam]);
+}
+
+void measure_hit(const PulseLight& light, double received, std::size_t beam, Frame& frame) {
+  frame.intensity[beam] = static_cast<float>(received);
+  if (received < 1.0) lose(frame, beam, Status::below_threshold);
+  if (light.saturation > 0.0 && received >= light.saturation) lose(frame, beam, Status::saturated);
+}
+
+/// The random numbers of a batch of beams, as far as the light needs them.
+void draw_batch(const PulseLight& light, std::size_t first, const Frame& frame,
+                Batch<double>& noise, PairBatch& places) {
+  Draw draw{.seed = frame.seed,
+            .sensor = frame.sensor_id,
+            .frame = frame.number,
+            .beam = static_cast<std::uint32_t>(first),
+            .purpose = Purpose::detection};
+  if (light.noise_sigma > 0.0) draw_normals(draw, noise);
+  draw.purpose = Purpose::false_alarm;
+  if (light.false_alarm_range_m > 0.0) draw_uniforms(draw, places);
+}
+
 }  // namespace
 
 void validate(const PulseLight& light) {
@@ -171,32 +200,17 @@ double range_exponent(double reflectance_a, double range_a_m, double reflectance
 
 void measure_signal(const PulseLight& light, const Scene& scene, const Beams& beams,
                     double wavelength_m, BeamRange range, Frame& frame) {
-  const Hits& truth = frame.truth;
   Batch<double> noise{};
   PairBatch places{};
-  Draw draw{.seed = frame.seed, .sensor = frame.sensor_id, .frame = frame.number};
-  for (std::size_t first = range.begin; first < range.end; first += kDrawBatch) {
-    draw.beam = static_cast<std::uint32_t>(first);
-    draw.purpose = Purpose::detection;
-    if (light.noise_sigma > 0.0) draw_normals(draw, noise);
-    draw.purpose = Purpose::false_alarm;
-    if (light.false_alarm_range_m > 0.0) draw_uniforms(draw, places);
-    for (std::size_t i = first; i < std::min(range.end, first + kDrawBatch); ++i) {
-      const double error = light.noise_sigma * noise[i - first];
-      if (frame.status[i] != Status::hit) {
-        measure_nothing(light, error, places.first[i - first], i, frame);
-        continue;
-      }
-      const Material& material = material_of(scene, truth, i);
-      const double cosine =
-          std::clamp(-truth.shading_normal[i].cast<double>().dot(beams.directions[i]), 0.0, 1.0);
-      const double rho = reflectance_of_hit(material, truth.reflectance[i].diffuse, wavelength_m);
-      const double signal =
-          signal_of(light, sent_back(material.backscatter, rho, cosine), truth.range_m[i]);
-      const double received = signal + error;
-      frame.intensity[i] = static_cast<float>(received);
-      if (received < 1.0) lose(frame, i, Status::below_threshold);
-      if (light.saturation > 0.0 && received >= light.saturation) lose(frame, i, Status::saturated);
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    const std::size_t k = (i - range.begin) % kDrawBatch;
+    if (k == 0) draw_batch(light, i, frame, noise, places);
+    const double error = light.noise_sigma * noise[k];
+    if (frame.status[i] == Status::hit) {
+      const double signal = signal_of_hit(light, scene, beams, wavelength_m, i, frame.truth);
+      measure_hit(light, signal + error, i, frame);
+    } else {
+      measure_nothing(light, error, places.first[k], i, frame);
     }
   }
 }

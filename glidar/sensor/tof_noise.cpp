@@ -83,7 +83,7 @@ double phase_sigma_rad(const ContinuousWave& law, double amplitude) {
 double unambiguous_m(const std::vector<double>& frequencies_hz) {
   std::uint64_t common = 0;
   for (const double f : frequencies_hz) {
-    common = std::gcd(common, static_cast<std::uint64_t>(f + 0.5));
+    common = std::gcd(common, static_cast<std::uint64_t>(std::llround(f)));
   }
   return kHalfLight_m_per_s / static_cast<double>(std::max<std::uint64_t>(common, 1));
 }
