@@ -36,43 +36,28 @@ struct TileWork {
   ExactBlock exact;
 };
 
-/// Collects the beams of a tile that lies wholly in the grid.
-void gather_whole(const Beams& beams, const embree::Tile& tile, TileWork& work) {
+/// Collects the tile's beams; lanes beyond the grid's border repeat the first and are not valid.
+void gather_beams(const Beams& beams, const embree::Tile& tile, TileWork& work) {
+  const bool whole = tile.is_whole(kLanes);
   const std::size_t first = tile.beam(0);
   const std::uint32_t column_mask = (1U << tile.width_shift) - 1U;
-  for (unsigned lane = 0; lane < kLanes; ++lane) {
-    work.block.beam[lane] =
-        first + std::size_t{lane >> tile.width_shift} * tile.cols + (lane & column_mask);
-  }
-  for (unsigned lane = 0; lane < kLanes; ++lane) {
-    work.in_sensor.set(lane, beams.directions[work.block.beam[lane]]);
-  }
-  work.valid.at.fill(-1);
-  work.inside = (1U << kLanes) - 1U;
-}
-
-/// Collects a tile's beams; lanes beyond the grid's border repeat the first and are not valid.
-void gather_beams(const Beams& beams, const embree::Tile& tile, TileWork& work) {
-  if (tile.is_whole(kLanes)) return gather_whole(beams, tile, work);
   work.inside = 0;
   for (unsigned lane = 0; lane < kLanes; ++lane) {
-    const std::size_t beam = tile.beam(lane);
-    const bool inside = beam != embree::Tile::kOutside;
+    const std::size_t beam =
+        first + std::size_t{lane >> tile.width_shift} * tile.cols + (lane & column_mask);
+    const bool inside = whole || tile.beam(lane) != embree::Tile::kOutside;
     work.inside |= static_cast<std::uint32_t>(inside) << lane;
     work.valid[lane] = inside ? -1 : 0;
-    work.block.beam[lane] = inside ? beam : tile.beam(0);
+    work.block.beam[lane] = inside ? beam : first;
     work.in_sensor.set(lane, beams.directions[work.block.beam[lane]]);
   }
 }
 
-/// Asks the memory for a tile's beams ahead of time: its rows lie far apart.
+/// Asks the memory for a tile's beams ahead of time.
 void prefetch(const Beams& beams, const embree::Tile& tile) {
-  const std::uint32_t width = 1U << tile.width_shift;
-  for (unsigned lane = 0; lane < kLanes; lane += width) {
+  for (unsigned lane = 0; lane < kLanes; lane += 2) {  // two directions and a half per cache line
     const std::size_t beam = tile.beam(lane);
-    if (beam == embree::Tile::kOutside) return;
-    __builtin_prefetch(&beams.directions[beam]);
-    __builtin_prefetch(&beams.directions[beam].x() + 8);  // the next cache line
+    if (beam != embree::Tile::kOutside) __builtin_prefetch(&beams.directions[beam]);
   }
 }
 
