@@ -127,6 +127,7 @@ void add_output_flags(CLI::App& command, OutputFlags& flags) {
       command,
       {"--cloud-frame", "NAME", "Axes: sensor, optical, ros, gl, legacy or world [sensor]", group},
       {"sensor", "optical", "ros", "gl", "world", "legacy"}, flags.cloud_frame);
+  command.add_flag("--deskew", flags.deskew, "Points where a moving sensor met them")->group(group);
   command.add_flag("--dense", flags.dense, "Leave misses out of clouds")->group(group);
   add_choice(command,
              {"--pcd-encoding", "NAME", "ascii, binary or binary_compressed [binary]", group},
@@ -180,6 +181,7 @@ std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& in
       outputs.push_back({.path = path,
                          .columns = columns_of(format_for(path), asked),
                          .cloud_frame = flags.cloud_frame,
+                         .deskew = flags.deskew,
                          .sink = make_file_sink(path, options, context, report)});
     });
   }
@@ -241,11 +243,12 @@ void write_outputs(const std::vector<Output>& outputs, const Frame& frame, const
   for (const Output& output : outputs) {
     if (report.progress) report.progress("writing " + output.path.string(), -1.0);
     const bool same = made_for != nullptr && made_for->columns == output.columns &&
-                      made_for->cloud_frame == output.cloud_frame;
+                      made_for->cloud_frame == output.cloud_frame &&
+                      made_for->deskew == output.deskew;
     if (!same) {
-      make_point_cloud(frame, beams, scene,
-                       cloud_frame(output.cloud_frame, beams, frame.world_from_sensor),
-                       output.columns, cloud);
+      CloudFrame axes = cloud_frame(output.cloud_frame, beams, frame.world_from_sensor);
+      axes.deskew = output.deskew;
+      make_point_cloud(frame, beams, scene, axes, output.columns, cloud);
       made_for = &output;
     }
     output.sink->write(cloud, frame);

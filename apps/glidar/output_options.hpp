@@ -23,6 +23,7 @@ struct OutputFlags {
   std::string cloud_frame = "sensor";
   std::string pcd_encoding = "binary";
   bool dense = false;
+  bool deskew = false;
   bool ply_ascii = false;
   bool no_sidecar = false;
   std::optional<double> depth_scale;
@@ -38,6 +39,7 @@ struct Output {
   std::filesystem::path path;
   std::vector<std::string> columns;
   std::string cloud_frame;  ///< optical, ros, gl, world or legacy
+  bool deskew = false;      ///< points as fired from where the sensor was
   std::unique_ptr<CloudSink> sink;
 };
 

@@ -7,6 +7,7 @@
 #include <apps/glidar/information_options.hpp>
 #include <apps/glidar/model_options.hpp>
 #include <apps/glidar/motion_options.hpp>
+#include <apps/glidar/numbers.hpp>
 #include <apps/glidar/option_kinds.hpp>
 #include <apps/glidar/output_options.hpp>
 #include <apps/glidar/pose_options.hpp>
@@ -19,7 +20,9 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -33,6 +36,7 @@ constexpr const char* kExamples = R"(Examples:
   glidar render builtin:torus --fx 500 --cx 300 --cy 250 -w 640 --height 480 -o torus.depth.png
   glidar render builtin:sphere --columns all -o sphere.npz
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --columns all -o room.pcd -o room.png
+  glidar render builtin:box --sensor OS1-32 --eye 0,0,0 --camera-dr 0,1,0 --duration 1 -o scan.pcd
   glidar render builtin:asteroid --model-q 0.7,0,0.7,0 --camera-z 10 --pcd view
 With your own files:
   glidar render part.stl --unit mm --up y -o part.pcd
@@ -54,6 +58,7 @@ struct RenderFlags {
   InformationFlags information;
   RendererOptions renderer;
   std::uint64_t seed = 1;
+  std::optional<double> duration_s;  ///< of a sequence of frames; empty: a single one
   bool quiet = false;
 };
 
@@ -106,20 +111,38 @@ std::uint64_t parse_seed(std::string_view option, const std::string& text) {
                .remedy = ""});
 }
 
-/// Measures the scene; the console shows how far that is.
-void measure(const RenderFlags& flags, const View& view, const Motion& motion,
-             const HitFields& fields, Console& console, Frame& frame) {
+/// How many frames there are in the duration asked for; one without.
+std::uint32_t frame_count(const RenderFlags& flags, const Sensor& sensor) {
+  if (!flags.duration_s) return 1;
+  constexpr double kMostFrames = 1e6;
+  constexpr double kRounding = 1e-9;  // 0.3 s at 10 Hz are three frames
+  const double frames = std::ceil(*flags.duration_s * sensor.rate_hz - kRounding);
+  require(*flags.duration_s > 0.0 && frames <= kMostFrames, "--duration", *flags.duration_s,
+          "seconds above 0, up to a million frames");
+  return static_cast<std::uint32_t>(std::max(1.0, frames));
+}
+
+/// The outputs of one frame of a sequence: NAME_000007.pcd for NAME.pcd.
+OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame) {
+  const std::string number = fmt::format("_{:06}", frame);
+  OutputFlags result = flags;
+  for (std::string& path : result.paths) {
+    path.insert(path.size() - format_for(path).suffix.size(), number);
+  }
+  if (!result.legacy_name.empty()) result.legacy_name += number;
+  return result;
+}
+
+/// Builds the renderer; the console shows how long that takes.
+std::unique_ptr<Renderer> prepare(const RenderFlags& flags, const Scene& scene, Console& console) {
   const Working working(console, "preparing the scene");
-  const auto renderer = make_renderer(view.scene, flags.renderer);
-  console.tell(fmt::format("casting {} beams", view.beams.size()), 0.0);
-  frame.seed = flags.seed;
-  simulate({.scene = view.scene,
-            .sensor = view.sensor,
-            .beams = view.beams,
-            .motion = motion,
-            .renderer = *renderer,
-            .progress = [&console](double fraction) { console.tell(fraction); }},
-           fields, frame);
+  return make_renderer(scene, flags.renderer);
+}
+
+/// Measures the scene; the console shows how far that is.
+void measure(const Setup& setup, const HitFields& fields, Console& console, Frame& frame) {
+  const Working working(console, fmt::format("casting {} beams", setup.beams.size()));
+  simulate(setup, fields, frame);
 }
 
 void print_summary(const View& view, const std::vector<Output>& outputs) {
@@ -151,16 +174,15 @@ Beams aim(const RenderFlags& flags, const Sensor& sensor, const Scene& scene,
 
 /// How all moves; tells which poses at time 0 are only the end of a trajectory.
 Motion make_motion(const RenderFlags& flags, const SceneFile& loaded, const Scene& scene,
-                   const Pose& world_from_sensor, const Report& report) {
+                   const Pose& world_from_sensor, const TimeSpan& asked, const Report& report) {
   const Motion motion =
       moving(scene,
              sensor_trajectory(flags.motion, world_from_sensor, sensor_pose_given(flags.pose),
                                loaded.sensor_motion),
              instance_trajectories(flags.motion, scene, loaded.world_from_instance));
-  constexpr TimeSpan kNow = {.first_ns = 0, .last_ns = 0};
-  warn_of_held_poses(motion.world_from_sensor, "sensor", kNow, report);
+  warn_of_held_poses(motion.world_from_sensor, "sensor", asked, report);
   for (std::size_t i = 0; i < motion.world_from_instance.size(); ++i) {
-    warn_of_held_poses(motion.world_from_instance[i], scene.instances[i].name, kNow, report);
+    warn_of_held_poses(motion.world_from_instance[i], scene.instances[i].name, asked, report);
   }
   return motion;
 }
@@ -171,20 +193,42 @@ HitFields needed_fields(const RenderFlags& flags, const std::vector<Output>& out
   return fields;
 }
 
+/// When the last beam of the last frame leaves.
+std::int64_t last_firing_ns(const Sensor& sensor, const Beams& beams, std::uint32_t count) {
+  const std::int64_t start_ns = scan_window(sensor, count - 1).start_ns;
+  if (beams.times_ns.empty()) return start_ns;
+  return start_ns + *std::max_element(beams.times_ns.begin(), beams.times_ns.end());
+}
+
+/// Writes a frame and says so.
+void write(const RenderFlags& flags, const View& view, const std::vector<Output>& outputs,
+           Console& console) {
+  {
+    const Working working(console, "writing");
+    write_outputs(outputs, view.frame, view.beams, view.scene, console.report());
+  }
+  if (!flags.quiet) print_summary(view, outputs);
+  tell_information(flags.information, view.frame, view.beams, outputs, flags.quiet);
+}
+
 int run(const RenderFlags& flags) {
   Console console(flags.quiet);
   check(flags.information);
   Scene scene;
   Beams beams;
   Sensor sensor;
-  const std::vector<Output> outputs = plan_outputs(
-      flags.output, flags.input,
-      {.scene = scene, .sensor = sensor, .beams = beams, .renderer = flags.renderer.kind},
-      console.report(), [&console](double fraction) { console.tell(fraction); });
+  const auto plan = [&](const OutputFlags& files) {
+    return plan_outputs(
+        files, flags.input,
+        {.scene = scene, .sensor = sensor, .beams = beams, .renderer = flags.renderer.kind},
+        console.report(), [&console](double fraction) { console.tell(fraction); });
+  };
+  std::vector<Output> outputs = plan(flags.output);
   if (!is_scene_file(flags.input)) sensor = make_sensor(flags.sensor, {});  // before a long load
 
   SceneFile loaded = load(flags, console);
-  protect_files(files_read(flags, loaded), outputs);
+  const std::vector<std::string> files = files_read(flags, loaded);
+  protect_files(files, outputs);
   scene = std::move(loaded.scene);
   sensor = make_sensor(flags.sensor, loaded.sensor);
   pose_model(flags.pose, scene);
@@ -193,17 +237,33 @@ int run(const RenderFlags& flags) {
   beams = aim(flags, sensor, scene, {loaded.world_from_sensor, loaded.looks_at}, console,
               world_from_sensor);
 
+  const std::uint32_t count = frame_count(flags, sensor);
+  const TimeSpan asked = {.first_ns = 0, .last_ns = last_firing_ns(sensor, beams, count)};
+  const Motion motion =
+      make_motion(flags, loaded, scene, world_from_sensor, asked, console.report());
+  const auto renderer = prepare(flags, scene, console);
+  const Setup setup{.scene = scene,
+                    .sensor = sensor,
+                    .beams = beams,
+                    .motion = motion,
+                    .renderer = *renderer,
+                    .progress = [&console](double fraction) { console.tell(fraction); }};
   Frame frame;
+  frame.seed = flags.seed;
   const View view{scene, sensor, beams, frame};
-  const Motion motion = make_motion(flags, loaded, scene, world_from_sensor, console.report());
-  measure(flags, view, motion, needed_fields(flags, outputs), console, frame);
-  tell(view_advice(view), console);
-  {
-    const Working working(console, "writing");
-    write_outputs(outputs, frame, beams, scene, console.report());
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const ScanWindow window = scan_window(sensor, k);
+    if (k > 0) beams = make_beams(sensor, window);
+    frame.number = k;
+    frame.stamp_ns = window.start_ns;
+    measure(setup, needed_fields(flags, outputs), console, frame);
+    if (k == 0) tell(view_advice(view), console);
+    if (flags.duration_s) {
+      outputs = plan(numbered(flags.output, k));
+      protect_files(files, outputs);
+    }
+    write(flags, view, outputs, console);
   }
-  if (!flags.quiet) print_summary(view, outputs);
-  tell_information(flags.information, frame, beams, outputs, flags.quiet);
   return kDone;
 }
 
@@ -229,6 +289,8 @@ Command add_render(CLI::App& program) {
              [&seed = flags->seed](std::string_view option, const std::string& text) {
                seed = parse_seed(option, text);
              });
+  add_number(command, {"--duration", "S", "Numbered frames, NAME_000000 ..., for so long", group},
+             flags->duration_s);
   command.add_flag("--quiet", flags->quiet, "No summary and no progress; warnings stay")
       ->group(group);
   return [flags] { return run(*flags); };

@@ -74,7 +74,8 @@ const tbb::global_control kEightThreads(tbb::global_control::max_allowed_paralle
 /// Bytes, so that NaN equals NaN.
 template <class T>
 bool same(const std::vector<T>& a, const std::vector<T>& b) {
-  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
+  if (a.size() != b.size()) return false;
+  return a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0;
 }
 
 bool same(const Frame& a, const Frame& b) {
