@@ -147,7 +147,8 @@ auto fields(Is<ImportFailure> auto& failure) {
 
 auto fields(Is<CacheIndex> auto& index) {
   return std::tie(index.importer, index.files, index.hashes, index.absent, index.texture_folders,
-                  index.lookups, index.root, index.folder, index.libraries, index.library_states);
+                  index.lookups, index.root, index.folder, index.libraries,
+                  index.states_of_libraries);
 }
 
 template <class A, class T>
@@ -270,7 +271,7 @@ CacheIndex read_cache_index(FrameReader& frame) {
   if (index.files.empty() || index.files.size() != index.hashes.size()) {
     refuse("a cache without its files' hashes");
   }
-  if (index.libraries.size() != index.library_states.size())
+  if (index.libraries.size() != index.states_of_libraries.size())
     refuse("a cache without its libraries' states");
   return index;
 }

@@ -42,8 +42,9 @@ struct CacheIndex {
   std::vector<TextureLookup> lookups;
   std::string root;  ///< folder and root that the lookups were made in
   std::string folder;
-  std::vector<std::string> libraries;       ///< paths of those that the import program ran with
-  std::vector<std::string> library_states;  ///< one per library; another one makes the file void
+  std::vector<std::string> libraries;  ///< paths of those that the import program ran with
+  std::vector<std::string>
+      states_of_libraries;  ///< one per library; another one makes the file void
 };
 
 void write_cache_index(int fd, const CacheIndex& index);

@@ -70,7 +70,7 @@ bool holds(const CacheIndex& index, const CacheEntry& entry, const fs::path& can
   if (index.importer != entry.importer || index.importer.empty() ||
       index.files.front() != canonical_model.string() || index.root != folder.root.string() ||
       index.folder != folder.folder.string() ||
-      index.library_states != file_states(index.libraries)) {
+      index.states_of_libraries != file_states(index.libraries)) {
     return false;
   }
   for (const std::string& path : index.absent) {

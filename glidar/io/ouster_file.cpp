@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
 #include <glidar/io/ray_file.hpp>
-#include <glidar/io/read_whole.hpp>
+#include <glidar/io/text_file.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -14,7 +14,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr std::uintmax_t kLargest_bytes = 1U << 20U;
+const TextFileKind kMetadata = {"a JSON file of an Ouster sensor", 1, ""};
 constexpr std::size_t kMostRows = 4096;
 constexpr std::uint32_t kMostColumns = 65536;
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -25,7 +25,7 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 }
 
 Json parse(const std::filesystem::path& path) {
-  const Json all = Json::parse(read_whole(path, kLargest_bytes), nullptr, false);
+  const Json all = Json::parse(read_text_file(path, kMetadata), nullptr, false);
   if (!all.is_object()) fail(path.string(), "no JSON object", "Ouster metadata");
   return all;
 }

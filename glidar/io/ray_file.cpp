@@ -3,7 +3,7 @@
 #include <glidar/io/ray_file.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/read_whole.hpp>
+#include <glidar/io/text_file.hpp>
 
 #include <charconv>
 #include <cmath>
@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kLargestTable_bytes = 64U << 20U;  // some ten million shots
-constexpr std::uintmax_t kLargestRays_bytes = 512U << 20U;
+const TextFileKind kTable = {"a CSV table of beams", 64, ""};  // some million shots
+const TextFileKind kRays = {"an NPY array of rays", 512, ""};
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kNanoseconds = 1e9;
 
@@ -155,7 +155,7 @@ Eigen::Vector3d vector_at(const char* data, std::size_t bytes) {
 }  // namespace
 
 BeamTable load_scan_csv(const fs::path& path) {
-  const std::string text = read_whole(path, kLargestTable_bytes);
+  const std::string text = read_text_file(path, kTable);
   BeamTable table;
   each_line(text, [&](std::string_view line, std::size_t number) {
     const std::optional<Eigen::Vector3d> values = three_numbers(line);
@@ -184,7 +184,7 @@ BeamTable load_scan_csv(const fs::path& path) {
 }
 
 BeamTable load_ray_npy(const fs::path& path) {
-  const std::string bytes = read_whole(path, kLargestRays_bytes);
+  const std::string bytes = read_binary_file(path, kRays);
   const NpyHead head = read_npy_head(path.string(), bytes);
   const auto [rows, cols, width] = ray_shape(path.string(), head, bytes.size());
   BeamTable table;

@@ -22,7 +22,7 @@ std::string shown(std::string_view word) {
   return word.size() > kShown ? out + "..." : out;
 }
 
-std::string read_text_file(const fs::path& file, const TextFileKind& kind) {
+std::string read_binary_file(const fs::path& file, const TextFileKind& kind) {
   const auto fail = [&](std::string found, std::string allowed, std::string remedy) {
     throw Error({file.string(), std::move(found), std::move(allowed), std::move(remedy)});
   };
@@ -43,7 +43,14 @@ std::string read_text_file(const fs::path& file, const TextFileKind& kind) {
   bytes << stream.rdbuf();
   std::string content = std::move(bytes).str();
   if (!stream.is_open()) fail("cannot be opened", "a file you may read", "");
-  if (content.find('\0') != std::string::npos) fail("binary data", kind.name, "");
+  return content;
+}
+
+std::string read_text_file(const fs::path& file, const TextFileKind& kind) {
+  std::string content = read_binary_file(file, kind);
+  if (content.find('\0') != std::string::npos) {
+    throw Error({file.string(), "binary data", kind.name, ""});
+  }
   return content;
 }
 

@@ -22,6 +22,9 @@ struct TextFileKind {
 /// too large, unreadable, or with zero bytes in it.
 std::string read_text_file(const std::filesystem::path& file, const TextFileKind& kind);
 
+/// The same for a file that may hold any bytes.
+std::string read_binary_file(const std::filesystem::path& file, const TextFileKind& kind);
+
 /// A word of a file, cut and without control characters, fit for one line of an error.
 std::string shown(std::string_view word);
 
