@@ -100,8 +100,8 @@ std::vector<Field> pcd_fields(const PointCloud& cloud) {
     }
     const std::size_t first = fields.size();
     append_fields(column, fields);
-    // PCL's own points are float; only numbers that float would move get 8 bytes.
-    if (native_type(column) != Stored::f64 || !float_is_enough(column)) continue;
+    // PCL's own points are float, and Open3D reads wider numbers as 0.
+    if (native_type(column) != Stored::f64) continue;
     for (std::size_t f = first; f < fields.size(); ++f) fields[f].stored = Stored::f32;
   }
   return fields;

@@ -62,8 +62,7 @@ std::string rounding_told(std::span<const Field> fields) {
                         column.name == "xyz" ? "points" : column.name, moved_m);
   }
   if (told.empty()) return told;
-  return "rounding to float32 moves " + told +
-         "; write .npz, .csv, .pcd or .ply, which keep far points";
+  return "rounding to float32 moves " + told + "; write .npz, .csv or .ply, which keep far points";
 }
 
 }  // namespace glidar

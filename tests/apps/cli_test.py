@@ -288,7 +288,7 @@ class Advice(CliTest):
     def test_model_a_thousand_times_too_big_or_small(self):
         big = self.write("big.obj", box_of(2000))
         self.assertIn("--unit mm", self.warned(big))
-        self.assertNotIn("warning", self.succeed("render", big, "--unit", "m", "-o", "x.pcd").stderr)
+        self.assertNotIn("warning", self.succeed("render", big, "--unit", "m", "-o", "x.npz").stderr)
         small = self.write("small.obj", box_of(0.0004))
         self.assertIn("--scale 1000", self.warned(small))
 

@@ -83,10 +83,7 @@ class Formats(unittest.TestCase):
     def test_pcd(self):
         def fields(c):
             rgb = colour_bytes(c)
-            # float moves a coordinate from 2048 m on by more than 0.1 mm
-            far = np.nanmax(np.abs(c["xyz"]), initial=0) >= 2048
-            kind = np.float64 if far else np.float32
-            out = {k: c["xyz"][:, n].astype(kind) for n, k in enumerate("xyz")}
+            out = {k: c["xyz"][:, n].astype(np.float32) for n, k in enumerate("xyz")}
             out.update({f"normal_{k}": c["normal"][:, n] for n, k in enumerate("xyz")})
             out["rgb"] = rgb[:, 0] << 16 | rgb[:, 1] << 8 | rgb[:, 2]
             out["depth"] = c["depth"].astype(np.float32)
