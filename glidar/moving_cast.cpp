@@ -102,26 +102,12 @@ void turn_back(const CastRequest& request, const Scratch& memory, BeamRange rang
   }
 }
 
-void copy_hit(const Hits& from, std::size_t i, const HitFields& fields, Hits& to) {
-  to.range_m[i] = from.range_m[i];
-  to.instance[i] = from.instance[i];
-  to.primitive[i] = from.primitive[i];
-  if (fields.depth) to.depth_m[i] = from.depth_m[i];
-  if (fields.normal) to.normal[i] = from.normal[i];
-  if (fields.shading_normal) to.shading_normal[i] = from.shading_normal[i];
-  if (fields.incidence) to.cos_incidence[i] = from.cos_incidence[i];
-  if (fields.barycentrics) to.barycentrics[i] = from.barycentrics[i];
-  if (fields.colour) to.colour[i] = from.colour[i];
-  if (fields.reflectance) to.reflectance[i] = from.reflectance[i];
-  if (fields.object_point) to.object_point_m[i] = from.object_point_m[i];
-  if (fields.noise_scale) to.noise_scale[i] = from.noise_scale[i];
-}
-
 /// Keeps the nearer of two hits; at the same range that of the body cast first.
 void merge(const Hits& from, const HitFields& fields, BeamRange range, Hits& to) {
   for (std::size_t i = range.begin; i < range.end; ++i) {
     if (from.instance[i] == kNoHit) continue;
-    if (to.instance[i] == kNoHit || from.range_m[i] < to.range_m[i]) copy_hit(from, i, fields, to);
+    if (to.instance[i] == kNoHit || from.range_m[i] < to.range_m[i])
+      copy_hit(from, i, fields, to, i);
   }
 }
 

@@ -23,6 +23,7 @@ Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double 
 /// Range and status of a run of beams from the truth.
 void measure_range(const Limits& limits, const Beams& beams, BeamRange range, Frame& frame) {
   const bool sees_all = limits.near_m <= 0.0 && std::isinf(limits.far_m);
+  const bool may_lack_beams = !beams.pinhole;
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const double range_m = frame.truth.range_m[i];
     frame.range_m[i] = range_m;
@@ -30,18 +31,19 @@ void measure_range(const Limits& limits, const Beams& beams, BeamRange range, Fr
       frame.status[i] = sees_all ? Status::hit : judge(limits, beams, i, range_m);
       if (frame.status[i] != Status::hit) frame.range_m[i] = kNoRange;
     } else {
-      frame.status[i] = std::isnan(beams.directions[i].x()) ? Status::no_beam : Status::miss;
+      const bool has_beam = !may_lack_beams || !std::isnan(beams.directions[i].x());
+      frame.status[i] = has_beam ? Status::miss : Status::no_beam;
     }
   }
 }
 
 /// Intensity, and what it takes away, of a run of beams from the truth.
-void measure_light(const Setup& setup, const Beams& beams, BeamRange range, Frame& frame) {
+void measure_light(const Setup& setup, BeamRange range, Frame& frame) {
   const Sensor& sensor = setup.sensor;
   if (sensor.pulse) {
-    measure_signal(*sensor.pulse, setup.scene, beams, sensor.wavelength_m, range, frame);
+    measure_signal(*sensor.pulse, setup.scene, sensor.wavelength_m, range, frame);
   } else {
-    measure_intensity(sensor.light, beams, range, frame);
+    measure_intensity(sensor.light, range, frame);
   }
 }
 
@@ -73,12 +75,12 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
   const Beams& beams = aimed_beams(sensor.noise, setup.beams, workers, frame);
 
   HitFields needed = fields;
-  needed.shading_normal = true;  // the light needs them
+  needed.shading = true;  // the light needs them
   needed.reflectance = true;
   add_needs(sensor.noise, needed);
   const auto measure = [&](BeamRange range) {
     measure_range(sensor.limits, beams, range, frame);
-    measure_light(setup, beams, range, frame);
+    measure_light(setup, range, frame);
   };
   cast({.beams = beams,
         .world_from_sensor = frame.world_from_sensor,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -23,6 +24,21 @@ struct PinholeIntrinsics {
   double pixel_centre = 0.5;  ///< where in a pixel its ray goes: 0.5 (graphics) or 0 (OpenCV, ROS)
 };
 
+/// The unit direction through the point (x, y) of the plane at depth 1. The order of its operations
+/// is part of the promise: who works directions out anew gets the same bits.
+inline Eigen::Vector3d direction_through(double x, double y) {
+  const double length = std::sqrt(x * x + y * y + 1.0);
+  return {x / length, y / length, 1.0 / length};
+}
+
+/// Where the rays of column u and of row v cross the plane at depth 1.
+inline double plane_x(const PinholeIntrinsics& k, std::uint32_t u) {
+  return (u + k.pixel_centre - k.cx) / k.fx;
+}
+inline double plane_y(const PinholeIntrinsics& k, std::uint32_t v) {
+  return (v + k.pixel_centre - k.cy) / k.fy;
+}
+
 /// What a sensor emits, in its own frame: one straight beam per entry, rows x cols, row by row.
 /// N = rows * cols.
 struct Beams {
@@ -37,8 +53,9 @@ struct Beams {
   /// elsewhere (Ouster: from the axis of rotation).
   double range_offset_m = 0.0;
   Eigen::Vector3d boresight = Eigen::Vector3d::UnitZ();  ///< depth is measured along it
-  std::optional<PinholeIntrinsics>
-      pinhole;  ///< the structure the beams were made from, if it is this one
+  /// The structure the beams were made from, if it is this one: then directions[v * width + u] is
+  /// direction_through(plane_x(u), plane_y(v)), bit for bit.
+  std::optional<PinholeIntrinsics> pinhole;
 
   [[nodiscard]] std::size_t size() const { return directions.size(); }
 };

@@ -13,11 +13,29 @@ void resize(Hits& hits, std::size_t size, const HitFields& fields) {
   hits.normal.resize(size_if(fields.normal));
   hits.shading_normal.resize(size_if(fields.shading_normal));
   hits.cos_incidence.resize(size_if(fields.incidence));
+  hits.cos_shading.resize(size_if(fields.shading));
   hits.barycentrics.resize(size_if(fields.barycentrics));
   hits.colour.resize(size_if(fields.colour));
   hits.reflectance.resize(size_if(fields.reflectance));
   hits.object_point_m.resize(size_if(fields.object_point));
   hits.noise_scale.resize(size_if(fields.noise_scale));
+}
+
+void copy_hit(const Hits& from, std::size_t source, const HitFields& fields, Hits& to,
+              std::size_t target) {
+  to.range_m[target] = from.range_m[source];
+  to.instance[target] = from.instance[source];
+  to.primitive[target] = from.primitive[source];
+  if (fields.depth) to.depth_m[target] = from.depth_m[source];
+  if (fields.normal) to.normal[target] = from.normal[source];
+  if (fields.shading_normal) to.shading_normal[target] = from.shading_normal[source];
+  if (fields.incidence) to.cos_incidence[target] = from.cos_incidence[source];
+  if (fields.shading) to.cos_shading[target] = from.cos_shading[source];
+  if (fields.barycentrics) to.barycentrics[target] = from.barycentrics[source];
+  if (fields.colour) to.colour[target] = from.colour[source];
+  if (fields.reflectance) to.reflectance[target] = from.reflectance[source];
+  if (fields.object_point) to.object_point_m[target] = from.object_point_m[source];
+  if (fields.noise_scale) to.noise_scale[target] = from.noise_scale[source];
 }
 
 }  // namespace glidar

@@ -18,6 +18,7 @@ struct HitFields {
   bool normal = false;
   bool shading_normal = false;
   bool incidence = false;
+  bool shading = false;
   bool barycentrics = false;
   bool colour = false;
   bool reflectance = false;
@@ -47,6 +48,8 @@ struct Hits {
   std::vector<Eigen::Vector3f>
       shading_normal;                ///< N, interpolated vertex normals bent by the normal map
   std::vector<float> cos_incidence;  ///< N, cosine between -beam and `normal`, 0..1
+  std::vector<float> cos_shading;  ///< N, the same with `shading_normal`; below 0 where the smooth
+                                   ///< surface turns away though its triangle does not
   std::vector<Eigen::Vector2f> barycentrics;  ///< N, weights of corners 1 and 2
   std::vector<Eigen::Vector3f> colour;   ///< N, diffuse rgb: material x texture x vertex colour
   std::vector<Reflectance> reflectance;  ///< N
@@ -58,5 +61,9 @@ struct Hits {
 /// Gives every asked-for column `size` entries (contents unspecified) and empties the others'.
 /// Keeps capacity, so a second call of the same size allocates nothing.
 void resize(Hits& hits, std::size_t size, const HitFields& fields);
+
+/// Copies all asked-for columns of one hit.
+void copy_hit(const Hits& from, std::size_t source, const HitFields& fields, Hits& to,
+              std::size_t target);
 
 }  // namespace glidar

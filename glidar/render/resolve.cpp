@@ -125,33 +125,54 @@ bool has_mask(const Scene& scene, const Instance& instance) {
 }
 
 bool needs_corners(const HitFields& fields) {
-  return fields.barycentrics || fields.shading_normal || fields.colour || fields.reflectance ||
-         fields.noise_scale;
+  return fields.barycentrics || fields.shading_normal || fields.shading || fields.colour ||
+         fields.reflectance || fields.noise_scale;
 }
 
-void gather_corners(const Resolver& resolver, const HitBlock& block, CornerBlock& corners) {
+/// Where a mesh's corners lie.
+struct CornerSource {
+  const Triangle* triangles;
+  const Eigen::Vector3f* values;  ///< per vertex; nullptr: none
+};
+
+CornerSource positions_of(const Mesh& mesh) {
+  return {mesh.triangles.data(), mesh.positions_m.data()};
+}
+
+/// Without normals there is no length either: then the flat normal is taken.
+CornerSource normals_of(const Mesh& mesh) {
+  return {mesh.triangles.data(), mesh.normals.empty() ? nullptr : mesh.normals.data()};
+}
+
+void gather_lane(const CornerSource& source, std::uint32_t primitive, unsigned lane,
+                 CornerBlock& corners) {
+  const Triangle& t = source.triangles[primitive];
+  const auto value = [&](std::uint32_t vertex) {
+    return source.values == nullptr ? Eigen::Vector3f::Zero().eval() : source.values[vertex];
+  };
+  corners.c0.set(lane, value(t[0]));
+  corners.c1.set(lane, value(t[1]));
+  corners.c2.set(lane, value(t[2]));
+}
+
+/// Collects what a mesh has at the corners of a block's triangles.
+template <class SourceOf>
+void gather(const Resolver& resolver, const HitBlock& block, const SourceOf& source_of,
+            CornerBlock& corners) {
+  const CornerSource first = source_of(resolver.mesh(block.instance[0]));
+  const bool is_one = is_one_instance(block);
   for (unsigned i = 0; i < kLanes; ++i) {
-    const Mesh& mesh = resolver.mesh(block.instance[i]);
-    const Triangle& t = mesh.triangles[block.primitive[i]];
-    corners.c0.set(i, mesh.positions_m[t[0]]);
-    corners.c1.set(i, mesh.positions_m[t[1]]);
-    corners.c2.set(i, mesh.positions_m[t[2]]);
+    gather_lane(is_one ? first : source_of(resolver.mesh(block.instance[i])), block.primitive[i], i,
+                corners);
   }
 }
 
-void gather_normals(const Resolver& resolver, const HitBlock& block, CornerBlock& normals) {
+/// Cosines between -beams and normals that lie on the side of the plane's, turned to the sensor.
+GLIDAR_SIMD void cosines(const ExactBlock& e, const Lanes3<double>& normal, Lanes<float>& out) {
   for (unsigned i = 0; i < kLanes; ++i) {
-    const Mesh& mesh = resolver.mesh(block.instance[i]);
-    if (mesh.normals.empty()) {
-      normals.c0.set(i, Eigen::Vector3f::Zero());  // no length: the flat normal is taken
-      normals.c1.set(i, Eigen::Vector3f::Zero());
-      normals.c2.set(i, Eigen::Vector3f::Zero());
-      continue;
-    }
-    const Triangle& t = mesh.triangles[block.primitive[i]];
-    normals.c0.set(i, mesh.normals[t[0]]);
-    normals.c1.set(i, mesh.normals[t[1]]);
-    normals.c2.set(i, mesh.normals[t[2]]);
+    const double along = normal.x[i] * e.direction.x[i] + normal.y[i] * e.direction.y[i] +
+                         normal.z[i] * e.direction.z[i];
+    out[i] = static_cast<float>(e.cosine[i] > 0.0 ? along : -along);
   }
 }
 
@@ -303,17 +324,22 @@ void Resolver::write_surface(const HitFields& fields, const HitBlock& block,
   CornerBlock corners;
   Lanes<float> w1;
   Lanes<float> w2;
-  gather_corners(*this, block, corners);
+  gather(*this, block, positions_of, corners);
   weigh(exact, corners, w1, w2);
   if (fields.barycentrics) {
     for_lanes(block.mask, [&](unsigned i) { hits.barycentrics[block.beam[i]] = {w1[i], w2[i]}; });
   }
-  if (fields.shading_normal) {
+  if (fields.shading_normal || fields.shading) {
     Lanes3<double> smooth;
-    gather_normals(*this, block, corners);
+    gather(*this, block, normals_of, corners);
     blend_normals(corners, w1, w2, exact.normal, smooth);
     bend_normals(block, w1, w2, smooth);
-    write_directions(block, smooth, exact.cosine, hits.shading_normal);
+    if (fields.shading) {
+      Lanes<float> cosine;
+      cosines(exact, smooth, cosine);
+      for_lanes(block.mask, [&](unsigned i) { hits.cos_shading[block.beam[i]] = cosine[i]; });
+    }
+    if (fields.shading_normal) write_directions(block, smooth, exact.cosine, hits.shading_normal);
   }
   if (fields.colour || fields.reflectance || fields.noise_scale)
     write_colours(fields, block, w1, w2, hits);
@@ -366,6 +392,7 @@ void Resolver::write_misses(const HitFields& fields, std::size_t first, std::siz
   fill(fields.normal, hits.normal, kNowhere);
   fill(fields.shading_normal, hits.shading_normal, kNowhere);
   fill(fields.incidence, hits.cos_incidence, kNaNf);
+  fill(fields.shading, hits.cos_shading, kNaNf);
   fill(fields.barycentrics, hits.barycentrics, Eigen::Vector2f(kNaNf, kNaNf));
   fill(fields.object_point, hits.object_point_m, Eigen::Vector3d(kNaN, kNaN, kNaN));
   fill(fields.colour, hits.colour, Eigen::Vector3f(0.0F, 0.0F, 0.0F));

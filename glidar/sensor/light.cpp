@@ -18,9 +18,8 @@ inline double attenuation(const Light& light, double d) {
 }
 
 /// max(n . h, 0) with the half-vector h = l of equation (2): l = v = -direction.
-inline float lit(const Eigen::Vector3f& n, const Eigen::Vector3d& direction) {
-  const float n_dot_h = -n.dot(direction.cast<float>());
-  return n_dot_h > 0.0F ? n_dot_h : 0.0F;
+inline float lit(float cos_shading) {
+  return cos_shading > 0.0F ? cos_shading : 0.0F;
 }
 
 /// Ambient and diffuse part of equation (5).
@@ -29,14 +28,13 @@ inline float matte_colour(const Reflectance& surface, float ambient, float n_dot
 }
 
 /// Equations (3) to (5) without the specular part. True when a surface has one.
-GLIDAR_SIMD bool measure_matte(const Light& light, const Beams& beams, BeamRange range,
-                               Frame& frame) {
+GLIDAR_SIMD bool measure_matte(const Light& light, BeamRange range, Frame& frame) {
   const Hits& truth = frame.truth;
   const auto ambient = static_cast<float>(light.ambient);
   unsigned specular = 0;
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const Reflectance& surface = truth.reflectance[i];
-    const float n_dot_h = lit(truth.shading_normal[i], beams.directions[i]);
+    const float n_dot_h = lit(truth.cos_shading[i]);
     const auto received = static_cast<float>(attenuation(light, truth.range_m[i])) *
                           matte_colour(surface, ambient, n_dot_h);
     frame.intensity[i] = frame.status[i] == Status::hit ? received : 0.0F;
@@ -46,13 +44,13 @@ GLIDAR_SIMD bool measure_matte(const Light& light, const Beams& beams, BeamRange
 }
 
 /// Equations (3) to (5) for the surfaces that have a specular part.
-void measure_specular(const Light& light, const Beams& beams, BeamRange range, Frame& frame) {
+void measure_specular(const Light& light, BeamRange range, Frame& frame) {
   const Hits& truth = frame.truth;
   const auto ambient = static_cast<float>(light.ambient);
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const Reflectance& surface = truth.reflectance[i];
     if (frame.status[i] != Status::hit || !(surface.specular > 0.0F)) continue;
-    const float n_dot_h = lit(truth.shading_normal[i], beams.directions[i]);
+    const float n_dot_h = lit(truth.cos_shading[i]);
     const float colour = matte_colour(surface, ambient, n_dot_h) +
                          surface.specular * std::pow(n_dot_h, surface.shininess);
     frame.intensity[i] = static_cast<float>(attenuation(light, truth.range_m[i])) * colour;
@@ -75,8 +73,8 @@ void validate(const Light& light) {
                .remedy = ""});
 }
 
-void measure_intensity(const Light& light, const Beams& beams, BeamRange range, Frame& frame) {
-  if (measure_matte(light, beams, range, frame)) measure_specular(light, beams, range, frame);
+void measure_intensity(const Light& light, BeamRange range, Frame& frame) {
+  if (measure_matte(light, range, frame)) measure_specular(light, range, frame);
 }
 
 }  // namespace glidar

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/beams.hpp>
 #include <glidar/core/frame.hpp>
 
 namespace glidar {
@@ -20,8 +19,8 @@ struct Light {
 void validate(const Light& light);
 
 /// Fills a range of frame.intensity from frame.truth by the paper's equations (3) to (5) with h of
-/// (2), for the beams whose status is hit; 0 elsewhere. Needs shading_normal and reflectance in
+/// (2), for the beams whose status is hit; 0 elsewhere. Needs cos_shading and reflectance in
 /// frame.truth.
-void measure_intensity(const Light& light, const Beams& beams, BeamRange range, Frame& frame);
+void measure_intensity(const Light& light, BeamRange range, Frame& frame);
 
 }  // namespace glidar

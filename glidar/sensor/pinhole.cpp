@@ -66,9 +66,9 @@ constexpr int kMostNewtonSteps = 50;
 constexpr double kConverged =
     1e-14;  // residual on the normalised plane: below any pixel's rounding
 
-/// The ray through a point of the normalised image plane; NaN when there is none.
+/// The unit ray through a point of the normalised image plane; NaN when there is none.
 Eigen::Vector3d ray(const NoDistortion& /*none*/, const Eigen::Vector2d& plane) {
-  return {plane.x(), plane.y(), 1.0};
+  return direction_through(plane.x(), plane.y());
 }
 
 /// Newton's method from the distorted point. The solution must lie on the branch that contains the
@@ -81,7 +81,7 @@ Eigen::Vector3d ray(const RadialTangential& k, const Eigen::Vector2d& plane) {
     const Eigen::Vector2d residual = distorted(k, p) - plane;
     const Eigen::Matrix2d jacobian = distortion_jacobian(k, p);
     if (!(jacobian.determinant() > 0.0)) break;
-    if (residual.norm() <= tolerance) return {p.x(), p.y(), 1.0};
+    if (residual.norm() <= tolerance) return direction_through(p.x(), p.y());
     p -= jacobian.inverse() * residual;
   }
   return {kNaN, kNaN, kNaN};
@@ -100,7 +100,7 @@ Eigen::Vector3d ray(const Fisheye& k, const Eigen::Vector2d& plane) {
     if (!(slope > 0.0) || !(theta >= 0.0) || theta > std::numbers::pi) break;
     if (std::abs(value - radius) <= kConverged * (1.0 + radius)) {
       const Eigen::Vector2d side = plane / radius * std::sin(theta);
-      return {side.x(), side.y(), std::cos(theta)};
+      return Eigen::Vector3d(side.x(), side.y(), std::cos(theta)).normalized();
     }
     theta -= (value - radius) / slope;
   }
@@ -114,9 +114,8 @@ void fill_directions(const PinholeIntrinsics& k, const Model& distortion,
   std::size_t i = 0;
   for (std::uint32_t v = 0; v < k.height; ++v) {
     for (std::uint32_t u = 0; u < k.width; ++u) {
-      const Eigen::Vector2d plane((u + k.pixel_centre - k.cx) / k.fx,
-                                  (v + k.pixel_centre - k.cy) / k.fy);
-      directions[i++] = ray(distortion, plane).normalized();
+      const Eigen::Vector2d plane(plane_x(k, u), plane_y(k, v));
+      directions[i++] = ray(distortion, plane);
     }
   }
 }

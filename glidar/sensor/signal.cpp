@@ -105,10 +105,10 @@ void measure_nothing(const PulseLight& light, double noise, double place, std::s
 }
 
 /// What a beam brings back from where it hit, without noise.
-double signal_of_hit(const PulseLight& light, const Scene& scene, const Beams& beams,
-                     double wavelength_m, std::size_t beam, const Hits& truth) {
+double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelength_m,
+                     std::size_t beam, const Hits& truth) {
   const Material& material = material_of(scene, truth, beam);
-  const double facing = -truth.shading_normal[beam].cast<double>().dot(beams.directions[beam]);
+  const double facing = truth.cos_shading[beam];
   const double rho = reflectance_of_hit(material, truth.reflectance[beam].diffuse, wavelength_m);
   return signal_of(light, sent_back(material.backscatter, rho, std::clamp(facing, 0.0, 1.0)),
                    truth.range_m[beam]);
@@ -198,8 +198,8 @@ double range_exponent(double reflectance_a, double range_a_m, double reflectance
   return std::log(reflectance_a / reflectance_b) / std::log(range_a_m / range_b_m);
 }
 
-void measure_signal(const PulseLight& light, const Scene& scene, const Beams& beams,
-                    double wavelength_m, BeamRange range, Frame& frame) {
+void measure_signal(const PulseLight& light, const Scene& scene, double wavelength_m,
+                    BeamRange range, Frame& frame) {
   Batch<double> noise{};
   PairBatch places{};
   for (std::size_t i = range.begin; i < range.end; ++i) {
@@ -207,7 +207,7 @@ void measure_signal(const PulseLight& light, const Scene& scene, const Beams& be
     if (k == 0) draw_batch(light, i, frame, noise, places);
     const double error = light.noise_sigma * noise[k];
     if (frame.status[i] == Status::hit) {
-      const double signal = signal_of_hit(light, scene, beams, wavelength_m, i, frame.truth);
+      const double signal = signal_of_hit(light, scene, wavelength_m, i, frame.truth);
       measure_hit(light, signal + error, i, frame);
     } else {
       measure_nothing(light, error, places.first[k], i, frame);

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/beams.hpp>
 #include <glidar/core/frame.hpp>
 #include <glidar/core/scene.hpp>
 
@@ -59,8 +58,8 @@ double range_exponent(double reflectance_a, double range_a_m, double reflectance
 /// Fills a run of frame.intensity with signals as the receiver has them, noise included, and takes
 /// away what is too weak or too strong (status below_threshold or saturated, range_m NaN, intensity
 /// 0). A false alarm gives a beam that met nothing a range; its truth stays a miss. Needs
-/// shading_normal and reflectance in frame.truth; draws with Purpose::detection and false_alarm.
-void measure_signal(const PulseLight& light, const Scene& scene, const Beams& beams,
-                    double wavelength_m, BeamRange range, Frame& frame);
+/// cos_shading and reflectance in frame.truth; draws with Purpose::detection and false_alarm.
+void measure_signal(const PulseLight& light, const Scene& scene, double wavelength_m,
+                    BeamRange range, Frame& frame);
 
 }  // namespace glidar

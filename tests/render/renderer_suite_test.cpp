@@ -143,7 +143,33 @@ TEST_P(RendererSuite, EveryColumnTellsOneStory) {
     EXPECT_NEAR(hits.shading_normal[i].norm(), 1.0F, 1e-5F);
     EXPECT_NEAR(-hits.normal[i].cast<double>().dot(beams.directions[i]), hits.cos_incidence[i],
                 1e-6);
+    EXPECT_NEAR(-hits.shading_normal[i].cast<double>().dot(beams.directions[i]),
+                hits.cos_shading[i], 1e-6);
   }
+}
+
+TEST_P(RendererSuite, APinholesStructureChangesNoBit) {
+  const Scene scene = builtin_scene("asteroid");
+  PinholeIntrinsics odd{.width = 203, .height = 101, .fx = 311.7, .fy = 287.3};
+  odd.cx = 97.1;
+  odd.cy = 55.9;
+  odd.pixel_centre = 0.25;
+  Beams plain;
+  plain.rows = odd.height;
+  plain.cols = odd.width;
+  for (std::uint32_t v = 0; v < odd.height; ++v) {
+    for (std::uint32_t u = 0; u < odd.width; ++u) {
+      plain.directions.push_back(direction_through(plane_x(odd, u), plane_y(odd, v)));
+    }
+  }
+  Beams structured = plain;
+  structured.pinhole = odd;
+  const Pose pose = turned(0.1, {0.2, 1.0, 0.4}, {0.3, -0.2, -5.0});
+  const Hits with = cast(scene, structured, pose);
+  const Hits without = cast(scene, plain, pose);
+  EXPECT_EQ(with.primitive, without.primitive);
+  EXPECT_EQ(0, std::memcmp(with.range_m.data(), without.range_m.data(),
+                           with.range_m.size() * sizeof(double)));
 }
 
 TEST_P(RendererSuite, CullsBackFacesOnlyWhenAsked) {
@@ -287,6 +313,7 @@ TEST_P(RendererSuite, TheSameBytesForAnyNumberOfThreads) {
   EXPECT_TRUE(same(one.primitive, many.primitive));
   EXPECT_TRUE(same(one.normal, many.normal));
   EXPECT_TRUE(same(one.shading_normal, many.shading_normal));
+  EXPECT_TRUE(same(one.cos_shading, many.cos_shading));
   EXPECT_TRUE(same(one.barycentrics, many.barycentrics));
   EXPECT_TRUE(same(one.reflectance, many.reflectance));
   EXPECT_TRUE(same(one.object_point_m, many.object_point_m));

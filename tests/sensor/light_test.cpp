@@ -11,18 +11,15 @@
 namespace glidar {
 namespace {
 
-/// One beam along z that meets a surface whose shading normal makes `cosine` with it.
+/// One beam that meets a surface whose shading normal makes `cosine` with it.
 float intensity(const Light& light, const Reflectance& reflectance, double range_m, float cosine) {
-  Beams beams;
-  beams.rows = beams.cols = 1;
-  beams.directions = {Eigen::Vector3d::UnitZ()};
   Frame frame;
   resize(frame, 1);
   frame.status = {Status::hit};
   frame.truth.range_m = {range_m};
-  frame.truth.shading_normal = {{std::sqrt(1.0F - cosine * cosine), 0.0F, -cosine}};
+  frame.truth.cos_shading = {cosine};
   frame.truth.reflectance = {reflectance};
-  measure_intensity(light, beams, {0, 1}, frame);
+  measure_intensity(light, {0, 1}, frame);
   return frame.intensity[0];
 }
 
@@ -52,16 +49,13 @@ TEST(Light, ShininessZeroMakesTheSpecularConstant) {
 }
 
 TEST(Light, IsZeroWhereNothingIsReported) {
-  Beams beams;
-  beams.rows = beams.cols = 1;
-  beams.directions = {Eigen::Vector3d::UnitZ()};
   Frame frame;
   resize(frame, 1);
   frame.truth.range_m = {1.0};
-  frame.truth.shading_normal = {-Eigen::Vector3f::UnitZ()};
+  frame.truth.cos_shading = {1.0F};
   frame.truth.reflectance = {{.diffuse = 1.0F, .ambient = 1.0F, .specular = 1.0F}};
   frame.status = {Status::too_far};
-  measure_intensity({}, beams, {0, 1}, frame);
+  measure_intensity({}, {0, 1}, frame);
   EXPECT_EQ(frame.intensity[0], 0.0F);
 }
 

@@ -35,7 +35,15 @@ TEST(Pinhole, PutsPixelCentresWhereTold) {
 
 TEST(Pinhole, KeepsItsIntrinsicsForRasterisersUnlessDistorted) {
   Pinhole pinhole = pinhole_from_fov(8, 8, 1.0);
-  EXPECT_TRUE(make_beams(pinhole).pinhole.has_value());
+  const Beams beams = make_beams(pinhole);
+  ASSERT_TRUE(beams.pinhole.has_value());
+  const PinholeIntrinsics& k = *beams.pinhole;
+  for (std::uint32_t v = 0; v < k.height; ++v) {
+    for (std::uint32_t u = 0; u < k.width; ++u) {
+      const Eigen::Vector3d expected = direction_through(plane_x(k, u), plane_y(k, v));
+      ASSERT_EQ(beams.directions[std::size_t{v} * k.width + u], expected);  // bit for bit
+    }
+  }
   pinhole.distortion = RadialTangential{.k1 = 0.1};
   EXPECT_FALSE(make_beams(pinhole).pinhole.has_value());
 }

@@ -149,11 +149,11 @@ struct Stage {
     frame.truth.range_m.assign(size, range_m);
     frame.truth.instance.assign(size, 0);
     frame.truth.primitive.assign(size, 0);
-    frame.truth.shading_normal.assign(size, -Eigen::Vector3f::UnitZ());
+    frame.truth.cos_shading.assign(size, 1.0F);
     frame.truth.reflectance.assign(size, {.diffuse = 0.8F});
   }
   void measure(const PulseLight& light) {
-    measure_signal(light, scene, beams, 905e-9, {0, beams.size()}, frame);
+    measure_signal(light, scene, 905e-9, {0, beams.size()}, frame);
   }
   [[nodiscard]] double share_of(Status status) const {
     return static_cast<double>(std::count(frame.status.begin(), frame.status.end(), status)) /
@@ -182,7 +182,7 @@ TEST(MeasureSignal, DependsOnTheBeamAndNotOnHowBeamsAreShared) {
   whole.measure(light);
   for (const auto& [begin, end] :
        {std::pair{300U, 1000U}, std::pair{0U, 17U}, std::pair{17U, 300U}}) {
-    measure_signal(light, parts.scene, parts.beams, 905e-9, {begin, end}, parts.frame);
+    measure_signal(light, parts.scene, 905e-9, {begin, end}, parts.frame);
   }
   EXPECT_EQ(whole.frame.status, parts.frame.status);
   EXPECT_EQ(whole.frame.intensity, parts.frame.intensity);

@@ -16,6 +16,7 @@ constexpr HitFields kEverything = {.depth = true,
                                    .normal = true,
                                    .shading_normal = true,
                                    .incidence = true,
+                                   .shading = true,
                                    .barycentrics = true,
                                    .colour = true,
                                    .object_point = true};
@@ -91,6 +92,7 @@ void expect_as_if_cast_alone(Stage& stage, const Frame& frame) {
     EXPECT_LT((frame.truth.normal[i] - hits.normal[0]).norm(), 1e-6F);
     EXPECT_LT((frame.truth.shading_normal[i] - hits.shading_normal[0]).norm(), 1e-5F);
     EXPECT_NEAR(frame.truth.cos_incidence[i], hits.cos_incidence[0], 1e-6F);
+    EXPECT_NEAR(frame.truth.cos_shading[i], hits.cos_shading[0], 1e-5F);
     EXPECT_LT((frame.truth.object_point_m[i] - hits.object_point_m[0]).norm(), 1e-12);
   }
 }

@@ -123,6 +123,7 @@ TEST(Simulate, TellsWhatLiesOutsideTheDepthLimitsAndKeepsItsTruth) {
 TEST(Simulate, TellsPixelsWithoutABeam) {
   Stage stage;
   stage.beams.directions[3].setConstant(std::nan(""));
+  stage.beams.pinhole.reset();  // no longer its directions
   EXPECT_EQ(stage.shoot().status[3], Status::no_beam);
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/embree/embree_renderer.hpp>
 
+#include <glidar/core/simd.hpp>
 #include <glidar/core/work_count.hpp>
 #include <glidar/render/embree/embree_world.hpp>
 #include <glidar/render/embree/settle.hpp>
@@ -10,14 +11,32 @@
 
 #include <array>
 #include <bit>
+#include <cmath>
 #include <memory>
+#include <vector>
 
 namespace glidar {
 namespace {
 
+/// Where the columns and rows of a pinhole cross the plane at depth 1; empty for other beams. To
+/// work directions out from these is quicker than to read them.
+struct PlanePoints {
+  std::vector<double> x;
+  std::vector<double> y;
+};
+
+void find_plane_points(const Beams& beams, PlanePoints& points) {
+  points.x.clear();
+  points.y.clear();
+  if (!beams.pinhole) return;
+  for (std::uint32_t u = 0; u < beams.cols; ++u) points.x.push_back(plane_x(*beams.pinhole, u));
+  for (std::uint32_t v = 0; v < beams.rows; ++v) points.y.push_back(plane_y(*beams.pinhole, v));
+}
+
 /// What one cast hands to every tile.
 struct Job {
   const Beams& beams;
+  const PlanePoints& points;
   const HitFields& fields;
   const Resolver& resolver;
   const embree::Probe& probe;
@@ -31,22 +50,47 @@ struct TileWork {
   HitBlock block;
   Lanes3<double> in_sensor;  ///< directions
   Lanes<int> valid;          ///< -1: the lane has a beam
-  std::uint32_t inside;      ///< bit i: lane i lies in the grid
   embree::RayHits rays;
   ExactBlock exact;
 };
+
+/// direction_through(), lane by lane.
+GLIDAR_SIMD void directions_through(const Lanes<double>& x, const Lanes<double>& y,
+                                    Lanes3<double>& out) {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const double length = std::sqrt(x[i] * x[i] + y[i] * y[i] + 1.0);
+    out.x[i] = x[i] / length;
+    out.y[i] = y[i] / length;
+    out.z[i] = 1.0 / length;
+  }
+}
+
+/// Collects the beams of a tile that lies wholly in a pinhole's grid.
+void gather_pinhole(const PlanePoints& points, const embree::Tile& tile, TileWork& work) {
+  const std::uint32_t column_mask = (1U << tile.width_shift) - 1U;
+  Lanes<double> x;
+  Lanes<double> y;
+  const std::size_t first = tile.beam(0);
+  for (unsigned lane = 0; lane < kLanes; ++lane) {
+    const std::uint32_t row = lane >> tile.width_shift;
+    const std::uint32_t col = lane & column_mask;
+    x[lane] = points.x[tile.first_col + col];
+    y[lane] = points.y[tile.first_row + row];
+    work.block.beam[lane] = first + std::size_t{row} * tile.cols + col;
+    work.valid[lane] = -1;
+  }
+  directions_through(x, y, work.in_sensor);
+}
 
 /// Collects the tile's beams; lanes beyond the grid's border repeat the first and are not valid.
 void gather_beams(const Beams& beams, const embree::Tile& tile, TileWork& work) {
   const bool whole = tile.is_whole(kLanes);
   const std::size_t first = tile.beam(0);
   const std::uint32_t column_mask = (1U << tile.width_shift) - 1U;
-  work.inside = 0;
   for (unsigned lane = 0; lane < kLanes; ++lane) {
     const std::size_t beam =
         first + std::size_t{lane >> tile.width_shift} * tile.cols + (lane & column_mask);
     const bool inside = whole || tile.beam(lane) != embree::Tile::kOutside;
-    work.inside |= static_cast<std::uint32_t>(inside) << lane;
     work.valid[lane] = inside ? -1 : 0;
     work.block.beam[lane] = inside ? beam : first;
     work.in_sensor.set(lane, beams.directions[work.block.beam[lane]]);
@@ -105,22 +149,7 @@ bool settle(const Job& job, std::uint32_t doubtful, HitBlock& block) {
   return changed;
 }
 
-/// Writes the misses of a tile, neighbours together.
-void write_misses(const Job& job, const TileWork& work) {
-  std::uint32_t missed = work.inside & ~work.block.mask;
-  while (missed != 0) {
-    const auto lane = static_cast<unsigned>(std::countr_zero(missed));
-    unsigned count = 1;
-    while (lane + count < kLanes && (missed >> (lane + count) & 1U) != 0 &&
-           work.block.beam[lane + count] == work.block.beam[lane] + count) {
-      ++count;
-    }
-    Resolver::write_misses(job.fields, work.block.beam[lane], count, job.hits);
-    missed &= ~(((1U << count) - 1U) << lane);
-  }
-}
-
-/// Writes the hits and misses of a traced tile.
+/// Writes the hits of a traced tile over the misses that stand there.
 void finish(const Job& job, TileWork& work) {
   HitBlock& block = work.block;
   if (block.mask != 0) {
@@ -131,18 +160,25 @@ void finish(const Job& job, TileWork& work) {
     }
   }
   if (block.mask != 0) job.resolver.write(job.beams, job.fields, block, work.exact, job.hits);
-  write_misses(job, work);
 }
 
 /// Casts tiles [begin, end). Three are under way at a time, so that what the later steps of one
 /// read from memory (planes and corners of its triangles) comes while the next is traced.
 void cast_tiles(const Job& job, const embree::Tiling& tiling, std::size_t begin, std::size_t end) {
   std::array<TileWork, 3> ring;
+  tiling.for_beam_rows(begin, end, [&](BeamRange row) {
+    Resolver::write_misses(job.fields, row.begin, row.end - row.begin, job.hits);
+  });
   for (std::size_t i = begin; i < end + 2; ++i) {
     if (i < end) {
       TileWork& work = ring[i % ring.size()];
-      gather_beams(job.beams, tiling.tile(i), work);
-      if (i + 1 < end) prefetch(job.beams, tiling.tile(i + 1));
+      const embree::Tile tile = tiling.tile(i);
+      if (!job.points.x.empty() && tile.is_whole(kLanes)) {
+        gather_pinhole(job.points, tile, work);
+      } else {
+        gather_beams(job.beams, tile, work);
+        if (i + 1 < end) prefetch(job.beams, tiling.tile(i + 1));
+      }
       trace(job, work);
     }
     if (i >= begin + 1 && i - 1 < end) {
@@ -175,7 +211,9 @@ class EmbreeRenderer final : public Renderer {
       world_->place(request);
     });
     const embree::Probe probe(world_->space(), resolver_, request.beams, request.cull_back_faces);
+    find_plane_points(request.beams, points_);
     const Job job{.beams = request.beams,
+                  .points = points_,
                   .fields = request.fields,
                   .resolver = resolver_,
                   .probe = probe,
@@ -202,6 +240,7 @@ class EmbreeRenderer final : public Renderer {
 
   Workers workers_;
   Resolver resolver_;
+  PlanePoints points_;
   std::unique_ptr<embree::World> world_;
 };
 
