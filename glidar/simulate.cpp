@@ -8,7 +8,6 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kBeamsPerTask = 4096;  // some 50 microseconds of measuring
 constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
 
 /// What the sensor says of a surface at this true range.
@@ -47,20 +46,6 @@ void measure_light(const Setup& setup, BeamRange range, Frame& frame) {
   }
 }
 
-/// The truth of a frame, each beam at its own firing time.
-void cast(const CastRequest& request, const Setup& setup, Frame& frame) {
-  if (!moves_during_frame(setup.motion, setup.beams)) {
-    frame.deskewed = {};
-    setup.renderer.cast(request, frame.truth);
-    return;
-  }
-  cast_moving(setup.renderer, request, setup.beams, setup.scene, setup.motion, frame);
-  setup.renderer.workers().for_ranges(setup.beams.size(), kBeamsPerTask,
-                                      [&](std::size_t begin, std::size_t end) {
-                                        request.then({begin, end});
-                                      });
-}
-
 }  // namespace
 
 void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
@@ -82,14 +67,17 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
     measure_range(sensor.limits, beams, range, frame);
     measure_light(setup, range, frame);
   };
-  cast({.beams = beams,
-        .world_from_sensor = frame.world_from_sensor,
-        .world_from_instance = frame.world_from_instance,
-        .fields = needed,
-        .cull_back_faces = sensor.cull_back_faces,
-        .then = FunctionRef<void(BeamRange)>(measure),
-        .progress = setup.progress},
-       setup, frame);
+  const World world{setup.renderer, setup.scene, setup.motion, frame.stamp_ns};
+  cast_moving(world,
+              {.beams = beams,
+               .world_from_sensor = frame.world_from_sensor,
+               .world_from_instance = frame.world_from_instance,
+               .fields = needed,
+               .cull_back_faces = sensor.cull_back_faces,
+               .then = FunctionRef<void(BeamRange)>(measure),
+               .progress = setup.progress},
+              frame.scratch, frame.truth);
+  deskew(world, setup.beams, beams, frame.deskewed);
   apply_noise(sensor.noise, 1.0 / sensor.rate_hz, setup.beams, workers, frame);
 }
 
