@@ -41,7 +41,6 @@ Json pulse_json(const PulseLight& light) {
           {"overlap", light.overlap},
           {"extinction_per_m", light.extinction_per_m},
           {"noise_sigma", light.noise_sigma},
-          {"false_alarm_range_m", light.false_alarm_range_m},
           {"saturation", light.saturation}};
 }
 

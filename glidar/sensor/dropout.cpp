@@ -14,24 +14,14 @@ namespace {
 
 double probability_of(const Dropout& step, const NoiseBatch& batch, std::size_t i) {
   double kept = 1.0 - step.probability;
-  if (!step.by_range_m.at.empty()) kept *= 1.0 - look_up(step.by_range_m, batch.range_m[i]);
-  if (!step.by_incidence_rad.at.empty()) {
+  kept *= 1.0 - look_up(step.by_range_m, batch.range_m[i]);
+  if (!step.by_incidence_rad.empty()) {
     kept *= 1.0 - look_up(step.by_incidence_rad, angle_of(batch.cosine[i]));
   }
   return 1.0 - kept;
 }
 
 }  // namespace
-
-double look_up(const Table& table, double x) {
-  if (table.at.empty()) return 0.0;
-  const auto above = std::upper_bound(table.at.begin(), table.at.end(), x);
-  if (above == table.at.begin()) return table.value.front();
-  if (above == table.at.end()) return table.value.back();
-  const auto k = static_cast<std::size_t>(above - table.at.begin());
-  const double share = (x - table.at[k - 1]) / (table.at[k] - table.at[k - 1]);
-  return table.value[k - 1] + share * (table.value[k] - table.value[k - 1]);
-}
 
 void apply(const Dropout& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   PairBatch x;
@@ -40,15 +30,6 @@ void apply(const Dropout& step, const NoiseView& /*view*/, NoiseBatch& batch) {
     if (is_hit(batch, i) && x.first[i] < probability_of(step, batch, i)) {
       lose(batch, i, Status::dropped);
     }
-  }
-}
-
-void apply(const Detection& step, const NoiseView& /*view*/, NoiseBatch& batch) {
-  Batch<double> normal;
-  draw_normals(batch.draw, normal);
-  for (std::size_t i = 0; i < batch.count; ++i) {
-    const double signal = batch.intensity[i] + step.sigma * batch.scale[i] * normal[i];
-    if (is_hit(batch, i) && signal < step.threshold) lose(batch, i, Status::below_threshold);
   }
 }
 
