@@ -44,7 +44,7 @@ struct CloudFrame {
 
 /// Names make_point_cloud knows, in the order files list them:
 /// xyz true_xyz intensity range true_range sigma depth normal shading_normal incidence instance
-/// class primitive barycentrics colour object_point status row col ring time
+/// class primitive barycentrics colour object_point status row col ring time return cause
 std::span<const std::string> cloud_column_names();
 
 /// The optional hit columns that these cloud columns need. Throws Error on an unknown name.
@@ -66,6 +66,7 @@ HitFields fields_for(std::span<const std::string> column_names);
 ///  barycentrics  f32 x2; colour f32 x3; object_point f64 x3 in the object's own frame
 ///  status        u8, see Status; row, col u32
 ///  ring          u16, channel number; time u32, ns since the frame's start
+///  return        u8, from 0: which of the sensor's returns; cause u8, see Cause
 /// Throws Error when a column is unknown or the frame was cast without what it needs.
 void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene,
                       const CloudFrame& cloud_frame, std::span<const std::string> column_names,

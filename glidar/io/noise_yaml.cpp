@@ -38,32 +38,15 @@ void read_others(const YamlField& field, RangeDrift& step) {
   if (const auto per_ring = find(field, "per_ring")) step.per_ring = boolean(*per_ring);
 }
 
-/// A list of [place, probability] with rising places.
-Table read_table(const YamlField& field, double unit) {
-  Table table;
-  for (const YamlField& pair : items(field)) {
-    if (!pair.node.IsSequence() || pair.node.size() != 2) {
-      reject(pair, describe(pair), "a list of 2 numbers, a place and a probability");
-    }
-    const std::vector<YamlField> parts = items(pair);
-    const double at = number(parts[0], kFromZero) * unit;
-    if (!table.at.empty() && at <= table.at.back()) {
-      reject(parts[0], describe(parts[0]), "a number above that of the pair before");
-    }
-    table.at.push_back(at);
-    table.value.push_back(number(parts[1], kZeroToOne));
-  }
-  if (table.at.empty()) reject(field, "an empty list", "at least one pair");
-  return table;
-}
-
 std::vector<std::string> other_keys(const Dropout& /*step*/) {
   return {"by_range_m", "by_incidence_deg"};
 }
 void read_others(const YamlField& field, Dropout& step) {
-  if (const auto table = find(field, "by_range_m")) step.by_range_m = read_table(*table, 1.0);
-  if (const auto table = find(field, "by_incidence_deg")) {
-    step.by_incidence_rad = read_table(*table, kDegree_rad);
+  if (const auto by_range = find(field, "by_range_m")) {
+    step.by_range_m = table(*by_range, kFromZero, kZeroToOne);
+  }
+  if (const auto by_incidence = find(field, "by_incidence_deg")) {
+    step.by_incidence_rad = table(*by_incidence, kFromZero, kZeroToOne, kDegree_rad);
   }
 }
 
@@ -150,9 +133,7 @@ void tell_others(const RangeDrift& step, Json& told) {
 
 Json table_json(const Table& table, double unit) {
   Json pairs = Json::array();
-  for (std::size_t i = 0; i < table.at.size(); ++i) {
-    pairs.push_back(Json::array({table.at[i] / unit, table.value[i]}));
-  }
+  for (const auto& [place, value] : table) pairs.push_back(Json::array({place / unit, value}));
   return pairs;
 }
 

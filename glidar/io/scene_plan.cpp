@@ -48,7 +48,7 @@ ModelOptions read_options(const YamlField& model, const ModelOptions& defaults) 
 
 MaterialOverride read_override(const std::string& material, const YamlField& field) {
   require_map(field, {"ambient", "diffuse", "specular", "shininess", "opacity", "noise_scale",
-                      "noise_texture", "backscatter", "spectrum"});
+                      "noise_texture", "backscatter", "mirror", "spectrum"});
   MaterialOverride change;
   change.material = material;
   change.where = where(field);
@@ -63,6 +63,7 @@ MaterialOverride read_override(const std::string& material, const YamlField& fie
   colour("specular", change.specular);
   scalar("shininess", kShininess, change.shininess);
   scalar("opacity", kZeroToOne, change.opacity);
+  scalar("mirror", kZeroToOne, change.mirror);
   scalar("noise_scale", kFromZero, change.noise_scale);
   if (const auto value = find(field, "backscatter")) change.backscatter = read_backscatter(*value);
   if (const auto value = find(field, "spectrum")) change.spectrum = read_spectrum(*value);

@@ -4,9 +4,7 @@
 
 #include <glidar/core/frame.hpp>
 #include <glidar/core/scene.hpp>
-
-#include <array>
-#include <vector>
+#include <glidar/core/table.hpp>
 
 namespace glidar {
 
@@ -18,15 +16,12 @@ namespace glidar {
 struct PulseLight {
   double reference_reflectance = 0.8;  ///< rho_ref, of a matt surface seen square on
   double reference_range_m = 100.0;    ///< R_ref, where it is seen with probability 1/2
-  double range_exponent = 2.0;  ///< q; sheets of two reflectances tell it, see range_exponent
-  std::vector<std::array<double, 2>> overlap = {};  ///< (range in m, O) with ranges rising; linear
-                                                    ///< between, held outside; empty: 1
-  double extinction_per_m = 0.0;                    ///< alpha
+  double range_exponent = 2.0;    ///< q; sheets of two reflectances tell it, see range_exponent
+  Table overlap = {};             ///< (range in m, O); empty: 1
+  double extinction_per_m = 0.0;  ///< alpha
   /// Standard deviation of the signal's noise: a signal S is reported when S + sigma x >= 1 with a
   /// normal x. 0: every signal of 1 and more is.
   double noise_sigma = 0.0;
-  /// Noise alone is reported when sigma x >= 1, at a range uniform up to here; 0: never.
-  double false_alarm_range_m = 0.0;
   double saturation = 0.0;  ///< signals from here on are not timed: saturated; 0: none
 };
 
@@ -62,8 +57,7 @@ double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelen
 
 /// Fills a run of frame.intensity with signals as the receiver has them, noise included, and takes
 /// away what is too weak or too strong (status below_threshold or saturated, range_m NaN, intensity
-/// 0). A false alarm gives a beam that met nothing a range; its truth stays a miss. Needs
-/// cos_shading and reflectance in frame.truth; draws with Purpose::detection and false_alarm.
+/// 0). Needs cos_shading and reflectance in frame.truth; draws with Purpose::detection.
 void measure_signal(const PulseLight& light, const Scene& scene, double wavelength_m,
                     BeamRange range, Frame& frame);
 

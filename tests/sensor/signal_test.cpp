@@ -188,27 +188,6 @@ TEST(MeasureSignal, DependsOnTheBeamAndNotOnHowBeamsAreShared) {
   EXPECT_EQ(whole.frame.intensity, parts.frame.intensity);
 }
 
-TEST(MeasureSignal, RaisesFalseAlarmsAsOftenAsNoiseAlonePassesTheThreshold) {
-  constexpr std::size_t kBeams = 200000;
-  const PulseLight light{.noise_sigma = 1.0 / 2.5, .false_alarm_range_m = 80.0};
-  Stage stage(kBeams, 1.0);
-  stage.frame.status.assign(kBeams, Status::miss);
-  stage.measure(light);
-  const double probability = 0.5 * std::erfc(2.5 / std::numbers::sqrt2);
-  const double deviation = std::sqrt(probability / kBeams);
-  EXPECT_NEAR(stage.share_of(Status::hit), probability, 4.0 * deviation);
-  double sum = 0.0;
-  double count = 0.0;
-  for (std::size_t i = 0; i < kBeams; ++i) {
-    if (stage.frame.status[i] != Status::hit) continue;
-    EXPECT_GT(stage.frame.range_m[i], 0.0);
-    EXPECT_LT(stage.frame.range_m[i], 80.0);
-    sum += stage.frame.range_m[i];
-    ++count;
-  }
-  EXPECT_NEAR(sum / count, 40.0, 4.0 * 80.0 / std::sqrt(12.0 * count));  // uniform
-}
-
 TEST(MeasureSignal, TellsWhatIsTooStrongAndKeepsItsTruth) {
   Stage stage(1, 1.0);
   stage.measure({.reference_range_m = 100.0, .saturation = 50.0});
