@@ -6,6 +6,12 @@
 
 namespace glidar {
 
+Sensor ideal(Sensor sensor) {
+  sensor.pulse.reset();
+  sensor.noise.clear();
+  return sensor;
+}
+
 void set_rate(Sensor& sensor, double rate_hz) {
   require_optics(rate_hz > 0.0 && std::isfinite(rate_hz), "rate", rate_hz,
                  "a finite number of frames per second above 0");

@@ -42,6 +42,10 @@ struct Sensor {
   bool cull_back_faces = false;     ///< true: triangles seen from behind let the beam through
 };
 
+/// The sensor without noise and pulse light: it reports the geometric truth, lit by the paper's
+/// lamp. Its limits stay.
+Sensor ideal(Sensor sensor);
+
 /// Sets the frame rate, and with it what follows from it: the turns per second of a spinning sensor
 /// and the scans per second of a raster. Throws Error unless it is finite and above 0.
 void set_rate(Sensor& sensor, double rate_hz);

@@ -380,6 +380,29 @@ class Sensors(CliTest):
         self.assertEqual(sensor["frame_id"], "lidar_frame")
         self.assertEqual(len(sensor["optics"]["elevation_deg"]), 16)
 
+    def test_a_preset_is_noisy_unless_it_is_to_be_ideal(self):
+        self.write("room.yaml", "models: [{model: builtin:box, scale: 4}]\nsensor: VLP-16\n"
+                                "sensor_pose: {position: [0, 0, 0]}\n")
+        walls = []
+        for ideal in ((), ("--ideal",)):
+            self.succeed("render", "room.yaml", *ideal, "-o", "room.csv")
+            with open(os.path.join(self.folder, "room.csv"), encoding="utf-8") as file:
+                next(file)
+                walls.append([max(abs(float(x)) for x in line.split(",")[:3]) for line in file])
+            with open(os.path.join(self.folder, "room.csv.json"), encoding="utf-8") as file:
+                sensor = json.load(file)["sensor"]
+            self.assertEqual(bool(sensor["noise"]), not ideal)
+            self.assertEqual(sensor["pulse_light"] is None, bool(ideal))
+        self.assertGreater(max(abs(wall - 4) for wall in walls[0]), 0.01)
+        self.assertLess(max(abs(wall - 4) for wall in walls[1]), 1e-9)
+
+    def test_the_paper_s_light_is_refused_where_pulse_light_is(self):
+        box = ("render", "builtin:box", "--eye", "0,0,0", "--sensor", "VLP-16", "-o", "a.pcd")
+        self.assertIn("--ambient: the sensor has pulse light; leave it out, or add --ideal",
+                      self.refused(*box, "--ambient", "0"))
+        self.assertIn("--attenuation: the sensor has", self.refused(*box, "--attenuation", "1,0,0"))
+        self.succeed(*box, "--ambient", "0", "--ideal")
+
     def test_without_a_pose_it_stands_beside_the_scene_and_says_so(self):
         done = self.succeed("render", "builtin:asteroid", "--sensor", "OS1-32", "-o", "a.pcd")
         self.assertIn("beside the scene", done.stderr)
