@@ -361,6 +361,28 @@ class Sensors(CliTest):
         self.assertEqual(told["VLP-16"]["rows"], 16)
         self.assertEqual(told["VLP-16"]["view_deg"][0], 360)
 
+    def test_surfaces_are_listed_and_cover_a_model(self):
+        lines = self.succeed("sensors", "--surfaces").stdout.splitlines()
+        asphalt = next(line for line in lines if line.startswith("asphalt "))
+        self.assertEqual(asphalt.split()[1:5], ["0.269", "0.278", "0.302", "0.362"])
+        told = {entry["name"]: entry
+                for entry in json.loads(self.succeed("sensors", "--surfaces", "--json").stdout)}
+        self.assertEqual(told["grass"]["reflectance_at_nm"]["1550"], 0.243)
+        self.assertFalse(told["mli"]["matt"])
+        self.assertIn("--surfaces alone", self.refused("sensors", "VLP-16", "--surfaces"))
+
+        box = ("render", "builtin:box", "--eye", "0,0,0", "-o", "a.csv", "--surface")
+        lidar = ("--sensor", "VLP-16", "--columns", "xyz,intensity")
+        self.succeed(*box, "black_paint", *lidar)
+        with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
+            next(file)
+            counts = {float(line.split(",")[3]) for line in file}
+        self.assertEqual(max(counts), 5)  # percent, square on
+        self.assertIn("did you mean 'black_paint'?", self.refused(*box, "blak_paint", *lidar))
+        self.assertIn("no pulse light", self.refused(*box, "grass"))
+        self.write("s.yaml", "models: [{model: builtin:box}]\nsensor: VLP-16\n")
+        self.assertIn("scene file", self.refused("render", "s.yaml", "--surface", "grass", "-o", "a.csv"))
+
     def test_one_sensor_tells_its_sources_and_draws_its_pattern(self):
         text = self.succeed("sensors", "vlp-16", "-o", "pattern.png").stdout
         self.assertIn("optics.sequence_us = 55.296", text)

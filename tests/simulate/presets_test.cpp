@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The sensors that come along, with their light and noise, against their sheets and recordings.
 #include <glidar/io/builtin_models.hpp>
+#include <glidar/io/scene_file.hpp>
 #include <glidar/io/sensor_file.hpp>
 #include <glidar/io/sensor_presets.hpp>
 #include <glidar/simulate.hpp>
 #include <support/data.hpp>
 
 #include <gtest/gtest.h>
+#include <io/yaml_files.hpp>
 
 #include <cmath>
 
@@ -181,6 +183,23 @@ TEST(Presets, OfOusterHearOneFalseEchoInTenThousand) {
   const double expected = 1e-4 * static_cast<double>(empty.beams.size());
   const double found = empty.share_of_hits() * static_cast<double>(empty.beams.size());
   EXPECT_NEAR(found, expected, 4.0 * std::sqrt(expected));
+}
+
+TEST(Surfaces, SendBackTheSignalOfTheRangeEquation) {
+  const TestFolder folder;
+  const auto file = folder.write(
+      "s.yaml",
+      "models: [{model: builtin:box, scale: 10, materials: {\"*\": {surface: asphalt}}}]\n"
+      "sensor: {optics: {width: 1, height: 1, fov_deg: 1}, wavelength_nm: 905,\n"
+      "  pulse_light: {reference_reflectance: 0.8, reference_range_m: 100}}\n");
+  const SceneFile loaded = load_scene_file(file, {}, {});
+  const Beams beams = make_beams(*loaded.sensor);
+  const auto renderer = make_renderer(loaded.scene, {.threads = 1});
+  const Motion motion = standing_still(loaded.scene, Pose::Identity());
+  Frame frame;
+  simulate({loaded.scene, *loaded.sensor, beams, motion, *renderer}, {}, frame);
+  EXPECT_NEAR(frame.range_m[0], 10.0, 1e-9);  // a wall of the box, square on
+  EXPECT_NEAR(frame.intensity[0], 0.278 / 0.8 * 100.0, 1e-4);
 }
 
 TEST(Ideal, LeavesTheGeometryAlone) {
