@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace glidar::app {
@@ -146,19 +147,25 @@ std::vector<double> parse_attenuation(std::string_view option, const std::string
                .remedy = ""});
 }
 
-void apply_light(const SensorFlags& flags, Light& light) {
+void apply_light(const SensorFlags& flags, Sensor& sensor) {
+  if (sensor.pulse && (flags.ambient || !flags.attenuation.empty())) {
+    throw Error({.where = flags.ambient ? "--ambient" : "--attenuation",
+                 .found = "the sensor has pulse light",
+                 .allowed = "",
+                 .remedy = "leave it out, or add --ideal"});
+  }
   if (flags.ambient) {
     require(*flags.ambient >= 0.0 && *flags.ambient <= kLargestAmbient, "--ambient", *flags.ambient,
             "a number from 0 to 1e6");
-    light.ambient = *flags.ambient;
+    sensor.light.ambient = *flags.ambient;
   }
   if (!flags.attenuation.empty()) {
     const std::vector<double> n = parse_attenuation("--attenuation", flags.attenuation);
-    light.attenuation_constant = n[0];
-    light.attenuation_linear_per_m = n[1];
-    light.attenuation_quadratic_per_m2 = n[2];
+    sensor.light.attenuation_constant = n[0];
+    sensor.light.attenuation_linear_per_m = n[1];
+    sensor.light.attenuation_quadratic_per_m2 = n[2];
   }
-  validate(light);
+  validate(sensor.light);
 }
 
 }  // namespace
@@ -196,6 +203,10 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
       .add_flag("--cull-back-faces", flags.cull_back_faces,
                 "Triangles seen from behind let beams through [they are seen]")
       ->group(group);
+  command
+      .add_flag("--ideal", flags.ideal,
+                "Without the sensor's noise and pulse light: the geometric truth")
+      ->group(group);
   number("--ambient", "A", "Ambient light of the scene [0.2]", flags.ambient);
   add_text(command,
            {"--attenuation", "C,L,Q", "Light falls as 1/(C + L d + Q d^2) [1,1e-4,1e-8]", group},
@@ -222,7 +233,8 @@ Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_s
   }
   apply_scan(flags, sensor);
   apply_limits(flags, sensor.limits);
-  apply_light(flags, sensor.light);
+  if (flags.ideal) sensor = ideal(std::move(sensor));
+  apply_light(flags, sensor);
   sensor.cull_back_faces = sensor.cull_back_faces || flags.cull_back_faces;
   return sensor;
 }

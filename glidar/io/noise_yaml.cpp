@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kMostFrequencies = 8;
 constexpr std::uint32_t kWidestWindow = 33;
+const std::vector<std::string> kIntensityKinds = {"unit", "vendor", "plain"};
 constexpr NumberRule kFrequency = {1.0, 1e12, false, "hertz from 1 to 1e12"};
 
 /// What a step's map holds beside its numbers; most hold nothing.
@@ -89,7 +90,7 @@ std::vector<std::string> other_keys(const IntensityScale& /*step*/) {
 }
 void read_others(const YamlField& field, IntensityScale& step) {
   if (const auto kind = find(field, "kind")) {
-    step.kind = static_cast<IntensityScale::Kind>(one_of(*kind, {"unit", "vendor"}));
+    step.kind = static_cast<IntensityScale::Kind>(one_of(*kind, kIntensityKinds));
   }
 }
 
@@ -151,7 +152,7 @@ void tell_others(const ContinuousWave& step, Json& told) {
 }
 
 void tell_others(const IntensityScale& step, Json& told) {
-  told["kind"] = step.kind == IntensityScale::Kind::unit ? "unit" : "vendor";
+  told["kind"] = kIntensityKinds.at(static_cast<std::size_t>(step.kind));
 }
 
 }  // namespace

@@ -169,15 +169,16 @@ void set_source(const std::string& key, const std::string& source, std::vector<S
 void add_sources(const YamlField& root, std::vector<SheetEntry>& sheet) {
   const auto sources = find(root, "source");
   if (!sources) return;
-  auto all = entries(*sources);
+  std::vector<std::pair<std::string, std::string>> all;  // no nodes: to assign one changes the file
+  for (const auto& [key, value] : entries(*sources)) {
+    require_entry(value, key, sheet);
+    all.emplace_back(key, text(value));
+  }
   // nearer keys win: the long ones come last
   std::stable_sort(all.begin(), all.end(), [](const auto& one, const auto& other) {
     return one.first.size() < other.first.size();
   });
-  for (const auto& [key, value] : all) {
-    require_entry(value, key, sheet);
-    set_source(key, text(value), sheet);
-  }
+  for (const auto& [key, source] : all) set_source(key, source, sheet);
 }
 
 void mark_unverified(const YamlField& root, std::vector<SheetEntry>& sheet) {

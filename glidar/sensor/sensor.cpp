@@ -43,6 +43,14 @@ Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double 
   return Status::hit;
 }
 
+Sensor ideal(Sensor sensor) {
+  sensor.pulse.reset();
+  sensor.footprint.reset();
+  sensor.receiver = {};
+  sensor.noise.clear();
+  return sensor;
+}
+
 void set_rate(Sensor& sensor, double rate_hz) {
   require_optics(rate_hz > 0.0 && std::isfinite(rate_hz), "rate", rate_hz,
                  "a finite number of frames per second above 0");

@@ -49,6 +49,10 @@ struct Sensor {
 /// What the sensor says of something at this true range on a beam: hit, too_near or too_far.
 Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double range_m);
 
+/// The sensor without noise, pulse light, footprint and further returns: it reports the geometric
+/// truth, lit by the paper's lamp. Its limits stay.
+Sensor ideal(Sensor sensor);
+
 /// Sets the frame rate, and with it what follows from it: the turns per second of a spinning sensor
 /// and the scans per second of a raster. Throws Error unless it is finite and above 0.
 void set_rate(Sensor& sensor, double rate_hz);
