@@ -39,10 +39,11 @@ GLIDAR_SIMD void fill_first(const WordBatch& words, Batch<double>& out) {
   }
 }
 
-GLIDAR_SIMD void fill_pairs(const WordBatch& words, PairBatch& out) {
+GLIDAR_SIMD void fill_pairs(const Batch<std::uint32_t>& a, const Batch<std::uint32_t>& b,
+                            PairBatch& out) {
   for (std::size_t i = 0; i < kDrawBatch; ++i) {
-    const double r = radius(words.word[0][i]);
-    const SineCosine angle = of_turns(uniform_of(words.word[1][i]));
+    const double r = radius(a[i]);
+    const SineCosine angle = of_turns(uniform_of(b[i]));
     out.first[i] = r * angle.cosine;
     out.second[i] = r * angle.sine;
   }
@@ -65,6 +66,10 @@ std::array<double, 4> normals(const RandomWords& words) {
   return {r0 * angle0.cosine, r0 * angle0.sine, r1 * angle1.cosine, r1 * angle1.sine};
 }
 
+void make_normals(const WordBatch& words, std::size_t pair, PairBatch& normals) {
+  fill_pairs(words.word.at(2 * pair), words.word.at(2 * pair + 1), normals);
+}
+
 void draw_words(const Draw& first, WordBatch& words) {
   fill_words(counter_of(first), key_of(first), words);
 }
@@ -78,7 +83,7 @@ void draw_normals(const Draw& first, Batch<double>& normals) {
 void draw_normals(const Draw& first, PairBatch& normals) {
   WordBatch words;
   draw_words(first, words);
-  fill_pairs(words, normals);
+  make_normals(words, 0, normals);
 }
 
 void draw_uniforms(const Draw& first, PairBatch& uniforms) {

@@ -32,6 +32,9 @@ struct alignas(64) PairBatch {
   Batch<double> second;
 };
 
+/// Normals 2 pair and 2 pair + 1 of normals() of each beam's words.
+void make_normals(const WordBatch& words, std::size_t pair, PairBatch& normals);
+
 /// The words of beams first.beam, first.beam + 1, ...; the same as random_words gives one by one.
 void draw_words(const Draw& first, WordBatch& words);
 

@@ -3,6 +3,7 @@
 #include <glidar/sensor/dropout.hpp>
 
 #include <glidar/core/elementary.hpp>
+#include <glidar/core/simd.hpp>
 #include <glidar/sensor/lateral_shift.hpp>
 #include <glidar/sensor/noise_batch.hpp>
 
@@ -19,6 +20,11 @@ double probability_of(const Dropout& step, const NoiseBatch& batch, std::size_t 
     kept *= 1.0 - look_up(step.by_incidence_rad, angle_of(batch.cosine[i]));
   }
   return 1.0 - kept;
+}
+
+/// The ranges of first arrivals, from their uniform numbers.
+GLIDAR_SIMD void first_arrivals(double near_m, double metres, Batch<double>& x) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) x[i] = near_m - natural_log(x[i]) * metres;
 }
 
 }  // namespace
@@ -81,11 +87,12 @@ void apply(const FalseEchoes& step, const NoiseView& view, NoiseBatch& batch) {
   constexpr double kHalfLight_m_per_s = 0.5 * 299792458.0;
   PairBatch x;
   draw_uniforms(batch.draw, x);
+  first_arrivals(step.near_m - view.beams.range_offset_m, kHalfLight_m_per_s / step.rate_hz,
+                 x.first);
   for (std::size_t i = 0; i < batch.count; ++i) {
     const Status status = batch.status[i];
     const bool listens = status != Status::no_beam && status != Status::dropped;
-    const double wait_s = -natural_log(x.first[i]) / step.rate_hz;
-    const double false_m = step.near_m + wait_s * kHalfLight_m_per_s - view.beams.range_offset_m;
+    const double false_m = x.first[i];
     if (!listens || !(false_m < step.far_m) || !(false_m > 0.0)) continue;
     if (status == Status::hit && batch.range_m[i] <= false_m) continue;
     batch.range_m[i] = false_m;
