@@ -108,14 +108,14 @@ void apply(const DisparityQuantum& step, const NoiseView& /*view*/, NoiseBatch& 
 
 void apply(const Khoshelham& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
+  draw_shared_normals(batch.draw, normal);
   add_parabola({.a_m = 0.0, .b_per_m = step.sigma_per_m, .c_m = 0.0, .grazing = 0.0}, normal,
                batch);
 }
 
 void apply(const NguyenAxial& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
+  draw_shared_normals(batch.draw, normal);
   add_axial(step, normal, batch);
 }
 
@@ -143,14 +143,14 @@ void apply(const IclKinect& step, const NoiseView& view, NoiseBatch& batch) {
   }
   look_aside(shift, view, batch);
   Batch<double> normal;
-  draw_normals(block(batch.draw, 1), normal);
+  draw_shared_normals(block(batch.draw, 1), normal);
   measure({.k_m = step.k_m, .sigma_steps = step.sigma_steps}, normal, batch);
   lose_far(batch);
 }
 
 void prepare(const KinectV1& /*step*/, const NoiseView& view, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
+  draw_shared_normals(batch.draw, normal);
   std::copy_n(normal.begin(), batch.count,
               view.frame.scratch.before.begin() + static_cast<std::ptrdiff_t>(batch.first));
 }
@@ -165,7 +165,7 @@ void apply(const KinectV1& step, const NoiseView& view, NoiseBatch& batch) {
 
 void apply(const Stereo& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
+  draw_shared_normals(batch.draw, normal);
   const double unit_px = step.step_px > 0.0 ? step.step_px : 1.0;
   measure({.k_m = step.focal_px * step.baseline_m / unit_px,
            .sigma_steps = step.sigma_px / unit_px,

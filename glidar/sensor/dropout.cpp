@@ -40,10 +40,10 @@ double look_up(const Table& table, double x) {
 }
 
 void apply(const Dropout& step, const NoiseView& /*view*/, NoiseBatch& batch) {
-  PairBatch x;
-  draw_uniforms(batch.draw, x);
+  Batch<double> x;
+  draw_shared_uniforms(batch.draw, x);
   for (std::size_t i = 0; i < batch.count; ++i) {
-    if (is_hit(batch, i) && x.first[i] < probability_of(step, batch, i)) {
+    if (is_hit(batch, i) && x[i] < probability_of(step, batch, i)) {
       lose(batch, i, Status::dropped);
     }
   }
@@ -51,7 +51,7 @@ void apply(const Dropout& step, const NoiseView& /*view*/, NoiseBatch& batch) {
 
 void apply(const Detection& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
+  draw_shared_normals(batch.draw, normal);
   for (std::size_t i = 0; i < batch.count; ++i) {
     const double signal = batch.intensity[i] + step.sigma * batch.scale[i] * normal[i];
     if (is_hit(batch, i) && signal < step.threshold) lose(batch, i, Status::below_threshold);
@@ -85,14 +85,13 @@ void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch) {
 void apply(const FalseEchoes& step, const NoiseView& view, NoiseBatch& batch) {
   if (!(step.rate_hz > 0.0)) return;
   constexpr double kHalfLight_m_per_s = 0.5 * 299792458.0;
-  PairBatch x;
-  draw_uniforms(batch.draw, x);
-  first_arrivals(step.near_m - view.beams.range_offset_m, kHalfLight_m_per_s / step.rate_hz,
-                 x.first);
+  Batch<double> x;
+  draw_shared_uniforms(batch.draw, x);
+  first_arrivals(step.near_m - view.beams.range_offset_m, kHalfLight_m_per_s / step.rate_hz, x);
   for (std::size_t i = 0; i < batch.count; ++i) {
     const Status status = batch.status[i];
     const bool listens = status != Status::no_beam && status != Status::dropped;
-    const double false_m = x.first[i];
+    const double false_m = x[i];
     if (!listens || !(false_m < step.far_m) || !(false_m > 0.0)) continue;
     if (status == Status::hit && batch.range_m[i] <= false_m) continue;
     batch.range_m[i] = false_m;
