@@ -3,6 +3,7 @@
 #include <glidar/sensor/dropout.hpp>
 
 #include <glidar/core/elementary.hpp>
+#include <glidar/core/simd.hpp>
 #include <glidar/sensor/lateral_shift.hpp>
 #include <glidar/sensor/noise_batch.hpp>
 
@@ -21,13 +22,18 @@ double probability_of(const Dropout& step, const NoiseBatch& batch, std::size_t 
   return 1.0 - kept;
 }
 
+/// The ranges of first arrivals, from their uniform numbers.
+GLIDAR_SIMD void first_arrivals(double near_m, double metres, Batch<double>& x) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) x[i] = near_m - natural_log(x[i]) * metres;
+}
+
 }  // namespace
 
 void apply(const Dropout& step, const NoiseView& /*view*/, NoiseBatch& batch) {
-  PairBatch x;
-  draw_uniforms(batch.draw, x);
+  Batch<double> x;
+  draw_shared_uniforms(batch.draw, x);
   for (std::size_t i = 0; i < batch.count; ++i) {
-    if (is_hit(batch, i) && x.first[i] < probability_of(step, batch, i)) {
+    if (is_hit(batch, i) && x[i] < probability_of(step, batch, i)) {
       lose(batch, i, Status::dropped);
     }
   }
@@ -62,13 +68,13 @@ void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch) {
 void apply(const FalseEchoes& step, const NoiseView& view, NoiseBatch& batch) {
   if (!(step.rate_hz > 0.0)) return;
   constexpr double kHalfLight_m_per_s = 0.5 * 299792458.0;
-  PairBatch x;
-  draw_uniforms(batch.draw, x);
+  Batch<double> x;
+  draw_shared_uniforms(batch.draw, x);
+  first_arrivals(step.near_m - view.beams.range_offset_m, kHalfLight_m_per_s / step.rate_hz, x);
   for (std::size_t i = 0; i < batch.count; ++i) {
     const Status status = batch.status[i];
     const bool listens = status != Status::no_beam && status != Status::dropped;
-    const double wait_s = -natural_log(x.first[i]) / step.rate_hz;
-    const double false_m = step.near_m + wait_s * kHalfLight_m_per_s - view.beams.range_offset_m;
+    const double false_m = x[i];
     if (!listens || !(false_m < step.far_m) || !(false_m > 0.0)) continue;
     if (status == Status::hit && batch.range_m[i] <= false_m) continue;
     batch.range_m[i] = false_m;
