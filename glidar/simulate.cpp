@@ -3,6 +3,7 @@
 #include <glidar/simulate.hpp>
 
 #include <glidar/motion/beam_poses.hpp>
+#include <glidar/pulse_cast.hpp>
 
 #include <cmath>
 #include <limits>
@@ -11,15 +12,6 @@ namespace glidar {
 namespace {
 
 constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
-
-/// What the sensor says of a surface at this true range.
-Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double range_m) {
-  const double distance = limits.along == Limits::Along::depth ? depth_m(beams, beam, range_m)
-                                                               : range_m + beams.range_offset_m;
-  if (distance < limits.near_m) return Status::too_near;
-  if (distance > limits.far_m) return Status::too_far;
-  return Status::hit;
-}
 
 /// Range and status of a run of beams from the truth.
 void measure_range(const Limits& limits, const Beams& beams, BeamRange range, Frame& frame) {
@@ -65,20 +57,25 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
   needed.shading = true;  // the light needs them
   needed.reflectance = true;
   add_needs(sensor.noise, needed);
+  const World world{setup.renderer, setup.scene, setup.motion, frame.stamp_ns};
   const auto measure = [&](BeamRange range) {
     measure_range(sensor.limits, beams, range, frame);
     measure_light(setup, range, frame);
   };
-  const World world{setup.renderer, setup.scene, setup.motion, frame.stamp_ns};
-  cast_moving(world,
-              {.beams = beams,
-               .world_from_sensor = frame.world_from_sensor,
-               .world_from_instance = frame.world_from_instance,
-               .fields = needed,
-               .cull_back_faces = sensor.cull_back_faces,
-               .then = FunctionRef<void(BeamRange)>(measure),
-               .progress = setup.progress},
-              frame.scratch, frame.truth);
+  if (has_echoes(sensor, setup.scene)) {
+    measure_pulses(setup, needed, beams, frame);
+  } else {
+    frame.cause.clear();
+    cast_moving(world,
+                {.beams = beams,
+                 .world_from_sensor = frame.world_from_sensor,
+                 .world_from_instance = frame.world_from_instance,
+                 .fields = needed,
+                 .cull_back_faces = sensor.cull_back_faces,
+                 .then = FunctionRef<void(BeamRange)>(measure),
+                 .progress = setup.progress},
+                frame.scratch, frame.truth);
+  }
   deskew(world, setup.beams, beams, frame.deskewed);
   place_beams(setup.motion, setup.beams, fields.poses, workers, frame);
   apply_noise(sensor.noise, 1.0 / sensor.rate_hz, setup.beams, workers, frame);
