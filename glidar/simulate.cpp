@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate.hpp>
 
+#include <glidar/motion/beam_poses.hpp>
 #include <glidar/pulse_cast.hpp>
 
 #include <cmath>
@@ -76,6 +77,7 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
                 frame.scratch, frame.truth);
   }
   deskew(world, setup.beams, beams, frame.deskewed);
+  place_beams(setup.motion, setup.beams, fields.poses, workers, frame);
   apply_noise(sensor.noise, 1.0 / sensor.rate_hz, setup.beams, workers, frame);
 }
 

@@ -87,6 +87,12 @@ struct Frame {
     std::vector<Eigen::Quaternionf> start_from_sensor;  ///< N, rotation since stamp_ns
   };
   Deskewed deskewed;
+  /// Where the sensor and the object that a beam hit were when it left. Empty unless asked for.
+  struct BeamPoses {
+    std::vector<PoseNumbers> world_from_sensor;  ///< N
+    std::vector<PoseNumbers> world_from_object;  ///< N, without scale; NaN where nothing was hit
+  };
+  BeamPoses beam_poses;
   Hits truth;  ///< what is there, whether reported or not
   Scratch scratch;
 };

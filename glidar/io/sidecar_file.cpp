@@ -108,6 +108,7 @@ Json cloud_json(const CloudFile& job, const std::filesystem::path& path) {
           {"cols", job.cloud.cols},
           {"frame_id", job.cloud.frame_id},
           {"world_from_cloud", pose_json(job.cloud.world_from_cloud)},
+          {"layout", job.layout.empty() ? Json() : Json(job.layout)},
           {"columns", columns_json(job.fields)}};
 }
 

@@ -110,6 +110,19 @@ class Refusals(CliTest):
             with self.subTest(arguments):
                 self.assertIn(text, self.refused(*render, *arguments))
 
+    def test_layouts(self):
+        render = ("render", "nofile.ply", "-o", "x.pcd")
+        error = self.refused(*render, "--layout", "velodine")
+        self.assertIn("--layout: 'velodine'; allowed: minimal, velodyne, ouster, livox, autoware", error)
+        self.assertIn("did you mean velodyne?", error)
+        for columns in ("xyz", "default"):
+            error = self.refused(*render, "--layout", "velodyne", "--columns", columns)
+            self.assertIn("--layout and --columns: both are given", error)
+            self.assertIn("leave --columns out", error)
+        error = self.refused("render", "nofile.ply", "-o", "x.png", "-o", "x.bin", "--layout", "ouster")
+        self.assertIn("no output takes a layout", error)
+        self.assertIn(".pcd .ply .npz .csv", error)
+
     def test_options_are_checked_before_anything_is_loaded(self):
         for arguments, text in ((("--renderer", "magic"), "--renderer: 'magic'; allowed: embree"),
                                 (("--eye", "1,2"), "--eye"),
