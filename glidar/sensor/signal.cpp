@@ -19,6 +19,12 @@ double power(double base, double exponent) {
   return base > 0.0 ? natural_exp(exponent * natural_log(base)) : 0.0;
 }
 
+/// exp(-2 alpha R).
+double two_way(double extinction_per_m, double range_m) {
+  const double depth = -2.0 * extinction_per_m * range_m;
+  return natural_exp(std::clamp(depth, -600.0, 600.0));  // beyond, it is 0 or endless anyway
+}
+
 double incidence_rad(double cosine) {
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
   return 2.0 * std::numbers::pi * turns_of(sine, cosine);
@@ -114,9 +120,20 @@ double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelen
                    truth.range_m[beam]);
 }
 
-void measure_hit(const PulseLight& light, double received, std::size_t beam, Frame& frame) {
+/// Whether clear air had let a faint signal through.
+Status why_faint(const PulseLight& light, double signal, double error, double range_m) {
+  if (!(light.weather_extinction_per_m > 0.0)) return Status::below_threshold;
+  const double clear = signal / two_way(light.weather_extinction_per_m, range_m);
+  return clear + error < 1.0 ? Status::below_threshold : Status::weather;
+}
+
+void measure_hit(const PulseLight& light, double signal, double error, std::size_t beam,
+                 Frame& frame) {
+  const double received = signal + error;
   frame.intensity[beam] = static_cast<float>(received);
-  if (received < 1.0) lose(frame, beam, Status::below_threshold);
+  if (received < 1.0) {
+    lose(frame, beam, why_faint(light, signal, error, frame.truth.range_m[beam]));
+  }
   if (light.saturation > 0.0 && received >= light.saturation) lose(frame, beam, Status::saturated);
 }
 
@@ -145,6 +162,8 @@ void validate(const PulseLight& light) {
   require(from_zero(light.range_exponent), "range_exponent", light.range_exponent, "0 or above");
   require(from_zero(light.extinction_per_m), "extinction_per_m", light.extinction_per_m,
           "0 or above");
+  require(from_zero(light.weather_extinction_per_m), "weather_extinction_per_m",
+          light.weather_extinction_per_m, "0 or above");
   require(from_zero(light.noise_sigma), "noise_sigma", light.noise_sigma, "0 or above");
   require(from_zero(light.saturation), "saturation", light.saturation, "0 or above");
   require(from_zero(light.false_alarm_range_m), "false_alarm_range_m", light.false_alarm_range_m,
@@ -167,20 +186,23 @@ double reflectance_at(const Material& material, double wavelength_m) {
   return interpolate(material.spectrum, wavelength_m, luminance(material.diffuse));
 }
 
+double relative_overlap(const PulseLight& light, double range_m) {
+  return interpolate(light.overlap, range_m, 1.0) /
+         interpolate(light.overlap, light.reference_range_m, 1.0);
+}
+
 double signal_of(const PulseLight& light, double sent_back, double range_m) {
   const double ratio = light.reference_range_m / range_m;
   const double spread =
       light.range_exponent == 2.0 ? ratio * ratio : power(ratio, light.range_exponent);
   double signal = sent_back / light.reference_reflectance * spread;
   if (light.extinction_per_m > 0.0) {
-    const double depth = -2.0 * light.extinction_per_m * (range_m - light.reference_range_m);
-    signal *= natural_exp(std::clamp(depth, -600.0, 600.0));  // beyond, it is 0 or endless anyway
+    signal *= two_way(light.extinction_per_m, range_m - light.reference_range_m);
   }
-  if (!light.overlap.empty()) {
-    signal *= interpolate(light.overlap, range_m, 1.0) /
-              interpolate(light.overlap, light.reference_range_m, 1.0);
+  if (light.weather_extinction_per_m > 0.0) {
+    signal *= two_way(light.weather_extinction_per_m, range_m);
   }
-  return signal;
+  return light.overlap.empty() ? signal : signal * relative_overlap(light, range_m);
 }
 
 double detection_probability(const PulseLight& light, double signal) {
@@ -208,7 +230,7 @@ void measure_signal(const PulseLight& light, const Scene& scene, double waveleng
     const double error = light.noise_sigma * noise[k];
     if (frame.status[i] == Status::hit) {
       const double signal = signal_of_hit(light, scene, wavelength_m, i, frame.truth);
-      measure_hit(light, signal + error, i, frame);
+      measure_hit(light, signal, error, i, frame);
     } else {
       measure_nothing(light, error, places.first[k], i, frame);
     }
