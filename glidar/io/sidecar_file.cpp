@@ -5,6 +5,7 @@
 #include <glidar/io/noise_yaml.hpp>
 #include <glidar/io/optics_json.hpp>
 #include <glidar/io/stored_columns.hpp>
+#include <glidar/io/weather_yaml.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -67,6 +68,7 @@ Json sensor_json(const CloudFile& job) {
             {"attenuation_quadratic_per_m2", light.attenuation_quadratic_per_m2},
             {"ambient", light.ambient}}},
           {"pulse_light", sensor.pulse ? pulse_json(*sensor.pulse) : Json()},
+          {"weather", sensor.weather ? weather_json(*sensor.weather) : Json()},
           {"noise", noise_json(sensor.noise)},
           {"cull_back_faces", sensor.cull_back_faces},
           {"world_from_sensor", pose_json(job.frame.world_from_sensor)}};

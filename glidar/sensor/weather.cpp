@@ -57,14 +57,14 @@ void validate(const Weather& weather) {
 double fog_extinction_per_m(const Weather& weather, double wavelength_m) {
   if (!(weather.visibility_m > 0.0)) return 0.0;
   require(wavelength_m > 0.0, "wavelength_m", wavelength_m,
-          "the wavelength of the light, on which the extinction by fog depends");
+          "a wavelength above 0 (wavelength_nm in a sensor file): fog's extinction depends on it");
   constexpr double kGreen_m = 550e-9;
   const double visibility_km = weather.visibility_m * 1e-3;
   const double exponent = weather.fog_model == Weather::FogModel::kim
                               ? kim_exponent(visibility_km)
                               : kruse_exponent(visibility_km);
-  const double lost =
-      weather.visibility == Weather::Visibility::contrast ? kContrastDepth : kOpticalRangeDepth;
+  const double lost = weather.visibility_kind == Weather::Visibility::contrast ? kContrastDepth
+                                                                               : kOpticalRangeDepth;
   return lost / weather.visibility_m *
          natural_exp(-exponent * natural_log(wavelength_m / kGreen_m));
 }

@@ -24,7 +24,7 @@ struct Weather {
   enum class SnowModel : std::uint8_t { gunn_marshall, sekhon_srivastava };
 
   double visibility_m = 0.0;  ///< in fog or haze; 0: clear
-  Visibility visibility = Visibility::contrast;
+  Visibility visibility_kind = Visibility::contrast;
   FogModel fog_model = FogModel::kim;
   /// Backscatter of fog times its meteorological optical range, 1/sr; 0.023 to 0.092 (Rasshofer,
   /// Spies, Spies, Adv. Radio Sci. 9 (2011) 49).

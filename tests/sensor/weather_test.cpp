@@ -4,10 +4,12 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/sensor/drop_sizes.hpp>
+#include <glidar/sensor/sensor.hpp>
 
 #include <gtest/gtest.h>
 #include <support/error_text.hpp>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -77,7 +79,7 @@ TEST(Fog, ChangesItsLawWhereTheModelsSaySo) {
 
 TEST(Fog, LeavesAFiftiethOfContrastOrATwentiethOfLightOverItsVisibility) {
   const Weather contrast{.visibility_m = 300.0};
-  const Weather range{.visibility_m = 300.0, .visibility = Weather::Visibility::mor};
+  const Weather range{.visibility_m = 300.0, .visibility_kind = Weather::Visibility::mor};
   EXPECT_NEAR(std::exp(-300.0 * fog_extinction_per_m(contrast, 550e-9)), 0.02, 1e-6);
   EXPECT_NEAR(std::exp(-300.0 * fog_extinction_per_m(range, 550e-9)), 0.05, 1e-12);
 }
@@ -85,8 +87,8 @@ TEST(Fog, LeavesAFiftiethOfContrastOrATwentiethOfLightOverItsVisibility) {
 TEST(Fog, NeedsAWavelength) {
   EXPECT_EQ(fog_extinction_per_m({}, 0.0), 0.0);
   EXPECT_EQ(error_text([] { fog_extinction_per_m({.visibility_m = 100.0}, 0.0); }),
-            "weather, wavelength_m: 0; allowed: the wavelength of the light, on which the "
-            "extinction by fog depends");
+            "weather, wavelength_m: 0; allowed: a wavelength above 0 (wavelength_nm in a sensor "
+            "file): fog's extinction depends on it");
 }
 
 TEST(Rain, HasThePublishedNumbersAndExtinctions) {
@@ -133,6 +135,25 @@ TEST(Weather, AddsTheExtinctionsOfFogRainAndSnow) {
                                                       extinction_per_m(rain, 905e-9) +
                                                       extinction_per_m(snow, 905e-9));
   EXPECT_EQ(extinction_per_m({}, 905e-9), 0.0);
+}
+
+TEST(Weather, DimsThePulsedLightOfASensor) {
+  Sensor sensor;
+  EXPECT_FALSE(light_in_weather(sensor).has_value());
+  sensor.pulse = PulseLight{};
+  EXPECT_EQ(light_in_weather(sensor)->weather_extinction_per_m, 0.0);
+  sensor.weather = Weather{.rain_mm_per_h = 10.0};
+  EXPECT_EQ(light_in_weather(sensor)->weather_extinction_per_m,
+            extinction_per_m(*sensor.weather, 0.0));
+}
+
+TEST(Weather, IsRefusedForOtherLight) {
+  Sensor sensor;
+  sensor.weather = Weather{};
+  EXPECT_EQ(error_text([&] { light_in_weather(sensor); }),
+            "weather: the light of the sensor 'depth camera' is not pulsed; allowed: weather for a "
+            "sensor with 'pulse_light'; describe its light by 'pulse_light' in a sensor file "
+            "(docs/files.md)");
 }
 
 TEST(Weather, RefusesNumbersThatMeanNothing) {
