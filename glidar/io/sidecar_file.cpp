@@ -6,6 +6,7 @@
 #include <glidar/io/optics_json.hpp>
 #include <glidar/io/receiver_yaml.hpp>
 #include <glidar/io/stored_columns.hpp>
+#include <glidar/io/weather_yaml.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -86,6 +87,7 @@ Json sensor_json(const CloudFile& job) {
           {"pulse_light", sensor.pulse ? pulse_json(*sensor.pulse) : Json()},
           {"footprint", sensor.footprint ? footprint_json(*sensor.footprint) : Json()},
           {"receiver", sensor.pulse ? receiver_json(sensor.receiver) : Json()},
+          {"weather", sensor.weather ? weather_json(*sensor.weather) : Json()},
           {"noise", noise_json(sensor.noise)},
           {"cull_back_faces", sensor.cull_back_faces},
           {"world_from_sensor", pose_json(job.frame.world_from_sensor)}};
