@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/pulse_cast.hpp>
 
+#include <glidar/core/elementary.hpp>
 #include <glidar/core/gaussian.hpp>
 #include <glidar/moving_cast.hpp>
+#include <glidar/sensor/weather_echoes.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +21,8 @@ constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
 /// One block of beams that is being measured.
 struct Block {
   const Setup& setup;
-  const PulseLight& light;
+  const PulseLight& light;         ///< as weather lets it through
+  const PreparedWeather* weather;  ///< nullptr: clear air
   const std::vector<SubRay>& rays;
   const Beams& aimed;
   const HitFields& fields;  ///< of the frame's truth
@@ -121,7 +124,7 @@ double ghost_signal(const Block& block, std::size_t mirrored, double range_m) {
          signal_of(block.light, 1.0, hits.range_m[mirrored]);
 }
 
-/// All ways by which light of a beam comes back.
+/// All ways by which light of a beam comes back from surfaces.
 void collect_paths(const Block& block, std::size_t beam, EchoWork& work) {
   const Scratch& memory = block.frame.scratch;
   const Setup& setup = block.setup;
@@ -143,6 +146,29 @@ void collect_paths(const Block& block, std::size_t beam, EchoWork& work) {
     const double range_m = memory.sub_hits.range_m[*at] + memory.mirrored_hits.range_m[mirrored];
     const double share = block.rays[*at - first].share;
     work.add({range_m, share * ghost_signal(block, mirrored, range_m), *at, Cause::ghost});
+  }
+}
+
+Cause cause_of(WeatherEcho::Kind kind) {
+  switch (kind) {
+    case WeatherEcho::Kind::fog:
+      return Cause::fog;
+    case WeatherEcho::Kind::rain:
+      return Cause::rain;
+    case WeatherEcho::Kind::snow:
+      return Cause::snow;
+  }
+  return Cause::none;
+}
+
+/// What the air before a surface sends back.
+void add_weather(const Block& block, const Draw& draw, double surface_m,
+                 std::vector<WeatherEcho>& echoes, EchoWork& work) {
+  if (block.weather == nullptr) return;
+  echoes.clear();
+  weather_echoes(*block.weather, surface_m, draw, echoes);
+  for (const WeatherEcho& echo : echoes) {
+    work.add({echo.range_m, echo.signal, kNoHit, cause_of(echo.kind)});
   }
 }
 
@@ -185,13 +211,24 @@ void report_echo(const Block& block, const PulseEcho& echo, const Path& path, st
   frame.cause[entry] = is_mixed ? Cause::mixed : path.cause;
 }
 
-/// The path that stands for a beam without a return: the strongest.
-std::uint32_t strongest_source(const EchoWork& work) {
-  if (work.paths == 0) return kNoHit;
-  return std::max_element(work.path.begin(),
-                          work.path.begin() + static_cast<std::ptrdiff_t>(work.paths),
-                          [](const Path& a, const Path& b) { return a.signal < b.signal; })
-      ->source;
+/// The surface that stands for a beam without a return: that of the strongest path.
+Path strongest_surface(const EchoWork& work) {
+  if (work.paths == 0) return {kNoRange, 0.0, kNoHit, Cause::none};
+  return *std::max_element(work.path.begin(),
+                           work.path.begin() + static_cast<std::ptrdiff_t>(work.paths),
+                           [](const Path& a, const Path& b) { return a.signal < b.signal; });
+}
+
+/// Why a beam has no echo: nothing to send one back, or too little, or so little by weather.
+Status why_silent(const Block& block, const Path& surface, double loudest, std::size_t beam) {
+  constexpr double kMost = 600.0;  // e^600 is far above all signals
+  if (surface.source == kNoHit) {
+    return std::isnan(block.aimed.directions[beam].x()) ? Status::no_beam : Status::miss;
+  }
+  const double depth = 2.0 * block.light.weather_extinction_per_m * surface.range_m;
+  const bool is_seen_in_clear_air = loudest * natural_exp(std::min(depth, kMost)) >= 1.0;
+  return block.weather != nullptr && is_seen_in_clear_air ? Status::weather
+                                                          : Status::below_threshold;
 }
 
 /// The truth of an entry: what a sub-ray met, or a miss.
@@ -218,39 +255,65 @@ void draw(const PulseLight& light, const Frame& frame, std::size_t first, Draws&
   if (light.noise_sigma > 0.0) draw_normals(draws.detection, draws.noise);
 }
 
-void measure_beam(const Block& block, std::size_t beam, const Draws& draws, EchoWork& work) {
-  const Receiver& receiver = block.setup.sensor.receiver;
-  const std::size_t k = beam - draws.detection.beam;
-  collect_paths(block, beam, work);
-  const std::uint32_t strongest = strongest_source(work);
-  const double nearest_m = work.paths == 0 ? 0.0 : work.path[0].range_m;
-  const double wide_m =
-      block.setup.sensor.footprint ? diameter_m(*block.setup.sensor.footprint, nearest_m) : 0.0;
-  find_echoes(pulse_sigma_m(receiver), wide_m, work);
-  Draw of_beam = draws.detection;
-  of_beam.beam = static_cast<std::uint32_t>(beam);
-  detect(block, of_beam, draws.noise[k], work);
-  keep_separate(receiver.separation_m, work);
+/// What a thread needs for one beam after the other.
+struct Tools {
+  EchoWork work;
+  Draws draws;
+  std::vector<WeatherEcho> weather;
+};
 
+/// Finds the echoes that the receiver can tell; returns why there is none, should there be none.
+Status find_returns(const Block& block, std::size_t beam, const Path& surface, Tools& tools) {
+  EchoWork& work = tools.work;
+  const Sensor& sensor = block.setup.sensor;
+  const double wide_m =
+      sensor.footprint && work.paths > 0 ? diameter_m(*sensor.footprint, surface.range_m) : 0.0;
+  Draw draw = tools.draws.detection;
+  draw.beam = static_cast<std::uint32_t>(beam);
+  add_weather(block, draw, surface.range_m, tools.weather, work);
+  find_echoes(pulse_sigma_m(sensor.receiver), wide_m, work);
+  double loudest = 0.0;
+  for (std::size_t k = 0; k < work.echoes; ++k) loudest = std::max(loudest, work.echo[k].signal);
+  const std::size_t in_run = beam - tools.draws.detection.beam;
+  detect(block, draw, tools.draws.noise[in_run], work);
+  keep_separate(sensor.receiver.separation_m, work);
+  return why_silent(block, surface, loudest, beam);
+}
+
+void measure_beam(const Block& block, std::size_t beam, Tools& tools) {
+  EchoWork& work = tools.work;
+  const Receiver& receiver = block.setup.sensor.receiver;
+  collect_paths(block, beam, work);
+  const Path surface = strongest_surface(work);
+  const Status silent = find_returns(block, beam, surface, tools);
   std::array<int, kMostReturns> chosen;
   choose(receiver, {work.echo.data(), work.echoes}, chosen);
-  const bool has_beam = !std::isnan(block.aimed.directions[beam].x());
-  const Status nothing = strongest != kNoHit ? Status::below_threshold
-                         : has_beam          ? Status::miss
-                                             : Status::no_beam;
   for (std::size_t r = 0; r < receiver.returns.size(); ++r) {
     const std::size_t entry = r * block.aimed.pulses() + beam;
     if (chosen[r] >= 0) {
       const PulseEcho& echo = work.echo[static_cast<std::size_t>(chosen[r])];
       const Path& path = work.path[echo.strongest];
-      keep_truth(block, path.source == kNoHit ? strongest : path.source, entry);
+      keep_truth(block, path.source == kNoHit ? surface.source : path.source, entry);
       report_echo(block, echo, path, entry);
-      continue;
+    } else {
+      const bool tells_why = r == 0 || silent == Status::no_beam;
+      keep_truth(block, r == 0 ? surface.source : kNoHit, entry);
+      report_nothing(tells_why ? silent : Status::no_echo, entry, block.frame);
     }
-    const bool is_first = r == 0;
-    keep_truth(block, is_first ? strongest : kNoHit, entry);
-    report_nothing(is_first || !has_beam ? nothing : Status::no_echo, entry, block.frame);
   }
+}
+
+/// The weather for this sensor's beams; without a footprint they are those of BeamShape.
+std::optional<PreparedWeather> weather_of(const Sensor& sensor) {
+  if (!sensor.weather) return {};
+  BeamShape beam;
+  if (sensor.footprint) {
+    const Footprint& f = *sensor.footprint;
+    beam = {.divergence_rad = std::sqrt(f.divergence_x_rad * f.divergence_y_rad),
+            .exit_diameter_m = std::sqrt(f.exit_x_m * f.exit_y_m)};
+  }
+  return prepare_weather(*sensor.weather, *sensor.pulse, sensor.wavelength_m, beam,
+                         sensor.receiver.pulse_fwhm_s);
 }
 
 void measure_block(const Block& block, bool mirrors) {
@@ -264,13 +327,12 @@ void measure_block(const Block& block, bool mirrors) {
   const std::size_t count = block.range.end - block.range.begin;
   const std::size_t runs = (count + kBeamsPerTask - 1) / kBeamsPerTask;
   block.setup.renderer.workers().for_ranges(runs, 1, [&](std::size_t begin, std::size_t end) {
-    EchoWork work;
-    Draws draws;
+    Tools tools;
     for (std::size_t run = begin; run < end; ++run) {
       const std::size_t first = block.range.begin + run * kBeamsPerTask;
       const std::size_t last = std::min(first + kBeamsPerTask, block.range.end);
-      draw(block.light, block.frame, first, draws);
-      for (std::size_t beam = first; beam < last; ++beam) measure_beam(block, beam, draws, work);
+      draw(block.light, block.frame, first, tools.draws);
+      for (std::size_t beam = first; beam < last; ++beam) measure_beam(block, beam, tools);
     }
   });
 }
@@ -283,8 +345,8 @@ bool has_echoes(const Sensor& sensor, const Scene& scene) {
   const Return& first = receiver.returns[0];
   const bool tells_strongest =
       receiver.returns.size() == 1 && first.order == Return::Order::strongest && first.rank == 0;
-  return sensor.footprint || !tells_strongest || receiver.timing != Receiver::Timing::centroid ||
-         has_mirrors(scene);
+  return sensor.footprint || sensor.weather || !tells_strongest ||
+         receiver.timing != Receiver::Timing::centroid || has_mirrors(scene);
 }
 
 void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& aimed, Frame& frame) {
@@ -295,9 +357,12 @@ void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& ai
   const std::size_t step =
       std::max<std::size_t>(1, kSubBeamsPerBlock / rays.size() / kBeamsPerTask) * kBeamsPerTask;
   const bool mirrors = has_mirrors(setup.scene);
+  const PulseLight light = *light_in_weather(setup.sensor);
+  const std::optional<PreparedWeather> weather = weather_of(setup.sensor);
   for (std::size_t begin = 0; begin < aimed.pulses(); begin += step) {
     const BeamRange range{begin, std::min(begin + step, aimed.pulses())};
-    measure_block({setup, *setup.sensor.pulse, rays, aimed, fields, range, frame}, mirrors);
+    measure_block({setup, light, weather ? &*weather : nullptr, rays, aimed, fields, range, frame},
+                  mirrors);
   }
 }
 

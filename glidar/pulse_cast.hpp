@@ -7,7 +7,7 @@
 namespace glidar {
 
 /// True when a beam of this sensor is more than one ray with one return: it has a footprint, tells
-/// several returns or another than the strongest, walks, or meets mirrors.
+/// several returns or another than the strongest, walks, or meets mirrors or weather.
 bool has_echoes(const Sensor& sensor, const Scene& scene);
 
 /// Casts the beams of a sensor of pulses as they really are: every one spreads into sub-rays, which
@@ -16,7 +16,7 @@ bool has_echoes(const Sensor& sensor, const Scene& scene);
 /// return: that of the strongest of its paths, or when there is no return, of the strongest that
 /// came back.
 ///
-/// `aimed` are the beams as they really go. Draws with Purpose::detection.
+/// `aimed` are the beams as they really go. Draws with Purpose::detection and weather.
 void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& aimed, Frame& frame);
 
 }  // namespace glidar
