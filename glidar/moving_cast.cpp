@@ -122,65 +122,64 @@ void prepare(const Beams& beams, Scratch& memory) {
   memory.start_from_sensor.resize(beams.size());
 }
 
-/// The nominal beams as seen from the sensor's pose at the start of the frame; and the true ones,
-/// which `memory` holds, where these differ.
-void keep_deskewed(const Beams& nominal, bool is_nominal, const Scratch& memory,
-                   Frame::Deskewed& deskewed) {
-  const std::size_t size = nominal.size();
-  deskewed.directions.resize(size);
-  deskewed.origins_m = memory.moved.origins_m;
-  deskewed.start_from_sensor.resize(size);
-  deskewed.true_directions.clear();
-  if (!is_nominal) deskewed.true_directions = memory.moved.directions;
-  for (std::size_t i = 0; i < size; ++i) {
-    const Eigen::Matrix3d turn = memory.start_from_sensor[i].linear();
-    deskewed.directions[i] = (turn * nominal.directions[i]).normalized();
-    deskewed.start_from_sensor[i] = Eigen::Quaterniond(turn).cast<float>();
-  }
-}
-
-void clear(Frame::Deskewed& deskewed) {
-  deskewed.directions.clear();
-  deskewed.true_directions.clear();
-  deskewed.origins_m.clear();
-  deskewed.start_from_sensor.clear();
-}
-
 /// One cast that is in progress.
 struct MovingCast {
-  Renderer& renderer;
+  const World& world;
   const CastRequest& request;
-  const Motion& motion;
-  Frame& frame;
+  Scratch& memory;
+  Hits& hits;
 
   template <class Work>
   void in_runs(const Work& work) const {
-    renderer.workers().for_ranges(request.beams.size(), kBeamsPerTask,
-                                  [&](std::size_t begin, std::size_t end) {
-                                    work(BeamRange{begin, end});
-                                  });
+    world.renderer.workers().for_ranges(request.beams.size(), kBeamsPerTask,
+                                        [&](std::size_t begin, std::size_t end) {
+                                          work(BeamRange{begin, end});
+                                        });
   }
 };
 
-/// Casts at what of scratch.present belongs to the body. The first fills frame.truth.
+/// Casts at what of memory.present belongs to the body. The first fills the hits.
 void cast_body(const MovingCast& job, const Body& body, bool is_first) {
-  Scratch& memory = job.frame.scratch;
+  Scratch& memory = job.memory;
   const CastRequest& request = job.request;
-  Hits& hits = is_first ? job.frame.truth : memory.body_hits;
+  Hits& hits = is_first ? job.hits : memory.body_hits;
   job.in_runs([&](BeamRange range) {
-    move_beams(request, job.motion, body, job.frame.stamp_ns, range, memory);
+    move_beams(request, job.world.motion, body, job.world.stamp_ns, range, memory);
   });
-  job.renderer.cast({.beams = memory.moved,
-                     .world_from_sensor = request.world_from_sensor,
-                     .world_from_instance = request.world_from_instance,
-                     .fields = request.fields,
-                     .cull_back_faces = request.cull_back_faces,
-                     .present = memory.present},
-                    hits);
+  job.world.renderer.cast({.beams = memory.moved,
+                           .world_from_sensor = request.world_from_sensor,
+                           .world_from_instance = request.world_from_instance,
+                           .fields = request.fields,
+                           .cull_back_faces = request.cull_back_faces,
+                           .present = memory.present},
+                          hits);
   job.in_runs([&](BeamRange range) {
     turn_back(request, memory, range, hits);
-    if (!is_first) merge(hits, request.fields, range, job.frame.truth);
+    if (!is_first) merge(hits, request.fields, range, job.hits);
   });
+}
+
+/// Casts at what stands still, then at every moving instance.
+void cast_bodies(const MovingCast& job) {
+  Scratch& memory = job.memory;
+  const Scene& scene = job.world.scene;
+  const std::vector<Trajectory>& trajectories = job.world.motion.world_from_instance;
+  memory.present.assign(scene.instances.size(), 0);
+  for (std::size_t i = 0; i < memory.present.size(); ++i) {
+    memory.present[i] = static_cast<std::uint8_t>(stands(trajectories[i]));
+  }
+  cast_body(job, {}, true);
+  for (std::uint32_t i = 0; i < memory.present.size(); ++i) {
+    if (stands(trajectories[i])) continue;
+    memory.present.assign(scene.instances.size(), 0);
+    memory.present[i] = 1;
+    const Pose& at_start = job.request.world_from_instance[i];
+    cast_body(job,
+              {.world_from_body = &trajectories[i],
+               .at_start = at_start,
+               .sphere = sphere_around(scene, i, at_start, job.request.world_from_sensor)},
+              false);
+  }
 }
 
 }  // namespace
@@ -191,34 +190,46 @@ bool moves_during_frame(const Motion& motion, const Beams& beams) {
          !std::all_of(motion.world_from_instance.begin(), motion.world_from_instance.end(), stands);
 }
 
-void cast_moving(Renderer& renderer, const CastRequest& request, const Beams& nominal,
-                 const Scene& scene, const Motion& motion, Frame& frame) {
-  Scratch& memory = frame.scratch;
+void cast_moving(const World& world, const CastRequest& request, Scratch& memory, Hits& hits) {
+  if (!moves_during_frame(world.motion, request.beams)) {
+    world.renderer.cast(request, hits);
+    return;
+  }
   prepare(request.beams, memory);
-  const MovingCast job{renderer, request, motion, frame};
+  const MovingCast job{world, request, memory, hits};
+  cast_bodies(job);
+  if (request.then) job.in_runs(request.then);
+}
 
-  // What stands still comes first, also when it is nothing: its beams are the deskewed ones.
-  memory.present.assign(scene.instances.size(), 0);
-  for (std::size_t i = 0; i < memory.present.size(); ++i) {
-    memory.present[i] = static_cast<std::uint8_t>(stands(motion.world_from_instance[i]));
-  }
-  cast_body(job, {}, true);
-  if (stands(motion.world_from_sensor)) {
-    clear(frame.deskewed);
-  } else {
-    keep_deskewed(nominal, &nominal == &request.beams, memory, frame.deskewed);
-  }
-  for (std::uint32_t i = 0; i < memory.present.size(); ++i) {
-    if (stands(motion.world_from_instance[i])) continue;
-    memory.present.assign(scene.instances.size(), 0);
-    memory.present[i] = 1;
-    cast_body(job,
-              {.world_from_body = &motion.world_from_instance[i],
-               .at_start = request.world_from_instance[i],
-               .sphere = sphere_around(scene, i, request.world_from_instance[i],
-                                       request.world_from_sensor)},
-              false);
-  }
+void deskew(const World& world, const Beams& nominal, const Beams& aimed,
+            Frame::Deskewed& deskewed) {
+  deskewed.directions.clear();
+  deskewed.true_directions.clear();
+  deskewed.origins_m.clear();
+  deskewed.start_from_sensor.clear();
+  const Trajectory& trajectory = world.motion.world_from_sensor;
+  if (nominal.times_ns.empty() || stands(trajectory)) return;
+
+  const bool is_nominal = &nominal == &aimed;
+  deskewed.directions.resize(nominal.size());
+  if (!is_nominal) deskewed.true_directions.resize(nominal.size());
+  deskewed.origins_m.resize(nominal.size());
+  deskewed.start_from_sensor.resize(nominal.size());
+  const Pose at_start = pose_at(trajectory, world.stamp_ns);
+  const auto place = [&](std::size_t i) {
+    const Pose sensor = pose_at(trajectory, world.stamp_ns + nominal.times_ns[i]);
+    const Pose pose = start_from_sensor({}, at_start, sensor, 0);
+    deskewed.directions[i] = (pose.linear() * nominal.directions[i]).normalized();
+    if (!is_nominal)
+      deskewed.true_directions[i] = (pose.linear() * aimed.directions[i]).normalized();
+    deskewed.origins_m[i] =
+        aimed.origins_m.empty() ? Eigen::Vector3d(pose.translation()) : pose * aimed.origins_m[i];
+    deskewed.start_from_sensor[i] = Eigen::Quaterniond(pose.linear()).cast<float>();
+  };
+  world.renderer.workers().for_ranges(nominal.size(), kBeamsPerTask,
+                                      [&](std::size_t begin, std::size_t end) {
+                                        for (std::size_t i = begin; i < end; ++i) place(i);
+                                      });
 }
 
 }  // namespace glidar

@@ -2,23 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate.hpp>
 
+#include <glidar/pulse_cast.hpp>
+
 #include <cmath>
 #include <limits>
 
 namespace glidar {
 namespace {
 
-constexpr std::size_t kBeamsPerTask = 4096;  // some 50 microseconds of measuring
 constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
-
-/// What the sensor says of a surface at this true range.
-Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double range_m) {
-  const double distance = limits.along == Limits::Along::depth ? depth_m(beams, beam, range_m)
-                                                               : range_m + beams.range_offset_m;
-  if (distance < limits.near_m) return Status::too_near;
-  if (distance > limits.far_m) return Status::too_far;
-  return Status::hit;
-}
 
 /// Range and status of a run of beams from the truth.
 void measure_range(const Limits& limits, const Beams& beams, BeamRange range, Frame& frame) {
@@ -47,20 +39,6 @@ void measure_light(const Setup& setup, BeamRange range, Frame& frame) {
   }
 }
 
-/// The truth of a frame, each beam at its own firing time.
-void cast(const CastRequest& request, const Setup& setup, Frame& frame) {
-  if (!moves_during_frame(setup.motion, setup.beams)) {
-    frame.deskewed = {};
-    setup.renderer.cast(request, frame.truth);
-    return;
-  }
-  cast_moving(setup.renderer, request, setup.beams, setup.scene, setup.motion, frame);
-  setup.renderer.workers().for_ranges(setup.beams.size(), kBeamsPerTask,
-                                      [&](std::size_t begin, std::size_t end) {
-                                        request.then({begin, end});
-                                      });
-}
-
 }  // namespace
 
 void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
@@ -78,18 +56,26 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
   needed.shading = true;  // the light needs them
   needed.reflectance = true;
   add_needs(sensor.noise, needed);
+  const World world{setup.renderer, setup.scene, setup.motion, frame.stamp_ns};
   const auto measure = [&](BeamRange range) {
     measure_range(sensor.limits, beams, range, frame);
     measure_light(setup, range, frame);
   };
-  cast({.beams = beams,
-        .world_from_sensor = frame.world_from_sensor,
-        .world_from_instance = frame.world_from_instance,
-        .fields = needed,
-        .cull_back_faces = sensor.cull_back_faces,
-        .then = FunctionRef<void(BeamRange)>(measure),
-        .progress = setup.progress},
-       setup, frame);
+  if (has_echoes(sensor, setup.scene)) {
+    measure_pulses(setup, needed, beams, frame);
+  } else {
+    frame.cause.clear();
+    cast_moving(world,
+                {.beams = beams,
+                 .world_from_sensor = frame.world_from_sensor,
+                 .world_from_instance = frame.world_from_instance,
+                 .fields = needed,
+                 .cull_back_faces = sensor.cull_back_faces,
+                 .then = FunctionRef<void(BeamRange)>(measure),
+                 .progress = setup.progress},
+                frame.scratch, frame.truth);
+  }
+  deskew(world, setup.beams, beams, frame.deskewed);
   apply_noise(sensor.noise, 1.0 / sensor.rate_hz, setup.beams, workers, frame);
 }
 

@@ -63,6 +63,8 @@ void apply(const FalseEchoes& step, const NoiseView& view, NoiseBatch& batch) {
   PairBatch x;
   draw_uniforms(batch.draw, x);
   for (std::size_t i = 0; i < batch.count; ++i) {
+    const std::size_t beam = batch.first + i;
+    if (beam >= view.beams.pulses()) break;
     const Status status = batch.status[i];
     const bool listens = status != Status::no_beam && status != Status::dropped;
     const double wait_s = -natural_log(x.first[i]) / step.rate_hz;
@@ -72,6 +74,7 @@ void apply(const FalseEchoes& step, const NoiseView& view, NoiseBatch& batch) {
     batch.range_m[i] = false_m;
     batch.intensity[i] = step.intensity;
     batch.status[i] = Status::hit;
+    view.frame.cause[beam] = Cause::false_alarm;
   }
 }
 

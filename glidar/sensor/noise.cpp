@@ -49,6 +49,19 @@ bool looks_around(const NoiseStep& step) {
   return std::visit([](const auto& s) { return kLooksAround<std::decay_t<decltype(s)>>; }, step);
 }
 
+bool hears_falsely(const NoiseStep& step) {
+  return std::holds_alternative<FalseEchoes>(step);
+}
+
+/// So far a surface made every return, unless the frame tells otherwise.
+void tell_causes(Frame& frame) {
+  if (!frame.cause.empty()) return;
+  frame.cause.resize(frame.status.size());
+  std::transform(frame.status.begin(), frame.status.end(), frame.cause.begin(), [](Status status) {
+    return status == Status::hit ? Cause::surface : Cause::none;
+  });
+}
+
 Draw draw_of(const Frame& frame, std::size_t step, std::size_t beam) {
   const auto first = static_cast<std::size_t>(Purpose::first_noise_step);
   return {.seed = frame.seed,
@@ -115,6 +128,7 @@ void store(const NoiseView& view, NoiseBatch& batch) {
     const double sigma_m = std::sqrt(batch.variance_m2[i]);
     frame.range_m[beam] = batch.range_m[i];
     frame.status[beam] = batch.status[i];
+    if (!frame.cause.empty() && !is_hit(batch, i)) frame.cause[beam] = Cause::none;
     frame.intensity[beam] = static_cast<float>(batch.intensity[i]);
     frame.sigma_m[beam] = std::isnan(batch.range_m[i]) ? 0.0F : static_cast<float>(sigma_m);
   }
@@ -202,10 +216,14 @@ const Beams& aimed_beams(const std::vector<NoiseStep>& noise, const Beams& beams
   }
   aimed = beams;
   aimed.pinhole.reset();  // no longer a straight grid
-  const std::size_t runs = (beams.size() + kDrawBatch - 1) / kDrawBatch;
+  const std::size_t runs = (beams.pulses() + kDrawBatch - 1) / kDrawBatch;
   workers.for_ranges(runs, kGrain / kDrawBatch, [&](std::size_t begin, std::size_t end) {
-    turn_beams(noise, frame, {begin * kDrawBatch, std::min(end * kDrawBatch, aimed.size())}, aimed);
+    turn_beams(noise, frame, {begin * kDrawBatch, std::min(end * kDrawBatch, aimed.pulses())},
+               aimed);
   });
+  for (std::size_t i = aimed.pulses(); i < aimed.size(); ++i) {
+    aimed.directions[i] = aimed.directions[i - aimed.pulses()];  // all returns of a pulse are on it
+  }
   return aimed;
 }
 
@@ -216,6 +234,7 @@ void apply_noise(const std::vector<NoiseStep>& noise, double frame_s, const Beam
     return;
   }
   frame.sigma_m.assign(frame.range_m.size(), 0.0F);
+  if (std::any_of(noise.begin(), noise.end(), hears_falsely)) tell_causes(frame);
   if (std::any_of(noise.begin(), noise.end(), looks_around)) {
     frame.scratch.before.resize(frame.range_m.size());
     frame.scratch.amplitude.resize(frame.range_m.size());

@@ -79,16 +79,6 @@ void lose(Frame& frame, std::size_t beam, Status why) {
   frame.intensity[beam] = 0.0F;
 }
 
-/// What a beam brings back from where it hit, without noise.
-double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelength_m,
-                     std::size_t beam, const Hits& truth) {
-  const Material& material = material_of(scene, truth, beam);
-  const double facing = truth.cos_shading[beam];
-  const double rho = reflectance_of_hit(material, truth.reflectance[beam].diffuse, wavelength_m);
-  return signal_of(light, sent_back(material.backscatter, rho, std::clamp(facing, 0.0, 1.0)),
-                   truth.range_m[beam]);
-}
-
 void measure_hit(const PulseLight& light, double received, std::size_t beam, Frame& frame) {
   frame.intensity[beam] = static_cast<float>(received);
   if (received < 1.0) lose(frame, beam, Status::below_threshold);
@@ -143,6 +133,14 @@ double signal_of(const PulseLight& light, double sent_back, double range_m) {
   return signal;
 }
 
+double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelength_m,
+                     const Hits& hits, std::size_t beam) {
+  const Material& material = material_of(scene, hits, beam);
+  const double cosine = std::clamp<double>(hits.cos_shading[beam], 0.0, 1.0);
+  const double rho = reflectance_of_hit(material, hits.reflectance[beam].diffuse, wavelength_m);
+  return signal_of(light, sent_back(material.backscatter, rho, cosine), hits.range_m[beam]);
+}
+
 double detection_probability(const PulseLight& light, double signal) {
   if (light.noise_sigma == 0.0) return signal >= 1.0 ? 1.0 : 0.0;
   return 0.5 * std::erfc((1.0 - signal) / (light.noise_sigma * std::numbers::sqrt2));
@@ -173,7 +171,7 @@ void measure_signal(const PulseLight& light, const Scene& scene, double waveleng
       frame.intensity[i] = 0.0F;
       continue;
     }
-    const double signal = signal_of_hit(light, scene, wavelength_m, i, frame.truth);
+    const double signal = signal_of_hit(light, scene, wavelength_m, frame.truth, i);
     measure_hit(light, signal + light.noise_sigma * noise[k], i, frame);
   }
 }

@@ -50,6 +50,11 @@ double noise_sigma_of(double range50_m, double range90_m, double range_exponent)
 double range_exponent(double reflectance_a, double range_a_m, double reflectance_b,
                       double range_b_m);
 
+/// S of what a beam hit: the material's backscatter at the incidence of its shading normal. Needs
+/// cos_shading and reflectance.
+double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelength_m,
+                     const Hits& hits, std::size_t beam);
+
 /// Fills a run of frame.intensity with signals as the receiver has them, noise included, and takes
 /// away what is too weak or too strong (status below_threshold or saturated, range_m NaN, intensity
 /// 0). Needs cos_shading and reflectance in frame.truth; draws with Purpose::detection.
