@@ -27,6 +27,8 @@ constexpr double kDefaultFov_deg = 20.0;
 constexpr double kLargestPixels = 1e9;  // likewise
 constexpr std::int64_t kMostColumnsPerTurn = 1 << 20;
 constexpr double kLargestAmbient = 1e6;  // keeps intensities far from float's end
+constexpr double kLargestVisibility_m = 1e6;
+constexpr double kLargestRate_mm_per_h = 1000.0;
 constexpr double kBytesPerBeam = 250.0;  // beam, truth, measurement and cloud together
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 
@@ -168,6 +170,24 @@ void apply_light(const SensorFlags& flags, Sensor& sensor) {
   validate(sensor.light);
 }
 
+void apply_weather(const SensorFlags& flags, Sensor& sensor) {
+  if (!flags.visibility_m && !flags.rain_mm_per_h && !flags.snow_mm_per_h) return;
+  Weather weather = sensor.weather.value_or(Weather{});
+  const auto take = [](const char* option, const std::optional<double>& given, double most,
+                       double& value) {
+    if (!given) return;
+    require(*given >= 0.0 && *given <= most, option, *given,
+            fmt::format("a number from 0 to {}", most));
+    value = *given;
+  };
+  take("--visibility", flags.visibility_m, kLargestVisibility_m, weather.visibility_m);
+  take("--rain", flags.rain_mm_per_h, kLargestRate_mm_per_h, weather.rain_mm_per_h);
+  take("--snow", flags.snow_mm_per_h, kLargestRate_mm_per_h, weather.snow_mm_per_h);
+  validate(weather);
+  sensor.weather = weather;
+  light_in_weather(sensor);  // tells what its light lacks for weather
+}
+
 }  // namespace
 
 void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
@@ -211,6 +231,11 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
   add_text(command,
            {"--attenuation", "C,L,Q", "Light falls as 1/(C + L d + Q d^2) [1,1e-4,1e-8]", group},
            flags.attenuation, parse_attenuation);
+  number("--visibility", "M", "Visibility, for pulsed light; 0: no fog [as the sensor says]",
+         flags.visibility_m);
+  number("--rain", "MM/H", "Rain, for pulsed light [as the sensor says]", flags.rain_mm_per_h);
+  number("--snow", "MM/H", "Snow as melted water, for pulsed light [as the sensor says]",
+         flags.snow_mm_per_h);
 }
 
 Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_scene_file) {
@@ -235,6 +260,7 @@ Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_s
   apply_limits(flags, sensor.limits);
   if (flags.ideal) sensor = ideal(std::move(sensor));
   apply_light(flags, sensor);
+  apply_weather(flags, sensor);
   sensor.cull_back_faces = sensor.cull_back_faces || flags.cull_back_faces;
   return sensor;
 }

@@ -10,7 +10,6 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kMostFrequencies = 8;
 constexpr std::uint32_t kWidestWindow = 33;
 const std::vector<std::string> kIntensityKinds = {"unit", "vendor", "plain"};
 constexpr NumberRule kFrequency = {1.0, 1e12, false, "hertz from 1 to 1e12"};

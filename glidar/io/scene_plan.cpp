@@ -49,7 +49,7 @@ ModelOptions read_options(const YamlField& model, const ModelOptions& defaults) 
 
 MaterialOverride read_override(const std::string& material, const YamlField& field) {
   require_map(field, {"ambient", "diffuse", "specular", "shininess", "opacity", "noise_scale",
-                      "noise_texture", "surface", "backscatter", "spectrum"});
+                      "noise_texture", "surface", "backscatter", "mirror", "spectrum"});
   MaterialOverride change;
   change.material = material;
   change.where = where(field);
@@ -64,6 +64,7 @@ MaterialOverride read_override(const std::string& material, const YamlField& fie
   colour("specular", change.specular);
   scalar("shininess", kShininess, change.shininess);
   scalar("opacity", kZeroToOne, change.opacity);
+  scalar("mirror", kZeroToOne, change.mirror);
   scalar("noise_scale", kFromZero, change.noise_scale);
   if (const auto name = find(field, "surface")) {
     const Surface surface = find_surface(text(*name), where(*name));

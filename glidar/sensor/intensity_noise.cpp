@@ -43,7 +43,7 @@ double vendor_intensity(double reflectance, double largest) {
 
 void apply(const IntensityGaussian& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
+  draw_shared_normals(batch.draw, normal);
   disturb(step, normal, batch);
 }
 

@@ -19,6 +19,12 @@ double power(double base, double exponent) {
   return base > 0.0 ? natural_exp(exponent * natural_log(base)) : 0.0;
 }
 
+/// exp(-2 alpha R).
+double two_way(double extinction_per_m, double range_m) {
+  const double depth = -2.0 * extinction_per_m * range_m;
+  return natural_exp(std::clamp(depth, -600.0, 600.0));  // beyond, it is 0 or endless anyway
+}
+
 double incidence_rad(double cosine) {
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
   return 2.0 * std::numbers::pi * turns_of(sine, cosine);
@@ -79,9 +85,20 @@ void lose(Frame& frame, std::size_t beam, Status why) {
   frame.intensity[beam] = 0.0F;
 }
 
-void measure_hit(const PulseLight& light, double received, std::size_t beam, Frame& frame) {
+/// Whether clear air had let a faint signal through.
+Status why_faint(const PulseLight& light, double signal, double error, double range_m) {
+  if (!(light.weather_extinction_per_m > 0.0)) return Status::below_threshold;
+  const double clear = signal / two_way(light.weather_extinction_per_m, range_m);
+  return clear + error < 1.0 ? Status::below_threshold : Status::weather;
+}
+
+void measure_hit(const PulseLight& light, double signal, double error, std::size_t beam,
+                 Frame& frame) {
+  const double received = signal + error;
   frame.intensity[beam] = static_cast<float>(received);
-  if (received < 1.0) lose(frame, beam, Status::below_threshold);
+  if (received < 1.0) {
+    lose(frame, beam, why_faint(light, signal, error, frame.truth.range_m[beam]));
+  }
   if (light.saturation > 0.0 && received >= light.saturation) lose(frame, beam, Status::saturated);
 }
 
@@ -97,6 +114,8 @@ void validate(const PulseLight& light) {
   require(from_zero(light.range_exponent), "range_exponent", light.range_exponent, "0 or above");
   require(from_zero(light.extinction_per_m), "extinction_per_m", light.extinction_per_m,
           "0 or above");
+  require(from_zero(light.weather_extinction_per_m), "weather_extinction_per_m",
+          light.weather_extinction_per_m, "0 or above");
   require(from_zero(light.noise_sigma), "noise_sigma", light.noise_sigma, "0 or above");
   require(from_zero(light.saturation), "saturation", light.saturation, "0 or above");
   for (std::size_t i = 0; i < light.overlap.size(); ++i) {
@@ -117,20 +136,23 @@ double reflectance_at(const Material& material, double wavelength_m) {
   return look_up(material.spectrum, wavelength_m, luminance(material.diffuse));
 }
 
+double relative_overlap(const PulseLight& light, double range_m) {
+  return look_up(light.overlap, range_m, 1.0) /
+         look_up(light.overlap, light.reference_range_m, 1.0);
+}
+
 double signal_of(const PulseLight& light, double sent_back, double range_m) {
   const double ratio = light.reference_range_m / range_m;
   const double spread =
       light.range_exponent == 2.0 ? ratio * ratio : power(ratio, light.range_exponent);
   double signal = sent_back / light.reference_reflectance * spread;
   if (light.extinction_per_m > 0.0) {
-    const double depth = -2.0 * light.extinction_per_m * (range_m - light.reference_range_m);
-    signal *= natural_exp(std::clamp(depth, -600.0, 600.0));  // beyond, it is 0 or endless anyway
+    signal *= two_way(light.extinction_per_m, range_m - light.reference_range_m);
   }
-  if (!light.overlap.empty()) {
-    signal *=
-        look_up(light.overlap, range_m, 1.0) / look_up(light.overlap, light.reference_range_m, 1.0);
+  if (light.weather_extinction_per_m > 0.0) {
+    signal *= two_way(light.weather_extinction_per_m, range_m);
   }
-  return signal;
+  return light.overlap.empty() ? signal : signal * relative_overlap(light, range_m);
 }
 
 double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelength_m,
@@ -172,7 +194,7 @@ void measure_signal(const PulseLight& light, const Scene& scene, double waveleng
       continue;
     }
     const double signal = signal_of_hit(light, scene, wavelength_m, frame.truth, i);
-    measure_hit(light, signal + light.noise_sigma * noise[k], i, frame);
+    measure_hit(light, signal, light.noise_sigma * noise[k], i, frame);
   }
 }
 

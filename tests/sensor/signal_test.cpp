@@ -81,6 +81,17 @@ TEST(Signal, FallsByTheTwoWayTransmissionOfTheAir) {
   EXPECT_NEAR(kept, 0.5434, 5e-5);
 }
 
+TEST(Signal, LosesToTheWeatherFromTheSensorOnAndToTheAirFromTheReferenceRangeOn) {
+  const PulseLight clear{.reference_range_m = 50.0, .extinction_per_m = 0.001};
+  PulseLight foggy = clear;
+  foggy.weather_extinction_per_m = 0.01956;  // Kim's at 905 nm and a visibility of 0.2 km
+  for (const double range_m : {1.0, 50.0, 100.0}) {
+    EXPECT_NEAR(signal_of(foggy, 0.5, range_m) / signal_of(clear, 0.5, range_m),
+                std::exp(-2.0 * 0.01956 * range_m), kSame);
+  }
+  EXPECT_NEAR(signal_of(foggy, 0.5, 100.0) / signal_of(clear, 0.5, 100.0), 0.0200, 5e-5);
+}
+
 TEST(Signal, FollowsTheOverlapTableAndHoldsItsEnds) {
   const PulseLight light{.reference_range_m = 10.0,
                          .overlap = {{0.9, 0.0}, {1.0, 1.0}}};  // Hahner et al., ICCV 2021
@@ -196,6 +207,18 @@ TEST(MeasureSignal, TellsWhatIsTooStrongAndKeepsItsTruth) {
   EXPECT_EQ(stage.frame.truth.range_m[0], 1.0);
 }
 
+TEST(MeasureSignal, BlamesTheWeatherForWhatClearAirHadShown) {
+  const PulseLight light{
+      .reference_reflectance = 0.8, .reference_range_m = 100.0, .weather_extinction_per_m = 0.002};
+  for (const auto& [range_m, status] :
+       {std::pair{50.0, Status::hit}, std::pair{99.0, Status::weather},
+        std::pair{101.0, Status::below_threshold}}) {
+    Stage stage(1, range_m);
+    stage.measure(light);
+    EXPECT_EQ(stage.frame.status[0], status) << range_m;
+  }
+}
+
 TEST(MeasureSignal, TakesTheReflectanceAtTheSensorsWavelength) {
   Stage stage(1, 100.0);
   Material& material = stage.scene.materials[0];
@@ -219,6 +242,7 @@ TEST(PulseLight, RefusesNumbersThatMeanNothing) {
   EXPECT_THROW(validate(PulseLight{.reference_range_m = 1.0, .overlap = {{5.0, 0.0}, {6.0, 1.0}}}),
                Error);
   EXPECT_THROW(validate(PulseLight{.noise_sigma = -0.1}), Error);
+  EXPECT_THROW(validate(PulseLight{.weather_extinction_per_m = -0.1}), Error);
 }
 
 }  // namespace

@@ -94,6 +94,7 @@ TEST(MeasurePulses, SayOfALineWhatASingleRaySays) {
       EXPECT_EQ(ray.range_m[i], line.range_m[i]);
     }
   }
+  EXPECT_GT(std::count(line.cause.begin(), line.cause.end(), Cause::surface), 0);
 }
 
 // Reference test T9, of a footprint that lies on the surface: the same signal as a ray's, falling
