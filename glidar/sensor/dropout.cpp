@@ -72,6 +72,7 @@ void apply(const FalseEchoes& step, const NoiseView& view, NoiseBatch& batch) {
   draw_shared_uniforms(batch.draw, x);
   first_arrivals(step.near_m - view.beams.range_offset_m, kHalfLight_m_per_s / step.rate_hz, x);
   for (std::size_t i = 0; i < batch.count; ++i) {
+    if (batch.first + i >= view.beams.pulses()) break;  // of several returns the first
     const Status status = batch.status[i];
     const bool listens = status != Status::no_beam && status != Status::dropped;
     const double false_m = x[i];

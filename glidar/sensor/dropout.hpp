@@ -25,7 +25,8 @@ struct Crosstalk {
 
 /// Foreign pulses and false alarms arrive at a constant rate while the gate, from near to far, is
 /// open. One that arrives before the beam's own echo is reported in its place, or where there is
-/// no echo at all. The first arrival is exponentially distributed.
+/// no echo at all. The first arrival is exponentially distributed. Of several returns it concerns
+/// the first. Its Frame::cause is false_alarm.
 struct FalseEchoes {
   double rate_hz = 0.0;
   double near_m = 0.0;

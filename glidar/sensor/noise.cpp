@@ -153,6 +153,10 @@ void store(const NoiseView& view, NoiseBatch& batch) {
   const std::size_t at = batch.first;
   write(batch, {frame.range_m.data() + at, frame.intensity.data() + at, frame.sigma_m.data() + at});
   std::copy_n(batch.status.begin(), batch.count, frame.status.data() + at);
+  if (frame.cause.empty()) return;
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    if (!is_hit(batch, i)) frame.cause[at + i] = Cause::none;
+  }
 }
 
 /// Calls body(batch) for all runs of a frame, loaded.

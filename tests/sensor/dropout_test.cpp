@@ -78,16 +78,39 @@ TEST(FalseEchoes, ArriveAsAPoissonProcess) {
     if (i >= 150000) {
       before += stage.frame.range_m[i] != 30.0 ? 1.0 : 0.0;
       EXPECT_LE(stage.frame.range_m[i], 30.0);
+      EXPECT_EQ(stage.frame.cause[i],
+                stage.frame.range_m[i] < 30.0 ? Cause::false_alarm : Cause::surface);
     } else if (stage.frame.status[i] == Status::hit) {
       in_the_void += 1.0;
       near_half += stage.frame.range_m[i] < 50.0 ? 1.0 : 0.0;
       EXPECT_EQ(stage.frame.intensity[i], 0.25F);
+      EXPECT_EQ(stage.frame.cause[i], Cause::false_alarm);
+    } else {
+      EXPECT_EQ(stage.frame.cause[i], Cause::none);
     }
   }
   const auto four_sigmas = [](double p) { return 4.0 * std::sqrt(p / 150000.0); };
   EXPECT_NEAR(in_the_void / 150000.0, probability(100.0), four_sigmas(probability(100.0)));
   EXPECT_NEAR(near_half / 150000.0, probability(50.0), four_sigmas(probability(50.0)));
   EXPECT_NEAR(before / 150000.0, probability(30.0), four_sigmas(probability(30.0)));
+}
+
+TEST(FalseEchoes, ConcernTheFirstOfSeveralReturns) {
+  NoiseStage stage(2, 1000, 30.0);
+  stage.beams.returns = 2;
+  for (std::size_t i = 0; i < 2000; ++i) stage.lose_beam(i);
+  stage.apply({FalseEchoes{.rate_hz = 1e9, .far_m = 100.0}});
+  EXPECT_EQ(std::count(stage.frame.status.begin(), stage.frame.status.begin() + 1000, Status::hit),
+            1000);
+  EXPECT_EQ(std::count(stage.frame.status.begin() + 1000, stage.frame.status.end(), Status::miss),
+            1000);
+}
+
+TEST(Dropout, LeavesNoCause) {
+  NoiseStage stage(1, 10, 30.0);
+  stage.frame.cause.assign(10, Cause::surface);
+  stage.apply({Dropout{.probability = 1.0}});
+  EXPECT_EQ(stage.frame.cause, std::vector<Cause>(10, Cause::none));
 }
 
 TEST(IntensityGaussian, HasTheStatedSpreadAndIsNeverNegative) {
