@@ -194,7 +194,7 @@ TEST(MovingCast, TellsItsProgressOverAllBodiesFromBeginningToEnd) {
         .pose = stage.scene.instances[i].world_from_object, .angular_rad_s = {1.0, 2.0, -1.5}};
   }
   std::vector<double> told;
-  Setup setup = stage.setup();
+  auto setup = stage.setup();
   setup.progress = [&](double fraction) { told.push_back(fraction); };
   Frame frame;
   simulate(setup, kEverything, frame);
