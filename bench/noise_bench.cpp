@@ -80,7 +80,6 @@ void register_steps() {
   bench_step("range_bias", {RangeBias{.sigma_m = 0.01}});
   bench_step("range_drift", {RangeDrift{.sigma_m = 0.01, .tau_s = 60.0}});
   bench_step("dropout", {Dropout{.probability = 0.01}});
-  bench_step("detection", {Detection{.threshold = 0.1, .sigma = 0.02}});
   bench_step("crosstalk", {Crosstalk{.probability = 0.01}});
   bench_step("false_echoes", {FalseEchoes{.rate_hz = 1e4, .far_m = 100.0}});
   bench_step("disparity_quantum", {DisparityQuantum{.k_m = 351.3}});

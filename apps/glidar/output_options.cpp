@@ -7,6 +7,7 @@
 #include <apps/glidar/option_kinds.hpp>
 #include <apps/glidar/pose_options.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/io/cloud_layout.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -40,14 +41,43 @@ void naming(const char* option, const Work& work) {
   }
 }
 
-/// The columns asked for, every name known.
-std::vector<std::string> asked_columns(const std::string& text) {
-  if (text == "default") return default_columns();
+/// The columns of a list, every name known.
+std::vector<std::string> listed_columns(const std::string& text) {
+  if (text.empty() || text == "default") return default_columns();
   if (text == "all") return {cloud_column_names().begin(), cloud_column_names().end()};
   std::vector<std::string> columns;
   for (const std::string& name : parse_list("--columns", text)) add_missing(name, columns);
   naming("--columns", [&] { glidar::fields_for(columns); });  // throws on an unknown name
   return columns;
+}
+
+std::vector<std::string> asked_columns(const OutputFlags& flags) {
+  return flags.layout.empty() ? listed_columns(flags.columns) : layout_named(flags.layout).columns;
+}
+
+/// Formats that take columns, for errors and help: ".pcd .ply .npz .csv".
+std::string layout_suffixes() {
+  std::string text;
+  for (const FileFormat& format : file_formats()) {
+    if (format.takes_more) text += (text.empty() ? "" : " ") + format.suffix;
+  }
+  return text;
+}
+
+void check_layout(const OutputFlags& flags) {
+  if (flags.layout.empty()) return;
+  if (!flags.columns.empty()) {
+    throw Error({.where = "--layout and --columns",
+                 .found = "both are given",
+                 .allowed = "one of the two",
+                 .remedy = "a layout has its own columns: leave --columns out"});
+  }
+  const auto takes_it = [](const std::string& path) { return format_for(path).takes_more; };
+  if (std::any_of(flags.paths.begin(), flags.paths.end(), takes_it)) return;
+  throw Error({.where = "--layout",
+               .found = "no output takes a layout",
+               .allowed = "an output with the suffix " + layout_suffixes(),
+               .remedy = ""});
 }
 
 /// Formats that hold no points (images, poses) take what they need and nothing else.
@@ -66,6 +96,7 @@ FileSinkOptions sink_options(const OutputFlags& flags) {
                                                  : PcdEncoding::binary_compressed;
   options.ply_ascii = flags.ply_ascii;
   options.dense = flags.dense;
+  options.layout = flags.layout;
   options.sidecar = !flags.no_sidecar;
   const double scale = flags.depth_scale.value_or(options.depth_png_units_per_m);
   require(scale > 0.0 && std::isfinite(scale), "--depth-scale", scale, "a finite number above 0");
@@ -105,6 +136,12 @@ void check_names(const std::vector<Output>& outputs, const std::string& input) {
   }
 }
 
+std::vector<std::string> layout_names() {
+  std::vector<std::string> names;
+  for (const CloudLayout& layout : cloud_layouts()) names.push_back(layout.name);
+  return names;
+}
+
 std::string suffix_list() {
   std::string text;
   for (const FileFormat& format : file_formats()) text += " " + format.suffix;
@@ -122,7 +159,9 @@ void add_output_flags(CLI::App& command, OutputFlags& flags) {
   add_text(command, {"--pcd", "NAME", "As in the 2015 program: NAME.pcd and NAME.transform", group},
            flags.legacy_name);
   add_text(command, {"--columns", "LIST", "Columns of clouds: a,b,c or all or default", group},
-           flags.columns, [](std::string_view, const std::string& text) { asked_columns(text); });
+           flags.columns, [](std::string_view, const std::string& text) { listed_columns(text); });
+  add_choice(command, {"--layout", "NAME", "Fields of another sensor's clouds, see below", group},
+             layout_names(), flags.layout);
   add_choice(
       command,
       {"--cloud-frame", "NAME", "Axes: sensor, optical, ros, gl, legacy or world [sensor]", group},
@@ -153,6 +192,10 @@ std::string output_names_text() {
     names += (names.empty() ? "" : " ") + name + (usual ? "*" : "");
   }
   text += indented(names);
+  text += "\nLayouts of clouds (" + layout_suffixes() + "):\n";
+  for (const CloudLayout& layout : cloud_layouts()) {
+    text += fmt::format("  {:<12} {}\n", layout.name, layout.description);
+  }
   text +=
       "\nAxes of clouds:\n"
       "  optical      x right, y down, z forward\n"
@@ -174,7 +217,7 @@ std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& in
   }
   FileSinkOptions options = sink_options(flags);
   options.progress = progress;
-  const std::vector<std::string> asked = asked_columns(flags.columns);
+  const std::vector<std::string> asked = asked_columns(flags);
   std::vector<Output> outputs;
   for (const std::string& path : flags.paths) {
     naming("--output", [&] {
@@ -188,6 +231,7 @@ std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& in
   if (!flags.legacy_name.empty()) {
     naming("--pcd", [&] { plan_legacy(flags.legacy_name, context, report, outputs); });
   }
+  check_layout(flags);
   check_names(outputs, input);
   return outputs;
 }

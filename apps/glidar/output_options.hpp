@@ -19,7 +19,8 @@ namespace glidar::app {
 struct OutputFlags {
   std::vector<std::string> paths;
   std::string legacy_name;  ///< --pcd NAME; empty: not given
-  std::string columns = "default";
+  std::string columns;      ///< empty: not given
+  std::string layout;       ///< empty: not given
   std::string cloud_frame = "sensor";
   std::string pcd_encoding = "binary";
   bool dense = false;

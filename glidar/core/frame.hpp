@@ -39,6 +39,7 @@ enum class Cause : std::uint8_t {
   fog = 5,
   rain = 6,
   snow = 7,
+  crosstalk = 8,  ///< another channel's echo
 };
 
 /// The status in words, as files and pictures spell it.
@@ -86,6 +87,12 @@ struct Frame {
     std::vector<Eigen::Quaternionf> start_from_sensor;  ///< N, rotation since stamp_ns
   };
   Deskewed deskewed;
+  /// Where the sensor and the object that a beam hit were when it left. Empty unless asked for.
+  struct BeamPoses {
+    std::vector<PoseNumbers> world_from_sensor;  ///< N
+    std::vector<PoseNumbers> world_from_object;  ///< N, without scale; NaN where nothing was hit
+  };
+  BeamPoses beam_poses;
   Hits truth;  ///< what is there, whether reported or not
   Scratch scratch;
 };

@@ -24,6 +24,7 @@ struct HitFields {
   bool reflectance = false;
   bool object_point = false;
   bool noise_scale = false;
+  bool poses = false;  ///< no column of Hits, but Frame::beam_poses
 };
 
 /// What a surface does with the paper's light (equation 5): luminances after textures, and the

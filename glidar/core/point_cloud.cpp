@@ -177,8 +177,9 @@ void fill_status(const Source& s, Column& column) {
 }
 
 void fill_row(const Source& s, Column& column) {
-  fill_each<std::uint32_t>(
-      s, column, [&](std::size_t i) { return static_cast<std::uint32_t>(i / s.beams.cols); });
+  fill_each<std::uint32_t>(s, column, [&](std::size_t i) {
+    return static_cast<std::uint32_t>(i % s.beams.pulses() / s.beams.cols);
+  });
 }
 
 void fill_col(const Source& s, Column& column) {
@@ -192,10 +193,78 @@ void fill_ring(const Source& s, Column& column) {
   });
 }
 
+void fill_return(const Source& s, Column& column) {
+  fill_each<std::uint8_t>(
+      s, column, [&](std::size_t i) { return static_cast<std::uint8_t>(i / s.beams.pulses()); });
+}
+
+void fill_cause(const Source& s, Column& column) {
+  const std::vector<Cause>& causes = s.frame.cause;
+  fill_each<std::uint8_t>(s, column, [&](std::size_t i) {
+    const Cause told = causes.empty() ? Cause::surface : causes[i];
+    return static_cast<std::uint8_t>(s.frame.status[i] == Status::hit ? told : Cause::none);
+  });
+}
+
 void fill_time(const Source& s, Column& column) {
   fill_each<std::uint32_t>(s, column, [&](std::size_t i) {
     return s.beams.times_ns.empty() ? 0U : s.beams.times_ns[i];
   });
+}
+
+/// The axes of a sensor's frame that a beam's angles count from.
+struct AimAxes {
+  Eigen::Vector3d ahead;
+  Eigen::Vector3d left;
+  Eigen::Vector3d up;
+};
+
+/// Cameras look along +z with y down (REP-103), all others along +x with z up.
+AimAxes aim_axes(const Beams& beams) {
+  using Eigen::Vector3d;
+  const bool optical = beams.boresight.isApprox(Vector3d::UnitZ());
+  if (optical) return {Vector3d::UnitZ(), -Vector3d::UnitX(), -Vector3d::UnitY()};
+  return {Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
+}
+
+void fill_azimuth(const Source& s, Column& column) {
+  const AimAxes axes = aim_axes(s.beams);
+  fill_each<double>(s, column, [&](std::size_t i) {
+    const Eigen::Vector3d& aim = s.beams.directions[i];
+    return std::atan2(axes.left.dot(aim), axes.ahead.dot(aim));
+  });
+}
+
+void fill_elevation(const Source& s, Column& column) {
+  const AimAxes axes = aim_axes(s.beams);
+  fill_each<double>(s, column, [&](std::size_t i) {
+    const Eigen::Vector3d& aim = s.beams.directions[i];
+    return std::atan2(axes.up.dot(aim), std::hypot(axes.left.dot(aim), axes.ahead.dot(aim)));
+  });
+}
+
+void fill_stamp(const Source& s, Column& column) {
+  fill_each<std::int64_t>(s, column, [&](std::size_t i) {
+    return s.frame.stamp_ns + (s.beams.times_ns.empty() ? 0 : s.beams.times_ns[i]);
+  });
+}
+
+void fill_sensor_pose(const Source& s, Column& column) {
+  fill_vectors<double, 7>(s, column,
+                          [&](std::size_t i) { return s.frame.beam_poses.world_from_sensor[i]; });
+}
+
+void fill_object_pose(const Source& s, Column& column) {
+  fill_vectors<double, 7>(s, column,
+                          [&](std::size_t i) { return s.frame.beam_poses.world_from_object[i]; });
+}
+
+/// "sensor_pose_x" ... "sensor_pose_qz".
+std::vector<std::string> pose_fields(const std::string& of) {
+  std::vector<std::string> names;
+  for (const char* part : {"x", "y", "z", "qw", "qx", "qy", "qz"})
+    names.push_back(of + "_pose_" + part);
+  return names;
 }
 
 const std::vector<ColumnKind>& column_kinds() {
@@ -227,6 +296,13 @@ const std::vector<ColumnKind>& column_kinds() {
       {"col", {"col"}, {}, fill_col},
       {"ring", {"ring"}, {}, fill_ring},
       {"time", {"time"}, {}, fill_time},
+      {"return", {"return"}, {}, fill_return},
+      {"cause", {"cause"}, {}, fill_cause},
+      {"azimuth", {"azimuth"}, {}, fill_azimuth},
+      {"elevation", {"elevation"}, {}, fill_elevation},
+      {"stamp", {"stamp"}, {}, fill_stamp},
+      {"sensor_pose", pose_fields("sensor"), {.poses = true}, fill_sensor_pose},
+      {"object_pose", pose_fields("object"), {.poses = true}, fill_object_pose},
   };
   return kinds;
 }
@@ -255,25 +331,8 @@ bool has(const Frame& frame, const HitFields& needs) {
          kept(needs.incidence, truth.cos_incidence.size()) &&
          kept(needs.barycentrics, truth.barycentrics.size()) &&
          kept(needs.colour, truth.colour.size()) &&
-         kept(needs.object_point, truth.object_point_m.size());
-}
-
-/// The points of one column whose index is in `kept`.
-Column selected(const Column& column, const std::vector<std::size_t>& kept) {
-  Column result{column.name, column.components, {}};
-  const std::size_t width = column.components.size();
-  std::visit(
-      [&](const auto& values) {
-        std::decay_t<decltype(values)> chosen;
-        chosen.reserve(kept.size() * width);
-        for (const std::size_t point : kept) {
-          const auto first = values.begin() + static_cast<std::ptrdiff_t>(point * width);
-          chosen.insert(chosen.end(), first, first + static_cast<std::ptrdiff_t>(width));
-        }
-        result.values = std::move(chosen);
-      },
-      column.values);
-  return result;
+         kept(needs.object_point, truth.object_point_m.size()) &&
+         kept(needs.poses, frame.beam_poses.world_from_sensor.size());
 }
 
 }  // namespace
@@ -297,6 +356,7 @@ HitFields fields_for(std::span<const std::string> column_names) {
     fields.barycentrics |= needs.barycentrics;
     fields.colour |= needs.colour;
     fields.object_point |= needs.object_point;
+    fields.poses |= needs.poses;
   }
   return fields;
 }
@@ -322,34 +382,6 @@ void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene
     cloud.columns[c].components = kind.components;
     kind.fill(source, cloud.columns[c]);
   }
-}
-
-const Column* find_column(const PointCloud& cloud, std::string_view name) {
-  const auto found = std::find_if(cloud.columns.begin(), cloud.columns.end(),
-                                  [name](const Column& column) { return column.name == name; });
-  return found == cloud.columns.end() ? nullptr : &*found;
-}
-
-PointCloud compacted(const PointCloud& cloud) {
-  const Column* xyz = find_column(cloud, "xyz");
-  if (xyz == nullptr) {
-    throw Error({.where = "cloud",
-                 .found = "no column 'xyz'",
-                 .allowed = "a cloud with coordinates",
-                 .remedy = "add the column"});
-  }
-  const auto& coordinates = std::get<std::vector<double>>(xyz->values);
-  std::vector<std::size_t> kept;
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    if (!std::isnan(coordinates[3 * i])) kept.push_back(i);
-  }
-  PointCloud result;
-  result.rows = 1;
-  result.cols = static_cast<std::uint32_t>(kept.size());
-  result.frame_id = cloud.frame_id;
-  result.world_from_cloud = cloud.world_from_cloud;
-  for (const Column& column : cloud.columns) result.columns.push_back(selected(column, kept));
-  return result;
 }
 
 }  // namespace glidar

@@ -19,7 +19,7 @@ struct Column {
   std::string name;                     ///< e.g. "normal"
   std::vector<std::string> components;  ///< field names, e.g. normal_x normal_y normal_z
   std::variant<std::vector<float>, std::vector<double>, std::vector<std::uint8_t>,
-               std::vector<std::uint16_t>, std::vector<std::uint32_t>>
+               std::vector<std::uint16_t>, std::vector<std::uint32_t>, std::vector<std::int64_t>>
       values;
 };
 
@@ -44,7 +44,8 @@ struct CloudFrame {
 
 /// Names make_point_cloud knows, in the order files list them:
 /// xyz true_xyz intensity range true_range sigma depth normal shading_normal incidence instance
-/// class primitive barycentrics colour object_point status row col ring time
+/// class primitive barycentrics colour object_point status row col ring time return cause azimuth
+/// elevation stamp sensor_pose object_pose
 std::span<const std::string> cloud_column_names();
 
 /// The optional hit columns that these cloud columns need. Throws Error on an unknown name.
@@ -66,6 +67,15 @@ HitFields fields_for(std::span<const std::string> column_names);
 ///  barycentrics  f32 x2; colour f32 x3; object_point f64 x3 in the object's own frame
 ///  status        u8, see Status; row, col u32
 ///  ring          u16, channel number; time u32, ns since the frame's start
+///  return        u8, from 0: which of the sensor's returns; cause u8, see Cause
+///  azimuth, elevation  f64, radians, where the beam was aimed in the sensor's frame: to the left
+///  of
+///                the boresight (-pi to pi), and up; of LiDARs that is from +x towards +y, and
+///                towards +z
+///  stamp         i64, ns, when the beam left: the frame's stamp_ns and `time`
+///  sensor_pose   f64 x7, world_from_sensor when the beam left: metres, quaternion w x y z
+///  object_pose   f64 x7, likewise world_from_object, without scale, of the instance that was hit;
+///                NaN where there is none
 /// Throws Error when a column is unknown or the frame was cast without what it needs.
 void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene,
                       const CloudFrame& cloud_frame, std::span<const std::string> column_names,

@@ -83,6 +83,14 @@ Pose exponential(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& tra
   return pose;
 }
 
+PoseNumbers numbers_of(const Pose& pose) {
+  Eigen::Quaterniond q(pose.linear());
+  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+  PoseNumbers numbers;
+  numbers << pose.translation(), q.w(), q.vec();
+  return numbers;
+}
+
 bool is_rigid(const Pose& pose, double tolerance) {
   if (!pose.matrix().allFinite()) return false;
   const Eigen::Matrix3d r = pose.linear();

@@ -34,6 +34,10 @@ Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orie
 /// Lynch & Park, "Modern Robotics" (2017), equation 3.88.
 Pose exponential(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& translation_m);
 
+/// A pose as files list it: position x y z in metres, unit quaternion w x y z with w not negative.
+using PoseNumbers = Eigen::Matrix<double, 7, 1>;
+PoseNumbers numbers_of(const Pose& pose);
+
 /// True when every number is finite and the linear part is a rotation to within `tolerance`.
 bool is_rigid(const Pose& pose, double tolerance = 1e-9);
 

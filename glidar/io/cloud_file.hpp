@@ -21,16 +21,17 @@ struct CloudFile {
   const FileSinkOptions& options;
   const SidecarContext& context;
   std::span<const Field> fields;  ///< what of each point goes into the file; the sidecar tells it
+  std::string layout = {};        ///< that the cloud has; empty: columns of its own
 };
 
 // What each format stores of a cloud. A writer stores exactly these fields, so that whoever reads
 // the list knows the file.
 
-/// Real numbers as float, as PCL's point types need it, but for a column of doubles of which that
-/// would move a number by more than 0.1 mm; colour is PCL's packed `rgb`.
+/// Real numbers as float, as PCL's point types need it; colour is PCL's packed `rgb`.
 std::vector<Field> pcd_fields(const PointCloud& cloud);
 /// x y z are float unless that moves a point by more than 0.1 mm, then double; other columns keep
-/// their types; normals are nx ny nz, colour is uchar red green blue.
+/// their types, but for integers of 64 bits, which are double; normals are nx ny nz, colour is
+/// uchar red green blue.
 std::vector<Field> ply_fields(const PointCloud& cloud);
 /// x y z intensity as float.
 std::vector<Field> kitti_fields(const PointCloud& cloud);

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/cloud_file.hpp>
+#include <glidar/io/cloud_layout.hpp>
 #include <glidar/io/stored_columns.hpp>
 
 #include <fmt/format.h>
@@ -11,6 +12,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <iterator>
@@ -183,11 +185,23 @@ class FileSink : public CloudSink {
   }
 
  private:
+  void deliver(const PointCloud& cloud, const Frame& frame) const {
+    if (options_.layout.empty() || !format_.told.takes_more) {
+      const std::vector<Field> fields = format_.fields(cloud);
+      store({cloud, frame, options_, context_, fields});
+      tell(rounding_told(fields, "write .npz, .csv or .ply, which keep far points"));
+      return;
+    }
+    const PointCloud laid = laid_out(cloud, options_.layout, context_.sensor, context_.beams);
+    const std::vector<Field> fields = native_fields(laid);
+    store({laid, frame, options_, context_, fields, options_.layout});
+    const std::array points = {Field{"x", find_column(cloud, "xyz"), 0, Stored::f32}};
+    tell(rounding_told(points, "without a layout .npz, .csv and .ply keep far points"));
+  }
+
   /// Both files are complete before either gets its name; the sidecar first, so that whoever
   /// waits for the cloud finds it.
-  void deliver(const PointCloud& cloud, const Frame& frame) const {
-    const std::vector<Field> fields = format_.fields(cloud);
-    const CloudFile job{cloud, frame, options_, context_, fields};
+  void store(const CloudFile& job) const {
     AtomicFile file(path_);
     format_.write(job, file);
     file.finish();
@@ -197,8 +211,10 @@ class FileSink : public CloudSink {
       sidecar.commit();
     }
     file.commit();
-    const std::string told = rounding_told(fields);
-    if (!told.empty()) report_.warn(path_.string() + ": " + told);
+  }
+
+  void tell(const std::string& warning) const {
+    if (!warning.empty()) report_.warn(path_.string() + ": " + warning);
   }
 
   std::filesystem::path path_;
@@ -228,6 +244,7 @@ std::unique_ptr<CloudSink> make_file_sink(const std::filesystem::path& path,
                                           const SidecarContext& context, Report report) {
   const Format& format = find_format(path);
   check_folder(path);
+  if (!options.layout.empty()) layout_named(options.layout);
   if (!(options.depth_png_units_per_m > 0.0) || std::isinf(options.depth_png_units_per_m)) {
     throw Error({"depth_png_units_per_m", fmt::format("{}", options.depth_png_units_per_m),
                  "a number above 0", "1000 for millimetres"});

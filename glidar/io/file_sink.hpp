@@ -18,8 +18,9 @@ enum class PcdEncoding : std::uint8_t { ascii, binary, binary_compressed };
 struct FileSinkOptions {
   PcdEncoding pcd = PcdEncoding::binary;
   bool ply_ascii = false;
-  bool dense = false;                     ///< point formats leave misses out
-  bool sidecar = true;                    ///< write FILE.json beside a cloud
+  bool dense = false;       ///< point formats leave misses out
+  bool sidecar = true;      ///< write FILE.json beside a cloud
+  std::string layout = {};  ///< of cloud_layouts(), for formats that take columns; empty: none
   double depth_png_units_per_m = 1000.0;  ///< 16-bit depth PNG: 1000 = millimetres
   Progress progress = {};  ///< of one file, by its points; images and NPZ do not tell
 };
@@ -48,7 +49,7 @@ const FileFormat& format_for(const std::filesystem::path& path);
 
 /// A sink that writes one file (and its sidecar) per cloud: to a temporary name beside it, then
 /// renamed, so that a path either holds a whole file or is as it was.
-/// Throws Error at once when the suffix is unknown or the folder does not exist.
+/// Throws Error at once when the suffix or the layout is unknown or the folder does not exist.
 /// Warns through `report` when the format's float32 moves a coordinate or depth by more than 0.1
 /// mm.
 std::unique_ptr<CloudSink> make_file_sink(const std::filesystem::path& path,

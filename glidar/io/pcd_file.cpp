@@ -22,6 +22,7 @@ constexpr std::size_t kLargestBlock = std::numeric_limits<std::uint32_t>::max();
 /// most of these bit patterns are denormal floats, which text readers refuse.
 char pcd_type(Stored stored, PcdEncoding encoding) {
   if (stored == Stored::packed_rgb) return encoding == PcdEncoding::ascii ? 'U' : 'F';
+  if (stored == Stored::i64) return 'I';
   return stored == Stored::f32 || stored == Stored::f64 ? 'F' : 'U';
 }
 

@@ -25,6 +25,7 @@ std::string_view ply_type(Stored stored) {
     case Stored::f32:
       return "float";
     case Stored::f64:
+    case Stored::i64:  // stored as f64
       return "double";
     case Stored::u16:
       return "ushort";
@@ -66,6 +67,8 @@ std::vector<Field> ply_fields(const PointCloud& cloud) {
       append_renamed(column, {"nx", "ny", "nz"}, native_type(column), fields);
     } else if (is_colour(column)) {
       append_renamed(column, {"red", "green", "blue"}, Stored::colour_byte, fields);
+    } else if (native_type(column) == Stored::i64) {
+      fields.push_back({column.components[0], &column, 0, Stored::f64});  // PLY has no such integer
     } else {
       append_fields(column, fields);
     }

@@ -90,6 +90,8 @@ void store_fields(const From* from, std::size_t step, std::span<const Field> sam
       return store_cast<std::uint16_t>(from, step, run, to);
     case Stored::u32:
       return store_cast<std::uint32_t>(from, step, run, to);
+    case Stored::i64:
+      return store_cast<std::int64_t>(from, step, run, to);
     case Stored::colour_byte:
     case Stored::packed_rgb:
       break;
@@ -153,6 +155,8 @@ void append_stored(fmt::memory_buffer& text, Stored stored, const std::byte* byt
     case Stored::u32:
     case Stored::packed_rgb:
       return append_number(text, load<std::uint32_t>(bytes));
+    case Stored::i64:
+      return append_number(text, load<std::int64_t>(bytes));
   }
 }
 
@@ -175,6 +179,7 @@ void tell(const Progress& progress, std::size_t done, std::size_t count) {
 std::size_t size_of(Stored stored) {
   switch (stored) {
     case Stored::f64:
+    case Stored::i64:
       return 8;
     case Stored::u16:
       return 2;
@@ -190,7 +195,8 @@ std::size_t size_of(Stored stored) {
 }
 
 Stored native_type(const Column& column) {
-  constexpr std::array kTypes = {Stored::f32, Stored::f64, Stored::u8, Stored::u16, Stored::u32};
+  constexpr std::array kTypes = {Stored::f32, Stored::f64, Stored::u8,
+                                 Stored::u16, Stored::u32, Stored::i64};
   static_assert(kTypes.size() == std::variant_size_v<decltype(Column::values)>);
   return kTypes[column.values.index()];
 }

@@ -22,6 +22,7 @@ enum class Stored : std::uint8_t {
   u8,
   u16,
   u32,
+  i64,
   colour_byte,  ///< u8, 0..1 times 255
   packed_rgb,   ///< u32 0x00RRGGBB made from three components
 };

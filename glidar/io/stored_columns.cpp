@@ -45,13 +45,15 @@ std::string_view type_name(Stored stored) {
       return "u16";
     case Stored::u32:
       return "u32";
+    case Stored::i64:
+      return "i64";
     case Stored::packed_rgb:
       break;
   }
   return "packed_rgb";
 }
 
-std::string rounding_told(std::span<const Field> fields) {
+std::string rounding_told(std::span<const Field> fields, std::string_view remedy) {
   std::string told;
   for (const StoredColumn& stored : stored_columns(fields)) {
     const Column& column = *stored.column;
@@ -62,7 +64,7 @@ std::string rounding_told(std::span<const Field> fields) {
                         column.name == "xyz" ? "points" : column.name, moved_m);
   }
   if (told.empty()) return told;
-  return "rounding to float32 moves " + told + "; write .npz, .csv or .ply, which keep far points";
+  return fmt::format("rounding to float32 moves {}; {}", told, remedy);
 }
 
 }  // namespace glidar

@@ -21,11 +21,11 @@ struct StoredColumn {
 
 std::vector<StoredColumn> stored_columns(std::span<const Field> fields);
 
-/// "f32", "f64", "u8", "u16", "u32", "packed_rgb".
+/// "f32", "f64", "u8", "u16", "u32", "i64", "packed_rgb".
 std::string_view type_name(Stored stored);
 
 /// What to tell of doubles stored as float where that moves a coordinate or depth by more than
-/// kFinePosition_m: how far, and which formats keep it. Empty when there is nothing to tell.
-std::string rounding_told(std::span<const Field> fields);
+/// kFinePosition_m: how far, and the remedy. Empty when there is nothing to tell.
+std::string rounding_told(std::span<const Field> fields, std::string_view remedy);
 
 }  // namespace glidar

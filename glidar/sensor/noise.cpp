@@ -31,6 +31,9 @@ constexpr bool kUsesIncidence =
     std::is_same_v<Step, NguyenAxial> || std::is_same_v<Step, NguyenLateral> ||
     std::is_same_v<Step, Dropout>;
 
+template <class Step>
+constexpr bool kMakesReturns = std::is_same_v<Step, Crosstalk> || std::is_same_v<Step, FalseEchoes>;
+
 /// Steps that look at other beams too: all of the frame is prepared before any of it changes.
 template <class Step>
 constexpr bool kLooksAround = requires(const Step& step, const NoiseView& view, NoiseBatch& batch) {
@@ -48,6 +51,10 @@ bool uses_depth(const NoiseStep& step) {
 bool looks_around(const NoiseStep& step) {
   if (const auto* waves = std::get_if<ContinuousWave>(&step)) return mixes(*waves);
   return std::visit([](const auto& s) { return kLooksAround<std::decay_t<decltype(s)>>; }, step);
+}
+
+bool makes_returns(const NoiseStep& step) {
+  return std::visit([](const auto& s) { return kMakesReturns<std::decay_t<decltype(s)>>; }, step);
 }
 
 Draw draw_of(const Frame& frame, std::size_t step, std::size_t beam) {
@@ -251,6 +258,9 @@ void apply_noise(const std::vector<NoiseStep>& noise, double frame_s, const Beam
   if (std::any_of(noise.begin(), noise.end(), looks_around)) {
     frame.scratch.before.resize(frame.range_m.size());
     frame.scratch.amplitude.resize(frame.range_m.size());
+  }
+  if (frame.cause.empty() && std::any_of(noise.begin(), noise.end(), makes_returns)) {
+    frame.cause.assign(frame.range_m.size(), Cause::surface);
   }
   const NoiseView view{beams, frame};
   for (std::size_t begin = 0, end = 0; begin < noise.size(); begin = end) {

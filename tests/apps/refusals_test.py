@@ -101,6 +101,10 @@ class Refusals(CliTest):
                 (("--scale", "1e300"), "--scale: 1e+300"),
                 (("--ambient", "1e300"), "--ambient: 1e+300"),
                 (("--attenuation", "-1,0,1"), "--attenuation: '-1,0,1'"),
+                (("--rain", "5"), "weather: the light of the sensor 'depth camera' is not pulsed"),
+                (("--rain", "-5"), "--rain: -5; allowed: a number from 0 to 1000"),
+                (("--snow", "nan"), "--snow: nan; allowed: a number from 0 to 1000"),
+                (("--visibility", "0.5"), "weather, visibility_m: 0.5; allowed: metres from 1"),
                 (("--columns", "xyz,foo"), "--columns"),
                 (("--sensor-pose", "0,0,0,0,0,0,0"), "--sensor-pose"),
                 (("--sensor-pose", "nan,0,0,1,0,0,0"), "--sensor-pose"),
@@ -109,6 +113,19 @@ class Refusals(CliTest):
                 (("--renderer", "magic"), "embree")):
             with self.subTest(arguments):
                 self.assertIn(text, self.refused(*render, *arguments))
+
+    def test_layouts(self):
+        render = ("render", "nofile.ply", "-o", "x.pcd")
+        error = self.refused(*render, "--layout", "velodine")
+        self.assertIn("--layout: 'velodine'; allowed: minimal, velodyne, ouster, livox, autoware", error)
+        self.assertIn("did you mean velodyne?", error)
+        for columns in ("xyz", "default"):
+            error = self.refused(*render, "--layout", "velodyne", "--columns", columns)
+            self.assertIn("--layout and --columns: both are given", error)
+            self.assertIn("leave --columns out", error)
+        error = self.refused("render", "nofile.ply", "-o", "x.png", "-o", "x.bin", "--layout", "ouster")
+        self.assertIn("no output takes a layout", error)
+        self.assertIn(".pcd .ply .npz .csv", error)
 
     def test_options_are_checked_before_anything_is_loaded(self):
         for arguments, text in ((("--renderer", "magic"), "--renderer: 'magic'; allowed: embree"),

@@ -89,6 +89,37 @@ TEST(PointCloud, TellsIdsOfHitsAndOfMisses) {
   EXPECT_THAT(values<std::uint32_t>(cloud, "col"), ::testing::ElementsAre(0, 1));
 }
 
+TEST(PointCloud, TellsWhenEachBeamLeft) {
+  Fixture f;
+  f.frame.stamp_ns = -5;
+  EXPECT_THAT(values<std::int64_t>(f.cloud({"stamp"}), "stamp"), ::testing::ElementsAre(-5, -5));
+  f.beams.times_ns = {0, 4294967295};
+  f.frame.stamp_ns = 1700000000123456789;
+  EXPECT_THAT(values<std::int64_t>(f.cloud({"stamp"}), "stamp"),
+              ::testing::ElementsAre(1700000000123456789, 1700000004418424084));
+}
+
+TEST(PointCloud, TellsWhereACamerasBeamsWereAimed) {
+  Fixture f;  // 0.6 to the right, 0.8 ahead
+  f.beams.directions[1] = Eigen::Vector3d(0.0, -0.6, 0.8);
+  const PointCloud cloud = f.cloud({"azimuth", "elevation"});
+  EXPECT_DOUBLE_EQ(values<double>(cloud, "azimuth")[0], -std::atan2(0.6, 0.8));
+  EXPECT_DOUBLE_EQ(values<double>(cloud, "elevation")[0], 0.0);
+  EXPECT_DOUBLE_EQ(values<double>(cloud, "azimuth")[1], 0.0);
+  EXPECT_DOUBLE_EQ(values<double>(cloud, "elevation")[1], std::asin(0.6));
+}
+
+TEST(PointCloud, TellsWhereALidarsBeamsWereAimedWhateverTheCloudsFrame) {
+  Fixture f;
+  f.beams.boresight = Eigen::Vector3d::UnitX();
+  f.beams.directions = {Eigen::Vector3d(-0.6, -0.8, 0.0), Eigen::Vector3d::Constant(kNaN)};
+  const CloudFrame turned{"c", make_pose({1, 2, 3}, Eigen::Quaterniond(0.0, 0.0, 0.0, 1.0))};
+  const PointCloud cloud = f.cloud({"azimuth", "elevation"}, turned);
+  EXPECT_DOUBLE_EQ(values<double>(cloud, "azimuth")[0], std::atan2(-0.8, -0.6));
+  EXPECT_TRUE(std::isnan(values<double>(cloud, "azimuth")[1]));
+  EXPECT_TRUE(std::isnan(values<double>(cloud, "elevation")[1]));
+}
+
 TEST(PointCloud, RefusesUnknownAndUncastColumns) {
   Fixture f;
   try {
@@ -115,11 +146,12 @@ TEST(PointCloud, AsksForTheFieldsOfItsColumns) {
 }
 
 TEST(Compacted, KeepsTheHitsOnly) {
-  const PointCloud cloud = compacted(Fixture().cloud({"xyz", "instance"}));
+  const PointCloud cloud = compacted(Fixture().cloud({"xyz", "instance", "stamp"}));
   EXPECT_EQ(cloud.rows, 1U);
   EXPECT_EQ(cloud.cols, 1U);
   EXPECT_THAT(values<std::uint32_t>(cloud, "instance"), ::testing::ElementsAre(7));
   EXPECT_EQ(values<double>(cloud, "xyz").size(), 3U);
+  EXPECT_EQ(values<std::int64_t>(cloud, "stamp").size(), 1U);
 }
 
 TEST(Compacted, NeedsCoordinates) {

@@ -28,6 +28,13 @@ TEST(LookAt, RefusesWhatHasNoDirection) {
   EXPECT_THROW(look_at(here, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()), Error);
 }
 
+TEST(NumbersOf, ListsPositionAndQuaternionWithPositiveW) {
+  const Pose pose = make_pose({1.0, 2.0, 3.0}, Eigen::Quaterniond(-0.5, 0.5, 0.5, -0.5));
+  PoseNumbers wanted;
+  wanted << 1.0, 2.0, 3.0, 0.5, -0.5, -0.5, 0.5;
+  EXPECT_LT((numbers_of(pose) - wanted).norm(), 1e-15);
+}
+
 TEST(MakePose, NormalisesTheQuaternion) {
   const Pose pose = make_pose({0.0, 0.0, 0.0}, Eigen::Quaterniond(2.0, 0.0, 0.0, 2.0));
   EXPECT_LT((pose * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-15);

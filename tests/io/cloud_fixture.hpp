@@ -83,6 +83,27 @@ inline void add_columns(PointCloud& cloud) {
   });
 }
 
+/// What scanners tell besides: the columns that layouts need.
+inline void add_scan_columns(PointCloud& cloud) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const auto add_angle = [&](const char* name, double first_rad, double step_rad) {
+    add_column<double>(cloud, name, {name}, [=](std::size_t i, std::size_t) {
+      return first_rad + step_rad * static_cast<double>(i % 24);
+    });
+  };
+  add_angle("azimuth", -3.0, 0.25);
+  add_angle("elevation", -0.25, 0.0125);
+  add_column<double>(cloud, "range", {"range"}, [=](std::size_t i, std::size_t) {
+    return is_miss(i) ? kNan : 1.0 + static_cast<double>(i) * 0.001234;
+  });
+  add_column<std::uint32_t>(cloud, "time", {"time"}, [](std::size_t i, std::size_t) {
+    return static_cast<std::uint32_t>(i * 55296);
+  });
+  add_column<std::int64_t>(cloud, "stamp", {"stamp"}, [](std::size_t i, std::size_t) {
+    return 1700000000123456789 + static_cast<std::int64_t>(i) * 55296;
+  });
+}
+
 inline void set_frame(CloudFixture& made) {
   Frame& frame = made.frame;
   const std::size_t count = std::size_t{made.rows} * made.cols;

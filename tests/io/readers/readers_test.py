@@ -48,6 +48,58 @@ def expected(name):
     }
 
 
+# Name, NumPy type and offset in a packed point, as the drivers that docs/files.md names publish them.
+LAYOUTS = {
+    "minimal": "x <f4 0, y <f4 4, z <f4 8",
+    "velodyne": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, ring <u2 16, time <f4 18",
+    "ouster": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, t <u4 16, reflectivity <u2 20, "
+    "ring <u2 22, ambient <u2 24, range <u4 26",
+    "livox": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, tag |u1 16, line |u1 17, "
+    "timestamp <f8 18",
+    "autoware": "x <f4 0, y <f4 4, z <f4 8, intensity |u1 12, return_type |u1 13, channel <u2 14, "
+    "azimuth <f4 16, elevation <f4 20, distance <f4 24, time_stamp <u4 28",
+}
+
+
+def reflectivity_byte(intensity, white):
+    """Linear to `white` at 1, then logarithmic to 255 at 1000."""
+    r = np.maximum(intensity.astype(np.float64), 1e-30)
+    above = white + 1 + np.floor((254 - white) * np.log(r) / np.log(1000.0) + 0.5)
+    return np.where(r > 1, np.minimum(255, above), np.floor(white * r + 0.5))
+
+
+def scan_columns(name):
+    """What layouts are made of besides."""
+    rows, cols = SIZES[name]
+    i = np.arange(rows * cols)
+    return {
+        "azimuth": -3.0 + 0.25 * (i % 24),
+        "elevation": -0.25 + 0.0125 * (i % 24),
+        "range": np.where(i % 3 == 2, np.nan, 1.0 + i * 0.001234),
+        "time": (i * 55296).astype(np.uint32),
+        "stamp": 1700000000123456789 + i.astype(np.int64) * 55296,
+    }
+
+
+def layout_values(c):
+    """Every layout's fields after x y z as numbers; their types are in LAYOUTS."""
+    percent = reflectivity_byte(c["intensity"], 100)
+    zero = np.zeros(len(percent))
+    turn = np.where(c["azimuth"] < 0, c["azimuth"] + 2 * np.pi, c["azimuth"])
+    return {
+        "minimal": {},
+        "velodyne": {"intensity": percent, "ring": c["ring"], "time": c["time"] * 1e-9},
+        "ouster": {"intensity": c["intensity"], "t": c["time"], "reflectivity": percent,
+                   "ring": c["ring"], "ambient": zero,
+                   "range": np.floor(np.nan_to_num(c["range"]) * 1000 + 0.5)},
+        "livox": {"intensity": reflectivity_byte(c["intensity"], 150), "tag": zero,
+                  "line": np.minimum(c["ring"], 255), "timestamp": c["stamp"].astype(np.float64)},
+        "autoware": {"intensity": percent, "return_type": c["status"] == 0, "channel": c["ring"],
+                     "azimuth": turn, "elevation": c["elevation"], "distance": c["range"],
+                     "time_stamp": c["time"]},
+    }  # fmt: skip
+
+
 def dense(columns):
     keep = ~np.isnan(columns["xyz"][:, 0])
     return {name: values[keep] for name, values in columns.items()}
@@ -117,6 +169,66 @@ class Formats(unittest.TestCase):
             info, points = formats.read_ply(path)
             self.assertEqual(info, {"num_cols": cols, "num_rows": rows} if rows > 1 else {})
             self.check_points(points, columns, fields, path)
+
+    def layout_files(self, layout):
+        """(path, wanted structured array) of every file in a layout."""
+        dtype = np.dtype([(n, t) for n, t, _ in (f.split() for f in LAYOUTS[layout].split(", "))])
+        for folder in SIZES:
+            for ending in (".pcd", ".ply", ".npz", ".csv", "_ascii.pcd", "_compressed.pcd",
+                           "_ascii.ply", "_dense.pcd", "_dense.npz"):  # fmt: skip
+                columns = {**expected(folder), **scan_columns(folder)}
+                columns = dense(columns) if "dense" in ending else columns
+                wanted = np.empty(len(columns["time"]), dtype)
+                for n, name in enumerate("xyz"):
+                    wanted[name] = columns["xyz"][:, n]
+                for name, values in layout_values(columns)[layout].items():
+                    wanted[name] = values
+                yield FOLDER / folder / (layout + ending), wanted
+
+    def read_points(self, path, dtype):
+        if path.suffix == ".pcd":
+            return formats.read_pcd(path)[1]
+        if path.suffix == ".ply":
+            return formats.read_ply(path)[1]
+        if path.suffix == ".csv":
+            head, *lines = path.read_text("ascii").splitlines()
+            self.assertEqual(head.split(","), list(dtype.names))
+            return formats.text_table(lines, dtype, ",")
+        points = None
+        with np.load(path, allow_pickle=False) as arrays:
+            for name in arrays.files[: len(dtype)]:
+                points = np.empty(arrays[name].size, dtype) if points is None else points
+                self.assertEqual(arrays[name].dtype, dtype[name], name)
+                points[name] = arrays[name].reshape(-1)
+        return points
+
+    def test_layouts_have_the_drivers_fields(self):
+        for layout, fields in LAYOUTS.items():
+            for path, wanted in self.layout_files(layout):
+                points = self.read_points(path, wanted.dtype)
+                found = [f"{n} {t.str} {at}" for n, (t, at) in
+                         ((n, points.dtype.fields[n][:2]) for n in points.dtype.names)]  # fmt: skip
+                self.assertEqual(", ".join(found), fields, path)
+                for name in wanted.dtype.names:
+                    self.same(points[name], wanted[name], f"{path}: {name}")
+                self.assertEqual(
+                    [n for _, _, names in self.told_columns(path) for n in names],
+                    list(wanted.dtype.names))  # fmt: skip
+
+    def test_integers_of_64_bits_are_whole_but_in_ply(self):
+        for folder in SIZES:
+            wanted = scan_columns(folder)["stamp"]
+            for ending in (".pcd", "_ascii.pcd", "_compressed.pcd"):
+                _, points = formats.read_pcd(FOLDER / folder / ("scan" + ending))
+                self.same(points["stamp"], wanted, ending)
+            with np.load(FOLDER / folder / "scan.npz", allow_pickle=False) as arrays:
+                self.same(arrays["stamp"].reshape(-1), wanted, "npz")
+            lines = (FOLDER / folder / "scan.csv").read_text("ascii").splitlines()
+            place = lines[0].split(",").index("stamp")
+            self.assertEqual([int(line.split(",")[place]) for line in lines[1:]], wanted.tolist())
+            for ending in (".ply", "_ascii.ply"):
+                _, points = formats.read_ply(FOLDER / folder / ("scan" + ending))
+                self.same(points["stamp"], wanted.astype(np.float64), ending)
 
     def test_csv(self):
         def fields(c):
@@ -198,9 +310,10 @@ class Formats(unittest.TestCase):
         return [(c["name"], c["type"], c["components"]) for c in told["cloud"]["columns"]]
 
     def test_sidecars_name_every_field_of_the_file_with_its_type(self):
-        types = {"f4": "f32", "f8": "f64", "u1": "u8", "u2": "u16", "u4": "u32"}
+        types = {"f4": "f32", "f8": "f64", "u1": "u8", "u2": "u16", "u4": "u32", "i8": "i64"}
         for path, *_ in self.each("a.pcd", "ascii.pcd", "compressed.pcd", "dense0.pcd", "a.ply",
-                                  "ascii.ply", "dense1.ply"):  # fmt: skip
+                                  "ascii.ply", "dense1.ply", "scan.pcd", "scan_ascii.pcd",
+                                  "scan.ply"):  # fmt: skip
             _, points = formats.read_pcd(path) if path.suffix == ".pcd" else formats.read_ply(path)
             found = [(n, types[points.dtype[n].str[1:]]) for n in points.dtype.names]
             # PCD has no type of its own for colour: float in binary files, integer in text

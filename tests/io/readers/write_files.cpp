@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Writes the fixture's cloud in every format into the folder given, for readers_test.py.
+#include <glidar/io/cloud_layout.hpp>
+
 #include <io/cloud_fixture.hpp>
 
 #include <cstdio>
@@ -10,6 +12,26 @@
 namespace glidar {
 namespace {
 
+/// The layouts, and the columns they are made of, in every format that takes columns.
+void write_layouts(CloudFixture made, const std::filesystem::path& folder) {
+  fixture::add_scan_columns(made.cloud);
+  std::vector<std::string> layouts = {""};
+  for (const CloudLayout& layout : cloud_layouts()) layouts.push_back(layout.name);
+  for (const std::string& layout : layouts) {
+    const auto write = [&](const char* name, const FileSinkOptions& with) {
+      FileSinkOptions options = with;
+      options.layout = layout;
+      write_cloud(made, folder / ((layout.empty() ? "scan" : layout) + name), options);
+    };
+    for (const char* name : {".pcd", ".ply", ".npz", ".csv"}) write(name, {});
+    write("_ascii.pcd", {.pcd = PcdEncoding::ascii});
+    write("_compressed.pcd", {.pcd = PcdEncoding::binary_compressed});
+    write("_ascii.ply", {.ply_ascii = true});
+    write("_dense.pcd", {.dense = true});
+    write("_dense.npz", {.dense = true});
+  }
+}
+
 void write_all(const CloudFixture& made, const std::filesystem::path& folder) {
   FileSinkOptions ascii;
   ascii.pcd = PcdEncoding::ascii;
@@ -17,6 +39,7 @@ void write_all(const CloudFixture& made, const std::filesystem::path& folder) {
   FileSinkOptions compressed;
   compressed.pcd = PcdEncoding::binary_compressed;
   for (const FileFormat& format : file_formats()) write_cloud(made, folder / ("a" + format.suffix));
+  write_layouts(made, folder);
   write_cloud(made, folder / "ascii.pcd", ascii);
   write_cloud(made, folder / "ascii.ply", ascii);
   write_cloud(made, folder / "compressed.pcd", compressed);
