@@ -16,9 +16,9 @@
 namespace glidar {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 /// Points with these numbers in a column; of the others those of the fixture.
 CloudFixture points_with(const char* column, const auto& values) {
