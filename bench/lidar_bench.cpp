@@ -38,10 +38,16 @@ struct Stage {
   Sensor noisy = sensor;
   Beams beams = make_beams(sensor);
   Motion motion = standing_still(scene, Pose::Identity());
+  Motion moving = motion;
 
   Stage() {
     noisy.noise = {RangeGaussian{.sigma_m = 0.01}, Dropout{.probability = 0.01},
                    RangeQuantum{.step_m = 0.002}};
+    std::vector<TimedPose> poses;
+    for (int k = 0; k < 2000; ++k) {  // 200 poses a second
+      poses.push_back({.t_ns = k * 5'000'000, .position_m = {1e-4 * k, 0.0, 0.0}});
+    }
+    moving.world_from_sensor = TimedPoses(poses);
   }
 };
 
@@ -66,11 +72,11 @@ void register_cast(const Stage& stage, unsigned threads, const std::string& name
   })->UseRealTime();
 }
 
-void register_simulation(const Stage& stage, const Sensor& sensor, unsigned threads,
-                         const std::string& name) {
-  benchmark::RegisterBenchmark(name.c_str(), [&stage, &sensor, threads](benchmark::State& state) {
+void register_simulation(const Stage& stage, const Sensor& sensor, const Motion& motion,
+                         unsigned threads, const std::string& name) {
+  benchmark::RegisterBenchmark(name.c_str(), [&, threads](benchmark::State& state) {
     const auto renderer = make_renderer(stage.scene, {.threads = threads});
-    const Setup setup{stage.scene, sensor, stage.beams, stage.motion, *renderer};
+    const Setup setup{stage.scene, sensor, stage.beams, motion, *renderer};
     Frame frame;
     for (auto _ : state) simulate(setup, {}, frame);
     count_rays(stage, state);
@@ -86,9 +92,12 @@ int main(int argc, char** argv) {
   for (const unsigned threads : {1U, 2U}) {
     const std::string at = std::to_string(threads) + " threads ";
     glidar::bench::register_cast(stage, threads, at + "cast");
-    glidar::bench::register_simulation(stage, stage.sensor, threads, at + "simulate");
-    glidar::bench::register_simulation(stage, stage.noisy, threads, at + "with noise");
+    glidar::bench::register_simulation(stage, stage.sensor, stage.motion, threads, at + "simulate");
+    glidar::bench::register_simulation(stage, stage.noisy, stage.motion, threads,
+                                       at + "with noise");
+    glidar::bench::register_simulation(stage, stage.sensor, stage.moving, threads, at + "moving");
     ratios.push_back({at + "simulate / cast", at + "cast", at + "simulate", 0.6});
+    ratios.push_back({at + "moving along timed poses / cast", at + "cast", at + "moving", 0.3});
     ratios.push_back({at + "with noise / cast", at + "cast", at + "with noise", 0.6});
   }
   return glidar::bench::run(argc, argv, ratios);

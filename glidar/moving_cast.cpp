@@ -3,8 +3,10 @@
 #include <glidar/moving_cast.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 
 namespace glidar {
 namespace {
@@ -49,10 +51,10 @@ struct Body {
   Sphere sphere = {};
 };
 
-/// The sensor at time t as the resting body sees it, in the frame of the sensor at the start:
-/// S0^-1 * B0 * B(t)^-1 * S(t). Differences of positions come first, so that a world far from its
-/// zero loses nothing.
-Pose start_from_sensor(const Body& body, const Pose& s0, const Pose& s, std::int64_t t_ns) {
+/// The sensor at a time as the resting body sees it, in the frame of the sensor at the start:
+/// S0^-1 * B0 * B^-1 * S, B and S being their poses at that time. Differences of positions come
+/// first, so that a world far from its zero loses nothing.
+Pose start_from_sensor(const Body& body, const Pose& s0, const Pose& b, const Pose& s) {
   Pose pose = Pose::Identity();
   const Eigen::Matrix3d back = s0.linear().transpose();
   if (body.world_from_body == nullptr) {
@@ -61,7 +63,6 @@ Pose start_from_sensor(const Body& body, const Pose& s0, const Pose& s, std::int
     return pose;
   }
   const Pose& b0 = body.at_start;
-  const Pose b = pose_at(*body.world_from_body, t_ns);
   const Eigen::Matrix3d held = b0.linear() * b.linear().transpose();
   pose.linear() = back * held * s.linear();
   pose.translation() =
@@ -69,15 +70,36 @@ Pose start_from_sensor(const Body& body, const Pose& s0, const Pose& s, std::int
   return pose;
 }
 
-/// Expresses beams [begin, end) in the frame in which a body rests; those that cannot meet it get
-/// no direction.
+/// Calls work(beam, world_from_sensor, world_from_body) for beams of a run, each at its own time.
+/// Of what stands still the body's pose is left as it is.
+template <class Work>
+void at_their_times(const Trajectory& sensor, const Body& body, std::int64_t stamp_ns,
+                    const Beams& beams, BeamRange range, const Work& work) {
+  constexpr std::size_t kAtOnce = 128;
+  std::array<std::int64_t, kAtOnce> t_ns;
+  std::array<Pose, kAtOnce> sensors;
+  std::array<Pose, kAtOnce> bodies;
+  for (std::size_t first = range.begin; first < range.end; first += kAtOnce) {
+    const std::size_t count = std::min(kAtOnce, range.end - first);
+    for (std::size_t k = 0; k < count; ++k) {
+      t_ns[k] = stamp_ns + (beams.times_ns.empty() ? 0 : beams.times_ns[first + k]);
+    }
+    const std::span<const std::int64_t> times(t_ns.data(), count);
+    poses_at(sensor, times, {sensors.data(), count});
+    if (body.world_from_body != nullptr) {
+      poses_at(*body.world_from_body, times, {bodies.data(), count});
+    }
+    for (std::size_t k = 0; k < count; ++k) work(first + k, sensors[k], bodies[k]);
+  }
+}
+
+/// Expresses a run of beams in the frame in which a body rests; those that cannot meet it get no
+/// direction.
 void move_beams(const CastRequest& request, const Motion& motion, const Body& body,
                 std::int64_t stamp_ns, BeamRange range, Scratch& memory) {
   const Beams& beams = request.beams;
-  for (std::size_t i = range.begin; i < range.end; ++i) {
-    const std::int64_t t_ns = stamp_ns + (beams.times_ns.empty() ? 0 : beams.times_ns[i]);
-    const Pose sensor = pose_at(motion.world_from_sensor, t_ns);
-    const Pose pose = start_from_sensor(body, request.world_from_sensor, sensor, t_ns);
+  const auto move = [&](std::size_t i, const Pose& sensor, const Pose& of_body) {
+    const Pose pose = start_from_sensor(body, request.world_from_sensor, of_body, sensor);
     memory.start_from_sensor[i] = pose;
     Eigen::Vector3d& direction = memory.moved.directions[i];
     Eigen::Vector3d& origin = memory.moved.origins_m[i];
@@ -87,7 +109,8 @@ void move_beams(const CastRequest& request, const Motion& motion, const Body& bo
     if (!may_meet(body.sphere, origin, direction)) {
       direction.setConstant(std::numeric_limits<double>::quiet_NaN());
     }
-  }
+  };
+  at_their_times(motion.world_from_sensor, body, stamp_ns, beams, range, move);
 }
 
 /// Puts what depends on the sensor's frame into the one of the beam's own time.
@@ -138,8 +161,23 @@ struct MovingCast {
   }
 };
 
+/// The progress of cast `number` of so many, as part of the whole.
+Progress progress_of(const Progress& whole, std::size_t number, std::size_t all) {
+  if (!whole) return {};
+  return [&whole, number, all](double fraction) {
+    whole((static_cast<double>(number) + fraction) / static_cast<double>(all));
+  };
+}
+
+/// Which of the casts at bodies this is.
+struct Turn {
+  std::size_t number = 0;
+  std::size_t all = 1;
+};
+
 /// Casts at what of memory.present belongs to the body. The first fills the hits.
-void cast_body(const MovingCast& job, const Body& body, bool is_first) {
+void cast_body(const MovingCast& job, const Body& body, const Turn& turn) {
+  const bool is_first = turn.number == 0;
   Scratch& memory = job.memory;
   const CastRequest& request = job.request;
   Hits& hits = is_first ? job.hits : memory.body_hits;
@@ -151,7 +189,8 @@ void cast_body(const MovingCast& job, const Body& body, bool is_first) {
                            .world_from_instance = request.world_from_instance,
                            .fields = request.fields,
                            .cull_back_faces = request.cull_back_faces,
-                           .present = memory.present},
+                           .present = memory.present,
+                           .progress = progress_of(request.progress, turn.number, turn.all)},
                           hits);
   job.in_runs([&](BeamRange range) {
     turn_back(request, memory, range, hits);
@@ -168,17 +207,20 @@ void cast_bodies(const MovingCast& job) {
   for (std::size_t i = 0; i < memory.present.size(); ++i) {
     memory.present[i] = static_cast<std::uint8_t>(stands(trajectories[i]));
   }
-  cast_body(job, {}, true);
+  const auto standing = std::count_if(trajectories.begin(), trajectories.end(), stands);
+  Turn turn{.all = 1 + memory.present.size() - static_cast<std::size_t>(standing)};
+  cast_body(job, {}, turn);
   for (std::uint32_t i = 0; i < memory.present.size(); ++i) {
     if (stands(trajectories[i])) continue;
     memory.present.assign(scene.instances.size(), 0);
     memory.present[i] = 1;
+    ++turn.number;
     const Pose& at_start = job.request.world_from_instance[i];
     cast_body(job,
               {.world_from_body = &trajectories[i],
                .at_start = at_start,
                .sphere = sphere_around(scene, i, at_start, job.request.world_from_sensor)},
-              false);
+              turn);
   }
 }
 
@@ -216,9 +258,8 @@ void deskew(const World& world, const Beams& nominal, const Beams& aimed,
   deskewed.origins_m.resize(nominal.size());
   deskewed.start_from_sensor.resize(nominal.size());
   const Pose at_start = pose_at(trajectory, world.stamp_ns);
-  const auto place = [&](std::size_t i) {
-    const Pose sensor = pose_at(trajectory, world.stamp_ns + nominal.times_ns[i]);
-    const Pose pose = start_from_sensor({}, at_start, sensor, 0);
+  const auto place = [&](std::size_t i, const Pose& sensor, const Pose& /*body*/) {
+    const Pose pose = start_from_sensor({}, at_start, {}, sensor);
     deskewed.directions[i] = (pose.linear() * nominal.directions[i]).normalized();
     if (!is_nominal)
       deskewed.true_directions[i] = (pose.linear() * aimed.directions[i]).normalized();
@@ -226,10 +267,10 @@ void deskew(const World& world, const Beams& nominal, const Beams& aimed,
         aimed.origins_m.empty() ? Eigen::Vector3d(pose.translation()) : pose * aimed.origins_m[i];
     deskewed.start_from_sensor[i] = Eigen::Quaterniond(pose.linear()).cast<float>();
   };
-  world.renderer.workers().for_ranges(nominal.size(), kBeamsPerTask,
-                                      [&](std::size_t begin, std::size_t end) {
-                                        for (std::size_t i = begin; i < end; ++i) place(i);
-                                      });
+  world.renderer.workers().for_ranges(
+      nominal.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
+        at_their_times(trajectory, {}, world.stamp_ns, nominal, {begin, end}, place);
+      });
 }
 
 }  // namespace glidar

@@ -88,11 +88,6 @@ def lost(step):
     return lambda stage, z: float(np.isnan(stage.wall(step, z)["range"]).mean())
 
 
-def undetected(stage, signal):
-    step = "{type: detection, threshold: 0.4, sigma: 0.15}"
-    return float(np.isnan(stage.wall(step, 1.0, rho=signal)["range"]).mean())
-
-
 def quantum_mm(stage, true_mm):
     cloud = stage.wall("{type: range_quantum, step_m: 0.002}", 1.0 + 1e-3 * true_mm,
                        optics="{width: 1, height: 1, fov_deg: 0.001}")
@@ -249,8 +244,6 @@ CASES = [
     Case("dropout", "share lost", "range, m", DEPTHS_M,
          lost("{type: dropout, probability: 0.05, by_range_m: [[1, 0], [4, 0.6]]}"),
          lambda z: 1 - 0.95 * (1 - 0.6 * min(max((z - 1) / 3, 0), 1))),
-    Case("detection", "share lost", "intensity", SIGNALS, undetected,
-         lambda i: NormalDist().cdf((0.4 - i) / 0.15)),
     Case("crosstalk", "share of foreign ranges below", "near to wall",
          [0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1], crosstalk_share, lambda x: x),
     Case("false_echoes, 5 MHz", "share with an echo before", "range, m", [5, 15, 25, 40, 55, 70, 85, 99],

@@ -94,18 +94,26 @@ inline double left_over(double apart_turns, double whole, double to_finest) {
   return error - std::floor(error + 0.5);
 }
 
-/// Tries all whole numbers of finest waves on the phases of kOthers other frequencies.
+/// Mean square of what is left of the phases of kOthers frequencies after so many finest waves.
+template <std::size_t kOthers>
+[[gnu::always_inline]] inline double misfit_of(const Waves& waves, const WavePhases& phases,
+                                               std::size_t i, double whole) {
+  double misfit = 0.0;
+#pragma GCC unroll 8
+  for (std::size_t k = 1; k <= kOthers; ++k) {
+    const double error = left_over(phases.turns[k][i], whole, waves.to_finest[k]);
+    misfit += waves.weight[k] * error * error;
+  }
+  return misfit;
+}
+
+/// Tries all whole numbers of finest waves.
 template <std::size_t kOthers>
 [[gnu::always_inline]] inline void try_all(const Waves& waves, const WavePhases& phases,
                                            Found& best) {
   for (double whole = 0.0; whole < waves.number; whole += 1.0) {
     for (std::size_t i = 0; i < kDrawBatch; ++i) {
-      double misfit = 0.0;
-#pragma GCC unroll 8
-      for (std::size_t k = 1; k <= kOthers; ++k) {
-        const double error = left_over(phases.turns[k][i], whole, waves.to_finest[k]);
-        misfit += waves.weight[k] * error * error;
-      }
+      const double misfit = misfit_of<kOthers>(waves, phases, i, whole);
       const bool is_better = misfit < best.misfit[i];
       best.misfit[i] = is_better ? misfit : best.misfit[i];
       best.whole[i] = is_better ? whole : best.whole[i];
@@ -177,8 +185,8 @@ void unwrap(const Waves& waves, WavePhases& phases, Found& found, Batch<double>&
   for (std::size_t k = 1; k < waves.count; ++k) {
     compare(waves.to_finest[k], phases.turns[0], phases.turns[k]);
   }
-  for (std::size_t k = std::max<std::size_t>(waves.count, 3); k < kMostFrequencies; ++k) {
-    if (waves.count > 3) phases.turns[k].fill(0.0);
+  for (std::size_t k = waves.count; k < kMostFrequencies; ++k) {
+    if (waves.count > 3) phases.turns[k].fill(0.0);  // all of them are searched
   }
   found.whole.fill(0.0);
   found.misfit.fill(waves.count > 1 ? 1.0 : 0.0);  // worse than any, which is at most 1/4

@@ -44,7 +44,7 @@ class FullDisk {
 };
 
 TEST(AtomicFile, AppearsOnlyWhenCommitted) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   AtomicFile file(folder / "a.txt");
   file.write("whole");
   file.finish();
@@ -55,7 +55,7 @@ TEST(AtomicFile, AppearsOnlyWhenCommitted) {
 }
 
 TEST(AtomicFile, LeavesTheOldFileWhenNotCommitted) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   {
     AtomicFile file(folder / "a.txt");
     file.write("old");
@@ -70,7 +70,7 @@ TEST(AtomicFile, LeavesTheOldFileWhenNotCommitted) {
 }
 
 TEST(AtomicFile, KeepsTheOrderOfSmallAndLargeWrites) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   const std::string large(1'000'000, 'b');
   AtomicFile file(folder / "a.txt");
   file.write("a");
@@ -86,7 +86,7 @@ TEST(AtomicFile, KeepsTheOrderOfSmallAndLargeWrites) {
 }
 
 TEST(AtomicFile, TellsAFullDiskAndLeavesNothing) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   const FullDisk full(4096);
   const std::string text = error_text([&] {
     AtomicFile file(folder / "a.txt");
@@ -100,7 +100,7 @@ TEST(AtomicFile, TellsAFullDiskAndLeavesNothing) {
 }
 
 TEST(AtomicFile, TellsAMissingOrUnwritableFolder) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   EXPECT_THAT(error_text([&] { AtomicFile file(folder / "none/a.txt"); }),
               HasSubstr("No such file or directory; make the folder first"));
   EXPECT_THAT(error_text([&] { AtomicFile file("/proc/a.txt"); }),
@@ -109,7 +109,7 @@ TEST(AtomicFile, TellsAMissingOrUnwritableFolder) {
 }
 
 TEST(AtomicFile, ObeysTheUsersMask) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   const mode_t before = ::umask(0027);
   {
     AtomicFile file(folder / "a.txt");
@@ -120,7 +120,7 @@ TEST(AtomicFile, ObeysTheUsersMask) {
 }
 
 TEST(AtomicFile, TwoWritersOfOneNameLeaveOneWholeFile) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   const auto write_often = [&](char letter) {
     for (int i = 0; i < 50; ++i) {
       AtomicFile file(folder / "a.txt");
@@ -137,7 +137,7 @@ TEST(AtomicFile, TwoWritersOfOneNameLeaveOneWholeFile) {
 }
 
 TEST(AtomicFile, RemovesUnfinishedFilesForASignalHandler) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   AtomicFile done(folder / "done.txt");
   done.commit();
   AtomicFile first(folder / "first.txt");
@@ -149,7 +149,7 @@ TEST(AtomicFile, RemovesUnfinishedFilesForASignalHandler) {
 }
 
 TEST(AtomicFile, ListsMoreFilesOneAfterTheOtherThanItHasPlacesFor) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   for (int i = 0; i < 100; ++i) AtomicFile(folder / "a.txt").commit();
   AtomicFile file(folder / "b.txt");
   remove_unfinished_files();

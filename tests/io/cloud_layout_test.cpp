@@ -16,9 +16,9 @@
 namespace glidar {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 
 /// Points with these numbers in a column; of the others those of the fixture.
 CloudFixture points_with(const char* column, const auto& values) {
@@ -106,7 +106,7 @@ TEST(CloudLayout, AnUnknownNameTellsAllAndTheNearest) {
               AllOf(HasSubstr("'velodine' is not known"),
                     HasSubstr("minimal velodyne ouster livox autoware"),
                     HasSubstr("did you mean 'velodyne'?")));
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   const CloudFixture made = make_fixture();
   EXPECT_THAT(
       error_text([&] { make_file_sink(folder / "a.pcd", {.layout = "x"}, made.context()); }),
@@ -114,7 +114,7 @@ TEST(CloudLayout, AnUnknownNameTellsAllAndTheNearest) {
 }
 
 TEST(CloudLayout, AMissingColumnIsToldWithAllThatAreNeeded) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   const CloudFixture made = make_fixture();
   EXPECT_THAT(error_text([&] { write_cloud(made, folder / "a.pcd", {.layout = "velodyne"}); }),
               AllOf(HasSubstr("velodyne"), HasSubstr("no column time"),
@@ -123,7 +123,7 @@ TEST(CloudLayout, AMissingColumnIsToldWithAllThatAreNeeded) {
 }
 
 TEST(CloudLayout, ThePcdHeaderOfLivoxIsThis) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   fixture::add_scan_columns(made.cloud);
   write_cloud(made, folder / "a.pcd", {.layout = "livox"});
@@ -133,7 +133,7 @@ TEST(CloudLayout, ThePcdHeaderOfLivoxIsThis) {
 }
 
 TEST(CloudLayout, TheSidecarTellsTheLayoutAndItsFields) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   fixture::add_scan_columns(made.cloud);
   const auto cloud_told = [&](const char* name) {
@@ -149,7 +149,7 @@ TEST(CloudLayout, TheSidecarTellsTheLayoutAndItsFields) {
 }
 
 TEST(CloudLayout, FarPointsAreToldOf) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   std::get<std::vector<double>>(made.cloud.columns[0].values)[0] = 10000.0004;
   std::string told;

@@ -38,7 +38,7 @@ TEST(FileFormats, AnUnknownSuffixTellsAllAndTheNearest) {
 }
 
 TEST(FileSink, RefusesBadPlacesAtOnce) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   const CloudFixture made = make_fixture();
   const SidecarContext context = made.context();
   const auto make = [&](const std::filesystem::path& path) {
@@ -53,20 +53,20 @@ TEST(FileSink, RefusesBadPlacesAtOnce) {
 }
 
 TEST(FileSink, WritesCloudAndSidecarAndNothingElse) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   write_cloud(make_fixture(), folder / "a.pcd");
   EXPECT_THAT(folder.names(), ElementsAre("a.pcd", "a.pcd.json"));
 }
 
 TEST(FileSink, ImagesAndPosesHaveNoSidecar) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   for (const char* name : {"a.npy", "a.png", "a.depth.png", "a.transform"})
     write_cloud(make_fixture(), folder / name);
   EXPECT_EQ(folder.names().size(), 4U);
 }
 
 TEST(FileSink, TheSidecarCanBeLeftOut) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   FileSinkOptions options;
   options.sidecar = false;
   write_cloud(make_fixture(), folder / "a.ply", options);
@@ -74,7 +74,7 @@ TEST(FileSink, TheSidecarCanBeLeftOut) {
 }
 
 TEST(FileSink, AMissingColumnIsToldAndNothingIsLeft) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   drop_column(made.cloud, "intensity");
   const std::string text = error_text([&] { write_cloud(made, folder / "a.bin"); });
@@ -85,7 +85,7 @@ TEST(FileSink, AMissingColumnIsToldAndNothingIsLeft) {
 }
 
 TEST(FileSink, AColumnOfWrongSizeOrTypeIsTold) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   made.cloud.columns[0].values = std::vector<double>(59, 0.0);
   EXPECT_THAT(error_text([&] { write_cloud(made, folder / "a.pcd"); }),
@@ -96,7 +96,7 @@ TEST(FileSink, AColumnOfWrongSizeOrTypeIsTold) {
 }
 
 TEST(FileSink, AnErrorLeavesTheOldFilesAsTheyWere) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   write_cloud(made, folder / "a.pcd");
   const std::string cloud = file_bytes(folder / "a.pcd");
@@ -110,7 +110,7 @@ TEST(FileSink, AnErrorLeavesTheOldFilesAsTheyWere) {
 }
 
 TEST(FileSink, TheSameCloudGivesTheSameBytesInEveryFormat) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   const CloudFixture made = make_fixture(60, 70);
   const CloudFixture other = make_fixture(31, 17);
   FileSinkOptions options;
@@ -127,7 +127,7 @@ TEST(FileSink, TheSameCloudGivesTheSameBytesInEveryFormat) {
 
 /// What is reported when a cloud whose first coordinate and depth are these is written.
 std::string told_of(const char* name, double x_m, double depth_m) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   CloudFixture made = make_fixture();
   std::get<std::vector<double>>(made.cloud.columns[0].values)[0] = x_m;
   std::get<std::vector<double>>(made.cloud.columns[2].values)[0] = depth_m;
@@ -161,7 +161,7 @@ TEST(FileSink, NothingIsToldWherePointsStayWithinATenthOfAMillimetre) {
 }
 
 TEST(FileSink, TwoSinksOfOnePathLeaveAWholeFile) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   const CloudFixture small = make_fixture(2, 2);
   const CloudFixture large = make_fixture(200, 200);
   const auto write_often = [&](const CloudFixture& made) {
@@ -176,7 +176,7 @@ TEST(FileSink, TwoSinksOfOnePathLeaveAWholeFile) {
 }
 
 TEST(FileSink, PathsMayHoldSpacesAndAnyLetters) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   const std::string name = "größe mit leer — 点群 'q\".pcd";
   write_cloud(make_fixture(), folder / name);
   EXPECT_FALSE(file_bytes(folder / name).empty());
@@ -185,7 +185,7 @@ TEST(FileSink, PathsMayHoldSpacesAndAnyLetters) {
 }
 
 TEST(FileSink, ABareFileNameGoesToTheCurrentFolder) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   const std::filesystem::path before = std::filesystem::current_path();
   std::filesystem::current_path(folder.path());
   write_cloud(make_fixture(), "a.csv");
@@ -194,7 +194,7 @@ TEST(FileSink, ABareFileNameGoesToTheCurrentFolder) {
 }
 
 TEST(FileSink, NoHitAtAllMakesValidDenseFiles) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   CloudFixture made = make_fixture(2, 2);
   for (double& value : std::get<std::vector<double>>(made.cloud.columns[0].values))
     value = std::nan("");

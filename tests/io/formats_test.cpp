@@ -38,7 +38,7 @@ CloudFixture two_points() {
 
 std::string written(const CloudFixture& made, const char* name,
                     const FileSinkOptions& options = {}) {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   write_cloud(made, folder / name, options);
   return file_bytes(folder / name);
 }
@@ -177,7 +177,7 @@ TEST(TransformFile, NeedsAnObject) {
 }
 
 nlohmann::json sidecar_of(const CloudFixture& made, const std::string& name = "a.pcd") {
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   write_cloud(made, folder / name);
   return nlohmann::json::parse(file_bytes(folder / (name + ".json")));
 }
@@ -238,7 +238,7 @@ TEST(Sidecar, TellsNamesAndTypesAsTheFileHasThem) {
 TEST(Sidecar, NeverHoldsAWordThatJsonHasNot) {
   CloudFixture made = make_fixture();
   made.sensor.light.ambient = std::nan("");
-  const ScratchFolder folder;
+  const testing::TestFolder folder;
   write_cloud(made, folder / "a.npz");
   const std::string text = file_bytes(folder / "a.npz.json");
   EXPECT_TRUE(nlohmann::json::accept(text));

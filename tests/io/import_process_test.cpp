@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
-using testing::TempFolder;
+using testing::TestFolder;
 
 /// Puts a shell script in the place of the import program.
 class ImportProcess : public ::testing::Test {
@@ -36,7 +36,7 @@ class ImportProcess : public ::testing::Test {
     return "";
   }
 
-  TempFolder temp_;
+  TestFolder temp_;
 };
 
 TEST_F(ImportProcess, ASignalIsNamed) {
@@ -114,7 +114,7 @@ TEST(ImportLimits, GrowWithTheFile) {
 }
 
 TEST(ImportLimits, ManyAtOnceDoNotMix) {
-  const TempFolder temp;
+  const TestFolder temp;
   std::vector<std::thread> threads;
   std::vector<std::size_t> counts(8);
   for (std::size_t i = 0; i < counts.size(); ++i) {

@@ -18,7 +18,7 @@
 namespace glidar {
 namespace {
 
-using testing::TempFolder;
+using testing::TestFolder;
 namespace fs = std::filesystem;
 
 /// A model with a material file and one texture found, one missing; and a cache folder.
@@ -38,14 +38,14 @@ class ModelCache : public ::testing::Test {
         std::distance(fs::directory_iterator(options_.cache_folder), {}));
   }
 
-  TempFolder temp_;
-  TempFolder cache_;
+  TestFolder temp_;
+  TestFolder cache_;
   ModelOptions options_;
   fs::path file_;
 };
 
 std::string bytes(const Model& model) {
-  const TempFolder temp;
+  const TestFolder temp;
   const fs::path file = temp.write("blob", "");
   std::FILE* opened = std::fopen(file.c_str(), "wb");
   ImportedModel imported;
@@ -187,7 +187,7 @@ TEST_F(ModelCache, AnUpgradedImporterLibraryMakesItAnew) {
       [](const std::string& path) { return path.find("libassimp") != std::string::npos; });
   ASSERT_NE(assimp, index.libraries.end());
 
-  const TempFolder libraries;
+  const TestFolder libraries;
   const fs::path copy = libraries.path() / fs::path(*assimp).filename();
   fs::copy_file(*assimp, copy);
   const Variable path("LD_LIBRARY_PATH", libraries.path().string());
@@ -221,7 +221,7 @@ TEST_F(ModelCache, TwoAtOnceBothGetTheModel) {
 
 TEST_F(ModelCache, TheHashIsThatOfTheContentNotOfThePlace) {
   const std::string here = load().hash;
-  const TempFolder other;
+  const TestFolder other;
   fs::copy(temp_.path(), other.path(), fs::copy_options::recursive);
   EXPECT_EQ(testing::load(other.path() / "a.obj", options_).hash, here);
 }

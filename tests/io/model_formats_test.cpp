@@ -19,7 +19,7 @@ using testing::gltf;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::load;
-using testing::TempFolder;
+using testing::TestFolder;
 namespace fs = std::filesystem;
 
 /// One triangle (1 2 3) (4 2 3) (1 7 9) with this axis up.
@@ -41,7 +41,7 @@ std::string collada(const std::string& up_axis) {
 }
 
 TEST(ModelFormats, ColladaKeepsTheAxesOfTheFileWhicheverIsUp) {
-  const TempFolder temp;
+  const TestFolder temp;
   for (const char* up : {"X_UP", "Y_UP", "Z_UP"}) {
     const Mesh mesh = load(temp.write("a.dae", collada(up))).mesh;
     const auto corner = [&](std::size_t i) -> Eigen::Vector3d {
@@ -62,7 +62,7 @@ TEST(ModelFormats, AZUpColladaBarrierStandsOnTheGround) {
 }
 
 std::vector<std::string> notes_of_mtl(const std::string& material) {
-  const TempFolder temp;
+  const TestFolder temp;
   temp.write("a.mtl", "newmtl paint\n" + material + "\n");
   temp.write("mask.ppm", testing::ppm(1, 1, "abc"));
   return load(temp.write("a.obj", testing::quad_obj("a.mtl"))).notes;
@@ -76,7 +76,7 @@ TEST(ModelFormats, UniformTranslucencyIsToldToBeSolid) {
 }
 
 TEST(ModelFormats, GltfIsToldToBeSolidOnlyWhereItBlends) {
-  const TempFolder temp;
+  const TestFolder temp;
   const auto notes = [&](const std::string& mode) {
     const std::string material =
         R"({"alphaMode":")" + mode + R"(","pbrMetallicRoughness":{"baseColorFactor":[1,1,1,0.3]}})";
@@ -88,7 +88,7 @@ TEST(ModelFormats, GltfIsToldToBeSolidOnlyWhereItBlends) {
 }
 
 TEST(ModelFormats, APlyCutOffInItsHeaderIsRefusedBeforeTheTimeRunsOut) {
-  const TempFolder temp;
+  const TestFolder temp;
   for (const char* text :
        {"ply\nformat ascii 1.0", "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n",
         "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x"}) {
@@ -102,7 +102,7 @@ TEST(ModelFormats, APlyCutOffInItsHeaderIsRefusedBeforeTheTimeRunsOut) {
 }
 
 TEST(ModelFormats, ATextureOfASiblingFolderIsMissingWithTheRemedy) {
-  const TempFolder temp;
+  const TestFolder temp;
   temp.write("pictures/paint.ppm", testing::ppm(1, 1, "abc"));
   temp.write("model/a.mtl", "newmtl paint\nmap_Kd ../pictures/paint.ppm\n");
   const Model model = load(temp.write("model/a.obj", testing::quad_obj("a.mtl")));
@@ -117,7 +117,7 @@ TEST(ModelFormats, ATextureOfASiblingFolderIsMissingWithTheRemedy) {
 // KHR_texture_transform, "Example JSON": offset (0, 1), a quarter turn and half size show "only the
 // lower left quadrant of the source image, rotated clockwise 90 degrees".
 TEST(ModelFormats, TheTextureTransformExampleOfTheGltfExtensionShowsTheLowerLeftQuadrant) {
-  const TempFolder temp;
+  const TestFolder temp;
   temp.write("t.ppm", testing::ppm(1, 1, "abc"));
   const std::string material =
       R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":
@@ -139,7 +139,7 @@ TEST(ModelFormats, TheTextureTransformExampleOfTheGltfExtensionShowsTheLowerLeft
 }
 
 TEST(ModelFormats, EveryFileThatAModelWasReadFromIsTold) {
-  const TempFolder temp;
+  const TestFolder temp;
   ModelOptions options;
   options.cache_folder = temp.path() / "cache";
   temp.write("a.mtl", "newmtl paint\nmap_Kd paint.ppm\n");

@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 using testing::load;
 using testing::load_error;
 using ::testing::Not;
-using testing::TempFolder;
+using testing::TestFolder;
 using testing::without_cache;
 namespace fs = std::filesystem;
 
@@ -32,7 +32,7 @@ Eigen::Vector3d front(const Mesh& mesh, std::size_t t) {
 }
 
 TEST(LoadModel, ReadsPositionsAndOrderAsTheyStand) {
-  const TempFolder temp;
+  const TestFolder temp;
   const Model model = load(temp.write("a.obj", kTriangle));
   ASSERT_EQ(model.mesh.triangles.size(), 1U);
   EXPECT_EQ(place(model.mesh, 0, 0), Eigen::Vector3d(0, 0, 0));
@@ -47,7 +47,7 @@ TEST(LoadModel, ReadsPositionsAndOrderAsTheyStand) {
 }
 
 TEST(LoadModel, NothingOfCoordinatesFarFromZeroIsLost) {
-  const TempFolder temp;
+  const TestFolder temp;
   const Model model = load(temp.write(
       "far.obj", "v 1000000.125 7 -3\nv 1000001.25 7 -3\nv 1000000.125 8.5 -3\nf 1 2 3\n"));
   EXPECT_EQ(place(model.mesh, 0, 0), Eigen::Vector3d(1000000.125, 7, -3));
@@ -56,7 +56,7 @@ TEST(LoadModel, NothingOfCoordinatesFarFromZeroIsLost) {
 }
 
 TEST(LoadModel, AnAxisTurnedUpIsAnExactExchange) {
-  const TempFolder temp;
+  const TestFolder temp;
   const fs::path file = temp.write("a.obj", "v 1 2 3\nv 4 2 3\nv 1 7 9\nf 1 2 3\n");
   ModelOptions options = without_cache();
   const Eigen::Vector3d normal = front(load(file).mesh, 0);
@@ -73,7 +73,7 @@ TEST(LoadModel, AnAxisTurnedUpIsAnExactExchange) {
 }
 
 TEST(LoadModel, UnitsScale) {
-  const TempFolder temp;
+  const TestFolder temp;
   ModelOptions options = without_cache();
   options.metres_per_unit = 0.001;
   const Model model =
@@ -107,7 +107,7 @@ TEST(LoadModel, HugeNumbersInErrorsAreShort) {
 }
 
 TEST(LoadModel, NodesAreAppliedAndMirrorsKeepTheirFronts) {
-  const TempFolder temp;
+  const TestFolder temp;
   const Model model = load(temp.write(
       "a.gltf",
       gltf(
@@ -123,7 +123,7 @@ TEST(LoadModel, NodesAreAppliedAndMirrorsKeepTheirFronts) {
 }
 
 TEST(LoadModel, NotANumberIsLeftOutAndTold) {
-  const TempFolder temp;
+  const TestFolder temp;
   const Model model =
       load(temp.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 1 1\nf 1 2 4\nf 1 2 3\n"));
   EXPECT_EQ(model.mesh.triangles.size(), 1U);
@@ -131,7 +131,7 @@ TEST(LoadModel, NotANumberIsLeftOutAndTold) {
 }
 
 TEST(LoadModel, MaterialsTexturesAndTheirOptions) {
-  const TempFolder temp;
+  const TestFolder temp;
   temp.write("a.mtl",
              "newmtl paint\nKd 0.5 0.25 1\nKs 1 1 1\nNs 500\nillum 2\n"
              "map_Kd -s 2 3 1 -o 0.5 0.25 paint.ppm\nmap_Ks gone.ppm\n");
@@ -159,7 +159,7 @@ TEST(LoadModel, MaterialsTexturesAndTheirOptions) {
 }
 
 TEST(LoadModel, AnOpacityTextureCutsOut) {
-  const TempFolder temp;
+  const TestFolder temp;
   temp.write("a.mtl", "newmtl paint\nmap_d mask.tga\n");
   temp.write("mask.tga", testing::tga(2, 2, std::string("\x10\x20\x30\x40", 4)));
   const Model model = load(temp.write("a.obj", testing::quad_obj("a.mtl")));
@@ -170,7 +170,7 @@ TEST(LoadModel, AnOpacityTextureCutsOut) {
 }
 
 TEST(LoadModel, AnAlphaThatSaysNothingIsDropped) {
-  const TempFolder temp;
+  const TestFolder temp;
   temp.write("a.mtl", "newmtl paint\nmap_Kd opaque.tga\n");
   temp.write("opaque.tga", testing::tga(2, 2, std::string("\x10\x20\x30\xff", 4)));
   const Model model = load(temp.write("a.obj", testing::quad_obj("a.mtl")));
@@ -180,7 +180,7 @@ TEST(LoadModel, AnAlphaThatSaysNothingIsDropped) {
 }
 
 TEST(LoadModel, ABumpMapBecomesANormalMap) {
-  const TempFolder temp;
+  const TestFolder temp;
   temp.write("a.mtl", "newmtl paint\nmap_bump -bm 2 bump.pgm\n");
   std::string ramp = "P5 8 8 255\n";
   for (int i = 0; i < 64; ++i) ramp += static_cast<char>(8 * (i % 8));
@@ -196,7 +196,7 @@ TEST(LoadModel, ABumpMapBecomesANormalMap) {
 }
 
 TEST(LoadModel, ANormalMapUnderABumpKeyIsTakenAsItIs) {
-  const TempFolder temp;
+  const TestFolder temp;
   temp.write("a.mtl", "newmtl paint\nmap_bump n.ppm\n");
   temp.write("n.ppm", testing::ppm(2, 2, "\x80\x80\xff"));
   const Model model = load(temp.write("a.obj", testing::quad_obj("a.mtl")));
@@ -206,7 +206,7 @@ TEST(LoadModel, ANormalMapUnderABumpKeyIsTakenAsItIs) {
 }
 
 TEST(LoadModel, GltfMaterialsFollowTheWrittenRule) {
-  const TempFolder temp;
+  const TestFolder temp;
   const Model model = load(temp.write(
       "a.gltf",
       gltf(
@@ -232,7 +232,7 @@ TEST(LoadModel, GltfMaterialsFollowTheWrittenRule) {
 }
 
 TEST(LoadModel, TextureTransformsOfGltf) {
-  const TempFolder temp;
+  const TestFolder temp;
   temp.write("t.ppm", testing::ppm(1, 1, "abc"));
   const auto use_for = [&temp](const std::string& transform) {
     return load(
@@ -269,7 +269,7 @@ TEST(LoadModel, TextureTransformsOfGltf) {
 }
 
 TEST(LoadModel, TexturesInsideTheFileAreRead) {
-  const TempFolder temp;
+  const TestFolder temp;
   // A PPM of one pixel (1 2 3), as a data URI.
   const Model model = load(temp.write(
       "a.gltf",
@@ -281,14 +281,14 @@ TEST(LoadModel, TexturesInsideTheFileAreRead) {
 }
 
 TEST(LoadModel, UvsRunUpwards) {
-  const TempFolder temp;
+  const TestFolder temp;
   const Model model = load(temp.write("a.gltf", gltf(R"([{"mesh":0}])")));
   // In the file v runs down: the corner at (0, 0) is the top left of the image.
   EXPECT_EQ(model.mesh.uvs[0].at(model.mesh.triangles[0][0]), Eigen::Vector2f(0.0F, 1.0F));
 }
 
 TEST(LoadModel, FilesThatAreNoModelsSaySo) {
-  const TempFolder temp;
+  const TestFolder temp;
   EXPECT_THAT(load_error((temp.path() / "asteriod.obj").string()), HasSubstr("cannot be opened"));
   temp.write("asteroid.obj", kTriangle);
   EXPECT_THAT(load_error((temp.path() / "asteriod.obj").string()),
@@ -304,7 +304,7 @@ TEST(LoadModel, FilesThatAreNoModelsSaySo) {
 
 TEST(LoadModel, LimitsAreKept) {
   GLIDAR_SKIP_SANITIZED();
-  const TempFolder temp;
+  const TestFolder temp;
   const std::string file = temp.write("a.obj", kTriangle).string();
   ModelOptions options = without_cache();
   options.time_limit_s = 1e-6;
@@ -318,7 +318,7 @@ TEST(LoadModel, LimitsAreKept) {
 }
 
 TEST(LoadModel, AMissingImportProgramIsAnErrorThatNamesIt) {
-  const TempFolder temp;
+  const TestFolder temp;
   const std::string file = temp.write("a.obj", kTriangle).string();
   ::setenv("GLIDAR_IMPORT_HELPER", "/nowhere/glidar-import", 1);
   const std::string text = load_error(file);
@@ -329,7 +329,7 @@ TEST(LoadModel, AMissingImportProgramIsAnErrorThatNamesIt) {
 }
 
 TEST(LoadModel, MaterialsOutsideTheFolderAreNotOpened) {
-  const TempFolder temp;
+  const TestFolder temp;
   temp.write("secret.mtl", "newmtl paint\nKd 1 0 0\n");
   const Model model = load(temp.write("inner/a.obj", testing::quad_obj("../secret.mtl")));
   EXPECT_THAT(model.notes, ::testing::Contains(HasSubstr("outside the model's folder")));

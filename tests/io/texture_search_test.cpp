@@ -9,7 +9,7 @@
 namespace glidar {
 namespace {
 
-using testing::TempFolder;
+using testing::TestFolder;
 namespace fs = std::filesystem;
 
 struct Spelling {
@@ -21,7 +21,7 @@ struct Spelling {
 class TextureSpelling : public ::testing::TestWithParam<Spelling> {};
 
 TEST_P(TextureSpelling, IsFound) {
-  const TempFolder temp;
+  const TestFolder temp;
   const fs::path file = temp.write(GetParam().file, "x");
   const TextureLookup lookup = find_texture(GetParam().name, {temp.path(), temp.path(), {}});
   EXPECT_EQ(lookup.found, file.string());
@@ -52,14 +52,14 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& tested) { return std::string(tested.param.what); });
 
 TEST(TextureSearch, TheExactCaseWinsOverAnother) {
-  const TempFolder temp;
+  const TestFolder temp;
   temp.write("A.png", "x");
   const fs::path exact = temp.write("textures/a.png", "x");
   EXPECT_EQ(find_texture("a.png", {temp.path(), temp.path(), {}}).found, exact.string());
 }
 
 TEST(TextureSearch, AModelPackageSharesItsMaterials) {
-  const TempFolder temp;
+  const TestFolder temp;
   const fs::path file = temp.write("materials/textures/wood.png", "x");
   const fs::path model = temp.write("meshes/chair.dae", "x");
   const ModelFolder folder = model_folder(model);
@@ -68,7 +68,7 @@ TEST(TextureSearch, AModelPackageSharesItsMaterials) {
 }
 
 TEST(TextureSearch, ModelConfigMarksAPackage) {
-  const TempFolder temp;
+  const TestFolder temp;
   temp.write("model.config", "x");
   const fs::path file = temp.write("textures/wood.png", "x");
   EXPECT_EQ(find_texture("../textures/wood.png", model_folder(temp.write("dae/a.dae", "x"))).found,
@@ -76,7 +76,7 @@ TEST(TextureSearch, ModelConfigMarksAPackage) {
 }
 
 TEST(TextureSearch, NothingOutsideTheRootIsFound) {
-  const TempFolder temp;
+  const TestFolder temp;
   temp.write("secret.png", "x");
   const fs::path model = temp.write("inner/a.obj", "x");
   const TextureLookup lookup = find_texture("../secret.png", model_folder(model));
@@ -85,7 +85,7 @@ TEST(TextureSearch, NothingOutsideTheRootIsFound) {
 }
 
 TEST(TextureSearch, ALinkOutOfTheRootIsRefused) {
-  const TempFolder temp;
+  const TestFolder temp;
   temp.write("secret.png", "x");
   const fs::path model = temp.write("inner/a.obj", "x");
   fs::create_symlink("../secret.png", temp.path() / "inner" / "link.png");
@@ -95,14 +95,14 @@ TEST(TextureSearch, ALinkOutOfTheRootIsRefused) {
 }
 
 TEST(TextureSearch, FoldersAndDevicesAreNoTextures) {
-  const TempFolder temp;
+  const TestFolder temp;
   fs::create_directory(temp.path() / "a.png");
   EXPECT_EQ(find_texture("a.png", {temp.path(), temp.path(), {}}).reason, "not a file");
   EXPECT_EQ(find_texture("/dev/zero", {temp.path(), temp.path(), {}}).found, "");
 }
 
 TEST(TextureSearch, OddNamesAreMissingWithAReason) {
-  const TempFolder temp;
+  const TestFolder temp;
   const ModelFolder folder{temp.path(), temp.path(), {}};
   for (const std::string& name :
        {std::string(), std::string("   "), std::string("http://host/a.png"), std::string(5000, 'a'),

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <glidar/core/error.hpp>
+#include <support/test_folder.hpp>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -13,30 +13,7 @@
 
 namespace glidar {
 
-/// A folder of its own for one test, removed at its end.
-class TestFolder {
- public:
-  TestFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("glidar_yaml_" + std::to_string(getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  TestFolder(const TestFolder&) = delete;
-  TestFolder& operator=(const TestFolder&) = delete;
-  ~TestFolder() { std::filesystem::remove_all(path_); }
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-
-  [[nodiscard]] std::filesystem::path write(const std::string& name,
-                                            const std::string& content) const {
-    std::filesystem::create_directories((path_ / name).parent_path());
-    std::ofstream(path_ / name, std::ios::binary) << content;
-    return path_ / name;
-  }
-
- private:
-  std::filesystem::path path_;
-};
+using testing::TestFolder;
 
 /// What the error of `action` says, without the folder's name; "" when there is none.
 template <class Action>

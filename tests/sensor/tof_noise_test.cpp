@@ -55,6 +55,31 @@ TEST(ContinuousWave, SeveralFrequenciesGiveTheMeanOfLeastVariance) {
   expect_normal(moments(stage.frame.range_m), 11.7, 1.0 / std::sqrt(inverse));
 }
 
+TEST(ContinuousWave, AnyNumberOfFrequenciesFindsTheRangeThatFitsThemAll) {
+  ContinuousWave law = kinect_v2();
+  law.electrons_at_full_scale = 1e12;  // hardly any error
+  const std::vector<std::vector<double>> choices = {
+      {16e6},
+      {80e6, 60e6},
+      {80e6, 16e6, 120e6},
+      {60e6, 50e6, 40e6, 30e6, 20e6},
+      {10e6, 20e6, 30e6, 40e6, 50e6, 60e6, 70e6, 80e6}};
+  for (const auto& frequencies_hz : choices) {
+    law.frequencies_hz = frequencies_hz;
+    const double limit_m = unambiguous_m(frequencies_hz);
+    NoiseStage stage(1, 600, 1.0);
+    std::vector<double> true_m;
+    for (std::size_t i = 0; i < 600; ++i) {
+      true_m.push_back(limit_m * (static_cast<double>(i) + 0.5) / 600.0);
+      stage.frame.range_m[i] = true_m[i];
+    }
+    stage.apply({law});
+    for (std::size_t i = 0; i < 600; ++i) {
+      ASSERT_NEAR(stage.frame.range_m[i], true_m[i], 1e-4) << frequencies_hz.size() << " at " << i;
+    }
+  }
+}
+
 TEST(ContinuousWave, RangesBeyondTheUnambiguousWrapAround) {
   ContinuousWave law = kinect_v2();
   law.electrons_at_full_scale = 1e12;  // hardly any error

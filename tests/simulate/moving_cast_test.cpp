@@ -187,6 +187,24 @@ TEST(MovingCast, LosesNothingFarFromTheWorldsZero) {
   }
 }
 
+TEST(MovingCast, TellsItsProgressOverAllBodiesFromBeginningToEnd) {
+  Stage stage(plane_and_asteroids());
+  for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
+    stage.motion.world_from_instance[i] = ConstantTwist{
+        .pose = stage.scene.instances[i].world_from_object, .angular_rad_s = {1.0, 2.0, -1.5}};
+  }
+  std::vector<double> told;
+  auto setup = stage.setup();
+  setup.progress = [&](double fraction) { told.push_back(fraction); };
+  Frame frame;
+  simulate(setup, kEverything, frame);
+  ASSERT_GE(told.size(), 3U);  // three bodies, each told of at its end at least
+  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
+  EXPECT_GE(told.front(), 0.0);
+  EXPECT_LE(told.front(), 1.0 / 3.0 + 1e-12);
+  EXPECT_DOUBLE_EQ(told.back(), 1.0);
+}
+
 TEST(MovingCast, AllocatesNoSecondTime) {
   Stage stage(plane());
   stage.motion.world_from_sensor =
