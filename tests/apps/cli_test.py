@@ -385,17 +385,6 @@ class Sensors(CliTest):
         self.assertIn("beside the scene", done.stderr)
         self.assertNotIn(" 0 hits", done.stdout)
 
-    def test_a_layout_gives_the_drivers_fields(self):
-        self.succeed("render", "builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "--layout", "velodyne",
-                     "-o", "v.pcd", "-o", "v.csv", "-o", "v.png", "--quiet")
-        head = self.bytes_of("v.pcd").split(b"DATA")[0].decode()
-        self.assertIn("FIELDS x y z intensity ring time\nSIZE 4 4 4 4 2 4\nTYPE F F F F U F\n", head)
-        names, *rows = self.bytes_of("v.csv").decode().splitlines()
-        self.assertEqual(names, "x,y,z,intensity,ring,time")
-        times = [float(row.split(",")[5]) for row in rows]
-        self.assertTrue(0.0 <= min(times) < 1e-4 and 0.0999 < max(times) < 0.1001, (min(times), max(times)))
-        self.assertEqual({int(row.split(",")[4]) for row in rows}, set(range(16)))
-
     def test_columns_and_rate_can_be_chosen(self):
         done = self.succeed("render", "builtin:box", "--eye", "0,0,0", "--sensor", "OS1-32",
                             "--columns-per-turn", "512", "--rate", "20", "-o", "a.pcd")
