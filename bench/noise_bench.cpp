@@ -73,12 +73,13 @@ void register_steps() {
   bench_step("refill and nothing", {});
   bench_step("range_gaussian", {RangeGaussian{.sigma_m = 0.02}});
   bench_step("range_snr", {RangeSnr{.floor_m = 0.01, .k_m = 0.3, .snr_at_full_scale = 250.0}});
+  bench_step("range_pulse", {RangePulse{.pulse_fwhm_s = 5e-9, .sample_s = 1e-9, .noise = 0.01}});
+  bench_step("range_photons", {RangePhotons{.pulse_fwhm_s = 5e-9, .photons_at_full_scale = 1e4}});
   bench_step("range_2015 uniform", {Range2015{.additive_m = 0.01}});
   bench_step("range_quantum", {RangeQuantum{.step_m = 0.002}});
   bench_step("range_bias", {RangeBias{.sigma_m = 0.01}});
   bench_step("range_drift", {RangeDrift{.sigma_m = 0.01, .tau_s = 60.0}});
   bench_step("dropout", {Dropout{.probability = 0.01}});
-  bench_step("detection", {Detection{.threshold = 0.1, .sigma = 0.02}});
   bench_step("crosstalk", {Crosstalk{.probability = 0.01}});
   bench_step("false_echoes", {FalseEchoes{.rate_hz = 1e4, .far_m = 100.0}});
   bench_step("disparity_quantum", {DisparityQuantum{.k_m = 351.3}});
@@ -90,10 +91,15 @@ void register_steps() {
   bench_step("stereo", {Stereo{.focal_px = 674.0, .baseline_m = 0.05, .sigma_px = 0.08}});
   bench_step("continuous_wave", {ContinuousWave{.frequencies_hz = {80e6, 16e6, 120e6},
                                                 .electrons_at_full_scale = 2e4}});
+  bench_step("continuous_wave, mixing", {ContinuousWave{.frequencies_hz = {80e6, 16e6, 120e6},
+                                                        .electrons_at_full_scale = 2e4,
+                                                        .mixing = 0.2}});
   bench_step("intensity_gaussian", {IntensityGaussian{.sigma = 0.01}});
-  bench_step("intensity_scale", {IntensityScale{}});
+  bench_step("intensity_scale unit", {IntensityScale{}});
+  bench_step("intensity_scale vendor",
+             {IntensityScale{.kind = IntensityScale::Kind::vendor, .reference_m = 2.0}});
   bench_step("pointing_jitter", {PointingJitter{.sigma_azimuth_rad = 1e-3}});
-  bench_step("encoder_error", {EncoderError{.step_rad = 1e-4}});
+  bench_step("encoder_error", {EncoderError{.step_rad = 1e-4, .eccentricity_rad = 1e-4}});
   bench_step("five steps of a lidar",
              {RangeBias{.sigma_m = 0.01}, RangeSnr{.k_m = 0.3, .snr_at_full_scale = 250.0},
               Dropout{.probability = 0.01}, RangeQuantum{.step_m = 0.002},

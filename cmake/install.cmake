@@ -31,7 +31,7 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/glidarConfigVersion
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/glidarConfig.cmake
               ${CMAKE_CURRENT_BINARY_DIR}/glidarConfigVersion.cmake DESTINATION ${package_folder})
 
-foreach(folder models sensors)
+foreach(folder materials models sensors)
   if(EXISTS ${PROJECT_SOURCE_DIR}/${folder})
     install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/glidar)
   endif()

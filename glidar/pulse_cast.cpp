@@ -203,22 +203,10 @@ void keep_truth(const Block& block, std::uint32_t source, std::size_t entry) {
   copy_hit(block.frame.scratch.sub_hits, source, block.fields, block.frame.truth, entry);
 }
 
-/// What noise alone makes of a beam without an echo.
-void report_false_alarm(const Block& block, double noise, double place, std::size_t entry) {
-  Frame& frame = block.frame;
-  const double signal = block.light.noise_sigma * noise;
-  if (!(block.light.false_alarm_range_m > 0.0) || signal < 1.0) return;
-  frame.status[entry] = Status::hit;
-  frame.range_m[entry] = place * block.light.false_alarm_range_m;
-  frame.intensity[entry] = static_cast<float>(signal);
-  frame.cause[entry] = Cause::false_alarm;
-}
-
 /// Random numbers of a run of beams.
 struct Draws {
   Draw detection;
   Batch<double> noise{};
-  PairBatch places{};
 };
 
 void draw(const PulseLight& light, const Frame& frame, std::size_t first, Draws& draws) {
@@ -228,9 +216,6 @@ void draw(const PulseLight& light, const Frame& frame, std::size_t first, Draws&
                      .beam = static_cast<std::uint32_t>(first),
                      .purpose = Purpose::detection};
   if (light.noise_sigma > 0.0) draw_normals(draws.detection, draws.noise);
-  Draw places = draws.detection;
-  places.purpose = Purpose::false_alarm;
-  if (light.false_alarm_range_m > 0.0) draw_uniforms(places, draws.places);
 }
 
 void measure_beam(const Block& block, std::size_t beam, const Draws& draws, EchoWork& work) {
@@ -265,8 +250,6 @@ void measure_beam(const Block& block, std::size_t beam, const Draws& draws, Echo
     const bool is_first = r == 0;
     keep_truth(block, is_first ? strongest : kNoHit, entry);
     report_nothing(is_first || !has_beam ? nothing : Status::no_echo, entry, block.frame);
-    if (is_first && nothing == Status::miss)
-      report_false_alarm(block, draws.noise[k], draws.places.first[k], entry);
   }
 }
 

@@ -16,7 +16,7 @@ bool has_echoes(const Sensor& sensor, const Scene& scene);
 /// return: that of the strongest of its paths, or when there is no return, of the strongest that
 /// came back.
 ///
-/// `aimed` are the beams as they really go. Draws with Purpose::detection and false_alarm.
+/// `aimed` are the beams as they really go. Draws with Purpose::detection.
 void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& aimed, Frame& frame);
 
 }  // namespace glidar

@@ -31,10 +31,11 @@ void measure_range(const Limits& limits, const Beams& beams, BeamRange range, Fr
 }
 
 /// Intensity, and what it takes away, of a run of beams from the truth.
-void measure_light(const Setup& setup, BeamRange range, Frame& frame) {
+void measure_light(const Setup& setup, const std::optional<PulseLight>& pulse, BeamRange range,
+                   Frame& frame) {
   const Sensor& sensor = setup.sensor;
-  if (sensor.pulse) {
-    measure_signal(*sensor.pulse, setup.scene, sensor.wavelength_m, range, frame);
+  if (pulse) {
+    measure_signal(*pulse, setup.scene, sensor.wavelength_m, range, frame);
   } else {
     measure_intensity(sensor.light, range, frame);
   }
@@ -53,6 +54,7 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
   Workers& workers = setup.renderer.workers();
   const Beams& beams = aimed_beams(sensor.noise, setup.beams, workers, frame);
 
+  const std::optional<PulseLight> pulse = light_in_weather(sensor);
   HitFields needed = fields;
   needed.shading = true;  // the light needs them
   needed.reflectance = true;
@@ -60,7 +62,7 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
   const World world{setup.renderer, setup.scene, setup.motion, frame.stamp_ns};
   const auto measure = [&](BeamRange range) {
     measure_range(sensor.limits, beams, range, frame);
-    measure_light(setup, range, frame);
+    measure_light(setup, pulse, range, frame);
   };
   if (has_echoes(sensor, setup.scene)) {
     measure_pulses(setup, needed, beams, frame);

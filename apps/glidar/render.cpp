@@ -15,6 +15,7 @@
 #include <apps/glidar/sensor_options.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/scene_file.hpp>
+#include <glidar/io/surfaces.hpp>
 #include <glidar/simulate.hpp>
 
 #include <fmt/format.h>
@@ -55,6 +56,7 @@ struct RenderFlags {
   SensorFlags sensor;
   PoseFlags pose;
   MotionFlags motion;
+  std::string surface;  ///< of the whole model; empty: its own
   OutputFlags output;
   InformationFlags information;
   RendererOptions renderer;
@@ -65,6 +67,22 @@ struct RenderFlags {
 
 bool is_scene_file(const std::string& input) {
   return input.ends_with(".yaml") || input.ends_with(".yml");
+}
+
+/// Gives the model of a single file the surface asked for.
+void cover(const RenderFlags& flags, const Sensor& sensor, Scene& scene) {
+  if (flags.surface.empty()) return;
+  const auto refuse = [](const char* found, const char* remedy) {
+    throw Error({.where = "--surface", .found = found, .allowed = "", .remedy = remedy});
+  };
+  if (is_scene_file(flags.input)) {
+    refuse("the input is a scene file", "write 'surface: ...' into its materials");
+  }
+  if (!sensor.pulse) {
+    refuse("the sensor has no pulse light", "choose one that has, such as VLP-16");
+  }
+  const Surface surface = find_surface(flags.surface, "--surface");
+  for (Material& material : scene.materials) apply_surface(surface, material);
 }
 
 /// Whether the view is chosen by us: then it matters what is up.
@@ -232,6 +250,7 @@ int run(const RenderFlags& flags) {
   protect_files(files, outputs);
   scene = std::move(loaded.scene);
   sensor = make_sensor(flags.sensor, loaded.sensor);
+  cover(flags, sensor, scene);
   pose_model(flags.pose, scene);
   tell(size_advice(scene, !flags.model.unit.empty() || flags.pose.scale), console);
   Pose world_from_sensor = Pose::Identity();
@@ -284,6 +303,9 @@ Command add_render(CLI::App& program) {
   add_pose_flags(command, flags->pose);
   add_motion_flags(command, flags->motion);
   add_model_flags(command, flags->model);
+  add_text(command,
+           {"--surface", "NAME", "Surface of the model (glidar sensors --surfaces)", "Model"},
+           flags->surface);
   const std::string group = "Run";
   add_run_flags(command, flags->renderer, group);
   add_option(command, {"--seed", "N", "Seed of random numbers, kept in the sidecar [1]", group},

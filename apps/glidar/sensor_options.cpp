@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 namespace glidar::app {
@@ -26,6 +27,8 @@ constexpr double kDefaultFov_deg = 20.0;
 constexpr double kLargestPixels = 1e9;  // likewise
 constexpr std::int64_t kMostColumnsPerTurn = 1 << 20;
 constexpr double kLargestAmbient = 1e6;  // keeps intensities far from float's end
+constexpr double kLargestVisibility_m = 1e6;
+constexpr double kLargestRate_mm_per_h = 1000.0;
 constexpr double kBytesPerBeam = 250.0;  // beam, truth, measurement and cloud together
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 
@@ -146,19 +149,43 @@ std::vector<double> parse_attenuation(std::string_view option, const std::string
                .remedy = ""});
 }
 
-void apply_light(const SensorFlags& flags, Light& light) {
+void apply_light(const SensorFlags& flags, Sensor& sensor) {
+  if (sensor.pulse && (flags.ambient || !flags.attenuation.empty())) {
+    throw Error({.where = flags.ambient ? "--ambient" : "--attenuation",
+                 .found = "the sensor has pulse light",
+                 .allowed = "",
+                 .remedy = "leave it out, or add --ideal"});
+  }
   if (flags.ambient) {
     require(*flags.ambient >= 0.0 && *flags.ambient <= kLargestAmbient, "--ambient", *flags.ambient,
             "a number from 0 to 1e6");
-    light.ambient = *flags.ambient;
+    sensor.light.ambient = *flags.ambient;
   }
   if (!flags.attenuation.empty()) {
     const std::vector<double> n = parse_attenuation("--attenuation", flags.attenuation);
-    light.attenuation_constant = n[0];
-    light.attenuation_linear_per_m = n[1];
-    light.attenuation_quadratic_per_m2 = n[2];
+    sensor.light.attenuation_constant = n[0];
+    sensor.light.attenuation_linear_per_m = n[1];
+    sensor.light.attenuation_quadratic_per_m2 = n[2];
   }
-  validate(light);
+  validate(sensor.light);
+}
+
+void apply_weather(const SensorFlags& flags, Sensor& sensor) {
+  if (!flags.visibility_m && !flags.rain_mm_per_h && !flags.snow_mm_per_h) return;
+  Weather weather = sensor.weather.value_or(Weather{});
+  const auto take = [](const char* option, const std::optional<double>& given, double most,
+                       double& value) {
+    if (!given) return;
+    require(*given >= 0.0 && *given <= most, option, *given,
+            fmt::format("a number from 0 to {}", most));
+    value = *given;
+  };
+  take("--visibility", flags.visibility_m, kLargestVisibility_m, weather.visibility_m);
+  take("--rain", flags.rain_mm_per_h, kLargestRate_mm_per_h, weather.rain_mm_per_h);
+  take("--snow", flags.snow_mm_per_h, kLargestRate_mm_per_h, weather.snow_mm_per_h);
+  validate(weather);
+  sensor.weather = weather;
+  light_in_weather(sensor);  // tells what its light lacks for weather
 }
 
 }  // namespace
@@ -196,10 +223,19 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
       .add_flag("--cull-back-faces", flags.cull_back_faces,
                 "Triangles seen from behind let beams through [they are seen]")
       ->group(group);
+  command
+      .add_flag("--ideal", flags.ideal,
+                "Without the sensor's noise and pulse light: the geometric truth")
+      ->group(group);
   number("--ambient", "A", "Ambient light of the scene [0.2]", flags.ambient);
   add_text(command,
            {"--attenuation", "C,L,Q", "Light falls as 1/(C + L d + Q d^2) [1,1e-4,1e-8]", group},
            flags.attenuation, parse_attenuation);
+  number("--visibility", "M", "Visibility, for pulsed light; 0: no fog [as the sensor says]",
+         flags.visibility_m);
+  number("--rain", "MM/H", "Rain, for pulsed light [as the sensor says]", flags.rain_mm_per_h);
+  number("--snow", "MM/H", "Snow as melted water, for pulsed light [as the sensor says]",
+         flags.snow_mm_per_h);
 }
 
 Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_scene_file) {
@@ -222,7 +258,9 @@ Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_s
   }
   apply_scan(flags, sensor);
   apply_limits(flags, sensor.limits);
-  apply_light(flags, sensor.light);
+  if (flags.ideal) sensor = ideal(std::move(sensor));
+  apply_light(flags, sensor);
+  apply_weather(flags, sensor);
   sensor.cull_back_faces = sensor.cull_back_faces || flags.cull_back_faces;
   return sensor;
 }

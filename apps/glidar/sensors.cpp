@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/pattern_picture.hpp>
 #include <glidar/io/sensor_presets.hpp>
+#include <glidar/io/surfaces.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -12,6 +13,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory>
 #include <numbers>
@@ -24,14 +26,17 @@ constexpr const char* kExamples = R"(Examples:
   glidar sensors VLP-16
   glidar sensors Livox-Mid-40 -o pattern.png
   glidar sensors OS1-128 --json
+  glidar sensors --surfaces
 
 A name goes with 'glidar render MODEL --sensor NAME'. Numbers marked * are not verified against the
-maker's documents.
+maker's documents. A surface's name goes with 'glidar render MODEL --surface NAME', and with 'surface:'
+in scene files.
 Exit codes: 0 done, 2 no such sensor.)";
 
 struct SensorsFlags {
   std::string name;
   std::string picture;
+  bool surfaces = false;
   bool json = false;
 };
 
@@ -149,6 +154,60 @@ void print_json(const Json& json) {
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
+constexpr std::array kSurfaceWavelengths_nm = {850, 905, 1064, 1550};
+
+std::array<double, kSurfaceWavelengths_nm.size()> reflectances(const Surface& surface) {
+  std::array<double, kSurfaceWavelengths_nm.size()> values{};
+  std::transform(kSurfaceWavelengths_nm.begin(), kSurfaceWavelengths_nm.end(), values.begin(),
+                 [&](int nm) { return look_up(surface.spectrum, nm * 1e-9); });
+  return values;
+}
+
+Json json_of(const Surface& surface) {
+  Json reflectance = Json::object();
+  const auto values = reflectances(surface);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    reflectance[std::to_string(kSurfaceWavelengths_nm[k])] = values[k];
+  }
+  return {{"name", surface.name},
+          {"about", surface.about},
+          {"reflectance_at_nm", reflectance},
+          {"matt", std::holds_alternative<Lambert>(surface.backscatter)},
+          {"source", surface.source},
+          {"verified", surface.verified}};
+}
+
+void print_surfaces(const std::vector<Surface>& surfaces) {
+  fmt::print("{:<16}", "name");
+  for (const int nm : kSurfaceWavelengths_nm) fmt::print("{:>6} nm", nm);
+  fmt::print("  {:<6}  {:<8}  {}\n", "form", "verified", "what it is");
+  for (const Surface& surface : surfaces) {
+    fmt::print("{:<16}", surface.name);
+    for (const double reflectance : reflectances(surface)) fmt::print("{:>9.3f}", reflectance);
+    const bool is_matt = std::holds_alternative<Lambert>(surface.backscatter);
+    fmt::print("  {:<6}  {:<8}  {}\n", is_matt ? "matt" : "glossy", surface.verified ? "yes" : "no",
+               surface.about);
+  }
+}
+
+int list_surfaces(const SensorsFlags& flags) {
+  if (!flags.name.empty() || !flags.picture.empty()) {
+    throw Error({.where = "--surfaces",
+                 .found = "a sensor or a picture is asked for too",
+                 .allowed = "--surfaces alone, or with --json",
+                 .remedy = ""});
+  }
+  const std::vector<Surface> surfaces = load_surfaces();
+  if (!flags.json) {
+    print_surfaces(surfaces);
+    return kDone;
+  }
+  Json json = Json::array();
+  for (const Surface& surface : surfaces) json.push_back(json_of(surface));
+  print_json(json);
+  return kDone;
+}
+
 int list_all(const SensorsFlags& flags) {
   if (!flags.picture.empty()) {
     throw Error({.where = "-o",
@@ -172,6 +231,7 @@ int list_all(const SensorsFlags& flags) {
 }
 
 int run(const SensorsFlags& flags) {
+  if (flags.surfaces) return list_surfaces(flags);
   if (flags.name.empty()) return list_all(flags);
   const SensorSheet sheet = load_sensor_sheet(find_sensor_file(flags.name));
   const Beams beams = make_beams(sheet.sensor);
@@ -199,6 +259,8 @@ Command add_sensors(CLI::App& program) {
   command.add_option("name", flags->name, "Name of a sensor, or a sensor file")->type_name("NAME");
   command.add_option("-o,--output", flags->picture, "Picture of its beams' directions (PNG)")
       ->type_name("OUT.png");
+  command.add_flag("--surfaces", flags->surfaces,
+                   "List the surfaces that come along and what they send back");
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
   return [flags] { return run(*flags); };
 }

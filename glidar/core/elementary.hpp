@@ -89,19 +89,21 @@ inline SineCosine of_turns(double turns) {
 
 /// The angle of a vector in turns, 0 to below 1; 0 for the zero vector. The smaller over the larger
 /// coordinate is reduced twice by tan(a - b) = (tan a - tan b) / (1 + tan a tan b), with b = pi/8
-/// and then pi/16, and the arctangent's series goes to t^21.
+/// and then pi/16, before one division, and the arctangent's series goes to t^21.
 inline double turns_of(double y, double x) {
   const double ax = std::abs(x);
   const double ay = std::abs(y);
   const double larger = ax > ay ? ax : ay;
   const double smaller = ax > ay ? ay : ax;
-  double t = larger > 0.0 ? smaller / larger : 0.0;
   constexpr double kTan16 = 0.19891236737965800691;  // tan(pi / 16)
   constexpr double kTan8 = 0.41421356237309504880;   // tan(pi / 8)
-  const bool far = t > kTan8;
-  t = far ? (t - kTan8) / (1.0 + t * kTan8) : t;
-  const bool half = t > kTan16;
-  t = half ? (t - kTan16) / (1.0 + t * kTan16) : t;
+  const bool far = smaller > kTan8 * larger;
+  const double rise = far ? smaller - kTan8 * larger : smaller;
+  const double run = far ? larger + kTan8 * smaller : larger;
+  const bool half = rise > kTan16 * run;
+  const double rest = half ? rise - kTan16 * run : rise;
+  const double whole = half ? run + kTan16 * rise : run;
+  const double t = larger > 0.0 ? rest / whole : 0.0;
   const double q = t * t;
   double sum = 1.0 / 21.0;
   sum = sum * q - 1.0 / 19.0;

@@ -52,6 +52,8 @@ std::string_view name(Cause cause) {
       return "rain";
     case Cause::snow:
       return "snow";
+    case Cause::crosstalk:
+      return "crosstalk";
   }
   return "unknown";
 }

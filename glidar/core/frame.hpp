@@ -39,6 +39,7 @@ enum class Cause : std::uint8_t {
   fog = 5,
   rain = 6,
   snow = 7,
+  crosstalk = 8,  ///< another channel's echo
 };
 
 /// The status in words, as files and pictures spell it.

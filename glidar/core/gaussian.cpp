@@ -39,13 +39,50 @@ GLIDAR_SIMD void fill_first(const WordBatch& words, Batch<double>& out) {
   }
 }
 
-GLIDAR_SIMD void fill_pairs(const WordBatch& words, PairBatch& out) {
+GLIDAR_SIMD void fill_pairs(const Batch<std::uint32_t>& a, const Batch<std::uint32_t>& b,
+                            PairBatch& out) {
   for (std::size_t i = 0; i < kDrawBatch; ++i) {
-    const double r = radius(words.word[0][i]);
-    const SineCosine angle = of_turns(uniform_of(words.word[1][i]));
+    const double r = radius(a[i]);
+    const SineCosine angle = of_turns(uniform_of(b[i]));
     out.first[i] = r * angle.cosine;
     out.second[i] = r * angle.sine;
   }
+}
+
+constexpr std::size_t kQuarter = kDrawBatch / 4;
+
+/// The first words of 64 draws, then their second words, and so on.
+GLIDAR_SIMD void fill_quarters(const RandomWords& counter, const std::array<std::uint32_t, 2>& key,
+                               Batch<std::uint32_t>& words) {
+  for (std::uint32_t i = 0; i < kQuarter; ++i) {
+    PhiloxState state{counter[0] + i, counter[1], counter[2], counter[3]};
+    philox_rounds(state, key[0], key[1]);
+    words[i] = state.c0;
+    words[kQuarter + i] = state.c1;
+    words[2 * kQuarter + i] = state.c2;
+    words[3 * kQuarter + i] = state.c3;
+  }
+}
+
+/// Normals from the first half of the run's quarters, or from the second.
+GLIDAR_SIMD void fill_half(std::size_t half, const Batch<std::uint32_t>& words,
+                           Batch<double>& out) {
+  const std::size_t first = half * 2 * kQuarter;
+  for (std::size_t i = first; i < first + kQuarter; ++i) {
+    const double r = radius(words[i]);
+    const SineCosine angle = of_turns(uniform_of(words[kQuarter + i]));
+    out[i] = r * angle.cosine;
+    out[kQuarter + i] = r * angle.sine;
+  }
+}
+
+GLIDAR_SIMD void fill_uniform(const Batch<std::uint32_t>& words, Batch<double>& out) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) out[i] = uniform_of(words[i]);
+}
+
+void draw_quarters(Draw first, Batch<std::uint32_t>& words) {
+  first.beam /= 4;
+  fill_quarters(counter_of(first), key_of(first), words);
 }
 
 GLIDAR_SIMD void fill_uniforms(const WordBatch& words, PairBatch& out) {
@@ -65,6 +102,10 @@ std::array<double, 4> normals(const RandomWords& words) {
   return {r0 * angle0.cosine, r0 * angle0.sine, r1 * angle1.cosine, r1 * angle1.sine};
 }
 
+void make_normals(const WordBatch& words, std::size_t pair, PairBatch& normals) {
+  fill_pairs(words.word.at(2 * pair), words.word.at(2 * pair + 1), normals);
+}
+
 void draw_words(const Draw& first, WordBatch& words) {
   fill_words(counter_of(first), key_of(first), words);
 }
@@ -78,7 +119,20 @@ void draw_normals(const Draw& first, Batch<double>& normals) {
 void draw_normals(const Draw& first, PairBatch& normals) {
   WordBatch words;
   draw_words(first, words);
-  fill_pairs(words, normals);
+  make_normals(words, 0, normals);
+}
+
+void draw_shared_normals(const Draw& first, Batch<double>& normals) {
+  alignas(64) Batch<std::uint32_t> words;
+  draw_quarters(first, words);
+  fill_half(0, words, normals);
+  fill_half(1, words, normals);
+}
+
+void draw_shared_uniforms(const Draw& first, Batch<double>& uniforms) {
+  alignas(64) Batch<std::uint32_t> words;
+  draw_quarters(first, words);
+  fill_uniform(words, uniforms);
 }
 
 void draw_uniforms(const Draw& first, PairBatch& uniforms) {

@@ -32,6 +32,9 @@ struct alignas(64) PairBatch {
   Batch<double> second;
 };
 
+/// Normals 2 pair and 2 pair + 1 of normals() of each beam's words.
+void make_normals(const WordBatch& words, std::size_t pair, PairBatch& normals);
+
 /// The words of beams first.beam, first.beam + 1, ...; the same as random_words gives one by one.
 void draw_words(const Draw& first, WordBatch& words);
 
@@ -40,6 +43,16 @@ void draw_normals(const Draw& first, Batch<double>& normals);
 
 /// The first two normals of each beam.
 void draw_normals(const Draw& first, PairBatch& normals);
+
+// One number a beam, for runs that start at multiples of kDrawBatch: four beams share the words of
+// one draw, which takes a third of the time. Beam b of a run, from 0, has number b / 64 of the
+// words of beam first.beam / 4 + b % 64.
+
+/// Standard normal numbers, of normals() of the words.
+void draw_shared_normals(const Draw& first, Batch<double>& normals);
+
+/// Uniform numbers, strictly between 0 and 1, one of each word.
+void draw_shared_uniforms(const Draw& first, Batch<double>& uniforms);
 
 /// Uniform numbers, strictly between 0 and 1, from words 0 and 1 of each beam.
 void draw_uniforms(const Draw& first, PairBatch& uniforms);

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <glidar/core/backscatter.hpp>
+#include <glidar/core/table.hpp>
 
 #include <Eigen/Core>
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -52,8 +52,8 @@ struct Material {
   float alpha_cutoff = 0.0F;  ///< a texel whose opacity is below lets the ray through; 0: solid
   Backscatter backscatter;    ///< what pulses see of it; its reflectance is that of `spectrum`
   float mirror = 0.0F;        ///< share of a pulse's light that goes on as from a mirror, 0..1
-  std::vector<std::array<double, 2>> spectrum;  ///< (wavelength in m, reflectance 0..1), rising;
-                                                ///< empty: the luminance of `diffuse`
+  Table spectrum;             ///< wavelength in m, reflectance 0..1; empty: the luminance of
+                              ///< `diffuse`
   float noise_scale = 1.0F;   ///< multiplies random errors of sensors; times the noise texture
   float normal_scale = 1.0F;  ///< strength of the normal map's x and y
   TextureUse diffuse_texture;

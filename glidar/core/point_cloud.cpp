@@ -177,8 +177,9 @@ void fill_status(const Source& s, Column& column) {
 }
 
 void fill_row(const Source& s, Column& column) {
-  fill_each<std::uint32_t>(
-      s, column, [&](std::size_t i) { return static_cast<std::uint32_t>(i / s.beams.cols); });
+  fill_each<std::uint32_t>(s, column, [&](std::size_t i) {
+    return static_cast<std::uint32_t>(i % s.beams.pulses() / s.beams.cols);
+  });
 }
 
 void fill_col(const Source& s, Column& column) {
@@ -189,6 +190,19 @@ void fill_col(const Source& s, Column& column) {
 void fill_ring(const Source& s, Column& column) {
   fill_each<std::uint16_t>(s, column, [&](std::size_t i) {
     return s.beams.rings.empty() ? static_cast<std::uint16_t>(i / s.beams.cols) : s.beams.rings[i];
+  });
+}
+
+void fill_return(const Source& s, Column& column) {
+  fill_each<std::uint8_t>(
+      s, column, [&](std::size_t i) { return static_cast<std::uint8_t>(i / s.beams.pulses()); });
+}
+
+void fill_cause(const Source& s, Column& column) {
+  const std::vector<Cause>& causes = s.frame.cause;
+  fill_each<std::uint8_t>(s, column, [&](std::size_t i) {
+    const Cause told = causes.empty() ? Cause::surface : causes[i];
+    return static_cast<std::uint8_t>(s.frame.status[i] == Status::hit ? told : Cause::none);
   });
 }
 
@@ -282,6 +296,8 @@ const std::vector<ColumnKind>& column_kinds() {
       {"col", {"col"}, {}, fill_col},
       {"ring", {"ring"}, {}, fill_ring},
       {"time", {"time"}, {}, fill_time},
+      {"return", {"return"}, {}, fill_return},
+      {"cause", {"cause"}, {}, fill_cause},
       {"azimuth", {"azimuth"}, {}, fill_azimuth},
       {"elevation", {"elevation"}, {}, fill_elevation},
       {"stamp", {"stamp"}, {}, fill_stamp},

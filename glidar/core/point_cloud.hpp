@@ -44,8 +44,8 @@ struct CloudFrame {
 
 /// Names make_point_cloud knows, in the order files list them:
 /// xyz true_xyz intensity range true_range sigma depth normal shading_normal incidence instance
-/// class primitive barycentrics colour object_point status row col ring time azimuth elevation
-/// stamp sensor_pose object_pose
+/// class primitive barycentrics colour object_point status row col ring time return cause azimuth
+/// elevation stamp sensor_pose object_pose
 std::span<const std::string> cloud_column_names();
 
 /// The optional hit columns that these cloud columns need. Throws Error on an unknown name.
@@ -67,6 +67,7 @@ HitFields fields_for(std::span<const std::string> column_names);
 ///  barycentrics  f32 x2; colour f32 x3; object_point f64 x3 in the object's own frame
 ///  status        u8, see Status; row, col u32
 ///  ring          u16, channel number; time u32, ns since the frame's start
+///  return        u8, from 0: which of the sensor's returns; cause u8, see Cause
 ///  azimuth, elevation  f64, radians, where the beam was aimed in the sensor's frame: to the left
 ///  of
 ///                the boresight (-pi to pi), and up; of LiDARs that is from +x towards +y, and

@@ -17,7 +17,6 @@ RandomWords philox4x32(RandomWords counter, std::array<std::uint32_t, 2> key);
 enum class Purpose : std::uint8_t {
   probe = 0,
   detection = 1,
-  false_alarm = 2,
   weather = 3,
   first_noise_step = 32,  ///< step k of a sensor's list of noise draws with first_noise_step + k
 };

@@ -15,30 +15,12 @@
 namespace glidar {
 
 /// The names of the steps, in the order of NoiseStep.
-inline constexpr std::array kNoiseTypes = {"range_gaussian",
-                                           "range_snr",
-                                           "range_pulse",
-                                           "range_photons",
-                                           "range_2015",
-                                           "range_quantum",
-                                           "range_bias",
-                                           "range_drift",
-                                           "dropout",
-                                           "detection",
-                                           "crosstalk",
-                                           "false_echoes",
-                                           "disparity_quantum",
-                                           "kinect_v1",
-                                           "khoshelham",
-                                           "nguyen_axial",
-                                           "nguyen_lateral",
-                                           "icl_kinect",
-                                           "stereo",
-                                           "continuous_wave",
-                                           "intensity_gaussian",
-                                           "intensity_scale",
-                                           "pointing_jitter",
-                                           "encoder_error"};
+inline constexpr std::array kNoiseTypes = {
+    "range_gaussian",  "range_snr",         "range_pulse",  "range_photons",   "range_2015",
+    "range_quantum",   "range_bias",        "range_drift",  "dropout",         "crosstalk",
+    "false_echoes",    "disparity_quantum", "kinect_v1",    "khoshelham",      "nguyen_axial",
+    "nguyen_lateral",  "icl_kinect",        "stereo",       "continuous_wave", "intensity_gaussian",
+    "intensity_scale", "pointing_jitter",   "encoder_error"};
 static_assert(kNoiseTypes.size() == std::variant_size_v<NoiseStep>);
 
 /// A number of a step: its key, where it is, how much of its unit inside one of the file's is, and
@@ -152,14 +134,6 @@ inline auto numbers_of(const Dropout& /*step*/) {
   using Step = Dropout;
   return std::array{
       NoiseNumber<Step>{.key = "probability", .number = &Step::probability, .rule = kZeroToOne},
-  };
-}
-
-inline auto numbers_of(const Detection& /*step*/) {
-  using Step = Detection;
-  return std::array{
-      NoiseNumber<Step>{.key = "threshold", .number = &Step::threshold, .is_needed = true},
-      NoiseNumber<Step>{.key = "sigma", .number = &Step::sigma},
   };
 }
 

@@ -10,8 +10,8 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kMostFrequencies = 8;
 constexpr std::uint32_t kWidestWindow = 33;
+const std::vector<std::string> kIntensityKinds = {"unit", "vendor", "plain"};
 constexpr NumberRule kFrequency = {1.0, 1e12, false, "hertz from 1 to 1e12"};
 
 /// What a step's map holds beside its numbers; most hold nothing.
@@ -38,32 +38,15 @@ void read_others(const YamlField& field, RangeDrift& step) {
   if (const auto per_ring = find(field, "per_ring")) step.per_ring = boolean(*per_ring);
 }
 
-/// A list of [place, probability] with rising places.
-Table read_table(const YamlField& field, double unit) {
-  Table table;
-  for (const YamlField& pair : items(field)) {
-    if (!pair.node.IsSequence() || pair.node.size() != 2) {
-      reject(pair, describe(pair), "a list of 2 numbers, a place and a probability");
-    }
-    const std::vector<YamlField> parts = items(pair);
-    const double at = number(parts[0], kFromZero) * unit;
-    if (!table.at.empty() && at <= table.at.back()) {
-      reject(parts[0], describe(parts[0]), "a number above that of the pair before");
-    }
-    table.at.push_back(at);
-    table.value.push_back(number(parts[1], kZeroToOne));
-  }
-  if (table.at.empty()) reject(field, "an empty list", "at least one pair");
-  return table;
-}
-
 std::vector<std::string> other_keys(const Dropout& /*step*/) {
   return {"by_range_m", "by_incidence_deg"};
 }
 void read_others(const YamlField& field, Dropout& step) {
-  if (const auto table = find(field, "by_range_m")) step.by_range_m = read_table(*table, 1.0);
-  if (const auto table = find(field, "by_incidence_deg")) {
-    step.by_incidence_rad = read_table(*table, kDegree_rad);
+  if (const auto by_range = find(field, "by_range_m")) {
+    step.by_range_m = table(*by_range, kFromZero, kZeroToOne);
+  }
+  if (const auto by_incidence = find(field, "by_incidence_deg")) {
+    step.by_incidence_rad = table(*by_incidence, kFromZero, kZeroToOne, kDegree_rad);
   }
 }
 
@@ -106,7 +89,7 @@ std::vector<std::string> other_keys(const IntensityScale& /*step*/) {
 }
 void read_others(const YamlField& field, IntensityScale& step) {
   if (const auto kind = find(field, "kind")) {
-    step.kind = static_cast<IntensityScale::Kind>(one_of(*kind, {"unit", "vendor"}));
+    step.kind = static_cast<IntensityScale::Kind>(one_of(*kind, kIntensityKinds));
   }
 }
 
@@ -150,9 +133,7 @@ void tell_others(const RangeDrift& step, Json& told) {
 
 Json table_json(const Table& table, double unit) {
   Json pairs = Json::array();
-  for (std::size_t i = 0; i < table.at.size(); ++i) {
-    pairs.push_back(Json::array({table.at[i] / unit, table.value[i]}));
-  }
+  for (const auto& [place, value] : table) pairs.push_back(Json::array({place / unit, value}));
   return pairs;
 }
 
@@ -170,7 +151,7 @@ void tell_others(const ContinuousWave& step, Json& told) {
 }
 
 void tell_others(const IntensityScale& step, Json& told) {
-  told["kind"] = step.kind == IntensityScale::Kind::unit ? "unit" : "vendor";
+  told["kind"] = kIntensityKinds.at(static_cast<std::size_t>(step.kind));
 }
 
 }  // namespace

@@ -9,7 +9,6 @@ namespace glidar {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr std::size_t kMostEntries = 4096;
 constexpr NumberRule kReflectance = {0.0, 1000.0, true, "a number above 0, up to 1000"};
 constexpr NumberRule kRange = {0.0, 1e9, true, "metres above 0, up to 1e9"};
 constexpr NumberRule kRangeFromZero = {0.0, 1e9, false, "metres from 0 to 1e9"};
@@ -17,25 +16,6 @@ constexpr NumberRule kExponent = {0.0, 16.0, false, "a number from 0 to 16"};
 constexpr NumberRule kWavelength_nm = {100.0, 20000.0, false, "nanometres from 100 to 20000"};
 constexpr NumberRule kWidth_deg = {0.0, 180.0, true, "degrees above 0 and below 180"};
 constexpr NumberRule kRoughness_deg = {0.0, 90.0, false, "degrees from 0 to 90"};
-
-/// Pairs of numbers, the first of each rising.
-std::vector<std::array<double, 2>> read_pairs(const YamlField& field, const NumberRule& first,
-                                              const NumberRule& second, double unit) {
-  std::vector<std::array<double, 2>> pairs;
-  const std::vector<YamlField> entries = items(field);
-  if (entries.empty() || entries.size() > kMostEntries) {
-    reject(field, std::to_string(entries.size()) + " entries", "1 to 4096 pairs");
-  }
-  for (const YamlField& entry : entries) {
-    const std::vector<YamlField> pair = items(entry);
-    if (pair.size() != 2) reject(entry, describe(entry), "a pair of numbers");
-    pairs.push_back({number(pair[0], first) * unit, number(pair[1], second)});
-    if (pairs.size() > 1 && pairs.back()[0] <= pairs[pairs.size() - 2][0]) {
-      reject(pair[0], describe(pair[0]) + ", not above the one before", "numbers that rise");
-    }
-  }
-  return pairs;
-}
 
 /// The noise, told as such or by the range at which the sheet promises 90 %.
 void read_noise_sigma(const YamlField& field, PulseLight& light) {
@@ -91,18 +71,16 @@ Glossy read_glossy(const YamlField& field) {
 }  // namespace
 
 PulseLight read_pulse_light(const YamlField& field) {
-  require_map(
-      field, {"reference_reflectance", "reference_range_m", "range_exponent", "overlap",
-              "extinction_per_m", "range90_m", "noise_sigma", "false_alarm_range_m", "saturation"});
+  require_map(field, {"reference_reflectance", "reference_range_m", "range_exponent", "overlap",
+                      "extinction_per_m", "range90_m", "noise_sigma", "saturation"});
   PulseLight light;
   light.reference_reflectance = number(need(field, "reference_reflectance"), kReflectance);
   light.reference_range_m = number(need(field, "reference_range_m"), kRange);
   light.range_exponent = number_or(field, "range_exponent", kExponent, light.range_exponent);
   light.extinction_per_m = number_or(field, "extinction_per_m", kFromZero, 0.0);
-  light.false_alarm_range_m = number_or(field, "false_alarm_range_m", kRangeFromZero, 0.0);
   light.saturation = number_or(field, "saturation", kFromZero, 0.0);
   if (const auto overlap = find(field, "overlap")) {
-    light.overlap = read_pairs(*overlap, kRangeFromZero, kFromZero, 1.0);
+    light.overlap = table(*overlap, kRangeFromZero, kFromZero);
   }
   read_noise_sigma(field, light);
   validate(light);
@@ -128,9 +106,9 @@ Backscatter read_backscatter(const YamlField& field) {
   }
 }
 
-std::vector<std::array<double, 2>> read_spectrum(const YamlField& field) {
+Table read_spectrum(const YamlField& field) {
   constexpr double kMetresPerNanometre = 1e-9;
-  return read_pairs(field, kWavelength_nm, kZeroToOne, kMetresPerNanometre);
+  return table(field, kWavelength_nm, kZeroToOne, kMetresPerNanometre);
 }
 
 }  // namespace glidar

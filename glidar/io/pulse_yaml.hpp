@@ -18,6 +18,6 @@ PulseLight read_pulse_light(const YamlField& field);
 Backscatter read_backscatter(const YamlField& field);
 
 /// `spectrum` of a material: pairs of wavelength in nm and reflectance, the wavelengths rising.
-std::vector<std::array<double, 2>> read_spectrum(const YamlField& field);
+Table read_spectrum(const YamlField& field);
 
 }  // namespace glidar

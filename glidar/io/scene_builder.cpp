@@ -61,6 +61,7 @@ void apply(const MaterialOverride& change, TexturePlaces& places, Scene& scene,
   material.specular = change.specular.value_or(material.specular);
   material.shininess = change.shininess.value_or(material.shininess);
   material.backscatter = change.backscatter.value_or(material.backscatter);
+  material.mirror = change.mirror.value_or(material.mirror);
   if (!change.spectrum.empty()) material.spectrum = change.spectrum;
   if (!change.noise_texture.empty()) {
     material.noise_texture = {.texture = place_of(change, places, scene)};

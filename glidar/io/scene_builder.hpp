@@ -25,7 +25,8 @@ struct MaterialOverride {
   std::optional<float> shininess;
   std::optional<float> opacity;
   std::optional<Backscatter> backscatter;
-  std::vector<std::array<double, 2>> spectrum;  ///< empty: that of the model
+  Table spectrum;  ///< empty: that of the model
+  std::optional<float> mirror;
   std::optional<float> noise_scale;
   std::string noise_texture;        ///< path of a PNG file; empty: as it was
   std::string where_noise_texture;  ///< for errors

@@ -10,6 +10,7 @@
 #include <glidar/io/sensor_file.hpp>
 #include <glidar/io/sensor_presets.hpp>
 #include <glidar/io/sensor_yaml.hpp>
+#include <glidar/io/surfaces.hpp>
 
 #include <algorithm>
 #include <map>
@@ -48,7 +49,7 @@ ModelOptions read_options(const YamlField& model, const ModelOptions& defaults) 
 
 MaterialOverride read_override(const std::string& material, const YamlField& field) {
   require_map(field, {"ambient", "diffuse", "specular", "shininess", "opacity", "noise_scale",
-                      "noise_texture", "backscatter", "spectrum"});
+                      "noise_texture", "surface", "backscatter", "mirror", "spectrum"});
   MaterialOverride change;
   change.material = material;
   change.where = where(field);
@@ -63,7 +64,13 @@ MaterialOverride read_override(const std::string& material, const YamlField& fie
   colour("specular", change.specular);
   scalar("shininess", kShininess, change.shininess);
   scalar("opacity", kZeroToOne, change.opacity);
+  scalar("mirror", kZeroToOne, change.mirror);
   scalar("noise_scale", kFromZero, change.noise_scale);
+  if (const auto name = find(field, "surface")) {
+    const Surface surface = find_surface(text(*name), where(*name));
+    change.spectrum = surface.spectrum;
+    change.backscatter = surface.backscatter;
+  }
   if (const auto value = find(field, "backscatter")) change.backscatter = read_backscatter(*value);
   if (const auto value = find(field, "spectrum")) change.spectrum = read_spectrum(*value);
   if (const auto texture = find(field, "noise_texture")) {

@@ -5,8 +5,10 @@
 #include <glidar/io/noise_yaml.hpp>
 #include <glidar/io/optics_yaml.hpp>
 #include <glidar/io/pulse_yaml.hpp>
+#include <glidar/io/receiver_yaml.hpp>
 #include <glidar/io/sensor_presets.hpp>
 #include <glidar/io/sensor_yaml.hpp>
+#include <glidar/io/weather_yaml.hpp>
 
 #include <algorithm>
 
@@ -101,6 +103,32 @@ Light read_light(const YamlField& field) {
   return light;
 }
 
+/// What only a sensor of pulses has.
+void read_beam_shape(const YamlField& field, Sensor& sensor) {
+  for (const char* key : {"footprint", "receiver"}) {
+    const auto value = find(field, key);
+    if (value && !sensor.pulse)
+      reject(*value, "given without 'pulse_light'", "together with pulse_light",
+             "add pulse_light, the range equation that weighs what comes back");
+  }
+  if (const auto footprint = find(field, "footprint"))
+    sensor.footprint = read_footprint(*footprint);
+  if (const auto receiver = find(field, "receiver")) sensor.receiver = read_receiver(*receiver);
+}
+
+/// Needs the light, on which weather acts.
+void read_weather_of(const YamlField& field, Sensor& sensor) {
+  sensor.weather = read_weather(field);
+  if (!sensor.pulse) {
+    reject(field, "given without 'pulse_light'", "weather for a sensor with pulsed light",
+           "add 'pulse_light: ...'");
+  }
+  if (sensor.weather->visibility_m > 0.0 && !(sensor.wavelength_m > 0.0)) {
+    reject(field, "a visibility without 'wavelength_nm', on which fog's extinction depends",
+           "fog for light of a known wavelength", "add 'wavelength_nm: ...'");
+  }
+}
+
 /// "optics.elevation_deg" and all that it stands under: "optics".
 bool covers(const std::string& key, const std::string& path) {
   return path == key || path.starts_with(key + ".") || path.starts_with(key + "[");
@@ -155,15 +183,16 @@ void set_source(const std::string& key, const std::string& source, std::vector<S
 void add_sources(const YamlField& root, std::vector<SheetEntry>& sheet) {
   const auto sources = find(root, "source");
   if (!sources) return;
-  auto all = entries(*sources);
+  std::vector<std::pair<std::string, std::string>> all;  // no nodes: to assign one changes the file
+  for (const auto& [key, value] : entries(*sources)) {
+    require_entry(value, key, sheet);
+    all.emplace_back(key, text(value));
+  }
   // nearer keys win: the long ones come last
   std::stable_sort(all.begin(), all.end(), [](const auto& one, const auto& other) {
     return one.first.size() < other.first.size();
   });
-  for (const auto& [key, value] : all) {
-    require_entry(value, key, sheet);
-    set_source(key, text(value), sheet);
-  }
+  for (const auto& [key, source] : all) set_source(key, source, sheet);
 }
 
 void mark_unverified(const YamlField& root, std::vector<SheetEntry>& sheet) {
@@ -188,7 +217,8 @@ std::vector<SheetEntry> read_entries(const YamlField& root) {
 
 Sensor read_sensor(const YamlField& field) {
   require_map(field, {"name", "optics", "rate_hz", "wavelength_nm", "limits", "depth_limits",
-                      "light", "pulse_light", "noise", "cull_back_faces", "source", "unverified"});
+                      "light", "pulse_light", "footprint", "receiver", "weather", "noise",
+                      "cull_back_faces", "source", "unverified"});
   Sensor sensor;
   sensor.optics = read_optics(need(field, "optics"));
   if (!is_camera(sensor)) sensor.name = "lidar";
@@ -200,6 +230,8 @@ Sensor read_sensor(const YamlField& field) {
   sensor.limits = read_limits(field, sensor);
   if (const auto light = find(field, "light")) sensor.light = read_light(*light);
   if (const auto pulse = find(field, "pulse_light")) sensor.pulse = read_pulse_light(*pulse);
+  read_beam_shape(field, sensor);
+  if (const auto weather = find(field, "weather")) read_weather_of(*weather, sensor);
   if (const auto noise = find(field, "noise")) sensor.noise = read_noise(*noise);
   if (const auto cull = find(field, "cull_back_faces")) sensor.cull_back_faces = boolean(*cull);
   if (find(field, "source") || find(field, "unverified")) {

@@ -3,39 +3,19 @@
 #include <glidar/io/sensor_presets.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/data_folder.hpp>
 
 #include <algorithm>
 #include <cctype>
-#include <cstdlib>
 
 namespace glidar {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kVariable = "GLIDAR_SENSORS";
-
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
-}
-
-/// Beside the running program first, so that a moved installation finds its own.
-fs::path preset_folder() {
-  std::error_code error;
-  if (const char* named = std::getenv(kVariable); named != nullptr && *named != '\0') {
-    if (fs::is_directory(named, error)) return named;
-    throw Error({kVariable, std::string(named) + " is no folder", "a folder of sensor files", ""});
-  }
-  const fs::path self = fs::read_symlink("/proc/self/exe", error);
-  const std::vector<fs::path> places = {
-      self.parent_path().parent_path() / "share" / "glidar" / "sensors", GLIDAR_SENSORS_SOURCE_PATH,
-      GLIDAR_SENSORS_INSTALL_PATH};
-  for (const fs::path& place : places) {
-    if (fs::is_directory(place, error)) return place;
-  }
-  throw Error({"the sensors that come with GLIDAR", "not found in " + places.back().string(), "",
-               std::string("install GLIDAR whole, or set ") + kVariable});
 }
 
 bool is_yaml(const fs::path& path) {
@@ -54,7 +34,8 @@ std::string all_names(const std::vector<fs::path>& files) {
 std::vector<fs::path> preset_files() {
   std::error_code error;
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(preset_folder(), error)) {
+  for (const auto& entry :
+       fs::directory_iterator(data_folder("sensors", "GLIDAR_SENSORS"), error)) {
     if (is_yaml(entry.path())) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());  // the order of a folder is not the same everywhere

@@ -4,7 +4,9 @@
 #include <glidar/io/cloud_file.hpp>
 #include <glidar/io/noise_yaml.hpp>
 #include <glidar/io/optics_json.hpp>
+#include <glidar/io/receiver_yaml.hpp>
 #include <glidar/io/stored_columns.hpp>
+#include <glidar/io/weather_yaml.hpp>
 
 #include <nlohmann/json.hpp>
 
@@ -41,8 +43,24 @@ Json pulse_json(const PulseLight& light) {
           {"overlap", light.overlap},
           {"extinction_per_m", light.extinction_per_m},
           {"noise_sigma", light.noise_sigma},
-          {"false_alarm_range_m", light.false_alarm_range_m},
           {"saturation", light.saturation}};
+}
+
+Json footprint_json(const Footprint& f) {
+  return {{"divergence_mrad", {1e3 * f.divergence_x_rad, 1e3 * f.divergence_y_rad}},
+          {"exit_mm", {1e3 * f.exit_x_m, 1e3 * f.exit_y_m}},
+          {"widths", "1/e2"},
+          {"rings", f.rings}};
+}
+
+Json receiver_json(const Receiver& receiver) {
+  Json returns = Json::array();
+  for (const Return& one : receiver.returns) returns.push_back(return_name(one));
+  const bool is_centroid = receiver.timing == Receiver::Timing::centroid;
+  return {{"pulse_ns", 1e9 * receiver.pulse_fwhm_s},
+          {"timing", is_centroid ? "centroid" : "leading_edge"},
+          {"separation_m", receiver.separation_m},
+          {"returns", returns}};
 }
 
 Json sensor_json(const CloudFile& job) {
@@ -67,6 +85,9 @@ Json sensor_json(const CloudFile& job) {
             {"attenuation_quadratic_per_m2", light.attenuation_quadratic_per_m2},
             {"ambient", light.ambient}}},
           {"pulse_light", sensor.pulse ? pulse_json(*sensor.pulse) : Json()},
+          {"footprint", sensor.footprint ? footprint_json(*sensor.footprint) : Json()},
+          {"receiver", sensor.pulse ? receiver_json(sensor.receiver) : Json()},
+          {"weather", sensor.weather ? weather_json(*sensor.weather) : Json()},
           {"noise", noise_json(sensor.noise)},
           {"cull_back_faces", sensor.cull_back_faces},
           {"world_from_sensor", pose_json(job.frame.world_from_sensor)}};

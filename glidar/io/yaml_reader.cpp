@@ -244,6 +244,23 @@ std::size_t one_of(const YamlField& field, const std::vector<std::string>& words
   return static_cast<std::size_t>(at - words.begin());
 }
 
+Table table(const YamlField& field, const NumberRule& place, const NumberRule& value, double unit) {
+  constexpr std::size_t kMost = 4096;
+  Table pairs;
+  for (const YamlField& entry : items(field)) {
+    const std::vector<YamlField> pair = items(entry);
+    if (pair.size() != 2) reject(entry, describe(entry), "a pair of numbers");
+    pairs.push_back({number(pair[0], place) * unit, number(pair[1], value)});
+    if (pairs.size() > 1 && pairs.back()[0] <= pairs[pairs.size() - 2][0]) {
+      reject(pair[0], describe(pair[0]) + ", not above the one before", "numbers that rise");
+    }
+  }
+  if (pairs.empty() || pairs.size() > kMost) {
+    reject(field, std::to_string(pairs.size()) + " entries", "1 to 4096 pairs");
+  }
+  return pairs;
+}
+
 Eigen::Vector3d triple(const YamlField& field, const NumberRule& rule) {
   if (!field.node.IsSequence() || field.node.size() != 3) {
     reject(field, describe(field), "a list of 3 numbers");

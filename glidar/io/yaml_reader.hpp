@@ -5,6 +5,7 @@
 // Private to glidar/io: reading YAML so that every error tells file:line:column and the field.
 
 #include <glidar/core/pose.hpp>
+#include <glidar/core/table.hpp>
 
 #include <yaml-cpp/yaml.h>
 #include <Eigen/Core>
@@ -87,6 +88,9 @@ bool boolean(const YamlField& field);
 std::string text(const YamlField& field);
 /// The place of the text in `words`; throws Error when it is none of them.
 std::size_t one_of(const YamlField& field, const std::vector<std::string>& words);
+/// A list of 1 to 4096 pairs [place, value] with rising places; places are told in `unit`.
+Table table(const YamlField& field, const NumberRule& place, const NumberRule& value,
+            double unit = 1.0);
 /// A list of three numbers.
 Eigen::Vector3d triple(const YamlField& field, const NumberRule& rule);
 

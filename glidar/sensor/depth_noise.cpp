@@ -45,6 +45,41 @@ void lose_far(NoiseBatch& batch) {
   }
 }
 
+inline double left_of_right_angle(double incidence_rad) {
+  const double left = 0.5 * std::numbers::pi - incidence_rad;
+  return left > kLeastGrazing_rad ? left : kLeastGrazing_rad;
+}
+
+inline double axial_sigma_m(const NguyenAxial& law, double z_m, double incidence_rad) {
+  const double beyond = z_m - law.c_m;
+  const double sigma = law.a_m + law.b_per_m * beyond * beyond;
+  const double share = incidence_rad / left_of_right_angle(incidence_rad);
+  const double grazing = law.grazing / std::sqrt(z_m) * share * share;
+  return incidence_rad <= std::numbers::pi / 3.0 ? sigma : sigma + grazing;
+}
+
+inline double lateral_sigma_px(const NguyenLateral& law, double incidence_rad) {
+  return law.a_px + law.b_px * incidence_rad / left_of_right_angle(incidence_rad);
+}
+
+GLIDAR_SIMD void add_axial(const NguyenAxial& law, const Batch<double>& normal, NoiseBatch& b) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double z = b.depth_at_zero[i] + b.depth_per_m[i] * b.range_m[i];
+    const double sigma =
+        axial_sigma_m(law, z, angle_of(b.cosine[i])) * b.scale[i] / b.depth_per_m[i];
+    b.range_m[i] += sigma * normal[i];
+    b.variance_m2[i] += sigma * sigma;
+  }
+}
+
+GLIDAR_SIMD void scale_lateral(const NguyenLateral& law, const NoiseBatch& b, PairBatch& shift) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double sigma = lateral_sigma_px(law, angle_of(b.cosine[i])) * b.scale[i];
+    shift.first[i] *= sigma;
+    shift.second[i] *= sigma;
+  }
+}
+
 /// A normal error of depth: sigma = a + b (z - c)^2.
 GLIDAR_SIMD void add_parabola(const NguyenAxial& law, const Batch<double>& normal, NoiseBatch& b) {
   for (std::size_t i = 0; i < kDrawBatch; ++i) {
@@ -58,16 +93,11 @@ GLIDAR_SIMD void add_parabola(const NguyenAxial& law, const Batch<double>& norma
 }  // namespace
 
 double nguyen_axial_sigma_m(const NguyenAxial& law, double z_m, double incidence_rad) {
-  const double beyond = z_m - law.c_m;
-  const double sigma = law.a_m + law.b_per_m * beyond * beyond;
-  if (incidence_rad <= std::numbers::pi / 3.0) return sigma;
-  const double left = std::max(0.5 * std::numbers::pi - incidence_rad, kLeastGrazing_rad);
-  return sigma + law.grazing / std::sqrt(z_m) * incidence_rad * incidence_rad / (left * left);
+  return axial_sigma_m(law, z_m, incidence_rad);
 }
 
 double nguyen_lateral_sigma_px(const NguyenLateral& law, double incidence_rad) {
-  const double left = std::max(0.5 * std::numbers::pi - incidence_rad, kLeastGrazing_rad);
-  return law.a_px + law.b_px * incidence_rad / left;
+  return lateral_sigma_px(law, incidence_rad);
 }
 
 void apply(const DisparityQuantum& step, const NoiseView& /*view*/, NoiseBatch& batch) {
@@ -78,22 +108,15 @@ void apply(const DisparityQuantum& step, const NoiseView& /*view*/, NoiseBatch& 
 
 void apply(const Khoshelham& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
+  draw_shared_normals(batch.draw, normal);
   add_parabola({.a_m = 0.0, .b_per_m = step.sigma_per_m, .c_m = 0.0, .grazing = 0.0}, normal,
                batch);
 }
 
 void apply(const NguyenAxial& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
-  for (std::size_t i = 0; i < batch.count; ++i) {
-    if (!is_hit(batch, i)) continue;
-    const double z = batch.depth_at_zero[i] + batch.depth_per_m[i] * batch.range_m[i];
-    const double sigma = nguyen_axial_sigma_m(step, z, angle_of(batch.cosine[i])) * batch.scale[i] /
-                         batch.depth_per_m[i];
-    batch.range_m[i] += sigma * normal[i];
-    batch.variance_m2[i] += sigma * sigma;
-  }
+  draw_shared_normals(batch.draw, normal);
+  add_axial(step, normal, batch);
 }
 
 void prepare(const NguyenLateral& /*step*/, const NoiseView& view, NoiseBatch& batch) {
@@ -103,11 +126,7 @@ void prepare(const NguyenLateral& /*step*/, const NoiseView& view, NoiseBatch& b
 void apply(const NguyenLateral& step, const NoiseView& view, NoiseBatch& batch) {
   PairBatch shift;
   draw_normals(batch.draw, shift);
-  for (std::size_t i = 0; i < batch.count; ++i) {
-    const double sigma = nguyen_lateral_sigma_px(step, angle_of(batch.cosine[i])) * batch.scale[i];
-    shift.first[i] *= sigma;
-    shift.second[i] *= sigma;
-  }
+  scale_lateral(step, batch, shift);
   look_aside(shift, view, batch);
 }
 
@@ -124,14 +143,14 @@ void apply(const IclKinect& step, const NoiseView& view, NoiseBatch& batch) {
   }
   look_aside(shift, view, batch);
   Batch<double> normal;
-  draw_normals(block(batch.draw, 1), normal);
+  draw_shared_normals(block(batch.draw, 1), normal);
   measure({.k_m = step.k_m, .sigma_steps = step.sigma_steps}, normal, batch);
   lose_far(batch);
 }
 
 void prepare(const KinectV1& /*step*/, const NoiseView& view, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
+  draw_shared_normals(batch.draw, normal);
   std::copy_n(normal.begin(), batch.count,
               view.frame.scratch.before.begin() + static_cast<std::ptrdiff_t>(batch.first));
 }
@@ -146,7 +165,7 @@ void apply(const KinectV1& step, const NoiseView& view, NoiseBatch& batch) {
 
 void apply(const Stereo& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
+  draw_shared_normals(batch.draw, normal);
   const double unit_px = step.step_px > 0.0 ? step.step_px : 1.0;
   measure({.k_m = step.focal_px * step.baseline_m / unit_px,
            .sigma_steps = step.sigma_px / unit_px,

@@ -3,6 +3,7 @@
 #include <glidar/sensor/dropout.hpp>
 
 #include <glidar/core/elementary.hpp>
+#include <glidar/core/simd.hpp>
 #include <glidar/sensor/lateral_shift.hpp>
 #include <glidar/sensor/noise_batch.hpp>
 
@@ -14,41 +15,27 @@ namespace {
 
 double probability_of(const Dropout& step, const NoiseBatch& batch, std::size_t i) {
   double kept = 1.0 - step.probability;
-  if (!step.by_range_m.at.empty()) kept *= 1.0 - look_up(step.by_range_m, batch.range_m[i]);
-  if (!step.by_incidence_rad.at.empty()) {
+  kept *= 1.0 - look_up(step.by_range_m, batch.range_m[i]);
+  if (!step.by_incidence_rad.empty()) {
     kept *= 1.0 - look_up(step.by_incidence_rad, angle_of(batch.cosine[i]));
   }
   return 1.0 - kept;
 }
 
+/// The ranges of first arrivals, from their uniform numbers.
+GLIDAR_SIMD void first_arrivals(double near_m, double metres, Batch<double>& x) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) x[i] = near_m - natural_log(x[i]) * metres;
+}
+
 }  // namespace
 
-double look_up(const Table& table, double x) {
-  if (table.at.empty()) return 0.0;
-  const auto above = std::upper_bound(table.at.begin(), table.at.end(), x);
-  if (above == table.at.begin()) return table.value.front();
-  if (above == table.at.end()) return table.value.back();
-  const auto k = static_cast<std::size_t>(above - table.at.begin());
-  const double share = (x - table.at[k - 1]) / (table.at[k] - table.at[k - 1]);
-  return table.value[k - 1] + share * (table.value[k] - table.value[k - 1]);
-}
-
 void apply(const Dropout& step, const NoiseView& /*view*/, NoiseBatch& batch) {
-  PairBatch x;
-  draw_uniforms(batch.draw, x);
+  Batch<double> x;
+  draw_shared_uniforms(batch.draw, x);
   for (std::size_t i = 0; i < batch.count; ++i) {
-    if (is_hit(batch, i) && x.first[i] < probability_of(step, batch, i)) {
+    if (is_hit(batch, i) && x[i] < probability_of(step, batch, i)) {
       lose(batch, i, Status::dropped);
     }
-  }
-}
-
-void apply(const Detection& step, const NoiseView& /*view*/, NoiseBatch& batch) {
-  Batch<double> normal;
-  draw_normals(batch.draw, normal);
-  for (std::size_t i = 0; i < batch.count; ++i) {
-    const double signal = batch.intensity[i] + step.sigma * batch.scale[i] * normal[i];
-    if (is_hit(batch, i) && signal < step.threshold) lose(batch, i, Status::below_threshold);
   }
 }
 
@@ -59,7 +46,7 @@ void prepare(const Crosstalk& /*step*/, const NoiseView& view, NoiseBatch& batch
 }
 
 void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch) {
-  const std::uint32_t rows = view.beams.rows;
+  const std::uint32_t rows = view.beams.rows / view.beams.returns;  // channels
   const std::uint32_t cols = view.beams.cols;
   if (rows < 2) return;
   WordBatch words;
@@ -69,9 +56,11 @@ void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch) {
     const std::size_t beam = batch.first + i;
     // one of the other rows; the bias of this way of choosing is below rows / 2^32
     const std::uint64_t pick = std::uint64_t{words.word[1][i]} * (rows - 1U) >> 32U;
-    const std::size_t row = (beam / cols + 1U + pick) % rows;
+    const std::size_t block = beam / (rows * cols) * rows;  // of this return
+    const std::size_t row = block + (beam / cols % rows + 1U + pick) % rows;
     const double other_m = view.frame.scratch.before[row * cols + beam % cols];
     if (!(other_m > step.near_m)) continue;  // that channel has no echo
+    set_cause(view, batch, i, Cause::crosstalk);
     batch.range_m[i] = step.near_m + (other_m - step.near_m) * uniform(words.word[2][i]);
   }
 }
@@ -79,18 +68,19 @@ void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch) {
 void apply(const FalseEchoes& step, const NoiseView& view, NoiseBatch& batch) {
   if (!(step.rate_hz > 0.0)) return;
   constexpr double kHalfLight_m_per_s = 0.5 * 299792458.0;
-  PairBatch x;
-  draw_uniforms(batch.draw, x);
+  Batch<double> x;
+  draw_shared_uniforms(batch.draw, x);
+  first_arrivals(step.near_m - view.beams.range_offset_m, kHalfLight_m_per_s / step.rate_hz, x);
   for (std::size_t i = 0; i < batch.count; ++i) {
     const Status status = batch.status[i];
     const bool listens = status != Status::no_beam && status != Status::dropped;
-    const double wait_s = -natural_log(x.first[i]) / step.rate_hz;
-    const double false_m = step.near_m + wait_s * kHalfLight_m_per_s - view.beams.range_offset_m;
+    const double false_m = x[i];
     if (!listens || !(false_m < step.far_m) || !(false_m > 0.0)) continue;
     if (status == Status::hit && batch.range_m[i] <= false_m) continue;
     batch.range_m[i] = false_m;
     batch.intensity[i] = step.intensity;
     batch.status[i] = Status::hit;
+    set_cause(view, batch, i, Cause::false_alarm);
   }
 }
 

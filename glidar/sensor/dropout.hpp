@@ -2,34 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <vector>
+#include <glidar/core/table.hpp>
 
 namespace glidar {
 
 struct NoiseBatch;
 struct NoiseView;
 
-/// A function by its values at rising places, straight between them and constant outside.
-struct Table {
-  std::vector<double> at;
-  std::vector<double> value;
-};
-
-/// The table's value at x; 0 for an empty table.
-double look_up(const Table& table, double x);
-
 /// Returns lost at random, with the probability 1 - (1 - p) (1 - p(R)) (1 - p(incidence)).
 struct Dropout {
   double probability = 0.0;
   Table by_range_m{};
   Table by_incidence_rad{};
-};
-
-/// An echo is told from noise when intensity + sigma x reaches the threshold, x being a standard
-/// normal: it is detected with the probability Phi((I - threshold) / sigma).
-struct Detection {
-  double threshold = 0.0;
-  double sigma = 0.0;
 };
 
 /// With this probability a beam reports, in the place of its range, one that is uniform from near
@@ -50,7 +34,6 @@ struct FalseEchoes {
 };
 
 void apply(const Dropout& step, const NoiseView& view, NoiseBatch& batch);
-void apply(const Detection& step, const NoiseView& view, NoiseBatch& batch);
 void prepare(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch);
 void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch);
 void apply(const FalseEchoes& step, const NoiseView& view, NoiseBatch& batch);

@@ -21,6 +21,17 @@ GLIDAR_SIMD void disturb(const IntensityGaussian& step, const Batch<double>& nor
   }
 }
 
+double spelt(const IntensityScale& step, double reflectance) {
+  switch (step.kind) {
+    case IntensityScale::Kind::vendor:
+      return vendor_intensity(reflectance, step.largest);
+    case IntensityScale::Kind::plain:
+      return reflectance;
+    default:
+      return std::clamp(reflectance, 0.0, 1.0);
+  }
+}
+
 }  // namespace
 
 double vendor_intensity(double reflectance, double largest) {
@@ -32,7 +43,7 @@ double vendor_intensity(double reflectance, double largest) {
 
 void apply(const IntensityGaussian& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
+  draw_shared_normals(batch.draw, normal);
   disturb(step, normal, batch);
 }
 
@@ -41,10 +52,7 @@ void apply(const IntensityScale& step, const NoiseView& /*view*/, NoiseBatch& ba
   for (std::size_t i = 0; i < batch.count; ++i) {
     if (!is_hit(batch, i)) continue;
     const double times = compensates ? batch.range_m[i] / step.reference_m : 1.0;
-    const double reflectance = step.gain * batch.intensity[i] * times * times;
-    batch.intensity[i] = step.kind == IntensityScale::Kind::vendor
-                             ? vendor_intensity(reflectance, step.largest)
-                             : std::clamp(reflectance, 0.0, 1.0);
+    batch.intensity[i] = spelt(step, step.gain * batch.intensity[i] * times * times);
   }
 }
 

@@ -17,11 +17,12 @@ struct IntensityGaussian {
 
 /// How the sensor spells intensity. The apparent reflectance is gain I, or gain I (R / reference)^2
 /// where the sensor compensates the range.
+///  plain: as it is.
 ///  unit: clipped to 0..1.
 ///  vendor: a whole number from 0 to 255: round(100 rho) to 100 for surfaces up to a white one;
 ///  for retro-reflectors 101 + round(154 ln(rho) / ln(largest)), to 255.
 struct IntensityScale {
-  enum class Kind : std::uint8_t { unit, vendor };
+  enum class Kind : std::uint8_t { unit, vendor, plain };
   Kind kind = Kind::unit;
   double gain = 1.0;
   double reference_m = 0.0;  ///< 0: the range is not compensated

@@ -20,7 +20,8 @@ inline constexpr std::size_t kLargestReach = 16;
 
 /// The angle of a cosine from 0 to 1.
 inline double angle_of(double cosine) {
-  const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  const double square = 1.0 - cosine * cosine;
+  const double sine = std::sqrt(square > 0.0 ? square : 0.0);
   return 2.0 * std::numbers::pi * turns_of(sine, cosine);
 }
 

@@ -31,6 +31,9 @@ constexpr bool kUsesIncidence =
     std::is_same_v<Step, NguyenAxial> || std::is_same_v<Step, NguyenLateral> ||
     std::is_same_v<Step, Dropout>;
 
+template <class Step>
+constexpr bool kMakesReturns = std::is_same_v<Step, Crosstalk> || std::is_same_v<Step, FalseEchoes>;
+
 /// Steps that look at other beams too: all of the frame is prepared before any of it changes.
 template <class Step>
 constexpr bool kLooksAround = requires(const Step& step, const NoiseView& view, NoiseBatch& batch) {
@@ -46,7 +49,12 @@ bool uses_depth(const NoiseStep& step) {
 }
 
 bool looks_around(const NoiseStep& step) {
+  if (const auto* waves = std::get_if<ContinuousWave>(&step)) return mixes(*waves);
   return std::visit([](const auto& s) { return kLooksAround<std::decay_t<decltype(s)>>; }, step);
+}
+
+bool makes_returns(const NoiseStep& step) {
+  return std::visit([](const auto& s) { return kMakesReturns<std::decay_t<decltype(s)>>; }, step);
 }
 
 Draw draw_of(const Frame& frame, std::size_t step, std::size_t beam) {
@@ -58,6 +66,22 @@ Draw draw_of(const Frame& frame, std::size_t step, std::size_t beam) {
           .purpose = static_cast<Purpose>(first + step)};
 }
 
+GLIDAR_SIMD void widen(const float* from, std::size_t count, double* to) {
+  for (std::size_t i = 0; i < count; ++i) to[i] = double{from[i]};
+}
+
+GLIDAR_SIMD void square(Batch<double>& values) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) values[i] *= values[i];
+}
+
+void copy(const float* from, std::size_t count, double* to) {
+  widen(from, count, to);
+}
+template <class T>
+void copy(const T* from, std::size_t count, T* to) {
+  std::copy_n(from, count, to);
+}
+
 /// Copies a run of a column into a batch, and fills up the rest.
 template <class From, class To>
 void load_column(const std::vector<From>& column, const NoiseBatch& batch, To rest,
@@ -66,8 +90,7 @@ void load_column(const std::vector<From>& column, const NoiseBatch& batch, To re
     out.fill(rest);
     return;
   }
-  const From* from = column.data() + batch.first;
-  for (std::size_t i = 0; i < batch.count; ++i) out[i] = static_cast<To>(from[i]);
+  copy(column.data() + batch.first, batch.count, out.data());
   std::fill(out.begin() + static_cast<std::ptrdiff_t>(batch.count), out.end(), rest);
 }
 
@@ -93,7 +116,7 @@ void load(const Stretch& stretch, const NoiseView& view, NoiseBatch& batch) {
   batch.frame_s = stretch.frame_s;
   load_column(frame.range_m, batch, kNoRange, batch.range_m);
   load_column(frame.sigma_m, batch, 0.0, batch.variance_m2);
-  for (double& value : batch.variance_m2) value *= value;
+  square(batch.variance_m2);
   load_column(frame.intensity, batch, 0.0, batch.intensity);
   load_column(frame.truth.noise_scale, batch, 1.0, batch.scale);
   load_column(frame.truth.cos_incidence, batch, 1.0, batch.cosine);
@@ -105,19 +128,31 @@ void load(const Stretch& stretch, const NoiseView& view, NoiseBatch& batch) {
   if (std::any_of(first, last, uses_depth)) load_depth(view.beams, batch);
 }
 
+/// Columns of a frame from the run's first beam on.
+struct Columns {
+  double* range_m;
+  float* intensity;
+  float* sigma_m;
+};
+
+GLIDAR_SIMD void write(const NoiseBatch& batch, const Columns& to) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const double range_m = batch.range_m[i];
+    const double sigma_m = std::sqrt(batch.variance_m2[i]);
+    to.range_m[i] = range_m;
+    to.intensity[i] = static_cast<float>(batch.intensity[i]);
+    to.sigma_m[i] = static_cast<float>(range_m == range_m ? sigma_m : 0.0);
+  }
+}
+
 void store(const NoiseView& view, NoiseBatch& batch) {
   Frame& frame = view.frame;
   for (std::size_t i = 0; i < batch.count; ++i) {
     if (is_hit(batch, i) && !(batch.range_m[i] > 0.0)) lose(batch, i, Status::too_near);
   }
-  for (std::size_t i = 0; i < batch.count; ++i) {
-    const std::size_t beam = batch.first + i;
-    const double sigma_m = std::sqrt(batch.variance_m2[i]);
-    frame.range_m[beam] = batch.range_m[i];
-    frame.status[beam] = batch.status[i];
-    frame.intensity[beam] = static_cast<float>(batch.intensity[i]);
-    frame.sigma_m[beam] = std::isnan(batch.range_m[i]) ? 0.0F : static_cast<float>(sigma_m);
-  }
+  const std::size_t at = batch.first;
+  write(batch, {frame.range_m.data() + at, frame.intensity.data() + at, frame.sigma_m.data() + at});
+  std::copy_n(batch.status.begin(), batch.count, frame.status.data() + at);
 }
 
 /// Calls body(batch) for all runs of a frame, loaded.
@@ -223,6 +258,9 @@ void apply_noise(const std::vector<NoiseStep>& noise, double frame_s, const Beam
   if (std::any_of(noise.begin(), noise.end(), looks_around)) {
     frame.scratch.before.resize(frame.range_m.size());
     frame.scratch.amplitude.resize(frame.range_m.size());
+  }
+  if (frame.cause.empty() && std::any_of(noise.begin(), noise.end(), makes_returns)) {
+    frame.cause.assign(frame.range_m.size(), Cause::surface);
   }
   const NoiseView view{beams, frame};
   for (std::size_t begin = 0, end = 0; begin < noise.size(); begin = end) {

@@ -19,11 +19,11 @@ namespace glidar {
 
 /// One imperfection of a sensor. A sensor has an ordered list of them; step k of the list draws its
 /// random numbers with the purpose first_noise_step + k, so that steps do not share any.
-using NoiseStep = std::variant<RangeGaussian, RangeSnr, RangePulse, RangePhotons, Range2015,
-                               RangeQuantum, RangeBias, RangeDrift, Dropout, Detection, Crosstalk,
-                               FalseEchoes, DisparityQuantum, KinectV1, Khoshelham, NguyenAxial,
-                               NguyenLateral, IclKinect, Stereo, ContinuousWave, IntensityGaussian,
-                               IntensityScale, PointingJitter, EncoderError>;
+using NoiseStep =
+    std::variant<RangeGaussian, RangeSnr, RangePulse, RangePhotons, Range2015, RangeQuantum,
+                 RangeBias, RangeDrift, Dropout, Crosstalk, FalseEchoes, DisparityQuantum, KinectV1,
+                 Khoshelham, NguyenAxial, NguyenLateral, IclKinect, Stereo, ContinuousWave,
+                 IntensityGaussian, IntensityScale, PointingJitter, EncoderError>;
 
 /// The most steps that a list may have: purposes are numbers of 8 bits.
 inline constexpr std::size_t kMostNoiseSteps = 224;

@@ -38,6 +38,11 @@ inline void lose(NoiseBatch& batch, std::size_t i, Status why) {
   batch.status[i] = why;
 }
 
+/// A return of the run is not what the beam's own light brought back.
+inline void set_cause(const NoiseView& view, const NoiseBatch& batch, std::size_t i, Cause cause) {
+  view.frame.cause[batch.first + i] = cause;
+}
+
 inline bool is_hit(const NoiseBatch& batch, std::size_t i) {
   return batch.status[i] == Status::hit;
 }

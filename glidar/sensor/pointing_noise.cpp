@@ -4,9 +4,11 @@
 
 #include <glidar/core/elementary.hpp>
 #include <glidar/core/gaussian.hpp>
+#include <glidar/core/simd.hpp>
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -14,6 +16,7 @@ namespace glidar {
 namespace {
 
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+constexpr double kTurns_per_rad = 0.5 * std::numbers::inv_pi;
 
 /// The sensor's vertical: z, or for a camera, which looks along z, -y.
 Eigen::Vector3d vertical(const Beams& beams) {
@@ -22,40 +25,104 @@ Eigen::Vector3d vertical(const Beams& beams) {
                                                 : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
 }
 
-/// Unit vector across a beam, level; for a vertical beam any.
-Eigen::Vector3d sideways(const Eigen::Vector3d& up, const Eigen::Vector3d& beam) {
+/// Moves beams by angles so small that they are their own tangents: aside along the level unit
+/// vector across the beam (for a vertical beam any), upwards across both. xyz: beam after beam.
+GLIDAR_SIMD void jitter(const Eigen::Vector3d& up, const PointingJitter& step,
+                        const PairBatch& normal, std::size_t count, double* xyz) {
   constexpr double kShortest = 1e-9;
-  const Eigen::Vector3d across = up.cross(beam);
-  const double length = across.norm();
-  return length > kShortest ? Eigen::Vector3d(across / length) : Eigen::Vector3d::UnitX();
+  const double ux = up.x();
+  const double uy = up.y();
+  const double uz = up.z();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = xyz[3 * i];
+    const double y = xyz[3 * i + 1];
+    const double z = xyz[3 * i + 2];
+    const double cx = uy * z - uz * y;
+    const double cy = uz * x - ux * z;
+    const double cz = ux * y - uy * x;
+    const double length = std::sqrt(cx * cx + cy * cy + cz * cz);
+    const bool is_level = length > kShortest;
+    const double inverse = 1.0 / (is_level ? length : 1.0);
+    const double ax = is_level ? cx * inverse : 1.0;
+    const double ay = is_level ? cy * inverse : 0.0;
+    const double az = is_level ? cz * inverse : 0.0;
+    const double aside = step.sigma_azimuth_rad * normal.first[i];
+    const double upwards = step.sigma_elevation_rad * normal.second[i];
+    const double vx = x + aside * ax + upwards * (y * az - z * ay);
+    const double vy = y + aside * ay + upwards * (z * ax - x * az);
+    const double vz = z + aside * az + upwards * (x * ay - y * ax);
+    const double unit = 1.0 / std::sqrt(vx * vx + vy * vy + vz * vz);
+    xyz[3 * i] = vx * unit;
+    xyz[3 * i + 1] = vy * unit;
+    xyz[3 * i + 2] = vz * unit;
+  }
+}
+
+inline double rounding_error(double step_rad, double steps_per_rad, double azimuth_rad) {
+  return std::floor(azimuth_rad * steps_per_rad + 0.5) * step_rad - azimuth_rad;
+}
+
+inline double wave_error(const EncoderError& law, double azimuth_rad) {
+  return law.eccentricity_rad * of_turns((azimuth_rad + law.phase_rad) * kTurns_per_rad).sine;
+}
+
+GLIDAR_SIMD void find_azimuths(std::size_t count, const double* xyz, Batch<double>& azimuth_rad) {
+  for (std::size_t i = 0; i < count; ++i) {
+    azimuth_rad[i] = kTurn_rad * turns_of(xyz[3 * i + 1], xyz[3 * i]);
+  }
+}
+
+GLIDAR_SIMD void add_rounding(double step_rad, const Batch<double>& azimuth_rad,
+                              Batch<double>& error_rad) {
+  const double steps_per_rad = 1.0 / step_rad;
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    error_rad[i] += rounding_error(step_rad, steps_per_rad, azimuth_rad[i]);
+  }
+}
+
+GLIDAR_SIMD void add_wave(const EncoderError& law, const Batch<double>& azimuth_rad,
+                          Batch<double>& error_rad) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) error_rad[i] += wave_error(law, azimuth_rad[i]);
+}
+
+/// Cosines and sines of the way back: where beams are when they report where they seem to be.
+GLIDAR_SIMD void find_way_back(const Batch<double>& error_rad, PairBatch& back) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const SineCosine turn = of_turns(-error_rad[i] * kTurns_per_rad);
+    back.first[i] = turn.cosine;
+    back.second[i] = turn.sine;
+  }
+}
+
+GLIDAR_SIMD void turn_about_z(const PairBatch& angle, std::size_t count, double* xyz) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = xyz[3 * i];
+    const double y = xyz[3 * i + 1];
+    const double z = xyz[3 * i + 2];
+    xyz[3 * i] = angle.first[i] * x - angle.second[i] * y;
+    xyz[3 * i + 1] = angle.second[i] * x + angle.first[i] * y;
+    xyz[3 * i + 2] = z;
+  }
 }
 
 }  // namespace
 
 double encoder_error_rad(const EncoderError& law, double azimuth_rad) {
-  double error = law.eccentricity_rad * of_turns((azimuth_rad + law.phase_rad) / kTurn_rad).sine;
-  if (law.step_rad > 0.0) {
-    error += std::floor(azimuth_rad / law.step_rad + 0.5) * law.step_rad - azimuth_rad;
-  }
-  return error;
+  const double rounding =
+      law.step_rad > 0.0 ? rounding_error(law.step_rad, 1.0 / law.step_rad, azimuth_rad) : 0.0;
+  return rounding + wave_error(law, azimuth_rad);
 }
 
 void turn(const PointingJitter& step, const Draw& draw, std::size_t first, std::size_t count,
           Beams& beams) {
   const Eigen::Vector3d up = vertical(beams);
   PairBatch normal;
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i % kDrawBatch == 0) {
-      Draw run = draw;
-      run.beam = static_cast<std::uint32_t>(first + i);
-      draw_normals(run, normal);
-    }
-    Eigen::Vector3d& beam = beams.directions[first + i];
-    const Eigen::Vector3d across = sideways(up, beam);
-    const double aside = step.sigma_azimuth_rad * normal.first[i % kDrawBatch];
-    const double upwards = step.sigma_elevation_rad * normal.second[i % kDrawBatch];
-    // the angles are so small that they are their own tangents
-    beam = (beam + aside * across + upwards * beam.cross(across)).normalized();
+  for (std::size_t begin = first; begin < first + count; begin += kDrawBatch) {
+    Draw run = draw;
+    run.beam = static_cast<std::uint32_t>(begin);
+    draw_normals(run, normal);
+    jitter(up, step, normal, std::min(kDrawBatch, first + count - begin),
+           beams.directions[begin].data());
   }
 }
 
@@ -64,17 +131,18 @@ void turn(const EncoderError& step, const Draw& draw, std::size_t first, std::si
   Draw whole = draw;
   whole.beam = 0;
   const double of_turn = step.turn_sigma_rad * normals(random_words(whole))[0];
-  for (std::size_t i = first; i < first + count; ++i) {
-    Eigen::Vector3d& beam = beams.directions[i];
-    const double azimuth = kTurn_rad * turns_of(beam.y(), beam.x());
-    const double error = encoder_error_rad(step, azimuth) + of_turn;
-    const SineCosine back = of_turns(-error / kTurn_rad);  // where it is when it reports this
-    const auto rotate = [&](Eigen::Vector3d& v) {
-      v = {back.cosine * v.x() - back.sine * v.y(), back.sine * v.x() + back.cosine * v.y(), v.z()};
-    };
-    rotate(beam);
-    beam.normalize();
-    if (!beams.origins_m.empty()) rotate(beams.origins_m[i]);
+  Batch<double> azimuth_rad{};
+  Batch<double> error_rad;
+  PairBatch back;
+  for (std::size_t begin = first; begin < first + count; begin += kDrawBatch) {
+    const std::size_t size = std::min(kDrawBatch, first + count - begin);
+    find_azimuths(size, beams.directions[begin].data(), azimuth_rad);
+    error_rad.fill(of_turn);
+    if (step.step_rad > 0.0) add_rounding(step.step_rad, azimuth_rad, error_rad);
+    if (step.eccentricity_rad != 0.0) add_wave(step, azimuth_rad, error_rad);
+    find_way_back(error_rad, back);
+    turn_about_z(back, size, beams.directions[begin].data());
+    if (!beams.origins_m.empty()) turn_about_z(back, size, beams.origins_m[begin].data());
   }
 }
 

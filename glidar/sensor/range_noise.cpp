@@ -89,13 +89,13 @@ double photon_sigma_m(const RangePhotons& law, double amplitude) {
 
 void apply(const RangeGaussian& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
+  draw_shared_normals(batch.draw, normal);
   add_linear(step.sigma_m, step.sigma_per_m, normal, batch);
 }
 
 void apply(const RangeSnr& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
+  draw_shared_normals(batch.draw, normal);
   add_by_signal({.constant_m2 = step.floor_m * step.floor_m,
                  .per_intensity_m2 = step.k_m * step.k_m / step.snr_at_full_scale},
                 normal, batch);
@@ -103,14 +103,14 @@ void apply(const RangeSnr& step, const NoiseView& /*view*/, NoiseBatch& batch) {
 
 void apply(const RangePulse& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
+  draw_shared_normals(batch.draw, normal);
   const double sigma_m = pulse_sigma_m(step, 1.0);
   add_by_signal({.per_intensity_squared_m2 = sigma_m * sigma_m}, normal, batch);
 }
 
 void apply(const RangePhotons& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_normals(batch.draw, normal);
+  draw_shared_normals(batch.draw, normal);
   const double sigma_m = photon_sigma_m(step, 1.0);
   add_by_signal({.per_intensity_m2 = sigma_m * sigma_m}, normal, batch);
 }

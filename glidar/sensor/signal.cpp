@@ -19,6 +19,12 @@ double power(double base, double exponent) {
   return base > 0.0 ? natural_exp(exponent * natural_log(base)) : 0.0;
 }
 
+/// exp(-2 alpha R).
+double two_way(double extinction_per_m, double range_m) {
+  const double depth = -2.0 * extinction_per_m * range_m;
+  return natural_exp(std::clamp(depth, -600.0, 600.0));  // beyond, it is 0 or endless anyway
+}
+
 double incidence_rad(double cosine) {
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
   return 2.0 * std::numbers::pi * turns_of(sine, cosine);
@@ -50,19 +56,6 @@ double relative(const Glossy& s, double cosine) {
   return s.matt_share * cosine + s.lobe_gain * power(std::numbers::e, -0.5 * x * x);
 }
 
-/// The table's value at x: linear between entries, held outside.
-double interpolate(const std::vector<std::array<double, 2>>& table, double x, double otherwise) {
-  if (table.empty()) return otherwise;
-  const auto above = std::upper_bound(
-      table.begin(), table.end(), x,
-      [](double value, const std::array<double, 2>& entry) { return value < entry[0]; });
-  if (above == table.begin()) return table.front()[1];
-  if (above == table.end()) return table.back()[1];
-  const auto& [x0, y0] = *(above - 1);
-  const auto& [x1, y1] = *above;
-  return y0 + (y1 - y0) * (x - x0) / (x1 - x0);
-}
-
 void require(bool holds, const char* field, double found, const char* allowed) {
   if (holds) return;
   throw Error({.where = std::string("pulse light, ") + field,
@@ -92,35 +85,21 @@ void lose(Frame& frame, std::size_t beam, Status why) {
   frame.intensity[beam] = 0.0F;
 }
 
-/// What noise alone makes of a beam that met nothing.
-void measure_nothing(const PulseLight& light, double noise, double place, std::size_t beam,
-                     Frame& frame) {
-  frame.intensity[beam] = 0.0F;
-  if (!(light.false_alarm_range_m > 0.0) || frame.status[beam] != Status::miss || noise < 1.0) {
-    return;
-  }
-  frame.status[beam] = Status::hit;
-  frame.range_m[beam] = place * light.false_alarm_range_m;
-  frame.intensity[beam] = static_cast<float>(noise);
+/// Whether clear air had let a faint signal through.
+Status why_faint(const PulseLight& light, double signal, double error, double range_m) {
+  if (!(light.weather_extinction_per_m > 0.0)) return Status::below_threshold;
+  const double clear = signal / two_way(light.weather_extinction_per_m, range_m);
+  return clear + error < 1.0 ? Status::below_threshold : Status::weather;
 }
 
-void measure_hit(const PulseLight& light, double received, std::size_t beam, Frame& frame) {
+void measure_hit(const PulseLight& light, double signal, double error, std::size_t beam,
+                 Frame& frame) {
+  const double received = signal + error;
   frame.intensity[beam] = static_cast<float>(received);
-  if (received < 1.0) lose(frame, beam, Status::below_threshold);
+  if (received < 1.0) {
+    lose(frame, beam, why_faint(light, signal, error, frame.truth.range_m[beam]));
+  }
   if (light.saturation > 0.0 && received >= light.saturation) lose(frame, beam, Status::saturated);
-}
-
-/// The random numbers of a batch of beams, as far as the light needs them.
-void draw_batch(const PulseLight& light, std::size_t first, const Frame& frame,
-                Batch<double>& noise, PairBatch& places) {
-  Draw draw{.seed = frame.seed,
-            .sensor = frame.sensor_id,
-            .frame = frame.number,
-            .beam = static_cast<std::uint32_t>(first),
-            .purpose = Purpose::detection};
-  if (light.noise_sigma > 0.0) draw_normals(draw, noise);
-  draw.purpose = Purpose::false_alarm;
-  if (light.false_alarm_range_m > 0.0) draw_uniforms(draw, places);
 }
 
 }  // namespace
@@ -135,17 +114,17 @@ void validate(const PulseLight& light) {
   require(from_zero(light.range_exponent), "range_exponent", light.range_exponent, "0 or above");
   require(from_zero(light.extinction_per_m), "extinction_per_m", light.extinction_per_m,
           "0 or above");
+  require(from_zero(light.weather_extinction_per_m), "weather_extinction_per_m",
+          light.weather_extinction_per_m, "0 or above");
   require(from_zero(light.noise_sigma), "noise_sigma", light.noise_sigma, "0 or above");
   require(from_zero(light.saturation), "saturation", light.saturation, "0 or above");
-  require(from_zero(light.false_alarm_range_m), "false_alarm_range_m", light.false_alarm_range_m,
-          "0 or above");
   for (std::size_t i = 0; i < light.overlap.size(); ++i) {
     const auto [range_m, share] = light.overlap[i];
     require(from_zero(range_m) && (i == 0 || range_m > light.overlap[i - 1][0]), "overlap", range_m,
             "ranges that rise from 0 or above");
     require(from_zero(share), "overlap", share, "shares of 0 or above");
   }
-  require(interpolate(light.overlap, light.reference_range_m, 1.0) > 0.0, "overlap", 0.0,
+  require(look_up(light.overlap, light.reference_range_m, 1.0) > 0.0, "overlap", 0.0,
           "a share above 0 at the reference range");
 }
 
@@ -154,7 +133,12 @@ double sent_back(const Backscatter& surface, double reflectance, double cosine) 
 }
 
 double reflectance_at(const Material& material, double wavelength_m) {
-  return interpolate(material.spectrum, wavelength_m, luminance(material.diffuse));
+  return look_up(material.spectrum, wavelength_m, luminance(material.diffuse));
+}
+
+double relative_overlap(const PulseLight& light, double range_m) {
+  return look_up(light.overlap, range_m, 1.0) /
+         look_up(light.overlap, light.reference_range_m, 1.0);
 }
 
 double signal_of(const PulseLight& light, double sent_back, double range_m) {
@@ -163,14 +147,12 @@ double signal_of(const PulseLight& light, double sent_back, double range_m) {
       light.range_exponent == 2.0 ? ratio * ratio : power(ratio, light.range_exponent);
   double signal = sent_back / light.reference_reflectance * spread;
   if (light.extinction_per_m > 0.0) {
-    const double depth = -2.0 * light.extinction_per_m * (range_m - light.reference_range_m);
-    signal *= natural_exp(std::clamp(depth, -600.0, 600.0));  // beyond, it is 0 or endless anyway
+    signal *= two_way(light.extinction_per_m, range_m - light.reference_range_m);
   }
-  if (!light.overlap.empty()) {
-    signal *= interpolate(light.overlap, range_m, 1.0) /
-              interpolate(light.overlap, light.reference_range_m, 1.0);
+  if (light.weather_extinction_per_m > 0.0) {
+    signal *= two_way(light.weather_extinction_per_m, range_m);
   }
-  return signal;
+  return light.overlap.empty() ? signal : signal * relative_overlap(light, range_m);
 }
 
 double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelength_m,
@@ -198,18 +180,21 @@ double range_exponent(double reflectance_a, double range_a_m, double reflectance
 
 void measure_signal(const PulseLight& light, const Scene& scene, double wavelength_m,
                     BeamRange range, Frame& frame) {
+  Draw draw{.seed = frame.seed,
+            .sensor = frame.sensor_id,
+            .frame = frame.number,
+            .purpose = Purpose::detection};
   Batch<double> noise{};
-  PairBatch places{};
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const std::size_t k = (i - range.begin) % kDrawBatch;
-    if (k == 0) draw_batch(light, i, frame, noise, places);
-    const double error = light.noise_sigma * noise[k];
-    if (frame.status[i] == Status::hit) {
-      const double signal = signal_of_hit(light, scene, wavelength_m, frame.truth, i);
-      measure_hit(light, signal + error, i, frame);
-    } else {
-      measure_nothing(light, error, places.first[k], i, frame);
+    draw.beam = static_cast<std::uint32_t>(i);
+    if (k == 0 && light.noise_sigma > 0.0) draw_normals(draw, noise);
+    if (frame.status[i] != Status::hit) {
+      frame.intensity[i] = 0.0F;
+      continue;
     }
+    const double signal = signal_of_hit(light, scene, wavelength_m, frame.truth, i);
+    measure_hit(light, signal, light.noise_sigma * noise[k], i, frame);
   }
 }
 

@@ -4,9 +4,7 @@
 
 #include <glidar/core/frame.hpp>
 #include <glidar/core/scene.hpp>
-
-#include <array>
-#include <vector>
+#include <glidar/core/table.hpp>
 
 namespace glidar {
 
@@ -18,16 +16,15 @@ namespace glidar {
 struct PulseLight {
   double reference_reflectance = 0.8;  ///< rho_ref, of a matt surface seen square on
   double reference_range_m = 100.0;    ///< R_ref, where it is seen with probability 1/2
-  double range_exponent = 2.0;  ///< q; sheets of two reflectances tell it, see range_exponent
-  std::vector<std::array<double, 2>> overlap = {};  ///< (range in m, O) with ranges rising; linear
-                                                    ///< between, held outside; empty: 1
-  double extinction_per_m = 0.0;                    ///< alpha
+  double range_exponent = 2.0;    ///< q; sheets of two reflectances tell it, see range_exponent
+  Table overlap = {};             ///< (range in m, O); empty: 1
+  double extinction_per_m = 0.0;  ///< alpha
   /// Standard deviation of the signal's noise: a signal S is reported when S + sigma x >= 1 with a
   /// normal x. 0: every signal of 1 and more is.
   double noise_sigma = 0.0;
-  /// Noise alone is reported when sigma x >= 1, at a range uniform up to here; 0: never.
-  double false_alarm_range_m = 0.0;
   double saturation = 0.0;  ///< signals from here on are not timed: saturated; 0: none
+  /// Of fog, rain and snow: takes exp(-2 alpha R), since sheets tell ranges in clear air.
+  double weather_extinction_per_m = 0.0;
 };
 
 /// Throws Error naming the number that is out of range.
@@ -40,6 +37,9 @@ double sent_back(const Backscatter& surface, double reflectance, double cosine);
 /// A material's reflectance at a wavelength: from its spectrum, linear between the entries and held
 /// outside; without one, the luminance of its diffuse colour.
 double reflectance_at(const Material& material, double wavelength_m);
+
+/// O(R) / O(R_ref): how much of the beam the receiver sees.
+double relative_overlap(const PulseLight& light, double range_m);
 
 /// S for what a surface sends back over a range.
 double signal_of(const PulseLight& light, double sent_back, double range_m);
@@ -61,9 +61,9 @@ double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelen
                      const Hits& hits, std::size_t beam);
 
 /// Fills a run of frame.intensity with signals as the receiver has them, noise included, and takes
-/// away what is too weak or too strong (status below_threshold or saturated, range_m NaN, intensity
-/// 0). A false alarm gives a beam that met nothing a range; its truth stays a miss. Needs
-/// cos_shading and reflectance in frame.truth; draws with Purpose::detection and false_alarm.
+/// away what is too weak or too strong (status below_threshold, weather where clear air had let it
+/// through, or saturated; range_m NaN, intensity 0). Needs cos_shading and reflectance in
+/// frame.truth; draws with Purpose::detection.
 void measure_signal(const PulseLight& light, const Scene& scene, double wavelength_m,
                     BeamRange range, Frame& frame);
 

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/tof_noise.hpp>
 
-#include <glidar/core/elementary.hpp>
+#include <glidar/core/simd.hpp>
+#include <glidar/sensor/mixed_waves.hpp>
 #include <glidar/sensor/noise_batch.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numbers>
 #include <numeric>
 
 namespace glidar {
@@ -15,65 +17,182 @@ namespace {
 
 constexpr double kHalfLight_m_per_s = 0.5 * 299792458.0;
 constexpr double kDarkest = 1e-9;
-constexpr std::size_t kMostFrequencies = 8;
-constexpr std::size_t kNeighbourhood = 9;
 
-/// The pixel's own echo and, when it mixes, those around it.
-std::size_t gather(const ContinuousWave& step, const NoiseView& view, std::size_t beam,
-                   std::array<Echo, kNeighbourhood>& echoes) {
-  const Scratch& kept = view.frame.scratch;
-  const auto cols = static_cast<std::ptrdiff_t>(view.beams.cols);
-  const auto rows = static_cast<std::ptrdiff_t>(view.beams.rows);
-  const auto row = static_cast<std::ptrdiff_t>(beam) / cols;
-  const auto col = static_cast<std::ptrdiff_t>(beam) % cols;
-  echoes[0] = {(1.0 - step.mixing) * double{kept.amplitude[beam]}, kept.before[beam]};
-  std::size_t count = 1;
-  if (!(step.mixing > 0.0)) return count;
-  for (std::ptrdiff_t k = 0; k < 9; ++k) {
-    const std::ptrdiff_t r = row + k / 3 - 1;
-    const std::ptrdiff_t c = col + k % 3 - 1;
-    if (k == 4 || r < 0 || r >= rows || c < 0 || c >= cols) continue;
-    const auto at = static_cast<std::size_t>(r * cols + c);
-    if (std::isnan(kept.before[at])) continue;
-    echoes[count++] = {step.mixing / 8.0 * double{kept.amplitude[at]}, kept.before[at]};
+/// The frequencies, the finest first, and what the search for the range needs of them.
+struct Waves {
+  std::size_t count = 0;
+  double finest_m = 0.0;                             ///< range of one wave of the finest
+  double limit_m = 0.0;                              ///< range without ambiguity
+  double number = 0.0;                               ///< of finest waves in it
+  double sigma_m_per_turn = 0.0;                     ///< of the range by that of the phases
+  std::array<double, kMostFrequencies> per_m{};      ///< waves
+  std::array<double, kMostFrequencies> to_finest{};  ///< frequency over the finest
+  std::array<double, kMostFrequencies> weight{};     ///< f^2 over the sum of all; 0: unused
+};
+
+Waves waves_of(const std::vector<double>& frequencies_hz) {
+  Waves waves;
+  waves.count = std::min(frequencies_hz.size(), kMostFrequencies);
+  std::array<double, kMostFrequencies> f{};
+  std::copy_n(frequencies_hz.begin(), waves.count, f.begin());
+  std::iter_swap(f.begin(), std::max_element(f.begin(), f.end()));
+  double squares = 0.0;
+  for (const double f_hz : f) squares += f_hz * f_hz;
+  for (std::size_t k = 0; k < waves.count; ++k) {
+    waves.per_m[k] = f[k] / kHalfLight_m_per_s;
+    waves.to_finest[k] = f[k] / f[0];
+    waves.weight[k] = f[k] * f[k] / squares;
   }
-  return count;
+  waves.finest_m = kHalfLight_m_per_s / f[0];
+  waves.limit_m = unambiguous_m(frequencies_hz);
+  constexpr double kRounding = 1e-12;
+  waves.number = std::ceil(waves.limit_m / waves.finest_m * (1.0 - kRounding));
+  waves.sigma_m_per_turn = kHalfLight_m_per_s / std::sqrt(squares);
+  return waves;
 }
 
-double total(std::span<const Echo> echoes) {
-  return std::accumulate(echoes.begin(), echoes.end(), 0.0,
-                         [](double sum, const Echo& echo) { return sum + echo.amplitude; });
+/// The whole number of finest waves that fits best, and how well.
+struct alignas(64) Found {
+  Batch<double> whole;
+  Batch<double> misfit;  ///< mean square in turns^2, weighted as the range is
+};
+
+GLIDAR_SIMD void phase_of_range(double per_m, const Batch<double>& range_m, Batch<double>& turns) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double waves = range_m[i] * per_m;
+    turns[i] = waves - std::floor(waves);
+  }
 }
 
-/// The phases of all frequencies with their errors; the least coherence among them.
-double measure_phases(const ContinuousWave& step, std::span<const Echo> echoes, double sigma_turns,
-                      const Draw& draw, std::span<double> turns) {
-  double least = 1.0;
-  for (std::size_t f = 0; f < turns.size(); ++f) {
-    const Phasor phasor = mixed_phasor(echoes, step.frequencies_hz[f]);
-    const auto number = static_cast<std::uint32_t>(f / 4);
-    const double normal = normals(random_words(block(draw, number)))[f % 4];
-    const double with_error = phasor.turns + sigma_turns * normal;
-    turns[f] = with_error - std::floor(with_error);
-    least = std::min(least, phasor.coherence);
+/// phase_sigma_rad in turns, for a run.
+GLIDAR_SIMD void spread(const ContinuousWave& law, const Batch<double>& amplitude,
+                        const Batch<double>& scale, Batch<double>& sigma_turns) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double light = amplitude[i] > kDarkest ? amplitude[i] : kDarkest;
+    const double signal = law.electrons_at_full_scale * light;
+    sigma_turns[i] = std::sqrt(0.5 * (law.background_electrons + signal)) /
+                     (law.contrast * signal) * scale[i] * (0.5 * std::numbers::inv_pi);
   }
-  return least;
+}
+
+GLIDAR_SIMD void add_error(const Batch<double>& sigma_turns, const Batch<double>& normal,
+                           Batch<double>& turns) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double astray = turns[i] + sigma_turns[i] * normal[i];
+    turns[i] = astray - std::floor(astray);
+  }
+}
+
+/// A phase less the one that the finest wave's own lets expect, but for whole waves of it.
+GLIDAR_SIMD void compare(double to_finest, const Batch<double>& finest, Batch<double>& turns) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) turns[i] -= finest[i] * to_finest;
+}
+
+/// What is left of a phase after so many waves of the finest frequency, -1/2 to 1/2.
+inline double left_over(double apart_turns, double whole, double to_finest) {
+  const double error = apart_turns - whole * to_finest;
+  return error - std::floor(error + 0.5);
+}
+
+/// Tries all whole numbers of finest waves on the phases of kOthers other frequencies.
+template <std::size_t kOthers>
+[[gnu::always_inline]] inline void try_all(const Waves& waves, const WavePhases& phases,
+                                           Found& best) {
+  for (double whole = 0.0; whole < waves.number; whole += 1.0) {
+    for (std::size_t i = 0; i < kDrawBatch; ++i) {
+      double misfit = 0.0;
+#pragma GCC unroll 8
+      for (std::size_t k = 1; k <= kOthers; ++k) {
+        const double error = left_over(phases.turns[k][i], whole, waves.to_finest[k]);
+        misfit += waves.weight[k] * error * error;
+      }
+      const bool is_better = misfit < best.misfit[i];
+      best.misfit[i] = is_better ? misfit : best.misfit[i];
+      best.whole[i] = is_better ? whole : best.whole[i];
+    }
+  }
+}
+
+GLIDAR_SIMD void search_two(const Waves& waves, const WavePhases& phases, Found& best) {
+  try_all<1>(waves, phases, best);
+}
+GLIDAR_SIMD void search_three(const Waves& waves, const WavePhases& phases, Found& best) {
+  try_all<2>(waves, phases, best);
+}
+GLIDAR_SIMD void search_many(const Waves& waves, const WavePhases& phases, Found& best) {
+  try_all<kMostFrequencies - 1>(waves, phases, best);
+}
+
+/// The range of a whole number of waves and the finest phase ...
+GLIDAR_SIMD void begin_range(double finest_m, const Batch<double>& finest, const Found& found,
+                             Batch<double>& range_m) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) range_m[i] = (finest[i] + found.whole[i]) * finest_m;
+}
+
+/// ... and how far another phase pulls it.
+GLIDAR_SIMD void pull_range(double to_finest, double weight_m, const Batch<double>& turns,
+                            const Found& found, Batch<double>& range_m) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    range_m[i] += weight_m * left_over(turns[i], found.whole[i], to_finest);
+  }
+}
+
+GLIDAR_SIMD void finish_range(const Waves& waves, const Batch<double>& sigma_turns,
+                              NoiseBatch& batch) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double range_m = batch.range_m[i];
+    const double sigma_m = sigma_turns[i] * waves.sigma_m_per_turn;
+    batch.range_m[i] = range_m < 0.0 ? range_m + waves.limit_m : range_m;
+    batch.variance_m2[i] += sigma_m * sigma_m;
+  }
+}
+
+/// The phases as they reach the sensor, and their coherence.
+void see(const ContinuousWave& step, const Waves& waves, const NoiseView& view,
+         const NoiseBatch& batch, WavePhases& phases) {
+  if (mixes(step)) {
+    mix(step.mixing, {waves.per_m.data(), waves.count}, view, batch, phases);
+    return;
+  }
+  phases.amplitude = batch.intensity;
+  phases.coherence.fill(1.0);
+  for (std::size_t k = 0; k < waves.count; ++k) {
+    phase_of_range(waves.per_m[k], batch.range_m, phases.turns[k]);
+  }
+}
+
+void add_errors(const Draw& draw, std::size_t count, const Batch<double>& sigma_turns,
+                WavePhases& phases) {
+  WordBatch words;
+  PairBatch normal;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (k % 4 == 0) draw_words(block(draw, static_cast<std::uint32_t>(k / 4)), words);
+    if (k % 2 == 0) make_normals(words, k % 4 / 2, normal);
+    add_error(sigma_turns, k % 2 == 0 ? normal.first : normal.second, phases.turns[k]);
+  }
+}
+
+/// The range that fits the phases best; these are used up.
+void unwrap(const Waves& waves, WavePhases& phases, Found& found, Batch<double>& range_m) {
+  for (std::size_t k = 1; k < waves.count; ++k) {
+    compare(waves.to_finest[k], phases.turns[0], phases.turns[k]);
+  }
+  for (std::size_t k = std::max<std::size_t>(waves.count, 3); k < kMostFrequencies; ++k) {
+    if (waves.count > 3) phases.turns[k].fill(0.0);
+  }
+  found.whole.fill(0.0);
+  found.misfit.fill(waves.count > 1 ? 1.0 : 0.0);  // worse than any, which is at most 1/4
+  if (waves.count == 2) search_two(waves, phases, found);
+  if (waves.count == 3) search_three(waves, phases, found);
+  if (waves.count > 3) search_many(waves, phases, found);
+  begin_range(waves.finest_m, phases.turns[0], found, range_m);
+  for (std::size_t k = 1; k < waves.count; ++k) {
+    pull_range(waves.to_finest[k], waves.weight[k] / waves.per_m[k], phases.turns[k], found,
+               range_m);
+  }
 }
 
 }  // namespace
-
-Phasor mixed_phasor(std::span<const Echo> echoes, double frequency_hz) {
-  double real = 0.0;
-  double imaginary = 0.0;
-  for (const Echo& echo : echoes) {
-    const SineCosine wave = of_turns(echo.range_m * frequency_hz / kHalfLight_m_per_s);
-    real += echo.amplitude * wave.cosine;
-    imaginary += echo.amplitude * wave.sine;
-  }
-  const double sum = total(echoes);
-  const double length = std::sqrt(real * real + imaginary * imaginary);
-  return {turns_of(imaginary, real), sum > 0.0 ? length / sum : 0.0};
-}
 
 double phase_sigma_rad(const ContinuousWave& law, double amplitude) {
   const double signal = law.electrons_at_full_scale * std::max(amplitude, kDarkest);
@@ -88,33 +207,6 @@ double unambiguous_m(const std::vector<double>& frequencies_hz) {
   return kHalfLight_m_per_s / static_cast<double>(std::max<std::uint64_t>(common, 1));
 }
 
-Unwrapped unwrap(const std::vector<double>& frequencies_hz, std::span<const double> turns,
-                 double limit_m) {
-  const auto finest = static_cast<std::size_t>(
-      std::max_element(frequencies_hz.begin(), frequencies_hz.end()) - frequencies_hz.begin());
-  const double wave_m = kHalfLight_m_per_s / frequencies_hz[finest];
-  double weights = 0.0;
-  for (const double f : frequencies_hz) weights += f * f;
-  Unwrapped best{0.0, std::numeric_limits<double>::infinity()};
-  for (double whole = 0.0; whole * wave_m < limit_m * (1.0 - 1e-12); whole += 1.0) {
-    const double candidate_m = (turns[finest] + whole) * wave_m;
-    double shift = 0.0;  // sum of weight times the range's change that each phase asks for
-    double misfit = 0.0;
-    for (std::size_t f = 0; f < turns.size(); ++f) {
-      const double per_m = frequencies_hz[f] / kHalfLight_m_per_s;
-      const double apart = turns[f] - candidate_m * per_m;
-      const double error = apart - std::floor(apart + 0.5);
-      const double weight = frequencies_hz[f] * frequencies_hz[f] / weights;
-      shift += weight * error / per_m;
-      misfit += weight * error * error;
-    }
-    const double rms = std::sqrt(misfit);
-    if (rms < best.misfit_turns) best = {candidate_m + shift, rms};
-  }
-  if (best.range_m < 0.0) best.range_m += limit_m;
-  return best;
-}
-
 void prepare(const ContinuousWave& /*step*/, const NoiseView& view, NoiseBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     view.frame.scratch.before[batch.first + i] = batch.range_m[i];
@@ -123,30 +215,19 @@ void prepare(const ContinuousWave& /*step*/, const NoiseView& view, NoiseBatch& 
 }
 
 void apply(const ContinuousWave& step, const NoiseView& view, NoiseBatch& batch) {
-  constexpr double kTurn_rad = 2.0 * std::numbers::pi;
-  const double limit_m = unambiguous_m(step.frequencies_hz);
-  double squares = 0.0;
-  for (const double f : step.frequencies_hz) squares += f * f;
-  std::array<Echo, kNeighbourhood> echoes;
-  std::array<double, kMostFrequencies> turns;
-  const std::span<double> used(turns.data(),
-                               std::min(step.frequencies_hz.size(), kMostFrequencies));
-  Draw draw = batch.draw;
+  const Waves waves = waves_of(step.frequencies_hz);
+  WavePhases phases;
+  Batch<double> sigma_turns;
+  Found found;
+  see(step, waves, view, batch, phases);
+  spread(step, phases.amplitude, batch.scale, sigma_turns);
+  add_errors(batch.draw, waves.count, sigma_turns, phases);
+  unwrap(waves, phases, found, batch.range_m);
+  finish_range(waves, sigma_turns, batch);
+  const double most = step.largest_misfit * step.largest_misfit;
   for (std::size_t i = 0; i < batch.count; ++i) {
-    if (!is_hit(batch, i)) continue;
-    const std::size_t beam = batch.first + i;
-    draw.beam = static_cast<std::uint32_t>(beam);
-    const std::span<const Echo> light(echoes.data(), gather(step, view, beam, echoes));
-    const double sigma_turns = phase_sigma_rad(step, total(light)) * batch.scale[i] / kTurn_rad;
-    const double coherence = measure_phases(step, light, sigma_turns, draw, used);
-    const Unwrapped found = unwrap(step.frequencies_hz, used, limit_m);
-    if (coherence < step.least_coherence || found.misfit_turns > step.largest_misfit) {
-      lose(batch, i, Status::wrapped);
-      continue;
-    }
-    batch.range_m[i] = found.range_m;
-    const double sigma_m = sigma_turns * kHalfLight_m_per_s / std::sqrt(squares);
-    batch.variance_m2[i] += sigma_m * sigma_m;
+    const bool is_clear = phases.coherence[i] >= step.least_coherence && found.misfit[i] <= most;
+    if (!is_clear && is_hit(batch, i)) lose(batch, i, Status::wrapped);
   }
 }
 

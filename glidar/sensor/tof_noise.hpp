@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <span>
+#include <cstddef>
 #include <vector>
 
 namespace glidar {
@@ -10,12 +10,16 @@ namespace glidar {
 struct NoiseBatch;
 struct NoiseView;
 
+/// The most frequencies that are used.
+inline constexpr std::size_t kMostFrequencies = 8;
+
 /// Time of flight by continuous waves. At each frequency f the pixel measures the phase of
 /// sum a exp(j 4 pi f R / c) over itself and, with the share `mixing`, over the pixels around it,
 /// a being the intensity. Its error is normal, sigma = sqrt(B + A) / (sqrt 2 C A), A and B the
 /// electrons of signal and background, C the contrast (Lange and Seitz, IEEE J. Quantum
 /// Electronics 37 (2001), whose sigma_z is c / (4 pi f) times this). The distance is the one, up to
-/// c / (2 gcd of the frequencies), that the phases fit best; greater ones wrap around.
+/// c / (2 gcd of the frequencies), that the phases fit best; greater ones wrap around. Phases count
+/// with f^2, which makes it the mean of least variance, since every phase has the same error.
 /// Where light of several distances cancels, |sum a exp| / sum a < least_coherence at some
 /// frequency, or where the phases fit no distance (rms above largest_misfit turns), the status is
 /// wrapped.
@@ -29,35 +33,16 @@ struct ContinuousWave {
   double largest_misfit = 0.1;
 };
 
-/// Light of one distance in a pixel.
-struct Echo {
-  double amplitude;
-  double range_m;
-};
-
-struct Phasor {
-  double turns;      ///< phase, 0 to below 1
-  double coherence;  ///< |sum| / sum of amplitudes
-};
-
-/// The sum of the echoes' waves at a frequency.
-Phasor mixed_phasor(std::span<const Echo> echoes, double frequency_hz);
-
 /// Standard deviation of the phase, radians.
 double phase_sigma_rad(const ContinuousWave& law, double amplitude);
 
 /// The greatest range without ambiguity: c / (2 gcd), the frequencies rounded to whole hertz.
 double unambiguous_m(const std::vector<double>& frequencies_hz);
 
-struct Unwrapped {
-  double range_m;
-  double misfit_turns;  ///< rms over the frequencies, weighted as the range is
-};
-
-/// The range from 0 to limit_m that fits the phases best. Weights f^2 make it the mean of least
-/// variance, since every phase has the same error.
-Unwrapped unwrap(const std::vector<double>& frequencies_hz, std::span<const double> turns,
-                 double limit_m);
+/// Whether pixels mix their light with that of those around them.
+inline bool mixes(const ContinuousWave& step) {
+  return step.mixing > 0.0;
+}
 
 void prepare(const ContinuousWave& step, const NoiseView& view, NoiseBatch& batch);
 void apply(const ContinuousWave& step, const NoiseView& view, NoiseBatch& batch);

@@ -351,47 +351,5 @@ class Interrupt(CliTest):
         self.assertEqual(self.files(), [])
 
 
-class Sensors(CliTest):
-    def test_list_tells_every_preset(self):
-        lines = self.succeed("sensors").stdout.splitlines()
-        names = {line.split()[0] for line in lines[1:]}
-        self.assertLessEqual({"VLP-16", "OS1-128", "Livox-Avia", "D435", "TiM781"}, names)
-        told = {entry["name"]: entry for entry in json.loads(self.succeed("sensors", "--json").stdout)}
-        self.assertEqual(set(told), names)
-        self.assertEqual(told["VLP-16"]["rows"], 16)
-        self.assertEqual(told["VLP-16"]["view_deg"][0], 360)
-
-    def test_one_sensor_tells_its_sources_and_draws_its_pattern(self):
-        text = self.succeed("sensors", "vlp-16", "-o", "pattern.png").stdout
-        self.assertIn("optics.sequence_us = 55.296", text)
-        self.assertIn("VLP-16 manual", text)
-        with open(os.path.join(self.folder, "pattern.png"), "rb") as file:
-            self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
-        self.assertIn("did you mean VLP-16?", self.refused("sensors", "VLP-17"))
-        self.assertIn("no sensor is named", self.refused("sensors", "-o", "x.png"))
-
-    def test_renders_with_a_preset(self):
-        done = self.succeed("render", "builtin:box", "--sensor", "vlp-16", "--eye", "0,0,0",
-                            "--columns", "xyz,range,ring,time", "-o", "room.npz")
-        self.assertIn("1809 x 16 beams, 28944 hits (100.0 %)", done.stdout)
-        with open(os.path.join(self.folder, "room.npz.json"), encoding="utf-8") as file:
-            sensor = json.load(file)["sensor"]
-        self.assertEqual(sensor["optics"]["type"], "spinning")
-        self.assertEqual(sensor["frame_id"], "lidar_frame")
-        self.assertEqual(len(sensor["optics"]["elevation_deg"]), 16)
-
-    def test_without_a_pose_it_stands_beside_the_scene_and_says_so(self):
-        done = self.succeed("render", "builtin:asteroid", "--sensor", "OS1-32", "-o", "a.pcd")
-        self.assertIn("beside the scene", done.stderr)
-        self.assertNotIn(" 0 hits", done.stdout)
-
-    def test_columns_and_rate_can_be_chosen(self):
-        done = self.succeed("render", "builtin:box", "--eye", "0,0,0", "--sensor", "OS1-32",
-                            "--columns-per-turn", "512", "--rate", "20", "-o", "a.pcd")
-        self.assertIn("512 x 32 beams", done.stdout)
-        self.assertIn("does not spin", self.refused(
-            "render", "builtin:box", "--sensor", "D435", "--columns-per-turn", "5", "-o", "x.pcd"))
-
-
 if __name__ == "__main__":
     unittest.main()

@@ -14,7 +14,7 @@ class Sequences(CliTest):
                                  "sensor_pose: {position: [0, 0, 0]}\n"
                                  "sensor_motion: {twist: {velocity_m_s: [2, 0, 0]}}\n")
         columns = ("--columns", "xyz,time,ring", "--cloud-frame", "world", "--dense")
-        self.succeed("render", "scene.yaml", "--duration", "0.3", "--deskew", *columns, "-o", "a.csv")
+        self.succeed("render", "scene.yaml", "--duration", "0.3", "--deskew", "--ideal", *columns, "-o", "a.csv")
         self.assertEqual([name for name in self.files() if name.endswith(".csv")],
                          ["a_000000.csv", "a_000001.csv", "a_000002.csv"])
         times = []

@@ -97,12 +97,29 @@ TEST(Gaussian, BatchesAreTheSameAsOneByOne) {
   }
 }
 
+TEST(Gaussian, SharedBatchesHaveAllNumbersOfAQuarterOfTheDraws) {
+  for (const std::uint32_t start : {0U, 768U, 0xFFFFFF00U}) {
+    const Draw draw{.seed = 0x123456789abcU, .sensor = 5, .frame = 9, .beam = start, .block = 2};
+    Batch<double> shared;
+    Batch<double> uniforms;
+    draw_shared_normals(draw, shared);
+    draw_shared_uniforms(draw, uniforms);
+    for (std::uint32_t i = 0; i < kDrawBatch; ++i) {
+      Draw one = draw;
+      one.beam = start / 4 + i % 64;
+      const RandomWords words = random_words(one);
+      EXPECT_EQ(shared[i], normals(words).at(i / 64));
+      EXPECT_EQ(uniforms[i], uniform(words.at(i / 64)));
+    }
+  }
+}
+
 /// Normals of a million beams.
 std::vector<double> million() {
   std::vector<double> sample;
   Batch<double> batch;
   for (std::uint32_t beam = 0; beam < 4000 * kDrawBatch; beam += kDrawBatch) {
-    draw_normals({.seed = 77, .beam = beam}, batch);
+    draw_shared_normals({.seed = 77, .beam = beam}, batch);
     sample.insert(sample.end(), batch.begin(), batch.end());
   }
   return sample;

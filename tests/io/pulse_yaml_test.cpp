@@ -35,16 +35,14 @@ TEST(PulseLightInASensorFile, IsAbsentUnlessGiven) {
 TEST(PulseLightInASensorFile, GivesEveryNumber) {
   const PulseLight light = pulse(
       "{reference_reflectance: 0.1, reference_range_m: 55, range_exponent: 2.6, overlap: "
-      "[[0.9, 0], [1, 1]], extinction_per_m: 0.01, noise_sigma: 0.3, false_alarm_range_m: "
-      "120, saturation: 900}");
+      "[[0.9, 0], [1, 1]], extinction_per_m: 0.01, noise_sigma: 0.3, saturation: 900}");
   EXPECT_EQ(light.reference_reflectance, 0.1);
   EXPECT_EQ(light.reference_range_m, 55.0);
   EXPECT_EQ(light.range_exponent, 2.6);
   EXPECT_EQ(light.extinction_per_m, 0.01);
   EXPECT_EQ(light.noise_sigma, 0.3);
-  EXPECT_EQ(light.false_alarm_range_m, 120.0);
   EXPECT_EQ(light.saturation, 900.0);
-  EXPECT_EQ(light.overlap, (std::vector<std::array<double, 2>>{{0.9, 0.0}, {1.0, 1.0}}));
+  EXPECT_EQ(light.overlap, (Table{{0.9, 0.0}, {1.0, 1.0}}));
 }
 
 TEST(PulseLightInASensorFile, TakesTheNoiseFromTheRangeOfNinetyPercent) {

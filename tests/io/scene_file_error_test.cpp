@@ -108,7 +108,8 @@ const BadFile kBadScenes[] = {
      "one of them"},
     {"MaterialUnknownKey", model("materials: {A: {difuse: [1, 1, 1]}}"),
      "s.yaml:3:21: models[0].materials.A.difuse: unknown key 'difuse'; allowed: ambient, diffuse, "
-     "specular, shininess, opacity, noise_scale, noise_texture, backscatter, spectrum; did you "
+     "specular, shininess, opacity, noise_scale, noise_texture, surface, backscatter, spectrum; "
+     "did you "
      "mean 'diffuse'?"},
     {"TwoMotions", model("motion: {spin: {rate_rad_s: [0, 0, 1]}, trajectory: t.tum}"),
      "s.yaml:3:13: models[0].motion: 2 kinds of motion; allowed: one of spin, twist, tumbling, "

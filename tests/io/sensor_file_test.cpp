@@ -164,7 +164,8 @@ const BadFile kBadFiles[] = {
      "fov_x_deg, fx, fy, cx, cy, pixel_centre, distortion; did you mean 'width'?"},
     {"UnknownKeyFarFromAny", with_good_optics("zzzzzzzzz: 1\n"),
      "s.yaml:2:1: zzzzzzzzz: unknown key 'zzzzzzzzz'; allowed: name, optics, rate_hz, "
-     "wavelength_nm, limits, depth_limits, light, pulse_light, noise, cull_back_faces, source, "
+     "wavelength_nm, limits, depth_limits, light, pulse_light, weather, noise, cull_back_faces, "
+     "source, "
      "unverified"},
     {"DuplicateKey", optics("width: 4, height: 2, width: 5, fov_deg: 20"),
      "s.yaml:1:31: optics.width: the key is given twice; allowed: each key once; remove one of "
@@ -286,7 +287,8 @@ const BadFile kBadFiles[] = {
      "their path, do not put them into the file"},
     {"ControlCharactersAreNotPrinted", "\"a\\n\\e\": 1\n",
      "s.yaml:1:1: a?\?: unknown key 'a?\?'; allowed: name, optics, rate_hz, "
-     "wavelength_nm, limits, depth_limits, light, pulse_light, noise, cull_back_faces, source, "
+     "wavelength_nm, limits, depth_limits, light, pulse_light, weather, noise, cull_back_faces, "
+     "source, "
      "unverified"},
 };
 

@@ -163,6 +163,19 @@ TEST(Presets, NumbersFromMemoryAreMarked) {
   EXPECT_TRUE(verified.at("name"));
 }
 
+TEST(Presets, SourcesStandBesideTheirNumbers) {
+  const SensorSheet sheet = load_sensor_sheet(find_sensor_file("OS1-64"));
+  std::map<std::string, std::string> source;
+  for (const SheetEntry& entry : sheet.entries) source[entry.key] = entry.source;
+  EXPECT_TRUE(source.at("rate_hz").starts_with("10 with 512"));
+  EXPECT_EQ(source.at("wavelength_nm"), "data sheet, revision 6");
+  EXPECT_TRUE(source.at("pulse_light.reference_range_m").ends_with("every second time"));
+  EXPECT_TRUE(source.at("pulse_light.range90_m").ends_with("nine times of ten"));
+  EXPECT_TRUE(source.at("noise[1].k_m").starts_with("OS1 data sheet, first generation: 1.5"));
+  EXPECT_TRUE(source.at("noise[1].floor_m").starts_with("ouster-sdk"));
+  EXPECT_EQ(source.at("noise[3].step_m"), "data sheet, revision 6: 1 mm");
+}
+
 TEST(Presets, LimitsOfScannersAreAlongTheBeam) {
   EXPECT_EQ(preset("VLP-16").limits.along, Limits::Along::range);
   EXPECT_EQ(preset("D435").limits.along, Limits::Along::depth);

@@ -65,7 +65,7 @@ inline void PrintTo(const BadFile& bad, std::ostream* out) {
   *out << bad.name;
 }
 
-inline std::string bad_file_name(const testing::TestParamInfo<BadFile>& info) {
+inline std::string bad_file_name(const ::testing::TestParamInfo<BadFile>& info) {
   return info.param.name;
 }
 

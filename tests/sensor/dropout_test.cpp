@@ -22,16 +22,6 @@ double tolerance(double p) {
   return 4.0 * std::sqrt(p * (1.0 - p) / 300000.0);
 }
 
-TEST(Table, IsStraightBetweenAndConstantOutside) {
-  const Table table{.at = {1.0, 3.0, 4.0}, .value = {0.2, 0.6, 0.0}};
-  EXPECT_EQ(look_up(table, 0.0), 0.2);
-  EXPECT_DOUBLE_EQ(look_up(table, 2.0), 0.4);
-  EXPECT_EQ(look_up(table, 3.0), 0.6);
-  EXPECT_DOUBLE_EQ(look_up(table, 3.5), 0.3);
-  EXPECT_EQ(look_up(table, 9.0), 0.0);
-  EXPECT_EQ(look_up({}, 9.0), 0.0);
-}
-
 TEST(Dropout, LosesTheStatedShare) {
   NoiseStage stage(300, 1000, 10.0);
   stage.apply({Dropout{.probability = 0.03}});
@@ -47,21 +37,11 @@ TEST(Dropout, LosesTheStatedShare) {
 TEST(Dropout, ProbabilitiesByRangeAndIncidenceAreIndependent) {
   NoiseStage stage(300, 1000, 10.0);
   stage.frame.truth.cos_incidence.assign(300000, 0.5F);  // 60 degrees
-  stage.apply(
-      {Dropout{.probability = 0.1,
-               .by_range_m = {.at = {5.0, 15.0}, .value = {0.0, 0.4}},
-               .by_incidence_rad = {.at = {0.0, std::numbers::pi / 2.0}, .value = {0.0, 0.3}}}});
+  stage.apply({Dropout{.probability = 0.1,
+                       .by_range_m = {{5.0, 0.0}, {15.0, 0.4}},
+                       .by_incidence_rad = {{0.0, 0.0}, {std::numbers::pi / 2.0, 0.3}}}});
   const double expected = 1.0 - 0.9 * 0.8 * 0.8;
   EXPECT_NEAR(share(stage, Status::dropped), expected, tolerance(expected));
-}
-
-TEST(Detection, HasTheProbabilityOfAThresholdInNormalNoise) {
-  for (const double intensity : {0.05, 0.1, 0.12}) {
-    NoiseStage stage(300, 1000, 10.0, intensity);
-    stage.apply({Detection{.threshold = 0.1, .sigma = 0.02}});
-    const double missed = 0.5 * std::erfc((intensity - 0.1) / 0.02 / std::numbers::sqrt2);
-    EXPECT_NEAR(share(stage, Status::below_threshold), missed, tolerance(missed) + 1e-5);
-  }
 }
 
 TEST(Crosstalk, PutsTheRangeUniformlyBeforeAnotherChannelsEcho) {
@@ -137,6 +117,9 @@ TEST(IntensityScale, SpellsDiffuseAndRetroReflectorsAsVendorsDo) {
   stage.reset(20.0, 3.0);
   stage.apply({IntensityScale{}});
   EXPECT_EQ(stage.frame.intensity[0], 1.0F);
+  stage.reset(20.0, 3.0);
+  stage.apply({IntensityScale{.kind = IntensityScale::Kind::plain, .gain = 0.5}});
+  EXPECT_EQ(stage.frame.intensity[0], 1.5F);
 }
 
 }  // namespace

@@ -24,20 +24,6 @@ ContinuousWave kinect_v2() {
   return law;
 }
 
-TEST(MixedPhasor, IsTheSumOfTheWaves) {
-  const std::array<Echo, 2> echoes = {{{0.7, 1.3}, {0.4, 1.62}}};
-  for (const double f : {16e6, 80e6, 120e6}) {
-    const auto wave = [&](const Echo& e) {
-      return std::polar(e.amplitude, 4.0 * std::numbers::pi * f * e.range_m / kLight_m_per_s);
-    };
-    const std::complex<double> sum = wave(echoes[0]) + wave(echoes[1]);
-    const Phasor found = mixed_phasor(echoes, f);
-    const double expected = std::arg(sum) / (2.0 * std::numbers::pi);
-    EXPECT_NEAR(found.turns, expected < 0.0 ? expected + 1.0 : expected, 1e-12);
-    EXPECT_NEAR(found.coherence, std::abs(sum) / 1.1, 1e-12);
-  }
-}
-
 TEST(ContinuousWave, UnambiguousRangesAreThoseOfTheFrequencies) {
   EXPECT_NEAR(unambiguous_m({80e6}), 1.874, 5e-4);
   EXPECT_NEAR(unambiguous_m({16e6}), 9.369, 5e-4);

@@ -55,7 +55,7 @@ struct Room {
 TEST(Lidar, EveryPresetCastsInARoom) {
   for (const auto& file : preset_files()) {
     SCOPED_TRACE(file.string());
-    Sensor sensor = load_sensor_file(file);
+    Sensor sensor = ideal(load_sensor_file(file));
     EXPECT_LT(sensor.limits.near_m, kHalfSide_m);
     sensor.limits.far_m = 100.0;  // rooms corners may lie beyond a short sensor's end
     const Room room(sensor);
@@ -65,7 +65,7 @@ TEST(Lidar, EveryPresetCastsInARoom) {
 }
 
 TEST(Lidar, CloudsTellRingAndTime) {
-  const Room room(load_sensor_file(find_sensor_file("VLP-16")));
+  const Room room(ideal(load_sensor_file(find_sensor_file("VLP-16"))));
   const auto& ring = std::get<std::vector<std::uint16_t>>(find_column(room.cloud, "ring")->values);
   const auto& time = std::get<std::vector<std::uint32_t>>(find_column(room.cloud, "time")->values);
   EXPECT_EQ(room.cloud.rows, 16U);
@@ -76,7 +76,7 @@ TEST(Lidar, CloudsTellRingAndTime) {
 }
 
 TEST(Lidar, LimitsAreAboutTheReportedRange) {
-  Sensor sensor = load_sensor_file(find_sensor_file("OS0-128"));
+  Sensor sensor = ideal(load_sensor_file(find_sensor_file("OS0-128")));
   sensor.limits = {.near_m = 0.0, .far_m = 2.5, .along = Limits::Along::range};
   const Beams beams = make_beams(sensor);
   Scene scene = testing::scene_of(make_builtin_model("sphere"));

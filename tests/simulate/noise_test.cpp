@@ -18,7 +18,6 @@ std::vector<NoiseStep> every_step() {
   return {PointingJitter{.sigma_azimuth_rad = 1e-4, .sigma_elevation_rad = 1e-4},
           EncoderError{.step_rad = 1e-4, .eccentricity_rad = 1e-4, .turn_sigma_rad = 1e-4},
           IntensityGaussian{.sigma = 0.01, .relative = 0.02},
-          Detection{.threshold = 0.02, .sigma = 0.01},
           RangeGaussian{.sigma_m = 0.001, .sigma_per_m = 1e-4},
           RangeSnr{.floor_m = 0.001, .k_m = 0.01, .snr_at_full_scale = 100.0},
           RangePulse{.pulse_fwhm_s = 5e-9, .sample_s = 1e-9, .noise = 1e-4},
@@ -38,8 +37,8 @@ std::vector<NoiseStep> every_step() {
           KinectV1{},
           DisparityQuantum{.k_m = 1e4},
           Dropout{.probability = 0.02,
-                  .by_range_m = {.at = {1.0, 10.0}, .value = {0.0, 0.1}},
-                  .by_incidence_rad = {.at = {1.0, 1.6}, .value = {0.0, 0.5}}},
+                  .by_range_m = {{1.0, 0.0}, {10.0, 0.1}},
+                  .by_incidence_rad = {{1.0, 0.0}, {1.6, 0.5}}},
           RangeQuantum{.step_m = 1e-3},
           IntensityScale{.kind = IntensityScale::Kind::vendor}};
 }

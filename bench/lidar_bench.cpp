@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What a LiDAR's measurement and noise cost beside the bare cast of the same beams: one turn of a
+// VLP-16 in a furnished room.
+#include "ratio_reporter.hpp"
+
+#include <glidar/io/builtin_models.hpp>
+#include <glidar/io/sensor_file.hpp>
+#include <glidar/io/sensor_presets.hpp>
+#include <glidar/simulate.hpp>
+
+namespace glidar::bench {
+namespace {
+
+/// A room of 8 m x 8 m x 4 m, the sensor 1.5 m above its floor, and things on it: 118,784
+/// triangles.
+Scene make_room() {
+  Scene scene;
+  add_model(scene, make_builtin_model("box"));
+  scene.instances[0].scale = 4.0;
+  scene.instances[0].world_from_object.translation().z() = 2.5;
+  const auto put = [&](const char* model, double scale, const Eigen::Vector3d& at_m) {
+    add_model(scene, make_builtin_model(model));
+    scene.instances.back().scale = scale;
+    scene.instances.back().world_from_object.translation() = at_m;
+  };
+  put("asteroid", 0.7, {2.2, 1.0, -0.8});
+  put("torus", 0.6, {-2.0, 2.0, -0.5});
+  put("torus", 0.4, {1.0, -2.5, 0.1});
+  put("sphere", 0.5, {-1.5, -2.0, 0.0});
+  put("box", 0.4, {3.0, -2.0, -0.9});
+  return scene;
+}
+
+struct Stage {
+  Scene scene = make_room();
+  Sensor sensor = load_sensor_file(find_sensor_file("VLP-16"));
+  Sensor noisy = sensor;
+  Beams beams = make_beams(sensor);
+  Motion motion = standing_still(scene, Pose::Identity());
+
+  Stage() {
+    noisy.noise = {RangeGaussian{.sigma_m = 0.01}, Dropout{.probability = 0.01},
+                   RangeQuantum{.step_m = 0.002}};
+  }
+};
+
+void count_rays(const Stage& stage, benchmark::State& state) {
+  state.counters["rays/s"] = benchmark::Counter(
+      static_cast<double>(state.iterations()) * static_cast<double>(stage.beams.size()),
+      benchmark::Counter::kIsRate);
+}
+
+void register_cast(const Stage& stage, unsigned threads, const std::string& name) {
+  benchmark::RegisterBenchmark(name.c_str(), [&stage, threads](benchmark::State& state) {
+    const auto renderer = make_renderer(stage.scene, {.threads = threads});
+    Hits hits;
+    for (auto _ : state) {
+      renderer->cast({.beams = stage.beams,
+                      .world_from_sensor = Pose::Identity(),
+                      .world_from_instance = {},
+                      .fields = {.normal = true}},
+                     hits);
+    }
+    count_rays(stage, state);
+  })->UseRealTime();
+}
+
+void register_simulation(const Stage& stage, const Sensor& sensor, unsigned threads,
+                         const std::string& name) {
+  benchmark::RegisterBenchmark(name.c_str(), [&stage, &sensor, threads](benchmark::State& state) {
+    const auto renderer = make_renderer(stage.scene, {.threads = threads});
+    const Setup setup{stage.scene, sensor, stage.beams, stage.motion, *renderer};
+    Frame frame;
+    for (auto _ : state) simulate(setup, {}, frame);
+    count_rays(stage, state);
+  })->UseRealTime();
+}
+
+}  // namespace
+}  // namespace glidar::bench
+
+int main(int argc, char** argv) {
+  const glidar::bench::Stage stage;
+  std::vector<glidar::bench::Ratio> ratios;
+  for (const unsigned threads : {1U, 2U}) {
+    const std::string at = std::to_string(threads) + " threads ";
+    glidar::bench::register_cast(stage, threads, at + "cast");
+    glidar::bench::register_simulation(stage, stage.sensor, threads, at + "simulate");
+    glidar::bench::register_simulation(stage, stage.noisy, threads, at + "with noise");
+    ratios.push_back({at + "simulate / cast", at + "cast", at + "simulate", 0.6});
+    ratios.push_back({at + "with noise / cast", at + "cast", at + "with noise", 0.6});
+  }
+  return glidar::bench::run(argc, argv, ratios);
+}

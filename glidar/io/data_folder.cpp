@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/data_folder.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <cstdlib>
+#include <vector>
+
+namespace glidar {
+
+namespace fs = std::filesystem;
+
+fs::path data_folder(const std::string& name, const char* variable) {
+  std::error_code error;
+  if (const char* named = std::getenv(variable); named != nullptr && *named != '\0') {
+    if (fs::is_directory(named, error)) return named;
+    throw Error(
+        {variable, std::string(named) + " is no folder", "a folder like GLIDAR's " + name, ""});
+  }
+  // beside the program first, so that a moved installation finds its own
+  const fs::path self = fs::read_symlink("/proc/self/exe", error);
+  const std::vector<fs::path> places = {
+      self.parent_path().parent_path() / "share" / "glidar" / name,
+      fs::path(GLIDAR_DATA_SOURCE_PATH) / name, fs::path(GLIDAR_DATA_INSTALL_PATH) / name};
+  for (const fs::path& place : places) {
+    if (fs::is_directory(place, error)) return place;
+  }
+  throw Error({"the " + name + " that come with GLIDAR", "not found in " + places.back().string(),
+               "", std::string("install GLIDAR whole, or set ") + variable});
+}
+
+}  // namespace glidar

@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io: where the data that comes with GLIDAR lies.
+
+#include <filesystem>
+#include <string>
+
+namespace glidar {
+
+/// The folder `name` of the data that comes with GLIDAR: where the variable says, beside the
+/// running program (share/glidar/name), in the source, or where it is installed. Throws Error when
+/// there is none.
+std::filesystem::path data_folder(const std::string& name, const char* variable);
+
+}  // namespace glidar

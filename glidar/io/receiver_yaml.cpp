@@ -1,0 +1,102 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/receiver_yaml.hpp>
+
+#include <array>
+
+namespace glidar {
+namespace {
+
+constexpr NumberRule kDivergence_mrad = {0.0, 1500.0, false, "milliradians from 0 to 1500"};
+constexpr NumberRule kExit_mm = {0.0, 1e5, false, "millimetres from 0 to 1e5"};
+constexpr NumberRule kPulse_ns = {0.0, 1e6, true, "nanoseconds above 0, up to 1e6"};
+constexpr NumberRule kSeparation_m = {0.0, 1e6, false, "metres from 0 to 1e6"};
+
+struct NamedReturn {
+  const char* name;
+  Return which;
+};
+
+constexpr std::array<NamedReturn, 6> kReturns = {
+    {{"first", {Return::Order::nearest, 0}},
+     {"second", {Return::Order::nearest, 1}},
+     {"third", {Return::Order::nearest, 2}},
+     {"last", {Return::Order::farthest, 0}},
+     {"strongest", {Return::Order::strongest, 0}},
+     {"second_strongest", {Return::Order::strongest, 1}}}};
+
+/// One number for both, or [across, up].
+std::array<double, 2> read_two(const YamlField& field, const NumberRule& rule, double unit) {
+  if (!field.node.IsSequence()) {
+    const double both = number(field, rule) * unit;
+    return {both, both};
+  }
+  const std::vector<YamlField> two = items(field);
+  if (two.size() != 2) reject(field, describe(field), "one number, or two: [across, up]");
+  return {number(two[0], rule) * unit, number(two[1], rule) * unit};
+}
+
+/// The nearest `count` returns, or a list of names.
+std::vector<Return> read_returns(const YamlField& field) {
+  std::vector<Return> returns;
+  if (!field.node.IsSequence()) {
+    const std::uint32_t count = whole_number(field, 1, kMostReturns);
+    for (unsigned k = 0; k < count; ++k) returns.push_back({Return::Order::nearest, k});
+    return returns;
+  }
+  std::vector<std::string> names;
+  for (const NamedReturn& known : kReturns) names.emplace_back(known.name);
+  for (const YamlField& item : items(field)) {
+    returns.push_back(kReturns[one_of(item, names)].which);
+  }
+  if (returns.empty() || returns.size() > kMostReturns)
+    reject(field, std::to_string(returns.size()) + " entries", "1 to 16 returns");
+  return returns;
+}
+
+}  // namespace
+
+Footprint read_footprint(const YamlField& field) {
+  constexpr double kMilli = 1e-3;
+  require_map(field, {"divergence_mrad", "exit_mm", "widths", "rings"});
+  const auto widths = find(field, "widths");
+  const bool is_fwhm = widths && one_of(*widths, {"1/e2", "fwhm"}) == 1;
+  const double unit = is_fwhm ? kMilli * kWidthPerFwhm : kMilli;
+  Footprint footprint;
+  const auto divergence = read_two(need(field, "divergence_mrad"), kDivergence_mrad, unit);
+  footprint.divergence_x_rad = divergence[0];
+  footprint.divergence_y_rad = divergence[1];
+  if (const auto exit = find(field, "exit_mm")) {
+    const auto widths_m = read_two(*exit, kExit_mm, unit);
+    footprint.exit_x_m = widths_m[0];
+    footprint.exit_y_m = widths_m[1];
+  }
+  if (const auto rings = find(field, "rings"))
+    footprint.rings = whole_number(*rings, 1, kMostRings);
+  validate(footprint);
+  return footprint;
+}
+
+Receiver read_receiver(const YamlField& field) {
+  constexpr double kNano = 1e-9;
+  require_map(field, {"pulse_ns", "timing", "separation_m", "returns"});
+  Receiver receiver;
+  receiver.pulse_fwhm_s =
+      kNano * number_or(field, "pulse_ns", kPulse_ns, receiver.pulse_fwhm_s / kNano);
+  if (const auto timing = find(field, "timing")) {
+    receiver.timing = static_cast<Receiver::Timing>(one_of(*timing, {"centroid", "leading_edge"}));
+  }
+  receiver.separation_m = number_or(field, "separation_m", kSeparation_m, receiver.separation_m);
+  if (const auto returns = find(field, "returns")) receiver.returns = read_returns(*returns);
+  validate(receiver);
+  return receiver;
+}
+
+std::string return_name(const Return& one) {
+  for (const NamedReturn& known : kReturns) {
+    if (known.which.order == one.order && known.which.rank == one.rank) return known.name;
+  }
+  return "return " + std::to_string(one.rank + 1);  // of the nearest
+}
+
+}  // namespace glidar

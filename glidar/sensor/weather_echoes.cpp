@@ -1,0 +1,56 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/weather_echoes.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace glidar {
+namespace {
+
+constexpr std::uint32_t kSnowBlocks = 1U << 31U;  // snow's draws begin there, rain's at 0
+
+}  // namespace
+
+PreparedWeather prepare_weather(const Weather& weather, const PulseLight& light,
+                                double wavelength_m, const BeamShape& beam, double pulse_fwhm_s) {
+  PreparedWeather prepared{.light = light, .least_signal = weather.least_signal};
+  prepared.light.weather_extinction_per_m = extinction_per_m(weather, wavelength_m);
+  const double optical_depth_per_m = fog_extinction_per_m(weather, wavelength_m);
+  prepared.fog = fog_return(
+      prepared.light, weather.fog_backscatter_per_sr * optical_depth_per_m / kOpticalRangeDepth,
+      pulse_fwhm_s);
+  if (weather.rain_mm_per_h > 0.0) {
+    prepared.rain =
+        drop_field(prepared.light, rain_sizes(weather.rain_mm_per_h), beam, weather.least_signal);
+  }
+  if (weather.snow_mm_per_h > 0.0) {
+    prepared.snow =
+        drop_field(prepared.light, snow_sizes(weather.snow_mm_per_h, weather.snow_model), beam,
+                   weather.least_signal);
+  }
+  return prepared;
+}
+
+void weather_echoes(const PreparedWeather& weather, double hard_range_m, const Draw& draw,
+                    std::vector<WeatherEcho>& echoes) {
+  const double end_m =
+      std::isnan(hard_range_m) ? std::numeric_limits<double>::infinity() : hard_range_m;
+  const SoftEcho soft = echo_before(weather.fog, end_m);
+  if (soft.signal >= weather.least_signal) {
+    echoes.push_back({soft.range_m, soft.signal, WeatherEcho::Kind::fog});
+  }
+  Draw drops = draw;
+  drops.purpose = Purpose::weather;
+  const auto append = [&](const DropField& field, std::uint32_t block, WeatherEcho::Kind kind) {
+    drops.block = block;
+    const auto take = [&](const DropEcho& drop) {
+      echoes.push_back({drop.range_m, drop.signal, kind});
+    };
+    draw_drops(weather.light, field, end_m, drops, FunctionRef<void(const DropEcho&)>(take));
+  };
+  append(weather.rain, 0, WeatherEcho::Kind::rain);
+  append(weather.snow, kSnowBlocks, WeatherEcho::Kind::snow);
+}
+
+}  // namespace glidar

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/sensor/drops.hpp>
+#include <glidar/sensor/fog.hpp>
+#include <glidar/sensor/weather.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace glidar {
+
+/// What the air itself sends back to a beam.
+struct WeatherEcho {
+  enum class Kind : std::uint8_t { fog, rain, snow };
+  double range_m = 0.0;
+  double signal = 0.0;  ///< S as of PulseLight
+  Kind kind = Kind::fog;
+};
+
+/// Weather as a light meets it: all that is the same for beams of one shape.
+struct PreparedWeather {
+  PulseLight light;  ///< with the weather's extinction
+  FogReturn fog{};
+  DropField rain{};
+  DropField snow{};
+  double least_signal = 0.0;
+};
+
+/// Throws Error when there is fog and the wavelength is 0.
+PreparedWeather prepare_weather(const Weather& weather, const PulseLight& light,
+                                double wavelength_m, const BeamShape& beam, double pulse_fwhm_s);
+
+/// Appends the echoes before a hard target, or to where they are too faint for a range that is
+/// infinite or NaN. A function of seed, sensor, frame and beam alone; the draw's purpose and block
+/// do not matter.
+void weather_echoes(const PreparedWeather& weather, double hard_range_m, const Draw& draw,
+                    std::vector<WeatherEcho>& echoes);
+
+}  // namespace glidar

@@ -1,0 +1,113 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Sensors and surfaces that come along, from the command line. The built program is found in PATH."""
+
+import json
+import os
+import unittest
+
+from cli_support import CliTest
+
+
+class Sensors(CliTest):
+    def test_list_tells_every_preset(self):
+        lines = self.succeed("sensors").stdout.splitlines()
+        names = {line.split()[0] for line in lines[1:]}
+        self.assertLessEqual({"VLP-16", "OS1-128", "Livox-Avia", "D435", "TiM781"}, names)
+        told = {entry["name"]: entry for entry in json.loads(self.succeed("sensors", "--json").stdout)}
+        self.assertEqual(set(told), names)
+        self.assertEqual(told["VLP-16"]["rows"], 16)
+        self.assertEqual(told["VLP-16"]["view_deg"][0], 360)
+
+    def test_surfaces_are_listed_and_cover_a_model(self):
+        lines = self.succeed("sensors", "--surfaces").stdout.splitlines()
+        asphalt = next(line for line in lines if line.startswith("asphalt "))
+        self.assertEqual(asphalt.split()[1:5], ["0.269", "0.278", "0.302", "0.362"])
+        told = {entry["name"]: entry
+                for entry in json.loads(self.succeed("sensors", "--surfaces", "--json").stdout)}
+        self.assertEqual(told["grass"]["reflectance_at_nm"]["1550"], 0.243)
+        self.assertFalse(told["mli"]["matt"])
+        self.assertIn("--surfaces alone", self.refused("sensors", "VLP-16", "--surfaces"))
+
+        box = ("render", "builtin:box", "--eye", "0,0,0", "-o", "a.csv", "--surface")
+        lidar = ("--sensor", "VLP-16", "--columns", "xyz,intensity")
+        self.succeed(*box, "black_paint", *lidar)
+        with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
+            next(file)
+            counts = {float(line.split(",")[3]) for line in file}
+        self.assertEqual(max(counts), 5)  # percent, square on
+        self.assertIn("did you mean 'black_paint'?", self.refused(*box, "blak_paint", *lidar))
+        self.assertIn("no pulse light", self.refused(*box, "grass"))
+        self.write("s.yaml", "models: [{model: builtin:box}]\nsensor: VLP-16\n")
+        self.assertIn("scene file", self.refused("render", "s.yaml", "--surface", "grass", "-o", "a.csv"))
+
+    def test_one_sensor_tells_its_sources_and_draws_its_pattern(self):
+        text = self.succeed("sensors", "vlp-16", "-o", "pattern.png").stdout
+        self.assertIn("optics.sequence_us = 55.296", text)
+        self.assertIn("VLP-16 manual", text)
+        with open(os.path.join(self.folder, "pattern.png"), "rb") as file:
+            self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
+        self.assertIn("did you mean VLP-16?", self.refused("sensors", "VLP-17"))
+        self.assertIn("no sensor is named", self.refused("sensors", "-o", "x.png"))
+
+    def test_renders_with_a_preset(self):
+        done = self.succeed("render", "builtin:box", "--sensor", "vlp-16", "--eye", "0,0,0",
+                            "--columns", "xyz,range,ring,time", "-o", "room.npz")
+        self.assertIn("1809 x 16 beams, 28944 hits (100.0 %)", done.stdout)
+        with open(os.path.join(self.folder, "room.npz.json"), encoding="utf-8") as file:
+            sensor = json.load(file)["sensor"]
+        self.assertEqual(sensor["optics"]["type"], "spinning")
+        self.assertEqual(sensor["frame_id"], "lidar_frame")
+        self.assertEqual(len(sensor["optics"]["elevation_deg"]), 16)
+
+    def test_a_preset_is_noisy_unless_it_is_to_be_ideal(self):
+        self.write("room.yaml", "models: [{model: builtin:box, scale: 4}]\nsensor: VLP-16\n"
+                                "sensor_pose: {position: [0, 0, 0]}\n")
+        walls = []
+        for ideal in ((), ("--ideal",)):
+            self.succeed("render", "room.yaml", *ideal, "-o", "room.csv")
+            with open(os.path.join(self.folder, "room.csv"), encoding="utf-8") as file:
+                next(file)
+                walls.append([max(abs(float(x)) for x in line.split(",")[:3]) for line in file])
+            with open(os.path.join(self.folder, "room.csv.json"), encoding="utf-8") as file:
+                sensor = json.load(file)["sensor"]
+            self.assertEqual(bool(sensor["noise"]), not ideal)
+            self.assertEqual(sensor["pulse_light"] is None, bool(ideal))
+        self.assertGreater(max(abs(wall - 4) for wall in walls[0]), 0.01)
+        self.assertLess(max(abs(wall - 4) for wall in walls[1]), 1e-9)
+
+    def test_the_paper_s_light_is_refused_where_pulse_light_is(self):
+        box = ("render", "builtin:box", "--eye", "0,0,0", "--sensor", "VLP-16", "-o", "a.pcd")
+        self.assertIn("--ambient: the sensor has pulse light; leave it out, or add --ideal",
+                      self.refused(*box, "--ambient", "0"))
+        self.assertIn("--attenuation: the sensor has", self.refused(*box, "--attenuation", "1,0,0"))
+        self.succeed(*box, "--ambient", "0", "--ideal")
+
+    def test_without_a_pose_it_stands_beside_the_scene_and_says_so(self):
+        done = self.succeed("render", "builtin:asteroid", "--sensor", "OS1-32", "-o", "a.pcd")
+        self.assertIn("beside the scene", done.stderr)
+        self.assertNotIn(" 0 hits", done.stdout)
+
+    def test_a_layout_gives_the_drivers_fields(self):
+        self.succeed("render", "builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "--layout", "velodyne",
+                     "-o", "v.pcd", "-o", "v.csv", "-o", "v.png", "--quiet")
+        head = self.bytes_of("v.pcd").split(b"DATA")[0].decode()
+        self.assertIn("FIELDS x y z intensity ring time\nSIZE 4 4 4 4 2 4\nTYPE F F F F U F\n", head)
+        names, *rows = self.bytes_of("v.csv").decode().splitlines()
+        self.assertEqual(names, "x,y,z,intensity,ring,time")
+        times = [float(row.split(",")[5]) for row in rows]
+        self.assertTrue(0.0 <= min(times) < 1e-4 and 0.0999 < max(times) < 0.1001, (min(times), max(times)))
+        self.assertEqual({int(row.split(",")[4]) for row in rows}, set(range(16)))
+        self.assertIn("  velodyne     velodyne_pointcloud: x y z intensity ring time\n",
+                      self.succeed("render", "--help").stdout)
+
+    def test_columns_and_rate_can_be_chosen(self):
+        done = self.succeed("render", "builtin:box", "--eye", "0,0,0", "--sensor", "OS1-32",
+                            "--columns-per-turn", "512", "--rate", "20", "-o", "a.pcd")
+        self.assertIn("512 x 32 beams", done.stdout)
+        self.assertIn("does not spin", self.refused(
+            "render", "builtin:box", "--sensor", "D435", "--columns-per-turn", "5", "-o", "x.pcd"))
+
+
+if __name__ == "__main__":
+    unittest.main()

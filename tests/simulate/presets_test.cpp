@@ -1,0 +1,216 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// The sensors that come along, with their light and noise, against their sheets and recordings.
+#include <glidar/io/builtin_models.hpp>
+#include <glidar/io/scene_file.hpp>
+#include <glidar/io/sensor_file.hpp>
+#include <glidar/io/sensor_presets.hpp>
+#include <glidar/simulate.hpp>
+#include <support/data.hpp>
+
+#include <gtest/gtest.h>
+#include <io/yaml_files.hpp>
+
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+Sensor preset(const std::string& name) {
+  return load_sensor_file(find_sensor_file(name));
+}
+
+/// What a sensor sees inside a matt ball: every beam meets it square on, but for its small facets.
+struct Ball {
+  Scene scene = testing::scene_of(make_builtin_model("sphere"));
+  Beams beams;
+  Frame frame;
+
+  Ball(const Sensor& sensor, double radius_m, double reflectance) : beams(make_beams(sensor)) {
+    scene.instances[0].scale = radius_m;
+    for (Material& material : scene.materials) {
+      material.diffuse.setConstant(static_cast<float>(reflectance));
+    }
+    const auto renderer = make_renderer(scene, {.threads = 2});
+    const Motion motion = standing_still(scene, Pose::Identity());
+    frame.seed = 5;
+    simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
+  }
+
+  [[nodiscard]] double share_of_hits() const {
+    const auto hits = std::count(frame.status.begin(), frame.status.end(), Status::hit);
+    return static_cast<double>(hits) / static_cast<double>(frame.status.size());
+  }
+
+  /// Rms over the hits of error(beam); false echoes, far off, are left out.
+  template <class Error>
+  [[nodiscard]] double rms(const Error& error) const {
+    constexpr double kFalse_m = 1.0;
+    double squares = 0.0;
+    double count = 0.0;
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      if (frame.status[i] != Status::hit) continue;
+      if (std::abs(frame.range_m[i] - frame.truth.range_m[i]) > kFalse_m) continue;
+      squares += std::pow(error(i), 2);
+      ++count;
+    }
+    return std::sqrt(squares / count);
+  }
+
+  [[nodiscard]] double range_error_m() const {
+    return rms([&](std::size_t i) { return frame.range_m[i] - frame.truth.range_m[i]; });
+  }
+
+  /// Error of 1 / depth.
+  [[nodiscard]] double inverse_depth_error_per_m() const {
+    return rms([&](std::size_t i) {
+      return 1.0 / depth_m(beams, i, frame.range_m[i]) -
+             1.0 / depth_m(beams, i, frame.truth.range_m[i]);
+    });
+  }
+};
+
+TEST(Presets, MeasureARoomWithLightAndNoise) {
+  for (const auto& file : preset_files()) {
+    SCOPED_TRACE(file.stem().string());
+    Sensor sensor = load_sensor_file(file);
+    sensor.limits = {};
+    const Ball room(sensor, 2.0, 0.5);
+    EXPECT_GT(room.share_of_hits(), 0.999);
+    EXPECT_LT(room.range_error_m(), 0.11);  // flash arrays: 0.1 m
+    for (std::size_t i = 0; i < room.beams.size(); ++i) {
+      ASSERT_TRUE(room.frame.status[i] != Status::hit || room.frame.range_m[i] > 0.0);
+      ASSERT_TRUE(room.frame.intensity[i] >= 0.0F && std::isfinite(room.frame.intensity[i]));
+    }
+  }
+}
+
+/// The range at which a sheet promises to see every second surface of a reflectance.
+struct SheetPair {
+  const char* sensor;
+  double reflectance;
+  double range50_m;
+};
+
+class PresetRange : public ::testing::TestWithParam<SheetPair> {};
+
+TEST_P(PresetRange, IsThatOfTheSheetWithinOneMetre) {
+  const SheetPair& pair = GetParam();
+  Sensor sensor = preset(pair.sensor);
+  sensor.limits = {};
+  std::erase_if(sensor.noise, [](const NoiseStep& step) {
+    return std::holds_alternative<FalseEchoes>(step);  // they are no surface
+  });
+  const auto seen = [&](double range_m) {
+    return Ball(sensor, range_m, pair.reflectance).share_of_hits();
+  };
+  EXPECT_GT(seen(pair.range50_m - 1.0), 0.5);
+  EXPECT_LT(seen(pair.range50_m + 1.0), 0.5);
+}
+
+// Ouster revision 6 (50 %), HDL-64E, Alpha Prime, XT32, PandarQT, Livox, TiM781.
+INSTANTIATE_TEST_SUITE_P(
+    Sheets, PresetRange,
+    ::testing::Values(SheetPair{"OS0-32", 0.8, 50.0}, SheetPair{"OS0-32", 0.1, 20.0},
+                      SheetPair{"OS1-32", 0.8, 120.0}, SheetPair{"OS1-32", 0.1, 55.0},
+                      SheetPair{"OS2-32", 0.8, 240.0}, SheetPair{"OS2-32", 0.1, 100.0},
+                      SheetPair{"HDL-64E-S3", 0.8, 120.0}, SheetPair{"HDL-64E-S3", 0.1, 50.0},
+                      SheetPair{"VLS-128", 0.1, 120.0}, SheetPair{"XT32", 0.1, 80.0},
+                      SheetPair{"QT64", 0.1, 20.0}, SheetPair{"Livox-Mid-40", 0.8, 260.0},
+                      SheetPair{"Livox-Mid-70", 0.8, 260.0}, SheetPair{"Livox-Avia", 0.8, 450.0},
+                      SheetPair{"TiM781", 0.05, 5.0}));
+
+TEST(Presets, OfOusterSeeNineOfTenWhereTheSheetSaysSo) {
+  for (const SheetPair& pair : {SheetPair{"OS0-64", 0.8, 45.0}, SheetPair{"OS1-64", 0.8, 100.0},
+                                SheetPair{"OS2-64", 0.8, 210.0}}) {
+    EXPECT_NEAR(Ball(preset(pair.sensor), pair.range50_m, pair.reflectance).share_of_hits(), 0.9,
+                0.01);
+  }
+}
+
+/// Spread of ranges found in recordings or told by sheets.
+struct Spread {
+  const char* sensor;
+  double range_m;
+  double reflectance;
+  double least_m;
+  double most_m;
+};
+
+class PresetSpread : public ::testing::TestWithParam<Spread> {};
+
+TEST_P(PresetSpread, IsThatOfRecordingsAndSheets) {
+  const Spread& spread = GetParam();
+  const double found_m =
+      Ball(preset(spread.sensor), spread.range_m, spread.reflectance).range_error_m();
+  EXPECT_GT(found_m, spread.least_m);
+  EXPECT_LT(found_m, spread.most_m);
+}
+
+INSTANTIATE_TEST_SUITE_P(Sheets, PresetSpread,
+                         ::testing::Values(Spread{"VLP-16", 3.0, 0.95, 0.0060, 0.0072},
+                                           Spread{"VLP-16", 3.0, 0.2, 0.0065, 0.0097},
+                                           Spread{"VLP-16", 3.0, 0.06, 0.0083, 0.0123},
+                                           Spread{"VLP-32C", 1.5, 0.5, 0.0038, 0.0044},
+                                           Spread{"VLP-32C", 7.5, 0.5, 0.0071, 0.0079},
+                                           Spread{"XT32", 5.0, 0.5, 0.0029, 0.0033},
+                                           Spread{"QT64", 3.0, 0.5, 0.013, 0.016},
+                                           Spread{"Livox-Mid-40", 20.0, 0.8, 0.019, 0.021},
+                                           Spread{"UTM-30LX", 15.0, 0.8, 0.01, 0.03},
+                                           Spread{"OS2-32", 10.0, 0.5, 0.005, 0.0076},
+                                           Spread{"flash-128", 100.0, 0.5, 0.05, 0.15}));
+
+TEST(Presets, OfDepthCamerasSpreadAsMeasured) {
+  // 0.53 to 0.60 steps of 1 / 345.5 m in recorded frames
+  const double kinect_steps =
+      345.5 * Ball(preset("Kinect-v1"), 2.0, 0.5).inverse_depth_error_per_m();
+  EXPECT_GT(kinect_steps, 0.52);
+  EXPECT_LT(kinect_steps, 0.60);
+  // elevation_mapping's D435: 3.587 mm at 1 m, growing with the square of the depth
+  EXPECT_NEAR(Ball(preset("D435"), 2.0, 0.5).inverse_depth_error_per_m(), 0.003587, 2e-5);
+  const double azure_m = Ball(preset("Azure-Kinect-NFOV-2x2"), 1.2, 0.5).range_error_m();
+  EXPECT_GT(azure_m, 0.001);
+  EXPECT_LT(azure_m, 0.003);
+}
+
+TEST(Presets, OfVelodyneTellReflectanceInPercent) {
+  const Ball ball(preset("VLP-16"), 10.0, 0.5);
+  for (const float intensity : ball.frame.intensity) EXPECT_NEAR(intensity, 50.0F, 1.0F);
+}
+
+TEST(Presets, OfOusterHearOneFalseEchoInTenThousand) {
+  const Ball empty(preset("OS1-128"), 1e5, 0.5);
+  const double expected = 1e-4 * static_cast<double>(empty.beams.size());
+  const double found = empty.share_of_hits() * static_cast<double>(empty.beams.size());
+  EXPECT_NEAR(found, expected, 4.0 * std::sqrt(expected));
+}
+
+TEST(Surfaces, SendBackTheSignalOfTheRangeEquation) {
+  const TestFolder folder;
+  const auto file = folder.write(
+      "s.yaml",
+      "models: [{model: builtin:box, scale: 10, materials: {\"*\": {surface: asphalt}}}]\n"
+      "sensor: {optics: {width: 1, height: 1, fov_deg: 1}, wavelength_nm: 905,\n"
+      "  pulse_light: {reference_reflectance: 0.8, reference_range_m: 100}}\n");
+  const SceneFile loaded = load_scene_file(file, {}, {});
+  const Beams beams = make_beams(*loaded.sensor);
+  const auto renderer = make_renderer(loaded.scene, {.threads = 1});
+  const Motion motion = standing_still(loaded.scene, Pose::Identity());
+  Frame frame;
+  simulate({loaded.scene, *loaded.sensor, beams, motion, *renderer}, {}, frame);
+  EXPECT_NEAR(frame.range_m[0], 10.0, 1e-9);  // a wall of the box, square on
+  EXPECT_NEAR(frame.intensity[0], 0.278 / 0.8 * 100.0, 1e-4);
+}
+
+TEST(Ideal, LeavesTheGeometryAlone) {
+  const Sensor noisy = preset("VLP-16");
+  const Sensor sensor = ideal(noisy);
+  EXPECT_FALSE(sensor.pulse.has_value());
+  EXPECT_TRUE(sensor.noise.empty());
+  EXPECT_EQ(sensor.limits.far_m, noisy.limits.far_m);
+  EXPECT_EQ(sensor.rate_hz, noisy.rate_hz);
+  EXPECT_EQ(Ball(sensor, 3.0, 0.5).range_error_m(), 0.0);
+}
+
+}  // namespace
+}  // namespace glidar
