@@ -10,8 +10,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 namespace glidar {
 namespace {
@@ -94,7 +97,7 @@ TEST(BeamPoses, AreThoseOfPosesAtWhenEachBeamLeaves) {
       EXPECT_TRUE(pose_of(object).isApprox(objects[hit][i], 1e-14));
     }
   }
-  EXPECT_THAT(seen, testing::Each(testing::Gt(20)));
+  EXPECT_THAT(seen, ::testing::Each(::testing::Gt(20)));
 }
 
 TEST(BeamPoses, BringTheBeamAndTheObjectsPointTogether) {
@@ -122,7 +125,7 @@ TEST(BeamPoses, OfAWorldAtRestAreTheFrames) {
   stage.beams.times_ns.clear();
   const PointCloud cloud = stage.shoot({"stamp", "sensor_pose", "object_pose"});
   EXPECT_THAT(std::get<std::vector<std::int64_t>>(find_column(cloud, "stamp")->values),
-              testing::Each(kStamp_ns));
+              ::testing::Each(kStamp_ns));
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     EXPECT_TRUE(
         pose_of(row_of(cloud, "sensor_pose", i)).isApprox(stage.frame.world_from_sensor, 1e-14));
@@ -146,7 +149,7 @@ TEST(BeamPoses, AreKeptOnlyWhenAskedFor) {
                 make_point_cloud(stage.frame, stage.beams, stage.scene, {stage.beams.frame_id},
                                  columns, cloud);
               }),
-              testing::HasSubstr("the frame was cast without it"));
+              ::testing::HasSubstr("the frame was cast without it"));
 }
 
 }  // namespace
