@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate.hpp>
 
+#include <glidar/pulse_cast.hpp>
+
 #include <cmath>
 #include <limits>
 
@@ -9,15 +11,6 @@ namespace glidar {
 namespace {
 
 constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
-
-/// What the sensor says of a surface at this true range.
-Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double range_m) {
-  const double distance = limits.along == Limits::Along::depth ? depth_m(beams, beam, range_m)
-                                                               : range_m + beams.range_offset_m;
-  if (distance < limits.near_m) return Status::too_near;
-  if (distance > limits.far_m) return Status::too_far;
-  return Status::hit;
-}
 
 /// Range and status of a run of beams from the truth.
 void measure_range(const Limits& limits, const Beams& beams, BeamRange range, Frame& frame) {
@@ -65,20 +58,25 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
   needed.shading = true;  // the light needs them
   needed.reflectance = true;
   add_needs(sensor.noise, needed);
+  const World world{setup.renderer, setup.scene, setup.motion, frame.stamp_ns};
   const auto measure = [&](BeamRange range) {
     measure_range(sensor.limits, beams, range, frame);
     measure_light(setup, pulse, range, frame);
   };
-  const World world{setup.renderer, setup.scene, setup.motion, frame.stamp_ns};
-  cast_moving(world,
-              {.beams = beams,
-               .world_from_sensor = frame.world_from_sensor,
-               .world_from_instance = frame.world_from_instance,
-               .fields = needed,
-               .cull_back_faces = sensor.cull_back_faces,
-               .then = FunctionRef<void(BeamRange)>(measure),
-               .progress = setup.progress},
-              frame.scratch, frame.truth);
+  if (has_echoes(sensor, setup.scene)) {
+    measure_pulses(setup, needed, beams, frame);
+  } else {
+    frame.cause.clear();
+    cast_moving(world,
+                {.beams = beams,
+                 .world_from_sensor = frame.world_from_sensor,
+                 .world_from_instance = frame.world_from_instance,
+                 .fields = needed,
+                 .cull_back_faces = sensor.cull_back_faces,
+                 .then = FunctionRef<void(BeamRange)>(measure),
+                 .progress = setup.progress},
+                frame.scratch, frame.truth);
+  }
   deskew(world, setup.beams, beams, frame.deskewed);
   apply_noise(sensor.noise, 1.0 / sensor.rate_hz, setup.beams, workers, frame);
 }

@@ -18,7 +18,8 @@ ALLOWED = {
     "motion": {"core", "motion"},
     "render": {"core", "render"},
     "moving_cast": {"core", "motion", "render", "moving_cast"},
-    "simulate": {"core", "sensor", "motion", "render", "moving_cast", "simulate"},
+    "pulse_cast": {"core", "sensor", "motion", "render", "moving_cast", "simulate", "pulse_cast"},
+    "simulate": {"core", "sensor", "motion", "render", "moving_cast", "pulse_cast", "simulate"},
     "io": {"core", "sensor", "motion", "io"},
     "link": {"core", "io", "link"},
 }

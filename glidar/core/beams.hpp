@@ -49,6 +49,9 @@ struct Beams {
   std::vector<Eigen::Vector3d> origins_m;   ///< N; empty: all zero
   std::vector<std::uint32_t> times_ns;      ///< N, since the start of the frame; empty: all zero
   std::vector<std::uint16_t> rings;         ///< N, channel number; empty: the row
+  /// How many times every beam stands here, once for each return that its sensor tells of a pulse:
+  /// the rows of the first return, then the same rows for the second, ...
+  std::uint32_t returns = 1;
   /// Added to the distance from a beam's origin when its range is reported: some sensors count from
   /// elsewhere (Ouster: from the axis of rotation).
   double range_offset_m = 0.0;
@@ -58,6 +61,7 @@ struct Beams {
   std::optional<PinholeIntrinsics> pinhole;
 
   [[nodiscard]] std::size_t size() const { return directions.size(); }
+  [[nodiscard]] std::size_t pulses() const { return directions.size() / returns; }
 };
 
 /// Depth of a point at a range on a beam: along the boresight, from the sensor's origin.

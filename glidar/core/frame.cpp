@@ -28,6 +28,30 @@ std::string_view name(Status status) {
       return "saturated";
     case Status::weather:
       return "weather";
+    case Status::no_echo:
+      return "no echo";
+  }
+  return "unknown";
+}
+
+std::string_view name(Cause cause) {
+  switch (cause) {
+    case Cause::none:
+      return "none";
+    case Cause::surface:
+      return "surface";
+    case Cause::mixed:
+      return "mixed";
+    case Cause::ghost:
+      return "ghost";
+    case Cause::false_alarm:
+      return "false alarm";
+    case Cause::fog:
+      return "fog";
+    case Cause::rain:
+      return "rain";
+    case Cause::snow:
+      return "snow";
   }
   return "unknown";
 }

@@ -26,10 +26,24 @@ enum class Status : std::uint8_t {
   wrapped = 8,          ///< the phase is not plausible: the distance is ambiguous
   saturated = 9,        ///< the echo is too strong to be timed
   weather = 10,         ///< rain, snow or fog took the return
+  no_echo = 11,         ///< the beam has fewer echoes than the sensor could tell
+};
+
+/// What made a return.
+enum class Cause : std::uint8_t {
+  none = 0,         ///< there is no return
+  surface = 1,      ///< the surface that the truth names
+  mixed = 2,        ///< surfaces apart from each other, in one echo
+  ghost = 3,        ///< a surface seen in a mirror, which the truth names
+  false_alarm = 4,  ///< noise alone
+  fog = 5,
+  rain = 6,
+  snow = 7,
 };
 
 /// The status in words, as files and pictures spell it.
 std::string_view name(Status status);
+std::string_view name(Cause cause);
 
 /// Memory that steps of a measurement reuse from frame to frame; nothing to read for others.
 struct Scratch {
@@ -37,9 +51,14 @@ struct Scratch {
   std::vector<double> before;    ///< N, ranges or depths as they were before a step
   std::vector<float> amplitude;  ///< N, intensities as they were before a step
   Beams moved;                   ///< the beams as a body of a moving scene sees them
-  std::vector<Pose> start_from_sensor;  ///< N, the sensor at each beam's time, likewise
-  Hits body_hits;                       ///< on one body
-  std::vector<std::uint8_t> present;    ///< per instance
+  std::vector<Pose> start_from_sensor;       ///< N, the sensor at each beam's time, likewise
+  Hits body_hits;                            ///< on one body
+  std::vector<std::uint8_t> present;         ///< per instance
+  Beams sub_beams;                           ///< those that a run of beams is spread into
+  Hits sub_hits;                             ///< theirs
+  Beams mirrored;                            ///< those that go on from a mirror
+  Hits mirrored_hits;                        ///< theirs
+  std::vector<std::uint32_t> mirrored_from;  ///< per mirrored beam: its sub-beam
 };
 
 /// One measurement: what the sensor reports per beam, with the truth attached. N = rows * cols.
@@ -56,6 +75,7 @@ struct Frame {
   std::vector<double> range_m;            ///< N, measured; NaN unless status is hit
   std::vector<float> intensity;           ///< N, received signal of a full-scale 1; 0 unless hit
   std::vector<Status> status;             ///< N
+  std::vector<Cause> cause;               ///< N; empty: `surface` wherever there is a return
   std::vector<float> sigma_m;  ///< N, standard deviation of the random error of range_m; empty: 0
   /// When the sensor moves during the frame: the beams as seen from its pose at stamp_ns. With them
   /// points lie where they were measured. Empty when it does not: as the sensor's own beams.

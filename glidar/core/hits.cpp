@@ -2,7 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/hits.hpp>
 
+#include <algorithm>
+
 namespace glidar {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr float kNaNf = std::numeric_limits<float>::quiet_NaN();
+
+}  // namespace
 
 void resize(Hits& hits, std::size_t size, const HitFields& fields) {
   const auto size_if = [size](bool asked) { return asked ? size : std::size_t{0}; };
@@ -36,6 +44,26 @@ void copy_hit(const Hits& from, std::size_t source, const HitFields& fields, Hit
   if (fields.reflectance) to.reflectance[target] = from.reflectance[source];
   if (fields.object_point) to.object_point_m[target] = from.object_point_m[source];
   if (fields.noise_scale) to.noise_scale[target] = from.noise_scale[source];
+}
+
+void write_misses(const HitFields& fields, std::size_t first, std::size_t count, Hits& hits) {
+  const auto fill = [first, count](bool asked, auto& column, const auto& value) {
+    if (asked) std::fill_n(column.begin() + static_cast<std::ptrdiff_t>(first), count, value);
+  };
+  static const Eigen::Vector3f kNowhere(kNaNf, kNaNf, kNaNf);
+  fill(true, hits.range_m, kNaN);
+  fill(true, hits.instance, kNoHit);
+  fill(true, hits.primitive, kNoHit);
+  fill(fields.depth, hits.depth_m, kNaN);
+  fill(fields.normal, hits.normal, kNowhere);
+  fill(fields.shading_normal, hits.shading_normal, kNowhere);
+  fill(fields.incidence, hits.cos_incidence, kNaNf);
+  fill(fields.shading, hits.cos_shading, kNaNf);
+  fill(fields.barycentrics, hits.barycentrics, Eigen::Vector2f(kNaNf, kNaNf));
+  fill(fields.object_point, hits.object_point_m, Eigen::Vector3d(kNaN, kNaN, kNaN));
+  fill(fields.colour, hits.colour, Eigen::Vector3f(0.0F, 0.0F, 0.0F));
+  fill(fields.reflectance, hits.reflectance, Reflectance{});
+  fill(fields.noise_scale, hits.noise_scale, 1.0F);
 }
 
 }  // namespace glidar

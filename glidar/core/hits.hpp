@@ -62,6 +62,9 @@ struct Hits {
 /// Keeps capacity, so a second call of the same size allocates nothing.
 void resize(Hits& hits, std::size_t size, const HitFields& fields);
 
+/// Writes misses at beams [first, first + count).
+void write_misses(const HitFields& fields, std::size_t first, std::size_t count, Hits& hits);
+
 /// Copies all asked-for columns of one hit.
 void copy_hit(const Hits& from, std::size_t source, const HitFields& fields, Hits& to,
               std::size_t target);

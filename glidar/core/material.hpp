@@ -51,6 +51,7 @@ struct Material {
   float opacity = 1.0F;       ///< multiplied by the alpha texture
   float alpha_cutoff = 0.0F;  ///< a texel whose opacity is below lets the ray through; 0: solid
   Backscatter backscatter;    ///< what pulses see of it; its reflectance is that of `spectrum`
+  float mirror = 0.0F;        ///< share of a pulse's light that goes on as from a mirror, 0..1
   std::vector<std::array<double, 2>> spectrum;  ///< (wavelength in m, reflectance 0..1), rising;
                                                 ///< empty: the luminance of `diffuse`
   float noise_scale = 1.0F;   ///< multiplies random errors of sensors; times the noise texture

@@ -379,25 +379,4 @@ void Resolver::write_colours(const HitFields& fields, const HitBlock& block, con
   });
 }
 
-void Resolver::write_misses(const HitFields& fields, std::size_t first, std::size_t count,
-                            Hits& hits) {
-  const auto fill = [first, count](bool asked, auto& column, const auto& value) {
-    if (asked) std::fill_n(column.begin() + static_cast<std::ptrdiff_t>(first), count, value);
-  };
-  static const Eigen::Vector3f kNowhere(kNaNf, kNaNf, kNaNf);
-  fill(true, hits.range_m, kNaN);
-  fill(true, hits.instance, kNoHit);
-  fill(true, hits.primitive, kNoHit);
-  fill(fields.depth, hits.depth_m, kNaN);
-  fill(fields.normal, hits.normal, kNowhere);
-  fill(fields.shading_normal, hits.shading_normal, kNowhere);
-  fill(fields.incidence, hits.cos_incidence, kNaNf);
-  fill(fields.shading, hits.cos_shading, kNaNf);
-  fill(fields.barycentrics, hits.barycentrics, Eigen::Vector2f(kNaNf, kNaNf));
-  fill(fields.object_point, hits.object_point_m, Eigen::Vector3d(kNaN, kNaN, kNaN));
-  fill(fields.colour, hits.colour, Eigen::Vector3f(0.0F, 0.0F, 0.0F));
-  fill(fields.reflectance, hits.reflectance, Reflectance{});
-  fill(fields.noise_scale, hits.noise_scale, 1.0F);
-}
-
 }  // namespace glidar

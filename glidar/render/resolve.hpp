@@ -113,10 +113,6 @@ class Resolver {
   void write(const Beams& beams, const HitFields& fields, const HitBlock& block,
              const ExactBlock& exact, Hits& hits) const;
 
-  /// Writes misses at beams [first, first + count).
-  static void write_misses(const HitFields& fields, std::size_t first, std::size_t count,
-                           Hits& hits);
-
  private:
   void write_directions(const HitBlock& block, const Lanes3<double>& front,
                         const Lanes<double>& cosine, std::vector<Eigen::Vector3f>& column) const;

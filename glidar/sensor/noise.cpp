@@ -202,10 +202,14 @@ const Beams& aimed_beams(const std::vector<NoiseStep>& noise, const Beams& beams
   }
   aimed = beams;
   aimed.pinhole.reset();  // no longer a straight grid
-  const std::size_t runs = (beams.size() + kDrawBatch - 1) / kDrawBatch;
+  const std::size_t runs = (beams.pulses() + kDrawBatch - 1) / kDrawBatch;
   workers.for_ranges(runs, kGrain / kDrawBatch, [&](std::size_t begin, std::size_t end) {
-    turn_beams(noise, frame, {begin * kDrawBatch, std::min(end * kDrawBatch, aimed.size())}, aimed);
+    turn_beams(noise, frame, {begin * kDrawBatch, std::min(end * kDrawBatch, aimed.pulses())},
+               aimed);
   });
+  for (std::size_t i = aimed.pulses(); i < aimed.size(); ++i) {
+    aimed.directions[i] = aimed.directions[i - aimed.pulses()];  // all returns of a pulse are on it
+  }
   return aimed;
 }
 

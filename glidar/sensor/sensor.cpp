@@ -7,6 +7,43 @@
 #include <cmath>
 
 namespace glidar {
+namespace {
+
+template <class T>
+void repeat(std::vector<T>& column, std::size_t times) {
+  const std::size_t size = column.size();
+  column.reserve(size * times);
+  for (std::size_t k = 1; k < times; ++k) {
+    column.insert(column.end(), column.begin(), column.begin() + static_cast<std::ptrdiff_t>(size));
+  }
+}
+
+/// Every beam once for each return.
+void repeat_for_returns(std::size_t returns, Beams& beams) {
+  if (returns == 1) return;
+  if (beams.rings.empty()) {
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      beams.rings.push_back(static_cast<std::uint16_t>(i / beams.cols));
+    }
+  }
+  repeat(beams.directions, returns);
+  repeat(beams.origins_m, returns);
+  repeat(beams.times_ns, returns);
+  repeat(beams.rings, returns);
+  beams.rows *= static_cast<std::uint32_t>(returns);
+  beams.returns = static_cast<std::uint32_t>(returns);
+  beams.pinhole.reset();  // no longer one grid
+}
+
+}  // namespace
+
+Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double range_m) {
+  const double distance = limits.along == Limits::Along::depth ? depth_m(beams, beam, range_m)
+                                                               : range_m + beams.range_offset_m;
+  if (distance < limits.near_m) return Status::too_near;
+  if (distance > limits.far_m) return Status::too_far;
+  return Status::hit;
+}
 
 void set_rate(Sensor& sensor, double rate_hz) {
   require_optics(rate_hz > 0.0 && std::isfinite(rate_hz), "rate", rate_hz,
@@ -38,7 +75,10 @@ ScanWindow scan_window(const Sensor& sensor, std::uint32_t frame) {
 }
 
 Beams make_beams(const Sensor& sensor, const ScanWindow& window) {
-  return std::visit([&](const auto& optics) { return make_beams(optics, window); }, sensor.optics);
+  Beams beams =
+      std::visit([&](const auto& optics) { return make_beams(optics, window); }, sensor.optics);
+  repeat_for_returns(sensor.receiver.returns.size(), beams);
+  return beams;
 }
 
 Beams make_beams(const Sensor& sensor) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <glidar/sensor/beam_table.hpp>
+#include <glidar/sensor/echo.hpp>
+#include <glidar/sensor/footprint.hpp>
 #include <glidar/sensor/light.hpp>
 #include <glidar/sensor/noise.hpp>
 #include <glidar/sensor/pinhole.hpp>
@@ -37,12 +39,17 @@ struct Sensor {
   double rate_hz = 30.0;      ///< frames per second; see set_rate
   double wavelength_m = 0.0;  ///< of the light; 0: not known
   Limits limits;
-  Light light;                      ///< the paper's
-  std::optional<PulseLight> pulse;  ///< the range equation in its place
-  std::optional<Weather> weather;   ///< empty: clear air; acts on `pulse`
-  std::vector<NoiseStep> noise;     ///< in the order in which the sensor makes its errors
-  bool cull_back_faces = false;     ///< true: triangles seen from behind let the beam through
+  Light light;                         ///< the paper's
+  std::optional<PulseLight> pulse;     ///< the range equation in its place
+  std::optional<Footprint> footprint;  ///< of pulses; empty: a line
+  std::optional<Weather> weather;      ///< empty: clear air; acts on `pulse`
+  Receiver receiver;                   ///< of pulses
+  std::vector<NoiseStep> noise;        ///< in the order in which the sensor makes its errors
+  bool cull_back_faces = false;        ///< true: triangles seen from behind let the beam through
 };
+
+/// What the sensor says of something at this true range on a beam: hit, too_near or too_far.
+Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double range_m);
 
 /// Sets the frame rate, and with it what follows from it: the turns per second of a spinning sensor
 /// and the scans per second of a raster. Throws Error unless it is finite and above 0.
@@ -55,7 +62,8 @@ std::optional<PulseLight> light_in_weather(const Sensor& sensor);
 /// The window of a frame, by the sensor's own rate. Frames join.
 ScanWindow scan_window(const Sensor& sensor, std::uint32_t frame);
 
-/// What the sensor emits in a window, in its own frame; times count from the window's start.
+/// What the sensor emits in a window, in its own frame; times count from the window's start. Every
+/// beam stands there once for each return of the receiver.
 Beams make_beams(const Sensor& sensor, const ScanWindow& window);
 
 /// The same for the first window.

@@ -110,23 +110,6 @@ void measure_nothing(const PulseLight& light, double noise, double place, std::s
   frame.intensity[beam] = static_cast<float>(noise);
 }
 
-/// What a beam brings back from where it hit, without noise.
-double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelength_m,
-                     std::size_t beam, const Hits& truth) {
-  const Material& material = material_of(scene, truth, beam);
-  const double facing = truth.cos_shading[beam];
-  const double rho = reflectance_of_hit(material, truth.reflectance[beam].diffuse, wavelength_m);
-  return signal_of(light, sent_back(material.backscatter, rho, std::clamp(facing, 0.0, 1.0)),
-                   truth.range_m[beam]);
-}
-
-/// Whether clear air had let a faint signal through.
-Status why_faint(const PulseLight& light, double signal, double error, double range_m) {
-  if (!(light.weather_extinction_per_m > 0.0)) return Status::below_threshold;
-  const double clear = signal / two_way(light.weather_extinction_per_m, range_m);
-  return clear + error < 1.0 ? Status::below_threshold : Status::weather;
-}
-
 void measure_hit(const PulseLight& light, double signal, double error, std::size_t beam,
                  Frame& frame) {
   const double received = signal + error;
@@ -205,6 +188,20 @@ double signal_of(const PulseLight& light, double sent_back, double range_m) {
   return light.overlap.empty() ? signal : signal * relative_overlap(light, range_m);
 }
 
+double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelength_m,
+                     const Hits& hits, std::size_t beam) {
+  const Material& material = material_of(scene, hits, beam);
+  const double cosine = std::clamp<double>(hits.cos_shading[beam], 0.0, 1.0);
+  const double rho = reflectance_of_hit(material, hits.reflectance[beam].diffuse, wavelength_m);
+  return signal_of(light, sent_back(material.backscatter, rho, cosine), hits.range_m[beam]);
+}
+
+Status why_faint(const PulseLight& light, double signal, double error, double range_m) {
+  if (!(light.weather_extinction_per_m > 0.0)) return Status::below_threshold;
+  const double clear = signal / two_way(light.weather_extinction_per_m, range_m);
+  return clear + error < 1.0 ? Status::below_threshold : Status::weather;
+}
+
 double detection_probability(const PulseLight& light, double signal) {
   if (light.noise_sigma == 0.0) return signal >= 1.0 ? 1.0 : 0.0;
   return 0.5 * std::erfc((1.0 - signal) / (light.noise_sigma * std::numbers::sqrt2));
@@ -229,7 +226,7 @@ void measure_signal(const PulseLight& light, const Scene& scene, double waveleng
     if (k == 0) draw_batch(light, i, frame, noise, places);
     const double error = light.noise_sigma * noise[k];
     if (frame.status[i] == Status::hit) {
-      const double signal = signal_of_hit(light, scene, wavelength_m, i, frame.truth);
+      const double signal = signal_of_hit(light, scene, wavelength_m, frame.truth, i);
       measure_hit(light, signal, error, i, frame);
     } else {
       measure_nothing(light, error, places.first[k], i, frame);

@@ -49,6 +49,10 @@ double relative_overlap(const PulseLight& light, double range_m);
 /// S for what a surface sends back over a range.
 double signal_of(const PulseLight& light, double sent_back, double range_m);
 
+/// Why a signal is not told from noise: weather, or below_threshold where with the same error it
+/// would not have been in clear air either.
+Status why_faint(const PulseLight& light, double signal, double error, double range_m);
+
 /// Probability that a signal is reported: Phi((S - 1) / sigma).
 double detection_probability(const PulseLight& light, double signal);
 
@@ -59,6 +63,11 @@ double noise_sigma_of(double range50_m, double range90_m, double range_exponent)
 /// q from the ranges of two reflectances: ln(rho_a / rho_b) / ln(R_a / R_b).
 double range_exponent(double reflectance_a, double range_a_m, double reflectance_b,
                       double range_b_m);
+
+/// S of what a beam hit: the material's backscatter at the incidence of its shading normal. Needs
+/// cos_shading and reflectance.
+double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelength_m,
+                     const Hits& hits, std::size_t beam);
 
 /// Fills a run of frame.intensity with signals as the receiver has them, noise included, and takes
 /// away what is too weak or too strong (status below_threshold, weather where clear air had let it

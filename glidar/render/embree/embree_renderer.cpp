@@ -167,7 +167,7 @@ void finish(const Job& job, TileWork& work) {
 void cast_tiles(const Job& job, const embree::Tiling& tiling, std::size_t begin, std::size_t end) {
   std::array<TileWork, 3> ring;
   tiling.for_beam_rows(begin, end, [&](BeamRange row) {
-    Resolver::write_misses(job.fields, row.begin, row.end - row.begin, job.hits);
+    write_misses(job.fields, row.begin, row.end - row.begin, job.hits);
   });
   for (std::size_t i = begin; i < end + 2; ++i) {
     if (i < end) {
@@ -201,7 +201,7 @@ class EmbreeRenderer final : public Renderer {
     check(request, resolver_.scene());
     resize(hits, request.beams.size(), request.fields);
     if (!is_anything_present(request, resolver_.scene())) {
-      Resolver::write_misses(request.fields, 0, request.beams.size(), hits);
+      write_misses(request.fields, 0, request.beams.size(), hits);
       if (request.then) request.then({0, request.beams.size()});
       return;
     }

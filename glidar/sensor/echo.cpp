@@ -1,0 +1,234 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/echo.hpp>
+
+#include <glidar/core/elementary.hpp>
+#include <glidar/core/error.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+constexpr double kSpeedOfLight_m_s = 299792458.0;
+constexpr double kFwhmPerSigma = 2.3548200450309493;  // sqrt(8 ln 2)
+constexpr double kReach = 6.0;   // standard deviations: beyond, a pulse is below 2e-8 of its peak
+constexpr double kStep = 0.125;  // of a standard deviation: the waveform's samples
+
+void require(bool holds, const char* field, double found, const char* allowed) {
+  if (holds) return;
+  throw Error({.where = std::string("receiver, ") + field,
+               .found = number_text(found),
+               .allowed = allowed,
+               .remedy = ""});
+}
+
+/// Paths [begin, end) of a beam, sorted by range.
+struct Group {
+  std::size_t begin;
+  std::size_t end;
+};
+
+/// The sum of the group's pulses at a range.
+double waveform(const EchoWork& work, const Group& group, double sigma_m, double range_m) {
+  double sum = 0.0;
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    const double x = (work.path[i].range_m - range_m) / sigma_m;
+    if (std::abs(x) < kReach) sum += work.path[i].signal * natural_exp(-0.5 * x * x);
+  }
+  return sum;
+}
+
+/// The echo of a group: centroid, width and strongest path.
+PulseEcho echo_of(const EchoWork& work, const Group& group, double sigma_m, double apart_m) {
+  PulseEcho echo{.range_m = 0.0,
+                 .signal = 0.0,
+                 .sigma_m = 0.0,
+                 .strongest = static_cast<std::uint32_t>(group.begin),
+                 .is_mixed = false};
+  double sum = 0.0;
+  const double start_m = work.path[group.begin].range_m;
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    const Path& path = work.path[i];
+    sum += path.signal;
+    echo.range_m += path.signal * (path.range_m - start_m);
+    if (path.signal > work.path[echo.strongest].signal)
+      echo.strongest = static_cast<std::uint32_t>(i);
+    if (i > group.begin && path.range_m - work.path[i - 1].range_m > apart_m) echo.is_mixed = true;
+  }
+  echo.range_m = start_m + (sum > 0.0 ? echo.range_m / sum : 0.0);
+  double variance = 0.0;
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    const double off = work.path[i].range_m - echo.range_m;
+    variance += work.path[i].signal * off * off;
+  }
+  echo.sigma_m = std::sqrt(sigma_m * sigma_m + (sum > 0.0 ? variance / sum : 0.0));
+  return echo;
+}
+
+/// A peak at the middle one of three samples: its height by the parabola through them.
+double peak_height(double before, double at, double after) {
+  const double bend = before - 2.0 * at + after;
+  const double slope = 0.5 * (after - before);
+  return bend < 0.0 ? at - 0.5 * slope * slope / bend : at;
+}
+
+/// Cuts a wide group at the valleys of its waveform. Paths beyond kReach of a valley are skipped by
+/// waveform().
+void split(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
+  const double start_m = work.path[group.begin].range_m;
+  const double end_m = work.path[group.end - 1].range_m;
+  const double step_m = kStep * sigma_m;
+  const auto samples = static_cast<std::size_t>(std::ceil((end_m - start_m) / step_m)) + 1;
+  const auto place = [&](std::size_t k) { return start_m + static_cast<double>(k) * step_m; };
+  double before = waveform(work, group, sigma_m, start_m - step_m);
+  double at = waveform(work, group, sigma_m, start_m);
+  double height = 0.0;
+  bool rose = true;
+  std::size_t from = group.begin;
+  const auto close = [&](std::size_t to) {
+    if (to == from) return;
+    PulseEcho echo = echo_of(work, {from, to}, sigma_m, apart_m);
+    echo.signal = height;
+    work.echo[work.echoes++] = echo;
+    from = to;
+    height = 0.0;
+  };
+  for (std::size_t k = 0; k < samples; ++k) {
+    const double after = waveform(work, group, sigma_m, place(k + 1));
+    if (at >= before && at > after) {
+      height = std::max(height, peak_height(before, at, after));
+      rose = false;
+    } else if (!rose && at <= before && at < after) {
+      const double valley_m = place(k);
+      std::size_t to = from;
+      while (to < group.end && work.path[to].range_m < valley_m) ++to;
+      close(to);
+      rose = true;
+    }
+    before = at;
+    at = after;
+  }
+  close(group.end);
+}
+
+/// Finds the echoes of paths that others are too far from to matter. Pulses within one standard
+/// deviation of each other have one peak, at their mean but for the third order.
+void find_in_group(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
+  if (work.path[group.end - 1].range_m - work.path[group.begin].range_m > sigma_m) {
+    split(group, sigma_m, apart_m, work);
+    return;
+  }
+  PulseEcho echo = echo_of(work, group, sigma_m, apart_m);
+  echo.signal = waveform(work, group, sigma_m, echo.range_m);
+  work.echo[work.echoes++] = echo;
+}
+
+/// The index of the echo that a return asks for; -1: none.
+int find_return(const Return& wanted, std::span<const PulseEcho> echoes,
+                const std::array<std::uint16_t, EchoWork::kMost>& by_strength) {
+  if (wanted.rank >= echoes.size()) return -1;
+  const auto last = static_cast<int>(echoes.size()) - 1;
+  const auto rank = static_cast<int>(wanted.rank);
+  switch (wanted.order) {
+    case Return::Order::nearest:
+      return rank;
+    case Return::Order::farthest:
+      return last - rank;
+    case Return::Order::strongest:
+      return by_strength[wanted.rank];
+  }
+  return -1;
+}
+
+}  // namespace
+
+void validate(const Receiver& receiver) {
+  require(receiver.pulse_fwhm_s > 0.0 && receiver.pulse_fwhm_s <= 1e-3, "pulse_fwhm_s",
+          receiver.pulse_fwhm_s, "seconds above 0, up to 1e-3");
+  require(receiver.separation_m >= 0.0 && std::isfinite(receiver.separation_m), "separation_m",
+          receiver.separation_m, "metres from 0");
+  require(!receiver.returns.empty() && receiver.returns.size() <= kMostReturns, "returns",
+          static_cast<double>(receiver.returns.size()), "1 to 16 of them");
+}
+
+double pulse_sigma_m(const Receiver& receiver) {
+  return 0.5 * kSpeedOfLight_m_s * receiver.pulse_fwhm_s / kFwhmPerSigma;
+}
+
+void EchoWork::add(const Path& one) {
+  if (paths < kMost) {
+    path[paths++] = one;
+    return;
+  }
+  const auto weakest = std::min_element(
+      path.begin(), path.end(), [](const Path& a, const Path& b) { return a.signal < b.signal; });
+  if (weakest->signal < one.signal) *weakest = one;
+}
+
+void find_echoes(double sigma_m, double apart_m, EchoWork& work) {
+  work.echoes = 0;
+  std::sort(work.path.begin(), work.path.begin() + static_cast<std::ptrdiff_t>(work.paths),
+            [](const Path& a, const Path& b) {
+              return a.range_m != b.range_m ? a.range_m < b.range_m : a.source < b.source;
+            });
+  for (std::size_t begin = 0, end = 0; begin < work.paths; begin = end) {
+    end = begin + 1;
+    while (end < work.paths &&
+           work.path[end].range_m - work.path[end - 1].range_m < kReach * sigma_m) {
+      ++end;
+    }
+    find_in_group({begin, end}, sigma_m, apart_m, work);
+  }
+}
+
+void keep_separate(double separation_m, EchoWork& work) {
+  if (!(separation_m > 0.0) || work.echoes < 2) return;
+  std::array<bool, EchoWork::kMost> hidden;
+  std::fill_n(hidden.begin(), work.echoes, false);
+  for (std::size_t i = 0; i < work.echoes; ++i) {
+    for (std::size_t j = 0; j < work.echoes; ++j) {
+      const bool is_near = std::abs(work.echo[i].range_m - work.echo[j].range_m) < separation_m;
+      if (is_near && work.echo[j].signal > work.echo[i].signal) hidden[i] = true;
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < work.echoes; ++i) {
+    if (!hidden[i]) work.echo[kept++] = work.echo[i];
+  }
+  work.echoes = kept;
+}
+
+double told_range_m(const Receiver& receiver, const PulseEcho& echo) {
+  if (receiver.timing == Receiver::Timing::centroid || echo.signal <= 1.0) return echo.range_m;
+  return echo.range_m - echo.sigma_m * std::sqrt(2.0 * natural_log(echo.signal));
+}
+
+void choose(const Receiver& receiver, std::span<const PulseEcho> echoes,
+            std::array<int, kMostReturns>& chosen) {
+  const std::size_t count = receiver.returns.size();
+  std::array<std::uint16_t, EchoWork::kMost> by_strength;
+  for (std::size_t i = 0; i < echoes.size(); ++i) by_strength[i] = static_cast<std::uint16_t>(i);
+  std::sort(by_strength.begin(), by_strength.begin() + static_cast<std::ptrdiff_t>(echoes.size()),
+            [&](auto a, auto b) {
+              return echoes[a].signal != echoes[b].signal ? echoes[a].signal > echoes[b].signal
+                                                          : a < b;
+            });
+  const auto is_told = [&](int index, std::size_t before) {
+    return std::find(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(before), index) !=
+           chosen.begin() + static_cast<std::ptrdiff_t>(before);
+  };
+  for (std::size_t r = 0; r < count; ++r) {
+    int index = find_return(receiver.returns[r], echoes, by_strength);
+    if (index >= 0 && is_told(index, r)) {
+      index = -1;
+      for (std::size_t k = 0; k < echoes.size() && index < 0; ++k) {
+        if (!is_told(by_strength[k], r)) index = by_strength[k];
+      }
+    }
+    chosen[r] = index;
+  }
+}
+
+}  // namespace glidar

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/frame.hpp>
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace glidar {
+
+/// One echo that a receiver reports: the rank-th nearest, farthest or strongest, from 0.
+struct Return {
+  enum class Order : std::uint8_t { nearest, farthest, strongest };
+  Order order = Order::strongest;
+  unsigned rank = 0;
+};
+
+inline constexpr std::size_t kMostReturns = 16;
+
+/// What a receiver makes of the light that comes back from a pulse.
+struct Receiver {
+  enum class Timing : std::uint8_t {
+    centroid,     ///< an echo is where the mean of its light is
+    leading_edge  ///< an echo is where it crosses the threshold: strong ones come too near
+  };
+  double pulse_fwhm_s = 5e-9;  ///< duration of the pulse, a Gaussian
+  Timing timing = Timing::centroid;
+  double separation_m = 0.0;  ///< an echo nearer than this to a stronger one is not told
+  std::vector<Return> returns = {Return{}};  ///< what is reported of a beam, in this order
+};
+
+/// Throws Error naming the number that is out of range.
+void validate(const Receiver& receiver);
+
+/// Standard deviation of the pulse along the range: c / 2 times that of its duration.
+double pulse_sigma_m(const Receiver& receiver);
+
+/// What one way through the scene brings back, in units of the detection threshold.
+struct Path {
+  double range_m;
+  double signal;         ///< were it alone
+  std::uint32_t source;  ///< which sub-ray; kNoHit: none, as for weather
+  Cause cause;
+};
+
+/// A peak of what comes back.
+struct PulseEcho {
+  double range_m;           ///< mean of its paths, weighted by their signals
+  double signal;            ///< height of the peak
+  double sigma_m;           ///< its width: the pulse's and the spread of its paths
+  std::uint32_t strongest;  ///< of its paths
+  bool is_mixed;            ///< its paths stand apart, see find_echoes
+};
+
+/// The paths and echoes of one beam, on the stack.
+struct EchoWork {
+  static constexpr std::size_t kMost = 512;
+  std::array<Path, kMost> path;
+  std::array<PulseEcho, kMost> echo;
+  std::size_t paths = 0;
+  std::size_t echoes = 0;
+
+  /// The weakest of too many paths are left out.
+  void add(const Path& one);
+};
+
+/// Sorts the paths by range and finds the peaks of the sum of their pulses, in order of range. Two
+/// equal pulses have two peaks when they are more than two standard deviations apart, c FWHM /
+/// 2.355 in range (the reference's 3.2); below that they are one echo at their weighted mean. An
+/// echo is mixed when neighbours among its paths are more than `apart_m` from each other.
+void find_echoes(double sigma_m, double apart_m, EchoWork& work);
+
+/// Takes away echoes nearer than separation_m to a stronger one.
+void keep_separate(double separation_m, EchoWork& work);
+
+/// Where the receiver says that an echo is: the range walk of a fixed threshold is
+/// -sigma sqrt(2 ln(A / T)).
+double told_range_m(const Receiver& receiver, const PulseEcho& echo);
+
+/// Which echo each of receiver.returns is; -1: there is none. One that is told already gives way to
+/// the strongest that is not.
+void choose(const Receiver& receiver, std::span<const PulseEcho> echoes,
+            std::array<int, kMostReturns>& chosen);
+
+}  // namespace glidar
