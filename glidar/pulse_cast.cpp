@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/pulse_cast.hpp>
 
-#include <glidar/core/elementary.hpp>
 #include <glidar/core/gaussian.hpp>
 #include <glidar/moving_cast.hpp>
 #include <glidar/sensor/weather_echoes.hpp>
@@ -221,14 +220,10 @@ Path strongest_surface(const EchoWork& work) {
 
 /// Why a beam has no echo: nothing to send one back, or too little, or so little by weather.
 Status why_silent(const Block& block, const Path& surface, double loudest, std::size_t beam) {
-  constexpr double kMost = 600.0;  // e^600 is far above all signals
   if (surface.source == kNoHit) {
     return std::isnan(block.aimed.directions[beam].x()) ? Status::no_beam : Status::miss;
   }
-  const double depth = 2.0 * block.light.weather_extinction_per_m * surface.range_m;
-  const bool is_seen_in_clear_air = loudest * natural_exp(std::min(depth, kMost)) >= 1.0;
-  return block.weather != nullptr && is_seen_in_clear_air ? Status::weather
-                                                          : Status::below_threshold;
+  return why_faint(block.light, loudest, 0.0, surface.range_m);
 }
 
 /// The truth of an entry: what a sub-ray met, or a miss.
@@ -273,7 +268,10 @@ Status find_returns(const Block& block, std::size_t beam, const Path& surface, T
   add_weather(block, draw, surface.range_m, tools.weather, work);
   find_echoes(pulse_sigma_m(sensor.receiver), wide_m, work);
   double loudest = 0.0;
-  for (std::size_t k = 0; k < work.echoes; ++k) loudest = std::max(loudest, work.echo[k].signal);
+  for (std::size_t k = 0; k < work.echoes; ++k) {
+    const bool is_surface = work.path[work.echo[k].strongest].source != kNoHit;
+    if (is_surface) loudest = std::max(loudest, work.echo[k].signal);
+  }
   const std::size_t in_run = beam - tools.draws.detection.beam;
   detect(block, draw, tools.draws.noise[in_run], work);
   keep_separate(sensor.receiver.separation_m, work);

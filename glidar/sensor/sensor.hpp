@@ -42,6 +42,7 @@ struct Sensor {
   Light light;                         ///< the paper's
   std::optional<PulseLight> pulse;     ///< the range equation in its place
   std::optional<Footprint> footprint;  ///< of pulses; empty: a line
+  std::optional<Weather> weather;      ///< empty: clear air; acts on `pulse`
   Receiver receiver;                   ///< of pulses
   std::optional<Weather> weather;      ///< empty: clear air; acts on `pulse`
   std::vector<NoiseStep> noise;        ///< in the order in which the sensor makes its errors

@@ -85,13 +85,6 @@ void lose(Frame& frame, std::size_t beam, Status why) {
   frame.intensity[beam] = 0.0F;
 }
 
-/// Whether clear air had let a faint signal through.
-Status why_faint(const PulseLight& light, double signal, double error, double range_m) {
-  if (!(light.weather_extinction_per_m > 0.0)) return Status::below_threshold;
-  const double clear = signal / two_way(light.weather_extinction_per_m, range_m);
-  return clear + error < 1.0 ? Status::below_threshold : Status::weather;
-}
-
 void measure_hit(const PulseLight& light, double signal, double error, std::size_t beam,
                  Frame& frame) {
   const double received = signal + error;
@@ -161,6 +154,12 @@ double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelen
   const double cosine = std::clamp<double>(hits.cos_shading[beam], 0.0, 1.0);
   const double rho = reflectance_of_hit(material, hits.reflectance[beam].diffuse, wavelength_m);
   return signal_of(light, sent_back(material.backscatter, rho, cosine), hits.range_m[beam]);
+}
+
+Status why_faint(const PulseLight& light, double signal, double error, double range_m) {
+  if (!(light.weather_extinction_per_m > 0.0)) return Status::below_threshold;
+  const double clear = signal / two_way(light.weather_extinction_per_m, range_m);
+  return clear + error < 1.0 ? Status::below_threshold : Status::weather;
 }
 
 double detection_probability(const PulseLight& light, double signal) {

@@ -16,13 +16,14 @@ namespace {
 
 /// A pulsed camera so far before a plane.
 Frame shoot(const std::optional<PulseLight>& pulse, const std::optional<Weather>& weather,
-            double distance_m) {
+            double distance_m, const std::optional<Footprint>& footprint = {}) {
   const Scene scene = testing::scene_of(make_builtin_model("plane"));
   Sensor sensor;
   sensor.optics = pinhole_from_fov(9, 7, 0.01);
   sensor.wavelength_m = 905e-9;
   sensor.pulse = pulse;
   sensor.weather = weather;
+  sensor.footprint = footprint;
   const Beams beams = make_beams(sensor);
   const Motion motion =
       standing_still(scene, look_at({0.0, 0.0, distance_m}, {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}));
@@ -44,6 +45,19 @@ TEST(WeatherInAFrame, DimsEveryBeamByTheWayThereAndBack) {
     EXPECT_EQ(foggy.range_m[i], clear.range_m[i]);
     EXPECT_NEAR(foggy.intensity[i] / clear.intensity[i],
                 std::exp(-2.0 * alpha_per_m * clear.truth.range_m[i]), 2e-4);
+  }
+}
+
+TEST(WeatherInAFrame, DimsPulsesWithAFootprintToo) {
+  const PulseLight light{.reference_range_m = 1000.0};
+  const Footprint footprint{.divergence_x_rad = 1e-4, .divergence_y_rad = 1e-4};
+  const Frame clear = shoot(light, {}, 100.0, footprint);
+  const Frame foggy = shoot(light, Weather{.visibility_m = 1000.0}, 100.0, footprint);
+  const Frame dense = shoot(light, Weather{.visibility_m = 50.0}, 100.0, footprint);
+  for (std::size_t i = 0; i < clear.status.size(); ++i) {
+    ASSERT_EQ(foggy.status[i], Status::hit);
+    EXPECT_NEAR(foggy.intensity[i] / clear.intensity[i], 0.5434, 1e-4);  // Kim's, at 905 nm
+    EXPECT_EQ(dense.status[i], Status::weather);
   }
 }
 
