@@ -34,8 +34,9 @@ Scene make_room() {
 
 struct Stage {
   Scene scene = make_room();
-  Sensor sensor = load_sensor_file(find_sensor_file("VLP-16"));
+  Sensor sensor = ideal(load_sensor_file(find_sensor_file("VLP-16")));
   Sensor noisy = sensor;
+  Sensor wide = sensor;  ///< its beams are seven sub-rays
   Beams beams = make_beams(sensor);
   Motion motion = standing_still(scene, Pose::Identity());
   Motion moving = motion;
@@ -43,6 +44,12 @@ struct Stage {
   Stage() {
     noisy.noise = {RangeGaussian{.sigma_m = 0.01}, Dropout{.probability = 0.01},
                    RangeQuantum{.step_m = 0.002}};
+    wide.pulse = PulseLight{};
+    wide.footprint = Footprint{.divergence_x_rad = 3e-3,
+                               .divergence_y_rad = 1.5e-3,
+                               .exit_x_m = 0.0095,
+                               .exit_y_m = 0.0127,
+                               .rings = 1};
     std::vector<TimedPose> poses;
     for (int k = 0; k < 2000; ++k) {  // 200 poses a second
       poses.push_back({.t_ns = k * 5'000'000, .position_m = {1e-4 * k, 0.0, 0.0}});
@@ -57,16 +64,18 @@ void count_rays(const Stage& stage, benchmark::State& state) {
       benchmark::Counter::kIsRate);
 }
 
-void register_cast(const Stage& stage, unsigned threads, const std::string& name) {
-  benchmark::RegisterBenchmark(name.c_str(), [&stage, threads](benchmark::State& state) {
+void register_cast(const Stage& stage, unsigned threads, int casts, const std::string& name) {
+  benchmark::RegisterBenchmark(name.c_str(), [&stage, threads, casts](benchmark::State& state) {
     const auto renderer = make_renderer(stage.scene, {.threads = threads});
     Hits hits;
     for (auto _ : state) {
-      renderer->cast({.beams = stage.beams,
-                      .world_from_sensor = Pose::Identity(),
-                      .world_from_instance = {},
-                      .fields = {.normal = true}},
-                     hits);
+      for (int k = 0; k < casts; ++k) {
+        renderer->cast({.beams = stage.beams,
+                        .world_from_sensor = Pose::Identity(),
+                        .world_from_instance = {},
+                        .fields = {.normal = true}},
+                       hits);
+      }
     }
     count_rays(stage, state);
   })->UseRealTime();
@@ -91,13 +100,17 @@ int main(int argc, char** argv) {
   std::vector<glidar::bench::Ratio> ratios;
   for (const unsigned threads : {1U, 2U}) {
     const std::string at = std::to_string(threads) + " threads ";
-    glidar::bench::register_cast(stage, threads, at + "cast");
+    glidar::bench::register_cast(stage, threads, 1, at + "cast");
+    glidar::bench::register_cast(stage, threads, 7, at + "seven casts");
+    glidar::bench::register_simulation(stage, stage.wide, stage.motion, threads, at + "footprint");
     glidar::bench::register_simulation(stage, stage.sensor, stage.motion, threads, at + "simulate");
     glidar::bench::register_simulation(stage, stage.noisy, stage.motion, threads,
                                        at + "with noise");
     glidar::bench::register_simulation(stage, stage.sensor, stage.moving, threads, at + "moving");
     ratios.push_back({at + "simulate / cast", at + "cast", at + "simulate", 0.6});
     ratios.push_back({at + "moving along timed poses / cast", at + "cast", at + "moving", 0.3});
+    ratios.push_back({at + "footprint of seven sub-rays / seven casts", at + "seven casts",
+                      at + "footprint", 0.8});
     ratios.push_back({at + "with noise / cast", at + "cast", at + "with noise", 0.6});
   }
   return glidar::bench::run(argc, argv, ratios);

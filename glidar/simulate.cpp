@@ -4,6 +4,7 @@
 
 #include <glidar/motion/beam_poses.hpp>
 #include <glidar/pulse_cast.hpp>
+#include <glidar/shadow_cast.hpp>
 
 #include <cmath>
 #include <limits>
@@ -58,6 +59,7 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
   HitFields needed = fields;
   needed.shading = true;  // the light needs them
   needed.reflectance = true;
+  needed.normal = needed.normal || sensor.projector_m.has_value();
   add_needs(sensor.noise, needed);
   const World world{setup.renderer, setup.scene, setup.motion, frame.stamp_ns};
   const auto measure = [&](BeamRange range) {
@@ -78,6 +80,7 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
                  .progress = setup.progress},
                 frame.scratch, frame.truth);
   }
+  if (sensor.projector_m) cast_shadows(setup, *sensor.projector_m, beams, frame);
   deskew(world, setup.beams, beams, frame.deskewed);
   place_beams(setup.motion, setup.beams, fields.poses, workers, frame);
   apply_noise(sensor.noise, 1.0 / sensor.rate_hz, setup.beams, workers, frame);

@@ -19,7 +19,10 @@ ALLOWED = {
     "render": {"core", "render"},
     "moving_cast": {"core", "motion", "render", "moving_cast"},
     "pulse_cast": {"core", "sensor", "motion", "render", "moving_cast", "simulate", "pulse_cast"},
-    "simulate": {"core", "sensor", "motion", "render", "moving_cast", "pulse_cast", "simulate"},
+    "shadow_cast": {"core", "sensor", "motion", "render", "moving_cast", "simulate", "shadow_cast"},
+    "simulate": {
+        "core", "sensor", "motion", "render", "moving_cast", "pulse_cast", "shadow_cast", "simulate",
+    },
     "io": {"core", "sensor", "motion", "io"},
     "link": {"core", "io", "link"},
 }

@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kUsualLidarRate_hz = 10.0;
 constexpr NumberRule kWavelength = {100.0, 20000.0, false, "nanometres from 100 to 20000"};
+constexpr NumberRule kPlace_m = {-1e3, 1e3, false, "metres from -1000 to 1000"};
 
 Optics read_optics(const YamlField& field) {
   static const std::vector<std::string> kTypes = {"pinhole", "spinning", "raster",
@@ -217,8 +218,8 @@ std::vector<SheetEntry> read_entries(const YamlField& root) {
 
 Sensor read_sensor(const YamlField& field) {
   require_map(field, {"name", "optics", "rate_hz", "wavelength_nm", "limits", "depth_limits",
-                      "light", "pulse_light", "footprint", "receiver", "weather", "noise",
-                      "cull_back_faces", "source", "unverified"});
+                      "light", "pulse_light", "footprint", "receiver", "weather", "projector_m",
+                      "noise", "cull_back_faces", "source", "unverified"});
   Sensor sensor;
   sensor.optics = read_optics(need(field, "optics"));
   if (!is_camera(sensor)) sensor.name = "lidar";
@@ -232,6 +233,9 @@ Sensor read_sensor(const YamlField& field) {
   if (const auto pulse = find(field, "pulse_light")) sensor.pulse = read_pulse_light(*pulse);
   read_beam_shape(field, sensor);
   if (const auto weather = find(field, "weather")) read_weather_of(*weather, sensor);
+  if (const auto projector = find(field, "projector_m")) {
+    sensor.projector_m = triple(*projector, kPlace_m);
+  }
   if (const auto noise = find(field, "noise")) sensor.noise = read_noise(*noise);
   if (const auto cull = find(field, "cull_back_faces")) sensor.cull_back_faces = boolean(*cull);
   if (find(field, "source") || find(field, "unverified")) {

@@ -88,6 +88,7 @@ Json sensor_json(const CloudFile& job) {
           {"footprint", sensor.footprint ? footprint_json(*sensor.footprint) : Json()},
           {"receiver", sensor.pulse ? receiver_json(sensor.receiver) : Json()},
           {"weather", sensor.weather ? weather_json(*sensor.weather) : Json()},
+          {"projector_m", sensor.projector_m ? vector_json(*sensor.projector_m) : Json()},
           {"noise", noise_json(sensor.noise)},
           {"cull_back_faces", sensor.cull_back_faces},
           {"world_from_sensor", pose_json(job.frame.world_from_sensor)}};
@@ -140,7 +141,7 @@ Json status_json(const Frame& frame) {
   std::array<std::array<std::size_t, 256>, kLanes> counts{};
   for (std::size_t i = 0; i < frame.status.size(); ++i)
     ++counts[i % kLanes][static_cast<std::size_t>(frame.status[i])];
-  constexpr auto kLast = static_cast<std::size_t>(Status::weather);
+  constexpr auto kLast = static_cast<std::size_t>(Status::no_echo);
   Json told = Json::object();
   for (std::size_t s = 0; s <= kLast; ++s) {
     told[std::string(name(static_cast<Status>(s)))] =

@@ -76,7 +76,7 @@ std::string error_of(const MotionFlags& flags, bool pose_given = false,
 }
 
 TEST(MotionOptions, SayWhatIsWrong) {
-  using testing::HasSubstr;
+  using ::testing::HasSubstr;
   EXPECT_THAT(error_of({.camera_dr = "1,2"}), HasSubstr("--camera-dr: '1,2' (2 numbers)"));
   EXPECT_THAT(error_of({.camera_dr = "1,2,nan"}), HasSubstr("'nan'"));
   EXPECT_THAT(error_of({.camera_dr = "1,2,1e10"}), HasSubstr("rad/s from -1e9 to 1e9"));

@@ -131,7 +131,7 @@ void expect_sensor_error(const PoseFlags& flags, const std::string& text) {
     pose_sensor(flags, {}, camera(), one_triangle());
     FAIL() << "no error, expected: " << text;
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr(text));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr(text));
   }
 }
 

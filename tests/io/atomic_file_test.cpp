@@ -18,9 +18,9 @@
 namespace glidar {
 namespace {
 
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 /// No file may grow beyond this many bytes while it lives: a disk that is full.
 class FullDisk {

@@ -16,10 +16,10 @@
 namespace glidar {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 TEST(FileFormats, TheLongestSuffixWins) {
   EXPECT_EQ(format_for("a.png").suffix, ".png");

@@ -18,10 +18,10 @@
 namespace glidar {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
 
 /// Two points, the second a miss, with x y z and intensity, in a frame that is the sensor's.
 CloudFixture two_points() {

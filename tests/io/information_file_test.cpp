@@ -12,7 +12,7 @@
 namespace glidar {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// A wall straight ahead, seen by parallel beams.
 PoseInformation wall() {

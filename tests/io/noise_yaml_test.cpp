@@ -104,7 +104,7 @@ TEST(NoiseYaml, DefaultsAreThoseOfTheStructs) {
   EXPECT_EQ(std::get<NguyenAxial>(noise[1]).b_per_m, 0.0019);
 }
 
-class NoiseYamlError : public testing::TestWithParam<BadFile> {};
+class NoiseYamlError : public ::testing::TestWithParam<BadFile> {};
 
 TEST_P(NoiseYamlError, NamesPlaceFieldAndCure) {
   const TestFolder folder;
@@ -144,7 +144,7 @@ const BadFile kBadSteps[] = {
      "'normal'?"},
 };
 
-INSTANTIATE_TEST_SUITE_P(All, NoiseYamlError, testing::ValuesIn(kBadSteps), bad_file_name);
+INSTANTIATE_TEST_SUITE_P(All, NoiseYamlError, ::testing::ValuesIn(kBadSteps), bad_file_name);
 
 TEST(NoiseYaml, AnUnknownTypeIsToldWithTheNearest) {
   const TestFolder folder;

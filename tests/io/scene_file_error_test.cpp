@@ -7,7 +7,7 @@
 namespace glidar {
 namespace {
 
-class SceneFileError : public testing::TestWithParam<BadFile> {};
+class SceneFileError : public ::testing::TestWithParam<BadFile> {};
 
 TEST_P(SceneFileError, NamesPlaceFieldAndCure) {
   const TestFolder folder;
@@ -108,7 +108,7 @@ const BadFile kBadScenes[] = {
      "one of them"},
     {"MaterialUnknownKey", model("materials: {A: {difuse: [1, 1, 1]}}"),
      "s.yaml:3:21: models[0].materials.A.difuse: unknown key 'difuse'; allowed: ambient, diffuse, "
-     "specular, shininess, opacity, noise_scale, noise_texture, surface, backscatter, spectrum; "
+     "specular, shininess, opacity, noise_scale, noise_texture, surface, backscatter, mirror, spectrum; "
      "did you "
      "mean 'diffuse'?"},
     {"TwoMotions", model("motion: {spin: {rate_rad_s: [0, 0, 1]}, trajectory: t.tum}"),
@@ -161,7 +161,7 @@ const BadFile kBadScenes[] = {
      "s.yaml:2:24: sensor_pose.look_at: the key 'target' is missing; add 'target: ...'"},
 };
 
-INSTANTIATE_TEST_SUITE_P(All, SceneFileError, testing::ValuesIn(kBadScenes), bad_file_name);
+INSTANTIATE_TEST_SUITE_P(All, SceneFileError, ::testing::ValuesIn(kBadScenes), bad_file_name);
 
 TEST(SceneFileErrors, ErrorsInTheSensorFileNameThatFile) {
   const TestFolder folder;

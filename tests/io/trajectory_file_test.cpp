@@ -90,7 +90,7 @@ TEST(TrajectoryFile, NumbersDoNotDependOnTheLocale) {
   std::setlocale(LC_ALL, before.c_str());
 }
 
-class BadTrajectory : public testing::TestWithParam<BadFile> {};
+class BadTrajectory : public ::testing::TestWithParam<BadFile> {};
 
 TEST_P(BadTrajectory, NamesPlaceAndCure) {
   const TestFolder folder;
@@ -145,7 +145,7 @@ const BadFile kBadTrajectories[] = {
     {"Binary", std::string("0 0\0", 4), "t: binary data; allowed: a trajectory file"},
 };
 
-INSTANTIATE_TEST_SUITE_P(All, BadTrajectory, testing::ValuesIn(kBadTrajectories), bad_file_name);
+INSTANTIATE_TEST_SUITE_P(All, BadTrajectory, ::testing::ValuesIn(kBadTrajectories), bad_file_name);
 
 TEST(TrajectoryFileErrors, MatricesThatAreNoRotationsAreRefused) {
   const TestFolder folder;

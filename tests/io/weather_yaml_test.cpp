@@ -59,7 +59,7 @@ TEST(WeatherYaml, ComesBackInTheSidecarAsTheFileSaysIt) {
             R"("snow_mm_per_h":3.0,"snow_model":"sekhon_srivastava","least_signal":0.2})");
 }
 
-class WeatherYamlError : public testing::TestWithParam<BadFile> {};
+class WeatherYamlError : public ::testing::TestWithParam<BadFile> {};
 
 TEST_P(WeatherYamlError, NamesPlaceFieldAndWhatIsAllowed) {
   const TestFolder folder;
@@ -93,7 +93,7 @@ const BadFile kBadFiles[] = {
      "depends; allowed: fog for light of a known wavelength; add 'wavelength_nm: ...'"},
 };
 
-INSTANTIATE_TEST_SUITE_P(All, WeatherYamlError, testing::ValuesIn(kBadFiles), bad_file_name);
+INSTANTIATE_TEST_SUITE_P(All, WeatherYamlError, ::testing::ValuesIn(kBadFiles), bad_file_name);
 
 }  // namespace
 }  // namespace glidar

@@ -12,7 +12,7 @@
 namespace glidar {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr double kExact = 1e-14;
 

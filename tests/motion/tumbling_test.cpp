@@ -38,7 +38,7 @@ const Case kBodies[] = {
     {"ThinPlate", {1.0, 2.0, 3.0}, {0.4, 0.1, -0.3}},
 };
 
-class TumblingBody : public testing::TestWithParam<Case> {
+class TumblingBody : public ::testing::TestWithParam<Case> {
  protected:
   static TumblingStart start() {
     TumblingStart start{.moments_kg_m2 = GetParam().moments, .rate_rad_s = GetParam().rate};
@@ -131,7 +131,7 @@ TEST_P(TumblingBody, ForgetsNothingWhenAskedInAnyOrder) {
   EXPECT_EQ(before.matrix(), Tumbling(start()).pose_at(12345678901).matrix());
 }
 
-INSTANTIATE_TEST_SUITE_P(Bodies, TumblingBody, testing::ValuesIn(kBodies),
+INSTANTIATE_TEST_SUITE_P(Bodies, TumblingBody, ::testing::ValuesIn(kBodies),
                          [](const auto& body) { return std::string(body.param.name); });
 
 TEST(Tumbling, SymmetricBodyNutatesAndPrecessesAtItsTextbookRates) {

@@ -53,7 +53,7 @@ struct Golden {
   double exact_peak;  ///< the same, by 2e6 steps of the midpoint rule
 };
 
-class SoftReturn : public testing::TestWithParam<Golden> {};
+class SoftReturn : public ::testing::TestWithParam<Golden> {};
 
 TEST_P(SoftReturn, HasThePublishedPeak) {
   const auto& [alpha, peak, peak_range_m, exact_peak] = GetParam();
@@ -90,7 +90,7 @@ TEST_P(SoftReturn, IsTheIntegralAtAnyTimeAndBeforeAnyTarget) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Hahner, SoftReturn,
-                         testing::Values(Golden{0.005, 4.56799, 4.70, 4.567969},
+                         ::testing::Values(Golden{0.005, 4.56799, 4.70, 4.567969},
                                          Golden{0.02, 4.34657, 4.70, 4.346633},
                                          Golden{0.06, 3.81564, 4.60, 3.815421},
                                          Golden{0.2, 2.47599, 4.50, 2.475990}));

@@ -193,7 +193,7 @@ void expect_error(const Beams& beams, const Scene& scene, const std::string& tex
     frame_view(beams, scene, kFrom, kUp);
     FAIL() << "no error, expected: " << text;
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr(text));
+    EXPECT_THAT(error.what(), ::testing::HasSubstr(text));
   }
 }
 

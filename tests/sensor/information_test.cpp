@@ -17,7 +17,7 @@ namespace glidar {
 namespace {
 
 using Eigen::Vector3d;
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr double kSigma_m = 0.02;
 

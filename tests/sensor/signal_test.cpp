@@ -109,7 +109,7 @@ struct SheetPair {
   double noise_to_signal;  ///< threshold over noise, as the sheets' pairs give it
 };
 
-class DetectionOfSheets : public testing::TestWithParam<SheetPair> {};
+class DetectionOfSheets : public ::testing::TestWithParam<SheetPair> {};
 
 TEST_P(DetectionOfSheets, ReproducesBothRanges) {
   const SheetPair& sheet = GetParam();
@@ -125,7 +125,7 @@ TEST_P(DetectionOfSheets, ReproducesBothRanges) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Ouster, DetectionOfSheets,
-                         testing::Values(SheetPair{"OS0", 0.1, 20.0, 15.0, 1.65},
+                         ::testing::Values(SheetPair{"OS0", 0.1, 20.0, 15.0, 1.65},
                                          SheetPair{"OS0", 0.8, 50.0, 45.0, 5.5},
                                          SheetPair{"OS1", 0.1, 55.0, 45.0, 2.6},
                                          SheetPair{"OS1", 0.8, 120.0, 100.0, 2.9},

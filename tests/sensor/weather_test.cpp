@@ -32,7 +32,7 @@ struct FogRow {
   double last_digit;
 };
 
-class FogTable : public testing::TestWithParam<FogRow> {};
+class FogTable : public ::testing::TestWithParam<FogRow> {};
 
 TEST_P(FogTable, GivesThePublishedExtinction) {
   const FogRow& row = GetParam();
@@ -42,7 +42,7 @@ TEST_P(FogTable, GivesThePublishedExtinction) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Fog, FogTable,
-                         testing::Values(FogRow{0.2, FogModel::kim, 19.56, 19.56, 0.01},
+                         ::testing::Values(FogRow{0.2, FogModel::kim, 19.56, 19.56, 0.01},
                                          FogRow{0.2, FogModel::kruse, 16.50, 13.72, 0.01},
                                          FogRow{1.0, FogModel::kim, 3.050, 2.330, 0.001},
                                          FogRow{1.0, FogModel::kruse, 2.923, 2.134, 0.001},

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/pulse_cast.hpp>
 #include <glidar/simulate.hpp>
+#include <simulate/panels.hpp>
 
 #include <gtest/gtest.h>
 
@@ -13,8 +14,7 @@ namespace glidar {
 namespace {
 
 /// A camera of pulses at the origin that looks along z, and panels before it.
-struct Stage {
-  Scene scene;
+struct Stage : testing::PanelScene {
   Sensor sensor;
   unsigned threads = 2;
 
@@ -24,27 +24,6 @@ struct Stage {
     sensor.receiver.pulse_fwhm_s = 5e-9;
   }
 
-  /// A parallelogram, seen from both sides; returns its material.
-  Material& add_panel(const Eigen::Vector3d& corner, const Eigen::Vector3d& u,
-                      const Eigen::Vector3d& v) {
-    Mesh mesh;
-    mesh.origin_m = corner;
-    mesh.positions_m = {Eigen::Vector3f::Zero(), u.cast<float>(), (u + v).cast<float>(),
-                        v.cast<float>()};
-    mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
-    const auto index = static_cast<std::uint32_t>(scene.meshes.size());
-    scene.meshes.push_back(mesh);
-    scene.sources.emplace_back();
-    scene.materials.emplace_back();
-    Instance& instance = scene.instances.emplace_back();
-    instance.mesh = index;
-    instance.materials = {index};
-    return scene.materials.back();
-  }
-  /// Square to z at a range, from x0 to x1.
-  Material& add_wall(double range_m, double x0 = -50.0, double x1 = 50.0) {
-    return add_panel({x0, -50.0, range_m}, {x1 - x0, 0.0, 0.0}, {0.0, 100.0, 0.0});
-  }
   void spread(double divergence_rad, unsigned rings = 2) {
     sensor.footprint = Footprint{
         .divergence_x_rad = divergence_rad, .divergence_y_rad = divergence_rad, .rings = rings};

@@ -14,6 +14,11 @@
 namespace glidar {
 namespace {
 
+/// Fog of this visibility that sends nothing back itself.
+Weather dark_fog(double visibility_m) {
+  return {.visibility_m = visibility_m, .fog_backscatter_per_sr = 0.0};
+}
+
 /// A pulsed camera so far before a plane.
 Frame shoot(const std::optional<PulseLight>& pulse, const std::optional<Weather>& weather,
             double distance_m, const std::optional<Footprint>& footprint = {}) {
@@ -35,7 +40,9 @@ Frame shoot(const std::optional<PulseLight>& pulse, const std::optional<Weather>
 
 TEST(WeatherInAFrame, DimsEveryBeamByTheWayThereAndBack) {
   const PulseLight light{.reference_range_m = 1000.0};
-  const Weather fog{.visibility_m = 1000.0, .rain_mm_per_h = 10.0};
+  Weather fog = dark_fog(1000.0);
+  fog.rain_mm_per_h = 10.0;
+  fog.least_signal = 1e6;  // drops that are seen have tests of their own
   const double alpha_per_m = 3.050e-3 + 1.556e-3;  // Kim's, and Marshall and Palmer's drops
   const Frame clear = shoot(light, {}, 100.0);
   const Frame foggy = shoot(light, fog, 100.0);
@@ -52,8 +59,8 @@ TEST(WeatherInAFrame, DimsPulsesWithAFootprintToo) {
   const PulseLight light{.reference_range_m = 1000.0};
   const Footprint footprint{.divergence_x_rad = 1e-4, .divergence_y_rad = 1e-4};
   const Frame clear = shoot(light, {}, 100.0, footprint);
-  const Frame foggy = shoot(light, Weather{.visibility_m = 1000.0}, 100.0, footprint);
-  const Frame dense = shoot(light, Weather{.visibility_m = 50.0}, 100.0, footprint);
+  const Frame foggy = shoot(light, dark_fog(1000.0), 100.0, footprint);
+  const Frame dense = shoot(light, dark_fog(50.0), 100.0, footprint);
   for (std::size_t i = 0; i < clear.status.size(); ++i) {
     ASSERT_EQ(foggy.status[i], Status::hit);
     EXPECT_NEAR(foggy.intensity[i] / clear.intensity[i], 0.5434, 1e-4);  // Kim's, at 905 nm
@@ -64,7 +71,7 @@ TEST(WeatherInAFrame, DimsPulsesWithAFootprintToo) {
 TEST(WeatherInAFrame, TakesReturnsAndSaysSo) {
   const PulseLight light{.reference_reflectance = 0.01, .reference_range_m = 200.0};
   const Frame clear = shoot(light, {}, 100.0);
-  const Frame foggy = shoot(light, Weather{.visibility_m = 60.0}, 100.0);
+  const Frame foggy = shoot(light, dark_fog(60.0), 100.0);
   const auto all = [](const Frame& frame, Status status) {
     return std::all_of(frame.status.begin(), frame.status.end(),
                        [&](Status found) { return found == status; });
@@ -72,6 +79,35 @@ TEST(WeatherInAFrame, TakesReturnsAndSaysSo) {
   EXPECT_TRUE(all(clear, Status::hit));
   EXPECT_TRUE(all(foggy, Status::weather));
   EXPECT_NEAR(foggy.truth.range_m[31], 100.0, 1e-9);
+}
+
+TEST(WeatherInAFrame, FogBeforeAFaintTargetIsReportedInItsPlace) {
+  const PulseLight light{.reference_range_m = 1000.0, .overlap = {{0.9, 0.0}, {1.0, 1.0}}};
+  const Weather fog{.visibility_m = 100.0};
+  const Frame frame = shoot(light, fog, 100.0);
+  for (std::size_t i = 0; i < frame.status.size(); ++i) {
+    ASSERT_EQ(frame.status[i], Status::hit);
+    EXPECT_EQ(frame.cause[i], Cause::fog);
+    EXPECT_LT(frame.range_m[i], 5.0);
+    EXPECT_NEAR(frame.truth.range_m[i], 100.0, 0.01) << "the truth stays: the plane";
+  }
+}
+
+TEST(WeatherInAFrame, DropsAreReportedWhereNothingElseIs) {
+  const PulseLight light{.reference_range_m = 1000.0};
+  const Footprint footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3};
+  // the plane is 2 m wide and 3 km away: the beams' edges see past it
+  const Frame snow = shoot(light, Weather{.snow_mm_per_h = 20.0}, 3000.0, footprint);
+  std::size_t flakes = 0;
+  for (std::size_t i = 0; i < snow.status.size(); ++i) {
+    if (snow.cause[i] != Cause::snow) continue;
+    ++flakes;
+    EXPECT_GT(snow.range_m[i], 0.0);
+    EXPECT_LT(snow.range_m[i], 3000.0);
+    EXPECT_GE(snow.intensity[i], 1.0F);
+  }
+  EXPECT_GT(flakes, 0U);
+  EXPECT_EQ(std::count(snow.cause.begin(), snow.cause.end(), Cause::rain), 0);
 }
 
 TEST(WeatherInAFrame, IsRefusedForLightThatIsNotPulsed) {

@@ -1,0 +1,71 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/shadow_cast.hpp>
+
+#include <limits>
+
+namespace glidar {
+namespace {
+
+constexpr std::size_t kBeamsPerTask = 4096;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// Where a beam's hit is, seen from the projector, in the sensor's frame.
+Eigen::Vector3d from_projector(const Beams& aimed, const Eigen::Vector3d& projector_m,
+                               const Hits& truth, std::size_t i) {
+  Eigen::Vector3d point = truth.range_m[i] * aimed.directions[i];
+  if (!aimed.origins_m.empty()) point += aimed.origins_m[i];
+  return point - projector_m;
+}
+
+/// Beams from the projector to all hits.
+void aim_at_hits(const Beams& aimed, const Eigen::Vector3d& projector_m, const Frame& frame,
+                 Beams& beams) {
+  beams.rows = aimed.rows;
+  beams.cols = aimed.cols;
+  beams.boresight = aimed.boresight;
+  beams.times_ns = aimed.times_ns;
+  beams.origins_m.assign(aimed.size(), projector_m);
+  beams.directions.resize(aimed.size());
+  for (std::size_t i = 0; i < aimed.size(); ++i) {
+    beams.directions[i].setConstant(kNaN);
+    if (frame.status[i] != Status::hit || frame.truth.instance[i] == kNoHit) continue;
+    const Eigen::Vector3d way = from_projector(aimed, projector_m, frame.truth, i);
+    if (way.norm() > 0.0) beams.directions[i] = way.normalized();
+  }
+}
+
+/// Whether something stands before the hit, or its other side is lit.
+bool is_dark(const Beams& aimed, const Eigen::Vector3d& projector_m, const Frame& frame,
+             std::size_t i) {
+  constexpr double kClear = 1e-6;  // of the way: far above rounding, far below any shadow
+  const Eigen::Vector3d way = from_projector(aimed, projector_m, frame.truth, i);
+  const bool faces_away = frame.truth.normal[i].cast<double>().dot(way) >= 0.0;
+  return faces_away || frame.scratch.sub_hits.range_m[i] < (1.0 - kClear) * way.norm();
+}
+
+}  // namespace
+
+void cast_shadows(const Setup& setup, const Eigen::Vector3d& projector_m, const Beams& aimed,
+                  Frame& frame) {
+  Scratch& memory = frame.scratch;
+  aim_at_hits(aimed, projector_m, frame, memory.sub_beams);
+  cast_moving({setup.renderer, setup.scene, setup.motion, frame.stamp_ns},
+              {.beams = memory.sub_beams,
+               .world_from_sensor = frame.world_from_sensor,
+               .world_from_instance = frame.world_from_instance,
+               .fields = {}},
+              memory, memory.sub_hits);
+  setup.renderer.workers().for_ranges(
+      aimed.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          if (frame.status[i] != Status::hit || frame.truth.instance[i] == kNoHit) continue;
+          if (!is_dark(aimed, projector_m, frame, i)) continue;
+          frame.status[i] = Status::occluded;
+          frame.range_m[i] = kNaN;
+          frame.intensity[i] = 0.0F;
+        }
+      });
+}
+
+}  // namespace glidar
