@@ -51,8 +51,9 @@ struct Stage {
                                .exit_y_m = 0.0127,
                                .rings = 1};
     std::vector<TimedPose> poses;
-    for (int k = 0; k < 2000; ++k) {  // 200 poses a second
-      poses.push_back({.t_ns = k * 5'000'000, .position_m = {1e-4 * k, 0.0, 0.0}});
+    for (std::int64_t k = 0; k < 2000; ++k) {  // 200 poses a second
+      poses.push_back(
+          {.t_ns = k * 5'000'000, .position_m = {1e-4 * static_cast<double>(k), 0.0, 0.0}});
     }
     moving.world_from_sensor = TimedPoses(poses);
   }
