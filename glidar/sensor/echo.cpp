@@ -30,12 +30,20 @@ struct Group {
   std::size_t end;
 };
 
+/// exp(-y) from 0 on. Most paths of a footprint are near each other: then its series to y^4, whose
+/// next term is below 1e-11, is quicker.
+double fading(double y) {
+  constexpr double kSmall = 1.0 / 64.0;
+  if (y >= kSmall) return natural_exp(-y);
+  return 1.0 - y * (1.0 - y / 2.0 * (1.0 - y / 3.0 * (1.0 - y / 4.0)));
+}
+
 /// The sum of the group's pulses at a range.
 double waveform(const EchoWork& work, const Group& group, double sigma_m, double range_m) {
   double sum = 0.0;
   for (std::size_t i = group.begin; i < group.end; ++i) {
     const double x = (work.path[i].range_m - range_m) / sigma_m;
-    if (std::abs(x) < kReach) sum += work.path[i].signal * natural_exp(-0.5 * x * x);
+    if (std::abs(x) < kReach) sum += work.path[i].signal * fading(0.5 * x * x);
   }
   return sum;
 }

@@ -75,8 +75,9 @@ void validate(const Footprint& f) {
 }
 
 double diameter_m(const Footprint& f, double range_m) {
-  return std::max(std::hypot(f.exit_x_m, f.divergence_x_rad * range_m),
-                  std::hypot(f.exit_y_m, f.divergence_y_rad * range_m));
+  const double x = f.divergence_x_rad * range_m;
+  const double y = f.divergence_y_rad * range_m;
+  return std::sqrt(std::max(f.exit_x_m * f.exit_x_m + x * x, f.exit_y_m * f.exit_y_m + y * y));
 }
 
 std::vector<SubRay> sub_rays(const Footprint& f) {
