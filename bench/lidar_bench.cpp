@@ -65,19 +65,21 @@ void count_rays(const Stage& stage, benchmark::State& state) {
       benchmark::Counter::kIsRate);
 }
 
+void cast(const Stage& stage, int times, Renderer& renderer, Hits& hits) {
+  for (int k = 0; k < times; ++k) {
+    renderer.cast({.beams = stage.beams,
+                   .world_from_sensor = Pose::Identity(),
+                   .world_from_instance = {},
+                   .fields = {.normal = true}},
+                  hits);
+  }
+}
+
 void register_cast(const Stage& stage, unsigned threads, int casts, const std::string& name) {
   benchmark::RegisterBenchmark(name.c_str(), [&stage, threads, casts](benchmark::State& state) {
     const auto renderer = make_renderer(stage.scene, {.threads = threads});
     Hits hits;
-    for (auto _ : state) {
-      for (int k = 0; k < casts; ++k) {
-        renderer->cast({.beams = stage.beams,
-                        .world_from_sensor = Pose::Identity(),
-                        .world_from_instance = {},
-                        .fields = {.normal = true}},
-                       hits);
-      }
-    }
+    for (auto _ : state) cast(stage, casts, *renderer, hits);
     count_rays(stage, state);
   })->UseRealTime();
 }

@@ -60,7 +60,8 @@ def intensities(program, weather, nanometres, folder):
     (folder / "sensor.yaml").write_text(
         f"optics: {{width: 16, height: 12, fov_deg: 0.5}}\nwavelength_nm: {nanometres}\n"
         "pulse_light: {reference_reflectance: 0.01, reference_range_m: 1e6}\n"
-        f"weather: {{{weather}}}\n", encoding="utf-8")
+        "receiver: {returns: [last]}\n"  # the plane, behind the echoes of the air
+        f"weather: {{fog_backscatter_per_sr: 0{weather}}}\n", encoding="utf-8")
     subprocess.run(
         [program, "render", "builtin:plane", "--sensor", "sensor.yaml", "--eye",
          f"0,0,{DISTANCE_M}", "--target", "0,0,0", "--up-vector", "0,1,0", "--columns",
@@ -71,7 +72,7 @@ def intensities(program, weather, nanometres, folder):
 
 def measured_per_km(program, weather, nanometres, folder):
     range_m, clear = intensities(program, "", nanometres, folder)
-    _, dimmed = intensities(program, weather, nanometres, folder)
+    _, dimmed = intensities(program, ", " + weather, nanometres, folder)
     return 1e3 * float(np.nanmean(-np.log(dimmed / clear) / (2.0 * range_m)))
 
 

@@ -44,11 +44,11 @@ struct Sensor {
   std::optional<Footprint> footprint;  ///< of pulses; empty: a line
   std::optional<Weather> weather;      ///< empty: clear air; acts on `pulse`
   Receiver receiver;                   ///< of pulses
-  /// Where its light comes from, in its frame: what that place does not see is occluded. Empty: from
-  /// where it looks.
+  /// Where its light comes from, in its frame: what that place does not see is occluded. Empty:
+  /// from where it looks.
   std::optional<Eigen::Vector3d> projector_m;
-  std::vector<NoiseStep> noise;        ///< in the order in which the sensor makes its errors
-  bool cull_back_faces = false;        ///< true: triangles seen from behind let the beam through
+  std::vector<NoiseStep> noise;  ///< in the order in which the sensor makes its errors
+  bool cull_back_faces = false;  ///< true: triangles seen from behind let the beam through
 };
 
 /// What the sensor says of something at this true range on a beam: hit, too_near or too_far.

@@ -108,7 +108,8 @@ const BadFile kBadScenes[] = {
      "one of them"},
     {"MaterialUnknownKey", model("materials: {A: {difuse: [1, 1, 1]}}"),
      "s.yaml:3:21: models[0].materials.A.difuse: unknown key 'difuse'; allowed: ambient, diffuse, "
-     "specular, shininess, opacity, noise_scale, noise_texture, surface, backscatter, mirror, spectrum; "
+     "specular, shininess, opacity, noise_scale, noise_texture, surface, backscatter, mirror, "
+     "spectrum; "
      "did you "
      "mean 'diffuse'?"},
     {"TwoMotions", model("motion: {spin: {rate_rad_s: [0, 0, 1]}, trajectory: t.tum}"),

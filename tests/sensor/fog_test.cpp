@@ -91,9 +91,9 @@ TEST_P(SoftReturn, IsTheIntegralAtAnyTimeAndBeforeAnyTarget) {
 
 INSTANTIATE_TEST_SUITE_P(Hahner, SoftReturn,
                          ::testing::Values(Golden{0.005, 4.56799, 4.70, 4.567969},
-                                         Golden{0.02, 4.34657, 4.70, 4.346633},
-                                         Golden{0.06, 3.81564, 4.60, 3.815421},
-                                         Golden{0.2, 2.47599, 4.50, 2.475990}));
+                                           Golden{0.02, 4.34657, 4.70, 4.346633},
+                                           Golden{0.06, 3.81564, 4.60, 3.815421},
+                                           Golden{0.2, 2.47599, 4.50, 2.475990}));
 
 TEST(FogReturn, DependsOnNearTargetsAndNotOnFarOnes) {
   const FogReturn fog = fog_return(unit_light(0.06), kUnitBackscatter, kFwhm_s);

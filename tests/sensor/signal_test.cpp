@@ -126,11 +126,11 @@ TEST_P(DetectionOfSheets, ReproducesBothRanges) {
 
 INSTANTIATE_TEST_SUITE_P(Ouster, DetectionOfSheets,
                          ::testing::Values(SheetPair{"OS0", 0.1, 20.0, 15.0, 1.65},
-                                         SheetPair{"OS0", 0.8, 50.0, 45.0, 5.5},
-                                         SheetPair{"OS1", 0.1, 55.0, 45.0, 2.6},
-                                         SheetPair{"OS1", 0.8, 120.0, 100.0, 2.9},
-                                         SheetPair{"OS2", 0.1, 100.0, 80.0, 2.3},
-                                         SheetPair{"OS2", 0.8, 240.0, 210.0, 4.2}));
+                                           SheetPair{"OS0", 0.8, 50.0, 45.0, 5.5},
+                                           SheetPair{"OS1", 0.1, 55.0, 45.0, 2.6},
+                                           SheetPair{"OS1", 0.8, 120.0, 100.0, 2.9},
+                                           SheetPair{"OS2", 0.1, 100.0, 80.0, 2.3},
+                                           SheetPair{"OS2", 0.8, 240.0, 210.0, 4.2}));
 
 TEST(Signal, TakesItsExponentFromTwoReflectances) {
   EXPECT_NEAR(range_exponent(0.8, 120.0, 0.1, 40.0), 1.89, 0.005);   // OS1, first generation

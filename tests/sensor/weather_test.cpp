@@ -43,14 +43,14 @@ TEST_P(FogTable, GivesThePublishedExtinction) {
 
 INSTANTIATE_TEST_SUITE_P(Fog, FogTable,
                          ::testing::Values(FogRow{0.2, FogModel::kim, 19.56, 19.56, 0.01},
-                                         FogRow{0.2, FogModel::kruse, 16.50, 13.72, 0.01},
-                                         FogRow{1.0, FogModel::kim, 3.050, 2.330, 0.001},
-                                         FogRow{1.0, FogModel::kruse, 2.923, 2.134, 0.001},
-                                         FogRow{5.0, FogModel::kim, 0.443, 0.240, 0.001},
-                                         FogRow{5.0, FogModel::kruse, 0.475, 0.278, 0.001},
-                                         FogRow{10.0, FogModel::kim, 0.205, 0.102, 0.001},
-                                         FogRow{10.0, FogModel::kruse, 0.205, 0.102, 0.001},
-                                         FogRow{23.0, FogModel::kim, 0.089, 0.044, 0.001}));
+                                           FogRow{0.2, FogModel::kruse, 16.50, 13.72, 0.01},
+                                           FogRow{1.0, FogModel::kim, 3.050, 2.330, 0.001},
+                                           FogRow{1.0, FogModel::kruse, 2.923, 2.134, 0.001},
+                                           FogRow{5.0, FogModel::kim, 0.443, 0.240, 0.001},
+                                           FogRow{5.0, FogModel::kruse, 0.475, 0.278, 0.001},
+                                           FogRow{10.0, FogModel::kim, 0.205, 0.102, 0.001},
+                                           FogRow{10.0, FogModel::kruse, 0.205, 0.102, 0.001},
+                                           FogRow{23.0, FogModel::kim, 0.089, 0.044, 0.001}));
 
 TEST(Fog, LeavesThePublishedTransmissionOver100MetresAndBack) {
   const std::vector<std::array<double, 2>> table = {

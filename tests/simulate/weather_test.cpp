@@ -42,7 +42,7 @@ TEST(WeatherInAFrame, DimsEveryBeamByTheWayThereAndBack) {
   const PulseLight light{.reference_range_m = 1000.0};
   Weather fog = dark_fog(1000.0);
   fog.rain_mm_per_h = 10.0;
-  fog.least_signal = 1e6;  // drops that are seen have tests of their own
+  fog.least_signal = 1e6;                          // drops that are seen have tests of their own
   const double alpha_per_m = 3.050e-3 + 1.556e-3;  // Kim's, and Marshall and Palmer's drops
   const Frame clear = shoot(light, {}, 100.0);
   const Frame foggy = shoot(light, fog, 100.0);
