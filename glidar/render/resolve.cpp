@@ -319,6 +319,21 @@ void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& fro
   });
 }
 
+void Resolver::write_shading(const HitFields& fields, const HitBlock& block,
+                             const ExactBlock& exact, const Weights& weights, Hits& hits) const {
+  CornerBlock corners;
+  Lanes3<double> smooth;
+  gather(*this, block, normals_of, corners);
+  blend_normals(corners, weights.w1, weights.w2, exact.normal, smooth);
+  bend_normals(block, weights.w1, weights.w2, smooth);
+  if (fields.shading) {
+    Lanes<float> cosine;
+    cosines(exact, smooth, cosine);
+    for_lanes(block.mask, [&](unsigned i) { hits.cos_shading[block.beam[i]] = cosine[i]; });
+  }
+  if (fields.shading_normal) write_directions(block, smooth, exact.cosine, hits.shading_normal);
+}
+
 void Resolver::write_surface(const HitFields& fields, const HitBlock& block,
                              const ExactBlock& exact, Hits& hits) const {
   CornerBlock corners;
@@ -329,18 +344,7 @@ void Resolver::write_surface(const HitFields& fields, const HitBlock& block,
   if (fields.barycentrics) {
     for_lanes(block.mask, [&](unsigned i) { hits.barycentrics[block.beam[i]] = {w1[i], w2[i]}; });
   }
-  if (fields.shading_normal || fields.shading) {
-    Lanes3<double> smooth;
-    gather(*this, block, normals_of, corners);
-    blend_normals(corners, w1, w2, exact.normal, smooth);
-    bend_normals(block, w1, w2, smooth);
-    if (fields.shading) {
-      Lanes<float> cosine;
-      cosines(exact, smooth, cosine);
-      for_lanes(block.mask, [&](unsigned i) { hits.cos_shading[block.beam[i]] = cosine[i]; });
-    }
-    if (fields.shading_normal) write_directions(block, smooth, exact.cosine, hits.shading_normal);
-  }
+  if (fields.shading_normal || fields.shading) write_shading(fields, block, exact, {w1, w2}, hits);
   if (fields.colour || fields.reflectance || fields.noise_scale)
     write_colours(fields, block, w1, w2, hits);
 }

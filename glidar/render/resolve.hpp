@@ -116,6 +116,13 @@ class Resolver {
  private:
   void write_directions(const HitBlock& block, const Lanes3<double>& front,
                         const Lanes<double>& cosine, std::vector<Eigen::Vector3f>& column) const;
+  /// Of corners 1 and 2 of each lane's triangle.
+  struct Weights {
+    const Lanes<float>& w1;
+    const Lanes<float>& w2;
+  };
+  void write_shading(const HitFields& fields, const HitBlock& block, const ExactBlock& exact,
+                     const Weights& weights, Hits& hits) const;
   void write_surface(const HitFields& fields, const HitBlock& block, const ExactBlock& exact,
                      Hits& hits) const;
   [[nodiscard]] const SlotLook& look(const HitBlock& block, unsigned lane) const {

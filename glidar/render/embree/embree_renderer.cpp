@@ -162,6 +162,19 @@ void finish(const Job& job, TileWork& work) {
   if (block.mask != 0) job.resolver.write(job.beams, job.fields, block, work.exact, job.hits);
 }
 
+/// Collects and traces the beams of tile i.
+void start(const Job& job, const embree::Tiling& tiling, std::size_t i, std::size_t end,
+           TileWork& work) {
+  const embree::Tile tile = tiling.tile(i);
+  if (!job.points.x.empty() && tile.is_whole(kLanes)) {
+    gather_pinhole(job.points, tile, work);
+  } else {
+    gather_beams(job.beams, tile, work);
+    if (i + 1 < end) prefetch(job.beams, tiling.tile(i + 1));
+  }
+  trace(job, work);
+}
+
 /// Casts tiles [begin, end). Three are under way at a time, so that what the later steps of one
 /// read from memory (planes and corners of its triangles) comes while the next is traced.
 void cast_tiles(const Job& job, const embree::Tiling& tiling, std::size_t begin, std::size_t end) {
@@ -170,17 +183,7 @@ void cast_tiles(const Job& job, const embree::Tiling& tiling, std::size_t begin,
     write_misses(job.fields, row.begin, row.end - row.begin, job.hits);
   });
   for (std::size_t i = begin; i < end + 2; ++i) {
-    if (i < end) {
-      TileWork& work = ring[i % ring.size()];
-      const embree::Tile tile = tiling.tile(i);
-      if (!job.points.x.empty() && tile.is_whole(kLanes)) {
-        gather_pinhole(job.points, tile, work);
-      } else {
-        gather_beams(job.beams, tile, work);
-        if (i + 1 < end) prefetch(job.beams, tiling.tile(i + 1));
-      }
-      trace(job, work);
-    }
+    if (i < end) start(job, tiling, i, end, ring[i % ring.size()]);
     if (i >= begin + 1 && i - 1 < end) {
       job.resolver.prefetch_corners(ring[(i - 1) % ring.size()].block, job.fields);
     }
