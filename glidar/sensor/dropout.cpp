@@ -56,7 +56,7 @@ void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch) {
     const std::size_t beam = batch.first + i;
     // one of the other rows; the bias of this way of choosing is below rows / 2^32
     const std::uint64_t pick = std::uint64_t{words.word[1][i]} * (rows - 1U) >> 32U;
-    const std::size_t block = beam / (rows * cols) * rows;  // of this return
+    const std::size_t block = beam / (std::size_t{rows} * cols) * rows;  // of this return
     const std::size_t row = block + (beam / cols % rows + 1U + pick) % rows;
     const double other_m = view.frame.scratch.before[row * cols + beam % cols];
     if (!(other_m > step.near_m)) continue;  // that channel has no echo

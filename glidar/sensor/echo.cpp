@@ -227,14 +227,15 @@ void choose(const Receiver& receiver, std::span<const PulseEcho> echoes,
     return std::find(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(before), index) !=
            chosen.begin() + static_cast<std::ptrdiff_t>(before);
   };
+  const auto strongest_untold = [&](std::size_t before) {
+    const auto end = by_strength.begin() + static_cast<std::ptrdiff_t>(echoes.size());
+    const auto found =
+        std::find_if(by_strength.begin(), end, [&](int echo) { return !is_told(echo, before); });
+    return found == end ? -1 : static_cast<int>(*found);
+  };
   for (std::size_t r = 0; r < count; ++r) {
     int index = find_return(receiver.returns[r], echoes, by_strength);
-    if (index >= 0 && is_told(index, r)) {
-      index = -1;
-      for (std::size_t k = 0; k < echoes.size() && index < 0; ++k) {
-        if (!is_told(by_strength[k], r)) index = by_strength[k];
-      }
-    }
+    if (index >= 0 && is_told(index, r)) index = strongest_untold(r);
     chosen[r] = index;
   }
 }

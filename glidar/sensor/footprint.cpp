@@ -62,6 +62,13 @@ Across across(const Eigen::Vector3d& direction, const Eigen::Vector3d& up) {
   return {x, x.cross(direction)};
 }
 
+/// Where a sub-ray of a beam starts.
+Eigen::Vector3d origin_of(const Beams& beams, std::size_t beam, const SubRay& ray,
+                          const Across& basis) {
+  const Eigen::Vector3d offset = ray.offset_m.x() * basis.x + ray.offset_m.y() * basis.y;
+  return beams.origins_m.empty() ? offset : Eigen::Vector3d(offset + beams.origins_m[beam]);
+}
+
 }  // namespace
 
 void validate(const Footprint& f) {
@@ -124,10 +131,7 @@ void spread(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range
     for (const SubRay& ray : rays) {
       const double length = std::sqrt(1.0 + ray.slope.squaredNorm());
       out.directions[i] = (direction + ray.slope.x() * basis.x + ray.slope.y() * basis.y) / length;
-      if (has_offsets) {
-        out.origins_m[i] = ray.offset_m.x() * basis.x + ray.offset_m.y() * basis.y;
-        if (!beams.origins_m.empty()) out.origins_m[i] += beams.origins_m[beam];
-      }
+      if (has_offsets) out.origins_m[i] = origin_of(beams, beam, ray, basis);
       if (!out.times_ns.empty()) out.times_ns[i] = beams.times_ns[beam];
       ++i;
     }
