@@ -74,7 +74,7 @@ TEST(Presets, MeasureARoomWithLightAndNoise) {
   for (const auto& file : preset_files()) {
     SCOPED_TRACE(file.stem().string());
     Sensor sensor = load_sensor_file(file);
-    sensor.limits = {};
+    sensor.limits = {.along = Limits::Along::range};
     const Ball room(sensor, 2.0, 0.5);
     EXPECT_GT(room.share_of_hits(), 0.999);
     EXPECT_LT(room.range_error_m(), 0.11);  // flash arrays: 0.1 m
@@ -97,7 +97,7 @@ class PresetRange : public ::testing::TestWithParam<SheetPair> {};
 TEST_P(PresetRange, IsThatOfTheSheetWithinOneMetre) {
   const SheetPair& pair = GetParam();
   Sensor sensor = preset(pair.sensor);
-  sensor.limits = {};
+  sensor.limits = {.along = Limits::Along::range};
   std::erase_if(sensor.noise, [](const NoiseStep& step) {
     return std::holds_alternative<FalseEchoes>(step);  // they are no surface
   });
