@@ -11,14 +11,6 @@
 namespace glidar {
 namespace {
 
-void require(bool holds, const char* field, double found, const char* allowed) {
-  if (holds) return;
-  throw Error({.where = std::string("footprint, ") + field,
-               .found = number_text(found),
-               .allowed = allowed,
-               .remedy = ""});
-}
-
 /// What lies between two radii, as u = 2 r^2 / w^2: the share of a Gaussian's energy, and its mean
 /// of u. The share beyond u is exp(-u), the integral of u exp(-u) is -(u + 1) exp(-u).
 struct Ring {
@@ -74,11 +66,13 @@ Eigen::Vector3d origin_of(const Beams& beams, std::size_t beam, const SubRay& ra
 void validate(const Footprint& f) {
   const auto angle = [](double x) { return x >= 0.0 && x < std::numbers::pi / 2.0; };
   const auto width = [](double x) { return x >= 0.0 && x < 1e3; };
-  require(angle(f.divergence_x_rad), "divergence_x_rad", f.divergence_x_rad, "0 to pi/2");
-  require(angle(f.divergence_y_rad), "divergence_y_rad", f.divergence_y_rad, "0 to pi/2");
-  require(width(f.exit_x_m), "exit_x_m", f.exit_x_m, "metres from 0 to 1000");
-  require(width(f.exit_y_m), "exit_y_m", f.exit_y_m, "metres from 0 to 1000");
-  require(f.rings >= 1 && f.rings <= kMostRings, "rings", f.rings, "1 to 8");
+  require_number(angle(f.divergence_x_rad), "footprint, divergence_x_rad", f.divergence_x_rad,
+                 "0 to pi/2");
+  require_number(angle(f.divergence_y_rad), "footprint, divergence_y_rad", f.divergence_y_rad,
+                 "0 to pi/2");
+  require_number(width(f.exit_x_m), "footprint, exit_x_m", f.exit_x_m, "metres from 0 to 1000");
+  require_number(width(f.exit_y_m), "footprint, exit_y_m", f.exit_y_m, "metres from 0 to 1000");
+  require_number(f.rings >= 1 && f.rings <= kMostRings, "footprint, rings", f.rings, "1 to 8");
 }
 
 double diameter_m(const Footprint& f, double range_m) {
@@ -120,10 +114,7 @@ void spread(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range
   out.directions.resize(count);
   out.origins_m.resize(has_offsets ? count : 0);
   out.times_ns.resize(beams.times_ns.empty() ? 0 : count);
-  // x forward, z up (LiDAR), or z forward, y down (camera)
-  const bool is_camera = std::abs(beams.boresight.z()) > 0.5;
-  const Eigen::Vector3d up = is_camera ? Eigen::Vector3d(-Eigen::Vector3d::UnitY())
-                                       : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
+  const Eigen::Vector3d up = axes_of(beams).up;
   std::size_t i = 0;
   for (std::size_t beam = range.begin; beam < range.end; ++beam) {
     const Eigen::Vector3d& direction = beams.directions[beam];
