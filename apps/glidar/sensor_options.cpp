@@ -267,9 +267,7 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
             [&flags](std::int64_t columns) { flags.columns_per_turn = columns; });
   add_option(command,
              {"--returns", "LIST|N",
-              "Returns of each pulse, such as strongest,last, or the N nearest [as the sensor "
-              "says]",
-              group},
+              "Returns of a pulse (strongest,last), or the N nearest [its own]", group},
              [&flags](std::string_view option, const std::string& text) {
                flags.returns = parse_returns(option, text);
              });
@@ -279,7 +277,7 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
       ->group(group);
   command
       .add_flag("--ideal", flags.ideal,
-                "Without the sensor's noise, pulse light and footprint: the geometric truth")
+                "Without noise, pulse light and footprint: the geometric truth")
       ->group(group);
   number("--ambient", "A", "Ambient light of the scene [0.2]", flags.ambient);
   add_text(command,

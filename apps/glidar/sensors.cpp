@@ -30,8 +30,9 @@ constexpr const char* kExamples = R"(Examples:
   glidar sensors --surfaces
 
 A name goes with 'glidar render MODEL --sensor NAME'. Numbers marked * are not verified against the
-maker's documents. Beams are as wide as a pulse's light spreads, across x up, where it falls to 1/e^2. A surface's name goes with 'glidar render MODEL --surface NAME', and with 'surface:'
-in scene files.
+maker's documents. Beams widen by so many mrad, across x up, between where their light falls to
+1/e^2. A surface's name goes with 'glidar render MODEL --surface NAME', and with 'surface:' in scene
+files.
 Exit codes: 0 done, 2 no such sensor.)";
 
 struct SensorsFlags {
