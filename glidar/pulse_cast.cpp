@@ -13,7 +13,8 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kSubBeamsPerBlock = std::size_t{1} << 18U;  // some 20 MB of hits
+// For every thread: with their hits, some 90 bytes each, they fit into a core's own cache.
+constexpr std::size_t kSubBeamsPerBlock = std::size_t{1} << 14U;
 constexpr std::size_t kBeamsPerTask = kDrawBatch;
 constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
 
@@ -318,7 +319,7 @@ void measure_block(const Block& block, bool mirrors) {
   Scratch& memory = block.frame.scratch;
   HitFields fields = with_light(block.fields);
   fields.shading_normal = fields.shading_normal || mirrors;
-  spread(block.rays, block.aimed, block.range, memory.sub_beams);
+  spread(block.rays, block.aimed, block.range, block.setup.renderer.workers(), memory.sub_beams);
   cast(block, memory.sub_beams, fields, progress_of(block), memory.sub_hits);
   memory.mirrored_from.clear();
   if (mirrors) cast_mirrored(block);
@@ -353,7 +354,9 @@ void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& ai
   const std::vector<SubRay> rays =
       setup.sensor.footprint ? sub_rays(*setup.sensor.footprint) : std::vector<SubRay>(1);
   const std::size_t step =
-      std::max<std::size_t>(1, kSubBeamsPerBlock / rays.size() / kBeamsPerTask) * kBeamsPerTask;
+      std::max<std::size_t>(
+          1, kSubBeamsPerBlock * setup.renderer.workers().threads() / rays.size() / kBeamsPerTask) *
+      kBeamsPerTask;
   const bool mirrors = has_mirrors(setup.scene);
   const PulseLight light = *light_in_weather(setup.sensor);
   const std::optional<PreparedWeather> weather = weather_of(setup.sensor);

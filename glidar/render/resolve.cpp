@@ -21,18 +21,46 @@ void for_lanes(std::uint32_t mask, const Body& body) {
   for (; mask != 0; mask &= mask - 1) body(static_cast<unsigned>(std::countr_zero(mask)));
 }
 
-bool is_one_instance(const HitBlock& block) {
-  return std::all_of(block.instance.begin(), block.instance.end(),
-                     [&](std::uint32_t instance) { return instance == block.instance[0]; });
+/// The lanes that hit another instance than this.
+std::uint32_t others_than(const HitBlock& block, std::uint32_t instance) {
+  std::uint32_t others = 0;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    others |= static_cast<std::uint32_t>(block.instance[i] != instance) << i;
+  }
+  return others;
 }
 
-/// The beams of a sensor whose beams share one origin, in the frame of one instance.
-GLIDAR_SIMD void look_from_one(const InstanceView& view, const Lanes3<double>& in_sensor,
-                               ExactBlock& exact) {
-  rotate(view.object_from_sensor, in_sensor, exact.direction);
-  for (unsigned i = 0; i < kLanes; ++i) exact.origin.x[i] = view.sensor_in_object.x();
-  for (unsigned i = 0; i < kLanes; ++i) exact.origin.y[i] = view.sensor_in_object.y();
-  for (unsigned i = 0; i < kLanes; ++i) exact.origin.z[i] = view.sensor_in_object.z();
+bool is_one_instance(const HitBlock& block) {
+  return others_than(block, block.instance[0]) == 0;
+}
+
+/// The beams in the frame of one instance, as ray_in().
+GLIDAR_SIMD void look_from(const InstanceView& view, const BeamBlock& beams, ExactBlock& exact) {
+  rotate(view.object_from_sensor, beams.direction, exact.direction);
+  const Eigen::Vector3d& sensor = view.sensor_in_object;
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.x[i] = sensor.x();
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.y[i] = sensor.y();
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.z[i] = sensor.z();
+  if (!beams.has_origins) return;
+  Lanes3<double> offset_m;
+  rotate(view.object_from_sensor, beams.origin_m, offset_m);
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.x[i] += offset_m.x[i] / view.scale;
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.y[i] += offset_m.y[i] / view.scale;
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.z[i] += offset_m.z[i] / view.scale;
+}
+
+/// Takes the rays of the lanes that hit the instance.
+GLIDAR_SIMD void take_rays(const HitBlock& block, std::uint32_t instance, const ExactBlock& seen,
+                           ExactBlock& exact) {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const bool is_its = block.instance[i] == instance;
+    exact.origin.x[i] = is_its ? seen.origin.x[i] : exact.origin.x[i];
+    exact.origin.y[i] = is_its ? seen.origin.y[i] : exact.origin.y[i];
+    exact.origin.z[i] = is_its ? seen.origin.z[i] : exact.origin.z[i];
+    exact.direction.x[i] = is_its ? seen.direction.x[i] : exact.direction.x[i];
+    exact.direction.y[i] = is_its ? seen.direction.y[i] : exact.direction.y[i];
+    exact.direction.z[i] = is_its ? seen.direction.z[i] : exact.direction.z[i];
+  }
 }
 
 /// cosine = n.d, distance = (offset - n.o) / (n.d), as distance_to().
@@ -260,8 +288,7 @@ void Resolver::prefetch_corners(const HitBlock& block, const HitFields& fields) 
   });
 }
 
-void Resolver::measure(const Beams& beams, const Lanes3<double>& in_sensor, HitBlock& block,
-                       ExactBlock& exact) const {
+void Resolver::measure(const BeamBlock& beams, HitBlock& block, ExactBlock& exact) const {
   const auto first = static_cast<unsigned>(std::countr_zero(block.mask));
   for (unsigned i = 0; i < kLanes; ++i) {
     if ((block.mask >> i & 1U) != 0) continue;
@@ -274,14 +301,13 @@ void Resolver::measure(const Beams& beams, const Lanes3<double>& in_sensor, HitB
     exact.offset[i] = triangle.offset;
     exact.narrowness[i] = known_[block.instance[i]].narrowness[block.primitive[i]];
   }
-  if (beams.origins_m.empty() && is_one_instance(block)) {
-    look_from_one(views_[block.instance[0]], in_sensor, exact);
-  } else {
-    for_lanes(block.mask, [&](unsigned i) {
-      const ObjectRay ray = ray_in(views_[block.instance[i]], beams, block.beam[i]);
-      exact.origin.set(i, ray.origin);
-      exact.direction.set(i, ray.direction);
-    });
+  look_from(views_[block.instance[0]], beams, exact);
+  ExactBlock seen;
+  for (std::uint32_t rest = others_than(block, block.instance[0]); rest != 0;) {
+    const std::uint32_t instance = block.instance[static_cast<unsigned>(std::countr_zero(rest))];
+    look_from(views_[instance], beams, seen);
+    take_rays(block, instance, seen, exact);
+    rest &= others_than(block, instance);
   }
   intersect_planes(exact);
 }

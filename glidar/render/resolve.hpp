@@ -43,6 +43,13 @@ inline double distance_to(const TrianglePlane& plane, const ObjectRay& ray) {
   return (plane.offset - plane.normal.dot(ray.origin)) / plane.normal.dot(ray.direction);
 }
 
+/// The beams of a block, in the sensor's frame.
+struct BeamBlock {
+  Lanes3<double> direction;
+  Lanes3<double> origin_m;
+  bool has_origins = false;  ///< else they start at the sensor's zero, and origin_m is not set
+};
+
 /// Up to kLanes hits: who was hit by which beam. Only lanes of the mask count.
 struct HitBlock {
   std::uint32_t mask = 0;  ///< bit i: lane i holds a hit
@@ -104,10 +111,9 @@ class Resolver {
   /// Asks the memory for the corners of a block's triangles, as far as the fields need them.
   void prefetch_corners(const HitBlock& block, const HitFields& fields) const;
 
-  /// Exact range and incidence of a block with at least one hit, from its beams' directions in the
-  /// sensor's frame. Lanes without a hit take the ids of one that has.
-  void measure(const Beams& beams, const Lanes3<double>& in_sensor, HitBlock& block,
-               ExactBlock& exact) const;
+  /// Exact range and incidence of a block with at least one hit. Lanes without a hit take the ids
+  /// of one that has.
+  void measure(const BeamBlock& beams, HitBlock& block, ExactBlock& exact) const;
 
   /// Writes the columns of a measured block.
   void write(const Beams& beams, const HitFields& fields, const HitBlock& block,

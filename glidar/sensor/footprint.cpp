@@ -4,12 +4,15 @@
 
 #include <glidar/core/error.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
 namespace glidar {
 namespace {
+
+constexpr std::size_t kBeamsPerTask = 128;
 
 void require(bool holds, const char* field, double found, const char* allowed) {
   if (holds) return;
@@ -62,11 +65,30 @@ Across across(const Eigen::Vector3d& direction, const Eigen::Vector3d& up) {
   return {x, x.cross(direction)};
 }
 
-/// Where a sub-ray of a beam starts.
-Eigen::Vector3d origin_of(const Beams& beams, std::size_t beam, const SubRay& ray,
-                          const Across& basis) {
-  const Eigen::Vector3d offset = ray.offset_m.x() * basis.x + ray.offset_m.y() * basis.y;
-  return beams.origins_m.empty() ? offset : Eigen::Vector3d(offset + beams.origins_m[beam]);
+/// Up as beams have it: x forward, z up (LiDAR), or z forward, y down (camera).
+Eigen::Vector3d up_of(const Beams& beams) {
+  const bool is_camera = std::abs(beams.boresight.z()) > 0.5;
+  return is_camera ? Eigen::Vector3d(-Eigen::Vector3d::UnitY()) : Eigen::Vector3d::UnitZ();
+}
+
+/// Writes the sub-rays of one beam from `first` on.
+void spread_beam(const std::vector<SubRay>& rays, const Beams& beams, std::size_t beam,
+                 std::size_t first, Beams& out) {
+  const Eigen::Vector3d direction = beams.directions[beam];
+  const Across basis = across(direction, up_of(beams));
+  Eigen::Vector3d* directions = &out.directions[first];
+  for (const SubRay& ray : rays) {
+    *directions++ =
+        ray.shortening * (direction + ray.slope.x() * basis.x + ray.slope.y() * basis.y);
+  }
+  if (!out.times_ns.empty()) std::fill_n(&out.times_ns[first], rays.size(), beams.times_ns[beam]);
+  if (out.origins_m.empty()) return;
+  const Eigen::Vector3d origin_m =
+      beams.origins_m.empty() ? Eigen::Vector3d::Zero() : beams.origins_m[beam];
+  Eigen::Vector3d* origins_m = &out.origins_m[first];
+  for (const SubRay& ray : rays) {
+    *origins_m++ = origin_m + ray.offset_m.x() * basis.x + ray.offset_m.y() * basis.y;
+  }
 }
 
 }  // namespace
@@ -102,15 +124,18 @@ std::vector<SubRay> sub_rays(const Footprint& f) {
       const double angle = 2.0 * std::numbers::pi * (j + k * kTwist) / count;
       const double c = 0.5 * radius * std::cos(angle);
       const double s = 0.5 * radius * std::sin(angle);
+      const Eigen::Vector2d slope(-s * f.divergence_x_rad, c * f.divergence_y_rad);
       rays.push_back({.offset_m = {c * f.exit_x_m, s * f.exit_y_m},
-                      .slope = {-s * f.divergence_x_rad, c * f.divergence_y_rad},
-                      .share = rings[k].share / count});
+                      .slope = slope,
+                      .share = rings[k].share / count,
+                      .shortening = 1.0 / std::sqrt(1.0 + slope.squaredNorm())});
     }
   }
   return rays;
 }
 
-void spread(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range, Beams& out) {
+void spread(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range, Workers& workers,
+            Beams& out) {
   const std::size_t count = (range.end - range.begin) * rays.size();
   const bool has_offsets = !beams.origins_m.empty() || !rays.back().offset_m.isZero(0.0);
   out.rows = 1;
@@ -120,22 +145,12 @@ void spread(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range
   out.directions.resize(count);
   out.origins_m.resize(has_offsets ? count : 0);
   out.times_ns.resize(beams.times_ns.empty() ? 0 : count);
-  // x forward, z up (LiDAR), or z forward, y down (camera)
-  const bool is_camera = std::abs(beams.boresight.z()) > 0.5;
-  const Eigen::Vector3d up = is_camera ? Eigen::Vector3d(-Eigen::Vector3d::UnitY())
-                                       : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
-  std::size_t i = 0;
-  for (std::size_t beam = range.begin; beam < range.end; ++beam) {
-    const Eigen::Vector3d& direction = beams.directions[beam];
-    const Across basis = across(direction, up);
-    for (const SubRay& ray : rays) {
-      const double length = std::sqrt(1.0 + ray.slope.squaredNorm());
-      out.directions[i] = (direction + ray.slope.x() * basis.x + ray.slope.y() * basis.y) / length;
-      if (has_offsets) out.origins_m[i] = origin_of(beams, beam, ray, basis);
-      if (!out.times_ns.empty()) out.times_ns[i] = beams.times_ns[beam];
-      ++i;
-    }
-  }
+  workers.for_ranges(range.end - range.begin, kBeamsPerTask,
+                     [&](std::size_t begin, std::size_t end) {
+                       for (std::size_t k = begin; k < end; ++k) {
+                         spread_beam(rays, beams, range.begin + k, k * rays.size(), out);
+                       }
+                     });
 }
 
 }  // namespace glidar
