@@ -24,7 +24,8 @@ void require(bool holds, const char* field, double found, const char* allowed) {
                .remedy = ""});
 }
 
-/// Paths [begin, end) of a beam, sorted by range.
+/// Paths [begin, end) of a beam, sorted by range unless all are nearer than `apart_m` to each
+/// other.
 struct Group {
   std::size_t begin;
   std::size_t end;
@@ -35,17 +36,23 @@ struct Group {
 double fading(double y) {
   constexpr double kSmall = 1.0 / 64.0;
   if (y >= kSmall) return natural_exp(-y);
-  return 1.0 - y * (1.0 - y / 2.0 * (1.0 - y / 3.0 * (1.0 - y / 4.0)));
+  return 1.0 - y * (1.0 - y * (1.0 / 2.0 - y * (1.0 / 6.0 - y * (1.0 / 24.0))));
 }
 
 /// The sum of the group's pulses at a range.
 double waveform(const EchoWork& work, const Group& group, double sigma_m, double range_m) {
+  const double per_sigma = 1.0 / sigma_m;
   double sum = 0.0;
   for (std::size_t i = group.begin; i < group.end; ++i) {
-    const double x = (work.path[i].range_m - range_m) / sigma_m;
+    const double x = (work.path[i].range_m - range_m) * per_sigma;
     if (std::abs(x) < kReach) sum += work.path[i].signal * fading(0.5 * x * x);
   }
   return sum;
+}
+
+/// The stronger of two paths, at the same strength the nearer.
+bool is_stronger(const Path& a, const Path& b) {
+  return a.signal > b.signal || (a.signal == b.signal && a.range_m < b.range_m);
 }
 
 /// The echo of a group: centroid, width and strongest path.
@@ -61,7 +68,7 @@ PulseEcho echo_of(const EchoWork& work, const Group& group, double sigma_m, doub
     const Path& path = work.path[i];
     sum += path.signal;
     echo.range_m += path.signal * (path.range_m - start_m);
-    if (path.signal > work.path[echo.strongest].signal)
+    if (is_stronger(path, work.path[echo.strongest]))
       echo.strongest = static_cast<std::uint32_t>(i);
     if (i > group.begin && path.range_m - work.path[i - 1].range_m > apart_m) echo.is_mixed = true;
   }
@@ -121,16 +128,32 @@ void split(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
   close(group.end);
 }
 
-/// Finds the echoes of paths that others are too far from to matter. Pulses within one standard
-/// deviation of each other have one peak, at their mean but for the third order.
-void find_in_group(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
-  if (work.path[group.end - 1].range_m - work.path[group.begin].range_m > sigma_m) {
-    split(group, sigma_m, apart_m, work);
-    return;
-  }
+/// Pulses within one standard deviation of each other have one peak, at their mean but for the
+/// third order.
+void take_as_one(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
   PulseEcho echo = echo_of(work, group, sigma_m, apart_m);
   echo.signal = waveform(work, group, sigma_m, echo.range_m);
   work.echo[work.echoes++] = echo;
+}
+
+/// Finds the echoes of paths that others are too far from to matter.
+void find_in_group(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
+  if (work.path[group.end - 1].range_m - work.path[group.begin].range_m > sigma_m) {
+    split(group, sigma_m, apart_m, work);
+  } else {
+    take_as_one(group, sigma_m, apart_m, work);
+  }
+}
+
+/// How far the nearest and the farthest path are from each other.
+double extent_m(const EchoWork& work) {
+  double nearest_m = work.path[0].range_m;
+  double farthest_m = nearest_m;
+  for (std::size_t i = 1; i < work.paths; ++i) {
+    nearest_m = std::min(nearest_m, work.path[i].range_m);
+    farthest_m = std::max(farthest_m, work.path[i].range_m);
+  }
+  return farthest_m - nearest_m;
 }
 
 /// The index of the echo that a return asks for; -1: none.
@@ -165,11 +188,7 @@ double pulse_sigma_m(const Receiver& receiver) {
   return 0.5 * kSpeedOfLight_m_s * receiver.pulse_fwhm_s / kFwhmPerSigma;
 }
 
-void EchoWork::add(const Path& one) {
-  if (paths < kMost) {
-    path[paths++] = one;
-    return;
-  }
+void EchoWork::replace_weakest(const Path& one) {
   const auto weakest = std::min_element(
       path.begin(), path.end(), [](const Path& a, const Path& b) { return a.signal < b.signal; });
   if (weakest->signal < one.signal) *weakest = one;
@@ -177,6 +196,11 @@ void EchoWork::add(const Path& one) {
 
 void find_echoes(double sigma_m, double apart_m, EchoWork& work) {
   work.echoes = 0;
+  if (work.paths == 0) return;
+  if (extent_m(work) <= std::min(sigma_m, apart_m)) {  // as most beams: no need to sort
+    take_as_one({0, work.paths}, sigma_m, apart_m, work);
+    return;
+  }
   std::sort(work.path.begin(), work.path.begin() + static_cast<std::ptrdiff_t>(work.paths),
             [](const Path& a, const Path& b) {
               return a.range_m != b.range_m ? a.range_m < b.range_m : a.source < b.source;

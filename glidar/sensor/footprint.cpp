@@ -3,8 +3,10 @@
 #include <glidar/sensor/footprint.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/simd.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,6 +15,7 @@ namespace glidar {
 namespace {
 
 constexpr std::size_t kBeamsPerTask = 128;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 void require(bool holds, const char* field, double found, const char* allowed) {
   if (holds) return;
@@ -51,43 +54,97 @@ std::vector<Ring> rings_of(unsigned count) {
   return rings;
 }
 
-/// Two directions across a beam: to its side and up.
-struct Across {
-  Eigen::Vector3d x;
-  Eigen::Vector3d y;
+/// Vectors of beams that are spread together, component by component.
+constexpr std::size_t kAtOnce = 16;
+struct alignas(64) Vectors {
+  std::array<double, kAtOnce> x;
+  std::array<double, kAtOnce> y;
+  std::array<double, kAtOnce> z;
+
+  void set(std::size_t i, const Eigen::Vector3d& v) {
+    x[i] = v.x();
+    y[i] = v.y();
+    z[i] = v.z();
+  }
+  [[nodiscard]] Eigen::Vector3d get(std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
 
-Across across(const Eigen::Vector3d& direction, const Eigen::Vector3d& up) {
-  constexpr double kParallel = 1e-9;
-  const Eigen::Vector3d side = direction.cross(up);
-  const Eigen::Vector3d x =
-      side.norm() > kParallel ? Eigen::Vector3d(side.normalized()) : direction.unitOrthogonal();
-  return {x, x.cross(direction)};
-}
+/// Beams with two directions across each: to its side and up.
+struct Crosses {
+  Vectors beam;
+  Vectors side;
+  Vectors above;
+};
 
-/// Up as beams have it: x forward, z up (LiDAR), or z forward, y down (camera).
-Eigen::Vector3d up_of(const Beams& beams) {
-  const bool is_camera = std::abs(beams.boresight.z()) > 0.5;
-  return is_camera ? Eigen::Vector3d(-Eigen::Vector3d::UnitY()) : Eigen::Vector3d::UnitZ();
-}
-
-/// Writes the sub-rays of one beam from `first` on.
-void spread_beam(const std::vector<SubRay>& rays, const Beams& beams, std::size_t beam,
-                 std::size_t first, Beams& out) {
-  const Eigen::Vector3d direction = beams.directions[beam];
-  const Across basis = across(direction, up_of(beams));
-  Eigen::Vector3d* directions = &out.directions[first];
-  for (const SubRay& ray : rays) {
-    *directions++ =
-        ray.shortening * (direction + ray.slope.x() * basis.x + ray.slope.y() * basis.y);
+/// out = scale (from + a x + b y).
+GLIDAR_SIMD void lean(const Vectors& from, const Crosses& c, const Eigen::Vector2d& ab,
+                      double scale, Vectors& out) {
+  const double a = ab.x();
+  const double b = ab.y();
+  for (std::size_t i = 0; i < kAtOnce; ++i) {
+    out.x[i] = scale * (from.x[i] + a * c.side.x[i] + b * c.above.x[i]);
+    out.y[i] = scale * (from.y[i] + a * c.side.y[i] + b * c.above.y[i]);
+    out.z[i] = scale * (from.z[i] + a * c.side.z[i] + b * c.above.z[i]);
   }
-  if (!out.times_ns.empty()) std::fill_n(&out.times_ns[first], rays.size(), beams.times_ns[beam]);
-  if (out.origins_m.empty()) return;
-  const Eigen::Vector3d origin_m =
-      beams.origins_m.empty() ? Eigen::Vector3d::Zero() : beams.origins_m[beam];
-  Eigen::Vector3d* origins_m = &out.origins_m[first];
-  for (const SubRay& ray : rays) {
-    *origins_m++ = origin_m + ray.offset_m.x() * basis.x + ray.offset_m.y() * basis.y;
+}
+
+/// side = beam x up, above = side x beam. A beam along `up` gets a side that is no number.
+GLIDAR_SIMD void find_crosses(const Eigen::Vector3d& up, Crosses& c) {
+  constexpr double kParallel = 1e-9;
+  for (std::size_t i = 0; i < kAtOnce; ++i) {
+    const double x = c.beam.y[i] * up.z() - c.beam.z[i] * up.y();
+    const double y = c.beam.z[i] * up.x() - c.beam.x[i] * up.z();
+    const double z = c.beam.x[i] * up.y() - c.beam.y[i] * up.x();
+    const double length = std::sqrt(x * x + y * y + z * z);
+    const double scale = length > kParallel ? 1.0 / length : kNaN;
+    c.side.x[i] = x * scale;
+    c.side.y[i] = y * scale;
+    c.side.z[i] = z * scale;
+    c.above.x[i] = c.side.y[i] * c.beam.z[i] - c.side.z[i] * c.beam.y[i];
+    c.above.y[i] = c.side.z[i] * c.beam.x[i] - c.side.x[i] * c.beam.z[i];
+    c.above.z[i] = c.side.x[i] * c.beam.y[i] - c.side.y[i] * c.beam.x[i];
+  }
+}
+
+void find_crosses(const Beams& beams, BeamRange range, Crosses& crosses) {
+  // x forward, z up (LiDAR), or z forward, y down (camera)
+  const bool is_camera = std::abs(beams.boresight.z()) > 0.5;
+  const Eigen::Vector3d up =
+      is_camera ? Eigen::Vector3d(-Eigen::Vector3d::UnitY()) : Eigen::Vector3d::UnitZ();
+  for (std::size_t i = 0; i < kAtOnce; ++i) {
+    crosses.beam.set(i, beams.directions[std::min(range.begin + i, range.end - 1)]);
+  }
+  find_crosses(up, crosses);
+  for (std::size_t i = 0; i < kAtOnce; ++i) {
+    if (!std::isnan(crosses.side.x[i])) continue;
+    const Eigen::Vector3d beam = crosses.beam.get(i);
+    const Eigen::Vector3d side = beam.unitOrthogonal();
+    crosses.side.set(i, side);
+    crosses.above.set(i, side.cross(beam));
+  }
+}
+
+/// Spreads up to kAtOnce beams; their sub-rays stand from `first` on.
+void spread_some(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range,
+                 std::size_t first, Beams& out) {
+  Crosses crosses;
+  Vectors start_m{};
+  Vectors leant;
+  find_crosses(beams, range, crosses);
+  const std::size_t count = range.end - range.begin;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!beams.origins_m.empty()) start_m.set(i, beams.origins_m[range.begin + i]);
+    if (out.times_ns.empty()) continue;
+    std::fill_n(&out.times_ns[first + i * rays.size()], rays.size(),
+                beams.times_ns[range.begin + i]);
+  }
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const auto place = [&](std::size_t i) { return first + i * rays.size() + k; };
+    lean(crosses.beam, crosses, rays[k].slope, rays[k].shortening, leant);
+    for (std::size_t i = 0; i < count; ++i) out.directions[place(i)] = leant.get(i);
+    if (out.origins_m.empty()) continue;
+    lean(start_m, crosses, rays[k].offset_m, 1.0, leant);
+    for (std::size_t i = 0; i < count; ++i) out.origins_m[place(i)] = leant.get(i);
   }
 }
 
@@ -147,8 +204,10 @@ void spread(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range
   out.times_ns.resize(beams.times_ns.empty() ? 0 : count);
   workers.for_ranges(range.end - range.begin, kBeamsPerTask,
                      [&](std::size_t begin, std::size_t end) {
-                       for (std::size_t k = begin; k < end; ++k) {
-                         spread_beam(rays, beams, range.begin + k, k * rays.size(), out);
+                       for (std::size_t k = begin; k < end; k += kAtOnce) {
+                         const std::size_t beam = range.begin + k;
+                         const std::size_t some = std::min(kAtOnce, end - k);
+                         spread_some(rays, beams, {beam, beam + some}, k * rays.size(), out);
                        }
                      });
 }
