@@ -29,16 +29,14 @@ struct Block {
   BeamRange range;          ///< of pulses
   Frame& frame;
 
+  [[nodiscard]] const Material& material_at(const Hits& hits, std::size_t i) const {
+    const Scene& scene = setup.scene;
+    return material_of(scene, scene.instances[hits.instance[i]], hits.primitive[i]);
+  }
   [[nodiscard]] std::size_t first_ray(std::size_t beam) const {
     return (beam - range.begin) * rays.size();
   }
 };
-
-const Material& material_of(const Scene& scene, const Hits& hits, std::size_t i) {
-  const Instance& instance = scene.instances[hits.instance[i]];
-  return scene
-      .materials[instance.materials[material_slot(scene.meshes[instance.mesh], hits.primitive[i])]];
-}
 
 bool has_mirrors(const Scene& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(),
@@ -51,28 +49,11 @@ HitFields with_light(HitFields fields) {
   return fields;
 }
 
-/// The block's progress as part of the whole.
-Progress progress_of(const Block& block) {
-  if (!block.setup.progress) return {};
-  const auto all = static_cast<double>(block.aimed.pulses());
-  return [&block, all](double fraction) {
-    const auto begin = static_cast<double>(block.range.begin);
-    const auto end = static_cast<double>(block.range.end);
-    block.setup.progress((begin + fraction * (end - begin)) / all);
-  };
-}
-
 void cast(const Block& block, const Beams& beams, const HitFields& fields, Progress progress,
           Hits& hits) {
-  Frame& frame = block.frame;
-  cast_moving({block.setup.renderer, block.setup.scene, block.setup.motion, frame.stamp_ns},
-              {.beams = beams,
-               .world_from_sensor = frame.world_from_sensor,
-               .world_from_instance = frame.world_from_instance,
-               .fields = fields,
-               .cull_back_faces = block.setup.sensor.cull_back_faces,
-               .progress = std::move(progress)},
-              frame.scratch, hits);
+  CastRequest request = request_of(block.setup, block.frame, beams, fields);
+  request.progress = std::move(progress);
+  cast_moving(world_of(block.setup, block.frame), request, block.frame.scratch, hits);
 }
 
 /// The beam that goes on from a mirror: d - 2 (d . n) n, from just before the surface so that it
@@ -100,8 +81,7 @@ void cast_mirrored(const Block& block) {
   memory.mirrored_from.clear();
   const Hits& hits = memory.sub_hits;
   for (std::size_t i = 0; i < hits.range_m.size(); ++i) {
-    if (hits.instance[i] == kNoHit || material_of(block.setup.scene, hits, i).mirror <= 0.0F)
-      continue;
+    if (hits.instance[i] == kNoHit || block.material_at(hits, i).mirror <= 0.0F) continue;
     add_mirrored(memory.sub_beams, hits, i, beams);
     memory.mirrored_from.push_back(static_cast<std::uint32_t>(i));
   }
@@ -111,54 +91,49 @@ void cast_mirrored(const Block& block) {
   cast(block, beams, with_light({}), {}, memory.mirrored_hits);
 }
 
-/// What a way by a mirror brings back: the light passes the mirror twice and travels both legs.
-double ghost_signal(const Block& block, std::size_t mirrored, double range_m) {
+/// What a ray met, as if alone.
+Path direct_path(const Block& block, std::size_t ray) {
+  const Hits& hits = block.frame.scratch.sub_hits;
+  const double range_m = hits.range_m[ray];
+  const double sent = sent_back_at(block.setup.scene, block.setup.sensor.wavelength_m, hits, ray);
+  return {range_m, signal_of(block.light, sent, range_m), static_cast<std::uint32_t>(ray),
+          Cause::surface};
+}
+
+/// The way by a mirror, as if alone: the light passes the mirror twice and travels both legs.
+Path ghost_path(const Block& block, std::size_t mirrored) {
   const Scratch& memory = block.frame.scratch;
   const Hits& hits = memory.mirrored_hits;
-  const Setup& setup = block.setup;
-  const double share =
-      material_of(setup.scene, memory.sub_hits, memory.mirrored_from[mirrored]).mirror;
-  const double direct =
-      signal_of_hit(block.light, setup.scene, setup.sensor.wavelength_m, hits, mirrored);
-  return share * share * direct * signal_of(block.light, 1.0, range_m) /
-         signal_of(block.light, 1.0, hits.range_m[mirrored]);
+  const std::uint32_t ray = memory.mirrored_from[mirrored];
+  const double share = block.material_at(memory.sub_hits, ray).mirror;
+  const double range_m = memory.sub_hits.range_m[ray] + hits.range_m[mirrored];
+  const double sent =
+      share * share *
+      sent_back_at(block.setup.scene, block.setup.sensor.wavelength_m, hits, mirrored);
+  return {range_m, signal_of(block.light, sent, range_m), ray, Cause::ghost};
+}
+
+void add(Path path, double share, EchoWork& work) {
+  path.signal *= share;
+  work.add(path);
 }
 
 /// All ways by which light of a beam comes back from surfaces.
 void collect_paths(const Block& block, std::size_t beam, EchoWork& work) {
   const Scratch& memory = block.frame.scratch;
-  const Setup& setup = block.setup;
   const std::size_t first = block.first_ray(beam);
   work.paths = 0;
   for (std::size_t k = 0; k < block.rays.size(); ++k) {
-    const std::size_t ray = first + k;
-    if (memory.sub_hits.instance[ray] == kNoHit) continue;
-    const double signal =
-        signal_of_hit(block.light, setup.scene, setup.sensor.wavelength_m, memory.sub_hits, ray);
-    work.add({memory.sub_hits.range_m[ray], block.rays[k].share * signal,
-              static_cast<std::uint32_t>(ray), Cause::surface});
+    if (memory.sub_hits.instance[first + k] == kNoHit) continue;
+    add(direct_path(block, first + k), block.rays[k].share, work);
   }
   const std::vector<std::uint32_t>& from = memory.mirrored_from;
   auto at = std::lower_bound(from.begin(), from.end(), first);
   for (; at != from.end() && *at < first + block.rays.size(); ++at) {
     const auto mirrored = static_cast<std::size_t>(at - from.begin());
     if (memory.mirrored_hits.instance[mirrored] == kNoHit) continue;
-    const double range_m = memory.sub_hits.range_m[*at] + memory.mirrored_hits.range_m[mirrored];
-    const double share = block.rays[*at - first].share;
-    work.add({range_m, share * ghost_signal(block, mirrored, range_m), *at, Cause::ghost});
+    add(ghost_path(block, mirrored), block.rays[*at - first].share, work);
   }
-}
-
-Cause cause_of(WeatherEcho::Kind kind) {
-  switch (kind) {
-    case WeatherEcho::Kind::fog:
-      return Cause::fog;
-    case WeatherEcho::Kind::rain:
-      return Cause::rain;
-    case WeatherEcho::Kind::snow:
-      return Cause::snow;
-  }
-  return Cause::none;
 }
 
 /// What the air before a surface sends back.
@@ -168,7 +143,7 @@ void add_weather(const Block& block, const Draw& draw, double surface_m,
   echoes.clear();
   weather_echoes(*block.weather, surface_m, draw, echoes);
   for (const WeatherEcho& echo : echoes) {
-    work.add({echo.range_m, echo.signal, kNoHit, cause_of(echo.kind)});
+    work.add({echo.range_m, echo.signal, kNoHit, echo.cause});
   }
 }
 
@@ -189,13 +164,6 @@ void detect(const Block& block, const Draw& draw, double first_noise, EchoWork& 
   work.echoes = kept;
 }
 
-void report_nothing(Status why, std::size_t entry, Frame& frame) {
-  frame.status[entry] = why;
-  frame.range_m[entry] = kNoRange;
-  frame.intensity[entry] = 0.0F;
-  frame.cause[entry] = Cause::none;
-}
-
 void report_echo(const Block& block, const PulseEcho& echo, const Path& path, std::size_t entry) {
   Frame& frame = block.frame;
   const Sensor& sensor = block.setup.sensor;
@@ -203,7 +171,7 @@ void report_echo(const Block& block, const PulseEcho& echo, const Path& path, st
   Status status = judge(sensor.limits, block.aimed, entry, range_m);
   if (block.light.saturation > 0.0 && echo.signal >= block.light.saturation)
     status = Status::saturated;
-  if (status != Status::hit) return report_nothing(status, entry, frame);
+  if (status != Status::hit) return lose(frame, entry, status);
   frame.status[entry] = Status::hit;
   frame.range_m[entry] = range_m;
   frame.intensity[entry] = static_cast<float>(echo.signal);
@@ -243,11 +211,7 @@ struct Draws {
 };
 
 void draw(const PulseLight& light, const Frame& frame, std::size_t first, Draws& draws) {
-  draws.detection = {.seed = frame.seed,
-                     .sensor = frame.sensor_id,
-                     .frame = frame.number,
-                     .beam = static_cast<std::uint32_t>(first),
-                     .purpose = Purpose::detection};
+  draws.detection = draw_of(frame, Purpose::detection, first);
   if (light.noise_sigma > 0.0) draw_normals(draws.detection, draws.noise);
 }
 
@@ -297,7 +261,7 @@ void measure_beam(const Block& block, std::size_t beam, Tools& tools) {
     } else {
       const bool tells_why = r == 0 || silent == Status::no_beam;
       keep_truth(block, r == 0 ? surface.source : kNoHit, entry);
-      report_nothing(tells_why ? silent : Status::no_echo, entry, block.frame);
+      lose(block.frame, entry, tells_why ? silent : Status::no_echo);
     }
   }
 }
@@ -305,6 +269,7 @@ void measure_beam(const Block& block, std::size_t beam, Tools& tools) {
 /// The weather for this sensor's beams; without a footprint they are those of BeamShape.
 std::optional<PreparedWeather> weather_of(const Sensor& sensor) {
   if (!sensor.weather) return {};
+  check_weather(sensor);
   BeamShape beam;
   if (sensor.footprint) {
     const Footprint& f = *sensor.footprint;
@@ -320,7 +285,12 @@ void measure_block(const Block& block, bool mirrors) {
   HitFields fields = with_light(block.fields);
   fields.shading_normal = fields.shading_normal || mirrors;
   spread(block.rays, block.aimed, block.range, block.setup.renderer.workers(), memory.sub_beams);
-  cast(block, memory.sub_beams, fields, progress_of(block), memory.sub_hits);
+  const auto part = [&](std::size_t beam) {
+    return static_cast<double>(beam) / static_cast<double>(block.aimed.pulses());
+  };
+  cast(block, memory.sub_beams, fields,
+       part_of(block.setup.progress, part(block.range.begin), part(block.range.end)),
+       memory.sub_hits);
   memory.mirrored_from.clear();
   if (mirrors) cast_mirrored(block);
   const std::size_t count = block.range.end - block.range.begin;
@@ -339,13 +309,14 @@ void measure_block(const Block& block, bool mirrors) {
 }  // namespace
 
 bool has_echoes(const Sensor& sensor, const Scene& scene) {
+  if (sensor.weather) return true;
   if (!sensor.pulse) return false;
   const Receiver& receiver = sensor.receiver;
   const Return& first = receiver.returns[0];
   const bool tells_strongest =
       receiver.returns.size() == 1 && first.order == Return::Order::strongest && first.rank == 0;
-  return sensor.footprint || sensor.weather || !tells_strongest ||
-         receiver.timing != Receiver::Timing::centroid || has_mirrors(scene);
+  return sensor.footprint || !tells_strongest || receiver.timing != Receiver::Timing::centroid ||
+         has_mirrors(scene);
 }
 
 void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& aimed, Frame& frame) {
@@ -358,8 +329,8 @@ void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& ai
           1, kSubBeamsPerBlock * setup.renderer.workers().threads() / rays.size() / kBeamsPerTask) *
       kBeamsPerTask;
   const bool mirrors = has_mirrors(setup.scene);
-  const PulseLight light = *light_in_weather(setup.sensor);
   const std::optional<PreparedWeather> weather = weather_of(setup.sensor);
+  const PulseLight& light = weather ? weather->light : *setup.sensor.pulse;
   for (std::size_t begin = 0; begin < aimed.pulses(); begin += step) {
     const BeamRange range{begin, std::min(begin + step, aimed.pulses())};
     measure_block({setup, light, weather ? &*weather : nullptr, rays, aimed, fields, range, frame},

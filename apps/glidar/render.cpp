@@ -185,7 +185,7 @@ Beams aim(const RenderFlags& flags, const Sensor& sensor, const Scene& scene,
   const Working working(console, "aiming the sensor");
   Beams beams = make_beams(sensor);
   world_from_sensor = pose_sensor(flags.pose, scene_pose, beams, scene);
-  if (heads_along_x(beams) && !scene_pose.world_from_sensor && !sensor_pose_given(flags.pose)) {
+  if (!looks_along_z(beams) && !scene_pose.world_from_sensor && !sensor_pose_given(flags.pose)) {
     console.info(beside_advice(scene, world_from_sensor));
   }
   return beams;

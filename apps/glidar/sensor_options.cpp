@@ -27,8 +27,6 @@ constexpr double kDefaultFov_deg = 20.0;
 constexpr double kLargestPixels = 1e9;  // likewise
 constexpr std::int64_t kMostColumnsPerTurn = 1 << 20;
 constexpr double kLargestAmbient = 1e6;  // keeps intensities far from float's end
-constexpr double kLargestVisibility_m = 1e6;
-constexpr double kLargestRate_mm_per_h = 1000.0;
 constexpr double kBytesPerBeam = 250.0;  // beam, truth, measurement and cloud together
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 
@@ -181,11 +179,11 @@ void apply_weather(const SensorFlags& flags, Sensor& sensor) {
     value = *given;
   };
   take("--visibility", flags.visibility_m, kLargestVisibility_m, weather.visibility_m);
-  take("--rain", flags.rain_mm_per_h, kLargestRate_mm_per_h, weather.rain_mm_per_h);
-  take("--snow", flags.snow_mm_per_h, kLargestRate_mm_per_h, weather.snow_mm_per_h);
+  take("--rain", flags.rain_mm_per_h, kLargestFall_mm_per_h, weather.rain_mm_per_h);
+  take("--snow", flags.snow_mm_per_h, kLargestFall_mm_per_h, weather.snow_mm_per_h);
   validate(weather);
   sensor.weather = weather;
-  light_in_weather(sensor);  // tells what its light lacks for weather
+  check_weather(sensor);
 }
 
 }  // namespace

@@ -65,13 +65,12 @@ void measure_view(const Sensor& sensor, const Beams& beams, Summary& summary) {
         2.0 * kDegrees * std::atan(0.5 * beams.pinhole->height / beams.pinhole->fy);
     return;
   }
-  const bool along_z = beams.boresight.isApprox(Eigen::Vector3d::UnitZ());
+  const SensorAxes axes = axes_of(beams);
   Eigen::Array2d low(1e9, 1e9);
   Eigen::Array2d high = -low;
   for (const Eigen::Vector3d& d : beams.directions) {
     if (std::isnan(d.x())) continue;
-    const Eigen::Vector3d b = along_z ? Eigen::Vector3d(d.z(), -d.x(), -d.y()) : d;
-    const Eigen::Array2d angles(std::atan2(b.y(), b.x()), std::asin(std::clamp(b.z(), -1.0, 1.0)));
+    const Eigen::Array2d angles(azimuth_rad(axes, d), elevation_rad(axes, d));
     low = low.min(angles);
     high = high.max(angles);
   }

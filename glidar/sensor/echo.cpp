@@ -4,6 +4,7 @@
 
 #include <glidar/core/elementary.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/core/light_speed.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,18 +12,9 @@
 namespace glidar {
 namespace {
 
-constexpr double kSpeedOfLight_m_s = 299792458.0;
 constexpr double kFwhmPerSigma = 2.3548200450309493;  // sqrt(8 ln 2)
 constexpr double kReach = 6.0;   // standard deviations: beyond, a pulse is below 2e-8 of its peak
 constexpr double kStep = 0.125;  // of a standard deviation: the waveform's samples
-
-void require(bool holds, const char* field, double found, const char* allowed) {
-  if (holds) return;
-  throw Error({.where = std::string("receiver, ") + field,
-               .found = number_text(found),
-               .allowed = allowed,
-               .remedy = ""});
-}
 
 /// Paths [begin, end) of a beam, sorted by range unless all are nearer than `apart_m` to each
 /// other.
@@ -176,16 +168,17 @@ int find_return(const Return& wanted, std::span<const PulseEcho> echoes,
 }  // namespace
 
 void validate(const Receiver& receiver) {
-  require(receiver.pulse_fwhm_s > 0.0 && receiver.pulse_fwhm_s <= 1e-3, "pulse_fwhm_s",
-          receiver.pulse_fwhm_s, "seconds above 0, up to 1e-3");
-  require(receiver.separation_m >= 0.0 && std::isfinite(receiver.separation_m), "separation_m",
-          receiver.separation_m, "metres from 0");
-  require(!receiver.returns.empty() && receiver.returns.size() <= kMostReturns, "returns",
-          static_cast<double>(receiver.returns.size()), "1 to 16 of them");
+  require_number(receiver.pulse_fwhm_s > 0.0 && receiver.pulse_fwhm_s <= 1e-3,
+                 "receiver, pulse_fwhm_s", receiver.pulse_fwhm_s, "seconds above 0, up to 1e-3");
+  require_number(receiver.separation_m >= 0.0 && std::isfinite(receiver.separation_m),
+                 "receiver, separation_m", receiver.separation_m, "metres from 0");
+  require_number(!receiver.returns.empty() && receiver.returns.size() <= kMostReturns,
+                 "receiver, returns", static_cast<double>(receiver.returns.size()),
+                 "1 to 16 of them");
 }
 
 double pulse_sigma_m(const Receiver& receiver) {
-  return 0.5 * kSpeedOfLight_m_s * receiver.pulse_fwhm_s / kFwhmPerSigma;
+  return kHalfLight_m_per_s * receiver.pulse_fwhm_s / kFwhmPerSigma;
 }
 
 void EchoWork::replace_weakest(const Path& one) {

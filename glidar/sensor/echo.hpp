@@ -77,8 +77,8 @@ struct EchoWork {
 
 /// Finds the peaks of the sum of the paths' pulses, in order of range; may sort the paths. Two
 /// equal pulses have two peaks when they are more than two standard deviations apart, c FWHM /
-/// 2.355 in range (the reference's 3.2); below that they are one echo at their weighted mean. An
-/// echo is mixed when neighbours among its paths are more than `apart_m` from each other.
+/// 2.355 in range; below that they are one echo at their weighted mean. An echo is mixed when
+/// neighbours among its paths are more than `apart_m` from each other.
 void find_echoes(double sigma_m, double apart_m, EchoWork& work);
 
 /// Takes away echoes nearer than separation_m to a stronger one.

@@ -17,14 +17,6 @@ namespace {
 constexpr std::size_t kBeamsPerTask = 128;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-void require(bool holds, const char* field, double found, const char* allowed) {
-  if (holds) return;
-  throw Error({.where = std::string("footprint, ") + field,
-               .found = number_text(found),
-               .allowed = allowed,
-               .remedy = ""});
-}
-
 /// What lies between two radii, as u = 2 r^2 / w^2: the share of a Gaussian's energy, and its mean
 /// of u. The share beyond u is exp(-u), the integral of u exp(-u) is -(u + 1) exp(-u).
 struct Ring {
@@ -107,14 +99,10 @@ GLIDAR_SIMD void find_crosses(const Eigen::Vector3d& up, Crosses& c) {
 }
 
 void find_crosses(const Beams& beams, BeamRange range, Crosses& crosses) {
-  // x forward, z up (LiDAR), or z forward, y down (camera)
-  const bool is_camera = std::abs(beams.boresight.z()) > 0.5;
-  const Eigen::Vector3d up =
-      is_camera ? Eigen::Vector3d(-Eigen::Vector3d::UnitY()) : Eigen::Vector3d::UnitZ();
   for (std::size_t i = 0; i < kAtOnce; ++i) {
     crosses.beam.set(i, beams.directions[std::min(range.begin + i, range.end - 1)]);
   }
-  find_crosses(up, crosses);
+  find_crosses(axes_of(beams).up, crosses);
   for (std::size_t i = 0; i < kAtOnce; ++i) {
     if (!std::isnan(crosses.side.x[i])) continue;
     const Eigen::Vector3d beam = crosses.beam.get(i);
@@ -153,11 +141,13 @@ void spread_some(const std::vector<SubRay>& rays, const Beams& beams, BeamRange 
 void validate(const Footprint& f) {
   const auto angle = [](double x) { return x >= 0.0 && x < std::numbers::pi / 2.0; };
   const auto width = [](double x) { return x >= 0.0 && x < 1e3; };
-  require(angle(f.divergence_x_rad), "divergence_x_rad", f.divergence_x_rad, "0 to pi/2");
-  require(angle(f.divergence_y_rad), "divergence_y_rad", f.divergence_y_rad, "0 to pi/2");
-  require(width(f.exit_x_m), "exit_x_m", f.exit_x_m, "metres from 0 to 1000");
-  require(width(f.exit_y_m), "exit_y_m", f.exit_y_m, "metres from 0 to 1000");
-  require(f.rings >= 1 && f.rings <= kMostRings, "rings", f.rings, "1 to 8");
+  require_number(angle(f.divergence_x_rad), "footprint, divergence_x_rad", f.divergence_x_rad,
+                 "0 to pi/2");
+  require_number(angle(f.divergence_y_rad), "footprint, divergence_y_rad", f.divergence_y_rad,
+                 "0 to pi/2");
+  require_number(width(f.exit_x_m), "footprint, exit_x_m", f.exit_x_m, "metres from 0 to 1000");
+  require_number(width(f.exit_y_m), "footprint, exit_y_m", f.exit_y_m, "metres from 0 to 1000");
+  require_number(f.rings >= 1 && f.rings <= kMostRings, "footprint, rings", f.rings, "1 to 8");
 }
 
 double diameter_m(const Footprint& f, double range_m) {

@@ -56,20 +56,6 @@ double relative(const Glossy& s, double cosine) {
   return s.matt_share * cosine + s.lobe_gain * power(std::numbers::e, -0.5 * x * x);
 }
 
-void require(bool holds, const char* field, double found, const char* allowed) {
-  if (holds) return;
-  throw Error({.where = std::string("pulse light, ") + field,
-               .found = number_text(found),
-               .allowed = allowed,
-               .remedy = ""});
-}
-
-const Material& material_of(const Scene& scene, const Hits& truth, std::size_t beam) {
-  const Instance& instance = scene.instances[truth.instance[beam]];
-  const std::uint16_t slot = material_slot(scene.meshes[instance.mesh], truth.primitive[beam]);
-  return scene.materials[instance.materials[slot]];
-}
-
 /// The reflectance where a beam hit: the material's, times what its texture and the vertex colours
 /// make of the diffuse colour.
 double reflectance_of_hit(const Material& material, float diffuse, double wavelength_m) {
@@ -77,12 +63,6 @@ double reflectance_of_hit(const Material& material, float diffuse, double wavele
   const float plain = luminance(material.diffuse);
   const double darkening = plain > 0.0F ? std::min(1.0F, diffuse / plain) : 1.0;
   return darkening * reflectance_at(material, wavelength_m);
-}
-
-void lose(Frame& frame, std::size_t beam, Status why) {
-  frame.status[beam] = why;
-  frame.range_m[beam] = std::numeric_limits<double>::quiet_NaN();
-  frame.intensity[beam] = 0.0F;
 }
 
 void measure_hit(const PulseLight& light, double signal, double error, std::size_t beam,
@@ -100,25 +80,28 @@ void measure_hit(const PulseLight& light, double signal, double error, std::size
 void validate(const PulseLight& light) {
   const auto positive = [](double x) { return x > 0.0 && std::isfinite(x); };
   const auto from_zero = [](double x) { return x >= 0.0 && std::isfinite(x); };
-  require(positive(light.reference_reflectance), "reference_reflectance",
-          light.reference_reflectance, "above 0");
-  require(positive(light.reference_range_m), "reference_range_m", light.reference_range_m,
-          "metres above 0");
-  require(from_zero(light.range_exponent), "range_exponent", light.range_exponent, "0 or above");
-  require(from_zero(light.extinction_per_m), "extinction_per_m", light.extinction_per_m,
-          "0 or above");
-  require(from_zero(light.weather_extinction_per_m), "weather_extinction_per_m",
-          light.weather_extinction_per_m, "0 or above");
-  require(from_zero(light.noise_sigma), "noise_sigma", light.noise_sigma, "0 or above");
-  require(from_zero(light.saturation), "saturation", light.saturation, "0 or above");
+  require_number(positive(light.reference_reflectance), "pulse light, reference_reflectance",
+                 light.reference_reflectance, "above 0");
+  require_number(positive(light.reference_range_m), "pulse light, reference_range_m",
+                 light.reference_range_m, "metres above 0");
+  require_number(from_zero(light.range_exponent), "pulse light, range_exponent",
+                 light.range_exponent, "0 or above");
+  require_number(from_zero(light.extinction_per_m), "pulse light, extinction_per_m",
+                 light.extinction_per_m, "0 or above");
+  require_number(from_zero(light.weather_extinction_per_m), "pulse light, weather_extinction_per_m",
+                 light.weather_extinction_per_m, "0 or above");
+  require_number(from_zero(light.noise_sigma), "pulse light, noise_sigma", light.noise_sigma,
+                 "0 or above");
+  require_number(from_zero(light.saturation), "pulse light, saturation", light.saturation,
+                 "0 or above");
   for (std::size_t i = 0; i < light.overlap.size(); ++i) {
     const auto [range_m, share] = light.overlap[i];
-    require(from_zero(range_m) && (i == 0 || range_m > light.overlap[i - 1][0]), "overlap", range_m,
-            "ranges that rise from 0 or above");
-    require(from_zero(share), "overlap", share, "shares of 0 or above");
+    require_number(from_zero(range_m) && (i == 0 || range_m > light.overlap[i - 1][0]),
+                   "pulse light, overlap", range_m, "ranges that rise from 0 or above");
+    require_number(from_zero(share), "pulse light, overlap", share, "shares of 0 or above");
   }
-  require(look_up(light.overlap, light.reference_range_m, 1.0) > 0.0, "overlap", 0.0,
-          "a share above 0 at the reference range");
+  require_number(look_up(light.overlap, light.reference_range_m, 1.0) > 0.0, "pulse light, overlap",
+                 0.0, "a share above 0 at the reference range");
 }
 
 double sent_back(const Backscatter& surface, double reflectance, double cosine) {
@@ -148,12 +131,12 @@ double signal_of(const PulseLight& light, double sent_back, double range_m) {
   return light.overlap.empty() ? signal : signal * relative_overlap(light, range_m);
 }
 
-double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelength_m,
-                     const Hits& hits, std::size_t beam) {
-  const Material& material = material_of(scene, hits, beam);
+double sent_back_at(const Scene& scene, double wavelength_m, const Hits& hits, std::size_t beam) {
+  const Material& material =
+      material_of(scene, scene.instances[hits.instance[beam]], hits.primitive[beam]);
   const double cosine = std::clamp<double>(hits.cos_shading[beam], 0.0, 1.0);
   const double rho = reflectance_of_hit(material, hits.reflectance[beam].diffuse, wavelength_m);
-  return signal_of(light, sent_back(material.backscatter, rho, cosine), hits.range_m[beam]);
+  return sent_back(material.backscatter, rho, cosine);
 }
 
 Status why_faint(const PulseLight& light, double signal, double error, double range_m) {
@@ -179,20 +162,18 @@ double range_exponent(double reflectance_a, double range_a_m, double reflectance
 
 void measure_signal(const PulseLight& light, const Scene& scene, double wavelength_m,
                     BeamRange range, Frame& frame) {
-  Draw draw{.seed = frame.seed,
-            .sensor = frame.sensor_id,
-            .frame = frame.number,
-            .purpose = Purpose::detection};
   Batch<double> noise{};
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const std::size_t k = (i - range.begin) % kDrawBatch;
-    draw.beam = static_cast<std::uint32_t>(i);
-    if (k == 0 && light.noise_sigma > 0.0) draw_normals(draw, noise);
+    if (k == 0 && light.noise_sigma > 0.0) {
+      draw_normals(draw_of(frame, Purpose::detection, i), noise);
+    }
     if (frame.status[i] != Status::hit) {
       frame.intensity[i] = 0.0F;
       continue;
     }
-    const double signal = signal_of_hit(light, scene, wavelength_m, frame.truth, i);
+    const double sent = sent_back_at(scene, wavelength_m, frame.truth, i);
+    const double signal = signal_of(light, sent, frame.truth.range_m[i]);
     measure_hit(light, signal, light.noise_sigma * noise[k], i, frame);
   }
 }

@@ -59,10 +59,9 @@ double noise_sigma_of(double range50_m, double range90_m, double range_exponent)
 double range_exponent(double reflectance_a, double range_a_m, double reflectance_b,
                       double range_b_m);
 
-/// S of what a beam hit: the material's backscatter at the incidence of its shading normal. Needs
-/// cos_shading and reflectance.
-double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelength_m,
-                     const Hits& hits, std::size_t beam);
+/// What the surface that a beam hit sends straight back: its material's backscatter at the
+/// incidence of its shading normal. Needs cos_shading and reflectance.
+double sent_back_at(const Scene& scene, double wavelength_m, const Hits& hits, std::size_t beam);
 
 /// Fills a run of frame.intensity with signals as the receiver has them, noise included, and takes
 /// away what is too weak or too strong (status below_threshold, weather where clear air had let it

@@ -22,7 +22,7 @@ double share_of_first(const std::vector<SubRay>& rays, std::size_t count) {
                          [](double sum, const SubRay& ray) { return sum + ray.share; });
 }
 
-// Reference test T12: 0.3935 of a Gaussian's energy lies within half its 1/e^2 radius, 0.8647
+// 0.3935 of a Gaussian's energy lies within half its 1/e^2 radius, 0.8647
 // within it; two rings are cut there.
 TEST(SubRays, CarryWhatAGaussianHasInTheirRings) {
   const std::vector<SubRay> rays = sub_rays(kOval);
@@ -60,7 +60,7 @@ TEST(SubRays, HaveTheSecondMomentOfTheBeamAtEveryRange) {
   }
 }
 
-// Reference 3.1: the examples there add exit and divergence; a Gaussian beam's add in squares.
+// A Gaussian beam's exit and divergence add in squares, where sheets often add them as they are.
 TEST(DiameterM, IsThatOfAGaussianBeam) {
   EXPECT_DOUBLE_EQ(diameter_m(kOval, 0.0), 0.0127);
   EXPECT_NEAR(diameter_m(kOval, 100.0), std::hypot(0.0095, 0.3), 1e-15);

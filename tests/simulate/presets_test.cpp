@@ -203,9 +203,13 @@ TEST(Surfaces, SendBackTheSignalOfTheRangeEquation) {
 }
 
 TEST(Ideal, LeavesTheGeometryAlone) {
-  const Sensor noisy = preset("VLP-16");
+  Sensor noisy = preset("VLP-16");
+  noisy.weather = Weather{.rain_mm_per_h = 10.0};
+  noisy.projector_m = Eigen::Vector3d::UnitY();
   const Sensor sensor = ideal(noisy);
   EXPECT_FALSE(sensor.pulse.has_value());
+  EXPECT_FALSE(sensor.weather.has_value());
+  EXPECT_FALSE(sensor.projector_m.has_value());
   EXPECT_TRUE(sensor.noise.empty());
   EXPECT_EQ(sensor.limits.far_m, noisy.limits.far_m);
   EXPECT_EQ(sensor.rate_hz, noisy.rate_hz);

@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/moving_cast.hpp>
+#include <glidar/sensor/sensor.hpp>
+
+namespace glidar {
+
+/// What a simulation needs; everything here must outlive it.
+struct Setup {
+  const Scene& scene;
+  const Sensor& sensor;
+  const Beams& beams;  ///< make_beams(sensor)
+  const Motion& motion;
+  Renderer& renderer;
+  Progress progress = {};  ///< of a measurement
+};
+
+/// The world at the frame's start.
+inline World world_of(const Setup& setup, const Frame& frame) {
+  return {setup.renderer, setup.scene, setup.motion, frame.stamp_ns};
+}
+
+/// A cast of these beams at the frame's start.
+inline CastRequest request_of(const Setup& setup, const Frame& frame, const Beams& beams,
+                              const HitFields& fields) {
+  return {.beams = beams,
+          .world_from_sensor = frame.world_from_sensor,
+          .world_from_instance = frame.world_from_instance,
+          .fields = fields,
+          .cull_back_faces = setup.sensor.cull_back_faces};
+}
+
+}  // namespace glidar
