@@ -69,6 +69,19 @@ struct ExactBlock {
   Lanes<float> narrowness;   ///< of the triangle, see triangle_narrowness()
 };
 
+/// A vector at each corner of a block's triangles.
+struct CornerBlock {
+  Lanes3<float> c0;
+  Lanes3<float> c1;
+  Lanes3<float> c2;
+
+  void set(unsigned lane, const Eigen::Vector3f* of_vertex, const Triangle& triangle) {
+    c0.set(lane, of_vertex[triangle[0]]);
+    c1.set(lane, of_vertex[triangle[1]]);
+    c2.set(lane, of_vertex[triangle[2]]);
+  }
+};
+
 /// What is known beforehand of the material in one slot of an instance.
 struct SlotLook {
   SurfaceColour plain;
@@ -122,10 +135,16 @@ class Resolver {
  private:
   void write_directions(const HitBlock& block, const Lanes3<double>& front,
                         const Lanes<double>& cosine, std::vector<Eigen::Vector3f>& column) const;
-  /// Of corners 1 and 2 of each lane's triangle.
+  struct Corners {
+    CornerBlock position_m;  ///< relative to the mesh's origin
+    CornerBlock normal;
+  };
+  void gather(const HitBlock& block, bool with_normals, Corners& corners) const;
+  /// Weights of corners 1 and 2 of each lane's triangle, and what they weigh.
   struct Weights {
     const Lanes<float>& w1;
     const Lanes<float>& w2;
+    const CornerBlock& normals;
   };
   void write_shading(const HitFields& fields, const HitBlock& block, const ExactBlock& exact,
                      const Weights& weights, Hits& hits) const;
@@ -146,6 +165,8 @@ class Resolver {
   struct Known {
     const Mesh* mesh;
     const Triangle* triangles;
+    const Eigen::Vector3f* positions_m;
+    const Eigen::Vector3f* normals;  ///< nullptr: flat shading
     const TrianglePlane* planes;
     const float* narrowness;
     const std::uint32_t* twins;  ///< nullptr: all triangles differ

@@ -65,11 +65,13 @@ struct EchoWork {
 
   /// The weakest of too many paths are left out.
   void add(const Path& one) {
-    if (paths < kMost) {
-      path[paths++] = one;
-    } else {
-      replace_weakest(one);
-    }
+    if (paths == kMost) return replace_weakest(one);
+    // Member by member: copied as a whole it would wait for its own parts to be stored.
+    Path& to = path[paths++];
+    to.range_m = one.range_m;
+    to.signal = one.signal;
+    to.source = one.source;
+    to.cause = one.cause;
   }
 
   void replace_weakest(const Path& one);
