@@ -23,11 +23,11 @@ struct Group {
   std::size_t end;
 };
 
-/// exp(-y) from 0 on. Most paths of a footprint are near each other: then its series to y^4, whose
-/// next term is below 1e-11, is quicker.
+/// exp(-y) from 0 on, nothing beyond a pulse's reach. Most paths of a footprint are near each
+/// other: then its series to y^4, whose next term is below 1e-11, is quicker.
 double fading(double y) {
   constexpr double kSmall = 1.0 / 64.0;
-  if (y >= kSmall) return natural_exp(-y);
+  if (y >= kSmall) return y < 0.5 * kReach * kReach ? natural_exp(-y) : 0.0;
   return 1.0 - y * (1.0 - y * (1.0 / 2.0 - y * (1.0 / 6.0 - y * (1.0 / 24.0))));
 }
 
@@ -37,7 +37,7 @@ double waveform(const EchoWork& work, const Group& group, double sigma_m, double
   double sum = 0.0;
   for (std::size_t i = group.begin; i < group.end; ++i) {
     const double x = (work.path[i].range_m - range_m) * per_sigma;
-    if (std::abs(x) < kReach) sum += work.path[i].signal * fading(0.5 * x * x);
+    sum += work.path[i].signal * fading(0.5 * x * x);
   }
   return sum;
 }
@@ -47,7 +47,7 @@ bool is_stronger(const Path& a, const Path& b) {
   return a.signal > b.signal || (a.signal == b.signal && a.range_m < b.range_m);
 }
 
-/// The echo of a group: centroid, width and strongest path.
+/// The echo of a group: centroid and the height of the waveform there, width and strongest path.
 PulseEcho echo_of(const EchoWork& work, const Group& group, double sigma_m, double apart_m) {
   PulseEcho echo{.range_m = 0.0,
                  .signal = 0.0,
@@ -65,10 +65,12 @@ PulseEcho echo_of(const EchoWork& work, const Group& group, double sigma_m, doub
     if (i > group.begin && path.range_m - work.path[i - 1].range_m > apart_m) echo.is_mixed = true;
   }
   echo.range_m = start_m + (sum > 0.0 ? echo.range_m / sum : 0.0);
+  const double fade = 0.5 / (sigma_m * sigma_m);
   double variance = 0.0;
   for (std::size_t i = group.begin; i < group.end; ++i) {
-    const double off = work.path[i].range_m - echo.range_m;
-    variance += work.path[i].signal * off * off;
+    const double off_m = work.path[i].range_m - echo.range_m;
+    variance += work.path[i].signal * (off_m * off_m);
+    echo.signal += work.path[i].signal * fading(fade * (off_m * off_m));
   }
   echo.sigma_m = std::sqrt(sigma_m * sigma_m + (sum > 0.0 ? variance / sum : 0.0));
   return echo;
@@ -123,9 +125,7 @@ void split(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
 /// Pulses within one standard deviation of each other have one peak, at their mean but for the
 /// third order.
 void take_as_one(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
-  PulseEcho echo = echo_of(work, group, sigma_m, apart_m);
-  echo.signal = waveform(work, group, sigma_m, echo.range_m);
-  work.echo[work.echoes++] = echo;
+  work.echo[work.echoes++] = echo_of(work, group, sigma_m, apart_m);
 }
 
 /// Finds the echoes of paths that others are too far from to matter.

@@ -88,18 +88,20 @@ const Material& material_at(const Scene& scene, const Hits& hits, std::size_t be
 }
 
 /// What comes back from hits [range.begin, range.end), 0 where there is none. Neighbours mostly hit
-/// the same material.
+/// the same instance.
 void collect_sent(const Scene& scene, double wavelength_m, const Hits& hits, BeamRange range,
                   std::span<double> sent) {
-  const Material* last = nullptr;
   Surface surface;
+  std::uint32_t known = kNoHit;  // the instance that is all of this surface
   for (std::size_t i = range.begin; i < range.end; ++i) {
     double& to = sent[i - range.begin];
     to = 0.0;
     if (hits.instance[i] == kNoHit) continue;
-    const Material& material = material_at(scene, hits, i);
-    if (&material != last) surface = Surface(material, wavelength_m);
-    last = &material;
+    if (hits.instance[i] != known) {
+      surface = Surface(material_at(scene, hits, i), wavelength_m);
+      const Instance& instance = scene.instances[hits.instance[i]];
+      known = scene.meshes[instance.mesh].material_slots.empty() ? hits.instance[i] : kNoHit;
+    }
     to = surface.sent_back_at(hits, i);
   }
 }
