@@ -28,10 +28,14 @@ struct Block {
   const HitFields& fields;  ///< of the frame's truth
   BeamRange range;          ///< of pulses
   Frame& frame;
+  PulseTrace* trace;  ///< nullptr: none asked for
 
   [[nodiscard]] const Material& material_at(const Hits& hits, std::size_t i) const {
     const Scene& scene = setup.scene;
     return material_of(scene, scene.instances[hits.instance[i]], hits.primitive[i]);
+  }
+  [[nodiscard]] bool traces(std::size_t beam) const {
+    return trace != nullptr && trace->pulse == beam;
   }
   [[nodiscard]] std::size_t first_ray(std::size_t beam) const {
     return (beam - range.begin) * rays.size();
@@ -210,6 +214,24 @@ struct Tools {
   std::vector<WeatherEcho> weather;
 };
 
+void trace_echoes(const Block& block, std::size_t beam, const EchoWork& work) {
+  PulseTrace& trace = *block.trace;
+  const std::size_t first = block.first_ray(beam);
+  trace.sub_rays = block.rays.size();
+  trace.ways.clear();
+  for (std::size_t k = 0; k < work.paths; ++k) {
+    PulseTrace::Way way{.path = work.path[k]};
+    if (way.path.source != kNoHit) {
+      way.instance = block.frame.scratch.sub_hits.instance[way.path.source];
+      way.path.source -= static_cast<std::uint32_t>(first);
+      way.share = block.rays[way.path.source].share;
+    }
+    trace.ways.push_back(way);
+  }
+  trace.echoes.assign(work.echo.begin(),
+                      work.echo.begin() + static_cast<std::ptrdiff_t>(work.echoes));
+}
+
 /// Finds the echoes that the receiver can tell; returns why there is none, should there be none.
 Status find_returns(const Block& block, std::size_t beam, const Path& surface, Tools& tools) {
   EchoWork& work = tools.work;
@@ -220,6 +242,7 @@ Status find_returns(const Block& block, std::size_t beam, const Path& surface, T
   draw.beam = static_cast<std::uint32_t>(beam);
   add_weather(block, draw, surface.range_m, tools.weather, work);
   find_echoes(pulse_sigma_m(sensor.receiver), wide_m, work);
+  if (block.traces(beam)) trace_echoes(block, beam, work);
   double loudest = 0.0;
   for (std::size_t k = 0; k < work.echoes; ++k) {
     const bool is_surface = work.path[work.echo[k].strongest].source != kNoHit;
@@ -239,6 +262,12 @@ void measure_beam(const Block& block, std::size_t beam, Tools& tools) {
   const Status silent = find_returns(block, beam, surface, tools);
   std::array<int, kMostReturns> chosen;
   choose(receiver, {work.echo.data(), work.echoes}, chosen);
+  if (block.traces(beam)) {
+    block.trace->received.assign(work.echo.begin(),
+                                 work.echo.begin() + static_cast<std::ptrdiff_t>(work.echoes));
+    block.trace->returns.assign(
+        chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(receiver.returns.size()));
+  }
   for (std::size_t r = 0; r < receiver.returns.size(); ++r) {
     const std::size_t entry = r * block.aimed.pulses() + beam;
     if (chosen[r] >= 0) {
@@ -317,7 +346,8 @@ bool has_echoes(const Sensor& sensor, const Scene& scene) {
          has_mirrors(scene);
 }
 
-void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& aimed, Frame& frame) {
+void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& aimed, Frame& frame,
+                    PulseTrace* trace) {
   resize(frame.truth, aimed.size(), fields);
   frame.cause.resize(aimed.size());
   const std::vector<SubRay> rays =
@@ -331,8 +361,9 @@ void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& ai
   const PulseLight& light = weather ? weather->light : *setup.sensor.pulse;
   for (std::size_t begin = 0; begin < aimed.pulses(); begin += step) {
     const BeamRange range{begin, std::min(begin + step, aimed.pulses())};
-    measure_block({setup, light, weather ? &*weather : nullptr, rays, aimed, fields, range, frame},
-                  mirrors);
+    measure_block(
+        {setup, light, weather ? &*weather : nullptr, rays, aimed, fields, range, frame, trace},
+        mirrors);
   }
 }
 

@@ -43,7 +43,7 @@ void measure_light(const Setup& setup, BeamRange range, Frame& frame) {
 
 }  // namespace
 
-void measure(const Setup& setup, const HitFields& fields, Frame& frame) {
+void measure(const Setup& setup, const HitFields& fields, Frame& frame, PulseTrace* trace) {
   frame.rows = setup.beams.rows;
   frame.cols = setup.beams.cols;
   frame.frame_id = setup.beams.frame_id;
@@ -66,7 +66,7 @@ void measure(const Setup& setup, const HitFields& fields, Frame& frame) {
   };
   frame.cause.clear();
   if (has_echoes(sensor, setup.scene)) {
-    measure_pulses(setup, needed, beams, frame);
+    measure_pulses(setup, needed, beams, frame, trace);
   } else {
     CastRequest request = request_of(setup, frame, beams, needed);
     request.then = FunctionRef<void(BeamRange)>(measure_run);

@@ -86,6 +86,11 @@ inline double depth_m(const Beams& beams, std::size_t beam, double range_m) {
                                  : along_beam + beams.origins_m[beam].dot(beams.boresight);
 }
 
+/// The channel of a beam.
+inline std::uint16_t ring_of(const Beams& beams, std::size_t beam) {
+  return beams.rings.empty() ? static_cast<std::uint16_t>(beam / beams.cols) : beams.rings[beam];
+}
+
 /// Throws Error unless every array has its stated size and every direction is a unit vector or NaN.
 void validate(const Beams& beams);
 

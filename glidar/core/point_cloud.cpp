@@ -188,9 +188,7 @@ void fill_col(const Source& s, Column& column) {
 }
 
 void fill_ring(const Source& s, Column& column) {
-  fill_each<std::uint16_t>(s, column, [&](std::size_t i) {
-    return s.beams.rings.empty() ? static_cast<std::uint16_t>(i / s.beams.cols) : s.beams.rings[i];
-  });
+  fill_each<std::uint16_t>(s, column, [&](std::size_t i) { return ring_of(s.beams, i); });
 }
 
 void fill_return(const Source& s, Column& column) {

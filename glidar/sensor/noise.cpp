@@ -57,10 +57,6 @@ bool makes_returns(const NoiseStep& step) {
   return std::visit([](const auto& s) { return kMakesReturns<std::decay_t<decltype(s)>>; }, step);
 }
 
-Purpose purpose_of(std::size_t step) {
-  return static_cast<Purpose>(static_cast<std::size_t>(Purpose::first_noise_step) + step);
-}
-
 GLIDAR_SIMD void widen(const float* from, std::size_t count, double* to) {
   for (std::size_t i = 0; i < count; ++i) to[i] = double{from[i]};
 }
@@ -217,6 +213,10 @@ void apply_stretch(const Stretch& stretch, const NoiseView& view, Workers& worke
 }
 
 }  // namespace
+
+Purpose purpose_of(std::size_t step) {
+  return static_cast<Purpose>(static_cast<std::size_t>(Purpose::first_noise_step) + step);
+}
 
 void add_needs(const std::vector<NoiseStep>& noise, HitFields& fields) {
   fields.noise_scale = fields.noise_scale || !noise.empty();
