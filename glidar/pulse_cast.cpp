@@ -13,7 +13,8 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kSubBeamsPerBlock = std::size_t{1} << 18U;  // some 20 MB of hits
+// For every thread: with their hits, some 90 bytes each, they fit into a core's own cache.
+constexpr std::size_t kSubBeamsPerBlock = std::size_t{1} << 14U;
 constexpr std::size_t kBeamsPerTask = kDrawBatch;
 constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
 
@@ -94,31 +95,17 @@ void cast_mirrored(const Block& block) {
   cast(block, beams, with_light({}), {}, memory.mirrored_hits);
 }
 
-/// What a ray met, as if alone.
-Path direct_path(const Block& block, std::size_t ray) {
-  const Hits& hits = block.frame.scratch.sub_hits;
-  const double range_m = hits.range_m[ray];
-  const double sent = sent_back_at(block.setup.scene, block.setup.sensor.wavelength_m, hits, ray);
-  return {range_m, signal_of(block.light, sent, range_m), static_cast<std::uint32_t>(ray),
-          Cause::surface};
-}
-
-/// The way by a mirror, as if alone: the light passes the mirror twice and travels both legs.
-Path ghost_path(const Block& block, std::size_t mirrored) {
+/// The way by a mirror: the light passes the mirror twice and travels both legs.
+Path ghost_path(const Block& block, std::size_t mirrored, double energy) {
   const Scratch& memory = block.frame.scratch;
   const Hits& hits = memory.mirrored_hits;
   const std::uint32_t ray = memory.mirrored_from[mirrored];
   const double share = block.material_at(memory.sub_hits, ray).mirror;
   const double range_m = memory.sub_hits.range_m[ray] + hits.range_m[mirrored];
   const double sent =
-      share * share *
+      energy * share * share *
       sent_back_at(block.setup.scene, block.setup.sensor.wavelength_m, hits, mirrored);
   return {range_m, signal_of(block.light, sent, range_m), ray, Cause::ghost};
-}
-
-void add(Path path, double share, EchoWork& work) {
-  path.signal *= share;
-  work.add(path);
 }
 
 /// All ways by which light of a beam comes back from surfaces.
@@ -127,15 +114,17 @@ void collect_paths(const Block& block, std::size_t beam, EchoWork& work) {
   const std::size_t first = block.first_ray(beam);
   work.paths = 0;
   for (std::size_t k = 0; k < block.rays.size(); ++k) {
-    if (memory.sub_hits.instance[first + k] == kNoHit) continue;
-    add(direct_path(block, first + k), block.rays[k].share, work);
+    const std::size_t ray = first + k;
+    if (memory.sub_hits.instance[ray] == kNoHit) continue;
+    work.add({memory.sub_hits.range_m[ray], block.rays[k].share * memory.sub_signals[ray],
+              static_cast<std::uint32_t>(ray), Cause::surface});
   }
   const std::vector<std::uint32_t>& from = memory.mirrored_from;
   auto at = std::lower_bound(from.begin(), from.end(), first);
   for (; at != from.end() && *at < first + block.rays.size(); ++at) {
     const auto mirrored = static_cast<std::size_t>(at - from.begin());
     if (memory.mirrored_hits.instance[mirrored] == kNoHit) continue;
-    add(ghost_path(block, mirrored), block.rays[*at - first].share, work);
+    work.add(ghost_path(block, mirrored, block.rays[*at - first].share));
   }
 }
 
@@ -308,11 +297,19 @@ std::optional<PreparedWeather> weather_of(const Sensor& sensor) {
                          sensor.receiver.pulse_fwhm_s);
 }
 
+/// What each sub-ray of a run of beams brings back, were it alone.
+void find_signals(const Block& block, BeamRange range) {
+  Scratch& memory = block.frame.scratch;
+  const BeamRange of_rays{block.first_ray(range.begin), block.first_ray(range.end)};
+  signals_of_hits(block.light, block.setup.scene, block.setup.sensor.wavelength_m, memory.sub_hits,
+                  of_rays, std::span(memory.sub_signals).subspan(of_rays.begin));
+}
+
 void measure_block(const Block& block, bool mirrors) {
   Scratch& memory = block.frame.scratch;
   HitFields fields = with_light(block.fields);
   fields.shading_normal = fields.shading_normal || mirrors;
-  spread(block.rays, block.aimed, block.range, memory.sub_beams);
+  spread(block.rays, block.aimed, block.range, block.setup.renderer.workers(), memory.sub_beams);
   const auto part = [&](std::size_t beam) {
     return static_cast<double>(beam) / static_cast<double>(block.aimed.pulses());
   };
@@ -321,6 +318,7 @@ void measure_block(const Block& block, bool mirrors) {
        memory.sub_hits);
   memory.mirrored_from.clear();
   if (mirrors) cast_mirrored(block);
+  memory.sub_signals.resize(memory.sub_beams.size());
   const std::size_t count = block.range.end - block.range.begin;
   const std::size_t runs = (count + kBeamsPerTask - 1) / kBeamsPerTask;
   block.setup.renderer.workers().for_ranges(runs, 1, [&](std::size_t begin, std::size_t end) {
@@ -328,6 +326,7 @@ void measure_block(const Block& block, bool mirrors) {
     for (std::size_t run = begin; run < end; ++run) {
       const std::size_t first = block.range.begin + run * kBeamsPerTask;
       const std::size_t last = std::min(first + kBeamsPerTask, block.range.end);
+      find_signals(block, {first, last});
       draw(block.light, block.frame, first, tools.draws);
       for (std::size_t beam = first; beam < last; ++beam) measure_beam(block, beam, tools);
     }
@@ -354,7 +353,9 @@ void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& ai
   const std::vector<SubRay> rays =
       setup.sensor.footprint ? sub_rays(*setup.sensor.footprint) : std::vector<SubRay>(1);
   const std::size_t step =
-      std::max<std::size_t>(1, kSubBeamsPerBlock / rays.size() / kBeamsPerTask) * kBeamsPerTask;
+      std::max<std::size_t>(
+          1, kSubBeamsPerBlock * setup.renderer.workers().threads() / rays.size() / kBeamsPerTask) *
+      kBeamsPerTask;
   const bool mirrors = has_mirrors(setup.scene);
   const std::optional<PreparedWeather> weather = weather_of(setup.sensor);
   const PulseLight& light = weather ? weather->light : *setup.sensor.pulse;

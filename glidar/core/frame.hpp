@@ -58,6 +58,7 @@ struct Scratch {
   std::vector<std::uint8_t> present;         ///< per instance
   Beams sub_beams;                           ///< those that a run of beams is spread into
   Hits sub_hits;                             ///< theirs
+  std::vector<double> sub_signals;           ///< what each of these sends back
   Beams mirrored;                            ///< those that go on from a mirror
   Hits mirrored_hits;                        ///< theirs
   std::vector<std::uint32_t> mirrored_from;  ///< per mirrored beam: its sub-beam

@@ -4,6 +4,7 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/core/frame.hpp>
+#include <glidar/core/workers.hpp>
 
 #include <vector>
 
@@ -37,6 +38,8 @@ struct SubRay {
   Eigen::Vector2d offset_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();
   double share = 1.0;
+  double shortening =
+      1.0;  ///< 1 / sqrt(1 + slope^2): makes a beam's direction, leaning, a unit vector
 };
 
 /// The middle ray and its rings. A disc around the middle and the rings around it, out to the
@@ -49,6 +52,7 @@ struct SubRay {
 std::vector<SubRay> sub_rays(const Footprint& footprint);
 
 /// The sub-rays of a run of beams as beams of one row: those of the first beam, of the next, ...
-void spread(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range, Beams& out);
+void spread(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range, Workers& workers,
+            Beams& out);
 
 }  // namespace glidar

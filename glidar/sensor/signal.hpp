@@ -6,6 +6,8 @@
 #include <glidar/core/scene.hpp>
 #include <glidar/core/table.hpp>
 
+#include <span>
+
 namespace glidar {
 
 /// What a pulse brings back, by the range equation of an extended target (Wagner, ISPRS J. 60
@@ -62,6 +64,11 @@ double range_exponent(double reflectance_a, double range_a_m, double reflectance
 /// What the surface that a beam hit sends straight back: its material's backscatter at the
 /// incidence of its shading normal. Needs cos_shading and reflectance.
 double sent_back_at(const Scene& scene, double wavelength_m, const Hits& hits, std::size_t beam);
+
+/// S of hits [range.begin, range.end) into `signals`, 0 where nothing was hit. Needs what
+/// sent_back_at() does.
+void signals_of_hits(const PulseLight& light, const Scene& scene, double wavelength_m,
+                     const Hits& hits, BeamRange range, std::span<double> signals);
 
 /// Fills a run of frame.intensity with signals as the receiver has them, noise included, and takes
 /// away what is too weak or too strong (status below_threshold, weather where clear air had let it

@@ -105,7 +105,8 @@ TEST(Spread, LaysSubRaysAcrossTheBeamWithItsTimeAndOrigin) {
   beams.times_ns = {5, 7};
   const std::vector<SubRay> rays = sub_rays(kOval);
   Beams out;
-  spread(rays, beams, {1, 2}, out);
+  Workers workers(1);
+  spread(rays, beams, {1, 2}, workers, out);
   ASSERT_EQ(out.size(), rays.size());
   EXPECT_NO_THROW(validate(out));
   EXPECT_EQ(out.directions[0], beams.directions[1]);
@@ -128,7 +129,8 @@ TEST(Spread, KeepsALineAsItIs) {
   beams.rows = beams.cols = 1;
   beams.directions = {Eigen::Vector3d(0.1, -0.2, 0.97).normalized()};
   Beams out;
-  spread({SubRay{}}, beams, {0, 1}, out);
+  Workers workers(1);
+  spread({SubRay{}}, beams, {0, 1}, workers, out);
   EXPECT_EQ(out.directions, beams.directions);
   EXPECT_TRUE(out.origins_m.empty());
 }
