@@ -3,6 +3,7 @@
 #include <glidar/explain.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/gaussian.hpp>
 
 namespace glidar {
 namespace {
@@ -47,6 +48,16 @@ void apply_first(const Setup& setup, std::size_t count, const Columns& measured,
               1.0 / setup.sensor.rate_hz, setup.beams, setup.renderer.workers(), frame);
 }
 
+std::vector<double> receiver_noise(const Sensor& sensor, const Frame& frame, const Story& story,
+                                   std::size_t pulse) {
+  if (!sensor.pulse || !(sensor.pulse->noise_sigma > 0.0)) return {};
+  const std::size_t count = story.pulse ? story.pulse->echoes.size() : 1;
+  Draw draw = draw_of(frame, Purpose::detection, pulse);
+  std::vector<double> numbers;
+  for (; draw.block < count; ++draw.block) numbers.push_back(normals(random_words(draw))[0]);
+  return numbers;
+}
+
 }  // namespace
 
 Story explain(const Setup& setup, std::size_t entry, Frame& frame) {
@@ -65,6 +76,7 @@ Story explain(const Setup& setup, std::size_t entry, Frame& frame) {
   if (has_echoes(setup.sensor, setup.scene)) story.pulse = std::move(trace);
   const std::vector<Eigen::Vector3d>& aimed = frame.scratch.aimed.directions;
   story.aimed = aimed.empty() ? setup.beams.directions[entry] : aimed[entry];
+  story.receiver_noise = receiver_noise(setup.sensor, frame, story, entry % setup.beams.pulses());
   story.measured = reading_of(frame, entry);
 
   const double frame_s = 1.0 / setup.sensor.rate_hz;

@@ -26,6 +26,9 @@ struct Story {
   Eigen::Vector3d aimed = Eigen::Vector3d::Zero();  ///< as the beam really went, sensor's frame
   Reading measured;                                 ///< before noise
   std::optional<PulseTrace> pulse = {};             ///< where beams are more than a ray
+  /// Of pulsed light: the normal numbers that the receiver's noise_sigma multiplies, one for each
+  /// echo; of beams that are a ray, one.
+  std::vector<double> receiver_noise = {};
 
   /// One step of noise.
   struct Step {

@@ -65,6 +65,7 @@ void measure(const Setup& setup, const HitFields& fields, Frame& frame, PulseTra
     measure_light(setup, range, frame);
   };
   frame.cause.clear();
+  frame.sigma_m.clear();
   if (has_echoes(sensor, setup.scene)) {
     measure_pulses(setup, needed, beams, frame, trace);
   } else {

@@ -74,7 +74,8 @@ Draws draws(const Range2015& step, const Asked& asked) {
 Draws draws(const RangeQuantum& /*step*/, const Asked& /*asked*/) {
   return {};
 }
-Draws draws(const RangeBias& /*step*/, const Asked& asked) {
+Draws draws(const RangeBias& step, const Asked& asked) {
+  if (!(step.sigma_m > 0.0)) return {};
   Draw of_ring = asked.draw;
   of_ring.frame = kEveryFrame;
   of_ring.beam = ring_of(asked.beams, asked.entry);
@@ -144,7 +145,8 @@ Draws draws(const PointingJitter& /*step*/, const Asked& asked) {
   const auto own = normals(random_words(draw));
   return {{Law::normal, own[0], "turn to the side"}, {Law::normal, own[1], "turn upwards"}};
 }
-Draws draws(const EncoderError& /*step*/, const Asked& asked) {
+Draws draws(const EncoderError& step, const Asked& asked) {
+  if (!(step.turn_sigma_rad > 0.0)) return {};
   Draw of_turn = asked.draw;
   of_turn.beam = 0;
   return {{Law::normal, normals(random_words(of_turn))[0], "error of the whole turn"}};

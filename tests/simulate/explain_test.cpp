@@ -145,6 +145,8 @@ TEST(Explain, ShowsTheReceiversNoise) {
   const Frame frame = stage.shoot(300, &story);
   const Draw draw = draw_of(frame, Purpose::detection, 300);
   ASSERT_EQ(story.pulse->echoes.size(), 1U);
+  ASSERT_EQ(story.receiver_noise.size(), 1U);
+  EXPECT_EQ(story.receiver_noise[0], normals(random_words(draw))[0]);
   EXPECT_NEAR(story.pulse->received[0].signal,
               story.pulse->echoes[0].signal + 0.2 * normals(random_words(draw))[0], 1e-9);
 }
