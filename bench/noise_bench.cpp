@@ -4,6 +4,7 @@
 // standard library: a Mersenne twister and std::normal_distribution, added to every range.
 #include "ratio_reporter.hpp"
 
+#include <glidar/core/gaussian.hpp>
 #include <glidar/sensor/noise.hpp>
 
 #include <random>
@@ -69,6 +70,24 @@ void bench_standard_library() {
   });
 }
 
+/// What continuous_wave draws, and nothing else: three normals a beam, which are two pairs.
+void bench_draws() {
+  benchmark::RegisterBenchmark("three normals a beam", [](benchmark::State& state) {
+    WordBatch words;
+    PairBatch normals;
+    for (auto _ : state) {
+      for (std::uint32_t beam = 0; beam < kSide * kSide; beam += kDrawBatch) {
+        draw_words({.seed = 1, .beam = beam}, words);
+        for (std::size_t pair = 0; pair < 2; ++pair) {
+          make_normals(words, pair, normals);
+          benchmark::DoNotOptimize(normals);
+        }
+      }
+    }
+    count_beams(state);
+  });
+}
+
 void register_steps() {
   bench_step("refill and nothing", {});
   bench_step("range_gaussian", {RangeGaussian{.sigma_m = 0.02}});
@@ -111,6 +130,7 @@ void register_steps() {
 
 int main(int argc, char** argv) {
   glidar::bench::bench_standard_library();
+  glidar::bench::bench_draws();
   glidar::bench::register_steps();
   return glidar::bench::run(
       argc, argv,
