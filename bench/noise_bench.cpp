@@ -70,20 +70,22 @@ void bench_standard_library() {
   });
 }
 
-/// What continuous_wave draws, and nothing else: three normals a beam, which are two pairs.
+/// What continuous_wave draws for a frame, and nothing else: three normals a beam, two pairs.
+void draw_frame() {
+  WordBatch words;
+  PairBatch normals;
+  for (std::uint32_t beam = 0; beam < kSide * kSide; beam += kDrawBatch) {
+    draw_words({.seed = 1, .beam = beam}, words);
+    make_normals(words, 0, normals);
+    benchmark::DoNotOptimize(normals);
+    make_normals(words, 1, normals);
+    benchmark::DoNotOptimize(normals);
+  }
+}
+
 void bench_draws() {
   benchmark::RegisterBenchmark("three normals a beam", [](benchmark::State& state) {
-    WordBatch words;
-    PairBatch normals;
-    for (auto _ : state) {
-      for (std::uint32_t beam = 0; beam < kSide * kSide; beam += kDrawBatch) {
-        draw_words({.seed = 1, .beam = beam}, words);
-        for (std::size_t pair = 0; pair < 2; ++pair) {
-          make_normals(words, pair, normals);
-          benchmark::DoNotOptimize(normals);
-        }
-      }
-    }
+    for (auto _ : state) draw_frame();
     count_beams(state);
   });
 }
