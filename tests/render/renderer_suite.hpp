@@ -79,16 +79,6 @@ inline Scene builtin_scene(const char* name) {
   return scene_of(make_builtin_model(name));
 }
 
-inline constexpr HitFields kEverything{.depth = true,
-                                       .normal = true,
-                                       .shading_normal = true,
-                                       .incidence = true,
-                                       .shading = true,
-                                       .barycentrics = true,
-                                       .colour = true,
-                                       .reflectance = true,
-                                       .object_point = true};
-
 class RendererSuite : public ::testing::TestWithParam<std::string> {
  protected:
   static std::unique_ptr<Renderer> renderer(const Scene& scene, unsigned threads = 2) {
@@ -101,7 +91,7 @@ class RendererSuite : public ::testing::TestWithParam<std::string> {
     renderer(scene)->cast({.beams = beams,
                            .world_from_sensor = world_from_sensor,
                            .world_from_instance = {},
-                           .fields = kEverything,
+                           .fields = kAllHitFields,
                            .cull_back_faces = cull_back_faces},
                           hits);
     return hits;
