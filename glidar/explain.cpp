@@ -25,15 +25,14 @@ struct Columns {
   std::vector<Cause> cause;
 };
 
-/// Applies the first steps of the sensor's list, alone, to a frame as it was measured.
+/// Applies the first steps of the sensor's list to a frame as it was measured.
 void apply_first(const Setup& setup, std::size_t count, const Columns& measured, Frame& frame) {
-  const std::vector<NoiseStep>& all = setup.sensor.noise;
   frame.range_m = measured.range_m;
   frame.intensity = measured.intensity;
   frame.status = measured.status;
   frame.cause = measured.cause;
-  apply_noise({all.begin(), all.begin() + static_cast<std::ptrdiff_t>(count)},
-              1.0 / setup.sensor.rate_hz, setup.beams, setup.renderer.workers(), frame);
+  apply_first_steps(setup.sensor.noise, count, 1.0 / setup.sensor.rate_hz, setup.beams,
+                    setup.renderer.workers(), frame);
 }
 
 std::vector<double> receiver_noise(const Sensor& sensor, const Frame& frame, const Story& story,
@@ -63,7 +62,7 @@ Story explain(const Setup& setup, std::size_t entry, Frame& frame) {
   measure(setup, kAllHitFields, frame, &trace);
   if (has_echoes(setup.sensor, setup.scene)) story.pulse = std::move(trace);
   const std::vector<Eigen::Vector3d>& aimed = frame.scratch.aimed.directions;
-  story.aimed = aimed.empty() ? setup.beams.directions[entry] : aimed[entry];
+  story.direction = aimed.empty() ? setup.beams.directions[entry] : aimed[entry];
   story.receiver_noise = receiver_noise(setup.sensor, frame, story, entry % setup.beams.pulses());
   story.measured = reading_of(frame, entry);
 

@@ -23,9 +23,9 @@ struct Reading {
 /// How an entry of a frame came to be: what is not in the frame's own columns.
 struct Story {
   std::size_t entry = 0;
-  Eigen::Vector3d aimed = Eigen::Vector3d::Zero();  ///< as the beam really went, sensor's frame
-  Reading measured;                                 ///< before noise
-  std::optional<PulseTrace> pulse = {};             ///< where beams are more than a ray
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< with errors of pointing, sensor's frame
+  Reading measured;                                     ///< before noise
+  std::optional<PulseTrace> pulse = {};                 ///< where beams are more than a ray
   /// Of pulsed light: the normal numbers that the receiver's noise_sigma multiplies, one for each
   /// echo; of beams that are a ray, one.
   std::vector<double> receiver_noise = {};
@@ -40,7 +40,7 @@ struct Story {
 
 /// Measures a frame as simulate() does, with all truth, and tells how one entry of it came to be.
 /// frame.stamp_ns, seed, sensor_id and number say which; the frame comes out as simulate() makes
-/// it, byte for byte. Every step of noise is run once more, so it takes as long as so many frames.
+/// it, byte for byte. The first step of noise is run, then the first two, and so on.
 /// Throws Error when there is no such entry.
 Story explain(const Setup& setup, std::size_t entry, Frame& frame);
 

@@ -161,7 +161,8 @@ void report_echo(const Block& block, const PulseEcho& echo, const Path& path, st
   const Sensor& sensor = block.setup.sensor;
   const double range_m = told_range_m(sensor.receiver, echo);
   Status status = judge(sensor.limits, block.aimed, entry, range_m);
-  if (block.light.saturation > 0.0 && echo.signal >= block.light.saturation)
+  if (status == Status::hit && block.light.saturation > 0.0 &&
+      echo.signal >= block.light.saturation)
     status = Status::saturated;
   if (status != Status::hit) return lose(frame, entry, status);
   frame.status[entry] = Status::hit;
@@ -184,7 +185,7 @@ Status why_silent(const Block& block, const Path& surface, double loudest, std::
   if (surface.source == kNoHit) {
     return std::isnan(block.aimed.directions[beam].x()) ? Status::no_beam : Status::miss;
   }
-  return why_faint(block.light, loudest, 0.0, surface.range_m);
+  return why_faint(block.light, loudest, surface.range_m);
 }
 
 /// The truth of an entry: what a sub-ray met, or a miss.
@@ -214,6 +215,13 @@ struct Tools {
   std::vector<WeatherEcho> weather;
 };
 
+/// What a ghost's light met by way of the mirror.
+std::uint32_t reflected_by(const Scratch& memory, std::uint32_t sub_ray) {
+  const auto at =
+      std::lower_bound(memory.mirrored_from.begin(), memory.mirrored_from.end(), sub_ray);
+  return memory.mirrored_hits.instance[static_cast<std::size_t>(at - memory.mirrored_from.begin())];
+}
+
 void trace_echoes(const Block& block, std::size_t beam, const EchoWork& work) {
   PulseTrace& trace = *block.trace;
   const std::size_t first = block.first_ray(beam);
@@ -222,7 +230,9 @@ void trace_echoes(const Block& block, std::size_t beam, const EchoWork& work) {
   for (std::size_t k = 0; k < work.paths; ++k) {
     PulseTrace::Way way{.path = work.path[k]};
     if (way.path.source != kNoHit) {
-      way.instance = block.frame.scratch.sub_hits.instance[way.path.source];
+      const Scratch& memory = block.frame.scratch;
+      way.instance = memory.sub_hits.instance[way.path.source];
+      if (way.path.cause == Cause::ghost) way.reflected = reflected_by(memory, way.path.source);
       way.path.source -= static_cast<std::uint32_t>(first);
       way.share = block.rays[way.path.source].share;
     }
@@ -276,8 +286,8 @@ void measure_beam(const Block& block, std::size_t beam, Tools& tools) {
       keep_truth(block, path.source == kNoHit ? surface.source : path.source, entry);
       report_echo(block, echo, path, entry);
     } else {
-      const bool tells_why = r == 0 || silent == Status::no_beam;
-      keep_truth(block, r == 0 ? surface.source : kNoHit, entry);
+      const bool tells_why = (r == 0 && work.echoes == 0) || silent == Status::no_beam;
+      keep_truth(block, surface.source, entry);
       lose(block.frame, entry, tells_why ? silent : Status::no_echo);
     }
   }

@@ -18,9 +18,10 @@ bool has_echoes(const Sensor& sensor, const Scene& scene);
 struct PulseTrace {
   /// A way by which light came back.
   struct Way {
-    Path path;                        ///< its source is the sub-ray of the pulse
-    double share = 0.0;               ///< of the pulse's energy on the sub-ray; of the air: 0
-    std::uint32_t instance = kNoHit;  ///< what the sub-ray hit, in Scene::instances
+    Path path;                         ///< its source is the sub-ray of the pulse
+    double share = 0.0;                ///< of the pulse's energy on the sub-ray; of the air: 0
+    std::uint32_t instance = kNoHit;   ///< what the sub-ray hit, in Scene::instances
+    std::uint32_t reflected = kNoHit;  ///< of a ghost: what was hit by way of that mirror
   };
   std::size_t pulse = 0;  ///< which pulse to trace
   std::size_t sub_rays = 0;
@@ -33,8 +34,8 @@ struct PulseTrace {
 /// Casts the beams of a sensor of pulses as they really are: every one spreads into sub-rays, which
 /// go on from mirrors once; what comes back makes a waveform, its peaks are echoes, and the
 /// receiver tells some of them. Fills range, intensity, status and cause, and the truth of every
-/// return: that of the strongest of its paths, or when there is no return, of the strongest that
-/// came back.
+/// return: that of the strongest of its paths, or where no surface made it, of the strongest that
+/// the beam met.
 ///
 /// `aimed` are the beams as they really go. Draws with Purpose::detection and weather.
 /// `trace`, if given, is filled for its pulse.

@@ -95,6 +95,17 @@ std::string true_distances(const View& view) {
   return fmt::format("{:.6g} to {:.6g} m", nearest, farthest);
 }
 
+/// How many beams meet something within the limits that is not reported.
+std::size_t lost_in_light(const View& view) {
+  std::size_t lost = 0;
+  for (std::size_t i = 0; i < view.frame.status.size(); ++i) {
+    const Status status = view.frame.status[i];
+    const bool is_there = view.frame.truth.instance[i] != kNoHit;
+    if (is_there && status != Status::hit && status != Status::miss) ++lost;
+  }
+  return lost;
+}
+
 /// Why nothing was hit, and what to do.
 std::string reason_for_no_hits(const View& view, const FrameSummary& summary) {
   constexpr const char* kFrameIt = "leave the pose options out to have the scene framed";
@@ -106,6 +117,12 @@ std::string reason_for_no_hits(const View& view, const FrameSummary& summary) {
         summary.too_near + summary.too_far,
         view.sensor.limits.along == Limits::Along::depth ? "depth" : "range", true_distances(view),
         view.sensor.limits.near_m, view.sensor.limits.far_m);
+  }
+  if (const std::size_t lost = lost_in_light(view)) {
+    return fmt::format(
+        "{} beams meet surfaces, but what comes back is too weak or too strong, or lost: see the "
+        "column 'status', and `glidar explain`",
+        lost);
   }
   const Sight sight = look(view);
   if (sight.deepest_m < 0.0 && sight.view_rad < 0.5 * std::numbers::pi) {

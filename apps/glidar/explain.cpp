@@ -34,7 +34,7 @@ struct ExplainFlags {
   std::optional<std::int64_t> index;
   std::optional<std::int64_t> row;
   std::optional<std::int64_t> col;
-  std::int64_t return_number = 1;
+  std::optional<std::int64_t> return_number;
 };
 
 [[noreturn]] void refuse(const std::string& where, std::string found, std::string allowed,
@@ -56,9 +56,9 @@ RenderFlags flags_of(const Sidecar& sidecar) {
   add_render_flags(command, flags);
   try {
     command.parse(std::vector<std::string>(told.rbegin(), told.rend() - 1));  // from the end on
-  } catch (const CLI::ParseError& error) {
-    refuse(sidecar.path.string(), std::string("its command is not understood: ") + error.what(),
-           "the arguments of `glidar render`", "write the cloud again");
+  } catch (const CLI::ParseError&) {
+    refuse(sidecar.path.string(), "its command is not understood",
+           "the arguments of a measurement by `glidar render`", "write the cloud again");
   }
   return flags;
 }
@@ -79,48 +79,59 @@ std::size_t entry_of(const ExplainFlags& flags, const Sidecar& sidecar, const Fr
                      const Beams& beams) {
   if (flags.row) {
     const auto pulses_rows = static_cast<std::int64_t>(beams.rows / beams.returns);
-    if (*flags.row >= pulses_rows || *flags.col >= beams.cols ||
-        flags.return_number > beams.returns) {
+    const std::int64_t return_number = flags.return_number.value_or(1);
+    if (*flags.row >= pulses_rows || *flags.col >= beams.cols || return_number > beams.returns) {
       refuse("--row, --col, --return",
-             fmt::format("{}, {}, {}", *flags.row, *flags.col, flags.return_number),
+             fmt::format("{}, {}, {}", *flags.row, *flags.col, return_number),
              fmt::format("{} rows, {} columns, {} returns", pulses_rows, beams.cols, beams.returns),
              "");
     }
-    const std::int64_t row = (flags.return_number - 1) * pulses_rows + *flags.row;
+    const std::int64_t row = (return_number - 1) * pulses_rows + *flags.row;
     return static_cast<std::size_t>(row * beams.cols + *flags.col);
   }
   const auto index = static_cast<std::size_t>(*flags.index);
   if (index >= sidecar.points) {
     refuse("--index", std::to_string(index),
-           fmt::format("0 to {}, the points of the cloud",
-                       std::max<std::size_t>(sidecar.points, 1) - 1),
-           "");
+           fmt::format("below {}, the number of points in the cloud", sidecar.points), "");
   }
   if (sidecar.points == beams.size()) return index;
   std::size_t hits = 0;  // the cloud holds hits alone
   for (std::size_t i = 0; i < beams.size(); ++i) {
     if (frame.status[i] == Status::hit && hits++ == index) return i;
   }
-  return beams.size();  // cannot be: the hits were counted
+  refuse(sidecar.path.string(),
+         fmt::format("a cloud of {} points from {} beams with {} hits", sidecar.points,
+                     beams.size(), hits),
+         "all beams, or all hits", "write the cloud again");
 }
 
 /// Measures the frame again and checks that it is the one of the cloud.
 void repeat(const Sidecar& sidecar, const Setup& setup, Frame& frame) {
   simulate(setup, {}, frame);
-  const auto hits =
-      static_cast<std::size_t>(std::count(frame.status.begin(), frame.status.end(), Status::hit));
-  if (hits == sidecar.hits) return;
+  if (frame_hash(frame) == sidecar.frame_hash) return;
   refuse(sidecar.path.string(),
-         fmt::format("the measurement was repeated with {} hits, the cloud's had {}", hits,
-                     sidecar.hits),
-         "the same sensor files, scene files and program as then", "render the cloud again");
+         "the measurement comes out otherwise than when the cloud was written",
+         "the same models, scene and sensor files, and program as then", "write the cloud again");
 }
 
 void check(const ExplainFlags& flags) {
-  const bool by_pixel = flags.row && flags.col;
-  if ((flags.row.has_value() != flags.col.has_value()) || flags.index.has_value() == by_pixel) {
-    refuse("explain", "no point is named", "--index N, or --row R and --col C", "");
-  }
+  const bool by_pixel = flags.row || flags.col || flags.return_number;
+  const bool is_whole = flags.index ? !by_pixel : flags.row && flags.col;
+  if (is_whole) return;
+  refuse("explain", flags.index ? "a point is named in two ways" : "no point is named",
+         "--index N, or --row R and --col C, with --return K if it is not the first", "");
+}
+
+/// Goes to the folder where the command ran, from which its paths count.
+void enter(const Sidecar& sidecar) {
+  const std::filesystem::path& folder = sidecar.command.folder;
+  std::error_code problem;
+  std::filesystem::current_path(folder, problem);
+  if (!problem) return;
+  refuse(sidecar.path.string(),
+         fmt::format("its command ran in {}: {}", folder.lexically_normal().string(),
+                     problem.message()),
+         "the way from the sidecar to that folder as it was then", "move the files back");
 }
 
 int run(const ExplainFlags& flags) {
@@ -132,7 +143,7 @@ int run(const ExplainFlags& flags) {
     console.warn(
         fmt::format("the cloud was written by glidar {}, this is {}", sidecar.version, version()));
   }
-  std::filesystem::current_path(sidecar.command.folder);
+  enter(sidecar);
   Session session;
   open(
       render, [] {}, console, session);

@@ -77,13 +77,16 @@ std::uint32_t frame_count(const RenderFlags& flags, const Sensor& sensor) {
 }
 
 /// The beams and where they start; the console shows how long that takes.
-Beams aim(const RenderFlags& flags, const Sensor& sensor, const Scene& scene,
-          const ScenePose& scene_pose, Console& console, Pose& world_from_sensor) {
+Beams aim(const RenderFlags& flags, const SceneFile& loaded, const Session& session,
+          Console& console, Pose& world_from_sensor) {
   const Working working(console, "aiming the sensor");
-  Beams beams = make_beams(sensor);
-  world_from_sensor = pose_sensor(flags.pose, scene_pose, beams, scene);
-  if (!looks_along_z(beams) && !scene_pose.world_from_sensor && !sensor_pose_given(flags.pose)) {
-    console.info(beside_advice(scene, world_from_sensor));
+  Beams beams = make_beams(session.sensor);
+  const ScenePose in_file{loaded.world_from_sensor, loaded.looks_at};
+  world_from_sensor = pose_sensor(flags.pose, in_file, beams, session.scene);
+  const bool is_placed = in_file.world_from_sensor || loaded.sensor_motion ||
+                         sensor_pose_given(flags.pose) || !flags.motion.trajectory.empty();
+  if (!looks_along_z(beams) && !is_placed) {
+    console.info(beside_advice(session.scene, world_from_sensor));
   }
   return beams;
 }
@@ -114,8 +117,7 @@ std::int64_t last_firing_ns(const Sensor& sensor, const Beams& beams, std::uint3
 void place_all(const RenderFlags& flags, const SceneFile& loaded, Console& console,
                Session& session) {
   Pose world_from_sensor = Pose::Identity();
-  session.beams = aim(flags, session.sensor, session.scene,
-                      {loaded.world_from_sensor, loaded.looks_at}, console, world_from_sensor);
+  session.beams = aim(flags, loaded, session, console, world_from_sensor);
   session.frames = frame_count(flags, session.sensor);
   const TimeSpan asked = {.first_ns = 0,
                           .last_ns = last_firing_ns(session.sensor, session.beams, session.frames)};

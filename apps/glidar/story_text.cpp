@@ -63,10 +63,10 @@ void tell_beam(Teller& to) {
   to.line("aimed", "azimuth {:.6f} deg, elevation {:.6f} deg, {} in '{}'",
           kDegrees * azimuth_rad(axes, nominal), kDegrees * elevation_rad(axes, nominal),
           triple(nominal), beams.frame_id);
-  if (to.story.aimed != nominal) {
+  if (to.story.direction != nominal) {
     to.line("went", "azimuth {:.6f} deg, elevation {:.6f} deg, by errors of pointing",
-            kDegrees * azimuth_rad(axes, to.story.aimed),
-            kDegrees * elevation_rad(axes, to.story.aimed));
+            kDegrees * azimuth_rad(axes, to.story.direction),
+            kDegrees * elevation_rad(axes, to.story.direction));
   }
 }
 
@@ -80,13 +80,13 @@ Pose sensor_pose(const Teller& to) {
 }
 
 void tell_ray(Teller& to) {
-  if (std::isnan(to.story.aimed.x())) return;
+  if (std::isnan(to.story.direction.x())) return;
   const Pose pose = sensor_pose(to);
   const std::vector<Eigen::Vector3d>& origins = to.setup.beams.origins_m;
   const Eigen::Vector3d from =
       origins.empty() ? Eigen::Vector3d(pose.translation()) : pose * origins[to.story.entry];
   to.line("ray", "from {} along {} in the world", triple(from),
-          triple(pose.linear() * to.story.aimed));
+          triple(pose.linear() * to.story.direction));
 }
 
 void tell_hit(Teller& to) {
@@ -101,6 +101,8 @@ void tell_hit(Teller& to) {
   to.line("met", "object '{}' (id {}, class {}), triangle {}, material '{}'", instance.name,
           instance.id, to.setup.scene.class_names.at(instance.class_id), truth.primitive[i],
           material.name);
+  if (to.story.pulse && to.story.pulse->sub_rays > 1)
+    to.line("", "by the sub-ray of the strongest way");
   to.line("", "range {:.9g} m, depth {:.9g} m, incidence {:.4f} deg", truth.range_m[i],
           truth.depth_m[i], kDegrees * std::acos(std::min(1.0F, truth.cos_incidence[i])));
   to.line("", "at {} of the object, normal {} in the sensor's frame",
@@ -123,6 +125,11 @@ void tell_pulse_light(Teller& to, const PulseLight& light) {
   to.line("", "against {:.4g} at {:.4g} m, the range of 50 %: signal {:.6g} in clear air",
           light.reference_reflectance, light.reference_range_m,
           signal_of(light, sent, truth.range_m[i]));
+  if (const auto& weather = to.setup.sensor.weather) {
+    const double per_m = extinction_per_m(*weather, to.setup.sensor.wavelength_m);
+    to.line("", "weather takes {:.4g} per m of way and leaves {:.4g} of it", per_m,
+            std::exp(-2.0 * per_m * truth.range_m[i]));
+  }
   if (!to.story.pulse && !to.story.receiver_noise.empty()) {
     to.line("", "noise of sigma {:.3g}, drew normal {:.6f}; threshold 1", light.noise_sigma,
             to.story.receiver_noise.front());
@@ -150,6 +157,12 @@ std::string_view object_name(const Teller& to, std::uint32_t instance) {
   return instance == kNoHit ? std::string_view("air") : to.setup.scene.instances[instance].name;
 }
 
+std::string met_on(const Teller& to, const PulseTrace::Way& way) {
+  std::string text(object_name(to, way.instance));
+  if (way.reflected != kNoHit) text = fmt::format("{} in {}", object_name(to, way.reflected), text);
+  return text;
+}
+
 void tell_ways(Teller& to, const PulseTrace& pulse) {
   constexpr std::size_t kMost = 40;
   to.line("ways", "{}, by {} sub-rays and the air", pulse.ways.size(), pulse.sub_rays);
@@ -159,7 +172,7 @@ void tell_ways(Teller& to, const PulseTrace& pulse) {
                                 ? std::string("-")
                                 : fmt::format("{} ({:.1f} %)", way.path.source, 100.0 * way.share);
     to.line("", "{:>12}  {:>12.6f} m  signal {:<10.4g} {} of {}", ray, way.path.range_m,
-            way.path.signal, name(way.path.cause), object_name(to, way.instance));
+            way.path.signal, name(way.path.cause), met_on(to, way));
   }
   if (pulse.ways.size() > kMost) to.line("", "... and {} more", pulse.ways.size() - kMost);
 }

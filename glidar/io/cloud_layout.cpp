@@ -81,6 +81,12 @@ double livox_byte(double reflectivity) {
   return reflectivity_byte(reflectivity, 150.0);
 }
 
+/// Bits 4 and 5: number of the echo, from 0 (Livox Avia User Manual, "Tag Information").
+double livox_tag(double number) {
+  constexpr double kMostEchoes = 3.0;
+  return 16.0 * std::min(number, kMostEchoes);
+}
+
 /// A sensor's only echo is Autoware's SINGLE_STRONGEST and Nebula's LAST, both 1; 0 is "no return".
 double return_type(double status) {
   return status == static_cast<double>(Status::hit) ? 1.0 : 0.0;
@@ -119,7 +125,7 @@ const std::vector<Layout>& layouts() {
         {"y", F32{}, "xyz", 1, same},
         {"z", F32{}, "xyz", 2, same},
         {"intensity", F32{}, kReflectivity, 0, livox_byte},
-        {"tag", U8{}, "", 0, nullptr},
+        {"tag", U8{}, "return", 0, livox_tag},
         {"line", U8{}, "ring", 0, same},
         {"timestamp", F64{}, "stamp", 0, same}}},
       {"autoware",
@@ -191,13 +197,34 @@ std::vector<double> numbers_of(const PointCloud& cloud, const Layout& layout,
   return numbers;
 }
 
+/// How the sensor spells intensity.
+struct Spelling {
+  bool is_reflectance = false;             ///< the range's part is taken out already
+  const IntensityScale* vendor = nullptr;  ///< reflectance as a byte; nullptr: as a number
+};
+
+Spelling spelling_of(const Sensor& sensor) {
+  Spelling spelling{.is_reflectance = !sensor.pulse.has_value()};
+  for (const NoiseStep& step : sensor.noise) {
+    const auto* scale = std::get_if<IntensityScale>(&step);
+    if (scale == nullptr) continue;
+    spelling.is_reflectance = spelling.is_reflectance || scale->reference_m > 0.0;
+    if (scale->kind == IntensityScale::Kind::vendor) spelling = {true, scale};
+  }
+  return spelling;
+}
+
 /// The sensor's own estimate of what a surface sends back, as makers calibrate it: the range's part
-/// of the signal is taken out, the incidence's stays. The paper's light hardly weakens over the
-/// range, so its intensity is that already.
+/// of the signal is taken out, the incidence's stays. Sensors that tell reflectance have done so,
+/// and the paper's light hardly weakens over the range, so its intensity is that already.
 std::vector<double> reflectivity(const PointCloud& cloud, const Layout& layout,
                                  const Sensor& sensor, const Beams& beams) {
   std::vector<double> numbers = numbers_of(cloud, layout, "intensity", 0);
-  if (!sensor.pulse) return numbers;
+  const Spelling spelling = spelling_of(sensor);
+  if (spelling.vendor != nullptr) {
+    for (double& number : numbers) number = vendor_reflectance(number, spelling.vendor->largest);
+  }
+  if (spelling.is_reflectance) return numbers;
   const std::vector<double> ranges_m = numbers_of(cloud, layout, "range", 0);
   for (std::size_t i = 0; i < numbers.size(); ++i)
     numbers[i] /= signal_of(*sensor.pulse, 1.0, ranges_m[i] - beams.range_offset_m);
@@ -229,6 +256,14 @@ Column made(const LayoutField& field, const std::vector<double>& numbers, std::s
   return column;
 }
 
+/// Autoware's codes of two returns tell which is stronger and which is nearer, or that both are
+/// one; a row of them alone does not.
+void check_returns(const Layout& layout, const Beams& beams) {
+  if (layout.name != "autoware" || beams.returns == 1) return;
+  throw Error({"cloud layout autoware", fmt::format("the sensor tells {} returns", beams.returns),
+               "one return of each pulse", "give --returns strongest, or another layout"});
+}
+
 }  // namespace
 
 std::span<const CloudLayout> cloud_layouts() {
@@ -247,6 +282,7 @@ const CloudLayout& layout_named(std::string_view name) {
 PointCloud laid_out(const PointCloud& cloud, std::string_view layout, const Sensor& sensor,
                     const Beams& beams) {
   const Layout& wanted = layouts()[place_of(layout)];
+  check_returns(wanted, beams);
   PointCloud result{cloud.rows, cloud.cols, cloud.frame_id, cloud.world_from_cloud, {}};
   for (const LayoutField& field : wanted.fields) {
     std::vector<double> numbers;

@@ -3,9 +3,13 @@
 #include <glidar/io/sidecar.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/content_hash.hpp>
 #include <glidar/io/text_file.hpp>
 
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <type_traits>
 
 namespace glidar {
 namespace {
@@ -13,6 +17,15 @@ namespace {
 using Json = nlohmann::json;
 
 const TextFileKind kSidecar = {"the JSON file that glidar writes beside a cloud", 512, ""};
+
+/// A count of 32 bits.
+std::uint64_t whole(const Json& told) {
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+  if (told.is_number_unsigned() && told.get<std::uint64_t>() <= kMost) {
+    return told.get<std::uint64_t>();
+  }
+  throw Json::type_error::create(302, told.dump() + " is no count", &told);
+}
 
 CommandRecord read_command(const Json& told, const std::filesystem::path& sidecar) {
   if (told.is_null()) return {};
@@ -26,10 +39,11 @@ Sidecar read(const Json& told, const std::filesystem::path& path) {
   sidecar.path = path;
   sidecar.version = told.at("glidar").get<std::string>();
   sidecar.command = read_command(told.at("command"), path);
-  sidecar.frame = told.at("frame").get<std::uint32_t>();
+  sidecar.frame = static_cast<std::uint32_t>(whole(told.at("frame")));
+  sidecar.frame_hash = told.at("frame_hash").get<std::string>();
   const Json& cloud = told.at("cloud");
-  sidecar.points = cloud.at("rows").get<std::size_t>() * cloud.at("cols").get<std::size_t>();
-  sidecar.hits = told.at("beams_by_status").at("hit").get<std::size_t>();
+  sidecar.points = whole(cloud.at("rows")) * whole(cloud.at("cols"));
+  sidecar.hits = whole(told.at("beams_by_status").at("hit"));
   for (const Json& instance : told.at("instances")) {
     const Json& hash = instance.at("model_hash");
     sidecar.model_hashes.push_back(hash.is_null() ? "" : hash.get<std::string>());
@@ -39,13 +53,29 @@ Sidecar read(const Json& told, const std::filesystem::path& path) {
 
 }  // namespace
 
+std::string frame_hash(const Frame& frame) {
+  ContentHash hash;
+  const auto add = [&](const auto& column) {
+    using Value = typename std::decay_t<decltype(column)>::value_type;
+    hash.add(column.data(), column.size() * sizeof(Value));
+  };
+  add(frame.status);
+  add(frame.intensity);
+  std::vector<double> ranges_m = frame.range_m;
+  for (double& range_m : ranges_m) {
+    if (std::isnan(range_m)) range_m = 0.0;  // not all NaN have the same bytes
+  }
+  add(ranges_m);
+  return hex(hash.value());
+}
+
 Sidecar read_sidecar(const std::filesystem::path& cloud) {
   const std::filesystem::path path = cloud.string() + ".json";
   if (!std::filesystem::exists(path)) {
     throw Error({.where = path.string(),
                  .found = "there is no such file",
                  .allowed = "a cloud with its sidecar beside it",
-                 .remedy = "write the cloud again, without --no-sidecar"});
+                 .remedy = "write the cloud again, with -o and without --no-sidecar"});
   }
   try {
     return read(Json::parse(read_text_file(path, kSidecar)), path);

@@ -5,7 +5,6 @@
 #include <glidar/core/frame.hpp>
 #include <glidar/io/file_sink.hpp>
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -21,8 +20,12 @@ struct Sidecar {
   std::uint32_t frame = 0;
   std::size_t points = 0;                 ///< in the cloud
   std::size_t hits = 0;                   ///< of the frame
+  std::string frame_hash;                 ///< see frame_hash()
   std::vector<std::string> model_hashes;  ///< one per instance; empty for built-in models
 };
+
+/// A hash, hexadecimal, of what the frame reports: status, range and intensity of every beam.
+std::string frame_hash(const Frame& frame);
 
 /// Reads the sidecar of a cloud, CLOUD.json beside it. Throws Error when there is none or it is not
 /// one.

@@ -5,6 +5,7 @@
 #include <glidar/io/noise_yaml.hpp>
 #include <glidar/io/optics_json.hpp>
 #include <glidar/io/receiver_yaml.hpp>
+#include <glidar/io/sidecar.hpp>
 #include <glidar/io/stored_columns.hpp>
 #include <glidar/io/weather_yaml.hpp>
 
@@ -190,6 +191,7 @@ std::string sidecar_text(const CloudFile& job, const std::filesystem::path& path
                     {"renderer", job.context.renderer},
                     {"seed", job.frame.seed},
                     {"frame", job.frame.number},
+                    {"frame_hash", frame_hash(job.frame)},
                     {"stamp_ns", job.frame.stamp_ns},
                     {"cloud", cloud_json(job, path)},
                     {"sensor", sensor_json(job)},

@@ -41,6 +41,11 @@ double vendor_intensity(double reflectance, double largest) {
   return 101.0 + std::floor(154.0 * std::min(share, 1.0) + 0.5);
 }
 
+double vendor_reflectance(double intensity, double largest) {
+  if (!(intensity > 100.0)) return intensity / 100.0;
+  return natural_exp((intensity - 101.0) / 154.0 * natural_log(largest));
+}
+
 void apply(const IntensityGaussian& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
   draw_shared_normals(batch.draw, normal);

@@ -30,6 +30,8 @@ struct IntensityScale {
 };
 
 double vendor_intensity(double reflectance, double largest);
+/// The reflectance that a vendor's intensity stands for: the other way about.
+double vendor_reflectance(double intensity, double largest);
 
 void apply(const IntensityGaussian& step, const NoiseView& view, NoiseBatch& batch);
 void apply(const IntensityScale& step, const NoiseView& view, NoiseBatch& batch);

@@ -100,6 +100,8 @@ struct Stretch {
   std::size_t begin;
   std::size_t end;
   double frame_s;
+
+  [[nodiscard]] bool is_last() const { return end == noise.size(); }
 };
 
 void load(const Stretch& stretch, const NoiseView& view, NoiseBatch& batch) {
@@ -136,11 +138,15 @@ GLIDAR_SIMD void write(const NoiseBatch& batch, const Columns& to) {
   }
 }
 
-void store(const NoiseView& view, NoiseBatch& batch) {
-  Frame& frame = view.frame;
+/// What the sensor cannot report in the end.
+void lose_what_is_no_range(NoiseBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     if (is_hit(batch, i) && !(batch.range_m[i] > 0.0)) lose(batch, i, Status::too_near);
   }
+}
+
+void store(const NoiseView& view, NoiseBatch& batch) {
+  Frame& frame = view.frame;
   const std::size_t at = batch.first;
   write(batch, {frame.range_m.data() + at, frame.intensity.data() + at, frame.sigma_m.data() + at});
   std::copy_n(batch.status.begin(), batch.count, frame.status.data() + at);
@@ -208,6 +214,7 @@ void apply_stretch(const Stretch& stretch, const NoiseView& view, Workers& worke
   }
   for_batches(stretch, view, workers, [&](NoiseBatch& batch) {
     apply_steps(stretch, view, batch);
+    if (stretch.is_last()) lose_what_is_no_range(batch);
     store(view, batch);
   });
 }
@@ -247,8 +254,8 @@ const Beams& aimed_beams(const std::vector<NoiseStep>& noise, const Beams& beams
   return aimed;
 }
 
-void apply_noise(const std::vector<NoiseStep>& noise, double frame_s, const Beams& beams,
-                 Workers& workers, Frame& frame) {
+void apply_first_steps(const std::vector<NoiseStep>& noise, std::size_t count, double frame_s,
+                       const Beams& beams, Workers& workers, Frame& frame) {
   if (std::all_of(noise.begin(), noise.end(), turns_beams)) {
     frame.sigma_m.clear();
     return;
@@ -262,12 +269,18 @@ void apply_noise(const std::vector<NoiseStep>& noise, double frame_s, const Beam
     frame.cause.assign(frame.range_m.size(), Cause::surface);
   }
   const NoiseView view{beams, frame};
-  for (std::size_t begin = 0, end = 0; begin < noise.size(); begin = end) {
-    const auto next = std::find_if(noise.begin() + static_cast<std::ptrdiff_t>(begin) + 1,
-                                   noise.end(), looks_around);
+  const auto last = noise.begin() + static_cast<std::ptrdiff_t>(count);
+  for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+    const auto next =
+        std::find_if(noise.begin() + static_cast<std::ptrdiff_t>(begin) + 1, last, looks_around);
     end = static_cast<std::size_t>(next - noise.begin());
     apply_stretch({noise, begin, end, frame_s}, view, workers);
   }
+}
+
+void apply_noise(const std::vector<NoiseStep>& noise, double frame_s, const Beams& beams,
+                 Workers& workers, Frame& frame) {
+  apply_first_steps(noise, noise.size(), frame_s, beams, workers, frame);
 }
 
 }  // namespace glidar

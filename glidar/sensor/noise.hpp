@@ -45,4 +45,8 @@ const Beams& aimed_beams(const std::vector<NoiseStep>& noise, const Beams& beams
 void apply_noise(const std::vector<NoiseStep>& noise, double frame_s, const Beams& beams,
                  Workers& workers, Frame& frame);
 
+/// What a frame is like after the first `count` of the steps.
+void apply_first_steps(const std::vector<NoiseStep>& noise, std::size_t count, double frame_s,
+                       const Beams& beams, Workers& workers, Frame& frame);
+
 }  // namespace glidar

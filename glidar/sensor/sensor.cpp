@@ -56,8 +56,8 @@ Sensor ideal(Sensor sensor) {
 }
 
 void set_rate(Sensor& sensor, double rate_hz) {
-  require_number(rate_hz > 0.0 && std::isfinite(rate_hz), "optics, rate", rate_hz,
-                 "a finite number of frames per second above 0");
+  require_number(rate_hz >= 1e-6 && rate_hz <= 1e9, "optics, rate", rate_hz,
+                 "frames per second from 1e-6 to 1e9");
   sensor.rate_hz = rate_hz;
   if (auto* spinning = std::get_if<Spinning>(&sensor.optics)) spinning->rotation_hz = rate_hz;
   if (auto* raster = std::get_if<Raster>(&sensor.optics)) raster->scan_hz = rate_hz;

@@ -59,7 +59,8 @@ Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double 
 Sensor ideal(Sensor sensor);
 
 /// Sets the frame rate, and with it what follows from it: the turns per second of a spinning sensor
-/// and the scans per second of a raster. Throws Error unless it is finite and above 0.
+/// and the scans per second of a raster. Throws Error unless it is within 1e-6
+/// to 1e9.
 void set_rate(Sensor& sensor, double rate_hz);
 
 /// Throws Error when there is weather but no pulsed light for it to act on, or fog and no

@@ -126,7 +126,7 @@ void measure_hit(const PulseLight& light, double signal, double error, std::size
   const double received = signal + error;
   frame.intensity[beam] = static_cast<float>(received);
   if (received < 1.0) {
-    lose(frame, beam, why_faint(light, signal, error, frame.truth.range_m[beam]));
+    lose(frame, beam, why_faint(light, received, frame.truth.range_m[beam]));
   }
   if (light.saturation > 0.0 && received >= light.saturation) lose(frame, beam, Status::saturated);
 }
@@ -205,10 +205,10 @@ void signals_of_hits(const PulseLight& light, const Scene& scene, double wavelen
   }
 }
 
-Status why_faint(const PulseLight& light, double signal, double error, double range_m) {
+Status why_faint(const PulseLight& light, double signal, double range_m) {
   if (!(light.weather_extinction_per_m > 0.0)) return Status::below_threshold;
   const double clear = signal / two_way(light.weather_extinction_per_m, range_m);
-  return clear + error < 1.0 ? Status::below_threshold : Status::weather;
+  return clear < 1.0 ? Status::below_threshold : Status::weather;
 }
 
 double detection_probability(const PulseLight& light, double signal) {

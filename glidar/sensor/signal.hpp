@@ -46,9 +46,9 @@ double relative_overlap(const PulseLight& light, double range_m);
 /// S for what a surface sends back over a range.
 double signal_of(const PulseLight& light, double sent_back, double range_m);
 
-/// Why a signal is not told from noise: weather, or below_threshold where with the same error it
-/// would not have been in clear air either.
-Status why_faint(const PulseLight& light, double signal, double error, double range_m);
+/// Why a signal is not told from noise: weather, or below_threshold where it would not have been in
+/// clear air either.
+Status why_faint(const PulseLight& light, double signal, double range_m);
 
 /// Probability that a signal is reported: Phi((S - 1) / sigma).
 double detection_probability(const PulseLight& light, double signal);

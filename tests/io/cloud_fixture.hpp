@@ -99,6 +99,8 @@ inline void add_scan_columns(PointCloud& cloud) {
   add_column<std::uint32_t>(cloud, "time", {"time"}, [](std::size_t i, std::size_t) {
     return static_cast<std::uint32_t>(i * 55296);
   });
+  add_column<std::uint8_t>(cloud, "return", {"return"},
+                           [](std::size_t, std::size_t) { return std::uint8_t{0}; });
   add_column<std::int64_t>(cloud, "stamp", {"stamp"}, [](std::size_t i, std::size_t) {
     return 1700000000123456789 + static_cast<std::int64_t>(i) * 55296;
   });

@@ -91,6 +91,39 @@ TEST(CloudLayout, ReflectivitiesOfPulsedLightDoNotDependOnTheRange) {
   EXPECT_THAT(found, ElementsAre(40, 40, 40, 0, 0));
 }
 
+TEST(CloudLayout, ReflectivitiesAreThoseThatASensorTellsItself) {
+  CloudFixture made = points_with("intensity", std::vector<float>{0.0F, 20.0F, 100.0F, 200.0F});
+  made.sensor.pulse = PulseLight{};
+  const IntensityScale compensates{
+      .kind = IntensityScale::Kind::plain, .gain = 0.9, .reference_m = 100.0};
+  const IntensityScale spells{.kind = IntensityScale::Kind::vendor, .largest = 1000.0};
+  made.sensor.noise = {compensates, RangeGaussian{.sigma_m = 0.01}, spells};
+  EXPECT_THAT(field<float>(made, "velodyne", "intensity"),
+              ElementsAre(0.0F, 20.0F, 100.0F, 200.0F));
+  EXPECT_THAT(field<float>(made, "livox", "intensity"), ElementsAre(0.0F, 30.0F, 150.0F, 218.0F));
+  made = points_with("intensity", std::vector<float>{0.0F, 0.25F, 1.0F});
+  made.sensor.pulse = PulseLight{};
+  made.sensor.noise = {compensates};
+  EXPECT_THAT(field<float>(made, "velodyne", "intensity"), ElementsAre(0.0F, 25.0F, 100.0F));
+}
+
+TEST(CloudLayout, EchoesAreNumberedInLivoxTags) {
+  const CloudFixture made = points_with("return", std::vector<std::uint8_t>{0, 1, 2, 3, 9});
+  EXPECT_THAT(field<std::uint8_t>(made, "livox", "tag"), ElementsAre(0, 16, 32, 48, 48));
+}
+
+TEST(CloudLayout, AutowareIsRefusedForSeveralReturns) {
+  CloudFixture made = make_fixture();
+  fixture::add_scan_columns(made.cloud);
+  made.beams.returns = 2;
+  try {
+    laid_out(made.cloud, "autoware", made.sensor, made.beams);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the sensor tells 2 returns"));
+  }
+}
+
 TEST(CloudLayout, WhatIsNotKnownIsZeroAndAMissIsNoReturn) {
   const CloudFixture made =
       points_with("ring", std::vector<std::uint16_t>{0, 254, 255, 256, 65535});

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace glidar {
 namespace {
@@ -29,6 +30,7 @@ TEST(ReadSidecar, TellsHowTheCloudWasMade) {
   EXPECT_EQ(sidecar.command.arguments, context.command.arguments);
   EXPECT_EQ(sidecar.command.folder.lexically_normal(), folder.path() / "elsewhere");
   EXPECT_EQ(sidecar.frame, 7U);
+  EXPECT_EQ(sidecar.frame_hash, frame_hash(made.frame));
   EXPECT_EQ(sidecar.points, made.cloud.size());
   EXPECT_EQ(sidecar.hits, static_cast<std::size_t>(std::count(
                               made.frame.status.begin(), made.frame.status.end(), Status::hit)));
@@ -41,6 +43,19 @@ TEST(ReadSidecar, TellsNoCommandOfCloudsThatNoneMade) {
   const SidecarContext context = made.context();
   make_file_sink(folder.path() / "x.pcd", {}, context)->write(made.cloud, made.frame);
   EXPECT_TRUE(read_sidecar(folder.path() / "x.pcd").command.arguments.empty());
+}
+
+TEST(FrameHash, ChangesWithWhatIsReportedAlone) {
+  Frame frame = make_fixture().frame;
+  const std::string before = frame_hash(frame);
+  EXPECT_EQ(before.size(), 32U);
+  frame.truth.range_m.push_back(1.0);
+  EXPECT_EQ(frame_hash(frame), before);
+  frame.range_m[0] = std::nextafter(frame.range_m[0], 1e9);
+  const std::string other_range = frame_hash(frame);
+  EXPECT_NE(other_range, before);
+  frame.intensity[0] += 1.0F;
+  EXPECT_NE(frame_hash(frame), other_range);
 }
 
 std::string error_of(const TestFolder& folder, const std::string& sidecar) {
@@ -59,7 +74,7 @@ TEST(ReadSidecar, RefusesWhatIsNone) {
     read_sidecar(folder.path() / "x.pcd");
     FAIL();
   } catch (const Error& error) {
-    EXPECT_EQ(error.parts().remedy, "write the cloud again, without --no-sidecar");
+    EXPECT_EQ(error.parts().remedy, "write the cloud again, with -o and without --no-sidecar");
   }
   for (const char* text : {"", "{", "[]", "{}", "{\"glidar\": 3}", "null"}) {
     EXPECT_NE(error_of(folder, text).find("not a sidecar of this version"), std::string::npos)

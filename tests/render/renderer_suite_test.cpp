@@ -15,7 +15,6 @@ using testing::builtin_scene;
 using testing::camera_beams;
 using testing::Draws;
 using testing::Judged;
-using testing::kAllHitFields;
 using testing::loose_beams;
 using testing::RendererSuite;
 using testing::turned;

@@ -99,10 +99,10 @@ TEST(Explain, TellsHowABeamReallyWent) {
   Stage stage;
   Story story;
   stage.shoot(17, &story);
-  EXPECT_EQ(story.aimed, make_beams(stage.sensor).directions[17]);
+  EXPECT_EQ(story.direction, make_beams(stage.sensor).directions[17]);
   stage = noisy_stage();
   stage.shoot(17, &story);
-  const double off_rad = (story.aimed - make_beams(stage.sensor).directions[17]).norm();
+  const double off_rad = (story.direction - make_beams(stage.sensor).directions[17]).norm();
   EXPECT_GT(off_rad, 1e-5);
   EXPECT_NEAR(off_rad,
               1e-3 * std::hypot(story.noise[0].draws[0].value, story.noise[0].draws[1].value),

@@ -166,7 +166,7 @@ TEST(MeasurePulses, TellTwoWallsBeyondThePulseAndTheirMeanBelow) {
   EXPECT_EQ(together.cause[0], Cause::mixed);
   EXPECT_EQ(together.status[1], Status::no_echo);
   EXPECT_TRUE(std::isnan(together.range_m[1]));
-  EXPECT_EQ(together.truth.instance[1], kNoHit);
+  EXPECT_EQ(together.truth.instance[1], together.truth.instance[0]) << "that of the beam";
 }
 
 // sigma_t^2 = sigma_p^2 + (2 R sigma_theta tan(theta) / c)^2, seen in the peak,
@@ -213,6 +213,27 @@ TEST(MeasurePulses, HideAnEchoTooCloseToAStrongerOne) {
   const Frame frame = stage.shoot();
   EXPECT_NEAR(frame.range_m[0], 21.5, 1e-3);
   EXPECT_EQ(frame.status[1], Status::no_echo);
+}
+
+TEST(MeasurePulses, HaveNoSecondEchoWhereThereIsButOne) {
+  Stage stage;
+  stage.add_wall(20.0);
+  stage.sensor.receiver.returns = {kSecond};
+  const Frame frame = stage.shoot();
+  EXPECT_EQ(frame.status[0], Status::no_echo);
+  EXPECT_EQ(frame.truth.instance[0], 0U) << "the truth is that of the beam";
+}
+
+TEST(MeasurePulses, AreTooNearBeforeTheyAreTooStrong) {
+  Stage stage;
+  stage.add_wall(5.0);
+  stage.sensor.limits.near_m = 8.0;
+  stage.sensor.pulse->saturation = 100.0;
+  EXPECT_EQ(stage.shoot().status[0], Status::too_near);
+  stage.spread(1e-3);
+  EXPECT_EQ(stage.shoot().status[0], Status::too_near);
+  stage.sensor.limits.near_m = 0.0;
+  EXPECT_EQ(stage.shoot().status[0], Status::saturated);
 }
 
 /// A mirror under 45 degrees at 10 m that sends beams along x, to a wall 5 m on.
