@@ -3,6 +3,7 @@
 #include <glidar/render/resolve.hpp>
 
 #include <glidar/core/simd.hpp>
+#include <glidar/render/corners.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -19,11 +20,6 @@ constexpr float kNaNf = std::numeric_limits<float>::quiet_NaN();
 template <class Body>
 void for_lanes(std::uint32_t mask, const Body& body) {
   for (; mask != 0; mask &= mask - 1) body(static_cast<unsigned>(std::countr_zero(mask)));
-}
-
-bool is_one_instance(const HitBlock& block) {
-  return std::all_of(block.instance.begin(), block.instance.end(),
-                     [&](std::uint32_t instance) { return instance == block.instance[0]; });
 }
 
 /// The beams of a sensor whose beams share one origin, in the frame of one instance.
@@ -61,42 +57,14 @@ GLIDAR_SIMD void turn_to_sensor(const Eigen::Matrix3d& sensor_from_object, const
   }
 }
 
-/// A vector at each corner of a block's triangles.
-struct CornerBlock {
-  Lanes3<float> c0;
-  Lanes3<float> c1;
-  Lanes3<float> c2;
-};
-
-/// Weights of corners 1 and 2 of the hit point: areas of the parts around it, signed along the
-/// normal, over the whole. The corners are first taken relative to the hit point, in double, so
-/// that single precision suits the rest.
-GLIDAR_SIMD void weigh(const ExactBlock& e, CornerBlock& c, Lanes<float>& w1, Lanes<float>& w2) {
+/// Weights of corners 1 and 2 of the hit point.
+GLIDAR_SIMD void weigh(const ExactBlock& e, const CornerBlock& c, Lanes<float>& w1,
+                       Lanes<float>& w2) {
   for (unsigned i = 0; i < kLanes; ++i) {
-    const double x = e.origin.x[i] + e.distance[i] * e.direction.x[i];
-    const double y = e.origin.y[i] + e.distance[i] * e.direction.y[i];
-    const double z = e.origin.z[i] + e.distance[i] * e.direction.z[i];
-    const auto ax = static_cast<float>(c.c0.x[i] - x);
-    const auto ay = static_cast<float>(c.c0.y[i] - y);
-    const auto az = static_cast<float>(c.c0.z[i] - z);
-    const auto bx = static_cast<float>(c.c1.x[i] - x);
-    const auto by = static_cast<float>(c.c1.y[i] - y);
-    const auto bz = static_cast<float>(c.c1.z[i] - z);
-    const auto cx = static_cast<float>(c.c2.x[i] - x);
-    const auto cy = static_cast<float>(c.c2.y[i] - y);
-    const auto cz = static_cast<float>(c.c2.z[i] - z);
-    const auto nx = static_cast<float>(e.normal.x[i]);
-    const auto ny = static_cast<float>(e.normal.y[i]);
-    const auto nz = static_cast<float>(e.normal.z[i]);
-    const float at_0 =
-        nx * (by * cz - bz * cy) + ny * (bz * cx - bx * cz) + nz * (bx * cy - by * cx);
-    const float at_1 =
-        nx * (cy * az - cz * ay) + ny * (cz * ax - cx * az) + nz * (cx * ay - cy * ax);
-    const float at_2 =
-        nx * (ay * bz - az * by) + ny * (az * bx - ax * bz) + nz * (ax * by - ay * bx);
-    const float whole = at_0 + at_1 + at_2;
-    w1[i] = at_1 / whole;
-    w2[i] = at_2 / whole;
+    const CornerAreas areas = areas_around(e, c, i);
+    const float whole = areas.at_0 + areas.at_1 + areas.at_2;
+    w1[i] = areas.at_1 / whole;
+    w2[i] = areas.at_2 / whole;
   }
 }
 
@@ -127,44 +95,6 @@ bool has_mask(const Scene& scene, const Instance& instance) {
 bool needs_corners(const HitFields& fields) {
   return fields.barycentrics || fields.shading_normal || fields.shading || fields.colour ||
          fields.reflectance || fields.noise_scale;
-}
-
-/// Where a mesh's corners lie.
-struct CornerSource {
-  const Triangle* triangles;
-  const Eigen::Vector3f* values;  ///< per vertex; nullptr: none
-};
-
-CornerSource positions_of(const Mesh& mesh) {
-  return {mesh.triangles.data(), mesh.positions_m.data()};
-}
-
-/// Without normals there is no length either: then the flat normal is taken.
-CornerSource normals_of(const Mesh& mesh) {
-  return {mesh.triangles.data(), mesh.normals.empty() ? nullptr : mesh.normals.data()};
-}
-
-void gather_lane(const CornerSource& source, std::uint32_t primitive, unsigned lane,
-                 CornerBlock& corners) {
-  const Triangle& t = source.triangles[primitive];
-  const auto value = [&](std::uint32_t vertex) {
-    return source.values == nullptr ? Eigen::Vector3f::Zero().eval() : source.values[vertex];
-  };
-  corners.c0.set(lane, value(t[0]));
-  corners.c1.set(lane, value(t[1]));
-  corners.c2.set(lane, value(t[2]));
-}
-
-/// Collects what a mesh has at the corners of a block's triangles.
-template <class SourceOf>
-void gather(const Resolver& resolver, const HitBlock& block, const SourceOf& source_of,
-            CornerBlock& corners) {
-  const CornerSource first = source_of(resolver.mesh(block.instance[0]));
-  const bool is_one = is_one_instance(block);
-  for (unsigned i = 0; i < kLanes; ++i) {
-    gather_lane(is_one ? first : source_of(resolver.mesh(block.instance[i])), block.primitive[i], i,
-                corners);
-  }
 }
 
 /// Cosines between -beams and normals that lie on the side of the plane's, turned to the sensor.
