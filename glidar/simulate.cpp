@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate.hpp>
 
+#include <glidar/core/error.hpp>
 #include <glidar/motion/beam_poses.hpp>
 #include <glidar/pulse_cast.hpp>
 #include <glidar/shadow_cast.hpp>
@@ -39,6 +40,30 @@ void measure_light(const Setup& setup, const std::optional<PulseLight>& pulse, B
     measure_signal(*pulse, setup.scene, sensor.wavelength_m, range, frame);
   } else {
     measure_intensity(sensor.light, range, frame);
+  }
+}
+
+/// Range, intensity and status of all beams from the picture.
+void measure_paper(const Setup& setup, const PaperTarget& paper, Frame& frame) {
+  if (setup.sensor.pulse || !setup.beams.times_ns.empty()) {
+    throw Error({.where = "paper target",
+                 .found = setup.sensor.pulse ? "pulsed light" : "beams that fire one by one",
+                 .allowed = "the paper's light, and beams that fire together",
+                 .remedy = "use the float target"});
+  }
+  paper.camera.draw({.beams = setup.beams,
+                     .world_from_sensor = frame.world_from_sensor,
+                     .world_from_instance = frame.world_from_instance,
+                     .cull_back_faces = setup.sensor.cull_back_faces},
+                    setup.sensor.light, paper.planes, paper.picture);
+  decode(paper.picture, setup.beams, {0, setup.beams.size()}, frame.range_m, frame.intensity);
+  for (std::size_t i = 0; i < frame.range_m.size(); ++i) {
+    const bool is_seen = !std::isnan(frame.range_m[i]);
+    frame.status[i] =
+        is_seen ? judge(setup.sensor.limits, setup.beams, i, frame.range_m[i]) : Status::miss;
+    if (frame.status[i] == Status::hit) continue;
+    frame.range_m[i] = kNoRange;
+    frame.intensity[i] = 0.0F;
   }
 }
 
@@ -80,6 +105,7 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
                  .progress = setup.progress},
                 frame.scratch, frame.truth);
   }
+  if (setup.paper) measure_paper(setup, *setup.paper, frame);
   if (sensor.projector_m) cast_shadows(setup, *sensor.projector_m, beams, frame);
   deskew(world, setup.beams, beams, frame.deskewed);
   place_beams(setup.motion, setup.beams, fields.poses, workers, frame);
