@@ -49,7 +49,7 @@ void measure_paper(const Setup& setup, const PaperTarget& paper, Frame& frame) {
     throw Error({.where = "paper target",
                  .found = setup.sensor.pulse ? "pulsed light" : "beams that fire one by one",
                  .allowed = "the paper's light, and beams that fire together",
-                 .remedy = "use the float target"});
+                 .remedy = "use --render-target float"});
   }
   paper.camera.draw({.beams = setup.beams,
                      .world_from_sensor = frame.world_from_sensor,

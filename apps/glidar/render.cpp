@@ -60,6 +60,7 @@ struct RenderFlags {
   OutputFlags output;
   InformationFlags information;
   RendererOptions renderer;
+  std::string target = "float";  ///< what the renderer draws: float or paper
   std::uint64_t seed = 1;
   std::optional<double> duration_s;  ///< of a sequence of frames; empty: a single one
   bool quiet = false;
@@ -158,6 +159,37 @@ std::unique_ptr<Renderer> prepare(const RenderFlags& flags, const Scene& scene, 
   return make_renderer(scene, flags.renderer);
 }
 
+bool has_paper_target(const RenderFlags& flags) {
+  return flags.target == "paper";
+}
+
+void check_target(const RenderFlags& flags) {
+  if (!has_paper_target(flags) || flags.renderer.kind == "opengl") return;
+  throw Error({.where = "--render-target paper",
+               .found = "the renderer " + flags.renderer.kind,
+               .allowed = "opengl",
+               .remedy = "add --renderer opengl"});
+}
+
+/// How the beams are cast, as the sidecar tells it.
+std::string renderer_name(const RenderFlags& flags) {
+  return flags.renderer.kind + (has_paper_target(flags) ? ", paper target" : "");
+}
+
+/// What --render-target paper measures with.
+struct Paper {
+  std::unique_ptr<PaperCamera> camera;  ///< nullptr for the float target
+  PaperPicture picture;
+
+  Paper(const RenderFlags& flags, const Scene& scene)
+      : camera(has_paper_target(flags) ? make_paper_camera(scene, flags.renderer) : nullptr) {}
+
+  std::optional<PaperTarget> target() {
+    if (camera == nullptr) return {};
+    return PaperTarget{.camera = *camera, .picture = picture};
+  }
+};
+
 /// Measures the scene; the console shows how far that is.
 void measure(const Setup& setup, const HitFields& fields, Console& console, Frame& frame) {
   const Working working(console, fmt::format("casting {} beams", setup.beams.size()));
@@ -233,13 +265,14 @@ void write(const RenderFlags& flags, const View& view, const std::vector<Output>
 int run(const RenderFlags& flags) {
   Console console(flags.quiet);
   check(flags.information);
+  check_target(flags);
   Scene scene;
   Beams beams;
   Sensor sensor;
   const auto plan = [&](const OutputFlags& files) {
     return plan_outputs(
         files, flags.input,
-        {.scene = scene, .sensor = sensor, .beams = beams, .renderer = flags.renderer.kind},
+        {.scene = scene, .sensor = sensor, .beams = beams, .renderer = renderer_name(flags)},
         console.report(), [&console](double fraction) { console.tell(fraction); });
   };
   std::vector<Output> outputs = plan(flags.output);
@@ -262,12 +295,14 @@ int run(const RenderFlags& flags) {
   const Motion motion =
       make_motion(flags, loaded, scene, world_from_sensor, asked, console.report());
   const auto renderer = prepare(flags, scene, console);
+  Paper paper(flags, scene);
   const Setup setup{.scene = scene,
                     .sensor = sensor,
                     .beams = beams,
                     .motion = motion,
                     .renderer = *renderer,
-                    .progress = [&console](double fraction) { console.tell(fraction); }};
+                    .progress = [&console](double fraction) { console.tell(fraction); },
+                    .paper = paper.target()};
   Frame frame;
   frame.seed = flags.seed;
   const View view{scene, sensor, beams, frame};
@@ -308,6 +343,10 @@ Command add_render(CLI::App& program) {
            flags->surface);
   const std::string group = "Run";
   add_run_flags(command, flags->renderer, group);
+  add_choice(command,
+             {"--render-target", "NAME",
+              "What opengl draws: float, or paper (8 bits of light, 16 of depth) [float]", group},
+             {"float", "paper"}, flags->target);
   add_option(command, {"--seed", "N", "Seed of random numbers, kept in the sidecar [1]", group},
              [&seed = flags->seed](std::string_view option, const std::string& text) {
                seed = parse_seed(option, text);

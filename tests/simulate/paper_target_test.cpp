@@ -170,7 +170,7 @@ TEST_F(PaperTargetTest, RefusesPulsedLight) {
   sensor.pulse = PulseLight{};
   EXPECT_EQ(error_text([&] { measure(scene, sensor, Pose::Identity()); }),
             "paper target: pulsed light; allowed: the paper's light, and beams that fire together; "
-            "use the float target");
+            "use --render-target float");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& ord
     throw Error({.where = "opengl renderer",
                  .found = "a mesh of " + std::to_string(order.size()) + " triangles",
                  .allowed = "up to " + std::to_string(most) + " with this driver's paper target",
-                 .remedy = "use the float target"});
+                 .remedy = "use --render-target float"});
   }
   const std::vector<TrianglePlane> planes = triangle_planes(mesh);
   std::vector<Eigen::Vector4f> normals;
