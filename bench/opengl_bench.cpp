@@ -213,40 +213,55 @@ class RawOpengl {
 };
 
 void register_raw(const std::string& name, const Model& model, const Raw& raw, std::uint32_t side) {
-  benchmark::RegisterBenchmark(name.c_str(), [&model, &raw, side](benchmark::State& state) {
-    RawOpengl baseline(model, raw, static_cast<GLsizei>(side));
-    for (auto _ : state) baseline.draw_and_read();
-  })->UseRealTime();
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [&model, &raw, side](benchmark::State& state) {
+                                 RawOpengl baseline(model, raw, static_cast<GLsizei>(side));
+                                 for (auto _ : state) baseline.draw_and_read();
+                               })
+      ->MeasureProcessCPUTime()
+      ->UseRealTime();
 }
 
 void register_cast(const std::string& name, const Model& model, const char* kind,
                    std::uint32_t side) {
-  benchmark::RegisterBenchmark(name.c_str(), [&model, side, kind](benchmark::State& state) {
-    const auto renderer = make_renderer(model.scene, {.kind = kind, .threads = kThreads});
-    const Beams beams = make_beams(pinhole_from_fov(side, side, kFov));
-    Hits hits;
-    for (auto _ : state) {
-      renderer->cast({.beams = beams,
-                      .world_from_sensor = model.world_from_sensor,
-                      .fields = {.normal = true}},
-                     hits);
-    }
-  })->UseRealTime();
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [&model, side, kind](benchmark::State& state) {
+                                 const auto renderer = make_renderer(
+                                     model.scene, {.kind = kind, .threads = kThreads});
+                                 const Beams beams = make_beams(pinhole_from_fov(side, side, kFov));
+                                 Hits hits;
+                                 for (auto _ : state) {
+                                   renderer->cast({.beams = beams,
+                                                   .world_from_sensor = model.world_from_sensor,
+                                                   .fields = {.normal = true}},
+                                                  hits);
+                                 }
+                               })
+      ->MeasureProcessCPUTime()
+      ->UseRealTime();
 }
 
 /// Draws the picture and decodes it.
 void register_paper(const std::string& name, const Model& model, std::uint32_t side) {
-  benchmark::RegisterBenchmark(name.c_str(), [&model, side](benchmark::State& state) {
-    const auto camera = make_paper_camera(model.scene, {.threads = kThreads});
-    const Beams beams = make_beams(pinhole_from_fov(side, side, kFov));
-    PaperPicture picture;
-    std::vector<double> range_m(beams.size());
-    std::vector<float> intensity(beams.size());
-    for (auto _ : state) {
-      camera->draw({.beams = beams, .world_from_sensor = model.world_from_sensor}, {}, {}, picture);
-      decode(picture, beams, {0, beams.size()}, range_m, intensity);
-    }
-  })->UseRealTime();
+  benchmark::RegisterBenchmark(
+      name.c_str(),
+      [&model, side](benchmark::State& state) {
+        const auto camera = make_paper_camera(model.scene, {.threads = kThreads});
+        const Beams beams = make_beams(pinhole_from_fov(side, side, kFov));
+        Workers workers(kThreads);
+        PaperPicture picture;
+        std::vector<double> range_m(beams.size());
+        std::vector<float> intensity(beams.size());
+        for (auto _ : state) {
+          camera->draw({.beams = beams, .world_from_sensor = model.world_from_sensor}, {}, {},
+                       picture);
+          workers.for_ranges(beams.size(), 4096, [&](std::size_t begin, std::size_t end) {
+            decode(picture, beams, {begin, end}, range_m, intensity);
+          });
+        }
+      })
+      ->MeasureProcessCPUTime()
+      ->UseRealTime();
 }
 
 void register_model(const Model& model, std::uint32_t side, std::vector<Ratio>& ratios) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/opengl/draw_state.hpp>
 
+#include <bit>
+
 namespace glidar::opengl {
 
 bool has_clip_control() {
@@ -25,7 +27,7 @@ void set_draw_state(bool has_clip_control, bool cull_back_faces) {
 void draw_triangles(const DrawRange& range) {
   const std::size_t first_byte = std::size_t{range.first} * sizeof(Triangle);
   glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * range.count), GL_UNSIGNED_INT,
-                 reinterpret_cast<const void*>(first_byte));
+                 std::bit_cast<const void*>(first_byte));
 }
 
 GLint wrap_number(Wrap wrap) {

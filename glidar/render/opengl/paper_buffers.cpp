@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/render/planes.hpp>
 
+#include <algorithm>
 #include <string>
 
 namespace glidar::opengl {
@@ -40,8 +41,21 @@ void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& ord
   glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, shaded.flat_normals.name());
 }
 
+/// Blends of unit vectors that lie less than 120 degrees from each other have some length.
+bool is_smooth(const Mesh& mesh) {
+  constexpr float kCosineOf120 = -0.5F;
+  return !mesh.normals.empty() &&
+         std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+           const Eigen::Vector3f& a = mesh.normals[t[0]];
+           const Eigen::Vector3f& b = mesh.normals[t[1]];
+           const Eigen::Vector3f& c = mesh.normals[t[2]];
+           return std::min({a.dot(b), b.dot(c), c.dot(a)}) > kCosineOf120;
+         });
+}
+
 ShadedMesh upload_mesh(const Mesh& mesh) {
   ShadedMesh shaded;
+  shaded.is_smooth = is_smooth(mesh);
   glBindVertexArray(shaded.arrays.name());
   give(0, mesh.positions_m, shaded);
   give(1, mesh.uvs[0], shaded);

@@ -16,7 +16,8 @@ struct ShadedMesh {
   Buffer triangles;
   std::vector<Buffer> attributes;
   std::vector<DrawRange> ranges;
-  Buffer flat_normals;  ///< of the triangles in the order of the draw, 4 floats each
+  bool is_smooth = false;  ///< it has normals, and no triangle's cancel out
+  Buffer flat_normals;     ///< of the triangles in the order of the draw, 4 floats each
   GlTexture flat_normals_view;
 };
 

@@ -8,7 +8,7 @@
 #include <glidar/render/paper_picture.hpp>
 #include <glidar/render/resolve.hpp>
 
-#include <array>
+#include <string>
 
 namespace glidar::opengl {
 
@@ -30,30 +30,30 @@ class PaperDrawing {
   void draw(const CastRequest& request, const Resolver& resolver, const PaperScope& scope) const;
 
  private:
-  static constexpr std::size_t kTextures = 4;
+  /// One compiled program; what a surface does not need costs much time in software.
+  struct Shader {
+    Program program;
 
-  [[nodiscard]] GLint at(const std::string& uniform) const {
-    return glGetUniformLocation(program_.name(), uniform.c_str());
-  }
-  void set_scope(const PaperScope& scope) const;
+    [[nodiscard]] GLint at(const std::string& uniform) const {
+      return glGetUniformLocation(program.name(), uniform.c_str());
+    }
+  };
+
+  [[nodiscard]] Shader make_shader(const char* surface_macro) const;
+  void set_scope(const Shader& shader, const PaperScope& scope) const;
+  void set_instance(const Shader& shader, const InstanceView& view, const PaperScope& scope) const;
+  void set_material(const Shader& shader, const Material& material) const;
+  void set_textures(const Shader& shader, const Material& material, const Mesh& mesh) const;
+  void set_texture(const Shader& shader, GLenum unit, const std::string& name,
+                   const TextureUse& use) const;
   void draw_instance(std::uint32_t instance, const InstanceView& view,
                      const PaperScope& scope) const;
-  void set_material(const Material& material) const;
-  void set_texture(std::size_t unit, const TextureUse& use) const;
 
   const Scene& scene_;
   bool has_clip_control_;
   ShadedScene shaded_;
-  Program program_;
-  struct TextureUniforms {
-    GLint is_used;
-    GLint uv_set;
-    GLint uv_scale_rotate;
-    GLint uv_offset;
-    GLint wrap;
-    GLint is_linear;
-  };
-  std::array<TextureUniforms, kTextures> textures_{};
+  Shader plain_;
+  Shader rich_;
 };
 
 }  // namespace glidar::opengl

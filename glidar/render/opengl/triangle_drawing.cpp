@@ -66,7 +66,9 @@ TriangleDrawing::TriangleDrawing(const Scene& scene)
       buffers_(upload(scene)),
       solid_(make_drawer("IS_SOLID", has_clip_control_ ? "HAS_CLIP_CONTROL" : "WRITES_DEPTH")),
       masked_(make_mask_drawer(has_clip_control_ ? "HAS_CLIP_CONTROL" : "WRITES_DEPTH")),
-      first_number_(number(scene)) {}
+      first_number_(number(scene)),
+      is_single_(scene.instances.size() == 1 &&
+                 buffers_.meshes[scene.instances[0].mesh].drawn.empty()) {}
 
 void TriangleDrawing::draw(const CastRequest& request, const Resolver& resolver,
                            const PixelRect& rect, const DepthRange& depths) const {
@@ -121,6 +123,7 @@ void TriangleDrawing::use_mask(std::uint32_t material, const MeshBuffers& mesh) 
 
 Found TriangleDrawing::found(std::uint32_t number) const {
   if (number == kNoNumber) return {};
+  if (is_single_) return {0, number};
   const auto after = std::upper_bound(first_number_.begin(), first_number_.end(), number);
   const auto instance = static_cast<std::uint32_t>(after - first_number_.begin() - 1);
   const std::uint32_t place = number - first_number_[instance];
