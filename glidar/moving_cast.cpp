@@ -161,14 +161,6 @@ struct MovingCast {
   }
 };
 
-/// The progress of cast `number` of so many, as part of the whole.
-Progress progress_of(const Progress& whole, std::size_t number, std::size_t all) {
-  if (!whole) return {};
-  return [&whole, number, all](double fraction) {
-    whole((static_cast<double>(number) + fraction) / static_cast<double>(all));
-  };
-}
-
 /// Which of the casts at bodies this is.
 struct Turn {
   std::size_t number = 0;
@@ -181,17 +173,21 @@ void cast_body(const MovingCast& job, const Body& body, const Turn& turn) {
   Scratch& memory = job.memory;
   const CastRequest& request = job.request;
   Hits& hits = is_first ? job.hits : memory.body_hits;
+  const auto part = [&](std::size_t number) {
+    return static_cast<double>(number) / static_cast<double>(turn.all);
+  };
   job.in_runs([&](BeamRange range) {
     move_beams(request, job.world.motion, body, job.world.stamp_ns, range, memory);
   });
-  job.world.renderer.cast({.beams = memory.moved,
-                           .world_from_sensor = request.world_from_sensor,
-                           .world_from_instance = request.world_from_instance,
-                           .fields = request.fields,
-                           .cull_back_faces = request.cull_back_faces,
-                           .present = memory.present,
-                           .progress = progress_of(request.progress, turn.number, turn.all)},
-                          hits);
+  job.world.renderer.cast(
+      {.beams = memory.moved,
+       .world_from_sensor = request.world_from_sensor,
+       .world_from_instance = request.world_from_instance,
+       .fields = request.fields,
+       .cull_back_faces = request.cull_back_faces,
+       .present = memory.present,
+       .progress = part_of(request.progress, part(turn.number), part(turn.number + 1))},
+      hits);
   job.in_runs([&](BeamRange range) {
     turn_back(request, memory, range, hits);
     if (!is_first) merge(hits, request.fields, range, job.hits);

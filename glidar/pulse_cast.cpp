@@ -13,7 +13,8 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kSubBeamsPerBlock = std::size_t{1} << 18U;  // some 20 MB of hits
+// For every thread: with their hits, some 90 bytes each, they fit into a core's own cache.
+constexpr std::size_t kSubBeamsPerBlock = std::size_t{1} << 14U;
 constexpr std::size_t kBeamsPerTask = kDrawBatch;
 constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
 
@@ -27,17 +28,19 @@ struct Block {
   const HitFields& fields;  ///< of the frame's truth
   BeamRange range;          ///< of pulses
   Frame& frame;
+  PulseTrace* trace;  ///< nullptr: none asked for
 
+  [[nodiscard]] const Material& material_at(const Hits& hits, std::size_t i) const {
+    const Scene& scene = setup.scene;
+    return material_of(scene, scene.instances[hits.instance[i]], hits.primitive[i]);
+  }
+  [[nodiscard]] bool traces(std::size_t beam) const {
+    return trace != nullptr && trace->pulse == beam;
+  }
   [[nodiscard]] std::size_t first_ray(std::size_t beam) const {
     return (beam - range.begin) * rays.size();
   }
 };
-
-const Material& material_of(const Scene& scene, const Hits& hits, std::size_t i) {
-  const Instance& instance = scene.instances[hits.instance[i]];
-  return scene
-      .materials[instance.materials[material_slot(scene.meshes[instance.mesh], hits.primitive[i])]];
-}
 
 bool has_mirrors(const Scene& scene) {
   return std::any_of(scene.materials.begin(), scene.materials.end(),
@@ -50,28 +53,11 @@ HitFields with_light(HitFields fields) {
   return fields;
 }
 
-/// The block's progress as part of the whole.
-Progress progress_of(const Block& block) {
-  if (!block.setup.progress) return {};
-  const auto all = static_cast<double>(block.aimed.pulses());
-  return [&block, all](double fraction) {
-    const auto begin = static_cast<double>(block.range.begin);
-    const auto end = static_cast<double>(block.range.end);
-    block.setup.progress((begin + fraction * (end - begin)) / all);
-  };
-}
-
 void cast(const Block& block, const Beams& beams, const HitFields& fields, Progress progress,
           Hits& hits) {
-  Frame& frame = block.frame;
-  cast_moving({block.setup.renderer, block.setup.scene, block.setup.motion, frame.stamp_ns},
-              {.beams = beams,
-               .world_from_sensor = frame.world_from_sensor,
-               .world_from_instance = frame.world_from_instance,
-               .fields = fields,
-               .cull_back_faces = block.setup.sensor.cull_back_faces,
-               .progress = std::move(progress)},
-              frame.scratch, hits);
+  CastRequest request = request_of(block.setup, block.frame, beams, fields);
+  request.progress = std::move(progress);
+  cast_moving(world_of(block.setup, block.frame), request, block.frame.scratch, hits);
 }
 
 /// The beam that goes on from a mirror: d - 2 (d . n) n, from just before the surface so that it
@@ -99,8 +85,7 @@ void cast_mirrored(const Block& block) {
   memory.mirrored_from.clear();
   const Hits& hits = memory.sub_hits;
   for (std::size_t i = 0; i < hits.range_m.size(); ++i) {
-    if (hits.instance[i] == kNoHit || material_of(block.setup.scene, hits, i).mirror <= 0.0F)
-      continue;
+    if (hits.instance[i] == kNoHit || block.material_at(hits, i).mirror <= 0.0F) continue;
     add_mirrored(memory.sub_beams, hits, i, beams);
     memory.mirrored_from.push_back(static_cast<std::uint32_t>(i));
   }
@@ -110,31 +95,28 @@ void cast_mirrored(const Block& block) {
   cast(block, beams, with_light({}), {}, memory.mirrored_hits);
 }
 
-/// What a way by a mirror brings back: the light passes the mirror twice and travels both legs.
-double ghost_signal(const Block& block, std::size_t mirrored, double range_m) {
+/// The way by a mirror: the light passes the mirror twice and travels both legs.
+Path ghost_path(const Block& block, std::size_t mirrored, double energy) {
   const Scratch& memory = block.frame.scratch;
   const Hits& hits = memory.mirrored_hits;
-  const Setup& setup = block.setup;
-  const double share =
-      material_of(setup.scene, memory.sub_hits, memory.mirrored_from[mirrored]).mirror;
-  const double direct =
-      signal_of_hit(block.light, setup.scene, setup.sensor.wavelength_m, hits, mirrored);
-  return share * share * direct * signal_of(block.light, 1.0, range_m) /
-         signal_of(block.light, 1.0, hits.range_m[mirrored]);
+  const std::uint32_t ray = memory.mirrored_from[mirrored];
+  const double share = block.material_at(memory.sub_hits, ray).mirror;
+  const double range_m = memory.sub_hits.range_m[ray] + hits.range_m[mirrored];
+  const double sent =
+      energy * share * share *
+      sent_back_at(block.setup.scene, block.setup.sensor.wavelength_m, hits, mirrored);
+  return {range_m, signal_of(block.light, sent, range_m), ray, Cause::ghost};
 }
 
 /// All ways by which light of a beam comes back from surfaces.
 void collect_paths(const Block& block, std::size_t beam, EchoWork& work) {
   const Scratch& memory = block.frame.scratch;
-  const Setup& setup = block.setup;
   const std::size_t first = block.first_ray(beam);
   work.paths = 0;
   for (std::size_t k = 0; k < block.rays.size(); ++k) {
     const std::size_t ray = first + k;
     if (memory.sub_hits.instance[ray] == kNoHit) continue;
-    const double signal =
-        signal_of_hit(block.light, setup.scene, setup.sensor.wavelength_m, memory.sub_hits, ray);
-    work.add({memory.sub_hits.range_m[ray], block.rays[k].share * signal,
+    work.add({memory.sub_hits.range_m[ray], block.rays[k].share * memory.sub_signals[ray],
               static_cast<std::uint32_t>(ray), Cause::surface});
   }
   const std::vector<std::uint32_t>& from = memory.mirrored_from;
@@ -142,22 +124,8 @@ void collect_paths(const Block& block, std::size_t beam, EchoWork& work) {
   for (; at != from.end() && *at < first + block.rays.size(); ++at) {
     const auto mirrored = static_cast<std::size_t>(at - from.begin());
     if (memory.mirrored_hits.instance[mirrored] == kNoHit) continue;
-    const double range_m = memory.sub_hits.range_m[*at] + memory.mirrored_hits.range_m[mirrored];
-    const double share = block.rays[*at - first].share;
-    work.add({range_m, share * ghost_signal(block, mirrored, range_m), *at, Cause::ghost});
+    work.add(ghost_path(block, mirrored, block.rays[*at - first].share));
   }
-}
-
-Cause cause_of(WeatherEcho::Kind kind) {
-  switch (kind) {
-    case WeatherEcho::Kind::fog:
-      return Cause::fog;
-    case WeatherEcho::Kind::rain:
-      return Cause::rain;
-    case WeatherEcho::Kind::snow:
-      return Cause::snow;
-  }
-  return Cause::none;
 }
 
 /// What the air before a surface sends back.
@@ -167,7 +135,7 @@ void add_weather(const Block& block, const Draw& draw, double surface_m,
   echoes.clear();
   weather_echoes(*block.weather, surface_m, draw, echoes);
   for (const WeatherEcho& echo : echoes) {
-    work.add({echo.range_m, echo.signal, kNoHit, cause_of(echo.kind)});
+    work.add({echo.range_m, echo.signal, kNoHit, echo.cause});
   }
 }
 
@@ -188,13 +156,6 @@ void detect(const Block& block, const Draw& draw, double first_noise, EchoWork& 
   work.echoes = kept;
 }
 
-void report_nothing(Status why, std::size_t entry, Frame& frame) {
-  frame.status[entry] = why;
-  frame.range_m[entry] = kNoRange;
-  frame.intensity[entry] = 0.0F;
-  frame.cause[entry] = Cause::none;
-}
-
 void report_echo(const Block& block, const PulseEcho& echo, const Path& path, std::size_t entry) {
   Frame& frame = block.frame;
   const Sensor& sensor = block.setup.sensor;
@@ -202,7 +163,7 @@ void report_echo(const Block& block, const PulseEcho& echo, const Path& path, st
   Status status = judge(sensor.limits, block.aimed, entry, range_m);
   if (block.light.saturation > 0.0 && echo.signal >= block.light.saturation)
     status = Status::saturated;
-  if (status != Status::hit) return report_nothing(status, entry, frame);
+  if (status != Status::hit) return lose(frame, entry, status);
   frame.status[entry] = Status::hit;
   frame.range_m[entry] = range_m;
   frame.intensity[entry] = static_cast<float>(echo.signal);
@@ -242,11 +203,7 @@ struct Draws {
 };
 
 void draw(const PulseLight& light, const Frame& frame, std::size_t first, Draws& draws) {
-  draws.detection = {.seed = frame.seed,
-                     .sensor = frame.sensor_id,
-                     .frame = frame.number,
-                     .beam = static_cast<std::uint32_t>(first),
-                     .purpose = Purpose::detection};
+  draws.detection = draw_of(frame, Purpose::detection, first);
   if (light.noise_sigma > 0.0) draw_normals(draws.detection, draws.noise);
 }
 
@@ -256,6 +213,24 @@ struct Tools {
   Draws draws;
   std::vector<WeatherEcho> weather;
 };
+
+void trace_echoes(const Block& block, std::size_t beam, const EchoWork& work) {
+  PulseTrace& trace = *block.trace;
+  const std::size_t first = block.first_ray(beam);
+  trace.sub_rays = block.rays.size();
+  trace.ways.clear();
+  for (std::size_t k = 0; k < work.paths; ++k) {
+    PulseTrace::Way way{.path = work.path[k]};
+    if (way.path.source != kNoHit) {
+      way.instance = block.frame.scratch.sub_hits.instance[way.path.source];
+      way.path.source -= static_cast<std::uint32_t>(first);
+      way.share = block.rays[way.path.source].share;
+    }
+    trace.ways.push_back(way);
+  }
+  trace.echoes.assign(work.echo.begin(),
+                      work.echo.begin() + static_cast<std::ptrdiff_t>(work.echoes));
+}
 
 /// Finds the echoes that the receiver can tell; returns why there is none, should there be none.
 Status find_returns(const Block& block, std::size_t beam, const Path& surface, Tools& tools) {
@@ -267,6 +242,7 @@ Status find_returns(const Block& block, std::size_t beam, const Path& surface, T
   draw.beam = static_cast<std::uint32_t>(beam);
   add_weather(block, draw, surface.range_m, tools.weather, work);
   find_echoes(pulse_sigma_m(sensor.receiver), wide_m, work);
+  if (block.traces(beam)) trace_echoes(block, beam, work);
   double loudest = 0.0;
   for (std::size_t k = 0; k < work.echoes; ++k) {
     const bool is_surface = work.path[work.echo[k].strongest].source != kNoHit;
@@ -286,6 +262,12 @@ void measure_beam(const Block& block, std::size_t beam, Tools& tools) {
   const Status silent = find_returns(block, beam, surface, tools);
   std::array<int, kMostReturns> chosen;
   choose(receiver, {work.echo.data(), work.echoes}, chosen);
+  if (block.traces(beam)) {
+    block.trace->received.assign(work.echo.begin(),
+                                 work.echo.begin() + static_cast<std::ptrdiff_t>(work.echoes));
+    block.trace->returns.assign(
+        chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(receiver.returns.size()));
+  }
   for (std::size_t r = 0; r < receiver.returns.size(); ++r) {
     const std::size_t entry = r * block.aimed.pulses() + beam;
     if (chosen[r] >= 0) {
@@ -296,7 +278,7 @@ void measure_beam(const Block& block, std::size_t beam, Tools& tools) {
     } else {
       const bool tells_why = r == 0 || silent == Status::no_beam;
       keep_truth(block, r == 0 ? surface.source : kNoHit, entry);
-      report_nothing(tells_why ? silent : Status::no_echo, entry, block.frame);
+      lose(block.frame, entry, tells_why ? silent : Status::no_echo);
     }
   }
 }
@@ -304,6 +286,7 @@ void measure_beam(const Block& block, std::size_t beam, Tools& tools) {
 /// The weather for this sensor's beams; without a footprint they are those of BeamShape.
 std::optional<PreparedWeather> weather_of(const Sensor& sensor) {
   if (!sensor.weather) return {};
+  check_weather(sensor);
   BeamShape beam;
   if (sensor.footprint) {
     const Footprint& f = *sensor.footprint;
@@ -314,14 +297,28 @@ std::optional<PreparedWeather> weather_of(const Sensor& sensor) {
                          sensor.receiver.pulse_fwhm_s);
 }
 
+/// What each sub-ray of a run of beams brings back, were it alone.
+void find_signals(const Block& block, BeamRange range) {
+  Scratch& memory = block.frame.scratch;
+  const BeamRange of_rays{block.first_ray(range.begin), block.first_ray(range.end)};
+  signals_of_hits(block.light, block.setup.scene, block.setup.sensor.wavelength_m, memory.sub_hits,
+                  of_rays, std::span(memory.sub_signals).subspan(of_rays.begin));
+}
+
 void measure_block(const Block& block, bool mirrors) {
   Scratch& memory = block.frame.scratch;
   HitFields fields = with_light(block.fields);
   fields.shading_normal = fields.shading_normal || mirrors;
-  spread(block.rays, block.aimed, block.range, memory.sub_beams);
-  cast(block, memory.sub_beams, fields, progress_of(block), memory.sub_hits);
+  spread(block.rays, block.aimed, block.range, block.setup.renderer.workers(), memory.sub_beams);
+  const auto part = [&](std::size_t beam) {
+    return static_cast<double>(beam) / static_cast<double>(block.aimed.pulses());
+  };
+  cast(block, memory.sub_beams, fields,
+       part_of(block.setup.progress, part(block.range.begin), part(block.range.end)),
+       memory.sub_hits);
   memory.mirrored_from.clear();
   if (mirrors) cast_mirrored(block);
+  memory.sub_signals.resize(memory.sub_beams.size());
   const std::size_t count = block.range.end - block.range.begin;
   const std::size_t runs = (count + kBeamsPerTask - 1) / kBeamsPerTask;
   block.setup.renderer.workers().for_ranges(runs, 1, [&](std::size_t begin, std::size_t end) {
@@ -329,6 +326,7 @@ void measure_block(const Block& block, bool mirrors) {
     for (std::size_t run = begin; run < end; ++run) {
       const std::size_t first = block.range.begin + run * kBeamsPerTask;
       const std::size_t last = std::min(first + kBeamsPerTask, block.range.end);
+      find_signals(block, {first, last});
       draw(block.light, block.frame, first, tools.draws);
       for (std::size_t beam = first; beam < last; ++beam) measure_beam(block, beam, tools);
     }
@@ -338,29 +336,34 @@ void measure_block(const Block& block, bool mirrors) {
 }  // namespace
 
 bool has_echoes(const Sensor& sensor, const Scene& scene) {
+  if (sensor.weather) return true;
   if (!sensor.pulse) return false;
   const Receiver& receiver = sensor.receiver;
   const Return& first = receiver.returns[0];
   const bool tells_strongest =
       receiver.returns.size() == 1 && first.order == Return::Order::strongest && first.rank == 0;
-  return sensor.footprint || sensor.weather || !tells_strongest ||
-         receiver.timing != Receiver::Timing::centroid || has_mirrors(scene);
+  return sensor.footprint || !tells_strongest || receiver.timing != Receiver::Timing::centroid ||
+         has_mirrors(scene);
 }
 
-void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& aimed, Frame& frame) {
+void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& aimed, Frame& frame,
+                    PulseTrace* trace) {
   resize(frame.truth, aimed.size(), fields);
   frame.cause.resize(aimed.size());
   const std::vector<SubRay> rays =
       setup.sensor.footprint ? sub_rays(*setup.sensor.footprint) : std::vector<SubRay>(1);
   const std::size_t step =
-      std::max<std::size_t>(1, kSubBeamsPerBlock / rays.size() / kBeamsPerTask) * kBeamsPerTask;
+      std::max<std::size_t>(
+          1, kSubBeamsPerBlock * setup.renderer.workers().threads() / rays.size() / kBeamsPerTask) *
+      kBeamsPerTask;
   const bool mirrors = has_mirrors(setup.scene);
-  const PulseLight light = *light_in_weather(setup.sensor);
   const std::optional<PreparedWeather> weather = weather_of(setup.sensor);
+  const PulseLight& light = weather ? weather->light : *setup.sensor.pulse;
   for (std::size_t begin = 0; begin < aimed.pulses(); begin += step) {
     const BeamRange range{begin, std::min(begin + step, aimed.pulses())};
-    measure_block({setup, light, weather ? &*weather : nullptr, rays, aimed, fields, range, frame},
-                  mirrors);
+    measure_block(
+        {setup, light, weather ? &*weather : nullptr, rays, aimed, fields, range, frame, trace},
+        mirrors);
   }
 }
 

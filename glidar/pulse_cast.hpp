@@ -2,13 +2,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/simulate.hpp>
+#include <glidar/sensor/echo.hpp>
+#include <glidar/setup.hpp>
+
+#include <cstdint>
+#include <vector>
 
 namespace glidar {
 
 /// True when a beam of this sensor is more than one ray with one return: it has a footprint, tells
 /// several returns or another than the strongest, walks, or meets mirrors or weather.
 bool has_echoes(const Sensor& sensor, const Scene& scene);
+
+/// How the returns of one pulse came to be.
+struct PulseTrace {
+  /// A way by which light came back.
+  struct Way {
+    Path path;                        ///< its source is the sub-ray of the pulse
+    double share = 0.0;               ///< of the pulse's energy on the sub-ray; of the air: 0
+    std::uint32_t instance = kNoHit;  ///< what the sub-ray hit, in Scene::instances
+  };
+  std::size_t pulse = 0;  ///< which pulse to trace
+  std::size_t sub_rays = 0;
+  std::vector<Way> ways;            ///< in order of range
+  std::vector<PulseEcho> echoes;    ///< peaks of what came back, in order of range
+  std::vector<PulseEcho> received;  ///< those left with the receiver's noise and separation
+  std::vector<int> returns;         ///< per return of the receiver: which of `received`, or -1
+};
 
 /// Casts the beams of a sensor of pulses as they really are: every one spreads into sub-rays, which
 /// go on from mirrors once; what comes back makes a waveform, its peaks are echoes, and the
@@ -17,6 +37,8 @@ bool has_echoes(const Sensor& sensor, const Scene& scene);
 /// came back.
 ///
 /// `aimed` are the beams as they really go. Draws with Purpose::detection and weather.
-void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& aimed, Frame& frame);
+/// `trace`, if given, is filled for its pulse.
+void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& aimed, Frame& frame,
+                    PulseTrace* trace = nullptr);
 
 }  // namespace glidar

@@ -50,20 +50,13 @@ void cast_shadows(const Setup& setup, const Eigen::Vector3d& projector_m, const 
                   Frame& frame) {
   Scratch& memory = frame.scratch;
   aim_at_hits(aimed, projector_m, frame, memory.sub_beams);
-  cast_moving({setup.renderer, setup.scene, setup.motion, frame.stamp_ns},
-              {.beams = memory.sub_beams,
-               .world_from_sensor = frame.world_from_sensor,
-               .world_from_instance = frame.world_from_instance,
-               .fields = {}},
-              memory, memory.sub_hits);
+  cast_moving(world_of(setup, frame), request_of(setup, frame, memory.sub_beams, {}), memory,
+              memory.sub_hits);
   setup.renderer.workers().for_ranges(
       aimed.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           if (frame.status[i] != Status::hit || frame.truth.instance[i] == kNoHit) continue;
-          if (!is_dark(aimed, projector_m, frame, i)) continue;
-          frame.status[i] = Status::occluded;
-          frame.range_m[i] = kNaN;
-          frame.intensity[i] = 0.0F;
+          if (is_dark(aimed, projector_m, frame, i)) lose(frame, i, Status::occluded);
         }
       });
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/simulate.hpp>
+#include <glidar/setup.hpp>
 
 namespace glidar {
 

@@ -33,11 +33,10 @@ void measure_range(const Limits& limits, const Beams& beams, BeamRange range, Fr
 }
 
 /// Intensity, and what it takes away, of a run of beams from the truth.
-void measure_light(const Setup& setup, const std::optional<PulseLight>& pulse, BeamRange range,
-                   Frame& frame) {
+void measure_light(const Setup& setup, BeamRange range, Frame& frame) {
   const Sensor& sensor = setup.sensor;
-  if (pulse) {
-    measure_signal(*pulse, setup.scene, sensor.wavelength_m, range, frame);
+  if (sensor.pulse) {
+    measure_signal(*sensor.pulse, setup.scene, sensor.wavelength_m, range, frame);
   } else {
     measure_intensity(sensor.light, range, frame);
   }
@@ -56,20 +55,24 @@ void measure_paper(const Setup& setup, const PaperTarget& paper, Frame& frame) {
                      .world_from_instance = frame.world_from_instance,
                      .cull_back_faces = setup.sensor.cull_back_faces},
                     setup.sensor.light, paper.planes, paper.picture);
-  decode(paper.picture, setup.beams, {0, setup.beams.size()}, frame.range_m, frame.intensity);
-  for (std::size_t i = 0; i < frame.range_m.size(); ++i) {
-    const bool is_seen = !std::isnan(frame.range_m[i]);
-    frame.status[i] =
-        is_seen ? judge(setup.sensor.limits, setup.beams, i, frame.range_m[i]) : Status::miss;
-    if (frame.status[i] == Status::hit) continue;
-    frame.range_m[i] = kNoRange;
-    frame.intensity[i] = 0.0F;
-  }
+  const auto read = [&](std::size_t begin, std::size_t end) {
+    decode(paper.picture, setup.beams, {begin, end}, frame.range_m, frame.intensity);
+    for (std::size_t i = begin; i < end; ++i) {
+      const bool is_seen = !std::isnan(frame.range_m[i]);
+      frame.status[i] =
+          is_seen ? judge(setup.sensor.limits, setup.beams, i, frame.range_m[i]) : Status::miss;
+      if (frame.status[i] == Status::hit) continue;
+      frame.range_m[i] = kNoRange;
+      frame.intensity[i] = 0.0F;
+    }
+  };
+  constexpr std::size_t kBeamsPerTask = 4096;
+  setup.renderer.workers().for_ranges(setup.beams.size(), kBeamsPerTask, read);
 }
 
 }  // namespace
 
-void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
+void measure(const Setup& setup, const HitFields& fields, Frame& frame, PulseTrace* trace) {
   frame.rows = setup.beams.rows;
   frame.cols = setup.beams.cols;
   frame.frame_id = setup.beams.frame_id;
@@ -80,36 +83,36 @@ void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
   Workers& workers = setup.renderer.workers();
   const Beams& beams = aimed_beams(sensor.noise, setup.beams, workers, frame);
 
-  const std::optional<PulseLight> pulse = light_in_weather(sensor);
   HitFields needed = fields;
   needed.shading = true;  // the light needs them
   needed.reflectance = true;
   needed.normal = needed.normal || sensor.projector_m.has_value();
   add_needs(sensor.noise, needed);
-  const World world{setup.renderer, setup.scene, setup.motion, frame.stamp_ns};
-  const auto measure = [&](BeamRange range) {
+  const World world = world_of(setup, frame);
+  const auto measure_run = [&](BeamRange range) {
     measure_range(sensor.limits, beams, range, frame);
-    measure_light(setup, pulse, range, frame);
+    measure_light(setup, range, frame);
   };
+  frame.cause.clear();
+  frame.sigma_m.clear();
   if (has_echoes(sensor, setup.scene)) {
-    measure_pulses(setup, needed, beams, frame);
+    measure_pulses(setup, needed, beams, frame, trace);
   } else {
-    frame.cause.clear();
-    cast_moving(world,
-                {.beams = beams,
-                 .world_from_sensor = frame.world_from_sensor,
-                 .world_from_instance = frame.world_from_instance,
-                 .fields = needed,
-                 .cull_back_faces = sensor.cull_back_faces,
-                 .then = FunctionRef<void(BeamRange)>(measure),
-                 .progress = setup.progress},
-                frame.scratch, frame.truth);
+    CastRequest request = request_of(setup, frame, beams, needed);
+    request.then = FunctionRef<void(BeamRange)>(measure_run);
+    request.progress = setup.progress;
+    cast_moving(world, request, frame.scratch, frame.truth);
   }
   if (setup.paper) measure_paper(setup, *setup.paper, frame);
   if (sensor.projector_m) cast_shadows(setup, *sensor.projector_m, beams, frame);
   deskew(world, setup.beams, beams, frame.deskewed);
   place_beams(setup.motion, setup.beams, fields.poses, workers, frame);
-  apply_noise(sensor.noise, 1.0 / sensor.rate_hz, setup.beams, workers, frame);
+}
+
+void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
+  measure(setup, fields, frame);
+  apply_noise(setup.sensor.noise, 1.0 / setup.sensor.rate_hz, setup.beams, setup.renderer.workers(),
+              frame);
 }
 
 }  // namespace glidar

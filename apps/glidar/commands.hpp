@@ -5,6 +5,8 @@
 #include <apps/glidar/cli_fwd.hpp>
 
 #include <functional>
+#include <string>
+#include <vector>
 
 namespace glidar::app {
 
@@ -12,7 +14,9 @@ namespace glidar::app {
 /// returns the exit code and throws Error.
 using Command = std::function<int()>;
 
-Command add_render(CLI::App& program);
+/// `arguments` are those of the whole command line, for the sidecars.
+Command add_render(CLI::App& program, const std::vector<std::string>& arguments);
+Command add_explain(CLI::App& program);
 Command add_info(CLI::App& program);
 Command add_sensors(CLI::App& program);
 Command add_verify(CLI::App& program);

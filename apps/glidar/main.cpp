@@ -23,10 +23,11 @@ namespace {
 
 constexpr const char* kExamples = R"(Examples:
   glidar render builtin:asteroid -o asteroid.pcd -o asteroid.png
+  glidar explain asteroid.pcd --index 30000
   glidar info builtin:torus
   glidar sensors
   glidar verify
-More: glidar render --help, and the same for info, sensors and verify)";
+More: glidar render --help, and the same for explain, info, sensors and verify)";
 
 using Commands = std::vector<std::pair<std::string, Command>>;
 
@@ -119,7 +120,9 @@ int run(int argc, char** argv) {
   program.set_version_flag("--version", std::string("glidar ") + version(), "Print the version");
   program.require_subcommand(1);
   program.footer(kExamples);
-  const Commands commands = {{"render", add_render(program)},
+  const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
+  const Commands commands = {{"render", add_render(program, arguments)},
+                             {"explain", add_explain(program)},
                              {"info", add_info(program)},
                              {"sensors", add_sensors(program)},
                              {"verify", add_verify(program)}};

@@ -256,7 +256,7 @@ HitFields fields_for(const std::vector<Output>& outputs) {
 }
 
 CloudFrame cloud_frame(const std::string& name, const Beams& beams, const Pose& world_from_sensor) {
-  const bool lidar = heads_along_x(beams);
+  const bool lidar = !looks_along_z(beams);
   const std::string prefix = lidar ? "lidar" : "camera";
   const Pose optical_from_sensor = lidar ? optical_from_body() : Pose::Identity();
   if (name == "world") return {.frame_id = "world", .cloud_from_sensor = world_from_sensor};

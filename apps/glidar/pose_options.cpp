@@ -187,10 +187,6 @@ bool sensor_pose_given(const PoseFlags& flags) {
   return eye_given(flags) || legacy_given(flags) || !flags.sensor_pose.empty();
 }
 
-bool heads_along_x(const Beams& beams) {
-  return beams.boresight.isApprox(Eigen::Vector3d::UnitX());
-}
-
 Pose pose_sensor(const PoseFlags& flags, const ScenePose& from_scene_file, const Beams& beams,
                  const Scene& scene) {
   const int ways =
@@ -205,7 +201,7 @@ Pose pose_sensor(const PoseFlags& flags, const ScenePose& from_scene_file, const
   }
   const Eigen::Vector3d up = flags.up_vector.empty() ? Eigen::Vector3d(Eigen::Vector3d::UnitZ())
                                                      : parse_vector("--up-vector", flags.up_vector);
-  const bool along_x = heads_along_x(beams);
+  const bool along_x = !looks_along_z(beams);
   const Pose optical_from_sensor = along_x ? optical_from_body() : Pose::Identity();
   if (eye_given(flags)) return eye_pose(flags, scene, up, along_x) * optical_from_sensor;
   if (legacy_given(flags)) return legacy_pose(flags) * optical_from_sensor;

@@ -59,9 +59,6 @@ void pose_model(const PoseFlags& flags, Scene& scene);
 Pose pose_sensor(const PoseFlags& flags, const ScenePose& from_scene_file, const Beams& beams,
                  const Scene& scene);
 
-/// True when the sensor looks along +x of its frame, like LiDARs, not along +z, like cameras.
-bool heads_along_x(const Beams& beams);
-
 /// True when any flag says where the sensor is.
 bool sensor_pose_given(const PoseFlags& flags);
 

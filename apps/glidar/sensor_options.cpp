@@ -5,10 +5,12 @@
 #include <apps/glidar/numbers.hpp>
 #include <apps/glidar/option_kinds.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/io/receiver_yaml.hpp>
 #include <glidar/io/sensor_file.hpp>
 #include <glidar/io/sensor_presets.hpp>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <unistd.h>
@@ -27,8 +29,6 @@ constexpr double kDefaultFov_deg = 20.0;
 constexpr double kLargestPixels = 1e9;  // likewise
 constexpr std::int64_t kMostColumnsPerTurn = 1 << 20;
 constexpr double kLargestAmbient = 1e6;  // keeps intensities far from float's end
-constexpr double kLargestVisibility_m = 1e6;
-constexpr double kLargestRate_mm_per_h = 1000.0;
 constexpr double kBytesPerBeam = 250.0;  // beam, truth, measurement and cloud together
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 
@@ -181,11 +181,57 @@ void apply_weather(const SensorFlags& flags, Sensor& sensor) {
     value = *given;
   };
   take("--visibility", flags.visibility_m, kLargestVisibility_m, weather.visibility_m);
-  take("--rain", flags.rain_mm_per_h, kLargestRate_mm_per_h, weather.rain_mm_per_h);
-  take("--snow", flags.snow_mm_per_h, kLargestRate_mm_per_h, weather.snow_mm_per_h);
+  take("--rain", flags.rain_mm_per_h, kLargestFall_mm_per_h, weather.rain_mm_per_h);
+  take("--snow", flags.snow_mm_per_h, kLargestFall_mm_per_h, weather.snow_mm_per_h);
   validate(weather);
   sensor.weather = weather;
-  light_in_weather(sensor);  // tells what its light lacks for weather
+  check_weather(sensor);
+}
+
+[[noreturn]] void refuse_returns(std::string_view option, std::string found, std::string remedy) {
+  throw Error(
+      {.where = std::string(option),
+       .found = std::move(found),
+       .allowed = fmt::format("1 to {} of {}, with commas and no spaces; or how many of the "
+                              "nearest, 1 to {}",
+                              kMostReturns, fmt::join(return_names(), ", "), kMostReturns),
+       .remedy = std::move(remedy)});
+}
+
+/// "strongest,last", or how many of the nearest.
+std::vector<Return> parse_returns(std::string_view option, const std::string& text) {
+  if (text.find_first_not_of("0123456789") == std::string::npos) {
+    const double count = parse_number(option, text);
+    if (!(count >= 1.0 && count <= kMostReturns)) refuse_returns(option, "'" + text + "'", "");
+    return nearest_returns(static_cast<std::uint32_t>(count));
+  }
+  const std::vector<std::string> names = return_names();
+  std::vector<Return> returns;
+  for (const std::string& part : parse_list(option, text)) {
+    if (std::find(names.begin(), names.end(), part) == names.end()) {
+      const std::string nearest = nearest_word(part, names);
+      refuse_returns(option, "'" + part + "'",
+                     nearest.empty() ? "" : "did you mean " + nearest + "?");
+    }
+    returns.push_back(return_named(part));
+  }
+  if (returns.size() > kMostReturns) {
+    refuse_returns(option, fmt::format("{} returns", returns.size()), "");
+  }
+  return returns;
+}
+
+void apply_returns(const SensorFlags& flags, Sensor& sensor) {
+  if (flags.returns.empty()) return;
+  if (!sensor.pulse) {
+    throw Error({.where = "--returns",
+                 .found = flags.ideal ? "--ideal leaves the sensor's pulse light out"
+                                      : "the sensor has no pulse light",
+                 .allowed = "a sensor with pulse light",
+                 .remedy = flags.ideal ? "leave one of them out"
+                                       : "leave it out, or choose a sensor such as VLP-16"});
+  }
+  sensor.receiver.returns = flags.returns;
 }
 
 }  // namespace
@@ -219,13 +265,19 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
             {"--columns-per-turn", "N", "Columns of a spinning sensor, for example 2048", group},
             {1, kMostColumnsPerTurn},
             [&flags](std::int64_t columns) { flags.columns_per_turn = columns; });
+  add_option(command,
+             {"--returns", "LIST|N",
+              "Returns of a pulse (strongest,last), or the N nearest [its own]", group},
+             [&flags](std::string_view option, const std::string& text) {
+               flags.returns = parse_returns(option, text);
+             });
   command
       .add_flag("--cull-back-faces", flags.cull_back_faces,
                 "Triangles seen from behind let beams through [they are seen]")
       ->group(group);
   command
       .add_flag("--ideal", flags.ideal,
-                "Without the sensor's noise and pulse light: the geometric truth")
+                "Without noise, pulse light and footprint: the geometric truth")
       ->group(group);
   number("--ambient", "A", "Ambient light of the scene [0.2]", flags.ambient);
   add_text(command,
@@ -261,6 +313,7 @@ Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_s
   if (flags.ideal) sensor = ideal(std::move(sensor));
   apply_light(flags, sensor);
   apply_weather(flags, sensor);
+  apply_returns(flags, sensor);
   sensor.cull_back_faces = sensor.cull_back_faces || flags.cull_back_faces;
   return sensor;
 }

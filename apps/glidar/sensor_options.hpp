@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace glidar::app {
 
@@ -28,6 +29,7 @@ struct SensorFlags {
   std::optional<double> visibility_m;
   std::optional<double> rain_mm_per_h;
   std::optional<double> snow_mm_per_h;
+  std::vector<Return> returns;  ///< of a pulse; empty: as the sensor says
   std::optional<double> rate_hz;
   std::optional<std::int64_t> columns_per_turn;
   bool cull_back_faces = false;
@@ -38,7 +40,7 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags);
 
 /// The sensor file or preset if one is given, else the camera described by the flags, else the
 /// scene file's sensor, else a camera of 256 x 256 pixels and 20 degrees; then with the flags for
-/// limits, light and weather; without pulse light and noise if it is to be ideal. Throws Error,
+/// limits, light, weather and returns; without pulse light and noise if it is to be ideal. Throws Error,
 /// also when a frame of it would not fit into this machine's memory.
 Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_scene_file);
 

@@ -4,6 +4,7 @@
 #include <apps/glidar/exit_code.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/pattern_picture.hpp>
+#include <glidar/io/receiver_yaml.hpp>
 #include <glidar/io/sensor_presets.hpp>
 #include <glidar/io/surfaces.hpp>
 
@@ -29,8 +30,9 @@ constexpr const char* kExamples = R"(Examples:
   glidar sensors --surfaces
 
 A name goes with 'glidar render MODEL --sensor NAME'. Numbers marked * are not verified against the
-maker's documents. A surface's name goes with 'glidar render MODEL --surface NAME', and with 'surface:'
-in scene files.
+maker's documents. Beams widen by so many mrad, across x up, between where their light falls to
+1/e^2. A surface's name goes with 'glidar render MODEL --surface NAME', and with 'surface:' in scene
+files.
 Exit codes: 0 done, 2 no such sensor.)";
 
 struct SensorsFlags {
@@ -65,13 +67,12 @@ void measure_view(const Sensor& sensor, const Beams& beams, Summary& summary) {
         2.0 * kDegrees * std::atan(0.5 * beams.pinhole->height / beams.pinhole->fy);
     return;
   }
-  const bool along_z = beams.boresight.isApprox(Eigen::Vector3d::UnitZ());
+  const SensorAxes axes = axes_of(beams);
   Eigen::Array2d low(1e9, 1e9);
   Eigen::Array2d high = -low;
   for (const Eigen::Vector3d& d : beams.directions) {
     if (std::isnan(d.x())) continue;
-    const Eigen::Vector3d b = along_z ? Eigen::Vector3d(d.z(), -d.x(), -d.y()) : d;
-    const Eigen::Array2d angles(std::atan2(b.y(), b.x()), std::asin(std::clamp(b.z(), -1.0, 1.0)));
+    const Eigen::Array2d angles(azimuth_rad(axes, d), elevation_rad(axes, d));
     low = low.min(angles);
     high = high.max(angles);
   }
@@ -99,16 +100,32 @@ std::string range_text(const Limits& limits) {
   return fmt::format("{:g}-{:g} m", limits.near_m, limits.far_m);
 }
 
+/// Divergence across and up, full widths at 1/e^2.
+std::string beam_text(const Sensor& sensor) {
+  if (!sensor.footprint) return "-";
+  return fmt::format("{:.1f} x {:.1f}", 1e3 * sensor.footprint->divergence_x_rad,
+                     1e3 * sensor.footprint->divergence_y_rad);
+}
+
+std::vector<std::string> returns_of(const Sensor& sensor) {
+  std::vector<std::string> names;
+  if (!sensor.pulse) return names;
+  for (const Return& one : sensor.receiver.returns) names.push_back(return_name(one));
+  return names;
+}
+
 void print_row(const SensorSheet& sheet, const Summary& s) {
-  fmt::print("{:<22} {:<9} {:>5} x {:<6} {:>5.1f} x {:<6.1f} {:>4g} Hz {:>9.0f} {:>14}  {}\n",
-             sheet.name, s.kind, s.rows, s.cols, s.across_deg, s.upright_deg, sheet.sensor.rate_hz,
-             s.points_per_s, range_text(sheet.sensor.limits),
-             s.unverified == 0 ? "yes" : fmt::format("no ({})", s.unverified));
+  fmt::print(
+      "{:<22} {:<9} {:>5} x {:<6} {:>5.1f} x {:<6.1f} {:>4g} Hz {:>9.0f} {:>14} {:>11}  {}\n",
+      sheet.name, s.kind, s.rows, s.cols, s.across_deg, s.upright_deg, sheet.sensor.rate_hz,
+      s.points_per_s, range_text(sheet.sensor.limits), beam_text(sheet.sensor),
+      s.unverified == 0 ? "yes" : fmt::format("no ({})", s.unverified));
 }
 
 void print_heading() {
-  fmt::print("{:<22} {:<9} {:>5} x {:<6} {:>14} {:>7} {:>9} {:>14}  {}\n", "name", "kind", "rows",
-             "cols", "view, degrees", "rate", "points/s", "range", "verified");
+  fmt::print("{:<22} {:<9} {:>5} x {:<6} {:>14} {:>7} {:>9} {:>14} {:>11}  {}\n", "name", "kind",
+             "rows", "cols", "view, degrees", "rate", "points/s", "range", "beam, mrad",
+             "verified");
 }
 
 void print_sheet(const SensorSheet& sheet, const Summary& s) {
@@ -125,6 +142,12 @@ void print_sheet(const SensorSheet& sheet, const Summary& s) {
 
 using Json = nlohmann::ordered_json;
 
+/// Divergence in mrad across and up; a line has none.
+Json divergence_json(const Sensor& sensor) {
+  if (!sensor.footprint) return {};
+  return {1e3 * sensor.footprint->divergence_x_rad, 1e3 * sensor.footprint->divergence_y_rad};
+}
+
 /// Limits of no end become null.
 Json json_of(const SensorSheet& sheet, const Summary& s) {
   const Limits& limits = sheet.sensor.limits;
@@ -138,6 +161,8 @@ Json json_of(const SensorSheet& sheet, const Summary& s) {
           {"points_per_s", s.points_per_s},
           {"near_m", limits.near_m},
           {"far_m", limits.far_m},
+          {"divergence_mrad", divergence_json(sheet.sensor)},
+          {"returns", returns_of(sheet.sensor)},
           {"unverified", s.unverified}};
 }
 

@@ -19,6 +19,25 @@ void require_size(std::size_t found, std::size_t size, bool may_be_empty, const 
 
 }  // namespace
 
+bool looks_along_z(const Beams& beams) {
+  return beams.boresight.isApprox(Eigen::Vector3d::UnitZ());
+}
+
+SensorAxes axes_of(const Beams& beams) {
+  using Eigen::Vector3d;
+  if (looks_along_z(beams)) return {Vector3d::UnitZ(), -Vector3d::UnitX(), -Vector3d::UnitY()};
+  return {Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
+}
+
+double azimuth_rad(const SensorAxes& axes, const Eigen::Vector3d& direction) {
+  return std::atan2(axes.left.dot(direction), axes.ahead.dot(direction));
+}
+
+double elevation_rad(const SensorAxes& axes, const Eigen::Vector3d& direction) {
+  const double level = std::hypot(axes.left.dot(direction), axes.ahead.dot(direction));
+  return std::atan2(axes.up.dot(direction), level);
+}
+
 void validate(const Beams& beams) {
   const std::size_t size = std::size_t{beams.rows} * beams.cols;
   require_size(beams.directions.size(), size, false, "directions");

@@ -64,11 +64,31 @@ struct Beams {
   [[nodiscard]] std::size_t pulses() const { return directions.size() / returns; }
 };
 
+/// Axes of a sensor's frame.
+struct SensorAxes {
+  Eigen::Vector3d ahead;
+  Eigen::Vector3d left;
+  Eigen::Vector3d up;
+};
+
+/// Cameras look along +z with y down (REP-103), all others along +x with z up.
+bool looks_along_z(const Beams& beams);
+SensorAxes axes_of(const Beams& beams);
+
+/// Angles of a direction: to the left from ahead, -pi to pi, and up from the level, -pi/2 to pi/2.
+double azimuth_rad(const SensorAxes& axes, const Eigen::Vector3d& direction);
+double elevation_rad(const SensorAxes& axes, const Eigen::Vector3d& direction);
+
 /// Depth of a point at a range on a beam: along the boresight, from the sensor's origin.
 inline double depth_m(const Beams& beams, std::size_t beam, double range_m) {
   const double along_beam = range_m * beams.directions[beam].dot(beams.boresight);
   return beams.origins_m.empty() ? along_beam
                                  : along_beam + beams.origins_m[beam].dot(beams.boresight);
+}
+
+/// The channel of a beam.
+inline std::uint16_t ring_of(const Beams& beams, std::size_t beam) {
+  return beams.rings.empty() ? static_cast<std::uint16_t>(beam / beams.cols) : beams.rings[beam];
 }
 
 /// Throws Error unless every array has its stated size and every direction is a unit vector or NaN.

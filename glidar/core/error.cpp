@@ -45,6 +45,12 @@ std::string number_text(double value) {
   return {text.data(), end};
 }
 
+void require_number(bool holds, const char* where, double found, const char* allowed) {
+  if (!holds) {
+    throw Error({.where = where, .found = number_text(found), .allowed = allowed, .remedy = ""});
+  }
+}
+
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
   std::string best;
   std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;

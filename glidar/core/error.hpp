@@ -31,6 +31,9 @@ class Error : public std::runtime_error {
 /// The shortest digits that read back the same, for numbers in error texts: 0.1, 1e+300.
 std::string number_text(double value);
 
+/// Throws Error naming a number that is not allowed: `where` is what it belongs to, "pinhole, fx".
+void require_number(bool holds, const char* where, double found, const char* allowed);
+
 /// The candidate closest to `word` by edit distance, or "" when none is near (more than a third of
 /// its letters away). For "did you mean" in error texts.
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/frame.hpp>
 
+#include <limits>
+
 namespace glidar {
 
 std::string_view name(Status status) {
@@ -56,6 +58,21 @@ std::string_view name(Cause cause) {
       return "crosstalk";
   }
   return "unknown";
+}
+
+void lose(Frame& frame, std::size_t entry, Status why) {
+  frame.status[entry] = why;
+  frame.range_m[entry] = std::numeric_limits<double>::quiet_NaN();
+  frame.intensity[entry] = 0.0F;
+  if (!frame.cause.empty()) frame.cause[entry] = Cause::none;
+}
+
+Draw draw_of(const Frame& frame, Purpose purpose, std::size_t beam) {
+  return {.seed = frame.seed,
+          .sensor = frame.sensor_id,
+          .frame = frame.number,
+          .beam = static_cast<std::uint32_t>(beam),
+          .purpose = purpose};
 }
 
 void resize(Frame& frame, std::size_t size) {

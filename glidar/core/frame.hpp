@@ -5,6 +5,7 @@
 #include <glidar/core/beams.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/pose.hpp>
+#include <glidar/core/random.hpp>
 
 #include <cstdint>
 #include <string>
@@ -57,6 +58,7 @@ struct Scratch {
   std::vector<std::uint8_t> present;         ///< per instance
   Beams sub_beams;                           ///< those that a run of beams is spread into
   Hits sub_hits;                             ///< theirs
+  std::vector<double> sub_signals;           ///< what each of these sends back
   Beams mirrored;                            ///< those that go on from a mirror
   Hits mirrored_hits;                        ///< theirs
   std::vector<std::uint32_t> mirrored_from;  ///< per mirrored beam: its sub-beam
@@ -99,6 +101,12 @@ struct Frame {
 
 /// Gives the measured columns `size` entries (contents unspecified).
 void resize(Frame& frame, std::size_t size);
+
+/// Takes an entry's return away.
+void lose(Frame& frame, std::size_t entry, Status why);
+
+/// The draw of a beam of the frame for a purpose.
+Draw draw_of(const Frame& frame, Purpose purpose, std::size_t beam);
 
 /// A run of beams, for work shared out among threads.
 struct BeamRange {

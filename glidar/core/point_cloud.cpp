@@ -188,9 +188,7 @@ void fill_col(const Source& s, Column& column) {
 }
 
 void fill_ring(const Source& s, Column& column) {
-  fill_each<std::uint16_t>(s, column, [&](std::size_t i) {
-    return s.beams.rings.empty() ? static_cast<std::uint16_t>(i / s.beams.cols) : s.beams.rings[i];
-  });
+  fill_each<std::uint16_t>(s, column, [&](std::size_t i) { return ring_of(s.beams, i); });
 }
 
 void fill_return(const Source& s, Column& column) {
@@ -212,35 +210,16 @@ void fill_time(const Source& s, Column& column) {
   });
 }
 
-/// The axes of a sensor's frame that a beam's angles count from.
-struct AimAxes {
-  Eigen::Vector3d ahead;
-  Eigen::Vector3d left;
-  Eigen::Vector3d up;
-};
-
-/// Cameras look along +z with y down (REP-103), all others along +x with z up.
-AimAxes aim_axes(const Beams& beams) {
-  using Eigen::Vector3d;
-  const bool optical = beams.boresight.isApprox(Vector3d::UnitZ());
-  if (optical) return {Vector3d::UnitZ(), -Vector3d::UnitX(), -Vector3d::UnitY()};
-  return {Vector3d::UnitX(), Vector3d::UnitY(), Vector3d::UnitZ()};
-}
-
 void fill_azimuth(const Source& s, Column& column) {
-  const AimAxes axes = aim_axes(s.beams);
-  fill_each<double>(s, column, [&](std::size_t i) {
-    const Eigen::Vector3d& aim = s.beams.directions[i];
-    return std::atan2(axes.left.dot(aim), axes.ahead.dot(aim));
-  });
+  const SensorAxes axes = axes_of(s.beams);
+  fill_each<double>(s, column,
+                    [&](std::size_t i) { return azimuth_rad(axes, s.beams.directions[i]); });
 }
 
 void fill_elevation(const Source& s, Column& column) {
-  const AimAxes axes = aim_axes(s.beams);
-  fill_each<double>(s, column, [&](std::size_t i) {
-    const Eigen::Vector3d& aim = s.beams.directions[i];
-    return std::atan2(axes.up.dot(aim), std::hypot(axes.left.dot(aim), axes.ahead.dot(aim)));
-  });
+  const SensorAxes axes = axes_of(s.beams);
+  fill_each<double>(s, column,
+                    [&](std::size_t i) { return elevation_rad(axes, s.beams.directions[i]); });
 }
 
 void fill_stamp(const Source& s, Column& column) {

@@ -11,6 +11,9 @@ namespace glidar {
 /// do the work, one call at a time.
 using Progress = std::function<void(double fraction_done)>;
 
+/// The progress of one part of a work, from `begin` to `end` of it. Refers to `whole`.
+Progress part_of(const Progress& whole, double begin, double end);
+
 enum class Severity { info, warning };
 
 /// How the library talks: it prints nothing, it calls these. Empty functions mean silence.

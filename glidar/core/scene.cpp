@@ -61,6 +61,10 @@ void validate(const TextureUse& use, const Scene& scene, const Material& materia
 
 }  // namespace
 
+const Material& material_of(const Scene& scene, const Instance& instance, std::uint32_t triangle) {
+  return scene.materials[instance.materials[material_slot(scene.meshes[instance.mesh], triangle)]];
+}
+
 Eigen::AlignedBox3d bounds(const Scene& scene) {
   Eigen::AlignedBox3d world;
   for (const Instance& instance : scene.instances) {

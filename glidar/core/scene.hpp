@@ -41,6 +41,9 @@ struct Scene {
   std::vector<std::string> class_names = {"unlabelled"};  ///< index = class_id
 };
 
+/// What a triangle of an instance is made of.
+const Material& material_of(const Scene& scene, const Instance& instance, std::uint32_t triangle);
+
 /// The box around all instances in the world frame; empty box for an empty scene.
 Eigen::AlignedBox3d bounds(const Scene& scene);
 

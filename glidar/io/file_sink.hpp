@@ -10,6 +10,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace glidar {
 
@@ -25,12 +26,19 @@ struct FileSinkOptions {
   Progress progress = {};  ///< of one file, by its points; images and NPZ do not tell
 };
 
+/// The command that makes a cloud, and where it runs; no arguments: none.
+struct CommandRecord {
+  std::vector<std::string> arguments = {};
+  std::filesystem::path folder = {};
+};
+
 /// What the sidecar tells besides the frame; must outlive the sink.
 struct SidecarContext {
   const Scene& scene;
   const Sensor& sensor;
   const Beams& beams;
   std::string renderer;
+  CommandRecord command = {};  ///< lets `glidar explain` repeat the measurement
 };
 
 /// One output format.

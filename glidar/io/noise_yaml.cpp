@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/noise_yaml.hpp>
 
+#include <glidar/core/light_speed.hpp>
 #include <glidar/io/noise_fields.hpp>
 
 #include <algorithm>
@@ -78,7 +79,7 @@ void read_others(const YamlField& field, ContinuousWave& step) {
   if (count == 0 || count > kMostFrequencies) reject(list, describe(list), "1 to 8 frequencies");
   const double finest = *std::max_element(step.frequencies_hz.begin(), step.frequencies_hz.end());
   constexpr double kMostWaves = 1000.0;  // tried one by one for every pixel
-  if (finest * unambiguous_m(step.frequencies_hz) > kMostWaves * 0.5 * 299792458.0) {
+  if (finest * unambiguous_m(step.frequencies_hz) > kMostWaves * kHalfLight_m_per_s) {
     reject(list, "their greatest common divisor is below a thousandth of the greatest",
            "frequencies in simple ratios", "round them to whole MHz");
   }

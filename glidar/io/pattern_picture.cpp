@@ -68,19 +68,16 @@ double value_of(const Beams& beams, std::size_t i) {
 }
 
 std::vector<Mark> marks_of(const Beams& beams) {
-  const bool camera = beams.boresight.isApprox(Eigen::Vector3d::UnitZ());
-  const Eigen::Matrix3d body_from_sensor =
-      camera ? Eigen::Matrix3d(optical_from_body().linear().transpose())
-             : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
+  const SensorAxes axes = axes_of(beams);
   std::vector<Mark> marks;
   const std::size_t step = stride_of(beams);
   for (std::size_t row = 0; row < beams.rows; row += step) {
     for (std::size_t col = 0; col < beams.cols; col += step) {
       const std::size_t i = row * beams.cols + col;
-      const Eigen::Vector3d d = body_from_sensor * beams.directions[i];
+      const Eigen::Vector3d& d = beams.directions[i];
       if (std::isnan(d.x())) continue;
-      marks.push_back({kRadian_deg * std::atan2(d.y(), d.x()),
-                       kRadian_deg * std::asin(std::clamp(d.z(), -1.0, 1.0)), value_of(beams, i)});
+      marks.push_back({kRadian_deg * azimuth_rad(axes, d), kRadian_deg * elevation_rad(axes, d),
+                       value_of(beams, i)});
     }
   }
   if (marks.empty()) throw Error({"picture of the beams", "there are none", "", ""});

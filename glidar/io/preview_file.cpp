@@ -173,7 +173,7 @@ void draw_panel(Picture& picture, const Panel& panel, const Layout& layout, cons
 void write_preview(const CloudFile& job, AtomicFile& file) {
   const PointCloud& cloud = job.cloud;
   // the depth of what lies behind a scanner would be negative
-  const bool camera = job.context.beams.boresight.isApprox(Eigen::Vector3d::UnitZ());
+  const bool camera = looks_along_z(job.context.beams);
   const std::string title = camera ? "depth" : "range";
   std::vector<double> depths_m = std::get<std::vector<double>>(find_column(cloud, "depth")->values);
   if (!camera) {

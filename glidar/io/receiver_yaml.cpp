@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/receiver_yaml.hpp>
 
+#include <algorithm>
 #include <array>
 
 namespace glidar {
@@ -38,14 +39,9 @@ std::array<double, 2> read_two(const YamlField& field, const NumberRule& rule, d
 
 /// The nearest `count` returns, or a list of names.
 std::vector<Return> read_returns(const YamlField& field) {
+  if (!field.node.IsSequence()) return nearest_returns(whole_number(field, 1, kMostReturns));
   std::vector<Return> returns;
-  if (!field.node.IsSequence()) {
-    const std::uint32_t count = whole_number(field, 1, kMostReturns);
-    for (unsigned k = 0; k < count; ++k) returns.push_back({Return::Order::nearest, k});
-    return returns;
-  }
-  std::vector<std::string> names;
-  for (const NamedReturn& known : kReturns) names.emplace_back(known.name);
+  const std::vector<std::string> names = return_names();
   for (const YamlField& item : items(field)) {
     returns.push_back(kReturns[one_of(item, names)].which);
   }
@@ -90,6 +86,24 @@ Receiver read_receiver(const YamlField& field) {
   if (const auto returns = find(field, "returns")) receiver.returns = read_returns(*returns);
   validate(receiver);
   return receiver;
+}
+
+std::vector<std::string> return_names() {
+  std::vector<std::string> names;
+  for (const NamedReturn& known : kReturns) names.emplace_back(known.name);
+  return names;
+}
+
+Return return_named(std::string_view name) {
+  return std::find_if(kReturns.begin(), kReturns.end(),
+                      [&](const NamedReturn& known) { return known.name == name; })
+      ->which;
+}
+
+std::vector<Return> nearest_returns(std::uint32_t count) {
+  std::vector<Return> returns;
+  for (unsigned k = 0; k < count; ++k) returns.push_back({Return::Order::nearest, k});
+  return returns;
 }
 
 std::string return_name(const Return& one) {

@@ -7,6 +7,8 @@
 #include <glidar/sensor/footprint.hpp>
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace glidar {
 
@@ -19,7 +21,16 @@ Footprint read_footprint(const YamlField& field);
 /// returns.
 Receiver read_receiver(const YamlField& field);
 
-/// The word for a return: "first", "second", "last", "strongest", ...
+/// The words for returns: "first", "second", "last", "strongest", ...
+std::vector<std::string> return_names();
+
+/// The return that one of them stands for.
+Return return_named(std::string_view name);
+
+/// The `count` nearest returns.
+std::vector<Return> nearest_returns(std::uint32_t count);
+
+/// The word for a return, or "return 4" and so on of the nearest.
 std::string return_name(const Return& one);
 
 }  // namespace glidar

@@ -234,6 +234,10 @@ Sensor read_sensor(const YamlField& field) {
   read_beam_shape(field, sensor);
   if (const auto weather = find(field, "weather")) read_weather_of(*weather, sensor);
   if (const auto projector = find(field, "projector_m")) {
+    if (sensor.pulse) {
+      reject(*projector, "given beside 'pulse_light'", "a projector of continuous light",
+             "remove one of them");
+    }
     sensor.projector_m = triple(*projector, kPlace_m);
   }
   if (const auto noise = find(field, "noise")) sensor.noise = read_noise(*noise);

@@ -150,6 +150,15 @@ Json status_json(const Frame& frame) {
   return told;
 }
 
+/// The folder as seen from the file, so that both can be moved together.
+Json command_json(const CommandRecord& command, const std::filesystem::path& path) {
+  if (command.arguments.empty()) return {};
+  const auto here =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(path).parent_path());
+  const auto folder = std::filesystem::weakly_canonical(command.folder).lexically_relative(here);
+  return {{"arguments", command.arguments}, {"folder", folder.generic_string()}};
+}
+
 // names and paths may hold bytes that are no UTF-8
 std::string on_one_line(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
@@ -177,8 +186,10 @@ void append_text(const Json& value, std::size_t indent, std::string& text) {
 
 std::string sidecar_text(const CloudFile& job, const std::filesystem::path& path) {
   const Json all = {{"glidar", version()},
+                    {"command", command_json(job.context.command, path)},
                     {"renderer", job.context.renderer},
                     {"seed", job.frame.seed},
+                    {"frame", job.frame.number},
                     {"stamp_ns", job.frame.stamp_ns},
                     {"cloud", cloud_json(job, path)},
                     {"sensor", sensor_json(job)},

@@ -14,8 +14,9 @@ const std::vector<std::string> kFogModels = {"kim", "kruse"};
 const std::vector<std::string> kRainModels = {"geometric", "goodin"};
 const std::vector<std::string> kSnowModels = {"gunn_marshall", "sekhon_srivastava"};
 
-constexpr NumberRule kVisibility = {0.0, 1e6, false, "metres from 1 to 1e6, or 0 for clear air"};
-constexpr NumberRule kRate = {0.0, 1000.0, false, "mm/h from 0 to 1000"};
+constexpr NumberRule kVisibility = {0.0, kLargestVisibility_m, false,
+                                    "metres from 1 to 1e6, or 0 for clear air"};
+constexpr NumberRule kRate = {0.0, kLargestFall_mm_per_h, false, "mm/h from 0 to 1000"};
 constexpr NumberRule kLeastSignal = {1e-6, 1e6, false, "a number from 1e-6 to 1e6"};
 
 template <class Choice>

@@ -4,16 +4,7 @@
 
 #include <glidar/render/resolve.hpp>
 
-#include <algorithm>
-
 namespace glidar {
-
-/// A vector at each corner of a block's triangles.
-struct CornerBlock {
-  Lanes3<float> c0;
-  Lanes3<float> c1;
-  Lanes3<float> c2;
-};
 
 /// Twice the areas of the parts of a triangle around a point of its plane, signed along the normal:
 /// each is opposite to its corner. All are positive inside.
@@ -51,49 +42,6 @@ struct CornerAreas {
           nx * (cy * az - cz * ay) + ny * (cz * ax - cx * az) + nz * (cx * ay - cy * ax),
           nx * (ay * bz - az * by) + ny * (az * bx - ax * bz) + nz * (ax * by - ay * bx),
           ab_squared > c_squared ? ab_squared : c_squared};
-}
-
-/// Where a mesh's corners lie.
-struct CornerSource {
-  const Triangle* triangles;
-  const Eigen::Vector3f* values;  ///< per vertex; nullptr: none
-};
-
-inline CornerSource positions_of(const Mesh& mesh) {
-  return {mesh.triangles.data(), mesh.positions_m.data()};
-}
-
-/// Without normals there is no length either: then the flat normal is taken.
-inline CornerSource normals_of(const Mesh& mesh) {
-  return {mesh.triangles.data(), mesh.normals.empty() ? nullptr : mesh.normals.data()};
-}
-
-inline void gather_lane(const CornerSource& source, std::uint32_t primitive, unsigned lane,
-                        CornerBlock& corners) {
-  const Triangle& t = source.triangles[primitive];
-  const auto value = [&](std::uint32_t vertex) {
-    return source.values == nullptr ? Eigen::Vector3f::Zero().eval() : source.values[vertex];
-  };
-  corners.c0.set(lane, value(t[0]));
-  corners.c1.set(lane, value(t[1]));
-  corners.c2.set(lane, value(t[2]));
-}
-
-inline bool is_one_instance(const HitBlock& block) {
-  return std::all_of(block.instance.begin(), block.instance.end(),
-                     [&](std::uint32_t instance) { return instance == block.instance[0]; });
-}
-
-/// Collects what a mesh has at the corners of a block's triangles.
-template <class SourceOf>
-void gather(const Resolver& resolver, const HitBlock& block, const SourceOf& source_of,
-            CornerBlock& corners) {
-  const CornerSource first = source_of(resolver.mesh(block.instance[0]));
-  const bool is_one = is_one_instance(block);
-  for (unsigned i = 0; i < kLanes; ++i) {
-    gather_lane(is_one ? first : source_of(resolver.mesh(block.instance[i])), block.primitive[i], i,
-                corners);
-  }
 }
 
 }  // namespace glidar

@@ -22,13 +22,46 @@ void for_lanes(std::uint32_t mask, const Body& body) {
   for (; mask != 0; mask &= mask - 1) body(static_cast<unsigned>(std::countr_zero(mask)));
 }
 
-/// The beams of a sensor whose beams share one origin, in the frame of one instance.
-GLIDAR_SIMD void look_from_one(const InstanceView& view, const Lanes3<double>& in_sensor,
-                               ExactBlock& exact) {
-  rotate(view.object_from_sensor, in_sensor, exact.direction);
-  for (unsigned i = 0; i < kLanes; ++i) exact.origin.x[i] = view.sensor_in_object.x();
-  for (unsigned i = 0; i < kLanes; ++i) exact.origin.y[i] = view.sensor_in_object.y();
-  for (unsigned i = 0; i < kLanes; ++i) exact.origin.z[i] = view.sensor_in_object.z();
+/// The lanes that hit another instance than this.
+std::uint32_t others_than(const HitBlock& block, std::uint32_t instance) {
+  std::uint32_t others = 0;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    others |= static_cast<std::uint32_t>(block.instance[i] != instance) << i;
+  }
+  return others;
+}
+
+bool is_one_instance(const HitBlock& block) {
+  return others_than(block, block.instance[0]) == 0;
+}
+
+/// The beams in the frame of one instance, as ray_in().
+GLIDAR_SIMD void look_from(const InstanceView& view, const BeamBlock& beams, ExactBlock& exact) {
+  rotate(view.object_from_sensor, beams.direction, exact.direction);
+  const Eigen::Vector3d& sensor = view.sensor_in_object;
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.x[i] = sensor.x();
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.y[i] = sensor.y();
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.z[i] = sensor.z();
+  if (!beams.has_origins) return;
+  Lanes3<double> offset_m;
+  rotate(view.object_from_sensor, beams.origin_m, offset_m);
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.x[i] += offset_m.x[i] / view.scale;
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.y[i] += offset_m.y[i] / view.scale;
+  for (unsigned i = 0; i < kLanes; ++i) exact.origin.z[i] += offset_m.z[i] / view.scale;
+}
+
+/// Takes the rays of the lanes that hit the instance.
+GLIDAR_SIMD void take_rays(const HitBlock& block, std::uint32_t instance, const ExactBlock& seen,
+                           ExactBlock& exact) {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const bool is_its = block.instance[i] == instance;
+    exact.origin.x[i] = is_its ? seen.origin.x[i] : exact.origin.x[i];
+    exact.origin.y[i] = is_its ? seen.origin.y[i] : exact.origin.y[i];
+    exact.origin.z[i] = is_its ? seen.origin.z[i] : exact.origin.z[i];
+    exact.direction.x[i] = is_its ? seen.direction.x[i] : exact.direction.x[i];
+    exact.direction.y[i] = is_its ? seen.direction.y[i] : exact.direction.y[i];
+    exact.direction.z[i] = is_its ? seen.direction.z[i] : exact.direction.z[i];
+  }
 }
 
 /// cosine = n.d, distance = (offset - n.o) / (n.d), as distance_to().
@@ -159,6 +192,8 @@ Resolver::Resolver(const Scene& scene) : scene_(scene) {
     known_.push_back(
         {.mesh = &mesh,
          .triangles = mesh.triangles.data(),
+         .positions_m = mesh.positions_m.data(),
+         .normals = mesh.normals.empty() ? nullptr : mesh.normals.data(),
          .planes = planes_[instance.mesh].data(),
          .narrowness = narrowness_[instance.mesh].data(),
          .twins = may_swap ? twins.data() : nullptr,
@@ -182,16 +217,15 @@ void Resolver::set_poses(const Pose& world_from_sensor, std::span<const Pose> wo
 void Resolver::prefetch_corners(const HitBlock& block, const HitFields& fields) const {
   if (!needs_corners(fields)) return;
   for_lanes(block.mask, [&](unsigned i) {
-    const Mesh& of = mesh(block.instance[i]);
+    const Known& of = known_[block.instance[i]];
     for (const std::uint32_t vertex : of.triangles[block.primitive[i]]) {
-      __builtin_prefetch(&of.positions_m[vertex]);
-      if (!of.normals.empty()) __builtin_prefetch(&of.normals[vertex]);
+      __builtin_prefetch(of.positions_m + vertex);
+      if (of.normals != nullptr) __builtin_prefetch(of.normals + vertex);
     }
   });
 }
 
-void Resolver::measure(const Beams& beams, const Lanes3<double>& in_sensor, HitBlock& block,
-                       ExactBlock& exact) const {
+void Resolver::measure(const BeamBlock& beams, HitBlock& block, ExactBlock& exact) const {
   const auto first = static_cast<unsigned>(std::countr_zero(block.mask));
   for (unsigned i = 0; i < kLanes; ++i) {
     if ((block.mask >> i & 1U) != 0) continue;
@@ -204,14 +238,13 @@ void Resolver::measure(const Beams& beams, const Lanes3<double>& in_sensor, HitB
     exact.offset[i] = triangle.offset;
     exact.narrowness[i] = known_[block.instance[i]].narrowness[block.primitive[i]];
   }
-  if (beams.origins_m.empty() && is_one_instance(block)) {
-    look_from_one(views_[block.instance[0]], in_sensor, exact);
-  } else {
-    for_lanes(block.mask, [&](unsigned i) {
-      const ObjectRay ray = ray_in(views_[block.instance[i]], beams, block.beam[i]);
-      exact.origin.set(i, ray.origin);
-      exact.direction.set(i, ray.direction);
-    });
+  look_from(views_[block.instance[0]], beams, exact);
+  ExactBlock seen;
+  for (std::uint32_t rest = others_than(block, block.instance[0]); rest != 0;) {
+    const std::uint32_t instance = block.instance[static_cast<unsigned>(std::countr_zero(rest))];
+    look_from(views_[instance], beams, seen);
+    take_rays(block, instance, seen, exact);
+    rest &= others_than(block, instance);
   }
   intersect_planes(exact);
 }
@@ -249,12 +282,23 @@ void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& fro
   });
 }
 
+void Resolver::gather(const HitBlock& block, bool with_normals, Corners& corners) const {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const Known& of = known_[block.instance[i]];
+    const Triangle& triangle = of.triangles[block.primitive[i]];
+    corners.position_m.set(i, of.positions_m, triangle);
+    if (!with_normals) continue;
+    // Without normals there is no length either: then the flat normal is taken.
+    static const Eigen::Vector3f kNone = Eigen::Vector3f::Zero();
+    corners.normal.set(i, of.normals == nullptr ? &kNone : of.normals,
+                       of.normals == nullptr ? Triangle{} : triangle);
+  }
+}
+
 void Resolver::write_shading(const HitFields& fields, const HitBlock& block,
                              const ExactBlock& exact, const Weights& weights, Hits& hits) const {
-  CornerBlock corners;
   Lanes3<double> smooth;
-  gather(*this, block, normals_of, corners);
-  blend_normals(corners, weights.w1, weights.w2, exact.normal, smooth);
+  blend_normals(weights.normals, weights.w1, weights.w2, exact.normal, smooth);
   bend_normals(block, weights.w1, weights.w2, smooth);
   if (fields.shading) {
     Lanes<float> cosine;
@@ -266,15 +310,16 @@ void Resolver::write_shading(const HitFields& fields, const HitBlock& block,
 
 void Resolver::write_surface(const HitFields& fields, const HitBlock& block,
                              const ExactBlock& exact, Hits& hits) const {
-  CornerBlock corners;
+  const bool needs_normals = fields.shading_normal || fields.shading;
+  Corners corners;
   Lanes<float> w1;
   Lanes<float> w2;
-  gather(*this, block, positions_of, corners);
-  weigh(exact, corners, w1, w2);
+  gather(block, needs_normals, corners);
+  weigh(exact, corners.position_m, w1, w2);
   if (fields.barycentrics) {
     for_lanes(block.mask, [&](unsigned i) { hits.barycentrics[block.beam[i]] = {w1[i], w2[i]}; });
   }
-  if (fields.shading_normal || fields.shading) write_shading(fields, block, exact, {w1, w2}, hits);
+  if (needs_normals) write_shading(fields, block, exact, {w1, w2, corners.normal}, hits);
   if (fields.colour || fields.reflectance || fields.noise_scale)
     write_colours(fields, block, w1, w2, hits);
 }

@@ -43,6 +43,13 @@ inline double distance_to(const TrianglePlane& plane, const ObjectRay& ray) {
   return (plane.offset - plane.normal.dot(ray.origin)) / plane.normal.dot(ray.direction);
 }
 
+/// The beams of a block, in the sensor's frame.
+struct BeamBlock {
+  Lanes3<double> direction;
+  Lanes3<double> origin_m;
+  bool has_origins = false;  ///< else they start at the sensor's zero, and origin_m is not set
+};
+
 /// Up to kLanes hits: who was hit by which beam. Only lanes of the mask count.
 struct HitBlock {
   std::uint32_t mask = 0;  ///< bit i: lane i holds a hit
@@ -60,6 +67,19 @@ struct ExactBlock {
   Lanes<double> cosine;      ///< of normal and direction; positive: seen from behind
   Lanes<double> distance;    ///< along the beam
   Lanes<float> narrowness;   ///< of the triangle, see triangle_narrowness()
+};
+
+/// A vector at each corner of a block's triangles.
+struct CornerBlock {
+  Lanes3<float> c0;
+  Lanes3<float> c1;
+  Lanes3<float> c2;
+
+  void set(unsigned lane, const Eigen::Vector3f* of_vertex, const Triangle& triangle) {
+    c0.set(lane, of_vertex[triangle[0]]);
+    c1.set(lane, of_vertex[triangle[1]]);
+    c2.set(lane, of_vertex[triangle[2]]);
+  }
 };
 
 /// What is known beforehand of the material in one slot of an instance.
@@ -104,10 +124,9 @@ class Resolver {
   /// Asks the memory for the corners of a block's triangles, as far as the fields need them.
   void prefetch_corners(const HitBlock& block, const HitFields& fields) const;
 
-  /// Exact range and incidence of a block with at least one hit, from its beams' directions in the
-  /// sensor's frame. Lanes without a hit take the ids of one that has.
-  void measure(const Beams& beams, const Lanes3<double>& in_sensor, HitBlock& block,
-               ExactBlock& exact) const;
+  /// Exact range and incidence of a block with at least one hit. Lanes without a hit take the ids
+  /// of one that has.
+  void measure(const BeamBlock& beams, HitBlock& block, ExactBlock& exact) const;
 
   /// Writes the columns of a measured block.
   void write(const Beams& beams, const HitFields& fields, const HitBlock& block,
@@ -116,10 +135,16 @@ class Resolver {
  private:
   void write_directions(const HitBlock& block, const Lanes3<double>& front,
                         const Lanes<double>& cosine, std::vector<Eigen::Vector3f>& column) const;
-  /// Of corners 1 and 2 of each lane's triangle.
+  struct Corners {
+    CornerBlock position_m;  ///< relative to the mesh's origin
+    CornerBlock normal;
+  };
+  void gather(const HitBlock& block, bool with_normals, Corners& corners) const;
+  /// Weights of corners 1 and 2 of each lane's triangle, and what they weigh.
   struct Weights {
     const Lanes<float>& w1;
     const Lanes<float>& w2;
+    const CornerBlock& normals;
   };
   void write_shading(const HitFields& fields, const HitBlock& block, const ExactBlock& exact,
                      const Weights& weights, Hits& hits) const;
@@ -140,6 +165,8 @@ class Resolver {
   struct Known {
     const Mesh* mesh;
     const Triangle* triangles;
+    const Eigen::Vector3f* positions_m;
+    const Eigen::Vector3f* normals;  ///< nullptr: flat shading
     const TrianglePlane* planes;
     const float* narrowness;
     const std::uint32_t* twins;  ///< nullptr: all triangles differ

@@ -25,8 +25,7 @@ Eigen::Vector4f texel_at(const Scene& scene, const SurfacePlace& place, const Te
 }  // namespace
 
 const Material& material_at(const Scene& scene, const SurfacePlace& place) {
-  const std::uint16_t slot = material_slot(place.mesh, place.triangle);
-  return scene.materials[place.instance.materials[slot]];
+  return material_of(scene, place.instance, place.triangle);
 }
 
 Eigen::Vector2f uv_at(const SurfacePlace& place, std::uint8_t uv_set) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glidar/core/error.hpp>
 
 namespace glidar {
 namespace {
@@ -14,32 +15,32 @@ struct Shot {
   std::uint32_t time_ns;
 };
 
-void require_size(std::size_t found, std::size_t size, bool may_be_empty, const char* field) {
-  require_optics(found == size || (may_be_empty && found == 0), field, static_cast<double>(found),
+void require_size(std::size_t found, std::size_t size, bool may_be_empty, const char* where) {
+  require_number(found == size || (may_be_empty && found == 0), where, static_cast<double>(found),
                  "one entry per beam (rows x cols)");
 }
 
 void check_times(const BeamTable& table) {
   const std::vector<double>& times = table.times_ns;
   if (times.empty()) return;
-  require_optics(std::is_sorted(times.begin(), times.end()), "times", times.front(),
+  require_number(std::is_sorted(times.begin(), times.end()), "optics, times", times.front(),
                  "times that do not fall");
   // half a nanosecond less: a shot is rounded to a nanosecond and must stay in its own play
-  require_optics(times.front() >= 0.0 && times.back() <= table.period_ns - 0.5, "times",
+  require_number(times.front() >= 0.0 && times.back() <= table.period_ns - 0.5, "optics, times",
                  times.back(), "from 0 to half a nanosecond before the period's end");
 }
 
 void validate(const BeamTable& table) {
   const std::size_t size = std::size_t{table.rows} * table.cols;
-  require_optics(size >= 1 && size <= kMostBeams, "number of beams", static_cast<double>(size),
-                 "1 to 134217728");
-  require_size(table.directions.size(), size, false, "directions");
-  require_size(table.origins_m.size(), size, true, "origins");
-  require_size(table.times_ns.size(), size, true, "times");
-  require_size(table.rings.size(), size, true, "rings");
+  require_number(size >= 1 && size <= kMostBeams, "optics, number of beams",
+                 static_cast<double>(size), "1 to 134217728");
+  require_size(table.directions.size(), size, false, "optics, directions");
+  require_size(table.origins_m.size(), size, true, "optics, origins");
+  require_size(table.times_ns.size(), size, true, "optics, times");
+  require_size(table.rings.size(), size, true, "optics, rings");
   for (const Eigen::Vector3d& d : table.directions) {
-    require_optics(std::isnan(d.x()) || (d.allFinite() && d.norm() > 0.0), "directions", d.norm(),
-                   "vectors of finite length above 0, or NaN");
+    require_number(std::isnan(d.x()) || (d.allFinite() && d.norm() > 0.0), "optics, directions",
+                   d.norm(), "vectors of finite length above 0, or NaN");
   }
   check_times(table);
 }

@@ -3,6 +3,7 @@
 #include <glidar/sensor/dropout.hpp>
 
 #include <glidar/core/elementary.hpp>
+#include <glidar/core/light_speed.hpp>
 #include <glidar/core/simd.hpp>
 #include <glidar/sensor/lateral_shift.hpp>
 #include <glidar/sensor/noise_batch.hpp>
@@ -67,7 +68,6 @@ void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch) {
 
 void apply(const FalseEchoes& step, const NoiseView& view, NoiseBatch& batch) {
   if (!(step.rate_hz > 0.0)) return;
-  constexpr double kHalfLight_m_per_s = 0.5 * 299792458.0;
   Batch<double> x;
   draw_shared_uniforms(batch.draw, x);
   first_arrivals(step.near_m - view.beams.range_offset_m, kHalfLight_m_per_s / step.rate_hz, x);

@@ -4,6 +4,7 @@
 
 #include <glidar/core/elementary.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/core/light_speed.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -11,44 +12,42 @@
 namespace glidar {
 namespace {
 
-constexpr double kSpeedOfLight_m_s = 299792458.0;
 constexpr double kFwhmPerSigma = 2.3548200450309493;  // sqrt(8 ln 2)
 constexpr double kReach = 6.0;   // standard deviations: beyond, a pulse is below 2e-8 of its peak
 constexpr double kStep = 0.125;  // of a standard deviation: the waveform's samples
 
-void require(bool holds, const char* field, double found, const char* allowed) {
-  if (holds) return;
-  throw Error({.where = std::string("receiver, ") + field,
-               .found = number_text(found),
-               .allowed = allowed,
-               .remedy = ""});
-}
-
-/// Paths [begin, end) of a beam, sorted by range.
+/// Paths [begin, end) of a beam, sorted by range unless all are nearer than `apart_m` to each
+/// other.
 struct Group {
   std::size_t begin;
   std::size_t end;
 };
 
-/// exp(-y) from 0 on. Most paths of a footprint are near each other: then its series to y^4, whose
-/// next term is below 1e-11, is quicker.
+/// exp(-y) from 0 on, nothing beyond a pulse's reach. Most paths of a footprint are near each
+/// other: then its series to y^4, whose next term is below 1e-11, is quicker.
 double fading(double y) {
   constexpr double kSmall = 1.0 / 64.0;
-  if (y >= kSmall) return natural_exp(-y);
-  return 1.0 - y * (1.0 - y / 2.0 * (1.0 - y / 3.0 * (1.0 - y / 4.0)));
+  if (y >= kSmall) return y < 0.5 * kReach * kReach ? natural_exp(-y) : 0.0;
+  return 1.0 - y * (1.0 - y * (1.0 / 2.0 - y * (1.0 / 6.0 - y * (1.0 / 24.0))));
 }
 
 /// The sum of the group's pulses at a range.
 double waveform(const EchoWork& work, const Group& group, double sigma_m, double range_m) {
+  const double per_sigma = 1.0 / sigma_m;
   double sum = 0.0;
   for (std::size_t i = group.begin; i < group.end; ++i) {
-    const double x = (work.path[i].range_m - range_m) / sigma_m;
-    if (std::abs(x) < kReach) sum += work.path[i].signal * fading(0.5 * x * x);
+    const double x = (work.path[i].range_m - range_m) * per_sigma;
+    sum += work.path[i].signal * fading(0.5 * x * x);
   }
   return sum;
 }
 
-/// The echo of a group: centroid, width and strongest path.
+/// The stronger of two paths, at the same strength the nearer.
+bool is_stronger(const Path& a, const Path& b) {
+  return a.signal > b.signal || (a.signal == b.signal && a.range_m < b.range_m);
+}
+
+/// The echo of a group: centroid and the height of the waveform there, width and strongest path.
 PulseEcho echo_of(const EchoWork& work, const Group& group, double sigma_m, double apart_m) {
   PulseEcho echo{.range_m = 0.0,
                  .signal = 0.0,
@@ -61,15 +60,17 @@ PulseEcho echo_of(const EchoWork& work, const Group& group, double sigma_m, doub
     const Path& path = work.path[i];
     sum += path.signal;
     echo.range_m += path.signal * (path.range_m - start_m);
-    if (path.signal > work.path[echo.strongest].signal)
+    if (is_stronger(path, work.path[echo.strongest]))
       echo.strongest = static_cast<std::uint32_t>(i);
     if (i > group.begin && path.range_m - work.path[i - 1].range_m > apart_m) echo.is_mixed = true;
   }
   echo.range_m = start_m + (sum > 0.0 ? echo.range_m / sum : 0.0);
+  const double fade = 0.5 / (sigma_m * sigma_m);
   double variance = 0.0;
   for (std::size_t i = group.begin; i < group.end; ++i) {
-    const double off = work.path[i].range_m - echo.range_m;
-    variance += work.path[i].signal * off * off;
+    const double off_m = work.path[i].range_m - echo.range_m;
+    variance += work.path[i].signal * (off_m * off_m);
+    echo.signal += work.path[i].signal * fading(fade * (off_m * off_m));
   }
   echo.sigma_m = std::sqrt(sigma_m * sigma_m + (sum > 0.0 ? variance / sum : 0.0));
   return echo;
@@ -121,16 +122,30 @@ void split(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
   close(group.end);
 }
 
-/// Finds the echoes of paths that others are too far from to matter. Pulses within one standard
-/// deviation of each other have one peak, at their mean but for the third order.
+/// Pulses within one standard deviation of each other have one peak, at their mean but for the
+/// third order.
+void take_as_one(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
+  work.echo[work.echoes++] = echo_of(work, group, sigma_m, apart_m);
+}
+
+/// Finds the echoes of paths that others are too far from to matter.
 void find_in_group(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
   if (work.path[group.end - 1].range_m - work.path[group.begin].range_m > sigma_m) {
     split(group, sigma_m, apart_m, work);
-    return;
+  } else {
+    take_as_one(group, sigma_m, apart_m, work);
   }
-  PulseEcho echo = echo_of(work, group, sigma_m, apart_m);
-  echo.signal = waveform(work, group, sigma_m, echo.range_m);
-  work.echo[work.echoes++] = echo;
+}
+
+/// How far the nearest and the farthest path are from each other.
+double extent_m(const EchoWork& work) {
+  double nearest_m = work.path[0].range_m;
+  double farthest_m = nearest_m;
+  for (std::size_t i = 1; i < work.paths; ++i) {
+    nearest_m = std::min(nearest_m, work.path[i].range_m);
+    farthest_m = std::max(farthest_m, work.path[i].range_m);
+  }
+  return farthest_m - nearest_m;
 }
 
 /// The index of the echo that a return asks for; -1: none.
@@ -153,23 +168,20 @@ int find_return(const Return& wanted, std::span<const PulseEcho> echoes,
 }  // namespace
 
 void validate(const Receiver& receiver) {
-  require(receiver.pulse_fwhm_s > 0.0 && receiver.pulse_fwhm_s <= 1e-3, "pulse_fwhm_s",
-          receiver.pulse_fwhm_s, "seconds above 0, up to 1e-3");
-  require(receiver.separation_m >= 0.0 && std::isfinite(receiver.separation_m), "separation_m",
-          receiver.separation_m, "metres from 0");
-  require(!receiver.returns.empty() && receiver.returns.size() <= kMostReturns, "returns",
-          static_cast<double>(receiver.returns.size()), "1 to 16 of them");
+  require_number(receiver.pulse_fwhm_s > 0.0 && receiver.pulse_fwhm_s <= 1e-3,
+                 "receiver, pulse_fwhm_s", receiver.pulse_fwhm_s, "seconds above 0, up to 1e-3");
+  require_number(receiver.separation_m >= 0.0 && std::isfinite(receiver.separation_m),
+                 "receiver, separation_m", receiver.separation_m, "metres from 0");
+  require_number(!receiver.returns.empty() && receiver.returns.size() <= kMostReturns,
+                 "receiver, returns", static_cast<double>(receiver.returns.size()),
+                 "1 to 16 of them");
 }
 
 double pulse_sigma_m(const Receiver& receiver) {
-  return 0.5 * kSpeedOfLight_m_s * receiver.pulse_fwhm_s / kFwhmPerSigma;
+  return kHalfLight_m_per_s * receiver.pulse_fwhm_s / kFwhmPerSigma;
 }
 
-void EchoWork::add(const Path& one) {
-  if (paths < kMost) {
-    path[paths++] = one;
-    return;
-  }
+void EchoWork::replace_weakest(const Path& one) {
   const auto weakest = std::min_element(
       path.begin(), path.end(), [](const Path& a, const Path& b) { return a.signal < b.signal; });
   if (weakest->signal < one.signal) *weakest = one;
@@ -177,6 +189,11 @@ void EchoWork::add(const Path& one) {
 
 void find_echoes(double sigma_m, double apart_m, EchoWork& work) {
   work.echoes = 0;
+  if (work.paths == 0) return;
+  if (extent_m(work) <= std::min(sigma_m, apart_m)) {  // as most beams: no need to sort
+    take_as_one({0, work.paths}, sigma_m, apart_m, work);
+    return;
+  }
   std::sort(work.path.begin(), work.path.begin() + static_cast<std::ptrdiff_t>(work.paths),
             [](const Path& a, const Path& b) {
               return a.range_m != b.range_m ? a.range_m < b.range_m : a.source < b.source;

@@ -64,13 +64,23 @@ struct EchoWork {
   std::size_t echoes = 0;
 
   /// The weakest of too many paths are left out.
-  void add(const Path& one);
+  void add(const Path& one) {
+    if (paths == kMost) return replace_weakest(one);
+    // Member by member: copied as a whole it would wait for its own parts to be stored.
+    Path& to = path[paths++];
+    to.range_m = one.range_m;
+    to.signal = one.signal;
+    to.source = one.source;
+    to.cause = one.cause;
+  }
+
+  void replace_weakest(const Path& one);
 };
 
-/// Sorts the paths by range and finds the peaks of the sum of their pulses, in order of range. Two
+/// Finds the peaks of the sum of the paths' pulses, in order of range; may sort the paths. Two
 /// equal pulses have two peaks when they are more than two standard deviations apart, c FWHM /
-/// 2.355 in range (the reference's 3.2); below that they are one echo at their weighted mean. An
-/// echo is mixed when neighbours among its paths are more than `apart_m` from each other.
+/// 2.355 in range; below that they are one echo at their weighted mean. An echo is mixed when
+/// neighbours among its paths are more than `apart_m` from each other.
 void find_echoes(double sigma_m, double apart_m, EchoWork& work);
 
 /// Takes away echoes nearer than separation_m to a stronger one.

@@ -3,6 +3,7 @@
 #include <glidar/sensor/fog.hpp>
 
 #include <glidar/core/elementary.hpp>
+#include <glidar/core/light_speed.hpp>
 #include <glidar/sensor/air_signal.hpp>
 
 #include <algorithm>
@@ -13,7 +14,6 @@
 namespace glidar {
 namespace {
 
-constexpr double kLight_m_per_s = 299792458.0;
 constexpr std::size_t kLayers = 4096;
 constexpr std::size_t kHardRanges = 256;
 

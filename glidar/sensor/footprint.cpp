@@ -3,7 +3,10 @@
 #include <glidar/sensor/footprint.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/simd.hpp>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -11,13 +14,8 @@
 namespace glidar {
 namespace {
 
-void require(bool holds, const char* field, double found, const char* allowed) {
-  if (holds) return;
-  throw Error({.where = std::string("footprint, ") + field,
-               .found = number_text(found),
-               .allowed = allowed,
-               .remedy = ""});
-}
+constexpr std::size_t kBeamsPerTask = 128;
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// What lies between two radii, as u = 2 r^2 / w^2: the share of a Gaussian's energy, and its mean
 /// of u. The share beyond u is exp(-u), the integral of u exp(-u) is -(u + 1) exp(-u).
@@ -48,25 +46,94 @@ std::vector<Ring> rings_of(unsigned count) {
   return rings;
 }
 
-/// Two directions across a beam: to its side and up.
-struct Across {
-  Eigen::Vector3d x;
-  Eigen::Vector3d y;
+/// Vectors of beams that are spread together, component by component.
+constexpr std::size_t kAtOnce = 16;
+struct alignas(64) Vectors {
+  std::array<double, kAtOnce> x;
+  std::array<double, kAtOnce> y;
+  std::array<double, kAtOnce> z;
+
+  void set(std::size_t i, const Eigen::Vector3d& v) {
+    x[i] = v.x();
+    y[i] = v.y();
+    z[i] = v.z();
+  }
+  [[nodiscard]] Eigen::Vector3d get(std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
 
-Across across(const Eigen::Vector3d& direction, const Eigen::Vector3d& up) {
-  constexpr double kParallel = 1e-9;
-  const Eigen::Vector3d side = direction.cross(up);
-  const Eigen::Vector3d x =
-      side.norm() > kParallel ? Eigen::Vector3d(side.normalized()) : direction.unitOrthogonal();
-  return {x, x.cross(direction)};
+/// Beams with two directions across each: to its side and up.
+struct Crosses {
+  Vectors beam;
+  Vectors side;
+  Vectors above;
+};
+
+/// out = scale (from + a x + b y).
+GLIDAR_SIMD void lean(const Vectors& from, const Crosses& c, const Eigen::Vector2d& ab,
+                      double scale, Vectors& out) {
+  const double a = ab.x();
+  const double b = ab.y();
+  for (std::size_t i = 0; i < kAtOnce; ++i) {
+    out.x[i] = scale * (from.x[i] + a * c.side.x[i] + b * c.above.x[i]);
+    out.y[i] = scale * (from.y[i] + a * c.side.y[i] + b * c.above.y[i]);
+    out.z[i] = scale * (from.z[i] + a * c.side.z[i] + b * c.above.z[i]);
+  }
 }
 
-/// Where a sub-ray of a beam starts.
-Eigen::Vector3d origin_of(const Beams& beams, std::size_t beam, const SubRay& ray,
-                          const Across& basis) {
-  const Eigen::Vector3d offset = ray.offset_m.x() * basis.x + ray.offset_m.y() * basis.y;
-  return beams.origins_m.empty() ? offset : Eigen::Vector3d(offset + beams.origins_m[beam]);
+/// side = beam x up, above = side x beam. A beam along `up` gets a side that is no number.
+GLIDAR_SIMD void find_crosses(const Eigen::Vector3d& up, Crosses& c) {
+  constexpr double kParallel = 1e-9;
+  for (std::size_t i = 0; i < kAtOnce; ++i) {
+    const double x = c.beam.y[i] * up.z() - c.beam.z[i] * up.y();
+    const double y = c.beam.z[i] * up.x() - c.beam.x[i] * up.z();
+    const double z = c.beam.x[i] * up.y() - c.beam.y[i] * up.x();
+    const double length = std::sqrt(x * x + y * y + z * z);
+    const double scale = length > kParallel ? 1.0 / length : kNaN;
+    c.side.x[i] = x * scale;
+    c.side.y[i] = y * scale;
+    c.side.z[i] = z * scale;
+    c.above.x[i] = c.side.y[i] * c.beam.z[i] - c.side.z[i] * c.beam.y[i];
+    c.above.y[i] = c.side.z[i] * c.beam.x[i] - c.side.x[i] * c.beam.z[i];
+    c.above.z[i] = c.side.x[i] * c.beam.y[i] - c.side.y[i] * c.beam.x[i];
+  }
+}
+
+void find_crosses(const Beams& beams, BeamRange range, Crosses& crosses) {
+  for (std::size_t i = 0; i < kAtOnce; ++i) {
+    crosses.beam.set(i, beams.directions[std::min(range.begin + i, range.end - 1)]);
+  }
+  find_crosses(axes_of(beams).up, crosses);
+  for (std::size_t i = 0; i < kAtOnce; ++i) {
+    if (!std::isnan(crosses.side.x[i])) continue;
+    const Eigen::Vector3d beam = crosses.beam.get(i);
+    const Eigen::Vector3d side = beam.unitOrthogonal();
+    crosses.side.set(i, side);
+    crosses.above.set(i, side.cross(beam));
+  }
+}
+
+/// Spreads up to kAtOnce beams; their sub-rays stand from `first` on.
+void spread_some(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range,
+                 std::size_t first, Beams& out) {
+  Crosses crosses;
+  Vectors start_m{};
+  Vectors leant;
+  find_crosses(beams, range, crosses);
+  const std::size_t count = range.end - range.begin;
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!beams.origins_m.empty()) start_m.set(i, beams.origins_m[range.begin + i]);
+    if (out.times_ns.empty()) continue;
+    std::fill_n(&out.times_ns[first + i * rays.size()], rays.size(),
+                beams.times_ns[range.begin + i]);
+  }
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const auto place = [&](std::size_t i) { return first + i * rays.size() + k; };
+    lean(crosses.beam, crosses, rays[k].slope, rays[k].shortening, leant);
+    for (std::size_t i = 0; i < count; ++i) out.directions[place(i)] = leant.get(i);
+    if (out.origins_m.empty()) continue;
+    lean(start_m, crosses, rays[k].offset_m, 1.0, leant);
+    for (std::size_t i = 0; i < count; ++i) out.origins_m[place(i)] = leant.get(i);
+  }
 }
 
 }  // namespace
@@ -74,11 +141,13 @@ Eigen::Vector3d origin_of(const Beams& beams, std::size_t beam, const SubRay& ra
 void validate(const Footprint& f) {
   const auto angle = [](double x) { return x >= 0.0 && x < std::numbers::pi / 2.0; };
   const auto width = [](double x) { return x >= 0.0 && x < 1e3; };
-  require(angle(f.divergence_x_rad), "divergence_x_rad", f.divergence_x_rad, "0 to pi/2");
-  require(angle(f.divergence_y_rad), "divergence_y_rad", f.divergence_y_rad, "0 to pi/2");
-  require(width(f.exit_x_m), "exit_x_m", f.exit_x_m, "metres from 0 to 1000");
-  require(width(f.exit_y_m), "exit_y_m", f.exit_y_m, "metres from 0 to 1000");
-  require(f.rings >= 1 && f.rings <= kMostRings, "rings", f.rings, "1 to 8");
+  require_number(angle(f.divergence_x_rad), "footprint, divergence_x_rad", f.divergence_x_rad,
+                 "0 to pi/2");
+  require_number(angle(f.divergence_y_rad), "footprint, divergence_y_rad", f.divergence_y_rad,
+                 "0 to pi/2");
+  require_number(width(f.exit_x_m), "footprint, exit_x_m", f.exit_x_m, "metres from 0 to 1000");
+  require_number(width(f.exit_y_m), "footprint, exit_y_m", f.exit_y_m, "metres from 0 to 1000");
+  require_number(f.rings >= 1 && f.rings <= kMostRings, "footprint, rings", f.rings, "1 to 8");
 }
 
 double diameter_m(const Footprint& f, double range_m) {
@@ -102,15 +171,18 @@ std::vector<SubRay> sub_rays(const Footprint& f) {
       const double angle = 2.0 * std::numbers::pi * (j + k * kTwist) / count;
       const double c = 0.5 * radius * std::cos(angle);
       const double s = 0.5 * radius * std::sin(angle);
+      const Eigen::Vector2d slope(-s * f.divergence_x_rad, c * f.divergence_y_rad);
       rays.push_back({.offset_m = {c * f.exit_x_m, s * f.exit_y_m},
-                      .slope = {-s * f.divergence_x_rad, c * f.divergence_y_rad},
-                      .share = rings[k].share / count});
+                      .slope = slope,
+                      .share = rings[k].share / count,
+                      .shortening = 1.0 / std::sqrt(1.0 + slope.squaredNorm())});
     }
   }
   return rays;
 }
 
-void spread(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range, Beams& out) {
+void spread(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range, Workers& workers,
+            Beams& out) {
   const std::size_t count = (range.end - range.begin) * rays.size();
   const bool has_offsets = !beams.origins_m.empty() || !rays.back().offset_m.isZero(0.0);
   out.rows = 1;
@@ -120,22 +192,14 @@ void spread(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range
   out.directions.resize(count);
   out.origins_m.resize(has_offsets ? count : 0);
   out.times_ns.resize(beams.times_ns.empty() ? 0 : count);
-  // x forward, z up (LiDAR), or z forward, y down (camera)
-  const bool is_camera = std::abs(beams.boresight.z()) > 0.5;
-  const Eigen::Vector3d up = is_camera ? Eigen::Vector3d(-Eigen::Vector3d::UnitY())
-                                       : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
-  std::size_t i = 0;
-  for (std::size_t beam = range.begin; beam < range.end; ++beam) {
-    const Eigen::Vector3d& direction = beams.directions[beam];
-    const Across basis = across(direction, up);
-    for (const SubRay& ray : rays) {
-      const double length = std::sqrt(1.0 + ray.slope.squaredNorm());
-      out.directions[i] = (direction + ray.slope.x() * basis.x + ray.slope.y() * basis.y) / length;
-      if (has_offsets) out.origins_m[i] = origin_of(beams, beam, ray, basis);
-      if (!out.times_ns.empty()) out.times_ns[i] = beams.times_ns[beam];
-      ++i;
-    }
-  }
+  workers.for_ranges(range.end - range.begin, kBeamsPerTask,
+                     [&](std::size_t begin, std::size_t end) {
+                       for (std::size_t k = begin; k < end; k += kAtOnce) {
+                         const std::size_t beam = range.begin + k;
+                         const std::size_t some = std::min(kAtOnce, end - k);
+                         spread_some(rays, beams, {beam, beam + some}, k * rays.size(), out);
+                       }
+                     });
 }
 
 }  // namespace glidar

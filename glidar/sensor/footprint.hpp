@@ -4,6 +4,7 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/core/frame.hpp>
+#include <glidar/core/workers.hpp>
 
 #include <vector>
 
@@ -37,17 +38,21 @@ struct SubRay {
   Eigen::Vector2d offset_m = Eigen::Vector2d::Zero();
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();
   double share = 1.0;
+  double shortening =
+      1.0;  ///< 1 / sqrt(1 + slope^2): makes a beam's direction, leaning, a unit vector
 };
 
 /// The middle ray and its rings. A disc around the middle and the rings around it, out to the
 /// 1/e^2 radius w (one ring: to w/2) and the last beyond, carry what a Gaussian has there,
-/// exp(-2 a^2/w^2) - exp(-2 b^2/w^2) between radii a and b (HELIOS++, Winiwarter et al., Remote
-/// Sens. Environ. 269 (2022) 112772, section 2.3). Rays stand at their ring's rms radius, scaled so
-/// that the beam's second moment is exact. Offsets and slopes are a quarter turn apart: the rays of
-/// a ring lie on a hyperboloid, as wide at every range as the Gaussian beam is.
+/// exp(-2 a^2/w^2) - exp(-2 b^2/w^2) between radii a and b (as HELIOS++ has it in
+/// src/model/ImprovedEnergyModel.cpp; Winiwarter et al., Remote Sens. Environ. 269 (2022) 112772).
+/// Rays stand at their ring's rms radius, scaled so that the beam's second moment is exact. Offsets
+/// and slopes are a quarter turn apart: the rays of a ring lie on a hyperboloid, as wide at every
+/// range as the Gaussian beam is.
 std::vector<SubRay> sub_rays(const Footprint& footprint);
 
 /// The sub-rays of a run of beams as beams of one row: those of the first beam, of the next, ...
-void spread(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range, Beams& out);
+void spread(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range, Workers& workers,
+            Beams& out);
 
 }  // namespace glidar

@@ -185,7 +185,7 @@ double enclosed_angle_rad(const Beams& beams, const Eigen::Vector3d& axis) {
 }
 
 void require_camera(const Beams& beams) {
-  if (beams.size() == 0 || !beams.boresight.isApprox(Eigen::Vector3d::UnitZ())) {
+  if (beams.size() == 0 || !looks_along_z(beams)) {
     fail("the sensor is not a camera that looks along +z", "give the sensor's pose");
   }
 }

@@ -57,15 +57,6 @@ bool makes_returns(const NoiseStep& step) {
   return std::visit([](const auto& s) { return kMakesReturns<std::decay_t<decltype(s)>>; }, step);
 }
 
-Draw draw_of(const Frame& frame, std::size_t step, std::size_t beam) {
-  const auto first = static_cast<std::size_t>(Purpose::first_noise_step);
-  return {.seed = frame.seed,
-          .sensor = frame.sensor_id,
-          .frame = frame.number,
-          .beam = static_cast<std::uint32_t>(beam),
-          .purpose = static_cast<Purpose>(first + step)};
-}
-
 GLIDAR_SIMD void widen(const float* from, std::size_t count, double* to) {
   for (std::size_t i = 0; i < count; ++i) to[i] = double{from[i]};
 }
@@ -177,7 +168,7 @@ void for_batches(const Stretch& stretch, const NoiseView& view, Workers& workers
 }
 
 void prepare_step(const Stretch& stretch, const NoiseView& view, NoiseBatch& batch) {
-  batch.draw = draw_of(view.frame, stretch.begin, batch.first);
+  batch.draw = draw_of(view.frame, purpose_of(stretch.begin), batch.first);
   std::visit(
       [&](const auto& step) {
         if constexpr (kLooksAround<std::decay_t<decltype(step)>>) prepare(step, view, batch);
@@ -187,7 +178,7 @@ void prepare_step(const Stretch& stretch, const NoiseView& view, NoiseBatch& bat
 
 void apply_steps(const Stretch& stretch, const NoiseView& view, NoiseBatch& batch) {
   for (std::size_t k = stretch.begin; k < stretch.end; ++k) {
-    batch.draw = draw_of(view.frame, k, batch.first);
+    batch.draw = draw_of(view.frame, purpose_of(k), batch.first);
     std::visit(
         [&](const auto& step) {
           if constexpr (!kTurnsBeams<std::decay_t<decltype(step)>>) apply(step, view, batch);
@@ -204,7 +195,7 @@ void turn_if_it_turns(const Step& step, const Draw& draw, BeamRange range, Beams
 void turn_beams(const std::vector<NoiseStep>& noise, const Frame& frame, BeamRange range,
                 Beams& beams) {
   for (std::size_t k = 0; k < noise.size(); ++k) {
-    const Draw draw = draw_of(frame, k, 0);
+    const Draw draw = draw_of(frame, purpose_of(k), 0);
     std::visit([&](const auto& step) { turn_if_it_turns(step, draw, range, beams); }, noise[k]);
   }
 }
@@ -222,6 +213,10 @@ void apply_stretch(const Stretch& stretch, const NoiseView& view, Workers& worke
 }
 
 }  // namespace
+
+Purpose purpose_of(std::size_t step) {
+  return static_cast<Purpose>(static_cast<std::size_t>(Purpose::first_noise_step) + step);
+}
 
 void add_needs(const std::vector<NoiseStep>& noise, HitFields& fields) {
   fields.noise_scale = fields.noise_scale || !noise.empty();

@@ -28,6 +28,9 @@ using NoiseStep =
 /// The most steps that a list may have: purposes are numbers of 8 bits.
 inline constexpr std::size_t kMostNoiseSteps = 224;
 
+/// What step k of a list draws for.
+Purpose purpose_of(std::size_t step);
+
 /// Adds to `fields` the truth that the steps look at.
 void add_needs(const std::vector<NoiseStep>& noise, HitFields& fields);
 

@@ -14,22 +14,19 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-void require(bool holds, const char* field, double found, const char* allowed) {
-  if (holds) return;
-  throw Error({.where = std::string("pinhole, ") + field,
-               .found = number_text(found),
-               .allowed = allowed,
-               .remedy = ""});
-}
-
 void validate(const PinholeIntrinsics& k) {
-  require(k.width >= 1 && k.width <= kLargestImageSide, "width", k.width, "1 to 65536 pixels");
-  require(k.height >= 1 && k.height <= kLargestImageSide, "height", k.height, "1 to 65536 pixels");
-  require(k.fx > 0.0 && k.fx <= kFarthestPixel, "fx", k.fx, "above 0, up to 1e9 pixels");
-  require(k.fy > 0.0 && k.fy <= kFarthestPixel, "fy", k.fy, "above 0, up to 1e9 pixels");
-  require(std::abs(k.cx) <= kFarthestPixel, "cx", k.cx, "-1e9 to 1e9 pixels");
-  require(std::abs(k.cy) <= kFarthestPixel, "cy", k.cy, "-1e9 to 1e9 pixels");
-  require(k.pixel_centre >= 0.0 && k.pixel_centre < 1.0, "pixel_centre", k.pixel_centre, "0 to 1");
+  require_number(k.width >= 1 && k.width <= kLargestImageSide, "pinhole, width", k.width,
+                 "1 to 65536 pixels");
+  require_number(k.height >= 1 && k.height <= kLargestImageSide, "pinhole, height", k.height,
+                 "1 to 65536 pixels");
+  require_number(k.fx > 0.0 && k.fx <= kFarthestPixel, "pinhole, fx", k.fx,
+                 "above 0, up to 1e9 pixels");
+  require_number(k.fy > 0.0 && k.fy <= kFarthestPixel, "pinhole, fy", k.fy,
+                 "above 0, up to 1e9 pixels");
+  require_number(std::abs(k.cx) <= kFarthestPixel, "pinhole, cx", k.cx, "-1e9 to 1e9 pixels");
+  require_number(std::abs(k.cy) <= kFarthestPixel, "pinhole, cy", k.cy, "-1e9 to 1e9 pixels");
+  require_number(k.pixel_centre >= 0.0 && k.pixel_centre < 1.0, "pinhole, pixel_centre",
+                 k.pixel_centre, "0 to 1");
 }
 
 /// OpenCV's forward model on the normalised image plane; see RadialTangential.
@@ -127,8 +124,8 @@ double focal_length_px(std::uint32_t pixels, double fov_rad) {
 }
 
 Pinhole pinhole_from_fov(std::uint32_t width, std::uint32_t height, double fov_y_rad) {
-  require(fov_y_rad > 0.0 && fov_y_rad < std::numbers::pi, "fov_y_rad", fov_y_rad,
-          "above 0 and below pi");
+  require_number(fov_y_rad > 0.0 && fov_y_rad < std::numbers::pi, "pinhole, fov_y_rad", fov_y_rad,
+                 "above 0 and below pi");
   const double focal = focal_length_px(height, fov_y_rad);
   Pinhole pinhole{.intrinsics = {.width = width,
                                  .height = height,

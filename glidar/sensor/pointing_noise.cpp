@@ -18,13 +18,6 @@ namespace {
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr double kTurns_per_rad = 0.5 * std::numbers::inv_pi;
 
-/// The sensor's vertical: z, or for a camera, which looks along z, -y.
-Eigen::Vector3d vertical(const Beams& beams) {
-  constexpr double kAlong = 0.9;
-  return std::abs(beams.boresight.z()) > kAlong ? Eigen::Vector3d(-Eigen::Vector3d::UnitY())
-                                                : Eigen::Vector3d(Eigen::Vector3d::UnitZ());
-}
-
 /// Moves beams by angles so small that they are their own tangents: aside along the level unit
 /// vector across the beam (for a vertical beam any), upwards across both. xyz: beam after beam.
 GLIDAR_SIMD void jitter(const Eigen::Vector3d& up, const PointingJitter& step,
@@ -115,7 +108,7 @@ double encoder_error_rad(const EncoderError& law, double azimuth_rad) {
 
 void turn(const PointingJitter& step, const Draw& draw, std::size_t first, std::size_t count,
           Beams& beams) {
-  const Eigen::Vector3d up = vertical(beams);
+  const Eigen::Vector3d up = axes_of(beams).up;
   PairBatch normal;
   for (std::size_t begin = first; begin < first + count; begin += kDrawBatch) {
     Draw run = draw;

@@ -3,6 +3,7 @@
 #include <glidar/sensor/prism.hpp>
 
 #include <cmath>
+#include <glidar/core/error.hpp>
 #include <limits>
 #include <numbers>
 
@@ -13,25 +14,26 @@ constexpr double kNanoseconds = 1e9;
 constexpr std::size_t kMostParts = 64;
 
 void validate(const RisleyPrism& p) {
-  require_optics(std::isfinite(p.rotation_hz), "prism, rotation", p.rotation_hz, "a finite number");
-  require_optics(p.apex_rad >= 0.0 && p.apex_rad < 0.5 * std::numbers::pi, "prism, apex angle",
-                 p.apex_rad, "from 0 to below pi/2");
-  require_optics(std::isfinite(p.phase_rad), "prism, phase", p.phase_rad, "a finite angle");
-  require_optics(p.refractive_index >= 1.0 && p.refractive_index <= 10.0, "prism, refractive index",
-                 p.refractive_index, "1 to 10");
+  require_number(std::isfinite(p.rotation_hz), "optics, prism, rotation", p.rotation_hz,
+                 "a finite number");
+  require_number(p.apex_rad >= 0.0 && p.apex_rad < 0.5 * std::numbers::pi,
+                 "optics, prism, apex angle", p.apex_rad, "from 0 to below pi/2");
+  require_number(std::isfinite(p.phase_rad), "optics, prism, phase", p.phase_rad, "a finite angle");
+  require_number(p.refractive_index >= 1.0 && p.refractive_index <= 10.0,
+                 "optics, prism, refractive index", p.refractive_index, "1 to 10");
 }
 
 void validate(const Prism& prism) {
-  require_optics(!prism.prisms.empty() && prism.prisms.size() <= kMostParts, "number of prisms",
-                 static_cast<double>(prism.prisms.size()), "1 to 64");
+  require_number(!prism.prisms.empty() && prism.prisms.size() <= kMostParts,
+                 "optics, number of prisms", static_cast<double>(prism.prisms.size()), "1 to 64");
   const std::size_t beams = prism.incident_right.size();
-  require_optics(beams >= 1 && beams <= kMostParts, "number of incident beams",
+  require_number(beams >= 1 && beams <= kMostParts, "optics, number of incident beams",
                  static_cast<double>(beams), "1 to 64");
   for (const double right : prism.incident_right) {
-    require_optics(std::abs(right) < 1.0, "incident beam", right, "above -1 and below 1");
+    require_number(std::abs(right) < 1.0, "optics, incident beam", right, "above -1 and below 1");
   }
-  require_optics(prism.pulse_hz > 0.0 && prism.pulse_hz <= kNanoseconds, "pulses per second",
-                 prism.pulse_hz, "above 0, up to 1e9");
+  require_number(prism.pulse_hz > 0.0 && prism.pulse_hz <= kNanoseconds,
+                 "optics, pulses per second", prism.pulse_hz, "above 0, up to 1e9");
   for (const RisleyPrism& p : prism.prisms) validate(p);
 }
 

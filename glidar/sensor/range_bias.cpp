@@ -11,10 +11,6 @@
 namespace glidar {
 namespace {
 
-std::uint32_t ring_of(const Beams& beams, std::size_t beam) {
-  return beams.rings.empty() ? static_cast<std::uint32_t>(beam / beams.cols) : beams.rings[beam];
-}
-
 /// Adds to every range what `error_of` says of its ring, asking once for neighbours of one ring.
 template <class Function>
 void add_by_ring(const Beams& beams, const Function& error_of, NoiseBatch& batch) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/range_noise.hpp>
 
+#include <glidar/core/light_speed.hpp>
 #include <glidar/core/simd.hpp>
 #include <glidar/sensor/noise_batch.hpp>
 
@@ -11,7 +12,6 @@
 namespace glidar {
 namespace {
 
-constexpr double kHalfLight_m_per_s = 0.5 * 299792458.0;
 constexpr double kFwhmPerSigma = 2.3548200450309493;  // 2 sqrt(2 ln 2)
 constexpr double kDarkest = 1e-9;                     // intensity 0 would have an infinite error
 

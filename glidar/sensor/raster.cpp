@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/raster.hpp>
 
+#include <glidar/core/error.hpp>
 #include <glidar/sensor/beam_table.hpp>
 
 #include <algorithm>
@@ -19,17 +20,17 @@ bool all_finite(const std::vector<double>& values) {
 void validate(const Raster& r) {
   const std::size_t lines = r.elevations_rad.size();
   const std::size_t points = r.azimuths_rad.size();
-  require_optics(lines >= 1 && lines <= kMostBeams, "number of lines", static_cast<double>(lines),
-                 "at least 1");
-  require_optics(points >= 1 && points <= kMostBeams / lines, "number of points in a line",
+  require_number(lines >= 1 && lines <= kMostBeams, "optics, number of lines",
+                 static_cast<double>(lines), "at least 1");
+  require_number(points >= 1 && points <= kMostBeams / lines, "optics, number of points in a line",
                  static_cast<double>(points), "at least 1, 134217728 beams in all");
-  require_optics(all_finite(r.elevations_rad) && all_finite(r.azimuths_rad), "angles", 0.0,
+  require_number(all_finite(r.elevations_rad) && all_finite(r.azimuths_rad), "optics, angles", 0.0,
                  "finite angles");
-  require_optics(r.scan_hz > 0.0 && std::isfinite(r.scan_hz), "scans per second", r.scan_hz,
+  require_number(r.scan_hz > 0.0 && std::isfinite(r.scan_hz), "optics, scans per second", r.scan_hz,
                  "above 0");
   const double line_lasts_ns = static_cast<double>(points - 1) * r.point_ns;
-  require_optics(r.point_ns >= 0.0 && (lines == 1 || r.line_ns >= line_lasts_ns), "time of a line",
-                 r.line_ns, "at least that of its points");
+  require_number(r.point_ns >= 0.0 && (lines == 1 || r.line_ns >= line_lasts_ns),
+                 "optics, time of a line", r.line_ns, "at least that of its points");
 }
 
 /// The pattern in the order of time.

@@ -44,25 +44,17 @@ std::int64_t tick_ns(const Ticks& ticks, std::int64_t k) {
 TickRange ticks_in(const Ticks& ticks, const ScanWindow& window, std::size_t most) {
   check(window);
   constexpr double kLeastPeriod_ns = 1.0;
-  require_optics(ticks.period_ns >= kLeastPeriod_ns && std::isfinite(ticks.period_ns), "period",
-                 ticks.period_ns, "1 ns or more");
+  require_number(ticks.period_ns >= kLeastPeriod_ns && std::isfinite(ticks.period_ns),
+                 "optics, period", ticks.period_ns, "1 ns or more");
   const TickRange range = {first_from(ticks, window.start_ns), first_from(ticks, window.end_ns)};
-  require_optics(range.size() <= most, "shots in a frame", static_cast<double>(range.size()),
-                 "134217728 beams in all");
+  require_number(range.size() <= most, "optics, shots in a frame",
+                 static_cast<double>(range.size()), "134217728 beams in all");
   return range;
 }
 
 Eigen::Vector3d direction_at(double azimuth_rad, double elevation_rad) {
   const double level = std::cos(elevation_rad);
   return {level * std::cos(azimuth_rad), level * std::sin(azimuth_rad), std::sin(elevation_rad)};
-}
-
-void require_optics(bool holds, const char* field, double found, const char* allowed) {
-  if (holds) return;
-  throw Error({.where = std::string("optics, ") + field,
-               .found = std::to_string(found),
-               .allowed = allowed,
-               .remedy = ""});
 }
 
 }  // namespace glidar

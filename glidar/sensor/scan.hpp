@@ -45,7 +45,4 @@ Eigen::Vector3d direction_at(double azimuth_rad, double elevation_rad);
 /// The most beams that one window may have.
 inline constexpr std::size_t kMostBeams = std::size_t{1} << 27U;
 
-/// Throws Error "OPTICS, FIELD" unless `holds`.
-void require_optics(bool holds, const char* field, double found, const char* allowed);
-
 }  // namespace glidar

@@ -48,30 +48,30 @@ Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double 
 Sensor ideal(Sensor sensor) {
   sensor.pulse.reset();
   sensor.footprint.reset();
+  sensor.weather.reset();
+  sensor.projector_m.reset();
   sensor.receiver = {};
   sensor.noise.clear();
   return sensor;
 }
 
 void set_rate(Sensor& sensor, double rate_hz) {
-  require_optics(rate_hz > 0.0 && std::isfinite(rate_hz), "rate", rate_hz,
+  require_number(rate_hz > 0.0 && std::isfinite(rate_hz), "optics, rate", rate_hz,
                  "a finite number of frames per second above 0");
   sensor.rate_hz = rate_hz;
   if (auto* spinning = std::get_if<Spinning>(&sensor.optics)) spinning->rotation_hz = rate_hz;
   if (auto* raster = std::get_if<Raster>(&sensor.optics)) raster->scan_hz = rate_hz;
 }
 
-std::optional<PulseLight> light_in_weather(const Sensor& sensor) {
-  if (!sensor.weather) return sensor.pulse;
+void check_weather(const Sensor& sensor) {
+  if (!sensor.weather) return;
   if (!sensor.pulse) {
     throw Error({.where = "weather",
                  .found = "the light of the sensor '" + sensor.name + "' is not pulsed",
                  .allowed = "weather for a sensor with 'pulse_light'",
                  .remedy = "describe its light by 'pulse_light' in a sensor file (docs/files.md)"});
   }
-  std::optional<PulseLight> light = sensor.pulse;
-  light->weather_extinction_per_m = extinction_per_m(*sensor.weather, sensor.wavelength_m);
-  return light;
+  extinction_per_m(*sensor.weather, sensor.wavelength_m);
 }
 
 ScanWindow scan_window(const Sensor& sensor, std::uint32_t frame) {

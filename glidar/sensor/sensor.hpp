@@ -54,17 +54,17 @@ struct Sensor {
 /// What the sensor says of something at this true range on a beam: hit, too_near or too_far.
 Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double range_m);
 
-/// The sensor without noise, pulse light, footprint and further returns: it reports the geometric
-/// truth, lit by the paper's lamp. Its limits stay.
+/// The sensor without noise, pulse light, weather, footprint, further returns and a projector apart
+/// from it: it reports the geometric truth, lit by the paper's lamp. Its limits stay.
 Sensor ideal(Sensor sensor);
 
 /// Sets the frame rate, and with it what follows from it: the turns per second of a spinning sensor
 /// and the scans per second of a raster. Throws Error unless it is finite and above 0.
 void set_rate(Sensor& sensor, double rate_hz);
 
-/// The sensor's pulsed light with the extinction by its weather. Throws Error when there is weather
-/// but no pulsed light, or fog and no wavelength.
-std::optional<PulseLight> light_in_weather(const Sensor& sensor);
+/// Throws Error when there is weather but no pulsed light for it to act on, or fog and no
+/// wavelength.
+void check_weather(const Sensor& sensor);
 
 /// The window of a frame, by the sensor's own rate. Frames join.
 ScanWindow scan_window(const Sensor& sensor, std::uint32_t frame);

@@ -5,6 +5,7 @@
 #include <glidar/core/elementary.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/gaussian.hpp>
+#include <glidar/core/simd.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -56,33 +57,68 @@ double relative(const Glossy& s, double cosine) {
   return s.matt_share * cosine + s.lobe_gain * power(std::numbers::e, -0.5 * x * x);
 }
 
-void require(bool holds, const char* field, double found, const char* allowed) {
-  if (holds) return;
-  throw Error({.where = std::string("pulse light, ") + field,
-               .found = number_text(found),
-               .allowed = allowed,
-               .remedy = ""});
+/// What sends light back: a material at one wavelength.
+class Surface {
+ public:
+  Surface() = default;
+  Surface(const Material& material, double wavelength_m)
+      : material_(&material),
+        plain_(luminance(material.diffuse)),
+        reflectance_(reflectance_at(material, wavelength_m)) {}
+
+  [[nodiscard]] double sent_back_at(const Hits& hits, std::size_t beam) const {
+    const double cosine = std::clamp<double>(hits.cos_shading[beam], 0.0, 1.0);
+    return sent_back(material_->backscatter, reflectance(hits.reflectance[beam].diffuse), cosine);
+  }
+
+ private:
+  /// The material's, times what its texture and the vertex colours make of the diffuse colour.
+  [[nodiscard]] double reflectance(float diffuse) const {
+    if (material_->spectrum.empty()) return diffuse;
+    return reflectance_ * (plain_ > 0.0F ? std::min(1.0F, diffuse / plain_) : 1.0);
+  }
+
+  const Material* material_ = nullptr;
+  float plain_ = 0.0F;  ///< luminance of the diffuse colour
+  double reflectance_ = 0.0;
+};
+
+const Material& material_at(const Scene& scene, const Hits& hits, std::size_t beam) {
+  return material_of(scene, scene.instances[hits.instance[beam]], hits.primitive[beam]);
 }
 
-const Material& material_of(const Scene& scene, const Hits& truth, std::size_t beam) {
-  const Instance& instance = scene.instances[truth.instance[beam]];
-  const std::uint16_t slot = material_slot(scene.meshes[instance.mesh], truth.primitive[beam]);
-  return scene.materials[instance.materials[slot]];
+/// What comes back from hits [range.begin, range.end), 0 where there is none. Neighbours mostly hit
+/// the same instance.
+void collect_sent(const Scene& scene, double wavelength_m, const Hits& hits, BeamRange range,
+                  std::span<double> sent) {
+  Surface surface;
+  std::uint32_t known = kNoHit;  // the instance that is all of this surface
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    double& to = sent[i - range.begin];
+    to = 0.0;
+    if (hits.instance[i] == kNoHit) continue;
+    if (hits.instance[i] != known) {
+      surface = Surface(material_at(scene, hits, i), wavelength_m);
+      const Instance& instance = scene.instances[hits.instance[i]];
+      known = scene.meshes[instance.mesh].material_slots.empty() ? hits.instance[i] : kNoHit;
+    }
+    to = surface.sent_back_at(hits, i);
+  }
 }
 
-/// The reflectance where a beam hit: the material's, times what its texture and the vertex colours
-/// make of the diffuse colour.
-double reflectance_of_hit(const Material& material, float diffuse, double wavelength_m) {
-  if (material.spectrum.empty()) return diffuse;
-  const float plain = luminance(material.diffuse);
-  const double darkening = plain > 0.0F ? std::min(1.0F, diffuse / plain) : 1.0;
-  return darkening * reflectance_at(material, wavelength_m);
+/// Spread over the range, see signal_of(), for the exponent 2 and nothing in the way.
+GLIDAR_SIMD void spread_by_square(const PulseLight& light, const double* range_m, std::size_t count,
+                                  double* signals) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double ratio = light.reference_range_m / range_m[i];
+    const double signal = signals[i] / light.reference_reflectance * (ratio * ratio);
+    signals[i] = signals[i] > 0.0 ? signal : 0.0;  // a miss has no range
+  }
 }
 
-void lose(Frame& frame, std::size_t beam, Status why) {
-  frame.status[beam] = why;
-  frame.range_m[beam] = std::numeric_limits<double>::quiet_NaN();
-  frame.intensity[beam] = 0.0F;
+bool spreads_by_square(const PulseLight& light) {
+  return light.range_exponent == 2.0 && light.overlap.empty() && light.extinction_per_m == 0.0 &&
+         light.weather_extinction_per_m == 0.0;
 }
 
 void measure_hit(const PulseLight& light, double signal, double error, std::size_t beam,
@@ -100,25 +136,28 @@ void measure_hit(const PulseLight& light, double signal, double error, std::size
 void validate(const PulseLight& light) {
   const auto positive = [](double x) { return x > 0.0 && std::isfinite(x); };
   const auto from_zero = [](double x) { return x >= 0.0 && std::isfinite(x); };
-  require(positive(light.reference_reflectance), "reference_reflectance",
-          light.reference_reflectance, "above 0");
-  require(positive(light.reference_range_m), "reference_range_m", light.reference_range_m,
-          "metres above 0");
-  require(from_zero(light.range_exponent), "range_exponent", light.range_exponent, "0 or above");
-  require(from_zero(light.extinction_per_m), "extinction_per_m", light.extinction_per_m,
-          "0 or above");
-  require(from_zero(light.weather_extinction_per_m), "weather_extinction_per_m",
-          light.weather_extinction_per_m, "0 or above");
-  require(from_zero(light.noise_sigma), "noise_sigma", light.noise_sigma, "0 or above");
-  require(from_zero(light.saturation), "saturation", light.saturation, "0 or above");
+  require_number(positive(light.reference_reflectance), "pulse light, reference_reflectance",
+                 light.reference_reflectance, "above 0");
+  require_number(positive(light.reference_range_m), "pulse light, reference_range_m",
+                 light.reference_range_m, "metres above 0");
+  require_number(from_zero(light.range_exponent), "pulse light, range_exponent",
+                 light.range_exponent, "0 or above");
+  require_number(from_zero(light.extinction_per_m), "pulse light, extinction_per_m",
+                 light.extinction_per_m, "0 or above");
+  require_number(from_zero(light.weather_extinction_per_m), "pulse light, weather_extinction_per_m",
+                 light.weather_extinction_per_m, "0 or above");
+  require_number(from_zero(light.noise_sigma), "pulse light, noise_sigma", light.noise_sigma,
+                 "0 or above");
+  require_number(from_zero(light.saturation), "pulse light, saturation", light.saturation,
+                 "0 or above");
   for (std::size_t i = 0; i < light.overlap.size(); ++i) {
     const auto [range_m, share] = light.overlap[i];
-    require(from_zero(range_m) && (i == 0 || range_m > light.overlap[i - 1][0]), "overlap", range_m,
-            "ranges that rise from 0 or above");
-    require(from_zero(share), "overlap", share, "shares of 0 or above");
+    require_number(from_zero(range_m) && (i == 0 || range_m > light.overlap[i - 1][0]),
+                   "pulse light, overlap", range_m, "ranges that rise from 0 or above");
+    require_number(from_zero(share), "pulse light, overlap", share, "shares of 0 or above");
   }
-  require(look_up(light.overlap, light.reference_range_m, 1.0) > 0.0, "overlap", 0.0,
-          "a share above 0 at the reference range");
+  require_number(look_up(light.overlap, light.reference_range_m, 1.0) > 0.0, "pulse light, overlap",
+                 0.0, "a share above 0 at the reference range");
 }
 
 double sent_back(const Backscatter& surface, double reflectance, double cosine) {
@@ -148,12 +187,22 @@ double signal_of(const PulseLight& light, double sent_back, double range_m) {
   return light.overlap.empty() ? signal : signal * relative_overlap(light, range_m);
 }
 
-double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelength_m,
-                     const Hits& hits, std::size_t beam) {
-  const Material& material = material_of(scene, hits, beam);
-  const double cosine = std::clamp<double>(hits.cos_shading[beam], 0.0, 1.0);
-  const double rho = reflectance_of_hit(material, hits.reflectance[beam].diffuse, wavelength_m);
-  return signal_of(light, sent_back(material.backscatter, rho, cosine), hits.range_m[beam]);
+double sent_back_at(const Scene& scene, double wavelength_m, const Hits& hits, std::size_t beam) {
+  return Surface(material_at(scene, hits, beam), wavelength_m).sent_back_at(hits, beam);
+}
+
+void signals_of_hits(const PulseLight& light, const Scene& scene, double wavelength_m,
+                     const Hits& hits, BeamRange range, std::span<double> signals) {
+  collect_sent(scene, wavelength_m, hits, range, signals);
+  const double* range_m = &hits.range_m[range.begin];
+  const std::size_t count = range.end - range.begin;
+  if (spreads_by_square(light)) {
+    spread_by_square(light, range_m, count, signals.data());
+    return;
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    if (signals[k] > 0.0) signals[k] = signal_of(light, signals[k], range_m[k]);
+  }
 }
 
 Status why_faint(const PulseLight& light, double signal, double error, double range_m) {
@@ -179,21 +228,20 @@ double range_exponent(double reflectance_a, double range_a_m, double reflectance
 
 void measure_signal(const PulseLight& light, const Scene& scene, double wavelength_m,
                     BeamRange range, Frame& frame) {
-  Draw draw{.seed = frame.seed,
-            .sensor = frame.sensor_id,
-            .frame = frame.number,
-            .purpose = Purpose::detection};
   Batch<double> noise{};
+  Batch<double> signals;
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const std::size_t k = (i - range.begin) % kDrawBatch;
-    draw.beam = static_cast<std::uint32_t>(i);
-    if (k == 0 && light.noise_sigma > 0.0) draw_normals(draw, noise);
-    if (frame.status[i] != Status::hit) {
-      frame.intensity[i] = 0.0F;
-      continue;
+    if (k == 0) {
+      const BeamRange batch{i, std::min(i + kDrawBatch, range.end)};
+      signals_of_hits(light, scene, wavelength_m, frame.truth, batch, signals);
+      if (light.noise_sigma > 0.0) draw_normals(draw_of(frame, Purpose::detection, i), noise);
     }
-    const double signal = signal_of_hit(light, scene, wavelength_m, frame.truth, i);
-    measure_hit(light, signal, light.noise_sigma * noise[k], i, frame);
+    if (frame.status[i] == Status::hit) {
+      measure_hit(light, signals[k], light.noise_sigma * noise[k], i, frame);
+    } else {
+      frame.intensity[i] = 0.0F;
+    }
   }
 }
 

@@ -6,6 +6,8 @@
 #include <glidar/core/scene.hpp>
 #include <glidar/core/table.hpp>
 
+#include <span>
+
 namespace glidar {
 
 /// What a pulse brings back, by the range equation of an extended target (Wagner, ISPRS J. 60
@@ -59,10 +61,14 @@ double noise_sigma_of(double range50_m, double range90_m, double range_exponent)
 double range_exponent(double reflectance_a, double range_a_m, double reflectance_b,
                       double range_b_m);
 
-/// S of what a beam hit: the material's backscatter at the incidence of its shading normal. Needs
-/// cos_shading and reflectance.
-double signal_of_hit(const PulseLight& light, const Scene& scene, double wavelength_m,
-                     const Hits& hits, std::size_t beam);
+/// What the surface that a beam hit sends straight back: its material's backscatter at the
+/// incidence of its shading normal. Needs cos_shading and reflectance.
+double sent_back_at(const Scene& scene, double wavelength_m, const Hits& hits, std::size_t beam);
+
+/// S of hits [range.begin, range.end) into `signals`, 0 where nothing was hit. Needs what
+/// sent_back_at() does.
+void signals_of_hits(const PulseLight& light, const Scene& scene, double wavelength_m,
+                     const Hits& hits, BeamRange range, std::span<double> signals);
 
 /// Fills a run of frame.intensity with signals as the receiver has them, noise included, and takes
 /// away what is too weak or too strong (status below_threshold, weather where clear air had let it

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glidar/core/error.hpp>
 #include <numeric>
 
 namespace glidar {
@@ -15,26 +16,26 @@ constexpr std::size_t kMostChannels = 4096;
 constexpr double kMostTurns_hz = 1e4;
 
 void validate(const SpinningChannel& channel) {
-  require_optics(std::abs(channel.elevation_rad) <= 0.5 * std::numbers::pi, "elevation",
+  require_number(std::abs(channel.elevation_rad) <= 0.5 * std::numbers::pi, "optics, elevation",
                  channel.elevation_rad, "-pi/2 to pi/2");
-  require_optics(std::isfinite(channel.azimuth_offset_rad), "azimuth offset",
+  require_number(std::isfinite(channel.azimuth_offset_rad), "optics, azimuth offset",
                  channel.azimuth_offset_rad, "a finite angle");
-  require_optics(std::abs(channel.fire_time_ns) <= kNanoseconds, "fire time", channel.fire_time_ns,
-                 "-1e9 to 1e9 ns");
-  require_optics(channel.origin_m.allFinite(), "origin offset", channel.origin_m.norm(),
+  require_number(std::abs(channel.fire_time_ns) <= kNanoseconds, "optics, fire time",
+                 channel.fire_time_ns, "-1e9 to 1e9 ns");
+  require_number(channel.origin_m.allFinite(), "optics, origin offset", channel.origin_m.norm(),
                  "finite metres");
 }
 
 void validate(const Spinning& s) {
-  require_optics(!s.channels.empty() && s.channels.size() <= kMostChannels, "number of channels",
-                 static_cast<double>(s.channels.size()), "1 to 4096");
-  require_optics(s.rotation_hz > 0.0 && s.rotation_hz <= kMostTurns_hz, "rotation", s.rotation_hz,
-                 "above 0, up to 1e4 turns per second");
-  require_optics(std::isfinite(s.start_azimuth_rad), "start azimuth", s.start_azimuth_rad,
+  require_number(!s.channels.empty() && s.channels.size() <= kMostChannels,
+                 "optics, number of channels", static_cast<double>(s.channels.size()), "1 to 4096");
+  require_number(s.rotation_hz > 0.0 && s.rotation_hz <= kMostTurns_hz, "optics, rotation",
+                 s.rotation_hz, "above 0, up to 1e4 turns per second");
+  require_number(std::isfinite(s.start_azimuth_rad), "optics, start azimuth", s.start_azimuth_rad,
                  "a finite angle");
-  require_optics(std::abs(s.beam_origin_m) <= 1e3, "beam origin", s.beam_origin_m,
+  require_number(std::abs(s.beam_origin_m) <= 1e3, "optics, beam origin", s.beam_origin_m,
                  "-1000 to 1000 m");
-  require_optics(std::isfinite(s.sector_start_rad) && s.sector_width_rad > 0.0, "sector",
+  require_number(std::isfinite(s.sector_start_rad) && s.sector_width_rad > 0.0, "optics, sector",
                  s.sector_width_rad, "a finite start and a width above 0");
   for (const SpinningChannel& channel : s.channels) validate(channel);
 }

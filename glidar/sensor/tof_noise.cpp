@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/tof_noise.hpp>
 
+#include <glidar/core/light_speed.hpp>
 #include <glidar/core/simd.hpp>
 #include <glidar/sensor/mixed_waves.hpp>
 #include <glidar/sensor/noise_batch.hpp>
@@ -15,7 +16,6 @@
 namespace glidar {
 namespace {
 
-constexpr double kHalfLight_m_per_s = 0.5 * 299792458.0;
 constexpr double kDarkest = 1e-9;
 
 /// The frequencies, the finest first, and what the search for the range needs of them.
@@ -64,7 +64,7 @@ GLIDAR_SIMD void phase_of_range(double per_m, const Batch<double>& range_m, Batc
   }
 }
 
-/// phase_sigma_rad in turns, for a run.
+/// Standard deviation of the phase in turns, for a run.
 GLIDAR_SIMD void spread(const ContinuousWave& law, const Batch<double>& amplitude,
                         const Batch<double>& scale, Batch<double>& sigma_turns) {
   for (std::size_t i = 0; i < kDrawBatch; ++i) {
@@ -201,11 +201,6 @@ void unwrap(const Waves& waves, WavePhases& phases, Found& found, Batch<double>&
 }
 
 }  // namespace
-
-double phase_sigma_rad(const ContinuousWave& law, double amplitude) {
-  const double signal = law.electrons_at_full_scale * std::max(amplitude, kDarkest);
-  return std::sqrt(0.5 * (law.background_electrons + signal)) / (law.contrast * signal);
-}
 
 double unambiguous_m(const std::vector<double>& frequencies_hz) {
   std::uint64_t common = 0;

@@ -33,9 +33,6 @@ struct ContinuousWave {
   double largest_misfit = 0.1;
 };
 
-/// Standard deviation of the phase, radians.
-double phase_sigma_rad(const ContinuousWave& law, double amplitude);
-
 /// The greatest range without ambiguity: c / (2 gcd), the frequencies rounded to whole hertz.
 double unambiguous_m(const std::vector<double>& frequencies_hz);
 

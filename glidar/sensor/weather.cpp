@@ -11,14 +11,6 @@
 namespace glidar {
 namespace {
 
-void require(bool holds, const char* field, double found, const char* allowed) {
-  if (holds) return;
-  throw Error({.where = std::string("weather, ") + field,
-               .found = number_text(found),
-               .allowed = allowed,
-               .remedy = ""});
-}
-
 double kruse_exponent(double visibility_km) {
   if (visibility_km > 50.0) return 1.6;
   if (visibility_km > 6.0) return 1.3;
@@ -42,22 +34,25 @@ double rain_extinction_per_m(const Weather& weather) {
 
 void validate(const Weather& weather) {
   const auto within = [](double x, double least, double most) { return x >= least && x <= most; };
-  require(weather.visibility_m == 0.0 || within(weather.visibility_m, 1.0, 1e6), "visibility_m",
-          weather.visibility_m, "metres from 1 to 1e6, or 0 for clear air");
-  require(within(weather.fog_backscatter_per_sr, 0.0, 1.0), "fog_backscatter_per_sr",
-          weather.fog_backscatter_per_sr, "a number from 0 to 1");
-  require(within(weather.rain_mm_per_h, 0.0, 1000.0), "rain_mm_per_h", weather.rain_mm_per_h,
-          "mm/h from 0 to 1000");
-  require(within(weather.snow_mm_per_h, 0.0, 1000.0), "snow_mm_per_h", weather.snow_mm_per_h,
-          "mm/h from 0 to 1000");
-  require(within(weather.least_signal, 1e-6, 1e6), "least_signal", weather.least_signal,
-          "a number from 1e-6 to 1e6");
+  require_number(
+      weather.visibility_m == 0.0 || within(weather.visibility_m, 1.0, kLargestVisibility_m),
+      "weather, visibility_m", weather.visibility_m, "metres from 1 to 1e6, or 0 for clear air");
+  require_number(within(weather.fog_backscatter_per_sr, 0.0, 1.0),
+                 "weather, fog_backscatter_per_sr", weather.fog_backscatter_per_sr,
+                 "a number from 0 to 1");
+  require_number(within(weather.rain_mm_per_h, 0.0, kLargestFall_mm_per_h),
+                 "weather, rain_mm_per_h", weather.rain_mm_per_h, "mm/h from 0 to 1000");
+  require_number(within(weather.snow_mm_per_h, 0.0, kLargestFall_mm_per_h),
+                 "weather, snow_mm_per_h", weather.snow_mm_per_h, "mm/h from 0 to 1000");
+  require_number(within(weather.least_signal, 1e-6, 1e6), "weather, least_signal",
+                 weather.least_signal, "a number from 1e-6 to 1e6");
 }
 
 double fog_extinction_per_m(const Weather& weather, double wavelength_m) {
   if (!(weather.visibility_m > 0.0)) return 0.0;
-  require(wavelength_m > 0.0, "wavelength_m", wavelength_m,
-          "a wavelength above 0 (wavelength_nm in a sensor file): fog's extinction depends on it");
+  require_number(
+      wavelength_m > 0.0, "weather, wavelength_m", wavelength_m,
+      "a wavelength above 0 (wavelength_nm in a sensor file): fog's extinction depends on it");
   constexpr double kGreen_m = 550e-9;
   const double visibility_km = weather.visibility_m * 1e-3;
   const double exponent = weather.fog_model == Weather::FogModel::kim

@@ -6,10 +6,13 @@
 
 namespace glidar {
 
-/// What hangs in the air and falls through it. It acts on pulsed light.
 inline constexpr double kContrastDepth = 3.912;  ///< -ln 0.02, to the digits in use
 inline constexpr double kOpticalRangeDepth = 2.9957322735539909;  ///< ln 20
 
+inline constexpr double kLargestVisibility_m = 1e6;  ///< of a Weather; from there on it is clear
+inline constexpr double kLargestFall_mm_per_h = 1000.0;  ///< of its rain and snow
+
+/// What hangs in the air and falls through it. It acts on pulsed light.
 struct Weather {
   /// What the visibility is about: that 2 % of contrast are left over it (Koschmieder's, ln 50), or
   /// that 5 % of light are: the meteorological optical range, ln 20.

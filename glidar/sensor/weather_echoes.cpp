@@ -38,19 +38,19 @@ void weather_echoes(const PreparedWeather& weather, double hard_range_m, const D
       std::isnan(hard_range_m) ? std::numeric_limits<double>::infinity() : hard_range_m;
   const SoftEcho soft = echo_before(weather.fog, end_m);
   if (soft.signal >= weather.least_signal) {
-    echoes.push_back({soft.range_m, soft.signal, WeatherEcho::Kind::fog});
+    echoes.push_back({soft.range_m, soft.signal, Cause::fog});
   }
   Draw drops = draw;
   drops.purpose = Purpose::weather;
-  const auto append = [&](const DropField& field, std::uint32_t block, WeatherEcho::Kind kind) {
+  const auto append = [&](const DropField& field, std::uint32_t block, Cause cause) {
     drops.block = block;
     const auto take = [&](const DropEcho& drop) {
-      echoes.push_back({drop.range_m, drop.signal, kind});
+      echoes.push_back({drop.range_m, drop.signal, cause});
     };
     draw_drops(weather.light, field, end_m, drops, FunctionRef<void(const DropEcho&)>(take));
   };
-  append(weather.rain, 0, WeatherEcho::Kind::rain);
-  append(weather.snow, kSnowBlocks, WeatherEcho::Kind::snow);
+  append(weather.rain, 0, Cause::rain);
+  append(weather.snow, kSnowBlocks, Cause::snow);
 }
 
 }  // namespace glidar

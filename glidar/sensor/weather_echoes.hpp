@@ -13,10 +13,9 @@ namespace glidar {
 
 /// What the air itself sends back to a beam.
 struct WeatherEcho {
-  enum class Kind : std::uint8_t { fog, rain, snow };
   double range_m = 0.0;
-  double signal = 0.0;  ///< S as of PulseLight
-  Kind kind = Kind::fog;
+  double signal = 0.0;        ///< S as of PulseLight
+  Cause cause = Cause::none;  ///< fog, rain or snow
 };
 
 /// Weather as a light meets it: all that is the same for beams of one shape.

@@ -101,6 +101,33 @@ class Sensors(CliTest):
         self.assertIn("  velodyne     velodyne_pointcloud: x y z intensity ring time\n",
                       self.succeed("render", "--help").stdout)
 
+    def test_beams_and_returns_are_told_with_their_sources(self):
+        text = self.succeed("sensors", "VLS-128").stdout
+        self.assertIn("\n  footprint.divergence_mrad = 3, 1.5\n      VLS-128 User Manual, table F-1", text)
+        self.assertIn("\n* receiver.pulse_ns = 6\n", text)
+        self.assertIn("* receiver.returns = strongest\n", text)
+        self.assertIn(" 5.1 x 2.5 ", text)  # 1.699 times the widths at half maximum
+        told = {entry["name"]: entry for entry in json.loads(self.succeed("sensors", "--json").stdout)}
+        self.assertAlmostEqual(told["VLS-128"]["divergence_mrad"][0], 3 * 1.699, 2)
+        self.assertEqual(told["Livox-Avia"]["returns"], ["first"])
+        self.assertIsNone(told["UTM-30LX"]["divergence_mrad"])
+        self.assertEqual(told["D435"]["returns"], [])
+
+    def test_returns_can_be_chosen(self):
+        room = ("render", "builtin:box", "--eye", "0,0,0", "--sensor", "VLP-16", "--returns")
+        done = self.succeed(*room, "strongest,last", "-o", "a.pcd")
+        self.assertIn("1809 x 32 beams, 28944 hits (50.0 %)", done.stdout)  # a wall sends back one echo
+        with open(os.path.join(self.folder, "a.pcd.json"), encoding="utf-8") as file:
+            self.assertEqual(json.load(file)["sensor"]["receiver"]["returns"], ["strongest", "last"])
+        self.assertIn("1809 x 48 beams", self.succeed(*room, "3", "-o", "a.pcd").stdout)
+        for wrong, told in (("lst", "'lst'; allowed: 1 to 16 of first, second, third, last, strongest, "),
+                            ("strongst", "did you mean strongest?"), ("first,", "an empty part"),
+                            ("0", "how many of the nearest, 1 to 16"), (",".join(["last"] * 17), "17 returns")):
+            self.assertIn(told, self.refused(*room, wrong, "-o", "a.pcd"))
+        self.assertIn("--returns: --ideal leaves", self.refused(*room, "last", "--ideal", "-o", "a.pcd"))
+        self.assertIn("--returns: the sensor has no pulse light", self.refused(
+            "render", "builtin:box", "--returns", "last", "-o", "a.pcd"))
+
     def test_columns_and_rate_can_be_chosen(self):
         done = self.succeed("render", "builtin:box", "--eye", "0,0,0", "--sensor", "OS1-32",
                             "--columns-per-turn", "512", "--rate", "20", "-o", "a.pcd")

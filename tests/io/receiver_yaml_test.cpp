@@ -38,7 +38,7 @@ TEST(FootprintInASensorFile, GivesWidthsAcrossAndUp) {
   EXPECT_EQ(f.rings, 1U);
 }
 
-// Reference section 0: theta(1/e^2) = 1.699 theta(FWHM) for a Gaussian beam.
+// theta(1/e^2) = 1.699 theta(FWHM) for a Gaussian beam.
 TEST(FootprintInASensorFile, TurnsWidthsAtHalfMaximumIntoThoseAtOneOverESquared) {
   const Footprint f = *sensor("footprint: {divergence_mrad: 2, widths: fwhm}").footprint;
   EXPECT_NEAR(f.divergence_x_rad, 2e-3 * 1.699, 2e-6);

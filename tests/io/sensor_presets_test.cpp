@@ -122,6 +122,17 @@ TEST_P(Preset, HasTheFieldOfViewOfItsSheet) {
   EXPECT_NEAR(found_deg.y(), sheet.upright_deg, 2.3);
 }
 
+TEST_P(Preset, TellsOneReturnOfABeamUnlessMoreAreChosen) {
+  Sensor sensor = preset(GetParam().name);
+  EXPECT_EQ(sensor.receiver.returns.size(), 1U);
+  const Beams one = make_beams(sensor);
+  sensor.receiver.returns.push_back({Return::Order::farthest, 0});
+  const Beams two = make_beams(sensor);
+  EXPECT_EQ(two.rows, 2 * one.rows);
+  EXPECT_EQ(two.cols, one.cols);
+  EXPECT_EQ(two.pulses(), one.size());
+}
+
 TEST_P(Preset, TellsTheSourceOfEveryNumber) {
   const SensorSheet sheet = load_sensor_sheet(find_sensor_file(GetParam().name));
   EXPECT_GT(sheet.entries.size(), 4U);
@@ -138,6 +149,49 @@ std::string sheet_name(const ::testing::TestParamInfo<Sheet>& sheet) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Preset, ::testing::ValuesIn(kSheets), sheet_name);
+
+/// Beams as their sheets tell them: full widths at half maximum, across and up; TiM781: in all.
+struct Beam {
+  const char* name;
+  double divergence_mrad[2];
+  double exit_mm[2];
+};
+
+TEST(Presets, HaveTheBeamsOfTheirSheets) {
+  constexpr double kPerFwhm = 1.699;  // a Gaussian's width at 1/e^2 over that at half maximum
+  std::map<std::string, Beam> sheets;
+  for (const Beam& beam : std::to_array<Beam>({{"VLP-16", {3.0, 1.5}, {9.5, 12.7}},
+                                               {"Puck-Hi-Res", {3.0, 1.5}, {9.5, 12.7}},
+                                               {"HDL-32E", {2.79, 2.79}, {12.7, 6.35}},
+                                               {"HDL-64E-S3", {2.0, 2.0}, {0.0, 0.0}},
+                                               {"VLS-128", {3.0, 1.5}, {0.0, 0.0}},
+                                               {"OS0-32", {6.109, 6.109}, {0.0, 0.0}},
+                                               {"OS0-64", {6.109, 6.109}, {0.0, 0.0}},
+                                               {"OS0-128", {6.109, 6.109}, {0.0, 0.0}},
+                                               {"OS1-32", {3.142, 3.142}, {10.0, 10.0}},
+                                               {"OS1-64", {3.142, 3.142}, {10.0, 10.0}},
+                                               {"OS1-128", {3.142, 3.142}, {10.0, 10.0}},
+                                               {"Livox-Mid-40", {0.5236, 4.887}, {0.0, 0.0}},
+                                               {"Livox-Mid-70", {0.5236, 4.887}, {0.0, 0.0}},
+                                               {"Livox-Avia", {0.5236, 4.887}, {0.0, 0.0}},
+                                               {"TiM781", {14.4, 8.6}, {7.0, 7.0}}})) {
+    sheets[beam.name] = beam;
+  }
+  for (const auto& file : preset_files()) {
+    const std::string name = file.stem().string();
+    SCOPED_TRACE(name);
+    const Sensor sensor = load_sensor_file(file);
+    ASSERT_EQ(sensor.footprint.has_value(), sheets.contains(name));
+    if (!sensor.footprint) continue;
+    const Beam& beam = sheets[name];
+    const double unit = 1e-3 * (name == "TiM781" ? 1.0 : kPerFwhm);
+    EXPECT_NEAR(sensor.footprint->divergence_x_rad, beam.divergence_mrad[0] * unit, 5e-6);
+    EXPECT_NEAR(sensor.footprint->divergence_y_rad, beam.divergence_mrad[1] * unit, 5e-6);
+    EXPECT_NEAR(sensor.footprint->exit_x_m, beam.exit_mm[0] * unit, 1e-5);
+    EXPECT_NEAR(sensor.footprint->exit_y_m, beam.exit_mm[1] * unit, 1e-5);
+    EXPECT_EQ(sub_rays(*sensor.footprint).size(), 7U);
+  }
+}
 
 TEST(Presets, AreFoundInCapitalsOrNot) {
   EXPECT_EQ(preset("vlp-16").name, "Velodyne VLP-16");

@@ -22,7 +22,7 @@ EchoWork echoes_of(const std::vector<std::pair<double, double>>& paths, double a
   return work;
 }
 
-// Reference test T13: two echoes if and only if they are more than c FWHM / 2.355 apart (5 %).
+// Two echoes if and only if they are more than c FWHM / 2.355 apart (5 %).
 TEST(FindEchoes, TellsTwoPlanesApartBeyondTwoSigmas) {
   constexpr double kTolerance = 0.05;
   const double limit_m = 2.0 * kSigma_m;
@@ -105,7 +105,7 @@ TEST(EchoWork, LeavesOutTheWeakestOfTooManyPaths) {
   for (std::size_t i = 0; i < work.paths; ++i) EXPECT_NE(work.path[i].source, 7U);
 }
 
-// Reference test T18: the walk of a fixed threshold is -(c / 2) sigma_p sqrt(2 ln(A / T)).
+// The walk of a fixed threshold is -(c / 2) sigma_p sqrt(2 ln(A / T)).
 TEST(ToldRange, WalksWithTheSignalWhenALeadingEdgeIsTimed) {
   Receiver receiver{.pulse_fwhm_s = 5e-9, .timing = Receiver::Timing::leading_edge};
   const double sigma_m = pulse_sigma_m(receiver);

@@ -7,16 +7,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <numbers>
 #include <vector>
 
 namespace glidar {
 namespace {
-
-using Kind = WeatherEcho::Kind;
 
 constexpr double kNoTarget = std::numeric_limits<double>::infinity();
 constexpr BeamShape kBeam = {.divergence_rad = 0.003, .exit_diameter_m = 0.0095};
@@ -36,15 +34,15 @@ std::vector<WeatherEcho> echoes_of(const PreparedWeather& weather, double hard_r
 bool equal(const std::vector<WeatherEcho>& one, const std::vector<WeatherEcho>& other) {
   return std::equal(one.begin(), one.end(), other.begin(), other.end(),
                     [](const WeatherEcho& a, const WeatherEcho& b) {
-                      return a.range_m == b.range_m && a.signal == b.signal && a.kind == b.kind;
+                      return a.range_m == b.range_m && a.signal == b.signal && a.cause == b.cause;
                     });
 }
 
-std::array<std::size_t, 3> count(const PreparedWeather& weather, std::uint32_t beams) {
-  std::array<std::size_t, 3> counts{};
+std::map<Cause, std::size_t> count(const PreparedWeather& weather, std::uint32_t beams) {
+  std::map<Cause, std::size_t> counts;
   for (std::uint32_t beam = 0; beam < beams; ++beam) {
     for (const WeatherEcho& echo : echoes_of(weather, kNoTarget, {.seed = 3, .beam = beam})) {
-      ++counts[static_cast<std::size_t>(echo.kind)];
+      ++counts[echo.cause];
       EXPECT_GE(echo.signal, weather.least_signal);
       EXPECT_GE(echo.range_m, 0.9);
     }
@@ -53,17 +51,17 @@ std::array<std::size_t, 3> count(const PreparedWeather& weather, std::uint32_t b
 }
 
 TEST(WeatherEchoes, AreOfTheKindsThatAreInTheAir) {
-  const auto all = count(prepare(kSleet), 500);
-  EXPECT_EQ(all[0], 500U);
-  EXPECT_GT(all[1], 20U);
-  EXPECT_GT(all[2], 20U);
+  auto all = count(prepare(kSleet), 500);
+  EXPECT_EQ(all[Cause::fog], 500U);
+  EXPECT_GT(all[Cause::rain], 20U);
+  EXPECT_GT(all[Cause::snow], 20U);
   Weather rain = kSleet;
   rain.visibility_m = 0.0;
   rain.snow_mm_per_h = 0.0;
-  const auto only_rain = count(prepare(rain), 500);
-  EXPECT_EQ(only_rain[0], 0U);
-  EXPECT_GT(only_rain[1], 20U);
-  EXPECT_EQ(only_rain[2], 0U);
+  auto only_rain = count(prepare(rain), 500);
+  EXPECT_EQ(only_rain[Cause::fog], 0U);
+  EXPECT_GT(only_rain[Cause::rain], 20U);
+  EXPECT_EQ(only_rain[Cause::snow], 0U);
   EXPECT_TRUE(echoes_of(prepare({}), kNoTarget, {}).empty());
 }
 
@@ -137,15 +135,16 @@ TEST(WeatherEchoes, KeepTheirValues) {
   // as first computed: they must never change for a seed
   const auto echoes =
       echoes_of(prepare(kSleet), kNoTarget, {.seed = 12345, .sensor = 1, .frame = 2, .beam = 0});
-  const std::vector<WeatherEcho> expected = {{1.2757280395472936, 8.3091624071124013, Kind::fog},
-                                             {2.2980008619924028, 0.27613985100832228, Kind::rain},
-                                             {3.1332943043353323, 0.058310181185369979, Kind::rain},
-                                             {4.4002824960225375, 0.015079670734140472, Kind::rain},
-                                             {5.1584913603897942, 0.01837604177636374, Kind::rain},
-                                             {2.1860836389062257, 0.20120632634113408, Kind::snow},
-                                             {2.3352507620849789, 1.1230571087309742, Kind::snow},
-                                             {3.3803974769347112, 0.028209214110634144, Kind::snow},
-                                             {5.474848531734847, 0.021924726457477176, Kind::snow}};
+  const std::vector<WeatherEcho> expected = {
+      {1.2757280395472936, 8.3091624071124013, Cause::fog},
+      {2.2980008619924028, 0.27613985100832228, Cause::rain},
+      {3.1332943043353323, 0.058310181185369979, Cause::rain},
+      {4.4002824960225375, 0.015079670734140472, Cause::rain},
+      {5.1584913603897942, 0.01837604177636374, Cause::rain},
+      {2.1860836389062257, 0.20120632634113408, Cause::snow},
+      {2.3352507620849789, 1.1230571087309742, Cause::snow},
+      {3.3803974769347112, 0.028209214110634144, Cause::snow},
+      {5.474848531734847, 0.021924726457477176, Cause::snow}};
   EXPECT_TRUE(equal(echoes, expected));
 }
 

@@ -137,20 +137,22 @@ TEST(Weather, AddsTheExtinctionsOfFogRainAndSnow) {
   EXPECT_EQ(extinction_per_m({}, 905e-9), 0.0);
 }
 
-TEST(Weather, DimsThePulsedLightOfASensor) {
+TEST(Weather, IsForPulsedLightOfAKnownWavelength) {
   Sensor sensor;
-  EXPECT_FALSE(light_in_weather(sensor).has_value());
+  EXPECT_NO_THROW(check_weather(sensor));
   sensor.pulse = PulseLight{};
-  EXPECT_EQ(light_in_weather(sensor)->weather_extinction_per_m, 0.0);
   sensor.weather = Weather{.rain_mm_per_h = 10.0};
-  EXPECT_EQ(light_in_weather(sensor)->weather_extinction_per_m,
-            extinction_per_m(*sensor.weather, 0.0));
+  EXPECT_NO_THROW(check_weather(sensor));
+  sensor.weather->visibility_m = 100.0;
+  EXPECT_THROW(check_weather(sensor), Error);
+  sensor.wavelength_m = 905e-9;
+  EXPECT_NO_THROW(check_weather(sensor));
 }
 
 TEST(Weather, IsRefusedForOtherLight) {
   Sensor sensor;
   sensor.weather = Weather{};
-  EXPECT_EQ(error_text([&] { light_in_weather(sensor); }),
+  EXPECT_EQ(error_text([&] { check_weather(sensor); }),
             "weather: the light of the sensor 'depth camera' is not pulsed; allowed: weather for a "
             "sensor with 'pulse_light'; describe its light by 'pulse_light' in a sensor file "
             "(docs/files.md)");

@@ -74,7 +74,7 @@ TEST(Presets, MeasureARoomWithLightAndNoise) {
   for (const auto& file : preset_files()) {
     SCOPED_TRACE(file.stem().string());
     Sensor sensor = load_sensor_file(file);
-    sensor.limits = {};
+    sensor.limits = {.along = Limits::Along::range};
     const Ball room(sensor, 2.0, 0.5);
     EXPECT_GT(room.share_of_hits(), 0.999);
     EXPECT_LT(room.range_error_m(), 0.11);  // flash arrays: 0.1 m
@@ -97,7 +97,7 @@ class PresetRange : public ::testing::TestWithParam<SheetPair> {};
 TEST_P(PresetRange, IsThatOfTheSheetWithinOneMetre) {
   const SheetPair& pair = GetParam();
   Sensor sensor = preset(pair.sensor);
-  sensor.limits = {};
+  sensor.limits = {.along = Limits::Along::range};
   std::erase_if(sensor.noise, [](const NoiseStep& step) {
     return std::holds_alternative<FalseEchoes>(step);  // they are no surface
   });
@@ -202,10 +202,56 @@ TEST(Surfaces, SendBackTheSignalOfTheRangeEquation) {
   EXPECT_NEAR(frame.intensity[0], 0.278 / 0.8 * 100.0, 1e-4);
 }
 
+/// Looks past a box of 0.8 m at the walls of a room, 4 m away.
+Frame look_past_a_box(const Sensor& sensor, double front_m) {
+  Scene scene;
+  add_model(scene, make_builtin_model("box"));
+  scene.instances[0].scale = 4.0;
+  add_model(scene, make_builtin_model("box"));
+  scene.instances[1].scale = 0.4;
+  scene.instances[1].world_from_object.translation().x() = front_m + 0.4;
+  const auto renderer = make_renderer(scene, {.threads = 2});
+  const Beams beams = make_beams(sensor);
+  Frame frame;
+  simulate({scene, sensor, beams, standing_still(scene, Pose::Identity()), *renderer}, {}, frame);
+  return frame;
+}
+
+TEST(Presets, OfVelodyneTellBothSurfacesOfACutBeamWhenAskedForTwoReturns) {
+  Sensor sensor = preset("VLP-16");
+  sensor.noise.clear();
+  sensor.receiver.returns.push_back({Return::Order::farthest, 0});
+  const Frame frame = look_past_a_box(sensor, 1.6);
+  const std::size_t beams = frame.status.size() / 2;
+  std::size_t cut = 0;
+  for (std::size_t i = 0; i < beams; ++i) {
+    ASSERT_EQ(frame.status[i], Status::hit);
+    if (frame.status[beams + i] != Status::hit) continue;
+    ++cut;
+    EXPECT_GT(std::abs(frame.range_m[beams + i] - frame.range_m[i]), 1.0);  // its separation
+  }
+  EXPECT_GT(cut, 20U);  // both upright edges on each of the rings that meet the box, and its top
+  EXPECT_LT(cut, beams / 50);
+}
+
+// A pulse of 5 ns cannot tell surfaces 0.5 m apart.
+TEST(Presets, TellMixedEchoesUnlessTheyAreToBeIdeal) {
+  const Frame wide = look_past_a_box(preset("OS1-128"), 3.5);
+  EXPECT_GT(std::count(wide.cause.begin(), wide.cause.end(), Cause::mixed), 0);
+  const Frame line = look_past_a_box(ideal(preset("OS1-128")), 3.5);
+  EXPECT_EQ(std::count(line.cause.begin(), line.cause.end(), Cause::mixed), 0);
+}
+
 TEST(Ideal, LeavesTheGeometryAlone) {
-  const Sensor noisy = preset("VLP-16");
+  Sensor noisy = preset("VLP-16");
+  noisy.weather = Weather{.rain_mm_per_h = 10.0};
+  noisy.projector_m = Eigen::Vector3d::UnitY();
   const Sensor sensor = ideal(noisy);
   EXPECT_FALSE(sensor.pulse.has_value());
+  EXPECT_TRUE(noisy.footprint.has_value());
+  EXPECT_FALSE(sensor.footprint.has_value());
+  EXPECT_FALSE(sensor.weather.has_value());
+  EXPECT_FALSE(sensor.projector_m.has_value());
   EXPECT_TRUE(sensor.noise.empty());
   EXPECT_EQ(sensor.limits.far_m, noisy.limits.far_m);
   EXPECT_EQ(sensor.rate_hz, noisy.rate_hz);

@@ -76,7 +76,7 @@ TEST(MeasurePulses, SayOfALineWhatASingleRaySays) {
   EXPECT_GT(std::count(line.cause.begin(), line.cause.end(), Cause::surface), 0);
 }
 
-// Reference test T9, of a footprint that lies on the surface: the same signal as a ray's, falling
+// Of a footprint that lies on the surface: the same signal as a ray's, falling
 // with the square of the range.
 TEST(MeasurePulses, OfAnExtendedTargetFallWithTheSquareOfTheRange) {
   for (const double range_m : {5.0, 20.0, 90.0}) {
@@ -90,7 +90,7 @@ TEST(MeasurePulses, OfAnExtendedTargetFallWithTheSquareOfTheRange) {
   }
 }
 
-// Reference test T10: half the signal, 3 dB, from half a footprint. The edge lies between rays; six
+// Half the signal, 3 dB, from half a footprint. The edge lies between rays; six
 // rings leave 5 % of the energy to the ray in the middle, which an edge at zero would cut.
 TEST(MeasurePulses, HalfCoveredHaveHalfTheSignal) {
   Stage stage;
@@ -104,7 +104,7 @@ TEST(MeasurePulses, HalfCoveredHaveHalfTheSignal) {
   EXPECT_NEAR(ratio, 0.5, 0.5 * 0.054 + 0.02);  // the middle ray misses
 }
 
-// Reference test T11: a target smaller than the beam at every range falls with the fourth power.
+// A target smaller than the beam at every range falls with the fourth power.
 TEST(MeasurePulses, OfAPointTargetFallWithTheFourthPowerOfTheRange) {
   // A Gaussian beam 10 m wide at 100 m, a square of 1 m; the mean over places of the square near
   // the middle, the same parts of the beam at both ranges, evens out that rays are few.
@@ -128,7 +128,7 @@ TEST(MeasurePulses, OfAPointTargetFallWithTheFourthPowerOfTheRange) {
   EXPECT_NEAR(slope, 4.0, 0.01);
 }
 
-// Reference test T13, through the whole simulation: two half-covering walls.
+// Through the whole simulation: two half-covering walls.
 TEST(MeasurePulses, TellTwoWallsBeyondThePulseAndTheirMeanBelow) {
   const auto ranges_of = [](double apart_m) {
     Stage stage;
@@ -155,7 +155,7 @@ TEST(MeasurePulses, TellTwoWallsBeyondThePulseAndTheirMeanBelow) {
   EXPECT_EQ(together.truth.instance[1], kNoHit);
 }
 
-// Reference test T17: sigma_t^2 = sigma_p^2 + (2 R sigma_theta tan(theta) / c)^2, seen in the peak,
+// sigma_t^2 = sigma_p^2 + (2 R sigma_theta tan(theta) / c)^2, seen in the peak,
 // which is lower by sigma_p / sigma of an echo that is a Gaussian.
 TEST(MeasurePulses, OfATiltedPlaneAreWiderByItsTilt) {
   constexpr double kTilt = 1.2;
@@ -221,6 +221,15 @@ TEST(MeasurePulses, SeeTheGhostOfAMirrorAtTheWholeWay) {
   // the mirror is passed twice; the wall is met square on, with the reflectance of the reference
   const double expected = 0.8 * 0.8 * std::pow(100.0 / 15.0, 2.0);
   EXPECT_NEAR(frame.intensity[0], expected, 1e-5 * expected);
+}
+
+// The receiver does not see what is near, but what is near a mirror far away it does.
+TEST(MeasurePulses, SeeAGhostFromBehindAMirrorByTheOverlapAtItsWholeWay) {
+  Stage stage = mirror_stage();
+  stage.sensor.pulse->overlap = {{0.0, 0.0}, {8.0, 0.0}, {9.0, 1.0}};
+  const Frame frame = stage.shoot();
+  ASSERT_EQ(frame.status[0], Status::hit);
+  EXPECT_EQ(frame.intensity[0], mirror_stage().shoot().intensity[0]);
 }
 
 TEST(MeasurePulses, TellTheMirrorAndItsGhostAsTwoReturns) {

@@ -46,7 +46,7 @@ std::size_t count(const Frame& frame, Status status) {
   return static_cast<std::size_t>(std::count(frame.status.begin(), frame.status.end(), status));
 }
 
-// Reference test T23: the shadow is f b (1/z1 - 1/z2) pixels wide.
+// The shadow is f b (1/z1 - 1/z2) pixels wide.
 TEST(CastShadows, AreAsWideAsTheDisparityStep) {
   for (const auto& [front_m, back_m] : {std::pair{0.8, 1.6}, std::pair{1.0, 3.0}}) {
     Stage stage;
@@ -89,6 +89,22 @@ TEST(CastShadows, LieOnSurfacesWhoseOtherSideIsLit) {
   const Frame frame = stage.shoot();
   EXPECT_EQ(count(frame, Status::hit), 0U);
   EXPECT_GT(count(frame, Status::occluded), 0U);
+}
+
+/// Swaps a panel's sides.
+void turn_over(Mesh& mesh) {
+  for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
+}
+
+TEST(CastShadows, AreNotMadeByBackFacesThatLetLightThrough) {
+  Stage stage;
+  stage.panels.add_wall(1.0, 0.0, 5.0);
+  stage.panels.add_wall(2.0);
+  for (Mesh& mesh : stage.panels.scene.meshes) turn_over(mesh);
+  stage.sensor.cull_back_faces = true;
+  EXPECT_GT(count(stage.shoot(), Status::occluded), 0U);
+  turn_over(stage.panels.scene.meshes[0]);
+  EXPECT_EQ(count(stage.shoot(), Status::hit), 640U);
 }
 
 }  // namespace

@@ -48,8 +48,8 @@ struct Job {
 /// All that is worked out for one tile.
 struct TileWork {
   HitBlock block;
-  Lanes3<double> in_sensor;  ///< directions
-  Lanes<int> valid;          ///< -1: the lane has a beam
+  BeamBlock beams;
+  Lanes<int> valid;  ///< -1: the lane has a beam
   embree::RayHits rays;
   ExactBlock exact;
 };
@@ -79,7 +79,7 @@ void gather_pinhole(const PlanePoints& points, const embree::Tile& tile, TileWor
     work.block.beam[lane] = first + std::size_t{row} * tile.cols + col;
     work.valid[lane] = -1;
   }
-  directions_through(x, y, work.in_sensor);
+  directions_through(x, y, work.beams.direction);
 }
 
 /// Collects the tile's beams; lanes beyond the grid's border repeat the first and are not valid.
@@ -93,7 +93,12 @@ void gather_beams(const Beams& beams, const embree::Tile& tile, TileWork& work) 
     const bool inside = whole || tile.beam(lane) != embree::Tile::kOutside;
     work.valid[lane] = inside ? -1 : 0;
     work.block.beam[lane] = inside ? beam : first;
-    work.in_sensor.set(lane, beams.directions[work.block.beam[lane]]);
+    work.beams.direction.set(lane, beams.directions[work.block.beam[lane]]);
+  }
+  work.beams.has_origins = !beams.origins_m.empty();
+  if (!work.beams.has_origins) return;
+  for (unsigned lane = 0; lane < kLanes; ++lane) {
+    work.beams.origin_m.set(lane, beams.origins_m[work.block.beam[lane]]);
   }
 }
 
@@ -101,7 +106,9 @@ void gather_beams(const Beams& beams, const embree::Tile& tile, TileWork& work) 
 void prefetch(const Beams& beams, const embree::Tile& tile) {
   for (unsigned lane = 0; lane < kLanes; lane += 2) {  // two directions and a half per cache line
     const std::size_t beam = tile.beam(lane);
-    if (beam != embree::Tile::kOutside) __builtin_prefetch(&beams.directions[beam]);
+    if (beam == embree::Tile::kOutside) continue;
+    __builtin_prefetch(&beams.directions[beam]);
+    if (!beams.origins_m.empty()) __builtin_prefetch(&beams.origins_m[beam]);
   }
 }
 
@@ -112,7 +119,7 @@ std::uint32_t told(const Job& job, std::uint32_t instance, std::uint32_t primiti
 
 /// Traces the beams: sets the block's mask and, per lane, instance and primitive.
 void trace(const Job& job, TileWork& work) {
-  job.probe.set_rays(work.block.beam, work.in_sensor, work.valid, work.rays);
+  job.probe.set_rays(work.block.beam, work.beams, work.valid, work.rays);
   embree::FilterContext context = job.probe.context();
   context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   embree::intersect(job.probe.space().scene, context.embree, job.has_wide_packets, work.valid,
@@ -153,10 +160,10 @@ bool settle(const Job& job, std::uint32_t doubtful, HitBlock& block) {
 void finish(const Job& job, TileWork& work) {
   HitBlock& block = work.block;
   if (block.mask != 0) {
-    job.resolver.measure(job.beams, work.in_sensor, block, work.exact);
+    job.resolver.measure(work.beams, block, work.exact);
     const std::uint32_t doubtful = job.probe.doubtful(block, work.exact, work.rays);
     if (doubtful != 0 && settle(job, doubtful, block) && block.mask != 0) {
-      job.resolver.measure(job.beams, work.in_sensor, block, work.exact);
+      job.resolver.measure(work.beams, block, work.exact);
     }
   }
   if (block.mask != 0) job.resolver.write(job.beams, job.fields, block, work.exact, job.hits);

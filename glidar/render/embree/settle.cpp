@@ -37,19 +37,35 @@ Eigen::Vector3d axis_across(const Eigen::Vector3d& direction) {
 
 /// What the rays of a tile have in common.
 struct Launch {
-  Eigen::Matrix3d trace_from_sensor;
-  Eigen::Vector3d centre;
+  const TraceSpace& space;
   double clear_radius;
   Eigen::Vector3f hair;  ///< its length times axis_across()
 };
 
+/// Where beams start in the trace space.
+inline void find_origins(const TraceSpace& space, const BeamBlock& in_sensor,
+                         Lanes3<double>& origin) {
+  const Eigen::Vector3d& sensor = space.sensor_in_trace;
+  for (unsigned i = 0; i < kLanes; ++i) origin.x[i] = sensor.x();
+  for (unsigned i = 0; i < kLanes; ++i) origin.y[i] = sensor.y();
+  for (unsigned i = 0; i < kLanes; ++i) origin.z[i] = sensor.z();
+  if (!in_sensor.has_origins) return;
+  Lanes3<double> offset_m;
+  rotate(space.trace_from_sensor, in_sensor.origin_m, offset_m);
+  for (unsigned i = 0; i < kLanes; ++i) origin.x[i] += offset_m.x[i] / space.metres_per_unit;
+  for (unsigned i = 0; i < kLanes; ++i) origin.y[i] += offset_m.y[i] / space.metres_per_unit;
+  for (unsigned i = 0; i < kLanes; ++i) origin.z[i] += offset_m.z[i] / space.metres_per_unit;
+}
+
 /// Directions into the trace space; origins along them to where the geometry may begin, and a hair
 /// to the side. A lane is valid where its direction is a number.
-GLIDAR_SIMD void launch_rays(const Launch& launch, const Lanes3<double>& in_sensor,
-                             const Lanes3<double>& origin, Lanes<int>& valid, RayHits& rays) {
+GLIDAR_SIMD void launch_rays(const Launch& launch, const BeamBlock& in_sensor, Lanes<int>& valid,
+                             RayHits& rays) {
   Lanes3<double> d;
-  rotate(launch.trace_from_sensor, in_sensor, d);
-  const Eigen::Vector3d& c = launch.centre;
+  Lanes3<double> origin;
+  rotate(launch.space.trace_from_sensor, in_sensor.direction, d);
+  find_origins(launch.space, in_sensor, origin);
+  const Eigen::Vector3d& c = launch.space.centre;
   const Eigen::Vector3f& h = launch.hair;
   RTCRay16& ray = rays.ray;
   for (unsigned i = 0; i < kLanes; ++i) {
@@ -131,22 +147,14 @@ ObjectRay Probe::exact_ray(std::size_t beam) const {
   return ray;
 }
 
-void Probe::set_rays(const std::array<std::size_t, kLanes>& beam, const Lanes3<double>& in_sensor,
+void Probe::set_rays(const std::array<std::size_t, kLanes>& beam, const BeamBlock& in_sensor,
                      Lanes<int>& valid, RayHits& rays) const {
-  Lanes3<double> origin;
-  for (unsigned i = 0; i < kLanes; ++i) origin.x[i] = space_.sensor_in_trace.x();
-  for (unsigned i = 0; i < kLanes; ++i) origin.y[i] = space_.sensor_in_trace.y();
-  for (unsigned i = 0; i < kLanes; ++i) origin.z[i] = space_.sensor_in_trace.z();
-  for (unsigned i = 0; i < kLanes; ++i) {
-    rays.ray.id[i] = static_cast<unsigned>(beam[i]);
-    if (!beams_.origins_m.empty() && valid[i] != 0) origin.set(i, exact_ray(beam[i]).origin);
-  }
-  const Eigen::Vector3d middle = space_.trace_from_sensor * in_sensor.get(0);
-  launch_rays({.trace_from_sensor = space_.trace_from_sensor,
-               .centre = space_.centre,
+  for (unsigned i = 0; i < kLanes; ++i) rays.ray.id[i] = static_cast<unsigned>(beam[i]);
+  const Eigen::Vector3d middle = space_.trace_from_sensor * in_sensor.direction.get(0);
+  launch_rays({.space = space_,
                .clear_radius = kClear * space_.radius,
                .hair = (hair_ * axis_across(middle)).cast<float>()},
-              in_sensor, origin, valid, rays);
+              in_sensor, valid, rays);
 }
 
 std::uint32_t Probe::doubtful(const HitBlock& block, const ExactBlock& exact,

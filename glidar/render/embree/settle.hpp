@@ -27,7 +27,7 @@ class Probe {
 
   /// Sets the lanes' rays beside their beams, starting near the geometry. `valid` (-1 or 0) tells
   /// which lanes have a beam; those whose direction is NaN lose it.
-  void set_rays(const std::array<std::size_t, kLanes>& beam, const Lanes3<double>& in_sensor,
+  void set_rays(const std::array<std::size_t, kLanes>& beam, const BeamBlock& in_sensor,
                 Lanes<int>& valid, RayHits& rays) const;
 
   /// The lanes of a block whose triangle the hair could have changed.

@@ -14,7 +14,7 @@ namespace {
 /// Up to kLanes hits of one row on their way.
 struct Work {
   HitBlock block;
-  Lanes3<double> in_sensor;  ///< directions
+  BeamBlock beams;
   ExactBlock exact;
   std::array<std::uint32_t, kLanes> col;  ///< in the rect
   unsigned used = 0;
@@ -70,13 +70,13 @@ void finish(const RowWriting& w, std::uint32_t row, Work& work) {
   block.mask = static_cast<std::uint32_t>((std::uint64_t{1} << work.used) - 1);
   for (unsigned lane = work.used; lane < kLanes; ++lane) {
     block.beam[lane] = block.beam[0];
-    work.in_sensor.set(lane, work.in_sensor.get(0));
+    work.beams.direction.set(lane, work.beams.direction.get(0));
   }
   work.used = 0;
-  w.resolver.measure(w.request.beams, work.in_sensor, block, work.exact);
+  w.resolver.measure(work.beams, block, work.exact);
   const std::uint32_t in_doubt = doubtful(w.resolver, block, work.exact);
   if (in_doubt != 0 && settle(w, row, in_doubt, work) && block.mask != 0) {
-    w.resolver.measure(w.request.beams, work.in_sensor, block, work.exact);
+    w.resolver.measure(work.beams, block, work.exact);
   }
   if (block.mask == 0) return;
   w.resolver.write(w.request.beams, w.request.fields, block, work.exact, w.hits);
@@ -95,7 +95,7 @@ void write_row(const RowWriting& w, std::uint32_t row, Work& work) {
     work.block.beam[lane] = first + col;
     work.block.instance[lane] = found.instance;
     work.block.primitive[lane] = told(w, found);
-    work.in_sensor.set(lane, beams.directions[first + col]);
+    work.beams.direction.set(lane, beams.directions[first + col]);
     w.resolver.prefetch(work.block, lane);
     if (work.used == kLanes) finish(w, row, work);
   }

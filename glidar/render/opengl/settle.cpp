@@ -48,7 +48,10 @@ Eigen::Vector2f weights(const Mesh& mesh, std::uint32_t triangle, const Eigen::V
 
 std::uint32_t doubtful(const Resolver& resolver, const HitBlock& block, const ExactBlock& exact) {
   CornerBlock corners;
-  gather(resolver, block, positions_of, corners);
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const Mesh& mesh = resolver.mesh(block.instance[i]);
+    corners.set(i, mesh.positions_m.data(), mesh.triangles[block.primitive[i]]);
+  }
   return outside(exact, corners) & block.mask;
 }
 

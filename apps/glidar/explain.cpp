@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/commands.hpp>
+#include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/option_kinds.hpp>
+#include <apps/glidar/session.hpp>
+#include <apps/glidar/story_text.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/core/version.hpp>
+#include <glidar/io/sidecar.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+#include <memory>
+
+namespace glidar::app {
+namespace {
+
+constexpr const char* kExamples =
+    R"(Repeats the measurement that a cloud came from, as its sidecar (CLOUD.json) tells, and prints how
+one point came to be: the beam, what it met, the light, echoes, every step of noise with the
+random numbers that it drew, and what was reported.
+Examples:
+  glidar render builtin:asteroid --sensor VLP-16 --eye 4,0,0 -o scan.pcd
+  glidar explain scan.pcd --index 812
+  glidar explain scan.pcd --row 3 --col 200)";
+
+struct ExplainFlags {
+  std::string cloud;
+  std::optional<std::int64_t> index;
+  std::optional<std::int64_t> row;
+  std::optional<std::int64_t> col;
+  std::int64_t return_number = 1;
+};
+
+[[noreturn]] void refuse(const std::string& where, std::string found, std::string allowed,
+                         std::string remedy) {
+  throw Error({.where = where,
+               .found = std::move(found),
+               .allowed = std::move(allowed),
+               .remedy = std::move(remedy)});
+}
+
+/// The options of the `render` that a sidecar tells.
+RenderFlags flags_of(const Sidecar& sidecar) {
+  const std::vector<std::string>& told = sidecar.command.arguments;
+  if (told.empty() || told.front() != "render") {
+    refuse(sidecar.path.string(), "it tells no command", "a cloud written by `glidar render`", "");
+  }
+  CLI::App command;
+  RenderFlags flags;
+  add_render_flags(command, flags);
+  try {
+    command.parse(std::vector<std::string>(told.rbegin(), told.rend() - 1));  // from the end on
+  } catch (const CLI::ParseError& error) {
+    refuse(sidecar.path.string(), std::string("its command is not understood: ") + error.what(),
+           "the arguments of `glidar render`", "write the cloud again");
+  }
+  return flags;
+}
+
+/// Throws Error when models are not those that the cloud was made of.
+void check_models(const Sidecar& sidecar, const Scene& scene) {
+  std::vector<std::string> hashes;
+  for (const Instance& instance : scene.instances) {
+    hashes.push_back(scene.sources.at(instance.mesh).hash);
+  }
+  if (hashes == sidecar.model_hashes) return;
+  refuse(sidecar.path.string(), "the models have changed since", "the models as they were",
+         "render the cloud again");
+}
+
+/// Which entry of the frame the flags are about.
+std::size_t entry_of(const ExplainFlags& flags, const Sidecar& sidecar, const Frame& frame,
+                     const Beams& beams) {
+  if (flags.row) {
+    const auto pulses_rows = static_cast<std::int64_t>(beams.rows / beams.returns);
+    if (*flags.row >= pulses_rows || *flags.col >= beams.cols ||
+        flags.return_number > beams.returns) {
+      refuse("--row, --col, --return",
+             fmt::format("{}, {}, {}", *flags.row, *flags.col, flags.return_number),
+             fmt::format("{} rows, {} columns, {} returns", pulses_rows, beams.cols, beams.returns),
+             "");
+    }
+    const std::int64_t row = (flags.return_number - 1) * pulses_rows + *flags.row;
+    return static_cast<std::size_t>(row * beams.cols + *flags.col);
+  }
+  const auto index = static_cast<std::size_t>(*flags.index);
+  if (index >= sidecar.points) {
+    refuse("--index", std::to_string(index),
+           fmt::format("0 to {}, the points of the cloud",
+                       std::max<std::size_t>(sidecar.points, 1) - 1),
+           "");
+  }
+  if (sidecar.points == beams.size()) return index;
+  std::size_t hits = 0;  // the cloud holds hits alone
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (frame.status[i] == Status::hit && hits++ == index) return i;
+  }
+  return beams.size();  // cannot be: the hits were counted
+}
+
+/// Measures the frame again and checks that it is the one of the cloud.
+void repeat(const Sidecar& sidecar, const Setup& setup, Frame& frame) {
+  simulate(setup, {}, frame);
+  const auto hits =
+      static_cast<std::size_t>(std::count(frame.status.begin(), frame.status.end(), Status::hit));
+  if (hits == sidecar.hits) return;
+  refuse(sidecar.path.string(),
+         fmt::format("the measurement was repeated with {} hits, the cloud's had {}", hits,
+                     sidecar.hits),
+         "the same sensor files, scene files and program as then", "render the cloud again");
+}
+
+void check(const ExplainFlags& flags) {
+  const bool by_pixel = flags.row && flags.col;
+  if ((flags.row.has_value() != flags.col.has_value()) || flags.index.has_value() == by_pixel) {
+    refuse("explain", "no point is named", "--index N, or --row R and --col C", "");
+  }
+}
+
+int run(const ExplainFlags& flags) {
+  check(flags);
+  Console console;
+  const Sidecar sidecar = read_sidecar(flags.cloud);
+  const RenderFlags render = flags_of(sidecar);
+  if (sidecar.version != version()) {
+    console.warn(
+        fmt::format("the cloud was written by glidar {}, this is {}", sidecar.version, version()));
+  }
+  std::filesystem::current_path(sidecar.command.folder);
+  Session session;
+  open(
+      render, [] {}, console, session);
+  check_models(sidecar, session.scene);
+  Frame frame;
+  turn_to(render, sidecar.frame, session, frame);
+  const Setup setup = setup_of(session, console);
+  Story story;
+  {
+    const Working working(console, "measuring again");
+    repeat(sidecar, setup, frame);
+    story = explain(setup, entry_of(flags, sidecar, frame, session.beams), frame);
+  }
+  fmt::print("{}", story_text(story, setup, frame));
+  return kDone;
+}
+
+}  // namespace
+
+Command add_explain(CLI::App& program) {
+  CLI::App& command = *program.add_subcommand("explain", "Tell how a point of a cloud came to be");
+  const auto flags = std::make_shared<ExplainFlags>();
+  command.footer(kExamples);
+  command
+      .add_option("CLOUD", flags->cloud, "A cloud written by render, with its sidecar beside it")
+      ->required()
+      ->type_name("");
+  const std::string group = "Point";
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  const auto whole = [&](const char* names, const char* form, const char* help,
+                         std::optional<std::int64_t>& value) {
+    add_whole(command, {names, form, help, group}, {0, kMost},
+              [&value](std::int64_t n) { value = n; });
+  };
+  whole("--index", "N", "Which point, from 0 in the order of the file", flags->index);
+  whole("--row", "R", "Which row of the sensor's beams, from 0; with --col", flags->row);
+  whole("--col", "C", "Which column, from 0", flags->col);
+  add_whole(command, {"--return", "K", "Which return of that beam, from 1 [1]", group}, {1, 16},
+            [&n = flags->return_number](std::int64_t k) { n = k; });
+  return [flags] { return run(*flags); };
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/glidar/cli_fwd.hpp>
+#include <apps/glidar/information_options.hpp>
+#include <apps/glidar/model_options.hpp>
+#include <apps/glidar/motion_options.hpp>
+#include <apps/glidar/output_options.hpp>
+#include <apps/glidar/pose_options.hpp>
+#include <apps/glidar/sensor_options.hpp>
+#include <glidar/render/renderer.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace glidar::app {
+
+/// A measurement as given on the command line.
+struct RenderFlags {
+  std::string input;
+  ModelFlags model;
+  SensorFlags sensor;
+  PoseFlags pose;
+  MotionFlags motion;
+  std::string surface;  ///< of the whole model; empty: its own
+  OutputFlags output;
+  InformationFlags information;
+  RendererOptions renderer;
+  std::string target = "float";  ///< what the renderer draws: float or paper
+  std::uint64_t seed = 1;
+  std::optional<double> duration_s;  ///< of a sequence of frames; empty: a single one
+  bool quiet = false;
+};
+
+inline bool has_paper_target(const RenderFlags& flags) {
+  return flags.target == "paper";
+}
+
+/// How the beams are cast, as the sidecar tells it.
+std::string renderer_name(const RenderFlags& flags);
+
+/// Adds MODEL and all options of `render`.
+void add_render_flags(CLI::App& command, RenderFlags& flags);
+
+}  // namespace glidar::app

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/explain.hpp>
+
+#include <string>
+
+namespace glidar::app {
+
+/// The story of an entry in words and numbers, for people. `frame` is the one that was explained.
+std::string story_text(const Story& story, const Setup& setup, const Frame& frame);
+
+}  // namespace glidar::app

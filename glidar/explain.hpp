@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/sensor/noise_draws.hpp>
+#include <glidar/simulate.hpp>
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+namespace glidar {
+
+/// What a sensor would report of an entry at some point of its measurement.
+struct Reading {
+  Status status = Status::miss;
+  Cause cause = Cause::none;
+  double range_m = 0.0;  ///< NaN unless hit
+  float intensity = 0.0F;
+  float sigma_m = 0.0F;  ///< of the range's random error so far
+};
+
+/// How an entry of a frame came to be: what is not in the frame's own columns.
+struct Story {
+  std::size_t entry = 0;
+  Eigen::Vector3d aimed = Eigen::Vector3d::Zero();  ///< as the beam really went, sensor's frame
+  Reading measured;                                 ///< before noise
+  std::optional<PulseTrace> pulse = {};             ///< where beams are more than a ray
+  /// Of pulsed light: the normal numbers that the receiver's noise_sigma multiplies, one for each
+  /// echo; of beams that are a ray, one.
+  std::vector<double> receiver_noise = {};
+
+  /// One step of noise.
+  struct Step {
+    std::vector<Drawn> draws;
+    Reading after;
+  };
+  std::vector<Step> noise;  ///< one for each step of the sensor's list
+};
+
+/// Measures a frame as simulate() does, with all truth, and tells how one entry of it came to be.
+/// frame.stamp_ns, seed, sensor_id and number say which; the frame comes out as simulate() makes
+/// it, byte for byte. Every step of noise is run once more, so it takes as long as so many frames.
+/// Throws Error when there is no such entry.
+Story explain(const Setup& setup, std::size_t entry, Frame& frame);
+
+}  // namespace glidar

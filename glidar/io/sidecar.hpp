@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/frame.hpp>
+#include <glidar/io/file_sink.hpp>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace glidar {
+
+/// What a sidecar says of how its cloud was made.
+struct Sidecar {
+  std::filesystem::path path;
+  std::string version;    ///< of the program
+  CommandRecord command;  ///< its folder as an absolute path; no arguments: not told
+  std::uint32_t frame = 0;
+  std::size_t points = 0;                 ///< in the cloud
+  std::size_t hits = 0;                   ///< of the frame
+  std::vector<std::string> model_hashes;  ///< one per instance; empty for built-in models
+};
+
+/// Reads the sidecar of a cloud, CLOUD.json beside it. Throws Error when there is none or it is not
+/// one.
+Sidecar read_sidecar(const std::filesystem::path& cloud);
+
+}  // namespace glidar

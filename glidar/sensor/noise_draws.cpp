@@ -1,0 +1,164 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/noise_draws.hpp>
+
+#include <glidar/core/gaussian.hpp>
+
+#include <algorithm>
+
+namespace glidar {
+namespace {
+
+using Law = Drawn::Law;
+using Draws = std::vector<Drawn>;
+
+/// Who asks.
+struct Asked {
+  const Beams& beams;
+  const Frame& frame;
+  double frame_s;
+  std::size_t entry;
+  Draw draw;  ///< of the step, for the entry
+};
+
+/// The draw of the run of beams that the entry belongs to.
+Draw run_of(const Asked& asked, std::uint32_t block = 0) {
+  Draw draw = asked.draw;
+  draw.beam -= draw.beam % static_cast<std::uint32_t>(kDrawBatch);
+  draw.block = block;
+  return draw;
+}
+
+double shared_normal(const Asked& asked, std::uint32_t block = 0) {
+  Batch<double> normal;
+  draw_shared_normals(run_of(asked, block), normal);
+  return normal.at(asked.entry % kDrawBatch);
+}
+
+double shared_uniform(const Asked& asked) {
+  Batch<double> x;
+  draw_shared_uniforms(run_of(asked), x);
+  return x.at(asked.entry % kDrawBatch);
+}
+
+Draws error_of(const Asked& asked, const char* use) {
+  return {{Law::normal, shared_normal(asked), use}};
+}
+
+Draws aside(const Asked& asked) {
+  const auto own = normals(random_words(asked.draw));
+  return {{Law::normal, own[0], "to the right in the image"},
+          {Law::normal, own[1], "downwards in the image"}};
+}
+
+Draws draws(const RangeGaussian& /*step*/, const Asked& asked) {
+  return error_of(asked, "error of the range");
+}
+Draws draws(const RangeSnr& /*step*/, const Asked& asked) {
+  return error_of(asked, "error of the range");
+}
+Draws draws(const RangePulse& /*step*/, const Asked& asked) {
+  return error_of(asked, "error of the range");
+}
+Draws draws(const RangePhotons& /*step*/, const Asked& asked) {
+  return error_of(asked, "error of the range");
+}
+Draws draws(const Range2015& step, const Asked& asked) {
+  const RandomWords words = random_words(asked.draw);
+  const bool is_normal = step.distribution == Range2015::Distribution::normal;
+  const auto x = normals(words);
+  const Law law = is_normal ? Law::normal : Law::uniform;
+  return {{law, is_normal ? x[0] : uniform(words[0]), "additive error"},
+          {law, is_normal ? x[1] : uniform(words[1]), "multiplicative error"}};
+}
+Draws draws(const RangeQuantum& /*step*/, const Asked& /*asked*/) {
+  return {};
+}
+Draws draws(const RangeBias& step, const Asked& asked) {
+  if (!(step.sigma_m > 0.0)) return {};
+  Draw of_ring = asked.draw;
+  of_ring.frame = kEveryFrame;
+  of_ring.beam = ring_of(asked.beams, asked.entry);
+  return {{Law::normal, normals(random_words(of_ring))[0], "of the ring, for the sensor's life"}};
+}
+Draws draws(const RangeDrift& step, const Asked& asked) {
+  Draw of_ring = asked.draw;
+  of_ring.beam = step.per_ring ? ring_of(asked.beams, asked.entry) : 0;
+  const double value = drift_at(asked.frame.number, step.tau_s / asked.frame_s, of_ring);
+  return {{Law::normal, value, step.per_ring ? "drift of the ring" : "drift of the sensor"}};
+}
+Draws draws(const Dropout& /*step*/, const Asked& asked) {
+  return {{Law::uniform, shared_uniform(asked), "lost if below the probability"}};
+}
+Draws draws(const Crosstalk& /*step*/, const Asked& asked) {
+  const RandomWords words = random_words(asked.draw);
+  return {{Law::uniform, uniform(words[0]), "crosstalk if below the probability"},
+          {Law::uniform, uniform(words[1]), "which other channel"},
+          {Law::uniform, uniform(words[2]), "where before that channel's range"}};
+}
+Draws draws(const FalseEchoes& /*step*/, const Asked& asked) {
+  return {{Law::uniform, shared_uniform(asked), "arrival of the first false echo"}};
+}
+Draws draws(const DisparityQuantum& /*step*/, const Asked& /*asked*/) {
+  return {};
+}
+Draws draws(const KinectV1& /*step*/, const Asked& asked) {
+  return error_of(asked, "of the pixel; the error is the mean over the window around it");
+}
+Draws draws(const Khoshelham& /*step*/, const Asked& asked) {
+  return error_of(asked, "error of the depth");
+}
+Draws draws(const NguyenAxial& /*step*/, const Asked& asked) {
+  return error_of(asked, "error of the depth");
+}
+Draws draws(const NguyenLateral& /*step*/, const Asked& asked) {
+  return aside(asked);
+}
+Draws draws(const IclKinect& /*step*/, const Asked& asked) {
+  Draws all = aside(asked);
+  all.push_back({Law::normal, shared_normal(asked, 1), "error of the disparity"});
+  return all;
+}
+Draws draws(const Stereo& /*step*/, const Asked& asked) {
+  return error_of(asked, "error of the disparity");
+}
+Draws draws(const ContinuousWave& step, const Asked& asked) {
+  Draws all;
+  Draw draw = asked.draw;
+  const std::size_t count = std::min(step.frequencies_hz.size(), kMostFrequencies);
+  for (std::size_t k = 0; k < count; ++k) {
+    draw.block = static_cast<std::uint32_t>(k / 4);
+    const char* use = k == 0 ? "error of the highest frequency's phase" : "error of a phase";
+    all.push_back({Law::normal, normals(random_words(draw)).at(k % 4), use});
+  }
+  return all;
+}
+Draws draws(const IntensityGaussian& /*step*/, const Asked& asked) {
+  return error_of(asked, "error of the intensity");
+}
+Draws draws(const IntensityScale& /*step*/, const Asked& /*asked*/) {
+  return {};
+}
+Draws draws(const PointingJitter& /*step*/, const Asked& asked) {
+  Draw draw = asked.draw;
+  draw.beam = static_cast<std::uint32_t>(asked.entry % asked.beams.pulses());
+  const auto own = normals(random_words(draw));
+  return {{Law::normal, own[0], "turn to the side"}, {Law::normal, own[1], "turn upwards"}};
+}
+Draws draws(const EncoderError& step, const Asked& asked) {
+  if (!(step.turn_sigma_rad > 0.0)) return {};
+  Draw of_turn = asked.draw;
+  of_turn.beam = 0;
+  return {{Law::normal, normals(random_words(of_turn))[0], "error of the whole turn"}};
+}
+
+}  // namespace
+
+std::vector<Drawn> draws_of(const std::vector<NoiseStep>& noise, std::size_t place,
+                            const Beams& beams, const Frame& frame, double frame_s,
+                            std::size_t entry) {
+  const Asked asked{beams, frame, frame_s, entry, draw_of(frame, purpose_of(place), entry)};
+  return std::visit([&](const auto& step) { return draws(step, asked); }, noise.at(place));
+}
+
+}  // namespace glidar

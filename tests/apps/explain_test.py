@@ -1,0 +1,122 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""glidar explain. The built program is found in PATH."""
+
+import json
+import os
+import re
+import shutil
+import unittest
+
+from cli_support import CliTest, box_of
+
+SENSOR = """
+optics: {type: pinhole, width: 24, height: 20, fov_deg: 30}
+wavelength_nm: 905
+pulse_light: {reference_reflectance: 0.8, reference_range_m: 100, noise_sigma: 0.2}
+footprint: {divergence_mrad: 3}
+receiver: {returns: [first, last]}
+weather: {rain_mm_per_h: 20, visibility_m: 60}
+noise: [{type: range_gaussian, sigma_m: 0.02}, {type: dropout, probability: 0.3}]
+"""
+
+
+class Explain(CliTest):
+    def points_of(self, name):
+        with open(os.path.join(self.folder, name), encoding="utf-8") as file:
+            columns = next(file).strip().split(",")
+            return [dict(zip(columns, line.strip().split(","))) for line in file]
+
+    def story_of(self, *arguments):
+        """The story's lines by their heads; those without one belong to the head before."""
+        story = {}
+        for line in self.succeed("explain", *arguments).stdout.splitlines():
+            head = line[:10].strip() or head
+            story.setdefault(head, []).append(line[10:])
+        return story
+
+    def assert_is_story_of(self, story, point):
+        told = re.match(r"([-0-9.]+) m, intensity ([-+0-9.e]+)", story["reported"][0])
+        if told is None:
+            self.assertEqual(float(point["status"]) == 0, False)
+            return
+        self.assertAlmostEqual(float(told[1]), float(point["range"]), delta=1e-6)
+        self.assertAlmostEqual(float(told[2]), float(point["intensity"]), delta=1e-5 * float(told[2]))
+
+    def test_every_point_has_a_story_that_ends_at_it(self):
+        self.write("s.yaml", SENSOR)
+        columns = ("--columns", "xyz,range,intensity,status,row,col,return")
+        self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "--seed", "5", *columns, "-o", "all.csv")
+        self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "--seed", "5", *columns, "--dense",
+                     "-o", "dense.csv")
+        everything, dense = self.points_of("all.csv"), self.points_of("dense.csv")
+        self.assertGreater(len(everything), len(dense))
+        for index in (0, 200, 252, 253, 700, len(everything) - 1):
+            self.assert_is_story_of(self.story_of("all.csv", "--index", str(index)), everything[index])
+        for index in (0, len(dense) // 2, len(dense) - 1):
+            point = dense[index]
+            story = self.story_of("dense.csv", "--index", str(index))
+            self.assert_is_story_of(story, point)
+            by_pixel = self.story_of("dense.csv", "--row", point["row"], "--col", point["col"], "--return",
+                                     str(int(point["return"]) + 1))
+            self.assertEqual(by_pixel, story)
+
+    def test_it_tells_beam_hit_light_echoes_and_draws(self):
+        self.write("s.yaml", SENSOR)
+        self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "-o", "a.npz")
+        story = self.story_of("a.npz", "--row", "10", "--col", "12")
+        self.assertEqual(list(story), ["beam", "fired", "aimed", "ray", "met", "light", "ways", "echoes",
+                                       "received", "measured", "noise 1", "noise 2", "reported", "error"][:len(story)])
+        self.assertIn("asteroid", story["met"][0])
+        self.assertIn("sub-rays", story["ways"][0])
+        self.assertIn("drew normal", story["echoes"][1])
+        self.assertIn("range_gaussian sigma_m 0.02", story["noise 1"][0])
+
+    def test_frames_of_a_sequence_and_moved_folders_are_found(self):
+        self.write("box.obj", box_of(2))
+        os.mkdir(os.path.join(self.folder, "out"))
+        self.succeed("render", "box.obj", "--camera-dr", "0,1,0", "--camera-z", "9", "--duration", "0.1",
+                     "--threads", "1", "--quiet", "-o", "out/b.csv", "--columns", "xyz,range,intensity,status")
+        with open(os.path.join(self.folder, "out", "b_000002.csv.json"), encoding="utf-8") as file:
+            told = json.load(file)
+        self.assertEqual(told["frame"], 2)
+        self.assertEqual(told["command"]["folder"], "..")
+        self.assertNotIn("--threads", told["command"]["arguments"])
+        self.assertNotIn("--quiet", told["command"]["arguments"])
+        moved = os.path.join(self.folder, "moved")
+        os.mkdir(moved)
+        for name in ("box.obj", "out"):
+            shutil.move(os.path.join(self.folder, name), moved)
+        points = self.points_of("moved/out/b_000002.csv")
+        story = self.story_of("moved/out/b_000002.csv", "--index", "30000")
+        self.assertIn("frame 2", story["fired"][0])
+        self.assert_is_story_of(story, points[30000])
+
+    def test_what_cannot_be_explained_is_refused(self):
+        self.write("box.obj", box_of(2))
+        self.succeed("render", "box.obj", "-w", "8", "--height", "8", "-o", "b.pcd", "--dense")
+        self.succeed("render", "box.obj", "-w", "8", "--height", "8", "-o", "none.pcd", "--no-sidecar")
+        explain = lambda *arguments: self.refused("explain", *arguments)
+        self.assertIn("without --no-sidecar", explain("none.pcd", "--index", "0"))
+        self.assertIn("--index N, or --row R and --col C", explain("b.pcd"))
+        self.assertIn("--index N, or --row R and --col C", explain("b.pcd", "--row", "1"))
+        self.assertIn("--index N, or --row R and --col C", explain("b.pcd", "--index", "1", "--row", "1", "--col", "1"))
+        self.assertIn("--index: 64; allowed: 0 to", explain("b.pcd", "--index", "64"))
+        self.assertIn("8 rows, 8 columns, 1 returns", explain("b.pcd", "--row", "8", "--col", "0"))
+        self.assertIn("-1", explain("b.pcd", "--index", "-1"))
+        self.write("box.obj", box_of(2.5))
+        self.assertIn("the models have changed", explain("b.pcd", "--index", "0"))
+        os.remove(os.path.join(self.folder, "box.obj"))
+        self.assertIn("box.obj", explain("b.pcd", "--index", "0"))
+        self.write("b.pcd.json", "{}")
+        self.assertIn("not a sidecar", explain("b.pcd", "--index", "0"))
+
+    def test_a_changed_sensor_file_is_noticed(self):
+        self.write("s.yaml", SENSOR)
+        self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "-o", "a.pcd")
+        self.write("s.yaml", SENSOR.replace("0.3", "0.9"))
+        self.assertIn("the measurement was repeated with", self.refused("explain", "a.pcd", "--index", "0"))
+
+
+if __name__ == "__main__":
+    unittest.main()

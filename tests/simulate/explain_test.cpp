@@ -1,0 +1,165 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/error.hpp>
+#include <glidar/core/gaussian.hpp>
+#include <glidar/explain.hpp>
+#include <simulate/panels.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+/// A camera before a wall, half of it nearer.
+struct Stage : testing::PanelScene {
+  Sensor sensor;
+
+  Stage() {
+    sensor.optics = pinhole_from_fov(40, 30, 0.5);
+    add_wall(5.0, -50.0, 0.0);
+    add_wall(8.0);
+  }
+  /// As simulated, or as explained when a story is asked for.
+  Frame shoot(std::size_t entry, Story* story) const {
+    const auto renderer = make_renderer(scene, {.threads = 2});
+    const Beams beams = make_beams(sensor);
+    const Motion motion = standing_still(scene, Pose::Identity());
+    const Setup setup{scene, sensor, beams, motion, *renderer};
+    Frame frame;
+    frame.seed = 5;
+    frame.number = 2;
+    if (story != nullptr) {
+      *story = explain(setup, entry, frame);
+    } else {
+      simulate(setup, {}, frame);
+    }
+    return frame;
+  }
+};
+
+Stage noisy_stage() {
+  Stage stage;
+  stage.sensor.noise = {PointingJitter{1e-3, 1e-3}, RangeGaussian{.sigma_m = 0.1},
+                        RangeQuantum{.step_m = 0.05}, Dropout{.probability = 0.3}};
+  return stage;
+}
+
+void expect_same(const Frame& one, const Frame& other) {
+  EXPECT_EQ(one.status, other.status);
+  EXPECT_EQ(one.intensity, other.intensity);
+  EXPECT_EQ(one.sigma_m, other.sigma_m);
+  EXPECT_EQ(one.cause, other.cause);
+  ASSERT_EQ(one.range_m.size(), other.range_m.size());
+  for (std::size_t i = 0; i < one.range_m.size(); ++i) {
+    if (!std::isnan(one.range_m[i])) {
+      EXPECT_EQ(one.range_m[i], other.range_m[i]) << i;
+    }
+  }
+}
+
+TEST(Explain, MakesTheSameFrameAsSimulate) {
+  for (Stage stage : {Stage(), noisy_stage()}) {
+    for (const bool pulsed : {false, true}) {
+      if (pulsed) {
+        stage.sensor.pulse = PulseLight{.noise_sigma = 0.1};
+        stage.sensor.footprint = Footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3};
+        stage.sensor.receiver.returns = {{Return::Order::nearest, 0}, {Return::Order::farthest, 0}};
+      }
+      Story story;
+      expect_same(stage.shoot(7, &story), stage.shoot(7, nullptr));
+    }
+  }
+}
+
+TEST(Explain, FollowsAnEntryThroughAllStepsOfNoise) {
+  const Stage stage = noisy_stage();
+  std::size_t dropped = 0;
+  for (const std::size_t entry : {0U, 21U, 600U, 1111U, 1199U}) {
+    Story story;
+    const Frame frame = stage.shoot(entry, &story);
+    ASSERT_EQ(story.noise.size(), 4U);
+    EXPECT_EQ(story.measured.range_m, frame.truth.range_m[entry]);
+    EXPECT_EQ(story.noise[0].after.range_m, story.measured.range_m) << "the beam was turned before";
+    const double noisy_m = story.measured.range_m + 0.1 * story.noise[1].draws.at(0).value;
+    EXPECT_NEAR(story.noise[1].after.range_m, noisy_m, 1e-12);
+    EXPECT_FLOAT_EQ(story.noise[1].after.sigma_m, 0.1F);
+    EXPECT_NEAR(story.noise[2].after.range_m, noisy_m, 0.025 + 1e-12);
+    const bool is_dropped = story.noise[3].draws.at(0).value < 0.3;
+    EXPECT_EQ(story.noise[3].after.status, is_dropped ? Status::dropped : Status::hit);
+    EXPECT_EQ(story.noise[3].after.status, frame.status[entry]);
+    dropped += is_dropped ? 1U : 0U;
+    EXPECT_FALSE(story.pulse.has_value());
+  }
+  EXPECT_GT(dropped, 0U);
+}
+
+TEST(Explain, TellsHowABeamReallyWent) {
+  Stage stage;
+  Story story;
+  stage.shoot(17, &story);
+  EXPECT_EQ(story.aimed, make_beams(stage.sensor).directions[17]);
+  stage = noisy_stage();
+  stage.shoot(17, &story);
+  const double off_rad = (story.aimed - make_beams(stage.sensor).directions[17]).norm();
+  EXPECT_GT(off_rad, 1e-5);
+  EXPECT_NEAR(off_rad,
+              1e-3 * std::hypot(story.noise[0].draws[0].value, story.noise[0].draws[1].value),
+              1e-6);
+}
+
+TEST(Explain, TracesTheEchoesOfAPulse) {
+  Stage stage;
+  stage.sensor.optics = pinhole_from_fov(1, 1, 1e-3);  // on the edge of the nearer wall
+  stage.sensor.pulse = PulseLight{};
+  stage.sensor.footprint =
+      Footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3, .rings = 2};
+  stage.sensor.receiver.returns = {{Return::Order::nearest, 0}, {Return::Order::farthest, 0}};
+  Story story;
+  const Frame frame = stage.shoot(1, &story);
+  ASSERT_TRUE(story.pulse.has_value());
+  const PulseTrace& pulse = *story.pulse;
+  EXPECT_EQ(pulse.pulse, 0U) << "the second return of the first pulse";
+  EXPECT_EQ(pulse.sub_rays, sub_rays(*stage.sensor.footprint).size());
+  ASSERT_EQ(pulse.ways.size(), pulse.sub_rays);
+  double share = 0.0;
+  for (const PulseTrace::Way& way : pulse.ways) {
+    share += way.share;
+    EXPECT_NEAR(way.path.range_m, way.instance == 0 ? 5.0 : 8.0, 1e-4);
+    EXPECT_LT(way.path.source, pulse.sub_rays);
+  }
+  EXPECT_NEAR(share, 1.0, 1e-12);
+  ASSERT_EQ(pulse.received.size(), 2U);
+  EXPECT_EQ(pulse.returns, (std::vector<int>{0, 1}));
+  EXPECT_EQ(pulse.received[0].range_m, frame.range_m[0]);
+  EXPECT_EQ(pulse.received[1].range_m, frame.range_m[1]);
+  EXPECT_EQ(story.measured.range_m, frame.range_m[1]);
+}
+
+TEST(Explain, ShowsTheReceiversNoise) {
+  Stage stage;
+  stage.sensor.pulse = PulseLight{.noise_sigma = 0.2};
+  stage.sensor.receiver.returns = {{Return::Order::nearest, 0}};
+  Story story;
+  const Frame frame = stage.shoot(300, &story);
+  const Draw draw = draw_of(frame, Purpose::detection, 300);
+  ASSERT_EQ(story.pulse->echoes.size(), 1U);
+  ASSERT_EQ(story.receiver_noise.size(), 1U);
+  EXPECT_EQ(story.receiver_noise[0], normals(random_words(draw))[0]);
+  EXPECT_NEAR(story.pulse->received[0].signal,
+              story.pulse->echoes[0].signal + 0.2 * normals(random_words(draw))[0], 1e-9);
+}
+
+TEST(Explain, RefusesAnEntryThatIsNotThere) {
+  Story story;
+  try {
+    Stage().shoot(1200, &story);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "index: 1200; allowed: 0 to 1199, the entries of this frame");
+  }
+}
+
+}  // namespace
+}  // namespace glidar
