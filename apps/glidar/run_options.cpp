@@ -22,8 +22,7 @@ void add_run_flags(CLI::App& command, RendererOptions& options, const std::strin
             [&options](std::int64_t n) { options.threads = static_cast<unsigned>(n); });
   constexpr std::int64_t kMostDevices = 63;
   add_whole(command,
-            {"--graphics-device", "N",
-             "Which device the opengl renderer draws on, from 0 [the first that can]", group},
+            {"--graphics-device", "N", "Device that opengl draws on [first that can]", group},
             {0, kMostDevices},
             [&options](std::int64_t n) { options.graphics_device = static_cast<unsigned>(n); });
 }

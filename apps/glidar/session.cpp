@@ -174,7 +174,8 @@ Setup setup_of(const Session& session, Console& console) {
               .renderer = *session.renderer,
               .progress = [&console](double fraction) { console.tell(fraction); }};
   const Paper& paper = session.paper;
-  if (paper.camera) setup.paper.emplace(*paper.camera, *paper.picture);
+  if (paper.camera)
+    setup.paper.emplace(PaperTarget{.camera = *paper.camera, .picture = *paper.picture});
   return setup;
 }
 
