@@ -7,6 +7,7 @@
 #include <glidar/io/builtin_models.hpp>
 #include <glidar/io/sensor_file.hpp>
 #include <glidar/io/sensor_presets.hpp>
+#include <glidar/sensor/footprint.hpp>
 #include <glidar/simulate.hpp>
 
 namespace glidar::bench {
@@ -84,6 +85,25 @@ void register_cast(const Stage& stage, unsigned threads, int casts, const std::s
   })->UseRealTime();
 }
 
+/// The bare cast of a footprint's own rays, with the columns that the light needs.
+void register_sub_cast(const Stage& stage, unsigned threads, const std::string& name) {
+  benchmark::RegisterBenchmark(name.c_str(), [&stage, threads](benchmark::State& state) {
+    const auto renderer = make_renderer(stage.scene, {.threads = threads});
+    Beams rays;
+    spread(sub_rays(*stage.wide.footprint), stage.beams, {0, stage.beams.size()},
+           renderer->workers(), rays);
+    Hits hits;
+    for (auto _ : state) {
+      renderer->cast({.beams = rays,
+                      .world_from_sensor = Pose::Identity(),
+                      .world_from_instance = {},
+                      .fields = {.shading = true, .reflectance = true}},
+                     hits);
+    }
+    count_rays(stage, state);
+  })->UseRealTime();
+}
+
 void register_simulation(const Stage& stage, const Sensor& sensor, const Motion& motion,
                          unsigned threads, const std::string& name) {
   benchmark::RegisterBenchmark(name.c_str(), [&, threads](benchmark::State& state) {
@@ -105,6 +125,7 @@ int main(int argc, char** argv) {
     const std::string at = std::to_string(threads) + " threads ";
     glidar::bench::register_cast(stage, threads, 1, at + "cast");
     glidar::bench::register_cast(stage, threads, 7, at + "seven casts");
+    glidar::bench::register_sub_cast(stage, threads, at + "sub-rays");
     glidar::bench::register_simulation(stage, stage.wide, stage.motion, threads, at + "footprint");
     glidar::bench::register_simulation(stage, stage.sensor, stage.motion, threads, at + "simulate");
     glidar::bench::register_simulation(stage, stage.noisy, stage.motion, threads,
@@ -114,6 +135,8 @@ int main(int argc, char** argv) {
     ratios.push_back({at + "moving along timed poses / cast", at + "cast", at + "moving", 0.3});
     ratios.push_back({at + "footprint of seven sub-rays / seven casts", at + "seven casts",
                       at + "footprint", 0.8});
+    ratios.push_back({at + "footprint / cast of its sub-rays with the light's columns",
+                      at + "sub-rays", at + "footprint", 0.8});
     ratios.push_back({at + "with noise / cast", at + "cast", at + "with noise", 0.6});
   }
   return glidar::bench::run(argc, argv, ratios);

@@ -4,6 +4,7 @@
 // standard library: a Mersenne twister and std::normal_distribution, added to every range.
 #include "ratio_reporter.hpp"
 
+#include <glidar/core/gaussian.hpp>
 #include <glidar/sensor/noise.hpp>
 
 #include <random>
@@ -69,6 +70,26 @@ void bench_standard_library() {
   });
 }
 
+/// What continuous_wave draws for a frame, and nothing else: three normals a beam, two pairs.
+void draw_frame() {
+  WordBatch words;
+  PairBatch normals;
+  for (std::uint32_t beam = 0; beam < kSide * kSide; beam += kDrawBatch) {
+    draw_words({.seed = 1, .beam = beam}, words);
+    make_normals(words, 0, normals);
+    benchmark::DoNotOptimize(normals);
+    make_normals(words, 1, normals);
+    benchmark::DoNotOptimize(normals);
+  }
+}
+
+void bench_draws() {
+  benchmark::RegisterBenchmark("three normals a beam", [](benchmark::State& state) {
+    for (auto _ : state) draw_frame();
+    count_beams(state);
+  });
+}
+
 void register_steps() {
   bench_step("refill and nothing", {});
   bench_step("range_gaussian", {RangeGaussian{.sigma_m = 0.02}});
@@ -111,6 +132,7 @@ void register_steps() {
 
 int main(int argc, char** argv) {
   glidar::bench::bench_standard_library();
+  glidar::bench::bench_draws();
   glidar::bench::register_steps();
   return glidar::bench::run(
       argc, argv,

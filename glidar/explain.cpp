@@ -8,18 +8,6 @@
 namespace glidar {
 namespace {
 
-constexpr HitFields kAll = {.depth = true,
-                            .normal = true,
-                            .shading_normal = true,
-                            .incidence = true,
-                            .shading = true,
-                            .barycentrics = true,
-                            .colour = true,
-                            .reflectance = true,
-                            .object_point = true,
-                            .noise_scale = true,
-                            .poses = true};
-
 Reading reading_of(const Frame& frame, std::size_t entry) {
   const Cause usual = frame.status[entry] == Status::hit ? Cause::surface : Cause::none;
   return {.status = frame.status[entry],
@@ -72,7 +60,7 @@ Story explain(const Setup& setup, std::size_t entry, Frame& frame) {
   story.entry = entry;
   PulseTrace trace;
   trace.pulse = entry % setup.beams.pulses();
-  measure(setup, kAll, frame, &trace);
+  measure(setup, kAllHitFields, frame, &trace);
   if (has_echoes(setup.sensor, setup.scene)) story.pulse = std::move(trace);
   const std::vector<Eigen::Vector3d>& aimed = frame.scratch.aimed.directions;
   story.aimed = aimed.empty() ? setup.beams.directions[entry] : aimed[entry];

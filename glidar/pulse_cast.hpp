@@ -24,7 +24,7 @@ struct PulseTrace {
   };
   std::size_t pulse = 0;  ///< which pulse to trace
   std::size_t sub_rays = 0;
-  std::vector<Way> ways;            ///< in order of range
+  std::vector<Way> ways;            ///< PulseEcho::strongest counts in them; wide apart: by range
   std::vector<PulseEcho> echoes;    ///< peaks of what came back, in order of range
   std::vector<PulseEcho> received;  ///< those left with the receiver's noise and separation
   std::vector<int> returns;         ///< per return of the receiver: which of `received`, or -1

@@ -27,6 +27,18 @@ struct HitFields {
   bool poses = false;  ///< no column of Hits, but Frame::beam_poses
 };
 
+inline constexpr HitFields kAllHitFields = {.depth = true,
+                                            .normal = true,
+                                            .shading_normal = true,
+                                            .incidence = true,
+                                            .shading = true,
+                                            .barycentrics = true,
+                                            .colour = true,
+                                            .reflectance = true,
+                                            .object_point = true,
+                                            .noise_scale = true,
+                                            .poses = true};
+
 /// What a surface does with the paper's light (equation 5): luminances after textures, and the
 /// exponent. All zero where nothing was hit.
 struct Reflectance {

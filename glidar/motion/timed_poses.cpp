@@ -11,11 +11,10 @@
 namespace glidar {
 namespace {
 
-Pose as_pose(const TimedPose& timed) {
-  Pose pose = Pose::Identity();
+void to_pose(const TimedPose& timed, Pose& pose) {
   pose.linear() = timed.orientation.toRotationMatrix();
   pose.translation() = timed.position_m;
-  return pose;
+  pose.makeAffine();
 }
 
 }  // namespace
@@ -60,22 +59,23 @@ std::size_t TimedPoses::next_after(std::int64_t t_ns) const {
                                   poses_.begin());
 }
 
-/// The pose between entry next - 1 and entry next, which are those around t_ns.
-Pose TimedPoses::between(std::size_t next, std::int64_t t_ns) const {
-  if (next == 0) return as_pose(poses_.front());
+void TimedPoses::between(std::size_t next, std::int64_t t_ns, Pose& pose) const {
+  if (next == 0) return to_pose(poses_.front(), pose);
   const TimedPose& before = poses_[next - 1];
-  if (next == poses_.size() || before.t_ns == t_ns) return as_pose(before);
+  if (next == poses_.size() || before.t_ns == t_ns) return to_pose(before, pose);
   const TimedPose& after = poses_[next];
   const double fraction =
       seconds_between(before.t_ns, t_ns) / seconds_between(before.t_ns, after.t_ns);
   TimedPose middle;
   middle.position_m = before.position_m + fraction * (after.position_m - before.position_m);
   middle.orientation = before.orientation.slerp(fraction, after.orientation).normalized();
-  return as_pose(middle);
+  to_pose(middle, pose);
 }
 
 Pose TimedPoses::pose_at(std::int64_t t_ns) const {
-  return between(next_after(t_ns), t_ns);
+  Pose pose;
+  between(next_after(t_ns), t_ns, pose);
+  return pose;
 }
 
 void TimedPoses::poses_at(std::span<const std::int64_t> t_ns, std::span<Pose> out) const {
@@ -88,7 +88,7 @@ void TimedPoses::poses_at(std::span<const std::int64_t> t_ns, std::span<Pose> ou
     while (!back && next < stop && poses_[next].t_ns <= t) ++next;
     const bool found = !back && (next == poses_.size() || t < poses_[next].t_ns);
     if (!found) next = next_after(t);
-    out[i] = between(next, t);
+    between(next, t, out[i]);
   }
 }
 

@@ -56,7 +56,8 @@ class TimedPoses {
 
  private:
   [[nodiscard]] std::size_t next_after(std::int64_t t_ns) const;
-  [[nodiscard]] Pose between(std::size_t next, std::int64_t t_ns) const;
+  /// The pose between entry next - 1 and entry next, which are those around t_ns.
+  void between(std::size_t next, std::int64_t t_ns, Pose& pose) const;
 
   std::vector<TimedPose> poses_;  ///< at least one
 };

@@ -40,7 +40,7 @@ void repeat_for_returns(std::size_t returns, Beams& beams) {
 Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double range_m) {
   const double distance = limits.along == Limits::Along::depth ? depth_m(beams, beam, range_m)
                                                                : range_m + beams.range_offset_m;
-  if (distance < limits.near_m) return Status::too_near;
+  if (limits.near_m > 0.0 && distance < limits.near_m) return Status::too_near;
   if (distance > limits.far_m) return Status::too_far;
   return Status::hit;
 }

@@ -27,7 +27,7 @@ using Optics = std::variant<Pinhole, Spinning, Raster, Prism, BeamTable>;
 /// What the sensor can report. A surface outside still blocks the beam.
 struct Limits {
   enum class Along : std::uint8_t { depth, range };
-  double near_m = 0.0;
+  double near_m = 0.0;  ///< 0: none, so that what lies behind a camera of wide view counts too
   double far_m = std::numeric_limits<double>::infinity();
   Along along = Along::depth;  ///< what the limits are about: along the boresight or the beam
 };

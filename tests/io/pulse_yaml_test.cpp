@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/scene_file.hpp>
 #include <glidar/io/sensor_file.hpp>
 
 #include <gtest/gtest.h>
+#include <io/material_keys.hpp>
 #include <io/yaml_files.hpp>
 
 #include <numbers>
@@ -17,14 +17,6 @@ const std::string kOptics = "optics: {width: 4, height: 2, fov_deg: 20}\n";
 PulseLight pulse(const std::string& map) {
   const TestFolder folder;
   return *load_sensor_file(folder.write("s.yaml", kOptics + "pulse_light: " + map + "\n")).pulse;
-}
-
-Material material(const std::string& keys) {
-  const TestFolder folder;
-  const auto file = folder.write(
-      "s.yaml", "models:\n  - model: builtin:box\n    materials: {\"*\": {" + keys + "}}\n");
-  const SceneFile loaded = load_scene_file(file, {}, {});
-  return loaded.scene.materials[loaded.scene.instances[0].materials[0]];
 }
 
 TEST(PulseLightInASensorFile, IsAbsentUnlessGiven) {
@@ -52,22 +44,26 @@ TEST(PulseLightInASensorFile, TakesTheNoiseFromTheRangeOfNinetyPercent) {
 }
 
 TEST(SurfacesInASceneFile, SendBackAsTold) {
-  EXPECT_TRUE(
-      std::holds_alternative<Lambert>(material("backscatter: {type: lambert}").backscatter));
+  EXPECT_TRUE(std::holds_alternative<Lambert>(
+      testing::material_of_keys("backscatter: {type: lambert}").backscatter));
   const auto phong = std::get<PhongLike>(
-      material("backscatter: {type: phong, specular_share: 0.4, exponent: 9}").backscatter);
+      testing::material_of_keys("backscatter: {type: phong, specular_share: 0.4, exponent: 9}")
+          .backscatter);
   EXPECT_EQ(phong.specular_share, 0.4);
   EXPECT_EQ(phong.exponent, 9.0);
   EXPECT_NEAR(std::get<OrenNayar>(
-                  material("backscatter: {type: oren_nayar, roughness_deg: 20}").backscatter)
+                  testing::material_of_keys("backscatter: {type: oren_nayar, roughness_deg: 20}")
+                      .backscatter)
                   .roughness_rad,
               20.0 * kDegree, 1e-15);
   const auto retro = std::get<RetroReflector>(
-      material("backscatter: {type: retro, gain: 500, width_deg: 25}").backscatter);
+      testing::material_of_keys("backscatter: {type: retro, gain: 500, width_deg: 25}")
+          .backscatter);
   EXPECT_EQ(retro.gain, 500.0);
   EXPECT_NEAR(retro.width_rad, 25.0 * kDegree, 1e-15);
   const auto glossy = std::get<Glossy>(
-      material("backscatter: {type: glossy, matt_share: 0.1, lobe_gain: 4, width_deg: 2}")
+      testing::material_of_keys(
+          "backscatter: {type: glossy, matt_share: 0.1, lobe_gain: 4, width_deg: 2}")
           .backscatter);
   EXPECT_EQ(glossy.matt_share, 0.1);
   EXPECT_EQ(glossy.lobe_gain, 4.0);
@@ -75,7 +71,8 @@ TEST(SurfacesInASceneFile, SendBackAsTold) {
 }
 
 TEST(SurfacesInASceneFile, HaveASpectrumInNanometres) {
-  const Material asphalt = material("spectrum: [[850, 0.269], [905, 0.278], [1550, 0.362]]");
+  const Material asphalt =
+      testing::material_of_keys("spectrum: [[850, 0.269], [905, 0.278], [1550, 0.362]]");
   EXPECT_NEAR(reflectance_at(asphalt, 905e-9), 0.278, 1e-12);
   EXPECT_NEAR(reflectance_at(asphalt, 1550e-9), 0.362, 1e-12);
 }

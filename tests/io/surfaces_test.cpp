@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/scene_file.hpp>
 #include <glidar/io/surfaces.hpp>
 #include <glidar/sensor/signal.hpp>
 
+#include "material_keys.hpp"
 #include "yaml_files.hpp"
 
 #include <numbers>
@@ -85,28 +85,20 @@ TEST(Surfaces, ThatAreGlossyKeepTheEnergy) {
   EXPECT_EQ(glossy, 4U);
 }
 
-Material material(const std::string& keys) {
-  const TestFolder folder;
-  const auto file = folder.write(
-      "s.yaml", "models:\n  - model: builtin:box\n    materials: {\"*\": {" + keys + "}}\n");
-  const SceneFile loaded = load_scene_file(file, {}, {});
-  return loaded.scene.materials[loaded.scene.instances[0].materials[0]];
-}
-
 TEST(SurfacesInASceneFile, GiveSpectrumAndBackscatter) {
-  const Material foil = material("surface: mli");
+  const Material foil = testing::material_of_keys("surface: mli");
   EXPECT_NEAR(reflectance_at(foil, 1064e-9), 0.85, 1e-12);
   EXPECT_NEAR(std::get<Glossy>(foil.backscatter).width_rad, 5.0 * kDegree, 1e-12);
-  const Material road = material("surface: asphalt");
+  const Material road = testing::material_of_keys("surface: asphalt");
   EXPECT_TRUE(std::holds_alternative<Lambert>(road.backscatter));
   EXPECT_NEAR(reflectance_at(road, 905e-9), 0.278, 1e-12);
 }
 
 TEST(SurfacesInASceneFile, YieldToWhatIsToldBesideThem) {
-  const Material painted = material("spectrum: [[905, 0.5]], surface: mli");
+  const Material painted = testing::material_of_keys("spectrum: [[905, 0.5]], surface: mli");
   EXPECT_EQ(reflectance_at(painted, 905e-9), 0.5);
   EXPECT_TRUE(std::holds_alternative<Glossy>(painted.backscatter));
-  const Material matt = material("surface: mli, backscatter: {type: lambert}");
+  const Material matt = testing::material_of_keys("surface: mli, backscatter: {type: lambert}");
   EXPECT_TRUE(std::holds_alternative<Lambert>(matt.backscatter));
   EXPECT_NEAR(reflectance_at(matt, 905e-9), 0.85, 1e-12);
 }

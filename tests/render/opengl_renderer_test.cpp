@@ -15,7 +15,6 @@ namespace {
 
 using testing::builtin_scene;
 using testing::camera_beams;
-using testing::kEverything;
 using testing::pinhole_beams;
 using testing::turned;
 
@@ -31,7 +30,7 @@ class OpenglRenderer : public ::testing::Test {
 
   static Hits draw(const Scene& scene, const Beams& beams, const Pose& pose) {
     return cast_by("opengl", scene,
-                   {.beams = beams, .world_from_sensor = pose, .fields = kEverything});
+                   {.beams = beams, .world_from_sensor = pose, .fields = kAllHitFields});
   }
 };
 
@@ -64,7 +63,7 @@ TEST_F(OpenglRenderer, TellsTheVeryBitsOfCastRaysOnADenseMesh) {
   const Scene scene = builtin_scene("asteroid");
   const Beams beams = camera_beams(400, 300, 500.0);
   const Pose pose = look_at({3.0, 1.0, 1.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
-  const CastRequest request{.beams = beams, .world_from_sensor = pose, .fields = kEverything};
+  const CastRequest request{.beams = beams, .world_from_sensor = pose, .fields = kAllHitFields};
   const Compared compared =
       compare(cast_by("opengl", scene, request), cast_by("embree", scene, request));
   EXPECT_GT(compared.hits, 30'000U);
@@ -82,7 +81,7 @@ TEST_F(OpenglRenderer, TellsTheVeryBitsOfCastRaysOnTheBunny) {
     const Beams beams = camera_beams(300, 300, 1000.0 * distance_m);
     const Pose pose =
         look_at(middle + distance_m * Eigen::Vector3d(0.6, 0.0, 0.8), middle, {0.0, 1.0, 0.0});
-    const CastRequest request{.beams = beams, .world_from_sensor = pose, .fields = kEverything};
+    const CastRequest request{.beams = beams, .world_from_sensor = pose, .fields = kAllHitFields};
     const Compared compared =
         compare(cast_by("opengl", scene, request), cast_by("embree", scene, request));
     EXPECT_GT(compared.hits, 10'000U) << distance_m;
@@ -99,8 +98,8 @@ TEST_F(OpenglRenderer, DrawsPicturesLargerThanOnePart) {
   const Pose pose = look_at({4.0, 3.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Beams large = pinhole_beams(k);
   const Hits drawn = draw(scene, large, pose);
-  const Hits cast =
-      cast_by("embree", scene, {.beams = large, .world_from_sensor = pose, .fields = kEverything});
+  const Hits cast = cast_by("embree", scene,
+                            {.beams = large, .world_from_sensor = pose, .fields = kAllHitFields});
   const Compared compared = compare(drawn, cast);
   EXPECT_GT(compared.hits, 500'000U);
   EXPECT_LE(compared.other_surface, 50U);
@@ -116,7 +115,7 @@ TEST_F(OpenglRenderer, FollowsAnyPrincipalPointFocalLengthsAndPixelCentre) {
     const Beams beams = pinhole_beams(k);
     scene.instances[0].world_from_object.translation() =
         5.0 * direction_through(plane_x(k, 100), plane_y(k, 50));
-    const CastRequest request{.beams = beams, .fields = kEverything};
+    const CastRequest request{.beams = beams, .fields = kAllHitFields};
     const Compared compared =
         compare(cast_by("opengl", scene, request), cast_by("embree", scene, request));
     EXPECT_GT(compared.hits, 3'000U);
@@ -184,7 +183,7 @@ TEST_F(OpenglRenderer, MasksOfSomeSlotsKeepTheTrianglesNumbers) {
   scene.materials[2].opacity = 0.4F;  // all of it lets beams through
   const Beams beams = camera_beams(200, 200, 200.0);
   const Pose pose = look_at({2.0, 1.0, 1.5}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
-  const CastRequest request{.beams = beams, .world_from_sensor = pose, .fields = kEverything};
+  const CastRequest request{.beams = beams, .world_from_sensor = pose, .fields = kAllHitFields};
   const Compared compared =
       compare(cast_by("opengl", scene, request), cast_by("embree", scene, request));
   EXPECT_GT(compared.hits, 10'000U);

@@ -17,7 +17,6 @@ using testing::builtin_scene;
 using testing::camera_beams;
 using testing::Draws;
 using testing::Judged;
-using testing::kEverything;
 using testing::loose_beams;
 using testing::RendererSuite;
 using testing::turned;
@@ -308,8 +307,10 @@ TEST_P(RendererSuite, TheSameBytesForAnyNumberOfThreads) {
   const Scene scene = builtin_scene("asteroid");
   const Beams beams = camera_beams(200, 150, 150.0);
   const Pose pose = look_at({3.0, 1.0, 1.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
-  const CastRequest request{
-      .beams = beams, .world_from_sensor = pose, .world_from_instance = {}, .fields = kEverything};
+  const CastRequest request{.beams = beams,
+                            .world_from_sensor = pose,
+                            .world_from_instance = {},
+                            .fields = kAllHitFields};
   Hits one;
   Hits many;
   renderer(scene, 1)->cast(request, one);

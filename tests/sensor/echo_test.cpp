@@ -96,6 +96,19 @@ TEST(FindEchoes, NamesTheStrongestPath) {
   EXPECT_EQ(work.path[work.echo[1].strongest].source, 2U);
 }
 
+TEST(FindEchoes, MakesTheSameEchoOfNearPathsInAnyOrder) {
+  const EchoWork up = echoes_of({{20.0, 1.0}, {20.05, 3.0}, {20.1, 3.0}, {20.2, 2.0}});
+  const EchoWork mixed = echoes_of({{20.2, 2.0}, {20.1, 3.0}, {20.0, 1.0}, {20.05, 3.0}});
+  ASSERT_EQ(up.echoes, 1U);
+  ASSERT_EQ(mixed.echoes, 1U);
+  EXPECT_NEAR(mixed.echo[0].range_m, up.echo[0].range_m, 1e-14);
+  EXPECT_NEAR(mixed.echo[0].signal, up.echo[0].signal, 1e-14);
+  EXPECT_NEAR(mixed.echo[0].sigma_m, up.echo[0].sigma_m, 1e-14);
+  // of two that are as strong as each other the nearer
+  EXPECT_EQ(mixed.path[mixed.echo[0].strongest].range_m, 20.05);
+  EXPECT_EQ(up.path[up.echo[0].strongest].range_m, 20.05);
+}
+
 TEST(EchoWork, LeavesOutTheWeakestOfTooManyPaths) {
   EchoWork work;
   for (std::size_t i = 0; i <= EchoWork::kMost; ++i) {

@@ -124,6 +124,31 @@ TEST(Spread, LaysSubRaysAcrossTheBeamWithItsTimeAndOrigin) {
   }
 }
 
+TEST(Spread, MakesTheSameOfABeamWhicheverOthersAreSpread) {
+  Beams beams;
+  beams.rows = 1;
+  beams.cols = 300;
+  beams.boresight = Eigen::Vector3d::UnitX();
+  for (int i = 0; i < 300; ++i) {
+    const double angle = 0.01 * i;
+    beams.directions.emplace_back(std::cos(angle), 0.6 * std::sin(angle), 0.8 * std::sin(angle));
+  }
+  beams.directions[37] = Eigen::Vector3d::UnitZ();  // straight up, where no side is told
+  const std::vector<SubRay> rays = sub_rays(kOval);
+  Workers workers(2);
+  Beams all;
+  spread(rays, beams, {0, 300}, workers, all);
+  EXPECT_NO_THROW(validate(all));
+  for (std::size_t beam = 0; beam < 300; ++beam) {
+    Beams one;
+    spread(rays, beams, {beam, beam + 1}, workers, one);
+    for (std::size_t k = 0; k < rays.size(); ++k) {
+      EXPECT_EQ(one.directions[k], all.directions[beam * rays.size() + k]) << beam;
+      EXPECT_EQ(one.origins_m[k], all.origins_m[beam * rays.size() + k]) << beam;
+    }
+  }
+}
+
 TEST(Spread, KeepsALineAsItIs) {
   Beams beams;
   beams.rows = beams.cols = 1;

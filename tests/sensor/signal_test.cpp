@@ -233,6 +233,36 @@ TEST(MeasureSignal, TakesTheReflectanceAtTheSensorsWavelength) {
   EXPECT_NEAR(stage.frame.intensity[0], 1.55F, 1e-6F);
 }
 
+TEST(SignalsOfHits, AreThoseOfEveryHitAloneAndNothingForMisses) {
+  Stage stage(40, 50.0);
+  stage.scene.materials.emplace_back().spectrum = {{850e-9, 0.2}, {950e-9, 0.4}};
+  stage.scene.instances.push_back(stage.scene.instances[0]);
+  stage.scene.instances[1].materials = {1};
+  stage.scene.meshes.push_back(stage.scene.meshes[0]);  // of two materials
+  stage.scene.meshes[1].material_slots = {0, 1};
+  stage.scene.instances.emplace_back().mesh = 1;
+  stage.scene.instances[2].materials = {0, 1};
+  Hits& hits = stage.frame.truth;
+  for (std::uint32_t i = 0; i < 40; ++i) {
+    hits.instance[i] = i % 3;
+    hits.primitive[i] = i % 3 == 2 ? i % 2 : 0;
+    hits.range_m[i] = 3.0 + i;
+  }
+  hits.instance[20] = kNoHit;
+  hits.range_m[20] = std::nan("");
+  for (const double extinction_per_m : {0.0, 0.01}) {  // by vectors, and one by one
+    const PulseLight light{.extinction_per_m = extinction_per_m};
+    std::vector<double> signals(30);
+    signals_of_hits(light, stage.scene, 905e-9, hits, {10, 40}, signals);
+    for (std::size_t i = 10; i < 40; ++i) {
+      const double alone =
+          i == 20 ? 0.0
+                  : signal_of(light, sent_back_at(stage.scene, 905e-9, hits, i), hits.range_m[i]);
+      EXPECT_EQ(signals[i - 10], alone) << i;
+    }
+  }
+}
+
 TEST(PulseLight, RefusesNumbersThatMeanNothing) {
   EXPECT_NO_THROW(validate(PulseLight{}));
   EXPECT_THROW(validate(PulseLight{.reference_reflectance = 0.0}), Error);

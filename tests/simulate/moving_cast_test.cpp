@@ -12,15 +12,6 @@
 namespace glidar {
 namespace {
 
-constexpr HitFields kEverything = {.depth = true,
-                                   .normal = true,
-                                   .shading_normal = true,
-                                   .incidence = true,
-                                   .shading = true,
-                                   .barycentrics = true,
-                                   .colour = true,
-                                   .object_point = true};
-
 /// A camera whose pixels fire one after another, 1 ms apart.
 struct Stage {
   Scene scene;
@@ -40,7 +31,7 @@ struct Stage {
   Frame shoot(std::int64_t stamp_ns = 0) {
     Frame frame;
     frame.stamp_ns = stamp_ns;
-    simulate(setup(), kEverything, frame);
+    simulate(setup(), kAllHitFields, frame);
     return frame;
   }
 };
@@ -82,7 +73,7 @@ void expect_as_if_cast_alone(Stage& stage, const Frame& frame) {
     stage.renderer->cast({.beams = one,
                           .world_from_sensor = pose_at(stage.motion.world_from_sensor, t_ns),
                           .world_from_instance = poses,
-                          .fields = kEverything},
+                          .fields = kAllHitFields},
                          hits);
     ASSERT_EQ(frame.truth.instance[i], hits.instance[0]) << "beam " << i;
     if (hits.instance[0] == kNoHit) continue;
@@ -197,7 +188,7 @@ TEST(MovingCast, TellsItsProgressOverAllBodiesFromBeginningToEnd) {
   auto setup = stage.setup();
   setup.progress = [&](double fraction) { told.push_back(fraction); };
   Frame frame;
-  simulate(setup, kEverything, frame);
+  simulate(setup, kAllHitFields, frame);
   ASSERT_GE(told.size(), 3U);  // three bodies, each told of at its end at least
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
   EXPECT_GE(told.front(), 0.0);
@@ -210,10 +201,10 @@ TEST(MovingCast, AllocatesNoSecondTime) {
   stage.motion.world_from_sensor =
       ConstantTwist{.pose = pose_at(stage.motion.world_from_sensor, 0), .linear_m_s = {1, 0, 0}};
   Frame frame;
-  simulate(stage.setup(), kEverything, frame);
+  simulate(stage.setup(), kAllHitFields, frame);
   const void* const before = frame.scratch.moved.directions.data();
   const void* const deskewed = frame.deskewed.directions.data();
-  simulate(stage.setup(), kEverything, frame);
+  simulate(stage.setup(), kAllHitFields, frame);
   EXPECT_EQ(frame.scratch.moved.directions.data(), before);
   EXPECT_EQ(frame.deskewed.directions.data(), deskewed);
 }

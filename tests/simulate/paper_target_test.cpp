@@ -1,7 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // The picture of the 2016 paper against the truth that is attached to it.
+#include <glidar/core/error.hpp>
 #include <glidar/io/builtin_models.hpp>
+#include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/simulate.hpp>
 #include <support/data.hpp>
 #include <support/error_text.hpp>
@@ -33,7 +35,7 @@ class PaperTargetTest : public ::testing::Test {
  protected:
   void SetUp() override {
     try {
-      make_paper_camera(Scene{}, {.kind = "opengl", .threads = 1});
+      const opengl::EglContext context({});
     } catch (const Error& error) {
       GTEST_SKIP() << error.what();
     }

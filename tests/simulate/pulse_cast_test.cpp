@@ -76,6 +76,20 @@ TEST(MeasurePulses, SayOfALineWhatASingleRaySays) {
   EXPECT_GT(std::count(line.cause.begin(), line.cause.end(), Cause::surface), 0);
 }
 
+TEST(MeasurePulses, SeeWhatIsBehindThemWithoutANearLimit) {
+  Stage stage;
+  BeamTable behind;
+  behind.rows = 1;
+  behind.cols = 1;
+  behind.directions = {-Eigen::Vector3d::UnitX()};
+  stage.sensor.optics = behind;
+  stage.sensor.receiver.returns = {kFirst};
+  stage.add_panel({-10.0, -5.0, -5.0}, {0.0, 10.0, 0.0}, {0.0, 0.0, 10.0});
+  const Frame frame = stage.shoot();
+  EXPECT_EQ(frame.status[0], Status::hit);
+  EXPECT_NEAR(frame.range_m[0], 10.0, 1e-9);
+}
+
 // Of a footprint that lies on the surface: the same signal as a ray's, falling
 // with the square of the range.
 TEST(MeasurePulses, OfAnExtendedTargetFallWithTheSquareOfTheRange) {
