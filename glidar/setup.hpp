@@ -3,9 +3,19 @@
 #pragma once
 
 #include <glidar/moving_cast.hpp>
+#include <glidar/render/paper_picture.hpp>
 #include <glidar/sensor/sensor.hpp>
 
+#include <optional>
+
 namespace glidar {
+
+/// The way of the 2016 paper: range and intensity are read from a picture of bytes.
+struct PaperTarget {
+  PaperCamera& camera;                     ///< over the same scene
+  PaperPicture& picture;                   ///< the last one drawn
+  std::optional<PaperPlanes> planes = {};  ///< of its depths; empty: they hug what is in view
+};
 
 /// What a simulation needs; everything here must outlive it.
 struct Setup {
@@ -15,6 +25,8 @@ struct Setup {
   const Motion& motion;
   Renderer& renderer;
   Progress progress = {};  ///< of a measurement
+  /// Empty: range and intensity come from the renderer's hits, which stay the truth in any case.
+  std::optional<PaperTarget> paper = {};
 };
 
 /// The world at the frame's start.

@@ -106,7 +106,7 @@ int run(const RenderFlags& flags, const std::vector<std::string>& arguments) {
       .scene = session.scene,
       .sensor = session.sensor,
       .beams = session.beams,
-      .renderer = flags.renderer.kind,
+      .renderer = renderer_name(flags),
       .command = {.arguments = recorded(arguments), .folder = std::filesystem::current_path()}};
   const auto plan = [&](const OutputFlags& files) {
     return plan_outputs(files, flags.input, context, console.report(),

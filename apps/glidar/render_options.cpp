@@ -28,6 +28,10 @@ std::uint64_t parse_seed(std::string_view option, const std::string& text) {
 
 }  // namespace
 
+std::string renderer_name(const RenderFlags& flags) {
+  return flags.renderer.kind + (has_paper_target(flags) ? ", paper target" : "");
+}
+
 void add_render_flags(CLI::App& command, RenderFlags& flags) {
   command.add_option("MODEL", flags.input, "Model file, builtin:NAME or scene file (.yaml)")
       ->required()
@@ -43,6 +47,10 @@ void add_render_flags(CLI::App& command, RenderFlags& flags) {
            flags.surface);
   const std::string group = "Run";
   add_run_flags(command, flags.renderer, group);
+  add_choice(
+      command,
+      {"--render-target", "NAME", "What opengl draws: float, paper (8 and 16 bits) [float]", group},
+      {"float", "paper"}, flags.target);
   add_option(command, {"--seed", "N", "Seed of random numbers, kept in the sidecar [1]", group},
              [&seed = flags.seed](std::string_view option, const std::string& text) {
                seed = parse_seed(option, text);

@@ -28,10 +28,18 @@ struct RenderFlags {
   OutputFlags output;
   InformationFlags information;
   RendererOptions renderer;
+  std::string target = "float";  ///< what the renderer draws: float or paper
   std::uint64_t seed = 1;
   std::optional<double> duration_s;  ///< of a sequence of frames; empty: a single one
   bool quiet = false;
 };
+
+inline bool has_paper_target(const RenderFlags& flags) {
+  return flags.target == "paper";
+}
+
+/// How the beams are cast, as the sidecar tells it.
+std::string renderer_name(const RenderFlags& flags);
 
 /// Adds MODEL and all options of `render`.
 void add_render_flags(CLI::App& command, RenderFlags& flags);

@@ -20,6 +20,11 @@ void add_run_flags(CLI::App& command, RendererOptions& options, const std::strin
   add_whole(command, {"--threads", "N", "Number of threads, 0: one per processor [0]", group},
             {0, kMostThreads},
             [&options](std::int64_t n) { options.threads = static_cast<unsigned>(n); });
+  constexpr std::int64_t kMostDevices = 63;
+  add_whole(command,
+            {"--graphics-device", "N", "Device that opengl draws on [first that can]", group},
+            {0, kMostDevices},
+            [&options](std::int64_t n) { options.graphics_device = static_cast<unsigned>(n); });
 }
 
 }  // namespace glidar::app

@@ -9,7 +9,7 @@
 
 namespace glidar::app {
 
-/// --renderer --threads.
+/// --renderer --threads --graphics-device.
 void add_run_flags(CLI::App& command, RendererOptions& options, const std::string& group);
 
 }  // namespace glidar::app

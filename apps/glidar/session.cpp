@@ -113,6 +113,14 @@ std::int64_t last_firing_ns(const Sensor& sensor, const Beams& beams, std::uint3
   return start_ns + *std::max_element(beams.times_ns.begin(), beams.times_ns.end());
 }
 
+void check_target(const RenderFlags& flags) {
+  if (!has_paper_target(flags) || flags.renderer.kind == "opengl") return;
+  throw Error({.where = "--render-target paper",
+               .found = "the renderer " + flags.renderer.kind,
+               .allowed = "opengl",
+               .remedy = "add --renderer opengl"});
+}
+
 /// Where sensor and objects are and how they move.
 void place_all(const RenderFlags& flags, const SceneFile& loaded, Console& console,
                Session& session) {
@@ -133,6 +141,7 @@ void tell(const std::vector<std::string>& advice, Console& console) {
 
 void open(const RenderFlags& flags, const std::function<void()>& on_loaded, Console& console,
           Session& session) {
+  check_target(flags);
   // before a long load
   if (!is_scene_file(flags.input)) session.sensor = make_sensor(flags.sensor, {});
   SceneFile loaded = load(flags, console);
@@ -146,6 +155,9 @@ void open(const RenderFlags& flags, const std::function<void()>& on_loaded, Cons
   place_all(flags, loaded, console, session);
   const Working working(console, "preparing the scene");
   session.renderer = make_renderer(session.scene, flags.renderer);
+  if (!has_paper_target(flags)) return;
+  session.paper = {.camera = make_paper_camera(session.scene, flags.renderer),
+                   .picture = std::make_unique<PaperPicture>()};
 }
 
 void turn_to(const RenderFlags& flags, std::uint32_t number, Session& session, Frame& frame) {
@@ -157,12 +169,16 @@ void turn_to(const RenderFlags& flags, std::uint32_t number, Session& session, F
 }
 
 Setup setup_of(const Session& session, Console& console) {
-  return {.scene = session.scene,
-          .sensor = session.sensor,
-          .beams = session.beams,
-          .motion = session.motion,
-          .renderer = *session.renderer,
-          .progress = [&console](double fraction) { console.tell(fraction); }};
+  Setup setup{.scene = session.scene,
+              .sensor = session.sensor,
+              .beams = session.beams,
+              .motion = session.motion,
+              .renderer = *session.renderer,
+              .progress = [&console](double fraction) { console.tell(fraction); }};
+  const Paper& paper = session.paper;
+  if (paper.camera)
+    setup.paper.emplace(PaperTarget{.camera = *paper.camera, .picture = *paper.picture});
+  return setup;
 }
 
 }  // namespace glidar::app

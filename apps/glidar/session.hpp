@@ -13,6 +13,12 @@
 
 namespace glidar::app {
 
+/// What --render-target paper measures with; empty for the float target.
+struct Paper {
+  std::unique_ptr<PaperCamera> camera;
+  std::unique_ptr<PaperPicture> picture;
+};
+
 /// A measurement made ready: all that its options name, loaded, placed and aimed.
 struct Session {
   Scene scene;
@@ -20,6 +26,7 @@ struct Session {
   Beams beams;  ///< of the frame that it is turned to, at first frame 0
   Motion motion;
   std::unique_ptr<Renderer> renderer;
+  Paper paper;
   std::vector<std::string> files;  ///< all that were read
   std::uint32_t frames = 1;        ///< in the duration asked for
 };

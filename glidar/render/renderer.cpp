@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/render/embree/embree_renderer.hpp>
+#include <glidar/render/opengl/opengl_renderer.hpp>
 
 #include <algorithm>
 #include <array>
@@ -18,8 +19,9 @@ struct Kind {
   Factory make;
 };
 
-const std::array<Kind, 1>& kinds() {
-  static const std::array<Kind, 1> all = {{{"embree", make_embree_renderer}}};
+const std::array<Kind, 2>& kinds() {
+  static const std::array<Kind, 2> all = {
+      {{"embree", make_embree_renderer}, {"opengl", make_opengl_renderer}}};
   return all;
 }
 

@@ -10,7 +10,9 @@
 #include <glidar/core/scene.hpp>
 #include <glidar/core/workers.hpp>
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,9 +24,9 @@ namespace glidar {
 struct CastRequest {
   const Beams& beams;
   Pose world_from_sensor = Pose::Identity();
-  std::span<const Pose>
-      world_from_instance;  ///< one per instance; empty: where the scene puts them
-  HitFields fields;
+  /// One per instance; empty: where the scene puts them.
+  std::span<const Pose> world_from_instance = {};
+  HitFields fields = {};
   bool cull_back_faces = false;
   /// One per instance, 0: it is not there for this cast; empty: all are.
   std::span<const std::uint8_t> present = {};
@@ -62,6 +64,8 @@ class Renderer {
 struct RendererOptions {
   std::string kind = "embree";
   unsigned threads = 0;  ///< 0: all processors
+  /// Which of the machine's graphics devices draws; empty: the first that can.
+  std::optional<std::uint32_t> graphics_device = {};
 };
 
 /// The kinds there are.

@@ -3,6 +3,7 @@
 #include <glidar/render/resolve.hpp>
 
 #include <glidar/core/simd.hpp>
+#include <glidar/render/corners.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -89,35 +90,14 @@ GLIDAR_SIMD void turn_to_sensor(const Eigen::Matrix3d& sensor_from_object, const
   }
 }
 
-/// Weights of corners 1 and 2 of the hit point: areas of the parts around it, signed along the
-/// normal, over the whole. The corners are first taken relative to the hit point, in double, so
-/// that single precision suits the rest.
-GLIDAR_SIMD void weigh(const ExactBlock& e, CornerBlock& c, Lanes<float>& w1, Lanes<float>& w2) {
+/// Weights of corners 1 and 2 of the hit point.
+GLIDAR_SIMD void weigh(const ExactBlock& e, const CornerBlock& c, Lanes<float>& w1,
+                       Lanes<float>& w2) {
   for (unsigned i = 0; i < kLanes; ++i) {
-    const double x = e.origin.x[i] + e.distance[i] * e.direction.x[i];
-    const double y = e.origin.y[i] + e.distance[i] * e.direction.y[i];
-    const double z = e.origin.z[i] + e.distance[i] * e.direction.z[i];
-    const auto ax = static_cast<float>(c.c0.x[i] - x);
-    const auto ay = static_cast<float>(c.c0.y[i] - y);
-    const auto az = static_cast<float>(c.c0.z[i] - z);
-    const auto bx = static_cast<float>(c.c1.x[i] - x);
-    const auto by = static_cast<float>(c.c1.y[i] - y);
-    const auto bz = static_cast<float>(c.c1.z[i] - z);
-    const auto cx = static_cast<float>(c.c2.x[i] - x);
-    const auto cy = static_cast<float>(c.c2.y[i] - y);
-    const auto cz = static_cast<float>(c.c2.z[i] - z);
-    const auto nx = static_cast<float>(e.normal.x[i]);
-    const auto ny = static_cast<float>(e.normal.y[i]);
-    const auto nz = static_cast<float>(e.normal.z[i]);
-    const float at_0 =
-        nx * (by * cz - bz * cy) + ny * (bz * cx - bx * cz) + nz * (bx * cy - by * cx);
-    const float at_1 =
-        nx * (cy * az - cz * ay) + ny * (cz * ax - cx * az) + nz * (cx * ay - cy * ax);
-    const float at_2 =
-        nx * (ay * bz - az * by) + ny * (az * bx - ax * bz) + nz * (ax * by - ay * bx);
-    const float whole = at_0 + at_1 + at_2;
-    w1[i] = at_1 / whole;
-    w2[i] = at_2 / whole;
+    const CornerAreas areas = areas_around(e, c, i);
+    const float whole = areas.at_0 + areas.at_1 + areas.at_2;
+    w1[i] = areas.at_1 / whole;
+    w2[i] = areas.at_2 / whole;
   }
 }
 

@@ -3,17 +3,9 @@
 #pragma once
 
 #include <glidar/core/frame.hpp>
+#include <glidar/core/light.hpp>
 
 namespace glidar {
-
-/// The paper's light: a lamp at the sensor. Equation (3): a = 1 / (constant + linear d + quadratic
-/// d^2). The defaults are those of the 2015 program.
-struct Light {
-  double attenuation_constant = 1.0;
-  double attenuation_linear_per_m = 1e-4;
-  double attenuation_quadratic_per_m2 = 1e-8;
-  double ambient = 0.2;  ///< of the whole scene, multiplies the materials' ambient colour
-};
 
 /// Throws Error unless the attenuation is finite, not negative and not all zero.
 void validate(const Light& light);

@@ -3,8 +3,10 @@
 #pragma once
 
 // What the tests that every renderer passes share.
+#include <glidar/core/error.hpp>
 #include <glidar/core/random.hpp>
 #include <glidar/io/builtin_models.hpp>
+#include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/render/renderer.hpp>
 #include <support/brute_force.hpp>
 #include <support/data.hpp>
@@ -56,19 +58,27 @@ inline Beams loose_beams(std::vector<Eigen::Vector3d> directions,
   return beams;
 }
 
-inline Beams camera_beams(std::uint32_t width, std::uint32_t height, double focal_px) {
+inline Beams pinhole_beams(const PinholeIntrinsics& k) {
   Beams beams;
-  beams.rows = height;
-  beams.cols = width;
+  beams.rows = k.height;
+  beams.cols = k.width;
   beams.frame_id = "camera_optical_frame";
-  for (std::uint32_t v = 0; v < height; ++v) {
-    for (std::uint32_t u = 0; u < width; ++u) {
-      beams.directions.push_back(Eigen::Vector3d((u + 0.5 - 0.5 * width) / focal_px,
-                                                 (v + 0.5 - 0.5 * height) / focal_px, 1.0)
-                                     .normalized());
+  for (std::uint32_t v = 0; v < k.height; ++v) {
+    for (std::uint32_t u = 0; u < k.width; ++u) {
+      beams.directions.push_back(direction_through(plane_x(k, u), plane_y(k, v)));
     }
   }
+  beams.pinhole = k;
   return beams;
+}
+
+inline Beams camera_beams(std::uint32_t width, std::uint32_t height, double focal_px) {
+  return pinhole_beams({.width = width,
+                        .height = height,
+                        .fx = focal_px,
+                        .fy = focal_px,
+                        .cx = 0.5 * width,
+                        .cy = 0.5 * height});
 }
 
 inline Pose turned(double angle, const Eigen::Vector3d& axis, const Eigen::Vector3d& position) {
@@ -79,8 +89,27 @@ inline Scene builtin_scene(const char* name) {
   return scene_of(make_builtin_model(name));
 }
 
+/// Why there is no OpenGL here at all; empty where there is.
+inline std::string missing_opengl() {
+  try {
+    const opengl::EglContext context({});
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
+}
+
+/// Skips the test, saying why, where a machine has no OpenGL at all.
+#define GLIDAR_NEEDS_OPENGL()                                                            \
+  if (const std::string missing = ::glidar::testing::missing_opengl(); !missing.empty()) \
+  GTEST_SKIP() << missing
+
 class RendererSuite : public ::testing::TestWithParam<std::string> {
  protected:
+  void SetUp() override {
+    if (GetParam() == "opengl") GLIDAR_NEEDS_OPENGL();
+  }
+
   static std::unique_ptr<Renderer> renderer(const Scene& scene, unsigned threads = 2) {
     return make_renderer(scene, {.kind = GetParam(), .threads = threads});
   }
@@ -97,5 +126,8 @@ class RendererSuite : public ::testing::TestWithParam<std::string> {
     return hits;
   }
 };
+
+/// The promises of renderers that cast beams of any pattern.
+class AnyBeamsSuite : public RendererSuite {};
 
 }  // namespace glidar::testing

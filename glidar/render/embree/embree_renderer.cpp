@@ -142,8 +142,8 @@ bool settle(const Job& job, std::uint32_t doubtful, HitBlock& block) {
   bool changed = false;
   for (; doubtful != 0; doubtful &= doubtful - 1) {
     const auto lane = static_cast<unsigned>(std::countr_zero(doubtful));
-    const embree::Found before{block.instance[lane], block.primitive[lane]};
-    const embree::Found after = job.probe.settle(block.beam[lane], before);
+    const Found before{block.instance[lane], block.primitive[lane]};
+    const Found after = job.probe.settle(block.beam[lane], before);
     if (after.instance == before.instance && after.primitive == before.primitive) continue;
     changed = true;
     if (after.instance == kNoHit) {

@@ -3,6 +3,7 @@
 #include <glidar/render/embree/settle.hpp>
 
 #include <glidar/core/simd.hpp>
+#include <glidar/render/judgement.hpp>
 
 #include <algorithm>
 #include <array>
@@ -16,7 +17,6 @@ namespace {
 // Single precision rounds a coordinate of the geometry by 2^-24 of its size, and an edge function
 // by a few of those; the hair is 16 times one.
 constexpr double kHairPerRadius = 0x1p-20;
-constexpr double kSlackPerLength = 0x1p-44;  // 256 roundings of a coordinate in double
 constexpr double kClear =
     1.001;  // rays start outside the sphere around the geometry, also after rounding
 // A beam this far inside its triangle is certain: the hair itself, and as much for the rounding of
@@ -119,20 +119,6 @@ GLIDAR_SIMD std::uint32_t doubt(const RTCHit16& hit, const ExactBlock& exact,
   return mask;
 }
 
-/// How far inside the triangle a point of its plane lies: the smallest signed distance to an edge.
-double distance_inside(const Mesh& mesh, std::uint32_t triangle, const Eigen::Vector3d& normal,
-                       const Eigen::Vector3d& point) {
-  const Triangle& corners = mesh.triangles[triangle];
-  double smallest = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Eigen::Vector3d from = mesh.positions_m[corners[k]].cast<double>();
-    const Eigen::Vector3d to = mesh.positions_m[corners[(k + 1) % 3]].cast<double>();
-    const Eigen::Vector3d edge = to - from;
-    smallest = std::min(smallest, normal.dot(edge.cross(point - from)) / edge.norm());
-  }
-  return smallest;
-}
-
 }  // namespace
 
 Probe::Probe(const TraceSpace& space, const Resolver& resolver, const Beams& beams,
@@ -142,7 +128,7 @@ Probe::Probe(const TraceSpace& space, const Resolver& resolver, const Beams& bea
       beams_(beams),
       cull_back_faces_(cull_back_faces),
       hair_(kHairPerRadius * space.radius),
-      slack_(kSlackPerLength * (space.radius + space.sensor_in_trace.norm())) {}
+      slack_(slack(space.radius + space.sensor_in_trace.norm())) {}
 
 FilterContext Probe::context() const {
   FilterContext context{};
@@ -202,38 +188,11 @@ Found Probe::trace(std::size_t beam, const Eigen::Vector3d& origin,
   return {instance == RTC_INVALID_GEOMETRY_ID ? 0U : instance, one.hit.primID};
 }
 
-/// Weighs candidates for one beam.
-struct Probe::Judgement {
-  const Probe& probe;
-  std::size_t beam;
-  Found nearest;  ///< of those the beam meets
-  Found closest;  ///< to the beam, of those it misses by more than rounding
-  double nearest_range_m = std::numeric_limits<double>::infinity();
-  double closest_inside_m = -std::numeric_limits<double>::infinity();
-
-  void consider(const Found& candidate) {
-    const InstanceView& view = probe.resolver_.view(candidate.instance);
-    const TrianglePlane& plane = probe.resolver_.plane(candidate.instance, candidate.primitive);
-    const ObjectRay ray = ray_in(view, probe.beams_, beam);
-    const double distance = distance_to(plane, ray);
-    if (!(distance > 0.0)) return;
-    const double inside_m =
-        view.scale * distance_inside(probe.resolver_.mesh(candidate.instance), candidate.primitive,
-                                     plane.normal, ray.origin + distance * ray.direction);
-    if (inside_m > closest_inside_m) {
-      closest_inside_m = inside_m;
-      closest = candidate;
-    }
-    const bool meets = inside_m >= -probe.slack_ * probe.space_.metres_per_unit;
-    if (meets && view.scale * distance < nearest_range_m) {
-      nearest_range_m = view.scale * distance;
-      nearest = candidate;
-    }
-  }
-};
-
 Found Probe::settle(std::size_t beam, const Found& found) const {
-  Judgement judgement{.probe = *this, .beam = beam, .nearest = {}, .closest = {}};
+  Judgement judgement{.resolver = resolver_,
+                      .beams = beams_,
+                      .beam = beam,
+                      .slack_m = slack_ * space_.metres_per_unit};
   judgement.consider(found);
   if (judgement.nearest.instance != kNoHit) return found;
 

@@ -3,17 +3,12 @@
 #pragma once
 
 #include <glidar/render/embree/embree_world.hpp>
+#include <glidar/render/judgement.hpp>
 #include <glidar/render/resolve.hpp>
 
 #include <cstdint>
 
 namespace glidar::embree {
-
-/// Who was hit; instance kNoHit: nobody.
-struct Found {
-  std::uint32_t instance = kNoHit;
-  std::uint32_t primitive = kNoHit;
-};
 
 /// Makes Embree's single-precision answers watertight and exact.
 ///
@@ -43,7 +38,6 @@ class Probe {
   [[nodiscard]] Found settle(std::size_t beam, const Found& found) const;
 
  private:
-  struct Judgement;
   [[nodiscard]] ObjectRay exact_ray(std::size_t beam) const;
   [[nodiscard]] Found trace(std::size_t beam, const Eigen::Vector3d& origin,
                             const Eigen::Vector3d& direction) const;
@@ -53,8 +47,7 @@ class Probe {
   const Beams& beams_;
   bool cull_back_faces_;
   double hair_;  ///< the offset, in units of the trace space
-  double
-      slack_;  ///< rounding of a point in double there: a beam this far outside a border is on it
+  double slack_;  ///< slack() there
 };
 
 }  // namespace glidar::embree

@@ -1,0 +1,190 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/opengl/egl_context.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <dlfcn.h>
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#include <array>
+#include <string_view>
+
+namespace glidar::opengl {
+
+struct EglContext::Handles {
+  EGLDisplay display = EGL_NO_DISPLAY;
+  EGLContext context = EGL_NO_CONTEXT;
+};
+
+/// What was current in this thread.
+struct EglContext::Use::Before {
+  EGLDisplay ours = EGL_NO_DISPLAY;
+  EGLDisplay display = EGL_NO_DISPLAY;
+  EGLContext context = EGL_NO_CONTEXT;
+  EGLSurface draw = EGL_NO_SURFACE;
+  EGLSurface read = EGL_NO_SURFACE;
+};
+
+namespace {
+
+constexpr const char* kInstall =
+    "install a driver: libegl1, libopengl0 and, for drawing in software, libgl1-mesa-dri (Debian, "
+    "Ubuntu); or use --renderer embree";
+
+[[noreturn]] void fail(std::string found) {
+  throw Error({.where = "OpenGL",
+               .found = std::move(found),
+               .allowed = "a context of OpenGL 3.3 or later, through EGL",
+               .remedy = kInstall});
+}
+
+bool can_open(const char* library) {
+  void* handle = dlopen(library, RTLD_LAZY | RTLD_LOCAL);
+  if (handle != nullptr) dlclose(handle);
+  return handle != nullptr;
+}
+
+/// libepoxy ends the program when it needs a library that is not there, so it is not asked then.
+bool has_libraries() {
+  return can_open("libEGL.so.1") && (can_open("libOpenGL.so.0") || can_open("libGL.so.1"));
+}
+
+bool names(const char* extensions, std::string_view wanted) {
+  const std::string padded = " " + std::string(extensions == nullptr ? "" : extensions) + " ";
+  return padded.find(" " + std::string(wanted) + " ") != std::string::npos;
+}
+
+std::vector<EGLDeviceEXT> devices() {
+  constexpr EGLint kMost = 64;
+  std::vector<EGLDeviceEXT> found(kMost);
+  EGLint count = 0;
+  const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+  const bool can_list =
+      names(extensions, "EGL_EXT_platform_device") &&
+      (names(extensions, "EGL_EXT_device_enumeration") || names(extensions, "EGL_EXT_device_base"));
+  if (!can_list || eglQueryDevicesEXT(kMost, found.data(), &count) == EGL_FALSE) count = 0;
+  found.resize(static_cast<std::size_t>(count));
+  return found;
+}
+
+std::string in_words(EGLDeviceEXT device) {
+  const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
+  if (names(extensions, "EGL_MESA_device_software")) return "drawing in software";
+  if (names(extensions, "EGL_EXT_device_drm")) {
+    const char* file = eglQueryDeviceStringEXT(device, EGL_DRM_DEVICE_FILE_EXT);
+    if (file != nullptr) return file;
+  }
+  return "a graphics device";
+}
+
+/// The display of a device, or that of Mesa without any where EGL cannot list devices.
+EGLDisplay display_of(EGLDeviceEXT device) {
+  if (device != EGL_NO_DEVICE_EXT) {
+    return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
+  }
+  const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+  if (!names(extensions, "EGL_MESA_platform_surfaceless")) return EGL_NO_DISPLAY;
+  return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
+}
+
+/// A context without config and surface; EGL_NO_CONTEXT where that cannot be had. A display stays
+/// initialised: EGL shares it among all who ask for it, and others may use it.
+EGLContext make_context(EGLDisplay display) {
+  constexpr std::array<EGLint, 7> kAttributes = {EGL_CONTEXT_MAJOR_VERSION,
+                                                 3,
+                                                 EGL_CONTEXT_MINOR_VERSION,
+                                                 3,
+                                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                                 EGL_NONE};
+  if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE) {
+    return EGL_NO_CONTEXT;
+  }
+  const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
+  if (!names(extensions, "EGL_KHR_surfaceless_context") ||
+      !(names(extensions, "EGL_KHR_no_config_context") ||
+        names(extensions, "EGL_MESA_configless_context"))) {
+    return EGL_NO_CONTEXT;
+  }
+  const EGLenum api_before = eglQueryAPI();
+  EGLContext context = EGL_NO_CONTEXT;
+  if (eglBindAPI(EGL_OPENGL_API) == EGL_TRUE) {
+    context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kAttributes.data());
+  }
+  eglBindAPI(api_before);
+  return context;
+}
+
+/// "0: /dev/dri/card0, 1: drawing in software".
+std::string listed(const std::vector<std::string>& all) {
+  std::string text;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    text += (i == 0 ? "" : ", ") + std::to_string(i) + ": " + all[i];
+  }
+  return text;
+}
+
+/// The devices to try: the one chosen, or all, or none in particular where none are listed.
+std::vector<EGLDeviceEXT> candidates(std::optional<std::uint32_t> chosen) {
+  std::vector<EGLDeviceEXT> all = devices();
+  if (!chosen) return all.empty() ? std::vector<EGLDeviceEXT>{EGL_NO_DEVICE_EXT} : all;
+  if (*chosen < all.size()) return {all[*chosen]};
+  throw Error({.where = "graphics device",
+               .found = std::to_string(*chosen),
+               .allowed = all.empty() ? "none: there are no devices to choose from"
+                                      : listed(graphics_devices()),
+               .remedy = ""});
+}
+
+}  // namespace
+
+std::vector<std::string> graphics_devices() {
+  std::vector<std::string> all;
+  if (!has_libraries()) return all;
+  for (EGLDeviceEXT device : devices()) all.push_back(in_words(device));
+  return all;
+}
+
+EglContext::EglContext(std::optional<std::uint32_t> device)
+    : handles_(std::make_unique<Handles>()) {
+  if (!has_libraries()) fail("its libraries (libEGL.so.1, libOpenGL.so.0) are not there");
+  for (EGLDeviceEXT candidate : candidates(device)) {
+    handles_->display = display_of(candidate);
+    handles_->context = make_context(handles_->display);
+    if (handles_->context != EGL_NO_CONTEXT) return;
+  }
+  const std::vector<std::string> all = graphics_devices();
+  fail(device ? "device " + std::to_string(*device) + " gives no context (devices: " + listed(all) +
+                    ")"
+       : all.empty() ? "there is no graphics device, not even one that draws in software"
+                     : "no device gives a context (devices: " + listed(all) + ")");
+}
+
+EglContext::~EglContext() {
+  if (handles_->context != EGL_NO_CONTEXT) eglDestroyContext(handles_->display, handles_->context);
+}
+
+EglContext::Use::Use(const EglContext& context) : before_(std::make_unique<Before>()) {
+  *before_ = {.ours = context.handles_->display,
+              .display = eglGetCurrentDisplay(),
+              .context = eglGetCurrentContext(),
+              .draw = eglGetCurrentSurface(EGL_DRAW),
+              .read = eglGetCurrentSurface(EGL_READ)};
+  const Handles& handles = *context.handles_;
+  if (eglMakeCurrent(handles.display, EGL_NO_SURFACE, EGL_NO_SURFACE, handles.context) ==
+      EGL_FALSE) {
+    fail("the context cannot be made current in this thread");
+  }
+}
+
+EglContext::Use::~Use() {
+  if (before_->context == EGL_NO_CONTEXT) {
+    eglMakeCurrent(before_->ours, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  } else {
+    eglMakeCurrent(before_->display, before_->draw, before_->read, before_->context);
+  }
+}
+
+}  // namespace glidar::opengl

@@ -1,0 +1,94 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <epoxy/gl.h>
+
+#include <cstddef>
+#include <utility>
+
+namespace glidar::opengl {
+
+/// Owns one name of OpenGL; the context it was made in must be current when it is deleted.
+template <class Kind>
+class GlObject {
+ public:
+  GlObject() : name_(Kind::make()) {}
+  ~GlObject() {
+    if (name_ != 0) Kind::drop(name_);
+  }
+  GlObject(GlObject&& other) noexcept : name_(std::exchange(other.name_, 0)) {}
+  GlObject& operator=(GlObject&& other) noexcept {
+    std::swap(name_, other.name_);
+    return *this;
+  }
+  GlObject(const GlObject&) = delete;
+  GlObject& operator=(const GlObject&) = delete;
+
+  [[nodiscard]] GLuint name() const { return name_; }
+
+ private:
+  GLuint name_;
+};
+
+struct BufferKind {
+  static GLuint make() {
+    GLuint name = 0;
+    glGenBuffers(1, &name);
+    return name;
+  }
+  static void drop(GLuint name) { glDeleteBuffers(1, &name); }
+};
+
+struct VertexArrayKind {
+  static GLuint make() {
+    GLuint name = 0;
+    glGenVertexArrays(1, &name);
+    return name;
+  }
+  static void drop(GLuint name) { glDeleteVertexArrays(1, &name); }
+};
+
+struct TextureKind {
+  static GLuint make() {
+    GLuint name = 0;
+    glGenTextures(1, &name);
+    return name;
+  }
+  static void drop(GLuint name) { glDeleteTextures(1, &name); }
+};
+
+struct FramebufferKind {
+  static GLuint make() {
+    GLuint name = 0;
+    glGenFramebuffers(1, &name);
+    return name;
+  }
+  static void drop(GLuint name) { glDeleteFramebuffers(1, &name); }
+};
+
+struct RenderbufferKind {
+  static GLuint make() {
+    GLuint name = 0;
+    glGenRenderbuffers(1, &name);
+    return name;
+  }
+  static void drop(GLuint name) { glDeleteRenderbuffers(1, &name); }
+};
+
+struct ProgramKind {
+  static GLuint make() { return glCreateProgram(); }
+  static void drop(GLuint name) { glDeleteProgram(name); }
+};
+
+using Buffer = GlObject<BufferKind>;
+using VertexArray = GlObject<VertexArrayKind>;
+using GlTexture = GlObject<TextureKind>;
+using Framebuffer = GlObject<FramebufferKind>;
+using Renderbuffer = GlObject<RenderbufferKind>;
+using Program = GlObject<ProgramKind>;
+
+/// Throws Error when OpenGL reports a fault since it was last asked.
+void check_gl(const char* doing);
+
+}  // namespace glidar::opengl

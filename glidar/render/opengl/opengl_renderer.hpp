@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/renderer.hpp>
+
+namespace glidar {
+
+/// Rasterisation by OpenGL 3.3 or later, on a GPU or in software, without a display. The device
+/// draws which triangle each pixel sees; range, normal and all else are worked out from that
+/// triangle in double, by the same code as for every renderer.
+///
+/// It draws pinhole cameras without distortion only, all beams of which start at the sensor's
+/// origin, and throws Error for other beams: to read those off depth images would not be exact.
+/// A beam meets the same triangle as a cast ray unless it passes within 1/128 of a pixel of a
+/// silhouette, or of the border of a hole in an alpha mask: there it may tell what is on the other
+/// side. Surfaces nearer than 1e-7 of the farthest depth are not seen.
+std::unique_ptr<Renderer> make_opengl_renderer(const Scene& scene, const RendererOptions& options);
+
+}  // namespace glidar

@@ -1,0 +1,115 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/opengl/paper_buffers.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/render/planes.hpp>
+
+#include <algorithm>
+#include <string>
+
+namespace glidar::opengl {
+namespace {
+
+/// Gives an attribute of the bound vertex array its values, if there are any.
+template <class Vector>
+void give(GLuint attribute, const std::vector<Vector>& values, ShadedMesh& mesh) {
+  if (values.empty()) return;
+  fill(mesh.attributes.emplace_back(), GL_ARRAY_BUFFER, values);
+  glVertexAttribPointer(attribute, Vector::RowsAtCompileTime, GL_FLOAT, GL_FALSE, 0, nullptr);
+  glEnableVertexAttribArray(attribute);
+}
+
+void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& order,
+                         const ShadedMesh& shaded) {
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
+  if (order.size() > static_cast<std::size_t>(most)) {
+    throw Error({.where = "opengl renderer",
+                 .found = "a mesh of " + std::to_string(order.size()) + " triangles",
+                 .allowed = "up to " + std::to_string(most) + " with this driver's paper target",
+                 .remedy = "use --render-target float"});
+  }
+  const std::vector<TrianglePlane> planes = triangle_planes(mesh);
+  std::vector<Eigen::Vector4f> normals;
+  normals.reserve(order.size());
+  for (const std::uint32_t t : order) {
+    normals.push_back(planes[t].normal.cast<float>().homogeneous());
+  }
+  fill(shaded.flat_normals, GL_TEXTURE_BUFFER, normals);
+  glBindTexture(GL_TEXTURE_BUFFER, shaded.flat_normals_view.name());
+  glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, shaded.flat_normals.name());
+}
+
+/// Blends of unit vectors that lie less than 120 degrees from each other have some length.
+bool is_smooth(const Mesh& mesh) {
+  constexpr float kCosineOf120 = -0.5F;
+  return !mesh.normals.empty() &&
+         std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
+           const Eigen::Vector3f& a = mesh.normals[t[0]];
+           const Eigen::Vector3f& b = mesh.normals[t[1]];
+           const Eigen::Vector3f& c = mesh.normals[t[2]];
+           return std::min({a.dot(b), b.dot(c), c.dot(a)}) > kCosineOf120;
+         });
+}
+
+ShadedMesh upload_mesh(const Mesh& mesh) {
+  ShadedMesh shaded;
+  shaded.is_smooth = is_smooth(mesh);
+  glBindVertexArray(shaded.arrays.name());
+  give(0, mesh.positions_m, shaded);
+  give(1, mesh.uvs[0], shaded);
+  give(2, mesh.uvs[1], shaded);
+  give(3, mesh.normals, shaded);
+  give(4, mesh.tangents, shaded);
+  give(5, mesh.colours, shaded);
+  const std::vector<std::uint32_t> order = ordered_by_slot(mesh, shaded.ranges);
+  std::vector<Triangle> triangles;
+  triangles.reserve(order.size());
+  for (const std::uint32_t t : order) triangles.push_back(mesh.triangles[t]);
+  fill(shaded.triangles, GL_ELEMENT_ARRAY_BUFFER, triangles);
+  upload_flat_normals(mesh, order, shaded);
+  return shaded;
+}
+
+/// Grey is spread to rgb, a missing alpha is full.
+std::vector<std::uint8_t> spread(const Texture& texture) {
+  const std::size_t pixels = std::size_t{texture.width} * texture.height;
+  const std::size_t n = texture.channels;
+  const bool is_grey = n < 3;
+  const bool has_alpha = n == 2 || n == 4;
+  std::vector<std::uint8_t> rgba(4 * pixels);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const std::uint8_t* from = &texture.texels[n * i];
+    rgba[4 * i] = from[0];
+    rgba[4 * i + 1] = from[is_grey ? 0 : 1];
+    rgba[4 * i + 2] = from[is_grey ? 0 : 2];
+    rgba[4 * i + 3] = has_alpha ? from[n - 1] : std::uint8_t{255};
+  }
+  return rgba;
+}
+
+GlTexture upload_texture(const Texture& texture) {
+  GlTexture uploaded;
+  const std::vector<std::uint8_t> rgba = spread(texture);
+  glBindTexture(GL_TEXTURE_2D, uploaded.name());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, static_cast<GLsizei>(texture.width),
+               static_cast<GLsizei>(texture.height), 0, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);  // there are no smaller levels
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  return uploaded;
+}
+
+}  // namespace
+
+ShadedScene upload_shaded(const Scene& scene) {
+  ShadedScene shaded;
+  for (const Mesh& mesh : scene.meshes) shaded.meshes.push_back(upload_mesh(mesh));
+  for (const Texture& texture : scene.textures) {
+    shaded.textures.push_back(upload_texture(texture));
+  }
+  check_gl("taking the scene into the graphics device's memory");
+  return shaded;
+}
+
+}  // namespace glidar::opengl

@@ -1,0 +1,92 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/error.hpp>
+#include <glidar/render/opengl/draw_state.hpp>
+#include <glidar/render/opengl/egl_context.hpp>
+#include <glidar/render/opengl/paper_drawing.hpp>
+#include <glidar/render/opengl/paper_target.hpp>
+#include <glidar/render/opengl/pinhole_only.hpp>
+#include <glidar/render/paper_picture.hpp>
+#include <glidar/render/visible_depths.hpp>
+
+#include <algorithm>
+
+namespace glidar {
+namespace {
+
+class OpenglPaperCamera final : public PaperCamera {
+ public:
+  OpenglPaperCamera(const Scene& scene, const RendererOptions& options)
+      : workers_(options.threads), resolver_(scene), context_(options.graphics_device) {
+    const opengl::EglContext::Use use(context_);
+    gpu_ = std::make_unique<OnDevice>(scene);
+  }
+
+  ~OpenglPaperCamera() override {
+    const opengl::EglContext::Use use(context_);
+    gpu_.reset();
+  }
+
+  void draw(const CastRequest& request, const Light& light,
+            const std::optional<PaperPlanes>& planes, PaperPicture& picture) override {
+    check(request, resolver_.scene());
+    opengl::check_pinhole(request.beams);
+    resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
+    picture.rows = request.beams.rows;
+    picture.cols = request.beams.cols;
+    const PaperPlanes used = planes ? *planes : hugging_planes(request);
+    picture.near_m = used.near_m;
+    picture.far_m = used.far_m;
+    if (!(used.far_m > used.near_m)) {
+      picture.rgba.assign(std::size_t{4} * picture.rows * picture.cols, 0);
+      return;
+    }
+    const opengl::EglContext::Use use(context_);
+    gpu_->target.begin(picture.rows, picture.cols);
+    gpu_->drawing.draw(request, resolver_,
+                       {.pinhole = *request.beams.pinhole,
+                        .light = light,
+                        .planes = used,
+                        .depths = opengl::hugging(used.near_m, used.far_m)});
+    gpu_->target.read(picture.rgba);
+  }
+
+ private:
+  /// What lives in the graphics device's memory.
+  struct OnDevice {
+    explicit OnDevice(const Scene& scene) : drawing(scene) {}
+    opengl::PaperDrawing drawing;
+    opengl::PaperTarget target;
+  };
+
+  /// Section 2.3 of the paper: as tight as possible around what is in view.
+  [[nodiscard]] PaperPlanes hugging_planes(const CastRequest& request) {
+    const Scene& scene = resolver_.scene();
+    DepthSpan span;
+    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+      if (!opengl::is_present(request, i)) continue;
+      span.extend(visible_depths_.of(resolver_.view(i), resolver_.mesh(i), *request.beams.pinhole,
+                                     workers_));
+    }
+    // A surface across the boresight has one depth; planes need some room between them.
+    constexpr double kLeastRoom = 1e-6;
+    const double room = kLeastRoom * span.farthest_m - (span.farthest_m - span.nearest_m);
+    if (room > 0.0) return {span.nearest_m - 0.5 * room, span.farthest_m + 0.5 * room};
+    return {span.nearest_m, span.farthest_m};
+  }
+
+  Workers workers_;
+  Resolver resolver_;
+  VisibleDepths visible_depths_;
+  opengl::EglContext context_;
+  std::unique_ptr<OnDevice> gpu_;
+};
+
+}  // namespace
+
+std::unique_ptr<PaperCamera> make_paper_camera(const Scene& scene, const RendererOptions& options) {
+  validate(scene);
+  return std::make_unique<OpenglPaperCamera>(scene, options);
+}
+
+}  // namespace glidar

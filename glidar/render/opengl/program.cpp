@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/opengl/program.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <string>
+
+namespace glidar::opengl {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what, const std::string& log) {
+  throw Error({.where = "OpenGL",
+               .found = "the driver does not accept " + what + ": " + log,
+               .allowed = "",
+               .remedy = "update the driver, or use --renderer embree"});
+}
+
+std::string joined(std::initializer_list<std::string_view> files,
+                   std::initializer_list<std::string_view> macros) {
+  std::string text = "#version 330 core\n";
+  for (const std::string_view macro : macros) text += "#define " + std::string(macro) + "\n";
+  for (const std::string_view file : files) text += shader_text(file);
+  return text;
+}
+
+/// Compiles one stage into the program; the shader itself goes with the program.
+void attach(const Program& program, GLenum stage, const std::string& text) {
+  const GLuint shader = glCreateShader(stage);
+  const char* start = text.c_str();
+  glShaderSource(shader, 1, &start, nullptr);
+  glCompileShader(shader);
+  GLint good = GL_FALSE;
+  glGetShaderiv(shader, GL_COMPILE_STATUS, &good);
+  std::string log;
+  if (good == GL_FALSE) {
+    GLint length = 0;
+    glGetShaderiv(shader, GL_INFO_LOG_LENGTH, &length);
+    log.resize(static_cast<std::size_t>(length));
+    glGetShaderInfoLog(shader, length, nullptr, log.data());
+  }
+  glAttachShader(program.name(), shader);
+  glDeleteShader(shader);
+  if (good == GL_FALSE) {
+    refuse(stage == GL_VERTEX_SHADER ? "a vertex shader" : "a fragment shader", log);
+  }
+}
+
+}  // namespace
+
+Program make_program(const ProgramSource& source) {
+  Program program;
+  attach(program, GL_VERTEX_SHADER, joined(source.vertex, source.macros));
+  attach(program, GL_FRAGMENT_SHADER, joined(source.fragment, source.macros));
+  glLinkProgram(program.name());
+  GLint good = GL_FALSE;
+  glGetProgramiv(program.name(), GL_LINK_STATUS, &good);
+  if (good == GL_FALSE) {
+    GLint length = 0;
+    glGetProgramiv(program.name(), GL_INFO_LOG_LENGTH, &length);
+    std::string log(static_cast<std::size_t>(length), ' ');
+    glGetProgramInfoLog(program.name(), length, nullptr, log.data());
+    refuse("a program", log);
+  }
+  return program;
+}
+
+}  // namespace glidar::opengl

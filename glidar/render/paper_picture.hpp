@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/frame.hpp>
+#include <glidar/core/light.hpp>
+#include <glidar/render/renderer.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace glidar {
+
+/// A measurement as one picture, the way of the 2016 paper: red is the intensity, green and blue
+/// are the depth in 65536 steps between two planes.
+struct PaperPicture {
+  std::uint32_t rows = 0;
+  std::uint32_t cols = 0;
+  double near_m = 0.0;             ///< n of equation (8), depth along the boresight
+  double far_m = 0.0;              ///< f
+  std::vector<std::uint8_t> rgba;  ///< 4 x rows x cols, row 0 on top; alpha 0 where nothing is seen
+};
+
+/// The planes of equation (8).
+struct PaperPlanes {
+  double near_m;
+  double far_m;
+};
+
+/// Draws such pictures.
+class PaperCamera {
+ public:
+  PaperCamera() = default;
+  PaperCamera(const PaperCamera&) = delete;
+  PaperCamera& operator=(const PaperCamera&) = delete;
+  virtual ~PaperCamera() = default;
+
+  /// Draws a pinhole's picture; the hit fields, `then` and progress are not looked at. The planes
+  /// hug what of the surface is in view, unless others are given.
+  virtual void draw(const CastRequest& request, const Light& light,
+                    const std::optional<PaperPlanes>& planes, PaperPicture& picture) = 0;
+};
+
+/// Builds a camera over a valid scene, which must outlive it. Throws Error without OpenGL.
+std::unique_ptr<PaperCamera> make_paper_camera(const Scene& scene, const RendererOptions& options);
+
+/// What the picture tells of a run of a pinhole's beams: range in metres, NaN where nothing is
+/// seen, and intensity 0..1.
+void decode(const PaperPicture& picture, const Beams& beams, BeamRange range,
+            std::vector<double>& range_m, std::vector<float>& intensity);
+
+}  // namespace glidar

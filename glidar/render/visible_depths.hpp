@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/workers.hpp>
+#include <glidar/render/resolve.hpp>
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace glidar {
+
+/// Depths along the boresight between which something lies; nearest > farthest: nothing does.
+struct DepthSpan {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  double farthest_m = -std::numeric_limits<double>::infinity();
+
+  void extend(double depth_m) {
+    nearest_m = depth_m < nearest_m ? depth_m : nearest_m;
+    farthest_m = depth_m > farthest_m ? depth_m : farthest_m;
+  }
+  void extend(const DepthSpan& other) {
+    nearest_m = other.nearest_m < nearest_m ? other.nearest_m : nearest_m;
+    farthest_m = other.farthest_m > farthest_m ? other.farthest_m : farthest_m;
+  }
+};
+
+/// Finds the depths of the part of a surface that lies in a pinhole's view, hidden or not, exactly:
+/// triangles that reach out of the view are cut at its borders. So a plane may hug the surface also
+/// where the nearest vertex is outside of the view or behind the sensor.
+class VisibleDepths {
+ public:
+  DepthSpan of(const InstanceView& view, const Mesh& mesh, const PinholeIntrinsics& k,
+               Workers& workers);
+
+ private:
+  std::vector<std::uint8_t> outside_;  ///< per vertex, a bit for every border it lies beyond
+  std::vector<DepthSpan> spans_;       ///< per piece of the work
+};
+
+}  // namespace glidar
