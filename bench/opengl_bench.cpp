@@ -252,12 +252,13 @@ void register_paper(const std::string& name, const Model& model, std::uint32_t s
         PaperPicture picture;
         std::vector<double> range_m(beams.size());
         std::vector<float> intensity(beams.size());
+        const auto read = [&](std::size_t begin, std::size_t end) {
+          decode(picture, beams, {begin, end}, range_m, intensity);
+        };
         for (auto _ : state) {
           camera->draw({.beams = beams, .world_from_sensor = model.world_from_sensor}, {}, {},
                        picture);
-          workers.for_ranges(beams.size(), 4096, [&](std::size_t begin, std::size_t end) {
-            decode(picture, beams, {begin, end}, range_m, intensity);
-          });
+          workers.for_ranges(beams.size(), 4096, read);
         }
       })
       ->MeasureProcessCPUTime()

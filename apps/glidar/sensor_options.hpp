@@ -40,8 +40,8 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags);
 
 /// The sensor file or preset if one is given, else the camera described by the flags, else the
 /// scene file's sensor, else a camera of 256 x 256 pixels and 20 degrees; then with the flags for
-/// limits, light, weather and returns; without pulse light and noise if it is to be ideal. Throws Error,
-/// also when a frame of it would not fit into this machine's memory.
+/// limits, light, weather and returns; without pulse light and noise if it is to be ideal. Throws
+/// Error, also when a frame of it would not fit into this machine's memory.
 Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_scene_file);
 
 }  // namespace glidar::app

@@ -46,7 +46,7 @@ class Probe {
   const Resolver& resolver_;
   const Beams& beams_;
   bool cull_back_faces_;
-  double hair_;  ///< the offset, in units of the trace space
+  double hair_;   ///< the offset, in units of the trace space
   double slack_;  ///< slack() there
 };
 
