@@ -44,12 +44,16 @@ void measure_light(const Setup& setup, BeamRange range, Frame& frame) {
 
 /// Range, intensity and status of all beams from the picture.
 void measure_paper(const Setup& setup, const PaperTarget& paper, Frame& frame) {
-  if (setup.sensor.pulse || !setup.beams.times_ns.empty()) {
+  const auto refuse_if = [](bool is_so, const char* found) {
+    if (!is_so) return;
     throw Error({.where = "paper target",
-                 .found = setup.sensor.pulse ? "pulsed light" : "beams that fire one by one",
-                 .allowed = "the paper's light, and beams that fire together",
+                 .found = found,
+                 .allowed = "the paper's light, and beams that fire together where they are aimed",
                  .remedy = "use --render-target float"});
-  }
+  };
+  refuse_if(setup.sensor.pulse.has_value(), "pulsed light");
+  refuse_if(!setup.beams.times_ns.empty(), "beams that fire one by one");
+  refuse_if(!frame.scratch.aimed.directions.empty(), "errors of pointing");
   paper.camera.draw({.beams = setup.beams,
                      .world_from_sensor = frame.world_from_sensor,
                      .world_from_instance = frame.world_from_instance,

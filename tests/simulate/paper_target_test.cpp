@@ -166,13 +166,19 @@ TEST_F(PaperTargetTest, NothingInViewIsAllMisses) {
   for (const Status status : m.frame.status) EXPECT_EQ(status, Status::miss);
 }
 
-TEST_F(PaperTargetTest, RefusesPulsedLight) {
+TEST_F(PaperTargetTest, RefusesPulsedLightAndErrorsOfPointing) {
   const Scene scene = builtin("sphere");
   Sensor sensor = camera(20, 20, 0.4);
   sensor.pulse = PulseLight{};
+  const std::string allowed =
+      "; allowed: the paper's light, and beams that fire together where they are aimed; "
+      "use --render-target float";
   EXPECT_EQ(error_text([&] { measure(scene, sensor, Pose::Identity()); }),
-            "paper target: pulsed light; allowed: the paper's light, and beams that fire together; "
-            "use --render-target float");
+            "paper target: pulsed light" + allowed);
+  sensor.pulse.reset();
+  sensor.noise = {PointingJitter{1e-4, 1e-4}};
+  EXPECT_EQ(error_text([&] { measure(scene, sensor, Pose::Identity()); }),
+            "paper target: errors of pointing" + allowed);
 }
 
 }  // namespace
