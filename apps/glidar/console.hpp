@@ -34,6 +34,8 @@ class Console {
 
   /// The library's way to all of the above; must not outlive the console.
   Report report();
+  /// Who else is told all that; called from the threads that tell it. Empty: nobody.
+  void listen(Report listener);
 
  private:
   friend class Working;
@@ -45,6 +47,7 @@ class Console {
   void erase();
 
   std::mutex mutex_;
+  Report listener_;
   bool quiet_;
   bool terminal_;
   bool drawn_ = false;
