@@ -54,6 +54,12 @@ void Console::warn(std::string_view message) {
   print(fmt::format("glidar: warning: {}\n", message));
 }
 
+void Console::error(std::string_view message) {
+  const std::lock_guard lock(mutex_);
+  erase();
+  print(fmt::format("glidar: error: {}\n", message));
+}
+
 void Console::tell(double fraction_done) {
   const std::lock_guard lock(mutex_);
   fraction_ = fraction_done;

@@ -27,6 +27,8 @@ class Console {
   void info(std::string_view message);
   /// Says what the user should know; never left out.
   void warn(std::string_view message);
+  /// Says what went wrong, for programs that go on; nobody else is told.
+  void error(std::string_view message);
   /// How far the work is that is under way (see Working), negative: unknown. Costs little.
   void tell(double fraction_done);
   /// The same of a part of that work that has a name of its own.

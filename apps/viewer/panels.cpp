@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -115,9 +116,11 @@ bool edit_pose(const char* name, Pose& pose) {
   ImGui::PushID(name);
   text(name);
   Eigen::Vector3d position_m = pose.translation();
-  // about the fixed axes x, y, z: roll, pitch, yaw
-  Eigen::Vector3d zyx_deg = kDegrees * pose.linear().eulerAngles(2, 1, 0);
-  std::array<double, 3> rpy_deg = {zyx_deg[2], zyx_deg[1], zyx_deg[0]};
+  // about the fixed axes x, y, z in this order: roll, pitch, yaw
+  const Eigen::Matrix3d r = pose.linear();
+  std::array<double, 3> rpy_deg = {kDegrees * std::atan2(r(2, 1), r(2, 2)),
+                                   kDegrees * std::asin(std::clamp(-r(2, 0), -1.0, 1.0)),
+                                   kDegrees * std::atan2(r(1, 0), r(0, 0))};
   ImGui::PushItemWidth(ImGui::GetFontSize() * 15.5F);
   ImGui::InputScalarN("m", ImGuiDataType_Double, position_m.data(), 3, nullptr, nullptr, "%.5g");
   bool is_changed = ImGui::IsItemDeactivatedAfterEdit();

@@ -12,9 +12,11 @@
 #include <CLI/CLI.hpp>
 
 #include <chrono>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -68,7 +70,10 @@ class PaceMeter {
 /// The viewer in its window.
 class Show {
  public:
-  Show(const ViewFlags& flags, Viewer& viewer) : flags_(flags), viewer_(viewer) { open_window(); }
+  Show(const ViewFlags& flags, Viewer& viewer, Console& console)
+      : flags_(flags), viewer_(viewer), console_(console) {
+    open_window();
+  }
 
   /// Draws and shows; with the picture of the window if asked for.
   void draw(Picture* picture = nullptr);
@@ -81,10 +86,12 @@ class Show {
   void open_window();
   [[nodiscard]] WindowEvents events();
   void wait();
+  bool take_news();
   void wait_for(std::uint32_t number);
 
   const ViewFlags& flags_;
   Viewer& viewer_;
+  Console& console_;
   PaceMeter pace_;
   std::unique_ptr<Window> window_;
   std::unique_ptr<Screen> screen_;  ///< after the window, whose context it needs to the end
@@ -141,12 +148,20 @@ void Show::wait() {
   if (!due_s) unsettled_ = kSettling;
 }
 
+/// Errors stand in the terminal too.
+bool Show::take_news() {
+  const std::size_t known = viewer_.errors.size();
+  const bool is_new = viewer_.take_news();
+  for (std::size_t i = known; i < viewer_.errors.size(); ++i) console_.error(viewer_.errors[i]);
+  return is_new;
+}
+
 void Show::run() {
   Clock::time_point before = Clock::now();
   while (!is_quitting_ && !window_->is_closing()) {
     wait();
     viewer_.advance(seconds_since(std::exchange(before, Clock::now())));
-    if (viewer_.take_news()) unsettled_ = std::max(unsettled_, 1);
+    if (take_news()) unsettled_ = std::max(unsettled_, 1);
     if (window_->is_hidden()) {
       unsettled_ = 0;
       continue;
@@ -181,8 +196,17 @@ void Show::run_frames(std::uint32_t count) {
   }
 }
 
-void write_screenshot(const std::string& path, const Picture& picture) {
-  AtomicFile file(path);
+/// The file of the screenshot, so that a wrong name is told before any work is done.
+std::unique_ptr<AtomicFile> screenshot_file(const std::string& path) {
+  if (path.empty()) return nullptr;
+  if (path.ends_with(".png")) return std::make_unique<AtomicFile>(path);
+  throw Error({.where = "--screenshot",
+               .found = "'" + path + "'",
+               .allowed = "a name that ends in .png",
+               .remedy = ""});
+}
+
+void write_screenshot(const Picture& picture, AtomicFile& file) {
   write_png({PngKind::rgb8, static_cast<std::uint32_t>(picture.width),
              static_cast<std::uint32_t>(picture.height), std::as_bytes(std::span(picture.pixels)),
              "the window of glidar view"},
@@ -192,11 +216,12 @@ void write_screenshot(const std::string& path, const Picture& picture) {
 
 int run(ViewFlags& flags) {
   if (!flags.screenshot.empty() && !flags.frames) flags.frames = 1;
+  const std::unique_ptr<AtomicFile> screenshot = screenshot_file(flags.screenshot);
   Console console(flags.render.quiet);
   const WindowSystem windows;
   Measuring measuring(console, WindowSystem::wake);
   Viewer viewer(flags.render, measuring);
-  Show show(flags, viewer);
+  Show show(flags, viewer, console);
   if (!flags.frames) {
     show.run();
   } else {
@@ -208,10 +233,10 @@ int run(ViewFlags& flags) {
                  *flags.frames / seconds);
     }
   }
-  if (!flags.screenshot.empty()) {
+  if (screenshot) {
     Picture picture;
     for (int i = 0; i < kSettling; ++i) show.draw(&picture);
-    write_screenshot(flags.screenshot, picture);
+    write_screenshot(picture, *screenshot);
   }
   if (!flags.render.quiet) fmt::print("drew {} pictures of the window\n", show.drawn());
   return kDone;
