@@ -76,7 +76,7 @@ void measure_paper(const Setup& setup, const PaperTarget& paper, Frame& frame) {
 
 }  // namespace
 
-void measure(const Setup& setup, const HitFields& fields, Frame& frame, PulseTrace* trace) {
+void measure(const Setup& setup, const HitFields& fields, Frame& frame) {
   frame.rows = setup.beams.rows;
   frame.cols = setup.beams.cols;
   frame.frame_id = setup.beams.frame_id;
@@ -100,7 +100,7 @@ void measure(const Setup& setup, const HitFields& fields, Frame& frame, PulseTra
   frame.cause.clear();
   frame.sigma_m.clear();
   if (has_echoes(sensor, setup.scene)) {
-    measure_pulses(setup, needed, beams, frame, trace);
+    measure_pulses(setup, needed, beams, frame);
   } else {
     CastRequest request = request_of(setup, frame, beams, needed);
     request.then = FunctionRef<void(BeamRange)>(measure_run);

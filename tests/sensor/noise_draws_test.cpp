@@ -26,12 +26,13 @@ std::vector<NoiseStep> after_two(const NoiseStep& step) {
 /// Calls check(entry, draws, measured frame) for entries of a frame with one step of noise.
 template <class Check>
 void for_entries(const NoiseStep& step, const Check& check) {
+  const NoiseStage before(kRows, kCols, kRange_m);
   NoiseStage stage(kRows, kCols, kRange_m);
   stage.frame.cause.assign(stage.beams.size(), Cause::surface);
   const std::vector<NoiseStep> noise = after_two(step);
   stage.apply(noise);
   for (const std::size_t entry : {0U, 1U, 255U, 256U, 300U, 511U, 799U}) {
-    check(entry, draws_of(noise, 2, stage.beams, stage.frame, kFrame_s, entry), stage.frame);
+    check(entry, draws_of(noise, 2, stage.beams, before.frame, kFrame_s, entry), stage.frame);
   }
 }
 
@@ -102,18 +103,27 @@ void hold(const Range2015& /*kind*/) {
 }
 
 void hold(const Dropout& /*kind*/) {
-  for_entries(Dropout{.probability = 0.5},
-              [](std::size_t entry, const std::vector<Drawn>& draws, const Frame& frame) {
-                ASSERT_EQ(draws.size(), 1U);
-                EXPECT_EQ(draws[0].law, Drawn::Law::uniform);
-                EXPECT_EQ(frame.status[entry] == Status::dropped, draws[0].value < 0.5) << entry;
-              });
+  // half of them anyhow, of the others 1 / 5 at 10 m and 1 / 4 square on
+  const Dropout step{.probability = 0.5,
+                     .by_range_m = {{0.0, 0.0}, {20.0, 0.4}},
+                     .by_incidence_rad = {{0.0, 0.25}, {1.0, 1.0}}};
+  for_entries(step, [](std::size_t entry, const std::vector<Drawn>& draws, const Frame& frame) {
+    ASSERT_EQ(draws.size(), 1U);
+    EXPECT_EQ(draws[0].law, Drawn::Law::uniform);
+    ASSERT_TRUE(draws[0].against.has_value());
+    EXPECT_NEAR(*draws[0].against, 1.0 - 0.5 * 0.8 * 0.75, 1e-12);
+    EXPECT_EQ(frame.status[entry] == Status::dropped, draws[0].value < *draws[0].against) << entry;
+  });
+  NoiseStage lost(1, 1, kRange_m);
+  lost.lose_beam(0);
+  EXPECT_FALSE(draws_of({step}, 0, lost.beams, lost.frame, kFrame_s, 0)[0].against.has_value());
 }
 
 void hold(const Crosstalk& /*kind*/) {
   for_entries(Crosstalk{.probability = 0.5, .near_m = 1.0},
               [](std::size_t entry, const std::vector<Drawn>& draws, const Frame& frame) {
                 ASSERT_EQ(draws.size(), 3U);
+                EXPECT_EQ(draws[0].against, 0.5);
                 const bool talks = draws[0].value < 0.5;
                 EXPECT_EQ(frame.cause[entry] == Cause::crosstalk, talks) << entry;
                 const double expected_m = talks ? 1.0 + 9.0 * draws[2].value : kRange_m;
@@ -170,8 +180,9 @@ void hold(const KinectV1& /*kind*/) {
   const KinectV1 kinect{.k_m = kFineK_m, .offset_steps = 0.0, .sigma_steps = 1e5, .window = 5};
   const NoiseStage before(kRows, kCols, kRange_m);
   for_entries(kinect, [&](std::size_t entry, const std::vector<Drawn>& draws, const Frame& frame) {
-    ASSERT_EQ(draws.size(), 1U);
+    ASSERT_EQ(draws.size(), 2U);
     const double mean = window_mean(before, after_two(kinect), entry, 2);
+    EXPECT_NEAR(draws[1].value, mean, 1e-12) << entry;
     EXPECT_NEAR(frame.range_m[entry], range_off_by_m(1e5 * mean), 1e-7) << entry;
   });
 }
