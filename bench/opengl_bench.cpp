@@ -204,7 +204,7 @@ class RawOpengl {
   }
 
   opengl::EglContext context_;
-  opengl::EglContext::Use use_;
+  opengl::Use use_;
   const Raw& raw_;
   GLsizei side_;
   GLsizei count_ = 0;

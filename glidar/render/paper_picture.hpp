@@ -4,6 +4,7 @@
 
 #include <glidar/core/frame.hpp>
 #include <glidar/core/light.hpp>
+#include <glidar/render/opengl/context.hpp>
 #include <glidar/render/renderer.hpp>
 
 #include <cstdint>
@@ -45,6 +46,10 @@ class PaperCamera {
 
 /// Builds a camera over a valid scene, which must outlive it. Throws Error without OpenGL.
 std::unique_ptr<PaperCamera> make_paper_camera(const Scene& scene, const RendererOptions& options);
+
+/// The same over a context of the caller's, see make_opengl_renderer().
+std::unique_ptr<PaperCamera> make_paper_camera(const Scene& scene, const RendererOptions& options,
+                                               std::unique_ptr<opengl::Context> context);
 
 /// What the picture tells of a run of a pinhole's beams: range in metres, NaN where nothing is
 /// seen, and intensity 0..1.

@@ -2,9 +2,68 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/opengl/draw_state.hpp>
 
+#include <glidar/core/error.hpp>
+
 #include <bit>
+#include <string>
 
 namespace glidar::opengl {
+namespace {
+
+constexpr int kLeastVersion = 33;
+constexpr GLuint kTextureUnits = 5;  // those that shaders here use
+
+void set_pixel_store() {
+  for (const GLenum length : {GL_PACK_ROW_LENGTH, GL_PACK_SKIP_ROWS, GL_PACK_SKIP_PIXELS,
+                              GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS}) {
+    glPixelStorei(length, 0);
+  }
+  constexpr GLint kUsual = 4;
+  glPixelStorei(GL_PACK_ALIGNMENT, kUsual);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, kUsual);
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
+}
+
+/// What this program never changes, but whoever else has the context may have.
+void forget_others() {
+  for (const GLenum feature : {GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_BLEND, GL_COLOR_LOGIC_OP,
+                               GL_RASTERIZER_DISCARD, GL_POLYGON_OFFSET_FILL, GL_PRIMITIVE_RESTART,
+                               GL_DEPTH_CLAMP, GL_FRAMEBUFFER_SRGB, GL_DITHER}) {
+    glDisable(feature);
+  }
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
+  glDepthRange(0.0, 1.0);
+  glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+  for (GLuint unit = 0; unit < kTextureUnits; ++unit) glBindSampler(unit, 0);
+  set_pixel_store();
+}
+
+}  // namespace
+
+FreshState::FreshState(Context& context) : use_(context) {
+  if (epoxy_gl_version() < kLeastVersion) {
+    throw Error({.where = "OpenGL",
+                 .found = "a context of version " + std::to_string(epoxy_gl_version() / 10) + "." +
+                          std::to_string(epoxy_gl_version() % 10),
+                 .allowed = "3.3 or later",
+                 .remedy = ""});
+  }
+  forget_others();
+}
+
+FreshState::~FreshState() {
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glBindVertexArray(0);
+  glUseProgram(0);
+  glActiveTexture(GL_TEXTURE0);
+  if (has_clip_control()) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+  glDisable(GL_DEPTH_TEST);
+  glDepthFunc(GL_LESS);
+  glFrontFace(GL_CCW);
+  glDisable(GL_CULL_FACE);
+}
 
 bool has_clip_control() {
   constexpr int kInCore = 45;

@@ -10,21 +10,27 @@
 
 #include <array>
 #include <string_view>
+#include <utility>
 
 namespace glidar::opengl {
+
+namespace {
+
+/// What is current in this thread. EGL has one current context for OpenGL and OpenGL ES together,
+/// so it is this one also when a window's library made it.
+struct Current {
+  EGLDisplay display = eglGetCurrentDisplay();
+  EGLContext context = eglGetCurrentContext();
+  EGLSurface draw = eglGetCurrentSurface(EGL_DRAW);
+  EGLSurface read = eglGetCurrentSurface(EGL_READ);
+};
+
+}  // namespace
 
 struct EglContext::Handles {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
-};
-
-/// What was current in this thread.
-struct EglContext::Use::Before {
-  EGLDisplay ours = EGL_NO_DISPLAY;
-  EGLDisplay display = EGL_NO_DISPLAY;
-  EGLContext context = EGL_NO_CONTEXT;
-  EGLSurface draw = EGL_NO_SURFACE;
-  EGLSurface read = EGL_NO_SURFACE;
+  std::optional<Current> before;  ///< while it is current
 };
 
 namespace {
@@ -166,24 +172,21 @@ EglContext::~EglContext() {
   if (handles_->context != EGL_NO_CONTEXT) eglDestroyContext(handles_->display, handles_->context);
 }
 
-EglContext::Use::Use(const EglContext& context) : before_(std::make_unique<Before>()) {
-  *before_ = {.ours = context.handles_->display,
-              .display = eglGetCurrentDisplay(),
-              .context = eglGetCurrentContext(),
-              .draw = eglGetCurrentSurface(EGL_DRAW),
-              .read = eglGetCurrentSurface(EGL_READ)};
-  const Handles& handles = *context.handles_;
-  if (eglMakeCurrent(handles.display, EGL_NO_SURFACE, EGL_NO_SURFACE, handles.context) ==
+void EglContext::make_current() {
+  const Current before;
+  if (eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, handles_->context) ==
       EGL_FALSE) {
     fail("the context cannot be made current in this thread");
   }
+  handles_->before = before;
 }
 
-EglContext::Use::~Use() {
-  if (before_->context == EGL_NO_CONTEXT) {
-    eglMakeCurrent(before_->ours, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+void EglContext::give_back() {
+  const Current before = *std::exchange(handles_->before, std::nullopt);
+  if (before.context == EGL_NO_CONTEXT) {
+    eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   } else {
-    eglMakeCurrent(before_->display, before_->draw, before_->read, before_->context);
+    eglMakeCurrent(before.display, before.draw, before.read, before.context);
   }
 }
 

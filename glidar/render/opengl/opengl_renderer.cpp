@@ -36,17 +36,18 @@ std::vector<PixelRect> parts_of(const Beams& beams) {
 
 class OpenglRenderer final : public Renderer {
  public:
-  OpenglRenderer(const Scene& scene, const RendererOptions& options)
+  OpenglRenderer(const Scene& scene, const RendererOptions& options,
+                 std::unique_ptr<opengl::Context> context)
       : workers_(options.threads),
         resolver_(scene),
         meshes_(scene.meshes.begin(), scene.meshes.end()),
-        context_(options.graphics_device) {
-    const opengl::EglContext::Use use(context_);
+        context_(std::move(context)) {
+    const opengl::FreshState state(*context_);
     gpu_ = std::make_unique<OnDevice>(scene);
   }
 
   ~OpenglRenderer() override {
-    const opengl::EglContext::Use use(context_);
+    const opengl::FreshState state(*context_);
     gpu_.reset();
   }
 
@@ -92,7 +93,7 @@ class OpenglRenderer final : public Renderer {
 
   /// While one part of the picture is read and its hits are written, the next is drawn.
   void draw_and_write(const CastRequest& request, const opengl::DepthRange& depths, Hits& hits) {
-    const opengl::EglContext::Use use(context_);
+    const opengl::FreshState state(*context_);
     const std::vector<PixelRect> parts = parts_of(request.beams);
     const opengl::Settler settler(resolver_, meshes_, request.beams, request.cull_back_faces);
     WorkCount count(request.progress, request.beams.size());
@@ -122,7 +123,7 @@ class OpenglRenderer final : public Renderer {
   Workers workers_;
   Resolver resolver_;
   std::vector<opengl::KnownMesh> meshes_;
-  opengl::EglContext context_;
+  std::unique_ptr<opengl::Context> context_;
   std::unique_ptr<OnDevice> gpu_;
 };
 
@@ -130,7 +131,14 @@ class OpenglRenderer final : public Renderer {
 
 std::unique_ptr<Renderer> make_opengl_renderer(const Scene& scene, const RendererOptions& options) {
   validate(scene);
-  return std::make_unique<OpenglRenderer>(scene, options);
+  return std::make_unique<OpenglRenderer>(
+      scene, options, std::make_unique<opengl::EglContext>(options.graphics_device));
+}
+
+std::unique_ptr<Renderer> make_opengl_renderer(const Scene& scene, const RendererOptions& options,
+                                               std::unique_ptr<opengl::Context> context) {
+  validate(scene);
+  return std::make_unique<OpenglRenderer>(scene, options, std::move(context));
 }
 
 }  // namespace glidar

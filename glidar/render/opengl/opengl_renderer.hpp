@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/render/opengl/context.hpp>
 #include <glidar/render/renderer.hpp>
+
+#include <memory>
 
 namespace glidar {
 
@@ -16,5 +19,12 @@ namespace glidar {
 /// silhouette, or of the border of a hole in an alpha mask: there it may tell what is on the other
 /// side. Surfaces nearer than 1e-7 of the farthest depth are not seen.
 std::unique_ptr<Renderer> make_opengl_renderer(const Scene& scene, const RendererOptions& options);
+
+/// The same over a context of the caller's, say that of a window; options.graphics_device is not
+/// looked at. Whatever the context's state, it sets what it needs. Afterwards framebuffer, program,
+/// depth, culling and clip control are as in a new context; viewport and other bindings are not
+/// given back.
+std::unique_ptr<Renderer> make_opengl_renderer(const Scene& scene, const RendererOptions& options,
+                                               std::unique_ptr<opengl::Context> context);
 
 }  // namespace glidar

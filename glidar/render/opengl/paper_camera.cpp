@@ -10,20 +10,23 @@
 #include <glidar/render/visible_depths.hpp>
 
 #include <algorithm>
+#include <memory>
+#include <utility>
 
 namespace glidar {
 namespace {
 
 class OpenglPaperCamera final : public PaperCamera {
  public:
-  OpenglPaperCamera(const Scene& scene, const RendererOptions& options)
-      : workers_(options.threads), resolver_(scene), context_(options.graphics_device) {
-    const opengl::EglContext::Use use(context_);
+  OpenglPaperCamera(const Scene& scene, const RendererOptions& options,
+                    std::unique_ptr<opengl::Context> context)
+      : workers_(options.threads), resolver_(scene), context_(std::move(context)) {
+    const opengl::FreshState state(*context_);
     gpu_ = std::make_unique<OnDevice>(scene);
   }
 
   ~OpenglPaperCamera() override {
-    const opengl::EglContext::Use use(context_);
+    const opengl::FreshState state(*context_);
     gpu_.reset();
   }
 
@@ -41,7 +44,7 @@ class OpenglPaperCamera final : public PaperCamera {
       picture.rgba.assign(std::size_t{4} * picture.rows * picture.cols, 0);
       return;
     }
-    const opengl::EglContext::Use use(context_);
+    const opengl::FreshState state(*context_);
     gpu_->target.begin(picture.rows, picture.cols);
     gpu_->drawing.draw(request, resolver_,
                        {.pinhole = *request.beams.pinhole,
@@ -78,7 +81,7 @@ class OpenglPaperCamera final : public PaperCamera {
   Workers workers_;
   Resolver resolver_;
   VisibleDepths visible_depths_;
-  opengl::EglContext context_;
+  std::unique_ptr<opengl::Context> context_;
   std::unique_ptr<OnDevice> gpu_;
 };
 
@@ -86,7 +89,14 @@ class OpenglPaperCamera final : public PaperCamera {
 
 std::unique_ptr<PaperCamera> make_paper_camera(const Scene& scene, const RendererOptions& options) {
   validate(scene);
-  return std::make_unique<OpenglPaperCamera>(scene, options);
+  return std::make_unique<OpenglPaperCamera>(
+      scene, options, std::make_unique<opengl::EglContext>(options.graphics_device));
+}
+
+std::unique_ptr<PaperCamera> make_paper_camera(const Scene& scene, const RendererOptions& options,
+                                               std::unique_ptr<opengl::Context> context) {
+  validate(scene);
+  return std::make_unique<OpenglPaperCamera>(scene, options, std::move(context));
 }
 
 }  // namespace glidar
