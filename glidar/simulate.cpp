@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate.hpp>
 
-#include <glidar/core/error.hpp>
 #include <glidar/motion/beam_poses.hpp>
+#include <glidar/paper_measure.hpp>
 #include <glidar/pulse_cast.hpp>
 #include <glidar/shadow_cast.hpp>
 
@@ -42,41 +42,9 @@ void measure_light(const Setup& setup, BeamRange range, Frame& frame) {
   }
 }
 
-/// Range, intensity and status of all beams from the picture.
-void measure_paper(const Setup& setup, const PaperTarget& paper, Frame& frame) {
-  const auto refuse_if = [](bool is_so, const char* found) {
-    if (!is_so) return;
-    throw Error({.where = "paper target",
-                 .found = found,
-                 .allowed = "the paper's light, and beams that fire together where they are aimed",
-                 .remedy = "use --render-target float"});
-  };
-  refuse_if(setup.sensor.pulse.has_value(), "pulsed light");
-  refuse_if(!setup.beams.times_ns.empty(), "beams that fire one by one");
-  refuse_if(!frame.scratch.aimed.directions.empty(), "errors of pointing");
-  paper.camera.draw({.beams = setup.beams,
-                     .world_from_sensor = frame.world_from_sensor,
-                     .world_from_instance = frame.world_from_instance,
-                     .cull_back_faces = setup.sensor.cull_back_faces},
-                    setup.sensor.light, paper.planes, paper.picture);
-  const auto read = [&](std::size_t begin, std::size_t end) {
-    decode(paper.picture, setup.beams, {begin, end}, frame.range_m, frame.intensity);
-    for (std::size_t i = begin; i < end; ++i) {
-      const bool is_seen = !std::isnan(frame.range_m[i]);
-      frame.status[i] =
-          is_seen ? judge(setup.sensor.limits, setup.beams, i, frame.range_m[i]) : Status::miss;
-      if (frame.status[i] == Status::hit) continue;
-      frame.range_m[i] = kNoRange;
-      frame.intensity[i] = 0.0F;
-    }
-  };
-  constexpr std::size_t kBeamsPerTask = 4096;
-  setup.renderer.workers().for_ranges(setup.beams.size(), kBeamsPerTask, read);
-}
-
 }  // namespace
 
-void measure(const Setup& setup, const HitFields& fields, Frame& frame, PulseTrace* trace) {
+void measure(const Setup& setup, const HitFields& fields, Frame& frame) {
   frame.rows = setup.beams.rows;
   frame.cols = setup.beams.cols;
   frame.frame_id = setup.beams.frame_id;
@@ -100,13 +68,14 @@ void measure(const Setup& setup, const HitFields& fields, Frame& frame, PulseTra
   frame.cause.clear();
   frame.sigma_m.clear();
   if (has_echoes(sensor, setup.scene)) {
-    measure_pulses(setup, needed, beams, frame, trace);
+    measure_pulses(setup, needed, beams, frame);
   } else {
     CastRequest request = request_of(setup, frame, beams, needed);
     request.then = FunctionRef<void(BeamRange)>(measure_run);
     request.progress = setup.progress;
     cast_moving(world, request, frame.scratch, frame.truth);
   }
+  frame.picture.rgba.clear();
   if (setup.paper) measure_paper(setup, *setup.paper, frame);
   if (sensor.projector_m) cast_shadows(setup, *sensor.projector_m, beams, frame);
   deskew(world, setup.beams, beams, frame.deskewed);

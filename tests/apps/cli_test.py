@@ -282,8 +282,16 @@ class Advice(CliTest):
     def test_sensor_inside_the_model(self):
         self.assertIn("inside 'box' and sees the backs",
                       self.warned("builtin:box", "--eye", "0.1,0,0", "--target", "1,0,0"))
-        self.assertIn("inside the bounding box",
-                      self.warned("builtin:torus", "--eye", "0,0,0", "--target", "1,0,0"))
+
+    def test_a_sensor_amid_the_scene_is_not_told_to_leave(self):
+        def told(*arguments):
+            return self.succeed("render", *arguments, "-o", "x.pcd").stderr
+        ahead = ("--target", "1,0,0")
+        self.assertEqual(told("builtin:torus", "--eye", "0,0,0", *ahead), "")  # sees fronts
+        for place in ("0,0,0", "0.2,0.1,0"):  # of a room whose triangles look outwards, all around
+            self.assertEqual(told("builtin:box", "--sensor", "VLP-16", "--eye", place), "")
+        room = self.write("room.obj", re.sub(r"(?m)^f (\d) (\d) (\d) (\d)$", r"f \4 \3 \2 \1", box_of(4)))
+        self.assertEqual(told(room, "--eye", "0.1,0,0", *ahead), "")
 
     def test_model_a_thousand_times_too_big_or_small(self):
         big = self.write("big.obj", box_of(2000))

@@ -24,6 +24,7 @@ using ::testing::IsEmpty;
 TEST(FileFormats, TheLongestSuffixWins) {
   EXPECT_EQ(format_for("a.png").suffix, ".png");
   EXPECT_EQ(format_for("a.depth.png").suffix, ".depth.png");
+  EXPECT_EQ(format_for("a.paper.png").suffix, ".paper.png");
   EXPECT_EQ(format_for("out.d/scan.2.pcd").suffix, ".pcd");
   EXPECT_EQ(format_for("A.PCD").suffix, ".pcd");
 }
@@ -32,7 +33,7 @@ TEST(FileFormats, AnUnknownSuffixTellsAllAndTheNearest) {
   const std::string text = error_text([] { format_for("a.pdc"); });
   EXPECT_THAT(text,
               AllOf(HasSubstr("no format has the suffix .pdc"), HasSubstr("did you mean .pcd?"),
-                    HasSubstr(".pcd .ply .npz .csv .bin .npy .depth.png .png .transform")));
+                    HasSubstr(".pcd .ply .npz .csv .bin .npy .depth.png .paper.png .png .transform")));
   EXPECT_THAT(error_text([] { format_for("cloud"); }), HasSubstr("the name has no suffix"));
   EXPECT_THAT(error_text([] { format_for("out/.pcd"); }), HasSubstr("the name has no suffix"));
 }
