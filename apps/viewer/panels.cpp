@@ -86,8 +86,10 @@ void show_sensor_numbers(const Shot& shot) {
   if (sensor.footprint) text("beams with a footprint");
   if (sensor.weather) text("weather");
   if (sensor.noise.empty()) return;
-  if (!ImGui::TreeNode("steps", "%s",
-                       fmt::format("{} steps of noise", sensor.noise.size()).c_str()))
+  if (!ImGui::TreeNode(
+          "steps", "%s",
+          fmt::format("noise: {} step{}", sensor.noise.size(), sensor.noise.size() == 1 ? "" : "s")
+              .c_str()))
     return;
   for (const NoiseStep& step : sensor.noise) wrapped(noise_text(step));
   ImGui::TreePop();
