@@ -54,9 +54,7 @@ Setup setup_of(const Shot& shot) {
               .beams = *shot.beams,
               .motion = shot.motion,
               .renderer = *session.renderer};
-  const Paper& paper = session.paper;
-  if (paper.camera)
-    setup.paper.emplace(PaperTarget{.camera = *paper.camera, .picture = *paper.picture});
+  if (session.paper) setup.paper.emplace(PaperTarget{.camera = *session.paper});
   return setup;
 }
 
