@@ -18,6 +18,7 @@ using Command = std::function<int()>;
 Command add_render(CLI::App& program, const std::vector<std::string>& arguments);
 Command add_explain(CLI::App& program);
 Command add_info(CLI::App& program);
+Command add_stream(CLI::App& program);
 Command add_sensors(CLI::App& program);
 Command add_verify(CLI::App& program);
 

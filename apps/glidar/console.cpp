@@ -75,6 +75,15 @@ void Console::tell(std::string_view task, double fraction_done) {
   if (listener_.progress) listener_.progress(task_, fraction_);
 }
 
+void Console::status(std::string_view line) {
+  const std::lock_guard lock(mutex_);
+  if (!terminal_) return;
+  erase();
+  if (line.empty()) return;
+  print(std::string(line.substr(0, terminal_columns() - 1)));
+  drawn_ = true;
+}
+
 void Console::listen(Report listener) {
   const std::lock_guard lock(mutex_);
   listener_ = std::move(listener);

@@ -34,6 +34,10 @@ class Console {
   /// The same of a part of that work that has a name of its own.
   void tell(std::string_view task, double fraction_done);
 
+  /// A line that stands on a terminal until the next one, or anything else, takes its place; empty:
+  /// none.
+  void status(std::string_view line);
+
   /// The library's way to all of the above; must not outlive the console.
   Report report();
   /// Who else is told all that; called from the threads that tell it. Empty: nobody.

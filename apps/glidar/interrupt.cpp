@@ -2,10 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/interrupt.hpp>
 
+#include <glidar/core/error.hpp>
 #include <glidar/io/atomic_file.hpp>
 
+#include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <atomic>
 #include <csignal>
 #include <string_view>
 
@@ -21,17 +26,62 @@ extern "C" void end_now(int /*number*/) {
   _exit(kExitCode);
 }
 
-}  // namespace
+// A signal handler takes no arguments, so these have to be the process's own.
+constinit std::atomic<int> noted{0};
+constinit std::atomic<int> noting_pipe{-1};
+static_assert(std::atomic<int>::is_always_lock_free, "used in signal handlers");
 
-void end_cleanly_on_interrupt() {
+extern "C" void note(int number) {
+  if (noted.exchange(number) != 0) end_now(number);
+  [[maybe_unused]] const ssize_t told = write(noting_pipe.load(), "!", 1);
+}
+
+void handle_by(void (*handler)(int)) {
   struct sigaction action {};
-  action.sa_handler = end_now;
+  action.sa_handler = handler;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
   struct sigaction before {};
   sigaction(SIGHUP, nullptr, &before);
   if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup ignores it
+}
+
+}  // namespace
+
+void end_cleanly_on_interrupt() {
+  handle_by(end_now);
   signal(SIGXFSZ, SIG_IGN);  // write() then fails, and says why
+}
+
+StopRequest::StopRequest() {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) {
+    throw Error({.where = "signals", .found = "no pipe can be made", .allowed = "", .remedy = ""});
+  }
+  reading_ = ends[0];
+  writing_ = ends[1];
+  noted = 0;
+  noting_pipe = writing_;
+  handle_by(note);
+}
+
+StopRequest::~StopRequest() {
+  handle_by(end_now);
+  close(reading_);
+  close(writing_);
+}
+
+int StopRequest::signal() const {
+  return noted.load();
+}
+
+void StopRequest::wait_until(std::chrono::steady_clock::time_point time) const {
+  using std::chrono::nanoseconds;
+  const auto left = std::max(nanoseconds(0), nanoseconds(time - std::chrono::steady_clock::now()));
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(left);
+  const timespec at_most = {.tv_sec = seconds.count(), .tv_nsec = (left - seconds).count()};
+  pollfd pipe = {.fd = reading_, .events = POLLIN, .revents = 0};
+  ppoll(&pipe, 1, &at_most, nullptr);
 }
 
 }  // namespace glidar::app

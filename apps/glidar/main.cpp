@@ -25,11 +25,12 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   glidar render builtin:asteroid -o asteroid.pcd -o asteroid.png
   glidar view builtin:asteroid
+  glidar stream builtin:asteroid --model-dr 0,0.5,0 --port 5555
   glidar explain asteroid.pcd --index 30000
   glidar info builtin:torus
   glidar sensors
   glidar verify
-More: glidar render --help, and the same for view, explain, info, sensors and verify)";
+More: glidar render --help, and the same for view, stream, explain, info, sensors and verify)";
 
 using Commands = std::vector<std::pair<std::string, Command>>;
 
@@ -125,8 +126,9 @@ int run(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
   const Commands commands = {
       {"render", add_render(program, arguments)}, {"view", add_view(program)},
-      {"explain", add_explain(program)},          {"info", add_info(program)},
-      {"sensors", add_sensors(program)},          {"verify", add_verify(program)}};
+      {"stream", add_stream(program)},            {"explain", add_explain(program)},
+      {"info", add_info(program)},                {"sensors", add_sensors(program)},
+      {"verify", add_verify(program)}};
   return parse_and_run(program, commands, argc, argv);
 }
 

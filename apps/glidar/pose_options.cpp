@@ -159,7 +159,12 @@ Pose legacy_world_from_object(const Eigen::Quaterniond& model_q) {
 }
 
 Pose legacy_world_from_optical(const Eigen::Quaterniond& camera_q, double distance_m) {
-  return make_pose({0.0, 0.0, -distance_m}, camera_q.conjugate()) * legacy_from_optical();
+  return legacy_world_from_optical(camera_q, Eigen::Vector3d(0.0, 0.0, distance_m));
+}
+
+Pose legacy_world_from_optical(const Eigen::Quaterniond& camera_q,
+                               const Eigen::Vector3d& translation_m) {
+  return make_pose(-translation_m, camera_q.conjugate()) * legacy_from_optical();
 }
 
 void pose_model(const PoseFlags& flags, Scene& scene) {

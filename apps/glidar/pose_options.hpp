@@ -47,6 +47,9 @@ Pose legacy_from_optical();
 /// z forward.
 Pose legacy_world_from_object(const Eigen::Quaterniond& model_q);
 Pose legacy_world_from_optical(const Eigen::Quaterniond& camera_q, double distance_m);
+/// The same for any translation in place of (0, 0, D).
+Pose legacy_world_from_optical(const Eigen::Quaterniond& camera_q,
+                               const Eigen::Vector3d& translation_m);
 
 /// Applies --scale, --model-q and --model-r to the scene's instance; throws Error when one is given
 /// and the scene has several.

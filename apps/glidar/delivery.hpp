@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+#include <glidar/core/frame.hpp>
+
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+namespace glidar::app {
+
+/// A frame to be delivered.
+struct Shot {
+  Frame frame;
+  std::shared_ptr<const Beams> beams;
+  std::chrono::steady_clock::time_point due;  ///< when its pose was there
+};
+
+/// Hands frames to what delivers them in a thread of its own, so that the next one is measured
+/// meanwhile. Never more than two frames are under way: who measures waits for who delivers.
+class Delivery {
+ public:
+  /// `deliver` and, often while there is nothing to deliver, `idle` are called by that thread.
+  Delivery(std::function<void(const Shot&)> deliver, std::function<void()> idle);
+  /// Delivers what was handed over.
+  ~Delivery();
+  Delivery(const Delivery&) = delete;
+  Delivery& operator=(const Delivery&) = delete;
+
+  /// The shot to fill next; waits until it was delivered. Throws what `deliver` threw.
+  Shot& room();
+  /// The shot that room() gave is filled.
+  void hand_over();
+  /// Waits until all is delivered and ends the thread. Throws what `deliver` threw.
+  void finish();
+
+ private:
+  void run();
+  void join();
+  void rethrow();
+
+  std::function<void(const Shot&)> deliver_;
+  std::function<void()> idle_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::array<Shot, 2> shots_;
+  std::uint64_t filled_ = 0;
+  std::uint64_t delivered_ = 0;
+  bool is_ending_ = false;
+  std::exception_ptr failure_;
+  std::thread thread_;
+};
+
+}  // namespace glidar::app

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/pose_source.hpp>
+
+#include <apps/glidar/pose_options.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace glidar::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Clock::duration seconds(double s) {
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
+}
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// How often who waits looks whether it waits for too long.
+constexpr std::chrono::milliseconds kLook{100};
+
+}  // namespace
+
+MotionSource::MotionSource(const Pace& pace, double period_s, const StopRequest& stop)
+    : pace_(pace), period_s_(period_s), stop_(stop) {}
+
+std::optional<Moment> MotionSource::next(Motion& /*motion: as the frame's time has it*/) {
+  constexpr double kRounding = 1e-9;  // 0.3 s at 10 Hz are three frames
+  const double begins_s = static_cast<double>(number_) * period_s_;
+  if (number_ >= pace_.frames || begins_s >= pace_.duration_s - kRounding) {
+    ending_ = "all frames are done";
+    return std::nullopt;
+  }
+  wait_until_due();
+  if (stop_.is_asked()) return std::nullopt;
+  return Moment{.number = static_cast<std::uint32_t>(number_++), .stamp_ns = 0, .due = *due_};
+}
+
+void MotionSource::wait_until_due() {
+  const Clock::time_point now = Clock::now();
+  if (!due_ || pace_.rate_hz <= 0.0) {
+    due_ = now;
+    return;
+  }
+  const Clock::duration period = seconds(1.0 / pace_.rate_hz);
+  *due_ += period;
+  if (now > *due_ + period) {
+    ++late_;
+    due_ = now;
+  }
+  while (Clock::now() < *due_ && !stop_.is_asked()) stop_.wait_until(*due_);
+}
+
+Motion motion_of(const legacy::Placement& placement, const MovedScene& scene) {
+  Motion motion;
+  motion.world_from_sensor =
+      ConstantPose{legacy_world_from_optical(placement.sensor, placement.translation_m) *
+                   scene.optical_from_sensor};
+  const Pose world_from_object = legacy_world_from_object(placement.object);
+  for (const Pose& object_from_instance : scene.object_from_instance) {
+    motion.world_from_instance.emplace_back(ConstantPose{world_from_object * object_from_instance});
+  }
+  return motion;
+}
+
+SimulatorSource::SimulatorSource(legacy::PoseReceiver& receiver, const MovedScene& scene,
+                                 const Options& options, const StopRequest& stop)
+    : receiver_(receiver), scene_(scene), options_(options), stop_(stop) {}
+
+std::optional<Moment> SimulatorSource::next(Motion& motion) {
+  if (options_.pace.rate_hz > 0.0 && number_ > 0) {
+    const Clock::time_point due = last_ + seconds(1.0 / options_.pace.rate_hz);
+    while (Clock::now() < due && !stop_.is_asked()) stop_.wait_until(due);
+  }
+  const std::optional<legacy::Placement> placement = wait_for_pose();
+  if (!placement) return std::nullopt;
+  last_ = Clock::now();
+  if (!first_) first_ = last_;
+  motion = motion_of(*placement, scene_);
+  return Moment{.number = static_cast<std::uint32_t>(number_++),
+                .stamp_ns = static_cast<std::int64_t>(placement->timestamp),
+                .due = last_};
+}
+
+std::optional<legacy::Placement> SimulatorSource::wait_for_pose() {
+  while (!is_over()) {
+    if (std::optional<legacy::Placement> placement = receiver_.receive()) return placement;
+    if (receiver_.is_over()) continue;
+    link::wait_for({&receiver_.pose_socket()}, stop_.descriptor(), kLook);
+  }
+  return std::nullopt;
+}
+
+bool SimulatorSource::is_over() {
+  if (stop_.is_asked()) return true;
+  has_timed_out_ = options_.timeout_s && seconds_since(last_) > *options_.timeout_s;
+  if (receiver_.is_over()) {
+    ending_ = "the simulator ended";
+  } else if (number_ >= options_.pace.frames) {
+    ending_ = "all frames are done";
+  } else if (first_ && seconds_since(*first_) >= options_.pace.duration_s) {
+    ending_ = "the duration is over";
+  } else if (has_timed_out_) {
+    ending_ = fmt::format("no pose came for {} s", *options_.timeout_s);
+  }
+  return !ending_.empty();
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/advice.hpp>
+#include <apps/glidar/commands.hpp>
+#include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/stream_options.hpp>
+#include <apps/glidar/stream_run.hpp>
+#include <glidar/core/error.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <memory>
+#include <utility>
+
+namespace glidar::app {
+namespace {
+
+constexpr const char* kExamples = R"(Examples:
+  glidar stream builtin:asteroid --model-dr 0,0.5,0 --rate 10 --port 5555
+  glidar stream builtin:asteroid --model-dr 0,0.5,0 --rate max --port 5555 --subscribers 0 --stats s.json
+  glidar stream scene.yaml --trajectory poses.txt --duration 10 -o scan.pcd
+In the loop with a simulator that publishes poses at 5557 and shakes hands at 5558:
+  glidar stream satellite.obj --physics-port 5557 --hwm 100 --port 5555
+Watch from Python (python3-zmq); docs/link.md has the bytes of all messages:
+  s = zmq.Context().socket(zmq.SUB); s.connect("tcp://localhost:5555"); s.subscribe("c")
+
+Clouds are 'c', uint64 timestamp, then x y z intensity as float32 for every hit, x left, y up,
+z forward. Numbered files (-o) hold what `glidar render --duration` would write.
+A pose message places the scene and the sensor:
+  p_sensor = R(q_sensor) (R(q_object)^T p_object + t)
+Exit codes: 0 done, or the simulator ended; 2 bad input; 3 no pose for --pose-timeout;
+130 after Ctrl-C (SIGINT), 143 after SIGTERM; subscribers are told that it ends in any case.)";
+
+int run(const StreamFlags& given) {
+  check(given);
+  StreamFlags flags = given;
+  Console console(flags.render.quiet);
+  StreamRun stream(std::move(flags), console);
+  return stream.run();
+}
+
+}  // namespace
+
+Command add_stream(CLI::App& program) {
+  CLI::App& command =
+      *program.add_subcommand("stream", "Measure again and again: poses in, clouds out");
+  const auto flags = std::make_shared<StreamFlags>();
+  command.footer(output_names_text() + kExamples);
+  add_stream_flags(command, *flags);
+  return [flags] { return run(*flags); };
+}
+
+}  // namespace glidar::app

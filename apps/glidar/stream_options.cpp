@@ -1,0 +1,143 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/stream_options.hpp>
+
+#include <apps/glidar/numbers.hpp>
+#include <apps/glidar/option_kinds.hpp>
+#include <glidar/core/error.hpp>
+
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace glidar::app {
+namespace {
+
+constexpr WholeRange kPorts = {1, 65534};  // and the next one for handshakes
+constexpr std::int64_t kMostQueued = 1'000'000;
+
+[[noreturn]] void refuse(std::string where, std::string found, std::string remedy) {
+  throw Error({std::move(where), std::move(found), "", std::move(remedy)});
+}
+
+/// Gives an option of `render` another meaning: what it was is taken away.
+void remove(CLI::App& command, const char* name) {
+  command.remove_option(command.get_option(name));
+}
+
+void add_pace_flags(CLI::App& command, StreamFlags& flags) {
+  for (const char* name : {"--information", "--information-sigma", "--rate", "--duration"}) {
+    remove(command, name);
+  }
+  const std::string group = "Pace and end";
+  add_option(
+      command, {"--rate", "HZ", "Frames per second; 0 or max: as fast as it goes [sensor's]", group},
+      [&flags](std::string_view option, const std::string& text) {
+        flags.is_unpaced = text == "max" || parse_number(option, text) == 0.0;
+        flags.render.sensor.rate_hz.reset();
+        if (!flags.is_unpaced) flags.render.sensor.rate_hz = parse_number(option, text);
+      });
+  add_number(command, {"--duration", "S", "Ends after S seconds [none]", group},
+             flags.render.duration_s);
+  add_whole(command, {"--frames", "N", "Ends after N frames [none]", group},
+            {1, std::numeric_limits<std::uint32_t>::max()},
+            [&flags](std::int64_t n) { flags.frames = static_cast<std::uint64_t>(n); });
+  add_text(command, {"--stats", "FILE", "Writes counts and latencies as JSON at the end", group},
+           flags.stats);
+}
+
+void add_publishing_flags(CLI::App& command, StreamFlags& flags) {
+  const std::string group = "Clouds over ZeroMQ, as in 2015 (handshakes at the next port)";
+  add_whole(command, {"-p,--port", "P", "Port that publishes the clouds", group}, kPorts,
+            [&flags](std::int64_t n) { flags.port = static_cast<std::uint16_t>(n); });
+  add_text(command, {"--bind", "ADDRESS", "Address to listen at, * for all [127.0.0.1]", group},
+           flags.bind);
+  add_whole(command, {"--subscribers", "N", "Waits for the handshakes of N [1]", group},
+            {0, kMostQueued},
+            [&flags](std::int64_t n) { flags.subscribers = static_cast<std::uint64_t>(n); });
+  add_whole(command, {"--pub-rate", "K", "Publishes every K-th frame [1; in 2015: 15]", group},
+            {1, kMostQueued},
+            [&flags](std::int64_t n) { flags.publish_every = static_cast<std::uint32_t>(n); });
+  add_whole(command,
+            {"--pub-conflate", "0|1", "1: who is slow gets the newest cloud only [0]", group},
+            {0, 1}, [&flags](std::int64_t n) { flags.publishes_newest = n == 1; });
+  add_whole(command,
+            {"--pub-hwm", "N", "Clouds that wait for each subscriber, 0: any number [32]", group},
+            {0, kMostQueued},
+            [&flags](std::int64_t n) { flags.publish_queue = static_cast<int>(n); });
+}
+
+void add_pose_source_flags(CLI::App& command, StreamFlags& flags) {
+  const std::string group = "Poses over ZeroMQ, as in 2015 (handshake at the next port)";
+  add_whole(command, {"--physics-port", "P", "Port of a simulator that publishes poses", group},
+            kPorts,
+            [&flags](std::int64_t n) { flags.physics_port = static_cast<std::uint16_t>(n); });
+  add_text(command, {"--physics-host", "HOST", "Where it runs [127.0.0.1]", group},
+           flags.physics_host);
+  add_whole(command,
+            {"--hwm", "N", "Poses that wait, each gives a frame; 0: the newest only [0]", group},
+            {0, kMostQueued}, [&flags](std::int64_t n) { flags.pose_queue = static_cast<int>(n); });
+  add_number(command, {"--pose-timeout", "S", "Ends when no pose comes for S seconds [none]", group},
+             flags.pose_timeout_s);
+}
+
+void check_simulator(const StreamFlags& flags) {
+  const MotionFlags& motion = flags.render.motion;
+  if (!motion.trajectory.empty() || !motion.model_dr.empty() || !motion.camera_dr.empty()) {
+    refuse("--physics-port", "given beside --trajectory, --model-dr or --camera-dr",
+           "let either the simulator or the command line move things");
+  }
+  if (!flags.port || *flags.port / 2 == 0) return;
+  const int apart = int{*flags.port} - int{*flags.physics_port};
+  if (std::abs(apart) <= 1 && flags.physics_host == flags.bind) {
+    refuse("--port and --physics-port", "each takes the next port too, so they overlap",
+           "keep them two apart");
+  }
+}
+
+}  // namespace
+
+void add_stream_flags(CLI::App& command, StreamFlags& flags) {
+  add_render_flags(command, flags.render);
+  add_pace_flags(command, flags);
+  add_publishing_flags(command, flags);
+  add_pose_source_flags(command, flags);
+}
+
+void check(const StreamFlags& flags) {
+  const OutputFlags& files = flags.render.output;
+  if (!flags.port && files.paths.empty() && files.legacy_name.empty()) {
+    refuse("--port and --output", "neither is given, so no cloud would go anywhere",
+           "for example: glidar stream " + flags.render.input + " --port 5555");
+  }
+  if (flags.physics_port) check_simulator(flags);
+  constexpr double kLongest_s = 3.2e9;  // a century
+  const auto check_seconds = [](const char* option, const std::optional<double>& seconds) {
+    if (seconds) {
+      require(*seconds > 0.0 && *seconds <= kLongest_s, option, *seconds,
+              "seconds above 0, up to 3.2e9");
+    }
+  };
+  check_seconds("--duration", flags.render.duration_s);
+  check_seconds("--pose-timeout", flags.pose_timeout_s);
+  if (flags.pose_timeout_s && !flags.physics_port) {
+    refuse("--pose-timeout", "there is no --physics-port", "give --physics-port too");
+  }
+}
+
+legacy::CloudPublisherOptions publisher_options(const StreamFlags& flags) {
+  return {.endpoint = {flags.bind, *flags.port},
+          .keeps_newest = flags.publishes_newest,
+          .queue = flags.publish_queue,
+          .every = flags.publish_every,
+          .timestamps = flags.physics_port ? legacy::Timestamps::of_poses
+                                           : legacy::Timestamps::counted};
+}
+
+legacy::PoseReceiverOptions receiver_options(const StreamFlags& flags) {
+  return {.endpoint = {flags.physics_host, *flags.physics_port}, .queue = flags.pose_queue};
+}
+
+}  // namespace glidar::app

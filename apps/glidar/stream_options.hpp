@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/glidar/cli_fwd.hpp>
+#include <apps/glidar/render_options.hpp>
+#include <glidar/link/legacy/cloud_publisher.hpp>
+#include <glidar/link/legacy/pose_receiver.hpp>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace glidar::app {
+
+/// A stream as given on the command line.
+struct StreamFlags {
+  RenderFlags render;
+  bool is_unpaced = false;               ///< --rate max
+  std::optional<std::uint64_t> frames;   ///< empty: no such limit
+  std::string stats;                     ///< file; empty: none
+  std::string bind = "127.0.0.1";        ///< address to listen at
+  std::optional<std::uint16_t> port;     ///< of the clouds; empty: they are not published
+  std::uint64_t subscribers = 1;         ///< handshakes to wait for
+  std::uint32_t publish_every = 1;       ///< so many frames
+  bool publishes_newest = false;         ///< --pub-conflate
+  int publish_queue = 32;                ///< clouds for each subscriber
+  std::string physics_host = "127.0.0.1";
+  std::optional<std::uint16_t> physics_port;  ///< of the poses; empty: from the command line
+  int pose_queue = 0;                         ///< 0: the newest pose only
+  std::optional<double> pose_timeout_s;       ///< empty: waits for ever
+};
+
+/// Adds MODEL and all options of `stream`.
+void add_stream_flags(CLI::App& command, StreamFlags& flags);
+
+/// Throws Error when the flags contradict each other or say nothing that could be done.
+void check(const StreamFlags& flags);
+
+legacy::CloudPublisherOptions publisher_options(const StreamFlags& flags);
+legacy::PoseReceiverOptions receiver_options(const StreamFlags& flags);
+
+}  // namespace glidar::app

@@ -1,0 +1,263 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/stream_run.hpp>
+
+#include <apps/glidar/advice.hpp>
+#include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/stream_report.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/simulate.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <variant>
+
+namespace glidar::app {
+namespace {
+
+const std::vector<std::string> kPublishedColumns = {"xyz", "intensity"};
+
+/// How often the status line changes.
+constexpr std::chrono::milliseconds kShow{200};
+
+/// Names the option in an error of a socket.
+template <class Work>
+void naming(const char* options, const Work& work) {
+  try {
+    work();
+  } catch (const Error& error) {
+    ErrorParts parts = error.parts();
+    parts.where = std::string(options) + ", " + parts.where;
+    throw Error(parts);
+  }
+}
+
+HitFields both(HitFields a, const HitFields& b) {
+  a.normal |= b.normal;
+  a.shading_normal |= b.shading_normal;
+  a.incidence |= b.incidence;
+  a.barycentrics |= b.barycentrics;
+  a.colour |= b.colour;
+  a.object_point |= b.object_point;
+  a.poses |= b.poses;
+  return a;
+}
+
+/// Whether every frame has the same beams; those of scanners move on.
+bool has_fixed_beams(const Sensor& sensor) {
+  return std::holds_alternative<Pinhole>(sensor.optics);
+}
+
+}  // namespace
+
+StreamRun::StreamRun(StreamFlags flags, Console& console)
+    : flags_(std::move(flags)),
+      console_(console),
+      faults_(console.report()),
+      duration_s_(std::exchange(flags_.render.duration_s, std::nullopt)
+                      .value_or(std::numeric_limits<double>::infinity())) {
+  if (!flags_.stats.empty()) {
+    naming("--stats", [&] { stats_file_ = std::make_unique<AtomicFile>(flags_.stats); });
+  }
+  if (flags_.port) {
+    naming("--bind, --port", [&] {
+      publisher_ =
+          std::make_unique<legacy::CloudPublisher>(context_, publisher_options(flags_), faults_);
+    });
+  }
+  open_session();
+  if (flags_.physics_port) {
+    prepare_poses();
+    naming("--physics-host, --physics-port", [&] {
+      receiver_ =
+          std::make_unique<legacy::PoseReceiver>(context_, receiver_options(flags_), faults_);
+    });
+  }
+}
+
+void StreamRun::open_session() {
+  const Beams none;
+  std::vector<Output> outputs;
+  if (writes_files()) outputs = plan(numbered(flags_.render.output, 0), none);
+  open(
+      flags_.render, [&] { protect_files(session_.files, outputs); }, console_, session_);
+  beams_ = std::make_shared<const Beams>(session_.beams);
+  fields_ = fields_for(outputs);
+  if (publisher_) fields_ = both(fields_, glidar::fields_for(kPublishedColumns));
+}
+
+/// The scene as it stands becomes the object that the simulator moves.
+void StreamRun::prepare_poses() {
+  moved_scene_.object_from_instance.clear();
+  for (const Trajectory& trajectory : session_.motion.world_from_instance) {
+    if (!std::holds_alternative<ConstantPose>(trajectory)) {
+      throw Error({.where = "--physics-port",
+                   .found = "the scene file moves its objects",
+                   .allowed = "",
+                   .remedy = "let either the simulator or the scene file move things"});
+    }
+    moved_scene_.object_from_instance.push_back(std::get<ConstantPose>(trajectory).pose);
+  }
+  if (!looks_along_z(*beams_)) moved_scene_.optical_from_sensor = optical_from_body();
+  if (!flags_.render.pose.model_q.empty() || !flags_.render.pose.model_r.empty()) {
+    // as in 2015, where the first message replaced it
+    for (Pose& pose : moved_scene_.object_from_instance) pose = Pose::Identity();
+  }
+  if (sensor_pose_given(flags_.render.pose)) {
+    console_.info("the simulator says where the sensor is; the options for that do not count");
+  }
+}
+
+std::unique_ptr<PoseSource> StreamRun::make_source(const StopRequest& stop) {
+  Pace pace = {.frames = flags_.frames.value_or(std::numeric_limits<std::uint64_t>::max()),
+               .duration_s = duration_s_};
+  if (receiver_) {
+    pace.rate_hz = flags_.render.sensor.rate_hz.value_or(0.0);
+    return std::make_unique<SimulatorSource>(
+        *receiver_, moved_scene_,
+        SimulatorSource::Options{.pace = pace, .timeout_s = flags_.pose_timeout_s}, stop);
+  }
+  const double rate_hz = session_.sensor.rate_hz;
+  if (!flags_.is_unpaced) pace.rate_hz = rate_hz;
+  return std::make_unique<MotionSource>(pace, 1.0 / rate_hz, stop);
+}
+
+int StreamRun::run() {
+  const StopRequest stop;
+  try {
+    const std::unique_ptr<PoseSource> source = make_source(stop);
+    if (wait_for_partners(stop)) stream(*source, stop);
+    if (const auto* motion = dynamic_cast<const MotionSource*>(source.get())) {
+      late_ = motion->late();
+    }
+    const auto* simulator = dynamic_cast<const SimulatorSource*>(source.get());
+    exit_code_ = simulator != nullptr && simulator->has_timed_out() ? kNoPoses : kDone;
+    constexpr int kSignalled = 128;  // as shells have it
+    if (stop.is_asked()) exit_code_ = kSignalled + stop.signal();
+    finish(stop.is_asked() ? fmt::format("signal {}", stop.signal()) : source->ending());
+  } catch (const std::exception& error) {
+    finish(error.what());
+    throw;
+  }
+  return exit_code_;
+}
+
+bool StreamRun::has_partners() {
+  if (publisher_) publisher_->serve();
+  const bool has_simulator = !receiver_ || receiver_->is_ready();
+  return has_simulator && (!publisher_ || publisher_->counts().handshakes >= flags_.subscribers);
+}
+
+bool StreamRun::wait_for_partners(const StopRequest& stop) {
+  bool is_told = false;
+  while (!has_partners() && !stop.is_asked()) {
+    if (!std::exchange(is_told, true)) console_.info(waiting_text(flags_));
+    link::wait_for({publisher_ ? &publisher_->handshake_socket() : nullptr,
+                    receiver_ ? &receiver_->handshake_socket() : nullptr},
+                   stop.descriptor(), kShow);
+  }
+  return !stop.is_asked();
+}
+
+void StreamRun::stream(PoseSource& source, const StopRequest& stop) {
+  stats_ = {};
+  Delivery delivery([this](const Shot& shot) { deliver(shot); }, [this] { look_after_peers(); });
+  while (!stop.is_asked()) {
+    const std::optional<Moment> moment = source.next(session_.motion);
+    if (!moment) break;
+    if (!is_wanted(moment->number)) continue;
+    measure(*moment, delivery.room());
+    delivery.hand_over();
+  }
+  delivery.finish();
+}
+
+void StreamRun::measure(const Moment& moment, Shot& shot) {
+  const ScanWindow window = scan_window(session_.sensor, moment.number);
+  if (moment.number > 0 && !has_fixed_beams(session_.sensor)) {
+    beams_ = std::make_shared<const Beams>(make_beams(session_.sensor, window));
+  }
+  shot.beams = beams_;
+  shot.due = moment.due;
+  shot.frame.number = moment.number;
+  shot.frame.stamp_ns = receiver_ ? moment.stamp_ns : window.start_ns;
+  shot.frame.seed = flags_.render.seed;
+  Setup setup{.scene = session_.scene,
+              .sensor = session_.sensor,
+              .beams = *beams_,
+              .motion = session_.motion,
+              .renderer = *session_.renderer};
+  if (session_.paper) setup.paper.emplace(PaperTarget{.camera = *session_.paper});
+  simulate(setup, fields_, shot.frame);
+  if (measured_++ > 0) return;
+  tell(view_advice({session_.scene, session_.sensor, *beams_, shot.frame}), console_);
+}
+
+bool StreamRun::is_wanted(std::uint32_t number) const {
+  return writes_files() || (publisher_ && publisher_->wants(number));
+}
+
+bool StreamRun::writes_files() const {
+  const OutputFlags& files = flags_.render.output;
+  return !files.paths.empty() || !files.legacy_name.empty();
+}
+
+std::vector<Output> StreamRun::plan(const OutputFlags& files, const Beams& beams) {
+  return plan_outputs(files, flags_.render.input,
+                      {.scene = session_.scene,
+                       .sensor = session_.sensor,
+                       .beams = beams,
+                       .renderer = renderer_name(flags_.render)},
+                      console_.report());
+}
+
+void StreamRun::deliver(const Shot& shot) {
+  if (publisher_ && publisher_->wants(shot.frame.number)) publish(shot);
+  if (writes_files()) write_files(shot);
+  stats_.note(shot.due);
+}
+
+void StreamRun::publish(const Shot& shot) {
+  make_point_cloud(shot.frame, *shot.beams, session_.scene,
+                   cloud_frame("legacy", *shot.beams, shot.frame.world_from_sensor),
+                   kPublishedColumns, cloud_);
+  publisher_->write(cloud_, shot.frame);
+}
+
+void StreamRun::write_files(const Shot& shot) {
+  const std::vector<Output> outputs =
+      plan(numbered(flags_.render.output, shot.frame.number), *shot.beams);
+  protect_files(session_.files, outputs);
+  write_outputs(outputs, shot.frame, *shot.beams, session_.scene);
+}
+
+void StreamRun::look_after_peers() {
+  if (publisher_) publisher_->serve();
+  const auto now = StreamStats::Clock::now();
+  if (now - shown_ < kShow) return;
+  shown_ = now;
+  console_.status(status_text(stats_) + (publisher_ ? publishing_text(publisher_->counts()) : ""));
+}
+
+void StreamRun::finish(const std::string& ending) {
+  console_.status("");
+  if (publisher_) publisher_->shut_down();
+  faults_.flush();
+  StreamSummary summary{.stats = stats_,
+                        .ending = ending,
+                        .measured = measured_,
+                        .late = late_,
+                        .faults = faults_.counts()};
+  if (publisher_) summary.clouds = publisher_->counts();
+  if (receiver_) summary.poses = receiver_->counts();
+  if (stats_file_) {
+    stats_file_->write(json_text(summary));
+    stats_file_->commit();
+  }
+  if (!flags_.render.quiet) fmt::print("{}", summary_text(summary));
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/glidar/console.hpp>
+#include <apps/glidar/delivery.hpp>
+#include <apps/glidar/interrupt.hpp>
+#include <apps/glidar/pose_source.hpp>
+#include <apps/glidar/session.hpp>
+#include <apps/glidar/stream_options.hpp>
+#include <apps/glidar/stream_stats.hpp>
+#include <glidar/core/point_cloud.hpp>
+#include <glidar/io/atomic_file.hpp>
+#include <glidar/link/fault_log.hpp>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glidar::app {
+
+/// `glidar stream`: source of poses -> simulate -> sinks.
+class StreamRun {
+ public:
+  /// Listens at its ports, then loads what the flags name. Throws Error.
+  StreamRun(StreamFlags flags, Console& console);
+  /// Until it is over; returns the exit code. Subscribers are told and the statistics are written
+  /// in any case, also when it throws.
+  int run();
+
+ private:
+  void open_session();
+  void prepare_poses();
+  [[nodiscard]] std::unique_ptr<PoseSource> make_source(const StopRequest& stop);
+  bool wait_for_partners(const StopRequest& stop);
+  [[nodiscard]] bool has_partners();
+  void stream(PoseSource& source, const StopRequest& stop);
+  void measure(const Moment& moment, Shot& shot);
+  [[nodiscard]] bool is_wanted(std::uint32_t number) const;
+  [[nodiscard]] bool writes_files() const;
+  [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const Beams& beams);
+  void deliver(const Shot& shot);
+  void write_files(const Shot& shot);
+  void publish(const Shot& shot);
+  void look_after_peers();
+  void finish(const std::string& ending);
+
+  StreamFlags flags_;
+  Console& console_;
+  link::FaultLog faults_;
+  std::unique_ptr<AtomicFile> stats_file_;
+  link::Context context_;
+  std::unique_ptr<legacy::CloudPublisher> publisher_;
+  std::unique_ptr<legacy::PoseReceiver> receiver_;
+  double duration_s_ = 0.0;
+  Session session_;
+  std::shared_ptr<const Beams> beams_;
+  MovedScene moved_scene_;
+  HitFields fields_;
+  StreamStats stats_;
+  StreamStats::Clock::time_point shown_;
+  PointCloud cloud_;
+  std::uint64_t measured_ = 0;
+  std::uint64_t late_ = 0;
+  int exit_code_ = 0;
+};
+
+}  // namespace glidar::app

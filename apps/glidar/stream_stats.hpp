@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace glidar::app {
+
+/// How long things took, in bins of 2 %: little memory, however many there are.
+class DurationHistogram {
+ public:
+  void add(double seconds);
+  [[nodiscard]] std::uint64_t count() const { return count_; }
+  /// What the given part of them did not exceed, to 2 %; 0 without any.
+  [[nodiscard]] double quantile_s(double part) const;
+  [[nodiscard]] double longest_s() const { return longest_s_; }
+
+ private:
+  static constexpr double kShortest_s = 1e-6;
+  static constexpr double kBinsPerFactorE = 50.0;
+  static constexpr std::size_t kBins = 1100;  // to an hour
+
+  std::array<std::uint64_t, kBins> bins_{};
+  std::uint64_t count_ = 0;
+  double longest_s_ = 0.0;
+};
+
+/// What a stream has delivered; used by the thread that delivers.
+struct StreamStats {
+  using Clock = std::chrono::steady_clock;
+
+  Clock::time_point start = Clock::now();
+  DurationHistogram latency;  ///< from a frame's pose until its cloud was handed on
+
+  /// Notes a frame that was delivered.
+  void note(Clock::time_point due);
+  [[nodiscard]] double seconds() const;
+  /// Frames a second over the last second or so, else over all.
+  [[nodiscard]] double recent_rate_hz() const;
+
+ private:
+  Clock::time_point window_start_ = start;
+  std::uint64_t window_count_ = 0;
+  double recent_rate_hz_ = 0.0;
+};
+
+/// "25.0 Hz, latency 3.1 ms (99 %: 5.0 ms), 120 frames".
+std::string status_text(const StreamStats& stats);
+
+}  // namespace glidar::app

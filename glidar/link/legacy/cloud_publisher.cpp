@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/legacy/cloud_publisher.hpp>
+
+#include <glidar/link/legacy/legacy_codec.hpp>
+
+#include <chrono>
+#include <string>
+#include <utility>
+
+namespace glidar::legacy {
+namespace {
+
+using std::chrono_literals::operator""ms;
+
+/// For the last messages, when a subscriber is slow.
+constexpr auto kPatience = 1000ms;
+constexpr std::int64_t kLargestHandshakeBytes = 1024;
+
+link::SocketOptions cloud_socket(const CloudPublisherOptions& options) {
+  return {.kind = link::SocketKind::publish,
+          .send_queue = options.queue,
+          .keeps_newest = options.keeps_newest,
+          .linger = kPatience};
+}
+
+link::SocketOptions handshake_socket_options() {
+  return {.kind = link::SocketKind::reply,
+          .largest_message_bytes = kLargestHandshakeBytes,
+          .linger = kPatience};
+}
+
+}  // namespace
+
+CloudPublisher::CloudPublisher(link::Context& context, const CloudPublisherOptions& options,
+                               link::FaultLog& faults)
+    : options_(options),
+      faults_(faults),
+      clouds_(context, cloud_socket(options)),
+      handshakes_(context, handshake_socket_options()) {
+  clouds_.bind(options.endpoint);
+  handshakes_.bind({options.endpoint.host, static_cast<std::uint16_t>(options.endpoint.port + 1)});
+}
+
+void CloudPublisher::write(const PointCloud& cloud, const Frame& frame) {
+  if (!wants(frame.number)) return;
+  const std::uint64_t timestamp = timestamp_of(frame);
+  if (std::exchange(last_timestamp_, timestamp) == timestamp) {
+    ++counts_.repeated;
+    return;
+  }
+  link::Payload payload(pool_, cloud_bytes(cloud.size()));
+  const std::size_t size = encode_cloud(cloud, timestamp, payload.bytes());
+  payload.shrink(size);
+  ++counts_.sent;
+  counts_.bytes += size;
+  counts_.points += (size - cloud_bytes(0)) / sizeof(CloudPoint);
+  if (clouds_.publish(std::move(payload))) return;
+  ++counts_.missed;
+  faults_.tell("clouds missed", "a subscriber reads more slowly than clouds come");
+}
+
+void CloudPublisher::serve() {
+  answer_handshakes();
+  notice_peers();
+}
+
+void CloudPublisher::shut_down() {
+  // the cloud's topic last: with keeps_newest only the last message is sure to arrive
+  for (const char topic : {'p', 'P', kCloudTopic}) {
+    if (clouds_.publish(encode_shutdown(topic), kPatience)) continue;
+    faults_.tell("shutdown missed", "a subscriber does not read; it may wait for more clouds");
+  }
+}
+
+std::uint64_t CloudPublisher::timestamp_of(const Frame& frame) const {
+  if (options_.timestamps == Timestamps::of_poses) return static_cast<std::uint64_t>(frame.stamp_ns);
+  return std::uint64_t{frame.number} / options_.every + 1;
+}
+
+void CloudPublisher::answer_handshakes() {
+  while (const std::optional<link::Message> request = handshakes_.receive()) {
+    if (!request->is_whole()) continue;  // a reply is due after the last part
+    if (!request->bytes().empty()) {
+      faults_.tell("odd handshake",
+                   "a subscriber sent " + std::to_string(request->bytes().size()) +
+                       " bytes where 2015's protocol has none; answered all the same");
+    }
+    handshakes_.send({});
+    ++counts_.handshakes;
+  }
+}
+
+void CloudPublisher::notice_peers() {
+  for (const link::PeerEvent event : clouds_.events()) {
+    if (event == link::PeerEvent::joined) ++counts_.connected;
+    if (event == link::PeerEvent::left && counts_.connected > 0) --counts_.connected;
+    if (event == link::PeerEvent::refused) {
+      faults_.tell("stranger refused", "something that is no subscriber came to the clouds' port");
+    }
+  }
+  for (const link::PeerEvent event : handshakes_.events()) {
+    if (event != link::PeerEvent::refused) continue;
+    faults_.tell("stranger refused", "something else than a subscriber came to the handshakes' port");
+  }
+}
+
+}  // namespace glidar::legacy

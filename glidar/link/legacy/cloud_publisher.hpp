@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/cloud_sink.hpp>
+#include <glidar/link/fault_log.hpp>
+#include <glidar/link/socket.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+
+namespace glidar::legacy {
+
+/// What a cloud's timestamp is: that of the pose it was made for, which is the frame's stamp_ns
+/// whatever its unit, or the number of the frame, from 1, as where no simulator gives one.
+enum class Timestamps : std::uint8_t { of_poses, counted };
+
+struct CloudPublisherOptions {
+  link::Endpoint endpoint;    ///< of the clouds; handshakes are at the next port
+  bool keeps_newest = false;  ///< slow subscribers get the newest cloud only
+  int queue = 32;             ///< clouds that wait for each subscriber; 0: any number
+  std::uint32_t every = 1;    ///< publishes only every so many frames, from the first on
+  Timestamps timestamps = Timestamps::counted;
+};
+
+/// Publishes clouds to any number of subscribers, by the protocol of 2015. None of them can hold it
+/// up: who is slow misses clouds, and those are counted. Used by one thread at a time.
+class CloudPublisher final : public CloudSink {
+ public:
+  /// Listens at both ports. Throws Error when it cannot. The context and the log must outlive it.
+  CloudPublisher(link::Context& context, const CloudPublisherOptions& options,
+                 link::FaultLog& faults);
+
+  /// Sends a cloud with the columns xyz (x left, y up, z forward) and intensity, once for each
+  /// timestamp.
+  void write(const PointCloud& cloud, const Frame& frame) override;
+  /// Whether write() would send a frame of this number.
+  [[nodiscard]] bool wants(std::uint32_t frame) const { return frame % options_.every == 0; }
+
+  /// Answers who asks at the second port and notices who came and went.
+  void serve();
+  /// Tells subscribers that it is over; waits a while for those whose queue is full.
+  void shut_down();
+
+  [[nodiscard]] const link::Socket& handshake_socket() const { return handshakes_; }
+
+  struct Counts {
+    std::uint64_t handshakes = 0;
+    std::uint64_t connected = 0;  ///< subscribers now
+    std::uint64_t sent = 0;
+    std::uint64_t missed = 0;  ///< of the sent ones, by one subscriber or more
+    std::uint64_t repeated = 0;  ///< not sent: of the timestamp before
+    std::uint64_t points = 0;
+    std::uint64_t bytes = 0;
+  };
+  [[nodiscard]] const Counts& counts() const { return counts_; }
+
+ private:
+  [[nodiscard]] std::uint64_t timestamp_of(const Frame& frame) const;
+  void answer_handshakes();
+  void notice_peers();
+
+  CloudPublisherOptions options_;
+  link::FaultLog& faults_;
+  link::Socket clouds_;
+  link::Socket handshakes_;
+  std::shared_ptr<link::PayloadPool> pool_ = std::make_shared<link::PayloadPool>();
+  std::optional<std::uint64_t> last_timestamp_;
+  Counts counts_;
+};
+
+}  // namespace glidar::legacy

@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/legacy/pose_receiver.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+namespace glidar::legacy {
+namespace {
+
+/// Poses are small; beyond, a peer is cut off. What is below is read and refused by its size.
+constexpr std::int64_t kLargestMessageBytes = std::int64_t{16} << 20;
+
+link::SocketOptions pose_socket_options(const PoseReceiverOptions& options) {
+  return {.kind = link::SocketKind::subscribe,
+          .receive_queue = std::max(options.queue, 1),
+          .keeps_newest = options.queue == 0,
+          .largest_message_bytes = kLargestMessageBytes};
+}
+
+link::Endpoint next_port(link::Endpoint endpoint) {
+  ++endpoint.port;
+  return endpoint;
+}
+
+/// So that a flood of messages that are no poses does not keep the caller from anything else.
+constexpr int kMostAtOnce = 256;
+
+constexpr link::SocketOptions kHandshakeSocket = {.kind = link::SocketKind::request};
+
+}  // namespace
+
+PoseReceiver::PoseReceiver(link::Context& context, const PoseReceiverOptions& options,
+                           link::FaultLog& faults)
+    : context_(context),
+      options_(options),
+      faults_(faults),
+      poses_(context, pose_socket_options(options)),
+      handshake_(context, kHandshakeSocket) {
+  poses_.subscribe(std::string_view(&kPlacementTopic, 1));
+  poses_.connect(options.endpoint);
+  ask();
+}
+
+bool PoseReceiver::is_ready() {
+  if (is_ready_) return true;
+  is_ready_ = handshake_.receive().has_value();
+  const std::vector<link::PeerEvent> events = handshake_.events();
+  if (is_ready_) return true;
+  if (std::find(events.begin(), events.end(), link::PeerEvent::left) == events.end()) return false;
+  faults_.tell("simulator lost", "it went away before it answered the handshake; asking again");
+  ask_again();
+  return false;
+}
+
+std::optional<Placement> PoseReceiver::receive() {
+  notice_simulator();
+  for (int i = 0; i < kMostAtOnce && !is_over_; ++i) {
+    const std::optional<link::Message> message = poses_.receive();
+    if (!message) return std::nullopt;
+    ++counts_.received;
+    if (std::optional<Placement> placement = read(*message)) return placement;
+  }
+  return std::nullopt;
+}
+
+std::optional<Placement> PoseReceiver::read(const link::Message& message) {
+  if (!message.is_whole()) {
+    refuse("it is one of several parts; a pose is a single one");
+    return std::nullopt;
+  }
+  if (is_shutdown(message.bytes())) {
+    is_over_ = true;
+    return std::nullopt;
+  }
+  try {
+    Placement placement = decode_placement(message.bytes());
+    if (is_new(placement.timestamp)) return placement;
+  } catch (const Error& error) {
+    refuse(error.what());
+  }
+  return std::nullopt;
+}
+
+void PoseReceiver::refuse(const std::string& why) {
+  ++counts_.refused;
+  faults_.tell("pose refused", why);
+}
+
+/// A simulator may start its clock anew, so that an earlier time is a fault but no reason to stop.
+bool PoseReceiver::is_new(std::uint64_t timestamp) {
+  const std::optional<std::uint64_t> before = std::exchange(last_timestamp_, timestamp);
+  if (before == timestamp) {
+    ++counts_.repeated;
+    return false;
+  }
+  if (before && timestamp < *before) {
+    ++counts_.backwards;
+    faults_.tell("time went back", "from timestamp " + std::to_string(*before) + " to " +
+                                       std::to_string(timestamp) +
+                                       "; the cloud is made as for any other");
+  }
+  return true;
+}
+
+void PoseReceiver::ask() {
+  handshake_.connect(next_port(options_.endpoint));
+  handshake_.send({});
+}
+
+void PoseReceiver::ask_again() {
+  handshake_ = link::Socket(context_, kHandshakeSocket);
+  ask();
+}
+
+/// One that comes back waits for a handshake as it did at first.
+void PoseReceiver::notice_simulator() {
+  for (const link::PeerEvent event : poses_.events()) {
+    if (event != link::PeerEvent::left) continue;
+    faults_.tell("simulator lost",
+                 "its connection ended, or it sent more than 16 MiB at once; waiting for it");
+    ask_again();
+  }
+}
+
+}  // namespace glidar::legacy

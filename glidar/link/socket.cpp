@@ -1,0 +1,240 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/socket.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <zmq.hpp>
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+namespace glidar::link {
+namespace {
+
+zmq::socket_type type_of(SocketKind kind) {
+  switch (kind) {
+    case SocketKind::subscribe:
+      return zmq::socket_type::sub;
+    case SocketKind::request:
+      return zmq::socket_type::req;
+    case SocketKind::reply:
+      return zmq::socket_type::rep;
+    case SocketKind::publish:
+      break;
+  }
+  return zmq::socket_type::pub;
+}
+
+[[noreturn]] void fail(const Endpoint& endpoint, const zmq::error_t& error, const char* doing) {
+  std::string remedy;
+  if (error.num() == EADDRINUSE) {
+    remedy = "another program has this port: end it, or choose another port";
+  } else if (error.num() == EADDRNOTAVAIL || error.num() == ENODEV) {
+    remedy = "give an address of this machine, such as 127.0.0.1, or * for all";
+  } else if (error.num() == EINVAL) {
+    remedy = "give an IPv4 address or a host's name";
+  } else if (error.num() == EACCES) {
+    remedy = "choose a port from 1024 on";
+  }
+  throw Error({.where = text_of(endpoint),
+               .found = std::string("cannot ") + doing + ": " + error.what(),
+               .allowed = "",
+               .remedy = remedy});
+}
+
+std::chrono::milliseconds::rep millis(std::chrono::milliseconds time) {
+  return time.count();
+}
+
+/// Gives a payload back to its pool once ZeroMQ has no more use for it, in ZeroMQ's own thread.
+void release(void* /*bytes*/, void* payload) {
+  delete static_cast<Payload*>(payload);
+}
+
+/// The result of an action that a signal may break off; it is then done again.
+template <class Action>
+auto unbroken(const Action& action) {
+  for (;;) {
+    try {
+      return action();
+    } catch (const zmq::error_t& error) {
+      if (error.num() != EINTR) throw;
+    }
+  }
+}
+
+/// A name for the monitor of a socket, which nobody else of the context has.
+std::string monitor_name(const void* socket) {
+  return "inproc://monitor-" + std::to_string(reinterpret_cast<std::uintptr_t>(socket));
+}
+
+}  // namespace
+
+struct Context::Impl {
+  zmq::context_t context{1};
+};
+
+Context::Context() : impl_(std::make_unique<Impl>()) {}
+Context::~Context() = default;
+
+std::string text_of(const Endpoint& endpoint) {
+  return "tcp://" + endpoint.host + ":" + std::to_string(endpoint.port);
+}
+
+struct Message::Impl {
+  zmq::message_t message;
+  bool is_part = false;
+};
+
+Message::Message() : impl_(std::make_unique<Impl>()) {}
+Message::Message(Message&&) noexcept = default;
+Message& Message::operator=(Message&&) noexcept = default;
+Message::~Message() = default;
+
+std::span<const std::byte> Message::bytes() const {
+  return {static_cast<const std::byte*>(impl_->message.data()), impl_->message.size()};
+}
+
+bool Message::is_whole() const {
+  return !impl_->is_part;
+}
+
+struct Socket::Impl {
+  zmq::socket_t socket;
+  zmq::socket_t monitor;  ///< tells of connections
+  bool follows_part = false;
+
+  Impl(zmq::context_t& context, SocketKind kind)
+      : socket(context, type_of(kind)), monitor(context, zmq::socket_type::pair) {}
+  Impl(const Impl&) = delete;
+  Impl& operator=(const Impl&) = delete;
+  /// The monitor ends first: it is told by the socket.
+  ~Impl() { zmq_socket_monitor(socket.handle(), nullptr, 0); }
+
+  void watch() {
+    constexpr int kEvents = ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED |
+                            ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL |
+                            ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL;
+    const std::string name = monitor_name(this);
+    if (zmq_socket_monitor(socket.handle(), name.c_str(), kEvents) != 0) throw zmq::error_t();
+    monitor.set(zmq::sockopt::linger, 0);
+    monitor.connect(name);
+  }
+};
+
+Socket::Socket(Context& context, const SocketOptions& options)
+    : impl_(std::make_unique<Impl>(context.impl_->context, options.kind)) {
+  zmq::socket_t& socket = impl_->socket;
+  socket.set(zmq::sockopt::linger, static_cast<int>(millis(options.linger)));
+  socket.set(zmq::sockopt::sndhwm, options.send_queue);
+  socket.set(zmq::sockopt::rcvhwm, options.receive_queue);
+  socket.set(zmq::sockopt::maxmsgsize, options.largest_message_bytes);
+  if (options.keeps_newest) socket.set(zmq::sockopt::conflate, true);
+  impl_->watch();
+}
+
+Socket::~Socket() = default;
+Socket::Socket(Socket&&) noexcept = default;
+Socket& Socket::operator=(Socket&&) noexcept = default;
+
+void Socket::bind(const Endpoint& endpoint) {
+  try {
+    impl_->socket.bind(text_of(endpoint));
+  } catch (const zmq::error_t& error) {
+    fail(endpoint, error, "listen there");
+  }
+}
+
+void Socket::connect(const Endpoint& endpoint) {
+  try {
+    impl_->socket.connect(text_of(endpoint));
+  } catch (const zmq::error_t& error) {
+    fail(endpoint, error, "connect to it");
+  }
+}
+
+void Socket::subscribe(std::string_view topic) {
+  impl_->socket.set(zmq::sockopt::subscribe, std::string(topic));
+}
+
+std::optional<Message> Socket::receive() {
+  zmq::message_t received;
+  const auto take = [&] { return impl_->socket.recv(received, zmq::recv_flags::dontwait); };
+  if (!unbroken(take)) return std::nullopt;
+  Message message;
+  const bool follows = std::exchange(impl_->follows_part, received.more());
+  message.impl_->is_part = follows || received.more();
+  message.impl_->message = std::move(received);
+  return message;
+}
+
+bool Socket::send(std::span<const std::byte> bytes) {
+  zmq::message_t message(bytes.data(), bytes.size());
+  const auto give = [&] { return impl_->socket.send(message, zmq::send_flags::dontwait); };
+  return unbroken(give).has_value();
+}
+
+namespace {
+
+/// First only if all queues have room, so that a full one is noticed; then to those that have.
+bool publish_now(zmq::socket_t& socket, zmq::message_t& message, zmq::send_flags flags) {
+  socket.set(zmq::sockopt::xpub_nodrop, true);
+  if (unbroken([&] { return socket.send(message, flags); })) return true;
+  socket.set(zmq::sockopt::xpub_nodrop, false);
+  (void)unbroken([&] { return socket.send(message, zmq::send_flags::dontwait); });
+  return false;
+}
+
+}  // namespace
+
+bool Socket::publish(Payload payload) {
+  auto owned = std::make_unique<Payload>(std::move(payload));
+  const std::span<std::byte> bytes = owned->bytes();
+  zmq::message_t message(bytes.data(), bytes.size(), release, owned.get());
+  owned.release();  // NOLINT(bugprone-unused-return-value): the message has it
+  return publish_now(impl_->socket, message, zmq::send_flags::dontwait);
+}
+
+bool Socket::publish(std::span<const std::byte> bytes, std::chrono::milliseconds patience) {
+  zmq::message_t message(bytes.data(), bytes.size());
+  impl_->socket.set(zmq::sockopt::sndtimeo, static_cast<int>(millis(patience)));
+  return publish_now(impl_->socket, message, zmq::send_flags::none);
+}
+
+std::vector<PeerEvent> Socket::events() {
+  std::vector<PeerEvent> found;
+  zmq::message_t head;
+  zmq::message_t address;
+  while (impl_->monitor.recv(head, zmq::recv_flags::dontwait)) {
+    if (head.more()) (void)impl_->monitor.recv(address, zmq::recv_flags::none);
+    std::uint16_t event = 0;
+    if (head.size() < sizeof(event)) continue;
+    std::memcpy(&event, head.data(), sizeof(event));
+    if (event == ZMQ_EVENT_HANDSHAKE_SUCCEEDED) {
+      found.push_back(PeerEvent::joined);
+    } else if (event == ZMQ_EVENT_DISCONNECTED) {
+      found.push_back(PeerEvent::left);
+    } else {
+      found.push_back(PeerEvent::refused);
+    }
+  }
+  return found;
+}
+
+void wait_for(std::initializer_list<const Socket*> sockets, int descriptor,
+              std::chrono::milliseconds at_most) {
+  std::vector<zmq::pollitem_t> items;
+  for (const Socket* socket : sockets) {
+    if (socket != nullptr) items.push_back({socket->impl_->socket.handle(), 0, ZMQ_POLLIN, 0});
+  }
+  if (descriptor >= 0) items.push_back({nullptr, descriptor, ZMQ_POLLIN, 0});
+  try {
+    zmq::poll(items, at_most);
+  } catch (const zmq::error_t& error) {
+    if (error.num() != EINTR) throw;
+  }
+}
+
+}  // namespace glidar::link

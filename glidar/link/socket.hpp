@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/link/payload.hpp>
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// A thin layer over ZeroMQ that all protocols share: what they need of it, with errors as Error.
+namespace glidar::link {
+
+/// ZeroMQ's thread for input and output; must outlive its sockets. Destroying it waits until what
+/// was sent is gone, at most the sockets' `linger`.
+class Context {
+ public:
+  Context();
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+ private:
+  friend class Socket;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A place in the network: an IPv4 address, a name, or "*" for all of this machine.
+struct Endpoint {
+  std::string host;
+  std::uint16_t port = 0;
+};
+std::string text_of(const Endpoint& endpoint);
+
+enum class SocketKind : std::uint8_t { publish, subscribe, request, reply };
+
+struct SocketOptions {
+  SocketKind kind = SocketKind::publish;
+  int send_queue = 1000;     ///< messages that wait for each peer; 0: any number
+  int receive_queue = 1000;  ///< likewise
+  bool keeps_newest = false;  ///< only the last message waits, whatever the queues
+  /// A peer that sends more is cut off before the memory is taken.
+  std::int64_t largest_message_bytes = std::int64_t{1} << 20;
+  std::chrono::milliseconds linger{0};  ///< for what is unsent when it is closed
+};
+
+/// What happened to a socket's connections.
+enum class PeerEvent : std::uint8_t { joined, left, refused };
+
+/// Bytes of a message that was received; valid until it is destroyed.
+class Message {
+ public:
+  Message();
+  Message(Message&&) noexcept;
+  Message& operator=(Message&&) noexcept;
+  ~Message();
+  [[nodiscard]] std::span<const std::byte> bytes() const;
+  /// False when it was only one of several parts; the parts after it come as the next ones.
+  [[nodiscard]] bool is_whole() const;
+
+ private:
+  friend class Socket;
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Used by one thread at a time. No function waits unless it says so.
+class Socket {
+ public:
+  Socket(Context& context, const SocketOptions& options);
+  ~Socket();
+  Socket(Socket&&) noexcept;
+  Socket& operator=(Socket&&) noexcept;
+
+  /// Throws Error when the port is in use or the address is not this machine's.
+  void bind(const Endpoint& endpoint);
+  /// The peer may come later and come back. Throws Error when the host makes no address.
+  void connect(const Endpoint& endpoint);
+  void subscribe(std::string_view topic);
+
+  std::optional<Message> receive();
+  /// To the one peer; false: there is none or its queue is full.
+  bool send(std::span<const std::byte> bytes);
+
+  /// To all subscribers, without a copy. False: the queue of one or more was full, and these miss
+  /// it.
+  bool publish(Payload payload);
+  /// The same, waiting so long for full queues.
+  bool publish(std::span<const std::byte> bytes, std::chrono::milliseconds patience);
+
+  /// What happened since the last call.
+  std::vector<PeerEvent> events();
+
+ private:
+  friend void wait_for(std::initializer_list<const Socket*>, int, std::chrono::milliseconds);
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Waits until one of the sockets has something to receive, the file descriptor (-1: none) can be
+/// read, or the time is over; signals end it too.
+void wait_for(std::initializer_list<const Socket*> sockets, int descriptor,
+              std::chrono::milliseconds at_most);
+
+}  // namespace glidar::link

@@ -1,0 +1,107 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""A client and a simulator that speak the protocol of 2015, written from its description alone."""
+
+import socket
+import struct
+import time
+
+import numpy as np
+import zmq
+
+SHUTDOWN = b"KTHXBAI"
+
+
+def free_ports():
+    """A port that is free together with the next one."""
+    while True:
+        with socket.socket() as first, socket.socket() as second:
+            first.bind(("127.0.0.1", 0))
+            port = first.getsockname()[1]
+            try:
+                second.bind(("127.0.0.1", port + 1))
+            except OSError:
+                continue
+            return port
+
+
+class Subscriber:
+    """Subscribes to clouds and shakes hands."""
+
+    def __init__(self, context, port, topic=b"c", **options):
+        self.clouds = context.socket(zmq.SUB)
+        self.clouds.linger = 0
+        for name, value in options.items():
+            setattr(self.clouds, name, value)
+        self.clouds.setsockopt(zmq.SUBSCRIBE, topic)
+        self.clouds.connect(f"tcp://localhost:{port}")
+        self.hand = context.socket(zmq.REQ)
+        self.hand.linger = 0
+        self.hand.connect(f"tcp://localhost:{port + 1}")
+        self.hand.send(b"")
+
+    def shake(self, timeout_s=60):
+        if not self.hand.poll(timeout_s * 1000):
+            raise TimeoutError("no handshake")
+        assert self.hand.recv() == b""
+
+    def receive(self, timeout_s=60):
+        """The next message as it is."""
+        if not self.clouds.poll(timeout_s * 1000):
+            raise TimeoutError("no message")
+        message = self.clouds.recv()
+        assert not self.clouds.getsockopt(zmq.RCVMORE)
+        return message
+
+    def clouds_until_shutdown(self, timeout_s=60):
+        """(timestamp, N x 4) of every cloud; the last message must be the shutdown."""
+        found = []
+        while True:
+            message = self.receive(timeout_s)
+            if message[1:] == SHUTDOWN:
+                assert message == b"cKTHXBAI"
+                return found
+            found.append(cloud(message))
+
+    def close(self):
+        self.clouds.close()
+        self.hand.close()
+
+
+def cloud(message):
+    assert message[:1] == b"c"
+    (timestamp,) = struct.unpack("<Q", message[1:9])
+    return timestamp, np.frombuffer(message[9:], "<f4").reshape(-1, 4)
+
+
+def pose_message(timestamp, obj=(1, 0, 0, 0), translation=(0, 0, 10), sensor=(1, 0, 0, 0)):
+    return b"v" + struct.pack("<Q11d", timestamp, *obj, *translation, *sensor)
+
+
+class Simulator:
+    """Publishes poses once GLIDAR has shaken hands."""
+
+    def __init__(self, context, port):
+        self.poses = context.socket(zmq.PUB)
+        self.poses.linger = 1000
+        self.poses.bind(f"tcp://127.0.0.1:{port}")
+        self.hand = context.socket(zmq.REP)
+        self.hand.linger = 0
+        self.hand.bind(f"tcp://127.0.0.1:{port + 1}")
+
+    def shake(self, timeout_s=60):
+        if not self.hand.poll(timeout_s * 1000):
+            raise TimeoutError("no handshake")
+        assert self.hand.recv() == b""
+        self.hand.send(b"")
+        time.sleep(0.2)  # a subscription is a message of its own; the protocol does not wait for it
+
+    def send(self, message):
+        self.poses.send(message)
+
+    def shut_down(self):
+        self.poses.send(b"v" + SHUTDOWN)
+
+    def close(self):
+        self.poses.close()
+        self.hand.close()

@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/fault_log.hpp>
+
+#include <gmock/gmock.h>
+
+#include <string>
+#include <vector>
+
+namespace glidar::link {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::Pair;
+
+class FaultLogTest : public ::testing::Test {
+ protected:
+  std::vector<std::string> said;
+  FaultLog::Clock::time_point now;
+  FaultLog log{{.log = [this](Severity, std::string_view text) { said.emplace_back(text); }},
+               [this] { return now; }};
+};
+
+TEST_F(FaultLogTest, SaysTheFirstOfEachKindAtOnce) {
+  log.tell("short", "3 bytes");
+  log.tell("long", "300 bytes");
+  EXPECT_THAT(said, ElementsAre("short: 3 bytes", "long: 300 bytes"));
+}
+
+TEST_F(FaultLogTest, SaysAtMostOneLineASecondWithTheCount) {
+  for (int i = 0; i < 1000; ++i) log.tell("short", std::to_string(i));
+  EXPECT_THAT(said, ElementsAre("short: 0"));
+  now += std::chrono::seconds(1);
+  log.tell("short", "again");
+  EXPECT_THAT(said, ElementsAre("short: 0", "short (1001 times): again"));
+}
+
+TEST_F(FaultLogTest, SaysAtTheEndWhatItHeldBack) {
+  log.tell("short", "a");
+  log.tell("short", "b");
+  log.tell("long", "c");
+  log.flush();
+  log.flush();
+  EXPECT_THAT(said, ElementsAre("short: a", "long: c", "short (2 times): b"));
+  EXPECT_THAT(log.counts(), ElementsAre(Pair("long", 1U), Pair("short", 2U)));
+}
+
+}  // namespace
+}  // namespace glidar::link
