@@ -7,33 +7,35 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace glidar::opengl {
 namespace {
 
 /// Gives an attribute of the bound vertex array its values, if there are any.
 template <class Vector>
-void give(GLuint attribute, const std::vector<Vector>& values, ShadedMesh& mesh) {
+void give(GLuint attribute, const DrawOrder& order, const std::vector<Vector>& values,
+          ShadedMesh& mesh) {
   if (values.empty()) return;
-  fill(mesh.attributes.emplace_back(), GL_ARRAY_BUFFER, values);
+  fill(mesh.attributes.emplace_back(), GL_ARRAY_BUFFER, in_order(order, values));
   glVertexAttribPointer(attribute, Vector::RowsAtCompileTime, GL_FLOAT, GL_FALSE, 0, nullptr);
   glEnableVertexAttribArray(attribute);
 }
 
-void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& order,
+void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& drawn,
                          const ShadedMesh& shaded) {
   GLint most = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-  if (order.size() > static_cast<std::size_t>(most)) {
+  if (drawn.size() > static_cast<std::size_t>(most)) {
     throw Error({.where = "opengl renderer",
-                 .found = "a mesh of " + std::to_string(order.size()) + " triangles",
+                 .found = "a mesh of " + std::to_string(drawn.size()) + " triangles",
                  .allowed = "up to " + std::to_string(most) + " with this driver's paper target",
                  .remedy = "use --render-target float"});
   }
   const std::vector<TrianglePlane> planes = triangle_planes(mesh);
   std::vector<Eigen::Vector4f> normals;
-  normals.reserve(order.size());
-  for (const std::uint32_t t : order) {
+  normals.reserve(drawn.size());
+  for (const std::uint32_t t : drawn) {
     normals.push_back(planes[t].normal.cast<float>().homogeneous());
   }
   fill(shaded.flat_normals, GL_TEXTURE_BUFFER, normals);
@@ -56,19 +58,17 @@ bool is_smooth(const Mesh& mesh) {
 ShadedMesh upload_mesh(const Mesh& mesh) {
   ShadedMesh shaded;
   shaded.is_smooth = is_smooth(mesh);
+  DrawOrder order = draw_order(mesh, true);
   glBindVertexArray(shaded.arrays.name());
-  give(0, mesh.positions_m, shaded);
-  give(1, mesh.uvs[0], shaded);
-  give(2, mesh.uvs[1], shaded);
-  give(3, mesh.normals, shaded);
-  give(4, mesh.tangents, shaded);
-  give(5, mesh.colours, shaded);
-  const std::vector<std::uint32_t> order = ordered_by_slot(mesh, shaded.ranges);
-  std::vector<Triangle> triangles;
-  triangles.reserve(order.size());
-  for (const std::uint32_t t : order) triangles.push_back(mesh.triangles[t]);
-  fill(shaded.triangles, GL_ELEMENT_ARRAY_BUFFER, triangles);
-  upload_flat_normals(mesh, order, shaded);
+  give(0, order, mesh.positions_m, shaded);
+  give(1, order, mesh.uvs[0], shaded);
+  give(2, order, mesh.uvs[1], shaded);
+  give(3, order, mesh.normals, shaded);
+  give(4, order, mesh.tangents, shaded);
+  give(5, order, mesh.colours, shaded);
+  fill(shaded.triangles, GL_ELEMENT_ARRAY_BUFFER, order.triangles);
+  upload_flat_normals(mesh, order.drawn, shaded);
+  shaded.ranges = std::move(order.ranges);
   return shaded;
 }
 
