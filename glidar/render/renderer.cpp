@@ -53,7 +53,7 @@ void check(const CastRequest& request, const Scene& scene) {
           "the sensor stands out of reach", "up to 1e15 m from the world's origin");
 }
 
-void check_batch(std::span<const CastRequest> requests, std::span<Hits> hits) {
+void check_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits) {
   if (requests.size() == hits.size()) return;
   throw Error({.where = "batch of casts",
                .found = "hits for " + std::to_string(hits.size()) + " of " +
@@ -62,9 +62,9 @@ void check_batch(std::span<const CastRequest> requests, std::span<Hits> hits) {
                .remedy = ""});
 }
 
-void Renderer::cast_batch(std::span<const CastRequest> requests, std::span<Hits> hits) {
+void Renderer::cast_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits) {
   check_batch(requests, hits);
-  for (std::size_t i = 0; i < requests.size(); ++i) cast(requests[i], hits[i]);
+  for (std::size_t i = 0; i < requests.size(); ++i) cast(requests[i], *hits[i]);
 }
 
 const std::vector<std::string>& renderer_kinds() {

@@ -44,7 +44,7 @@ bool is_anything_present(const CastRequest& request, const Scene& scene);
 void check(const CastRequest& request, const Scene& scene);
 
 /// Throws Error unless there are hits for every request.
-void check_batch(std::span<const CastRequest> requests, std::span<Hits> hits);
+void check_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits);
 
 /// Finds what beams hit first. Two implementations, chosen at run time.
 class Renderer {
@@ -63,10 +63,10 @@ class Renderer {
   /// size allocates nothing.
   virtual void cast(const CastRequest& request, Hits& hits) = 0;
 
-  /// Fills hits[i] with what cast() tells of requests[i], to the bit; one per request. What draws
+  /// Fills *hits[i] with what cast() tells of requests[i], to the bit; one per request. What draws
   /// does many small ones together and overlaps drawing, reading and the rest, so that they take
   /// less time than one by one. Here: one by one.
-  virtual void cast_batch(std::span<const CastRequest> requests, std::span<Hits> hits);
+  virtual void cast_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits);
 };
 
 struct RendererOptions {

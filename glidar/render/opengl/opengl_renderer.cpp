@@ -45,17 +45,18 @@ class OpenglRenderer final : public Renderer {
   [[nodiscard]] Workers& workers() override { return workers_; }
 
   void cast(const CastRequest& request, Hits& hits) override {
-    cast_batch({&request, 1}, {&hits, 1});
+    const std::array<Hits*, 1> one = {&hits};
+    cast_batch({&request, 1}, one);
   }
 
-  void cast_batch(std::span<const CastRequest> requests, std::span<Hits> hits) override {
+  void cast_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits) override {
     check_batch(requests, hits);
     for (const CastRequest& request : requests) {
       check(request, resolver_.scene());
       opengl::check_pinhole(request.beams);
     }
     pictures_.clear();
-    for (std::size_t i = 0; i < requests.size(); ++i) plan(requests[i], i, hits[i]);
+    for (std::size_t i = 0; i < requests.size(); ++i) plan(requests[i], i, *hits[i]);
     opengl::group(pictures_, groups_);
     if (!groups_.empty()) draw_and_write(requests, hits);
   }
@@ -99,7 +100,7 @@ class OpenglRenderer final : public Renderer {
   /// While the hits of one group of pictures are written, the next is copied and the one after it
   /// is drawn. A driver in software draws behind our back but copies before our eyes: so each is
   /// copied only after the next was given to draw.
-  void draw_and_write(std::span<const CastRequest> requests, std::span<Hits> hits) {
+  void draw_and_write(std::span<const CastRequest> requests, std::span<Hits* const> hits) {
     const opengl::FreshState state(*context_);
     for (std::size_t step = 0; step < groups_.size() + 2; ++step) {
       if (step < groups_.size()) draw(requests, groups_[step], target(step));
@@ -128,7 +129,7 @@ class OpenglRenderer final : public Renderer {
   }
 
   void write(std::span<const CastRequest> requests, const opengl::PictureGroup& group,
-             std::span<const std::uint32_t> numbers, std::span<Hits> hits) {
+             std::span<const std::uint32_t> numbers, std::span<Hits* const> hits) {
     const std::size_t pixels = opengl::size_of(pictures_, group).pixels();
     for (std::size_t i = 0; i < group.count; ++i) {
       const opengl::Picture& picture = pictures_[group.first + i];
@@ -139,14 +140,14 @@ class OpenglRenderer final : public Renderer {
       if (is_first_part) count_.emplace(request.progress, request.beams.size());
       const opengl::Settler settler(resolver_, meshes_, request.beams, request.cull_back_faces);
       opengl::write_rows({.request = request,
-                  .resolver = resolver_,
-                  .settler = settler,
-                  .drawing = gpu_->drawing,
-                  .points = points_,
-                  .rect = picture.rect,
-                  .numbers = numbers.subspan(i * pixels, pixels),
-                  .hits = hits[picture.cast]},
-                 workers_, *count_);
+                          .resolver = resolver_,
+                          .settler = settler,
+                          .drawing = gpu_->drawing,
+                          .points = points_,
+                          .rect = picture.rect,
+                          .numbers = numbers.subspan(i * pixels, pixels),
+                          .hits = *hits[picture.cast]},
+                         workers_, *count_);
       const bool is_last_part = picture.rect.first_row + picture.rect.rows == request.beams.rows &&
                                 picture.rect.first_col + picture.rect.cols == request.beams.cols;
       if (is_last_part) count_->finish();
