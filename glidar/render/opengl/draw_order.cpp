@@ -43,14 +43,14 @@ class Curve {
 };
 
 struct Key {
-  std::uint16_t slot;
+  std::uint32_t kind;
   std::uint64_t place;
   std::uint32_t triangle;
 
   auto operator<=>(const Key&) const = default;
 };
 
-std::vector<Key> sorted_keys(const Mesh& mesh, bool by_slot) {
+std::vector<Key> sorted_keys(const Mesh& mesh, const std::vector<std::uint32_t>& kinds) {
   const Curve curve(mesh);
   std::vector<Key> keys;
   keys.reserve(mesh.triangles.size());
@@ -61,7 +61,7 @@ std::vector<Key> sorted_keys(const Mesh& mesh, bool by_slot) {
     const Eigen::Vector3f middle = kThird * mesh.positions_m[t[0]] +
                                    kThird * mesh.positions_m[t[1]] +
                                    kThird * mesh.positions_m[t[2]];
-    keys.push_back({by_slot ? material_slot(mesh, i) : std::uint16_t{0}, curve.at(middle), i});
+    keys.push_back({kinds.empty() ? 0 : kinds[i], curve.at(middle), i});
   }
   std::sort(keys.begin(), keys.end());
   return keys;
@@ -69,16 +69,16 @@ std::vector<Key> sorted_keys(const Mesh& mesh, bool by_slot) {
 
 }  // namespace
 
-DrawOrder draw_order(const Mesh& mesh, bool by_slot) {
+DrawOrder draw_order(const Mesh& mesh, const std::vector<std::uint32_t>& kinds) {
   constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
   DrawOrder order;
   order.drawn.reserve(mesh.triangles.size());
   order.triangles.reserve(mesh.triangles.size());
   std::vector<std::uint32_t> place(mesh.positions_m.size(), kNowhere);
-  for (const Key& key : sorted_keys(mesh, by_slot)) {
+  for (const Key& key : sorted_keys(mesh, kinds)) {
     const auto next = static_cast<std::uint32_t>(order.drawn.size());
-    if (next == 0 || key.slot != order.ranges.back().slot)
-      order.ranges.push_back({next, 0, key.slot});
+    if (next == 0 || key.kind != order.ranges.back().kind)
+      order.ranges.push_back({next, 0, key.kind});
     ++order.ranges.back().count;
     order.drawn.push_back(key.triangle);
     Triangle corners = mesh.triangles[key.triangle];

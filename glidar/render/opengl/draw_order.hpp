@@ -9,11 +9,11 @@
 
 namespace glidar::opengl {
 
-/// Triangles of one mesh that are drawn together, because they have one material slot.
+/// Triangles of one mesh that are drawn together, because they are of one kind.
 struct DrawRange {
   std::uint32_t first;  ///< in the order in which they are drawn
   std::uint32_t count;
-  std::uint16_t slot;
+  std::uint32_t kind;
 };
 
 /// A mesh laid out for drawing: triangles that lie near each other follow each other and share
@@ -26,9 +26,9 @@ struct DrawOrder {
   std::vector<DrawRange> ranges;
 };
 
-/// By slots if asked for, in each along a curve through space. Triangles in the same place keep the
-/// mesh's order.
-DrawOrder draw_order(const Mesh& mesh, bool by_slot);
+/// By the kinds of the triangles (none given: all are of kind 0), in each along a curve through
+/// space. Triangles in the same place keep the mesh's order.
+DrawOrder draw_order(const Mesh& mesh, const std::vector<std::uint32_t>& kinds);
 
 /// What stands at each vertex, in the order of `vertices`; nothing if there is nothing.
 template <class Value>

@@ -44,21 +44,27 @@ void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& dra
 }
 
 /// Blends of unit vectors that lie less than 120 degrees from each other have some length.
-bool is_smooth(const Mesh& mesh) {
+bool is_smooth(const Mesh& mesh, const Triangle& t) {
   constexpr float kCosineOf120 = -0.5F;
-  return !mesh.normals.empty() &&
-         std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
-           const Eigen::Vector3f& a = mesh.normals[t[0]];
-           const Eigen::Vector3f& b = mesh.normals[t[1]];
-           const Eigen::Vector3f& c = mesh.normals[t[2]];
-           return std::min({a.dot(b), b.dot(c), c.dot(a)}) > kCosineOf120;
-         });
+  if (mesh.normals.empty()) return false;
+  const Eigen::Vector3f& a = mesh.normals[t[0]];
+  const Eigen::Vector3f& b = mesh.normals[t[1]];
+  const Eigen::Vector3f& c = mesh.normals[t[2]];
+  return std::min({a.dot(b), b.dot(c), c.dot(a)}) > kCosineOf120;
+}
+
+std::vector<std::uint32_t> kinds_of(const Mesh& mesh) {
+  std::vector<std::uint32_t> kinds;
+  kinds.reserve(mesh.triangles.size());
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    kinds.push_back(kind_of(material_slot(mesh, i), is_smooth(mesh, mesh.triangles[i])));
+  }
+  return kinds;
 }
 
 ShadedMesh upload_mesh(const Mesh& mesh) {
   ShadedMesh shaded;
-  shaded.is_smooth = is_smooth(mesh);
-  DrawOrder order = draw_order(mesh, true);
+  DrawOrder order = draw_order(mesh, kinds_of(mesh));
   glBindVertexArray(shaded.arrays.name());
   give(0, order, mesh.positions_m, shaded);
   give(1, order, mesh.uvs[0], shaded);

@@ -16,9 +16,13 @@ bool needs_slots(const Scene& scene, std::size_t mesh) {
   });
 }
 
+std::vector<std::uint32_t> slots_of(const Mesh& mesh) {
+  return {mesh.material_slots.begin(), mesh.material_slots.end()};
+}
+
 MeshBuffers upload_mesh(const Mesh& mesh, bool by_slot) {
   MeshBuffers buffers;
-  DrawOrder order = draw_order(mesh, by_slot);
+  DrawOrder order = draw_order(mesh, by_slot ? slots_of(mesh) : std::vector<std::uint32_t>{});
   glBindVertexArray(buffers.arrays.name());
   fill(buffers.positions, GL_ARRAY_BUFFER, in_order(order, mesh.positions_m));
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);

@@ -19,7 +19,7 @@ struct MeshBuffers {
   Buffer triangles;
   std::array<Buffer, 2> uvs;
   std::array<bool, 2> has_uvs{};
-  std::vector<DrawRange> ranges;
+  std::vector<DrawRange> ranges;  ///< their kinds are material slots
   /// Which triangle of the mesh is drawn at each place.
   std::vector<std::uint32_t> drawn;
 };

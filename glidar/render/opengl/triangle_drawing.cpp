@@ -86,7 +86,7 @@ void TriangleDrawing::draw_instance(std::uint32_t instance,
   const MeshBuffers& mesh = buffers_.meshes[placed.mesh];
   glBindVertexArray(mesh.arrays.name());
   for (const DrawRange& range : mesh.ranges) {
-    const std::uint32_t material = placed.materials[range.slot];
+    const std::uint32_t material = placed.materials[range.kind];
     const bool is_masked = has_mask(scene_.materials[material]);
     const Drawer& drawer = is_masked ? masked_.base : solid_;
     glUseProgram(drawer.program.name());
