@@ -43,14 +43,13 @@ std::pair<double, double> planes_around(const Model& model) {
   return {middle - radius, middle + radius};
 }
 
-Eigen::Matrix4f clip_matrix(const Model& model) {
-  const auto [near, far] = planes_around(model);
+Eigen::Matrix4f clip_matrix(const Model& model, double near_m, double far_m) {
   const double focal = 1.0 / std::tan(kFov_rad / 2.0);
   Eigen::Matrix4d clip = Eigen::Matrix4d::Zero();
   clip(0, 0) = focal;
   clip(1, 1) = focal;
-  clip(2, 2) = (far + near) / (far - near);
-  clip(2, 3) = -2.0 * far * near / (far - near);
+  clip(2, 2) = (far_m + near_m) / (far_m - near_m);
+  clip(2, 3) = -2.0 * far_m * near_m / (far_m - near_m);
   clip(3, 2) = 1.0;
   return (clip * model.world_from_sensor.inverse().matrix()).cast<float>();
 }
@@ -125,7 +124,8 @@ void give(GLuint attribute, const opengl::Buffer& buffer,
 }  // namespace
 
 RawOpengl::RawOpengl(const Model& model, const Raw& raw, std::uint32_t side)
-    : context_(chosen_device()),
+    : model_(model),
+      context_(chosen_device()),
       use_(context_),
       raw_(raw),
       side_(static_cast<GLsizei>(side)),
@@ -143,7 +143,8 @@ RawOpengl::RawOpengl(const Model& model, const Raw& raw, std::uint32_t side)
   make_targets();
   compile(objects_->program, {{GL_VERTEX_SHADER, raw.vertex}, {GL_FRAGMENT_SHADER, raw.fragment}});
   glUseProgram(objects_->program.name());
-  set_uniforms(model);
+  const auto [near_m, far_m] = planes_around(model);
+  set_planes(near_m, far_m);
   glEnable(GL_DEPTH_TEST);
   glViewport(0, 0, side_, side_);
   opengl::check_gl("preparing the baseline");
@@ -179,16 +180,15 @@ void RawOpengl::make_targets() {
                             objects_->depths.name());
 }
 
-void RawOpengl::set_uniforms(const Model& model) {
+void RawOpengl::set_planes(double near_m, double far_m) {
   const auto at = [&](const char* name) {
     return glGetUniformLocation(objects_->program.name(), name);
   };
-  const Eigen::Matrix4f matrix = clip_matrix(model);
-  const Eigen::Vector3f eye = model.world_from_sensor.translation().cast<float>();
-  const auto [near, far] = planes_around(model);
+  const Eigen::Matrix4f matrix = clip_matrix(model_, near_m, far_m);
+  const Eigen::Vector3f eye = model_.world_from_sensor.translation().cast<float>();
   glUniformMatrix4fv(at("clip_from_object"), 1, GL_FALSE, matrix.data());
   glUniform3fv(at("eye"), 1, eye.data());
-  glUniform2f(at("planes"), static_cast<float>(near), static_cast<float>(far));
+  glUniform2f(at("planes"), static_cast<float>(near_m), static_cast<float>(far_m));
 }
 
 }  // namespace glidar::bench

@@ -35,8 +35,8 @@ std::optional<std::uint32_t> chosen_device();
 /// Depths around a model.
 std::pair<double, double> planes_around(const Model& model);
 
-/// The usual perspective of OpenGL with planes around the model, rows downwards.
-Eigen::Matrix4f clip_matrix(const Model& model);
+/// The usual perspective of OpenGL, rows downwards.
+Eigen::Matrix4f clip_matrix(const Model& model, double near_m, double far_m);
 
 /// What a baseline draws, and how a pixel of it is stored.
 struct Raw {
@@ -62,6 +62,8 @@ class RawOpengl {
  public:
   RawOpengl(const Model& model, const Raw& raw, std::uint32_t side);
 
+  /// Of the perspective and of kRawPaper's depths; at first they are around the model.
+  void set_planes(double near_m, double far_m);
   void draw();
   void draw_and_read();
   [[nodiscard]] const std::vector<std::uint32_t>& pixels() const { return pixels_; }
@@ -79,8 +81,8 @@ class RawOpengl {
   };
 
   void make_targets();
-  void set_uniforms(const Model& model);
 
+  const Model& model_;
   opengl::EglContext context_;
   opengl::Use use_;
   const Raw& raw_;
