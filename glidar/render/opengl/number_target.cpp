@@ -85,6 +85,7 @@ std::span<const std::uint32_t> NumberTarget::numbers() {
   const void* start =
       glMapBufferRange(GL_PIXEL_PACK_BUFFER, 0,
                        static_cast<GLsizeiptr>(count * sizeof(std::uint32_t)), GL_MAP_READ_BIT);
+  check_not_lost();
   check_gl("reading a picture");
   return {static_cast<const std::uint32_t*>(start), count};
 }
