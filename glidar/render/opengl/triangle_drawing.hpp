@@ -56,7 +56,7 @@ class TriangleDrawing {
   Drawer solid_;
   MaskDrawer masked_;
   std::vector<std::uint32_t> first_number_;  ///< per instance
-  bool is_single_;  ///< one instance, drawn in its mesh's order: a number is its triangle
+  bool is_single_;                           ///< there is one instance
 };
 
 }  // namespace glidar::opengl
