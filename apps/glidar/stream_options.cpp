@@ -32,13 +32,13 @@ void add_pace_flags(CLI::App& command, StreamFlags& flags) {
     remove(command, name);
   }
   const std::string group = "Pace and end";
-  add_option(
-      command, {"--rate", "HZ", "Frames per second; 0 or max: as fast as it goes [sensor's]", group},
-      [&flags](std::string_view option, const std::string& text) {
-        flags.is_unpaced = text == "max" || parse_number(option, text) == 0.0;
-        flags.render.sensor.rate_hz.reset();
-        if (!flags.is_unpaced) flags.render.sensor.rate_hz = parse_number(option, text);
-      });
+  add_option(command,
+             {"--rate", "HZ", "Frames per second; 0 or max: as fast as it goes [sensor's]", group},
+             [&flags](std::string_view option, const std::string& text) {
+               flags.is_unpaced = text == "max" || parse_number(option, text) == 0.0;
+               flags.render.sensor.rate_hz.reset();
+               if (!flags.is_unpaced) flags.render.sensor.rate_hz = parse_number(option, text);
+             });
   add_number(command, {"--duration", "S", "Ends after S seconds [none]", group},
              flags.render.duration_s);
   add_whole(command, {"--frames", "N", "Ends after N frames [none]", group},
@@ -79,8 +79,37 @@ void add_pose_source_flags(CLI::App& command, StreamFlags& flags) {
   add_whole(command,
             {"--hwm", "N", "Poses that wait, each gives a frame; 0: the newest only [0]", group},
             {0, kMostQueued}, [&flags](std::int64_t n) { flags.pose_queue = static_cast<int>(n); });
-  add_number(command, {"--pose-timeout", "S", "Ends when no pose comes for S seconds [none]", group},
+  add_number(command,
+             {"--pose-timeout", "S", "Ends when no pose comes for S seconds [none]", group},
              flags.pose_timeout_s);
+}
+
+void add_lockstep_flags(CLI::App& command, StreamFlags& flags) {
+  const std::string group = "Lock-step over ZeroMQ: clients ask for every frame";
+  add_text(
+      command,
+      {"--lockstep", "ENDPOINT", "Answers at tcp://HOST:PORT (* any port) or ipc://PATH", group},
+      flags.lockstep,
+      [](std::string_view, const std::string& text) { (void)link::parse_endpoint(text); });
+  add_text(command,
+           {"--curve-keys", "FILE", "Encrypts with these keys; made when FILE is not there", group},
+           flags.curve_keys);
+}
+
+/// Requests say when and where; nothing else may.
+void check_lockstep(const StreamFlags& flags) {
+  const MotionFlags& motion = flags.render.motion;
+  const OutputFlags& files = flags.render.output;
+  const bool is_moved =
+      !motion.trajectory.empty() || !motion.model_dr.empty() || !motion.camera_dr.empty();
+  if (flags.port || flags.physics_port || is_moved || flags.frames || flags.is_unpaced ||
+      flags.render.duration_s) {
+    refuse("--lockstep", "given beside options that say when frames are taken or what moves",
+           "leave these out: the requests say it");
+  }
+  if (!files.paths.empty() || !files.legacy_name.empty()) {
+    refuse("--lockstep", "given beside --output or --pcd", "the clients get the clouds");
+  }
 }
 
 void check_simulator(const StreamFlags& flags) {
@@ -104,9 +133,14 @@ void add_stream_flags(CLI::App& command, StreamFlags& flags) {
   add_pace_flags(command, flags);
   add_publishing_flags(command, flags);
   add_pose_source_flags(command, flags);
+  add_lockstep_flags(command, flags);
 }
 
 void check(const StreamFlags& flags) {
+  if (!flags.lockstep.empty()) return check_lockstep(flags);
+  if (!flags.curve_keys.empty()) {
+    refuse("--curve-keys", "given without --lockstep", "only that link is encrypted");
+  }
   const OutputFlags& files = flags.render.output;
   if (!flags.port && files.paths.empty() && files.legacy_name.empty()) {
     refuse("--port and --output", "neither is given, so no cloud would go anywhere",
@@ -132,8 +166,8 @@ legacy::CloudPublisherOptions publisher_options(const StreamFlags& flags) {
           .keeps_newest = flags.publishes_newest,
           .queue = flags.publish_queue,
           .every = flags.publish_every,
-          .timestamps = flags.physics_port ? legacy::Timestamps::of_poses
-                                           : legacy::Timestamps::counted};
+          .timestamps =
+              flags.physics_port ? legacy::Timestamps::of_poses : legacy::Timestamps::counted};
 }
 
 legacy::PoseReceiverOptions receiver_options(const StreamFlags& flags) {

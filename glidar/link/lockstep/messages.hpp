@@ -76,22 +76,8 @@ struct CloudHead {
   Pose world_from_cloud = Pose::Identity();
 };
 
-/// How a column's numbers are stored.
-struct ColumnHead {
-  std::string name;
-  std::string type;  ///< f4 f8 u1 u2 u4 i8, as NumPy has them
-  std::uint16_t components = 1;
-};
-
-/// The first part of a reply with clouds. The numbers follow, one part for each column of the first
-/// cloud, then of the second, ...
-struct CloudsHead {
-  std::uint64_t id = 0;
-  std::vector<ColumnHead> columns;
-  std::vector<CloudHead> clouds;
-};
-
-/// All clouds must have the same columns.
+/// The first part of a reply with clouds. Their numbers follow, one part for each column of the
+/// first cloud, then of the second, ... All clouds must have the same columns.
 std::vector<std::byte> encode_head(std::uint64_t id, std::span<const CloudHead> heads,
                                    const PointCloud& like);
 
