@@ -29,7 +29,7 @@ class Clouds {
 
   void measure() {
     Setup setup{model_.scene, sensor_, beams_, motion_, *renderer_};
-    if (camera_) setup.paper.emplace(PaperTarget{*camera_, picture_});
+    if (camera_) setup.paper.emplace(PaperTarget{*camera_});
     simulate(setup, {}, frame_);
     make_point_cloud(frame_, beams_, model_.scene, {.frame_id = "camera"}, kColumns, organised_);
     cloud_ = compacted(organised_);
@@ -47,7 +47,6 @@ class Clouds {
   std::unique_ptr<Renderer> renderer_;
   Motion motion_;
   std::unique_ptr<PaperCamera> camera_;
-  PaperPicture picture_;
   Frame frame_;
   PointCloud organised_;
   PointCloud cloud_;
