@@ -9,9 +9,10 @@ namespace glidar {
 namespace {
 
 Reading reading_of(const Frame& frame, std::size_t entry) {
-  const Cause usual = frame.status[entry] == Status::hit ? Cause::surface : Cause::none;
+  const bool is_hit = frame.status[entry] == Status::hit;
+  const Cause cause = frame.cause.empty() ? Cause::surface : frame.cause[entry];
   return {.status = frame.status[entry],
-          .cause = frame.cause.empty() ? usual : frame.cause[entry],
+          .cause = is_hit ? cause : Cause::none,
           .range_m = frame.range_m[entry],
           .intensity = frame.intensity[entry],
           .sigma_m = frame.sigma_m.empty() ? 0.0F : frame.sigma_m[entry]};
@@ -45,37 +46,52 @@ std::vector<double> receiver_noise(const Sensor& sensor, const Frame& frame, con
   return numbers;
 }
 
-}  // namespace
+void require_entry(std::size_t entry, const Beams& beams) {
+  if (entry < beams.size()) return;
+  throw Error(
+      {.where = "index",
+       .found = std::to_string(entry),
+       .allowed = "0 to " + std::to_string(beams.size() - 1) + ", the entries of this frame",
+       .remedy = ""});
+}
 
-Story explain(const Setup& setup, std::size_t entry, Frame& frame) {
-  if (entry >= setup.beams.size()) {
-    throw Error({.where = "index",
-                 .found = std::to_string(entry),
-                 .allowed = "0 to " + std::to_string(setup.beams.size() - 1) +
-                            ", the entries of this frame",
-                 .remedy = ""});
-  }
+/// What is known of a picked entry before the noise.
+Story begin_story(const Setup& setup, std::size_t entry, const Frame& frame) {
+  require_entry(entry, setup.beams);
+  const std::size_t pulse = entry % setup.beams.pulses();
+  const Beams& turned = frame.scratch.aimed;
+  const Beams& aimed = turned.directions.empty() ? setup.beams : turned;
   Story story;
   story.entry = entry;
-  PulseTrace trace;
-  trace.pulse = entry % setup.beams.pulses();
-  measure(setup, kAllHitFields, frame, &trace);
-  if (has_echoes(setup.sensor, setup.scene)) story.pulse = std::move(trace);
-  const std::vector<Eigen::Vector3d>& aimed = frame.scratch.aimed.directions;
-  story.direction = aimed.empty() ? setup.beams.directions[entry] : aimed[entry];
-  story.receiver_noise = receiver_noise(setup.sensor, frame, story, entry % setup.beams.pulses());
-  story.measured = reading_of(frame, entry);
+  story.direction = aimed.directions[entry];
+  if (has_echoes(setup.sensor, setup.scene)) story.pulse = trace_pulse(setup, aimed, pulse, frame);
+  story.receiver_noise = receiver_noise(setup.sensor, frame, story, pulse);
+  return story;
+}
 
-  const double frame_s = 1.0 / setup.sensor.rate_hz;
-  const std::vector<NoiseStep>& noise = setup.sensor.noise;
+}  // namespace
+
+Story explain(const Setup& setup, const PickEntry& pick, Frame& frame) {
+  measure(setup, kAllHitFields, frame);
   const Columns measured{frame.range_m, frame.intensity, frame.status, frame.cause};
+  const std::vector<NoiseStep>& noise = setup.sensor.noise;
+  apply_first(setup, noise.size(), measured, frame);
+  Story story = begin_story(setup, pick(frame), frame);
   apply_first(setup, 0, measured, frame);
+  story.measured = reading_of(frame, story.entry);
   for (std::size_t k = 0; k < noise.size(); ++k) {
+    std::vector<Drawn> draws =
+        draws_of(noise, k, setup.beams, frame, 1.0 / setup.sensor.rate_hz, story.entry);
     apply_first(setup, k + 1, measured, frame);
-    story.noise.push_back(
-        {draws_of(noise, k, setup.beams, frame, frame_s, entry), reading_of(frame, entry)});
+    story.noise.push_back({std::move(draws), reading_of(frame, story.entry)});
   }
   return story;
+}
+
+Story explain(const Setup& setup, std::size_t entry, Frame& frame) {
+  require_entry(entry, setup.beams);
+  return explain(
+      setup, [entry](const Frame& /*frame*/) { return entry; }, frame);
 }
 
 }  // namespace glidar

@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/pulse_cast.hpp>
 #include <glidar/sensor/noise_draws.hpp>
 #include <glidar/simulate.hpp>
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -38,10 +40,14 @@ struct Story {
   std::vector<Step> noise;  ///< one for each step of the sensor's list
 };
 
-/// Measures a frame as simulate() does, with all truth, and tells how one entry of it came to be.
-/// frame.stamp_ns, seed, sensor_id and number say which; the frame comes out as simulate() makes
-/// it, byte for byte. The first step of noise is run, then the first two, and so on.
-/// Throws Error when there is no such entry.
+/// Picks an entry of a frame as simulate() made it; what it throws goes through.
+using PickEntry = std::function<std::size_t(const Frame& frame)>;
+
+/// Measures a frame as simulate() does, with all truth, and tells how the entry of it that is
+/// picked came to be. frame.stamp_ns, seed, sensor_id and number say which; the frame comes out as
+/// simulate() makes it, byte for byte. The first step of noise is run, then the first two, and so
+/// on. Throws Error when there is no such entry.
+Story explain(const Setup& setup, const PickEntry& pick, Frame& frame);
 Story explain(const Setup& setup, std::size_t entry, Frame& frame);
 
 }  // namespace glidar

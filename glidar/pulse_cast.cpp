@@ -28,7 +28,7 @@ struct Block {
   const HitFields& fields;  ///< of the frame's truth
   BeamRange range;          ///< of pulses
   Frame& frame;
-  PulseTrace* trace;  ///< nullptr: none asked for
+  PulseTrace* trace;  ///< nullptr: only measured
 
   [[nodiscard]] const Material& material_at(const Hits& hits, std::size_t i) const {
     const Scene& scene = setup.scene;
@@ -343,6 +343,28 @@ void measure_block(const Block& block, bool mirrors) {
   });
 }
 
+/// Measures a run of pulses that starts with a run of draws.
+void measure_some(const Setup& setup, const HitFields& fields, const Beams& aimed, BeamRange pulses,
+                  Frame& frame, PulseTrace* trace) {
+  resize(frame.truth, aimed.size(), fields);
+  frame.cause.resize(aimed.size());
+  const std::vector<SubRay> rays =
+      setup.sensor.footprint ? sub_rays(*setup.sensor.footprint) : std::vector<SubRay>(1);
+  const std::size_t step =
+      std::max<std::size_t>(
+          1, kSubBeamsPerBlock * setup.renderer.workers().threads() / rays.size() / kBeamsPerTask) *
+      kBeamsPerTask;
+  const bool mirrors = has_mirrors(setup.scene);
+  const std::optional<PreparedWeather> weather = weather_of(setup.sensor);
+  const PulseLight& light = weather ? weather->light : *setup.sensor.pulse;
+  for (std::size_t begin = pulses.begin; begin < pulses.end; begin += step) {
+    const BeamRange range{begin, std::min(begin + step, pulses.end)};
+    measure_block(
+        {setup, light, weather ? &*weather : nullptr, rays, aimed, fields, range, frame, trace},
+        mirrors);
+  }
+}
+
 }  // namespace
 
 bool has_echoes(const Sensor& sensor, const Scene& scene) {
@@ -356,25 +378,17 @@ bool has_echoes(const Sensor& sensor, const Scene& scene) {
          has_mirrors(scene);
 }
 
-void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& aimed, Frame& frame,
-                    PulseTrace* trace) {
-  resize(frame.truth, aimed.size(), fields);
-  frame.cause.resize(aimed.size());
-  const std::vector<SubRay> rays =
-      setup.sensor.footprint ? sub_rays(*setup.sensor.footprint) : std::vector<SubRay>(1);
-  const std::size_t step =
-      std::max<std::size_t>(
-          1, kSubBeamsPerBlock * setup.renderer.workers().threads() / rays.size() / kBeamsPerTask) *
-      kBeamsPerTask;
-  const bool mirrors = has_mirrors(setup.scene);
-  const std::optional<PreparedWeather> weather = weather_of(setup.sensor);
-  const PulseLight& light = weather ? weather->light : *setup.sensor.pulse;
-  for (std::size_t begin = 0; begin < aimed.pulses(); begin += step) {
-    const BeamRange range{begin, std::min(begin + step, aimed.pulses())};
-    measure_block(
-        {setup, light, weather ? &*weather : nullptr, rays, aimed, fields, range, frame, trace},
-        mirrors);
-  }
+void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& aimed, Frame& frame) {
+  measure_some(setup, fields, aimed, {0, aimed.pulses()}, frame, nullptr);
+}
+
+PulseTrace trace_pulse(const Setup& setup, const Beams& aimed, std::size_t pulse, Frame frame) {
+  PulseTrace trace;
+  trace.pulse = pulse;
+  const std::size_t first = pulse - pulse % kBeamsPerTask;
+  const std::size_t last = std::min(first + kBeamsPerTask, aimed.pulses());
+  measure_some(setup, {}, aimed, {first, last}, frame, &trace);
+  return trace;
 }
 
 }  // namespace glidar

@@ -38,8 +38,10 @@ struct PulseTrace {
 /// the beam met.
 ///
 /// `aimed` are the beams as they really go. Draws with Purpose::detection and weather.
-/// `trace`, if given, is filled for its pulse.
-void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& aimed, Frame& frame,
-                    PulseTrace* trace = nullptr);
+void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& aimed, Frame& frame);
+
+/// How a pulse of a frame that was measured came out as it did: the few pulses around it are
+/// measured again, in the copy of the frame that is given.
+PulseTrace trace_pulse(const Setup& setup, const Beams& aimed, std::size_t pulse, Frame frame);
 
 }  // namespace glidar

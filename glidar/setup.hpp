@@ -10,10 +10,10 @@
 
 namespace glidar {
 
-/// The way of the 2016 paper: range and intensity are read from a picture of bytes.
+/// The way of the 2016 paper: range and intensity are read from a picture of bytes, which stays in
+/// the frame.
 struct PaperTarget {
   PaperCamera& camera;                     ///< over the same scene
-  PaperPicture& picture;                   ///< the last one drawn
   std::optional<PaperPlanes> planes = {};  ///< of its depths; empty: they hug what is in view
 };
 

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/motion/beam_poses.hpp>
+#include <glidar/paper_measure.hpp>
 #include <glidar/pulse_cast.hpp>
 #include <glidar/shadow_cast.hpp>
 
@@ -44,38 +45,6 @@ void measure_light(const Setup& setup, BeamRange range, Frame& frame) {
   } else {
     measure_intensity(sensor.light, range, frame);
   }
-}
-
-/// Range, intensity and status of all beams from the picture.
-void measure_paper(const Setup& setup, const PaperTarget& paper, Frame& frame) {
-  const auto refuse_if = [](bool is_so, const char* found) {
-    if (!is_so) return;
-    throw Error({.where = "paper target",
-                 .found = found,
-                 .allowed = "the paper's light, and beams that fire together where they are aimed",
-                 .remedy = "use --render-target float"});
-  };
-  refuse_if(setup.sensor.pulse.has_value(), "pulsed light");
-  refuse_if(!setup.beams.times_ns.empty(), "beams that fire one by one");
-  refuse_if(!frame.scratch.aimed.directions.empty(), "errors of pointing");
-  paper.camera.draw({.beams = setup.beams,
-                     .world_from_sensor = frame.world_from_sensor,
-                     .world_from_instance = frame.world_from_instance,
-                     .cull_back_faces = setup.sensor.cull_back_faces},
-                    setup.sensor.light, paper.planes, paper.picture);
-  const auto read = [&](std::size_t begin, std::size_t end) {
-    decode(paper.picture, setup.beams, {begin, end}, frame.range_m, frame.intensity);
-    for (std::size_t i = begin; i < end; ++i) {
-      const bool is_seen = !std::isnan(frame.range_m[i]);
-      frame.status[i] =
-          is_seen ? judge(setup.sensor.limits, setup.beams, i, frame.range_m[i]) : Status::miss;
-      if (frame.status[i] == Status::hit) continue;
-      frame.range_m[i] = kNoRange;
-      frame.intensity[i] = 0.0F;
-    }
-  };
-  constexpr std::size_t kBeamsPerTask = 4096;
-  setup.renderer.workers().for_ranges(setup.beams.size(), kBeamsPerTask, read);
 }
 
 /// What its cast needs to be known of a frame under way.
@@ -122,6 +91,7 @@ CastRequest request_of(const Started& started) {
 /// All that comes after the cast, before the noise.
 void finish(const Started& started, const HitFields& fields) {
   const auto& [setup, frame, beams, needed] = started;
+  frame.picture.rgba.clear();
   if (setup.paper) measure_paper(setup, *setup.paper, frame);
   if (setup.sensor.projector_m) cast_shadows(setup, *setup.sensor.projector_m, beams, frame);
   deskew(world_of(setup, frame), setup.beams, beams, frame.deskewed);
@@ -149,10 +119,10 @@ void check_batch(std::span<const Setup> setups, std::span<Frame> frames) {
 
 }  // namespace
 
-void measure(const Setup& setup, const HitFields& fields, Frame& frame, PulseTrace* trace) {
+void measure(const Setup& setup, const HitFields& fields, Frame& frame) {
   const Started started = start(setup, fields, frame);
   if (has_echoes(setup.sensor, setup.scene)) {
-    measure_pulses(setup, started.needed, started.beams, frame, trace);
+    measure_pulses(setup, started.needed, started.beams, frame);
   } else {
     cast_moving(world_of(setup, frame), request_of(started), frame.scratch, frame.truth);
   }

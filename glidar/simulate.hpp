@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/pulse_cast.hpp>
 #include <glidar/setup.hpp>
 
 #include <span>
@@ -21,8 +20,6 @@ void simulate_batch(std::span<const Setup> setups, const HitFields& fields,
                     std::span<Frame> frames);
 
 /// All of it before the sensor's noise but for errors of pointing: what apply_noise is applied to.
-/// `trace`, if given, is filled for its pulse when the sensor has echoes.
-void measure(const Setup& setup, const HitFields& fields, Frame& frame,
-             PulseTrace* trace = nullptr);
+void measure(const Setup& setup, const HitFields& fields, Frame& frame);
 
 }  // namespace glidar

@@ -21,9 +21,10 @@ ALLOWED = {
     "setup": {"core", "sensor", "motion", "render", "moving_cast", "setup"},
     "pulse_cast": {"core", "sensor", "motion", "render", "moving_cast", "setup", "pulse_cast"},
     "shadow_cast": {"core", "sensor", "motion", "render", "moving_cast", "setup", "shadow_cast"},
+    "paper_measure": {"core", "sensor", "motion", "render", "setup", "paper_measure"},
     "simulate": {
         "core", "sensor", "motion", "render", "moving_cast", "setup", "pulse_cast", "shadow_cast",
-        "simulate",
+        "paper_measure", "simulate",
     },
     "explain": {
         "core", "sensor", "motion", "render", "moving_cast", "setup", "pulse_cast", "simulate",

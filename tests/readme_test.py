@@ -34,6 +34,7 @@ class Readme(unittest.TestCase):
                     check=False,
                 )
                 self.assertEqual(done.returncode, 0, f"{block}\n{done.stdout}\n{done.stderr}")
+                self.assertNotIn("warning", done.stderr)
                 for output in re.findall(r" -o (\S+)", block):
                     self.assertGreater((Path(folder) / output).stat().st_size, 0, output)
 

@@ -107,7 +107,7 @@ std::size_t lost_in_light(const View& view) {
 }
 
 /// Why nothing was hit, and what to do.
-std::string reason_for_no_hits(const View& view, const FrameSummary& summary) {
+std::string reason_for_no_hits(const View& view, const Sight& sight, const FrameSummary& summary) {
   constexpr const char* kFrameIt = "leave the pose options out to have the scene framed";
   if (summary.beams == 0) return "the optics have no beam for any pixel; check the distortion";
   if (summary.too_near + summary.too_far > 0) {
@@ -124,7 +124,6 @@ std::string reason_for_no_hits(const View& view, const FrameSummary& summary) {
         "column 'status', and `glidar explain`",
         lost);
   }
-  const Sight sight = look(view);
   if (sight.deepest_m < 0.0 && sight.view_rad < 0.5 * std::numbers::pi) {
     return fmt::format(
         "the scene is behind the sensor: its middle is {:.6g} m away at depth {:.6g} m; "
@@ -182,25 +181,30 @@ std::string label(const Instance& instance) {
   return instance.name.empty() ? "the model" : "'" + instance.name + "'";
 }
 
-void add_inside_advice(const View& view, std::vector<std::string>& advice) {
+/// Instances in whose boxes the sensor stands.
+std::vector<std::size_t> boxes_around(const View& view) {
+  std::vector<std::size_t> around;
   for (std::size_t i = 0; i < view.scene.instances.size(); ++i) {
     const Instance& instance = view.scene.instances[i];
     const Eigen::Vector3d position = view.frame.world_from_instance[i].inverse() *
                                      view.frame.world_from_sensor.translation() / instance.scale;
     const Eigen::AlignedBox3d box = bounds(view.scene.meshes[instance.mesh]);
-    if (box.isEmpty() || !box.contains(position)) continue;
-    if (back_face_part(view, i) > kMostlyInside) {
-      advice.push_back(
-          fmt::format("the sensor is inside {} and sees the backs of its surfaces; "
-                      "move it out, or leave the pose options out to have the scene "
-                      "framed",
-                      label(instance)));
-    } else {
-      advice.push_back(
-          fmt::format("the sensor is inside the bounding box of {}; that is right for "
-                      "rooms and landscapes, otherwise move it out",
-                      label(instance)));
-    }
+    if (!box.isEmpty() && box.contains(position)) around.push_back(i);
+  }
+  return around;
+}
+
+/// A sensor that looks all around is meant to stand amid the scene, and one that sees the fronts of
+/// surfaces is not within what they enclose.
+void add_inside_advice(const View& view, const Sight& sight, const std::vector<std::size_t>& around,
+                       std::vector<std::string>& advice) {
+  if (sight.view_rad > 0.5 * std::numbers::pi) return;
+  for (const std::size_t i : around) {
+    if (back_face_part(view, i) <= kMostlyInside) continue;
+    advice.push_back(
+        fmt::format("the sensor is inside {} and sees the backs of its surfaces; unless that is a "
+                    "room, move it out, or leave the pose options out to have the scene framed",
+                    label(view.scene.instances[i])));
   }
 }
 
@@ -298,11 +302,13 @@ std::string beside_advice(const Scene& scene, const Pose& world_from_sensor) {
 std::vector<std::string> view_advice(const View& view) {
   std::vector<std::string> advice;
   const FrameSummary summary = summarise(view.frame);
-  add_inside_advice(view, advice);
+  const Sight sight = look(view);
+  const std::vector<std::size_t> around = boxes_around(view);
+  add_inside_advice(view, sight, around, advice);
   if (summary.hits == 0) {
-    advice.push_back("nothing was measured: " + reason_for_no_hits(view, summary));
-  } else if (advice.empty()) {
-    add_ratio_advice(look(view), advice);
+    advice.push_back("nothing was measured: " + reason_for_no_hits(view, sight, summary));
+  } else if (around.empty()) {
+    add_ratio_advice(sight, advice);
   }
   return advice;
 }

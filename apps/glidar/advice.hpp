@@ -43,8 +43,8 @@ std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box)
 /// Where a LiDAR was put that no option placed.
 std::string beside_advice(const Scene& scene, const Pose& world_from_sensor);
 
-/// What the user should know about where the sensor stands: inside a model, too near or too far for
-/// its size, or nothing hit and why.
+/// What the user should know about where the sensor stands: inside a model of which it sees the
+/// backs alone while it looks one way, too near or too far for its size, or nothing hit and why.
 std::vector<std::string> view_advice(const View& view);
 
 }  // namespace glidar::app

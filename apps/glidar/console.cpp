@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <utility>
 
 namespace glidar::app {
 namespace {
@@ -40,6 +41,7 @@ Console::~Console() {
 
 void Console::info(std::string_view message) {
   const std::lock_guard lock(mutex_);
+  listener_.info(message);
   if (quiet_) return;
   erase();
   print(fmt::format("glidar: {}\n", message));
@@ -47,8 +49,15 @@ void Console::info(std::string_view message) {
 
 void Console::warn(std::string_view message) {
   const std::lock_guard lock(mutex_);
+  listener_.warn(message);
   erase();
   print(fmt::format("glidar: warning: {}\n", message));
+}
+
+void Console::error(std::string_view message) {
+  const std::lock_guard lock(mutex_);
+  erase();
+  print(fmt::format("glidar: error: {}\n", message));
 }
 
 void Console::tell(double fraction_done) {
@@ -63,6 +72,12 @@ void Console::tell(std::string_view task, double fraction_done) {
     task_started_ = Clock::now();
   }
   fraction_ = fraction_done;
+  if (listener_.progress) listener_.progress(task_, fraction_);
+}
+
+void Console::listen(Report listener) {
+  const std::lock_guard lock(mutex_);
+  listener_ = std::move(listener);
 }
 
 Report Console::report() {
@@ -79,6 +94,7 @@ void Console::begin(std::string_view task) {
   task_ = task;
   fraction_ = -1.0;
   work_started_ = task_started_ = Clock::now();
+  if (listener_.progress) listener_.progress(task_, fraction_);
 }
 
 void Console::redraw() {
@@ -102,8 +118,8 @@ void Console::erase() {
 }
 
 Working::Working(Console& console, std::string_view task) : console_(console) {
-  if (!console_.terminal_) return;
   console_.begin(task);
+  if (!console_.terminal_) return;
   ticker_ = std::thread([this] {
     std::unique_lock lock(mutex_);
     while (!changed_.wait_for(lock, kRedraw, [this] { return done_; })) console_.redraw();

@@ -27,6 +27,8 @@ class Console {
   void info(std::string_view message);
   /// Says what the user should know; never left out.
   void warn(std::string_view message);
+  /// Says what went wrong, for programs that go on; nobody else is told.
+  void error(std::string_view message);
   /// How far the work is that is under way (see Working), negative: unknown. Costs little.
   void tell(double fraction_done);
   /// The same of a part of that work that has a name of its own.
@@ -34,6 +36,8 @@ class Console {
 
   /// The library's way to all of the above; must not outlive the console.
   Report report();
+  /// Who else is told all that; called from the threads that tell it. Empty: nobody.
+  void listen(Report listener);
 
  private:
   friend class Working;
@@ -45,6 +49,7 @@ class Console {
   void erase();
 
   std::mutex mutex_;
+  Report listener_;
   bool quiet_;
   bool terminal_;
   bool drawn_ = false;

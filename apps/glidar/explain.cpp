@@ -104,9 +104,8 @@ std::size_t entry_of(const ExplainFlags& flags, const Sidecar& sidecar, const Fr
          "all beams, or all hits", "write the cloud again");
 }
 
-/// Measures the frame again and checks that it is the one of the cloud.
-void repeat(const Sidecar& sidecar, const Setup& setup, Frame& frame) {
-  simulate(setup, {}, frame);
+/// Throws Error when the frame that was measured again is not the one of the cloud.
+void check_frame(const Sidecar& sidecar, const Frame& frame) {
   if (frame_hash(frame) == sidecar.frame_hash) return;
   refuse(sidecar.path.string(),
          "the measurement comes out otherwise than when the cloud was written",
@@ -150,11 +149,14 @@ int run(const ExplainFlags& flags) {
   Frame frame;
   turn_to(render, sidecar.frame, session, frame);
   const Setup setup = setup_of(session, console);
+  const auto pick = [&](const Frame& repeated) {
+    check_frame(sidecar, repeated);
+    return entry_of(flags, sidecar, repeated, session.beams);
+  };
   Story story;
   {
     const Working working(console, "measuring again");
-    repeat(sidecar, setup, frame);
-    story = explain(setup, entry_of(flags, sidecar, frame, session.beams), frame);
+    story = explain(setup, pick, frame);
   }
   fmt::print("{}", story_text(story, setup, frame));
   return kDone;

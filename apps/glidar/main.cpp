@@ -4,6 +4,7 @@
 #include <apps/glidar/exit_code.hpp>
 #include <apps/glidar/help_text.hpp>
 #include <apps/glidar/interrupt.hpp>
+#include <apps/viewer/view.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
 
@@ -23,11 +24,12 @@ namespace {
 
 constexpr const char* kExamples = R"(Examples:
   glidar render builtin:asteroid -o asteroid.pcd -o asteroid.png
+  glidar view builtin:asteroid
   glidar explain asteroid.pcd --index 30000
   glidar info builtin:torus
   glidar sensors
   glidar verify
-More: glidar render --help, and the same for explain, info, sensors and verify)";
+More: glidar render --help, and the same for view, explain, info, sensors and verify)";
 
 using Commands = std::vector<std::pair<std::string, Command>>;
 
@@ -121,11 +123,10 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer(kExamples);
   const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
-  const Commands commands = {{"render", add_render(program, arguments)},
-                             {"explain", add_explain(program)},
-                             {"info", add_info(program)},
-                             {"sensors", add_sensors(program)},
-                             {"verify", add_verify(program)}};
+  const Commands commands = {
+      {"render", add_render(program, arguments)}, {"view", add_view(program)},
+      {"explain", add_explain(program)},          {"info", add_info(program)},
+      {"sensors", add_sensors(program)},          {"verify", add_verify(program)}};
   return parse_and_run(program, commands, argc, argv);
 }
 

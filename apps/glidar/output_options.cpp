@@ -206,6 +206,16 @@ std::string output_names_text() {
   return text;
 }
 
+OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame) {
+  const std::string number = fmt::format("_{:06}", frame);
+  OutputFlags result = flags;
+  for (std::string& path : result.paths) {
+    path.insert(path.size() - format_for(path).suffix.size(), number);
+  }
+  if (!result.legacy_name.empty()) result.legacy_name += number;
+  return result;
+}
+
 std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& input,
                                  const SidecarContext& context, const Report& report,
                                  const Progress& progress) {

@@ -7,6 +7,7 @@
 #include <glidar/core/report.hpp>
 #include <glidar/io/file_sink.hpp>
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -34,6 +35,9 @@ void add_output_flags(CLI::App& command, OutputFlags& flags);
 
 /// What the names of suffixes, columns and axes mean, for the end of --help.
 std::string output_names_text();
+
+/// The same for one frame of a sequence: NAME_000007.pcd for NAME.pcd.
+OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame);
 
 /// One file to be written.
 struct Output {

@@ -35,17 +35,6 @@ body. The object stands at the inertial zero, the sensor at (0, 0, -D), and
 in the frame x left, y up, z forward. --model-q goes with any other pose option too.
 Exit codes: 0 done (also when nothing was hit), 2 bad input, 130 interrupted.)";
 
-/// The outputs of one frame of a sequence: NAME_000007.pcd for NAME.pcd.
-OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame) {
-  const std::string number = fmt::format("_{:06}", frame);
-  OutputFlags result = flags;
-  for (std::string& path : result.paths) {
-    path.insert(path.size() - format_for(path).suffix.size(), number);
-  }
-  if (!result.legacy_name.empty()) result.legacy_name += number;
-  return result;
-}
-
 /// Measures the scene; the console shows how far that is.
 void measure(const Setup& setup, const HitFields& fields, Console& console, Frame& frame) {
   const Working working(console, fmt::format("casting {} beams", setup.beams.size()));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands.hpp>
 #include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/option_kinds.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/pattern_picture.hpp>
 #include <glidar/io/receiver_yaml.hpp>
@@ -15,7 +16,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 
@@ -233,6 +236,17 @@ int list_surfaces(const SensorsFlags& flags) {
   return kDone;
 }
 
+/// The pattern's picture is a PNG whatever its name, so the name must say so.
+void require_png(std::string_view option, const std::string& path) {
+  std::string suffix = std::filesystem::path(path).extension().string();
+  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (suffix == ".png") return;
+  throw Error({.where = std::string(option),
+               .found = "'" + path + "'",
+               .allowed = "a name that ends in .png",
+               .remedy = "clouds come from glidar render"});
+}
+
 int list_all(const SensorsFlags& flags) {
   if (!flags.picture.empty()) {
     throw Error({.where = "-o",
@@ -282,8 +296,8 @@ Command add_sensors(CLI::App& program) {
   const auto flags = std::make_shared<SensorsFlags>();
   command.footer(kExamples);
   command.add_option("name", flags->name, "Name of a sensor, or a sensor file")->type_name("NAME");
-  command.add_option("-o,--output", flags->picture, "Picture of its beams' directions (PNG)")
-      ->type_name("OUT.png");
+  add_text(command, {"-o,--output", "OUT.png", "Picture of its beams' directions (PNG)", "Options"},
+           flags->picture, require_png);
   command.add_flag("--surfaces", flags->surfaces,
                    "List the surfaces that come along and what they send back");
   command.add_flag("--json", flags->json, "Print JSON instead of a table");

@@ -114,6 +114,13 @@ std::int64_t last_firing_ns(const Sensor& sensor, const Beams& beams, std::uint3
 }
 
 void check_target(const RenderFlags& flags) {
+  for (const std::string& path : flags.output.paths) {
+    if (has_paper_target(flags) || format_for(path).suffix != ".paper.png") continue;
+    throw Error({.where = "--output, " + path,
+                 .found = "the float target, which draws no such picture",
+                 .allowed = "this output with --render-target paper",
+                 .remedy = "add --renderer opengl --render-target paper"});
+  }
   if (!has_paper_target(flags) || flags.renderer.kind == "opengl") return;
   throw Error({.where = "--render-target paper",
                .found = "the renderer " + flags.renderer.kind,
@@ -155,9 +162,9 @@ void open(const RenderFlags& flags, const std::function<void()>& on_loaded, Cons
   place_all(flags, loaded, console, session);
   const Working working(console, "preparing the scene");
   session.renderer = make_renderer(session.scene, flags.renderer);
-  if (!has_paper_target(flags)) return;
-  session.paper = {.camera = make_paper_camera(session.scene, flags.renderer),
-                   .picture = std::make_unique<PaperPicture>()};
+  if (has_paper_target(flags)) {
+    session.paper = make_paper_camera(session.scene, flags.renderer);
+  }
 }
 
 void turn_to(const RenderFlags& flags, std::uint32_t number, Session& session, Frame& frame) {
@@ -175,9 +182,7 @@ Setup setup_of(const Session& session, Console& console) {
               .motion = session.motion,
               .renderer = *session.renderer,
               .progress = [&console](double fraction) { console.tell(fraction); }};
-  const Paper& paper = session.paper;
-  if (paper.camera)
-    setup.paper.emplace(PaperTarget{.camera = *paper.camera, .picture = *paper.picture});
+  if (session.paper) setup.paper.emplace(PaperTarget{.camera = *session.paper});
   return setup;
 }
 

@@ -13,12 +13,6 @@
 
 namespace glidar::app {
 
-/// What --render-target paper measures with; empty for the float target.
-struct Paper {
-  std::unique_ptr<PaperCamera> camera;
-  std::unique_ptr<PaperPicture> picture;
-};
-
 /// A measurement made ready: all that its options name, loaded, placed and aimed.
 struct Session {
   Scene scene;
@@ -26,9 +20,9 @@ struct Session {
   Beams beams;  ///< of the frame that it is turned to, at first frame 0
   Motion motion;
   std::unique_ptr<Renderer> renderer;
-  Paper paper;
-  std::vector<std::string> files;  ///< all that were read
-  std::uint32_t frames = 1;        ///< in the duration asked for
+  std::unique_ptr<PaperCamera> paper;  ///< what --render-target paper measures with; else none
+  std::vector<std::string> files;      ///< all that were read
+  std::uint32_t frames = 1;            ///< in the duration asked for
 };
 
 /// Loads what the options name; `on_loaded` is called before the long work of preparing it to be

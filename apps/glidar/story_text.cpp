@@ -218,8 +218,8 @@ void tell_noise(Teller& to) {
       continue;
     }
     for (const Drawn& drawn : step.draws) {
-      to.line("", "drew {} {:.6f}: {}", drawn.law == Drawn::Law::normal ? "normal" : "uniform",
-              drawn.value, drawn.use);
+      to.line("", "drew {} {:.6f}: {}{}", drawn.law == Drawn::Law::normal ? "normal" : "uniform",
+              drawn.value, drawn.use, drawn.against ? fmt::format(" {:.6g}", *drawn.against) : "");
     }
     to.line("", "now {}", reading_text(step.after));
   }

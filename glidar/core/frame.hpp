@@ -64,6 +64,16 @@ struct Scratch {
   std::vector<std::uint32_t> mirrored_from;  ///< per mirrored beam: its sub-beam
 };
 
+/// A measurement as one picture, the way of the 2016 paper: red is the intensity, green and blue
+/// are the depth in 65536 steps between two planes.
+struct PaperPicture {
+  std::uint32_t rows = 0;
+  std::uint32_t cols = 0;
+  double near_m = 0.0;             ///< n of equation (8), depth along the boresight
+  double far_m = 0.0;              ///< f
+  std::vector<std::uint8_t> rgba;  ///< 4 x rows x cols, row 0 on top; alpha 0 where nothing is seen
+};
+
 /// One measurement: what the sensor reports per beam, with the truth attached. N = rows * cols.
 struct Frame {
   std::uint32_t rows = 0;
@@ -95,7 +105,8 @@ struct Frame {
     std::vector<PoseNumbers> world_from_object;  ///< N, without scale; NaN where nothing was hit
   };
   BeamPoses beam_poses;
-  Hits truth;  ///< what is there, whether reported or not
+  PaperPicture picture;  ///< that range and intensity were read from; no bytes: from none
+  Hits truth;            ///< what is there, whether reported or not
   Scratch scratch;
 };
 

@@ -63,6 +63,10 @@ void write_depth_npy(const CloudFile& job, AtomicFile& file);
 /// return. Throws Error when a depth is behind the sensor or above 65535 units.
 void write_depth_png(const CloudFile& job, AtomicFile& file);
 
+/// The frame's PaperPicture, byte by byte, as 8-bit RGBA; its planes are told in the file's text.
+/// Throws Error when the frame was not read from one.
+void write_paper_png(const CloudFile& job, AtomicFile& file);
+
 /// A picture for people: coloured depth and grey intensity with their scales.
 void write_preview(const CloudFile& job, AtomicFile& file);
 

@@ -215,7 +215,8 @@ Spelling spelling_of(const Sensor& sensor) {
 }
 
 /// The sensor's own estimate of what a surface sends back, as makers calibrate it: the range's part
-/// of the signal is taken out, the incidence's stays. Sensors that tell reflectance have done so,
+/// of the signal is taken out as it is in clear air, which is where they calibrate; the incidence's
+/// and the weather's stay. Sensors that tell reflectance have done so,
 /// and the paper's light hardly weakens over the range, so its intensity is that already.
 std::vector<double> reflectivity(const PointCloud& cloud, const Layout& layout,
                                  const Sensor& sensor, const Beams& beams) {

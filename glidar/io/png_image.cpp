@@ -56,23 +56,39 @@ void put_text(png_structp png, png_infop info, const std::string& description) {
   png_set_text(png, info, &text, 1);
 }
 
+struct PixelForm {
+  int bits;    ///< of a channel
+  int colour;  ///< as libpng names it
+  std::size_t bytes;
+};
+
+PixelForm form_of(PngKind kind) {
+  switch (kind) {
+    case PngKind::grey16:
+      return {16, PNG_COLOR_TYPE_GRAY, 2};
+    case PngKind::rgba8:
+      return {8, PNG_COLOR_TYPE_RGB_ALPHA, 4};
+    default:
+      return {8, PNG_COLOR_TYPE_RGB, 3};
+  }
+}
+
 /// False after an error. Nothing in here has a destructor that a jump could miss.
 bool encode(png_structp png, png_infop info, const PngImage& image, png_bytepp rows) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
-  const bool grey = image.kind == PngKind::grey16;
+  const PixelForm form = form_of(image.kind);
   png_set_compression_level(png, kCompressionLevel);
-  png_set_IHDR(png, info, image.width, image.height, grey ? 16 : 8,
-               grey ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+  png_set_IHDR(png, info, image.width, image.height, form.bits, form.colour, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_write_info(png, info);
-  if (grey) png_set_swap(png);  // the file is big-endian
+  if (image.kind == PngKind::grey16) png_set_swap(png);  // the file is big-endian
   png_write_image(png, rows);
   png_write_end(png, nullptr);
   return true;
 }
 
 std::vector<png_bytep> rows_of(const PngImage& image) {
-  const std::size_t stride = std::size_t{image.width} * (image.kind == PngKind::grey16 ? 2 : 3);
+  const std::size_t stride = std::size_t{image.width} * form_of(image.kind).bytes;
   std::vector<png_bytep> rows(image.height);
   for (std::size_t row = 0; row < rows.size(); ++row) {
     // libpng only reads them

@@ -11,7 +11,7 @@
 
 namespace glidar {
 
-enum class PngKind : std::uint8_t { grey16, rgb8 };
+enum class PngKind : std::uint8_t { grey16, rgb8, rgba8 };
 
 /// Pixels row by row from the top, without padding; grey16 in memory order.
 struct PngImage {

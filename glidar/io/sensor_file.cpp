@@ -104,6 +104,18 @@ Light read_light(const YamlField& field) {
   return light;
 }
 
+/// The paper's lamp, or pulses, of which the lamp's light would be no part.
+void read_lights(const YamlField& field, Sensor& sensor) {
+  const auto light = find(field, "light");
+  const auto pulse = find(field, "pulse_light");
+  if (light && pulse) {
+    reject(*light, "given beside 'pulse_light', in whose place it would be",
+           "one of light, pulse_light", "remove one of them");
+  }
+  if (light) sensor.light = read_light(*light);
+  if (pulse) sensor.pulse = read_pulse_light(*pulse);
+}
+
 /// What only a sensor of pulses has.
 void read_beam_shape(const YamlField& field, Sensor& sensor) {
   for (const char* key : {"footprint", "receiver"}) {
@@ -229,8 +241,7 @@ Sensor read_sensor(const YamlField& field) {
     sensor.wavelength_m = number(*wavelength, kWavelength) * 1e-9;
   }
   sensor.limits = read_limits(field, sensor);
-  if (const auto light = find(field, "light")) sensor.light = read_light(*light);
-  if (const auto pulse = find(field, "pulse_light")) sensor.pulse = read_pulse_light(*pulse);
+  read_lights(field, sensor);
   read_beam_shape(field, sensor);
   if (const auto weather = find(field, "weather")) read_weather_of(*weather, sensor);
   if (const auto projector = find(field, "projector_m")) {

@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 
 #include <string>
+#include <utility>
 
 namespace glidar {
 namespace {
@@ -39,6 +40,44 @@ void check(const ConstantTwist& twist) {
 void check(const Spin& spin) {
   require(is_rigid(spin.pose), "spin, pose", "not a rigid transform");
   require(spin.rate_rad_s.allFinite(), "spin, rate", "not finite");
+}
+
+/// The same rigid motion, moved; parts that point along the world's axes turn along.
+Trajectory moved_by(const Pose& moved, const ConstantPose& constant) {
+  return ConstantPose{moved * constant.pose};
+}
+
+Trajectory moved_by(const Pose& moved, Spin spin) {
+  spin.pose = moved * spin.pose;
+  return spin;
+}
+
+/// A twist in the world's frame changes by the adjoint map (Lynch & Park, "Modern Robotics" (2017),
+/// definition 3.20).
+Trajectory moved_by(const Pose& moved, ConstantTwist twist) {
+  twist.pose = moved * twist.pose;
+  if (twist.frame == TwistFrame::body) return twist;
+  twist.angular_rad_s = moved.linear() * twist.angular_rad_s;
+  twist.linear_m_s =
+      moved.linear() * twist.linear_m_s + moved.translation().cross(twist.angular_rad_s);
+  return twist;
+}
+
+Trajectory moved_by(const Pose& moved, const TimedPoses& timed) {
+  const Eigen::Quaterniond rotation(moved.linear());
+  std::vector<TimedPose> poses(timed.poses().begin(), timed.poses().end());
+  for (TimedPose& pose : poses) {
+    pose.position_m = moved * pose.position_m;
+    pose.orientation = rotation * pose.orientation;
+  }
+  return TimedPoses(std::move(poses));
+}
+
+Trajectory moved_by(const Pose& moved, const Tumbling& tumbling) {
+  TumblingStart start = tumbling.start();
+  start.world_from_body = moved * start.world_from_body;
+  start.velocity_m_s = moved.linear() * start.velocity_m_s;
+  return Tumbling(start);
 }
 
 void check(const TimedPoses& /*checked when made*/) {}
@@ -107,6 +146,10 @@ Motion moving(const Scene& scene, const Trajectory& world_from_sensor,
   }
   motion.world_from_instance = world_from_instance;
   return motion;
+}
+
+Trajectory moved(const Pose& moved_from_world, const Trajectory& trajectory) {
+  return std::visit([&](const auto& kind) { return moved_by(moved_from_world, kind); }, trajectory);
 }
 
 void place(const Motion& motion, Frame& frame) {

@@ -65,6 +65,9 @@ Motion standing_still(const Scene& scene, const Pose& world_from_sensor);
 Motion moving(const Scene& scene, const Trajectory& world_from_sensor,
               const std::vector<Trajectory>& world_from_instance);
 
+/// The same motion after all of it was moved: moved_from_world * pose_at(trajectory, t) at any time.
+Trajectory moved(const Pose& moved_from_world, const Trajectory& trajectory);
+
 /// Writes the poses of all at frame.stamp_ns into the frame.
 void place(const Motion& motion, Frame& frame);
 

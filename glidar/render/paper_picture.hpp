@@ -7,22 +7,11 @@
 #include <glidar/render/opengl/context.hpp>
 #include <glidar/render/renderer.hpp>
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
 
 namespace glidar {
-
-/// A measurement as one picture, the way of the 2016 paper: red is the intensity, green and blue
-/// are the depth in 65536 steps between two planes.
-struct PaperPicture {
-  std::uint32_t rows = 0;
-  std::uint32_t cols = 0;
-  double near_m = 0.0;             ///< n of equation (8), depth along the boresight
-  double far_m = 0.0;              ///< f
-  std::vector<std::uint8_t> rgba;  ///< 4 x rows x cols, row 0 on top; alpha 0 where nothing is seen
-};
 
 /// The planes of equation (8).
 struct PaperPlanes {

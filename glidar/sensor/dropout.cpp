@@ -14,15 +14,6 @@
 namespace glidar {
 namespace {
 
-double probability_of(const Dropout& step, const NoiseBatch& batch, std::size_t i) {
-  double kept = 1.0 - step.probability;
-  kept *= 1.0 - look_up(step.by_range_m, batch.range_m[i]);
-  if (!step.by_incidence_rad.empty()) {
-    kept *= 1.0 - look_up(step.by_incidence_rad, angle_of(batch.cosine[i]));
-  }
-  return 1.0 - kept;
-}
-
 /// The ranges of first arrivals, from their uniform numbers.
 GLIDAR_SIMD void first_arrivals(double near_m, double metres, Batch<double>& x) {
   for (std::size_t i = 0; i < kDrawBatch; ++i) x[i] = near_m - natural_log(x[i]) * metres;
@@ -30,13 +21,22 @@ GLIDAR_SIMD void first_arrivals(double near_m, double metres, Batch<double>& x) 
 
 }  // namespace
 
+double drop_probability(const Dropout& step, double range_m, double cos_incidence) {
+  double kept = 1.0 - step.probability;
+  kept *= 1.0 - look_up(step.by_range_m, range_m);
+  if (!step.by_incidence_rad.empty()) {
+    kept *= 1.0 - look_up(step.by_incidence_rad, angle_of(cos_incidence));
+  }
+  return 1.0 - kept;
+}
+
 void apply(const Dropout& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> x;
   draw_shared_uniforms(batch.draw, x);
   for (std::size_t i = 0; i < batch.count; ++i) {
-    if (is_hit(batch, i) && x[i] < probability_of(step, batch, i)) {
-      lose(batch, i, Status::dropped);
-    }
+    if (!is_hit(batch, i)) continue;
+    const double probability = drop_probability(step, batch.range_m[i], batch.cosine[i]);
+    if (x[i] < probability) lose(batch, i, Status::dropped);
   }
 }
 

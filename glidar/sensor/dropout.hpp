@@ -34,6 +34,9 @@ struct FalseEchoes {
   double intensity = 0.0;
 };
 
+/// The probability that a return is lost.
+double drop_probability(const Dropout& step, double range_m, double cos_incidence);
+
 void apply(const Dropout& step, const NoiseView& view, NoiseBatch& batch);
 void prepare(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch);
 void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch);

@@ -3,8 +3,10 @@
 #include <glidar/sensor/noise_draws.hpp>
 
 #include <glidar/core/gaussian.hpp>
+#include <glidar/sensor/lateral_shift.hpp>
 
 #include <algorithm>
+#include <cmath>
 
 namespace glidar {
 namespace {
@@ -27,6 +29,14 @@ Draw run_of(const Asked& asked, std::uint32_t block = 0) {
   draw.beam -= draw.beam % static_cast<std::uint32_t>(kDrawBatch);
   draw.block = block;
   return draw;
+}
+
+/// The same for another entry of the frame.
+Asked about(const Asked& asked, std::size_t entry) {
+  Asked other = asked;
+  other.draw.beam = static_cast<std::uint32_t>(entry);
+  other.entry = entry;
+  return other;
 }
 
 double shared_normal(const Asked& asked, std::uint32_t block = 0) {
@@ -87,12 +97,18 @@ Draws draws(const RangeDrift& step, const Asked& asked) {
   const double value = drift_at(asked.frame.number, step.tau_s / asked.frame_s, of_ring);
   return {{Law::normal, value, step.per_ring ? "drift of the ring" : "drift of the sensor"}};
 }
-Draws draws(const Dropout& /*step*/, const Asked& asked) {
-  return {{Law::uniform, shared_uniform(asked), "lost if below the probability"}};
+Draws draws(const Dropout& step, const Asked& asked) {
+  Drawn chance{Law::uniform, shared_uniform(asked), "lost if below"};
+  const std::vector<float>& cosines = asked.frame.truth.cos_incidence;
+  if (asked.frame.status[asked.entry] == Status::hit) {
+    chance.against = drop_probability(step, asked.frame.range_m[asked.entry],
+                                      cosines.empty() ? 1.0 : double{cosines[asked.entry]});
+  }
+  return {chance};
 }
-Draws draws(const Crosstalk& /*step*/, const Asked& asked) {
+Draws draws(const Crosstalk& step, const Asked& asked) {
   const RandomWords words = random_words(asked.draw);
-  return {{Law::uniform, uniform(words[0]), "crosstalk if below the probability"},
+  return {{Law::uniform, uniform(words[0]), "crosstalk if below", step.probability},
           {Law::uniform, uniform(words[1]), "which other channel"},
           {Law::uniform, uniform(words[2]), "where before that channel's range"}};
 }
@@ -102,8 +118,31 @@ Draws draws(const FalseEchoes& /*step*/, const Asked& asked) {
 Draws draws(const DisparityQuantum& /*step*/, const Asked& /*asked*/) {
   return {};
 }
-Draws draws(const KinectV1& /*step*/, const Asked& asked) {
-  return error_of(asked, "of the pixel; the error is the mean over the window around it");
+/// What mean_over_window makes of the draws around a pixel.
+double window_mean(const KinectV1& step, const Asked& asked) {
+  const std::size_t reach = std::min<std::size_t>(step.window / 2, kLargestReach);
+  const std::size_t cols = asked.beams.cols;
+  const std::size_t row = asked.entry / cols;
+  const std::size_t col = asked.entry % cols;
+  const std::size_t end_row = std::min<std::size_t>(asked.beams.rows, row + reach + 1);
+  const std::size_t end_col = std::min(cols, col + reach + 1);
+  double sum = 0.0;
+  double count = 0.0;
+  for (std::size_t r = row - std::min(row, reach); r < end_row; ++r) {
+    for (std::size_t c = col - std::min(col, reach); c < end_col; ++c) {
+      sum += shared_normal(about(asked, r * cols + c));
+      count += 1.0;
+    }
+  }
+  return sum / std::sqrt(count);
+}
+
+Draws draws(const KinectV1& step, const Asked& asked) {
+  const std::string side = std::to_string(step.window);
+  return {{Law::normal, shared_normal(asked), "of the pixel alone"},
+          {Law::normal, window_mean(step, asked),
+           "error of the disparity: the mean of " + side + " x " + side +
+               " pixels' numbers, brought to deviation 1"}};
 }
 Draws draws(const Khoshelham& /*step*/, const Asked& asked) {
   return error_of(asked, "error of the depth");

@@ -5,6 +5,7 @@
 #include <glidar/sensor/noise.hpp>
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,13 @@ struct Drawn {
   enum class Law : std::uint8_t { normal, uniform };  ///< of mean 0 and deviation 1; from 0 to 1
   Law law = Law::normal;
   double value = 0.0;
-  std::string use;  ///< what the step does with it
+  std::string use;                     ///< what the step does with it
+  std::optional<double> against = {};  ///< of a chance: the probability that it is held against
 };
 
 /// The random numbers that step `place` of a list takes for an entry, by the same draws as the step
-/// itself. `beams` are those that the sensor reports, frame_s is the time between frames.
+/// itself. `beams` are those that the sensor reports, the frame is as the step finds it, frame_s is
+/// the time between frames.
 std::vector<Drawn> draws_of(const std::vector<NoiseStep>& noise, std::size_t place,
                             const Beams& beams, const Frame& frame, double frame_s,
                             std::size_t entry);

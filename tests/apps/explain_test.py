@@ -5,11 +5,13 @@
 import json
 import os
 import re
+import shlex
 import shutil
 import unittest
 
 from cli_support import CliTest, box_of
 
+ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 SENSOR = """
 optics: {type: pinhole, width: 24, height: 20, fov_deg: 30}
 wavelength_nm: 905
@@ -71,6 +73,31 @@ class Explain(CliTest):
         self.assertIn("sub-rays", story["ways"][0])
         self.assertIn("drew normal", story["echoes"][1])
         self.assertIn("range_gaussian sigma_m 0.02", story["noise 1"][0])
+
+    def test_it_tells_what_a_chance_and_a_window_came_to(self):
+        self.write("s.yaml", """
+optics: {type: pinhole, width: 24, height: 20, fov_deg: 30}
+noise: [{type: kinect_v1, window: 5}, {type: dropout, probability: 0.1, by_range_m: [[0, 0.5], [1000, 0.5]]}]
+""")
+        self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "-o", "a.csv",
+                     "--columns", "xyz,range,intensity,status")
+        story = self.story_of("a.csv", "--row", "10", "--col", "12")
+        kinect, chance = story["noise 1"], story["noise 2"]
+        self.assertRegex(kinect[2], r"drew normal \S+: error of the disparity: the mean of 5 x 5 pixels' numbers")
+        drawn = re.match(r"drew uniform (\S+): lost if below 0.55$", chance[1])
+        self.assertIsNotNone(drawn, chance)
+        self.assertEqual(chance[-1].startswith("now dropped"), float(drawn[1]) < 0.55)
+
+    def test_the_documented_example_comes_out_as_shown(self):
+        with open(os.path.join(ROOT, "docs", "explain.md"), encoding="utf-8") as file:
+            shown = file.read()
+        commands = re.search(r"```sh\n(.*?)```", shown, re.DOTALL)[1].splitlines()
+        told = re.search(r"```text\n(.*?)```", shown, re.DOTALL)[1]
+        for command in commands:
+            name, *arguments = shlex.split(command)
+            self.assertEqual(name, "glidar")
+            done = self.succeed(*arguments)
+        self.assertEqual(done.stdout, told)
 
     def test_frames_of_a_sequence_and_moved_folders_are_found(self):
         self.write("box.obj", box_of(2))

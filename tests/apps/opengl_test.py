@@ -4,9 +4,20 @@
 
 import json
 import os
+import re
+import sys
 import unittest
+from pathlib import Path
 
 from cli_support import CliTest
+
+try:
+    import numpy as np
+
+    sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "io/readers"))
+    import formats  # shares nothing with the writers
+except ImportError:
+    np = None
 
 VIEW = ("builtin:asteroid", "--width", "80", "--height", "60")
 
@@ -36,6 +47,33 @@ class OpenglRenderer(CliTest):
         self.assertNotEqual(paper, exact)
         with open(os.path.join(self.folder, "paper.csv.json"), encoding="utf-8") as file:
             self.assertIn("opengl, paper target", json.dumps(json.load(file)))
+
+    @unittest.skipIf(np is None, "NumPy is not installed")
+    def test_the_paper_s_picture_is_what_the_cloud_was_read_from(self):
+        paper = ("--renderer", "opengl", "--render-target", "paper")
+        self.succeed("render", *VIEW, *paper, "--columns", "xyz,depth,intensity,status", "-o", "a.npz",
+                     "-o", "a.paper.png")
+        self.succeed("render", *VIEW, "--columns", "xyz,depth", "-o", "exact.npz")
+        pixels, texts = formats.read_png(Path(self.folder) / "a.paper.png")
+        self.assertEqual((pixels.shape, pixels.dtype), ((60, 80, 4), np.uint8))
+        near, far = (float(x) for x in re.search(r"n = (\S+) m, f = (\S+) m", texts["Description"]).groups())
+        red, green, blue, alpha = (pixels[:, :, k].astype(float) for k in range(4))
+        # equations (6) to (9): D = 256 G + B of 65536 steps between the planes, of which the middle is meant
+        depth = near + (256 * green + blue + 0.5) * (far - near) / 65536
+        with np.load(os.path.join(self.folder, "a.npz")) as cloud:
+            hit = cloud["status"] == 0
+            np.testing.assert_array_equal(hit, alpha > 0)
+            np.testing.assert_allclose(cloud["depth"][hit], depth[hit], rtol=1e-12)
+            np.testing.assert_allclose(cloud["intensity"][hit], red[hit] / 255, rtol=1e-6)
+        self.assertGreater(hit.sum(), 1000)
+        with np.load(os.path.join(self.folder, "exact.npz")) as cloud:
+            off = np.abs(cloud["depth"] - depth)[hit]
+        self.assertLess(np.nanquantile(off, 0.99), 0.52 * (far - near) / 65536)
+
+    def test_the_float_target_has_no_picture(self):
+        told = "x.paper.png: the float target, which draws no such picture; allowed: this output with --render-target paper"
+        for renderer in ((), ("--renderer", "opengl")):
+            self.assertIn(told, self.refused("render", *VIEW, *renderer, "-o", "x.paper.png"))
 
     def test_what_it_cannot_draw_is_refused(self):
         self.assertIn("add --renderer opengl",

@@ -50,6 +50,13 @@ class Sensors(CliTest):
         self.assertIn("did you mean VLP-16?", self.refused("sensors", "VLP-17"))
         self.assertIn("no sensor is named", self.refused("sensors", "-o", "x.png"))
 
+    def test_a_pattern_has_the_name_of_a_png(self):
+        self.succeed("sensors", "vlp-16", "-o", "UPPER.PNG")
+        for name in ("x.pcd", "x", "png", "x.png.pcd"):
+            self.assertIn(f"--output: '{name}'; allowed: a name that ends in .png",
+                          self.refused("sensors", "VLP-16", "-o", name))
+            self.assertFalse(os.path.exists(os.path.join(self.folder, name)))
+
     def test_renders_with_a_preset(self):
         done = self.succeed("render", "builtin:box", "--sensor", "vlp-16", "--eye", "0,0,0",
                             "--columns", "xyz,range,ring,time", "-o", "room.npz")

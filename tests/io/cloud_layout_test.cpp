@@ -91,6 +91,24 @@ TEST(CloudLayout, ReflectivitiesOfPulsedLightDoNotDependOnTheRange) {
   EXPECT_THAT(found, ElementsAre(40, 40, 40, 0, 0));
 }
 
+TEST(CloudLayout, ReflectivitiesAreCalibratedInClearAirAndSoLowerInFog) {
+  CloudFixture made = points_with("range", std::vector<double>{10.0, 25.0, 50.0, 1.0, 1.0});
+  made.sensor.pulse = PulseLight{.reference_reflectance = 0.1, .reference_range_m = 100.0};
+  made.sensor.wavelength_m = 905e-9;
+  made.sensor.weather = Weather{.visibility_m = 100.0};
+  const double alpha = extinction_per_m(*made.sensor.weather, made.sensor.wavelength_m);
+  const auto signal = [&](double range_m) {  // of white, behind fog
+    return static_cast<float>(10.0 * std::pow(100.0 / range_m, 2.0) *
+                              std::exp(-2.0 * alpha * range_m));
+  };
+  for (Column& column : made.cloud.columns) {
+    if (column.name == "intensity")
+      column.values = std::vector<float>{signal(10.0), signal(25.0), signal(50.0), 0.0F, 0.0F};
+  }
+  // alpha = 3.912 / 100 m by Kim's law below 500 m: exp(-0.7824), exp(-1.956), exp(-3.912)
+  EXPECT_THAT(field<std::uint8_t>(made, "autoware", "intensity"), ElementsAre(46, 14, 2, 0, 0));
+}
+
 TEST(CloudLayout, ReflectivitiesAreThoseThatASensorTellsItself) {
   CloudFixture made = points_with("intensity", std::vector<float>{0.0F, 20.0F, 100.0F, 200.0F});
   made.sensor.pulse = PulseLight{};

@@ -162,6 +162,14 @@ TEST(DepthPng, ADepthOutOfRangeIsAnErrorWithTheScaleThatFits) {
   EXPECT_THAT(write_error(made, "a.depth.png"), HasSubstr("a depth of -2 m, behind the sensor"));
 }
 
+TEST(PaperPng, IsRefusedToAFrameThatWasNotReadFromAPicture) {
+  CloudFixture made = make_fixture();
+  made.frame.picture.rgba.clear();
+  EXPECT_THAT(write_error(made, "a.paper.png"),
+              HasSubstr("a frame that was not read from the paper's picture; allowed: a frame of "
+                        "the paper's target"));
+}
+
 TEST(TransformFile, IsTheFirstObjectInTheCloudsFrameWithoutScale) {
   CloudFixture made = make_fixture();
   made.cloud.world_from_cloud = make_pose({1.0, 2.0, 3.0}, Eigen::Quaterniond(0.0, 1.0, 0.0, 0.0));

@@ -256,6 +256,11 @@ const BadFile kBadFiles[] = {
      "s.yaml:3:16: light.attenuation: all three are 0; allowed: at least one above 0"},
     {"AmbientNegative", with_good_optics("light: {ambient: -0.1}\n"),
      "s.yaml:2:18: light.ambient: -0.1; allowed: a finite number from 0"},
+    {"TwoLights",
+     with_good_optics("light: {ambient: 0}\n"
+                      "pulse_light: {reference_reflectance: 0.8, reference_range_m: 100}\n"),
+     "s.yaml:2:8: light: given beside 'pulse_light', in whose place it would be; allowed: one of "
+     "light, pulse_light; remove one of them"},
     {"NotABoolean", with_good_optics("cull_back_faces: yes\n"),
      "s.yaml:2:18: cull_back_faces: 'yes'; allowed: false, true"},
     {"NameIsAList", with_good_optics("name: [a]\n"),

@@ -21,5 +21,42 @@ TEST(StandingStill, PutsEverythingWhereTheSceneHasIt) {
   EXPECT_TRUE(frame.world_from_instance[0].isApprox(scene.instances[0].world_from_object));
 }
 
+/// A move that turns about no axis in particular.
+Pose some_move() {
+  return make_pose({0.5, -2.0, 1.0}, Eigen::Quaterniond(0.9, 0.1, -0.3, 0.2));
+}
+
+/// One trajectory of every kind, in the order of the variant.
+std::vector<Trajectory> all_kinds() {
+  const Pose start = make_pose({1.0, 2.0, 3.0}, Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5));
+  const Eigen::Vector3d rate(0.3, -0.2, 0.7);
+  const Eigen::Vector3d velocity(1.0, 0.5, -2.0);
+  return {ConstantPose{start},
+          ConstantTwist{start, rate, velocity, TwistFrame::body, 0},
+          ConstantTwist{start, rate, velocity, TwistFrame::world, 0},
+          Spin{.pose = start, .rate_rad_s = rate},
+          TimedPoses({{0, {0.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()},
+                      {1'000'000'000, {1.0, 0.0, 2.0}, Eigen::Quaterniond(0.6, 0.8, 0.0, 0.0)}}),
+          Tumbling({.moments_kg_m2 = {1.0, 2.0, 2.5},
+                    .rate_rad_s = rate,
+                    .world_from_body = start,
+                    .velocity_m_s = velocity})};
+}
+
+TEST(Moved, IsTheMoveAfterThePoseAtAnyTimeForEveryKind) {
+  constexpr double kRounding = 1e-12;
+  const Pose move = some_move();
+  const std::vector<Trajectory> kinds = all_kinds();
+  ASSERT_EQ(kinds.back().index() + 1, std::variant_size_v<Trajectory>);
+  for (const Trajectory& trajectory : kinds) {
+    const Trajectory result = moved(move, trajectory);
+    EXPECT_EQ(result.index(), trajectory.index());
+    for (const std::int64_t t_ns : {-500'000'000LL, 0LL, 400'000'000LL, 3'000'000'000LL}) {
+      EXPECT_TRUE(pose_at(result, t_ns).isApprox(move * pose_at(trajectory, t_ns), kRounding))
+          << "kind " << trajectory.index() << " at " << t_ns;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace glidar

@@ -4,7 +4,9 @@
 #include <glidar/sensor/noise_draws.hpp>
 #include <sensor/noise_stage.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <variant>
 
 namespace glidar {
 namespace {
@@ -24,12 +26,13 @@ std::vector<NoiseStep> after_two(const NoiseStep& step) {
 /// Calls check(entry, draws, measured frame) for entries of a frame with one step of noise.
 template <class Check>
 void for_entries(const NoiseStep& step, const Check& check) {
+  const NoiseStage before(kRows, kCols, kRange_m);
   NoiseStage stage(kRows, kCols, kRange_m);
   stage.frame.cause.assign(stage.beams.size(), Cause::surface);
   const std::vector<NoiseStep> noise = after_two(step);
   stage.apply(noise);
   for (const std::size_t entry : {0U, 1U, 255U, 256U, 300U, 511U, 799U}) {
-    check(entry, draws_of(noise, 2, stage.beams, stage.frame, kFrame_s, entry), stage.frame);
+    check(entry, draws_of(noise, 2, stage.beams, before.frame, kFrame_s, entry), stage.frame);
   }
 }
 
@@ -42,20 +45,50 @@ void expect_adds(const NoiseStep& step, double sigma_m) {
   });
 }
 
-TEST(DrawsOf, AreWhatStepsOfRangeAdd) {
+void expect_none(const NoiseStep& step) {
+  const NoiseStage stage(1, 3, kRange_m);
+  EXPECT_TRUE(draws_of({step}, 0, stage.beams, stage.frame, kFrame_s, 0).empty());
+}
+
+// One hold() for every kind of step: what it draws is what the frame comes to.
+
+void hold(const RangeGaussian& /*kind*/) {
   expect_adds(RangeGaussian{.sigma_m = 0.02}, 0.02);
+}
+void hold(const RangeSnr& /*kind*/) {
   expect_adds(RangeSnr{.floor_m = 0.03, .k_m = 0.0, .snr_at_full_scale = 1.0}, 0.03);
+}
+void hold(const RangePulse& /*kind*/) {
   const RangePulse pulse{.pulse_fwhm_s = 5e-9, .sample_s = 1e-9, .noise = 0.01};
   expect_adds(pulse, pulse_sigma_m(pulse, 1.0));
+}
+void hold(const RangePhotons& /*kind*/) {
   const RangePhotons photons{.pulse_fwhm_s = 5e-9, .photons_at_full_scale = 1e4};
   expect_adds(photons, photon_sigma_m(photons, 1.0));
+}
+void hold(const Khoshelham& /*kind*/) {
   expect_adds(Khoshelham{.sigma_per_m = 1e-4}, 1e-4 * kRange_m * kRange_m);
+}
+void hold(const RangeBias& /*kind*/) {
   expect_adds(RangeBias{.offset_m = 0.0, .sigma_m = 0.05}, 0.05);
+  expect_none(RangeBias{.offset_m = 0.1, .sigma_m = 0.0});
+}
+void hold(const RangeDrift& /*kind*/) {
   expect_adds(RangeDrift{.sigma_m = 0.05, .tau_s = 2.0, .per_ring = true}, 0.05);
   expect_adds(RangeDrift{.sigma_m = 0.05, .tau_s = 2.0, .per_ring = false}, 0.05);
 }
 
-TEST(DrawsOf, AreWhatTheProgramOf2015Adds) {
+void hold(const RangeQuantum& /*kind*/) {
+  expect_none(RangeQuantum{.step_m = 0.1});
+}
+void hold(const IntensityScale& /*kind*/) {
+  expect_none(IntensityScale{});
+}
+void hold(const DisparityQuantum& /*kind*/) {
+  expect_none(DisparityQuantum{.k_m = 351.3});
+}
+
+void hold(const Range2015& /*kind*/) {
   for (const auto law : {Range2015::Distribution::normal, Range2015::Distribution::uniform}) {
     const Range2015 step{.additive_m = 0.1, .multiplicative = 0.01, .distribution = law};
     for_entries(step, [&](std::size_t entry, const std::vector<Drawn>& draws, const Frame& frame) {
@@ -69,19 +102,28 @@ TEST(DrawsOf, AreWhatTheProgramOf2015Adds) {
   }
 }
 
-TEST(DrawsOf, DecideWhatIsDropped) {
-  for_entries(Dropout{.probability = 0.5},
-              [](std::size_t entry, const std::vector<Drawn>& draws, const Frame& frame) {
-                ASSERT_EQ(draws.size(), 1U);
-                EXPECT_EQ(draws[0].law, Drawn::Law::uniform);
-                EXPECT_EQ(frame.status[entry] == Status::dropped, draws[0].value < 0.5) << entry;
-              });
+void hold(const Dropout& /*kind*/) {
+  // half of them anyhow, of the others 1 / 5 at 10 m and 1 / 4 square on
+  const Dropout step{.probability = 0.5,
+                     .by_range_m = {{0.0, 0.0}, {20.0, 0.4}},
+                     .by_incidence_rad = {{0.0, 0.25}, {1.0, 1.0}}};
+  for_entries(step, [](std::size_t entry, const std::vector<Drawn>& draws, const Frame& frame) {
+    ASSERT_EQ(draws.size(), 1U);
+    EXPECT_EQ(draws[0].law, Drawn::Law::uniform);
+    ASSERT_TRUE(draws[0].against.has_value());
+    EXPECT_NEAR(*draws[0].against, 1.0 - 0.5 * 0.8 * 0.75, 1e-12);
+    EXPECT_EQ(frame.status[entry] == Status::dropped, draws[0].value < *draws[0].against) << entry;
+  });
+  NoiseStage lost(1, 1, kRange_m);
+  lost.lose_beam(0);
+  EXPECT_FALSE(draws_of({step}, 0, lost.beams, lost.frame, kFrame_s, 0)[0].against.has_value());
 }
 
-TEST(DrawsOf, DecideCrosstalkAndWhereItIs) {
+void hold(const Crosstalk& /*kind*/) {
   for_entries(Crosstalk{.probability = 0.5, .near_m = 1.0},
               [](std::size_t entry, const std::vector<Drawn>& draws, const Frame& frame) {
                 ASSERT_EQ(draws.size(), 3U);
+                EXPECT_EQ(draws[0].against, 0.5);
                 const bool talks = draws[0].value < 0.5;
                 EXPECT_EQ(frame.cause[entry] == Cause::crosstalk, talks) << entry;
                 const double expected_m = talks ? 1.0 + 9.0 * draws[2].value : kRange_m;
@@ -89,7 +131,7 @@ TEST(DrawsOf, DecideCrosstalkAndWhereItIs) {
               });
 }
 
-TEST(DrawsOf, TellWhenAFalseEchoArrives) {
+void hold(const FalseEchoes& /*kind*/) {
   constexpr double kRate_hz = 3e7;  // one in 5 m
   for_entries(FalseEchoes{.rate_hz = kRate_hz, .near_m = 0.5, .far_m = 100.0, .intensity = 1.0},
               [](std::size_t entry, const std::vector<Drawn>& draws, const Frame& frame) {
@@ -100,7 +142,7 @@ TEST(DrawsOf, TellWhenAFalseEchoArrives) {
               });
 }
 
-TEST(DrawsOf, AreWhatDisparityIsOffBy) {
+void hold(const Stereo& /*kind*/) {
   const Stereo stereo{.focal_px = 500.0, .baseline_m = 0.1, .sigma_px = 0.2, .step_px = 0.0};
   for_entries(stereo, [&](std::size_t entry, const std::vector<Drawn>& draws, const Frame& frame) {
     ASSERT_EQ(draws.size(), 1U);
@@ -110,7 +152,94 @@ TEST(DrawsOf, AreWhatDisparityIsOffBy) {
   });
 }
 
-TEST(DrawsOf, AreWhatIntensityIsOffBy) {
+constexpr double kFineK_m = 1e9;  // so many steps of disparity that rounding to them is nothing
+
+/// The range of a disparity that is off by so many of these fine steps.
+double range_off_by_m(double steps) {
+  return kFineK_m / (kFineK_m / kRange_m + steps);
+}
+
+/// The sum of a pixel's neighbours' own draws over the root of their number, by the window's law.
+double window_mean(const NoiseStage& stage, const std::vector<NoiseStep>& noise, std::size_t entry,
+                   std::size_t reach) {
+  double sum = 0.0;
+  double count = 0.0;
+  const std::size_t row = entry / kCols;
+  const std::size_t col = entry % kCols;
+  for (std::size_t r = 0; r < kRows; ++r) {
+    for (std::size_t c = 0; c < kCols; ++c) {
+      if (r + reach < row || r > row + reach || c + reach < col || c > col + reach) continue;
+      sum += draws_of(noise, 2, stage.beams, stage.frame, kFrame_s, r * kCols + c).at(0).value;
+      count += 1.0;
+    }
+  }
+  return sum / std::sqrt(count);
+}
+
+void hold(const KinectV1& /*kind*/) {
+  const KinectV1 kinect{.k_m = kFineK_m, .offset_steps = 0.0, .sigma_steps = 1e5, .window = 5};
+  const NoiseStage before(kRows, kCols, kRange_m);
+  for_entries(kinect, [&](std::size_t entry, const std::vector<Drawn>& draws, const Frame& frame) {
+    ASSERT_EQ(draws.size(), 2U);
+    const double mean = window_mean(before, after_two(kinect), entry, 2);
+    EXPECT_NEAR(draws[1].value, mean, 1e-12) << entry;
+    EXPECT_NEAR(frame.range_m[entry], range_off_by_m(1e5 * mean), 1e-7) << entry;
+  });
+}
+
+void hold(const NguyenAxial& /*kind*/) {
+  // for_entries has no incidences, so beams meet surfaces square on
+  expect_adds(NguyenAxial{}, nguyen_axial_sigma_m({}, kRange_m, 0.0));
+}
+
+constexpr double kPerCol_m = 1e-3;
+constexpr double kPerRow_m = 3e-3;
+
+/// A surface whose depth grows from pixel to pixel: what a look at the
+/// place beside a pixel finds is as far off as that place is.
+struct Slope : NoiseStage {
+  Slope() : NoiseStage(kRows, kCols, kRange_m) {
+    for (std::size_t i = 0; i < frame.range_m.size(); ++i) {
+      frame.range_m[i] +=
+          kPerCol_m * static_cast<double>(i % kCols) + kPerRow_m * static_cast<double>(i / kCols);
+    }
+  }
+};
+
+/// The depth of the slope that a pixel sees when it looks `sigma_px` times its first two draws
+/// aside, as far as the image goes.
+double seen_on_slope_m(std::size_t entry, double sigma_px, const std::vector<Drawn>& draws) {
+  const double col = static_cast<double>(entry % kCols) + sigma_px * draws.at(0).value;
+  const double row = static_cast<double>(entry / kCols) + sigma_px * draws.at(1).value;
+  return kRange_m + kPerCol_m * std::clamp(col, 0.0, kCols - 1.0) +
+         kPerRow_m * std::clamp(row, 0.0, kRows - 1.0);
+}
+
+void hold(const NguyenLateral& /*kind*/) {
+  const std::vector<NoiseStep> noise = {NguyenLateral{.a_px = 0.8}};
+  Slope stage;
+  stage.apply(noise);
+  for (const std::size_t entry : {0U, 99U, 150U, 255U, 256U, 799U}) {
+    const auto draws = draws_of(noise, 0, stage.beams, stage.frame, kFrame_s, entry);
+    ASSERT_EQ(draws.size(), 2U);
+    EXPECT_NEAR(stage.frame.range_m[entry], seen_on_slope_m(entry, 0.8, draws), 1e-10) << entry;
+  }
+}
+
+void hold(const IclKinect& /*kind*/) {
+  const std::vector<NoiseStep> noise = {
+      IclKinect{.k_m = kFineK_m, .lateral_px = 0.5, .sigma_steps = 1e5}};
+  Slope stage;
+  stage.apply(noise);
+  for (const std::size_t entry : {0U, 99U, 150U, 255U, 256U, 799U}) {
+    const auto draws = draws_of(noise, 0, stage.beams, stage.frame, kFrame_s, entry);
+    ASSERT_EQ(draws.size(), 3U);
+    const double steps = kFineK_m / seen_on_slope_m(entry, 0.5, draws) + 1e5 * draws[2].value;
+    EXPECT_NEAR(stage.frame.range_m[entry], kFineK_m / steps, 1e-7) << entry;
+  }
+}
+
+void hold(const IntensityGaussian& /*kind*/) {
   const IntensityGaussian step{.sigma = 0.05};
   for_entries(step, [&](std::size_t entry, const std::vector<Drawn>& draws, const Frame& frame) {
     ASSERT_EQ(draws.size(), 1U);
@@ -118,7 +247,7 @@ TEST(DrawsOf, AreWhatIntensityIsOffBy) {
   });
 }
 
-TEST(DrawsOf, AreErrorsOfThePhase) {
+void hold(const ContinuousWave& /*kind*/) {
   const ContinuousWave wave{.frequencies_hz = {10e6},
                             .electrons_at_full_scale = 1e5,
                             .background_electrons = 1e4,
@@ -133,10 +262,16 @@ TEST(DrawsOf, AreErrorsOfThePhase) {
   EXPECT_EQ(draws_of(six, 0, stage.beams, stage.frame, kFrame_s, 299).size(), 6U);
 }
 
-TEST(DrawsOf, TurnBeams) {
-  NoiseStage stage(2, 400, kRange_m);
-  for (Eigen::Vector3d& d : stage.beams.directions) d = Eigen::Vector3d::UnitX();
-  stage.beams.boresight = Eigen::Vector3d::UnitX();
+/// A stage of a turning sensor, all of whose beams look ahead.
+struct LookingAhead : NoiseStage {
+  LookingAhead() : NoiseStage(2, 400, kRange_m) {
+    for (Eigen::Vector3d& d : beams.directions) d = Eigen::Vector3d::UnitX();
+    beams.boresight = Eigen::Vector3d::UnitX();
+  }
+};
+
+void hold(const PointingJitter& /*kind*/) {
+  LookingAhead stage;
   const std::vector<NoiseStep> noise = {RangeGaussian{}, PointingJitter{1e-4, 2e-4}};
   const Beams& aimed = aimed_beams(noise, stage.beams, stage.workers, stage.frame);
   for (const std::size_t entry : {0U, 255U, 256U, 777U}) {
@@ -147,12 +282,39 @@ TEST(DrawsOf, TurnBeams) {
   }
 }
 
-TEST(DrawsOf, AreNoneOfStepsThatDrawNothing) {
-  const NoiseStage stage(1, 3, kRange_m);
-  const std::vector<NoiseStep> noise = {RangeQuantum{}, IntensityScale{}, DisparityQuantum{}};
-  for (std::size_t k = 0; k < noise.size(); ++k) {
-    EXPECT_TRUE(draws_of(noise, k, stage.beams, stage.frame, kFrame_s, 0).empty());
+void hold(const EncoderError& /*kind*/) {
+  LookingAhead stage;
+  for (const std::uint32_t frame : {0U, 1U, 77U}) {
+    stage.frame.number = frame;
+    const std::vector<NoiseStep> noise = {RangeGaussian{}, EncoderError{.turn_sigma_rad = 1e-3}};
+    const Beams& aimed = aimed_beams(noise, stage.beams, stage.workers, stage.frame);
+    for (const std::size_t entry : {0U, 255U, 777U}) {
+      const auto draws = draws_of(noise, 1, stage.beams, stage.frame, kFrame_s, entry);
+      ASSERT_EQ(draws.size(), 1U);
+      EXPECT_EQ(draws[0].law, Drawn::Law::normal);
+      // reported minus true azimuth, of beams that report 0
+      const Eigen::Vector3d& beam = aimed.directions[entry];
+      EXPECT_NEAR(-std::atan2(beam.y(), beam.x()), 1e-3 * draws[0].value, 1e-12) << entry;
+    }
   }
+  expect_none(EncoderError{.step_rad = 1e-3, .eccentricity_rad = 1e-3});
+}
+
+/// The kinds of a variant as a list for a typed test.
+template <class Variant>
+struct KindsOf;
+template <class... Kind>
+struct KindsOf<std::variant<Kind...>> {
+  using Types = ::testing::Types<Kind...>;
+};
+
+template <class Kind>
+class DrawsOf : public ::testing::Test {};
+TYPED_TEST_SUITE(DrawsOf, KindsOf<NoiseStep>::Types);
+
+/// Does not compile when a kind of step has no hold() of its own.
+TYPED_TEST(DrawsOf, AreWhatTheStepDoes) {
+  hold(TypeParam{});
 }
 
 }  // namespace

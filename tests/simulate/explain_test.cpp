@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace glidar {
@@ -149,6 +150,32 @@ TEST(Explain, ShowsTheReceiversNoise) {
   EXPECT_EQ(story.receiver_noise[0], normals(random_words(draw))[0]);
   EXPECT_NEAR(story.pulse->received[0].signal,
               story.pulse->echoes[0].signal + 0.2 * normals(random_words(draw))[0], 1e-9);
+}
+
+TEST(Explain, TracesThePulseOfAnEntryThatIsPickedFromTheFrame) {
+  Stage stage = noisy_stage();
+  stage.sensor.pulse = PulseLight{.noise_sigma = 0.2};
+  stage.sensor.footprint = Footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3};
+  stage.sensor.weather = Weather{.rain_mm_per_h = 20.0};
+  const auto renderer = make_renderer(stage.scene, {.threads = 2});
+  const Beams beams = make_beams(stage.sensor);
+  const Motion motion = standing_still(stage.scene, Pose::Identity());
+  const glidar::Setup setup{stage.scene, stage.sensor, beams, motion, *renderer};
+  Frame frame;
+  const auto last_hit = [](const Frame& measured) {
+    const auto found = std::find(measured.status.rbegin(), measured.status.rend(), Status::hit);
+    return static_cast<std::size_t>(found.base() - measured.status.begin()) - 1;
+  };
+  const Story story = explain(setup, last_hit, frame);
+  EXPECT_EQ(frame.status[story.entry], Status::hit);
+  EXPECT_EQ(last_hit(frame), story.entry);
+  ASSERT_TRUE(story.pulse.has_value());
+  EXPECT_EQ(story.pulse->pulse, story.entry);
+  EXPECT_EQ(story.pulse->received.at(0).range_m, story.measured.range_m);
+  EXPECT_EQ(story.noise.back().after.range_m, frame.range_m[story.entry]);
+  Frame simulated;
+  simulate(setup, {}, simulated);
+  expect_same(frame, simulated);
 }
 
 TEST(Explain, RefusesAnEntryThatIsNotThere) {

@@ -25,10 +25,11 @@ Scene builtin(const char* name) {
 /// A measurement through the paper's picture, and how far it is from the truth.
 struct Measured {
   Frame frame;
-  PaperPicture picture;
   Frame exact;  ///< the same without the picture
 
-  [[nodiscard]] double step_m() const { return (picture.far_m - picture.near_m) / 65536.0; }
+  [[nodiscard]] double step_m() const {
+    return (frame.picture.far_m - frame.picture.near_m) / 65536.0;
+  }
 };
 
 class PaperTargetTest : public ::testing::Test {
@@ -58,7 +59,7 @@ class PaperTargetTest : public ::testing::Test {
               .motion = motion,
               .renderer = *renderer,
               .progress = {},
-              .paper = PaperTarget{*camera, measured.picture, planes}},
+              .paper = PaperTarget{*camera, planes}},
              fields, measured.frame);
     return measured;
   }
@@ -99,7 +100,7 @@ TEST_F(PaperTargetTest, DepthIsWithinHalfAStepAndLightWithinAByteOnASphere) {
   const Pose pose = look_at({6.0, 1.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Measured m = measure(scene, camera(300, 200, 0.4), pose);
   expect_near_truth(m, 0.0005);
-  EXPECT_LT(m.picture.far_m - m.picture.near_m, 2.0 + 1e-6);  // hugs it
+  EXPECT_LT(m.frame.picture.far_m - m.frame.picture.near_m, 2.0 + 1e-6);  // hugs it
 }
 
 TEST_F(PaperTargetTest, AndOnABumpyAsteroidWithColours) {
@@ -155,7 +156,8 @@ TEST_F(PaperTargetTest, PlanesThatDoNotHugCostTheirStep) {
   const Scene scene = builtin("sphere");
   const Pose pose = look_at({6.0, 1.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Measured m = measure(scene, camera(300, 200, 0.4), pose, PaperPlanes{1.0, 1001.0});
-  EXPECT_EQ(m.picture.far_m, 1001.0);
+  EXPECT_EQ(m.frame.picture.far_m, 1001.0);
+  EXPECT_TRUE(m.exact.picture.rgba.empty());
   expect_near_truth(m, 0.0005);  // of steps 500 times as large
 }
 

@@ -51,8 +51,8 @@ PaperDrawing::PaperDrawing(const Scene& scene)
 
 PaperDrawing::Shader PaperDrawing::make_shader(const char* surface_macro,
                                                const char* shine_macro) const {
-  return {make_program({.vertex = {"paper.vert.glsl"},
-                        .fragment = {"texel.glsl", "paper.frag.glsl"},
+  return {make_program({.vertex = {shader_text("paper.vert.glsl")},
+                        .fragment = {shader_text("texel.glsl"), shader_text("paper.frag.glsl")},
                         .macros = {surface_macro, shine_macro,
                                    has_clip_control_ ? "HAS_CLIP_CONTROL" : "WRITES_DEPTH"}})};
 }

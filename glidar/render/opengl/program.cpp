@@ -16,11 +16,11 @@ namespace {
                .remedy = "update the driver, or use --renderer embree"});
 }
 
-std::string joined(std::initializer_list<std::string_view> files,
+std::string joined(std::initializer_list<std::string_view> texts,
                    std::initializer_list<std::string_view> macros) {
   std::string text = "#version 330 core\n";
   for (const std::string_view macro : macros) text += "#define " + std::string(macro) + "\n";
-  for (const std::string_view file : files) text += shader_text(file);
+  for (const std::string_view part : texts) text += part;
   return text;
 }
 

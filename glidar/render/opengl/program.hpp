@@ -12,7 +12,7 @@ namespace glidar::opengl {
 /// The text of a file of shaders/, built into the program; throws std::out_of_range for another.
 std::string_view shader_text(std::string_view file);
 
-/// The files of one stage, which follow each other, and the macros they are compiled with.
+/// The texts of each stage, which follow each other, and the macros they are compiled with.
 struct ProgramSource {
   std::initializer_list<std::string_view> vertex;
   std::initializer_list<std::string_view> fragment;

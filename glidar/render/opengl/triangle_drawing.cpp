@@ -38,9 +38,10 @@ std::vector<std::uint32_t> number(const Scene& scene) {
 
 TriangleDrawing::Drawer TriangleDrawing::make_drawer(const char* mask_macro,
                                                      const char* depth_macro) {
-  Drawer drawer{.program = make_program({.vertex = {"triangles.vert.glsl"},
-                                         .fragment = {"texel.glsl", "numbers.frag.glsl"},
-                                         .macros = {mask_macro, depth_macro}}),
+  Drawer drawer{.program = make_program(
+                    {.vertex = {shader_text("triangles.vert.glsl")},
+                     .fragment = {shader_text("texel.glsl"), shader_text("numbers.frag.glsl")},
+                     .macros = {mask_macro, depth_macro}}),
                 .clip_from_object = 0,
                 .first_number = 0};
   drawer.clip_from_object = glGetUniformLocation(drawer.program.name(), "clip_from_object");

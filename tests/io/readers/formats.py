@@ -121,7 +121,7 @@ def unfilter(kind, line, above, step):
 
 
 def read_png(path):
-    """(pixels rows x cols x channels, texts) of a non-interlaced grey or rgb PNG."""
+    """(pixels rows x cols x channels, texts) of a non-interlaced grey, rgb or rgba PNG."""
     data = path.read_bytes()
     assert data[:8] == b"\x89PNG\r\n\x1a\n"
     at, packed, texts = 8, b"", {}
@@ -138,7 +138,7 @@ def read_png(path):
         elif kind == b"tEXt":
             key, value = body.split(b"\0")
             texts[key.decode()] = value.decode("latin-1")
-    channels = {0: 1, 2: 3}[colour]
+    channels = {0: 1, 2: 3, 6: 4}[colour]
     step = channels * depth // 8
     plain = zlib.decompress(packed)
     above, rows = bytes(width * step), []

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/picture.hpp>
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+
+namespace glidar::app {
+
+/// How a number becomes a colour.
+enum class ColourMap : std::uint8_t { viridis, rainbow, grey };
+inline constexpr std::array<std::string_view, 3> kColourMaps = {"viridis", "rainbow", "grey"};
+
+/// Of a number from 0 (dark, or blue) to 1 (bright, or red); what lies outside counts as the end.
+Colour colour_of(ColourMap map, double t);
+
+/// The colour of a hue from 0 to 1: red, yellow, green, cyan, blue, magenta, red.
+Colour hue(double turn);
+
+/// Neighbouring numbers get colours far apart: hues a golden section of the circle apart.
+Colour colour_of_number(std::uint32_t number);
+
+}  // namespace glidar::app

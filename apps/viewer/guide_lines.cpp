@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/viewer/guide_lines.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+namespace glidar::app {
+namespace {
+
+constexpr Colour kGrid = {120, 120, 130};
+constexpr Colour kFrustum = {255, 200, 80};
+
+void add(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, Colour colour,
+         std::uint8_t opacity, Lines& lines) {
+  lines.push_back({from_m.cast<float>(), colour, opacity});
+  lines.push_back({to_m.cast<float>(), colour, opacity});
+}
+
+/// Entries along one row or column of the beams' grid, at most so many, both ends among them.
+std::vector<std::size_t> along(std::size_t first, std::size_t step, std::size_t count) {
+  constexpr std::size_t kMost = 96;
+  const std::size_t parts = std::min(count - 1, kMost);
+  std::vector<std::size_t> entries = {first};
+  for (std::size_t i = 1; i <= parts; ++i) {
+    entries.push_back(first + step * (i * (count - 1) / parts));
+  }
+  return entries;
+}
+
+/// Where a beam is at a range; empty where there is no beam.
+std::optional<Eigen::Vector3d> tip(const Beams& beams, std::size_t beam, double range_m) {
+  if (std::isnan(beams.directions[beam].x())) return std::nullopt;
+  const Eigen::Vector3d reach = range_m * beams.directions[beam];
+  return beams.origins_m.empty() ? reach : Eigen::Vector3d(beams.origins_m[beam] + reach);
+}
+
+}  // namespace
+
+double grid_spacing_m(double extent_m) {
+  const double wanted = extent_m / 10.0;
+  const double power = std::pow(10.0, std::floor(std::log10(wanted)));
+  for (const double digit : {5.0, 2.0}) {
+    if (digit * power <= wanted) return digit * power;
+  }
+  return power;
+}
+
+void add_grid(const Eigen::Vector3d& about_m, double extent_m, double spacing_m, Lines& lines) {
+  constexpr std::uint8_t kFaint = 70;
+  const auto half = static_cast<int>(std::floor(extent_m / spacing_m));
+  const Eigen::Vector2d middle = (about_m.head<2>() / spacing_m).array().round() * spacing_m;
+  const double reach = half * spacing_m;
+  for (int i = -half; i <= half; ++i) {
+    const double x = middle.x() + i * spacing_m;
+    const double y = middle.y() + i * spacing_m;
+    add({x, middle.y() - reach, about_m.z()}, {x, middle.y() + reach, about_m.z()}, kGrid, kFaint,
+        lines);
+    add({middle.x() - reach, y, about_m.z()}, {middle.x() + reach, y, about_m.z()}, kGrid, kFaint,
+        lines);
+  }
+}
+
+void add_axes(const Pose& anchor_from_frame, double length_m, Lines& lines) {
+  constexpr std::array<Colour, 3> kAxes = {Colour{235, 80, 80}, Colour{90, 210, 90},
+                                           Colour{100, 140, 255}};
+  for (int axis = 0; axis < 3; ++axis) {
+    add(anchor_from_frame.translation(),
+        anchor_from_frame * (length_m * Eigen::Vector3d(Eigen::Vector3d::Unit(axis))),
+        kAxes.at(static_cast<std::size_t>(axis)), 255, lines);
+  }
+}
+
+void add_frustum(const Beams& beams, const Pose& anchor_from_sensor, double range_m, Lines& lines) {
+  constexpr std::uint8_t kHalf = 150;
+  constexpr std::size_t kEveryEdge = 24;  // lines from the sensor: at the corners and between
+  const std::size_t cols = beams.cols;
+  const std::size_t rows = beams.returns > 0 ? beams.rows / beams.returns : 0;
+  if (rows == 0 || cols == 0) return;
+  const std::array<std::vector<std::size_t>, 4> edges = {
+      along(0, 1, cols), along((rows - 1) * cols, 1, cols), along(0, cols, rows),
+      along(cols - 1, cols, rows)};
+  for (const std::vector<std::size_t>& edge : edges) {
+    std::optional<Eigen::Vector3d> before;
+    for (std::size_t k = 0; k < edge.size(); ++k) {
+      const std::optional<Eigen::Vector3d> at = tip(beams, edge[k], range_m);
+      if (at && before) {
+        add(anchor_from_sensor * *before, anchor_from_sensor * *at, kFrustum, kHalf, lines);
+      }
+      const bool has_ray =
+          k == 0 || k + 1 == edge.size() || (k % kEveryEdge == 0 && cols > 8 * rows);
+      const std::optional<Eigen::Vector3d> start = tip(beams, edge[k], 0.0);
+      if (at && start && has_ray) {
+        add(anchor_from_sensor * *start, anchor_from_sensor * *at, kFrustum, kHalf, lines);
+      }
+      before = at;
+    }
+  }
+}
+
+}  // namespace glidar::app

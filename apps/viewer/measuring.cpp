@@ -1,0 +1,266 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/viewer/measuring.hpp>
+
+#include <apps/glidar/advice.hpp>
+#include <apps/glidar/story_text.hpp>
+#include <glidar/explain.hpp>
+#include <glidar/simulate.hpp>
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <exception>
+#include <new>
+#include <utility>
+
+namespace glidar::app {
+
+/// What the flags name, and what follows from it.
+struct Measuring::Opened {
+  std::shared_ptr<const RenderFlags> flags;
+  std::shared_ptr<Session> session;
+  std::shared_ptr<const Sensor> noisy;
+  std::shared_ptr<const Sensor> still;
+  std::shared_ptr<const Beams> beams;
+  std::uint32_t number = 0;  ///< of the frame that the beams are of
+};
+
+namespace {
+
+/// The sensor without random errors.
+Sensor without_noise(Sensor sensor) {
+  sensor.noise.clear();
+  if (sensor.pulse) sensor.pulse->noise_sigma = 0.0;
+  return sensor;
+}
+
+Motion moved_all(const Motion& motion, const Ask& ask) {
+  Motion result = motion;
+  if (ask.sensor_moved.matrix() != Pose::Identity().matrix()) {
+    result.world_from_sensor = moved(ask.sensor_moved, motion.world_from_sensor);
+  }
+  if (ask.objects_moved.matrix() == Pose::Identity().matrix()) return result;
+  for (Trajectory& trajectory : result.world_from_instance) {
+    trajectory = moved(ask.objects_moved, trajectory);
+  }
+  return result;
+}
+
+Setup setup_of(const Shot& shot) {
+  const Session& session = *shot.session;
+  Setup setup{.scene = session.scene,
+              .sensor = *shot.sensor,
+              .beams = *shot.beams,
+              .motion = shot.motion,
+              .renderer = *session.renderer};
+  if (session.paper) setup.paper.emplace(PaperTarget{.camera = *session.paper});
+  return setup;
+}
+
+std::string written_text(const std::vector<Output>& outputs) {
+  std::string text = "wrote";
+  for (const Output& output : outputs) text += " " + output.path.string();
+  return text;
+}
+
+}  // namespace
+
+bool operator==(const Ask& a, const Ask& b) {
+  return a.flags == b.flags && a.objects_moved.matrix() == b.objects_moved.matrix() &&
+         a.sensor_moved.matrix() == b.sensor_moved.matrix() && a.number == b.number &&
+         a.seed == b.seed && a.has_noise == b.has_noise;
+}
+
+Measuring::Measuring(Console& console, std::function<void()> wake)
+    : console_(console), wake_(std::move(wake)), thread_([this] { run(); }) {
+  console_.listen({.log = [this](Severity, std::string_view message) { say(std::string(message)); },
+                   .progress = [this](std::string_view task,
+                                      double fraction_done) { show_busy(task, fraction_done); }});
+}
+
+Measuring::~Measuring() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+  console_.listen({});
+}
+
+void Measuring::measure(const Ask& ask) {
+  {
+    const std::lock_guard lock(mutex_);
+    wanted_ = ask;
+  }
+  changed_.notify_one();
+}
+
+void Measuring::explain(const Ask& ask, std::size_t entry) {
+  {
+    const std::lock_guard lock(mutex_);
+    story_ = [this, ask, entry] { explain_now(ask, entry); };
+  }
+  changed_.notify_one();
+}
+
+void Measuring::save(const Ask& ask, const OutputFlags& outputs) {
+  {
+    const std::lock_guard lock(mutex_);
+    saves_.emplace_back([this, ask, outputs] { save_now(ask, outputs); });
+  }
+  changed_.notify_one();
+}
+
+void Measuring::take(News& news) {
+  const std::lock_guard lock(mutex_);
+  news = news_;
+  news_.story.reset();
+  news_.errors.clear();
+  news_.messages.clear();
+  news_.is_refused = false;
+}
+
+void Measuring::show_busy(std::string_view task, double fraction_done) {
+  std::string text(task);
+  if (fraction_done >= 0.0) text += fmt::format(", {:.0f} %", 100.0 * fraction_done);
+  {
+    const std::lock_guard lock(mutex_);
+    if (text == news_.busy) return;
+    news_.busy = std::move(text);
+  }
+  wake_();
+}
+
+void Measuring::say(std::string message) {
+  {
+    const std::lock_guard lock(mutex_);
+    news_.messages.push_back(std::move(message));
+  }
+  wake_();
+}
+
+void Measuring::run() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    changed_.wait(lock, [this] { return is_ending_ || wanted_ || !saves_.empty() || story_; });
+    if (is_ending_) return;
+    do_one(lock);
+  }
+}
+
+/// What is asked for and most urgent.
+std::function<void()> Measuring::next_task() {
+  if (wanted_) return [this, ask = *std::exchange(wanted_, std::nullopt)] { measure_now(ask); };
+  if (saves_.empty()) return std::exchange(story_, {});
+  std::function<void()> task = std::move(saves_.front());
+  saves_.pop_front();
+  return task;
+}
+
+/// Whatever goes wrong is told; the thread goes on.
+void Measuring::do_one(std::unique_lock<std::mutex>& lock) {
+  std::function<void()> task = next_task();
+  lock.unlock();
+  std::string error;
+  try {
+    task();
+  } catch (const std::bad_alloc&) {
+    error = "out of memory; use a smaller image or a smaller model";
+  } catch (const std::exception& exception) {
+    error = exception.what();
+  }
+  task = {};  // with what it holds, before another may ask for it
+  lock.lock();
+  if (!error.empty()) {
+    news_.errors.push_back(std::move(error));
+    news_.is_refused = refused_ != nullptr;
+  }
+  news_.busy.clear();
+  lock.unlock();
+  wake_();
+  lock.lock();
+}
+
+void Measuring::open_for(const Ask& ask) {
+  show_busy("opening " + ask.flags->input, -1.0);
+  auto opened = std::make_unique<Opened>();
+  opened->session = std::make_shared<Session>();
+  refused_ = ask.flags;
+  open(*ask.flags, {}, console_, *opened->session);
+  refused_.reset();
+  opened->flags = ask.flags;
+  const Session& session = *opened->session;
+  opened->noisy = std::make_shared<Sensor>(session.sensor);
+  opened->still = std::make_shared<Sensor>(without_noise(session.sensor));
+  opened->beams = std::make_shared<Beams>(session.beams);
+  opened_ = std::move(opened);
+  shots_.clear();
+}
+
+std::shared_ptr<Shot> Measuring::spare() {
+  const std::lock_guard lock(mutex_);  // whoever let go of one did it under this lock
+  for (const std::shared_ptr<Shot>& shot : shots_) {
+    if (shot.use_count() == 1) return shot;
+  }
+  shots_.push_back(std::make_shared<Shot>());
+  return shots_.back();
+}
+
+/// All of the shot but the measurement.
+void Measuring::prepare(const Ask& ask, Shot& shot) {
+  if (!opened_ || opened_->flags != ask.flags) open_for(ask);
+  if (opened_->number != ask.number) {
+    const Sensor& sensor = *opened_->noisy;
+    opened_->beams = std::make_shared<Beams>(make_beams(sensor, scan_window(sensor, ask.number)));
+    opened_->number = ask.number;
+  }
+  shot.ask = ask;
+  shot.session = opened_->session;
+  shot.sensor = ask.has_noise ? opened_->noisy : opened_->still;
+  shot.beams = opened_->beams;
+  shot.motion = moved_all(opened_->session->motion, ask);
+  shot.frame.number = ask.number;
+  shot.frame.stamp_ns = scan_window(*shot.sensor, ask.number).start_ns;
+  shot.frame.seed = ask.seed;
+}
+
+void Measuring::measure_now(const Ask& ask) {
+  if (ask.flags == refused_) return;
+  const std::shared_ptr<Shot> shot = spare();
+  prepare(ask, *shot);
+  const auto start = std::chrono::steady_clock::now();
+  simulate(setup_of(*shot), {.normal = true}, shot->frame);
+  shot->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const std::lock_guard lock(mutex_);
+  news_.shot = shot;
+}
+
+void Measuring::explain_now(const Ask& ask, std::size_t entry) {
+  if (!opened_ || opened_->flags != ask.flags) return;  // the user has gone on
+  Shot shot;
+  prepare(ask, shot);
+  const Setup setup = setup_of(shot);
+  const Story story = glidar::explain(setup, entry, shot.frame);
+  std::string text = story_text(story, setup, shot.frame);
+  const std::lock_guard lock(mutex_);
+  news_.story = std::move(text);
+}
+
+void Measuring::save_now(const Ask& ask, const OutputFlags& flags) {
+  Shot shot;
+  prepare(ask, shot);
+  const SidecarContext context{.scene = shot.session->scene,
+                               .sensor = *shot.sensor,
+                               .beams = *shot.beams,
+                               .renderer = renderer_name(*ask.flags)};
+  const std::vector<Output> outputs =
+      plan_outputs(flags, ask.flags->input, context, console_.report());
+  protect_files(shot.session->files, outputs);
+  simulate(setup_of(shot), fields_for(outputs), shot.frame);
+  write_outputs(outputs, shot.frame, *shot.beams, shot.session->scene, console_.report());
+  say(written_text(outputs));
+}
+
+}  // namespace glidar::app

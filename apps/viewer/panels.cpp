@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/viewer/panels.hpp>
+
+#include <glidar/io/noise_text.hpp>
+#include <glidar/io/sensor_presets.hpp>
+
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace glidar::app {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+void text(const std::string& line) {
+  ImGui::TextUnformatted(line.c_str(), line.c_str() + line.size());
+}
+
+void wrapped(const std::string& line) {
+  ImGui::PushTextWrapPos(0.0F);
+  text(line);
+  ImGui::PopTextWrapPos();
+}
+
+ImU32 packed(Colour colour) {
+  return IM_COL32(colour.r, colour.g, colour.b, 255);
+}
+
+/// A list to choose from; true when another was chosen, which `chosen` then is.
+template <class Names>
+bool choose(const char* label, const std::string& shown, const Names& names, std::size_t& chosen) {
+  bool is_changed = false;
+  if (!ImGui::BeginCombo(label, shown.c_str())) return false;
+  std::size_t index = 0;
+  for (const auto& name : names) {
+    const std::string item(name);
+    if (ImGui::Selectable(item.c_str(), item == shown)) {
+      is_changed = item != shown;
+      chosen = index;
+    }
+    ++index;
+  }
+  ImGui::EndCombo();
+  return is_changed;
+}
+
+/// The names of the sensors that come along, read once.
+const std::vector<std::string>& preset_names() {
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> names;
+    for (const std::filesystem::path& path : preset_files()) names.push_back(path.stem().string());
+    return names;
+  }();
+  return kNames;
+}
+
+std::string limit_text(const Limits& limits) {
+  const std::string along = limits.along == Limits::Along::depth ? "depth" : "range";
+  if (std::isinf(limits.far_m)) {
+    return limits.near_m > 0.0 ? fmt::format("{} from {:g} m", along, limits.near_m) : "no limits";
+  }
+  return fmt::format("{} {:g} to {:g} m", along, limits.near_m, limits.far_m);
+}
+
+void show_sensor_numbers(const Shot& shot) {
+  const Sensor& sensor = *shot.sensor;
+  const Beams& beams = *shot.beams;
+  text(fmt::format("{} x {} beams{}, {:g} Hz", beams.cols, beams.rows / beams.returns,
+                   beams.returns > 1 ? fmt::format(", {} returns", beams.returns) : "",
+                   sensor.rate_hz));
+  if (beams.pinhole) {
+    const PinholeIntrinsics& k = *beams.pinhole;
+    text(fmt::format("fx {:.1f} fy {:.1f}, {:.1f} x {:.1f} deg", k.fx, k.fy,
+                     2.0 * kDegrees * std::atan(0.5 * k.width / k.fx),
+                     2.0 * kDegrees * std::atan(0.5 * k.height / k.fy)));
+  }
+  text(limit_text(sensor.limits));
+  text(sensor.pulse ? "pulsed light" : "light at the sensor (paper)");
+  if (sensor.footprint) text("beams with a footprint");
+  if (sensor.weather) text("weather");
+  if (sensor.noise.empty()) return;
+  if (!ImGui::TreeNode(
+          "steps", "%s",
+          fmt::format("noise: {} step{}", sensor.noise.size(), sensor.noise.size() == 1 ? "" : "s")
+              .c_str()))
+    return;
+  for (const NoiseStep& step : sensor.noise) wrapped(noise_text(step));
+  ImGui::TreePop();
+}
+
+void show_sensor(Viewer& viewer) {
+  const SensorFlags& flags = viewer.ask().flags->sensor;
+  std::size_t chosen = 0;
+  const std::string shown = flags.file.empty() ? "as given" : flags.file;
+  if (choose("preset", shown, preset_names(), chosen)) viewer.use_sensor(preset_names()[chosen]);
+  if (viewer.shot() != nullptr) show_sensor_numbers(*viewer.shot());
+  bool has_noise = viewer.ask().has_noise;
+  if (ImGui::Checkbox("noise", &has_noise)) viewer.set_noise(has_noise);
+  ImGui::SameLine();
+  std::uint64_t seed = viewer.ask().seed;
+  ImGui::SetNextItemWidth(ImGui::GetFontSize() * 7.0F);
+  constexpr std::uint64_t kStep = 1;
+  if (ImGui::InputScalar("seed", ImGuiDataType_U64, &seed, &kStep)) viewer.set_seed(seed);
+  if (choose("renderer", viewer.ask().flags->renderer.kind, renderer_kinds(), chosen)) {
+    viewer.use_renderer(renderer_kinds()[chosen]);
+  }
+}
+
+/// Position and attitude to read and to type over; true when they were.
+bool edit_pose(const char* name, Pose& pose) {
+  ImGui::PushID(name);
+  text(name);
+  Eigen::Vector3d position_m = pose.translation();
+  // about the fixed axes x, y, z in this order: roll, pitch, yaw
+  const Eigen::Matrix3d r = pose.linear();
+  std::array<double, 3> rpy_deg = {kDegrees * std::atan2(r(2, 1), r(2, 2)),
+                                   kDegrees * std::asin(std::clamp(-r(2, 0), -1.0, 1.0)),
+                                   kDegrees * std::atan2(r(1, 0), r(0, 0))};
+  ImGui::PushItemWidth(ImGui::GetFontSize() * 15.5F);
+  ImGui::InputScalarN("m", ImGuiDataType_Double, position_m.data(), 3, nullptr, nullptr, "%.5g");
+  bool is_changed = ImGui::IsItemDeactivatedAfterEdit();
+  ImGui::InputScalarN("rpy deg", ImGuiDataType_Double, rpy_deg.data(), 3, nullptr, nullptr, "%.2f");
+  is_changed = ImGui::IsItemDeactivatedAfterEdit() || is_changed;
+  ImGui::PopItemWidth();
+  ImGui::PopID();
+  if (!is_changed || !position_m.allFinite()) return false;
+  using Axis = Eigen::Vector3d;
+  const Eigen::Quaterniond attitude = Eigen::AngleAxisd(rpy_deg[2] / kDegrees, Axis::UnitZ()) *
+                                      Eigen::AngleAxisd(rpy_deg[1] / kDegrees, Axis::UnitY()) *
+                                      Eigen::AngleAxisd(rpy_deg[0] / kDegrees, Axis::UnitX());
+  pose = make_pose(position_m, attitude);
+  return true;
+}
+
+void show_pose(Viewer& viewer) {
+  const Shot* shot = viewer.shot();
+  if (shot == nullptr) return;
+  Pose sensor = shot->frame.world_from_sensor;
+  if (edit_pose("sensor in the world", sensor)) viewer.set_sensor_pose(sensor);
+  if (shot->frame.world_from_instance.empty()) return;
+  Pose object = shot->frame.world_from_instance[0];
+  const std::string name = shot->session->scene.instances[0].name + " in the world";
+  if (edit_pose(name.c_str(), object)) viewer.set_object_pose(object);
+}
+
+void show_look(Viewer& viewer) {
+  std::size_t chosen = 0;
+  Look& look = viewer.look;
+  const auto quantity = static_cast<std::size_t>(look.quantity);
+  if (choose("show", std::string(kQuantities.at(quantity)), kQuantities, chosen)) {
+    look.quantity = static_cast<Quantity>(chosen);
+    viewer.look_changed();
+  }
+  const auto map = static_cast<std::size_t>(look.map);
+  if (has_scale(look.quantity) &&
+      choose("colours", std::string(kColourMaps.at(map)), kColourMaps, chosen)) {
+    look.map = static_cast<ColourMap>(chosen);
+    viewer.look_changed();
+  }
+  constexpr float kLargest = 8.0F;
+  if (ImGui::SliderFloat("points", &look.point_size, 1.0F, kLargest, "%.0f px")) {
+    viewer.look_changed();
+  }
+}
+
+void show_time(Viewer& viewer) {
+  if (viewer.shot() == nullptr) return;
+  const Frame& frame = viewer.shot()->frame;
+  text(fmt::format("frame {}, {:.3f} s", frame.number, static_cast<double>(frame.stamp_ns) / 1e9));
+  if (viewer.is_moving()) {
+    if (ImGui::Button(viewer.is_playing() ? "pause (space)" : "play (space)")) viewer.toggle_play();
+    ImGui::SameLine();
+  }
+  if (ImGui::Button("reset (r)")) viewer.reset();
+  ImGui::SameLine();
+  if (ImGui::Button("save (s)")) viewer.save();
+}
+
+void show_help() {
+  if (!ImGui::CollapsingHeader("Keys and mouse")) return;
+  wrapped(
+      "s save cloud and transform\n"
+      "+ - move the sensor nearer, farther\n"
+      "space pause, r reset, Esc quit\n"
+      "left view: drag turns the object, wheel moves the sensor, click tells a beam's story\n"
+      "right view: drag goes round, right drag shifts, wheel zooms, click tells a point's story\n"
+      "drop a model or scene file to open it");
+}
+
+}  // namespace
+
+void show_controls(Viewer& viewer) {
+  wrapped(viewer.ask().flags->input);
+  constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
+  ImGui::PushItemWidth(ImGui::GetFontSize() * 12.0F);
+  if (ImGui::CollapsingHeader("Sensor", kOpen)) show_sensor(viewer);
+  if (ImGui::CollapsingHeader("Pose", kOpen)) show_pose(viewer);
+  if (ImGui::CollapsingHeader("View", kOpen)) show_look(viewer);
+  if (ImGui::CollapsingHeader("Time", kOpen)) show_time(viewer);
+  show_help();
+  ImGui::PopItemWidth();
+}
+
+void show_status(const Viewer& viewer, const Pace& pace) {
+  std::string line = fmt::format("{:.0f} frames/s", pace.frames_per_s);
+  if (viewer.shot() != nullptr) {
+    const FrameSummary& s = viewer.summary();
+    line += fmt::format(" | measured in {:.1f} ms | {} hits", 1e3 * viewer.shot()->seconds, s.hits);
+    if (s.hits > 0) line += fmt::format(", {:.6g} to {:.6g} m", s.nearest_m, s.farthest_m);
+  }
+  text(line);
+  text(viewer.busy().empty() ? viewer.message : viewer.busy() + " ...");
+}
+
+void show_errors(Viewer& viewer) {
+  for (const std::string& error : viewer.errors) wrapped(error);
+  if (ImGui::Button("close")) viewer.errors.clear();
+}
+
+void show_story(Viewer& viewer) {
+  if (ImGui::SmallButton("copy")) ImGui::SetClipboardText(viewer.story.c_str());
+  ImGui::SameLine();
+  if (ImGui::SmallButton("close")) {
+    viewer.pick({});
+    return;
+  }
+  ImGui::BeginChild("words", ImVec2(0.0F, 0.0F), false, ImGuiWindowFlags_HorizontalScrollbar);
+  text(viewer.story);
+  ImGui::EndChild();
+}
+
+void show_legend(const Viewer& viewer) {
+  const Look& look = viewer.look;
+  const SensorPicture& picture = viewer.picture();
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  const float height = ImGui::GetTextLineHeight();
+  if (!has_scale(look.quantity)) {
+    for (const LegendEntry& entry : picture.legend) {
+      const ImVec2 at = ImGui::GetCursorScreenPos();
+      draw.AddRectFilled(at, ImVec2(at.x + height, at.y + height), packed(entry.colour));
+      ImGui::Dummy(ImVec2(height, height));
+      ImGui::SameLine();
+      text(entry.text);
+      if (ImGui::GetContentRegionAvail().x > 0.0F && &entry != &picture.legend.back() &&
+          ImGui::GetItemRectMax().x < ImGui::GetWindowPos().x + 0.6F * ImGui::GetWindowWidth()) {
+        ImGui::SameLine();
+      }
+    }
+    return;
+  }
+  if (picture.low > picture.high) return text("no returns");
+  text(fmt::format("{:.5g}", picture.low));
+  ImGui::SameLine();
+  constexpr int kSteps = 64;
+  const float width = 0.5F * ImGui::GetWindowWidth() / kSteps;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  for (int i = 0; i < kSteps; ++i) {
+    const double t = (i + 0.5) / kSteps;
+    const double shade = look.quantity == Quantity::intensity ? t : 1.0 - t;
+    const float left = at.x + width * static_cast<float>(i);
+    draw.AddRectFilled(ImVec2(left, at.y), ImVec2(left + width, at.y + height),
+                       packed(colour_of(look.map, shade)));
+  }
+  ImGui::Dummy(ImVec2(width * kSteps, height));
+  ImGui::SameLine();
+  text(fmt::format("{:.5g} {}", picture.high, unit_of(look.quantity)));
+}
+
+}  // namespace glidar::app

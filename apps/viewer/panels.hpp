@@ -1,0 +1,24 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/viewer/viewer.hpp>
+
+namespace glidar::app {
+
+/// Numbers about the window itself.
+struct Pace {
+  double frames_per_s = 0.0;  ///< drawn, while there was something to draw
+};
+
+/// The widgets beside the views; called between Window::begin() and end(), within an open window of
+/// Dear ImGui. Each does at once what the user asks for.
+void show_controls(Viewer& viewer);
+void show_status(const Viewer& viewer, const Pace& pace);
+void show_errors(Viewer& viewer);
+void show_story(Viewer& viewer);
+
+/// The scale or legend below the sensor's picture.
+void show_legend(const Viewer& viewer);
+
+}  // namespace glidar::app

@@ -1,0 +1,260 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/viewer/screen.hpp>
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace glidar::app {
+namespace {
+
+constexpr ImU32 kMark = IM_COL32(255, 60, 200, 255);
+
+constexpr ImGuiWindowFlags kFixed =
+    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
+    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings;
+
+struct Area {
+  float x;
+  float y;
+  float width;
+  float height;
+};
+
+/// A panel at a fixed place while it lives.
+class Panel {
+ public:
+  Panel(const char* title, const Area& area, ImGuiWindowFlags more = 0) {
+    ImGui::SetNextWindowPos(ImVec2(area.x, area.y));
+    ImGui::SetNextWindowSize(ImVec2(area.width, area.height));
+    ImGui::Begin(title, nullptr, kFixed | more);
+  }
+  ~Panel() { ImGui::End(); }
+  Panel(const Panel&) = delete;
+  Panel& operator=(const Panel&) = delete;
+};
+
+/// A click of the left button that was no drag, on the item made last.
+bool is_clicked() {
+  constexpr float kStill = 4.0F;  // pixels that a hand moves while it clicks
+  const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0.0F);
+  return ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
+         std::abs(moved.x) <= kStill && std::abs(moved.y) <= kStill;
+}
+
+/// The mouse's way since the last picture, in heights of the item made last, while this button
+/// drags it.
+Eigen::Vector2d dragged(ImGuiMouseButton button) {
+  if (!ImGui::IsItemActive() || !ImGui::IsMouseDragging(button)) return Eigen::Vector2d::Zero();
+  const ImVec2 by = ImGui::GetIO().MouseDelta;
+  const double height = std::max(1.0F, ImGui::GetItemRectSize().y);
+  return {by.x / height, by.y / height};
+}
+
+/// Where the sensor's picture lies: as large as fits; a camera's pixels are square, a scanner's
+/// rows are as high as they must be for its picture to be seen.
+Area fitted(const Beams& beams, const ImVec2& corner, const ImVec2& room) {
+  const float cols = std::max<float>(1.0F, static_cast<float>(beams.cols));
+  const float rows = std::max<float>(1.0F, static_cast<float>(beams.rows));
+  constexpr float kWidest = 2.5F;  // times as wide as high
+  const float shape = beams.pinhole ? cols / rows : std::clamp(cols / rows, 0.5F, kWidest);
+  const float width = std::max(1.0F, std::min(room.x, room.y * shape));
+  const float height = width / shape;
+  return {corner.x + 0.5F * (room.x - width), corner.y + 0.5F * (room.y - height), width, height};
+}
+
+ImTextureID texture_id(GLuint name) {
+  return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(name));
+}
+
+}  // namespace
+
+void Screen::upload(const Viewer& viewer) {
+  if (uploaded_ == viewer.version() || viewer.shot() == nullptr) return;
+  uploaded_ = viewer.version();
+  upload_picture(*viewer.shot()->beams, viewer.picture().colours);
+  upload_points(viewer);
+  cloud_.set_lines(viewer.guides());
+}
+
+void Screen::upload_picture(const Beams& beams, const std::vector<Colour>& colours) {
+  constexpr std::uint32_t kMost = 4096;  // pixels to a side that every device takes
+  const std::uint32_t step_x = (beams.cols + kMost - 1) / kMost;
+  const std::uint32_t step_y = (beams.rows + kMost - 1) / kMost;
+  std::vector<Colour> thinned;
+  if (step_x * step_y > 1) {
+    for (std::size_t row = 0; row < beams.rows; row += step_y) {
+      for (std::size_t col = 0; col < beams.cols; col += step_x) {
+        thinned.push_back(colours[row * beams.cols + col]);
+      }
+    }
+  }
+  glBindTexture(GL_TEXTURE_2D, sensor_.name());
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, static_cast<GLsizei>((beams.cols + step_x - 1) / step_x),
+               static_cast<GLsizei>((beams.rows + step_y - 1) / step_y), 0, GL_RGB,
+               GL_UNSIGNED_BYTE, thinned.empty() ? colours.data() : thinned.data());
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+void Screen::upload_points(const Viewer& viewer) {
+  constexpr std::size_t kMost = 2'000'000;  // what software draws while one waits
+  const std::vector<Eigen::Vector3f>& all = viewer.points();
+  shown_one_of_ = std::max<std::size_t>(1, (viewer.summary().hits + kMost - 1) / kMost);
+  std::vector<ColouredVertex> points;
+  points.reserve(viewer.summary().hits / shown_one_of_ + 1);
+  std::size_t hits = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (std::isnan(all[i].x()) || hits++ % shown_one_of_ != 0) continue;
+    points.push_back({.position_m = all[i], .colour = viewer.picture().colours[i]});
+  }
+  cloud_.set_points(points);
+}
+
+void Screen::draw_cloud(const Viewer& viewer, int width, int height) {
+  const CloudLook look{
+      .width = width,
+      .height = height,
+      .clip_from_anchor = clip_from_anchor(viewer.look.orbit, static_cast<double>(width) / height),
+      .point_size = viewer.look.point_size};
+  const bool is_same = drawn_version_ == viewer.version() && look.width == drawn_.width &&
+                       look.height == drawn_.height && look.point_size == drawn_.point_size &&
+                       look.clip_from_anchor == drawn_.clip_from_anchor;
+  if (is_same) return;
+  cloud_.draw(look);
+  drawn_ = look;
+  drawn_version_ = viewer.version();
+}
+
+void Screen::show_sensor_view(Viewer& viewer) {
+  if (viewer.shot() == nullptr) return;
+  const Beams& beams = *viewer.shot()->beams;
+  ImVec2 room = ImGui::GetContentRegionAvail();
+  room.y = std::max(1.0F, room.y - 2.0F * ImGui::GetTextLineHeightWithSpacing());
+  const ImVec2 corner = ImGui::GetCursorScreenPos();
+  const Area area = fitted(beams, corner, room);
+  const ImVec2 first(area.x, area.y);
+  const ImVec2 last(area.x + area.width, area.y + area.height);
+  ImGui::SetCursorScreenPos(first);
+  ImGui::InvisibleButton("sensor", ImVec2(area.width, area.height));
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddImage(texture_id(sensor_.name()), first, last);
+  use_mouse_on_sensor(viewer);
+  if (viewer.picked()) {
+    const auto col = static_cast<float>(*viewer.picked() % beams.cols);
+    const auto row = static_cast<float>(*viewer.picked() / beams.cols);
+    const float x = area.x + (col + 0.5F) * area.width / static_cast<float>(beams.cols);
+    const float y = area.y + (row + 0.5F) * area.height / static_cast<float>(beams.rows);
+    draw.AddCircle(ImVec2(x, y), 7.0F, kMark, 0, 2.0F);
+  }
+  ImGui::SetCursorScreenPos(ImVec2(corner.x, corner.y + room.y));
+  show_legend(viewer);
+}
+
+void Screen::use_mouse_on_sensor(Viewer& viewer) {
+  const Eigen::Vector2d drag = dragged(ImGuiMouseButton_Left);
+  if (drag != Eigen::Vector2d::Zero()) viewer.turn_objects(drag);
+  if (ImGui::IsItemHovered() && ImGui::GetIO().MouseWheel != 0.0F) {
+    viewer.step_sensor(ImGui::GetIO().MouseWheel);
+  }
+  if (!is_clicked()) return;
+  const Beams& beams = *viewer.shot()->beams;
+  const ImVec2 first = ImGui::GetItemRectMin();
+  const ImVec2 size = ImGui::GetItemRectSize();
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const double col = std::floor((mouse.x - first.x) / size.x * static_cast<float>(beams.cols));
+  const double row = std::floor((mouse.y - first.y) / size.y * static_cast<float>(beams.rows));
+  if (col < 0.0 || row < 0.0 || col >= beams.cols || row >= beams.rows) return;
+  viewer.pick(static_cast<std::size_t>(row) * beams.cols + static_cast<std::size_t>(col));
+}
+
+void Screen::show_cloud_view(Viewer& viewer) {
+  if (viewer.shot() == nullptr) return;
+  ImVec2 room = ImGui::GetContentRegionAvail();
+  room.x = std::max(1.0F, room.x);
+  room.y = std::max(1.0F, room.y - 2.0F * ImGui::GetTextLineHeightWithSpacing());
+  const ImVec2 first = ImGui::GetCursorScreenPos();
+  const ImVec2 last(first.x + room.x, first.y + room.y);
+  ImGui::InvisibleButton("cloud", room,
+                         ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
+                             ImGuiButtonFlags_MouseButtonMiddle);
+  use_mouse_on_cloud(viewer);
+  draw_cloud(viewer, static_cast<int>(room.x), static_cast<int>(room.y));
+  ImDrawList& draw = *ImGui::GetWindowDrawList();
+  draw.AddImage(texture_id(cloud_.texture()), first, last, ImVec2(0.0F, 1.0F), ImVec2(1.0F, 0.0F));
+  const bool is_marked = viewer.picked() && !std::isnan(viewer.points()[*viewer.picked()].x());
+  if (is_marked) {
+    const Eigen::Vector3f at = viewer.points()[*viewer.picked()];
+    const Eigen::Vector4f clip =
+        clip_from_anchor(viewer.look.orbit, static_cast<double>(room.x) / room.y) *
+        at.homogeneous();
+    const ImVec2 place(first.x + 0.5F * room.x * (1.0F + clip.x() / clip.w()),
+                       first.y + 0.5F * room.y * (1.0F - clip.y() / clip.w()));
+    if (clip.w() > 0.0F) draw.AddCircle(place, 7.0F, kMark, 0, 2.0F);
+  }
+  ImGui::Text("grid %g m; axes x red, y green, z blue", viewer.look.grid_m);
+  if (shown_one_of_ > 1) ImGui::Text("1 of %zu points is drawn", shown_one_of_);
+}
+
+void Screen::use_mouse_on_cloud(Viewer& viewer) {
+  Orbit& orbit = viewer.look.orbit;
+  const double distance_before_m = orbit.distance_m;
+  turn(orbit, dragged(ImGuiMouseButton_Left));
+  pan(orbit, dragged(ImGuiMouseButton_Right) + dragged(ImGuiMouseButton_Middle));
+  if (ImGui::IsItemHovered()) zoom(orbit, static_cast<double>(ImGui::GetIO().MouseWheel));
+  if (orbit.distance_m != distance_before_m) viewer.look_changed();  // the grid follows
+  if (!is_clicked()) return;
+  constexpr double kReach = 0.01;  // heights
+  const ImVec2 first = ImGui::GetItemRectMin();
+  const ImVec2 size = ImGui::GetItemRectSize();
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const Eigen::Vector2d place((2.0 * (mouse.x - first.x) - size.x) / size.y,
+                              (size.y - 2.0 * (mouse.y - first.y)) / size.y);
+  const auto point = point_at(orbit, viewer.points(), place, kReach);
+  if (point) viewer.pick(point);
+}
+
+void Screen::show(Viewer& viewer, const WindowSize& size, const Pace& pace) {
+  upload(viewer);
+  const auto width = static_cast<float>(size.width);
+  const auto height = static_cast<float>(size.height);
+  const float line = 2.0F * ImGui::GetFrameHeightWithSpacing();
+  const float controls = std::min(23.0F * ImGui::GetFontSize(), 0.5F * width);
+  const float errors = viewer.errors.empty() ? 0.0F : std::min(0.25F * height, 4.0F * line);
+  const float story = viewer.story.empty() ? 0.0F : 0.4F * height;
+  const float views = std::max(1.0F, height - line - errors - story);
+  const float half = std::max(1.0F, 0.5F * (width - controls));
+  {
+    const Panel panel("GLIDAR", {0.0F, 0.0F, controls, height - line});
+    show_controls(viewer);
+  }
+  {
+    const Panel panel("What the sensor sees", {controls, errors, half, views});
+    show_sensor_view(viewer);
+  }
+  {
+    const Panel panel("Point cloud", {controls + half, errors, half, views});
+    show_cloud_view(viewer);
+  }
+  if (errors > 0.0F) {
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, IM_COL32(110, 25, 25, 255));
+    const Panel panel("Errors", {controls, 0.0F, width - controls, errors});
+    ImGui::PopStyleColor();
+    show_errors(viewer);
+  }
+  if (story > 0.0F) {
+    const Panel panel("The story of this point",
+                      {controls, errors + views, width - controls, story});
+    show_story(viewer);
+  }
+  const Panel panel("status", {0.0F, height - line, width, line},
+                    ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoScrollbar);
+  show_status(viewer, pace);
+}
+
+}  // namespace glidar::app

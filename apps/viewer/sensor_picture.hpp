@@ -1,0 +1,50 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/viewer/colours.hpp>
+#include <glidar/core/beams.hpp>
+#include <glidar/core/frame.hpp>
+#include <glidar/core/scene.hpp>
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glidar::app {
+
+/// What of a measurement is shown.
+enum class Quantity : std::uint8_t { depth, range, intensity, normals, instance, status };
+inline constexpr std::array<std::string_view, 6> kQuantities = {"depth",   "range",    "intensity",
+                                                                "normals", "instance", "status"};
+
+/// A colour and what it stands for.
+struct LegendEntry {
+  Colour colour;
+  std::string text;
+};
+
+/// A measurement in colours, one for each beam, and what they mean.
+struct SensorPicture {
+  std::vector<Colour> colours;      ///< rows x cols, row by row
+  double low = 0.0;                 ///< of the quantities that have a scale
+  double high = 0.0;                ///< below `low` when no beam has a return
+  std::vector<LegendEntry> legend;  ///< of the others
+};
+
+/// Beams without a return are grey. Near is bright. Normals are seen from the sensor: red to the
+/// right, green up, blue towards it. Needs frame.truth.normal for normals.
+void make_sensor_picture(const Frame& frame, const Beams& beams, const Scene& scene,
+                         Quantity quantity, ColourMap map, SensorPicture& picture);
+
+/// True for quantities that a colour map and a scale belong to.
+bool has_scale(Quantity quantity);
+
+/// Of the scale: "m", or empty.
+std::string_view unit_of(Quantity quantity);
+
+/// The colour that a status is shown in.
+Colour colour_of(Status status);
+
+}  // namespace glidar::app

@@ -1,0 +1,282 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/viewer/view.hpp>
+
+#include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/option_kinds.hpp>
+#include <apps/viewer/screen.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/io/png_image.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace glidar::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* kExamples =
+    R"(Left: what the sensor sees. Right: its point cloud, with the sensor's frustum, axes and a grid.
+Keys: s saves cloud and transform (buffer.pcd, buffer.transform, or what -o and --pcd say), + and -
+move the sensor, space pauses, r resets, Esc quits. Drag on the left to turn the object, on the
+right to go round; click a point to see its story. Drop a model or scene file to open it.
+Examples:
+  glidar view builtin:asteroid
+  glidar view builtin:torus --model-dr 0,0.5,0.2
+  glidar view builtin:box --sensor VLP-16 --eye 0,0,0
+Without hands, for scripts:
+  xvfb-run -a glidar view builtin:torus --screenshot view.png)";
+
+struct ViewFlags {
+  RenderFlags render;
+  std::string screenshot;               ///< empty: none
+  std::optional<std::uint32_t> frames;  ///< measured and drawn before it quits
+  WindowSize size;
+};
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// How many pictures a second, over those of the last second or so in which there was work.
+class PaceMeter {
+ public:
+  void tick() {
+    const Clock::time_point now = Clock::now();
+    const double step_s = std::chrono::duration<double>(now - last_).count();
+    last_ = now;
+    constexpr double kIdle_s = 0.5;
+    constexpr double kWeight = 0.1;
+    if (step_s > kIdle_s) return;  // it waited for something to do
+    mean_s_ = mean_s_ == 0.0 ? step_s : (1.0 - kWeight) * mean_s_ + kWeight * step_s;
+  }
+  [[nodiscard]] Pace pace() const { return {mean_s_ > 0.0 ? 1.0 / mean_s_ : 0.0}; }
+
+ private:
+  Clock::time_point last_;
+  double mean_s_ = 0.0;
+};
+
+/// The viewer in its window.
+class Show {
+ public:
+  Show(const ViewFlags& flags, Viewer& viewer, Console& console)
+      : flags_(flags), viewer_(viewer), console_(console) {
+    open_window();
+  }
+
+  /// Draws and shows; with the picture of the window if asked for.
+  void draw(Picture* picture = nullptr);
+  void run();
+  /// Measures and draws so many frames, one after the other.
+  void run_frames(std::uint32_t count);
+  [[nodiscard]] std::uint64_t drawn() const { return drawn_; }
+
+ private:
+  void open_window();
+  [[nodiscard]] WindowEvents events();
+  void wait();
+  bool take_news();
+  void wait_for(std::uint32_t number);
+
+  const ViewFlags& flags_;
+  Viewer& viewer_;
+  Console& console_;
+  PaceMeter pace_;
+  std::unique_ptr<Window> window_;
+  std::unique_ptr<Screen> screen_;  ///< after the window, whose context it needs to the end
+  bool is_quitting_ = false;
+  int unsettled_ = 0;  ///< pictures to draw until panels show what happened
+  std::uint64_t drawn_ = 0;
+};
+
+/// What an event changes may show two pictures later: panels take their places one after another.
+constexpr int kSettling = 3;
+
+void Show::open_window() {
+  screen_.reset();
+  window_.reset();
+  window_ = std::make_unique<Window>("GLIDAR: " + flags_.render.input, flags_.size, events());
+  screen_ = std::make_unique<Screen>();
+  unsettled_ = kSettling;
+}
+
+WindowEvents Show::events() {
+  return {.on_letter = [this](unsigned letter) { viewer_.type(letter); },
+          .on_escape = [this] { is_quitting_ = true; },
+          .on_drop =
+              [this](const std::vector<std::string>& paths) {
+                if (!paths.empty()) viewer_.open(paths.front());
+                if (paths.size() > 1) viewer_.message = "opened the first of several files";
+              },
+          .on_damage = [this] { unsettled_ = kSettling; }};
+}
+
+void Show::draw(Picture* picture) {
+  if (window_->is_lost()) {
+    viewer_.errors.emplace_back(
+        "the graphics device was reset and all that was drawn is lost; the window was made anew");
+    open_window();
+  }
+  window_->begin();
+  screen_->show(viewer_, window_->size(), pace_.pace());
+  window_->end();
+  if (picture != nullptr) *picture = window_->picture();
+  window_->show();
+  pace_.tick();
+  ++drawn_;
+}
+
+/// Until something happens, or the next frame of a motion is due.
+void Show::wait() {
+  const std::optional<double> due_s = viewer_.next_frame_s();
+  if (unsettled_ > 0) {
+    WindowSystem::poll();
+    return;
+  }
+  WindowSystem::wait(due_s);
+  if (!due_s) unsettled_ = kSettling;
+}
+
+/// Errors stand in the terminal too.
+bool Show::take_news() {
+  const std::size_t known = viewer_.errors.size();
+  const bool is_new = viewer_.take_news();
+  for (std::size_t i = known; i < viewer_.errors.size(); ++i) console_.error(viewer_.errors[i]);
+  return is_new;
+}
+
+void Show::run() {
+  Clock::time_point before = Clock::now();
+  while (!is_quitting_ && !window_->is_closing()) {
+    wait();
+    viewer_.advance(seconds_since(std::exchange(before, Clock::now())));
+    if (take_news()) unsettled_ = std::max(unsettled_, 1);
+    if (window_->is_hidden()) {
+      unsettled_ = 0;
+      continue;
+    }
+    if (unsettled_ == 0) continue;
+    draw();
+    --unsettled_;
+  }
+}
+
+void Show::wait_for(std::uint32_t number) {
+  const auto is_there = [&] {
+    return viewer_.shot() != nullptr && viewer_.shot()->ask.number == number;
+  };
+  while (!is_there() && viewer_.errors.empty()) {
+    WindowSystem::wait(std::nullopt);
+    viewer_.take_news();
+  }
+  if (!viewer_.errors.empty()) throw std::runtime_error(viewer_.errors.front());
+}
+
+void Show::run_frames(std::uint32_t count) {
+  wait_for(0);
+  for (std::uint32_t k = 0; k < count; ++k) {
+    if (viewer_.is_moving()) {
+      viewer_.turn_to(k);
+      wait_for(k);
+    }
+    WindowSystem::poll();
+    if (is_quitting_ || window_->is_closing()) return;
+    draw();
+  }
+}
+
+/// The file of the screenshot, so that a wrong name is told before any work is done.
+std::unique_ptr<AtomicFile> screenshot_file(const std::string& path) {
+  if (path.empty()) return nullptr;
+  if (path.ends_with(".png")) return std::make_unique<AtomicFile>(path);
+  throw Error({.where = "--screenshot",
+               .found = "'" + path + "'",
+               .allowed = "a name that ends in .png",
+               .remedy = ""});
+}
+
+void write_screenshot(const Picture& picture, AtomicFile& file) {
+  write_png({PngKind::rgb8, static_cast<std::uint32_t>(picture.width),
+             static_cast<std::uint32_t>(picture.height), std::as_bytes(std::span(picture.pixels)),
+             "the window of glidar view"},
+            file);
+  file.commit();
+}
+
+int run(ViewFlags& flags) {
+  if (!flags.screenshot.empty() && !flags.frames) flags.frames = 1;
+  const std::unique_ptr<AtomicFile> screenshot = screenshot_file(flags.screenshot);
+  Console console(flags.render.quiet);
+  const WindowSystem windows;
+  Measuring measuring(console, WindowSystem::wake);
+  Viewer viewer(flags.render, measuring);
+  Show show(flags, viewer, console);
+  if (!flags.frames) {
+    show.run();
+  } else {
+    const Clock::time_point start = Clock::now();
+    show.run_frames(*flags.frames);
+    const double seconds = seconds_since(start);
+    if (!flags.render.quiet) {
+      fmt::print("{} frames in {:.2f} s: {:.1f} frames/s\n", *flags.frames, seconds,
+                 *flags.frames / seconds);
+    }
+  }
+  if (screenshot) {
+    Picture picture;
+    for (int i = 0; i < kSettling; ++i) show.draw(&picture);
+    write_screenshot(picture, *screenshot);
+  }
+  if (!flags.render.quiet) fmt::print("drew {} pictures of the window\n", show.drawn());
+  return kDone;
+}
+
+void parse_size(const std::string& text, WindowSize& size) {
+  int used = 0;
+  const bool is_read =
+      std::sscanf(text.c_str(), "%5dx%5d%n", &size.width, &size.height, &used) == 2;
+  constexpr int kLeast = 320;
+  constexpr int kMost = 16384;
+  const auto is_fit = [](int n) { return n >= kLeast && n <= kMost; };
+  if (is_read && static_cast<std::size_t>(used) == text.size() && is_fit(size.width) &&
+      is_fit(size.height))
+    return;
+  throw Error({.where = "--window",
+               .found = "'" + text + "'",
+               .allowed = "WIDTHxHEIGHT in pixels, each from 320 to 16384",
+               .remedy = "for example --window 1280x720"});
+}
+
+}  // namespace
+
+Command add_view(CLI::App& program) {
+  CLI::App& command =
+      *program.add_subcommand("view", "Look at a model or scene through a sensor, in a window");
+  const auto flags = std::make_shared<ViewFlags>();
+  command.footer(output_names_text() + kExamples);
+  add_render_flags(command, flags->render);
+  const std::string group = "Window";
+  add_option(
+      command, {"--window", "WxH", "Size, pixels [1280x720]", group},
+      [&size = flags->size](std::string_view, const std::string& text) { parse_size(text, size); });
+  add_text(command, {"--screenshot", "FILE", "Write the window as a PNG, then quit", group},
+           flags->screenshot);
+  constexpr std::int64_t kMost = 1'000'000;
+  add_whole(command, {"--frames", "N", "Quit after N frames of the sensor [screenshot: 1]", group},
+            {1, kMost},
+            [&frames = flags->frames](std::int64_t n) { frames = static_cast<std::uint32_t>(n); });
+  return [flags] { return run(*flags); };
+}
+
+}  // namespace glidar::app

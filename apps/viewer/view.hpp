@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/glidar/commands.hpp>
+
+namespace glidar::app {
+
+/// Adds `glidar view`, see commands.hpp.
+Command add_view(CLI::App& program);
+
+}  // namespace glidar::app

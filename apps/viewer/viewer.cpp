@@ -1,0 +1,302 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/viewer/viewer.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+namespace glidar::app {
+namespace {
+
+/// The flags of a file that is opened beside the first: only how to measure stays.
+RenderFlags for_file(const RenderFlags& before, const std::string& path) {
+  RenderFlags flags;
+  flags.input = path;
+  flags.sensor = before.sensor;
+  flags.renderer = before.renderer;
+  flags.target = before.target;
+  flags.seed = before.seed;
+  flags.output = before.output;
+  return flags;
+}
+
+Pose shifted(const Eigen::Vector3d& by_m) {
+  return Pose(Eigen::Translation3d(by_m));
+}
+
+/// A rotation of the world about a point.
+Pose turned_about(const Eigen::Vector3d& point_m, const Eigen::AngleAxisd& by) {
+  return shifted(point_m) * Pose(by) * shifted(-point_m);
+}
+
+bool stands_still(const Trajectory& trajectory) {
+  return std::holds_alternative<ConstantPose>(trajectory);
+}
+
+/// The pose without what rounding did to its rotation after many small turns.
+Pose tidy(const Pose& pose) {
+  return make_pose(pose.translation(), Eigen::Quaterniond(pose.linear()).normalized());
+}
+
+void points_from(const Shot& shot, const Eigen::Vector3d& anchor_m,
+                 std::vector<Eigen::Vector3f>& points) {
+  const CloudFrame cloud_frame{
+      .frame_id = "anchor", .cloud_from_sensor = shifted(-anchor_m) * shot.frame.world_from_sensor};
+  constexpr std::array<const char*, 1> kNames = {"xyz"};
+  PointCloud cloud;
+  make_point_cloud(shot.frame, *shot.beams, shot.session->scene, cloud_frame,
+                   std::vector<std::string>(kNames.begin(), kNames.end()), cloud);
+  const auto& xyz = std::get<std::vector<double>>(cloud.columns[0].values);
+  points.resize(cloud.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] = Eigen::Vector3d(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]).cast<float>();
+  }
+}
+
+}  // namespace
+
+Viewer::Viewer(const RenderFlags& flags, Measuring& measuring) : measuring_(measuring) {
+  ask_.seed = flags.seed;
+  ask_for(flags);
+}
+
+void Viewer::ask_for(const RenderFlags& flags) {
+  ask_.flags = std::make_shared<RenderFlags>(flags);
+  update();
+}
+
+void Viewer::update() {
+  measuring_.measure(ask_);
+}
+
+bool Viewer::is_moving() const {
+  if (!shot()) return false;
+  const Motion& motion = shot()->motion;
+  return !stands_still(motion.world_from_sensor) ||
+         !std::all_of(motion.world_from_instance.begin(), motion.world_from_instance.end(),
+                      stands_still);
+}
+
+bool Viewer::take_news() {
+  const Shot* before = shot();
+  const std::string busy_before = news_.busy;
+  measuring_.take(news_);
+  errors.insert(errors.end(), news_.errors.begin(), news_.errors.end());
+  if (!news_.messages.empty()) message = news_.messages.back();
+  if (news_.story) story = *news_.story;
+  if (news_.is_refused && shot()) ask_.flags = shot()->ask.flags;
+  const bool is_new = shot() != before;
+  if (is_new) show_shot(shot()->ask.flags != shown_flags_);
+  return is_new || news_.story || !news_.errors.empty() || !news_.messages.empty() ||
+         news_.busy != busy_before;
+}
+
+/// Looks at what was opened from where all of it is seen.
+void Viewer::begin_session() {
+  const Shot& now = *shot();
+  shown_flags_ = now.ask.flags;
+  const Eigen::AlignedBox3d box = bounds(now.session->scene);
+  anchor_m_ = box.isEmpty() ? Eigen::Vector3d(now.frame.world_from_sensor.translation())
+                            : Eigen::Vector3d(box.center());
+  const Eigen::Vector3d sensor_m = now.frame.world_from_sensor.translation() - anchor_m_;
+  const double size_m = box.isEmpty() ? 1.0 : box.diagonal().norm();
+  look.orbit = {.pivot_m = 0.45 * sensor_m,
+                .yaw_rad = std::atan2(sensor_m.y(), sensor_m.x()) + 0.9,
+                .pitch_rad = 0.45,
+                .distance_m = 1.8 * std::max(size_m, sensor_m.norm())};
+  const bool is_camera = looks_along_z(*now.beams);
+  if (look.quantity == Quantity::depth && !is_camera) look.quantity = Quantity::range;
+  if (look.quantity == Quantity::range && is_camera) look.quantity = Quantity::depth;
+  const std::vector<std::string> advice =
+      view_advice({now.session->scene, *now.sensor, *now.beams, now.frame});
+  if (!advice.empty()) message = advice.front();
+}
+
+void Viewer::show_shot(bool is_new_session) {
+  if (is_new_session) begin_session();
+  summary_ = summarise(shot()->frame);
+  if (picked_ && *picked_ >= shot()->beams->size()) pick({});
+  tell_story();
+  look_changed();
+}
+
+void Viewer::tell_story() {
+  if (!picked_ || !shot() || (told_ && *told_ == shot()->ask)) return;
+  told_ = shot()->ask;
+  measuring_.explain(*told_, *picked_);
+}
+
+void Viewer::look_changed() {
+  if (!shot()) return;
+  const Shot& now = *shot();
+  make_sensor_picture(now.frame, *now.beams, now.session->scene, look.quantity, look.map, picture_);
+  points_from(now, anchor_m_, points_);
+  guides_.clear();
+  const Pose anchor_from_sensor = shifted(-anchor_m_) * now.frame.world_from_sensor;
+  const double distance_m = anchor_from_sensor.translation().norm();
+  const double extent_m = std::max(look.orbit.distance_m, 1e-6);
+  look.grid_m = grid_spacing_m(2.0 * extent_m);
+  const Eigen::AlignedBox3d box = bounds(now.session->scene);
+  const double floor_m = box.isEmpty() ? 0.0 : box.min().z() - anchor_m_.z();
+  add_grid({0.0, 0.0, floor_m}, extent_m, look.grid_m, guides_);
+  add_axes(shifted({0.0, 0.0, floor_m}), look.grid_m, guides_);
+  add_axes(anchor_from_sensor, look.grid_m, guides_);
+  add_frustum(*now.beams, anchor_from_sensor, std::max(distance_m, look.grid_m), guides_);
+  ++version_;
+}
+
+void Viewer::type(unsigned letter) {
+  switch (letter) {
+    case 's':
+      return save();
+    case '+':
+    case '=':  // the same key without shift
+      return step_sensor(1.0);
+    case '-':
+      return step_sensor(-1.0);
+    case ' ':
+      return toggle_play();
+    case 'r':
+      return reset();
+    default:
+      return;
+  }
+}
+
+void Viewer::open(const std::string& path) {
+  ask_.objects_moved = ask_.sensor_moved = Pose::Identity();
+  ask_.number = 0;
+  time_s_ = 0.0;
+  pick({});
+  ask_for(for_file(*ask_.flags, path));
+}
+
+void Viewer::use_sensor(const std::string& preset) {
+  RenderFlags flags = *ask_.flags;
+  flags.sensor = {};
+  flags.sensor.file = preset;
+  flags.pose.sensor_pose.clear();
+  ask_.sensor_moved = Pose::Identity();
+  pick({});
+  ask_for(flags);
+}
+
+void Viewer::use_renderer(const std::string& kind) {
+  RenderFlags flags = *ask_.flags;
+  flags.renderer.kind = kind;
+  if (kind != "opengl") flags.target = "float";
+  ask_for(flags);
+}
+
+void Viewer::set_noise(bool is_on) {
+  ask_.has_noise = is_on;
+  update();
+}
+
+void Viewer::set_seed(std::uint64_t seed) {
+  ask_.seed = seed;
+  update();
+}
+
+void Viewer::save() {
+  if (!shot()) return;
+  OutputFlags outputs = ask_.flags->output;
+  if (outputs.paths.empty() && outputs.legacy_name.empty()) outputs.legacy_name = "buffer";
+  measuring_.save(ask_, saved_ == 0 ? outputs : numbered(outputs, saved_));
+  ++saved_;
+}
+
+void Viewer::reset() {
+  ask_.objects_moved = ask_.sensor_moved = Pose::Identity();
+  ask_.number = 0;
+  time_s_ = 0.0;
+  message = "back to the start";
+  update();
+}
+
+void Viewer::toggle_play() {
+  if (!is_moving()) {
+    message = "nothing moves; --model-dr X,Y,Z turns the model";
+    return;
+  }
+  is_playing_ = !is_playing_;
+}
+
+Eigen::Vector3d Viewer::middle_m() const {
+  // the scene's middle, as each object carries it along
+  const std::vector<Instance>& instances = shot()->session->scene.instances;
+  if (instances.empty()) return anchor_m_;
+  Eigen::Vector3d sum_m = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < instances.size(); ++i) {
+    sum_m += shot()->frame.world_from_instance[i] *
+             (instances[i].world_from_object.inverse() * anchor_m_);
+  }
+  return sum_m / static_cast<double>(instances.size());
+}
+
+void Viewer::turn_objects(const Eigen::Vector2d& drag) {
+  if (!shot()) return;
+  const SensorAxes axes = axes_of(*shot()->beams);
+  const Eigen::Matrix3d rotation = shot()->frame.world_from_sensor.linear();
+  const Eigen::Vector3d right = rotation * -axes.left;
+  const Eigen::Vector3d up = rotation * axes.up;
+  // a point on the near side follows the pointer
+  const Eigen::Vector3d turn_rad = std::numbers::pi * (drag.x() * up + drag.y() * right);
+  const double angle_rad = turn_rad.norm();
+  if (angle_rad == 0.0) return;
+  const Eigen::AngleAxisd by(angle_rad, turn_rad / angle_rad);
+  ask_.objects_moved = tidy(turned_about(middle_m(), by) * ask_.objects_moved);
+  update();
+}
+
+void Viewer::step_sensor(double steps) {
+  if (!shot()) return;
+  constexpr double kStep = 0.05;
+  const Eigen::Vector3d way_m = middle_m() - shot()->frame.world_from_sensor.translation();
+  const double share = 1.0 - std::pow(1.0 - kStep, steps);
+  ask_.sensor_moved = shifted(share * way_m) * ask_.sensor_moved;
+  update();
+}
+
+void Viewer::set_sensor_pose(const Pose& world_from_sensor) {
+  ask_.sensor_moved =
+      tidy(world_from_sensor * shot()->frame.world_from_sensor.inverse() * ask_.sensor_moved);
+  update();
+}
+
+void Viewer::set_object_pose(const Pose& world_from_object) {
+  ask_.objects_moved = tidy(world_from_object * shot()->frame.world_from_instance.at(0).inverse() *
+                            ask_.objects_moved);
+  update();
+}
+
+void Viewer::pick(std::optional<std::size_t> entry) {
+  picked_ = entry;
+  told_.reset();
+  story.clear();
+  if (entry) is_playing_ = false;
+  tell_story();
+}
+
+void Viewer::turn_to(std::uint32_t number) {
+  if (number == ask_.number) return;
+  ask_.number = number;
+  update();
+}
+
+void Viewer::advance(double seconds) {
+  if (!is_playing_ || !is_moving()) return;
+  time_s_ += seconds;
+  turn_to(static_cast<std::uint32_t>(time_s_ * shot()->sensor->rate_hz));
+}
+
+std::optional<double> Viewer::next_frame_s() const {
+  if (!is_playing_ || !is_moving()) return std::nullopt;
+  return std::max(0.0, (ask_.number + 1) / shot()->sensor->rate_hz - time_s_);
+}
+
+}  // namespace glidar::app

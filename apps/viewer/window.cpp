@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/viewer/window.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <epoxy/gl.h>
+// after epoxy, which brings the functions of OpenGL itself
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <imgui.h>
+
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <utility>
+
+namespace glidar::app {
+namespace {
+
+/// What GLFW complained of last.
+std::string complaint() {
+  const char* text = nullptr;
+  const int code = glfwGetError(&text);
+  return code == GLFW_NO_ERROR || text == nullptr ? "no reason given" : text;
+}
+
+/// The window whose callback is called.
+WindowEvents& events_of(GLFWwindow* window) {
+  return *static_cast<WindowEvents*>(glfwGetWindowUserPointer(window));
+}
+
+void take_key(GLFWwindow* window, int key, int /*scancode*/, int action, int /*mods*/) {
+  if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS) events_of(window).on_escape();
+}
+
+void take_letter(GLFWwindow* window, unsigned letter) {
+  if (!ImGui::GetIO().WantTextInput) events_of(window).on_letter(letter);
+}
+
+void take_drop(GLFWwindow* window, int count, const char** paths) {
+  events_of(window).on_drop({paths, paths + count});
+}
+
+void take_damage(GLFWwindow* window) {
+  events_of(window).on_damage();
+}
+
+GLFWwindow* open_window(const std::string& title, const WindowSize& size, int api, int robustness) {
+  glfwDefaultWindowHints();
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_CONTEXT_CREATION_API, api);
+  glfwWindowHint(GLFW_CONTEXT_ROBUSTNESS, robustness);
+  glfwWindowHint(GLFW_SAMPLES, 0);
+  return glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
+}
+
+/// By EGL, as the renderer's contexts; else as the display has it. One that tells of its loss
+/// first.
+GLFWwindow* open_any_window(const std::string& title, const WindowSize& size) {
+  for (const int api : {GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API}) {
+    for (const int robustness : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {
+      GLFWwindow* window = open_window(title, size, api, robustness);
+      if (window != nullptr) return window;
+    }
+  }
+  throw Error({.where = "glidar view",
+               .found = "the display gives no context of OpenGL 3.3: " + complaint(),
+               .allowed = "",
+               .remedy =
+                   "install libgl1-mesa-dri and libegl1, which draw in software too; or write "
+                   "a picture without a window: glidar render MODEL -o picture.png"});
+}
+
+}  // namespace
+
+WindowSystem::WindowSystem() {
+  if (glfwInit() == GLFW_TRUE) return;
+  throw Error({.where = "glidar view",
+               .found = "there is no display to open a window on: " + complaint(),
+               .allowed = "",
+               .remedy =
+                   "run it in a desktop session or by 'xvfb-run -a glidar view ...', or write "
+                   "a picture without a window: glidar render MODEL -o picture.png"});
+}
+
+WindowSystem::~WindowSystem() {
+  glfwTerminate();
+}
+
+void WindowSystem::wake() {
+  glfwPostEmptyEvent();
+}
+
+void WindowSystem::poll() {
+  glfwPollEvents();
+}
+
+void WindowSystem::wait(std::optional<double> seconds) {
+  if (!seconds) return glfwWaitEvents();
+  if (*seconds > 0.0) return glfwWaitEventsTimeout(*seconds);
+  glfwPollEvents();
+}
+
+void Window::Closing::operator()(GLFWwindow* window) const {
+  glfwDestroyWindow(window);
+}
+
+Window::Window(const std::string& title, const WindowSize& size, WindowEvents events)
+    : events_(std::move(events)), window_(open_any_window(title, size)) {
+  GLFWwindow* window = window_.get();
+  glfwMakeContextCurrent(window);
+  glfwSwapInterval(1);
+  glfwSetWindowUserPointer(window, &events_);
+  glfwSetKeyCallback(window, take_key);
+  glfwSetCharCallback(window, take_letter);
+  glfwSetDropCallback(window, take_drop);
+  glfwSetWindowRefreshCallback(window, take_damage);
+  ImGui::CreateContext();
+  ImGui::GetIO().IniFilename = nullptr;  // leaves no file behind
+  ImGui::GetIO().ConfigWindowsMoveFromTitleBarOnly = true;
+  ImGui::StyleColorsDark();
+  float scale = 1.0F;
+  glfwGetWindowContentScale(window, &scale, nullptr);
+  ImGui::GetIO().FontGlobalScale = scale;
+  ImGui::GetStyle().ScaleAllSizes(scale);
+  ImGui_ImplGlfw_InitForOpenGL(window, true);  // calls those set above, too
+  ImGui_ImplOpenGL3_Init("#version 330 core");
+}
+
+Window::~Window() {
+  ImGui_ImplOpenGL3_Shutdown();
+  ImGui_ImplGlfw_Shutdown();
+  ImGui::DestroyContext();
+}
+
+bool Window::is_closing() const {
+  return glfwWindowShouldClose(window_.get()) == GLFW_TRUE;
+}
+
+bool Window::is_hidden() const {
+  const WindowSize now = size();
+  return now.width == 0 || now.height == 0 ||
+         glfwGetWindowAttrib(window_.get(), GLFW_ICONIFIED) == GLFW_TRUE;
+}
+
+bool Window::is_lost() const {
+  const bool can_tell = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_robustness") ||
+                        epoxy_has_gl_extension("GL_KHR_robustness");
+  return can_tell && glGetGraphicsResetStatus() != GL_NO_ERROR;
+}
+
+WindowSize Window::size() const {
+  WindowSize now;
+  glfwGetFramebufferSize(window_.get(), &now.width, &now.height);
+  return now;
+}
+
+void Window::set_title(const std::string& title) {
+  glfwSetWindowTitle(window_.get(), title.c_str());
+}
+
+void Window::begin() {
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+}
+
+void Window::end() {
+  ImGui::Render();
+  const WindowSize now = size();
+  glBindFramebuffer(GL_FRAMEBUFFER, 0);
+  glViewport(0, 0, now.width, now.height);
+  glDisable(GL_SCISSOR_TEST);
+  glClearColor(0.07F, 0.07F, 0.08F, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT);
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+void Window::show() {
+  glfwSwapBuffers(window_.get());
+}
+
+Picture Window::picture() const {
+  const WindowSize now = size();
+  const auto width = static_cast<std::size_t>(now.width);
+  const auto height = static_cast<std::size_t>(now.height);
+  Picture upside_down = make_picture(width, height, {});
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, 0);
+  glReadBuffer(GL_BACK);
+  glPixelStorei(GL_PACK_ALIGNMENT, 1);
+  glReadPixels(0, 0, now.width, now.height, GL_RGB, GL_UNSIGNED_BYTE, upside_down.pixels.data());
+  Picture picture = upside_down;
+  for (std::size_t row = 0; row < height; ++row) {
+    const auto from = upside_down.pixels.begin() + static_cast<std::ptrdiff_t>(row * width);
+    std::copy_n(from, width,
+                picture.pixels.begin() + static_cast<std::ptrdiff_t>((height - 1 - row) * width));
+  }
+  return picture;
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,119 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""A display without a screen, and hands on its keyboard and mouse."""
+
+import os
+import shutil
+import subprocess
+import time
+from urllib.parse import quote
+
+from PIL import ImageGrab
+import Xlib.display
+from Xlib import X
+from Xlib.protocol import event
+
+NEEDED = ("Xvfb", "xdotool", "twm")
+PATIENCE_S = 60  # for a loaded machine
+
+
+def missing_programs():
+    return [program for program in NEEDED if shutil.which(program) is None]
+
+
+def wait_until(condition, what):
+    """The condition's first true value; fails after PATIENCE_S."""
+    end = time.monotonic() + PATIENCE_S
+    while time.monotonic() < end:
+        value = condition()
+        if value:
+            return value
+        time.sleep(0.05)
+    raise AssertionError(f"waited in vain for {what}")
+
+
+class Display:
+    """Xvfb with a window manager; a context."""
+
+    def __enter__(self):
+        read, write = os.pipe()
+        self._server = subprocess.Popen(
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", "1400x900x24", "-nolisten", "tcp"],
+            pass_fds=[write], stderr=subprocess.DEVNULL)
+        os.close(write)
+        with os.fdopen(read) as number:
+            self.name = ":" + number.readline().strip()
+        self.environment = dict(os.environ, DISPLAY=self.name, HOME="/nonexistent")
+        # windows appear by themselves at the upper left, without a frame
+        self._manager = subprocess.Popen(["twm", "-f", os.path.join(os.path.dirname(__file__), "twmrc")],
+                                         env=self.environment, stderr=subprocess.DEVNULL)
+        return self
+
+    def __exit__(self, *error):
+        for process in (self._manager, self._server):
+            process.terminate()
+            process.wait()
+
+    def xdotool(self, *arguments):
+        done = subprocess.run(["xdotool", *map(str, arguments)], env=self.environment,
+                              capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+        return done.stdout.split()
+
+    def window(self, title):
+        """The number of the window whose title holds this, once it is there."""
+        return wait_until(lambda: self.xdotool("search", "--onlyvisible", "--name", title),
+                          f"a window '{title}'")[0]
+
+    def grab(self):
+        return ImageGrab.grab(xdisplay=self.name).convert("RGB")
+
+    def drag(self, start, way, button=1):
+        """Slowly, as a hand does."""
+        self.xdotool("mousemove", *start)
+        time.sleep(0.2)
+        self.xdotool("mousedown", button)
+        for _ in range(5):
+            time.sleep(0.1)
+            self.xdotool("mousemove_relative", "--", way[0] // 5, way[1] // 5)
+        time.sleep(0.1)
+        self.xdotool("mouseup", button)
+
+    def drop(self, window, path):
+        """Drops a file by the protocol XDND, version 5, as a file manager does."""
+        display = Xlib.display.Display(self.name)
+        atom = display.intern_atom
+        target = display.create_resource_object("window", int(window))
+        source = display.screen().root.create_window(0, 0, 1, 1, 0, X.CopyFromParent)
+        source.set_selection_owner(atom("XdndSelection"), X.CurrentTime)
+
+        def send(kind, numbers):
+            target.send_event(event.ClientMessage(
+                window=target, client_type=atom(kind), data=(32, [source.id, *numbers])))
+            display.flush()
+
+        uri_list = atom("text/uri-list")
+        send("XdndEnter", [5 << 24, uri_list, 0, 0])
+        send("XdndPosition", [0, (300 << 16) | 300, X.CurrentTime, atom("XdndActionCopy")])
+        end = time.monotonic() + PATIENCE_S
+        while time.monotonic() < end:
+            if not display.pending_events():
+                time.sleep(0.02)
+                continue
+            got = display.next_event()
+            if got.type == X.ClientMessage and got.client_type == atom("XdndStatus"):
+                send("XdndDrop", [0, X.CurrentTime, 0, 0])
+            elif got.type == X.SelectionRequest:
+                self._hand_over(got, uri_list, path, display)
+            elif got.type == X.ClientMessage and got.client_type == atom("XdndFinished"):
+                display.close()
+                return
+        raise AssertionError("the window did not take what was dropped")
+
+    @staticmethod
+    def _hand_over(request, uri_list, path, display):
+        uris = ("file://" + quote(path) + "\r\n").encode()
+        request.requestor.change_property(request.property, uri_list, 8, uris)
+        request.requestor.send_event(event.SelectionNotify(
+            time=request.time, requestor=request.requestor, selection=request.selection,
+            target=request.target, property=request.property))
+        display.flush()

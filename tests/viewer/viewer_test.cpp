@@ -1,0 +1,270 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/viewer/viewer.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <condition_variable>
+#include <filesystem>
+#include <fstream>
+#include <mutex>
+#include <numbers>
+
+namespace glidar::app {
+namespace {
+
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// A viewer without a window, and a folder that it works in.
+class ViewerTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(testing::TempDir()) /
+              testing::UnitTest::GetInstance()->current_test_info()->name();
+    std::filesystem::create_directories(folder_);
+    flags_.input = "builtin:asteroid";
+    flags_.sensor.width = flags_.sensor.height = 32;
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  /// Lets the viewer take news until the condition holds; half a minute is for a loaded machine.
+  template <class Condition>
+  bool wait_until(Viewer& viewer, const Condition& holds) {
+    for (int i = 0; i < 300 && !holds(); ++i) {
+      std::unique_lock lock(mutex_);
+      woken_.wait_for(lock, std::chrono::milliseconds(100), [this] { return is_woken_; });
+      is_woken_ = false;
+      lock.unlock();
+      viewer.take_news();
+    }
+    return holds();
+  }
+
+  /// The shot of what is asked for last.
+  const Shot& shot_of(Viewer& viewer) {
+    EXPECT_TRUE(wait_until(
+        viewer, [&] { return viewer.shot() != nullptr && viewer.shot()->ask == viewer.ask(); }));
+    return *viewer.shot();
+  }
+
+  std::filesystem::path folder_;
+  RenderFlags flags_;
+  Console console_{true};
+  std::mutex mutex_;
+  std::condition_variable woken_;
+  bool is_woken_ = false;
+  Measuring measuring_{console_, [this] {
+                         const std::lock_guard lock(mutex_);
+                         is_woken_ = true;
+                         woken_.notify_one();
+                       }};
+};
+
+double distance_m(const Shot& shot) {
+  return shot.frame.world_from_sensor.translation().norm();
+}
+
+TEST_F(ViewerTest, ShowsWhatTheSensorMeasures) {
+  Viewer viewer(flags_, measuring_);
+  const Shot& shot = shot_of(viewer);
+  EXPECT_EQ(shot.beams->size(), 32U * 32U);
+  EXPECT_EQ(viewer.picture().colours.size(), shot.beams->size());
+  EXPECT_GT(viewer.summary().hits, 100U);
+  EXPECT_FALSE(viewer.guides().empty());
+  std::size_t points = 0;
+  for (const Eigen::Vector3f& point : viewer.points()) points += std::isnan(point.x()) ? 0 : 1;
+  EXPECT_EQ(points, viewer.summary().hits);
+}
+
+TEST_F(ViewerTest, PlusAndMinusMoveTheSensorATwentiethOfTheWay) {
+  Viewer viewer(flags_, measuring_);
+  const Eigen::Vector3d middle = bounds(shot_of(viewer).session->scene).center();
+  const auto away_m = [&] {
+    return (shot_of(viewer).frame.world_from_sensor.translation() - middle).norm();
+  };
+  const double before_m = away_m();
+  viewer.type('+');
+  EXPECT_NEAR(away_m() / before_m, 0.95, 1e-9);
+  viewer.type('-');
+  EXPECT_NEAR(away_m() / before_m, 1.0, 1e-9);
+}
+
+TEST_F(ViewerTest, ADragTurnsTheObjectAboutItsMiddleAndResetUndoesIt) {
+  Viewer viewer(flags_, measuring_);
+  const Pose before = shot_of(viewer).frame.world_from_instance[0];
+  const Eigen::Vector3d middle = bounds(viewer.shot()->session->scene).center();
+  viewer.turn_objects({0.25, 0.0});
+  const Pose turned = shot_of(viewer).frame.world_from_instance[0];
+  EXPECT_TRUE((turned * (before.inverse() * middle)).isApprox(middle, 1e-9));
+  const Eigen::AngleAxisd by((turned * before.inverse()).linear());
+  EXPECT_NEAR(by.angle(), 0.25 * std::numbers::pi, 1e-9);
+  const Eigen::Vector3d up = -viewer.shot()->frame.world_from_sensor.linear().col(1);
+  EXPECT_TRUE(by.axis().isApprox(up, 1e-9)) << "the near side follows the pointer to the right";
+  viewer.type('r');
+  EXPECT_TRUE(shot_of(viewer).frame.world_from_instance[0].isApprox(before, 0.0));
+}
+
+TEST_F(ViewerTest, KeepsARotationThroughTenThousandSmallDrags) {
+  Viewer viewer(flags_, measuring_);
+  shot_of(viewer);
+  for (int i = 0; i < 10'000; ++i) viewer.turn_objects({0.001, 0.0007});
+  EXPECT_TRUE(is_rigid(shot_of(viewer).frame.world_from_instance[0]));
+}
+
+TEST_F(ViewerTest, PutsSensorAndObjectWhereTheyAreTyped) {
+  Viewer viewer(flags_, measuring_);
+  shot_of(viewer);
+  const Pose sensor = look_at({9.0, 1.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
+  viewer.set_sensor_pose(sensor);
+  EXPECT_TRUE(shot_of(viewer).frame.world_from_sensor.isApprox(sensor, 1e-12));
+  const Pose object = make_pose({0.1, 0.2, 0.3}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5));
+  viewer.set_object_pose(object);
+  EXPECT_TRUE(shot_of(viewer).frame.world_from_instance[0].isApprox(object, 1e-12));
+}
+
+TEST_F(ViewerTest, SpacePausesAndFramesFollowTheSensorsRate) {
+  flags_.motion.model_dr = "0,0,1";
+  Viewer viewer(flags_, measuring_);
+  shot_of(viewer);
+  EXPECT_TRUE(viewer.is_moving());
+  viewer.advance(0.5);
+  EXPECT_EQ(shot_of(viewer).frame.number, 15U) << "at 30 Hz";
+  viewer.type(' ');
+  EXPECT_FALSE(viewer.is_playing());
+  viewer.advance(10.0);
+  EXPECT_EQ(viewer.ask().number, 15U);
+  EXPECT_EQ(viewer.next_frame_s(), std::nullopt);
+  viewer.type(' ');
+  viewer.advance(0.01);
+  EXPECT_NEAR(viewer.next_frame_s().value(), 16.0 / 30.0 - 0.51, 1e-9);
+}
+
+TEST_F(ViewerTest, SpaceSaysWhenNothingMoves) {
+  Viewer viewer(flags_, measuring_);
+  shot_of(viewer);
+  viewer.type(' ');
+  EXPECT_THAT(viewer.message, HasSubstr("nothing moves"));
+}
+
+TEST_F(ViewerTest, NoiseGoesOffAndOnAndTheSeedChangesIt) {
+  flags_.sensor = {};
+  flags_.sensor.file = "Kinect-v1";
+  Viewer viewer(flags_, measuring_);
+  const auto ranges = [&] { return shot_of(viewer).frame.range_m; };
+  const auto equal = [](const std::vector<double>& a, const std::vector<double>& b) {
+    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
+      return x == y || (std::isnan(x) && std::isnan(y));
+    });
+  };
+  const std::vector<double> noisy = ranges();
+  viewer.set_seed(2);
+  EXPECT_FALSE(equal(ranges(), noisy));
+  viewer.set_seed(1);
+  EXPECT_TRUE(equal(ranges(), noisy)) << "the same seed, the same bytes";
+  viewer.set_noise(false);
+  EXPECT_FALSE(equal(ranges(), noisy));
+  EXPECT_TRUE(viewer.shot()->sensor->noise.empty());
+}
+
+TEST_F(ViewerTest, ChangesSensorAndRenderer) {
+  Viewer viewer(flags_, measuring_);
+  shot_of(viewer);
+  viewer.use_renderer("opengl");
+  EXPECT_EQ(shot_of(viewer).session->renderer->name(), "opengl");
+  viewer.use_renderer("embree");
+  viewer.use_sensor("VLP-16");
+  EXPECT_EQ(shot_of(viewer).beams->rows, 16U);
+  EXPECT_EQ(viewer.look.quantity, Quantity::range) << "depth means nothing to a scanner";
+}
+
+TEST_F(ViewerTest, TellsWhyItRefusesAndGoesOnWithWhatItHad) {
+  Viewer viewer(flags_, measuring_);
+  shot_of(viewer);
+  viewer.use_sensor("VLP-16");
+  shot_of(viewer);
+  viewer.use_renderer("opengl");  // scanners are no central projection
+  ASSERT_TRUE(wait_until(viewer, [&] { return !viewer.errors.empty(); }));
+  EXPECT_THAT(viewer.errors.front(), HasSubstr("--renderer embree"));
+  viewer.open((folder_ / "missing.obj").string());
+  ASSERT_TRUE(wait_until(viewer, [&] { return viewer.errors.size() > 1; }));
+  EXPECT_THAT(viewer.errors.back(), HasSubstr("missing.obj"));
+  viewer.use_renderer("embree");
+  EXPECT_GT(shot_of(viewer).beams->size(), 0U);
+}
+
+TEST_F(ViewerTest, OpensADroppedFileAndForgetsWhereTheLastOneWas) {
+  flags_.pose.eye = "100,0,0";
+  Viewer viewer(flags_, measuring_);
+  EXPECT_NEAR(distance_m(shot_of(viewer)), 100.0, 1e-9);
+  viewer.open("builtin:torus");
+  EXPECT_LT(distance_m(shot_of(viewer)), 50.0);
+  EXPECT_EQ(viewer.shot()->session->scene.instances[0].name, "torus");
+  EXPECT_EQ(viewer.shot()->beams->cols, 32U) << "the sensor stays";
+}
+
+TEST_F(ViewerTest, SavesWhatIsSeenUnderANewNameEachTime) {
+  flags_.output.legacy_name = (folder_ / "view").string();
+  Viewer viewer(flags_, measuring_);
+  shot_of(viewer);
+  viewer.type('s');
+  viewer.type('+');
+  viewer.type('s');
+  ASSERT_TRUE(wait_until(
+      viewer, [&] { return std::filesystem::exists(folder_ / "view_000001.transform"); }));
+  const auto depth_in = [&](const char* file) {
+    std::ifstream text(folder_ / file);
+    std::array<double, 12> numbers{};
+    for (double& number : numbers) text >> number;
+    return numbers[11];
+  };
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "view.pcd"));
+  EXPECT_LT(depth_in("view_000001.transform"), depth_in("view.transform"));
+}
+
+TEST_F(ViewerTest, TellsWhyAFileCannotBeSaved) {
+  flags_.output.paths = {(folder_ / "no_such_folder" / "x.pcd").string()};
+  Viewer viewer(flags_, measuring_);
+  shot_of(viewer);
+  viewer.type('s');
+  ASSERT_TRUE(wait_until(viewer, [&] { return !viewer.errors.empty(); }));
+  EXPECT_THAT(viewer.errors.front(), HasSubstr("no_such_folder"));
+}
+
+TEST_F(ViewerTest, TellsTheStoryOfAPickedPointAndTellsItAnewWhenItMoves) {
+  flags_.motion.model_dr = "0,0,1";
+  Viewer viewer(flags_, measuring_);
+  shot_of(viewer);
+  const std::size_t middle = 16 * 32 + 16;
+  viewer.pick(middle);
+  EXPECT_FALSE(viewer.is_playing()) << "time stops";
+  ASSERT_TRUE(wait_until(viewer, [&] { return !viewer.story.empty(); }));
+  EXPECT_THAT(viewer.story, HasSubstr("row 16, col 16"));
+  EXPECT_THAT(viewer.story, HasSubstr("object 'asteroid'"));
+  const std::string before = viewer.story;
+  viewer.type('+');
+  EXPECT_TRUE(wait_until(viewer, [&] { return viewer.story != before; }));
+  viewer.pick({});
+  EXPECT_THAT(viewer.story, IsEmpty());
+}
+
+TEST_F(ViewerTest, KeysThatMeanNothingDoNothing) {
+  Viewer viewer(flags_, measuring_);
+  shot_of(viewer);
+  const Ask before = viewer.ask();
+  for (const unsigned letter : {'x', '1', ';'}) viewer.type(letter);
+  viewer.type(0x1F600);
+  EXPECT_TRUE(viewer.ask() == before);
+}
+
+TEST_F(ViewerTest, EndsInTheMidstOfWork) {
+  for (int i = 0; i < 20; ++i) {
+    Measuring measuring(console_, [] {});
+    Viewer viewer(flags_, measuring);
+    viewer.turn_to(static_cast<std::uint32_t>(i));
+  }
+}
+
+}  // namespace
+}  // namespace glidar::app

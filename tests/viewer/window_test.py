@@ -1,0 +1,339 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""glidar view in a window on a display without a screen: keys, mouse, files, faults."""
+
+import os
+import re
+import subprocess
+import sys
+import time
+import unittest
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path.insert(0, HERE)
+sys.path.insert(0, os.path.join(os.path.dirname(HERE), "apps"))
+try:
+    from cli_support import CliTest, BOX
+    from display import Display, missing_programs, wait_until
+    from PIL import Image, ImageChops, ImageStat
+except ImportError as missing:
+    print(f"skipped: {missing}")
+    sys.exit(77)
+
+# Places in the window of 1280 x 720.
+SENSOR = (540, 330)  # the middle of the left view
+CLOUD = (1030, 330)
+SENSOR_BOX = (300, 30, 770, 600)
+
+
+def difference(a, b):
+    """Mean of the differences of two pictures, of 255."""
+    return sum(ImageStat.Stat(ImageChops.difference(a, b)).mean) / 3.0
+
+
+class Window:
+    """A running glidar view; a context that ends it."""
+
+    def __init__(self, test, *arguments, title="GLIDAR"):
+        self._test = test
+        self._display = test.display
+        self.program = subprocess.Popen(
+            ["glidar", "view", *arguments], cwd=test.folder, env=test.environment,
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self._title = title
+
+    def __enter__(self):
+        self.number = self._display.window(self._title)
+        self.settle()
+        return self
+
+    def __exit__(self, *error):
+        if self.program.poll() is None:
+            self.program.kill()
+        self.program.communicate()
+
+    def settle(self):
+        """Until the window shows the same twice, in half a second."""
+        def is_still():
+            before = self._display.grab()
+            time.sleep(0.5)
+            return difference(before, self._display.grab()) == 0.0 and max(
+                ImageStat.Stat(before).stddev) > 10.0
+        wait_until(is_still, "the window to come to rest")
+
+    def key(self, *keys):
+        for key in keys:
+            self._display.xdotool("key", key)
+            time.sleep(0.1)
+
+    def quit(self):
+        """By Esc; what it printed."""
+        self.key("Escape")
+        out, err = self.program.communicate(timeout=60)
+        self._test.assertEqual(self.program.returncode, 0, err)
+        return out + err
+
+    def save(self, name):
+        """Presses s; the 4x4 transform that is written."""
+        self.key("s")
+        path = os.path.join(self._test.folder, name + ".transform")
+        wait_until(lambda: os.path.exists(path), path)
+        with open(path, encoding="utf-8") as text:
+            return [[float(x) for x in line.split()] for line in text]
+
+
+class ViewerWindowTest(CliTest):
+    @classmethod
+    def setUpClass(cls):
+        cls.display = Display().__enter__()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.display.__exit__()
+
+    def setUp(self):
+        super().setUp()
+        self.environment["DISPLAY"] = self.display.name
+
+    def read(self, name):
+        with open(os.path.join(self.folder, name), "rb") as file:
+            return file.read()
+
+    def test_s_saves_the_same_bytes_as_render_does(self):
+        with Window(self, "builtin:asteroid") as window:
+            window.save("buffer")
+            window.quit()
+        self.succeed("render", "builtin:asteroid", "--pcd", "expected")
+        self.assertEqual(self.read("buffer.pcd"), self.read("expected.pcd"))
+        self.assertEqual(self.read("buffer.transform"), self.read("expected.transform"))
+
+    def test_plus_and_minus_move_the_sensor_and_r_resets(self):
+        with Window(self, "builtin:asteroid") as window:
+            start = window.save("buffer")
+            window.key("plus")
+            near = window.save("buffer_000001")
+            window.key("minus", "minus")
+            far = window.save("buffer_000002")
+            window.key("r")
+            again = window.save("buffer_000003")
+        self.assertLess(near[2][3], 0.96 * start[2][3])
+        self.assertGreater(far[2][3], 1.04 * start[2][3])
+        self.assertEqual(again, start)
+
+    def test_a_drag_turns_the_object_and_leaves_the_cloud_view_to_its_own(self):
+        with Window(self, "builtin:asteroid") as window:
+            start = window.save("buffer")
+            self.display.drag(SENSOR, (100, 0))
+            turned = window.save("buffer_000001")
+            before = self.display.grab()
+            self.display.drag(CLOUD, (100, 50))
+            window.settle()
+            seen = window.save("buffer_000002")
+            after = self.display.grab()
+        self.assertNotEqual([row[:3] for row in turned], [row[:3] for row in start])
+        self.assertAlmostEqual(turned[2][3], start[2][3], delta=0.2)
+        self.assertEqual(seen, turned, "going round the cloud moves no object")
+        self.assertGreater(difference(before.crop((780, 30, 1270, 600)),
+                                      after.crop((780, 30, 1270, 600))), 1.0)
+
+    def test_the_wheel_moves_the_sensor_on_the_left_and_zooms_on_the_right(self):
+        with Window(self, "builtin:asteroid") as window:
+            start = window.save("buffer")
+            self.display.xdotool("mousemove", *SENSOR)
+            time.sleep(0.3)
+            self.display.xdotool("click", 4)
+            time.sleep(0.3)
+            near = window.save("buffer_000001")
+            self.display.xdotool("mousemove", *CLOUD)
+            time.sleep(0.3)
+            self.display.xdotool("click", 4)
+            time.sleep(0.3)
+            zoomed = window.save("buffer_000002")
+        self.assertLess(near[2][3], start[2][3])
+        self.assertEqual(zoomed, near)
+
+    def test_space_pauses_a_turning_model(self):
+        window = Window(self, "builtin:asteroid", "--model-dr", "0,0,1")
+        window.number = self.display.window("GLIDAR")
+        time.sleep(1.0)
+        first = window.save("buffer")
+        time.sleep(0.5)
+        second = window.save("buffer_000001")
+        window.key("space")
+        window.settle()
+        third = window.save("buffer_000002")
+        time.sleep(0.5)
+        fourth = window.save("buffer_000003")
+        window.quit()
+        self.assertNotEqual(first, second)
+        self.assertEqual(third, fourth)
+
+    def test_a_click_tells_the_story_of_a_point(self):
+        with Window(self, "builtin:asteroid") as window:
+            before = self.display.grab()
+            self.display.xdotool("mousemove", *SENSOR)
+            time.sleep(0.3)
+            self.display.xdotool("click", 1)
+            wait_until(lambda: difference(before.crop((300, 470, 1270, 650)),
+                                          self.display.grab().crop((300, 470, 1270, 650))) > 2.0,
+                       "the story below the views")
+            window.quit()
+
+    def test_nothing_is_drawn_while_nothing_changes(self):
+        with Window(self, "builtin:asteroid") as window:
+            time.sleep(3.0)
+            drawn = int(re.search(r"drew (\d+) pictures", window.quit())[1])
+        self.assertLess(drawn, 40, "three seconds at 20 a second would be 60 more")
+
+    def test_the_window_may_change_its_size_and_be_minimised(self):
+        with Window(self, "builtin:asteroid") as window:
+            self.display.xdotool("windowsize", "--sync", window.number, 900, 600)
+            window.settle()
+            small = self.display.grab()
+            self.assertLess(max(ImageStat.Stat(small.crop((905, 0, 1400, 900))).stddev), 1.0)
+            self.display.xdotool("windowminimize", "--sync", window.number)
+            time.sleep(1.0)
+            self.display.xdotool("windowmap", "--sync", window.number)
+            window.settle()
+            self.assertLess(difference(small, self.display.grab()), 3.0)
+            window.quit()
+
+    def test_a_dropped_file_opens(self):
+        path = os.path.join(self.folder, "a box.obj")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(BOX)
+        with Window(self, "builtin:asteroid") as window:
+            before = self.display.grab()
+            self.display.drop(window.number, path)
+            window.settle()
+            self.assertGreater(difference(before.crop(SENSOR_BOX),
+                                          self.display.grab().crop(SENSOR_BOX)), 5.0)
+            window.save("buffer")
+            window.quit()
+        self.succeed("render", path, "--pcd", "expected")
+        self.assertEqual(self.read("buffer.pcd"), self.read("expected.pcd"))
+
+    def test_errors_stand_in_the_window_and_in_the_terminal_and_it_goes_on(self):
+        with Window(self, "builtin:asteroid", "-o", "no_folder/x.pcd") as window:
+            before = self.display.grab()
+            window.key("s")
+            window.settle()
+            red = self.display.grab().getpixel((900, 40))
+            self.assertGreater(red[0], 2 * red[1], "a red panel")
+            self.assertNotEqual(before.getpixel((900, 40)), red)
+            self.assertIn("no_folder", window.quit())
+
+    def test_a_lost_context_is_made_anew(self):
+        library = self.build_shim()
+        self.environment["LD_PRELOAD"] = library
+        with Window(self, "builtin:asteroid") as window:
+            window.key("plus", "plus", "plus", "plus")
+            window.settle()
+            red = self.display.grab().getpixel((900, 40))
+            self.assertGreater(red[0], 2 * red[1], "it is told")
+            self.assertGreater(max(ImageStat.Stat(self.display.grab().crop(SENSOR_BOX)).stddev), 20.0)
+            window.quit()
+
+    def build_shim(self):
+        """A library that makes OpenGL report a reset, once, at the tenth time of asking."""
+        source = os.path.join(self.folder, "reset.c")
+        with open(source, "w", encoding="utf-8") as file:
+            file.write("""
+#include <epoxy/gl.h>
+static GLenum report(void) {
+  static int asked = 0;
+  return ++asked == 10 ? GL_GUILTY_CONTEXT_RESET : GL_NO_ERROR;
+}
+__attribute__((constructor)) static void replace(void) {
+  epoxy_glGetGraphicsResetStatus = report;
+}
+""")
+        library = os.path.join(self.folder, "reset.so")
+        subprocess.run(["cc", "-shared", "-fPIC", source, "-o", library, "-lepoxy"], check=True)
+        return library
+
+
+class ScreenshotTest(CliTest):
+    """Without hands."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.display = Display().__enter__()
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.display.__exit__()
+
+    def setUp(self):
+        super().setUp()
+        self.environment["DISPLAY"] = self.display.name
+
+    def shoot(self, *arguments):
+        path = os.path.join(self.folder, "shot.png")
+        done = self.succeed("view", *arguments, "--screenshot", "shot.png")
+        with Image.open(path) as image:
+            return image.convert("RGB"), done.stdout
+
+    def test_looks_as_it_did(self):
+        """The views alone: fonts and numbers of milliseconds may differ."""
+        image, _ = self.shoot("builtin:asteroid", "--model-r", "1,0,0,1", "--frames", "3")
+        self.assertEqual(image.size, (1280, 720))
+        views = image.crop((290, 20, 1280, 600)).resize((330, 193), Image.Resampling.BOX)
+        with Image.open(os.path.join(HERE, "asteroid_views.png")) as expected:
+            self.assertLess(difference(views, expected.convert("RGB")), 2.0)
+
+    def test_the_opengl_renderer_shows_the_same(self):
+        embree, _ = self.shoot("builtin:torus")
+        opengl, _ = self.shoot("builtin:torus", "--renderer", "opengl")
+        self.assertLess(difference(embree.crop(SENSOR_BOX), opengl.crop(SENSOR_BOX)), 0.5)
+
+    def test_frames_count_the_sensors_frames_and_are_the_same_again(self):
+        arguments = ("builtin:asteroid", "--model-dr", "0,2,0", "--frames", "7")
+        first, told = self.shoot(*arguments)
+        self.assertIn("7 frames in", told)
+        second, _ = self.shoot(*arguments)
+        self.assertEqual(difference(first.crop((290, 20, 1280, 640)),
+                                    second.crop((290, 20, 1280, 640))), 0.0)
+
+    def test_a_window_of_another_size(self):
+        image, _ = self.shoot("builtin:asteroid", "--window", "640x480")
+        self.assertEqual(image.size, (640, 480))
+
+    def test_a_scanner_shows_its_turn(self):
+        image, _ = self.shoot("builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0")
+        self.assertGreater(max(ImageStat.Stat(image.crop(SENSOR_BOX)).stddev), 30.0)
+
+    def test_bad_input_ends_it_with_an_error_and_no_file(self):
+        error = self.refused("view", "missing.obj", "--screenshot", "shot.png")
+        self.assertIn("missing.obj", error)
+        for size in ("100x100", "1280", "1280x720x3", "axb", "1280x99999"):
+            self.assertIn("--window", self.refused("view", "builtin:box", "--window", size))
+        for path, why in (("no_folder/a.png", "no_folder"), ("a.jpg", ".png")):
+            self.assertIn(why, self.refused("view", "builtin:box", "--screenshot", path))
+
+    def test_without_a_display_it_says_what_to_do(self):
+        del self.environment["DISPLAY"]
+        error = self.refused("view", "builtin:box")
+        self.assertIn("no display", error)
+        self.assertIn("xvfb-run", error)
+        self.assertIn("glidar render", error)
+
+    def test_a_display_that_is_not_there_is_named(self):
+        self.environment["DISPLAY"] = ":9999"
+        self.assertIn(":9999", self.refused("view", "builtin:box"))
+
+    def test_without_a_driver_it_says_what_to_install(self):
+        self.environment["LIBGL_DRIVERS_PATH"] = self.folder
+        self.environment["GBM_BACKENDS_PATH"] = self.folder
+        done = self.run_program("view", "builtin:box")
+        self.assertEqual(done.returncode, 2)
+        error = done.stderr.splitlines()[-1]  # after those of the system's own libraries
+        self.assertTrue(error.startswith("glidar: error: "), done.stderr)
+        self.assertIn("libgl1-mesa-dri", error)
+
+
+if __name__ == "__main__":
+    if missing_programs():
+        print("skipped: install", *missing_programs())
+        sys.exit(77)
+    unittest.main()
