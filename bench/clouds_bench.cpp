@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Point clouds (x, y, z, intensity of what is seen) a second, beside the way of the 2015 program.
+#include "many_views.hpp"
 #include "pipeline_2015.hpp"
 #include "ratio_reporter.hpp"
 
@@ -12,8 +13,6 @@
 
 namespace glidar::bench {
 namespace {
-
-constexpr unsigned kThreads = 2;
 
 /// GLIDAR, from a pose to a compact cloud.
 class Clouds {
@@ -36,10 +35,6 @@ class Clouds {
   }
 
  private:
-  static RendererOptions options(const char* kind) {
-    return {.kind = kind, .threads = kThreads, .graphics_device = chosen_device()};
-  }
-
   inline static const std::array<std::string, 2> kColumns = {"xyz", "intensity"};
   const Model& model_;
   Sensor sensor_;
