@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Point clouds (x, y, z, intensity of what is seen) a second, beside the way of the 2015 program.
+#include "many_views.hpp"
 #include "pipeline_2015.hpp"
 #include "ratio_reporter.hpp"
 
@@ -12,8 +13,6 @@
 
 namespace glidar::bench {
 namespace {
-
-constexpr unsigned kThreads = 2;
 
 /// GLIDAR, from a pose to a compact cloud.
 class Clouds {
@@ -29,17 +28,13 @@ class Clouds {
 
   void measure() {
     Setup setup{model_.scene, sensor_, beams_, motion_, *renderer_};
-    if (camera_) setup.paper.emplace(PaperTarget{*camera_, picture_});
+    if (camera_) setup.paper.emplace(PaperTarget{*camera_});
     simulate(setup, {}, frame_);
     make_point_cloud(frame_, beams_, model_.scene, {.frame_id = "camera"}, kColumns, organised_);
     cloud_ = compacted(organised_);
   }
 
  private:
-  static RendererOptions options(const char* kind) {
-    return {.kind = kind, .threads = kThreads, .graphics_device = chosen_device()};
-  }
-
   inline static const std::array<std::string, 2> kColumns = {"xyz", "intensity"};
   const Model& model_;
   Sensor sensor_;
@@ -47,7 +42,6 @@ class Clouds {
   std::unique_ptr<Renderer> renderer_;
   Motion motion_;
   std::unique_ptr<PaperCamera> camera_;
-  PaperPicture picture_;
   Frame frame_;
   PointCloud organised_;
   PointCloud cloud_;

@@ -3,22 +3,15 @@
 // How much of bare OpenGL's speed a cast keeps, and what many small frames gain when they are cast
 // together. The yardstick (raw_opengl.hpp) draws the same triangles into the same targets (a 32-bit
 // number and a float depth per pixel) and reads the numbers back, no more.
+#include "many_views.hpp"
 #include "ratio_reporter.hpp"
-#include "raw_opengl.hpp"
 
-#include <glidar/core/random.hpp>
 #include <glidar/simulate.hpp>
 
 #include <memory>
 
 namespace glidar::bench {
 namespace {
-
-constexpr unsigned kThreads = 2;
-
-RendererOptions options(const char* kind) {
-  return {.kind = kind, .threads = kThreads, .graphics_device = chosen_device()};
-}
 
 template <class Body>
 void add(const std::string& name, const Body& body) {
@@ -65,41 +58,6 @@ void register_paper(const std::string& name, const Model& model, std::uint32_t s
     }
   });
 }
-
-/// Frames from many sides of a model, each with normals, as a Monte Carlo run takes them.
-class ManyViews {
- public:
-  ManyViews(const Model& model, const char* kind, std::uint32_t side)
-      : renderer_(make_renderer(model.scene, options(kind))),
-        beams_(make_beams(pinhole_from_fov(side, side, kFov_rad))),
-        hits_(kViews) {
-    const Eigen::Vector3d middle = bounds(model.scene).center();
-    const double distance_m = (model.world_from_sensor.translation() - middle).norm();
-    for (std::uint32_t i = 0; i < kViews; ++i) {
-      const RandomWords words = random_words({.seed = 1, .block = i});
-      const Eigen::Vector3d side_of(uniform(words[0]) - 0.5, uniform(words[1]) - 0.5,
-                                    uniform(words[2]) - 0.5);
-      requests_.push_back({.beams = beams_,
-                           .world_from_sensor = look_at(middle + distance_m * side_of.normalized(),
-                                                        middle, Eigen::Vector3d::UnitY()),
-                           .fields = {.normal = true}});
-      all_.push_back(&hits_[i]);
-    }
-  }
-
-  void one_by_one() {
-    for (std::size_t i = 0; i < requests_.size(); ++i) renderer_->cast(requests_[i], hits_[i]);
-  }
-  void together() { renderer_->cast_batch(requests_, all_); }
-
- private:
-  static constexpr std::size_t kViews = 64;
-  std::unique_ptr<Renderer> renderer_;
-  Beams beams_;
-  std::vector<CastRequest> requests_;
-  std::vector<Hits> hits_;
-  std::vector<Hits*> all_;
-};
 
 void register_model(const Model& model, std::uint32_t side, std::vector<Ratio>& ratios) {
   constexpr double kGoal = 0.85;

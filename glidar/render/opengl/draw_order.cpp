@@ -10,6 +10,7 @@ namespace glidar::opengl {
 namespace {
 
 constexpr int kBits = 16;  // of a place, along each axis
+constexpr float kSteps = (1U << kBits) - 1;
 
 /// Two zeros before every bit.
 std::uint64_t spread(std::uint64_t bits) {
@@ -24,7 +25,6 @@ class Curve {
   explicit Curve(const Mesh& mesh) {
     for (const Eigen::Vector3f& p : mesh.positions_m) box_.extend(p);
     const float size = box_.isEmpty() ? 0.0F : box_.sizes().maxCoeff();
-    constexpr float kSteps = (1U << kBits) - 1;
     steps_per_metre_ = size > 0.0F ? kSteps / size : 0.0F;
   }
 
@@ -32,7 +32,8 @@ class Curve {
     const Eigen::Vector3f step = steps_per_metre_ * (position - box_.min());
     std::uint64_t place = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      place |= spread(static_cast<std::uint64_t>(std::max(step[axis], 0.0F))) << axis;
+      place |= spread(static_cast<std::uint64_t>(std::min(std::max(0.0F, step[axis]), kSteps)))
+               << axis;
     }
     return place;
   }
