@@ -32,13 +32,13 @@ void add_pace_flags(CLI::App& command, StreamFlags& flags) {
     remove(command, name);
   }
   const std::string group = "Pace and end";
-  add_option(
-      command, {"--rate", "HZ", "Frames per second; 0 or max: as fast as it goes [sensor's]", group},
-      [&flags](std::string_view option, const std::string& text) {
-        flags.is_unpaced = text == "max" || parse_number(option, text) == 0.0;
-        flags.render.sensor.rate_hz.reset();
-        if (!flags.is_unpaced) flags.render.sensor.rate_hz = parse_number(option, text);
-      });
+  add_option(command,
+             {"--rate", "HZ", "Frames per second; 0 or max: as fast as it goes [sensor's]", group},
+             [&flags](std::string_view option, const std::string& text) {
+               flags.is_unpaced = text == "max" || parse_number(option, text) == 0.0;
+               flags.render.sensor.rate_hz.reset();
+               if (!flags.is_unpaced) flags.render.sensor.rate_hz = parse_number(option, text);
+             });
   add_number(command, {"--duration", "S", "Ends after S seconds [none]", group},
              flags.render.duration_s);
   add_whole(command, {"--frames", "N", "Ends after N frames [none]", group},
@@ -79,7 +79,8 @@ void add_pose_source_flags(CLI::App& command, StreamFlags& flags) {
   add_whole(command,
             {"--hwm", "N", "Poses that wait, each gives a frame; 0: the newest only [0]", group},
             {0, kMostQueued}, [&flags](std::int64_t n) { flags.pose_queue = static_cast<int>(n); });
-  add_number(command, {"--pose-timeout", "S", "Ends when no pose comes for S seconds [none]", group},
+  add_number(command,
+             {"--pose-timeout", "S", "Ends when no pose comes for S seconds [none]", group},
              flags.pose_timeout_s);
 }
 
@@ -132,8 +133,8 @@ legacy::CloudPublisherOptions publisher_options(const StreamFlags& flags) {
           .keeps_newest = flags.publishes_newest,
           .queue = flags.publish_queue,
           .every = flags.publish_every,
-          .timestamps = flags.physics_port ? legacy::Timestamps::of_poses
-                                           : legacy::Timestamps::counted};
+          .timestamps =
+              flags.physics_port ? legacy::Timestamps::of_poses : legacy::Timestamps::counted};
 }
 
 legacy::PoseReceiverOptions receiver_options(const StreamFlags& flags) {

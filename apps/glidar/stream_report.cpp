@@ -11,9 +11,8 @@ namespace {
 constexpr double kMilli = 1e3;
 
 nlohmann::ordered_json json_of(const legacy::CloudPublisher::Counts& counts) {
-  return {{"sent", counts.sent},         {"missed", counts.missed},
-          {"repeated", counts.repeated}, {"points", counts.points},
-          {"bytes", counts.bytes},       {"handshakes", counts.handshakes}};
+  return {{"sent", counts.sent},     {"missed", counts.missed}, {"repeated", counts.repeated},
+          {"points", counts.points}, {"bytes", counts.bytes},   {"handshakes", counts.handshakes}};
 }
 
 nlohmann::ordered_json json_of(const legacy::PoseReceiver::Counts& counts) {
@@ -35,13 +34,13 @@ std::string json_text(const StreamSummary& summary) {
   nlohmann::ordered_json all = {
       {"ending", summary.ending},
       {"seconds", seconds},
-      {"frames", {{"measured", summary.measured},
-                  {"delivered", latency.count()},
-                  {"late", summary.late}}},
+      {"frames",
+       {{"measured", summary.measured}, {"delivered", latency.count()}, {"late", summary.late}}},
       {"rate_hz", static_cast<double>(latency.count()) / seconds},
-      {"latency_ms", {{"p50", kMilli * latency.quantile_s(0.5)},
-                      {"p99", kMilli * latency.quantile_s(0.99)},
-                      {"max", kMilli * latency.longest_s()}}}};
+      {"latency_ms",
+       {{"p50", kMilli * latency.quantile_s(0.5)},
+        {"p99", kMilli * latency.quantile_s(0.99)},
+        {"max", kMilli * latency.longest_s()}}}};
   if (summary.clouds) all["clouds"] = json_of(*summary.clouds);
   if (summary.poses) all["poses"] = json_of(*summary.poses);
   all["faults"] = summary.faults;
@@ -51,8 +50,8 @@ std::string json_text(const StreamSummary& summary) {
 
 std::string summary_text(const StreamSummary& summary) {
   const DurationHistogram& latency = summary.stats.latency;
-  std::string text = fmt::format("{} in {:.2f} s", count_text(latency.count(), "frame"),
-                                 summary.stats.seconds());
+  std::string text =
+      fmt::format("{} in {:.2f} s", count_text(latency.count(), "frame"), summary.stats.seconds());
   if (latency.count() > 0) {
     text += fmt::format(", {:.1f} Hz, latency {:.1f} ms (99 %: {:.1f} ms)",
                         static_cast<double>(latency.count()) / summary.stats.seconds(),
@@ -87,7 +86,8 @@ std::string waiting_text(const StreamFlags& flags) {
 }
 
 std::string publishing_text(const legacy::CloudPublisher::Counts& counts) {
-  return fmt::format(", {}, {} missed", count_text(counts.connected, "subscriber"), counts.missed);
+  return fmt::format(", {}, {} missed", count_text(counts.subscribers, "subscriber"),
+                     counts.missed);
 }
 
 }  // namespace glidar::app

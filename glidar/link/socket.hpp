@@ -43,10 +43,16 @@ std::string text_of(const Endpoint& endpoint);
 
 enum class SocketKind : std::uint8_t { publish, subscribe, request, reply };
 
+/// What ZeroMQ tells of subscribers: how many there are that want a topic.
+struct SubscriptionCount {
+  bool is_known = false;  ///< not of sockets that keep the newest message only
+  std::uint64_t subscribers = 0;
+};
+
 struct SocketOptions {
   SocketKind kind = SocketKind::publish;
-  int send_queue = 1000;     ///< messages that wait for each peer; 0: any number
-  int receive_queue = 1000;  ///< likewise
+  int send_queue = 1000;      ///< messages that wait for each peer; 0: any number
+  int receive_queue = 1000;   ///< likewise
   bool keeps_newest = false;  ///< only the last message waits, whatever the queues
   /// A peer that sends more is cut off before the memory is taken.
   std::int64_t largest_message_bytes = std::int64_t{1} << 20;
@@ -97,6 +103,8 @@ class Socket {
   /// The same, waiting so long for full queues.
   bool publish(std::span<const std::byte> bytes, std::chrono::milliseconds patience);
 
+  /// How many subscribers want this topic now.
+  SubscriptionCount subscriptions(char topic);
   /// What happened since the last call.
   std::vector<PeerEvent> events();
 
