@@ -86,7 +86,8 @@ std::string waiting_text(const StreamFlags& flags) {
 }
 
 std::string publishing_text(const legacy::CloudPublisher::Counts& counts) {
-  return fmt::format(", {}, {} missed", count_text(counts.connected, "subscriber"), counts.missed);
+  return fmt::format(", {}, {} missed", count_text(counts.subscribers, "subscriber"),
+                     counts.missed);
 }
 
 }  // namespace glidar::app

@@ -23,6 +23,9 @@ const std::vector<std::string> kPublishedColumns = {"xyz", "intensity"};
 /// How often the status line changes.
 constexpr std::chrono::milliseconds kShow{200};
 
+/// How often partners are looked after that are waited for.
+constexpr std::chrono::milliseconds kLook{20};
+
 /// Names the option in an error of a socket.
 template <class Work>
 void naming(const char* options, const Work& work) {
@@ -148,7 +151,7 @@ int StreamRun::run() {
 bool StreamRun::has_partners() {
   if (publisher_) publisher_->serve();
   const bool has_simulator = !receiver_ || receiver_->is_ready();
-  return has_simulator && (!publisher_ || publisher_->counts().handshakes >= flags_.subscribers);
+  return has_simulator && (!publisher_ || publisher_->has(flags_.subscribers));
 }
 
 bool StreamRun::wait_for_partners(const StopRequest& stop) {
@@ -157,7 +160,7 @@ bool StreamRun::wait_for_partners(const StopRequest& stop) {
     if (!std::exchange(is_told, true)) console_.info(waiting_text(flags_));
     link::wait_for({publisher_ ? &publisher_->handshake_socket() : nullptr,
                     receiver_ ? &receiver_->handshake_socket() : nullptr},
-                   stop.descriptor(), kShow);
+                   stop.descriptor(), kLook);
   }
   return !stop.is_asked();
 }

@@ -14,6 +14,8 @@ double seconds_between(StreamStats::Clock::time_point from, StreamStats::Clock::
   return std::chrono::duration<double>(to - from).count();
 }
 
+constexpr double kWindow_s = 1.0;
+
 }  // namespace
 
 void DurationHistogram::add(double seconds) {
@@ -38,8 +40,8 @@ double DurationHistogram::quantile_s(double part) const {
 void StreamStats::note(Clock::time_point due) {
   const Clock::time_point now = Clock::now();
   latency.add(seconds_between(due, now));
+  last_ = now;
   ++window_count_;
-  constexpr double kWindow_s = 1.0;
   const double window_s = seconds_between(window_start_, now);
   if (window_s < kWindow_s) return;
   recent_rate_hz_ = static_cast<double>(window_count_) / window_s;
@@ -48,11 +50,13 @@ void StreamStats::note(Clock::time_point due) {
 }
 
 double StreamStats::seconds() const {
-  return seconds_between(start, Clock::now());
+  return seconds_between(start, latency.count() > 0 ? last_ : Clock::now());
 }
 
 double StreamStats::recent_rate_hz() const {
-  return recent_rate_hz_ > 0.0 ? recent_rate_hz_ : static_cast<double>(latency.count()) / seconds();
+  const double window_s = seconds_between(window_start_, Clock::now());
+  if (window_s < kWindow_s && recent_rate_hz_ > 0.0) return recent_rate_hz_;
+  return static_cast<double>(window_count_) / window_s;  // at first, and when nothing comes
 }
 
 std::string status_text(const StreamStats& stats) {

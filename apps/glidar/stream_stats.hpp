@@ -38,11 +38,13 @@ struct StreamStats {
 
   /// Notes a frame that was delivered.
   void note(Clock::time_point due);
+  /// From the start to the last frame; to now while there is none.
   [[nodiscard]] double seconds() const;
   /// Frames a second over the last second or so, else over all.
   [[nodiscard]] double recent_rate_hz() const;
 
  private:
+  Clock::time_point last_ = start;
   Clock::time_point window_start_ = start;
   std::uint64_t window_count_ = 0;
   double recent_rate_hz_ = 0.0;

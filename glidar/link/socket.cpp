@@ -6,17 +6,20 @@
 
 #include <zmq.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <map>
 #include <utility>
 
 namespace glidar::link {
 namespace {
 
-zmq::socket_type type_of(SocketKind kind) {
-  switch (kind) {
+/// XPUB speaks as PUB does and tells of subscriptions besides, but cannot keep the newest only.
+zmq::socket_type type_of(const SocketOptions& options) {
+  switch (options.kind) {
     case SocketKind::subscribe:
       return zmq::socket_type::sub;
     case SocketKind::request:
@@ -26,7 +29,7 @@ zmq::socket_type type_of(SocketKind kind) {
     case SocketKind::publish:
       break;
   }
-  return zmq::socket_type::pub;
+  return options.keeps_newest ? zmq::socket_type::pub : zmq::socket_type::xpub;
 }
 
 [[noreturn]] void fail(const Endpoint& endpoint, const zmq::error_t& error, const char* doing) {
@@ -59,6 +62,9 @@ void release(void* /*bytes*/, void* payload) {
 void let_go(void* /*bytes*/, void* owner) {
   delete static_cast<std::shared_ptr<const void>*>(owner);
 }
+
+/// Subscriptions to longer ones are no concern of anybody here.
+constexpr std::size_t kLongestTopic = 64;
 
 /// The result of an action that a signal may break off; it is then done again.
 template <class Action>
@@ -154,9 +160,10 @@ struct Socket::Impl {
   zmq::socket_t socket;
   zmq::socket_t monitor;  ///< tells of connections
   bool follows_part = false;
+  std::map<std::string, std::uint64_t> subscriptions;  ///< by topic
 
-  Impl(zmq::context_t& context, SocketKind kind)
-      : socket(context, type_of(kind)), monitor(context, zmq::socket_type::pair) {}
+  Impl(zmq::context_t& context, const SocketOptions& options)
+      : socket(context, type_of(options)), monitor(context, zmq::socket_type::pair) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   /// The monitor ends first: it is told by the socket.
@@ -174,7 +181,7 @@ struct Socket::Impl {
 };
 
 Socket::Socket(Context& context, const SocketOptions& options)
-    : impl_(std::make_unique<Impl>(context.impl_->context, options.kind)) {
+    : impl_(std::make_unique<Impl>(context.impl_->context, options)) {
   zmq::socket_t& socket = impl_->socket;
   socket.set(zmq::sockopt::linger, static_cast<int>(millis(options.linger)));
   socket.set(zmq::sockopt::sndhwm, options.send_queue);
@@ -185,6 +192,7 @@ Socket::Socket(Context& context, const SocketOptions& options)
     socket.set(zmq::sockopt::curve_server, 1);
     socket.set(zmq::sockopt::curve_secretkey, options.curve->secret_key);
   }
+  if (type_of(options) == zmq::socket_type::xpub) socket.set(zmq::sockopt::xpub_verboser, 1);
   impl_->watch();
 }
 
@@ -273,6 +281,27 @@ bool Socket::publish(std::span<const std::byte> bytes, std::chrono::milliseconds
   zmq::message_t message(bytes.data(), bytes.size());
   impl_->socket.set(zmq::sockopt::sndtimeo, static_cast<int>(millis(patience)));
   return publish_now(impl_->socket, message, zmq::send_flags::none);
+}
+
+SubscriptionCount Socket::subscriptions(char topic) {
+  if (impl_->socket.get(zmq::sockopt::type) != ZMQ_XPUB) return {};
+  while (const std::optional<Message> message = receive()) {
+    // a byte, 1 for a subscription and 0 for its end, and the topic
+    const std::span<const std::byte> bytes = message->bytes();
+    if (bytes.empty() || bytes.size() > kLongestTopic || std::to_integer<int>(bytes[0]) > 1) {
+      continue;
+    }
+    const std::string name(reinterpret_cast<const char*>(bytes.data()) + 1, bytes.size() - 1);
+    const bool begins = bytes[0] == std::byte{1};
+    std::uint64_t& count = impl_->subscriptions[name];
+    count = begins ? count + 1 : count - std::min<std::uint64_t>(count, 1);
+    if (count == 0) impl_->subscriptions.erase(name);
+  }
+  SubscriptionCount known = {.is_known = true};
+  for (const auto& [name, count] : impl_->subscriptions) {
+    if (std::string(1, topic).starts_with(name)) known.subscribers += count;
+  }
+  return known;
 }
 
 std::vector<PeerEvent> Socket::events() {

@@ -54,6 +54,12 @@ CurveKeys make_curve_keys();
 
 enum class SocketKind : std::uint8_t { publish, subscribe, request, reply };
 
+/// What ZeroMQ tells of subscribers: how many there are that want a topic.
+struct SubscriptionCount {
+  bool is_known = false;  ///< not of sockets that keep the newest message only
+  std::uint64_t subscribers = 0;
+};
+
 struct SocketOptions {
   SocketKind kind = SocketKind::publish;
   int send_queue = 1000;      ///< messages that wait for each peer; 0: any number
@@ -122,6 +128,8 @@ class Socket {
   /// The same, waiting so long for full queues.
   bool publish(std::span<const std::byte> bytes, std::chrono::milliseconds patience);
 
+  /// How many subscribers want this topic now.
+  SubscriptionCount subscriptions(char topic);
   /// What happened since the last call.
   std::vector<PeerEvent> events();
 

@@ -4,7 +4,6 @@
 
 import socket
 import struct
-import time
 
 import numpy as np
 import zmq
@@ -84,17 +83,20 @@ class Simulator:
     def __init__(self, context, port):
         self.poses = context.socket(zmq.PUB)
         self.poses.linger = 1000
-        self.poses.bind(f"tcp://127.0.0.1:{port}")
         self.hand = context.socket(zmq.REP)
         self.hand.linger = 0
-        self.hand.bind(f"tcp://127.0.0.1:{port + 1}")
+        try:
+            self.poses.bind(f"tcp://127.0.0.1:{port}")
+            self.hand.bind(f"tcp://127.0.0.1:{port + 1}")
+        except zmq.ZMQError:
+            self.close()
+            raise
 
     def shake(self, timeout_s=60):
         if not self.hand.poll(timeout_s * 1000):
             raise TimeoutError("no handshake")
         assert self.hand.recv() == b""
         self.hand.send(b"")
-        time.sleep(0.2)  # a subscription is a message of its own; the protocol does not wait for it
 
     def send(self, message):
         self.poses.send(message)

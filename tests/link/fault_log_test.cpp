@@ -17,8 +17,9 @@ class FaultLogTest : public ::testing::Test {
  protected:
   std::vector<std::string> said;
   FaultLog::Clock::time_point now;
-  FaultLog log{{.log = [this](Severity, std::string_view text) { said.emplace_back(text); }},
-               [this] { return now; }};
+  FaultLog log{
+      {.log = [this](Severity, std::string_view text) { said.emplace_back(text); }, .progress = {}},
+      [this] { return now; }};
 };
 
 TEST_F(FaultLogTest, SaysTheFirstOfEachKindAtOnce) {

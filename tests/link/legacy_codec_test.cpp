@@ -25,7 +25,8 @@ MessageBytes placement_bytes(std::array<double, 11> numbers) {
   return message;
 }
 
-constexpr std::array<double, 11> kNumbers = {0.6, 0.0, 0.8, 0.0, 1.0, -2.0, 30.0, 1.0, 0.0, 0.0, 0.0};
+constexpr std::array<double, 11> kNumbers = {0.6,  0.0, 0.8, 0.0, 1.0, -2.0,
+                                             30.0, 1.0, 0.0, 0.0, 0.0};
 
 TEST(LegacyPlacement, IsReadFromBytesWrittenByHand) {
   const MessageBytes message = placement_bytes(kNumbers);
@@ -41,7 +42,8 @@ TEST(LegacyPlacement, IsReadFromBytesWrittenByHand) {
 TEST(LegacyPlacement, WritesTheBytesItReads) {
   const MessageBytes message = placement_bytes(kNumbers);
   const auto written = encode_placement(decode_placement(message.bytes));
-  EXPECT_TRUE(std::equal(written.begin(), written.end(), message.bytes.begin(), message.bytes.end()));
+  EXPECT_TRUE(
+      std::equal(written.begin(), written.end(), message.bytes.begin(), message.bytes.end()));
 }
 
 TEST(LegacyPlacement, OfAnyOtherSizeIsRefusedWithBothSizes) {
@@ -155,8 +157,11 @@ TEST(LegacyCloud, OfBrokenPointsIsRefused) {
   EXPECT_THAT(error_text([&] { decode_cloud(bytes); }), HasSubstr("24 bytes"));
   EXPECT_THAT(error_text([&] { decode_cloud(std::span(bytes).first(8)); }), HasSubstr("8 bytes"));
   EXPECT_THAT(error_text([] { decode_cloud({}); }), HasSubstr("it is empty"));
-  const auto nan = MessageBytes().text("c").number(std::uint64_t{1}).number(1.0F).number(
-      std::numeric_limits<float>::quiet_NaN());
+  const auto nan = MessageBytes()
+                       .text("c")
+                       .number(std::uint64_t{1})
+                       .number(1.0F)
+                       .number(std::numeric_limits<float>::quiet_NaN());
   MessageBytes with_nan = nan;
   with_nan.number(0.0F).number(0.0F);
   EXPECT_THAT(error_text([&] { decode_cloud(with_nan.bytes); }), HasSubstr("point 0"));

@@ -15,6 +15,9 @@ using std::chrono_literals::operator""ms;
 
 /// For the last messages, when a subscriber is slow.
 constexpr auto kPatience = 1000ms;
+/// For subscriptions that come after the handshake: where ZeroMQ tells of them, and where not.
+constexpr auto kLongestSettling = 1000ms;
+constexpr auto kSettling = 200ms;
 constexpr std::int64_t kLargestHandshakeBytes = 1024;
 
 link::SocketOptions cloud_socket(const CloudPublisherOptions& options) {
@@ -60,6 +63,13 @@ void CloudPublisher::write(const PointCloud& cloud, const Frame& frame) {
   faults_.tell("clouds missed", "a subscriber reads more slowly than clouds come");
 }
 
+bool CloudPublisher::has(std::uint64_t subscribers) const {
+  if (counts_.handshakes < subscribers) return false;
+  if (subscribers == 0 || (knows_subscribers_ && counts_.subscribers >= subscribers)) return true;
+  const auto waited = std::chrono::steady_clock::now() - last_handshake_;
+  return waited > (knows_subscribers_ ? kLongestSettling : kSettling);
+}
+
 void CloudPublisher::serve() {
   answer_handshakes();
   notice_peers();
@@ -74,7 +84,8 @@ void CloudPublisher::shut_down() {
 }
 
 std::uint64_t CloudPublisher::timestamp_of(const Frame& frame) const {
-  if (options_.timestamps == Timestamps::of_poses) return static_cast<std::uint64_t>(frame.stamp_ns);
+  if (options_.timestamps == Timestamps::of_poses)
+    return static_cast<std::uint64_t>(frame.stamp_ns);
   return std::uint64_t{frame.number} / options_.every + 1;
 }
 
@@ -88,20 +99,26 @@ void CloudPublisher::answer_handshakes() {
     }
     handshakes_.send({});
     ++counts_.handshakes;
+    last_handshake_ = std::chrono::steady_clock::now();
   }
 }
 
 void CloudPublisher::notice_peers() {
+  const link::SubscriptionCount known = clouds_.subscriptions(kCloudTopic);
+  knows_subscribers_ = known.is_known;
+  if (known.is_known) counts_.subscribers = known.subscribers;
   for (const link::PeerEvent event : clouds_.events()) {
-    if (event == link::PeerEvent::joined) ++counts_.connected;
-    if (event == link::PeerEvent::left && counts_.connected > 0) --counts_.connected;
+    if (event == link::PeerEvent::joined && !knows_subscribers_) ++counts_.subscribers;
+    if (event == link::PeerEvent::left && !knows_subscribers_ && counts_.subscribers > 0)
+      --counts_.subscribers;
     if (event == link::PeerEvent::refused) {
       faults_.tell("stranger refused", "something that is no subscriber came to the clouds' port");
     }
   }
   for (const link::PeerEvent event : handshakes_.events()) {
     if (event != link::PeerEvent::refused) continue;
-    faults_.tell("stranger refused", "something else than a subscriber came to the handshakes' port");
+    faults_.tell("stranger refused",
+                 "something else than a subscriber came to the handshakes' port");
   }
 }
 

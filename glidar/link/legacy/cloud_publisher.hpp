@@ -6,6 +6,7 @@
 #include <glidar/link/fault_log.hpp>
 #include <glidar/link/socket.hpp>
 
+#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -40,6 +41,9 @@ class CloudPublisher final : public CloudSink {
 
   /// Answers who asks at the second port and notices who came and went.
   void serve();
+  /// Whether so many have shaken hands and will get the next cloud: subscriptions take a way of
+  /// their own and may come later than the handshake.
+  [[nodiscard]] bool has(std::uint64_t subscribers) const;
   /// Tells subscribers that it is over; waits a while for those whose queue is full.
   void shut_down();
 
@@ -47,9 +51,9 @@ class CloudPublisher final : public CloudSink {
 
   struct Counts {
     std::uint64_t handshakes = 0;
-    std::uint64_t connected = 0;  ///< subscribers now
+    std::uint64_t subscribers = 0;  ///< now
     std::uint64_t sent = 0;
-    std::uint64_t missed = 0;  ///< of the sent ones, by one subscriber or more
+    std::uint64_t missed = 0;    ///< of the sent ones, by one subscriber or more
     std::uint64_t repeated = 0;  ///< not sent: of the timestamp before
     std::uint64_t points = 0;
     std::uint64_t bytes = 0;
@@ -67,6 +71,8 @@ class CloudPublisher final : public CloudSink {
   link::Socket handshakes_;
   std::shared_ptr<link::PayloadPool> pool_ = std::make_shared<link::PayloadPool>();
   std::optional<std::uint64_t> last_timestamp_;
+  std::chrono::steady_clock::time_point last_handshake_;
+  bool knows_subscribers_ = false;
   Counts counts_;
 };
 

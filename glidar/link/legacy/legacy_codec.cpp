@@ -22,10 +22,8 @@ constexpr const char* kPoseMessage = "pose message ('v')";
 constexpr const char* kCloudMessage = "cloud message ('c')";
 
 [[noreturn]] void fail(const char* where, std::string found, std::string allowed) {
-  throw Error({.where = where,
-               .found = std::move(found),
-               .allowed = std::move(allowed),
-               .remedy = ""});
+  throw Error(
+      {.where = where, .found = std::move(found), .allowed = std::move(allowed), .remedy = ""});
 }
 
 /// A byte as a person may read it: 'v', or 0x07.
@@ -56,9 +54,9 @@ void write(std::span<std::byte> message, std::size_t offset, T value) {
 }
 
 /// Names of the numbers of a placement, for errors.
-constexpr std::array kNumberNames = {"object w", "object x",      "object y",      "object z",
-                                     "translation x", "translation y", "translation z",
-                                     "sensor w", "sensor x",      "sensor y",      "sensor z"};
+constexpr std::array kNumberNames = {"object w",      "object x",      "object y",      "object z",
+                                     "translation x", "translation y", "translation z", "sensor w",
+                                     "sensor x",      "sensor y",      "sensor z"};
 using Numbers = std::array<double, kNumberNames.size()>;
 
 void check_numbers(const Numbers& numbers) {
@@ -83,7 +81,8 @@ Eigen::Quaterniond unit_quaternion(const Numbers& numbers, std::size_t first, co
 
 /// The numbers of a column of this name and this many numbers a point.
 template <class T>
-const std::vector<T>& numbers_of(const PointCloud& cloud, const char* name, std::size_t components) {
+const std::vector<T>& numbers_of(const PointCloud& cloud, const char* name,
+                                 std::size_t components) {
   const Column* column = find_column(cloud, name);
   const auto* numbers = column == nullptr ? nullptr : std::get_if<std::vector<T>>(&column->values);
   if (numbers != nullptr && numbers->size() == components * cloud.size()) return *numbers;

@@ -26,6 +26,9 @@ link::Endpoint next_port(link::Endpoint endpoint) {
   return endpoint;
 }
 
+/// For the connection, before the handshake is asked for without it.
+constexpr std::chrono::seconds kPatience{1};
+
 /// So that a flood of messages that are no poses does not keep the caller from anything else.
 constexpr int kMostAtOnce = 256;
 
@@ -39,25 +42,22 @@ PoseReceiver::PoseReceiver(link::Context& context, const PoseReceiverOptions& op
       options_(options),
       faults_(faults),
       poses_(context, pose_socket_options(options)),
-      handshake_(context, kHandshakeSocket) {
+      handshake_(context, kHandshakeSocket),
+      connecting_(std::chrono::steady_clock::now()) {
   poses_.subscribe(std::string_view(&kPlacementTopic, 1));
   poses_.connect(options.endpoint);
-  ask();
 }
 
 bool PoseReceiver::is_ready() {
-  if (is_ready_) return true;
-  is_ready_ = handshake_.receive().has_value();
-  const std::vector<link::PeerEvent> events = handshake_.events();
-  if (is_ready_) return true;
-  if (std::find(events.begin(), events.end(), link::PeerEvent::left) == events.end()) return false;
-  faults_.tell("simulator lost", "it went away before it answered the handshake; asking again");
-  ask_again();
-  return false;
+  notice_simulator();
+  ask_when_connected();
+  if (handshake_.receive()) is_ready_ = true;
+  return is_ready_;
 }
 
 std::optional<Placement> PoseReceiver::receive() {
   notice_simulator();
+  ask_when_connected();
   for (int i = 0; i < kMostAtOnce && !is_over_; ++i) {
     const std::optional<link::Message> message = poses_.receive();
     if (!message) return std::nullopt;
@@ -106,23 +106,24 @@ bool PoseReceiver::is_new(std::uint64_t timestamp) {
   return true;
 }
 
-void PoseReceiver::ask() {
+/// The subscription travels ahead of the handshake. A simulator that opens its second port first is
+/// asked a little later all the same.
+void PoseReceiver::ask_when_connected() {
+  if (!connecting_ || std::chrono::steady_clock::now() - *connecting_ < kPatience) return;
+  connecting_.reset();
   handshake_.connect(next_port(options_.endpoint));
   handshake_.send({});
-}
-
-void PoseReceiver::ask_again() {
-  handshake_ = link::Socket(context_, kHandshakeSocket);
-  ask();
 }
 
 /// One that comes back waits for a handshake as it did at first.
 void PoseReceiver::notice_simulator() {
   for (const link::PeerEvent event : poses_.events()) {
+    if (event == link::PeerEvent::joined && connecting_) *connecting_ -= kPatience;
     if (event != link::PeerEvent::left) continue;
     faults_.tell("simulator lost",
                  "its connection ended, or it sent more than 16 MiB at once; waiting for it");
-    ask_again();
+    handshake_ = link::Socket(context_, kHandshakeSocket);
+    connecting_ = std::chrono::steady_clock::now();
   }
 }
 

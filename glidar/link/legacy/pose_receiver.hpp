@@ -6,6 +6,7 @@
 #include <glidar/link/legacy/legacy_codec.hpp>
 #include <glidar/link/socket.hpp>
 
+#include <chrono>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -21,11 +22,12 @@ struct PoseReceiverOptions {
 /// found again. Used by one thread at a time.
 class PoseReceiver {
  public:
-  /// Connects to both ports, now or once somebody listens there, and asks for the handshake. The
-  /// context and the log must outlive it.
+  /// Connects to both ports, now or once somebody listens there. The context and the log must
+  /// outlive it.
   PoseReceiver(link::Context& context, const PoseReceiverOptions& options, link::FaultLog& faults);
 
-  /// Whether the simulator has answered the handshake; it is asked again when it went away before.
+  /// Whether the simulator has answered the handshake, for which it is asked once it is connected,
+  /// so that it misses no pose; again when it went away before. To be called time and again.
   bool is_ready();
   /// The next pose; nothing: there is none now. Messages that are no poses are told to the log and
   /// passed over.
@@ -37,9 +39,9 @@ class PoseReceiver {
   [[nodiscard]] const link::Socket& handshake_socket() const { return handshake_; }
 
   struct Counts {
-    std::uint64_t received = 0;  ///< messages
-    std::uint64_t refused = 0;   ///< of these, that were no poses
-    std::uint64_t repeated = 0;  ///< of the timestamp before, and therefore passed over
+    std::uint64_t received = 0;   ///< messages
+    std::uint64_t refused = 0;    ///< of these, that were no poses
+    std::uint64_t repeated = 0;   ///< of the timestamp before, and therefore passed over
     std::uint64_t backwards = 0;  ///< of an earlier time than the one before
   };
   [[nodiscard]] const Counts& counts() const { return counts_; }
@@ -48,8 +50,7 @@ class PoseReceiver {
   std::optional<Placement> read(const link::Message& message);
   void refuse(const std::string& why);
   [[nodiscard]] bool is_new(std::uint64_t timestamp);
-  void ask();
-  void ask_again();
+  void ask_when_connected();
   void notice_simulator();
 
   link::Context& context_;
@@ -57,6 +58,7 @@ class PoseReceiver {
   link::FaultLog& faults_;
   link::Socket poses_;
   link::Socket handshake_;
+  std::optional<std::chrono::steady_clock::time_point> connecting_;  ///< since; empty: asked
   bool is_ready_ = false;
   bool is_over_ = false;
   std::optional<std::uint64_t> last_timestamp_;
