@@ -45,11 +45,14 @@ class Server:
         line = self.program.stdout.readline()
         assert line.startswith("listening at "), line + self.program.stderr.read()
         self.endpoint = line.split()[-1]
+        self._sockets = []
 
     def __enter__(self):
         return self
 
     def __exit__(self, *error):
+        for socket in self._sockets:
+            socket.close()
         if self.program.poll() is None:
             self.program.kill()
         self.program.communicate()
@@ -61,6 +64,7 @@ class Server:
         for name, value in options.items():
             setattr(socket, name, value)
         socket.connect(self.endpoint)
+        self._sockets.append(socket)
         return socket
 
     def end(self, number=signal.SIGTERM):
@@ -78,8 +82,9 @@ class Lockstep(CliTest):
     SIZE = ("--width", "48", "--height", "40", "--fov", "30")
 
     def test_the_documented_client_works_as_it_stands(self):
-        with Server(self, "builtin:asteroid", endpoint="tcp://127.0.0.1:5600"):
-            done = subprocess.run([sys.executable, "-c", EXAMPLE], capture_output=True, text=True,
+        with Server(self, "builtin:asteroid") as server:
+            example = EXAMPLE.replace("tcp://127.0.0.1:5600", server.endpoint)
+            done = subprocess.run([sys.executable, "-c", example], capture_output=True, text=True,
                                   timeout=120, check=False)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertRegex(done.stdout, r"^\d{3,} points\n$")
