@@ -184,9 +184,13 @@ lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, con
   const OutputFlags& output = flags_.render.output;
   CloudFrame axes = cloud_frame(output.cloud_frame, beams, frame.world_from_sensor);
   axes.deskew = output.deskew;
-  const std::shared_ptr<PointCloud> cloud = clouds_.take();
+  std::shared_ptr<PointCloud> cloud = clouds_.take();
   make_point_cloud(frame, beams, session_.scene, axes, measure.columns, *cloud);
-  if (measure.hits_only) *cloud = compacted(*cloud);
+  if (measure.hits_only) {
+    const std::shared_ptr<PointCloud> hits = clouds_.take();
+    compact(*cloud, *hits);
+    cloud = hits;
+  }
   return {.head = {.stamp_ns = frame.stamp_ns,
                    .seed = frame.seed,
                    .number = frame.number,
