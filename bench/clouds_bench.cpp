@@ -31,7 +31,7 @@ class Clouds {
     if (camera_) setup.paper.emplace(PaperTarget{*camera_});
     simulate(setup, {}, frame_);
     make_point_cloud(frame_, beams_, model_.scene, {.frame_id = "camera"}, kColumns, organised_);
-    cloud_ = compacted(organised_);
+    compact(organised_, cloud_);
   }
 
  private:
