@@ -31,7 +31,7 @@ class Clouds {
     if (camera_) setup.paper.emplace(PaperTarget{*camera_});
     simulate(setup, {}, frame_);
     make_point_cloud(frame_, beams_, model_.scene, {.frame_id = "camera"}, kColumns, organised_);
-    cloud_ = compacted(organised_);
+    compact(organised_, cloud_);
   }
 
  private:
@@ -74,11 +74,7 @@ void register_model(const Model* model, std::uint32_t side, double goal,
   }
 }
 
-}  // namespace
-}  // namespace glidar::bench
-
-int main(int argc, char** argv) {
-  using namespace glidar::bench;
+int run_all(int argc, char** argv) {
   const std::vector<std::unique_ptr<Model>> all = models();
   std::vector<Ratio> ratios;
   for (const auto& model : all) {
@@ -87,4 +83,11 @@ int main(int argc, char** argv) {
     register_model(model.get(), 1024, 1.5, ratios);
   }
   return run(argc, argv, ratios);
+}
+
+}  // namespace
+}  // namespace glidar::bench
+
+int main(int argc, char** argv) {
+  return glidar::bench::run_all(argc, argv);
 }

@@ -173,11 +173,7 @@ void print_compute(const Model& model, std::uint32_t side) {
       100.0 * static_cast<double>(same) / static_cast<double>(std::max<std::size_t>(seen, 1)));
 }
 
-}  // namespace
-}  // namespace glidar::bench
-
-int main() {
-  using namespace glidar::bench;
+void run_all() {
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   print_transfer();
   for (const auto& model : models()) {
@@ -185,5 +181,12 @@ int main() {
     print_batches(*model, 128);
     for (const std::uint32_t side : {128U, 512U, 1024U}) print_compute(*model, side);
   }
+}
+
+}  // namespace
+}  // namespace glidar::bench
+
+int main() {
+  glidar::bench::run_all();
   return 0;
 }

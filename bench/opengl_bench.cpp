@@ -86,11 +86,7 @@ void register_batches(const Model& model, std::uint32_t side, std::vector<Ratio>
   ratios.push_back({at + "together / one by one", at + "one by one", at + "together", kGoal});
 }
 
-}  // namespace
-}  // namespace glidar::bench
-
-int main(int argc, char** argv) {
-  using namespace glidar::bench;
+int run_all(int argc, char** argv) {
   const std::vector<std::unique_ptr<Model>> all = models();
   std::vector<Ratio> ratios;
   for (const auto& model : all) {
@@ -98,4 +94,11 @@ int main(int argc, char** argv) {
     for (const std::uint32_t side : {64U, 128U}) register_batches(*model, side, ratios);
   }
   return run(argc, argv, ratios);
+}
+
+}  // namespace
+}  // namespace glidar::bench
+
+int main(int argc, char** argv) {
+  return glidar::bench::run_all(argc, argv);
 }

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstring>
+#include <stdexcept>
 
 namespace glidar {
 namespace {
@@ -138,6 +139,23 @@ TEST_P(RendererBatch, TellsEveryCastOfItsBeamsOnceAndOfItsProgress) {
     for (const std::atomic<int>& times : told[i]) EXPECT_EQ(times, 1) << "cast " << i;
     EXPECT_EQ(progress[i], 1.0) << "cast " << i;
   }
+}
+
+TEST_P(RendererBatch, ACastThatIsBrokenOffDoesNotHarmTheNext) {
+  const Beams beams = camera_beams(40, 30, 35.0);
+  for (int i = 0; i < 3; ++i) add(beams);
+  const std::unique_ptr<Renderer> one = renderer(scene_);
+  const auto breaking = [](BeamRange /*range*/) { throw std::runtime_error("enough"); };
+  std::vector<Hits> all(requests_.size());
+  std::vector<Hits*> hits;
+  for (Hits& h : all) hits.push_back(&h);
+  std::vector<CastRequest> broken(requests_.begin(), requests_.end());
+  broken[1].then = FunctionRef<void(BeamRange)>(breaking);
+  EXPECT_THROW(one->cast_batch(broken, hits), std::runtime_error);
+  one->cast_batch(requests_, hits);
+  Hits expected;
+  renderer(scene_)->cast(requests_[2], expected);
+  expect_same(all[2], expected, 2);
 }
 
 TEST_P(RendererBatch, NothingToCastIsDone) {

@@ -5,12 +5,14 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
+#include <tuple>
 
 namespace glidar::opengl {
 namespace {
 
 constexpr int kBits = 16;  // of a place, along each axis
 constexpr float kSteps = (1U << kBits) - 1;
+constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 
 /// Two zeros before every bit.
 std::uint64_t spread(std::uint64_t bits) {
@@ -48,7 +50,9 @@ struct Key {
   std::uint64_t place;
   std::uint32_t triangle;
 
-  auto operator<=>(const Key&) const = default;
+  [[nodiscard]] bool operator<(const Key& other) const {
+    return std::tie(kind, place, triangle) < std::tie(other.kind, other.place, other.triangle);
+  }
 };
 
 std::vector<Key> sorted_keys(const Mesh& mesh, const std::vector<std::uint32_t>& kinds) {
@@ -68,30 +72,33 @@ std::vector<Key> sorted_keys(const Mesh& mesh, const std::vector<std::uint32_t>&
   return keys;
 }
 
+/// Adds a triangle and those of its corners that are not there yet; `place_of` tells where each
+/// vertex of the mesh stands.
+void add(const Mesh& mesh, const Key& key, std::vector<std::uint32_t>& place_of, DrawOrder& order) {
+  const auto next = static_cast<std::uint32_t>(order.drawn.size());
+  if (next == 0 || key.kind != order.ranges.back().kind)
+    order.ranges.push_back({next, 0, key.kind});
+  ++order.ranges.back().count;
+  order.drawn.push_back(key.triangle);
+  Triangle corners = mesh.triangles[key.triangle];
+  for (std::uint32_t& corner : corners) {
+    if (place_of[corner] == kNowhere) {
+      place_of[corner] = static_cast<std::uint32_t>(order.vertices.size());
+      order.vertices.push_back(corner);
+    }
+    corner = place_of[corner];
+  }
+  order.triangles.push_back(corners);
+}
+
 }  // namespace
 
 DrawOrder draw_order(const Mesh& mesh, const std::vector<std::uint32_t>& kinds) {
-  constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
   DrawOrder order;
   order.drawn.reserve(mesh.triangles.size());
   order.triangles.reserve(mesh.triangles.size());
-  std::vector<std::uint32_t> place(mesh.positions_m.size(), kNowhere);
-  for (const Key& key : sorted_keys(mesh, kinds)) {
-    const auto next = static_cast<std::uint32_t>(order.drawn.size());
-    if (next == 0 || key.kind != order.ranges.back().kind)
-      order.ranges.push_back({next, 0, key.kind});
-    ++order.ranges.back().count;
-    order.drawn.push_back(key.triangle);
-    Triangle corners = mesh.triangles[key.triangle];
-    for (std::uint32_t& corner : corners) {
-      if (place[corner] == kNowhere) {
-        place[corner] = static_cast<std::uint32_t>(order.vertices.size());
-        order.vertices.push_back(corner);
-      }
-      corner = place[corner];
-    }
-    order.triangles.push_back(corners);
-  }
+  std::vector<std::uint32_t> place_of(mesh.positions_m.size(), kNowhere);
+  for (const Key& key : sorted_keys(mesh, kinds)) add(mesh, key, place_of, order);
   return order;
 }
 

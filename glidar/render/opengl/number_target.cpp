@@ -48,6 +48,7 @@ void NumberTarget::make_room(const PictureSize& size) {
 }
 
 void NumberTarget::begin(const PictureSize& size) {
+  if (is_mapped_) end_reading();  // a cast was broken off
   size_ = size;
   if (!has_room(size)) make_room(size);
   const auto bytes = static_cast<GLsizeiptr>(sizeof(std::uint32_t) * size.pixels() * size.count);
@@ -85,6 +86,7 @@ std::span<const std::uint32_t> NumberTarget::numbers() {
   const void* start =
       glMapBufferRange(GL_PIXEL_PACK_BUFFER, 0,
                        static_cast<GLsizeiptr>(count * sizeof(std::uint32_t)), GL_MAP_READ_BIT);
+  is_mapped_ = start != nullptr;
   check_not_lost();
   check_gl("reading a picture");
   return {static_cast<const std::uint32_t*>(start), count};
@@ -93,6 +95,7 @@ std::span<const std::uint32_t> NumberTarget::numbers() {
 void NumberTarget::end_reading() {
   glBindBuffer(GL_PIXEL_PACK_BUFFER, read_.name());
   glUnmapBuffer(GL_PIXEL_PACK_BUFFER);
+  is_mapped_ = false;
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
 }
 

@@ -51,6 +51,7 @@ class NumberTarget {
   std::vector<Framebuffer> frames_;
   Buffer read_;
   GLsizeiptr read_bytes_ = 0;
+  bool is_mapped_ = false;
   PictureSize room_{};
   PictureSize size_{};
 };

@@ -11,6 +11,8 @@
 namespace glidar::opengl {
 namespace {
 
+constexpr std::uint32_t kPiece = 128;  // columns that are looked through at once
+
 /// Up to kLanes hits on their way.
 struct Work {
   HitBlock block;
@@ -20,6 +22,7 @@ struct Work {
   Lanes<double> y;
   std::array<std::uint32_t, kLanes> row;  ///< in the rect
   std::array<std::uint32_t, kLanes> col;
+  std::array<std::uint32_t, kLanes> number;  ///< drawn there
   unsigned used = 0;
 };
 
@@ -68,6 +71,7 @@ bool settle(const RowWriting& w, std::uint32_t doubtful, Work& work) {
     changed = true;
     if (after.instance == kNoHit) {
       block.mask &= ~(1U << lane);
+      write_misses(w.request.fields, block.beam[lane], 1, w.hits);
       continue;
     }
     block.instance[lane] = after.instance;
@@ -76,7 +80,7 @@ bool settle(const RowWriting& w, std::uint32_t doubtful, Work& work) {
   return changed;
 }
 
-/// Writes the collected hits over the misses that stand there.
+/// Writes the collected hits.
 void finish(const RowWriting& w, Work& work) {
   if (work.used == 0) return;
   HitBlock& block = work.block;
@@ -96,10 +100,21 @@ void finish(const RowWriting& w, Work& work) {
   w.resolver.write(w.request.beams, w.request.fields, block, work.exact, w.hits);
 }
 
-/// Takes up the next hits, asks for the corners of those before, and finishes those before them.
+/// What the numbers of a block tell.
+void look_up(const RowWriting& w, Work& work) {
+  work.block.mask = static_cast<std::uint32_t>((std::uint64_t{1} << work.used) - 1);
+  for (unsigned lane = 0; lane < work.used; ++lane) {
+    const Found found = w.drawing.found(work.number[lane]);
+    work.block.instance[lane] = found.instance;
+    work.block.primitive[lane] = told(w, found);
+    w.resolver.prefetch(work.block, lane);
+  }
+}
+
+/// Looks the collected hits up, asks for the corners of those before, and finishes those before
+/// them.
 void go_on(const RowWriting& w, Works& works) {
-  Work& full = works.filling();
-  full.block.mask = static_cast<std::uint32_t>((std::uint64_t{1} << full.used) - 1);
+  look_up(w, works.filling());
   HitFields fields = w.request.fields;
   fields.barycentrics = true;  // for their doubts all need their corners
   w.resolver.prefetch_corners(works.before().block, fields);
@@ -107,43 +122,62 @@ void go_on(const RowWriting& w, Works& works) {
   finish(w, works.filling());
 }
 
-void collect_row(const RowWriting& w, std::uint32_t row, Works& works) {
+/// Lists the columns of a piece of a row where something was drawn; returns how many.
+std::uint32_t list_drawn(const std::uint32_t* numbers, std::uint32_t begin, std::uint32_t end,
+                         std::array<std::uint32_t, kPiece>& cols) {
+  std::uint32_t count = 0;
+  for (std::uint32_t col = begin; col < end; ++col) {  // a branch would often be mistaken
+    cols[count] = col;
+    count += numbers[col] != kNoNumber ? 1U : 0U;
+  }
+  return count;
+}
+
+void collect(const RowWriting& w, std::uint32_t row, std::uint32_t col, std::uint32_t number,
+             Work& work) {
+  const std::uint32_t picture_row = w.rect.first_row + row;
+  const std::uint32_t picture_col = w.rect.first_col + col;
+  const unsigned lane = work.used++;
+  work.row[lane] = row;
+  work.col[lane] = col;
+  work.number[lane] = number;
+  work.x[lane] = w.points.x[picture_col];
+  work.y[lane] = w.points.y[picture_row];
+  work.block.beam[lane] = std::size_t{picture_row} * w.request.beams.cols + picture_col;
+}
+
+BeamRange beams_of(const RowWriting& w, std::uint32_t row) {
   const std::size_t first =
       std::size_t{w.rect.first_row + row} * w.request.beams.cols + w.rect.first_col;
+  return {first, first + w.rect.cols};
+}
+
+void collect_row(const RowWriting& w, std::uint32_t row, Works& works) {
+  const std::size_t first = beams_of(w, row).begin;
   const std::uint32_t* numbers = w.numbers.data() + std::size_t{row} * w.rect.cols;
-  const double y = w.points.y[w.rect.first_row + row];
-  for (std::uint32_t col = 0; col < w.rect.cols; ++col) {
-    if (numbers[col] == kNoNumber) continue;
-    Work& work = works.filling();
-    const unsigned lane = work.used++;
-    const Found found = w.drawing.found(numbers[col]);
-    work.row[lane] = row;
-    work.col[lane] = col;
-    work.x[lane] = w.points.x[w.rect.first_col + col];
-    work.y[lane] = y;
-    work.block.beam[lane] = first + col;
-    work.block.instance[lane] = found.instance;
-    work.block.primitive[lane] = told(w, found);
-    w.resolver.prefetch(work.block, lane);
-    if (work.used == kLanes) go_on(w, works);
+  std::array<std::uint32_t, kPiece> cols;
+  for (std::uint32_t begin = 0; begin < w.rect.cols; begin += kPiece) {
+    const std::uint32_t end = std::min(begin + kPiece, w.rect.cols);
+    const std::uint32_t count = list_drawn(numbers, begin, end, cols);
+    // In long strokes, hits being written over them; only where all are hits there is no need.
+    if (count < end - begin) write_misses(w.request.fields, first + begin, end - begin, w.hits);
+    Work* work = &works.filling();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      collect(w, row, cols[i], numbers[cols[i]], *work);
+      if (work->used < kLanes) continue;
+      go_on(w, works);
+      work = &works.filling();
+    }
   }
 }
 
 /// All beams of rows [begin, end).
 void write_some_rows(const RowWriting& w, std::uint32_t begin, std::uint32_t end) {
-  const auto beams_of = [&](std::uint32_t row) {
-    const std::size_t first =
-        std::size_t{w.rect.first_row + row} * w.request.beams.cols + w.rect.first_col;
-    return BeamRange{first, first + w.rect.cols};
-  };
   Works works;
-  for (std::uint32_t row = begin; row < end; ++row) {
-    write_misses(w.request.fields, beams_of(row).begin, w.rect.cols, w.hits);
-    collect_row(w, row, works);
-  }
+  for (std::uint32_t row = begin; row < end; ++row) collect_row(w, row, works);
   for (std::size_t i = 0; i < works.ring.size(); ++i) go_on(w, works);
   if (!w.request.then) return;
-  for (std::uint32_t row = begin; row < end; ++row) w.request.then(beams_of(row));
+  for (std::uint32_t row = begin; row < end; ++row) w.request.then(beams_of(w, row));
 }
 
 }  // namespace

@@ -67,8 +67,11 @@ TriangleDrawing::TriangleDrawing(const Scene& scene)
       buffers_(upload(scene)),
       solid_(make_drawer("IS_SOLID", has_clip_control_ ? "HAS_CLIP_CONTROL" : "WRITES_DEPTH")),
       masked_(make_mask_drawer(has_clip_control_ ? "HAS_CLIP_CONTROL" : "WRITES_DEPTH")),
-      first_number_(number(scene)),
-      is_single_(scene.instances.size() == 1) {}
+      first_number_(number(scene)) {
+  for (const Instance& instance : scene.instances) {
+    drawn_.push_back(buffers_.meshes[instance.mesh].drawn.data());
+  }
+}
 
 void TriangleDrawing::draw(const CastRequest& request, const Resolver& resolver,
                            const PixelRect& rect, const DepthRange& depths) const {
@@ -121,15 +124,10 @@ void TriangleDrawing::use_mask(std::uint32_t material, const MeshBuffers& mesh) 
   glEnableVertexAttribArray(1);
 }
 
-Found TriangleDrawing::found(std::uint32_t number) const {
-  if (number == kNoNumber) return {};
-  std::uint32_t instance = 0;
-  if (!is_single_) {
-    const auto after = std::upper_bound(first_number_.begin(), first_number_.end(), number);
-    instance = static_cast<std::uint32_t>(after - first_number_.begin() - 1);
-  }
-  const std::uint32_t mesh = scene_.instances[instance].mesh;
-  return {instance, buffers_.meshes[mesh].drawn[number - first_number_[instance]]};
+Found TriangleDrawing::found_among_many(std::uint32_t number) const {
+  const auto after = std::upper_bound(first_number_.begin(), first_number_.end(), number);
+  const auto instance = static_cast<std::uint32_t>(after - first_number_.begin() - 1);
+  return {instance, drawn_[instance][number - first_number_[instance]]};
 }
 
 }  // namespace glidar::opengl
