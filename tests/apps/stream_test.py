@@ -55,6 +55,7 @@ class StreamTest(CliTest):
     def end(program):
         if program.poll() is None:
             program.kill()
+            print(program.args, *program.communicate())
         for pipe in (program.stdout, program.stderr):
             pipe.close()
         program.wait()

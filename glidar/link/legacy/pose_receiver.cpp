@@ -51,7 +51,10 @@ PoseReceiver::PoseReceiver(link::Context& context, const PoseReceiverOptions& op
 bool PoseReceiver::is_ready() {
   notice_simulator();
   ask_when_connected();
-  if (handshake_.receive()) is_ready_ = true;
+  if (awaits_reply_ && handshake_.receive()) {
+    awaits_reply_ = false;
+    is_ready_ = true;
+  }
   return is_ready_;
 }
 
@@ -112,7 +115,7 @@ void PoseReceiver::ask_when_connected() {
   if (!connecting_ || std::chrono::steady_clock::now() - *connecting_ < kPatience) return;
   connecting_.reset();
   handshake_.connect(next_port(options_.endpoint));
-  handshake_.send({});
+  awaits_reply_ = handshake_.send({});
 }
 
 /// One that comes back waits for a handshake as it did at first.
@@ -123,6 +126,7 @@ void PoseReceiver::notice_simulator() {
     faults_.tell("simulator lost",
                  "its connection ended, or it sent more than 16 MiB at once; waiting for it");
     handshake_ = link::Socket(context_, kHandshakeSocket);
+    awaits_reply_ = false;
     connecting_ = std::chrono::steady_clock::now();
   }
 }

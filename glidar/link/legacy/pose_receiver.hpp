@@ -59,6 +59,7 @@ class PoseReceiver {
   link::Socket poses_;
   link::Socket handshake_;
   std::optional<std::chrono::steady_clock::time_point> connecting_;  ///< since; empty: asked
+  bool awaits_reply_ = false;
   bool is_ready_ = false;
   bool is_over_ = false;
   std::optional<std::uint64_t> last_timestamp_;
