@@ -305,6 +305,8 @@ SubscriptionCount Socket::subscriptions(char topic) {
 }
 
 std::vector<PeerEvent> Socket::events() {
+  // a socket does what is due, such as to subscribe anew, only when it is used
+  (void)impl_->socket.get(zmq::sockopt::events);
   std::vector<PeerEvent> found;
   zmq::message_t head;
   zmq::message_t address;

@@ -39,12 +39,12 @@ class Subscriber:
         self.hand.connect(f"tcp://localhost:{port + 1}")
         self.hand.send(b"")
 
-    def shake(self, timeout_s=60):
+    def shake(self, timeout_s=20):
         if not self.hand.poll(timeout_s * 1000):
             raise TimeoutError("no handshake")
         assert self.hand.recv() == b""
 
-    def receive(self, timeout_s=60):
+    def receive(self, timeout_s=20):
         """The next message as it is."""
         if not self.clouds.poll(timeout_s * 1000):
             raise TimeoutError("no message")
@@ -52,7 +52,7 @@ class Subscriber:
         assert not self.clouds.getsockopt(zmq.RCVMORE)
         return message
 
-    def clouds_until_shutdown(self, timeout_s=60):
+    def clouds_until_shutdown(self, timeout_s=20):
         """(timestamp, N x 4) of every cloud; the last message must be the shutdown."""
         found = []
         while True:
@@ -92,7 +92,7 @@ class Simulator:
             self.close()
             raise
 
-    def shake(self, timeout_s=60):
+    def shake(self, timeout_s=20):
         if not self.hand.poll(timeout_s * 1000):
             raise TimeoutError("no handshake")
         assert self.hand.recv() == b""

@@ -5,6 +5,7 @@
 
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -55,6 +56,7 @@ class StreamTest(CliTest):
     def end(program):
         if program.poll() is None:
             program.kill()
+            print(program.args, *program.communicate())
         for pipe in (program.stdout, program.stderr):
             pipe.close()
         program.wait()
@@ -378,6 +380,27 @@ class Ends(StreamTest):
         self.assertEqual(last, [b"pKTHXBAI", b"PKTHXBAI", b"cKTHXBAI"])
         self.assertTrue(all(message[1:] == SHUTDOWN for message in last))
         self.finished(program, 0)
+
+
+class Documentation(StreamTest):
+    def test_has_a_client_and_a_simulator_that_work(self):
+        root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
+        with open(os.path.join(root, "docs", "link.md"), encoding="utf-8") as file:
+            client, simulator = re.findall(r"```python\n(.*?)```", file.read(), re.DOTALL)
+        for shown, used in (("5555", self.port), ("5556", self.port + 1), ("5557", self.physics),
+                            ("5558", self.physics + 1)):
+            client = client.replace(shown, str(used))
+            simulator = simulator.replace(shown, str(used))
+        self.write("client.py", client)
+        self.write("simulator.py", "import struct\nimport zmq\ncontext = zmq.Context()\n" + simulator)
+        program = self.publish("--physics-port", str(self.physics), "--hwm", "1000")
+        programs = [subprocess.Popen([sys.executable, name], cwd=self.folder, stdout=subprocess.PIPE, text=True)
+                    for name in ("simulator.py", "client.py")]
+        out = [process.communicate(timeout=60)[0] for process in programs]
+        self.finished(program, 0)
+        lines = out[1].splitlines()
+        self.assertEqual(len(lines), 100)
+        self.assertTrue(lines[0].startswith("0 ") and lines[0].endswith(" 9.0"), lines[0])
 
 
 class Refusals(StreamTest):

@@ -18,6 +18,7 @@ constexpr auto kPatience = 1000ms;
 /// For subscriptions that come after the handshake: where ZeroMQ tells of them, and where not.
 constexpr auto kLongestSettling = 1000ms;
 constexpr auto kSettling = 200ms;
+constexpr auto kLook = 10ms;
 constexpr std::int64_t kLargestHandshakeBytes = 1024;
 
 link::SocketOptions cloud_socket(const CloudPublisherOptions& options) {
@@ -76,6 +77,11 @@ void CloudPublisher::serve() {
 }
 
 void CloudPublisher::shut_down() {
+  serve();
+  while (!has(counts_.handshakes)) {  // a subscription may still be on its way
+    link::wait_for({&clouds_}, -1, kLook);
+    serve();
+  }
   // the cloud's topic last: with keeps_newest only the last message is sure to arrive
   for (const char topic : {'p', 'P', kCloudTopic}) {
     if (clouds_.publish(encode_shutdown(topic), kPatience)) continue;

@@ -18,10 +18,10 @@ namespace glidar::legacy {
 enum class Timestamps : std::uint8_t { of_poses, counted };
 
 struct CloudPublisherOptions {
-  link::Endpoint endpoint;    ///< of the clouds; handshakes are at the next port
-  bool keeps_newest = false;  ///< slow subscribers get the newest cloud only
-  int queue = 32;             ///< clouds that wait for each subscriber; 0: any number
-  std::uint32_t every = 1;    ///< publishes only every so many frames, from the first on
+  link::Endpoint endpoint = {};  ///< of the clouds; handshakes are at the next port
+  bool keeps_newest = false;     ///< slow subscribers get the newest cloud only
+  int queue = 32;                ///< clouds that wait for each subscriber; 0: any number
+  std::uint32_t every = 1;       ///< publishes only every so many frames, from the first on
   Timestamps timestamps = Timestamps::counted;
 };
 

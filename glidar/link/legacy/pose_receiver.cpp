@@ -44,14 +44,16 @@ PoseReceiver::PoseReceiver(link::Context& context, const PoseReceiverOptions& op
       poses_(context, pose_socket_options(options)),
       handshake_(context, kHandshakeSocket),
       connecting_(std::chrono::steady_clock::now()) {
-  poses_.subscribe(std::string_view(&kPlacementTopic, 1));
-  poses_.connect(options.endpoint);
+  open_poses();
 }
 
 bool PoseReceiver::is_ready() {
   notice_simulator();
   ask_when_connected();
-  if (handshake_.receive()) is_ready_ = true;
+  if (awaits_reply_ && handshake_.receive()) {
+    awaits_reply_ = false;
+    is_ready_ = true;
+  }
   return is_ready_;
 }
 
@@ -60,7 +62,10 @@ std::optional<Placement> PoseReceiver::receive() {
   ask_when_connected();
   for (int i = 0; i < kMostAtOnce && !is_over_; ++i) {
     const std::optional<link::Message> message = poses_.receive();
-    if (!message) return std::nullopt;
+    if (!message) {
+      connect_anew_if_cut_off();
+      return std::nullopt;
+    }
     ++counts_.received;
     if (std::optional<Placement> placement = read(*message)) return placement;
   }
@@ -106,24 +111,39 @@ bool PoseReceiver::is_new(std::uint64_t timestamp) {
   return true;
 }
 
+void PoseReceiver::open_poses() {
+  poses_.subscribe(std::string_view(&kPlacementTopic, 1));
+  poses_.connect(options_.endpoint);
+}
+
+/// ZeroMQ finds a peer again that went away, but not one that it cut off.
+void PoseReceiver::connect_anew_if_cut_off() {
+  if (!lost_ || std::chrono::steady_clock::now() - *lost_ < kPatience) return;
+  lost_.reset();
+  poses_ = link::Socket(context_, pose_socket_options(options_));
+  open_poses();
+}
+
 /// The subscription travels ahead of the handshake. A simulator that opens its second port first is
 /// asked a little later all the same.
 void PoseReceiver::ask_when_connected() {
   if (!connecting_ || std::chrono::steady_clock::now() - *connecting_ < kPatience) return;
   connecting_.reset();
   handshake_.connect(next_port(options_.endpoint));
-  handshake_.send({});
+  awaits_reply_ = handshake_.send({});
 }
 
 /// One that comes back waits for a handshake as it did at first.
 void PoseReceiver::notice_simulator() {
   for (const link::PeerEvent event : poses_.events()) {
     if (event == link::PeerEvent::joined && connecting_) *connecting_ -= kPatience;
+    if (event == link::PeerEvent::joined) lost_.reset();
     if (event != link::PeerEvent::left) continue;
     faults_.tell("simulator lost",
                  "its connection ended, or it sent more than 16 MiB at once; waiting for it");
     handshake_ = link::Socket(context_, kHandshakeSocket);
-    connecting_ = std::chrono::steady_clock::now();
+    awaits_reply_ = false;
+    connecting_ = lost_ = std::chrono::steady_clock::now();
   }
 }
 

@@ -50,6 +50,8 @@ class PoseReceiver {
   std::optional<Placement> read(const link::Message& message);
   void refuse(const std::string& why);
   [[nodiscard]] bool is_new(std::uint64_t timestamp);
+  void open_poses();
+  void connect_anew_if_cut_off();
   void ask_when_connected();
   void notice_simulator();
 
@@ -59,6 +61,8 @@ class PoseReceiver {
   link::Socket poses_;
   link::Socket handshake_;
   std::optional<std::chrono::steady_clock::time_point> connecting_;  ///< since; empty: asked
+  std::optional<std::chrono::steady_clock::time_point> lost_;        ///< since; empty: connected
+  bool awaits_reply_ = false;
   bool is_ready_ = false;
   bool is_over_ = false;
   std::optional<std::uint64_t> last_timestamp_;

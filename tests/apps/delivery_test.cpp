@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/delivery.hpp>
+#include <apps/glidar/stream_stats.hpp>
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <vector>
+
+namespace glidar::app {
+namespace {
+
+TEST(Delivery, DeliversEveryFrameInOrder) {
+  std::vector<std::uint32_t> delivered;
+  Delivery delivery([&](const Shot& shot) { delivered.push_back(shot.frame.number); }, [] {});
+  for (std::uint32_t k = 0; k < 100; ++k) {
+    delivery.room().frame.number = k;
+    delivery.hand_over();
+  }
+  delivery.finish();
+  ASSERT_EQ(delivered.size(), 100U);
+  for (std::uint32_t k = 0; k < 100; ++k) EXPECT_EQ(delivered[k], k);
+}
+
+TEST(Delivery, NeverTouchesAFrameThatIsBeingDelivered) {
+  std::atomic<const Shot*> busy{nullptr};
+  Delivery delivery(
+      [&](const Shot& shot) {
+        busy = &shot;
+        std::this_thread::sleep_for(std::chrono::microseconds(200));
+        busy = nullptr;
+      },
+      [] {});
+  for (int k = 0; k < 50; ++k) {
+    const Shot& shot = delivery.room();
+    EXPECT_NE(&shot, busy.load());
+    delivery.hand_over();
+  }
+}
+
+TEST(Delivery, HandsOnWhatGoesWrong) {
+  Delivery delivery([](const Shot&) { throw std::runtime_error("disk full"); }, [] {});
+  delivery.room();
+  delivery.hand_over();
+  EXPECT_THROW(delivery.finish(), std::runtime_error);
+}
+
+TEST(Delivery, IsIdleWhileNothingComes) {
+  std::atomic<int> idle{0};
+  Delivery delivery([](const Shot&) {}, [&] { ++idle; });
+  while (idle < 3) std::this_thread::yield();
+  EXPECT_GE(idle, 3);
+}
+
+TEST(DurationHistogram, TellsQuantilesToTwoPercent) {
+  DurationHistogram histogram;
+  EXPECT_EQ(histogram.quantile_s(0.5), 0.0);
+  for (int k = 1; k <= 1000; ++k) histogram.add(1e-3 * k);
+  EXPECT_NEAR(histogram.quantile_s(0.5), 0.5, 0.02 * 0.5);
+  EXPECT_NEAR(histogram.quantile_s(0.99), 0.99, 0.02 * 0.99);
+  EXPECT_EQ(histogram.quantile_s(1.0), 1.0);
+  EXPECT_EQ(histogram.longest_s(), 1.0);
+}
+
+TEST(DurationHistogram, TakesAnyDuration) {
+  DurationHistogram histogram;
+  for (const double s : {-1.0, 0.0, 1e-12, 1e9}) histogram.add(s);
+  EXPECT_EQ(histogram.count(), 4U);
+  EXPECT_EQ(histogram.longest_s(), 1e9);
+}
+
+}  // namespace
+}  // namespace glidar::app

@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/legacy/cloud_publisher.hpp>
+
+#include <glidar/link/legacy/legacy_codec.hpp>
+
+#include "loopback.hpp"
+#include "message_bytes.hpp"
+#include "support/error_text.hpp"
+
+#include <gmock/gmock.h>
+
+#include <memory>
+
+namespace glidar::legacy {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::received;
+using testing::soon;
+
+PointCloud cloud_of(std::uint32_t points) {
+  PointCloud cloud{1, points, "legacy", Pose::Identity(), {}};
+  cloud.columns.push_back({"xyz", {"x", "y", "z"}, std::vector<double>(3 * points, 2.0)});
+  cloud.columns.push_back({"intensity", {"intensity"}, std::vector<float>(points, 0.5F)});
+  return cloud;
+}
+
+class CloudPublisherTest : public ::testing::Test {
+ protected:
+  void publish(CloudPublisherOptions options = {}) {
+    publisher = testing::at_free_port([&](const link::Endpoint& at) {
+      endpoint = options.endpoint = at;
+      return std::make_unique<CloudPublisher>(context, options, faults);
+    });
+  }
+  link::Socket subscriber(int queue = 1000) {
+    link::Socket socket(context, {.kind = link::SocketKind::subscribe,
+                                  .receive_queue = queue,
+                                  .largest_message_bytes = std::int64_t{1} << 30});
+    socket.subscribe("c");
+    socket.connect(endpoint);
+    return socket;
+  }
+  bool has_subscribers(std::uint64_t count) {
+    return soon([&] {
+      publisher->serve();
+      return publisher->counts().subscribers == count;
+    });
+  }
+  void send(std::uint32_t number, std::int64_t stamp_ns = 0, std::uint32_t points = 1) {
+    Frame frame;
+    frame.number = number;
+    frame.stamp_ns = stamp_ns;
+    publisher->write(cloud_of(points), frame);
+  }
+
+  std::vector<std::string> said;
+  link::FaultLog faults{
+      {.log = [this](Severity, std::string_view t) { said.emplace_back(t); }, .progress = {}}};
+  link::Context context;
+  link::Endpoint endpoint;
+  std::unique_ptr<CloudPublisher> publisher;
+};
+
+TEST_F(CloudPublisherTest, SendsOneMessageForEachCloudAndThenTheShutdown) {
+  publish();
+  link::Socket socket = subscriber();
+  ASSERT_TRUE(has_subscribers(1));
+  send(0);
+  publisher->shut_down();
+  const Cloud cloud = decode_cloud(received(socket));
+  EXPECT_EQ(cloud.timestamp, 1U);
+  ASSERT_EQ(cloud.points.size(), 1U);
+  EXPECT_EQ(cloud.points[0].x_m, 2.0F);
+  EXPECT_EQ(received(socket), testing::MessageBytes().text("cKTHXBAI").bytes);
+}
+
+TEST_F(CloudPublisherTest, AnswersHandshakesAtTheNextPort) {
+  publish();
+  link::Socket socket = subscriber();
+  link::Socket hand(context, {.kind = link::SocketKind::request});
+  hand.connect({endpoint.host, static_cast<std::uint16_t>(endpoint.port + 1)});
+  hand.send({});
+  EXPECT_TRUE(publisher->has(0));
+  EXPECT_FALSE(publisher->has(1));
+  ASSERT_TRUE(soon([&] {
+    publisher->serve();
+    return publisher->has(1);
+  }));
+  ASSERT_TRUE(soon([&] { return hand.receive().has_value(); }));
+  EXPECT_EQ(publisher->counts().handshakes, 1U);
+}
+
+TEST_F(CloudPublisherTest, AnswersAHandshakeWithContentsAndSaysSo) {
+  publish();
+  link::Socket hand(context, {.kind = link::SocketKind::request});
+  hand.connect({endpoint.host, static_cast<std::uint16_t>(endpoint.port + 1)});
+  hand.send(testing::MessageBytes().text("hello").bytes);
+  ASSERT_TRUE(soon([&] {
+    publisher->serve();
+    return publisher->counts().handshakes == 1;
+  }));
+  EXPECT_TRUE(soon([&] { return hand.receive().has_value(); }));
+  EXPECT_THAT(said, ::testing::ElementsAre(HasSubstr("5 bytes")));
+}
+
+TEST_F(CloudPublisherTest, SendsACloudOncePerTimestamp) {
+  publish({.timestamps = Timestamps::of_poses});
+  link::Socket socket = subscriber();
+  ASSERT_TRUE(has_subscribers(1));
+  for (const std::int64_t stamp : {0, 0, -1, 7, 7}) send(0, stamp);
+  EXPECT_EQ(decode_cloud(received(socket)).timestamp, 0U);
+  EXPECT_EQ(decode_cloud(received(socket)).timestamp, ~std::uint64_t{0});
+  EXPECT_EQ(decode_cloud(received(socket)).timestamp, 7U);
+  EXPECT_EQ(publisher->counts().sent, 3U);
+  EXPECT_EQ(publisher->counts().repeated, 2U);
+}
+
+TEST_F(CloudPublisherTest, SendsEveryKthFrameFromTheFirst) {
+  publish({.every = 3});
+  link::Socket socket = subscriber();
+  ASSERT_TRUE(has_subscribers(1));
+  for (std::uint32_t number = 0; number < 7; ++number) send(number);
+  EXPECT_EQ(publisher->counts().sent, 3U);
+  for (std::uint64_t k = 1; k <= 3; ++k) EXPECT_EQ(decode_cloud(received(socket)).timestamp, k);
+}
+
+TEST_F(CloudPublisherTest, NeverWaitsForASubscriberThatDoesNotReadAndCountsWhatItMisses) {
+  publish({.queue = 2});
+  link::Socket deaf = subscriber(1);
+  link::Socket reader = subscriber();
+  ASSERT_TRUE(has_subscribers(2));
+  constexpr std::uint32_t kPoints = 1U << 16U;
+  std::uint64_t read = 0;
+  for (std::uint32_t number = 0; number < 64; ++number) {
+    send(number, 0, kPoints);
+    ASSERT_EQ(received(reader).size(), cloud_bytes(kPoints));
+    ++read;
+  }
+  EXPECT_EQ(read, 64U);
+  EXPECT_GT(publisher->counts().missed, 0U);
+  EXPECT_LT(publisher->counts().missed, 64U);
+  EXPECT_THAT(said[0], HasSubstr("clouds missed"));
+}
+
+TEST_F(CloudPublisherTest, NoticesWhoVanishes) {
+  publish();
+  {
+    const link::Socket socket = subscriber();
+    ASSERT_TRUE(has_subscribers(1));
+  }
+  EXPECT_TRUE(has_subscribers(0));
+}
+
+TEST_F(CloudPublisherTest, ConflatedKeepsTheNewestForASlowSubscriber) {
+  publish({.keeps_newest = true, .queue = 1});
+  const link::Socket deaf = subscriber(1);
+  ASSERT_TRUE(has_subscribers(1));
+  for (std::uint32_t number = 0; number < 64; ++number) send(number, 0, 1U << 16U);
+  EXPECT_EQ(publisher->counts().missed, 0U);
+}
+
+TEST_F(CloudPublisherTest, SaysWhoseFaultAPortInUseIs) {
+  publish();
+  EXPECT_THAT(error_text([&] { CloudPublisher(context, {.endpoint = endpoint}, faults); }),
+              ::testing::AllOf(HasSubstr("tcp://127.0.0.1:" + std::to_string(endpoint.port)),
+                               HasSubstr("another program has this port")));
+}
+
+}  // namespace
+}  // namespace glidar::legacy
