@@ -2,13 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate.hpp>
 
+#include <glidar/core/error.hpp>
 #include <glidar/motion/beam_poses.hpp>
 #include <glidar/paper_measure.hpp>
 #include <glidar/pulse_cast.hpp>
 #include <glidar/shadow_cast.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace glidar {
 namespace {
@@ -42,50 +47,116 @@ void measure_light(const Setup& setup, BeamRange range, Frame& frame) {
   }
 }
 
-}  // namespace
+/// What its cast needs to be known of a frame under way.
+struct Started {
+  const Setup& setup;
+  Frame& frame;
+  const Beams& beams;  ///< as they are aimed
+  HitFields needed;    ///< also for light and noise
 
-void measure(const Setup& setup, const HitFields& fields, Frame& frame) {
+  /// Range and light of a run of beams whose hits are known.
+  void operator()(BeamRange range) const {
+    measure_range(setup.sensor.limits, beams, range, frame);
+    measure_light(setup, range, frame);
+  }
+};
+
+Started start(const Setup& setup, const HitFields& fields, Frame& frame) {
   frame.rows = setup.beams.rows;
   frame.cols = setup.beams.cols;
   frame.frame_id = setup.beams.frame_id;
   place(setup.motion, frame);
   resize(frame, setup.beams.size());
+  frame.cause.clear();
+  frame.sigma_m.clear();
 
   const Sensor& sensor = setup.sensor;
-  Workers& workers = setup.renderer.workers();
-  const Beams& beams = aimed_beams(sensor.noise, setup.beams, workers, frame);
-
   HitFields needed = fields;
   needed.shading = true;  // the light needs them
   needed.reflectance = true;
   needed.normal = needed.normal || sensor.projector_m.has_value();
   add_needs(sensor.noise, needed);
-  const World world = world_of(setup, frame);
-  const auto measure_run = [&](BeamRange range) {
-    measure_range(sensor.limits, beams, range, frame);
-    measure_light(setup, range, frame);
-  };
-  frame.cause.clear();
-  frame.sigma_m.clear();
-  if (has_echoes(sensor, setup.scene)) {
-    measure_pulses(setup, needed, beams, frame);
-  } else {
-    CastRequest request = request_of(setup, frame, beams, needed);
-    request.then = FunctionRef<void(BeamRange)>(measure_run);
-    request.progress = setup.progress;
-    cast_moving(world, request, frame.scratch, frame.truth);
-  }
+  return {setup, frame, aimed_beams(sensor.noise, setup.beams, setup.renderer.workers(), frame),
+          needed};
+}
+
+/// Its cast; `started` must outlive it.
+CastRequest request_of(const Started& started) {
+  CastRequest request = request_of(started.setup, started.frame, started.beams, started.needed);
+  request.then = FunctionRef<void(BeamRange)>(started);
+  request.progress = started.setup.progress;
+  return request;
+}
+
+/// All that comes after the cast, before the noise.
+void finish(const Started& started, const HitFields& fields) {
+  const auto& [setup, frame, beams, needed] = started;
   frame.picture.rgba.clear();
   if (setup.paper) measure_paper(setup, *setup.paper, frame);
-  if (sensor.projector_m) cast_shadows(setup, *sensor.projector_m, beams, frame);
-  deskew(world, setup.beams, beams, frame.deskewed);
-  place_beams(setup.motion, setup.beams, fields.poses, workers, frame);
+  if (setup.sensor.projector_m) cast_shadows(setup, *setup.sensor.projector_m, beams, frame);
+  deskew(world_of(setup, frame), setup.beams, beams, frame.deskewed);
+  place_beams(setup.motion, setup.beams, fields.poses, setup.renderer.workers(), frame);
+}
+
+void add_noise(const Setup& setup, Frame& frame) {
+  apply_noise(setup.sensor.noise, 1.0 / setup.sensor.rate_hz, setup.beams, setup.renderer.workers(),
+              frame);
+}
+
+void check_batch(std::span<const Setup> setups, std::span<Frame> frames) {
+  const auto require = [](bool holds, std::string found, const char* allowed) {
+    if (holds) return;
+    throw Error({.where = "batch", .found = std::move(found), .allowed = allowed, .remedy = ""});
+  };
+  require(
+      setups.size() == frames.size(),
+      std::to_string(setups.size()) + " setups for " + std::to_string(frames.size()) + " frames",
+      "one setup per frame");
+  require(std::all_of(setups.begin(), setups.end(),
+                      [&](const Setup& s) { return &s.renderer == &setups.front().renderer; }),
+          "several renderers", "one for all");
+}
+
+}  // namespace
+
+void measure(const Setup& setup, const HitFields& fields, Frame& frame) {
+  const Started started = start(setup, fields, frame);
+  if (has_echoes(setup.sensor, setup.scene)) {
+    measure_pulses(setup, started.needed, started.beams, frame);
+  } else {
+    cast_moving(world_of(setup, frame), request_of(started), frame.scratch, frame.truth);
+  }
+  finish(started, fields);
 }
 
 void simulate(const Setup& setup, const HitFields& fields, Frame& frame) {
   measure(setup, fields, frame);
-  apply_noise(setup.sensor.noise, 1.0 / setup.sensor.rate_hz, setup.beams, setup.renderer.workers(),
-              frame);
+  add_noise(setup, frame);
+}
+
+void simulate_batch(std::span<const Setup> setups, const HitFields& fields,
+                    std::span<Frame> frames) {
+  check_batch(setups, frames);
+  std::vector<Started> together;
+  together.reserve(setups.size());  // requests refer to them
+  std::vector<CastRequest> requests;
+  std::vector<Hits*> hits;
+  for (std::size_t i = 0; i < setups.size(); ++i) {
+    const Setup& setup = setups[i];
+    if (has_echoes(setup.sensor, setup.scene) || moves_during_frame(setup.motion, setup.beams)) {
+      simulate(setup, fields, frames[i]);  // takes several casts
+      continue;
+    }
+    together.push_back(start(setup, fields, frames[i]));
+    requests.push_back(request_of(together.back()));
+    hits.push_back(&frames[i].truth);
+  }
+  if (together.empty()) return;
+  setups.front().renderer.cast_batch(requests, hits);
+  for (const Started& started : together) {
+    finish(started, fields);
+    add_noise(started.setup, started.frame);
+  }
 }
 
 }  // namespace glidar

@@ -47,16 +47,14 @@ Motion moved_all(const Motion& motion, const Ask& ask) {
   return result;
 }
 
-Setup setup_of(const Shot& shot) {
+Setup setup_of(const Snapshot& shot) {
   const Session& session = *shot.session;
   Setup setup{.scene = session.scene,
               .sensor = *shot.sensor,
               .beams = *shot.beams,
               .motion = shot.motion,
               .renderer = *session.renderer};
-  const Paper& paper = session.paper;
-  if (paper.camera)
-    setup.paper.emplace(PaperTarget{.camera = *paper.camera, .picture = *paper.picture});
+  if (session.paper) setup.paper.emplace(PaperTarget{.camera = *session.paper});
   return setup;
 }
 
@@ -201,17 +199,17 @@ void Measuring::open_for(const Ask& ask) {
   shots_.clear();
 }
 
-std::shared_ptr<Shot> Measuring::spare() {
+std::shared_ptr<Snapshot> Measuring::spare() {
   const std::lock_guard lock(mutex_);  // whoever let go of one did it under this lock
-  for (const std::shared_ptr<Shot>& shot : shots_) {
+  for (const std::shared_ptr<Snapshot>& shot : shots_) {
     if (shot.use_count() == 1) return shot;
   }
-  shots_.push_back(std::make_shared<Shot>());
+  shots_.push_back(std::make_shared<Snapshot>());
   return shots_.back();
 }
 
 /// All of the shot but the measurement.
-void Measuring::prepare(const Ask& ask, Shot& shot) {
+void Measuring::prepare(const Ask& ask, Snapshot& shot) {
   if (!opened_ || opened_->flags != ask.flags) open_for(ask);
   if (opened_->number != ask.number) {
     const Sensor& sensor = *opened_->noisy;
@@ -230,9 +228,9 @@ void Measuring::prepare(const Ask& ask, Shot& shot) {
 
 void Measuring::measure_now(const Ask& ask) {
   if (ask.flags == refused_) return;
-  const auto start = std::chrono::steady_clock::now();
-  const std::shared_ptr<Shot> shot = spare();
+  const std::shared_ptr<Snapshot> shot = spare();
   prepare(ask, *shot);
+  const auto start = std::chrono::steady_clock::now();
   simulate(setup_of(*shot), {.normal = true}, shot->frame);
   shot->seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const std::lock_guard lock(mutex_);
@@ -241,7 +239,7 @@ void Measuring::measure_now(const Ask& ask) {
 
 void Measuring::explain_now(const Ask& ask, std::size_t entry) {
   if (!opened_ || opened_->flags != ask.flags) return;  // the user has gone on
-  Shot shot;
+  Snapshot shot;
   prepare(ask, shot);
   const Setup setup = setup_of(shot);
   const Story story = glidar::explain(setup, entry, shot.frame);
@@ -251,7 +249,7 @@ void Measuring::explain_now(const Ask& ask, std::size_t entry) {
 }
 
 void Measuring::save_now(const Ask& ask, const OutputFlags& flags) {
-  Shot shot;
+  Snapshot shot;
   prepare(ask, shot);
   const SidecarContext context{.scene = shot.session->scene,
                                .sensor = *shot.sensor,

@@ -33,7 +33,7 @@ struct Ask {
 bool operator==(const Ask& a, const Ask& b);
 
 /// A measurement and what it is made with.
-struct Shot {
+struct Snapshot {
   Ask ask;
   std::shared_ptr<const Session> session;
   std::shared_ptr<const Sensor> sensor;  ///< without its noise if so asked
@@ -61,7 +61,7 @@ class Measuring {
 
   /// What there is to know; what is new is told once.
   struct News {
-    std::shared_ptr<const Shot> shot;  ///< the latest; empty: none yet
+    std::shared_ptr<const Snapshot> shot;  ///< the latest; empty: none yet
     std::optional<std::string> story;
     std::vector<std::string> errors;
     bool is_refused = false;            ///< the flags asked for last could not be opened
@@ -78,11 +78,11 @@ class Measuring {
   void do_one(std::unique_lock<std::mutex>& lock);
   std::function<void()> next_task();
   void open_for(const Ask& ask);
-  void prepare(const Ask& ask, Shot& shot);
+  void prepare(const Ask& ask, Snapshot& shot);
   void measure_now(const Ask& ask);
   void explain_now(const Ask& ask, std::size_t entry);
   void save_now(const Ask& ask, const OutputFlags& outputs);
-  std::shared_ptr<Shot> spare();
+  std::shared_ptr<Snapshot> spare();
   void say(std::string message);
   void show_busy(std::string_view task, double fraction_done);
 
@@ -97,8 +97,8 @@ class Measuring {
   News news_;
   // of the thread alone
   std::unique_ptr<Opened> opened_;
-  std::shared_ptr<const RenderFlags> refused_;  ///< could not be opened; not tried again
-  std::vector<std::shared_ptr<Shot>> shots_;    ///< whose memory is used again
+  std::shared_ptr<const RenderFlags> refused_;    ///< could not be opened; not tried again
+  std::vector<std::shared_ptr<Snapshot>> shots_;  ///< whose memory is used again
   std::thread thread_;
 };
 

@@ -69,7 +69,7 @@ std::string limit_text(const Limits& limits) {
   return fmt::format("{} {:g} to {:g} m", along, limits.near_m, limits.far_m);
 }
 
-void show_sensor_numbers(const Shot& shot) {
+void show_sensor_numbers(const Snapshot& shot) {
   const Sensor& sensor = *shot.sensor;
   const Beams& beams = *shot.beams;
   text(fmt::format("{} x {} beams{}, {:g} Hz", beams.cols, beams.rows / beams.returns,
@@ -86,8 +86,10 @@ void show_sensor_numbers(const Shot& shot) {
   if (sensor.footprint) text("beams with a footprint");
   if (sensor.weather) text("weather");
   if (sensor.noise.empty()) return;
-  if (!ImGui::TreeNode("steps", "%s",
-                       fmt::format("{} steps of noise", sensor.noise.size()).c_str()))
+  if (!ImGui::TreeNode(
+          "steps", "%s",
+          fmt::format("noise: {} step{}", sensor.noise.size(), sensor.noise.size() == 1 ? "" : "s")
+              .c_str()))
     return;
   for (const NoiseStep& step : sensor.noise) wrapped(noise_text(step));
   ImGui::TreePop();
@@ -138,7 +140,7 @@ bool edit_pose(const char* name, Pose& pose) {
 }
 
 void show_pose(Viewer& viewer) {
-  const Shot* shot = viewer.shot();
+  const Snapshot* shot = viewer.shot();
   if (shot == nullptr) return;
   Pose sensor = shot->frame.world_from_sensor;
   if (edit_pose("sensor in the world", sensor)) viewer.set_sensor_pose(sensor);

@@ -76,22 +76,44 @@ ImTextureID texture_id(GLuint name) {
 void Screen::upload(const Viewer& viewer) {
   if (uploaded_ == viewer.version() || viewer.shot() == nullptr) return;
   uploaded_ = viewer.version();
-  const Beams& beams = *viewer.shot()->beams;
-  const std::vector<Colour>& colours = viewer.picture().colours;
+  upload_picture(*viewer.shot()->beams, viewer.picture().colours);
+  upload_points(viewer);
+  cloud_.set_lines(viewer.guides());
+}
+
+void Screen::upload_picture(const Beams& beams, const std::vector<Colour>& colours) {
+  constexpr std::uint32_t kMost = 4096;  // pixels to a side that every device takes
+  const std::uint32_t step_x = (beams.cols + kMost - 1) / kMost;
+  const std::uint32_t step_y = (beams.rows + kMost - 1) / kMost;
+  std::vector<Colour> thinned;
+  if (step_x * step_y > 1) {
+    for (std::size_t row = 0; row < beams.rows; row += step_y) {
+      for (std::size_t col = 0; col < beams.cols; col += step_x) {
+        thinned.push_back(colours[row * beams.cols + col]);
+      }
+    }
+  }
   glBindTexture(GL_TEXTURE_2D, sensor_.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, static_cast<GLsizei>(beams.cols),
-               static_cast<GLsizei>(beams.rows), 0, GL_RGB, GL_UNSIGNED_BYTE, colours.data());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, static_cast<GLsizei>((beams.cols + step_x - 1) / step_x),
+               static_cast<GLsizei>((beams.rows + step_y - 1) / step_y), 0, GL_RGB,
+               GL_UNSIGNED_BYTE, thinned.empty() ? colours.data() : thinned.data());
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+void Screen::upload_points(const Viewer& viewer) {
+  constexpr std::size_t kMost = 2'000'000;  // what software draws while one waits
+  const std::vector<Eigen::Vector3f>& all = viewer.points();
+  shown_one_of_ = std::max<std::size_t>(1, (viewer.summary().hits + kMost - 1) / kMost);
   std::vector<ColouredVertex> points;
-  points.reserve(viewer.points().size());
-  for (std::size_t i = 0; i < viewer.points().size(); ++i) {
-    const Eigen::Vector3f& at = viewer.points()[i];
-    if (!std::isnan(at.x())) points.push_back({.position_m = at, .colour = colours[i]});
+  points.reserve(viewer.summary().hits / shown_one_of_ + 1);
+  std::size_t hits = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (std::isnan(all[i].x()) || hits++ % shown_one_of_ != 0) continue;
+    points.push_back({.position_m = all[i], .colour = viewer.picture().colours[i]});
   }
   cloud_.set_points(points);
-  cloud_.set_lines(viewer.guides());
 }
 
 void Screen::draw_cloud(const Viewer& viewer, int width, int height) {
@@ -176,6 +198,7 @@ void Screen::show_cloud_view(Viewer& viewer) {
     if (clip.w() > 0.0F) draw.AddCircle(place, 7.0F, kMark, 0, 2.0F);
   }
   ImGui::Text("grid %g m; axes x red, y green, z blue", viewer.look.grid_m);
+  if (shown_one_of_ > 1) ImGui::Text("1 of %zu points is drawn", shown_one_of_);
 }
 
 void Screen::use_mouse_on_cloud(Viewer& viewer) {

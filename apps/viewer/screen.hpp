@@ -23,12 +23,15 @@ class Screen {
   void use_mouse_on_sensor(Viewer& viewer);
   void use_mouse_on_cloud(Viewer& viewer);
   void upload(const Viewer& viewer);
+  void upload_picture(const Beams& beams, const std::vector<Colour>& colours);
+  void upload_points(const Viewer& viewer);
   void draw_cloud(const Viewer& viewer, int width, int height);
 
   CloudDrawing cloud_;
   opengl::GlTexture sensor_;
-  std::uint64_t uploaded_ = 0;  ///< version of the viewer that is in the device's memory
-  CloudLook drawn_;             ///< how the cloud's texture was drawn
+  std::uint64_t uploaded_ = 0;    ///< version of the viewer that is in the device's memory
+  std::size_t shown_one_of_ = 1;  ///< points of the cloud
+  CloudLook drawn_;               ///< how the cloud's texture was drawn
   std::uint64_t drawn_version_ = 0;
 };
 

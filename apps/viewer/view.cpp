@@ -32,10 +32,10 @@ move the sensor, space pauses, r resets, Esc quits. Drag on the left to turn the
 right to go round; click a point to see its story. Drop a model or scene file to open it.
 Examples:
   glidar view builtin:asteroid
-  glidar view models/satellite/satellite.obj --model-dr 0,0.5,0.2
+  glidar view builtin:torus --model-dr 0,0.5,0.2
   glidar view builtin:box --sensor VLP-16 --eye 0,0,0
 Without hands, for scripts:
-  xvfb-run -a glidar view builtin:torus --screenshot view.png --frames 10)";
+  xvfb-run -a glidar view builtin:torus --screenshot view.png)";
 
 struct ViewFlags {
   RenderFlags render;

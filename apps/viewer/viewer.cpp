@@ -42,7 +42,7 @@ Pose tidy(const Pose& pose) {
   return make_pose(pose.translation(), Eigen::Quaterniond(pose.linear()).normalized());
 }
 
-void points_from(const Shot& shot, const Eigen::Vector3d& anchor_m,
+void points_from(const Snapshot& shot, const Eigen::Vector3d& anchor_m,
                  std::vector<Eigen::Vector3f>& points) {
   const CloudFrame cloud_frame{
       .frame_id = "anchor", .cloud_from_sensor = shifted(-anchor_m) * shot.frame.world_from_sensor};
@@ -82,7 +82,7 @@ bool Viewer::is_moving() const {
 }
 
 bool Viewer::take_news() {
-  const Shot* before = shot();
+  const Snapshot* before = shot();
   const std::string busy_before = news_.busy;
   measuring_.take(news_);
   errors.insert(errors.end(), news_.errors.begin(), news_.errors.end());
@@ -97,7 +97,7 @@ bool Viewer::take_news() {
 
 /// Looks at what was opened from where all of it is seen.
 void Viewer::begin_session() {
-  const Shot& now = *shot();
+  const Snapshot& now = *shot();
   shown_flags_ = now.ask.flags;
   const Eigen::AlignedBox3d box = bounds(now.session->scene);
   anchor_m_ = box.isEmpty() ? Eigen::Vector3d(now.frame.world_from_sensor.translation())
@@ -132,7 +132,7 @@ void Viewer::tell_story() {
 
 void Viewer::look_changed() {
   if (!shot()) return;
-  const Shot& now = *shot();
+  const Snapshot& now = *shot();
   make_sensor_picture(now.frame, *now.beams, now.session->scene, look.quantity, look.map, picture_);
   points_from(now, anchor_m_, points_);
   guides_.clear();

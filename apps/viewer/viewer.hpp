@@ -32,7 +32,7 @@ class Viewer {
   Viewer(const RenderFlags& flags, Measuring& measuring);
 
   // What is shown.
-  [[nodiscard]] const Shot* shot() const { return news_.shot.get(); }
+  [[nodiscard]] const Snapshot* shot() const { return news_.shot.get(); }
   [[nodiscard]] const Ask& ask() const { return ask_; }
   [[nodiscard]] const SensorPicture& picture() const { return picture_; }
   /// One for each beam, relative to the anchor; NaN without a return.

@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 
 namespace glidar {
@@ -123,16 +124,42 @@ inline double turns_of(double y, double x) {
   return turns < 1.0 ? turns : 0.0;
 }
 
-/// e^x for -700 < x < 700: 2^k e^r with |r| <= ln 2 / 2, and the series of e^r to r^14.
+/// e^x: 2^k e^r with |r| <= ln 2 / 2, and the series of e^r to r^14. 0 below -700, infinite above
+/// 700.
 inline double natural_exp(double x) {
-  const double whole = std::floor(x * std::numbers::log2e + 0.5);
+  constexpr double kMost = 700.0;
+  const double held = x > -kMost ? (x < kMost ? x : kMost) : -kMost;
+  const double whole = std::floor(held * std::numbers::log2e + 0.5);
   constexpr double kHigh = 0x1.62e42feep-1;
   constexpr double kLow = 0x1.a39ef35793c76p-33;
-  const double r = (x - whole * kHigh) - whole * kLow;
-  double sum = 1.0;
-  for (int n = 14; n > 0; --n) sum = 1.0 + sum * r / n;
-  const auto exponent = static_cast<std::uint64_t>(static_cast<std::int64_t>(whole) + 1023);
-  return sum * std::bit_cast<double>(exponent << 52U);
+  const double r = (held - whole * kHigh) - whole * kLow;
+  double sum = 1.0 / 87178291200.0;  // 1 / 14!
+  sum = sum * r + 1.0 / 6227020800.0;
+  sum = sum * r + 1.0 / 479001600.0;
+  sum = sum * r + 1.0 / 39916800.0;
+  sum = sum * r + 1.0 / 3628800.0;
+  sum = sum * r + 1.0 / 362880.0;
+  sum = sum * r + 1.0 / 40320.0;
+  sum = sum * r + 1.0 / 5040.0;
+  sum = sum * r + 1.0 / 720.0;
+  sum = sum * r + 1.0 / 120.0;
+  sum = sum * r + 1.0 / 24.0;
+  sum = sum * r + 1.0 / 6.0;
+  sum = sum * r + 1.0 / 2.0;
+  sum = 1.0 + (r + r * r * sum);
+  // the whole number's bits by an addition: conversions of 64 bit integers are not everywhere
+  const std::uint64_t exponent = std::bit_cast<std::uint64_t>(whole + 0x1.8p52) + 1023U;
+  const double result = sum * std::bit_cast<double>(exponent << 52U);
+  const double bounded = x > kMost ? std::numeric_limits<double>::infinity() : result;
+  return x < -kMost ? 0.0 : bounded;
+}
+
+/// base^exponent of a normal base, or of 0 with an exponent from 0 on; the relative error is below
+/// 3e-16 (1 + |exponent ln base|).
+inline double power(double base, double exponent) {
+  const double raised = natural_exp(exponent * natural_log(base));
+  const double from_zero = base > 0.0 ? raised : 0.0;
+  return exponent == 0.0 ? 1.0 : from_zero;
 }
 
 }  // namespace glidar

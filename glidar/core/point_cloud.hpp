@@ -84,7 +84,8 @@ void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene
 /// The column of this name, or nullptr.
 const Column* find_column(const PointCloud& cloud, std::string_view name);
 
-/// The points whose x is a number, as one row (needs the column xyz).
-PointCloud compacted(const PointCloud& cloud);
+/// The points whose x is a number, as one row (needs the column xyz); the memory of `hits`, another
+/// cloud, is reused. Throws Error when there are no coordinates.
+void compact(const PointCloud& cloud, PointCloud& hits);
 
 }  // namespace glidar

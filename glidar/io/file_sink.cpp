@@ -182,7 +182,8 @@ class FileSink : public CloudSink {
     const bool dense = format_.content == Content::hits_only ||
                        (format_.content == Content::points && options_.dense);
     if (dense) {
-      deliver(compacted(cloud), frame);
+      compact(cloud, hits_);
+      deliver(hits_, frame);
     } else {
       deliver(cloud, frame);
     }
@@ -226,6 +227,7 @@ class FileSink : public CloudSink {
   FileSinkOptions options_;
   SidecarContext context_;
   Report report_;
+  PointCloud hits_;  ///< of the last cloud, for its memory
 };
 
 }  // namespace

@@ -65,7 +65,7 @@ Motion standing_still(const Scene& scene, const Pose& world_from_sensor);
 Motion moving(const Scene& scene, const Trajectory& world_from_sensor,
               const std::vector<Trajectory>& world_from_instance);
 
-/// The same motion after all of it was moved: moved_from_world * pose_at(trajectory, t) at any time.
+/// The same motion after all of it was moved: moved_from_world * pose_at(trajectory, t).
 Trajectory moved(const Pose& moved_from_world, const Trajectory& trajectory);
 
 /// Writes the poses of all at frame.stamp_ns into the frame.

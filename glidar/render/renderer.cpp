@@ -53,6 +53,20 @@ void check(const CastRequest& request, const Scene& scene) {
           "the sensor stands out of reach", "up to 1e15 m from the world's origin");
 }
 
+void check_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits) {
+  if (requests.size() == hits.size()) return;
+  throw Error({.where = "batch of casts",
+               .found = "hits for " + std::to_string(hits.size()) + " of " +
+                        std::to_string(requests.size()) + " casts",
+               .allowed = "hits for each cast",
+               .remedy = ""});
+}
+
+void Renderer::cast_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits) {
+  check_batch(requests, hits);
+  for (std::size_t i = 0; i < requests.size(); ++i) cast(requests[i], *hits[i]);
+}
+
 const std::vector<std::string>& renderer_kinds() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> all;

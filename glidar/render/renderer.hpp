@@ -43,6 +43,9 @@ bool is_anything_present(const CastRequest& request, const Scene& scene);
 /// none), and the sensor stands within reach.
 void check(const CastRequest& request, const Scene& scene);
 
+/// Throws Error unless there are hits for every request.
+void check_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits);
+
 /// Finds what beams hit first. Two implementations, chosen at run time.
 class Renderer {
  public:
@@ -59,6 +62,11 @@ class Renderer {
   /// Fills `hits`. The result does not depend on the number of threads. A second cast of the same
   /// size allocates nothing.
   virtual void cast(const CastRequest& request, Hits& hits) = 0;
+
+  /// Fills *hits[i] with what cast() tells of requests[i], to the bit; one per request. What draws
+  /// does many small ones together and overlaps drawing, reading and the rest, so that they take
+  /// less time than one by one. Here: one by one.
+  virtual void cast_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits);
 };
 
 struct RendererOptions {

@@ -130,6 +130,10 @@ bool needs_corners(const HitFields& fields) {
          fields.reflectance || fields.noise_scale;
 }
 
+bool needs_normals(const HitFields& fields) {
+  return fields.shading_normal || fields.shading;
+}
+
 /// Cosines between -beams and normals that lie on the side of the plane's, turned to the sensor.
 GLIDAR_SIMD void cosines(const ExactBlock& e, const Lanes3<double>& normal, Lanes<float>& out) {
   for (unsigned i = 0; i < kLanes; ++i) {
@@ -216,11 +220,12 @@ void Resolver::set_poses(const Pose& world_from_sensor, std::span<const Pose> wo
 
 void Resolver::prefetch_corners(const HitBlock& block, const HitFields& fields) const {
   if (!needs_corners(fields)) return;
+  const bool with_normals = needs_normals(fields);
   for_lanes(block.mask, [&](unsigned i) {
     const Known& of = known_[block.instance[i]];
     for (const std::uint32_t vertex : of.triangles[block.primitive[i]]) {
       __builtin_prefetch(of.positions_m + vertex);
-      if (of.normals != nullptr) __builtin_prefetch(of.normals + vertex);
+      if (with_normals && of.normals != nullptr) __builtin_prefetch(of.normals + vertex);
     }
   });
 }
@@ -310,16 +315,16 @@ void Resolver::write_shading(const HitFields& fields, const HitBlock& block,
 
 void Resolver::write_surface(const HitFields& fields, const HitBlock& block,
                              const ExactBlock& exact, Hits& hits) const {
-  const bool needs_normals = fields.shading_normal || fields.shading;
+  const bool with_normals = needs_normals(fields);
   Corners corners;
   Lanes<float> w1;
   Lanes<float> w2;
-  gather(block, needs_normals, corners);
+  gather(block, with_normals, corners);
   weigh(exact, corners.position_m, w1, w2);
   if (fields.barycentrics) {
     for_lanes(block.mask, [&](unsigned i) { hits.barycentrics[block.beam[i]] = {w1[i], w2[i]}; });
   }
-  if (needs_normals) write_shading(fields, block, exact, {w1, w2, corners.normal}, hits);
+  if (with_normals) write_shading(fields, block, exact, {w1, w2, corners.normal}, hits);
   if (fields.colour || fields.reflectance || fields.noise_scale)
     write_colours(fields, block, w1, w2, hits);
 }

@@ -11,10 +11,6 @@ namespace {
 
 constexpr double kPerMillimetre = 1e3;  // in 1/m
 
-double power(double base, double exponent) {
-  return natural_exp(exponent * natural_log(base));
-}
-
 /// Fresnel's at normal incidence.
 constexpr double reflectance(double index) {
   return (index - 1.0) / (index + 1.0) * (index - 1.0) / (index + 1.0);

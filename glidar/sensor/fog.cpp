@@ -59,8 +59,11 @@ SoftEcho peak_before(const FogProfile& profile, double hard_range_m) {
   const double top_m = std::min(end_m, hard_range_m + pulse_m);
   const auto of = [&](double range_m) { return fog_signal(profile, range_m, hard_range_m); };
   double best_m = profile.start_m;
+  double best = of(best_m);
   for (double range_m = profile.start_m; range_m < top_m; range_m += step_m) {
-    if (of(range_m) > of(best_m)) best_m = range_m;
+    const double signal = of(range_m);
+    if (signal > best) best_m = range_m;
+    best = std::max(best, signal);
   }
   best_m = peak_between(std::max(profile.start_m, best_m - step_m), best_m + step_m, of);
   return {best_m, of(best_m)};

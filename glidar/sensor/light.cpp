@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/light.hpp>
 
+#include <glidar/core/elementary.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/core/gaussian.hpp>
 #include <glidar/core/simd.hpp>
 
 #include <algorithm>
@@ -43,16 +45,26 @@ GLIDAR_SIMD bool measure_matte(const Light& light, BeamRange range, Frame& frame
   return specular != 0;
 }
 
-/// Equations (3) to (5) for the surfaces that have a specular part.
+GLIDAR_SIMD void raise(Batch<double>& base, const Batch<double>& exponent) {
+  for (std::size_t k = 0; k < kDrawBatch; ++k) base[k] = power(base[k], exponent[k]);
+}
+
+/// Equations (3) to (5) for the surfaces of a run that have a specular part.
 void measure_specular(const Light& light, BeamRange range, Frame& frame) {
   const Hits& truth = frame.truth;
   const auto ambient = static_cast<float>(light.ambient);
+  Batch<double> lobe{};
+  Batch<double> shininess{};
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    lobe[i - range.begin] = lit(truth.cos_shading[i]);
+    shininess[i - range.begin] = truth.reflectance[i].shininess;
+  }
+  raise(lobe, shininess);
   for (std::size_t i = range.begin; i < range.end; ++i) {
     const Reflectance& surface = truth.reflectance[i];
     if (frame.status[i] != Status::hit || !(surface.specular > 0.0F)) continue;
-    const float n_dot_h = lit(truth.cos_shading[i]);
-    const float colour = matte_colour(surface, ambient, n_dot_h) +
-                         surface.specular * std::pow(n_dot_h, surface.shininess);
+    const float colour = matte_colour(surface, ambient, lit(truth.cos_shading[i])) +
+                         surface.specular * static_cast<float>(lobe[i - range.begin]);
     frame.intensity[i] = static_cast<float>(attenuation(light, truth.range_m[i])) * colour;
   }
 }
@@ -74,7 +86,10 @@ void validate(const Light& light) {
 }
 
 void measure_intensity(const Light& light, BeamRange range, Frame& frame) {
-  if (measure_matte(light, range, frame)) measure_specular(light, range, frame);
+  for (std::size_t begin = range.begin; begin < range.end; begin += kDrawBatch) {
+    const BeamRange run{begin, std::min(begin + kDrawBatch, range.end)};
+    if (measure_matte(light, run, frame)) measure_specular(light, run, frame);
+  }
 }
 
 }  // namespace glidar

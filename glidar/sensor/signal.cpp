@@ -15,11 +15,6 @@
 namespace glidar {
 namespace {
 
-double power(double base, double exponent) {
-  if (exponent == 0.0) return 1.0;
-  return base > 0.0 ? natural_exp(exponent * natural_log(base)) : 0.0;
-}
-
 /// exp(-2 alpha R).
 double two_way(double extinction_per_m, double range_m) {
   const double depth = -2.0 * extinction_per_m * range_m;
@@ -49,12 +44,12 @@ double relative(const OrenNayar& s, double cosine) {
 
 double relative(const RetroReflector& s, double cosine) {
   const double x = incidence_rad(cosine) / s.width_rad;
-  return s.gain * power(std::numbers::e, -x * x);
+  return s.gain * natural_exp(-x * x);
 }
 
 double relative(const Glossy& s, double cosine) {
   const double x = incidence_rad(cosine) / s.width_rad;
-  return s.matt_share * cosine + s.lobe_gain * power(std::numbers::e, -0.5 * x * x);
+  return s.matt_share * cosine + s.lobe_gain * natural_exp(-0.5 * x * x);
 }
 
 /// What sends light back: a material at one wavelength.

@@ -7,6 +7,7 @@ import math
 import os
 import re
 import shlex
+import shutil
 import signal
 import struct
 import subprocess
@@ -23,17 +24,27 @@ class Help(CliTest):
 
     def test_examples_of_every_help_run_literally(self):
         count = 0
-        for level in ([], ["render"], ["info"], ["sensors"], ["verify"]):
+        for level in ([], ["render"], ["explain"], ["view"], ["info"], ["sensors"], ["verify"]):
             text = self.succeed(*level, "--help").stdout
             own = text[text.index("Examples:"):].split("With your own files:")[0]
             for line in re.findall(r"(?m)^  (glidar .*)$", own):
                 with self.subTest(line):
-                    self.succeed(*shlex.split(line)[1:])
+                    self.run_example(shlex.split(line)[1:])
                     count += 1
         self.assertGreaterEqual(count, 10)
 
+    def run_example(self, arguments):
+        """A window opens on a display without a screen, for one frame."""
+        if arguments[0] != "view":
+            self.succeed(*arguments)
+        elif shutil.which("xvfb-run"):
+            done = subprocess.run(["xvfb-run", "-a", "glidar", *arguments, "--frames", "1"],
+                                  cwd=self.folder, env=self.environment, capture_output=True,
+                                  text=True, timeout=120, check=False)
+            self.assertEqual(done.returncode, 0, done.stderr)
+
     def test_help_takes_one_plain_line_per_option(self):
-        for level in (["render"], ["info"], ["verify"]):
+        for level in (["render"], ["view"], ["info"], ["verify"]):
             text = self.succeed(*level, "--help").stdout
             self.assertNotRegex(text, r"[{}]|INT|FLOAT|TEXT|REQUIRED")
             self.assertLessEqual(max(len(line) for line in text.split("\n")), 100)

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace glidar {
@@ -50,6 +51,37 @@ TEST(Elementary, ExponentialAgreesWithTheLibrary) {
   for (double x = -40.0; x < 3.0; x += 0.0137) {
     EXPECT_NEAR(natural_exp(x), std::exp(x), kNearLibm * std::max(1.0, std::exp(x))) << x;
   }
+}
+
+TEST(Elementary, ExponentialEndsInZeroAndInfinity) {
+  for (double x = -699.9; x < 699.9; x += 3.7) {
+    EXPECT_NEAR(natural_exp(x) / std::exp(x), 1.0, 2e-15) << x;
+  }
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  for (const double x : {-700.1, -745.2, -1e4, -1e300, -kEndless}) EXPECT_EQ(natural_exp(x), 0.0);
+  for (const double x : {700.1, 710.0, 1e4, 1e300, kEndless}) EXPECT_EQ(natural_exp(x), kEndless);
+}
+
+TEST(Elementary, PowersAreWithinTheStatedErrorOfLongDoubles) {
+  for (std::uint32_t i = 0; i < 300000; ++i) {
+    const RandomWords words = random_words({.beam = i});
+    const double base = uniform(words[0]);
+    const double exponent = 200.0 * uniform(words[1]) * uniform(words[2]);
+    const long double exact = std::pow(static_cast<long double>(base), exponent);
+    const double bound = 3e-16 * (1.0 + std::abs(exponent * std::log(base)));
+    if (exact < 1e-300L) continue;
+    ASSERT_LT(std::abs(static_cast<double>(power(base, exponent) / exact - 1.0L)), bound)
+        << base << " ^ " << exponent;
+  }
+}
+
+TEST(Elementary, PowersOfZeroOneAndDenormalFloatsAreExact) {
+  EXPECT_EQ(power(0.0, 0.0), 1.0);
+  EXPECT_EQ(power(0.0, 12.5), 0.0);
+  EXPECT_EQ(power(1.0, 1000.0), 1.0);
+  EXPECT_EQ(power(0.3, 0.0), 1.0);
+  EXPECT_EQ(power(1e-3, 1000.0), 0.0);
+  EXPECT_NEAR(power(0x1p-149, 1.0), 0x1p-149, 0x1p-149 * 1e-13);
 }
 
 TEST(Gaussian, GivesTheGoldenNormals) {

@@ -31,9 +31,10 @@ TEST(FileFormats, TheLongestSuffixWins) {
 
 TEST(FileFormats, AnUnknownSuffixTellsAllAndTheNearest) {
   const std::string text = error_text([] { format_for("a.pdc"); });
-  EXPECT_THAT(text,
-              AllOf(HasSubstr("no format has the suffix .pdc"), HasSubstr("did you mean .pcd?"),
-                    HasSubstr(".pcd .ply .npz .csv .bin .npy .depth.png .paper.png .png .transform")));
+  EXPECT_THAT(
+      text,
+      AllOf(HasSubstr("no format has the suffix .pdc"), HasSubstr("did you mean .pcd?"),
+            HasSubstr(".pcd .ply .npz .csv .bin .npy .depth.png .paper.png .png .transform")));
   EXPECT_THAT(error_text([] { format_for("cloud"); }), HasSubstr("the name has no suffix"));
   EXPECT_THAT(error_text([] { format_for("out/.pcd"); }), HasSubstr("the name has no suffix"));
 }
@@ -61,9 +62,9 @@ TEST(FileSink, WritesCloudAndSidecarAndNothingElse) {
 
 TEST(FileSink, ImagesAndPosesHaveNoSidecar) {
   const testing::TestFolder folder;
-  for (const char* name : {"a.npy", "a.png", "a.depth.png", "a.transform"})
+  for (const char* name : {"a.npy", "a.png", "a.depth.png", "a.paper.png", "a.transform"})
     write_cloud(make_fixture(), folder / name);
-  EXPECT_EQ(folder.names().size(), 4U);
+  EXPECT_EQ(folder.names().size(), 5U);
 }
 
 TEST(FileSink, TheSidecarCanBeLeftOut) {

@@ -163,7 +163,8 @@ TEST(DepthPng, ADepthOutOfRangeIsAnErrorWithTheScaleThatFits) {
 }
 
 TEST(PaperPng, IsRefusedToAFrameThatWasNotReadFromAPicture) {
-  const CloudFixture made = make_fixture();
+  CloudFixture made = make_fixture();
+  made.frame.picture.rgba.clear();
   EXPECT_THAT(write_error(made, "a.paper.png"),
               HasSubstr("a frame that was not read from the paper's picture; allowed: a frame of "
                         "the paper's target"));

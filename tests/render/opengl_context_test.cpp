@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Drawing in a context that somebody else made, uses and changes.
 #include <glidar/render/opengl/egl_context.hpp>
+#include <glidar/render/opengl/gl_object.hpp>
 #include <glidar/render/opengl/opengl_renderer.hpp>
 #include <glidar/render/paper_picture.hpp>
 #include <render/renderer_suite.hpp>
@@ -178,6 +179,26 @@ TEST_F(OpenglContext, AContextThatCannotBeCurrentSaysWhy) {
               make_opengl_renderer(scene_, {.threads = 1}, std::make_unique<NoContext>());
             }),
             "window: it is closed");
+}
+
+TEST_F(OpenglContext, TellsOfResetsWhereTheDriverCan) {
+  const opengl::Use use(*window_);
+  opengl::check_not_lost();
+  if (epoxy_gl_version() < 45) GTEST_SKIP() << "this driver need not tell";
+  GLint strategy = 0;
+  glGetIntegerv(GL_RESET_NOTIFICATION_STRATEGY, &strategy);
+  EXPECT_EQ(strategy, GL_LOSE_CONTEXT_ON_RESET);
+}
+
+TEST(OpenglReset, SaysWhoseFaultItIsAndWhatToDo) {
+  const auto text = [](GLenum status) { return error_text([&] { opengl::check_reset(status); }); };
+  EXPECT_EQ(text(GL_NO_ERROR), "no error");
+  EXPECT_EQ(text(GL_UNKNOWN_CONTEXT_RESET),
+            "OpenGL: the graphics device was reset: its context is lost, with the frame under way; "
+            "make a new renderer, or start again; if it comes back, update the driver, choose "
+            "another --graphics-device, or use --renderer embree");
+  EXPECT_NE(text(GL_GUILTY_CONTEXT_RESET).find("because of what was drawn"), std::string::npos);
+  EXPECT_NE(text(GL_INNOCENT_CONTEXT_RESET).find("because of another program"), std::string::npos);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -39,6 +40,29 @@ TEST(SentBack, FollowsThePublishedFormsAtAnyAngle) {
                 0.9 * 200.0 * std::exp(-(theta / 0.5) * (theta / 0.5)), 200.0 * 1e-9);
     EXPECT_NEAR(sent_back(Glossy{0.05, 10.0, 0.05}, 0.9, c),
                 0.9 * (0.05 * c + 10.0 * std::exp(-theta * theta / (2.0 * 0.05 * 0.05))), 1e-9);
+  }
+}
+
+TEST(SentBack, OfNarrowLobesEndsInTheMattPartAtGrazingIncidence) {
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  for (int tenth = 0; tenth <= 900; ++tenth) {
+    const double c = std::max(0.0, std::cos(0.1 * kDegree * tenth));
+    for (const double width_deg : {0.1, 1.0, 2.0}) {
+      const double width = width_deg * kDegree;
+      const double glossy = sent_back(Glossy{0.5, 100.0, width}, 1.0, c);
+      EXPECT_GE(glossy, 0.5 * c) << tenth;
+      EXPECT_LE(glossy, 0.5 * c + 100.0) << tenth;
+      const double retro = sent_back(RetroReflector{200.0, width}, 1.0, c);
+      EXPECT_GE(retro, 0.0) << tenth;
+      EXPECT_LE(retro, 200.0) << tenth;
+      if (0.1 * tenth > 40.0 * width_deg) {
+        EXPECT_EQ(glossy, 0.5 * c);
+        EXPECT_EQ(retro, 0.0);
+      }
+    }
+    const double phong = sent_back(PhongLike{0.5, 1000.0}, 1.0, c);
+    EXPECT_GE(phong, 0.5 * c) << tenth;
+    EXPECT_LE(phong, 0.5 * c + 0.5) << tenth;
   }
 }
 

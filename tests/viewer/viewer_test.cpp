@@ -43,7 +43,7 @@ class ViewerTest : public testing::Test {
   }
 
   /// The shot of what is asked for last.
-  const Shot& shot_of(Viewer& viewer) {
+  const Snapshot& shot_of(Viewer& viewer) {
     EXPECT_TRUE(wait_until(
         viewer, [&] { return viewer.shot() != nullptr && viewer.shot()->ask == viewer.ask(); }));
     return *viewer.shot();
@@ -62,13 +62,13 @@ class ViewerTest : public testing::Test {
                        }};
 };
 
-double distance_m(const Shot& shot) {
+double distance_m(const Snapshot& shot) {
   return shot.frame.world_from_sensor.translation().norm();
 }
 
 TEST_F(ViewerTest, ShowsWhatTheSensorMeasures) {
   Viewer viewer(flags_, measuring_);
-  const Shot& shot = shot_of(viewer);
+  const Snapshot& shot = shot_of(viewer);
   EXPECT_EQ(shot.beams->size(), 32U * 32U);
   EXPECT_EQ(viewer.picture().colours.size(), shot.beams->size());
   EXPECT_GT(viewer.summary().hits, 100U);

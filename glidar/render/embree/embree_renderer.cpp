@@ -2,36 +2,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/embree/embree_renderer.hpp>
 
-#include <glidar/core/simd.hpp>
 #include <glidar/core/work_count.hpp>
 #include <glidar/render/embree/embree_world.hpp>
 #include <glidar/render/embree/settle.hpp>
 #include <glidar/render/embree/tiles.hpp>
+#include <glidar/render/plane_points.hpp>
 #include <glidar/render/resolve.hpp>
 
 #include <array>
 #include <bit>
-#include <cmath>
 #include <memory>
 #include <vector>
 
 namespace glidar {
 namespace {
-
-/// Where the columns and rows of a pinhole cross the plane at depth 1; empty for other beams. To
-/// work directions out from these is quicker than to read them.
-struct PlanePoints {
-  std::vector<double> x;
-  std::vector<double> y;
-};
-
-void find_plane_points(const Beams& beams, PlanePoints& points) {
-  points.x.clear();
-  points.y.clear();
-  if (!beams.pinhole) return;
-  for (std::uint32_t u = 0; u < beams.cols; ++u) points.x.push_back(plane_x(*beams.pinhole, u));
-  for (std::uint32_t v = 0; v < beams.rows; ++v) points.y.push_back(plane_y(*beams.pinhole, v));
-}
 
 /// What one cast hands to every tile.
 struct Job {
@@ -53,17 +37,6 @@ struct TileWork {
   embree::RayHits rays;
   ExactBlock exact;
 };
-
-/// direction_through(), lane by lane.
-GLIDAR_SIMD void directions_through(const Lanes<double>& x, const Lanes<double>& y,
-                                    Lanes3<double>& out) {
-  for (unsigned i = 0; i < kLanes; ++i) {
-    const double length = std::sqrt(x[i] * x[i] + y[i] * y[i] + 1.0);
-    out.x[i] = x[i] / length;
-    out.y[i] = y[i] / length;
-    out.z[i] = 1.0 / length;
-  }
-}
 
 /// Collects the beams of a tile that lies wholly in a pinhole's grid.
 void gather_pinhole(const PlanePoints& points, const embree::Tile& tile, TileWork& work) {

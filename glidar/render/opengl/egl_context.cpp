@@ -95,16 +95,27 @@ EGLDisplay display_of(EGLDeviceEXT device) {
   return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
 }
 
+/// An OpenGL 3.3 context; EGL_NO_CONTEXT where that cannot be had. One that tells when the graphics
+/// device was reset, if the driver makes such.
+EGLContext make_context_of_api(EGLDisplay display) {
+  constexpr std::array<EGLint, 6> kVersion = {
+      EGL_CONTEXT_MAJOR_VERSION,       3,
+      EGL_CONTEXT_MINOR_VERSION,       3,
+      EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+  std::vector<EGLint> attributes(kVersion.begin(), kVersion.end());
+  attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                       EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE});
+  EGLContext context =
+      eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+  if (context != EGL_NO_CONTEXT) return context;
+  attributes.assign(kVersion.begin(), kVersion.end());
+  attributes.push_back(EGL_NONE);
+  return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+}
+
 /// A context without config and surface; EGL_NO_CONTEXT where that cannot be had. A display stays
 /// initialised: EGL shares it among all who ask for it, and others may use it.
 EGLContext make_context(EGLDisplay display) {
-  constexpr std::array<EGLint, 7> kAttributes = {EGL_CONTEXT_MAJOR_VERSION,
-                                                 3,
-                                                 EGL_CONTEXT_MINOR_VERSION,
-                                                 3,
-                                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                                 EGL_NONE};
   if (display == EGL_NO_DISPLAY || eglInitialize(display, nullptr, nullptr) == EGL_FALSE) {
     return EGL_NO_CONTEXT;
   }
@@ -116,9 +127,7 @@ EGLContext make_context(EGLDisplay display) {
   }
   const EGLenum api_before = eglQueryAPI();
   EGLContext context = EGL_NO_CONTEXT;
-  if (eglBindAPI(EGL_OPENGL_API) == EGL_TRUE) {
-    context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kAttributes.data());
-  }
+  if (eglBindAPI(EGL_OPENGL_API) == EGL_TRUE) context = make_context_of_api(display);
   eglBindAPI(api_before);
   return context;
 }

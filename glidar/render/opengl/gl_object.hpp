@@ -88,6 +88,13 @@ using Framebuffer = GlObject<FramebufferKind>;
 using Renderbuffer = GlObject<RenderbufferKind>;
 using Program = GlObject<ProgramKind>;
 
+/// Throws Error, saying what to do, for a glGetGraphicsResetStatus() other than GL_NO_ERROR.
+void check_reset(GLenum status);
+
+/// Throws Error when the current context is lost, as far as the driver tells: the graphics device
+/// was reset, and nothing that was read from it since counts.
+void check_not_lost();
+
 /// Throws Error when OpenGL reports a fault since it was last asked.
 void check_gl(const char* doing);
 

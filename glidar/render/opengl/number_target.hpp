@@ -3,41 +3,57 @@
 #pragma once
 
 #include <glidar/render/opengl/gl_object.hpp>
-#include <glidar/render/opengl/projection.hpp>
 
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <vector>
 
 namespace glidar::opengl {
 
 /// "No triangle": nothing was drawn at the pixel.
 inline constexpr std::uint32_t kNoNumber = std::numeric_limits<std::uint32_t>::max();
 
-/// A picture of 32-bit numbers, with depths, and the memory through which it is read back. No
-/// multisampling: a number cannot be averaged.
+/// Pictures of one size.
+struct PictureSize {
+  std::uint32_t rows;
+  std::uint32_t cols;
+  std::uint32_t count;
+
+  [[nodiscard]] std::size_t pixels() const { return std::size_t{rows} * cols; }
+};
+
+/// Pictures of 32-bit numbers, one per layer of a texture, with depths, and the memory through
+/// which they are read back together. Each lies at the corner of its layer: elsewhere a driver
+/// would round its corners otherwise. No multisampling: a number cannot be averaged.
 class NumberTarget {
  public:
-  /// Makes room for so many pixels and draws into it from now on; all numbers are kNoNumber.
-  void begin(const PixelRect& rect);
+  /// Makes room for so many pictures.
+  void begin(const PictureSize& size);
 
-  /// Starts to copy the picture to where the processor reads it, without waiting.
+  /// Draws into this picture from now on; all its numbers are kNoNumber.
+  void draw_into(std::uint32_t picture);
+
+  /// Starts to copy the pictures to where the processor reads them. A GPU's driver does not wait.
   void start_reading();
 
-  /// Waits for the copy. The numbers, row by row, stay readable until end_reading().
+  /// Waits for the copy. The numbers, picture by picture and row by row, stay readable until
+  /// end_reading().
   std::span<const std::uint32_t> numbers();
   void end_reading();
 
  private:
-  void resize(GLsizei width, GLsizei height);
+  [[nodiscard]] bool has_room(const PictureSize& size) const;
+  void make_room(const PictureSize& size);
 
-  Framebuffer frame_;
-  Renderbuffer numbers_;
-  Renderbuffer depths_;
+  GlTexture numbers_;
+  Renderbuffer depths_;  ///< of all pictures in turn
+  std::vector<Framebuffer> frames_;
   Buffer read_;
-  GLsizei width_ = 0;  ///< of the memory; pictures may be smaller
-  GLsizei height_ = 0;
-  PixelRect rect_{};
+  GLsizeiptr read_bytes_ = 0;
+  bool is_mapped_ = false;
+  PictureSize room_{};
+  PictureSize size_{};
 };
 
 }  // namespace glidar::opengl

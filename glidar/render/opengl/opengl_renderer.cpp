@@ -6,33 +6,23 @@
 #include <glidar/render/opengl/draw_state.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/render/opengl/number_target.hpp>
+#include <glidar/render/opengl/picture_plan.hpp>
 #include <glidar/render/opengl/pinhole_only.hpp>
 #include <glidar/render/opengl/row_writing.hpp>
 #include <glidar/render/opengl/triangle_drawing.hpp>
 
-#include <algorithm>
 #include <array>
 #include <limits>
+#include <optional>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace glidar {
 namespace {
 
-using opengl::PixelRect;
-
-/// The picture cut into parts, row by row of parts; large pictures fit no target.
-std::vector<PixelRect> parts_of(const Beams& beams) {
-  constexpr std::uint32_t kSide =
-      2048;  // the largest picture that every OpenGL 3.3 draws is 1024..
-  std::vector<PixelRect> parts;
-  for (std::uint32_t row = 0; row < beams.rows; row += kSide) {
-    for (std::uint32_t col = 0; col < beams.cols; col += kSide) {
-      parts.push_back(
-          {row, col, std::min(kSide, beams.rows - row), std::min(kSide, beams.cols - col)});
-    }
-  }
-  return parts;
-}
+/// One picture is drawn, one copied and one worked out at a time.
+constexpr std::size_t kTargets = 3;
 
 class OpenglRenderer final : public Renderer {
  public:
@@ -55,18 +45,20 @@ class OpenglRenderer final : public Renderer {
   [[nodiscard]] Workers& workers() override { return workers_; }
 
   void cast(const CastRequest& request, Hits& hits) override {
-    check(request, resolver_.scene());
-    opengl::check_pinhole(request.beams);
-    resize(hits, request.beams.size(), request.fields);
-    resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
-    const opengl::DepthRange depths = depths_of(request);
-    if (depths.is_empty()) {
-      write_misses(request.fields, 0, request.beams.size(), hits);
-      if (request.then) request.then({0, request.beams.size()});
-      if (request.progress) request.progress(1.0);
-      return;
+    const std::array<Hits*, 1> one = {&hits};
+    cast_batch({&request, 1}, one);
+  }
+
+  void cast_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits) override {
+    check_batch(requests, hits);
+    for (const CastRequest& request : requests) {
+      check(request, resolver_.scene());
+      opengl::check_pinhole(request.beams);
     }
-    draw_and_write(request, depths, hits);
+    pictures_.clear();
+    for (std::size_t i = 0; i < requests.size(); ++i) plan(requests[i], i, *hits[i]);
+    opengl::group(pictures_, groups_);
+    if (!groups_.empty()) draw_and_write(requests, hits);
   }
 
  private:
@@ -74,7 +66,7 @@ class OpenglRenderer final : public Renderer {
   struct OnDevice {
     explicit OnDevice(const Scene& scene) : drawing(scene) {}
     opengl::TriangleDrawing drawing;
-    std::array<opengl::NumberTarget, 2> targets;
+    std::array<opengl::NumberTarget, kTargets> targets;
   };
 
   /// The planes that hug all instances that are there.
@@ -91,33 +83,75 @@ class OpenglRenderer final : public Renderer {
     return opengl::hugging(nearest_m, farthest_m);
   }
 
-  /// While one part of the picture is read and its hits are written, the next is drawn.
-  void draw_and_write(const CastRequest& request, const opengl::DepthRange& depths, Hits& hits) {
-    const opengl::FreshState state(*context_);
-    const std::vector<PixelRect> parts = parts_of(request.beams);
-    const opengl::Settler settler(resolver_, meshes_, request.beams, request.cull_back_faces);
-    WorkCount count(request.progress, request.beams.size());
-    const auto draw = [&](std::size_t part) {
-      opengl::NumberTarget& target = gpu_->targets[part % 2];
-      target.begin(parts[part]);
-      gpu_->drawing.draw(request, resolver_, parts[part], depths);
-      target.start_reading();
-    };
-    draw(0);
-    for (std::size_t part = 0; part < parts.size(); ++part) {
-      if (part + 1 < parts.size()) draw(part + 1);
-      opengl::NumberTarget& target = gpu_->targets[part % 2];
-      const opengl::RowWriting writing{.request = request,
-                                       .resolver = resolver_,
-                                       .settler = settler,
-                                       .drawing = gpu_->drawing,
-                                       .rect = parts[part],
-                                       .numbers = target.numbers(),
-                                       .hits = hits};
-      write_rows(writing, workers_, count);
-      target.end_reading();
+  /// Makes room for a cast's hits and adds its pictures, if there is anything to draw.
+  void plan(const CastRequest& request, std::size_t cast, Hits& hits) {
+    resize(hits, request.beams.size(), request.fields);
+    resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
+    const opengl::DepthRange depths = depths_of(request);
+    if (!depths.is_empty() && request.beams.size() > 0) {
+      opengl::add_parts(request.beams, cast, depths, pictures_);
+      return;
     }
-    count.finish();
+    write_misses(request.fields, 0, request.beams.size(), hits);
+    if (request.then) request.then({0, request.beams.size()});
+    if (request.progress) request.progress(1.0);
+  }
+
+  /// While the hits of one group of pictures are written, the next is copied and the one after it
+  /// is drawn. A driver in software draws behind our back but copies before our eyes: so each is
+  /// copied only after the next was given to draw.
+  void draw_and_write(std::span<const CastRequest> requests, std::span<Hits* const> hits) {
+    const opengl::FreshState state(*context_);
+    for (std::size_t step = 0; step < groups_.size() + 2; ++step) {
+      if (step < groups_.size()) draw(requests, groups_[step], target(step));
+      if (step >= 1 && step - 1 < groups_.size()) target(step - 1).start_reading();
+      if (step < 2) continue;
+      opengl::NumberTarget& done = target(step - 2);
+      write(requests, groups_[step - 2], done.numbers(), hits);
+      done.end_reading();
+    }
+    count_.reset();
+  }
+
+  opengl::NumberTarget& target(std::size_t group) { return gpu_->targets[group % kTargets]; }
+
+  void draw(std::span<const CastRequest> requests, const opengl::PictureGroup& group,
+            opengl::NumberTarget& target) {
+    target.begin(opengl::size_of(pictures_, group));
+    for (std::uint32_t i = 0; i < group.count; ++i) {
+      const opengl::Picture& picture = pictures_[group.first + i];
+      const CastRequest& request = requests[picture.cast];
+      resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
+      target.draw_into(i);
+      gpu_->drawing.draw(request, resolver_, picture.rect, picture.depths);
+    }
+    glFlush();
+  }
+
+  void write(std::span<const CastRequest> requests, const opengl::PictureGroup& group,
+             std::span<const std::uint32_t> numbers, std::span<Hits* const> hits) {
+    const std::size_t pixels = opengl::size_of(pictures_, group).pixels();
+    for (std::size_t i = 0; i < group.count; ++i) {
+      const opengl::Picture& picture = pictures_[group.first + i];
+      const CastRequest& request = requests[picture.cast];
+      resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
+      find_plane_points(request.beams, points_);
+      const bool is_first_part = picture.rect.first_row == 0 && picture.rect.first_col == 0;
+      if (is_first_part) count_.emplace(request.progress, request.beams.size());
+      const opengl::Settler settler(resolver_, meshes_, request.beams, request.cull_back_faces);
+      opengl::write_rows({.request = request,
+                          .resolver = resolver_,
+                          .settler = settler,
+                          .drawing = gpu_->drawing,
+                          .points = points_,
+                          .rect = picture.rect,
+                          .numbers = numbers.subspan(i * pixels, pixels),
+                          .hits = *hits[picture.cast]},
+                         workers_, *count_);
+      const bool is_last_part = picture.rect.first_row + picture.rect.rows == request.beams.rows &&
+                                picture.rect.first_col + picture.rect.cols == request.beams.cols;
+      if (is_last_part) count_->finish();
+    }
   }
 
   Workers workers_;
@@ -125,6 +159,10 @@ class OpenglRenderer final : public Renderer {
   std::vector<opengl::KnownMesh> meshes_;
   std::unique_ptr<opengl::Context> context_;
   std::unique_ptr<OnDevice> gpu_;
+  std::vector<opengl::Picture> pictures_;  ///< of the batch under way
+  std::vector<opengl::PictureGroup> groups_;
+  PlanePoints points_;              ///< of the picture whose hits are written
+  std::optional<WorkCount> count_;  ///< of its cast
 };
 
 }  // namespace

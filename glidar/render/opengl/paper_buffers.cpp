@@ -7,33 +7,35 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 namespace glidar::opengl {
 namespace {
 
 /// Gives an attribute of the bound vertex array its values, if there are any.
 template <class Vector>
-void give(GLuint attribute, const std::vector<Vector>& values, ShadedMesh& mesh) {
+void give(GLuint attribute, const DrawOrder& order, const std::vector<Vector>& values,
+          ShadedMesh& mesh) {
   if (values.empty()) return;
-  fill(mesh.attributes.emplace_back(), GL_ARRAY_BUFFER, values);
+  fill(mesh.attributes.emplace_back(), GL_ARRAY_BUFFER, in_order(order, values));
   glVertexAttribPointer(attribute, Vector::RowsAtCompileTime, GL_FLOAT, GL_FALSE, 0, nullptr);
   glEnableVertexAttribArray(attribute);
 }
 
-void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& order,
+void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& drawn,
                          const ShadedMesh& shaded) {
   GLint most = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &most);
-  if (order.size() > static_cast<std::size_t>(most)) {
+  if (drawn.size() > static_cast<std::size_t>(most)) {
     throw Error({.where = "opengl renderer",
-                 .found = "a mesh of " + std::to_string(order.size()) + " triangles",
+                 .found = "a mesh of " + std::to_string(drawn.size()) + " triangles",
                  .allowed = "up to " + std::to_string(most) + " with this driver's paper target",
                  .remedy = "use --render-target float"});
   }
   const std::vector<TrianglePlane> planes = triangle_planes(mesh);
   std::vector<Eigen::Vector4f> normals;
-  normals.reserve(order.size());
-  for (const std::uint32_t t : order) {
+  normals.reserve(drawn.size());
+  for (const std::uint32_t t : drawn) {
     normals.push_back(planes[t].normal.cast<float>().homogeneous());
   }
   fill(shaded.flat_normals, GL_TEXTURE_BUFFER, normals);
@@ -42,33 +44,37 @@ void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& ord
 }
 
 /// Blends of unit vectors that lie less than 120 degrees from each other have some length.
-bool is_smooth(const Mesh& mesh) {
+bool is_smooth(const Mesh& mesh, const Triangle& t) {
   constexpr float kCosineOf120 = -0.5F;
-  return !mesh.normals.empty() &&
-         std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&](const Triangle& t) {
-           const Eigen::Vector3f& a = mesh.normals[t[0]];
-           const Eigen::Vector3f& b = mesh.normals[t[1]];
-           const Eigen::Vector3f& c = mesh.normals[t[2]];
-           return std::min({a.dot(b), b.dot(c), c.dot(a)}) > kCosineOf120;
-         });
+  if (mesh.normals.empty()) return false;
+  const Eigen::Vector3f& a = mesh.normals[t[0]];
+  const Eigen::Vector3f& b = mesh.normals[t[1]];
+  const Eigen::Vector3f& c = mesh.normals[t[2]];
+  return std::min({a.dot(b), b.dot(c), c.dot(a)}) > kCosineOf120;
+}
+
+std::vector<std::uint32_t> kinds_of(const Mesh& mesh) {
+  std::vector<std::uint32_t> kinds;
+  kinds.reserve(mesh.triangles.size());
+  for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
+    kinds.push_back(kind_of(material_slot(mesh, i), is_smooth(mesh, mesh.triangles[i])));
+  }
+  return kinds;
 }
 
 ShadedMesh upload_mesh(const Mesh& mesh) {
   ShadedMesh shaded;
-  shaded.is_smooth = is_smooth(mesh);
+  DrawOrder order = draw_order(mesh, kinds_of(mesh));
   glBindVertexArray(shaded.arrays.name());
-  give(0, mesh.positions_m, shaded);
-  give(1, mesh.uvs[0], shaded);
-  give(2, mesh.uvs[1], shaded);
-  give(3, mesh.normals, shaded);
-  give(4, mesh.tangents, shaded);
-  give(5, mesh.colours, shaded);
-  const std::vector<std::uint32_t> order = ordered_by_slot(mesh, shaded.ranges);
-  std::vector<Triangle> triangles;
-  triangles.reserve(order.size());
-  for (const std::uint32_t t : order) triangles.push_back(mesh.triangles[t]);
-  fill(shaded.triangles, GL_ELEMENT_ARRAY_BUFFER, triangles);
-  upload_flat_normals(mesh, order, shaded);
+  give(0, order, mesh.positions_m, shaded);
+  give(1, order, mesh.uvs[0], shaded);
+  give(2, order, mesh.uvs[1], shaded);
+  give(3, order, mesh.normals, shaded);
+  give(4, order, mesh.tangents, shaded);
+  give(5, order, mesh.colours, shaded);
+  fill(shaded.triangles, GL_ELEMENT_ARRAY_BUFFER, order.triangles);
+  upload_flat_normals(mesh, order.drawn, shaded);
+  shaded.ranges = std::move(order.ranges);
   return shaded;
 }
 

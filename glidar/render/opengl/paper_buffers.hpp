@@ -15,11 +15,21 @@ struct ShadedMesh {
   VertexArray arrays;
   Buffer triangles;
   std::vector<Buffer> attributes;
-  std::vector<DrawRange> ranges;
-  bool is_smooth = false;  ///< it has normals, and no triangle's cancel out
-  Buffer flat_normals;     ///< of the triangles in the order of the draw, 4 floats each
+  std::vector<DrawRange> ranges;  ///< their kinds are kind_of()
+  Buffer flat_normals;            ///< of the triangles in the order of the draw, 4 floats each
   GlTexture flat_normals_view;
 };
+
+/// Triangles without normals, or with such as may cancel out, need their flat one too.
+inline std::uint32_t kind_of(std::uint16_t slot, bool is_smooth) {
+  return 2U * slot + (is_smooth ? 0 : 1);
+}
+inline std::uint32_t slot_of(const DrawRange& range) {
+  return range.kind / 2;
+}
+inline bool is_smooth(const DrawRange& range) {
+  return range.kind % 2 == 0;
+}
 
 /// A scene with its textures (RGBA, as core/material.cpp spreads them).
 struct ShadedScene {

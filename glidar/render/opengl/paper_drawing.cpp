@@ -22,16 +22,6 @@ Eigen::Vector4f steps_from_object(const InstanceView& view, const PaperPlanes& p
   return row.cast<float>();
 }
 
-/// From (x, y, 1) in the window, where pixel centres lie at halves, to the point at depth 1.
-Eigen::Matrix3d sensor_from_pixel(const PinholeIntrinsics& k) {
-  const double half = 0.5;
-  Eigen::Matrix3d matrix;
-  matrix << 1.0 / k.fx, 0.0, (k.pixel_centre - half - k.cx) / k.fx,  //
-      0.0, 1.0 / k.fy, (k.pixel_centre - half - k.cy) / k.fy,        //
-      0.0, 0.0, 1.0;
-  return matrix;
-}
-
 bool last_is_alpha(const Scene& scene, const TextureUse& use) {
   if (!use.used()) return false;
   const std::uint32_t channels = scene.textures[static_cast<std::size_t>(use.texture)].channels;
@@ -39,8 +29,8 @@ bool last_is_alpha(const Scene& scene, const TextureUse& use) {
 }
 
 /// True unless interpolated normals and the material's own colours are all there is to it.
-bool needs_all(const Material& material, const Mesh& mesh, const ShadedMesh& shaded) {
-  return !shaded.is_smooth || material.diffuse_texture.used() || material.specular_texture.used() ||
+bool needs_all(const Material& material, const Mesh& mesh, const DrawRange& range) {
+  return !is_smooth(range) || material.diffuse_texture.used() || material.specular_texture.used() ||
          has_mask(material) || !mesh.colours.empty() ||
          (material.normal_texture.used() && !mesh.tangents.empty());
 }
@@ -55,20 +45,22 @@ PaperDrawing::PaperDrawing(const Scene& scene)
     : scene_(scene),
       has_clip_control_(has_clip_control()),
       shaded_(upload_shaded(scene)),
-      plain_(make_shader("IS_PLAIN")),
-      rich_(make_shader("HAS_ALL")) {}
+      matt_(make_shader("IS_PLAIN", "IS_MATT")),
+      shiny_(make_shader("IS_PLAIN", "IS_SHINY")),
+      rich_(make_shader("HAS_ALL", "IS_SHINY")) {}
 
-PaperDrawing::Shader PaperDrawing::make_shader(const char* surface_macro) const {
-  return {make_program(
-      {.vertex = {shader_text("paper.vert.glsl")},
-       .fragment = {shader_text("texel.glsl"), shader_text("paper.frag.glsl")},
-       .macros = {surface_macro, has_clip_control_ ? "HAS_CLIP_CONTROL" : "WRITES_DEPTH"}})};
+PaperDrawing::Shader PaperDrawing::make_shader(const char* surface_macro,
+                                               const char* shine_macro) const {
+  return {make_program({.vertex = {shader_text("paper.vert.glsl")},
+                        .fragment = {shader_text("texel.glsl"), shader_text("paper.frag.glsl")},
+                        .macros = {surface_macro, shine_macro,
+                                   has_clip_control_ ? "HAS_CLIP_CONTROL" : "WRITES_DEPTH"}})};
 }
 
 void PaperDrawing::draw(const CastRequest& request, const Resolver& resolver,
                         const PaperScope& scope) const {
   set_draw_state(has_clip_control_, request.cull_back_faces);
-  for (const Shader* shader : {&plain_, &rich_}) {
+  for (const Shader* shader : {&matt_, &shiny_, &rich_}) {
     glUseProgram(shader->program.name());
     set_scope(*shader, scope);
   }
@@ -82,12 +74,8 @@ void PaperDrawing::draw(const CastRequest& request, const Resolver& resolver,
 
 void PaperDrawing::set_scope(const Shader& shader, const PaperScope& scope) const {
   const Light& light = scope.light;
-  glUniform1f(shader.at("near_m"), single(scope.planes.near_m));
-  glUniform1f(shader.at("metres_per_step"),
-              single((scope.planes.far_m - scope.planes.near_m) / kSteps));
   glUniform3f(shader.at("attenuation"), single(light.attenuation_constant),
               single(light.attenuation_linear_per_m), single(light.attenuation_quadratic_per_m2));
-  glUniform1f(shader.at("scene_ambient"), single(light.ambient));
   glUniform1i(shader.at("flat_normals"), static_cast<GLint>(kFlatNormalsUnit));
 }
 
@@ -100,13 +88,18 @@ void PaperDrawing::draw_instance(std::uint32_t instance, const InstanceView& vie
   glActiveTexture(GL_TEXTURE0 + kFlatNormalsUnit);
   glBindTexture(GL_TEXTURE_BUFFER, shaded.flat_normals_view.name());
   for (const DrawRange& range : shaded.ranges) {
-    const Material& material = scene_.materials[placed.materials[range.slot]];
-    const bool is_rich = needs_all(material, mesh, shaded);
-    const Shader& shader = is_rich ? rich_ : plain_;
+    const Material& material = scene_.materials[placed.materials[slot_of(range)]];
+    const bool is_rich = needs_all(material, mesh, range);
+    const Shader& shader = shader_for(material, is_rich);
     glUseProgram(shader.program.name());
     set_instance(shader, view, scope);
-    set_material(shader, material);
-    if (is_rich) set_textures(shader, material, mesh);
+    glUniform1f(shader.at("shininess"), material.shininess);
+    if (is_rich) {
+      set_colours(shader, material, scope.light);
+      set_textures(shader, material, mesh);
+    } else {
+      set_shares(shader, material, scope.light);
+    }
     glUniform1i(shader.at("first_triangle"), static_cast<GLint>(range.first));
     draw_triangles(range);
   }
@@ -117,17 +110,28 @@ void PaperDrawing::set_instance(const Shader& shader, const InstanceView& view,
   const PinholeIntrinsics& k = scope.pinhole;
   const Eigen::Matrix4f clip = clip_from_object(view, k, {0, 0, k.height, k.width}, scope.depths);
   const Eigen::Vector4f steps = steps_from_object(view, scope.planes);
-  const Eigen::Matrix3f rays = (view.object_from_sensor * sensor_from_pixel(k)).cast<float>();
+  const Eigen::Vector3f sensor = view.sensor_in_object.cast<float>();
   glUniformMatrix4fv(shader.at("clip_from_object"), 1, GL_FALSE, clip.data());
   glUniform4fv(shader.at("steps_from_object"), 1, steps.data());
-  glUniformMatrix3fv(shader.at("object_from_pixel"), 1, GL_FALSE, rays.data());
+  glUniform3fv(shader.at("sensor"), 1, sensor.data());
+  glUniform1f(shader.at("metres_per_unit"), single(view.scale));
 }
 
-void PaperDrawing::set_material(const Shader& shader, const Material& material) const {
+const PaperDrawing::Shader& PaperDrawing::shader_for(const Material& material, bool is_rich) const {
+  if (is_rich) return rich_;
+  return luminance(material.specular) > 0.0F ? shiny_ : matt_;
+}
+
+void PaperDrawing::set_shares(const Shader& shader, const Material& material, const Light& light) {
+  glUniform3f(shader.at("plain_shares"), single(light.ambient * luminance(material.ambient)),
+              luminance(material.diffuse), luminance(material.specular));
+}
+
+void PaperDrawing::set_colours(const Shader& shader, const Material& material, const Light& light) {
+  glUniform1f(shader.at("scene_ambient"), single(light.ambient));
   glUniform3fv(shader.at("ambient"), 1, material.ambient.data());
   glUniform3fv(shader.at("diffuse"), 1, material.diffuse.data());
   glUniform3fv(shader.at("specular"), 1, material.specular.data());
-  glUniform1f(shader.at("shininess"), material.shininess);
 }
 
 void PaperDrawing::set_textures(const Shader& shader, const Material& material,

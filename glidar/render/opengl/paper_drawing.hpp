@@ -39,10 +39,12 @@ class PaperDrawing {
     }
   };
 
-  [[nodiscard]] Shader make_shader(const char* surface_macro) const;
+  [[nodiscard]] Shader make_shader(const char* surface_macro, const char* shine_macro) const;
+  [[nodiscard]] const Shader& shader_for(const Material& material, bool is_rich) const;
   void set_scope(const Shader& shader, const PaperScope& scope) const;
   void set_instance(const Shader& shader, const InstanceView& view, const PaperScope& scope) const;
-  void set_material(const Shader& shader, const Material& material) const;
+  static void set_shares(const Shader& shader, const Material& material, const Light& light);
+  static void set_colours(const Shader& shader, const Material& material, const Light& light);
   void set_textures(const Shader& shader, const Material& material, const Mesh& mesh) const;
   void set_texture(const Shader& shader, GLenum unit, const std::string& name,
                    const TextureUse& use) const;
@@ -52,8 +54,9 @@ class PaperDrawing {
   const Scene& scene_;
   bool has_clip_control_;
   ShadedScene shaded_;
-  Shader plain_;
-  Shader rich_;
+  Shader matt_;   ///< without specular light, textures and such
+  Shader shiny_;  ///< with specular light
+  Shader rich_;   ///< with all
 };
 
 }  // namespace glidar::opengl

@@ -41,6 +41,7 @@ void PaperTarget::begin(std::uint32_t rows, std::uint32_t cols) {
 void PaperTarget::read(std::vector<std::uint8_t>& rgba) {
   rgba.resize(std::size_t{4} * static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_));
   glReadPixels(0, 0, cols_, rows_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
+  check_not_lost();
   check_gl("reading a picture");
 }
 

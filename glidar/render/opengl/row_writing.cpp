@@ -11,13 +11,29 @@
 namespace glidar::opengl {
 namespace {
 
-/// Up to kLanes hits of one row on their way.
+constexpr std::uint32_t kPiece = 128;  // columns that are looked through at once
+
+/// Up to kLanes hits on their way.
 struct Work {
   HitBlock block;
   BeamBlock beams;
   ExactBlock exact;
-  std::array<std::uint32_t, kLanes> col;  ///< in the rect
+  Lanes<double> x;  ///< where the beams cross the plane at depth 1
+  Lanes<double> y;
+  std::array<std::uint32_t, kLanes> row;  ///< in the rect
+  std::array<std::uint32_t, kLanes> col;
+  std::array<std::uint32_t, kLanes> number;  ///< drawn there
   unsigned used = 0;
+};
+
+/// Three are under way at a time, so that what the later steps of one read from memory (planes and
+/// corners of its triangles) comes while the next are collected.
+struct Works {
+  std::array<Work, 3> ring;
+  std::size_t started = 0;  ///< the last one is being filled
+
+  Work& filling() { return ring[started % ring.size()]; }
+  Work& before() { return ring[(started + ring.size() - 1) % ring.size()]; }
 };
 
 /// The triangle to tell for one found, see Resolver::told.
@@ -42,19 +58,20 @@ std::span<const Found> found_around(const RowWriting& w, std::uint32_t row, std:
 }
 
 /// Puts right the lanes in doubt; true when that changed the block.
-bool settle(const RowWriting& w, std::uint32_t row, std::uint32_t doubtful, Work& work) {
+bool settle(const RowWriting& w, std::uint32_t doubtful, Work& work) {
   HitBlock& block = work.block;
   bool changed = false;
   for (; doubtful != 0; doubtful &= doubtful - 1) {
     const auto lane = static_cast<unsigned>(std::countr_zero(doubtful));
     const Found before{block.instance[lane], block.primitive[lane]};
     std::array<Found, 8> around;
-    const Found after =
-        w.settler.settle(block.beam[lane], before, found_around(w, row, work.col[lane], around));
+    const Found after = w.settler.settle(block.beam[lane], before,
+                                         found_around(w, work.row[lane], work.col[lane], around));
     if (after == before) continue;
     changed = true;
     if (after.instance == kNoHit) {
       block.mask &= ~(1U << lane);
+      write_misses(w.request.fields, block.beam[lane], 1, w.hits);
       continue;
     }
     block.instance[lane] = after.instance;
@@ -63,56 +80,117 @@ bool settle(const RowWriting& w, std::uint32_t row, std::uint32_t doubtful, Work
   return changed;
 }
 
-/// Writes the collected hits over the misses that stand there.
-void finish(const RowWriting& w, std::uint32_t row, Work& work) {
+/// Writes the collected hits.
+void finish(const RowWriting& w, Work& work) {
   if (work.used == 0) return;
   HitBlock& block = work.block;
-  block.mask = static_cast<std::uint32_t>((std::uint64_t{1} << work.used) - 1);
   for (unsigned lane = work.used; lane < kLanes; ++lane) {
     block.beam[lane] = block.beam[0];
-    work.beams.direction.set(lane, work.beams.direction.get(0));
+    work.x[lane] = work.x[0];
+    work.y[lane] = work.y[0];
   }
   work.used = 0;
+  directions_through(work.x, work.y, work.beams.direction);
   w.resolver.measure(work.beams, block, work.exact);
   const std::uint32_t in_doubt = doubtful(w.resolver, block, work.exact);
-  if (in_doubt != 0 && settle(w, row, in_doubt, work) && block.mask != 0) {
+  if (in_doubt != 0 && settle(w, in_doubt, work) && block.mask != 0) {
     w.resolver.measure(work.beams, block, work.exact);
   }
   if (block.mask == 0) return;
   w.resolver.write(w.request.beams, w.request.fields, block, work.exact, w.hits);
 }
 
-void write_row(const RowWriting& w, std::uint32_t row, Work& work) {
-  const Beams& beams = w.request.beams;
-  const std::size_t first = std::size_t{w.rect.first_row + row} * beams.cols + w.rect.first_col;
-  write_misses(w.request.fields, first, w.rect.cols, w.hits);
-  const std::uint32_t* numbers = w.numbers.data() + std::size_t{row} * w.rect.cols;
-  for (std::uint32_t col = 0; col < w.rect.cols; ++col) {
-    if (numbers[col] == kNoNumber) continue;
-    const unsigned lane = work.used++;
-    const Found found = w.drawing.found(numbers[col]);
-    work.col[lane] = col;
-    work.block.beam[lane] = first + col;
+/// What the numbers of a block tell.
+void look_up(const RowWriting& w, Work& work) {
+  work.block.mask = static_cast<std::uint32_t>((std::uint64_t{1} << work.used) - 1);
+  for (unsigned lane = 0; lane < work.used; ++lane) {
+    const Found found = w.drawing.found(work.number[lane]);
     work.block.instance[lane] = found.instance;
     work.block.primitive[lane] = told(w, found);
-    work.beams.direction.set(lane, beams.directions[first + col]);
     w.resolver.prefetch(work.block, lane);
-    if (work.used == kLanes) finish(w, row, work);
   }
-  finish(w, row, work);
-  if (w.request.then) w.request.then({first, first + w.rect.cols});
+}
+
+/// Looks the collected hits up, asks for the corners of those before, and finishes those before
+/// them.
+void go_on(const RowWriting& w, Works& works) {
+  look_up(w, works.filling());
+  HitFields fields = w.request.fields;
+  fields.barycentrics = true;  // for their doubts all need their corners
+  w.resolver.prefetch_corners(works.before().block, fields);
+  ++works.started;
+  finish(w, works.filling());
+}
+
+/// Lists the columns of a piece of a row where something was drawn; returns how many.
+std::uint32_t list_drawn(const std::uint32_t* numbers, std::uint32_t begin, std::uint32_t end,
+                         std::array<std::uint32_t, kPiece>& cols) {
+  std::uint32_t count = 0;
+  for (std::uint32_t col = begin; col < end; ++col) {  // a branch would often be mistaken
+    cols[count] = col;
+    count += numbers[col] != kNoNumber ? 1U : 0U;
+  }
+  return count;
+}
+
+void collect(const RowWriting& w, std::uint32_t row, std::uint32_t col, std::uint32_t number,
+             Work& work) {
+  const std::uint32_t picture_row = w.rect.first_row + row;
+  const std::uint32_t picture_col = w.rect.first_col + col;
+  const unsigned lane = work.used++;
+  work.row[lane] = row;
+  work.col[lane] = col;
+  work.number[lane] = number;
+  work.x[lane] = w.points.x[picture_col];
+  work.y[lane] = w.points.y[picture_row];
+  work.block.beam[lane] = std::size_t{picture_row} * w.request.beams.cols + picture_col;
+}
+
+BeamRange beams_of(const RowWriting& w, std::uint32_t row) {
+  const std::size_t first =
+      std::size_t{w.rect.first_row + row} * w.request.beams.cols + w.rect.first_col;
+  return {first, first + w.rect.cols};
+}
+
+void collect_row(const RowWriting& w, std::uint32_t row, Works& works) {
+  const std::size_t first = beams_of(w, row).begin;
+  const std::uint32_t* numbers = w.numbers.data() + std::size_t{row} * w.rect.cols;
+  std::array<std::uint32_t, kPiece> cols;
+  for (std::uint32_t begin = 0; begin < w.rect.cols; begin += kPiece) {
+    const std::uint32_t end = std::min(begin + kPiece, w.rect.cols);
+    const std::uint32_t count = list_drawn(numbers, begin, end, cols);
+    // In long strokes, hits being written over them; only where all are hits there is no need.
+    if (count < end - begin) write_misses(w.request.fields, first + begin, end - begin, w.hits);
+    Work* work = &works.filling();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      collect(w, row, cols[i], numbers[cols[i]], *work);
+      if (work->used < kLanes) continue;
+      go_on(w, works);
+      work = &works.filling();
+    }
+  }
+}
+
+/// All beams of rows [begin, end).
+void write_some_rows(const RowWriting& w, std::uint32_t begin, std::uint32_t end) {
+  Works works;
+  for (std::uint32_t row = begin; row < end; ++row) collect_row(w, row, works);
+  for (std::size_t i = 0; i < works.ring.size(); ++i) go_on(w, works);
+  if (!w.request.then) return;
+  for (std::uint32_t row = begin; row < end; ++row) w.request.then(beams_of(w, row));
 }
 
 }  // namespace
 
 void write_rows(const RowWriting& writing, Workers& workers, WorkCount& count) {
   constexpr std::uint32_t kBeamsPerTask = 1024;
-  const std::size_t rows_per_task = std::max(1U, kBeamsPerTask / writing.rect.cols);
+  const std::uint32_t rows_per_task = std::max(1U, kBeamsPerTask / writing.rect.cols);
   workers.for_ranges(writing.rect.rows, rows_per_task, [&](std::size_t begin, std::size_t end) {
-    Work work;
-    for (std::size_t row = begin; row < end; ++row) {
-      write_row(writing, static_cast<std::uint32_t>(row), work);
-      count.add(writing.rect.cols);
+    const auto last = static_cast<std::uint32_t>(end);
+    for (auto row = static_cast<std::uint32_t>(begin); row < last; row += rows_per_task) {
+      const std::uint32_t next = std::min(row + rows_per_task, last);
+      write_some_rows(writing, row, next);
+      count.add(std::size_t{next - row} * writing.rect.cols);
     }
   });
 }

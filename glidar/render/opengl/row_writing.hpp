@@ -5,6 +5,7 @@
 #include <glidar/core/work_count.hpp>
 #include <glidar/render/opengl/settle.hpp>
 #include <glidar/render/opengl/triangle_drawing.hpp>
+#include <glidar/render/plane_points.hpp>
 
 #include <cstdint>
 #include <span>
@@ -17,6 +18,7 @@ struct RowWriting {
   const Resolver& resolver;
   const Settler& settler;
   const TriangleDrawing& drawing;
+  const PlanePoints& points;
   PixelRect rect;
   std::span<const std::uint32_t> numbers;  ///< of the rect's pixels, row by row
   Hits& hits;

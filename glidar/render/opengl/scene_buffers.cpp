@@ -3,7 +3,7 @@
 #include <glidar/render/opengl/scene_buffers.hpp>
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
 namespace glidar::opengl {
 namespace {
@@ -16,26 +16,25 @@ bool needs_slots(const Scene& scene, std::size_t mesh) {
   });
 }
 
+std::vector<std::uint32_t> slots_of(const Mesh& mesh) {
+  return {mesh.material_slots.begin(), mesh.material_slots.end()};
+}
+
 MeshBuffers upload_mesh(const Mesh& mesh, bool by_slot) {
   MeshBuffers buffers;
+  DrawOrder order = draw_order(mesh, by_slot ? slots_of(mesh) : std::vector<std::uint32_t>{});
   glBindVertexArray(buffers.arrays.name());
-  fill(buffers.positions, GL_ARRAY_BUFFER, mesh.positions_m);
+  fill(buffers.positions, GL_ARRAY_BUFFER, in_order(order, mesh.positions_m));
   glVertexAttribPointer(0, 3, GL_FLOAT, GL_FALSE, 0, nullptr);
   glEnableVertexAttribArray(0);
   for (std::size_t set = 0; set < buffers.uvs.size(); ++set) {
     buffers.has_uvs[set] = by_slot && !mesh.uvs[set].empty();
-    if (buffers.has_uvs[set]) fill(buffers.uvs[set], GL_ARRAY_BUFFER, mesh.uvs[set]);
+    if (!buffers.has_uvs[set]) continue;
+    fill(buffers.uvs[set], GL_ARRAY_BUFFER, in_order(order, mesh.uvs[set]));
   }
-  if (!by_slot) {
-    fill(buffers.triangles, GL_ELEMENT_ARRAY_BUFFER, mesh.triangles);
-    buffers.ranges.push_back({0, static_cast<std::uint32_t>(mesh.triangles.size()), 0});
-    return buffers;
-  }
-  buffers.drawn = ordered_by_slot(mesh, buffers.ranges);
-  std::vector<Triangle> triangles;
-  triangles.reserve(buffers.drawn.size());
-  for (const std::uint32_t t : buffers.drawn) triangles.push_back(mesh.triangles[t]);
-  fill(buffers.triangles, GL_ELEMENT_ARRAY_BUFFER, triangles);
+  fill(buffers.triangles, GL_ELEMENT_ARRAY_BUFFER, order.triangles);
+  buffers.ranges = std::move(order.ranges);
+  buffers.drawn = std::move(order.drawn);
   return buffers;
 }
 
@@ -70,20 +69,6 @@ MaskTexture upload_mask(const Scene& scene, std::uint32_t index) {
 
 bool has_mask(const Material& material) {
   return material.alpha_cutoff > 0.0F;
-}
-
-std::vector<std::uint32_t> ordered_by_slot(const Mesh& mesh, std::vector<DrawRange>& ranges) {
-  std::vector<std::uint32_t> order(mesh.triangles.size());
-  std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return material_slot(mesh, a) < material_slot(mesh, b);
-  });
-  for (std::uint32_t i = 0; i < order.size(); ++i) {
-    const std::uint16_t slot = material_slot(mesh, order[i]);
-    if (i == 0 || slot != ranges.back().slot) ranges.push_back({i, 0, slot});
-    ++ranges.back().count;
-  }
-  return order;
 }
 
 SceneBuffers upload(const Scene& scene) {

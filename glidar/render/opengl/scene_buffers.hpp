@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/core/scene.hpp>
+#include <glidar/render/opengl/draw_order.hpp>
 #include <glidar/render/opengl/gl_object.hpp>
 
 #include <array>
@@ -11,13 +12,6 @@
 
 namespace glidar::opengl {
 
-/// Triangles of one mesh that are drawn together, because they have one material slot.
-struct DrawRange {
-  std::uint32_t first;  ///< in the order in which they are drawn
-  std::uint32_t count;
-  std::uint16_t slot;
-};
-
 /// A mesh in the memory of the graphics device.
 struct MeshBuffers {
   VertexArray arrays;  ///< attribute 0: positions relative to the mesh's origin
@@ -25,8 +19,8 @@ struct MeshBuffers {
   Buffer triangles;
   std::array<Buffer, 2> uvs;
   std::array<bool, 2> has_uvs{};
-  std::vector<DrawRange> ranges;
-  /// Which triangle of the mesh is drawn at each place; empty: the same one.
+  std::vector<DrawRange> ranges;  ///< their kinds are material slots
+  /// Which triangle of the mesh is drawn at each place.
   std::vector<std::uint32_t> drawn;
 };
 
@@ -44,9 +38,6 @@ struct SceneBuffers {
 
 /// True when some of the material lets beams through.
 bool has_mask(const Material& material);
-
-/// The mesh's triangles by slot, in each slot by index, and where each slot begins.
-std::vector<std::uint32_t> ordered_by_slot(const Mesh& mesh, std::vector<DrawRange>& ranges);
 
 template <class Value>
 void fill(const Buffer& buffer, GLenum target, const std::vector<Value>& values) {

@@ -67,9 +67,11 @@ TriangleDrawing::TriangleDrawing(const Scene& scene)
       buffers_(upload(scene)),
       solid_(make_drawer("IS_SOLID", has_clip_control_ ? "HAS_CLIP_CONTROL" : "WRITES_DEPTH")),
       masked_(make_mask_drawer(has_clip_control_ ? "HAS_CLIP_CONTROL" : "WRITES_DEPTH")),
-      first_number_(number(scene)),
-      is_single_(scene.instances.size() == 1 &&
-                 buffers_.meshes[scene.instances[0].mesh].drawn.empty()) {}
+      first_number_(number(scene)) {
+  for (const Instance& instance : scene.instances) {
+    drawn_.push_back(buffers_.meshes[instance.mesh].drawn.data());
+  }
+}
 
 void TriangleDrawing::draw(const CastRequest& request, const Resolver& resolver,
                            const PixelRect& rect, const DepthRange& depths) const {
@@ -88,7 +90,7 @@ void TriangleDrawing::draw_instance(std::uint32_t instance,
   const MeshBuffers& mesh = buffers_.meshes[placed.mesh];
   glBindVertexArray(mesh.arrays.name());
   for (const DrawRange& range : mesh.ranges) {
-    const std::uint32_t material = placed.materials[range.slot];
+    const std::uint32_t material = placed.materials[range.kind];
     const bool is_masked = has_mask(scene_.materials[material]);
     const Drawer& drawer = is_masked ? masked_.base : solid_;
     glUseProgram(drawer.program.name());
@@ -122,14 +124,10 @@ void TriangleDrawing::use_mask(std::uint32_t material, const MeshBuffers& mesh) 
   glEnableVertexAttribArray(1);
 }
 
-Found TriangleDrawing::found(std::uint32_t number) const {
-  if (number == kNoNumber) return {};
-  if (is_single_) return {0, number};
+Found TriangleDrawing::found_among_many(std::uint32_t number) const {
   const auto after = std::upper_bound(first_number_.begin(), first_number_.end(), number);
   const auto instance = static_cast<std::uint32_t>(after - first_number_.begin() - 1);
-  const std::uint32_t place = number - first_number_[instance];
-  const std::vector<std::uint32_t>& drawn = buffers_.meshes[scene_.instances[instance].mesh].drawn;
-  return {instance, drawn.empty() ? place : drawn[place]};
+  return {instance, drawn_[instance][number - first_number_[instance]]};
 }
 
 }  // namespace glidar::opengl

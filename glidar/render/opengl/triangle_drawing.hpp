@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/render/judgement.hpp>
+#include <glidar/render/opengl/number_target.hpp>
 #include <glidar/render/opengl/projection.hpp>
 #include <glidar/render/opengl/scene_buffers.hpp>
 #include <glidar/render/renderer.hpp>
@@ -26,7 +27,10 @@ class TriangleDrawing {
             const DepthRange& depths) const;
 
   /// What a number of the picture tells. Needs no context.
-  [[nodiscard]] Found found(std::uint32_t number) const;
+  [[nodiscard]] Found found(std::uint32_t number) const {
+    if (number == kNoNumber) return {};
+    return drawn_.size() == 1 ? Found{0, drawn_[0][number]} : found_among_many(number);
+  }
 
  private:
   /// A program and where its uniforms are.
@@ -48,6 +52,7 @@ class TriangleDrawing {
   static Drawer make_drawer(const char* mask_macro, const char* depth_macro);
   static MaskDrawer make_mask_drawer(const char* depth_macro);
   void draw_instance(std::uint32_t instance, const Eigen::Matrix4f& clip_from_object) const;
+  [[nodiscard]] Found found_among_many(std::uint32_t number) const;
   void use_mask(std::uint32_t material, const MeshBuffers& mesh) const;
 
   const Scene& scene_;
@@ -56,7 +61,7 @@ class TriangleDrawing {
   Drawer solid_;
   MaskDrawer masked_;
   std::vector<std::uint32_t> first_number_;  ///< per instance
-  bool is_single_;  ///< one instance, drawn in its mesh's order: a number is its triangle
+  std::vector<const std::uint32_t*> drawn_;  ///< per instance: MeshBuffers::drawn of its mesh
 };
 
 }  // namespace glidar::opengl

@@ -284,6 +284,13 @@ class Formats(unittest.TestCase):
             self.assertEqual(image.dtype, np.dtype(">u2"))
             self.assertIn("1000 units per metre", texts["Description"])
 
+    def test_paper_png(self):
+        for folder, (rows, cols) in SIZES.items():
+            image, texts = formats.read_png(FOLDER / folder / "a.paper.png")
+            wanted = (np.arange(4 * rows * cols) * 37 % 256).astype(np.uint8)
+            np.testing.assert_array_equal(image, wanted.reshape(rows, cols, 4))
+            self.assertTrue(texts["Description"].endswith("n = 1.25 m, f = 3.1000000000000001 m"), texts)
+
     def test_preview(self):
         image, _ = formats.read_png(FOLDER / "small" / "a.png")
         zoom, gap = 512 // 5, 16

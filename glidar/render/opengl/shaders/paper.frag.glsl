@@ -5,30 +5,29 @@
 
 in vec3 at_normal;
 in float depth_steps;
+in vec3 ray;
 #ifdef WRITES_DEPTH
 in float clip_depth;
 #endif
 layout(location = 0) out vec4 pixel;
 
-uniform mat3 object_from_pixel;  // (x, y, 1) in the window to the ray of depth 1
-uniform float near_m;
-uniform float metres_per_step;
-
 uniform vec3 attenuation;  // constant, linear, quadratic
+
+// What light comes back: always, times n.h, and times (n.h)^shininess; all of it after textures.
+struct Shares {
+  float ambient;
+  float diffuse;
+  float specular;
+};
+uniform float shininess;
+
+#ifdef HAS_ALL
+const float kShortest = 1e-6;
+
 uniform float scene_ambient;
 uniform vec3 ambient;
 uniform vec3 diffuse;
 uniform vec3 specular;
-uniform float shininess;
-
-const float kShortest = 1e-6;
-
-// Weights of Rec. ITU-R BT.709.
-float luminance(vec3 rgb) {
-  return dot(rgb, vec3(0.2126, 0.7152, 0.0722));
-}
-
-#ifdef HAS_ALL
 uniform int first_triangle;
 uniform samplerBuffer flat_normals;  // per triangle, in the order of the draw
 
@@ -90,22 +89,32 @@ vec3 shading_normal() {
   return bent_size > kShortest ? bent / bent_size : smooth_one;
 }
 
-vec3 tint() {
-  return used_texel(diffuse_texture, diffuse_use).rgb * at_colour;
+// Cosine between the shading normal and the ray, whose length is given squared.
+float cosine_to_ray(float squared) {
+  return dot(shading_normal(), ray) * inversesqrt(squared);
 }
 
-vec3 gloss() {
-  return used_texel(specular_texture, specular_use).rgb;
+// Weights of Rec. ITU-R BT.709.
+float luminance(vec3 rgb) {
+  return dot(rgb, vec3(0.2126, 0.7152, 0.0722));
+}
+
+Shares shares() {
+  vec3 tint = used_texel(diffuse_texture, diffuse_use).rgb * at_colour;
+  vec3 gloss = used_texel(specular_texture, specular_use).rgb;
+  return Shares(scene_ambient * luminance(ambient * tint), luminance(diffuse * tint),
+                luminance(specular * gloss));
 }
 #else
-vec3 shading_normal() {
-  return normalize(at_normal);
+// The same everywhere, so it comes worked out.
+uniform vec3 plain_shares;
+
+float cosine_to_ray(float squared) {
+  return dot(at_normal, ray) * inversesqrt(dot(at_normal, at_normal) * squared);
 }
-vec3 tint() {
-  return vec3(1.0);
-}
-vec3 gloss() {
-  return vec3(1.0);
+
+Shares shares() {
+  return Shares(plain_shares.x, plain_shares.y, plain_shares.z);
 }
 #endif
 
@@ -114,18 +123,20 @@ void main() {
   if (is_cut_out()) discard;
 #endif
   float steps = clamp(depth_steps, 0.0, 65535.0);
-  vec3 ray = object_from_pixel * vec3(gl_FragCoord.xy, 1.0);
-  float ray_length = length(ray);
-  float d = (near_m + depth_steps * metres_per_step) * ray_length;
+  float squared = dot(ray, ray);
+  float d = sqrt(squared);
   float a = 1.0 / (attenuation.x + attenuation.y * d + attenuation.z * d * d);  // equation (3)
 
   // Equation (2): h points along -ray; the normal is turned to the sensor.
-  float along = dot(shading_normal(), ray) / ray_length;
+  float along = cosine_to_ray(squared);
   float n_dot_h = max(gl_FrontFacing ? -along : along, 0.0);
-  vec3 rgb = tint();
-  float c = scene_ambient * luminance(ambient * rgb) + luminance(diffuse * rgb) * n_dot_h;  // (5)
-  float shiny = luminance(specular * gloss());
-  if (shiny > 0.0) c += shiny * (shininess > 0.0 ? pow(n_dot_h, shininess) : 1.0);
+  Shares light = shares();
+  float c = light.ambient + light.diffuse * n_dot_h;  // equation (5)
+#ifdef IS_SHINY
+  if (light.specular > 0.0) {
+    c += light.specular * (shininess > 0.0 ? pow(n_dot_h, shininess) : 1.0);
+  }
+#endif
 
   // Equations (6) and (7); a byte k is written as k / 255, which the target rounds to k.
   float high = floor(steps / 256.0);

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Point clouds (x, y, z, intensity of what is seen) a second, beside the way of the 2015 program.
+#include "many_views.hpp"
+#include "pipeline_2015.hpp"
+#include "ratio_reporter.hpp"
+
+#include <glidar/core/point_cloud.hpp>
+#include <glidar/simulate.hpp>
+
+#include <array>
+#include <string>
+
+namespace glidar::bench {
+namespace {
+
+/// GLIDAR, from a pose to a compact cloud.
+class Clouds {
+ public:
+  Clouds(const Model* model, const char* kind, bool is_paper, std::uint32_t side)
+      : model_(*model),
+        renderer_(make_renderer(model->scene, options(kind))),
+        motion_(standing_still(model->scene, model->world_from_sensor)) {
+    sensor_.optics = pinhole_from_fov(side, side, kFov_rad);
+    beams_ = make_beams(sensor_);
+    if (is_paper) camera_ = make_paper_camera(model->scene, options("opengl"));
+  }
+
+  void measure() {
+    Setup setup{model_.scene, sensor_, beams_, motion_, *renderer_};
+    if (camera_) setup.paper.emplace(PaperTarget{*camera_});
+    simulate(setup, {}, frame_);
+    make_point_cloud(frame_, beams_, model_.scene, {.frame_id = "camera"}, kColumns, organised_);
+    compact(organised_, cloud_);
+  }
+
+ private:
+  inline static const std::array<std::string, 2> kColumns = {"xyz", "intensity"};
+  const Model& model_;
+  Sensor sensor_;
+  Beams beams_;
+  std::unique_ptr<Renderer> renderer_;
+  Motion motion_;
+  std::unique_ptr<PaperCamera> camera_;
+  Frame frame_;
+  PointCloud organised_;
+  PointCloud cloud_;
+};
+
+template <class Way, class... Arguments>
+void add(const std::string& name, Arguments... arguments) {
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [arguments...](benchmark::State& state) {
+                                 Way way(arguments...);
+                                 for (auto _ : state) way.measure();
+                               })
+      ->MeasureProcessCPUTime()
+      ->UseRealTime();
+}
+
+void register_model(const Model* model, std::uint32_t side, double goal,
+                    std::vector<Ratio>& ratios) {
+  struct Ours {
+    std::string name;
+    const char* kind;
+    bool is_paper;
+  };
+  const std::string at = model->name + " " + std::to_string(side) + " ";
+  add<Pipeline2015>(at + "2015", model, side);
+  for (const Ours& ours : {Ours{"embree", "embree", false}, Ours{"opengl", "opengl", false},
+                           Ours{"opengl, paper target", "embree", true}}) {
+    add<Clouds>(at + ours.name, model, ours.kind, ours.is_paper, side);
+    ratios.push_back({at + ours.name + " / 2015", at + "2015", at + ours.name, goal});
+  }
+}
+
+int run_all(int argc, char** argv) {
+  const std::vector<std::unique_ptr<Model>> all = models();
+  std::vector<Ratio> ratios;
+  for (const auto& model : all) {
+    register_model(model.get(), 256, 1.0, ratios);
+    register_model(model.get(), 512, 1.0, ratios);
+    register_model(model.get(), 1024, 1.5, ratios);
+  }
+  return run(argc, argv, ratios);
+}
+
+}  // namespace
+}  // namespace glidar::bench
+
+int main(int argc, char** argv) {
+  return glidar::bench::run_all(argc, argv);
+}

@@ -1,0 +1,192 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Where the time of the OpenGL renderer goes on a graphics device (GLIDAR_GRAPHICS_DEVICE chooses
+// it), and what a rasteriser in compute shaders would take. Medians. The clock of a driver in
+// software counts rasterising alone.
+#include "compute_raster.hpp"
+#include "many_views.hpp"
+
+#include <glidar/core/workers.hpp>
+#include <glidar/render/opengl/number_target.hpp>
+#include <glidar/render/opengl/projection.hpp>
+#include <glidar/render/opengl/triangle_drawing.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <cstdio>
+
+namespace glidar::bench {
+namespace {
+
+constexpr int kRepetitions = 9;
+constexpr int kWarmUp = 2;
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+double median_seconds(const auto& action, int repetitions = kRepetitions) {
+  using Clock = std::chrono::steady_clock;
+  std::vector<double> seconds;
+  for (int i = 0; i < kWarmUp + repetitions; ++i) {
+    const Clock::time_point start = Clock::now();
+    action();
+    if (i >= kWarmUp) {
+      seconds.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    }
+  }
+  return median(seconds);
+}
+
+/// By the device's own clock.
+double median_device_seconds(const auto& action) {
+  GLuint query = 0;
+  glGenQueries(1, &query);
+  std::vector<double> seconds;
+  for (int i = 0; i < kWarmUp + kRepetitions; ++i) {
+    glBeginQuery(GL_TIME_ELAPSED, query);
+    action();
+    glEndQuery(GL_TIME_ELAPSED);
+    GLuint64 nanoseconds = 0;
+    glGetQueryObjectui64v(query, GL_QUERY_RESULT, &nanoseconds);
+    if (i >= kWarmUp) seconds.push_back(1e-9 * static_cast<double>(nanoseconds));
+  }
+  glDeleteQueries(1, &query);
+  return median(seconds);
+}
+
+void print_transfer() {
+  opengl::EglContext context(chosen_device());
+  const opengl::Use use(context);
+  std::printf("device: %s\n", std::bit_cast<const char*>(glGetString(GL_RENDERER)));
+  constexpr std::uint32_t kSide = 2048;
+  constexpr double kBytes = 4.0 * kSide * kSide;
+  std::vector<std::uint32_t> host(std::size_t{kSide} * kSide);
+  opengl::Buffer buffer;
+  glBindBuffer(GL_COPY_READ_BUFFER, buffer.name());
+  glBufferData(GL_COPY_READ_BUFFER, static_cast<GLsizeiptr>(kBytes), host.data(), GL_STATIC_DRAW);
+  const double transfer_s = median_seconds([&] {
+    glGetBufferSubData(GL_COPY_READ_BUFFER, 0, static_cast<GLsizeiptr>(kBytes), host.data());
+  });
+  opengl::NumberTarget target;
+  target.begin({kSide, kSide, 1});
+  const double readback_s = median_seconds([&] {
+    target.draw_into(0);
+    glFinish();
+    target.start_reading();
+    const auto numbers = target.numbers();
+    std::copy(numbers.begin(), numbers.end(), host.begin());
+    target.end_reading();
+  });
+  const double clear_s = median_seconds([&] {
+    target.draw_into(0);
+    glFinish();
+  });
+  std::printf("transfer of a buffer     %8.2f GB/s\n", 1e-9 * kBytes / transfer_s);
+  std::printf("readback of a picture    %8.2f GB/s (%.2f of it)\n",
+              1e-9 * kBytes / (readback_s - clear_s), transfer_s / (readback_s - clear_s));
+}
+
+/// Vertex work is what is left when nothing is rasterised; host work is what a cast takes beyond
+/// drawing and reading.
+void print_breakdown(const Model& model, std::uint32_t side) {
+  const Beams beams = make_beams(pinhole_from_fov(side, side, kFov_rad));
+  const CastRequest request{
+      .beams = beams, .world_from_sensor = model.world_from_sensor, .fields = {.normal = true}};
+  const auto renderer = make_renderer(model.scene, options("opengl"));
+  Hits hits;
+  const double cast_s = median_seconds([&] { renderer->cast(request, hits); });
+
+  opengl::EglContext context(chosen_device());
+  const opengl::Use use(context);
+  Resolver resolver(model.scene);
+  resolver.set_poses(model.world_from_sensor, {});
+  const opengl::TriangleDrawing drawing(model.scene);
+  opengl::NumberTarget target;
+  target.begin({side, side, 1});
+  const auto [near_m, far_m] = planes_around(model);
+  const auto draw = [&, depths = opengl::DepthRange{near_m, far_m}] {
+    target.draw_into(0);
+    drawing.draw(request, resolver, {0, 0, side, side}, depths);
+  };
+  const double draw_s = median_device_seconds(draw);
+  const double draw_wall_s = median_seconds([&] {
+    draw();
+    glFinish();
+  });
+  glEnable(GL_RASTERIZER_DISCARD);
+  const double vertex_s = median_device_seconds(draw);
+  const double vertex_wall_s = median_seconds([&] {
+    draw();
+    glFinish();
+  });
+  glDisable(GL_RASTERIZER_DISCARD);
+  const double transfer_s = median_device_seconds([&] { target.start_reading(); });
+  const double read_wall_s = median_seconds([&] {
+    target.start_reading();
+    target.numbers();
+    target.end_reading();
+  });
+  std::printf("%s %u: %.1f frames/s\n", model.name.c_str(), side, 1.0 / cast_s);
+  std::printf("  device's clock: vertices %.3f ms, fragments %.3f ms, transfer %.3f ms\n",
+              1e3 * vertex_s, 1e3 * (draw_s - vertex_s), 1e3 * transfer_s);
+  std::printf(
+      "  wall clock: vertices %.3f ms, fragments %.3f ms, reading %.3f ms, the rest of the cast "
+      "%.3f ms\n",
+      1e3 * vertex_wall_s, 1e3 * (draw_wall_s - vertex_wall_s), 1e3 * read_wall_s,
+      1e3 * (cast_s - draw_wall_s - read_wall_s));
+}
+
+void print_batches(const Model& model, std::uint32_t side) {
+  constexpr int kFew = 3;  // of many views each
+  ManyViews views(model, "opengl", side);
+  const double single_s = median_seconds([&] { views.one_by_one(); }, kFew);
+  const double batch_s = median_seconds([&] { views.together(); }, kFew);
+  std::printf("%s %u: %.0f frames/s one by one, %.0f in batches of %zu (%.1f batches/s)\n",
+              model.name.c_str(), side, ManyViews::kViews / single_s, ManyViews::kViews / batch_s,
+              ManyViews::kViews, 1.0 / batch_s);
+}
+
+/// The triangles drawn, and rasterised by compute shaders; both read back.
+void print_compute(const Model& model, std::uint32_t side) {
+  RawOpengl drawn(model, kRawNumbers, side);
+  if (!ComputeRaster::is_possible()) {
+    std::printf("%s %u: no compute shaders here\n", model.name.c_str(), side);
+    return;
+  }
+  const double draw_s = median_seconds([&] { drawn.draw_and_read(); });
+  ComputeRaster computed(model, side);
+  const double compute_s = median_seconds([&] { computed.draw_and_read(); });
+  std::size_t seen = 0;
+  std::size_t same = 0;
+  for (std::size_t i = 0; i < drawn.pixels().size(); ++i) {
+    if (drawn.pixels()[i] == 0xffffffffU) continue;
+    ++seen;
+    same += drawn.pixels()[i] == computed.pixels()[i] ? 1 : 0;
+  }
+  std::printf(
+      "%s %u: drawn %.2f ms, by compute shaders %.2f ms (%.2f times as fast), %.2f %% of "
+      "pixels alike\n",
+      model.name.c_str(), side, 1e3 * draw_s, 1e3 * compute_s, draw_s / compute_s,
+      100.0 * static_cast<double>(same) / static_cast<double>(std::max<std::size_t>(seen, 1)));
+}
+
+void run_all() {
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
+  print_transfer();
+  for (const auto& model : models()) {
+    for (const std::uint32_t side : {256U, 512U, 1024U}) print_breakdown(*model, side);
+    print_batches(*model, 128);
+    for (const std::uint32_t side : {128U, 512U, 1024U}) print_compute(*model, side);
+  }
+}
+
+}  // namespace
+}  // namespace glidar::bench
+
+int main() {
+  glidar::bench::run_all();
+  return 0;
+}

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "raw_opengl.hpp"
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+namespace glidar::bench {
+
+/// Finds nearest points: J. L. Bentley, "Multidimensional binary search trees used for associative
+/// searching" (1975).
+class KdTree {
+ public:
+  explicit KdTree(std::vector<Eigen::Vector3f> points);
+
+  [[nodiscard]] Eigen::Vector3f nearest(const Eigen::Vector3f& to) const;
+
+ private:
+  struct Best {
+    std::size_t point;
+    float squared;
+  };
+  void build(std::size_t begin, std::size_t end, int axis);
+  void search(std::size_t begin, std::size_t end, const Eigen::Vector3f& to, int axis,
+              Best& best) const;
+
+  std::vector<Eigen::Vector3f> points_;  ///< each in the middle of its part, splits it
+};
+
+/// The way of the 2015 program, for its speed: planes from the nearest and the farthest vertex,
+/// looked up in a tree every frame; light and two bytes of depth drawn into an RGBA picture, read
+/// back at once; every pixel unprojected, the background dropped. Its faults that cost or save no
+/// time are left out.
+class Pipeline2015 {
+ public:
+  Pipeline2015(const Model* model, std::uint32_t side);
+
+  /// One point cloud.
+  void measure();
+
+  /// x, y, z (x left, y up, z forward) and intensity of every point of the last cloud.
+  [[nodiscard]] const std::vector<Eigen::Vector4f>& cloud() const { return cloud_; }
+
+ private:
+  void set_planes();
+  void unproject();
+
+  const Model& model_;
+  std::uint32_t side_;
+  RawOpengl picture_;
+  KdTree tree_;
+  float near_m_ = 0.0F;
+  float far_m_ = 0.0F;
+  std::vector<Eigen::Vector4f> cloud_;
+};
+
+}  // namespace glidar::bench
