@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
 #include <charconv>
 #include <cstring>
@@ -78,15 +79,16 @@ auto unbroken(const Action& action) {
   }
 }
 
-/// A name for the monitor of a socket, which nobody else of the context has.
-std::string monitor_name(const void* socket) {
-  return "inproc://monitor-" + std::to_string(reinterpret_cast<std::uintptr_t>(socket));
+/// A socket does what is due only when it is used; this uses it.
+void notice_news(zmq::socket_t& socket) {
+  (void)unbroken([&socket] { return socket.get(zmq::sockopt::events); });
 }
 
 }  // namespace
 
 struct Context::Impl {
   zmq::context_t context{1};
+  std::atomic<std::uint64_t> sockets{0};  ///< made so far
 };
 
 Context::Context() : impl_(std::make_unique<Impl>()) {}
@@ -169,11 +171,11 @@ struct Socket::Impl {
   /// The monitor ends first: it is told by the socket.
   ~Impl() { zmq_socket_monitor(socket.handle(), nullptr, 0); }
 
-  void watch() {
+  void watch(std::uint64_t number) {
     constexpr int kEvents = ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED |
                             ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL |
                             ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL;
-    const std::string name = monitor_name(this);
+    const std::string name = "inproc://monitor-" + std::to_string(number);
     if (zmq_socket_monitor(socket.handle(), name.c_str(), kEvents) != 0) throw zmq::error_t();
     monitor.set(zmq::sockopt::linger, 0);
     monitor.connect(name);
@@ -193,7 +195,7 @@ Socket::Socket(Context& context, const SocketOptions& options)
     socket.set(zmq::sockopt::curve_secretkey, options.curve->secret_key);
   }
   if (type_of(options) == zmq::socket_type::xpub) socket.set(zmq::sockopt::xpub_verboser, 1);
-  impl_->watch();
+  impl_->watch(context.impl_->sockets++);
 }
 
 Socket::~Socket() = default;
@@ -260,6 +262,7 @@ namespace {
 
 /// First only if all queues have room, so that a full one is noticed; then to those that have.
 bool publish_now(zmq::socket_t& socket, zmq::message_t& message, zmq::send_flags flags) {
+  notice_news(socket);  // such as that a queue has room again
   socket.set(zmq::sockopt::xpub_nodrop, true);
   if (unbroken([&] { return socket.send(message, flags); })) return true;
   socket.set(zmq::sockopt::xpub_nodrop, false);
@@ -305,8 +308,7 @@ SubscriptionCount Socket::subscriptions(char topic) {
 }
 
 std::vector<PeerEvent> Socket::events() {
-  // a socket does what is due, such as to subscribe anew, only when it is used
-  (void)impl_->socket.get(zmq::sockopt::events);
+  notice_news(impl_->socket);  // such as that it has to subscribe anew
   std::vector<PeerEvent> found;
   zmq::message_t head;
   zmq::message_t address;

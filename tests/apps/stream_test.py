@@ -1,28 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""glidar stream against a client and a simulator that know the protocol of 2015 alone."""
+"""glidar stream: clouds out and poses in, against a client and a simulator of 2015."""
 
-import json
 import os
-import re
 import signal
-import subprocess
-import sys
-import time
 import unittest
 
-try:
-    import numpy as np
-    import zmq
-except ImportError as missing:
-    print(f"skipped: {missing}")
-    sys.exit(77)
+from stream_support import SMALL, StreamTest
 
-from cli_support import CliTest, box_of
-from stream_client import SHUTDOWN, Simulator, Subscriber, cloud, free_ports, pose_message
+import numpy as np
+from stream_client import cloud, pose_message
 
-SMALL = ("--width", "32", "--height", "24", "--fov", "20")
 FLOAT32 = 2e-6  # of 10 m
 
 
@@ -32,72 +21,6 @@ def rotation(quaternion):
     return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
                      [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
                      [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
-
-
-class StreamTest(CliTest):
-    def setUp(self):
-        super().setUp()
-        self.context = zmq.Context()
-        self.addCleanup(self.context.term)
-        self.box = self.write("box.obj", box_of(2.0))
-        self.port = free_ports()
-        self.physics = free_ports()
-        while abs(self.physics - self.port) < 2:
-            self.physics = free_ports()
-
-    def start(self, *arguments):
-        """The running program; whatever happens, it ends with the test."""
-        program = subprocess.Popen(["glidar", "stream", *arguments], cwd=self.folder, env=self.environment,
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self.addCleanup(self.end, program)
-        return program
-
-    @staticmethod
-    def end(program):
-        if program.poll() is None:
-            program.kill()
-            print(program.args, *program.communicate())
-        for pipe in (program.stdout, program.stderr):
-            pipe.close()
-        program.wait()
-
-    def publish(self, *arguments):
-        return self.publish_box(*SMALL, *arguments)
-
-    def publish_box(self, *arguments):
-        return self.start(self.box, "--port", str(self.port), "--stats", "stats.json", *arguments)
-
-    def in_the_loop(self, *arguments):
-        """The program between a simulator and a subscriber, hands shaken."""
-        simulator = self.simulator()
-        program = self.publish("--physics-port", str(self.physics), *arguments)
-        subscriber = self.subscriber()
-        subscriber.shake()
-        simulator.shake()
-        return program, simulator, subscriber
-
-    def simulator(self):
-        while True:
-            try:
-                simulator = Simulator(self.context, self.physics)
-                break
-            except zmq.ZMQError:  # the port of the one before is not free yet
-                time.sleep(0.1)
-        self.addCleanup(simulator.close)
-        return simulator
-
-    def subscriber(self, **options):
-        subscriber = Subscriber(self.context, self.port, **options)
-        self.addCleanup(subscriber.close)
-        return subscriber
-
-    def finished(self, program, code):
-        out, err = program.communicate(timeout=120)
-        self.assertEqual(program.returncode, code, out + err)
-        return err
-
-    def stats(self):
-        return json.loads(self.bytes_of("stats.json"))
 
 
 class Clouds(StreamTest):
@@ -319,120 +242,6 @@ class Poses(StreamTest):
         again.shake()
         again.shut_down()
         self.finished(program, 0)
-
-
-class Ends(StreamTest):
-    def ends_by(self, program, number, subscriber=None):
-        program.send_signal(number)
-        if subscriber:
-            subscriber.clouds_until_shutdown()
-        self.finished(program, 128 + number)
-        self.assertEqual(self.stats()["ending"], f"signal {int(number)}")
-
-    def waiting(self, program):
-        """Reads the line that says so, which comes once signals are looked after."""
-        line = program.stderr.readline()
-        self.assertIn("waiting for", line)
-
-    def test_by_a_signal_while_it_waits_for_subscribers(self):
-        for number in (signal.SIGINT, signal.SIGTERM):
-            program = self.publish("--subscribers", "2")
-            self.waiting(program)
-            subscriber = self.subscriber()
-            subscriber.shake()
-            self.ends_by(program, number, subscriber)
-            subscriber.close()
-
-    def test_by_a_signal_while_it_waits_for_a_simulator(self):
-        program = self.publish("--subscribers", "0", "--physics-port", str(self.physics))
-        self.waiting(program)
-        self.ends_by(program, signal.SIGINT)
-
-    def test_by_a_signal_while_it_waits_for_poses(self):
-        for number in (signal.SIGINT, signal.SIGTERM):
-            program, simulator, subscriber = self.in_the_loop()
-            self.ends_by(program, number, subscriber)
-            simulator.close()
-            subscriber.close()
-            time.sleep(0.2)
-
-    def test_by_a_signal_in_mid_run(self):
-        program = self.publish("--rate", "max")
-        subscriber = self.subscriber()
-        subscriber.shake()
-        cloud(subscriber.receive())
-        self.ends_by(program, signal.SIGTERM, subscriber)
-
-    def test_by_a_signal_between_slow_frames(self):
-        program = self.publish("--rate", "0.01")
-        subscriber = self.subscriber()
-        subscriber.shake()
-        cloud(subscriber.receive())
-        started = time.monotonic()
-        self.ends_by(program, signal.SIGINT, subscriber)
-        self.assertLess(time.monotonic() - started, 30)
-
-    def test_with_all_three_shutdown_messages_of_2015(self):
-        program = self.publish("--rate", "max", "--frames", "1")
-        everything = self.subscriber(topic=b"")
-        everything.shake()
-        last = [everything.receive() for _ in range(4)][1:]
-        self.assertEqual(last, [b"pKTHXBAI", b"PKTHXBAI", b"cKTHXBAI"])
-        self.assertTrue(all(message[1:] == SHUTDOWN for message in last))
-        self.finished(program, 0)
-
-
-class Documentation(StreamTest):
-    def test_has_a_client_and_a_simulator_that_work(self):
-        root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
-        with open(os.path.join(root, "docs", "link.md"), encoding="utf-8") as file:
-            client, simulator = re.findall(r"```python\n(.*?)```", file.read(), re.DOTALL)
-        for shown, used in (("5555", self.port), ("5556", self.port + 1), ("5557", self.physics),
-                            ("5558", self.physics + 1)):
-            client = client.replace(shown, str(used))
-            simulator = simulator.replace(shown, str(used))
-        self.write("client.py", client)
-        self.write("simulator.py", "import struct\nimport zmq\ncontext = zmq.Context()\n" + simulator)
-        program = self.publish("--physics-port", str(self.physics), "--hwm", "1000")
-        programs = [subprocess.Popen([sys.executable, name], cwd=self.folder, stdout=subprocess.PIPE, text=True)
-                    for name in ("simulator.py", "client.py")]
-        out = [process.communicate(timeout=60)[0] for process in programs]
-        self.finished(program, 0)
-        lines = out[1].splitlines()
-        self.assertEqual(len(lines), 100)
-        self.assertTrue(lines[0].startswith("0 ") and lines[0].endswith(" 9.0"), lines[0])
-
-
-class Refusals(StreamTest):
-    def test_ports_in_use(self):
-        taken = self.context.socket(zmq.REP)
-        self.addCleanup(taken.close)
-        taken.bind(f"tcp://127.0.0.1:{self.port + 1}")
-        error = self.refused("stream", self.box, "--port", str(self.port))
-        self.assertIn(f"tcp://127.0.0.1:{self.port + 1}", error)
-        self.assertIn("another program has this port", error)
-
-    def test_addresses_of_other_machines(self):
-        self.assertIn("--bind", self.refused("stream", self.box, "-p", str(self.port), "--bind", "192.0.2.1"))
-
-    def test_streams_that_go_nowhere(self):
-        self.assertIn("--port", self.refused("stream", self.box))
-
-    def test_contradictions(self):
-        physics = ("stream", self.box, "--port", str(self.port), "--physics-port")
-        self.assertIn("overlap", self.refused(*physics, str(self.port + 1)))
-        self.assertIn("--model-dr", self.refused(*physics, str(self.physics), "--model-dr", "0,1,0"))
-        self.assertIn("--physics-port", self.refused("stream", self.box, "-p", "5555", "--pose-timeout", "1"))
-
-    def test_values_out_of_range(self):
-        for option, value in (("--port", "0"), ("--port", "65535"), ("--subscribers", "-1"),
-                              ("--pub-rate", "0"), ("--hwm", "x"), ("--rate", "-1"),
-                              ("--duration", "nan"), ("--frames", "0"), ("--pub-conflate", "2")):
-            arguments = ["stream", self.box, "-o", "a.pcd", option, value]
-            self.assertIn(option, self.refused(*arguments))
-
-    def test_statistics_in_a_folder_that_is_not_there(self):
-        self.assertIn("--stats", self.refused("stream", self.box, "-o", "a.pcd", "--stats", "no/s.json"))
 
 
 if __name__ == "__main__":

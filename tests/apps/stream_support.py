@@ -1,0 +1,85 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Running glidar stream between a client and a simulator that know the protocol of 2015 alone."""
+
+import json
+import subprocess
+import sys
+import time
+
+try:
+    import zmq
+except ImportError as missing:
+    print(f"skipped: {missing}")
+    sys.exit(77)
+
+from cli_support import CliTest, box_of
+from stream_client import Simulator, Subscriber, free_ports
+
+SMALL = ("--width", "32", "--height", "24", "--fov", "20")
+
+
+class StreamTest(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.context = zmq.Context()
+        self.addCleanup(self.context.term)
+        self.box = self.write("box.obj", box_of(2.0))
+        self.port = free_ports()
+        self.physics = free_ports()
+        while abs(self.physics - self.port) < 2:
+            self.physics = free_ports()
+
+    def start(self, *arguments):
+        """The running program; whatever happens, it ends with the test."""
+        program = subprocess.Popen(["glidar", "stream", *arguments], cwd=self.folder, env=self.environment,
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        self.addCleanup(self.end, program)
+        return program
+
+    @staticmethod
+    def end(program):
+        if program.poll() is None:
+            program.kill()
+            print(program.args, *program.communicate())
+        for pipe in (program.stdout, program.stderr):
+            pipe.close()
+        program.wait()
+
+    def publish(self, *arguments):
+        return self.publish_box(*SMALL, *arguments)
+
+    def publish_box(self, *arguments):
+        return self.start(self.box, "--port", str(self.port), "--stats", "stats.json", *arguments)
+
+    def in_the_loop(self, *arguments):
+        """The program between a simulator and a subscriber, hands shaken."""
+        simulator = self.simulator()
+        program = self.publish("--physics-port", str(self.physics), *arguments)
+        subscriber = self.subscriber()
+        subscriber.shake()
+        simulator.shake()
+        return program, simulator, subscriber
+
+    def simulator(self):
+        while True:
+            try:
+                simulator = Simulator(self.context, self.physics)
+                break
+            except zmq.ZMQError:  # the port of the one before is not free yet
+                time.sleep(0.1)
+        self.addCleanup(simulator.close)
+        return simulator
+
+    def subscriber(self, **options):
+        subscriber = Subscriber(self.context, self.port, **options)
+        self.addCleanup(subscriber.close)
+        return subscriber
+
+    def finished(self, program, code):
+        out, err = program.communicate(timeout=120)
+        self.assertEqual(program.returncode, code, out + err)
+        return err
+
+    def stats(self):
+        return json.loads(self.bytes_of("stats.json"))
