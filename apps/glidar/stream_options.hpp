@@ -30,7 +30,7 @@ struct StreamFlags {
   int pose_queue = 0;                         ///< 0: the newest pose only
   std::string lockstep;    ///< endpoint at which requests are answered; empty: none
   std::string curve_keys;  ///< file of the keys that it is encrypted with; empty: it is not
-  std::optional<double> pose_timeout_s;       ///< empty: waits for ever
+  std::optional<double> pose_timeout_s;  ///< empty: waits for ever
 };
 
 /// Adds MODEL and all options of `stream`.

@@ -15,7 +15,8 @@
 namespace glidar::lockstep {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "numbers are stored as they lie in memory");
+static_assert(std::endian::native == std::endian::little,
+              "numbers are stored as they lie in memory");
 
 constexpr std::array<char, 4> kMagic = {'G', 'L', 'D', 'R'};
 constexpr std::uint16_t kDescribe = 0;
@@ -161,8 +162,8 @@ Body read_body(Reader& from, const std::string& where) {
     refuse(where + ", quaternion", "length " + number_text(attitude.norm()),
            "length 1 to within 0.001, in the order w x y z");
   }
-  for (const auto& [name, value] : {std::pair{"rate", body.rate_rad_s},
-                                    std::pair{"velocity", body.velocity_m_s}}) {
+  for (const auto& [name, value] :
+       {std::pair{"rate", body.rate_rad_s}, std::pair{"velocity", body.velocity_m_s}}) {
     if (value.allFinite() && value.cwiseAbs().maxCoeff() <= kFastest) continue;
     refuse(where + ", " + name, "a number that is not finite or too large", "up to 1e9");
   }
@@ -211,7 +212,8 @@ std::vector<std::byte> encode_one(const Measure& measure) {
   to.put(measure.hits_only ? kHitsOnly : 0U);
   to.put(static_cast<std::uint32_t>(measure.columns.size()));
   to.put(static_cast<std::uint32_t>(measure.moments.size()));
-  to.put(static_cast<std::uint32_t>(measure.moments.empty() ? 0 : measure.moments[0].objects.size()));
+  to.put(
+      static_cast<std::uint32_t>(measure.moments.empty() ? 0 : measure.moments[0].objects.size()));
   to.put(std::uint32_t{0});
   for (const std::string& name : measure.columns) to.put_text(name, kNameBytes);
   for (const Moment& moment : measure.moments) {

@@ -14,7 +14,8 @@
 #include <vector>
 
 /// The lock-step protocol: a client asks for measurements of a world that it places, and gets the
-/// clouds or an error in words. docs/link.md has the tables of bytes. All numbers are little-endian.
+/// clouds or an error in words. docs/link.md has the tables of bytes. All numbers are
+/// little-endian.
 namespace glidar::lockstep {
 
 using Bytes = std::span<const std::byte>;
@@ -36,9 +37,9 @@ struct Body {
 
 /// One measurement.
 struct Moment {
-  std::int64_t t_ns = 0;      ///< start of the frame
-  std::uint64_t seed = 0;     ///< of all random numbers
-  std::uint32_t number = 0;   ///< of the frame; scanners' heads turn on from frame to frame
+  std::int64_t t_ns = 0;     ///< start of the frame
+  std::uint64_t seed = 0;    ///< of all random numbers
+  std::uint32_t number = 0;  ///< of the frame; scanners' heads turn on from frame to frame
   Body sensor;
   std::vector<Body> objects;  ///< in the order of the scene; empty: where the scene has them
 };
