@@ -169,11 +169,8 @@ void add(const std::string& name, void (Ways::*way)(benchmark::State&), Ways* wa
   })->UseRealTime();
 }
 
-}  // namespace
-}  // namespace glidar::bench
-
-int main(int argc, char** argv) {
-  using namespace glidar::bench;
+/// Runs all, by the model of a file.
+int run_all(int argc, char** argv) {
   const char* data = std::getenv("GLIDAR_DATA");
   const std::string path =
       data == nullptr ? "builtin:asteroid" : std::string(data) + "/models/stanford/bun_zipper.ply";
@@ -197,4 +194,11 @@ int main(int argc, char** argv) {
        {"1024x1024: (simulate + echo) / lock-step", "1024x1024 simulate + echo",
         "1024x1024 by lock-step", kGoal},
        {"1024x1024: throughput / loopback's", "1024x1024 echo", "1024x1024 by lock-step", 0.5}});
+}
+
+}  // namespace
+}  // namespace glidar::bench
+
+int main(int argc, char** argv) {
+  return glidar::bench::run_all(argc, argv);
 }

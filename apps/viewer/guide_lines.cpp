@@ -37,6 +37,28 @@ std::optional<Eigen::Vector3d> tip(const Beams& beams, std::size_t beam, double 
   return beams.origins_m.empty() ? reach : Eigen::Vector3d(beams.origins_m[beam] + reach);
 }
 
+/// A polyline through the tips of these beams, and lines to some of them from where they start.
+struct Edge {
+  std::vector<std::size_t> entries;
+  std::size_t ray_every;  ///< so many entries a line; the ends always have one
+};
+
+void add_edge(const Beams& beams, const Pose& anchor_from_sensor, double range_m, const Edge& edge,
+              Lines& lines) {
+  constexpr std::uint8_t kHalf = 150;
+  const auto draw = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
+    add(anchor_from_sensor * from, anchor_from_sensor * to, kFrustum, kHalf, lines);
+  };
+  std::optional<Eigen::Vector3d> before;
+  for (std::size_t k = 0; k < edge.entries.size(); ++k) {
+    const std::optional<Eigen::Vector3d> at = tip(beams, edge.entries[k], range_m);
+    if (at && before) draw(*before, *at);
+    const bool has_ray = k % edge.ray_every == 0 || k + 1 == edge.entries.size();
+    if (at && has_ray) draw(*tip(beams, edge.entries[k], 0.0), *at);
+    before = at;
+  }
+}
+
 }  // namespace
 
 double grid_spacing_m(double extent_m) {
@@ -74,29 +96,15 @@ void add_axes(const Pose& anchor_from_frame, double length_m, Lines& lines) {
 }
 
 void add_frustum(const Beams& beams, const Pose& anchor_from_sensor, double range_m, Lines& lines) {
-  constexpr std::uint8_t kHalf = 150;
-  constexpr std::size_t kEveryEdge = 24;  // lines from the sensor: at the corners and between
   const std::size_t cols = beams.cols;
   const std::size_t rows = beams.returns > 0 ? beams.rows / beams.returns : 0;
   if (rows == 0 || cols == 0) return;
-  const std::array<std::vector<std::size_t>, 4> edges = {
-      along(0, 1, cols), along((rows - 1) * cols, 1, cols), along(0, cols, rows),
-      along(cols - 1, cols, rows)};
-  for (const std::vector<std::size_t>& edge : edges) {
-    std::optional<Eigen::Vector3d> before;
-    for (std::size_t k = 0; k < edge.size(); ++k) {
-      const std::optional<Eigen::Vector3d> at = tip(beams, edge[k], range_m);
-      if (at && before) {
-        add(anchor_from_sensor * *before, anchor_from_sensor * *at, kFrustum, kHalf, lines);
-      }
-      const bool has_ray =
-          k == 0 || k + 1 == edge.size() || (k % kEveryEdge == 0 && cols > 8 * rows);
-      const std::optional<Eigen::Vector3d> start = tip(beams, edge[k], 0.0);
-      if (at && start && has_ray) {
-        add(anchor_from_sensor * *start, anchor_from_sensor * *at, kFrustum, kHalf, lines);
-      }
-      before = at;
-    }
+  const bool is_wide = cols > 8 * rows;  // as those that look all around
+  const std::size_t ray_every = is_wide ? 24 : std::max(rows, cols);
+  for (const Edge& edge :
+       {Edge{along(0, 1, cols), ray_every}, Edge{along((rows - 1) * cols, 1, cols), ray_every},
+        Edge{along(0, cols, rows), ray_every}, Edge{along(cols - 1, cols, rows), ray_every}}) {
+    add_edge(beams, anchor_from_sensor, range_m, edge, lines);
   }
 }
 

@@ -13,6 +13,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <string_view>
 
 namespace glidar::app {
 namespace {
@@ -40,8 +41,8 @@ bool choose(const char* label, const std::string& shown, const Names& names, std
   if (!ImGui::BeginCombo(label, shown.c_str())) return false;
   std::size_t index = 0;
   for (const auto& name : names) {
-    const std::string item(name);
-    if (ImGui::Selectable(item.c_str(), item == shown)) {
+    const std::string_view item = name;
+    if (ImGui::Selectable(std::string(item).c_str(), item == shown)) {
       is_changed = item != shown;
       chosen = index;
     }
@@ -194,6 +195,40 @@ void show_help() {
       "drop a model or scene file to open it");
 }
 
+/// A patch of colour and what it means; the next one stands beside it where there is room.
+void show_entry(const LegendEntry& entry, bool is_last) {
+  const float height = ImGui::GetTextLineHeight();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  ImGui::GetWindowDrawList()->AddRectFilled(at, ImVec2(at.x + height, at.y + height),
+                                            packed(entry.colour));
+  ImGui::Dummy(ImVec2(height, height));
+  ImGui::SameLine();
+  text(entry.text);
+  const float full = ImGui::GetWindowPos().x + 0.6F * ImGui::GetWindowWidth();
+  if (!is_last && ImGui::GetItemRectMax().x < full) ImGui::SameLine();
+}
+
+/// The colour map between the ends of the scale.
+void show_scale(const Look& look, const SensorPicture& picture) {
+  text(fmt::format("{:.5g}", picture.low));
+  ImGui::SameLine();
+  constexpr int kSteps = 64;
+  const float height = ImGui::GetTextLineHeight();
+  const float width = 0.5F * ImGui::GetWindowWidth() / kSteps;
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  for (int i = 0; i < kSteps; ++i) {
+    const double t = (i + 0.5) / kSteps;
+    const double shade = look.quantity == Quantity::intensity ? t : 1.0 - t;
+    const float left = at.x + width * static_cast<float>(i);
+    ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(left, at.y),
+                                              ImVec2(left + width, at.y + height),
+                                              packed(colour_of(look.map, shade)));
+  }
+  ImGui::Dummy(ImVec2(width * kSteps, height));
+  ImGui::SameLine();
+  text(fmt::format("{:.5g} {}", picture.high, unit_of(look.quantity)));
+}
+
 }  // namespace
 
 void show_controls(Viewer& viewer) {
@@ -237,40 +272,15 @@ void show_story(Viewer& viewer) {
 }
 
 void show_legend(const Viewer& viewer) {
-  const Look& look = viewer.look;
   const SensorPicture& picture = viewer.picture();
-  ImDrawList& draw = *ImGui::GetWindowDrawList();
-  const float height = ImGui::GetTextLineHeight();
-  if (!has_scale(look.quantity)) {
-    for (const LegendEntry& entry : picture.legend) {
-      const ImVec2 at = ImGui::GetCursorScreenPos();
-      draw.AddRectFilled(at, ImVec2(at.x + height, at.y + height), packed(entry.colour));
-      ImGui::Dummy(ImVec2(height, height));
-      ImGui::SameLine();
-      text(entry.text);
-      if (ImGui::GetContentRegionAvail().x > 0.0F && &entry != &picture.legend.back() &&
-          ImGui::GetItemRectMax().x < ImGui::GetWindowPos().x + 0.6F * ImGui::GetWindowWidth()) {
-        ImGui::SameLine();
-      }
-    }
-    return;
+  if (!has_scale(viewer.look.quantity)) {
+    for (const LegendEntry& entry : picture.legend)
+      show_entry(entry, &entry == &picture.legend.back());
+  } else if (picture.low > picture.high) {
+    text("no returns");
+  } else {
+    show_scale(viewer.look, picture);
   }
-  if (picture.low > picture.high) return text("no returns");
-  text(fmt::format("{:.5g}", picture.low));
-  ImGui::SameLine();
-  constexpr int kSteps = 64;
-  const float width = 0.5F * ImGui::GetWindowWidth() / kSteps;
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  for (int i = 0; i < kSteps; ++i) {
-    const double t = (i + 0.5) / kSteps;
-    const double shade = look.quantity == Quantity::intensity ? t : 1.0 - t;
-    const float left = at.x + width * static_cast<float>(i);
-    draw.AddRectFilled(ImVec2(left, at.y), ImVec2(left + width, at.y + height),
-                       packed(colour_of(look.map, shade)));
-  }
-  ImGui::Dummy(ImVec2(width * kSteps, height));
-  ImGui::SameLine();
-  text(fmt::format("{:.5g} {}", picture.high, unit_of(look.quantity)));
 }
 
 }  // namespace glidar::app

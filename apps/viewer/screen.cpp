@@ -68,6 +68,7 @@ Area fitted(const Beams& beams, const ImVec2& corner, const ImVec2& room) {
 }
 
 ImTextureID texture_id(GLuint name) {
+  // NOLINTNEXTLINE(performance-no-int-to-ptr): Dear ImGui takes a number of OpenGL as a pointer
   return reinterpret_cast<ImTextureID>(static_cast<std::uintptr_t>(name));
 }
 
@@ -82,22 +83,21 @@ void Screen::upload(const Viewer& viewer) {
 }
 
 void Screen::upload_picture(const Beams& beams, const std::vector<Colour>& colours) {
-  constexpr std::uint32_t kMost = 4096;  // pixels to a side that every device takes
-  const std::uint32_t step_x = (beams.cols + kMost - 1) / kMost;
-  const std::uint32_t step_y = (beams.rows + kMost - 1) / kMost;
+  constexpr std::size_t kMost = 4096;  // pixels to a side that every device takes
+  const std::size_t step_x = std::max<std::size_t>(1, (beams.cols + kMost - 1) / kMost);
+  const std::size_t step_y = std::max<std::size_t>(1, (beams.rows + kMost - 1) / kMost);
   std::vector<Colour> thinned;
-  if (step_x * step_y > 1) {
-    for (std::size_t row = 0; row < beams.rows; row += step_y) {
-      for (std::size_t col = 0; col < beams.cols; col += step_x) {
-        thinned.push_back(colours[row * beams.cols + col]);
-      }
+  for (std::size_t row = 0; row < beams.rows; row += step_y) {
+    for (std::size_t col = 0; col < beams.cols; col += step_x) {
+      thinned.push_back(colours[row * beams.cols + col]);
     }
   }
+  const auto width = static_cast<GLsizei>((beams.cols + step_x - 1) / step_x);
+  const auto height = static_cast<GLsizei>((beams.rows + step_y - 1) / step_y);
   glBindTexture(GL_TEXTURE_2D, sensor_.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, static_cast<GLsizei>((beams.cols + step_x - 1) / step_x),
-               static_cast<GLsizei>((beams.rows + step_y - 1) / step_y), 0, GL_RGB,
-               GL_UNSIGNED_BYTE, thinned.empty() ? colours.data() : thinned.data());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, width, height, 0, GL_RGB, GL_UNSIGNED_BYTE,
+               thinned.data());
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
 }
@@ -147,7 +147,8 @@ void Screen::show_sensor_view(Viewer& viewer) {
   use_mouse_on_sensor(viewer);
   if (viewer.picked()) {
     const auto col = static_cast<float>(*viewer.picked() % beams.cols);
-    const auto row = static_cast<float>(*viewer.picked() / beams.cols);
+    const std::size_t whole_row = *viewer.picked() / beams.cols;
+    const auto row = static_cast<float>(whole_row);
     const float x = area.x + (col + 0.5F) * area.width / static_cast<float>(beams.cols);
     const float y = area.y + (row + 0.5F) * area.height / static_cast<float>(beams.rows);
     draw.AddCircle(ImVec2(x, y), 7.0F, kMark, 0, 2.0F);
