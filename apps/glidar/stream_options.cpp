@@ -90,7 +90,7 @@ void check_simulator(const StreamFlags& flags) {
     refuse("--physics-port", "given beside --trajectory, --model-dr or --camera-dr",
            "let either the simulator or the command line move things");
   }
-  if (!flags.port || *flags.port / 2 == 0) return;
+  if (!flags.port) return;
   const int apart = int{*flags.port} - int{*flags.physics_port};
   if (std::abs(apart) <= 1 && flags.physics_host == flags.bind) {
     refuse("--port and --physics-port", "each takes the next port too, so they overlap",
