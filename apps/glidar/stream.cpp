@@ -3,6 +3,7 @@
 #include <apps/glidar/advice.hpp>
 #include <apps/glidar/commands.hpp>
 #include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/lockstep_run.hpp>
 #include <apps/glidar/stream_options.hpp>
 #include <apps/glidar/stream_run.hpp>
 #include <glidar/core/error.hpp>
@@ -24,6 +25,8 @@ With your own files:
   glidar stream scene.yaml --trajectory poses.txt --duration 10 -o scan.pcd
 In the loop with a simulator that publishes poses at 5557 and shakes hands at 5558:
   glidar stream satellite.obj --physics-port 5557 --hwm 100 --port 5555
+A client that places everything and asks for every frame (docs/link.md):
+  glidar stream scene.yaml --lockstep tcp://127.0.0.1:5600
 Watch from Python (python3-zmq); docs/link.md has the bytes of all messages:
   s = zmq.Context().socket(zmq.SUB); s.connect("tcp://localhost:5555"); s.subscribe("c")
 
@@ -38,6 +41,7 @@ int run(const StreamFlags& given) {
   check(given);
   StreamFlags flags = given;
   Console console(flags.render.quiet);
+  if (!flags.lockstep.empty()) return LockstepRun(flags, console).run();
   StreamRun stream(std::move(flags), console);
   return stream.run();
 }

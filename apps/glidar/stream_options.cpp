@@ -84,6 +84,34 @@ void add_pose_source_flags(CLI::App& command, StreamFlags& flags) {
              flags.pose_timeout_s);
 }
 
+void add_lockstep_flags(CLI::App& command, StreamFlags& flags) {
+  const std::string group = "Lock-step over ZeroMQ: clients ask for every frame";
+  add_text(
+      command,
+      {"--lockstep", "ENDPOINT", "Answers at tcp://HOST:PORT (* any port) or ipc://PATH", group},
+      flags.lockstep,
+      [](std::string_view, const std::string& text) { (void)link::parse_endpoint(text); });
+  add_text(command,
+           {"--curve-keys", "FILE", "Encrypts with these keys; made when FILE is not there", group},
+           flags.curve_keys);
+}
+
+/// Requests say when and where; nothing else may.
+void check_lockstep(const StreamFlags& flags) {
+  const MotionFlags& motion = flags.render.motion;
+  const OutputFlags& files = flags.render.output;
+  const bool is_moved =
+      !motion.trajectory.empty() || !motion.model_dr.empty() || !motion.camera_dr.empty();
+  if (flags.port || flags.physics_port || is_moved || flags.frames || flags.is_unpaced ||
+      flags.render.duration_s) {
+    refuse("--lockstep", "given beside options that say when frames are taken or what moves",
+           "leave these out: the requests say it");
+  }
+  if (!files.paths.empty() || !files.legacy_name.empty()) {
+    refuse("--lockstep", "given beside --output or --pcd", "the clients get the clouds");
+  }
+}
+
 void check_simulator(const StreamFlags& flags) {
   const MotionFlags& motion = flags.render.motion;
   if (!motion.trajectory.empty() || !motion.model_dr.empty() || !motion.camera_dr.empty()) {
@@ -105,9 +133,14 @@ void add_stream_flags(CLI::App& command, StreamFlags& flags) {
   add_pace_flags(command, flags);
   add_publishing_flags(command, flags);
   add_pose_source_flags(command, flags);
+  add_lockstep_flags(command, flags);
 }
 
 void check(const StreamFlags& flags) {
+  if (!flags.lockstep.empty()) return check_lockstep(flags);
+  if (!flags.curve_keys.empty()) {
+    refuse("--curve-keys", "given without --lockstep", "only that link is encrypted");
+  }
   const OutputFlags& files = flags.render.output;
   if (!flags.port && files.paths.empty() && files.legacy_name.empty()) {
     refuse("--port and --output", "neither is given, so no cloud would go anywhere",

@@ -28,7 +28,9 @@ struct StreamFlags {
   std::string physics_host = "127.0.0.1";
   std::optional<std::uint16_t> physics_port;  ///< of the poses; empty: from the command line
   int pose_queue = 0;                         ///< 0: the newest pose only
-  std::optional<double> pose_timeout_s;       ///< empty: waits for ever
+  std::string lockstep;    ///< endpoint at which requests are answered; empty: none
+  std::string curve_keys;  ///< file of the keys that it is encrypted with; empty: it is not
+  std::optional<double> pose_timeout_s;  ///< empty: waits for ever
 };
 
 /// Adds MODEL and all options of `stream`.

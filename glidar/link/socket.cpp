@@ -7,8 +7,10 @@
 #include <zmq.hpp>
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <map>
 #include <utility>
@@ -57,6 +59,11 @@ void release(void* /*bytes*/, void* payload) {
   delete static_cast<Payload*>(payload);
 }
 
+/// Lets go of who keeps the bytes of a part.
+void let_go(void* /*bytes*/, void* owner) {
+  delete static_cast<std::shared_ptr<const void>*>(owner);
+}
+
 /// Subscriptions to longer ones are no concern of anybody here.
 constexpr std::size_t kLongestTopic = 64;
 
@@ -88,12 +95,50 @@ Context::Context() : impl_(std::make_unique<Impl>()) {}
 Context::~Context() = default;
 
 std::string text_of(const Endpoint& endpoint) {
-  return "tcp://" + endpoint.host + ":" + std::to_string(endpoint.port);
+  if (!endpoint.path.empty()) return "ipc://" + endpoint.path;
+  return "tcp://" + endpoint.host + ":" +
+         (endpoint.port == 0 ? "*" : std::to_string(endpoint.port));
+}
+
+Endpoint parse_endpoint(const std::string& text) {
+  constexpr std::string_view kTcp = "tcp://";
+  constexpr std::string_view kIpc = "ipc://";
+  const auto refuse = [&](const char* remedy) {
+    throw Error({.where = "endpoint",
+                 .found = "'" + text + "'",
+                 .allowed = "tcp://HOST:PORT with a port up to 65535, or ipc://PATH",
+                 .remedy = remedy});
+  };
+  if (text.starts_with(kIpc)) {
+    constexpr std::size_t kLongest = 107;  // sun_path of unix(7)
+    const std::string path = text.substr(kIpc.size());
+    if (path.empty() || path.size() > kLongest) refuse("give a path of 1 to 107 letters");
+    return {.host = {}, .port = 0, .path = path};
+  }
+  const std::size_t colon = text.rfind(':');
+  if (!text.starts_with(kTcp) || colon <= kTcp.size()) refuse("for example tcp://127.0.0.1:5600");
+  Endpoint endpoint{.host = text.substr(kTcp.size(), colon - kTcp.size())};
+  const std::string_view port = std::string_view(text).substr(colon + 1);
+  if (port == "*") return endpoint;
+  const auto [stop, fault] = std::from_chars(port.data(), port.data() + port.size(), endpoint.port);
+  if (fault != std::errc() || stop != port.data() + port.size() || endpoint.port == 0) {
+    refuse("a port is a number from 1 to 65535, or * for any");
+  }
+  return endpoint;
+}
+
+CurveKeys make_curve_keys() {
+  constexpr std::size_t kLetters = 40;
+  std::array<char, kLetters + 1> public_key{};
+  std::array<char, kLetters + 1> secret_key{};
+  if (zmq_curve_keypair(public_key.data(), secret_key.data()) != 0) throw zmq::error_t();
+  return {public_key.data(), secret_key.data()};
 }
 
 struct Message::Impl {
   zmq::message_t message;
   bool is_part = false;
+  bool is_last = true;
 };
 
 Message::Message() : impl_(std::make_unique<Impl>()) {}
@@ -107,6 +152,10 @@ std::span<const std::byte> Message::bytes() const {
 
 bool Message::is_whole() const {
   return !impl_->is_part;
+}
+
+bool Message::is_last() const {
+  return impl_->is_last;
 }
 
 struct Socket::Impl {
@@ -141,6 +190,10 @@ Socket::Socket(Context& context, const SocketOptions& options)
   socket.set(zmq::sockopt::rcvhwm, options.receive_queue);
   socket.set(zmq::sockopt::maxmsgsize, options.largest_message_bytes);
   if (options.keeps_newest) socket.set(zmq::sockopt::conflate, true);
+  if (options.curve) {
+    socket.set(zmq::sockopt::curve_server, 1);
+    socket.set(zmq::sockopt::curve_secretkey, options.curve->secret_key);
+  }
   if (type_of(options) == zmq::socket_type::xpub) socket.set(zmq::sockopt::xpub_verboser, 1);
   impl_->watch(context.impl_->sockets++);
 }
@@ -176,6 +229,7 @@ std::optional<Message> Socket::receive() {
   Message message;
   const bool follows = std::exchange(impl_->follows_part, received.more());
   message.impl_->is_part = follows || received.more();
+  message.impl_->is_last = !received.more();
   message.impl_->message = std::move(received);
   return message;
 }
@@ -184,6 +238,24 @@ bool Socket::send(std::span<const std::byte> bytes) {
   zmq::message_t message(bytes.data(), bytes.size());
   const auto give = [&] { return impl_->socket.send(message, zmq::send_flags::dontwait); };
   return unbroken(give).has_value();
+}
+
+bool Socket::send_parts(std::span<const Part> parts) {
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    auto owner = std::make_unique<std::shared_ptr<const void>>(parts[i].owner);
+    // ZeroMQ only reads what is sent
+    auto* bytes = const_cast<std::byte*>(parts[i].bytes.data());
+    zmq::message_t message(bytes, parts[i].bytes.size(), let_go, owner.get());
+    owner.release();  // NOLINT(bugprone-unused-return-value): the message has it
+    const auto flags = i + 1 < parts.size() ? zmq::send_flags::sndmore | zmq::send_flags::dontwait
+                                            : zmq::send_flags::dontwait;
+    if (!unbroken([&] { return impl_->socket.send(message, flags); })) return false;
+  }
+  return true;
+}
+
+std::string Socket::bound_to() const {
+  return impl_->socket.get(zmq::sockopt::last_endpoint);
 }
 
 namespace {

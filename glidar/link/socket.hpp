@@ -34,12 +34,23 @@ class Context {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A place in the network: an IPv4 address, a name, or "*" for all of this machine.
+/// A place in the network: an IPv4 address, a name, or "*" for all of this machine. Or, within this
+/// machine, a file that sockets of its file system meet at.
 struct Endpoint {
   std::string host;
-  std::uint16_t port = 0;
+  std::uint16_t port = 0;  ///< 0: any that is free
+  std::string path = {};   ///< of the file; empty: host and port
 };
 std::string text_of(const Endpoint& endpoint);
+/// Of "tcp://HOST:PORT" or "ipc://PATH"; throws Error on anything else.
+Endpoint parse_endpoint(const std::string& text);
+
+/// Keys of CURVE (https://rfc.zeromq.org/spec/26), 40 letters of Z85 each.
+struct CurveKeys {
+  std::string public_key;
+  std::string secret_key;
+};
+CurveKeys make_curve_keys();
 
 enum class SocketKind : std::uint8_t { publish, subscribe, request, reply };
 
@@ -57,6 +68,14 @@ struct SocketOptions {
   /// A peer that sends more is cut off before the memory is taken.
   std::int64_t largest_message_bytes = std::int64_t{1} << 20;
   std::chrono::milliseconds linger{0};  ///< for what is unsent when it is closed
+  /// Of who listens: peers must know the public key, and all is encrypted. Empty: anybody may.
+  std::optional<CurveKeys> curve = {};
+};
+
+/// One part of a message, and who keeps its bytes until they are sent.
+struct Part {
+  std::span<const std::byte> bytes;
+  std::shared_ptr<const void> owner;
 };
 
 /// What happened to a socket's connections.
@@ -72,6 +91,8 @@ class Message {
   [[nodiscard]] std::span<const std::byte> bytes() const;
   /// False when it was only one of several parts; the parts after it come as the next ones.
   [[nodiscard]] bool is_whole() const;
+  /// False when another part follows, which is here too.
+  [[nodiscard]] bool is_last() const;
 
  private:
   friend class Socket;
@@ -92,10 +113,14 @@ class Socket {
   /// The peer may come later and come back. Throws Error when the host makes no address.
   void connect(const Endpoint& endpoint);
   void subscribe(std::string_view topic);
+  /// Where it listens, with the port that was free.
+  [[nodiscard]] std::string bound_to() const;
 
   std::optional<Message> receive();
   /// To the one peer; false: there is none or its queue is full.
   bool send(std::span<const std::byte> bytes);
+  /// The same of several parts, none of which is copied; their owners are let go in another thread.
+  bool send_parts(std::span<const Part> parts);
 
   /// To all subscribers, without a copy. False: the queue of one or more was full, and these miss
   /// it.

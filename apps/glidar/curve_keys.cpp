@@ -1,0 +1,48 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/curve_keys.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/atomic_file.hpp>
+
+#include <filesystem>
+#include <fstream>
+
+namespace glidar::app {
+namespace {
+
+link::CurveKeys make_file(const std::string& path, Console& console) {
+  const link::CurveKeys keys = link::make_curve_keys();
+  AtomicFile file(path);
+  file.commit();  // empty: nobody else may ever read what comes into it
+  std::filesystem::permissions(
+      path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
+  std::ofstream text(path);
+  text << "public " << keys.public_key << "\nsecret " << keys.secret_key << "\n";
+  if (!text.flush()) {
+    throw Error({"--curve-keys, " + path, "cannot be written", "", "is the disk full?"});
+  }
+  console.info("made new keys in " + path + "; clients need the public one: " + keys.public_key);
+  return keys;
+}
+
+}  // namespace
+
+link::CurveKeys curve_keys(const std::string& path, Console& console) {
+  if (!std::filesystem::exists(path)) return make_file(path, console);
+  std::ifstream file(path);
+  std::string first;
+  std::string second;
+  link::CurveKeys keys;
+  constexpr std::size_t kLetters = 40;
+  const bool is_read = file >> first >> keys.public_key >> second >> keys.secret_key &&
+                       first == "public" && second == "secret" &&
+                       keys.public_key.size() == kLetters && keys.secret_key.size() == kLetters;
+  if (is_read) return keys;
+  throw Error({.where = "--curve-keys, " + path,
+               .found = "no keys",
+               .allowed = "two lines, 'public KEY' and 'secret KEY', with 40 letters of Z85 each",
+               .remedy = "name a file that is not there: new keys are written to it"});
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/lockstep_run.hpp>
+
+#include <apps/glidar/curve_keys.hpp>
+#include <apps/glidar/interrupt.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/simulate.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <new>
+#include <utility>
+#include <variant>
+
+namespace glidar::app {
+namespace {
+
+lockstep::ServerOptions server_options(const StreamFlags& flags, Console& console) {
+  lockstep::ServerOptions options{.endpoint = link::parse_endpoint(flags.lockstep)};
+  if (!flags.curve_keys.empty()) options.curve = curve_keys(flags.curve_keys, console);
+  return options;
+}
+
+/// A body that is pushed by nothing and whose rate stays: one with equal moments of inertia.
+Trajectory trajectory_of(const lockstep::Body& body, std::int64_t t_ns) {
+  if (body.rate_rad_s.isZero(0.0) && body.velocity_m_s.isZero(0.0)) {
+    return ConstantPose{body.world_from_body};
+  }
+  return Tumbling({.rate_rad_s = body.world_from_body.linear().transpose() * body.rate_rad_s,
+                   .world_from_body = body.world_from_body,
+                   .velocity_m_s = body.velocity_m_s,
+                   .t0_ns = t_ns});
+}
+
+[[noreturn]] void refuse(std::string where, std::string found, std::string allowed) {
+  throw Error({"request, " + std::move(where), std::move(found), std::move(allowed), ""});
+}
+
+}  // namespace
+
+LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
+    : flags_(flags),
+      console_(console),
+      faults_(console.report()),
+      server_(context_, server_options(flags, console), faults_) {
+  if (!flags_.stats.empty()) stats_file_ = std::make_unique<AtomicFile>(flags_.stats);
+  open(flags_.render, {}, console_, session_);
+  beams_ = std::make_shared<const Beams>(session_.beams);
+}
+
+int LockstepRun::run() {
+  constexpr std::chrono::milliseconds kPatience{1000};
+  const StopRequest stop;
+  if (!flags_.render.quiet) fmt::print("listening at {}\n", server_.socket().bound_to());
+  std::fflush(stdout);  // who started it waits for this line
+  while (!stop.is_asked()) {
+    const std::optional<lockstep::Request> request = server_.receive();
+    if (request) {
+      answer(*request);
+    } else {
+      link::wait_for({&server_.socket()}, stop.descriptor(), kPatience);
+    }
+  }
+  finish(fmt::format("signal {}", stop.signal()));
+  constexpr int kSignalled = 128;  // as shells have it
+  return kSignalled + stop.signal();
+}
+
+/// Whatever goes wrong with one request is its client's to know.
+void LockstepRun::answer(const lockstep::Request& request) {
+  const std::uint64_t id = std::visit([](const auto& kind) { return kind.id; }, request);
+  try {
+    if (const auto* wanted = std::get_if<lockstep::Measure>(&request)) return measure(*wanted);
+    describe(std::get<lockstep::Describe>(request));
+  } catch (const Error& error) {
+    server_.reply_error(id, error.what());
+  } catch (const std::bad_alloc&) {
+    server_.reply_error(id, "request: needs more memory than there is; ask for fewer moments");
+  }
+}
+
+void LockstepRun::describe(const lockstep::Describe& describe) {
+  nlohmann::ordered_json objects = nlohmann::ordered_json::array();
+  for (const Instance& instance : session_.scene.instances) {
+    const PoseNumbers pose = numbers_of(instance.world_from_object);
+    objects.push_back({{"name", instance.name},
+                       {"id", instance.id},
+                       {"class", session_.scene.class_names.at(instance.class_id)},
+                       {"world_from_object", std::vector<double>(pose.begin(), pose.end())}});
+  }
+  const Sensor& sensor = session_.sensor;
+  const PoseNumbers pose = numbers_of(pose_at(session_.motion.world_from_sensor, 0));
+  const nlohmann::ordered_json text = {
+      {"sensors",
+       {{{"name", sensor.name},
+         {"rows", beams_->rows},
+         {"cols", beams_->cols},
+         {"returns", beams_->returns},
+         {"rate_hz", sensor.rate_hz},
+         {"frame_id", beams_->frame_id},
+         {"world_from_sensor", std::vector<double>(pose.begin(), pose.end())}}}},
+      {"objects", objects},
+      {"columns",
+       std::vector<std::string>(cloud_column_names().begin(), cloud_column_names().end())}};
+  server_.reply_description(describe.id, text.dump());
+}
+
+void LockstepRun::check(const lockstep::Measure& measure) const {
+  if (measure.sensor != 0) refuse("sensor", std::to_string(measure.sensor), "0: there is one");
+  const std::size_t objects = measure.moments.front().objects.size();
+  const std::size_t instances = session_.scene.instances.size();
+  if (objects != 0 && objects != instances) {
+    refuse("number of objects", std::to_string(objects),
+           fmt::format("{}, one for each object of the scene, or 0", instances));
+  }
+  const auto& columns = measure.columns;
+  if (measure.hits_only && std::find(columns.begin(), columns.end(), "xyz") == columns.end()) {
+    refuse("flags", "hits only, without the column xyz", "xyz among the columns");
+  }
+}
+
+void LockstepRun::measure(const lockstep::Measure& measure) {
+  constexpr std::size_t kTogether = 32;  // frames that are held at a time
+  check(measure);
+  std::vector<lockstep::CloudReply> replies;
+  const std::span<const lockstep::Moment> all = measure.moments;
+  for (std::size_t first = 0; first < all.size(); first += kTogether) {
+    measure_some(measure, all.subspan(first, std::min(kTogether, all.size() - first)), replies);
+  }
+  server_.reply(measure.id, replies);
+}
+
+std::shared_ptr<const Beams> LockstepRun::beams_of(std::uint32_t number) const {
+  const Sensor& sensor = session_.sensor;
+  if (number == 0 || std::holds_alternative<Pinhole>(sensor.optics)) return beams_;
+  return std::make_shared<const Beams>(make_beams(sensor, scan_window(sensor, number)));
+}
+
+Motion LockstepRun::motion_of(const lockstep::Moment& moment) const {
+  Motion motion = standing_still(session_.scene, Pose::Identity());
+  motion.world_from_sensor = trajectory_of(moment.sensor, moment.t_ns);
+  for (std::size_t i = 0; i < moment.objects.size(); ++i) {
+    motion.world_from_instance[i] = trajectory_of(moment.objects[i], moment.t_ns);
+  }
+  return motion;
+}
+
+void LockstepRun::measure_some(const lockstep::Measure& measure,
+                               std::span<const lockstep::Moment> moments,
+                               std::vector<lockstep::CloudReply>& replies) {
+  std::vector<std::shared_ptr<const Beams>> beams;
+  std::vector<Motion> motions;
+  std::vector<Setup> setups;
+  if (frames_.size() < moments.size()) frames_.resize(moments.size());
+  for (const lockstep::Moment& moment : moments) {
+    beams.push_back(beams_of(moment.number));
+    motions.push_back(motion_of(moment));
+    Frame& frame = frames_[beams.size() - 1];
+    frame.stamp_ns = moment.t_ns;
+    frame.seed = moment.seed;
+    frame.number = moment.number;
+  }
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    setups.push_back({.scene = session_.scene,
+                      .sensor = session_.sensor,
+                      .beams = *beams[i],
+                      .motion = motions[i],
+                      .renderer = *session_.renderer});
+    if (session_.paper) setups.back().paper.emplace(PaperTarget{.camera = *session_.paper});
+  }
+  simulate_batch(setups, glidar::fields_for(measure.columns),
+                 std::span(frames_).first(moments.size()));
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    replies.push_back(cloud_of(measure, frames_[i], *beams[i]));
+  }
+}
+
+lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, const Frame& frame,
+                                           const Beams& beams) {
+  const OutputFlags& output = flags_.render.output;
+  CloudFrame axes = cloud_frame(output.cloud_frame, beams, frame.world_from_sensor);
+  axes.deskew = output.deskew;
+  std::shared_ptr<PointCloud> cloud = clouds_.take();
+  make_point_cloud(frame, beams, session_.scene, axes, measure.columns, *cloud);
+  if (measure.hits_only) {
+    const std::shared_ptr<PointCloud> hits = clouds_.take();
+    compact(*cloud, *hits);
+    cloud = hits;
+  }
+  return {.head = {.stamp_ns = frame.stamp_ns,
+                   .seed = frame.seed,
+                   .number = frame.number,
+                   .rows = cloud->rows,
+                   .cols = cloud->cols,
+                   .frame_id = cloud->frame_id,
+                   .world_from_cloud = cloud->world_from_cloud},
+          .cloud = cloud};
+}
+
+void LockstepRun::finish(const std::string& ending) {
+  faults_.flush();
+  const lockstep::Server::Counts& counts = server_.counts();
+  if (stats_file_) {
+    const nlohmann::ordered_json text = {{"ended_by", ending},
+                                         {"requests", counts.received},
+                                         {"refused", counts.refused},
+                                         {"clouds", counts.clouds},
+                                         {"faults", faults_.counts()}};
+    stats_file_->write(text.dump(2) + "\n");
+    stats_file_->commit();
+  }
+  if (flags_.render.quiet) return;
+  fmt::print("{} requests, {} refused; {} clouds\n", counts.received, counts.refused,
+             counts.clouds);
+}
+
+}  // namespace glidar::app

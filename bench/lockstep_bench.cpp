@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// What the lock-step link adds to a measurement: a request's way to the server and the cloud's way
+// back, over TCP on this machine. The server is a process of its own, as in use.
+#include "ratio_reporter.hpp"
+#include "raw_opengl.hpp"
+
+#include <apps/glidar/lockstep_run.hpp>
+#include <glidar/simulate.hpp>
+
+#include <fmt/format.h>
+#include <sys/wait.h>
+#include <unistd.h>
+#include <zmq.hpp>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <functional>
+#include <numbers>
+#include <span>
+
+namespace glidar::bench {
+namespace {
+
+constexpr unsigned kThreads = 2;
+constexpr std::size_t kPointBytes = 3 * sizeof(double) + sizeof(float);  // xyz, intensity
+
+/// A free port, which nobody takes in the moment until it is used.
+std::string free_endpoint() {
+  zmq::context_t context;
+  zmq::socket_t socket(context, zmq::socket_type::rep);
+  socket.bind("tcp://127.0.0.1:*");
+  return socket.get(zmq::sockopt::last_endpoint);
+}
+
+/// A process until it is let go.
+class Process {
+ public:
+  explicit Process(const std::function<void()>& work) : id_(fork()) {
+    if (id_ != 0) return;
+    work();
+    std::_Exit(0);
+  }
+  ~Process() {
+    kill(id_, SIGTERM);
+    waitpid(id_, nullptr, 0);
+  }
+  Process(const Process&) = delete;
+  Process& operator=(const Process&) = delete;
+
+ private:
+  pid_t id_;
+};
+
+void serve_lockstep(const std::string& model, std::uint32_t side, const std::string& endpoint) {
+  app::StreamFlags flags;
+  flags.render.input = model;
+  flags.render.sensor.fov_deg = kFov_rad * 180.0 / std::numbers::pi;
+  flags.render.sensor.width = flags.render.sensor.height = side;
+  flags.render.renderer.threads = kThreads;
+  flags.render.quiet = true;
+  flags.lockstep = endpoint;
+  app::Console console(true);
+  app::LockstepRun(flags, console).run();
+}
+
+/// Answers whatever comes with so many bytes, which are not copied.
+void serve_echo(std::size_t bytes, const std::string& endpoint) {
+  zmq::context_t context;
+  zmq::socket_t socket(context, zmq::socket_type::rep);
+  socket.bind(endpoint);
+  std::vector<std::byte> answer(bytes, std::byte{1});
+  for (;;) {
+    zmq::message_t request;
+    if (!socket.recv(request)) continue;
+    socket.send(zmq::message_t(answer.data(), bytes, [](void*, void*) {}), zmq::send_flags::none);
+  }
+}
+
+class Client {
+ public:
+  explicit Client(const std::string& endpoint) : socket_(context_, zmq::socket_type::req) {
+    socket_.connect(endpoint);
+  }
+  /// The bytes of the answer.
+  std::size_t ask(std::span<const std::byte> request) {
+    socket_.send(zmq::buffer(request.data(), request.size()), zmq::send_flags::none);
+    std::size_t bytes = 0;
+    zmq::message_t part;
+    do {
+      if (socket_.recv(part)) bytes += part.size();
+    } while (part.more());
+    return bytes;
+  }
+
+ private:
+  zmq::context_t context_;
+  zmq::socket_t socket_;
+};
+
+/// The servers of one size; they start before this process has threads, which a fork would lose.
+struct Servers {
+  Servers(const std::string& model, std::uint32_t side)
+      : lockstep_at(free_endpoint()),
+        echo_at(free_endpoint()),
+        lockstep([&] { serve_lockstep(model, side, lockstep_at); }),
+        echo([&] { serve_echo(kPointBytes * side * side, echo_at); }) {}
+
+  std::string lockstep_at;
+  std::string echo_at;
+  Process lockstep;
+  Process echo;
+};
+
+/// A model at one size, by the link, by simulate() in this process, and by an echo.
+class Ways {
+ public:
+  Ways(const Model& model, const Servers& servers, std::uint32_t side)
+      : model_(model),
+        servers_(servers),
+        motion_(standing_still(model.scene, model.world_from_sensor)) {
+    sensor_.optics = pinhole_from_fov(side, side, kFov_rad);
+    beams_ = make_beams(sensor_);
+    lockstep::Moment moment{.t_ns = 0, .seed = 1, .number = 0, .sensor = {}, .objects = {}};
+    moment.sensor.world_from_body = model.world_from_sensor;
+    request_ = lockstep::encode(
+        lockstep::Measure{.id = 1, .columns = {"xyz", "intensity"}, .moments = {moment}});
+  }
+
+  void by_link(benchmark::State& state) {
+    Client client(servers_.lockstep_at);
+    std::size_t bytes = client.ask(request_);
+    for (auto _ : state) bytes = client.ask(request_);
+    state.counters["MB"] = static_cast<double>(bytes) / 1e6;
+  }
+
+  /// What cannot be saved: the measurement, and the same bytes there and back.
+  void by_hand(benchmark::State& state) {
+    Client client(servers_.echo_at);
+    const auto renderer = make_renderer(model_.scene, {.threads = kThreads});
+    for (auto _ : state) {
+      simulate({model_.scene, sensor_, beams_, motion_, *renderer}, {}, frame_);
+      client.ask(request_);
+    }
+  }
+
+  void by_echo(benchmark::State& state) {
+    Client client(servers_.echo_at);
+    std::size_t bytes = 0;
+    for (auto _ : state) bytes = client.ask(request_);
+    state.counters["MB"] = static_cast<double>(bytes) / 1e6;
+  }
+
+ private:
+  const Model& model_;
+  const Servers& servers_;
+  Sensor sensor_;
+  Motion motion_;
+  Beams beams_;
+  Frame frame_;
+  std::vector<std::byte> request_;
+};
+
+void add(const std::string& name, void (Ways::*way)(benchmark::State&), Ways* ways) {
+  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+    (ways->*way)(state);
+  })->UseRealTime();
+}
+
+}  // namespace
+}  // namespace glidar::bench
+
+int main(int argc, char** argv) {
+  using namespace glidar::bench;
+  const char* data = std::getenv("GLIDAR_DATA");
+  const std::string path =
+      data == nullptr ? "builtin:asteroid" : std::string(data) + "/models/stanford/bun_zipper.ply";
+  constexpr std::uint32_t kSmall = 64;
+  constexpr std::uint32_t kLarge = 1024;
+  const Servers small_servers(path, kSmall);
+  const Servers large_servers(path, kLarge);
+  const Model model("model", path);
+  Ways small(model, small_servers, kSmall);
+  Ways large(model, large_servers, kLarge);
+  add("64x64 by lock-step", &Ways::by_link, &small);
+  add("64x64 simulate + echo", &Ways::by_hand, &small);
+  add("1024x1024 by lock-step", &Ways::by_link, &large);
+  add("1024x1024 echo", &Ways::by_echo, &large);
+  add("1024x1024 simulate + echo", &Ways::by_hand, &large);
+  constexpr double kGoal = 1.0 / 1.3;
+  return run(
+      argc, argv,
+      {{"64x64: (simulate + echo) / lock-step", "64x64 simulate + echo", "64x64 by lock-step",
+        kGoal},
+       {"1024x1024: (simulate + echo) / lock-step", "1024x1024 simulate + echo",
+        "1024x1024 by lock-step", kGoal},
+       {"1024x1024: throughput / loopback's", "1024x1024 echo", "1024x1024 by lock-step", 0.5}});
+}
