@@ -88,7 +88,7 @@ void add_lockstep_flags(CLI::App& command, StreamFlags& flags) {
   const std::string group = "Lock-step over ZeroMQ: clients ask for every frame";
   add_text(
       command,
-      {"--lockstep", "ENDPOINT", "Answers at tcp://HOST:PORT (* any port) or ipc://PATH", group},
+      {"--lockstep", "ADDRESS", "Answers at tcp://HOST:PORT (* any port) or ipc://PATH", group},
       flags.lockstep,
       [](std::string_view, const std::string& text) { (void)link::parse_endpoint(text); });
   add_text(command,
