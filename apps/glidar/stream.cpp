@@ -19,7 +19,9 @@ namespace {
 
 constexpr const char* kExamples = R"(Examples:
   glidar stream builtin:asteroid --model-dr 0,0.5,0 --rate 10 --port 5555
-  glidar stream builtin:asteroid --model-dr 0,0.5,0 --rate max --port 5555 --subscribers 0 --stats s.json
+  glidar stream builtin:asteroid --rate max --port 5555 --subscribers 0 --stats stats.json
+  glidar stream builtin:box --sensor VLP-16 --eye 0,0,0 --duration 0.2 -o scan.pcd
+With your own files:
   glidar stream scene.yaml --trajectory poses.txt --duration 10 -o scan.pcd
 In the loop with a simulator that publishes poses at 5557 and shakes hands at 5558:
   glidar stream satellite.obj --physics-port 5557 --hwm 100 --port 5555
@@ -33,7 +35,7 @@ z forward. Numbered files (-o) hold what `glidar render --duration` would write.
 A pose message places the scene and the sensor:
   p_sensor = R(q_sensor) (R(q_object)^T p_object + t)
 Exit codes: 0 done, or the simulator ended; 2 bad input; 3 no pose for --pose-timeout;
-130 after Ctrl-C (SIGINT), 143 after SIGTERM; subscribers are told that it ends in any case.)";
+130 after Ctrl-C, 143 after SIGTERM; subscribers are told that it ends in any case.)";
 
 int run(const StreamFlags& given) {
   check(given);

@@ -88,7 +88,7 @@ void add_lockstep_flags(CLI::App& command, StreamFlags& flags) {
   const std::string group = "Lock-step over ZeroMQ: clients ask for every frame";
   add_text(
       command,
-      {"--lockstep", "ENDPOINT", "Answers at tcp://HOST:PORT (* any port) or ipc://PATH", group},
+      {"--lockstep", "ADDRESS", "Answers at tcp://HOST:PORT (* any port) or ipc://PATH", group},
       flags.lockstep,
       [](std::string_view, const std::string& text) { (void)link::parse_endpoint(text); });
   add_text(command,
@@ -118,7 +118,7 @@ void check_simulator(const StreamFlags& flags) {
     refuse("--physics-port", "given beside --trajectory, --model-dr or --camera-dr",
            "let either the simulator or the command line move things");
   }
-  if (!flags.port || *flags.port / 2 == 0) return;
+  if (!flags.port) return;
   const int apart = int{*flags.port} - int{*flags.physics_port};
   if (std::abs(apart) <= 1 && flags.physics_host == flags.bind) {
     refuse("--port and --physics-port", "each takes the next port too, so they overlap",

@@ -4,6 +4,7 @@
 
 import os
 import re
+import socket
 import subprocess
 import tempfile
 import unittest
@@ -24,6 +25,19 @@ f 3 4 8 7
 f 2 3 7 6
 f 1 5 8 4
 """
+
+
+def free_ports():
+    """A port of this machine that is free together with the next one."""
+    while True:
+        with socket.socket() as first, socket.socket() as second:
+            first.bind(("127.0.0.1", 0))
+            port = first.getsockname()[1]
+            try:
+                second.bind(("127.0.0.1", port + 1))
+            except (OSError, OverflowError):
+                continue
+            return port
 
 
 def box_of(size):

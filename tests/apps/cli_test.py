@@ -15,7 +15,7 @@ import time
 import unittest
 import zipfile
 
-from cli_support import BOX, CliTest, box_of
+from cli_support import BOX, CliTest, box_of, free_ports
 
 
 class Help(CliTest):
@@ -24,7 +24,8 @@ class Help(CliTest):
 
     def test_examples_of_every_help_run_literally(self):
         count = 0
-        for level in ([], ["render"], ["explain"], ["view"], ["info"], ["sensors"], ["verify"]):
+        for level in ([], ["render"], ["explain"], ["view"], ["stream"], ["info"], ["sensors"],
+                      ["verify"]):
             text = self.succeed(*level, "--help").stdout
             own = text[text.index("Examples:"):].split("With your own files:")[0]
             for line in re.findall(r"(?m)^  (glidar .*)$", own):
@@ -34,8 +35,10 @@ class Help(CliTest):
         self.assertGreaterEqual(count, 10)
 
     def run_example(self, arguments):
-        """A window opens on a display without a screen, for one frame."""
-        if arguments[0] != "view":
+        """A window opens on a display without a screen, a stream waits for nobody; for one frame."""
+        if arguments[0] == "stream":
+            self.run_stream(arguments)
+        elif arguments[0] != "view":
             self.succeed(*arguments)
         elif shutil.which("xvfb-run"):
             done = subprocess.run(["xvfb-run", "-a", "glidar", *arguments, "--frames", "1"],
@@ -43,8 +46,15 @@ class Help(CliTest):
                                   text=True, timeout=120, check=False)
             self.assertEqual(done.returncode, 0, done.stderr)
 
+    def run_stream(self, arguments):
+        port = str(free_ports())
+        arguments = [port if word == "5555" else word for word in arguments]
+        if "--subscribers" not in arguments:
+            arguments += ["--subscribers", "0"]
+        self.succeed(*arguments, "--frames", "1")
+
     def test_help_takes_one_plain_line_per_option(self):
-        for level in (["render"], ["view"], ["info"], ["verify"]):
+        for level in (["render"], ["view"], ["stream"], ["info"], ["verify"]):
             text = self.succeed(*level, "--help").stdout
             self.assertNotRegex(text, r"[{}]|INT|FLOAT|TEXT|REQUIRED")
             self.assertLessEqual(max(len(line) for line in text.split("\n")), 100)

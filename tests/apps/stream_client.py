@@ -2,26 +2,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A client and a simulator that speak the protocol of 2015, written from its description alone."""
 
-import socket
 import struct
 
 import numpy as np
 import zmq
 
 SHUTDOWN = b"KTHXBAI"
-
-
-def free_ports():
-    """A port that is free together with the next one."""
-    while True:
-        with socket.socket() as first, socket.socket() as second:
-            first.bind(("127.0.0.1", 0))
-            port = first.getsockname()[1]
-            try:
-                second.bind(("127.0.0.1", port + 1))
-            except OSError:
-                continue
-            return port
 
 
 class Subscriber:

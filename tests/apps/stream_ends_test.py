@@ -89,7 +89,7 @@ class Documentation(StreamTest):
             simulator = simulator.replace(shown, str(used))
         self.write("client.py", client)
         self.write("simulator.py", "import struct\nimport zmq\ncontext = zmq.Context()\n" + simulator)
-        program = self.publish("--physics-port", str(self.physics), "--hwm", "1000")
+        program = self.publish("--physics-port", str(self.physics), "--hwm", "1000", "--pub-hwm", "1000")
         programs = [subprocess.Popen([sys.executable, name], cwd=self.folder, stdout=subprocess.PIPE, text=True)
                     for name in ("simulator.py", "client.py")]
         out = [process.communicate(timeout=60)[0] for process in programs]

@@ -13,8 +13,8 @@ except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
 
-from cli_support import CliTest, box_of
-from stream_client import Simulator, Subscriber, free_ports
+from cli_support import CliTest, box_of, free_ports
+from stream_client import Simulator, Subscriber
 
 SMALL = ("--width", "32", "--height", "24", "--fov", "20")
 
