@@ -10,10 +10,10 @@ from urllib.parse import quote
 
 from PIL import ImageGrab
 import Xlib.display
-from Xlib import X
+from Xlib import X, Xutil
 from Xlib.protocol import event
 
-NEEDED = ("Xvfb", "xdotool", "twm")
+NEEDED = ("Xvfb", "xdotool")
 PATIENCE_S = 60  # for a loaded machine
 
 
@@ -33,26 +33,23 @@ def wait_until(condition, what):
 
 
 class Display:
-    """Xvfb with a window manager; a context."""
+    """Xvfb; a context."""
 
     def __enter__(self):
         read, write = os.pipe()
         self._server = subprocess.Popen(
-            ["Xvfb", "-displayfd", str(write), "-screen", "0", "1400x900x24", "-nolisten", "tcp"],
+            ["Xvfb", "-displayfd", str(write), "-screen", "0", "1400x900x24", "-nolisten", "tcp",
+             "-noreset"],  # stays as it is when its last window is closed
             pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as number:
             self.name = ":" + number.readline().strip()
         self.environment = dict(os.environ, DISPLAY=self.name, HOME="/nonexistent")
-        # windows appear by themselves at the upper left, without a frame
-        self._manager = subprocess.Popen(["twm", "-f", os.path.join(os.path.dirname(__file__), "twmrc")],
-                                         env=self.environment, stderr=subprocess.DEVNULL)
         return self
 
     def __exit__(self, *error):
-        for process in (self._manager, self._server):
-            process.terminate()
-            process.wait()
+        self._server.terminate()
+        self._server.wait()
 
     def xdotool(self, *arguments):
         done = subprocess.run(["xdotool", *map(str, arguments)], env=self.environment,
@@ -77,6 +74,16 @@ class Display:
             self.xdotool("mousemove_relative", "--", way[0] // 5, way[1] // 5)
         time.sleep(0.1)
         self.xdotool("mouseup", button)
+
+    def set_minimised(self, window, is_minimised):
+        """Does what a window manager does (ICCCM 4.1.3.1): sets WM_STATE, hides or shows."""
+        display = Xlib.display.Display(self.name)
+        it = display.create_resource_object("window", int(window))
+        state = display.intern_atom("WM_STATE")
+        it.change_property(state, state, 32, [Xutil.IconicState if is_minimised else Xutil.NormalState, 0])
+        (it.unmap if is_minimised else it.map)()
+        display.sync()
+        display.close()
 
     def drop(self, window, path):
         """Drops a file by the protocol XDND, version 5, as a file manager does."""
