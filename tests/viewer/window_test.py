@@ -82,7 +82,9 @@ class Window:
             return [[float(x) for x in line.split()] for line in text]
 
 
-class ViewerWindowTest(CliTest):
+class DisplayTest(CliTest):
+    """Has a display of its own."""
+
     @classmethod
     def setUpClass(cls):
         cls.display = Display().__enter__()
@@ -95,6 +97,8 @@ class ViewerWindowTest(CliTest):
         super().setUp()
         self.environment["DISPLAY"] = self.display.name
 
+
+class ViewerWindowTest(DisplayTest):
     def read(self, name):
         with open(os.path.join(self.folder, name), "rb") as file:
             return file.read()
@@ -273,20 +277,8 @@ __attribute__((constructor)) static void replace(void) {
         return library
 
 
-class ScreenshotTest(CliTest):
+class ScreenshotTest(DisplayTest):
     """Without hands."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.display = Display().__enter__()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.display.__exit__()
-
-    def setUp(self):
-        super().setUp()
-        self.environment["DISPLAY"] = self.display.name
 
     def shoot(self, *arguments):
         path = os.path.join(self.folder, "shot.png")
