@@ -28,7 +28,7 @@ In the loop with a simulator that publishes poses at 5557 and shakes hands at 55
 A client that places everything and asks for every frame (docs/link.md):
   glidar stream scene.yaml --lockstep tcp://127.0.0.1:5600
 Watch from Python (python3-zmq); docs/link.md has the bytes of all messages:
-  s = zmq.Context().socket(zmq.SUB); s.connect("tcp://localhost:5555"); s.subscribe("c")
+  s = zmq.Context().socket(zmq.SUB); s.connect("tcp://127.0.0.1:5555"); s.subscribe("c")
 
 Clouds are 'c', uint64 timestamp, then x y z intensity as float32 for every hit, x left, y up,
 z forward. Numbered files (-o) hold what `glidar render --duration` would write.

@@ -19,10 +19,10 @@ class Subscriber:
         for name, value in options.items():
             setattr(self.clouds, name, value)
         self.clouds.setsockopt(zmq.SUBSCRIBE, topic)
-        self.clouds.connect(f"tcp://localhost:{port}")
+        self.clouds.connect(f"tcp://127.0.0.1:{port}")
         self.hand = context.socket(zmq.REQ)
         self.hand.linger = 0
-        self.hand.connect(f"tcp://localhost:{port + 1}")
+        self.hand.connect(f"tcp://127.0.0.1:{port + 1}")
         self.hand.send(b"")
 
     def shake(self, timeout_s=20):
