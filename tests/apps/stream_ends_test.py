@@ -92,6 +92,8 @@ class Documentation(StreamTest):
         program = self.publish("--physics-port", str(self.physics), "--hwm", "1000", "--pub-hwm", "1000")
         programs = [subprocess.Popen([sys.executable, name], cwd=self.folder, stdout=subprocess.PIPE, text=True)
                     for name in ("simulator.py", "client.py")]
+        for process in programs:
+            self.addCleanup(process.kill)
         out = [process.communicate(timeout=60)[0] for process in programs]
         self.finished(program, 0)
         lines = out[1].splitlines()
