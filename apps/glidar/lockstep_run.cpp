@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
 #include <new>
 #include <utility>
 #include <variant>
@@ -76,10 +77,10 @@ void LockstepRun::answer(const lockstep::Request& request) {
   try {
     if (const auto* wanted = std::get_if<lockstep::Measure>(&request)) return measure(*wanted);
     describe(std::get<lockstep::Describe>(request));
-  } catch (const Error& error) {
-    server_.reply_error(id, error.what());
   } catch (const std::bad_alloc&) {
     server_.reply_error(id, "request: needs more memory than there is; ask for fewer moments");
+  } catch (const std::exception& error) {
+    server_.reply_error(id, error.what());
   }
 }
 

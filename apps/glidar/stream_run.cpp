@@ -38,17 +38,6 @@ void naming(const char* options, const Work& work) {
   }
 }
 
-HitFields both(HitFields a, const HitFields& b) {
-  a.normal |= b.normal;
-  a.shading_normal |= b.shading_normal;
-  a.incidence |= b.incidence;
-  a.barycentrics |= b.barycentrics;
-  a.colour |= b.colour;
-  a.object_point |= b.object_point;
-  a.poses |= b.poses;
-  return a;
-}
-
 /// Whether every frame has the same beams; those of scanners move on.
 bool has_fixed_beams(const Sensor& sensor) {
   return std::holds_alternative<Pinhole>(sensor.optics);
@@ -88,8 +77,12 @@ void StreamRun::open_session() {
   open(
       flags_.render, [&] { protect_files(session_.files, outputs); }, console_, session_);
   beams_ = std::make_shared<const Beams>(session_.beams);
-  fields_ = fields_for(outputs);
-  if (publisher_) fields_ = both(fields_, glidar::fields_for(kPublishedColumns));
+  std::vector<std::string> columns;
+  if (publisher_) columns = kPublishedColumns;
+  for (const Output& output : outputs) {
+    columns.insert(columns.end(), output.columns.begin(), output.columns.end());
+  }
+  fields_ = glidar::fields_for(columns);
 }
 
 /// The scene as it stands becomes the object that the simulator moves.

@@ -46,10 +46,9 @@ void points_from(const Snapshot& shot, const Eigen::Vector3d& anchor_m,
                  std::vector<Eigen::Vector3f>& points) {
   const CloudFrame cloud_frame{
       .frame_id = "anchor", .cloud_from_sensor = shifted(-anchor_m) * shot.frame.world_from_sensor};
-  constexpr std::array<const char*, 1> kNames = {"xyz"};
+  const std::vector<std::string> columns = {"xyz"};
   PointCloud cloud;
-  make_point_cloud(shot.frame, *shot.beams, shot.session->scene, cloud_frame,
-                   std::vector<std::string>(kNames.begin(), kNames.end()), cloud);
+  make_point_cloud(shot.frame, *shot.beams, shot.session->scene, cloud_frame, columns, cloud);
   const auto& xyz = std::get<std::vector<double>>(cloud.columns[0].values);
   points.resize(cloud.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
