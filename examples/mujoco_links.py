@@ -136,7 +136,7 @@ class Protocol2015(Glidar):
             self.poses.bind(f"tcp://127.0.0.1:{poses_at}")
             self.clouds.subscribe(b"c")
             self.clouds.connect(f"tcp://127.0.0.1:{clouds_at}")
-            asked, asking = self.context.socket(zmq.REP), self.context.socket(zmq.REQ)
+            self.hands = asked, asking = self.context.socket(zmq.REP), self.context.socket(zmq.REQ)
             asked.bind(f"tcp://127.0.0.1:{poses_at + 1}")
             asking.connect(f"tcp://127.0.0.1:{clouds_at + 1}")
             asking.send(b"")

@@ -46,7 +46,7 @@ WORLD = f"""
   </worldbody>
 </mujoco>"""
 TARGET_RATE_RAD_S = (0.02, 0.03, 0.14)  # about its own axes
-FROM_M, TO_M = 45.0, 22.0  # distances at which the approach begins and ends
+FROM_M, TO_M, APPROACH_S = 45.0, 22.0, 54.0  # distances at which the approach begins and ends, and how long it takes
 
 
 class Physics:
@@ -118,11 +118,12 @@ class Tracker:
 class Steering:
     """Keeps the target on the boresight at the distance of the plan, from what ICP found and a gyroscope."""
 
-    def __init__(self, seconds):
-        self.seconds, self.before = seconds, None
+    def __init__(self):
+        self.before = None
 
-    def wanted_m(self, time_s):
-        part = min(time_s / (0.9 * self.seconds), 1.0)
+    @staticmethod
+    def wanted_m(time_s):
+        part = min(time_s / APPROACH_S, 1.0)
         return FROM_M + (TO_M - FROM_M) * part * part * (3 - 2 * part)
 
     def thrust(self, time_s, target, rate):
@@ -172,7 +173,7 @@ def first_guess(target_from_sensor):
 
 def approach(link, seconds, tell=None):
     """Runs physics, sensor and estimator in a ring; a snapshot of every frame."""
-    physics, steering, tracker, frames = Physics(), Steering(seconds), None, []
+    physics, steering, tracker, frames = Physics(), Steering(), None, []
     for number in range(round(seconds / PERIOD_S)):
         sensor, target = physics.body("chaser"), physics.body("target")
         truth = np.linalg.inv(sensor.pose()) @ target.pose()
@@ -201,7 +202,7 @@ def table(runs):
 def flags_of(arguments):
     parser = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLE,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--seconds", type=float, default=60, help="how long the approach takes [60]")
+    parser.add_argument("--seconds", type=float, default=60, help="of the simulation [60]")
     parser.add_argument("--sensor", action="append", help="as glidar sensors lists them, repeatable [flash-256]")
     parser.add_argument("--protocol", choices=["lockstep", "2015", "both"], default="both", help="[both]")
     parser.add_argument("--table", metavar="FILE", help="writes the errors of every frame as CSV")
