@@ -4,6 +4,7 @@
 
 #include <apps/glidar/curve_keys.hpp>
 #include <apps/glidar/interrupt.hpp>
+#include <apps/glidar/placed_motion.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/simulate.hpp>
 
@@ -26,15 +27,9 @@ lockstep::ServerOptions server_options(const StreamFlags& flags, Console& consol
   return options;
 }
 
-/// A body that is pushed by nothing and whose rate stays: one with equal moments of inertia.
-Trajectory trajectory_of(const lockstep::Body& body, std::int64_t t_ns) {
-  if (body.rate_rad_s.isZero(0.0) && body.velocity_m_s.isZero(0.0)) {
-    return ConstantPose{body.world_from_body};
-  }
-  return Tumbling({.rate_rad_s = body.world_from_body.linear().transpose() * body.rate_rad_s,
-                   .world_from_body = body.world_from_body,
-                   .velocity_m_s = body.velocity_m_s,
-                   .t0_ns = t_ns});
+std::vector<double> json_of(const Pose& pose) {
+  const PoseNumbers numbers = numbers_of(pose);
+  return {numbers.begin(), numbers.end()};
 }
 
 [[noreturn]] void refuse(std::string where, std::string found, std::string allowed) {
@@ -49,8 +44,12 @@ LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
       faults_(console.report()),
       server_(context_, server_options(flags, console), faults_) {
   if (!flags_.stats.empty()) stats_file_ = std::make_unique<AtomicFile>(flags_.stats);
+  if (!flags_.record.empty()) recorder_ = std::make_unique<Recorder>(flags_.record);
   open(flags_.render, {}, console_, session_);
-  beams_ = std::make_shared<const Beams>(session_.beams);
+  if (recorder_) recorder_->begin(session_, flags_.command);
+  for (const Mount& mount : session_.mounts) {
+    beams_.push_back(std::make_shared<const Beams>(mount.beams));
+  }
 }
 
 int LockstepRun::run() {
@@ -87,23 +86,25 @@ void LockstepRun::answer(const lockstep::Request& request) {
 void LockstepRun::describe(const lockstep::Describe& describe) {
   nlohmann::ordered_json objects = nlohmann::ordered_json::array();
   for (const Instance& instance : session_.scene.instances) {
-    const PoseNumbers pose = numbers_of(instance.world_from_object);
     objects.push_back({{"name", instance.name},
                        {"id", instance.id},
                        {"class", session_.scene.class_names.at(instance.class_id)},
-                       {"world_from_object", std::vector<double>(pose.begin(), pose.end())}});
+                       {"world_from_object", json_of(instance.world_from_object)}});
   }
-  const Sensor& sensor = session_.sensor;
-  const PoseNumbers pose = numbers_of(pose_at(session_.motion.world_from_sensor, 0));
+  nlohmann::ordered_json sensors = nlohmann::ordered_json::array();
+  for (const Mount& mount : session_.mounts) {
+    sensors.push_back({{"name", mount.name.empty() ? mount.sensor.name : mount.name},
+                       {"rows", mount.beams.rows},
+                       {"cols", mount.beams.cols},
+                       {"returns", mount.beams.returns},
+                       {"rate_hz", mount.sensor.rate_hz},
+                       {"frame_id", mount.beams.frame_id},
+                       {"world_from_sensor", json_of(pose_at(mount.motion.world_from_sensor, 0))},
+                       {"rig_from_sensor", json_of(mount.rig_from_sensor)}});
+  }
   const nlohmann::ordered_json text = {
-      {"sensors",
-       {{{"name", sensor.name},
-         {"rows", beams_->rows},
-         {"cols", beams_->cols},
-         {"returns", beams_->returns},
-         {"rate_hz", sensor.rate_hz},
-         {"frame_id", beams_->frame_id},
-         {"world_from_sensor", std::vector<double>(pose.begin(), pose.end())}}}},
+      {"sensors", sensors},
+      {"world_from_rig", json_of(pose_at(session_.motion.world_from_rig, 0))},
       {"objects", objects},
       {"columns",
        std::vector<std::string>(cloud_column_names().begin(), cloud_column_names().end())}};
@@ -111,7 +112,12 @@ void LockstepRun::describe(const lockstep::Describe& describe) {
 }
 
 void LockstepRun::check(const lockstep::Measure& measure) const {
-  if (measure.sensor != 0) refuse("sensor", std::to_string(measure.sensor), "0: there is one");
+  const std::size_t sensors = session_.mounts.size();
+  if (measure.sensor >= sensors) {
+    refuse("sensor", std::to_string(measure.sensor),
+           sensors == 1 ? "0: there is one"
+                        : fmt::format("0 to {}, a sensor on the rig", sensors - 1));
+  }
   const std::size_t objects = measure.moments.front().objects.size();
   const std::size_t instances = session_.scene.instances.size();
   if (objects != 0 && objects != instances) {
@@ -135,39 +141,33 @@ void LockstepRun::measure(const lockstep::Measure& measure) {
   server_.reply(measure.id, replies);
 }
 
-std::shared_ptr<const Beams> LockstepRun::beams_of(std::uint32_t number) const {
-  const Sensor& sensor = session_.sensor;
-  if (number == 0 || std::holds_alternative<Pinhole>(sensor.optics)) return beams_;
+std::shared_ptr<const Beams> LockstepRun::beams_of(std::uint32_t index,
+                                                   std::uint32_t number) const {
+  const Sensor& sensor = session_.mounts[index].sensor;
+  if (number == 0 || std::holds_alternative<Pinhole>(sensor.optics)) return beams_[index];
   return std::make_shared<const Beams>(make_beams(sensor, scan_window(sensor, number)));
-}
-
-Motion LockstepRun::motion_of(const lockstep::Moment& moment) const {
-  Motion motion = standing_still(session_.scene, Pose::Identity());
-  motion.world_from_sensor = trajectory_of(moment.sensor, moment.t_ns);
-  for (std::size_t i = 0; i < moment.objects.size(); ++i) {
-    motion.world_from_instance[i] = trajectory_of(moment.objects[i], moment.t_ns);
-  }
-  return motion;
 }
 
 void LockstepRun::measure_some(const lockstep::Measure& measure,
                                std::span<const lockstep::Moment> moments,
                                std::vector<lockstep::CloudReply>& replies) {
+  const Mount& mount = session_.mounts[measure.sensor];
   std::vector<std::shared_ptr<const Beams>> beams;
   std::vector<Motion> motions;
   std::vector<Setup> setups;
   if (frames_.size() < moments.size()) frames_.resize(moments.size());
   for (const lockstep::Moment& moment : moments) {
-    beams.push_back(beams_of(moment.number));
-    motions.push_back(motion_of(moment));
+    beams.push_back(beams_of(measure.sensor, moment.number));
+    motions.push_back(motion_of(motion_at(moment, session_.scene), mount));
     Frame& frame = frames_[beams.size() - 1];
     frame.stamp_ns = moment.t_ns;
     frame.seed = moment.seed;
     frame.number = moment.number;
+    frame.sensor_id = mount.id;
   }
   for (std::size_t i = 0; i < moments.size(); ++i) {
     setups.push_back({.scene = session_.scene,
-                      .sensor = session_.sensor,
+                      .sensor = mount.sensor,
                       .beams = *beams[i],
                       .motion = motions[i],
                       .renderer = *session_.renderer});
@@ -176,6 +176,7 @@ void LockstepRun::measure_some(const lockstep::Measure& measure,
   simulate_batch(setups, glidar::fields_for(measure.columns),
                  std::span(frames_).first(moments.size()));
   for (std::size_t i = 0; i < moments.size(); ++i) {
+    if (recorder_) recorder_->note(measure.sensor, frames_[i], &moments[i]);
     replies.push_back(cloud_of(measure, frames_[i], *beams[i]));
   }
 }
@@ -204,6 +205,7 @@ lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, con
 
 void LockstepRun::finish(const std::string& ending) {
   faults_.flush();
+  if (recorder_) recorder_->commit();
   const lockstep::Server::Counts& counts = server_.counts();
   if (stats_file_) {
     const nlohmann::ordered_json text = {{"ended_by", ending},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <apps/glidar/console.hpp>
+#include <apps/glidar/recorder.hpp>
 #include <apps/glidar/session.hpp>
 #include <apps/glidar/stream_options.hpp>
 #include <glidar/io/atomic_file.hpp>
@@ -32,8 +33,8 @@ class LockstepRun {
   void check(const lockstep::Measure& measure) const;
   void measure_some(const lockstep::Measure& measure, std::span<const lockstep::Moment> moments,
                     std::vector<lockstep::CloudReply>& replies);
-  [[nodiscard]] Motion motion_of(const lockstep::Moment& moment) const;
-  [[nodiscard]] std::shared_ptr<const Beams> beams_of(std::uint32_t number) const;
+  [[nodiscard]] std::shared_ptr<const Beams> beams_of(std::uint32_t sensor,
+                                                      std::uint32_t number) const;
   [[nodiscard]] lockstep::CloudReply cloud_of(const lockstep::Measure& measure, const Frame& frame,
                                               const Beams& beams);
   void finish(const std::string& ending);
@@ -44,8 +45,9 @@ class LockstepRun {
   std::unique_ptr<AtomicFile> stats_file_;
   link::Context context_;
   lockstep::Server server_;
+  std::unique_ptr<Recorder> recorder_;
   Session session_;
-  std::shared_ptr<const Beams> beams_;  ///< of frame 0
+  std::vector<std::shared_ptr<const Beams>> beams_;  ///< of each sensor's frame 0
   link::CloudPool clouds_;
   std::vector<Frame> frames_;
 };

@@ -39,6 +39,9 @@ std::string output_names_text();
 /// The same for one frame of a sequence: NAME_000007.pcd for NAME.pcd.
 OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame);
 
+/// The same for one sensor of a rig: NAME_lidar.pcd for NAME.pcd.
+OutputFlags labelled(const OutputFlags& flags, const std::string& label);
+
 /// One file to be written.
 struct Output {
   std::filesystem::path path;
@@ -55,7 +58,8 @@ std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& in
                                  const SidecarContext& context, const Report& report,
                                  const Progress& progress = {});
 
-/// Throws Error when one of the outputs is a file that was read: known once the input is loaded.
+/// Throws Error when an output is a file that was read: known once the input is loaded.
+void protect_files(const std::vector<std::string>& read, const std::filesystem::path& output);
 void protect_files(const std::vector<std::string>& read, const std::vector<Output>& outputs);
 
 /// The hit columns that all outputs together need.

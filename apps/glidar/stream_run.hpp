@@ -6,6 +6,7 @@
 #include <apps/glidar/delivery.hpp>
 #include <apps/glidar/interrupt.hpp>
 #include <apps/glidar/pose_source.hpp>
+#include <apps/glidar/recorder.hpp>
 #include <apps/glidar/session.hpp>
 #include <apps/glidar/stream_options.hpp>
 #include <apps/glidar/stream_stats.hpp>
@@ -13,6 +14,7 @@
 #include <glidar/io/atomic_file.hpp>
 #include <glidar/link/fault_log.hpp>
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,6 +33,7 @@ class StreamRun {
 
  private:
   void open_session();
+  [[nodiscard]] std::map<std::uint32_t, std::string> topics() const;
   void prepare_poses();
   [[nodiscard]] std::unique_ptr<PoseSource> make_source(const StopRequest& stop);
   bool wait_for_partners(const StopRequest& stop);
@@ -39,7 +42,9 @@ class StreamRun {
   void measure(const Moment& moment, Shot& shot);
   [[nodiscard]] bool is_wanted(std::uint32_t number) const;
   [[nodiscard]] bool writes_files() const;
-  [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const Beams& beams);
+  [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const Sensor& sensor,
+                                         const Beams& beams);
+  void move(const RigMotion& motion);
   void deliver(const Shot& shot);
   void write_files(const Shot& shot);
   void publish(const Shot& shot);
@@ -53,9 +58,12 @@ class StreamRun {
   link::Context context_;
   std::unique_ptr<legacy::CloudPublisher> publisher_;
   std::unique_ptr<legacy::PoseReceiver> receiver_;
+  std::unique_ptr<Recorder> recorder_;
+  std::unique_ptr<link::RecordingReader> recording_;  ///< that is replayed
+  std::shared_ptr<const lockstep::Moment> placed_;    ///< by the simulator's last pose
   double duration_s_ = 0.0;
   Session session_;
-  std::shared_ptr<const Beams> beams_;
+  std::vector<std::shared_ptr<const Beams>> beams_;  ///< of each sensor
   MovedScene moved_scene_;
   HitFields fields_;
   StreamStats stats_;

@@ -27,6 +27,11 @@ struct Sidecar {
 /// A hash, hexadecimal, of what the frame reports: status, range and intensity of every beam.
 std::string frame_hash(const Frame& frame);
 
+/// A folder as seen from a file, so that both can be moved together, and back again.
+std::string folder_seen_from(const std::filesystem::path& file,
+                             const std::filesystem::path& folder);
+std::filesystem::path folder_beside(const std::filesystem::path& file, const std::string& seen);
+
 /// Reads the sidecar of a cloud, CLOUD.json beside it. Throws Error when there is none or it is not
 /// one.
 Sidecar read_sidecar(const std::filesystem::path& cloud);

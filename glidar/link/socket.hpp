@@ -129,8 +129,8 @@ class Socket {
   /// The same, waiting so long for full queues.
   bool publish(std::span<const std::byte> bytes, std::chrono::milliseconds patience);
 
-  /// How many subscribers want this topic now.
-  SubscriptionCount subscriptions(char topic);
+  /// How many subscriptions there are now to any of these topics.
+  SubscriptionCount subscriptions(std::span<const std::string> topics);
   /// What happened since the last call, if it is watched; to be called now and then, as what is not
   /// taken is kept.
   std::vector<PeerEvent> events();
