@@ -175,6 +175,11 @@ ScenePlan read_scene_plan(const fs::path& path, const ModelOptions& defaults) {
   ScenePlan plan;
   plan.files.push_back(path.string());
   plan.instances = read_models(need(root, "models"), defaults, plan.files);
+  for (const PlannedInstance& planned : plan.instances) {
+    for (const MaterialOverride& change : planned.overrides) {
+      if (!change.noise_texture.empty()) plan.files.push_back(change.noise_texture);
+    }
+  }
   read_rig(root, plan);
   return plan;
 }
