@@ -186,6 +186,7 @@ lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, con
   const OutputFlags& output = flags_.render.output;
   CloudFrame axes = cloud_frame(output.cloud_frame, beams, frame.world_from_sensor);
   axes.deskew = output.deskew;
+  axes.workers = &session_.renderer->workers();
   std::shared_ptr<PointCloud> cloud = clouds_.take();
   make_point_cloud(frame, beams, session_.scene, axes, measure.columns, *cloud);
   if (measure.hits_only) {
