@@ -4,10 +4,10 @@
 #include <apps/glidar/exit_code.hpp>
 #include <apps/glidar/option_kinds.hpp>
 #include <apps/glidar/session.hpp>
-#include <apps/glidar/story_text.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/sidecar.hpp>
+#include <glidar/story_text.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

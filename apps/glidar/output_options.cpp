@@ -165,7 +165,7 @@ void add_output_flags(CLI::App& command, OutputFlags& flags) {
   add_choice(
       command,
       {"--cloud-frame", "NAME", "Axes: sensor, optical, ros, gl, legacy or world [sensor]", group},
-      cloud_frame_names(), flags.cloud_frame);
+      {cloud_frame_names().begin(), cloud_frame_names().end()}, flags.cloud_frame);
   command.add_flag("--deskew", flags.deskew, "Points where a moving sensor met them")->group(group);
   command.add_flag("--dense", flags.dense, "Leave misses out of clouds")->group(group);
   add_choice(command,

@@ -80,17 +80,6 @@ MaterialOverride read_override(const std::string& material, const YamlField& fie
   return change;
 }
 
-std::vector<MaterialOverride> read_overrides(const YamlField& field) {
-  std::vector<MaterialOverride> changes;
-  for (const auto& [material, value] : entries(field)) {
-    changes.push_back(read_override(material, value));
-  }
-  // What is said of one material wins over what is said of all, wherever it stands.
-  std::stable_partition(changes.begin(), changes.end(),
-                        [](const MaterialOverride& change) { return change.material == "*"; });
-  return changes;
-}
-
 /// Where the model is at time 0, and how it moves.
 void read_placing(const YamlField& field, PlannedInstance& planned,
                   std::vector<std::string>& files) {
@@ -200,6 +189,17 @@ void read_sensor_motion(const YamlField& root, ScenePlan& plan) {
 }
 
 }  // namespace
+
+std::vector<MaterialOverride> read_overrides(const YamlField& field) {
+  std::vector<MaterialOverride> changes;
+  for (const auto& [material, value] : entries(field)) {
+    changes.push_back(read_override(material, value));
+  }
+  // What is said of one material wins over what is said of all, wherever it stands.
+  std::stable_partition(changes.begin(), changes.end(),
+                        [](const MaterialOverride& change) { return change.material == "*"; });
+  return changes;
+}
 
 ScenePlan read_scene_plan(const fs::path& path, const ModelOptions& defaults) {
   const YamlField root = read_yaml(path);

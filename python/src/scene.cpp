@@ -17,6 +17,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 namespace glidar::python {
@@ -79,6 +80,35 @@ std::vector<Vector> vectors(const std::optional<Array>& given) {
   if (!result.empty())
     std::memcpy(static_cast<void*>(result.data()), given->data(), result.size() * sizeof(Vector));
   return result;
+}
+
+/// A copy of what lies in memory as rows of kColumns numbers; None when there is nothing.
+template <class T, std::size_t kColumns, class Values>
+nb::object rows_of(const Values& values) {
+  if (values.empty()) return nb::none();
+  static_assert(sizeof(values[0]) == kColumns * sizeof(T));
+  auto copy = std::make_unique<Values>(values);
+  auto* data = reinterpret_cast<T*>(copy->data());
+  const std::array<std::size_t, 2> shape = {values.size(), kColumns};
+  const nb::capsule owner(copy.release(),
+                          [](void* kept) noexcept { delete static_cast<Values*>(kept); });
+  return nb::cast(array_at(data, shape, owner));
+}
+
+nb::dict mesh_of(const SceneHandle& handle, std::size_t index) {
+  const Scene& scene = *handle.scene;
+  const Mesh& mesh = scene.meshes.at(scene.instances.at(index).mesh);
+  std::vector<Eigen::Vector3d> vertices;
+  for (const Eigen::Vector3f& position : mesh.positions_m) {
+    vertices.emplace_back(mesh.origin_m + position.cast<double>());
+  }
+  nb::dict arrays;
+  arrays["vertices"] = rows_of<double, 3>(vertices);
+  arrays["triangles"] = rows_of<std::uint32_t, 3>(mesh.triangles);
+  arrays["normals"] = rows_of<float, 3>(mesh.normals);
+  arrays["uvs"] = rows_of<float, 2>(mesh.uvs[0]);
+  arrays["colours"] = rows_of<float, 3>(mesh.colours);
+  return arrays;
 }
 
 /// What a mesh is made of; arrays of one row per vertex but for the triangles.
@@ -163,6 +193,18 @@ void set_object(SceneHandle& handle, std::size_t index, const std::optional<Pose
   }
 }
 
+void set_materials_of(SceneHandle& handle, std::size_t index, const std::string& text) {
+  set_materials(handle.change(), index, text);
+}
+
+std::vector<std::string> materials_of(const SceneHandle& handle, std::size_t index) {
+  std::vector<std::string> names;
+  for (const std::uint32_t material : handle.scene->instances.at(index).materials) {
+    names.push_back(handle.scene->materials.at(material).name);
+  }
+  return names;
+}
+
 nb::dict object_info(const SceneHandle& handle, std::size_t index) {
   const Scene& scene = *handle.scene;
   const Instance& instance = scene.instances.at(index);
@@ -219,6 +261,9 @@ void bind_scene(nb::module_& module) {
       .def("set_object", set_object, nb::arg("index"), nb::arg("pose").none(),
            nb::arg("scale").none(), nb::arg("name").none(), nb::arg("id").none(),
            nb::arg("class_name").none())
+      .def("mesh", mesh_of, nb::arg("index"))
+      .def("set_materials", set_materials_of, nb::arg("index"), nb::arg("text"))
+      .def("materials", materials_of, nb::arg("index"))
       .def("object", object_info, nb::arg("index"))
       .def("bounds", bounds_of)
       .def_prop_ro("class_names", [](const SceneHandle& self) { return self.scene->class_names; })

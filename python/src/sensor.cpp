@@ -6,6 +6,7 @@
 
 #include <glidar/io/sensor_file.hpp>
 #include <glidar/io/sensor_presets.hpp>
+#include <glidar/io/sidecar.hpp>
 
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
@@ -48,6 +49,19 @@ nb::object directions(const nb::handle& self) {
   return per_beam<double>(beams->directions, shape, self);
 }
 
+/// One entry per number of the file: key, value, source, whether it is verified.
+nb::list sheet(const std::string& name_or_path) {
+  nb::list list;
+  for (const SheetEntry& entry : load_sensor_sheet(find_sensor_file(name_or_path)).entries) {
+    list.append(nb::make_tuple(entry.key, entry.value, entry.source, entry.verified));
+  }
+  return list;
+}
+
+std::string description(const SensorHandle& handle) {
+  return sensor_text(handle.sensor(), *handle.beams(0));
+}
+
 std::vector<std::string> preset_names() {
   std::vector<std::string> names;
   for (const std::filesystem::path& file : preset_files()) names.push_back(file.stem().string());
@@ -79,9 +93,12 @@ void bind_sensor(nb::module_& module) {
       .def_prop_ro("returns", [](const SensorHandle& self) { return self.beams(0)->returns; })
       .def_prop_ro("frame_id", [](const SensorHandle& self) { return self.beams(0)->frame_id; })
       .def_prop_ro("directions", directions)
+      .def("description", description)
       .def("ideal", made_ideal);
   module.def("load_sensor", load, nb::arg("name_or_path"));
   module.def("parse_sensor", parse, nb::arg("text"));
+  module.def("sensor_sheet", sheet, nb::arg("name_or_path"),
+             nb::sig("def sensor_sheet(name_or_path: str) -> list[tuple[str, str, str, bool]]"));
   module.def("preset_names", preset_names);
 }
 

@@ -13,12 +13,12 @@ import numpy.typing as npt
 from . import _core
 from ._errors import Error
 from ._inputs import column_list, one_of, whole, whole_numbers
-from .frame import Frame
-from .sensor import Sensor
-from .trajectory import PoseLike, object_trajectories, trajectories
+from ._frame import Frame
+from ._sensor import Sensor
+from ._trajectory import PoseLike, object_trajectories, trajectories
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from ._scene import Scene
 
 _RENDERERS = ("embree", "opengl")
 

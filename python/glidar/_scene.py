@@ -4,8 +4,9 @@
 
 from __future__ import annotations
 
+import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -14,8 +15,9 @@ import numpy.typing as npt
 from . import _core
 from ._errors import Error
 from ._inputs import FloatArray, floats, log, one_of, whole
-from .sensor import Sensor, load_sensor
-from .simulator import Simulator
+from ._mesh import Mesh, mesh_of
+from ._sensor import Sensor, load_sensor, plain
+from ._simulator import Simulator
 
 _UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254}
 _AXES = ("x", "y", "z")
@@ -92,9 +94,32 @@ class Object:
         self._set(scale=float(floats(scale, "scale", ())))
 
     @property
+    def materials(self) -> list[str]:
+        """Names of its materials."""
+        return self._scene._core.materials(self._index)
+
+    def set_materials(self, changes: Mapping[str, Any]) -> None:
+        """Changes its materials, and not those of copies.
+
+        Args:
+            changes: as ``materials`` in scene files (docs/files.md): by the material's name, or "*" for
+                all, e.g. ``{"*": {"surface": "asphalt"}}`` or ``{"*": {"diffuse": [0.9, 0.1, 0.1]}}``.
+
+        Raises:
+            Error: names the field, what is allowed and the nearest known key.
+        """
+        self._scene._simulators.clear()
+        self._scene._core.set_materials(self._index, json.dumps(plain(changes, "materials")))
+
+    @property
     def source(self) -> str:
         """Where its mesh came from."""
         return str(self._info()["source"])
+
+    @property
+    def mesh(self) -> Mesh:
+        """Its mesh: copies of the arrays, in the object's own frame before scale."""
+        return Mesh(**self._scene._core.mesh(self._index))
 
     @property
     def triangles(self) -> int:
@@ -147,7 +172,7 @@ class Scene:
 
         Args:
             unit, up: as for ``Scene``.
-            placing: pose (4x4), scale, name, id, class_name of the object.
+            placing: pose (4x4), scale, name, id, class_name, materials of the object.
         """
         self._simulators.clear()
         index = self._core.add_model(os.fspath(source), _metres(unit), _axis(up), True, log)
@@ -163,33 +188,30 @@ class Scene:
         colours: npt.ArrayLike | None = None,
         **placing: Any,
     ) -> Object:
-        """Adds a mesh from arrays, or from an object that has vertices and faces, as trimesh's.
+        """Adds a mesh from arrays, or from what this and other libraries call a mesh.
 
         Args:
-            vertices: (V, 3), m, in the object's own frame; or the mesh object, without the rest.
+            vertices: (V, 3), m, in the object's own frame; or a ``Mesh``, or a mesh of trimesh or
+                Open3D, without the rest.
             triangles: (T, 3), indices of vertices, counter-clockwise seen from the front.
             normals: (V, 3), unit vectors; None: flat shading.
             uvs: (V, 2), v upwards.
-            colours: (V, 3), 0..1.
-            placing: pose (4x4), scale, name, id, class_name of the object.
+            colours: (V, 3), rgb 0..1.
+            placing: pose (4x4), scale, name, id, class_name, materials of the object.
 
         Raises:
             Error: a wrong shape, a number that is not finite, an index of no vertex.
         """
-        if triangles is None and hasattr(vertices, "vertices") and hasattr(vertices, "faces"):
-            vertices, triangles = vertices.vertices, vertices.faces
-        if triangles is None:
-            raise Error("triangles", "None", "indices of vertices, n x 3")
-        corners = floats(vertices, "vertices", (None, 3))
+        mesh = mesh_of(vertices) if triangles is None else Mesh(vertices, triangles, normals, uvs, colours)
+        corners = floats(mesh.vertices, "vertices", (None, 3))
         count = len(corners)
-        name = str(placing.get("name", "mesh"))
         index = self._core.add_mesh(
-            name,
+            str(placing.get("name", "mesh")),
             corners,
-            _triangles(triangles, count),
-            _per_vertex(normals, "normals", count, 3),
-            _per_vertex(uvs, "uvs", count, 2),
-            _per_vertex(colours, "colours", count, 3),
+            _triangles(mesh.triangles, count),
+            _per_vertex(mesh.normals, "normals", count, 3),
+            _per_vertex(mesh.uvs, "uvs", count, 2),
+            _per_vertex(mesh.colours, "colours", count, 3),
         )
         self._simulators.clear()
         return self._placed(index, placing)
@@ -198,7 +220,7 @@ class Scene:
         """Adds another object with the mesh and materials of one that is there; costs no memory.
 
         Args:
-            placing: pose (4x4), scale, name, id, class_name; as those of the first when not given.
+            placing: pose (4x4), scale, name, id, class_name, materials; as those of the first when not given.
         """
         self._simulators.clear()
         return self._placed(self._core.add_instance(of.index), placing)
@@ -206,8 +228,11 @@ class Scene:
     def _placed(self, index: int, placing: dict[str, Any]) -> Object:
         made = Object(self, index)
         for name, value in placing.items():
-            one_of(name, "argument", ("pose", "scale", "name", "id", "class_name"))
-            setattr(made, name, value)
+            one_of(name, "argument", ("pose", "scale", "name", "id", "class_name", "materials"))
+            if name == "materials":
+                made.set_materials(value)
+            else:
+                setattr(made, name, value)
         return made
 
     @property
@@ -302,3 +327,6 @@ def _per_vertex(value: npt.ArrayLike | None, where: str, count: int, size: int) 
     return floats(value, where, (count, size)).astype(np.float32)
 
 
+def surface_names() -> list[str]:
+    """Names of the surfaces that come along, for `surface` of materials."""
+    return _core.surface_names()
