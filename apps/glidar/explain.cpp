@@ -147,11 +147,12 @@ int run(const ExplainFlags& flags) {
       render, [] {}, console, session);
   check_models(sidecar, session.scene);
   Frame frame;
-  turn_to(render, sidecar.frame, session, frame);
-  const Setup setup = setup_of(session, console);
+  Mount& mount = only_mount(session);
+  turn_to(render, sidecar.frame, mount, frame);
+  const Setup setup = setup_of(session, mount, console);
   const auto pick = [&](const Frame& repeated) {
     check_frame(sidecar, repeated);
-    return entry_of(flags, sidecar, repeated, session.beams);
+    return entry_of(flags, sidecar, repeated, mount.beams);
   };
   Story story;
   {

@@ -207,12 +207,15 @@ std::string output_names_text() {
 }
 
 OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame) {
-  const std::string number = fmt::format("_{:06}", frame);
+  return labelled(flags, fmt::format("{:06}", frame));
+}
+
+OutputFlags labelled(const OutputFlags& flags, const std::string& label) {
   OutputFlags result = flags;
   for (std::string& path : result.paths) {
-    path.insert(path.size() - format_for(path).suffix.size(), number);
+    path.insert(path.size() - format_for(path).suffix.size(), "_" + label);
   }
-  if (!result.legacy_name.empty()) result.legacy_name += number;
+  if (!result.legacy_name.empty()) result.legacy_name += "_" + label;
   return result;
 }
 

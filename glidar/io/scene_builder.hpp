@@ -50,14 +50,14 @@ struct PlannedInstance {
 /// All that a scene file says, checked, before any model is loaded.
 struct ScenePlan {
   std::vector<PlannedInstance> instances;
-  std::optional<Sensor> sensor;
-  std::optional<Pose> world_from_sensor;
-  bool looks_at = false;                    ///< see SceneFile
-  std::optional<Trajectory> sensor_motion;  ///< empty: it stands still
-  std::vector<std::string> files;           ///< the scene file, and the sensor file if it names one
+  std::vector<RigSensor> sensors;
+  std::optional<Pose> world_from_rig;
+  bool looks_at = false;                 ///< see SceneFile
+  std::optional<Trajectory> rig_motion;  ///< empty: it stands still
+  std::vector<std::string> files;        ///< the scene file, and the sensor files it names
 };
 
-/// Reads a scene file and the sensor file it names; loads no model.
+/// Reads a scene file and the sensor files it names; loads no model.
 ScenePlan read_scene_plan(const std::filesystem::path& path, const ModelOptions& defaults);
 
 /// What `materials` of a scene file says; those for "*" first.

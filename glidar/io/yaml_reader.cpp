@@ -244,6 +244,11 @@ std::string text(const YamlField& field) {
   return field.node.Scalar();
 }
 
+std::string path_beside(const YamlField& field) {
+  const std::filesystem::path folder = std::filesystem::path(field.file).parent_path();
+  return (folder / text(field)).lexically_normal().string();
+}
+
 std::size_t one_of(const YamlField& field, const std::vector<std::string>& words) {
   const std::string word = field.node.IsScalar() ? field.node.Scalar() : "";
   const auto at = std::find(words.begin(), words.end(), word);
