@@ -16,9 +16,9 @@ from ._frame import Cloud, Frame, Truth
 from ._information import Direction, Information
 from ._mesh import Mesh, from_open3d, from_trimesh
 from ._poses import look_at, pose, quaternion
-from ._scene import Object, Scene, load_scene, surface_names
+from ._scene import Mount, Object, Scene, load_scene, surface_names
 from ._sensor import Sensor, SheetEntry, camera, load_sensor, sensor_names, sensor_sheet
-from ._simulator import Simulator, simulate, simulate_batch
+from ._simulator import Simulator, simulate, simulate_batch, simulate_rig
 from ._status import Cause, Status
 from ._story import Drawn, Echo, Reading, Step, Story
 from ._trajectory import Trajectory
@@ -36,6 +36,7 @@ __all__ = [
     "Frame",
     "Information",
     "Mesh",
+    "Mount",
     "Object",
     "Reading",
     "Scene",
@@ -61,6 +62,7 @@ __all__ = [
     "sensor_sheet",
     "simulate",
     "simulate_batch",
+    "simulate_rig",
     "surface_names",
     "verify",
 ]

@@ -4,9 +4,11 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import os
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -54,6 +56,8 @@ class Object:
 
     @name.setter
     def name(self, name: str) -> None:
+        if name in {other.name for other in self._scene if other.index != self._index}:
+            raise Error("name", f"{name!r}, which another object has", "each name once")
         self._set(name=name)
 
     @property
@@ -63,6 +67,8 @@ class Object:
 
     @id.setter
     def id(self, number: int) -> None:
+        if number in {other.id for other in self._scene if other.index != self._index}:
+            raise Error("id", f"{number}, which another object has", "each id once")
         self._set(id=whole(number, "id", 2**32 - 2))
 
     @property
@@ -130,6 +136,18 @@ class Object:
         return f"<glidar.Object {self.index} {self.name!r} of {self.source}: {self.triangles} triangles>"
 
 
+@dataclass(frozen=True)
+class Mount:
+    """A sensor on the rig of a scene file."""
+
+    name: str
+    number: int
+    """Its place in the file, which its random numbers depend on: the sensor_id of its frames."""
+    sensor: Sensor
+    rig_from_sensor: FloatArray
+    """4x4."""
+
+
 class Scene:
     """All there is to see: models, each placed as an object.
 
@@ -158,7 +176,7 @@ class Scene:
         if path.endswith((".yaml", ".yml")):
             self._core = _core.load_scene(path, _metres(unit), _axis(up), True, log)
         else:
-            self.add_model(path, unit=unit, up=up)
+            self._core.add_model(path, _metres(unit), _axis(up), True, log)
 
     def add_model(
         self,
@@ -226,14 +244,33 @@ class Scene:
         return self._placed(self._core.add_instance(of.index), placing)
 
     def _placed(self, index: int, placing: dict[str, Any]) -> Object:
+        """The object just added, with what is given of it, a name of its own and a number."""
         made = Object(self, index)
+        try:
+            self._core.set_object(index, None, None, self._free_name(made.name), self._free_id(index), None)
+            self._place(made, placing)
+        except BaseException:
+            self._core.drop_last()
+            raise
+        return made
+
+    def _free_name(self, base: str) -> str:
+        taken = {other.name for other in self.objects[:-1]}
+        numbered = (f"{base}_{n}" for n in itertools.count(2))
+        return next(name for name in itertools.chain([base], numbered) if name not in taken)
+
+    def _free_id(self, index: int) -> int:
+        taken = {other.id for other in self.objects[:-1]}
+        return next(number for number in itertools.count(index + 1) if number not in taken)
+
+    @staticmethod
+    def _place(made: Object, placing: dict[str, Any]) -> None:
         for name, value in placing.items():
             one_of(name, "argument", ("pose", "scale", "name", "id", "class_name", "materials"))
             if name == "materials":
                 made.set_materials(value)
             else:
                 setattr(made, name, value)
-        return made
 
     @property
     def objects(self) -> tuple[Object, ...]:
@@ -264,9 +301,17 @@ class Scene:
 
     @property
     def sensor(self) -> Sensor | None:
-        """The sensor of the scene file, if it has one."""
-        found = self._core.sensor
-        return None if found is None else Sensor(found)
+        """The sensor of the scene file; None when it has none, or a rig of several."""
+        rig = self._core.rig()
+        return Sensor(rig[0][1]) if len(rig) == 1 else None
+
+    @property
+    def rig(self) -> dict[str, Mount]:
+        """The sensors of the scene file by name; a single one has the name ""."""
+        return {
+            name: Mount(name, number, Sensor(core), pose)
+            for number, (name, core, pose) in enumerate(self._core.rig())
+        }
 
     def simulator(
         self, sensor: Sensor | str | os.PathLike[str] | None = None, *, renderer: str = "embree", threads: int = 0
@@ -288,9 +333,12 @@ class Scene:
         if sensor is not None:
             return load_sensor(sensor)
         own = self.sensor
-        if own is None:
-            raise Error("sensor", "the scene file has none", "a sensor", "glidar.camera() makes one")
-        return own
+        if own is not None:
+            return own
+        if self.rig:
+            allowed = "one of scene.rig: " + ", ".join(self.rig)
+            raise Error("sensor", f"the scene file has a rig of {len(self.rig)}", allowed, "simulate_rig takes all")
+        raise Error("sensor", "the scene file has none", "a sensor", "glidar.camera() makes one")
 
     def __repr__(self) -> str:
         return f"<glidar.Scene of {len(self)} objects: {', '.join(o.name for o in self.objects[:4])}>"

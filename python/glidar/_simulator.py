@@ -8,6 +8,7 @@ import os
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
 import numpy.typing as npt
 
 from . import _core
@@ -15,7 +16,7 @@ from ._errors import Error
 from ._inputs import column_list, one_of, whole, whole_numbers
 from ._frame import Frame
 from ._sensor import Sensor
-from ._trajectory import PoseLike, object_trajectories, trajectories
+from ._trajectory import PoseLike, Trajectory, object_trajectories, trajectories
 
 if TYPE_CHECKING:
     from ._scene import Scene
@@ -173,3 +174,40 @@ def simulate_batch(
     )
 
 
+def simulate_rig(
+    scene: Scene,
+    pose: PoseLike | None = None,
+    *,
+    seed: int = 0,
+    frame: int = 0,
+    objects: PoseLike | Sequence[PoseLike] | None = None,
+    columns: str | Iterable[str] | None = None,
+    renderer: str = "embree",
+    threads: int = 0,
+) -> dict[str, Frame]:
+    """Measures a scene once with each sensor of its scene file's rig; gives frames by their names.
+
+    Args:
+        pose: of the rig: world_from_rig (4x4), or a Trajectory; None: as the scene file says, else
+            where its first sensor sees all of the scene.
+
+    The other arguments and errors are those of ``simulate``.
+    """
+    if not scene.rig:
+        raise Error("scene", "it has no sensors", "a scene file with sensors")
+    mounts = [(m, scene.simulator(m.sensor, renderer=renderer, threads=threads)) for m in scene.rig.values()]
+    rig = scene._core.rig_motion() if pose is None else trajectories(pose, "pose")
+    if rig is None:
+        first, simulator = mounts[0]
+        rig = _core.mounted(simulator._core.usual_motion(), np.linalg.inv(first.rig_from_sensor)[None])
+    return {
+        mount.name: simulator.simulate(
+            Trajectory(_core.mounted(rig, mount.rig_from_sensor[None])),
+            seed=seed,
+            frame=frame,
+            objects=objects,
+            columns=columns,
+            sensor_id=mount.number,
+        )
+        for mount, simulator in mounts
+    }

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/trajectory_file.hpp>
+#include <glidar/motion/mounted.hpp>
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/filesystem.h>
@@ -81,6 +82,11 @@ Trajectories joined(const std::vector<Trajectories>& parts) {
     result.all.insert(result.all.end(), part.all.begin(), part.all.end());
   }
   return result;
+}
+
+/// Where a part of the first body is.
+Trajectories part_of(const Trajectories& body, const PoseArray& body_from_part) {
+  return {{mounted(body.all.at(0), pose_of(body_from_part, 0, "rig_from_sensor"))}};
 }
 
 /// Poses of the first trajectory at many times, (N, 4, 4).
@@ -161,6 +167,7 @@ void bind_motion(nb::module_& module) {
              nb::arg("rate_rad_s"), nb::arg("velocity_m_s"), nb::arg("t0_ns"));
   module.def("load_trajectory", load, nb::arg("path"), nb::arg("rate_hz").none(),
              nb::arg("times_file"), nb::arg("start_ns").none());
+  module.def("mounted", part_of, nb::arg("body"), nb::arg("body_from_part"));
   module.def("joined", joined, nb::arg("parts"));
   module.def("look_at", looking_at, nb::arg("eye"), nb::arg("target"), nb::arg("up"));
   module.def("quaternion", quaternion_of, nb::arg("rotation"));

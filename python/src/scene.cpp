@@ -39,10 +39,14 @@ SceneHandle load_file(const std::filesystem::path& path, const ModelOptions& opt
   SceneHandle handle;
   handle.scene = std::make_shared<Scene>(std::move(file.scene));
   handle.motion = std::move(file.world_from_instance);
-  if (file.sensor) handle.sensor = std::make_shared<SensorHandle>(std::move(*file.sensor));
-  handle.world_from_sensor = file.world_from_sensor;
+  for (RigSensor& one : file.sensors) {
+    handle.sensors.push_back({std::move(one.name),
+                              std::make_shared<SensorHandle>(std::move(one.sensor)),
+                              one.rig_from_sensor});
+  }
+  handle.world_from_rig = file.world_from_rig;
   handle.looks_at = file.looks_at;
-  handle.sensor_motion = std::move(file.sensor_motion);
+  handle.rig_motion = std::move(file.rig_motion);
   handle.files = std::move(file.files);
   return handle;
 }
@@ -220,6 +224,29 @@ nb::dict object_info(const SceneHandle& handle, std::size_t index) {
   return info;
 }
 
+/// Name, sensor and rig_from_sensor of each sensor of the scene file.
+nb::list rig_of(const SceneHandle& handle) {
+  nb::list rig;
+  for (const MountedSensor& one : handle.sensors) {
+    rig.append(nb::make_tuple(one.name, one.sensor, matrix_of(one.rig_from_sensor)));
+  }
+  return rig;
+}
+
+/// How the scene file moves the rig, or where it puts it.
+std::optional<Trajectories> rig_motion_of(const SceneHandle& handle) {
+  if (handle.rig_motion) return Trajectories{{*handle.rig_motion}};
+  if (handle.world_from_rig) return Trajectories{{ConstantPose{*handle.world_from_rig}}};
+  return std::nullopt;
+}
+
+/// Takes the last object away.
+void drop_last(SceneHandle& handle) {
+  Scene& scene = handle.change();
+  scene.instances.pop_back();
+  if (!handle.motion.empty()) handle.motion.resize(scene.instances.size());
+}
+
 std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> bounds_of(const SceneHandle& handle) {
   const Eigen::AlignedBox3d box = bounds(*handle.scene);
   if (box.isEmpty()) return std::nullopt;
@@ -268,9 +295,9 @@ void bind_scene(nb::module_& module) {
       .def("bounds", bounds_of)
       .def_prop_ro("class_names", [](const SceneHandle& self) { return self.scene->class_names; })
       .def_prop_ro("files", [](const SceneHandle& self) { return self.files; })
-      .def_prop_ro(
-          "sensor", [](const SceneHandle& self) { return self.sensor; },
-          nb::sig("def sensor(self) -> Sensor | None"));
+      .def("drop_last", drop_last)
+      .def("rig", rig_of, nb::sig("def rig(self) -> list[tuple[str, Sensor, numpy.ndarray]]"))
+      .def("rig_motion", rig_motion_of);
   module.def("load_scene", load, nb::arg("path"), nb::arg("metres_per_unit"), nb::arg("up").none(),
              nb::arg("use_cache"), nb::arg("log").none());
 }

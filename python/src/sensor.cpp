@@ -4,6 +4,7 @@
 
 #include "convert.hpp"
 
+#include <glidar/core/error.hpp>
 #include <glidar/io/sensor_file.hpp>
 #include <glidar/io/sensor_presets.hpp>
 #include <glidar/io/sidecar.hpp>
@@ -14,12 +15,35 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+
 namespace glidar::python {
 namespace {
 
 using Shared = std::shared_ptr<SensorHandle>;
 
+/// Throws Error when a frame of this camera cannot fit into the machine's memory.
+void require_memory(const Sensor& sensor) {
+  const auto* pinhole = std::get_if<Pinhole>(&sensor.optics);
+  if (pinhole == nullptr) return;
+  constexpr double kBytesPerBeam = 250.0;  // beam, truth, measurement and cloud together
+  constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
+  const double needed = kBytesPerBeam * pinhole->intrinsics.width * pinhole->intrinsics.height;
+  const double there =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  if (needed <= there) return;
+  throw Error(
+      {.where = "image size",
+       .found = "a frame takes about " + number_text(std::round(needed / kGibibyte)) + " GiB",
+       .allowed = "this machine's memory, " + number_text(std::round(there / kGibibyte)) + " GiB",
+       .remedy = "measure fewer pixels"});
+}
+
 Shared make(Sensor sensor) {
+  require_memory(sensor);
   const nb::gil_scoped_release release;
   return std::make_shared<SensorHandle>(std::move(sensor));
 }

@@ -25,10 +25,10 @@ constexpr std::size_t kTogether = 8;
 struct Simulator {
   std::shared_ptr<PreparedScene> prepared;
   std::shared_ptr<SensorHandle> sensor;
-  std::vector<Trajectory> motion;           ///< of the scene's instances; empty: they stand still
-  std::optional<Trajectory> sensor_motion;  ///< of the scene file
-  std::optional<Pose> world_from_sensor;    ///< of the scene file
-  bool looks_at = false;                    ///< see SceneFile
+  std::vector<Trajectory> motion;        ///< of the scene's instances; empty: they stand still
+  std::optional<Trajectory> rig_motion;  ///< of the scene file
+  std::optional<Pose> world_from_rig;    ///< of the scene file
+  bool looks_at = false;                 ///< see SceneFile
   std::shared_ptr<FramePool> pool = std::make_shared<FramePool>();
 };
 
@@ -37,8 +37,8 @@ Simulator make_simulator(SceneHandle& scene, const std::shared_ptr<SensorHandle>
   return {.prepared = prepare(scene, {.kind = renderer, .threads = threads}),
           .sensor = sensor,
           .motion = scene.motion,
-          .sensor_motion = scene.sensor_motion,
-          .world_from_sensor = scene.world_from_sensor,
+          .rig_motion = scene.rig_motion,
+          .world_from_rig = scene.world_from_rig,
           .looks_at = scene.looks_at};
 }
 
@@ -121,13 +121,13 @@ nb::list simulate_all(const Simulator& simulator, const Trajectories& sensors,
   return result;
 }
 
-/// Where the scene file has the sensor; else where it sees all of the scene.
+/// Where the scene file has its only sensor; else where it sees all of the scene.
 Trajectories usual_motion(const Simulator& simulator) {
-  if (simulator.sensor_motion) return {{*simulator.sensor_motion}};
+  if (simulator.rig_motion) return {{*simulator.rig_motion}};
   const std::shared_ptr<const Beams> beams = simulator.sensor->beams(0);
   const bool is_lidar = !looks_along_z(*beams);
-  if (simulator.world_from_sensor) {
-    const Pose& given = *simulator.world_from_sensor;
+  if (simulator.world_from_rig) {
+    const Pose& given = *simulator.world_from_rig;
     const bool turned = simulator.looks_at && is_lidar;
     return {{ConstantPose{turned ? given * optical_from_body() : given}}};
   }

@@ -26,7 +26,7 @@ def camera():
 
 @pytest.fixture(scope="session")
 def noisy():
-    return glidar.camera(64, 48, fov_deg=30.0, noise=[{"type": "range_gaussian", "sigma_m": 0.01}, {"type": "dropout", "rate": 0.1}])
+    return glidar.camera(64, 48, fov_deg=30.0, noise=[{"type": "range_gaussian", "sigma_m": 0.01}, {"type": "dropout", "probability": 0.1}])
 
 
 @pytest.fixture

@@ -16,7 +16,7 @@ def scene_file(tmp_path_factory):
     path.write_text(
         "models:\n  - {model: 'builtin:asteroid', id: 5, class: rock}\n  - {model: 'builtin:box', pose: {position: [2, 1, 0]}}\n"
         "sensor:\n  optics: {type: pinhole, width: 60, height: 40, fov_deg: 40}\n"
-        "  noise: [{type: range_gaussian, sigma_m: 0.01}, {type: dropout, rate: 0.05}]\n"
+        "  noise: [{type: range_gaussian, sigma_m: 0.01}, {type: dropout, probability: 0.05}]\n"
         "sensor_pose: {look_at: {eye: [6, -4, 3], target: [0, 0, 0]}}\n"
     )
     return path
