@@ -4,7 +4,8 @@
 """What Python adds to the time of a measurement, against the same loop in C++.
 
 usage: PYTHONPATH=build/dev/python build/venv/bin/python bench/python_bench.py BASELINE MODEL [ROUNDS]
-BASELINE is build/dev/bench/baseline/python_baseline. Both sides measure in turn; ratios are of medians.
+BASELINE is build/dev/bench/baseline/python_baseline. Both sides measure in turn, with one thread; times are
+of the processor, ratios of medians.
 """
 
 import statistics
@@ -38,9 +39,9 @@ class Baseline:
 
 
 def seconds(work):
-    start = time.perf_counter()
+    start = time.process_time()
     work()
-    return time.perf_counter() - start
+    return time.process_time() - start
 
 
 def compare(name, baseline, word, work, rounds):
@@ -60,14 +61,14 @@ def main():
     scene = glidar.Scene(model)
     sensor = glidar.camera(256, 256, fov_deg=20.0)
     poses = poses_about(scene)
-    simulator = scene.simulator(sensor)
+    simulator = scene.simulator(sensor, threads=1)
     compare("a frame, Simulator.simulate", baseline, "frame", lambda: simulator.simulate(poses[0]), 5 * rounds)
-    compare("a frame, glidar.simulate", baseline, "frame", lambda: glidar.simulate(scene, sensor, poses[0]), 5 * rounds)
+    compare("a frame, glidar.simulate", baseline, "frame", lambda: glidar.simulate(scene, sensor, poses[0], threads=1), 5 * rounds)
     compare(
         f"{FRAMES} frames, glidar.simulate_batch",
         baseline,
         "batch",
-        lambda: glidar.simulate_batch(scene, sensor, poses, np.arange(FRAMES)),
+        lambda: glidar.simulate_batch(scene, sensor, poses, np.arange(FRAMES), threads=1),
         max(10, rounds // 10),
     )
 

@@ -19,9 +19,9 @@ drivers=(libGL.so.1 libEGL.so.1 libOpenGL.so.0 libGLX.so.0 libGLdispatch.so.0)
 cmake --install "$build" --prefix "$folder/prefix" >"$folder/install.log"
 # only the bindings are compiled; the library is the installed one
 "$venv/pip" wheel --disable-pip-version-check --no-deps --no-build-isolation -w "$folder/raw" \
-  -C cmake.source-dir=python -C cmake.define.glidar_ROOT="$folder/prefix" \
-  -C cmake.define.CMAKE_CXX_COMPILER_LAUNCHER="$(command -v ccache)" \
-  -C build-dir="$folder/build" "$root"
+  --config-settings=cmake.source-dir=python --config-settings=cmake.define.glidar_ROOT="$folder/prefix" \
+  --config-settings=cmake.define.CMAKE_CXX_COMPILER_LAUNCHER="$(command -v ccache)" \
+  --config-settings=build-dir="$folder/build" "$root"
 PATH=$venv:$PATH auditwheel repair "${drivers[@]/#/--exclude=}" -w "$folder/repaired" "$folder"/raw/glidar-*.whl
 
 python3 -m venv "$folder/venv"

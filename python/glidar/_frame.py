@@ -355,11 +355,10 @@ class Frame:
         return story_of(_core.explain(self._core, self._entry(index, row, col, hits_only)))
 
     def _entry(self, index: int | None, row: int | None, col: int | None, hits_only: bool) -> int:
-        if (index is None) == (row is None or col is None):
-            raise Error("explain", "a point is named in two ways, or in none", "index, or row and col")
-        if index is None:
-            assert row is not None and col is not None
+        if index is None and row is not None and col is not None:
             return whole(row, "row", self.rows - 1) * self.cols + whole(col, "col", self.cols - 1)
+        if index is None or row is not None or col is not None:
+            raise Error("explain", "a point is named in two ways, or in none", "index, or row and col")
         if not hits_only:
             return whole(index, "index", self.rows * self.cols - 1)
         entries = np.flatnonzero(self.status == Status.hit)

@@ -125,7 +125,8 @@ class Object:
     @property
     def mesh(self) -> Mesh:
         """Its mesh: copies of the arrays, in the object's own frame before scale."""
-        return Mesh(**self._scene._core.mesh(self._index))
+        arrays: dict[str, Any] = self._scene._core.mesh(self._index)
+        return Mesh(**arrays)
 
     @property
     def triangles(self) -> int:

@@ -45,6 +45,7 @@ class Simulator:
             raise Error("sensor", "the scene has none", "a sensor", "glidar.camera() makes one")
         one_of(renderer, "renderer", _RENDERERS)
         self.sensor = chosen
+        self._usual_fields = _core.fields_for(column_list(None))
         self._core = _core.make_simulator(scene._core, chosen._core, renderer, whole(threads, "threads", 4096))
 
     def simulate(
@@ -58,10 +59,19 @@ class Simulator:
         sensor_id: int = 0,
     ) -> Frame:
         """Measures once; see ``glidar.simulate``."""
-        sensors = self._sensors(pose)
-        if len(sensors) != 1:
-            raise Error("pose", f"{len(sensors)} poses", "one pose, 4x4", "simulate_batch takes many")
-        return self._measure(sensors, objects, seed, frame, columns, sensor_id)[0]
+        sensor = self._sensors(pose)
+        if len(sensor) != 1:
+            raise Error("pose", f"{len(sensor)} poses", "one pose, 4x4", "simulate_batch takes many")
+        return Frame(
+            self._core.simulate_one(
+                sensor,
+                object_trajectories(objects, 1, self._core.objects),
+                whole(seed, "seed", 2**64 - 1),
+                whole(frame, "frame", 2**32 - 1),
+                whole(sensor_id, "sensor_id", 2**32 - 1),
+                self._fields(columns),
+            )
+        )
 
     def simulate_batch(
         self,
@@ -81,6 +91,9 @@ class Simulator:
             return self._core.usual_motion()
         return trajectories(poses, "pose")
 
+    def _fields(self, columns: str | Iterable[str] | None) -> _core.HitFields:
+        return self._usual_fields if columns is None else _core.fields_for(column_list(columns))
+
     def _measure(
         self,
         sensors: _core.Trajectories,
@@ -97,7 +110,7 @@ class Simulator:
             whole_numbers(seeds, "seed", count, 64),
             whole_numbers(numbers, "frame", count, 32),
             whole(sensor_id, "sensor_id", 2**32 - 1),
-            _core.fields_for(column_list(columns)),
+            self._fields(columns),
         )
         return [Frame(core) for core in measured]
 
@@ -199,7 +212,7 @@ def simulate_rig(
     rig = scene._core.rig_motion() if pose is None else trajectories(pose, "pose")
     if rig is None:
         first, simulator = mounts[0]
-        rig = _core.mounted(simulator._core.usual_motion(), np.linalg.inv(first.rig_from_sensor)[None])
+        rig = _core.mounted(simulator._core.usual_motion(), np.asarray(np.linalg.inv(first.rig_from_sensor)[None], np.float64))
     return {
         mount.name: simulator.simulate(
             Trajectory(_core.mounted(rig, mount.rig_from_sensor[None])),

@@ -166,7 +166,9 @@ void bind_motion(nb::module_& module) {
   module.def("tumbling", tumbling, nb::arg("poses"), nb::arg("moments_kg_m2"),
              nb::arg("rate_rad_s"), nb::arg("velocity_m_s"), nb::arg("t0_ns"));
   module.def("load_trajectory", load, nb::arg("path"), nb::arg("rate_hz").none(),
-             nb::arg("times_file"), nb::arg("start_ns").none());
+             nb::arg("times_file"), nb::arg("start_ns").none(),
+             nb::sig("def load_trajectory(path: str, rate_hz: float | None, times_file: str, "
+                     "start_ns: int | None) -> Trajectories"));
   module.def("mounted", part_of, nb::arg("body"), nb::arg("body_from_part"));
   module.def("joined", joined, nb::arg("parts"));
   module.def("look_at", looking_at, nb::arg("eye"), nb::arg("target"), nb::arg("up"));

@@ -288,10 +288,12 @@ void bind_scene(nb::module_& module) {
       .def("set_object", set_object, nb::arg("index"), nb::arg("pose").none(),
            nb::arg("scale").none(), nb::arg("name").none(), nb::arg("id").none(),
            nb::arg("class_name").none())
-      .def("mesh", mesh_of, nb::arg("index"))
+      .def("mesh", mesh_of, nb::arg("index"),
+           nb::sig("def mesh(self, index: int) -> dict[str, numpy.ndarray | None]"))
       .def("set_materials", set_materials_of, nb::arg("index"), nb::arg("text"))
       .def("materials", materials_of, nb::arg("index"))
-      .def("object", object_info, nb::arg("index"))
+      .def("object", object_info, nb::arg("index"),
+           nb::sig("def object(self, index: int) -> dict[str, typing.Any]"))
       .def("bounds", bounds_of)
       .def_prop_ro("class_names", [](const SceneHandle& self) { return self.scene->class_names; })
       .def_prop_ro("files", [](const SceneHandle& self) { return self.files; })
@@ -299,7 +301,9 @@ void bind_scene(nb::module_& module) {
       .def("rig", rig_of, nb::sig("def rig(self) -> list[tuple[str, Sensor, numpy.ndarray]]"))
       .def("rig_motion", rig_motion_of);
   module.def("load_scene", load, nb::arg("path"), nb::arg("metres_per_unit"), nb::arg("up").none(),
-             nb::arg("use_cache"), nb::arg("log").none());
+             nb::arg("use_cache"), nb::arg("log").none(),
+             nb::sig("def load_scene(path: str, metres_per_unit: float, up: int | None, "
+                     "use_cache: bool, log: object | None) -> Scene"));
 }
 
 }  // namespace glidar::python

@@ -116,7 +116,7 @@ void bind_sensor(nb::module_& module) {
       .def_prop_ro("cols", [](const SensorHandle& self) { return self.beams(0)->cols; })
       .def_prop_ro("returns", [](const SensorHandle& self) { return self.beams(0)->returns; })
       .def_prop_ro("frame_id", [](const SensorHandle& self) { return self.beams(0)->frame_id; })
-      .def_prop_ro("directions", directions)
+      .def_prop_ro("directions", directions, nb::sig("def directions(self) -> numpy.ndarray"))
       .def("description", description)
       .def("ideal", made_ideal);
   module.def("load_sensor", load, nb::arg("name_or_path"));

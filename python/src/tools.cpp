@@ -61,7 +61,8 @@ void bind_information(nb::module_& module) {
       .def_ro("assumed_sigma_m", &PoseInformation::assumed_sigma_m)
       .def("text", information_text)
       .def("json", information_json)
-      .def("save", write_information, nb::arg("path"));
+      .def("save", write_information, nb::arg("path"),
+           nb::sig("def save(self, path: str) -> None"));
   module.def("information", information, nb::arg("frame"), nb::arg("sigma_m"),
              nb::arg("sensor_from_reference"), nb::arg("instance").none());
 }

@@ -41,7 +41,7 @@ def test_every_name_has_a_docstring_and_the_document_tells_of_it():
         assert re.search(rf"\b{name}\b", text), name
 
 
-def test_notebook_runs_and_is_kept_without_outputs(folder):
+def test_notebook_runs_and_is_kept_without_outputs(folder, monkeypatch):
     nbclient = pytest.importorskip("nbclient")
     nbformat = pytest.importorskip("nbformat")
     path = ROOT / "examples/notebooks/first_steps.ipynb"
@@ -50,6 +50,7 @@ def test_notebook_runs_and_is_kept_without_outputs(folder):
         if cell.cell_type == "code":
             assert cell.outputs == []
             assert cell.execution_count is None
+    monkeypatch.delenv("MPLBACKEND")
     nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(folder)}}).execute()
     shown = [out for cell in notebook.cells if cell.cell_type == "code" for out in cell.outputs]
     assert any("image/png" in out.get("data", {}) for out in shown)

@@ -94,7 +94,7 @@ def test_frames_of_clouds_are_rigid_motions_of_each_other(frame):
     world = frame.cloud(["xyz"], frame="world", hits_only=True)
     pose = frame.world_from_sensor
     assert world["xyz"] == pytest.approx(sensor["xyz"] @ pose[:3, :3].T + pose[:3, 3], abs=1e-12)
-    assert np.array_equal(world.world_from_cloud, np.eye(4))
+    assert world.world_from_cloud == pytest.approx(np.eye(4), abs=1e-15)
     assert world.frame_id == "world"
     ros = frame.cloud(["xyz"], frame="ros", hits_only=True)["xyz"]
     assert ros == pytest.approx(sensor["xyz"][:, [2, 0, 1]] * [1, -1, -1], abs=1e-12)
@@ -161,14 +161,15 @@ def test_entries_that_are_not_there_have_no_story(frame):
 
 def test_information_of_a_plane_knows_what_it_does_not_determine():
     plane = glidar.Scene("builtin:plane")
-    frame = glidar.simulate(plane, glidar.camera(32, 32), glidar.look_at([0, 0, 2], [0, 0, 0], [0, 1, 0]))
+    frame = glidar.simulate(plane, glidar.camera(32, 32), glidar.look_at([0, 0, 2], [0, 0, 0], [0, 1, 0]), columns="all")
     told = frame.information(sigma_m=0.02)
     assert told.matrix.shape == (6, 6)
     assert np.allclose(told.matrix, told.matrix.T)
     assert [d.degenerate for d in told.directions] == [False] * 3 + [True] * 3
-    # sigma / sqrt(n) along the normal
-    assert told.bound[5] == pytest.approx(0.02 / np.sqrt(told.returns), rel=1e-2)
-    assert np.isinf(told.bound[[0, 1, 2, 3, 4]]).sum() == 3
+    # along the boresight, which is the plane's normal, every range tells 1 / (sigma cos)^2
+    cosines = frame.truth.cos_incidence[frame.status == glidar.Status.hit]
+    assert told.matrix[5, 5] == pytest.approx((1.0 / (0.02 * cosines.astype(float)) ** 2).sum(), rel=1e-6)
+    assert np.isinf(told.bound).sum() == 3
     assert told.to_dict()["returns"] == told.returns
     assert "translation" in str(told)
 
