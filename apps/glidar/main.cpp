@@ -124,13 +124,11 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer(kExamples);
   const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
-  const Commands commands = {{"render", add_render(program, arguments)},
-                             {"view", add_view(program)},
-                             {"stream", add_stream(program)},
-                             {"explain", add_explain(program)},
-                             {"info", add_info(program)},
-                             {"sensors", add_sensors(program)},
-                             {"verify", add_verify(program)}};
+  const Commands commands = {
+      {"render", add_render(program, arguments)}, {"view", add_view(program)},
+      {"stream", add_stream(program, arguments)}, {"replay", add_replay(program)},
+      {"explain", add_explain(program)},          {"info", add_info(program)},
+      {"sensors", add_sensors(program)},          {"verify", add_verify(program)}};
   return parse_and_run(program, commands, argc, argv);
 }
 
