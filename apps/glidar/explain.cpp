@@ -5,10 +5,10 @@
 #include <apps/glidar/option_kinds.hpp>
 #include <apps/glidar/recorded_command.hpp>
 #include <apps/glidar/session.hpp>
-#include <apps/glidar/story_text.hpp>
 #include <apps/glidar/stream_options.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/sidecar.hpp>
+#include <glidar/story_text.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>

@@ -3,9 +3,9 @@
 #include <apps/viewer/measuring.hpp>
 
 #include <apps/glidar/advice.hpp>
-#include <apps/glidar/story_text.hpp>
 #include <glidar/explain.hpp>
 #include <glidar/simulate.hpp>
+#include <glidar/story_text.hpp>
 
 #include <fmt/format.h>
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
+#include <glidar/core/cloud_frame.hpp>
 #include <glidar/core/frame.hpp>
 #include <glidar/core/scene.hpp>
-#include <glidar/core/workers.hpp>
 
 #include <cstdint>
 #include <span>
@@ -34,14 +34,6 @@ struct PointCloud {
   std::vector<Column> columns;
 
   [[nodiscard]] std::size_t size() const { return std::size_t{rows} * cols; }
-};
-
-/// The coordinate frame a cloud is expressed in, and who makes it.
-struct CloudFrame {
-  std::string frame_id;
-  Pose cloud_from_sensor = Pose::Identity();  ///< of the sensor at the start of the frame
-  bool deskew = false;  ///< true: xyz as fired from where the sensor was; false: as if it stood
-  Workers* workers = nullptr;  ///< share the work; nullptr: the calling thread does it alone
 };
 
 /// Names make_point_cloud knows, in the order files list them:

@@ -6,6 +6,7 @@
 
 #include <glidar/io/model.hpp>
 #include <glidar/io/scene_file.hpp>
+#include <glidar/io/yaml_reader.hpp>
 
 #include <filesystem>
 #include <functional>
@@ -58,6 +59,11 @@ struct ScenePlan {
 
 /// Reads a scene file and the sensor files it names; loads no model.
 ScenePlan read_scene_plan(const std::filesystem::path& path, const ModelOptions& defaults);
+/// The same of what such a file holds, without its own name among the files.
+ScenePlan read_scene_plan(const YamlField& root, const ModelOptions& defaults);
+
+/// What `materials` of a scene file says; those for "*" first.
+std::vector<MaterialOverride> read_overrides(const YamlField& field);
 
 using ModelLoader = std::function<Model(const std::string& source, const ModelOptions& options)>;
 

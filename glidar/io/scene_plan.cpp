@@ -76,17 +76,6 @@ MaterialOverride read_override(const std::string& material, const YamlField& fie
   return change;
 }
 
-std::vector<MaterialOverride> read_overrides(const YamlField& field) {
-  std::vector<MaterialOverride> changes;
-  for (const auto& [material, value] : entries(field)) {
-    changes.push_back(read_override(material, value));
-  }
-  // What is said of one material wins over what is said of all, wherever it stands.
-  std::stable_partition(changes.begin(), changes.end(),
-                        [](const MaterialOverride& change) { return change.material == "*"; });
-  return changes;
-}
-
 /// Where the model is at time 0, and how it moves.
 void read_placing(const YamlField& field, PlannedInstance& planned,
                   std::vector<std::string>& files) {
@@ -168,12 +157,27 @@ std::vector<PlannedInstance> read_models(const YamlField& field, const ModelOpti
 
 }  // namespace
 
+std::vector<MaterialOverride> read_overrides(const YamlField& field) {
+  std::vector<MaterialOverride> changes;
+  for (const auto& [material, value] : entries(field)) {
+    changes.push_back(read_override(material, value));
+  }
+  // What is said of one material wins over what is said of all, wherever it stands.
+  std::stable_partition(changes.begin(), changes.end(),
+                        [](const MaterialOverride& change) { return change.material == "*"; });
+  return changes;
+}
+
 ScenePlan read_scene_plan(const fs::path& path, const ModelOptions& defaults) {
-  const YamlField root = read_yaml(path);
+  ScenePlan plan = read_scene_plan(read_yaml(path), defaults);
+  plan.files.insert(plan.files.begin(), path.string());
+  return plan;
+}
+
+ScenePlan read_scene_plan(const YamlField& root, const ModelOptions& defaults) {
   require_map(root, {"models", "sensor", "sensor_pose", "sensor_motion", "sensors", "rig_pose",
                      "rig_motion"});
   ScenePlan plan;
-  plan.files.push_back(path.string());
   plan.instances = read_models(need(root, "models"), defaults, plan.files);
   for (const PlannedInstance& planned : plan.instances) {
     for (const MaterialOverride& change : planned.overrides) {

@@ -27,6 +27,9 @@ struct Sidecar {
 /// A hash, hexadecimal, of what the frame reports: status, range and intensity of every beam.
 std::string frame_hash(const Frame& frame);
 
+/// All numbers of a sensor with these beams, as JSON: what a sidecar tells of it.
+std::string sensor_text(const Sensor& sensor, const Beams& beams);
+
 /// A folder as seen from a file, so that both can be moved together, and back again.
 std::string folder_seen_from(const std::filesystem::path& file,
                              const std::filesystem::path& folder);

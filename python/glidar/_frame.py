@@ -1,0 +1,268 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Frames: what a sensor reports, and what can be asked of it."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._cloud import Cloud
+from ._errors import Error
+from ._information import Information
+from ._inputs import FloatArray, column_list, floats, log, one_of, whole
+from ._pictures import html_picture, html_table, plot_points, show_images
+from ._status import Cause, Status
+from ._story import Story, story_of
+from ._truth import Truth
+
+_PCD = ("ascii", "binary", "binary_compressed")
+
+
+class Frame:
+    """One measurement: what the sensor reports per beam, with the truth attached. Arrays are
+    (rows, cols), read-only views of the frame's memory, which they keep alive."""
+
+    __slots__ = ("_core",)
+
+    def __init__(self, core: _core.Frame) -> None:
+        self._core = core
+
+    @property
+    def rows(self) -> int:
+        """Rows; with several returns the rows of each, one below the other."""
+        return self._core.rows
+
+    @property
+    def cols(self) -> int:
+        """Columns."""
+        return self._core.cols
+
+    @property
+    def range_m(self) -> FloatArray:
+        """Measured distance along the beam from its origin, m; NaN unless status is hit."""
+        return self._measured("range_m")
+
+    @property
+    def intensity(self) -> npt.NDArray[np.float32]:
+        """Received signal; 0 unless hit."""
+        return self._measured("intensity")
+
+    @property
+    def status(self) -> npt.NDArray[np.uint8]:
+        """Why a beam has a return, or has none: see ``Status``."""
+        return self._measured("status")
+
+    @property
+    def cause(self) -> npt.NDArray[np.uint8]:
+        """What made a return: see ``Cause``."""
+        found = self._core.measured("cause")
+        if found is not None:
+            return found
+        return np.where(self.status == Status.hit, np.uint8(Cause.surface), np.uint8(Cause.none))
+
+    @property
+    def sigma_m(self) -> npt.NDArray[np.float32]:
+        """Standard deviation of the random error of range_m."""
+        found = self._core.measured("sigma_m")
+        return np.broadcast_to(np.float32(0.0), (self.rows, self.cols)) if found is None else found
+
+    def _measured(self, name: str) -> npt.NDArray[Any]:
+        found = self._core.measured(name)
+        assert found is not None
+        return found
+
+    @property
+    def hits(self) -> int:
+        """Beams with a return."""
+        return int(np.count_nonzero(self.status == Status.hit))
+
+    @property
+    def truth(self) -> Truth:
+        """What is there."""
+        return Truth(self._core)
+
+    @property
+    def stamp_ns(self) -> int:
+        """When the frame started."""
+        return self._core.stamp_ns
+
+    @property
+    def seed(self) -> int:
+        """Of its random numbers."""
+        return self._core.seed
+
+    @property
+    def number(self) -> int:
+        """Of the frame in its sequence."""
+        return self._core.number
+
+    @property
+    def sensor_id(self) -> int:
+        """Which sensor of a rig."""
+        return self._core.sensor_id
+
+    @property
+    def frame_id(self) -> str:
+        """Name of the sensor's coordinate frame."""
+        return self._core.frame_id
+
+    @property
+    def world_from_sensor(self) -> FloatArray:
+        """The sensor's pose at stamp_ns, 4x4."""
+        return self._core.world_from_sensor
+
+    @property
+    def world_from_objects(self) -> FloatArray:
+        """The objects' poses at stamp_ns, (k, 4, 4), without scale."""
+        return np.array(self._core.world_from_objects).reshape(-1, 4, 4)
+
+    def cloud(
+        self,
+        columns: str | Iterable[str] | None = None,
+        *,
+        frame: str = "sensor",
+        hits_only: bool = False,
+        deskew: bool = False,
+    ) -> Cloud:
+        """The measurement as a cloud.
+
+        Args:
+            columns: names (docs/python.md), "all", or None for xyz, intensity, range, normal,
+                instance, class.
+            frame: axes: "sensor", "optical", "ros", "gl", "legacy" or "world".
+            hits_only: leave misses out.
+            deskew: points where a moving sensor met them.
+
+        Raises:
+            Error: an unknown column or frame, or one that the frame was measured without.
+        """
+        names = column_list(columns)
+        if hits_only and "xyz" not in names:
+            names.append("xyz")
+        return Cloud(self._core.cloud(names, frame, deskew, hits_only), hits_only)
+
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        columns: str | Iterable[str] | None = None,
+        layout: str | None = None,
+        frame: str = "sensor",
+        hits_only: bool = False,
+        deskew: bool = False,
+        pcd: str = "binary",
+        ply_ascii: bool = False,
+        depth_units_per_m: float = 1000.0,
+        sidecar: bool = True,
+    ) -> None:
+        """Writes a file as ``glidar render -o PATH`` does; the suffix says what: .pcd .ply .npz .csv
+        .bin .npy .depth.png .png .transform.
+
+        Args:
+            columns, frame, hits_only, deskew: as for ``cloud``.
+            layout: fields of another sensor's driver in the place of columns, such as "velodyne".
+            pcd: "ascii", "binary" or "binary_compressed".
+            ply_ascii: PLY as text.
+            depth_units_per_m: of 16-bit depth images.
+            sidecar: write PATH.json beside a cloud.
+
+        Raises:
+            Error: an unknown suffix or layout, no such folder, a column that was not kept; what stood
+            under the name stays.
+        """
+        scale = float(floats(depth_units_per_m, "depth_units_per_m", ()))
+        if scale <= 0.0:
+            raise Error("depth_units_per_m", f"{scale}", "a finite number above 0")
+        encoding = _PCD.index(one_of(pcd, "pcd", _PCD))
+        if layout is not None and columns is not None:
+            remedy = "a layout has its own columns: leave columns out"
+            raise Error("layout and columns", "both are given", "one of the two", remedy)
+        options = _core.SaveOptions()
+        options.columns = column_list(columns)
+        options.frame = frame
+        options.deskew = deskew
+        options.set_pcd(encoding)
+        options.set_ply_ascii(ply_ascii)
+        options.set_dense(hits_only)
+        options.set_sidecar(sidecar)
+        options.set_layout(layout or "")
+        options.set_depth_units_per_m(scale)
+        self._core.save(os.fspath(path), options, log)
+
+    def show(self) -> Any:
+        """A matplotlib figure: depth and intensity, as images. Jupyter draws it; elsewhere
+        ``matplotlib.pyplot.show()`` opens it."""
+        depth = self.cloud(["depth"])["depth"]
+        return show_images({"depth, m": depth, "intensity": self.intensity})
+
+    def plot(self, *, colour: str = "intensity", frame: str = "world", most: int = 20000) -> Any:
+        """A matplotlib figure: the hits in space.
+
+        Args:
+            colour: a column of one number per point, such as range, incidence or status.
+            frame: axes, as for ``cloud``.
+            most: at most so many points are drawn, evenly picked.
+        """
+        cloud = self.cloud(["xyz", colour], frame=frame, hits_only=True)
+        step = max(1, -(-cloud.points // most))
+        return plot_points(cloud["xyz"][::step], cloud[colour][::step], colour, cloud.frame_id)
+
+    def _repr_html_(self) -> str:
+        told = {"beams": f"{self.rows} x {self.cols}", "hits": self.hits, "seed": self.seed, "frame": self.number}
+        return html_table(told) + html_picture(self.save)
+
+    def explain(
+        self, index: int | None = None, *, row: int | None = None, col: int | None = None, hits_only: bool = False
+    ) -> Story:
+        """How an entry came to be: the beam, what it met, the light, echoes, every step of noise with
+        the random numbers that it drew. The frame is measured once more for it.
+
+        Args:
+            index: which point of a cloud of the frame, from 0; of one of hits alone with
+                ``hits_only``. Or:
+            row, col: which row and column of the frame's arrays.
+
+        Raises:
+            Error: there is no such entry.
+        """
+        return story_of(_core.explain(self._core, self._entry(index, row, col, hits_only)))
+
+    def _entry(self, index: int | None, row: int | None, col: int | None, hits_only: bool) -> int:
+        if index is None and row is not None and col is not None:
+            return whole(row, "row", self.rows - 1) * self.cols + whole(col, "col", self.cols - 1)
+        if index is None or row is not None or col is not None:
+            raise Error("explain", "a point is named in two ways, or in none", "index, or row and col")
+        if not hits_only:
+            return whole(index, "index", self.rows * self.cols - 1)
+        entries = np.flatnonzero(self.status == Status.hit)
+        if len(entries) == 0:
+            raise Error("index", f"{index}", "", "the frame has no hits")
+        return int(entries[whole(index, "index", len(entries) - 1)])
+
+    def information(
+        self, *, sigma_m: float = 0.01, reference: npt.ArrayLike | None = None, instance: int | None = None
+    ) -> Information:
+        """What the frame can tell about the sensor's pose: Fisher's matrix and the bounds of any
+        estimate. Needs normals (the usual columns have them).
+
+        Args:
+            sigma_m: of every range when the sensor has no noise.
+            reference: sensor_from_reference, 4x4: where displacements count; None: the sensor's frame.
+            instance: only returns of this object, by its place in the scene; None: of all.
+
+        Raises:
+            Error: normals were not kept, or a number is out of range.
+        """
+        pose = floats(np.eye(4) if reference is None else reference, "reference", (4, 4))[None]
+        sigma = float(floats(sigma_m, "sigma_m", ()))
+        only = None if instance is None else whole(instance, "instance", 2**32 - 2)
+        return Information(_core.information(self._core, sigma, pose, only))
+
+    def __repr__(self) -> str:
+        return f"<glidar.Frame {self.number} of {self.rows} x {self.cols} beams, {self.hits} hits, seed {self.seed}>"

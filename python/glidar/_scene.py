@@ -1,0 +1,283 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scenes: models and meshes, placed."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._errors import Error
+from ._inputs import FloatArray, floats, log, one_of
+from ._mesh import Mesh, mesh_of
+from ._object import Object
+from ._sensor import Sensor, load_sensor, plain
+from ._simulator import Simulator
+
+_UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254}
+_AXES = ("x", "y", "z")
+_MOST_SIMULATORS = 8
+
+
+@dataclass(frozen=True)
+class Mount:
+    """A sensor on the rig of a scene file."""
+
+    name: str
+    number: int
+    """Its place in the file, which its random numbers depend on: the sensor_id of its frames."""
+    sensor: Sensor
+    rig_from_sensor: FloatArray
+    """4x4."""
+
+
+class Scene:
+    """All there is to see: models, each placed as an object.
+
+    Args:
+        source: a scene file (.yaml, .yml), a model file, or "builtin:asteroid", "builtin:sphere",
+            "builtin:box", "builtin:torus", "builtin:plane"; None: an empty scene.
+        unit: of a model file's numbers: "m", "cm", "mm", "in", or metres per unit.
+        up: the axis of a model file that becomes z: "x", "y", "z"; None: axes as in the file.
+
+    Raises:
+        Error: the file cannot be read, with line, column and field where it has them.
+    """
+
+    def __init__(
+        self,
+        source: str | os.PathLike[str] | None = None,
+        *,
+        unit: str | float = "m",
+        up: str | None = None,
+    ) -> None:
+        self._simulators: dict[tuple[int, str, int], Simulator] = {}
+        self._core = _core.Scene()
+        if source is None:
+            return
+        path = os.fspath(source)
+        if path.endswith((".yaml", ".yml")):
+            self._core = _core.load_scene(path, _metres(unit), _axis(up), True, log)
+        else:
+            self._core.add_model(path, _metres(unit), _axis(up), True, log)
+
+    @staticmethod
+    def from_dict(description: Mapping[str, Any]) -> Scene:
+        """A scene of the keys of a scene file (docs/files.md): models, sensor, sensor_pose ... Paths count
+        from the working folder.
+
+        Raises:
+            Error: names the field, what is allowed and the nearest known key.
+        """
+        scene = Scene()
+        scene._core = _core.parse_scene(json.dumps(plain(description, "scene")), log)
+        return scene
+
+    def add_model(
+        self,
+        source: str | os.PathLike[str],
+        *,
+        unit: str | float = "m",
+        up: str | None = None,
+        **placing: Any,
+    ) -> Object:
+        """Adds a model file or "builtin:NAME".
+
+        Args:
+            unit, up: as for ``Scene``.
+            placing: pose (4x4), scale, name, id, class_name, materials of the object.
+        """
+        self._simulators.clear()
+        index = self._core.add_model(os.fspath(source), _metres(unit), _axis(up), True, log)
+        return self._placed(index, placing)
+
+    def add_mesh(
+        self,
+        vertices: Any,
+        triangles: npt.ArrayLike | None = None,
+        *,
+        normals: npt.ArrayLike | None = None,
+        uvs: npt.ArrayLike | None = None,
+        colours: npt.ArrayLike | None = None,
+        **placing: Any,
+    ) -> Object:
+        """Adds a mesh from arrays, or from what this and other libraries call a mesh.
+
+        Args:
+            vertices: (V, 3), m, in the object's own frame; or a ``Mesh``, or a mesh of trimesh or
+                Open3D, without the rest.
+            triangles: (T, 3), indices of vertices, counter-clockwise seen from the front.
+            normals: (V, 3), unit vectors; None: flat shading.
+            uvs: (V, 2), v upwards.
+            colours: (V, 3), rgb 0..1.
+            placing: pose (4x4), scale, name, id, class_name, materials of the object.
+
+        Raises:
+            Error: a wrong shape, a number that is not finite, an index of no vertex.
+        """
+        mesh = mesh_of(vertices) if triangles is None else Mesh(vertices, triangles, normals, uvs, colours)
+        corners = floats(mesh.vertices, "vertices", (None, 3))
+        count = len(corners)
+        arrays = {
+            "vertices": corners,
+            "triangles": _triangles(mesh.triangles, count),
+            "normals": _per_vertex(mesh.normals, "normals", count, 3),
+            "uvs": _per_vertex(mesh.uvs, "uvs", count, 2),
+            "colours": _per_vertex(mesh.colours, "colours", count, 3),
+        }
+        index = self._core.add_mesh(str(placing.get("name", "mesh")), arrays)
+        self._simulators.clear()
+        return self._placed(index, placing)
+
+    def add_copy(self, of: Object, **placing: Any) -> Object:
+        """Adds another object with the mesh and materials of one that is there; costs no memory.
+
+        Args:
+            placing: pose (4x4), scale, name, id, class_name, materials; as those of the first when not given.
+        """
+        self._simulators.clear()
+        return self._placed(self._core.add_instance(of.index), placing)
+
+    def _placed(self, index: int, placing: dict[str, Any]) -> Object:
+        """The object just added, with what is given of it, a name of its own and a number."""
+        made = Object(self, index)
+        try:
+            self._core.set_object(index, {"name": self._free_name(made.name), "id": self._free_id(index)})
+            self._place(made, placing)
+        except BaseException:
+            self._core.drop_last()
+            raise
+        return made
+
+    def _free_name(self, base: str) -> str:
+        taken = {other.name for other in self.objects[:-1]}
+        numbered = (f"{base}_{n}" for n in itertools.count(2))
+        return next(name for name in itertools.chain([base], numbered) if name not in taken)
+
+    def _free_id(self, index: int) -> int:
+        taken = {other.id for other in self.objects[:-1]}
+        return next(number for number in itertools.count(index + 1) if number not in taken)
+
+    @staticmethod
+    def _place(made: Object, placing: dict[str, Any]) -> None:
+        for name, value in placing.items():
+            one_of(name, "argument", ("pose", "scale", "name", "id", "class_name", "materials"))
+            if name == "materials":
+                made.set_materials(value)
+            else:
+                setattr(made, name, value)
+
+    @property
+    def objects(self) -> tuple[Object, ...]:
+        """All objects, in order."""
+        return tuple(Object(self, index) for index in range(len(self._core)))
+
+    def __getitem__(self, name: str) -> Object:
+        for candidate in self.objects:
+            if candidate.name == name:
+                return candidate
+        raise Error("object", repr(name), ", ".join(o.name for o in self.objects) or "the scene is empty")
+
+    def __len__(self) -> int:
+        return len(self._core)
+
+    def __iter__(self) -> Iterator[Object]:
+        return iter(self.objects)
+
+    @property
+    def bounds(self) -> tuple[FloatArray, FloatArray] | None:
+        """Least and greatest corner of the box around all objects, world, m; None when empty."""
+        return self._core.bounds()
+
+    @property
+    def class_names(self) -> list[str]:
+        """Names of classes; their places are what clouds tell in the column `class`."""
+        return self._core.class_names
+
+    @property
+    def sensor(self) -> Sensor | None:
+        """The sensor of the scene file; None when it has none, or a rig of several."""
+        rig = self._core.rig()
+        return Sensor(rig[0][1]) if len(rig) == 1 else None
+
+    @property
+    def rig(self) -> dict[str, Mount]:
+        """The sensors of the scene file by name; a single one has the name ""."""
+        return {
+            name: Mount(name, number, Sensor(core), pose)
+            for number, (name, core, pose) in enumerate(self._core.rig())
+        }
+
+    def simulator(
+        self, sensor: Sensor | str | os.PathLike[str] | None = None, *, renderer: str = "embree", threads: int = 0
+    ) -> Simulator:
+        """What measures this scene with a sensor: the same one again when it was asked for before."""
+        chosen = self._chosen(sensor)
+        key = (id(chosen._core), renderer, threads)
+        found = self._simulators.get(key)
+        if found is None:
+            found = Simulator(self, chosen, renderer=renderer, threads=threads)
+            while len(self._simulators) >= _MOST_SIMULATORS:
+                self._simulators.pop(next(iter(self._simulators)))
+            self._simulators[key] = found
+        return found
+
+    def _chosen(self, sensor: Sensor | str | os.PathLike[str] | None) -> Sensor:
+        if isinstance(sensor, Sensor):
+            return sensor
+        if sensor is not None:
+            return load_sensor(sensor)
+        own = self.sensor
+        if own is not None:
+            return own
+        if self.rig:
+            allowed = "one of scene.rig: " + ", ".join(self.rig)
+            raise Error("sensor", f"the scene file has a rig of {len(self.rig)}", allowed, "simulate_rig takes all")
+        raise Error("sensor", "the scene file has none", "a sensor", "glidar.camera() makes one")
+
+    def __repr__(self) -> str:
+        return f"<glidar.Scene of {len(self)} objects: {', '.join(o.name for o in self.objects[:4])}>"
+
+
+def load_scene(path: str | os.PathLike[str], *, unit: str | float = "m", up: str | None = None) -> Scene:
+    """The scene of a scene file, a model file, or "builtin:NAME"; as ``Scene(path)``."""
+    return Scene(path, unit=unit, up=up)
+
+
+def _metres(unit: str | float) -> float:
+    if isinstance(unit, str):
+        return _UNITS[one_of(unit, "unit", tuple(_UNITS))]
+    return float(floats(unit, "unit", ()))
+
+
+def _axis(up: str | None) -> int | None:
+    return None if up is None else _AXES.index(one_of(up, "up", _AXES))
+
+
+def _triangles(value: npt.ArrayLike, vertices: int) -> npt.NDArray[np.uint32]:
+    given = np.asarray(value)
+    if given.ndim != 2 or given.shape[1] != 3 or given.dtype.kind not in "iu" or len(given) == 0:
+        found = f"an array {' x '.join(map(str, given.shape))} of {given.dtype}"
+        raise Error("triangles", found, "indices of vertices, n x 3 whole numbers")
+    if given.min() < 0 or given.max() >= vertices:
+        raise Error("triangles", f"indices from {given.min()} to {given.max()}", f"0 to {vertices - 1}")
+    return np.ascontiguousarray(given, dtype=np.uint32)
+
+
+def _per_vertex(value: npt.ArrayLike | None, where: str, count: int, size: int) -> npt.NDArray[np.float32] | None:
+    if value is None:
+        return None
+    return floats(value, where, (count, size)).astype(np.float32)
+
+
+def surface_names() -> list[str]:
+    """Names of the surfaces that come along, for `surface` of materials."""
+    return _core.surface_names()

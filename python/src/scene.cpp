@@ -1,0 +1,320 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene.hpp"
+
+#include "report.hpp"
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/surfaces.hpp>
+
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/map.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace glidar::python {
+namespace {
+
+ModelOptions model_options(double metres_per_unit, const std::optional<int>& up, bool use_cache) {
+  ModelOptions options;
+  options.metres_per_unit = metres_per_unit;
+  if (up) options.up = static_cast<Axis>(*up);
+  options.use_cache = use_cache;
+  return options;
+}
+
+SceneHandle handle_of(SceneFile file) {
+  SceneHandle handle;
+  handle.scene = std::make_shared<Scene>(std::move(file.scene));
+  handle.motion = std::move(file.world_from_instance);
+  for (RigSensor& one : file.sensors) {
+    handle.sensors.push_back({std::move(one.name),
+                              std::make_shared<SensorHandle>(std::move(one.sensor)),
+                              one.rig_from_sensor});
+  }
+  handle.world_from_rig = file.world_from_rig;
+  handle.looks_at = file.looks_at;
+  handle.rig_motion = std::move(file.rig_motion);
+  handle.files = std::move(file.files);
+  return handle;
+}
+
+SceneHandle load(const std::filesystem::path& path, double metres_per_unit,
+                 const std::optional<int>& up, bool use_cache, const nb::object& log) {
+  const ModelOptions options = model_options(metres_per_unit, up, use_cache);
+  return handle_of(unlocked(
+      [&](Watch& watch) { return load_scene_file(path, options, report_to(log, watch)); }));
+}
+
+SceneHandle parse(const std::string& text, const nb::object& log) {
+  return handle_of(
+      unlocked([&](Watch& watch) { return parse_scene(text, report_to(log, watch)); }));
+}
+
+/// Whatever is added to a scene whose instances move stands still.
+void add_still(SceneHandle& handle) {
+  if (handle.motion.empty()) return;
+  const Scene& scene = *handle.scene;
+  for (std::size_t i = handle.motion.size(); i < scene.instances.size(); ++i) {
+    handle.motion.emplace_back(ConstantPose{scene.instances[i].world_from_object});
+  }
+}
+
+std::size_t add_model(SceneHandle& handle, const std::string& source, double metres_per_unit,
+                      const std::optional<int>& up, bool use_cache, const nb::object& log) {
+  const ModelOptions options = model_options(metres_per_unit, up, use_cache);
+  Model model =
+      unlocked([&](Watch& watch) { return load_model(source, options, report_to(log, watch)); });
+  const std::size_t instance = glidar::add_model(handle.change(), std::move(model));
+  add_still(handle);
+  return instance;
+}
+
+using Floats3 = Table<float, 3>;
+
+template <class Vector, class Array>
+std::vector<Vector> vectors(const std::optional<Array>& given) {
+  if (!given) return {};
+  std::vector<Vector> result(given->shape(0));
+  if (!result.empty())
+    std::memcpy(static_cast<void*>(result.data()), given->data(), result.size() * sizeof(Vector));
+  return result;
+}
+
+/// A copy of what lies in memory as rows of kColumns numbers; None when there is nothing.
+template <class T, std::size_t kColumns, class Values>
+nb::object rows_of(const Values& values) {
+  if (values.empty()) return nb::none();
+  static_assert(sizeof(values[0]) == kColumns * sizeof(T));
+  auto copy = std::make_unique<Values>(values);
+  auto* data = reinterpret_cast<T*>(copy->data());
+  const std::array<std::size_t, 2> shape = {values.size(), kColumns};
+  const nb::capsule owner(copy.release(),
+                          [](void* kept) noexcept { delete static_cast<Values*>(kept); });
+  return nb::cast(array_at(data, shape, owner));
+}
+
+nb::dict mesh_of(const SceneHandle& handle, std::size_t index) {
+  const Scene& scene = *handle.scene;
+  const Mesh& mesh = scene.meshes.at(scene.instances.at(index).mesh);
+  std::vector<Eigen::Vector3d> vertices;
+  for (const Eigen::Vector3f& position : mesh.positions_m) {
+    vertices.emplace_back(mesh.origin_m + position.cast<double>());
+  }
+  nb::dict arrays;
+  arrays["vertices"] = rows_of<double, 3>(vertices);
+  arrays["triangles"] = rows_of<std::uint32_t, 3>(mesh.triangles);
+  arrays["normals"] = rows_of<float, 3>(mesh.normals);
+  arrays["uvs"] = rows_of<float, 2>(mesh.uvs[0]);
+  arrays["colours"] = rows_of<float, 3>(mesh.colours);
+  return arrays;
+}
+
+/// What a mesh is made of; arrays of one row per vertex but for the triangles.
+struct MeshArrays {
+  Table<double, 3> vertices;
+  Table<std::uint32_t, 3> triangles;
+  std::optional<Floats3> normals;
+  std::optional<Table<float, 2>> uvs;
+  std::optional<Floats3> colours;
+};
+
+Mesh make_mesh(const std::string& name, const MeshArrays& arrays) {
+  Mesh mesh;
+  mesh.name = name;
+  const std::size_t count = arrays.vertices.shape(0);
+  const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>> points(
+      arrays.vertices.data(), static_cast<Eigen::Index>(count), 3);
+  // near an origin single precision keeps every detail; at zero it is what files have
+  if (count > 0 && !points.cast<float>().cast<double>().isApprox(points, 0.0)) {
+    mesh.origin_m = 0.5 * (points.colwise().minCoeff() + points.colwise().maxCoeff()).transpose();
+  }
+  mesh.positions_m.reserve(count + 1);
+  for (Eigen::Index i = 0; i < points.rows(); ++i) {
+    mesh.positions_m.emplace_back((points.row(i).transpose() - mesh.origin_m).cast<float>());
+  }
+  mesh.normals = vectors<Eigen::Vector3f>(arrays.normals);
+  mesh.uvs[0] = vectors<Eigen::Vector2f>(arrays.uvs);
+  mesh.colours = vectors<Eigen::Vector3f>(arrays.colours);
+  mesh.triangles = vectors<Triangle>(std::optional(arrays.triangles));
+  validate(mesh);
+  return mesh;
+}
+
+/// An entry of a dict, where it has one that is not None.
+template <class T>
+std::optional<T> entry(const nb::dict& dict, const char* key) {
+  if (!dict.contains(key) || dict[key].is_none()) return std::nullopt;
+  return nb::cast<T>(dict[key]);
+}
+
+std::size_t add_mesh(SceneHandle& handle, const std::string& name, const nb::dict& arrays) {
+  Model model;
+  model.source = "array:" + name;
+  model.mesh =
+      make_mesh(name, {entry<Table<double, 3>>(arrays, "vertices").value(),
+                       entry<Table<std::uint32_t, 3>>(arrays, "triangles").value(),
+                       entry<Floats3>(arrays, "normals"), entry<Table<float, 2>>(arrays, "uvs"),
+                       entry<Floats3>(arrays, "colours")});
+  model.materials = {Material{}};
+  const std::size_t instance = glidar::add_model(handle.change(), std::move(model));
+  add_still(handle);
+  return instance;
+}
+
+std::size_t add_instance(SceneHandle& handle, std::size_t of) {
+  Scene& scene = handle.change();
+  scene.instances.push_back(Instance(scene.instances.at(of)));
+  add_still(handle);
+  return scene.instances.size() - 1;
+}
+
+std::uint32_t class_number(Scene& scene, const std::string& name) {
+  const auto found = std::find(scene.class_names.begin(), scene.class_names.end(), name);
+  const auto number = static_cast<std::uint32_t>(found - scene.class_names.begin());
+  if (found == scene.class_names.end()) scene.class_names.push_back(name);
+  return number;
+}
+
+/// Sets what is given of an object.
+void set_object(SceneHandle& handle, std::size_t index, const nb::dict& changes) {
+  Scene& scene = handle.change();
+  Instance changed = scene.instances.at(index);
+  const auto pose = entry<PoseArray>(changes, "pose");
+  if (pose) changed.world_from_object = pose_of(*pose, 0, "pose");
+  changed.scale = entry<double>(changes, "scale").value_or(changed.scale);
+  changed.name = entry<std::string>(changes, "name").value_or(changed.name);
+  changed.id = entry<std::uint32_t>(changes, "id").value_or(changed.id);
+  if (const auto name = entry<std::string>(changes, "class_name")) {
+    changed.class_id = class_number(scene, *name);
+  }
+  std::swap(scene.instances[index], changed);
+  try {
+    validate(scene);
+  } catch (...) {
+    std::swap(scene.instances[index], changed);
+    throw;
+  }
+  if (pose && !handle.motion.empty()) {
+    handle.motion[index] = ConstantPose{scene.instances[index].world_from_object};
+  }
+}
+
+void set_materials_of(SceneHandle& handle, std::size_t index, const std::string& text) {
+  set_materials(handle.change(), index, text);
+}
+
+std::vector<std::string> materials_of(const SceneHandle& handle, std::size_t index) {
+  std::vector<std::string> names;
+  for (const std::uint32_t material : handle.scene->instances.at(index).materials) {
+    names.push_back(handle.scene->materials.at(material).name);
+  }
+  return names;
+}
+
+nb::dict object_info(const SceneHandle& handle, std::size_t index) {
+  const Scene& scene = *handle.scene;
+  const Instance& instance = scene.instances.at(index);
+  nb::dict info;
+  info["name"] = instance.name;
+  info["id"] = instance.id;
+  info["class_name"] = scene.class_names.at(instance.class_id);
+  info["pose"] = nb::cast(matrix_of(instance.world_from_object));
+  info["scale"] = instance.scale;
+  info["source"] = scene.sources.at(instance.mesh).path;
+  info["triangles"] = scene.meshes.at(instance.mesh).triangles.size();
+  info["vertices"] = scene.meshes.at(instance.mesh).positions_m.size();
+  return info;
+}
+
+/// Name, sensor and rig_from_sensor of each sensor of the scene file.
+nb::list rig_of(const SceneHandle& handle) {
+  nb::list rig;
+  for (const MountedSensor& one : handle.sensors) {
+    rig.append(nb::make_tuple(one.name, one.sensor, matrix_of(one.rig_from_sensor)));
+  }
+  return rig;
+}
+
+/// How the scene file moves the rig, or where it puts it.
+std::optional<Trajectories> rig_motion_of(const SceneHandle& handle) {
+  if (handle.rig_motion) return Trajectories{{*handle.rig_motion}};
+  if (handle.world_from_rig) return Trajectories{{ConstantPose{*handle.world_from_rig}}};
+  return std::nullopt;
+}
+
+/// Takes the last object away.
+void drop_last(SceneHandle& handle) {
+  Scene& scene = handle.change();
+  scene.instances.pop_back();
+  if (!handle.motion.empty()) handle.motion.resize(scene.instances.size());
+}
+
+std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> bounds_of(const SceneHandle& handle) {
+  const Eigen::AlignedBox3d box = bounds(*handle.scene);
+  if (box.isEmpty()) return std::nullopt;
+  return std::pair(Eigen::Vector3d(box.min()), Eigen::Vector3d(box.max()));
+}
+
+}  // namespace
+
+Scene& SceneHandle::change() {
+  prepared.clear();
+  if (scene.use_count() > 1) scene = std::make_shared<Scene>(*scene);
+  return *scene;
+}
+
+std::shared_ptr<PreparedScene> prepare(SceneHandle& handle, const RendererOptions& options) {
+  const std::pair key(options.kind, options.threads);
+  if (const auto found = handle.prepared.find(key); found != handle.prepared.end()) {
+    return found->second;
+  }
+  auto made = std::make_shared<PreparedScene>();
+  made->scene = handle.scene;
+  {
+    const nb::gil_scoped_release release;
+    made->renderer = make_renderer(*made->scene, options);
+  }
+  if (made->scene == handle.scene) handle.prepared[key] = made;  // nobody changed it meanwhile
+  return made;
+}
+
+void bind_scene(nb::module_& module) {
+  nb::class_<SceneHandle>(module, "Scene")
+      .def(nb::init<>())
+      .def("__len__", [](const SceneHandle& self) { return self.scene->instances.size(); })
+      .def("add_model", add_model, nb::arg("source"), nb::arg("metres_per_unit"),
+           nb::arg("up").none(), nb::arg("use_cache"), nb::arg("log").none())
+      .def("add_mesh", add_mesh, nb::arg("name"), nb::arg("arrays"),
+           nb::sig("def add_mesh(self, name: str, arrays: dict[str, typing.Any]) -> int"))
+      .def("add_instance", add_instance, nb::arg("of"))
+      .def("set_object", set_object, nb::arg("index"), nb::arg("changes"),
+           nb::sig("def set_object(self, index: int, changes: dict[str, typing.Any]) -> None"))
+      .def("mesh", mesh_of, nb::arg("index"),
+           nb::sig("def mesh(self, index: int) -> dict[str, numpy.ndarray | None]"))
+      .def("set_materials", set_materials_of, nb::arg("index"), nb::arg("text"))
+      .def("materials", materials_of, nb::arg("index"))
+      .def("object", object_info, nb::arg("index"),
+           nb::sig("def object(self, index: int) -> dict[str, typing.Any]"))
+      .def("bounds", bounds_of)
+      .def_prop_ro("class_names", [](const SceneHandle& self) { return self.scene->class_names; })
+      .def_prop_ro("files", [](const SceneHandle& self) { return self.files; })
+      .def("drop_last", drop_last)
+      .def("rig", rig_of, nb::sig("def rig(self) -> list[tuple[str, Sensor, numpy.ndarray]]"))
+      .def("rig_motion", rig_motion_of);
+  module.def("parse_scene", parse, nb::arg("text"), nb::arg("log").none());
+  module.def("load_scene", load, nb::arg("path"), nb::arg("metres_per_unit"), nb::arg("up").none(),
+             nb::arg("use_cache"), nb::arg("log").none(),
+             nb::sig("def load_scene(path: str, metres_per_unit: float, up: int | None, "
+                     "use_cache: bool, log: object | None) -> Scene"));
+}
+
+}  // namespace glidar::python

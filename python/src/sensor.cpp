@@ -1,0 +1,129 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sensor.hpp"
+
+#include "convert.hpp"
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/sensor_file.hpp>
+#include <glidar/io/sensor_presets.hpp>
+#include <glidar/io/sidecar.hpp>
+
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+
+namespace glidar::python {
+namespace {
+
+using Shared = std::shared_ptr<SensorHandle>;
+
+/// Throws Error when a frame of this camera cannot fit into the machine's memory.
+void require_memory(const Sensor& sensor) {
+  const auto* pinhole = std::get_if<Pinhole>(&sensor.optics);
+  if (pinhole == nullptr) return;
+  constexpr double kBytesPerBeam = 250.0;  // beam, truth, measurement and cloud together
+  constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
+  const double needed = kBytesPerBeam * pinhole->intrinsics.width * pinhole->intrinsics.height;
+  const double there =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  if (needed <= there) return;
+  throw Error(
+      {.where = "image size",
+       .found = "a frame takes about " + number_text(std::round(needed / kGibibyte)) + " GiB",
+       .allowed = "this machine's memory, " + number_text(std::round(there / kGibibyte)) + " GiB",
+       .remedy = "measure fewer pixels"});
+}
+
+Shared make(Sensor sensor) {
+  require_memory(sensor);
+  const nb::gil_scoped_release release;
+  return std::make_shared<SensorHandle>(std::move(sensor));
+}
+
+Shared load(const std::string& name_or_path) {
+  return make(load_sensor_file(find_sensor_file(name_or_path)));
+}
+
+Shared parse(const std::string& text) {
+  return make(parse_sensor(text));
+}
+
+Shared made_ideal(const SensorHandle& handle) {
+  return make(ideal(handle.sensor()));
+}
+
+/// An array of one number, or one vector, per beam.
+template <class T, class Values, class Shape>
+nb::object per_beam(const Values& values, const Shape& shape, nb::handle owner) {
+  const T* data = values.empty() ? nullptr : reinterpret_cast<const T*>(values.data());
+  return nb::cast(array_at(data, shape, owner));
+}
+
+nb::object directions(const nb::handle& self) {
+  const auto beams = nb::cast<const SensorHandle&>(self).beams(0);
+  const std::array<std::size_t, 3> shape = {beams->rows, beams->cols, 3};
+  return per_beam<double>(beams->directions, shape, self);
+}
+
+/// One entry per number of the file: key, value, source, whether it is verified.
+nb::list sheet(const std::string& name_or_path) {
+  nb::list list;
+  for (const SheetEntry& entry : load_sensor_sheet(find_sensor_file(name_or_path)).entries) {
+    list.append(nb::make_tuple(entry.key, entry.value, entry.source, entry.verified));
+  }
+  return list;
+}
+
+std::string description(const SensorHandle& handle) {
+  return sensor_text(handle.sensor(), *handle.beams(0));
+}
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : preset_files()) names.push_back(file.stem().string());
+  return names;
+}
+
+}  // namespace
+
+SensorHandle::SensorHandle(Sensor sensor)
+    : sensor_(std::move(sensor)), first_(std::make_shared<const Beams>(make_beams(sensor_))) {}
+
+std::shared_ptr<const Beams> SensorHandle::beams(std::uint32_t number) const {
+  if (number == 0 || std::holds_alternative<Pinhole>(sensor_.optics)) return first_;
+  const std::lock_guard lock(mutex_);
+  if (last_number_ != number) {
+    last_ = std::make_shared<const Beams>(make_beams(sensor_, scan_window(sensor_, number)));
+    last_number_ = number;
+  }
+  return last_;
+}
+
+void bind_sensor(nb::module_& module) {
+  nb::class_<SensorHandle>(module, "Sensor")
+      .def_prop_ro("name", [](const SensorHandle& self) { return self.sensor().name; })
+      .def_prop_ro("rate_hz", [](const SensorHandle& self) { return self.sensor().rate_hz; })
+      .def_prop_ro("kind", [](const SensorHandle& self) { return self.sensor().optics.index(); })
+      .def_prop_ro("rows", [](const SensorHandle& self) { return self.beams(0)->rows; })
+      .def_prop_ro("cols", [](const SensorHandle& self) { return self.beams(0)->cols; })
+      .def_prop_ro("returns", [](const SensorHandle& self) { return self.beams(0)->returns; })
+      .def_prop_ro("frame_id", [](const SensorHandle& self) { return self.beams(0)->frame_id; })
+      .def_prop_ro("directions", directions, nb::sig("def directions(self) -> numpy.ndarray"))
+      .def("description", description)
+      .def("ideal", made_ideal);
+  module.def("load_sensor", load, nb::arg("name_or_path"));
+  module.def("parse_sensor", parse, nb::arg("text"));
+  module.def("sensor_sheet", sheet, nb::arg("name_or_path"),
+             nb::sig("def sensor_sheet(name_or_path: str) -> list[tuple[str, str, str, bool]]"));
+  module.def("preset_names", preset_names);
+}
+
+}  // namespace glidar::python
