@@ -3,10 +3,8 @@
 #include <glidar/link/socket.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/link/ipc_place.hpp>
 
-#include <sys/socket.h>
-#include <sys/un.h>
-#include <unistd.h>
 #include <zmq.hpp>
 
 #include <algorithm>
@@ -15,7 +13,6 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <filesystem>
 #include <map>
 #include <utility>
 
@@ -219,31 +216,8 @@ Socket::~Socket() = default;
 Socket::Socket(Socket&&) noexcept = default;
 Socket& Socket::operator=(Socket&&) noexcept = default;
 
-namespace {
-
-/// ZeroMQ would take the place of whatever has this name.
-void require_free(const std::string& path) {
-  const std::filesystem::file_status status = std::filesystem::status(path);
-  if (!std::filesystem::exists(status)) return;
-  if (!std::filesystem::is_socket(status)) {
-    throw Error({"ipc://" + path, "a file that is no socket has this name", "a name that is free",
-                 "choose another name"});
-  }
-  sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};
-  path.copy(address.sun_path, sizeof(address.sun_path) - 1);
-  const int descriptor = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
-  const bool answers =
-      ::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
-  ::close(descriptor);
-  if (!answers) return;  // of one that has ended without a word
-  throw Error({"ipc://" + path, "another program listens there", "a name that is free",
-               "end it, or choose another name"});
-}
-
-}  // namespace
-
 void Socket::bind(const Endpoint& endpoint) {
-  if (!endpoint.path.empty()) require_free(endpoint.path);
+  if (!endpoint.path.empty()) require_free_place(endpoint.path);
   try {
     impl_->socket.bind(text_of(endpoint));
   } catch (const zmq::error_t& error) {

@@ -100,26 +100,6 @@ models:
   EXPECT_FALSE(scene.world_from_rig.has_value());
 }
 
-TEST(SceneFile, ARigHasItsSensorsWithNamesAndPosesInTheOrderOfTheList) {
-  const TestFolder folder;
-  const ScenePlan scene = plan(
-      folder,
-      "models: [{model: a}]\n"
-      "sensors:\n"
-      "  - {name: lidar, sensor: VLP-16, pose: {position: [0, 0, 2]}}\n"
-      "  - {name: cam-2, sensor: {optics: {type: pinhole, width: 8, height: 6, fov_deg: 20}}}\n"
-      "rig_pose: {position: [1, 0, 0]}\n"
-      "rig_motion: {twist: {velocity_m_s: [0, 3, 0]}}\n");
-  ASSERT_EQ(scene.sensors.size(), 2U);
-  EXPECT_EQ(scene.sensors[0].name, "lidar");
-  EXPECT_EQ(scene.sensors[0].rig_from_sensor.translation(), Eigen::Vector3d(0, 0, 2));
-  EXPECT_EQ(scene.sensors[1].name, "cam-2");
-  EXPECT_EQ(scene.sensors[1].rig_from_sensor.matrix(), Pose::Identity().matrix());
-  EXPECT_TRUE(std::holds_alternative<Pinhole>(scene.sensors[1].sensor.optics));
-  ASSERT_TRUE(scene.rig_motion && scene.world_from_rig);
-  EXPECT_EQ(pose_at(*scene.rig_motion, 1'000'000'000).translation(), Eigen::Vector3d(1, 3, 0));
-}
-
 TEST(SceneFile, DefaultsOfAModel) {
   ModelOptions defaults;
   defaults.metres_per_unit = 0.01;

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/ipc_place.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include <filesystem>
+
+namespace glidar::link {
+
+void require_free_place(const std::string& path) {
+  const std::filesystem::file_status status = std::filesystem::status(path);
+  if (!std::filesystem::exists(status)) return;
+  if (!std::filesystem::is_socket(status)) {
+    throw Error({"ipc://" + path, "a file that is no socket has this name", "a name that is free",
+                 "choose another name"});
+  }
+  sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};
+  path.copy(address.sun_path, sizeof(address.sun_path) - 1);
+  const int descriptor = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const bool answers =
+      ::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+  ::close(descriptor);
+  if (!answers) return;  // of one that has ended without a word
+  throw Error({"ipc://" + path, "another program listens there", "a name that is free",
+               "end it, or choose another name"});
+}
+
+}  // namespace glidar::link
