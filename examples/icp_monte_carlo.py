@@ -31,6 +31,7 @@ except ImportError as missing:
              "pip install . -r scripts/requirements.txt")
 from study_tools import Progress, axis_angle, displaced, surface_points
 
+open3d.utility.set_max_threads(1)  # likewise
 SATELLITE = str(Path(__file__).resolve().parent.parent / "models" / "satellite" / "satellite.obj")
 TARGETS = {"asteroid": "builtin:asteroid", "satellite": SATELLITE}
 # Starts: turned so far about the target's middle, and shifted by so many of its radii.
