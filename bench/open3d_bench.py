@@ -81,7 +81,8 @@ def measure(views, rounds, clock):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLE, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(description=__doc__, epilog=EXAMPLE,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("models", nargs="+", help="model files")
     parser.add_argument("--rounds", type=int, default=41, help="how often they take turns [41]")
     parser.add_argument("--processor", action="store_true", help="time of the processor in place of the clock's")

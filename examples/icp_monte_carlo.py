@@ -43,6 +43,8 @@ CONVERGED = 0.02  # root mean square displacement of the target's points, in rad
 # many steps.
 STAGES = ((10_000, 0.3, 30), (150_000, 0.03, 10))
 PIXELS, FOV_DEG = 48, 40.0
+COLUMNS = ("xyz", "true_xyz", "normal")
+CAUSES = ("fits as well", "local minimum", "out of reach")  # of failure
 EXAMPLE = """examples:
   examples/icp_monte_carlo.py                        # 108 views of each target
   examples/icp_monte_carlo.py --trials 3600 --picture icp.png --table icp.csv
@@ -94,7 +96,8 @@ class Target:
         self.models = [Model(*sample, reach * self.radius, steps)
                        for sample, (_, reach, steps) in zip(samples, STAGES, strict=True)]
         self.sigma_m = SIGMA * self.radius
-        sensor = glidar.camera(PIXELS, PIXELS, fov_deg=FOV_DEG, noise=[{"type": "range_gaussian", "sigma_m": self.sigma_m}])
+        noise = [{"type": "range_gaussian", "sigma_m": self.sigma_m}]
+        sensor = glidar.camera(PIXELS, PIXELS, fov_deg=FOV_DEG, noise=noise)
         self.simulator = glidar.Simulator(self.scene, sensor, threads=1)
         # Mean squared displacement of the points by a rotation r about their middle: r^T (mean of |p|^2 1 - p p^T) r.
         self.spread = np.zeros((6, 6))
@@ -174,7 +177,7 @@ class View:
 
     def __init__(self, target, frame):
         self.target, self.pose = target, frame.world_from_sensor
-        cloud = frame.cloud(["xyz", "true_xyz", "normal"], hits_only=True)
+        cloud = frame.cloud(COLUMNS, hits_only=True)
         self.clouds = {"exact": cloud["true_xyz"], "noisy": cloud["xyz"]}
         self.normals = cloud["normal"].astype(float)
         away = self.clouds["exact"]
@@ -213,7 +216,7 @@ class View:
 
 
 def outcome(target, points, pose, found, error_m):
-    """Why it failed, if it did: judged by how the cloud lies on the model, there and in truth."""
+    """Why it failed, if it did, by how the cloud lies on the model: about as well as in truth, worse, or not at all."""
     if error_m < CONVERGED * target.radius:
         return "converged"
 
@@ -234,7 +237,7 @@ def outcome(target, points, pose, found, error_m):
 def run_trial(target, seed, number):
     """All registrations of one view; a function of its arguments alone."""
     random = np.random.default_rng([seed, number])
-    frame = target.simulator.simulate(view(random, target), seed=seed, frame=number, columns=["xyz", "true_xyz", "normal"])
+    frame = target.simulator.simulate(view(random, target), seed=seed, frame=number, columns=COLUMNS)
     seen = View(target, frame)
     cell = number % (len(ROTATIONS_DEG) * len(SHIFTS))
     rotation_deg, shift = ROTATIONS_DEG[cell // len(SHIFTS)], SHIFTS[cell % len(SHIFTS)]
@@ -247,8 +250,8 @@ def run_trial(target, seed, number):
         error_m = target.error_m(motion)
         nees = error @ seen.fisher @ error
         reason = outcome(target, seen.clouds[cloud], seen.pose, found, error_m)
-        rows.append(Row(target.name, number, rotation_deg, shift, cloud, method, error_m, seen.bound_m, seen.plain_m, nees,
-                        reason))
+        rows.append(Row(target.name, number, rotation_deg, shift, cloud, method, error_m, seen.bound_m, seen.plain_m,
+                        nees, reason))
 
     for cloud, points in seen.clouds.items():
         for method, find in METHODS.items():
@@ -290,7 +293,7 @@ def chosen(rows, **keys):
 
 def summary(rows, seconds):
     """For people: how many converge, how good those are, why the others are not."""
-    lines = [f"{'method':<17} cloud  converged | median error/bound  e'Fe/6 | fits as well  local minimum  out of reach   ms"]
+    lines = [f"{'method':<17} cloud  converged | median error/bound  e'Fe/6 | " + "  ".join(CAUSES) + "   ms"]
     for method in [*METHODS, WEIGHTED, REFERENCE]:
         for cloud in ("exact", "noisy"):
             of = chosen(rows, method=method, cloud=cloud)
@@ -299,7 +302,7 @@ def summary(rows, seconds):
             good = chosen(of, outcome="converged")
             ratio = np.median([row.error_m / row.bound_m for row in good]) if good else np.nan
             nees = np.median([row.nees for row in good]) / 5.348 if good else np.nan  # chi-squared's median, 6 dof
-            shares = [100 * len(chosen(of, outcome=cause)) / len(of) for cause in ("fits as well", "local minimum", "out of reach")]
+            shares = [100 * len(chosen(of, outcome=cause)) / len(of) for cause in CAUSES]
             took = f"{1e3 * seconds[method]:4.0f}" if method in seconds else "   -"
             lines.append(f"{method:<17} {cloud}  {100 * len(good) / len(of):7.1f} % | {ratio:18.3f} {nees:7.2f} | "
                          f"{shares[0]:10.1f} % {shares[1]:12.1f} % {shares[2]:11.1f} %  {took}")

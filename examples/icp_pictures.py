@@ -4,6 +4,7 @@
 
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.ticker import NullFormatter
 
 METHODS = ("small_gicp plane", "small_gicp GICP", "Open3D plane")
 AGAINST_BOUND = (("Open3D plane", "tab:blue"), ("weighted", "tab:orange"), ("planes known", "tab:green"))
@@ -28,7 +29,8 @@ def draw_map(panel, rows, title):
     panel.imshow(fractions, origin="lower", vmin=0, vmax=1, cmap="viridis", aspect="auto")
     panel.set_xticks(range(len(shifts)), [f"{shift:g}" for shift in shifts], fontsize=7)
     panel.set_yticks(range(len(rotations)), [f"{rotation:g}" for rotation in rotations], fontsize=7)
-    panel.set_title(title, fontsize=9)
+    panel.set_title(title, fontsize=8.5)
+    panel.set_xlabel("start shifted by, radii", fontsize=8)
 
 
 def draw_bound(panel, rows, name):
@@ -40,12 +42,18 @@ def draw_bound(panel, rows, name):
         bound, error = (np.array([1e3 * getattr(row, key) for row in good]) for key in ("bound_m", "error_m"))
         panel.loglog(bound, error, ".", color=colour, markersize=2.5, alpha=0.6,
                      label=f"{method}, rms {np.sqrt((np.minimum(error / bound, 100) ** 2).mean()):.2f} of the bound")
-    low, high = np.percentile([1e3 * row.bound_m for row in rows], [0, 100])
+    low, high = (1e3 * pick([row.bound_m for row in rows]) for pick in (min, max))
     panel.plot([low, high], [low, high], "k-", linewidth=1)
+    panel.set_ylim(top=6 * panel.get_ylim()[1])  # the legend's place
+    for axis in (panel.xaxis, panel.yaxis):
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_formatter(NullFormatter())
+    ticks = [value for value in (0.1, 0.2, 0.3, 0.5, 1, 2, 3, 5, 10, 20) if low <= value <= high]
+    panel.set_xticks(ticks, [f"{value:g}" for value in ticks])
     panel.set_xlabel("Cramer-Rao bound of the view, mm", fontsize=8)
     panel.set_ylabel("error, mm", fontsize=8)
-    panel.set_title(f"{name}: errors and the bound (line)", fontsize=9)
-    panel.legend(fontsize=6.5, loc="upper left")
+    panel.set_title(f"{name}: errors, and the bound as a line", fontsize=8.5)
+    panel.legend(fontsize=6.5, loc="upper left", markerscale=3)
     panel.tick_params(labelsize=7)
 
 
@@ -63,23 +71,26 @@ def draw_causes(panel, rows, name):
     panel.set_xticks(range(len(rotations)), [f"{rotation:g}" for rotation in rotations], fontsize=7)
     panel.set_xlabel("start turned by, degrees", fontsize=8)
     panel.set_ylabel("% of runs", fontsize=8)
-    panel.set_title(f"{name}: why runs fail", fontsize=9)
-    panel.text(0.02, 0.97, "bars, left to right:\n" + "\n".join(METHODS), transform=panel.transAxes, fontsize=6.5, va="top")
-    panel.legend(fontsize=6.5, loc="upper center")
+    panel.set_title(f"{name}: why runs fail", fontsize=8.5)
+    panel.set_ylim(0, 150)
+    panel.set_yticks(range(0, 101, 25))
+    panel.text(0.98, 0.98, "bars, left to right:\n" + "\n".join(METHODS), transform=panel.transAxes, fontsize=6.5,
+               va="top", ha="right")
+    panel.legend(fontsize=6.5, loc="upper left")
     panel.tick_params(labelsize=7)
 
 
 def draw(rows, path):
     """One row of panels per target."""
     names = list(dict.fromkeys(row.target for row in rows))
-    figure = Figure(figsize=(13, 3.1 * len(names)), dpi=100, layout="constrained")
-    for panels, name in zip(figure.subplots(len(names), 5, squeeze=False, width_ratios=[1, 1, 1, 1.35, 1.2]), names, strict=True):
+    figure = Figure(figsize=(12.5, 2.9 * len(names)), dpi=100, layout="constrained")
+    grid = figure.subplots(len(names), 5, squeeze=False, width_ratios=[1, 1, 1, 1.35, 1.2])
+    for panels, name in zip(grid, names, strict=True):
         of = chosen(rows, target=name)
         noisy = chosen(of, cloud="noisy")
         for panel, method in zip(panels, METHODS, strict=False):
-            draw_map(panel, chosen(noisy, method=method), f"{name}, {method}: converged, %")
-            panel.set_xlabel("start shifted by, radii", fontsize=8)
-        panels[0].set_ylabel("start turned by, degrees", fontsize=8)
+            draw_map(panel, chosen(noisy, method=method), f"{method}: converged, %")
+        panels[0].set_ylabel(f"{name}: start turned by, degrees", fontsize=8)
         draw_bound(panels[3], of, name)
         draw_causes(panels[4], noisy, name)
     figure.savefig(path)

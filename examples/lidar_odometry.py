@@ -9,6 +9,7 @@ without; and from scans that GLIDAR's truth has deskewed. Errors are against the
 """
 
 import argparse
+import itertools
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -33,12 +34,12 @@ EXAMPLE = """examples:
   examples/lidar_odometry.py --picture odometry.png --write odometry    # trajectories (TUM, KITTI) and scans (.bin)"""
 
 
-def box(size, middle):
-    """Corners and triangles of a box that stands on the ground at `middle` (x, y)."""
+def box(size):
+    """Corners and triangles of a box that stands on the ground."""
     signs = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (0, 1)])
     faces = np.array([[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]])
     triangles = np.concatenate([faces[:, [0, 1, 2]], faces[:, [0, 2, 3]]])
-    return signs * size + [*middle, 0], triangles
+    return signs * size, triangles
 
 
 def post(radius_m, height_m, sides=10):
@@ -51,36 +52,37 @@ def post(radius_m, height_m, sides=10):
     return np.concatenate([ring, ring + [0, 0, height_m]]), triangles
 
 
+def beside(pose, side, away_m, along_m=0.0):
+    """A place on the ground beside the road, turned along it."""
+    at = pose[:3, 3] + side * away_m * pose[:3, 1] + along_m * pose[:3, 0]
+    half = np.arctan2(pose[1, 0], pose[0, 0]) / 2
+    return glidar.pose([at[0], at[1], 0.0], wxyz=[np.cos(half), 0, 0, np.sin(half)])
+
+
 def street(seed=3):
     """Houses, parked cars, trees and lamps along the road of `route`, on flat ground."""
     random, scene = np.random.default_rng(seed), glidar.Scene()
+    wall, paint, bark = ({"*": {"diffuse": [grey] * 3}} for grey in (0.5, 0.3, 0.2))
     scene.add_model("builtin:plane", name="ground", scale=150.0, pose=glidar.pose([60, 30, 0]),
                     materials={"*": {"surface": "asphalt"}})
-    wall, paint, bark = ({"*": {"diffuse": [grey] * 3}} for grey in (0.5, 0.3, 0.2))
-    trunk, lamp = None, None
-    places = route(np.arange(0, 40, 0.02))[:, :3, 3]
-    for pose in route(np.arange(-1.0, 30.0, 1.1)):
-        forward, left = np.degrees(np.arctan2(pose[1, 0], pose[0, 0])), pose[:3, 1]
-        for side in (-1, 1):
-            def placed(away_m, along_m=0.0, side=side, left=left, pose=pose, forward=forward):
-                at = pose[:3, 3] + side * away_m * left + along_m * pose[:3, 0]
-                if np.linalg.norm(places - at, axis=1).min() < 0.7 * away_m:
-                    return None  # it would stand on the road where that comes back
-                return glidar.pose([at[0], at[1], 0.0], wxyz=[np.cos(np.radians(forward) / 2), 0, 0, np.sin(np.radians(forward) / 2)])
-
-            things = [("house", placed(random.uniform(11, 15)), wall, box(random.uniform((5, 6, 4), (9, 8, 10)), (0, 0)))]
-            if random.random() < 0.6:
-                things.append(("car", placed(4.0, random.uniform(-3, 3)), paint, box((4.2, 1.8, 1.5), (0, 0))))
-            for name, where, material, mesh in things:
-                if where is not None:
-                    scene.add_mesh(*mesh, name=f"{name}_{len(scene)}", class_name=name, materials=material, pose=where)
-            where = placed(6.0, random.uniform(-3, 3))
-            if where is not None and random.random() < 0.5:
-                trunk = copy_of(scene, trunk, post(0.2, 3.0), "trunk", bark, where)
-                scene.add_model("builtin:sphere", name=f"crown_{len(scene)}", class_name="crown", scale=random.uniform(1.0, 1.8),
-                                materials=bark, pose=where @ glidar.pose([0, 0, 3.8]))
-            elif where is not None:
-                lamp = copy_of(scene, lamp, post(0.1, 6.0), "lamp", bark, where)
+    road, trunk, lamp = route(np.arange(0, 40, 0.02))[:, :2, 3], None, None
+    for pose, side in itertools.product(route(np.arange(-1.0, 30.0, 1.1)), (-1, 1)):
+        house, car, tree = (beside(pose, side, away_m, along_m) for away_m, along_m in (
+            (random.uniform(11, 15), 0.0), (4.0, random.uniform(-3, 3)), (6.0, random.uniform(-3, 3))))
+        # What would stand on the road, where that comes back, is left out.
+        house_free, car_free, tree_free = (np.linalg.norm(road - place[:2, 3], axis=1).min() > least_m
+                                           for place, least_m in ((house, 8.0), (car, 2.8), (tree, 4.0)))
+        if house_free:
+            scene.add_mesh(*box(random.uniform((5, 6, 4), (9, 8, 10))), name=f"house_{len(scene)}", class_name="house",
+                           materials=wall, pose=house)
+        if car_free and random.random() < 0.6:
+            scene.add_mesh(*box((4.2, 1.8, 1.5)), name=f"car_{len(scene)}", class_name="car", materials=paint, pose=car)
+        if tree_free and random.random() < 0.5:
+            trunk = copy_of(scene, trunk, post(0.2, 3.0), "trunk", bark, tree)
+            scene.add_model("builtin:sphere", name=f"crown_{len(scene)}", class_name="crown", materials=bark,
+                            scale=random.uniform(1.0, 1.8), pose=tree @ glidar.pose([0, 0, 3.8]))
+        elif tree_free:
+            lamp = copy_of(scene, lamp, post(0.1, 6.0), "lamp", bark, tree)
     return scene
 
 
@@ -189,11 +191,12 @@ def write(folder, runs, scans):
     """Trajectories as TUM and KITTI have them, aligned with the truth, and scans as KITTI has them."""
     folder.mkdir(parents=True, exist_ok=True)
     for run in runs:
+        name = run.name.replace(" ", "_").replace("'", "")
         found = aligned(run.poses[:, :3, 3], run.truth[:, :3, 3]) @ run.poses
-        for suffix, poses in ((run.name.replace(" ", "_").replace("'", ""), found), ("truth_of_" + run.name.replace(" ", "_").replace("'", ""), run.truth)):
-            np.savetxt(folder / f"{suffix}.kitti", poses[:, :3].reshape(-1, 12), fmt="%.9g")
+        for stem, poses in ((name, found), (f"truth_of_{name}", run.truth)):
+            np.savetxt(folder / f"{stem}.kitti", poses[:, :3].reshape(-1, 12), fmt="%.9g")
             quaternions = np.stack([glidar.quaternion(pose, "xyzw") for pose in poses])
-            np.savetxt(folder / f"{suffix}.tum", np.column_stack([run.times_s, poses[:, :3, 3], quaternions]), fmt="%.9f")
+            np.savetxt(folder / f"{stem}.tum", np.column_stack([run.times_s, poses[:, :3, 3], quaternions]), fmt="%.9f")
     for number, scan in enumerate(scans):
         np.column_stack([scan.xyz, scan.phase]).astype("<f4").tofile(folder / f"{number:06d}.bin")
 
@@ -218,13 +221,14 @@ def main(arguments=None):
         from odometry_pictures import draw  # needs matplotlib
     sensor = glidar.load_sensor(flags.sensor)
     if sensor.kind != "spinning":
-        sys.exit(f"lidar_odometry: {flags.sensor} does not spin; `glidar sensors` lists sensors that do, such as VLP-16")
+        sys.exit(f"lidar_odometry: {flags.sensor} does not spin; `glidar sensors` tells which do, such as VLP-16")
     scans, trajectory = drive(street(), sensor.ideal() if flags.ideal else sensor, flags.seconds)
     runs = [odometry(name, scans, trajectory, sensor.rate_hz) for name in RUNS]
     print(f"{len(scans)} scans, {SPEED_M_S * flags.seconds:.0f} m; ATE after alignment, RPE over a second\n"
           f"{'':<22}  ATE m  largest m  RPE % of way  RPE deg/m")
     for run in runs:
-        print(f"{run.name:<22} {run.ate_m():6.3f} {run.errors_m.max():10.3f} {run.drift_percent:13.3f} {run.turn_deg_m:10.4f}")
+        print(f"{run.name:<22} {run.ate_m():6.3f} {run.errors_m.max():10.3f} {run.drift_percent:13.3f} "
+              f"{run.turn_deg_m:10.4f}")
     if flags.write:
         write(Path(flags.write), runs, scans)
     if flags.picture:

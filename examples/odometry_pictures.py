@@ -42,10 +42,10 @@ def draw_scan(panel, runs, scans):
 
 def draw_errors(upper, lower, runs):
     for run, colour in zip(runs, COLOURS, strict=True):
-        upper.plot(run.times_s, 100 * run.errors_m, "-", color=colour, label=f"{run.name}: ATE {100 * run.ate_m():.1f} cm")
+        upper.plot(run.times_s, 100 * run.errors_m, color=colour, label=f"{run.name}: ATE {100 * run.ate_m():.1f} cm")
         apart = round(1 / (run.times_s[1] - run.times_s[0]))
         metres, _ = relative_errors(run.poses, run.truth, apart)
-        lower.plot(run.times_s[apart:], 100 * metres, "-", color=colour, label=f"{run.name}: {run.drift_percent:.2f} % of the way")
+        lower.plot(run.times_s[apart:], 100 * metres, color=colour, label=f"{run.name}: {run.drift_percent:.2f} % of the way")
     upper.set_title("error of the position, cm", fontsize=9)
     lower.set_title("error of the motion over a second, cm", fontsize=9)
     lower.set_xlabel("time, s", fontsize=8)

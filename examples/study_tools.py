@@ -58,7 +58,8 @@ def turned(axis_angle_rad):
 
 def axis_angle(rotation):
     """The inverse of `turned`; the axis of half a turn comes from the symmetric part."""
-    twice_sine = np.array([rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0], rotation[1, 0] - rotation[0, 1]])
+    skew = rotation - rotation.T
+    twice_sine = np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
     sine, cosine = np.linalg.norm(twice_sine) / 2, (np.trace(rotation) - 1) / 2
     angle = np.arctan2(sine, cosine)
     if sine > 1e-6:

@@ -107,7 +107,8 @@ class Causes(unittest.TestCase):
         points = target.points[::20]
         away = study.displaced(np.zeros(3), [9 * target.radius, 0, 0])
         turned = study.displaced([0, 0, np.pi / 2], np.zeros(3), target.middle)
-        found = [study.outcome(target, points, np.eye(4), motion, target.error_m(motion)) for motion in (np.eye(4), away, turned)]
+        found = [study.outcome(target, points, np.eye(4), motion, target.error_m(motion))
+                 for motion in (np.eye(4), away, turned)]
         self.assertEqual(found, ["converged", "out of reach", "local minimum"])
 
 
@@ -131,7 +132,8 @@ class Command(unittest.TestCase):
             self.skipTest("no matplotlib")
         with tempfile.TemporaryDirectory() as folder:
             table, picture = Path(folder, "icp.csv"), Path(folder, "icp.png")
-            study.main(["--target", "asteroid", "--trials", "2", "--workers", "1", "--table", str(table), "--picture", str(picture)])
+            study.main(["--target", "asteroid", "--trials", "2", "--workers", "1", "--table", str(table),
+                        "--picture", str(picture)])
             lines = table.read_text(encoding="utf-8").splitlines()
             self.assertEqual(len(lines), 1 + 2 * (2 * (len(study.METHODS) + 1) + 1))
             self.assertEqual(picture.read_bytes()[1:4], b"PNG")

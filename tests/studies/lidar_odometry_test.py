@@ -83,7 +83,8 @@ class Errors(unittest.TestCase):
         # an angle a the chord 2 r sin(a / 2) is found s times as long.
         count, apart, radius, stretch = 360, 30, 10.0, 1.02
         angles = 2 * np.pi * np.arange(count) / count
-        truth = np.stack([tools.displaced([0, 0, angle], [radius * np.cos(angle), radius * np.sin(angle), 0]) for angle in angles])
+        truth = np.stack([tools.displaced([0, 0, angle], [radius * np.cos(angle), radius * np.sin(angle), 0])
+                          for angle in angles])
         found = truth.copy()
         found[:, :3, 3] *= stretch
         np.testing.assert_allclose(tools.position_errors(found, truth), 0.02 * radius, rtol=1e-9)
