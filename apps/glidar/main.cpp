@@ -30,7 +30,8 @@ constexpr const char* kExamples = R"(Examples:
   glidar info builtin:torus
   glidar sensors
   glidar verify
-More: glidar render --help, and the same for view, stream, explain, info, sensors and verify)";
+More: glidar render --help, and the same for view, stream, replay, explain, info, sensors and
+verify)";
 
 using Commands = std::vector<std::pair<std::string, Command>>;
 
