@@ -47,7 +47,7 @@ COLUMNS = ("xyz", "true_xyz", "normal")
 CAUSES = ("fits as well", "local minimum", "out of reach")  # of failure
 EXAMPLE = """examples:
   examples/icp_monte_carlo.py                        # 108 views of each target
-  examples/icp_monte_carlo.py --trials 3600 --picture icp.png --table icp.csv
+  examples/icp_monte_carlo.py --trials 432 --picture icp.png --table icp.csv
   examples/icp_monte_carlo.py --target asteroid --trials 72 --seed 7 --workers 1"""
 
 
