@@ -30,7 +30,8 @@ constexpr const char* kExamples = R"(Examples:
   glidar info builtin:torus
   glidar sensors
   glidar verify
-More: glidar render --help, and the same for view, stream, explain, info, sensors and verify)";
+More: glidar render --help, and the same for view, stream, explain, info, campaign, sensors and
+verify)";
 
 using Commands = std::vector<std::pair<std::string, Command>>;
 
@@ -129,6 +130,7 @@ int run(int argc, char** argv) {
                              {"stream", add_stream(program)},
                              {"explain", add_explain(program)},
                              {"info", add_info(program)},
+                             {"campaign", add_campaign(program)},
                              {"sensors", add_sensors(program)},
                              {"verify", add_verify(program)}};
   return parse_and_run(program, commands, argc, argv);
