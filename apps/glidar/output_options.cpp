@@ -165,7 +165,7 @@ void add_output_flags(CLI::App& command, OutputFlags& flags) {
   add_choice(
       command,
       {"--cloud-frame", "NAME", "Axes: sensor, optical, ros, gl, legacy or world [sensor]", group},
-      {"sensor", "optical", "ros", "gl", "world", "legacy"}, flags.cloud_frame);
+      cloud_frame_names(), flags.cloud_frame);
   command.add_flag("--deskew", flags.deskew, "Points where a moving sensor met them")->group(group);
   command.add_flag("--dense", flags.dense, "Leave misses out of clouds")->group(group);
   add_choice(command,
@@ -263,31 +263,6 @@ HitFields fields_for(const std::vector<Output>& outputs) {
     for (const std::string& name : output.columns) add_missing(name, columns);
   }
   return glidar::fields_for(columns);
-}
-
-CloudFrame cloud_frame(const std::string& name, const Beams& beams, const Pose& world_from_sensor) {
-  const bool lidar = !looks_along_z(beams);
-  const std::string prefix = lidar ? "lidar" : "camera";
-  const Pose optical_from_sensor = lidar ? optical_from_body() : Pose::Identity();
-  if (name == "world") return {.frame_id = "world", .cloud_from_sensor = world_from_sensor};
-  if (name == "ros") {
-    const Pose body_from_sensor = optical_from_body().inverse() * optical_from_sensor;
-    return {.frame_id = prefix + "_frame", .cloud_from_sensor = body_from_sensor};
-  }
-  if (name == "gl") {
-    Pose gl_from_optical = Pose::Identity();
-    gl_from_optical.linear().diagonal() = Eigen::Vector3d(1.0, -1.0, -1.0);
-    return {.frame_id = prefix + "_gl_frame",
-            .cloud_from_sensor = gl_from_optical * optical_from_sensor};
-  }
-  if (name == "legacy") {
-    return {.frame_id = prefix + "_legacy_frame",
-            .cloud_from_sensor = legacy_from_optical() * optical_from_sensor};
-  }
-  if (name == "optical") {
-    return {.frame_id = prefix + "_optical_frame", .cloud_from_sensor = optical_from_sensor};
-  }
-  return {.frame_id = beams.frame_id, .cloud_from_sensor = Pose::Identity()};
 }
 
 void write_outputs(const std::vector<Output>& outputs, const Frame& frame, const Beams& beams,

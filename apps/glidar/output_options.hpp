@@ -61,9 +61,6 @@ void protect_files(const std::vector<std::string>& read, const std::vector<Outpu
 /// The hit columns that all outputs together need.
 HitFields fields_for(const std::vector<Output>& outputs);
 
-/// The coordinate frame of this name for a camera's frame.
-CloudFrame cloud_frame(const std::string& name, const Beams& beams, const Pose& world_from_sensor);
-
 /// Writes them all; tells `report` which one is being written.
 void write_outputs(const std::vector<Output>& outputs, const Frame& frame, const Beams& beams,
                    const Scene& scene, const Report& report = {});

@@ -148,12 +148,6 @@ void add_pose_flags(CLI::App& command, PoseFlags& flags) {
   add_legacy_flags(command, flags);
 }
 
-Pose legacy_from_optical() {
-  Pose pose = Pose::Identity();
-  pose.linear().diagonal() = Eigen::Vector3d(-1.0, -1.0, 1.0);
-  return pose;
-}
-
 Pose legacy_world_from_object(const Eigen::Quaterniond& model_q) {
   return make_pose(Eigen::Vector3d::Zero(), model_q.conjugate());
 }

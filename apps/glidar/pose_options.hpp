@@ -34,10 +34,6 @@ struct ScenePose {
 
 void add_pose_flags(CLI::App& command, PoseFlags& flags);
 
-/// The 2015 program's sensor frame: x left, y up, z forward. The optical frame (x right, y down)
-/// turned by pi about z.
-Pose legacy_from_optical();
-
 /// The 2015 convention for any attitudes. A quaternion is an aerospace attitude: it takes vectors
 /// from the inertial axes into the body's, v_body = R(q) v_inertial. The object stands at the
 /// inertial frame's zero, the sensor at (0, 0, -D), so that

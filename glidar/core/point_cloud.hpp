@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
+#include <glidar/core/cloud_frame.hpp>
 #include <glidar/core/frame.hpp>
 #include <glidar/core/scene.hpp>
 
@@ -33,13 +34,6 @@ struct PointCloud {
   std::vector<Column> columns;
 
   [[nodiscard]] std::size_t size() const { return std::size_t{rows} * cols; }
-};
-
-/// The coordinate frame a cloud is expressed in.
-struct CloudFrame {
-  std::string frame_id;
-  Pose cloud_from_sensor = Pose::Identity();  ///< of the sensor at the start of the frame
-  bool deskew = false;  ///< true: xyz as fired from where the sensor was; false: as if it stood
 };
 
 /// Names make_point_cloud knows, in the order files list them:

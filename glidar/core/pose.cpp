@@ -51,6 +51,12 @@ Pose optical_from_body() {
   return pose;
 }
 
+Pose legacy_from_optical() {
+  Pose pose = Pose::Identity();
+  pose.linear().diagonal() = Eigen::Vector3d(-1.0, -1.0, 1.0);
+  return pose;
+}
+
 Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orientation) {
   const double norm = orientation.norm();
   if (!is_within_reach(position_m) || !orientation.coeffs().allFinite() || !(norm > 0.0)) {

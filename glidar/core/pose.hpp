@@ -25,6 +25,10 @@ Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Ei
 /// +x.
 Pose optical_from_body();
 
+/// The 2015 program's sensor frame: x left, y up, z forward. The optical frame (x right, y down)
+/// turned by pi about z.
+Pose legacy_from_optical();
+
 /// The pose with this attitude and position; the quaternion is normalised.
 /// Throws Error when it is zero or anything is not finite or beyond kLargestCoordinate_m.
 Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orientation);

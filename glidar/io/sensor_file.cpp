@@ -265,6 +265,10 @@ Sensor load_sensor_file(const std::filesystem::path& path) {
   return read_sensor(read_yaml(path));
 }
 
+Sensor parse_sensor(const std::string& text) {
+  return read_sensor(read_yaml_text("sensor", text));
+}
+
 SensorSheet load_sensor_sheet(const std::filesystem::path& path) {
   const YamlField root = read_yaml(path);
   return {path.stem().string(), read_sensor(root), read_entries(root)};

@@ -5,11 +5,16 @@
 #include <glidar/sensor/sensor.hpp>
 
 #include <filesystem>
+#include <string>
 
 namespace glidar {
 
 /// Reads a sensor from YAML (docs/files.md). Every error names file:line:column, the field, what is
 /// allowed and the nearest known key.
 Sensor load_sensor_file(const std::filesystem::path& path);
+
+/// The same from a text, YAML or JSON; files that it names count from the working folder. Errors
+/// name the field.
+Sensor parse_sensor(const std::string& text);
 
 }  // namespace glidar

@@ -55,6 +55,7 @@ std::vector<YAML::Node> parse(const std::string& file, const std::string& conten
 
 YamlField child(const YamlField& parent, std::string path, const YAML::Mark& before,
                 const YAML::Node& node) {
+  if (parent.mark.is_null()) return {parent.file, std::move(path), parent.mark, node};
   // yaml-cpp marks an absent value at the next token, which may be far below its key.
   return {parent.file, std::move(path), node.IsNull() ? before : node.Mark(), node};
 }
@@ -110,14 +111,8 @@ bool keeps(const NumberRule& rule, double value) {
   return value >= rule.least && value <= rule.most;
 }
 
-}  // namespace
-
-YamlField read_yaml(const fs::path& file) {
-  const std::string content =
-      read_text_file(file, {"a YAML file", kLargestFile_mib,
-                            "name models by their path, do not put them into the file"});
-  const std::string name = file.string();
-  const std::vector<YAML::Node> documents = parse(name, content);
+/// The one map of a file; `name` is the file's.
+YamlField root_of(const std::string& name, const std::vector<YAML::Node>& documents) {
   if (documents.empty() || documents[0].IsNull()) {
     throw Error({name, "the file is empty", "a YAML map (key: value)", "see docs/files.md"});
   }
@@ -129,6 +124,20 @@ YamlField read_yaml(const fs::path& file) {
   }
   if (!root.node.IsMap()) reject(root, describe(root), "a map (key: value)", "see docs/files.md");
   return root;
+}
+
+}  // namespace
+
+YamlField read_yaml(const fs::path& file) {
+  const std::string content =
+      read_text_file(file, {"a YAML file", kLargestFile_mib,
+                            "name models by their path, do not put them into the file"});
+  return root_of(file.string(), parse(file.string(), content));
+}
+
+YamlField read_yaml_text(const std::string& name, const std::string& text) {
+  const YamlField root = root_of(name, parse(name, text));
+  return {name, "", YAML::Mark::null_mark(), root.node};
 }
 
 std::string where(const YamlField& field) {

@@ -50,6 +50,9 @@ inline constexpr NumberRule kZeroToOne = {0.0, 1.0, false, "a number from 0 to 1
 /// syntax, nested too deeply, several documents, not a map.
 YamlField read_yaml(const std::filesystem::path& file);
 
+/// The same of a text that is no file: errors name it and the field, no line.
+YamlField read_yaml_text(const std::string& name, const std::string& text);
+
 /// "file:line:column: path", both counted from 1.
 std::string where(const YamlField& field);
 

@@ -1,0 +1,99 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What users hand in, checked and made into arrays that the library takes."""
+
+from __future__ import annotations
+
+import logging
+import operator
+from collections.abc import Iterable, Sequence
+from typing import Any, TypeAlias
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._errors import Error
+
+FloatArray: TypeAlias = npt.NDArray[np.float64]
+
+_LOGGER = logging.getLogger("glidar")
+_DEFAULT_COLUMNS = ("xyz", "intensity", "range", "normal", "instance", "class")
+
+
+def log(severity: str, message: str) -> None:
+    """What the library tells goes to the logger "glidar"."""
+    _LOGGER.log(logging.WARNING if severity == "warning" else logging.INFO, message)
+
+
+def shape_text(shape: Iterable[int | None]) -> str:
+    """(3, 4) as "3 x 4", with n where any size will do."""
+    return " x ".join("n" if size is None else str(size) for size in shape)
+
+
+def _numbers(value: object, where: str, allowed: str) -> npt.NDArray[Any]:
+    try:
+        given = np.asarray(value)
+    except (TypeError, ValueError, RuntimeError) as problem:  # ragged, or on another device
+        raise Error(where, f"no array: {problem}", allowed) from problem
+    if given.dtype.kind not in "fiu":
+        raise Error(where, f"an array of {given.dtype}", f"{allowed} of real numbers")
+    return given
+
+
+def floats(value: object, where: str, shape: Sequence[int | None]) -> FloatArray:
+    """An array of finite float64 of this shape, in C order; None is any size from 1."""
+    allowed = f"an array {shape_text(shape)}"
+    given = _numbers(value, where, allowed)
+    fits = given.ndim == len(shape) and all(
+        size > 0 if wanted is None else size == wanted for size, wanted in zip(given.shape, shape, strict=True)
+    )
+    if not fits:
+        raise Error(where, f"an array {shape_text(given.shape) or 'of one number'}", allowed)
+    result: FloatArray = np.asarray(given, dtype=np.float64, order="C")
+    if not np.isfinite(result).all():
+        place = np.argwhere(~np.isfinite(result))[0]
+        raise Error(where, f"{result[tuple(place)]} at [{', '.join(map(str, place))}]", "finite numbers")
+    return result
+
+
+def whole(value: object, where: str, most: int) -> int:
+    """A whole number from 0 to `most`."""
+    try:
+        number = operator.index(value)  # type: ignore[arg-type]
+    except TypeError:
+        number = -1
+    if not 0 <= number <= most:
+        raise Error(where, repr(value), f"a whole number from 0 to {most}")
+    return number
+
+
+def whole_numbers(value: object, where: str, count: int, bits: int) -> npt.NDArray[Any]:
+    """`count` whole numbers from 0 below 2**bits: given as such, or one for all."""
+    dtype = np.dtype(f"uint{bits}")
+    if np.ndim(value) == 0:  # type: ignore[arg-type]
+        return np.full(count, whole(value, where, 2**bits - 1), dtype)
+    allowed = f"{count} whole numbers from 0 to {2**bits - 1}, or one for all"
+    given = _numbers(value, where, allowed)
+    if given.shape != (count,) or given.dtype.kind not in "iu":
+        raise Error(where, f"an array {shape_text(given.shape)} of {given.dtype}", allowed)
+    if count and (int(given.min()) < 0 or int(given.max()) > 2**bits - 1):
+        raise Error(where, f"numbers from {given.min()} to {given.max()}", allowed)
+    return np.ascontiguousarray(given, dtype=dtype)
+
+
+def one_of(value: str, where: str, words: Sequence[str]) -> str:
+    """A word of a list."""
+    if value in words:
+        return value
+    raise Error(where, repr(value), ", ".join(words))
+
+
+def column_list(columns: str | Iterable[str] | None) -> list[str]:
+    """Names of cloud columns: a list, "a,b", "all", or None or "default" for those of files."""
+    if columns is None or columns == "default":
+        return list(_DEFAULT_COLUMNS)
+    if columns == "all":
+        return _core.cloud_column_names()
+    names = columns.split(",") if isinstance(columns, str) else list(columns)
+    return list(dict.fromkeys(names))

@@ -1,0 +1,329 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Frames, their truth, and clouds."""
+
+from __future__ import annotations
+
+import enum
+import os
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._errors import Error
+from ._inputs import FloatArray, column_list, floats, log, one_of
+
+Array = npt.NDArray[Any]
+
+_PCD = ("ascii", "binary", "binary_compressed")
+
+
+class Status(enum.IntEnum):
+    """Why a beam has a return, or has none."""
+
+    hit = 0
+    miss = 1
+    too_near = 2
+    too_far = 3
+    no_beam = 4
+    below_threshold = 5
+    dropped = 6
+    occluded = 7
+    wrapped = 8
+    saturated = 9
+    weather = 10
+    no_echo = 11
+
+
+class Cause(enum.IntEnum):
+    """What made a return."""
+
+    none = 0
+    surface = 1
+    mixed = 2
+    ghost = 3
+    false_alarm = 4
+    fog = 5
+    rain = 6
+    snow = 7
+    crosstalk = 8
+
+
+class Truth:
+    """What is there, whether the sensor reports it or not. Arrays are (rows, cols) or
+    (rows, cols, k), read-only views of the frame's memory. NaN, and 2**32 - 1 for indices, where the
+    beam hits nothing. What the frame's columns do not need is not kept: asking for it is an Error."""
+
+    __slots__ = ("_core",)
+
+    def __init__(self, core: _core.Frame) -> None:
+        self._core = core
+
+    def _kept(self, name: str) -> Array:
+        found = self._core.truth(name)
+        if found is None:
+            raise Error(f"truth.{name}", "not kept", "", "simulate(..., columns='all') keeps all truth")
+        return found
+
+    @property
+    def range_m(self) -> FloatArray:
+        """Distance along the beam from its origin, m."""
+        return self._kept("range_m")
+
+    @property
+    def instance(self) -> npt.NDArray[np.uint32]:
+        """Which object of the scene: ``scene.objects[instance]``."""
+        return self._kept("instance")
+
+    @property
+    def primitive(self) -> npt.NDArray[np.uint32]:
+        """Which triangle of the object's mesh."""
+        return self._kept("primitive")
+
+    @property
+    def normal(self) -> npt.NDArray[np.float32]:
+        """Unit normal of the triangle towards the sensor, in the sensor's frame, (rows, cols, 3)."""
+        return self._kept("normal")
+
+    @property
+    def shading_normal(self) -> npt.NDArray[np.float32]:
+        """Interpolated normal, bent by the normal map; likewise."""
+        return self._kept("shading_normal")
+
+    @property
+    def cos_incidence(self) -> npt.NDArray[np.float32]:
+        """Cosine between the beam, turned round, and `normal`."""
+        return self._kept("cos_incidence")
+
+    @property
+    def cos_shading(self) -> npt.NDArray[np.float32]:
+        """The same with `shading_normal`."""
+        return self._kept("cos_shading")
+
+    @property
+    def barycentrics(self) -> npt.NDArray[np.float32]:
+        """Weights of the triangle's corners 1 and 2, (rows, cols, 2)."""
+        return self._kept("barycentrics")
+
+    @property
+    def colour(self) -> npt.NDArray[np.float32]:
+        """Diffuse rgb, (rows, cols, 3)."""
+        return self._kept("colour")
+
+    @property
+    def object_point_m(self) -> FloatArray:
+        """The point hit, in the object's own frame before scale, m, (rows, cols, 3)."""
+        return self._kept("object_point_m")
+
+
+class Cloud(Mapping[str, Array]):
+    """Columns of a frame in a coordinate frame, by name. An organised cloud's arrays are (rows, cols)
+    or (rows, cols, k), one of hits alone (n,) or (n, k). They are the caller's own, may be written
+    to, and export __dlpack__."""
+
+    def __init__(self, core: _core.Cloud, flat: bool) -> None:
+        self._core = core
+        self._places = {name: index for index, name in enumerate(core.columns)}
+        self._flat = flat
+
+    def __getitem__(self, name: str) -> Array:
+        if name not in self._places:
+            raise Error("cloud", f"no column {name!r}", ", ".join(self._places), "ask for it: cloud(columns=[...])")
+        column = self._core.column(self._places[name])
+        return column[0] if self._flat else column
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._places)
+
+    def __len__(self) -> int:
+        return len(self._places)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._places
+
+    @property
+    def points(self) -> int:
+        """Points, with those that are misses."""
+        return self._core.rows * self._core.cols
+
+    @property
+    def frame_id(self) -> str:
+        """Name of the coordinate frame."""
+        return self._core.frame_id
+
+    @property
+    def world_from_cloud(self) -> FloatArray:
+        """Pose of that frame in the world, 4x4."""
+        return self._core.world_from_cloud
+
+    def __repr__(self) -> str:
+        return f"<glidar.Cloud of {self.points} points in {self.frame_id}: {', '.join(self)}>"
+
+
+class Frame:
+    """One measurement: what the sensor reports per beam, with the truth attached. Arrays are
+    (rows, cols), read-only views of the frame's memory, which they keep alive."""
+
+    __slots__ = ("_core",)
+
+    def __init__(self, core: _core.Frame) -> None:
+        self._core = core
+
+    @property
+    def rows(self) -> int:
+        """Rows; with several returns the rows of each, one below the other."""
+        return self._core.rows
+
+    @property
+    def cols(self) -> int:
+        """Columns."""
+        return self._core.cols
+
+    @property
+    def range_m(self) -> FloatArray:
+        """Measured distance along the beam from its origin, m; NaN unless status is hit."""
+        return self._measured("range_m")
+
+    @property
+    def intensity(self) -> npt.NDArray[np.float32]:
+        """Received signal; 0 unless hit."""
+        return self._measured("intensity")
+
+    @property
+    def status(self) -> npt.NDArray[np.uint8]:
+        """Why a beam has a return, or has none: see ``Status``."""
+        return self._measured("status")
+
+    @property
+    def cause(self) -> npt.NDArray[np.uint8]:
+        """What made a return: see ``Cause``."""
+        found = self._core.measured("cause")
+        if found is not None:
+            return found
+        return np.where(self.status == Status.hit, np.uint8(Cause.surface), np.uint8(Cause.none))
+
+    @property
+    def sigma_m(self) -> npt.NDArray[np.float32]:
+        """Standard deviation of the random error of range_m."""
+        found = self._core.measured("sigma_m")
+        return np.broadcast_to(np.float32(0.0), (self.rows, self.cols)) if found is None else found
+
+    def _measured(self, name: str) -> Array:
+        found = self._core.measured(name)
+        assert found is not None
+        return found
+
+    @property
+    def hits(self) -> int:
+        """Beams with a return."""
+        return int(np.count_nonzero(self.status == Status.hit))
+
+    @property
+    def truth(self) -> Truth:
+        """What is there."""
+        return Truth(self._core)
+
+    @property
+    def stamp_ns(self) -> int:
+        """When the frame started."""
+        return self._core.stamp_ns
+
+    @property
+    def seed(self) -> int:
+        """Of its random numbers."""
+        return self._core.seed
+
+    @property
+    def number(self) -> int:
+        """Of the frame in its sequence."""
+        return self._core.number
+
+    @property
+    def sensor_id(self) -> int:
+        """Which sensor of a rig."""
+        return self._core.sensor_id
+
+    @property
+    def frame_id(self) -> str:
+        """Name of the sensor's coordinate frame."""
+        return self._core.frame_id
+
+    @property
+    def world_from_sensor(self) -> FloatArray:
+        """The sensor's pose at stamp_ns, 4x4."""
+        return self._core.world_from_sensor
+
+    @property
+    def world_from_objects(self) -> FloatArray:
+        """The objects' poses at stamp_ns, (k, 4, 4), without scale."""
+        return np.array(self._core.world_from_objects).reshape(-1, 4, 4)
+
+    def cloud(
+        self,
+        columns: str | Iterable[str] | None = None,
+        *,
+        frame: str = "sensor",
+        hits_only: bool = False,
+        deskew: bool = False,
+    ) -> Cloud:
+        """The measurement as a cloud.
+
+        Args:
+            columns: names (docs/python.md), "all", or None for xyz, intensity, range, normal,
+                instance, class.
+            frame: axes: "sensor", "optical", "ros", "gl", "legacy" or "world".
+            hits_only: leave misses out.
+            deskew: points where a moving sensor met them.
+
+        Raises:
+            Error: an unknown column or frame, or one that the frame was measured without.
+        """
+        names = column_list(columns)
+        if hits_only and "xyz" not in names:
+            names.append("xyz")
+        return Cloud(self._core.cloud(names, frame, deskew, hits_only), hits_only)
+
+    def save(
+        self,
+        path: str | os.PathLike[str],
+        *,
+        columns: str | Iterable[str] | None = None,
+        layout: str | None = None,
+        frame: str = "sensor",
+        hits_only: bool = False,
+        deskew: bool = False,
+        pcd: str = "binary",
+        ply_ascii: bool = False,
+        depth_units_per_m: float = 1000.0,
+        sidecar: bool = True,
+    ) -> None:
+        """Writes a file as ``glidar render -o PATH`` does; the suffix says what: .pcd .ply .npz .csv
+        .bin .npy .depth.png .png .transform.
+
+        Args:
+            columns, frame, hits_only, deskew: as for ``cloud``.
+            layout: fields of another sensor's driver in the place of columns, such as "velodyne".
+            pcd: "ascii", "binary" or "binary_compressed".
+            ply_ascii: PLY as text.
+            depth_units_per_m: of 16-bit depth images.
+            sidecar: write PATH.json beside a cloud.
+
+        Raises:
+            Error: an unknown suffix or layout, no such folder, a column that was not kept; what stood
+            under the name stays.
+        """
+        scale = float(floats(depth_units_per_m, "depth_units_per_m", ()))
+        if scale <= 0.0:
+            raise Error("depth_units_per_m", f"{scale}", "a finite number above 0")
+        encoding = _PCD.index(one_of(pcd, "pcd", _PCD))
+        if layout is not None and columns is not None:
+            remedy = "a layout has its own columns: leave columns out"
+            raise Error("layout and columns", "both are given", "one of the two", remedy)
+        options = _core.save_options(encoding, ply_ascii, hits_only, sidecar, layout or "", scale)
+        self._core.save(os.fspath(path), column_list(columns), frame, deskew, options, log)
+
+    def __repr__(self) -> str:
+        return f"<glidar.Frame {self.number} of {self.rows} x {self.cols} beams, {self.hits} hits, seed {self.seed}>"

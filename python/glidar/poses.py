@@ -1,0 +1,81 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Poses: rigid transforms as 4x4 arrays, ``target_from_source``, metres, right-handed."""
+
+from __future__ import annotations
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._errors import Error
+from ._inputs import FloatArray, floats
+
+
+def pose(
+    xyz: npt.ArrayLike = (0.0, 0.0, 0.0),
+    *,
+    wxyz: npt.ArrayLike | None = None,
+    xyzw: npt.ArrayLike | None = None,
+    matrix: npt.ArrayLike | None = None,
+) -> FloatArray:
+    """A pose as a 4x4 array, from a position and an attitude.
+
+    Args:
+        xyz: position of the source's origin in the target frame, m.
+        wxyz: quaternion with w first (Blender, MuJoCo); normalised. Or:
+        xyzw: quaternion with w last (ROS, TUM, SciPy); normalised. Or:
+        matrix: rotation, 3x3. None of the three: no rotation.
+
+    Raises:
+        Error: several attitudes, a wrong shape, a number that is not finite, a quaternion of zeros.
+    """
+    given = [name for name, value in (("wxyz", wxyz), ("xyzw", xyzw), ("matrix", matrix)) if value is not None]
+    if len(given) > 1:
+        raise Error("pose", f"{' and '.join(given)} are given", "one attitude")
+    position = floats(xyz, "xyz", (3,))
+    if matrix is not None:
+        result = np.eye(4)
+        result[:3, :3] = floats(matrix, "matrix", (3, 3))
+        result[:3, 3] = position
+        checked: FloatArray = _core.constant(result[None], "pose").poses_at(np.zeros(1, np.int64))[0]
+        return checked
+    quaternion = np.array([1.0, 0.0, 0.0, 0.0])
+    if wxyz is not None:
+        quaternion = floats(wxyz, "wxyz", (4,))
+    elif xyzw is not None:
+        quaternion = np.roll(floats(xyzw, "xyzw", (4,)), 1)
+    return _core.make_pose(position, quaternion)
+
+
+def look_at(
+    eye: npt.ArrayLike, target: npt.ArrayLike, up: npt.ArrayLike = (0.0, 0.0, 1.0), *, boresight: str = "z"
+) -> FloatArray:
+    """The pose (world_from_sensor, 4x4) of a sensor at `eye` that looks at `target`.
+
+    Args:
+        eye, target: positions in the world, m.
+        up: the world's direction that is up for the sensor.
+        boresight: "z" for cameras (x right, y down, z forward), "x" for LiDARs (x forward, y left,
+            z up); ``Sensor.boresight`` tells.
+
+    Raises:
+        Error: eye and target coincide, or `up` is parallel to the line of sight.
+    """
+    if boresight not in ("x", "z"):
+        raise Error("boresight", repr(boresight), "'x' or 'z'")
+    optical = _core.look_at(floats(eye, "eye", (3,)), floats(target, "target", (3,)), floats(up, "up", (3,)))
+    if boresight == "z":
+        return optical
+    optical_from_body = np.array([[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+    return optical @ optical_from_body
+
+
+def quaternion(matrix: npt.ArrayLike, order: str) -> FloatArray:
+    """The unit quaternion of a pose or rotation, with w not negative, in the `order` "wxyz" or "xyzw"."""
+    if order not in ("wxyz", "xyzw"):
+        raise Error("order", repr(order), "'wxyz' or 'xyzw'")
+    size = 4 if np.shape(matrix) == (4, 4) else 3
+    rotation = floats(matrix, "matrix", (size, size))[:3, :3]
+    wxyz = _core.quaternion(np.ascontiguousarray(rotation))
+    return wxyz if order == "wxyz" else np.roll(wxyz, -1)

@@ -1,0 +1,156 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Sensors: by name, from files, and built of numbers."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._errors import Error
+from ._inputs import FloatArray
+
+_KINDS = ("camera", "spinning", "raster", "prism", "table")
+
+
+def _plain(value: object, where: str) -> object:
+    """NumPy's numbers and arrays as Python's own."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(part, f"{where}.{key}") for key, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(part, f"{where}[{k}]") for k, part in enumerate(value)]
+    if isinstance(value, (np.ndarray, np.generic)):
+        return _plain(value.tolist(), where)
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if value is None or isinstance(value, (bool, int, float, str)):
+        return value
+    raise Error(where, f"a {type(value).__name__}", "numbers, texts, lists and dicts")
+
+
+class Sensor:
+    """A 3D sensor: optics, light, noise, weather, limits. It never changes; `replace` makes another.
+
+    Sensors come from ``load_sensor``, ``camera`` and ``Sensor.from_dict``.
+    """
+
+    __slots__ = ("_core",)
+
+    def __init__(self, core: _core.Sensor) -> None:
+        self._core = core
+
+    @staticmethod
+    def from_dict(description: Mapping[str, Any]) -> Sensor:
+        """A sensor of the keys of a sensor file (docs/files.md): optics, noise, limits ...
+
+        Raises:
+            Error: names the field, what is allowed and the nearest known key.
+        """
+        return Sensor(_core.parse_sensor(json.dumps(_plain(description, "sensor"))))
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self._core.name
+
+    @property
+    def kind(self) -> str:
+        """Of its optics: camera, spinning, raster, prism or table."""
+        return _KINDS[self._core.kind]
+
+    @property
+    def rows(self) -> int:
+        """Rows of a frame; with several returns the rows of each, one below the other."""
+        return self._core.rows
+
+    @property
+    def cols(self) -> int:
+        """Columns of a frame."""
+        return self._core.cols
+
+    @property
+    def returns(self) -> int:
+        """How many returns of a pulse it reports."""
+        return self._core.returns
+
+    @property
+    def rate_hz(self) -> float:
+        """Frames per second."""
+        return self._core.rate_hz
+
+    @property
+    def frame_id(self) -> str:
+        """Name of its coordinate frame."""
+        return self._core.frame_id
+
+    @property
+    def boresight(self) -> str:
+        """The axis along which it looks: "z" for cameras, "x" for LiDARs."""
+        return "z" if self.kind == "camera" else "x"
+
+    @property
+    def directions(self) -> FloatArray:
+        """Unit vectors of the beams of frame 0, (rows, cols, 3), in the sensor's frame; read-only.
+        NaN where there is no beam."""
+        return self._core.directions
+
+    def ideal(self) -> Sensor:
+        """The same without noise, pulsed light, weather, footprint and further returns: it reports
+        the geometric truth."""
+        return Sensor(self._core.ideal())
+
+    def __repr__(self) -> str:
+        return f"<glidar.Sensor {self.name!r}: {self.kind}, {self.rows} x {self.cols}, {self.rate_hz:g} Hz>"
+
+
+def load_sensor(name_or_path: str | os.PathLike[str]) -> Sensor:
+    """A sensor by the name of a preset (``sensor_names()``) or from a sensor file (YAML).
+
+    Raises:
+        Error: there is none, with the nearest names; or the file's line, column and field.
+    """
+    return Sensor(_core.load_sensor(os.fspath(name_or_path)))
+
+
+def sensor_names() -> list[str]:
+    """Names of the sensors that come along."""
+    return _core.preset_names()
+
+
+def camera(
+    width: int = 256,
+    height: int = 256,
+    *,
+    fov_deg: float | None = None,
+    fx: float | None = None,
+    fy: float | None = None,
+    cx: float | None = None,
+    cy: float | None = None,
+    distortion: Mapping[str, Any] | None = None,
+    **sensor: Any,
+) -> Sensor:
+    """A depth camera: a pinhole of width x height pixels.
+
+    Args:
+        fov_deg: vertical field of view; 20 when no focal length is given. Or:
+        fx, fy: focal lengths in pixels; one of them: square pixels.
+        cx, cy: principal point in pixels; the middle when not given.
+        distortion: as in sensor files.
+        sensor: further keys of a sensor file: noise, limits, name, rate_hz, projector_m ...
+
+    Raises:
+        Error: names the field.
+    """
+    optics: dict[str, Any] = {"type": "pinhole", "width": width, "height": height}
+    if fx is None and fy is None and fov_deg is None:
+        fov_deg = 20.0
+    if fx is not None or fy is not None:
+        fx, fy = (fy if fx is None else fx), (fx if fy is None else fy)
+    given = {"fov_deg": fov_deg, "fx": fx, "fy": fy, "cx": cx, "cy": cy, "distortion": distortion}
+    optics.update({key: value for key, value in given.items() if value is not None})
+    return Sensor.from_dict({"optics": optics, **sensor})

@@ -1,0 +1,175 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Measuring scenes with sensors."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy.typing as npt
+
+from . import _core
+from ._errors import Error
+from ._inputs import column_list, one_of, whole, whole_numbers
+from .frame import Frame
+from .sensor import Sensor
+from .trajectory import PoseLike, object_trajectories, trajectories
+
+if TYPE_CHECKING:
+    from .scene import Scene
+
+_RENDERERS = ("embree", "opengl")
+
+
+class Simulator:
+    """A scene and a sensor made ready, so that measuring costs nothing but the measurement.
+
+    It keeps the scene as it is now: later changes of the scene are not seen. May be used from any
+    thread; measurements of one scene take turns, each on all threads, without Python's lock.
+
+    Args:
+        scene: what is measured.
+        sensor: what measures; None: that of the scene file.
+        renderer: "embree" (CPU), or "opengl" (cameras without distortion).
+        threads: of the renderer; 0: one per processor.
+    """
+
+    def __init__(
+        self, scene: Scene, sensor: Sensor | None = None, *, renderer: str = "embree", threads: int = 0
+    ) -> None:
+        chosen = scene.sensor if sensor is None else sensor
+        if chosen is None:
+            raise Error("sensor", "the scene has none", "a sensor", "glidar.camera() makes one")
+        one_of(renderer, "renderer", _RENDERERS)
+        self.sensor = chosen
+        self._core = _core.make_simulator(scene._core, chosen._core, renderer, whole(threads, "threads", 4096))
+
+    def simulate(
+        self,
+        pose: PoseLike | None = None,
+        *,
+        seed: int = 0,
+        frame: int = 0,
+        objects: PoseLike | Sequence[PoseLike] | None = None,
+        columns: str | Iterable[str] | None = None,
+        sensor_id: int = 0,
+    ) -> Frame:
+        """Measures once; see ``glidar.simulate``."""
+        sensors = self._sensors(pose)
+        if len(sensors) != 1:
+            raise Error("pose", f"{len(sensors)} poses", "one pose, 4x4", "simulate_batch takes many")
+        return self._measure(sensors, objects, seed, frame, columns, sensor_id)[0]
+
+    def simulate_batch(
+        self,
+        poses: PoseLike | Sequence[PoseLike],
+        seeds: int | npt.ArrayLike = 0,
+        *,
+        frames: int | npt.ArrayLike = 0,
+        objects: PoseLike | Sequence[PoseLike] | None = None,
+        columns: str | Iterable[str] | None = None,
+        sensor_id: int = 0,
+    ) -> list[Frame]:
+        """Measures many times in one call; see ``glidar.simulate_batch``."""
+        return self._measure(self._sensors(poses), objects, seeds, frames, columns, sensor_id)
+
+    def _sensors(self, poses: PoseLike | Sequence[PoseLike] | None) -> _core.Trajectories:
+        if poses is None:
+            return self._core.usual_motion()
+        return trajectories(poses, "pose")
+
+    def _measure(
+        self,
+        sensors: _core.Trajectories,
+        objects: PoseLike | Sequence[PoseLike] | None,
+        seeds: int | npt.ArrayLike,
+        numbers: int | npt.ArrayLike,
+        columns: str | Iterable[str] | None,
+        sensor_id: int,
+    ) -> list[Frame]:
+        count = len(sensors)
+        measured = self._core.simulate(
+            sensors,
+            object_trajectories(objects, count, self._core.objects),
+            whole_numbers(seeds, "seed", count, 64),
+            whole_numbers(numbers, "frame", count, 32),
+            whole(sensor_id, "sensor_id", 2**32 - 1),
+            _core.fields_for(column_list(columns)),
+        )
+        return [Frame(core) for core in measured]
+
+
+def simulate(
+    scene: Scene,
+    sensor: Sensor | str | os.PathLike[str] | None = None,
+    pose: PoseLike | None = None,
+    *,
+    seed: int = 0,
+    frame: int = 0,
+    objects: PoseLike | Sequence[PoseLike] | None = None,
+    columns: str | Iterable[str] | None = None,
+    sensor_id: int = 0,
+    renderer: str = "embree",
+    threads: int = 0,
+) -> Frame:
+    """Measures a scene once.
+
+    What was made ready is kept in the scene: the next call with the same sensor costs the measurement
+    alone.
+
+    Args:
+        scene: what is measured.
+        sensor: a Sensor, the name of a preset or a sensor file; None: that of the scene file.
+        pose: of the sensor: world_from_sensor (4x4), or a Trajectory; None: as the scene file says,
+            else where the sensor sees all of the scene.
+        seed: of all random numbers, 0 to 2**64 - 1.
+        frame: number of the frame: it starts at frame / rate_hz, and frames draw different numbers.
+        objects: poses of all objects of the scene (k, 4, 4), or a list of k poses and trajectories;
+            None: as the scene says.
+        columns: what clouds of the frame will hold: names, "all", or None for xyz, intensity, range,
+            normal, instance, class. Truth that no column needs is not computed.
+        sensor_id: sensors of one rig draw different random numbers.
+        renderer, threads: as for ``Simulator``.
+
+    Raises:
+        Error: a wrong shape, a number that is not finite, an unknown column.
+    """
+    simulator = scene.simulator(sensor, renderer=renderer, threads=threads)
+    return simulator.simulate(
+        pose, seed=seed, frame=frame, objects=objects, columns=columns, sensor_id=sensor_id
+    )
+
+
+def simulate_batch(
+    scene: Scene,
+    sensor: Sensor | str | os.PathLike[str] | None,
+    poses: PoseLike | Sequence[PoseLike],
+    seeds: int | npt.ArrayLike = 0,
+    *,
+    frames: int | npt.ArrayLike = 0,
+    objects: PoseLike | Sequence[PoseLike] | None = None,
+    columns: str | Iterable[str] | None = None,
+    sensor_id: int = 0,
+    renderer: str = "embree",
+    threads: int = 0,
+) -> list[Frame]:
+    """Measures a scene at many poses in one call, without Python's lock; frame k is, to the bit, what
+    ``simulate`` makes of poses[k], seeds[k], frames[k].
+
+    Args:
+        poses: world_from_sensor, (N, 4, 4), or a list of N poses and trajectories.
+        seeds: N seeds, or one for all.
+        frames: N frame numbers, or one for all.
+        objects: poses of the scene's k objects: (N, k, 4, 4), or (k, 4, 4) or a list of k poses and
+            trajectories for all frames; None: as the scene says.
+
+    The other arguments and errors are those of ``simulate``.
+    """
+    simulator = scene.simulator(sensor, renderer=renderer, threads=threads)
+    return simulator.simulate_batch(
+        poses, seeds, frames=frames, objects=objects, columns=columns, sensor_id=sensor_id
+    )
+
+

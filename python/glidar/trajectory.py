@@ -1,0 +1,172 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Motion: poses as functions of time."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import TypeAlias, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._errors import Error
+from ._inputs import FloatArray, floats, shape_text
+
+_MOST_S = 9.2e9
+
+
+def _ns(value_s: float, where: str) -> int:
+    seconds = float(floats(value_s, where, ()))
+    if abs(seconds) > _MOST_S:
+        raise Error(where, f"{seconds}", "seconds up to 9.2e9")
+    return round(seconds * 1e9)
+
+
+def _times_ns(value_s: npt.ArrayLike, where: str) -> npt.NDArray[np.int64]:
+    seconds = floats(value_s, where, (None,))
+    if np.abs(seconds).max() > _MOST_S:
+        raise Error(where, f"{seconds[np.abs(seconds).argmax()]}", "seconds up to 9.2e9")
+    return np.rint(seconds * 1e9).astype(np.int64)
+
+
+class Trajectory:
+    """A pose as a pure function of time: of a sensor (world_from_sensor) or an object
+    (world_from_object). Times are seconds; nanoseconds inside. Immutable."""
+
+    __slots__ = ("_core",)
+
+    def __init__(self, core: _core.Trajectories) -> None:
+        self._core = core
+
+    @staticmethod
+    def constant(pose: npt.ArrayLike) -> Trajectory:
+        """Standing still at a pose, 4x4."""
+        return Trajectory(_core.constant(floats(pose, "pose", (4, 4))[None], "pose"))
+
+    @staticmethod
+    def spin(pose: npt.ArrayLike, rate_rad_s: npt.ArrayLike, *, t0_s: float = 0.0) -> Trajectory:
+        """Turning on the spot from `pose` at t0 at a constant rate (3) about the body's own axes."""
+        start = floats(pose, "pose", (4, 4))[None]
+        return Trajectory(_core.spin(start, floats(rate_rad_s, "rate_rad_s", (3,)), _ns(t0_s, "t0_s")))
+
+    @staticmethod
+    def twist(
+        pose: npt.ArrayLike,
+        angular_rad_s: npt.ArrayLike = (0.0, 0.0, 0.0),
+        linear_m_s: npt.ArrayLike = (0.0, 0.0, 0.0),
+        *,
+        in_world: bool = False,
+        t0_s: float = 0.0,
+    ) -> Trajectory:
+        """A steady screw motion from `pose` at t0. The twist is given along the body's axes, or
+        those of the world."""
+        start = floats(pose, "pose", (4, 4))[None]
+        angular = floats(angular_rad_s, "angular_rad_s", (3,))
+        linear = floats(linear_m_s, "linear_m_s", (3,))
+        return Trajectory(_core.twist(start, angular, linear, in_world, _ns(t0_s, "t0_s")))
+
+    @staticmethod
+    def timed(times_s: npt.ArrayLike, poses: npt.ArrayLike) -> Trajectory:
+        """Poses (N, 4, 4) at increasing times (N): straight lines and slerp between them, held
+        before the first and after the last."""
+        times = _times_ns(times_s, "times_s")
+        return Trajectory(_core.timed(times, floats(poses, "poses", (len(times), 4, 4))))
+
+    @staticmethod
+    def tumbling(
+        pose: npt.ArrayLike,
+        moments_kg_m2: npt.ArrayLike,
+        rate_rad_s: npt.ArrayLike,
+        *,
+        body_from_principal: npt.ArrayLike | None = None,
+        velocity_m_s: npt.ArrayLike = (0.0, 0.0, 0.0),
+        t0_s: float = 0.0,
+    ) -> Trajectory:
+        """A rigid body on which no torque acts, in closed form.
+
+        Args:
+            pose: world_from_body at t0, 4x4.
+            moments_kg_m2: principal moments of inertia (3); only their ratios matter.
+            rate_rad_s: angular velocity about the principal axes (3) at t0.
+            body_from_principal: centre of mass and principal axes in the body, 4x4; None: the body's.
+            velocity_m_s: of the centre of mass in the world (3).
+        """
+        principal = np.eye(4) if body_from_principal is None else body_from_principal
+        poses = np.stack(
+            [floats(pose, "pose", (4, 4)), floats(principal, "body_from_principal", (4, 4))]
+        )
+        moments = floats(moments_kg_m2, "moments_kg_m2", (3,))
+        rate = floats(rate_rad_s, "rate_rad_s", (3,))
+        velocity = floats(velocity_m_s, "velocity_m_s", (3,))
+        return Trajectory(_core.tumbling(poses, moments, rate, velocity, _ns(t0_s, "t0_s")))
+
+    @staticmethod
+    def load(
+        path: str | os.PathLike[str],
+        *,
+        rate_hz: float | None = None,
+        times_file: str | os.PathLike[str] | None = None,
+        start_s: float | None = None,
+    ) -> Trajectory:
+        """Timed poses from a TUM, KITTI or CSV file; its first row tells which.
+
+        Args:
+            rate_hz: of a KITTI file: poses per second, the first at 0. Or:
+            times_file: of a KITTI file: a file of one time a line, s.
+            start_s: shifts all times so that the first is this.
+        """
+        start = None if start_s is None else _ns(start_s, "start_s")
+        return Trajectory(_core.load_trajectory(os.fspath(path), rate_hz, os.fspath(times_file or ""), start))
+
+    def pose_at(self, time_s: float) -> FloatArray:
+        """The pose at a time, 4x4."""
+        result: FloatArray = self._core.poses_at(np.array([_ns(time_s, "time_s")]))[0]
+        return result
+
+    def poses_at(self, times_s: npt.ArrayLike) -> FloatArray:
+        """The poses (N, 4, 4) at times (N)."""
+        return self._core.poses_at(_times_ns(times_s, "times_s"))
+
+    @property
+    def known_s(self) -> tuple[float, float]:
+        """First and last time for which it is known; about -9.2e9 and 9.2e9 when it is for all."""
+        first, last = self._core.known_times()
+        return first / 1e9, last / 1e9
+
+
+#: What says where something is: a pose, 4x4, or a trajectory.
+PoseLike: TypeAlias = Union[npt.ArrayLike, Trajectory]
+
+
+def trajectories(value: PoseLike | Sequence[PoseLike], where: str) -> _core.Trajectories:
+    """One trajectory, or many: of arrays (N, 4, 4) or a list of poses and trajectories."""
+    if isinstance(value, Trajectory):
+        return value._core
+    if isinstance(value, (list, tuple)) and any(isinstance(part, Trajectory) for part in value):
+        return _core.joined([trajectories(part, f"{where}[{k}]") for k, part in enumerate(value)])
+    if np.ndim(value) == 2:  # type: ignore[arg-type]
+        return _core.constant(floats(value, where, (4, 4))[None], where)
+    return _core.constant(floats(value, where, (None, 4, 4)), where)
+
+
+def object_trajectories(
+    value: PoseLike | Sequence[PoseLike] | None, count: int, objects: int
+) -> _core.Trajectories | None:
+    """Of `objects` objects for `count` frames: for each frame or the same for all."""
+    if value is None:
+        return None
+    if not isinstance(value, Trajectory) and np.ndim(value) == 4:  # type: ignore[arg-type]
+        poses = floats(value, "objects", (None, None, 4, 4))
+        if poses.shape[:2] != (count, objects):
+            found = f"an array {shape_text(poses.shape)}"
+            raise Error("objects", found, f"{count} x {objects} x 4 x 4: frames, then objects")
+        return _core.constant(poses.reshape(-1, 4, 4), "objects")
+    result = trajectories(value, "objects")
+    if len(result) != objects:
+        raise Error("objects", f"{len(result)} poses", f"{objects}, one per object of the scene")
+    return result
+
+

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+namespace glidar::python {
+
+namespace nb = nanobind;
+
+// One function per file: what of GLIDAR it makes known to Python.
+void bind_errors(nb::module_& module);
+void bind_motion(nb::module_& module);
+void bind_scene(nb::module_& module);
+void bind_sensor(nb::module_& module);
+void bind_frame(nb::module_& module);
+void bind_simulator(nb::module_& module);
+
+}  // namespace glidar::python

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bind.hpp"
+
+#include <glidar/core/error.hpp>
+
+#include <nanobind/stl/string.h>
+
+namespace glidar::python {
+namespace {
+
+/// Raises glidar.Error with the four parts.
+void raise(const std::exception_ptr& thrown, void* /*payload*/) {
+  try {
+    std::rethrow_exception(thrown);
+  } catch (const Error& error) {
+    const ErrorParts& parts = error.parts();
+    const nb::object type = nb::module_::import_("glidar._errors").attr("Error");
+    const nb::object made = type(parts.where, parts.found, parts.allowed, parts.remedy);
+    PyErr_SetObject(type.ptr(), made.ptr());
+  }
+}
+
+std::string error_text(const std::string& where, const std::string& found,
+                       const std::string& allowed, const std::string& remedy) {
+  return Error({.where = where, .found = found, .allowed = allowed, .remedy = remedy}).what();
+}
+
+}  // namespace
+
+void bind_errors(nb::module_& module) {
+  nb::register_exception_translator(raise);
+  module.def("error_text", error_text, nb::arg("where"), nb::arg("found"), nb::arg("allowed"),
+             nb::arg("remedy"), "The sentence that an error reads.");
+}
+
+}  // namespace glidar::python

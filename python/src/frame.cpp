@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "frame.hpp"
+
+#include "report.hpp"
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/cloud_layout.hpp>
+#include <glidar/io/file_sink.hpp>
+
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <array>
+
+namespace glidar::python {
+namespace {
+
+constexpr std::size_t kMostSpareBeams = std::size_t{1} << 24U;  // some 2 GiB with all truth
+
+/// One column of a frame as an array of rows x cols, or rows x cols x components; None when the
+/// frame did not keep it.
+template <class T, int kComponents = 1, class Values>
+nb::object column(const Measured& measured, nb::handle owner, const Values& values) {
+  if (values.empty() && measured.beams->size() > 0) return nb::none();
+  const T* data = reinterpret_cast<const T*>(values.data());
+  const std::size_t rows = measured.frame.rows;
+  const std::size_t cols = measured.frame.cols;
+  if constexpr (kComponents == 1) {
+    return nb::cast(array_at(data, std::array<std::size_t, 2>{rows, cols}, owner));
+  } else {
+    return nb::cast(array_at(data, std::array<std::size_t, 3>{rows, cols, kComponents}, owner));
+  }
+}
+
+nb::object measured_column(nb::handle self, const std::string& name) {
+  const auto& m = nb::cast<const Measured&>(self);
+  if (name == "range_m") return column<double>(m, self, m.frame.range_m);
+  if (name == "intensity") return column<float>(m, self, m.frame.intensity);
+  if (name == "status") return column<std::uint8_t>(m, self, m.frame.status);
+  if (name == "cause") return column<std::uint8_t>(m, self, m.frame.cause);
+  if (name == "sigma_m") return column<float>(m, self, m.frame.sigma_m);
+  if (name == "sensor_pose")
+    return column<double, 7>(m, self, m.frame.beam_poses.world_from_sensor);
+  if (name == "object_pose")
+    return column<double, 7>(m, self, m.frame.beam_poses.world_from_object);
+  throw nb::attribute_error(name.c_str());
+}
+
+nb::object true_column(nb::handle self, const std::string& name) {
+  const auto& m = nb::cast<const Measured&>(self);
+  const Hits& truth = m.frame.truth;
+  if (name == "range_m") return column<double>(m, self, truth.range_m);
+  if (name == "instance") return column<std::uint32_t>(m, self, truth.instance);
+  if (name == "primitive") return column<std::uint32_t>(m, self, truth.primitive);
+  if (name == "depth_m") return column<double>(m, self, truth.depth_m);
+  if (name == "normal") return column<float, 3>(m, self, truth.normal);
+  if (name == "shading_normal") return column<float, 3>(m, self, truth.shading_normal);
+  if (name == "cos_incidence") return column<float>(m, self, truth.cos_incidence);
+  if (name == "cos_shading") return column<float>(m, self, truth.cos_shading);
+  if (name == "barycentrics") return column<float, 2>(m, self, truth.barycentrics);
+  if (name == "colour") return column<float, 3>(m, self, truth.colour);
+  if (name == "reflectance") return column<float, 4>(m, self, truth.reflectance);
+  if (name == "object_point_m") return column<double, 3>(m, self, truth.object_point_m);
+  if (name == "noise_scale") return column<float>(m, self, truth.noise_scale);
+  throw nb::attribute_error(name.c_str());
+}
+
+std::vector<Matrix4> object_poses(const Measured& measured) {
+  std::vector<Matrix4> poses;
+  for (const Pose& pose : measured.frame.world_from_instance) poses.push_back(matrix_of(pose));
+  return poses;
+}
+
+/// A cloud and the arrays that refer to it.
+struct CloudHandle {
+  PointCloud cloud;
+};
+
+PointCloud make_cloud(const Measured& m, const std::vector<std::string>& columns,
+                      const std::string& frame, bool deskew) {
+  CloudFrame axes = cloud_frame(frame, *m.beams, m.frame.world_from_sensor);
+  axes.deskew = deskew;
+  PointCloud cloud;
+  make_point_cloud(m.frame, *m.beams, *m.prepared->scene, axes, columns, cloud);
+  return cloud;
+}
+
+CloudHandle cloud_of(const Measured& measured, const std::vector<std::string>& columns,
+                     const std::string& frame, bool deskew, bool hits_only) {
+  const nb::gil_scoped_release release;
+  CloudHandle handle{make_cloud(measured, columns, frame, deskew)};
+  if (hits_only) {
+    PointCloud hits;
+    compact(handle.cloud, hits);
+    handle.cloud = std::move(hits);
+  }
+  return handle;
+}
+
+nb::object cloud_column(nb::handle self, std::size_t index) {
+  auto& cloud = nb::cast<CloudHandle&>(self).cloud;
+  Column& column = cloud.columns.at(index);
+  std::vector<std::size_t> shape = {cloud.rows, cloud.cols};
+  if (column.components.size() > 1) shape.push_back(column.components.size());
+  return std::visit([&](auto& values) { return nb::cast(array_at(values.data(), shape, self)); },
+                    column.values);
+}
+
+std::vector<std::string> column_names_of(const CloudHandle& handle) {
+  std::vector<std::string> names;
+  for (const Column& column : handle.cloud.columns) names.push_back(column.name);
+  return names;
+}
+
+/// What a file is to hold, as for `glidar render`.
+struct SaveOptions {
+  std::vector<std::string> columns;
+  std::string frame;
+  bool deskew;
+  FileSinkOptions sink;
+};
+
+void save_to(const Measured& m, const std::filesystem::path& path, const SaveOptions& options,
+             const Report& report) {
+  const FileFormat& format = format_for(path);
+  std::vector<std::string> columns = format.takes_more ? options.columns : format.columns;
+  if (!options.sink.layout.empty() && format.takes_more) {
+    columns = layout_named(options.sink.layout).columns;
+  }
+  for (const std::string& name : format.columns) {
+    if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
+  }
+  const auto sink = make_file_sink(path, options.sink,
+                                   {.scene = *m.prepared->scene,
+                                    .sensor = m.sensor->sensor(),
+                                    .beams = *m.beams,
+                                    .renderer = std::string(m.prepared->renderer->name())},
+                                   report);
+  sink->write(make_cloud(m, columns, options.frame, options.deskew), m.frame);
+}
+
+void save(const Measured& measured, const std::filesystem::path& path,
+          const std::vector<std::string>& columns, const std::string& frame, bool deskew,
+          const FileSinkOptions& sink, const nb::object& log) {
+  unlocked([&](Watch& watch) {
+    SaveOptions options{columns, frame, deskew, sink};
+    options.sink.progress = watch.progress();
+    save_to(measured, path, options, report_to(log, watch));
+  });
+}
+
+FileSinkOptions sink_options(int pcd, bool ply_ascii, bool dense, bool sidecar,
+                             const std::string& layout, double depth_units_per_m) {
+  return {.pcd = static_cast<PcdEncoding>(pcd),
+          .ply_ascii = ply_ascii,
+          .dense = dense,
+          .sidecar = sidecar,
+          .layout = layout,
+          .depth_png_units_per_m = depth_units_per_m};
+}
+
+std::vector<std::string> known_columns() {
+  return {cloud_column_names().begin(), cloud_column_names().end()};
+}
+
+void bind_cloud(nb::module_& module) {
+  nb::class_<CloudHandle>(module, "Cloud")
+      .def_prop_ro("rows", [](const CloudHandle& self) { return self.cloud.rows; })
+      .def_prop_ro("cols", [](const CloudHandle& self) { return self.cloud.cols; })
+      .def_prop_ro("frame_id", [](const CloudHandle& self) { return self.cloud.frame_id; })
+      .def_prop_ro("world_from_cloud",
+                   [](const CloudHandle& self) { return matrix_of(self.cloud.world_from_cloud); })
+      .def_prop_ro("columns", column_names_of)
+      .def("column", cloud_column, nb::arg("index"),
+           nb::sig("def column(self, index: int) -> numpy.ndarray"));
+}
+
+}  // namespace
+
+Frame FramePool::take() {
+  const std::lock_guard lock(mutex_);
+  if (spare_.empty()) return {};
+  Frame frame = std::move(spare_.back());
+  spare_.pop_back();
+  spare_beams_ -= frame.range_m.capacity();
+  return frame;
+}
+
+void FramePool::give_back(Frame frame) noexcept {
+  const std::size_t beams = frame.range_m.capacity();
+  if (beams == 0) return;
+  const std::lock_guard lock(mutex_);
+  if (spare_beams_ + beams > kMostSpareBeams) return;
+  spare_beams_ += beams;
+  spare_.push_back(std::move(frame));
+}
+
+void bind_frame(nb::module_& module) {
+  nb::class_<FileSinkOptions>(module, "SaveOptions");
+  module.def("save_options", sink_options, nb::arg("pcd"), nb::arg("ply_ascii"), nb::arg("dense"),
+             nb::arg("sidecar"), nb::arg("layout"), nb::arg("depth_units_per_m"));
+  module.def("cloud_column_names", known_columns);
+  bind_cloud(module);
+  nb::class_<Measured>(module, "Frame")
+      .def_prop_ro("rows", [](const Measured& self) { return self.frame.rows; })
+      .def_prop_ro("cols", [](const Measured& self) { return self.frame.cols; })
+      .def_prop_ro("stamp_ns", [](const Measured& self) { return self.frame.stamp_ns; })
+      .def_prop_ro("seed", [](const Measured& self) { return self.frame.seed; })
+      .def_prop_ro("number", [](const Measured& self) { return self.frame.number; })
+      .def_prop_ro("sensor_id", [](const Measured& self) { return self.frame.sensor_id; })
+      .def_prop_ro("frame_id", [](const Measured& self) { return self.frame.frame_id; })
+      .def_prop_ro("world_from_sensor",
+                   [](const Measured& self) { return matrix_of(self.frame.world_from_sensor); })
+      .def_prop_ro("world_from_objects", object_poses)
+      .def("measured", measured_column, nb::arg("name"),
+           nb::sig("def measured(self, name: str) -> numpy.ndarray | None"))
+      .def("truth", true_column, nb::arg("name"),
+           nb::sig("def truth(self, name: str) -> numpy.ndarray | None"))
+      .def("cloud", cloud_of, nb::arg("columns"), nb::arg("frame"), nb::arg("deskew"),
+           nb::arg("hits_only"))
+      .def("save", save, nb::arg("path"), nb::arg("columns"), nb::arg("frame"), nb::arg("deskew"),
+           nb::arg("options"), nb::arg("log").none());
+}
+
+}  // namespace glidar::python

@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "scene.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <mutex>
+#include <vector>
+
+namespace glidar::python {
+
+/// Frames that nobody holds any more: their memory serves the next ones.
+class FramePool {
+ public:
+  Frame take();
+  void give_back(Frame frame) noexcept;
+
+ private:
+  std::mutex mutex_;
+  std::vector<Frame> spare_;
+  std::size_t spare_beams_ = 0;
+};
+
+/// A frame as Python holds it, with all that it was made of.
+struct Measured {
+  Measured(std::shared_ptr<FramePool> from, Frame measured)
+      : pool(std::move(from)), frame(std::move(measured)) {}
+  Measured(const Measured&) = delete;
+  Measured& operator=(const Measured&) = delete;
+  ~Measured() { pool->give_back(std::move(frame)); }
+
+  std::shared_ptr<FramePool> pool;
+  Frame frame;
+  std::shared_ptr<PreparedScene> prepared;
+  std::shared_ptr<SensorHandle> sensor;
+  std::shared_ptr<const Beams> beams;
+  std::shared_ptr<const Motion> motion;
+  HitFields fields;  ///< of the truth that was asked for
+};
+
+}  // namespace glidar::python

@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "bind.hpp"
+
+#include <glidar/core/version.hpp>
+
+NB_MODULE(_core, module) {
+  module.doc() = "GLIDAR's library as glidar's modules use it; use those.";
+  module.def("version", &glidar::version, "Its version, major.minor.patch.");
+  glidar::python::bind_errors(module);
+  glidar::python::bind_motion(module);
+  glidar::python::bind_scene(module);
+  glidar::python::bind_sensor(module);
+  glidar::python::bind_frame(module);
+  glidar::python::bind_simulator(module);
+}

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "motion.hpp"
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/trajectory_file.hpp>
+
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+namespace glidar::python {
+namespace {
+
+constexpr double kExact = 1e-9;
+constexpr double kAsFloat = 1e-4;  // a rotation that went through float32 a few times
+
+Pose single(const PoseArray& pose) {
+  return pose_of(pose, 0, "pose");
+}
+
+Trajectories constant(const PoseArray& poses, const std::string& name) {
+  Trajectories result;
+  result.all.reserve(poses.shape(0));
+  for (std::size_t k = 0; k < poses.shape(0); ++k) {
+    result.all.emplace_back(ConstantPose{pose_of(poses, k, name)});
+  }
+  return result;
+}
+
+Trajectories one(Trajectory trajectory) {
+  validate(trajectory);
+  return {{std::move(trajectory)}};
+}
+
+Trajectories spin(const PoseArray& pose, const Eigen::Vector3d& rate_rad_s, std::int64_t t0_ns) {
+  return one(Spin{.pose = single(pose), .rate_rad_s = rate_rad_s, .t0_ns = t0_ns});
+}
+
+Trajectories twist(const PoseArray& pose, const Eigen::Vector3d& angular_rad_s,
+                   const Eigen::Vector3d& linear_m_s, bool in_world, std::int64_t t0_ns) {
+  return one(ConstantTwist{.pose = single(pose),
+                           .angular_rad_s = angular_rad_s,
+                           .linear_m_s = linear_m_s,
+                           .frame = in_world ? TwistFrame::world : TwistFrame::body,
+                           .t0_ns = t0_ns});
+}
+
+Trajectories timed(const Numbers<std::int64_t>& t_ns, const PoseArray& poses) {
+  std::vector<TimedPose> all;
+  for (std::size_t k = 0; k < poses.shape(0); ++k) {
+    const Pose pose = pose_of(poses, k, "poses");
+    all.push_back({t_ns.data()[k], pose.translation(), Eigen::Quaterniond(pose.linear())});
+  }
+  return one(TimedPoses(std::move(all)));
+}
+
+Trajectories tumbling(const PoseArray& poses, const Eigen::Vector3d& moments_kg_m2,
+                      const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& velocity_m_s,
+                      std::int64_t t0_ns) {
+  return one(Tumbling({.moments_kg_m2 = moments_kg_m2,
+                       .rate_rad_s = rate_rad_s,
+                       .world_from_body = pose_of(poses, 0, "pose"),
+                       .body_from_principal = pose_of(poses, 1, "body_from_principal"),
+                       .velocity_m_s = velocity_m_s,
+                       .t0_ns = t0_ns}));
+}
+
+Trajectories load(const std::filesystem::path& path, std::optional<double> rate_hz,
+                  const std::filesystem::path& times_file, std::optional<std::int64_t> start_ns) {
+  return one(load_trajectory_file(
+      path, {.rate_hz = rate_hz, .times_file = times_file, .start_ns = start_ns}));
+}
+
+Trajectories joined(const std::vector<Trajectories>& parts) {
+  Trajectories result;
+  for (const Trajectories& part : parts) {
+    result.all.insert(result.all.end(), part.all.begin(), part.all.end());
+  }
+  return result;
+}
+
+/// Poses of the first trajectory at many times, (N, 4, 4).
+nb::ndarray<nb::numpy, double> poses_of(const Trajectories& trajectories,
+                                        const Numbers<std::int64_t>& t_ns) {
+  const std::size_t count = t_ns.shape(0);
+  auto values = std::make_unique<std::vector<Matrix4>>(count);
+  std::vector<Pose> poses(count);
+  poses_at(trajectories.all.at(0), std::span(t_ns.data(), count), poses);
+  for (std::size_t k = 0; k < count; ++k) (*values)[k] = poses[k].matrix();
+  double* data = count == 0 ? nullptr : (*values)[0].data();
+  const nb::capsule owner(values.release(), [](void* kept) noexcept {
+    delete static_cast<std::vector<Matrix4>*>(kept);
+  });
+  const std::array<std::size_t, 3> shape = {count, 4, 4};
+  return array_at(data, shape, owner);
+}
+
+std::pair<std::int64_t, std::int64_t> span_of(const Trajectories& trajectories) {
+  const TimeSpan span = known_times(trajectories.all.at(0));
+  return {span.first_ns, span.last_ns};
+}
+
+Matrix4 looking_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
+                   const Eigen::Vector3d& up) {
+  return matrix_of(look_at(eye, target, up));
+}
+
+Matrix4 making_pose(const Eigen::Vector3d& xyz, const Eigen::Vector4d& wxyz) {
+  return matrix_of(make_pose(xyz, Eigen::Quaterniond(wxyz[0], wxyz[1], wxyz[2], wxyz[3])));
+}
+
+Eigen::Vector4d quaternion_of(const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>& rotation) {
+  Eigen::Quaterniond q{Eigen::Matrix3d(rotation)};
+  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+  return {q.w(), q.x(), q.y(), q.z()};
+}
+
+}  // namespace
+
+Pose pose_of(const PoseArray& poses, std::size_t k, const std::string& name) {
+  const Eigen::Map<const Matrix4> given(poses.data() + 16 * k);
+  Pose pose = Pose::Identity();
+  pose.matrix() = given;
+  const bool has_last_row = given.row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0);
+  const Eigen::Vector3d position = pose.translation();
+  const bool is_near =
+      position.allFinite() && position.cwiseAbs().maxCoeff() <= kLargestCoordinate_m;
+  if (has_last_row && is_near && is_rigid(pose, kExact)) return pose;
+  if (has_last_row && is_near && is_rigid(pose, kAsFloat)) {
+    return make_pose(position, Eigen::Quaterniond(pose.linear()));
+  }
+  const std::string place = poses.shape(0) == 1 ? "" : "[" + std::to_string(k) + "]";
+  std::string found = "a matrix that is no rigid transform";
+  if (!given.allFinite())
+    found = "a number that is not finite";
+  else if (!is_near)
+    found = "a position beyond 1e15 m";
+  else if (!has_last_row)
+    found = "a matrix whose last row is not 0 0 0 1";
+  throw Error({.where = name + place,
+               .found = found,
+               .allowed = "a rotation and a translation, 4x4",
+               .remedy = "glidar.pose() makes one of a position and a quaternion"});
+}
+
+void bind_motion(nb::module_& module) {
+  nb::class_<Trajectories>(module, "Trajectories", "Poses as functions of time.")
+      .def("__len__", [](const Trajectories& self) { return self.all.size(); })
+      .def("poses_at", poses_of, nb::arg("t_ns"))
+      .def("known_times", span_of);
+  module.def("constant", constant, nb::arg("poses"), nb::arg("name"));
+  module.def("spin", spin, nb::arg("pose"), nb::arg("rate_rad_s"), nb::arg("t0_ns"));
+  module.def("twist", twist, nb::arg("pose"), nb::arg("angular_rad_s"), nb::arg("linear_m_s"),
+             nb::arg("in_world"), nb::arg("t0_ns"));
+  module.def("timed", timed, nb::arg("t_ns"), nb::arg("poses"));
+  module.def("tumbling", tumbling, nb::arg("poses"), nb::arg("moments_kg_m2"),
+             nb::arg("rate_rad_s"), nb::arg("velocity_m_s"), nb::arg("t0_ns"));
+  module.def("load_trajectory", load, nb::arg("path"), nb::arg("rate_hz").none(),
+             nb::arg("times_file"), nb::arg("start_ns").none());
+  module.def("joined", joined, nb::arg("parts"));
+  module.def("look_at", looking_at, nb::arg("eye"), nb::arg("target"), nb::arg("up"));
+  module.def("quaternion", quaternion_of, nb::arg("rotation"));
+  module.def("make_pose", making_pose, nb::arg("xyz"), nb::arg("wxyz"));
+}
+
+}  // namespace glidar::python

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "report.hpp"
+
+#include <string>
+
+namespace glidar::python {
+
+void Watch::look() {
+  if (std::this_thread::get_id() != caller_ || Clock::now() < next_) return;
+  next_ = Clock::now() + kPause;
+  const nb::gil_scoped_acquire acquire;
+  if (PyErr_CheckSignals() != 0) throw Interrupted{};
+}
+
+Report report_to(const nb::object& log, Watch& watch) {
+  Report report;
+  report.progress = [&watch](std::string_view /*task*/, double /*fraction*/) { watch.look(); };
+  if (log.is_none()) return report;
+  report.log = [&log](Severity severity, std::string_view message) {
+    const nb::gil_scoped_acquire acquire;
+    const char* level = severity == Severity::warning ? "warning" : "info";
+    if (!PyObject_CallFunction(log.ptr(), "ss#", level, message.data(),
+                               static_cast<Py_ssize_t>(message.size()))) {
+      throw Interrupted{};
+    }
+  };
+  return report;
+}
+
+}  // namespace glidar::python

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "bind.hpp"
+
+#include <glidar/core/report.hpp>
+
+#include <chrono>
+#include <thread>
+
+namespace glidar::python {
+
+/// Thrown through GLIDAR when Python was interrupted; Python knows its own error.
+struct Interrupted {};
+
+/// While GLIDAR works without Python's lock: looks now and then whether Ctrl-C was pressed.
+/// Progress may come from any thread; only the one that called runs Python's handlers.
+class Watch {
+ public:
+  Watch() : caller_(std::this_thread::get_id()), next_(Clock::now() + kPause) {}
+
+  /// Throws Interrupted when a handler raised an error.
+  void look();
+  Progress progress() {
+    return [this](double /*fraction*/) { look(); };
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kPause{50};
+  std::thread::id caller_;
+  Clock::time_point next_;
+};
+
+/// Calls `work` without Python's lock; Ctrl-C ends it with KeyboardInterrupt.
+template <class Work>
+auto unlocked(const Work& work) {
+  Watch watch;
+  try {
+    const nb::gil_scoped_release release;
+    return work(watch);
+  } catch (const Interrupted&) {
+    throw nb::python_error();  // takes the error that is set
+  }
+}
+
+/// Tells Python's function log(severity, message), which may be None.
+Report report_to(const nb::object& log, Watch& watch);
+
+}  // namespace glidar::python

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "motion.hpp"
+#include "sensor.hpp"
+
+#include <glidar/io/scene_file.hpp>
+#include <glidar/render/renderer.hpp>
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glidar::python {
+
+/// A scene with its renderer, built once. Measurements share it and take turns.
+struct PreparedScene {
+  std::shared_ptr<const Scene> scene;
+  std::unique_ptr<Renderer> renderer;
+  std::mutex turn;
+};
+
+/// A scene as Python holds it. What was prepared or measured of it keeps the scene that it saw:
+/// changes are made to a copy while anybody else has it.
+struct SceneHandle {
+  std::shared_ptr<Scene> scene = std::make_shared<Scene>();
+  std::vector<Trajectory> motion;        ///< one per instance; empty: all stand still
+  std::shared_ptr<SensorHandle> sensor;  ///< that of the scene file; empty: none
+  std::optional<Pose> world_from_sensor;
+  bool looks_at = false;
+  std::optional<Trajectory> sensor_motion;
+  std::vector<std::string> files;  ///< all that was read
+  std::map<std::pair<std::string, unsigned>, std::shared_ptr<PreparedScene>> prepared;
+
+  /// The scene, to be changed.
+  Scene& change();
+};
+
+/// Builds the renderer, or gives the one that was built. Called with Python's lock, which it gives
+/// up while it builds.
+std::shared_ptr<PreparedScene> prepare(SceneHandle& handle, const RendererOptions& options);
+
+}  // namespace glidar::python

@@ -1,0 +1,160 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "frame.hpp"
+#include "report.hpp"
+
+#include <glidar/core/point_cloud.hpp>
+#include <glidar/sensor/framing.hpp>
+#include <glidar/simulate.hpp>
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+
+namespace glidar::python {
+namespace {
+
+/// How many frames are measured together: enough for renderers that draw many at once, and few
+/// enough that what was cast is still near in memory when its noise is added.
+constexpr std::size_t kTogether = 8;
+
+/// A scene and a sensor made ready.
+struct Simulator {
+  std::shared_ptr<PreparedScene> prepared;
+  std::shared_ptr<SensorHandle> sensor;
+  std::vector<Trajectory> motion;           ///< of the scene's instances; empty: they stand still
+  std::optional<Trajectory> sensor_motion;  ///< of the scene file
+  std::optional<Pose> world_from_sensor;    ///< of the scene file
+  bool looks_at = false;                    ///< see SceneFile
+  std::shared_ptr<FramePool> pool = std::make_shared<FramePool>();
+};
+
+Simulator make_simulator(SceneHandle& scene, const std::shared_ptr<SensorHandle>& sensor,
+                         const std::string& renderer, unsigned threads) {
+  return {.prepared = prepare(scene, {.kind = renderer, .threads = threads}),
+          .sensor = sensor,
+          .motion = scene.motion,
+          .sensor_motion = scene.sensor_motion,
+          .world_from_sensor = scene.world_from_sensor,
+          .looks_at = scene.looks_at};
+}
+
+/// Which frames to measure; arrays of one entry per frame.
+struct Batch {
+  const Trajectories& sensors;
+  const std::optional<Trajectories>& objects;  ///< as many for each frame
+  const Numbers<std::uint64_t>& seeds;
+  const Numbers<std::uint32_t>& numbers;
+  std::uint32_t sensor_id;
+  const HitFields& fields;
+
+  [[nodiscard]] std::size_t size() const { return sensors.all.size(); }
+};
+
+Motion motion_of(const Simulator& simulator, const Batch& batch, std::size_t k) {
+  const Scene& scene = *simulator.prepared->scene;
+  if (!batch.objects) return moving(scene, batch.sensors.all[k], simulator.motion);
+  const std::vector<Trajectory>& all = batch.objects->all;
+  const std::size_t count = scene.instances.size();
+  const auto first = all.begin() + static_cast<std::ptrdiff_t>(all.size() == count ? 0 : k * count);
+  return moving(scene, batch.sensors.all[k], {first, first + static_cast<std::ptrdiff_t>(count)});
+}
+
+using Frames = std::vector<std::unique_ptr<Measured>>;
+
+std::unique_ptr<Measured> start(const Simulator& simulator, const Batch& batch, std::size_t k) {
+  auto measured = std::make_unique<Measured>(simulator.pool, simulator.pool->take());
+  measured->prepared = simulator.prepared;
+  measured->sensor = simulator.sensor;
+  measured->beams = simulator.sensor->beams(batch.numbers.data()[k]);
+  measured->motion = std::make_shared<const Motion>(motion_of(simulator, batch, k));
+  measured->fields = batch.fields;
+  Frame& frame = measured->frame;
+  frame.number = batch.numbers.data()[k];
+  frame.stamp_ns = scan_window(simulator.sensor->sensor(), frame.number).start_ns;
+  frame.seed = batch.seeds.data()[k];
+  frame.sensor_id = batch.sensor_id;
+  return measured;
+}
+
+/// Measures some frames together; they lie side by side for that long.
+void measure_run(const Batch& batch, std::span<const std::unique_ptr<Measured>> run, Watch& watch) {
+  std::vector<Setup> setups;
+  std::vector<Frame> frames;
+  for (const auto& measured : run) {
+    setups.push_back({.scene = *measured->prepared->scene,
+                      .sensor = measured->sensor->sensor(),
+                      .beams = *measured->beams,
+                      .motion = *measured->motion,
+                      .renderer = *measured->prepared->renderer,
+                      .progress = watch.progress()});
+    frames.push_back(std::move(measured->frame));
+  }
+  simulate_batch(setups, batch.fields, frames);
+  for (std::size_t k = 0; k < run.size(); ++k) run[k]->frame = std::move(frames[k]);
+}
+
+Frames measure_all(const Simulator& simulator, const Batch& batch, Watch& watch) {
+  Frames frames;
+  for (std::size_t k = 0; k < batch.size(); ++k) frames.push_back(start(simulator, batch, k));
+  const std::lock_guard turn(simulator.prepared->turn);
+  for (std::size_t k = 0; k < frames.size(); k += kTogether) {
+    watch.look();
+    measure_run(batch, std::span(frames).subspan(k, std::min(kTogether, frames.size() - k)), watch);
+  }
+  return frames;
+}
+
+nb::list simulate_all(const Simulator& simulator, const Trajectories& sensors,
+                      const std::optional<Trajectories>& objects,
+                      const Numbers<std::uint64_t>& seeds, const Numbers<std::uint32_t>& numbers,
+                      std::uint32_t sensor_id, const HitFields& fields) {
+  const Batch batch{sensors, objects, seeds, numbers, sensor_id, fields};
+  Frames frames = unlocked([&](Watch& watch) { return measure_all(simulator, batch, watch); });
+  nb::list result;
+  for (auto& measured : frames) {
+    result.append(nb::cast(measured.release(), nb::rv_policy::take_ownership));
+  }
+  return result;
+}
+
+/// Where the scene file has the sensor; else where it sees all of the scene.
+Trajectories usual_motion(const Simulator& simulator) {
+  if (simulator.sensor_motion) return {{*simulator.sensor_motion}};
+  const std::shared_ptr<const Beams> beams = simulator.sensor->beams(0);
+  const bool is_lidar = !looks_along_z(*beams);
+  if (simulator.world_from_sensor) {
+    const Pose& given = *simulator.world_from_sensor;
+    const bool turned = simulator.looks_at && is_lidar;
+    return {{ConstantPose{turned ? given * optical_from_body() : given}}};
+  }
+  const Eigen::Vector3d from(2.0, -3.0, 2.0);
+  const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
+  const Scene& scene = *simulator.prepared->scene;
+  return {{ConstantPose{is_lidar ? stand_beside(*beams, scene, from, up)
+                                 : frame_view(*beams, scene, from, up)}}};
+}
+
+HitFields fields(const std::vector<std::string>& columns) {
+  return fields_for(columns);
+}
+
+}  // namespace
+
+void bind_simulator(nb::module_& module) {
+  nb::class_<HitFields>(module, "HitFields", "What truth a frame keeps.");
+  module.def("fields_for", fields, nb::arg("columns"));
+  nb::class_<Simulator>(module, "Simulator")
+      .def("simulate", simulate_all, nb::arg("sensors"), nb::arg("objects").none(),
+           nb::arg("seeds"), nb::arg("numbers"), nb::arg("sensor_id"), nb::arg("fields"))
+      .def("usual_motion", usual_motion)
+      .def_prop_ro("objects",
+                   [](const Simulator& self) { return self.prepared->scene->instances.size(); });
+  module.def("make_simulator", make_simulator, nb::arg("scene"), nb::arg("sensor"),
+             nb::arg("renderer"), nb::arg("threads"));
+}
+
+}  // namespace glidar::python
