@@ -15,7 +15,7 @@ from ._errors import Error
 from .frame import Cause, Cloud, Frame, Status, Truth
 from .poses import look_at, pose, quaternion
 from .scene import Object, Scene, load_scene
-from .sensor import Sensor, camera, load_sensor, sensor_names
+from .sensor import Sensor, camera, load_sensor, sensor_file, sensor_names
 from .simulator import Simulator, simulate, simulate_batch
 from .trajectory import Trajectory
 
@@ -39,6 +39,7 @@ __all__ = [
     "look_at",
     "pose",
     "quaternion",
+    "sensor_file",
     "sensor_names",
     "simulate",
     "simulate_batch",

@@ -101,6 +101,16 @@ class Object:
         """Triangles of its mesh."""
         return int(self._info()["triangles"])
 
+    @property
+    def vertices(self) -> FloatArray:
+        """Vertices of its mesh in the object's own frame, before scale, m, (V, 3)."""
+        return self._scene._core.vertices_m(self._index)
+
+    @property
+    def faces(self) -> npt.NDArray[np.uint32]:
+        """Triangles of its mesh as indices of vertices, (T, 3)."""
+        return self._scene._core.faces(self._index)
+
     def __repr__(self) -> str:
         return f"<glidar.Object {self.index} {self.name!r} of {self.source}: {self.triangles} triangles>"
 

@@ -178,6 +178,32 @@ nb::dict object_info(const SceneHandle& handle, std::size_t index) {
   return info;
 }
 
+template <class T>
+using Rows3 = Eigen::Matrix<T, Eigen::Dynamic, 3, Eigen::RowMajor>;
+
+/// The corners of the object's mesh in its own frame, before scale.
+Rows3<double> vertices_m(const SceneHandle& handle, std::size_t index) {
+  const Scene& scene = *handle.scene;
+  const Mesh& mesh = scene.meshes.at(scene.instances.at(index).mesh);
+  Rows3<double> rows(static_cast<Eigen::Index>(mesh.positions_m.size()), 3);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const Eigen::Vector3f& position = mesh.positions_m[static_cast<std::size_t>(i)];
+    rows.row(i) = (mesh.origin_m + position.cast<double>()).transpose();
+  }
+  return rows;
+}
+
+Rows3<std::uint32_t> faces(const SceneHandle& handle, std::size_t index) {
+  const Scene& scene = *handle.scene;
+  const Mesh& mesh = scene.meshes.at(scene.instances.at(index).mesh);
+  Rows3<std::uint32_t> rows(static_cast<Eigen::Index>(mesh.triangles.size()), 3);
+  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
+    const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(i)];
+    rows.row(i) << triangle[0], triangle[1], triangle[2];
+  }
+  return rows;
+}
+
 std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> bounds_of(const SceneHandle& handle) {
   const Eigen::AlignedBox3d box = bounds(*handle.scene);
   if (box.isEmpty()) return std::nullopt;
@@ -220,6 +246,8 @@ void bind_scene(nb::module_& module) {
            nb::arg("scale").none(), nb::arg("name").none(), nb::arg("id").none(),
            nb::arg("class_name").none())
       .def("object", object_info, nb::arg("index"))
+      .def("vertices_m", vertices_m, nb::arg("index"))
+      .def("faces", faces, nb::arg("index"))
       .def("bounds", bounds_of)
       .def_prop_ro("class_names", [](const SceneHandle& self) { return self.scene->class_names; })
       .def_prop_ro("files", [](const SceneHandle& self) { return self.files; })

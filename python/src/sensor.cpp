@@ -82,6 +82,7 @@ void bind_sensor(nb::module_& module) {
       .def("ideal", made_ideal);
   module.def("load_sensor", load, nb::arg("name_or_path"));
   module.def("parse_sensor", parse, nb::arg("text"));
+  module.def("sensor_file", find_sensor_file, nb::arg("name_or_path"));
   module.def("preset_names", preset_names);
 }
 
