@@ -44,7 +44,8 @@ def make_parser():
     run.add_argument("campaign", metavar="CAMPAIGN.yaml", help="what to measure, see docs/campaigns.md")
     run.add_argument("-o", "--output", metavar="DIR", required=True, help="folder of the data set")
     run.add_argument("--workers", metavar="N", type=_count, default=0,
-                     help="processes on this machine (default: one per core)")
+                     help="processes on this machine (default: 1, and where scenes or sensors differ "
+                          "from trial to trial one per core)")
     run.add_argument("--shard", metavar="i/N", type=_part, default=(0, 1),
                      help="measure only part i of N, counted from 0; merge them later")
     run.add_argument("--executor", choices=["local", "dask", "slurm"], default="local",

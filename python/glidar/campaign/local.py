@@ -19,6 +19,13 @@ def cores():
     return len(os.sched_getaffinity(0))
 
 
+def usual_workers(plan):
+    """One process, which measures with all cores, where trials share their scene and sensor; else one
+    a core, since scenes are made ready by one core each."""
+    texts = [v for v in plan.spec.vary if not v.is_pose]
+    return cores() if texts or len(plan.scenes) * len(plan.sensors) > 1 else 1
+
+
 def _serve(plan, root, threads, pipe):
     """A worker process: shards come through the pipe, what is done goes back, None ends."""
     def shards():
@@ -124,7 +131,8 @@ class _Pool:
 
 
 def run_local(plan, folder, shards, report, workers):
-    """Runs the shards by so many processes, which share the cores; one: this process."""
+    """Runs the shards by so many processes, which share the cores; one: this process; 0: as usual."""
+    workers = workers or usual_workers(plan)
     if workers == 1 or len(shards) == 1:
         works.work(plan, folder, shards, 0, report)
         return

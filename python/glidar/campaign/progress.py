@@ -35,6 +35,7 @@ class Progress:
     def __init__(self, total, done, quiet=False, stream=None):
         self.total, self.done, self.failed = total, done, 0
         self._before, self._start, self._drawn = done, time.monotonic(), -1e9
+        self._told = -1
         self._stream = stream or sys.stderr
         self._terminal = self._stream.isatty()
         self._quiet = quiet
@@ -53,13 +54,14 @@ class Progress:
         every = DRAW_EVERY_S if self._terminal else LINE_EVERY_S
         if self._quiet or (now - self._drawn < every and not at_once):
             return
-        self._drawn = now
+        self._drawn, self._told = now, self.done
         text = line(self.done, self.total, self.failed, self.rate())
         self._stream.write(f"\r\x1b[K{text}" if self._terminal else f"{text}\n")
         self._stream.flush()
 
     def finish(self):
         if self.total and not self._quiet:
-            self._draw(at_once=True)
+            if self._told != self.done:
+                self._draw(at_once=True)
             if self._terminal:
                 self._stream.write("\n")

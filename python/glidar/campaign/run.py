@@ -10,7 +10,7 @@ from pathlib import Path
 from glidar import Error
 from glidar.campaign import bop_models, files, finish as finishing, folder as folders
 from glidar.campaign.folder import Folder
-from glidar.campaign.local import cores, run_local
+from glidar.campaign.local import run_local
 from glidar.campaign.plan import make_plan
 from glidar.campaign.progress import Progress
 from glidar.campaign.spec import read_spec
@@ -69,8 +69,7 @@ def run(spec_path, root, part=Part(), workers=0, execute=None, quiet=False):
         if execute:
             execute(plan, folder, todo, lambda d: progress.advance(d.trials, d.failed))
         else:
-            run_local(plan, folder, todo, lambda d: progress.advance(d.trials, d.failed),
-                      workers or cores())
+            run_local(plan, folder, todo, lambda d: progress.advance(d.trials, d.failed), workers)
     progress.finish()
     if part.count > 1:
         return Outcome(progress.done, progress.failed, False, 0, progress.rate())
