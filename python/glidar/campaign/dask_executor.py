@@ -29,7 +29,7 @@ def _tasks(shards, count):
 
 def dask_executor(address):
     """Runs shards on the workers of the scheduler at this address."""
-    from distributed import Client, as_completed
+    from distributed import CancelledError, Client, KilledWorker, as_completed
 
     if not address:
         raise Error("--executor dask", "no scheduler is named", "", "give --scheduler tcp://HOST:8786")
@@ -45,8 +45,12 @@ def dask_executor(address):
             root = folder.root.resolve()
             futures = [client.submit(run_shards, plan, root, run, pure=False)
                        for run in _tasks(shards, TASKS_PER_WORKER * workers)]
-            for future in as_completed(futures):
-                for done in future.result():
-                    report(done)
+            try:
+                for future in as_completed(futures, loop=client.loop):
+                    for done in future.result():
+                        report(done)
+            except (KilledWorker, CancelledError) as error:
+                raise Error("--executor dask", f"workers or scheduler were lost ({error})", "",
+                            "run the same command again: it goes on where it stopped") from None
 
     return execute
