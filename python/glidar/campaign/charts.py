@@ -12,6 +12,7 @@ BINS = 40
 CELL_COLUMNS, CELL_ROWS = 36, 18  # of the sphere, all of the same area
 COLOURS = np.array([[0.267, 0.005, 0.329], [0.229, 0.322, 0.546], [0.128, 0.567, 0.551],
                     [0.369, 0.789, 0.383], [0.993, 0.906, 0.144]])  # matplotlib's viridis
+CELL_SIDE = np.array([0.0, 0.25, 0.5, 0.75, 0.9, 1.0])  # where a cell's curved sides have corners
 EMPTY = "#e4e7ea"
 
 
@@ -43,7 +44,7 @@ def figure(title, svg, note=""):
 def _axes(least, most, top):
     right, bottom = WIDTH - RIGHT, HEIGHT - BOTTOM
     return [f'<path class="axis" d="M{LEFT} {TOP}V{bottom}H{right}"/>',
-            _label(LEFT, HEIGHT - 6, f"{least:.4g}"), _label(right - 8, HEIGHT - 6, f"{most:.4g}"),
+            _label(LEFT, HEIGHT - 6, f"{least:.4g}", "start"), _label(right, HEIGHT - 6, f"{most:.4g}", "end"),
             _label(LEFT - 4, TOP + 8, f"{top:.4g}", "end"), _label(LEFT - 4, bottom, "0", "end")]
 
 
@@ -111,8 +112,8 @@ def sphere(title, directions, note=""):
     parts = []
     for cell, count in enumerate(counts):
         row, column = divmod(cell, CELL_COLUMNS)
-        a = (np.array([0, 1, 1, 0]) + column) / CELL_COLUMNS * 2 * np.pi - np.pi
-        s = (np.array([0, 0, 1, 1]) + row) / CELL_ROWS * 2 - 1
+        a = (np.repeat([0, 1], len(CELL_SIDE)) + column) / CELL_COLUMNS * 2 * np.pi - np.pi
+        s = (np.concatenate([CELL_SIDE, CELL_SIDE[::-1]]) + row) / CELL_ROWS * 2 - 1
         x, y = _mollweide(a, s, radius)
         points = " ".join(f"{width / 2 + p:.1f},{height / 2 + q:.1f}" for p, q in zip(x, y))
         fill = _hex(count / counts.max()) if count else EMPTY
