@@ -30,6 +30,11 @@ ALLOWED = {
         "core", "sensor", "motion", "render", "moving_cast", "setup", "pulse_cast", "simulate",
         "explain",
     },
+    "verify": {"core", "sensor", "render", "verify"},
+    "story_text": {
+        "core", "sensor", "motion", "render", "moving_cast", "setup", "pulse_cast", "simulate",
+        "explain", "io", "story_text",
+    },
     "io": {"core", "sensor", "motion", "io"},
     "link": {"core", "io", "link"},
 }

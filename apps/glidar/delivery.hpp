@@ -22,6 +22,7 @@ namespace glidar::app {
 struct Shot {
   Frame frame;
   std::shared_ptr<const Beams> beams;
+  std::size_t mount = 0;                      ///< which of the session's sensors took it
   std::chrono::steady_clock::time_point due;  ///< when its pose was there
 };
 

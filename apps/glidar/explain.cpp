@@ -4,10 +4,10 @@
 #include <apps/glidar/exit_code.hpp>
 #include <apps/glidar/option_kinds.hpp>
 #include <apps/glidar/session.hpp>
-#include <apps/glidar/story_text.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/sidecar.hpp>
+#include <glidar/story_text.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -147,11 +147,12 @@ int run(const ExplainFlags& flags) {
       render, [] {}, console, session);
   check_models(sidecar, session.scene);
   Frame frame;
-  turn_to(render, sidecar.frame, session, frame);
-  const Setup setup = setup_of(session, console);
+  Mount& mount = only_mount(session);
+  turn_to(render, sidecar.frame, mount, frame);
+  const Setup setup = setup_of(session, mount, console);
   const auto pick = [&](const Frame& repeated) {
     check_frame(sidecar, repeated);
-    return entry_of(flags, sidecar, repeated, session.beams);
+    return entry_of(flags, sidecar, repeated, mount.beams);
   };
   Story story;
   {

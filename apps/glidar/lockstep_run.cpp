@@ -37,6 +37,11 @@ Trajectory trajectory_of(const lockstep::Body& body, std::int64_t t_ns) {
                    .t0_ns = t_ns});
 }
 
+std::vector<double> json_of(const Pose& pose) {
+  const PoseNumbers numbers = numbers_of(pose);
+  return {numbers.begin(), numbers.end()};
+}
+
 [[noreturn]] void refuse(std::string where, std::string found, std::string allowed) {
   throw Error({"request, " + std::move(where), std::move(found), std::move(allowed), ""});
 }
@@ -50,7 +55,9 @@ LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
       server_(context_, server_options(flags, console), faults_) {
   if (!flags_.stats.empty()) stats_file_ = std::make_unique<AtomicFile>(flags_.stats);
   open(flags_.render, {}, console_, session_);
-  beams_ = std::make_shared<const Beams>(session_.beams);
+  for (const Mount& mount : session_.mounts) {
+    beams_.push_back(std::make_shared<const Beams>(mount.beams));
+  }
 }
 
 int LockstepRun::run() {
@@ -87,23 +94,25 @@ void LockstepRun::answer(const lockstep::Request& request) {
 void LockstepRun::describe(const lockstep::Describe& describe) {
   nlohmann::ordered_json objects = nlohmann::ordered_json::array();
   for (const Instance& instance : session_.scene.instances) {
-    const PoseNumbers pose = numbers_of(instance.world_from_object);
     objects.push_back({{"name", instance.name},
                        {"id", instance.id},
                        {"class", session_.scene.class_names.at(instance.class_id)},
-                       {"world_from_object", std::vector<double>(pose.begin(), pose.end())}});
+                       {"world_from_object", json_of(instance.world_from_object)}});
   }
-  const Sensor& sensor = session_.sensor;
-  const PoseNumbers pose = numbers_of(pose_at(session_.motion.world_from_sensor, 0));
+  nlohmann::ordered_json sensors = nlohmann::ordered_json::array();
+  for (const Mount& mount : session_.mounts) {
+    sensors.push_back({{"name", mount.name.empty() ? mount.sensor.name : mount.name},
+                       {"rows", mount.beams.rows},
+                       {"cols", mount.beams.cols},
+                       {"returns", mount.beams.returns},
+                       {"rate_hz", mount.sensor.rate_hz},
+                       {"frame_id", mount.beams.frame_id},
+                       {"world_from_sensor", json_of(pose_at(mount.motion.world_from_sensor, 0))},
+                       {"rig_from_sensor", json_of(mount.rig_from_sensor)}});
+  }
   const nlohmann::ordered_json text = {
-      {"sensors",
-       {{{"name", sensor.name},
-         {"rows", beams_->rows},
-         {"cols", beams_->cols},
-         {"returns", beams_->returns},
-         {"rate_hz", sensor.rate_hz},
-         {"frame_id", beams_->frame_id},
-         {"world_from_sensor", std::vector<double>(pose.begin(), pose.end())}}}},
+      {"sensors", sensors},
+      {"world_from_rig", json_of(pose_at(session_.motion.world_from_rig, 0))},
       {"objects", objects},
       {"columns",
        std::vector<std::string>(cloud_column_names().begin(), cloud_column_names().end())}};
@@ -111,7 +120,12 @@ void LockstepRun::describe(const lockstep::Describe& describe) {
 }
 
 void LockstepRun::check(const lockstep::Measure& measure) const {
-  if (measure.sensor != 0) refuse("sensor", std::to_string(measure.sensor), "0: there is one");
+  const std::size_t sensors = session_.mounts.size();
+  if (measure.sensor >= sensors) {
+    refuse("sensor", std::to_string(measure.sensor),
+           sensors == 1 ? "0: there is one"
+                        : fmt::format("0 to {}, a sensor on the rig", sensors - 1));
+  }
   const std::size_t objects = measure.moments.front().objects.size();
   const std::size_t instances = session_.scene.instances.size();
   if (objects != 0 && objects != instances) {
@@ -135,17 +149,22 @@ void LockstepRun::measure(const lockstep::Measure& measure) {
   server_.reply(measure.id, replies);
 }
 
-std::shared_ptr<const Beams> LockstepRun::beams_of(std::uint32_t number) const {
-  const Sensor& sensor = session_.sensor;
-  if (number == 0 || std::holds_alternative<Pinhole>(sensor.optics)) return beams_;
+std::shared_ptr<const Beams> LockstepRun::beams_of(std::uint32_t index,
+                                                   std::uint32_t number) const {
+  const Sensor& sensor = session_.mounts[index].sensor;
+  if (number == 0 || std::holds_alternative<Pinhole>(sensor.optics)) return beams_[index];
   return std::make_shared<const Beams>(make_beams(sensor, scan_window(sensor, number)));
 }
 
-Motion LockstepRun::motion_of(const lockstep::Moment& moment) const {
-  Motion motion = standing_still(session_.scene, Pose::Identity());
-  motion.world_from_sensor = trajectory_of(moment.sensor, moment.t_ns);
-  for (std::size_t i = 0; i < moment.objects.size(); ++i) {
-    motion.world_from_instance[i] = trajectory_of(moment.objects[i], moment.t_ns);
+RigMotion LockstepRun::motion_at(const lockstep::Moment& moment) const {
+  RigMotion motion = {.world_from_rig = trajectory_of(moment.sensor, moment.t_ns),
+                      .world_from_instance = {}};
+  for (const lockstep::Body& object : moment.objects) {
+    motion.world_from_instance.push_back(trajectory_of(object, moment.t_ns));
+  }
+  if (!moment.objects.empty()) return motion;
+  for (const Instance& instance : session_.scene.instances) {
+    motion.world_from_instance.emplace_back(ConstantPose{instance.world_from_object});
   }
   return motion;
 }
@@ -153,21 +172,23 @@ Motion LockstepRun::motion_of(const lockstep::Moment& moment) const {
 void LockstepRun::measure_some(const lockstep::Measure& measure,
                                std::span<const lockstep::Moment> moments,
                                std::vector<lockstep::CloudReply>& replies) {
+  const Mount& mount = session_.mounts[measure.sensor];
   std::vector<std::shared_ptr<const Beams>> beams;
   std::vector<Motion> motions;
   std::vector<Setup> setups;
   if (frames_.size() < moments.size()) frames_.resize(moments.size());
   for (const lockstep::Moment& moment : moments) {
-    beams.push_back(beams_of(moment.number));
-    motions.push_back(motion_of(moment));
+    beams.push_back(beams_of(measure.sensor, moment.number));
+    motions.push_back(motion_of(motion_at(moment), mount));
     Frame& frame = frames_[beams.size() - 1];
     frame.stamp_ns = moment.t_ns;
     frame.seed = moment.seed;
     frame.number = moment.number;
+    frame.sensor_id = mount.id;
   }
   for (std::size_t i = 0; i < moments.size(); ++i) {
     setups.push_back({.scene = session_.scene,
-                      .sensor = session_.sensor,
+                      .sensor = mount.sensor,
                       .beams = *beams[i],
                       .motion = motions[i],
                       .renderer = *session_.renderer});

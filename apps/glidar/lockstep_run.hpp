@@ -32,8 +32,9 @@ class LockstepRun {
   void check(const lockstep::Measure& measure) const;
   void measure_some(const lockstep::Measure& measure, std::span<const lockstep::Moment> moments,
                     std::vector<lockstep::CloudReply>& replies);
-  [[nodiscard]] Motion motion_of(const lockstep::Moment& moment) const;
-  [[nodiscard]] std::shared_ptr<const Beams> beams_of(std::uint32_t number) const;
+  [[nodiscard]] RigMotion motion_at(const lockstep::Moment& moment) const;
+  [[nodiscard]] std::shared_ptr<const Beams> beams_of(std::uint32_t sensor,
+                                                      std::uint32_t number) const;
   [[nodiscard]] lockstep::CloudReply cloud_of(const lockstep::Measure& measure, const Frame& frame,
                                               const Beams& beams);
   void finish(const std::string& ending);
@@ -45,7 +46,7 @@ class LockstepRun {
   link::Context context_;
   lockstep::Server server_;
   Session session_;
-  std::shared_ptr<const Beams> beams_;  ///< of frame 0
+  std::vector<std::shared_ptr<const Beams>> beams_;  ///< of each sensor's frame 0
   link::CloudPool clouds_;
   std::vector<Frame> frames_;
 };

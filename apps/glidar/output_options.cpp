@@ -165,7 +165,7 @@ void add_output_flags(CLI::App& command, OutputFlags& flags) {
   add_choice(
       command,
       {"--cloud-frame", "NAME", "Axes: sensor, optical, ros, gl, legacy or world [sensor]", group},
-      cloud_frame_names(), flags.cloud_frame);
+      {cloud_frame_names().begin(), cloud_frame_names().end()}, flags.cloud_frame);
   command.add_flag("--deskew", flags.deskew, "Points where a moving sensor met them")->group(group);
   command.add_flag("--dense", flags.dense, "Leave misses out of clouds")->group(group);
   add_choice(command,
@@ -207,12 +207,15 @@ std::string output_names_text() {
 }
 
 OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame) {
-  const std::string number = fmt::format("_{:06}", frame);
+  return labelled(flags, fmt::format("{:06}", frame));
+}
+
+OutputFlags labelled(const OutputFlags& flags, const std::string& label) {
   OutputFlags result = flags;
   for (std::string& path : result.paths) {
-    path.insert(path.size() - format_for(path).suffix.size(), number);
+    path.insert(path.size() - format_for(path).suffix.size(), "_" + label);
   }
-  if (!result.legacy_name.empty()) result.legacy_name += number;
+  if (!result.legacy_name.empty()) result.legacy_name += "_" + label;
   return result;
 }
 

@@ -39,6 +39,9 @@ std::string output_names_text();
 /// The same for one frame of a sequence: NAME_000007.pcd for NAME.pcd.
 OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame);
 
+/// The same for one sensor of a rig: NAME_lidar.pcd for NAME.pcd.
+OutputFlags labelled(const OutputFlags& flags, const std::string& label);
+
 /// One file to be written.
 struct Output {
   std::filesystem::path path;

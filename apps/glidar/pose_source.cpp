@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace glidar::app {
 namespace {
@@ -26,41 +27,55 @@ constexpr std::chrono::milliseconds kLook{100};
 
 }  // namespace
 
-MotionSource::MotionSource(const Pace& pace, double period_s, const StopRequest& stop)
-    : pace_(pace), period_s_(period_s), stop_(stop) {}
+MotionSource::MotionSource(const Pace& pace, std::vector<double> periods_s, const StopRequest& stop)
+    : pace_(pace), periods_s_(std::move(periods_s)), stop_(stop), numbers_(periods_s_.size()) {}
 
-std::optional<Moment> MotionSource::next(Motion& /*motion: as the frame's time has it*/) {
+double MotionSource::begins_s(std::size_t mount) const {
+  return static_cast<double>(numbers_[mount]) * periods_s_[mount];
+}
+
+bool MotionSource::is_done(std::size_t mount) const {
   constexpr double kRounding = 1e-9;  // 0.3 s at 10 Hz are three frames
-  const double begins_s = static_cast<double>(number_) * period_s_;
-  if (number_ >= pace_.frames || begins_s >= pace_.duration_s - kRounding) {
+  return numbers_[mount] >= pace_.frames || begins_s(mount) >= pace_.duration_s - kRounding;
+}
+
+std::optional<Moment> MotionSource::next() {
+  std::optional<std::size_t> first;
+  for (std::size_t mount = 0; mount < numbers_.size(); ++mount) {
+    if (is_done(mount)) continue;
+    if (!first || begins_s(mount) < begins_s(*first)) first = mount;
+  }
+  if (!first) {
     ending_ = "all frames are done";
     return std::nullopt;
   }
-  wait_until_due();
+  wait_until_due(*first);
   if (stop_.is_asked()) return std::nullopt;
-  return Moment{.number = static_cast<std::uint32_t>(number_++), .stamp_ns = 0, .due = *due_};
+  return Moment{
+      .mount = *first, .number = static_cast<std::uint32_t>(numbers_[*first]++), .due = *due_};
 }
 
-void MotionSource::wait_until_due() {
+void MotionSource::wait_until_due(std::size_t mount) {
   const Clock::time_point now = Clock::now();
+  const double before_s = std::exchange(due_s_, begins_s(mount));
   if (!due_ || pace_.rate_hz <= 0.0) {
     due_ = now;
     return;
   }
-  const Clock::duration period = seconds(1.0 / pace_.rate_hz);
-  *due_ += period;
-  if (now > *due_ + period) {
+  const double speed = pace_.rate_hz * periods_s_.front();
+  *due_ += seconds((due_s_ - before_s) / speed);
+  if (now > *due_ + seconds(periods_s_[mount] / speed)) {
     ++late_;
     due_ = now;
   }
   while (Clock::now() < *due_ && !stop_.is_asked()) stop_.wait_until(*due_);
 }
 
-Motion motion_of(const legacy::Placement& placement, const MovedScene& scene) {
-  Motion motion;
-  motion.world_from_sensor =
+RigMotion motion_of(const legacy::Placement& placement, const MovedScene& scene) {
+  RigMotion motion;
+  motion.world_from_rig =
       ConstantPose{legacy_world_from_optical(placement.sensor, placement.translation_m) *
-                   scene.optical_from_sensor};
+                   scene.optical_from_rig};
   const Pose world_from_object = legacy_world_from_object(placement.object);
   for (const Pose& object_from_instance : scene.object_from_instance) {
     motion.world_from_instance.emplace_back(ConstantPose{world_from_object * object_from_instance});
@@ -72,7 +87,12 @@ SimulatorSource::SimulatorSource(legacy::PoseReceiver& receiver, const MovedScen
                                  const Options& options, const StopRequest& stop)
     : receiver_(receiver), scene_(scene), options_(options), stop_(stop) {}
 
-std::optional<Moment> SimulatorSource::next(Motion& motion) {
+std::optional<Moment> SimulatorSource::next() {
+  if (number_ > 0 && moment_.mount + 1 < options_.mounts && !stop_.is_asked()) {
+    moment_.motion.reset();
+    ++moment_.mount;
+    return moment_;
+  }
   if (options_.pace.rate_hz > 0.0 && number_ > 0) {
     const Clock::time_point due = last_ + seconds(1.0 / options_.pace.rate_hz);
     while (Clock::now() < due && !stop_.is_asked()) stop_.wait_until(due);
@@ -81,10 +101,11 @@ std::optional<Moment> SimulatorSource::next(Motion& motion) {
   if (!placement) return std::nullopt;
   last_ = Clock::now();
   if (!first_) first_ = last_;
-  motion = motion_of(*placement, scene_);
-  return Moment{.number = static_cast<std::uint32_t>(number_++),
-                .stamp_ns = static_cast<std::int64_t>(placement->timestamp),
-                .due = last_};
+  moment_ = {.number = static_cast<std::uint32_t>(number_++),
+             .due = last_,
+             .motion = motion_of(*placement, scene_),
+             .stamp_ns = static_cast<std::int64_t>(placement->timestamp)};
+  return moment_;
 }
 
 std::optional<legacy::Placement> SimulatorSource::wait_for_pose() {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <apps/glidar/interrupt.hpp>
+#include <apps/glidar/session.hpp>
 #include <glidar/core/beams.hpp>
 #include <glidar/link/legacy/pose_receiver.hpp>
 #include <glidar/motion/motion.hpp>
@@ -18,15 +19,18 @@ namespace glidar::app {
 
 /// A frame that is to be measured now.
 struct Moment {
+  std::size_t mount = 0;  ///< which of the session's sensors takes it
   std::uint32_t number = 0;
-  std::int64_t stamp_ns = 0;
   std::chrono::steady_clock::time_point due;  ///< when its pose was there
+  /// Where everything is from now on and when that is; empty: as it was, at the frame's own time.
+  std::optional<RigMotion> motion = {};
+  std::optional<std::int64_t> stamp_ns = {};
 };
 
 /// How long and how quickly frames follow each other.
 struct Pace {
-  double rate_hz = 0.0;  ///< at most; 0: no limit
-  std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();
+  double rate_hz = 0.0;                                              ///< at most; 0: no limit
+  std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();  ///< of each sensor
   double duration_s = std::numeric_limits<double>::infinity();
 };
 
@@ -38,31 +42,35 @@ class PoseSource {
   PoseSource& operator=(const PoseSource&) = delete;
   virtual ~PoseSource() = default;
 
-  /// Waits for the next frame and moves everything to where it is then. Empty: there is no more, or
-  /// a signal came.
-  virtual std::optional<Moment> next(Motion& motion) = 0;
+  /// Waits for the next frame. Empty: there is no more, or a signal came.
+  virtual std::optional<Moment> next() = 0;
   /// Why there is no more; empty while there is.
   [[nodiscard]] virtual std::string ending() const = 0;
 };
 
-/// Frames of the command line's or the scene file's motion, one for each period of the sensor.
+/// Frames of the command line's or the scene file's motion, one for each period of each sensor, in
+/// the order of their times.
 class MotionSource final : public PoseSource {
  public:
-  /// `period_s`: from one frame to the next in the sensor's own time.
-  MotionSource(const Pace& pace, double period_s, const StopRequest& stop);
-  std::optional<Moment> next(Motion& motion) override;
+  /// `periods_s`: from one frame to the next in each sensor's own time. The pace's rate is that of
+  /// the first sensor.
+  MotionSource(const Pace& pace, std::vector<double> periods_s, const StopRequest& stop);
+  std::optional<Moment> next() override;
   [[nodiscard]] std::string ending() const override { return ending_; }
   /// Frames that came after they were due by more than a period; the later ones are put off.
   [[nodiscard]] std::uint64_t late() const { return late_; }
 
  private:
-  void wait_until_due();
+  [[nodiscard]] double begins_s(std::size_t mount) const;
+  [[nodiscard]] bool is_done(std::size_t mount) const;
+  void wait_until_due(std::size_t mount);
 
   Pace pace_;
-  double period_s_;
+  std::vector<double> periods_s_;
   const StopRequest& stop_;
   std::optional<std::chrono::steady_clock::time_point> due_;
-  std::uint64_t number_ = 0;
+  double due_s_ = 0.0;                  ///< what is due at due_, in the sensors' time
+  std::vector<std::uint64_t> numbers_;  ///< of each sensor's next frame
   std::uint64_t late_ = 0;
   std::string ending_;
 };
@@ -70,24 +78,25 @@ class MotionSource final : public PoseSource {
 /// What stands still and what a simulator's message moves.
 struct MovedScene {
   std::vector<Pose> object_from_instance;  ///< the scene as it is, which is the message's object
-  Pose optical_from_sensor = Pose::Identity();
+  Pose optical_from_rig = Pose::Identity();
 };
 
-/// The sensor and all instances where a message puts them.
-Motion motion_of(const legacy::Placement& placement, const MovedScene& scene);
+/// The rig and all instances where a message puts them.
+RigMotion motion_of(const legacy::Placement& placement, const MovedScene& scene);
 
-/// A frame for each pose of a simulator; its timestamps become the frames' stamps, whatever their
-/// unit.
+/// A frame of each sensor for each pose of a simulator; its timestamps become the frames' stamps,
+/// whatever their unit.
 class SimulatorSource final : public PoseSource {
  public:
   struct Options {
     Pace pace;
     std::optional<double> timeout_s;  ///< without a pose; empty: waits for ever
+    std::size_t mounts = 1;           ///< sensors that measure at each pose
   };
   /// All must outlive it.
   SimulatorSource(legacy::PoseReceiver& receiver, const MovedScene& scene, const Options& options,
                   const StopRequest& stop);
-  std::optional<Moment> next(Motion& motion) override;
+  std::optional<Moment> next() override;
   [[nodiscard]] std::string ending() const override { return ending_; }
   [[nodiscard]] bool has_timed_out() const { return has_timed_out_; }
 
@@ -103,7 +112,8 @@ class SimulatorSource final : public PoseSource {
   const StopRequest& stop_;
   std::optional<Clock::time_point> first_;  ///< pose
   Clock::time_point last_ = Clock::now();   ///< pose, or the start
-  std::uint64_t number_ = 0;
+  std::uint64_t number_ = 0;                ///< of the next pose
+  Moment moment_;                           ///< the last one
   bool has_timed_out_ = false;
   std::string ending_;
 };

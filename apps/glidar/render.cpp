@@ -87,36 +87,57 @@ void write(const RenderFlags& flags, const View& view, const std::vector<Output>
   tell_information(flags.information, view.frame, view.beams, outputs, flags.quiet);
 }
 
+/// The files of one sensor's frame: named after both where there are several.
+OutputFlags files_of(const RenderFlags& flags, const Session& session, const Mount& mount,
+                     std::uint32_t frame) {
+  OutputFlags files = flags.output;
+  if (session.mounts.size() > 1) files = labelled(files, mount.name);
+  return flags.duration_s ? numbered(files, frame) : files;
+}
+
+/// All frames of one sensor, each written to files of its own.
+void measure_all(const RenderFlags& flags, const CommandRecord& command, const Session& session,
+                 Mount& mount, Console& console) {
+  SidecarContext context{.scene = session.scene,
+                         .sensor = mount.sensor,
+                         .beams = mount.beams,
+                         .renderer = renderer_name(flags),
+                         .command = command};
+  if (session.mounts.size() > 1) {
+    context.command.arguments.insert(context.command.arguments.end(), {"--mount", mount.name});
+  }
+  const Setup setup = setup_of(session, mount, console);
+  Frame frame;
+  const View view{session.scene, mount.sensor, mount.beams, frame};
+  for (std::uint32_t k = 0; k < mount.frames; ++k) {
+    const std::vector<Output> outputs =
+        plan_outputs(files_of(flags, session, mount, k), flags.input, context, console.report(),
+                     [&console](double fraction) { console.tell(fraction); });
+    protect_files(session.files, outputs);
+    turn_to(flags, k, mount, frame);
+    measure(setup, needed_fields(flags, outputs), console, frame);
+    if (k == 0) tell(view_advice(view), console);
+    write(flags, view, outputs, console);
+  }
+}
+
 int run(const RenderFlags& flags, const std::vector<std::string>& arguments) {
   Console console(flags.quiet);
   check(flags.information);
+  const CommandRecord command = {.arguments = recorded(arguments),
+                                 .folder = std::filesystem::current_path()};
   Session session;
-  const SidecarContext context{
-      .scene = session.scene,
-      .sensor = session.sensor,
-      .beams = session.beams,
-      .renderer = renderer_name(flags),
-      .command = {.arguments = recorded(arguments), .folder = std::filesystem::current_path()}};
-  const auto plan = [&](const OutputFlags& files) {
-    return plan_outputs(files, flags.input, context, console.report(),
-                        [&console](double fraction) { console.tell(fraction); });
-  };
-  std::vector<Output> outputs = plan(flags.output);
+  const Mount unknown;
+  const std::vector<Output> outputs =  // only to find their faults before the work begins
+      plan_outputs(flags.output, flags.input,
+                   {.scene = session.scene,
+                    .sensor = unknown.sensor,
+                    .beams = unknown.beams,
+                    .renderer = renderer_name(flags)},
+                   console.report());
   open(
       flags, [&] { protect_files(session.files, outputs); }, console, session);
-  const Setup setup = setup_of(session, console);
-  Frame frame;
-  const View view{session.scene, session.sensor, session.beams, frame};
-  for (std::uint32_t k = 0; k < session.frames; ++k) {
-    turn_to(flags, k, session, frame);
-    measure(setup, needed_fields(flags, outputs), console, frame);
-    if (k == 0) tell(view_advice(view), console);
-    if (flags.duration_s) {
-      outputs = plan(numbered(flags.output, k));
-      protect_files(session.files, outputs);
-    }
-    write(flags, view, outputs, console);
-  }
+  for (Mount& mount : session.mounts) measure_all(flags, command, session, mount, console);
   return kDone;
 }
 

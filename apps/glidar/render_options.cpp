@@ -45,6 +45,9 @@ void add_render_flags(CLI::App& command, RenderFlags& flags) {
   add_text(command,
            {"--surface", "NAME", "Surface of the model (glidar sensors --surfaces)", "Model"},
            flags.surface);
+  add_text(command,
+           {"--mount", "NAME", "Only this one of the sensors on the scene file's rig", "Sensor"},
+           flags.mount);
   const std::string group = "Run";
   add_run_flags(command, flags.renderer, group);
   add_choice(

@@ -25,6 +25,7 @@ struct RenderFlags {
   PoseFlags pose;
   MotionFlags motion;
   std::string surface;  ///< of the whole model; empty: its own
+  std::string mount;    ///< the only sensor of the rig that measures; empty: all
   OutputFlags output;
   InformationFlags information;
   RendererOptions renderer;

@@ -290,7 +290,11 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
          flags.snow_mm_per_h);
 }
 
-Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_scene_file) {
+bool names_sensor(const SensorFlags& flags) {
+  return !flags.file.empty() || camera_given(flags);
+}
+
+Sensor make_sensor(const SensorFlags& flags, const Sensor* from_scene_file) {
   Sensor sensor;
   if (!flags.file.empty()) {
     if (camera_given(flags)) {
@@ -300,7 +304,7 @@ Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_s
                    .remedy = "write them into " + flags.file + ", or leave --sensor out"});
     }
     sensor = load_sensor_file(find_sensor_file(flags.file));
-  } else if (camera_given(flags) || !from_scene_file) {
+  } else if (camera_given(flags) || from_scene_file == nullptr) {
     sensor.optics = make_pinhole(flags);
   } else {
     sensor = *from_scene_file;

@@ -42,6 +42,9 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags);
 /// scene file's sensor, else a camera of 256 x 256 pixels and 20 degrees; then with the flags for
 /// limits, light, weather and returns; without pulse light and noise if it is to be ideal. Throws
 /// Error, also when a frame of it would not fit into this machine's memory.
-Sensor make_sensor(const SensorFlags& flags, const std::optional<Sensor>& from_scene_file);
+Sensor make_sensor(const SensorFlags& flags, const Sensor* from_scene_file);
+
+/// Whether the flags say which sensor it is, not only how it is set up.
+bool names_sensor(const SensorFlags& flags);
 
 }  // namespace glidar::app

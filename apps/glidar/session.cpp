@@ -76,41 +76,97 @@ std::uint32_t frame_count(const RenderFlags& flags, const Sensor& sensor) {
   return static_cast<std::uint32_t>(std::max(1.0, frames));
 }
 
-/// The beams and where they start; the console shows how long that takes.
-Beams aim(const RenderFlags& flags, const SceneFile& loaded, const Session& session,
-          Console& console, Pose& world_from_sensor) {
-  const Working working(console, "aiming the sensor");
-  Beams beams = make_beams(session.sensor);
-  const ScenePose in_file{loaded.world_from_sensor, loaded.looks_at};
-  world_from_sensor = pose_sensor(flags.pose, in_file, beams, session.scene);
-  const bool is_placed = in_file.world_from_sensor || loaded.sensor_motion ||
-                         sensor_pose_given(flags.pose) || !flags.motion.trajectory.empty();
-  if (!looks_along_z(beams) && !is_placed) {
-    console.info(beside_advice(session.scene, world_from_sensor));
-  }
-  return beams;
+std::string names_of(const std::vector<RigSensor>& sensors) {
+  std::string names;
+  for (const RigSensor& sensor : sensors) names += (names.empty() ? "" : ", ") + sensor.name;
+  return names;
 }
 
-/// How all moves; tells which poses at time 0 are only the end of a trajectory.
-Motion make_motion(const RenderFlags& flags, const SceneFile& loaded, const Scene& scene,
-                   const Pose& world_from_sensor, const TimeSpan& asked, const Report& report) {
-  const Motion motion =
-      moving(scene,
-             sensor_trajectory(flags.motion, world_from_sensor, sensor_pose_given(flags.pose),
-                               loaded.sensor_motion),
-             instance_trajectories(flags.motion, scene, loaded.world_from_instance));
-  warn_of_held_poses(motion.world_from_sensor, "sensor", asked, report);
-  for (std::size_t i = 0; i < motion.world_from_instance.size(); ++i) {
-    warn_of_held_poses(motion.world_from_instance[i], scene.instances[i].name, asked, report);
+/// The sensors of the rig, as the flags set them up.
+std::vector<Mount> make_mounts(const RenderFlags& flags, const std::vector<RigSensor>& sensors) {
+  if (sensors.empty() || sensors.front().name.empty()) {
+    if (!flags.mount.empty()) {
+      throw Error({"--mount", flags.mount, "a scene file with a rig of sensors", "leave it out"});
+    }
+    const Sensor* in_file = sensors.empty() ? nullptr : &sensors.front().sensor;
+    return {{.sensor = make_sensor(flags.sensor, in_file)}};
   }
-  return motion;
+  if (names_sensor(flags.sensor)) {
+    throw Error({"--sensor and camera options", "given for a scene file with a rig of sensors", "",
+                 "leave them out; --mount NAME chooses one of " + names_of(sensors)});
+  }
+  std::vector<Mount> mounts;
+  for (std::uint32_t i = 0; i < sensors.size(); ++i) {
+    mounts.push_back({.name = sensors[i].name,
+                      .id = i,
+                      .sensor = make_sensor(flags.sensor, &sensors[i].sensor),
+                      .rig_from_sensor = sensors[i].rig_from_sensor});
+  }
+  const auto is_chosen = [&](const Mount& mount) { return mount.name == flags.mount; };
+  if (!flags.mount.empty() && std::none_of(mounts.begin(), mounts.end(), is_chosen)) {
+    throw Error({"--mount", flags.mount, names_of(sensors), ""});
+  }
+  return mounts;
+}
+
+/// Where the first sensor is: the rig goes with it.
+Pose place_first(const RenderFlags& flags, const SceneFile& loaded, const Session& session,
+                 Console& console) {
+  const Mount& first = session.mounts.front();
+  ScenePose in_file{loaded.world_from_rig, loaded.looks_at};
+  if (in_file.world_from_sensor) {
+    in_file.world_from_sensor = *in_file.world_from_sensor * first.rig_from_sensor;
+  }
+  const Pose world_from_sensor = pose_sensor(flags.pose, in_file, first.beams, session.scene);
+  const bool is_placed = in_file.world_from_sensor || loaded.rig_motion ||
+                         sensor_pose_given(flags.pose) || !flags.motion.trajectory.empty();
+  if (!looks_along_z(first.beams) && !is_placed) {
+    console.info(beside_advice(session.scene, world_from_sensor));
+  }
+  return world_from_sensor;
+}
+
+bool has_rate(const RenderFlags& flags) {
+  return !flags.motion.camera_dr.empty();
+}
+
+/// How all moves. Options place and turn the first sensor; the scene file and trajectories have the
+/// poses of the rig, which are those of the sensor where there is one alone.
+RigMotion make_motion(const RenderFlags& flags, const SceneFile& loaded, const Session& session,
+                      const Pose& world_from_first) {
+  const bool is_given = sensor_pose_given(flags.pose);
+  const Mount& first = session.mounts.front();
+  const bool is_in_file =
+      loaded.rig_motion || (loaded.world_from_rig && !loaded.looks_at && !has_rate(flags));
+  const bool is_rigs = !flags.motion.trajectory.empty() || (is_in_file && !is_given);
+  const Pose start = is_rigs ? loaded.world_from_rig.value_or(Pose::Identity()) : world_from_first;
+  Trajectory trajectory = sensor_trajectory(flags.motion, start, is_given, loaded.rig_motion);
+  if (!is_rigs) trajectory = mounted(trajectory, first.rig_from_sensor.inverse());
+  return {.world_from_rig = std::move(trajectory),
+          .world_from_instance =
+              moving(session.scene, ConstantPose{},
+                     instance_trajectories(flags.motion, session.scene, loaded.world_from_instance))
+                  .world_from_instance};
 }
 
 /// When the last beam of the last frame leaves.
-std::int64_t last_firing_ns(const Sensor& sensor, const Beams& beams, std::uint32_t count) {
-  const std::int64_t start_ns = scan_window(sensor, count - 1).start_ns;
-  if (beams.times_ns.empty()) return start_ns;
-  return start_ns + *std::max_element(beams.times_ns.begin(), beams.times_ns.end());
+std::int64_t last_firing_ns(const Mount& mount) {
+  const std::int64_t start_ns = scan_window(mount.sensor, mount.frames - 1).start_ns;
+  if (mount.beams.times_ns.empty()) return start_ns;
+  return start_ns + *std::max_element(mount.beams.times_ns.begin(), mount.beams.times_ns.end());
+}
+
+/// Tells which poses at time 0 are only the end of a trajectory.
+void warn_of_held_poses(const Session& session, const Report& report) {
+  TimeSpan asked{.first_ns = 0, .last_ns = 0};
+  for (const Mount& mount : session.mounts) {
+    asked.last_ns = std::max(asked.last_ns, last_firing_ns(mount));
+  }
+  glidar::warn_of_held_poses(session.motion.world_from_rig, "sensor", asked, report);
+  for (std::size_t i = 0; i < session.motion.world_from_instance.size(); ++i) {
+    glidar::warn_of_held_poses(session.motion.world_from_instance[i],
+                               session.scene.instances[i].name, asked, report);
+  }
 }
 
 void check_target(const RenderFlags& flags) {
@@ -128,16 +184,21 @@ void check_target(const RenderFlags& flags) {
                .remedy = "add --renderer opengl"});
 }
 
-/// Where sensor and objects are and how they move.
+/// Where sensors and objects are and how they move; the console shows how long that takes.
 void place_all(const RenderFlags& flags, const SceneFile& loaded, Console& console,
                Session& session) {
-  Pose world_from_sensor = Pose::Identity();
-  session.beams = aim(flags, loaded, session, console, world_from_sensor);
-  session.frames = frame_count(flags, session.sensor);
-  const TimeSpan asked = {.first_ns = 0,
-                          .last_ns = last_firing_ns(session.sensor, session.beams, session.frames)};
-  session.motion =
-      make_motion(flags, loaded, session.scene, world_from_sensor, asked, console.report());
+  const Working working(console, "aiming the sensor");
+  for (Mount& mount : session.mounts) {
+    mount.beams = make_beams(mount.sensor);
+    mount.frames = frame_count(flags, mount.sensor);
+  }
+  const Pose world_from_first = place_first(flags, loaded, session, console);
+  session.motion = make_motion(flags, loaded, session, world_from_first);
+  warn_of_held_poses(session, console.report());
+  if (!flags.mount.empty()) {  // only now: the poses must not depend on who measures
+    std::erase_if(session.mounts, [&](const Mount& mount) { return mount.name != flags.mount; });
+  }
+  for (Mount& mount : session.mounts) mount.motion = motion_of(session.motion, mount);
 }
 
 }  // namespace
@@ -150,13 +211,13 @@ void open(const RenderFlags& flags, const std::function<void()>& on_loaded, Cons
           Session& session) {
   check_target(flags);
   // before a long load
-  if (!is_scene_file(flags.input)) session.sensor = make_sensor(flags.sensor, {});
+  if (!is_scene_file(flags.input)) session.mounts = make_mounts(flags, {});
   SceneFile loaded = load(flags, console);
   session.files = files_read(flags, loaded);
   if (on_loaded) on_loaded();
   session.scene = std::move(loaded.scene);
-  session.sensor = make_sensor(flags.sensor, loaded.sensor);
-  cover(flags, session.sensor, session.scene);
+  session.mounts = make_mounts(flags, loaded.sensors);
+  cover(flags, session.mounts.front().sensor, session.scene);
   pose_model(flags.pose, session.scene);
   tell(size_advice(session.scene, !flags.model.unit.empty() || flags.pose.scale), console);
   place_all(flags, loaded, console, session);
@@ -167,19 +228,33 @@ void open(const RenderFlags& flags, const std::function<void()>& on_loaded, Cons
   }
 }
 
-void turn_to(const RenderFlags& flags, std::uint32_t number, Session& session, Frame& frame) {
-  const ScanWindow window = scan_window(session.sensor, number);
-  if (number > 0) session.beams = make_beams(session.sensor, window);
+Mount& only_mount(Session& session) {
+  if (session.mounts.size() == 1) return session.mounts.front();
+  std::string names;
+  for (const Mount& mount : session.mounts) names += (names.empty() ? "" : ", ") + mount.name;
+  throw Error({"scene file", fmt::format("a rig of {} sensors", session.mounts.size()),
+               "one sensor here", "choose it with --mount: " + names});
+}
+
+Motion motion_of(const RigMotion& motion, const Mount& mount) {
+  return {.world_from_sensor = mounted(motion.world_from_rig, mount.rig_from_sensor),
+          .world_from_instance = motion.world_from_instance};
+}
+
+void turn_to(const RenderFlags& flags, std::uint32_t number, Mount& mount, Frame& frame) {
+  const ScanWindow window = scan_window(mount.sensor, number);
+  if (number > 0) mount.beams = make_beams(mount.sensor, window);
   frame.number = number;
+  frame.sensor_id = mount.id;
   frame.stamp_ns = window.start_ns;
   frame.seed = flags.seed;
 }
 
-Setup setup_of(const Session& session, Console& console) {
+Setup setup_of(const Session& session, const Mount& mount, Console& console) {
   Setup setup{.scene = session.scene,
-              .sensor = session.sensor,
-              .beams = session.beams,
-              .motion = session.motion,
+              .sensor = mount.sensor,
+              .beams = mount.beams,
+              .motion = mount.motion,
               .renderer = *session.renderer,
               .progress = [&console](double fraction) { console.tell(fraction); }};
   if (session.paper) setup.paper.emplace(PaperTarget{.camera = *session.paper});

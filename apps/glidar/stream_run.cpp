@@ -71,18 +71,32 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
 }
 
 void StreamRun::open_session() {
+  const Sensor unknown;
   const Beams none;
   std::vector<Output> outputs;
-  if (writes_files()) outputs = plan(numbered(flags_.render.output, 0), none);
+  if (writes_files()) outputs = plan(numbered(flags_.render.output, 0), unknown, none);
   open(
       flags_.render, [&] { protect_files(session_.files, outputs); }, console_, session_);
-  beams_ = std::make_shared<const Beams>(session_.beams);
+  for (const Mount& mount : session_.mounts) {
+    beams_.push_back(std::make_shared<const Beams>(mount.beams));
+  }
   std::vector<std::string> columns;
-  if (publisher_) columns = kPublishedColumns;
+  if (publisher_) {
+    columns = kPublishedColumns;
+    publisher_->set_topics(topics());
+  }
   for (const Output& output : outputs) {
     columns.insert(columns.end(), output.columns.begin(), output.columns.end());
   }
   fields_ = glidar::fields_for(columns);
+}
+
+/// 2015's topic where there is one sensor, one for each on a rig.
+std::map<std::uint32_t, std::string> StreamRun::topics() const {
+  std::map<std::uint32_t, std::string> topics;
+  if (session_.mounts.size() == 1) return topics;
+  for (const Mount& mount : session_.mounts) topics[mount.id] = legacy::rig_topic(mount.name);
+  return topics;
 }
 
 /// The scene as it stands becomes the object that the simulator moves.
@@ -97,7 +111,10 @@ void StreamRun::prepare_poses() {
     }
     moved_scene_.object_from_instance.push_back(std::get<ConstantPose>(trajectory).pose);
   }
-  if (!looks_along_z(*beams_)) moved_scene_.optical_from_sensor = optical_from_body();
+  const Mount& first = session_.mounts.front();
+  if (!first.name.empty() || !looks_along_z(first.beams)) {
+    moved_scene_.optical_from_rig = optical_from_body();
+  }
   if (!flags_.render.pose.model_q.empty() || !flags_.render.pose.model_r.empty()) {
     // as in 2015, where the first message replaced it
     for (Pose& pose : moved_scene_.object_from_instance) pose = Pose::Identity();
@@ -114,11 +131,14 @@ std::unique_ptr<PoseSource> StreamRun::make_source(const StopRequest& stop) {
     pace.rate_hz = flags_.render.sensor.rate_hz.value_or(0.0);
     return std::make_unique<SimulatorSource>(
         *receiver_, moved_scene_,
-        SimulatorSource::Options{.pace = pace, .timeout_s = flags_.pose_timeout_s}, stop);
+        SimulatorSource::Options{
+            .pace = pace, .timeout_s = flags_.pose_timeout_s, .mounts = session_.mounts.size()},
+        stop);
   }
-  const double rate_hz = session_.sensor.rate_hz;
-  if (!flags_.is_unpaced) pace.rate_hz = rate_hz;
-  return std::make_unique<MotionSource>(pace, 1.0 / rate_hz, stop);
+  std::vector<double> periods_s;
+  for (const Mount& mount : session_.mounts) periods_s.push_back(1.0 / mount.sensor.rate_hz);
+  if (!flags_.is_unpaced) pace.rate_hz = session_.mounts.front().sensor.rate_hz;
+  return std::make_unique<MotionSource>(pace, std::move(periods_s), stop);
 }
 
 int StreamRun::run() {
@@ -162,8 +182,11 @@ void StreamRun::stream(PoseSource& source, const StopRequest& stop) {
   stats_ = {};
   Delivery delivery([this](const Shot& shot) { deliver(shot); }, [this] { look_after_peers(); });
   while (!stop.is_asked()) {
-    const std::optional<Moment> moment = source.next(session_.motion);
+    const std::optional<Moment> moment = source.next();
     if (!moment) break;
+    if (moment->motion) {
+      for (Mount& mount : session_.mounts) mount.motion = motion_of(*moment->motion, mount);
+    }
     if (!is_wanted(moment->number)) continue;
     measure(*moment, delivery.room());
     delivery.hand_over();
@@ -172,24 +195,28 @@ void StreamRun::stream(PoseSource& source, const StopRequest& stop) {
 }
 
 void StreamRun::measure(const Moment& moment, Shot& shot) {
-  const ScanWindow window = scan_window(session_.sensor, moment.number);
-  if (moment.number > 0 && !has_fixed_beams(session_.sensor)) {
-    beams_ = std::make_shared<const Beams>(make_beams(session_.sensor, window));
+  const Mount& mount = session_.mounts[moment.mount];
+  std::shared_ptr<const Beams>& beams = beams_[moment.mount];
+  const ScanWindow window = scan_window(mount.sensor, moment.number);
+  if (moment.number > 0 && !has_fixed_beams(mount.sensor)) {
+    beams = std::make_shared<const Beams>(make_beams(mount.sensor, window));
   }
-  shot.beams = beams_;
+  shot.beams = beams;
+  shot.mount = moment.mount;
   shot.due = moment.due;
   shot.frame.number = moment.number;
-  shot.frame.stamp_ns = receiver_ ? moment.stamp_ns : window.start_ns;
+  shot.frame.sensor_id = mount.id;
+  shot.frame.stamp_ns = moment.stamp_ns.value_or(window.start_ns);
   shot.frame.seed = flags_.render.seed;
   Setup setup{.scene = session_.scene,
-              .sensor = session_.sensor,
-              .beams = *beams_,
-              .motion = session_.motion,
+              .sensor = mount.sensor,
+              .beams = *beams,
+              .motion = mount.motion,
               .renderer = *session_.renderer};
   if (session_.paper) setup.paper.emplace(PaperTarget{.camera = *session_.paper});
   simulate(setup, fields_, shot.frame);
   if (measured_++ > 0) return;
-  tell(view_advice({session_.scene, session_.sensor, *beams_, shot.frame}), console_);
+  tell(view_advice({session_.scene, mount.sensor, *beams, shot.frame}), console_);
 }
 
 bool StreamRun::is_wanted(std::uint32_t number) const {
@@ -201,10 +228,11 @@ bool StreamRun::writes_files() const {
   return !files.paths.empty() || !files.legacy_name.empty();
 }
 
-std::vector<Output> StreamRun::plan(const OutputFlags& files, const Beams& beams) {
+std::vector<Output> StreamRun::plan(const OutputFlags& files, const Sensor& sensor,
+                                    const Beams& beams) {
   return plan_outputs(files, flags_.render.input,
                       {.scene = session_.scene,
-                       .sensor = session_.sensor,
+                       .sensor = sensor,
                        .beams = beams,
                        .renderer = renderer_name(flags_.render)},
                       console_.report());
@@ -224,8 +252,11 @@ void StreamRun::publish(const Shot& shot) {
 }
 
 void StreamRun::write_files(const Shot& shot) {
+  const Mount& mount = session_.mounts[shot.mount];
+  OutputFlags files = flags_.render.output;
+  if (session_.mounts.size() > 1) files = labelled(files, mount.name);
   const std::vector<Output> outputs =
-      plan(numbered(flags_.render.output, shot.frame.number), *shot.beams);
+      plan(numbered(files, shot.frame.number), mount.sensor, *shot.beams);
   protect_files(session_.files, outputs);
   write_outputs(outputs, shot.frame, *shot.beams, session_.scene);
 }

@@ -13,6 +13,7 @@
 #include <glidar/io/atomic_file.hpp>
 #include <glidar/link/fault_log.hpp>
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,6 +32,7 @@ class StreamRun {
 
  private:
   void open_session();
+  [[nodiscard]] std::map<std::uint32_t, std::string> topics() const;
   void prepare_poses();
   [[nodiscard]] std::unique_ptr<PoseSource> make_source(const StopRequest& stop);
   bool wait_for_partners(const StopRequest& stop);
@@ -39,7 +41,8 @@ class StreamRun {
   void measure(const Moment& moment, Shot& shot);
   [[nodiscard]] bool is_wanted(std::uint32_t number) const;
   [[nodiscard]] bool writes_files() const;
-  [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const Beams& beams);
+  [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const Sensor& sensor,
+                                         const Beams& beams);
   void deliver(const Shot& shot);
   void write_files(const Shot& shot);
   void publish(const Shot& shot);
@@ -55,7 +58,7 @@ class StreamRun {
   std::unique_ptr<legacy::PoseReceiver> receiver_;
   double duration_s_ = 0.0;
   Session session_;
-  std::shared_ptr<const Beams> beams_;
+  std::vector<std::shared_ptr<const Beams>> beams_;  ///< of each sensor
   MovedScene moved_scene_;
   HitFields fields_;
   StreamStats stats_;

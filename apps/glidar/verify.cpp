@@ -4,8 +4,8 @@
 #include <apps/glidar/console.hpp>
 #include <apps/glidar/exit_code.hpp>
 #include <apps/glidar/run_options.hpp>
-#include <apps/glidar/verify_cases.hpp>
 #include <glidar/core/version.hpp>
+#include <glidar/verify/verify.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -34,48 +34,13 @@ struct VerifyFlags {
   bool json = false;
 };
 
-/// One line of the table.
-struct Row {
-  std::string shape;
-  double distance_m = 0.0;
-  VerifyResult result;
-};
-
-Row run_row(const std::vector<Shape>& shapes, std::size_t shape, double distance_m,
-            const RendererOptions& options) {
-  Row row{.shape = shapes[shape].name, .distance_m = distance_m, .result = {}};
-  for (const VerifyCase& c : make_cases(shape, distance_m)) {
-    row.result.add(run_case(c, shapes[shape], options));
-  }
-  return row;
-}
-
-std::vector<Row> run_all(const RendererOptions& options, Console& console) {
-  const std::vector<Shape> shapes = make_shapes();
-  const std::vector<double>& distances = verify_distances();
-  const Working working(console, "verifying");
-  const auto count = static_cast<double>(shapes.size() * distances.size());
-  std::vector<Row> rows;
-  for (std::size_t shape = 0; shape < shapes.size(); ++shape) {
-    for (const double distance_m : distances) {
-      rows.push_back(run_row(shapes, shape, distance_m, options));
-      console.tell(static_cast<double>(rows.size()) / count);
-    }
-  }
-  return rows;
-}
-
-bool all_passed(const std::vector<Row>& rows) {
-  return std::all_of(rows.begin(), rows.end(), [](const Row& row) { return row.result.passed(); });
-}
-
-void print_table(const std::vector<Row>& rows, const std::string& renderer) {
+void print_table(const std::vector<VerifyRow>& rows, const std::string& renderer) {
   constexpr const char* kHead = "{:<16} {:>10} {:>8} {:>8} {:>8} {:>11} {:>11} {:>11} {:>6}  {}\n";
   fmt::print("glidar {}, renderer {}\n", version(), renderer);
   fmt::print(kHead, "shape", "distance", "hits", "misses", "at edge", "range err", "range err",
              "normal err", "wrong", "");
   fmt::print(kHead, "", "m", "judged", "judged", "unjudged", "m", "ulp (f32)", "rad", "", "");
-  for (const Row& row : rows) {
+  for (const VerifyRow& row : rows) {
     const VerifyResult& r = row.result;
     fmt::print("{:<16} {:>10} {:>8} {:>8} {:>8} {:>11.2e} {:>11.2e} {:>11.2e} {:>6}  {}\n",
                row.shape, row.distance_m, r.judged_hits, r.judged_misses, r.near_edges,
@@ -83,7 +48,7 @@ void print_table(const std::vector<Row>& rows, const std::string& renderer) {
                r.wrong_hits + r.wrong_misses, r.passed() ? "ok" : "FAILED");
   }
   VerifyResult all;
-  for (const Row& row : rows) all.add(row.result);
+  for (const VerifyRow& row : rows) all.add(row.result);
   fmt::print("bounds: range {} ulp of float32, normal {} rad, no wrong hit or miss\n",
              kRangeBound_ulp, kNormalBound_rad);
   fmt::print(
@@ -93,9 +58,9 @@ void print_table(const std::vector<Row>& rows, const std::string& renderer) {
       all.wrong_hits, all.wrong_misses);
 }
 
-void print_json(const std::vector<Row>& rows, const std::string& renderer) {
+void print_json(const std::vector<VerifyRow>& rows, const std::string& renderer) {
   nlohmann::ordered_json table = nlohmann::ordered_json::array();
-  for (const Row& row : rows) {
+  for (const VerifyRow& row : rows) {
     const VerifyResult& r = row.result;
     table.push_back({{"shape", row.shape},
                      {"distance_m", row.distance_m},
@@ -121,7 +86,11 @@ void print_json(const std::vector<Row>& rows, const std::string& renderer) {
 
 int run(const VerifyFlags& flags) {
   Console console;
-  const std::vector<Row> rows = run_all(flags.renderer, console);
+  std::vector<VerifyRow> rows;
+  {
+    const Working working(console, "verifying");
+    rows = verify(flags.renderer, [&console](double fraction) { console.tell(fraction); });
+  }
   if (flags.json) {
     print_json(rows, flags.renderer.kind);
   } else {

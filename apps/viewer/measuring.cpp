@@ -3,9 +3,9 @@
 #include <apps/viewer/measuring.hpp>
 
 #include <apps/glidar/advice.hpp>
-#include <apps/glidar/story_text.hpp>
 #include <glidar/explain.hpp>
 #include <glidar/simulate.hpp>
+#include <glidar/story_text.hpp>
 
 #include <fmt/format.h>
 
@@ -191,10 +191,10 @@ void Measuring::open_for(const Ask& ask) {
   open(*ask.flags, {}, console_, *opened->session);
   refused_.reset();
   opened->flags = ask.flags;
-  const Session& session = *opened->session;
-  opened->noisy = std::make_shared<Sensor>(session.sensor);
-  opened->still = std::make_shared<Sensor>(without_noise(session.sensor));
-  opened->beams = std::make_shared<Beams>(session.beams);
+  const Mount& mount = only_mount(*opened->session);
+  opened->noisy = std::make_shared<Sensor>(mount.sensor);
+  opened->still = std::make_shared<Sensor>(without_noise(mount.sensor));
+  opened->beams = std::make_shared<Beams>(mount.beams);
   opened_ = std::move(opened);
   shots_.clear();
 }
@@ -220,7 +220,7 @@ void Measuring::prepare(const Ask& ask, Snapshot& shot) {
   shot.session = opened_->session;
   shot.sensor = ask.has_noise ? opened_->noisy : opened_->still;
   shot.beams = opened_->beams;
-  shot.motion = moved_all(opened_->session->motion, ask);
+  shot.motion = moved_all(only_mount(*opened_->session).motion, ask);
   shot.frame.number = ask.number;
   shot.frame.stamp_ns = scan_window(*shot.sensor, ask.number).start_ns;
   shot.frame.seed = ask.seed;

@@ -3,6 +3,7 @@
 #include <glidar/io/data_folder.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/own_folders.hpp>
 
 #include <cstdlib>
 #include <vector>
@@ -18,11 +19,10 @@ fs::path data_folder(const std::string& name, const char* variable) {
     throw Error(
         {variable, std::string(named) + " is no folder", "a folder like GLIDAR's " + name, ""});
   }
-  // beside the program first, so that a moved installation finds its own
-  const fs::path self = fs::read_symlink("/proc/self/exe", error);
-  const std::vector<fs::path> places = {
-      self.parent_path().parent_path() / "share" / "glidar" / name,
-      fs::path(GLIDAR_DATA_SOURCE_PATH) / name, fs::path(GLIDAR_DATA_INSTALL_PATH) / name};
+  std::vector<fs::path> places;
+  for (const fs::path& own : own_folders()) places.push_back(own / "share" / "glidar" / name);
+  places.push_back(fs::path(GLIDAR_DATA_SOURCE_PATH) / name);
+  places.push_back(fs::path(GLIDAR_DATA_INSTALL_PATH) / name);
   for (const fs::path& place : places) {
     if (fs::is_directory(place, error)) return place;
   }

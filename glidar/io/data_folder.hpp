@@ -10,7 +10,7 @@
 namespace glidar {
 
 /// The folder `name` of the data that comes with GLIDAR: where the variable says, beside the
-/// running program (share/glidar/name), in the source, or where it is installed. Throws Error when
+/// running program or library (share/glidar/name), in the source, or where it is installed. Throws Error when
 /// there is none.
 std::filesystem::path data_folder(const std::string& name, const char* variable);
 

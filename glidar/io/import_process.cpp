@@ -151,6 +151,21 @@ std::string signal_name(int signal) {
                .remedy = std::move(remedy)});
 }
 
+/// How a process ended, and what it took.
+struct Ending {
+  int status = 0;
+  rusage usage{};
+};
+
+/// Waits for the process, which is killed first if need be.
+Ending end(pid_t child, bool is_killed) {
+  if (is_killed) ::kill(child, SIGKILL);
+  Ending ending;
+  while (::wait4(child, &ending.status, 0, &ending.usage) < 0 && errno == EINTR) {
+  }
+  return ending;
+}
+
 /// Exit status of the import program when memory ran out before it could say so in a frame.
 constexpr int kExitNoMemory = 3;
 
@@ -195,12 +210,14 @@ ImportRun run_import(const ImportRequest& request, const Report& report) {
                   std::to_string(run.memory_limit_bytes),
                   fmt::format("{:.3f}", request.time_limit_s), std::to_string(::getpid())});
   pipe.write_end.reset();
-  const bool in_time = wait_for_end(child, pipe, request, report);
-  if (!in_time) ::kill(child, SIGKILL);
-  int status = 0;
-  rusage usage{};
-  while (::wait4(child, &status, 0, &usage) < 0 && errno == EINTR) {
+  bool in_time = false;
+  try {
+    in_time = wait_for_end(child, pipe, request, report);
+  } catch (...) {  // whoever is told of the progress gave up
+    end(child, true);
+    throw;
   }
+  const auto [status, usage] = end(child, !in_time);
   run.seconds = seconds_since(start);
   run.peak_memory_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024U;
   classify(run, status);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
 #include <glidar/io/import_process.hpp>
+#include <glidar/io/own_folders.hpp>
 
 #include <unistd.h>
 
@@ -20,11 +21,9 @@ constexpr const char* kVariable = "GLIDAR_IMPORT_HELPER";
 std::vector<fs::path> places() {
   std::vector<fs::path> all;
   std::error_code error;
+  for (const fs::path& own : own_folders()) all.push_back(own / "libexec" / "glidar" / kName);
   const fs::path self = fs::read_symlink("/proc/self/exe", error);
-  if (!error) {
-    all.push_back(self.parent_path() / kName);
-    all.push_back(self.parent_path().parent_path() / "libexec" / "glidar" / kName);
-  }
+  if (!error) all.push_back(self.parent_path() / kName);
   all.emplace_back(GLIDAR_IMPORT_BUILD_PATH);
   all.emplace_back(GLIDAR_IMPORT_INSTALL_PATH);
   return all;

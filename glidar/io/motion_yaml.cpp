@@ -76,8 +76,7 @@ Trajectory read_tumbling(const YamlField& field, const Pose& start) {
 
 /// A path of the file, seen from the file's own folder; the file must be there.
 std::string existing_file(const YamlField& field) {
-  const std::string path =
-      (fs::path(field.file).parent_path() / text(field)).lexically_normal().string();
+  const std::string path = path_beside(field);
   if (fs::exists(path)) return path;
   reject(field, "no such file: " + path, "the path of a trajectory file",
          "paths are relative to the folder of this file");

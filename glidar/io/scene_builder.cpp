@@ -94,15 +94,15 @@ void require_known(const MaterialOverride& change, const Instance& instance, con
 }
 
 /// Gives the instance copies of the materials that change: others may share the originals.
-void override_materials(const PlannedInstance& planned, TexturePlaces& places, Instance& instance,
-                        Scene& scene) {
-  for (const MaterialOverride& change : planned.overrides) {
+void override_materials(const std::vector<MaterialOverride>& overrides, TexturePlaces& places,
+                        Instance& instance, Scene& scene) {
+  for (const MaterialOverride& change : overrides) {
     require_known(change, instance, scene);
   }
   for (std::uint32_t& index : instance.materials) {
     Material changed = scene.materials[index];
     bool is_changed = false;
-    for (const MaterialOverride& change : planned.overrides) {
+    for (const MaterialOverride& change : overrides) {
       if (!concerns(change, changed)) continue;
       apply(change, places, scene, changed);
       is_changed = true;
@@ -123,6 +123,13 @@ std::uint32_t class_index(const std::string& name, std::vector<std::string>& nam
 
 }  // namespace
 
+void set_materials(Scene& scene, std::size_t instance, const std::string& text) {
+  TexturePlaces places;
+  Instance changed = scene.instances.at(instance);
+  override_materials(read_overrides(read_yaml_text("materials", text)), places, changed, scene);
+  scene.instances[instance] = std::move(changed);
+}
+
 Scene build_scene(const ScenePlan& plan, const ModelLoader& load) {
   Scene scene;
   TexturePlaces places;
@@ -140,7 +147,7 @@ Scene build_scene(const ScenePlan& plan, const ModelLoader& load) {
     instance.scale = planned.scale;
     instance.id = planned.id;
     instance.class_id = class_index(planned.class_name, scene.class_names);
-    override_materials(planned, places, instance, scene);
+    override_materials(planned.overrides, places, instance, scene);
     scene.instances.push_back(std::move(instance));
   }
   validate(scene);

@@ -6,6 +6,7 @@
 
 #include <glidar/io/model.hpp>
 #include <glidar/io/scene_file.hpp>
+#include <glidar/io/yaml_reader.hpp>
 
 #include <filesystem>
 #include <functional>
@@ -49,15 +50,18 @@ struct PlannedInstance {
 /// All that a scene file says, checked, before any model is loaded.
 struct ScenePlan {
   std::vector<PlannedInstance> instances;
-  std::optional<Sensor> sensor;
-  std::optional<Pose> world_from_sensor;
-  bool looks_at = false;                    ///< see SceneFile
-  std::optional<Trajectory> sensor_motion;  ///< empty: it stands still
-  std::vector<std::string> files;           ///< the scene file, and the sensor file if it names one
+  std::vector<RigSensor> sensors;
+  std::optional<Pose> world_from_rig;
+  bool looks_at = false;                 ///< see SceneFile
+  std::optional<Trajectory> rig_motion;  ///< empty: it stands still
+  std::vector<std::string> files;        ///< the scene file, and the sensor files it names
 };
 
-/// Reads a scene file and the sensor file it names; loads no model.
+/// Reads a scene file and the sensor files it names; loads no model.
 ScenePlan read_scene_plan(const std::filesystem::path& path, const ModelOptions& defaults);
+
+/// What `materials` of a scene file says; those for "*" first.
+std::vector<MaterialOverride> read_overrides(const YamlField& field);
 
 using ModelLoader = std::function<Model(const std::string& source, const ModelOptions& options)>;
 

@@ -28,12 +28,12 @@ SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions&
     return load_model(source, options, report);
   };
   return {.scene = build_scene(plan, load),
-          .sensor = plan.sensor,
-          .world_from_sensor = plan.world_from_sensor,
+          .sensors = plan.sensors,
+          .world_from_rig = plan.world_from_rig,
           .looks_at = plan.looks_at,
           .files = plan.files,
           .world_from_instance = trajectories(plan),
-          .sensor_motion = plan.sensor_motion};
+          .rig_motion = plan.rig_motion};
 }
 
 }  // namespace glidar

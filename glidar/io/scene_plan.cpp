@@ -6,10 +6,8 @@
 #include <glidar/io/motion_yaml.hpp>
 #include <glidar/io/pose_yaml.hpp>
 #include <glidar/io/pulse_yaml.hpp>
+#include <glidar/io/rig_yaml.hpp>
 #include <glidar/io/scene_builder.hpp>
-#include <glidar/io/sensor_file.hpp>
-#include <glidar/io/sensor_presets.hpp>
-#include <glidar/io/sensor_yaml.hpp>
 #include <glidar/io/surfaces.hpp>
 
 #include <algorithm>
@@ -24,11 +22,9 @@ namespace fs = std::filesystem;
 constexpr NumberRule kScale = {0.0, kLargestCoordinate_m, true, "a number above 0 and below 1e15"};
 constexpr NumberRule kShininess = {0.0, 128.0, false, "a number from 0 to 128"};
 
-/// A path of the file, seen from the file's own folder.
 std::string resolved(const YamlField& field) {
   const std::string source = text(field);
-  if (source.starts_with(kBuiltinPrefix)) return source;
-  return (fs::path(field.file).parent_path() / source).lexically_normal().string();
+  return source.starts_with(kBuiltinPrefix) ? source : path_beside(field);
 }
 
 std::string stem(const std::string& source) {
@@ -78,17 +74,6 @@ MaterialOverride read_override(const std::string& material, const YamlField& fie
     change.where_noise_texture = where(*texture);
   }
   return change;
-}
-
-std::vector<MaterialOverride> read_overrides(const YamlField& field) {
-  std::vector<MaterialOverride> changes;
-  for (const auto& [material, value] : entries(field)) {
-    changes.push_back(read_override(material, value));
-  }
-  // What is said of one material wins over what is said of all, wherever it stands.
-  std::stable_partition(changes.begin(), changes.end(),
-                        [](const MaterialOverride& change) { return change.material == "*"; });
-  return changes;
 }
 
 /// Where the model is at time 0, and how it moves.
@@ -170,51 +155,27 @@ std::vector<PlannedInstance> read_models(const YamlField& field, const ModelOpti
   return planned;
 }
 
-/// The sensor beside the world: a map, a sensor file, or the name of a sensor that comes along.
-Sensor read_scene_sensor(const YamlField& field, std::vector<std::string>& files) {
-  if (field.node.IsMap()) return read_sensor(field);
-  if (!field.node.IsScalar() || field.node.Scalar().empty()) {
-    reject(field, describe(field), "a map, or the path of a sensor file");
-  }
-  const std::string file = resolved(field);
-  const fs::path named = field.node.Scalar();
-  const bool is_name = !named.has_parent_path() && !named.has_extension() && !fs::exists(file);
-  if (is_name) return load_sensor_file(find_sensor_file(field.node.Scalar()));
-  if (!fs::exists(file)) {
-    reject(field, "no such file: " + file, "a map, or the path of a sensor file",
-           "paths are relative to the folder of this file");
-  }
-  files.push_back(file);
-  return load_sensor_file(file);
-}
-
-void read_sensor_motion(const YamlField& root, ScenePlan& plan) {
-  const auto motion = find(root, "sensor_motion");
-  if (!motion) return;
-  plan.sensor_motion = read_motion(*motion, plan.world_from_sensor, plan.files);
-  if (!plan.world_from_sensor && !std::holds_alternative<TimedPoses>(*plan.sensor_motion)) {
-    reject(*motion, "the pose at which it starts is missing", "",
-           "add 'sensor_pose: ...' beside sensor_motion");
-  }
-  plan.world_from_sensor = pose_at(*plan.sensor_motion, 0);
-}
-
 }  // namespace
+
+std::vector<MaterialOverride> read_overrides(const YamlField& field) {
+  std::vector<MaterialOverride> changes;
+  for (const auto& [material, value] : entries(field)) {
+    changes.push_back(read_override(material, value));
+  }
+  // What is said of one material wins over what is said of all, wherever it stands.
+  std::stable_partition(changes.begin(), changes.end(),
+                        [](const MaterialOverride& change) { return change.material == "*"; });
+  return changes;
+}
 
 ScenePlan read_scene_plan(const fs::path& path, const ModelOptions& defaults) {
   const YamlField root = read_yaml(path);
-  require_map(root, {"models", "sensor", "sensor_pose", "sensor_motion"});
+  require_map(root, {"models", "sensor", "sensor_pose", "sensor_motion", "sensors", "rig_pose",
+                     "rig_motion"});
   ScenePlan plan;
   plan.files.push_back(path.string());
   plan.instances = read_models(need(root, "models"), defaults, plan.files);
-  if (const auto sensor = find(root, "sensor")) {
-    plan.sensor = read_scene_sensor(*sensor, plan.files);
-  }
-  if (const auto pose = find(root, "sensor_pose")) {
-    plan.world_from_sensor = read_sensor_pose(*pose);
-    plan.looks_at = find(*pose, "look_at").has_value();
-  }
-  read_sensor_motion(root, plan);
+  read_rig(root, plan);
   return plan;
 }
 

@@ -27,6 +27,9 @@ struct Sidecar {
 /// A hash, hexadecimal, of what the frame reports: status, range and intensity of every beam.
 std::string frame_hash(const Frame& frame);
 
+/// All numbers of a sensor with these beams, as JSON: what a sidecar tells of it.
+std::string sensor_text(const Sensor& sensor, const Beams& beams);
+
 /// Reads the sidecar of a cloud, CLOUD.json beside it. Throws Error when there is none or it is not
 /// one.
 Sidecar read_sidecar(const std::filesystem::path& cloud);

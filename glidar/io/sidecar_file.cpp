@@ -64,18 +64,18 @@ Json receiver_json(const Receiver& receiver) {
           {"returns", returns}};
 }
 
-Json sensor_json(const CloudFile& job) {
-  const Sensor& sensor = job.context.sensor;
+/// All numbers of a sensor.
+Json sensor_json(const Sensor& sensor, const Beams& beams) {
   const Light& light = sensor.light;
   return {{"name", sensor.name},
-          {"frame_id", job.frame.frame_id},
-          {"rows", job.frame.rows},
-          {"cols", job.frame.cols},
-          {"boresight", vector_json(job.context.beams.boresight)},
+          {"frame_id", beams.frame_id},
+          {"rows", beams.rows},
+          {"cols", beams.cols},
+          {"boresight", vector_json(beams.boresight)},
           {"optics", optics_json(sensor.optics)},
           {"rate_hz", sensor.rate_hz},
           {"wavelength_nm", sensor.wavelength_m * 1e9},
-          {"range_offset_m", job.context.beams.range_offset_m},
+          {"range_offset_m", beams.range_offset_m},
           {"limits",
            {{"near_m", sensor.limits.near_m},
             {"far_m", sensor.limits.far_m},
@@ -91,8 +91,13 @@ Json sensor_json(const CloudFile& job) {
           {"weather", sensor.weather ? weather_json(*sensor.weather) : Json()},
           {"projector_m", sensor.projector_m ? vector_json(*sensor.projector_m) : Json()},
           {"noise", noise_json(sensor.noise)},
-          {"cull_back_faces", sensor.cull_back_faces},
-          {"world_from_sensor", pose_json(job.frame.world_from_sensor)}};
+          {"cull_back_faces", sensor.cull_back_faces}};
+}
+
+Json sensor_json(const CloudFile& job) {
+  Json json = sensor_json(job.context.sensor, job.context.beams);
+  json["world_from_sensor"] = pose_json(job.frame.world_from_sensor);
+  return json;
 }
 
 /// As the file holds them, which may be shorter, renamed or fewer than the cloud's.
@@ -184,6 +189,11 @@ void append_text(const Json& value, std::size_t indent, std::string& text) {
 }
 
 }  // namespace
+
+std::string sensor_text(const Sensor& sensor, const Beams& beams) {
+  constexpr int kIndent = 2;
+  return sensor_json(sensor, beams).dump(kIndent, ' ', false, Json::error_handler_t::replace);
+}
 
 std::string sidecar_text(const CloudFile& job, const std::filesystem::path& path) {
   const Json all = {{"glidar", version()},

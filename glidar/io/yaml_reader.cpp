@@ -78,7 +78,7 @@ std::vector<Entry> checked_entries(const YamlField& field) {
     const YamlField key_field = child(field, field.path, field.mark, pair.first);
     if (!pair.first.IsScalar()) reject(key_field, "a key that is no word", "words as keys");
     const std::string& key = pair.first.Scalar();
-    Entry entry{key, pair.first.Mark(),
+    Entry entry{key, key_field.mark,
                 child(field, child_path(field, key), pair.first.Mark(), pair.second)};
     if (!seen.insert(key).second) {
       entry.value.mark = entry.key_mark;
@@ -242,6 +242,11 @@ std::string text(const YamlField& field) {
     reject(field, describe(field), "a text that is not empty");
   }
   return field.node.Scalar();
+}
+
+std::string path_beside(const YamlField& field) {
+  const std::filesystem::path folder = std::filesystem::path(field.file).parent_path();
+  return (folder / text(field)).lexically_normal().string();
 }
 
 std::size_t one_of(const YamlField& field, const std::vector<std::string>& words) {

@@ -89,6 +89,8 @@ std::uint32_t whole_number(const YamlField& field, std::uint32_t least, std::uin
 bool boolean(const YamlField& field);
 /// Any scalar but an empty one.
 std::string text(const YamlField& field);
+/// A path, seen from the file's own folder.
+std::string path_beside(const YamlField& field);
 /// The place of the text in `words`; throws Error when it is none of them.
 std::size_t one_of(const YamlField& field, const std::vector<std::string>& words);
 /// A list of 1 to 4096 pairs [place, value] with rising places; places are told in `unit`.

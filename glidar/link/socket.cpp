@@ -286,7 +286,7 @@ bool Socket::publish(std::span<const std::byte> bytes, std::chrono::milliseconds
   return publish_now(impl_->socket, message, zmq::send_flags::none);
 }
 
-SubscriptionCount Socket::subscriptions(char topic) {
+SubscriptionCount Socket::subscriptions(std::span<const std::string> topics) {
   if (impl_->socket.get(zmq::sockopt::type) != ZMQ_XPUB) return {};
   while (const std::optional<Message> message = receive()) {
     // a byte, 1 for a subscription and 0 for its end, and the topic
@@ -302,7 +302,9 @@ SubscriptionCount Socket::subscriptions(char topic) {
   }
   SubscriptionCount known = {.is_known = true};
   for (const auto& [name, count] : impl_->subscriptions) {
-    if (std::string(1, topic).starts_with(name)) known.subscribers += count;
+    const std::string& begin = name;
+    const auto is_asked = [&](const std::string& topic) { return topic.starts_with(begin); };
+    if (std::any_of(topics.begin(), topics.end(), is_asked)) known.subscribers += count;
   }
   return known;
 }

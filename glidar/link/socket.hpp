@@ -128,8 +128,8 @@ class Socket {
   /// The same, waiting so long for full queues.
   bool publish(std::span<const std::byte> bytes, std::chrono::milliseconds patience);
 
-  /// How many subscribers want this topic now.
-  SubscriptionCount subscriptions(char topic);
+  /// How many subscriptions there are now to any of these topics.
+  SubscriptionCount subscriptions(std::span<const std::string> topics);
   /// What happened since the last call.
   std::vector<PeerEvent> events();
 

@@ -5,6 +5,7 @@
 #include <glidar/core/error.hpp>
 
 #include <string>
+#include <type_traits>
 #include <utility>
 
 namespace glidar {
@@ -80,8 +81,63 @@ Trajectory moved_by(const Pose& moved, const Tumbling& tumbling) {
   return Tumbling(start);
 }
 
+Trajectory moved_by(const Pose& moved, const Mounted& mounted) {
+  const auto move = [&](const auto& carrier) {
+    const Trajectory result = moved_by(moved, carrier);
+    return Mounted{std::get<std::decay_t<decltype(carrier)>>(result), mounted.carrier_from_body};
+  };
+  return std::visit(move, mounted.carrier);
+}
+
+Trajectory mounted_on(const ConstantPose& body, const Pose& part) {
+  return ConstantPose{body.pose * part};
+}
+
+/// A twist in the part's frame is that in the body's changed by the adjoint map of part_from_body
+/// (Lynch & Park, "Modern Robotics" (2017), definition 3.20); one in the world's frame stays.
+Trajectory mounted_on(ConstantTwist body, const Pose& part) {
+  body.pose = body.pose * part;
+  if (body.frame == TwistFrame::world) return body;
+  const Eigen::Matrix3d turn = part.linear().transpose();
+  body.linear_m_s = turn * (body.linear_m_s + body.angular_rad_s.cross(part.translation()));
+  body.angular_rad_s = turn * body.angular_rad_s;
+  return body;
+}
+
+Trajectory mounted_on(const Spin& body, const Pose& part) {
+  return mounted_on(ConstantTwist{.pose = body.pose,
+                                  .angular_rad_s = body.rate_rad_s,
+                                  .frame = TwistFrame::body,
+                                  .t0_ns = body.t0_ns},
+                    part);
+}
+
+Trajectory mounted_on(const TimedPoses& body, const Pose& part) {
+  return Mounted{body, part};
+}
+
+Trajectory mounted_on(const Tumbling& body, const Pose& part) {
+  return Mounted{body, part};
+}
+
+Trajectory mounted_on(Mounted body, const Pose& part) {
+  body.carrier_from_body = body.carrier_from_body * part;
+  return body;
+}
+
 void check(const TimedPoses& /*checked when made*/) {}
 void check(const Tumbling& /*checked when made*/) {}
+
+void check(const Mounted& mounted) {
+  require(is_rigid(mounted.carrier_from_body), "mounted, pose", "not a rigid transform");
+}
+
+/// The timed poses that a trajectory follows; none: nullptr.
+const TimedPoses* timed_poses(const Trajectory& trajectory) {
+  const auto* mounted = std::get_if<Mounted>(&trajectory);
+  if (mounted != nullptr) return std::get_if<TimedPoses>(&mounted->carrier);
+  return std::get_if<TimedPoses>(&trajectory);
+}
 
 std::string seconds_text(std::int64_t t_ns) {
   return std::to_string(static_cast<double>(t_ns) / 1e9) + " s";
@@ -99,7 +155,13 @@ void poses_at(const Trajectory& trajectory, std::span<const std::int64_t> t_ns,
     throw Error({"poses_at", std::to_string(out.size()) + " poses",
                  std::to_string(t_ns.size()) + ", one per time", ""});
   }
-  if (const auto* timed = std::get_if<TimedPoses>(&trajectory)) return timed->poses_at(t_ns, out);
+  if (const TimedPoses* timed = timed_poses(trajectory)) {
+    timed->poses_at(t_ns, out);
+    const auto* mounted = std::get_if<Mounted>(&trajectory);
+    if (mounted == nullptr) return;
+    for (Pose& pose : out) pose = pose * mounted->carrier_from_body;
+    return;
+  }
   std::visit(
       [&](const auto& kind) {
         for (std::size_t i = 0; i < t_ns.size(); ++i) out[i] = pose_at(kind, t_ns[i]);
@@ -112,7 +174,7 @@ void validate(const Trajectory& trajectory) {
 }
 
 TimeSpan known_times(const Trajectory& trajectory) {
-  const auto* timed = std::get_if<TimedPoses>(&trajectory);
+  const TimedPoses* timed = timed_poses(trajectory);
   return timed != nullptr ? TimeSpan{timed->first_ns(), timed->last_ns()} : TimeSpan{};
 }
 
@@ -150,6 +212,12 @@ Motion moving(const Scene& scene, const Trajectory& world_from_sensor,
 
 Trajectory moved(const Pose& moved_from_world, const Trajectory& trajectory) {
   return std::visit([&](const auto& kind) { return moved_by(moved_from_world, kind); }, trajectory);
+}
+
+Trajectory mounted(const Trajectory& world_from_body, const Pose& body_from_part) {
+  if (body_from_part.matrix() == Pose::Identity().matrix()) return world_from_body;
+  return std::visit([&](const auto& kind) { return mounted_on(kind, body_from_part); },
+                    world_from_body);
 }
 
 void place(const Motion& motion, Frame& frame) {

@@ -6,6 +6,7 @@
 #include <glidar/core/report.hpp>
 #include <glidar/core/scene.hpp>
 #include <glidar/motion/constant_twist.hpp>
+#include <glidar/motion/mounted.hpp>
 #include <glidar/motion/spin.hpp>
 #include <glidar/motion/timed_poses.hpp>
 #include <glidar/motion/tumbling.hpp>
@@ -25,7 +26,7 @@ struct ConstantPose {
 };
 
 /// A pose as a function of time.
-using Trajectory = std::variant<ConstantPose, ConstantTwist, Spin, TimedPoses, Tumbling>;
+using Trajectory = std::variant<ConstantPose, ConstantTwist, Spin, TimedPoses, Tumbling, Mounted>;
 
 /// A pure function: the same time gives the same bits, in any order of asking.
 Pose pose_at(const Trajectory& trajectory, std::int64_t t_ns);
@@ -67,6 +68,9 @@ Motion moving(const Scene& scene, const Trajectory& world_from_sensor,
 
 /// The same motion after all of it was moved: moved_from_world * pose_at(trajectory, t).
 Trajectory moved(const Pose& moved_from_world, const Trajectory& trajectory);
+
+/// The motion of what is fixed to a body: pose_at(world_from_body, t) * body_from_part.
+Trajectory mounted(const Trajectory& world_from_body, const Pose& body_from_part);
 
 /// Writes the poses of all at frame.stamp_ns into the frame.
 void place(const Motion& motion, Frame& frame);

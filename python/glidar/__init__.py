@@ -12,28 +12,47 @@ exact truth beside every number.
 
 from . import _core
 from ._errors import Error
-from .frame import Cause, Cloud, Frame, Status, Truth
-from .poses import look_at, pose, quaternion
-from .scene import Object, Scene, load_scene
-from .sensor import Sensor, camera, load_sensor, sensor_file, sensor_names
-from .simulator import Simulator, simulate, simulate_batch
-from .trajectory import Trajectory
+from ._frame import Cloud, Frame, Truth
+from ._information import Direction, Information
+from ._mesh import Mesh, from_open3d, from_trimesh
+from ._poses import look_at, pose, quaternion
+from ._scene import Mount, Object, Scene, load_scene, surface_names
+from ._sensor import Sensor, SheetEntry, camera, load_sensor, sensor_file, sensor_names, sensor_sheet
+from ._simulator import Simulator, simulate, simulate_batch, simulate_rig
+from ._status import Cause, Status
+from ._story import Drawn, Echo, Reading, Step, Story
+from ._trajectory import Trajectory
+from ._verification import Verification, VerifyRow, verify
 
 __version__: str = _core.version()
 
 __all__ = [
     "Cause",
     "Cloud",
+    "Direction",
+    "Drawn",
+    "Echo",
     "Error",
     "Frame",
+    "Information",
+    "Mesh",
+    "Mount",
     "Object",
+    "Reading",
     "Scene",
     "Sensor",
+    "SheetEntry",
     "Simulator",
     "Status",
+    "Step",
+    "Story",
     "Trajectory",
     "Truth",
+    "Verification",
+    "VerifyRow",
     "camera",
+    "from_open3d",
+    "from_trimesh",
     "load_scene",
     "load_sensor",
     "look_at",
@@ -41,6 +60,10 @@ __all__ = [
     "quaternion",
     "sensor_file",
     "sensor_names",
+    "sensor_sheet",
     "simulate",
     "simulate_batch",
+    "simulate_rig",
+    "surface_names",
+    "verify",
 ]

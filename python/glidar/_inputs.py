@@ -31,29 +31,30 @@ def shape_text(shape: Iterable[int | None]) -> str:
     return " x ".join("n" if size is None else str(size) for size in shape)
 
 
-def _numbers(value: object, where: str, allowed: str) -> npt.NDArray[Any]:
+def _fits(size: int, wanted: int | None) -> bool:
+    return size > 0 if wanted is None else size == wanted
+
+
+def _numbers(value: object, where: str, shape: Sequence[int | None]) -> npt.NDArray[Any]:
     try:
-        given = np.asarray(value)
+        return np.asarray(value)
     except (TypeError, ValueError, RuntimeError) as problem:  # ragged, or on another device
-        raise Error(where, f"no array: {problem}", allowed) from problem
-    if given.dtype.kind not in "fiu":
-        raise Error(where, f"an array of {given.dtype}", f"{allowed} of real numbers")
-    return given
+        raise Error(where, f"no array: {problem}", f"an array {shape_text(shape)}") from problem
 
 
 def floats(value: object, where: str, shape: Sequence[int | None]) -> FloatArray:
     """An array of finite float64 of this shape, in C order; None is any size from 1."""
-    allowed = f"an array {shape_text(shape)}"
-    given = _numbers(value, where, allowed)
-    fits = given.ndim == len(shape) and all(
-        size > 0 if wanted is None else size == wanted for size, wanted in zip(given.shape, shape, strict=True)
-    )
-    if not fits:
-        raise Error(where, f"an array {shape_text(given.shape) or 'of one number'}", allowed)
+    given = np.asarray(value) if type(value) is np.ndarray else _numbers(value, where, shape)
+    if given.dtype.kind not in "fiu":
+        raise Error(where, f"an array of {given.dtype}", f"an array {shape_text(shape)} of real numbers")
+    if len(given.shape) != len(shape) or not all(map(_fits, given.shape, shape)):
+        found = shape_text(given.shape) or "of one number"
+        raise Error(where, f"an array {found}", f"an array {shape_text(shape)}" if shape else "one number")
     result: FloatArray = np.asarray(given, dtype=np.float64, order="C")
     if not np.isfinite(result).all():
         place = np.argwhere(~np.isfinite(result))[0]
-        raise Error(where, f"{result[tuple(place)]} at [{', '.join(map(str, place))}]", "finite numbers")
+        at = f" at [{', '.join(map(str, place))}]" if len(place) else ""
+        raise Error(where, f"{result[tuple(place)]}{at}", "finite numbers" if shape else "a finite number")
     return result
 
 
@@ -74,7 +75,7 @@ def whole_numbers(value: object, where: str, count: int, bits: int) -> npt.NDArr
     if np.ndim(value) == 0:  # type: ignore[arg-type]
         return np.full(count, whole(value, where, 2**bits - 1), dtype)
     allowed = f"{count} whole numbers from 0 to {2**bits - 1}, or one for all"
-    given = _numbers(value, where, allowed)
+    given = _numbers(value, where, (count,))
     if given.shape != (count,) or given.dtype.kind not in "iu":
         raise Error(where, f"an array {shape_text(given.shape)} of {given.dtype}", allowed)
     if count and (int(given.min()) < 0 or int(given.max()) > 2**bits - 1):

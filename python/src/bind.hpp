@@ -15,5 +15,7 @@ void bind_scene(nb::module_& module);
 void bind_sensor(nb::module_& module);
 void bind_frame(nb::module_& module);
 void bind_simulator(nb::module_& module);
+void bind_story(nb::module_& module);
+void bind_tools(nb::module_& module);
 
 }  // namespace glidar::python

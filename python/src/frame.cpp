@@ -223,7 +223,9 @@ void bind_frame(nb::module_& module) {
       .def("cloud", cloud_of, nb::arg("columns"), nb::arg("frame"), nb::arg("deskew"),
            nb::arg("hits_only"))
       .def("save", save, nb::arg("path"), nb::arg("columns"), nb::arg("frame"), nb::arg("deskew"),
-           nb::arg("options"), nb::arg("log").none());
+           nb::arg("options"), nb::arg("log").none(),
+           nb::sig("def save(self, path: str, columns: Sequence[str], frame: str, deskew: bool, "
+                   "options: SaveOptions, log: object | None) -> None"));
 }
 
 }  // namespace glidar::python

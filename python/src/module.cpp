@@ -13,4 +13,6 @@ NB_MODULE(_core, module) {
   glidar::python::bind_sensor(module);
   glidar::python::bind_frame(module);
   glidar::python::bind_simulator(module);
+  glidar::python::bind_story(module);
+  glidar::python::bind_tools(module);
 }

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/trajectory_file.hpp>
+#include <glidar/motion/mounted.hpp>
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/filesystem.h>
@@ -83,6 +84,11 @@ Trajectories joined(const std::vector<Trajectories>& parts) {
   return result;
 }
 
+/// Where a part of the first body is.
+Trajectories part_of(const Trajectories& body, const PoseArray& body_from_part) {
+  return {{mounted(body.all.at(0), pose_of(body_from_part, 0, "rig_from_sensor"))}};
+}
+
 /// Poses of the first trajectory at many times, (N, 4, 4).
 nb::ndarray<nb::numpy, double> poses_of(const Trajectories& trajectories,
                                         const Numbers<std::int64_t>& t_ns) {
@@ -160,7 +166,10 @@ void bind_motion(nb::module_& module) {
   module.def("tumbling", tumbling, nb::arg("poses"), nb::arg("moments_kg_m2"),
              nb::arg("rate_rad_s"), nb::arg("velocity_m_s"), nb::arg("t0_ns"));
   module.def("load_trajectory", load, nb::arg("path"), nb::arg("rate_hz").none(),
-             nb::arg("times_file"), nb::arg("start_ns").none());
+             nb::arg("times_file"), nb::arg("start_ns").none(),
+             nb::sig("def load_trajectory(path: str, rate_hz: float | None, times_file: str, "
+                     "start_ns: int | None) -> Trajectories"));
+  module.def("mounted", part_of, nb::arg("body"), nb::arg("body_from_part"));
   module.def("joined", joined, nb::arg("parts"));
   module.def("look_at", looking_at, nb::arg("eye"), nb::arg("target"), nb::arg("up"));
   module.def("quaternion", quaternion_of, nb::arg("rotation"));

@@ -13,16 +13,23 @@ void Watch::look() {
   if (PyErr_CheckSignals() != 0) throw Interrupted{};
 }
 
+void Watch::give_up(nb::python_error& error) const {
+  if (std::this_thread::get_id() != caller_) return error.discard_as_unraisable("glidar");
+  error.restore();
+  throw Interrupted{};
+}
+
 Report report_to(const nb::object& log, Watch& watch) {
   Report report;
   report.progress = [&watch](std::string_view /*task*/, double /*fraction*/) { watch.look(); };
   if (log.is_none()) return report;
-  report.log = [&log](Severity severity, std::string_view message) {
+  report.log = [&log, &watch](Severity severity, std::string_view message) {
     const nb::gil_scoped_acquire acquire;
-    const char* level = severity == Severity::warning ? "warning" : "info";
-    if (!PyObject_CallFunction(log.ptr(), "ss#", level, message.data(),
-                               static_cast<Py_ssize_t>(message.size()))) {
-      throw Interrupted{};
+    try {
+      log(severity == Severity::warning ? "warning" : "info",
+          nb::str(message.data(), message.size()));
+    } catch (nb::python_error& error) {
+      watch.give_up(error);
     }
   };
   return report;

@@ -22,6 +22,8 @@ class Watch {
 
   /// Throws Interrupted when a handler raised an error.
   void look();
+  /// Ends the work with this error where that can be raised; else Python only tells it.
+  void give_up(nb::python_error& error) const;
   Progress progress() {
     return [this](double /*fraction*/) { look(); };
   }

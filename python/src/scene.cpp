@@ -17,6 +17,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 
 namespace glidar::python {
@@ -38,10 +39,14 @@ SceneHandle load_file(const std::filesystem::path& path, const ModelOptions& opt
   SceneHandle handle;
   handle.scene = std::make_shared<Scene>(std::move(file.scene));
   handle.motion = std::move(file.world_from_instance);
-  if (file.sensor) handle.sensor = std::make_shared<SensorHandle>(std::move(*file.sensor));
-  handle.world_from_sensor = file.world_from_sensor;
+  for (RigSensor& one : file.sensors) {
+    handle.sensors.push_back({std::move(one.name),
+                              std::make_shared<SensorHandle>(std::move(one.sensor)),
+                              one.rig_from_sensor});
+  }
+  handle.world_from_rig = file.world_from_rig;
   handle.looks_at = file.looks_at;
-  handle.sensor_motion = std::move(file.sensor_motion);
+  handle.rig_motion = std::move(file.rig_motion);
   handle.files = std::move(file.files);
   return handle;
 }
@@ -79,6 +84,35 @@ std::vector<Vector> vectors(const std::optional<Array>& given) {
   if (!result.empty())
     std::memcpy(static_cast<void*>(result.data()), given->data(), result.size() * sizeof(Vector));
   return result;
+}
+
+/// A copy of what lies in memory as rows of kColumns numbers; None when there is nothing.
+template <class T, std::size_t kColumns, class Values>
+nb::object rows_of(const Values& values) {
+  if (values.empty()) return nb::none();
+  static_assert(sizeof(values[0]) == kColumns * sizeof(T));
+  auto copy = std::make_unique<Values>(values);
+  auto* data = reinterpret_cast<T*>(copy->data());
+  const std::array<std::size_t, 2> shape = {values.size(), kColumns};
+  const nb::capsule owner(copy.release(),
+                          [](void* kept) noexcept { delete static_cast<Values*>(kept); });
+  return nb::cast(array_at(data, shape, owner));
+}
+
+nb::dict mesh_of(const SceneHandle& handle, std::size_t index) {
+  const Scene& scene = *handle.scene;
+  const Mesh& mesh = scene.meshes.at(scene.instances.at(index).mesh);
+  std::vector<Eigen::Vector3d> vertices;
+  for (const Eigen::Vector3f& position : mesh.positions_m) {
+    vertices.emplace_back(mesh.origin_m + position.cast<double>());
+  }
+  nb::dict arrays;
+  arrays["vertices"] = rows_of<double, 3>(vertices);
+  arrays["triangles"] = rows_of<std::uint32_t, 3>(mesh.triangles);
+  arrays["normals"] = rows_of<float, 3>(mesh.normals);
+  arrays["uvs"] = rows_of<float, 2>(mesh.uvs[0]);
+  arrays["colours"] = rows_of<float, 3>(mesh.colours);
+  return arrays;
 }
 
 /// What a mesh is made of; arrays of one row per vertex but for the triangles.
@@ -163,6 +197,18 @@ void set_object(SceneHandle& handle, std::size_t index, const std::optional<Pose
   }
 }
 
+void set_materials_of(SceneHandle& handle, std::size_t index, const std::string& text) {
+  set_materials(handle.change(), index, text);
+}
+
+std::vector<std::string> materials_of(const SceneHandle& handle, std::size_t index) {
+  std::vector<std::string> names;
+  for (const std::uint32_t material : handle.scene->instances.at(index).materials) {
+    names.push_back(handle.scene->materials.at(material).name);
+  }
+  return names;
+}
+
 nb::dict object_info(const SceneHandle& handle, std::size_t index) {
   const Scene& scene = *handle.scene;
   const Instance& instance = scene.instances.at(index);
@@ -178,30 +224,27 @@ nb::dict object_info(const SceneHandle& handle, std::size_t index) {
   return info;
 }
 
-template <class T>
-using Rows3 = Eigen::Matrix<T, Eigen::Dynamic, 3, Eigen::RowMajor>;
-
-/// The corners of the object's mesh in its own frame, before scale.
-Rows3<double> vertices_m(const SceneHandle& handle, std::size_t index) {
-  const Scene& scene = *handle.scene;
-  const Mesh& mesh = scene.meshes.at(scene.instances.at(index).mesh);
-  Rows3<double> rows(static_cast<Eigen::Index>(mesh.positions_m.size()), 3);
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    const Eigen::Vector3f& position = mesh.positions_m[static_cast<std::size_t>(i)];
-    rows.row(i) = (mesh.origin_m + position.cast<double>()).transpose();
+/// Name, sensor and rig_from_sensor of each sensor of the scene file.
+nb::list rig_of(const SceneHandle& handle) {
+  nb::list rig;
+  for (const MountedSensor& one : handle.sensors) {
+    rig.append(nb::make_tuple(one.name, one.sensor, matrix_of(one.rig_from_sensor)));
   }
-  return rows;
+  return rig;
 }
 
-Rows3<std::uint32_t> faces(const SceneHandle& handle, std::size_t index) {
-  const Scene& scene = *handle.scene;
-  const Mesh& mesh = scene.meshes.at(scene.instances.at(index).mesh);
-  Rows3<std::uint32_t> rows(static_cast<Eigen::Index>(mesh.triangles.size()), 3);
-  for (Eigen::Index i = 0; i < rows.rows(); ++i) {
-    const Triangle& triangle = mesh.triangles[static_cast<std::size_t>(i)];
-    rows.row(i) << triangle[0], triangle[1], triangle[2];
-  }
-  return rows;
+/// How the scene file moves the rig, or where it puts it.
+std::optional<Trajectories> rig_motion_of(const SceneHandle& handle) {
+  if (handle.rig_motion) return Trajectories{{*handle.rig_motion}};
+  if (handle.world_from_rig) return Trajectories{{ConstantPose{*handle.world_from_rig}}};
+  return std::nullopt;
+}
+
+/// Takes the last object away.
+void drop_last(SceneHandle& handle) {
+  Scene& scene = handle.change();
+  scene.instances.pop_back();
+  if (!handle.motion.empty()) handle.motion.resize(scene.instances.size());
 }
 
 std::optional<std::pair<Eigen::Vector3d, Eigen::Vector3d>> bounds_of(const SceneHandle& handle) {
@@ -245,17 +288,22 @@ void bind_scene(nb::module_& module) {
       .def("set_object", set_object, nb::arg("index"), nb::arg("pose").none(),
            nb::arg("scale").none(), nb::arg("name").none(), nb::arg("id").none(),
            nb::arg("class_name").none())
-      .def("object", object_info, nb::arg("index"))
-      .def("vertices_m", vertices_m, nb::arg("index"))
-      .def("faces", faces, nb::arg("index"))
+      .def("mesh", mesh_of, nb::arg("index"),
+           nb::sig("def mesh(self, index: int) -> dict[str, numpy.ndarray | None]"))
+      .def("set_materials", set_materials_of, nb::arg("index"), nb::arg("text"))
+      .def("materials", materials_of, nb::arg("index"))
+      .def("object", object_info, nb::arg("index"),
+           nb::sig("def object(self, index: int) -> dict[str, typing.Any]"))
       .def("bounds", bounds_of)
       .def_prop_ro("class_names", [](const SceneHandle& self) { return self.scene->class_names; })
       .def_prop_ro("files", [](const SceneHandle& self) { return self.files; })
-      .def_prop_ro(
-          "sensor", [](const SceneHandle& self) { return self.sensor; },
-          nb::sig("def sensor(self) -> Sensor | None"));
+      .def("drop_last", drop_last)
+      .def("rig", rig_of, nb::sig("def rig(self) -> list[tuple[str, Sensor, numpy.ndarray]]"))
+      .def("rig_motion", rig_motion_of);
   module.def("load_scene", load, nb::arg("path"), nb::arg("metres_per_unit"), nb::arg("up").none(),
-             nb::arg("use_cache"), nb::arg("log").none());
+             nb::arg("use_cache"), nb::arg("log").none(),
+             nb::sig("def load_scene(path: str, metres_per_unit: float, up: int | None, "
+                     "use_cache: bool, log: object | None) -> Scene"));
 }
 
 }  // namespace glidar::python

@@ -24,15 +24,22 @@ struct PreparedScene {
   std::mutex turn;
 };
 
+/// A sensor on the rig of a scene file; a single one has no name.
+struct MountedSensor {
+  std::string name;
+  std::shared_ptr<SensorHandle> sensor;
+  Pose rig_from_sensor = Pose::Identity();
+};
+
 /// A scene as Python holds it. What was prepared or measured of it keeps the scene that it saw:
 /// changes are made to a copy while anybody else has it.
 struct SceneHandle {
   std::shared_ptr<Scene> scene = std::make_shared<Scene>();
-  std::vector<Trajectory> motion;        ///< one per instance; empty: all stand still
-  std::shared_ptr<SensorHandle> sensor;  ///< that of the scene file; empty: none
-  std::optional<Pose> world_from_sensor;
-  bool looks_at = false;
-  std::optional<Trajectory> sensor_motion;
+  std::vector<Trajectory> motion;      ///< one per instance; empty: all stand still
+  std::vector<MountedSensor> sensors;  ///< of the scene file; none: it names none
+  std::optional<Pose> world_from_rig;
+  bool looks_at = false;  ///< see SceneFile
+  std::optional<Trajectory> rig_motion;
   std::vector<std::string> files;  ///< all that was read
   std::map<std::pair<std::string, unsigned>, std::shared_ptr<PreparedScene>> prepared;
 

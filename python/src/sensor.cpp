@@ -4,8 +4,10 @@
 
 #include "convert.hpp"
 
+#include <glidar/core/error.hpp>
 #include <glidar/io/sensor_file.hpp>
 #include <glidar/io/sensor_presets.hpp>
+#include <glidar/io/sidecar.hpp>
 
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
@@ -13,12 +15,35 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+
 namespace glidar::python {
 namespace {
 
 using Shared = std::shared_ptr<SensorHandle>;
 
+/// Throws Error when a frame of this camera cannot fit into the machine's memory.
+void require_memory(const Sensor& sensor) {
+  const auto* pinhole = std::get_if<Pinhole>(&sensor.optics);
+  if (pinhole == nullptr) return;
+  constexpr double kBytesPerBeam = 250.0;  // beam, truth, measurement and cloud together
+  constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
+  const double needed = kBytesPerBeam * pinhole->intrinsics.width * pinhole->intrinsics.height;
+  const double there =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+  if (needed <= there) return;
+  throw Error(
+      {.where = "image size",
+       .found = "a frame takes about " + number_text(std::round(needed / kGibibyte)) + " GiB",
+       .allowed = "this machine's memory, " + number_text(std::round(there / kGibibyte)) + " GiB",
+       .remedy = "measure fewer pixels"});
+}
+
 Shared make(Sensor sensor) {
+  require_memory(sensor);
   const nb::gil_scoped_release release;
   return std::make_shared<SensorHandle>(std::move(sensor));
 }
@@ -46,6 +71,19 @@ nb::object directions(const nb::handle& self) {
   const auto beams = nb::cast<const SensorHandle&>(self).beams(0);
   const std::array<std::size_t, 3> shape = {beams->rows, beams->cols, 3};
   return per_beam<double>(beams->directions, shape, self);
+}
+
+/// One entry per number of the file: key, value, source, whether it is verified.
+nb::list sheet(const std::string& name_or_path) {
+  nb::list list;
+  for (const SheetEntry& entry : load_sensor_sheet(find_sensor_file(name_or_path)).entries) {
+    list.append(nb::make_tuple(entry.key, entry.value, entry.source, entry.verified));
+  }
+  return list;
+}
+
+std::string description(const SensorHandle& handle) {
+  return sensor_text(handle.sensor(), *handle.beams(0));
 }
 
 std::vector<std::string> preset_names() {
@@ -78,10 +116,13 @@ void bind_sensor(nb::module_& module) {
       .def_prop_ro("cols", [](const SensorHandle& self) { return self.beams(0)->cols; })
       .def_prop_ro("returns", [](const SensorHandle& self) { return self.beams(0)->returns; })
       .def_prop_ro("frame_id", [](const SensorHandle& self) { return self.beams(0)->frame_id; })
-      .def_prop_ro("directions", directions)
+      .def_prop_ro("directions", directions, nb::sig("def directions(self) -> numpy.ndarray"))
+      .def("description", description)
       .def("ideal", made_ideal);
   module.def("load_sensor", load, nb::arg("name_or_path"));
   module.def("parse_sensor", parse, nb::arg("text"));
+  module.def("sensor_sheet", sheet, nb::arg("name_or_path"),
+             nb::sig("def sensor_sheet(name_or_path: str) -> list[tuple[str, str, str, bool]]"));
   module.def("sensor_file", find_sensor_file, nb::arg("name_or_path"));
   module.def("preset_names", preset_names);
 }

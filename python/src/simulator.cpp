@@ -10,6 +10,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
@@ -25,10 +26,10 @@ constexpr std::size_t kTogether = 8;
 struct Simulator {
   std::shared_ptr<PreparedScene> prepared;
   std::shared_ptr<SensorHandle> sensor;
-  std::vector<Trajectory> motion;           ///< of the scene's instances; empty: they stand still
-  std::optional<Trajectory> sensor_motion;  ///< of the scene file
-  std::optional<Pose> world_from_sensor;    ///< of the scene file
-  bool looks_at = false;                    ///< see SceneFile
+  std::vector<Trajectory> motion;        ///< of the scene's instances; empty: they stand still
+  std::optional<Trajectory> rig_motion;  ///< of the scene file
+  std::optional<Pose> world_from_rig;    ///< of the scene file
+  bool looks_at = false;                 ///< see SceneFile
   std::shared_ptr<FramePool> pool = std::make_shared<FramePool>();
 };
 
@@ -37,17 +38,17 @@ Simulator make_simulator(SceneHandle& scene, const std::shared_ptr<SensorHandle>
   return {.prepared = prepare(scene, {.kind = renderer, .threads = threads}),
           .sensor = sensor,
           .motion = scene.motion,
-          .sensor_motion = scene.sensor_motion,
-          .world_from_sensor = scene.world_from_sensor,
+          .rig_motion = scene.rig_motion,
+          .world_from_rig = scene.world_from_rig,
           .looks_at = scene.looks_at};
 }
 
-/// Which frames to measure; arrays of one entry per frame.
+/// Which frames to measure; one entry per frame.
 struct Batch {
   const Trajectories& sensors;
   const std::optional<Trajectories>& objects;  ///< as many for each frame
-  const Numbers<std::uint64_t>& seeds;
-  const Numbers<std::uint32_t>& numbers;
+  std::span<const std::uint64_t> seeds;
+  std::span<const std::uint32_t> numbers;
   std::uint32_t sensor_id;
   const HitFields& fields;
 
@@ -69,13 +70,13 @@ std::unique_ptr<Measured> start(const Simulator& simulator, const Batch& batch, 
   auto measured = std::make_unique<Measured>(simulator.pool, simulator.pool->take());
   measured->prepared = simulator.prepared;
   measured->sensor = simulator.sensor;
-  measured->beams = simulator.sensor->beams(batch.numbers.data()[k]);
+  measured->beams = simulator.sensor->beams(batch.numbers[k]);
   measured->motion = std::make_shared<const Motion>(motion_of(simulator, batch, k));
   measured->fields = batch.fields;
   Frame& frame = measured->frame;
-  frame.number = batch.numbers.data()[k];
+  frame.number = batch.numbers[k];
   frame.stamp_ns = scan_window(simulator.sensor->sensor(), frame.number).start_ns;
-  frame.seed = batch.seeds.data()[k];
+  frame.seed = batch.seeds[k];
   frame.sensor_id = batch.sensor_id;
   return measured;
 }
@@ -112,7 +113,12 @@ nb::list simulate_all(const Simulator& simulator, const Trajectories& sensors,
                       const std::optional<Trajectories>& objects,
                       const Numbers<std::uint64_t>& seeds, const Numbers<std::uint32_t>& numbers,
                       std::uint32_t sensor_id, const HitFields& fields) {
-  const Batch batch{sensors, objects, seeds, numbers, sensor_id, fields};
+  const Batch batch{.sensors = sensors,
+                    .objects = objects,
+                    .seeds = {seeds.data(), seeds.shape(0)},
+                    .numbers = {numbers.data(), numbers.shape(0)},
+                    .sensor_id = sensor_id,
+                    .fields = fields};
   Frames frames = unlocked([&](Watch& watch) { return measure_all(simulator, batch, watch); });
   nb::list result;
   for (auto& measured : frames) {
@@ -121,13 +127,28 @@ nb::list simulate_all(const Simulator& simulator, const Trajectories& sensors,
   return result;
 }
 
-/// Where the scene file has the sensor; else where it sees all of the scene.
+/// The same for one frame, with less ado.
+std::unique_ptr<Measured> simulate_one(const Simulator& simulator, const Trajectories& sensor,
+                                       const std::optional<Trajectories>& objects,
+                                       std::uint64_t seed, std::uint32_t number,
+                                       std::uint32_t sensor_id, const HitFields& fields) {
+  const Batch batch{.sensors = sensor,
+                    .objects = objects,
+                    .seeds = {&seed, 1},
+                    .numbers = {&number, 1},
+                    .sensor_id = sensor_id,
+                    .fields = fields};
+  return std::move(
+      unlocked([&](Watch& watch) { return measure_all(simulator, batch, watch); }).front());
+}
+
+/// Where the scene file has its only sensor; else where it sees all of the scene.
 Trajectories usual_motion(const Simulator& simulator) {
-  if (simulator.sensor_motion) return {{*simulator.sensor_motion}};
+  if (simulator.rig_motion) return {{*simulator.rig_motion}};
   const std::shared_ptr<const Beams> beams = simulator.sensor->beams(0);
   const bool is_lidar = !looks_along_z(*beams);
-  if (simulator.world_from_sensor) {
-    const Pose& given = *simulator.world_from_sensor;
+  if (simulator.world_from_rig) {
+    const Pose& given = *simulator.world_from_rig;
     const bool turned = simulator.looks_at && is_lidar;
     return {{ConstantPose{turned ? given * optical_from_body() : given}}};
   }
@@ -149,7 +170,12 @@ void bind_simulator(nb::module_& module) {
   module.def("fields_for", fields, nb::arg("columns"));
   nb::class_<Simulator>(module, "Simulator")
       .def("simulate", simulate_all, nb::arg("sensors"), nb::arg("objects").none(),
-           nb::arg("seeds"), nb::arg("numbers"), nb::arg("sensor_id"), nb::arg("fields"))
+           nb::arg("seeds"), nb::arg("numbers"), nb::arg("sensor_id"), nb::arg("fields"),
+           nb::sig("def simulate(self, sensors: Trajectories, objects: Trajectories | None, seeds: "
+                   "numpy.ndarray, numbers: numpy.ndarray, sensor_id: int, fields: HitFields) -> "
+                   "list[Frame]"))
+      .def("simulate_one", simulate_one, nb::arg("sensor"), nb::arg("objects").none(),
+           nb::arg("seed"), nb::arg("number"), nb::arg("sensor_id"), nb::arg("fields"))
       .def("usual_motion", usual_motion)
       .def_prop_ro("objects",
                    [](const Simulator& self) { return self.prepared->scene->instances.size(); });

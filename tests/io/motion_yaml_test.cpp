@@ -77,8 +77,8 @@ TEST(MotionYaml, SceneShowsEverythingAtTimeZero) {
   EXPECT_EQ(scene.scene.instances[0].world_from_object.translation().x(), 3.0);
   ASSERT_EQ(scene.world_from_instance.size(), 2U);
   EXPECT_EQ(pose_at(scene.world_from_instance[1], kSecond_ns).translation().y(), 9.0);
-  ASSERT_TRUE(scene.world_from_sensor && scene.sensor_motion);
-  EXPECT_EQ(pose_at(*scene.sensor_motion, kSecond_ns).translation().z(), -4.0);
+  ASSERT_TRUE(scene.world_from_rig && scene.rig_motion);
+  EXPECT_EQ(pose_at(*scene.rig_motion, kSecond_ns).translation().z(), -4.0);
   ASSERT_EQ(scene.files.size(), 2U);  // neither may be overwritten
   EXPECT_EQ(std::filesystem::path(scene.files[1]).filename(), "orbit.tum");
 }

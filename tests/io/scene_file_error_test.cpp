@@ -28,8 +28,35 @@ const BadFile kBadScenes[] = {
     {"NoModels", "sensor: c.yaml\n", "s.yaml:1:1: the key 'models' is missing; add 'models: ...'"},
     {"UnknownTopKey", with_model("sensr: c.yaml"),
      "s.yaml:2:1: sensr: unknown key 'sensr'; allowed: models, sensor, sensor_pose, "
-     "sensor_motion; did you mean "
+     "sensor_motion, sensors, rig_pose, rig_motion; did you mean "
      "'sensor'?"},
+    {"SensorBesideSensors", with_model("sensors: [{name: a, sensor: VLP-16}]\nsensor: VLP-16"),
+     "s.yaml:3:9: sensor: given beside 'sensors'; allowed: sensors, rig_pose, rig_motion; a rig of "
+     "sensors has poses of its own: rig_pose and the 'pose' of each sensor"},
+    {"RigPoseWithoutSensors", with_model("rig_pose: {position: [0, 0, 0]}"),
+     "s.yaml:2:11: rig_pose: there are no 'sensors'; allowed: sensor, sensor_pose, sensor_motion; "
+     "list the sensors of the rig: 'sensors: [{name: ..., sensor: ..., pose: ...}]'"},
+    {"NoSensors", with_model("sensors: []"),
+     "s.yaml:2:10: sensors: 0 sensors; allowed: 1 to 256 sensors"},
+    {"SensorsIsAName", with_model("sensors: VLP-16"),
+     "s.yaml:2:10: sensors: 'VLP-16'; allowed: a list"},
+    {"RigSensorWithoutName", with_model("sensors: [{sensor: VLP-16}]"),
+     "s.yaml:2:11: sensors[0]: the key 'name' is missing; add 'name: ...'"},
+    {"RigSensorWithAFolder", with_model("sensors: [{name: a/b, sensor: VLP-16}]"),
+     "s.yaml:2:18: sensors[0].name: 'a/b'; allowed: up to 31 letters, digits, - and _; files and "
+     "topics are named by it"},
+    {"RigSensorTwice",
+     with_model("sensors: [{name: a, sensor: VLP-16}, {name: a, sensor: VLP-16}]"),
+     "s.yaml:2:45: sensors[1].name: the name 'a' is given twice; allowed: each name once; choose "
+     "another name"},
+    {"RigSensorUnknownKey", with_model("sensors: [{name: a, sensor: VLP-16, poes: {}}]"),
+     "s.yaml:2:37: sensors[0].poes: unknown key 'poes'; allowed: name, sensor, pose; did you mean "
+     "'pose'?"},
+    {"RigMotionWithoutStart",
+     with_model(
+         "sensors: [{name: a, sensor: VLP-16}]\nrig_motion: {spin: {rate_deg_s: [0, 0, 1]}}"),
+     "s.yaml:3:13: rig_motion: the pose at which it starts is missing; add 'rig_pose: ...' beside "
+     "rig_motion"},
     {"ModelsIsAMap", "models: {model: a}\n", "s.yaml:1:9: models: a map; allowed: a list"},
     {"ModelsIsEmpty", "models: []\n",
      "s.yaml:1:9: models: an empty list; allowed: at least one model"},

@@ -59,8 +59,7 @@ Pose pose(const std::string& content) {
 
 Pose sensor_pose(const std::string& content) {
   const TestFolder folder;
-  return *plan(folder, "models: [{model: a.ply}]\nsensor_pose: {" + content + "}\n")
-              .world_from_sensor;
+  return *plan(folder, "models: [{model: a.ply}]\nsensor_pose: {" + content + "}\n").world_from_rig;
 }
 
 TEST(SceneFile, ReadsEveryKeyOfAModel) {
@@ -97,8 +96,28 @@ models:
   EXPECT_EQ(rock.overrides[0].specular, Eigen::Vector3f(0.0F, 0.0F, 1.0F));
   EXPECT_EQ(rock.overrides[0].shininess, 128.0F);
   EXPECT_EQ(rock.overrides[0].opacity, 0.25F);
-  EXPECT_FALSE(scene.sensor.has_value());
-  EXPECT_FALSE(scene.world_from_sensor.has_value());
+  EXPECT_TRUE(scene.sensors.empty());
+  EXPECT_FALSE(scene.world_from_rig.has_value());
+}
+
+TEST(SceneFile, ARigHasItsSensorsWithNamesAndPosesInTheOrderOfTheList) {
+  const TestFolder folder;
+  const ScenePlan scene = plan(
+      folder,
+      "models: [{model: a}]\n"
+      "sensors:\n"
+      "  - {name: lidar, sensor: VLP-16, pose: {position: [0, 0, 2]}}\n"
+      "  - {name: cam-2, sensor: {optics: {type: pinhole, width: 8, height: 6, fov_deg: 20}}}\n"
+      "rig_pose: {position: [1, 0, 0]}\n"
+      "rig_motion: {twist: {velocity_m_s: [0, 3, 0]}}\n");
+  ASSERT_EQ(scene.sensors.size(), 2U);
+  EXPECT_EQ(scene.sensors[0].name, "lidar");
+  EXPECT_EQ(scene.sensors[0].rig_from_sensor.translation(), Eigen::Vector3d(0, 0, 2));
+  EXPECT_EQ(scene.sensors[1].name, "cam-2");
+  EXPECT_EQ(scene.sensors[1].rig_from_sensor.matrix(), Pose::Identity().matrix());
+  EXPECT_TRUE(std::holds_alternative<Pinhole>(scene.sensors[1].sensor.optics));
+  ASSERT_TRUE(scene.rig_motion && scene.world_from_rig);
+  EXPECT_EQ(pose_at(*scene.rig_motion, 1'000'000'000).translation(), Eigen::Vector3d(1, 3, 0));
 }
 
 TEST(SceneFile, DefaultsOfAModel) {
@@ -179,11 +198,14 @@ TEST(SceneFile, SensorPoseTakesLookAt) {
 TEST(SceneFile, SensorStandsInAFileOrInTheScene) {
   const TestFolder folder;
   (void)folder.write("sensors/c.yaml", "name: far\noptics: {width: 4, height: 2, fov_deg: 20}\n");
-  EXPECT_EQ(plan(folder, "models: [{model: a}]\nsensor: sensors/c.yaml\n").sensor->name, "far");
+  EXPECT_EQ(
+      plan(folder, "models: [{model: a}]\nsensor: sensors/c.yaml\n").sensors.at(0).sensor.name,
+      "far");
   EXPECT_EQ(plan(folder,
                  "models: [{model: a}]\n"
                  "sensor: {name: near, optics: {width: 4, height: 2, fov_deg: 20}}\n")
-                .sensor->name,
+                .sensors.at(0)
+                .sensor.name,
             "near");
 }
 
@@ -334,11 +356,11 @@ TEST(SceneFile, ExampleLoads) {
   EXPECT_EQ(file.scene.instances[0].mesh, file.scene.instances[1].mesh);
   EXPECT_EQ(file.scene.class_names,
             (std::vector<std::string>{"unlabelled", "asteroid", "calibration target"}));
-  ASSERT_TRUE(file.sensor && file.world_from_sensor);
-  EXPECT_EQ(file.sensor->name, "paper camera");
+  ASSERT_TRUE(file.sensors.size() == 1 && file.world_from_rig);
+  EXPECT_EQ(file.sensors[0].sensor.name, "paper camera");
   // The whole scene lies in the cone of the camera's 20 degrees.
   const Eigen::AlignedBox3d box = bounds(file.scene);
-  const Eigen::Vector3d centre = file.world_from_sensor->inverse() * box.center();
+  const Eigen::Vector3d centre = file.world_from_rig->inverse() * box.center();
   EXPECT_LT((centre.head<2>().norm() + 0.5 * box.diagonal().norm()) / centre.z(),
             std::tan(kPi / 18.0) * 1.3);
 }
@@ -357,7 +379,7 @@ TEST(SceneFile, DocumentedExamplesAreRight) {
   const TestFolder folder;
   (void)folder.write("camera.yaml", documented(0));
   const ScenePlan scene = plan(folder, documented(1));
-  EXPECT_EQ(scene.sensor->name, "my camera");
+  EXPECT_EQ(scene.sensors.at(0).sensor.name, "my camera");
   ASSERT_EQ(scene.instances.size(), 2U);
   EXPECT_EQ(scene.instances[0].overrides.size(), 2U);
 }

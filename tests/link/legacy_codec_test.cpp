@@ -176,7 +176,7 @@ TEST(LegacyCloud, NeedsItsColumnsAndItsRoom) {
 }
 
 TEST(LegacyShutdown, IsEightBytesOfAnyTopic) {
-  const auto bytes = encode_shutdown('c');
+  const auto bytes = encode_shutdown("c");
   EXPECT_EQ(MessageBytes().text("cKTHXBAI").bytes, std::vector(bytes.begin(), bytes.end()));
   EXPECT_TRUE(is_shutdown(MessageBytes().text("vKTHXBAI").bytes));
   EXPECT_FALSE(is_shutdown(MessageBytes().text("vKTHXBAI!").bytes));

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/error.hpp>
 #include <glidar/motion/motion.hpp>
 
 #include <gtest/gtest.h>
@@ -40,7 +41,49 @@ std::vector<Trajectory> all_kinds() {
           Tumbling({.moments_kg_m2 = {1.0, 2.0, 2.5},
                     .rate_rad_s = rate,
                     .world_from_body = start,
-                    .velocity_m_s = velocity})};
+                    .velocity_m_s = velocity}),
+          Mounted{Tumbling({.moments_kg_m2 = {1.0, 2.0, 2.5}, .rate_rad_s = rate}), start}};
+}
+
+constexpr double kRoundingOfMounts = 1e-12;
+
+TEST(Mounted, IsThePartOnTheBodyAtAnyTimeForEveryKind) {
+  const Pose part = some_move();
+  for (const Trajectory& body : all_kinds()) {
+    const Trajectory sensor = mounted(body, part);
+    for (const std::int64_t t_ns : {-2'000'000'000LL, 0LL, 400'000'000LL, 7'300'000'000LL}) {
+      const Pose expected = pose_at(body, t_ns) * part;
+      EXPECT_TRUE(pose_at(sensor, t_ns).isApprox(expected, kRoundingOfMounts)) << body.index();
+    }
+  }
+}
+
+TEST(Mounted, AtTheBodysOriginIsTheBodyToTheBit) {
+  for (const Trajectory& body : all_kinds()) {
+    const Trajectory same = mounted(body, Pose::Identity());
+    EXPECT_EQ(same.index(), body.index());
+    EXPECT_EQ(pose_at(same, 700'000'000).matrix(), pose_at(body, 700'000'000).matrix());
+  }
+}
+
+TEST(Mounted, ManyPosesAreThoseOneByOneAndKnownTimesAreTheCarriers) {
+  const Trajectory carrier =
+      TimedPoses({{0, {0.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()},
+                  {1'000'000'000, {1.0, 0.0, 2.0}, Eigen::Quaterniond(0.6, 0.8, 0.0, 0.0)}});
+  const Trajectory sensor = mounted(carrier, some_move());
+  EXPECT_EQ(known_times(sensor).last_ns, 1'000'000'000);
+  const std::vector<std::int64_t> times = {-1, 0, 250'000'000, 999'999'999, 2'000'000'000};
+  std::vector<Pose> poses(times.size());
+  poses_at(sensor, times, poses);
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    EXPECT_EQ(poses[i].matrix(), pose_at(sensor, times[i]).matrix());
+  }
+}
+
+TEST(Mounted, WithAPoseThatIsNotRigidIsRefused) {
+  Pose scaled = Pose::Identity();
+  scaled.linear() *= 2.0;
+  EXPECT_THROW(validate(Mounted{Tumbling(TumblingStart{}), scaled}), Error);
 }
 
 TEST(Moved, IsTheMoveAfterThePoseAtAnyTimeForEveryKind) {

@@ -193,11 +193,11 @@ TEST(Surfaces, SendBackTheSignalOfTheRangeEquation) {
       "sensor: {optics: {width: 1, height: 1, fov_deg: 1}, wavelength_nm: 905,\n"
       "  pulse_light: {reference_reflectance: 0.8, reference_range_m: 100}}\n");
   const SceneFile loaded = load_scene_file(file, {}, {});
-  const Beams beams = make_beams(*loaded.sensor);
+  const Beams beams = make_beams(loaded.sensors.at(0).sensor);
   const auto renderer = make_renderer(loaded.scene, {.threads = 1});
   const Motion motion = standing_still(loaded.scene, Pose::Identity());
   Frame frame;
-  simulate({loaded.scene, *loaded.sensor, beams, motion, *renderer}, {}, frame);
+  simulate({loaded.scene, loaded.sensors.at(0).sensor, beams, motion, *renderer}, {}, frame);
   EXPECT_NEAR(frame.range_m[0], 10.0, 1e-9);  // a wall of the box, square on
   EXPECT_NEAR(frame.intensity[0], 0.278 / 0.8 * 100.0, 1e-4);
 }

@@ -2,9 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/legacy/cloud_publisher.hpp>
 
-#include <glidar/link/legacy/legacy_codec.hpp>
-
 #include <chrono>
+#include <cstring>
 #include <string>
 #include <utility>
 
@@ -36,6 +35,10 @@ link::SocketOptions handshake_socket_options() {
 
 }  // namespace
 
+std::string rig_topic(std::string_view name) {
+  return "/" + std::string(name) + '\0';
+}
+
 CloudPublisher::CloudPublisher(link::Context& context, const CloudPublisherOptions& options,
                                link::FaultLog& faults)
     : options_(options),
@@ -49,15 +52,19 @@ CloudPublisher::CloudPublisher(link::Context& context, const CloudPublisherOptio
 void CloudPublisher::write(const PointCloud& cloud, const Frame& frame) {
   if (!wants(frame.number)) return;
   const std::uint64_t timestamp = timestamp_of(frame);
-  if (std::exchange(last_timestamp_, timestamp) == timestamp) {
+  if (is_repeated(frame, timestamp)) {
     ++counts_.repeated;
     return;
   }
-  link::Payload payload(pool_, cloud_bytes(cloud.size()));
-  const std::size_t size = encode_cloud(cloud, timestamp, payload.bytes());
-  payload.shrink(size);
+  const auto found = topics_.find(frame.sensor_id);
+  const std::string topic = found == topics_.end() ? std::string(1, kCloudTopic) : found->second;
+  const std::size_t ahead = topic.size() - 1;  // of the codec's topic of one letter
+  link::Payload payload(pool_, ahead + cloud_bytes(cloud.size()));
+  const std::size_t size = encode_cloud(cloud, timestamp, payload.bytes().subspan(ahead));
+  std::memcpy(payload.bytes().data(), topic.data(), topic.size());
+  payload.shrink(ahead + size);
   ++counts_.sent;
-  counts_.bytes += size;
+  counts_.bytes += ahead + size;
   counts_.points += (size - cloud_bytes(0)) / sizeof(CloudPoint);
   if (clouds_.publish(std::move(payload))) return;
   ++counts_.missed;
@@ -82,11 +89,26 @@ void CloudPublisher::shut_down() {
     link::wait_for({&clouds_}, -1, kLook);
     serve();
   }
-  // the cloud's topic last: with keeps_newest only the last message is sure to arrive
-  for (const char topic : {'p', 'P', kCloudTopic}) {
+  // the clouds' topics last: with keeps_newest only the last message is sure to arrive
+  std::vector<std::string> ending = {"p", "P"};
+  const std::vector<std::string> clouds = topics();
+  ending.insert(ending.end(), clouds.begin(), clouds.end());
+  for (const std::string& topic : ending) {
     if (clouds_.publish(encode_shutdown(topic), kPatience)) continue;
     faults_.tell("shutdown missed", "a subscriber does not read; it may wait for more clouds");
   }
+}
+
+std::vector<std::string> CloudPublisher::topics() const {
+  std::vector<std::string> all;
+  for (const auto& [sensor, topic] : topics_) all.push_back(topic);
+  if (all.empty()) all.emplace_back(1, kCloudTopic);
+  return all;
+}
+
+bool CloudPublisher::is_repeated(const Frame& frame, std::uint64_t timestamp) {
+  const auto [last, is_first] = last_timestamps_.try_emplace(frame.sensor_id, timestamp);
+  return std::exchange(last->second, timestamp) == timestamp && !is_first;
 }
 
 std::uint64_t CloudPublisher::timestamp_of(const Frame& frame) const {
@@ -110,7 +132,7 @@ void CloudPublisher::answer_handshakes() {
 }
 
 void CloudPublisher::notice_peers() {
-  const link::SubscriptionCount known = clouds_.subscriptions(kCloudTopic);
+  const link::SubscriptionCount known = clouds_.subscriptions(topics());
   knows_subscribers_ = known.is_known;
   if (known.is_known) counts_.subscribers = known.subscribers;
   for (const link::PeerEvent event : clouds_.events()) {

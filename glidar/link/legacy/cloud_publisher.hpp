@@ -4,12 +4,18 @@
 
 #include <glidar/core/cloud_sink.hpp>
 #include <glidar/link/fault_log.hpp>
+#include <glidar/link/legacy/legacy_codec.hpp>
 #include <glidar/link/socket.hpp>
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 namespace glidar::legacy {
 
@@ -25,6 +31,9 @@ struct CloudPublisherOptions {
   Timestamps timestamps = Timestamps::counted;
 };
 
+/// The topic of one of the sensors on a rig: "/NAME" and a zero byte.
+std::string rig_topic(std::string_view name);
+
 /// Publishes clouds to any number of subscribers, by the protocol of 2015. None of them can hold it
 /// up: who is slow misses clouds, and those are counted. Used by one thread at a time.
 class CloudPublisher final : public CloudSink {
@@ -33,8 +42,12 @@ class CloudPublisher final : public CloudSink {
   CloudPublisher(link::Context& context, const CloudPublisherOptions& options,
                  link::FaultLog& faults);
 
+  /// What the clouds of each sensor begin with, by its Frame::sensor_id; those of others, and all
+  /// until this is called, begin with 'c', since 2015's protocol knows one sensor.
+  void set_topics(std::map<std::uint32_t, std::string> topics) { topics_ = std::move(topics); }
+
   /// Sends a cloud with the columns xyz (x left, y up, z forward) and intensity, once for each
-  /// timestamp.
+  /// timestamp of a sensor.
   void write(const PointCloud& cloud, const Frame& frame) override;
   /// Whether write() would send a frame of this number.
   [[nodiscard]] bool wants(std::uint32_t frame) const { return frame % options_.every == 0; }
@@ -61,6 +74,8 @@ class CloudPublisher final : public CloudSink {
   [[nodiscard]] const Counts& counts() const { return counts_; }
 
  private:
+  [[nodiscard]] std::vector<std::string> topics() const;
+  [[nodiscard]] bool is_repeated(const Frame& frame, std::uint64_t timestamp);
   [[nodiscard]] std::uint64_t timestamp_of(const Frame& frame) const;
   void answer_handshakes();
   void notice_peers();
@@ -70,7 +85,8 @@ class CloudPublisher final : public CloudSink {
   link::Socket clouds_;
   link::Socket handshakes_;
   std::shared_ptr<link::PayloadPool> pool_ = std::make_shared<link::PayloadPool>();
-  std::optional<std::uint64_t> last_timestamp_;
+  std::map<std::uint32_t, std::string> topics_;             ///< by sensor
+  std::map<std::uint32_t, std::uint64_t> last_timestamps_;  ///< likewise
   std::chrono::steady_clock::time_point last_handshake_;
   bool knows_subscribers_ = false;
   Counts counts_;

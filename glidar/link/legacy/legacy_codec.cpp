@@ -158,10 +158,10 @@ std::size_t encode_cloud(const PointCloud& cloud, std::uint64_t timestamp,
   return static_cast<std::size_t>(place - to.data());
 }
 
-std::array<std::byte, 8> encode_shutdown(char topic) {
-  std::array<std::byte, 8> message{};
-  message[0] = static_cast<std::byte>(topic);
-  std::memcpy(message.data() + 1, kGoodbye.data(), kGoodbye.size());
+std::vector<std::byte> encode_shutdown(std::string_view topic) {
+  std::vector<std::byte> message(topic.size() + kGoodbye.size());
+  std::memcpy(message.data(), topic.data(), topic.size());
+  std::memcpy(message.data() + topic.size(), kGoodbye.data(), kGoodbye.size());
   return message;
 }
 

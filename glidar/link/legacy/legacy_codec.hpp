@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 /// The protocol of the 2015 program: bytes and what they mean. docs/link.md has the tables. All
@@ -70,8 +71,8 @@ constexpr std::size_t cloud_bytes(std::size_t points) {
 /// the column xyz or intensity, and when `to` is too small.
 std::size_t encode_cloud(const PointCloud& cloud, std::uint64_t timestamp, std::span<std::byte> to);
 
-/// The 8 bytes that tell subscribers of a topic that it ends: "cKTHXBAI".
-std::array<std::byte, 8> encode_shutdown(char topic);
+/// The bytes that tell subscribers of a topic that it ends: "cKTHXBAI".
+std::vector<std::byte> encode_shutdown(std::string_view topic);
 
 /// True for these bytes, of any topic.
 bool is_shutdown(Bytes message);

@@ -114,7 +114,7 @@ def _meshes(plan):
             if object_id not in done:
                 done.add(object_id)
                 placed = scene.objects[place]
-                yield object_id, placed.vertices * placed.scale * MM_PER_M, placed.faces
+                yield object_id, placed.mesh.vertices * placed.scale * MM_PER_M, placed.mesh.triangles
 
 
 def write(plan, folder):

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import enum
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
@@ -14,42 +13,15 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import FloatArray, column_list, floats, log, one_of
+from ._information import Information
+from ._inputs import FloatArray, column_list, floats, log, one_of, shape_text, whole
+from ._pictures import html_picture, html_table, plot_points, show_images
+from ._status import Cause, Status
+from ._story import Story, story_of
 
 Array = npt.NDArray[Any]
 
 _PCD = ("ascii", "binary", "binary_compressed")
-
-
-class Status(enum.IntEnum):
-    """Why a beam has a return, or has none."""
-
-    hit = 0
-    miss = 1
-    too_near = 2
-    too_far = 3
-    no_beam = 4
-    below_threshold = 5
-    dropped = 6
-    occluded = 7
-    wrapped = 8
-    saturated = 9
-    weather = 10
-    no_echo = 11
-
-
-class Cause(enum.IntEnum):
-    """What made a return."""
-
-    none = 0
-    surface = 1
-    mixed = 2
-    ghost = 3
-    false_alarm = 4
-    fog = 5
-    rain = 6
-    snow = 7
-    crosstalk = 8
 
 
 class Truth:
@@ -158,6 +130,25 @@ class Cloud(Mapping[str, Array]):
     def world_from_cloud(self) -> FloatArray:
         """Pose of that frame in the world, 4x4."""
         return self._core.world_from_cloud
+
+    def to_open3d(self) -> Any:
+        """The hits as open3d.geometry.PointCloud, with normals if the cloud has them."""
+        import open3d
+
+        xyz = self["xyz"].reshape(-1, 3)
+        is_hit = np.isfinite(xyz[:, 0])
+        points = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(xyz[is_hit]))
+        if "normal" in self:
+            normals = self["normal"].reshape(-1, 3)[is_hit].astype(np.float64)
+            points.normals = open3d.utility.Vector3dVector(normals)
+        return points
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><td>{name}</td><td>{shape_text(values.shape)}</td><td>{values.dtype}</td></tr>"
+            for name, values in self.items()
+        )
+        return f"<p>{self.points} points in {self.frame_id}</p><table>{rows}</table>"
 
     def __repr__(self) -> str:
         return f"<glidar.Cloud of {self.points} points in {self.frame_id}: {', '.join(self)}>"
@@ -324,6 +315,75 @@ class Frame:
             raise Error("layout and columns", "both are given", "one of the two", remedy)
         options = _core.save_options(encoding, ply_ascii, hits_only, sidecar, layout or "", scale)
         self._core.save(os.fspath(path), column_list(columns), frame, deskew, options, log)
+
+    def show(self) -> Any:
+        """A matplotlib figure: depth and intensity, as images. Jupyter draws it; elsewhere
+        ``matplotlib.pyplot.show()`` opens it."""
+        depth = self.cloud(["depth"])["depth"]
+        return show_images({"depth, m": depth, "intensity": self.intensity})
+
+    def plot(self, *, colour: str = "intensity", frame: str = "world", most: int = 20000) -> Any:
+        """A matplotlib figure: the hits in space.
+
+        Args:
+            colour: a column of one number per point, such as range, incidence or status.
+            frame: axes, as for ``cloud``.
+            most: at most so many points are drawn, evenly picked.
+        """
+        cloud = self.cloud(["xyz", colour], frame=frame, hits_only=True)
+        step = max(1, -(-cloud.points // most))
+        return plot_points(cloud["xyz"][::step], cloud[colour][::step], colour, cloud.frame_id)
+
+    def _repr_html_(self) -> str:
+        told = {"beams": f"{self.rows} x {self.cols}", "hits": self.hits, "seed": self.seed, "frame": self.number}
+        return html_table(told) + html_picture(self.save)
+
+    def explain(
+        self, index: int | None = None, *, row: int | None = None, col: int | None = None, hits_only: bool = False
+    ) -> Story:
+        """How an entry came to be: the beam, what it met, the light, echoes, every step of noise with
+        the random numbers that it drew. The frame is measured once more for it.
+
+        Args:
+            index: which point of a cloud of the frame, from 0; of one of hits alone with
+                ``hits_only``. Or:
+            row, col: which row and column of the frame's arrays.
+
+        Raises:
+            Error: there is no such entry.
+        """
+        return story_of(_core.explain(self._core, self._entry(index, row, col, hits_only)))
+
+    def _entry(self, index: int | None, row: int | None, col: int | None, hits_only: bool) -> int:
+        if index is None and row is not None and col is not None:
+            return whole(row, "row", self.rows - 1) * self.cols + whole(col, "col", self.cols - 1)
+        if index is None or row is not None or col is not None:
+            raise Error("explain", "a point is named in two ways, or in none", "index, or row and col")
+        if not hits_only:
+            return whole(index, "index", self.rows * self.cols - 1)
+        entries = np.flatnonzero(self.status == Status.hit)
+        if len(entries) == 0:
+            raise Error("index", f"{index}", "", "the frame has no hits")
+        return int(entries[whole(index, "index", len(entries) - 1)])
+
+    def information(
+        self, *, sigma_m: float = 0.01, reference: npt.ArrayLike | None = None, instance: int | None = None
+    ) -> Information:
+        """What the frame can tell about the sensor's pose: Fisher's matrix and the bounds of any
+        estimate. Needs normals (the usual columns have them).
+
+        Args:
+            sigma_m: of every range when the sensor has no noise.
+            reference: sensor_from_reference, 4x4: where displacements count; None: the sensor's frame.
+            instance: only returns of this object, by its place in the scene; None: of all.
+
+        Raises:
+            Error: normals were not kept, or a number is out of range.
+        """
+        pose = floats(np.eye(4) if reference is None else reference, "reference", (4, 4))[None]
+        sigma = float(floats(sigma_m, "sigma_m", ()))
+        only = None if instance is None else whole(instance, "instance", 2**32 - 2)
+        return Information(_core.information(self._core, sigma, pose, only))
 
     def __repr__(self) -> str:
         return f"<glidar.Frame {self.number} of {self.rows} x {self.cols} beams, {self.hits} hits, seed {self.seed}>"

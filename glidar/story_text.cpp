@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/glidar/story_text.hpp>
+#include <glidar/story_text.hpp>
 
 #include <glidar/io/noise_text.hpp>
 
@@ -12,7 +12,7 @@
 #include <numbers>
 #include <string_view>
 
-namespace glidar::app {
+namespace glidar {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
@@ -261,4 +261,4 @@ std::string story_text(const Story& story, const Setup& setup, const Frame& fram
   return to.text;
 }
 
-}  // namespace glidar::app
+}  // namespace glidar

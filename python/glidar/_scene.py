@@ -4,8 +4,11 @@
 
 from __future__ import annotations
 
+import itertools
+import json
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,8 +17,9 @@ import numpy.typing as npt
 from . import _core
 from ._errors import Error
 from ._inputs import FloatArray, floats, log, one_of, whole
-from .sensor import Sensor, load_sensor
-from .simulator import Simulator
+from ._mesh import Mesh, mesh_of
+from ._sensor import Sensor, load_sensor, plain
+from ._simulator import Simulator
 
 _UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254}
 _AXES = ("x", "y", "z")
@@ -52,6 +56,8 @@ class Object:
 
     @name.setter
     def name(self, name: str) -> None:
+        if name in {other.name for other in self._scene if other.index != self._index}:
+            raise Error("name", f"{name!r}, which another object has", "each name once")
         self._set(name=name)
 
     @property
@@ -61,6 +67,8 @@ class Object:
 
     @id.setter
     def id(self, number: int) -> None:
+        if number in {other.id for other in self._scene if other.index != self._index}:
+            raise Error("id", f"{number}, which another object has", "each id once")
         self._set(id=whole(number, "id", 2**32 - 2))
 
     @property
@@ -92,27 +100,53 @@ class Object:
         self._set(scale=float(floats(scale, "scale", ())))
 
     @property
+    def materials(self) -> list[str]:
+        """Names of its materials."""
+        return self._scene._core.materials(self._index)
+
+    def set_materials(self, changes: Mapping[str, Any]) -> None:
+        """Changes its materials, and not those of copies.
+
+        Args:
+            changes: as ``materials`` in scene files (docs/files.md): by the material's name, or "*" for
+                all, e.g. ``{"*": {"surface": "asphalt"}}`` or ``{"*": {"diffuse": [0.9, 0.1, 0.1]}}``.
+
+        Raises:
+            Error: names the field, what is allowed and the nearest known key.
+        """
+        self._scene._simulators.clear()
+        self._scene._core.set_materials(self._index, json.dumps(plain(changes, "materials")))
+
+    @property
     def source(self) -> str:
         """Where its mesh came from."""
         return str(self._info()["source"])
+
+    @property
+    def mesh(self) -> Mesh:
+        """Its mesh: copies of the arrays, in the object's own frame before scale."""
+        arrays: dict[str, Any] = self._scene._core.mesh(self._index)
+        return Mesh(**arrays)
 
     @property
     def triangles(self) -> int:
         """Triangles of its mesh."""
         return int(self._info()["triangles"])
 
-    @property
-    def vertices(self) -> FloatArray:
-        """Vertices of its mesh in the object's own frame, before scale, m, (V, 3)."""
-        return self._scene._core.vertices_m(self._index)
-
-    @property
-    def faces(self) -> npt.NDArray[np.uint32]:
-        """Triangles of its mesh as indices of vertices, (T, 3)."""
-        return self._scene._core.faces(self._index)
-
     def __repr__(self) -> str:
         return f"<glidar.Object {self.index} {self.name!r} of {self.source}: {self.triangles} triangles>"
+
+
+@dataclass(frozen=True)
+class Mount:
+    """A sensor on the rig of a scene file."""
+
+    name: str
+    number: int
+    """Its place in the file, which its random numbers depend on: the sensor_id of its frames."""
+    sensor: Sensor
+    rig_from_sensor: FloatArray
+    """4x4."""
 
 
 class Scene:
@@ -143,7 +177,7 @@ class Scene:
         if path.endswith((".yaml", ".yml")):
             self._core = _core.load_scene(path, _metres(unit), _axis(up), True, log)
         else:
-            self.add_model(path, unit=unit, up=up)
+            self._core.add_model(path, _metres(unit), _axis(up), True, log)
 
     def add_model(
         self,
@@ -157,7 +191,7 @@ class Scene:
 
         Args:
             unit, up: as for ``Scene``.
-            placing: pose (4x4), scale, name, id, class_name of the object.
+            placing: pose (4x4), scale, name, id, class_name, materials of the object.
         """
         self._simulators.clear()
         index = self._core.add_model(os.fspath(source), _metres(unit), _axis(up), True, log)
@@ -173,33 +207,30 @@ class Scene:
         colours: npt.ArrayLike | None = None,
         **placing: Any,
     ) -> Object:
-        """Adds a mesh from arrays, or from an object that has vertices and faces, as trimesh's.
+        """Adds a mesh from arrays, or from what this and other libraries call a mesh.
 
         Args:
-            vertices: (V, 3), m, in the object's own frame; or the mesh object, without the rest.
+            vertices: (V, 3), m, in the object's own frame; or a ``Mesh``, or a mesh of trimesh or
+                Open3D, without the rest.
             triangles: (T, 3), indices of vertices, counter-clockwise seen from the front.
             normals: (V, 3), unit vectors; None: flat shading.
             uvs: (V, 2), v upwards.
-            colours: (V, 3), 0..1.
-            placing: pose (4x4), scale, name, id, class_name of the object.
+            colours: (V, 3), rgb 0..1.
+            placing: pose (4x4), scale, name, id, class_name, materials of the object.
 
         Raises:
             Error: a wrong shape, a number that is not finite, an index of no vertex.
         """
-        if triangles is None and hasattr(vertices, "vertices") and hasattr(vertices, "faces"):
-            vertices, triangles = vertices.vertices, vertices.faces
-        if triangles is None:
-            raise Error("triangles", "None", "indices of vertices, n x 3")
-        corners = floats(vertices, "vertices", (None, 3))
+        mesh = mesh_of(vertices) if triangles is None else Mesh(vertices, triangles, normals, uvs, colours)
+        corners = floats(mesh.vertices, "vertices", (None, 3))
         count = len(corners)
-        name = str(placing.get("name", "mesh"))
         index = self._core.add_mesh(
-            name,
+            str(placing.get("name", "mesh")),
             corners,
-            _triangles(triangles, count),
-            _per_vertex(normals, "normals", count, 3),
-            _per_vertex(uvs, "uvs", count, 2),
-            _per_vertex(colours, "colours", count, 3),
+            _triangles(mesh.triangles, count),
+            _per_vertex(mesh.normals, "normals", count, 3),
+            _per_vertex(mesh.uvs, "uvs", count, 2),
+            _per_vertex(mesh.colours, "colours", count, 3),
         )
         self._simulators.clear()
         return self._placed(index, placing)
@@ -208,17 +239,39 @@ class Scene:
         """Adds another object with the mesh and materials of one that is there; costs no memory.
 
         Args:
-            placing: pose (4x4), scale, name, id, class_name; as those of the first when not given.
+            placing: pose (4x4), scale, name, id, class_name, materials; as those of the first when not given.
         """
         self._simulators.clear()
         return self._placed(self._core.add_instance(of.index), placing)
 
     def _placed(self, index: int, placing: dict[str, Any]) -> Object:
+        """The object just added, with what is given of it, a name of its own and a number."""
         made = Object(self, index)
-        for name, value in placing.items():
-            one_of(name, "argument", ("pose", "scale", "name", "id", "class_name"))
-            setattr(made, name, value)
+        try:
+            self._core.set_object(index, None, None, self._free_name(made.name), self._free_id(index), None)
+            self._place(made, placing)
+        except BaseException:
+            self._core.drop_last()
+            raise
         return made
+
+    def _free_name(self, base: str) -> str:
+        taken = {other.name for other in self.objects[:-1]}
+        numbered = (f"{base}_{n}" for n in itertools.count(2))
+        return next(name for name in itertools.chain([base], numbered) if name not in taken)
+
+    def _free_id(self, index: int) -> int:
+        taken = {other.id for other in self.objects[:-1]}
+        return next(number for number in itertools.count(index + 1) if number not in taken)
+
+    @staticmethod
+    def _place(made: Object, placing: dict[str, Any]) -> None:
+        for name, value in placing.items():
+            one_of(name, "argument", ("pose", "scale", "name", "id", "class_name", "materials"))
+            if name == "materials":
+                made.set_materials(value)
+            else:
+                setattr(made, name, value)
 
     @property
     def objects(self) -> tuple[Object, ...]:
@@ -249,9 +302,17 @@ class Scene:
 
     @property
     def sensor(self) -> Sensor | None:
-        """The sensor of the scene file, if it has one."""
-        found = self._core.sensor
-        return None if found is None else Sensor(found)
+        """The sensor of the scene file; None when it has none, or a rig of several."""
+        rig = self._core.rig()
+        return Sensor(rig[0][1]) if len(rig) == 1 else None
+
+    @property
+    def rig(self) -> dict[str, Mount]:
+        """The sensors of the scene file by name; a single one has the name ""."""
+        return {
+            name: Mount(name, number, Sensor(core), pose)
+            for number, (name, core, pose) in enumerate(self._core.rig())
+        }
 
     def simulator(
         self, sensor: Sensor | str | os.PathLike[str] | None = None, *, renderer: str = "embree", threads: int = 0
@@ -273,9 +334,12 @@ class Scene:
         if sensor is not None:
             return load_sensor(sensor)
         own = self.sensor
-        if own is None:
-            raise Error("sensor", "the scene file has none", "a sensor", "glidar.camera() makes one")
-        return own
+        if own is not None:
+            return own
+        if self.rig:
+            allowed = "one of scene.rig: " + ", ".join(self.rig)
+            raise Error("sensor", f"the scene file has a rig of {len(self.rig)}", allowed, "simulate_rig takes all")
+        raise Error("sensor", "the scene file has none", "a sensor", "glidar.camera() makes one")
 
     def __repr__(self) -> str:
         return f"<glidar.Scene of {len(self)} objects: {', '.join(o.name for o in self.objects[:4])}>"
@@ -312,3 +376,6 @@ def _per_vertex(value: npt.ArrayLike | None, where: str, count: int, size: int) 
     return floats(value, where, (count, size)).astype(np.float32)
 
 
+def surface_names() -> list[str]:
+    """Names of the surfaces that come along, for `surface` of materials."""
+    return _core.surface_names()

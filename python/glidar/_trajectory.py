@@ -147,6 +147,8 @@ def trajectories(value: PoseLike | Sequence[PoseLike], where: str) -> _core.Traj
         return value._core
     if isinstance(value, (list, tuple)) and any(isinstance(part, Trajectory) for part in value):
         return _core.joined([trajectories(part, f"{where}[{k}]") for k, part in enumerate(value)])
+    if type(value) is np.ndarray and value.shape == (4, 4) and value.dtype == np.float64:
+        return _core.constant(np.ascontiguousarray(value)[None], where)  # which looks at the numbers too
     if np.ndim(value) == 2:  # type: ignore[arg-type]
         return _core.constant(floats(value, where, (4, 4))[None], where)
     return _core.constant(floats(value, where, (None, 4, 4)), where)

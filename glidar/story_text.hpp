@@ -6,9 +6,9 @@
 
 #include <string>
 
-namespace glidar::app {
+namespace glidar {
 
 /// The story of an entry in words and numbers, for people. `frame` is the one that was explained.
 std::string story_text(const Story& story, const Setup& setup, const Frame& frame);
 
-}  // namespace glidar::app
+}  // namespace glidar

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/glidar/verify_cases.hpp>
-#include <apps/glidar/verify_shapes.hpp>
 #include <glidar/core/random.hpp>
+#include <glidar/verify/cases.hpp>
+#include <glidar/verify/shapes.hpp>
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-namespace glidar::app {
+namespace glidar {
 namespace {
 
 const Shape& shape_named(const std::vector<Shape>& shapes, const std::string& name) {
@@ -164,4 +164,4 @@ TEST(VerifyCases, AnyErrorOverItsBoundFails) {
 }
 
 }  // namespace
-}  // namespace glidar::app
+}  // namespace glidar

@@ -2,19 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <apps/glidar/verify_shapes.hpp>
 #include <glidar/render/renderer.hpp>
+#include <glidar/verify/shapes.hpp>
+#include <glidar/verify/verify.hpp>
 
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-namespace glidar::app {
-
-/// What `verify` holds a renderer to.
-inline constexpr double kRangeBound_ulp = 1.0;    ///< of float32, at the range
-inline constexpr double kNormalBound_rad = 1e-6;  ///< normals are stored in float32
+namespace glidar {
 
 /// A ray that passes an edge nearer than this part of the shape's radius is not judged: renderers
 /// search in float32 relative to a point near the shape, so that a vertex and a ray are each off by
@@ -31,23 +28,6 @@ struct VerifyCase {
   std::uint32_t number = 0;     ///< of the case; decides attitudes and random rays
 };
 
-/// Errors over many rays.
-struct VerifyResult {
-  std::size_t rays = 0;
-  std::size_t judged_hits = 0;
-  std::size_t judged_misses = 0;
-  std::size_t near_edges = 0;  ///< not judged
-  std::size_t wrong_hits = 0;
-  std::size_t wrong_misses = 0;
-  double range_error_m = 0.0;     ///< largest
-  double range_error_ulp = 0.0;   ///< largest, in float32 steps at the true range
-  double normal_error_rad = 0.0;  ///< largest
-
-  void add(const VerifyResult& other);
-  /// Within all bounds, with hits and misses to show for it.
-  [[nodiscard]] bool passed() const;
-};
-
 /// Every distance from 0.1 m to 10 km, offset and size at which one shape is looked at.
 std::vector<VerifyCase> make_cases(std::size_t shape, double distance_m);
 
@@ -58,4 +38,4 @@ const std::vector<double>& verify_distances();
 VerifyResult run_case(const VerifyCase& verify_case, const Shape& shape,
                       const RendererOptions& options);
 
-}  // namespace glidar::app
+}  // namespace glidar

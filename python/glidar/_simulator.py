@@ -8,17 +8,18 @@ import os
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
+import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
 from ._inputs import column_list, one_of, whole, whole_numbers
-from .frame import Frame
-from .sensor import Sensor
-from .trajectory import PoseLike, object_trajectories, trajectories
+from ._frame import Frame
+from ._sensor import Sensor
+from ._trajectory import PoseLike, Trajectory, object_trajectories, trajectories
 
 if TYPE_CHECKING:
-    from .scene import Scene
+    from ._scene import Scene
 
 _RENDERERS = ("embree", "opengl")
 
@@ -44,6 +45,7 @@ class Simulator:
             raise Error("sensor", "the scene has none", "a sensor", "glidar.camera() makes one")
         one_of(renderer, "renderer", _RENDERERS)
         self.sensor = chosen
+        self._usual_fields = _core.fields_for(column_list(None))
         self._core = _core.make_simulator(scene._core, chosen._core, renderer, whole(threads, "threads", 4096))
 
     def simulate(
@@ -57,10 +59,19 @@ class Simulator:
         sensor_id: int = 0,
     ) -> Frame:
         """Measures once; see ``glidar.simulate``."""
-        sensors = self._sensors(pose)
-        if len(sensors) != 1:
-            raise Error("pose", f"{len(sensors)} poses", "one pose, 4x4", "simulate_batch takes many")
-        return self._measure(sensors, objects, seed, frame, columns, sensor_id)[0]
+        sensor = self._sensors(pose)
+        if len(sensor) != 1:
+            raise Error("pose", f"{len(sensor)} poses", "one pose, 4x4", "simulate_batch takes many")
+        return Frame(
+            self._core.simulate_one(
+                sensor,
+                object_trajectories(objects, 1, self._core.objects),
+                whole(seed, "seed", 2**64 - 1),
+                whole(frame, "frame", 2**32 - 1),
+                whole(sensor_id, "sensor_id", 2**32 - 1),
+                self._fields(columns),
+            )
+        )
 
     def simulate_batch(
         self,
@@ -80,6 +91,9 @@ class Simulator:
             return self._core.usual_motion()
         return trajectories(poses, "pose")
 
+    def _fields(self, columns: str | Iterable[str] | None) -> _core.HitFields:
+        return self._usual_fields if columns is None else _core.fields_for(column_list(columns))
+
     def _measure(
         self,
         sensors: _core.Trajectories,
@@ -96,7 +110,7 @@ class Simulator:
             whole_numbers(seeds, "seed", count, 64),
             whole_numbers(numbers, "frame", count, 32),
             whole(sensor_id, "sensor_id", 2**32 - 1),
-            _core.fields_for(column_list(columns)),
+            self._fields(columns),
         )
         return [Frame(core) for core in measured]
 
@@ -173,3 +187,40 @@ def simulate_batch(
     )
 
 
+def simulate_rig(
+    scene: Scene,
+    pose: PoseLike | None = None,
+    *,
+    seed: int = 0,
+    frame: int = 0,
+    objects: PoseLike | Sequence[PoseLike] | None = None,
+    columns: str | Iterable[str] | None = None,
+    renderer: str = "embree",
+    threads: int = 0,
+) -> dict[str, Frame]:
+    """Measures a scene once with each sensor of its scene file's rig; gives frames by their names.
+
+    Args:
+        pose: of the rig: world_from_rig (4x4), or a Trajectory; None: as the scene file says, else
+            where its first sensor sees all of the scene.
+
+    The other arguments and errors are those of ``simulate``.
+    """
+    if not scene.rig:
+        raise Error("scene", "it has no sensors", "a scene file with sensors")
+    mounts = [(m, scene.simulator(m.sensor, renderer=renderer, threads=threads)) for m in scene.rig.values()]
+    rig = scene._core.rig_motion() if pose is None else trajectories(pose, "pose")
+    if rig is None:
+        first, simulator = mounts[0]
+        rig = _core.mounted(simulator._core.usual_motion(), np.asarray(np.linalg.inv(first.rig_from_sensor)[None], np.float64))
+    return {
+        mount.name: simulator.simulate(
+            Trajectory(_core.mounted(rig, mount.rig_from_sensor[None])),
+            seed=seed,
+            frame=frame,
+            objects=objects,
+            columns=columns,
+            sensor_id=mount.number,
+        )
+        for mount, simulator in mounts
+    }

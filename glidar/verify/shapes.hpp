@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace glidar::app {
+namespace glidar {
 
 /// Closed forms are worked out in extended precision (64 bits of mantissa on x86-64): next to
 /// double it is exact.
@@ -66,4 +66,4 @@ inline constexpr Real kGrazingCosine = 1e-3L;
 TrueHit intersect(const ClosedForm& form, const RealVector& origin, const RealVector& direction,
                   Real edge_tolerance_m);
 
-}  // namespace glidar::app
+}  // namespace glidar

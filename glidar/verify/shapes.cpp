@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/glidar/verify_shapes.hpp>
+#include <glidar/verify/shapes.hpp>
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include <numbers>
 #include <utility>
 
-namespace glidar::app {
+namespace glidar {
 namespace {
 
 using Face = std::vector<std::uint32_t>;
@@ -259,4 +259,4 @@ TrueHit intersect(const ClosedForm& form, const RealVector& origin, const RealVe
                     : intersect_face(form, origin, direction, edge_tolerance_m);
 }
 
-}  // namespace glidar::app
+}  // namespace glidar

@@ -68,7 +68,8 @@ def look_at(
     if boresight == "z":
         return optical
     optical_from_body = np.array([[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
-    return optical @ optical_from_body
+    aimed: FloatArray = optical @ optical_from_body
+    return aimed
 
 
 def quaternion(matrix: npt.ArrayLike, order: str) -> FloatArray:

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/glidar/verify_cases.hpp>
+#include <glidar/verify/cases.hpp>
 
 #include <glidar/core/random.hpp>
 #include <glidar/sensor/pinhole.hpp>
@@ -12,7 +12,7 @@
 #include <memory>
 #include <numbers>
 
-namespace glidar::app {
+namespace glidar {
 namespace {
 
 constexpr std::uint32_t kImageSide = 64;
@@ -213,4 +213,4 @@ VerifyResult run_case(const VerifyCase& verify_case, const Shape& shape,
   return result;
 }
 
-}  // namespace glidar::app
+}  // namespace glidar

@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -18,14 +19,14 @@ from ._inputs import FloatArray
 _KINDS = ("camera", "spinning", "raster", "prism", "table")
 
 
-def _plain(value: object, where: str) -> object:
+def plain(value: object, where: str) -> object:
     """NumPy's numbers and arrays as Python's own."""
     if isinstance(value, Mapping):
-        return {str(key): _plain(part, f"{where}.{key}") for key, part in value.items()}
+        return {str(key): plain(part, f"{where}.{key}") for key, part in value.items()}
     if isinstance(value, (list, tuple)):
-        return [_plain(part, f"{where}[{k}]") for k, part in enumerate(value)]
+        return [plain(part, f"{where}[{k}]") for k, part in enumerate(value)]
     if isinstance(value, (np.ndarray, np.generic)):
-        return _plain(value.tolist(), where)
+        return plain(value.tolist(), where)
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if value is None or isinstance(value, (bool, int, float, str)):
@@ -51,7 +52,7 @@ class Sensor:
         Raises:
             Error: names the field, what is allowed and the nearest known key.
         """
-        return Sensor(_core.parse_sensor(json.dumps(_plain(description, "sensor"))))
+        return Sensor(_core.parse_sensor(json.dumps(plain(description, "sensor"))))
 
     @property
     def name(self) -> str:
@@ -99,6 +100,11 @@ class Sensor:
         NaN where there is no beam."""
         return self._core.directions
 
+    def describe(self) -> dict[str, Any]:
+        """All its numbers, as the sidecars of clouds tell them; what is infinite is None."""
+        told: dict[str, Any] = json.loads(self._core.description())
+        return told
+
     def ideal(self) -> Sensor:
         """The same without noise, pulsed light, weather, footprint and further returns: it reports
         the geometric truth."""
@@ -129,6 +135,23 @@ def sensor_file(name: str) -> str:
 def sensor_names() -> list[str]:
     """Names of the sensors that come along."""
     return _core.preset_names()
+
+
+@dataclass(frozen=True)
+class SheetEntry:
+    """One number of a sensor file and where it comes from."""
+
+    key: str
+    value: str
+    source: str
+    """Empty: the file does not tell."""
+    verified: bool
+    """Against the maker's documents."""
+
+
+def sensor_sheet(name_or_path: str | os.PathLike[str]) -> list[SheetEntry]:
+    """Every number of a preset or sensor file with its source, in the order of the file."""
+    return [SheetEntry(*entry) for entry in _core.sensor_sheet(os.fspath(name_or_path))]
 
 
 def camera(

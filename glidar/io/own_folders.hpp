@@ -1,0 +1,17 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io.
+
+#include <filesystem>
+#include <vector>
+
+namespace glidar {
+
+/// Folders below which what was installed with this code lies (share/glidar, libexec/glidar), so
+/// that a moved installation finds its own: those of the shared library that holds the code (its
+/// own folder and the one above), else the one above the running program's.
+std::vector<std::filesystem::path> own_folders();
+
+}  // namespace glidar

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/motion/timed_poses.hpp>
+#include <glidar/motion/tumbling.hpp>
+
+#include <cstdint>
+#include <variant>
+
+namespace glidar {
+
+/// Fixed to a body whose way has no closed form for any other of its points.
+struct Mounted {
+  std::variant<TimedPoses, Tumbling> carrier;
+  Pose carrier_from_body = Pose::Identity();
+};
+
+Pose pose_at(const Mounted& mounted, std::int64_t t_ns);
+
+}  // namespace glidar

@@ -1,0 +1,84 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Triangle meshes as arrays, and from and to other libraries, none of which is needed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._errors import Error
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A triangle mesh: arrays with one row per vertex, or per triangle."""
+
+    vertices: npt.ArrayLike
+    """(V, 3), m, in the object's own frame."""
+    triangles: npt.ArrayLike
+    """(T, 3), indices of vertices, counter-clockwise seen from the front."""
+    normals: npt.ArrayLike | None = None
+    """(V, 3), unit vectors; None: flat shading."""
+    uvs: npt.ArrayLike | None = None
+    """(V, 2), v upwards."""
+    colours: npt.ArrayLike | None = None
+    """(V, 3), rgb 0..1."""
+
+    def to_trimesh(self) -> Any:
+        """The same as trimesh.Trimesh, vertices and triangles in the same order."""
+        import trimesh
+
+        return trimesh.Trimesh(
+            self.vertices, self.triangles, vertex_normals=self.normals, vertex_colors=self.colours, process=False
+        )
+
+    def to_open3d(self) -> Any:
+        """The same as open3d.geometry.TriangleMesh."""
+        import open3d
+
+        utility = open3d.utility
+        mesh = open3d.geometry.TriangleMesh(
+            utility.Vector3dVector(np.asarray(self.vertices, np.float64)),
+            utility.Vector3iVector(np.asarray(self.triangles, np.int32)),
+        )
+        if self.normals is not None:
+            mesh.vertex_normals = utility.Vector3dVector(np.asarray(self.normals, np.float64))
+        if self.colours is not None:
+            mesh.vertex_colors = utility.Vector3dVector(np.asarray(self.colours, np.float64))
+        return mesh
+
+
+def from_trimesh(mesh: Any) -> Mesh:
+    """The vertices, faces and vertex colours of a trimesh.Trimesh."""
+    visual = getattr(mesh, "visual", None)
+    colours = None
+    if getattr(visual, "kind", None) == "vertex":
+        colours = np.asarray(visual.vertex_colors)[:, :3] / 255.0  # type: ignore[union-attr]
+    return Mesh(np.asarray(mesh.vertices), np.asarray(mesh.faces), colours=colours)
+
+
+def from_open3d(mesh: Any) -> Mesh:
+    """The mesh of an open3d.geometry.TriangleMesh, with its vertex normals and colours."""
+    normals, colours = np.asarray(mesh.vertex_normals), np.asarray(mesh.vertex_colors)
+    return Mesh(
+        np.asarray(mesh.vertices),
+        np.asarray(mesh.triangles),
+        normals=normals if len(normals) else None,
+        colours=colours if len(colours) else None,
+    )
+
+
+def mesh_of(mesh: object) -> Mesh:
+    """A Mesh, or what another library calls one."""
+    if isinstance(mesh, Mesh):
+        return mesh
+    if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
+        return from_trimesh(mesh)
+    if hasattr(mesh, "vertices") and hasattr(mesh, "triangles"):
+        return from_open3d(mesh)
+    found = f"a {type(mesh).__name__}"
+    raise Error("mesh", found, "vertices and triangles, or a mesh of glidar, trimesh or Open3D")

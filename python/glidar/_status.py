@@ -1,0 +1,36 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Why beams have returns, or none, and what made them."""
+
+import enum
+
+
+class Status(enum.IntEnum):
+    """Why a beam has a return, or has none."""
+
+    hit = 0
+    miss = 1
+    too_near = 2
+    too_far = 3
+    no_beam = 4
+    below_threshold = 5
+    dropped = 6
+    occluded = 7
+    wrapped = 8
+    saturated = 9
+    weather = 10
+    no_echo = 11
+
+
+class Cause(enum.IntEnum):
+    """What made a return."""
+
+    none = 0
+    surface = 1
+    mixed = 2
+    ghost = 3
+    false_alarm = 4
+    fog = 5
+    rain = 6
+    snow = 7
+    crosstalk = 8

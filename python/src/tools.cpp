@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "convert.hpp"
+#include "frame.hpp"
+#include "report.hpp"
+
+#include <glidar/io/information_file.hpp>
+#include <glidar/io/surfaces.hpp>
+#include <glidar/sensor/information.hpp>
+#include <glidar/verify/verify.hpp>
+
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/array.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+namespace glidar::python {
+namespace {
+
+PoseInformation information(const Measured& measured, double sigma_m,
+                            const PoseArray& sensor_from_reference,
+                            std::optional<std::uint32_t> instance) {
+  InformationOptions options;
+  options.sigma_m = sigma_m;
+  options.sensor_from_reference = pose_of(sensor_from_reference, 0, "reference");
+  options.instance = instance;
+  const nb::gil_scoped_release release;
+  return pose_information(measured.frame, *measured.beams, options);
+}
+
+std::vector<VerifyRow> verified(const std::string& renderer, unsigned threads) {
+  return unlocked([&](Watch& watch) {
+    return verify({.kind = renderer, .threads = threads}, watch.progress());
+  });
+}
+
+std::vector<std::string> surface_names() {
+  std::vector<std::string> names;
+  for (const Surface& surface : load_surfaces()) names.push_back(surface.name);
+  return names;
+}
+
+void bind_information(nb::module_& module) {
+  nb::class_<InformationDirection>(module, "Direction")
+      .def_ro("eigenvalue", &InformationDirection::eigenvalue)
+      .def_ro("degenerate", &InformationDirection::degenerate)
+      .def_ro("displacement", &InformationDirection::displacement)
+      .def_ro("words", &InformationDirection::words);
+  nb::class_<PoseInformation>(module, "Information")
+      .def_ro("matrix", &PoseInformation::matrix)
+      .def_ro("covariance", &PoseInformation::covariance)
+      .def_ro("bound", &PoseInformation::bound)
+      .def_ro("directions", &PoseInformation::directions)
+      .def_ro("condition", &PoseInformation::condition)
+      .def_ro("length_m", &PoseInformation::length_m)
+      .def_ro("middle_m", &PoseInformation::middle_m)
+      .def_ro("returns", &PoseInformation::returns)
+      .def_ro("left_out", &PoseInformation::left_out)
+      .def_ro("assumed_sigma_m", &PoseInformation::assumed_sigma_m)
+      .def("text", information_text)
+      .def("json", information_json)
+      .def("save", write_information, nb::arg("path"),
+           nb::sig("def save(self, path: str) -> None"));
+  module.def("information", information, nb::arg("frame"), nb::arg("sigma_m"),
+             nb::arg("sensor_from_reference"), nb::arg("instance").none());
+}
+
+}  // namespace
+
+void bind_tools(nb::module_& module) {
+  bind_information(module);
+  nb::class_<VerifyRow>(module, "VerifyRow")
+      .def_ro("shape", &VerifyRow::shape)
+      .def_ro("distance_m", &VerifyRow::distance_m)
+      .def_prop_ro("rays", [](const VerifyRow& self) { return self.result.rays; })
+      .def_prop_ro("judged_hits", [](const VerifyRow& self) { return self.result.judged_hits; })
+      .def_prop_ro("judged_misses", [](const VerifyRow& self) { return self.result.judged_misses; })
+      .def_prop_ro("near_edges", [](const VerifyRow& self) { return self.result.near_edges; })
+      .def_prop_ro("wrong_hits", [](const VerifyRow& self) { return self.result.wrong_hits; })
+      .def_prop_ro("wrong_misses", [](const VerifyRow& self) { return self.result.wrong_misses; })
+      .def_prop_ro("range_error_m", [](const VerifyRow& self) { return self.result.range_error_m; })
+      .def_prop_ro("range_error_ulp",
+                   [](const VerifyRow& self) { return self.result.range_error_ulp; })
+      .def_prop_ro("normal_error_rad",
+                   [](const VerifyRow& self) { return self.result.normal_error_rad; })
+      .def_prop_ro("passed", [](const VerifyRow& self) { return self.result.passed(); });
+  module.def("verify", verified, nb::arg("renderer"), nb::arg("threads"));
+  module.def("surface_names", surface_names);
+}
+
+}  // namespace glidar::python

@@ -1,0 +1,142 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Many measurements in one call."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+from conftest import poses_around, same
+
+import glidar
+
+
+def test_frame_of_a_batch_is_what_one_measurement_makes_to_the_bit(asteroid, noisy):
+    poses, seeds = poses_around(20), np.arange(7, 27)
+    batch = glidar.simulate_batch(asteroid, noisy, poses, seeds)
+    assert len(batch) == 20
+    for k in (0, 7, 8, 19):
+        assert same(batch[k], glidar.simulate(asteroid, noisy, poses[k], seed=7 + k))
+        assert np.array_equal(batch[k].world_from_sensor, poses[k])
+
+
+def test_seeds_and_frame_numbers_draw_different_noise(asteroid, noisy):
+    pose = poses_around(1)
+    a, b, c, d = glidar.simulate_batch(asteroid, noisy, np.repeat(pose, 4, 0), [1, 1, 2, 1], frames=[0, 0, 0, 1])
+    assert same(a, b)
+    assert not same(a, c)
+    assert not same(a, d)
+    assert d.number == 1
+    assert d.stamp_ns == round(1e9 / noisy.rate_hz)
+    other = glidar.simulate(asteroid, noisy, pose[0], seed=1, sensor_id=1)
+    assert not same(a, other)
+
+
+def test_number_of_threads_does_not_change_a_bit(asteroid, noisy):
+    pose = poses_around(1)[0]
+    one = glidar.simulate(asteroid, noisy, pose, threads=1)
+    assert same(one, glidar.simulate(asteroid, noisy, pose, threads=2))
+
+
+def test_objects_have_poses_of_their_own_in_every_frame(camera):
+    scene = glidar.Scene()
+    scene.add_model("builtin:sphere", name="a")
+    scene.add_copy(scene["a"], name="b")
+    left, right = glidar.pose([-1, 0, 0]), glidar.pose([1, 0, 0])
+    objects = np.stack([[left, right], [right, left], [left, left]])
+    poses = np.repeat(glidar.look_at([0, -8, 0], [0, 0, 0])[None], 3, 0)
+    frames = glidar.simulate_batch(scene, camera, poses, objects=objects)
+    first, second, third = (f.truth.instance for f in frames)
+    assert np.array_equal(np.where(first < 2, 1 - first, first), second)
+    assert set(np.unique(third[third < 2])) <= {0, 1}
+    assert np.array_equal(frames[1].world_from_objects, objects[1])
+    # the same for all frames, and one measurement alone
+    for frame in glidar.simulate_batch(scene, camera, poses, objects=objects[1]):
+        assert same(frame, frames[1])
+    assert same(glidar.simulate(scene, camera, poses[0], objects=objects[0]), frames[0])
+
+
+def test_frames_that_move_differ_from_those_that_stand(asteroid):
+    lidar = glidar.load_sensor("VLP-16").ideal()
+    pose = glidar.look_at([3, 0, 0], [0, 0, 0], boresight="x")
+    still = glidar.simulate(asteroid, lidar, pose)
+    spin = glidar.Trajectory.spin(np.eye(4), [0, 0, 3.0])
+    moving = glidar.simulate(asteroid, lidar, pose, objects=[spin])
+    assert still.hits > 0
+    assert not same(still, moving)
+    assert same(glidar.simulate_batch(asteroid, lidar, [pose, glidar.Trajectory.constant(pose)], objects=[spin])[1], moving)
+
+
+def test_memory_of_frames_that_live_is_not_used_again(asteroid, camera):
+    poses = poses_around(30)
+    kept = glidar.simulate(asteroid, camera, poses[0]).range_m  # the frame itself is gone
+    before = kept.copy()
+    for _ in range(3):
+        glidar.simulate_batch(asteroid, camera, poses)
+    assert kept.tobytes() == before.tobytes()
+
+
+def test_python_goes_on_while_a_batch_is_measured(asteroid):
+    sensor = glidar.camera(256, 256)
+    ticks = []
+    done = threading.Event()
+
+    def tick():
+        while not done.is_set():
+            ticks.append(time.perf_counter())
+            time.sleep(0.001)
+
+    thread = threading.Thread(target=tick)
+    thread.start()
+    start = time.perf_counter()
+    glidar.simulate_batch(asteroid, sensor, poses_around(60))
+    end = time.perf_counter()
+    done.set()
+    thread.join()
+    inside = [t for t in ticks if start < t < end]
+    assert len(inside) > 5
+
+
+def test_many_threads_measure_one_scene_and_each_gets_its_own(asteroid, noisy):
+    poses = poses_around(16)
+    expected = glidar.simulate_batch(asteroid, noisy, poses, np.arange(16))
+    found = [None] * 16
+
+    def work(k):
+        found[k] = glidar.simulate(asteroid, noisy, poses[k], seed=k)
+
+    threads = [threading.Thread(target=work, args=(k,)) for k in range(16)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert all(same(a, b) for a, b in zip(expected, found, strict=True))
+
+
+def test_simulator_keeps_the_scene_as_it_was(camera):
+    scene = glidar.Scene("builtin:sphere")
+    simulator = glidar.Simulator(scene, camera)
+    pose = glidar.look_at([5, 0, 0], [0, 0, 0])
+    before = simulator.simulate(pose)
+    scene.objects[0].pose = glidar.pose([0, 100, 0])
+    assert same(simulator.simulate(pose), before)
+    assert glidar.simulate(scene, camera, pose).hits == 0
+
+
+def test_a_batch_of_nothing_and_wrong_sizes_are_refused(asteroid, camera):
+    poses = poses_around(3)
+    for arguments, where in [
+        ({"poses": np.empty((0, 4, 4))}, "pose"),
+        ({"poses": poses[0][:3]}, "pose"),
+        ({"poses": poses, "seeds": [1, 2]}, "seed"),
+        ({"poses": poses, "seeds": [1.5, 2, 3]}, "seed"),
+        ({"poses": poses, "seeds": -1}, "seed"),
+        ({"poses": poses, "frames": [0, 1, 2**32]}, "frame"),
+        ({"poses": poses, "objects": poses}, "objects"),
+        ({"poses": poses, "objects": poses[None]}, "objects"),
+        ({"poses": poses, "columns": ["xzy"]}, "cloud column"),
+    ]:
+        with pytest.raises(glidar.Error) as caught:
+            glidar.simulate_batch(asteroid, camera, **arguments)
+        assert caught.value.where == where, str(caught.value)

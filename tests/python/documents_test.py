@@ -1,0 +1,57 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What README.md, docs/python.md and the notebook show works."""
+
+import os
+import re
+
+import pytest
+from conftest import ROOT
+
+import glidar
+
+
+def blocks(name):
+    text = (ROOT / name).read_text(encoding="utf-8")
+    return re.findall(r"```python\n(.*?)```", text, re.DOTALL)
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    for shown in ("models", "examples"):
+        (tmp_path / shown).symlink_to(ROOT / shown)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MPLBACKEND", "Agg")
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", ["README.md", "docs/python.md"])
+def test_python_of_a_document_runs(name, folder):
+    names = {}
+    found = [block for block in blocks(name) if "import glidar" in block or names is not None]
+    assert found
+    for block in found:
+        exec(compile(block, name, "exec"), names)
+
+
+def test_every_name_has_a_docstring_and_the_document_tells_of_it():
+    text = (ROOT / "docs/python.md").read_text(encoding="utf-8")
+    for name in glidar.__all__:
+        assert getattr(glidar, name).__doc__, name
+        assert re.search(rf"\b{name}\b", text), name
+
+
+def test_notebook_runs_and_is_kept_without_outputs(folder, monkeypatch):
+    nbclient = pytest.importorskip("nbclient")
+    nbformat = pytest.importorskip("nbformat")
+    path = ROOT / "examples/notebooks/first_steps.ipynb"
+    notebook = nbformat.read(path, as_version=4)
+    for cell in notebook.cells:
+        if cell.cell_type == "code":
+            assert cell.outputs == []
+            assert cell.execution_count is None
+    monkeypatch.delenv("MPLBACKEND")
+    nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(folder)}}).execute()
+    shown = [out for cell in notebook.cells if cell.cell_type == "code" for out in cell.outputs]
+    assert any("image/png" in out.get("data", {}) for out in shown)
+    assert os.listdir(folder)

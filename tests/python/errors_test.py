@@ -1,0 +1,72 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Errors, and what ends long work."""
+
+import _thread
+import logging
+import pickle
+import threading
+import time
+
+import numpy as np
+import pytest
+from conftest import ROOT, poses_around
+
+import glidar
+
+
+def test_error_has_its_four_parts_and_can_be_sent_on():
+    with pytest.raises(glidar.Error) as caught:
+        glidar.camera(fov_deg=200)
+    error = caught.value
+    assert error.where == "sensor: optics.fov_deg"
+    assert error.found == "200"
+    assert error.allowed == "degrees above 0 and below 180"
+    assert error.remedy == ""
+    assert str(error) == "sensor: optics.fov_deg: 200; allowed: degrees above 0 and below 180"
+    again = pickle.loads(pickle.dumps(error))
+    assert (str(again), again.where) == (str(error), error.where)
+
+
+def interrupted(work, after_s=0.3):
+    """The seconds that work took until Ctrl-C, pressed so long after its start, ended it."""
+    timer = threading.Timer(after_s, _thread.interrupt_main)
+    timer.start()
+    start = time.perf_counter()
+    with pytest.raises(KeyboardInterrupt):
+        work()
+    timer.join()
+    return time.perf_counter() - start
+
+
+def test_ctrl_c_ends_a_batch_and_all_goes_on(asteroid):
+    sensor = glidar.camera(256, 256)
+    poses = poses_around(3000)
+    assert interrupted(lambda: glidar.simulate_batch(asteroid, sensor, poses)) < 5.0
+    assert glidar.simulate(asteroid, sensor, poses[0]).hits > 0
+
+
+def test_ctrl_c_ends_one_long_measurement(asteroid):
+    sensor = glidar.camera(6000, 6000, noise=[{"type": "nguyen_lateral"}] * 3)
+    try:
+        assert interrupted(lambda: glidar.simulate(asteroid, sensor)) < 10.0
+    finally:
+        glidar.simulate(asteroid, glidar.camera(), poses_around(1)[0])
+
+
+def test_ctrl_c_ends_verify():
+    assert interrupted(glidar.verify, after_s=0.1) < 5.0
+
+
+def test_what_the_library_tells_goes_to_the_log(caplog, tmp_path):
+    (tmp_path / "a.obj").write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n")
+    (tmp_path / "a.mtl").write_text("newmtl m\nmap_Kd nowhere.png\n")
+    with caplog.at_level(logging.INFO, "glidar"):
+        glidar.Scene(tmp_path / "a.obj")
+    assert any("nowhere.png" in record.message and record.levelname == "WARNING" for record in caplog.records)
+
+
+def test_models_are_found_whatever_the_folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert glidar.Scene(ROOT / "models/satellite/satellite.obj").objects[0].triangles > 0
+    assert np.isfinite(glidar.load_sensor("OS1-32").directions).all()

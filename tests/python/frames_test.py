@@ -1,0 +1,181 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Frames, truth and clouds as NumPy arrays."""
+
+import gc
+
+import numpy as np
+import pytest
+
+import glidar
+
+
+@pytest.fixture(scope="module")
+def frame(asteroid, noisy):
+    return glidar.simulate(asteroid, noisy, columns="all")
+
+
+def test_arrays_are_read_only_views_of_one_memory(frame):
+    for name in ("range_m", "intensity", "status"):
+        one, other = getattr(frame, name), getattr(frame, name)
+        assert one.shape == (48, 64)
+        assert one.ctypes.data == other.ctypes.data
+        assert not one.flags.writeable
+        with pytest.raises(ValueError, match="read-only"):
+            one[0, 0] = 0
+    assert frame.truth.normal.shape == (48, 64, 3)
+    assert frame.truth.normal.ctypes.data == frame.truth.normal.ctypes.data
+
+
+def test_arrays_outlive_their_frame(asteroid, camera):
+    frame = glidar.simulate(asteroid, camera)
+    kept, copy = frame.truth.range_m, frame.truth.range_m.copy()
+    del frame
+    gc.collect()
+    glidar.simulate(asteroid, camera, glidar.look_at([9, 9, 9], [0, 0, 0]))
+    assert kept.tobytes() == copy.tobytes()
+
+
+def test_status_says_why_a_return_is_missing(frame):
+    assert frame.hits == np.isfinite(frame.range_m).sum() == (frame.status == glidar.Status.hit).sum()
+    assert (frame.status == glidar.Status.dropped).any()
+    assert np.isfinite(frame.truth.range_m[frame.status == glidar.Status.dropped]).all()
+    assert np.isnan(frame.truth.range_m[frame.status == glidar.Status.miss]).all()
+    assert (frame.cause[frame.status == glidar.Status.hit] == glidar.Cause.surface).all()
+    assert np.allclose(frame.sigma_m[frame.status == glidar.Status.hit], 0.01)
+
+
+def test_sigma_of_a_sensor_without_noise_is_zero(asteroid, camera):
+    sigma = glidar.simulate(asteroid, camera).sigma_m
+    assert sigma.shape == (48, 64)
+    assert (sigma == 0).all()
+
+
+def test_truth_is_that_of_a_sphere():
+    scene = glidar.Scene()
+    ball = scene.add_model("builtin:sphere", scale=2.0, id=17, class_name="ball")
+    frame = glidar.simulate(scene, glidar.camera(33, 33, fov_deg=5.0), glidar.look_at([10, 0, 0], [0, 0, 0]), columns="all")
+    assert frame.truth.range_m[16, 16] == pytest.approx(8.0, abs=2e-3)  # 5,120 triangles
+    assert frame.truth.normal[16, 16] == pytest.approx([0, 0, -1], abs=0.05)
+    assert frame.truth.object_point_m[16, 16] == pytest.approx([1, 0, 0], abs=2e-3)
+    assert (frame.truth.instance == 0).all()
+    cloud = frame.cloud(["instance", "class"])
+    assert (cloud["instance"] == 17).all()
+    assert scene.class_names[cloud["class"][0, 0]] == "ball"
+    assert ball.triangles == 5120
+
+
+def test_truth_that_was_not_kept_says_what_to_do(asteroid, camera):
+    frame = glidar.simulate(asteroid, camera)
+    with pytest.raises(glidar.Error, match=r"truth.colour: not kept; simulate\(..., columns='all'\)"):
+        _ = frame.truth.colour
+    with pytest.raises(glidar.Error):
+        frame.cloud(["colour"])
+
+
+def test_clouds_are_the_callers_own(frame):
+    cloud = frame.cloud()
+    assert list(cloud) == ["xyz", "intensity", "range", "normal", "instance", "class"]
+    assert cloud["xyz"].shape == (48, 64, 3)
+    cloud["xyz"][...] = 0.0
+    assert np.isfinite(frame.range_m).any()
+    assert not (frame.cloud()["xyz"] == 0.0).any()
+
+
+def test_cloud_of_hits_alone_is_flat(frame):
+    cloud = frame.cloud(["range"], hits_only=True)
+    assert cloud.points == frame.hits
+    assert cloud["range"].shape == (frame.hits,)
+    assert np.array_equal(cloud["range"], frame.range_m[frame.status == 0])
+
+
+def test_frames_of_clouds_are_rigid_motions_of_each_other(frame):
+    sensor = frame.cloud(["xyz"], hits_only=True)
+    world = frame.cloud(["xyz"], frame="world", hits_only=True)
+    pose = frame.world_from_sensor
+    assert world["xyz"] == pytest.approx(sensor["xyz"] @ pose[:3, :3].T + pose[:3, 3], abs=1e-12)
+    assert world.world_from_cloud == pytest.approx(np.eye(4), abs=1e-15)
+    assert world.frame_id == "world"
+    ros = frame.cloud(["xyz"], frame="ros", hits_only=True)["xyz"]
+    assert ros == pytest.approx(sensor["xyz"][:, [2, 0, 1]] * [1, -1, -1], abs=1e-12)
+
+
+def test_unknown_columns_and_frames_are_told_with_the_nearest(frame):
+    with pytest.raises(glidar.Error, match="did you mean 'range'"):
+        frame.cloud(["rnage"])
+    with pytest.raises(glidar.Error, match="did you mean world"):
+        frame.cloud(frame="wrold")
+    with pytest.raises(glidar.Error, match="no column 'time'"):
+        frame.cloud(["xyz"])["time"]
+
+
+def test_columns_go_to_whoever_speaks_dlpack(frame):
+    cloud = frame.cloud()
+    for name, column in cloud.items():
+        taken = np.from_dlpack(column)
+        assert taken.ctypes.data == column.ctypes.data, name
+    assert np.array_equal(np.from_dlpack(frame.range_m), frame.range_m, equal_nan=True)
+
+
+def test_columns_become_tensors_without_a_copy(frame):
+    torch = pytest.importorskip("torch")
+    xyz = frame.cloud()["xyz"]
+    assert torch.from_dlpack(xyz).data_ptr() == xyz.ctypes.data
+
+
+def test_returns_of_a_lidar_lie_one_below_the_other():
+    lidar = glidar.load_sensor("VLP-16")
+    assert lidar.kind == "spinning"
+    assert lidar.boresight == "x"
+    frame = glidar.simulate(glidar.Scene("builtin:box"), lidar, np.eye(4), columns=["xyz", "time", "ring"])
+    assert frame.rows == lidar.rows == 16 * lidar.returns
+    cloud = frame.cloud(["time", "ring"])
+    assert cloud["time"].dtype == np.uint32
+    assert set(np.unique(cloud["ring"])) == set(range(16))
+
+
+def test_story_of_an_entry_tells_every_draw(frame):
+    index = int(np.flatnonzero(frame.status.ravel() == glidar.Status.hit)[5])
+    story = frame.explain(index)
+    assert story.entry == index
+    assert len(story.steps) == 2
+    gaussian, dropout = story.steps
+    truth = frame.truth.range_m.flat[index]
+    drawn = gaussian.drawn[0]
+    assert drawn.law == "normal"
+    assert gaussian.after.range_m == pytest.approx(truth + 0.01 * drawn.value, abs=1e-9)
+    assert dropout.drawn[0].against == pytest.approx(0.1)
+    assert dropout.after.range_m == frame.range_m.flat[index]
+    assert "noise 1" in str(story)
+    assert frame.explain(row=index // 64, col=index % 64).text == story.text
+    assert frame.explain(5, hits_only=True).text == story.text
+
+
+def test_entries_that_are_not_there_have_no_story(frame):
+    for arguments in ({}, {"index": 1, "row": 1}, {"row": 1}, {"index": 48 * 64}, {"row": 48, "col": 0}):
+        with pytest.raises(glidar.Error):
+            frame.explain(**arguments)
+    with pytest.raises(glidar.Error):
+        frame.explain(frame.hits, hits_only=True)
+
+
+def test_information_of_a_plane_knows_what_it_does_not_determine():
+    plane = glidar.Scene("builtin:plane")
+    frame = glidar.simulate(plane, glidar.camera(32, 32), glidar.look_at([0, 0, 2], [0, 0, 0], [0, 1, 0]), columns="all")
+    told = frame.information(sigma_m=0.02)
+    assert told.matrix.shape == (6, 6)
+    assert np.allclose(told.matrix, told.matrix.T)
+    assert [d.degenerate for d in told.directions] == [False] * 3 + [True] * 3
+    # along the boresight, which is the plane's normal, every range tells 1 / (sigma cos)^2
+    cosines = frame.truth.cos_incidence[frame.status == glidar.Status.hit]
+    assert told.matrix[5, 5] == pytest.approx((1.0 / (0.02 * cosines.astype(float)) ** 2).sum(), rel=1e-6)
+    assert np.isinf(told.bound).sum() == 3
+    assert told.to_dict()["returns"] == told.returns
+    assert "translation" in str(told)
+
+
+def test_verify_passes_on_this_machine():
+    found = glidar.verify()
+    assert found.passed, str(found)
+    assert len(found.rows) > 10
+    assert all(row.judged_hits > 0 for row in found.rows)

@@ -1,0 +1,191 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scenes of files, models and arrays."""
+
+import numpy as np
+import pytest
+from conftest import ROOT, same
+
+import glidar
+
+BOX = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)], float)
+FACES = np.array(
+    [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]]
+)
+POSE = glidar.look_at([4, -6, 3], [0, 0, 0])
+
+
+def test_mesh_of_arrays_is_measured_like_the_same_model(camera):
+    scene = glidar.Scene()
+    scene.add_mesh(BOX, FACES)
+    ours = glidar.simulate(scene, camera, POSE)
+    theirs = glidar.simulate(glidar.Scene("builtin:box"), camera, POSE)
+    assert ours.hits == theirs.hits > 0
+    assert np.allclose(ours.range_m, theirs.range_m, atol=1e-6, equal_nan=True)
+    assert np.allclose(ours.truth.normal, theirs.truth.normal, atol=1e-6, equal_nan=True)
+
+
+def test_mesh_far_from_its_zero_keeps_its_detail(camera):
+    far = np.array([1e6, -2e6, 3e5])
+    scene = glidar.Scene()
+    scene.add_mesh(BOX + far + 0.123456789, FACES)
+    moved = POSE.copy()
+    moved[:3, 3] += far + 0.123456789
+    near = glidar.Scene()
+    near.add_mesh(BOX, FACES)
+    a, b = glidar.simulate(scene, camera, moved), glidar.simulate(near, camera, POSE)
+    assert np.allclose(a.range_m, b.range_m, atol=1e-6, equal_nan=True)
+
+
+def test_meshes_of_trimesh_come_and_go(camera):
+    trimesh = pytest.importorskip("trimesh")
+    ball = trimesh.creation.icosphere(subdivisions=3, radius=0.7)
+    scene = glidar.Scene()
+    added = scene.add_mesh(ball, name="ball")
+    assert added.triangles == len(ball.faces)
+    frame = glidar.simulate(scene, camera, glidar.look_at([5, 0, 0], [0, 0, 0]))
+    assert np.nanmin(frame.range_m) == pytest.approx(4.3, abs=5e-3)
+    back = added.mesh.to_trimesh()
+    assert np.allclose(back.vertices, ball.vertices, atol=1e-7)
+    assert np.array_equal(back.faces, ball.faces)
+    assert back.volume == pytest.approx(ball.volume, rel=1e-6)
+
+
+def test_meshes_and_clouds_go_to_open3d_and_back(camera):
+    open3d = pytest.importorskip("open3d")
+    box = open3d.geometry.TriangleMesh.create_box()
+    scene = glidar.Scene()
+    scene.add_mesh(glidar.from_open3d(box))
+    frame = glidar.simulate(scene, camera)
+    points = frame.cloud(frame="world").to_open3d()
+    assert len(points.points) == frame.hits
+    assert len(scene.objects[0].mesh.to_open3d().triangles) == 12
+
+
+def test_normals_uvs_and_colours_are_kept():
+    rng = np.random.default_rng(1)
+    normals = BOX / np.linalg.norm(BOX, axis=1, keepdims=True)
+    uvs, colours = rng.random((8, 2)), rng.random((8, 3))
+    scene = glidar.Scene()
+    mesh = scene.add_mesh(BOX, FACES, normals=normals, uvs=uvs, colours=colours).mesh
+    for given, kept in ((BOX, mesh.vertices), (normals, mesh.normals), (uvs, mesh.uvs), (colours, mesh.colours)):
+        assert np.allclose(given, kept, atol=1e-7)
+    assert np.array_equal(mesh.triangles, FACES)
+    frame = glidar.simulate(scene, glidar.camera(), POSE, columns="all")
+    assert not np.allclose(frame.truth.normal, frame.truth.shading_normal, equal_nan=True)
+
+
+def test_objects_are_placed_named_and_changed(camera):
+    scene = glidar.Scene()
+    first = scene.add_model("builtin:sphere", name="sun", pose=glidar.pose([0, 0, 5]), scale=2.0, id=9, class_name="star")
+    second = scene.add_copy(first, name="moon", pose=np.eye(4))
+    assert [o.name for o in scene] == ["sun", "moon"]
+    assert (first.id, first.scale, first.class_name, second.scale) == (9, 2.0, "star", 2.0)
+    assert scene["moon"].index == 1
+    low, high = scene.bounds
+    assert low == pytest.approx([-2, -2, -2], abs=1e-6)
+    assert high == pytest.approx([2, 2, 7], abs=1e-6)
+    before = glidar.simulate(scene, camera, POSE)
+    kept = before.range_m.copy()
+    second.pose = glidar.pose([0, 0, -50])
+    after = glidar.simulate(scene, camera, POSE)
+    assert not same(before, after)
+    assert np.array_equal(before.range_m, kept, equal_nan=True)
+    assert np.array_equal(before.world_from_objects[1], np.eye(4))
+
+
+def test_frames_keep_the_scene_that_they_saw(camera):
+    scene = glidar.Scene("builtin:sphere")
+    scene.objects[0].id = 3
+    frame = glidar.simulate(scene, camera, POSE)
+    scene.objects[0].id = 4
+    seen = frame.cloud(["instance"], hits_only=True)["instance"]
+    assert set(seen) == {3}
+
+
+def test_materials_are_those_of_scene_files():
+    sensor = glidar.load_sensor("VLP-16")
+    pose = np.eye(4)
+    scene = glidar.Scene("builtin:box")
+    plain = glidar.simulate(scene, sensor, pose).intensity
+    scene.objects[0].set_materials({"*": {"surface": glidar.surface_names()[0], "mirror": 0.0}})
+    assert not np.array_equal(glidar.simulate(scene, sensor, pose).intensity, plain)
+    with pytest.raises(glidar.Error, match="did you mean 'diffuse'") as caught:
+        scene.objects[0].set_materials({"*": {"difuse": [1, 1, 1]}})
+    assert "materials" in caught.value.where
+    with pytest.raises(glidar.Error, match="has no material 'paint'"):
+        scene.objects[0].set_materials({"paint": {}})
+
+
+def test_scene_file_brings_sensor_pose_and_motion(tmp_path):
+    (tmp_path / "scene.yaml").write_text(
+        "models:\n  - {model: 'builtin:torus', name: ring, motion: {spin: {rate_deg_s: [0, 0, 90]}}}\n"
+        "sensor: {optics: {type: pinhole, width: 40, height: 30, fov_deg: 40}}\n"
+        "sensor_pose: {look_at: {eye: [5, 0, 2], target: [0, 0, 0]}}\n"
+    )
+    scene = glidar.Scene(tmp_path / "scene.yaml")
+    assert scene.sensor.cols == 40
+    frame = glidar.simulate(scene)
+    assert np.array_equal(frame.world_from_sensor, glidar.look_at([5, 0, 2], [0, 0, 0]))
+    later = glidar.simulate(scene, frame=30)
+    assert later.stamp_ns == 1_000_000_000
+    assert later.world_from_objects[0][:2, :2] == pytest.approx(np.array([[0, -1], [1, 0]]), abs=1e-9)
+
+
+def test_models_of_files_have_units_and_axes():
+    path = ROOT / "models/satellite/satellite.obj"
+    metres, inches = glidar.Scene(path), glidar.Scene(path, unit="in", up="y")
+    size, small = (np.subtract(*reversed(s.bounds)) for s in (metres, inches))
+    assert sorted(small) == pytest.approx(sorted(0.0254 * size), rel=1e-6)
+    assert len(metres.objects[0].materials) > 1
+
+
+@pytest.mark.parametrize(
+    ("vertices", "triangles", "words"),
+    [
+        (BOX[:, :2], FACES, "vertices: an array 8 x 2; allowed: an array n x 3"),
+        (np.where(BOX == 1, np.nan, BOX), FACES, "vertices: nan at [0, 0]".replace("[0, 0]", "[1, 2]")),
+        (BOX[:0], FACES, "vertices: an array 0 x 3"),
+        (BOX, FACES + 1, "triangles: indices from 1 to 8; allowed: 0 to 7"),
+        (BOX, FACES.astype(float), "triangles: an array 12 x 3 of float64"),
+        (BOX, FACES[:0], "triangles: an array 0 x 3"),
+        (BOX.astype(str), FACES, "vertices: an array of <U"),
+        ("box", None, "mesh: a str"),
+    ],
+)
+def test_wrong_arrays_are_told(vertices, triangles, words):
+    scene = glidar.Scene()
+    with pytest.raises(glidar.Error) as caught:
+        scene.add_mesh(vertices, triangles)
+    assert words in str(caught.value)
+    assert len(scene) == 0
+
+
+def test_errors_of_files_are_those_of_the_command_line(tmp_path, program):
+    (tmp_path / "scene.yaml").write_text("models:\n  - modl: builtin:box\n")
+    told = program("render", "scene.yaml", "-o", "x.pcd", folder=tmp_path, code=2)
+    with pytest.raises(glidar.Error) as caught:
+        glidar.Scene(tmp_path / "scene.yaml")
+    assert str(caught.value).replace(f"{tmp_path}/", "") in told
+    assert caught.value.where.endswith("scene.yaml:2:5: models[0].modl")
+    for name in ("builtin:boxx", "nowhere.obj"):
+        told = program("render", name, "-o", "x.pcd", folder=tmp_path, code=2)
+        with pytest.raises(glidar.Error) as caught:
+            glidar.Scene(name)
+        assert str(caught.value) in told
+
+
+def test_objects_that_are_not_there_and_wrong_settings_are_told():
+    scene = glidar.Scene("builtin:box")
+    with pytest.raises(glidar.Error, match="'ball'"):
+        scene["ball"]
+    for setting, value in (("scale", 0.0), ("scale", np.nan), ("pose", np.ones((4, 4))), ("id", -1)):
+        with pytest.raises(glidar.Error):
+            setattr(scene.objects[0], setting, value)
+    assert scene.objects[0].scale == 1.0
+    with pytest.raises(glidar.Error, match="argument: 'colour'"):
+        scene.add_model("builtin:box", colour="red")
+    with pytest.raises(glidar.Error, match="unit: 'ft'"):
+        glidar.Scene("builtin:box", unit="ft")
+    with pytest.raises(glidar.Error, match="sensor: the scene file has none"):
+        glidar.simulate(scene)

@@ -1,0 +1,59 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Types are those that mypy is told."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import glidar
+
+PROGRAM = '''
+import numpy as np
+import glidar
+
+scene = glidar.Scene()
+box = scene.add_model("builtin:box", pose=np.eye(4), name="box")
+box.pose = glidar.pose([0, 0, 1], xyzw=[0, 0, 0, 1])
+sensor: glidar.Sensor = glidar.camera(64, 48, noise=[{"type": "range_gaussian", "sigma_m": 0.01}])
+frame: glidar.Frame = glidar.simulate(scene, sensor, glidar.look_at([4, 0, 2], [0, 0, 0]), seed=3)
+nearest: float = float(np.nanmin(frame.range_m))
+frames: list[glidar.Frame] = glidar.simulate_batch(scene, sensor, np.stack([np.eye(4)] * 3), [1, 2, 3])
+spin = glidar.Trajectory.spin(np.eye(4), [0, 0, 1])
+frames.append(glidar.simulate(scene, "VLP-16", spin, objects=[np.eye(4)]))
+xyz = frame.cloud(["xyz"], frame="world", hits_only=True)["xyz"]
+print(xyz.shape, frame.information().bound, frame.explain(0).steps, nearest)
+try:
+    glidar.load_sensor("none")
+except glidar.Error as error:
+    print(error.where, error.remedy)
+'''
+
+
+def check(path, *arguments):
+    pytest.importorskip("mypy")
+    package = str(Path(glidar.__file__).parent.parent)
+    return subprocess.run(
+        [sys.executable, "-m", "mypy", "--strict", "--no-error-summary", *arguments, str(path)],
+        env={"MYPYPATH": package, "PATH": "/usr/bin:/bin", "MYPY_CACHE_DIR": str(Path(path).parent / "mypy")},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_a_program_of_a_user_is_accepted_and_runs(tmp_path):
+    path = tmp_path / "program.py"
+    path.write_text(PROGRAM)
+    done = check(path)
+    assert done.returncode == 0, done.stdout + done.stderr
+    exec(compile(PROGRAM, "program", "exec"), {})
+
+
+def test_a_wrong_program_is_not_accepted(tmp_path):
+    path = tmp_path / "program.py"
+    path.write_text("import glidar\n\nglidar.camera(width='wide')\nglidar.Scene().nothing\n")
+    done = check(path)
+    assert done.stdout.count("error:") == 2, done.stdout
