@@ -8,6 +8,7 @@ import signal
 import sys
 
 from glidar import Error
+from glidar.campaign.progress import tell_warnings
 
 DONE, TRIALS_FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 CODES = ("Exit codes: 0 done, 1 done but trials failed or files differ, 2 bad input, "
@@ -141,6 +142,7 @@ def _fail(text):
 
 def main(arguments=None):
     signal.signal(signal.SIGTERM, signal.default_int_handler)
+    tell_warnings()
     try:
         flags = make_parser().parse_args(arguments)
         return {"run": _run, "merge": _merge, "report": _report, "check": _check}[flags.command](flags)

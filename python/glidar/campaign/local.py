@@ -10,6 +10,7 @@ from multiprocessing import connection
 from glidar import Error
 from glidar.campaign import work as works
 from glidar.campaign.folder import Folder
+from glidar.campaign.progress import tell_warnings
 
 AHEAD = 2  # shards a worker holds: one is measured, one is written
 MOST_DEATHS = 3  # of workers that held the same shard
@@ -32,6 +33,7 @@ def _serve(plan, root, threads, pipe):
         while (shard := pipe.recv()) is not None:
             yield shard
 
+    tell_warnings()
     try:
         works.work(plan, Folder(root), shards(), threads, lambda done: pipe.send(("done", done)))
         pipe.send(("end", None))

@@ -2,12 +2,14 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The progress display: a bar with rate and time left on a terminal, a line now and then elsewhere."""
 
+import logging
 import sys
 import time
 
 BAR = 24
 LINE_EVERY_S = 30.0
 DRAW_EVERY_S = 0.2
+MOST_WARNINGS = 5
 
 
 def duration(seconds):
@@ -65,3 +67,25 @@ class Progress:
                 self._draw(at_once=True)
             if self._terminal:
                 self._stream.write("\n")
+
+
+class Warnings(logging.Handler):
+    """Tells what the library warns of, the first few times: each of many files may say the same."""
+
+    def __init__(self):
+        super().__init__(logging.WARNING)
+        self._told = 0
+
+    def emit(self, record):
+        self._told += 1
+        if self._told <= MOST_WARNINGS:
+            sys.stderr.write(f"glidar: warning: {record.getMessage()}\n")
+        if self._told == MOST_WARNINGS:
+            sys.stderr.write("glidar: further warnings of this process are not shown\n")
+
+
+def tell_warnings():
+    """For programs: warnings of the library go to standard error, a few of them."""
+    logger = logging.getLogger("glidar")
+    if not logger.handlers:
+        logger.addHandler(Warnings())

@@ -8,6 +8,7 @@ import json
 import numpy as np
 import pytest
 from PIL import Image
+from campaign_support import Campaign
 from scipy.spatial.distance import pdist
 
 from glidar.campaign import bop_models
@@ -34,8 +35,6 @@ STEP_MM = 0.25
 
 @pytest.fixture(scope="module")
 def dataset(tmp_path_factory):
-    from conftest import Campaign
-
     made = Campaign(tmp_path_factory.mktemp("bop"))
     made.write("scene.yaml", SCENE)
     made.write("camera.yaml", CAMERA)
