@@ -9,7 +9,8 @@ import numpy as np
 WIDTH, HEIGHT = 300, 150
 LEFT, RIGHT, TOP, BOTTOM = 44, 8, 8, 22
 BINS = 40
-CELL_COLUMNS, CELL_ROWS = 36, 18  # of the sphere, all of the same area
+LEAST_ROWS, MOST_ROWS = 6, 18  # of the sphere's cells, and twice as many columns
+TRIALS_PER_CELL = 4  # about, between these ends
 COLOURS = np.array([[0.267, 0.005, 0.329], [0.229, 0.322, 0.546], [0.128, 0.567, 0.551],
                     [0.369, 0.789, 0.383], [0.993, 0.906, 0.144]])  # matplotlib's viridis
 CELL_SIDE = np.array([0.0, 0.25, 0.5, 0.75, 0.9, 1.0])  # where a cell's curved sides have corners
@@ -85,13 +86,18 @@ def line(title, x, y, note=""):
     return figure(title, _svg(_axes(0, right, bottom) + [f'<polyline points="{points}"/>'], title), note)
 
 
-def cells_of(directions):
+def rows_for(trials):
+    """Into how many rows the sphere is cut."""
+    return int(np.clip(np.sqrt(trials / (2 * TRIALS_PER_CELL)), LEAST_ROWS, MOST_ROWS))
+
+
+def cells_of(directions, rows):
     """In which of the sphere's cells unit vectors lie: azimuth by sine of elevation, so that cells
     have equal areas (Archimedes)."""
     azimuth = np.arctan2(directions[:, 1], directions[:, 0]) / (2 * np.pi) + 0.5
-    column = np.minimum((azimuth * CELL_COLUMNS).astype(int), CELL_COLUMNS - 1)
-    row = np.clip(((directions[:, 2] + 1) / 2 * CELL_ROWS).astype(int), 0, CELL_ROWS - 1)
-    return row * CELL_COLUMNS + column
+    column = np.minimum((azimuth * 2 * rows).astype(int), 2 * rows - 1)
+    row = np.clip(((directions[:, 2] + 1) / 2 * rows).astype(int), 0, rows - 1)
+    return row * 2 * rows + column
 
 
 def _mollweide(azimuth, sine, radius):
@@ -107,13 +113,14 @@ def _mollweide(azimuth, sine, radius):
 
 def sphere(title, directions, note=""):
     """How many directions fall into each cell of the sphere."""
-    counts = np.bincount(cells_of(directions), minlength=CELL_ROWS * CELL_COLUMNS)
+    rows = rows_for(len(directions))
+    counts = np.bincount(cells_of(directions, rows), minlength=2 * rows * rows)
     radius, width, height = 130.0, 540, 280
     parts = []
     for cell, count in enumerate(counts):
-        row, column = divmod(cell, CELL_COLUMNS)
-        a = (np.repeat([0, 1], len(CELL_SIDE)) + column) / CELL_COLUMNS * 2 * np.pi - np.pi
-        s = (np.concatenate([CELL_SIDE, CELL_SIDE[::-1]]) + row) / CELL_ROWS * 2 - 1
+        row, column = divmod(cell, 2 * rows)
+        a = (np.repeat([0, 1], len(CELL_SIDE)) + column) / rows * np.pi - np.pi
+        s = (np.concatenate([CELL_SIDE, CELL_SIDE[::-1]]) + row) / rows * 2 - 1
         x, y = _mollweide(a, s, radius)
         points = " ".join(f"{width / 2 + p:.1f},{height / 2 + q:.1f}" for p, q in zip(x, y))
         fill = _hex(count / counts.max()) if count else EMPTY

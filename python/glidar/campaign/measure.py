@@ -14,7 +14,7 @@ from glidar.campaign import loading
 from glidar.campaign.trials import changes, groups
 
 BATCH_BEAMS = 1 << 19  # that are measured together, and handed on to be written
-STAGES_KEPT = 8  # scenes with sensors that stay ready
+KEPT = 8  # scenes, and sensors, that stay loaded
 BEHIND = 10.0  # how far behind the camera others are put aside, in sizes of the scene
 
 
@@ -105,7 +105,7 @@ class Measurer:
     def __init__(self, plan, threads):
         self._plan, self._threads = plan, threads
         self._columns = columns_of(plan.spec.outputs)
-        self._stages = OrderedDict()
+        self._scenes, self._sensors = OrderedDict(), OrderedDict()
         self._folder = f"{plan.spec.file.resolve().parent}/"
 
     def measure(self, trials):
@@ -148,29 +148,29 @@ class Measurer:
         return poses
 
     def _stage(self, key):
-        stage = self._stages.get(key)
-        if stage is None:
-            scene_place, sensor_place, scene_changes, sensor_changes = key
-            source = _readable(self._plan.scenes[scene_place])
-            scene = loading.load_scene(source.text, source.path, scene_changes)
-            source = _readable(self._plan.sensors[sensor_place])
-            sensor = loading.load_sensor(source.text, source.path, sensor_changes)
-            simulator = glidar.Simulator(scene, sensor, threads=self._threads)
-            stage = self._stages[key] = Stage(scene, sensor, simulator, scene_place)
-        self._stages.move_to_end(key)
-        while len(self._stages) > STAGES_KEPT:
-            self._stages.popitem(last=False)
-        return stage
+        scene_place, sensor_place, scene_changes, sensor_changes = key
+        scene = _kept(self._scenes, (scene_place, scene_changes), loading.load_scene,
+                      self._plan.scenes[scene_place], scene_changes)
+        sensor = _kept(self._sensors, (sensor_place, sensor_changes), loading.load_sensor,
+                       self._plan.sensors[sensor_place], sensor_changes)
+        simulator = glidar.Simulator(scene, sensor, threads=self._threads)
+        return Stage(scene, sensor, simulator, scene_place)
 
     def _text(self, error):
         """What went wrong, without the folder that this machine keeps the campaign in."""
         return str(error).replace(self._folder, "")
 
 
-def _readable(source):
-    if source.fault:
-        raise Error("", source.fault, "", "")
-    return source
+def _kept(known, key, load, source, changes):
+    """What was loaded before and not long ago, or is loaded now."""
+    if key not in known:
+        if source.fault:
+            raise Error("", source.fault, "", "")
+        known[key] = load(source.text, source.path, changes)
+    known.move_to_end(key)
+    while len(known) > KEPT:
+        known.popitem(last=False)
+    return known[key]
 
 
 def _place(scene, target):

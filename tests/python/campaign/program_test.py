@@ -26,7 +26,8 @@ def glidar_program(folder, *arguments, path=None):
 
 
 def test_the_example_runs_through_the_program_and_its_files_agree(tmp_path):
-    shutil.copytree(ROOT / "examples", tmp_path / "examples", ignore=shutil.ignore_patterns("*.ipynb"))
+    for folder in ("examples", "sensors"):
+        shutil.copytree(ROOT / folder, tmp_path / folder)
     done = glidar_program(tmp_path, "campaign", "run", "examples/campaign.yaml", "-o", "rocks")
     assert done.returncode == 0, done.stderr
     assert "200 trials, 0 failed" in done.stdout
