@@ -30,7 +30,9 @@ class Clouds {
     Setup setup{model_.scene, sensor_, beams_, motion_, *renderer_};
     if (camera_) setup.paper.emplace(PaperTarget{*camera_});
     simulate(setup, {}, frame_);
-    make_point_cloud(frame_, beams_, model_.scene, {.frame_id = "camera"}, kColumns, organised_);
+    make_point_cloud(frame_, beams_, model_.scene,
+                     {.frame_id = "camera", .workers = &renderer_->workers()}, kColumns,
+                     organised_);
     compact(organised_, cloud_);
   }
 

@@ -14,12 +14,13 @@ namespace glidar::app {
 /// returns the exit code and throws Error.
 using Command = std::function<int()>;
 
-/// `arguments` are those of the whole command line, for the sidecars.
+/// `arguments` are those of the whole command line, for sidecars and recordings.
 Command add_render(CLI::App& program, const std::vector<std::string>& arguments);
 Command add_campaign(CLI::App& program);
 Command add_explain(CLI::App& program);
 Command add_info(CLI::App& program);
-Command add_stream(CLI::App& program);
+Command add_stream(CLI::App& program, const std::vector<std::string>& arguments);
+Command add_replay(CLI::App& program);
 Command add_sensors(CLI::App& program);
 Command add_verify(CLI::App& program);
 

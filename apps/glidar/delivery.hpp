@@ -4,6 +4,7 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/core/frame.hpp>
+#include <glidar/link/lockstep/messages.hpp>
 
 #include <array>
 #include <chrono>
@@ -22,8 +23,10 @@ namespace glidar::app {
 struct Shot {
   Frame frame;
   std::shared_ptr<const Beams> beams;
-  std::size_t mount = 0;                      ///< which of the session's sensors took it
-  std::chrono::steady_clock::time_point due;  ///< when its pose was there
+  std::size_t mount = 0;                           ///< which of the session's sensors took it
+  std::shared_ptr<const lockstep::Moment> placed;  ///< who placed it; nullptr: the command did
+  std::string frame_hash;                          ///< what frame_hash() must be; empty: not known
+  std::chrono::steady_clock::time_point due;       ///< when its pose was there
 };
 
 /// Hands frames to what delivers them in a thread of its own, so that the next one is measured

@@ -3,16 +3,15 @@
 #include <apps/glidar/commands.hpp>
 #include <apps/glidar/exit_code.hpp>
 #include <apps/glidar/option_kinds.hpp>
+#include <apps/glidar/recorded_command.hpp>
 #include <apps/glidar/session.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/core/version.hpp>
 #include <glidar/io/sidecar.hpp>
 #include <glidar/story_text.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
-#include <filesystem>
 #include <limits>
 #include <memory>
 
@@ -46,19 +45,10 @@ struct ExplainFlags {
 
 /// The options of the `render` that a sidecar tells.
 RenderFlags flags_of(const Sidecar& sidecar) {
-  const std::vector<std::string>& told = sidecar.command.arguments;
-  if (told.empty() || told.front() != "render") {
-    refuse(sidecar.path.string(), "it tells no command", "a cloud written by `glidar render`", "");
-  }
   CLI::App command;
   RenderFlags flags;
   add_render_flags(command, flags);
-  try {
-    command.parse(std::vector<std::string>(told.rbegin(), told.rend() - 1));  // from the end on
-  } catch (const CLI::ParseError&) {
-    refuse(sidecar.path.string(), "its command is not understood",
-           "the arguments of a measurement by `glidar render`", "write the cloud again");
-  }
+  parse_recorded(sidecar.command.arguments, "render", sidecar.path.string(), command);
   return flags;
 }
 
@@ -120,28 +110,13 @@ void check(const ExplainFlags& flags) {
          "--index N, or --row R and --col C, with --return K if it is not the first", "");
 }
 
-/// Goes to the folder where the command ran, from which its paths count.
-void enter(const Sidecar& sidecar) {
-  const std::filesystem::path& folder = sidecar.command.folder;
-  std::error_code problem;
-  std::filesystem::current_path(folder, problem);
-  if (!problem) return;
-  refuse(sidecar.path.string(),
-         fmt::format("its command ran in {}: {}", folder.lexically_normal().string(),
-                     problem.message()),
-         "the way from the sidecar to that folder as it was then", "move the files back");
-}
-
 int run(const ExplainFlags& flags) {
   check(flags);
   Console console;
   const Sidecar sidecar = read_sidecar(flags.cloud);
   const RenderFlags render = flags_of(sidecar);
-  if (sidecar.version != version()) {
-    console.warn(
-        fmt::format("the cloud was written by glidar {}, this is {}", sidecar.version, version()));
-  }
-  enter(sidecar);
+  compare_version(sidecar.version, sidecar.path.string(), console);
+  enter(sidecar.command, sidecar.path.string());
   Session session;
   open(
       render, [] {}, console, session);

@@ -4,6 +4,7 @@
 
 #include <apps/glidar/curve_keys.hpp>
 #include <apps/glidar/interrupt.hpp>
+#include <apps/glidar/placed_motion.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/simulate.hpp>
 
@@ -26,17 +27,6 @@ lockstep::ServerOptions server_options(const StreamFlags& flags, Console& consol
   return options;
 }
 
-/// A body that is pushed by nothing and whose rate stays: one with equal moments of inertia.
-Trajectory trajectory_of(const lockstep::Body& body, std::int64_t t_ns) {
-  if (body.rate_rad_s.isZero(0.0) && body.velocity_m_s.isZero(0.0)) {
-    return ConstantPose{body.world_from_body};
-  }
-  return Tumbling({.rate_rad_s = body.world_from_body.linear().transpose() * body.rate_rad_s,
-                   .world_from_body = body.world_from_body,
-                   .velocity_m_s = body.velocity_m_s,
-                   .t0_ns = t_ns});
-}
-
 std::vector<double> json_of(const Pose& pose) {
   const PoseNumbers numbers = numbers_of(pose);
   return {numbers.begin(), numbers.end()};
@@ -54,7 +44,9 @@ LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
       faults_(console.report()),
       server_(context_, server_options(flags, console), faults_) {
   if (!flags_.stats.empty()) stats_file_ = std::make_unique<AtomicFile>(flags_.stats);
+  if (!flags_.record.empty()) recorder_ = std::make_unique<Recorder>(flags_.record);
   open(flags_.render, {}, console_, session_);
+  if (recorder_) recorder_->begin(session_, flags_.command);
   for (const Mount& mount : session_.mounts) {
     beams_.push_back(std::make_shared<const Beams>(mount.beams));
   }
@@ -156,19 +148,6 @@ std::shared_ptr<const Beams> LockstepRun::beams_of(std::uint32_t index,
   return std::make_shared<const Beams>(make_beams(sensor, scan_window(sensor, number)));
 }
 
-RigMotion LockstepRun::motion_at(const lockstep::Moment& moment) const {
-  RigMotion motion = {.world_from_rig = trajectory_of(moment.sensor, moment.t_ns),
-                      .world_from_instance = {}};
-  for (const lockstep::Body& object : moment.objects) {
-    motion.world_from_instance.push_back(trajectory_of(object, moment.t_ns));
-  }
-  if (!moment.objects.empty()) return motion;
-  for (const Instance& instance : session_.scene.instances) {
-    motion.world_from_instance.emplace_back(ConstantPose{instance.world_from_object});
-  }
-  return motion;
-}
-
 void LockstepRun::measure_some(const lockstep::Measure& measure,
                                std::span<const lockstep::Moment> moments,
                                std::vector<lockstep::CloudReply>& replies) {
@@ -179,7 +158,7 @@ void LockstepRun::measure_some(const lockstep::Measure& measure,
   if (frames_.size() < moments.size()) frames_.resize(moments.size());
   for (const lockstep::Moment& moment : moments) {
     beams.push_back(beams_of(measure.sensor, moment.number));
-    motions.push_back(motion_of(motion_at(moment), mount));
+    motions.push_back(motion_of(motion_at(moment, session_.scene), mount));
     Frame& frame = frames_[beams.size() - 1];
     frame.stamp_ns = moment.t_ns;
     frame.seed = moment.seed;
@@ -197,6 +176,7 @@ void LockstepRun::measure_some(const lockstep::Measure& measure,
   simulate_batch(setups, glidar::fields_for(measure.columns),
                  std::span(frames_).first(moments.size()));
   for (std::size_t i = 0; i < moments.size(); ++i) {
+    if (recorder_) recorder_->note(measure.sensor, frames_[i], &moments[i]);
     replies.push_back(cloud_of(measure, frames_[i], *beams[i]));
   }
 }
@@ -206,6 +186,7 @@ lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, con
   const OutputFlags& output = flags_.render.output;
   CloudFrame axes = cloud_frame(output.cloud_frame, beams, frame.world_from_sensor);
   axes.deskew = output.deskew;
+  axes.workers = &session_.renderer->workers();
   std::shared_ptr<PointCloud> cloud = clouds_.take();
   make_point_cloud(frame, beams, session_.scene, axes, measure.columns, *cloud);
   if (measure.hits_only) {
@@ -225,6 +206,7 @@ lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, con
 
 void LockstepRun::finish(const std::string& ending) {
   faults_.flush();
+  if (recorder_) recorder_->commit();
   const lockstep::Server::Counts& counts = server_.counts();
   if (stats_file_) {
     const nlohmann::ordered_json text = {{"ended_by", ending},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <apps/glidar/console.hpp>
+#include <apps/glidar/recorder.hpp>
 #include <apps/glidar/session.hpp>
 #include <apps/glidar/stream_options.hpp>
 #include <glidar/io/atomic_file.hpp>
@@ -32,7 +33,6 @@ class LockstepRun {
   void check(const lockstep::Measure& measure) const;
   void measure_some(const lockstep::Measure& measure, std::span<const lockstep::Moment> moments,
                     std::vector<lockstep::CloudReply>& replies);
-  [[nodiscard]] RigMotion motion_at(const lockstep::Moment& moment) const;
   [[nodiscard]] std::shared_ptr<const Beams> beams_of(std::uint32_t sensor,
                                                       std::uint32_t number) const;
   [[nodiscard]] lockstep::CloudReply cloud_of(const lockstep::Measure& measure, const Frame& frame,
@@ -45,6 +45,7 @@ class LockstepRun {
   std::unique_ptr<AtomicFile> stats_file_;
   link::Context context_;
   lockstep::Server server_;
+  std::unique_ptr<Recorder> recorder_;
   Session session_;
   std::vector<std::shared_ptr<const Beams>> beams_;  ///< of each sensor's frame 0
   link::CloudPool clouds_;

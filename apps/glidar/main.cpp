@@ -30,8 +30,8 @@ constexpr const char* kExamples = R"(Examples:
   glidar info builtin:torus
   glidar sensors
   glidar verify
-More: glidar render --help, and the same for view, stream, explain, info, campaign, sensors and
-verify)";
+More: glidar render --help, and the same for view, stream, replay, explain, info, campaign,
+sensors and verify)";
 
 using Commands = std::vector<std::pair<std::string, Command>>;
 
@@ -127,7 +127,8 @@ int run(int argc, char** argv) {
   const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
   const Commands commands = {{"render", add_render(program, arguments)},
                              {"view", add_view(program)},
-                             {"stream", add_stream(program)},
+                             {"stream", add_stream(program, arguments)},
+                             {"replay", add_replay(program)},
                              {"explain", add_explain(program)},
                              {"info", add_info(program)},
                              {"campaign", add_campaign(program)},

@@ -249,15 +249,17 @@ std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& in
   return outputs;
 }
 
+void protect_files(const std::vector<std::string>& read, const std::filesystem::path& output) {
+  const auto same = [&](const std::string& file) { return same_file(output, file); };
+  if (std::none_of(read.begin(), read.end(), same)) return;
+  throw Error({.where = output.string(),
+               .found = "is an input file: the scene was read from it",
+               .allowed = "",
+               .remedy = "choose another name"});
+}
+
 void protect_files(const std::vector<std::string>& read, const std::vector<Output>& outputs) {
-  for (const Output& output : outputs) {
-    const auto same = [&](const std::string& file) { return same_file(output.path, file); };
-    if (std::none_of(read.begin(), read.end(), same)) continue;
-    throw Error({.where = output.path.string(),
-                 .found = "is an input file: the scene was read from it",
-                 .allowed = "",
-                 .remedy = "choose another name"});
-  }
+  for (const Output& output : outputs) protect_files(read, output.path);
 }
 
 HitFields fields_for(const std::vector<Output>& outputs) {

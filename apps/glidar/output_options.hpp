@@ -58,7 +58,8 @@ std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& in
                                  const SidecarContext& context, const Report& report,
                                  const Progress& progress = {});
 
-/// Throws Error when one of the outputs is a file that was read: known once the input is loaded.
+/// Throws Error when an output is a file that was read: known once the input is loaded.
+void protect_files(const std::vector<std::string>& read, const std::filesystem::path& output);
 void protect_files(const std::vector<std::string>& read, const std::vector<Output>& outputs);
 
 /// The hit columns that all outputs together need.

@@ -25,6 +25,8 @@ struct Moment {
   /// Where everything is from now on and when that is; empty: as it was, at the frame's own time.
   std::optional<RigMotion> motion = {};
   std::optional<std::int64_t> stamp_ns = {};
+  std::optional<std::uint64_t> seed = {};  ///< empty: the command's
+  std::string frame_hash = {};             ///< what frame_hash() must be; empty: not known
 };
 
 /// How long and how quickly frames follow each other.

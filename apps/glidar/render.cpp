@@ -3,6 +3,7 @@
 #include <apps/glidar/advice.hpp>
 #include <apps/glidar/commands.hpp>
 #include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/recorded_command.hpp>
 #include <apps/glidar/session.hpp>
 #include <glidar/simulate.hpp>
 
@@ -11,7 +12,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <utility>
 
 namespace glidar::app {
 namespace {
@@ -54,20 +54,6 @@ void print_summary(const View& view, const std::vector<Output>& outputs) {
   fmt::print("\nwrote");
   for (const Output& output : outputs) fmt::print(" {}", output.path.string());
   fmt::print("\n");
-}
-
-/// The arguments without those that change nothing in a cloud.
-std::vector<std::string> recorded(const std::vector<std::string>& arguments) {
-  std::vector<std::string> kept;
-  bool is_skipped = false;
-  for (const std::string& argument : arguments) {
-    const bool is_value = std::exchange(is_skipped, argument == "--threads");
-    if (is_value || is_skipped || argument == "--quiet" || argument.starts_with("--threads=")) {
-      continue;
-    }
-    kept.push_back(argument);
-  }
-  return kept;
 }
 
 HitFields needed_fields(const RenderFlags& flags, const std::vector<Output>& outputs) {
@@ -124,7 +110,7 @@ void measure_all(const RenderFlags& flags, const CommandRecord& command, const S
 int run(const RenderFlags& flags, const std::vector<std::string>& arguments) {
   Console console(flags.quiet);
   check(flags.information);
-  const CommandRecord command = {.arguments = recorded(arguments),
+  const CommandRecord command = {.arguments = lasting(arguments),
                                  .folder = std::filesystem::current_path()};
   Session session;
   const Mount unknown;

@@ -4,6 +4,7 @@
 #include <apps/glidar/commands.hpp>
 #include <apps/glidar/exit_code.hpp>
 #include <apps/glidar/lockstep_run.hpp>
+#include <apps/glidar/recorded_command.hpp>
 #include <apps/glidar/stream_options.hpp>
 #include <apps/glidar/stream_run.hpp>
 #include <glidar/core/error.hpp>
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <filesystem>
 #include <memory>
 #include <utility>
 
@@ -27,6 +29,9 @@ In the loop with a simulator that publishes poses at 5557 and shakes hands at 55
   glidar stream satellite.obj --physics-port 5557 --hwm 100 --port 5555
 A client that places everything and asks for every frame (docs/link.md):
   glidar stream scene.yaml --lockstep tcp://127.0.0.1:5600
+Again, the same bytes, here or elsewhere:
+  glidar stream builtin:asteroid --model-dr 0,0.5,0 --frames 20 --record r.jsonl -o scan.pcd
+  glidar replay r.jsonl
 Watch from Python (python3-zmq); docs/link.md has the bytes of all messages:
   s = zmq.Context().socket(zmq.SUB); s.connect("tcp://127.0.0.1:5555"); s.subscribe("c")
 
@@ -48,13 +53,16 @@ int run(const StreamFlags& given) {
 
 }  // namespace
 
-Command add_stream(CLI::App& program) {
+Command add_stream(CLI::App& program, const std::vector<std::string>& arguments) {
   CLI::App& command =
       *program.add_subcommand("stream", "Measure again and again: poses in, clouds out");
   const auto flags = std::make_shared<StreamFlags>();
   command.footer(output_names_text() + kExamples);
   add_stream_flags(command, *flags);
-  return [flags] { return run(*flags); };
+  return [flags, arguments] {
+    flags->command = {.arguments = lasting(arguments), .folder = std::filesystem::current_path()};
+    return run(*flags);
+  };
 }
 
 }  // namespace glidar::app

@@ -46,6 +46,8 @@ void add_pace_flags(CLI::App& command, StreamFlags& flags) {
             [&flags](std::int64_t n) { flags.frames = static_cast<std::uint64_t>(n); });
   add_text(command, {"--stats", "FILE", "Writes counts and latencies as JSON at the end", group},
            flags.stats);
+  add_text(command, {"--record", "FILE", "Keeps poses, seeds and command for glidar replay", group},
+           flags.record);
 }
 
 void add_publishing_flags(CLI::App& command, StreamFlags& flags) {
@@ -136,6 +138,37 @@ void add_stream_flags(CLI::App& command, StreamFlags& flags) {
   add_lockstep_flags(command, flags);
 }
 
+void add_replay_flags(CLI::App& command, StreamFlags& flags) {
+  add_output_flags(command, flags.render.output);
+  const std::string group = "Pace and end";
+  add_number(command, {"--rate", "HZ", "Frames per second at most [as fast as it goes]", group},
+             flags.replay_rate_hz);
+  add_whole(command, {"--frames", "N", "Ends after N frames [all]", group},
+            {1, std::numeric_limits<std::uint32_t>::max()},
+            [&flags](std::int64_t n) { flags.frames = static_cast<std::uint64_t>(n); });
+  add_text(command, {"--stats", "FILE", "Writes counts and latencies as JSON at the end", group},
+           flags.stats);
+  add_publishing_flags(command, flags);
+  constexpr std::int64_t kMostThreads = 1024;
+  add_whole(command, {"--threads", "N", "Number of threads, 0: one per processor [0]", "Run"},
+            {0, kMostThreads},
+            [&flags](std::int64_t n) { flags.render.renderer.threads = static_cast<unsigned>(n); });
+  command.add_flag("--quiet", flags.render.quiet, "No summary and no progress; warnings stay")
+      ->group("Run");
+}
+
+StreamFlags replayed(StreamFlags recorded, const StreamFlags& chosen) {
+  StreamFlags flags = chosen;
+  flags.physics_port = recorded.physics_port;
+  flags.lockstep = recorded.lockstep;
+  flags.render = std::move(recorded.render);
+  flags.render.output = chosen.render.output;
+  flags.render.renderer.threads = chosen.render.renderer.threads;
+  flags.render.quiet = chosen.render.quiet;
+  flags.render.duration_s.reset();
+  return flags;
+}
+
 void check(const StreamFlags& flags) {
   if (!flags.lockstep.empty()) return check_lockstep(flags);
   if (!flags.curve_keys.empty()) {
@@ -166,8 +199,9 @@ legacy::CloudPublisherOptions publisher_options(const StreamFlags& flags) {
           .keeps_newest = flags.publishes_newest,
           .queue = flags.publish_queue,
           .every = flags.publish_every,
-          .timestamps =
-              flags.physics_port ? legacy::Timestamps::of_poses : legacy::Timestamps::counted};
+          .timestamps = flags.physics_port || !flags.lockstep.empty()
+                            ? legacy::Timestamps::of_poses
+                            : legacy::Timestamps::counted};
 }
 
 legacy::PoseReceiverOptions receiver_options(const StreamFlags& flags) {

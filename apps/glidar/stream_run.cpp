@@ -4,8 +4,11 @@
 
 #include <apps/glidar/advice.hpp>
 #include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/placed_motion.hpp>
+#include <apps/glidar/recorded_source.hpp>
 #include <apps/glidar/stream_report.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/io/sidecar.hpp>
 #include <glidar/simulate.hpp>
 
 #include <fmt/format.h>
@@ -43,6 +46,14 @@ bool has_fixed_beams(const Sensor& sensor) {
   return std::holds_alternative<Pinhole>(sensor.optics);
 }
 
+/// Throws Error when a frame is not the one that was recorded.
+void compare(const Shot& shot, const std::string& recording, std::uint64_t number) {
+  if (frame_hash(shot.frame) == shot.frame_hash) return;
+  throw Error({fmt::format("{}, frame {}", recording, number),
+               "it comes out otherwise than when it was recorded",
+               "the same models, scene and sensor files, and program as then", ""});
+}
+
 }  // namespace
 
 StreamRun::StreamRun(StreamFlags flags, Console& console)
@@ -54,6 +65,10 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
   if (!flags_.stats.empty()) {
     naming("--stats", [&] { stats_file_ = std::make_unique<AtomicFile>(flags_.stats); });
   }
+  if (!flags_.record.empty()) {
+    naming("--record", [&] { recorder_ = std::make_unique<Recorder>(flags_.record); });
+  }
+  if (!flags_.replay.empty()) recording_ = std::make_unique<link::RecordingReader>(flags_.replay);
   if (flags_.port) {
     naming("--bind, --port", [&] {
       publisher_ =
@@ -61,7 +76,8 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
     });
   }
   open_session();
-  if (flags_.physics_port) {
+  if (recorder_) recorder_->begin(session_, flags_.command);
+  if (flags_.physics_port && !recording_) {
     prepare_poses();
     naming("--physics-host, --physics-port", [&] {
       receiver_ =
@@ -127,6 +143,10 @@ void StreamRun::prepare_poses() {
 std::unique_ptr<PoseSource> StreamRun::make_source(const StopRequest& stop) {
   Pace pace = {.frames = flags_.frames.value_or(std::numeric_limits<std::uint64_t>::max()),
                .duration_s = duration_s_};
+  if (recording_) {
+    pace.rate_hz = flags_.replay_rate_hz.value_or(0.0);
+    return std::make_unique<RecordedSource>(*recording_, pace, session_, stop);
+  }
   if (receiver_) {
     pace.rate_hz = flags_.render.sensor.rate_hz.value_or(0.0);
     return std::make_unique<SimulatorSource>(
@@ -184,14 +204,17 @@ void StreamRun::stream(PoseSource& source, const StopRequest& stop) {
   while (!stop.is_asked()) {
     const std::optional<Moment> moment = source.next();
     if (!moment) break;
-    if (moment->motion) {
-      for (Mount& mount : session_.mounts) mount.motion = motion_of(*moment->motion, mount);
-    }
+    if (moment->motion) move(*moment->motion);
     if (!is_wanted(moment->number)) continue;
     measure(*moment, delivery.room());
     delivery.hand_over();
   }
   delivery.finish();
+}
+
+void StreamRun::move(const RigMotion& motion) {
+  for (Mount& mount : session_.mounts) mount.motion = motion_of(motion, mount);
+  if (recorder_) placed_ = std::make_shared<const lockstep::Moment>(placed_by(motion));
 }
 
 void StreamRun::measure(const Moment& moment, Shot& shot) {
@@ -203,11 +226,13 @@ void StreamRun::measure(const Moment& moment, Shot& shot) {
   }
   shot.beams = beams;
   shot.mount = moment.mount;
+  shot.placed = placed_;
+  shot.frame_hash = moment.frame_hash;
   shot.due = moment.due;
   shot.frame.number = moment.number;
   shot.frame.sensor_id = mount.id;
   shot.frame.stamp_ns = moment.stamp_ns.value_or(window.start_ns);
-  shot.frame.seed = flags_.render.seed;
+  shot.frame.seed = moment.seed.value_or(flags_.render.seed);
   Setup setup{.scene = session_.scene,
               .sensor = mount.sensor,
               .beams = *beams,
@@ -220,7 +245,7 @@ void StreamRun::measure(const Moment& moment, Shot& shot) {
 }
 
 bool StreamRun::is_wanted(std::uint32_t number) const {
-  return writes_files() || (publisher_ && publisher_->wants(number));
+  return recording_ || writes_files() || (publisher_ && publisher_->wants(number));
 }
 
 bool StreamRun::writes_files() const {
@@ -239,6 +264,8 @@ std::vector<Output> StreamRun::plan(const OutputFlags& files, const Sensor& sens
 }
 
 void StreamRun::deliver(const Shot& shot) {
+  if (recorder_) recorder_->note(shot.mount, shot.frame, shot.placed.get());
+  if (!shot.frame_hash.empty()) compare(shot, flags_.replay, stats_.latency.count());
   if (publisher_ && publisher_->wants(shot.frame.number)) publish(shot);
   if (writes_files()) write_files(shot);
   stats_.note(shot.due);
@@ -280,6 +307,7 @@ void StreamRun::finish(const std::string& ending) {
                         .faults = faults_.counts()};
   if (publisher_) summary.clouds = publisher_->counts();
   if (receiver_) summary.poses = receiver_->counts();
+  if (recorder_) recorder_->commit();
   if (stats_file_) {
     stats_file_->write(json_text(summary));
     stats_file_->commit();

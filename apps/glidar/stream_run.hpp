@@ -6,6 +6,7 @@
 #include <apps/glidar/delivery.hpp>
 #include <apps/glidar/interrupt.hpp>
 #include <apps/glidar/pose_source.hpp>
+#include <apps/glidar/recorder.hpp>
 #include <apps/glidar/session.hpp>
 #include <apps/glidar/stream_options.hpp>
 #include <apps/glidar/stream_stats.hpp>
@@ -43,6 +44,7 @@ class StreamRun {
   [[nodiscard]] bool writes_files() const;
   [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const Sensor& sensor,
                                          const Beams& beams);
+  void move(const RigMotion& motion);
   void deliver(const Shot& shot);
   void write_files(const Shot& shot);
   void publish(const Shot& shot);
@@ -56,6 +58,9 @@ class StreamRun {
   link::Context context_;
   std::unique_ptr<legacy::CloudPublisher> publisher_;
   std::unique_ptr<legacy::PoseReceiver> receiver_;
+  std::unique_ptr<Recorder> recorder_;
+  std::unique_ptr<link::RecordingReader> recording_;  ///< that is replayed
+  std::shared_ptr<const lockstep::Moment> placed_;    ///< by the simulator's last pose
   double duration_s_ = 0.0;
   Session session_;
   std::vector<std::shared_ptr<const Beams>> beams_;  ///< of each sensor

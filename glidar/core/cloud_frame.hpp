@@ -4,17 +4,19 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/core/pose.hpp>
+#include <glidar/core/workers.hpp>
 
 #include <span>
 #include <string>
 
 namespace glidar {
 
-/// The coordinate frame a cloud is expressed in.
+/// The coordinate frame a cloud is expressed in, and who makes it.
 struct CloudFrame {
   std::string frame_id;
   Pose cloud_from_sensor = Pose::Identity();  ///< of the sensor at the start of the frame
   bool deskew = false;  ///< true: xyz as fired from where the sensor was; false: as if it stood
+  Workers* workers = nullptr;  ///< share the work; nullptr: the calling thread does it alone
 };
 
 /// Names cloud_frame() knows: sensor optical ros gl world legacy.

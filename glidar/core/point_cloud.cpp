@@ -17,6 +17,7 @@ struct Source {
   const Scene& scene;
   const Pose cloud_from_sensor;
   bool deskew;
+  Workers* workers;
 };
 
 using Fill = void (*)(const Source&, Column&);
@@ -39,21 +40,34 @@ std::vector<T>& sized(Column& column, std::size_t count) {
   return values;
 }
 
+/// Calls body(begin, end) on pieces that together are all points.
+template <class Body>
+void for_pieces(const Source& source, const Body& body) {
+  constexpr std::size_t kPoints = 16384;  // a piece is worth waking a thread for
+  const std::size_t size = source.beams.size();
+  if (source.workers == nullptr) return body(0, size);
+  source.workers->for_ranges(size, kPoints, body);
+}
+
 /// One number a point, from a function of the beam's index.
 template <class T, class Function>
 void fill_each(const Source& source, Column& column, Function value_of) {
-  auto& values = sized<T>(column, source.beams.size());
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = value_of(i);
+  T* const values = sized<T>(column, source.beams.size()).data();
+  for_pieces(source, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) values[i] = value_of(i);
+  });
 }
 
 /// Components of a fixed-size vector a point, from a function of the beam's index.
 template <class T, int kSize, class Function>
 void fill_vectors(const Source& source, Column& column, Function vector_of) {
-  auto& values = sized<T>(column, source.beams.size() * kSize);
-  for (std::size_t i = 0; i < source.beams.size(); ++i) {
-    Eigen::Map<Eigen::Matrix<T, kSize, 1>> target(values.data() + i * kSize);
-    target = vector_of(i);
-  }
+  T* const values = sized<T>(column, source.beams.size() * kSize).data();
+  for_pieces(source, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Eigen::Map<Eigen::Matrix<T, kSize, 1>> target(values + i * kSize);
+      target = vector_of(i);
+    }
+  });
 }
 
 using Vectors = std::vector<Eigen::Vector3d>;
@@ -348,7 +362,8 @@ void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene
   cloud.frame_id = cloud_frame.frame_id;
   cloud.world_from_cloud = frame.world_from_sensor * cloud_frame.cloud_from_sensor.inverse();
   cloud.columns.resize(column_names.size());
-  const Source source{frame, beams, scene, cloud_frame.cloud_from_sensor, cloud_frame.deskew};
+  const Source source{
+      frame, beams, scene, cloud_frame.cloud_from_sensor, cloud_frame.deskew, cloud_frame.workers};
   for (std::size_t c = 0; c < column_names.size(); ++c) {
     const ColumnKind& kind = kind_named(column_names[c]);
     if (!has(frame, kind.needs)) {

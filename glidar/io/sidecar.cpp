@@ -29,9 +29,8 @@ std::uint64_t whole(const Json& told) {
 
 CommandRecord read_command(const Json& told, const std::filesystem::path& sidecar) {
   if (told.is_null()) return {};
-  const std::filesystem::path folder = told.at("folder").get<std::string>();
   return {.arguments = told.at("arguments").get<std::vector<std::string>>(),
-          .folder = std::filesystem::absolute(sidecar).parent_path() / folder};
+          .folder = folder_beside(sidecar, told.at("folder").get<std::string>())};
 }
 
 Sidecar read(const Json& told, const std::filesystem::path& path) {
@@ -52,6 +51,17 @@ Sidecar read(const Json& told, const std::filesystem::path& path) {
 }
 
 }  // namespace
+
+std::string folder_seen_from(const std::filesystem::path& file,
+                             const std::filesystem::path& folder) {
+  const auto here =
+      std::filesystem::weakly_canonical(std::filesystem::absolute(file).parent_path());
+  return std::filesystem::weakly_canonical(folder).lexically_relative(here).generic_string();
+}
+
+std::filesystem::path folder_beside(const std::filesystem::path& file, const std::string& seen) {
+  return std::filesystem::absolute(file).parent_path() / seen;
+}
 
 std::string frame_hash(const Frame& frame) {
   ContentHash hash;

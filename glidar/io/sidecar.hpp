@@ -30,6 +30,11 @@ std::string frame_hash(const Frame& frame);
 /// All numbers of a sensor with these beams, as JSON: what a sidecar tells of it.
 std::string sensor_text(const Sensor& sensor, const Beams& beams);
 
+/// A folder as seen from a file, so that both can be moved together, and back again.
+std::string folder_seen_from(const std::filesystem::path& file,
+                             const std::filesystem::path& folder);
+std::filesystem::path folder_beside(const std::filesystem::path& file, const std::string& seen);
+
 /// Reads the sidecar of a cloud, CLOUD.json beside it. Throws Error when there is none or it is not
 /// one.
 Sidecar read_sidecar(const std::filesystem::path& cloud);

@@ -156,13 +156,9 @@ Json status_json(const Frame& frame) {
   return told;
 }
 
-/// The folder as seen from the file, so that both can be moved together.
 Json command_json(const CommandRecord& command, const std::filesystem::path& path) {
   if (command.arguments.empty()) return {};
-  const auto here =
-      std::filesystem::weakly_canonical(std::filesystem::absolute(path).parent_path());
-  const auto folder = std::filesystem::weakly_canonical(command.folder).lexically_relative(here);
-  return {{"arguments", command.arguments}, {"folder", folder.generic_string()}};
+  return {{"arguments", command.arguments}, {"folder", folder_seen_from(path, command.folder)}};
 }
 
 // names and paths may hold bytes that are no UTF-8

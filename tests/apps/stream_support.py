@@ -30,9 +30,9 @@ class StreamTest(CliTest):
         while abs(self.physics - self.port) < 2:
             self.physics = free_ports()
 
-    def start(self, *arguments):
+    def start(self, *arguments, command="stream"):
         """The running program; whatever happens, it ends with the test."""
-        program = subprocess.Popen(["glidar", "stream", *arguments], cwd=self.folder, env=self.environment,
+        program = subprocess.Popen(["glidar", command, *arguments], cwd=self.folder, env=self.environment,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(self.end, program)
         return program

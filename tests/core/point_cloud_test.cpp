@@ -120,6 +120,24 @@ TEST(PointCloud, TellsWhereALidarsBeamsWereAimedWhateverTheCloudsFrame) {
   EXPECT_TRUE(std::isnan(values<double>(cloud, "elevation")[1]));
 }
 
+TEST(PointCloud, ComesOutTheSameWhoeverMakesIt) {
+  constexpr std::uint32_t kSide = 300;  // more than one piece of work
+  Fixture fixture;
+  fixture.beams.rows = fixture.beams.cols = fixture.frame.rows = fixture.frame.cols = kSide;
+  const std::size_t size = std::size_t{kSide} * kSide;
+  fixture.beams.directions.assign(size, Eigen::Vector3d(0.6, 0.0, 0.8));
+  fixture.frame.intensity.assign(size, 0.5F);
+  fixture.frame.range_m.resize(size);
+  for (std::size_t i = 0; i < size; ++i) fixture.frame.range_m[i] = static_cast<double>(i) / 7.0;
+  const std::vector<std::string> columns = {"xyz", "intensity", "range", "row"};
+  const PointCloud alone = fixture.cloud(columns);
+  Workers workers(3);
+  const PointCloud together = fixture.cloud(columns, {.frame_id = "c", .workers = &workers});
+  for (std::size_t c = 0; c < columns.size(); ++c) {
+    EXPECT_EQ(together.columns[c].values, alone.columns[c].values) << columns[c];
+  }
+}
+
 TEST(PointCloud, RefusesUnknownAndUncastColumns) {
   Fixture f;
   try {

@@ -27,9 +27,9 @@ def folder(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("name", ["README.md", "docs/python.md"])
 def test_python_of_a_document_runs(name, folder):
-    names = {}
-    found = [block for block in blocks(name) if "import glidar" in block or names is not None]
+    found = blocks(name)
     assert found
+    names = {}
     for block in found:
         exec(compile(block, name, "exec"), names)
 

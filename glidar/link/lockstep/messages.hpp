@@ -37,11 +37,11 @@ struct Body {
 
 /// One measurement.
 struct Moment {
-  std::int64_t t_ns = 0;      ///< start of the frame
-  std::uint64_t seed = 0;     ///< of all random numbers
-  std::uint32_t number = 0;   ///< of the frame; scanners' heads turn on from frame to frame
-  Body sensor;                ///< or the rig that several sensors are on
-  std::vector<Body> objects;  ///< in the order of the scene; empty: where the scene has them
+  std::int64_t t_ns = 0;           ///< start of the frame
+  std::uint64_t seed = 0;          ///< of all random numbers
+  std::uint32_t number = 0;        ///< of the frame; scanners' heads turn on from frame to frame
+  Body sensor;                     ///< or the rig that several sensors are on
+  std::vector<Body> objects = {};  ///< in the order of the scene; empty: where the scene has them
 };
 
 /// Asks what there is.

@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/glidar/session.hpp>
+#include <glidar/link/recording.hpp>
+
+#include <string>
+
+namespace glidar::app {
+
+/// `--record`: keeps what every frame of a stream depends on, and a hash of what came of it.
+class Recorder {
+ public:
+  /// Throws Error when no file can be made there.
+  explicit Recorder(const std::string& path) : path_(path), writer_(path) {}
+  /// Once the session is open. Throws Error when the recording would replace a file of it.
+  void begin(const Session& session, const CommandRecord& command);
+  /// A frame of one of the session's sensors; `placed`: where a client or simulator put everything,
+  /// nullptr where the command did.
+  void note(std::size_t mount, const Frame& frame, const lockstep::Moment* placed);
+  void commit() { writer_.commit(); }
+
+ private:
+  std::string path_;
+  link::RecordingWriter writer_;
+};
+
+}  // namespace glidar::app

@@ -1,0 +1,157 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/recording.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/sidecar.hpp>
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+namespace glidar::link {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::uint64_t kFormat = 1;
+constexpr std::size_t kPoseNumbers = 12;
+constexpr std::size_t kBodyNumbers = kPoseNumbers + 6;
+
+[[noreturn]] void refuse(std::string where, std::string found) {
+  throw Error({std::move(where), std::move(found), "a recording by glidar stream --record",
+               "record it again"});
+}
+
+// paths may hold bytes that are no UTF-8
+std::string line_of(const Json& json) {
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+/// Three rows of four numbers; rate and velocity only of what moves.
+Json json_of(const lockstep::Body& body) {
+  Json numbers = Json::array();
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    for (Eigen::Index col = 0; col < 4; ++col) numbers.push_back(body.world_from_body(row, col));
+  }
+  if (body.rate_rad_s.isZero(0.0) && body.velocity_m_s.isZero(0.0)) return numbers;
+  for (const double x : body.rate_rad_s) numbers.push_back(x);
+  for (const double x : body.velocity_m_s) numbers.push_back(x);
+  return numbers;
+}
+
+lockstep::Body body_of(const Json& json) {
+  const auto numbers = json.get<std::vector<double>>();
+  if (numbers.size() != kPoseNumbers && numbers.size() != kBodyNumbers) {
+    throw Json::other_error::create(
+        502, "a body of " + std::to_string(numbers.size()) + " numbers, not 12 or 18", &json);
+  }
+  lockstep::Body body;
+  for (std::size_t i = 0; i < kPoseNumbers; ++i) {
+    body.world_from_body(static_cast<Eigen::Index>(i / 4), static_cast<Eigen::Index>(i % 4)) =
+        numbers[i];
+  }
+  if (!is_rigid(body.world_from_body)) {
+    throw Json::other_error::create(502, "a body whose matrix is no rigid transform", &json);
+  }
+  if (numbers.size() == kBodyNumbers) {
+    body.rate_rad_s = Eigen::Map<const Eigen::Vector3d>(numbers.data() + kPoseNumbers);
+    body.velocity_m_s = Eigen::Map<const Eigen::Vector3d>(numbers.data() + kPoseNumbers + 3);
+  }
+  return body;
+}
+
+RecordingHead head_of(const Json& json, const std::filesystem::path& path) {
+  if (json.at("recording").get<std::uint64_t>() != kFormat) {
+    throw Json::other_error::create(
+        502, "a recording of format " + json.at("recording").dump() + ", this program knows 1",
+        &json);
+  }
+  RecordingHead head;
+  head.version = json.at("glidar").get<std::string>();
+  const Json& command = json.at("command");
+  head.command = {.arguments = command.at("arguments").get<std::vector<std::string>>(),
+                  .folder = folder_beside(path, command.at("folder").get<std::string>())};
+  for (const Json& file : json.at("files")) {
+    head.files.push_back({file.at("path").get<std::string>(), file.at("hash").get<std::string>()});
+  }
+  return head;
+}
+
+RecordedFrame frame_of(const Json& json) {
+  RecordedFrame frame;
+  frame.sensor = json.at("sensor").get<std::uint32_t>();
+  frame.moment.number = json.at("number").get<std::uint32_t>();
+  frame.moment.t_ns = json.at("stamp_ns").get<std::int64_t>();
+  frame.moment.seed = json.at("seed").get<std::uint64_t>();
+  frame.frame_hash = json.at("frame_hash").get<std::string>();
+  frame.is_placed = json.contains("rig");
+  if (!frame.is_placed) return frame;
+  frame.moment.sensor = body_of(json.at("rig"));
+  for (const Json& object : json.at("objects")) frame.moment.objects.push_back(body_of(object));
+  return frame;
+}
+
+}  // namespace
+
+void RecordingWriter::begin(const RecordingHead& head) {
+  Json files = Json::array();
+  for (const RecordedFile& file : head.files) {
+    files.push_back({{"path", file.path}, {"hash", file.hash}});
+  }
+  file_.write(line_of({{"recording", kFormat},
+                       {"glidar", head.version},
+                       {"command",
+                        {{"arguments", head.command.arguments},
+                         {"folder", folder_seen_from(file_.path(), head.command.folder)}}},
+                       {"files", files}}));
+}
+
+void RecordingWriter::write(const RecordedFrame& frame) {
+  Json json = {{"sensor", frame.sensor},
+               {"number", frame.moment.number},
+               {"stamp_ns", frame.moment.t_ns},
+               {"seed", frame.moment.seed},
+               {"frame_hash", frame.frame_hash}};
+  if (frame.is_placed) {
+    Json objects = Json::array();
+    for (const lockstep::Body& object : frame.moment.objects) objects.push_back(json_of(object));
+    json["rig"] = json_of(frame.moment.sensor);
+    json["objects"] = std::move(objects);
+  }
+  file_.write(line_of(json));
+}
+
+RecordingReader::RecordingReader(const std::filesystem::path& path) : path_(path), file_(path) {
+  if (!std::filesystem::is_regular_file(path) || !file_) {
+    refuse(path.string(), "it is not there or cannot be read");
+  }
+  std::string line;
+  if (!std::getline(file_, line)) refuse(path.string(), "it is empty");
+  ++line_;
+  try {
+    head_ = head_of(Json::parse(line), path);
+  } catch (const Json::exception& error) {
+    refuse(where(), error.what());
+  }
+}
+
+std::string RecordingReader::where() const {
+  return path_.string() + ":" + std::to_string(line_);
+}
+
+std::optional<RecordedFrame> RecordingReader::next() {
+  std::string line;
+  if (!std::getline(file_, line)) {
+    if (file_.bad()) refuse(where(), "it cannot be read further");
+    return std::nullopt;
+  }
+  ++line_;
+  try {
+    return frame_of(Json::parse(line));
+  } catch (const Json::exception& error) {
+    refuse(where(), error.what());
+  }
+}
+
+}  // namespace glidar::link

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/atomic_file.hpp>
+#include <glidar/io/file_sink.hpp>
+#include <glidar/link/lockstep/messages.hpp>
+
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// A recording keeps all that the frames of a stream depend on, one line of JSON each; docs/link.md
+/// tells every key.
+namespace glidar::link {
+
+/// A file that the stream was made from.
+struct RecordedFile {
+  std::string path;  ///< as seen from the command's folder
+  std::string hash;  ///< of its content; empty: it could not be read
+};
+
+/// The first line.
+struct RecordingHead {
+  std::string version;    ///< of the program
+  CommandRecord command;  ///< with an absolute folder
+  std::vector<RecordedFile> files = {};
+};
+
+/// A line for each frame. Poses are kept as matrices, whose every bit counts.
+struct RecordedFrame {
+  std::uint32_t sensor = 0;      ///< place among those that measured
+  lockstep::Moment moment = {};  ///< its bodies count where the frame was placed
+  bool is_placed = false;  ///< by bodies; else by the command's motion at the time of its number
+  std::string frame_hash;  ///< of what the frame reports
+};
+
+/// Writes a recording; it appears under its name when it is whole.
+class RecordingWriter {
+ public:
+  /// Throws Error when no file can be made there.
+  explicit RecordingWriter(const std::filesystem::path& path) : file_(path) {}
+  /// Once, before the first frame.
+  void begin(const RecordingHead& head);
+  void write(const RecordedFrame& frame);
+  void commit() { file_.commit(); }
+
+ private:
+  AtomicFile file_;
+};
+
+/// Reads a recording line by line. Throws Error naming the line when it is not what it should be.
+class RecordingReader {
+ public:
+  explicit RecordingReader(const std::filesystem::path& path);
+  [[nodiscard]] const RecordingHead& head() const { return head_; }
+  /// The next frame; nothing: there is no more.
+  std::optional<RecordedFrame> next();
+
+ private:
+  std::string where() const;
+
+  std::filesystem::path path_;
+  std::ifstream file_;
+  std::uint64_t line_ = 0;
+  RecordingHead head_;
+};
+
+}  // namespace glidar::link

@@ -1,0 +1,172 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""glidar stream --record and glidar replay: the same bytes again, here and elsewhere."""
+
+import json
+import os
+import shutil
+import signal
+import tempfile
+import time
+import unittest
+
+from stream_support import SMALL, StreamTest
+
+from lockstep_test import CLIENT, Server, body
+from stream_client import pose_message
+
+SCENE = """models:
+  - model: box.obj
+    motion: {tumbling: {moments_kg_m2: [1, 2, 2.5], rate_deg_s: [5, 40, 5]}}
+sensor: {optics: {type: pinhole, width: 32, height: 24, fov_deg: 20}, rate_hz: 20, noise: [{type: range_gaussian, sigma_m: 0.01}]}
+sensor_pose: {look_at: {eye: [8, 0, 0], target: [0, 0, 0]}}
+"""
+
+
+class ReplayTest(StreamTest):
+    def lines(self, name="r.jsonl"):
+        return [json.loads(line) for line in self.bytes_of(name).decode().splitlines()]
+
+    def files_of(self, prefix):
+        return {name[len(prefix):]: self.bytes_of(name) for name in self.files()
+                if name.startswith(prefix) and name.endswith(".pcd")}
+
+    def record_scene(self, *arguments):
+        self.write("scene.yaml", SCENE)
+        self.succeed("stream", "scene.yaml", "--frames", "6", "--rate", "max", "--record", "r.jsonl", "-o",
+                     "first.pcd", *arguments)
+
+
+class Replay(ReplayTest):
+    def test_of_a_scene_in_motion_writes_the_same_files(self):
+        self.record_scene()
+        done = self.succeed("replay", "r.jsonl", "-o", "again.pcd")
+        self.assertIn("6 frames", done.stdout)
+        self.assertEqual(len(self.files_of("first")), 6)
+        self.assertEqual(self.files_of("again"), self.files_of("first"))
+        self.assertEqual(len(set(self.files_of("first").values())), 6)
+
+    def test_of_a_rig_tells_its_sensors_apart(self):
+        self.write("rig.yaml", "models: [{model: box.obj, pose: {position: [6, 0, 0]}}]\n"
+                               "sensors: [{name: a, sensor: VLP-16}, {name: b, sensor: VLP-16}]\n"
+                               "rig_pose: {position: [0, 0, 0]}\n")
+        self.succeed("stream", "rig.yaml", "--frames", "2", "--rate", "max", "--record", "r.jsonl", "-o", "first.pcd")
+        self.succeed("replay", "r.jsonl", "-o", "again.pcd")
+        self.assertEqual(len(self.files_of("first")), 4)
+        self.assertEqual(self.files_of("again"), self.files_of("first"))
+
+    def test_elsewhere_needs_the_files_as_they_lay(self):
+        self.record_scene()
+        with tempfile.TemporaryDirectory() as elsewhere:
+            for name in ("r.jsonl", "scene.yaml", "box.obj"):
+                shutil.copy(os.path.join(self.folder, name), elsewhere)
+            self.succeed("replay", os.path.join(elsewhere, "r.jsonl"), "-o", "again.pcd")
+            self.assertEqual(self.files_of("again"), self.files_of("first"))
+            os.remove(os.path.join(elsewhere, "box.obj"))
+            self.assertIn("box.obj", self.refused("replay", os.path.join(elsewhere, "r.jsonl"), "--quiet").split("\n")[-2])
+
+    def test_of_a_simulators_poses_gives_the_clouds_it_got(self):
+        program, simulator, subscriber = self.in_the_loop("--hwm", "100", "--record", "r.jsonl")
+        time.sleep(0.5)  # subscriptions travel apart from hands
+        for k in range(5):
+            attitude = (0.9, 0.1 * k, 0.2, -0.3)
+            length = sum(x * x for x in attitude) ** 0.5
+            simulator.send(pose_message(100 + k, [x / length for x in attitude], (0.1, 0.2, 9 + 0.1 * k)))
+        simulator.shut_down()
+        clouds = subscriber.clouds_until_shutdown()
+        self.finished(program, 0)
+        self.assertEqual([line["stamp_ns"] for line in self.lines()[1:]], [100, 101, 102, 103, 104])
+        program = self.start("r.jsonl", "--port", str(self.port), command="replay")
+        again = self.subscriber()
+        again.shake()
+        replayed = again.clouds_until_shutdown()
+        self.finished(program, 0)
+        self.assertEqual([(stamp, points.tobytes()) for stamp, points in replayed],
+                         [(stamp, points.tobytes()) for stamp, points in clouds])
+
+    def test_of_lock_step_measures_every_request_again(self):
+        sensor = body((6, 0, 0), (0.5, -0.5, -0.5, 0.5))
+        spun = body((0.1, 0, 0), (0.8, 0, 0.6, 0), rate=(0.3, 2, 0.1), velocity=(0.5, 0, 0))
+        with Server(self, "builtin:asteroid", *SMALL, "--record", "r.jsonl") as server:
+            socket = server.connect()
+            moments = [(k * 1000, k, k, [sensor, spun]) for k in range(3)] + [(5, 2**63, 0, [sensor, spun])]
+            socket.send(CLIENT["request"](["xyz"], moments))
+            socket.recv_multipart()
+            socket.send(CLIENT["request"](["xyz"], [(7, 1, 9, [sensor])]))  # objects where the scene has them
+            socket.recv_multipart()
+            self.assertEqual(server.end()[0], 143)
+        self.assertEqual([line["seed"] for line in self.lines()[1:]], [0, 1, 2, 2**63, 1])
+        self.assertIn("5 frames", self.succeed("replay", "r.jsonl").stdout)
+
+    def test_with_one_thread_is_the_same(self):
+        self.record_scene("--threads", "2")
+        self.assertNotIn("--threads", self.lines()[0]["command"]["arguments"])
+        self.succeed("replay", "r.jsonl", "--threads", "1")
+
+    def test_ends_after_so_many_frames_and_keeps_its_pace(self):
+        self.record_scene()
+        begin = time.monotonic()
+        done = self.succeed("replay", "r.jsonl", "--rate", "10", "--frames", "4")
+        self.assertGreater(time.monotonic() - begin, 0.29)
+        self.assertIn("4 frames", done.stdout)
+
+
+class Recording(ReplayTest):
+    def test_is_whole_after_a_signal(self):
+        program = self.start(self.box, *SMALL, "--camera-z", "10", "--model-dr", "0,1,0", "--rate", "50", "--record",
+                             "r.jsonl", "-o", "s.pcd")
+        while "s_000004.pcd" not in self.files():
+            time.sleep(0.02)
+        program.send_signal(signal.SIGINT)
+        self.finished(program, 130)
+        self.assertGreaterEqual(len(self.lines()), 6)
+        self.succeed("replay", "r.jsonl")
+
+    def test_does_not_replace_what_the_scene_is_read_from(self):
+        self.write("scene.yaml", SCENE)
+        self.assertIn("is an input file", self.refused("stream", "scene.yaml", "--record", "box.obj", "-o", "s.pcd"))
+
+    def test_to_nowhere_is_refused(self):
+        self.assertIn("--record", self.refused("stream", self.box, "--record", "no/r.jsonl", "-o", "s.pcd"))
+
+
+class Refusals(ReplayTest):
+    def test_a_frame_that_comes_out_otherwise_is_an_error(self):
+        self.record_scene()
+        changed = self.bytes_of("box.obj").decode().replace("v 1.0 1.0 1.0", "v 1.1 1.0 1.0")
+        self.write("box.obj", changed)
+        done = self.run_program("replay", "r.jsonl")
+        self.assertEqual(done.returncode, 2, done.stdout)
+        self.assertIn("box.obj has changed since it was recorded", done.stderr)
+        self.assertRegex(done.stderr, "frame [0-5]: it comes out otherwise than when it was recorded")
+
+    def test_what_is_no_recording_is_refused(self):
+        self.record_scene()
+        good = self.bytes_of("r.jsonl").decode().splitlines()
+        cases = {"": "it is empty", "{}": ":1: ", "no json": ":1: ", '{"recording": 2}': "format 2",
+                 good[0].replace('"stream"', '"render"'): "it tells no such command"}
+        for text, words in cases.items():
+            with self.subTest(text):
+                self.write("bad.jsonl", text)
+                self.assertIn(words, self.refused("replay", "bad.jsonl"))
+        self.assertIn("not there", self.refused("replay", "none.jsonl"))
+
+    def test_a_line_that_is_cut_or_wrong_is_named(self):
+        self.record_scene()
+        head, first, *rest = self.bytes_of("r.jsonl").decode().splitlines()
+        wrong = json.loads(first)
+        wrong["sensor"] = 7
+        scaled = dict(json.loads(first), rig=[2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0], objects=[])
+        short = dict(scaled, rig=[1, 0, 0])
+        for line, words in ((first[:40], "bad.jsonl:3: "), (json.dumps(wrong), "sensor 7 and 0 objects"),
+                            (json.dumps(scaled), "no rigid transform"), (json.dumps(short), "3 numbers, not 12 or 18")):
+            with self.subTest(words):
+                self.write("bad.jsonl", "\n".join([head, first, line, *rest]) + "\n")
+                done = self.run_program("replay", "bad.jsonl")
+                self.assertEqual(done.returncode, 2, done.stdout)
+                self.assertIn(words, done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
