@@ -77,3 +77,12 @@ def test_a_missing_package_is_told_with_what_to_do(tmp_path):
 def test_no_command_is_refused(tmp_path):
     done = glidar_program(tmp_path, "campaign")
     assert done.returncode == 2 and "run, merge, report, check" in done.stderr
+
+
+def test_packages_that_are_not_installed_are_told_with_what_to_do(tmp_path):
+    code = ("import sys; sys.modules['yaml'] = None; from glidar.campaign.cli import main; "
+            "sys.exit(main(['run', 'c.yaml', '-o', 'x']))")
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True,
+                          check=False)
+    assert done.returncode == 2 and done.stderr.count("\n") == 1
+    assert "'yaml' is missing" in done.stderr and "pip install" in done.stderr

@@ -13,6 +13,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+from campaign_support import Campaign
 
 import glidar
 from glidar.campaign import plan, spec, trials
@@ -233,6 +234,24 @@ def test_a_small_disk_that_is_full_is_told(campaign):
         assert campaign.contents("disk/out") == campaign.contents("whole")
     finally:
         subprocess.run(["umount", disk], check=True)
+
+
+def peak_mib(campaign, trials):
+    """The most memory that a run of so many small trials took."""
+    campaign.write("camera.yaml", "optics: {type: pinhole, width: 8, height: 8, fov_deg: 40}\n")
+    campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text()
+                   .replace("trials: 40", f"trials: {trials}").replace("shard_trials: 4\n", ""))
+    process = campaign.start("run", "campaign.yaml", "-o", f"out{trials}", "--quiet")
+    process.stdout.read()
+    _, status, used = os.wait4(process.pid, 0)
+    assert status == 0, process.stderr.read()
+    return used.ru_maxrss / 1024
+
+
+def test_ten_times_the_trials_take_no_more_memory(campaign, tmp_path_factory):
+    few = peak_mib(campaign, 4000)
+    many = peak_mib(Campaign(tmp_path_factory.mktemp("many")), 40000)
+    assert many < 1.1 * few
 
 
 @pytest.mark.parametrize("arguments, words", [
