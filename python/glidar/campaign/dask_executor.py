@@ -14,9 +14,9 @@ CONNECT_S = 10
 
 
 def run_shards(plan, root, shards):
-    """The task of a worker: what each of the shards came to."""
+    """The task of one thread of a worker: what each of the shards came to."""
     folder, done = Folder(root), []
-    works.work(plan, folder, folders.missing(folder, shards), 0, done.append)
+    works.work(plan, folder, folders.missing(folder, shards), 1, done.append)
     known = {d.shard: d for d in done}
     return [known.get(shard) or works.recall(folder, shard) for shard in shards]
 

@@ -10,6 +10,7 @@ import errno
 import hashlib
 import json
 import os
+import secrets
 import shutil
 import socket
 from pathlib import Path
@@ -30,10 +31,11 @@ def write_error(path, error):
 
 
 class Scratch:
-    """A folder for what is being written, of this process alone, within the campaign's `tmp`."""
+    """A folder for what is being written, of this writer alone, within the campaign's `tmp`."""
 
     def __init__(self, root):
-        self.folder = Path(root) / "tmp" / f"{socket.gethostname()}-{os.getpid()}"
+        name = f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(4)}"
+        self.folder = Path(root) / "tmp" / name
         self._count = 0
 
     def path(self, name):
@@ -65,8 +67,8 @@ def _is_running(pid):
 
 def remove_leftovers(root):
     """Takes away what killed processes of this machine left half written."""
-    for folder in (Path(root) / "tmp").glob(f"{socket.gethostname()}-*"):
-        pid = folder.name.rsplit("-", 1)[1]
+    for folder in (Path(root) / "tmp").glob(f"{socket.gethostname()}-*-*"):
+        pid = folder.name.rsplit("-", 2)[1]
         if pid.isdigit() and not _is_running(int(pid)):
             shutil.rmtree(folder, ignore_errors=True)
 

@@ -94,11 +94,14 @@ def _quoted(path):
 def replaced(text, field, values):
     """The text with values replaced: pairs (Target, text); paths of files become absolute, so that
     it can be read from any folder."""
-    edits = [(value.node, _quoted(path.resolve())) for value, path in files_of(field)]
-    edits += [(find(field, target).node, value) for target, value in values]
-    edits.sort(key=lambda edit: edit[0].start_mark.index, reverse=True)
-    for node, value in edits:
-        text = text[: node.start_mark.index] + value + text[node.end_mark.index :]
+    edits = [(value, _quoted(path.resolve())) for value, path in files_of(field)]
+    edits += [(find(field, target), value) for target, value in values]
+    edits.sort(key=lambda edit: edit[0].node.start_mark.index, reverse=True)
+    for old, new in edits:
+        first, last = old.node.start_mark.index, old.node.end_mark.index
+        if text[first] in "&!":
+            yf.reject(old, "an anchor or a tag", "a plain value", "write it out")
+        text = text[:first] + new + text[last:]
     return text
 
 

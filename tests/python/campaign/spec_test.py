@@ -172,6 +172,12 @@ def test_values_that_are_not_there_are_told(path, words):
     assert words in str(caught.value) and "sensor.yaml:" in str(caught.value)
 
 
+def test_anchored_values_are_not_replaced():
+    text = "noise:\n  - {type: range_gaussian, sigma_m: &s 0.01}\n  - {type: dropout, probability: *s}\n"
+    with pytest.raises(Error, match="an anchor"):
+        replaced("sensor.noise[1].probability", "1", text)
+
+
 def test_numbers_are_spelled_so_that_they_read_back_the_same():
     for value in (0.1, 1e-300, 123456789.0, -2.5, 1 / 3):
         assert float(variants.number_text(value)) == value
