@@ -132,7 +132,7 @@ def check_tree(root):
         for header in sorted(public)
         if not (root / header).is_file()
     ]
-    for folder in ("glidar", "apps", "bench", "examples", "tests"):
+    for folder in ("glidar", "apps", "bench", "examples", "python", "tests"):
         for file in sorted((root / folder).rglob("*.[ch]pp")):
             complaints += check_file(root, file.relative_to(root).as_posix(), public)
     return complaints

@@ -16,7 +16,7 @@ from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-FOLDERS = ("glidar", "apps", "bench", "examples", "tests")
+FOLDERS = ("glidar", "apps", "bench", "examples", "python", "tests")
 
 
 def own_sources(build):

@@ -10,8 +10,8 @@
 namespace glidar {
 
 /// The folder `name` of the data that comes with GLIDAR: where the variable says, beside the
-/// running program or library (share/glidar/name), in the source, or where it is installed. Throws Error when
-/// there is none.
+/// running program or library (share/glidar/name), in the source, or where it is installed. Throws
+/// Error when there is none.
 std::filesystem::path data_folder(const std::string& name, const char* variable);
 
 }  // namespace glidar

@@ -59,6 +59,8 @@ struct ScenePlan {
 
 /// Reads a scene file and the sensor files it names; loads no model.
 ScenePlan read_scene_plan(const std::filesystem::path& path, const ModelOptions& defaults);
+/// The same of what such a file holds, without its own name among the files.
+ScenePlan read_scene_plan(const YamlField& root, const ModelOptions& defaults);
 
 /// What `materials` of a scene file says; those for "*" first.
 std::vector<MaterialOverride> read_overrides(const YamlField& field);

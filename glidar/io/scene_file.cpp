@@ -19,11 +19,8 @@ std::vector<Trajectory> trajectories(const ScenePlan& plan) {
   return all;
 }
 
-}  // namespace
-
-SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions& defaults,
-                          const Report& report) {
-  const ScenePlan plan = read_scene_plan(path, defaults);
+/// The scene as planned, with its models.
+SceneFile load_plan(const ScenePlan& plan, const Report& report) {
   const auto load = [&](const std::string& source, const ModelOptions& options) {
     return load_model(source, options, report);
   };
@@ -34,6 +31,17 @@ SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions&
           .files = plan.files,
           .world_from_instance = trajectories(plan),
           .rig_motion = plan.rig_motion};
+}
+
+}  // namespace
+
+SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions& defaults,
+                          const Report& report) {
+  return load_plan(read_scene_plan(path, defaults), report);
+}
+
+SceneFile parse_scene(const std::string& text, const Report& report) {
+  return load_plan(read_scene_plan(read_yaml_text("scene", text), {}), report);
 }
 
 }  // namespace glidar

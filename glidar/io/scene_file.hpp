@@ -39,6 +39,9 @@ struct SceneFile {
 SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions& defaults,
                           const Report& report);
 
+/// The same from a text, YAML or JSON; paths count from the working folder. Errors name the field.
+SceneFile parse_scene(const std::string& text, const Report& report);
+
 /// Changes materials of an instance, and of it alone, by a text, YAML or JSON, that says what
 /// `materials` of a scene file does. Files that it names count from the working folder. Errors name
 /// the field.

@@ -169,11 +169,15 @@ std::vector<MaterialOverride> read_overrides(const YamlField& field) {
 }
 
 ScenePlan read_scene_plan(const fs::path& path, const ModelOptions& defaults) {
-  const YamlField root = read_yaml(path);
+  ScenePlan plan = read_scene_plan(read_yaml(path), defaults);
+  plan.files.insert(plan.files.begin(), path.string());
+  return plan;
+}
+
+ScenePlan read_scene_plan(const YamlField& root, const ModelOptions& defaults) {
   require_map(root, {"models", "sensor", "sensor_pose", "sensor_motion", "sensors", "rig_pose",
                      "rig_motion"});
   ScenePlan plan;
-  plan.files.push_back(path.string());
   plan.instances = read_models(need(root, "models"), defaults, plan.files);
   read_rig(root, plan);
   return plan;

@@ -11,17 +11,20 @@ exact truth beside every number.
 """
 
 from . import _core
+from ._cloud import Cloud
 from ._errors import Error
-from ._frame import Cloud, Frame, Truth
+from ._frame import Frame
 from ._information import Direction, Information
 from ._mesh import Mesh, from_open3d, from_trimesh
+from ._object import Object
 from ._poses import look_at, pose, quaternion
-from ._scene import Mount, Object, Scene, load_scene, surface_names
+from ._scene import Mount, Scene, load_scene, surface_names
 from ._sensor import Sensor, SheetEntry, camera, load_sensor, sensor_file, sensor_names, sensor_sheet
 from ._simulator import Simulator, simulate, simulate_batch, simulate_rig
 from ._status import Cause, Status
 from ._story import Drawn, Echo, Reading, Step, Story
 from ._trajectory import Trajectory
+from ._truth import Truth
 from ._verification import Verification, VerifyRow, verify
 
 __version__: str = _core.version()

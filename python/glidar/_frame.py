@@ -1,157 +1,27 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Frames, their truth, and clouds."""
+"""Frames: what a sensor reports, and what can be asked of it."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
+from ._cloud import Cloud
 from ._errors import Error
 from ._information import Information
-from ._inputs import FloatArray, column_list, floats, log, one_of, shape_text, whole
+from ._inputs import FloatArray, column_list, floats, log, one_of, whole
 from ._pictures import html_picture, html_table, plot_points, show_images
 from ._status import Cause, Status
 from ._story import Story, story_of
-
-Array = npt.NDArray[Any]
+from ._truth import Truth
 
 _PCD = ("ascii", "binary", "binary_compressed")
-
-
-class Truth:
-    """What is there, whether the sensor reports it or not. Arrays are (rows, cols) or
-    (rows, cols, k), read-only views of the frame's memory. NaN, and 2**32 - 1 for indices, where the
-    beam hits nothing. What the frame's columns do not need is not kept: asking for it is an Error."""
-
-    __slots__ = ("_core",)
-
-    def __init__(self, core: _core.Frame) -> None:
-        self._core = core
-
-    def _kept(self, name: str) -> Array:
-        found = self._core.truth(name)
-        if found is None:
-            raise Error(f"truth.{name}", "not kept", "", "simulate(..., columns='all') keeps all truth")
-        return found
-
-    @property
-    def range_m(self) -> FloatArray:
-        """Distance along the beam from its origin, m."""
-        return self._kept("range_m")
-
-    @property
-    def instance(self) -> npt.NDArray[np.uint32]:
-        """Which object of the scene: ``scene.objects[instance]``."""
-        return self._kept("instance")
-
-    @property
-    def primitive(self) -> npt.NDArray[np.uint32]:
-        """Which triangle of the object's mesh."""
-        return self._kept("primitive")
-
-    @property
-    def normal(self) -> npt.NDArray[np.float32]:
-        """Unit normal of the triangle towards the sensor, in the sensor's frame, (rows, cols, 3)."""
-        return self._kept("normal")
-
-    @property
-    def shading_normal(self) -> npt.NDArray[np.float32]:
-        """Interpolated normal, bent by the normal map; likewise."""
-        return self._kept("shading_normal")
-
-    @property
-    def cos_incidence(self) -> npt.NDArray[np.float32]:
-        """Cosine between the beam, turned round, and `normal`."""
-        return self._kept("cos_incidence")
-
-    @property
-    def cos_shading(self) -> npt.NDArray[np.float32]:
-        """The same with `shading_normal`."""
-        return self._kept("cos_shading")
-
-    @property
-    def barycentrics(self) -> npt.NDArray[np.float32]:
-        """Weights of the triangle's corners 1 and 2, (rows, cols, 2)."""
-        return self._kept("barycentrics")
-
-    @property
-    def colour(self) -> npt.NDArray[np.float32]:
-        """Diffuse rgb, (rows, cols, 3)."""
-        return self._kept("colour")
-
-    @property
-    def object_point_m(self) -> FloatArray:
-        """The point hit, in the object's own frame before scale, m, (rows, cols, 3)."""
-        return self._kept("object_point_m")
-
-
-class Cloud(Mapping[str, Array]):
-    """Columns of a frame in a coordinate frame, by name. An organised cloud's arrays are (rows, cols)
-    or (rows, cols, k), one of hits alone (n,) or (n, k). They are the caller's own, may be written
-    to, and export __dlpack__."""
-
-    def __init__(self, core: _core.Cloud, flat: bool) -> None:
-        self._core = core
-        self._places = {name: index for index, name in enumerate(core.columns)}
-        self._flat = flat
-
-    def __getitem__(self, name: str) -> Array:
-        if name not in self._places:
-            raise Error("cloud", f"no column {name!r}", ", ".join(self._places), "ask for it: cloud(columns=[...])")
-        column = self._core.column(self._places[name])
-        return column[0] if self._flat else column
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._places)
-
-    def __len__(self) -> int:
-        return len(self._places)
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._places
-
-    @property
-    def points(self) -> int:
-        """Points, with those that are misses."""
-        return self._core.rows * self._core.cols
-
-    @property
-    def frame_id(self) -> str:
-        """Name of the coordinate frame."""
-        return self._core.frame_id
-
-    @property
-    def world_from_cloud(self) -> FloatArray:
-        """Pose of that frame in the world, 4x4."""
-        return self._core.world_from_cloud
-
-    def to_open3d(self) -> Any:
-        """The hits as open3d.geometry.PointCloud, with normals if the cloud has them."""
-        import open3d
-
-        xyz = self["xyz"].reshape(-1, 3)
-        is_hit = np.isfinite(xyz[:, 0])
-        points = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(xyz[is_hit]))
-        if "normal" in self:
-            normals = self["normal"].reshape(-1, 3)[is_hit].astype(np.float64)
-            points.normals = open3d.utility.Vector3dVector(normals)
-        return points
-
-    def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td>{name}</td><td>{shape_text(values.shape)}</td><td>{values.dtype}</td></tr>"
-            for name, values in self.items()
-        )
-        return f"<p>{self.points} points in {self.frame_id}</p><table>{rows}</table>"
-
-    def __repr__(self) -> str:
-        return f"<glidar.Cloud of {self.points} points in {self.frame_id}: {', '.join(self)}>"
 
 
 class Frame:
@@ -202,7 +72,7 @@ class Frame:
         found = self._core.measured("sigma_m")
         return np.broadcast_to(np.float32(0.0), (self.rows, self.cols)) if found is None else found
 
-    def _measured(self, name: str) -> Array:
+    def _measured(self, name: str) -> npt.NDArray[Any]:
         found = self._core.measured(name)
         assert found is not None
         return found
@@ -313,8 +183,17 @@ class Frame:
         if layout is not None and columns is not None:
             remedy = "a layout has its own columns: leave columns out"
             raise Error("layout and columns", "both are given", "one of the two", remedy)
-        options = _core.save_options(encoding, ply_ascii, hits_only, sidecar, layout or "", scale)
-        self._core.save(os.fspath(path), column_list(columns), frame, deskew, options, log)
+        options = _core.SaveOptions()
+        options.columns = column_list(columns)
+        options.frame = frame
+        options.deskew = deskew
+        options.set_pcd(encoding)
+        options.set_ply_ascii(ply_ascii)
+        options.set_dense(hits_only)
+        options.set_sidecar(sidecar)
+        options.set_layout(layout or "")
+        options.set_depth_units_per_m(scale)
+        self._core.save(os.fspath(path), options, log)
 
     def show(self) -> Any:
         """A matplotlib figure: depth and intensity, as images. Jupyter draws it; elsewhere

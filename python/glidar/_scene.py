@@ -16,125 +16,15 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import FloatArray, floats, log, one_of, whole
+from ._inputs import FloatArray, floats, log, one_of
 from ._mesh import Mesh, mesh_of
+from ._object import Object
 from ._sensor import Sensor, load_sensor, plain
 from ._simulator import Simulator
 
 _UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254}
 _AXES = ("x", "y", "z")
 _MOST_SIMULATORS = 8
-
-
-class Object:
-    """One placed model of a scene. Setting an attribute changes the scene: what was measured before
-    stays as it was."""
-
-    __slots__ = ("_index", "_scene")
-
-    def __init__(self, scene: Scene, index: int) -> None:
-        self._scene = scene
-        self._index = index
-
-    def _info(self) -> dict[str, Any]:
-        return self._scene._core.object(self._index)
-
-    def _set(self, **changes: Any) -> None:
-        given: dict[str, Any] = {"pose": None, "scale": None, "name": None, "id": None, "class_name": None}
-        self._scene._simulators.clear()
-        self._scene._core.set_object(self._index, **(given | changes))
-
-    @property
-    def index(self) -> int:
-        """Its place in the scene, as ``Truth.instance`` has it."""
-        return self._index
-
-    @property
-    def name(self) -> str:
-        """Its name."""
-        return str(self._info()["name"])
-
-    @name.setter
-    def name(self, name: str) -> None:
-        if name in {other.name for other in self._scene if other.index != self._index}:
-            raise Error("name", f"{name!r}, which another object has", "each name once")
-        self._set(name=name)
-
-    @property
-    def id(self) -> int:
-        """The user's number for it, which clouds tell in the column `instance`."""
-        return int(self._info()["id"])
-
-    @id.setter
-    def id(self, number: int) -> None:
-        if number in {other.id for other in self._scene if other.index != self._index}:
-            raise Error("id", f"{number}, which another object has", "each id once")
-        self._set(id=whole(number, "id", 2**32 - 2))
-
-    @property
-    def class_name(self) -> str:
-        """Its class."""
-        return str(self._info()["class_name"])
-
-    @class_name.setter
-    def class_name(self, name: str) -> None:
-        self._set(class_name=name)
-
-    @property
-    def pose(self) -> FloatArray:
-        """world_from_object, 4x4, without scale."""
-        pose: FloatArray = self._info()["pose"]
-        return pose
-
-    @pose.setter
-    def pose(self, pose: npt.ArrayLike) -> None:
-        self._set(pose=floats(pose, "pose", (4, 4))[None])
-
-    @property
-    def scale(self) -> float:
-        """p_world = pose (scale p_object)."""
-        return float(self._info()["scale"])
-
-    @scale.setter
-    def scale(self, scale: float) -> None:
-        self._set(scale=float(floats(scale, "scale", ())))
-
-    @property
-    def materials(self) -> list[str]:
-        """Names of its materials."""
-        return self._scene._core.materials(self._index)
-
-    def set_materials(self, changes: Mapping[str, Any]) -> None:
-        """Changes its materials, and not those of copies.
-
-        Args:
-            changes: as ``materials`` in scene files (docs/files.md): by the material's name, or "*" for
-                all, e.g. ``{"*": {"surface": "asphalt"}}`` or ``{"*": {"diffuse": [0.9, 0.1, 0.1]}}``.
-
-        Raises:
-            Error: names the field, what is allowed and the nearest known key.
-        """
-        self._scene._simulators.clear()
-        self._scene._core.set_materials(self._index, json.dumps(plain(changes, "materials")))
-
-    @property
-    def source(self) -> str:
-        """Where its mesh came from."""
-        return str(self._info()["source"])
-
-    @property
-    def mesh(self) -> Mesh:
-        """Its mesh: copies of the arrays, in the object's own frame before scale."""
-        arrays: dict[str, Any] = self._scene._core.mesh(self._index)
-        return Mesh(**arrays)
-
-    @property
-    def triangles(self) -> int:
-        """Triangles of its mesh."""
-        return int(self._info()["triangles"])
-
-    def __repr__(self) -> str:
-        return f"<glidar.Object {self.index} {self.name!r} of {self.source}: {self.triangles} triangles>"
 
 
 @dataclass(frozen=True)
@@ -178,6 +68,18 @@ class Scene:
             self._core = _core.load_scene(path, _metres(unit), _axis(up), True, log)
         else:
             self._core.add_model(path, _metres(unit), _axis(up), True, log)
+
+    @staticmethod
+    def from_dict(description: Mapping[str, Any]) -> Scene:
+        """A scene of the keys of a scene file (docs/files.md): models, sensor, sensor_pose ... Paths count
+        from the working folder.
+
+        Raises:
+            Error: names the field, what is allowed and the nearest known key.
+        """
+        scene = Scene()
+        scene._core = _core.parse_scene(json.dumps(plain(description, "scene")), log)
+        return scene
 
     def add_model(
         self,
@@ -224,14 +126,14 @@ class Scene:
         mesh = mesh_of(vertices) if triangles is None else Mesh(vertices, triangles, normals, uvs, colours)
         corners = floats(mesh.vertices, "vertices", (None, 3))
         count = len(corners)
-        index = self._core.add_mesh(
-            str(placing.get("name", "mesh")),
-            corners,
-            _triangles(mesh.triangles, count),
-            _per_vertex(mesh.normals, "normals", count, 3),
-            _per_vertex(mesh.uvs, "uvs", count, 2),
-            _per_vertex(mesh.colours, "colours", count, 3),
-        )
+        arrays = {
+            "vertices": corners,
+            "triangles": _triangles(mesh.triangles, count),
+            "normals": _per_vertex(mesh.normals, "normals", count, 3),
+            "uvs": _per_vertex(mesh.uvs, "uvs", count, 2),
+            "colours": _per_vertex(mesh.colours, "colours", count, 3),
+        }
+        index = self._core.add_mesh(str(placing.get("name", "mesh")), arrays)
         self._simulators.clear()
         return self._placed(index, placing)
 
@@ -248,7 +150,7 @@ class Scene:
         """The object just added, with what is given of it, a name of its own and a number."""
         made = Object(self, index)
         try:
-            self._core.set_object(index, None, None, self._free_name(made.name), self._free_id(index), None)
+            self._core.set_object(index, {"name": self._free_name(made.name), "id": self._free_id(index)})
             self._place(made, placing)
         except BaseException:
             self._core.drop_last()

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from ._scene import Scene
 
 _RENDERERS = ("embree", "opengl")
+_MOST_32 = 2**32 - 1
+_MOST_64 = 2**64 - 1
 
 
 class Simulator:
@@ -66,9 +68,7 @@ class Simulator:
             self._core.simulate_one(
                 sensor,
                 object_trajectories(objects, 1, self._core.objects),
-                whole(seed, "seed", 2**64 - 1),
-                whole(frame, "frame", 2**32 - 1),
-                whole(sensor_id, "sensor_id", 2**32 - 1),
+                (whole(seed, "seed", _MOST_64), whole(frame, "frame", _MOST_32), whole(sensor_id, "sensor_id", _MOST_32)),
                 self._fields(columns),
             )
         )
@@ -107,9 +107,11 @@ class Simulator:
         measured = self._core.simulate(
             sensors,
             object_trajectories(objects, count, self._core.objects),
-            whole_numbers(seeds, "seed", count, 64),
-            whole_numbers(numbers, "frame", count, 32),
-            whole(sensor_id, "sensor_id", 2**32 - 1),
+            (
+                whole_numbers(seeds, "seed", count, 64),
+                whole_numbers(numbers, "frame", count, 32),
+                whole(sensor_id, "sensor_id", _MOST_32),
+            ),
             self._fields(columns),
         )
         return [Frame(core) for core in measured]

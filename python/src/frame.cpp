@@ -84,6 +84,7 @@ PointCloud make_cloud(const Measured& m, const std::vector<std::string>& columns
                       const std::string& frame, bool deskew) {
   CloudFrame axes = cloud_frame(frame, *m.beams, m.frame.world_from_sensor);
   axes.deskew = deskew;
+  axes.workers = &m.prepared->renderer->workers();
   PointCloud cloud;
   make_point_cloud(m.frame, *m.beams, *m.prepared->scene, axes, columns, cloud);
   return cloud;
@@ -119,8 +120,8 @@ std::vector<std::string> column_names_of(const CloudHandle& handle) {
 /// What a file is to hold, as for `glidar render`.
 struct SaveOptions {
   std::vector<std::string> columns;
-  std::string frame;
-  bool deskew;
+  std::string frame = "sensor";
+  bool deskew = false;
   FileSinkOptions sink;
 };
 
@@ -143,24 +144,39 @@ void save_to(const Measured& m, const std::filesystem::path& path, const SaveOpt
   sink->write(make_cloud(m, columns, options.frame, options.deskew), m.frame);
 }
 
-void save(const Measured& measured, const std::filesystem::path& path,
-          const std::vector<std::string>& columns, const std::string& frame, bool deskew,
-          const FileSinkOptions& sink, const nb::object& log) {
+void save(const Measured& measured, const std::filesystem::path& path, SaveOptions options,
+          const nb::object& log) {
   unlocked([&](Watch& watch) {
-    SaveOptions options{columns, frame, deskew, sink};
     options.sink.progress = watch.progress();
     save_to(measured, path, options, report_to(log, watch));
   });
 }
 
-FileSinkOptions sink_options(int pcd, bool ply_ascii, bool dense, bool sidecar,
-                             const std::string& layout, double depth_units_per_m) {
-  return {.pcd = static_cast<PcdEncoding>(pcd),
-          .ply_ascii = ply_ascii,
-          .dense = dense,
-          .sidecar = sidecar,
-          .layout = layout,
-          .depth_png_units_per_m = depth_units_per_m};
+template <auto kMember>
+auto sink_member() {
+  return [](SaveOptions& self, std::remove_reference_t<decltype(self.sink.*kMember)> value) {
+    self.sink.*kMember = std::move(value);
+  };
+}
+
+void bind_save_options(nb::module_& module) {
+  nb::class_<SaveOptions>(module, "SaveOptions")
+      .def(nb::init<>())
+      .def_rw("columns", &SaveOptions::columns)
+      .def_rw("frame", &SaveOptions::frame)
+      .def_rw("deskew", &SaveOptions::deskew)
+      .def(
+          "set_pcd",
+          [](SaveOptions& self, int encoding) {
+            self.sink.pcd = static_cast<PcdEncoding>(encoding);
+          },
+          nb::arg("encoding"))
+      .def("set_ply_ascii", sink_member<&FileSinkOptions::ply_ascii>(), nb::arg("value"))
+      .def("set_dense", sink_member<&FileSinkOptions::dense>(), nb::arg("value"))
+      .def("set_sidecar", sink_member<&FileSinkOptions::sidecar>(), nb::arg("value"))
+      .def("set_layout", sink_member<&FileSinkOptions::layout>(), nb::arg("value"))
+      .def("set_depth_units_per_m", sink_member<&FileSinkOptions::depth_png_units_per_m>(),
+           nb::arg("value"));
 }
 
 std::vector<std::string> known_columns() {
@@ -181,6 +197,11 @@ void bind_cloud(nb::module_& module) {
 
 }  // namespace
 
+FramePool::FramePool() {
+  constexpr std::size_t kMostSpareFrames = 1024;
+  spare_.reserve(kMostSpareFrames);  // so that giving one back cannot fail
+}
+
 Frame FramePool::take() {
   const std::lock_guard lock(mutex_);
   if (spare_.empty()) return {};
@@ -194,15 +215,13 @@ void FramePool::give_back(Frame frame) noexcept {
   const std::size_t beams = frame.range_m.capacity();
   if (beams == 0) return;
   const std::lock_guard lock(mutex_);
-  if (spare_beams_ + beams > kMostSpareBeams) return;
+  if (spare_beams_ + beams > kMostSpareBeams || spare_.size() == spare_.capacity()) return;
   spare_beams_ += beams;
   spare_.push_back(std::move(frame));
 }
 
 void bind_frame(nb::module_& module) {
-  nb::class_<FileSinkOptions>(module, "SaveOptions");
-  module.def("save_options", sink_options, nb::arg("pcd"), nb::arg("ply_ascii"), nb::arg("dense"),
-             nb::arg("sidecar"), nb::arg("layout"), nb::arg("depth_units_per_m"));
+  bind_save_options(module);
   module.def("cloud_column_names", known_columns);
   bind_cloud(module);
   nb::class_<Measured>(module, "Frame")
@@ -222,10 +241,8 @@ void bind_frame(nb::module_& module) {
            nb::sig("def truth(self, name: str) -> numpy.ndarray | None"))
       .def("cloud", cloud_of, nb::arg("columns"), nb::arg("frame"), nb::arg("deskew"),
            nb::arg("hits_only"))
-      .def("save", save, nb::arg("path"), nb::arg("columns"), nb::arg("frame"), nb::arg("deskew"),
-           nb::arg("options"), nb::arg("log").none(),
-           nb::sig("def save(self, path: str, columns: Sequence[str], frame: str, deskew: bool, "
-                   "options: SaveOptions, log: object | None) -> None"));
+      .def("save", save, nb::arg("path"), nb::arg("options"), nb::arg("log").none(),
+           nb::sig("def save(self, path: str, options: SaveOptions, log: object | None) -> None"));
 }
 
 }  // namespace glidar::python

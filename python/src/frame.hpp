@@ -14,6 +14,7 @@ namespace glidar::python {
 /// Frames that nobody holds any more: their memory serves the next ones.
 class FramePool {
  public:
+  FramePool();
   Frame take();
   void give_back(Frame frame) noexcept;
 

@@ -31,11 +31,7 @@ ModelOptions model_options(double metres_per_unit, const std::optional<int>& up,
   return options;
 }
 
-/// A scene file with all that it names.
-SceneHandle load_file(const std::filesystem::path& path, const ModelOptions& options,
-                      const nb::object& log) {
-  SceneFile file =
-      unlocked([&](Watch& watch) { return load_scene_file(path, options, report_to(log, watch)); });
+SceneHandle handle_of(SceneFile file) {
   SceneHandle handle;
   handle.scene = std::make_shared<Scene>(std::move(file.scene));
   handle.motion = std::move(file.world_from_instance);
@@ -53,7 +49,14 @@ SceneHandle load_file(const std::filesystem::path& path, const ModelOptions& opt
 
 SceneHandle load(const std::filesystem::path& path, double metres_per_unit,
                  const std::optional<int>& up, bool use_cache, const nb::object& log) {
-  return load_file(path, model_options(metres_per_unit, up, use_cache), log);
+  const ModelOptions options = model_options(metres_per_unit, up, use_cache);
+  return handle_of(unlocked(
+      [&](Watch& watch) { return load_scene_file(path, options, report_to(log, watch)); }));
+}
+
+SceneHandle parse(const std::string& text, const nb::object& log) {
+  return handle_of(
+      unlocked([&](Watch& watch) { return parse_scene(text, report_to(log, watch)); }));
 }
 
 /// Whatever is added to a scene whose instances move stands still.
@@ -146,14 +149,21 @@ Mesh make_mesh(const std::string& name, const MeshArrays& arrays) {
   return mesh;
 }
 
-std::size_t add_mesh(SceneHandle& handle, const std::string& name, const Table<double, 3>& vertices,
-                     const Table<std::uint32_t, 3>& triangles,
-                     const std::optional<Floats3>& normals,
-                     const std::optional<Table<float, 2>>& uvs,
-                     const std::optional<Floats3>& colours) {
+/// An entry of a dict, where it has one that is not None.
+template <class T>
+std::optional<T> entry(const nb::dict& dict, const char* key) {
+  if (!dict.contains(key) || dict[key].is_none()) return std::nullopt;
+  return nb::cast<T>(dict[key]);
+}
+
+std::size_t add_mesh(SceneHandle& handle, const std::string& name, const nb::dict& arrays) {
   Model model;
   model.source = "array:" + name;
-  model.mesh = make_mesh(name, {vertices, triangles, normals, uvs, colours});
+  model.mesh =
+      make_mesh(name, {entry<Table<double, 3>>(arrays, "vertices").value(),
+                       entry<Table<std::uint32_t, 3>>(arrays, "triangles").value(),
+                       entry<Floats3>(arrays, "normals"), entry<Table<float, 2>>(arrays, "uvs"),
+                       entry<Floats3>(arrays, "colours")});
   model.materials = {Material{}};
   const std::size_t instance = glidar::add_model(handle.change(), std::move(model));
   add_still(handle);
@@ -175,16 +185,17 @@ std::uint32_t class_number(Scene& scene, const std::string& name) {
 }
 
 /// Sets what is given of an object.
-void set_object(SceneHandle& handle, std::size_t index, const std::optional<PoseArray>& pose,
-                std::optional<double> scale, const std::optional<std::string>& name,
-                std::optional<std::uint32_t> id, const std::optional<std::string>& class_name) {
+void set_object(SceneHandle& handle, std::size_t index, const nb::dict& changes) {
   Scene& scene = handle.change();
   Instance changed = scene.instances.at(index);
+  const auto pose = entry<PoseArray>(changes, "pose");
   if (pose) changed.world_from_object = pose_of(*pose, 0, "pose");
-  if (scale) changed.scale = *scale;
-  if (name) changed.name = *name;
-  if (id) changed.id = *id;
-  if (class_name) changed.class_id = class_number(scene, *class_name);
+  changed.scale = entry<double>(changes, "scale").value_or(changed.scale);
+  changed.name = entry<std::string>(changes, "name").value_or(changed.name);
+  changed.id = entry<std::uint32_t>(changes, "id").value_or(changed.id);
+  if (const auto name = entry<std::string>(changes, "class_name")) {
+    changed.class_id = class_number(scene, *name);
+  }
   std::swap(scene.instances[index], changed);
   try {
     validate(scene);
@@ -282,12 +293,11 @@ void bind_scene(nb::module_& module) {
       .def("__len__", [](const SceneHandle& self) { return self.scene->instances.size(); })
       .def("add_model", add_model, nb::arg("source"), nb::arg("metres_per_unit"),
            nb::arg("up").none(), nb::arg("use_cache"), nb::arg("log").none())
-      .def("add_mesh", add_mesh, nb::arg("name"), nb::arg("vertices"), nb::arg("triangles"),
-           nb::arg("normals").none(), nb::arg("uvs").none(), nb::arg("colours").none())
+      .def("add_mesh", add_mesh, nb::arg("name"), nb::arg("arrays"),
+           nb::sig("def add_mesh(self, name: str, arrays: dict[str, typing.Any]) -> int"))
       .def("add_instance", add_instance, nb::arg("of"))
-      .def("set_object", set_object, nb::arg("index"), nb::arg("pose").none(),
-           nb::arg("scale").none(), nb::arg("name").none(), nb::arg("id").none(),
-           nb::arg("class_name").none())
+      .def("set_object", set_object, nb::arg("index"), nb::arg("changes"),
+           nb::sig("def set_object(self, index: int, changes: dict[str, typing.Any]) -> None"))
       .def("mesh", mesh_of, nb::arg("index"),
            nb::sig("def mesh(self, index: int) -> dict[str, numpy.ndarray | None]"))
       .def("set_materials", set_materials_of, nb::arg("index"), nb::arg("text"))
@@ -300,6 +310,7 @@ void bind_scene(nb::module_& module) {
       .def("drop_last", drop_last)
       .def("rig", rig_of, nb::sig("def rig(self) -> list[tuple[str, Sensor, numpy.ndarray]]"))
       .def("rig_motion", rig_motion_of);
+  module.def("parse_scene", parse, nb::arg("text"), nb::arg("log").none());
   module.def("load_scene", load, nb::arg("path"), nb::arg("metres_per_unit"), nb::arg("up").none(),
              nb::arg("use_cache"), nb::arg("log").none(),
              nb::sig("def load_scene(path: str, metres_per_unit: float, up: int | None, "

@@ -10,10 +10,12 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/unique_ptr.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <tuple>
 
 namespace glidar::python {
 namespace {
@@ -109,10 +111,14 @@ Frames measure_all(const Simulator& simulator, const Batch& batch, Watch& watch)
   return frames;
 }
 
+/// Seeds, numbers of the frames, and which sensor of a rig it is: what random numbers depend on.
+using Keys = std::tuple<Numbers<std::uint64_t>, Numbers<std::uint32_t>, std::uint32_t>;
+using Key = std::tuple<std::uint64_t, std::uint32_t, std::uint32_t>;
+
 nb::list simulate_all(const Simulator& simulator, const Trajectories& sensors,
-                      const std::optional<Trajectories>& objects,
-                      const Numbers<std::uint64_t>& seeds, const Numbers<std::uint32_t>& numbers,
-                      std::uint32_t sensor_id, const HitFields& fields) {
+                      const std::optional<Trajectories>& objects, const Keys& keys,
+                      const HitFields& fields) {
+  const auto& [seeds, numbers, sensor_id] = keys;
   const Batch batch{.sensors = sensors,
                     .objects = objects,
                     .seeds = {seeds.data(), seeds.shape(0)},
@@ -129,9 +135,9 @@ nb::list simulate_all(const Simulator& simulator, const Trajectories& sensors,
 
 /// The same for one frame, with less ado.
 std::unique_ptr<Measured> simulate_one(const Simulator& simulator, const Trajectories& sensor,
-                                       const std::optional<Trajectories>& objects,
-                                       std::uint64_t seed, std::uint32_t number,
-                                       std::uint32_t sensor_id, const HitFields& fields) {
+                                       const std::optional<Trajectories>& objects, const Key& key,
+                                       const HitFields& fields) {
+  const auto& [seed, number, sensor_id] = key;
   const Batch batch{.sensors = sensor,
                     .objects = objects,
                     .seeds = {&seed, 1},
@@ -170,12 +176,11 @@ void bind_simulator(nb::module_& module) {
   module.def("fields_for", fields, nb::arg("columns"));
   nb::class_<Simulator>(module, "Simulator")
       .def("simulate", simulate_all, nb::arg("sensors"), nb::arg("objects").none(),
-           nb::arg("seeds"), nb::arg("numbers"), nb::arg("sensor_id"), nb::arg("fields"),
-           nb::sig("def simulate(self, sensors: Trajectories, objects: Trajectories | None, seeds: "
-                   "numpy.ndarray, numbers: numpy.ndarray, sensor_id: int, fields: HitFields) -> "
-                   "list[Frame]"))
+           nb::arg("keys"), nb::arg("fields"),
+           nb::sig("def simulate(self, sensors: Trajectories, objects: Trajectories | None, keys: "
+                   "tuple[numpy.ndarray, numpy.ndarray, int], fields: HitFields) -> list[Frame]"))
       .def("simulate_one", simulate_one, nb::arg("sensor"), nb::arg("objects").none(),
-           nb::arg("seed"), nb::arg("number"), nb::arg("sensor_id"), nb::arg("fields"))
+           nb::arg("key"), nb::arg("fields"))
       .def("usual_motion", usual_motion)
       .def_prop_ro("objects",
                    [](const Simulator& self) { return self.prepared->scene->instances.size(); });

@@ -348,6 +348,22 @@ TEST(SceneFile, ErrorsOfAModelAreToldWithTheirPlaceInTheScene) {
             "allowed: asteroid, sphere, box, torus, plane; did you mean 'builtin:asteroid'?");
 }
 
+TEST(SetMaterials, ChangesOneInstanceAsASceneFileDoes) {
+  Scene scene;
+  add_model(scene, load_model("builtin:box", {}, {}));
+  scene.instances.push_back(Instance(scene.instances[0]));
+  const std::string name = scene.materials[0].name;
+  set_materials(scene, 1, R"({"*": {"diffuse": [0.25, 0.5, 1], "mirror": 0.5}})");
+  const Material& changed = scene.materials[scene.instances[1].materials[0]];
+  EXPECT_EQ(changed.diffuse, Eigen::Vector3f(0.25F, 0.5F, 1.0F));
+  EXPECT_EQ(changed.mirror, 0.5F);
+  EXPECT_EQ(scene.materials[scene.instances[0].materials[0]].mirror, 0.0F);
+  const TestFolder folder;
+  EXPECT_EQ(error_of(folder, [&] { set_materials(scene, 1, "{paint: {mirror: 1}}"); }),
+            "materials: paint: the model has no material 'paint'; allowed: '" + name +
+                "', or '*' for all");
+}
+
 TEST(SceneFile, ExampleLoads) {
   const SceneFile file = load_scene_file(
       std::filesystem::path(GLIDAR_SOURCE_FOLDER) / "examples/two_rocks.yaml", {}, {});

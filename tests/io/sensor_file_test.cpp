@@ -4,6 +4,8 @@
 
 #include "yaml_files.hpp"
 
+#include <gmock/gmock.h>
+
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -344,6 +346,32 @@ TEST(SensorFile, FolderIsNoFile) {
   std::filesystem::create_directory(folder.path() / "camera.yaml");
   EXPECT_EQ(error_of(folder, [&] { load_sensor_file(folder.path() / "camera.yaml"); }),
             "camera.yaml: a folder; allowed: a YAML file");
+}
+
+TEST(ParseSensor, ReadsYamlAndJsonAsAFile) {
+  const std::string yaml = "{optics: {width: 40, height: 30, fov_deg: 20}, rate_hz: 5}";
+  const std::string json =
+      R"({"optics": {"width": 40, "height": 30, "fov_deg": 20.0}, "rate_hz": 5, "name": "a"})";
+  for (const Sensor& sensor : {parse_sensor(yaml), parse_sensor(json), load(yaml)}) {
+    EXPECT_EQ(std::get<Pinhole>(sensor.optics).intrinsics.width, 40U);
+    EXPECT_EQ(sensor.rate_hz, 5.0);
+  }
+  EXPECT_EQ(parse_sensor(json).name, "a");
+}
+
+TEST(ParseSensor, ErrorsNameTheFieldAndNoLine) {
+  const TestFolder folder;
+  const auto error = [&](const std::string& text) {
+    return error_of(folder, [&] { parse_sensor(text); });
+  };
+  const std::string optics = "optics: {width: 4, height: 2, fov_deg: 20}";
+  EXPECT_EQ(error("{optics: {width: 4, height: 2, fov_deg: 200}}"),
+            "sensor: optics.fov_deg: 200; allowed: degrees above 0 and below 180");
+  EXPECT_THAT(error("{" + optics + ", nose: 3}"),
+              ::testing::StartsWith("sensor: nose: unknown key 'nose'"));
+  EXPECT_THAT(error("{" + optics + ", noise: [{type: dropout}, 3]}"),
+              ::testing::StartsWith("sensor: noise[1]: "));
+  EXPECT_THAT(error("{}"), ::testing::StartsWith("sensor: "));
 }
 
 }  // namespace

@@ -114,6 +114,26 @@ def test_many_threads_measure_one_scene_and_each_gets_its_own(asteroid, noisy):
     assert all(same(a, b) for a, b in zip(expected, found, strict=True))
 
 
+def test_opengl_measures_from_any_thread(asteroid, camera):
+    try:
+        first = glidar.simulate(asteroid, camera, renderer="opengl")
+    except glidar.Error as error:
+        pytest.skip(str(error))
+    embree = glidar.simulate(asteroid, camera)
+    assert abs(first.hits - embree.hits) <= 3
+    found = []
+    threads = [
+        threading.Thread(target=lambda: found.append(glidar.simulate(asteroid, camera, renderer="opengl")))
+        for _ in range(3)
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 3
+    assert all(same(first, other) for other in found)
+
+
 def test_simulator_keeps_the_scene_as_it_was(camera):
     scene = glidar.Scene("builtin:sphere")
     simulator = glidar.Simulator(scene, camera)

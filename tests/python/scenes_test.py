@@ -132,6 +132,35 @@ def test_scene_file_brings_sensor_pose_and_motion(tmp_path):
     assert later.world_from_objects[0][:2, :2] == pytest.approx(np.array([[0, -1], [1, 0]]), abs=1e-9)
 
 
+def test_a_dict_is_the_same_as_the_file_with_its_keys(tmp_path):
+    yaml = pytest.importorskip("yaml")
+    path = ROOT / "examples/rig.yaml"
+    scene = glidar.Scene.from_dict(yaml.safe_load(path.read_text()))
+    ours, theirs = glidar.simulate_rig(scene, seed=3), glidar.simulate_rig(glidar.Scene(path), seed=3)
+    assert list(ours) == ["lidar", "camera"]
+    assert all(same(ours[name], theirs[name]) for name in ours)
+    with pytest.raises(glidar.Error, match="scene: models\\[0\\].modle: unknown key"):
+        glidar.Scene.from_dict({"models": [{"modle": "builtin:box"}]})
+
+
+def test_a_rig_is_measured_as_by_the_command_line(tmp_path, program):
+    path = ROOT / "examples/rig.yaml"
+    program("render", path, "--seed", 5, "--columns", "all", "-o", tmp_path / "a.npz")
+    scene = glidar.Scene(path)
+    assert scene.sensor is None
+    assert [mount.number for mount in scene.rig.values()] == [0, 1]
+    for name, frame in glidar.simulate_rig(scene, seed=5, columns="all").items():
+        frame.save(tmp_path / "ours.npz", columns="all")
+        assert (tmp_path / "ours.npz").read_bytes() == (tmp_path / f"a_{name}.npz").read_bytes()
+        assert frame.sensor_id == scene.rig[name].number
+    with pytest.raises(glidar.Error, match="a rig of 2; allowed: one of scene.rig: lidar, camera"):
+        glidar.simulate(scene)
+    moved = glidar.simulate_rig(scene, glidar.pose([0, 0, 1]))
+    assert moved["lidar"].world_from_sensor[:3, 3] == pytest.approx([0, 0, 1.2])
+    with pytest.raises(glidar.Error, match="it has no sensors"):
+        glidar.simulate_rig(glidar.Scene("builtin:box"))
+
+
 def test_models_of_files_have_units_and_axes():
     path = ROOT / "models/satellite/satellite.obj"
     metres, inches = glidar.Scene(path), glidar.Scene(path, unit="in", up="y")

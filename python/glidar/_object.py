@@ -1,0 +1,129 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Objects: what a scene is made of."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+import numpy.typing as npt
+
+from ._errors import Error
+from ._inputs import FloatArray, floats, whole
+from ._mesh import Mesh
+from ._sensor import plain
+
+if TYPE_CHECKING:
+    from ._scene import Scene
+
+
+class Object:
+    """One placed model of a scene. Setting an attribute changes the scene: what was measured before
+    stays as it was."""
+
+    __slots__ = ("_index", "_scene")
+
+    def __init__(self, scene: Scene, index: int) -> None:
+        self._scene = scene
+        self._index = index
+
+    def _info(self) -> dict[str, Any]:
+        return self._scene._core.object(self._index)
+
+    def _set(self, **changes: Any) -> None:
+        self._scene._simulators.clear()
+        self._scene._core.set_object(self._index, changes)
+
+    @property
+    def index(self) -> int:
+        """Its place in the scene, as ``Truth.instance`` has it."""
+        return self._index
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return str(self._info()["name"])
+
+    @name.setter
+    def name(self, name: str) -> None:
+        if name in {other.name for other in self._scene if other.index != self._index}:
+            raise Error("name", f"{name!r}, which another object has", "each name once")
+        self._set(name=name)
+
+    @property
+    def id(self) -> int:
+        """The user's number for it, which clouds tell in the column `instance`."""
+        return int(self._info()["id"])
+
+    @id.setter
+    def id(self, number: int) -> None:
+        if number in {other.id for other in self._scene if other.index != self._index}:
+            raise Error("id", f"{number}, which another object has", "each id once")
+        self._set(id=whole(number, "id", 2**32 - 2))
+
+    @property
+    def class_name(self) -> str:
+        """Its class."""
+        return str(self._info()["class_name"])
+
+    @class_name.setter
+    def class_name(self, name: str) -> None:
+        self._set(class_name=name)
+
+    @property
+    def pose(self) -> FloatArray:
+        """world_from_object, 4x4, without scale."""
+        pose: FloatArray = self._info()["pose"]
+        return pose
+
+    @pose.setter
+    def pose(self, pose: npt.ArrayLike) -> None:
+        self._set(pose=floats(pose, "pose", (4, 4))[None])
+
+    @property
+    def scale(self) -> float:
+        """p_world = pose (scale p_object)."""
+        return float(self._info()["scale"])
+
+    @scale.setter
+    def scale(self, scale: float) -> None:
+        self._set(scale=float(floats(scale, "scale", ())))
+
+    @property
+    def materials(self) -> list[str]:
+        """Names of its materials."""
+        return self._scene._core.materials(self._index)
+
+    def set_materials(self, changes: Mapping[str, Any]) -> None:
+        """Changes its materials, and not those of copies.
+
+        Args:
+            changes: as ``materials`` in scene files (docs/files.md): by the material's name, or "*" for
+                all, e.g. ``{"*": {"surface": "asphalt"}}`` or ``{"*": {"diffuse": [0.9, 0.1, 0.1]}}``.
+
+        Raises:
+            Error: names the field, what is allowed and the nearest known key.
+        """
+        self._scene._simulators.clear()
+        self._scene._core.set_materials(self._index, json.dumps(plain(changes, "materials")))
+
+    @property
+    def source(self) -> str:
+        """Where its mesh came from."""
+        return str(self._info()["source"])
+
+    @property
+    def mesh(self) -> Mesh:
+        """Its mesh: copies of the arrays, in the object's own frame before scale."""
+        arrays: dict[str, Any] = self._scene._core.mesh(self._index)
+        return Mesh(**arrays)
+
+    @property
+    def triangles(self) -> int:
+        """Triangles of its mesh."""
+        return int(self._info()["triangles"])
+
+    def __repr__(self) -> str:
+        return f"<glidar.Object {self.index} {self.name!r} of {self.source}: {self.triangles} triangles>"
