@@ -12,8 +12,12 @@ constexpr std::chrono::milliseconds kIdle{20};
 
 }  // namespace
 
-Delivery::Delivery(std::function<void(const Shot&)> deliver, std::function<void()> idle)
-    : deliver_(std::move(deliver)), idle_(std::move(idle)), thread_([this] { run(); }) {}
+Delivery::Delivery(std::function<void(const Shot&)> deliver, std::function<void()> idle,
+                   std::function<void()> failed)
+    : deliver_(std::move(deliver)),
+      idle_(std::move(idle)),
+      failed_(std::move(failed)),
+      thread_([this] { run(); }) {}
 
 Delivery::~Delivery() {
   join();
@@ -71,6 +75,7 @@ void Delivery::run() {
     if (!lock.owns_lock()) lock.lock();
     failure_ = std::current_exception();
     changed_.notify_all();
+    failed_();
   }
 }
 

@@ -33,8 +33,10 @@ struct Shot {
 /// meanwhile. Never more than two frames are under way: who measures waits for who delivers.
 class Delivery {
  public:
-  /// `deliver` and, often while there is nothing to deliver, `idle` are called by that thread.
-  Delivery(std::function<void(const Shot&)> deliver, std::function<void()> idle);
+  /// `deliver` and, often while there is nothing to deliver, `idle` are called by that thread; so
+  /// is `failed`, once, after one of them threw.
+  Delivery(std::function<void(const Shot&)> deliver, std::function<void()> idle,
+           std::function<void()> failed);
   /// Delivers what was handed over.
   ~Delivery();
   Delivery(const Delivery&) = delete;
@@ -54,6 +56,7 @@ class Delivery {
 
   std::function<void(const Shot&)> deliver_;
   std::function<void()> idle_;
+  std::function<void()> failed_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::array<Shot, 2> shots_;

@@ -75,6 +75,11 @@ int StopRequest::signal() const {
   return noted.load();
 }
 
+void StopRequest::ask() {
+  is_asked_ = true;
+  [[maybe_unused]] const ssize_t told = write(writing_, "!", 1);
+}
+
 void StopRequest::wait_until(std::chrono::steady_clock::time_point time) const {
   using std::chrono::nanoseconds;
   const auto left = std::max(nanoseconds(0), nanoseconds(time - std::chrono::steady_clock::now()));

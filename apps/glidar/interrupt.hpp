@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <atomic>
 #include <chrono>
 
 namespace glidar::app {
@@ -22,7 +23,9 @@ class StopRequest {
 
   /// The signal that came; 0: none.
   [[nodiscard]] int signal() const;
-  [[nodiscard]] bool is_asked() const { return signal() != 0; }
+  [[nodiscard]] bool is_asked() const { return signal() != 0 || is_asked_; }
+  /// The same without a signal, from any thread.
+  void ask();
   /// A file descriptor that can be read once one came.
   [[nodiscard]] int descriptor() const { return reading_; }
   /// Waits until one comes, at most until then.
@@ -31,6 +34,7 @@ class StopRequest {
  private:
   int reading_ = -1;
   int writing_ = -1;
+  std::atomic<bool> is_asked_{false};
 };
 
 }  // namespace glidar::app

@@ -162,7 +162,7 @@ std::unique_ptr<PoseSource> StreamRun::make_source(const StopRequest& stop) {
 }
 
 int StreamRun::run() {
-  const StopRequest stop;
+  StopRequest stop;
   try {
     const std::unique_ptr<PoseSource> source = make_source(stop);
     if (wait_for_partners(stop)) stream(*source, stop);
@@ -198,9 +198,10 @@ bool StreamRun::wait_for_partners(const StopRequest& stop) {
   return !stop.is_asked();
 }
 
-void StreamRun::stream(PoseSource& source, const StopRequest& stop) {
+void StreamRun::stream(PoseSource& source, StopRequest& stop) {
   stats_ = {};
-  Delivery delivery([this](const Shot& shot) { deliver(shot); }, [this] { look_after_peers(); });
+  Delivery delivery([this](const Shot& shot) { deliver(shot); }, [this] { look_after_peers(); },
+                    [&stop] { stop.ask(); });
   while (!stop.is_asked()) {
     const std::optional<Moment> moment = source.next();
     if (!moment) break;

@@ -38,7 +38,7 @@ class StreamRun {
   [[nodiscard]] std::unique_ptr<PoseSource> make_source(const StopRequest& stop);
   bool wait_for_partners(const StopRequest& stop);
   [[nodiscard]] bool has_partners();
-  void stream(PoseSource& source, const StopRequest& stop);
+  void stream(PoseSource& source, StopRequest& stop);
   void measure(const Moment& moment, Shot& shot);
   [[nodiscard]] bool is_wanted(std::uint32_t number) const;
   [[nodiscard]] bool writes_files() const;

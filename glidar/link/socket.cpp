@@ -178,6 +178,7 @@ struct Socket::Impl {
     const std::string name = "inproc://monitor-" + std::to_string(number);
     if (zmq_socket_monitor(socket.handle(), name.c_str(), kEvents) != 0) throw zmq::error_t();
     monitor.set(zmq::sockopt::linger, 0);
+    monitor.set(zmq::sockopt::rcvhwm, 0);  // a full queue would hold up ZeroMQ's thread
     monitor.connect(name);
   }
 };
@@ -195,7 +196,7 @@ Socket::Socket(Context& context, const SocketOptions& options)
     socket.set(zmq::sockopt::curve_secretkey, options.curve->secret_key);
   }
   if (type_of(options) == zmq::socket_type::xpub) socket.set(zmq::sockopt::xpub_verboser, 1);
-  impl_->watch(context.impl_->sockets++);
+  if (options.is_watched) impl_->watch(context.impl_->sockets++);
 }
 
 Socket::~Socket() = default;
@@ -310,7 +311,6 @@ SubscriptionCount Socket::subscriptions(std::span<const std::string> topics) {
 }
 
 std::vector<PeerEvent> Socket::events() {
-  notice_news(impl_->socket);  // such as that it has to subscribe anew
   std::vector<PeerEvent> found;
   zmq::message_t head;
   zmq::message_t address;
@@ -327,6 +327,7 @@ std::vector<PeerEvent> Socket::events() {
       found.push_back(PeerEvent::refused);
     }
   }
+  notice_news(impl_->socket);  // who joined again is subscribed to anew before it is told
   return found;
 }
 

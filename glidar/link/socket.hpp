@@ -68,6 +68,7 @@ struct SocketOptions {
   /// A peer that sends more is cut off before the memory is taken.
   std::int64_t largest_message_bytes = std::int64_t{1} << 20;
   std::chrono::milliseconds linger{0};  ///< for what is unsent when it is closed
+  bool is_watched = false;              ///< events() tells of its connections
   /// Of who listens: peers must know the public key, and all is encrypted. Empty: anybody may.
   std::optional<CurveKeys> curve = {};
 };
@@ -130,7 +131,8 @@ class Socket {
 
   /// How many subscriptions there are now to any of these topics.
   SubscriptionCount subscriptions(std::span<const std::string> topics);
-  /// What happened since the last call.
+  /// What happened since the last call, if it is watched; to be called now and then, as what is not
+  /// taken is kept.
   std::vector<PeerEvent> events();
 
  private:

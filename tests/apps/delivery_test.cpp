@@ -14,7 +14,8 @@ namespace {
 
 TEST(Delivery, DeliversEveryFrameInOrder) {
   std::vector<std::uint32_t> delivered;
-  Delivery delivery([&](const Shot& shot) { delivered.push_back(shot.frame.number); }, [] {});
+  Delivery delivery([&](const Shot& shot) { delivered.push_back(shot.frame.number); }, [] {},
+                    [] {});
   for (std::uint32_t k = 0; k < 100; ++k) {
     delivery.room().frame.number = k;
     delivery.hand_over();
@@ -32,7 +33,7 @@ TEST(Delivery, NeverTouchesAFrameThatIsBeingDelivered) {
         std::this_thread::sleep_for(std::chrono::microseconds(200));
         busy = nullptr;
       },
-      [] {});
+      [] {}, [] {});
   for (int k = 0; k < 50; ++k) {
     const Shot& shot = delivery.room();
     EXPECT_NE(&shot, busy.load());
@@ -40,16 +41,20 @@ TEST(Delivery, NeverTouchesAFrameThatIsBeingDelivered) {
   }
 }
 
-TEST(Delivery, HandsOnWhatGoesWrong) {
-  Delivery delivery([](const Shot&) { throw std::runtime_error("disk full"); }, [] {});
+TEST(Delivery, TellsThatSomethingWentWrongAtOnceAndHandsItOn) {
+  std::atomic<int> failures{0};
+  Delivery delivery([](const Shot&) { throw std::runtime_error("disk full"); }, [] {},
+                    [&] { ++failures; });
   delivery.room();
   delivery.hand_over();
+  while (failures == 0) std::this_thread::yield();
+  EXPECT_EQ(failures, 1);
   EXPECT_THROW(delivery.finish(), std::runtime_error);
 }
 
 TEST(Delivery, IsIdleWhileNothingComes) {
   std::atomic<int> idle{0};
-  Delivery delivery([](const Shot&) {}, [&] { ++idle; });
+  Delivery delivery([](const Shot&) {}, [&] { ++idle; }, [] {});
   while (idle < 3) std::this_thread::yield();
   EXPECT_GE(idle, 3);
 }

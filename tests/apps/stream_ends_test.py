@@ -11,10 +11,10 @@ import sys
 import time
 import unittest
 
-from stream_support import StreamTest
+from stream_support import SMALL, StreamTest
 
 import zmq
-from stream_client import SHUTDOWN, cloud
+from stream_client import SHUTDOWN, cloud, pose_message
 
 
 class Ends(StreamTest):
@@ -67,6 +67,27 @@ class Ends(StreamTest):
         started = time.monotonic()
         self.ends_by(program, signal.SIGINT, subscriber)
         self.assertLess(time.monotonic() - started, 30)
+
+    def full_disk(self, *arguments):
+        """The program where files may have 1 KiB, as on a disk that is nearly full."""
+        program = self.start_by("bash", "-c", 'ulimit -f 1; exec glidar "$@"', "-", "stream", "builtin:box", *SMALL,
+                                "--port", str(self.port), "-o", "a.csv", *arguments)
+        subscriber = self.subscriber()
+        subscriber.shake()
+        return program, subscriber
+
+    def test_at_once_when_the_disk_is_full_and_the_next_frame_is_far_off(self):
+        program, subscriber = self.full_disk("--rate", "0.01")
+        self.assertEqual(len(subscriber.clouds_until_shutdown()), 1)
+        self.assertRegex(self.finished(program, 2), "a_000000.csv.*File too large")
+
+    def test_at_once_when_the_disk_is_full_and_no_pose_comes(self):
+        simulator = self.simulator()
+        program, subscriber = self.full_disk("--physics-port", str(self.physics), "--hwm", "10")
+        simulator.shake()
+        simulator.send(pose_message(1))
+        self.assertEqual(len(subscriber.clouds_until_shutdown()), 1)
+        self.assertIn("a_000000.csv", self.finished(program, 2))
 
     def test_with_all_three_shutdown_messages_of_2015(self):
         program = self.publish("--rate", "max", "--frames", "1")

@@ -32,7 +32,10 @@ class StreamTest(CliTest):
 
     def start(self, *arguments, command="stream"):
         """The running program; whatever happens, it ends with the test."""
-        program = subprocess.Popen(["glidar", command, *arguments], cwd=self.folder, env=self.environment,
+        return self.start_by("glidar", command, *arguments)
+
+    def start_by(self, *command):
+        program = subprocess.Popen(command, cwd=self.folder, env=self.environment,
                                    stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
         self.addCleanup(self.end, program)
         return program

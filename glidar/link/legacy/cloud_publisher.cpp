@@ -24,13 +24,15 @@ link::SocketOptions cloud_socket(const CloudPublisherOptions& options) {
   return {.kind = link::SocketKind::publish,
           .send_queue = options.queue,
           .keeps_newest = options.keeps_newest,
-          .linger = kPatience};
+          .linger = kPatience,
+          .is_watched = true};
 }
 
 link::SocketOptions handshake_socket_options() {
   return {.kind = link::SocketKind::reply,
           .largest_message_bytes = kLargestHandshakeBytes,
-          .linger = kPatience};
+          .linger = kPatience,
+          .is_watched = true};
 }
 
 }  // namespace

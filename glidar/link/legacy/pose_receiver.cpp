@@ -18,7 +18,8 @@ link::SocketOptions pose_socket_options(const PoseReceiverOptions& options) {
   return {.kind = link::SocketKind::subscribe,
           .receive_queue = std::max(options.queue, 1),
           .keeps_newest = options.queue == 0,
-          .largest_message_bytes = kLargestMessageBytes};
+          .largest_message_bytes = kLargestMessageBytes,
+          .is_watched = true};
 }
 
 link::Endpoint next_port(link::Endpoint endpoint) {
@@ -26,13 +27,15 @@ link::Endpoint next_port(link::Endpoint endpoint) {
   return endpoint;
 }
 
-/// For the connection, before the handshake is asked for without it.
+/// For poses' port, once the handshake's is open, before the handshake is asked for without it; and
+/// for a simulator that was cut off.
 constexpr std::chrono::seconds kPatience{1};
 
 /// So that a flood of messages that are no poses does not keep the caller from anything else.
 constexpr int kMostAtOnce = 256;
 
-constexpr link::SocketOptions kHandshakeSocket = {.kind = link::SocketKind::request};
+constexpr link::SocketOptions kHandshakeSocket = {.kind = link::SocketKind::request,
+                                                  .is_watched = true};
 
 }  // namespace
 
@@ -42,18 +45,18 @@ PoseReceiver::PoseReceiver(link::Context& context, const PoseReceiverOptions& op
       options_(options),
       faults_(faults),
       poses_(context, pose_socket_options(options)),
-      handshake_(context, kHandshakeSocket),
-      connecting_(std::chrono::steady_clock::now()) {
+      handshake_(context, kHandshakeSocket) {
   open_poses();
+  open_handshake();
 }
 
 bool PoseReceiver::is_ready() {
-  notice_simulator();
-  ask_when_connected();
-  if (awaits_reply_ && handshake_.receive()) {
+  if (awaits_reply_ && handshake_.receive()) {  // also of one that has sent all and gone since
     awaits_reply_ = false;
     is_ready_ = true;
   }
+  notice_simulator();
+  ask_when_connected();
   return is_ready_;
 }
 
@@ -124,26 +127,45 @@ void PoseReceiver::connect_anew_if_cut_off() {
   open_poses();
 }
 
-/// The subscription travels ahead of the handshake. A simulator that opens its second port first is
-/// asked a little later all the same.
-void PoseReceiver::ask_when_connected() {
-  if (!connecting_ || std::chrono::steady_clock::now() - *connecting_ < kPatience) return;
-  connecting_.reset();
+void PoseReceiver::open_handshake() {
+  handshake_ = link::Socket(context_, kHandshakeSocket);
   handshake_.connect(next_port(options_.endpoint));
+  reachable_.reset();
+  has_asked_ = awaits_reply_ = false;
+}
+
+/// A simulator may send as soon as it has answered, so the subscription has to be there before the
+/// question. It is written once the poses' connection stands; the handshake's is made anew after
+/// that, and the simulator, which has one thread for both, reads it some round trips later. One
+/// that waits for the handshake before it opens the poses' port is asked a little later all the
+/// same.
+void PoseReceiver::ask_when_connected() {
+  if (has_asked_) return;
+  const bool is_late = reachable_ && std::chrono::steady_clock::now() - *reachable_ >= kPatience;
+  if (!is_connected_ && !is_late) return;
+  if (is_connected_) open_handshake();
+  has_asked_ = true;
   awaits_reply_ = handshake_.send({});
 }
 
 /// One that comes back waits for a handshake as it did at first.
 void PoseReceiver::notice_simulator() {
+  for (const link::PeerEvent event : handshake_.events()) {
+    if (event == link::PeerEvent::joined) reachable_ = std::chrono::steady_clock::now();
+    if (event == link::PeerEvent::left) reachable_.reset();
+    if (event == link::PeerEvent::left && !is_connected_) open_handshake();
+  }
   for (const link::PeerEvent event : poses_.events()) {
-    if (event == link::PeerEvent::joined && connecting_) *connecting_ -= kPatience;
-    if (event == link::PeerEvent::joined) lost_.reset();
+    if (event == link::PeerEvent::joined) {
+      is_connected_ = true;
+      lost_.reset();
+    }
     if (event != link::PeerEvent::left) continue;
     faults_.tell("simulator lost",
                  "its connection ended, or it sent more than 16 MiB at once; waiting for it");
-    handshake_ = link::Socket(context_, kHandshakeSocket);
-    awaits_reply_ = false;
-    connecting_ = lost_ = std::chrono::steady_clock::now();
+    is_connected_ = false;
+    open_handshake();
+    lost_ = std::chrono::steady_clock::now();
   }
 }
 

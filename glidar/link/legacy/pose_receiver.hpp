@@ -26,8 +26,9 @@ class PoseReceiver {
   /// outlive it.
   PoseReceiver(link::Context& context, const PoseReceiverOptions& options, link::FaultLog& faults);
 
-  /// Whether the simulator has answered the handshake, for which it is asked once it is connected,
-  /// so that it misses no pose; again when it went away before. To be called time and again.
+  /// Whether the simulator has answered the handshake, for which it is asked once the subscription
+  /// is there, so that no pose is missed; again when it went away before. To be called time and
+  /// again.
   bool is_ready();
   /// The next pose; nothing: there is none now. Messages that are no poses are told to the log and
   /// passed over.
@@ -51,6 +52,7 @@ class PoseReceiver {
   void refuse(const std::string& why);
   [[nodiscard]] bool is_new(std::uint64_t timestamp);
   void open_poses();
+  void open_handshake();
   void connect_anew_if_cut_off();
   void ask_when_connected();
   void notice_simulator();
@@ -60,8 +62,10 @@ class PoseReceiver {
   link::FaultLog& faults_;
   link::Socket poses_;
   link::Socket handshake_;
-  std::optional<std::chrono::steady_clock::time_point> connecting_;  ///< since; empty: asked
-  std::optional<std::chrono::steady_clock::time_point> lost_;        ///< since; empty: connected
+  std::optional<std::chrono::steady_clock::time_point> reachable_;  ///< its handshakes' port, since
+  std::optional<std::chrono::steady_clock::time_point> lost_;       ///< since; empty: connected
+  bool is_connected_ = false;                                       ///< to its poses' port
+  bool has_asked_ = false;
   bool awaits_reply_ = false;
   bool is_ready_ = false;
   bool is_over_ = false;

@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/socket.hpp>
+
+#include "loopback.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <chrono>
+#include <memory>
+
+namespace glidar::link {
+namespace {
+
+/// ZeroMQ holds 1000 events on either side of a monitor's queue; each visit is two of them.
+constexpr int kVisits = 1200;
+
+/// Whether a visitor's request is answered.
+bool visit(Context& context, const Endpoint& at, Socket& server) {
+  constexpr std::array kWord = {std::byte{'?'}};
+  Socket visitor(context, {.kind = SocketKind::request});
+  visitor.connect(at);
+  if (!visitor.send(kWord)) return false;
+  constexpr std::chrono::milliseconds kLook{2};
+  return testing::soon([&] {
+    wait_for({&server}, -1, kLook);
+    if (server.receive()) server.send(kWord);
+    wait_for({&visitor}, -1, kLook);
+    return visitor.receive().has_value();
+  });
+}
+
+class Visits : public ::testing::TestWithParam<bool> {};
+
+TEST_P(Visits, MayBeManyWhetherOrNotAnybodyAsksForEvents) {
+  Context context;
+  Endpoint at;
+  const auto server = testing::at_free_port([&](const Endpoint& endpoint) {
+    at = endpoint;
+    auto socket = std::make_unique<Socket>(
+        context, SocketOptions{.kind = SocketKind::reply, .is_watched = GetParam()});
+    socket->bind(endpoint);
+    return socket;
+  });
+  for (int k = 0; k < kVisits; ++k) ASSERT_TRUE(visit(context, at, *server)) << k;
+  const std::vector<PeerEvent> events = server->events();
+  if (GetParam()) {
+    EXPECT_GE(events.size(), 2U * kVisits - 1);
+  } else {
+    EXPECT_TRUE(events.empty());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sockets, Visits, ::testing::Bool(), [](const auto& is_watched) {
+  return is_watched.param ? "watched" : "unwatched";
+});
+
+}  // namespace
+}  // namespace glidar::link

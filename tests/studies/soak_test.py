@@ -1,0 +1,76 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""scripts/soak.py, shortened, and whether it sees what it looks for."""
+
+import contextlib
+import io
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "scripts"))
+
+try:
+    import matplotlib  # noqa: F401
+    import numpy as np
+    import zmq  # noqa: F401
+except ImportError as missing:
+    print(f"skipped: {missing}")
+    sys.exit(77)
+
+import soak
+
+
+def findings(**counts):
+    return soak.Findings(requests=9, vanished=9, nonsense=9, clouds=9, **counts)
+
+
+def memory(mb_per_s):
+    times = np.arange(0, 3600, 1.0)
+    return np.column_stack([times, 30 + mb_per_s * times, np.full_like(times, 30)])
+
+
+class SoakTest(unittest.TestCase):
+    def test_a_quarter_of_a_minute_goes_well(self):
+        said, complained = io.StringIO(), io.StringIO()
+        with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(said), \
+                contextlib.redirect_stderr(complained):
+            picture = Path(folder, "soak.png")
+            code = soak.main(["--seconds", "15", "--picture", str(picture)])
+            self.assertEqual(picture.read_bytes()[:4], b"\x89PNG")
+        self.assertEqual(code, 0, said.getvalue() + complained.getvalue())
+        self.assertIn("readers took", said.getvalue())
+        self.assertNotIn(" 0 missed", said.getvalue())  # the one that never reads
+
+    def test_a_reply_of_other_bytes_is_a_fault(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = soak.Soak(folder, 10)
+            run.first_replies[3] = b"something else"
+            run.run()
+            run.end()
+        self.assertIn("request 3 has another reply than before", " ".join(run.findings.faults))
+
+    def test_a_program_that_dies_is_a_fault(self):
+        with tempfile.TemporaryDirectory() as folder:
+            run = soak.Soak(folder, 60)
+            run.stream.kill()
+            run.stream.wait()
+            run.run()
+            run.end()
+        self.assertEqual(run.findings.faults, ["glidar ended before its time"])
+
+    def test_memory_that_grows_is_a_fault(self):
+        self.assertEqual(soak.judge(findings(), memory(0.0)), [])
+        self.assertEqual(soak.judge(findings(), memory(0.9 * soak.MEMORY_TOLERANCE_MB / 1800)), [])
+        faults = soak.judge(findings(), memory(1.1 * soak.MEMORY_TOLERANCE_MB / 1800))
+        self.assertEqual(len(faults), 1)
+        self.assertIn("lock-step: memory grew by 2.2 MB", faults[0])
+
+    def test_a_client_that_does_nothing_is_a_fault(self):
+        self.assertEqual(soak.judge(soak.Findings(), memory(0.0)), ["a client did nothing"])
+
+
+if __name__ == "__main__":
+    unittest.main()
