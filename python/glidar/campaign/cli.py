@@ -150,7 +150,7 @@ def main(arguments=None):
         return _fail(error)
     except ModuleNotFoundError as error:
         return _fail(f"Python package '{error.name}' is missing; install the extra of campaigns: "
-                     "pip install 'glidar[campaign]'")
+                     "pip install '.[campaign]' in GLIDAR's source")
     except KeyboardInterrupt:
         print("\nglidar: interrupted; the same command goes on where it stopped", file=sys.stderr)
         return INTERRUPTED

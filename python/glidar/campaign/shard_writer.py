@@ -4,7 +4,6 @@
 
 import numpy as np
 
-from glidar import Error
 from glidar.campaign import files, index
 from glidar.campaign.bop_output import BopOutput
 from glidar.campaign.cloud_output import KITTI_FOLDER, CloudOutput
@@ -68,8 +67,3 @@ class ShardWriter:
 
     def _part_name(self):
         return str(self._folder.part(self._shard).relative_to(self._folder.root))
-
-
-def failure_text(error):
-    """What the index says of a trial that failed."""
-    return str(error) if isinstance(error, Error) else f"{type(error).__name__}: {error}"

@@ -6,7 +6,6 @@ import difflib
 import math
 import re
 from dataclasses import dataclass
-from pathlib import Path
 
 import yaml
 
@@ -226,7 +225,3 @@ def only_key(field, known):
 def optional(found, key, read, otherwise):
     """What `read` makes of a key's value, or the default where the key is left out."""
     return read(found[key]) if key in found else otherwise
-
-
-def path_of(field):
-    return Path(text(field))
