@@ -18,7 +18,6 @@ from pathlib import Path
 from glidar import Error
 
 FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
-PIECE_BYTES = 1 << 22
 
 
 def write_error(path, error):
@@ -118,11 +117,8 @@ def hash_bytes(data):
 
 def hash_file(path):
     """SHA-256 of a file, hexadecimal, as sha256sum prints it."""
-    digest = hashlib.sha256()
     try:
-        with open(path, "rb") as file:
-            while piece := file.read(PIECE_BYTES):
-                digest.update(piece)
+        with open(path, "rb", buffering=0) as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
     except OSError as error:
         raise Error(str(path), f"it cannot be read: {error.strerror}", "", "") from None
-    return digest.hexdigest()
