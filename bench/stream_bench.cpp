@@ -95,7 +95,7 @@ void publish(benchmark::State& state, const View& view, bool is_read) {
         make_point_cloud(shot.frame, *shot.beams, view.scene, {}, kColumns, cloud);
         publisher.write(cloud, shot.frame);
       },
-      [&] { publisher.serve(); });
+      [&] { publisher.serve(); }, [] {});
   std::uint32_t number = 0;
   for (auto _ : state) {
     app::Shot& shot = delivery.room();

@@ -9,6 +9,7 @@ of it runs twice: in lock-step and by the protocol of 2015 (docs/link.md).
 """
 
 import argparse
+import signal
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -237,6 +238,7 @@ def main(arguments=None):
 
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # by way of the blocks that end glidar
     try:
         main()
     except (Trouble, OSError, ImportError) as trouble:

@@ -257,7 +257,7 @@ def report(findings, memory, stats, latencies):
           f"vanished, {findings.nonsense} sent nonsense\n"
           f"  latency {milli[0]:.1f} ms, 99 %: {milli[1]:.1f} ms, longest {milli[2]:.1f} ms")
     clouds, latency = streamed.get("clouds", {}), streamed.get("latency_ms", {})
-    print(f"streaming: {clouds.get('sent')} clouds sent, {clouds.get('missed')} missed by one that never reads; readers took "
+    print(f"streaming: {clouds.get('sent')} clouds sent, {clouds.get('missed')} missed while a queue was full; readers took "
           f"{findings.clouds} and lost {findings.lost_clouds}\n"
           f"  latency {latency.get('p50', 0):.1f} ms, 99 %: {latency.get('p99', 0):.1f} ms, longest "
           f"{latency.get('max', 0):.1f} ms")

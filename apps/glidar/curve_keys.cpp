@@ -13,15 +13,9 @@ namespace {
 
 link::CurveKeys make_file(const std::string& path, Console& console) {
   const link::CurveKeys keys = link::make_curve_keys();
-  AtomicFile file(path);
-  file.commit();  // empty: nobody else may ever read what comes into it
-  std::filesystem::permissions(
-      path, std::filesystem::perms::owner_read | std::filesystem::perms::owner_write);
-  std::ofstream text(path);
-  text << "public " << keys.public_key << "\nsecret " << keys.secret_key << "\n";
-  if (!text.flush()) {
-    throw Error({"--curve-keys, " + path, "cannot be written", "", "is the disk full?"});
-  }
+  AtomicFile file(path, AtomicFile::Readers::owner);
+  file.write("public " + keys.public_key + "\nsecret " + keys.secret_key + "\n");
+  file.commit();
   console.info("made new keys in " + path + "; clients need the public one: " + keys.public_key);
   return keys;
 }

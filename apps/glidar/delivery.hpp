@@ -23,6 +23,7 @@ namespace glidar::app {
 struct Shot {
   Frame frame;
   std::shared_ptr<const Beams> beams;
+  std::uint64_t place = 0;                         ///< among its sensor's frames
   std::size_t mount = 0;                           ///< which of the session's sensors took it
   std::shared_ptr<const lockstep::Moment> placed;  ///< who placed it; nullptr: the command did
   std::string frame_hash;                          ///< what frame_hash() must be; empty: not known

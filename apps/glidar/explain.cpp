@@ -5,6 +5,7 @@
 #include <apps/glidar/option_kinds.hpp>
 #include <apps/glidar/recorded_command.hpp>
 #include <apps/glidar/session.hpp>
+#include <apps/glidar/stream_options.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/sidecar.hpp>
 #include <glidar/story_text.hpp>
@@ -43,12 +44,20 @@ struct ExplainFlags {
                .remedy = std::move(remedy)});
 }
 
-/// The options of the `render` that a sidecar tells.
+/// The options of the `render` or `stream` that a sidecar tells.
 RenderFlags flags_of(const Sidecar& sidecar) {
+  const std::vector<std::string>& told = sidecar.command.arguments;
   CLI::App command;
+  if (!told.empty() && told.front() == "stream") {
+    StreamFlags flags;
+    add_stream_flags(command, flags);
+    parse_recorded(told, "stream", sidecar.path.string(), command);
+    flags.render.duration_s.reset();
+    return flags.render;
+  }
   RenderFlags flags;
   add_render_flags(command, flags);
-  parse_recorded(sidecar.command.arguments, "render", sidecar.path.string(), command);
+  parse_recorded(told, "render", sidecar.path.string(), command);
   return flags;
 }
 
@@ -145,7 +154,7 @@ Command add_explain(CLI::App& program) {
   const auto flags = std::make_shared<ExplainFlags>();
   command.footer(kExamples);
   command
-      .add_option("CLOUD", flags->cloud, "A cloud written by render, with its sidecar beside it")
+      .add_option("CLOUD", flags->cloud, "A cloud by render or stream, with its sidecar beside it")
       ->required()
       ->type_name("");
   const std::string group = "Point";

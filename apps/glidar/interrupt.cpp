@@ -18,12 +18,12 @@ namespace glidar::app {
 namespace {
 
 // Only async-signal-safe calls here.
-extern "C" void end_now(int /*number*/) {
-  constexpr int kExitCode = 130;
+extern "C" void end_now(int number) {
+  constexpr int kSignalled = 128;  // as shells have it
   constexpr std::string_view kMessage = "\nglidar: interrupted; unfinished files are removed\n";
   remove_unfinished_files();
   [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, kMessage.data(), kMessage.size());
-  _exit(kExitCode);
+  _exit(kSignalled + number);
 }
 
 // A signal handler takes no arguments, so these have to be the process's own.

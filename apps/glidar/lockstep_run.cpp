@@ -47,6 +47,11 @@ LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
   if (!flags_.record.empty()) recorder_ = std::make_unique<Recorder>(flags_.record);
   open(flags_.render, {}, console_, session_);
   if (recorder_) recorder_->begin(session_, flags_.command);
+  if (!flags_.stats.empty()) {
+    std::vector<std::string> taken = session_.files;
+    if (recorder_) taken.push_back(flags_.record);
+    protect_files(taken, flags_.stats);
+  }
   for (const Mount& mount : session_.mounts) {
     beams_.push_back(std::make_shared<const Beams>(mount.beams));
   }
@@ -57,17 +62,31 @@ int LockstepRun::run() {
   const StopRequest stop;
   if (!flags_.render.quiet) fmt::print("listening at {}\n", server_.socket().bound_to());
   std::fflush(stdout);  // who started it waits for this line
-  while (!stop.is_asked()) {
-    const std::optional<lockstep::Request> request = server_.receive();
-    if (request) {
-      answer(*request);
-    } else {
-      link::wait_for({&server_.socket()}, stop.descriptor(), kPatience);
+  try {
+    while (!stop.is_asked()) {
+      const std::optional<lockstep::Request> request = server_.receive();
+      if (request) {
+        answer(*request);
+        record();
+      } else {
+        link::wait_for({&server_.socket()}, stop.descriptor(), kPatience);
+      }
     }
+  } catch (const std::exception& error) {
+    recorder_.reset();  // it is not whole
+    finish(error.what());
+    throw;
   }
   finish(fmt::format("signal {}", stop.signal()));
   constexpr int kSignalled = 128;  // as shells have it
   return kSignalled + stop.signal();
+}
+
+/// The frames that were replied. A recording that cannot go on ends the server: it would not be
+/// one.
+void LockstepRun::record() {
+  if (!recorder_) return;
+  for (const link::RecordedFrame& frame : std::exchange(measured_, {})) recorder_->write(frame);
 }
 
 /// Whatever goes wrong with one request is its client's to know.
@@ -77,8 +96,10 @@ void LockstepRun::answer(const lockstep::Request& request) {
     if (const auto* wanted = std::get_if<lockstep::Measure>(&request)) return measure(*wanted);
     describe(std::get<lockstep::Describe>(request));
   } catch (const std::bad_alloc&) {
+    measured_.clear();
     server_.reply_error(id, "request: needs more memory than there is; ask for fewer moments");
   } catch (const std::exception& error) {
+    measured_.clear();
     server_.reply_error(id, error.what());
   }
 }
@@ -133,6 +154,7 @@ void LockstepRun::check(const lockstep::Measure& measure) const {
 void LockstepRun::measure(const lockstep::Measure& measure) {
   constexpr std::size_t kTogether = 32;  // frames that are held at a time
   check(measure);
+  measured_.clear();
   std::vector<lockstep::CloudReply> replies;
   const std::span<const lockstep::Moment> all = measure.moments;
   for (std::size_t first = 0; first < all.size(); first += kTogether) {
@@ -158,7 +180,7 @@ void LockstepRun::measure_some(const lockstep::Measure& measure,
   if (frames_.size() < moments.size()) frames_.resize(moments.size());
   for (const lockstep::Moment& moment : moments) {
     beams.push_back(beams_of(measure.sensor, moment.number));
-    motions.push_back(motion_of(motion_at(moment, session_.scene), mount));
+    motions.push_back(motion_of(motion_at(moment, session_), mount));
     Frame& frame = frames_[beams.size() - 1];
     frame.stamp_ns = moment.t_ns;
     frame.seed = moment.seed;
@@ -176,7 +198,7 @@ void LockstepRun::measure_some(const lockstep::Measure& measure,
   simulate_batch(setups, glidar::fields_for(measure.columns),
                  std::span(frames_).first(moments.size()));
   for (std::size_t i = 0; i < moments.size(); ++i) {
-    if (recorder_) recorder_->note(measure.sensor, frames_[i], &moments[i]);
+    if (recorder_) measured_.push_back(line_of(measure.sensor, frames_[i], &moments[i]));
     replies.push_back(cloud_of(measure, frames_[i], *beams[i]));
   }
 }
@@ -206,7 +228,6 @@ lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, con
 
 void LockstepRun::finish(const std::string& ending) {
   faults_.flush();
-  if (recorder_) recorder_->commit();
   const lockstep::Server::Counts& counts = server_.counts();
   if (stats_file_) {
     const nlohmann::ordered_json text = {{"ended_by", ending},
@@ -217,6 +238,7 @@ void LockstepRun::finish(const std::string& ending) {
     stats_file_->write(text.dump(2) + "\n");
     stats_file_->commit();
   }
+  if (recorder_) recorder_->commit();
   if (flags_.render.quiet) return;
   fmt::print("{} requests, {} refused; {} clouds\n", counts.received, counts.refused,
              counts.clouds);

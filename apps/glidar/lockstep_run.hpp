@@ -28,6 +28,7 @@ class LockstepRun {
 
  private:
   void answer(const lockstep::Request& request);
+  void record();
   void describe(const lockstep::Describe& describe);
   void measure(const lockstep::Measure& measure);
   void check(const lockstep::Measure& measure) const;
@@ -50,6 +51,7 @@ class LockstepRun {
   std::vector<std::shared_ptr<const Beams>> beams_;  ///< of each sensor's frame 0
   link::CloudPool clouds_;
   std::vector<Frame> frames_;
+  std::vector<link::RecordedFrame> measured_;  ///< for the request under way
 };
 
 }  // namespace glidar::app

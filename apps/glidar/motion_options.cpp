@@ -80,7 +80,8 @@ void add_motion_flags(CLI::App& command, MotionFlags& flags) {
 }
 
 Trajectory sensor_trajectory(const MotionFlags& flags, const Pose& world_from_sensor,
-                             bool pose_given, const std::optional<Trajectory>& from_scene_file) {
+                             const Pose& optical_from_sensor, bool pose_given,
+                             const std::optional<Trajectory>& from_scene_file) {
   check(flags, pose_given);
   if (!flags.trajectory.empty()) return load_sensor_poses(flags);
   if (flags.camera_dr.empty()) {
@@ -92,7 +93,8 @@ Trajectory sensor_trajectory(const MotionFlags& flags, const Pose& world_from_se
   }
   const Eigen::Vector3d legacy_rate = parse_rate("--camera-dr", flags.camera_dr);
   return Spin{.pose = world_from_sensor,
-              .rate_rad_s = legacy_from_optical().linear().transpose() * legacy_rate};
+              .rate_rad_s =
+                  (legacy_from_optical() * optical_from_sensor).linear().transpose() * legacy_rate};
 }
 
 std::vector<Trajectory> instance_trajectories(const MotionFlags& flags, const Scene& scene,

@@ -29,8 +29,10 @@ void add_motion_flags(CLI::App& command, MotionFlags& flags);
 /// `pose_given`: an option says where the sensor is; it replaces the scene file's motion and
 /// contradicts --trajectory (Error).
 /// --camera-dr turns about the axes of the 2015 program's sensor: x left, y up, z forward.
+/// `optical_from_sensor` is the identity for a camera.
 Trajectory sensor_trajectory(const MotionFlags& flags, const Pose& world_from_sensor,
-                             bool pose_given, const std::optional<Trajectory>& from_scene_file);
+                             const Pose& optical_from_sensor, bool pose_given,
+                             const std::optional<Trajectory>& from_scene_file);
 
 /// The instances' trajectories: the scene file's, or --model-dr about the single model's own axes.
 /// Throws Error when the option is given and the scene has several objects or moves them itself.

@@ -118,8 +118,11 @@ void plan_legacy(const std::string& name, const SidecarContext& context, const R
 }
 
 bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code no_such_file;  // then it is not the same either
-  return std::filesystem::equivalent(a, b, no_such_file);
+  const auto plain = [](const std::filesystem::path& path) {
+    return std::filesystem::absolute(path).lexically_normal();
+  };
+  std::error_code no_such_file;  // then it is not the same either, but for its name
+  return plain(a) == plain(b) || std::filesystem::equivalent(a, b, no_such_file);
 }
 
 void check_names(const std::vector<Output>& outputs, const std::string& input) {
@@ -253,7 +256,7 @@ void protect_files(const std::vector<std::string>& read, const std::filesystem::
   const auto same = [&](const std::string& file) { return same_file(output, file); };
   if (std::none_of(read.begin(), read.end(), same)) return;
   throw Error({.where = output.string(),
-               .found = "is an input file: the scene was read from it",
+               .found = "is an input file: the scene was read from it, or it is written otherwise",
                .allowed = "",
                .remedy = "choose another name"});
 }

@@ -24,16 +24,13 @@ lockstep::Body body_of(const Trajectory& still) {
 
 }  // namespace
 
-RigMotion motion_at(const lockstep::Moment& moment, const Scene& scene) {
+RigMotion motion_at(const lockstep::Moment& moment, const Session& session) {
   RigMotion motion = {.world_from_rig = trajectory_of(moment.sensor, moment.t_ns),
                       .world_from_instance = {}};
   for (const lockstep::Body& object : moment.objects) {
     motion.world_from_instance.push_back(trajectory_of(object, moment.t_ns));
   }
-  if (!moment.objects.empty()) return motion;
-  for (const Instance& instance : scene.instances) {
-    motion.world_from_instance.emplace_back(ConstantPose{instance.world_from_object});
-  }
+  if (moment.objects.empty()) motion.world_from_instance = session.motion.world_from_instance;
   return motion;
 }
 

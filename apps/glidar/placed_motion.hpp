@@ -7,9 +7,9 @@
 
 namespace glidar::app {
 
-/// How the rig and all instances go on from where a moment places them; without objects these are
-/// where the scene has them.
-RigMotion motion_at(const lockstep::Moment& moment, const Scene& scene);
+/// How the rig and all instances go on from where a moment places them; without objects these move
+/// as in the session.
+RigMotion motion_at(const lockstep::Moment& moment, const Session& session);
 
 /// The bodies of a motion in which all stands still.
 lockstep::Moment placed_by(const RigMotion& motion);

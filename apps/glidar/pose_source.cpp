@@ -51,8 +51,9 @@ std::optional<Moment> MotionSource::next() {
   }
   wait_until_due(*first);
   if (stop_.is_asked()) return std::nullopt;
+  const std::uint64_t number = numbers_[*first]++;
   return Moment{
-      .mount = *first, .number = static_cast<std::uint32_t>(numbers_[*first]++), .due = *due_};
+      .mount = *first, .number = static_cast<std::uint32_t>(number), .place = number, .due = *due_};
 }
 
 void MotionSource::wait_until_due(std::size_t mount) {
@@ -101,7 +102,8 @@ std::optional<Moment> SimulatorSource::next() {
   if (!placement) return std::nullopt;
   last_ = Clock::now();
   if (!first_) first_ = last_;
-  moment_ = {.number = static_cast<std::uint32_t>(number_++),
+  moment_ = {.number = static_cast<std::uint32_t>(number_),
+             .place = number_++,
              .due = last_,
              .motion = motion_of(*placement, scene_),
              .stamp_ns = static_cast<std::int64_t>(placement->timestamp)};
@@ -109,25 +111,27 @@ std::optional<Moment> SimulatorSource::next() {
 }
 
 std::optional<legacy::Placement> SimulatorSource::wait_for_pose() {
-  while (!is_over()) {
+  const Clock::time_point begin = Clock::now();
+  while (!is_done()) {
     if (std::optional<legacy::Placement> placement = receiver_.receive()) return placement;
-    if (receiver_.is_over()) continue;
-    link::wait_for({&receiver_.pose_socket()}, stop_.descriptor(), kLook);
+    if (receiver_.is_over()) {
+      ending_ = "the simulator ended";
+    } else if (options_.timeout_s && seconds_since(begin) > *options_.timeout_s) {
+      has_timed_out_ = true;
+      ending_ = fmt::format("no pose came for {} s", *options_.timeout_s);
+    } else {
+      link::wait_for({&receiver_.pose_socket()}, stop_.descriptor(), kLook);
+    }
   }
   return std::nullopt;
 }
 
-bool SimulatorSource::is_over() {
+bool SimulatorSource::is_done() {
   if (stop_.is_asked()) return true;
-  has_timed_out_ = options_.timeout_s && seconds_since(last_) > *options_.timeout_s;
-  if (receiver_.is_over()) {
-    ending_ = "the simulator ended";
-  } else if (number_ >= options_.pace.frames) {
+  if (number_ >= options_.pace.frames) {
     ending_ = "all frames are done";
   } else if (first_ && seconds_since(*first_) >= options_.pace.duration_s) {
     ending_ = "the duration is over";
-  } else if (has_timed_out_) {
-    ending_ = fmt::format("no pose came for {} s", *options_.timeout_s);
   }
   return !ending_.empty();
 }

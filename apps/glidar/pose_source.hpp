@@ -21,6 +21,7 @@ namespace glidar::app {
 struct Moment {
   std::size_t mount = 0;  ///< which of the session's sensors takes it
   std::uint32_t number = 0;
+  std::uint64_t place = 0;  ///< among this sensor's frames; differs from `number` in recordings
   std::chrono::steady_clock::time_point due;  ///< when its pose was there
   /// Where everything is from now on and when that is; empty: as it was, at the frame's own time.
   std::optional<RigMotion> motion = {};
@@ -92,7 +93,7 @@ class SimulatorSource final : public PoseSource {
  public:
   struct Options {
     Pace pace;
-    std::optional<double> timeout_s;  ///< without a pose; empty: waits for ever
+    std::optional<double> timeout_s;  ///< of waiting for a pose; empty: for ever
     std::size_t mounts = 1;           ///< sensors that measure at each pose
   };
   /// All must outlive it.
@@ -106,14 +107,14 @@ class SimulatorSource final : public PoseSource {
   using Clock = std::chrono::steady_clock;
 
   std::optional<legacy::Placement> wait_for_pose();
-  [[nodiscard]] bool is_over();
+  [[nodiscard]] bool is_done();
 
   legacy::PoseReceiver& receiver_;
   const MovedScene& scene_;
   Options options_;
   const StopRequest& stop_;
   std::optional<Clock::time_point> first_;  ///< pose
-  Clock::time_point last_ = Clock::now();   ///< pose, or the start
+  Clock::time_point last_;                  ///< pose
   std::uint64_t number_ = 0;                ///< of the next pose
   Moment moment_;                           ///< the last one
   bool has_timed_out_ = false;

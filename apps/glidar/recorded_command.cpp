@@ -32,7 +32,9 @@ void parse_recorded(const std::vector<std::string>& arguments, const std::string
   const auto refuse = [&](const char* found) {
     throw Error({file, found, "what `glidar " + subcommand + "` wrote", "write it again"});
   };
-  if (arguments.empty() || arguments.front() != subcommand) refuse("it tells no such command");
+  if (arguments.empty() || arguments.front() != subcommand)
+    refuse(arguments.empty() ? "it tells no command: a simulator or a recording gave the poses"
+                             : "it tells another command");
   try {
     command.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend() - 1));
   } catch (const CLI::ParseError&) {

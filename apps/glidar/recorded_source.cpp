@@ -31,7 +31,11 @@ void check(const link::RecordedFrame& frame, std::uint64_t number, const Session
 
 RecordedSource::RecordedSource(link::RecordingReader& recording, const Pace& pace,
                                const Session& session, const StopRequest& stop)
-    : recording_(recording), pace_(pace), session_(session), stop_(stop) {}
+    : recording_(recording),
+      pace_(pace),
+      session_(session),
+      stop_(stop),
+      places_(session.mounts.size()) {}
 
 std::optional<Moment> RecordedSource::next() {
   if (number_ >= pace_.frames) {
@@ -49,12 +53,13 @@ std::optional<Moment> RecordedSource::next() {
   ++number_;
   Moment moment{.mount = frame->sensor,
                 .number = frame->moment.number,
+                .place = places_[frame->sensor]++,
                 .due = *due_,
                 .motion = {},
                 .stamp_ns = frame->moment.t_ns,
                 .seed = frame->moment.seed,
                 .frame_hash = std::move(frame->frame_hash)};
-  if (frame->is_placed) moment.motion = motion_at(frame->moment, session_.scene);
+  if (frame->is_placed) moment.motion = motion_at(frame->moment, session_);
   return moment;
 }
 

@@ -24,7 +24,8 @@ class RecordedSource final : public PoseSource {
   const Session& session_;
   const StopRequest& stop_;
   std::optional<std::chrono::steady_clock::time_point> due_;
-  std::uint64_t number_ = 0;
+  std::uint64_t number_ = 0;           ///< of the next frame
+  std::vector<std::uint64_t> places_;  ///< of each sensor's next frame
   std::string ending_;
 };
 

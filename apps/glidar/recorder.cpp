@@ -19,7 +19,7 @@ void Recorder::begin(const Session& session, const CommandRecord& command) {
   writer_.begin(head);
 }
 
-void Recorder::note(std::size_t mount, const Frame& frame, const lockstep::Moment* placed) {
+link::RecordedFrame line_of(std::size_t mount, const Frame& frame, const lockstep::Moment* placed) {
   link::RecordedFrame line{.sensor = static_cast<std::uint32_t>(mount),
                            .moment = placed != nullptr ? *placed : lockstep::Moment{},
                            .is_placed = placed != nullptr,
@@ -27,7 +27,7 @@ void Recorder::note(std::size_t mount, const Frame& frame, const lockstep::Momen
   line.moment.t_ns = frame.stamp_ns;
   line.moment.seed = frame.seed;
   line.moment.number = frame.number;
-  writer_.write(line);
+  return line;
 }
 
 }  // namespace glidar::app

@@ -16,14 +16,16 @@ class Recorder {
   explicit Recorder(const std::string& path) : path_(path), writer_(path) {}
   /// Once the session is open. Throws Error when the recording would replace a file of it.
   void begin(const Session& session, const CommandRecord& command);
-  /// A frame of one of the session's sensors; `placed`: where a client or simulator put everything,
-  /// nullptr where the command did.
-  void note(std::size_t mount, const Frame& frame, const lockstep::Moment* placed);
+  void write(const link::RecordedFrame& frame) { writer_.write(frame); }
   void commit() { writer_.commit(); }
 
  private:
   std::string path_;
   link::RecordingWriter writer_;
 };
+
+/// The line of a frame by one of the session's sensors; `placed`: where a client or simulator put
+/// everything, nullptr where the command did.
+link::RecordedFrame line_of(std::size_t mount, const Frame& frame, const lockstep::Moment* placed);
 
 }  // namespace glidar::app

@@ -73,11 +73,10 @@ void write(const RenderFlags& flags, const View& view, const std::vector<Output>
   tell_information(flags.information, view.frame, view.beams, outputs, flags.quiet);
 }
 
-/// The files of one sensor's frame: named after both where there are several.
-OutputFlags files_of(const RenderFlags& flags, const Session& session, const Mount& mount,
-                     std::uint32_t frame) {
-  OutputFlags files = flags.output;
-  if (session.mounts.size() > 1) files = labelled(files, mount.name);
+/// The files of one sensor's frame: named after both on a rig.
+OutputFlags files_of(const RenderFlags& flags, const Mount& mount, std::uint32_t frame) {
+  const std::string label = label_of(flags, mount);
+  const OutputFlags files = label.empty() ? flags.output : labelled(flags.output, label);
   return flags.duration_s ? numbered(files, frame) : files;
 }
 
@@ -89,7 +88,7 @@ void measure_all(const RenderFlags& flags, const CommandRecord& command, const S
                          .beams = mount.beams,
                          .renderer = renderer_name(flags),
                          .command = command};
-  if (session.mounts.size() > 1) {
+  if (!label_of(flags, mount).empty()) {
     context.command.arguments.insert(context.command.arguments.end(), {"--mount", mount.name});
   }
   const Setup setup = setup_of(session, mount, console);
@@ -97,7 +96,7 @@ void measure_all(const RenderFlags& flags, const CommandRecord& command, const S
   const View view{session.scene, mount.sensor, mount.beams, frame};
   for (std::uint32_t k = 0; k < mount.frames; ++k) {
     const std::vector<Output> outputs =
-        plan_outputs(files_of(flags, session, mount, k), flags.input, context, console.report(),
+        plan_outputs(files_of(flags, mount, k), flags.input, context, console.report(),
                      [&console](double fraction) { console.tell(fraction); });
     protect_files(session.files, outputs);
     turn_to(flags, k, mount, frame);

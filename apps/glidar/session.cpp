@@ -56,12 +56,17 @@ SceneFile load(const RenderFlags& flags, Console& console) {
 }
 
 /// Scene and sensor files, models and what belongs to these: textures, materials, buffers.
-std::vector<std::string> files_read(const RenderFlags& flags, const SceneFile& loaded) {
+std::vector<std::string> files_read(const RenderFlags& flags, const SceneFile& loaded,
+                                    const std::vector<Mount>& mounts) {
   std::vector<std::string> files = loaded.files;
-  if (!flags.sensor.file.empty()) files.push_back(flags.sensor.file);
+  for (const Mount& mount : mounts) {
+    files.insert(files.end(), mount.sensor.files.begin(), mount.sensor.files.end());
+  }
   for (const std::string& file : files_of(flags.motion)) files.push_back(file);
   for (const MeshSource& source : loaded.scene.sources)
     files.insert(files.end(), source.files.begin(), source.files.end());
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
   return files;
 }
 
@@ -140,7 +145,10 @@ RigMotion make_motion(const RenderFlags& flags, const SceneFile& loaded, const S
       loaded.rig_motion || (loaded.world_from_rig && !loaded.looks_at && !has_rate(flags));
   const bool is_rigs = !flags.motion.trajectory.empty() || (is_in_file && !is_given);
   const Pose start = is_rigs ? loaded.world_from_rig.value_or(Pose::Identity()) : world_from_first;
-  Trajectory trajectory = sensor_trajectory(flags.motion, start, is_given, loaded.rig_motion);
+  const Pose optical_from_first =
+      looks_along_z(first.beams) ? Pose::Identity() : optical_from_body();
+  Trajectory trajectory =
+      sensor_trajectory(flags.motion, start, optical_from_first, is_given, loaded.rig_motion);
   if (!is_rigs) trajectory = mounted(trajectory, first.rig_from_sensor.inverse());
   return {.world_from_rig = std::move(trajectory),
           .world_from_instance =
@@ -213,10 +221,10 @@ void open(const RenderFlags& flags, const std::function<void()>& on_loaded, Cons
   // before a long load
   if (!is_scene_file(flags.input)) session.mounts = make_mounts(flags, {});
   SceneFile loaded = load(flags, console);
-  session.files = files_read(flags, loaded);
+  session.mounts = make_mounts(flags, loaded.sensors);
+  session.files = files_read(flags, loaded, session.mounts);
   if (on_loaded) on_loaded();
   session.scene = std::move(loaded.scene);
-  session.mounts = make_mounts(flags, loaded.sensors);
   cover(flags, session.mounts.front().sensor, session.scene);
   pose_model(flags.pose, session.scene);
   tell(size_advice(session.scene, !flags.model.unit.empty() || flags.pose.scale), console);
@@ -226,6 +234,10 @@ void open(const RenderFlags& flags, const std::function<void()>& on_loaded, Cons
   if (has_paper_target(flags)) {
     session.paper = make_paper_camera(session.scene, flags.renderer);
   }
+}
+
+std::string label_of(const RenderFlags& flags, const Mount& mount) {
+  return flags.mount.empty() ? mount.name : std::string();
 }
 
 Mount& only_mount(Session& session) {

@@ -45,6 +45,10 @@ struct Session {
 void open(const RenderFlags& flags, const std::function<void()>& on_loaded, Console& console,
           Session& session);
 
+/// What files and topics of this sensor are labelled with: its name on a rig of which none was
+/// chosen by itself; else empty.
+std::string label_of(const RenderFlags& flags, const Mount& mount);
+
 /// The session's only sensor. Throws Error when there are several and none was chosen.
 Mount& only_mount(Session& session);
 

@@ -109,6 +109,11 @@ void check_lockstep(const StreamFlags& flags) {
     refuse("--lockstep", "given beside options that say when frames are taken or what moves",
            "leave these out: the requests say it");
   }
+  const StreamFlags usual;
+  if (flags.pose_timeout_s || flags.subscribers != usual.subscribers || flags.publishes_newest ||
+      flags.publish_every != usual.publish_every || flags.publish_queue != usual.publish_queue) {
+    refuse("--lockstep", "given beside options of the protocol of 2015", "leave these out");
+  }
   if (!files.paths.empty() || !files.legacy_name.empty()) {
     refuse("--lockstep", "given beside --output or --pcd", "the clients get the clouds");
   }
@@ -141,9 +146,15 @@ void add_stream_flags(CLI::App& command, StreamFlags& flags) {
 void add_replay_flags(CLI::App& command, StreamFlags& flags) {
   add_output_flags(command, flags.render.output);
   const std::string group = "Pace and end";
-  add_number(command, {"--rate", "HZ", "Frames per second at most [as fast as it goes]", group},
-             flags.replay_rate_hz);
-  add_whole(command, {"--frames", "N", "Ends after N frames [all]", group},
+  add_option(command,
+             {"--rate", "HZ", "Frames per second at most; 0 or max: no limit [max]", group},
+             [&flags](std::string_view option, const std::string& text) {
+               constexpr double kMost_hz = 1e9;
+               const double rate_hz = text == "max" ? 0.0 : parse_number(option, text);
+               require(rate_hz >= 0.0 && rate_hz <= kMost_hz, option, rate_hz, "0 to 1e9, or max");
+               flags.replay_rate_hz = rate_hz;
+             });
+  add_whole(command, {"--frames", "N", "Ends after N frames, of all sensors together [all]", group},
             {1, std::numeric_limits<std::uint32_t>::max()},
             [&flags](std::int64_t n) { flags.frames = static_cast<std::uint64_t>(n); });
   add_text(command, {"--stats", "FILE", "Writes counts and latencies as JSON at the end", group},
@@ -160,7 +171,6 @@ void add_replay_flags(CLI::App& command, StreamFlags& flags) {
 StreamFlags replayed(StreamFlags recorded, const StreamFlags& chosen) {
   StreamFlags flags = chosen;
   flags.physics_port = recorded.physics_port;
-  flags.lockstep = recorded.lockstep;
   flags.render = std::move(recorded.render);
   flags.render.output = chosen.render.output;
   flags.render.renderer.threads = chosen.render.renderer.threads;
@@ -175,7 +185,7 @@ void check(const StreamFlags& flags) {
     refuse("--curve-keys", "given without --lockstep", "only that link is encrypted");
   }
   const OutputFlags& files = flags.render.output;
-  if (!flags.port && files.paths.empty() && files.legacy_name.empty()) {
+  if (!flags.port && files.paths.empty() && files.legacy_name.empty() && flags.record.empty()) {
     refuse("--port and --output", "neither is given, so no cloud would go anywhere",
            "for example: glidar stream " + flags.render.input + " --port 5555");
   }
@@ -199,9 +209,8 @@ legacy::CloudPublisherOptions publisher_options(const StreamFlags& flags) {
           .keeps_newest = flags.publishes_newest,
           .queue = flags.publish_queue,
           .every = flags.publish_every,
-          .timestamps = flags.physics_port || !flags.lockstep.empty()
-                            ? legacy::Timestamps::of_poses
-                            : legacy::Timestamps::counted};
+          .timestamps =
+              flags.physics_port ? legacy::Timestamps::of_poses : legacy::Timestamps::counted};
 }
 
 legacy::PoseReceiverOptions receiver_options(const StreamFlags& flags) {

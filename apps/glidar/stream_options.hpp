@@ -20,15 +20,15 @@ struct StreamFlags {
   std::optional<std::uint64_t> frames;  ///< empty: no such limit
   std::string stats;                    ///< file; empty: none
   std::string record;                   ///< file that keeps what the frames depend on; empty: none
-  std::string replay;  ///< file of that kind that the frames come from; empty: none
-  std::optional<double> replay_rate_hz;  ///< empty: as fast as it goes
-  CommandRecord command;                 ///< this one, for the recording
-  std::string bind = "127.0.0.1";        ///< address to listen at
-  std::optional<std::uint16_t> port;     ///< of the clouds; empty: they are not published
-  std::uint64_t subscribers = 1;         ///< handshakes to wait for
-  std::uint32_t publish_every = 1;       ///< so many frames
-  bool publishes_newest = false;         ///< --pub-conflate
-  int publish_queue = 32;                ///< clouds for each subscriber
+  std::string replay;                 ///< file of that kind that the frames come from; empty: none
+  double replay_rate_hz = 0.0;        ///< 0: as fast as it goes
+  CommandRecord command;              ///< this one, for the recording
+  std::string bind = "127.0.0.1";     ///< address to listen at
+  std::optional<std::uint16_t> port;  ///< of the clouds; empty: they are not published
+  std::uint64_t subscribers = 1;      ///< handshakes to wait for
+  std::uint32_t publish_every = 1;    ///< so many frames
+  bool publishes_newest = false;      ///< --pub-conflate
+  int publish_queue = 32;             ///< clouds for each subscriber
   std::string physics_host = "127.0.0.1";
   std::optional<std::uint16_t> physics_port;  ///< of the poses; empty: from the command line
   int pose_queue = 0;                         ///< 0: the newest pose only

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <limits>
 #include <utility>
 #include <variant>
@@ -87,15 +88,15 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
 }
 
 void StreamRun::open_session() {
-  const Sensor unknown;
-  const Beams none;
+  const Mount unknown{.sensor = {}};
   std::vector<Output> outputs;
-  if (writes_files()) outputs = plan(numbered(flags_.render.output, 0), unknown, none);
+  if (writes_files()) outputs = plan(numbered(flags_.render.output, 0), unknown, unknown.beams);
   open(
       flags_.render, [&] { protect_files(session_.files, outputs); }, console_, session_);
   for (const Mount& mount : session_.mounts) {
-    beams_.push_back(std::make_shared<const Beams>(mount.beams));
+    aimed_.push_back({.beams = std::make_shared<const Beams>(mount.beams)});
   }
+  note_taken_files();
   std::vector<std::string> columns;
   if (publisher_) {
     columns = kPublishedColumns;
@@ -107,11 +108,27 @@ void StreamRun::open_session() {
   fields_ = glidar::fields_for(columns);
 }
 
+/// Inputs, statistics and recordings: none of them may be written over by another.
+void StreamRun::note_taken_files() {
+  taken_ = session_.files;
+  for (const std::string& file : {flags_.replay, flags_.stats, flags_.record}) {
+    if (file.empty()) continue;
+    protect_files(taken_, file);
+    taken_.push_back(file);
+  }
+}
+
 /// 2015's topic where there is one sensor, one for each on a rig.
 std::map<std::uint32_t, std::string> StreamRun::topics() const {
   std::map<std::uint32_t, std::string> topics;
-  if (session_.mounts.size() == 1) return topics;
-  for (const Mount& mount : session_.mounts) topics[mount.id] = legacy::rig_topic(mount.name);
+  for (const Mount& mount : session_.mounts) {
+    const std::string label = label_of(flags_.render, mount);
+    if (!label.empty()) topics[mount.id] = legacy::rig_topic(label);
+  }
+  if (topics.size() > 1 && flags_.publishes_newest) {
+    throw Error({"--pub-conflate", "given for a rig: the newest cloud is that of one sensor", "",
+                 "leave it out, or choose a sensor with --mount"});
+  }
   return topics;
 }
 
@@ -126,6 +143,10 @@ void StreamRun::prepare_poses() {
                    .remedy = "let either the simulator or the scene file move things"});
     }
     moved_scene_.object_from_instance.push_back(std::get<ConstantPose>(trajectory).pose);
+  }
+  if (!std::holds_alternative<ConstantPose>(session_.motion.world_from_rig)) {
+    console_.info(
+        "the simulator says where the sensor is; the scene file's motion of it does not count");
   }
   const Mount& first = session_.mounts.front();
   if (!first.name.empty() || !looks_along_z(first.beams)) {
@@ -144,7 +165,7 @@ std::unique_ptr<PoseSource> StreamRun::make_source(const StopRequest& stop) {
   Pace pace = {.frames = flags_.frames.value_or(std::numeric_limits<std::uint64_t>::max()),
                .duration_s = duration_s_};
   if (recording_) {
-    pace.rate_hz = flags_.replay_rate_hz.value_or(0.0);
+    pace.rate_hz = flags_.replay_rate_hz;
     return std::make_unique<RecordedSource>(*recording_, pace, session_, stop);
   }
   if (receiver_) {
@@ -175,7 +196,11 @@ int StreamRun::run() {
     if (stop.is_asked()) exit_code_ = kSignalled + stop.signal();
     finish(stop.is_asked() ? fmt::format("signal {}", stop.signal()) : source->ending());
   } catch (const std::exception& error) {
-    finish(error.what());
+    try {
+      if (!is_finished_) finish(error.what());
+    } catch (const std::exception& another) {
+      console_.warn(another.what());
+    }
     throw;
   }
   return exit_code_;
@@ -206,7 +231,7 @@ void StreamRun::stream(PoseSource& source, StopRequest& stop) {
     const std::optional<Moment> moment = source.next();
     if (!moment) break;
     if (moment->motion) move(*moment->motion);
-    if (!is_wanted(moment->number)) continue;
+    if (!is_wanted(moment->place)) continue;
     measure(*moment, delivery.room());
     delivery.hand_over();
   }
@@ -220,12 +245,14 @@ void StreamRun::move(const RigMotion& motion) {
 
 void StreamRun::measure(const Moment& moment, Shot& shot) {
   const Mount& mount = session_.mounts[moment.mount];
-  std::shared_ptr<const Beams>& beams = beams_[moment.mount];
+  auto& [beams, number] = aimed_[moment.mount];
   const ScanWindow window = scan_window(mount.sensor, moment.number);
-  if (moment.number > 0 && !has_fixed_beams(mount.sensor)) {
+  if (moment.number != number && !has_fixed_beams(mount.sensor)) {
     beams = std::make_shared<const Beams>(make_beams(mount.sensor, window));
+    number = moment.number;
   }
   shot.beams = beams;
+  shot.place = moment.place;
   shot.mount = moment.mount;
   shot.placed = placed_;
   shot.frame_hash = moment.frame_hash;
@@ -245,8 +272,8 @@ void StreamRun::measure(const Moment& moment, Shot& shot) {
   tell(view_advice({session_.scene, mount.sensor, *beams, shot.frame}), console_);
 }
 
-bool StreamRun::is_wanted(std::uint32_t number) const {
-  return recording_ || writes_files() || (publisher_ && publisher_->wants(number));
+bool StreamRun::is_wanted(std::uint64_t place) const {
+  return recording_ || recorder_ || writes_files() || (publisher_ && publisher_->wants(place));
 }
 
 bool StreamRun::writes_files() const {
@@ -254,20 +281,26 @@ bool StreamRun::writes_files() const {
   return !files.paths.empty() || !files.legacy_name.empty();
 }
 
-std::vector<Output> StreamRun::plan(const OutputFlags& files, const Sensor& sensor,
+std::vector<Output> StreamRun::plan(const OutputFlags& files, const Mount& mount,
                                     const Beams& beams) {
-  return plan_outputs(files, flags_.render.input,
-                      {.scene = session_.scene,
-                       .sensor = sensor,
-                       .beams = beams,
-                       .renderer = renderer_name(flags_.render)},
-                      console_.report());
+  SidecarContext context{.scene = session_.scene,
+                         .sensor = mount.sensor,
+                         .beams = beams,
+                         .renderer = renderer_name(flags_.render)};
+  if (!flags_.physics_port && !recording_) {  // else the command does not tell the poses
+    context.command = flags_.command;
+    const std::string label = label_of(flags_.render, mount);
+    if (!label.empty()) {
+      context.command.arguments.insert(context.command.arguments.end(), {"--mount", label});
+    }
+  }
+  return plan_outputs(files, flags_.render.input, context, console_.report());
 }
 
 void StreamRun::deliver(const Shot& shot) {
-  if (recorder_) recorder_->note(shot.mount, shot.frame, shot.placed.get());
+  if (recorder_) recorder_->write(line_of(shot.mount, shot.frame, shot.placed.get()));
   if (!shot.frame_hash.empty()) compare(shot, flags_.replay, stats_.latency.count());
-  if (publisher_ && publisher_->wants(shot.frame.number)) publish(shot);
+  if (publisher_ && publisher_->wants(shot.place)) publish(shot);
   if (writes_files()) write_files(shot);
   stats_.note(shot.due);
 }
@@ -282,10 +315,11 @@ void StreamRun::publish(const Shot& shot) {
 void StreamRun::write_files(const Shot& shot) {
   const Mount& mount = session_.mounts[shot.mount];
   OutputFlags files = flags_.render.output;
-  if (session_.mounts.size() > 1) files = labelled(files, mount.name);
+  const std::string label = label_of(flags_.render, mount);
+  if (!label.empty()) files = labelled(files, label);
   const std::vector<Output> outputs =
-      plan(numbered(files, shot.frame.number), mount.sensor, *shot.beams);
-  protect_files(session_.files, outputs);
+      plan(numbered(files, static_cast<std::uint32_t>(shot.place)), mount, *shot.beams);
+  protect_files(taken_, outputs);
   write_outputs(outputs, shot.frame, *shot.beams, session_.scene);
 }
 
@@ -298,8 +332,17 @@ void StreamRun::look_after_peers() {
 }
 
 void StreamRun::finish(const std::string& ending) {
+  is_finished_ = true;
   console_.status("");
-  if (publisher_) publisher_->shut_down();
+  std::exception_ptr failure;  // the first; the other steps are taken all the same
+  const auto attempt = [&failure](const auto& step) {
+    try {
+      step();
+    } catch (const std::exception&) {
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  if (publisher_) attempt([&] { publisher_->shut_down(); });
   faults_.flush();
   StreamSummary summary{.stats = stats_,
                         .ending = ending,
@@ -308,12 +351,15 @@ void StreamRun::finish(const std::string& ending) {
                         .faults = faults_.counts()};
   if (publisher_) summary.clouds = publisher_->counts();
   if (receiver_) summary.poses = receiver_->counts();
-  if (recorder_) recorder_->commit();
   if (stats_file_) {
-    stats_file_->write(json_text(summary));
-    stats_file_->commit();
+    attempt([&] {
+      stats_file_->write(json_text(summary));
+      stats_file_->commit();
+    });
   }
+  if (recorder_) attempt([&] { recorder_->commit(); });
   if (!flags_.render.quiet) fmt::print("{}", summary_text(summary));
+  if (failure) std::rethrow_exception(failure);
 }
 
 }  // namespace glidar::app

@@ -40,9 +40,10 @@ class StreamRun {
   [[nodiscard]] bool has_partners();
   void stream(PoseSource& source, StopRequest& stop);
   void measure(const Moment& moment, Shot& shot);
-  [[nodiscard]] bool is_wanted(std::uint32_t number) const;
+  [[nodiscard]] bool is_wanted(std::uint64_t place) const;
+  void note_taken_files();
   [[nodiscard]] bool writes_files() const;
-  [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const Sensor& sensor,
+  [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const Mount& mount,
                                          const Beams& beams);
   void move(const RigMotion& motion);
   void deliver(const Shot& shot);
@@ -63,7 +64,12 @@ class StreamRun {
   std::shared_ptr<const lockstep::Moment> placed_;    ///< by the simulator's last pose
   double duration_s_ = 0.0;
   Session session_;
-  std::vector<std::shared_ptr<const Beams>> beams_;  ///< of each sensor
+  struct Aimed {
+    std::shared_ptr<const Beams> beams;
+    std::uint32_t number = 0;  ///< of the frame that they are of
+  };
+  std::vector<Aimed> aimed_;        ///< of each sensor
+  std::vector<std::string> taken_;  ///< files that no output may replace
   MovedScene moved_scene_;
   HitFields fields_;
   StreamStats stats_;
@@ -72,6 +78,7 @@ class StreamRun {
   std::uint64_t measured_ = 0;
   std::uint64_t late_ = 0;
   int exit_code_ = 0;
+  bool is_finished_ = false;
 };
 
 }  // namespace glidar::app

@@ -222,6 +222,7 @@ void Measuring::prepare(const Ask& ask, Snapshot& shot) {
   shot.beams = opened_->beams;
   shot.motion = moved_all(only_mount(*opened_->session).motion, ask);
   shot.frame.number = ask.number;
+  shot.frame.sensor_id = only_mount(*opened_->session).id;
   shot.frame.stamp_ns = scan_window(*shot.sensor, ask.number).start_ns;
   shot.frame.seed = ask.seed;
 }

@@ -73,10 +73,11 @@ void unlist(int slot) {
 
 /// A new file in `folder` that nobody else has open; its name and descriptor.
 std::pair<std::filesystem::path, int> open_temporary(const std::filesystem::path& folder,
-                                                     const std::filesystem::path& wanted) {
+                                                     const std::filesystem::path& wanted,
+                                                     mode_t mode) {
   for (unsigned attempt = 0;; ++attempt) {
     std::filesystem::path name = folder / fmt::format(".glidar-{}-{}.tmp", ::getpid(), attempt);
-    const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
     if (descriptor >= 0) return {std::move(name), descriptor};
     if (errno != EEXIST && errno != EINTR) fail(wanted, "create a file in this folder", errno);
   }
@@ -84,13 +85,18 @@ std::pair<std::filesystem::path, int> open_temporary(const std::filesystem::path
 
 }  // namespace
 
-AtomicFile::AtomicFile(const std::filesystem::path& path) : path_(path) {
+AtomicFile::AtomicFile(const std::filesystem::path& path, Readers readers) : path_(path) {
   std::error_code ignored;  // a path that cannot be looked at fails below, with the reason
   if (std::filesystem::is_directory(path, ignored))
     throw Error({path.string(), "is a folder", "a file name", ""});
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
+    throw Error({path.string(), "is a device, pipe or socket", "a regular file, or none yet", ""});
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   buffer_.resize(kPieceBytes);
-  std::tie(temporary_, descriptor_) = open_temporary(folder, path);
+  constexpr mode_t kUsual = 0666;
+  constexpr mode_t kOwner = 0600;
+  std::tie(temporary_, descriptor_) =
+      open_temporary(folder, path, readers == Readers::owner ? kOwner : kUsual);
   slot_ = list_unfinished(temporary_.native());
 }
 
@@ -133,6 +139,7 @@ void AtomicFile::seek(std::uint64_t offset) {
 
 void AtomicFile::finish() {
   if (descriptor_ < 0) return;
+  if (failure_ != 0) fail(path_, "write", failure_);
   flush();
   // Some file systems report a full disk or quota only on closing.
   if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(path_, "close", errno);
@@ -159,10 +166,11 @@ void AtomicFile::write_whole_pieces() {
 }
 
 void AtomicFile::write_through(std::span<const std::byte> bytes) {
+  if (failure_ != 0) fail(path_, "write", failure_);
   while (!bytes.empty()) {
     const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(path_, "write", errno);
+    if (written < 0) fail(path_, "write", failure_ = errno);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
 }

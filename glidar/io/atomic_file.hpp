@@ -17,13 +17,17 @@ namespace glidar {
 /// at multiples of their size, which file systems take fastest.
 class AtomicFile {
  public:
-  /// Throws Error when `path` is a folder or no file can be made beside it.
-  explicit AtomicFile(const std::filesystem::path& path);
+  /// Who may read the file: all that the user's mask lets, or its owner alone.
+  enum class Readers : std::uint8_t { usual, owner };
+  /// Throws Error when `path` is there and no regular file (a folder, a device), or no file can be
+  /// made beside it.
+  explicit AtomicFile(const std::filesystem::path& path, Readers readers = Readers::usual);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
 
-  /// Appends at the current position. Throws Error (disk full, quota, input/output error).
+  /// Appends at the current position. Throws Error (disk full, quota, input/output error), and then
+  /// again at every further call: a file with a gap is never put in place.
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
 
@@ -54,6 +58,7 @@ class AtomicFile {
   std::filesystem::path path_;
   std::filesystem::path temporary_;  ///< absolute; empty once committed
   int descriptor_ = -1;              ///< -1 once finished
+  int failure_ = 0;                  ///< errno of the first write that failed
   int slot_ = -1;                    ///< in the list for remove_unfinished_files, -1: not in it
   std::uint64_t position_ = 0;
   std::vector<std::byte> buffer_;  ///< a piece, and room beyond it for what straddles its end

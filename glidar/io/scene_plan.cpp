@@ -179,6 +179,11 @@ ScenePlan read_scene_plan(const YamlField& root, const ModelOptions& defaults) {
                      "rig_motion"});
   ScenePlan plan;
   plan.instances = read_models(need(root, "models"), defaults, plan.files);
+  for (const PlannedInstance& planned : plan.instances) {
+    for (const MaterialOverride& change : planned.overrides) {
+      if (!change.noise_texture.empty()) plan.files.push_back(change.noise_texture);
+    }
+  }
   read_rig(root, plan);
   return plan;
 }

@@ -233,7 +233,10 @@ Sensor read_sensor(const YamlField& field) {
                       "light", "pulse_light", "footprint", "receiver", "weather", "projector_m",
                       "noise", "cull_back_faces", "source", "unverified"});
   Sensor sensor;
-  sensor.optics = read_optics(need(field, "optics"));
+  const YamlField optics = need(field, "optics");
+  sensor.files.push_back(field.file);
+  sensor.optics = read_optics(optics);
+  if (const auto file = find(optics, "file")) sensor.files.push_back(file_named(*file).string());
   if (!is_camera(sensor)) sensor.name = "lidar";
   if (const auto name = find(field, "name")) sensor.name = text(*name);
   set_rate(sensor, number_or(field, "rate_hz", kAboveZero, usual_rate_hz(sensor)));

@@ -55,12 +55,12 @@ Sidecar read(const Json& told, const std::filesystem::path& path) {
 std::string folder_seen_from(const std::filesystem::path& file,
                              const std::filesystem::path& folder) {
   const auto here =
-      std::filesystem::weakly_canonical(std::filesystem::absolute(file).parent_path());
+      std::filesystem::weakly_canonical(std::filesystem::absolute(file)).parent_path();
   return std::filesystem::weakly_canonical(folder).lexically_relative(here).generic_string();
 }
 
 std::filesystem::path folder_beside(const std::filesystem::path& file, const std::string& seen) {
-  return std::filesystem::absolute(file).parent_path() / seen;
+  return std::filesystem::weakly_canonical(std::filesystem::absolute(file)).parent_path() / seen;
 }
 
 std::string frame_hash(const Frame& frame) {

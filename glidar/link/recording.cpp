@@ -6,6 +6,7 @@
 #include <glidar/io/sidecar.hpp>
 
 #include <array>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -61,8 +62,19 @@ lockstep::Body body_of(const Json& json) {
   return body;
 }
 
+/// A count that fits its type, as it was written.
+template <class Count>
+Count count_of(const Json& json, const char* key) {
+  const Json& told = json.at(key);
+  const bool fits =
+      told.is_number_unsigned() && told.get<std::uint64_t>() <= std::numeric_limits<Count>::max();
+  if (fits) return told.get<Count>();
+  throw Json::other_error::create(502, std::string(key) + ": " + told.dump() + " is no count",
+                                  &json);
+}
+
 RecordingHead head_of(const Json& json, const std::filesystem::path& path) {
-  if (json.at("recording").get<std::uint64_t>() != kFormat) {
+  if (count_of<std::uint64_t>(json, "recording") != kFormat) {
     throw Json::other_error::create(
         502, "a recording of format " + json.at("recording").dump() + ", this program knows 1",
         &json);
@@ -80,11 +92,18 @@ RecordingHead head_of(const Json& json, const std::filesystem::path& path) {
 
 RecordedFrame frame_of(const Json& json) {
   RecordedFrame frame;
-  frame.sensor = json.at("sensor").get<std::uint32_t>();
-  frame.moment.number = json.at("number").get<std::uint32_t>();
+  constexpr std::size_t kHashDigits = 32;
+  frame.sensor = count_of<std::uint32_t>(json, "sensor");
+  frame.moment.number = count_of<std::uint32_t>(json, "number");
+  frame.moment.seed = count_of<std::uint64_t>(json, "seed");
+  if (!json.at("stamp_ns").is_number_integer()) {
+    throw Json::other_error::create(502, "stamp_ns: not a whole number", &json);
+  }
   frame.moment.t_ns = json.at("stamp_ns").get<std::int64_t>();
-  frame.moment.seed = json.at("seed").get<std::uint64_t>();
   frame.frame_hash = json.at("frame_hash").get<std::string>();
+  if (frame.frame_hash.size() != kHashDigits) {
+    throw Json::other_error::create(502, "frame_hash: not 32 digits", &json);
+  }
   frame.is_placed = json.contains("rig");
   if (!frame.is_placed) return frame;
   frame.moment.sensor = body_of(json.at("rig"));
@@ -120,15 +139,19 @@ void RecordingWriter::write(const RecordedFrame& frame) {
     json["objects"] = std::move(objects);
   }
   file_.write(line_of(json));
+  ++frames_;
 }
 
-RecordingReader::RecordingReader(const std::filesystem::path& path) : path_(path), file_(path) {
-  if (!std::filesystem::is_regular_file(path) || !file_) {
-    refuse(path.string(), "it is not there or cannot be read");
-  }
+void RecordingWriter::commit() {
+  file_.write(line_of({{"frames", frames_}}));
+  file_.commit();
+}
+
+RecordingReader::RecordingReader(const std::filesystem::path& path) : path_(path) {
+  if (!std::filesystem::is_regular_file(path)) refuse(path.string(), "there is no such file");
+  file_.open(path);
   std::string line;
-  if (!std::getline(file_, line)) refuse(path.string(), "it is empty");
-  ++line_;
+  if (!take_line(line)) refuse(path.string(), "it is empty or cannot be read");
   try {
     head_ = head_of(Json::parse(line), path);
   } catch (const Json::exception& error) {
@@ -140,15 +163,23 @@ std::string RecordingReader::where() const {
   return path_.string() + ":" + std::to_string(line_);
 }
 
+bool RecordingReader::take_line(std::string& line) {
+  if (std::getline(file_, line)) ++line_;
+  if (file_.bad()) refuse(where(), "it cannot be read further");
+  return !file_.fail();
+}
+
 std::optional<RecordedFrame> RecordingReader::next() {
   std::string line;
-  if (!std::getline(file_, line)) {
-    if (file_.bad()) refuse(where(), "it cannot be read further");
-    return std::nullopt;
-  }
-  ++line_;
+  if (!take_line(line)) refuse(where(), "it ends before its last line, which tells \"frames\"");
   try {
-    return frame_of(Json::parse(line));
+    const Json json = Json::parse(line);
+    if (!json.contains("frames")) {
+      ++frames_;
+      return frame_of(json);
+    }
+    if (count_of<std::uint64_t>(json, "frames") == frames_) return std::nullopt;
+    refuse(where(), std::to_string(frames_) + " frames, where it tells " + json["frames"].dump());
   } catch (const Json::exception& error) {
     refuse(where(), error.what());
   }

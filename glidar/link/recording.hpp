@@ -46,10 +46,12 @@ class RecordingWriter {
   /// Once, before the first frame.
   void begin(const RecordingHead& head);
   void write(const RecordedFrame& frame);
-  void commit() { file_.commit(); }
+  /// Once, after the last frame.
+  void commit();
 
  private:
   AtomicFile file_;
+  std::uint64_t frames_ = 0;
 };
 
 /// Reads a recording line by line. Throws Error naming the line when it is not what it should be.
@@ -61,11 +63,13 @@ class RecordingReader {
   std::optional<RecordedFrame> next();
 
  private:
-  std::string where() const;
+  [[nodiscard]] std::string where() const;
+  bool take_line(std::string& line);
 
   std::filesystem::path path_;
   std::ifstream file_;
   std::uint64_t line_ = 0;
+  std::uint64_t frames_ = 0;  ///< read so far
   RecordingHead head_;
 };
 

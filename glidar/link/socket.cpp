@@ -4,6 +4,9 @@
 
 #include <glidar/core/error.hpp>
 
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
 #include <zmq.hpp>
 
 #include <algorithm>
@@ -12,6 +15,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <filesystem>
 #include <map>
 #include <utility>
 
@@ -54,9 +58,16 @@ std::chrono::milliseconds::rep millis(std::chrono::milliseconds time) {
   return time.count();
 }
 
+/// A payload that ZeroMQ has, and the count of these.
+struct Flying {
+  Payload payload;
+  std::shared_ptr<std::atomic<int>> count;
+};
+
 /// Gives a payload back to its pool once ZeroMQ has no more use for it, in ZeroMQ's own thread.
-void release(void* /*bytes*/, void* payload) {
-  delete static_cast<Payload*>(payload);
+void release(void* /*bytes*/, void* flying) {
+  --*static_cast<Flying*>(flying)->count;
+  delete static_cast<Flying*>(flying);
 }
 
 /// Lets go of who keeps the bytes of a part.
@@ -163,9 +174,14 @@ struct Socket::Impl {
   zmq::socket_t monitor;  ///< tells of connections
   bool follows_part = false;
   std::map<std::string, std::uint64_t> subscriptions;  ///< by topic
+  int send_queue;
+  std::shared_ptr<std::atomic<int>> flying = std::make_shared<std::atomic<int>>(0);
+  bool is_behind = false;  ///< a subscriber's queue was full
 
   Impl(zmq::context_t& context, const SocketOptions& options)
-      : socket(context, type_of(options)), monitor(context, zmq::socket_type::pair) {}
+      : socket(context, type_of(options)),
+        monitor(context, zmq::socket_type::pair),
+        send_queue(options.send_queue) {}
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
   /// The monitor ends first: it is told by the socket.
@@ -203,7 +219,31 @@ Socket::~Socket() = default;
 Socket::Socket(Socket&&) noexcept = default;
 Socket& Socket::operator=(Socket&&) noexcept = default;
 
+namespace {
+
+/// ZeroMQ would take the place of whatever has this name.
+void require_free(const std::string& path) {
+  const std::filesystem::file_status status = std::filesystem::status(path);
+  if (!std::filesystem::exists(status)) return;
+  if (!std::filesystem::is_socket(status)) {
+    throw Error({"ipc://" + path, "a file that is no socket has this name", "a name that is free",
+                 "choose another name"});
+  }
+  sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};
+  path.copy(address.sun_path, sizeof(address.sun_path) - 1);
+  const int descriptor = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
+  const bool answers =
+      ::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+  ::close(descriptor);
+  if (!answers) return;  // of one that has ended without a word
+  throw Error({"ipc://" + path, "another program listens there", "a name that is free",
+               "end it, or choose another name"});
+}
+
+}  // namespace
+
 void Socket::bind(const Endpoint& endpoint) {
+  if (!endpoint.path.empty()) require_free(endpoint.path);
   try {
     impl_->socket.bind(text_of(endpoint));
   } catch (const zmq::error_t& error) {
@@ -273,15 +313,30 @@ bool publish_now(zmq::socket_t& socket, zmq::message_t& message, zmq::send_flags
 
 }  // namespace
 
+/// ZeroMQ tells of a full queue once and then leaves it out until half of it was read. What is
+/// half on its way counts too, so that this may be late to see it, but not early.
+bool Socket::has_full_queue() const {
+  impl_->is_behind = impl_->is_behind && *impl_->flying > impl_->send_queue / 2;
+  return impl_->is_behind;
+}
+
 bool Socket::publish(Payload payload) {
-  auto owned = std::make_unique<Payload>(std::move(payload));
-  const std::span<std::byte> bytes = owned->bytes();
+  const bool was_full = has_full_queue();
+  auto owned = std::make_unique<Flying>(Flying{std::move(payload), impl_->flying});
+  const std::span<std::byte> bytes = owned->payload.bytes();
   zmq::message_t message(bytes.data(), bytes.size(), release, owned.get());
   owned.release();  // NOLINT(bugprone-unused-return-value): the message has it
-  return publish_now(impl_->socket, message, zmq::send_flags::dontwait);
+  ++*impl_->flying;
+  if (publish_now(impl_->socket, message, zmq::send_flags::dontwait)) return !was_full;
+  impl_->is_behind = true;
+  return false;
 }
 
 bool Socket::publish(std::span<const std::byte> bytes, std::chrono::milliseconds patience) {
+  constexpr std::chrono::milliseconds kLook{5};
+  const auto until = std::chrono::steady_clock::now() + patience;
+  while (has_full_queue() && std::chrono::steady_clock::now() < until) wait_for({}, -1, kLook);
+  if (std::exchange(impl_->is_behind, false)) patience = kLook;  // in vain, which is enough once
   zmq::message_t message(bytes.data(), bytes.size());
   impl_->socket.set(zmq::sockopt::sndtimeo, static_cast<int>(millis(patience)));
   return publish_now(impl_->socket, message, zmq::send_flags::none);

@@ -124,7 +124,7 @@ class Socket {
   bool send_parts(std::span<const Part> parts);
 
   /// To all subscribers, without a copy. False: the queue of one or more was full, and these miss
-  /// it.
+  /// it, if they want its topic.
   bool publish(Payload payload);
   /// The same, waiting so long for full queues.
   bool publish(std::span<const std::byte> bytes, std::chrono::milliseconds patience);
@@ -136,6 +136,8 @@ class Socket {
   std::vector<PeerEvent> events();
 
  private:
+  [[nodiscard]] bool has_full_queue() const;
+
   friend void wait_for(std::initializer_list<const Socket*>, int, std::chrono::milliseconds);
   struct Impl;
   std::unique_ptr<Impl> impl_;

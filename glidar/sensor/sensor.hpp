@@ -49,6 +49,7 @@ struct Sensor {
   std::optional<Eigen::Vector3d> projector_m;
   std::vector<NoiseStep> noise;  ///< in the order in which the sensor makes its errors
   bool cull_back_faces = false;  ///< true: triangles seen from behind let the beam through
+  std::vector<std::string> files = {};  ///< that it was read from
 };
 
 /// What the sensor says of something at this true range on a beam: hit, too_near or too_far.

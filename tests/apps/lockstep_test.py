@@ -176,6 +176,18 @@ class Lockstep(CliTest):
         self.assertIn("10 refused", out)
         self.assertIn("requests refused", err)
 
+    def test_it_takes_no_place_that_is_taken(self):
+        self.write("precious", "kept")
+        refused = self.refused("stream", "builtin:asteroid", "--lockstep", f"ipc://{self.folder}/precious")
+        self.assertIn("a file that is no socket has this name", refused)
+        self.assertEqual(self.bytes_of("precious"), b"kept")
+        endpoint = f"ipc://{self.folder}/link"
+        with Server(self, "builtin:asteroid", *self.SIZE, endpoint=endpoint) as server:
+            done = self.run_program("stream", "builtin:asteroid", "--lockstep", endpoint)
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("another program listens there", done.stderr)
+            self.assertEqual(len(ask(server.connect(), ["xyz"], [(0, 1, 0, [SENSOR])])), 1)
+
     def test_several_clients_and_one_that_vanishes(self):
         with Server(self, "builtin:asteroid", *self.SIZE) as server:
             for _ in range(20):

@@ -46,7 +46,7 @@ TEST(MotionOptions, ModelRateTurnsTheModelAboutItsOwnAxes) {
 TEST(MotionOptions, CameraRateTurnsTheSensorAboutLeftUpForward) {
   const Pose start = legacy_world_from_optical(Eigen::Quaterniond::Identity(), 5.0);
   const MotionFlags flags{.camera_dr = std::to_string(std::numbers::pi / 2.0) + ",0,0"};
-  const Trajectory turning = sensor_trajectory(flags, start, true, {});
+  const Trajectory turning = sensor_trajectory(flags, start, Pose::Identity(), true, {});
   const Pose after = pose_at(turning, kSecond_ns);
   EXPECT_LT((after.translation() - start.translation()).norm(), kExact);
   // a quarter turn about x (left), right-handed: forward goes to where down was
@@ -56,11 +56,11 @@ TEST(MotionOptions, CameraRateTurnsTheSensorAboutLeftUpForward) {
 
 TEST(MotionOptions, WithoutOptionsTheSceneFileDecides) {
   const Trajectory own = Spin{.rate_rad_s = {0.0, 0.0, 1.0}};
-  EXPECT_TRUE(std::holds_alternative<Spin>(sensor_trajectory({}, Pose::Identity(), false, own)));
+  EXPECT_TRUE(std::holds_alternative<Spin>(sensor_trajectory({}, Pose::Identity(), Pose::Identity(), false, own)));
   EXPECT_TRUE(
-      std::holds_alternative<ConstantPose>(sensor_trajectory({}, Pose::Identity(), true, own)));
+      std::holds_alternative<ConstantPose>(sensor_trajectory({}, Pose::Identity(), Pose::Identity(), true, own)));
   EXPECT_TRUE(
-      std::holds_alternative<ConstantPose>(sensor_trajectory({}, Pose::Identity(), false, {})));
+      std::holds_alternative<ConstantPose>(sensor_trajectory({}, Pose::Identity(), Pose::Identity(), false, {})));
   EXPECT_EQ(instance_trajectories({}, one_object(), {own}).size(), 1U);
   EXPECT_TRUE(instance_trajectories({}, one_object(), {}).empty());
 }
@@ -68,7 +68,7 @@ TEST(MotionOptions, WithoutOptionsTheSceneFileDecides) {
 std::string error_of(const MotionFlags& flags, bool pose_given = false,
                      const std::optional<Trajectory>& from_file = {}) {
   try {
-    (void)sensor_trajectory(flags, Pose::Identity(), pose_given, from_file);
+    (void)sensor_trajectory(flags, Pose::Identity(), Pose::Identity(), pose_given, from_file);
   } catch (const Error& error) {
     return error.what();
   }

@@ -76,7 +76,7 @@ class Replay(ReplayTest):
         simulator.shut_down()
         clouds = subscriber.clouds_until_shutdown()
         self.finished(program, 0)
-        self.assertEqual([line["stamp_ns"] for line in self.lines()[1:]], [100, 101, 102, 103, 104])
+        self.assertEqual([line["stamp_ns"] for line in self.lines()[1:-1]], [100, 101, 102, 103, 104])
         program = self.start("r.jsonl", "--port", str(self.port), command="replay")
         again = self.subscriber()
         again.shake()
@@ -96,8 +96,47 @@ class Replay(ReplayTest):
             socket.send(CLIENT["request"](["xyz"], [(7, 1, 9, [sensor])]))  # objects where the scene has them
             socket.recv_multipart()
             self.assertEqual(server.end()[0], 143)
-        self.assertEqual([line["seed"] for line in self.lines()[1:]], [0, 1, 2, 2**63, 1])
+        self.assertEqual([line["seed"] for line in self.lines()[1:-1]], [0, 1, 2, 2**63, 1])
         self.assertIn("5 frames", self.succeed("replay", "r.jsonl").stdout)
+
+    def test_of_a_scanner_asked_in_any_order_is_the_same(self):
+        """Beams of a frame that is asked for again are those of its number, not of the last one."""
+        sensor = body((3, 0, 0), (0, 0, 0, 1))
+        with Server(self, "builtin:asteroid", "--sensor", "Livox-Avia", "--record", "r.jsonl") as server:
+            socket = server.connect()
+            for number in (0, 2, 0, 1):
+                socket.send(CLIENT["request"](["xyz"], [(0, 1, number, [sensor])]))
+                socket.recv_multipart()
+            self.assertEqual(server.end()[0], 143)
+        self.succeed("replay", "r.jsonl")
+
+    def test_of_lock_step_writes_and_publishes_every_frame(self):
+        """Clients may give all frames one number and time."""
+        sensor = body((6, 0, 0), (0.5, -0.5, -0.5, 0.5))
+        with Server(self, "builtin:asteroid", *SMALL, "--record", "r.jsonl") as server:
+            socket = server.connect()
+            for k in range(3):
+                socket.send(CLIENT["request"](["xyz"], [(0, 1, 0, [sensor, body((0, 0.1 * k, 0))])]))
+                socket.recv_multipart()
+            server.end()
+        self.succeed("replay", "r.jsonl", "-o", "again.pcd")
+        self.assertEqual(len(set(self.files_of("again").values())), 3)
+        program = self.start("r.jsonl", "--port", str(self.port), command="replay")
+        subscriber = self.subscriber()
+        subscriber.shake()
+        self.assertEqual([stamp for stamp, _ in subscriber.clouds_until_shutdown()], [1, 2, 3])
+        self.finished(program, 0)
+
+    def test_of_lock_step_follows_a_scene_that_moves_its_objects(self):
+        self.write("scene.yaml", SCENE)
+        sensor = body((8, 0, 0), (0.5, -0.5, -0.5, 0.5))
+        with Server(self, "scene.yaml", "--record", "r.jsonl") as server:
+            socket = server.connect()
+            socket.send(CLIENT["request"](["xyz"], [(0, 1, 0, [sensor]), (10**9, 1, 0, [sensor])]))
+            (_, first), (_, later) = CLIENT["clouds"](socket.recv_multipart())
+            self.assertNotEqual(first["xyz"].tobytes(), later["xyz"].tobytes())
+            server.end()
+        self.succeed("replay", "r.jsonl")
 
     def test_with_one_thread_is_the_same(self):
         self.record_scene("--threads", "2")
@@ -120,12 +159,31 @@ class Recording(ReplayTest):
             time.sleep(0.02)
         program.send_signal(signal.SIGINT)
         self.finished(program, 130)
-        self.assertGreaterEqual(len(self.lines()), 6)
+        self.assertGreaterEqual(len(self.lines()), 7)
         self.succeed("replay", "r.jsonl")
 
     def test_does_not_replace_what_the_scene_is_read_from(self):
         self.write("scene.yaml", SCENE)
         self.assertIn("is an input file", self.refused("stream", "scene.yaml", "--record", "box.obj", "-o", "s.pcd"))
+
+    def test_alone_is_enough(self):
+        self.succeed("stream", self.box, *SMALL, "--camera-z", "10", "--rate", "max", "--frames", "2", "--record", "r.jsonl")
+        self.assertEqual(len(self.lines()), 4)
+
+    def test_and_statistics_do_not_replace_each_other_or_what_is_read(self):
+        self.write("scene.yaml", SCENE)
+        out = ("--frames", "1", "--rate", "max")
+        for arguments in (("--stats", "scene.yaml", "-o", "s.pcd"), ("--stats", "x", "--record", "x"),
+                          ("--stats", "s_000000.pcd", "-o", "s.pcd"), ("--record", "s_000000.pcd", "-o", "s.pcd")):
+            with self.subTest(arguments):
+                done = self.run_program("stream", "scene.yaml", *out, *arguments)
+                self.assertEqual(done.returncode, 2, done.stdout)
+                self.assertIn("is an input file: the scene was read from it, or it is written otherwise", done.stderr)
+        self.assertEqual(self.bytes_of("scene.yaml").decode(), SCENE)
+        self.record_scene()
+        before = self.bytes_of("r.jsonl")
+        self.assertEqual(self.run_program("replay", "r.jsonl", "--stats", "r.jsonl").returncode, 2)
+        self.assertEqual(self.bytes_of("r.jsonl"), before)
 
     def test_to_nowhere_is_refused(self):
         self.assertIn("--record", self.refused("stream", self.box, "--record", "no/r.jsonl", "-o", "s.pcd"))
@@ -145,12 +203,14 @@ class Refusals(ReplayTest):
         self.record_scene()
         good = self.bytes_of("r.jsonl").decode().splitlines()
         cases = {"": "it is empty", "{}": ":1: ", "no json": ":1: ", '{"recording": 2}': "format 2",
-                 good[0].replace('"stream"', '"render"'): "it tells no such command"}
+                 good[0].replace('"stream"', '"render"'): "it tells another command"}
         for text, words in cases.items():
             with self.subTest(text):
                 self.write("bad.jsonl", text)
                 self.assertIn(words, self.refused("replay", "bad.jsonl"))
-        self.assertIn("not there", self.refused("replay", "none.jsonl"))
+        self.assertIn("no such file", self.refused("replay", "none.jsonl"))
+        os.mkfifo(os.path.join(self.folder, "pipe"))
+        self.assertIn("no such file", self.refused("replay", "pipe"))
 
     def test_a_line_that_is_cut_or_wrong_is_named(self):
         self.record_scene()
@@ -159,13 +219,33 @@ class Refusals(ReplayTest):
         wrong["sensor"] = 7
         scaled = dict(json.loads(first), rig=[2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0], objects=[])
         short = dict(scaled, rig=[1, 0, 0])
+        large = dict(json.loads(first), sensor=2**32)
+        below = dict(json.loads(first), number=-1)
+        unproven = dict(json.loads(first), frame_hash="")
         for line, words in ((first[:40], "bad.jsonl:3: "), (json.dumps(wrong), "sensor 7 and 0 objects"),
-                            (json.dumps(scaled), "no rigid transform"), (json.dumps(short), "3 numbers, not 12 or 18")):
+                            (json.dumps(scaled), "no rigid transform"), (json.dumps(short), "3 numbers, not 12 or 18"),
+                            (json.dumps(large), "sensor: 4294967296 is no count"),
+                            (json.dumps(below), "number: -1 is no count"),
+                            (json.dumps(unproven), "frame_hash: not 32 digits"),
+                            ('{"frames": 7}', "1 frames, where it tells 7")):
             with self.subTest(words):
                 self.write("bad.jsonl", "\n".join([head, first, line, *rest]) + "\n")
                 done = self.run_program("replay", "bad.jsonl")
                 self.assertEqual(done.returncode, 2, done.stdout)
                 self.assertIn(words, done.stderr)
+
+    def test_a_recording_that_ends_early_is_not_taken_for_a_whole_one(self):
+        self.record_scene()
+        for kept in (1, 3):
+            self.write("bad.jsonl", "\n".join(self.bytes_of("r.jsonl").decode().splitlines()[:kept]) + "\n")
+            done = self.run_program("replay", "bad.jsonl")
+            self.assertEqual(done.returncode, 2, done.stdout)
+            self.assertIn("it ends before its last line", done.stderr)
+
+    def test_a_pace_that_is_none_is_refused(self):
+        self.record_scene()
+        for rate in ("-5", "nan", "inf", "fast"):
+            self.assertIn("--rate", self.refused("replay", "r.jsonl", "--rate", rate))
 
 
 if __name__ == "__main__":

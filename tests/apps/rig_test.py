@@ -86,6 +86,23 @@ class Files(RigTest):
         self.assertIn("a rig of sensors", self.refused("render", "box.obj", "--mount", "a", "-o", "x.pcd"))
 
 
+class Alone(RigTest):
+    def test_a_rig_of_one_keeps_its_name(self):
+        self.write("one.yaml", "models: [{model: builtin:box}]\nsensors: [{name: a, sensor: VLP-16}]\n"
+                               "rig_pose: {position: [0, 0, 0]}\n")
+        self.succeed("render", "one.yaml", "-o", "x.pcd", "--no-sidecar")
+        self.assertIn("x_a.pcd", self.files())
+
+    def test_a_lidar_turns_about_up_by_the_second_of_three_rates(self):
+        """--camera-dr counts along left, up, forward, whatever the sensor's own axes are."""
+        self.succeed("render", "box.obj", "--sensor", "VLP-16", "--ideal", "--sensor-pose", "0,0,0,1,0,0,0",
+                     "--camera-dr", "0,2,0", "--columns", "sensor_pose", "-o", "x.npz")
+        with np.load(os.path.join(self.folder, "x.npz")) as written:
+            turns = written["sensor_pose"].reshape(-1, 7)[:, 3:]
+        self.assertGreater(turns[:, 3].max(), 0.05)  # about z
+        self.assertLess(np.abs(turns[:, 1:3]).max(), 1e-12)
+
+
 class Topics(RigTest):
     def stream(self, *arguments):
         return self.start("rig.yaml", "--port", str(self.port), "--stats", "stats.json", *arguments)
@@ -127,6 +144,16 @@ class Topics(RigTest):
             subscriber.close()
         program.terminate()
         self.finished(program, 143)
+
+    def test_end_for_who_waits_for_the_topic_of_2015_too(self):
+        program = self.stream("--subscribers", "1", "--frames", "1", "--rate", "max")
+        subscriber = self.subscriber()
+        subscriber.shake()
+        self.assertEqual(subscriber.receive(), b"cKTHXBAI")
+        self.finished(program, 0)
+
+    def test_that_keep_the_newest_alone_are_refused(self):
+        self.assertIn("--pub-conflate", self.refused("stream", "rig.yaml", "--port", str(self.port), "--pub-conflate", "1"))
 
     def test_of_a_chosen_sensor_is_that_of_2015(self):
         program = self.stream("--mount", "camera", "--frames", "2")

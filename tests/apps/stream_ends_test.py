@@ -89,6 +89,32 @@ class Ends(StreamTest):
         self.assertEqual(len(subscriber.clouds_until_shutdown()), 1)
         self.assertIn("a_000000.csv", self.finished(program, 2))
 
+    def test_not_by_what_a_stranger_sends_to_the_port_of_handshakes(self):
+        program = self.publish("--camera-z", "10", "--subscribers", "0", "--rate", "20")
+        subscriber = self.subscriber()
+        cloud(subscriber.receive())
+        for parts in ([b"", b"x"], [b"x"], [b"", b"", b""]):
+            with self.context.socket(zmq.REQ) as stranger:
+                stranger.linger = 0
+                stranger.connect(f"tcp://127.0.0.1:{self.port + 1}")
+                stranger.send_multipart(parts)
+                self.assertTrue(stranger.poll(20_000), parts)
+                self.assertEqual(stranger.recv(), b"")
+        program.send_signal(signal.SIGTERM)
+        subscriber.clouds_until_shutdown()
+        self.assertIn("odd handshake", self.finished(program, 143))
+
+    def test_not_by_a_pose_that_waited_longer_than_the_timeout_until_it_was_taken(self):
+        """The timeout is about waiting for a pose, not about frames that take long."""
+        simulator = self.simulator()
+        program = self.publish("--physics-port", str(self.physics), "--hwm", "10", "--subscribers", "0",
+                               "--rate", "2", "--pose-timeout", "0.3", "--frames", "3")
+        simulator.shake()
+        for stamp in range(3):
+            simulator.send(pose_message(stamp))
+        self.finished(program, 0)
+        self.assertEqual(self.stats()["ending"], "all frames are done")
+
     def test_with_all_three_shutdown_messages_of_2015(self):
         program = self.publish("--rate", "max", "--frames", "1")
         everything = self.subscriber(topic=b"")

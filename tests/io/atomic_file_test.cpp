@@ -108,6 +108,24 @@ TEST(AtomicFile, TellsAMissingOrUnwritableFolder) {
   EXPECT_THAT(error_text([&] { AtomicFile file(folder.path()); }), HasSubstr("is a folder"));
 }
 
+TEST(AtomicFile, TakesNoPipesPlaceOrADevices) {
+  const testing::TestFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_THAT(error_text([&] { AtomicFile file(folder / "pipe"); }),
+              HasSubstr("is a device, pipe or socket"));
+  EXPECT_THAT(error_text([] { AtomicFile file("/dev/null"); }),
+              HasSubstr("is a device, pipe or socket"));
+}
+
+TEST(AtomicFile, MayBeItsOwnersAlone) {
+  const testing::TestFolder folder;
+  AtomicFile file(folder / "key", AtomicFile::Readers::owner);
+  file.commit();
+  struct stat about {};
+  ASSERT_EQ(::stat((folder / "key").c_str(), &about), 0);
+  EXPECT_EQ(about.st_mode & 0777U, 0600U);
+}
+
 TEST(AtomicFile, ObeysTheUsersMask) {
   const testing::TestFolder folder;
   const mode_t before = ::umask(0027);

@@ -26,6 +26,8 @@ class Folder {
   std::filesystem::path path_;
 };
 
+const std::string kHash = "0123456789abcdef0123456789abcdef";
+
 lockstep::Body some_body(double x) {
   const Pose pose = make_pose({x, 1.0 / 3.0, -1e-300}, Eigen::Quaterniond(0.9, 0.1, -0.3, 0.2));
   return {.world_from_body = pose,
@@ -35,7 +37,7 @@ lockstep::Body some_body(double x) {
 
 TEST(Recording, ReadsBackEveryBitThatWasWritten) {
   const Folder folder;
-  RecordedFrame frame{.sensor = 3, .is_placed = true, .frame_hash = "abc"};
+  RecordedFrame frame{.sensor = 3, .is_placed = true, .frame_hash = kHash};
   frame.moment = {.t_ns = -5, .seed = 0xFFFFFFFFFFFFFFFFU, .number = 7, .sensor = some_body(0.1)};
   frame.moment.objects = {some_body(2.7e7), {}};
   RecordingWriter writer(folder / "r.jsonl");
@@ -54,7 +56,7 @@ TEST(Recording, ReadsBackEveryBitThatWasWritten) {
   const std::optional<RecordedFrame> read = reader.next();
   ASSERT_TRUE(read);
   EXPECT_EQ(read->sensor, 3U);
-  EXPECT_EQ(read->frame_hash, "abc");
+  EXPECT_EQ(read->frame_hash, kHash);
   EXPECT_EQ(read->moment.t_ns, -5);
   EXPECT_EQ(read->moment.seed, 0xFFFFFFFFFFFFFFFFU);
   EXPECT_EQ(read->moment.number, 7U);
@@ -71,7 +73,7 @@ TEST(Recording, OfAFrameThatTheCommandPlacedHasNoBodies) {
   const Folder folder;
   RecordingWriter writer(folder / "r.jsonl");
   writer.begin({.version = "1", .command = {.arguments = {"stream"}, .folder = folder / "."}});
-  writer.write({.sensor = 0, .is_placed = false, .frame_hash = "f"});
+  writer.write({.sensor = 0, .is_placed = false, .frame_hash = kHash});
   writer.commit();
   RecordingReader reader(folder / "r.jsonl");
   EXPECT_FALSE(reader.next().value().is_placed);

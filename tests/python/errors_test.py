@@ -7,6 +7,7 @@ import logging
 import pickle
 import threading
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -52,6 +53,17 @@ def test_ctrl_c_ends_one_long_measurement(asteroid):
         assert interrupted(lambda: [glidar.simulate(asteroid, sensor) for _ in range(20)]) < 10.0
     finally:
         glidar.simulate(asteroid, glidar.camera(), poses_around(1)[0])
+
+
+def test_ctrl_c_ends_the_loading_of_a_model_and_its_process(tmp_path, monkeypatch):
+    helper = tmp_path / "helper"
+    helper.write_text(f"#!/bin/sh\necho $$ > {tmp_path}/pid\nexec sleep 60\n")
+    helper.chmod(0o755)
+    monkeypatch.setenv("GLIDAR_IMPORT_HELPER", str(helper))
+    (tmp_path / "a.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    assert interrupted(lambda: glidar.Scene(tmp_path / "a.obj"), after_s=1.0) < 10.0
+    process = Path(f"/proc/{int((tmp_path / 'pid').read_text())}")
+    assert not process.exists()
 
 
 def test_ctrl_c_ends_verify():

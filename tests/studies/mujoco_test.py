@@ -142,6 +142,17 @@ class Program(unittest.TestCase):
         self.assertEqual(done.returncode, 0)
         self.assertIn("examples/mujoco_rendezvous.py --seconds 20", done.stdout)
 
+    def test_ends_glidar_when_it_is_ended(self):
+        program = subprocess.Popen([sys.executable, str(EXAMPLE), "--seconds", "1000"], stdout=subprocess.PIPE, text=True)
+        for _ in range(3):
+            program.stdout.readline()
+        children = Path(f"/proc/{program.pid}/task/{program.pid}/children").read_text(encoding="utf-8").split()
+        program.terminate()
+        program.communicate(timeout=60)
+        self.assertEqual(program.returncode, 143)
+        self.assertEqual(len(children), 1)
+        self.assertFalse(Path("/proc", children[0]).exists())
+
     def test_ends_glidar_when_something_goes_wrong(self):
         with self.assertRaises(Trouble), Lockstep(example.SATELLITE, "--sensor", "flash-128") as link:
             link.measure(0, Body(np.zeros(3), np.zeros(4)), Body(np.zeros(3), np.array([1.0, 0, 0, 0])))

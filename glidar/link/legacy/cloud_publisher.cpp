@@ -52,7 +52,6 @@ CloudPublisher::CloudPublisher(link::Context& context, const CloudPublisherOptio
 }
 
 void CloudPublisher::write(const PointCloud& cloud, const Frame& frame) {
-  if (!wants(frame.number)) return;
   const std::uint64_t timestamp = timestamp_of(frame);
   if (is_repeated(frame, timestamp)) {
     ++counts_.repeated;
@@ -93,8 +92,8 @@ void CloudPublisher::shut_down() {
   }
   // the clouds' topics last: with keeps_newest only the last message is sure to arrive
   std::vector<std::string> ending = {"p", "P"};
-  const std::vector<std::string> clouds = topics();
-  ending.insert(ending.end(), clouds.begin(), clouds.end());
+  for (const auto& [sensor, topic] : topics_) ending.push_back(topic);
+  ending.emplace_back(1, kCloudTopic);
   for (const std::string& topic : ending) {
     if (clouds_.publish(encode_shutdown(topic), kPatience)) continue;
     faults_.tell("shutdown missed", "a subscriber does not read; it may wait for more clouds");
@@ -113,19 +112,19 @@ bool CloudPublisher::is_repeated(const Frame& frame, std::uint64_t timestamp) {
   return std::exchange(last->second, timestamp) == timestamp && !is_first;
 }
 
-std::uint64_t CloudPublisher::timestamp_of(const Frame& frame) const {
+std::uint64_t CloudPublisher::timestamp_of(const Frame& frame) {
   if (options_.timestamps == Timestamps::of_poses)
     return static_cast<std::uint64_t>(frame.stamp_ns);
-  return std::uint64_t{frame.number} / options_.every + 1;
+  return ++counted_[frame.sensor_id];
 }
 
 void CloudPublisher::answer_handshakes() {
   while (const std::optional<link::Message> request = handshakes_.receive()) {
-    if (!request->is_whole()) continue;  // a reply is due after the last part
-    if (!request->bytes().empty()) {
+    if (!request->is_last()) continue;  // a reply is due after the last part
+    if (!request->bytes().empty() || !request->is_whole()) {
       faults_.tell("odd handshake",
-                   "a subscriber sent " + std::to_string(request->bytes().size()) +
-                       " bytes where 2015's protocol has none; answered all the same");
+                   "a subscriber sent more than the empty message that 2015's protocol has; "
+                   "answered all the same");
     }
     handshakes_.send({});
     ++counts_.handshakes;

@@ -20,7 +20,7 @@
 namespace glidar::legacy {
 
 /// What a cloud's timestamp is: that of the pose it was made for, which is the frame's stamp_ns
-/// whatever its unit, or the number of the frame, from 1, as where no simulator gives one.
+/// whatever its unit, or the number of the sensor's cloud, from 1, as where no simulator gives one.
 enum class Timestamps : std::uint8_t { of_poses, counted };
 
 struct CloudPublisherOptions {
@@ -49,8 +49,8 @@ class CloudPublisher final : public CloudSink {
   /// Sends a cloud with the columns xyz (x left, y up, z forward) and intensity, once for each
   /// timestamp of a sensor.
   void write(const PointCloud& cloud, const Frame& frame) override;
-  /// Whether write() would send a frame of this number.
-  [[nodiscard]] bool wants(std::uint32_t frame) const { return frame % options_.every == 0; }
+  /// Whether the frame of this place in its sensor's sequence is to be published.
+  [[nodiscard]] bool wants(std::uint64_t frame) const { return frame % options_.every == 0; }
 
   /// Answers who asks at the second port and notices who came and went.
   void serve();
@@ -76,7 +76,7 @@ class CloudPublisher final : public CloudSink {
  private:
   [[nodiscard]] std::vector<std::string> topics() const;
   [[nodiscard]] bool is_repeated(const Frame& frame, std::uint64_t timestamp);
-  [[nodiscard]] std::uint64_t timestamp_of(const Frame& frame) const;
+  std::uint64_t timestamp_of(const Frame& frame);
   void answer_handshakes();
   void notice_peers();
 
@@ -85,6 +85,7 @@ class CloudPublisher final : public CloudSink {
   link::Socket clouds_;
   link::Socket handshakes_;
   std::shared_ptr<link::PayloadPool> pool_ = std::make_shared<link::PayloadPool>();
+  std::map<std::uint32_t, std::uint64_t> counted_;          ///< clouds of each sensor
   std::map<std::uint32_t, std::string> topics_;             ///< by sensor
   std::map<std::uint32_t, std::uint64_t> last_timestamps_;  ///< likewise
   std::chrono::steady_clock::time_point last_handshake_;

@@ -174,7 +174,11 @@ Body read_body(Reader& from, const std::string& where) {
 Moment read_moment(Reader& from, std::uint32_t index, std::uint32_t objects) {
   const std::string where = "moment " + std::to_string(index);
   Moment moment;
+  constexpr std::int64_t kLatest_ns = 9'000'000'000'000'000'000;  // beams fire after it
   moment.t_ns = from.take<std::int64_t>();
+  if (moment.t_ns > kLatest_ns || moment.t_ns < -kLatest_ns) {
+    refuse(where + ", time", std::to_string(moment.t_ns) + " ns", "from -9e18 to 9e18");
+  }
   moment.seed = from.take<std::uint64_t>();
   moment.number = from.take<std::uint32_t>();
   if (from.take<std::uint32_t>() != 0) refuse(where + ", reserved", "another number", "0");
