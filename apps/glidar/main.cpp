@@ -30,8 +30,8 @@ constexpr const char* kExamples = R"(Examples:
   glidar info builtin:torus
   glidar sensors
   glidar verify
-More: glidar render --help, and the same for view, stream, replay, explain, info, sensors and
-verify)";
+More: glidar render --help, and the same for view, stream, replay, explain, info, campaign,
+sensors and verify)";
 
 using Commands = std::vector<std::pair<std::string, Command>>;
 
@@ -125,11 +125,15 @@ int run(int argc, char** argv) {
   program.require_subcommand(1);
   program.footer(kExamples);
   const std::vector<std::string> arguments(argv + std::min(argc, 1), argv + argc);
-  const Commands commands = {
-      {"render", add_render(program, arguments)}, {"view", add_view(program)},
-      {"stream", add_stream(program, arguments)}, {"replay", add_replay(program)},
-      {"explain", add_explain(program)},          {"info", add_info(program)},
-      {"sensors", add_sensors(program)},          {"verify", add_verify(program)}};
+  const Commands commands = {{"render", add_render(program, arguments)},
+                             {"view", add_view(program)},
+                             {"stream", add_stream(program, arguments)},
+                             {"replay", add_replay(program)},
+                             {"explain", add_explain(program)},
+                             {"info", add_info(program)},
+                             {"campaign", add_campaign(program)},
+                             {"sensors", add_sensors(program)},
+                             {"verify", add_verify(program)}};
   return parse_and_run(program, commands, argc, argv);
 }
 

@@ -123,6 +123,15 @@ def load_sensor(name_or_path: str | os.PathLike[str]) -> Sensor:
     return Sensor(_core.load_sensor(os.fspath(name_or_path)))
 
 
+def sensor_file(name: str) -> str:
+    """The path of the file of a preset.
+
+    Raises:
+        Error: there is no preset of this name, with the nearest names.
+    """
+    return os.fspath(_core.sensor_file(name))
+
+
 def sensor_names() -> list[str]:
     """Names of the sensors that come along."""
     return _core.preset_names()

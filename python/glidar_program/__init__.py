@@ -10,4 +10,6 @@ from pathlib import Path
 
 def main() -> None:
     program = Path(__file__).resolve().parent.parent / "glidar" / "bin" / "glidar"
-    os.execv(program, ["glidar", *sys.argv[1:]])
+    # where `glidar campaign` finds glidar-campaign, also in an environment that is not activated
+    path = os.pathsep.join([str(Path(sys.argv[0]).resolve().parent), os.environ.get("PATH", os.defpath)])
+    os.execve(program, ["glidar", *sys.argv[1:]], {**os.environ, "PATH": path})

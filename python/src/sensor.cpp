@@ -123,6 +123,7 @@ void bind_sensor(nb::module_& module) {
   module.def("parse_sensor", parse, nb::arg("text"));
   module.def("sensor_sheet", sheet, nb::arg("name_or_path"),
              nb::sig("def sensor_sheet(name_or_path: str) -> list[tuple[str, str, str, bool]]"));
+  module.def("sensor_file", find_sensor_file, nb::arg("name_or_path"));
   module.def("preset_names", preset_names);
 }
 

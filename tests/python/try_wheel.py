@@ -34,6 +34,7 @@ def run(*arguments):
 
 assert run("--version").strip().endswith(glidar.__version__)
 assert "VLP-16" in run("sensors")
+assert "--executor" in run("campaign", "run", "--help")  # by glidar-campaign, beside the program
 run("render", str(package / "share/glidar/models/satellite/satellite.obj"), "-o", "cloud.pcd")
 maps = subprocess.run(["ldd", package / "bin/glidar"], capture_output=True, text=True, check=True).stdout
 assert "not found" not in maps, maps

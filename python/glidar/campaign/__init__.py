@@ -1,0 +1,9 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Monte Carlo campaigns: many trials, drawn from distributions, measured into a data set.
+
+    glidar campaign run campaign.yaml -o folder
+
+or, from Python, `from glidar.campaign.run import run; run("campaign.yaml", "folder")`. docs/campaigns.md tells the rest.
+Needs the package's extra: pip install '.[campaign]' in GLIDAR's source.
+"""

@@ -1,0 +1,141 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The models of a BOP data set: which objects there are, their meshes in millimetres, their sizes."""
+
+import json
+
+import numpy as np
+
+from glidar import Error
+from glidar.campaign import files, loading, yaml_file as yf
+
+FOLDER = "bop"
+SHAPE_KEYS = ("model", "unit", "up", "scale")  # what makes a model of a scene file an object of BOP
+MM_PER_M = 1000.0
+
+
+def _shape(field):
+    """The values of SHAPE_KEYS, as the scene file spells them."""
+    found = yf.entries(field)
+    return tuple(found[key].node.value if key in found else "" for key in SHAPE_KEYS)
+
+
+def _shapes(source):
+    """Of every model of a scene; of a scene that cannot be read none."""
+    if source.fault:
+        return []
+    models = yf.entries(yf.parse(source.text, source.path)).get("models")
+    return [_shape(item) for item in yf.items(models, 0)] if models else []
+
+
+def object_ids(plan):
+    """{shape: id from 1}, in the order in which the scenes name them."""
+    ids = {}
+    for source in plan.scenes:
+        for shape in _shapes(source):
+            ids.setdefault(shape, len(ids) + 1)
+    return ids
+
+
+def ids_by_scene(plan):
+    """For each scene the ids of its models."""
+    ids = object_ids(plan)
+    return [[ids[shape] for shape in _shapes(source)] for source in plan.scenes]
+
+
+def require_fit(plan):
+    """BOP's models are fixed; its cameras are pinholes without distortion."""
+    for variation in plan.spec.vary:
+        if variation.target.of == "scene" and variation.target.steps[-1] in SHAPE_KEYS:
+            raise Error(f"{plan.spec.file}: vary.{variation.path}", "it changes the model, and the "
+                        "models of a BOP data set are fixed", "other keys", "leave out outputs.bop")
+    for source in plan.sensors:
+        if not source.fault:
+            loading.intrinsics_of(loading.load_sensor(source.text, source.path), source.name)
+
+
+def normals_of(vertices, triangles):
+    """Of each vertex, the sum of its triangles' normals, weighted by their angles (Thuermer and
+    Wuethrich, "Computing vertex normals from polygonal facets", J. Graphics Tools 3, 1998)."""
+    corners = vertices[triangles]
+    face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    face /= np.maximum(np.linalg.norm(face, axis=1, keepdims=True), np.finfo(float).tiny)
+    normals = np.zeros_like(vertices)
+    for k in range(3):
+        a = corners[:, (k + 1) % 3] - corners[:, k]
+        b = corners[:, (k + 2) % 3] - corners[:, k]
+        angle = np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1))
+        np.add.at(normals, triangles[:, k], angle[:, None] * face)
+    return normals / np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), np.finfo(float).tiny)
+
+
+def diameter(points):
+    """The largest distance between two points: between two corners of their convex hull."""
+    from scipy.spatial import ConvexHull
+    from scipy.spatial.distance import pdist
+
+    centred = points - points.mean(axis=0)
+    axes = np.linalg.svd(np.cov(centred.T))[0]
+    extent = np.ptp(centred @ axes, axis=0)
+    flat = centred @ axes[:, extent > 1e-9 * extent.max()]  # planes and lines have hulls of their own
+    if flat.shape[1] < 2:
+        return float(extent.max())
+    return float(pdist(flat[ConvexHull(flat).vertices]).max())
+
+
+def ply_text(vertices_mm, normals, triangles):
+    """ASCII PLY as BOP has it."""
+    head = ["ply", "format ascii 1.0", f"element vertex {len(vertices_mm)}"]
+    head += [f"property float {name}" for name in ("x", "y", "z", "nx", "ny", "nz")]
+    head += [f"element face {len(triangles)}", "property list uchar int vertex_indices", "end_header"]
+    rows = [" ".join(f"{a:.9g}" for a in row) for row in np.concatenate([vertices_mm, normals], axis=1)]
+    faces = [f"3 {a} {b} {c}" for a, b, c in triangles]
+    return "\n".join(head + rows + faces) + "\n"
+
+
+def info_of(vertices_mm):
+    least, most = vertices_mm.min(axis=0), vertices_mm.max(axis=0)
+    names = [f"{kind}_{axis}" for kind in ("min", "size") for axis in "xyz"]
+    return {"diameter": diameter(vertices_mm),
+            **dict(zip(names, [float(a) for a in (*least, *(most - least))]))}
+
+
+def _meshes(plan):
+    """(id, vertices in mm, triangles) of every object."""
+    done = set()
+    for source, ids in zip(plan.scenes, ids_by_scene(plan)):
+        if not set(ids) - done:
+            continue
+        try:
+            scene = loading.load_scene(source.text, source.path)
+        except Error:
+            continue  # its trials fail and say why
+        for place, object_id in enumerate(ids):
+            if object_id not in done:
+                done.add(object_id)
+                placed = scene.objects[place]
+                yield object_id, placed.mesh.vertices * placed.scale * MM_PER_M, placed.mesh.triangles
+
+
+def write(plan, folder):
+    """Writes models, models_info.json and camera.json, and their receipt."""
+    require_fit(plan)
+    scratch = files.Scratch(folder.root)
+    contents, info = {}, {}
+    for object_id, vertices_mm, triangles in _meshes(plan):
+        name = f"{FOLDER}/models/obj_{object_id:06}.ply"
+        contents[name] = ply_text(vertices_mm, normals_of(vertices_mm, triangles), triangles).encode()
+        info[str(object_id)] = info_of(vertices_mm)
+    contents[f"{FOLDER}/models/models_info.json"] = files.json_bytes(info)
+    source = next(s for s in plan.sensors if not s.fault)
+    sensor = loading.load_sensor(source.text, source.path)
+    k = loading.intrinsics_of(sensor, source.name)
+    contents[f"{FOLDER}/camera.json"] = json.dumps(
+        {"cx": k[0, 2], "cy": k[1, 2], "fx": k[0, 0], "fy": k[1, 1], "height": sensor.rows,
+         "width": sensor.cols, "depth_scale": plan.spec.outputs.bop.depth_scale_mm}, indent=1).encode()
+    listed = {}
+    for name, data in contents.items():
+        files.write_bytes(scratch, folder.root / name, data)
+        listed[name] = [files.hash_bytes(data), len(data)]
+    files.write_json(scratch, folder.once("bop"), {"trials": 0, "failed": 0, "files": listed})
+    scratch.remove()

@@ -1,0 +1,116 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""BOP data sets, scene-wise (thodan/bop_toolkit, docs/bop_datasets_format.md): each shard is a BOP
+scene, each trial an image.
+
+What the toolkit's scripts estimate by rendering is known here: an object's visible pixels are those
+whose beam meets it first, its silhouette those that meet it when it is alone. As there, silhouettes are
+counted on a canvas of three times the width and height, so that truncated objects are told whole.
+"""
+
+import json
+
+import numpy as np
+from PIL import Image
+
+from glidar import Error
+from glidar.campaign import bop_models
+
+FOLDER = "bop"
+MOST_STEPS = 65535  # of a depth image of 16 bits
+MM_PER_M = 1000.0
+NO_BOX = [-1, -1, -1, -1]
+
+
+def box_of(mask):
+    """x, y, width, height of the pixels that are set, as misc.calc_2d_bbox of the toolkit: width and
+    height are from the first to the last pixel."""
+    ys, xs = np.nonzero(mask)
+    if len(xs) == 0:
+        return NO_BOX
+    return [int(xs.min()), int(ys.min()), int(xs.max() - xs.min()), int(ys.max() - ys.min())]
+
+
+def object_info(silhouette, visible, valid):
+    """An entry of scene_gt_info of the masks silhouette (3h x 3w), visible and valid depth (h x w)."""
+    rows, cols = visible.shape
+    inside = silhouette[rows : 2 * rows, cols : 2 * cols]
+    everywhere, seen = int(silhouette.sum()), int(visible.sum())
+    box = NO_BOX
+    if seen:
+        x, y, width, height = box_of(silhouette)
+        box = [x - cols, y - rows, width, height]
+    return {"px_count_all": everywhere, "px_count_valid": int((inside & valid).sum()),
+            "px_count_visib": seen, "visib_fract": seen / everywhere if everywhere else 0.0,
+            "bbox_obj": box, "bbox_visib": box_of(visible)}
+
+
+def depth_steps(depth_m, scale_mm, name):
+    """The depth image: steps of scale_mm, 0 where there is no return."""
+    steps = np.rint(np.nan_to_num(depth_m * (MM_PER_M / scale_mm)))
+    most = steps.max(initial=0.0)
+    if most > MOST_STEPS:
+        raise Error(f"outputs.bop.depth_scale_mm, {name}",
+                    f"a depth of {most * scale_mm / MM_PER_M:.6g} m does not fit in 16 bits in steps of "
+                    f"{scale_mm:g} mm", f"at least {most * scale_mm / MOST_STEPS:.4g} mm", "")
+    return steps.astype(np.uint16)
+
+
+def save_json(path, content):
+    """As the toolkit lays it out: one image a line."""
+    lines = ",\n".join(f'  "{key}": {json.dumps(content[key], sort_keys=True)}'
+                       for key in sorted(content))
+    path.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
+
+
+class BopOutput:
+    def __init__(self, plan, scratch, shard):
+        self._options = plan.spec.outputs.bop
+        self._scratch = scratch
+        self._folder = f"{FOLDER}/{self._options.split}/{shard:06}"
+        self._first = plan.trials_of(shard)[0]
+        self._ids = bop_models.ids_by_scene(plan)
+        self._camera, self._truth, self._info, self._files = {}, {}, {}, []
+
+    def add(self, row, trial, frame):
+        image = trial - self._first
+        camera_from_world = np.linalg.inv(frame.world_from_sensor)
+        depth = depth_steps(frame.depth_m, self._options.depth_scale_mm, f"trial {trial}")
+        self._camera[image] = {"cam_K": frame.intrinsics.ravel().tolist(),
+                               "depth_scale": self._options.depth_scale_mm,
+                               "cam_R_w2c": camera_from_world[:3, :3].ravel().tolist(),
+                               "cam_t_w2c": (MM_PER_M * camera_from_world[:3, 3]).tolist()}
+        self._truth[image], self._info[image] = [], []
+        self._image("depth", f"{image:06}", depth)
+        self._image("gray", f"{image:06}", np.rint(
+            255.0 * np.clip(np.nan_to_num(frame.intensity), 0.0, 1.0)).astype(np.uint8))
+        silhouettes = frame.silhouettes()
+        for i, world_from_object in enumerate(frame.world_from_objects):
+            self._add_object(image, self._ids[frame.scene][i],
+                             camera_from_world @ world_from_object)
+            visible = frame.instance == i
+            self._info[image].append(object_info(silhouettes[i], visible, depth > 0))
+            rows, cols = visible.shape
+            inside = silhouettes[i][rows : 2 * rows, cols : 2 * cols]
+            self._image("mask", f"{image:06}_{i:06}", inside.astype(np.uint8) * 255)
+            self._image("mask_visib", f"{image:06}_{i:06}", visible.astype(np.uint8) * 255)
+
+    def _add_object(self, image, object_id, camera_from_object):
+        self._truth[image].append({"obj_id": object_id,
+                                   "cam_R_m2c": camera_from_object[:3, :3].ravel().tolist(),
+                                   "cam_t_m2c": (MM_PER_M * camera_from_object[:3, 3]).tolist()})
+
+    def _image(self, kind, name, pixels):
+        if kind not in self._options.images:
+            return
+        path = self._scratch.path(f"{name}.png")
+        Image.fromarray(pixels).save(path, compress_level=1)
+        self._files.append((f"{self._folder}/{kind}/{name}.png", path))
+
+    def finish(self):
+        for name, content in (("scene_camera", self._camera), ("scene_gt", self._truth),
+                              ("scene_gt_info", self._info)):
+            path = self._scratch.path(f"{name}.json")
+            save_json(path, content)
+            self._files.append((f"{self._folder}/{name}.json", path))
+        return self._files

@@ -1,0 +1,156 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The program glidar-campaign, which `glidar campaign` runs."""
+
+import argparse
+import re
+import signal
+import sys
+
+from glidar import Error
+from glidar.campaign.progress import tell_warnings
+
+DONE, TRIALS_FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+CODES = ("Exit codes: 0 done, 1 done but trials failed or files differ, 2 bad input, "
+         "130 interrupted; run the same command again to go on.")
+
+
+class Parser(argparse.ArgumentParser):
+    """Errors as glidar has them: one line, exit code 2."""
+
+    def error(self, message):
+        raise Error(self.prog, message, "", "see --help")
+
+
+def _part(text):
+    match = re.fullmatch(r"(\d+)/(\d+)", text)
+    if not match or not int(match[1]) < int(match[2]):
+        raise argparse.ArgumentTypeError(f"'{text}'; allowed: i/N with i from 0 to N - 1")
+    return int(match[1]), int(match[2])
+
+
+def _count(text):
+    if not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"'{text}'; allowed: a whole number from 1")
+    return int(text)
+
+
+def make_parser():
+    parser = Parser(prog="glidar campaign", description="Monte Carlo campaigns", epilog=CODES,
+                    allow_abbrev=False)
+    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND",
+                                     parser_class=Parser)
+    run = commands.add_parser("run", help="measure all trials, or go on where a run stopped",
+                              epilog=CODES, allow_abbrev=False)
+    run.add_argument("campaign", metavar="CAMPAIGN.yaml", help="what to measure, see docs/campaigns.md")
+    run.add_argument("-o", "--output", metavar="DIR", required=True, help="folder of the data set")
+    run.add_argument("--workers", metavar="N", type=_count, default=0,
+                     help="processes on this machine (default: 1, and where scenes or sensors differ "
+                          "from trial to trial one per core)")
+    run.add_argument("--shard", metavar="i/N", type=_part, default=(0, 1),
+                     help="measure only part i of N, counted from 0; merge them later")
+    run.add_argument("--executor", choices=["local", "dask", "slurm"], default="local",
+                     help="who measures: this machine, Dask's workers, or Slurm's job array")
+    run.add_argument("--scheduler", metavar="ADDR", help="of Dask, e.g. tcp://127.0.0.1:8786")
+    run.add_argument("--tasks", metavar="N", type=_count, default=None,
+                     help="tasks of the Slurm job array (default: 8)")
+    run.add_argument("--sbatch", metavar="OPTION", action="append", default=[],
+                     help="a line for sbatch, e.g. --sbatch=--time=10:00; may be given again")
+    run.add_argument("--wait", action="store_true", help="wait until Slurm has finished the campaign")
+    run.add_argument("--quiet", action="store_true", help="no progress display")
+    merge = commands.add_parser("merge", help="finish a campaign that ran in parts", epilog=CODES,
+                                allow_abbrev=False)
+    merge.add_argument("parts", metavar="DIR", nargs="+", help="folders of the parts")
+    merge.add_argument("-o", "--output", metavar="DIR", help="folder of the whole (default: the first)")
+    report = commands.add_parser("report", help="write report.html", epilog=CODES, allow_abbrev=False)
+    report.add_argument("folder", metavar="DIR")
+    report.add_argument("-o", "--output", metavar="FILE", help="default: DIR/report.html")
+    check = commands.add_parser("check", help="compare every file with its hash in the manifest",
+                                epilog=CODES, allow_abbrev=False)
+    check.add_argument("folder", metavar="DIR")
+    return parser
+
+
+def _tell(outcome, root):
+    """The last line, and the exit code."""
+    if outcome.missing:
+        print(f"{root}: {outcome.missing} shards are still missing; run the other parts, then merge")
+        return BAD_INPUT
+    rate = f", {outcome.rate:.4g} trials/s" if outcome.rate else ""
+    kind = "" if outcome.whole else " of this part"
+    print(f"{root}: {outcome.trials} trials{kind}, {outcome.failed} failed{rate}")
+    if outcome.failed:
+        print("glidar: warning: trials failed; 'error' in index.parquet says why, and so does "
+              f"glidar campaign report {root}", file=sys.stderr)
+    return TRIALS_FAILED if outcome.failed else DONE
+
+
+def _executor(flags):
+    """What runs the shards; None: this machine."""
+    if flags.scheduler and flags.executor != "dask":
+        raise Error("--scheduler", "given without --executor dask", "", "")
+    if (flags.tasks or flags.sbatch or flags.wait) and flags.executor != "slurm":
+        raise Error("--tasks, --sbatch, --wait", "given without --executor slurm", "", "")
+    if flags.executor == "dask":
+        from glidar.campaign.dask_executor import dask_executor
+
+        return dask_executor(flags.scheduler)
+    return None
+
+
+def _run(flags):
+    from glidar.campaign import run as running
+
+    if flags.executor == "slurm":
+        from glidar.campaign import slurm_executor
+
+        outcome = slurm_executor.submit(flags)
+        return DONE if outcome is None else _tell(outcome, flags.output)
+    outcome = running.run(flags.campaign, flags.output, running.Part(*flags.shard), flags.workers,
+                          _executor(flags), flags.quiet)
+    return _tell(outcome, flags.output)
+
+
+def _merge(flags):
+    from glidar.campaign import run as running
+
+    root = flags.output or flags.parts[0]
+    return _tell(running.merge(flags.parts, root), root)
+
+
+def _report(flags):
+    from glidar.campaign import report
+
+    print(f"wrote {report.write(flags.folder, flags.output)}")
+    return DONE
+
+
+def _check(flags):
+    from glidar.campaign import run as running
+
+    count, wrong = running.check(flags.folder)
+    for name in wrong:
+        print(f"{flags.folder}/{name}: missing, or not what the manifest says")
+    print(f"{flags.folder}: {count - len(wrong)} of {count} files as the manifest says")
+    return TRIALS_FAILED if wrong else DONE
+
+
+def _fail(text):
+    print(f"glidar: error: {text}", file=sys.stderr)
+    return BAD_INPUT
+
+
+def main(arguments=None):
+    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    tell_warnings()
+    try:
+        flags = make_parser().parse_args(arguments)
+        return {"run": _run, "merge": _merge, "report": _report, "check": _check}[flags.command](flags)
+    except Error as error:
+        return _fail(error)
+    except ModuleNotFoundError as error:
+        return _fail(f"Python package '{error.name}' is missing; install the extra of campaigns: "
+                     "pip install '.[campaign]' in GLIDAR's source")
+    except KeyboardInterrupt:
+        print("\nglidar: interrupted; the same command goes on where it stopped", file=sys.stderr)
+        return INTERRUPTED

@@ -1,0 +1,157 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Distributions of single numbers and choices.
+
+A distribution takes `dims` numbers that are uniform between 0 and 1, or counts through `cells` values,
+and makes its own of them by its inverse distribution function. So random numbers, Sobol's sequence and
+Latin hypercubes serve all of them alike.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from glidar.campaign import yaml_file as yf
+
+
+@dataclass(frozen=True)
+class Constant:
+    value: float
+    dims = 0
+    cells = 1
+
+    def sample(self, u, cell):
+        return np.full(len(u), self.value)
+
+
+@dataclass(frozen=True)
+class Uniform:
+    least: float
+    most: float
+    dims = 1
+    cells = 1
+
+    def sample(self, u, cell):
+        return self.least + (self.most - self.least) * u[:, 0]
+
+
+@dataclass(frozen=True)
+class LogUniform:
+    least: float
+    most: float
+    dims = 1
+    cells = 1
+
+    def sample(self, u, cell):
+        return self.least * (self.most / self.least) ** u[:, 0]
+
+
+@dataclass(frozen=True)
+class Normal:
+    """A normal distribution, cut off at least and most: its inverse between the ends' probabilities."""
+
+    mean: float
+    sigma: float
+    least: float
+    most: float
+    dims = 1
+    cells = 1
+
+    def sample(self, u, cell):
+        from scipy.special import ndtr, ndtri  # not at the top: it takes a while to load
+        begin, end = (ndtr((x - self.mean) / self.sigma) for x in (self.least, self.most))
+        drawn = self.mean + self.sigma * ndtri(begin + (end - begin) * u[:, 0])
+        return np.clip(drawn, self.least, self.most)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One of the values, by weights that add up to 1."""
+
+    values: tuple
+    weights: tuple
+    dims = 1
+    cells = 1
+
+    def places(self, u, cell):
+        edges = np.cumsum(self.weights)[:-1]
+        return np.searchsorted(edges, u[:, 0], side="right")
+
+    def sample(self, u, cell):
+        return np.asarray(self.values)[self.places(u, cell)]
+
+
+@dataclass(frozen=True)
+class Grid:
+    """One value after the other."""
+
+    values: tuple
+    dims = 0
+
+    @property
+    def cells(self):
+        return len(self.values)
+
+    def places(self, u, cell):
+        return np.asarray(cell, np.int64)
+
+    def sample(self, u, cell):
+        return np.asarray(self.values)[self.places(u, cell)]
+
+
+KINDS = ["uniform", "log_uniform", "normal", "choice", "grid"]
+
+
+def _normal(field, rule):
+    found = yf.require_keys(field, ["mean", "sigma", "least", "most"])
+    mean = yf.number(yf.need(field, found, "mean"))
+    sigma = yf.number(yf.need(field, found, "sigma"), yf.ABOVE_ZERO)
+    least = yf.optional(found, "least", lambda f: yf.number(f, rule), rule.least)
+    most = yf.optional(found, "most", lambda f: yf.number(f, rule), rule.most)
+    if not least < most:
+        yf.reject(field, f"least {least:g}, most {most:g}", "least below most")
+    if least > mean + 8 * sigma or most < mean - 8 * sigma:
+        yf.reject(field, f"[{least:g}, {most:g}] is more than 8 sigma from the mean {mean:g}",
+                  "bounds that the distribution reaches")
+    return Normal(mean, sigma, least, most)
+
+
+def read_choice(field, read):
+    """{choice: [..]}, or {choice: [..], weights: [..]}; `read` reads one of the values."""
+    found = yf.require_keys(field, ["choice", "weights"])
+    values = tuple(read(item) for item in yf.items(yf.need(field, found, "choice")))
+    weights = np.ones(len(values))
+    if "weights" in found:
+        weights = np.array(yf.numbers(found["weights"], len(values), yf.FROM_ZERO))
+        if not weights.sum() > 0:
+            yf.reject(found["weights"], "no weight is above 0", "weights of which one is above 0")
+    return Choice(values, tuple(weights / weights.sum()))
+
+
+def read_grid(field, rule):
+    """A list of values, or {from: , to: , count: }."""
+    if isinstance(field.node, yf.yaml.SequenceNode):
+        return Grid(tuple(yf.number(item, rule) for item in yf.items(field)))
+    found = yf.require_keys(field, ["from", "to", "count"])
+    first, last = (yf.number(yf.need(field, found, key), rule) for key in ("from", "to"))
+    count = yf.whole(yf.need(field, found, "count"), 1, 1 << 20)
+    return Grid(tuple(float(x) for x in np.linspace(first, last, count)))
+
+
+def read_distribution(field, rule=yf.ANY):
+    """A number, or a map that says how numbers are spread; all must obey the rule."""
+    if yf.is_number(field.node):
+        return Constant(yf.number(field, rule))
+    if not isinstance(field.node, yf.yaml.MappingNode):
+        yf.reject(field, yf.describe(field), f"{rule.allowed}, or a map with one of {', '.join(KINDS)}")
+    if "choice" in yf.entries(field):
+        return read_choice(field, lambda item: yf.number(item, rule))
+    kind, value = yf.only_key(field, KINDS)
+    if kind == "uniform":
+        return Uniform(*yf.span(value, rule))
+    if kind == "log_uniform":
+        positive = yf.Rule(max(rule.least, 0.0), rule.most, True, "a number above 0")
+        return LogUniform(*yf.span(value, positive))
+    if kind == "normal":
+        return _normal(value, rule)
+    return read_grid(value, rule)

@@ -1,0 +1,124 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Files that are there whole or not at all.
+
+They are written in the campaign folder's `tmp` and renamed, so that a program killed at any moment
+leaves nothing behind that looks like a result.
+"""
+
+import errno
+import hashlib
+import json
+import os
+import secrets
+import shutil
+import socket
+from pathlib import Path
+
+from glidar import Error
+
+FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+
+
+def write_error(path, error):
+    """What a fault of writing says; where space ran out, that the campaign can go on."""
+    if error.errno in FULL:
+        return Error(str(path), f"it cannot be written: {os.strerror(error.errno)}",
+                     "a disk with room for all outputs",
+                     "make room and run the same command again: it goes on where it stopped")
+    return Error(str(path), f"it cannot be written: {error.strerror or error}", "", "")
+
+
+class Scratch:
+    """A folder for what is being written, of this writer alone, within the campaign's `tmp`."""
+
+    def __init__(self, root):
+        name = f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(4)}"
+        self.folder = Path(root) / "tmp" / name
+        self._count = 0
+
+    def path(self, name):
+        """A path to write to; unique, with the name's ending."""
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise write_error(self.folder, error) from None
+        self._count += 1
+        return self.folder / f"{self._count}-{name}"
+
+    def remove(self):
+        shutil.rmtree(self.folder, ignore_errors=True)
+        try:
+            self.folder.parent.rmdir()  # fails while others write there
+        except OSError:
+            pass
+
+
+def _is_running(pid):
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        pass
+    return True
+
+
+def remove_leftovers(root):
+    """Takes away what killed processes of this machine left half written."""
+    for folder in (Path(root) / "tmp").glob(f"{socket.gethostname()}-*-*"):
+        pid = folder.name.rsplit("-", 2)[1]
+        if pid.isdigit() and not _is_running(int(pid)):
+            shutil.rmtree(folder, ignore_errors=True)
+
+
+def publish(written, final):
+    """Renames a finished file to its place."""
+    try:
+        Path(final).parent.mkdir(parents=True, exist_ok=True)
+        os.replace(written, final)
+    except OSError as error:
+        raise write_error(final, error) from None
+
+
+def write_bytes(scratch, final, data):
+    """Writes a file whole or not at all."""
+    path = scratch.path(Path(final).name)
+    try:
+        with open(path, "wb") as file:
+            file.write(data)
+    except OSError as error:
+        path.unlink(missing_ok=True)
+        raise write_error(final, error) from None
+    publish(path, final)
+
+
+def json_bytes(value):
+    """JSON with its keys in order and one entry a line, so that equal values have equal bytes."""
+    return (json.dumps(value, indent=1, sort_keys=True, allow_nan=False) + "\n").encode()
+
+
+def write_json(scratch, final, value):
+    write_bytes(scratch, final, json_bytes(value))
+
+
+def read_json(path):
+    try:
+        return json.loads(Path(path).read_bytes())
+    except OSError as error:
+        raise Error(str(path), f"it cannot be read: {error.strerror}", "", "") from None
+    except ValueError as error:
+        raise Error(str(path), f"it is no JSON: {error}", "", "") from None
+
+
+def hash_bytes(data):
+    return hashlib.sha256(data).hexdigest()
+
+
+def hash_file(path):
+    """SHA-256 of a file, hexadecimal, as sha256sum prints it."""
+    try:
+        with open(path, "rb", buffering=0) as file:
+            return hashlib.file_digest(file, "sha256").hexdigest()
+    except OSError as error:
+        raise Error(str(path), f"it cannot be read: {error.strerror}", "", "") from None

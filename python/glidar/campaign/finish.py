@@ -1,0 +1,121 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What is made once all shards are done: the index, trajectories, and the manifest."""
+
+import importlib.metadata
+import json
+import platform
+import shutil
+
+import numpy as np
+
+from glidar.campaign import files, index, rotations
+
+MANIFEST_FILE = "manifest.json"
+PACKAGES = ["numpy", "scipy", "pyarrow", "pillow"]
+
+
+def versions():
+    found = {"python": platform.python_version()}
+    for name in PACKAGES:
+        try:
+            found[name] = importlib.metadata.version(name)
+        except importlib.metadata.PackageNotFoundError:
+            pass
+    return found
+
+
+def _poses(table):
+    numbers = np.stack([table[name].to_numpy() for name in index.POSE], axis=1)
+    return numbers[:, :3], numbers[:, 3:]
+
+
+def _tum_lines(table):
+    """t x y z qx qy qz qw; the time is the trial's number in seconds."""
+    position, q = _poses(table)
+    for trial, p, (w, x, y, z) in zip(table["trial"].to_pylist(), position, q):
+        yield f"{trial} " + " ".join(repr(float(a)) for a in (*p, x, y, z, w)) + "\n"
+
+
+def _kitti_lines(table):
+    """The first three rows of world_from_sensor, row by row."""
+    position, q = _poses(table)
+    rows = np.concatenate([rotations.matrices(q), position[:, :, None]], axis=2).reshape(-1, 12)
+    for row in rows:
+        yield " ".join(repr(float(a)) for a in row) + "\n"
+
+
+def _write_lines(folder, scratch, name, lines_of):
+    path = scratch.path(name.replace("/", "-"))
+    try:
+        with open(path, "w", encoding="utf-8") as file:
+            for table in index.batches(folder.root / index.INDEX_FILE, ["trial", *index.POSE]):
+                file.writelines(lines_of(table))
+    except OSError as error:
+        raise files.write_error(folder.root / name, error) from None
+    files.publish(path, folder.root / name)
+    return name
+
+
+def _write_index(folder, scratch, shards):
+    path = scratch.path(index.INDEX_FILE)
+    try:
+        index.join((folder.part(shard) for shard in range(shards)), path)
+    except OSError as error:
+        raise files.write_error(folder.root / index.INDEX_FILE, error) from None
+    files.publish(path, folder.root / index.INDEX_FILE)
+    return index.INDEX_FILE
+
+
+def _receipts(folder, shards):
+    """Every receipt: the shards' in order, then those of what is there once."""
+    for shard in range(shards):
+        yield files.read_json(folder.receipt(shard))
+    for path in folder.extras():
+        yield files.read_json(path)
+
+
+def _write_manifest(folder, scratch, described, once):
+    """Written line by line, since it has one for every file of the campaign."""
+    path = scratch.path(MANIFEST_FILE)
+    trials = failed = 0
+    head = {"campaign": described["hash"], "plan": described["plan"], "versions": versions()}
+    try:
+        with open(path, "w", encoding="utf-8") as file:
+            file.write('{"files": {\n')
+            for name in once:
+                whole = folder.root / name
+                entry = [files.hash_file(whole), whole.stat().st_size]
+                file.write(f"{json.dumps(name)}: {json.dumps(entry)},\n")
+            for receipt in _receipts(folder, described["shards"]):
+                trials += receipt["trials"]
+                failed += receipt["failed"]
+                for name, entry in sorted(receipt["files"].items()):
+                    if not name.startswith("parts/"):
+                        file.write(f"{json.dumps(name)}: {json.dumps(entry)},\n")
+            plan_file = folder.plan_file().name
+            entry = [files.hash_file(folder.plan_file()), folder.plan_file().stat().st_size]
+            file.write(f'{json.dumps(plan_file)}: {json.dumps(entry)}\n}},\n')
+            rest = files.json_bytes({**head, "trials": trials, "failed": failed}).decode()
+            file.write(rest.lstrip("{\n"))
+    except OSError as error:
+        raise files.write_error(folder.root / MANIFEST_FILE, error) from None
+    files.publish(path, folder.root / MANIFEST_FILE)
+    return trials, failed
+
+
+def finish(folder, described):
+    """Index, trajectories and manifest of a campaign whose shards are all done; returns (trials,
+    failed)."""
+    scratch = files.Scratch(folder.root)
+    try:
+        once = [_write_index(folder, scratch, described["shards"])]
+        outputs = described["plan"]["campaign"]["outputs"]
+        if outputs["tum"]:
+            once.append(_write_lines(folder, scratch, "trajectory.tum", _tum_lines))
+        if outputs["kitti"]:
+            once.append(_write_lines(folder, scratch, "kitti/poses.txt", _kitti_lines))
+        return _write_manifest(folder, scratch, described, once)
+    finally:
+        scratch.remove()
+        shutil.rmtree(folder.root / "tmp", ignore_errors=True)

@@ -1,0 +1,118 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The campaign folder: where everything lies, and which shards are done.
+
+    campaign.json        what the campaign is; the folder belongs to it
+    receipts/000003.json a shard that is done: its files with their hashes; written last
+    parts/000003.parquet its rows of the index
+    log/*.jsonl          speeds and machines: the only files that differ from run to run
+"""
+
+import json
+import os
+import socket
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from glidar import Error
+from glidar.campaign import files
+from glidar.campaign.plan import PLAN_FILE
+
+
+@dataclass(frozen=True)
+class Folder:
+    root: Path
+
+    def plan_file(self):
+        return self.root / PLAN_FILE
+
+    def receipt(self, shard):
+        return self.root / "receipts" / f"{shard:06}.json"
+
+    def part(self, shard):
+        return self.root / "parts" / f"{shard:06}.parquet"
+
+    def extras(self):
+        """Receipts of what is written once for the whole campaign."""
+        return sorted((self.root / "receipts").glob("once-*.json"))
+
+    def once(self, name):
+        return self.root / "receipts" / f"once-{name}.json"
+
+    def log(self):
+        return self.root / "log" / f"{socket.gethostname()}-{os.getpid()}.jsonl"
+
+
+def describe(plan):
+    """What campaign.json holds: enough to finish, merge and report without the campaign's inputs."""
+    return {"hash": plan.hash(), "trials": plan.spec.trials, "shards": plan.shards,
+            "shard_trials": plan.shard_trials, "one_shape": plan.one_shape, "plan": plan.record()}
+
+
+def claim(folder, plan):
+    """Makes the folder the campaign's own, or checks that it is."""
+    scratch = files.Scratch(folder.root)
+    wanted = describe(plan)
+    if not folder.plan_file().exists():
+        if folder.root.is_dir() and any(p.name != "tmp" for p in folder.root.iterdir()):
+            raise Error(str(folder.root), "the folder is not empty and holds no campaign",
+                        "a new folder, or that of this campaign", "choose another with -o")
+        files.write_json(scratch, folder.plan_file(), wanted)
+        scratch.remove()
+    elif files.read_json(folder.plan_file())["hash"] != wanted["hash"]:
+        raise Error(str(folder.root), "it holds another campaign: "
+                    + difference(files.read_json(folder.plan_file())["plan"], wanted["plan"]),
+                    "a new folder, or that of this campaign", "choose another with -o")
+
+
+def difference(old, new, path=""):
+    """The first thing in which two plans differ, in words."""
+    if isinstance(old, dict) and isinstance(new, dict):
+        pairs = [(f"{path}.{key}".strip("."), old.get(key), new.get(key))
+                 for key in sorted(old.keys() | new.keys())]
+    elif isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
+        pairs = [(f"{path}[{i}]", a, b) for i, (a, b) in enumerate(zip(old, new))]
+    else:
+        return f"{path} was {json.dumps(old)[:80]}, is {json.dumps(new)[:80]}"
+    for name, a, b in pairs:
+        if a != b:
+            return difference(a, b, name)
+    return "nothing"
+
+
+def opened(root):
+    """A campaign's folder and its campaign.json."""
+    folder = Folder(Path(root))
+    if not folder.plan_file().is_file():
+        raise Error(str(root), "it holds no campaign", "a folder that glidar campaign run wrote", "")
+    return folder, files.read_json(folder.plan_file())
+
+
+def is_done(folder, shard):
+    """Whether a shard has its receipt, and its files as long as the receipt says."""
+    path = folder.receipt(shard)
+    if not path.is_file():
+        return False
+    for name, (_, size) in files.read_json(path)["files"].items():
+        try:
+            if (folder.root / name).stat().st_size != size:
+                return False
+        except OSError:
+            return False
+    return True
+
+
+def missing(folder, shards):
+    """Those of the shards that are not done."""
+    return [shard for shard in shards if not is_done(folder, shard)]
+
+
+def note(folder, **words):
+    """A line for the log; a full disk there does no harm."""
+    try:
+        folder.log().parent.mkdir(parents=True, exist_ok=True)
+        with open(folder.log(), "a", encoding="utf-8") as file:
+            file.write(json.dumps({"time_s": round(time.time(), 3), **words}) + "\n")
+    except OSError:
+        pass

@@ -1,0 +1,97 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The index: one row a trial, as Parquet."""
+
+import numpy as np
+
+from glidar.campaign import rotations
+
+INDEX_FILE = "index.parquet"
+FACTS = ["beams", "hits", "range_min_m", "range_max_m", "intensity_mean"]
+POSE = ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"]
+HIT = 0  # of the column status
+NO_BEAM = 4
+
+
+def facts_of(frame):
+    """The frame in a few numbers, in the order of FACTS; NaN where nothing was hit."""
+    status, range_m, intensity = frame.status, frame.range_m, frame.intensity
+    hits = int(np.count_nonzero(status == HIT))
+    beams = status.size - int(np.count_nonzero(status == NO_BEAM))
+    if hits == 0:
+        return beams, 0, np.nan, np.nan, np.nan
+    # fmin and fmax pass over NaN, which range has where there is no hit
+    return (beams, hits, np.fmin.reduce(range_m, axis=None), np.fmax.reduce(range_m, axis=None),
+            float(intensity.sum(dtype=np.float64)) / hits)
+
+
+def _varied(plan, trials):
+    """Columns of the varied values; a pose has seven."""
+    columns = {}
+    for variation in plan.spec.vary:
+        values = trials.values[variation.path]
+        if variation.is_pose:
+            columns.update(_pose_columns(values, f"{variation.path}."))
+        else:
+            columns[variation.path] = np.asarray(values, np.float64)
+    return columns
+
+
+def _pose_columns(poses, prefix=""):
+    numbers = np.concatenate([poses[:, :3, 3], rotations.quaternions(poses[:, :3, :3])], axis=1)
+    return {prefix + name: np.ascontiguousarray(numbers[:, i]) for i, name in enumerate(POSE)}
+
+
+def rows(plan, shard, trials, errors, facts):
+    """The shard's part of the index as a table."""
+    import pyarrow as pa
+
+    count = len(trials)
+    scenes = [source.name for source in plan.scenes]
+    sensors = [source.name for source in plan.sensors]
+    columns = {
+        "trial": trials.number.astype(np.int64),
+        "shard": np.full(count, shard, np.int32),
+        "ok": np.array([not text for text in errors]),
+        "error": errors,
+        "seed": trials.seed,
+        "scene": [scenes[i] for i in trials.scene],
+        "sensor": [sensors[i] for i in trials.sensor],
+        **_pose_columns(trials.world_from_sensor),
+        **_varied(plan, trials),
+    }
+    for i, name in enumerate(FACTS):
+        whole = name in ("beams", "hits")
+        columns[name] = np.nan_to_num(facts[:, i]).astype(np.int64) if whole else facts[:, i]
+    return pa.table(columns)
+
+
+def write_part(path, table):
+    import pyarrow.parquet as pq
+
+    pq.write_table(table, path, compression="zstd")
+
+
+def join(parts, path):
+    """One file of all parts, in their order, with the memory of one."""
+    import pyarrow.parquet as pq
+
+    writer = None
+    try:
+        for part in parts:
+            table = pq.read_table(part)
+            writer = writer or pq.ParquetWriter(path, table.schema, compression="zstd")
+            writer.write_table(table)
+    finally:
+        if writer:
+            writer.close()
+
+
+def batches(path, columns=None):
+    """The index piece by piece, each a table."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    with pq.ParquetFile(path) as file:
+        for batch in file.iter_batches(columns=columns):
+            yield pa.table(batch)

@@ -1,0 +1,63 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Scenes and sensors from the texts of their files, which may have values replaced."""
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+import glidar
+from glidar import Error
+from glidar.campaign import variants, yaml_file as yf
+
+SMALLEST_FIT = 1e-9  # of a pinhole's directions, in pixels' tangents
+
+
+def _loaded(text, path, changes, load):
+    """Loads a text as if it were the file at `path`: names of files are its own, and so are the
+    places in error texts."""
+    whole = variants.replaced(text, yf.parse(text, path), changes)
+    with tempfile.TemporaryDirectory(prefix="glidar-campaign-") as folder:
+        copy = Path(folder) / Path(path).with_suffix(".yaml").name
+        copy.write_text(whole, encoding="utf-8")
+        try:
+            return load(copy)
+        except Error as error:
+            parts = (error.where, error.found, error.allowed, error.remedy)
+            raise Error(*(part.replace(str(copy), str(path)) for part in parts)) from None
+
+
+def load_scene(text, path, changes=()):
+    return _loaded(text, path, changes, glidar.load_scene)
+
+
+def load_sensor(text, path, changes=()):
+    return _loaded(text, path, changes, glidar.load_sensor)
+
+
+def intrinsics_of(sensor, name):
+    """The 3 x 3 camera matrix, with pixel centres at whole numbers (OpenCV's and BOP's), from the
+    directions of the beams; throws Error for what is no pinhole without distortion."""
+    wrong = Error(f"sensor {name}", f"a {sensor.kind}" if sensor.kind != "camera" else
+                  "a camera with distortion", "for BOP a pinhole camera without distortion", "")
+    if sensor.kind != "camera" or sensor.returns != 1 or min(sensor.rows, sensor.cols) < 2:
+        raise wrong
+    x, y = sensor.directions[..., 0] / sensor.directions[..., 2], (
+        sensor.directions[..., 1] / sensor.directions[..., 2])
+    fx = (sensor.cols - 1) / (x[0, -1] - x[0, 0])
+    fy = (sensor.rows - 1) / (y[-1, 0] - y[0, 0])
+    k = np.array([[fx, 0.0, -fx * x[0, 0]], [0.0, fy, -fy * y[0, 0]], [0.0, 0.0, 1.0]])
+    fit_x = (np.arange(sensor.cols) - k[0, 2]) / fx
+    fit_y = (np.arange(sensor.rows) - k[1, 2]) / fy
+    if not (np.abs(x - fit_x).max() < SMALLEST_FIT and np.abs(y - fit_y[:, None]).max() < SMALLEST_FIT):
+        raise wrong
+    return k
+
+
+def canvas_camera(sensor, k):
+    """A pinhole of three times the width and height, with the sensor's own image in the middle."""
+    return glidar.Sensor.from_dict({
+        "optics": {"type": "pinhole", "width": 3 * sensor.cols, "height": 3 * sensor.rows,
+                   "fx": k[0, 0], "fy": k[1, 1], "cx": k[0, 2] + sensor.cols,
+                   "cy": k[1, 2] + sensor.rows, "pixel_centre": 0}})

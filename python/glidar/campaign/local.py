@@ -1,0 +1,145 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Shards on the cores of this machine, in worker processes that may die without harm."""
+
+import multiprocessing
+import os
+from collections import deque
+from multiprocessing import connection
+
+from glidar import Error
+from glidar.campaign import work as works
+from glidar.campaign.folder import Folder
+from glidar.campaign.progress import tell_warnings
+
+AHEAD = 2  # shards a worker holds: one is measured, one is written
+MOST_DEATHS = 3  # of workers that held the same shard
+
+
+def cores():
+    return len(os.sched_getaffinity(0))
+
+
+def usual_workers(plan):
+    """One process, which measures with all cores, where trials share their scene and sensor; else one
+    a core, since scenes are made ready by one core each."""
+    texts = [v for v in plan.spec.vary if not v.is_pose]
+    return cores() if texts or len(plan.scenes) * len(plan.sensors) > 1 else 1
+
+
+def _serve(plan, root, threads, pipe):
+    """A worker process: shards come through the pipe, what is done goes back, None ends."""
+    def shards():
+        while (shard := pipe.recv()) is not None:
+            yield shard
+
+    tell_warnings()
+    try:
+        works.work(plan, Folder(root), shards(), threads, lambda done: pipe.send(("done", done)))
+        pipe.send(("end", None))
+    except Error as error:
+        pipe.send(("error", (error.where, error.found, error.allowed, error.remedy)))
+    except (EOFError, BrokenPipeError, KeyboardInterrupt):
+        pass  # the run itself ended
+    except Exception as fault:  # raised again by the run
+        pipe.send(("fault", fault))
+
+
+class _Worker:
+    def __init__(self, context, plan, root, threads):
+        self.pipe, theirs = context.Pipe()
+        self.held = []
+        self.asked_to_end = False
+        self.process = context.Process(target=_serve, args=(plan, root, threads, theirs), daemon=True)
+        self.process.start()
+        theirs.close()
+
+    def feed(self, waiting):
+        """Keeps it busy; without shards left it is asked to end."""
+        while waiting and len(self.held) < AHEAD:
+            self.held.append(waiting.popleft())
+            self.pipe.send(self.held[-1])
+        if not waiting and not self.held and not self.asked_to_end:
+            self.asked_to_end = True
+            self.pipe.send(None)
+
+
+class _Pool:
+    def __init__(self, plan, folder, report, threads):
+        self._plan, self._folder, self._report, self._threads = plan, folder, report, threads
+        self._context = multiprocessing.get_context("spawn")
+        self._deaths = {}
+        self.workers = []
+
+    def start(self):
+        self.workers.append(_Worker(self._context, self._plan, self._folder.root, self._threads))
+
+    def run(self, shards, count):
+        waiting = deque(shards)
+        for _ in range(min(count, len(waiting))):
+            self.start()
+        for worker in self.workers:
+            self._feed(worker, waiting)
+        while self.workers:
+            ready = connection.wait([worker.pipe for worker in self.workers])
+            for worker in [w for w in self.workers if w.pipe in ready]:
+                self._hear(worker, waiting)
+
+    def _feed(self, worker, waiting):
+        try:
+            worker.feed(waiting)
+        except (BrokenPipeError, ConnectionResetError):
+            pass  # its end is heard of next
+
+    def _hear(self, worker, waiting):
+        try:
+            kind, content = worker.pipe.recv()
+        except (EOFError, ConnectionResetError):
+            self._bury(worker, waiting)
+            return
+        if kind == "error":
+            raise Error(*content)
+        if kind == "fault":
+            raise content
+        if kind == "end":
+            self.workers.remove(worker)
+            worker.process.join()
+            return
+        worker.held.remove(content.shard)
+        self._report(content)
+        self._feed(worker, waiting)
+
+    def _bury(self, worker, waiting):
+        """A worker died: its shards go to others."""
+        worker.process.join()
+        self.workers.remove(worker)
+        for shard in worker.held:
+            self._deaths[shard] = self._deaths.get(shard, 0) + 1
+            if self._deaths[shard] == MOST_DEATHS:
+                first, trials = self._plan.trials_of(shard)
+                raise Error(f"trials {first} to {first + trials - 1}",
+                            f"the worker that measured them died {MOST_DEATHS} times "
+                            f"(exit code {worker.process.exitcode})", "",
+                            "is there enough memory? fewer --workers need less")
+        waiting.extendleft(reversed(worker.held))
+        if waiting:
+            self.start()
+            self._feed(self.workers[-1], waiting)
+
+    def stop(self):
+        for worker in self.workers:
+            worker.process.kill()
+            worker.process.join()
+
+
+def run_local(plan, folder, shards, report, workers):
+    """Runs the shards by so many processes, which share the cores; one: this process; 0: as usual."""
+    workers = workers or usual_workers(plan)
+    if workers == 1 or len(shards) == 1:
+        works.work(plan, folder, shards, 0, report)
+        return
+    pool = _Pool(plan, folder, report, max(1, cores() // workers))
+    try:
+        pool.run(shards, workers)
+    finally:
+        pool.stop()

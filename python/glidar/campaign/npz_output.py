@@ -1,0 +1,75 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""NPZ shards: the columns of many trials as arrays trial x row x column."""
+
+import zipfile
+
+import numpy as np
+
+FOLDER = "npz"
+REAL = {"f32": np.dtype(np.float32), "f64": np.dtype(np.float64)}
+
+
+def stored_type(dtype, real):
+    """Reals of 64 bits are stored as the campaign file says; all else as it is."""
+    return REAL[real] if dtype == np.float64 else dtype
+
+
+def write_npz(path, arrays, compress):
+    """As numpy.savez, without copies of the arrays; equal arrays give equal bytes."""
+    method = zipfile.ZIP_DEFLATED if compress else zipfile.ZIP_STORED
+    with zipfile.ZipFile(path, "w", method, compresslevel=1 if compress else None) as archive:
+        for name, array in arrays.items():
+            array = np.ascontiguousarray(array)
+            with archive.open(f"{name}.npy", "w", force_zip64=True) as member:
+                header = np.lib.format.header_data_from_array_1_0(array)
+                np.lib.format.write_array_header_1_0(member, header)
+                if array.size:
+                    member.write(array.reshape(-1).view(np.uint8))
+
+
+class NpzOutput:
+    """Gathers a shard. Frames of one shape make arrays `range`, `intensity` ...; where shapes differ
+    from trial to trial (several sensors), each shape has its own: `16x1808/range` ..."""
+
+    def __init__(self, plan, scratch, shard):
+        self._options = plan.spec.outputs.npz
+        self._one_shape = plan.one_shape
+        self._scratch = scratch
+        self._name = f"shard-{shard:06}.npz"
+        self._count = plan.trials_of(shard)[1]
+        self._groups = {}  # shape -> {column: array of all trials}
+        self._shapes = [None] * self._count
+        self._trials = [0] * self._count
+
+    def add(self, row, trial, frame):
+        columns = frame.columns(self._options.columns)
+        shape = next(iter(columns.values())).shape[:2]
+        group = self._groups.get(shape)
+        if group is None:
+            group = {name: np.empty((self._count, *values.shape),
+                                    stored_type(values.dtype, self._options.real))
+                     for name, values in columns.items()}
+            self._groups[shape] = group
+        for name, values in columns.items():
+            group[name][row] = values
+        self._shapes[row], self._trials[row] = shape, trial
+
+    def arrays(self):
+        """The arrays of the file; failed trials have no row."""
+        result = {}
+        for shape in sorted(self._groups):
+            rows = [row for row, own in enumerate(self._shapes) if own == shape]
+            prefix = "" if self._one_shape else f"{shape[0]}x{shape[1]}/"
+            result[f"{prefix}trial"] = np.array([self._trials[row] for row in rows], np.int64)
+            for name, values in self._groups[shape].items():
+                whole = len(rows) == self._count
+                result[prefix + name] = values if whole else values[rows]
+        return result
+
+    def finish(self):
+        """The files to publish: (name with {hash} for that of the content, path)."""
+        path = self._scratch.path(self._name)
+        write_npz(path, self.arrays(), self._options.compress)
+        self._groups = {}
+        return [(f"{FOLDER}/{self._name[:-4]}-{{hash}}.npz", path)]

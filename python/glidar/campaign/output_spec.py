@@ -1,0 +1,104 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The part of a campaign file that says what is written."""
+
+from dataclasses import dataclass
+
+from glidar.campaign import yaml_file as yf
+
+BOP_IMAGES = ["depth", "gray", "mask", "mask_visib"]
+DEFAULT_COLUMNS = ("range", "intensity", "status")
+
+
+@dataclass(frozen=True)
+class Npz:
+    """Shards of many trials: arrays trial x row x column of the frame."""
+
+    columns: tuple = DEFAULT_COLUMNS
+    real: str = "f32"  # how measured numbers of 64 bits are stored
+    compress: bool = False
+
+
+@dataclass(frozen=True)
+class Cloud:
+    """One file a trial, of every so-many-th trial."""
+
+    columns: tuple | None = None  # None: glidar's usual ones
+    every: int = 1
+
+
+@dataclass(frozen=True)
+class Bop:
+    split: str = "train"
+    depth_scale_mm: float = 0.1  # millimetres per step of the depth images
+    images: tuple = tuple(BOP_IMAGES)
+
+
+@dataclass(frozen=True)
+class Outputs:
+    npz: Npz | None = None
+    pcd: Cloud | None = None
+    ply: Cloud | None = None
+    kitti: bool = False
+    tum: bool = False
+    bop: Bop | None = None
+
+
+DEFAULT = Outputs(npz=Npz())
+
+
+def _columns(field):
+    names = tuple(yf.text(item) for item in yf.items(field))
+    if len(set(names)) != len(names):
+        yf.reject(field, "a column given twice", "each column once")
+    return names
+
+
+def _is_off(field):
+    """`npz: false` is the same as leaving it out, `npz: true` takes the usual."""
+    return isinstance(field.node, yf.yaml.ScalarNode) and not yf.boolean(field)
+
+
+def _is_plain(field):
+    return isinstance(field.node, yf.yaml.ScalarNode)
+
+
+def _npz(field):
+    if _is_plain(field):
+        return None if _is_off(field) else Npz()
+    found = yf.require_keys(field, ["columns", "real", "compress"])
+    return Npz(yf.optional(found, "columns", _columns, DEFAULT_COLUMNS),
+               yf.optional(found, "real", lambda f: yf.one_of(f, ["f32", "f64"]), "f32"),
+               yf.optional(found, "compress", yf.boolean, False))
+
+
+def _cloud(field):
+    if _is_plain(field):
+        return None if _is_off(field) else Cloud()
+    found = yf.require_keys(field, ["columns", "every"])
+    return Cloud(yf.optional(found, "columns", _columns, None),
+                 yf.optional(found, "every", lambda f: yf.whole(f, 1, 1 << 32), 1))
+
+
+def _bop(field):
+    if _is_plain(field):
+        return None if _is_off(field) else Bop()
+    found = yf.require_keys(field, ["split", "depth_scale_mm", "images"])
+    images = Bop.images
+    if "images" in found:
+        images = tuple(yf.one_of(item, BOP_IMAGES) for item in yf.items(found["images"]))
+    return Bop(yf.optional(found, "split", lambda f: yf.one_of(f, ["train", "val", "test"]), "train"),
+               yf.optional(found, "depth_scale_mm", lambda f: yf.number(f, yf.ABOVE_ZERO), 0.1),
+               images)
+
+
+def read_outputs(field):
+    found = yf.require_keys(field, ["npz", "pcd", "ply", "kitti", "tum", "bop"])
+    outputs = Outputs(yf.optional(found, "npz", _npz, None), yf.optional(found, "pcd", _cloud, None),
+                      yf.optional(found, "ply", _cloud, None),
+                      yf.optional(found, "kitti", yf.boolean, False),
+                      yf.optional(found, "tum", yf.boolean, False),
+                      yf.optional(found, "bop", _bop, None))
+    if outputs == Outputs():
+        yf.reject(field, "nothing is written", "at least one of npz, pcd, ply, kitti, tum, bop")
+    return outputs

@@ -1,0 +1,91 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The progress display: a bar with rate and time left on a terminal, a line now and then elsewhere."""
+
+import logging
+import sys
+import time
+
+BAR = 24
+LINE_EVERY_S = 30.0
+DRAW_EVERY_S = 0.2
+MOST_WARNINGS = 5
+
+
+def duration(seconds):
+    """65 -> "1:05", 3700 -> "1:01:40"."""
+    minutes, s = divmod(int(round(seconds)), 60)
+    hours, m = divmod(minutes, 60)
+    return f"{hours}:{m:02}:{s:02}" if hours else f"{m}:{s:02}"
+
+
+def line(done, total, failed, rate, columns=100):
+    """What the display says; `rate` in trials a second, 0 when not known."""
+    fraction = done / total if total else 1.0
+    filled = int(BAR * fraction)
+    text = f"[{'#' * filled}{'.' * (BAR - filled)}] {100 * fraction:5.1f} % {done}/{total} trials"
+    if rate > 0:
+        text += f", {rate:.4g}/s, {duration((total - done) / rate)} left"
+    if failed:
+        text += f", {failed} failed"
+    return text[:columns]
+
+
+class Progress:
+    """Counts trials; `done` of them were there before and do not count for the rate."""
+
+    def __init__(self, total, done, quiet=False, stream=None):
+        self.total, self.done, self.failed = total, done, 0
+        self._before, self._start, self._drawn = done, time.monotonic(), -1e9
+        self._told = -1
+        self._stream = stream or sys.stderr
+        self._terminal = self._stream.isatty()
+        self._quiet = quiet
+
+    def advance(self, trials, failed):
+        self.done += trials
+        self.failed += failed
+        self._draw()
+
+    def rate(self):
+        elapsed = time.monotonic() - self._start
+        return (self.done - self._before) / elapsed if elapsed > 0 else 0.0
+
+    def _draw(self, at_once=False):
+        now = time.monotonic()
+        every = DRAW_EVERY_S if self._terminal else LINE_EVERY_S
+        if self._quiet or (now - self._drawn < every and not at_once):
+            return
+        self._drawn, self._told = now, self.done
+        text = line(self.done, self.total, self.failed, self.rate())
+        self._stream.write(f"\r\x1b[K{text}" if self._terminal else f"{text}\n")
+        self._stream.flush()
+
+    def finish(self):
+        if self.total and not self._quiet:
+            if self._told != self.done:
+                self._draw(at_once=True)
+            if self._terminal:
+                self._stream.write("\n")
+
+
+class Warnings(logging.Handler):
+    """Tells what the library warns of, the first few times: each of many files may say the same."""
+
+    def __init__(self):
+        super().__init__(logging.WARNING)
+        self._told = 0
+
+    def emit(self, record):
+        self._told += 1
+        if self._told <= MOST_WARNINGS:
+            sys.stderr.write(f"glidar: warning: {record.getMessage()}\n")
+        if self._told == MOST_WARNINGS:
+            sys.stderr.write("glidar: further warnings of this process are not shown\n")
+
+
+def tell_warnings():
+    """For programs: warnings of the library go to standard error, a few of them."""
+    logger = logging.getLogger("glidar")
+    if not logger.handlers:
+        logger.addHandler(Warnings())

@@ -1,0 +1,69 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Writes one shard: its outputs, its rows of the index, and at last its receipt."""
+
+import numpy as np
+
+from glidar.campaign import files, index
+from glidar.campaign.bop_output import BopOutput
+from glidar.campaign.cloud_output import KITTI_FOLDER, CloudOutput
+from glidar.campaign.npz_output import NpzOutput
+from glidar.campaign.output_spec import Cloud
+
+NAME_DIGITS = 16  # of the hash in a file's name
+
+
+def make_outputs(plan, scratch, shard):
+    chosen = plan.spec.outputs
+    made = [NpzOutput(plan, scratch, shard)] if chosen.npz else []
+    for suffix, options in (("pcd", chosen.pcd), ("ply", chosen.ply)):
+        if options:
+            made.append(CloudOutput(suffix, f".{suffix}", options, scratch))
+    if chosen.kitti:
+        made.append(CloudOutput(KITTI_FOLDER, ".bin", Cloud(), scratch))
+    if chosen.bop:
+        made.append(BopOutput(plan, scratch, shard))
+    return made
+
+
+class ShardWriter:
+    """Takes the frames of a shard in any order; what it writes depends on the trials alone."""
+
+    def __init__(self, plan, folder, scratch, shard, trials):
+        self._plan, self._folder, self._scratch, self._shard = plan, folder, scratch, shard
+        self._trials = trials
+        self._outputs = make_outputs(plan, scratch, shard)
+        self._errors = [""] * len(trials)
+        self._facts = np.full((len(trials), len(index.FACTS)), np.nan)
+
+    def add(self, row, frame):
+        self._facts[row] = index.facts_of(frame)
+        for output in self._outputs:
+            output.add(row, int(self._trials.number[row]), frame)
+
+    def fail(self, row, text):
+        self._errors[row] = text
+
+    def commit(self):
+        """Publishes everything, the receipt last; returns (trials, failures)."""
+        try:
+            written = [pair for output in self._outputs for pair in output.finish()]
+            part = self._scratch.path("part.parquet")
+            rows = index.rows(self._plan, self._shard, self._trials, self._errors, self._facts)
+            index.write_part(part, rows)
+        except OSError as error:
+            raise files.write_error(self._folder.root, error) from None
+        listed = {}
+        for name, path in written + [(self._part_name(), part)]:
+            digest, size = files.hash_file(path), path.stat().st_size
+            name = name.replace("{hash}", digest[:NAME_DIGITS])
+            listed[name] = [digest, size]
+            files.publish(path, self._folder.root / name)
+        failed = sum(1 for text in self._errors if text)
+        receipt = {"shard": self._shard, "trials": len(self._trials), "failed": failed,
+                   "files": listed}
+        files.write_json(self._scratch, self._folder.receipt(self._shard), receipt)
+        return len(self._trials), failed
+
+    def _part_name(self):
+        return str(self._folder.part(self._shard).relative_to(self._folder.root))

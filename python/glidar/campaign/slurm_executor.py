@@ -1,0 +1,76 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""A campaign as a Slurm job array: task i of N measures part i, a last job merges."""
+
+import re
+import shlex
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from glidar import Error
+from glidar.campaign import run as running
+
+TASKS = 8
+PROGRAM = f"{shlex.quote(sys.executable)} -m glidar.campaign"
+
+ARRAY = """#!/bin/sh
+#SBATCH --job-name={name}
+#SBATCH --array=0-{last}
+#SBATCH --output={log}/slurm-%A-%a.txt
+{options}
+exec {program} run {campaign} -o {root} --shard "$SLURM_ARRAY_TASK_ID/{count}" \\
+  --workers "${{SLURM_CPUS_PER_TASK:-1}}" --quiet
+"""
+
+MERGE = """#!/bin/sh
+#SBATCH --job-name={name}-merge
+#SBATCH --output={log}/slurm-%j-merge.txt
+{options}
+exec {program} merge {root}
+"""
+
+
+def scripts(flags, count):
+    """The texts of the two batch scripts."""
+    root = Path(flags.output).resolve()
+    name = re.sub(r"[^A-Za-z0-9_.-]", "_", Path(flags.campaign).stem)
+    words = {"name": name, "last": count - 1, "count": count, "log": root / "log",
+             "options": "\n".join(f"#SBATCH {option}" for option in flags.sbatch) or "#",
+             "program": PROGRAM, "root": shlex.quote(str(root)),
+             "campaign": shlex.quote(str(Path(flags.campaign).resolve()))}
+    return ARRAY.format(**words), MERGE.format(**words)
+
+
+def _sbatch(script, *options):
+    """The number of the job."""
+    done = subprocess.run(["sbatch", "--parsable", *options, str(script)], capture_output=True,
+                          text=True, check=False)
+    if done.returncode != 0 and "--wait" not in options:
+        raise Error("sbatch", done.stderr.strip() or f"exit code {done.returncode}", "", "")
+    return done.stdout.strip().split(";")[0]
+
+
+def submit(flags):
+    """Writes and submits the scripts; waits for the end where that is asked for. Returns the Outcome
+    when it is known."""
+    if not shutil.which("sbatch"):
+        raise Error("--executor slurm", "there is no program sbatch", "a machine that submits to Slurm",
+                    "install slurm-client, or run the parts by hand: --shard i/N")
+    if flags.shard != (0, 1):
+        raise Error("--shard", "given with --executor slurm, whose tasks are the parts", "", "")
+    plan, folder = running.prepare(flags.campaign, flags.output)
+    count = min(flags.tasks or TASKS, plan.shards)
+    (folder.root / "log").mkdir(parents=True, exist_ok=True)
+    paths = []
+    for name, text in zip(("array", "merge"), scripts(flags, count)):
+        path = folder.root / "log" / f"{name}.sbatch"
+        path.write_text(text, encoding="utf-8")
+        paths.append(path)
+    array = _sbatch(paths[0])
+    print(f"submitted job {array}: {count} tasks", flush=True)
+    wait = ["--wait"] if flags.wait else []
+    merge = _sbatch(paths[1], f"--dependency=afterany:{array}", *wait)
+    print(f"submitted job {merge}: merge, when they have ended", flush=True)
+    return running.merge([flags.output], flags.output) if flags.wait else None

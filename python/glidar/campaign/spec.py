@@ -1,0 +1,118 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The campaign file: what is measured, what varies, what is written. docs/campaigns.md tells every key."""
+
+import dataclasses
+from dataclasses import dataclass
+from pathlib import Path
+
+import yaml
+
+from glidar.campaign import output_spec, sampling, variants, yaml_file as yf
+from glidar.campaign.distributions import Choice, Constant, Grid, read_choice, read_distribution
+from glidar.campaign.poses import PoseDistribution, read_pose
+
+KEYS = ["name", "seed", "trials", "sampling", "shard_trials", "scene", "sensor", "pose", "vary",
+        "outputs"]
+MOST_TRIALS = 1 << 32
+MOST_SHARD_TRIALS = 1 << 16
+
+
+@dataclass(frozen=True)
+class Source:
+    """The scenes, or the sensors, that trials choose from."""
+
+    names: tuple  # as the campaign file spells them
+    spread: object  # Constant, Choice or Grid over their places
+
+
+@dataclass(frozen=True)
+class Variation:
+    """A value of scene or sensor file that trials draw."""
+
+    path: str
+    target: variants.Target
+    spread: object
+
+    @property
+    def is_pose(self):
+        return isinstance(self.spread, PoseDistribution)
+
+
+@dataclass(frozen=True)
+class Spec:
+    name: str
+    seed: int
+    trials: int
+    method: str
+    shard_trials: int | None  # None: as many as make some 32 MB
+    scenes: Source
+    sensors: Source
+    pose: PoseDistribution
+    vary: tuple
+    outputs: output_spec.Outputs
+    file: Path
+
+    def quantities(self):
+        """All that trials draw, as (purpose, distribution)."""
+        fixed = [("scene", self.scenes.spread), ("sensor", self.sensors.spread), ("pose", self.pose)]
+        return fixed + [(v.path, v.spread) for v in self.vary]
+
+
+def _read_source(field):
+    """A name; {choice: [names], weights: [..]}; or {grid: [names]}: one after the other."""
+    if isinstance(field.node, yaml.ScalarNode):
+        return Source((yf.text(field),), Constant(0))
+    found = yf.entries(field)
+    if "grid" in found:
+        yf.require_keys(field, ["grid"])
+        names = tuple(yf.text(item) for item in yf.items(found["grid"]))
+        return Source(names, Grid(tuple(range(len(names)))))
+    spread = read_choice(field, yf.text)
+    places = tuple(range(len(spread.values)))
+    return Source(spread.values, Choice(places, spread.weights))
+
+
+def _read_vary(field):
+    variations = []
+    for path, value in yf.entries(field).items():
+        target = variants.read_target(value, path)
+        if target.steps[-1] == "pose":
+            variations.append(Variation(path, target, read_pose(value)))
+        else:
+            variations.append(Variation(path, target, read_distribution(value)))
+    return tuple(variations)
+
+
+def _read_trials(field, found, spec):
+    """As many as are asked for; where something is a grid, one round of it when left out."""
+    cells = sampling.cells_of(spec.quantities())
+    if "trials" in found:
+        return yf.whole(found["trials"], 1, MOST_TRIALS)
+    if cells == 1:
+        yf.reject(field, "the key 'trials' is missing", "a whole number; it may be left out only where "
+                  "something is a grid")
+    if cells > MOST_TRIALS:
+        yf.reject(field, f"the grids have {cells} cells", f"at most {MOST_TRIALS}")
+    return cells
+
+
+def read_spec(path):
+    """Reads a campaign file. Every error names file:line:column, the field and what is allowed."""
+    field = yf.read_yaml(path)
+    found = yf.require_keys(field, KEYS)
+    spec = Spec(
+        name=yf.optional(found, "name", yf.text, Path(path).stem),
+        seed=yf.optional(found, "seed", lambda f: yf.whole(f, 0, (1 << 64) - 1), 0),
+        trials=0,
+        method=yf.optional(found, "sampling", lambda f: yf.one_of(f, sampling.METHODS), "random"),
+        shard_trials=yf.optional(found, "shard_trials",
+                                 lambda f: yf.whole(f, 1, MOST_SHARD_TRIALS), None),
+        scenes=_read_source(yf.need(field, found, "scene")),
+        sensors=_read_source(yf.need(field, found, "sensor")),
+        pose=read_pose(yf.need(field, found, "pose")),
+        vary=yf.optional(found, "vary", _read_vary, ()),
+        outputs=yf.optional(found, "outputs", output_spec.read_outputs, output_spec.DEFAULT),
+        file=Path(path),
+    )
+    return dataclasses.replace(spec, trials=_read_trials(field, found, spec))

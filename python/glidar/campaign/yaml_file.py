@@ -1,0 +1,227 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Reading YAML so that every error tells file:line:column and the field, as glidar's own files do."""
+
+import difflib
+import math
+import re
+from dataclasses import dataclass
+
+import yaml
+
+from glidar import Error
+
+LARGEST_BYTES = 2 << 20
+NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
+
+
+@dataclass(frozen=True)
+class Field:
+    """A value of a YAML file, with what an error needs to point at it."""
+
+    file: str
+    path: str  # "vary.sensor.rate_hz"; empty for the whole file
+    node: yaml.Node
+
+
+@dataclass(frozen=True)
+class Rule:
+    """The numbers a field takes, in words for the error."""
+
+    least: float = -1.0e15
+    most: float = 1.0e15
+    without_ends: bool = False
+    allowed: str = "a number from -1e15 to 1e15"
+
+
+ANY = Rule()
+ABOVE_ZERO = Rule(0.0, 1.0e15, True, "a number above 0")
+FROM_ZERO = Rule(0.0, 1.0e15, False, "a number from 0")
+ANGLE_DEG = Rule(-360.0, 360.0, False, "a number from -360 to 360")
+CONE_DEG = Rule(0.0, 180.0, False, "a number from 0 to 180")
+
+
+def where(field):
+    """"file:line:column: path", both counted from 1."""
+    mark = field.node.start_mark
+    place = f"{field.file}:{mark.line + 1}:{mark.column + 1}"
+    return f"{place}: {field.path}" if field.path else place
+
+
+def reject(field, found, allowed="", remedy=""):
+    raise Error(where(field), found, allowed, remedy)
+
+
+def did_you_mean(word, known):
+    near = difflib.get_close_matches(word, known, 1)
+    return f"did you mean '{near[0]}'?" if near else ""
+
+
+def describe(field):
+    """What a field holds, for error texts."""
+    node = field.node
+    if isinstance(node, yaml.MappingNode):
+        return "a map"
+    if isinstance(node, yaml.SequenceNode):
+        return f"a list of {len(node.value)}"
+    if node.value == "" and node.style is None:
+        return "nothing"
+    return node.value if is_number(node) else f"the text '{node.value}'"
+
+
+def is_number(node):
+    """Numbers are plain scalars; a quoted one is a text. YAML 1.2's, so that 1e-3 is one too."""
+    return isinstance(node, yaml.ScalarNode) and node.style is None and bool(
+        NUMBER.fullmatch(node.value))
+
+
+def syntax_error(path, error):
+    mark = getattr(error, "problem_mark", None)
+    place = f"{path}:{mark.line + 1}:{mark.column + 1}" if mark else str(path)
+    return Error(place, getattr(error, "problem", None) or str(error).replace("\n", " "),
+                 "YAML with one map", "")
+
+
+def read_text(path):
+    """The text of a YAML file; every fault of reading is an Error."""
+    try:
+        with open(path, "rb") as file:
+            data = file.read(LARGEST_BYTES + 1)
+        if len(data) > LARGEST_BYTES:
+            raise Error(str(path), "the file is larger than 2 MiB", "a YAML file of at most 2 MiB", "")
+        return data.decode("utf-8")
+    except OSError as error:
+        raise Error(str(path), f"it cannot be read: {error.strerror}", "a YAML file", "") from None
+    except UnicodeDecodeError:
+        raise Error(str(path), "it is not text in UTF-8", "a YAML file", "") from None
+
+
+def parse(text, path):
+    """The map that a YAML text holds, as a Field."""
+    try:
+        documents = list(yaml.compose_all(text, Loader=yaml.SafeLoader))
+    except (yaml.YAMLError, RecursionError) as error:
+        raise syntax_error(path, error) from None
+    if len(documents) != 1 or not isinstance(documents[0], yaml.MappingNode):
+        raise Error(str(path), "it is empty, no map, or several documents", "YAML with one map", "")
+    return Field(str(path), "", documents[0])
+
+
+def read_yaml(path):
+    return parse(read_text(path), path)
+
+
+def child(field, key, node):
+    return Field(field.file, f"{field.path}.{key}" if field.path else str(key), node)
+
+
+def entries(field):
+    """Every key with its value, in the order of the file; no key twice."""
+    if not isinstance(field.node, yaml.MappingNode):
+        reject(field, describe(field), "a map")
+    found = {}
+    for key, value in field.node.value:
+        name = key.value if isinstance(key, yaml.ScalarNode) else "?"
+        if not isinstance(key, yaml.ScalarNode) or name in found:
+            fault = "given twice" if name in found else "a key that is no text"
+            reject(Field(field.file, f"{field.path}.{name}".strip("."), key), fault, "each key once")
+        found[name] = child(field, name, value)
+    return found
+
+
+def require_keys(field, known):
+    """The entries of a map whose keys are all known."""
+    found = entries(field)
+    for name, value in found.items():
+        if name not in known:
+            key = next(k for k, v in field.node.value if k.value == name)
+            reject(Field(field.file, value.path, key), f"unknown key '{name}'", ", ".join(known),
+                   did_you_mean(name, known))
+    return found
+
+
+def need(field, found, key):
+    if key not in found:
+        reject(field, f"the key '{key}' is missing", "a map with it")
+    return found[key]
+
+
+def items(field, least=1, most=1 << 20):
+    """Every element of a list."""
+    if not isinstance(field.node, yaml.SequenceNode):
+        reject(field, describe(field), "a list")
+    if not least <= len(field.node.value) <= most:
+        reject(field, describe(field), f"a list of {least} to {most}" if least < most
+               else f"a list of {least}")
+    return [Field(field.file, f"{field.path}[{i}]", node) for i, node in enumerate(field.node.value)]
+
+
+def number(field, rule=ANY):
+    if not is_number(field.node):
+        reject(field, describe(field), rule.allowed)
+    value = float(field.node.value)
+    inside = rule.least < value < rule.most if rule.without_ends else rule.least <= value <= rule.most
+    if not (math.isfinite(value) and inside):
+        reject(field, field.node.value, rule.allowed)
+    return value
+
+
+def whole(field, least, most):
+    text = field.node.value if is_number(field.node) else ""
+    if not re.fullmatch(r"\+?\d+", text) or not least <= int(text) <= most:
+        reject(field, describe(field), f"a whole number from {least} to {most}")
+    return int(text)
+
+
+def boolean(field):
+    node = field.node
+    if not isinstance(node, yaml.ScalarNode) or node.value not in ("true", "false") or node.style:
+        reject(field, describe(field), "true or false")
+    return node.value == "true"
+
+
+def text(field):
+    node = field.node
+    if not isinstance(node, yaml.ScalarNode) or node.value == "":
+        reject(field, describe(field), "a text")
+    return node.value
+
+
+def one_of(field, words):
+    word = text(field)
+    if word not in words:
+        reject(field, f"'{word}'", ", ".join(words), did_you_mean(word, words))
+    return word
+
+
+def numbers(field, count, rule=ANY):
+    return [number(item, rule) for item in items(field, count, count)]
+
+
+def span(field, rule=ANY):
+    """A pair [least, most], the second above the first."""
+    least, most = numbers(field, 2, rule)
+    if not least < most:
+        reject(field, f"[{least:g}, {most:g}]", "two numbers, the second above the first")
+    return least, most
+
+
+def direction(field):
+    """A list of three numbers that are not all zero."""
+    vector = numbers(field, 3)
+    if not any(vector):
+        reject(field, "a vector of length 0", "a direction [x, y, z]")
+    return vector
+
+
+def only_key(field, known):
+    """The one entry of a map that says of which kind something is."""
+    found = require_keys(field, known)
+    if len(found) != 1:
+        reject(field, f"{len(found)} keys", f"one of {', '.join(known)}")
+    return next(iter(found.items()))
+
+
+def optional(found, key, read, otherwise):
+    """What `read` makes of a key's value, or the default where the key is left out."""
+    return read(found[key]) if key in found else otherwise

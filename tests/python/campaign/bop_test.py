@@ -1,0 +1,207 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""BOP data sets, read by the format's documentation alone (thodan/bop_toolkit,
+docs/bop_datasets_format.md), and by the official toolkit where it is installed."""
+
+import json
+
+import numpy as np
+import pytest
+from PIL import Image
+from campaign_support import Campaign
+from scipy.spatial.distance import pdist
+
+from glidar.campaign import bop_models
+
+# A box in front of a larger one, off the middle; a noiseless camera.
+SCENE = """models:
+  - {name: near, model: builtin:box, scale: 0.5, pose: {position: [0.3, 0, 0]}}
+  - {name: far, model: builtin:box, scale: 1.5, pose: {position: [-3, 0.2, 0.1], euler_deg: {yaw: 30}}}
+  - {name: twin, model: builtin:box, scale: 0.5, pose: {position: [0, 4, 0]}}
+"""
+CAMERA = """optics: {type: pinhole, width: 64, height: 48, fx: 80, fy: 90, cx: 30, cy: 25, pixel_centre: 0.5}
+"""
+CAMPAIGN = """scene: scene.yaml
+sensor: camera.yaml
+trials: 6
+shard_trials: 3
+pose:
+  position: {cone: {axis: [1, 0, 0], half_angle_deg: 25, radius_m: [3, 4]}}
+  orientation: {look_at: {off_deg: 8, roll_deg: {uniform: [-180, 180]}}}
+outputs: {bop: {depth_scale_mm: 0.25, split: val}}
+"""
+STEP_MM = 0.25
+
+
+@pytest.fixture(scope="module")
+def dataset(tmp_path_factory):
+    made = Campaign(tmp_path_factory.mktemp("bop"))
+    made.write("scene.yaml", SCENE)
+    made.write("camera.yaml", CAMERA)
+    made.write("campaign.yaml", CAMPAIGN)
+    made.run("out")
+    return made.folder / "out" / "bop"
+
+
+def read_ply(path):
+    """An independent reader of the ASCII PLY that BOP asks for."""
+    lines = path.read_text().splitlines()
+    vertices = int(next(line for line in lines if line.startswith("element vertex")).split()[-1])
+    start = lines.index("end_header") + 1
+    rows = np.array([[float(x) for x in line.split()] for line in lines[start : start + vertices]])
+    faces = np.array([[int(x) for x in line.split()] for line in lines[start + vertices :]])
+    assert (faces[:, 0] == 3).all()
+    return rows[:, :3], rows[:, 3:], faces[:, 1:]
+
+
+def images(dataset):
+    """(scene folder, image id, camera, objects, infos, depth in mm)."""
+    for scene in sorted((dataset / "val").iterdir()):
+        camera, truth, info = (json.loads((scene / f"{name}.json").read_text())
+                               for name in ("scene_camera", "scene_gt", "scene_gt_info"))
+        assert camera.keys() == truth.keys() == info.keys()
+        for key in camera:
+            image = Image.open(scene / "depth" / f"{int(key):06}.png")
+            assert image.mode == "I;16"
+            depth = np.asarray(image).astype(float) * camera[key]["depth_scale"]
+            yield scene, int(key), camera[key], truth[key], info[key], depth
+
+
+def matrix(entry, rotation, translation):
+    return np.array(entry[rotation]).reshape(3, 3), np.array(entry[translation])
+
+
+def mask(scene, kind, image, place):
+    pixels = np.asarray(Image.open(scene / kind / f"{image:06}_{place:06}.png"))
+    assert set(np.unique(pixels)) <= {0, 255}
+    return pixels > 0
+
+
+def test_models_are_in_millimetres_with_outward_normals_and_true_sizes(dataset):
+    info = json.loads((dataset / "models" / "models_info.json").read_text())
+    assert sorted(info) == ["1", "2"]  # the twin is the near box again
+    for key, side in (("1", 1000.0), ("2", 3000.0)):
+        vertices, normals, _ = read_ply(dataset / "models" / f"obj_{int(key):06}.ply")
+        assert np.ptp(vertices, axis=0) == pytest.approx([side] * 3)
+        assert info[key]["diameter"] == pytest.approx(np.sqrt(3) * side)
+        assert info[key]["diameter"] == pytest.approx(pdist(vertices).max())
+        assert info[key]["min_x"] == pytest.approx(-side / 2)
+        assert info[key]["size_z"] == pytest.approx(side)
+        assert (np.abs(np.linalg.norm(normals, axis=1) - 1) < 1e-6).all()
+        assert ((normals * vertices).sum(axis=1) > 0).all()
+
+
+def test_camera_matrices_have_pixel_centres_at_whole_numbers(dataset):
+    camera = json.loads((dataset / "camera.json").read_text())
+    assert (camera["width"], camera["height"]) == (64, 48)
+    assert [camera[name] for name in ("fx", "fy", "cx", "cy")] == pytest.approx([80, 90, 29.5, 24.5])
+    for _, _, entry, *_ in images(dataset):
+        assert np.array(entry["cam_K"]) == pytest.approx([80, 0, 29.5, 0, 90, 24.5, 0, 0, 1])
+
+
+def test_depth_through_camera_and_pose_lies_on_the_models(dataset):
+    halves = {1: 500.0, 2: 1500.0}
+    tested = 0
+    for scene, image, camera, objects, _, depth in images(dataset):
+        k = np.array(camera["cam_K"]).reshape(3, 3)
+        for place, entry in enumerate(objects):
+            rotation, translation = matrix(entry, "cam_R_m2c", "cam_t_m2c")
+            v, u = np.nonzero(mask(scene, "mask_visib", image, place))
+            pixel = np.stack([u, v, np.ones(len(u))])
+            point = np.linalg.inv(k) @ pixel * depth[v, u]
+            in_model = rotation.T @ (point - translation[:, None])
+            # On the box's surface, but for half a step of depth along the ray.
+            error = np.abs(np.abs(in_model).max(axis=0) - halves[entry["obj_id"]])
+            assert (error <= STEP_MM).all()
+            tested += len(u)
+    assert tested > 1000
+
+
+def test_world_poses_agree_with_object_poses(dataset):
+    for _, _, camera, objects, _, _ in images(dataset):
+        rotation, translation = matrix(camera, "cam_R_w2c", "cam_t_w2c")
+        near = objects[0]  # in the world at (0.3, 0, 0) m, not turned
+        model_rotation, model_translation = matrix(near, "cam_R_m2c", "cam_t_m2c")
+        assert np.abs(model_rotation - rotation).max() < 1e-12
+        assert np.abs(rotation @ [300, 0, 0] + translation - model_translation).max() < 1e-6
+
+
+def silhouette_area(vertices, k, rotation, translation):
+    """Pixels within the convex hull of the projected corners of a box: its exact silhouette."""
+    from scipy.spatial import Delaunay
+
+    camera = rotation @ vertices.T + translation[:, None]
+    if camera[2].min() <= 0:
+        return None
+    u, v = (k @ camera)[:2] / camera[2]
+    grid = np.stack(np.meshgrid(np.arange(-64, 128), np.arange(-48, 96)), axis=-1).reshape(-1, 2)
+    inside = Delaunay(np.stack([u, v], axis=1)).find_simplex(grid) >= 0
+    return inside.reshape(144, 192)
+
+
+def test_masks_and_their_counts_are_those_of_the_projected_boxes(dataset):
+    truncated = occluded = 0
+    for scene, image, camera, objects, infos, depth in images(dataset):
+        k = np.array(camera["cam_K"]).reshape(3, 3)
+        for place, (entry, info) in enumerate(zip(objects, infos)):
+            vertices, _, _ = read_ply(dataset / "models" / f"obj_{entry['obj_id']:06}.ply")
+            whole = silhouette_area(vertices, k, *matrix(entry, "cam_R_m2c", "cam_t_m2c"))
+            if whole is None:
+                continue
+            full, seen = mask(scene, "mask", image, place), mask(scene, "mask_visib", image, place)
+            assert not (seen & ~full).any()
+            edge = 0.02 * whole.sum() + 4  # pixels on the very border
+            assert np.abs(whole[48:96, 64:128].astype(int) - full).sum() <= edge
+            assert abs(info["px_count_all"] - whole.sum()) <= edge
+            assert info["px_count_visib"] == seen.sum()
+            assert info["px_count_valid"] == (full & (depth > 0)).sum()
+            if info["px_count_all"]:
+                assert info["visib_fract"] == pytest.approx(seen.sum() / info["px_count_all"])
+            if seen.any():
+                ys, xs = np.nonzero(seen)
+                assert info["bbox_visib"] == [xs.min(), ys.min(), np.ptp(xs), np.ptp(ys)]
+                ys, xs = np.nonzero(whole)
+                box = [xs.min() - 64, ys.min() - 48, np.ptp(xs), np.ptp(ys)]
+                assert np.abs(np.array(box) - info["bbox_obj"]).max() <= 1
+            truncated += info["px_count_all"] > full.sum()
+            occluded += full.sum() > seen.sum()
+    assert truncated > 0 and occluded > 0
+
+
+def test_the_official_toolkit_reads_it(dataset):
+    inout = pytest.importorskip("bop_toolkit_lib.inout", reason="bop_toolkit is not installed")
+    scene = dataset / "val" / "000000"
+    camera = inout.load_scene_camera(str(scene / "scene_camera.json"))
+    truth = inout.load_scene_gt(str(scene / "scene_gt.json"))
+    assert sorted(camera) == sorted(truth) == [0, 1, 2]
+    assert inout.load_ply(str(dataset / "models" / "obj_000001.ply"))["pts"].shape[1] == 3
+    assert inout.load_depth(str(scene / "depth" / "000000.png")).shape == (48, 64)
+
+
+def test_vertex_normals_are_weighted_by_angle():
+    # A corner of three unit squares, one of them cut into two triangles: the cut changes nothing.
+    vertices = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0]])
+    triangles = np.array([[0, 1, 4], [0, 4, 2], [0, 2, 3], [0, 3, 1]])
+    assert bop_models.normals_of(vertices, triangles)[0] == pytest.approx(np.ones(3) / np.sqrt(3))
+
+
+@pytest.mark.parametrize("points, expected", [
+    (np.random.default_rng(1).normal(size=(500, 3)), None),
+    (np.random.default_rng(2).normal(size=(500, 3)) * [1, 1, 0], None),
+    (np.linspace(0, 1, 9)[:, None] * [1.0, 2.0, 2.0], 3.0)])
+def test_diameters_are_the_largest_distance_also_of_planes_and_lines(points, expected):
+    assert bop_models.diameter(points) == pytest.approx(expected or pdist(points).max())
+
+
+@pytest.mark.parametrize("change, words", [
+    (lambda c: c.add("vary:\n  scene.models[near].scale: {uniform: [1, 2]}\n"), "models of a BOP"),
+    (lambda c: c.write("camera.yaml", "optics: {type: pinhole, width: 64, height: 48, fov_deg: 40, "
+                       "distortion: {model: radial_tangential, k1: 0.1}}\n"), "distortion"),
+    (lambda c: c.write("campaign.yaml", CAMPAIGN.replace("camera.yaml", "VLP-16")), "a spinning"),
+    (lambda c: c.write("campaign.yaml", CAMPAIGN.replace("0.25", "0.01")), "does not fit in 16 bits")])
+def test_what_bop_cannot_hold_is_refused(campaign, change, words):
+    campaign.write("scene.yaml", SCENE)
+    campaign.write("camera.yaml", CAMERA)
+    campaign.write("campaign.yaml", CAMPAIGN)
+    change(campaign)
+    assert words in campaign.run("out", code=2)

@@ -1,0 +1,66 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""A small campaign in a folder of its own, and the program that runs it."""
+
+import hashlib
+import os
+import subprocess
+import sys
+
+SCENE = """models:
+  - {name: rock, model: builtin:asteroid, scale: 1}
+  - {name: moon, model: builtin:sphere, scale: 0.3, pose: {position: [1.2, 0, 0]}}
+"""
+CAMERA = """optics: {type: pinhole, width: 32, height: 24, fov_deg: 40}
+noise:
+  - {type: range_gaussian, sigma_m: 0.01}
+  - {type: dropout, probability: 0.05}
+"""
+CAMPAIGN = """scene: scene.yaml
+sensor: camera.yaml
+seed: 5
+trials: 40
+shard_trials: 4
+pose:
+  position: {shell: {radius_m: [3, 5]}}
+  orientation: {look_at: {off_deg: 5, roll_deg: {uniform: [-180, 180]}}}
+"""
+
+
+class Campaign:
+    def __init__(self, folder):
+        self.folder = folder
+        self.write("scene.yaml", SCENE)
+        self.write("camera.yaml", CAMERA)
+        self.write("campaign.yaml", CAMPAIGN)
+        self.environment = dict(os.environ, XDG_CACHE_HOME=str(folder / ".cache"))
+
+    def write(self, name, text):
+        (self.folder / name).write_text(text, encoding="utf-8")
+
+    def add(self, text):
+        self.write("campaign.yaml", (self.folder / "campaign.yaml").read_text() + text)
+
+    def command(self, *arguments):
+        return [sys.executable, "-m", "glidar.campaign", *arguments]
+
+    def start(self, *arguments, **more):
+        return subprocess.Popen(self.command(*arguments), cwd=self.folder, env=self.environment,
+                                stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **more)
+
+    def call(self, *arguments, code=0, **more):
+        """Runs to the end; gives standard output and error."""
+        process = self.start(*arguments, **more)
+        out, err = process.communicate(timeout=300)
+        assert process.returncode == code, out + err
+        return out + err
+
+    def run(self, output, *arguments, code=0, **more):
+        return self.call("run", "campaign.yaml", "-o", output, *arguments, code=code, **more)
+
+    def contents(self, output):
+        """Hash of every file that is the same in every run: all but the logs."""
+        root = self.folder / output
+        return {str(path.relative_to(root)): hashlib.sha256(path.read_bytes()).hexdigest()
+                for path in sorted(root.rglob("*"))
+                if path.is_file() and path.relative_to(root).parts[0] not in ("log", "report.html")}

@@ -1,0 +1,108 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The report: one page by itself, with what it promises."""
+
+import base64
+import io
+import re
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from PIL import Image
+from scipy import stats
+
+from glidar.campaign import charts, philox, rotations
+
+VOID = {"meta", "img", "br"}
+
+
+class Page(HTMLParser):
+    """Checks that every element is closed, and gathers what is looked for."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.open, self.titles, self.sources, self.text = [], [], [], []
+        self.feed(text)
+        self.close()
+        assert self.open == []
+
+    def handle_starttag(self, tag, attributes):
+        self.sources += [value for name, value in attributes if name in ("src", "href")]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_startendtag(self, tag, attributes):
+        pass
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        (self.titles if self.open and self.open[-1] == "h2" else self.text).append(data)
+
+
+def report(campaign):
+    campaign.call("report", "out")
+    text = (campaign.folder / "out" / "report.html").read_text(encoding="utf-8")
+    assert not re.search(r"https?://", text)
+    return Page(text)
+
+
+def test_a_report_stands_by_itself_and_shows_failures_views_and_coverage(campaign):
+    campaign.write("broken.yaml", "models:\n  - {model: '<none>.obj'}\n")
+    campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text().replace(
+        "scene: scene.yaml", "name: a & <b>\nscene: {grid: [scene.yaml, broken.yaml]}"))
+    campaign.run("out", code=1)
+    page = report(campaign)
+    assert page.titles == ["Summary", "Failures", "Distributions", "Coverage", "Example views", "Speed"]
+    words = "".join(page.text)
+    assert "Campaign a & <b>" in words and "20 of 40" in words
+    assert "<none>.obj" in words and "cells of equal area hold a trial" in words
+    assert "distance from the target, m" in words and "range_min_m" in words
+    pictures = [source for source in page.sources if source.startswith("data:image/png;base64,")]
+    assert len(pictures) == len(page.sources) == 12
+    for source in pictures:
+        image = Image.open(io.BytesIO(base64.b64decode(source.split(",")[1])))
+        assert max(image.size) == 160 and len(np.unique(np.asarray(image))) > 5  # the rock is seen
+
+
+def test_campaigns_without_npz_or_failures_have_a_report(campaign):
+    campaign.add("outputs: {tum: true}\n")
+    campaign.run("out")
+    words = "".join(report(campaign).text)
+    assert "this campaign writes none" in words and "None." in words
+
+
+def test_an_unfinished_campaign_has_no_report(campaign):
+    campaign.run("out", "--shard", "0/2")
+    assert "not finished" in campaign.call("report", "out", code=2)
+
+
+def test_cells_of_the_sphere_have_equal_areas():
+    count = 200_000
+    u = philox.uniforms(1, np.arange(count), "test", 2)
+    unit = rotations.directions_in_cone((0, 0, 1), np.pi, u)
+    rows = charts.rows_for(count)
+    counts = np.bincount(charts.cells_of(unit, rows), minlength=2 * rows * rows)
+    assert rows == 18 and charts.rows_for(3) == 6
+    assert stats.chisquare(counts).pvalue > 1e-3
+
+
+def area(x, y):
+    """Of a polygon, by the shoelace formula."""
+    return 0.5 * abs(np.dot(x, np.roll(y, 1)) - np.dot(y, np.roll(x, 1)))
+
+
+@pytest.mark.parametrize("sine", [(-1.0, -0.9), (-0.1, 0.1), (0.6, 0.8), (0.97, 1.0)])
+def test_the_map_keeps_areas(sine):
+    edge = np.linspace(*sine, 400)
+    x, y = charts._mollweide(np.repeat([0.3, 0.5], 400), np.concatenate([edge, edge[::-1]]), 1.0)
+    # Of the whole map, pi R^2 sqrt 2 ... here an ellipse with half-axes 2 and 1, area 2 pi, the part
+    # is that of the sphere: width / 2 pi times height / 2.
+    assert area(x, y) / (2 * np.pi) == pytest.approx(0.2 / (2 * np.pi) * (sine[1] - sine[0]) / 2, rel=1e-3)
+
+
+def test_colours_run_from_dark_to_bright():
+    brightness = charts.colours(np.linspace(0, 1, 20)).astype(int).sum(axis=1)
+    assert brightness[-1] > brightness[0] and (np.diff(brightness) >= -8).all()

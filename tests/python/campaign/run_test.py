@@ -1,0 +1,279 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Campaigns run, are killed and go on; their data is the same however they ran."""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+from campaign_support import Campaign
+
+import glidar
+from glidar.campaign import plan, spec, trials
+
+
+def receipts(campaign, output):
+    return len(list((campaign.folder / output / "receipts").glob("*.json")))
+
+
+def test_every_trial_is_what_glidar_measures_alone(campaign):
+    campaign.run("out")
+    table = pq.read_table(campaign.folder / "out" / "index.parquet").to_pydict()
+    assert table["trial"] == list(range(40)) and all(table["ok"])
+    drawn = trials.draw_trials(plan.make_plan(spec.read_spec(campaign.folder / "campaign.yaml")), 0, 40)
+    scene = glidar.load_scene(campaign.folder / "scene.yaml")
+    sensor = glidar.load_sensor(campaign.folder / "camera.yaml")
+    shards = sorted((campaign.folder / "out" / "npz").iterdir())
+    assert len(shards) == 10
+    for name in shards:
+        shard = np.load(name)
+        for row, trial in enumerate(shard["trial"]):
+            frame = glidar.simulate(scene, sensor, drawn.world_from_sensor[trial],
+                                    seed=int(drawn.seed[trial]))
+            cloud = frame.cloud(["range", "intensity", "status"])
+            assert np.array_equal(shard["status"][row], cloud["status"])
+            assert np.array_equal(shard["intensity"][row], cloud["intensity"])
+            assert np.array_equal(shard["range"][row], cloud["range"].astype(np.float32),
+                                  equal_nan=True)
+            assert table["hits"][trial] == frame.hits and table["seed"][trial] == drawn.seed[trial]
+    assert sum(table["hits"]) > 1000
+
+
+def test_data_is_the_same_for_any_number_of_workers_and_shards_named_by_content(campaign):
+    campaign.run("one", "--workers", "1")
+    campaign.run("three", "--workers", "3")
+    contents = campaign.contents("one")
+    assert contents == campaign.contents("three")
+    for name, digest in contents.items():
+        if name.startswith("npz/"):
+            assert f"-{digest[:16]}.npz" in name
+
+
+@pytest.mark.parametrize("workers", ["1", "2"])
+def test_a_killed_run_goes_on_with_nothing_lost_and_nothing_twice(campaign, workers):
+    campaign.run("whole")
+    kills = 0
+    for wanted in (1, 3, 6, 8):
+        process = campaign.start("run", "campaign.yaml", "-o", "out", "--workers", workers,
+                                 start_new_session=True)
+        while process.poll() is None and receipts(campaign, "out") < wanted:
+            time.sleep(0.002)
+        kills += process.poll() is None
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+    assert kills > 0
+    before = {path: path.stat().st_mtime_ns
+              for path in (campaign.folder / "out" / "receipts").iterdir()}
+    campaign.run("out", "--workers", workers)
+    assert campaign.contents("out") == campaign.contents("whole")
+    assert all(path.stat().st_mtime_ns == when for path, when in before.items())  # not done again
+    assert not (campaign.folder / "out" / "tmp").exists()
+
+
+def test_a_worker_that_dies_is_replaced(campaign):
+    campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text()
+                   .replace("trials: 40", "trials: 1600"))
+    campaign.run("whole")
+    process = campaign.start("run", "campaign.yaml", "-o", "out", "--workers", "2")
+    while receipts(campaign, "out") < 3:
+        assert process.poll() is None
+        time.sleep(0.002)
+    children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
+    workers = [int(child) for child in children
+               if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes()]
+    os.kill(workers[0], signal.SIGKILL)
+    assert process.wait(timeout=120) == 0, process.stderr.read()
+    assert campaign.contents("out") == campaign.contents("whole")
+
+
+def test_an_interrupt_ends_with_130_and_the_same_command_goes_on(campaign):
+    campaign.run("whole")
+    process = campaign.start("run", "campaign.yaml", "-o", "out")
+    while receipts(campaign, "out") < 1:
+        time.sleep(0.002)
+    process.send_signal(signal.SIGINT)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode in (130, 0) and "Traceback" not in err, out + err
+    campaign.run("out")
+    assert campaign.contents("out") == campaign.contents("whole")
+
+
+def test_a_damaged_shard_is_made_again_and_check_finds_what_differs(campaign):
+    campaign.run("whole")
+    campaign.run("out")
+    victim = sorted((campaign.folder / "out" / "npz").iterdir())[3]
+    data = bytearray(victim.read_bytes())
+    data[1000] ^= 1
+    victim.write_bytes(data)
+    assert victim.name in campaign.call("check", "out", code=1)
+    victim.write_bytes(data[:-1])
+    campaign.run("out")
+    assert campaign.contents("out") == campaign.contents("whole")
+    assert "files as the manifest says" in campaign.call("check", "out")
+
+
+def test_a_bad_scene_among_many_fails_its_trials_and_the_rest_goes_on(campaign):
+    campaign.write("broken.yaml", "models:\n  - {model: none.obj}\n")
+    campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text().replace(
+        "scene: scene.yaml", "scene: {grid: [scene.yaml, broken.yaml, missing.yaml, scene.yaml]}"))
+    told = campaign.run("out", code=1)
+    assert "40 trials, 20 failed" in told and "warning" in told
+    table = pq.read_table(campaign.folder / "out" / "index.parquet").to_pydict()
+    assert [i % 4 in (0, 3) for i in range(40)] == table["ok"]
+    assert "none.obj" in table["error"][1] and "missing.yaml" in table["error"][2]
+    assert str(campaign.folder) not in "".join(table["error"])
+    manifest = json.loads((campaign.folder / "out" / "manifest.json").read_text())
+    assert (manifest["trials"], manifest["failed"]) == (40, 20)
+    shard = np.load(next((campaign.folder / "out" / "npz").glob("shard-000000-*")))
+    assert shard["trial"].tolist() == [0, 3] and len(shard["range"]) == 2
+
+
+def test_numbers_of_sensor_and_scene_and_poses_of_models_vary(campaign):
+    campaign.add("""vary:
+  sensor.noise[1].probability: {grid: [0, 1]}
+  sensor.optics.fov_deg: {uniform: [30, 60]}
+  scene.models[moon].scale: {choice: [0.1, 0.2]}
+  scene.models[rock].pose:
+    position: {point: [0, 0, 0]}
+    orientation: uniform
+outputs: {npz: {columns: [range, status, object_pose]}}
+""")
+    campaign.run("out")
+    table = pq.read_table(campaign.folder / "out" / "index.parquet").to_pydict()
+    assert table["sensor.noise[1].probability"] == [0.0, 1.0] * 20
+    assert set(table["scene.models[moon].scale"]) == {0.1, 0.2}
+    hits = np.array(table["hits"])
+    assert (hits[0::2] > 0).all() and (hits[1::2] == 0).all()  # all are dropped
+    shard = np.load(sorted((campaign.folder / "out" / "npz").iterdir())[0])
+    pose = shard["24x32/object_pose"][0][shard["24x32/status"][0] == 0]
+    q = np.array([table[f"scene.models[rock].pose.{name}"][0] for name in ("qw", "qx", "qy", "qz")])
+    assert (np.abs(pose[:, 3:] - q).max(axis=1) < 1e-6).any()
+
+
+def test_sensors_of_different_shapes_have_arrays_of_their_own(campaign):
+    campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text().replace(
+        "sensor: camera.yaml", "sensor: {grid: [camera.yaml, VLP-16]}"))
+    campaign.run("out")
+    shard = np.load(sorted((campaign.folder / "out" / "npz").iterdir())[0])
+    assert shard["24x32/trial"].tolist() == [0, 2]
+    shapes = {key.split("/")[0] for key in shard.files}
+    assert len(shapes) == 2
+    table = pq.read_table(campaign.folder / "out" / "index.parquet").to_pydict()
+    assert min(table["hits"]) > 0  # the LiDAR's boresight is x, and it too looks at the scene
+
+
+def test_parts_merge_to_the_whole_byte_for_byte(campaign):
+    campaign.add("outputs: {npz: true, tum: true, kitti: true, bop: {images: [depth]}}\n")
+    campaign.run("whole")
+    for i in (2, 0, 1):
+        campaign.run(f"part{i}", "--shard", f"{i}/3")
+    assert "missing" in campaign.call("merge", "part0", "part1", "-o", "merged", code=2)
+    campaign.call("merge", "part0", "part1", "part2", "-o", "merged")
+    assert campaign.contents("merged") == campaign.contents("whole")
+    for i in range(3):
+        campaign.run("shared", "--shard", f"{i}/3")
+    campaign.call("merge", "shared")
+    assert campaign.contents("shared") == campaign.contents("whole")
+
+
+def test_parts_of_other_campaigns_and_damaged_parts_are_refused(campaign):
+    campaign.run("part0", "--shard", "0/2")
+    campaign.run("part1", "--shard", "1/2")
+    victim = sorted((campaign.folder / "part1" / "npz").iterdir())[0]
+    victim.write_bytes(victim.read_bytes()[:-1] + b"x")
+    assert "not what its receipt says" in campaign.call("merge", "part0", "part1", "-o", "m", code=2)
+    campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text()
+                   .replace("seed: 5", "seed: 6"))
+    told = campaign.run("part0", code=2)
+    assert "another campaign" in told and "campaign.seed was 5, is 6" in told
+    campaign.run("other", "--shard", "1/2")
+    assert "another campaign" in campaign.call("merge", "part0", "other", "-o", "m2", code=2)
+
+
+def test_a_changed_scene_is_another_campaign_and_a_comment_is_not(campaign):
+    campaign.run("out")
+    campaign.add("# a comment\n")
+    campaign.run("out")
+    campaign.write("scene.yaml", (campaign.folder / "scene.yaml").read_text().replace("0.3", "0.4"))
+    assert "another campaign" in campaign.run("out", code=2)
+
+
+def test_a_full_disk_is_told_and_the_campaign_goes_on_when_there_is_room(campaign):
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (8000, 8000))
+
+    told = campaign.run("out", code=2, preexec_fn=limit)
+    assert "cannot be written" in told and "it goes on where it stopped" in told
+    assert "Traceback" not in told
+    campaign.run("out")
+    campaign.run("whole")
+    assert campaign.contents("out") == campaign.contents("whole")
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root may mount a small disk")
+def test_a_small_disk_that_is_full_is_told(campaign):
+    disk = campaign.folder / "disk"
+    disk.mkdir()
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=128k", "tmpfs", disk],
+                             capture_output=True, check=False)
+    if mounted.returncode != 0:
+        pytest.skip("mount is not allowed here")
+    try:
+        told = campaign.run("disk/out", code=2)
+        assert "No space left on device" in told and "make room" in told
+        subprocess.run(["mount", "-o", "remount,size=16m", disk], check=True)
+        campaign.run("disk/out")
+        campaign.run("whole")
+        assert campaign.contents("disk/out") == campaign.contents("whole")
+    finally:
+        subprocess.run(["umount", disk], check=True)
+
+
+def peak_mib(campaign, trials):
+    """The most memory that a run of so many small trials took."""
+    campaign.write("camera.yaml", "optics: {type: pinhole, width: 8, height: 8, fov_deg: 40}\n")
+    campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text()
+                   .replace("trials: 40", f"trials: {trials}").replace("shard_trials: 4\n", ""))
+    process = campaign.start("run", "campaign.yaml", "-o", f"out{trials}", "--quiet")
+    process.stdout.read()
+    _, status, used = os.wait4(process.pid, 0)
+    assert status == 0, process.stderr.read()
+    return used.ru_maxrss / 1024
+
+
+def test_ten_times_the_trials_take_no_more_memory(campaign, tmp_path_factory):
+    few = peak_mib(campaign, 4000)
+    many = peak_mib(Campaign(tmp_path_factory.mktemp("many")), 40000)
+    assert many < 1.1 * few
+
+
+@pytest.mark.parametrize("arguments, words", [
+    (["run", "campaign.yaml"], "-o"), (["run", "none.yaml", "-o", "x"], "cannot be read"),
+    (["run", "campaign.yaml", "-o", "x", "--shard", "2/2"], "i from 0 to N - 1"),
+    (["run", "campaign.yaml", "-o", "x", "--workers", "0"], "a whole number from 1"),
+    (["run", "campaign.yaml", "-o", "x", "--tasks", "2"], "--executor slurm"),
+    (["run", "campaign.yaml", "-o", "x", "--scheduler", "a"], "--executor dask"),
+    (["run", "campaign.yaml", "-o", "x", "--executor", "dask"], "give --scheduler"),
+    (["run", "campaign.yaml", "-o", "."], "holds no campaign"), (["merge", "."], "holds no campaign"),
+    (["report", "."], "holds no campaign"), (["walk"], "invalid choice"), ([], "COMMAND")])
+def test_bad_commands_are_refused_with_one_line(campaign, arguments, words):
+    told = campaign.call(*arguments, code=2)
+    assert told.startswith("glidar: error: ") and words in told and told.count("\n") == 1
+
+
+def test_a_value_that_varies_must_stand_in_the_file(campaign):
+    campaign.add("vary: {sensor.limits.far_m: {uniform: [1, 2]}}\n")
+    told = campaign.run("out", code=2)
+    assert "camera.yaml:1:1" in told and "no key 'limits'" in told
+
+
+def test_all_scenes_or_sensors_bad_is_an_error_and_not_a_campaign(campaign):
+    campaign.write("scene.yaml", "models: [\n")
+    assert "none can be read" in campaign.run("out", code=2)

@@ -1,0 +1,130 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""A campaign as a job array of a real Slurm, with controller and node on this machine, is that of a
+single process."""
+
+import os
+import shutil
+import signal
+import socket
+import subprocess
+import time
+
+import pytest
+
+PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch", "sinfo"]
+MISSING = [name for name in PROGRAMS if not shutil.which(name, path=os.environ["PATH"] + ":/usr/sbin")]
+pytestmark = [
+    pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)} (Debian: slurmctld "
+                       "slurmd slurm-client munge)"),
+    pytest.mark.skipif(os.geteuid() != 0, reason="slurmd runs jobs as root only"),
+]
+
+CONF = """ClusterName=campaign
+SlurmctldHost={host}(127.0.0.1)
+SlurmctldPort={port}
+SlurmdPort={node_port}
+AuthType=auth/munge
+AuthInfo=socket={folder}/munge.sock
+CredType=cred/munge
+SlurmUser=root
+SlurmdUser=root
+StateSaveLocation={folder}/state
+SlurmdSpoolDir={folder}/spool
+SlurmctldPidFile={folder}/slurmctld.pid
+SlurmdPidFile={folder}/slurmd.pid
+SlurmctldLogFile={folder}/slurmctld.log
+SlurmdLogFile={folder}/slurmd.log
+ProctrackType=proctrack/pgid
+TaskPlugin=task/none
+JobAcctGatherType=jobacct_gather/none
+MpiDefault=none
+SelectType=select/cons_tres
+ReturnToService=2
+NodeName={host} NodeAddr=127.0.0.1 CPUs={cpus} State=UNKNOWN
+PartitionName=all Nodes={host} Default=YES MaxTime=INFINITE State=UP
+"""
+
+
+def free_port():
+    with socket.socket() as one:
+        one.bind(("127.0.0.1", 0))
+        return one.getsockname()[1]
+
+
+def daemon(folder, *arguments):
+    with open(folder / f"{arguments[0]}.out", "w", encoding="utf-8") as log:
+        return subprocess.Popen(arguments, stdout=log, stderr=log, start_new_session=True)
+
+
+def is_idle():
+    told = subprocess.run(["sinfo", "-h", "-o", "%t"], capture_output=True, text=True, check=False)
+    return told.stdout.strip() == "idle"
+
+
+@pytest.fixture
+def slurm(tmp_path_factory, monkeypatch):
+    folder = tmp_path_factory.mktemp("slurm")
+    monkeypatch.setenv("PATH", os.environ["PATH"] + ":/usr/sbin")
+    monkeypatch.setenv("SLURM_CONF", str(folder / "slurm.conf"))
+    host = socket.gethostname().split(".")[0]
+    (folder / "slurm.conf").write_text(CONF.format(
+        host=host, folder=folder, port=free_port(), node_port=free_port(), cpus=os.cpu_count()))
+    for name in ("state", "spool"):
+        (folder / name).mkdir()
+    key = folder / "munge.key"
+    key.write_bytes(os.urandom(1024))
+    key.chmod(0o600)
+    daemons = [daemon(folder, "munged", "--foreground", "--force", f"--key-file={key}",
+                      f"--socket={folder}/munge.sock", f"--pid-file={folder}/munged.pid",
+                      f"--log-file={folder}/munged.log", f"--seed-file={folder}/munge.seed")]
+    try:
+        while not (folder / "munge.sock").exists():
+            assert daemons[0].poll() is None, (folder / "munged.out").read_text()
+            time.sleep(0.05)
+        daemons.append(daemon(folder, "slurmctld", "-D"))
+        daemons.append(daemon(folder, "slurmd", "-D"))
+        end = time.monotonic() + 60
+        while not is_idle():
+            assert time.monotonic() < end, (folder / "slurmctld.log").read_text()
+            time.sleep(0.2)
+        yield folder
+    finally:
+        for process in reversed(daemons):
+            process.send_signal(signal.SIGTERM)
+            try:
+                process.wait(timeout=20)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+
+def test_a_job_array_gives_what_a_single_process_gives(campaign, slurm):
+    campaign.environment.update(PATH=os.environ["PATH"], SLURM_CONF=os.environ["SLURM_CONF"])
+    campaign.run("whole")
+    told = campaign.run("out", "--executor", "slurm", "--tasks", "3", "--sbatch=--time=10:00",
+                        "--wait")
+    assert "3 tasks" in told and "40 trials, 0 failed" in told
+    assert campaign.contents("out") == campaign.contents("whole")
+    script = (campaign.folder / "out" / "log" / "array.sbatch").read_text()
+    assert "#SBATCH --array=0-2" in script and "#SBATCH --time=10:00" in script
+    logs = (campaign.folder / "out" / "log").glob("slurm-*.txt")
+    assert len(list(logs)) == 4  # three parts and the merge
+
+
+def test_what_sbatch_refuses_is_told(campaign, slurm):
+    campaign.environment.update(PATH=os.environ["PATH"], SLURM_CONF=os.environ["SLURM_CONF"])
+    told = campaign.run("out", "--executor", "slurm", "--sbatch=--partition=none", code=2)
+    assert "glidar: error: sbatch" in told and "invalid partition" in told
+
+
+def test_a_shard_is_no_part_of_a_job_array(campaign, slurm):
+    campaign.environment.update(PATH=os.environ["PATH"], SLURM_CONF=os.environ["SLURM_CONF"])
+    told = campaign.run("out", "--executor", "slurm", "--shard", "0/2", code=2)
+    assert "--shard" in told
+
+
+def test_without_sbatch_the_way_by_hand_is_told(campaign, monkeypatch, slurm):
+    campaign.environment["PATH"] = "/nonexistent"
+    told = campaign.run("out", "--executor", "slurm", code=2)
+    assert "no program sbatch" in told and "--shard i/N" in told

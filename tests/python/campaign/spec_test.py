@@ -1,0 +1,184 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The campaign file: what it may hold, and that every fault is told with its line."""
+
+import pytest
+
+from glidar import Error
+from glidar.campaign import plan, spec, variants, yaml_file as yf
+
+BASE = """\
+scene: scene.yaml
+sensor: camera.yaml
+trials: 10
+pose:
+  position: {shell: {radius_m: [2, 3]}}
+  orientation: {look_at: {roll_deg: {uniform: [-180, 180]}}}
+"""
+
+
+def read(folder, text):
+    path = folder / "campaign.yaml"
+    path.write_text(text, encoding="utf-8")
+    return spec.read_spec(path)
+
+
+def test_a_short_file_takes_the_usual_for_the_rest(tmp_path):
+    found = read(tmp_path, BASE)
+    assert (found.name, found.seed, found.method, found.trials) == ("campaign", 0, "random", 10)
+    assert found.outputs.npz.columns == ("range", "intensity", "status")
+    assert found.outputs.bop is None and not found.outputs.kitti
+
+
+def test_all_keys_are_read(tmp_path):
+    found = read(tmp_path, """\
+name: all of it
+seed: 18446744073709551615
+sampling: sobol
+shard_trials: 7
+scene: {choice: [a.yaml, b.yaml], weights: [1, 3]}
+sensor: {grid: [VLP-16, camera.yaml]}
+pose:
+  position: {grid: {least: [0, 0, 1], most: [1, 1, 1], counts: [2, 3, 1]}}
+  orientation: uniform
+vary:
+  sensor.noise[0].sigma_m: {log_uniform: [1e-3, 1e-1]}
+  sensor.limits.far_m: {normal: {mean: 10, sigma: 1, least: 9, most: 12}}
+  scene.models[rock].scale: {grid: {from: 1, to: 2, count: 5}}
+  scene.models[0].pose: {position: {box: {least: [0, 0, 0], most: [1, 1, 1]}}, orientation: uniform}
+outputs:
+  npz: {columns: [range, xyz], real: f64, compress: true}
+  pcd: {columns: [xyz], every: 4}
+  ply: true
+  kitti: true
+  tum: true
+  bop: {split: test, depth_scale_mm: 0.5, images: [depth]}
+""")
+    assert found.trials == 2 * 6 * 5  # one round of the grids
+    assert found.scenes.spread.weights == (0.25, 0.75)
+    assert [v.path for v in found.vary][2] == "scene.models[rock].scale"
+    assert found.vary[3].is_pose and not found.vary[0].is_pose
+    assert found.outputs.pcd.every == 4 and found.outputs.bop.images == ("depth",)
+
+
+@pytest.mark.parametrize("old, new, words", [
+    ("trials: 10", "trails: 10", ["3:1", "unknown key 'trails'", "did you mean 'trials'?"]),
+    ("trials: 10", "trials: 0", ["3:9", "trials", "0", "from 1"]),
+    ("trials: 10", "trials: many", ["3:9", "the text 'many'"]),
+    ("trials: 10", "trials: '10'", ["3:9", "the text '10'"]),
+    ("trials: 10", "trials: 10\ntrials: 11", ["4:1", "given twice"]),
+    ("trials: 10\n", "", ["'trials' is missing", "grid"]),
+    ("scene: scene.yaml\n", "", ["the key 'scene' is missing"]),
+    ("scene: scene.yaml", "scene: {choice: []}", ["1:17", "a list of 0", "a list of 1"]),
+    ("scene: scene.yaml", "scene: {choice: [a, b], weights: [0, 0]}", ["no weight is above 0"]),
+    ("scene: scene.yaml", "scene: {choice: [a, b], weights: [1, -1]}", ["-1", "a number from 0"]),
+    ("radius_m: [2, 3]", "radius_m: [3, 2]", ["5:", "[3, 2]", "the second above the first"]),
+    ("radius_m: [2, 3]", "radius_m: [2, .inf]", ["the text '.inf'"]),
+    ("radius_m: [2, 3]", "radius_m: -1", ["-1", "above 0"]),
+    ("shell: {", "ball: {", ["unknown key 'ball'", "shell"]),
+    ("shell: {radius_m: [2, 3]}", "cone: {axis: [0, 0, 0], half_angle_deg: 1, radius_m: 1}",
+     ["length 0"]),
+    ("shell: {radius_m: [2, 3]}", "cone: {axis: [0, 0, 1], half_angle_deg: 181, radius_m: 1}",
+     ["181", "0 to 180"]),
+    ("look_at: {roll_deg: {uniform: [-180, 180]}}", "look_at: {roll_deg: {triangle: 1}}",
+     ["unknown key 'triangle'"]),
+    ("look_at: {roll_deg: {uniform: [-180, 180]}}", "quaternion: {w: 0, x: 0, y: 0, z: 0}",
+     ["length 0"]),
+    ("trials: 10", "trials: 10\nsampling: hammersley", ["'hammersley'", "sobol"]),
+    ("trials: 10", "trials: 10\nvary:\n  noise[0]: 1", ["'noise[0]'", "sensor.noise[0].sigma_m"]),
+    ("trials: 10", "trials: 10\nvary: {sensor.rate_hz: {log_uniform: [0, 1]}}", ["above 0"]),
+    ("trials: 10", "trials: 10\nvary: {sensor.rate_hz: {normal: {mean: 0, sigma: 0}}}", ["above 0"]),
+    ("trials: 10", "trials: 10\nvary: {sensor.rate_hz: {normal: {mean: 0, sigma: 1, least: 9}}}",
+     ["more than 8 sigma"]),
+    ("trials: 10", "trials: 10\noutputs: {}", ["nothing is written"]),
+    ("trials: 10", "trials: 10\noutputs: {bop: {images: [rgb]}}", ["'rgb'", "depth, gray"]),
+    ("trials: 10", "trials: 10\noutputs: {kitti: 1}", ["1", "true or false"]),
+    ("trials: 10", "trials: [", ["expected"]),
+])
+def test_faults_are_told_with_their_line(tmp_path, old, new, words):
+    assert old in BASE
+    with pytest.raises(Error) as caught:
+        read(tmp_path, BASE.replace(old, new))
+    text = str(caught.value)
+    assert text.startswith(str(tmp_path / "campaign.yaml")), text
+    for word in words:
+        assert word in text, text
+
+
+@pytest.mark.parametrize("data, words", [
+    (b"", "empty"), (b"- 1\n", "no map"), (b"a: 1\n---\nb: 2\n", "several"), (b"\xff\xfe", "UTF-8"),
+    (b"#" * (3 << 20), "2 MiB")])
+def test_files_that_are_no_campaigns_are_refused(tmp_path, data, words):
+    path = tmp_path / "campaign.yaml"
+    path.write_bytes(data)
+    with pytest.raises(Error, match=words):
+        spec.read_spec(path)
+
+
+def test_a_file_that_is_not_there_is_refused(tmp_path):
+    with pytest.raises(Error, match="cannot be read"):
+        spec.read_spec(tmp_path / "none.yaml")
+
+
+def test_laws_with_the_same_numbers_are_different_campaigns(tmp_path):
+    uniform = plan.meaning(read(tmp_path, BASE))
+    other = plan.meaning(read(tmp_path, BASE.replace("uniform: [-180, 180]", "grid: [-180, 180]")))
+    again = plan.meaning(read(tmp_path, "# a comment\n" + BASE))
+    assert uniform != other and uniform == again
+
+
+SENSOR = """\
+# a comment
+optics: {type: pinhole, width: 64, height: 48, fov_deg: 20}
+noise:
+  - {type: range_gaussian, sigma_m: 0.01}   # another
+  - type: dropout
+    probability: 0.1
+"""
+
+
+def replaced(path, value, text=SENSOR):
+    field = yf.parse(text, "sensor.yaml")
+    target = variants.read_target(field, path)
+    return variants.replaced(text, field, [(target, value)])
+
+
+def test_values_are_replaced_where_they_stand_and_all_else_stays():
+    assert replaced("sensor.noise[0].sigma_m", "0.5") == SENSOR.replace("0.01", "0.5")
+    assert replaced("sensor.noise[1].probability", "0.25") == SENSOR.replace("0.1\n", "0.25\n")
+    assert replaced("sensor.optics.width", "128") == SENSOR.replace("64", "128")
+
+
+def test_files_that_a_scene_names_become_absolute(tmp_path):
+    (tmp_path / "rock's.obj").write_text("v 0 0 0\n")
+    text = "models:\n  - {name: rock, model: \"rock's.obj\", scale: 1}\n  - {model: builtin:box}\n"
+    field = yf.parse(text, tmp_path / "scene.yaml")
+    target = variants.read_target(field, "scene.models[rock].scale")
+    changed = variants.replaced(text, field, [(target, "2")])
+    again = yf.parse(changed, "copy.yaml")
+    assert variants.find(again, target).node.value == "2"
+    model = variants.find(again, variants.read_target(again, "scene.models[0].model"))
+    assert model.node.value == str(tmp_path.resolve() / "rock's.obj")
+    assert "builtin:box" in changed
+
+
+@pytest.mark.parametrize("path, words", [
+    ("sensor.noise[0].sigma", "did you mean 'sigma_m'"), ("sensor.noise[2].sigma_m", "no element [2]"),
+    ("sensor.rate_hz", "write it into the file"), ("sensor.noise.sigma_m", "a list of 2"),
+    ("sensor.noise[gauss].sigma_m", "no element has the name 'gauss'")])
+def test_values_that_are_not_there_are_told(path, words):
+    with pytest.raises(Error) as caught:
+        replaced(path, "1")
+    assert words in str(caught.value) and "sensor.yaml:" in str(caught.value)
+
+
+def test_anchored_values_are_not_replaced():
+    text = "noise:\n  - {type: range_gaussian, sigma_m: &s 0.01}\n  - {type: dropout, probability: *s}\n"
+    with pytest.raises(Error, match="an anchor"):
+        replaced("sensor.noise[1].probability", "1", text)
+
+
+def test_numbers_are_spelled_so_that_they_read_back_the_same():
+    for value in (0.1, 1e-300, 123456789.0, -2.5, 1 / 3):
+        assert float(variants.number_text(value)) == value
+    assert variants.number_text(128.0) == "128"
