@@ -11,15 +11,16 @@ namespace {
 
 TEST(RigYaml, ARigHasItsSensorsWithNamesAndPosesInTheOrderOfTheList) {
   const TestFolder folder;
-  const ScenePlan scene = plan(
-      folder,
-      "models: [{model: a}]\n"
-      "sensors:\n"
-      "  - {name: lidar, sensor: VLP-16, pose: {position: [0, 0, 2]}}\n"
-      "  - {name: cam-2, sensor: {optics: {type: pinhole, width: 8, height: 6, fov_deg: 20}}}\n"
-      "rig_pose: {position: [1, 0, 0]}\n"
-      "rig_motion: {twist: {velocity_m_s: [0, 3, 0]}}\n"),
-           {});
+  const ScenePlan scene = read_scene_plan(
+      folder.write(
+          "scene.yaml",
+          "models: [{model: a}]\n"
+          "sensors:\n"
+          "  - {name: lidar, sensor: VLP-16, pose: {position: [0, 0, 2]}}\n"
+          "  - {name: cam-2, sensor: {optics: {type: pinhole, width: 8, height: 6, fov_deg: 20}}}\n"
+          "rig_pose: {position: [1, 0, 0]}\n"
+          "rig_motion: {twist: {velocity_m_s: [0, 3, 0]}}\n"),
+      {});
   ASSERT_EQ(scene.sensors.size(), 2U);
   EXPECT_EQ(scene.sensors[0].name, "lidar");
   EXPECT_EQ(scene.sensors[0].rig_from_sensor.translation(), Eigen::Vector3d(0, 0, 2));
