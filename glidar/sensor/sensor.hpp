@@ -47,8 +47,8 @@ struct Sensor {
   /// Where its light comes from, in its frame: what that place does not see is occluded. Empty:
   /// from where it looks.
   std::optional<Eigen::Vector3d> projector_m;
-  std::vector<NoiseStep> noise;  ///< in the order in which the sensor makes its errors
-  bool cull_back_faces = false;  ///< true: triangles seen from behind let the beam through
+  std::vector<NoiseStep> noise;         ///< in the order in which the sensor makes its errors
+  bool cull_back_faces = false;         ///< true: triangles seen from behind let the beam through
   std::vector<std::string> files = {};  ///< that it was read from
 };
 

@@ -175,8 +175,8 @@ void bind_simulator(nb::module_& module) {
   nb::class_<HitFields>(module, "HitFields", "What truth a frame keeps.");
   module.def("fields_for", fields, nb::arg("columns"));
   nb::class_<Simulator>(module, "Simulator")
-      .def("simulate", simulate_all, nb::arg("sensors"), nb::arg("objects").none(),
-           nb::arg("keys"), nb::arg("fields"),
+      .def("simulate", simulate_all, nb::arg("sensors"), nb::arg("objects").none(), nb::arg("keys"),
+           nb::arg("fields"),
            nb::sig("def simulate(self, sensors: Trajectories, objects: Trajectories | None, keys: "
                    "tuple[numpy.ndarray, numpy.ndarray, int], fields: HitFields) -> list[Frame]"))
       .def("simulate_one", simulate_one, nb::arg("sensor"), nb::arg("objects").none(),

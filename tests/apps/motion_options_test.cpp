@@ -56,11 +56,12 @@ TEST(MotionOptions, CameraRateTurnsTheSensorAboutLeftUpForward) {
 
 TEST(MotionOptions, WithoutOptionsTheSceneFileDecides) {
   const Trajectory own = Spin{.rate_rad_s = {0.0, 0.0, 1.0}};
-  EXPECT_TRUE(std::holds_alternative<Spin>(sensor_trajectory({}, Pose::Identity(), Pose::Identity(), false, own)));
-  EXPECT_TRUE(
-      std::holds_alternative<ConstantPose>(sensor_trajectory({}, Pose::Identity(), Pose::Identity(), true, own)));
-  EXPECT_TRUE(
-      std::holds_alternative<ConstantPose>(sensor_trajectory({}, Pose::Identity(), Pose::Identity(), false, {})));
+  EXPECT_TRUE(std::holds_alternative<Spin>(
+      sensor_trajectory({}, Pose::Identity(), Pose::Identity(), false, own)));
+  EXPECT_TRUE(std::holds_alternative<ConstantPose>(
+      sensor_trajectory({}, Pose::Identity(), Pose::Identity(), true, own)));
+  EXPECT_TRUE(std::holds_alternative<ConstantPose>(
+      sensor_trajectory({}, Pose::Identity(), Pose::Identity(), false, {})));
   EXPECT_EQ(instance_trajectories({}, one_object(), {own}).size(), 1U);
   EXPECT_TRUE(instance_trajectories({}, one_object(), {}).empty());
 }
