@@ -3,7 +3,6 @@
 #include <apps/glidar/lockstep_run.hpp>
 
 #include <apps/glidar/curve_keys.hpp>
-#include <apps/glidar/interrupt.hpp>
 #include <apps/glidar/placed_motion.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/simulate.hpp>
@@ -58,20 +57,11 @@ LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
 }
 
 int LockstepRun::run() {
-  constexpr std::chrono::milliseconds kPatience{1000};
   const StopRequest stop;
   if (!flags_.render.quiet) fmt::print("listening at {}\n", server_.socket().bound_to());
   std::fflush(stdout);  // who started it waits for this line
   try {
-    while (!stop.is_asked()) {
-      const std::optional<lockstep::Request> request = server_.receive();
-      if (request) {
-        answer(*request);
-        record();
-      } else {
-        link::wait_for({&server_.socket()}, stop.descriptor(), kPatience);
-      }
-    }
+    while (!stop.is_asked()) serve(stop);
   } catch (const std::exception& error) {
     recorder_.reset();  // it is not whole
     finish(error.what());
@@ -80,6 +70,15 @@ int LockstepRun::run() {
   finish(fmt::format("signal {}", stop.signal()));
   constexpr int kSignalled = 128;  // as shells have it
   return kSignalled + stop.signal();
+}
+
+/// Answers the next request, or waits a while for one.
+void LockstepRun::serve(const StopRequest& stop) {
+  constexpr std::chrono::milliseconds kPatience{1000};
+  const std::optional<lockstep::Request> request = server_.receive();
+  if (!request) return link::wait_for({&server_.socket()}, stop.descriptor(), kPatience);
+  answer(*request);
+  record();
 }
 
 /// The frames that were replied. A recording that cannot go on ends the server: it would not be

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <apps/glidar/console.hpp>
+#include <apps/glidar/interrupt.hpp>
 #include <apps/glidar/recorder.hpp>
 #include <apps/glidar/session.hpp>
 #include <apps/glidar/stream_options.hpp>
@@ -27,6 +28,7 @@ class LockstepRun {
   int run();
 
  private:
+  void serve(const StopRequest& stop);
   void answer(const lockstep::Request& request);
   void record();
   void describe(const lockstep::Describe& describe);

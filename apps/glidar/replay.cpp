@@ -56,7 +56,7 @@ void make_absolute(StreamFlags& flags) {
   for (std::string& path : flags.render.output.paths) absolute(path);
 }
 
-int run(StreamFlags chosen) {
+int run(const StreamFlags& chosen) {
   const std::string file = chosen.replay;
   const link::RecordingReader recording(file);
   StreamFlags flags = replayed(flags_of(recording.head(), file), chosen);
