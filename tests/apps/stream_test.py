@@ -95,7 +95,7 @@ class Clouds(StreamTest):
     def test_conflated_leave_the_newest_for_a_slow_subscriber(self):
         program = self.publish_box("--camera-z", "4", "--pub-conflate", "1",
                                "--rate", "max", "--frames", "60")
-        subscriber = self.subscriber()
+        subscriber = self.subscriber(rcvhwm=1)  # what it does not read stays with the program
         subscriber.shake()
         self.finished(program, 0)  # all were sent before one is read
         self.assertEqual(self.stats()["clouds"]["sent"], 60)
