@@ -45,12 +45,8 @@ LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
   if (!flags_.stats.empty()) stats_file_ = std::make_unique<AtomicFile>(flags_.stats);
   if (!flags_.record.empty()) recorder_ = std::make_unique<Recorder>(flags_.record);
   open(flags_.render, {}, console_, session_);
+  (void)taken_files(flags_, session_.files);
   if (recorder_) recorder_->begin(session_, flags_.command);
-  if (!flags_.stats.empty()) {
-    std::vector<std::string> taken = session_.files;
-    if (recorder_) taken.push_back(flags_.record);
-    protect_files(taken, flags_.stats);
-  }
   for (const Mount& mount : session_.mounts) {
     beams_.push_back(std::make_shared<const Beams>(mount.beams));
   }

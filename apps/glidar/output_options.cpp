@@ -3,6 +3,7 @@
 #include <apps/glidar/output_options.hpp>
 
 #include <apps/glidar/help_text.hpp>
+#include <apps/glidar/naming.hpp>
 #include <apps/glidar/numbers.hpp>
 #include <apps/glidar/option_kinds.hpp>
 #include <apps/glidar/pose_options.hpp>
@@ -27,18 +28,6 @@ const std::vector<std::string>& default_columns() {
 
 void add_missing(const std::string& name, std::vector<std::string>& names) {
   if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-}
-
-/// Lets an error of `work` name the option too.
-template <typename Work>
-void naming(const char* option, const Work& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    ErrorParts parts = error.parts();
-    parts.where = std::string(option) + (parts.where.empty() ? " ''" : ", " + parts.where);
-    throw Error(parts);
-  }
 }
 
 /// The columns of a list, every name known.

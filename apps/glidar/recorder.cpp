@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/recorder.hpp>
 
-#include <apps/glidar/output_options.hpp>
 #include <glidar/core/version.hpp>
 #include <glidar/io/content_hash.hpp>
 #include <glidar/io/sidecar.hpp>
@@ -10,7 +9,6 @@
 namespace glidar::app {
 
 void Recorder::begin(const Session& session, const CommandRecord& command) {
-  protect_files(session.files, path_);
   link::RecordingHead head{.version = version(), .command = command, .files = {}};
   for (const std::string& file : session.files) {
     const std::optional<Hash128> hash = hash_file(file);

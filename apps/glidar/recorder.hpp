@@ -13,14 +13,13 @@ namespace glidar::app {
 class Recorder {
  public:
   /// Throws Error when no file can be made there.
-  explicit Recorder(const std::string& path) : path_(path), writer_(path) {}
-  /// Once the session is open. Throws Error when the recording would replace a file of it.
+  explicit Recorder(const std::string& path) : writer_(path) {}
+  /// Once the session is open.
   void begin(const Session& session, const CommandRecord& command);
   void write(const link::RecordedFrame& frame) { writer_.write(frame); }
   void commit() { writer_.commit(); }
 
  private:
-  std::string path_;
   link::RecordingWriter writer_;
 };
 

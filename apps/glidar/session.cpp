@@ -81,9 +81,11 @@ std::uint32_t frame_count(const RenderFlags& flags, const Sensor& sensor) {
   return static_cast<std::uint32_t>(std::max(1.0, frames));
 }
 
-std::string names_of(const std::vector<RigSensor>& sensors) {
+/// Of sensors or mounts.
+template <class Named>
+std::string names_of(const std::vector<Named>& all) {
   std::string names;
-  for (const RigSensor& sensor : sensors) names += (names.empty() ? "" : ", ") + sensor.name;
+  for (const Named& named : all) names += (names.empty() ? "" : ", ") + named.name;
   return names;
 }
 
@@ -131,18 +133,14 @@ Pose place_first(const RenderFlags& flags, const SceneFile& loaded, const Sessio
   return world_from_sensor;
 }
 
-bool has_rate(const RenderFlags& flags) {
-  return !flags.motion.camera_dr.empty();
-}
-
 /// How all moves. Options place and turn the first sensor; the scene file and trajectories have the
 /// poses of the rig, which are those of the sensor where there is one alone.
 RigMotion make_motion(const RenderFlags& flags, const SceneFile& loaded, const Session& session,
                       const Pose& world_from_first) {
   const bool is_given = sensor_pose_given(flags.pose);
   const Mount& first = session.mounts.front();
-  const bool is_in_file =
-      loaded.rig_motion || (loaded.world_from_rig && !loaded.looks_at && !has_rate(flags));
+  const bool is_in_file = loaded.rig_motion || (loaded.world_from_rig && !loaded.looks_at &&
+                                                flags.motion.camera_dr.empty());
   const bool is_rigs = !flags.motion.trajectory.empty() || (is_in_file && !is_given);
   const Pose start = is_rigs ? loaded.world_from_rig.value_or(Pose::Identity()) : world_from_first;
   const Pose optical_from_first =
@@ -242,15 +240,13 @@ std::string label_of(const RenderFlags& flags, const Mount& mount) {
 
 Mount& only_mount(Session& session) {
   if (session.mounts.size() == 1) return session.mounts.front();
-  std::string names;
-  for (const Mount& mount : session.mounts) names += (names.empty() ? "" : ", ") + mount.name;
   throw Error({"scene file", fmt::format("a rig of {} sensors", session.mounts.size()),
-               "one sensor here", "choose it with --mount: " + names});
+               "one sensor here", "choose it with --mount: " + names_of(session.mounts)});
 }
 
-Motion motion_of(const RigMotion& motion, const Mount& mount) {
+Motion motion_of(RigMotion motion, const Mount& mount) {
   return {.world_from_sensor = mounted(motion.world_from_rig, mount.rig_from_sensor),
-          .world_from_instance = motion.world_from_instance};
+          .world_from_instance = std::move(motion.world_from_instance)};
 }
 
 void turn_to(const RenderFlags& flags, std::uint32_t number, Mount& mount, Frame& frame) {

@@ -53,7 +53,7 @@ std::string label_of(const RenderFlags& flags, const Mount& mount);
 Mount& only_mount(Session& session);
 
 /// How a sensor and all instances move.
-Motion motion_of(const RigMotion& motion, const Mount& mount);
+Motion motion_of(RigMotion motion, const Mount& mount);
 
 /// Turns to a frame of the sequence: its beams, number, stamp and seed.
 void turn_to(const RenderFlags& flags, std::uint32_t number, Mount& mount, Frame& frame);

@@ -204,6 +204,15 @@ void check(const StreamFlags& flags) {
   }
 }
 
+std::vector<std::string> taken_files(const StreamFlags& flags, std::vector<std::string> read) {
+  for (const std::string& file : {flags.replay, flags.stats, flags.record}) {
+    if (file.empty()) continue;
+    protect_files(read, file);
+    read.push_back(file);
+  }
+  return read;
+}
+
 legacy::CloudPublisherOptions publisher_options(const StreamFlags& flags) {
   return {.endpoint = {flags.bind, *flags.port},
           .keeps_newest = flags.publishes_newest,

@@ -49,6 +49,10 @@ StreamFlags replayed(StreamFlags recorded, const StreamFlags& chosen);
 /// Throws Error when the flags contradict each other or say nothing that could be done.
 void check(const StreamFlags& flags);
 
+/// The files read, and those of statistics and recordings: no output may replace any of them.
+/// Throws Error when one of these would.
+std::vector<std::string> taken_files(const StreamFlags& flags, std::vector<std::string> read);
+
 legacy::CloudPublisherOptions publisher_options(const StreamFlags& flags);
 legacy::PoseReceiverOptions receiver_options(const StreamFlags& flags);
 

@@ -4,6 +4,7 @@
 
 #include <apps/glidar/advice.hpp>
 #include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/naming.hpp>
 #include <apps/glidar/placed_motion.hpp>
 #include <apps/glidar/recorded_source.hpp>
 #include <apps/glidar/stream_report.hpp>
@@ -29,18 +30,6 @@ constexpr std::chrono::milliseconds kShow{200};
 
 /// How often partners are looked after that are waited for.
 constexpr std::chrono::milliseconds kLook{20};
-
-/// Names the option in an error of a socket.
-template <class Work>
-void naming(const char* options, const Work& work) {
-  try {
-    work();
-  } catch (const Error& error) {
-    ErrorParts parts = error.parts();
-    parts.where = std::string(options) + ", " + parts.where;
-    throw Error(parts);
-  }
-}
 
 /// Whether every frame has the same beams; those of scanners move on.
 bool has_fixed_beams(const Sensor& sensor) {
@@ -96,7 +85,7 @@ void StreamRun::open_session() {
   for (const Mount& mount : session_.mounts) {
     aimed_.push_back({.beams = std::make_shared<const Beams>(mount.beams)});
   }
-  note_taken_files();
+  taken_ = taken_files(flags_, session_.files);
   std::vector<std::string> columns;
   if (publisher_) {
     columns = kPublishedColumns;
@@ -106,16 +95,6 @@ void StreamRun::open_session() {
     columns.insert(columns.end(), output.columns.begin(), output.columns.end());
   }
   fields_ = glidar::fields_for(columns);
-}
-
-/// Inputs, statistics and recordings: none of them may be written over by another.
-void StreamRun::note_taken_files() {
-  taken_ = session_.files;
-  for (const std::string& file : {flags_.replay, flags_.stats, flags_.record}) {
-    if (file.empty()) continue;
-    protect_files(taken_, file);
-    taken_.push_back(file);
-  }
 }
 
 /// 2015's topic where there is one sensor, one for each on a rig.

@@ -41,7 +41,6 @@ class StreamRun {
   void stream(PoseSource& source, StopRequest& stop);
   void measure(const Moment& moment, Shot& shot);
   [[nodiscard]] bool is_wanted(std::uint64_t place) const;
-  void note_taken_files();
   [[nodiscard]] bool writes_files() const;
   [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const Mount& mount,
                                          const Beams& beams);

@@ -23,7 +23,4 @@ Spinning read_ouster(const YamlField& field);
 /// Every number of a list of 1 to `most`.
 std::vector<double> numbers(const YamlField& field, const NumberRule& rule, std::size_t most);
 
-/// The file that the field names, relative to the folder of the file it stands in.
-std::filesystem::path file_named(const YamlField& field);
-
 }  // namespace glidar

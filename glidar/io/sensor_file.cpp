@@ -234,9 +234,8 @@ Sensor read_sensor(const YamlField& field) {
                       "noise", "cull_back_faces", "source", "unverified"});
   Sensor sensor;
   const YamlField optics = need(field, "optics");
-  sensor.files.push_back(field.file);
   sensor.optics = read_optics(optics);
-  if (const auto file = find(optics, "file")) sensor.files.push_back(file_named(*file).string());
+  if (const auto file = find(optics, "file")) sensor.files.push_back(path_beside(*file));
   if (!is_camera(sensor)) sensor.name = "lidar";
   if (const auto name = find(field, "name")) sensor.name = text(*name);
   set_rate(sensor, number_or(field, "rate_hz", kAboveZero, usual_rate_hz(sensor)));
@@ -265,7 +264,9 @@ Sensor read_sensor(const YamlField& field) {
 }
 
 Sensor load_sensor_file(const std::filesystem::path& path) {
-  return read_sensor(read_yaml(path));
+  Sensor sensor = read_sensor(read_yaml(path));
+  sensor.files.push_back(path.string());
+  return sensor;
 }
 
 Sensor parse_sensor(const std::string& text) {

@@ -30,15 +30,10 @@ void apply_point_time(double point_ns, BeamTable& table) {
 
 }  // namespace
 
-std::filesystem::path file_named(const YamlField& field) {
-  const std::filesystem::path folder = std::filesystem::path(field.file).parent_path();
-  return folder / text(field);
-}
-
 BeamTable read_beam_table(const YamlField& field) {
   require_map(field, {"type", "file", "rows", "point_us"});
   const YamlField file = need(field, "file");
-  const std::filesystem::path path = file_named(file);
+  const std::filesystem::path path = path_beside(file);
   const bool is_text = path.extension() == ".csv";
   if (!is_text && path.extension() != ".npy") {
     reject(file, describe(file), "a .csv of times, azimuths and zenith angles, or an .npy of rays");
@@ -53,7 +48,7 @@ BeamTable read_beam_table(const YamlField& field) {
 
 Spinning read_ouster(const YamlField& field) {
   require_map(field, {"type", "file"});
-  return load_ouster_metadata(file_named(need(field, "file")));
+  return load_ouster_metadata(path_beside(need(field, "file")));
 }
 
 }  // namespace glidar
