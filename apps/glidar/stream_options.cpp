@@ -98,6 +98,17 @@ void add_lockstep_flags(CLI::App& command, StreamFlags& flags) {
            flags.curve_keys);
 }
 
+bool writes_files(const OutputFlags& files) {
+  return !files.paths.empty() || !files.legacy_name.empty();
+}
+
+bool says_how_to_write(const OutputFlags& files) {
+  const OutputFlags usual;
+  return files.dense || files.deskew || files.ply_ascii || files.no_sidecar || files.depth_scale ||
+         !files.columns.empty() || !files.layout.empty() ||
+         files.cloud_frame != usual.cloud_frame || files.pcd_encoding != usual.pcd_encoding;
+}
+
 /// Requests say when and where; nothing else may.
 void check_lockstep(const StreamFlags& flags) {
   const MotionFlags& motion = flags.render.motion;
@@ -114,8 +125,9 @@ void check_lockstep(const StreamFlags& flags) {
       flags.publish_every != usual.publish_every || flags.publish_queue != usual.publish_queue) {
     refuse("--lockstep", "given beside options of the protocol of 2015", "leave these out");
   }
-  if (!files.paths.empty() || !files.legacy_name.empty()) {
-    refuse("--lockstep", "given beside --output or --pcd", "the clients get the clouds");
+  if (writes_files(files) || says_how_to_write(files)) {
+    refuse("--lockstep", "given beside --output, --pcd or options of such files",
+           "leave these out: the clients get the clouds, with the columns they ask for");
   }
 }
 
@@ -185,9 +197,13 @@ void check(const StreamFlags& flags) {
     refuse("--curve-keys", "given without --lockstep", "only that link is encrypted");
   }
   const OutputFlags& files = flags.render.output;
-  if (!flags.port && files.paths.empty() && files.legacy_name.empty() && flags.record.empty()) {
+  if (!flags.port && !writes_files(files) && flags.record.empty()) {
     refuse("--port and --output", "neither is given, so no cloud would go anywhere",
            "for example: glidar stream " + flags.render.input + " --port 5555");
+  }
+  if (!writes_files(files) && says_how_to_write(files)) {
+    refuse("--output", "not given, but options of such files are",
+           "leave these out: clouds on a port are laid out as in 2015");
   }
   if (flags.physics_port) check_simulator(flags);
   constexpr double kLongest_s = 3.2e9;  // a century

@@ -7,6 +7,7 @@
 
 #include <array>
 #include <limits>
+#define JSON_DIAGNOSTICS 1  // its errors name the key
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -24,9 +25,8 @@ constexpr std::size_t kBodyNumbers = kPoseNumbers + 6;
                "record it again"});
 }
 
-// paths may hold bytes that are no UTF-8
 std::string line_of(const Json& json) {
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump() + "\n";
 }
 
 /// Three rows of four numbers; rate and velocity only of what moves.
@@ -118,12 +118,20 @@ void RecordingWriter::begin(const RecordingHead& head) {
   for (const RecordedFile& file : head.files) {
     files.push_back({{"path", file.path}, {"hash", file.hash}});
   }
-  file_.write(line_of({{"recording", kFormat},
-                       {"glidar", head.version},
-                       {"command",
-                        {{"arguments", head.command.arguments},
-                         {"folder", folder_seen_from(file_.path(), head.command.folder)}}},
-                       {"files", files}}));
+  const Json json = {{"recording", kFormat},
+                     {"glidar", head.version},
+                     {"command",
+                      {{"arguments", head.command.arguments},
+                       {"folder", folder_seen_from(file_.path(), head.command.folder)}}},
+                     {"files", files}};
+  try {
+    file_.write(line_of(json));
+  } catch (const Json::type_error&) {
+    throw Error({.where = file_.path().string(),
+                 .found = "an option or a file's name that is not UTF-8",
+                 .allowed = "UTF-8, which is all that a recording can hold",
+                 .remedy = "rename the file or its folder"});
+  }
 }
 
 void RecordingWriter::write(const RecordedFrame& frame) {
@@ -164,7 +172,9 @@ std::string RecordingReader::where() const {
 }
 
 bool RecordingReader::take_line(std::string& line) {
-  if (std::getline(file_, line)) ++line_;
+  do {  // who edits one may leave blank lines
+    if (std::getline(file_, line)) ++line_;
+  } while (file_ && line.find_first_not_of(" \t\r") == std::string::npos);
   if (file_.bad()) refuse(where(), "it cannot be read further");
   return !file_.fail();
 }

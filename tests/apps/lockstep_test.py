@@ -251,7 +251,8 @@ class Lockstep(CliTest):
                                ("tcp://127.0.0.1:99999", "65535"), ("ipc://", "path"),
                                ("tcp://192.0.2.1:5600", "192.0.2.1")):
             self.assertRegex(self.refused("stream", "builtin:box", "--lockstep", endpoint), word)
-        for more in (["--port", "5555"], ["-o", "x.pcd"], ["--model-dr", "0,0,1"], ["--duration", "1"]):
+        for more in (["--port", "5555"], ["-o", "x.pcd"], ["--model-dr", "0,0,1"], ["--duration", "1"],
+                     ["--dense"], ["--columns", "xyz"], ["--depth-scale", "5000"]):
             self.assertIn("--lockstep", self.refused("stream", "builtin:box", "--lockstep",
                                                      "tcp://127.0.0.1:*", *more))
         self.assertIn("--curve-keys", self.refused("stream", "builtin:box", "--port", "5555",

@@ -234,6 +234,19 @@ class Refusals(ReplayTest):
                 self.assertEqual(done.returncode, 2, done.stdout)
                 self.assertIn(words, done.stderr)
 
+    def test_blank_lines_are_passed_over(self):
+        self.record_scene()
+        self.write("r.jsonl", self.bytes_of("r.jsonl").decode().replace("\n", "\n\n"))
+        self.assertIn("6 frames", self.succeed("replay", "r.jsonl").stdout)
+
+    def test_names_that_are_no_text_cannot_be_recorded(self):
+        name = b"b\xff.yaml"
+        with open(os.path.join(os.fsencode(self.folder), name), "w", encoding="utf-8") as scene:
+            scene.write("models: [{model: 'builtin:box'}]")
+        error = self.refused("stream", os.fsdecode(name), "--frames", "1", "--record", "r.jsonl")
+        self.assertIn("not UTF-8", error)
+        self.assertNotIn("r.jsonl", self.files())
+
     def test_a_recording_that_ends_early_is_not_taken_for_a_whole_one(self):
         self.record_scene()
         for kept in (1, 3):

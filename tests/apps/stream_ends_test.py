@@ -163,6 +163,10 @@ class Refusals(StreamTest):
     def test_streams_that_go_nowhere(self):
         self.assertIn("--port", self.refused("stream", self.box))
 
+    def test_options_of_files_that_are_not_written(self):
+        for option in (["--dense"], ["--layout", "velodyne"], ["--no-sidecar"]):
+            self.assertIn("--output: not given", self.refused("stream", self.box, "--port", str(self.port), *option))
+
     def test_contradictions(self):
         physics = ("stream", self.box, "--port", str(self.port), "--physics-port")
         self.assertIn("overlap", self.refused(*physics, str(self.port + 1)))

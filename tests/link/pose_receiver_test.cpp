@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <memory>
+#include <thread>
 
 namespace glidar::legacy {
 namespace {
@@ -126,6 +127,20 @@ TEST_F(PoseReceiverTest, PassesOverRepeatedTimesAndTellsOfEarlierOnes) {
   EXPECT_EQ(next_timestamp(), 3U);
   EXPECT_EQ(receiver->counts().repeated, 2U);
   EXPECT_EQ(receiver->counts().backwards, 1U);
+}
+
+TEST_F(PoseReceiverTest, TakesASimulatorThatSaysThatItEndsForNoneThatIsLost) {
+  start();
+  ASSERT_TRUE(shake());
+  constexpr std::uint64_t kPoses = 10;
+  for (std::uint64_t stamp = 1; stamp <= kPoses; ++stamp) simulator->send(pose(stamp));
+  simulator->send(encode_shutdown("v"));
+  simulator.reset();
+  std::this_thread::sleep_for(200ms);  // the connection has ended before anything is read
+  for (std::uint64_t stamp = 1; stamp <= kPoses; ++stamp) EXPECT_EQ(next_timestamp(), stamp);
+  EXPECT_EQ(next_timestamp(), std::nullopt);
+  EXPECT_TRUE(receiver->is_over());
+  EXPECT_TRUE(said.empty());
 }
 
 TEST_F(PoseReceiverTest, FindsASimulatorThatComesBackAndShakesHandsAgain) {

@@ -4,9 +4,11 @@
 
 #include <glidar/core/error.hpp>
 
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
+
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 #include <string>
 
 namespace glidar::link {
@@ -88,6 +90,27 @@ TEST(Recording, IsNotThereUntilItIsWhole) {
   EXPECT_FALSE(std::filesystem::exists(folder / "r.jsonl"));
   EXPECT_THROW(RecordingReader(folder / "r.jsonl"), Error);
   EXPECT_THROW(RecordingReader(folder / "."), Error);
+}
+
+TEST(Recording, NamesTheKeyThatIsWrong) {
+  const Folder folder;
+  std::ofstream(folder / "r.jsonl")
+      << R"({"recording": 1, "glidar": "1", "command": {"arguments": ["stream"], "folder": 5}})";
+  try {
+    const RecordingReader reader(folder / "r.jsonl");
+    FAIL() << "it was read";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr("/command/folder"));
+  }
+}
+
+TEST(Recording, RefusesNamesThatAreNotUtf8) {
+  const Folder folder;
+  RecordingWriter writer(folder / "r.jsonl");
+  EXPECT_THROW(
+      writer.begin(
+          {.version = "1", .command = {.arguments = {"stream", "b\xff"}, .folder = folder / "."}}),
+      Error);
 }
 
 }  // namespace

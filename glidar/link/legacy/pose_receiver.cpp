@@ -66,6 +66,7 @@ std::optional<Placement> PoseReceiver::receive() {
   for (int i = 0; i < kMostAtOnce && !is_over_; ++i) {
     const std::optional<link::Message> message = poses_.receive();
     if (!message) {
+      tell_of_loss();
       connect_anew_if_cut_off();
       return std::nullopt;
     }
@@ -119,6 +120,13 @@ void PoseReceiver::open_poses() {
   poses_.connect(options_.endpoint);
 }
 
+/// Once all that it sent is read: one that said that it ends is not lost.
+void PoseReceiver::tell_of_loss() {
+  if (!std::exchange(is_loss_news_, false)) return;
+  faults_.tell("simulator lost",
+               "its connection ended, or it sent more than 16 MiB at once; waiting for it");
+}
+
 /// ZeroMQ finds a peer again that went away, but not one that it cut off.
 void PoseReceiver::connect_anew_if_cut_off() {
   if (!lost_ || std::chrono::steady_clock::now() - *lost_ < kPatience) return;
@@ -161,8 +169,7 @@ void PoseReceiver::notice_simulator() {
       lost_.reset();
     }
     if (event != link::PeerEvent::left) continue;
-    faults_.tell("simulator lost",
-                 "its connection ended, or it sent more than 16 MiB at once; waiting for it");
+    is_loss_news_ = true;
     is_connected_ = false;
     open_handshake();
     lost_ = std::chrono::steady_clock::now();

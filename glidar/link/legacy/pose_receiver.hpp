@@ -53,6 +53,7 @@ class PoseReceiver {
   [[nodiscard]] bool is_new(std::uint64_t timestamp);
   void open_poses();
   void open_handshake();
+  void tell_of_loss();
   void connect_anew_if_cut_off();
   void ask_when_connected();
   void notice_simulator();
@@ -64,6 +65,7 @@ class PoseReceiver {
   link::Socket handshake_;
   std::optional<std::chrono::steady_clock::time_point> reachable_;  ///< its handshakes' port, since
   std::optional<std::chrono::steady_clock::time_point> lost_;       ///< since; empty: connected
+  bool is_loss_news_ = false;                                       ///< not told yet
   bool is_connected_ = false;                                       ///< to its poses' port
   bool has_asked_ = false;
   bool awaits_reply_ = false;
