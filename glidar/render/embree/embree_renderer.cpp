@@ -6,6 +6,7 @@
 #include <glidar/render/embree/embree_world.hpp>
 #include <glidar/render/embree/settle.hpp>
 #include <glidar/render/embree/tiles.hpp>
+#include <glidar/render/grid_window.hpp>
 #include <glidar/render/plane_points.hpp>
 #include <glidar/render/resolve.hpp>
 
@@ -21,6 +22,7 @@ namespace {
 struct Job {
   const Beams& beams;
   const PlanePoints& points;
+  GridWindow window;  ///< beams outside of it miss
   const HitFields& fields;
   const Resolver& resolver;
   const embree::Probe& probe;
@@ -146,6 +148,10 @@ void finish(const Job& job, TileWork& work) {
 void start(const Job& job, const embree::Tiling& tiling, std::size_t i, std::size_t end,
            TileWork& work) {
   const embree::Tile tile = tiling.tile(i);
+  if (!job.window.meets(tile.window(kLanes))) {
+    work.block.mask = 0;
+    return;
+  }
   if (!job.points.x.empty() && tile.is_whole(kLanes)) {
     gather_pinhole(job.points, tile, work);
   } else {
@@ -197,6 +203,7 @@ class EmbreeRenderer final : public Renderer {
     find_plane_points(request.beams, points_);
     const Job job{.beams = request.beams,
                   .points = points_,
+                  .window = window_on(resolver_, world_->mesh_boxes(), request.present, points_),
                   .fields = request.fields,
                   .resolver = resolver_,
                   .probe = probe,

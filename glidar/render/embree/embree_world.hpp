@@ -44,6 +44,8 @@ class World {
   void filter_everything();
 
   [[nodiscard]] const TraceSpace& space() const { return space_; }
+  /// Per mesh, in the object's frame.
+  [[nodiscard]] const std::vector<Eigen::AlignedBox3d>& mesh_boxes() const { return mesh_boxes_; }
   [[nodiscard]] bool has_wide_packets() const { return has_wide_packets_; }
 
  private:

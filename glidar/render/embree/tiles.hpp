@@ -4,6 +4,7 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/core/frame.hpp>
+#include <glidar/render/grid_window.hpp>
 #include <glidar/render/lanes.hpp>
 
 #include <algorithm>
@@ -23,6 +24,11 @@ struct Tile {
 
   [[nodiscard]] bool is_whole(std::uint32_t lanes) const {
     return first_row + (lanes >> width_shift) <= rows && first_col + (1U << width_shift) <= cols;
+  }
+
+  [[nodiscard]] GridWindow window(std::uint32_t lanes) const {
+    return {first_row, first_row + (lanes >> width_shift), first_col,
+            first_col + (1U << width_shift)};
   }
 
   /// Index of a lane's beam, or kOutside beyond the grid's border.

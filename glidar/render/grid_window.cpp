@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/grid_window.hpp>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <vector>
+
+namespace glidar {
+namespace {
+
+/// Takes in what a box, relative to the mesh's origin, covers of the plane at depth 1; false when
+/// not all of it is clearly in front.
+bool extend(Eigen::AlignedBox2d& covered, const InstanceView& view,
+            const Eigen::AlignedBox3d& box) {
+  constexpr double kLeastDepth = 1e-3;  // of the distance: up to 89.9 degrees from the boresight
+  constexpr int kCorners = 8;
+  for (int i = 0; i < kCorners; ++i) {
+    const auto which = static_cast<Eigen::AlignedBox3d::CornerType>(i);
+    const Eigen::Vector3d seen =
+        view.object_from_sensor.transpose() * (box.corner(which) - view.sensor_in_object);
+    if (!(seen.z() > kLeastDepth * seen.norm())) return false;
+    covered.extend(Eigen::Vector2d(seen.x() / seen.z(), seen.y() / seen.z()));
+  }
+  return true;
+}
+
+/// The places in a rising row that lie from `low` to `high`, and one more on each side.
+std::pair<std::uint32_t, std::uint32_t> places(const std::vector<double>& row, double low,
+                                               double high) {
+  const auto first = std::lower_bound(row.begin(), row.end(), low) - row.begin();
+  const auto end = std::upper_bound(row.begin(), row.end(), high) - row.begin();
+  const auto last = static_cast<std::ptrdiff_t>(row.size());
+  return {static_cast<std::uint32_t>(std::max<std::ptrdiff_t>(first - 1, 0)),
+          static_cast<std::uint32_t>(std::min(end + 1, last))};
+}
+
+}  // namespace
+
+GridWindow window_on(const Resolver& resolver, std::span<const Eigen::AlignedBox3d> mesh_boxes,
+                     std::span<const std::uint8_t> present, const PlanePoints& points) {
+  if (points.x.empty()) return {};
+  const std::vector<Instance>& instances = resolver.scene().instances;
+  Eigen::AlignedBox2d covered;
+  for (std::uint32_t i = 0; i < instances.size(); ++i) {
+    const Eigen::AlignedBox3d& box = mesh_boxes[instances[i].mesh];
+    if (box.isEmpty() || (!present.empty() && present[i] == 0)) continue;
+    const Eigen::Vector3d& origin_m = resolver.mesh(i).origin_m;
+    const Eigen::AlignedBox3d relative(box.min() - origin_m, box.max() - origin_m);
+    if (!extend(covered, resolver.view(i), relative)) return {};
+  }
+  if (covered.isEmpty()) return {.end_row = 0, .end_col = 0};
+  const auto [first_row, end_row] = places(points.y, covered.min().y(), covered.max().y());
+  const auto [first_col, end_col] = places(points.x, covered.min().x(), covered.max().x());
+  return {first_row, end_row, first_col, end_col};
+}
+
+}  // namespace glidar
