@@ -106,18 +106,10 @@ void plan_legacy(const std::string& name, const SidecarContext& context, const R
   }
 }
 
-bool same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  const auto plain = [](const std::filesystem::path& path) {
-    return std::filesystem::absolute(path).lexically_normal();
-  };
-  std::error_code no_such_file;  // then it is not the same either, but for its name
-  return plain(a) == plain(b) || std::filesystem::equivalent(a, b, no_such_file);
-}
-
 void check_names(const std::vector<Output>& outputs, const std::string& input) {
   std::set<std::filesystem::path> seen;
   for (const Output& output : outputs) {
-    const bool is_input = same_file(output.path, input);
+    const bool is_input = is_same_file(output.path, input);
     const bool twice =
         !seen.insert(std::filesystem::absolute(output.path).lexically_normal()).second;
     if (!is_input && !twice) continue;
@@ -239,15 +231,6 @@ std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& in
   check_layout(flags);
   check_names(outputs, input);
   return outputs;
-}
-
-void protect_files(const std::vector<std::string>& read, const std::filesystem::path& output) {
-  const auto same = [&](const std::string& file) { return same_file(output, file); };
-  if (std::none_of(read.begin(), read.end(), same)) return;
-  throw Error({.where = output.string(),
-               .found = "is an input file: the scene was read from it, or it is written otherwise",
-               .allowed = "",
-               .remedy = "choose another name"});
 }
 
 void protect_files(const std::vector<std::string>& read, const std::vector<Output>& outputs) {

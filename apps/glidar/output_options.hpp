@@ -5,6 +5,7 @@
 #include <apps/glidar/cli_fwd.hpp>
 #include <glidar/core/cloud_sink.hpp>
 #include <glidar/core/report.hpp>
+#include <glidar/io/file_guard.hpp>
 #include <glidar/io/file_sink.hpp>
 
 #include <cstdint>
@@ -58,8 +59,8 @@ std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& in
                                  const SidecarContext& context, const Report& report,
                                  const Progress& progress = {});
 
-/// Throws Error when an output is a file that was read: known once the input is loaded.
-void protect_files(const std::vector<std::string>& read, const std::filesystem::path& output);
+using glidar::protect_files;
+/// Throws Error when one of them is a file that was read: known once the input is loaded.
 void protect_files(const std::vector<std::string>& read, const std::vector<Output>& outputs);
 
 /// The hit columns that all outputs together need.

@@ -5,6 +5,7 @@
 #include <apps/glidar/advice.hpp>
 #include <apps/glidar/numbers.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/io/file_guard.hpp>
 #include <glidar/io/scene_file.hpp>
 #include <glidar/io/surfaces.hpp>
 
@@ -63,8 +64,7 @@ std::vector<std::string> files_read(const RenderFlags& flags, const SceneFile& l
     files.insert(files.end(), mount.sensor.files.begin(), mount.sensor.files.end());
   }
   for (const std::string& file : files_of(flags.motion)) files.push_back(file);
-  for (const MeshSource& source : loaded.scene.sources)
-    files.insert(files.end(), source.files.begin(), source.files.end());
+  for (const std::string& file : files_of(loaded.scene)) files.push_back(file);
   std::sort(files.begin(), files.end());
   files.erase(std::unique(files.begin(), files.end()), files.end());
   return files;

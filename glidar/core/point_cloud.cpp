@@ -370,7 +370,7 @@ void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene
       throw Error({.where = "cloud column '" + kind.name + "'",
                    .found = "the frame was cast without it",
                    .allowed = "",
-                   .remedy = "pass fields_for() of the columns to simulate()"});
+                   .remedy = "measure with this column: fields_for() in C++, columns= in Python"});
     }
     cloud.columns[c].name = kind.name;
     cloud.columns[c].components = kind.components;

@@ -59,14 +59,21 @@ Pose legacy_from_optical() {
 
 Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orientation) {
   const double norm = orientation.norm();
-  if (!is_within_reach(position_m) || !orientation.coeffs().allFinite() || !(norm > 0.0)) {
+  if (!is_within_reach(position_m) || !orientation.coeffs().allFinite() ||
+      orientation.coeffs().isZero(0.0)) {
     throw Error({.where = "pose",
                  .found = "a number is not finite or too large, or the quaternion is zero",
                  .allowed = "metres up to 1e15 and a quaternion of any length but zero",
                  .remedy = ""});
   }
+  // Squares of the largest numbers are infinite, and those of the smallest have no digits.
+  constexpr double kSquareSafe = 1e100;
+  const bool is_safe = norm < kSquareSafe && norm > 1.0 / kSquareSafe;
+  const Eigen::Vector4d scaled =
+      is_safe ? orientation.coeffs()
+              : Eigen::Vector4d(orientation.coeffs() / orientation.coeffs().cwiseAbs().maxCoeff());
   Pose pose = Pose::Identity();
-  pose.linear() = orientation.normalized().toRotationMatrix();
+  pose.linear() = Eigen::Quaterniond(scaled).normalized().toRotationMatrix();
   pose.translation() = position_m;
   return pose;
 }

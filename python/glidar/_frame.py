@@ -15,12 +15,13 @@ from . import _core
 from ._cloud import Cloud
 from ._errors import Error
 from ._information import Information
-from ._inputs import FloatArray, column_list, floats, log, one_of, whole
+from ._inputs import FloatArray, column_list, floats, log, one_of, path_of, whole
 from ._pictures import html_picture, html_table, plot_points, show_images
 from ._status import Cause, Status
 from ._story import Story, story_of
 from ._truth import Truth
 
+_MOST_32 = 2**32 - 1
 _PCD = ("ascii", "binary", "binary_compressed")
 
 
@@ -173,8 +174,8 @@ class Frame:
             sidecar: write PATH.json beside a cloud.
 
         Raises:
-            Error: an unknown suffix or layout, no such folder, a column that was not kept; what stood
-            under the name stays.
+            Error: an unknown suffix or layout, no such folder, a column that was not kept, a file that
+            scene or sensor were read from; what stood under the name stays.
         """
         scale = float(floats(depth_units_per_m, "depth_units_per_m", ()))
         if scale <= 0.0:
@@ -193,7 +194,7 @@ class Frame:
         options.set_sidecar(sidecar)
         options.set_layout(layout or "")
         options.set_depth_units_per_m(scale)
-        self._core.save(os.fspath(path), options, log)
+        self._core.save(path_of(path, "path"), options, log)
 
     def show(self) -> Any:
         """A matplotlib figure: depth and intensity, as images. Jupyter draws it; elsewhere
@@ -210,6 +211,10 @@ class Frame:
             most: at most so many points are drawn, evenly picked.
         """
         cloud = self.cloud(["xyz", colour], frame=frame, hits_only=True)
+        if cloud[colour].ndim != 1:
+            raise Error("colour", repr(colour), "a column of one number per point, such as range")
+        if whole(most, "most", _MOST_32) == 0:
+            raise Error("most", "0", "a whole number from 1")
         step = max(1, -(-cloud.points // most))
         return plot_points(cloud["xyz"][::step], cloud[colour][::step], colour, cloud.frame_id)
 
@@ -261,7 +266,8 @@ class Frame:
         """
         pose = floats(np.eye(4) if reference is None else reference, "reference", (4, 4))[None]
         sigma = float(floats(sigma_m, "sigma_m", ()))
-        only = None if instance is None else whole(instance, "instance", 2**32 - 2)
+        objects = len(self._core.world_from_objects)
+        only = None if instance is None else whole(instance, "instance", objects - 1)
         return Information(_core.information(self._core, sigma, pose, only))
 
     def __repr__(self) -> str:

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from . import _core
-from ._inputs import FloatArray
+from ._inputs import FloatArray, path_of
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ class Information:
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes it as JSON, as ``glidar render --information`` does."""
-        self._core.save(os.fspath(path))
+        self._core.save(path_of(path, "path"))
 
     def __str__(self) -> str:
         return self._core.text()

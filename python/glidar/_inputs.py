@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import logging
 import operator
+import os
 from collections.abc import Iterable, Sequence
 from typing import Any, TypeAlias
 
@@ -35,7 +36,8 @@ def _fits(size: int, wanted: int | None) -> bool:
     return size > 0 if wanted is None else size == wanted
 
 
-def _numbers(value: object, where: str, shape: Sequence[int | None]) -> npt.NDArray[Any]:
+def numbers(value: object, where: str, shape: Sequence[int | None]) -> npt.NDArray[Any]:
+    """An array of anything that NumPy makes one of."""
     try:
         return np.asarray(value)
     except (TypeError, ValueError, RuntimeError) as problem:  # ragged, or on another device
@@ -44,9 +46,10 @@ def _numbers(value: object, where: str, shape: Sequence[int | None]) -> npt.NDAr
 
 def floats(value: object, where: str, shape: Sequence[int | None]) -> FloatArray:
     """An array of finite float64 of this shape, in C order; None is any size from 1."""
-    given = np.asarray(value) if type(value) is np.ndarray else _numbers(value, where, shape)
+    given = np.asarray(value) if type(value) is np.ndarray else numbers(value, where, shape)
     if given.dtype.kind not in "fiu":
-        raise Error(where, f"an array of {given.dtype}", f"an array {shape_text(shape)} of real numbers")
+        allowed = f"an array {shape_text(shape)} of real numbers" if shape else "a real number"
+        raise Error(where, f"an array of {given.dtype}", allowed)
     if len(given.shape) != len(shape) or not all(map(_fits, given.shape, shape)):
         found = shape_text(given.shape) or "of one number"
         raise Error(where, f"an array {found}", f"an array {shape_text(shape)}" if shape else "one number")
@@ -75,12 +78,26 @@ def whole_numbers(value: object, where: str, count: int, bits: int) -> npt.NDArr
     if np.ndim(value) == 0:  # type: ignore[arg-type]
         return np.full(count, whole(value, where, 2**bits - 1), dtype)
     allowed = f"{count} whole numbers from 0 to {2**bits - 1}, or one for all"
-    given = _numbers(value, where, (count,))
+    given = numbers(value, where, (count,))
     if given.shape != (count,) or given.dtype.kind not in "iu":
         raise Error(where, f"an array {shape_text(given.shape)} of {given.dtype}", allowed)
     if count and (int(given.min()) < 0 or int(given.max()) > 2**bits - 1):
         raise Error(where, f"numbers from {given.min()} to {given.max()}", allowed)
     return np.ascontiguousarray(given, dtype=dtype)
+
+
+def text_of(value: object, where: str) -> str:
+    """A text."""
+    if isinstance(value, str):
+        return value
+    raise Error(where, repr(value), "a text")
+
+
+def path_of(value: object, where: str) -> str:
+    """A name or a path."""
+    if isinstance(value, (str, bytes, os.PathLike)):
+        return os.fsdecode(value)
+    raise Error(where, f"a {type(value).__name__}", "a name or a path")
 
 
 def one_of(value: str, where: str, words: Sequence[str]) -> str:
@@ -96,5 +113,7 @@ def column_list(columns: str | Iterable[str] | None) -> list[str]:
         return list(_DEFAULT_COLUMNS)
     if columns == "all":
         return _core.cloud_column_names()
-    names = columns.split(",") if isinstance(columns, str) else list(columns)
-    return list(dict.fromkeys(names))
+    if not isinstance(columns, Iterable):
+        raise Error("columns", repr(columns), "names of columns")
+    names = columns.split(",") if isinstance(columns, str) else columns
+    return list(dict.fromkeys(text_of(name, "columns") for name in names))

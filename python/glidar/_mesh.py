@@ -13,7 +13,7 @@ import numpy.typing as npt
 from ._errors import Error
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)  # arrays have no single answer
 class Mesh:
     """A triangle mesh: arrays with one row per vertex, or per triangle."""
 
@@ -22,7 +22,7 @@ class Mesh:
     triangles: npt.ArrayLike
     """(T, 3), indices of vertices, counter-clockwise seen from the front."""
     normals: npt.ArrayLike | None = None
-    """(V, 3), unit vectors; None: flat shading."""
+    """(V, 3), unit vectors, or zeros where there is none; None: flat shading."""
     uvs: npt.ArrayLike | None = None
     """(V, 2), v upwards."""
     colours: npt.ArrayLike | None = None
@@ -80,5 +80,7 @@ def mesh_of(mesh: object) -> Mesh:
         return from_trimesh(mesh)
     if hasattr(mesh, "vertices") and hasattr(mesh, "triangles"):
         return from_open3d(mesh)
+    if hasattr(mesh, "vertex") and hasattr(mesh, "to_legacy"):  # of Open3D's tensors
+        return from_open3d(mesh.to_legacy())
     found = f"a {type(mesh).__name__}"
     raise Error("mesh", found, "vertices and triangles, or a mesh of glidar, trimesh or Open3D")

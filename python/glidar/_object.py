@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy.typing as npt
 
 from ._errors import Error
-from ._inputs import FloatArray, floats, whole
+from ._inputs import FloatArray, floats, text_of, whole
 from ._mesh import Mesh
 from ._sensor import plain
 
@@ -48,7 +48,7 @@ class Object:
 
     @name.setter
     def name(self, name: str) -> None:
-        if name in {other.name for other in self._scene if other.index != self._index}:
+        if text_of(name, "name") in {other.name for other in self._scene if other.index != self._index}:
             raise Error("name", f"{name!r}, which another object has", "each name once")
         self._set(name=name)
 
@@ -59,9 +59,9 @@ class Object:
 
     @id.setter
     def id(self, number: int) -> None:
-        if number in {other.id for other in self._scene if other.index != self._index}:
+        if whole(number, "id", 2**32 - 2) in {other.id for other in self._scene if other.index != self._index}:
             raise Error("id", f"{number}, which another object has", "each id once")
-        self._set(id=whole(number, "id", 2**32 - 2))
+        self._set(id=number)
 
     @property
     def class_name(self) -> str:
@@ -70,7 +70,7 @@ class Object:
 
     @class_name.setter
     def class_name(self, name: str) -> None:
-        self._set(class_name=name)
+        self._set(class_name=text_of(name, "class_name"))
 
     @property
     def pose(self) -> FloatArray:

@@ -9,7 +9,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import FloatArray, floats
+from ._inputs import FloatArray, floats, numbers
 
 
 def pose(
@@ -35,17 +35,22 @@ def pose(
         raise Error("pose", f"{' and '.join(given)} are given", "one attitude")
     position = floats(xyz, "xyz", (3,))
     if matrix is not None:
-        result = np.eye(4)
-        result[:3, :3] = floats(matrix, "matrix", (3, 3))
-        result[:3, 3] = position
-        checked: FloatArray = _core.constant(result[None], "pose").poses_at(np.zeros(1, np.int64))[0]
-        return checked
+        return _rigid(floats(matrix, "matrix", (3, 3)), position, "pose")
     quaternion = np.array([1.0, 0.0, 0.0, 0.0])
     if wxyz is not None:
         quaternion = floats(wxyz, "wxyz", (4,))
     elif xyzw is not None:
         quaternion = np.roll(floats(xyzw, "xyzw", (4,)), 1)
     return _core.make_pose(position, quaternion)
+
+
+def _rigid(rotation: FloatArray, position: FloatArray, name: str) -> FloatArray:
+    """The pose of a rotation, which is checked."""
+    result = np.eye(4)
+    result[:3, :3] = rotation
+    result[:3, 3] = position
+    checked: FloatArray = _core.constant(result[None], name).poses_at(np.zeros(1, np.int64))[0]
+    return checked
 
 
 def look_at(
@@ -73,10 +78,15 @@ def look_at(
 
 
 def quaternion(matrix: npt.ArrayLike, order: str) -> FloatArray:
-    """The unit quaternion of a pose or rotation, with w not negative, in the `order` "wxyz" or "xyzw"."""
+    """The unit quaternion of a pose (4x4) or rotation (3x3), with w not negative, in the `order` "wxyz" or "xyzw".
+
+    Raises:
+        Error: a wrong shape or order, or a matrix that is no rotation.
+    """
     if order not in ("wxyz", "xyzw"):
         raise Error("order", repr(order), "'wxyz' or 'xyzw'")
-    size = 4 if np.shape(matrix) == (4, 4) else 3
-    rotation = floats(matrix, "matrix", (size, size))[:3, :3]
-    wxyz = _core.quaternion(np.ascontiguousarray(rotation))
+    given = numbers(matrix, "matrix", (4, 4))
+    size = 4 if given.shape == (4, 4) else 3
+    rotation = floats(given, "matrix", (size, size))[:3, :3]
+    wxyz = _core.quaternion(np.ascontiguousarray(_rigid(rotation, np.zeros(3), "matrix")[:3, :3]))
     return wxyz if order == "wxyz" else np.roll(wxyz, -1)

@@ -9,14 +9,14 @@ import json
 import os
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import FloatArray, floats, log, one_of
+from ._inputs import FloatArray, floats, log, numbers, one_of, path_of, text_of
 from ._mesh import Mesh, mesh_of
 from ._object import Object
 from ._sensor import Sensor, load_sensor, plain
@@ -25,6 +25,7 @@ from ._simulator import Simulator
 _UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254}
 _AXES = ("x", "y", "z")
 _MOST_SIMULATORS = 8
+_UNIT_TOLERANCE = 1e-3  # of what was rounded to three digits in a file
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ class Scene:
         self._core = _core.Scene()
         if source is None:
             return
-        path = os.fspath(source)
+        path = path_of(source, "scene")
         if path.endswith((".yaml", ".yml")):
             self._core = _core.load_scene(path, _metres(unit), _axis(up), True, log)
         else:
@@ -96,7 +97,7 @@ class Scene:
             placing: pose (4x4), scale, name, id, class_name, materials of the object.
         """
         self._simulators.clear()
-        index = self._core.add_model(os.fspath(source), _metres(unit), _axis(up), True, log)
+        index = self._core.add_model(path_of(source, "model"), _metres(unit), _axis(up), True, log)
         return self._placed(index, placing)
 
     def add_mesh(
@@ -115,7 +116,7 @@ class Scene:
             vertices: (V, 3), m, in the object's own frame; or a ``Mesh``, or a mesh of trimesh or
                 Open3D, without the rest.
             triangles: (T, 3), indices of vertices, counter-clockwise seen from the front.
-            normals: (V, 3), unit vectors; None: flat shading.
+            normals: (V, 3), unit vectors, or zeros where there is none; None: flat shading.
             uvs: (V, 2), v upwards.
             colours: (V, 3), rgb 0..1.
             placing: pose (4x4), scale, name, id, class_name, materials of the object.
@@ -123,17 +124,22 @@ class Scene:
         Raises:
             Error: a wrong shape, a number that is not finite, an index of no vertex.
         """
-        mesh = mesh_of(vertices) if triangles is None else Mesh(vertices, triangles, normals, uvs, colours)
+        if triangles is not None:
+            mesh = Mesh(vertices, triangles, normals, uvs, colours)
+        elif normals is None and uvs is None and colours is None:
+            mesh = mesh_of(vertices)
+        else:
+            raise Error("mesh", "normals, uvs or colours are given beside it", "arrays, or a mesh alone")
         corners = floats(mesh.vertices, "vertices", (None, 3))
         count = len(corners)
         arrays = {
             "vertices": corners,
             "triangles": _triangles(mesh.triangles, count),
-            "normals": _per_vertex(mesh.normals, "normals", count, 3),
+            "normals": _unit(_per_vertex(mesh.normals, "normals", count, 3)),
             "uvs": _per_vertex(mesh.uvs, "uvs", count, 2),
-            "colours": _per_vertex(mesh.colours, "colours", count, 3),
+            "colours": _fractions(_per_vertex(mesh.colours, "colours", count, 3)),
         }
-        index = self._core.add_mesh(str(placing.get("name", "mesh")), arrays)
+        index = self._core.add_mesh(text_of(placing.get("name") or "mesh", "name"), arrays)
         self._simulators.clear()
         return self._placed(index, placing)
 
@@ -143,6 +149,9 @@ class Scene:
         Args:
             placing: pose (4x4), scale, name, id, class_name, materials; as those of the first when not given.
         """
+        if of._scene is not self:
+            remedy = "scene.add_mesh(of.mesh) takes the mesh of another scene's"
+            raise Error("copy", f"{of!r} is of another scene", "an object of this scene", remedy)
         self._simulators.clear()
         return self._placed(self._core.add_instance(of.index), placing)
 
@@ -170,6 +179,8 @@ class Scene:
     def _place(made: Object, placing: dict[str, Any]) -> None:
         for name, value in placing.items():
             one_of(name, "argument", ("pose", "scale", "name", "id", "class_name", "materials"))
+            if value is None:
+                continue
             if name == "materials":
                 made.set_materials(value)
             else:
@@ -263,7 +274,7 @@ def _axis(up: str | None) -> int | None:
 
 
 def _triangles(value: npt.ArrayLike, vertices: int) -> npt.NDArray[np.uint32]:
-    given = np.asarray(value)
+    given = numbers(value, "triangles", (None, 3))
     if given.ndim != 2 or given.shape[1] != 3 or given.dtype.kind not in "iu" or len(given) == 0:
         found = f"an array {' x '.join(map(str, given.shape))} of {given.dtype}"
         raise Error("triangles", found, "indices of vertices, n x 3 whole numbers")
@@ -276,6 +287,28 @@ def _per_vertex(value: npt.ArrayLike | None, where: str, count: int, size: int) 
     if value is None:
         return None
     return floats(value, where, (count, size)).astype(np.float32)
+
+
+_VertexArray: TypeAlias = npt.NDArray[np.float32] | None
+
+
+def _unit(normals: _VertexArray) -> _VertexArray:
+    """Unit vectors, or zeros."""
+    if normals is None:
+        return None
+    lengths = np.linalg.norm(normals, axis=1)
+    wrong = np.flatnonzero((np.abs(lengths - 1.0) > _UNIT_TOLERANCE) & (lengths != 0.0))
+    if len(wrong):
+        raise Error("normals", f"a vector of length {lengths[wrong[0]]:g} at [{wrong[0]}]", "unit vectors, or zeros")
+    return normals
+
+
+def _fractions(colours: _VertexArray) -> _VertexArray:
+    """Numbers from 0 to 1."""
+    if colours is not None and (colours.min() < 0.0 or colours.max() > 1.0):
+        remedy = "divide by 255 what counts to there"
+        raise Error("colours", f"numbers from {colours.min():g} to {colours.max():g}", "0 to 1", remedy)
+    return colours
 
 
 def surface_names() -> list[str]:

@@ -14,19 +14,22 @@ import numpy as np
 
 from . import _core
 from ._errors import Error
-from ._inputs import FloatArray
+from ._inputs import FloatArray, path_of
 
+_DEEPEST = 32
 _KINDS = ("camera", "spinning", "raster", "prism", "table")
 
 
-def plain(value: object, where: str) -> object:
+def plain(value: object, where: str, depth: int = 0) -> object:
     """NumPy's numbers and arrays as Python's own."""
+    if depth > _DEEPEST:
+        raise Error(where[:80] + "...", f"more than {_DEEPEST} levels deep, or within itself", "lists and dicts")
     if isinstance(value, Mapping):
-        return {str(key): plain(part, f"{where}.{key}") for key, part in value.items()}
+        return {str(key): plain(part, f"{where}.{key}", depth + 1) for key, part in value.items()}
     if isinstance(value, (list, tuple)):
-        return [plain(part, f"{where}[{k}]") for k, part in enumerate(value)]
+        return [plain(part, f"{where}[{k}]", depth + 1) for k, part in enumerate(value)]
     if isinstance(value, (np.ndarray, np.generic)):
-        return plain(value.tolist(), where)
+        return plain(value.tolist(), where, depth + 1)
     if isinstance(value, os.PathLike):
         return os.fspath(value)
     if value is None or isinstance(value, (bool, int, float, str)):
@@ -101,7 +104,8 @@ class Sensor:
         return self._core.directions
 
     def describe(self) -> dict[str, Any]:
-        """All its numbers, as the sidecars of clouds tell them; what is infinite is None."""
+        """All its numbers, as the sidecars of clouds tell them, which is not what ``from_dict`` takes; what is
+        infinite is None."""
         told: dict[str, Any] = json.loads(self._core.description())
         return told
 
@@ -120,7 +124,7 @@ def load_sensor(name_or_path: str | os.PathLike[str]) -> Sensor:
     Raises:
         Error: there is none, with the nearest names; or the file's line, column and field.
     """
-    return Sensor(_core.load_sensor(os.fspath(name_or_path)))
+    return Sensor(_core.load_sensor(path_of(name_or_path, "sensor")))
 
 
 def sensor_file(name: str) -> str:
@@ -129,7 +133,7 @@ def sensor_file(name: str) -> str:
     Raises:
         Error: there is no preset of this name, with the nearest names.
     """
-    return os.fspath(_core.sensor_file(name))
+    return os.fspath(_core.sensor_file(path_of(name, "sensor")))
 
 
 def sensor_names() -> list[str]:
@@ -151,7 +155,7 @@ class SheetEntry:
 
 def sensor_sheet(name_or_path: str | os.PathLike[str]) -> list[SheetEntry]:
     """Every number of a preset or sensor file with its source, in the order of the file."""
-    return [SheetEntry(*entry) for entry in _core.sensor_sheet(os.fspath(name_or_path))]
+    return [SheetEntry(*entry) for entry in _core.sensor_sheet(path_of(name_or_path, "sensor"))]
 
 
 def camera(

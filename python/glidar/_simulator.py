@@ -117,6 +117,12 @@ class Simulator:
         return [Frame(core) for core in measured]
 
 
+def _checked(scene: Scene) -> Scene:
+    if not hasattr(scene, "simulator"):
+        raise Error("scene", f"a {type(scene).__name__}", "a Scene", "glidar.load_scene() reads one")
+    return scene
+
+
 def simulate(
     scene: Scene,
     sensor: Sensor | str | os.PathLike[str] | None = None,
@@ -152,7 +158,7 @@ def simulate(
     Raises:
         Error: a wrong shape, a number that is not finite, an unknown column.
     """
-    simulator = scene.simulator(sensor, renderer=renderer, threads=threads)
+    simulator = _checked(scene).simulator(sensor, renderer=renderer, threads=threads)
     return simulator.simulate(
         pose, seed=seed, frame=frame, objects=objects, columns=columns, sensor_id=sensor_id
     )
@@ -183,7 +189,7 @@ def simulate_batch(
 
     The other arguments and errors are those of ``simulate``.
     """
-    simulator = scene.simulator(sensor, renderer=renderer, threads=threads)
+    simulator = _checked(scene).simulator(sensor, renderer=renderer, threads=threads)
     return simulator.simulate_batch(
         poses, seeds, frames=frames, objects=objects, columns=columns, sensor_id=sensor_id
     )
@@ -208,7 +214,7 @@ def simulate_rig(
 
     The other arguments and errors are those of ``simulate``.
     """
-    if not scene.rig:
+    if not _checked(scene).rig:
         raise Error("scene", "it has no sensors", "a scene file with sensors")
     mounts = [(m, scene.simulator(m.sensor, renderer=renderer, threads=threads)) for m in scene.rig.values()]
     rig = scene._core.rig_motion() if pose is None else trajectories(pose, "pose")

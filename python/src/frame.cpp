@@ -6,6 +6,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/cloud_layout.hpp>
+#include <glidar/io/file_guard.hpp>
 #include <glidar/io/file_sink.hpp>
 
 #include <nanobind/eigen/dense.h>
@@ -127,6 +128,8 @@ struct SaveOptions {
 
 void save_to(const Measured& m, const std::filesystem::path& path, const SaveOptions& options,
              const Report& report) {
+  protect_files(m.prepared->files, path);
+  protect_files(m.sensor->sensor().files, path);
   const FileFormat& format = format_for(path);
   std::vector<std::string> columns = format.takes_more ? options.columns : format.columns;
   if (!options.sink.layout.empty() && format.takes_more) {

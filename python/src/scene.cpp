@@ -5,6 +5,7 @@
 #include "report.hpp"
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/file_guard.hpp>
 #include <glidar/io/surfaces.hpp>
 
 #include <nanobind/eigen/dense.h>
@@ -272,6 +273,18 @@ Scene& SceneHandle::change() {
   return *scene;
 }
 
+std::vector<std::string> files_read(const SceneHandle& handle) {
+  std::vector<std::string> files = files_of(*handle.scene);
+  files.insert(files.end(), handle.files.begin(), handle.files.end());
+  for (const MountedSensor& one : handle.sensors) {
+    const std::vector<std::string>& more = one.sensor->sensor().files;
+    files.insert(files.end(), more.begin(), more.end());
+  }
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  return files;
+}
+
 std::shared_ptr<PreparedScene> prepare(SceneHandle& handle, const RendererOptions& options) {
   const std::pair key(options.kind, options.threads);
   if (const auto found = handle.prepared.find(key); found != handle.prepared.end()) {
@@ -279,6 +292,7 @@ std::shared_ptr<PreparedScene> prepare(SceneHandle& handle, const RendererOption
   }
   auto made = std::make_shared<PreparedScene>();
   made->scene = handle.scene;
+  made->files = files_read(handle);
   {
     const nb::gil_scoped_release release;
     made->renderer = make_renderer(*made->scene, options);
@@ -306,7 +320,7 @@ void bind_scene(nb::module_& module) {
            nb::sig("def object(self, index: int) -> dict[str, typing.Any]"))
       .def("bounds", bounds_of)
       .def_prop_ro("class_names", [](const SceneHandle& self) { return self.scene->class_names; })
-      .def_prop_ro("files", [](const SceneHandle& self) { return self.files; })
+      .def_prop_ro("files", files_read)
       .def("drop_last", drop_last)
       .def("rig", rig_of, nb::sig("def rig(self) -> list[tuple[str, Sensor, numpy.ndarray]]"))
       .def("rig_motion", rig_motion_of);

@@ -20,6 +20,7 @@ namespace glidar::python {
 /// A scene with its renderer, built once. Measurements share it and take turns.
 struct PreparedScene {
   std::shared_ptr<const Scene> scene;
+  std::vector<std::string> files;  ///< all that was read for it
   std::unique_ptr<Renderer> renderer;
   std::mutex turn;
 };
@@ -40,12 +41,15 @@ struct SceneHandle {
   std::optional<Pose> world_from_rig;
   bool looks_at = false;  ///< see SceneFile
   std::optional<Trajectory> rig_motion;
-  std::vector<std::string> files;  ///< all that was read
+  std::vector<std::string> files;  ///< the scene file and those that it names, but for models
   std::map<std::pair<std::string, unsigned>, std::shared_ptr<PreparedScene>> prepared;
 
   /// The scene, to be changed.
   Scene& change();
 };
+
+/// All files that a scene was read from: its own, those of models, textures and sensors.
+std::vector<std::string> files_read(const SceneHandle& handle);
 
 /// Builds the renderer, or gives the one that was built. Called with Python's lock, which it gives
 /// up while it builds.

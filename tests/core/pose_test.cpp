@@ -40,6 +40,15 @@ TEST(MakePose, NormalisesTheQuaternion) {
   EXPECT_LT((pose * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-15);
 }
 
+TEST(MakePose, TakesTheLargestAndTheSmallestQuaternion) {
+  const double largest = std::numeric_limits<double>::max();
+  const double smallest = std::numeric_limits<double>::denorm_min();
+  for (const double length : {largest, 1e200, 1e-155, smallest}) {
+    const Pose pose = make_pose({0.0, 0.0, 0.0}, Eigen::Quaterniond(length, 0.0, 0.0, length));
+    EXPECT_LT((pose * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-15);
+  }
+}
+
 TEST(MakePose, RefusesZeroAndNotANumber) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(make_pose({0.0, 0.0, 0.0}, Eigen::Quaterniond(0.0, 0.0, 0.0, 0.0)), Error);

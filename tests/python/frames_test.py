@@ -163,6 +163,8 @@ def test_information_of_a_plane_knows_what_it_does_not_determine():
     plane = glidar.Scene("builtin:plane")
     frame = glidar.simulate(plane, glidar.camera(32, 32), glidar.look_at([0, 0, 2], [0, 0, 0], [0, 1, 0]), columns="all")
     told = frame.information(sigma_m=0.02)
+    with pytest.raises(glidar.Error, match="instance: 99"):
+        frame.information(instance=99)
     assert told.matrix.shape == (6, 6)
     assert np.allclose(told.matrix, told.matrix.T)
     assert [d.degenerate for d in told.directions] == [False] * 3 + [True] * 3

@@ -10,6 +10,12 @@ import glidar
 HALF = np.sqrt(0.5)
 
 
+@pytest.mark.parametrize("length", [1e200, 1e-155, 5e-324, 1.7e308])
+def test_quaternions_of_any_length_turn_the_same(length):
+    turned = glidar.pose(wxyz=[length, length, 0, 0])
+    assert turned[:3, :3] == pytest.approx(np.array([[1, 0, 0], [0, 0, -1], [0, 1, 0]]), abs=1e-15)
+
+
 def test_quaternions_are_named_by_their_order():
     turned = glidar.pose([1, 2, 3], wxyz=[HALF, 0, 0, HALF])
     assert turned[:3, :3] == pytest.approx(np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1]]), abs=1e-15)
@@ -51,6 +57,9 @@ def test_poses_of_single_precision_are_made_rigid(asteroid, camera):
         (lambda: glidar.look_at([0, 0, 5], [0, 0, 0]), "parallel"),
         (lambda: glidar.look_at([0, 0, 5], [0, 0, 0], boresight="y"), "boresight: 'y'"),
         (lambda: glidar.quaternion(np.eye(4), "zyxw"), "order: 'zyxw'"),
+        (lambda: glidar.quaternion(3 * np.eye(3), "wxyz"), "matrix"),
+        (lambda: glidar.quaternion(np.diag([1, 1, -1]), "wxyz"), "matrix"),
+        (lambda: glidar.quaternion([[1, 0], [0]], "wxyz"), "matrix: no array"),
         (lambda: glidar.pose("here"), "xyz: an array of <U4"),
         (lambda: glidar.pose([[1], [2, 3]]), "xyz: no array"),
         (lambda: glidar.Trajectory.timed([0, 0], np.stack([np.eye(4)] * 2)), "increas"),

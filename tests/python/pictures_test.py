@@ -47,3 +47,9 @@ def test_html_tells_and_shows(frame):
     assert "64 x 48" not in repr(frame)
     for thing in (frame, frame.cloud(), glidar.Scene("builtin:box"), glidar.camera()):
         assert repr(thing).startswith("<glidar.")
+
+
+def test_plots_of_nothing_or_of_vectors_are_refused(frame):
+    for arguments, words in (({"most": 0}, "most: 0"), ({"colour": "xyz"}, "one number per point")):
+        with pytest.raises(glidar.Error, match=words):
+            frame.plot(**arguments)

@@ -103,3 +103,18 @@ def test_wrong_files_leave_nothing_behind(scene_file, tmp_path):
             frame.save(**arguments)
         assert words in str(caught.value), str(caught.value)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_what_was_read_is_not_replaced(tmp_path):
+    model = tmp_path / "m.ply"
+    trimesh = pytest.importorskip("trimesh")
+    trimesh.creation.box().export(model)
+    before = model.read_bytes()
+    (tmp_path / "s.yaml").write_text("models: [{model: m.ply}]")
+    for source in (model, tmp_path / "s.yaml"):
+        frame = glidar.simulate(glidar.Scene(source), glidar.camera(16, 16))
+        with pytest.raises(glidar.Error, match="is an input file"):
+            frame.save(model)
+        with pytest.raises(glidar.Error, match="is an input file"):
+            frame.save(tmp_path / ".." / tmp_path.name / "m.ply")
+    assert model.read_bytes() == before

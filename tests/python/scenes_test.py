@@ -218,3 +218,80 @@ def test_objects_that_are_not_there_and_wrong_settings_are_told():
         glidar.Scene("builtin:box", unit="ft")
     with pytest.raises(glidar.Error, match="sensor: the scene file has none"):
         glidar.simulate(scene)
+
+
+def test_tensor_meshes_of_open3d_are_taken(camera):
+    open3d = pytest.importorskip("open3d")
+    added = glidar.Scene().add_mesh(open3d.t.geometry.TriangleMesh.create_box())
+    assert added.triangles == 12
+
+
+def test_normals_and_colours_out_of_range_are_refused():
+    scene = glidar.Scene()
+    for arguments, words in (
+        ({"normals": 2 * BOX}, "unit vectors"),
+        ({"colours": BOX}, "-1 to 1"),
+        ({"colours": 255 * (BOX + 1) / 2}, "divide by 255"),
+    ):
+        with pytest.raises(glidar.Error, match=words):
+            scene.add_mesh(BOX, FACES, **arguments)
+    assert len(scene) == 0
+    scene.add_mesh(BOX, FACES, normals=np.zeros((8, 3)), colours=(BOX + 1) / 2)
+
+
+def test_what_a_mesh_brings_itself_is_not_given_beside_it():
+    mesh = glidar.Mesh(BOX, FACES)
+    for more in ("normals", "uvs", "colours"):
+        with pytest.raises(glidar.Error, match="beside it"):
+            glidar.Scene().add_mesh(mesh, **{more: BOX})
+
+
+def test_copies_are_of_objects_of_the_same_scene():
+    ball = glidar.Scene("builtin:sphere")
+    for scene in (glidar.Scene("builtin:asteroid"), glidar.Scene()):
+        with pytest.raises(glidar.Error, match="of another scene"):
+            scene.add_copy(ball.objects[0])
+        assert "sphere" not in repr(scene)
+
+
+def test_meshes_compare_by_identity():
+    mesh = glidar.Mesh(BOX, FACES)
+    assert mesh == mesh
+    assert mesh != glidar.Mesh(BOX, FACES)
+
+
+def test_placing_may_be_left_open():
+    added = glidar.Scene().add_model("builtin:box", pose=None, materials=None, name=None)
+    assert np.array_equal(added.pose, np.eye(4))
+
+
+@pytest.mark.parametrize(
+    "call, words",
+    [
+        (lambda s: s.add_mesh([[0, 0, 0], [1, 0]], FACES), "vertices: no array"),
+        (lambda s: s.add_mesh(BOX, [[0, 1, 2], [0]]), "triangles: no array"),
+        (lambda s: s.add_mesh(BOX, FACES, name=5), "name: 5"),
+        (lambda s: setattr(s.objects[0], "name", 5), "name: 5"),
+        (lambda s: setattr(s.objects[0], "class_name", 5), "class_name: 5"),
+        (lambda s: setattr(s.objects[0], "id", [1]), r"id: \[1\]"),
+        (lambda s: setattr(s.objects[0], "scale", "big"), "allowed: a real number"),
+        (lambda s: glidar.Scene(5), "scene: a int"),
+        (lambda s: s.add_model(5), "model: a int"),
+        (lambda s: glidar.load_sensor(5), "sensor: a int"),
+        (lambda s: glidar.simulate(s, 5), "sensor: a int"),
+        (lambda s: glidar.simulate("builtin:box"), "scene: a str"),
+        (lambda s: glidar.simulate_rig("builtin:box"), "scene: a str"),
+        (lambda s: glidar.simulate(s, glidar.camera(8, 8), columns=5), "columns: 5"),
+        (lambda s: glidar.simulate(s, glidar.camera(8, 8), columns=[5]), "columns: 5"),
+    ],
+)
+def test_values_of_another_kind_are_told(call, words):
+    with pytest.raises(glidar.Error, match=words):
+        call(glidar.Scene("builtin:box"))
+
+
+def test_descriptions_within_themselves_are_told():
+    endless = {}
+    endless["models"] = endless
+    with pytest.raises(glidar.Error, match="levels deep"):
+        glidar.Scene.from_dict(endless)

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/file_guard.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <algorithm>
+#include <system_error>
+
+namespace glidar {
+
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
+  const auto plain = [](const std::filesystem::path& path) {
+    return std::filesystem::absolute(path).lexically_normal();
+  };
+  std::error_code no_such_file;  // then it is not the same either, but for its name
+  return plain(a) == plain(b) || std::filesystem::equivalent(a, b, no_such_file);
+}
+
+std::vector<std::string> files_of(const Scene& scene) {
+  std::vector<std::string> files;
+  for (const MeshSource& source : scene.sources) {
+    files.insert(files.end(), source.files.begin(), source.files.end());
+  }
+  return files;
+}
+
+void protect_files(const std::vector<std::string>& read, const std::filesystem::path& output) {
+  const auto is_it = [&](const std::string& file) { return is_same_file(output, file); };
+  if (std::none_of(read.begin(), read.end(), is_it)) return;
+  throw Error({.where = output.string(),
+               .found = "is an input file: the scene was read from it, or it is written otherwise",
+               .allowed = "",
+               .remedy = "choose another name"});
+}
+
+}  // namespace glidar
