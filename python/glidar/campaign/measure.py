@@ -11,6 +11,7 @@ import numpy as np
 import glidar
 from glidar import Error
 from glidar.campaign import loading
+from glidar.campaign.poses import require_whole
 from glidar.campaign.trials import changes, groups
 
 BATCH_BEAMS = 1 << 19  # that are measured together, and handed on to be written
@@ -131,6 +132,7 @@ class Measurer:
                 yield from self._measure_rows(stage, trials, [row])
 
     def _frames(self, stage, trials, rows):
+        require_whole(trials.world_from_sensor[rows], "pose")
         objects = self._objects(stage, trials, rows)
         frames = stage.simulator.simulate_batch(trials.world_from_sensor[rows], trials.seed[rows],
                                                 objects=objects, columns=self._columns)
@@ -144,7 +146,9 @@ class Measurer:
         standing = np.array([placed.pose for placed in stage.scene.objects])
         poses = np.tile(standing, (len(rows), 1, 1, 1))
         for variation in varied:
-            poses[:, _place(stage.scene, variation.target)] = trials.values[variation.path][rows]
+            drawn = trials.values[variation.path][rows]
+            require_whole(drawn, f"vary.{variation.path}")
+            poses[:, _place(stage.scene, variation.target)] = drawn
         return poses
 
     def _stage(self, key):

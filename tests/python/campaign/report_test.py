@@ -8,6 +8,7 @@ import re
 from html.parser import HTMLParser
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 from PIL import Image
 from scipy import stats
@@ -65,6 +66,32 @@ def test_a_report_stands_by_itself_and_shows_failures_views_and_coverage(campaig
     for source in pictures:
         image = Image.open(io.BytesIO(base64.b64decode(source.split(",")[1])))
         assert max(image.size) == 160 and len(np.unique(np.asarray(image))) > 5  # the rock is seen
+
+
+def test_trials_without_a_direction_fail_by_that_name_and_are_counted_in_the_charts(campaign):
+    campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text().replace(
+        "{shell: {radius_m: [3, 5]}}", "{grid: {least: [-4, 0, 0], most: [4, 0, 0], counts: [5, 1, 1]}}"))
+    campaign.environment["PYTHONWARNINGS"] = "error"
+    campaign.run("out", "--workers", "1", code=1)
+    index = pq.read_table(campaign.folder / "out" / "index.parquet").to_pydict()
+    texts = {text for x, text in zip(index["x_m"], index["error"]) if x == 0}
+    assert len(texts) == 1 and "pose: the position is the target of look_at" in texts.pop()
+    assert [ok == (x != 0) for x, ok in zip(index["x_m"], index["ok"])] == [True] * 40
+    words = "".join(report(campaign).text)
+    assert "in the world. 8 without a value" in words and "8 of 40" in words
+
+
+def test_models_without_a_direction_fail_their_trials(campaign):
+    campaign.add("vary:\n  scene.models[moon].pose:\n    position: {point: [1, 2, 0]}\n"
+                 "    orientation: {look_at: {target: [1, 2, 0]}}\n")
+    assert "40 trials, 40 failed" in campaign.run("out", "--workers", "1", code=1)
+    words = "".join(report(campaign).text)
+    assert "vary.scene.models[moon].pose: the position is the target of look_at" in words
+
+
+@pytest.mark.parametrize("directions", [np.full((3, 3), np.nan), np.array([[np.nan] * 3, [0, 0, 1.0]])])
+def test_maps_leave_out_what_has_no_direction(directions):
+    assert f"{np.isnan(directions[:, 0]).sum()} without a value" in charts.sphere("title", directions)
 
 
 def test_campaigns_without_npz_or_failures_have_a_report(campaign):
