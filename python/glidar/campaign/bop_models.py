@@ -12,6 +12,7 @@ from glidar.campaign import files, loading, yaml_file as yf
 FOLDER = "bop"
 SHAPE_KEYS = ("model", "unit", "up", "scale")  # what makes a model of a scene file an object of BOP
 MM_PER_M = 1000.0
+DISTANCES = 1 << 22  # that are in memory together
 
 
 def _shape(field):
@@ -71,16 +72,28 @@ def normals_of(vertices, triangles):
 
 def diameter(points):
     """The largest distance between two points: between two corners of their convex hull."""
-    from scipy.spatial import ConvexHull
-    from scipy.spatial.distance import pdist
+    from scipy.spatial import ConvexHull, QhullError
 
+    if not np.ptp(points, axis=0).any():
+        return 0.0
     centred = points - points.mean(axis=0)
     axes = np.linalg.svd(np.cov(centred.T))[0]
     extent = np.ptp(centred @ axes, axis=0)
     flat = centred @ axes[:, extent > 1e-9 * extent.max()]  # planes and lines have hulls of their own
     if flat.shape[1] < 2:
         return float(extent.max())
-    return float(pdist(flat[ConvexHull(flat).vertices]).max())
+    try:
+        return _farthest(flat[ConvexHull(flat).vertices])
+    except QhullError:  # the hull only saves time
+        return _farthest(flat)
+
+
+def _farthest(points):
+    """The largest distance between two of the points, with memory for some rows of distances."""
+    from scipy.spatial.distance import cdist
+
+    step = max(1, DISTANCES // len(points))
+    return float(max(cdist(points[i : i + step], points).max() for i in range(0, len(points), step)))
 
 
 def ply_text(vertices_mm, normals, triangles):

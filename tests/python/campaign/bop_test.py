@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from PIL import Image
 from campaign_support import Campaign
+from scipy.spatial import QhullError
 from scipy.spatial.distance import pdist
 
 from glidar.campaign import bop_models
@@ -188,9 +189,34 @@ def test_vertex_normals_are_weighted_by_angle():
 @pytest.mark.parametrize("points, expected", [
     (np.random.default_rng(1).normal(size=(500, 3)), None),
     (np.random.default_rng(2).normal(size=(500, 3)) * [1, 1, 0], None),
-    (np.linspace(0, 1, 9)[:, None] * [1.0, 2.0, 2.0], 3.0)])
-def test_diameters_are_the_largest_distance_also_of_planes_and_lines(points, expected):
-    assert bop_models.diameter(points) == pytest.approx(expected or pdist(points).max())
+    (np.linspace(0, 1, 9)[:, None] * [1.0, 2.0, 2.0], 3.0),
+    (np.array([[1e7, 2.0, 3.0]]), 0.0), (np.full((5, 3), 0.1), 0.0)])
+def test_diameters_are_the_largest_distance_also_of_planes_lines_and_points(points, expected):
+    assert bop_models.diameter(points) == pytest.approx(pdist(points).max() if expected is None else expected)
+
+
+def test_diameters_do_without_a_hull_and_without_memory_for_all_distances(monkeypatch):
+    points = np.random.default_rng(3).normal(size=(300, 3))
+    exact = pdist(points).max()
+    monkeypatch.setattr(bop_models, "DISTANCES", 1000)
+    assert bop_models.diameter(points) == pytest.approx(exact, rel=1e-12)
+
+    def fails(points):
+        raise QhullError("no hull")
+
+    monkeypatch.setattr("scipy.spatial.ConvexHull", fails)
+    assert bop_models.diameter(points) == pytest.approx(exact, rel=1e-12)
+
+
+def test_a_model_of_one_point_is_written_and_its_trials_go_on(campaign):
+    point = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    point += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    campaign.write("point.ply", point + 3 * "1e7 1e7 1e7\n" + "3 0 1 2\n")
+    campaign.add("outputs: {bop: true}\n")
+    campaign.write("scene.yaml", SCENE + "  - {name: point, model: point.ply}\n")
+    assert "40 trials, 0 failed" in campaign.run("out", "--workers", "1")
+    info = json.loads((campaign.folder / "out" / "bop" / "models" / "models_info.json").read_text())
+    assert info["3"]["diameter"] == 0.0 and info["3"]["min_x"] == 1e10
 
 
 @pytest.mark.parametrize("change, words", [
