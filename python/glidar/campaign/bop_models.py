@@ -44,15 +44,29 @@ def ids_by_scene(plan):
     return [[ids[shape] for shape in _shapes(source)] for source in plan.scenes]
 
 
-def require_fit(plan):
-    """BOP's models are fixed; its cameras are pinholes without distortion."""
+def _require_fixed_models(plan):
     for variation in plan.spec.vary:
         if variation.target.of == "scene" and variation.target.steps[-1] in SHAPE_KEYS:
             raise Error(f"{plan.spec.file}: vary.{variation.path}", "it changes the model, and the "
                         "models of a BOP data set are fixed", "other keys", "leave out outputs.bop")
-    for source in plan.sensors:
-        if not source.fault:
-            loading.intrinsics_of(loading.load_sensor(source.text, source.path), source.name)
+
+
+def _camera(plan):
+    """camera.json: the first sensor that can be read. All that can be must be pinholes without
+    distortion."""
+    cameras, faults = [], []
+    for source in (s for s in plan.sensors if not s.fault):
+        try:
+            sensor = loading.load_sensor(source.text, source.path)
+        except Error as error:
+            faults.append(error)  # its trials fail and say why
+            continue
+        cameras.append((sensor, loading.intrinsics_of(sensor, source.name)))
+    if not cameras:
+        raise faults[0]
+    sensor, k = cameras[0]
+    return {"cx": k[0, 2], "cy": k[1, 2], "fx": k[0, 0], "fy": k[1, 1], "height": sensor.rows,
+            "width": sensor.cols, "depth_scale": plan.spec.outputs.bop.depth_scale_mm}
 
 
 def normals_of(vertices, triangles):
@@ -130,25 +144,26 @@ def _meshes(plan):
                 yield object_id, placed.mesh.vertices * placed.scale * MM_PER_M, placed.mesh.triangles
 
 
+def _contents(plan):
+    """(name, bytes) of models, models_info.json and camera.json."""
+    _require_fixed_models(plan)
+    camera, info = _camera(plan), {}
+    for object_id, vertices_mm, triangles in _meshes(plan):
+        text = ply_text(vertices_mm, normals_of(vertices_mm, triangles), triangles)
+        yield f"{FOLDER}/models/obj_{object_id:06}.ply", text.encode()
+        info[str(object_id)] = info_of(vertices_mm)
+    yield f"{FOLDER}/models/models_info.json", files.json_bytes(info)
+    yield f"{FOLDER}/camera.json", json.dumps(camera, indent=1).encode()
+
+
 def write(plan, folder):
     """Writes models, models_info.json and camera.json, and their receipt."""
-    require_fit(plan)
     scratch = files.Scratch(folder.root)
-    contents, info = {}, {}
-    for object_id, vertices_mm, triangles in _meshes(plan):
-        name = f"{FOLDER}/models/obj_{object_id:06}.ply"
-        contents[name] = ply_text(vertices_mm, normals_of(vertices_mm, triangles), triangles).encode()
-        info[str(object_id)] = info_of(vertices_mm)
-    contents[f"{FOLDER}/models/models_info.json"] = files.json_bytes(info)
-    source = next(s for s in plan.sensors if not s.fault)
-    sensor = loading.load_sensor(source.text, source.path)
-    k = loading.intrinsics_of(sensor, source.name)
-    contents[f"{FOLDER}/camera.json"] = json.dumps(
-        {"cx": k[0, 2], "cy": k[1, 2], "fx": k[0, 0], "fy": k[1, 1], "height": sensor.rows,
-         "width": sensor.cols, "depth_scale": plan.spec.outputs.bop.depth_scale_mm}, indent=1).encode()
     listed = {}
-    for name, data in contents.items():
-        files.write_bytes(scratch, folder.root / name, data)
-        listed[name] = [files.hash_bytes(data), len(data)]
-    files.write_json(scratch, folder.once("bop"), {"trials": 0, "failed": 0, "files": listed})
-    scratch.remove()
+    try:
+        for name, data in _contents(plan):
+            files.write_bytes(scratch, folder.root / name, data)
+            listed[name] = [files.hash_bytes(data), len(data)]
+        files.write_json(scratch, folder.once("bop"), {"trials": 0, "failed": 0, "files": listed})
+    finally:
+        scratch.remove()

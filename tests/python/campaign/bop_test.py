@@ -4,8 +4,11 @@
 docs/bop_datasets_format.md), and by the official toolkit where it is installed."""
 
 import json
+import os
+import subprocess
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 from PIL import Image
 from campaign_support import Campaign
@@ -223,11 +226,70 @@ def test_a_model_of_one_point_is_written_and_its_trials_go_on(campaign):
     (lambda c: c.add("vary:\n  scene.models[near].scale: {uniform: [1, 2]}\n"), "models of a BOP"),
     (lambda c: c.write("camera.yaml", "optics: {type: pinhole, width: 64, height: 48, fov_deg: 40, "
                        "distortion: {model: radial_tangential, k1: 0.1}}\n"), "distortion"),
-    (lambda c: c.write("campaign.yaml", CAMPAIGN.replace("camera.yaml", "VLP-16")), "a spinning"),
-    (lambda c: c.write("campaign.yaml", CAMPAIGN.replace("0.25", "0.01")), "does not fit in 16 bits")])
+    (lambda c: c.write("campaign.yaml", CAMPAIGN.replace("camera.yaml", "VLP-16")), "a spinning")])
 def test_what_bop_cannot_hold_is_refused(campaign, change, words):
     campaign.write("scene.yaml", SCENE)
     campaign.write("camera.yaml", CAMERA)
     campaign.write("campaign.yaml", CAMPAIGN)
     change(campaign)
     assert words in campaign.run("out", code=2)
+
+
+def bop_campaign(campaign, text):
+    campaign.write("scene.yaml", SCENE)
+    campaign.write("camera.yaml", CAMERA)
+    campaign.write("campaign.yaml", text)
+    return campaign.folder / "out"
+
+
+def test_trials_too_deep_for_the_images_fail_and_the_rest_goes_on(campaign):
+    # From 3, 26.5 and 50 m along +x, where 16 bits hold 32.8 m.
+    deep = CAMPAIGN.replace("{cone: {axis: [1, 0, 0], half_angle_deg: 25, radius_m: [3, 4]}}",
+                            "{grid: {least: [3, 0, 0], most: [50, 0, 0], counts: [3, 1, 1]}}")
+    deep = deep.replace("0.25", "0.5").replace("outputs: {", "outputs: {npz: true, ply: true, ")
+    out = bop_campaign(campaign, deep)
+    assert "6 trials, 2 failed" in campaign.run("out", code=1)
+    table = pq.read_table(out / "index.parquet").to_pydict()
+    assert table["ok"] == [True, True, False] * 2 and np.isnan(table["range_min_m"][2])
+    assert "does not fit in 16 bits" in table["error"][2] and "at least" in table["error"][2]
+    cameras = json.loads((out / "bop" / "val" / "000000" / "scene_camera.json").read_text())
+    assert list(cameras) == ["0", "1"]
+    assert sorted(p.stem for p in (out / "bop" / "val" / "000000" / "depth").iterdir()) == ["000000", "000001"]
+    assert np.load(next((out / "npz").glob("shard-000000-*")))["trial"].tolist() == [0, 1]
+    assert len(list((out / "ply").iterdir())) == 4
+
+
+def test_a_camera_that_cannot_be_read_or_bends_in_some_trials_fails_those(campaign):
+    out = bop_campaign(campaign, CAMPAIGN.replace("sensor: camera.yaml", "sensor: {grid: [bad.yaml, camera.yaml]}")
+                       + "vary: {sensor.optics.distortion.k1: {grid: [0, 0.1]}}\n")
+    bends = CAMERA.replace("}", ", distortion: {model: radial_tangential, k1: 0}}")
+    campaign.write("camera.yaml", bends)
+    campaign.write("bad.yaml", bends.replace("width: 64", "width: -1"))
+    campaign.run("out", code=1)
+    table = pq.read_table(out / "index.parquet").to_pydict()
+    assert table["ok"] == [False, True, False, False, False, True]
+    assert "width" in table["error"][0] and "a camera with distortion" in table["error"][3]
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root may mount a small disk")
+@pytest.mark.parametrize("model, models_fit", [("builtin:box", True), ("builtin:asteroid", False)])
+def test_a_disk_that_is_full_of_images_or_models_is_told(campaign, model, models_fit):
+    out = campaign.folder / "disk" / "out"
+    out.parent.mkdir()
+    bop_campaign(campaign, CAMPAIGN.replace("trials: 6", "trials: 60"))
+    campaign.write("scene.yaml", SCENE.replace("builtin:box", model))
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=200k", "tmpfs", out.parent],
+                             capture_output=True, check=False)
+    if mounted.returncode != 0:
+        pytest.skip("mount is not allowed here")
+    try:
+        told = campaign.run("disk/out", "--workers", "1", code=2)
+        assert "No space left on device" in told and "make room" in told and "Traceback" not in told
+        assert not (out / "tmp").exists()
+        assert (out / "receipts" / "once-bop.json").exists() == models_fit
+        subprocess.run(["mount", "-o", "remount,size=32m", out.parent], check=True)
+        campaign.run("disk/out", "--workers", "1")
+        campaign.run("whole", "--workers", "1")
+        assert campaign.contents("disk/out") == campaign.contents("whole")
+    finally:
+        subprocess.run(["umount", out.parent], check=True)
