@@ -4,7 +4,9 @@
 
 import base64
 import io
+import json
 import re
+import resource
 from html.parser import HTMLParser
 
 import numpy as np
@@ -13,7 +15,8 @@ import pytest
 from PIL import Image
 from scipy import stats
 
-from glidar.campaign import charts, philox, rotations
+from glidar.campaign import charts, philox, report as campaign_report, rotations
+from glidar.campaign.folder import Folder
 
 VOID = {"meta", "img", "br"}
 
@@ -104,6 +107,43 @@ def test_campaigns_without_npz_or_failures_have_a_report(campaign):
 def test_an_unfinished_campaign_has_no_report(campaign):
     campaign.run("out", "--shard", "0/2")
     assert "not finished" in campaign.call("report", "out", code=2)
+
+
+@pytest.mark.parametrize("name", ["manifest.json", "index.parquet", "campaign.json", "receipts/000003.json"])
+def test_a_report_replaces_no_file_of_its_campaign(campaign, name):
+    campaign.run("out")
+    before = campaign.contents("out")
+    assert "it is a file of the campaign" in campaign.call("report", "out", "-o", f"out/{name}", code=2)
+    assert campaign.contents("out") == before
+    campaign.call("report", "out", "-o", "out/mine.html")
+    campaign.call("report", "out", "-o", "out/mine.html")
+    assert (campaign.folder / "out" / "mine.html").read_text().startswith("<!doctype html>")
+
+
+def test_a_report_is_there_whole_or_not_at_all(campaign):
+    campaign.run("out")
+
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (8000, 8000))
+
+    (campaign.folder / "own").mkdir()
+    (campaign.folder / "own" / "report.html").write_text("before")
+    told = campaign.call("report", "out", "-o", "own/report.html", code=2, preexec_fn=limit)
+    assert "cannot be written" in told
+    assert [p.read_text() for p in (campaign.folder / "own").iterdir()] == ["before"]
+    assert "<!doctype html>" in campaign.call("report", "out", "-o", "/dev/stdout")
+
+
+def test_speed_is_that_of_all_runs_without_the_pauses_between_them(campaign):
+    # Two runs, a day apart: two workers for 3 s, one for 2 s; shards of 10 trials.
+    log = campaign.folder / "log"
+    log.mkdir()
+    runs = {"a": [(102.0, 2.0), (103.0, 1.0)], "b": [(102.5, 2.5)], "c": [(90001.0, 1.0), (90002.0, 1.0)]}
+    for name, shards in runs.items():
+        (log / f"{name}.jsonl").write_text("".join(
+            json.dumps({"time_s": end, "shard": 0, "trials": 10, "seconds": took}) + "\n" for end, took in shards))
+    text = campaign_report._speed(Folder(campaign.folder))
+    assert "50 trials in 5.0 s" in text and "10 trials/s by 3 processes" in text
 
 
 def test_cells_of_the_sphere_have_equal_areas():
