@@ -3,6 +3,7 @@
 """The models of a BOP data set: which objects there are, their meshes in millimetres, their sizes."""
 
 import json
+import os
 
 import numpy as np
 
@@ -10,23 +11,31 @@ from glidar import Error
 from glidar.campaign import files, loading, yaml_file as yf
 
 FOLDER = "bop"
-SHAPE_KEYS = ("model", "unit", "up", "scale")  # what makes a model of a scene file an object of BOP
+# What makes a model of a scene file an object of BOP, with what the scene file may leave out.
+SHAPE = {"model": "", "unit": "m", "up": "", "scale": "1"}
 MM_PER_M = 1000.0
 DISTANCES = 1 << 22  # that are in memory together
 
 
 def _shape(field):
-    """The values of SHAPE_KEYS, as the scene file spells them."""
+    """The values of SHAPE; two spellings of a path or of a number are the same."""
     found = yf.entries(field)
-    return tuple(found[key].node.value if key in found else "" for key in SHAPE_KEYS)
+    model, unit, up, scale = (str(found[key].node.value) if key in found else usual
+                              for key, usual in SHAPE.items())
+    if not model.startswith("builtin:"):
+        model = os.path.normpath(os.path.join(os.path.dirname(field.file), model))
+    return model, unit, up, float(scale)
 
 
 def _shapes(source):
     """Of every model of a scene; of a scene that cannot be read none."""
     if source.fault:
         return []
-    models = yf.entries(yf.parse(source.text, source.path)).get("models")
-    return [_shape(item) for item in yf.items(models, 0)] if models else []
+    try:
+        models = yf.entries(yf.parse(source.text, source.path)).get("models")
+        return [_shape(item) for item in yf.items(models, 0)] if models else []
+    except (Error, ValueError):
+        return []  # its trials fail and say why
 
 
 def object_ids(plan):
@@ -46,7 +55,7 @@ def ids_by_scene(plan):
 
 def _require_fixed_models(plan):
     for variation in plan.spec.vary:
-        if variation.target.of == "scene" and variation.target.steps[-1] in SHAPE_KEYS:
+        if variation.target.of == "scene" and variation.target.steps[-1] in SHAPE:
             raise Error(f"{plan.spec.file}: vary.{variation.path}", "it changes the model, and the "
                         "models of a BOP data set are fixed", "other keys", "leave out outputs.bop")
 

@@ -27,6 +27,7 @@ class Stage:
     sensor: object
     simulator: object
     scene_place: int  # in the plan
+    threads: int
 
     @cached_property
     def intrinsics(self):
@@ -34,9 +35,10 @@ class Stage:
 
     @cached_property
     def canvas(self):
-        """What measures silhouettes, with those of truncated objects whole."""
+        """What measures silhouettes, with those of truncated objects whole. As it has the simulator's
+        threads, it shares its tree."""
         camera = loading.canvas_camera(self.sensor, self.intrinsics)
-        return glidar.Simulator(self.scene, camera)
+        return glidar.Simulator(self.scene, camera, threads=self.threads)
 
     @cached_property
     def size_m(self):
@@ -158,7 +160,7 @@ class Measurer:
         sensor = _kept(self._sensors, (sensor_place, sensor_changes), loading.load_sensor,
                        self._plan.sensors[sensor_place], sensor_changes)
         simulator = glidar.Simulator(scene, sensor, threads=self._threads)
-        return Stage(scene, sensor, simulator, scene_place)
+        return Stage(scene, sensor, simulator, scene_place, self._threads)
 
     def _text(self, error):
         """What went wrong, without the folder that this machine keeps the campaign in."""

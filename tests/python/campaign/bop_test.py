@@ -15,7 +15,11 @@ from campaign_support import Campaign
 from scipy.spatial import QhullError
 from scipy.spatial.distance import pdist
 
-from glidar.campaign import bop_models
+import glidar
+from glidar.campaign import bop_models, measure
+from glidar.campaign.plan import make_plan
+from glidar.campaign.spec import read_spec
+from glidar.campaign.trials import draw_trials
 
 # A box in front of a larger one, off the middle; a noiseless camera.
 SCENE = """models:
@@ -293,3 +297,45 @@ def test_a_disk_that_is_full_of_images_or_models_is_told(campaign, model, models
         assert campaign.contents("disk/out") == campaign.contents("whole")
     finally:
         subprocess.run(["umount", out.parent], check=True)
+
+
+def test_objects_are_the_same_by_value_and_not_by_spelling(campaign):
+    out = bop_campaign(campaign, CAMPAIGN.replace(
+        "scene: scene.yaml", "scene: {grid: [scene.yaml, sub/scene.yaml, bad.yaml]}"))
+    (campaign.folder / "sub").mkdir()
+    for folder, far in (("", 1), ("sub/", 2)):
+        campaign.write(folder + "a.obj", f"v 0 0 0\nv {far} 0 0\nv 0 1 0\nf 1 2 3\n")
+    campaign.write("scene.yaml", """models:
+  - {name: a, model: a.obj, scale: 0.5}
+  - {name: b, model: ./sub/../a.obj, scale: 0.50, unit: m}
+  - {name: c, model: a.obj, scale: 5e-1, unit: cm}
+""")
+    campaign.write("sub/scene.yaml", """models:
+  - {name: a, model: a.obj, scale: 0.5}
+  - {name: b, model: ../a.obj, scale: 0.5}
+  - {name: c, model: a.obj}
+  - {name: d, model: a.obj, scale: 1.0}
+""")
+    campaign.write("bad.yaml", "models:\n  - {model: a.obj, scale: [1, 2]}\n")
+    campaign.run("out", code=1)
+    truth = json.loads((out / "bop" / "val" / "000000" / "scene_gt.json").read_text())
+    ids = [[entry["obj_id"] for entry in truth[image]] for image in "01"]
+    assert ids == [[1, 1, 2], [3, 1, 4, 4]]
+    info = json.loads((out / "bop" / "models" / "models_info.json").read_text())
+    assert [info[key]["size_x"] for key in "1234"] == pytest.approx([500, 5, 1000, 2000])
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_silhouettes_take_the_threads_of_their_worker(campaign, monkeypatch, threads):
+    bop_campaign(campaign, CAMPAIGN)
+    made, simulator = [], glidar.Simulator
+
+    def record(*arguments, **more):
+        made.append(more)
+        return simulator(*arguments, **more)
+
+    monkeypatch.setattr(glidar, "Simulator", record)
+    plan = make_plan(read_spec(campaign.folder / "campaign.yaml"))
+    for _, frames, _ in measure.Measurer(plan, threads).measure(draw_trials(plan, 0, 3)):
+        frames[0].silhouettes()
+    assert made == 2 * [{"threads": threads}]
