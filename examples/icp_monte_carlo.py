@@ -29,7 +29,7 @@ try:
 except ImportError as missing:
     sys.exit(f"{missing}; install GLIDAR (docs/python.md) and what scripts/requirements.txt names: "
              "pip install . -r scripts/requirements.txt")
-from study_tools import Progress, axis_angle, displaced, surface_points
+from study_tools import Progress, axis_angle, displaced, surface_points, wilson_percent
 
 open3d.utility.set_max_threads(1)  # likewise
 SATELLITE = str(Path(__file__).resolve().parent.parent / "models" / "satellite" / "satellite.obj")
@@ -292,8 +292,8 @@ def chosen(rows, **keys):
 
 
 def summary(rows, seconds):
-    """For people: how many converge, how good those are, why the others are not."""
-    lines = [f"{'method':<17} cloud  converged | median error/bound  e'Fe/6 | " + "  ".join(CAUSES) + "   ms"]
+    """For people: how many converge (and the 95 % interval), how good those are, why the others are not."""
+    lines = [f"{'method':<17} cloud  {'converged':<22} | median error/bound  e'Fe/6 | {'  '.join(CAUSES)}   ms"]
     for method in [*METHODS, WEIGHTED, REFERENCE]:
         for cloud in ("exact", "noisy"):
             of = chosen(rows, method=method, cloud=cloud)
@@ -304,7 +304,9 @@ def summary(rows, seconds):
             nees = np.median([row.nees for row in good]) / 5.348 if good else np.nan  # chi-squared's median, 6 dof
             shares = [100 * len(chosen(of, outcome=cause)) / len(of) for cause in CAUSES]
             took = f"{1e3 * seconds[method]:4.0f}" if method in seconds else "   -"
-            lines.append(f"{method:<17} {cloud}  {100 * len(good) / len(of):7.1f} % | {ratio:18.3f} {nees:7.2f} | "
+            low, high = wilson_percent(len(good), len(of))
+            share = f"{100 * len(good) / len(of):5.1f} % ({low:.1f} to {high:.1f})"
+            lines.append(f"{method:<17} {cloud}  {share:<22} | {ratio:18.3f} {nees:7.2f} | "
                          f"{shares[0]:10.1f} % {shares[1]:12.1f} % {shares[2]:11.1f} %  {took}")
     return "\n".join(lines)
 

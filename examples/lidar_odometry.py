@@ -24,13 +24,14 @@ try:
 except ImportError as missing:
     sys.exit(f"{missing}; install GLIDAR (docs/python.md) and what scripts/requirements.txt names: "
              "pip install . -r scripts/requirements.txt")
-from study_tools import Progress, aligned, position_errors, relative_errors
+from study_tools import Progress, aligned, position_errors, relative_errors, ways
 
 SPEED_M_S = 9.0
 HEIGHT_M = 1.8
 EXAMPLE = """examples:
   examples/lidar_odometry.py                            # 20 s through the street with a VLP-16
   examples/lidar_odometry.py --sensor OS1-32 --seconds 8
+  examples/lidar_odometry.py --street 4 --seed 2        # another street, other noise
   examples/lidar_odometry.py --picture odometry.png --write odometry    # trajectories (TUM, KITTI) and scans (.bin)"""
 
 
@@ -123,7 +124,7 @@ class Scan:
     phase: np.ndarray  # of the turn, 0 to 1
 
 
-def drive(scene, sensor, seconds):
+def drive(scene, sensor, seconds, seed=1):
     """Scans of every turn, and the trajectory: world_from_sensor as a function of time."""
     times = np.arange(0, seconds + 0.5, 0.002)
     trajectory = glidar.Trajectory.timed(times, route(times))
@@ -131,7 +132,7 @@ def drive(scene, sensor, seconds):
     simulator = glidar.Simulator(scene, sensor)
     with Progress("driving", turns) as progress:
         for number in range(turns):
-            frame = simulator.simulate(trajectory, seed=1, frame=number, columns=["xyz", "time", "sensor_pose"])
+            frame = simulator.simulate(trajectory, seed=seed, frame=number, columns=["xyz", "time", "sensor_pose"])
             cloud = frame.cloud(["xyz", "time"], hits_only=True)
             still = frame.cloud(["xyz"], hits_only=True, deskew=True)
             scans.append(Scan(cloud["xyz"], still["xyz"], cloud["time"] * 1e-9 * sensor.rate_hz))
@@ -182,7 +183,7 @@ def odometry(name, scans, trajectory, rate_hz):
 def judged(name, poses, trajectory, times_s, apart):
     truth = trajectory.poses_at(times_s)
     metres, radians = relative_errors(poses, truth, apart)
-    way = np.linalg.norm(truth[apart:, :3, 3] - truth[:-apart, :3, 3], axis=1)
+    way = ways(truth, apart)
     return Run(name, poses, truth, times_s, position_errors(poses, truth), 100 * np.sqrt(((metres / way) ** 2).mean()),
                np.degrees(np.sqrt(((radians / way) ** 2).mean())))
 
@@ -206,12 +207,16 @@ def flags_of(arguments):
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=20, help="of the drive [20]")
     parser.add_argument("--sensor", default="VLP-16", help="as glidar sensors lists them [VLP-16]")
+    parser.add_argument("--street", type=int, default=3, help="seed of what stands beside the road [3]")
+    parser.add_argument("--seed", type=int, default=1, help="of the sensor's noise [1]")
     parser.add_argument("--ideal", action="store_true", help="the sensor without its noise")
     parser.add_argument("--write", metavar="FOLDER", help="writes trajectories (TUM, KITTI) and scans (KITTI)")
     parser.add_argument("--picture", metavar="FILE", help="draws map, trajectories and errors, for example as PNG")
     flags = parser.parse_args(arguments)
     if not 2 <= flags.seconds <= 60:
         parser.error("--seconds: from 2 to 60")
+    if flags.street < 0 or flags.seed < 0:
+        parser.error("--street and --seed: at least 0")
     return flags
 
 
@@ -222,7 +227,8 @@ def main(arguments=None):
     sensor = glidar.load_sensor(flags.sensor)
     if sensor.kind != "spinning":
         sys.exit(f"lidar_odometry: {flags.sensor} does not spin; `glidar sensors` tells which do, such as VLP-16")
-    scans, trajectory = drive(street(), sensor.ideal() if flags.ideal else sensor, flags.seconds)
+    sensor = sensor.ideal() if flags.ideal else sensor
+    scans, trajectory = drive(street(flags.street), sensor, flags.seconds, flags.seed)
     runs = [odometry(name, scans, trajectory, sensor.rate_hz) for name in RUNS]
     print(f"{len(scans)} scans, {SPEED_M_S * flags.seconds:.0f} m; ATE after alignment, RPE over a second\n"
           f"{'':<22}  ATE m  largest m  RPE % of way  RPE deg/m")

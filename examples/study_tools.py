@@ -35,6 +35,15 @@ class Progress:
             sys.stderr.write("\n")
 
 
+def wilson_percent(hits, count):
+    """The ends of the 95 % interval of a share, in percent (Wilson, "Probable inference, the law of succession, and
+    statistical inference", JASA 22, 1927): it holds also where none or all of few hit."""
+    z, share = 1.959964, hits / count
+    middle = share + z * z / (2 * count)
+    half = z * np.sqrt(share * (1 - share) / count + z * z / (4 * count * count))
+    return tuple(100 * (middle + side * half) / (1 + z * z / count) for side in (-1, 1))
+
+
 def surface_points(vertices, triangles, count, seed=1):
     """Points spread evenly over triangles, and their normals."""
     corners = np.asarray(vertices, float)[triangles]
@@ -105,3 +114,10 @@ def relative_errors(poses, truth, apart):
     errors = np.linalg.inv(motions(truth)) @ motions(poses)
     angles = [np.linalg.norm(axis_angle(error[:3, :3])) for error in errors]
     return np.linalg.norm(errors[:, :3, 3], axis=1), np.array(angles)
+
+
+def ways(truth, apart):
+    """How long the way over `apart` frames is (N - apart), from each frame to the next."""
+    steps = np.linalg.norm(np.diff(truth[:, :3, 3], axis=0), axis=1)
+    along = np.concatenate([[0.0], np.cumsum(steps)])
+    return along[apart:] - along[:-apart]

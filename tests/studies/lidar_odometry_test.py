@@ -92,6 +92,13 @@ class Errors(unittest.TestCase):
         np.testing.assert_allclose(metres, 0.02 * 2 * radius * np.sin(np.pi * apart / count), rtol=1e-9)
         np.testing.assert_allclose(radians, 0, atol=1e-7)
 
+    def test_are_told_by_the_way_and_not_by_the_chord(self):
+        # A third of a circle: r a along the arc, 2 r sin(a / 2) across.
+        angles = np.linspace(0, 2 * np.pi, 361)
+        truth = np.stack([tools.displaced([0, 0, angle], [10 * np.cos(angle), 10 * np.sin(angle), 0])
+                          for angle in angles])
+        np.testing.assert_allclose(tools.ways(truth, 120), 10 * 2 * np.pi / 3, rtol=2e-5)
+
     def test_a_wrong_rate_of_turn_is_found(self):
         times = np.arange(50) * 0.1
         truth = np.stack([tools.displaced([0, 0, 0.50 * time], [0, 0, 0]) for time in times])

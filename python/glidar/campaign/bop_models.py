@@ -3,6 +3,7 @@
 """The models of a BOP data set: which objects there are, their meshes in millimetres, their sizes."""
 
 import json
+import os
 
 import numpy as np
 
@@ -10,22 +11,31 @@ from glidar import Error
 from glidar.campaign import files, loading, yaml_file as yf
 
 FOLDER = "bop"
-SHAPE_KEYS = ("model", "unit", "up", "scale")  # what makes a model of a scene file an object of BOP
+# What makes a model of a scene file an object of BOP, with what the scene file may leave out.
+SHAPE = {"model": "", "unit": "m", "up": "", "scale": "1"}
 MM_PER_M = 1000.0
+DISTANCES = 1 << 22  # that are in memory together
 
 
 def _shape(field):
-    """The values of SHAPE_KEYS, as the scene file spells them."""
+    """The values of SHAPE; two spellings of a path or of a number are the same."""
     found = yf.entries(field)
-    return tuple(found[key].node.value if key in found else "" for key in SHAPE_KEYS)
+    model, unit, up, scale = (str(found[key].node.value) if key in found else usual
+                              for key, usual in SHAPE.items())
+    if not model.startswith("builtin:"):
+        model = os.path.normpath(os.path.join(os.path.dirname(field.file), model))
+    return model, unit, up, float(scale)
 
 
 def _shapes(source):
     """Of every model of a scene; of a scene that cannot be read none."""
     if source.fault:
         return []
-    models = yf.entries(yf.parse(source.text, source.path)).get("models")
-    return [_shape(item) for item in yf.items(models, 0)] if models else []
+    try:
+        models = yf.entries(yf.parse(source.text, source.path)).get("models")
+        return [_shape(item) for item in yf.items(models, 0)] if models else []
+    except (Error, ValueError):
+        return []  # its trials fail and say why
 
 
 def object_ids(plan):
@@ -43,15 +53,29 @@ def ids_by_scene(plan):
     return [[ids[shape] for shape in _shapes(source)] for source in plan.scenes]
 
 
-def require_fit(plan):
-    """BOP's models are fixed; its cameras are pinholes without distortion."""
+def _require_fixed_models(plan):
     for variation in plan.spec.vary:
-        if variation.target.of == "scene" and variation.target.steps[-1] in SHAPE_KEYS:
+        if variation.target.of == "scene" and variation.target.steps[-1] in SHAPE:
             raise Error(f"{plan.spec.file}: vary.{variation.path}", "it changes the model, and the "
                         "models of a BOP data set are fixed", "other keys", "leave out outputs.bop")
-    for source in plan.sensors:
-        if not source.fault:
-            loading.intrinsics_of(loading.load_sensor(source.text, source.path), source.name)
+
+
+def _camera(plan):
+    """camera.json: the first sensor that can be read. All that can be must be pinholes without
+    distortion."""
+    cameras, faults = [], []
+    for source in (s for s in plan.sensors if not s.fault):
+        try:
+            sensor = loading.load_sensor(source.text, source.path)
+        except Error as error:
+            faults.append(error)  # its trials fail and say why
+            continue
+        cameras.append((sensor, loading.intrinsics_of(sensor, source.name)))
+    if not cameras:
+        raise faults[0]
+    sensor, k = cameras[0]
+    return {"cx": k[0, 2], "cy": k[1, 2], "fx": k[0, 0], "fy": k[1, 1], "height": sensor.rows,
+            "width": sensor.cols, "depth_scale": plan.spec.outputs.bop.depth_scale_mm}
 
 
 def normals_of(vertices, triangles):
@@ -71,16 +95,28 @@ def normals_of(vertices, triangles):
 
 def diameter(points):
     """The largest distance between two points: between two corners of their convex hull."""
-    from scipy.spatial import ConvexHull
-    from scipy.spatial.distance import pdist
+    from scipy.spatial import ConvexHull, QhullError
 
+    if not np.ptp(points, axis=0).any():
+        return 0.0
     centred = points - points.mean(axis=0)
     axes = np.linalg.svd(np.cov(centred.T))[0]
     extent = np.ptp(centred @ axes, axis=0)
     flat = centred @ axes[:, extent > 1e-9 * extent.max()]  # planes and lines have hulls of their own
     if flat.shape[1] < 2:
         return float(extent.max())
-    return float(pdist(flat[ConvexHull(flat).vertices]).max())
+    try:
+        return _farthest(flat[ConvexHull(flat).vertices])
+    except QhullError:  # the hull only saves time
+        return _farthest(flat)
+
+
+def _farthest(points):
+    """The largest distance between two of the points, with memory for some rows of distances."""
+    from scipy.spatial.distance import cdist
+
+    step = max(1, DISTANCES // len(points))
+    return float(max(cdist(points[i : i + step], points).max() for i in range(0, len(points), step)))
 
 
 def ply_text(vertices_mm, normals, triangles):
@@ -117,25 +153,26 @@ def _meshes(plan):
                 yield object_id, placed.mesh.vertices * placed.scale * MM_PER_M, placed.mesh.triangles
 
 
+def _contents(plan):
+    """(name, bytes) of models, models_info.json and camera.json."""
+    _require_fixed_models(plan)
+    camera, info = _camera(plan), {}
+    for object_id, vertices_mm, triangles in _meshes(plan):
+        text = ply_text(vertices_mm, normals_of(vertices_mm, triangles), triangles)
+        yield f"{FOLDER}/models/obj_{object_id:06}.ply", text.encode()
+        info[str(object_id)] = info_of(vertices_mm)
+    yield f"{FOLDER}/models/models_info.json", files.json_bytes(info)
+    yield f"{FOLDER}/camera.json", json.dumps(camera, indent=1).encode()
+
+
 def write(plan, folder):
     """Writes models, models_info.json and camera.json, and their receipt."""
-    require_fit(plan)
     scratch = files.Scratch(folder.root)
-    contents, info = {}, {}
-    for object_id, vertices_mm, triangles in _meshes(plan):
-        name = f"{FOLDER}/models/obj_{object_id:06}.ply"
-        contents[name] = ply_text(vertices_mm, normals_of(vertices_mm, triangles), triangles).encode()
-        info[str(object_id)] = info_of(vertices_mm)
-    contents[f"{FOLDER}/models/models_info.json"] = files.json_bytes(info)
-    source = next(s for s in plan.sensors if not s.fault)
-    sensor = loading.load_sensor(source.text, source.path)
-    k = loading.intrinsics_of(sensor, source.name)
-    contents[f"{FOLDER}/camera.json"] = json.dumps(
-        {"cx": k[0, 2], "cy": k[1, 2], "fx": k[0, 0], "fy": k[1, 1], "height": sensor.rows,
-         "width": sensor.cols, "depth_scale": plan.spec.outputs.bop.depth_scale_mm}, indent=1).encode()
     listed = {}
-    for name, data in contents.items():
-        files.write_bytes(scratch, folder.root / name, data)
-        listed[name] = [files.hash_bytes(data), len(data)]
-    files.write_json(scratch, folder.once("bop"), {"trials": 0, "failed": 0, "files": listed})
-    scratch.remove()
+    try:
+        for name, data in _contents(plan):
+            files.write_bytes(scratch, folder.root / name, data)
+            listed[name] = [files.hash_bytes(data), len(data)]
+        files.write_json(scratch, folder.once("bop"), {"trials": 0, "failed": 0, "files": listed})
+    finally:
+        scratch.remove()

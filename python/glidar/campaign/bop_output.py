@@ -45,14 +45,19 @@ def object_info(silhouette, visible, valid):
             "bbox_obj": box, "bbox_visib": box_of(visible)}
 
 
-def depth_steps(depth_m, scale_mm, name):
+class Unfit(Error):
+    """A frame that BOP cannot hold: its trial fails."""
+
+
+def depth_steps(depth_m, scale_mm):
     """The depth image: steps of scale_mm, 0 where there is no return."""
     steps = np.rint(np.nan_to_num(depth_m * (MM_PER_M / scale_mm)))
     most = steps.max(initial=0.0)
     if most > MOST_STEPS:
-        raise Error(f"outputs.bop.depth_scale_mm, {name}",
-                    f"a depth of {most * scale_mm / MM_PER_M:.6g} m does not fit in 16 bits in steps of "
-                    f"{scale_mm:g} mm", f"at least {most * scale_mm / MOST_STEPS:.4g} mm", "")
+        raise Error("outputs.bop.depth_scale_mm", f"a depth of {most * scale_mm / MM_PER_M:.6g} m does "
+                    f"not fit in 16 bits in steps of {scale_mm:g} mm",
+                    f"at least {most * scale_mm / MOST_STEPS:.4g} mm",
+                    "where such trials matter, run the campaign anew with larger steps")
     return steps.astype(np.uint16)
 
 
@@ -73,10 +78,15 @@ class BopOutput:
         self._camera, self._truth, self._info, self._files = {}, {}, {}, []
 
     def add(self, row, trial, frame):
+        """Raises Unfit before anything of the frame is kept."""
+        try:
+            depth = depth_steps(frame.depth_m, self._options.depth_scale_mm)
+            intrinsics, silhouettes = frame.intrinsics, frame.silhouettes()
+        except Error as error:
+            raise Unfit(*error.args) from None
         image = trial - self._first
         camera_from_world = np.linalg.inv(frame.world_from_sensor)
-        depth = depth_steps(frame.depth_m, self._options.depth_scale_mm, f"trial {trial}")
-        self._camera[image] = {"cam_K": frame.intrinsics.ravel().tolist(),
+        self._camera[image] = {"cam_K": intrinsics.ravel().tolist(),
                                "depth_scale": self._options.depth_scale_mm,
                                "cam_R_w2c": camera_from_world[:3, :3].ravel().tolist(),
                                "cam_t_w2c": (MM_PER_M * camera_from_world[:3, 3]).tolist()}
@@ -84,7 +94,6 @@ class BopOutput:
         self._image("depth", f"{image:06}", depth)
         self._image("gray", f"{image:06}", np.rint(
             255.0 * np.clip(np.nan_to_num(frame.intensity), 0.0, 1.0)).astype(np.uint8))
-        silhouettes = frame.silhouettes()
         for i, world_from_object in enumerate(frame.world_from_objects):
             self._add_object(image, self._ids[frame.scene][i],
                              camera_from_world @ world_from_object)

@@ -49,12 +49,22 @@ def _axes(least, most, top):
             _label(LEFT - 4, TOP + 8, f"{top:.4g}", "end"), _label(LEFT - 4, bottom, "0", "end")]
 
 
+def _finite(values):
+    """The rows that are finite, and a note that counts the others."""
+    whole = np.isfinite(values).all(axis=tuple(range(1, values.ndim)))
+    left_out = int(np.count_nonzero(~whole))
+    return values[whole], f"{left_out} without a value" if left_out else ""
+
+
+def _nothing(title, note):
+    return figure(title, _svg([_label(WIDTH / 2, HEIGHT / 2, "no values")], title), note)
+
+
 def histogram(title, values):
     """How often values come; what is not finite is left out and counted in the note."""
-    finite = values[np.isfinite(values)]
-    note = f"{len(values) - len(finite)} without a value" if len(finite) < len(values) else ""
+    finite, note = _finite(values)
     if len(finite) == 0:
-        return figure(title, _svg([_label(WIDTH / 2, HEIGHT / 2, "no values")], title), note)
+        return _nothing(title, note)
     least, most = float(finite.min()), float(finite.max())
     if least == most:
         text = f"all are {least:.6g}"
@@ -112,7 +122,12 @@ def _mollweide(azimuth, sine, radius):
 
 
 def sphere(title, directions, note=""):
-    """How many directions fall into each cell of the sphere."""
+    """How many directions fall into each cell of the sphere; those that are not finite are left out and
+    counted in the note."""
+    directions, left_out = _finite(directions)
+    note = ". ".join(filter(None, [note, left_out]))
+    if len(directions) == 0:
+        return _nothing(title, note)
     rows = rows_for(len(directions))
     counts = np.bincount(cells_of(directions, rows), minlength=2 * rows * rows)
     radius, width, height = 130.0, 540, 280

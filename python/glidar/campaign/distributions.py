@@ -59,8 +59,10 @@ class Normal:
 
     def sample(self, u, cell):
         from scipy.special import ndtr, ndtri  # not at the top: it takes a while to load
-        begin, end = (ndtr((x - self.mean) / self.sigma) for x in (self.least, self.most))
-        drawn = self.mean + self.sigma * ndtri(begin + (end - begin) * u[:, 0])
+        # Probabilities near 1 have few digits: above the mean it is drawn as the mirrored lower tail.
+        sigma = -self.sigma if self.least > self.mean else self.sigma
+        begin, end = (ndtr((x - self.mean) / sigma) for x in (self.least, self.most))
+        drawn = self.mean + sigma * ndtri(begin + (end - begin) * u[:, 0])
         return np.clip(drawn, self.least, self.most)
 
 

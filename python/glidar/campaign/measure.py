@@ -11,6 +11,7 @@ import numpy as np
 import glidar
 from glidar import Error
 from glidar.campaign import loading
+from glidar.campaign.poses import require_whole
 from glidar.campaign.trials import changes, groups
 
 BATCH_BEAMS = 1 << 19  # that are measured together, and handed on to be written
@@ -26,6 +27,7 @@ class Stage:
     sensor: object
     simulator: object
     scene_place: int  # in the plan
+    threads: int
 
     @cached_property
     def intrinsics(self):
@@ -33,9 +35,10 @@ class Stage:
 
     @cached_property
     def canvas(self):
-        """What measures silhouettes, with those of truncated objects whole."""
+        """What measures silhouettes, with those of truncated objects whole. As it has the simulator's
+        threads, it shares its tree."""
         camera = loading.canvas_camera(self.sensor, self.intrinsics)
-        return glidar.Simulator(self.scene, camera)
+        return glidar.Simulator(self.scene, camera, threads=self.threads)
 
     @cached_property
     def size_m(self):
@@ -131,6 +134,7 @@ class Measurer:
                 yield from self._measure_rows(stage, trials, [row])
 
     def _frames(self, stage, trials, rows):
+        require_whole(trials.world_from_sensor[rows], "pose")
         objects = self._objects(stage, trials, rows)
         frames = stage.simulator.simulate_batch(trials.world_from_sensor[rows], trials.seed[rows],
                                                 objects=objects, columns=self._columns)
@@ -144,7 +148,9 @@ class Measurer:
         standing = np.array([placed.pose for placed in stage.scene.objects])
         poses = np.tile(standing, (len(rows), 1, 1, 1))
         for variation in varied:
-            poses[:, _place(stage.scene, variation.target)] = trials.values[variation.path][rows]
+            drawn = trials.values[variation.path][rows]
+            require_whole(drawn, f"vary.{variation.path}")
+            poses[:, _place(stage.scene, variation.target)] = drawn
         return poses
 
     def _stage(self, key):
@@ -154,7 +160,7 @@ class Measurer:
         sensor = _kept(self._sensors, (sensor_place, sensor_changes), loading.load_sensor,
                        self._plan.sensors[sensor_place], sensor_changes)
         simulator = glidar.Simulator(scene, sensor, threads=self._threads)
-        return Stage(scene, sensor, simulator, scene_place)
+        return Stage(scene, sensor, simulator, scene_place, self._threads)
 
     def _text(self, error):
         """What went wrong, without the folder that this machine keeps the campaign in."""

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from glidar import Error
 from glidar.campaign import rotations, yaml_file as yf
 from glidar.campaign.distributions import Constant, read_distribution
 
@@ -151,6 +152,7 @@ class Aimed:
             forward = np.tile(np.array(self.axis, float), (len(u), 1))
         else:
             forward = np.array(self.target) - position
+            forward[np.linalg.norm(forward, axis=1) == 0] = np.nan  # no way to look, see require_whole
         if self.off_rad > 0:
             forward = rotations.bent(forward, self.off_rad, u[:, :2])
             u = u[:, 2:]
@@ -180,6 +182,13 @@ class PoseDistribution:
         poses[:, :3, :3] = self.orientation.sample(
             poses[:, :3, 3], u[:, split:], cell // self.position.cells, boresight)
         return poses
+
+
+def require_whole(world_from_body, what):
+    """Poses without NaN: where the position is look_at's target, no direction leads to the target."""
+    if np.isnan(world_from_body).any():
+        raise Error(what, "the position is the target of look_at", "positions apart from the target",
+                    "move the target or the positions")
 
 
 def _radii(field):

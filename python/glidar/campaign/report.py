@@ -5,6 +5,7 @@
 import base64
 import io
 import json
+import os
 from html import escape
 from pathlib import Path
 
@@ -75,20 +76,27 @@ def _log_lines(folder):
     return sorted(lines, key=lambda entry: entry["time_s"])
 
 
+def _time_at_work(end_s, seconds):
+    """When each shard was done, by a clock that stands while none is under way; ends are in order."""
+    start_s = np.minimum.accumulate((end_s - seconds)[::-1])[::-1]  # the first start of it and all later ones
+    pause_s = np.maximum(start_s[1:] - end_s[:-1], 0.0)
+    return end_s - start_s[0] - np.insert(np.cumsum(pause_s), 0, 0.0)
+
+
 def _speed(folder):
-    """The last run's: between its first and last shard, whoever measured them."""
+    """Of all runs together, whoever measured: by the time in which some shard was under way."""
     lines = [entry for entry in _log_lines(folder) if "shard" in entry]
     if len(lines) < 2:
         return "<p>Too few shards to tell.</p>"
-    time_s = np.array([entry["time_s"] for entry in lines])
-    start = time_s[0] - lines[0]["seconds"]
+    time_s = _time_at_work(np.array([entry["time_s"] for entry in lines]),
+                           np.array([entry["seconds"] for entry in lines]))
     done = np.cumsum([entry["trials"] for entry in lines])
-    rate = done[-1] / max(time_s[-1] - start, 1e-9)
+    rate = done[-1] / max(time_s[-1], 1e-9)
     by = sorted({entry["by"] for entry in lines})
     per_trial = np.array([1e3 * entry["seconds"] / max(entry["trials"], 1) for entry in lines])
-    text = (f"<p>{done[-1]} trials in {time_s[-1] - start:.1f} s, pauses included: {rate:.4g} trials/s "
+    text = (f"<p>{done[-1]} trials in {time_s[-1]:.1f} s, pauses between runs left out: {rate:.4g} trials/s "
             f"by {len(by)} processes ({escape(', '.join(by[:8]))}{' ...' if len(by) > 8 else ''}).</p>")
-    return (text + charts.line("trials done over time, s", np.insert(time_s - start, 0, 0.0),
+    return (text + charts.line("trials done over time, s", np.insert(time_s, 0, 0.0),
                                np.insert(done, 0, 0))
             + charts.histogram("ms per trial of a shard, from its start to its receipt", per_trial))
 
@@ -228,12 +236,38 @@ def page(root):
             f"<style>{STYLE}</style></head><body><h1>Campaign {name}</h1>{body}</body></html>\n")
 
 
+def _require_foreign(root, path):
+    """A report replaces no file of the campaign."""
+    root, path = Path(root).resolve(), path.resolve()
+    if not path.is_relative_to(root):
+        return
+    name = path.relative_to(root)
+    listed = files.read_json(root / MANIFEST_FILE)["files"]
+    if name.as_posix() in [*listed, MANIFEST_FILE] or name.parts[:1] in [("receipts",), ("parts",), ("log",)]:
+        raise Error(str(path), "it is a file of the campaign", "another name",
+                    f"without -o the report is {root / REPORT_FILE}")
+
+
+def _write_whole(path, text):
+    """Under another name beside it first; what is no file, such as a pipe, is written as it is."""
+    if path.exists() and not path.is_file():
+        path.write_text(text, encoding="utf-8")
+        return
+    part = path.with_name(f".{path.name}.{os.getpid()}")
+    try:
+        part.write_text(text, encoding="utf-8")
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
 def write(root, path=None):
     """Writes the report; returns where it is."""
     text = page(root)
     path = Path(path) if path else Path(root) / REPORT_FILE
+    _require_foreign(root, path)
     try:
-        path.write_text(text, encoding="utf-8")
+        _write_whole(path, text)
     except OSError as error:
         raise files.write_error(path, error) from None
     return path

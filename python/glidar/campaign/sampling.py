@@ -8,6 +8,7 @@ there are: any shard can be drawn by itself.
 
 import warnings
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -15,6 +16,8 @@ from glidar.campaign import philox
 
 METHODS = ["random", "sobol", "latin_hypercube"]
 SOBOL_BITS = 32
+MOST_STRATA = 1 << 24  # trials of a Latin hypercube, whose order every process keeps in memory
+PIECE = 1 << 18  # trials whose keys are drawn together
 
 
 @dataclass(frozen=True)
@@ -51,14 +54,23 @@ def _sobol(seed, trials, names):
     return (digits.astype(np.float64) + 0.5) * 2.0**-SOBOL_BITS
 
 
+@lru_cache(maxsize=1)  # shard after shard of a campaign asks for the same
+def _strata(seed, total, names):
+    """For each name (row) the stratum of each of `total` trials: their places in a random order."""
+    strata = np.empty((len(names), total), np.uint32)
+    for row, name in zip(strata, names):
+        keys = np.concatenate([
+            philox.uniforms(seed, np.arange(first, min(first + PIECE, total)), f"stratum {name}", 1)[:, 0]
+            for first in range(0, total, PIECE)])  # piece by piece, for Philox takes 20 times the memory
+        row[np.argsort(keys, kind="stable")] = np.arange(total, dtype=np.uint32)
+    return strata
+
+
 def _latin_hypercube(seed, trials, total, names):
     """One of `total` equal strata for each trial in every dimension, by a random order of the trials
     (McKay, Beckman, Conover, Technometrics 21, 1979)."""
     u = np.empty((len(trials), len(names)))
-    for i, name in enumerate(names):
-        keys = philox.uniforms(seed, np.arange(total), f"stratum {name}", 1)[:, 0]
-        strata = np.empty(total, np.int64)
-        strata[np.argsort(keys, kind="stable")] = np.arange(total)
+    for i, (name, strata) in enumerate(zip(names, _strata(seed, total, tuple(names)))):
         within = philox.uniforms(seed, trials, name, 1)[:, 0]
         u[:, i] = (strata[trials] + within) / total
     return u

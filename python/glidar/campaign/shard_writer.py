@@ -5,7 +5,7 @@
 import numpy as np
 
 from glidar.campaign import files, index
-from glidar.campaign.bop_output import BopOutput
+from glidar.campaign.bop_output import BopOutput, Unfit
 from glidar.campaign.cloud_output import KITTI_FOLDER, CloudOutput
 from glidar.campaign.npz_output import NpzOutput
 from glidar.campaign.output_spec import Cloud
@@ -15,14 +15,13 @@ NAME_DIGITS = 16  # of the hash in a file's name
 
 def make_outputs(plan, scratch, shard):
     chosen = plan.spec.outputs
-    made = [NpzOutput(plan, scratch, shard)] if chosen.npz else []
+    made = [BopOutput(plan, scratch, shard)] if chosen.bop else []  # first: it may refuse a frame
+    made += [NpzOutput(plan, scratch, shard)] if chosen.npz else []
     for suffix, options in (("pcd", chosen.pcd), ("ply", chosen.ply)):
         if options:
             made.append(CloudOutput(suffix, f".{suffix}", options, scratch))
     if chosen.kitti:
         made.append(CloudOutput(KITTI_FOLDER, ".bin", Cloud(), scratch))
-    if chosen.bop:
-        made.append(BopOutput(plan, scratch, shard))
     return made
 
 
@@ -37,9 +36,15 @@ class ShardWriter:
         self._facts = np.full((len(trials), len(index.FACTS)), np.nan)
 
     def add(self, row, frame):
+        try:
+            for output in self._outputs:
+                output.add(row, int(self._trials.number[row]), frame)
+        except Unfit as error:
+            self.fail(row, str(error))
+            return
+        except OSError as error:
+            raise files.write_error(self._folder.root, error) from None
         self._facts[row] = index.facts_of(frame)
-        for output in self._outputs:
-            output.add(row, int(self._trials.number[row]), frame)
 
     def fail(self, row, text):
         self._errors[row] = text

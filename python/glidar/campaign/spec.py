@@ -115,4 +115,8 @@ def read_spec(path):
         outputs=yf.optional(found, "outputs", output_spec.read_outputs, output_spec.DEFAULT),
         file=Path(path),
     )
-    return dataclasses.replace(spec, trials=_read_trials(field, found, spec))
+    trials = _read_trials(field, found, spec)
+    if spec.method == "latin_hypercube" and trials > sampling.MOST_STRATA:
+        yf.reject(found["sampling"], f"latin_hypercube with {trials} trials",
+                  f"at most {sampling.MOST_STRATA} trials", "sobol and random take more")
+    return dataclasses.replace(spec, trials=trials)

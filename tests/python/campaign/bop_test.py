@@ -4,14 +4,22 @@
 docs/bop_datasets_format.md), and by the official toolkit where it is installed."""
 
 import json
+import os
+import subprocess
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 from PIL import Image
 from campaign_support import Campaign
+from scipy.spatial import QhullError
 from scipy.spatial.distance import pdist
 
-from glidar.campaign import bop_models
+import glidar
+from glidar.campaign import bop_models, measure
+from glidar.campaign.plan import make_plan
+from glidar.campaign.spec import read_spec
+from glidar.campaign.trials import draw_trials
 
 # A box in front of a larger one, off the middle; a noiseless camera.
 SCENE = """models:
@@ -188,20 +196,146 @@ def test_vertex_normals_are_weighted_by_angle():
 @pytest.mark.parametrize("points, expected", [
     (np.random.default_rng(1).normal(size=(500, 3)), None),
     (np.random.default_rng(2).normal(size=(500, 3)) * [1, 1, 0], None),
-    (np.linspace(0, 1, 9)[:, None] * [1.0, 2.0, 2.0], 3.0)])
-def test_diameters_are_the_largest_distance_also_of_planes_and_lines(points, expected):
-    assert bop_models.diameter(points) == pytest.approx(expected or pdist(points).max())
+    (np.linspace(0, 1, 9)[:, None] * [1.0, 2.0, 2.0], 3.0),
+    (np.array([[1e7, 2.0, 3.0]]), 0.0), (np.full((5, 3), 0.1), 0.0)])
+def test_diameters_are_the_largest_distance_also_of_planes_lines_and_points(points, expected):
+    assert bop_models.diameter(points) == pytest.approx(pdist(points).max() if expected is None else expected)
+
+
+def test_diameters_do_without_a_hull_and_without_memory_for_all_distances(monkeypatch):
+    points = np.random.default_rng(3).normal(size=(300, 3))
+    exact = pdist(points).max()
+    monkeypatch.setattr(bop_models, "DISTANCES", 1000)
+    assert bop_models.diameter(points) == pytest.approx(exact, rel=1e-12)
+
+    def fails(points):
+        raise QhullError("no hull")
+
+    monkeypatch.setattr("scipy.spatial.ConvexHull", fails)
+    assert bop_models.diameter(points) == pytest.approx(exact, rel=1e-12)
+
+
+def test_a_model_of_one_point_is_written_and_its_trials_go_on(campaign):
+    point = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+    point += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    campaign.write("point.ply", point + 3 * "1e7 1e7 1e7\n" + "3 0 1 2\n")
+    campaign.add("outputs: {bop: true}\n")
+    campaign.write("scene.yaml", SCENE + "  - {name: point, model: point.ply}\n")
+    assert "40 trials, 0 failed" in campaign.run("out", "--workers", "1")
+    info = json.loads((campaign.folder / "out" / "bop" / "models" / "models_info.json").read_text())
+    assert info["3"]["diameter"] == 0.0 and info["3"]["min_x"] == 1e10
 
 
 @pytest.mark.parametrize("change, words", [
     (lambda c: c.add("vary:\n  scene.models[near].scale: {uniform: [1, 2]}\n"), "models of a BOP"),
     (lambda c: c.write("camera.yaml", "optics: {type: pinhole, width: 64, height: 48, fov_deg: 40, "
                        "distortion: {model: radial_tangential, k1: 0.1}}\n"), "distortion"),
-    (lambda c: c.write("campaign.yaml", CAMPAIGN.replace("camera.yaml", "VLP-16")), "a spinning"),
-    (lambda c: c.write("campaign.yaml", CAMPAIGN.replace("0.25", "0.01")), "does not fit in 16 bits")])
+    (lambda c: c.write("campaign.yaml", CAMPAIGN.replace("camera.yaml", "VLP-16")), "a spinning")])
 def test_what_bop_cannot_hold_is_refused(campaign, change, words):
     campaign.write("scene.yaml", SCENE)
     campaign.write("camera.yaml", CAMERA)
     campaign.write("campaign.yaml", CAMPAIGN)
     change(campaign)
     assert words in campaign.run("out", code=2)
+
+
+def bop_campaign(campaign, text):
+    campaign.write("scene.yaml", SCENE)
+    campaign.write("camera.yaml", CAMERA)
+    campaign.write("campaign.yaml", text)
+    return campaign.folder / "out"
+
+
+def test_trials_too_deep_for_the_images_fail_and_the_rest_goes_on(campaign):
+    # From 3, 26.5 and 50 m along +x, where 16 bits hold 32.8 m.
+    deep = CAMPAIGN.replace("{cone: {axis: [1, 0, 0], half_angle_deg: 25, radius_m: [3, 4]}}",
+                            "{grid: {least: [3, 0, 0], most: [50, 0, 0], counts: [3, 1, 1]}}")
+    deep = deep.replace("0.25", "0.5").replace("outputs: {", "outputs: {npz: true, ply: true, ")
+    out = bop_campaign(campaign, deep)
+    assert "6 trials, 2 failed" in campaign.run("out", code=1)
+    table = pq.read_table(out / "index.parquet").to_pydict()
+    assert table["ok"] == [True, True, False] * 2 and np.isnan(table["range_min_m"][2])
+    assert "does not fit in 16 bits" in table["error"][2] and "at least" in table["error"][2]
+    cameras = json.loads((out / "bop" / "val" / "000000" / "scene_camera.json").read_text())
+    assert list(cameras) == ["0", "1"]
+    assert sorted(p.stem for p in (out / "bop" / "val" / "000000" / "depth").iterdir()) == ["000000", "000001"]
+    assert np.load(next((out / "npz").glob("shard-000000-*")))["trial"].tolist() == [0, 1]
+    assert len(list((out / "ply").iterdir())) == 4
+
+
+def test_a_camera_that_cannot_be_read_or_bends_in_some_trials_fails_those(campaign):
+    out = bop_campaign(campaign, CAMPAIGN.replace("sensor: camera.yaml", "sensor: {grid: [bad.yaml, camera.yaml]}")
+                       + "vary: {sensor.optics.distortion.k1: {grid: [0, 0.1]}}\n")
+    bends = CAMERA.replace("}", ", distortion: {model: radial_tangential, k1: 0}}")
+    campaign.write("camera.yaml", bends)
+    campaign.write("bad.yaml", bends.replace("width: 64", "width: -1"))
+    campaign.run("out", code=1)
+    table = pq.read_table(out / "index.parquet").to_pydict()
+    assert table["ok"] == [False, True, False, False, False, True]
+    assert "width" in table["error"][0] and "a camera with distortion" in table["error"][3]
+
+
+@pytest.mark.skipif(os.geteuid() != 0, reason="only root may mount a small disk")
+@pytest.mark.parametrize("model, models_fit", [("builtin:box", True), ("builtin:asteroid", False)])
+def test_a_disk_that_is_full_of_images_or_models_is_told(campaign, model, models_fit):
+    out = campaign.folder / "disk" / "out"
+    out.parent.mkdir()
+    bop_campaign(campaign, CAMPAIGN.replace("trials: 6", "trials: 60"))
+    campaign.write("scene.yaml", SCENE.replace("builtin:box", model))
+    mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=200k", "tmpfs", out.parent],
+                             capture_output=True, check=False)
+    if mounted.returncode != 0:
+        pytest.skip("mount is not allowed here")
+    try:
+        told = campaign.run("disk/out", "--workers", "1", code=2)
+        assert "No space left on device" in told and "make room" in told and "Traceback" not in told
+        assert not (out / "tmp").exists()
+        assert (out / "receipts" / "once-bop.json").exists() == models_fit
+        subprocess.run(["mount", "-o", "remount,size=32m", out.parent], check=True)
+        campaign.run("disk/out", "--workers", "1")
+        campaign.run("whole", "--workers", "1")
+        assert campaign.contents("disk/out") == campaign.contents("whole")
+    finally:
+        subprocess.run(["umount", out.parent], check=True)
+
+
+def test_objects_are_the_same_by_value_and_not_by_spelling(campaign):
+    out = bop_campaign(campaign, CAMPAIGN.replace(
+        "scene: scene.yaml", "scene: {grid: [scene.yaml, sub/scene.yaml, bad.yaml]}"))
+    (campaign.folder / "sub").mkdir()
+    for folder, far in (("", 1), ("sub/", 2)):
+        campaign.write(folder + "a.obj", f"v 0 0 0\nv {far} 0 0\nv 0 1 0\nf 1 2 3\n")
+    campaign.write("scene.yaml", """models:
+  - {name: a, model: a.obj, scale: 0.5}
+  - {name: b, model: ./sub/../a.obj, scale: 0.50, unit: m}
+  - {name: c, model: a.obj, scale: 5e-1, unit: cm}
+""")
+    campaign.write("sub/scene.yaml", """models:
+  - {name: a, model: a.obj, scale: 0.5}
+  - {name: b, model: ../a.obj, scale: 0.5}
+  - {name: c, model: a.obj}
+  - {name: d, model: a.obj, scale: 1.0}
+""")
+    campaign.write("bad.yaml", "models:\n  - {model: a.obj, scale: [1, 2]}\n")
+    campaign.run("out", code=1)
+    truth = json.loads((out / "bop" / "val" / "000000" / "scene_gt.json").read_text())
+    ids = [[entry["obj_id"] for entry in truth[image]] for image in "01"]
+    assert ids == [[1, 1, 2], [3, 1, 4, 4]]
+    info = json.loads((out / "bop" / "models" / "models_info.json").read_text())
+    assert [info[key]["size_x"] for key in "1234"] == pytest.approx([500, 5, 1000, 2000])
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_silhouettes_take_the_threads_of_their_worker(campaign, monkeypatch, threads):
+    bop_campaign(campaign, CAMPAIGN)
+    made, simulator = [], glidar.Simulator
+
+    def record(*arguments, **more):
+        made.append(more)
+        return simulator(*arguments, **more)
+
+    monkeypatch.setattr(glidar, "Simulator", record)
+    plan = make_plan(read_spec(campaign.folder / "campaign.yaml"))
+    for _, frames, _ in measure.Measurer(plan, threads).measure(draw_trials(plan, 0, 3)):
+        frames[0].silhouettes()
+    assert made == 2 * [{"threads": threads}]

@@ -35,6 +35,24 @@ def test_uniform_and_log_uniform_and_truncated_normal_follow_their_laws():
     assert normal.min() >= 0 and normal.max() <= 4
 
 
+@pytest.mark.parametrize("least, most", [
+    (0.5, np.inf), (5.0, np.inf), (7.5, np.inf), (7.5, 300.0), (7.99, np.inf), (6.0, 6.001), (-0.5, 7.5),
+    (-np.inf, -7.5), (-300.0, -7.9)])
+def test_normals_that_are_cut_off_far_out_follow_their_law(least, most):
+    u = np.sort(uniforms(1), axis=0)
+    drawn = d.Normal(3.0, 2.0, 3.0 + 2.0 * least, 3.0 + 2.0 * most).sample(u, np.zeros(N))
+    assert (np.diff(drawn) >= 0).all()  # the inverse distribution function
+    x, (low, high) = (drawn - 3.0) / 2.0, (least, most)
+    if least > 0:  # the law of the mirrored numbers: below the mean logarithms keep all digits
+        x, low, high, u = -x, -most, -least, 1.0 - u
+    # (Phi(x) - Phi(low)) / (Phi(high) - Phi(low)) from logarithms, since Phi is as small as 1e-15
+    log = stats.norm.logcdf
+    law = (np.exp(log(x) - log(high)) - np.exp(log(low) - log(high))) / -np.expm1(log(low) - log(high))
+    assert np.abs(law - u[:, 0]).max() < 1e-9
+    assert stats.kstest(law, "uniform").pvalue > P
+    assert drawn.min() >= 3.0 + 2.0 * least and drawn.max() <= 3.0 + 2.0 * most
+
+
 def test_choices_come_as_often_as_their_weights_say():
     counts = np.bincount(sampled(d.Choice((0, 1, 2), (0.2, 0.5, 0.3))))
     assert stats.chisquare(counts, N * np.array([0.2, 0.5, 0.3])).pvalue > P

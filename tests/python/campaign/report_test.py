@@ -4,15 +4,19 @@
 
 import base64
 import io
+import json
 import re
+import resource
 from html.parser import HTMLParser
 
 import numpy as np
+import pyarrow.parquet as pq
 import pytest
 from PIL import Image
 from scipy import stats
 
-from glidar.campaign import charts, philox, rotations
+from glidar.campaign import charts, philox, report as campaign_report, rotations
+from glidar.campaign.folder import Folder
 
 VOID = {"meta", "img", "br"}
 
@@ -67,6 +71,32 @@ def test_a_report_stands_by_itself_and_shows_failures_views_and_coverage(campaig
         assert max(image.size) == 160 and len(np.unique(np.asarray(image))) > 5  # the rock is seen
 
 
+def test_trials_without_a_direction_fail_by_that_name_and_are_counted_in_the_charts(campaign):
+    campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text().replace(
+        "{shell: {radius_m: [3, 5]}}", "{grid: {least: [-4, 0, 0], most: [4, 0, 0], counts: [5, 1, 1]}}"))
+    campaign.environment["PYTHONWARNINGS"] = "error"
+    campaign.run("out", "--workers", "1", code=1)
+    index = pq.read_table(campaign.folder / "out" / "index.parquet").to_pydict()
+    texts = {text for x, text in zip(index["x_m"], index["error"]) if x == 0}
+    assert len(texts) == 1 and "pose: the position is the target of look_at" in texts.pop()
+    assert [ok == (x != 0) for x, ok in zip(index["x_m"], index["ok"])] == [True] * 40
+    words = "".join(report(campaign).text)
+    assert "in the world. 8 without a value" in words and "8 of 40" in words
+
+
+def test_models_without_a_direction_fail_their_trials(campaign):
+    campaign.add("vary:\n  scene.models[moon].pose:\n    position: {point: [1, 2, 0]}\n"
+                 "    orientation: {look_at: {target: [1, 2, 0]}}\n")
+    assert "40 trials, 40 failed" in campaign.run("out", "--workers", "1", code=1)
+    words = "".join(report(campaign).text)
+    assert "vary.scene.models[moon].pose: the position is the target of look_at" in words
+
+
+@pytest.mark.parametrize("directions", [np.full((3, 3), np.nan), np.array([[np.nan] * 3, [0, 0, 1.0]])])
+def test_maps_leave_out_what_has_no_direction(directions):
+    assert f"{np.isnan(directions[:, 0]).sum()} without a value" in charts.sphere("title", directions)
+
+
 def test_campaigns_without_npz_or_failures_have_a_report(campaign):
     campaign.add("outputs: {tum: true}\n")
     campaign.run("out")
@@ -77,6 +107,43 @@ def test_campaigns_without_npz_or_failures_have_a_report(campaign):
 def test_an_unfinished_campaign_has_no_report(campaign):
     campaign.run("out", "--shard", "0/2")
     assert "not finished" in campaign.call("report", "out", code=2)
+
+
+@pytest.mark.parametrize("name", ["manifest.json", "index.parquet", "campaign.json", "receipts/000003.json"])
+def test_a_report_replaces_no_file_of_its_campaign(campaign, name):
+    campaign.run("out")
+    before = campaign.contents("out")
+    assert "it is a file of the campaign" in campaign.call("report", "out", "-o", f"out/{name}", code=2)
+    assert campaign.contents("out") == before
+    campaign.call("report", "out", "-o", "out/mine.html")
+    campaign.call("report", "out", "-o", "out/mine.html")
+    assert (campaign.folder / "out" / "mine.html").read_text().startswith("<!doctype html>")
+
+
+def test_a_report_is_there_whole_or_not_at_all(campaign):
+    campaign.run("out")
+
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (8000, 8000))
+
+    (campaign.folder / "own").mkdir()
+    (campaign.folder / "own" / "report.html").write_text("before")
+    told = campaign.call("report", "out", "-o", "own/report.html", code=2, preexec_fn=limit)
+    assert "cannot be written" in told
+    assert [p.read_text() for p in (campaign.folder / "own").iterdir()] == ["before"]
+    assert "<!doctype html>" in campaign.call("report", "out", "-o", "/dev/stdout")
+
+
+def test_speed_is_that_of_all_runs_without_the_pauses_between_them(campaign):
+    # Two runs, a day apart: two workers for 3 s, one for 2 s; shards of 10 trials.
+    log = campaign.folder / "log"
+    log.mkdir()
+    runs = {"a": [(102.0, 2.0), (103.0, 1.0)], "b": [(102.5, 2.5)], "c": [(90001.0, 1.0), (90002.0, 1.0)]}
+    for name, shards in runs.items():
+        (log / f"{name}.jsonl").write_text("".join(
+            json.dumps({"time_s": end, "shard": 0, "trials": 10, "seconds": took}) + "\n" for end, took in shards))
+    text = campaign_report._speed(Folder(campaign.folder))
+    assert "50 trials in 5.0 s" in text and "10 trials/s by 3 processes" in text
 
 
 def test_cells_of_the_sphere_have_equal_areas():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import qmc
 
-from glidar.campaign import sampling
+from glidar.campaign import philox, sampling
 from glidar.campaign.distributions import Constant, Grid, Uniform
 
 QUANTITIES = [("a", Uniform(0, 1)), ("fixed", Constant(3.0)), ("b", Uniform(0, 1)),
@@ -35,6 +35,18 @@ def test_points_are_inside_and_depend_on_the_seed(method):
 def test_a_latin_hypercube_has_one_trial_in_every_stratum():
     strata = np.sort(np.floor(1000 * points("latin_hypercube", 0, 1000, 1000)), axis=0)
     assert np.array_equal(strata, np.tile(np.arange(1000.0)[:, None], (1, 3)))
+
+
+def test_a_latin_hypercube_draws_its_order_once_for_all_shards(monkeypatch):
+    whole = points("latin_hypercube", 0, 1000, 1000, seed=9)
+    order = np.argsort(np.argsort(philox.uniforms(9, np.arange(1000), "stratum a 0", 1)[:, 0]))
+    assert np.array_equal(np.floor(1000 * whole[:, 0]), order)
+    monkeypatch.setattr(sampling, "PIECE", 300)
+    drawn = sampling._strata.cache_info().misses
+    points("latin_hypercube", 0, 1000, 1000, seed=8)
+    shards = [points("latin_hypercube", first, 250, 1000, seed=9) for first in range(0, 1000, 250)]
+    assert np.array_equal(np.concatenate(shards), whole)
+    assert sampling._strata.cache_info().misses == drawn + 2
 
 
 def test_sobol_fills_every_elementary_interval_and_spreads_better_than_chance():

@@ -85,6 +85,8 @@ outputs:
     ("look_at: {roll_deg: {uniform: [-180, 180]}}", "quaternion: {w: 0, x: 0, y: 0, z: 0}",
      ["length 0"]),
     ("trials: 10", "trials: 10\nsampling: hammersley", ["'hammersley'", "sobol"]),
+    ("trials: 10", "trials: 4000000000\nsampling: latin_hypercube",
+     ["4:11", "latin_hypercube with 4000000000 trials", "at most 16777216", "sobol and random take more"]),
     ("trials: 10", "trials: 10\nvary:\n  noise[0]: 1", ["'noise[0]'", "sensor.noise[0].sigma_m"]),
     ("trials: 10", "trials: 10\nvary: {sensor.rate_hz: {log_uniform: [0, 1]}}", ["above 0"]),
     ("trials: 10", "trials: 10\nvary: {sensor.rate_hz: {normal: {mean: 0, sigma: 0}}}", ["above 0"]),
