@@ -52,6 +52,29 @@ def test_a_program_of_a_user_is_accepted_and_runs(tmp_path):
     exec(compile(PROGRAM, "program", "exec"), {})
 
 
+CAMPAIGN = '''
+from pathlib import Path
+
+from glidar.campaign.run import Outcome, Part, check, merge, run
+
+if __name__ == "__main__":
+    outcome: Outcome = run("campaign.yaml", Path("part0"), Part(0, 2), workers=2, quiet=True)
+    print(outcome.trials, outcome.failed, outcome.error.upper())
+    count, wrong = check("part0") if merge(["part0", "part1"], "out").whole else (0, [])
+    print(count + 1, [name.upper() for name in wrong])
+'''
+
+
+def test_a_program_of_campaigns_is_accepted(tmp_path):
+    path = tmp_path / "program.py"
+    path.write_text(CAMPAIGN)
+    done = check(path, "--follow-imports=silent")
+    assert done.returncode == 0, done.stdout + done.stderr
+    path.write_text(CAMPAIGN.replace('Part(0, 2)', '"0/2"').replace("outcome.error", "outcome.errors"))
+    done = check(path, "--follow-imports=silent")
+    assert done.stdout.count("error:") == 2, done.stdout
+
+
 def test_a_wrong_program_is_not_accepted(tmp_path):
     path = tmp_path / "program.py"
     path.write_text("import glidar\n\nglidar.camera(width='wide')\nglidar.Scene().nothing\n")

@@ -4,6 +4,13 @@
 
     glidar campaign run campaign.yaml -o folder
 
-or, from Python, `from glidar.campaign.run import run; run("campaign.yaml", "folder")`. docs/campaigns.md tells the rest.
+or, from Python:
+
+    from glidar.campaign.run import run
+
+    if __name__ == "__main__":  # worker processes import this file
+        run("campaign.yaml", "folder")
+
+docs/campaigns.md tells the rest.
 Needs the package's extra: pip install '.[campaign]' in GLIDAR's source.
 """

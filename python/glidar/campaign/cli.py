@@ -80,8 +80,10 @@ def _tell(outcome, root):
     kind = "" if outcome.whole else " of this part"
     print(f"{root}: {outcome.trials} trials{kind}, {outcome.failed} failed{rate}")
     if outcome.failed:
-        print("glidar: warning: trials failed; 'error' in index.parquet says why, and so does "
-              f"glidar campaign report {root}", file=sys.stderr)
+        print(f"glidar: warning: trials failed, {outcome.error}", file=sys.stderr)
+        if outcome.whole:
+            print(f"glidar: warning: 'error' in index.parquet has the rest, and so has glidar campaign report {root}",
+                  file=sys.stderr)
     return TRIALS_FAILED if outcome.failed else DONE
 
 

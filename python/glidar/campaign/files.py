@@ -6,7 +6,9 @@ They are written in the campaign folder's `tmp` and renamed, so that a program k
 leaves nothing behind that looks like a result.
 """
 
+import contextlib
 import errno
+import glob
 import hashlib
 import json
 import os
@@ -48,28 +50,46 @@ class Scratch:
 
     def remove(self):
         shutil.rmtree(self.folder, ignore_errors=True)
-        try:
-            self.folder.parent.rmdir()  # fails while others write there
-        except OSError:
-            pass
+        _remove_empty(self.folder.parent)
 
 
 def _is_running(pid):
+    """Whether there is such a process that has not ended; one that has may wait for its parent (a zombie)."""
     try:
         os.kill(pid, 0)
+        state = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8", errors="replace")
     except ProcessLookupError:
         return False
-    except PermissionError:
-        pass
-    return True
+    except OSError:
+        return True
+    return state.rpartition(")")[2].split()[:1] not in (["Z"], ["X"])
+
+
+@contextlib.contextmanager
+def scratch(root):
+    """A Scratch that is gone at the end, whatever happens."""
+    own = Scratch(root)
+    try:
+        yield own
+    finally:
+        own.remove()
 
 
 def remove_leftovers(root):
-    """Takes away what killed processes of this machine left half written."""
-    for folder in (Path(root) / "tmp").glob(f"{socket.gethostname()}-*-*"):
+    """Takes away what killed processes of this machine left half written; others may be writing."""
+    tmp = Path(root) / "tmp"
+    for folder in tmp.glob(f"{glob.escape(socket.gethostname())}-*-*"):
         pid = folder.name.rsplit("-", 2)[1]
         if pid.isdigit() and not _is_running(int(pid)):
             shutil.rmtree(folder, ignore_errors=True)
+    _remove_empty(tmp)
+
+
+def _remove_empty(folder):
+    try:
+        folder.rmdir()  # fails while others write there
+    except OSError:
+        pass
 
 
 def publish(written, final):

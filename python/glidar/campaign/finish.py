@@ -5,7 +5,6 @@
 import importlib.metadata
 import json
 import platform
-import shutil
 
 import numpy as np
 
@@ -107,8 +106,7 @@ def _write_manifest(folder, scratch, described, once):
 def finish(folder, described):
     """Index, trajectories and manifest of a campaign whose shards are all done; returns (trials,
     failed)."""
-    scratch = files.Scratch(folder.root)
-    try:
+    with files.scratch(folder.root) as scratch:
         once = [_write_index(folder, scratch, described["shards"])]
         outputs = described["plan"]["campaign"]["outputs"]
         if outputs["tum"]:
@@ -116,6 +114,3 @@ def finish(folder, described):
         if outputs["kitti"]:
             once.append(_write_lines(folder, scratch, "kitti/poses.txt", _kitti_lines))
         return _write_manifest(folder, scratch, described, once)
-    finally:
-        scratch.remove()
-        shutil.rmtree(folder.root / "tmp", ignore_errors=True)

@@ -17,7 +17,7 @@ from pathlib import Path
 
 from glidar import Error
 from glidar.campaign import files
-from glidar.campaign.plan import PLAN_FILE
+from glidar.campaign.plan import PLAN_FILE, identity
 
 
 @dataclass(frozen=True)
@@ -51,19 +51,50 @@ def describe(plan):
 
 
 def claim(folder, plan):
-    """Makes the folder the campaign's own, or checks that it is."""
-    scratch = files.Scratch(folder.root)
+    """Makes the folder the campaign's own, or checks that it is; returns whether it was not before."""
     wanted = describe(plan)
-    if not folder.plan_file().exists():
-        if folder.root.is_dir() and any(p.name != "tmp" for p in folder.root.iterdir()):
-            raise Error(str(folder.root), "the folder is not empty and holds no campaign",
-                        "a new folder, or that of this campaign", "choose another with -o")
-        files.write_json(scratch, folder.plan_file(), wanted)
-        scratch.remove()
-    elif files.read_json(folder.plan_file())["hash"] != wanted["hash"]:
-        raise Error(str(folder.root), "it holds another campaign: "
-                    + difference(files.read_json(folder.plan_file())["plan"], wanted["plan"]),
+    if folder.plan_file().exists():
+        require_same(folder.root, files.read_json(folder.plan_file()), wanted)
+        return False
+    if folder.root.is_dir() and any(p.name != "tmp" for p in folder.root.iterdir()):
+        raise Error(str(folder.root), "the folder is not empty and holds no campaign",
                     "a new folder, or that of this campaign", "choose another with -o")
+    with files.scratch(folder.root) as scratch:
+        files.write_json(scratch, folder.plan_file(), wanted)
+    return True
+
+
+def release(folder):
+    """Gives a folder up in which nothing was measured."""
+    try:
+        names = {path.name for path in folder.root.iterdir()}
+        if not names <= {PLAN_FILE, "log"} or (folder.root / "log").is_dir() and any(
+                (folder.root / "log").iterdir()):
+            return
+        folder.plan_file().unlink(missing_ok=True)
+        for path in (folder.root / "log", folder.root):
+            if path.is_dir():
+                path.rmdir()
+    except OSError:
+        pass  # another writes there, whose folder it then is
+
+
+def require_same(root, held, wanted, allowed="a new folder, or that of this campaign",
+                 remedy="choose another with -o"):
+    """Throws Error where two campaign.json are of different campaigns, with what differs."""
+    if held["hash"] != wanted["hash"]:
+        told = difference(identity(held["plan"]), identity(wanted["plan"]))
+        raise Error(str(root), f"it holds another campaign: {told}", allowed, remedy)
+
+
+def _words(value):
+    return "not there" if value is None else json.dumps(value)[:80]
+
+
+def _element_name(path, place, old, new):
+    """Scenes and sensors go by their names."""
+    named = isinstance(old, dict) and isinstance(new, dict) and "name" in old and old["name"] == new.get("name")
+    return f"{path}[{old['name'] if named else place}]"
 
 
 def difference(old, new, path=""):
@@ -72,9 +103,9 @@ def difference(old, new, path=""):
         pairs = [(f"{path}.{key}".strip("."), old.get(key), new.get(key))
                  for key in sorted(old.keys() | new.keys())]
     elif isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
-        pairs = [(f"{path}[{i}]", a, b) for i, (a, b) in enumerate(zip(old, new))]
+        pairs = [(_element_name(path, i, a, b), a, b) for i, (a, b) in enumerate(zip(old, new))]
     else:
-        return f"{path} was {json.dumps(old)[:80]}, is {json.dumps(new)[:80]}"
+        return f"{path} was {_words(old)}, is {_words(new)}"
     for name, a, b in pairs:
         if a != b:
             return difference(a, b, name)
@@ -116,3 +147,12 @@ def note(folder, **words):
             file.write(json.dumps({"time_s": round(time.time(), 3), **words}) + "\n")
     except OSError:
         pass
+
+
+def damaged(folder, receipt):
+    """The first file of a receipt whose content is not what it says; None: all are."""
+    for name, (digest, size) in files.read_json(receipt)["files"].items():
+        path = folder.root / name
+        if not path.is_file() or path.stat().st_size != size or files.hash_file(path) != digest:
+            return path
+    return None

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """The index: one row a trial, as Parquet."""
 
+from collections import Counter
+
 import numpy as np
 
 from glidar.campaign import rotations
@@ -85,6 +87,16 @@ def join(parts, path):
     finally:
         if writer:
             writer.close()
+
+
+def count_errors(parts):
+    """How often each error text stands in parts of the index."""
+    import pyarrow.parquet as pq
+
+    counts = Counter()
+    for part in parts:
+        counts.update(text for text in pq.read_table(part, columns=["error"])["error"].to_pylist() if text)
+    return counts
 
 
 def batches(path, columns=None):

@@ -11,6 +11,7 @@ import glidar
 from glidar import Error
 from glidar.campaign import variants, yaml_file as yf
 
+COPY = "glidar-campaign-"  # begins the names of folders with changed files
 SMALLEST_FIT = 1e-9  # of a pinhole's directions, in pixels' tangents
 
 
@@ -18,14 +19,20 @@ def _loaded(text, path, changes, load):
     """Loads a text as if it were the file at `path`: names of files are its own, and so are the
     places in error texts."""
     whole = variants.replaced(text, yf.parse(text, path), changes)
-    with tempfile.TemporaryDirectory(prefix="glidar-campaign-") as folder:
+    with tempfile.TemporaryDirectory(prefix=COPY) as folder:
         copy = Path(folder) / Path(path).with_suffix(".yaml").name
         copy.write_text(whole, encoding="utf-8")
         try:
             return load(copy)
         except Error as error:
             parts = (error.where, error.found, error.allowed, error.remedy)
-            raise Error(*(part.replace(str(copy), str(path)) for part in parts)) from None
+            raise Error(*(part.replace(str(copy), str(path)).replace(f"{folder}/", f"{Path(path).parent}/")
+                          for part in parts)) from None
+
+
+def is_copy(path):
+    """Whether a file that was read is the changed one, which stands for the user's."""
+    return Path(path).parent.name.startswith(COPY)
 
 
 def load_scene(text, path, changes=()):

@@ -4,6 +4,7 @@
 
 import multiprocessing
 import os
+import sys
 from collections import deque
 from multiprocessing import connection
 
@@ -14,6 +15,16 @@ from glidar.campaign.progress import tell_warnings
 
 AHEAD = 2  # shards a worker holds: one is measured, one is written
 MOST_DEATHS = 3  # of workers that held the same shard
+
+
+WAIT_S = 0.2  # for a shard, before a worker looks whether its writing goes well
+NO_GUARD = 87  # exit code of a worker whose script calls run() when it is imported
+
+
+def require_guard():
+    """Ends a worker process whose script, which it imports when it starts, runs the campaign again."""
+    if getattr(multiprocessing.current_process(), "_inheriting", False):
+        sys.exit(NO_GUARD)
 
 
 def cores():
@@ -30,8 +41,13 @@ def usual_workers(plan):
 def _serve(plan, root, threads, pipe):
     """A worker process: shards come through the pipe, what is done goes back, None ends."""
     def shards():
-        while (shard := pipe.recv()) is not None:
-            yield shard
+        while True:
+            if not pipe.poll(WAIT_S):
+                yield None
+            elif (shard := pipe.recv()) is not None:
+                yield shard
+            else:
+                return
 
     tell_warnings()
     try:
@@ -95,6 +111,8 @@ class _Pool:
         try:
             kind, content = worker.pipe.recv()
         except (EOFError, ConnectionResetError):
+            kind, content = "death", None
+        if kind == "death":
             self._bury(worker, waiting)
             return
         if kind == "error":
@@ -113,6 +131,10 @@ class _Pool:
         """A worker died: its shards go to others."""
         worker.process.join()
         self.workers.remove(worker)
+        if worker.process.exitcode == NO_GUARD:
+            raise Error(str(getattr(sys.modules["__main__"], "__file__", "run()")),
+                        "it runs the campaign when it is imported, and every worker process imports it",
+                        "the call below: if __name__ == \"__main__\":", "workers=1 needs no other process")
         for shard in worker.held:
             self._deaths[shard] = self._deaths.get(shard, 0) + 1
             if self._deaths[shard] == MOST_DEATHS:

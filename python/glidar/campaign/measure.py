@@ -10,7 +10,7 @@ import numpy as np
 
 import glidar
 from glidar import Error
-from glidar.campaign import loading
+from glidar.campaign import inputs, loading
 from glidar.campaign.poses import require_whole
 from glidar.campaign.trials import changes, groups
 
@@ -116,6 +116,8 @@ class Measurer:
         for key, rows in groups(self._plan, trials).items():
             try:
                 stage = self._stage(key)
+            except inputs.Changed:
+                raise
             except Error as error:
                 yield rows, None, self._text(error)
                 continue
@@ -170,9 +172,7 @@ class Measurer:
 def _kept(known, key, load, source, changes):
     """What was loaded before and not long ago, or is loaded now."""
     if key not in known:
-        if source.fault:
-            raise Error("", source.fault, "", "")
-        known[key] = load(source.text, source.path, changes)
+        known[key] = inputs.load(source, load, changes)
     known.move_to_end(key)
     while len(known) > KEPT:
         known.popitem(last=False)
@@ -182,4 +182,4 @@ def _kept(known, key, load, source, changes):
 def _place(scene, target):
     """Which object scene.models[NAME or i].pose means."""
     word = target.steps[1][1:-1]
-    return int(word) if word.isdigit() else scene[word].index
+    return int(word) if word.isdecimal() else scene[word].index

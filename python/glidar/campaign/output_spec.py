@@ -4,9 +4,11 @@
 
 from dataclasses import dataclass
 
+from glidar._inputs import column_list
 from glidar.campaign import yaml_file as yf
 
 BOP_IMAGES = ["depth", "gray", "mask", "mask_visib"]
+COLUMNS = column_list("all")
 DEFAULT_COLUMNS = ("range", "intensity", "status")
 
 
@@ -48,7 +50,7 @@ DEFAULT = Outputs(npz=Npz())
 
 
 def _columns(field):
-    names = tuple(yf.text(item) for item in yf.items(field))
+    names = tuple(yf.one_of(item, COLUMNS) for item in yf.items(field))
     if len(set(names)) != len(names):
         yf.reject(field, "a column given twice", "each column once")
     return names

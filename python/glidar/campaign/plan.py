@@ -11,31 +11,20 @@ from pathlib import Path
 
 import glidar
 from glidar import Error
-from glidar.campaign import files, sensor_files, variants, yaml_file as yf
+from glidar.campaign import files, inputs, sensor_files, variants, yaml_file as yf
 from glidar.campaign.spec import Spec
 
-FORMAT = 1  # of the campaign folder
+FORMAT = 2  # of the campaign folder
 SHARD_BEAMS = 1 << 22  # in a shard, where the campaign file does not say how many trials
 LEAST_SHARD_TRIALS, LARGEST_SHARD_TRIALS = 16, 1024
 PLAN_FILE = "campaign.json"
 
 
 @dataclass(frozen=True)
-class Input:
-    """A scene or sensor file: its text once read, or the fault that it has."""
-
-    name: str  # as the campaign file spells it
-    path: Path
-    text: str = ""
-    fault: str = ""  # why its trials fail; empty: nothing is known to be wrong
-    files: tuple = ()  # (name as the file spells it, SHA-256) of what it reads
-
-
-@dataclass(frozen=True)
 class Plan:
     spec: Spec
-    scenes: tuple  # of Input
-    sensors: tuple  # of Input
+    scenes: tuple  # of inputs.Input
+    sensors: tuple  # of inputs.Input
     boresights: tuple  # per sensor: "x" or "z"
     shard_trials: int
 
@@ -59,11 +48,17 @@ class Plan:
         """All that makes it what it is, as JSON."""
         return {"format": FORMAT, "glidar": glidar.__version__, "campaign": meaning(self.spec),
                 "shard_trials": self.shard_trials,
-                "scenes": [_input_record(i) for i in self.scenes],
-                "sensors": [_input_record(i) for i in self.sensors]}
+                "scenes": [i.record() for i in self.scenes],
+                "sensors": [i.record() for i in self.sensors]}
 
     def hash(self):
-        return files.hash_bytes(files.json_bytes(self.record()))
+        return files.hash_bytes(files.json_bytes(identity(self.record())))
+
+
+def identity(record):
+    """What of a plan's record tells campaigns apart: all but the name."""
+    campaign = {key: value for key, value in record["campaign"].items() if key != "name"}
+    return {**record, "campaign": campaign}
 
 
 def meaning(value):
@@ -77,51 +72,49 @@ def meaning(value):
     return value if value is None or isinstance(value, (str, bool, int)) else float(value)
 
 
-def _input_record(source):
-    return {"name": source.name, "sha256": files.hash_bytes(source.text.encode()),
-            "fault": bool(source.fault), "files": [list(pair) for pair in source.files]}
+def _require_some(sources, what):
+    if all(source.fault for source in sources):
+        raise Error(what, f"none can be read: {sources[0].fault}", "at least one that can", "")
 
 
-def _read_input(name, path):
-    """Reads a scene or sensor file; a fault is kept, so that only its trials fail."""
-    try:
-        text = yf.read_text(path)
-        named = variants.files_of(yf.parse(text, path))
-        hashes = tuple((field.node.value, files.hash_file(found)) for field, found in named)
-        return Input(name, path, text, "", hashes)
-    except Error as error:
-        return Input(name, path, fault=str(error))
-
-
-def _require_some(inputs, what):
-    if all(i.fault for i in inputs):
-        raise Error(what, f"none can be read: {inputs[0].fault}", "at least one that can", "")
-
-
-def _check_variations(spec, inputs, of):
-    """Every value that varies stands in every file that can be read."""
-    for source in inputs:
+def _check_variations(spec, sources, of):
+    """Every value that varies stands in every file that can be read, and is no other's or part of it."""
+    for source in sources:
         if source.fault:
             continue
         field = yf.parse(source.text, source.path)
-        for variation in spec.vary:
-            if variation.target.of == of and not variation.is_pose:
-                variants.find(field, variation.target)
-            elif variation.target.of == of:
-                _check_pose(field, variation)
+        places = {}
+        for variation in [v for v in spec.vary if v.target.of == of]:
+            check = _check_pose if variation.is_pose else _check_value
+            _require_apart(spec, variation.path, check(field, variation), places)
+
+
+def _require_apart(spec, path, place, places):
+    """`places`: of those that are known, which path each is for."""
+    for other, known in places.items():
+        if f"{place}.".startswith(f"{known}.") or f"{known}.".startswith(f"{place}."):
+            raise Error(f"{spec.file}: vary.{path}", f"it is the same value as vary.{other}, or one is part of "
+                        "the other", "each value once", f"remove vary.{path} or vary.{other}")
+    places[path] = place
+
+
+def _check_value(field, variation):
+    """Where it stands: "models.[0].scale"."""
+    return variants.find(field, variation.target).path.replace("[", ".[")
 
 
 def _check_pose(field, variation):
-    """Poses are set from outside: of a model that is there, in a scene that stands still."""
+    """Poses are set from outside: of a model that is there, in a scene that stands still. Where it would stand."""
     steps = variation.target.steps
     if len(steps) != 3 or steps[0] != "models" or steps[2] != "pose":
         raise Error(f"vary.{variation.path}", "no pose of a model", "scene.models[NAME].pose", "")
-    variants.find(field, variants.Target("scene", steps[:2]))
-    for model in yf.items(yf.need(field, yf.entries(field), "models")):
-        moving = {"motion", "trajectory"} & yf.entries(model).keys()
+    model = variants.find(field, variants.Target("scene", steps[:2]), is_replaced=False)
+    for other in yf.items(yf.need(field, yf.entries(field), "models")):
+        moving = {"motion", "trajectory"} & yf.entries(other).keys()
         if moving:
-            yf.reject(model, f"it has the key '{moving.pop()}', and vary.{variation.path} sets poses",
+            yf.reject(other, f"it has the key '{moving.pop()}', and vary.{variation.path} sets poses",
                       "models that stand still", "")
+    return model.path.replace("[", ".[") + ".pose"
 
 
 def _auto_shard_trials(beams):
@@ -134,8 +127,9 @@ def _auto_shard_trials(beams):
 def make_plan(spec):
     """Reads what the campaign file names and cuts the trials into shards."""
     folder = spec.file.resolve().parent
-    scenes = tuple(_read_input(name, folder / name) for name in spec.scenes.names)
-    sensors = tuple(_read_input(name, sensor_files.find(name, folder)) for name in spec.sensors.names)
+    loaded = {}
+    scenes = tuple(inputs.read(name, folder / name, loaded) for name in spec.scenes.names)
+    sensors = tuple(inputs.read(name, sensor_files.find(name, folder), loaded) for name in spec.sensors.names)
     _require_some(scenes, f"{spec.file}: scene")
     _require_some(sensors, f"{spec.file}: sensor")
     _check_variations(spec, scenes, "scene")

@@ -70,17 +70,19 @@ class Progress:
 
 
 class Warnings(logging.Handler):
-    """Tells what the library warns of, the first few times: each of many files may say the same."""
+    """Tells what the library warns of, the first few that differ: each of many files may say the same."""
 
     def __init__(self):
         super().__init__(logging.WARNING)
-        self._told = 0
+        self._told = set()
 
     def emit(self, record):
-        self._told += 1
-        if self._told <= MOST_WARNINGS:
-            sys.stderr.write(f"glidar: warning: {record.getMessage()}\n")
-        if self._told == MOST_WARNINGS:
+        text = record.getMessage()
+        if text in self._told or len(self._told) == MOST_WARNINGS:
+            return
+        self._told.add(text)
+        sys.stderr.write(f"glidar: warning: {text}\n")
+        if len(self._told) == MOST_WARNINGS:
             sys.stderr.write("glidar: further warnings of this process are not shown\n")
 
 

@@ -2,18 +2,24 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A campaign from its file to its folder, by any executor; and parts of it merged."""
 
+import contextlib
 import os
 import shutil
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from glidar import Error
-from glidar.campaign import bop_models, files, finish as finishing, folder as folders
+from glidar.campaign import bop_models, files, finish as finishing, folder as folders, index
 from glidar.campaign.folder import Folder
-from glidar.campaign.local import run_local
-from glidar.campaign.plan import make_plan
+from glidar.campaign.local import require_guard, run_local
+from glidar.campaign.plan import Plan, make_plan
 from glidar.campaign.progress import Progress
 from glidar.campaign.spec import read_spec
+from glidar.campaign.work import Done
+
+StrPath = str | os.PathLike[str]
+Execute = Callable[[Plan, Folder, list[int], Callable[[Done], None]], None]
 
 
 @dataclass(frozen=True)
@@ -23,7 +29,7 @@ class Part:
     index: int = 0
     count: int = 1
 
-    def shards(self, total):
+    def shards(self, total: int) -> list[int]:
         return list(range(self.index, total, self.count))
 
 
@@ -36,17 +42,36 @@ class Outcome:
     whole: bool  # the campaign is complete, with index and manifest
     missing: int = 0  # shards that are not there yet
     rate: float = 0.0  # trials a second of this run
+    error: str = ""  # of failed trials the commonest, with their number
 
 
-def prepare(spec_path, root):
-    """Reads the campaign and claims its folder."""
+def _prepare(plan: Plan, folder: Folder) -> bool:
+    """Claims the folder, which it gives up again where it has nothing to begin with; returns whether it is new."""
+    is_new: bool = folders.claim(folder, plan)
+    files.remove_leftovers(folder.root)
+    try:
+        if plan.spec.outputs.bop and not folder.once("bop").is_file():
+            bop_models.write(plan, folder)
+    except Error:
+        if is_new:
+            folders.release(folder)
+        raise
+    return is_new
+
+
+@contextlib.contextmanager
+def claimed(spec_path: StrPath, root: StrPath, is_part: bool = False) -> Iterator[tuple[Plan, Folder]]:
+    """Reads the campaign and claims its folder; where an error comes before anything is measured, for nothing.
+    Parts may share the folder, and leave it."""
     plan = make_plan(read_spec(spec_path))
     folder = Folder(Path(root))
-    folders.claim(folder, plan)
-    files.remove_leftovers(root)
-    if plan.spec.outputs.bop and not folder.once("bop").is_file():
-        bop_models.write(plan, folder)
-    return plan, folder
+    is_new = _prepare(plan, folder)
+    try:
+        yield plan, folder
+    except Error:
+        if is_new and not is_part:
+            folders.release(folder)
+        raise
 
 
 def _counts(folder, shards):
@@ -55,40 +80,79 @@ def _counts(folder, shards):
     return sum(r["trials"] for r in receipts), sum(r["failed"] for r in receipts)
 
 
-def run(spec_path, root, part=Part(), workers=0, execute=None, quiet=False):
-    """Measures what is missing of a part of the campaign, and finishes the campaign when nothing
-    is. `execute(plan, folder, shards, report)` runs the shards; default: this machine's cores."""
-    plan, folder = prepare(spec_path, root)
-    wanted = part.shards(plan.shards)
-    todo = folders.missing(folder, wanted)
-    done, failed = _counts(folder, sorted(set(wanted) - set(todo)))
-    total = sum(plan.trials_of(shard)[1] for shard in wanted)
-    progress = Progress(total, done, quiet)
-    progress.failed = failed
-    if todo:
-        if execute:
-            execute(plan, folder, todo, lambda d: progress.advance(d.trials, d.failed))
-        else:
-            run_local(plan, folder, todo, lambda d: progress.advance(d.trials, d.failed), workers)
-    progress.finish()
-    if part.count > 1:
-        return Outcome(progress.done, progress.failed, False, 0, progress.rate())
-    return _finished(folder, progress.rate())
+def run(spec_path: StrPath, root: StrPath, part: Part = Part(), workers: int = 0,
+        execute: Execute | None = None, quiet: bool = False) -> Outcome:
+    """Measures what is missing of a part of the campaign, and finishes the campaign when nothing is.
+
+    Worker processes import the script that calls this: the call stands below `if __name__ == "__main__":`, unless
+    there is one worker.
+
+    Args:
+        spec_path: the campaign file.
+        root: the folder of the data set; one that holds a part of the same campaign goes on.
+        workers: processes; 0: one, and where scenes or sensors differ from trial to trial one per core.
+        execute: runs shards: `execute(plan, folder, shards, report)`; None: this machine does.
+        quiet: shows no progress.
+
+    Raises:
+        Error: bad input, or no room; trials that fail are counted in the outcome.
+    """
+    require_guard()
+    with claimed(spec_path, root, part.count > 1) as (plan, folder):
+        wanted = part.shards(plan.shards)
+        todo = folders.missing(folder, wanted)
+        done, failed = _counts(folder, sorted(set(wanted) - set(todo)))
+        total = sum(plan.trials_of(shard)[1] for shard in wanted)
+        progress = Progress(total, done, quiet)
+        progress.failed = failed
+        _measure(plan, folder, todo, execute, workers, lambda d: progress.advance(d.trials, d.failed))
+        progress.finish()
+        if part.count > 1:
+            return Outcome(progress.done, progress.failed, False, 0, progress.rate(),
+                           _commonest(folder, wanted))
+        return _finished(folder, progress.rate())
 
 
-def _finished(folder, rate=0.0):
+def _measure(plan: Plan, folder: Folder, todo: list[int], execute: Execute | None, workers: int,
+             report: Callable[[Done], None]) -> None:
+    try:
+        if todo and execute:
+            execute(plan, folder, todo, report)
+        elif todo:
+            run_local(plan, folder, todo, report, workers)
+    finally:
+        files.remove_leftovers(folder.root)
+
+
+def _commonest(folder: Folder, shards: Sequence[int]) -> str:
+    """Of the errors of failed trials the commonest, in words."""
+    failing = (folder.part(s) for s in shards if files.read_json(folder.receipt(s))["failed"])
+    counts = index.count_errors(failing)
+    if not counts:
+        return ""
+    text, count = counts.most_common(1)[0]
+    return f"{count} of {counts.total()}: {text}"
+
+
+def _finished(folder: Folder, rate: float = 0.0) -> Outcome:
     described = files.read_json(folder.plan_file())
-    missing = folders.missing(folder, range(described["shards"]))
+    shards = range(described["shards"])
+    missing = folders.missing(folder, shards)
     if missing:
         return Outcome(0, 0, False, len(missing), rate)
     trials, failed = finishing.finish(folder, described)
-    return Outcome(trials, failed, True, 0, rate)
+    return Outcome(trials, failed, True, 0, rate, _commonest(folder, shards) if failed else "")
+
+
+def _bad_content(path: Path) -> Error:
+    return Error(str(path), "its content is not what its receipt says", "files as they were written",
+                 "remove its receipt and run that part again")
 
 
 def _adopt(name, entry, source, target, scratch):
     """Takes a file over from another folder, if it is what its receipt says."""
-    digest, size = entry
-    if (target / name).is_file() and (target / name).stat().st_size == size:
+    digest, _ = entry
+    if (target / name).is_file() and files.hash_file(target / name) == digest:
         return
     path = scratch.path(Path(name).name)
     try:
@@ -96,9 +160,7 @@ def _adopt(name, entry, source, target, scratch):
     except OSError as error:
         raise files.write_error(target / name, error) from None
     if files.hash_file(path) != digest:
-        path.unlink()
-        raise Error(str(source / name), "its content is not what its receipt says",
-                    "files as they were written", "remove its receipt and run that part again")
+        raise _bad_content(source / name)
     files.publish(path, target / name)
 
 
@@ -117,32 +179,44 @@ def _adopt_receipt(receipt, source, target, scratch):
     files.write_bytes(scratch, known, receipt.read_bytes())
 
 
-def merge(sources, root):
-    """Brings the parts of a campaign together and finishes it."""
+def _open_target(sources, root, described, scratch):
+    """The folder of the whole: a new one, or one of the campaign whose files are what their receipts say."""
+    target = Folder(Path(root))
+    if target.plan_file().is_file():
+        folders.require_same(root, files.read_json(target.plan_file()), described)
+    elif target.root.is_dir() and any(name != "tmp" for name in os.listdir(target.root)):
+        raise Error(str(root), "the folder is not empty and holds no campaign",
+                    "a new folder, or that of this campaign", "choose another with -o")
+    else:
+        files.write_bytes(scratch, target.plan_file(), Folder(Path(sources[0])).plan_file().read_bytes())
+    for receipt in sorted((target.root / "receipts").glob("*.json")):
+        if path := folders.damaged(target, receipt):
+            raise _bad_content(path)
+    return target
+
+
+def merge(sources: Sequence[StrPath], root: StrPath) -> Outcome:
+    """Brings the parts of a campaign together and finishes it.
+
+    Args:
+        sources: folders of the parts.
+        root: folder of the whole: one of the parts, or another.
+
+    Raises:
+        Error: parts of different campaigns, and files that are not what their receipts say.
+    """
     described = folders.opened(sources[0])[1]
     for source in sources[1:]:
-        other = folders.opened(source)[1]
-        if other["hash"] != described["hash"]:
-            raise Error(str(source), "it holds another campaign than " + str(sources[0]) + ": "
-                        + folders.difference(described["plan"], other["plan"]),
-                        "parts of one campaign", "")
-    target = Folder(Path(root))
-    scratch = files.Scratch(target.root)
-    if not target.plan_file().is_file():
-        if target.root.is_dir() and os.listdir(target.root):
-            raise Error(str(root), "the folder is not empty and holds no campaign",
-                        "a new folder, or that of this campaign", "choose another with -o")
-        files.write_bytes(scratch, target.plan_file(),
-                          Folder(Path(sources[0])).plan_file().read_bytes())
-    elif files.read_json(target.plan_file())["hash"] != described["hash"]:
-        raise Error(str(root), "it holds another campaign", "a new folder, or that of this campaign",
-                    "choose another with -o")
-    for source in map(Path, sources):
-        if source.resolve() != target.root.resolve():
-            for receipt in sorted((source / "receipts").glob("*.json")):
-                _adopt_receipt(receipt, source, target.root, scratch)
-            _adopt_logs(source, target.root)
-    scratch.remove()
+        folders.require_same(source, folders.opened(source)[1], described,
+                             f"parts of one campaign, here that of {sources[0]}", "")
+    with files.scratch(root) as scratch:
+        target = _open_target(sources, root, described, scratch)
+        for source in map(Path, sources):
+            if source.resolve() != target.root.resolve():
+                for receipt in sorted((source / "receipts").glob("*.json")):
+                    _adopt_receipt(receipt, source, target.root, scratch)
+                _adopt_logs(source, target.root)
+    files.remove_leftovers(root)
     return _finished(target)
 
 
@@ -152,8 +226,8 @@ def _adopt_logs(source, target):
         shutil.copyfile(log, target / "log" / log.name)
 
 
-def check(root):
-    """Names of files that differ from the manifest, or are missing."""
+def check(root: StrPath) -> tuple[int, list[str]]:
+    """Compares every file with the manifest: (how many there are, names of those that differ or are missing)."""
     folder, _ = folders.opened(root)
     manifest = files.read_json(folder.root / finishing.MANIFEST_FILE)
     wrong = []

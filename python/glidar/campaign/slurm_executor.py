@@ -10,7 +10,7 @@ import sys
 from pathlib import Path
 
 from glidar import Error
-from glidar.campaign import run as running
+from glidar.campaign import files, run as running
 
 TASKS = 8
 PROGRAM = f"{shlex.quote(sys.executable)} -m glidar.campaign"
@@ -52,6 +52,27 @@ def _sbatch(script, *options):
     return done.stdout.strip().split(";")[0]
 
 
+def _write_scripts(folder, texts):
+    paths = [folder.root / "log" / f"{name}.sbatch" for name in ("array", "merge")]
+    for path, text in zip(paths, texts):
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        except OSError as error:
+            raise files.write_error(path, error) from None
+    return paths
+
+
+def _submit_array(paths):
+    """The number of the job; where there is none, the scripts are gone."""
+    try:
+        return _sbatch(paths[0])
+    except Error:
+        for path in paths:
+            path.unlink(missing_ok=True)
+        raise
+
+
 def submit(flags):
     """Writes and submits the scripts; waits for the end where that is asked for. Returns the Outcome
     when it is known."""
@@ -60,15 +81,10 @@ def submit(flags):
                     "install slurm-client, or run the parts by hand: --shard i/N")
     if flags.shard != (0, 1):
         raise Error("--shard", "given with --executor slurm, whose tasks are the parts", "", "")
-    plan, folder = running.prepare(flags.campaign, flags.output)
-    count = min(flags.tasks or TASKS, plan.shards)
-    (folder.root / "log").mkdir(parents=True, exist_ok=True)
-    paths = []
-    for name, text in zip(("array", "merge"), scripts(flags, count)):
-        path = folder.root / "log" / f"{name}.sbatch"
-        path.write_text(text, encoding="utf-8")
-        paths.append(path)
-    array = _sbatch(paths[0])
+    with running.claimed(flags.campaign, flags.output) as (plan, folder):
+        count = min(flags.tasks or TASKS, plan.shards)
+        paths = _write_scripts(folder, scripts(flags, count))
+        array = _submit_array(paths)
     print(f"submitted job {array}: {count} tasks", flush=True)
     wait = ["--wait"] if flags.wait else []
     merge = _sbatch(paths[1], f"--dependency=afterany:{array}", *wait)

@@ -6,6 +6,7 @@ Values are replaced in the text, where they stand, so that line numbers, comment
 file stay, and an error about the changed file points at the right line of the user's.
 """
 
+import os
 import re
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +17,9 @@ from glidar.campaign import yaml_file as yf
 
 PATH = re.compile(r"(scene|sensor)((?:\.[A-Za-z_]\w*|\[[^\[\]]+\])+)")
 STEP = re.compile(r"\.([A-Za-z_]\w*)|\[([^\[\]]+)\]")
-FILE_KEYS = {"model", "file", "sensor", "trajectory", "noise_texture"}  # whose texts may be paths
+ANCHOR = re.compile(r"(?:[&!]\S*\s+)*")
+MOST_DIGITS = 9  # of an element's place
+FILE_KEYS = {"model", "file", "sensor", "trajectory", "times", "noise_texture"}  # whose texts may be paths
 
 
 @dataclass(frozen=True)
@@ -40,8 +43,8 @@ def read_target(field, path):
 def _element(field, word):
     """The element of a list by its place from 0, or by its name."""
     elements = yf.items(field, 0)
-    if word.isdigit():
-        if int(word) >= len(elements):
+    if word.isdecimal():
+        if len(word) > MOST_DIGITS or int(word) >= len(elements):
             yf.reject(field, f"there is no element [{word}]", f"[0] to [{len(elements) - 1}]")
         return elements[int(word)]
     names = []
@@ -55,52 +58,78 @@ def _element(field, word):
                      yf.did_you_mean(word, known))
 
 
-def find(field, target):
-    """The value that a target names; throws Error where the file does not hold it."""
+def _require_unanchored(field):
+    """A value with an anchor may stand at several places, and would change at all of them."""
+    mark = field.node.start_mark
+    if mark.buffer[mark.pointer] in "&*!":
+        yf.reject(field, "an anchor, an alias or a tag", "a plain value", "write it out")
+
+
+def find(field, target, is_replaced=True):
+    """The value that a target names; throws Error where the file does not hold it, or where its text cannot be
+    replaced."""
     for step in target.steps:
         if step.startswith("["):
             field = _element(field, step[1:-1])
-            continue
-        found = yf.entries(field)
-        if step not in found:
-            yf.reject(field, f"there is no key '{step}'", ", ".join(found) or "no key",
-                      yf.did_you_mean(step, list(found))
-                      or "write it into the file with its usual value, so that it can be varied")
-        field = found[step]
+        else:
+            field = _entry(field, step)
+        if is_replaced:
+            _require_unanchored(field)
     return field
 
 
+def _entry(field, key):
+    found = yf.entries(field)
+    if key not in found:
+        yf.reject(field, f"there is no key '{key}'", ", ".join(found) or "no key",
+                  yf.did_you_mean(key, list(found))
+                  or "write it into the file with its usual value, so that it can be varied")
+    return found[key]
+
+
 def files_of(field):
-    """The files that a scene or sensor file names, as (field, path): those that are there."""
+    """The files that a scene or sensor file may name, as (field, key, path), each place of the text once; whether
+    they are there is not asked."""
     folder = Path(field.file).parent
-    stack, found = [field], []
+    stack, found, seen = [field], [], set()
     while stack:
         here = stack.pop()
+        if id(here.node) in seen:  # reached by an alias before, or within itself
+            continue
+        seen.add(id(here.node))
         if isinstance(here.node, yaml.MappingNode):
             for key, value in yf.entries(here).items():
-                scalar = isinstance(value.node, yaml.ScalarNode)
-                if scalar and key in FILE_KEYS and (folder / value.node.value).is_file():
-                    found.append((value, folder / value.node.value))
+                if key in FILE_KEYS and _is_path(value.node):
+                    found.append((value, key, Path(os.path.realpath(folder / value.node.value))))
                 stack.append(value)
         elif isinstance(here.node, yaml.SequenceNode):
             stack += yf.items(here, 0)
-    return sorted(found, key=lambda pair: pair[0].node.start_mark.index)
+    return sorted(found, key=lambda entry: entry[0].node.start_mark.index)
+
+
+def _is_path(node):
+    return (isinstance(node, yaml.ScalarNode) and node.value and "\0" not in node.value
+            and not node.value.startswith("builtin:"))
 
 
 def _quoted(path):
     return "'" + str(path).replace("'", "''") + "'"
 
 
+def _place(text, field):
+    """Where the value itself stands, after its anchor and tag: (first, last)."""
+    first, last = field.node.start_mark.index, field.node.end_mark.index
+    return ANCHOR.match(text, first).end(), last
+
+
 def replaced(text, field, values):
     """The text with values replaced: pairs (Target, text); paths of files become absolute, so that
     it can be read from any folder."""
-    edits = [(value, _quoted(path.resolve())) for value, path in files_of(field)]
+    edits = [(value, _quoted(path)) for value, _, path in files_of(field) if os.path.isfile(path)]
     edits += [(find(field, target), value) for target, value in values]
     edits.sort(key=lambda edit: edit[0].node.start_mark.index, reverse=True)
     for old, new in edits:
-        first, last = old.node.start_mark.index, old.node.end_mark.index
-        if text[first] in "&!":
-            yf.reject(old, "an anchor or a tag", "a plain value", "write it out")
+        first, last = _place(text, old)
         text = text[:first] + new + text[last:]
     return text
 

@@ -49,6 +49,10 @@ class Writer:
                 continue
         raise Stopped
 
+    def check(self):
+        if self._fault is not None:
+            raise Stopped
+
     def abandon(self):
         """Ends without the shard under way."""
         try:
@@ -102,12 +106,15 @@ class Writer:
 
 
 def work(plan, folder, shards, threads, report):
-    """Measures and writes the shards, an iterable, one after the other; `report` hears of each Done,
-    in the writer's thread. `threads` 0: as many as there are cores."""
+    """Measures and writes the shards, an iterable, one after the other; it gives None now and then where it waits
+    for the next. `report` hears of each Done, in the writer's thread. `threads` 0: as many as there are cores."""
     measurer = Measurer(plan, threads)
     writer = Writer(plan, folder, report)
     try:
         for shard in shards:
+            if shard is None:
+                writer.check()
+                continue
             trials = draw_trials(plan, *plan.trials_of(shard))
             writer.put((shard, trials, time.monotonic()))
             for piece in measurer.measure(trials):

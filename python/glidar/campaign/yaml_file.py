@@ -12,6 +12,7 @@ import yaml
 from glidar import Error
 
 LARGEST_BYTES = 2 << 20
+LONGEST_SHOWN = 80  # letters of a value in an error text
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
 
 
@@ -66,7 +67,8 @@ def describe(field):
         return f"a list of {len(node.value)}"
     if node.value == "" and node.style is None:
         return "nothing"
-    return node.value if is_number(node) else f"the text '{node.value}'"
+    shown = node.value if len(node.value) <= LONGEST_SHOWN else node.value[:LONGEST_SHOWN] + "..."
+    return shown if is_number(node) else f"the text '{shown}'"
 
 
 def is_number(node):
@@ -96,10 +98,21 @@ def read_text(path):
         raise Error(str(path), "it is not text in UTF-8", "a YAML file", "") from None
 
 
+class Loader(yaml.SafeLoader):
+    """Where a text or number is an alias, it stands at the alias and not at its anchor."""
+
+    def compose_node(self, parent, index):
+        alias = self.peek_event()
+        node = super().compose_node(parent, index)
+        if isinstance(alias, yaml.AliasEvent) and isinstance(node, yaml.ScalarNode):
+            return yaml.ScalarNode(node.tag, node.value, alias.start_mark, alias.end_mark, node.style)
+        return node
+
+
 def parse(text, path):
     """The map that a YAML text holds, as a Field."""
     try:
-        documents = list(yaml.compose_all(text, Loader=yaml.SafeLoader))
+        documents = list(yaml.compose_all(text, Loader=Loader))
     except (yaml.YAMLError, RecursionError) as error:
         raise syntax_error(path, error) from None
     if len(documents) != 1 or not isinstance(documents[0], yaml.MappingNode):
@@ -162,15 +175,16 @@ def number(field, rule=ANY):
     value = float(field.node.value)
     inside = rule.least < value < rule.most if rule.without_ends else rule.least <= value <= rule.most
     if not (math.isfinite(value) and inside):
-        reject(field, field.node.value, rule.allowed)
+        reject(field, describe(field), rule.allowed)
     return value
 
 
 def whole(field, least, most):
     text = field.node.value if is_number(field.node) else ""
-    if not re.fullmatch(r"\+?\d+", text) or not least <= int(text) <= most:
+    digits = re.fullmatch(r"\+?0*(\d{1,20})", text)  # more are too large, and too many for int()
+    if not digits or not least <= int(digits[1]) <= most:
         reject(field, describe(field), f"a whole number from {least} to {most}")
-    return int(text)
+    return int(digits[1])
 
 
 def boolean(field):

@@ -94,6 +94,11 @@ outputs:
      ["more than 8 sigma"]),
     ("trials: 10", "trials: 10\noutputs: {}", ["nothing is written"]),
     ("trials: 10", "trials: 10\noutputs: {bop: {images: [rgb]}}", ["'rgb'", "depth, gray"]),
+    ("trials: 10", f"trials: {'9' * 5000}", ["3:9", "trials", "999...", "from 1 to 4294967296"]),
+    ("trials: 10", f"trials: 10\nseed: {'9' * 20}", ["from 0 to 18446744073709551615"]),
+    ("trials: 10", "trials: 10\noutputs: {npz: {columns: [range, rang]}}",
+     ["4:34", "columns[1]", "'rang'", "did you mean 'range'?"]),
+    ("trials: 10", "trials: 10\noutputs: {pcd: {columns: [ranges]}}", ["'ranges'", "xyz, true_xyz"]),
     ("trials: 10", "trials: 10\noutputs: {kitti: 1}", ["1", "true or false"]),
     ("trials: 10", "trials: [", ["expected"]),
 ])

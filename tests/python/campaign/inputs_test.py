@@ -1,0 +1,233 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""What scene and sensor files name belongs to the campaign: to the last file that is read."""
+
+import json
+import re
+import struct
+import zlib
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as pq
+import pytest
+
+from glidar import Error
+from glidar.campaign import inputs, loading, plan, run, spec, variants, work, yaml_file as yf
+
+ROOT = Path(__file__).resolve().parents[3]
+CORNERS = np.array([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], np.float32)
+GLTF = {
+    "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+    "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "buffers": [{"uri": "t.bin", "byteLength": 36}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
+                   "min": [-1, -1, 0], "max": [1, 1, 0]}]}
+OBJ = "mtllib t.mtl\nv -1 -1 0\nv 1 -1 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n"
+MTL = "newmtl m\nKd 0.5 0.5 0.5\nmap_Kd t.png\n"
+
+
+def png(grey):
+    """A grey image of one pixel."""
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", 1, 1, 8, 0, 0, 0, 0))
+            + chunk(b"IDAT", zlib.compress(bytes([0, grey]))) + chunk(b"IEND", b""))
+
+
+def write_models(campaign):
+    folder = campaign.folder / "shapes"
+    folder.mkdir()
+    (folder / "t.gltf").write_text(json.dumps(GLTF))
+    (folder / "t.bin").write_bytes(CORNERS.tobytes())
+    (folder / "t.obj").write_text(OBJ)
+    (folder / "t.mtl").write_text(MTL)
+    (folder / "t.png").write_bytes(png(200))
+    (folder / "noise.png").write_bytes(png(100))
+    (folder / "path.tum").write_text("0 0 0 0 0 0 0 1\n1 0 0 1 0 0 0 1\n")
+    campaign.write("scene.yaml", """models:
+  - {model: shapes/t.gltf, name: a}
+  - model: shapes/t.obj
+    name: b
+    materials: {'*': {noise_texture: shapes/noise.png}}
+    motion: {trajectory: shapes/path.tum}
+""")
+    return folder
+
+
+def change(path):
+    """Another content of the same length."""
+    if path.suffix == ".png":
+        path.write_bytes(png(50))
+    elif path.suffix == ".bin":
+        path.write_bytes((CORNERS * 0.5).tobytes())
+    else:
+        path.write_text(path.read_text().replace("1 0 0 1 ", "1 0 0 2 ").replace("0.5", "0.7"))
+
+
+NAMES = ["t.gltf", "t.bin", "t.obj", "t.mtl", "t.png", "noise.png", "path.tum"]
+
+
+@pytest.mark.parametrize("name", NAMES[1:2] + NAMES[3:])
+def test_a_change_of_any_file_that_is_read_is_another_campaign_and_is_named(campaign, name):
+    folder = write_models(campaign)
+    campaign.run("out", "--shard", "0/2")
+    campaign.run("out", "--shard", "0/2")
+    change(folder / name)
+    told = campaign.run("out", "--shard", "1/2", code=2)
+    kind = "files" if name in ("noise.png", "path.tum") else "parts"
+    assert f"it holds another campaign: scenes[scene.yaml].{kind}.shapes/{name} was " in told
+
+
+def test_a_model_that_is_gone_is_told_as_such(campaign):
+    folder = write_models(campaign)
+    campaign.run("out", "--shard", "0/2")
+    (folder / "t.obj").unlink()
+    told = campaign.run("out", code=2)
+    assert re.search(r"scenes\[scene.yaml\]\.files\.shapes/t\.obj was \"\w+\", is not there", told)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_change_while_the_campaign_runs_ends_it_and_no_trial_fails_by_it(campaign, name):
+    folder = write_models(campaign)
+
+    def execute(a_plan, a_folder, shards, report):
+        if name in ("t.gltf", "t.obj"):
+            (folder / name).unlink()
+        else:
+            change(folder / name)
+        work.work(a_plan, a_folder, shards, 1, report)
+
+    with pytest.raises(Error, match=f"shapes/{name}: it was changed while the campaign ran; put it back"):
+        run.run(campaign.folder / "campaign.yaml", campaign.folder / "out", execute=execute, quiet=True)
+    assert not (campaign.folder / "out" / "receipts").exists()
+
+
+@pytest.mark.parametrize("name", ["noise.png", "t.png"])
+def test_files_that_come_to_be_while_the_campaign_runs_end_it(campaign, name):
+    folder = write_models(campaign)
+    (folder / name).rename(folder / "away.png")
+    planned = plan.make_plan(spec.read_spec(campaign.folder / "campaign.yaml"))
+    (folder / "away.png").rename(folder / name)
+    with pytest.raises(inputs.Changed, match=name):
+        inputs.load(planned.scenes[0], loading.load_scene, ())
+
+
+def test_parts_of_models_have_names_that_are_the_same_on_every_machine(campaign):
+    folder = write_models(campaign)
+    (campaign.folder / "there").mkdir()
+    folder.rename(campaign.folder / "there" / "deep")
+    (campaign.folder / "shapes").symlink_to(campaign.folder / "there" / "deep")
+    record = plan.make_plan(spec.read_spec(campaign.folder / "campaign.yaml")).record()
+    scene = record["scenes"][0]
+    assert scene["files"].keys() | scene["parts"].keys() == {f"shapes/{name}" for name in NAMES}
+    assert scene["parts"].keys() == {f"shapes/t.{suffix}" for suffix in ("bin", "mtl", "png")}
+
+
+def test_a_model_of_one_scene_is_that_of_another(campaign):
+    folder = write_models(campaign)
+    campaign.write("other.yaml", "models: [{model: ./shapes/../shapes/t.obj}]\n")
+    campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text().replace(
+        "scene: scene.yaml", "scene: {grid: [scene.yaml, other.yaml]}"))
+    campaign.run("out", "--shard", "0/2")
+    change(folder / "t.mtl")
+    assert "t.mtl was" in campaign.run("out", code=2)
+
+
+def test_models_that_stay_are_measured_by_all_workers(campaign):
+    write_models(campaign)
+    campaign.run("one", "--workers", "1")
+    campaign.run("two", "--workers", "2")
+    assert campaign.contents("one") == campaign.contents("two")
+    assert sum(pq.read_table(campaign.folder / "one" / "index.parquet")["hits"].to_pylist()) > 0
+
+
+PATHS = {"model": "a model", "noise_texture": "materials", "trajectory": "motion", "file": "optics, trajectory",
+         "times": "trajectory", "sensor": "scene"}
+
+
+def test_every_key_whose_text_the_readers_take_as_a_path_is_known():
+    """Where the library's readers seek files beside their own: a new place needs its key in FILE_KEYS."""
+    assert variants.FILE_KEYS == PATHS.keys()
+    found = {}
+    for source in sorted((ROOT / "glidar" / "io").glob("*.cpp")):
+        count = len(re.findall(r"(?<!string )\b(?:path_beside|existing_file|resolved)\(", source.read_text()))
+        if count:
+            found[source.name] = count
+    assert found == {"motion_yaml.cpp": 4, "rig_yaml.cpp": 1, "scene_plan.cpp": 3, "sensor_file.cpp": 1,
+                     "table_yaml.cpp": 2}
+
+
+def test_a_trajectory_with_a_file_of_times_is_found(campaign):
+    row = "1 0 0 {} 0 1 0 0 0 0 1 0\n"
+    campaign.write("poses.txt", row.format(0) + row.format(1))
+    campaign.write("times.txt", "0\n1\n")
+    campaign.write("rays.npy", "")
+    np.save(campaign.folder / "rays.npy", np.array([[0, 0, 1.0], [0.01, 0, 1.0]]))
+    campaign.write("camera.yaml", "optics: {type: table, file: rays.npy, point_us: 1}\n")
+    campaign.write("scene.yaml", """models:
+  - {model: builtin:box, motion: {trajectory: {file: poses.txt, times: times.txt}}}
+sensor: camera.yaml
+""")
+    told = campaign.run("out")
+    assert "0 failed" in told
+    listed = json.loads((campaign.folder / "out" / "campaign.json").read_text())["plan"]
+    assert listed["scenes"][0]["files"].keys() == {"poses.txt", "times.txt", "camera.yaml"}
+    assert listed["sensors"][0]["files"].keys() == {"rays.npy"}
+
+
+def replaced(folder, text, values=()):
+    field = yf.parse(text, folder / "scene.yaml")
+    return variants.replaced(text, field, [(variants.read_target(field, path), new) for path, new in values])
+
+
+def test_aliases_stand_for_the_same_and_each_place_is_replaced_once(tmp_path):
+    for name in ("rock.obj", "t.png"):
+        (tmp_path / name).write_text("")
+    text = """models:
+  - {model: &m rock.obj, name: a, materials: {'*': &n {noise_texture: t.png}}}
+  - {model: *m, name: b, materials: {'*': *n}}
+"""
+    rock, texture = (f"'{tmp_path.resolve() / name}'" for name in ("rock.obj", "t.png"))
+    assert replaced(tmp_path, text) == text.replace("rock.obj", rock).replace("*m", rock).replace("t.png", texture)
+
+
+def test_a_value_that_stands_at_several_places_by_an_alias_does_not_vary(tmp_path):
+    text = "noise:\n  - &n {type: range_gaussian, sigma_m: 0.1}\n  - *n\n"
+    for place in (0, 1):
+        with pytest.raises(Error, match="an anchor"):
+            replaced(tmp_path, text, [(f"sensor.noise[{place}].sigma_m", "1")])
+
+
+def test_a_file_within_itself_ends_and_is_refused(campaign):
+    campaign.write("scene.yaml", "a: &a\n  b: *a\nmodels: []\n")
+    assert "unknown key 'a'" in campaign.run("out", code=1)
+
+
+TWICE = [
+    ("scene.models[rock].scale: {uniform: [1, 2]}", "scene.models[0].scale: 3"),
+    ("scene.models[rock].scale: 2", "scene.models[00].scale: 3"),
+    ("sensor.noise[0].sigma_m: 0.1", "sensor.noise[0]: 1"),
+    ("scene.models[moon].pose.position[0]: 1",
+     "scene.models[1].pose: {position: {point: [0, 0, 0]}, orientation: uniform}"),
+    ("scene.models[moon].pose: {position: {point: [0, 0, 1]}, orientation: uniform}",
+     "scene.models[1].pose: {position: {point: [0, 0, 0]}, orientation: uniform}")]
+
+
+@pytest.mark.parametrize("first, second", TWICE)
+def test_a_value_that_varies_twice_is_refused_with_both_names(campaign, first, second):
+    campaign.add(f"vary:\n  {first}\n  {second}\n")
+    told = campaign.run("out", code=2)
+    for path in (first.split(":")[0], second.split(":")[0]):
+        assert f"vary.{path}" in told, told
+
+
+def test_values_beside_each_other_vary(campaign):
+    campaign.add("vary:\n  scene.models[rock].scale: 2\n  scene.models[1].scale: 3\n  sensor.noise[0].sigma_m: 0\n")
+    campaign.run("out")
+
+
+def test_an_element_of_too_many_digits_is_refused(campaign):
+    campaign.add(f"vary:\n  ? scene.models[{'9' * 5000}].scale\n  : 2\n")
+    assert "there is no element" in campaign.run("out", code=2)

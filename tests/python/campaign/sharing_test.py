@@ -1,0 +1,193 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""A campaign's folder when several runs, ends before the end and other names share it."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from glidar import Error
+from glidar.campaign import files, folder, plan, run, spec, work
+
+
+def damage(root, kind="npz"):
+    """One byte of a file, the length stays; its name."""
+    victim = sorted((root / kind).iterdir())[-1]
+    data = bytearray(victim.read_bytes())
+    data[len(data) // 2] ^= 1
+    victim.write_bytes(data)
+    return victim.name
+
+
+def parts(campaign):
+    for i in (0, 1):
+        campaign.run(f"p{i}", "--shard", f"{i}/2")
+    return campaign.folder / "p0"
+
+
+@pytest.mark.parametrize("kind", ["npz", "parts"])
+def test_merging_into_a_part_checks_that_part_too(campaign, kind):
+    name = damage(parts(campaign), kind)
+    told = campaign.call("merge", "p0", "p1", code=2)
+    assert name in told and "not what its receipt says" in told and "run that part again" in told
+    assert not (campaign.folder / "p0" / "manifest.json").exists()
+    assert not (campaign.folder / "p0" / "tmp").exists()
+
+
+def test_merging_a_single_folder_checks_it(campaign):
+    for i in (0, 1):
+        campaign.run("out", "--shard", f"{i}/2")
+    name = damage(campaign.folder / "out")
+    assert name in campaign.call("merge", "out", code=2)
+
+
+def test_merging_replaces_a_file_of_the_same_length_that_differs(campaign):
+    campaign.run("whole")
+    root = parts(campaign)
+    name = damage(root)
+    receipt = next(path for path in (root / "receipts").iterdir() if name in path.read_text())
+    receipt.unlink()  # so that the file is one that a run left behind
+    campaign.run("again", "--shard", "0/2")
+    campaign.call("merge", "p0", "again", "p1")
+    assert campaign.contents("p0") == campaign.contents("whole")
+
+
+def test_the_end_of_one_run_leaves_what_another_is_writing(campaign):
+    root = campaign.folder / "out"
+    mine = files.Scratch(root)
+    path = mine.path("half.npz")
+    path.write_text("half")
+    campaign.run("out")
+    assert path.read_text() == "half"
+    mine.remove()
+    assert not (root / "tmp").exists()
+
+
+def slow(campaign):
+    campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text()
+                   .replace("trials: 40", "trials: 4000"))
+
+
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM])
+def test_an_ended_run_of_many_workers_leaves_nothing_half_written(campaign, end):
+    slow(campaign)
+    process = campaign.start("run", "campaign.yaml", "-o", "out", "--workers", "2")
+    while len(list((campaign.folder / "out").glob("tmp/*/*"))) < 2:
+        assert process.poll() is None
+        time.sleep(0.001)
+    process.send_signal(end)
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 130 and "Traceback" not in err, out + err
+    assert not (campaign.folder / "out" / "tmp").exists()
+
+
+def test_an_error_of_many_workers_leaves_nothing_half_written(campaign):
+    slow(campaign)
+    process = campaign.start("run", "campaign.yaml", "-o", "out", "--workers", "2")
+    while not (campaign.folder / "out" / "receipts").exists():
+        assert process.poll() is None
+        time.sleep(0.001)
+    (campaign.folder / "out" / "npz").rename(campaign.folder / "npz")
+    (campaign.folder / "out" / "npz").write_text("in the way")
+    out, err = process.communicate(timeout=60)
+    assert process.returncode == 2 and "cannot be written" in err, out + err
+    assert not (campaign.folder / "out" / "tmp").exists()
+
+
+def test_a_fault_of_writing_ends_a_worker_that_waits_for_shards(campaign):
+    planned = plan.make_plan(spec.read_spec(campaign.folder / "campaign.yaml"))
+    campaign.write("out", "in the way")
+
+    def shards():
+        yield 0
+        for _ in range(600):
+            time.sleep(0.1)
+            yield None
+
+    with pytest.raises(Error, match="cannot be written"):
+        work.work(planned, folder.Folder(campaign.folder / "out"), shards(), 1, lambda done: None)
+
+
+def test_a_campaign_file_of_another_name_goes_on(campaign):
+    campaign.run("out", "--shard", "0/2")
+    (campaign.folder / "campaign.yaml").rename(campaign.folder / "renamed.yaml")
+    campaign.call("run", "renamed.yaml", "-o", "out", "--shard", "1/2")
+    assert "40 trials" in campaign.call("merge", "out")
+    campaign.write("renamed.yaml", (campaign.folder / "renamed.yaml").read_text().replace("seed: 5", "seed: 6"))
+    assert "campaign.seed was 5, is 6" in campaign.call("run", "renamed.yaml", "-o", "out", code=2)
+
+
+def test_a_sensor_that_bop_cannot_have_leaves_no_folder(campaign):
+    text = (campaign.folder / "campaign.yaml").read_text() + "outputs: {bop: true}\n"
+    campaign.write("campaign.yaml", text.replace("sensor: camera.yaml", "sensor: VLP-16"))
+    assert "for BOP a pinhole camera" in campaign.run("out", code=2)
+    assert not (campaign.folder / "out").exists()
+    campaign.write("campaign.yaml", text)
+    campaign.run("out")
+
+
+def test_what_no_executor_began_leaves_no_folder(campaign):
+    (campaign.folder / "sbatch").write_text("#!/bin/sh\necho 'no such partition' >&2\nexit 1\n")
+    (campaign.folder / "sbatch").chmod(0o755)
+    campaign.environment["PATH"] = f"{campaign.folder}:{os.environ['PATH']}"
+    assert "no such partition" in campaign.run("out", "--executor", "slurm", code=2)
+    assert not (campaign.folder / "out").exists()
+
+    def execute(plan, folder, shards, report):
+        raise Error("--scheduler", "nobody answers", "", "")
+
+    with pytest.raises(Error, match="nobody answers"):
+        run.run(campaign.folder / "campaign.yaml", campaign.folder / "out", execute=execute, quiet=True)
+    assert not (campaign.folder / "out").exists()
+
+
+def test_a_folder_with_measured_shards_stays_the_campaigns(campaign):
+    def execute(plan, folder, shards, report):
+        run.run_local(plan, folder, shards[:1], report, 1)
+        raise Error("--scheduler", "lost", "", "")
+
+    with pytest.raises(Error, match="lost"):
+        run.run(campaign.folder / "campaign.yaml", campaign.folder / "out", execute=execute, quiet=True)
+    assert (campaign.folder / "out" / "campaign.json").exists()
+    campaign.run("out")
+
+
+def test_the_commonest_error_of_failed_trials_is_told(campaign):
+    campaign.write("broken.yaml", "models:\n  - {model: none.obj}\n")
+    campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text().replace(
+        "scene: scene.yaml", "scene: {grid: [scene.yaml, broken.yaml, missing.yaml, broken.yaml]}"))
+    for more in ([], ["--shard", "0/2"]):
+        told = campaign.run("out" + "".join(more[:1]), *more, code=1)
+        assert f"trials failed, {20 // len(more or [1])} of {30 // len(more or [1])}: broken.yaml:2:" in told
+        assert "none.obj" in told
+
+
+SCRIPT = """from glidar.campaign.run import run
+{guard}
+    print(run("campaign.yaml", "out", workers={workers}, quiet=True).trials)
+"""
+
+
+def run_script(campaign, guard, workers):
+    campaign.write("script.py", SCRIPT.format(guard=guard, workers=workers))
+    return subprocess.run([sys.executable, "script.py"], cwd=campaign.folder, env=campaign.environment,
+                          capture_output=True, text=True, timeout=120, check=False)
+
+
+def test_a_script_without_guard_is_told_so(campaign):
+    done = run_script(campaign, "if True:", 2)
+    assert done.returncode == 1 and done.stdout == ""
+    assert "script.py: it runs the campaign when it is imported" in done.stderr
+    assert 'if __name__ == "__main__":' in done.stderr.splitlines()[-1]
+    assert done.stderr.count("Traceback") == 1  # none of a worker
+    assert not (campaign.folder / "out").exists()
+
+
+def test_scripts_with_guard_or_one_worker_run(campaign):
+    for guard, workers in (('if __name__ == "__main__":', 2), ("if True:", 1)):
+        done = run_script(campaign, guard, workers)
+        assert done.returncode == 0 and done.stdout == "40\n", done.stderr
