@@ -229,9 +229,9 @@ class ViewerWindowTest(DisplayTest):
         with Window(self, "builtin:asteroid") as window:
             before = self.display.grab()
             self.display.drop(window.number, path)
+            wait_until(lambda: difference(before.crop(SENSOR_BOX), self.display.grab().crop(SENSOR_BOX)) > 5.0,
+                       "another picture")
             window.settle()
-            self.assertGreater(difference(before.crop(SENSOR_BOX),
-                                          self.display.grab().crop(SENSOR_BOX)), 5.0)
             window.save("buffer")
             window.quit()
         self.succeed("render", path, "--pcd", "expected")

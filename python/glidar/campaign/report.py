@@ -214,7 +214,7 @@ def _examples(folder, table):
     return "".join(parts) or "<p>The NPZ shards hold neither depth, range nor intensity.</p>"
 
 
-def page(root):
+def page(root: str | os.PathLike[str]) -> str:
     """The text of the report."""
     folder, _ = folders.opened(root)
     if not (folder.root / MANIFEST_FILE).is_file():
@@ -261,7 +261,7 @@ def _write_whole(path, text):
         part.unlink(missing_ok=True)
 
 
-def write(root, path=None):
+def write(root: str | os.PathLike[str], path: str | os.PathLike[str] | None = None) -> Path:
     """Writes the report; returns where it is."""
     text = page(root)
     path = Path(path) if path else Path(root) / REPORT_FILE

@@ -18,6 +18,7 @@ pytestmark = [
     pytest.mark.skipif(bool(MISSING), reason=f"not installed: {', '.join(MISSING)} (Debian: slurmctld "
                        "slurmd slurm-client munge)"),
     pytest.mark.skipif(os.geteuid() != 0, reason="slurmd runs jobs as root only"),
+    pytest.mark.skipif(not os.path.ismount("/sys/fs/cgroup"), reason="slurmd needs /sys/fs/cgroup"),
 ]
 
 CONF = """ClusterName=campaign
