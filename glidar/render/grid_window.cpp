@@ -3,7 +3,6 @@
 #include <glidar/render/grid_window.hpp>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 #include <vector>
 
