@@ -31,13 +31,13 @@ EXAMPLE = """example:
 class Views:
     """One mesh in both programs, seen by one camera."""
 
-    def __init__(self, path, width, height):
+    def __init__(self, path, width, height, distance):
         scene = glidar.Scene(path)
         mesh = scene.objects[0].mesh
         self.sensor = glidar.camera(width, height, fov_deg=40.0)
         low, high = scene.bounds
         middle, size = (low + high) / 2, np.linalg.norm(high - low)
-        self.pose = glidar.look_at(middle + 1.25 * size * np.array([0.3, 0.25, 0.92]), middle, up=(0, 1, 0))
+        self.pose = glidar.look_at(middle + distance * size * np.array([0.3, 0.25, 0.92]), middle, up=(0, 1, 0))
         self.simulator = glidar.Simulator(scene, self.sensor, threads=THREADS)
         self.other = open3d.t.geometry.RaycastingScene(nthreads=THREADS)
         self.other.add_triangles(open3d.core.Tensor(mesh.vertices.astype(np.float32)), open3d.core.Tensor(mesh.triangles))
@@ -86,11 +86,12 @@ def main():
     parser.add_argument("models", nargs="+", help="model files")
     parser.add_argument("--rounds", type=int, default=41, help="how often they take turns [41]")
     parser.add_argument("--processor", action="store_true", help="time of the processor in place of the clock's")
+    parser.add_argument("--distance", type=float, default=1.25, help="of the camera, in diagonals of the model's box [1.25]")
     flags = parser.parse_args()
     clock = time.process_time if flags.processor else time.perf_counter
     for path in flags.models:
         for width, height in SIZES:
-            views = Views(path, width, height)
+            views = Views(path, width, height, flags.distance)
             differences, lonely, hits = views.compare()
             times = measure(views, flags.rounds, clock)
             print(f"{os.path.basename(path)} {width}x{height}: depths differ by {differences.max():.1e} m at most, "

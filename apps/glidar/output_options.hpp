@@ -30,6 +30,8 @@ struct OutputFlags {
   bool ply_ascii = false;
   bool no_sidecar = false;
   std::optional<double> depth_scale;
+
+  bool operator==(const OutputFlags&) const = default;
 };
 
 void add_output_flags(CLI::App& command, OutputFlags& flags);

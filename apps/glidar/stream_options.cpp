@@ -102,13 +102,6 @@ bool writes_files(const OutputFlags& files) {
   return !files.paths.empty() || !files.legacy_name.empty();
 }
 
-bool says_how_to_write(const OutputFlags& files) {
-  const OutputFlags usual;
-  return files.dense || files.deskew || files.ply_ascii || files.no_sidecar || files.depth_scale ||
-         !files.columns.empty() || !files.layout.empty() ||
-         files.cloud_frame != usual.cloud_frame || files.pcd_encoding != usual.pcd_encoding;
-}
-
 /// Requests say when and where; nothing else may.
 void check_lockstep(const StreamFlags& flags) {
   const MotionFlags& motion = flags.render.motion;
@@ -125,7 +118,7 @@ void check_lockstep(const StreamFlags& flags) {
       flags.publish_every != usual.publish_every || flags.publish_queue != usual.publish_queue) {
     refuse("--lockstep", "given beside options of the protocol of 2015", "leave these out");
   }
-  if (writes_files(files) || says_how_to_write(files)) {
+  if (files != OutputFlags{}) {
     refuse("--lockstep", "given beside --output, --pcd or options of such files",
            "leave these out: the clients get the clouds, with the columns they ask for");
   }
@@ -201,7 +194,7 @@ void check(const StreamFlags& flags) {
     refuse("--port and --output", "neither is given, so no cloud would go anywhere",
            "for example: glidar stream " + flags.render.input + " --port 5555");
   }
-  if (!writes_files(files) && says_how_to_write(files)) {
+  if (!writes_files(files) && files != OutputFlags{}) {
     refuse("--output", "not given, but options of such files are",
            "leave these out: clouds on a port are laid out as in 2015");
   }

@@ -58,7 +58,6 @@ Pose legacy_from_optical() {
 }
 
 Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orientation) {
-  const double norm = orientation.norm();
   if (!is_within_reach(position_m) || !orientation.coeffs().allFinite() ||
       orientation.coeffs().isZero(0.0)) {
     throw Error({.where = "pose",
@@ -68,12 +67,11 @@ Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orie
   }
   // Squares of the largest numbers are infinite, and those of the smallest have no digits.
   constexpr double kSquareSafe = 1e100;
-  const bool is_safe = norm < kSquareSafe && norm > 1.0 / kSquareSafe;
-  const Eigen::Vector4d scaled =
-      is_safe ? orientation.coeffs()
-              : Eigen::Vector4d(orientation.coeffs() / orientation.coeffs().cwiseAbs().maxCoeff());
+  Eigen::Quaterniond scaled = orientation;
+  const double largest = scaled.coeffs().cwiseAbs().maxCoeff();
+  if (largest > kSquareSafe || largest < 1.0 / kSquareSafe) scaled.coeffs() /= largest;
   Pose pose = Pose::Identity();
-  pose.linear() = Eigen::Quaterniond(scaled).normalized().toRotationMatrix();
+  pose.linear() = scaled.normalized().toRotationMatrix();
   pose.translation() = position_m;
   return pose;
 }

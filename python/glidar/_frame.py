@@ -15,13 +15,12 @@ from . import _core
 from ._cloud import Cloud
 from ._errors import Error
 from ._information import Information
-from ._inputs import FloatArray, column_list, floats, log, one_of, path_of, whole
+from ._inputs import MOST_32, FloatArray, column_list, floats, log, one_of, path_of, whole
 from ._pictures import html_picture, html_table, plot_points, show_images
 from ._status import Cause, Status
 from ._story import Story, story_of
 from ._truth import Truth
 
-_MOST_32 = 2**32 - 1
 _PCD = ("ascii", "binary", "binary_compressed")
 
 
@@ -213,7 +212,7 @@ class Frame:
         cloud = self.cloud(["xyz", colour], frame=frame, hits_only=True)
         if cloud[colour].ndim != 1:
             raise Error("colour", repr(colour), "a column of one number per point, such as range")
-        if whole(most, "most", _MOST_32) == 0:
+        if whole(most, "most", MOST_32) == 0:
             raise Error("most", "0", "a whole number from 1")
         step = max(1, -(-cloud.points // most))
         return plot_points(cloud["xyz"][::step], cloud[colour][::step], colour, cloud.frame_id)

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import column_list, one_of, whole, whole_numbers
+from ._inputs import MOST_32, column_list, one_of, whole, whole_numbers
 from ._frame import Frame
 from ._sensor import Sensor
 from ._trajectory import PoseLike, Trajectory, object_trajectories, trajectories
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from ._scene import Scene
 
 _RENDERERS = ("embree", "opengl")
-_MOST_32 = 2**32 - 1
 _MOST_64 = 2**64 - 1
 
 
@@ -68,7 +67,7 @@ class Simulator:
             self._core.simulate_one(
                 sensor,
                 object_trajectories(objects, 1, self._core.objects),
-                (whole(seed, "seed", _MOST_64), whole(frame, "frame", _MOST_32), whole(sensor_id, "sensor_id", _MOST_32)),
+                (whole(seed, "seed", _MOST_64), whole(frame, "frame", MOST_32), whole(sensor_id, "sensor_id", MOST_32)),
                 self._fields(columns),
             )
         )
@@ -110,7 +109,7 @@ class Simulator:
             (
                 whole_numbers(seeds, "seed", count, 64),
                 whole_numbers(numbers, "frame", count, 32),
-                whole(sensor_id, "sensor_id", _MOST_32),
+                whole(sensor_id, "sensor_id", MOST_32),
             ),
             self._fields(columns),
         )

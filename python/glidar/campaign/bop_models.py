@@ -167,12 +167,9 @@ def _contents(plan):
 
 def write(plan, folder):
     """Writes models, models_info.json and camera.json, and their receipt."""
-    scratch = files.Scratch(folder.root)
     listed = {}
-    try:
+    with files.scratch(folder.root) as scratch:
         for name, data in _contents(plan):
             files.write_bytes(scratch, folder.root / name, data)
             listed[name] = [files.hash_bytes(data), len(data)]
         files.write_json(scratch, folder.once("bop"), {"trials": 0, "failed": 0, "files": listed})
-    finally:
-        scratch.remove()

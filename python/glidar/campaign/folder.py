@@ -56,12 +56,17 @@ def claim(folder, plan):
     if folder.plan_file().exists():
         require_same(folder.root, files.read_json(folder.plan_file()), wanted)
         return False
-    if folder.root.is_dir() and any(p.name != "tmp" for p in folder.root.iterdir()):
-        raise Error(str(folder.root), "the folder is not empty and holds no campaign",
-                    "a new folder, or that of this campaign", "choose another with -o")
+    require_empty(folder.root)
     with files.scratch(folder.root) as scratch:
         files.write_json(scratch, folder.plan_file(), wanted)
     return True
+
+
+def require_empty(root):
+    """Throws Error where a folder holds anything but what is half written."""
+    if root.is_dir() and any(path.name != "tmp" for path in root.iterdir()):
+        raise Error(str(root), "the folder is not empty and holds no campaign",
+                    "a new folder, or that of this campaign", "choose another with -o")
 
 
 def release(folder):
@@ -149,10 +154,9 @@ def note(folder, **words):
         pass
 
 
-def damaged(folder, receipt):
-    """The first file of a receipt whose content is not what it says; None: all are."""
-    for name, (digest, size) in files.read_json(receipt)["files"].items():
-        path = folder.root / name
+def wrong_files(root, listed):
+    """The names of files that are missing or not what a receipt or manifest says: {name: (hash, size)}."""
+    for name, (digest, size) in listed.items():
+        path = Path(root) / name
         if not path.is_file() or path.stat().st_size != size or files.hash_file(path) != digest:
-            return path
-    return None
+            yield name

@@ -15,8 +15,6 @@ from glidar.campaign.progress import tell_warnings
 
 AHEAD = 2  # shards a worker holds: one is measured, one is written
 MOST_DEATHS = 3  # of workers that held the same shard
-
-
 WAIT_S = 0.2  # for a shard, before a worker looks whether its writing goes well
 NO_GUARD = 87  # exit code of a worker whose script calls run() when it is imported
 

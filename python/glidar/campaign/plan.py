@@ -90,7 +90,8 @@ def _check_variations(spec, sources, of):
 
 
 def _require_apart(spec, path, place, places):
-    """`places`: of those that are known, which path each is for."""
+    """`places`: of those that are known, where each stands: "models[0].scale"."""
+    place = place.replace("[", ".[")
     for other, known in places.items():
         if f"{place}.".startswith(f"{known}.") or f"{known}.".startswith(f"{place}."):
             raise Error(f"{spec.file}: vary.{path}", f"it is the same value as vary.{other}, or one is part of "
@@ -99,8 +100,8 @@ def _require_apart(spec, path, place, places):
 
 
 def _check_value(field, variation):
-    """Where it stands: "models.[0].scale"."""
-    return variants.find(field, variation.target).path.replace("[", ".[")
+    """Where it stands."""
+    return variants.find(field, variation.target).path
 
 
 def _check_pose(field, variation):
@@ -114,7 +115,7 @@ def _check_pose(field, variation):
         if moving:
             yf.reject(other, f"it has the key '{moving.pop()}', and vary.{variation.path} sets poses",
                       "models that stand still", "")
-    return model.path.replace("[", ".[") + ".pose"
+    return model.path + ".pose"
 
 
 def _auto_shard_trials(beams):

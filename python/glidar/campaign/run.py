@@ -184,14 +184,12 @@ def _open_target(sources, root, described, scratch):
     target = Folder(Path(root))
     if target.plan_file().is_file():
         folders.require_same(root, files.read_json(target.plan_file()), described)
-    elif target.root.is_dir() and any(name != "tmp" for name in os.listdir(target.root)):
-        raise Error(str(root), "the folder is not empty and holds no campaign",
-                    "a new folder, or that of this campaign", "choose another with -o")
     else:
+        folders.require_empty(target.root)
         files.write_bytes(scratch, target.plan_file(), Folder(Path(sources[0])).plan_file().read_bytes())
     for receipt in sorted((target.root / "receipts").glob("*.json")):
-        if path := folders.damaged(target, receipt):
-            raise _bad_content(path)
+        for name in folders.wrong_files(target.root, files.read_json(receipt)["files"]):
+            raise _bad_content(target.root / name)
     return target
 
 
@@ -229,10 +227,5 @@ def _adopt_logs(source, target):
 def check(root: StrPath) -> tuple[int, list[str]]:
     """Compares every file with the manifest: (how many there are, names of those that differ or are missing)."""
     folder, _ = folders.opened(root)
-    manifest = files.read_json(folder.root / finishing.MANIFEST_FILE)
-    wrong = []
-    for name, (digest, size) in manifest["files"].items():
-        path = folder.root / name
-        if not path.is_file() or path.stat().st_size != size or files.hash_file(path) != digest:
-            wrong.append(name)
-    return len(manifest["files"]), wrong
+    listed = files.read_json(folder.root / finishing.MANIFEST_FILE)["files"]
+    return len(listed), list(folders.wrong_files(folder.root, listed))

@@ -72,14 +72,12 @@ class Writer:
             raise self._fault
 
     def _run(self):
-        scratch = files.Scratch(self._folder.root)
         try:
-            while (piece := self._next()) is not None:
-                self._write_shard(scratch, *piece)
+            with files.scratch(self._folder.root) as scratch:
+                while (piece := self._next()) is not None:
+                    self._write_shard(scratch, *piece)
         except BaseException as fault:  # it is raised again where the shards come from
             self._fault = fault
-        finally:
-            scratch.remove()
 
     def _next(self):
         piece = self._pieces.get()
