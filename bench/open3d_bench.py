@@ -22,6 +22,7 @@ except ImportError as missing:
     sys.exit(f"{missing}; install GLIDAR (docs/python.md) and what scripts/requirements.txt names")
 
 THREADS = 2
+DISTANCE = 1.25  # of the camera, in diagonals of the model's box
 SIZES = ((640, 480), (1024, 1024))
 EXAMPLE = """example:
   PYTHONPATH=build/release/python build/venv/bin/python bench/open3d_bench.py \\
@@ -31,7 +32,7 @@ EXAMPLE = """example:
 class Views:
     """One mesh in both programs, seen by one camera."""
 
-    def __init__(self, path, width, height, distance):
+    def __init__(self, path, width, height, distance=DISTANCE):
         scene = glidar.Scene(path)
         mesh = scene.objects[0].mesh
         self.sensor = glidar.camera(width, height, fov_deg=40.0)
@@ -86,7 +87,8 @@ def main():
     parser.add_argument("models", nargs="+", help="model files")
     parser.add_argument("--rounds", type=int, default=41, help="how often they take turns [41]")
     parser.add_argument("--processor", action="store_true", help="time of the processor in place of the clock's")
-    parser.add_argument("--distance", type=float, default=1.25, help="of the camera, in diagonals of the model's box [1.25]")
+    parser.add_argument("--distance", type=float, default=DISTANCE,
+                        help="of the camera, in diagonals of the model's box [%(default)s]")
     flags = parser.parse_args()
     clock = time.process_time if flags.processor else time.perf_counter
     for path in flags.models:
