@@ -143,15 +143,13 @@ void count_rays(benchmark::State& state) {
       static_cast<double>(state.iterations()) * kSide * kSide, benchmark::Counter::kIsRate);
 }
 
-void register_stage(const Stage& stage, unsigned threads, std::vector<Ratio>& ratios) {
-  const std::string at = stage.name + " " + std::to_string(threads) + " threads ";
-  benchmark::RegisterBenchmark((at + "raw").c_str(), [&stage, threads](benchmark::State& state) {
-    RawEmbree raw(stage, static_cast<int>(threads));
-    for (auto _ : state) raw.cast();
-    count_rays(state);
-  })->UseRealTime();
-  benchmark::RegisterBenchmark((at + "cast").c_str(), [&stage, threads](benchmark::State& state) {
-    const auto renderer = make_renderer(stage.scene, {.threads = threads});
+/// A renderer's casts, and measurements with its hits, beside raw Embree.
+void register_renderer(const Stage& stage, const std::string& kind, unsigned threads,
+                       const std::string& at, std::vector<Ratio>& ratios) {
+  const std::string name = at + kind + " ";
+  benchmark::RegisterBenchmark((name + "cast").c_str(), [&stage, kind,
+                                                         threads](benchmark::State& state) {
+    const auto renderer = make_renderer(stage.scene, {.kind = kind, .threads = threads});
     Hits hits;
     for (auto _ : state) {
       renderer->cast({.beams = stage.beams,
@@ -162,17 +160,31 @@ void register_stage(const Stage& stage, unsigned threads, std::vector<Ratio>& ra
     }
     count_rays(state);
   })->UseRealTime();
-  benchmark::RegisterBenchmark((at + "simulate").c_str(), [&stage,
-                                                           threads](benchmark::State& state) {
-    const auto renderer = make_renderer(stage.scene, {.threads = threads});
+  benchmark::RegisterBenchmark((name + "simulate").c_str(), [&stage, kind,
+                                                             threads](benchmark::State& state) {
+    const auto renderer = make_renderer(stage.scene, {.kind = kind, .threads = threads});
     const Motion motion = standing_still(stage.scene, stage.world_from_sensor);
     const Setup setup{stage.scene, stage.sensor, stage.beams, motion, *renderer};
     Frame frame;
     for (auto _ : state) simulate(setup, {}, frame);
     count_rays(state);
   })->UseRealTime();
-  ratios.push_back({at + "cast / raw Embree", at + "raw", at + "cast", 0.85});
-  ratios.push_back({at + "simulate / raw Embree", at + "raw", at + "simulate", 0.7});
+  const bool is_embree = kind == "embree";  // the goals are its own
+  ratios.push_back({name + "cast / raw Embree", at + "raw", name + "cast", is_embree ? 0.85 : 0.0});
+  ratios.push_back(
+      {name + "simulate / raw Embree", at + "raw", name + "simulate", is_embree ? 0.7 : 0.0});
+}
+
+void register_stage(const Stage& stage, unsigned threads, std::vector<Ratio>& ratios) {
+  const std::string at = stage.name + " " + std::to_string(threads) + " threads ";
+  benchmark::RegisterBenchmark((at + "raw").c_str(), [&stage, threads](benchmark::State& state) {
+    RawEmbree raw(stage, static_cast<int>(threads));
+    for (auto _ : state) raw.cast();
+    count_rays(state);
+  })->UseRealTime();
+  for (const char* kind : {"embree", "raster"}) {
+    register_renderer(stage, kind, threads, at, ratios);
+  }
 }
 
 }  // namespace
@@ -194,11 +206,11 @@ int main(int argc, char** argv) {
   std::vector<Ratio> ratios;
   for (const auto& stage : stages) {
     for (const unsigned threads : {1U, 2U}) register_stage(*stage, threads, ratios);
-    ratios.push_back({stage->name + " two threads / one, cast", stage->name + " 1 threads cast",
-                      stage->name + " 2 threads cast", 1.7});
-    ratios.push_back({stage->name + " two threads / one, simulate",
-                      stage->name + " 1 threads simulate", stage->name + " 2 threads simulate",
-                      1.7});
+    for (const char* work : {"embree cast", "embree simulate", "raster cast", "raster simulate"}) {
+      ratios.push_back({stage->name + " two threads / one, " + work,
+                        stage->name + " 1 threads " + work, stage->name + " 2 threads " + work,
+                        1.7});
+    }
   }
   return glidar::bench::run(argc, argv, ratios);
 }

@@ -107,7 +107,7 @@ void print_breakdown(const Model& model, std::uint32_t side) {
   opengl::NumberTarget target;
   target.begin({side, side, 1});
   const auto [near_m, far_m] = planes_around(model);
-  const auto draw = [&, depths = opengl::DepthRange{near_m, far_m}] {
+  const auto draw = [&, depths = DepthRange{near_m, far_m}] {
     target.draw_into(0);
     drawing.draw(request, resolver, {0, 0, side, side}, depths);
   };

@@ -116,7 +116,7 @@ void measure_ours(const std::string& model, Memory& memory) {
   Scene scene;
   add_model(scene, load_model(model, {}, {}));
   const double with_scene = held_bytes();
-  const auto renderer = make_renderer(scene, {});
+  const auto renderer = make_renderer(scene, {.kind = "embree"});
   memory.mesh = mesh_bytes(scene.meshes[0]);
   memory.scene = with_scene - before;
   memory.renderer = held_bytes() - with_scene;

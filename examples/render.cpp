@@ -31,7 +31,7 @@ void render(const std::string& path) {
 
   glidar::PointCloud cloud;
   glidar::make_point_cloud(frame, beams, scene, {.frame_id = beams.frame_id}, columns, cloud);
-  glidar::make_file_sink(path, {}, {scene, sensor, beams, "embree"})->write(cloud, frame);
+  glidar::make_file_sink(path, {}, {scene, sensor, beams, "auto"})->write(cloud, frame);
   // [README]
 }
 

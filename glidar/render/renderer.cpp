@@ -3,8 +3,10 @@
 #include <glidar/render/renderer.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/render/auto_renderer.hpp>
 #include <glidar/render/embree/embree_renderer.hpp>
 #include <glidar/render/opengl/opengl_renderer.hpp>
+#include <glidar/render/raster/raster_renderer.hpp>
 
 #include <algorithm>
 #include <array>
@@ -19,9 +21,11 @@ struct Kind {
   Factory make;
 };
 
-const std::array<Kind, 2>& kinds() {
-  static const std::array<Kind, 2> all = {
-      {{"embree", make_embree_renderer}, {"opengl", make_opengl_renderer}}};
+const std::array<Kind, 4>& kinds() {
+  static const std::array<Kind, 4> all = {{{"auto", make_auto_renderer},
+                                           {"embree", make_embree_renderer},
+                                           {"raster", make_raster_renderer},
+                                           {"opengl", make_opengl_renderer}}};
   return all;
 }
 

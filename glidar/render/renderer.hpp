@@ -36,6 +36,11 @@ struct CastRequest {
   Progress progress = {};  ///< told while the beams are cast
 };
 
+/// True when the instance is there for this cast.
+inline bool is_present(const CastRequest& request, std::size_t instance) {
+  return request.present.empty() || request.present[instance] != 0;
+}
+
 /// True when some instance is there.
 bool is_anything_present(const CastRequest& request, const Scene& scene);
 
@@ -46,7 +51,7 @@ void check(const CastRequest& request, const Scene& scene);
 /// Throws Error unless there are hits for every request.
 void check_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits);
 
-/// Finds what beams hit first. Two implementations, chosen at run time.
+/// Finds what beams hit first. Several implementations, chosen at run time.
 class Renderer {
  public:
   Renderer() = default;
@@ -70,8 +75,8 @@ class Renderer {
 };
 
 struct RendererOptions {
-  std::string kind = "embree";
-  unsigned threads = 0;  ///< 0: all processors
+  std::string kind = "auto";  ///< one of renderer_kinds()
+  unsigned threads = 0;       ///< 0: all processors
   /// Which of the machine's graphics devices draws; empty: the first that can.
   std::optional<std::uint32_t> graphics_device = {};
 };

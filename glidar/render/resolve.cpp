@@ -125,11 +125,6 @@ bool has_mask(const Scene& scene, const Instance& instance) {
                      [&](std::uint32_t m) { return scene.materials[m].alpha_cutoff > 0.0F; });
 }
 
-bool needs_corners(const HitFields& fields) {
-  return fields.barycentrics || fields.shading_normal || fields.shading || fields.colour ||
-         fields.reflectance || fields.noise_scale;
-}
-
 bool needs_normals(const HitFields& fields) {
   return fields.shading_normal || fields.shading;
 }
@@ -144,6 +139,11 @@ GLIDAR_SIMD void cosines(const ExactBlock& e, const Lanes3<double>& normal, Lane
 }
 
 }  // namespace
+
+bool needs_corners(const HitFields& fields) {
+  return fields.barycentrics || fields.shading_normal || fields.shading || fields.colour ||
+         fields.reflectance || fields.noise_scale;
+}
 
 InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
                      const Pose& world_from_sensor) {
@@ -161,6 +161,13 @@ InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& wor
           .scale = instance.scale};
 }
 
+Eigen::Matrix<double, 3, 4> sensor_from_object(const InstanceView& view) {
+  const Eigen::Matrix3d turn = view.scale * view.object_from_sensor.transpose();
+  Eigen::Matrix<double, 3, 4> matrix;
+  matrix << turn, -(turn * view.sensor_in_object);
+  return matrix;
+}
+
 ObjectRay ray_in(const InstanceView& view, const Beams& beams, std::size_t beam) {
   ObjectRay ray{view.sensor_in_object, view.object_from_sensor * beams.directions[beam]};
   if (!beams.origins_m.empty()) {
@@ -173,7 +180,6 @@ Resolver::Resolver(const Scene& scene) : scene_(scene) {
   planes_.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
     planes_.push_back(triangle_planes(mesh));
-    narrowness_.push_back(triangle_narrowness(mesh));
     twins_.push_back(first_twins(mesh));
   }
   looks_.reserve(scene.instances.size());
@@ -199,7 +205,6 @@ Resolver::Resolver(const Scene& scene) : scene_(scene) {
          .positions_m = mesh.positions_m.data(),
          .normals = mesh.normals.empty() ? nullptr : mesh.normals.data(),
          .planes = planes_[instance.mesh].data(),
-         .narrowness = narrowness_[instance.mesh].data(),
          .twins = may_swap ? twins.data() : nullptr,
          .slots = mesh.material_slots.empty() ? nullptr : mesh.material_slots.data(),
          .looks = looks_[i].data(),
@@ -241,7 +246,6 @@ void Resolver::measure(const BeamBlock& beams, HitBlock& block, ExactBlock& exac
     const TrianglePlane& triangle = plane(block.instance[i], block.primitive[i]);
     exact.normal.set(i, triangle.normal);
     exact.offset[i] = triangle.offset;
-    exact.narrowness[i] = known_[block.instance[i]].narrowness[block.primitive[i]];
   }
   look_from(views_[block.instance[0]], beams, exact);
   ExactBlock seen;

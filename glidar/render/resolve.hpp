@@ -20,6 +20,9 @@ namespace glidar {
 /// differ.
 std::vector<std::uint32_t> first_twins(const Mesh& mesh);
 
+/// True when some of the fields follow from where in its triangle a beam hits.
+bool needs_corners(const HitFields& fields);
+
 /// The sensor as one instance sees it: object units, relative to the mesh's origin.
 struct InstanceView {
   Eigen::Matrix3d object_from_sensor;  ///< rotation
@@ -29,6 +32,9 @@ struct InstanceView {
 
 InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
                      const Pose& world_from_sensor);
+
+/// From a point relative to the mesh's origin into the sensor's frame, metres.
+Eigen::Matrix<double, 3, 4> sensor_from_object(const InstanceView& view);
 
 /// A beam in an instance's view: origin and unit direction.
 struct ObjectRay {
@@ -66,7 +72,6 @@ struct ExactBlock {
   Lanes<double> offset;      ///< of the triangle's plane
   Lanes<double> cosine;      ///< of normal and direction; positive: seen from behind
   Lanes<double> distance;    ///< along the beam
-  Lanes<float> narrowness;   ///< of the triangle, see triangle_narrowness()
 };
 
 /// A vector at each corner of a block's triangles.
@@ -114,10 +119,10 @@ class Resolver {
   }
 
   /// Asks the memory for a lane's triangle.
-  void prefetch(const HitBlock& block, unsigned lane) const {
+  void prefetch(const HitBlock& block, unsigned lane, bool with_corners) const {
     const std::uint32_t primitive = block.primitive[lane];
     __builtin_prefetch(&plane(block.instance[lane], primitive));
-    __builtin_prefetch(known_[block.instance[lane]].narrowness + primitive);
+    if (!with_corners) return;
     __builtin_prefetch(known_[block.instance[lane]].triangles + primitive);
   }
 
@@ -168,7 +173,6 @@ class Resolver {
     const Eigen::Vector3f* positions_m;
     const Eigen::Vector3f* normals;  ///< nullptr: flat shading
     const TrianglePlane* planes;
-    const float* narrowness;
     const std::uint32_t* twins;  ///< nullptr: all triangles differ
     const std::uint16_t* slots;  ///< nullptr: all triangles have material slot 0
     const SlotLook* looks;       ///< per material slot
@@ -177,7 +181,6 @@ class Resolver {
 
   const Scene& scene_;
   std::vector<std::vector<TrianglePlane>> planes_;  ///< per mesh
-  std::vector<std::vector<float>> narrowness_;      ///< per mesh
   std::vector<std::vector<std::uint32_t>> twins_;   ///< per mesh
   std::vector<Known> known_;                        ///< per instance
   std::vector<std::vector<SlotLook>> looks_;        ///< per instance and material slot

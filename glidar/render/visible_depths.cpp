@@ -16,9 +16,7 @@ constexpr int kDepth = 4;  // the row that gives the depth
 /// Rows 0 to 3: how far inside each border of the view a point of the mesh lies; the borders run
 /// along the outer edges of the picture's pixels. Row 4: its depth.
 Planes view_planes(const InstanceView& view, const PinholeIntrinsics& k) {
-  const Eigen::Matrix3d turn = view.scale * view.object_from_sensor.transpose();
-  Eigen::Matrix<double, 3, 4> seen;
-  seen << turn, -(turn * view.sensor_in_object);
+  const Eigen::Matrix<double, 3, 4> seen = sensor_from_object(view);
   const double half = 0.5;
   const double left = (k.pixel_centre - half - k.cx) / k.fx;
   const double right = (k.width - 1 + k.pixel_centre + half - k.cx) / k.fx;

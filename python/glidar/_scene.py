@@ -228,7 +228,7 @@ class Scene:
         }
 
     def simulator(
-        self, sensor: Sensor | str | os.PathLike[str] | None = None, *, renderer: str = "embree", threads: int = 0
+        self, sensor: Sensor | str | os.PathLike[str] | None = None, *, renderer: str = "auto", threads: int = 0
     ) -> Simulator:
         """What measures this scene with a sensor: the same one again when it was asked for before."""
         chosen = self._chosen(sensor)

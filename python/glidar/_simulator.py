@@ -21,7 +21,7 @@ from ._trajectory import PoseLike, Trajectory, object_trajectories, trajectories
 if TYPE_CHECKING:
     from ._scene import Scene
 
-_RENDERERS = ("embree", "opengl")
+_RENDERERS = ("auto", "embree", "raster", "opengl")
 _MOST_64 = 2**64 - 1
 
 
@@ -39,7 +39,7 @@ class Simulator:
     """
 
     def __init__(
-        self, scene: Scene, sensor: Sensor | None = None, *, renderer: str = "embree", threads: int = 0
+        self, scene: Scene, sensor: Sensor | None = None, *, renderer: str = "auto", threads: int = 0
     ) -> None:
         chosen = scene.sensor if sensor is None else sensor
         if chosen is None:
@@ -132,7 +132,7 @@ def simulate(
     objects: PoseLike | Sequence[PoseLike] | None = None,
     columns: str | Iterable[str] | None = None,
     sensor_id: int = 0,
-    renderer: str = "embree",
+    renderer: str = "auto",
     threads: int = 0,
 ) -> Frame:
     """Measures a scene once.
@@ -173,7 +173,7 @@ def simulate_batch(
     objects: PoseLike | Sequence[PoseLike] | None = None,
     columns: str | Iterable[str] | None = None,
     sensor_id: int = 0,
-    renderer: str = "embree",
+    renderer: str = "auto",
     threads: int = 0,
 ) -> list[Frame]:
     """Measures a scene at many poses in one call, without Python's lock; frame k is, to the bit, what
@@ -202,7 +202,7 @@ def simulate_rig(
     frame: int = 0,
     objects: PoseLike | Sequence[PoseLike] | None = None,
     columns: str | Iterable[str] | None = None,
-    renderer: str = "embree",
+    renderer: str = "auto",
     threads: int = 0,
 ) -> dict[str, Frame]:
     """Measures a scene once with each sensor of its scene file's rig; gives frames by their names.

@@ -54,10 +54,10 @@ class Verification:
         return f"{verdict}: {rays} rays, largest range error {worst:.2e} ulp of float32, {wrong} wrong hits or misses"
 
 
-def verify(*, renderer: str = "embree", threads: int = 0) -> Verification:
+def verify(*, renderer: str = "auto", threads: int = 0) -> Verification:
     """Measures the accuracy of a renderer on this machine, as ``glidar verify`` does: every shape at
     every distance from 0.1 m to 10 km, judged by its closed form."""
-    one_of(renderer, "renderer", ("embree", "opengl"))
+    one_of(renderer, "renderer", ("auto", "embree", "raster", "opengl"))
     names = VerifyRow.__dataclass_fields__
     rows = _core.verify(renderer, whole(threads, "threads", 4096))
     return Verification(tuple(VerifyRow(**{name: getattr(row, name) for name in names}) for row in rows))

@@ -128,7 +128,7 @@ class Refusals(CliTest):
         self.assertIn(".pcd .ply .npz .csv", error)
 
     def test_options_are_checked_before_anything_is_loaded(self):
-        for arguments, text in ((("--renderer", "magic"), "--renderer: 'magic'; allowed: embree"),
+        for arguments, text in ((("--renderer", "magic"), "--renderer: 'magic'; allowed: auto, embree"),
                                 (("--eye", "1,2"), "--eye"),
                                 (("--fov", "200"), "--fov")):
             error = self.refused("render", "nofile.ply", "-o", "x.pcd", *arguments)

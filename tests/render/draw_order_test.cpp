@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/builtin_models.hpp>
-#include <glidar/render/opengl/draw_order.hpp>
+#include <glidar/render/draw_order.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-namespace glidar::opengl {
+namespace glidar {
 namespace {
 
 Mesh torus() {
@@ -106,4 +106,4 @@ TEST(DrawOrder, TakesTheLargestAndTheSmallestCoordinates) {
 }
 
 }  // namespace
-}  // namespace glidar::opengl
+}  // namespace glidar

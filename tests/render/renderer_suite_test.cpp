@@ -29,7 +29,8 @@ constexpr double kRangeTolerance = 1e-12;
 /// Half the width, in pixels, of the band around a border where a renderer may tell the neighbour:
 /// twice the step of a rasterizer's grid.
 double border_px(const std::string& renderer) {
-  return renderer == "opengl" ? 1.0 / 128.0 : 0.0;
+  if (renderer == "opengl") return 1.0 / 128.0;
+  return renderer == "raster" || renderer == "auto" ? 1.0 / 2048.0 : 0.0;
 }
 
 /// Compares every beam with the judge; returns how many were compared (not near a border).
@@ -176,6 +177,36 @@ TEST_P(AnyBeamsSuite, APinholesStructureChangesNoBit) {
   EXPECT_EQ(with.primitive, without.primitive);
   EXPECT_EQ(0, std::memcmp(with.range_m.data(), without.range_m.data(),
                            with.range_m.size() * sizeof(double)));
+}
+
+TEST_P(RendererSuite, AVastObjectBehindASmallOneSpoilsNeither) {
+  // A satellite 20 m away in front of a globe as large as the Earth, 400 km below.
+  Scene scene = builtin_scene("asteroid");
+  add_model(scene, make_builtin_model("sphere"));
+  const double radius_m = 6.4e6;
+  scene.instances[0].world_from_object = turned(0.7, {1.0, 2.0, 3.0}, {0.0, 0.0, 20.0});
+  scene.instances[1].world_from_object.translation().z() = radius_m + 4e5;
+  scene.instances[1].scale = radius_m;
+  const Beams beams = camera_beams(120, 90, 400.0);
+  const Hits both = cast(scene, beams, Pose::Identity());
+  Scene alone = builtin_scene("asteroid");
+  alone.instances[0].world_from_object = scene.instances[0].world_from_object;
+  const Hits small = cast(alone, beams, Pose::Identity());
+  std::size_t of_small = 0;
+  std::size_t differ = 0;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (small.instance[i] == kNoHit) {
+      EXPECT_EQ(both.instance[i], 1U) << i;
+      continue;
+    }
+    ++of_small;
+    EXPECT_EQ(both.instance[i], 0U) << i;
+    const bool is_same =
+        both.primitive[i] == small.primitive[i] && both.range_m[i] == small.range_m[i];
+    differ += is_same ? 0U : 1U;
+  }
+  EXPECT_GT(of_small, 500U);
+  EXPECT_LE(differ, of_small / 500);
 }
 
 TEST_P(RendererSuite, CullsBackFacesOnlyWhenAsked) {
@@ -330,7 +361,7 @@ TEST_P(RendererSuite, TheSameBytesForAnyNumberOfThreads) {
 
 INSTANTIATE_TEST_SUITE_P(All, RendererSuite, ::testing::ValuesIn(renderer_kinds()),
                          [](const auto& test) { return test.param; });
-INSTANTIATE_TEST_SUITE_P(All, AnyBeamsSuite, ::testing::Values("embree"),
+INSTANTIATE_TEST_SUITE_P(All, AnyBeamsSuite, ::testing::Values("auto", "embree"),
                          [](const auto& test) { return test.param; });
 
 TEST(MakeRenderer, NamesTheKindsThereAre) {
@@ -339,7 +370,8 @@ TEST(MakeRenderer, NamesTheKindsThereAre) {
     make_renderer(scene, {.kind = "opengel"});
     FAIL() << "no error";
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "renderer: 'opengel' is not known; allowed: embree, opengl");
+    EXPECT_STREQ(error.what(),
+                 "renderer: 'opengel' is not known; allowed: auto, embree, raster, opengl");
   }
 }
 

@@ -13,7 +13,7 @@
 #include <array>
 #include <bit>
 #include <memory>
-#include <vector>
+#include <utility>
 
 namespace glidar {
 namespace {
@@ -28,6 +28,7 @@ struct Job {
   const embree::Probe& probe;
   bool cull_back_faces;
   bool has_wide_packets;
+  bool with_corners;  ///< the fields need those of triangles
   Hits& hits;
 };
 
@@ -108,7 +109,8 @@ void trace(const Job& job, TileWork& work) {
     work.block.instance[lane] = instance == RTC_INVALID_GEOMETRY_ID ? 0U : instance;
     if (!is_hit) continue;
     work.block.primitive[lane] = told(job, work.block.instance[lane], hit.primID[lane]);
-    job.resolver.prefetch(work.block, lane);
+    job.resolver.prefetch(work.block, lane, job.with_corners);
+    job.probe.prefetch(work.block, lane);
   }
 }
 
@@ -179,40 +181,42 @@ void cast_tiles(const Job& job, const embree::Tiling& tiling, std::size_t begin,
 
 class EmbreeRenderer final : public Renderer {
  public:
-  EmbreeRenderer(const Scene& scene, unsigned threads) : workers_(threads), resolver_(scene) {
-    workers_.execute([&] { world_ = std::make_unique<embree::World>(scene); });
+  explicit EmbreeRenderer(std::shared_ptr<CpuBase> base) : base_(std::move(base)) {
+    workers().execute([&] { world_ = std::make_unique<embree::World>(base_->resolver.scene()); });
   }
 
   [[nodiscard]] std::string_view name() const override { return "embree"; }
-  [[nodiscard]] Workers& workers() override { return workers_; }
+  [[nodiscard]] Workers& workers() override { return base_->workers; }
 
   void cast(const CastRequest& request, Hits& hits) override {
-    check(request, resolver_.scene());
+    Resolver& resolver = base_->resolver;
+    check(request, resolver.scene());
     resize(hits, request.beams.size(), request.fields);
-    if (!is_anything_present(request, resolver_.scene())) {
+    if (!is_anything_present(request, resolver.scene())) {
       write_misses(request.fields, 0, request.beams.size(), hits);
       if (request.then) request.then({0, request.beams.size()});
       return;
     }
-    resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
-    workers_.execute([&] {
+    resolver.set_poses(request.world_from_sensor, request.world_from_instance);
+    workers().execute([&] {
       if (request.cull_back_faces) world_->filter_everything();
       world_->place(request);
     });
-    const embree::Probe probe(world_->space(), resolver_, request.beams, request.cull_back_faces);
+    const embree::Probe probe(*world_, resolver, request.beams, request.cull_back_faces);
     find_plane_points(request.beams, points_);
     const Job job{.beams = request.beams,
                   .points = points_,
-                  .window = window_on(resolver_, world_->mesh_boxes(), request.present, points_),
+                  .window = window_on(resolver, world_->mesh_boxes(), request.present, points_),
                   .fields = request.fields,
-                  .resolver = resolver_,
+                  .resolver = resolver,
                   .probe = probe,
                   .cull_back_faces = request.cull_back_faces,
                   .has_wide_packets = world_->has_wide_packets(),
+                  .with_corners = needs_corners(request.fields),
                   .hits = hits};
     const embree::Tiling tiling(request.beams);
     WorkCount count(request.progress, tiling.size());
-    workers_.for_ranges(tiling.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
+    workers().for_ranges(tiling.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
       while (begin < end) {
         const std::size_t run_end = tiling.end_of_run(begin, end, kTilesPerTask);
         cast_tiles(job, tiling, begin, run_end);
@@ -228,8 +232,7 @@ class EmbreeRenderer final : public Renderer {
   // About 50 microseconds of work, and its hits fit into a core's own cache.
   static constexpr std::size_t kTilesPerTask = 64;
 
-  Workers workers_;
-  Resolver resolver_;
+  std::shared_ptr<CpuBase> base_;
   PlanePoints points_;
   std::unique_ptr<embree::World> world_;
 };
@@ -237,8 +240,11 @@ class EmbreeRenderer final : public Renderer {
 }  // namespace
 
 std::unique_ptr<Renderer> make_embree_renderer(const Scene& scene, const RendererOptions& options) {
-  validate(scene);
-  return std::make_unique<EmbreeRenderer>(scene, options.threads);
+  return make_embree_renderer(std::make_shared<CpuBase>(scene, options.threads));
+}
+
+std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<CpuBase> base) {
+  return std::make_unique<EmbreeRenderer>(std::move(base));
 }
 
 }  // namespace glidar

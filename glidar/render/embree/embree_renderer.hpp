@@ -2,11 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/render/cpu_base.hpp>
 #include <glidar/render/renderer.hpp>
+
+#include <memory>
 
 namespace glidar {
 
 /// Ray casting on the CPU by Intel Embree, in packets over 4x4 tiles of the beam grid.
 std::unique_ptr<Renderer> make_embree_renderer(const Scene& scene, const RendererOptions& options);
+std::unique_ptr<Renderer> make_embree_renderer(std::shared_ptr<CpuBase> base);
 
 }  // namespace glidar

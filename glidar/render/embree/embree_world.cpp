@@ -3,6 +3,7 @@
 #include <glidar/render/embree/embree_world.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/render/planes.hpp>
 #include <glidar/render/surface.hpp>
 
 #include <algorithm>
@@ -77,10 +78,6 @@ const Pose& pose_of(const Scene& scene, const CastRequest& request, std::size_t 
                                              : request.world_from_instance[instance];
 }
 
-bool is_present(const CastRequest& request, std::size_t instance) {
-  return request.present.empty() || request.present[instance] != 0;
-}
-
 }  // namespace
 
 World::World(const Scene& scene) : scene_(scene), device_(rtcNewDevice(nullptr)) {
@@ -91,6 +88,10 @@ World::World(const Scene& scene) : scene_(scene), device_(rtcNewDevice(nullptr))
       rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
     add_mesh(scene.meshes[i], has_mask(scene, i));
+    narrowness_.push_back(triangle_narrowness(scene.meshes[i]));
+  }
+  for (const Instance& instance : scene.instances) {
+    narrowness_of_.push_back(narrowness_[instance.mesh].data());
   }
   if (scene.instances.size() != 1) add_instances();
 }
@@ -167,13 +168,16 @@ void World::place_single(const Pose& world_from_sensor, const Pose& world_from_o
   const InstanceView view = view_of(instance, mesh, world_from_object, world_from_sensor);
   const Eigen::AlignedBox3d& box = mesh_boxes_[instance.mesh];
   const bool empty = box.isEmpty();
+  const double radius = empty ? 0.0 : 0.5 * box.diagonal().norm();
   space_ = {
       .scene = mesh_scenes_[instance.mesh].get(),
       .trace_from_sensor = view.object_from_sensor,
       .sensor_in_trace = view.sensor_in_object,
       .metres_per_unit = instance.scale,
       .centre = empty ? Eigen::Vector3d::Zero() : Eigen::Vector3d(box.center() - mesh.origin_m),
-      .radius = empty ? 0.0 : 0.5 * box.diagonal().norm()};
+      .radius = radius,
+      .least_reach = radius};
+  reach_.assign(1, radius);
 }
 
 void World::place_many(const CastRequest& request) {
@@ -198,12 +202,23 @@ void World::place_many(const CastRequest& request) {
   }
   if (changed) commit_instances(request);
   const bool empty = all.isEmpty();
+  const double radius = empty ? 0.0 : 0.5 * all.diagonal().norm();
   space_ = {.scene = top_scene_.get(),
             .trace_from_sensor = request.world_from_sensor.linear(),
             .sensor_in_trace = sensor - origin,
             .metres_per_unit = 1.0,
             .centre = empty ? Eigen::Vector3d::Zero() : Eigen::Vector3d(all.center() - origin),
-            .radius = empty ? 0.0 : 0.5 * all.diagonal().norm()};
+            .radius = radius,
+            .least_reach = radius};
+  reach_.assign(scene_.instances.size(), radius);
+  for (std::size_t i = 0; i < reach_.size(); ++i) {
+    const Eigen::AlignedBox3d& box = mesh_boxes_[scene_.instances[i].mesh];
+    if (box.isEmpty() || !is_present(request, i)) continue;
+    const double scale = scene_.instances[i].scale;
+    const Eigen::Vector3d middle = pose_of(scene_, request, i) * (scale * box.center());
+    reach_[i] = std::min(radius, (middle - origin).norm() + scale * 0.5 * box.diagonal().norm());
+    space_.least_reach = std::min(space_.least_reach, reach_[i]);
+  }
 }
 
 void World::commit_instances(const CastRequest& request) {

@@ -21,6 +21,7 @@ struct TraceSpace {
   double metres_per_unit;  ///< of this frame
   Eigen::Vector3d centre;  ///< of a sphere around all geometry
   double radius;
+  double least_reach;  ///< World::reach() of those instances that are there
 };
 
 /// What a cast hands through Embree to the filter function.
@@ -46,6 +47,13 @@ class World {
   [[nodiscard]] const TraceSpace& space() const { return space_; }
   /// Per mesh, in the object's frame.
   [[nodiscard]] const std::vector<Eigen::AlignedBox3d>& mesh_boxes() const { return mesh_boxes_; }
+  /// How large coordinates of the trace space may be where an instance is hit: from the space's
+  /// zero, or from the middle of a single one, to the far end of a sphere around it.
+  [[nodiscard]] double reach(std::uint32_t instance) const { return reach_[instance]; }
+  /// See triangle_narrowness().
+  [[nodiscard]] const float* narrowness(std::uint32_t instance, std::uint32_t primitive) const {
+    return narrowness_of_[instance] + primitive;
+  }
   [[nodiscard]] bool has_wide_packets() const { return has_wide_packets_; }
 
  private:
@@ -71,12 +79,15 @@ class World {
   bool filters_everything_ = false;
   std::vector<OwnedScene> mesh_scenes_;          ///< per mesh
   std::vector<Eigen::AlignedBox3d> mesh_boxes_;  ///< per mesh, object frame
+  std::vector<std::vector<float>> narrowness_;   ///< per mesh
+  std::vector<const float*> narrowness_of_;      ///< per instance
   OwnedScene top_scene_;                         ///< of instances
   std::vector<std::uint8_t> present_;            ///< per instance, as last given to Embree
   std::vector<Pose> placed_;                     ///< per instance, as last given to Embree
   Eigen::Vector3d trace_origin_ =
       Eigen::Vector3d::Zero();  ///< of the instances' frame, in the world
   TraceSpace space_;
+  std::vector<double> reach_;  ///< per instance
 };
 
 }  // namespace glidar::embree

@@ -17,6 +17,9 @@ namespace {
 // Single precision rounds a coordinate of the geometry by 2^-24 of its size, and an edge function
 // by a few of those; the hair is 16 times one.
 constexpr double kHairPerRadius = 0x1p-20;
+// Where some is far smaller or nearer than the rest, such as a satellite before the Earth, the hair
+// is for that: for the rest it may be within rounding.
+constexpr double kMostReaches = 16.0;
 constexpr double kClear =
     1.001;  // rays start outside the sphere around the geometry, also after rounding
 // A beam this far inside its triangle is certain: the hair itself, and as much for the rounding of
@@ -101,7 +104,7 @@ GLIDAR_SIMD void launch_rays(const Launch& launch, const BeamBlock& in_sensor, L
 /// `needed` (object units): smallest weight times smallest height times the cosine. Also for lanes
 /// whose beam starts on the triangle.
 GLIDAR_SIMD std::uint32_t doubt(const RTCHit16& hit, const ExactBlock& exact,
-                                const Lanes<float>& needed) {
+                                const Lanes<float>& needed, const Lanes<float>& narrowness) {
   Lanes<std::uint32_t> bits;
   for (unsigned i = 0; i < kLanes; ++i) {
     const float u = hit.u[i];
@@ -111,7 +114,7 @@ GLIDAR_SIMD std::uint32_t doubt(const RTCHit16& hit, const ExactBlock& exact,
     const auto cosine = static_cast<float>(exact.cosine[i]);
     const float seen = margin * (cosine < 0.0F ? -cosine : cosine);
     const int ahead = static_cast<int>(static_cast<float>(exact.distance[i]) > 0.0F);
-    const int certain = static_cast<int>(seen >= needed[i] * exact.narrowness[i]) & ahead;
+    const int certain = static_cast<int>(seen >= needed[i] * narrowness[i]) & ahead;
     bits[i] = static_cast<std::uint32_t>(certain ^ 1) << i;
   }
   std::uint32_t mask = 0;
@@ -121,14 +124,14 @@ GLIDAR_SIMD std::uint32_t doubt(const RTCHit16& hit, const ExactBlock& exact,
 
 }  // namespace
 
-Probe::Probe(const TraceSpace& space, const Resolver& resolver, const Beams& beams,
-             bool cull_back_faces)
-    : space_(space),
+Probe::Probe(const World& world, const Resolver& resolver, const Beams& beams, bool cull_back_faces)
+    : world_(world),
+      space_(world.space()),
       resolver_(resolver),
       beams_(beams),
       cull_back_faces_(cull_back_faces),
-      hair_(kHairPerRadius * space.radius),
-      slack_(slack(space.radius + space.sensor_in_trace.norm())) {}
+      hair_(kHairPerRadius * std::min(space_.radius, kMostReaches * space_.least_reach)),
+      slack_(slack(space_.radius + space_.sensor_in_trace.norm())) {}
 
 FilterContext Probe::context() const {
   FilterContext context{};
@@ -137,6 +140,11 @@ FilterContext Probe::context() const {
   context.beams = &beams_;
   context.cull_back_faces = cull_back_faces_;
   return context;
+}
+
+/// As much as single precision may move a beam where it hits this instance.
+double Probe::hair_of(std::uint32_t instance) const {
+  return std::max(hair_, kHairPerRadius * world_.reach(instance));
 }
 
 ObjectRay Probe::exact_ray(std::size_t beam) const {
@@ -160,11 +168,13 @@ void Probe::set_rays(const std::array<std::size_t, kLanes>& beam, const BeamBloc
 std::uint32_t Probe::doubtful(const HitBlock& block, const ExactBlock& exact,
                               const RayHits& rays) const {
   Lanes<float> needed;
-  const double hairs_m = kCertainHairs * hair_ * space_.metres_per_unit;
+  Lanes<float> narrowness;
   for (unsigned i = 0; i < kLanes; ++i) {
+    const double hairs_m = kCertainHairs * hair_of(block.instance[i]) * space_.metres_per_unit;
     needed[i] = static_cast<float>(hairs_m / resolver_.view(block.instance[i]).scale);
+    narrowness[i] = *world_.narrowness(block.instance[i], block.primitive[i]);
   }
-  return doubt(rays.hit, exact, needed) & block.mask;
+  return doubt(rays.hit, exact, needed, narrowness) & block.mask;
 }
 
 Found Probe::trace(std::size_t beam, const Eigen::Vector3d& origin,
@@ -204,7 +214,7 @@ Found Probe::settle(std::size_t beam, const Found& found) const {
   bool passes = false;
   for (int step = 0; step <= kRingSteps; ++step) {
     const double angle = 2.0 * std::numbers::pi * (step - 0.5) / kRingSteps;
-    const double away = step == 0 ? 0.0 : kRingHairs * hair_;
+    const double away = step == 0 ? 0.0 : kRingHairs * hair_of(found.instance);
     const Eigen::Vector3d beside = away * (std::cos(angle) * side + std::sin(angle) * up);
     const Found candidate = trace(beam, ray.origin + beside, ray.direction);
     if (candidate.instance == kNoHit) {

@@ -19,8 +19,7 @@ namespace glidar::embree {
 /// barycentric weights, and then the triangles around are judged in double on the true beam.
 class Probe {
  public:
-  Probe(const TraceSpace& space, const Resolver& resolver, const Beams& beams,
-        bool cull_back_faces);
+  Probe(const World& world, const Resolver& resolver, const Beams& beams, bool cull_back_faces);
 
   [[nodiscard]] const TraceSpace& space() const { return space_; }
   [[nodiscard]] FilterContext context() const;
@@ -30,6 +29,11 @@ class Probe {
   void set_rays(const std::array<std::size_t, kLanes>& beam, const BeamBlock& in_sensor,
                 Lanes<int>& valid, RayHits& rays) const;
 
+  /// Asks the memory for what doubtful() needs of a lane's triangle.
+  void prefetch(const HitBlock& block, unsigned lane) const {
+    __builtin_prefetch(world_.narrowness(block.instance[lane], block.primitive[lane]));
+  }
+
   /// The lanes of a block whose triangle the hair could have changed.
   [[nodiscard]] std::uint32_t doubtful(const HitBlock& block, const ExactBlock& exact,
                                        const RayHits& rays) const;
@@ -38,10 +42,12 @@ class Probe {
   [[nodiscard]] Found settle(std::size_t beam, const Found& found) const;
 
  private:
+  [[nodiscard]] double hair_of(std::uint32_t instance) const;
   [[nodiscard]] ObjectRay exact_ray(std::size_t beam) const;
   [[nodiscard]] Found trace(std::size_t beam, const Eigen::Vector3d& origin,
                             const Eigen::Vector3d& direction) const;
 
+  const World& world_;
   const TraceSpace& space_;
   const Resolver& resolver_;
   const Beams& beams_;

@@ -37,8 +37,4 @@ void draw_triangles(const DrawRange& range);
 /// As shaders/texel.glsl takes it.
 GLint wrap_number(Wrap wrap);
 
-inline bool is_present(const CastRequest& request, std::size_t instance) {
-  return request.present.empty() || request.present[instance] != 0;
-}
-
 }  // namespace glidar::opengl

@@ -3,16 +3,13 @@
 #pragma once
 
 #include <glidar/render/opengl/gl_object.hpp>
+#include <glidar/render/triangle_picture.hpp>
 
 #include <cstdint>
-#include <limits>
 #include <span>
 #include <vector>
 
 namespace glidar::opengl {
-
-/// "No triangle": nothing was drawn at the pixel.
-inline constexpr std::uint32_t kNoNumber = std::numeric_limits<std::uint32_t>::max();
 
 /// Pictures of one size.
 struct PictureSize {

@@ -7,9 +7,9 @@
 #include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/render/opengl/number_target.hpp>
 #include <glidar/render/opengl/picture_plan.hpp>
-#include <glidar/render/opengl/pinhole_only.hpp>
-#include <glidar/render/opengl/row_writing.hpp>
 #include <glidar/render/opengl/triangle_drawing.hpp>
+#include <glidar/render/picture_writing.hpp>
+#include <glidar/render/pinhole_only.hpp>
 
 #include <array>
 #include <limits>
@@ -53,7 +53,7 @@ class OpenglRenderer final : public Renderer {
     check_batch(requests, hits);
     for (const CastRequest& request : requests) {
       check(request, resolver_.scene());
-      opengl::check_pinhole(request.beams);
+      check_pinhole(request.beams, "opengl");
     }
     pictures_.clear();
     for (std::size_t i = 0; i < requests.size(); ++i) plan(requests[i], i, *hits[i]);
@@ -70,24 +70,23 @@ class OpenglRenderer final : public Renderer {
   };
 
   /// The planes that hug all instances that are there.
-  [[nodiscard]] opengl::DepthRange depths_of(const CastRequest& request) const {
+  [[nodiscard]] DepthRange depths_of(const CastRequest& request) const {
     double nearest_m = std::numeric_limits<double>::infinity();
     double farthest_m = -std::numeric_limits<double>::infinity();
     const Scene& scene = resolver_.scene();
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-      if (!opengl::is_present(request, i)) continue;
-      opengl::extend_depths(resolver_.view(i), meshes_[scene.instances[i].mesh].box, nearest_m,
-                            farthest_m);
+      if (!is_present(request, i)) continue;
+      extend_depths(resolver_.view(i), meshes_[scene.instances[i].mesh].box, nearest_m, farthest_m);
     }
     if (!(farthest_m > 0.0)) return {0.0, 0.0};
-    return opengl::hugging(nearest_m, farthest_m);
+    return hugging(nearest_m, farthest_m);
   }
 
   /// Makes room for a cast's hits and adds its pictures, if there is anything to draw.
   void plan(const CastRequest& request, std::size_t cast, Hits& hits) {
     resize(hits, request.beams.size(), request.fields);
     resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
-    const opengl::DepthRange depths = depths_of(request);
+    const DepthRange depths = depths_of(request);
     if (!depths.is_empty() && request.beams.size() > 0) {
       opengl::add_parts(request.beams, cast, depths, pictures_);
       return;
@@ -138,16 +137,17 @@ class OpenglRenderer final : public Renderer {
       find_plane_points(request.beams, points_);
       const bool is_first_part = picture.rect.first_row == 0 && picture.rect.first_col == 0;
       if (is_first_part) count_.emplace(request.progress, request.beams.size());
-      const opengl::Settler settler(resolver_, meshes_, request.beams, request.cull_back_faces);
-      opengl::write_rows({.request = request,
-                          .resolver = resolver_,
-                          .settler = settler,
-                          .drawing = gpu_->drawing,
-                          .points = points_,
-                          .rect = picture.rect,
-                          .numbers = numbers.subspan(i * pixels, pixels),
-                          .hits = *hits[picture.cast]},
-                         workers_, *count_);
+      const Settler settler(resolver_, meshes_, request.beams, request.cull_back_faces);
+      write_picture({.request = request,
+                     .resolver = resolver_,
+                     .settler = settler,
+                     .triangles = gpu_->drawing.numbers(),
+                     .points = points_,
+                     .drawn = picture.rect,
+                     .numbers = numbers.subspan(i * pixels, pixels),
+                     .part = picture.rect,
+                     .hits = *hits[picture.cast]},
+                    workers_, *count_);
       const bool is_last_part = picture.rect.first_row + picture.rect.rows == request.beams.rows &&
                                 picture.rect.first_col + picture.rect.cols == request.beams.cols;
       if (is_last_part) count_->finish();
@@ -156,7 +156,7 @@ class OpenglRenderer final : public Renderer {
 
   Workers workers_;
   Resolver resolver_;
-  std::vector<opengl::KnownMesh> meshes_;
+  std::vector<KnownMesh> meshes_;
   std::unique_ptr<opengl::Context> context_;
   std::unique_ptr<OnDevice> gpu_;
   std::vector<opengl::Picture> pictures_;  ///< of the batch under way

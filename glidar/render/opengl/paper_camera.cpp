@@ -5,8 +5,8 @@
 #include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/render/opengl/paper_drawing.hpp>
 #include <glidar/render/opengl/paper_target.hpp>
-#include <glidar/render/opengl/pinhole_only.hpp>
 #include <glidar/render/paper_picture.hpp>
+#include <glidar/render/pinhole_only.hpp>
 #include <glidar/render/visible_depths.hpp>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ class OpenglPaperCamera final : public PaperCamera {
   void draw(const CastRequest& request, const Light& light,
             const std::optional<PaperPlanes>& planes, PaperPicture& picture) override {
     check(request, resolver_.scene());
-    opengl::check_pinhole(request.beams);
+    check_pinhole(request.beams, "opengl");
     resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
     picture.rows = request.beams.rows;
     picture.cols = request.beams.cols;
@@ -50,7 +50,7 @@ class OpenglPaperCamera final : public PaperCamera {
                        {.pinhole = *request.beams.pinhole,
                         .light = light,
                         .planes = used,
-                        .depths = opengl::hugging(used.near_m, used.far_m)});
+                        .depths = hugging(used.near_m, used.far_m)});
     gpu_->target.read(picture.rgba);
   }
 
@@ -67,7 +67,7 @@ class OpenglPaperCamera final : public PaperCamera {
     const Scene& scene = resolver_.scene();
     DepthSpan span;
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-      if (!opengl::is_present(request, i)) continue;
+      if (!is_present(request, i)) continue;
       span.extend(visible_depths_.of(resolver_.view(i), resolver_.mesh(i), *request.beams.pinhole,
                                      workers_));
     }

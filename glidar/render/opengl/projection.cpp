@@ -2,40 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/opengl/projection.hpp>
 
-#include <algorithm>
-
 namespace glidar::opengl {
-namespace {
-
-/// Mesh to sensor, metres.
-Eigen::Matrix<double, 3, 4> sensor_from_object(const InstanceView& view) {
-  const Eigen::Matrix3d turn = view.scale * view.object_from_sensor.transpose();
-  Eigen::Matrix<double, 3, 4> matrix;
-  matrix << turn, -(turn * view.sensor_in_object);
-  return matrix;
-}
-
-}  // namespace
-
-void extend_depths(const InstanceView& view, const Eigen::AlignedBox3d& box, double& nearest_m,
-                   double& farthest_m) {
-  if (box.isEmpty()) return;
-  const Eigen::Vector3d boresight = view.scale * view.object_from_sensor.col(2);
-  const double middle = boresight.dot(box.center() - view.sensor_in_object);
-  const double half = boresight.cwiseAbs().dot(0.5 * box.sizes());
-  nearest_m = std::min(nearest_m, middle - half);
-  farthest_m = std::max(farthest_m, middle + half);
-}
-
-DepthRange hugging(double nearest_m, double farthest_m) {
-  // Single precision rounds a depth by 6e-8 of it, and places by as much of the farthest.
-  constexpr double kRounding = 0x1p-22;
-  constexpr double kNearestPart = 1e-7;  // of the farthest depth; what is nearer is rounding
-  const double hair = kRounding * (farthest_m - std::max(nearest_m, 0.0)) +
-                      0x1p-50 * (std::abs(farthest_m) + std::abs(nearest_m));
-  const double far_m = farthest_m + hair;
-  return {std::max(nearest_m - hair, kNearestPart * far_m), far_m};
-}
 
 Eigen::Matrix4f clip_from_object(const InstanceView& view, const PinholeIntrinsics& k,
                                  const PixelRect& rect, const DepthRange& depths) {

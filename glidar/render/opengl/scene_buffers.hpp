@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/scene.hpp>
-#include <glidar/render/opengl/draw_order.hpp>
+#include <glidar/render/draw_order.hpp>
 #include <glidar/render/opengl/gl_object.hpp>
 
 #include <array>

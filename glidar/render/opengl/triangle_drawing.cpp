@@ -15,23 +15,18 @@
 namespace glidar::opengl {
 namespace {
 
-/// Numbers of the instances' first triangles.
-std::vector<std::uint32_t> number(const Scene& scene) {
+/// The scene, if each mesh can be drawn at once.
+const Scene& checked(const Scene& scene) {
   constexpr std::size_t kMostAtOnce = std::numeric_limits<GLsizei>::max() / 3;  // in one draw
-  std::vector<std::uint32_t> first;
-  std::uint64_t next = 0;
-  for (const Instance& instance : scene.instances) {
-    const std::size_t own = scene.meshes[instance.mesh].triangles.size();
-    first.push_back(static_cast<std::uint32_t>(next));
-    next += own;
-    if (next < kNoNumber && own <= kMostAtOnce) continue;
+  for (const Mesh& mesh : scene.meshes) {
+    const std::size_t own = mesh.triangles.size();
+    if (own <= kMostAtOnce) continue;
     throw Error({.where = "opengl renderer",
-                 .found = "too many triangles: " + std::to_string(own) + " in one mesh, " +
-                          std::to_string(next) + " together",
-                 .allowed = "up to 715827882 in one mesh, 4294967294 together",
+                 .found = "too many triangles in one mesh: " + std::to_string(own),
+                 .allowed = "up to 715827882",
                  .remedy = "use --renderer embree"});
   }
-  return first;
+  return scene;
 }
 
 }  // namespace
@@ -64,12 +59,12 @@ TriangleDrawing::MaskDrawer TriangleDrawing::make_mask_drawer(const char* depth_
 TriangleDrawing::TriangleDrawing(const Scene& scene)
     : scene_(scene),
       has_clip_control_(has_clip_control()),
-      buffers_(upload(scene)),
+      buffers_(upload(checked(scene))),
       solid_(make_drawer("IS_SOLID", has_clip_control_ ? "HAS_CLIP_CONTROL" : "WRITES_DEPTH")),
       masked_(make_mask_drawer(has_clip_control_ ? "HAS_CLIP_CONTROL" : "WRITES_DEPTH")),
-      first_number_(number(scene)) {
-  for (const Instance& instance : scene.instances) {
-    drawn_.push_back(buffers_.meshes[instance.mesh].drawn.data());
+      numbers_(scene, "opengl") {
+  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
+    numbers_.set_order(i, buffers_.meshes[scene.instances[i].mesh].drawn);
   }
 }
 
@@ -95,7 +90,7 @@ void TriangleDrawing::draw_instance(std::uint32_t instance,
     const Drawer& drawer = is_masked ? masked_.base : solid_;
     glUseProgram(drawer.program.name());
     glUniformMatrix4fv(drawer.clip_from_object, 1, GL_FALSE, clip_from_object.data());
-    glUniform1ui(drawer.first_number, first_number_[instance] + range.first);
+    glUniform1ui(drawer.first_number, numbers_.first(instance) + range.first);
     if (is_masked) use_mask(material, mesh);
     draw_triangles(range);
   }
@@ -122,12 +117,6 @@ void TriangleDrawing::use_mask(std::uint32_t material, const MeshBuffers& mesh) 
   glBindBuffer(GL_ARRAY_BUFFER, mesh.uvs[use.uv_set].name());
   glVertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, 0, nullptr);
   glEnableVertexAttribArray(1);
-}
-
-Found TriangleDrawing::found_among_many(std::uint32_t number) const {
-  const auto after = std::upper_bound(first_number_.begin(), first_number_.end(), number);
-  const auto instance = static_cast<std::uint32_t>(after - first_number_.begin() - 1);
-  return {instance, drawn_[instance][number - first_number_[instance]]};
 }
 
 }  // namespace glidar::opengl

@@ -2,20 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/render/judgement.hpp>
 #include <glidar/render/opengl/number_target.hpp>
 #include <glidar/render/opengl/projection.hpp>
 #include <glidar/render/opengl/scene_buffers.hpp>
 #include <glidar/render/renderer.hpp>
 #include <glidar/render/resolve.hpp>
+#include <glidar/render/triangle_picture.hpp>
 
 #include <cstdint>
-#include <vector>
 
 namespace glidar::opengl {
 
-/// Draws the number of each triangle of a scene where it is seen. The triangles of all instances
-/// are numbered through, so that 32 bits tell both.
+/// Draws the number of each triangle of a scene where it is seen.
 class TriangleDrawing {
  public:
   /// Needs a current context, as everything here does. Throws Error when the scene has more
@@ -26,11 +24,7 @@ class TriangleDrawing {
   void draw(const CastRequest& request, const Resolver& resolver, const PixelRect& rect,
             const DepthRange& depths) const;
 
-  /// What a number of the picture tells. Needs no context.
-  [[nodiscard]] Found found(std::uint32_t number) const {
-    if (number == kNoNumber) return {};
-    return drawn_.size() == 1 ? Found{0, drawn_[0][number]} : found_among_many(number);
-  }
+  [[nodiscard]] const TriangleNumbers& numbers() const { return numbers_; }
 
  private:
   /// A program and where its uniforms are.
@@ -52,7 +46,6 @@ class TriangleDrawing {
   static Drawer make_drawer(const char* mask_macro, const char* depth_macro);
   static MaskDrawer make_mask_drawer(const char* depth_macro);
   void draw_instance(std::uint32_t instance, const Eigen::Matrix4f& clip_from_object) const;
-  [[nodiscard]] Found found_among_many(std::uint32_t number) const;
   void use_mask(std::uint32_t material, const MeshBuffers& mesh) const;
 
   const Scene& scene_;
@@ -60,8 +53,7 @@ class TriangleDrawing {
   SceneBuffers buffers_;
   Drawer solid_;
   MaskDrawer masked_;
-  std::vector<std::uint32_t> first_number_;  ///< per instance
-  std::vector<const std::uint32_t*> drawn_;  ///< per instance: MeshBuffers::drawn of its mesh
+  TriangleNumbers numbers_;  ///< in the order of MeshBuffers::drawn
 };
 
 }  // namespace glidar::opengl

@@ -219,7 +219,7 @@ def test_a_model_of_one_point_is_written_and_its_trials_go_on(campaign):
     point = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
     point += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
     campaign.write("point.ply", point + 3 * "1e7 1e7 1e7\n" + "3 0 1 2\n")
-    campaign.add("outputs: {bop: true}\n")
+    campaign.add("outputs: {bop: {depth_scale_mm: 1}}\n")
     campaign.write("scene.yaml", SCENE + "  - {name: point, model: point.ply}\n")
     assert "40 trials, 0 failed" in campaign.run("out", "--workers", "1")
     info = json.loads((campaign.folder / "out" / "bop" / "models" / "models_info.json").read_text())

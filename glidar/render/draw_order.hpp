@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace glidar::opengl {
+namespace glidar {
 
 /// Triangles of one mesh that are drawn together, because they are of one kind.
 struct DrawRange {
@@ -40,4 +40,4 @@ std::vector<Value> in_order(const DrawOrder& order, const std::vector<Value>& of
   return ordered;
 }
 
-}  // namespace glidar::opengl
+}  // namespace glidar

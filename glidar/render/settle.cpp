@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/render/opengl/settle.hpp>
+#include <glidar/render/settle.hpp>
 
 #include <glidar/core/simd.hpp>
 #include <glidar/render/corners.hpp>
@@ -8,7 +8,7 @@
 
 #include <algorithm>
 
-namespace glidar::opengl {
+namespace glidar {
 namespace {
 
 // An area is a sum of six products of single precision: wrong by less than this part of the square
@@ -74,19 +74,21 @@ Judgement Settler::judgement(std::size_t beam, std::uint32_t instance) const {
 }
 
 void Settler::consider(Judgement& judgement, const Found& candidate) const {
+  if (meets(judgement.beam, candidate)) judgement.consider(candidate);
+}
+
+bool Settler::meets(std::size_t beam, const Found& candidate) const {
   const Instance& instance = resolver_.scene().instances[candidate.instance];
   const Mesh& mesh = resolver_.mesh(candidate.instance);
-  const ObjectRay ray = ray_in(resolver_.view(candidate.instance), beams_, judgement.beam);
+  const ObjectRay ray = ray_in(resolver_.view(candidate.instance), beams_, beam);
   const TrianglePlane& plane = resolver_.plane(candidate.instance, candidate.primitive);
-  if (cull_back_faces_ && plane.normal.dot(ray.direction) > 0.0) return;
+  if (cull_back_faces_ && plane.normal.dot(ray.direction) > 0.0) return false;
   const std::uint16_t slot = material_slot(mesh, candidate.primitive);
-  if (resolver_.scene().materials[instance.materials[slot]].alpha_cutoff > 0.0F) {
-    const Eigen::Vector3d point = ray.origin + distance_to(plane, ray) * ray.direction;
-    const SurfacePlace place{mesh, instance, candidate.primitive,
-                             weights(mesh, candidate.primitive, point)};
-    if (is_cut_out(resolver_.scene(), place)) return;
-  }
-  judgement.consider(candidate);
+  if (!(resolver_.scene().materials[instance.materials[slot]].alpha_cutoff > 0.0F)) return true;
+  const Eigen::Vector3d point = ray.origin + distance_to(plane, ray) * ray.direction;
+  const SurfacePlace place{mesh, instance, candidate.primitive,
+                           weights(mesh, candidate.primitive, point)};
+  return !is_cut_out(resolver_.scene(), place);
 }
 
 void Settler::consider_around(Judgement& judgement, const Found& middle) const {
@@ -129,4 +131,4 @@ Found Settler::settle(std::size_t beam, const Found& told, std::span<const Found
   return passes ? Found{} : all.closest;
 }
 
-}  // namespace glidar::opengl
+}  // namespace glidar

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace glidar::opengl {
+namespace glidar {
 
 /// A bit for every hit lane whose beam may pass beside its triangle or start behind it.
 std::uint32_t doubtful(const Resolver& resolver, const HitBlock& block, const ExactBlock& exact);
@@ -39,6 +39,9 @@ class Settler {
   [[nodiscard]] Found settle(std::size_t beam, const Found& told,
                              std::span<const Found> around) const;
 
+  /// False where a triangle lets a beam through: by its side, or by a hole of its alpha mask.
+  [[nodiscard]] bool meets(std::size_t beam, const Found& candidate) const;
+
  private:
   [[nodiscard]] Judgement judgement(std::size_t beam, std::uint32_t instance) const;
   void consider(Judgement& judgement, const Found& candidate) const;
@@ -51,4 +54,4 @@ class Settler {
   bool cull_back_faces_;
 };
 
-}  // namespace glidar::opengl
+}  // namespace glidar

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/render/opengl/draw_order.hpp>
+#include <glidar/render/draw_order.hpp>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
 #include <tuple>
 
-namespace glidar::opengl {
+namespace glidar {
 namespace {
 
 constexpr int kBits = 16;  // of a place, along each axis
@@ -102,4 +102,4 @@ DrawOrder draw_order(const Mesh& mesh, const std::vector<std::uint32_t>& kinds) 
   return order;
 }
 
-}  // namespace glidar::opengl
+}  // namespace glidar

@@ -1,14 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/render/opengl/row_writing.hpp>
-
-#include <glidar/render/opengl/number_target.hpp>
+#include <glidar/render/picture_writing.hpp>
 
 #include <algorithm>
 #include <array>
 #include <bit>
 
-namespace glidar::opengl {
+namespace glidar {
 namespace {
 
 constexpr std::uint32_t kPiece = 128;  // columns that are looked through at once
@@ -20,9 +18,10 @@ struct Work {
   ExactBlock exact;
   Lanes<double> x;  ///< where the beams cross the plane at depth 1
   Lanes<double> y;
-  std::array<std::uint32_t, kLanes> row;  ///< in the rect
+  std::array<std::uint32_t, kLanes> row;  ///< of the drawn pixels
   std::array<std::uint32_t, kLanes> col;
   std::array<std::uint32_t, kLanes> number;  ///< drawn there
+  std::uint32_t certain = 0;                 ///< bit i: lane i meets its triangle
   unsigned used = 0;
 };
 
@@ -37,28 +36,28 @@ struct Works {
 };
 
 /// The triangle to tell for one found, see Resolver::told.
-std::uint32_t told(const RowWriting& w, const Found& found) {
+std::uint32_t told(const PictureWriting& w, const Found& found) {
   return w.request.cull_back_faces ? found.primitive
                                    : w.resolver.told(found.instance, found.primitive);
 }
 
 /// What was drawn at the up to eight pixels around one.
-std::span<const Found> found_around(const RowWriting& w, std::uint32_t row, std::uint32_t col,
+std::span<const Found> found_around(const PictureWriting& w, std::uint32_t row, std::uint32_t col,
                                     std::array<Found, 8>& found) {
   std::size_t used = 0;
-  const std::uint32_t end_row = std::min(row + 2, w.rect.rows);
-  const std::uint32_t end_col = std::min(col + 2, w.rect.cols);
+  const std::uint32_t end_row = std::min(row + 2, w.drawn.rows);
+  const std::uint32_t end_col = std::min(col + 2, w.drawn.cols);
   for (std::uint32_t r = row == 0 ? 0 : row - 1; r < end_row; ++r) {
     for (std::uint32_t c = col == 0 ? 0 : col - 1; c < end_col; ++c) {
       if (r == row && c == col) continue;
-      found[used++] = w.drawing.found(w.numbers[std::size_t{r} * w.rect.cols + c]);
+      found[used++] = w.triangles.found(w.numbers[std::size_t{r} * w.drawn.cols + c]);
     }
   }
   return {found.data(), used};
 }
 
 /// Puts right the lanes in doubt; true when that changed the block.
-bool settle(const RowWriting& w, std::uint32_t doubtful, Work& work) {
+bool settle(const PictureWriting& w, std::uint32_t doubtful, Work& work) {
   HitBlock& block = work.block;
   bool changed = false;
   for (; doubtful != 0; doubtful &= doubtful - 1) {
@@ -81,7 +80,7 @@ bool settle(const RowWriting& w, std::uint32_t doubtful, Work& work) {
 }
 
 /// Writes the collected hits.
-void finish(const RowWriting& w, Work& work) {
+void finish(const PictureWriting& w, Work& work) {
   if (work.used == 0) return;
   HitBlock& block = work.block;
   for (unsigned lane = work.used; lane < kLanes; ++lane) {
@@ -92,7 +91,9 @@ void finish(const RowWriting& w, Work& work) {
   work.used = 0;
   directions_through(work.x, work.y, work.beams.direction);
   w.resolver.measure(work.beams, block, work.exact);
-  const std::uint32_t in_doubt = doubtful(w.resolver, block, work.exact);
+  const std::uint32_t uncertain = block.mask & ~work.certain;
+  const std::uint32_t in_doubt =
+      uncertain == 0 ? 0 : doubtful(w.resolver, block, work.exact) & uncertain;
   if (in_doubt != 0 && settle(w, in_doubt, work) && block.mask != 0) {
     w.resolver.measure(work.beams, block, work.exact);
   }
@@ -101,23 +102,28 @@ void finish(const RowWriting& w, Work& work) {
 }
 
 /// What the numbers of a block tell.
-void look_up(const RowWriting& w, Work& work) {
+void look_up(const PictureWriting& w, Work& work) {
   work.block.mask = static_cast<std::uint32_t>((std::uint64_t{1} << work.used) - 1);
+  work.certain = 0;
+  const bool with_corners = needs_corners(w.request.fields);
   for (unsigned lane = 0; lane < work.used; ++lane) {
-    const Found found = w.drawing.found(work.number[lane]);
+    work.certain |= static_cast<std::uint32_t>((work.number[lane] & kCertain) != 0) << lane;
+    const Found found = w.triangles.found(work.number[lane]);
     work.block.instance[lane] = found.instance;
     work.block.primitive[lane] = told(w, found);
-    w.resolver.prefetch(work.block, lane);
+    w.resolver.prefetch(work.block, lane, with_corners);
   }
 }
 
 /// Looks the collected hits up, asks for the corners of those before, and finishes those before
 /// them.
-void go_on(const RowWriting& w, Works& works) {
+void go_on(const PictureWriting& w, Works& works) {
   look_up(w, works.filling());
+  Work& before = works.before();
   HitFields fields = w.request.fields;
-  fields.barycentrics = true;  // for their doubts all need their corners
-  w.resolver.prefetch_corners(works.before().block, fields);
+  // For their doubts.
+  fields.barycentrics = fields.barycentrics || (before.block.mask & ~before.certain) != 0;
+  w.resolver.prefetch_corners(before.block, fields);
   ++works.started;
   finish(w, works.filling());
 }
@@ -133,10 +139,10 @@ std::uint32_t list_drawn(const std::uint32_t* numbers, std::uint32_t begin, std:
   return count;
 }
 
-void collect(const RowWriting& w, std::uint32_t row, std::uint32_t col, std::uint32_t number,
+void collect(const PictureWriting& w, std::uint32_t row, std::uint32_t col, std::uint32_t number,
              Work& work) {
-  const std::uint32_t picture_row = w.rect.first_row + row;
-  const std::uint32_t picture_col = w.rect.first_col + col;
+  const std::uint32_t picture_row = w.drawn.first_row + row;
+  const std::uint32_t picture_col = w.drawn.first_col + col;
   const unsigned lane = work.used++;
   work.row[lane] = row;
   work.col[lane] = col;
@@ -146,24 +152,28 @@ void collect(const RowWriting& w, std::uint32_t row, std::uint32_t col, std::uin
   work.block.beam[lane] = std::size_t{picture_row} * w.request.beams.cols + picture_col;
 }
 
-BeamRange beams_of(const RowWriting& w, std::uint32_t row) {
+/// The beams of a row of the part.
+BeamRange beams_of(const PictureWriting& w, std::uint32_t row) {
   const std::size_t first =
-      std::size_t{w.rect.first_row + row} * w.request.beams.cols + w.rect.first_col;
-  return {first, first + w.rect.cols};
+      std::size_t{w.part.first_row + row} * w.request.beams.cols + w.part.first_col;
+  return {first, first + w.part.cols};
 }
 
-void collect_row(const RowWriting& w, std::uint32_t row, Works& works) {
+void collect_row(const PictureWriting& w, std::uint32_t row, Works& works) {
   const std::size_t first = beams_of(w, row).begin;
-  const std::uint32_t* numbers = w.numbers.data() + std::size_t{row} * w.rect.cols;
+  const std::uint32_t drawn_row = w.part.first_row - w.drawn.first_row + row;
+  const std::uint32_t drawn_col = w.part.first_col - w.drawn.first_col;
+  const std::uint32_t* numbers =
+      w.numbers.data() + std::size_t{drawn_row} * w.drawn.cols + drawn_col;
   std::array<std::uint32_t, kPiece> cols;
-  for (std::uint32_t begin = 0; begin < w.rect.cols; begin += kPiece) {
-    const std::uint32_t end = std::min(begin + kPiece, w.rect.cols);
+  for (std::uint32_t begin = 0; begin < w.part.cols; begin += kPiece) {
+    const std::uint32_t end = std::min(begin + kPiece, w.part.cols);
     const std::uint32_t count = list_drawn(numbers, begin, end, cols);
     // In long strokes, hits being written over them; only where all are hits there is no need.
     if (count < end - begin) write_misses(w.request.fields, first + begin, end - begin, w.hits);
     Work* work = &works.filling();
     for (std::uint32_t i = 0; i < count; ++i) {
-      collect(w, row, cols[i], numbers[cols[i]], *work);
+      collect(w, drawn_row, drawn_col + cols[i], numbers[cols[i]], *work);
       if (work->used < kLanes) continue;
       go_on(w, works);
       work = &works.filling();
@@ -171,8 +181,9 @@ void collect_row(const RowWriting& w, std::uint32_t row, Works& works) {
   }
 }
 
-/// All beams of rows [begin, end).
-void write_some_rows(const RowWriting& w, std::uint32_t begin, std::uint32_t end) {
+}  // namespace
+
+void write_rows(const PictureWriting& w, std::uint32_t begin, std::uint32_t end) {
   Works works;
   for (std::uint32_t row = begin; row < end; ++row) collect_row(w, row, works);
   for (std::size_t i = 0; i < works.ring.size(); ++i) go_on(w, works);
@@ -180,19 +191,18 @@ void write_some_rows(const RowWriting& w, std::uint32_t begin, std::uint32_t end
   for (std::uint32_t row = begin; row < end; ++row) w.request.then(beams_of(w, row));
 }
 
-}  // namespace
-
-void write_rows(const RowWriting& writing, Workers& workers, WorkCount& count) {
+void write_picture(const PictureWriting& writing, Workers& workers, WorkCount& count) {
   constexpr std::uint32_t kBeamsPerTask = 1024;
-  const std::uint32_t rows_per_task = std::max(1U, kBeamsPerTask / writing.rect.cols);
-  workers.for_ranges(writing.rect.rows, rows_per_task, [&](std::size_t begin, std::size_t end) {
+  const PixelRect& part = writing.part;
+  const std::uint32_t rows_per_task = std::max(1U, kBeamsPerTask / part.cols);
+  workers.for_ranges(part.rows, rows_per_task, [&](std::size_t begin, std::size_t end) {
     const auto last = static_cast<std::uint32_t>(end);
     for (auto row = static_cast<std::uint32_t>(begin); row < last; row += rows_per_task) {
       const std::uint32_t next = std::min(row + rows_per_task, last);
-      write_some_rows(writing, row, next);
-      count.add(std::size_t{next - row} * writing.rect.cols);
+      write_rows(writing, row, next);
+      count.add(std::size_t{next - row} * part.cols);
     }
   });
 }
 
-}  // namespace glidar::opengl
+}  // namespace glidar

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/scene.hpp>
+#include <glidar/core/workers.hpp>
+#include <glidar/render/resolve.hpp>
+
+namespace glidar {
+
+/// What renderers on the CPU have of their own, and those over the same scene may share.
+struct CpuBase {
+  /// Throws Error unless the scene is valid.
+  CpuBase(const Scene& scene, unsigned threads)
+      : workers(threads), resolver((validate(scene), scene)) {}
+
+  Workers workers;
+  Resolver resolver;
+};
+
+}  // namespace glidar

@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/depth_range.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar {
+
+void extend_depths(const InstanceView& view, const Eigen::AlignedBox3d& box, double& nearest_m,
+                   double& farthest_m) {
+  if (box.isEmpty()) return;
+  const Eigen::Vector3d boresight = view.scale * view.object_from_sensor.col(2);
+  const double middle = boresight.dot(box.center() - view.sensor_in_object);
+  const double half = boresight.cwiseAbs().dot(0.5 * box.sizes());
+  nearest_m = std::min(nearest_m, middle - half);
+  farthest_m = std::max(farthest_m, middle + half);
+}
+
+DepthRange hugging(double nearest_m, double farthest_m) {
+  // Single precision rounds a depth by 6e-8 of it, and places by as much of the farthest.
+  constexpr double kRounding = 0x1p-22;
+  constexpr double kNearestPart = 1e-7;  // of the farthest depth; what is nearer is rounding
+  const double hair = kRounding * (farthest_m - std::max(nearest_m, 0.0)) +
+                      0x1p-50 * (std::abs(farthest_m) + std::abs(nearest_m));
+  const double far_m = farthest_m + hair;
+  return {std::max(nearest_m - hair, kNearestPart * far_m), far_m};
+}
+
+}  // namespace glidar

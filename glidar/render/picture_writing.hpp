@@ -1,0 +1,35 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/work_count.hpp>
+#include <glidar/render/plane_points.hpp>
+#include <glidar/render/renderer.hpp>
+#include <glidar/render/settle.hpp>
+#include <glidar/render/triangle_picture.hpp>
+
+#include <cstdint>
+#include <span>
+
+namespace glidar {
+
+/// What turns a picture of triangle numbers, or a part of one, into hits.
+struct PictureWriting {
+  const CastRequest& request;
+  const Resolver& resolver;
+  const Settler& settler;
+  const TriangleNumbers& triangles;
+  const PlanePoints& points;
+  PixelRect drawn;                         ///< the pixels whose numbers are known
+  std::span<const std::uint32_t> numbers;  ///< of these, row by row
+  PixelRect part;                          ///< those of them whose hits are written
+  Hits& hits;
+};
+
+/// Writes the hits of rows [begin, end) of the part and tells the request of them.
+void write_rows(const PictureWriting& writing, std::uint32_t begin, std::uint32_t end);
+
+/// Writes the hits of the whole part, sharing rows out among threads.
+void write_picture(const PictureWriting& writing, Workers& workers, WorkCount& count);
+
+}  // namespace glidar

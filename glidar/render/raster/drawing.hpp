@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/raster/canvas.hpp>
+#include <glidar/render/raster/footprints.hpp>
+#include <glidar/render/raster/packed_mesh.hpp>
+#include <glidar/render/raster/sight.hpp>
+#include <glidar/render/renderer.hpp>
+#include <glidar/render/settle.hpp>
+#include <glidar/render/triangle_picture.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace glidar::raster {
+
+/// What one cast hands to every canvas.
+struct Drawing {
+  const CastRequest& request;
+  const Resolver& resolver;
+  const std::vector<PackedMesh>& meshes;
+  const std::vector<PixelView>& views;  ///< per instance
+  const TriangleNumbers& triangles;
+  const Settler& settler;
+  const std::vector<std::uint8_t>& has_mask;  ///< per instance
+  Nearness nearness;
+};
+
+/// Asks the memory for a cluster.
+void prefetch(const Drawing& drawing, const Sighting& sighting);
+
+/// Draws one cluster onto a canvas whose first pixel is this of the picture.
+void draw_cluster(const Drawing& drawing, const Sighting& sighting, std::int32_t first_col,
+                  std::int32_t first_row, Canvas& canvas);
+
+}  // namespace glidar::raster

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/resolve.hpp>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace glidar::raster {
+
+/// Triangles that are worked on together, lane by lane. Unused lanes repeat the last triangle.
+struct Pack {
+  CornerBlock corners;  ///< relative to the cluster's middle, object units
+  std::array<std::uint32_t, kLanes> primitive;
+};
+
+inline constexpr std::size_t kPacksPerCluster = 4;
+
+/// Boxes around kLanes clusters, object units; unused lanes are points.
+struct Boxes {
+  Lanes3<float> middle;  ///< relative to the mesh's origin
+  Lanes3<float> half;    ///< of their sizes
+};
+
+/// A mesh cut into clusters of triangles that lie near each other, so that many are found hidden or
+/// out of sight at once. Triangles without area, which nothing can hit, are left out.
+struct PackedMesh {
+  explicit PackedMesh(const Mesh& mesh);
+
+  std::vector<Pack> packs;  ///< kPacksPerCluster per cluster, fewer in the last
+  std::size_t clusters = 0;
+  std::vector<Boxes> boxes;  ///< per kLanes clusters
+};
+
+}  // namespace glidar::raster

@@ -1,0 +1,284 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/raster/raster_renderer.hpp>
+
+#include <glidar/core/work_count.hpp>
+#include <glidar/render/depth_range.hpp>
+#include <glidar/render/grid_window.hpp>
+#include <glidar/render/picture_writing.hpp>
+#include <glidar/render/pinhole_only.hpp>
+#include <glidar/render/plane_points.hpp>
+#include <glidar/render/raster/drawing.hpp>
+#include <glidar/render/raster/packed_mesh.hpp>
+#include <glidar/render/raster/parts.hpp>
+#include <glidar/render/raster/sight.hpp>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace glidar {
+namespace {
+
+using raster::Drawing;
+using raster::Sighting;
+
+/// What one thread draws with.
+struct Desk {
+  raster::Canvas canvas;
+  std::vector<std::uint32_t> numbers;
+  std::vector<std::uint64_t> order;  ///< of the clusters: the nearest first
+};
+
+/// Desks that threads take and give back, so that a later cast finds them ready.
+class Desks {
+ public:
+  std::unique_ptr<Desk> take() {
+    const std::scoped_lock lock(mutex_);
+    if (free_.empty()) return std::make_unique<Desk>();
+    std::unique_ptr<Desk> desk = std::move(free_.back());
+    free_.pop_back();
+    return desk;
+  }
+  void give_back(std::unique_ptr<Desk> desk) {
+    const std::scoped_lock lock(mutex_);
+    free_.push_back(std::move(desk));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Desk>> free_;
+};
+
+constexpr std::size_t kAhead = 3;  // clusters on their way from memory
+
+/// The part of a sighting that lies on a canvas.
+raster::CanvasRect rect_on(const PixelRect& drawn, const Sighting& sighting) {
+  const auto first_col = static_cast<int>(drawn.first_col);
+  const auto first_row = static_cast<int>(drawn.first_row);
+  return {.left = std::max(sighting.left - first_col, 0),
+          .right = std::min(sighting.right - first_col, static_cast<int>(drawn.cols) - 1),
+          .top = std::max(sighting.top - first_row, 0),
+          .bottom = std::min(sighting.bottom - first_row, static_cast<int>(drawn.rows) - 1)};
+}
+
+/// The nearest first; of equals the first.
+std::uint64_t key(const Sighting& sighting, std::uint32_t index) {
+  // The bits of positive numbers rise with them.
+  const std::uint32_t nearness = std::bit_cast<std::uint32_t>(std::max(sighting.nearness, 0.0F));
+  return std::uint64_t{~nearness} << 32U | index;
+}
+
+class RasterRenderer final : public Renderer {
+ public:
+  explicit RasterRenderer(std::shared_ptr<CpuBase> base)
+      : base_(std::move(base)),
+        packed_(scene().meshes.begin(), scene().meshes.end()),
+        known_(scene().meshes.begin(), scene().meshes.end()),
+        triangles_(scene(), "raster") {
+    for (const Mesh& mesh : scene().meshes) boxes_.push_back(bounds(mesh));
+    for (const Instance& instance : scene().instances) {
+      has_mask_.push_back(static_cast<std::uint8_t>(
+          std::any_of(instance.materials.begin(), instance.materials.end(),
+                      [&](std::uint32_t m) { return scene().materials[m].alpha_cutoff > 0.0F; })));
+    }
+  }
+
+  [[nodiscard]] std::string_view name() const override { return "raster"; }
+  [[nodiscard]] Workers& workers() override { return base_->workers; }
+
+  void cast(const CastRequest& request, Hits& hits) override {
+    check(request, scene());
+    check_pinhole(request.beams, "raster");
+    resize(hits, request.beams.size(), request.fields);
+    base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
+    find_plane_points(request.beams, points_);
+    WorkCount count(request.progress, request.beams.size());
+    const DepthRange depths = depths_of(request);
+    const GridWindow window = depths.is_empty()
+                                  ? GridWindow{.end_row = 0, .end_col = 0}
+                                  : window_on(base_->resolver, boxes_, request.present, points_);
+    write_around(request, window, count, hits);
+    if (!depths.is_empty() && window.first_row < window.end_row &&
+        window.first_col < window.end_col) {
+      draw(request, window, depths, count, hits);
+    }
+    count.finish();
+  }
+
+ private:
+  [[nodiscard]] const Scene& scene() const { return base_->resolver.scene(); }
+
+  [[nodiscard]] const raster::PackedMesh& packed_of(std::uint32_t instance) const {
+    return packed_[scene().instances[instance].mesh];
+  }
+
+  [[nodiscard]] DepthRange depths_of(const CastRequest& request) const {
+    double nearest_m = std::numeric_limits<double>::infinity();
+    double farthest_m = -std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < scene().instances.size(); ++i) {
+      if (!is_present(request, i)) continue;
+      extend_depths(base_->resolver.view(i), known_[scene().instances[i].mesh].box, nearest_m,
+                    farthest_m);
+    }
+    if (!(farthest_m > 0.0)) return {0.0, 0.0};
+    return hugging(nearest_m, farthest_m);
+  }
+
+  /// Misses, outside of the window.
+  void write_around(const CastRequest& request, const GridWindow& window, WorkCount& count,
+                    Hits& hits) {
+    const std::uint32_t cols = request.beams.cols;
+    const auto miss = [&](std::size_t begin, std::size_t end) {
+      if (begin >= end) return;
+      write_misses(request.fields, begin, end - begin, hits);
+      if (request.then) request.then({begin, end});
+      count.add(end - begin);
+    };
+    const auto miss_row = [&](std::size_t row) {
+      const bool is_beside = row >= window.first_row && row < window.end_row;
+      const std::size_t first = row * cols;
+      miss(first, first + (is_beside ? std::min(window.first_col, cols) : cols));
+      if (is_beside) miss(first + std::min(window.end_col, cols), first + cols);
+    };
+    constexpr std::size_t kRowsPerTask = 4;
+    base_->workers.for_ranges(request.beams.rows, kRowsPerTask,
+                              [&](std::size_t begin, std::size_t end) {
+                                for (std::size_t row = begin; row < end; ++row) miss_row(row);
+                              });
+  }
+
+  void find_sightings(const CastRequest& request, const GridWindow& window,
+                      const raster::Nearness& nearness) {
+    constexpr std::uint32_t kPiece = 1024;
+    views_.clear();
+    pieces_.clear();
+    for (std::uint32_t i = 0; i < scene().instances.size(); ++i) {
+      views_.push_back(raster::pixel_view(base_->resolver.view(i), *request.beams.pinhole));
+      const auto clusters =
+          static_cast<std::uint32_t>(is_present(request, i) ? packed_of(i).clusters : 0);
+      for (std::uint32_t first = 0; first < clusters; first += kPiece) {
+        pieces_.push_back({i, first, std::min(first + kPiece, clusters)});
+      }
+    }
+    found_.resize(std::max(found_.size(), pieces_.size()));
+    base_->workers.for_ranges(pieces_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const raster::ClusterRange& piece = pieces_[i];
+        found_[i].clear();
+        raster::add_sightings(views_[piece.instance], nearness, window, packed_of(piece.instance),
+                              piece, found_[i]);
+      }
+    });
+    sightings_.clear();
+    for (std::size_t i = 0; i < pieces_.size(); ++i) {
+      sightings_.insert(sightings_.end(), found_[i].begin(), found_[i].end());
+    }
+  }
+
+  void draw(const CastRequest& request, GridWindow window, const DepthRange& depths,
+            WorkCount& count, Hits& hits) {
+    window.end_row = std::min(window.end_row, request.beams.rows);
+    window.end_col = std::min(window.end_col, request.beams.cols);
+    const raster::Nearness nearness(depths);
+    find_sightings(request, window, nearness);
+    parts_.cut(window, request.beams.rows, request.beams.cols);
+    parts_.sort(sightings_);
+    const Settler settler(base_->resolver, known_, request.beams, request.cull_back_faces);
+    const Drawing drawing{.request = request,
+                          .resolver = base_->resolver,
+                          .meshes = packed_,
+                          .views = views_,
+                          .triangles = triangles_,
+                          .settler = settler,
+                          .has_mask = has_mask_,
+                          .nearness = nearness};
+    base_->workers.for_ranges(parts_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      std::unique_ptr<Desk> desk = desks_.take();
+      for (std::size_t i = begin; i < end; ++i) {
+        const raster::Part part = parts_.part(i);
+        draw_part(drawing, part, parts_.seen_in(i), *desk);
+        write_rows({.request = request,
+                    .resolver = base_->resolver,
+                    .settler = settler,
+                    .triangles = triangles_,
+                    .points = points_,
+                    .drawn = part.drawn,
+                    .numbers = desk->numbers,
+                    .part = part.written,
+                    .hits = hits},
+                   0, part.written.rows);
+        count.add(std::size_t{part.written.rows} * part.written.cols);
+      }
+      desks_.give_back(std::move(desk));
+    });
+  }
+
+  [[nodiscard]] const Sighting& sighting_at(std::uint64_t key) const {
+    return sightings_[static_cast<std::uint32_t>(key)];
+  }
+
+  /// Draws the clusters that are seen in a part, the nearest first, but for those found hidden.
+  void draw_part(const Drawing& drawing, const raster::Part& part,
+                 std::span<const std::uint32_t> seen, Desk& desk) const {
+    const auto cols = static_cast<int>(part.drawn.cols);
+    const auto rows = static_cast<int>(part.drawn.rows);
+    const auto first_col = static_cast<int>(part.drawn.first_col);
+    const auto first_row = static_cast<int>(part.drawn.first_row);
+    desk.canvas.clear(cols, rows);
+    desk.order.clear();
+    for (const std::uint32_t index : seen) desk.order.push_back(key(sightings_[index], index));
+    std::sort(desk.order.begin(), desk.order.end());
+    // What comes lies anywhere in memory: it is asked for in time, unless it is hidden already.
+    std::array<const Sighting*, kAhead> coming{};
+    for (std::size_t i = 0; i < desk.order.size() + kAhead; ++i) {
+      const Sighting*& slot = coming[i % kAhead];
+      if (slot != nullptr) {
+        raster::draw_cluster(drawing, *slot, first_col, first_row, desk.canvas);
+        desk.canvas.mark_drawn(rect_on(part.drawn, *slot));
+      }
+      slot = nullptr;
+      if (i >= desk.order.size()) continue;
+      if (i + kAhead < desk.order.size()) {
+        __builtin_prefetch(&sighting_at(desk.order[i + kAhead]));
+      }
+      const Sighting& sighting = sighting_at(desk.order[i]);
+      const raster::CanvasRect rect = rect_on(part.drawn, sighting);
+      if (rect.left > rect.right || rect.top > rect.bottom) continue;
+      if (desk.canvas.hides(rect, sighting.nearness)) continue;
+      raster::prefetch(drawing, sighting);
+      slot = &sighting;
+    }
+    desk.canvas.copy_numbers(desk.numbers);
+  }
+
+  std::shared_ptr<CpuBase> base_;
+  std::vector<raster::PackedMesh> packed_;
+  std::vector<KnownMesh> known_;
+  TriangleNumbers triangles_;
+  std::vector<Eigen::AlignedBox3d> boxes_;  ///< per mesh
+  std::vector<std::uint8_t> has_mask_;      ///< per instance
+  PlanePoints points_;
+  std::vector<raster::PixelView> views_;  ///< per instance
+  std::vector<raster::ClusterRange> pieces_;
+  std::vector<std::vector<Sighting>> found_;  ///< per piece
+  std::vector<Sighting> sightings_;           ///< all of them
+  raster::Parts parts_;
+  Desks desks_;
+};
+
+}  // namespace
+
+std::unique_ptr<Renderer> make_raster_renderer(const Scene& scene, const RendererOptions& options) {
+  return make_raster_renderer(std::make_shared<CpuBase>(scene, options.threads));
+}
+
+std::unique_ptr<Renderer> make_raster_renderer(std::shared_ptr<CpuBase> base) {
+  return std::make_unique<RasterRenderer>(std::move(base));
+}
+
+}  // namespace glidar

@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <render/renderer_suite.hpp>
+
+#include <cstring>
+
+namespace glidar {
+namespace {
+
+using testing::builtin_scene;
+using testing::camera_beams;
+
+Hits cast_by(const char* kind, const Scene& scene, const Beams& beams, const Pose& pose) {
+  Hits hits;
+  make_renderer(scene, {.kind = kind, .threads = 2})
+      ->cast({.beams = beams, .world_from_sensor = pose, .fields = kAllHitFields}, hits);
+  return hits;
+}
+
+bool are_same(const Hits& a, const Hits& b) {
+  return a.primitive == b.primitive &&
+         std::memcmp(a.range_m.data(), b.range_m.data(), a.range_m.size() * sizeof(double)) == 0;
+}
+
+// Beams along the edges of a box, where the two may tell one triangle or its neighbour.
+const Pose kAlongEdges = look_at({4.0, 4.0, 0.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
+
+TEST(AutoRenderer, TellsWhatTheRasterTellsOfPinholesAndWhatEmbreeTellsOfAllOthers) {
+  const Scene scene = builtin_scene("asteroid");
+  Beams beams = camera_beams(201, 151, 150.0);
+  EXPECT_TRUE(are_same(cast_by("auto", scene, beams, kAlongEdges),
+                       cast_by("raster", scene, beams, kAlongEdges)));
+  beams.pinhole.reset();
+  EXPECT_TRUE(are_same(cast_by("auto", scene, beams, kAlongEdges),
+                       cast_by("embree", scene, beams, kAlongEdges)));
+}
+
+TEST(AutoRenderer, CastsRaysWhereTrianglesFarOutnumberBeams) {
+  const Scene scene = builtin_scene("asteroid");
+  const Beams beams = camera_beams(9, 9, 8.0);
+  EXPECT_TRUE(are_same(cast_by("auto", scene, beams, kAlongEdges),
+                       cast_by("embree", scene, beams, kAlongEdges)));
+}
+
+TEST(AutoRenderer, ChoosesAnewForEachCast) {
+  const Scene scene = builtin_scene("asteroid");
+  const auto renderer = make_renderer(scene, {.kind = "auto", .threads = 2});
+  const Beams few = camera_beams(9, 9, 8.0);
+  const Beams many = camera_beams(201, 151, 150.0);
+  Hits hits;
+  for (int i = 0; i < 2; ++i) {
+    for (const Beams* beams : {&many, &few}) {
+      renderer->cast({.beams = *beams, .world_from_sensor = kAlongEdges, .fields = kAllHitFields},
+                     hits);
+      EXPECT_TRUE(are_same(hits, cast_by("auto", scene, *beams, kAlongEdges)));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace glidar
