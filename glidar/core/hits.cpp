@@ -3,6 +3,7 @@
 #include <glidar/core/hits.hpp>
 
 #include <algorithm>
+#include <type_traits>
 
 namespace glidar {
 namespace {
@@ -50,18 +51,23 @@ void write_misses(const HitFields& fields, std::size_t first, std::size_t count,
   const auto fill = [first, count](bool asked, auto& column, const auto& value) {
     if (asked) std::fill_n(column.begin() + static_cast<std::ptrdiff_t>(first), count, value);
   };
-  static const Eigen::Vector3f kNowhere(kNaNf, kNaNf, kNaNf);
+  // Number by number, which compilers turn into vectors.
+  const auto fill_vectors = [first, count](bool asked, auto& column, auto value) {
+    constexpr auto kSize = static_cast<std::size_t>(
+        std::decay_t<decltype(column)>::value_type::SizeAtCompileTime);
+    if (asked && count > 0) std::fill_n(column[first].data(), kSize * count, value);
+  };
   fill(true, hits.range_m, kNaN);
   fill(true, hits.instance, kNoHit);
   fill(true, hits.primitive, kNoHit);
   fill(fields.depth, hits.depth_m, kNaN);
-  fill(fields.normal, hits.normal, kNowhere);
-  fill(fields.shading_normal, hits.shading_normal, kNowhere);
+  fill_vectors(fields.normal, hits.normal, kNaNf);
+  fill_vectors(fields.shading_normal, hits.shading_normal, kNaNf);
   fill(fields.incidence, hits.cos_incidence, kNaNf);
   fill(fields.shading, hits.cos_shading, kNaNf);
-  fill(fields.barycentrics, hits.barycentrics, Eigen::Vector2f(kNaNf, kNaNf));
-  fill(fields.object_point, hits.object_point_m, Eigen::Vector3d(kNaN, kNaN, kNaN));
-  fill(fields.colour, hits.colour, Eigen::Vector3f(0.0F, 0.0F, 0.0F));
+  fill_vectors(fields.barycentrics, hits.barycentrics, kNaNf);
+  fill_vectors(fields.object_point, hits.object_point_m, kNaN);
+  fill_vectors(fields.colour, hits.colour, 0.0F);
   fill(fields.reflectance, hits.reflectance, Reflectance{});
   fill(fields.noise_scale, hits.noise_scale, 1.0F);
 }
