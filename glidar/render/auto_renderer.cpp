@@ -16,8 +16,8 @@ namespace glidar {
 namespace {
 
 /// The raster works through all triangles in view, a ray through few of them: where there are more
-/// of them per beam, rays are quicker (measured: from 30 to 50 on).
-constexpr std::uint64_t kMostPerBeam = 16;
+/// of them per beam, rays are quicker (by bench/renderers_bench.py from 30 to 60 on).
+constexpr std::uint64_t kMostPerBeam = 40;
 
 class AutoRenderer final : public Renderer {
  public:

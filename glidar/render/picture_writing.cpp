@@ -56,6 +56,20 @@ std::span<const Found> found_around(const PictureWriting& w, std::uint32_t row, 
   return {found.data(), used};
 }
 
+/// What the beam of a lane in doubt meets.
+Found settled(const PictureWriting& w, const Work& work, unsigned lane, const Found& told) {
+  const std::size_t beam = work.block.beam[lane];
+  const std::uint32_t row = work.row[lane];
+  const std::uint32_t col = work.col[lane];
+  if (!w.search) {
+    std::array<Found, 8> around;
+    return w.settler.settle(beam, told, found_around(w, row, col, around));
+  }
+  const Found near = w.settler.meet_around(beam, told);
+  return near.instance != kNoHit ? near
+                                 : w.search(beam, w.drawn.first_row + row, w.drawn.first_col + col);
+}
+
 /// Puts right the lanes in doubt; true when that changed the block.
 bool settle(const PictureWriting& w, std::uint32_t doubtful, Work& work) {
   HitBlock& block = work.block;
@@ -63,9 +77,7 @@ bool settle(const PictureWriting& w, std::uint32_t doubtful, Work& work) {
   for (; doubtful != 0; doubtful &= doubtful - 1) {
     const auto lane = static_cast<unsigned>(std::countr_zero(doubtful));
     const Found before{block.instance[lane], block.primitive[lane]};
-    std::array<Found, 8> around;
-    const Found after = w.settler.settle(block.beam[lane], before,
-                                         found_around(w, work.row[lane], work.col[lane], around));
+    const Found after = settled(w, work, lane, before);
     if (after == before) continue;
     changed = true;
     if (after.instance == kNoHit) {
@@ -77,6 +89,15 @@ bool settle(const PictureWriting& w, std::uint32_t doubtful, Work& work) {
     block.primitive[lane] = told(w, after);
   }
   return changed;
+}
+
+/// A bit for every lane whose hit lies in front of the beam's start.
+std::uint32_t ahead(const ExactBlock& exact) {
+  std::uint32_t mask = 0;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    mask |= static_cast<std::uint32_t>(exact.distance[i] > 0.0) << i;
+  }
+  return mask;
 }
 
 /// Writes the collected hits.
@@ -91,7 +112,7 @@ void finish(const PictureWriting& w, Work& work) {
   work.used = 0;
   directions_through(work.x, work.y, work.beams.direction);
   w.resolver.measure(work.beams, block, work.exact);
-  const std::uint32_t uncertain = block.mask & ~work.certain;
+  const std::uint32_t uncertain = block.mask & ~(work.certain & ahead(work.exact));
   const std::uint32_t in_doubt =
       uncertain == 0 ? 0 : doubtful(w.resolver, block, work.exact) & uncertain;
   if (in_doubt != 0 && settle(w, in_doubt, work) && block.mask != 0) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/function_ref.hpp>
 #include <glidar/core/work_count.hpp>
 #include <glidar/render/plane_points.hpp>
 #include <glidar/render/renderer.hpp>
@@ -24,6 +25,10 @@ struct PictureWriting {
   std::span<const std::uint32_t> numbers;  ///< of these, row by row
   PixelRect part;                          ///< those of them whose hits are written
   Hits& hits;
+  /// What a beam meets among all triangles that there are at this row and column of the picture.
+  /// Asked where none around the one told is met. Empty: what was told at the pixels around is
+  /// tried.
+  FunctionRef<Found(std::size_t beam, std::uint32_t row, std::uint32_t col)> search = {};
 };
 
 /// Writes the hits of rows [begin, end) of the part and tells the request of them.

@@ -114,6 +114,16 @@ Judgement Settler::search_from(std::size_t beam, const Found& start) const {
   return found;
 }
 
+Found Settler::nearest_of(std::size_t beam, std::span<const Found> candidates) const {
+  if (candidates.empty()) return {};
+  Judgement all = judgement(beam, candidates.front().instance);
+  for (const Found& candidate : candidates) {
+    all.slack_m = judgement(beam, candidate.instance).slack_m;
+    consider(all, candidate);
+  }
+  return all.nearest;
+}
+
 Found Settler::settle(std::size_t beam, const Found& told, std::span<const Found> around) const {
   const Judgement first = search_from(beam, told);
   if (first.nearest.instance != kNoHit) return first.nearest;

@@ -39,6 +39,14 @@ class Settler {
   [[nodiscard]] Found settle(std::size_t beam, const Found& told,
                              std::span<const Found> around) const;
 
+  /// What the beam meets among the triangles around the one told; nothing when it meets none.
+  [[nodiscard]] Found meet_around(std::size_t beam, const Found& told) const {
+    return search_from(beam, told).nearest;
+  }
+
+  /// The nearest of these that the beam meets; nothing when it meets none.
+  [[nodiscard]] Found nearest_of(std::size_t beam, std::span<const Found> candidates) const;
+
   /// False where a triangle lets a beam through: by its side, or by a hole of its alpha mask.
   [[nodiscard]] bool meets(std::size_t beam, const Found& candidate) const;
 

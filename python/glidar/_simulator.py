@@ -34,7 +34,8 @@ class Simulator:
     Args:
         scene: what is measured.
         sensor: what measures; None: that of the scene file.
-        renderer: "embree" (CPU), or "opengl" (cameras without distortion).
+        renderer: "auto": "raster" for cameras without distortion where that is quicker, else "embree"; both on the
+            processor. "opengl" draws on a graphics device (cameras without distortion).
         threads: of the renderer; 0: one per processor.
     """
 

@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <optional>
+#include <span>
 
 namespace glidar::raster {
 namespace {
@@ -24,30 +25,33 @@ struct Placed {
   }
 };
 
+/// Corners nearer than this are not for single precision.
+float least_depth(const Aim& aim, const Eigen::Vector3f& half) {
+  // Nearer than this part of the farthest corner, rounding of its depth would move a corner.
+  constexpr float kLeastPart = 1.0F / 16.0F;
+  // A column is a sum of three products: where their sizes add up to more than this many pixels,
+  // its rounding comes near kBorderRoom_px.
+  constexpr float kMost_px = 128.0F;
+  const Eigen::Map<const Eigen::Matrix3f> turn(aim.turn.data());
+  const Eigen::Vector3f reach = turn.cwiseAbs() * half;
+  return std::max(kLeastPart * (aim.depth + reach.z()), std::max(reach.x(), reach.y()) / kMost_px);
+}
+
 Aim aim_at(const Placed& placed, const Boxes& boxes, unsigned lane) {
-  const PixelView& view = placed.view();
+  const Eigen::Matrix<double, 3, 4>& pixel = placed.view().pixel_from_object;
+  Eigen::Matrix<double, 3, 4> canvas = pixel;
+  canvas.row(0) -= placed.first_col * pixel.row(2);
+  canvas.row(1) -= placed.first_row * pixel.row(2);
   const Eigen::Vector3d seen =
-      view.pixel_from_object.leftCols<3>() * boxes.middle.get(lane).cast<double>() +
-      view.pixel_from_object.col(3);
-  const auto first_col = static_cast<float>(placed.first_col);
-  const auto first_row = static_cast<float>(placed.first_row);
+      canvas.leftCols<3>() * boxes.middle.get(lane).cast<double>() + canvas.col(3);
   Aim aim{};
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const float deeper = view.turn(2, axis);
-    const auto at = static_cast<std::size_t>(axis) * 3;
-    aim.turn[at] = view.turn(0, axis) - first_col * deeper;
-    aim.turn[at + 1] = view.turn(1, axis) - first_row * deeper;
-    aim.turn[at + 2] = deeper;
-  }
-  aim.column = static_cast<float>(seen.x() - placed.first_col * seen.z());
-  aim.row = static_cast<float>(seen.y() - placed.first_row * seen.z());
+  Eigen::Map<Eigen::Matrix3f>(aim.turn.data()) = canvas.leftCols<3>().cast<float>();
+  aim.column = static_cast<float>(seen.x());
+  aim.row = static_cast<float>(seen.y());
   aim.depth = static_cast<float>(seen.z());
   aim.before_far = static_cast<float>(placed.drawing.nearness.far_m - seen.z());
   aim.factor = static_cast<float>(placed.drawing.nearness.factor);
-  // Nearer than this part of the farthest corner, rounding of its depth would move a corner.
-  constexpr float kLeastPart = 1.0F / 16.0F;
-  aim.least_depth =
-      kLeastPart * (aim.depth + view.turn.row(2).cwiseAbs().dot(boxes.half.get(lane)));
+  aim.least_depth = least_depth(aim, boxes.half.get(lane));
   aim.last_col = static_cast<float>(placed.canvas.cols() - 1);
   aim.last_row = static_cast<float>(placed.canvas.rows() - 1);
   aim.cull_back_faces = placed.drawing.request.cull_back_faces;
@@ -148,16 +152,32 @@ void draw_pack(const Placed& placed, const Pack& pack, const Footprints& f) {
   }
 }
 
+const PackedMesh& mesh_of(const Drawing& drawing, const Sighting& sighting) {
+  return drawing.meshes[drawing.resolver.scene().instances[sighting.instance].mesh];
+}
+
+std::span<const Pack> packs_of(const PackedMesh& mesh, std::uint32_t cluster) {
+  const std::size_t first = cluster * kPacksPerCluster;
+  return std::span(mesh.packs)
+      .subspan(first, std::min(kPacksPerCluster, mesh.packs.size() - first));
+}
+
 }  // namespace
 
+void add_triangles(const PackedMesh& mesh, const Sighting& sighting,
+                   std::vector<Found>& candidates) {
+  for (const Pack& pack : packs_of(mesh, sighting.cluster)) {
+    for (const std::uint32_t primitive : pack.primitive) {
+      candidates.push_back({sighting.instance, primitive});
+    }
+  }
+}
+
 void prefetch(const Drawing& drawing, const Sighting& sighting) {
-  const PackedMesh& mesh =
-      drawing.meshes[drawing.resolver.scene().instances[sighting.instance].mesh];
-  const std::size_t first = sighting.cluster * kPacksPerCluster;
-  const std::size_t end = std::min(first + kPacksPerCluster, mesh.packs.size());
+  const std::span<const Pack> packs = packs_of(mesh_of(drawing, sighting), sighting.cluster);
   constexpr std::ptrdiff_t kLine = 64;
-  const auto* at = reinterpret_cast<const char*>(&mesh.packs[first]);
-  const auto* last = reinterpret_cast<const char*>(mesh.packs.data() + end);
+  const auto* at = reinterpret_cast<const char*>(packs.data());
+  const auto* last = reinterpret_cast<const char*>(packs.data() + packs.size());
   for (; at < last; at += kLine) __builtin_prefetch(at);
 }
 
@@ -168,15 +188,12 @@ void draw_cluster(const Drawing& drawing, const Sighting& sighting, std::int32_t
                       .first_col = first_col,
                       .first_row = first_row,
                       .canvas = canvas};
-  const PackedMesh& mesh =
-      drawing.meshes[drawing.resolver.scene().instances[sighting.instance].mesh];
+  const PackedMesh& mesh = mesh_of(drawing, sighting);
   const Aim aim = aim_at(placed, mesh.boxes[sighting.cluster / kLanes], sighting.cluster % kLanes);
-  const std::size_t first = sighting.cluster * kPacksPerCluster;
-  const std::size_t end = std::min(first + kPacksPerCluster, mesh.packs.size());
   Footprints footprints;
-  for (std::size_t i = first; i < end; ++i) {
-    find_footprints(aim, mesh.packs[i].corners, footprints);
-    draw_pack(placed, mesh.packs[i], footprints);
+  for (const Pack& pack : packs_of(mesh, sighting.cluster)) {
+    find_footprints(aim, pack.corners, footprints);
+    draw_pack(placed, pack, footprints);
   }
 }
 

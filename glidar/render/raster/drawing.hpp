@@ -27,6 +27,10 @@ struct Drawing {
   Nearness nearness;
 };
 
+/// Adds the triangles of a sighting's cluster.
+void add_triangles(const PackedMesh& mesh, const Sighting& sighting,
+                   std::vector<Found>& candidates);
+
 /// Asks the memory for a cluster.
 void prefetch(const Drawing& drawing, const Sighting& sighting);
 

@@ -226,6 +226,23 @@ GLIDAR_SIMD std::uint32_t cover(const Footprints& f, Lanes<std::uint32_t>& cover
 
 namespace {
 
+/// Six times the volume that the corners and the sensor span: positive where the triangle is seen
+/// from behind, and 0 where the sensor lies in its plane as far as double tells.
+double volume_of(const Eigen::Matrix3d& corners) {
+  // By differences, which keep the digits of small triangles far away.
+  const Eigen::Vector3d first = corners.col(0);
+  const double volume = first.dot((corners.col(1) - first).cross(corners.col(2) - first));
+  // What it changes by when each corner is moved by its own rounding, and some more.
+  constexpr double kRounding = 0x1p-49;
+  double change = 0.0;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d next = corners.col((k + 1) % 3);
+    const Eigen::Vector3d last = corners.col((k + 2) % 3);
+    change += corners.col(k).norm() * next.cross(last - next).norm();
+  }
+  return std::abs(volume) > kRounding * change ? volume : 0.0;
+}
+
 /// The part of the canvas that a triangle in front of the sensor may cover; all of it for others.
 CanvasRect around(const Eigen::Matrix3d& corners, const CanvasRect& canvas) {
   constexpr double kRoom_px = 1e-3;
@@ -248,8 +265,11 @@ CanvasRect around(const Eigen::Matrix3d& corners, const CanvasRect& canvas) {
 
 std::optional<Shape> shape_of(const Eigen::Matrix3d& corners, const Nearness& nearness,
                               const CanvasRect& canvas, bool cull_back_faces) {
-  const double volume = corners.determinant();  // positive: seen from behind
-  if (volume == 0.0 || (cull_back_faces && volume > 0.0)) return std::nullopt;
+  const double volume = volume_of(corners);
+  const double depth = corners.row(2).maxCoeff();
+  if (!(depth > 0.0) || volume == 0.0 || (cull_back_faces && volume > 0.0)) {
+    return std::nullopt;
+  }
   Shape shape{};
   shape.rect = around(corners, canvas);
   if (shape.rect.left > shape.rect.right || shape.rect.top > shape.rect.bottom) return std::nullopt;
@@ -280,8 +300,10 @@ std::optional<Shape> shape_of(const Eigen::Matrix3d& corners, const Nearness& ne
   shape.nearness_per_col = static_cast<float>(scale * inverse.x());
   shape.nearness_per_row = static_cast<float>(scale * inverse.y());
   shape.nearness_at_corner = static_cast<float>(scale * inverse.dot(first_pixel) - nearness.factor);
-  shape.farthest = 0.0F;
-  shape.nearest = std::numeric_limits<float>::max();
+  const double least_depth = corners.row(2).minCoeff();
+  shape.farthest = static_cast<float>(nearness.at(depth));
+  shape.nearest = least_depth > 0.0 ? static_cast<float>(nearness.at(least_depth))
+                                    : std::numeric_limits<float>::max();
   return shape;
 }
 

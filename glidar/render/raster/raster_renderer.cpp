@@ -16,6 +16,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <mutex>
 #include <utility>
@@ -32,6 +33,7 @@ struct Desk {
   raster::Canvas canvas;
   std::vector<std::uint32_t> numbers;
   std::vector<std::uint64_t> order;  ///< of the clusters: the nearest first
+  std::vector<Found> candidates;     ///< for a beam in doubt
 };
 
 /// Desks that threads take and give back, so that a later cast finds them ready.
@@ -202,24 +204,63 @@ class RasterRenderer final : public Renderer {
       for (std::size_t i = begin; i < end; ++i) {
         const raster::Part part = parts_.part(i);
         draw_part(drawing, part, parts_.seen_in(i), *desk);
-        write_rows({.request = request,
-                    .resolver = base_->resolver,
-                    .settler = settler,
-                    .triangles = triangles_,
-                    .points = points_,
-                    .drawn = part.drawn,
-                    .numbers = desk->numbers,
-                    .part = part.written,
-                    .hits = hits},
-                   0, part.written.rows);
+        const auto search = [&](std::size_t beam, std::uint32_t row, std::uint32_t col) {
+          return search_at(drawing, parts_.seen_in(i), {beam, row, col}, *desk);
+        };
+        write_rows(
+            {.request = request,
+             .resolver = base_->resolver,
+             .settler = settler,
+             .triangles = triangles_,
+             .points = points_,
+             .drawn = part.drawn,
+             .numbers = desk->numbers,
+             .part = part.written,
+             .hits = hits,
+             .search = FunctionRef<Found(std::size_t, std::uint32_t, std::uint32_t)>(search)},
+            0, part.written.rows);
         count.add(std::size_t{part.written.rows} * part.written.cols);
       }
       desks_.give_back(std::move(desk));
     });
   }
 
+  /// For clusters that reach to the sensor's plane, of which sightings do not tell where.
+  [[nodiscard]] bool is_beside(const Sighting& sighting, const PixelRect& drawn) const {
+    if (!std::isinf(sighting.nearness)) return false;
+    const auto left = static_cast<int>(drawn.first_col);
+    const auto top = static_cast<int>(drawn.first_row);
+    return raster::is_beside(views_[sighting.instance],
+                             packed_of(sighting.instance).boxes[sighting.cluster / kLanes],
+                             sighting.cluster % kLanes,
+                             {left, left + static_cast<int>(drawn.cols) - 1, top,
+                              top + static_cast<int>(drawn.rows) - 1});
+  }
+
   [[nodiscard]] const Sighting& sighting_at(std::uint64_t key) const {
     return sightings_[static_cast<std::uint32_t>(key)];
+  }
+
+  /// A beam's place.
+  struct Pixel {
+    std::size_t beam;
+    std::uint32_t row;
+    std::uint32_t col;
+  };
+
+  /// What a beam meets among all triangles of the clusters that may be seen at its pixel, also of
+  /// those found hidden: perhaps it was the falsely told one that hid them.
+  Found search_at(const Drawing& drawing, std::span<const std::uint32_t> seen, const Pixel& pixel,
+                  Desk& desk) const {
+    const auto row = static_cast<std::int32_t>(pixel.row);
+    const auto col = static_cast<std::int32_t>(pixel.col);
+    desk.candidates.clear();
+    for (const std::uint32_t index : seen) {
+      const Sighting& at = sightings_[index];
+      if (col < at.left || col > at.right || row < at.top || row > at.bottom) continue;
+      raster::add_triangles(packed_of(at.instance), at, desk.candidates);
+    }
+    return drawing.settler.nearest_of(pixel.beam, desk.candidates);
   }
 
   /// Draws the clusters that are seen in a part, the nearest first, but for those found hidden.
@@ -249,7 +290,7 @@ class RasterRenderer final : public Renderer {
       const Sighting& sighting = sighting_at(desk.order[i]);
       const raster::CanvasRect rect = rect_on(part.drawn, sighting);
       if (rect.left > rect.right || rect.top > rect.bottom) continue;
-      if (desk.canvas.hides(rect, sighting.nearness)) continue;
+      if (desk.canvas.hides(rect, sighting.nearness) || is_beside(sighting, part.drawn)) continue;
       raster::prefetch(drawing, sighting);
       slot = &sighting;
     }

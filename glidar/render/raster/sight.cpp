@@ -5,6 +5,7 @@
 #include <glidar/core/simd.hpp>
 
 #include <array>
+#include <cmath>
 #include <limits>
 
 namespace glidar::raster {
@@ -89,11 +90,10 @@ struct Span {
 
 PixelView pixel_view(const InstanceView& view, const PinholeIntrinsics& k) {
   const Eigen::Matrix<double, 3, 4> seen = sensor_from_object(view);
-  PixelView result{.pixel_from_object = seen, .turn = {}};
+  PixelView result{.pixel_from_object = seen};
   // Whole numbers are where the beams go.
   result.pixel_from_object.row(0) = k.fx * seen.row(0) + (k.cx - k.pixel_centre) * seen.row(2);
   result.pixel_from_object.row(1) = k.fy * seen.row(1) + (k.cy - k.pixel_centre) * seen.row(2);
-  result.turn = result.pixel_from_object.leftCols<3>().cast<float>();
   return result;
 }
 
@@ -130,19 +130,44 @@ GLIDAR_SIMD void look_at_boxes(const PixelView& view, const Nearness& nearness,
     sights.bottom[i] = is_ahead ? last_to(bottom, first_row, last_row) : -1;
     const double depth = is_around ? 1.0 : near;
     const double closest = nearness.factor * (nearness.far_m - depth) / depth;
-    const double bound = closest * (1.0 + kRoom) + kRoom;
+    const double bound = closest * (1.0 + kRoom) + kRoom * nearness.factor;
     sights.nearness[i] = static_cast<float>(is_around ? kFar : bound);
   }
+}
+
+bool is_beside(const PixelView& view, const Boxes& boxes, unsigned lane, const CanvasRect& pixels) {
+  using Row = Eigen::Matrix<double, 1, 4>;
+  const Eigen::Matrix<double, 3, 4>& pixel = view.pixel_from_object;
+  const Eigen::Vector3d middle = boxes.middle.get(lane).cast<double>();
+  const Eigen::Vector3d half = boxes.half.get(lane).cast<double>();
+  // Linear, and not negative in what is seen: so it must be for some point of the box.
+  const auto is_beyond = [&](const Row& inside) {
+    const double size = inside.head<3>().cwiseAbs().dot(half);
+    const double most = inside.head<3>().dot(middle) + inside[3] + size;
+    return most < -kRoom * (size + std::abs(inside[3]));
+  };
+  return is_beyond(pixel.row(0) - (pixels.left - kRoom_px) * pixel.row(2)) ||
+         is_beyond((pixels.right + kRoom_px) * pixel.row(2) - pixel.row(0)) ||
+         is_beyond(pixel.row(1) - (pixels.top - kRoom_px) * pixel.row(2)) ||
+         is_beyond((pixels.bottom + kRoom_px) * pixel.row(2) - pixel.row(1));
 }
 
 void add_sightings(const PixelView& view, const Nearness& nearness, const GridWindow& window,
                    const PackedMesh& mesh, const ClusterRange& range,
                    std::vector<Sighting>& sightings) {
+  const CanvasRect all{.left = static_cast<int>(window.first_col),
+                       .right = static_cast<int>(window.end_col) - 1,
+                       .top = static_cast<int>(window.first_row),
+                       .bottom = static_cast<int>(window.end_row) - 1};
   Sights sights;
   for (std::uint32_t cluster = range.first; cluster < range.end; ++cluster) {
     const unsigned lane = cluster % kLanes;
     if (lane == 0) look_at_boxes(view, nearness, window, mesh.boxes[cluster / kLanes], sights);
     if (sights.left[lane] > sights.right[lane] || sights.top[lane] > sights.bottom[lane]) continue;
+    if (std::isinf(sights.nearness[lane]) &&
+        is_beside(view, mesh.boxes[cluster / kLanes], lane, all)) {
+      continue;
+    }
     sightings.push_back({.instance = range.instance,
                          .cluster = cluster,
                          .left = sights.left[lane],

@@ -5,6 +5,7 @@
 #include <glidar/core/beams.hpp>
 #include <glidar/render/depth_range.hpp>
 #include <glidar/render/grid_window.hpp>
+#include <glidar/render/raster/canvas.hpp>
 #include <glidar/render/raster/packed_mesh.hpp>
 #include <glidar/render/resolve.hpp>
 
@@ -18,7 +19,6 @@ namespace glidar::raster {
 struct PixelView {
   /// From a point relative to the mesh's origin to (column, row, 1) times its depth, m.
   Eigen::Matrix<double, 3, 4> pixel_from_object;
-  Eigen::Matrix3f turn;  ///< its first columns
 };
 
 PixelView pixel_view(const InstanceView& view, const PinholeIntrinsics& pinhole);
@@ -63,8 +63,12 @@ struct Sighting {
   std::int32_t right;
   std::int32_t top;
   std::int32_t bottom;
-  float nearness;  ///< at most
+  float nearness;  ///< at most; infinite where the cluster reaches to the sensor's plane
 };
+
+/// True when nothing of a cluster's box, which may reach behind the sensor, is seen in the
+/// rectangle of pixels, both ends included.
+bool is_beside(const PixelView& view, const Boxes& boxes, unsigned lane, const CanvasRect& pixels);
 
 /// Adds those of the range that may be seen; its first is a multiple of kLanes.
 void add_sightings(const PixelView& view, const Nearness& nearness, const GridWindow& window,
