@@ -37,7 +37,9 @@ float least_depth(const Aim& aim, const Eigen::Vector3f& half) {
   return std::max(kLeastPart * (aim.depth + reach.z()), std::max(reach.x(), reach.y()) / kMost_px);
 }
 
-Aim aim_at(const Placed& placed, const Boxes& boxes, unsigned lane) {
+Aim aim_at(const Placed& placed, const PackedMesh& mesh, std::uint32_t cluster) {
+  const Boxes& boxes = mesh.boxes[cluster / kLanes];
+  const unsigned lane = cluster % kLanes;
   const Eigen::Matrix<double, 3, 4>& pixel = placed.view().pixel_from_object;
   Eigen::Matrix<double, 3, 4> canvas = pixel;
   canvas.row(0) -= placed.first_col * pixel.row(2);
@@ -164,15 +166,6 @@ std::span<const Pack> packs_of(const PackedMesh& mesh, std::uint32_t cluster) {
 
 }  // namespace
 
-void add_triangles(const PackedMesh& mesh, const Sighting& sighting,
-                   std::vector<Found>& candidates) {
-  for (const Pack& pack : packs_of(mesh, sighting.cluster)) {
-    for (const std::uint32_t primitive : pack.primitive) {
-      candidates.push_back({sighting.instance, primitive});
-    }
-  }
-}
-
 void prefetch(const Drawing& drawing, const Sighting& sighting) {
   const std::span<const Pack> packs = packs_of(mesh_of(drawing, sighting), sighting.cluster);
   constexpr std::ptrdiff_t kLine = 64;
@@ -181,19 +174,35 @@ void prefetch(const Drawing& drawing, const Sighting& sighting) {
   for (; at < last; at += kLine) __builtin_prefetch(at);
 }
 
-void draw_cluster(const Drawing& drawing, const Sighting& sighting, std::int32_t first_col,
-                  std::int32_t first_row, Canvas& canvas) {
-  const Placed placed{.drawing = drawing,
-                      .instance = sighting.instance,
-                      .first_col = first_col,
-                      .first_row = first_row,
-                      .canvas = canvas};
+void draw_cluster(const Drawing& drawing, const Sighting& sighting, const PixelPlace& first,
+                  Canvas& canvas) {
+  const Placed placed{drawing, sighting.instance, first.col, first.row, canvas};
   const PackedMesh& mesh = mesh_of(drawing, sighting);
-  const Aim aim = aim_at(placed, mesh.boxes[sighting.cluster / kLanes], sighting.cluster % kLanes);
+  const Aim aim = aim_at(placed, mesh, sighting.cluster);
   Footprints footprints;
   for (const Pack& pack : packs_of(mesh, sighting.cluster)) {
     find_footprints(aim, pack.corners, footprints);
     draw_pack(placed, pack, footprints);
+  }
+}
+
+void add_candidates(const Drawing& drawing, const Sighting& sighting, const PixelPlace& first,
+                    Canvas& canvas, const PixelPlace& pixel, std::vector<Found>& candidates) {
+  const Placed placed{drawing, sighting.instance, first.col, first.row, canvas};
+  const PackedMesh& mesh = mesh_of(drawing, sighting);
+  const Aim aim = aim_at(placed, mesh, sighting.cluster);
+  const int col = pixel.col - first.col;
+  const int row = pixel.row - first.row;
+  Footprints f;
+  for (const Pack& pack : packs_of(mesh, sighting.cluster)) {
+    find_footprints(aim, pack.corners, f);
+    for (unsigned lane = 0; lane < kLanes; ++lane) {
+      const auto size = static_cast<Size>(f.size[lane]);
+      const bool is_there = f.left[lane] <= col && col <= f.right[lane] && f.top[lane] <= row &&
+                            row <= f.bottom[lane];
+      if (size == Size::nothing || (size != Size::large && !is_there)) continue;
+      candidates.push_back({sighting.instance, pack.primitive[lane]});
+    }
   }
 }
 

@@ -27,15 +27,21 @@ struct Drawing {
   Nearness nearness;
 };
 
-/// Adds the triangles of a sighting's cluster.
-void add_triangles(const PackedMesh& mesh, const Sighting& sighting,
-                   std::vector<Found>& candidates);
-
 /// Asks the memory for a cluster.
 void prefetch(const Drawing& drawing, const Sighting& sighting);
 
+/// A pixel of the picture, or where a canvas has its first one there.
+struct PixelPlace {
+  std::int32_t col;
+  std::int32_t row;
+};
+
 /// Draws one cluster onto a canvas whose first pixel is this of the picture.
-void draw_cluster(const Drawing& drawing, const Sighting& sighting, std::int32_t first_col,
-                  std::int32_t first_row, Canvas& canvas);
+void draw_cluster(const Drawing& drawing, const Sighting& sighting, const PixelPlace& first,
+                  Canvas& canvas);
+
+/// Adds those of a cluster's triangles that may be met by the beam of a pixel of such a canvas.
+void add_candidates(const Drawing& drawing, const Sighting& sighting, const PixelPlace& first,
+                    Canvas& canvas, const PixelPlace& pixel, std::vector<Found>& candidates);
 
 }  // namespace glidar::raster

@@ -68,6 +68,11 @@ raster::CanvasRect rect_on(const PixelRect& drawn, const Sighting& sighting) {
           .bottom = std::min(sighting.bottom - first_row, static_cast<int>(drawn.rows) - 1)};
 }
 
+raster::PixelPlace first_of(const raster::Part& part) {
+  return {.col = static_cast<std::int32_t>(part.drawn.first_col),
+          .row = static_cast<std::int32_t>(part.drawn.first_row)};
+}
+
 /// The nearest first; of equals the first.
 std::uint64_t key(const Sighting& sighting, std::uint32_t index) {
   // The bits of positive numbers rise with them.
@@ -204,25 +209,30 @@ class RasterRenderer final : public Renderer {
       for (std::size_t i = begin; i < end; ++i) {
         const raster::Part part = parts_.part(i);
         draw_part(drawing, part, parts_.seen_in(i), *desk);
-        const auto search = [&](std::size_t beam, std::uint32_t row, std::uint32_t col) {
-          return search_at(drawing, parts_.seen_in(i), {beam, row, col}, *desk);
-        };
-        write_rows(
-            {.request = request,
-             .resolver = base_->resolver,
-             .settler = settler,
-             .triangles = triangles_,
-             .points = points_,
-             .drawn = part.drawn,
-             .numbers = desk->numbers,
-             .part = part.written,
-             .hits = hits,
-             .search = FunctionRef<Found(std::size_t, std::uint32_t, std::uint32_t)>(search)},
-            0, part.written.rows);
+        write_part(drawing, part, parts_.seen_in(i), *desk, hits);
         count.add(std::size_t{part.written.rows} * part.written.cols);
       }
       desks_.give_back(std::move(desk));
     });
+  }
+
+  /// Writes the hits of what was drawn.
+  void write_part(const Drawing& drawing, const raster::Part& part,
+                  std::span<const std::uint32_t> seen, Desk& desk, Hits& hits) const {
+    const auto search = [&](std::size_t beam, std::uint32_t row, std::uint32_t col) {
+      return search_at(drawing, seen, part, {beam, row, col}, desk);
+    };
+    write_rows({.request = drawing.request,
+                .resolver = base_->resolver,
+                .settler = drawing.settler,
+                .triangles = triangles_,
+                .points = points_,
+                .drawn = part.drawn,
+                .numbers = desk.numbers,
+                .part = part.written,
+                .hits = hits,
+                .search = FunctionRef<Found(std::size_t, std::uint32_t, std::uint32_t)>(search)},
+               0, part.written.rows);
   }
 
   /// For clusters that reach to the sensor's plane, of which sightings do not tell where.
@@ -250,15 +260,15 @@ class RasterRenderer final : public Renderer {
 
   /// What a beam meets among all triangles of the clusters that may be seen at its pixel, also of
   /// those found hidden: perhaps it was the falsely told one that hid them.
-  Found search_at(const Drawing& drawing, std::span<const std::uint32_t> seen, const Pixel& pixel,
-                  Desk& desk) const {
+  Found search_at(const Drawing& drawing, std::span<const std::uint32_t> seen,
+                  const raster::Part& part, const Pixel& pixel, Desk& desk) const {
     const auto row = static_cast<std::int32_t>(pixel.row);
     const auto col = static_cast<std::int32_t>(pixel.col);
     desk.candidates.clear();
     for (const std::uint32_t index : seen) {
       const Sighting& at = sightings_[index];
       if (col < at.left || col > at.right || row < at.top || row > at.bottom) continue;
-      raster::add_triangles(packed_of(at.instance), at, desk.candidates);
+      raster::add_candidates(drawing, at, first_of(part), desk.canvas, {col, row}, desk.candidates);
     }
     return drawing.settler.nearest_of(pixel.beam, desk.candidates);
   }
@@ -268,8 +278,6 @@ class RasterRenderer final : public Renderer {
                  std::span<const std::uint32_t> seen, Desk& desk) const {
     const auto cols = static_cast<int>(part.drawn.cols);
     const auto rows = static_cast<int>(part.drawn.rows);
-    const auto first_col = static_cast<int>(part.drawn.first_col);
-    const auto first_row = static_cast<int>(part.drawn.first_row);
     desk.canvas.clear(cols, rows);
     desk.order.clear();
     for (const std::uint32_t index : seen) desk.order.push_back(key(sightings_[index], index));
@@ -279,7 +287,7 @@ class RasterRenderer final : public Renderer {
     for (std::size_t i = 0; i < desk.order.size() + kAhead; ++i) {
       const Sighting*& slot = coming[i % kAhead];
       if (slot != nullptr) {
-        raster::draw_cluster(drawing, *slot, first_col, first_row, desk.canvas);
+        raster::draw_cluster(drawing, *slot, first_of(part), desk.canvas);
         desk.canvas.mark_drawn(rect_on(part.drawn, *slot));
       }
       slot = nullptr;
