@@ -53,8 +53,8 @@ void write_misses(const HitFields& fields, std::size_t first, std::size_t count,
   };
   // Number by number, which compilers turn into vectors.
   const auto fill_vectors = [first, count](bool asked, auto& column, auto value) {
-    constexpr auto kSize = static_cast<std::size_t>(
-        std::decay_t<decltype(column)>::value_type::SizeAtCompileTime);
+    constexpr auto kSize =
+        static_cast<std::size_t>(std::decay_t<decltype(column)>::value_type::SizeAtCompileTime);
     if (asked && count > 0) std::fill_n(column[first].data(), kSize * count, value);
   };
   fill(true, hits.range_m, kNaN);

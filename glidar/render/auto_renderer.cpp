@@ -7,6 +7,7 @@
 #include <glidar/render/grid_window.hpp>
 #include <glidar/render/pinhole_only.hpp>
 #include <glidar/render/raster/raster_renderer.hpp>
+#include <glidar/render/triangle_picture.hpp>
 
 #include <algorithm>
 #include <cstdint>
@@ -24,6 +25,11 @@ class AutoRenderer final : public Renderer {
   AutoRenderer(const Scene& scene, unsigned threads)
       : base_(std::make_shared<CpuBase>(scene, threads)) {
     for (const Mesh& mesh : scene.meshes) boxes_.push_back(bounds(mesh));
+    std::uint64_t all = 0;
+    for (const Instance& instance : scene.instances) {
+      all += scene.meshes[instance.mesh].triangles.size();
+    }
+    can_draw_ = all < kCertain;
   }
 
   [[nodiscard]] std::string_view name() const override { return "auto"; }
@@ -45,7 +51,7 @@ class AutoRenderer final : public Renderer {
   }
 
   bool is_for_raster(const CastRequest& request) {
-    if (why_not_drawn(request.beams) != nullptr) return false;
+    if (!can_draw_ || why_not_drawn(request.beams) != nullptr) return false;
     const std::uint64_t beams = beams_in_view(request);
     return beams == 0 || triangles(request) <= kMostPerBeam * beams;
   }
@@ -71,6 +77,7 @@ class AutoRenderer final : public Renderer {
 
   std::shared_ptr<CpuBase> base_;
   std::vector<Eigen::AlignedBox3d> boxes_;  ///< per mesh
+  bool can_draw_;                           ///< the raster has numbers for all triangles
   PlanePoints points_;
   std::unique_ptr<Renderer> raster_;
   std::unique_ptr<Renderer> embree_;
