@@ -79,6 +79,7 @@ class Replay(ReplayTest):
         self.assertEqual([line["stamp_ns"] for line in self.lines()[1:-1]], [100, 101, 102, 103, 104])
         program = self.start("r.jsonl", "--port", str(self.port), command="replay")
         again = self.subscriber()
+        time.sleep(0.5)  # subscriptions travel apart from hands
         again.shake()
         replayed = again.clouds_until_shutdown()
         self.finished(program, 0)
