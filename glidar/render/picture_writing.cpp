@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <limits>
+#include <vector>
 
 namespace glidar {
 namespace {
@@ -203,6 +205,19 @@ void collect_row(const PictureWriting& w, std::uint32_t row, Works& works) {
 }
 
 }  // namespace
+
+DepthRange depths_of(const CastRequest& request, const Resolver& resolver,
+                     std::span<const KnownMesh> meshes) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  double farthest_m = -std::numeric_limits<double>::infinity();
+  const std::vector<Instance>& instances = resolver.scene().instances;
+  for (std::uint32_t i = 0; i < instances.size(); ++i) {
+    if (!is_present(request, i)) continue;
+    extend_depths(resolver.view(i), meshes[instances[i].mesh].box, nearest_m, farthest_m);
+  }
+  if (!(farthest_m > 0.0)) return {0.0, 0.0};
+  return hugging(nearest_m, farthest_m);
+}
 
 void write_rows(const PictureWriting& w, std::uint32_t begin, std::uint32_t end) {
   Works works;

@@ -4,6 +4,7 @@
 
 #include <glidar/core/function_ref.hpp>
 #include <glidar/core/work_count.hpp>
+#include <glidar/render/depth_range.hpp>
 #include <glidar/render/plane_points.hpp>
 #include <glidar/render/renderer.hpp>
 #include <glidar/render/settle.hpp>
@@ -30,6 +31,11 @@ struct PictureWriting {
   /// tried.
   FunctionRef<Found(std::size_t beam, std::uint32_t row, std::uint32_t col)> search = {};
 };
+
+/// The planes that hug all instances that are there for a cast; the resolver has its poses. One
+/// known mesh per mesh.
+DepthRange depths_of(const CastRequest& request, const Resolver& resolver,
+                     std::span<const KnownMesh> meshes);
 
 /// Writes the hits of rows [begin, end) of the part and tells the request of them.
 void write_rows(const PictureWriting& writing, std::uint32_t begin, std::uint32_t end);

@@ -119,12 +119,6 @@ GLIDAR_SIMD void blend_normals(const CornerBlock& n, const Lanes<float>& w1, con
   }
 }
 
-/// True when a material of the instance has an alpha mask: then twins may differ in their holes.
-bool has_mask(const Scene& scene, const Instance& instance) {
-  return std::any_of(instance.materials.begin(), instance.materials.end(),
-                     [&](std::uint32_t m) { return scene.materials[m].alpha_cutoff > 0.0F; });
-}
-
 bool needs_normals(const HitFields& fields) {
   return fields.shading_normal || fields.shading;
 }
@@ -139,6 +133,11 @@ GLIDAR_SIMD void cosines(const ExactBlock& e, const Lanes3<double>& normal, Lane
 }
 
 }  // namespace
+
+bool has_mask(const Scene& scene, const Instance& instance) {
+  return std::any_of(instance.materials.begin(), instance.materials.end(),
+                     [&](std::uint32_t m) { return scene.materials[m].alpha_cutoff > 0.0F; });
+}
 
 bool needs_corners(const HitFields& fields) {
   return fields.barycentrics || fields.shading_normal || fields.shading || fields.colour ||
@@ -198,6 +197,7 @@ Resolver::Resolver(const Scene& scene) : scene_(scene) {
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[instance.mesh];
     const std::vector<std::uint32_t>& twins = twins_[instance.mesh];
+    // With a mask, twins may differ in their holes.
     const bool may_swap = !twins.empty() && !has_mask(scene, instance);
     known_.push_back(
         {.mesh = &mesh,

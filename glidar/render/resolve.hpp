@@ -20,6 +20,9 @@ namespace glidar {
 /// differ.
 std::vector<std::uint32_t> first_twins(const Mesh& mesh);
 
+/// True when a material of the instance has an alpha mask.
+bool has_mask(const Scene& scene, const Instance& instance);
+
 /// True when some of the fields follow from where in its triangle a beam hits.
 bool needs_corners(const HitFields& fields);
 

@@ -54,11 +54,9 @@ void filter(const RTCFilterFunctionNArguments* args) {
 }
 
 /// True when an instance of the mesh has a material with an alpha mask.
-bool has_mask(const Scene& scene, std::size_t mesh) {
+bool is_masked(const Scene& scene, std::size_t mesh) {
   return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
-    return instance.mesh == mesh &&
-           std::any_of(instance.materials.begin(), instance.materials.end(),
-                       [&](std::uint32_t m) { return scene.materials[m].alpha_cutoff > 0.0F; });
+    return instance.mesh == mesh && has_mask(scene, instance);
   });
 }
 
@@ -87,7 +85,7 @@ World::World(const Scene& scene) : scene_(scene), device_(rtcNewDevice(nullptr))
   has_wide_packets_ =
       rtcGetDeviceProperty(device_.get(), RTC_DEVICE_PROPERTY_NATIVE_RAY16_SUPPORTED) != 0;
   for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-    add_mesh(scene.meshes[i], has_mask(scene, i));
+    add_mesh(scene.meshes[i], is_masked(scene, i));
     narrowness_.push_back(triangle_narrowness(scene.meshes[i]));
   }
   for (const Instance& instance : scene.instances) {

@@ -12,7 +12,6 @@
 #include <glidar/render/pinhole_only.hpp>
 
 #include <array>
-#include <limits>
 #include <optional>
 #include <span>
 #include <utility>
@@ -69,24 +68,11 @@ class OpenglRenderer final : public Renderer {
     std::array<opengl::NumberTarget, kTargets> targets;
   };
 
-  /// The planes that hug all instances that are there.
-  [[nodiscard]] DepthRange depths_of(const CastRequest& request) const {
-    double nearest_m = std::numeric_limits<double>::infinity();
-    double farthest_m = -std::numeric_limits<double>::infinity();
-    const Scene& scene = resolver_.scene();
-    for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-      if (!is_present(request, i)) continue;
-      extend_depths(resolver_.view(i), meshes_[scene.instances[i].mesh].box, nearest_m, farthest_m);
-    }
-    if (!(farthest_m > 0.0)) return {0.0, 0.0};
-    return hugging(nearest_m, farthest_m);
-  }
-
   /// Makes room for a cast's hits and adds its pictures, if there is anything to draw.
   void plan(const CastRequest& request, std::size_t cast, Hits& hits) {
     resize(hits, request.beams.size(), request.fields);
     resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
-    const DepthRange depths = depths_of(request);
+    const DepthRange depths = depths_of(request, resolver_, meshes_);
     if (!depths.is_empty() && request.beams.size() > 0) {
       opengl::add_parts(request.beams, cast, depths, pictures_);
       return;

@@ -3,7 +3,6 @@
 #include <glidar/render/raster/raster_renderer.hpp>
 
 #include <glidar/core/work_count.hpp>
-#include <glidar/render/depth_range.hpp>
 #include <glidar/render/grid_window.hpp>
 #include <glidar/render/picture_writing.hpp>
 #include <glidar/render/pinhole_only.hpp>
@@ -17,7 +16,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <limits>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -89,9 +87,7 @@ class RasterRenderer final : public Renderer {
         triangles_(scene(), "raster") {
     for (const Mesh& mesh : scene().meshes) boxes_.push_back(bounds(mesh));
     for (const Instance& instance : scene().instances) {
-      has_mask_.push_back(static_cast<std::uint8_t>(
-          std::any_of(instance.materials.begin(), instance.materials.end(),
-                      [&](std::uint32_t m) { return scene().materials[m].alpha_cutoff > 0.0F; })));
+      has_mask_.push_back(static_cast<std::uint8_t>(has_mask(scene(), instance)));
     }
   }
 
@@ -105,7 +101,7 @@ class RasterRenderer final : public Renderer {
     base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
     find_plane_points(request.beams, points_);
     WorkCount count(request.progress, request.beams.size());
-    const DepthRange depths = depths_of(request);
+    const DepthRange depths = depths_of(request, base_->resolver, known_);
     const GridWindow window = depths.is_empty()
                                   ? GridWindow{.end_row = 0, .end_col = 0}
                                   : window_on(base_->resolver, boxes_, request.present, points_);
@@ -122,18 +118,6 @@ class RasterRenderer final : public Renderer {
 
   [[nodiscard]] const raster::PackedMesh& packed_of(std::uint32_t instance) const {
     return packed_[scene().instances[instance].mesh];
-  }
-
-  [[nodiscard]] DepthRange depths_of(const CastRequest& request) const {
-    double nearest_m = std::numeric_limits<double>::infinity();
-    double farthest_m = -std::numeric_limits<double>::infinity();
-    for (std::uint32_t i = 0; i < scene().instances.size(); ++i) {
-      if (!is_present(request, i)) continue;
-      extend_depths(base_->resolver.view(i), known_[scene().instances[i].mesh].box, nearest_m,
-                    farthest_m);
-    }
-    if (!(farthest_m > 0.0)) return {0.0, 0.0};
-    return hugging(nearest_m, farthest_m);
   }
 
   /// Misses, outside of the window.
