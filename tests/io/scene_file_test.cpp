@@ -5,6 +5,8 @@
 #include <glidar/io/builtin_models.hpp>
 #include <glidar/io/scene_builder.hpp>
 
+#include <support/source_folder.hpp>
+
 #include "yaml_files.hpp"
 
 #include <cmath>
@@ -346,7 +348,7 @@ TEST(SetMaterials, ChangesOneInstanceAsASceneFileDoes) {
 
 TEST(SceneFile, ExampleLoads) {
   const SceneFile file = load_scene_file(
-      std::filesystem::path(GLIDAR_SOURCE_FOLDER) / "examples/two_rocks.yaml", {}, {});
+      std::filesystem::path(kSourceFolder) / "examples/two_rocks.yaml", {}, {});
   ASSERT_EQ(file.scene.instances.size(), 3U);
   EXPECT_EQ(file.scene.meshes.size(), 2U);
   EXPECT_EQ(file.scene.instances[0].mesh, file.scene.instances[1].mesh);
@@ -363,7 +365,7 @@ TEST(SceneFile, ExampleLoads) {
 
 /// The n-th block of YAML in docs/files.md.
 std::string documented(int n) {
-  std::ifstream stream(std::filesystem::path(GLIDAR_SOURCE_FOLDER) / "docs/files.md");
+  std::ifstream stream(std::filesystem::path(kSourceFolder) / "docs/files.md");
   const std::string text(std::istreambuf_iterator<char>(stream), {});
   const std::string fence = "```yaml\n";
   std::size_t begin = 0;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/sensor_file.hpp>
 
+#include <support/source_folder.hpp>
+
 #include "yaml_files.hpp"
 
 #include <gmock/gmock.h>
@@ -131,7 +133,7 @@ TEST(SensorFile, WindowsLineEndsAndByteOrderMark) {
 
 TEST(SensorFile, PaperCameraIsThePapers) {
   const Sensor sensor =
-      load_sensor_file(std::filesystem::path(GLIDAR_SOURCE_FOLDER) / "sensors/paper-256.yaml");
+      load_sensor_file(std::filesystem::path(kSourceFolder) / "sensors/paper-256.yaml");
   const PinholeIntrinsics k = std::get<Pinhole>(sensor.optics).intrinsics;
   EXPECT_EQ(k.width, 256U);
   EXPECT_EQ(k.height, 256U);

@@ -4,6 +4,8 @@
 #include "fuzz/legacy_decoders.hpp"
 #include "fuzz/lockstep_decoders.hpp"
 
+#include <support/source_folder.hpp>
+
 #include <gmock/gmock.h>
 
 #include <filesystem>
@@ -24,7 +26,7 @@ struct Tried {
 Tried tried(const char* protocol, bool (*decode)(std::span<const std::byte>)) {
   Tried result;
   for (const auto& entry : std::filesystem::directory_iterator(
-           std::filesystem::path(GLIDAR_SOURCE_FOLDER) / "tests/fuzz/corpus" / protocol)) {
+           std::filesystem::path(kSourceFolder) / "tests/fuzz/corpus" / protocol)) {
     std::ifstream file(entry.path(), std::ios::binary);
     const std::string bytes((std::istreambuf_iterator<char>(file)), {});
     ++result.files;

@@ -7,6 +7,7 @@
 #include <glidar/simulate.hpp>
 #include <support/data.hpp>
 #include <support/error_text.hpp>
+#include <support/source_folder.hpp>
 
 #include <gtest/gtest.h>
 
@@ -119,7 +120,7 @@ TEST_F(PaperTargetTest, AndFromTenKilometresWithAttenuation) {
 
 TEST_F(PaperTargetTest, AndWithEveryTextureOfTheSatellite) {
   const Scene scene = testing::scene_of(
-      load_model(std::string(GLIDAR_SOURCE_FOLDER) + "/models/satellite/satellite.obj", {}, {}));
+      load_model(std::string(kSourceFolder) + "/models/satellite/satellite.obj", {}, {}));
   const Eigen::AlignedBox3d box = bounds(scene);
   const double distance = 2.0 * box.diagonal().norm();
   const Eigen::Vector3d eye = box.center() + distance * Eigen::Vector3d(0.5, -0.7, 0.51);
