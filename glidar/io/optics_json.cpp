@@ -15,15 +15,17 @@ Json distortion_json(const NoDistortion& /*none*/) {
 }
 
 Json distortion_json(const RadialTangential& d) {
-  return {{"model", "radial_tangential"},
-          {"k1", d.k1},
-          {"k2", d.k2},
-          {"p1", d.p1},
-          {"p2", d.p2},
-          {"k3", d.k3},
-          {"k4", d.k4},
-          {"k5", d.k5},
-          {"k6", d.k6}};
+  Json json = {{"model", "radial_tangential"},
+               {"k1", d.k1},
+               {"k2", d.k2},
+               {"p1", d.p1},
+               {"p2", d.p2},
+               {"k3", d.k3},
+               {"k4", d.k4},
+               {"k5", d.k5},
+               {"k6", d.k6}};
+  if (std::isfinite(d.max_radius)) json["max_radius"] = d.max_radius;
+  return json;
 }
 
 Json distortion_json(const Fisheye& d) {

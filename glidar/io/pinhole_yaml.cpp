@@ -24,11 +24,13 @@ double read_focal_length(const YamlField& field, std::uint32_t side) {
          "a field of view that gives pixels above 0 and below 1e9");
 }
 
-/// Coefficients by key; those not given are 0.
+/// Coefficients by key; those not given are 0. `others` are keys that somebody else reads.
 void read_coefficients(const YamlField& field,
-                       const std::vector<std::pair<std::string, double*>>& coefficients) {
+                       const std::vector<std::pair<std::string, double*>>& coefficients,
+                       const std::vector<std::string>& others = {}) {
   std::vector<std::string> known = {"model"};
   for (const auto& [key, value] : coefficients) known.push_back(key);
+  known.insert(known.end(), others.begin(), others.end());
   require_map(field, known);
   for (const auto& [key, value] : coefficients) *value = number_or(field, key, kFinite, 0.0);
 }
@@ -39,14 +41,17 @@ Distortion read_distortion(const YamlField& field) {
   const std::size_t model = one_of(need(field, "model"), kModels);
   if (model == 1) {
     RadialTangential k;
-    read_coefficients(field, {{"k1", &k.k1},
-                              {"k2", &k.k2},
-                              {"p1", &k.p1},
-                              {"p2", &k.p2},
-                              {"k3", &k.k3},
-                              {"k4", &k.k4},
-                              {"k5", &k.k5},
-                              {"k6", &k.k6}});
+    read_coefficients(field,
+                      {{"k1", &k.k1},
+                       {"k2", &k.k2},
+                       {"p1", &k.p1},
+                       {"p2", &k.p2},
+                       {"k3", &k.k3},
+                       {"k4", &k.k4},
+                       {"k5", &k.k5},
+                       {"k6", &k.k6}},
+                      {"max_radius"});
+    k.max_radius = number_or(field, "max_radius", kAboveZero, k.max_radius);
     return k;
   }
   if (model == 2) {

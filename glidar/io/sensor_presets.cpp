@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <string_view>
 
 namespace glidar {
 namespace {
@@ -30,6 +31,18 @@ std::string all_names(const std::vector<fs::path>& files) {
 }
 
 }  // namespace
+
+ValueCount count_values(const SensorSheet& sheet) {
+  ValueCount count;
+  for (const SheetEntry& entry : sheet.entries) {
+    const std::string_view key = entry.key;
+    const std::string_view last = key.substr(key.rfind('.') + 1);
+    if (last == "name" || last == "type" || last == "kind") continue;
+    ++count.total;
+    if (entry.verified && !entry.source.empty()) ++count.backed;
+  }
+  return count;
+}
 
 std::vector<fs::path> preset_files() {
   std::error_code error;

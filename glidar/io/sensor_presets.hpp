@@ -25,6 +25,14 @@ struct SensorSheet {
   std::vector<SheetEntry> entries;  ///< in the order of the file
 };
 
+/// How many values of a sensor the manufacturer's documents back: data sheets, manuals, drivers and
+/// factory calibrations. Names, types and kinds are no values.
+struct ValueCount {
+  std::size_t backed = 0;
+  std::size_t total = 0;
+};
+ValueCount count_values(const SensorSheet& sheet);
+
 /// Like load_sensor_file, with the sources that the file gives.
 SensorSheet load_sensor_sheet(const std::filesystem::path& path);
 

@@ -70,7 +70,7 @@ Eigen::Vector3d ray(const NoDistortion& /*none*/, const Eigen::Vector2d& plane) 
 
 /// Newton's method from the distorted point. The solution must lie on the branch that contains the
 /// image centre: where the Jacobian stays positive, beyond it the model folds over and means
-/// nothing.
+/// nothing. Nothing is imaged beyond the largest radius either.
 Eigen::Vector3d ray(const RadialTangential& k, const Eigen::Vector2d& plane) {
   Eigen::Vector2d p = plane;
   const double tolerance = kConverged * (1.0 + plane.norm());
@@ -78,7 +78,10 @@ Eigen::Vector3d ray(const RadialTangential& k, const Eigen::Vector2d& plane) {
     const Eigen::Vector2d residual = distorted(k, p) - plane;
     const Eigen::Matrix2d jacobian = distortion_jacobian(k, p);
     if (!(jacobian.determinant() > 0.0)) break;
-    if (residual.norm() <= tolerance) return direction_through(p.x(), p.y());
+    if (residual.norm() <= tolerance) {
+      if (p.norm() > k.max_radius) break;
+      return direction_through(p.x(), p.y());
+    }
     p -= jacobian.inverse() * residual;
   }
   return {kNaN, kNaN, kNaN};

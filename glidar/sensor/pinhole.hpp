@@ -6,6 +6,7 @@
 #include <glidar/sensor/scan.hpp>
 
 #include <cstdint>
+#include <limits>
 #include <variant>
 
 namespace glidar {
@@ -24,6 +25,9 @@ struct RadialTangential {
   double k4 = 0.0;
   double k5 = 0.0;
   double k6 = 0.0;
+  /// Largest distance from the axis, on the plane z = 1, that the lens images ("metric radius" in
+  /// calibrations of the Azure Kinect). Pixels that would look farther out have no beam.
+  double max_radius = std::numeric_limits<double>::infinity();
 };
 
 /// OpenCV's fisheye model (calib3d "Fisheye camera model", after Kannala and Brandt 2006):

@@ -19,6 +19,23 @@ class Sensors(CliTest):
         self.assertEqual(told["VLP-16"]["rows"], 16)
         self.assertEqual(told["VLP-16"]["view_deg"][0], 360)
 
+    def test_the_list_and_the_docs_count_the_values_that_are_backed(self):
+        root = os.path.join(os.path.dirname(__file__), "..", "..")
+        with open(os.path.join(root, "docs", "sensors.md"), encoding="utf-8") as file:
+            rows = [[cell.strip() for cell in line.strip("|\n ").split("|")] for line in file if line.startswith("| ")]
+        documented = {row[0]: row[-1] for row in rows if len(row) == 10}
+        lines = {line.split()[0]: line for line in self.succeed("sensors").stdout.splitlines()[1:]}
+        for entry in json.loads(self.succeed("sensors", "--json").stdout):
+            count = f"{entry['backed']} of {entry['values']}"
+            self.assertLess(0, entry["values"])
+            self.assertTrue(lines[entry["name"]].endswith(count), entry["name"])
+            self.assertEqual(documented[entry["name"]], count, entry["name"])
+        text = self.succeed("sensors", "VLP-16").stdout
+        stars = [line for line in text.splitlines() if line.startswith("* ") and " = " in line]
+        backed, values = map(int, lines["VLP-16"].split("  ")[-1].split(" of "))
+        typed = [line for line in stars if line.split(" = ")[0].endswith(("type", "kind"))]
+        self.assertEqual(len(stars) - len(typed), values - backed)
+
     def test_surfaces_are_listed_and_cover_a_model(self):
         lines = self.succeed("sensors", "--surfaces").stdout.splitlines()
         asphalt = next(line for line in lines if line.startswith("asphalt "))
@@ -112,7 +129,7 @@ class Sensors(CliTest):
         text = self.succeed("sensors", "VLS-128").stdout
         self.assertIn("\n  footprint.divergence_mrad = 3, 1.5\n      VLS-128 User Manual, table F-1", text)
         self.assertIn("\n* receiver.pulse_ns = 6\n", text)
-        self.assertIn("* receiver.returns = strongest\n", text)
+        self.assertIn("\n  receiver.returns = strongest\n", text)
         self.assertIn(" 5.1 x 2.5 ", text)  # 1.699 times the widths at half maximum
         told = {entry["name"]: entry for entry in json.loads(self.succeed("sensors", "--json").stdout)}
         self.assertAlmostEqual(told["VLS-128"]["divergence_mrad"][0], 3 * 1.699, 2)
