@@ -7,6 +7,7 @@
 #include <glidar/core/function_ref.hpp>
 
 #include <array>
+#include <cstddef>
 #include <vector>
 
 namespace glidar {
@@ -30,6 +31,9 @@ class IntegralTable {
 
   /// The integral to the segment's start and the coefficients of that from there.
   using Segment = std::array<double, kNodes + 1>;
+
+  /// Appends the integral of a Chebyshev series.
+  void add_segment(double length, const std::array<double, kNodes + 2>& series);
 
   double per_segment_ = 0.0;  ///< 1 / length
   double total_ = 0.0;
