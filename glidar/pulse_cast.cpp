@@ -251,10 +251,12 @@ void trace_echoes(const Block& block, std::size_t beam, const EchoWork& work) {
 Status find_returns(const Block& block, std::size_t beam, const Path& surface, Tools& tools) {
   EchoWork& work = tools.work;
   const Sensor& sensor = block.setup.sensor;
+  const double wide_m =
+      sensor.footprint && work.paths > 0 ? diameter_m(*sensor.footprint, surface.range_m) : 0.0;
   Draw draw = tools.draws.detection;
   draw.beam = static_cast<std::uint32_t>(beam);
   add_weather(block, draw, surface.range_m, tools.weather, work);
-  find_echoes(pulse_sigma_m(sensor.receiver), work);
+  find_echoes(pulse_sigma_m(sensor.receiver), wide_m, work);
   if (block.traces(beam)) trace_echoes(block, beam, work);
   double loudest = 0.0;
   for (std::size_t k = 0; k < work.echoes; ++k) {

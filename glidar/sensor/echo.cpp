@@ -16,7 +16,7 @@ constexpr double kFwhmPerSigma = 2.3548200450309493;  // sqrt(8 ln 2)
 constexpr double kReach = 6.0;   // standard deviations: beyond, a pulse is below 2e-8 of its peak
 constexpr double kStep = 0.125;  // of a standard deviation: the waveform's samples
 
-/// Paths [begin, end) of a beam, sorted by range unless all are within one standard deviation.
+/// Paths [begin, end) of a beam, sorted by range unless all are near each other.
 struct Group {
   std::size_t begin;
   std::size_t end;
@@ -196,10 +196,10 @@ void EchoWork::replace_weakest(const Path& one) {
   if (weakest->signal < one.signal) *weakest = one;
 }
 
-void find_echoes(double sigma_m, EchoWork& work) {
+void find_echoes(double sigma_m, double near_m, EchoWork& work) {
   work.echoes = 0;
   if (work.paths == 0) return;
-  if (extent_m(work) <= sigma_m) {  // as most beams: no need to sort
+  if (extent_m(work) <= std::min(sigma_m, near_m)) {  // as most beams: no need to sort
     take_as_one({0, work.paths}, sigma_m, work);
     return;
   }

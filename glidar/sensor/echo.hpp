@@ -82,11 +82,12 @@ struct EchoWork {
   void replace_weakest(const Path& one);
 };
 
-/// Finds the peaks of the sum of the paths' pulses, in order of range; may sort the paths. Two
+/// Finds the peaks of the sum of the paths' pulses, in order of range. Sorts the paths by range
+/// unless all are within near_m, such as the beam's width, of each other: that saves time. Two
 /// equal pulses have two peaks when they are more than two standard deviations apart, c FWHM /
 /// 2.355 in range; below that they are one echo at their weighted mean. An echo is mixed when its
 /// paths, but for those of the air, are of more than one surface.
-void find_echoes(double sigma_m, EchoWork& work);
+void find_echoes(double sigma_m, double near_m, EchoWork& work);
 
 /// Takes away echoes nearer than separation_m to a stronger one.
 void keep_separate(double separation_m, EchoWork& work);

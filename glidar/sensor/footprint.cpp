@@ -150,6 +150,12 @@ void validate(const Footprint& f) {
   require_number(f.rings >= 1 && f.rings <= kMostRings, "footprint, rings", f.rings, "1 to 8");
 }
 
+double diameter_m(const Footprint& f, double range_m) {
+  const double x = f.divergence_x_rad * range_m;
+  const double y = f.divergence_y_rad * range_m;
+  return std::sqrt(std::max(f.exit_x_m * f.exit_x_m + x * x, f.exit_y_m * f.exit_y_m + y * y));
+}
+
 std::vector<SubRay> sub_rays(const Footprint& f) {
   validate(f);
   const std::vector<Ring> rings = rings_of(f.rings);

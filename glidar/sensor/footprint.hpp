@@ -29,6 +29,9 @@ inline constexpr double kWidthPerFwhm = 1.6986436005760381;
 /// Throws Error naming the number that is out of range.
 void validate(const Footprint& footprint);
 
+/// The wider diameter at a range.
+double diameter_m(const Footprint& footprint, double range_m);
+
 /// One sub-ray: it starts at `offset` and leans by `slope`, both across the beam, and carries a
 /// share of its energy.
 struct SubRay {

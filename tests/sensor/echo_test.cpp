@@ -18,7 +18,7 @@ EchoWork echoes_of(const std::vector<std::pair<double, double>>& paths) {
   for (const auto& [range_m, signal] : paths) {
     work.add({range_m, signal, source++, Cause::surface});
   }
-  find_echoes(kSigma_m, work);
+  find_echoes(kSigma_m, kSigma_m, work);
   return work;
 }
 
@@ -88,7 +88,7 @@ TEST(FindEchoes, AreMixedWhenTheyMergeMoreThanOneSurface) {
   const auto is_mixed = [](const std::vector<Path>& paths) {
     EchoWork work;
     for (const Path& path : paths) work.add(path);
-    find_echoes(kSigma_m, work);
+    find_echoes(kSigma_m, kSigma_m, work);
     return work.echo[0].is_mixed;
   };
   const Path first{20.0, 1.0, 0, Cause::surface, 0};

@@ -89,6 +89,12 @@ TEST(SubRays, OfOneRingTellTheLitPartOfACutBeamNearlyAsWellAsOfTwo) {
   EXPECT_NEAR(cut_error(3), 0.034, 0.001);
 }
 
+// A Gaussian beam's exit and divergence add in squares, where sheets often add them as they are.
+TEST(DiameterM, IsThatOfAGaussianBeam) {
+  EXPECT_DOUBLE_EQ(diameter_m(kOval, 0.0), 0.0127);
+  EXPECT_NEAR(diameter_m(kOval, 100.0), std::hypot(0.0095, 0.3), 1e-15);
+}
+
 TEST(Spread, LaysSubRaysAcrossTheBeamWithItsTimeAndOrigin) {
   Beams beams;
   beams.rows = 1;
