@@ -4,6 +4,7 @@
 
 #include <glidar/core/gaussian.hpp>
 #include <glidar/moving_cast.hpp>
+#include <glidar/sensor/beam_surfaces.hpp>
 #include <glidar/sensor/weather_echoes.hpp>
 
 #include <algorithm>
@@ -105,19 +106,22 @@ Path ghost_path(const Block& block, std::size_t mirrored, double energy) {
   const double sent =
       energy * share * share *
       sent_back_at(block.setup.scene, block.setup.sensor.wavelength_m, hits, mirrored);
-  return {range_m, signal_of(block.light, sent, range_m), ray, Cause::ghost};
+  return {range_m, signal_of(block.light, sent, range_m), ray, Cause::ghost, kGhostSurface};
 }
 
 /// All ways by which light of a beam comes back from surfaces.
-void collect_paths(const Block& block, std::size_t beam, EchoWork& work) {
+void collect_paths(const Block& block, std::size_t beam, BeamSurfaces& surfaces, EchoWork& work) {
   const Scratch& memory = block.frame.scratch;
   const std::size_t first = block.first_ray(beam);
+  const bool is_spread = block.rays.size() > 1;
+  if (is_spread) surfaces.find(memory.sub_beams, memory.sub_hits, first, block.rays.size());
   work.paths = 0;
   for (std::size_t k = 0; k < block.rays.size(); ++k) {
     const std::size_t ray = first + k;
     if (memory.sub_hits.instance[ray] == kNoHit) continue;
     work.add({memory.sub_hits.range_m[ray], block.rays[k].share * memory.sub_signals[ray],
-              static_cast<std::uint32_t>(ray), Cause::surface});
+              static_cast<std::uint32_t>(ray), Cause::surface,
+              is_spread ? surfaces.of_ray(k) : std::uint16_t{0}});
   }
   const std::vector<std::uint32_t>& from = memory.mirrored_from;
   auto at = std::lower_bound(from.begin(), from.end(), first);
@@ -213,6 +217,7 @@ struct Tools {
   EchoWork work;
   Draws draws;
   std::vector<WeatherEcho> weather;
+  BeamSurfaces surfaces;
 };
 
 /// What a ghost's light met by way of the mirror.
@@ -267,7 +272,7 @@ Status find_returns(const Block& block, std::size_t beam, const Path& surface, T
 void measure_beam(const Block& block, std::size_t beam, Tools& tools) {
   EchoWork& work = tools.work;
   const Receiver& receiver = block.setup.sensor.receiver;
-  collect_paths(block, beam, work);
+  collect_paths(block, beam, tools.surfaces, work);
   const Path surface = strongest_surface(work);
   const Status silent = find_returns(block, beam, surface, tools);
   std::array<int, kMostReturns> chosen;
@@ -319,6 +324,7 @@ void measure_block(const Block& block, bool mirrors) {
   Scratch& memory = block.frame.scratch;
   HitFields fields = with_light(block.fields);
   fields.shading_normal = fields.shading_normal || mirrors;
+  fields.normal = fields.normal || block.rays.size() > 1;
   spread(block.rays, block.aimed, block.range, block.setup.renderer.workers(), memory.sub_beams);
   const auto part = [&](std::size_t beam) {
     return static_cast<double>(beam) / static_cast<double>(block.aimed.pulses());

@@ -18,6 +18,7 @@ enum class Purpose : std::uint8_t {
   probe = 0,
   detection = 1,
   weather = 3,
+  fog = 4,
   first_noise_step = 32,  ///< step k of a sensor's list of noise draws with first_noise_step + k
 };
 

@@ -41,15 +41,17 @@ void read_visibility(const YamlField& weather, double& visibility_m) {
 }  // namespace
 
 Weather read_weather(const YamlField& field) {
-  require_map(field,
-              {"visibility_m", "visibility_kind", "fog_model", "fog_backscatter_per_sr",
-               "rain_mm_per_h", "rain_model", "snow_mm_per_h", "snow_model", "least_signal"});
+  require_map(
+      field, {"visibility_m", "visibility_kind", "fog_model", "fog_backscatter_per_sr", "fog_looks",
+              "rain_mm_per_h", "rain_model", "snow_mm_per_h", "snow_model", "least_signal"});
   Weather weather;
   read_visibility(field, weather.visibility_m);
   read_choice(field, "visibility_kind", kVisibilityKinds, weather.visibility_kind);
   read_choice(field, "fog_model", kFogModels, weather.fog_model);
   weather.fog_backscatter_per_sr =
       number_or(field, "fog_backscatter_per_sr", kZeroToOne, weather.fog_backscatter_per_sr);
+  if (const auto looks = find(field, "fog_looks"))
+    weather.fog_looks = whole_number(*looks, 0, kMaxFogLooks);
   weather.rain_mm_per_h = number_or(field, "rain_mm_per_h", kRate, weather.rain_mm_per_h);
   read_choice(field, "rain_model", kRainModels, weather.rain_model);
   weather.snow_mm_per_h = number_or(field, "snow_mm_per_h", kRate, weather.snow_mm_per_h);
@@ -64,6 +66,7 @@ nlohmann::ordered_json weather_json(const Weather& weather) {
           {"visibility_kind", word(kVisibilityKinds, weather.visibility_kind)},
           {"fog_model", word(kFogModels, weather.fog_model)},
           {"fog_backscatter_per_sr", weather.fog_backscatter_per_sr},
+          {"fog_looks", weather.fog_looks},
           {"rain_mm_per_h", weather.rain_mm_per_h},
           {"rain_model", word(kRainModels, weather.rain_model)},
           {"snow_mm_per_h", weather.snow_mm_per_h},

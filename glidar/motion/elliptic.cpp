@@ -2,65 +2,146 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/motion/elliptic.hpp>
 
+#include <glidar/core/elementary.hpp>
+
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <limits>
 #include <numbers>
 
 namespace glidar {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-
-/// R_C(1, 1 + e) for e above -1 (DLMF 19.2.18 and 19.2.19).
-double carlson_rc_one(double e) {
-  constexpr double kSmall = 1e-3;  // there the first term left out is 1e-18 / 13
-  if (std::abs(e) < kSmall) {
-    return 1.0 - e * (1.0 / 3.0 - e * (1.0 / 5.0 - e * (1.0 / 7.0 - e * (1.0 / 9.0 - e / 11.0))));
+/// Gauss's mean of 1 and a number from 0 to 1; 0 of 0.
+double mean_with_one(double b) {
+  constexpr double kRelative = 1e-9;  // each step squares the difference
+  double a = 1.0;
+  if (!(b > 0.0)) return 0.0;
+  while (a - b > kRelative * a) {
+    const double mean = 0.5 * (a + b);
+    b = std::sqrt(a * b);
+    a = mean;
   }
-  const double root = std::sqrt(std::abs(e));
-  return e > 0.0 ? std::atan(root) / root : std::atanh(root) / root;
+  return 0.5 * (a + b);
 }
 
-double cubed(double x) {
-  return x * x * x;
+/// Theta functions at one argument, divided by common factors.
+struct Thetas {
+  double one = 0.0;
+  double two = 0.0;
+  double three = 1.0;
+  double four = 1.0;
+};
+
+/// Of each series: with a nome of at most exp(-pi) and an argument of at most a quarter of the
+/// period the terms left out are below 1e-19.
+constexpr int kTerms = 4;
+
+/// At z with 2 pi z the angle given: DLMF 20.2(i), the first two divided by 2 q^(1/4).
+Thetas circular_thetas(double q, double turns) {
+  Thetas sums;
+  double power = 1.0;   // q^(n (n + 1))
+  double square = q;    // q^((n + 1)^2)
+  double single = 1.0;  // q^n
+  for (int n = 0; n < kTerms; ++n) {
+    const double sign = n % 2 == 0 ? 1.0 : -1.0;
+    const SineCosine odd = of_turns((2 * n + 1) * turns);
+    const double even = 2.0 * of_turns(2 * (n + 1) * turns).cosine;
+    sums.one += sign * power * odd.sine;
+    sums.two += power * odd.cosine;
+    sums.three += square * even;
+    sums.four -= sign * square * even;
+    single *= q;
+    power *= single * single;
+    square *= single * single * q;
+  }
+  return sums;
+}
+
+/// At i v: the first two divided by q^(1/4) e^|v|, the first by i too. With p = e^(-2 |v|) and
+/// w = q / p the terms are w^n q^(n^2) (1 -+ p^(2n + 1)) and w^n q^(n^2 - n) (1 + p^(2n)).
+Thetas hyperbolic_thetas(double q, double v) {
+  const double p = natural_exp(-2.0 * std::abs(v));
+  const double w = q / p;
+  Thetas sums;
+  double power = 1.0;   // w^n q^(n^2)
+  double square = w;    // w^(n + 1) q^(n^2 + n)
+  double single = 1.0;  // q^n
+  double odd = p;       // p^(2n + 1)
+  for (int n = 0; n < kTerms; ++n) {
+    const double sign = n % 2 == 0 ? 1.0 : -1.0;
+    const double even = square * (1.0 + odd * p);
+    sums.one += sign * power * (1.0 - odd);
+    sums.two += power * (1.0 + odd);
+    sums.three += even;
+    sums.four -= sign * even;
+    power *= w * single * single * q;
+    single *= q;
+    square *= w * single * single;
+    odd *= p * p;
+  }
+  sums.one = std::copysign(sums.one, v);
+  return sums;
+}
+
+/// Within half a quarter period of 0.
+JacobiValues jacobi_near_zero(const EllipticModulus& modulus, double u) {
+  const double v = modulus.argument_scale * u;
+  const JacobiValues& scale = modulus.scale;
+  if (!modulus.is_hyperbolic) {  // DLMF 22.2.4 to 22.2.6
+    const Thetas at = circular_thetas(modulus.nome, v * (0.5 * std::numbers::inv_pi));
+    return {scale.sn * at.one / at.four, scale.cn * at.two / at.four,
+            scale.dn * at.three / at.four};
+  }
+  // sn = -i sc, cn = nc, dn = dc at i u of the complement: DLMF 22.6.1
+  const Thetas at = hyperbolic_thetas(modulus.nome, v);
+  const double decay = natural_exp(-std::abs(v)) / at.two;
+  return {scale.sn * at.one / at.two, scale.cn * decay * at.four, scale.dn * decay * at.three};
 }
 
 }  // namespace
 
 EllipticModulus make_modulus(double m, double complement) {
-  EllipticModulus modulus{.m = m, .complement = complement};
-  double a = 1.0;
-  double b = std::sqrt(complement);
-  double c = std::sqrt(m);
-  while (c > 0.25 * kEpsilon * a && modulus.steps + 1 < static_cast<int>(modulus.ratio.size())) {
-    c = 0.5 * (a - b);
-    const double mean = 0.5 * (a + b);
-    b = std::sqrt(a * b);
-    a = mean;
-    modulus.ratio[static_cast<std::size_t>(++modulus.steps)] = c / a;
+  EllipticModulus modulus{.m = m, .complement = std::max(complement, kMinComplement)};
+  const double mean = mean_with_one(std::sqrt(modulus.complement));
+  const double mean_of_complement = mean_with_one(std::sqrt(m));
+  constexpr double kPi = std::numbers::pi;
+  modulus.quarter_period = 0.5 * kPi / mean;
+  modulus.is_hyperbolic = m > 0.5;
+  // pi K' / K, of means whose quotient is the other way round
+  const double ratio =
+      modulus.is_hyperbolic ? mean_of_complement / mean : mean / mean_of_complement;
+  modulus.nome = natural_exp(-kPi * ratio);
+  modulus.argument_scale = modulus.is_hyperbolic ? mean_of_complement : mean;
+  const Thetas zero = circular_thetas(modulus.nome, 0.0);
+  if (modulus.is_hyperbolic) {
+    modulus.scale = {zero.three / zero.four, 2.0 * zero.two / zero.four,
+                     2.0 * zero.two / zero.three};
+  } else {
+    modulus.scale = {zero.three / zero.two, zero.four / zero.two, zero.four / zero.three};
   }
-  modulus.scale = std::ldexp(a, modulus.steps);
-  modulus.quarter_period = 0.5 * std::numbers::pi / a;
   return modulus;
 }
 
 JacobiValues jacobi(const EllipticModulus& modulus, double u) {
-  double angle = modulus.scale * u;
-  for (int n = modulus.steps; n > 0; --n) {
-    const double sine = modulus.ratio[static_cast<std::size_t>(n)] * std::sin(angle);
-    angle = 0.5 * (angle + std::asin(std::clamp(sine, -1.0, 1.0)));
+  const double quarter = std::floor(u / modulus.quarter_period + 0.5);
+  JacobiValues j = jacobi_near_zero(modulus, u - quarter * modulus.quarter_period);
+  const double place = quarter - 4.0 * std::floor(0.25 * quarter);
+  if (place == 1.0 || place == 3.0) {
+    const double root = std::sqrt(modulus.complement);
+    j = {j.cn / j.dn, -root * j.sn / j.dn, root / j.dn};
   }
-  const double cn = std::cos(angle);
-  // 1 - m sn^2 without cancellation
-  return {std::sin(angle), cn, std::sqrt(modulus.complement + modulus.m * cn * cn)};
+  if (place >= 2.0) {
+    j.sn = -j.sn;
+    j.cn = -j.cn;
+  }
+  return j;
 }
 
 double carlson_rf(double x, double y, double z) {
+  constexpr double kReach = 338.4;  // (3 epsilon)^(-1/6)
   const double mean0 = (x + y + z) / 3.0;
   const double spread = std::max({std::abs(mean0 - x), std::abs(mean0 - y), std::abs(mean0 - z)});
-  const double reach = std::pow(3.0 * kEpsilon, -1.0 / 6.0) * spread;
+  const double reach = kReach * spread;
   double mean = mean0;
   double quarter = 1.0;
   const double x0 = mean0 - x;
@@ -82,63 +163,11 @@ double carlson_rf(double x, double y, double z) {
   return (1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0) / std::sqrt(mean);
 }
 
-double carlson_rj(double x, double y, double z, double p) {
-  const double mean0 = (x + y + z + 2.0 * p) / 5.0;
-  const double delta = (p - x) * (p - y) * (p - z);
-  const double spread = std::max(
-      {std::abs(mean0 - x), std::abs(mean0 - y), std::abs(mean0 - z), std::abs(mean0 - p)});
-  const double reach = std::pow(0.25 * kEpsilon, -1.0 / 6.0) * spread;
-  const double x0 = mean0 - x;
-  const double y0 = mean0 - y;
-  const double z0 = mean0 - z;
-  double mean = mean0;
-  double quarter = 1.0;
-  double sum = 0.0;
-  while (quarter * reach >= mean) {
-    const double rx = std::sqrt(x);
-    const double ry = std::sqrt(y);
-    const double rz = std::sqrt(z);
-    const double rp = std::sqrt(p);
-    const double lambda = rx * ry + ry * rz + rz * rx;
-    const double d = (rp + rx) * (rp + ry) * (rp + rz);
-    sum += quarter / d * carlson_rc_one(cubed(quarter) * delta / (d * d));
-    x = 0.25 * (x + lambda);
-    y = 0.25 * (y + lambda);
-    z = 0.25 * (z + lambda);
-    p = 0.25 * (p + lambda);
-    mean = 0.25 * (mean + lambda);
-    quarter *= 0.25;
-  }
-  const double dx = x0 * quarter / mean;
-  const double dy = y0 * quarter / mean;
-  const double dz = z0 * quarter / mean;
-  const double dp = -0.5 * (dx + dy + dz);
-  const double e2 = dx * dy + dx * dz + dy * dz - 3.0 * dp * dp;
-  const double e3 = dx * dy * dz + 2.0 * e2 * dp + 4.0 * cubed(dp);
-  const double e4 = (2.0 * dx * dy * dz + e2 * dp + 3.0 * cubed(dp)) * dp;
-  const double e5 = dx * dy * dz * dp * dp;
-  const double series = 1.0 - 3.0 * e2 / 14.0 + e3 / 6.0 + 9.0 * e2 * e2 / 88.0 - 3.0 * e4 / 22.0 -
-                        9.0 * e2 * e3 / 52.0 + 3.0 * e5 / 26.0;
-  return quarter * series / (mean * std::sqrt(mean)) + 6.0 * sum;
-}
-
 double elliptic_f(const EllipticModulus& modulus, double sine, double cosine) {
   const double cosine2 = cosine * cosine;
   const double first = sine * carlson_rf(cosine2, modulus.complement + modulus.m * cosine2, 1.0);
   // beyond a quarter turn by reflection
   return cosine >= 0.0 ? first : std::copysign(2.0 * modulus.quarter_period, sine) - first;
-}
-
-double elliptic_pi(const EllipticModulus& modulus, double n, double u) {
-  if (n == 0.0) return u;
-  const auto part = [&](const JacobiValues& j) {
-    const double sn2 = j.sn * j.sn;
-    return n / 3.0 * j.sn * sn2 * carlson_rj(j.cn * j.cn, j.dn * j.dn, 1.0, 1.0 - n * sn2);
-  };
-  const double half_periods = std::round(0.5 * u / modulus.quarter_period);
-  const double rest = u - 2.0 * half_periods * modulus.quarter_period;
-  const double whole = part({1.0, 0.0, std::sqrt(modulus.complement)});
-  return u + part(jacobi(modulus, rest)) + 2.0 * half_periods * whole;
 }
 
 }  // namespace glidar

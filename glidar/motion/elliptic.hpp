@@ -2,26 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Private to glidar/motion: Jacobi's elliptic functions and integrals, in double precision.
-// The parameter is m = k^2; its complement 1 - m is given apart, so that m near 1 stays exact.
-
-#include <array>
+// Private to glidar/motion: Jacobi's elliptic functions and integrals in double precision, from
+// + - * / and square roots only, so that their bytes are the same on any machine. The parameter is
+// m = k^2; its complement 1 - m is a number of its own, so that m near 1 stays exact.
 
 namespace glidar {
-
-/// All that depends on the parameter alone.
-struct EllipticModulus {
-  double m = 0.0;
-  double complement = 1.0;      ///< 1 - m, above 0
-  double quarter_period = 0.0;  ///< K(m)
-  double scale = 1.0;           ///< 2^steps a_steps of the mean
-  int steps = 0;
-  std::array<double, 16> ratio{};  ///< c_n / a_n, n from 1 to steps
-};
-
-/// By the arithmetic-geometric mean: Abramowitz & Stegun, "Handbook of Mathematical Functions",
-/// 16.4 and 17.6.
-EllipticModulus make_modulus(double m, double complement);
 
 struct JacobiValues {
   double sn = 0.0;
@@ -29,20 +14,34 @@ struct JacobiValues {
   double dn = 1.0;
 };
 
-/// Abramowitz & Stegun 16.4.
+/// All that depends on the parameter alone.
+struct EllipticModulus {
+  double m = 0.0;
+  double complement = 1.0;      ///< 1 - m, at least kMinComplement
+  double quarter_period = 0.0;  ///< K(m)
+  bool is_hyperbolic = false;   ///< m > 1/2: series in the nome of 1 - m
+  double nome = 0.0;            ///< of m, or of 1 - m; at most exp(-pi)
+  double argument_scale = 0.0;  ///< pi / (2 K(m)), or pi / (2 K(1 - m))
+  JacobiValues scale = {};      ///< factors of quotients of theta functions
+};
+
+/// K = 343 there; below it the nome of 1 - m has no double.
+inline constexpr double kMinComplement = 1e-296;
+
+/// Periods by the arithmetic-geometric mean (DLMF 19.8.5), nome by DLMF 22.2.1.
+EllipticModulus make_modulus(double m, double complement);
+
+/// The theta series of DLMF 20.2 and 22.2 within half a quarter period of 0, for m above 1/2 after
+/// Jacobi's imaginary transformation (DLMF 22.6(iv)); elsewhere by shifts of quarter periods (DLMF
+/// 22.4(iii)). cn and dn keep their relative precision where they are small.
 JacobiValues jacobi(const EllipticModulus& modulus, double u);
 
-/// Carlson's symmetric integrals, for arguments from 0 of which at most one is 0, and p above 0:
-/// DLMF 19.16.1 and 19.16.2, by duplication (DLMF 19.36(i)).
+/// Carlson's symmetric integral, for arguments from 0 of which at most one is 0: DLMF 19.16.1, by
+/// duplication (DLMF 19.36(i)).
 double carlson_rf(double x, double y, double z);
-double carlson_rj(double x, double y, double z, double p);
 
 /// F(angle | m) = integral of 1 / sqrt(1 - m sin^2) for the angle in [-pi, pi] with this sine and
 /// cosine, each given because either may be small (DLMF 19.25.5).
 double elliptic_f(const EllipticModulus& modulus, double sine, double cosine);
-
-/// Integral of 1 / (1 - n sn^2) from 0 to u, for n up to 0 and any u: Pi(n; am u | m)
-/// (DLMF 19.25.14).
-double elliptic_pi(const EllipticModulus& modulus, double n, double u);
 
 }  // namespace glidar

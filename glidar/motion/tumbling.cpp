@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/motion/tumbling.hpp>
 
+#include <glidar/core/elementary.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/motion/elliptic.hpp>
+#include <glidar/motion/integral_table.hpp>
 #include <glidar/motion/times.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
@@ -49,22 +52,48 @@ Vector3d gyroscopic(const Vector3d& moments, const Vector3d& rate) {
   return {part(1, 2), part(2, 0), part(0, 1)};
 }
 
-/// True when the rate stays as it is: the body turns about a principal axis. What is nearer to that
-/// than the squares of doubles can tell counts too.
+/// True when the rate is constant: the body turns about a principal axis. Off-axis rates whose
+/// squares have no double relative to the whole count as none.
 bool is_steady(const Vector3d& moments, const Vector3d& rate) {
-  constexpr double kNothing = 1e-140;
-  return gyroscopic(moments, rate).norm() <= kNothing * rate.squaredNorm();
+  constexpr double kNone = 1e-140;
+  return gyroscopic(moments, rate).norm() <= kNone * moments.maxCoeff() * rate.squaredNorm();
 }
 
-/// L^2 - 2 E I_2 for ordered axes, without cancellation: its sign tells about which axis the body
-/// turns.
+/// The sum of two doubles that is not rounded to one.
+struct Sum {
+  double high;
+  double low;
+};
+
+/// Knuth, "The Art of Computer Programming" 2, 4.2.2, theorem B.
+Sum exact_sum(double a, double b) {
+  const double sum = a + b;
+  const double part = sum - a;
+  return {sum, (a - (sum - part)) + (b - part)};
+}
+
+/// To some 1e-31 of the product: Dekker, Numer. Math. 18 (1971) 224.
+Sum product(const Sum& a, const Sum& b) {
+  const double high = a.high * b.high;
+  const double low = std::fma(a.high, b.high, -high) + (a.high * b.low + a.low * b.high);
+  return exact_sum(high, low);
+}
+
+/// L^2 - 2 E I_2 for ordered axes. Its sign decides about which axis the body turns, and near the
+/// separatrix, where it cancels, its value decides when it flips: so in twice the digits.
 double about_last(const Vector3d& moments, const Vector3d& rate) {
-  return moments[0] * rate[0] * rate[0] * (moments[0] - moments[1]) +
-         moments[2] * rate[2] * rate[2] * (moments[2] - moments[1]);
+  const auto term = [&](int axis) {
+    const Sum momentum = product({moments[axis], 0.0}, {rate[axis], 0.0});
+    return product(product(momentum, {rate[axis], 0.0}), exact_sum(moments[axis], -moments[1]));
+  };
+  const Sum first = term(0);
+  const Sum last = term(2);
+  const Sum high = exact_sum(first.high, last.high);
+  return high.high + (high.low + (first.low + last.low));
 }
 
-/// The rotation to axes of which the second has the middle moment and the third keeps the sign of
-/// its rate for all time.
+/// The rotation to axes of which the second has the middle moment and the third has a rate above 0
+/// for all time.
 Matrix3d ordered_axes(const Vector3d& moments, const Vector3d& rate) {
   std::array<int, 3> order = {0, 1, 2};
   std::stable_sort(order.begin(), order.end(),
@@ -72,31 +101,69 @@ Matrix3d ordered_axes(const Vector3d& moments, const Vector3d& rate) {
   Matrix3d axes = Matrix3d::Zero();
   for (int row = 0; row < 3; ++row) axes(row, order[static_cast<std::size_t>(row)]) = 1.0;
   if (about_last(axes * moments, axes * rate) < 0.0) axes.row(0).swap(axes.row(2));
+  if (axes.row(2).dot(rate) < 0.0) axes.row(2) = -axes.row(2);
   if (axes.determinant() < 0.0) axes.row(0) = -axes.row(0);
   return axes;
 }
 
+/// Rodrigues' formula.
+Matrix3d rotation_about(const Vector3d& axis, double turns) {
+  const SineCosine angle = of_turns(turns);
+  const Vector3d sine = angle.sine * axis;
+  Matrix3d cross;
+  cross << 0.0, -sine.z(), sine.y(), sine.z(), 0.0, -sine.x(), -sine.y(), sine.x(), 0.0;
+  return angle.cosine * Matrix3d::Identity() + cross +
+         (1.0 - angle.cosine) * axis * axis.transpose();
+}
+
+/// The shortest rotation that takes a unit vector to z; its z is not below 0.
+Matrix3d shortest_to_z(const Vector3d& v) {
+  const double scale = 1.0 / (1.0 + v.z());
+  const double xy = -scale * v.x() * v.y();
+  Matrix3d axes;
+  axes << 1.0 - scale * v.x() * v.x(), xy, -v.x(), xy, 1.0 - scale * v.y() * v.y(), -v.y(), v.x(),
+      v.y(), v.z();
+  return axes;
+}
+
+/// A power of two of the size of the largest number: exact to divide by.
+double size_of(const Vector3d& numbers) {
+  return std::ldexp(1.0, std::ilogb(numbers.cwiseAbs().maxCoeff()));
+}
+
 }  // namespace
 
-/// Everything in ordered axes, see ordered_axes(). Equations: Landau & Lifshitz, section 37.
+/// Everything in ordered axes, see ordered_axes(), and rates in units of `unit`. The rates are
+/// those of Landau & Lifshitz, section 37. The attitude is the shortest rotation that takes the
+/// angular momentum L, as the body sees it, to z, and then a turn about z; unlike Euler's angles it
+/// is regular wherever L lies within 90 degrees of the third axis, as it always does here. The rate
+/// of that turn is (w . l + w3) / (1 + l3) with l = L / |L|: all terms are positive.
 struct Tumbling::Solution {
   Matrix3d ordered_from_principal;
   Vector3d moments;
+  double unit = 1.0;   ///< 1/s
   Vector3d amplitude;  ///< of the rates: those of cn, sn, dn, with their signs
   EllipticModulus modulus;
-  double phase_rate = 0.0;      ///< of the elliptic functions' argument, 1/s (37.9)
-  double phase0 = 0.0;          ///< at t0
-  double momentum = 0.0;        ///< L
-  double characteristic = 0.0;  ///< of the third elliptic integral; never above 0
-  Matrix3d world_from_node0;    ///< of the frame of node line and angular momentum at phase 0
+  double phase_rate = 0.0;  ///< of the elliptic functions' argument (37.9)
+  double phase0 = 0.0;      ///< at t0
+  double turn_rate = 0.0;   ///< about L, were dn 1
+  double wobble = 0.0;      ///< of what is missing, see turn()
+  IntegralTable integral;   ///< over a quarter period, see turn()
+  double integral0 = 0.0;   ///< at t0
+  Matrix3d world_from_momentum;
 
-  Solution(const Vector3d& principal_moments, const Vector3d& principal_rate,
+  /// The rate is given in units of rate_unit.
+  Solution(const Vector3d& principal_moments, const Vector3d& principal_rate, double rate_unit,
            const Matrix3d& world_from_principal);
 
-  [[nodiscard]] double phase(double seconds) const { return phase0 + phase_rate * seconds; }
+  [[nodiscard]] double phase(double seconds) const {
+    return phase0 + phase_rate * (unit * seconds);
+  }
   [[nodiscard]] Vector3d rate(double phase) const;
-  [[nodiscard]] double precession(double seconds) const;
-  [[nodiscard]] Matrix3d node_from_ordered(double phase) const;
+  [[nodiscard]] double integral_to(double phase) const;
+  [[nodiscard]] double turn(double seconds) const;
+  [[nodiscard]] Matrix3d momentum_from_ordered(double phase) const;
+  void find_turn(double below);
 };
 
 Vector3d Tumbling::Solution::rate(double phase) const {
@@ -104,29 +171,44 @@ Vector3d Tumbling::Solution::rate(double phase) const {
   return {amplitude[0] * j.cn, amplitude[1] * j.sn, amplitude[2] * j.dn};
 }
 
-/// The angle by which the node line has turned about the angular momentum since t0: the integral of
-/// (37.16), L (I1 w1^2 + I2 w2^2) / (I1^2 w1^2 + I2^2 w2^2) = L / I3 + L (I3 - I1) / (I1 I3) /
-/// (1 - n sn^2) with n = -I3 (I2 - I1) / (I1 (I3 - I2)).
-double Tumbling::Solution::precession(double seconds) const {
-  const double integral = elliptic_pi(modulus, characteristic, phase(seconds)) -
-                          elliptic_pi(modulus, characteristic, phase0);
-  return momentum / moments[2] * seconds +
-         momentum * (moments[2] - moments[0]) / (moments[0] * moments[2] * phase_rate) * integral;
+/// The integral of sn^2 / ((1 + dn) (1 + l3)), with l3 = I3 w3 / L, from 0 to any phase.
+double Tumbling::Solution::integral_to(double phase) const {
+  const double half = 2.0 * modulus.quarter_period;
+  const double halves = std::floor(phase / half + 0.5);
+  const double rest = phase - halves * half;
+  return 2.0 * halves * integral.total() + std::copysign(integral.at(std::abs(rest)), rest);
 }
 
-/// From the body to the axes: node line (angular momentum x third axis), the one across, angular
-/// momentum.
-Matrix3d Tumbling::Solution::node_from_ordered(double phase) const {
-  const Vector3d along = moments.cwiseProduct(rate(phase)).normalized();
-  const Vector3d node = Vector3d(along.y(), -along.x(), 0.0).stableNormalized();
-  Matrix3d axes;
-  axes << node.transpose(), along.cross(node).transpose(), along.transpose();
-  return axes;
+/// The angle about L since t0. With w3 = a3 dn, (2 E / L + w3) / (1 + l3) is its value at dn = 1
+/// and (2 E I3 - L^2) / L^2 a3 (1 - dn) / ((1 + l3) (1 + I3 a3 / L)), where 1 - dn = m sn^2 / (1 +
+/// dn): nothing cancels, not even when the phase hardly moves.
+double Tumbling::Solution::turn(double seconds) const {
+  return turn_rate * (unit * seconds) + wobble * (integral_to(phase(seconds)) - integral0);
+}
+
+/// `below` is 2 E I3 - L^2.
+void Tumbling::Solution::find_turn(double below) {
+  const Vector3d w = rate(phase0);
+  const double momentum = moments.cwiseProduct(w).norm();
+  const double lean = moments[2] * amplitude[2] / momentum;
+  const double energy2 = w.dot(moments.cwiseProduct(w));
+  turn_rate = (energy2 / momentum + amplitude[2]) / (1.0 + lean);
+  wobble = below / (momentum * momentum) * amplitude[2] * modulus.m / ((1.0 + lean) * phase_rate);
+  const auto rest = [&](double u) {
+    const JacobiValues j = jacobi(modulus, u);
+    return j.sn * j.sn / ((1.0 + j.dn) * (1.0 + lean * j.dn));
+  };
+  integral = IntegralTable(modulus.quarter_period, FunctionRef<double(double)>(rest));
+  integral0 = integral_to(phase0);
+}
+
+Matrix3d Tumbling::Solution::momentum_from_ordered(double phase) const {
+  return shortest_to_z(moments.cwiseProduct(rate(phase)).normalized());
 }
 
 Tumbling::Solution::Solution(const Vector3d& principal_moments, const Vector3d& principal_rate,
-                             const Matrix3d& world_from_principal)
-    : ordered_from_principal(ordered_axes(principal_moments, principal_rate)) {
+                             double rate_unit, const Matrix3d& world_from_principal)
+    : ordered_from_principal(ordered_axes(principal_moments, principal_rate)), unit(rate_unit) {
   moments = (ordered_from_principal * principal_moments).cwiseAbs();
   const Vector3d w = ordered_from_principal * principal_rate;
   const Vector3d& i = moments;
@@ -134,54 +216,55 @@ Tumbling::Solution::Solution(const Vector3d& principal_moments, const Vector3d& 
   const double below = e[0] * (i[2] - i[0]) + e[1] * (i[2] - i[1]);  // 2 E I3 - L^2
   const double above = e[1] * (i[1] - i[0]) + e[2] * (i[2] - i[0]);  // L^2 - 2 E I1
   const double scale = (i[2] - i[1]) * above;
-  constexpr double kSeparatrix = 1e-30;  // a quarter period of 36
-  const double complement = std::clamp((i[2] - i[0]) * about_last(i, w) / scale, kSeparatrix, 1.0);
-  modulus = make_modulus(std::clamp((i[1] - i[0]) * below / scale, 0.0, 1.0), complement);
+  modulus = make_modulus(std::clamp((i[1] - i[0]) * below / scale, 0.0, 1.0),
+                         std::clamp((i[2] - i[0]) * about_last(i, w) / scale, 0.0, 1.0));
   // the signs make Euler's equations hold: that of w1 w2 w3 changes with the order of the moments
-  const double sign3 = std::copysign(1.0, w[2]);
-  const double sign2 = i[2] > i[1] ? sign3 : -sign3;
+  const double sign2 = i[2] > i[1] ? 1.0 : -1.0;
   amplitude = {std::sqrt(below / (i[0] * (i[2] - i[0]))),
                sign2 * std::sqrt(below / (i[1] * (i[2] - i[1]))),
-               sign3 * std::sqrt(above / (i[2] * (i[2] - i[0])))};
+               std::sqrt(above / (i[2] * (i[2] - i[0])))};
   phase_rate = std::sqrt(scale / (i[0] * i[1] * i[2]));
   const double sn = w[1] / amplitude[1];
   const double cn = w[0] / amplitude[0];
-  const double length = std::hypot(sn, cn);  // 1 but for rounding
+  const double length = std::sqrt(sn * sn + cn * cn);  // 1 but for rounding
   phase0 = elliptic_f(modulus, sn / length, cn / length);
-  momentum = i.cwiseProduct(w).norm();
-  characteristic = -i[2] * (i[1] - i[0]) / (i[0] * (i[2] - i[1]));
-  world_from_node0 =
-      world_from_principal * (node_from_ordered(phase0) * ordered_from_principal).transpose();
+  find_turn(below);
+  world_from_momentum =
+      world_from_principal * (momentum_from_ordered(phase0) * ordered_from_principal).transpose();
 }
 
 Tumbling::Tumbling(const TumblingStart& start) : start_(start) {
   check(start_);
-  const Vector3d moments = start_.moments_kg_m2 / start_.moments_kg_m2.maxCoeff();
-  if (is_steady(moments, start_.rate_rad_s)) return;
+  if (start_.rate_rad_s.isZero(0.0)) return;
+  // powers of two, so that nothing is rounded and no square is beyond the reach of doubles
+  const double unit = size_of(start_.rate_rad_s);
+  const Vector3d rate = start_.rate_rad_s / unit;
+  const Vector3d moments = start_.moments_kg_m2 / size_of(start_.moments_kg_m2);
+  if (is_steady(moments, rate)) return;
   const Pose world_from_principal = start_.world_from_body * start_.body_from_principal;
-  solution_ =
-      std::make_shared<const Solution>(moments, start_.rate_rad_s, world_from_principal.linear());
+  solution_ = std::make_shared<const Solution>(moments, rate, unit, world_from_principal.linear());
 }
 
 Vector3d Tumbling::rate_at(std::int64_t t_ns) const {
   if (!solution_) return start_.rate_rad_s;
   const double phase = solution_->phase(seconds_between(start_.t0_ns, t_ns));
-  return solution_->ordered_from_principal.transpose() * solution_->rate(phase);
+  return solution_->unit * (solution_->ordered_from_principal.transpose() * solution_->rate(phase));
 }
 
 Pose Tumbling::pose_at(std::int64_t t_ns) const {
   const double seconds = seconds_between(start_.t0_ns, t_ns);
   Pose world_from_principal = start_.world_from_body * start_.body_from_principal;
   world_from_principal.translation() += start_.velocity_m_s * seconds;
-  if (!solution_) {
+  constexpr double kTurns = 0.5 * std::numbers::inv_pi;
+  if (solution_) {
+    world_from_principal.linear() =
+        solution_->world_from_momentum *
+        rotation_about(Vector3d::UnitZ(), kTurns * solution_->turn(seconds)) *
+        solution_->momentum_from_ordered(solution_->phase(seconds)) *
+        solution_->ordered_from_principal;
+  } else if (const double rate = start_.rate_rad_s.stableNorm(); rate > 0.0) {
     world_from_principal.linear() *=
-        exponential(start_.rate_rad_s * seconds, Vector3d::Zero()).linear();
-  } else {
-    const Matrix3d turned =
-        Eigen::AngleAxisd(solution_->precession(seconds), Vector3d::UnitZ()).toRotationMatrix();
-    world_from_principal.linear() = solution_->world_from_node0 * turned *
-                                    solution_->node_from_ordered(solution_->phase(seconds)) *
-                                    solution_->ordered_from_principal;
+        rotation_about(start_.rate_rad_s / rate, kTurns * (rate * seconds));
   }
   return world_from_principal * start_.body_from_principal.inverse();
 }

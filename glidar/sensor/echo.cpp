@@ -16,8 +16,7 @@ constexpr double kFwhmPerSigma = 2.3548200450309493;  // sqrt(8 ln 2)
 constexpr double kReach = 6.0;   // standard deviations: beyond, a pulse is below 2e-8 of its peak
 constexpr double kStep = 0.125;  // of a standard deviation: the waveform's samples
 
-/// Paths [begin, end) of a beam, sorted by range unless all are nearer than `apart_m` to each
-/// other.
+/// Paths [begin, end) of a beam, sorted by range unless all are near each other.
 struct Group {
   std::size_t begin;
   std::size_t end;
@@ -47,13 +46,24 @@ bool is_stronger(const Path& a, const Path& b) {
   return a.signal > b.signal || (a.signal == b.signal && a.range_m < b.range_m);
 }
 
+bool is_mixed(const EchoWork& work, const Group& group) {
+  const Path* first = nullptr;  // that met something
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    const Path& path = work.path[i];
+    if (path.source == kNoHit) continue;
+    if (first != nullptr && path.surface != first->surface) return true;
+    first = &path;
+  }
+  return false;
+}
+
 /// The echo of a group: centroid and the height of the waveform there, width and strongest path.
-PulseEcho echo_of(const EchoWork& work, const Group& group, double sigma_m, double apart_m) {
+PulseEcho echo_of(const EchoWork& work, const Group& group, double sigma_m) {
   PulseEcho echo{.range_m = 0.0,
                  .signal = 0.0,
                  .sigma_m = 0.0,
                  .strongest = static_cast<std::uint32_t>(group.begin),
-                 .is_mixed = false};
+                 .is_mixed = is_mixed(work, group)};
   double sum = 0.0;
   const double start_m = work.path[group.begin].range_m;
   for (std::size_t i = group.begin; i < group.end; ++i) {
@@ -62,7 +72,6 @@ PulseEcho echo_of(const EchoWork& work, const Group& group, double sigma_m, doub
     echo.range_m += path.signal * (path.range_m - start_m);
     if (is_stronger(path, work.path[echo.strongest]))
       echo.strongest = static_cast<std::uint32_t>(i);
-    if (i > group.begin && path.range_m - work.path[i - 1].range_m > apart_m) echo.is_mixed = true;
   }
   echo.range_m = start_m + (sum > 0.0 ? echo.range_m / sum : 0.0);
   const double fade = 0.5 / (sigma_m * sigma_m);
@@ -85,7 +94,7 @@ double peak_height(double before, double at, double after) {
 
 /// Cuts a wide group at the valleys of its waveform. Paths beyond kReach of a valley are skipped by
 /// waveform().
-void split(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
+void split(const Group& group, double sigma_m, EchoWork& work) {
   const double start_m = work.path[group.begin].range_m;
   const double end_m = work.path[group.end - 1].range_m;
   const double step_m = kStep * sigma_m;
@@ -98,7 +107,7 @@ void split(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
   std::size_t from = group.begin;
   const auto close = [&](std::size_t to) {
     if (to == from) return;
-    PulseEcho echo = echo_of(work, {from, to}, sigma_m, apart_m);
+    PulseEcho echo = echo_of(work, {from, to}, sigma_m);
     echo.signal = height;
     work.echo[work.echoes++] = echo;
     from = to;
@@ -124,16 +133,16 @@ void split(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
 
 /// Pulses within one standard deviation of each other have one peak, at their mean but for the
 /// third order.
-void take_as_one(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
-  work.echo[work.echoes++] = echo_of(work, group, sigma_m, apart_m);
+void take_as_one(const Group& group, double sigma_m, EchoWork& work) {
+  work.echo[work.echoes++] = echo_of(work, group, sigma_m);
 }
 
 /// Finds the echoes of paths that others are too far from to matter.
-void find_in_group(const Group& group, double sigma_m, double apart_m, EchoWork& work) {
+void find_in_group(const Group& group, double sigma_m, EchoWork& work) {
   if (work.path[group.end - 1].range_m - work.path[group.begin].range_m > sigma_m) {
-    split(group, sigma_m, apart_m, work);
+    split(group, sigma_m, work);
   } else {
-    take_as_one(group, sigma_m, apart_m, work);
+    take_as_one(group, sigma_m, work);
   }
 }
 
@@ -187,11 +196,11 @@ void EchoWork::replace_weakest(const Path& one) {
   if (weakest->signal < one.signal) *weakest = one;
 }
 
-void find_echoes(double sigma_m, double apart_m, EchoWork& work) {
+void find_echoes(double sigma_m, double near_m, EchoWork& work) {
   work.echoes = 0;
   if (work.paths == 0) return;
-  if (extent_m(work) <= std::min(sigma_m, apart_m)) {  // as most beams: no need to sort
-    take_as_one({0, work.paths}, sigma_m, apart_m, work);
+  if (extent_m(work) <= std::min(sigma_m, near_m)) {  // as most beams: no need to sort
+    take_as_one({0, work.paths}, sigma_m, work);
     return;
   }
   std::sort(work.path.begin(), work.path.begin() + static_cast<std::ptrdiff_t>(work.paths),
@@ -204,7 +213,7 @@ void find_echoes(double sigma_m, double apart_m, EchoWork& work) {
            work.path[end].range_m - work.path[end - 1].range_m < kReach * sigma_m) {
       ++end;
     }
-    find_in_group({begin, end}, sigma_m, apart_m, work);
+    find_in_group({begin, end}, sigma_m, work);
   }
 }
 

@@ -38,12 +38,16 @@ void validate(const Receiver& receiver);
 /// Standard deviation of the pulse along the range: c / 2 times that of its duration.
 double pulse_sigma_m(const Receiver& receiver);
 
+/// The surface of what is seen in a mirror: none that sub-rays hit.
+inline constexpr std::uint16_t kGhostSurface = 0xFFFFU;
+
 /// What one way through the scene brings back, in units of the detection threshold.
 struct Path {
   double range_m;
   double signal;         ///< were it alone
   std::uint32_t source;  ///< which sub-ray; kNoHit: none, as for weather
   Cause cause;
+  std::uint16_t surface = 0;  ///< see BeamSurfaces; paths of different numbers are mixed
 };
 
 /// A peak of what comes back.
@@ -52,7 +56,7 @@ struct PulseEcho {
   double signal;            ///< height of the peak
   double sigma_m;           ///< its width: the pulse's and the spread of its paths
   std::uint32_t strongest;  ///< of its paths
-  bool is_mixed;            ///< its paths stand apart, see find_echoes
+  bool is_mixed;            ///< its paths come from surfaces with a gap between them
 };
 
 /// The paths and echoes of one beam, on the stack.
@@ -72,16 +76,18 @@ struct EchoWork {
     to.signal = one.signal;
     to.source = one.source;
     to.cause = one.cause;
+    to.surface = one.surface;
   }
 
   void replace_weakest(const Path& one);
 };
 
-/// Finds the peaks of the sum of the paths' pulses, in order of range; may sort the paths. Two
+/// Finds the peaks of the sum of the paths' pulses, in order of range. Sorts the paths by range
+/// unless all are within near_m, such as the beam's width, of each other: that saves time. Two
 /// equal pulses have two peaks when they are more than two standard deviations apart, c FWHM /
-/// 2.355 in range; below that they are one echo at their weighted mean. An echo is mixed when
-/// neighbours among its paths are more than `apart_m` from each other.
-void find_echoes(double sigma_m, double apart_m, EchoWork& work);
+/// 2.355 in range; below that they are one echo at their weighted mean. An echo is mixed when its
+/// paths, but for those of the air, are of more than one surface.
+void find_echoes(double sigma_m, double near_m, EchoWork& work);
 
 /// Takes away echoes nearer than separation_m to a stronger one.
 void keep_separate(double separation_m, EchoWork& work);

@@ -24,15 +24,6 @@ Sums weighted(const Sums& one, double a, const Sums& other, double b) {
           a * one.sine + b * other.sine};
 }
 
-/// The integrals up to any range.
-Sums sums_to(const FogProfile& profile, double range_m) {
-  const double last = static_cast<double>(profile.up_to.size() - 1);
-  const double place = std::clamp((range_m - profile.start_m) / profile.step_m, 0.0, last);
-  const auto k = std::min(static_cast<std::size_t>(place), profile.up_to.size() - 2);
-  const double share = place - static_cast<double>(k);
-  return weighted(profile.up_to[k], 1.0 - share, profile.up_to[k + 1], share);
-}
-
 /// Golden section search (Kiefer, Proc. AMS 4 (1953) 502).
 template <class Function>
 double peak_between(double low, double high, const Function& of) {
@@ -71,13 +62,36 @@ SoftEcho peak_before(const FogProfile& profile, double hard_range_m) {
 
 }  // namespace
 
+double pulse_length_m(double pulse_fwhm_s) {
+  return kLight_m_per_s * pulse_fwhm_s;
+}
+
+Sums sums_to(const FogProfile& profile, double range_m) {
+  const double last = static_cast<double>(profile.up_to.size() - 1);
+  const double place = std::clamp((range_m - profile.start_m) / profile.step_m, 0.0, last);
+  const auto k = std::min(static_cast<std::size_t>(place), profile.up_to.size() - 2);
+  const double share = place - static_cast<double>(k);
+  return weighted(profile.up_to[k], 1.0 - share, profile.up_to[k + 1], share);
+}
+
+double pulse_of(const Sums& part, const SineCosine& angle) {
+  // sin^2 x = (1 - cos 2x) / 2, and the cosine of a difference
+  return 0.5 * (part.plain - angle.cosine * part.cosine - angle.sine * part.sine);
+}
+
 FogProfile fog_profile(const PulseLight& light, double backscatter_per_m_sr, double pulse_fwhm_s) {
-  const double pulse_m = kLight_m_per_s * pulse_fwhm_s;
-  const double start_m = nearest_in_view_m(light);
   // from here on the signal of a layer only falls, so that the pulse's peak lies before its end
   const double bend_m = std::max(1.0, light.overlap.empty() ? 0.0 : light.overlap.back()[0]);
+  return fog_profile(light, backscatter_per_m_sr, pulse_fwhm_s,
+                     bend_m + pulse_length_m(pulse_fwhm_s));
+}
+
+FogProfile fog_profile(const PulseLight& light, double backscatter_per_m_sr, double pulse_fwhm_s,
+                       double end_m) {
+  const double pulse_m = pulse_length_m(pulse_fwhm_s);
+  const double start_m = nearest_in_view_m(light);
   FogProfile profile{.start_m = start_m,
-                     .step_m = (bend_m + pulse_m - start_m) / static_cast<double>(kLayers),
+                     .step_m = (end_m - start_m) / static_cast<double>(kLayers),
                      .turns_per_m = 1.0 / pulse_m,
                      .up_to = {{}}};
   const double sent_back = std::numbers::pi * backscatter_per_m_sr;
@@ -104,9 +118,7 @@ double fog_signal(const FogProfile& profile, double range_m, double hard_range_m
   const double to_m = std::min(range_m, hard_range_m);
   if (!(to_m > std::max(from_m, profile.start_m))) return 0.0;
   const Sums part = weighted(sums_to(profile, to_m), 1.0, sums_to(profile, from_m), -1.0);
-  const SineCosine angle = of_turns(range_m * profile.turns_per_m);
-  // sin^2 x = (1 - cos 2x) / 2, and the cosine of a difference
-  return 0.5 * (part.plain - angle.cosine * part.cosine - angle.sine * part.sine);
+  return pulse_of(part, of_turns(range_m * profile.turns_per_m));
 }
 
 FogReturn fog_return(const PulseLight& light, double backscatter_per_m_sr, double pulse_fwhm_s) {

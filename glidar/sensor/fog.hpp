@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/elementary.hpp>
 #include <glidar/sensor/signal.hpp>
 
 #include <vector>
@@ -39,6 +40,20 @@ struct FogReturn {
 /// A layer dr of fog sends back as a surface of reflectance pi backscatter dr does, at the time of
 /// its range: w(r) = air_signal(pi backscatter, r).
 FogProfile fog_profile(const PulseLight& light, double backscatter_per_m_sr, double pulse_fwhm_s);
+
+/// The same up to another range than where the echo of even fog ends.
+FogProfile fog_profile(const PulseLight& light, double backscatter_per_m_sr, double pulse_fwhm_s,
+                       double end_m);
+
+/// c FWHM, from begin to end of the pulse in range.
+double pulse_length_m(double pulse_fwhm_s);
+
+/// The integrals up to any range.
+FogProfile::Sums sums_to(const FogProfile& profile, double range_m);
+
+/// The integral of w(r) sin^2 of the difference of two angles, from those of w and the angle of the
+/// time.
+double pulse_of(const FogProfile::Sums& part, const SineCosine& angle);
 
 /// S at the time c t / 2 = range_m since a pulse sin^2(pi t / (2 FWHM)), 0 <= t <= 2 FWHM, began:
 /// the integral of w(r) sin^2(pi (range - r) / (c FWHM)) dr over the fog before the target

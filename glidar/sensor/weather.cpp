@@ -40,6 +40,8 @@ void validate(const Weather& weather) {
   require_number(within(weather.fog_backscatter_per_sr, 0.0, 1.0),
                  "weather, fog_backscatter_per_sr", weather.fog_backscatter_per_sr,
                  "a number from 0 to 1");
+  require_number(weather.fog_looks <= kMaxFogLooks, "weather, fog_looks", weather.fog_looks,
+                 "a whole number from 1 to 64, or 0 for echoes that do not vary");
   require_number(within(weather.rain_mm_per_h, 0.0, kLargestFall_mm_per_h),
                  "weather, rain_mm_per_h", weather.rain_mm_per_h, "mm/h from 0 to 1000");
   require_number(within(weather.snow_mm_per_h, 0.0, kLargestFall_mm_per_h),

@@ -10,6 +10,7 @@ inline constexpr double kContrastDepth = 3.912;  ///< -ln 0.02, to the digits in
 inline constexpr double kOpticalRangeDepth = 2.9957322735539909;  ///< ln 20
 
 inline constexpr double kLargestVisibility_m = 1e6;  ///< of a Weather; from there on it is clear
+inline constexpr unsigned kMaxFogLooks = 64;
 inline constexpr double kLargestFall_mm_per_h = 1000.0;  ///< of its rain and snow
 
 /// What hangs in the air and falls through it. It acts on pulsed light.
@@ -29,6 +30,10 @@ struct Weather {
   double visibility_m = 0.0;  ///< in fog or haze; 0: clear
   Visibility visibility_kind = Visibility::contrast;
   FogModel fog_model = FogModel::kim;
+  /// How much fog's echoes vary from pulse to pulse: the backscatter of a pulse's length of fog is
+  /// gamma distributed with this shape, so that its relative standard deviation is 1 / sqrt(looks).
+  /// 0: it does not vary.
+  unsigned fog_looks = 1;
   /// Backscatter of fog times its meteorological optical range, 1/sr; 0.023 to 0.092 (Rasshofer,
   /// Spies, Spies, Adv. Radio Sci. 9 (2011) 49).
   double fog_backscatter_per_sr = 0.046;

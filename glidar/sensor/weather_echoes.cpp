@@ -17,9 +17,14 @@ PreparedWeather prepare_weather(const Weather& weather, const PulseLight& light,
   PreparedWeather prepared{.light = light, .least_signal = weather.least_signal};
   prepared.light.weather_extinction_per_m = extinction_per_m(weather, wavelength_m);
   const double optical_depth_per_m = fog_extinction_per_m(weather, wavelength_m);
-  prepared.fog = fog_return(
-      prepared.light, weather.fog_backscatter_per_sr * optical_depth_per_m / kOpticalRangeDepth,
-      pulse_fwhm_s);
+  const double backscatter_per_m_sr =
+      weather.fog_backscatter_per_sr * optical_depth_per_m / kOpticalRangeDepth;
+  if (weather.fog_looks > 0) {
+    prepared.varying_fog =
+        varying_fog(prepared.light, backscatter_per_m_sr, pulse_fwhm_s, weather.fog_looks);
+  } else {
+    prepared.fog = fog_return(prepared.light, backscatter_per_m_sr, pulse_fwhm_s);
+  }
   if (weather.rain_mm_per_h > 0.0) {
     prepared.rain =
         drop_field(prepared.light, rain_sizes(weather.rain_mm_per_h), beam, weather.least_signal);
@@ -36,7 +41,9 @@ void weather_echoes(const PreparedWeather& weather, double hard_range_m, const D
                     std::vector<WeatherEcho>& echoes) {
   const double end_m =
       std::isnan(hard_range_m) ? std::numeric_limits<double>::infinity() : hard_range_m;
-  const SoftEcho soft = echo_before(weather.fog, end_m);
+  const SoftEcho soft = weather.varying_fog.looks > 0
+                            ? echo_before(weather.varying_fog, end_m, draw)
+                            : echo_before(weather.fog, end_m);
   if (soft.signal >= weather.least_signal) {
     echoes.push_back({soft.range_m, soft.signal, Cause::fog});
   }

@@ -4,6 +4,7 @@
 
 #include <glidar/sensor/drops.hpp>
 #include <glidar/sensor/fog.hpp>
+#include <glidar/sensor/fog_variation.hpp>
 #include <glidar/sensor/weather.hpp>
 
 #include <cstdint>
@@ -20,8 +21,9 @@ struct WeatherEcho {
 
 /// Weather as a light meets it: all that is the same for beams of one shape.
 struct PreparedWeather {
-  PulseLight light;  ///< with the weather's extinction
-  FogReturn fog{};
+  PulseLight light;          ///< with the weather's extinction
+  FogReturn fog{};           ///< when it does not vary
+  VaryingFog varying_fog{};  ///< when it does
   DropField rain{};
   DropField snow{};
   double least_signal = 0.0;

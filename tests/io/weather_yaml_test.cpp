@@ -16,7 +16,8 @@ const std::string kPulsed =
 
 const std::string kEvery =
     "{visibility_m: 200, visibility_kind: mor, fog_model: kruse, fog_backscatter_per_sr: 0.092, "
-    "rain_mm_per_h: 12, rain_model: goodin, snow_mm_per_h: 3, snow_model: sekhon_srivastava, "
+    "fog_looks: 4, rain_mm_per_h: 12, rain_model: goodin, snow_mm_per_h: 3, snow_model: "
+    "sekhon_srivastava, "
     "least_signal: 0.2}";
 
 Weather weather(const std::string& map) {
@@ -35,6 +36,7 @@ TEST(WeatherYaml, GivesEveryNumberAndModel) {
   EXPECT_EQ(read.visibility_kind, Weather::Visibility::mor);
   EXPECT_EQ(read.fog_model, Weather::FogModel::kruse);
   EXPECT_EQ(read.fog_backscatter_per_sr, 0.092);
+  EXPECT_EQ(read.fog_looks, 4U);
   EXPECT_EQ(read.rain_mm_per_h, 12.0);
   EXPECT_EQ(read.rain_model, Weather::RainModel::goodin);
   EXPECT_EQ(read.snow_mm_per_h, 3.0);
@@ -53,10 +55,11 @@ TEST(WeatherYaml, IsClearByDefault) {
 
 TEST(WeatherYaml, ComesBackInTheSidecarAsTheFileSaysIt) {
   const nlohmann::ordered_json told = weather_json(weather(kEvery));
-  EXPECT_EQ(told.dump(),
-            R"({"visibility_m":200.0,"visibility_kind":"mor","fog_model":"kruse",)"
-            R"("fog_backscatter_per_sr":0.092,"rain_mm_per_h":12.0,"rain_model":"goodin",)"
-            R"("snow_mm_per_h":3.0,"snow_model":"sekhon_srivastava","least_signal":0.2})");
+  EXPECT_EQ(
+      told.dump(),
+      R"({"visibility_m":200.0,"visibility_kind":"mor","fog_model":"kruse",)"
+      R"("fog_backscatter_per_sr":0.092,"fog_looks":4,"rain_mm_per_h":12.0,"rain_model":"goodin",)"
+      R"("snow_mm_per_h":3.0,"snow_model":"sekhon_srivastava","least_signal":0.2})");
 }
 
 class WeatherYamlError : public ::testing::TestWithParam<BadFile> {};
@@ -70,14 +73,18 @@ TEST_P(WeatherYamlError, NamesPlaceFieldAndWhatIsAllowed) {
 const BadFile kBadFiles[] = {
     {"UnknownKey", kPulsed + "weather: {rain: 3}\n",
      "s.yaml:4:11: weather.rain: unknown key 'rain'; allowed: visibility_m, visibility_kind, "
-     "fog_model, fog_backscatter_per_sr, rain_mm_per_h, rain_model, snow_mm_per_h, snow_model, "
-     "least_signal"},
+     "fog_model, fog_backscatter_per_sr, fog_looks, rain_mm_per_h, rain_model, snow_mm_per_h, "
+     "snow_model, least_signal"},
     {"MisspeltKey", kPulsed + "weather: {visiblity_m: 3}\n",
      "s.yaml:4:11: weather.visiblity_m: unknown key 'visiblity_m'; allowed: visibility_m, "
-     "visibility_kind, fog_model, fog_backscatter_per_sr, rain_mm_per_h, rain_model, "
+     "visibility_kind, fog_model, fog_backscatter_per_sr, fog_looks, rain_mm_per_h, rain_model, "
      "snow_mm_per_h, snow_model, least_signal; did you mean 'visibility_m'?"},
     {"VisibilityOfCentimetres", kPulsed + "weather: {visibility_m: 0.3}\n",
      "s.yaml:4:25: weather.visibility_m: 0.3; allowed: metres from 1 to 1e6, or 0 for clear air"},
+    {"HalfALook", kPulsed + "weather: {fog_looks: 1.5}\n",
+     "s.yaml:4:22: weather.fog_looks: 1.5; allowed: a whole number from 0 to 64"},
+    {"TooManyLooks", kPulsed + "weather: {fog_looks: 65}\n",
+     "s.yaml:4:22: weather.fog_looks: 65; allowed: a whole number from 0 to 64"},
     {"NegativeRain", kPulsed + "weather: {rain_mm_per_h: -1}\n",
      "s.yaml:4:26: weather.rain_mm_per_h: -1; allowed: mm/h from 0 to 1000"},
     {"UnknownModel", kPulsed + "weather: {fog_model: kin}\n",

@@ -3,13 +3,18 @@
 #include <glidar/motion/tumbling.hpp>
 
 #include <glidar/core/error.hpp>
+#include <support/source_folder.hpp>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
 
 namespace glidar {
 namespace {
@@ -199,6 +204,112 @@ TEST(Tumbling, TurnsAboutItsCentreOfMassWhichGoesStraight) {
   for (int t = 0; t < 50; ++t) {
     const Vector3d now = body.pose_at(t * kSecond_ns) * centre;
     EXPECT_LT((now - from - t * start.velocity_m_s).norm(), 1e-12);
+  }
+}
+
+/// One row of the reference: a body, a time, and its attitude and rates then.
+struct Reference {
+  TumblingStart start;
+  std::int64_t t_ns = 0;
+  Eigen::Quaterniond attitude;
+  Vector3d rate;
+};
+
+Reference parse_reference(const std::string& line) {
+  std::istringstream words(line);
+  std::vector<double> numbers;
+  std::int64_t t_ns = 0;
+  for (std::string word; std::getline(words, word, ',');) {
+    if (numbers.size() == 6 && t_ns == 0) {
+      t_ns = std::stoll(word);
+    } else {
+      numbers.push_back(std::strtod(word.c_str(), nullptr));  // reads subnormal numbers too
+    }
+  }
+  EXPECT_EQ(numbers.size(), 13U) << line;
+  numbers.resize(13);
+  return {.start = {.moments_kg_m2 = {numbers[0], numbers[1], numbers[2]},
+                    .rate_rad_s = {numbers[3], numbers[4], numbers[5]}},
+          .t_ns = t_ns,
+          .attitude = {numbers[6], numbers[7], numbers[8], numbers[9]},
+          .rate = {numbers[10], numbers[11], numbers[12]}};
+}
+
+/// The largest component's share of the whole, for errors of all.
+double relative_error(const Vector3d& found, const Vector3d& expected) {
+  return (found - expected).norm() / expected.norm();
+}
+
+// 1e-13, and of the angle turned a few roundings: rates and times are doubles.
+TEST(Tumbling, IsExactNearEveryAxisAndInAllDirections) {
+  std::ifstream file(std::string(kSourceFolder) + "/tests/motion/tumbling_reference.csv");
+  std::size_t rows = 0;
+  for (std::string line; std::getline(file, line);) {
+    if (line.starts_with('#')) continue;
+    ++rows;
+    const Reference reference = parse_reference(line);
+    const Tumbling body(reference.start);
+    const double turned =
+        reference.start.rate_rad_s.stableNorm() * static_cast<double>(reference.t_ns) / 1e9;
+    const double tolerance = 1e-13 + 1e-15 * turned;
+    const Eigen::Matrix3d found = body.pose_at(reference.t_ns).linear();
+    EXPECT_LT((found - reference.attitude.toRotationMatrix()).norm(), tolerance) << line;
+    EXPECT_LT((body.rate_at(reference.t_ns) - reference.rate).stableNorm(),
+              tolerance * reference.start.rate_rad_s.stableNorm())
+        << line;
+  }
+  EXPECT_GT(rows, 150U);
+}
+
+TEST(Tumbling, TinyOffAxisRatesChangeNothing) {
+  // 0.5 rad about an axis of equal moments; off-axis rates as small as roundings once made it 1.28
+  for (const double off : {0.0, 1e-300, 1e-60, 6.1e-18, 1e-15, 1e-12}) {
+    const Tumbling body({.moments_kg_m2 = {10.0, 10.0, 1.0}, .rate_rad_s = {0.1, 0.0, off}});
+    const Eigen::AngleAxisd turn(body.pose_at(5 * kSecond_ns).linear());
+    EXPECT_NEAR(turn.angle(), 0.5, 1e-13 + 5.0 * off) << off;
+  }
+}
+
+/// Of unit vectors that cover the sphere evenly, a Fibonacci lattice.
+Vector3d direction(int k, int count) {
+  const double z = 1.0 - (2.0 * k + 1.0) / count;
+  const double angle = k * std::numbers::pi * (3.0 - std::sqrt(5.0));
+  const double r = std::sqrt(1.0 - z * z);
+  return {r * std::cos(angle), r * std::sin(angle), z};
+}
+
+TEST(Tumbling, KeepsMomentumAndEnergyInAllDirectionsAtAllRates) {
+  constexpr int kDirections = 300;
+  for (const Case& shape : kBodies) {
+    for (int k = 0; k < kDirections; ++k) {
+      const double size = std::pow(10.0, -12.0 + 13.0 * (k % 14) / 13.0);  // to 10 rad/s
+      const Tumbling body(
+          {.moments_kg_m2 = shape.moments, .rate_rad_s = size * direction(k, kDirections)});
+      const Vector3d l = momentum(body, 0);
+      const double e = energy(body, 0);
+      for (const std::int64_t t : {kSecond_ns / 3, 77 * kSecond_ns, 1'000'000 * kSecond_ns}) {
+        ASSERT_LT(relative_error(momentum(body, t), l), 1e-13) << shape.name << k << " " << t;
+        ASSERT_NEAR(energy(body, t) / e, 1.0, 1e-13) << shape.name << k << " " << t;
+        ASSERT_TRUE(is_rigid(body.pose_at(t), 1e-14));
+      }
+    }
+  }
+}
+
+// The angular velocity is the derivative of the attitude: what momentum and energy do not see.
+TEST(Tumbling, AttitudeTurnsAtTheRate) {
+  constexpr std::int64_t kStep_ns = 1'000'000;
+  for (const Case& shape : kBodies) {
+    for (int k = 0; k < 60; ++k) {
+      const Tumbling body({.moments_kg_m2 = shape.moments, .rate_rad_s = direction(k, 60)});
+      const std::int64_t t = k * kSecond_ns / 7;
+      const Eigen::Matrix3d step =
+          body.pose_at(t - kStep_ns).linear().transpose() * body.pose_at(t + kStep_ns).linear();
+      const Eigen::AngleAxisd turn(step);
+      // the middle rule: errors of the third order of 1e-3
+      ASSERT_LT((turn.angle() * turn.axis() / 2e-3 - body.rate_at(t)).norm(), 2e-6)
+          << shape.name << k;
+    }
   }
 }
 

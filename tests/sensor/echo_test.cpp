@@ -12,13 +12,13 @@ namespace {
 
 constexpr double kSigma_m = 0.3;
 
-EchoWork echoes_of(const std::vector<std::pair<double, double>>& paths, double apart_m = 1e9) {
+EchoWork echoes_of(const std::vector<std::pair<double, double>>& paths) {
   EchoWork work;
   std::uint32_t source = 0;
   for (const auto& [range_m, signal] : paths) {
     work.add({range_m, signal, source++, Cause::surface});
   }
-  find_echoes(kSigma_m, apart_m, work);
+  find_echoes(kSigma_m, kSigma_m, work);
   return work;
 }
 
@@ -84,9 +84,19 @@ TEST(FindEchoes, MatchesAFineSamplingOfTheWaveform) {
   for (std::size_t i = 0; i < peaks.size(); ++i) EXPECT_NEAR(work.echo[i].signal, peaks[i], 1e-4);
 }
 
-TEST(FindEchoes, CallsPathsThatStandApartMixed) {
-  EXPECT_FALSE(echoes_of({{20.0, 1.0}, {20.1, 1.0}, {20.2, 1.0}}, 0.15).echo[0].is_mixed);
-  EXPECT_TRUE(echoes_of({{20.0, 1.0}, {20.0, 1.0}, {20.2, 1.0}}, 0.15).echo[0].is_mixed);
+TEST(FindEchoes, AreMixedWhenTheyMergeMoreThanOneSurface) {
+  const auto is_mixed = [](const std::vector<Path>& paths) {
+    EchoWork work;
+    for (const Path& path : paths) work.add(path);
+    find_echoes(kSigma_m, kSigma_m, work);
+    return work.echo[0].is_mixed;
+  };
+  const Path first{20.0, 1.0, 0, Cause::surface, 0};
+  EXPECT_FALSE(is_mixed({first, {20.25, 1.0, 1, Cause::surface, 0}}));
+  EXPECT_TRUE(is_mixed({first, {20.001, 1.0, 1, Cause::surface, 1}}));
+  EXPECT_FALSE(is_mixed({first, {25.0, 1.0, 1, Cause::surface, 1}})) << "two echoes";
+  EXPECT_FALSE(is_mixed({first, {20.1, 1.0, kNoHit, Cause::fog, 0}})) << "air is no surface";
+  EXPECT_TRUE(is_mixed({first, {20.1, 1.0, 0, Cause::ghost, kGhostSurface}}));
 }
 
 TEST(FindEchoes, NamesTheStrongestPath) {

@@ -95,7 +95,8 @@ TEST(WeatherEchoes, OfFogCompareWithTargetsAsTheTheorySays) {
   // Rasshofer et al.: soft over hard = R0^2 exp(2 alpha R0) pi beta / rho (c / 2) I_s
   const double alpha = 0.06;
   const Weather fog{.visibility_m = std::log(20.0) / alpha,
-                    .visibility_kind = Weather::Visibility::mor};
+                    .visibility_kind = Weather::Visibility::mor,
+                    .fog_looks = 0};
   const PulseLight light{.reference_reflectance = 0.1, .reference_range_m = 55.0};
   const PreparedWeather weather = prepare_weather(fog, light, 550e-9, {}, 20e-9);
   EXPECT_NEAR(weather.light.weather_extinction_per_m, alpha, 1e-12);
@@ -107,6 +108,18 @@ TEST(WeatherEchoes, OfFogCompareWithTargetsAsTheTheorySays) {
   const double hard = signal_of(weather.light, 0.5, 30.0);
   EXPECT_NEAR(echoes[0].signal / hard, ratio, 1e-3 * ratio);  // the sum looked every 0.1 m
   EXPECT_NEAR(echoes[0].range_m, 4.6 - 2.998, 0.05);
+}
+
+TEST(WeatherEchoes, OfFogVaryFromBeamToBeamUnlessToldNotTo) {
+  for (const unsigned looks : {0U, 1U, 16U}) {
+    const PreparedWeather weather = prepare({.visibility_m = 100.0, .fog_looks = looks});
+    const auto one = echoes_of(weather, 50.0, {.beam = 1});
+    const auto other = echoes_of(weather, 50.0, {.beam = 2});
+    ASSERT_EQ(one.size(), 1U);
+    ASSERT_EQ(other.size(), 1U);
+    EXPECT_EQ(one[0].signal == other[0].signal, looks == 0);
+    EXPECT_EQ(one[0].range_m == other[0].range_m, looks == 0);
+  }
 }
 
 TEST(WeatherEchoes, StayBeforeTheTarget) {
@@ -136,7 +149,7 @@ TEST(WeatherEchoes, KeepTheirValues) {
   const auto echoes =
       echoes_of(prepare(kSleet), kNoTarget, {.seed = 12345, .sensor = 1, .frame = 2, .beam = 0});
   const std::vector<WeatherEcho> expected = {
-      {1.2757280395472936, 8.3091624071124013, Cause::fog},
+      {1.1109388441942929, 15.769320172993318, Cause::fog},
       {2.2980008619924028, 0.27613985100832228, Cause::rain},
       {3.1332943043353323, 0.058310181185369979, Cause::rain},
       {4.4002824960225375, 0.015079670734140472, Cause::rain},

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 namespace glidar {
 namespace {
@@ -136,6 +137,27 @@ TEST(Explain, TracesTheEchoesOfAPulse) {
   EXPECT_EQ(pulse.received[0].range_m, frame.range_m[0]);
   EXPECT_EQ(pulse.received[1].range_m, frame.range_m[1]);
   EXPECT_EQ(story.measured.range_m, frame.range_m[1]);
+}
+
+TEST(Explain, MarksAMixedEchoAndTheSurfacesOfItsWays) {
+  Stage stage;
+  stage.sensor.pulse = PulseLight{};
+  stage.sensor.footprint = Footprint{.divergence_x_rad = 0.1, .divergence_y_rad = 0.1};
+  stage.add_wall(5.3);
+  Story story;
+  std::size_t mixed = 0;
+  for (std::size_t entry = 0; entry < 20; ++entry) {
+    const Frame frame = stage.shoot(entry, &story);
+    ASSERT_TRUE(story.pulse.has_value());
+    std::set<std::uint16_t> surfaces;
+    for (const PulseTrace::Way& way : story.pulse->ways) surfaces.insert(way.path.surface);
+    ASSERT_EQ(story.pulse->echoes.size(), 1U);
+    EXPECT_EQ(story.pulse->echoes[0].is_mixed, surfaces.size() > 1);
+    EXPECT_EQ(frame.cause[entry] == Cause::mixed, surfaces.size() > 1);
+    if (surfaces.size() > 1) ++mixed;
+  }
+  EXPECT_GT(mixed, 0U);
+  EXPECT_LT(mixed, 20U);
 }
 
 TEST(Explain, ShowsTheReceiversNoise) {
