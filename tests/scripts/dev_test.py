@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""`./dev` installs exactly the packages that are missing. It runs in a copy of its own, and in PATH there are only
+"""`./dev` installs exactly the packages that are missing, and installs GLIDAR where it is told. It runs in a copy of its own, and in PATH there are only
 programs that record how they were called, so that nothing of the machine changes."""
 
 import os
@@ -74,16 +74,21 @@ class Dev(unittest.TestCase):
     def user(self, number):
         self.program("id", f"#!/bin/bash\n[[ $* == -u ]] && echo {number}\n")
 
-    def dev(self, command="format"):
-        """Runs ./dev; gives its exit status, its output, its errors and the calls it made, in order."""
+    def dev(self, *arguments, path=""):
+        """Runs ./dev, by default `format`, with `path` added to PATH; gives its exit status, its output, its errors and the calls it made, in order."""
         (self.folder / "scripts/packages.txt").write_text(self.packages, encoding="utf-8")
         (self.folder / "states").write_text(self.states, encoding="utf-8")
         calls = self.folder / "calls"
         calls.write_text("", encoding="utf-8")
         done = subprocess.run(
-            [self.folder / "bin/bash", "dev", command],
+            [self.folder / "bin/bash", "dev", *(arguments or ["format"])],
             cwd=self.folder,
-            env={"PATH": str(self.folder / "bin"), "CALLS": str(calls), "STATES": str(self.folder / "states")},
+            env={
+                "PATH": f"{self.folder / 'bin'}:{path}",
+                "HOME": str(self.folder / "home"),
+                "CALLS": str(calls),
+                "STATES": str(self.folder / "states"),
+            },
             capture_output=True,
             text=True,
             timeout=TIME_LIMIT_S,
@@ -148,6 +153,42 @@ class Dev(unittest.TestCase):
         self.assertEqual((status, calls), (1, []))
         self.assertIn("usage: ./dev COMMAND", errors)
         self.assertIn("dev: unknown command: frmat", errors)
+
+    def install(self, *arguments, path=""):
+        """./dev install with CMake and ninja that only record."""
+        self.packages = "present build\n"
+        for name in ("cmake", "ninja"):
+            self.program(name, RECORD)
+        return self.dev("install", *arguments, path=path)
+
+    def test_install_goes_to_the_home_folder_and_names_the_line_for_path(self):
+        prefix = self.folder / "home/.local"
+        status, output, errors, calls = self.install()
+        self.assertEqual((status, errors), (0, ""))
+        self.assertIn(f"cmake --preset release -DCMAKE_INSTALL_PREFIX={prefix}", calls)
+        self.assertEqual(calls[-1], "cmake --install build/release")
+        self.assertIn(f"installed in {prefix}", output)
+        self.assertIn(f"""{prefix}/bin is not in PATH; add it, also in ~/.profile:
+  export PATH="{prefix}/bin:$PATH"
+""", output)
+
+    def test_install_takes_a_folder_and_is_silent_where_path_has_it(self):
+        prefix = self.folder / "my programs"
+        status, output, _, calls = self.install("my programs", path=prefix / "bin")
+        self.assertEqual(status, 0)
+        self.assertIn(f"cmake --preset release -DCMAKE_INSTALL_PREFIX={prefix}", calls)
+        self.assertNotIn("PATH", output)
+
+    def test_install_refuses_what_cannot_become_a_folder(self):
+        (self.folder / "file").write_text("", encoding="utf-8")
+        status, _, errors, calls = self.install("file/below")
+        self.assertEqual((status, calls), (1, []))
+        self.assertIn(f"{self.folder}/file is not a folder that you may write to; install elsewhere", errors)
+
+    def test_package_names_an_argument_that_it_does_not_know(self):
+        status, _, errors, calls = self.dev("package", "--tyr")
+        self.assertEqual((status, calls), (1, []))
+        self.assertEqual(errors, "dev: package takes no argument or --try [SUITE], not --tyr\n")
 
 
 if __name__ == "__main__":
