@@ -5,9 +5,9 @@
 #include "ratio_reporter.hpp"
 
 #include <glidar/io/model.hpp>
+#include <glidar/render/embree/embree_api.hpp>
 #include <glidar/simulate.hpp>
 
-#include <embree3/rtcore.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -113,10 +113,9 @@ class RawEmbree {
       packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
       packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
     }
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-    rtcIntersect16(valid, scene_, &context, &packet);
+    embree::QueryContext context;
+    embree::init_context(context);
+    embree::intersect_packet(scene_, context, valid, packet);
     for (unsigned lane = 0; lane < 16; ++lane) {
       const std::size_t i = std::size_t{first_row + lane / 4} * kSide + first_col + lane % 4;
       range_[i] = packet.ray.tfar[lane];

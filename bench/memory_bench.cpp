@@ -6,9 +6,9 @@
 #include "ratio_reporter.hpp"
 
 #include <glidar/io/model.hpp>
+#include <glidar/render/embree/embree_api.hpp>
 #include <glidar/render/renderer.hpp>
 
-#include <embree3/rtcore.h>
 #include <malloc.h>
 #include <sys/wait.h>
 #include <unistd.h>

@@ -12,8 +12,10 @@ add_library(glidar::glidar ALIAS glidar_all)
 set_target_properties(glidar_all PROPERTIES EXPORT_NAME glidar)
 target_link_libraries(glidar_all INTERFACE ${layers})
 
-install(TARGETS ${layers} glidar_all EXPORT glidar-targets)
-install(EXPORT glidar-targets FILE glidarTargets.cmake NAMESPACE glidar:: DESTINATION ${package_folder})
+# Two components, as Debian divides packages: program, the default, and development.
+install(TARGETS ${layers} glidar_all EXPORT glidar-targets COMPONENT development)
+install(EXPORT glidar-targets FILE glidarTargets.cmake NAMESPACE glidar:: DESTINATION ${package_folder}
+        COMPONENT development)
 
 # The headers users may include are listed in one file; the others are not installed.
 set(header_list ${PROJECT_SOURCE_DIR}/glidar/public_headers.txt)
@@ -21,7 +23,8 @@ set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${header_list})
 file(STRINGS ${header_list} public_headers REGEX "^[^#]")
 foreach(header IN LISTS public_headers)
   cmake_path(GET header PARENT_PATH folder)
-  install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
+  install(FILES ${PROJECT_SOURCE_DIR}/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder}
+          COMPONENT development)
 endforeach()
 
 configure_package_config_file(cmake/glidarConfig.cmake.in ${CMAKE_CURRENT_BINARY_DIR}/glidarConfig.cmake
@@ -29,11 +32,20 @@ configure_package_config_file(cmake/glidarConfig.cmake.in ${CMAKE_CURRENT_BINARY
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/glidarConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/glidarConfig.cmake
-              ${CMAKE_CURRENT_BINARY_DIR}/glidarConfigVersion.cmake DESTINATION ${package_folder})
+              ${CMAKE_CURRENT_BINARY_DIR}/glidarConfigVersion.cmake DESTINATION ${package_folder}
+        COMPONENT development)
 
+# The links and the commands of the installed README work in its folder: what they name is beside it,
+# the data as links.
+install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md packaging/copyright
+        DESTINATION ${CMAKE_INSTALL_DOCDIR})
+install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
+        PATTERN "CMakeLists.txt" EXCLUDE PATTERN "__pycache__" EXCLUDE)
+file(RELATIVE_PATH data_from_docs ${CMAKE_INSTALL_FULL_DOCDIR} ${CMAKE_INSTALL_FULL_DATADIR}/glidar)
 foreach(folder materials models sensors)
-  if(EXISTS ${PROJECT_SOURCE_DIR}/${folder})
-    install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/glidar)
-  endif()
+  install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_DATADIR}/glidar)
+  set(link ${CMAKE_CURRENT_BINARY_DIR}/doc_links/${folder})
+  file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/doc_links)
+  file(CREATE_LINK ${data_from_docs}/${folder} ${link} SYMBOLIC)
+  install(FILES ${link} DESTINATION ${CMAKE_INSTALL_DOCDIR})
 endforeach()
-install(FILES LICENSE README.md CHANGELOG.md DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -21,7 +21,9 @@ fs::path data_folder(const std::string& name, const char* variable) {
   }
   std::vector<fs::path> places;
   for (const fs::path& own : own_folders()) places.push_back(own / "share" / "glidar" / name);
+#ifdef GLIDAR_DATA_SOURCE_PATH
   places.push_back(fs::path(GLIDAR_DATA_SOURCE_PATH) / name);
+#endif
   places.push_back(fs::path(GLIDAR_DATA_INSTALL_PATH) / name);
   for (const fs::path& place : places) {
     if (fs::is_directory(place, error)) return place;

@@ -24,7 +24,9 @@ std::vector<fs::path> places() {
   for (const fs::path& own : own_folders()) all.push_back(own / "libexec" / "glidar" / kName);
   const fs::path self = fs::read_symlink("/proc/self/exe", error);
   if (!error) all.push_back(self.parent_path() / kName);
+#ifdef GLIDAR_IMPORT_BUILD_PATH
   all.emplace_back(GLIDAR_IMPORT_BUILD_PATH);
+#endif
   all.emplace_back(GLIDAR_IMPORT_INSTALL_PATH);
   return all;
 }

@@ -22,12 +22,59 @@ void copy_half(const void* from, std::size_t from_lanes, void* to, std::size_t t
   }
 }
 
+#ifdef GLIDAR_EMBREE_4
+RTCIntersectArguments arguments(QueryContext& context, RTCRayQueryFlags flags) {
+  RTCIntersectArguments all;
+  rtcInitIntersectArguments(&all);
+  all.flags = flags;
+  all.context = &context;
+  return all;
+}
+#endif
+
+void intersect_half(RTCScene scene, QueryContext& context, const int* valid, RTCRayHit8& rays) {
+#ifdef GLIDAR_EMBREE_4
+  RTCIntersectArguments all = arguments(context, RTC_RAY_QUERY_FLAG_COHERENT);
+  rtcIntersect8(valid, scene, &rays, &all);
+#else
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect8(valid, scene, &context, &rays);
+#endif
+}
+
 }  // namespace
 
-void intersect(RTCScene scene, RTCIntersectContext& context, bool has_wide_packets,
+void init_context(QueryContext& context) {
+#ifdef GLIDAR_EMBREE_4
+  rtcInitRayQueryContext(&context);
+#else
+  rtcInitIntersectContext(&context);
+#endif
+}
+
+void intersect_one(RTCScene scene, QueryContext& context, RTCRayHit& ray) {
+#ifdef GLIDAR_EMBREE_4
+  RTCIntersectArguments all = arguments(context, RTC_RAY_QUERY_FLAG_NONE);
+  rtcIntersect1(scene, &ray, &all);
+#else
+  rtcIntersect1(scene, &context, &ray);
+#endif
+}
+
+void intersect_packet(RTCScene scene, QueryContext& context, const int* valid, RTCRayHit16& rays) {
+#ifdef GLIDAR_EMBREE_4
+  RTCIntersectArguments all = arguments(context, RTC_RAY_QUERY_FLAG_COHERENT);
+  rtcIntersect16(valid, scene, &rays, &all);
+#else
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect16(valid, scene, &context, &rays);
+#endif
+}
+
+void intersect(RTCScene scene, QueryContext& context, bool has_wide_packets,
                const Lanes<int>& valid, RayHits& rays) {
   if (has_wide_packets) {
-    rtcIntersect16(valid.at.data(), scene, &context, &rays);
+    intersect_packet(scene, context, valid.at.data(), rays);
     return;
   }
   for (unsigned first = 0; first < kLanes; first += kHalf) {
@@ -36,7 +83,7 @@ void intersect(RTCScene scene, RTCIntersectContext& context, bool has_wide_packe
     std::copy_n(valid.at.begin() + first, kHalf, half_valid.begin());
     copy_half(&rays.ray.org_x[first], kLanes, &half.ray, kHalf, kRayArrays);
     copy_half(&rays.hit.Ng_x[first], kLanes, &half.hit, kHalf, kHitArrays);
-    rtcIntersect8(half_valid.data(), scene, &context, &half);
+    intersect_half(scene, context, half_valid.data(), half);
     copy_half(&half.ray, kHalf, &rays.ray.org_x[first], kLanes, kRayArrays);
     copy_half(&half.hit, kHalf, &rays.hit.Ng_x[first], kLanes, kHitArrays);
   }

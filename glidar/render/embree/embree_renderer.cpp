@@ -97,7 +97,6 @@ std::uint32_t told(const Job& job, std::uint32_t instance, std::uint32_t primiti
 void trace(const Job& job, TileWork& work) {
   job.probe.set_rays(work.block.beam, work.beams, work.valid, work.rays);
   embree::FilterContext context = job.probe.context();
-  context.embree.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   embree::intersect(job.probe.space().scene, context.embree, job.has_wide_packets, work.valid,
                     work.rays);
   const RTCHit16& hit = work.rays.hit;

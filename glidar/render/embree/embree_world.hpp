@@ -26,7 +26,7 @@ struct TraceSpace {
 
 /// What a cast hands through Embree to the filter function.
 struct FilterContext {
-  RTCIntersectContext embree;
+  QueryContext embree;
   const Resolver* resolver;
   const Beams* beams;
   bool cull_back_faces;

@@ -135,7 +135,7 @@ Probe::Probe(const World& world, const Resolver& resolver, const Beams& beams, b
 
 FilterContext Probe::context() const {
   FilterContext context{};
-  rtcInitIntersectContext(&context.embree);
+  init_context(context.embree);
   context.resolver = &resolver_;
   context.beams = &beams_;
   context.cull_back_faces = cull_back_faces_;
@@ -192,7 +192,7 @@ Found Probe::trace(std::size_t beam, const Eigen::Vector3d& origin,
   one.ray.id = static_cast<unsigned>(beam);
   one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(space_.scene, &filter.embree, &one);
+  intersect_one(space_.scene, filter.embree, one);
   if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
   const unsigned instance = one.hit.instID[0];
   return {instance == RTC_INVALID_GEOMETRY_ID ? 0U : instance, one.hit.primID};

@@ -1,0 +1,195 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""`./dev` installs exactly the packages that are missing, and installs GLIDAR where it is told. It runs in a copy of its own, and in PATH there are only
+programs that record how they were called, so that nothing of the machine changes."""
+
+import os
+import shutil
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+TIME_LIMIT_S = 300
+REAL = "bash awk sort paste mkdir grep tail dirname nproc env cat xargs realpath cmp".split()
+
+# dpkg-query knows what the file `states` lists, one package and its status per line.
+DPKG_QUERY = """#!/bin/bash
+[[ "$1 $2" == "-W -f" ]] || exit 2
+while read -r package status; do
+  if [[ $package == "$4" ]]; then
+    text=${3//'${db:Status-Status}'/$status}
+    printf "${text//%/%%}"
+    exit 0
+  fi
+done <"$STATES"
+echo "dpkg-query: no packages found matching $4" >&2
+exit 1
+"""
+RECORD = """#!/bin/bash
+printf '%s\\n' "${0##*/} $*" >>"$CALLS"
+"""
+RUN_AND_RECORD = RECORD + '"$@"\n'
+NOTHING = "#!/bin/bash\n"
+PACKAGES = """# comment
+bare        lint  # unknown to dpkg
+purged      lint  # known, because another package names it
+removed     lint
+unpacked    lint
+present     lint
+elsewhere   test  # of another group
+"""
+STATES = """purged not-installed
+removed config-files
+unpacked half-installed
+present installed
+"""
+UPDATE = "apt-get update -q"
+INSTALL = "apt-get install -q -y --no-install-recommends "
+
+
+class Dev(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        (self.folder / "scripts").mkdir()
+        (self.folder / "bin").mkdir()
+        shutil.copy(ROOT / "dev", self.folder / "dev")
+        self.states = STATES
+        self.packages = PACKAGES
+        for name in REAL:
+            (self.folder / "bin" / name).symlink_to(shutil.which(name))
+        for name in ("git", "clang-format"):  # what `./dev format` runs once its packages are there
+            self.program(name, NOTHING)
+        self.program("dpkg-query", DPKG_QUERY)
+        self.program("apt-get", RECORD)
+        self.user(0)
+
+    def program(self, name, text):
+        path = self.folder / "bin" / name
+        path.write_text(text, encoding="utf-8")
+        path.chmod(0o755)
+
+    def user(self, number):
+        self.program("id", f"#!/bin/bash\n[[ $* == -u ]] && echo {number}\n")
+
+    def dev(self, *arguments, path=""):
+        """Runs ./dev, by default `format`, with `path` added to PATH; gives its exit status, its output, its errors and the calls it made, in order."""
+        (self.folder / "scripts/packages.txt").write_text(self.packages, encoding="utf-8")
+        (self.folder / "states").write_text(self.states, encoding="utf-8")
+        calls = self.folder / "calls"
+        calls.write_text("", encoding="utf-8")
+        done = subprocess.run(
+            [self.folder / "bin/bash", "dev", *(arguments or ["format"])],
+            cwd=self.folder,
+            env={
+                "PATH": f"{self.folder / 'bin'}:{path}",
+                "HOME": str(self.folder / "home"),
+                "CALLS": str(calls),
+                "STATES": str(self.folder / "states"),
+            },
+            capture_output=True,
+            text=True,
+            timeout=TIME_LIMIT_S,
+            check=False,
+        )
+        return done.returncode, done.stdout, done.stderr, calls.read_text(encoding="utf-8").splitlines()
+
+    def test_installs_every_package_of_the_group_that_is_not_installed(self):
+        status, output, errors, calls = self.dev()
+        self.assertEqual((status, errors), (0, ""))
+        self.assertEqual(calls, [UPDATE, INSTALL + "bare purged removed unpacked"])
+        self.assertIn("installing 4 packages: bare purged removed unpacked", output)
+
+    def test_each_status_alone_decides(self):
+        self.packages = "one lint\n"
+        for state in ("not-installed", "config-files", "half-installed", "unpacked", "half-configured"):
+            with self.subTest(state):
+                self.states = f"one {state}\n"
+                self.assertEqual(self.dev()[3], [UPDATE, INSTALL + "one"])
+
+    def test_calls_nothing_when_all_are_installed(self):
+        self.states = "".join(f"{name} installed\n" for name in ("bare", "purged", "removed", "unpacked", "present"))
+        self.assertEqual(self.dev(), (0, "", "", []))
+
+    def test_a_user_installs_by_sudo(self):
+        self.user(1000)
+        self.program("sudo", RUN_AND_RECORD)
+        status, _, errors, calls = self.dev()
+        self.assertEqual((status, errors), (0, ""))
+        install = INSTALL + "bare purged removed unpacked"
+        self.assertEqual(
+            calls, [f"sudo {UPDATE}", UPDATE, f"sudo env DEBIAN_FRONTEND=noninteractive {install}", install]
+        )
+
+    def test_neither_root_nor_sudo_names_the_command_to_ask_for(self):
+        self.user(1000)
+        status, output, errors, calls = self.dev()
+        self.assertEqual((status, output, calls), (1, "", []))
+        self.assertEqual(
+            errors, "dev: neither root nor sudo; ask for: apt-get install bare purged removed unpacked\n"
+        )
+
+    def test_another_system_is_told_all_packages_of_the_group(self):
+        (self.folder / "bin/dpkg-query").unlink()
+        status, output, errors, calls = self.dev()
+        self.assertEqual((status, output, calls), (1, "", []))
+        self.assertEqual(
+            errors,
+            "dev: this is not Debian or Ubuntu; install what these packages hold: "
+            "bare present purged removed unpacked\n",
+        )
+
+    def test_a_failed_installation_ends_with_its_output(self):
+        self.program("apt-get", '#!/bin/bash\n[[ $1 == update ]] && exit 0\necho "E: no space left"\nexit 100\n')
+        status, _, errors, _ = self.dev()
+        self.assertEqual(status, 1)
+        self.assertIn("E: no space left", errors)
+        self.assertIn("apt-install failed; all its output is in", errors)
+
+    def test_an_unknown_command_is_named(self):
+        status, _, errors, calls = self.dev("frmat")
+        self.assertEqual((status, calls), (1, []))
+        self.assertIn("usage: ./dev COMMAND", errors)
+        self.assertIn("dev: unknown command: frmat", errors)
+
+    def install(self, *arguments, path=""):
+        """./dev install with CMake and ninja that only record."""
+        self.packages = "present build\n"
+        for name in ("cmake", "ninja"):
+            self.program(name, RECORD)
+        return self.dev("install", *arguments, path=path)
+
+    def test_install_goes_to_the_home_folder_and_names_the_line_for_path(self):
+        prefix = self.folder / "home/.local"
+        status, output, errors, calls = self.install()
+        self.assertEqual((status, errors), (0, ""))
+        self.assertIn(f"cmake --preset release -DCMAKE_INSTALL_PREFIX={prefix}", calls)
+        self.assertEqual(calls[-1], "cmake --install build/release")
+        self.assertIn(f"installed in {prefix}", output)
+        self.assertIn(f"""{prefix}/bin is not in PATH; add it, also in ~/.profile:
+  export PATH="{prefix}/bin:$PATH"
+""", output)
+
+    def test_install_takes_a_folder_and_is_silent_where_path_has_it(self):
+        prefix = self.folder / "my programs"
+        status, output, _, calls = self.install("my programs", path=prefix / "bin")
+        self.assertEqual(status, 0)
+        self.assertIn(f"cmake --preset release -DCMAKE_INSTALL_PREFIX={prefix}", calls)
+        self.assertNotIn("PATH", output)
+
+    def test_install_refuses_what_cannot_become_a_folder(self):
+        (self.folder / "file").write_text("", encoding="utf-8")
+        status, _, errors, calls = self.install("file/below")
+        self.assertEqual((status, calls), (1, []))
+        self.assertIn(f"{self.folder}/file is not a folder that you may write to; install elsewhere", errors)
+
+    def test_package_names_an_argument_that_it_does_not_know(self):
+        status, _, errors, calls = self.dev("package", "--tyr")
+        self.assertEqual((status, calls), (1, []))
+        self.assertEqual(errors, "dev: package takes no argument or --try [SUITE], not --tyr\n")
+
+
+if __name__ == "__main__":
+    unittest.main()
