@@ -29,10 +29,11 @@ class ViewerTest : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// Lets the viewer take news until the condition holds; half a minute is for a loaded machine.
+  /// Lets the viewer take news until the condition holds; false after ten minutes, as machines may
+  /// be very busy.
   template <class Condition>
   bool wait_until(Viewer& viewer, const Condition& holds) {
-    for (int i = 0; i < 300 && !holds(); ++i) {
+    for (int i = 0; i < 6000 && !holds(); ++i) {
       std::unique_lock lock(mutex_);
       woken_.wait_for(lock, std::chrono::milliseconds(100), [this] { return is_woken_; });
       is_woken_ = false;
