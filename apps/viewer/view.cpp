@@ -173,8 +173,8 @@ void Show::print_state(bool is_hidden) {
   const MouseInput& mouse = window_->mouse();
   fmt::print(
       "state: picture={} frame={} size={}x{} hidden={} x={} y={} buttons={} wheel={} keys={}\n",
-      drawn_, viewer_.ask().number, size.width, size.height, is_hidden ? 1 : 0, mouse.x, mouse.y,
-      mouse.buttons, mouse.wheel_steps, keys_);
+      drawn_, viewer_.shot()->ask.number, size.width, size.height, is_hidden ? 1 : 0, mouse.x,
+      mouse.y, mouse.buttons, mouse.wheel_steps, keys_);
   std::fflush(stdout);
 }
 

@@ -5,6 +5,14 @@
 #include <algorithm>
 
 namespace glidar::link {
+namespace {
+
+bool begins_any(const std::string& begin, std::span<const std::string> topics) {
+  return std::any_of(topics.begin(), topics.end(),
+                     [&begin](const std::string& topic) { return topic.starts_with(begin); });
+}
+
+}  // namespace
 
 void SubscriptionTable::add(int connection, const std::string& topic) {
   ++connections_[connection][topic];
@@ -34,11 +42,8 @@ std::uint64_t SubscriptionTable::subscribers(std::span<const std::string> topics
   std::uint64_t count = 0;
   for (const auto& [connection, subscribed] : connections_) {
     std::uint64_t wanted = 0;
-    for (const auto& [begin, subscriptions] : subscribed) {
-      const auto is_wanted = [&begin](const std::string& topic) {
-        return topic.starts_with(begin);
-      };
-      if (std::any_of(topics.begin(), topics.end(), is_wanted)) wanted += subscriptions;
+    for (const auto& [topic, subscriptions] : subscribed) {
+      if (begins_any(topic, topics)) wanted += subscriptions;
     }
     count += connection == kUnknownConnection ? wanted : std::min<std::uint64_t>(wanted, 1);
   }

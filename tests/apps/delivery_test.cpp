@@ -44,7 +44,7 @@ TEST(Delivery, NeverTouchesAFrameThatIsBeingDelivered) {
   for (int k = 0; k < kFrames; ++k) {
     ASSERT_TRUE(testing::soon([&] { return begun == k; }));
     const Shot& shot = delivery.room();
-    if (k > 0) EXPECT_NE(busy.load(), nullptr);
+    EXPECT_EQ(busy.load() != nullptr, k > 0);
     EXPECT_NE(&shot, busy.load());
     ++filled;
     delivery.hand_over();

@@ -267,5 +267,26 @@ TEST_F(ViewerTest, EndsInTheMidstOfWork) {
   }
 }
 
+TEST_F(ViewerTest, IsCurrentOnceWhatIsRequestedIsMeasured) {
+  Viewer viewer(flags_, measuring_);
+  EXPECT_FALSE(viewer.is_current());
+  ASSERT_TRUE(wait_until(viewer, [&] { return viewer.is_current(); }));
+  viewer.set_seed(7);
+  EXPECT_FALSE(viewer.is_current());
+  ASSERT_TRUE(wait_until(viewer, [&] { return viewer.is_current(); }));
+  EXPECT_EQ(viewer.shot()->ask.seed, 7U);
+}
+
+TEST_F(ViewerTest, IsCurrentWhileTimeGoesOnHoweverSlowlyItMeasures) {
+  flags_.motion.model_dr = "0,0,1";
+  Viewer viewer(flags_, measuring_);
+  ASSERT_TRUE(wait_until(viewer, [&] { return viewer.is_current(); }));
+  viewer.turn_to(1000);
+  EXPECT_TRUE(viewer.is_current());
+  viewer.toggle_play();
+  EXPECT_FALSE(viewer.is_current());
+  EXPECT_TRUE(wait_until(viewer, [&] { return viewer.is_current(); }));
+}
+
 }  // namespace
 }  // namespace glidar::app

@@ -59,7 +59,7 @@ def test_data_is_the_same_for_any_number_of_workers_and_shards_named_by_content(
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_a_killed_run_goes_on_with_nothing_lost_and_nothing_twice(campaign, workers):
     campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text()
-                   .replace("trials: 40", "trials: 800"))
+                   .replace("trials: 40", "trials: 200"))
     campaign.run("whole")
     kills = 0
     for wanted in (1, 3, 6, 8):
