@@ -13,6 +13,7 @@ import unittest
 
 from stream_support import SMALL, StreamTest
 
+from cli_support import free_ports
 from lockstep_test import CLIENT, Server, body
 from stream_client import pose_message
 from waiting import wait_until
@@ -77,6 +78,7 @@ class Replay(ReplayTest):
         clouds = subscriber.clouds_until_shutdown()
         self.finished(program, 0)
         self.assertEqual([line["stamp_ns"] for line in self.lines()[1:-1]], [100, 101, 102, 103, 104])
+        self.port = free_ports()  # the first subscriber would come back to the old one, without a handshake
         program = self.start("r.jsonl", "--port", str(self.port), command="replay")
         again = self.subscriber()
         again.shake()
