@@ -28,7 +28,7 @@ static_assert(sizeof(Request) == 40 + 24 + 24 + 104 * 2);
 int main(int argc, char** argv) {
   zmq::context_t context;
   zmq::socket_t socket(context, zmq::socket_type::req);
-  socket.set(zmq::sockopt::rcvtimeo, 10'000);  // ms
+  socket.set(zmq::sockopt::rcvtimeo, 60'000);  // ms
   socket.set(zmq::sockopt::linger, 0);
   socket.connect(argc > 1 ? argv[1] : "tcp://127.0.0.1:5600");
   const Request request;

@@ -60,7 +60,7 @@ class Glidar:
         self.context.destroy(linger=0)
         self.program.terminate()
         try:
-            self.program.wait(timeout=10)
+            self.program.wait(timeout=60)
         except subprocess.TimeoutExpired:
             self.program.kill()
             self.program.wait()

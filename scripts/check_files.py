@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Checks every tracked source file: licence head, length.
+"""Checks every tracked source file: licence head, length; and that no test sleeps.
 
 usage: check_files.py; exit status 1 when a file breaks a rule.
 """
 
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -17,6 +18,15 @@ SOURCES = {".cpp", ".hpp", ".py", ".sh", ".cmake", ".glsl"}
 NAMES = {"dev", "run", "CMakeLists.txt"}
 MAX_LINES = 400
 TABLES = set()  # files that are long because they hold data, one path each
+SLEEP = re.compile(r"\b[nu]?(nano)?sleep(_for|_until)?\b")
+# Tests wait for conditions (CONTRIBUTING.md); these files may name a sleep, each for its reason.
+SLEEPERS = {
+    "tests/support/waiting.py": "the helper that waits",
+    "tests/support/waiting.hpp": "the helper that waits",
+    "tests/python/errors_test.py": "a program that hangs, which the test interrupts",
+    "tests/io/import_process_test.cpp": "programs that hang, which the library ends",
+    "tests/scripts/check_files_test.py": "the test of this rule",
+}
 
 
 def is_source(path):
@@ -32,6 +42,9 @@ def check_text(path, text):
         complaints.append(f"{path}:1: the two SPDX lines are missing at the top")
     if len(lines) > MAX_LINES and path not in TABLES:
         complaints.append(f"{path}:{MAX_LINES}: {len(lines)} lines, allowed are {MAX_LINES}; split it")
+    if path.startswith("tests/") and path not in SLEEPERS:
+        complaints += [f"{path}:{number}: a test sleeps; wait for a condition with tests/support/waiting.py or .hpp"
+                       for number, line in enumerate(lines, 1) if SLEEP.search(line)]
     return complaints
 
 

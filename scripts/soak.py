@@ -28,7 +28,7 @@ import zmq
 # bytes a request in two minutes.
 MEMORY_TOLERANCE_MB = 2.0
 MEMORY_LOOK_S = 0.5
-PATIENCE_MS = 30_000
+MAX_WAIT_S = 600  # for a reply, a beginning and an end; machines may be very busy
 SIZE = ("builtin:asteroid", "--width", "64", "--height", "64", "--fov", "30")
 EXAMPLE = """examples:
   ./dev soak             # an hour; picture in out/soak.png
@@ -50,6 +50,10 @@ class Findings:
     faults: list = field(default_factory=list)
     lock: threading.Lock = field(default_factory=threading.Lock)
 
+    def has_all(self):
+        """Whether every client has done something."""
+        return min(self.requests, self.vanished, self.nonsense, self.clouds) > 0
+
     def add(self, **counts):
         with self.lock:
             for name, count in counts.items():
@@ -67,30 +71,54 @@ class Soak:
         self.endpoint = self.lockstep.stdout.readline().split()[-1]
         while True:  # two free ports side by side
             self.port = 20000 + 2 * int(np.random.default_rng().integers(6000))
-            self.stream = self.start("--port", str(self.port), "--subscribers", "0", "--pub-hwm", "4", "--rate", "60",
-                                     "--model-dr", "0,0.5,0", "--stats", "stream.json")
-            time.sleep(1.0)
-            if self.stream.poll() is None:
+            self.stream = self.start("--port", str(self.port), "--subscription-timeout", "0", "--pub-hwm", "4",
+                                     "--rate", "60", "--model-dr", "0,0.5,0", "--stats", "stream.json")
+            if self.listens():
                 break
+        self.begin_stream()
         self.started = time.monotonic()
 
     def start(self, *arguments):
         return subprocess.Popen(["glidar", "stream", *SIZE, *arguments], cwd=self.folder, text=True,
                                 stdout=subprocess.PIPE, stderr=self.log)
 
+    def listens(self):
+        """Whether the stream waits for its first subscriber; else its ports were in use, and it has ended."""
+        line = f"handshakes at port {self.port + 1}"
+        while self.stream.poll() is None:
+            if line in (self.folder / "log.txt").read_text(encoding="utf-8"):
+                return True
+            self.over.wait(0.05)
+        self.stream.stdout.close()
+        return False
+
+    def begin_stream(self):
+        """Shakes hands, which the stream waits for."""
+        with self.context.socket(zmq.REQ) as hand:
+            hand.linger, hand.rcvtimeo = 0, 1000 * MAX_WAIT_S
+            hand.connect(f"tcp://127.0.0.1:{self.port + 1}")
+            hand.send(b"")
+            hand.recv()
+
     def run(self):
-        """Resident memory of both programs over time: rows of seconds, MB, MB."""
+        """Resident memory of both programs over time, once every client has begun: rows of seconds, MB, MB."""
         clients = [self.ask, self.ask, self.ask_and_reconnect, self.vanish, self.send_nonsense, self.read,
                    self.read_and_reconnect, self.never_read]
         threads = [threading.Thread(target=self.guarded, args=(client, seed)) for seed, client in enumerate(clients)]
         for thread in threads:
             thread.start()
-        memory = []
-        while (now := time.monotonic() - self.started) < self.seconds and not self.over.is_set():
+        memory, end = [], None
+        while not self.over.is_set():
+            now = time.monotonic() - self.started
             if self.lockstep.poll() is not None or self.stream.poll() is not None:
                 self.findings.faults.append("glidar ended before its time")
                 break
-            memory.append((now, resident_mb(self.lockstep), resident_mb(self.stream)))
+            if end is None and (self.findings.has_all() or now > MAX_WAIT_S):
+                end = now + self.seconds
+            if end is not None:
+                memory.append((now, resident_mb(self.lockstep), resident_mb(self.stream)))
+                if now > end:
+                    break
             self.over.wait(MEMORY_LOOK_S)
         self.over.set()
         for thread in threads:
@@ -110,7 +138,7 @@ class Soak:
             if program.poll() is None:
                 program.send_signal(signal.SIGTERM)
             try:
-                code = program.wait(timeout=30)
+                code = program.wait(timeout=MAX_WAIT_S)
             except subprocess.TimeoutExpired:
                 program.kill()
                 code = program.wait()
@@ -127,7 +155,7 @@ class Soak:
     def connect(self):
         client = self.context.socket(zmq.REQ)
         client.linger = 0
-        client.rcvtimeo = PATIENCE_MS
+        client.rcvtimeo = 1000 * MAX_WAIT_S
         client.connect(self.endpoint)
         self.findings.add(connections=1)
         return client
@@ -245,7 +273,7 @@ def judge(findings, memory):
         growth = growth_mb(memory[:, 0], memory[:, column])
         if growth > MEMORY_TOLERANCE_MB:
             faults.append(f"{name}: memory grew by {growth:.1f} MB, allowed are {MEMORY_TOLERANCE_MB}")
-    if min(findings.requests, findings.vanished, findings.nonsense, findings.clouds) == 0:
+    if not findings.has_all():
         faults.append("a client did nothing")
     return faults
 

@@ -8,6 +8,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -17,6 +18,7 @@ namespace {
 
 constexpr WholeRange kPorts = {1, 65534};  // and the next one for handshakes
 constexpr std::int64_t kMostQueued = 1'000'000;
+constexpr double kLongest_s = 3.2e9;  // a century
 
 [[noreturn]] void refuse(std::string where, std::string found, std::string remedy) {
   throw Error({std::move(where), std::move(found), "", std::move(remedy)});
@@ -56,9 +58,19 @@ void add_publishing_flags(CLI::App& command, StreamFlags& flags) {
             [&flags](std::int64_t n) { flags.port = static_cast<std::uint16_t>(n); });
   add_text(command, {"--bind", "ADDRESS", "Address to listen at, * for all [127.0.0.1]", group},
            flags.bind);
-  add_whole(command, {"--subscribers", "N", "Waits for the handshakes of N [1]", group},
+  add_whole(command,
+            {"--subscribers", "N", "Waits for N that shake hands and subscribe [1]", group},
             {0, kMostQueued},
             [&flags](std::int64_t n) { flags.subscribers = static_cast<std::uint64_t>(n); });
+  add_option(
+      command,
+      {"--subscription-timeout", "S", "Waits S seconds after a handshake for its subscription [10]",
+       group},
+      [&flags](std::string_view option, const std::string& text) {
+        flags.subscription_timeout_s = parse_number(option, text);
+        require(flags.subscription_timeout_s >= 0.0 && flags.subscription_timeout_s <= kLongest_s,
+                option, flags.subscription_timeout_s, "seconds from 0 up to 3.2e9");
+      });
   add_whole(command, {"--pub-rate", "K", "Publishes every K-th frame [1; in 2015: 15]", group},
             {1, kMostQueued},
             [&flags](std::int64_t n) { flags.publish_every = static_cast<std::uint32_t>(n); });
@@ -115,6 +127,7 @@ void check_lockstep(const StreamFlags& flags) {
   }
   const StreamFlags usual;
   if (flags.pose_timeout_s || flags.subscribers != usual.subscribers || flags.publishes_newest ||
+      flags.subscription_timeout_s != usual.subscription_timeout_s ||
       flags.publish_every != usual.publish_every || flags.publish_queue != usual.publish_queue) {
     refuse("--lockstep", "given beside options of the protocol of 2015", "leave these out");
   }
@@ -199,7 +212,6 @@ void check(const StreamFlags& flags) {
            "leave these out: clouds on a port are laid out as in 2015");
   }
   if (flags.physics_port) check_simulator(flags);
-  constexpr double kLongest_s = 3.2e9;  // a century
   const auto check_seconds = [](const char* option, const std::optional<double>& seconds) {
     if (seconds) {
       require(*seconds > 0.0 && *seconds <= kLongest_s, option, *seconds,
@@ -223,12 +235,14 @@ std::vector<std::string> taken_files(const StreamFlags& flags, std::vector<std::
 }
 
 legacy::CloudPublisherOptions publisher_options(const StreamFlags& flags) {
-  return {.endpoint = {flags.bind, *flags.port},
-          .keeps_newest = flags.publishes_newest,
-          .queue = flags.publish_queue,
-          .every = flags.publish_every,
-          .timestamps =
-              flags.physics_port ? legacy::Timestamps::of_poses : legacy::Timestamps::counted};
+  return {
+      .endpoint = {flags.bind, *flags.port},
+      .keeps_newest = flags.publishes_newest,
+      .queue = flags.publish_queue,
+      .every = flags.publish_every,
+      .timestamps = flags.physics_port ? legacy::Timestamps::of_poses : legacy::Timestamps::counted,
+      .subscription_timeout = std::chrono::round<std::chrono::milliseconds>(
+          std::chrono::duration<double>(flags.subscription_timeout_s))};
 }
 
 legacy::PoseReceiverOptions receiver_options(const StreamFlags& flags) {

@@ -26,9 +26,10 @@ struct StreamFlags {
   std::string bind = "127.0.0.1";     ///< address to listen at
   std::optional<std::uint16_t> port;  ///< of the clouds; empty: they are not published
   std::uint64_t subscribers = 1;      ///< handshakes to wait for
-  std::uint32_t publish_every = 1;    ///< so many frames
-  bool publishes_newest = false;      ///< --pub-conflate
-  int publish_queue = 32;             ///< clouds for each subscriber
+  double subscription_timeout_s = 10.0;  ///< for the subscriptions of those that shook hands
+  std::uint32_t publish_every = 1;       ///< so many frames
+  bool publishes_newest = false;         ///< --pub-conflate
+  int publish_queue = 32;                ///< clouds for each subscriber
   std::string physics_host = "127.0.0.1";
   std::optional<std::uint16_t> physics_port;  ///< of the poses; empty: from the command line
   int pose_queue = 0;                         ///< 0: the newest pose only

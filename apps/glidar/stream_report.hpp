@@ -32,6 +32,9 @@ std::string summary_text(const StreamSummary& summary);
 /// What is waited for before the stream begins.
 std::string waiting_text(const StreamFlags& flags);
 
+/// How many of the subscribers that are waited for will receive the next cloud.
+std::string ready_text(std::uint64_t ready, std::uint64_t wanted);
+
 /// The part of the status line about subscribers.
 std::string publishing_text(const legacy::CloudPublisher::Counts& counts);
 

@@ -191,10 +191,19 @@ bool StreamRun::has_partners() {
   return has_simulator && (!publisher_ || publisher_->has(flags_.subscribers));
 }
 
+/// Says how many subscribers there are whenever that changes.
+void StreamRun::show_partners(std::uint64_t& shown) {
+  const std::uint64_t ready = publisher_ ? publisher_->ready() : 0;
+  if (flags_.subscribers == 0 || std::exchange(shown, ready) == ready) return;
+  console_.info(ready_text(ready, flags_.subscribers));
+}
+
 bool StreamRun::wait_for_partners(const StopRequest& stop) {
   bool is_told = false;
+  std::uint64_t ready = 0;
   while (!has_partners() && !stop.is_asked()) {
     if (!std::exchange(is_told, true)) console_.info(waiting_text(flags_));
+    show_partners(ready);
     link::wait_for({publisher_ ? &publisher_->handshake_socket() : nullptr,
                     receiver_ ? &receiver_->handshake_socket() : nullptr},
                    stop.descriptor(), kLook);

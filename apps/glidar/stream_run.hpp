@@ -38,6 +38,7 @@ class StreamRun {
   [[nodiscard]] std::unique_ptr<PoseSource> make_source(const StopRequest& stop);
   bool wait_for_partners(const StopRequest& stop);
   [[nodiscard]] bool has_partners();
+  void show_partners(std::uint64_t& shown);
   void stream(PoseSource& source, StopRequest& stop);
   void measure(const Moment& moment, Shot& shot);
   [[nodiscard]] bool is_wanted(std::uint64_t place) const;

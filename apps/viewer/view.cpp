@@ -41,6 +41,7 @@ struct ViewFlags {
   RenderFlags render;
   std::string screenshot;               ///< empty: none
   std::optional<std::uint32_t> frames;  ///< measured and drawn before it quits
+  bool prints_state = false;
   WindowSize size;
 };
 
@@ -88,6 +89,7 @@ class Show {
   void wait();
   bool take_news();
   void wait_for(std::uint32_t number);
+  void print_state(bool is_hidden);
 
   const ViewFlags& flags_;
   Viewer& viewer_;
@@ -98,6 +100,8 @@ class Show {
   bool is_quitting_ = false;
   int unsettled_ = 0;  ///< pictures to draw until panels show what happened
   std::uint64_t drawn_ = 0;
+  std::uint64_t keys_ = 0;  ///< letters typed
+  bool was_hidden_ = false;
 };
 
 /// What an event changes may show two pictures later: panels take their places one after another.
@@ -112,7 +116,11 @@ void Show::open_window() {
 }
 
 WindowEvents Show::events() {
-  return {.on_letter = [this](unsigned letter) { viewer_.type(letter); },
+  return {.on_letter =
+              [this](unsigned letter) {
+                ++keys_;
+                viewer_.type(letter);
+              },
           .on_escape = [this] { is_quitting_ = true; },
           .on_drop =
               [this](const std::vector<std::string>& paths) {
@@ -156,6 +164,20 @@ bool Show::take_news() {
   return is_new;
 }
 
+/// For scripts that have to know when the window shows the effect of what they did.
+void Show::print_state(bool is_hidden) {
+  const bool is_known = is_hidden && was_hidden_;
+  if (!flags_.prints_state || is_known || !viewer_.is_current()) return;
+  was_hidden_ = is_hidden;
+  const WindowSize size = window_->size();
+  const MouseInput& mouse = window_->mouse();
+  fmt::print(
+      "state: picture={} frame={} size={}x{} hidden={} x={} y={} buttons={} wheel={} keys={}\n",
+      drawn_, viewer_.shot()->ask.number, size.width, size.height, is_hidden ? 1 : 0, mouse.x,
+      mouse.y, mouse.buttons, mouse.wheel_steps, keys_);
+  std::fflush(stdout);
+}
+
 void Show::run() {
   Clock::time_point before = Clock::now();
   while (!is_quitting_ && !window_->is_closing()) {
@@ -164,11 +186,12 @@ void Show::run() {
     if (take_news()) unsettled_ = std::max(unsettled_, 1);
     if (window_->is_hidden()) {
       unsettled_ = 0;
+      print_state(true);
       continue;
     }
     if (unsettled_ == 0) continue;
     draw();
-    --unsettled_;
+    if (--unsettled_ == 0) print_state(false);
   }
 }
 
@@ -276,6 +299,10 @@ Command add_view(CLI::App& program) {
   add_whole(command, {"--frames", "N", "Quit after N frames of the sensor [screenshot: 1]", group},
             {1, kMost},
             [&frames = flags->frames](std::int64_t n) { frames = static_cast<std::uint32_t>(n); });
+  command
+      .add_flag("--print-state", flags->prints_state,
+                "Print a line, for scripts, whenever the window shows all that is known")
+      ->group(group);
   return [flags] { return run(*flags); };
 }
 

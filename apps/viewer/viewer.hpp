@@ -40,6 +40,10 @@ class Viewer {
   [[nodiscard]] const Lines& guides() const { return guides_; }
   [[nodiscard]] const FrameSummary& summary() const { return summary_; }
   [[nodiscard]] const std::string& busy() const { return news_.busy; }
+  /// Whether the shot is what is requested; while time goes on, whether there is one.
+  [[nodiscard]] bool is_current() const {
+    return shot() != nullptr && (shot()->ask == ask_ || next_frame_s().has_value());
+  }
   [[nodiscard]] std::optional<std::size_t> picked() const { return picked_; }
   [[nodiscard]] bool is_playing() const { return is_playing_; }
   /// Whether sensor or objects move by themselves.

@@ -169,6 +169,16 @@ void Window::begin() {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGui::NewFrame();
+  const ImGuiIO& io = ImGui::GetIO();
+  if (ImGui::IsMousePosValid(&io.MousePos)) {
+    mouse_.x = static_cast<int>(io.MousePos.x);
+    mouse_.y = static_cast<int>(io.MousePos.y);
+  }
+  mouse_.buttons = 0;
+  for (unsigned button = 0; button < 3; ++button) {
+    if (io.MouseDown[button]) mouse_.buttons |= 1U << button;
+  }
+  if (io.MouseWheel != 0.0F) ++mouse_.wheel_steps;
 }
 
 void Window::end() {

@@ -4,6 +4,7 @@
 
 #include <glidar/io/picture.hpp>
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <optional>
@@ -20,6 +21,14 @@ struct WindowEvents {
   std::function<void()> on_escape;
   std::function<void(const std::vector<std::string>&)> on_drop;
   std::function<void()> on_damage;  ///< the system asks for the window to be drawn again
+};
+
+/// Mouse input that the last picture takes into account.
+struct MouseInput {
+  int x = -1;  ///< pixels from the window's upper left corner; -1: the pointer was never there
+  int y = -1;
+  unsigned buttons = 0;           ///< pressed ones: 1 left, 2 right, 4 middle
+  std::uint64_t wheel_steps = 0;  ///< since the window was opened
 };
 
 struct WindowSize {
@@ -60,6 +69,7 @@ class Window {
   /// The graphics device lost the context: nothing that was made in it is left.
   [[nodiscard]] bool is_lost() const;
   [[nodiscard]] WindowSize size() const;
+  [[nodiscard]] const MouseInput& mouse() const { return mouse_; }
   void set_title(const std::string& title);
 
   /// Panels are made between these two; end() draws them.
@@ -75,6 +85,7 @@ class Window {
     void operator()(GLFWwindow* window) const;
   };
   WindowEvents events_;
+  MouseInput mouse_;
   std::unique_ptr<GLFWwindow, Closing> window_;
 };
 

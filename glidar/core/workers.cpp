@@ -3,8 +3,14 @@
 #include <glidar/core/workers.hpp>
 
 #include <tbb/blocked_range.h>
+#include <tbb/global_control.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
 #if defined(__SANITIZE_THREAD__)
 #include <sanitizer/tsan_interface.h>
 #endif
@@ -39,11 +45,26 @@ void after_loop() {}
 }  // namespace
 
 struct Workers::Arena {
+  std::optional<tbb::global_control> limit;
   tbb::task_arena tbb;
 };
 
+/// oneTBB starts at most one thread per processor and writes a warning to standard error when an
+/// arena requests more, unless the process allows more. The smallest of several limits counts, so
+/// all are equal, and one that the calling program has set is kept to. oneTBB itself stops at 256,
+/// or four per processor.
 Workers::Workers(unsigned threads) : arena_(std::make_unique<Arena>()) {
-  arena_->tbb.initialize(threads == 0 ? tbb::task_arena::automatic : static_cast<int>(threads));
+  constexpr std::size_t kMaxThreads = 1024;
+  constexpr auto kAllowed = tbb::global_control::max_allowed_parallelism;
+  if (threads == 0) {
+    arena_->tbb.initialize();
+    return;
+  }
+  if (threads > static_cast<unsigned>(tbb::info::default_concurrency())) {
+    arena_->limit.emplace(kAllowed, kMaxThreads);
+  }
+  const std::size_t allowed = tbb::global_control::active_value(kAllowed);
+  arena_->tbb.initialize(static_cast<int>(std::min<std::size_t>(threads, allowed)));
 }
 
 Workers::~Workers() = default;

@@ -11,7 +11,7 @@ namespace glidar {
 /// is cut, so every output belongs to one index.
 class Workers {
  public:
-  /// 0 threads: one per processor that this process may use.
+  /// 0 threads: one per processor that may be used. At most what oneTBB allows (256 or more).
   explicit Workers(unsigned threads = 0);
   ~Workers();
   Workers(const Workers&) = delete;

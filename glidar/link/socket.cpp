@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/link/ipc_place.hpp>
+#include <glidar/link/subscription_table.hpp>
 
 #include <zmq.hpp>
 
@@ -13,7 +14,6 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
-#include <map>
 #include <utility>
 
 namespace glidar::link {
@@ -85,6 +85,13 @@ auto unbroken(const Action& action) {
       if (error.num() != EINTR) throw;
     }
   }
+}
+
+/// The descriptor of the connection that a message came by. The end of a subscription has none when
+/// the connection ended first.
+int connection_of(zmq::message_t& message) {
+  const int descriptor = zmq_msg_get(message.handle(), ZMQ_SRCFD);
+  return descriptor < 0 ? SubscriptionTable::kUnknownConnection : descriptor;
 }
 
 /// A socket does what is due only when it is used; this uses it.
@@ -170,7 +177,7 @@ struct Socket::Impl {
   zmq::socket_t socket;
   zmq::socket_t monitor;  ///< tells of connections
   bool follows_part = false;
-  std::map<std::string, std::uint64_t> subscriptions;  ///< by topic
+  SubscriptionTable subscriptions;
   int send_queue;
   std::shared_ptr<std::atomic<int>> flying = std::make_shared<std::atomic<int>>(0);
   bool is_behind = false;  ///< a subscriber's queue was full
@@ -318,25 +325,21 @@ bool Socket::publish(std::span<const std::byte> bytes, std::chrono::milliseconds
 
 SubscriptionCount Socket::subscriptions(std::span<const std::string> topics) {
   if (impl_->socket.get(zmq::sockopt::type) != ZMQ_XPUB) return {};
-  while (const std::optional<Message> message = receive()) {
+  while (std::optional<Message> message = receive()) {
     // a byte, 1 for a subscription and 0 for its end, and the topic
     const std::span<const std::byte> bytes = message->bytes();
     if (bytes.empty() || bytes.size() > kLongestTopic || std::to_integer<int>(bytes[0]) > 1) {
       continue;
     }
-    const std::string name(reinterpret_cast<const char*>(bytes.data()) + 1, bytes.size() - 1);
-    const bool begins = bytes[0] == std::byte{1};
-    std::uint64_t& count = impl_->subscriptions[name];
-    count = begins ? count + 1 : count - std::min<std::uint64_t>(count, 1);
-    if (count == 0) impl_->subscriptions.erase(name);
+    const std::string topic(reinterpret_cast<const char*>(bytes.data()) + 1, bytes.size() - 1);
+    const int connection = connection_of(message->impl_->message);
+    if (bytes[0] == std::byte{1}) {
+      impl_->subscriptions.add(connection, topic);
+    } else {
+      impl_->subscriptions.remove(connection, topic);
+    }
   }
-  SubscriptionCount known = {.is_known = true};
-  for (const auto& [name, count] : impl_->subscriptions) {
-    const std::string& begin = name;
-    const auto is_asked = [&](const std::string& topic) { return topic.starts_with(begin); };
-    if (std::any_of(topics.begin(), topics.end(), is_asked)) known.subscribers += count;
-  }
-  return known;
+  return {.is_known = true, .subscribers = impl_->subscriptions.subscribers(topics)};
 }
 
 std::vector<PeerEvent> Socket::events() {

@@ -54,7 +54,7 @@ CurveKeys make_curve_keys();
 
 enum class SocketKind : std::uint8_t { publish, subscribe, request, reply };
 
-/// What ZeroMQ tells of subscribers: how many there are that want a topic.
+/// What ZeroMQ reports of subscribers: how many connections have subscribed to a topic.
 struct SubscriptionCount {
   bool is_known = false;  ///< not of sockets that keep the newest message only
   std::uint64_t subscribers = 0;
@@ -129,7 +129,7 @@ class Socket {
   /// The same, waiting so long for full queues.
   bool publish(std::span<const std::byte> bytes, std::chrono::milliseconds patience);
 
-  /// How many subscriptions there are now to any of these topics.
+  /// How many connections have subscribed to any of these topics. The next message reaches them.
   SubscriptionCount subscriptions(std::span<const std::string> topics);
   /// What happened since the last call, if it is watched; to be called now and then, as what is not
   /// taken is kept.

@@ -2,12 +2,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Running the built program, found in PATH, in a folder of its own."""
 
+import fcntl
 import os
+import random
 import re
 import socket
 import subprocess
+import sys
 import tempfile
 import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "support"))
+from waiting import MAX_WAIT_S  # noqa: E402
 
 BOX = """o box
 v -1 -1 -1
@@ -27,17 +34,27 @@ f 1 5 8 4
 """
 
 
+RESERVED = []  # files whose locks keep ports from other tests
+
+
 def free_ports():
-    """A port of this machine that is free together with the next one."""
+    """A port of this machine that is free together with the next one, and that no other test gets while this process
+    lives. Below those that systems give to clients, and beside those of the tests in C++ (loopback.hpp)."""
+    folder = Path(tempfile.gettempdir(), f"glidar-test-ports-{os.getuid()}")
+    folder.mkdir(exist_ok=True)
     while True:
-        with socket.socket() as first, socket.socket() as second:
-            first.bind(("127.0.0.1", 0))
-            port = first.getsockname()[1]
-            try:
+        port = 10_000 + 2 * random.SystemRandom().randrange(5_000)
+        lock = open(folder / str(port), "w", encoding="utf-8")
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            with socket.socket() as first, socket.socket() as second:
+                first.bind(("127.0.0.1", port))
                 second.bind(("127.0.0.1", port + 1))
-            except (OSError, OverflowError):
-                continue
-            return port
+        except OSError:
+            lock.close()
+            continue
+        RESERVED.append(lock)
+        return port
 
 
 def box_of(size):
@@ -55,7 +72,7 @@ class CliTest(unittest.TestCase):
 
     def run_program(self, *arguments):
         return subprocess.run(["glidar", *arguments], cwd=self.folder, env=self.environment,
-                              capture_output=True, text=True, timeout=300, check=False)
+                              capture_output=True, text=True, timeout=MAX_WAIT_S, check=False)
 
     def succeed(self, *arguments):
         done = self.run_program(*arguments)

@@ -11,11 +11,11 @@ import shutil
 import signal
 import struct
 import subprocess
-import time
 import unittest
 import zipfile
 
-from cli_support import BOX, CliTest, box_of, free_ports
+from cli_support import BOX, MAX_WAIT_S, CliTest, box_of, free_ports
+from waiting import wait_until
 
 
 class Help(CliTest):
@@ -43,7 +43,7 @@ class Help(CliTest):
         elif shutil.which("xvfb-run"):
             done = subprocess.run(["xvfb-run", "-a", "glidar", *arguments, "--frames", "1"],
                                   cwd=self.folder, env=self.environment, capture_output=True,
-                                  text=True, timeout=120, check=False)
+                                  text=True, timeout=MAX_WAIT_S, check=False)
             self.assertEqual(done.returncode, 0, done.stderr)
 
     def run_stream(self, arguments):
@@ -129,7 +129,7 @@ class Render(CliTest):
     def test_two_runs_that_write_the_same_file_leave_a_whole_one(self):
         command = ["glidar", "render", "builtin:box", "--quiet", "-o", "same.pcd"]
         runs = [subprocess.Popen(command, cwd=self.folder, env=self.environment) for _ in range(4)]
-        self.assertEqual([run.wait(timeout=60) for run in runs], [0] * len(runs))
+        self.assertEqual([run.wait(timeout=MAX_WAIT_S) for run in runs], [0] * len(runs))
         self.assertEqual(self.files(), ["same.pcd", "same.pcd.json"])
         together = self.bytes_of("same.pcd")
         self.succeed(*command[1:])
@@ -369,12 +369,10 @@ class Interrupt(CliTest):
                  "--columns", "all", "-o", "a.csv", "-o", "b.csv"],
                 cwd=self.folder, env=self.environment, stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE, text=True) as program:
-            deadline = time.monotonic() + 120.0
-            while not self.files() and time.monotonic() < deadline:  # until it is writing
-                time.sleep(0.02)
+            wait_until(self.files, "it was writing", program, pause_s=0.002)
             self.assertIsNone(program.poll(), "the program ended before it could be interrupted")
             program.send_signal(signal.SIGINT)
-            _, error = program.communicate(timeout=60)
+            _, error = program.communicate(timeout=MAX_WAIT_S)
         self.assertEqual(program.returncode, 130, error)
         self.assertIn("interrupted", error)
         self.assertEqual(self.files(), [])

@@ -3,6 +3,8 @@
 #include <apps/glidar/delivery.hpp>
 #include <apps/glidar/stream_stats.hpp>
 
+#include "support/waiting.hpp"
+
 #include <gtest/gtest.h>
 
 #include <atomic>
@@ -25,20 +27,30 @@ TEST(Delivery, DeliversEveryFrameInOrder) {
   for (std::uint32_t k = 0; k < 100; ++k) EXPECT_EQ(delivered[k], k);
 }
 
+/// Every frame but the last is being delivered while the next one is filled.
 TEST(Delivery, NeverTouchesAFrameThatIsBeingDelivered) {
+  constexpr int kFrames = 50;
   std::atomic<const Shot*> busy{nullptr};
+  std::atomic<int> begun{0};
+  std::atomic<int> filled{0};
   Delivery delivery(
       [&](const Shot& shot) {
         busy = &shot;
-        std::this_thread::sleep_for(std::chrono::microseconds(200));
+        const int next = ++begun;
+        EXPECT_TRUE(testing::soon([&] { return next == kFrames || filled > next; }));
         busy = nullptr;
       },
       [] {}, [] {});
-  for (int k = 0; k < 50; ++k) {
+  for (int k = 0; k < kFrames; ++k) {
+    ASSERT_TRUE(testing::soon([&] { return begun == k; }));
     const Shot& shot = delivery.room();
+    EXPECT_EQ(busy.load() != nullptr, k > 0);
     EXPECT_NE(&shot, busy.load());
+    ++filled;
     delivery.hand_over();
   }
+  delivery.finish();
+  EXPECT_EQ(begun, kFrames);
 }
 
 TEST(Delivery, TellsThatSomethingWentWrongAtOnceAndHandsItOn) {
@@ -47,7 +59,7 @@ TEST(Delivery, TellsThatSomethingWentWrongAtOnceAndHandsItOn) {
                     [&] { ++failures; });
   delivery.room();
   delivery.hand_over();
-  while (failures == 0) std::this_thread::yield();
+  ASSERT_TRUE(testing::soon([&] { return failures > 0; }));
   EXPECT_EQ(failures, 1);
   EXPECT_THROW(delivery.finish(), std::runtime_error);
 }
@@ -55,8 +67,7 @@ TEST(Delivery, TellsThatSomethingWentWrongAtOnceAndHandsItOn) {
 TEST(Delivery, IsIdleWhileNothingComes) {
   std::atomic<int> idle{0};
   Delivery delivery([](const Shot&) {}, [&] { ++idle; }, [] {});
-  while (idle < 3) std::this_thread::yield();
-  EXPECT_GE(idle, 3);
+  EXPECT_TRUE(testing::soon([&] { return idle >= 3; }));
 }
 
 TEST(DurationHistogram, TellsQuantilesToTwoPercent) {

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import lockstep_test as lockstep
 import numpy as np
-from cli_support import CliTest
+from cli_support import MAX_WAIT_S, CliTest
 
 PROGRAM = os.environ.get("GLIDAR_LOCKSTEP_CLIENT", "")
 SOURCE = Path(__file__).resolve().parents[2] / "examples" / "lockstep_client.cpp"
@@ -19,7 +19,7 @@ SOURCE = Path(__file__).resolve().parents[2] / "examples" / "lockstep_client.cpp
 
 class Client(CliTest):
     def run_client(self, endpoint):
-        return subprocess.run([PROGRAM, endpoint], capture_output=True, text=True, timeout=120, check=False)
+        return subprocess.run([PROGRAM, endpoint], capture_output=True, text=True, timeout=MAX_WAIT_S, check=False)
 
     def test_is_the_one_of_the_docs(self):
         shown = SOURCE.read_text(encoding="utf-8").split("// [docs]\n")[1]

@@ -19,14 +19,14 @@ except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
 
-from cli_support import CliTest
+from cli_support import MAX_WAIT_S, CliTest
 
 DOCS = (Path(__file__).resolve().parents[2] / "docs" / "link.md").read_text(encoding="utf-8")
 EXAMPLE = re.search(r"<!-- run by tests/apps/lockstep_test.py -->\n```python\n(.*?)```", DOCS, re.DOTALL)[1]
 CLIENT = {}
 exec(EXAMPLE[:EXAMPLE.index("socket = ")], CLIENT)  # the functions of the example
 
-PATIENCE_MS = 60_000  # for a loaded machine
+PATIENCE_MS = 1000 * MAX_WAIT_S
 SENSOR = [6, 0, 0, 0.5, -0.5, -0.5, 0.5, 0, 0, 0, 0, 0, 0]
 ROCK = [0, 0, 0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0]
 
@@ -69,7 +69,7 @@ class Server:
 
     def end(self, number=signal.SIGTERM):
         self.program.send_signal(number)
-        out, err = self.program.communicate(timeout=60)
+        out, err = self.program.communicate(timeout=MAX_WAIT_S)
         return self.program.returncode, out, err
 
 
@@ -85,7 +85,7 @@ class Lockstep(CliTest):
         with Server(self, "builtin:asteroid") as server:
             example = EXAMPLE.replace("tcp://127.0.0.1:5600", server.endpoint)
             done = subprocess.run([sys.executable, "-c", example], capture_output=True, text=True,
-                                  timeout=120, check=False)
+                                  timeout=MAX_WAIT_S, check=False)
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertRegex(done.stdout, r"^\d{3,} points\n$")
 

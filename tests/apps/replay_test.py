@@ -13,8 +13,10 @@ import unittest
 
 from stream_support import SMALL, StreamTest
 
+from cli_support import free_ports
 from lockstep_test import CLIENT, Server, body
 from stream_client import pose_message
+from waiting import wait_until
 
 SCENE = """models:
   - model: box.obj
@@ -68,7 +70,6 @@ class Replay(ReplayTest):
 
     def test_of_a_simulators_poses_gives_the_clouds_it_got(self):
         program, simulator, subscriber = self.in_the_loop("--hwm", "100", "--record", "r.jsonl")
-        time.sleep(0.5)  # subscriptions travel apart from hands
         for k in range(5):
             attitude = (0.9, 0.1 * k, 0.2, -0.3)
             length = sum(x * x for x in attitude) ** 0.5
@@ -77,9 +78,9 @@ class Replay(ReplayTest):
         clouds = subscriber.clouds_until_shutdown()
         self.finished(program, 0)
         self.assertEqual([line["stamp_ns"] for line in self.lines()[1:-1]], [100, 101, 102, 103, 104])
+        self.port = free_ports()  # the first subscriber would come back to the old one, without a handshake
         program = self.start("r.jsonl", "--port", str(self.port), command="replay")
         again = self.subscriber()
-        time.sleep(0.5)  # subscriptions travel apart from hands
         again.shake()
         replayed = again.clouds_until_shutdown()
         self.finished(program, 0)
@@ -156,8 +157,7 @@ class Recording(ReplayTest):
     def test_is_whole_after_a_signal(self):
         program = self.start(self.box, *SMALL, "--camera-z", "10", "--model-dr", "0,1,0", "--rate", "50", "--record",
                              "r.jsonl", "-o", "s.pcd")
-        while "s_000004.pcd" not in self.files():
-            time.sleep(0.02)
+        wait_until(lambda: "s_000004.pcd" in self.files(), "five frames", program)
         program.send_signal(signal.SIGINT)
         self.finished(program, 130)
         self.assertGreaterEqual(len(self.lines()), 7)

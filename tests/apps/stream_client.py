@@ -6,31 +6,33 @@ import struct
 
 import numpy as np
 import zmq
+from cli_support import MAX_WAIT_S
 
 SHUTDOWN = b"KTHXBAI"
 
 
 class Subscriber:
-    """Subscribes to clouds and shakes hands."""
+    """Subscribes to clouds, unless the topic is None, and shakes hands."""
 
     def __init__(self, context, port, topic=b"c", **options):
         self.clouds = context.socket(zmq.SUB)
         self.clouds.linger = 0
         for name, value in options.items():
             setattr(self.clouds, name, value)
-        self.clouds.setsockopt(zmq.SUBSCRIBE, topic)
+        if topic is not None:
+            self.clouds.setsockopt(zmq.SUBSCRIBE, topic)
         self.clouds.connect(f"tcp://127.0.0.1:{port}")
         self.hand = context.socket(zmq.REQ)
         self.hand.linger = 0
         self.hand.connect(f"tcp://127.0.0.1:{port + 1}")
         self.hand.send(b"")
 
-    def shake(self, timeout_s=20):
+    def shake(self, timeout_s=MAX_WAIT_S):
         if not self.hand.poll(timeout_s * 1000):
             raise TimeoutError("no handshake")
         assert self.hand.recv() == b""
 
-    def receive(self, timeout_s=20):
+    def receive(self, timeout_s=MAX_WAIT_S):
         """The next message as it is."""
         if not self.clouds.poll(timeout_s * 1000):
             raise TimeoutError("no message")
@@ -38,7 +40,7 @@ class Subscriber:
         assert not self.clouds.getsockopt(zmq.RCVMORE)
         return message
 
-    def clouds_until_shutdown(self, timeout_s=20):
+    def clouds_until_shutdown(self, timeout_s=MAX_WAIT_S):
         """(timestamp, N x 4) of every cloud; the last message must be the shutdown."""
         found = []
         while True:
@@ -78,10 +80,13 @@ class Simulator:
             self.close()
             raise
 
-    def shake(self, timeout_s=20):
+    def shake(self, timeout_s=MAX_WAIT_S, before_answer=()):
+        """GLIDAR asks once it has subscribed, so that it gets what is sent before the answer too."""
         if not self.hand.poll(timeout_s * 1000):
             raise TimeoutError("no handshake")
         assert self.hand.recv() == b""
+        for message in before_answer:
+            self.send(message)
         self.hand.send(b"")
 
     def send(self, message):

@@ -8,13 +8,17 @@ import re
 import signal
 import subprocess
 import sys
-import time
 import unittest
 
 from stream_support import SMALL, StreamTest
 
 import zmq
+from cli_support import MAX_WAIT_S
 from stream_client import SHUTDOWN, cloud, pose_message
+from waiting import wait_for_line
+
+
+RARELY = str(0.1 / MAX_WAIT_S)  # frames a second: no test waits for the second one
 
 
 class Ends(StreamTest):
@@ -27,8 +31,7 @@ class Ends(StreamTest):
 
     def waiting(self, program):
         """Reads the line that says so, which comes once signals are looked after."""
-        line = program.stderr.readline()
-        self.assertIn("waiting for", line)
+        wait_for_line(program.stderr, "waiting for")
 
     def test_by_a_signal_while_it_waits_for_subscribers(self):
         for number in (signal.SIGINT, signal.SIGTERM):
@@ -36,8 +39,16 @@ class Ends(StreamTest):
             self.waiting(program)
             subscriber = self.subscriber()
             subscriber.shake()
+            wait_for_line(program.stderr, "1 of 2 subscribers ready")
             self.ends_by(program, number, subscriber)
             subscriber.close()
+
+    def test_by_a_signal_while_it_waits_for_a_subscription(self):
+        program = self.publish("--subscription-timeout", "1e9")
+        self.waiting(program)
+        subscriber = self.subscriber(topic=b"another")
+        subscriber.shake()
+        self.ends_by(program, signal.SIGINT)
 
     def test_by_a_signal_while_it_waits_for_a_simulator(self):
         program = self.publish("--subscribers", "0", "--physics-port", str(self.physics))
@@ -50,7 +61,6 @@ class Ends(StreamTest):
             self.ends_by(program, number, subscriber)
             simulator.close()
             subscriber.close()
-            time.sleep(0.2)
 
     def test_by_a_signal_in_mid_run(self):
         program = self.publish("--rate", "max")
@@ -60,13 +70,12 @@ class Ends(StreamTest):
         self.ends_by(program, signal.SIGTERM, subscriber)
 
     def test_by_a_signal_between_slow_frames(self):
-        program = self.publish("--rate", "0.01")
+        program = self.publish("--rate", RARELY)
         subscriber = self.subscriber()
         subscriber.shake()
         cloud(subscriber.receive())
-        started = time.monotonic()
         self.ends_by(program, signal.SIGINT, subscriber)
-        self.assertLess(time.monotonic() - started, 30)
+        self.assertEqual(self.stats()["frames"]["measured"], 1)
 
     def full_disk(self, *arguments):
         """The program where files may have 1 KiB, as on a disk that is nearly full."""
@@ -77,7 +86,7 @@ class Ends(StreamTest):
         return program, subscriber
 
     def test_at_once_when_the_disk_is_full_and_the_next_frame_is_far_off(self):
-        program, subscriber = self.full_disk("--rate", "0.01")
+        program, subscriber = self.full_disk("--rate", RARELY)
         self.assertEqual(len(subscriber.clouds_until_shutdown()), 1)
         self.assertRegex(self.finished(program, 2), "a_000000.csv.*File too large")
 
@@ -98,20 +107,19 @@ class Ends(StreamTest):
                 stranger.linger = 0
                 stranger.connect(f"tcp://127.0.0.1:{self.port + 1}")
                 stranger.send_multipart(parts)
-                self.assertTrue(stranger.poll(20_000), parts)
+                self.assertTrue(stranger.poll(1000 * MAX_WAIT_S), parts)
                 self.assertEqual(stranger.recv(), b"")
         program.send_signal(signal.SIGTERM)
         subscriber.clouds_until_shutdown()
         self.assertIn("odd handshake", self.finished(program, 143))
 
     def test_not_by_a_pose_that_waited_longer_than_the_timeout_until_it_was_taken(self):
-        """The timeout is about waiting for a pose, not about frames that take long."""
+        """The timeout is about waiting for a pose, not about frames that take long. Poses are sent before the
+        handshake is answered, as a busy machine may need long between the two."""
         simulator = self.simulator()
         program = self.publish("--physics-port", str(self.physics), "--hwm", "10", "--subscribers", "0",
-                               "--rate", "2", "--pose-timeout", "0.3", "--frames", "3")
-        simulator.shake()
-        for stamp in range(3):
-            simulator.send(pose_message(stamp))
+                               "--rate", "0.15", "--pose-timeout", "5", "--frames", "2")
+        simulator.shake(before_answer=[pose_message(stamp) for stamp in range(2)])
         self.finished(program, 0)
         self.assertEqual(self.stats()["ending"], "all frames are done")
 
@@ -141,7 +149,7 @@ class Documentation(StreamTest):
                     for name in ("simulator.py", "client.py")]
         for process in programs:
             self.addCleanup(process.kill)
-        out = [process.communicate(timeout=60)[0] for process in programs]
+        out = [process.communicate(timeout=MAX_WAIT_S)[0] for process in programs]
         self.finished(program, 0)
         lines = out[1].splitlines()
         self.assertEqual(len(lines), 100)

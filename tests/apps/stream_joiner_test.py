@@ -5,36 +5,39 @@
 
 import json
 import threading
-import time
 import unittest
 
 from stream_support import StreamTest
 
 import zmq
-from cli_support import free_ports
-from stream_client import cloud, pose_message
+from cli_support import MAX_WAIT_S, free_ports
+from stream_client import SHUTDOWN, cloud, pose_message
+from waiting import wait_for_line, wait_until
 
 ROUNDS, TOGETHER, POSES = 3, 10, 20
-LONGEST_S = 60
 
 
 class Simulator(threading.Thread):
-    """Comes some time after GLIDAR, opens its ports in either order and some time apart, and sends at once."""
+    """Comes after GLIDAR, opens its ports in either order, the second one together with the first or once GLIDAR has
+    connected to that, and sends at once."""
 
-    def __init__(self, context, port, wait_s, apart_s, opens_poses_first):
+    def __init__(self, context, port, is_apart, opens_poses_first):
         super().__init__()
-        self.context, self.port, self.wait_s, self.apart_s = context, port, wait_s, apart_s
+        self.context, self.port, self.is_apart = context, port, is_apart
         self.opens_poses_first, self.was_asked = opens_poses_first, False
 
     def run(self):
-        time.sleep(self.wait_s)
         with self.context.socket(zmq.PUB) as poses, self.context.socket(zmq.REP) as hand:
             poses.linger, hand.linger = 10_000, 10_000
             order = [(poses, self.port), (hand, self.port + 1)]
-            for number, (socket, port) in enumerate(order if self.opens_poses_first else order[::-1]):
-                time.sleep(number * self.apart_s)
-                socket.bind(f"tcp://127.0.0.1:{port}")
-            self.was_asked = hand.poll(LONGEST_S * 1000) != 0
+            (first, first_port), (second, second_port) = order if self.opens_poses_first else order[::-1]
+            with first.get_monitor_socket(zmq.EVENT_HANDSHAKE_SUCCEEDED) as connected:
+                first.bind(f"tcp://127.0.0.1:{first_port}")
+                if self.is_apart and not connected.poll(1000 * MAX_WAIT_S):
+                    return
+                second.bind(f"tcp://127.0.0.1:{second_port}")
+                first.disable_monitor()
+            self.was_asked = hand.poll(1000 * MAX_WAIT_S) != 0
             if not self.was_asked:
                 return
             hand.recv()
@@ -49,26 +52,19 @@ class SlowJoiner(StreamTest):
         return self.start(self.box, "--width", "4", "--height", "4", "--port", str(port), "--subscribers", "0",
                           "--physics-port", str(physics), "--hwm", "100", "--stats", name)
 
-    def free_pairs(self, count):
-        pairs = set()
-        while len(pairs) < count:
-            port = free_ports()
-            if not any(abs(port - other) < 2 for other in pairs):
-                pairs.add(port)
-        return sorted(pairs)
-
     def test_loses_no_pose_of_a_simulator_that_sends_at_once(self):
         for around in range(ROUNDS):
-            pairs = self.free_pairs(2 * TOGETHER)
+            pairs = [free_ports() for _ in range(2 * TOGETHER)]
             programs = [self.program(f"{k}.json", pairs[2 * k], pairs[2 * k + 1]) for k in range(TOGETHER)]
             for program in programs:
-                self.assertIn("waiting for a simulator", program.stderr.readline())
-            simulators = [Simulator(self.context, pairs[2 * k], wait_s=0.15 * k, apart_s=0.2 * (k % 3),
+                wait_for_line(program.stderr, "waiting for a simulator")
+            simulators = [Simulator(self.context, pairs[2 * k], is_apart=k % 3 > 0,
                                     opens_poses_first=(k + around) % 2 == 0) for k in range(TOGETHER)]
             for simulator in simulators:
                 simulator.start()
-            for simulator in simulators:
+            for k, simulator in enumerate(simulators):
                 simulator.join()
+                self.assertTrue(simulator.was_asked, k)
             for k, program in enumerate(programs):
                 self.finished(program, 0)
                 stats = json.loads(self.bytes_of(f"{k}.json"))
@@ -94,14 +90,88 @@ class SlowJoiner(StreamTest):
         program = self.publish("--subscribers", "0", "--physics-port", str(self.physics), "--hwm", "100")
         with self.context.socket(zmq.REP) as hand, self.context.socket(zmq.PUB) as poses:
             hand.bind(f"tcp://127.0.0.1:{self.physics + 1}")
-            self.assertTrue(hand.poll(LONGEST_S * 1000))
+            self.assertTrue(hand.poll(1000 * MAX_WAIT_S))
             hand.recv()
             poses.bind(f"tcp://127.0.0.1:{self.physics}")
             hand.send(b"")
-            while program.poll() is None:
-                poses.send(b"vKTHXBAI")
-                time.sleep(0.05)
+
+            def has_ended():
+                poses.send(b"v" + SHUTDOWN)
+                return program.poll() is not None
+            wait_until(has_ended, "the end of the stream")
         self.finished(program, 0)
+
+
+class LateSubscriber(StreamTest):
+    """Shakes hands first and subscribes afterwards."""
+
+    def late(self, before, topic=b"c"):
+        """One that subscribes after its handshake and what before() waits for."""
+        subscriber = self.subscriber(topic=None)
+        subscriber.shake()
+        before()
+        subscriber.clouds.subscribe(topic)
+        return subscriber
+
+    def test_loses_no_cloud_of_a_stream(self):
+        program = self.publish("--rate", "max", "--frames", "3", "--subscription-timeout", "1e9")
+        late = self.late(lambda: wait_for_line(program.stderr, "waiting for 1 subscriber"))
+        self.assertEqual([stamp for stamp, _ in late.clouds_until_shutdown()], [1, 2, 3])
+        self.assertNotIn("subscription missing", self.finished(program, 0))
+
+    def test_loses_no_cloud_of_a_replay(self):
+        self.succeed("stream", self.box, "--width", "8", "--height", "8", "--frames", "3", "--rate", "max",
+                     "--record", "r.jsonl")
+        program = self.start("r.jsonl", "--port", str(self.port), "--subscription-timeout", "1e9", command="replay")
+        late = self.late(lambda: wait_for_line(program.stderr, "waiting for 1 subscriber"))
+        self.assertEqual([stamp for stamp, _ in late.clouds_until_shutdown()], [1, 2, 3])
+        self.finished(program, 0)
+
+    def test_loses_no_cloud_of_a_simulators_poses(self):
+        simulator = self.simulator()
+        program = self.publish("--physics-port", str(self.physics), "--hwm", "10", "--subscription-timeout", "1e9")
+
+        def send_all():
+            simulator.shake(before_answer=[pose_message(stamp) for stamp in (7, 8, 11)])
+            simulator.shut_down()
+        late = self.late(send_all)
+        self.assertEqual([stamp for stamp, _ in late.clouds_until_shutdown()], [7, 8, 11])
+        self.finished(program, 0)
+
+    def test_is_waited_for_though_another_one_is_ready(self):
+        program = self.publish("--rate", "max", "--frames", "3", "--subscribers", "2", "--subscription-timeout", "1e9")
+        early = self.subscriber()
+        early.shake()
+        late = self.late(lambda: wait_for_line(program.stderr, "1 of 2 subscribers ready"))
+        for subscriber in (early, late):
+            self.assertEqual([stamp for stamp, _ in subscriber.clouds_until_shutdown()], [1, 2, 3])
+        self.finished(program, 0)
+
+    def test_of_one_sensor_of_a_rig_loses_no_cloud_of_it(self):
+        self.write("rig.yaml", "models: [{model: box.obj, pose: {position: [6, 0, 0]}}]\n"
+                               "sensors: [{name: a, sensor: VLP-16}, {name: b, sensor: VLP-16}]\n"
+                               "rig_pose: {position: [0, 0, 0]}\n")
+        program = self.start("rig.yaml", "--port", str(self.port), "--frames", "2", "--rate", "max",
+                             "--subscription-timeout", "1e9")
+        late = self.late(lambda: wait_for_line(program.stderr, "waiting for 1 subscriber"), topic=b"/b\0")
+        received = [late.receive() for _ in range(3)]
+        self.assertEqual([message[:3] for message in received], [b"/b\0"] * 3)
+        self.assertEqual([message[3] for message in received[:2]], [1, 2])
+        self.assertEqual(received[2][3:], SHUTDOWN)
+        self.finished(program, 0)
+
+    def test_that_never_subscribes_is_reported_once_and_the_stream_goes_on(self):
+        program = self.publish("--rate", "max", "--frames", "3", "--subscription-timeout", "0.2")
+        self.subscriber(topic=None).shake()
+        err = self.finished(program, 0)
+        self.assertEqual(err.count("1 peer has shaken hands but not subscribed to clouds within 0.2 s"), 1, err)
+        self.assertEqual(self.stats()["clouds"]["sent"], 3)
+        self.assertEqual(self.stats()["faults"], {"subscription missing": 1})
+
+    def test_a_timeout_that_is_none_is_refused(self):
+        for text in ("-1", "nan", "soon"):
+            self.assertIn("--subscription-timeout", self.refused("stream", self.box, "--port", str(self.port),
+                                                                 "--subscription-timeout", text))
 
 
 if __name__ == "__main__":

@@ -5,7 +5,6 @@
 import json
 import subprocess
 import sys
-import time
 
 try:
     import zmq
@@ -13,8 +12,9 @@ except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
 
-from cli_support import CliTest, box_of, free_ports
+from cli_support import MAX_WAIT_S, CliTest, box_of, free_ports
 from stream_client import Simulator, Subscriber
+from waiting import wait_until
 
 SMALL = ("--width", "32", "--height", "24", "--fov", "20")
 
@@ -27,8 +27,6 @@ class StreamTest(CliTest):
         self.box = self.write("box.obj", box_of(2.0))
         self.port = free_ports()
         self.physics = free_ports()
-        while abs(self.physics - self.port) < 2:
-            self.physics = free_ports()
 
     def start(self, *arguments, command="stream"):
         """The running program; whatever happens, it ends with the test."""
@@ -65,12 +63,12 @@ class StreamTest(CliTest):
         return program, simulator, subscriber
 
     def simulator(self):
-        while True:
+        def bound():
             try:
-                simulator = Simulator(self.context, self.physics)
-                break
+                return Simulator(self.context, self.physics)
             except zmq.ZMQError:  # the port of the one before is not free yet
-                time.sleep(0.1)
+                return None
+        simulator = wait_until(bound, "the simulator's ports")
         self.addCleanup(simulator.close)
         return simulator
 
@@ -80,7 +78,7 @@ class StreamTest(CliTest):
         return subscriber
 
     def finished(self, program, code):
-        out, err = program.communicate(timeout=120)
+        out, err = program.communicate(timeout=MAX_WAIT_S)
         self.assertEqual(program.returncode, code, out + err)
         return err
 

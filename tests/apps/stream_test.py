@@ -10,6 +10,7 @@ import unittest
 from stream_support import SMALL, StreamTest
 
 import numpy as np
+from cli_support import MAX_WAIT_S
 from stream_client import cloud, pose_message
 
 FLOAT32 = 2e-6  # of 10 m
@@ -90,7 +91,7 @@ class Clouds(StreamTest):
         self.assertGreater(self.stats()["clouds"]["missed"], 0)
         self.assertGreater(len(clouds), 2)
         self.assertIn("clouds missed", err)
-        self.assertLess(err.count("\n"), 60)  # one line a second, not one a cloud
+        self.assertLess(err.count("\n"), self.stats()["seconds"] + 10)  # one line a second, not one a cloud
 
     def test_conflated_leave_the_newest_for_a_slow_subscriber(self):
         program = self.publish_box("--camera-z", "4", "--pub-conflate", "1",
@@ -98,10 +99,7 @@ class Clouds(StreamTest):
         subscriber = self.subscriber()
         subscriber.shake()
         received = []
-        while subscriber.clouds.poll(5000):  # the newest message may be the end, or have replaced it
-            message = subscriber.receive()
-            if message == b"cKTHXBAI":
-                break
+        while (message := subscriber.receive()) != b"cKTHXBAI":  # the last one, which nothing replaces
             received.append(cloud(message)[0])
         self.finished(program, 0)
         self.assertEqual(self.stats()["clouds"]["sent"], 60)
@@ -198,7 +196,7 @@ class Poses(StreamTest):
         self.assertEqual(self.stats()["poses"]["refused"], 20 * len(bad) + 2)
         self.assertIn("pose refused", err)
         self.assertIn("182 times", err)
-        self.assertLess(err.count("pose refused"), 40)
+        self.assertLess(err.count("pose refused"), self.stats()["seconds"] + 10)
 
     def test_the_newest_counts_without_a_queue(self):
         program, simulator, subscriber = self.in_the_loop()
@@ -234,16 +232,19 @@ class Poses(StreamTest):
         self.assertIn("simulator lost", self.finished(program, 0))
 
     def test_missing_for_too_long_end_it(self):
-        program, simulator, subscriber = self.in_the_loop("--pose-timeout", "0.5")
-        simulator.send(pose_message(1))
+        simulator = self.simulator()
+        program = self.publish("--physics-port", str(self.physics), "--pose-timeout", "3")
+        subscriber = self.subscriber()
+        subscriber.shake()
+        simulator.shake(before_answer=[pose_message(1)])
         self.assertEqual([t for t, _ in subscriber.clouds_until_shutdown()], [1])
         self.finished(program, 3)
-        self.assertEqual(self.stats()["ending"], "no pose came for 0.5 s")
+        self.assertEqual(self.stats()["ending"], "no pose came for 3 s")
 
     def test_of_a_simulator_that_dies_in_the_handshake_are_waited_for(self):
         simulator = self.simulator()
         program = self.publish("--subscribers", "0", "--physics-port", str(self.physics))
-        self.assertTrue(simulator.hand.poll(60000))  # asked, and gone without an answer
+        self.assertTrue(simulator.hand.poll(1000 * MAX_WAIT_S))  # asked, and gone without an answer
         simulator.close()
         again = self.simulator()
         again.shake()

@@ -35,13 +35,38 @@ class CloudPublisherTest : public ::testing::Test {
       return std::make_unique<CloudPublisher>(context, options, faults);
     });
   }
-  link::Socket subscriber(int queue = 1000) {
+  link::Socket subscriber(int queue = 1000, const std::string& topic = "c") {
     link::Socket socket(context, {.kind = link::SocketKind::subscribe,
                                   .receive_queue = queue,
                                   .largest_message_bytes = std::int64_t{1} << 30});
-    socket.subscribe("c");
+    socket.subscribe(topic);
     socket.connect(endpoint);
     return socket;
+  }
+  /// A peer that has shaken hands.
+  link::Socket shaken_hand() {
+    link::Socket hand(context, {.kind = link::SocketKind::request});
+    hand.connect({endpoint.host, static_cast<std::uint16_t>(endpoint.port + 1)});
+    hand.send({});
+    EXPECT_TRUE(soon([&] {
+      publisher->serve();
+      return hand.receive().has_value();
+    }));
+    return hand;
+  }
+  bool becomes_ready(std::uint64_t subscribers) {
+    return soon([&] {
+      publisher->serve();
+      return publisher->has(subscribers);
+    });
+  }
+  /// Whether it stays unready however often it looks.
+  bool stays_unready(std::uint64_t subscribers) {
+    for (int k = 0; k < 100; ++k) {
+      publisher->serve();
+      if (publisher->has(subscribers)) return false;
+    }
+    return true;
   }
   bool has_subscribers(std::uint64_t count) {
     return soon([&] {
@@ -91,6 +116,113 @@ TEST_F(CloudPublisherTest, AnswersHandshakesAtTheNextPort) {
   }));
   ASSERT_TRUE(soon([&] { return hand.receive().has_value(); }));
   EXPECT_EQ(publisher->counts().handshakes, 1U);
+}
+
+/// No time out in the tests below that wait for a subscription.
+constexpr std::chrono::hours kForever{1000};
+
+TEST_F(CloudPublisherTest, WaitsForTheSubscriptionOfAPeerThatShookHandsFirst) {
+  publish({.subscription_timeout = kForever});
+  const link::Socket hand = shaken_hand();
+  EXPECT_TRUE(stays_unready(1));
+  EXPECT_EQ(publisher->ready(), 0U);
+  link::Socket socket = subscriber();
+  ASSERT_TRUE(becomes_ready(1));
+  EXPECT_EQ(publisher->ready(), 1U);
+  send(0);
+  EXPECT_EQ(decode_cloud(received(socket)).timestamp, 1U);
+  EXPECT_TRUE(said.empty());
+}
+
+TEST_F(CloudPublisherTest, WaitsForOneSubscriptionOfEachPeerThatShookHands) {
+  publish({.subscription_timeout = kForever});
+  link::Socket first = subscriber();
+  first.subscribe("cK");  // two subscriptions of one peer
+  ASSERT_TRUE(has_subscribers(1));
+  const link::Socket hand = shaken_hand();
+  ASSERT_TRUE(becomes_ready(1));
+  const link::Socket another_hand = shaken_hand();
+  EXPECT_TRUE(stays_unready(1));
+  EXPECT_TRUE(stays_unready(2));
+  link::Socket second = subscriber();
+  ASSERT_TRUE(becomes_ready(2));
+  send(0);
+  EXPECT_EQ(decode_cloud(received(first)).timestamp, 1U);
+  EXPECT_EQ(decode_cloud(received(second)).timestamp, 1U);
+}
+
+TEST_F(CloudPublisherTest, WaitsForASubscriptionToATopicThatItSends) {
+  publish({.subscription_timeout = kForever});
+  publisher->set_topics({{1, rig_topic("lidar")}, {2, rig_topic("camera")}});
+  const link::Socket stranger = subscriber(1000, "/radar");
+  const link::Socket hand = shaken_hand();
+  EXPECT_TRUE(stays_unready(1));
+  const link::Socket socket = subscriber(1000, rig_topic("camera"));
+  EXPECT_TRUE(becomes_ready(1));
+  EXPECT_EQ(publisher->counts().subscribers, 1U);
+}
+
+TEST_F(CloudPublisherTest, CountsAPeerWithTheTopicsOfSeveralSensorsOnce) {
+  publish({.subscription_timeout = kForever});
+  publisher->set_topics({{1, rig_topic("lidar")}, {2, rig_topic("camera")}});
+  link::Socket both(context, {.kind = link::SocketKind::subscribe});
+  both.subscribe(rig_topic("lidar"));
+  both.subscribe(rig_topic("camera"));
+  both.connect(endpoint);
+  const link::Socket hand = shaken_hand();
+  ASSERT_TRUE(becomes_ready(1));
+  EXPECT_EQ(publisher->counts().subscribers, 1U);
+}
+
+TEST_F(CloudPublisherTest, DoesNotTakeAPeerThatComesBackForAnother) {
+  publish({.subscription_timeout = kForever});
+  const link::Socket hand = shaken_hand();
+  auto socket = std::make_unique<link::Socket>(subscriber());
+  ASSERT_TRUE(becomes_ready(1));
+  socket.reset();
+  ASSERT_TRUE(has_subscribers(0));
+  socket = std::make_unique<link::Socket>(subscriber());
+  ASSERT_TRUE(has_subscribers(1));
+  const link::Socket another_hand = shaken_hand();
+  EXPECT_TRUE(stays_unready(2));
+  const link::Socket another = subscriber();
+  EXPECT_TRUE(becomes_ready(2));
+}
+
+TEST_F(CloudPublisherTest, GivesUpOnAPeerThatNeverSubscribesAndReportsItOnce) {
+  publish({.subscription_timeout = 50ms});
+  const link::Socket hand = shaken_hand();
+  ASSERT_TRUE(becomes_ready(1));
+  EXPECT_TRUE(publisher->has(1));
+  publisher->shut_down();
+  EXPECT_THAT(said, ::testing::ElementsAre(HasSubstr(
+                        "1 peer has shaken hands but not subscribed to clouds within 0.05 s")));
+  EXPECT_EQ(faults.counts().at("subscription missing"), 1U);
+}
+
+TEST_F(CloudPublisherTest, NamesTheTopicsOfARigToAPeerThatSubscribesToNone) {
+  publish({.subscription_timeout = 0ms});
+  publisher->set_topics({{1, rig_topic("lidar")}});
+  const link::Socket hand = shaken_hand();
+  ASSERT_TRUE(becomes_ready(1));
+  EXPECT_THAT(said, ::testing::ElementsAre(HasSubstr("'/NAME' and a zero byte")));
+}
+
+TEST_F(CloudPublisherTest, WaitsForNobodyWhenNoSubscribersAreRequested) {
+  publish({.subscription_timeout = kForever});
+  EXPECT_TRUE(publisher->has(0));
+  const link::Socket hand = shaken_hand();
+  EXPECT_TRUE(publisher->has(0));
+}
+
+TEST_F(CloudPublisherTest, KeepingTheNewestWaitsForTheConnectionOfAPeer) {
+  publish({.keeps_newest = true, .subscription_timeout = kForever});
+  const link::Socket hand = shaken_hand();
+  EXPECT_TRUE(stays_unready(1));
+  link::Socket socket = subscriber();
+  ASSERT_TRUE(becomes_ready(1));
+  send(0);
+  EXPECT_EQ(decode_cloud(received(socket)).timestamp, 1U);
 }
 
 TEST_F(CloudPublisherTest, AnswersAHandshakeWithContentsAndSaysSo) {

@@ -5,10 +5,13 @@
 #include <glidar/core/error.hpp>
 #include <glidar/link/socket.hpp>
 
-#include <chrono>
+#include "support/waiting.hpp"
+
 #include <cstdint>
+#include <fstream>
 #include <optional>
 #include <random>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -31,15 +34,27 @@ auto at_free_port(const Make& make) {
   }
 }
 
-/// Repeats an action until it gives true; false when that takes longer than half a minute.
-template <class Action>
-bool soon(const Action& action) {
-  const auto start = std::chrono::steady_clock::now();
-  while (!action()) {
-    if (std::chrono::steady_clock::now() - start > std::chrono::seconds(30)) return false;
-    link::wait_for({}, -1, std::chrono::milliseconds(2));
+/// Whether an end of a TCP connection at this port of this machine is open, from the table of
+/// proc(5): local address, remote address, state in hexadecimal, of which 06 (TIME_WAIT) and
+/// 0A (LISTEN) are none.
+inline bool has_connections(std::uint16_t port) {
+  std::ifstream table("/proc/net/tcp");
+  std::string line;
+  std::getline(table, line);  // the head
+  while (std::getline(table, line)) {
+    std::istringstream words(line);
+    std::string number;
+    std::string local;
+    std::string remote;
+    std::string state;
+    words >> number >> local >> remote >> state;
+    const auto is_at = [port](const std::string& address) {
+      constexpr int kHexadecimal = 16;
+      return std::stoi(address.substr(address.find(':') + 1), nullptr, kHexadecimal) == port;
+    };
+    if ((is_at(local) || is_at(remote)) && state != "06" && state != "0A") return true;
   }
-  return true;
+  return false;
 }
 
 /// The next message; empty when none comes.

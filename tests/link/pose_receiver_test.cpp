@@ -9,7 +9,6 @@
 
 #include <chrono>
 #include <memory>
-#include <thread>
 
 namespace glidar::legacy {
 namespace {
@@ -136,7 +135,7 @@ TEST_F(PoseReceiverTest, TakesASimulatorThatSaysThatItEndsForNoneThatIsLost) {
   for (std::uint64_t stamp = 1; stamp <= kPoses; ++stamp) simulator->send(pose(stamp));
   simulator->send(encode_shutdown("v"));
   simulator.reset();
-  std::this_thread::sleep_for(200ms);  // the connection has ended before anything is read
+  ASSERT_TRUE(soon([&] { return !testing::has_connections(endpoint.port); }));  // none is read yet
   for (std::uint64_t stamp = 1; stamp <= kPoses; ++stamp) EXPECT_EQ(next_timestamp(), stamp);
   EXPECT_EQ(next_timestamp(), std::nullopt);
   EXPECT_TRUE(receiver->is_over());

@@ -4,6 +4,7 @@
 PYTHONPATH=build/dev/python PATH=build/dev/apps/glidar:$PATH build/venv/bin/python -m pytest tests/python"""
 
 import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,8 @@ import pytest
 import glidar
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "support"))
+from waiting import MAX_WAIT_S  # noqa: E402
 
 
 @pytest.fixture(scope="session")
@@ -35,7 +38,7 @@ def program():
 
     def run(*arguments, folder=ROOT, code=0):
         done = subprocess.run(
-            ["glidar", *map(str, arguments)], cwd=folder, capture_output=True, text=True, timeout=300, check=False
+            ["glidar", *map(str, arguments)], cwd=folder, capture_output=True, text=True, timeout=MAX_WAIT_S, check=False
         )
         assert done.returncode == code, done.stderr
         return done.stdout if code == 0 else done.stderr

@@ -7,6 +7,7 @@ import re
 
 import pytest
 from conftest import ROOT
+from waiting import MAX_WAIT_S
 
 import glidar
 
@@ -51,7 +52,7 @@ def test_notebook_runs_and_is_kept_without_outputs(folder, monkeypatch):
             assert cell.outputs == []
             assert cell.execution_count is None
     monkeypatch.delenv("MPLBACKEND")
-    nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(folder)}}).execute()
+    nbclient.NotebookClient(notebook, timeout=MAX_WAIT_S, resources={"metadata": {"path": str(folder)}}).execute()
     shown = [out for cell in notebook.cells if cell.cell_type == "code" for out in cell.outputs]
     assert any("image/png" in out.get("data", {}) for out in shown)
     assert os.listdir(folder)

@@ -12,6 +12,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "examples"))
+sys.path.insert(0, str(ROOT / "tests" / "support"))
 
 try:
     import matplotlib  # noqa: F401
@@ -25,6 +26,7 @@ except ImportError as missing:
 
 import mujoco_rendezvous as example
 from mujoco_links import Body, Lockstep, Protocol2015, Trouble, rotation
+from waiting import MAX_WAIT_S
 
 EXAMPLE = ROOT / "examples" / "mujoco_rendezvous.py"
 SECONDS = 4.0
@@ -106,7 +108,7 @@ class Tumbling(unittest.TestCase):
 
 class Program(unittest.TestCase):
     def run_example(self, *arguments, **environment):
-        return subprocess.run([sys.executable, str(EXAMPLE), *arguments], capture_output=True, text=True, timeout=300,
+        return subprocess.run([sys.executable, str(EXAMPLE), *arguments], capture_output=True, text=True, timeout=MAX_WAIT_S,
                               check=False, env=dict(os.environ, **environment))
 
     def test_writes_its_table_and_its_picture(self):
@@ -148,7 +150,7 @@ class Program(unittest.TestCase):
             program.stdout.readline()
         children = Path(f"/proc/{program.pid}/task/{program.pid}/children").read_text(encoding="utf-8").split()
         program.terminate()
-        program.communicate(timeout=60)
+        program.communicate(timeout=MAX_WAIT_S)
         self.assertEqual(program.returncode, 143)
         self.assertEqual(len(children), 1)
         self.assertFalse(Path("/proc", children[0]).exists())

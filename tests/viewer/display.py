@@ -5,31 +5,19 @@
 import os
 import shutil
 import subprocess
-import time
 from urllib.parse import quote
 
 from PIL import ImageGrab
 import Xlib.display
 from Xlib import X, Xutil
 from Xlib.protocol import event
+from waiting import MAX_WAIT_S, wait_until
 
 NEEDED = ("Xvfb", "xdotool")
-PATIENCE_S = 60  # for a loaded machine
 
 
 def missing_programs():
     return [program for program in NEEDED if shutil.which(program) is None]
-
-
-def wait_until(condition, what):
-    """The condition's first true value; fails after PATIENCE_S."""
-    end = time.monotonic() + PATIENCE_S
-    while time.monotonic() < end:
-        value = condition()
-        if value:
-            return value
-        time.sleep(0.05)
-    raise AssertionError(f"waited in vain for {what}")
 
 
 class Display:
@@ -53,7 +41,7 @@ class Display:
 
     def xdotool(self, *arguments):
         done = subprocess.run(["xdotool", *map(str, arguments)], env=self.environment,
-                              capture_output=True, text=True, timeout=PATIENCE_S, check=False)
+                              capture_output=True, text=True, timeout=MAX_WAIT_S, check=False)
         return done.stdout.split()
 
     def window(self, title):
@@ -63,17 +51,6 @@ class Display:
 
     def grab(self):
         return ImageGrab.grab(xdisplay=self.name).convert("RGB")
-
-    def drag(self, start, way, button=1):
-        """Slowly, as a hand does."""
-        self.xdotool("mousemove", *start)
-        time.sleep(0.2)
-        self.xdotool("mousedown", button)
-        for _ in range(5):
-            time.sleep(0.1)
-            self.xdotool("mousemove_relative", "--", way[0] // 5, way[1] // 5)
-        time.sleep(0.1)
-        self.xdotool("mouseup", button)
 
     def set_minimised(self, window, is_minimised):
         """Does what a window manager does (ICCCM 4.1.3.1): sets WM_STATE, hides or shows."""
@@ -101,20 +78,16 @@ class Display:
         uri_list = atom("text/uri-list")
         send("XdndEnter", [5 << 24, uri_list, 0, 0])
         send("XdndPosition", [0, (300 << 16) | 300, X.CurrentTime, atom("XdndActionCopy")])
-        end = time.monotonic() + PATIENCE_S
-        while time.monotonic() < end:
-            if not display.pending_events():
-                time.sleep(0.02)
-                continue
+        is_finished = False
+        while not is_finished:
+            wait_until(display.pending_events, "the window to take what was dropped")
             got = display.next_event()
             if got.type == X.ClientMessage and got.client_type == atom("XdndStatus"):
                 send("XdndDrop", [0, X.CurrentTime, 0, 0])
             elif got.type == X.SelectionRequest:
                 self._hand_over(got, uri_list, path, display)
-            elif got.type == X.ClientMessage and got.client_type == atom("XdndFinished"):
-                display.close()
-                return
-        raise AssertionError("the window did not take what was dropped")
+            is_finished = got.type == X.ClientMessage and got.client_type == atom("XdndFinished")
+        display.close()
 
     @staticmethod
     def _hand_over(request, uri_list, path, display):

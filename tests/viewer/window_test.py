@@ -6,16 +6,17 @@ import os
 import re
 import subprocess
 import sys
-import time
+import threading
 import unittest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 sys.path.insert(0, os.path.join(os.path.dirname(HERE), "apps"))
 try:
-    from cli_support import CliTest, BOX
-    from display import Display, missing_programs, wait_until
+    from cli_support import BOX, MAX_WAIT_S, CliTest
+    from display import Display, missing_programs
     from PIL import Image, ImageChops, ImageStat
+    from waiting import let_time_pass, wait_until
 except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
@@ -24,6 +25,7 @@ except ImportError as missing:
 SENSOR = (540, 330)  # the middle of the left view
 CLOUD = (1030, 330)
 SENSOR_BOX = (300, 30, 770, 600)
+CLOUD_BOX = (780, 30, 1270, 600)
 
 
 def difference(a, b):
@@ -32,54 +34,117 @@ def difference(a, b):
 
 
 class Window:
-    """A running glidar view; a context that ends it."""
+    """A running glidar view; a context that ends it. What it does is known from the lines of --print-state."""
 
-    def __init__(self, test, *arguments, title="GLIDAR"):
+    def __init__(self, test, *arguments):
         self._test = test
         self._display = test.display
         self.program = subprocess.Popen(
-            ["glidar", "view", *arguments], cwd=test.folder, env=test.environment,
+            ["glidar", "view", "--print-state", *arguments], cwd=test.folder, env=test.environment,
             stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self._title = title
+        self._out, self._err, self._keys = [], [], 0
+        self._readers = [threading.Thread(target=self._read, args=pair)
+                         for pair in ((self.program.stdout, self._out), (self.program.stderr, self._err))]
+        for reader in self._readers:
+            reader.start()
+
+    @staticmethod
+    def _read(stream, lines):
+        for line in stream:
+            lines.append(line)
 
     def __enter__(self):
-        self.number = self._display.window(self._title)
-        self.settle()
+        self.number = self._display.window("GLIDAR")
+        self.wait_for("its first picture")
         return self
 
     def __exit__(self, *error):
         if self.program.poll() is None:
             self.program.kill()
-        self.program.communicate()
+        self.program.wait()
+        for reader in self._readers:
+            reader.join()
+        for stream in (self.program.stdout, self.program.stderr):
+            stream.close()
 
-    def settle(self):
-        """Until the window shows the same twice, in half a second."""
-        def is_still():
-            before = self._display.grab()
-            time.sleep(0.5)
-            return difference(before, self._display.grab()) == 0.0 and max(
-                ImageStat.Stat(before).stddev) > 10.0
-        wait_until(is_still, "the window to come to rest")
+    def state(self):
+        """The last one that it printed, as numbers and text by name; empty if there is none."""
+        lines = [line for line in self._out if line.startswith("state: ")]
+        pairs = (word.split("=") for word in lines[-1].split()[1:]) if lines else ()
+        return {name: int(value) if value.lstrip("-").isdigit() else value for name, value in pairs}
+
+    def wait_for(self, what, **wanted):
+        """The first state with these values; a function is a condition of the value."""
+        def is_there():
+            state = self.state()
+            fits = all(value(state[name]) if callable(value) else state[name] == value
+                       for name, value in wanted.items()) if state else False
+            return state if fits else None
+        return wait_until(is_there, what, self.program)
 
     def key(self, *keys):
+        """Types characters; what they do is seen in the window afterwards."""
         for key in keys:
             self._display.xdotool("key", key)
-            time.sleep(0.1)
+        self._keys += len(keys)
+        self.wait_for("the keys", keys=self._keys)
+
+    def point(self, x, y):
+        self._display.xdotool("mousemove", x, y)
+        self.wait_for("the pointer", x=x, y=y)
+
+    def wheel_up(self):
+        before = self.state()["wheel"]
+        self._display.xdotool("click", 4)
+        self.wait_for("the wheel", wheel=before + 1)
+
+    def drag(self, start, way):
+        """In steps, each of which is seen before the next one, as by a hand."""
+        self.point(*start)
+        self._display.xdotool("mousedown", 1)
+        self.wait_for("the button", buttons=1)
+        for step in range(1, 6):
+            self.point(start[0] + way[0] * step // 5, start[1] + way[1] * step // 5)
+        self._display.xdotool("mouseup", 1)
+        self.wait_for("the button's release", buttons=0)
+
+    def minimise(self):
+        """The number of pictures until then."""
+        self._display.set_minimised(self.number, True)
+        return self.wait_for("it to be hidden", hidden=1)["picture"]
+
+    def restore(self):
+        """The number of pictures until it is there again."""
+        self._display.set_minimised(self.number, False)
+        return self.wait_for("it to be shown", hidden=0)["picture"]
+
+    def shows(self, condition, what):
+        """Waits until a picture of the display fulfils the condition."""
+        wait_until(lambda: condition(self._display.grab()), what, self.program)
 
     def quit(self):
         """By Esc; what it printed."""
-        self.key("Escape")
-        out, err = self.program.communicate(timeout=60)
-        self._test.assertEqual(self.program.returncode, 0, err)
-        return out + err
+        self._display.xdotool("key", "Escape")
+        self.program.wait(timeout=MAX_WAIT_S)
+        for reader in self._readers:
+            reader.join()
+        self._test.assertEqual(self.program.returncode, 0, self._err)
+        return "".join(self._out + self._err)
 
     def save(self, name):
         """Presses s; the 4x4 transform that is written."""
-        self.key("s")
+        self._display.xdotool("key", "s")
+        self._keys += 1
         path = os.path.join(self._test.folder, name + ".transform")
-        wait_until(lambda: os.path.exists(path), path)
+        wait_until(lambda: os.path.exists(path), path, self.program)
         with open(path, encoding="utf-8") as text:
             return [[float(x) for x in line.split()] for line in text]
+
+
+def is_red(picture):
+    """Whether the panel of errors is there."""
+    red = picture.getpixel((900, 40))
+    return red[0] > 2 * red[1]
 
 
 class DisplayTest(CliTest):
@@ -127,100 +192,86 @@ class ViewerWindowTest(DisplayTest):
     def test_a_drag_turns_the_object_and_leaves_the_cloud_view_to_its_own(self):
         with Window(self, "builtin:asteroid") as window:
             start = window.save("buffer")
-            self.display.drag(SENSOR, (100, 0))
+            window.drag(SENSOR, (100, 0))
             turned = window.save("buffer_000001")
-            before = self.display.grab()
-            self.display.drag(CLOUD, (100, 50))
-            window.settle()
+            before = self.display.grab().crop(CLOUD_BOX)
+            window.drag(CLOUD, (100, 50))
+            window.shows(lambda picture: difference(before, picture.crop(CLOUD_BOX)) > 1.0, "the cloud from elsewhere")
             seen = window.save("buffer_000002")
-            after = self.display.grab()
         self.assertNotEqual([row[:3] for row in turned], [row[:3] for row in start])
         self.assertAlmostEqual(turned[2][3], start[2][3], delta=0.2)
         self.assertEqual(seen, turned, "going round the cloud moves no object")
-        self.assertGreater(difference(before.crop((780, 30, 1270, 600)),
-                                      after.crop((780, 30, 1270, 600))), 1.0)
 
     def test_the_wheel_moves_the_sensor_on_the_left_and_zooms_on_the_right(self):
         with Window(self, "builtin:asteroid") as window:
             start = window.save("buffer")
-            self.display.xdotool("mousemove", *SENSOR)
-            time.sleep(0.3)
-            self.display.xdotool("click", 4)
-            time.sleep(0.3)
+            window.point(*SENSOR)
+            window.wheel_up()
             near = window.save("buffer_000001")
-            self.display.xdotool("mousemove", *CLOUD)
-            time.sleep(0.3)
-            self.display.xdotool("click", 4)
-            time.sleep(0.3)
+            window.point(*CLOUD)
+            window.wheel_up()
             zoomed = window.save("buffer_000002")
         self.assertLess(near[2][3], start[2][3])
         self.assertEqual(zoomed, near)
 
     def test_space_pauses_a_turning_model(self):
-        window = Window(self, "builtin:asteroid", "--model-dr", "0,0,1")
-        window.number = self.display.window("GLIDAR")
-        time.sleep(1.0)
-        first = window.save("buffer")
-        time.sleep(0.5)
-        second = window.save("buffer_000001")
-        window.key("space")
-        window.settle()
-        third = window.save("buffer_000002")
-        time.sleep(0.5)
-        fourth = window.save("buffer_000003")
-        window.quit()
+        with Window(self, "builtin:asteroid", "--model-dr", "0,0,1") as window:
+            first = window.save("buffer")
+            frame = window.state()["frame"]
+            window.wait_for("time to go on", frame=lambda now: now > frame + 1)
+            second = window.save("buffer_000001")
+            window.key("space")
+            third = window.save("buffer_000002")
+            let_time_pass(0.5)
+            fourth = window.save("buffer_000003")
+            window.quit()
         self.assertNotEqual(first, second)
         self.assertEqual(third, fourth)
 
     def test_a_click_tells_the_story_of_a_point(self):
         with Window(self, "builtin:asteroid") as window:
             before = self.display.grab()
-            self.display.xdotool("mousemove", *SENSOR)
-            time.sleep(0.3)
+            window.point(*SENSOR)
             self.display.xdotool("click", 1)
-            wait_until(lambda: difference(before.crop((300, 470, 1270, 650)),
-                                          self.display.grab().crop((300, 470, 1270, 650))) > 2.0,
-                       "the story below the views")
+            window.shows(lambda picture: difference(before.crop((300, 470, 1270, 650)),
+                                                    picture.crop((300, 470, 1270, 650))) > 2.0,
+                         "the story below the views")
             window.quit()
 
     def test_nothing_is_drawn_while_nothing_changes(self):
         with Window(self, "builtin:asteroid") as window:
-            time.sleep(3.0)
+            before = window.state()["picture"]
+            let_time_pass(3.0)
             drawn = int(re.search(r"drew (\d+) pictures", window.quit())[1])
-        self.assertLess(drawn, 40, "three seconds at 20 a second would be 60 more")
+        self.assertLess(drawn - before, 15, "three seconds at 20 a second would be 60")
 
     def test_the_window_may_change_its_size(self):
         with Window(self, "builtin:asteroid") as window:
             self.display.xdotool("windowsize", "--sync", window.number, 900, 600)
-            window.settle()
-            small = self.display.grab()
-            self.assertLess(max(ImageStat.Stat(small.crop((905, 0, 1400, 900))).stddev), 1.0)
-            self.assertGreater(max(ImageStat.Stat(small.crop((300, 100, 890, 500))).stddev), 10.0)
+            window.wait_for("its size", size="900x600")
+            window.shows(lambda small: max(ImageStat.Stat(small.crop((905, 0, 1400, 900))).stddev) < 1.0,
+                         "nothing beside the smaller window")
+            window.shows(lambda small: max(ImageStat.Stat(small.crop((300, 100, 890, 500))).stddev) > 10.0,
+                         "the views in the smaller window")
             window.quit()
 
     def test_a_minimised_window_draws_nothing_and_comes_back(self):
         with Window(self, "builtin:asteroid") as window:
             before = self.display.grab()
-            self.display.set_minimised(window.number, True)
-            time.sleep(0.5)
-            window.key("plus")  # without effect: it has no focus
-            time.sleep(2.0)
-            self.display.set_minimised(window.number, False)
-            window.settle()
-            self.assertLess(difference(before, self.display.grab()), 1.0)
+            hidden = window.minimise()
+            self.display.xdotool("key", "plus")  # without effect: it has no focus
+            let_time_pass(2.0)
+            self.assertLess(window.restore() - hidden, 15, "two seconds at 20 a second would be 40")
+            window.shows(lambda picture: difference(before, picture) < 1.0, "the same as before")
             window.quit()
 
     def test_a_minimised_window_of_what_moves_draws_nothing(self):
-        drawn = []
-        for seconds in (0.5, 5.0):
-            window = Window(self, "builtin:asteroid", "--model-dr", "0,0,1")
-            window.number = self.display.window("GLIDAR")
-            time.sleep(1.0)
-            self.display.set_minimised(window.number, True)
-            time.sleep(seconds)
-            self.display.set_minimised(window.number, False)
-            drawn.append(int(re.search(r"drew (\d+) pictures", window.quit())[1]))
-        self.assertLess(drawn[1] - drawn[0], 60, "4.5 seconds at 30 Hz are 135")
+        with Window(self, "builtin:asteroid", "--model-dr", "0,0,1") as window:
+            window.wait_for("time to go on", frame=lambda now: now > 3)
+            hidden = window.minimise()
+            let_time_pass(2.0)
+            self.assertLess(window.restore() - hidden, 15, "two seconds at 30 Hz would be 60")
+            window.quit()
 
     def test_a_dropped_file_opens(self):
         path = os.path.join(self.folder, "a box.obj")
@@ -229,9 +280,8 @@ class ViewerWindowTest(DisplayTest):
         with Window(self, "builtin:asteroid") as window:
             before = self.display.grab()
             self.display.drop(window.number, path)
-            wait_until(lambda: difference(before.crop(SENSOR_BOX), self.display.grab().crop(SENSOR_BOX)) > 5.0,
-                       "another picture")
-            window.settle()
+            window.shows(lambda picture: difference(before.crop(SENSOR_BOX), picture.crop(SENSOR_BOX)) > 5.0,
+                         "another picture")
             window.save("buffer")
             window.quit()
         self.succeed("render", path, "--pcd", "expected")
@@ -239,23 +289,20 @@ class ViewerWindowTest(DisplayTest):
 
     def test_errors_stand_in_the_window_and_in_the_terminal_and_it_goes_on(self):
         with Window(self, "builtin:asteroid", "-o", "no_folder/x.pcd") as window:
-            before = self.display.grab()
+            self.assertFalse(is_red(self.display.grab()))
             window.key("s")
-            window.settle()
-            red = self.display.grab().getpixel((900, 40))
-            self.assertGreater(red[0], 2 * red[1], "a red panel")
-            self.assertNotEqual(before.getpixel((900, 40)), red)
+            window.shows(is_red, "a red panel")
             self.assertIn("no_folder", window.quit())
 
     def test_a_lost_context_is_made_anew(self):
         library = self.build_shim()
         self.environment["LD_PRELOAD"] = library
         with Window(self, "builtin:asteroid") as window:
-            window.key("plus", "plus", "plus", "plus")
-            window.settle()
-            red = self.display.grab().getpixel((900, 40))
-            self.assertGreater(red[0], 2 * red[1], "it is told")
-            self.assertGreater(max(ImageStat.Stat(self.display.grab().crop(SENSOR_BOX)).stddev), 20.0)
+            def is_told_after_another_key():  # which may be lost with the window
+                self.display.xdotool("key", "plus")
+                return is_red(self.display.grab())
+            wait_until(is_told_after_another_key, "the error", window.program)
+            window.shows(lambda picture: max(ImageStat.Stat(picture.crop(SENSOR_BOX)).stddev) > 20.0, "the object")
             window.quit()
 
     def build_shim(self):

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstring>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -14,9 +15,8 @@ using std::chrono_literals::operator""ms;
 
 /// For the last messages, when a subscriber is slow.
 constexpr auto kPatience = 1000ms;
-/// For subscriptions that come after the handshake: where ZeroMQ tells of them, and where not.
-constexpr auto kLongestSettling = 1000ms;
-constexpr auto kSettling = 200ms;
+/// With keeps_newest ZeroMQ reports connections but no subscriptions, which come right after.
+constexpr auto kSettling = 1000ms;
 constexpr auto kLook = 10ms;
 constexpr std::int64_t kLargestHandshakeBytes = 1024;
 
@@ -72,11 +72,32 @@ void CloudPublisher::write(const PointCloud& cloud, const Frame& frame) {
   faults_.tell("clouds missed", "a subscriber reads more slowly than clouds come");
 }
 
-bool CloudPublisher::has(std::uint64_t subscribers) const {
+bool CloudPublisher::has(std::uint64_t subscribers) {
   if (counts_.handshakes < subscribers) return false;
-  if (subscribers == 0 || (knows_subscribers_ && counts_.subscribers >= subscribers)) return true;
+  if (subscribers == 0 || is_settled()) return true;
   const auto waited = std::chrono::steady_clock::now() - last_handshake_;
-  return waited > (knows_subscribers_ ? kLongestSettling : kSettling);
+  if (waited < options_.subscription_timeout || match_.pending() == 0) return false;
+  give_up_subscriptions(options_.subscription_timeout);
+  return is_settled();
+}
+
+/// Whether everybody who shook hands is subscribed.
+bool CloudPublisher::is_settled() const {
+  if (match_.pending() > 0) return false;
+  return knows_subscribers_ || std::chrono::steady_clock::now() - last_change_ >= kSettling;
+}
+
+void CloudPublisher::give_up_subscriptions(std::chrono::milliseconds waited) {
+  const std::uint64_t missing = match_.pending();
+  match_.give_up();
+  std::ostringstream text;
+  text << missing << (missing == 1 ? " peer has" : " peers have")
+       << " shaken hands but not subscribed to clouds within "
+       << std::chrono::duration<double>(waited).count()
+       << " s; not waiting any longer. Clients subscribe to "
+       << (topics_.empty() ? "'c'" : "'/NAME' and a zero byte, NAME being that of a sensor")
+       << ", best before they shake hands";
+  faults_.tell("subscription missing", text.str());
 }
 
 void CloudPublisher::serve() {
@@ -86,10 +107,12 @@ void CloudPublisher::serve() {
 
 void CloudPublisher::shut_down() {
   serve();
-  while (!has(counts_.handshakes)) {  // a subscription may still be on its way
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  while (!is_settled() && std::chrono::steady_clock::now() < until) {
     link::wait_for({&clouds_}, -1, kLook);
     serve();
   }
+  if (match_.pending() > 0) give_up_subscriptions(kPatience);
   // the clouds' topics last: with keeps_newest only the last message is sure to arrive
   std::vector<std::string> ending = {"p", "P"};
   for (const auto& [sensor, topic] : topics_) ending.push_back(topic);
@@ -100,10 +123,10 @@ void CloudPublisher::shut_down() {
   }
 }
 
+/// Of clouds and of their end, which is 2015's on a rig too.
 std::vector<std::string> CloudPublisher::topics() const {
-  std::vector<std::string> all;
+  std::vector<std::string> all = {std::string(1, kCloudTopic)};
   for (const auto& [sensor, topic] : topics_) all.push_back(topic);
-  if (all.empty()) all.emplace_back(1, kCloudTopic);
   return all;
 }
 
@@ -128,18 +151,28 @@ void CloudPublisher::answer_handshakes() {
     }
     handshakes_.send({});
     ++counts_.handshakes;
-    last_handshake_ = std::chrono::steady_clock::now();
+    match_.add_handshake();
+    last_handshake_ = last_change_ = std::chrono::steady_clock::now();
   }
+}
+
+/// A subscription follows its connection, where it is not reported itself.
+void CloudPublisher::set_subscribers(std::uint64_t count) {
+  if (count > counts_.subscribers) last_change_ = std::chrono::steady_clock::now();
+  counts_.subscribers = count;
+  match_.set_subscribers(count);
 }
 
 void CloudPublisher::notice_peers() {
   const link::SubscriptionCount known = clouds_.subscriptions(topics());
   knows_subscribers_ = known.is_known;
-  if (known.is_known) counts_.subscribers = known.subscribers;
+  if (known.is_known) set_subscribers(known.subscribers);
   for (const link::PeerEvent event : clouds_.events()) {
-    if (event == link::PeerEvent::joined && !knows_subscribers_) ++counts_.subscribers;
-    if (event == link::PeerEvent::left && !knows_subscribers_ && counts_.subscribers > 0)
-      --counts_.subscribers;
+    const std::uint64_t connected = counts_.subscribers;
+    if (event == link::PeerEvent::joined && !known.is_known) set_subscribers(connected + 1);
+    if (event == link::PeerEvent::left && !known.is_known && connected > 0) {
+      set_subscribers(connected - 1);
+    }
     if (event == link::PeerEvent::refused) {
       faults_.tell("stranger refused", "something that is no subscriber came to the clouds' port");
     }

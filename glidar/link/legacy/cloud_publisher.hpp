@@ -4,6 +4,7 @@
 
 #include <glidar/core/cloud_sink.hpp>
 #include <glidar/link/fault_log.hpp>
+#include <glidar/link/legacy/handshake_match.hpp>
 #include <glidar/link/legacy/legacy_codec.hpp>
 #include <glidar/link/socket.hpp>
 
@@ -29,6 +30,8 @@ struct CloudPublisherOptions {
   int queue = 32;                ///< clouds that wait for each subscriber; 0: any number
   std::uint32_t every = 1;       ///< publishes only every so many frames, from the first on
   Timestamps timestamps = Timestamps::counted;
+  /// How long the first cloud waits for the subscription of a peer that has shaken hands.
+  std::chrono::milliseconds subscription_timeout{10'000};
 };
 
 /// The topic of one of the sensors on a rig: "/NAME" and a zero byte.
@@ -54,17 +57,23 @@ class CloudPublisher final : public CloudSink {
 
   /// Answers who asks at the second port and notices who came and went.
   void serve();
-  /// Whether so many have shaken hands and will get the next cloud: subscriptions take a way of
-  /// their own and may come later than the handshake.
-  [[nodiscard]] bool has(std::uint64_t subscribers) const;
-  /// Tells subscribers that it is over; waits a while for those whose queue is full.
+  /// Whether at least so many peers have shaken hands, and the subscription of each peer that did
+  /// has arrived, so that none of them misses the next cloud: a subscription comes over another
+  /// connection than the handshake, often later. Once `subscription_timeout` has passed since the
+  /// last handshake, the log is told and missing subscriptions are not waited for any more.
+  /// Always true for 0.
+  [[nodiscard]] bool has(std::uint64_t subscribers);
+  /// Handshakes whose subscription has arrived.
+  [[nodiscard]] std::uint64_t ready() const { return match_.matched(); }
+  /// Tells subscribers that it is over; waits up to a second for subscriptions that are missing,
+  /// and another one for full queues.
   void shut_down();
 
   [[nodiscard]] const link::Socket& handshake_socket() const { return handshakes_; }
 
   struct Counts {
     std::uint64_t handshakes = 0;
-    std::uint64_t subscribers = 0;  ///< now
+    std::uint64_t subscribers = 0;  ///< connections subscribed to a cloud's topic now
     std::uint64_t sent = 0;
     std::uint64_t missed = 0;    ///< of the sent ones, by one subscriber or more
     std::uint64_t repeated = 0;  ///< not sent: of the timestamp before
@@ -77,8 +86,11 @@ class CloudPublisher final : public CloudSink {
   [[nodiscard]] std::vector<std::string> topics() const;
   [[nodiscard]] bool is_repeated(const Frame& frame, std::uint64_t timestamp);
   std::uint64_t timestamp_of(const Frame& frame);
+  [[nodiscard]] bool is_settled() const;
+  void give_up_subscriptions(std::chrono::milliseconds waited);
   void answer_handshakes();
   void notice_peers();
+  void set_subscribers(std::uint64_t count);
 
   CloudPublisherOptions options_;
   link::FaultLog& faults_;
@@ -88,7 +100,9 @@ class CloudPublisher final : public CloudSink {
   std::map<std::uint32_t, std::uint64_t> counted_;          ///< clouds of each sensor
   std::map<std::uint32_t, std::string> topics_;             ///< by sensor
   std::map<std::uint32_t, std::uint64_t> last_timestamps_;  ///< likewise
+  HandshakeMatch match_;
   std::chrono::steady_clock::time_point last_handshake_;
+  std::chrono::steady_clock::time_point last_change_;  ///< handshake, or subscriber that came
   bool knows_subscribers_ = false;
   Counts counts_;
 };

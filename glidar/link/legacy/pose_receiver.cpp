@@ -27,9 +27,12 @@ link::Endpoint next_port(link::Endpoint endpoint) {
   return endpoint;
 }
 
-/// For poses' port, once the handshake's is open, before the handshake is asked for without it; and
-/// for a simulator that was cut off.
-constexpr std::chrono::seconds kPatience{1};
+/// How long a simulator whose handshakes' port is open may take to open its poses' port. Then the
+/// handshake is requested without it.
+constexpr std::chrono::seconds kPosesDelay{5};
+
+/// Before a simulator that was cut off is connected to again.
+constexpr std::chrono::seconds kReconnectDelay{1};
 
 /// So that a flood of messages that are no poses does not keep the caller from anything else.
 constexpr int kMostAtOnce = 256;
@@ -129,7 +132,7 @@ void PoseReceiver::tell_of_loss() {
 
 /// ZeroMQ finds a peer again that went away, but not one that it cut off.
 void PoseReceiver::connect_anew_if_cut_off() {
-  if (!lost_ || std::chrono::steady_clock::now() - *lost_ < kPatience) return;
+  if (!lost_ || std::chrono::steady_clock::now() - *lost_ < kReconnectDelay) return;
   lost_.reset();
   poses_ = link::Socket(context_, pose_socket_options(options_));
   open_poses();
@@ -149,7 +152,7 @@ void PoseReceiver::open_handshake() {
 /// same.
 void PoseReceiver::ask_when_connected() {
   if (has_asked_) return;
-  const bool is_late = reachable_ && std::chrono::steady_clock::now() - *reachable_ >= kPatience;
+  const bool is_late = reachable_ && std::chrono::steady_clock::now() - *reachable_ >= kPosesDelay;
   if (!is_connected_ && !is_late) return;
   if (is_connected_) open_handshake();
   has_asked_ = true;

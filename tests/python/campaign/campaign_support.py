@@ -7,6 +7,8 @@ import os
 import subprocess
 import sys
 
+from waiting import MAX_WAIT_S
+
 SCENE = """models:
   - {name: rock, model: builtin:asteroid, scale: 1}
   - {name: moon, model: builtin:sphere, scale: 0.3, pose: {position: [1.2, 0, 0]}}
@@ -51,7 +53,7 @@ class Campaign:
     def call(self, *arguments, code=0, **more):
         """Runs to the end; gives standard output and error."""
         process = self.start(*arguments, **more)
-        out, err = process.communicate(timeout=300)
+        out, err = process.communicate(timeout=MAX_WAIT_S)
         assert process.returncode == code, out + err
         return out + err
 

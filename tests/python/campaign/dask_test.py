@@ -7,9 +7,9 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
+from waiting import MAX_WAIT_S, wait_until
 
 pytest.importorskip("distributed")
 
@@ -22,13 +22,6 @@ def start(folder, *arguments):
                                 stdout=log, stderr=log, start_new_session=True)
 
 
-def wait_for(check, seconds=60):
-    end = time.monotonic() + seconds
-    while not check():
-        assert time.monotonic() < end
-        time.sleep(0.01)
-
-
 @pytest.fixture
 def cluster(tmp_path):
     """A scheduler, its address, and two worker processes."""
@@ -36,7 +29,7 @@ def cluster(tmp_path):
     processes = [start(tmp_path, "scheduler", "--port", "0", "--no-dashboard", "--host", "127.0.0.1",
                        "--scheduler-file", str(file))]
     try:
-        wait_for(lambda: file.is_file() and file.stat().st_size > 0)
+        wait_until(lambda: file.is_file() and file.stat().st_size > 0, "the scheduler's address", processes[0])
         address = json.loads(file.read_text())["address"]
         for name in ("a", "b"):
             processes.append(start(tmp_path, "worker", address, "--nthreads", "1", "--name", name,
@@ -59,10 +52,11 @@ def test_a_killed_worker_changes_nothing(campaign, cluster):
     run = campaign.start("run", "campaign.yaml", "-o", "out", "--executor", "dask", "--scheduler",
                          address)
     done = campaign.folder / "out" / "receipts"
-    wait_for(lambda: done.is_dir() and len(list(done.iterdir())) >= 20 or run.poll() is not None)
+    wait_until(lambda: done.is_dir() and len(list(done.iterdir())) >= 20 or run.poll() is not None, "20 receipts",
+               pause_s=0.01)
     assert run.poll() is None, run.stderr.read()
     os.killpg(processes[1].pid, signal.SIGKILL)
-    out, err = run.communicate(timeout=120)
+    out, err = run.communicate(timeout=MAX_WAIT_S)
     assert run.returncode == 0, out + err
     assert campaign.contents("out") == campaign.contents("whole")
 

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
+from waiting import MAX_WAIT_S
 
 from glidar.campaign import rotations
 
@@ -22,7 +23,7 @@ def glidar_program(folder, *arguments, path=None):
     here = str(Path(sys.executable).parent)
     environment = dict(os.environ, PATH=f"{here}:{os.environ['PATH']}" if path is None else path)
     return subprocess.run([shutil.which("glidar"), *arguments], cwd=folder, env=environment,
-                          capture_output=True, text=True, timeout=300, check=False)
+                          capture_output=True, text=True, timeout=MAX_WAIT_S, check=False)
 
 
 def test_the_example_runs_through_the_program_and_its_files_agree(tmp_path):

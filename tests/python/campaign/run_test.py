@@ -7,13 +7,13 @@ import os
 import resource
 import signal
 import subprocess
-import time
 from pathlib import Path
 
 import numpy as np
 import pyarrow.parquet as pq
 import pytest
 from campaign_support import Campaign
+from waiting import MAX_WAIT_S, wait_until
 
 import glidar
 from glidar.campaign import plan, spec, trials
@@ -58,13 +58,15 @@ def test_data_is_the_same_for_any_number_of_workers_and_shards_named_by_content(
 
 @pytest.mark.parametrize("workers", ["1", "2"])
 def test_a_killed_run_goes_on_with_nothing_lost_and_nothing_twice(campaign, workers):
+    campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text()
+                   .replace("trials: 40", "trials: 200"))
     campaign.run("whole")
     kills = 0
     for wanted in (1, 3, 6, 8):
         process = campaign.start("run", "campaign.yaml", "-o", "out", "--workers", workers,
                                  start_new_session=True)
-        while process.poll() is None and receipts(campaign, "out") < wanted:
-            time.sleep(0.002)
+        wait_until(lambda: process.poll() is not None or receipts(campaign, "out") >= wanted, f"{wanted} receipts",
+                   pause_s=0.002)
         kills += process.poll() is None
         os.killpg(process.pid, signal.SIGKILL)
         process.wait()
@@ -82,24 +84,21 @@ def test_a_worker_that_dies_is_replaced(campaign):
                    .replace("trials: 40", "trials: 1600"))
     campaign.run("whole")
     process = campaign.start("run", "campaign.yaml", "-o", "out", "--workers", "2")
-    while receipts(campaign, "out") < 3:
-        assert process.poll() is None
-        time.sleep(0.002)
+    wait_until(lambda: receipts(campaign, "out") >= 3, "three receipts", process, pause_s=0.002)
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
     workers = [int(child) for child in children
                if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes()]
     os.kill(workers[0], signal.SIGKILL)
-    assert process.wait(timeout=120) == 0, process.stderr.read()
+    assert process.wait(timeout=MAX_WAIT_S) == 0, process.stderr.read()
     assert campaign.contents("out") == campaign.contents("whole")
 
 
 def test_an_interrupt_ends_with_130_and_the_same_command_goes_on(campaign):
     campaign.run("whole")
     process = campaign.start("run", "campaign.yaml", "-o", "out")
-    while receipts(campaign, "out") < 1:
-        time.sleep(0.002)
+    wait_until(lambda: receipts(campaign, "out") >= 1, "a receipt", process, pause_s=0.002)
     process.send_signal(signal.SIGINT)
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=MAX_WAIT_S)
     assert process.returncode in (130, 0) and "Traceback" not in err, out + err
     campaign.run("out")
     assert campaign.contents("out") == campaign.contents("whole")

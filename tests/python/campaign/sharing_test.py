@@ -6,9 +6,9 @@ import os
 import signal
 import subprocess
 import sys
-import time
 
 import pytest
+from waiting import MAX_WAIT_S, pauses, wait_until
 
 from glidar import Error
 from glidar.campaign import files, folder, plan, run, spec, work
@@ -76,11 +76,10 @@ def slow(campaign):
 def test_an_ended_run_of_many_workers_leaves_nothing_half_written(campaign, end):
     slow(campaign)
     process = campaign.start("run", "campaign.yaml", "-o", "out", "--workers", "2")
-    while len(list((campaign.folder / "out").glob("tmp/*/*"))) < 2:
-        assert process.poll() is None
-        time.sleep(0.001)
+    wait_until(lambda: len(list((campaign.folder / "out").glob("tmp/*/*"))) >= 2, "files of two workers", process,
+               pause_s=0.001)
     process.send_signal(end)
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=MAX_WAIT_S)
     assert process.returncode == 130 and "Traceback" not in err, out + err
     assert not (campaign.folder / "out" / "tmp").exists()
 
@@ -88,12 +87,10 @@ def test_an_ended_run_of_many_workers_leaves_nothing_half_written(campaign, end)
 def test_an_error_of_many_workers_leaves_nothing_half_written(campaign):
     slow(campaign)
     process = campaign.start("run", "campaign.yaml", "-o", "out", "--workers", "2")
-    while not (campaign.folder / "out" / "receipts").exists():
-        assert process.poll() is None
-        time.sleep(0.001)
+    wait_until((campaign.folder / "out" / "receipts").exists, "the first receipts", process, pause_s=0.001)
     (campaign.folder / "out" / "npz").rename(campaign.folder / "npz")
     (campaign.folder / "out" / "npz").write_text("in the way")
-    out, err = process.communicate(timeout=60)
+    out, err = process.communicate(timeout=MAX_WAIT_S)
     assert process.returncode == 2 and "cannot be written" in err, out + err
     assert not (campaign.folder / "out" / "tmp").exists()
 
@@ -104,9 +101,7 @@ def test_a_fault_of_writing_ends_a_worker_that_waits_for_shards(campaign):
 
     def shards():
         yield 0
-        for _ in range(600):
-            time.sleep(0.1)
-            yield None
+        yield from pauses("the fault")
 
     with pytest.raises(Error, match="cannot be written"):
         work.work(planned, folder.Folder(campaign.folder / "out"), shards(), 1, lambda done: None)
@@ -175,7 +170,7 @@ SCRIPT = """from glidar.campaign.run import run
 def run_script(campaign, guard, workers):
     campaign.write("script.py", SCRIPT.format(guard=guard, workers=workers))
     return subprocess.run([sys.executable, "script.py"], cwd=campaign.folder, env=campaign.environment,
-                          capture_output=True, text=True, timeout=120, check=False)
+                          capture_output=True, text=True, timeout=MAX_WAIT_S, check=False)
 
 
 def test_a_script_without_guard_is_told_so(campaign):

@@ -8,9 +8,9 @@ import shutil
 import signal
 import socket
 import subprocess
-import time
 
 import pytest
+from waiting import wait_until
 
 PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch", "sinfo"]
 MISSING = [name for name in PROGRAMS if not shutil.which(name, path=os.environ["PATH"] + ":/usr/sbin")]
@@ -80,21 +80,16 @@ def slurm(tmp_path_factory, monkeypatch):
                       f"--socket={folder}/munge.sock", f"--pid-file={folder}/munged.pid",
                       f"--log-file={folder}/munged.log", f"--seed-file={folder}/munge.seed")]
     try:
-        while not (folder / "munge.sock").exists():
-            assert daemons[0].poll() is None, (folder / "munged.out").read_text()
-            time.sleep(0.05)
+        wait_until((folder / "munge.sock").exists, f"the socket; see {folder}/munged.out", daemons[0])
         daemons.append(daemon(folder, "slurmctld", "-D"))
         daemons.append(daemon(folder, "slurmd", "-D"))
-        end = time.monotonic() + 60
-        while not is_idle():
-            assert time.monotonic() < end, (folder / "slurmctld.log").read_text()
-            time.sleep(0.2)
+        wait_until(is_idle, f"an idle node; see {folder}/slurmctld.log", daemons[1], pause_s=0.2)
         yield folder
     finally:
         for process in reversed(daemons):
             process.send_signal(signal.SIGTERM)
             try:
-                process.wait(timeout=20)
+                process.wait(timeout=60)
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()

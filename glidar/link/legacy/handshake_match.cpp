@@ -1,0 +1,43 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/legacy/handshake_match.hpp>
+
+namespace glidar::legacy {
+
+void HandshakeMatch::add_handshake() {
+  if (early_ > 0) {
+    --early_;
+    ++matched_;
+  } else {
+    ++pending_;
+  }
+}
+
+void HandshakeMatch::set_subscribers(std::uint64_t count) {
+  for (; subscribers_ < count; ++subscribers_) {
+    if (pending_ > 0) {
+      --pending_;
+      ++matched_;
+    } else if (absent_ > 0) {
+      --absent_;  // one that comes back does not shake hands again
+    } else {
+      ++early_;
+    }
+  }
+  // Which one left is not known. To take it for one without a handshake may lead to waiting in
+  // vain, never to a cloud that is sent too early.
+  for (; subscribers_ > count; --subscribers_) {
+    if (early_ > 0) {
+      --early_;
+    } else {
+      ++absent_;
+    }
+  }
+}
+
+void HandshakeMatch::give_up() {
+  absent_ += pending_;
+  pending_ = 0;
+}
+
+}  // namespace glidar::legacy

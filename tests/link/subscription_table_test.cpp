@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/subscription_table.hpp>
+
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+namespace glidar::link {
+namespace {
+
+const std::vector<std::string> kTopics = {"c", "/a", "/b"};
+constexpr int kUnknown = SubscriptionTable::kUnknownConnection;
+
+TEST(SubscriptionTable, CountsConnectionsNotSubscriptions) {
+  SubscriptionTable table;
+  EXPECT_EQ(table.subscribers(kTopics), 0U);
+  table.add(7, "/a");
+  table.add(7, "/b");
+  EXPECT_EQ(table.subscribers(kTopics), 1U);
+  table.add(8, "/a");
+  EXPECT_EQ(table.subscribers(kTopics), 2U);
+}
+
+TEST(SubscriptionTable, ASubscriptionCountsForTopicsThatBeginWithIt) {
+  SubscriptionTable table;
+  table.add(1, "");
+  table.add(2, "/");
+  table.add(3, "/ab");  // longer than any topic
+  table.add(4, "x");
+  EXPECT_EQ(table.subscribers(kTopics), 2U);
+}
+
+TEST(SubscriptionTable, AConnectionLeavesWithItsLastSubscription) {
+  SubscriptionTable table;
+  table.add(1, "/a");
+  table.add(1, "/b");
+  table.remove(1, "/a");
+  EXPECT_EQ(table.subscribers(kTopics), 1U);
+  table.remove(1, "/b");
+  EXPECT_EQ(table.subscribers(kTopics), 0U);
+}
+
+TEST(SubscriptionTable, AConnectionThatEndedIsOneThatHadItsTopics) {
+  SubscriptionTable table;
+  table.add(1, "/a");
+  table.add(1, "c");
+  table.add(2, "c");
+  table.remove(kUnknown, "c");  // the second one ended
+  EXPECT_EQ(table.subscribers(kTopics), 1U);
+  EXPECT_EQ(table.subscribers(std::vector<std::string>{"/a"}), 1U);
+  table.remove(kUnknown, "/a");
+  table.remove(kUnknown, "c");
+  EXPECT_EQ(table.subscribers(kTopics), 0U);
+}
+
+/// The system may give the number to a new connection before the end of the old one is reported.
+TEST(SubscriptionTable, ANumberThatIsUsedAgainStaysOneConnection) {
+  SubscriptionTable table;
+  table.add(1, "c");
+  table.add(2, "c");
+  table.add(1, "c");
+  EXPECT_EQ(table.subscribers(kTopics), 2U);
+  table.remove(kUnknown, "c");
+  EXPECT_EQ(table.subscribers(kTopics), 2U);
+}
+
+TEST(SubscriptionTable, SubscriptionsOfUnknownConnectionsCountOneByOne) {
+  SubscriptionTable table;
+  table.add(kUnknown, "c");
+  table.add(kUnknown, "c");
+  table.add(kUnknown, "x");
+  EXPECT_EQ(table.subscribers(kTopics), 2U);
+  table.remove(kUnknown, "c");
+  EXPECT_EQ(table.subscribers(kTopics), 1U);
+}
+
+TEST(SubscriptionTable, TheEndOfWhatNeverBeganChangesNothing) {
+  SubscriptionTable table;
+  table.remove(kUnknown, "c");
+  table.remove(3, "c");
+  table.add(1, "c");
+  table.remove(kUnknown, "/a");
+  table.remove(1, "/a");
+  table.remove(3, "c");
+  EXPECT_EQ(table.subscribers(kTopics), 1U);
+}
+
+}  // namespace
+}  // namespace glidar::link

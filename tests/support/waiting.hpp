@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <thread>
+
+/// Waiting for what a test needs: the only place of the C++ tests that sleeps.
+namespace glidar::testing {
+
+/// Machines may be very busy; a test that goes well never waits so long.
+constexpr std::chrono::minutes kMaxWait{10};
+
+/// Repeats an action until it returns true; false when that takes longer than kMaxWait.
+template <class Action>
+bool soon(const Action& action) {
+  constexpr std::chrono::milliseconds kPause{2};
+  const auto end = std::chrono::steady_clock::now() + kMaxWait;
+  while (!action()) {
+    if (std::chrono::steady_clock::now() > end) return false;
+    std::this_thread::sleep_for(kPause);
+  }
+  return true;
+}
+
+}  // namespace glidar::testing
