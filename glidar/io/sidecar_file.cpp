@@ -52,7 +52,8 @@ Json pulse_json(const PulseLight& light) {
 }
 
 Json footprint_json(const Footprint& f) {
-  return {{"divergence_mrad", {in_unit(f.divergence_x_rad, kMilli), in_unit(f.divergence_y_rad, kMilli)}},
+  return {{"divergence_mrad",
+           {in_unit(f.divergence_x_rad, kMilli), in_unit(f.divergence_y_rad, kMilli)}},
           {"exit_mm", {in_unit(f.exit_x_m, kMilli), in_unit(f.exit_y_m, kMilli)}},
           {"widths", "1/e2"},
           {"rings", f.rings}};
@@ -116,6 +117,15 @@ Json columns_json(std::span<const Field> fields) {
   return columns;
 }
 
+/// Null for clouds.
+Json image_json(const CloudFile& job) {
+  if (job.pixels.empty()) return {};
+  Json image = {{"pixels", job.pixels}};
+  if (job.pixels.find("units_per_m") != std::string::npos)
+    image["units_per_m"] = job.options.depth_png_units_per_m;
+  return image;
+}
+
 Json cloud_json(const CloudFile& job, const std::filesystem::path& path) {
   return {{"file", path.filename().string()},
           {"rows", job.cloud.rows},
@@ -123,7 +133,8 @@ Json cloud_json(const CloudFile& job, const std::filesystem::path& path) {
           {"frame_id", job.cloud.frame_id},
           {"world_from_cloud", pose_json(job.cloud.world_from_cloud)},
           {"layout", job.layout.empty() ? Json() : Json(job.layout)},
-          {"columns", columns_json(job.fields)}};
+          {"columns", columns_json(job.fields)},
+          {"image", image_json(job)}};
 }
 
 Json instances_json(const CloudFile& job) {
@@ -200,16 +211,16 @@ std::string sensor_text(const Sensor& sensor, const Beams& beams) {
 
 std::string sidecar_text(const CloudFile& job, const std::filesystem::path& path) {
   Json all = {{"glidar", version()},
-                    {"command", command_json(job.context.command, path)},
-                    {"renderer", job.context.renderer},
-                    {"seed", job.frame.seed},
-                    {"frame", job.frame.number},
-                    {"frame_hash", frame_hash(job.frame)},
-                    {"stamp_ns", job.frame.stamp_ns},
-                    {"cloud", cloud_json(job, path)},
-                    {"sensor", sensor_json(job)},
-                    {"instances", instances_json(job)},
-                    {"beams_by_status", status_json(job.frame)}};
+              {"command", command_json(job.context.command, path)},
+              {"renderer", job.context.renderer},
+              {"seed", job.frame.seed},
+              {"frame", job.frame.number},
+              {"frame_hash", frame_hash(job.frame)},
+              {"stamp_ns", job.frame.stamp_ns},
+              {"cloud", cloud_json(job, path)},
+              {"sensor", sensor_json(job)},
+              {"instances", instances_json(job)},
+              {"beams_by_status", status_json(job.frame)}};
   remove_negative_zeros(all);
   std::string text;
   append_text(all, 0, text);
