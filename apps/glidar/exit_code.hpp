@@ -8,6 +8,7 @@ namespace glidar::app {
 inline constexpr int kDone = 0;
 inline constexpr int kCheckFailed = 1;  ///< `verify` found errors over its bounds
 inline constexpr int kBadInput = 2;     ///< options, files, values
+inline constexpr int kClosedPipe = 141;  ///< nobody reads standard output, as shells report it
 inline constexpr int kNoPoses = 3;      ///< `stream`: none came for --pose-timeout
 
 }  // namespace glidar::app

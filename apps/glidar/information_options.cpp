@@ -26,7 +26,11 @@ void add_information_flags(CLI::App& command, InformationFlags& flags) {
              flags.sigma_m);
 }
 
-void check(const InformationFlags& flags) {
+void check(const InformationFlags& flags, const OutputFlags& outputs) {
+  if (flags.wanted && writes_standard_output(outputs) && outputs.paths.size() == 1) {
+    throw Error({"--information", "there is no output file beside which its file would be",
+                 "an output file", "add one, such as -o scan.pcd"});
+  }
   if (!flags.sigma_m) return;
   require(std::isfinite(*flags.sigma_m) && *flags.sigma_m > 0.0, "--information-sigma",
           *flags.sigma_m, "a finite number above 0");
@@ -40,14 +44,14 @@ std::filesystem::path information_path(const std::filesystem::path& output) {
 }
 
 void tell_information(const InformationFlags& flags, const Frame& frame, const Beams& beams,
-                      const std::vector<Output>& outputs, bool quiet) {
+                      const std::vector<Output>& outputs, std::FILE* to) {
   if (!flags.wanted) return;
   InformationOptions options;
   options.sigma_m = flags.sigma_m.value_or(options.sigma_m);
   const PoseInformation information = pose_information(frame, beams, options);
   const std::filesystem::path path = information_path(outputs.front().path);
   write_information(information, path);
-  if (!quiet) fmt::print("{}wrote {}\n", information_text(information), path.string());
+  if (to != nullptr) fmt::print(to, "{}wrote {}\n", information_text(information), path.string());
 }
 
 }  // namespace glidar::app

@@ -5,6 +5,7 @@
 #include <apps/glidar/cli_fwd.hpp>
 #include <apps/glidar/output_options.hpp>
 
+#include <cstdio>
 #include <filesystem>
 #include <optional>
 
@@ -18,14 +19,15 @@ struct InformationFlags {
 
 void add_information_flags(CLI::App& command, InformationFlags& flags);
 
-/// Throws Error when a flag is out of range or given without the other.
-void check(const InformationFlags& flags);
+/// Throws Error when a flag is out of range or given without the other, or there is no file among
+/// the outputs.
+void check(const InformationFlags& flags, const OutputFlags& outputs);
 
 /// NAME.information.json beside an output NAME.SUFFIX.
 std::filesystem::path information_path(const std::filesystem::path& output);
 
-/// If wanted: writes the file beside the first output and prints the table unless `quiet`.
+/// If wanted: writes the file beside the first output and prints the table to `to`; nullptr: not.
 void tell_information(const InformationFlags& flags, const Frame& frame, const Beams& beams,
-                      const std::vector<Output>& outputs, bool quiet);
+                      const std::vector<Output>& outputs, std::FILE* to);
 
 }  // namespace glidar::app

@@ -7,6 +7,7 @@
 #include <apps/viewer/view.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
+#include <glidar/io/atomic_file.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -148,6 +149,8 @@ int main(int argc, char** argv) {
       return glidar::app::fail("standard output could not be written; is the disk full?");
     }
     return status;
+  } catch (const glidar::ClosedPipe&) {
+    return glidar::app::kClosedPipe;  // not worth a word: `| head` has what it wanted
   } catch (const std::bad_alloc&) {
     return glidar::app::fail("out of memory; use a smaller image or a smaller model");
   } catch (const std::exception& error) {

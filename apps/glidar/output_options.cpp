@@ -8,10 +8,14 @@
 #include <apps/glidar/option_kinds.hpp>
 #include <apps/glidar/pose_options.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/io/atomic_file.hpp>
 #include <glidar/io/cloud_layout.hpp>
+#include <glidar/io/needed_columns.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
+
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -61,18 +65,42 @@ void check_layout(const OutputFlags& flags) {
                  .allowed = "one of the two",
                  .remedy = "a layout has its own columns: leave --columns out"});
   }
-  const auto takes_it = [](const std::string& path) { return format_for(path).takes_more; };
+  const auto takes_it = [&](const std::string& path) { return format_of(flags, path).takes_more; };
   if (std::any_of(flags.paths.begin(), flags.paths.end(), takes_it)) return;
   throw Error({.where = "--layout",
                .found = "no output takes a layout",
                .allowed = "an output with the suffix " + layout_suffixes(),
-               .remedy = ""});
+               .remedy = "add one, such as -o scan.pcd, or leave --layout out"});
+}
+
+/// Throws Error unless there is at most one standard output and its format is given.
+void check_standard_output(const OutputFlags& flags) {
+  const auto count = std::count(flags.paths.begin(), flags.paths.end(), kStandardOutput);
+  if (count > 1) {
+    throw Error(
+        {"--output -", "is given twice", "one standard output", "write the other one to a file"});
+  }
+  if (count == 0 && !flags.format.empty()) {
+    throw Error({"--format " + flags.format, "there is no -o -, which it is about",
+                 "--format with -o -", "leave it out: the suffix of a file says its format"});
+  }
+  if (count == 1 && flags.format.empty()) {
+    throw Error({"--output -", "the format of standard output is not given", "-o - with --format",
+                 "add --format csv, or another of those that --help lists"});
+  }
+}
+
+void refuse_terminal(const FileFormat& format, const FileSinkOptions& options) {
+  if (::isatty(STDOUT_FILENO) == 0 || is_text(format, options)) return;
+  throw Error({"--output -", "standard output is a terminal, and this format is binary",
+               "text on a terminal",
+               "pipe it to a program or a file, or write text: --format csv"});
 }
 
 /// Formats that hold no points (images, poses) take what they need and nothing else.
 std::vector<std::string> columns_of(const FileFormat& format,
                                     const std::vector<std::string>& asked) {
-  if (!format.takes_more) return format.columns;
+  if (!format.takes_more) return needed_columns(format);
   std::vector<std::string> columns = asked;
   for (const std::string& name : format.columns) add_missing(name, columns);
   return columns;
@@ -106,6 +134,33 @@ void plan_legacy(const std::string& name, const SidecarContext& context, const R
   }
 }
 
+/// Of one -o.
+Output plan_output(const std::string& path, const OutputFlags& flags,
+                   const FileSinkOptions& options, const SidecarContext& context,
+                   const Report& report) {
+  const FileFormat& format = format_of(flags, path);
+  Output output{.path = path,
+                .columns = columns_of(format, asked_columns(flags)),
+                .cloud_frame = flags.cloud_frame,
+                .deskew = flags.deskew,
+                .sink = nullptr};
+  if (path == kStandardOutput) {
+    refuse_terminal(format, options);
+    output.sink =
+        make_stream_sink(STDOUT_FILENO, "stdout." + flags.format, options, context, report);
+  } else {
+    output.sink = make_file_sink(path, options, context, report);
+  }
+  return output;
+}
+
+/// Standard output comes last: whoever reads it may go away, and finds all files in place.
+std::vector<std::string> in_order(std::vector<std::string> paths) {
+  std::stable_partition(paths.begin(), paths.end(),
+                        [](const std::string& path) { return path != kStandardOutput; });
+  return paths;
+}
+
 void check_names(const std::vector<Output>& outputs, const std::string& input) {
   std::set<std::filesystem::path> seen;
   for (const Output& output : outputs) {
@@ -126,6 +181,34 @@ std::vector<std::string> layout_names() {
   return names;
 }
 
+/// Names for --format.
+std::vector<std::string> stream_formats() {
+  std::vector<std::string> names;
+  for (const FileFormat& format : file_formats()) {
+    if (!format.is_folder) names.push_back(format.suffix.substr(1));
+  }
+  return names;
+}
+
+/// Gives the outputs of a frame their names, one after the other.
+void commit_all(const std::vector<Output>& outputs) {
+  std::string placed;
+  for (const Output& output : outputs) {
+    try {
+      output.sink->commit();
+    } catch (const ClosedPipe&) {
+      throw;
+    } catch (const Error& error) {
+      ErrorParts parts = error.parts();
+      parts.remedy += (parts.remedy.empty() ? "" : "; ") +
+                      (placed.empty() ? "no output of this frame was written"
+                                      : "these outputs are written:" + placed);
+      throw Error(parts);
+    }
+    placed += " " + output.path.string();
+  }
+}
+
 std::string suffix_list() {
   std::string text;
   for (const FileFormat& format : file_formats()) text += " " + format.suffix;
@@ -136,10 +219,14 @@ std::string suffix_list() {
 
 void add_output_flags(CLI::App& command, OutputFlags& flags) {
   const std::string group = "Output (names are explained below)";
-  command.add_option("-o,--output", flags.paths, "File to write, repeatable; its suffix says what")
+  command
+      .add_option("-o,--output", flags.paths,
+                  "File to write, repeatable; its suffix says what; - for\nstandard output")
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->group(group);
+  add_choice(command, {"--format", "NAME", "Format of -o -, standard output: csv, pcd ...", group},
+             stream_formats(), flags.format);
   add_text(command, {"--pcd", "NAME", "As in the 2015 program: NAME.pcd and NAME.transform", group},
            flags.legacy_name);
   add_text(command, {"--columns", "LIST", "Columns of clouds: a,b,c or all or default", group},
@@ -190,11 +277,29 @@ std::string output_names_text() {
   return text;
 }
 
+const FileFormat& format_of(const OutputFlags& flags, const std::string& path) {
+  return format_for(path == kStandardOutput ? "stdout." + flags.format : path);
+}
+
+bool writes_standard_output(const OutputFlags& flags) {
+  return std::find(flags.paths.begin(), flags.paths.end(), kStandardOutput) != flags.paths.end();
+}
+
 OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame) {
-  return labelled(flags, fmt::format("{:06}", frame));
+  OutputFlags result = labelled(flags, fmt::format("{:06}", frame));
+  for (std::size_t i = 0; i < flags.paths.size(); ++i) {
+    if (format_of(flags, flags.paths[i]).is_folder) result.paths[i] = flags.paths[i];
+  }
+  return result;
 }
 
 OutputFlags labelled(const OutputFlags& flags, const std::string& label) {
+  if (writes_standard_output(flags)) {
+    throw Error({"--output -", "several clouds are written, which one stream cannot tell apart",
+                 "one frame of one sensor on standard output",
+                 "use glidar render without --duration, and --mount to choose one of a rig's "
+                 "sensors, or write files"});
+  }
   OutputFlags result = flags;
   for (std::string& path : result.paths) {
     path.insert(path.size() - format_for(path).suffix.size(), "_" + label);
@@ -212,18 +317,13 @@ std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& in
                  .allowed = "files by suffix:" + suffix_list(),
                  .remedy = "for example: glidar render " + input + " -o cloud.pcd -o picture.png"});
   }
+  check_standard_output(flags);
   FileSinkOptions options = sink_options(flags);
   options.progress = progress;
-  const std::vector<std::string> asked = asked_columns(flags);
   std::vector<Output> outputs;
-  for (const std::string& path : flags.paths) {
-    naming("--output", [&] {
-      outputs.push_back({.path = path,
-                         .columns = columns_of(format_for(path), asked),
-                         .cloud_frame = flags.cloud_frame,
-                         .deskew = flags.deskew,
-                         .sink = make_file_sink(path, options, context, report)});
-    });
+  for (const std::string& path : in_order(flags.paths)) {
+    naming("--output",
+           [&] { outputs.push_back(plan_output(path, flags, options, context, report)); });
   }
   if (!flags.legacy_name.empty()) {
     naming("--pcd", [&] { plan_legacy(flags.legacy_name, context, report, outputs); });
@@ -260,8 +360,9 @@ void write_outputs(const std::vector<Output>& outputs, const Frame& frame, const
       make_point_cloud(frame, beams, scene, axes, output.columns, cloud);
       made_for = &output;
     }
-    output.sink->write(cloud, frame);
+    output.sink->stage(cloud, frame);
   }
+  commit_all(outputs);
 }
 
 }  // namespace glidar::app

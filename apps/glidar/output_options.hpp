@@ -19,7 +19,8 @@ namespace glidar::app {
 
 /// What to write, as given.
 struct OutputFlags {
-  std::vector<std::string> paths;
+  std::vector<std::string> paths;  ///< "-": standard output
+  std::string format;              ///< of standard output, without the dot; empty: not given
   std::string legacy_name;  ///< --pcd NAME; empty: not given
   std::string columns;      ///< empty: not given
   std::string layout;       ///< empty: not given
@@ -39,7 +40,17 @@ void add_output_flags(CLI::App& command, OutputFlags& flags);
 /// What the names of suffixes, columns and axes mean, for the end of --help.
 std::string output_names_text();
 
-/// The same for one frame of a sequence: NAME_000007.pcd for NAME.pcd.
+/// Standard output among the paths.
+inline constexpr const char* kStandardOutput = "-";
+
+/// The format of one of the paths. Throws Error.
+const FileFormat& format_of(const OutputFlags& flags, const std::string& path);
+
+/// Whether one of the paths is standard output: then texts go to standard error.
+bool writes_standard_output(const OutputFlags& flags);
+
+/// The same for one frame of a sequence: NAME_000007.pcd for NAME.pcd; folders take all frames.
+/// Throws Error for standard output, which holds one cloud.
 OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame);
 
 /// The same for one sensor of a rig: NAME_lidar.pcd for NAME.pcd.
@@ -51,7 +62,7 @@ struct Output {
   std::vector<std::string> columns;
   std::string cloud_frame;  ///< optical, ros, gl, world or legacy
   bool deskew = false;      ///< points as fired from where the sensor was
-  std::unique_ptr<CloudSink> sink;
+  std::unique_ptr<FileSink> sink;
 };
 
 /// All files, checked as far as possible before anything is computed: suffix, folder, column names,
@@ -68,7 +79,9 @@ void protect_files(const std::vector<std::string>& read, const std::vector<Outpu
 /// The hit columns that all outputs together need.
 HitFields fields_for(const std::vector<Output>& outputs);
 
-/// Writes them all; tells `report` which one is being written.
+/// Writes them all; reports which one is being written. They get their names together: when one
+/// fails, none of the frame's files is there. Should the system refuse a name, the error lists the
+/// files that have theirs.
 void write_outputs(const std::vector<Output>& outputs, const Frame& frame, const Beams& beams,
                    const Scene& scene, const Report& report = {});
 

@@ -4,7 +4,9 @@
 #include <apps/glidar/commands.hpp>
 #include <apps/glidar/exit_code.hpp>
 #include <apps/glidar/recorded_command.hpp>
+#include <apps/glidar/rig_outputs.hpp>
 #include <apps/glidar/session.hpp>
+#include <glidar/core/error.hpp>
 #include <glidar/simulate.hpp>
 
 #include <fmt/format.h>
@@ -24,6 +26,7 @@ constexpr const char* kExamples = R"(Examples:
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --columns all -o room.pcd -o room.png
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --layout velodyne --dense -o scan.pcd
   glidar render builtin:box --sensor OS1-32 --eye 0,0,0 --camera-dr 0,1,0 --duration 1 -o scan.pcd
+  glidar render builtin:box -o - --format csv | head -3
   glidar render builtin:asteroid --model-q 0.7,0,0.7,0 --camera-z 10 --pcd view
 With your own files:
   glidar render part.stl --unit mm --up y -o part.pcd
@@ -33,7 +36,8 @@ The pose as in the 2015 program: quaternions are attitudes, they take inertial v
 body. The object stands at the inertial zero, the sensor at (0, 0, -D), and
   p_sensor = R(camera-q) (R(model-q)^T p_object + (0, 0, D))
 in the frame x left, y up, z forward. --model-q goes with any other pose option too.
-Exit codes: 0 done (also when nothing was hit), 2 bad input, 130 interrupted.)";
+Exit codes: 0 done (also when nothing was hit), 2 bad input, 130 interrupted,
+141 nobody reads standard output any more.)";
 
 /// Measures the scene; the console shows how far that is.
 void measure(const Setup& setup, const HitFields& fields, Console& console, Frame& frame) {
@@ -41,19 +45,19 @@ void measure(const Setup& setup, const HitFields& fields, Console& console, Fram
   simulate(setup, fields, frame);
 }
 
-void print_summary(const View& view, const std::vector<Output>& outputs) {
+void print_summary(const View& view, const std::vector<Output>& outputs, std::FILE* to) {
   const FrameSummary s = summarise(view.frame);
   const double percent =
       100.0 * static_cast<double>(s.hits) / static_cast<double>(view.beams.size());
-  fmt::print("{} x {} beams, {} hits ({:.1f} %)", view.beams.cols, view.beams.rows, s.hits,
+  fmt::print(to, "{} x {} beams, {} hits ({:.1f} %)", view.beams.cols, view.beams.rows, s.hits,
              percent);
   const double offset_m = view.beams.range_offset_m;
   if (s.hits > 0) {
-    fmt::print(", range {:.6g} to {:.6g} m", s.nearest_m + offset_m, s.farthest_m + offset_m);
+    fmt::print(to, ", range {:.6g} to {:.6g} m", s.nearest_m + offset_m, s.farthest_m + offset_m);
   }
-  fmt::print("\nwrote");
-  for (const Output& output : outputs) fmt::print(" {}", output.path.string());
-  fmt::print("\n");
+  fmt::print(to, "\nwrote");
+  for (const Output& output : outputs) fmt::print(to, " {}", output.path.string());
+  fmt::print(to, "\n");
 }
 
 HitFields needed_fields(const RenderFlags& flags, const std::vector<Output>& outputs) {
@@ -69,25 +73,47 @@ void write(const RenderFlags& flags, const View& view, const std::vector<Output>
     const Working working(console, "writing");
     write_outputs(outputs, view.frame, view.beams, view.scene, console.report());
   }
-  if (!flags.quiet) print_summary(view, outputs);
-  tell_information(flags.information, view.frame, view.beams, outputs, flags.quiet);
+  std::FILE* to = writes_standard_output(flags.output) ? stderr : stdout;
+  if (flags.quiet) to = nullptr;
+  if (to != nullptr) print_summary(view, outputs, to);
+  tell_information(flags.information, view.frame, view.beams, outputs, to);
+}
+
+/// Of a run: what is measured and written.
+struct Job {
+  const RenderFlags& flags;
+  const CommandRecord& command;
+  const Session& session;
+  std::vector<std::filesystem::path> written = {};  ///< so far
+};
+
+/// An error that also says what was written before it.
+Error after_writing(const Error& error, const std::vector<std::filesystem::path>& written) {
+  ErrorParts parts = error.parts();
+  parts.remedy += parts.remedy.empty() ? "" : "; ";
+  parts.remedy += fmt::format("{} output{} written before that, from {} to {}", written.size(),
+                              written.size() == 1 ? " was" : "s were", written.front().string(),
+                              written.back().string());
+  return Error(parts);
 }
 
 /// The files of one sensor's frame: named after both on a rig.
-OutputFlags files_of(const RenderFlags& flags, const Mount& mount, std::uint32_t frame) {
+OutputFlags files_of(const RenderFlags& flags, const OutputFlags& outputs, const Mount& mount,
+                     std::uint32_t frame) {
   const std::string label = label_of(flags, mount);
-  const OutputFlags files = label.empty() ? flags.output : labelled(flags.output, label);
+  const OutputFlags files = label.empty() ? outputs : labelled(outputs, label);
   return flags.duration_s ? numbered(files, frame) : files;
 }
 
 /// All frames of one sensor, each written to files of its own.
-void measure_all(const RenderFlags& flags, const CommandRecord& command, const Session& session,
-                 Mount& mount, Console& console) {
+void measure_all(Job& job, const OutputFlags& files, Mount& mount, Console& console) {
+  const RenderFlags& flags = job.flags;
+  const Session& session = job.session;
   SidecarContext context{.scene = session.scene,
                          .sensor = mount.sensor,
                          .beams = mount.beams,
                          .renderer = renderer_name(flags),
-                         .command = command};
+                         .command = job.command};
   if (!label_of(flags, mount).empty()) {
     context.command.arguments.insert(context.command.arguments.end(), {"--mount", mount.name});
   }
@@ -96,19 +122,21 @@ void measure_all(const RenderFlags& flags, const CommandRecord& command, const S
   const View view{session.scene, mount.sensor, mount.beams, frame};
   for (std::uint32_t k = 0; k < mount.frames; ++k) {
     const std::vector<Output> outputs =
-        plan_outputs(files_of(flags, mount, k), flags.input, context, console.report(),
+        plan_outputs(files_of(flags, files, mount, k), flags.input, context, console.report(),
                      [&console](double fraction) { console.tell(fraction); });
     protect_files(session.files, outputs);
     turn_to(flags, k, mount, frame);
     measure(setup, needed_fields(flags, outputs), console, frame);
     if (k == 0) tell(view_advice(view), console);
     write(flags, view, outputs, console);
+    for (const Output& output : outputs) job.written.push_back(output.path);
   }
 }
 
 int run(const RenderFlags& flags, const std::vector<std::string>& arguments) {
   Console console(flags.quiet);
-  check(flags.information);
+  check(flags.information, flags.output);
+  if (flags.duration_s) numbered(flags.output, 0);  // only for its errors
   const CommandRecord command = {.arguments = lasting(arguments),
                                  .folder = std::filesystem::current_path()};
   Session session;
@@ -122,7 +150,16 @@ int run(const RenderFlags& flags, const std::vector<std::string>& arguments) {
                    console.report());
   open(
       flags, [&] { protect_files(session.files, outputs); }, console, session);
-  for (Mount& mount : session.mounts) measure_all(flags, command, session, mount, console);
+  const std::vector<OutputFlags> files = outputs_by_sensor(flags, session, console);
+  Job job{flags, command, session};
+  try {
+    for (std::size_t i = 0; i < session.mounts.size(); ++i) {
+      if (has_outputs(files[i])) measure_all(job, files[i], session.mounts[i], console);
+    }
+  } catch (const Error& error) {
+    if (job.written.empty()) throw;
+    throw after_writing(error, job.written);
+  }
   return kDone;
 }
 

@@ -53,7 +53,9 @@ void make_absolute(StreamFlags& flags) {
   absolute(flags.replay);
   absolute(flags.stats);
   absolute(flags.render.output.legacy_name);
-  for (std::string& path : flags.render.output.paths) absolute(path);
+  for (std::string& path : flags.render.output.paths) {
+    if (path != kStandardOutput) absolute(path);
+  }
 }
 
 int run(const StreamFlags& chosen) {

@@ -177,7 +177,7 @@ void warn_of_held_poses(const Session& session, const Report& report) {
 
 void check_target(const RenderFlags& flags) {
   for (const std::string& path : flags.output.paths) {
-    if (has_paper_target(flags) || format_for(path).suffix != ".paper.png") continue;
+    if (has_paper_target(flags) || format_of(flags.output, path).suffix != ".paper.png") continue;
     throw Error({.where = "--output, " + path,
                  .found = "the float target, which draws no such picture",
                  .allowed = "this output with --render-target paper",

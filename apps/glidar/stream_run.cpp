@@ -7,6 +7,7 @@
 #include <apps/glidar/naming.hpp>
 #include <apps/glidar/placed_motion.hpp>
 #include <apps/glidar/recorded_source.hpp>
+#include <apps/glidar/rig_outputs.hpp>
 #include <apps/glidar/stream_report.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/sidecar.hpp>
@@ -82,6 +83,7 @@ void StreamRun::open_session() {
   if (writes_files()) outputs = plan(numbered(flags_.render.output, 0), unknown, unknown.beams);
   open(
       flags_.render, [&] { protect_files(session_.files, outputs); }, console_, session_);
+  files_ = outputs_by_sensor(flags_.render, session_, console_);
   for (const Mount& mount : session_.mounts) {
     aimed_.push_back({.beams = std::make_shared<const Beams>(mount.beams)});
   }
@@ -265,8 +267,7 @@ bool StreamRun::is_wanted(std::uint64_t place) const {
 }
 
 bool StreamRun::writes_files() const {
-  const OutputFlags& files = flags_.render.output;
-  return !files.paths.empty() || !files.legacy_name.empty();
+  return has_outputs(flags_.render.output);
 }
 
 std::vector<Output> StreamRun::plan(const OutputFlags& files, const Mount& mount,
@@ -302,7 +303,8 @@ void StreamRun::publish(const Shot& shot) {
 
 void StreamRun::write_files(const Shot& shot) {
   const Mount& mount = session_.mounts[shot.mount];
-  OutputFlags files = flags_.render.output;
+  OutputFlags files = files_[shot.mount];
+  if (!has_outputs(files)) return;
   const std::string label = label_of(flags_.render, mount);
   if (!label.empty()) files = labelled(files, label);
   const std::vector<Output> outputs =

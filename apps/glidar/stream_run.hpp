@@ -70,6 +70,7 @@ class StreamRun {
   };
   std::vector<Aimed> aimed_;        ///< of each sensor
   std::vector<std::string> taken_;  ///< files that no output may replace
+  std::vector<OutputFlags> files_;  ///< of each sensor
   MovedScene moved_scene_;
   HitFields fields_;
   StreamStats stats_;

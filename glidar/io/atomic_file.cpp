@@ -23,7 +23,7 @@ namespace {
 
 /// A piece stays in a core's own cache until the system has copied it.
 constexpr std::size_t kPieceBytes = std::size_t{1} << 18;
-constexpr std::size_t kSlots = 32;
+constexpr std::size_t kSlots = 128;
 constexpr std::size_t kSlotPathBytes = 4096;
 
 // States of a slot; int, because only plain atomics are sure to work in a signal handler.
@@ -65,7 +65,7 @@ void unlist(int slot) {
   const std::string reason = std::generic_category().message(code);
   std::string remedy;
   if (code == ENOSPC || code == EDQUOT || code == EFBIG)
-    remedy = "make room or write to another folder; nothing was left behind";
+    remedy = "make room or write to another folder; nothing of this file was left behind";
   if (code == ENOENT) remedy = "make the folder first";
   if (code == EACCES || code == EPERM || code == EROFS) remedy = "write to another folder";
   throw Error({path.string(), fmt::format("cannot {}: {}", what, reason), "", remedy});
@@ -98,6 +98,16 @@ AtomicFile::AtomicFile(const std::filesystem::path& path, Readers readers) : pat
   std::tie(temporary_, descriptor_) =
       open_temporary(folder, path, readers == Readers::owner ? kOwner : kUsual);
   slot_ = list_unfinished(temporary_.native());
+}
+
+AtomicFile::AtomicFile(int target, const std::filesystem::path& name)
+    : path_(name), target_(target) {
+  buffer_.resize(kPieceBytes);
+  // unnamed, so that it is gone whenever the program ends; formats go back in it to fill gaps
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), std::fclose);
+  if (!file) fail(path_, "create a temporary file", errno);
+  descriptor_ = ::fcntl(::fileno(file.get()), F_DUPFD_CLOEXEC, 0);
+  if (descriptor_ < 0) fail(path_, "create a temporary file", errno);
 }
 
 AtomicFile::~AtomicFile() {
@@ -141,15 +151,37 @@ void AtomicFile::finish() {
   if (descriptor_ < 0) return;
   if (failure_ != 0) fail(path_, "write", failure_);
   flush();
+  if (target_ >= 0) return;  // to be read from
   // Some file systems report a full disk or quota only on closing.
   if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(path_, "close", errno);
 }
 
 void AtomicFile::commit() {
   finish();
+  if (target_ >= 0) return send();
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, "put in place", errno);
   temporary_.clear();
   unlist(std::exchange(slot_, -1));
+}
+
+void AtomicFile::send() const {
+  if (::lseek(descriptor_, 0, SEEK_SET) < 0) fail(path_, "read back", errno);
+  std::vector<std::byte> piece(kPieceBytes);
+  for (;;) {
+    const ssize_t count = ::read(descriptor_, piece.data(), piece.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(path_, "read back", errno);
+    if (count == 0) return;
+    std::span<const std::byte> rest(piece.data(), static_cast<std::size_t>(count));
+    while (!rest.empty()) {
+      const ssize_t written = ::write(target_, rest.data(), rest.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0 && errno == EPIPE)
+        throw ClosedPipe({path_.string(), "nobody reads it any more", "", ""});
+      if (written < 0) fail(path_, "write", errno);
+      rest = rest.subspan(static_cast<std::size_t>(written));
+    }
+  }
 }
 
 void AtomicFile::flush() {

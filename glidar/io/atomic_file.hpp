@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/core/error.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -10,6 +12,12 @@
 #include <vector>
 
 namespace glidar {
+
+/// Nobody reads the other end of a pipe any more, as with `| head`.
+class ClosedPipe : public Error {
+ public:
+  using Error::Error;
+};
 
 /// A file that appears under its name only when it is whole: bytes go to a temporary file in the
 /// same folder, commit() renames it. Without commit() the destructor removes the temporary file and
@@ -22,6 +30,9 @@ class AtomicFile {
   /// Throws Error when `path` is there and no regular file (a folder, a device), or no file can be
   /// made beside it.
   explicit AtomicFile(const std::filesystem::path& path, Readers readers = Readers::usual);
+  /// The same for an open file of the system that stays open, such as standard output: commit()
+  /// sends it the bytes, in order. `name` appears in errors.
+  AtomicFile(int target, const std::filesystem::path& name);
   ~AtomicFile();
   AtomicFile(const AtomicFile&) = delete;
   AtomicFile& operator=(const AtomicFile&) = delete;
@@ -44,7 +55,8 @@ class AtomicFile {
   /// be complete before the first is renamed. Throws Error when a byte could not be stored.
   void finish();
 
-  /// finish(), then gives the file its name, replacing what was there in one step.
+  /// finish(), then gives the file its name, replacing what was there in one step. Throws Error;
+  /// ClosedPipe when it was to go to a pipe that nobody reads.
   void commit();
 
   /// The name the file will have.
@@ -54,10 +66,12 @@ class AtomicFile {
   void flush();
   void write_whole_pieces();
   void write_through(std::span<const std::byte> bytes);
+  void send() const;
 
   std::filesystem::path path_;
   std::filesystem::path temporary_;  ///< absolute; empty once committed
   int descriptor_ = -1;              ///< -1 once finished
+  int target_ = -1;                  ///< where commit() sends the bytes; -1: nowhere, it renames
   int failure_ = 0;                  ///< errno of the first write that failed
   int slot_ = -1;                    ///< in the list for remove_unfinished_files, -1: not in it
   std::uint64_t position_ = 0;
@@ -67,7 +81,7 @@ class AtomicFile {
 
 /// Removes the temporary files of every AtomicFile that is not committed. For a program that is
 /// about to end because of a signal: it is async-signal-safe. Afterwards commit() of those fails.
-/// Covers the first 32 files open at a time with paths below 4096 bytes.
+/// Covers the first 128 files open at a time with paths below 4096 bytes.
 void remove_unfinished_files() noexcept;
 
 }  // namespace glidar

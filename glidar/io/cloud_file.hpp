@@ -22,6 +22,7 @@ struct CloudFile {
   const SidecarContext& context;
   std::span<const Field> fields;  ///< what of each point goes into the file; the sidecar tells it
   std::string layout = {};        ///< that the cloud has; empty: columns of its own
+  std::string pixels = {};        ///< what the pixels of an image are; empty: it is no image
 };
 
 // What each format stores of a cloud. A writer stores exactly these fields, so that whoever reads
@@ -33,7 +34,7 @@ std::vector<Field> pcd_fields(const PointCloud& cloud);
 /// their types, but for integers of 64 bits, which are double; normals are nx ny nz, colour is
 /// uchar red green blue.
 std::vector<Field> ply_fields(const PointCloud& cloud);
-/// x y z intensity as float.
+/// x y z intensity as float; see kitti_cloud().
 std::vector<Field> kitti_fields(const PointCloud& cloud);
 /// depth as float.
 std::vector<Field> depth_fields(const PointCloud& cloud);
@@ -53,7 +54,7 @@ void write_npz(const CloudFile& job, AtomicFile& file);
 /// A line of field names, then a point per line, the shortest digits that read back the same.
 void write_csv(const CloudFile& job, AtomicFile& file);
 
-/// KITTI Velodyne: float32 x y z intensity per point, no header, no misses.
+/// KITTI Velodyne: float32 x y z intensity per point, no header, no misses; of a kitti_cloud().
 void write_kitti(const CloudFile& job, AtomicFile& file);
 
 /// NumPy array rows x cols of float32 depth in metres, NaN where there is no return.
@@ -62,6 +63,22 @@ void write_depth_npy(const CloudFile& job, AtomicFile& file);
 /// 16-bit grey image: depth times options.depth_png_units_per_m, rounded, at least 1; 0 = no
 /// return. Throws Error when a depth is behind the sensor or above 65535 units.
 void write_depth_png(const CloudFile& job, AtomicFile& file);
+
+/// Depth in metres as TIFF of one 32-bit float per pixel, NaN where there is no return.
+void write_depth_tiff(const CloudFile& job, AtomicFile& file);
+
+// Pictures of what is truly there, as 8 or 16-bit PNG, 0 where there is nothing. Errors say which
+// number does not fit.
+
+/// 8-bit RGB: the surface's colour times the cosine of incidence, as by light at the sensor that
+/// does not weaken with the distance.
+void write_rgb_png(const CloudFile& job, AtomicFile& file);
+/// 16-bit RGB: the triangle's unit normal in the cloud's frame, n = 2 v / 65535 - 1.
+void write_normal_png(const CloudFile& job, AtomicFile& file);
+/// 16-bit grey: ids of instances.
+void write_instance_png(const CloudFile& job, AtomicFile& file);
+/// 8-bit grey, of scenes with more than 256 classes 16-bit grey: ids of classes.
+void write_class_png(const CloudFile& job, AtomicFile& file);
 
 /// The frame's PaperPicture, byte by byte, as 8-bit RGBA; its planes are told in the file's text.
 /// Throws Error when the frame was not read from one.

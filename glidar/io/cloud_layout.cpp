@@ -60,6 +60,8 @@ double whole_turn(double angle_rad) {
   return angle_rad < 0.0 ? angle_rad + 2.0 * std::numbers::pi : angle_rad;
 }
 
+constexpr double kMaxByte = 255.0;
+
 /// A byte that is linear up to `white` for a reflectivity of 1 and logarithmic beyond, up to 255
 /// for a retro-reflector of 1000. The makers tell `white` and that more is retro-reflecting, not
 /// how much more.
@@ -265,7 +267,29 @@ void check_returns(const Layout& layout, const Beams& beams) {
                "one return of each pulse", "give --returns strongest, or another layout"});
 }
 
+/// For its columns: what unit_intensities() is made of.
+const Layout& unit_layout() {
+  static const Layout kUnit = {"kitti", "KITTI", {{"intensity", F32{}, kReflectivity, 0, same}}};
+  return kUnit;
+}
+
 }  // namespace
+
+std::vector<float> unit_intensities(const PointCloud& cloud, const Sensor& sensor,
+                                    const Beams& beams) {
+  const bool has_bytes = spelling_of(sensor).vendor != nullptr;
+  const bool is_calibrated = sensor.pulse.has_value() && !has_bytes;
+  std::vector<double> numbers = is_calibrated ? reflectivity(cloud, unit_layout(), sensor, beams)
+                                              : numbers_of(cloud, unit_layout(), "intensity", 0);
+  std::vector<float> shares(numbers.size());
+  std::transform(numbers.begin(), numbers.end(), shares.begin(), [&](double number) {
+    const double share = is_calibrated ? percent_byte(number) / kMaxByte
+                         : has_bytes   ? number / kMaxByte
+                                       : number;
+    return static_cast<float>(std::clamp(share, 0.0, 1.0));
+  });
+  return shares;
+}
 
 std::span<const CloudLayout> cloud_layouts() {
   static const std::vector<CloudLayout> kTold = [] {

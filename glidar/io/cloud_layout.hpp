@@ -33,4 +33,11 @@ const CloudLayout& layout_named(std::string_view name);
 PointCloud laid_out(const PointCloud& cloud, std::string_view layout, const Sensor& sensor,
                     const Beams& beams);
 
+/// Intensities from 0 to 1, clipped, as KITTI's points have them. Of sensors of pulsed light the
+/// calibrated reflectivity as the byte of the layout `velodyne` over 255; of sensors whose noise
+/// spells intensity as a vendor's byte, that byte over 255; else the intensity itself. Needs the
+/// columns intensity and, of pulsed light, range. Throws Error without them.
+std::vector<float> unit_intensities(const PointCloud& cloud, const Sensor& sensor,
+                                    const Beams& beams);
+
 }  // namespace glidar

@@ -33,7 +33,7 @@ void check_depths(const std::vector<double>& depths_m, double units_per_m, const
   if (smallest_m < 0.0) {
     throw Error({file.path().string(),
                  fmt::format("a depth of {:.9g} m, behind the sensor", smallest_m),
-                 "depths above 0", "write .npy, which holds any depth"});
+                 "depths above 0", "write .npy or .depth.tiff, which hold any depth"});
   }
   if (std::round(largest_m * units_per_m) > kLargestGrey) {
     throw Error(
@@ -42,7 +42,9 @@ void check_depths(const std::vector<double>& depths_m, double units_per_m, const
                      "metre",
                      largest_m, units_per_m),
          fmt::format("up to {:.9g} m", kLargestGrey / units_per_m),
-         fmt::format("use {:.9g} units per metre, or write .npy", fitting_scale(largest_m))});
+         fmt::format("use {:.9g} units per metre (--depth-scale, depth_units_per_m in Python), or "
+                     "write .npy or .depth.tiff",
+                     fitting_scale(largest_m))});
   }
 }
 

@@ -47,6 +47,7 @@ struct FileFormat {
   std::string description;  ///< for --help
   std::vector<std::string> columns;  ///< cloud columns it needs at least
   bool takes_more = false;           ///< keeps any other columns of the cloud too
+  bool is_folder = false;            ///< the path is a folder, to which every frame adds its files
 };
 
 /// All formats, for help and errors.
@@ -55,13 +56,38 @@ std::span<const FileFormat> file_formats();
 /// The format for a path by its suffix. Throws Error naming all suffixes and the nearest.
 const FileFormat& format_for(const std::filesystem::path& path);
 
+/// True for formats that are plain text with these options, fit for a terminal.
+bool is_text(const FileFormat& format, const FileSinkOptions& options);
+
+/// Why a sensor of a rig has no output of this format, as the rest of a sentence ("the depths of
+/// its beams behind it ..."); empty: it has. A depth image is for sensors that look ahead.
+std::string misfit(const FileFormat& format, const Sensor& sensor, const Beams& beams);
+
+/// Writes files in two steps, so that the files of several sinks appear together or not at all.
+class FileSink : public CloudSink {
+ public:
+  /// Writes all files of the cloud under temporary names. Throws Error; then nothing of it is left.
+  virtual void stage(const PointCloud& cloud, const Frame& frame) = 0;
+  /// Gives the staged files their names. Throws Error when the system refuses.
+  virtual void commit() = 0;
+  /// Both steps.
+  void write(const PointCloud& cloud, const Frame& frame) override;
+};
+
 /// A sink that writes one file (and its sidecar) per cloud: to a temporary name beside it, then
 /// renamed, so that a path either holds a whole file or is as it was.
 /// Throws Error at once when the suffix or the layout is unknown or the folder does not exist.
 /// Warns through `report` when the format's float32 moves a coordinate or depth by more than 0.1
 /// mm.
-std::unique_ptr<CloudSink> make_file_sink(const std::filesystem::path& path,
-                                          const FileSinkOptions& options,
-                                          const SidecarContext& context, Report report = {});
+std::unique_ptr<FileSink> make_file_sink(const std::filesystem::path& path,
+                                         const FileSinkOptions& options,
+                                         const SidecarContext& context, Report report = {});
+
+/// The same bytes to an open file of the system, such as standard output, once they are complete;
+/// without a sidecar. `name` has the format's suffix and appears in errors. Throws Error likewise;
+/// commit() throws ClosedPipe when nobody reads the other end any more.
+std::unique_ptr<FileSink> make_stream_sink(int descriptor, const std::filesystem::path& name,
+                                           const FileSinkOptions& options,
+                                           const SidecarContext& context, Report report = {});
 
 }  // namespace glidar

@@ -3,6 +3,7 @@
 #include <glidar/io/information_file.hpp>
 
 #include <glidar/io/atomic_file.hpp>
+#include <glidar/io/json_numbers.hpp>
 
 #include <fmt/format.h>
 
@@ -79,7 +80,7 @@ std::string information_json(const PoseInformation& information) {
                           {"eigenvalue_per_m2", direction.eigenvalue},
                           {"displacement", vector_json(direction.displacement)}});
   }
-  const Json all = {{"convention", kConvention},
+  Json all = {{"convention", kConvention},
                     {"returns", information.returns},
                     {"left_out", information.left_out},
                     {"assumed_sigma_m",
@@ -91,6 +92,7 @@ std::string information_json(const PoseInformation& information) {
                     {"length_m", information.length_m},
                     {"middle_m", vector_json(information.middle_m)},
                     {"directions", directions}};
+  remove_negative_zeros(all);
   return all.dump(2) + "\n";
 }
 

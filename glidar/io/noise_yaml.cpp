@@ -3,6 +3,7 @@
 #include <glidar/io/noise_yaml.hpp>
 
 #include <glidar/core/light_speed.hpp>
+#include <glidar/io/json_numbers.hpp>
 #include <glidar/io/noise_fields.hpp>
 
 #include <algorithm>
@@ -134,7 +135,7 @@ void tell_others(const RangeDrift& step, Json& told) {
 
 Json table_json(const Table& table, double unit) {
   Json pairs = Json::array();
-  for (const auto& [place, value] : table) pairs.push_back(Json::array({place / unit, value}));
+  for (const auto& [place, value] : table) pairs.push_back(Json::array({in_unit(place, unit), value}));
   return pairs;
 }
 
@@ -178,7 +179,7 @@ nlohmann::ordered_json noise_json(const std::vector<NoiseStep>& noise) {
     Json told = {{"type", kNoiseTypes.at(step.index())}};
     std::visit(
         [&](const auto& s) {
-          for (const auto& n : numbers_of(s)) told[n.key] = s.*n.number / n.unit;
+          for (const auto& n : numbers_of(s)) told[n.key] = in_unit(s.*n.number, n.unit);
           tell_others(s, told);
         },
         step);

@@ -2,6 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/optics_json.hpp>
 
+#include <glidar/io/json_numbers.hpp>
+
+#include <array>
+#include <numbers>
+#include <string_view>
+
 namespace glidar {
 namespace {
 
@@ -9,6 +15,28 @@ using Json = nlohmann::ordered_json;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMicrosecond_ns = 1e3;
+constexpr double kMillimetre_m = 1e-3;
+
+/// The name of a model among ROS' (sensor_msgs/distortion_models.hpp) and its coefficients in
+/// OpenCV's order.
+struct NamedCoefficients {
+  std::string_view model;
+  std::vector<double> d;
+};
+
+NamedCoefficients coefficients_of(const NoDistortion& /*none*/) {
+  return {"plumb_bob", std::vector<double>(5, 0.0)};
+}
+
+NamedCoefficients coefficients_of(const RadialTangential& d) {
+  if (d.k4 == 0.0 && d.k5 == 0.0 && d.k6 == 0.0)
+    return {"plumb_bob", {d.k1, d.k2, d.p1, d.p2, d.k3}};
+  return {"rational_polynomial", {d.k1, d.k2, d.p1, d.p2, d.k3, d.k4, d.k5, d.k6}};
+}
+
+NamedCoefficients coefficients_of(const Fisheye& d) {
+  return {"equidistant", {d.k1, d.k2, d.k3, d.k4}};
+}
 
 Json distortion_json(const NoDistortion& /*none*/) {
   return {{"model", "none"}};
@@ -60,33 +88,33 @@ Json json_of(const Spinning& s) {
       {"type", "spinning"},
       {"rotation_hz", s.rotation_hz},
       {"turn", s.turn == Spinning::Turn::clockwise ? "clockwise" : "counterclockwise"},
-      {"start_azimuth_deg", s.start_azimuth_rad / kDegree},
+      {"start_azimuth_deg", in_unit(s.start_azimuth_rad, kDegree)},
       {"columns_per_turn", s.columns_per_turn},
-      {"sequence_us", sequence_period_ns(s) / kMicrosecond_ns},
-      {"beam_origin_mm", s.beam_origin_m * 1e3},
+      {"sequence_us", in_unit(sequence_period_ns(s), kMicrosecond_ns)},
+      {"beam_origin_mm", in_unit(s.beam_origin_m, kMillimetre_m)},
       {"sector",
-       {{"from_deg", s.sector_start_rad / kDegree}, {"width_deg", s.sector_width_rad / kDegree}}}};
+       {{"from_deg", in_unit(s.sector_start_rad, kDegree)}, {"width_deg", in_unit(s.sector_width_rad, kDegree)}}}};
   const auto add = [&](const char* key, auto number_of) {
     told[key] = list_of(s.channels, number_of);
   };
-  add("elevation_deg", [](const Channel& c) { return c.elevation_rad / kDegree; });
-  add("azimuth_left_deg", [](const Channel& c) { return c.azimuth_offset_rad / kDegree; });
-  add("fire_time_us", [](const Channel& c) { return c.fire_time_ns / kMicrosecond_ns; });
-  add("origin_out_mm", [](const Channel& c) { return c.origin_m.x() * 1e3; });
-  add("origin_left_mm", [](const Channel& c) { return c.origin_m.y() * 1e3; });
-  add("origin_up_mm", [](const Channel& c) { return c.origin_m.z() * 1e3; });
+  add("elevation_deg", [](const Channel& c) { return in_unit(c.elevation_rad, kDegree); });
+  add("azimuth_left_deg", [](const Channel& c) { return in_unit(c.azimuth_offset_rad, kDegree); });
+  add("fire_time_us", [](const Channel& c) { return in_unit(c.fire_time_ns, kMicrosecond_ns); });
+  add("origin_out_mm", [](const Channel& c) { return in_unit(c.origin_m.x(), kMillimetre_m); });
+  add("origin_left_mm", [](const Channel& c) { return in_unit(c.origin_m.y(), kMillimetre_m); });
+  add("origin_up_mm", [](const Channel& c) { return in_unit(c.origin_m.z(), kMillimetre_m); });
   add("ring", [](const Channel& c) { return c.ring; });
   return told;
 }
 
 Json json_of(const Raster& r) {
-  const auto degrees = [](double angle_rad) { return angle_rad / kDegree; };
+  const auto degrees = [](double angle_rad) { return in_unit(angle_rad, kDegree); };
   return {{"type", "raster"},
           {"scan_hz", r.scan_hz},
           {"elevation_deg", list_of(r.elevations_rad, degrees)},
           {"azimuth_deg", list_of(r.azimuths_rad, degrees)},
-          {"point_us", r.point_ns / kMicrosecond_ns},
-          {"line_us", r.line_ns / kMicrosecond_ns},
+          {"point_us", in_unit(r.point_ns, kMicrosecond_ns)},
+          {"line_us", in_unit(r.line_ns, kMicrosecond_ns)},
           {"to_and_fro", r.to_and_fro}};
 }
 
@@ -94,8 +122,8 @@ Json json_of(const Prism& p) {
   Json prisms = Json::array();
   for (const RisleyPrism& prism : p.prisms) {
     prisms.push_back({{"rotation_hz", prism.rotation_hz},
-                      {"apex_deg", prism.apex_rad / kDegree},
-                      {"phase_deg", prism.phase_rad / kDegree},
+                      {"apex_deg", in_unit(prism.apex_rad, kDegree)},
+                      {"phase_deg", in_unit(prism.phase_rad, kDegree)},
                       {"refractive_index", prism.refractive_index},
                       {"slope", prism.slope == RisleyPrism::Slope::entry ? "entry" : "exit"}});
   }
@@ -110,12 +138,32 @@ Json json_of(const BeamTable& t) {
   return {{"type", "table"},
           {"rows", t.rows},
           {"cols", t.cols},
-          {"period_us", t.period_ns / kMicrosecond_ns},
+          {"period_us", in_unit(t.period_ns, kMicrosecond_ns)},
           {"times", !t.times_ns.empty()},
           {"origins", !t.origins_m.empty()}};
 }
 
 }  // namespace
+
+Json camera_info_json(const Optics& optics) {
+  const auto* pinhole = std::get_if<Pinhole>(&optics);
+  if (pinhole == nullptr) return {};
+  const PinholeIntrinsics& i = pinhole->intrinsics;
+  const double cx = i.cx - i.pixel_centre;
+  const double cy = i.cy - i.pixel_centre;
+  const NamedCoefficients named =
+      std::visit([](const auto& d) { return coefficients_of(d); }, pinhole->distortion);
+  return {{"convention",
+           "pixel centres have whole coordinates, as in OpenCV, ROS and Open3D; those of optics "
+           "have optics.pixel_centre more"},
+          {"width", i.width},
+          {"height", i.height},
+          {"distortion_model", named.model},
+          {"d", named.d},
+          {"k", std::array{i.fx, 0.0, cx, 0.0, i.fy, cy, 0.0, 0.0, 1.0}},
+          {"r", std::array{1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}},
+          {"p", std::array{i.fx, 0.0, cx, 0.0, 0.0, i.fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0}}};
+}
 
 Json optics_json(const Optics& optics) {
   return std::visit([](const auto& o) { return json_of(o); }, optics);

@@ -13,4 +13,8 @@ namespace glidar {
 /// Optics as sidecar files tell them, in the units of sensor files. Keys stay in this order.
 nlohmann::ordered_json optics_json(const Optics& optics);
 
+/// Intrinsics and distortion of a camera as in ROS' sensor_msgs/CameraInfo, for OpenCV's convention
+/// that the first pixel's centre is (0, 0); null for other optics.
+nlohmann::ordered_json camera_info_json(const Optics& optics);
+
 }  // namespace glidar

@@ -64,8 +64,12 @@ struct PixelForm {
 
 PixelForm form_of(PngKind kind) {
   switch (kind) {
+    case PngKind::grey8:
+      return {8, PNG_COLOR_TYPE_GRAY, 1};
     case PngKind::grey16:
       return {16, PNG_COLOR_TYPE_GRAY, 2};
+    case PngKind::rgb16:
+      return {16, PNG_COLOR_TYPE_RGB, 6};
     case PngKind::rgba8:
       return {8, PNG_COLOR_TYPE_RGB_ALPHA, 4};
     default:
@@ -81,7 +85,7 @@ bool encode(png_structp png, png_infop info, const PngImage& image, png_bytepp r
   png_set_IHDR(png, info, image.width, image.height, form.bits, form.colour, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_write_info(png, info);
-  if (image.kind == PngKind::grey16) png_set_swap(png);  // the file is big-endian
+  if (form.bits == 16) png_set_swap(png);  // the file is big-endian
   png_write_image(png, rows);
   png_write_end(png, nullptr);
   return true;

@@ -11,9 +11,9 @@
 
 namespace glidar {
 
-enum class PngKind : std::uint8_t { grey16, rgb8, rgba8 };
+enum class PngKind : std::uint8_t { grey8, grey16, rgb8, rgb16, rgba8 };
 
-/// Pixels row by row from the top, without padding; grey16 in memory order.
+/// Pixels row by row from the top, without padding; numbers of 16 bits in memory order.
 struct PngImage {
   PngKind kind = PngKind::rgb8;
   std::uint32_t width = 0;

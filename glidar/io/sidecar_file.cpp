@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/version.hpp>
 #include <glidar/io/cloud_file.hpp>
+#include <glidar/io/json_numbers.hpp>
 #include <glidar/io/noise_yaml.hpp>
 #include <glidar/io/optics_json.hpp>
 #include <glidar/io/receiver_yaml.hpp>
@@ -19,6 +20,9 @@ namespace {
 
 // Keys stay in the order of writing. Numbers that JSON has no word for (NaN, infinity) become null.
 using Json = nlohmann::ordered_json;
+
+constexpr double kMilli = 1e-3;
+constexpr double kNano = 1e-9;
 
 Json vector_json(const Eigen::Vector3d& v) {
   return Json::array({v.x(), v.y(), v.z()});
@@ -48,8 +52,9 @@ Json pulse_json(const PulseLight& light) {
 }
 
 Json footprint_json(const Footprint& f) {
-  return {{"divergence_mrad", {1e3 * f.divergence_x_rad, 1e3 * f.divergence_y_rad}},
-          {"exit_mm", {1e3 * f.exit_x_m, 1e3 * f.exit_y_m}},
+  return {{"divergence_mrad",
+           {in_unit(f.divergence_x_rad, kMilli), in_unit(f.divergence_y_rad, kMilli)}},
+          {"exit_mm", {in_unit(f.exit_x_m, kMilli), in_unit(f.exit_y_m, kMilli)}},
           {"widths", "1/e2"},
           {"rings", f.rings}};
 }
@@ -58,7 +63,7 @@ Json receiver_json(const Receiver& receiver) {
   Json returns = Json::array();
   for (const Return& one : receiver.returns) returns.push_back(return_name(one));
   const bool is_centroid = receiver.timing == Receiver::Timing::centroid;
-  return {{"pulse_ns", 1e9 * receiver.pulse_fwhm_s},
+  return {{"pulse_ns", in_unit(receiver.pulse_fwhm_s, kNano)},
           {"timing", is_centroid ? "centroid" : "leading_edge"},
           {"separation_m", receiver.separation_m},
           {"returns", returns}};
@@ -73,8 +78,9 @@ Json sensor_json(const Sensor& sensor, const Beams& beams) {
           {"cols", beams.cols},
           {"boresight", vector_json(beams.boresight)},
           {"optics", optics_json(sensor.optics)},
+          {"camera_info", camera_info_json(sensor.optics)},
           {"rate_hz", sensor.rate_hz},
-          {"wavelength_nm", sensor.wavelength_m * 1e9},
+          {"wavelength_nm", in_unit(sensor.wavelength_m, kNano)},
           {"range_offset_m", beams.range_offset_m},
           {"limits",
            {{"near_m", sensor.limits.near_m},
@@ -111,6 +117,15 @@ Json columns_json(std::span<const Field> fields) {
   return columns;
 }
 
+/// Null for clouds.
+Json image_json(const CloudFile& job) {
+  if (job.pixels.empty()) return {};
+  Json image = {{"pixels", job.pixels}};
+  if (job.pixels.find("units_per_m") != std::string::npos)
+    image["units_per_m"] = job.options.depth_png_units_per_m;
+  return image;
+}
+
 Json cloud_json(const CloudFile& job, const std::filesystem::path& path) {
   return {{"file", path.filename().string()},
           {"rows", job.cloud.rows},
@@ -118,7 +133,8 @@ Json cloud_json(const CloudFile& job, const std::filesystem::path& path) {
           {"frame_id", job.cloud.frame_id},
           {"world_from_cloud", pose_json(job.cloud.world_from_cloud)},
           {"layout", job.layout.empty() ? Json() : Json(job.layout)},
-          {"columns", columns_json(job.fields)}};
+          {"columns", columns_json(job.fields)},
+          {"image", image_json(job)}};
 }
 
 Json instances_json(const CloudFile& job) {
@@ -188,21 +204,24 @@ void append_text(const Json& value, std::size_t indent, std::string& text) {
 
 std::string sensor_text(const Sensor& sensor, const Beams& beams) {
   constexpr int kIndent = 2;
-  return sensor_json(sensor, beams).dump(kIndent, ' ', false, Json::error_handler_t::replace);
+  Json json = sensor_json(sensor, beams);
+  remove_negative_zeros(json);
+  return json.dump(kIndent, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string sidecar_text(const CloudFile& job, const std::filesystem::path& path) {
-  const Json all = {{"glidar", version()},
-                    {"command", command_json(job.context.command, path)},
-                    {"renderer", job.context.renderer},
-                    {"seed", job.frame.seed},
-                    {"frame", job.frame.number},
-                    {"frame_hash", frame_hash(job.frame)},
-                    {"stamp_ns", job.frame.stamp_ns},
-                    {"cloud", cloud_json(job, path)},
-                    {"sensor", sensor_json(job)},
-                    {"instances", instances_json(job)},
-                    {"beams_by_status", status_json(job.frame)}};
+  Json all = {{"glidar", version()},
+              {"command", command_json(job.context.command, path)},
+              {"renderer", job.context.renderer},
+              {"seed", job.frame.seed},
+              {"frame", job.frame.number},
+              {"frame_hash", frame_hash(job.frame)},
+              {"stamp_ns", job.frame.stamp_ns},
+              {"cloud", cloud_json(job, path)},
+              {"sensor", sensor_json(job)},
+              {"instances", instances_json(job)},
+              {"beams_by_status", status_json(job.frame)}};
+  remove_negative_zeros(all);
   std::string text;
   append_text(all, 0, text);
   return text + "\n";

@@ -162,7 +162,7 @@ class Frame:
         sidecar: bool = True,
     ) -> None:
         """Writes a file as ``glidar render -o PATH`` does; the suffix says what: .pcd .ply .npz .csv
-        .bin .npy .depth.png .png .transform.
+        .bin .kitti .npy .depth.png .depth.tiff .rgb.png .normal.png .instance.png .class.png .png .transform.
 
         Args:
             columns, frame, hits_only, deskew: as for ``cloud``.
@@ -170,7 +170,7 @@ class Frame:
             pcd: "ascii", "binary" or "binary_compressed".
             ply_ascii: PLY as text.
             depth_units_per_m: of 16-bit depth images.
-            sidecar: write PATH.json beside a cloud.
+            sidecar: write PATH.json beside a cloud or image.
 
         Raises:
             Error: an unknown suffix or layout, no such folder, a column that was not kept, a file that

@@ -103,6 +103,41 @@ class Sensor:
         NaN where there is no beam."""
         return self._core.directions
 
+    def _camera_info(self, what: str) -> dict[str, Any]:
+        info: dict[str, Any] | None = self.describe()["camera_info"]
+        if info is None:
+            raise Error(what, f"the sensor is no camera but has optics of the kind {self.kind!r}", "a camera")
+        return info
+
+    @property
+    def K(self) -> FloatArray:  # noqa: N802 (the field's name for it)
+        """The camera matrix, 3x3, pixels: [[fx, 0, cx], [0, fy, cy], [0, 0, 1]] with the convention of
+        OpenCV, ROS and Open3D, in which the first pixel's centre is (0, 0).
+
+        Raises:
+            Error: the sensor is no camera.
+        """
+        return np.array(self._camera_info("K")["k"]).reshape(3, 3)
+
+    @property
+    def distortion(self) -> FloatArray:
+        """Distortion coefficients in OpenCV's order: k1 k2 p1 p2 k3, or with k4 k5 k6; of the model
+        "equidistant", which is that of cv2.fisheye, k1 k2 k3 k4. Zeros without distortion.
+
+        Raises:
+            Error: the sensor is no camera.
+        """
+        return np.array(self._camera_info("distortion")["d"])
+
+    @property
+    def distortion_model(self) -> str:
+        """What ``distortion`` is of, by ROS' names: "plumb_bob", "rational_polynomial" or "equidistant".
+
+        Raises:
+            Error: the sensor is no camera.
+        """
+        return str(self._camera_info("distortion_model")["distortion_model"])
+
     def describe(self) -> dict[str, Any]:
         """All its numbers, as the sidecars of clouds tell them, which is not what ``from_dict`` takes; what is
         infinite is None."""

@@ -8,6 +8,7 @@
 #include <glidar/io/cloud_layout.hpp>
 #include <glidar/io/file_guard.hpp>
 #include <glidar/io/file_sink.hpp>
+#include <glidar/io/needed_columns.hpp>
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/filesystem.h>
@@ -135,7 +136,7 @@ void save_to(const Measured& m, const std::filesystem::path& path, const SaveOpt
   if (!options.sink.layout.empty() && format.takes_more) {
     columns = layout_named(options.sink.layout).columns;
   }
-  for (const std::string& name : format.columns) {
+  for (const std::string& name : needed_columns(format)) {
     if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
   }
   const auto sink = make_file_sink(path, options.sink,

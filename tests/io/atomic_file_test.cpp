@@ -95,7 +95,7 @@ TEST(AtomicFile, TellsAFullDiskAndLeavesNothing) {
   });
   EXPECT_THAT(text, HasSubstr((folder / "a.txt").string()));
   EXPECT_THAT(text, HasSubstr("File too large"));
-  EXPECT_THAT(text, HasSubstr("nothing was left behind"));
+  EXPECT_THAT(text, HasSubstr("nothing of this file was left behind"));
   EXPECT_THAT(folder.names(), IsEmpty());
 }
 

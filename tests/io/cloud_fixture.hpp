@@ -83,6 +83,17 @@ inline void add_columns(PointCloud& cloud) {
   });
 }
 
+/// What images of the truth need besides.
+inline void add_image_columns(PointCloud& cloud) {
+  add_column<float>(cloud, "incidence", {"incidence"}, [](std::size_t i, std::size_t) {
+    return is_miss(i) ? std::numeric_limits<float>::quiet_NaN()
+                      : 0.01F * static_cast<float>(i % 150);
+  });
+  add_column<std::uint32_t>(cloud, "class", {"class"}, [](std::size_t i, std::size_t) {
+    return is_miss(i) ? kNoHit : static_cast<std::uint32_t>(i % 3);
+  });
+}
+
 /// What scanners tell besides: the columns that layouts need.
 inline void add_scan_columns(PointCloud& cloud) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();

@@ -34,7 +34,8 @@ TEST(FileFormats, AnUnknownSuffixTellsAllAndTheNearest) {
   EXPECT_THAT(
       text,
       AllOf(HasSubstr("no format has the suffix .pdc"), HasSubstr("did you mean .pcd?"),
-            HasSubstr(".pcd .ply .npz .csv .bin .npy .depth.png .paper.png .png .transform")));
+            HasSubstr(".pcd .ply .npz .csv .bin .kitti .npy .depth.png .paper.png .png .transform "
+                      ".depth.tiff .rgb.png .normal.png .instance.png .class.png")));
   EXPECT_THAT(error_text([] { format_for("cloud"); }), HasSubstr("the name has no suffix"));
   EXPECT_THAT(error_text([] { format_for("out/.pcd"); }), HasSubstr("the name has no suffix"));
 }
@@ -60,11 +61,63 @@ TEST(FileSink, WritesCloudAndSidecarAndNothingElse) {
   EXPECT_THAT(folder.names(), ElementsAre("a.pcd", "a.pcd.json"));
 }
 
-TEST(FileSink, ImagesAndPosesHaveNoSidecar) {
+TEST(FileSink, PreviewsAndPosesHaveNoSidecar) {
   const testing::TestFolder folder;
-  for (const char* name : {"a.npy", "a.png", "a.depth.png", "a.paper.png", "a.transform"})
+  for (const char* name : {"a.png", "a.paper.png", "a.transform"})
     write_cloud(make_fixture(), folder / name);
-  EXPECT_EQ(folder.names().size(), 5U);
+  EXPECT_EQ(folder.names().size(), 3U);
+}
+
+TEST(FileSink, ImagesHaveASidecarThatSaysWhatThePixelsAre) {
+  const testing::TestFolder folder;
+  CloudFixture made = make_fixture();
+  made.sensor.optics = Pinhole{
+      {.width = 5, .height = 4, .fx = 10.0, .fy = 11.0, .cx = 2.5, .cy = 2.0, .pixel_centre = 0.5},
+      RadialTangential{.k1 = 0.25, .p1 = 0.5, .k3 = 0.125}};
+  fixture::add_image_columns(made.cloud);
+  for (const char* name : {"a.npy", "a.depth.png", "a.depth.tiff", "a.rgb.png", "a.normal.png",
+                           "a.instance.png", "a.class.png"}) {
+    write_cloud(made, folder / name, {.depth_png_units_per_m = 2000.0});
+    const auto told = nlohmann::json::parse(file_bytes(folder / (std::string(name) + ".json")));
+    EXPECT_FALSE(told.at("cloud").at("image").at("pixels").get<std::string>().empty()) << name;
+    const auto& info = told.at("sensor").at("camera_info");
+    EXPECT_EQ(info.at("k"), nlohmann::json::parse("[10.0,0.0,2.0, 0.0,11.0,1.5, 0.0,0.0,1.0]"));
+    EXPECT_EQ(info.at("d"), nlohmann::json::parse("[0.25,0.0,0.5,0.0,0.125]"));
+    EXPECT_EQ(info.at("distortion_model"), "plumb_bob");
+  }
+  const auto depth = nlohmann::json::parse(file_bytes(folder / "a.depth.png.json"));
+  EXPECT_EQ(depth.at("cloud").at("image").at("units_per_m"), 2000.0);
+}
+
+TEST(FileSink, AnInstanceThatDoesNotFitAnImageIsAnErrorThatSaysWhatToDo) {
+  const testing::TestFolder folder;
+  CloudFixture made = make_fixture();
+  for (const std::uint32_t id : {0U, 65536U}) {
+    for (Column& column : made.cloud.columns) {
+      if (column.name == "instance") std::get<std::vector<std::uint32_t>>(column.values)[0] = id;
+    }
+    EXPECT_THAT(error_text([&] { write_cloud(made, folder / "a.instance.png"); }),
+                AllOf(HasSubstr("allowed: ids from 1 to 65535"), HasSubstr("set 'id'")));
+  }
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+TEST(FileSink, StagedFilesHaveNoNameBeforeCommitAndAreGoneWithoutIt) {
+  const testing::TestFolder folder;
+  const CloudFixture made = make_fixture();
+  const SidecarContext context = made.context();
+  {
+    const auto sink = make_file_sink(folder / "a.kitti", {}, context);
+    sink->stage(made.cloud, made.frame);
+    EXPECT_TRUE(std::filesystem::is_empty(folder / "a.kitti/calib") == false);
+    EXPECT_FALSE(std::filesystem::exists(folder / "a.kitti/calib/000000.txt"));
+  }
+  EXPECT_THAT(folder.names(), IsEmpty());
+  const auto sink = make_file_sink(folder / "a.pcd", {}, context);
+  sink->stage(made.cloud, made.frame);
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.pcd"));
+  sink->commit();
+  EXPECT_THAT(folder.names(), ElementsAre("a.pcd", "a.pcd.json"));
 }
 
 TEST(FileSink, TheSidecarCanBeLeftOut) {
@@ -113,10 +166,12 @@ TEST(FileSink, AnErrorLeavesTheOldFilesAsTheyWere) {
 
 TEST(FileSink, TheSameCloudGivesTheSameBytesInEveryFormat) {
   const testing::TestFolder folder;
-  const CloudFixture made = make_fixture(60, 70);
-  const CloudFixture other = make_fixture(31, 17);
+  CloudFixture made = make_fixture(60, 70);
+  CloudFixture other = make_fixture(31, 17);
   FileSinkOptions options;
   options.pcd = PcdEncoding::binary_compressed;
+  fixture::add_image_columns(made.cloud);
+  fixture::add_image_columns(other.cloud);
   for (const FileFormat& format : file_formats()) {
     write_cloud(made, folder / ("a" + format.suffix), options);
     write_cloud(other, folder / ("between" + format.suffix), options);

@@ -141,6 +141,43 @@ TEST(KittiFile, LeavesMissesOutAlways) {
   EXPECT_EQ(numbers[3], 0.1F);
 }
 
+/// The intensity that a.bin has for a sensor's intensity and a range of 10 m.
+float kitti_intensity(const Sensor& sensor, float intensity) {
+  CloudFixture made = two_points();
+  made.sensor = sensor;
+  std::get<std::vector<float>>(made.cloud.columns[1].values)[0] = intensity;
+  made.cloud.columns.push_back({"range", {"range"}, std::vector<double>{10.0, std::nan("")}});
+  float numbers[4];
+  const std::string found = written(made, "a.bin");
+  EXPECT_EQ(found.size(), sizeof(numbers));
+  std::memcpy(numbers, found.data(), sizeof(numbers));
+  return numbers[3];
+}
+
+TEST(KittiFile, IntensityIsFromZeroToOneForEverySensor) {
+  Sensor plain;
+  EXPECT_EQ(kitti_intensity(plain, 0.5F), 0.5F);
+  EXPECT_EQ(kitti_intensity(plain, 1.5F), 1.0F);
+  Sensor vendor;
+  vendor.noise = {IntensityScale{.kind = IntensityScale::Kind::vendor}};
+  EXPECT_EQ(kitti_intensity(vendor, 51.0F), 0.2F);
+  // A white diffuse surface at R_ref = 100 m, of reference reflectance 0.5, sends 2 back; at 10 m
+  // 100 times that: 200 is reflectivity 1, which Velodynes report as 100 of 255.
+  Sensor pulsed;
+  pulsed.pulse = PulseLight{.reference_reflectance = 0.5, .reference_range_m = 100.0};
+  EXPECT_FLOAT_EQ(kitti_intensity(pulsed, 200.0F), 100.0F / 255.0F);
+  EXPECT_FLOAT_EQ(kitti_intensity(pulsed, 20.0F), 10.0F / 255.0F);
+  EXPECT_EQ(kitti_intensity(pulsed, 1e9F), 1.0F);
+}
+
+TEST(KittiFile, ClassesNeedTheColumnsOfLabels) {
+  CloudFixture made = two_points();
+  made.scene.class_names.emplace_back("rock");
+  made.scene.instances.front().class_id = 1;
+  EXPECT_THAT(error_text([&] { written(made, "a.bin"); }),
+              HasSubstr("the cloud has no column instance"));
+}
+
 TEST(DepthNpy, StartsOnAMultipleOf64WithNumPysHead) {
   const std::string found = written(make_fixture(), "a.npy");
   EXPECT_THAT(found, StartsWith("\x93NUMPY\x01"));

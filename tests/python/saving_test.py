@@ -35,6 +35,11 @@ CASES = {
     "e.bin": ({}, []),
     "f.npy": ({}, []),
     "g.depth.png": ({"depth_units_per_m": 5000.0}, ["--depth-scale", "5000"]),
+    "g.depth.tiff": ({}, []),
+    "g.rgb.png": ({}, []),
+    "g.normal.png": ({}, []),
+    "g.instance.png": ({}, []),
+    "g.class.png": ({}, []),
     "h.png": ({}, []),
     "i.transform": ({}, []),
 }

@@ -3,9 +3,11 @@
 """Sensors by name, from files and of numbers."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
+import yaml
 from conftest import ROOT
 
 import glidar
@@ -98,3 +100,31 @@ def test_an_unknown_sensor_is_told_as_the_command_line_does(tmp_path, program):
     with pytest.raises(glidar.Error) as caught:
         glidar.load_sensor("VLP-61")
     assert str(caught.value) in told
+
+
+def _compare(given, told, counted):
+    """Numbers of a file against those of the description under the same keys, digit by digit."""
+    if isinstance(given, dict) and isinstance(told, dict):
+        for key in given.keys() & told.keys():
+            _compare(given[key], told[key], counted)
+    elif isinstance(given, list) and isinstance(told, list) and len(given) == len(told):
+        for one, other in zip(given, told):
+            _compare(one, other, counted)
+    elif isinstance(told, list) and type(given) in (int, float):
+        for other in told:  # one number for all channels
+            _compare(given, other, counted)
+    elif type(given) in (int, float) and type(told) in (int, float):
+        assert repr(float(told)) == repr(float(given))
+        counted.append(given)
+
+
+def test_descriptions_have_the_numbers_of_the_files_of_presets_digit_by_digit():
+    counted = []
+    for name in glidar.sensor_names():
+        given = yaml.safe_load(Path(glidar.sensor_file(name)).read_text(encoding="utf-8"))
+        if given.get("footprint", {}).get("widths") == "fwhm":
+            del given["footprint"]  # sidecars give the widths of 1/e2
+        before = len(counted)
+        _compare(given, glidar.load_sensor(name).describe(), counted)
+        assert len(counted) > before, name
+    assert len(counted) > 500

@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""One file a trial: PCD and PLY clouds, and KITTI's folder of scans."""
+"""One file a trial: PCD and PLY clouds, and KITTI's folder of scans, labels and calibrations."""
 
-KITTI_FOLDER = "kitti/velodyne"
+KITTI_FOLDER = "kitti"
 
 
 class CloudOutput:
@@ -21,6 +21,24 @@ class CloudOutput:
         path = self._scratch.path(name)
         frame.save(path, self._columns)
         self._files.append((f"{self._folder}/{name}", path))
+
+    def finish(self):
+        return self._files
+
+
+class KittiOutput:
+    """KITTI's folder as `glidar render -o OUT.kitti` writes it, a file of each kind for each trial."""
+
+    def __init__(self, scratch):
+        self._scratch = scratch
+        self._files = []
+
+    def add(self, row, trial, frame):
+        folder = self._scratch.path(f"{trial:09}.kitti")
+        frame.save(folder, None)
+        for path in sorted(folder.glob("*/*")):
+            name = f"{KITTI_FOLDER}/{path.parent.name}/{trial:09}{path.suffix}"
+            self._files.append((name, path))
 
     def finish(self):
         return self._files

@@ -94,7 +94,7 @@ class Measured:
 def columns_of(outputs):
     """The columns that the outputs of a campaign need; "all" where one asks for glidar's usual."""
     names = ["range"] + (["depth", "instance"] if outputs.bop else [])
-    names += ["xyz", "intensity"] if outputs.kitti else []
+    names += ["xyz", "intensity", "range", "instance", "class"] if outputs.kitti else []
     names += outputs.npz.columns if outputs.npz else []
     for cloud in (outputs.pcd, outputs.ply):
         if cloud:

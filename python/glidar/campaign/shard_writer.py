@@ -6,9 +6,8 @@ import numpy as np
 
 from glidar.campaign import files, index
 from glidar.campaign.bop_output import BopOutput, Unfit
-from glidar.campaign.cloud_output import KITTI_FOLDER, CloudOutput
+from glidar.campaign.cloud_output import CloudOutput, KittiOutput
 from glidar.campaign.npz_output import NpzOutput
-from glidar.campaign.output_spec import Cloud
 
 NAME_DIGITS = 16  # of the hash in a file's name
 
@@ -21,7 +20,7 @@ def make_outputs(plan, scratch, shard):
         if options:
             made.append(CloudOutput(suffix, f".{suffix}", options, scratch))
     if chosen.kitti:
-        made.append(CloudOutput(KITTI_FOLDER, ".bin", Cloud(), scratch))
+        made.append(KittiOutput(scratch))
     return made
 
 

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/staged_files.hpp>
+
+#include <system_error>
+
+namespace glidar {
+
+void StagedFiles::add_folder(const std::filesystem::path& path) {
+  std::error_code failure;
+  if (std::filesystem::create_directory(path, failure)) folders_.push_back(path);
+  if (!failure) return;
+  throw Error({path.string(), "cannot make this folder: " + failure.message(), "",
+               "write to another folder"});
+}
+
+void StagedFiles::commit() {
+  for (auto file = files_.rbegin(); file != files_.rend(); ++file) file->commit();
+  files_.clear();
+  folders_.clear();
+}
+
+void StagedFiles::clear() noexcept {
+  files_.clear();
+  std::error_code ignored;  // a folder that somebody else uses by now stays
+  for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder)
+    std::filesystem::remove(*folder, ignored);
+  folders_.clear();
+}
+
+}  // namespace glidar

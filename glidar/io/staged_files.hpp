@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/atomic_file.hpp>
+
+#include <filesystem>
+#include <list>
+#include <vector>
+
+namespace glidar {
+
+/// Files that get their names together, once all of them are complete. Without commit() the
+/// destructor removes them and the folders that were made for them.
+class StagedFiles {
+ public:
+  StagedFiles() = default;
+  StagedFiles(const StagedFiles&) = delete;
+  StagedFiles& operator=(const StagedFiles&) = delete;
+  ~StagedFiles() { clear(); }
+
+  /// A new file, to be written to and finished by the caller. Throws Error as AtomicFile does.
+  AtomicFile& add(const std::filesystem::path& path) { return files_.emplace_back(path); }
+  /// The same for an open file of the system, which is sent the bytes.
+  AtomicFile& add(int target, const std::filesystem::path& name) {
+    return files_.emplace_back(target, name);
+  }
+  /// Makes a folder unless it is there. Throws Error.
+  void add_folder(const std::filesystem::path& path);
+  /// Names the files, the one added first last: whoever waits for it finds the others too. Throws
+  /// Error.
+  void commit();
+  /// Removes everything that is not committed.
+  void clear() noexcept;
+
+ private:
+  std::list<AtomicFile> files_;  // an AtomicFile does not move
+  std::vector<std::filesystem::path> folders_;
+};
+
+}  // namespace glidar

@@ -1,0 +1,134 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Which files a command leaves behind, and standard output as one of them. The built program is found in
+PATH."""
+
+import os
+import pty
+import resource
+import signal
+import subprocess
+import unittest
+
+from cli_support import CliTest
+
+RIG = """models:
+  - {model: builtin:box, pose: {position: [6, 0, 0]}}
+  - {model: builtin:box, name: behind, pose: {position: [-6, 0, 0]}}
+sensors:
+  - {name: lidar, sensor: VLP-16}
+  - name: camera
+    sensor: {optics: {type: pinhole, width: 40, height: 30, fov_deg: 40}}
+    pose: {euler_deg: {roll: -90, yaw: -90}}
+"""
+
+
+class Rigs(CliTest):
+    def setUp(self):
+        super().setUp()
+        self.write("rig.yaml", RIG)
+
+    def test_an_output_that_does_not_fit_a_sensor_is_left_out_with_a_note(self):
+        done = self.succeed("render", "rig.yaml", "-o", "r.depth.png", "-o", "r.pcd", "--no-sidecar")
+        self.assertEqual(self.files(), ["r_camera.depth.png", "r_camera.pcd", "r_lidar.pcd", "rig.yaml"])
+        self.assertIn("r.depth.png is not written for lidar: it has beams that point back", done.stderr)
+
+    def test_an_output_that_fits_none_of_the_sensors_is_an_error_before_any_work(self):
+        self.write("rig.yaml", RIG[: RIG.index("  - name: camera")] + "  - {name: second, sensor: VLP-16}\n")
+        told = self.refused("render", "rig.yaml", "-o", "r.pcd", "-o", "r.depth.png")
+        self.assertIn("fits none of the sensors on the rig: lidar: it has beams", told)
+        self.assertIn("write .npy or .depth.tiff", told)
+
+    def test_a_stream_leaves_the_same_output_out(self):
+        self.succeed("stream", "rig.yaml", "--frames", "2", "-o", "r.depth.png", "--no-sidecar")
+        self.assertTrue([name for name in self.files() if name.startswith("r_camera_")], self.files())
+        self.assertFalse([name for name in self.files() if name.startswith("r_lidar_")], self.files())
+
+    def test_a_rig_does_not_fit_on_standard_output(self):
+        told = self.refused("render", "rig.yaml", "-o", "-", "--format", "csv")
+        self.assertIn("--mount", told)
+        done = self.succeed("render", "rig.yaml", "--mount", "camera", "-o", "-", "--format", "csv")
+        self.assertEqual(done.stdout.count("\n"), 40 * 30 + 1)
+
+
+class Failures(CliTest):
+    def test_when_one_output_fails_none_of_the_frame_is_there(self):
+        # the box is 7 m and more away: 20000 units per metre do not fit 16 bits
+        told = self.refused("render", "builtin:box", "-o", "a.pcd", "-o", "a.depth.png", "-o", "a.csv",
+                            "--depth-scale", "20000")
+        self.assertIn("--depth-scale", told)
+
+    def test_an_error_lists_what_was_written_before_it(self):
+        # turned away, the camera sees nothing at first, then the box
+        self.write("scene.yaml", "models: [{model: builtin:box, pose: {position: [0, 0, 10]},"
+                                 " motion: {twist: {velocity_m_s: [0, 0, 2]}}}]\n"
+                                 "sensor: {optics: {type: pinhole, width: 8, height: 6, fov_deg: 20}, rate_hz: 1}\n")
+        done = self.run_program("render", "scene.yaml", "--duration", "3", "--no-sidecar", "-o", "a.depth.png",
+                                "--depth-scale", "6200", "--quiet")
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertEqual(self.files(), ["a_000000.depth.png", "scene.yaml"])
+        self.assertIn("1 output was written before that, from a_000000.depth.png", done.stderr)
+
+    def test_a_full_disk_leaves_no_file_of_the_frame(self):
+        limit = 3_000_000  # bytes of one file: a.csv is larger, a.depth.png smaller
+        done = subprocess.run(
+            ["glidar", "render", "builtin:box", "-o", "a.depth.png", "-o", "a.csv", "--columns", "all"],
+            cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=300, check=False,
+            preexec_fn=lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
+                                resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))  # fmt: skip
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("nothing of this file was left behind", done.stderr)
+        self.assertEqual(self.files(), [])
+
+
+class StandardOutput(CliTest):
+    def test_it_holds_the_bytes_of_the_file_and_nothing_else(self):
+        for name in ("pcd", "ply", "csv", "bin", "npz", "depth.png", "depth.tiff"):
+            self.succeed("render", "builtin:box", "-o", "a." + name, "--no-sidecar", "--quiet")
+            done = subprocess.run(["glidar", "render", "builtin:box", "-o", "-", "--format", name], cwd=self.folder,
+                                  env=self.environment, capture_output=True, timeout=300, check=True)  # fmt: skip
+            self.assertEqual(done.stdout, self.bytes_of("a." + name), name)
+            self.assertIn(b"wrote -", done.stderr)
+            os.remove(os.path.join(self.folder, "a." + name))
+        self.assertEqual(self.files(), [])
+
+    def test_files_are_written_beside_it(self):
+        done = self.succeed("render", "builtin:box", "-o", "-", "--format", "csv", "-o", "a.pcd", "--quiet")
+        self.assertEqual(self.files(), ["a.pcd", "a.pcd.json"])
+        self.assertEqual(done.stderr, "")
+
+    def test_it_is_given_once_and_with_its_format(self):
+        self.assertIn("add --format csv", self.refused("render", "builtin:box", "-o", "-"))
+        self.assertIn("given twice", self.refused("render", "builtin:box", "-o", "-", "-o", "-", "--format", "csv"))
+        self.assertIn("no -o -", self.refused("render", "builtin:box", "-o", "a.pcd", "--format", "csv"))
+        self.assertIn("--format", self.refused("render", "builtin:box", "-o", "-", "--format", "kitti"))
+        for more in (["render", "builtin:box", "--duration", "1"], ["stream", "builtin:box", "--frames", "2"]):
+            self.assertIn("one frame of one sensor", self.refused(*more, "-o", "-", "--format", "csv"))
+
+    def test_a_reader_that_goes_away_ends_the_program_quietly(self):
+        for ignored in (False, True):  # SIGPIPE, as some parents leave it
+            program = subprocess.Popen(
+                ["glidar", "render", "builtin:box", "-o", "-", "--format", "csv", "-o", "a.csv", "--quiet"],
+                cwd=self.folder, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+                restore_signals=not ignored)  # fmt: skip
+            program.stdout.readline()
+            program.stdout.close()
+            self.assertEqual(program.stderr.read(), b"")
+            program.stderr.close()
+            self.assertEqual(program.wait(300), 141 if ignored else -signal.SIGPIPE)
+            self.assertEqual(self.files(), ["a.csv", "a.csv.json"])
+
+    def test_a_terminal_gets_text_only(self):
+        ours, theirs = pty.openpty()
+        self.addCleanup(os.close, ours)
+        done = subprocess.run(["glidar", "render", "builtin:box", "-o", "-", "--format", "pcd"], cwd=self.folder,
+                              env=self.environment, stdout=theirs, stderr=subprocess.PIPE, text=True, timeout=300,
+                              check=False)  # fmt: skip
+        os.close(theirs)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("standard output is a terminal, and this format is binary", done.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()
