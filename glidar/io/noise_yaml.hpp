@@ -16,7 +16,15 @@ namespace glidar {
 /// Reads a list of steps, each a map with the key 'type' and the numbers of its kind.
 std::vector<NoiseStep> read_noise(const YamlField& field);
 
+/// How a number in the library's units becomes one of a file's unit.
+using InUnit = double (*)(double inside, double unit);
+
+inline double quotient_in(double inside, double unit) {
+  return inside / unit;
+}
+
 /// The list as the sidecar tells it, with every number, those by default too.
-nlohmann::ordered_json noise_json(const std::vector<NoiseStep>& noise);
+nlohmann::ordered_json noise_json(const std::vector<NoiseStep>& noise,
+                                  InUnit in_unit = quotient_in);
 
 }  // namespace glidar
