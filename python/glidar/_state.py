@@ -76,9 +76,8 @@ def key_of(value: object) -> object:
 
 def same_parts(one: Any, other: object) -> bool:
     """Whether two dataclasses with arrays are of one type and the same to the bit; for their ``__eq__``."""
-    if type(one) is not type(other):
-        return False
-    return all(_same(getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
+    names = [field.name for field in fields(one)]
+    return type(one) is type(other) and all(_same(getattr(one, name), getattr(other, name)) for name in names)
 
 
 def _same(one: object, other: object) -> bool:

@@ -196,7 +196,9 @@ void bind_sensor(nb::module_& module) {
       .def("ideal", made_ideal);
   module.def("load_sensor", load, nb::arg("name_or_path"));
   module.def("parse_sensor", parse, nb::arg("text"), nb::arg("table").none() = nb::none(),
-             nb::arg("files") = std::vector<std::string>());
+             nb::arg("files") = std::vector<std::string>(),
+             nb::sig("def parse_sensor(text: str, table: dict[str, typing.Any] | None = None, "
+                     "files: list[str] = []) -> Sensor"));
   module.def("sensor_sheet", sheet, nb::arg("name_or_path"),
              nb::sig("def sensor_sheet(name_or_path: str) -> list[tuple[str, str, str, bool]]"));
   module.def("sensor_file", find_sensor_file, nb::arg("name_or_path"));
