@@ -24,7 +24,11 @@ Sensor with(Sensor sensor, const SensorOptions& options) {
   return sensor;
 }
 
-std::string error_with(const std::string& name, const SensorOptions& options) {
+/// What the error says when one option alone is given.
+template <class Value, class Given>
+std::string error_with(const std::string& name, Value SensorOptions::*option, Given value) {
+  SensorOptions options;
+  options.*option = value;
   const TestFolder folder;
   return error_of(folder, [&] { with(preset(name), options); });
 }
@@ -45,7 +49,7 @@ TEST(SensorOptions, SetWhatTheyNameAndNothingElse) {
   EXPECT_EQ(sensor.weather->rain_mm_per_h, 5.0);
   EXPECT_EQ(sensor.weather->snow_mm_per_h, 0.5);
   EXPECT_EQ(sensor.name, preset("VLP-16").name);
-  EXPECT_FALSE(with(preset("VLP-16"), {}).weather);
+  EXPECT_FALSE(with(preset("VLP-16"), SensorOptions()).weather);
 }
 
 TEST(SensorOptions, ReturnsAreNamesOrACountOfTheNearest) {
@@ -67,30 +71,32 @@ TEST(SensorOptions, ReturnsAreNamesOrACountOfTheNearest) {
 }
 
 TEST(SensorOptions, RefuseWhatTheSensorDoesNotHave) {
-  EXPECT_EQ(error_with("Livox-Mid-40", {.columns_per_turn = 100}),
+  EXPECT_EQ(error_with("Livox-Mid-40", &SensorOptions::columns_per_turn, 100),
             "columns_per_turn: the sensor does not spin; allowed: a spinning sensor; leave it out, "
             "or choose a sensor that spins (glidar sensors)");
-  EXPECT_EQ(error_with("Kinect-v2", {.returns = parse_returns("", {"2"})}),
+  EXPECT_EQ(error_with("Kinect-v2", &SensorOptions::returns, parse_returns("", {"2"})),
             "returns: the sensor has no pulse light; allowed: a sensor with pulse light; leave it "
             "out, or choose a sensor such as VLP-16");
-  EXPECT_NE(error_with("Kinect-v2", {.rain_mm_per_h = 1.0}).find("is not pulsed"),
+  EXPECT_NE(error_with("Kinect-v2", &SensorOptions::rain_mm_per_h, 1.0).find("is not pulsed"),
             std::string::npos);
 }
 
 TEST(SensorOptions, RefuseNumbersOutOfRange) {
-  const double kInfinite = std::numeric_limits<double>::infinity();
-  const double kNone = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_EQ(error_with("VLP-16", {.rate_hz = 0.0}), "rate_hz: 0; allowed: hertz above 0");
-  EXPECT_EQ(error_with("VLP-16", {.rate_hz = kInfinite}), "rate_hz: inf; allowed: hertz above 0");
-  EXPECT_EQ(error_with("VLP-16", {.columns_per_turn = 0}),
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(error_with("VLP-16", &SensorOptions::rate_hz, 0.0),
+            "rate_hz: 0; allowed: hertz above 0");
+  EXPECT_EQ(error_with("VLP-16", &SensorOptions::rate_hz, kInfinite),
+            "rate_hz: inf; allowed: hertz above 0");
+  EXPECT_EQ(error_with("VLP-16", &SensorOptions::columns_per_turn, 0),
             "columns_per_turn: '0'; allowed: a whole number from 1 to 1048576");
-  EXPECT_EQ(error_with("VLP-16", {.columns_per_turn = 1048577}),
+  EXPECT_EQ(error_with("VLP-16", &SensorOptions::columns_per_turn, 1048577),
             "columns_per_turn: '1048577'; allowed: a whole number from 1 to 1048576");
-  EXPECT_EQ(error_with("VLP-16", {.visibility_m = -1.0}),
-            "visibility_m: -1; allowed: a number from 0 to 1e+06");
-  EXPECT_EQ(error_with("VLP-16", {.rain_mm_per_h = 1001.0}),
+  EXPECT_EQ(error_with("VLP-16", &SensorOptions::visibility_m, -1.0),
+            "visibility_m: -1; allowed: a number from 0 to 1000000");
+  EXPECT_EQ(error_with("VLP-16", &SensorOptions::rain_mm_per_h, 1001.0),
             "rain_mm_h: 1001; allowed: a number from 0 to 1000");
-  EXPECT_EQ(error_with("VLP-16", {.snow_mm_per_h = kNone}),
+  EXPECT_EQ(error_with("VLP-16", &SensorOptions::snow_mm_per_h, kNone),
             "snow_mm_h: nan; allowed: a number from 0 to 1000");
 }
 
