@@ -5,12 +5,10 @@
 #include <apps/glidar/numbers.hpp>
 #include <apps/glidar/option_kinds.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/receiver_yaml.hpp>
 #include <glidar/io/sensor_file.hpp>
 #include <glidar/io/sensor_presets.hpp>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <CLI/CLI.hpp>
 
 #include <unistd.h>
@@ -26,8 +24,7 @@ namespace {
 
 constexpr std::int64_t kDefaultSide = 256;  // of the 2015 program, like the field of view
 constexpr double kDefaultFov_deg = 20.0;
-constexpr double kLargestPixels = 1e9;  // likewise
-constexpr std::int64_t kMostColumnsPerTurn = 1 << 20;
+constexpr double kLargestPixels = 1e9;   // likewise
 constexpr double kLargestAmbient = 1e6;  // keeps intensities far from float's end
 constexpr double kBytesPerBeam = 250.0;  // beam, truth, measurement and cloud together
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
@@ -104,21 +101,14 @@ Pinhole make_pinhole(const SensorFlags& flags) {
   return pinhole;
 }
 
-void apply_scan(const SensorFlags& flags, Sensor& sensor) {
-  if (flags.rate_hz) {
-    require(*flags.rate_hz > 0.0 && std::isfinite(*flags.rate_hz), "--rate", *flags.rate_hz,
-            "hertz above 0");
-    set_rate(sensor, *flags.rate_hz);
-  }
-  if (!flags.columns_per_turn) return;
-  auto* spinning = std::get_if<Spinning>(&sensor.optics);
-  if (spinning == nullptr) {
-    throw Error({.where = "--columns-per-turn",
-                 .found = "the sensor does not spin",
-                 .allowed = "a spinning sensor",
-                 .remedy = "leave it out, or choose a sensor that spins (glidar sensors)"});
-  }
-  spinning->columns_per_turn = static_cast<std::uint32_t>(*flags.columns_per_turn);
+const SensorOptionNames& option_names() {
+  static const SensorOptionNames kNames = {.rate = "--rate",
+                                           .columns_per_turn = "--columns-per-turn",
+                                           .returns = "--returns",
+                                           .visibility = "--visibility",
+                                           .rain = "--rain",
+                                           .snow = "--snow"};
+  return kNames;
 }
 
 void apply_limits(const SensorFlags& flags, Limits& limits) {
@@ -170,68 +160,13 @@ void apply_light(const SensorFlags& flags, Sensor& sensor) {
   validate(sensor.light);
 }
 
-void apply_weather(const SensorFlags& flags, Sensor& sensor) {
-  if (!flags.visibility_m && !flags.rain_mm_per_h && !flags.snow_mm_per_h) return;
-  Weather weather = sensor.weather.value_or(Weather{});
-  const auto take = [](const char* option, const std::optional<double>& given, double most,
-                       double& value) {
-    if (!given) return;
-    require(*given >= 0.0 && *given <= most, option, *given,
-            fmt::format("a number from 0 to {}", most));
-    value = *given;
-  };
-  take("--visibility", flags.visibility_m, kLargestVisibility_m, weather.visibility_m);
-  take("--rain", flags.rain_mm_per_h, kLargestFall_mm_per_h, weather.rain_mm_per_h);
-  take("--snow", flags.snow_mm_per_h, kLargestFall_mm_per_h, weather.snow_mm_per_h);
-  validate(weather);
-  sensor.weather = weather;
-  check_weather(sensor);
-}
-
-[[noreturn]] void refuse_returns(std::string_view option, std::string found, std::string remedy) {
-  throw Error(
-      {.where = std::string(option),
-       .found = std::move(found),
-       .allowed = fmt::format("1 to {} of {}, with commas and no spaces; or how many of the "
-                              "nearest, 1 to {}",
-                              kMostReturns, fmt::join(return_names(), ", "), kMostReturns),
-       .remedy = std::move(remedy)});
-}
-
-/// "strongest,last", or how many of the nearest.
-std::vector<Return> parse_returns(std::string_view option, const std::string& text) {
-  if (text.find_first_not_of("0123456789") == std::string::npos) {
-    const double count = parse_number(option, text);
-    if (!(count >= 1.0 && count <= kMostReturns)) refuse_returns(option, "'" + text + "'", "");
-    return nearest_returns(static_cast<std::uint32_t>(count));
-  }
-  const std::vector<std::string> names = return_names();
-  std::vector<Return> returns;
-  for (const std::string& part : parse_list(option, text)) {
-    if (std::find(names.begin(), names.end(), part) == names.end()) {
-      const std::string nearest = nearest_word(part, names);
-      refuse_returns(option, "'" + part + "'",
-                     nearest.empty() ? "" : "did you mean " + nearest + "?");
-    }
-    returns.push_back(return_named(part));
-  }
-  if (returns.size() > kMostReturns) {
-    refuse_returns(option, fmt::format("{} returns", returns.size()), "");
-  }
-  return returns;
-}
-
-void apply_returns(const SensorFlags& flags, Sensor& sensor) {
-  if (flags.returns.empty()) return;
-  if (!sensor.pulse) {
-    throw Error({.where = "--returns",
-                 .found = flags.ideal ? "--ideal leaves the sensor's pulse light out"
-                                      : "the sensor has no pulse light",
-                 .allowed = "a sensor with pulse light",
-                 .remedy = flags.ideal ? "leave one of them out"
-                                       : "leave it out, or choose a sensor such as VLP-16"});
-  }
-  sensor.receiver.returns = flags.returns;
+/// --ideal leaves the pulsed light out, of which returns are a property.
+void refuse_returns_of_ideal(const SensorFlags& flags) {
+  if (!flags.ideal || flags.returns.empty()) return;
+  throw Error({.where = "--returns",
+               .found = "--ideal leaves the sensor's pulse light out",
+               .allowed = "a sensor with pulse light",
+               .remedy = "leave one of them out"});
 }
 
 }  // namespace
@@ -263,13 +198,13 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
   number("--rate", "HZ", "Frames per second; of a spinning sensor: turns", flags.rate_hz);
   add_whole(command,
             {"--columns-per-turn", "N", "Columns of a spinning sensor, for example 2048", group},
-            {1, kMostColumnsPerTurn},
+            {1, kMaxColumnsPerTurn},
             [&flags](std::int64_t columns) { flags.columns_per_turn = columns; });
   add_option(command,
              {"--returns", "LIST|N",
               "Returns of a pulse (strongest,last), or the N nearest [its own]", group},
              [&flags](std::string_view option, const std::string& text) {
-               flags.returns = parse_returns(option, text);
+               flags.returns = parse_returns(std::string(option), parse_list(option, text));
              });
   command
       .add_flag("--cull-back-faces", flags.cull_back_faces,
@@ -312,12 +247,13 @@ Sensor make_sensor(const SensorFlags& flags, const Sensor* from_scene_file) {
   if (const auto* pinhole = std::get_if<Pinhole>(&sensor.optics)) {
     require_memory(pinhole->intrinsics.width, pinhole->intrinsics.height);
   }
-  apply_scan(flags, sensor);
+  apply_scan(flags, option_names(), sensor);
   apply_limits(flags, sensor.limits);
   if (flags.ideal) sensor = ideal(std::move(sensor));
   apply_light(flags, sensor);
-  apply_weather(flags, sensor);
-  apply_returns(flags, sensor);
+  apply_weather(flags, option_names(), sensor);
+  refuse_returns_of_ideal(flags);
+  apply_returns(flags, option_names(), sensor);
   sensor.cull_back_faces = sensor.cull_back_faces || flags.cull_back_faces;
   return sensor;
 }

@@ -3,17 +3,17 @@
 #pragma once
 
 #include <apps/glidar/cli_fwd.hpp>
+#include <glidar/io/sensor_options.hpp>
 #include <glidar/sensor/sensor.hpp>
 
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace glidar::app {
 
 /// The sensor as given on the command line.
-struct SensorFlags {
+struct SensorFlags : SensorOptions {
   std::string file;
   std::optional<std::int64_t> width;
   std::optional<std::int64_t> height;
@@ -26,12 +26,6 @@ struct SensorFlags {
   std::optional<double> far_m;
   std::optional<double> ambient;
   std::string attenuation;  ///< empty: not given
-  std::optional<double> visibility_m;
-  std::optional<double> rain_mm_per_h;
-  std::optional<double> snow_mm_per_h;
-  std::vector<Return> returns;  ///< of a pulse; empty: as the sensor says
-  std::optional<double> rate_hz;
-  std::optional<std::int64_t> columns_per_turn;
   bool cull_back_faces = false;
   bool ideal = false;
 };

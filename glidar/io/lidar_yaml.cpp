@@ -14,6 +14,9 @@ constexpr double kMicrosecond_ns = 1e3;
 constexpr double kMillimetre_m = 1e-3;
 constexpr NumberRule kElevation = {-90.0, 90.0, false, "degrees from -90 to 90"};
 constexpr NumberRule kTurn = {-360.0, 360.0, false, "degrees from -360 to 360"};
+constexpr NumberRule kSector_rad = {-20.0, 20.0, false, "radians from -20 to 20"};
+constexpr NumberRule kSectorWidth_rad = {0.0, 6.2832, true,
+                                         "radians above 0, up to a whole turn (6.2832)"};
 constexpr NumberRule kSequence_us = {1e-3, 1e6, false, "microseconds from 0.001 to 1e6"};
 constexpr NumberRule kFireTime_us = {-1e6, 1e6, false, "microseconds from -1e6 to 1e6"};
 constexpr NumberRule kPoint_us = {0.0, 1e6, false, "microseconds from 0 to 1e6"};
@@ -94,7 +97,17 @@ void read_column_timing(const YamlField& optics, Spinning& s) {
   if (sequence) s.sequence_ns = number(*sequence, kSequence_us) * kMicrosecond_ns;
 }
 
+/// The exact form, for sectors that no two numbers in degrees give to the last bit.
+void read_sector_rad(const YamlField& field, Spinning& s) {
+  require_map(field, {"from_rad", "width_rad"});
+  s.sector_start_rad = number(need(field, "from_rad"), kSector_rad);
+  s.sector_width_rad = number(need(field, "width_rad"), kSectorWidth_rad);
+}
+
 void read_sector(const YamlField& field, Spinning& s) {
+  if (field.node.IsMap() && (find(field, "from_rad") || find(field, "width_rad"))) {
+    return read_sector_rad(field, s);
+  }
   require_map(field, {"from_deg", "to_deg"});
   const double from_deg = number(need(field, "from_deg"), kTurn);
   const YamlField to = need(field, "to_deg");

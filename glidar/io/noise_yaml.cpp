@@ -122,37 +122,39 @@ NoiseStep read_step(const YamlField& field, std::size_t type,
 using Json = nlohmann::ordered_json;
 
 template <class Step>
-void tell_others(const Step& /*step*/, Json& /*told*/) {}
+void tell_others(const Step& /*step*/, InUnit /*convert*/, Json& /*told*/) {}
 
-void tell_others(const Range2015& step, Json& told) {
+void tell_others(const Range2015& step, InUnit /*convert*/, Json& told) {
   told["distribution"] =
       step.distribution == Range2015::Distribution::uniform ? "uniform" : "normal";
 }
 
-void tell_others(const RangeDrift& step, Json& told) {
+void tell_others(const RangeDrift& step, InUnit /*convert*/, Json& told) {
   told["per_ring"] = step.per_ring;
 }
 
-Json table_json(const Table& table, double unit) {
+Json table_json(const Table& table, double unit, InUnit convert) {
   Json pairs = Json::array();
-  for (const auto& [place, value] : table) pairs.push_back(Json::array({in_unit(place, unit), value}));
+  for (const auto& [place, value] : table) {
+    pairs.push_back(Json::array({convert(place, unit), value}));
+  }
   return pairs;
 }
 
-void tell_others(const Dropout& step, Json& told) {
-  told["by_range_m"] = table_json(step.by_range_m, 1.0);
-  told["by_incidence_deg"] = table_json(step.by_incidence_rad, kDegree_rad);
+void tell_others(const Dropout& step, InUnit convert, Json& told) {
+  told["by_range_m"] = table_json(step.by_range_m, 1.0, convert);
+  told["by_incidence_deg"] = table_json(step.by_incidence_rad, kDegree_rad, convert);
 }
 
-void tell_others(const KinectV1& step, Json& told) {
+void tell_others(const KinectV1& step, InUnit /*convert*/, Json& told) {
   told["window"] = step.window;
 }
 
-void tell_others(const ContinuousWave& step, Json& told) {
+void tell_others(const ContinuousWave& step, InUnit /*convert*/, Json& told) {
   told["frequencies_hz"] = step.frequencies_hz;
 }
 
-void tell_others(const IntensityScale& step, Json& told) {
+void tell_others(const IntensityScale& step, InUnit /*convert*/, Json& told) {
   told["kind"] = kIntensityKinds.at(static_cast<std::size_t>(step.kind));
 }
 
@@ -173,14 +175,14 @@ std::vector<NoiseStep> read_noise(const YamlField& field) {
   return noise;
 }
 
-nlohmann::ordered_json noise_json(const std::vector<NoiseStep>& noise) {
+nlohmann::ordered_json noise_json(const std::vector<NoiseStep>& noise, InUnit convert) {
   Json list = Json::array();
   for (const NoiseStep& step : noise) {
     Json told = {{"type", kNoiseTypes.at(step.index())}};
     std::visit(
         [&](const auto& s) {
-          for (const auto& n : numbers_of(s)) told[n.key] = in_unit(s.*n.number, n.unit);
-          tell_others(s, told);
+          for (const auto& n : numbers_of(s)) told[n.key] = convert(s.*n.number, n.unit);
+          tell_others(s, convert, told);
         },
         step);
     list.push_back(told);

@@ -123,10 +123,12 @@ std::uint32_t class_index(const std::string& name, std::vector<std::string>& nam
 
 }  // namespace
 
-void set_materials(Scene& scene, std::size_t instance, const std::string& text) {
+void set_materials(Scene& scene, std::size_t instance, const std::string& text,
+                   const std::filesystem::path& folder) {
   TexturePlaces places;
   Instance changed = scene.instances.at(instance);
-  override_materials(read_overrides(read_yaml_text("materials", text)), places, changed, scene);
+  override_materials(read_overrides(read_yaml_text((folder / "materials").string(), text)), places,
+                     changed, scene);
   scene.instances[instance] = std::move(changed);
 }
 

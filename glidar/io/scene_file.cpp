@@ -40,8 +40,9 @@ SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions&
   return load_plan(read_scene_plan(path, defaults), report);
 }
 
-SceneFile parse_scene(const std::string& text, const Report& report) {
-  return load_plan(read_scene_plan(read_yaml_text("scene", text), {}), report);
+SceneFile parse_scene(const std::string& text, const Report& report,
+                      const std::filesystem::path& folder) {
+  return load_plan(read_scene_plan(read_yaml_text((folder / "scene").string(), text), {}), report);
 }
 
 }  // namespace glidar

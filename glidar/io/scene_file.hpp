@@ -39,12 +39,15 @@ struct SceneFile {
 SceneFile load_scene_file(const std::filesystem::path& path, const ModelOptions& defaults,
                           const Report& report);
 
-/// The same from a text, YAML or JSON; paths count from the working folder. Errors name the field.
-SceneFile parse_scene(const std::string& text, const Report& report);
+/// The same from a text, YAML or JSON. Paths are relative to `folder`, or to the working folder
+/// when it is empty. Errors name the field.
+SceneFile parse_scene(const std::string& text, const Report& report,
+                      const std::filesystem::path& folder = {});
 
 /// Changes materials of an instance, and of it alone, by a text, YAML or JSON, that says what
-/// `materials` of a scene file does. Files that it names count from the working folder. Errors name
-/// the field.
-void set_materials(Scene& scene, std::size_t instance, const std::string& text);
+/// `materials` of a scene file does. Paths are relative to `folder`, or to the working folder when
+/// it is empty. Errors name the field.
+void set_materials(Scene& scene, std::size_t instance, const std::string& text,
+                   const std::filesystem::path& folder = {});
 
 }  // namespace glidar

@@ -11,6 +11,8 @@
 #include <glidar/io/weather_yaml.hpp>
 
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 namespace glidar {
 namespace {
@@ -226,16 +228,26 @@ std::vector<SheetEntry> read_entries(const YamlField& root) {
   return sheet;
 }
 
-}  // namespace
+/// Optics from the file, or beams that stand in their place.
+void read_or_take_optics(const YamlField& field, std::optional<BeamTable> table, Sensor& sensor) {
+  if (table) {
+    if (const auto optics = find(field, "optics")) {
+      reject(*optics, "given beside a table of beams", "one of the two", "remove one of them");
+    }
+    sensor.optics = *std::move(table);
+    return;
+  }
+  const YamlField optics = need(field, "optics");
+  sensor.optics = read_optics(optics);
+  if (const auto file = find(optics, "file")) sensor.files.push_back(path_beside(*file));
+}
 
-Sensor read_sensor(const YamlField& field) {
+Sensor read_sensor_with(const YamlField& field, std::optional<BeamTable> table) {
   require_map(field, {"name", "optics", "rate_hz", "wavelength_nm", "limits", "depth_limits",
                       "light", "pulse_light", "footprint", "receiver", "weather", "projector_m",
                       "noise", "cull_back_faces", "source", "unverified"});
   Sensor sensor;
-  const YamlField optics = need(field, "optics");
-  sensor.optics = read_optics(optics);
-  if (const auto file = find(optics, "file")) sensor.files.push_back(path_beside(*file));
+  read_or_take_optics(field, std::move(table), sensor);
   if (!is_camera(sensor)) sensor.name = "lidar";
   if (const auto name = find(field, "name")) sensor.name = text(*name);
   set_rate(sensor, number_or(field, "rate_hz", kAboveZero, usual_rate_hz(sensor)));
@@ -263,6 +275,12 @@ Sensor read_sensor(const YamlField& field) {
   return sensor;
 }
 
+}  // namespace
+
+Sensor read_sensor(const YamlField& field) {
+  return read_sensor_with(field, std::nullopt);
+}
+
 Sensor load_sensor_file(const std::filesystem::path& path) {
   Sensor sensor = read_sensor(read_yaml(path));
   sensor.files.push_back(path.string());
@@ -271,6 +289,10 @@ Sensor load_sensor_file(const std::filesystem::path& path) {
 
 Sensor parse_sensor(const std::string& text) {
   return read_sensor(read_yaml_text("sensor", text));
+}
+
+Sensor parse_sensor(const std::string& text, BeamTable table) {
+  return read_sensor_with(read_yaml_text("sensor", text), std::move(table));
 }
 
 SensorSheet load_sensor_sheet(const std::filesystem::path& path) {

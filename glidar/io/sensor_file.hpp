@@ -17,4 +17,7 @@ Sensor load_sensor_file(const std::filesystem::path& path);
 /// name the field.
 Sensor parse_sensor(const std::string& text);
 
+/// The same of a text without `optics`: the sensor's beams are those of the table.
+Sensor parse_sensor(const std::string& text, BeamTable table);
+
 }  // namespace glidar

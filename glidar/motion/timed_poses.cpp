@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 namespace glidar {
 namespace {
@@ -15,6 +17,17 @@ void to_pose(const TimedPose& timed, Pose& pose) {
   pose.linear() = timed.orientation.toRotationMatrix();
   pose.translation() = timed.position_m;
   pose.makeAffine();
+}
+
+[[noreturn]] void fail(std::size_t entry, const TimedPoseFault& fault) {
+  throw Error({"timed poses, entry " + std::to_string(entry + 1), fault.found, fault.allowed, ""});
+}
+
+void check(const std::vector<TimedPose>& poses) {
+  if (poses.empty()) throw Error({"timed poses", "there is none", "at least one pose", ""});
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (const auto fault = fault_of(i == 0 ? nullptr : &poses[i - 1], poses[i])) fail(i, *fault);
+  }
 }
 
 }  // namespace
@@ -42,15 +55,22 @@ std::optional<TimedPoseFault> fault_of(const TimedPose* before, const TimedPose&
 }
 
 TimedPoses::TimedPoses(std::vector<TimedPose> poses) : poses_(std::move(poses)) {
-  if (poses_.empty()) throw Error({"timed poses", "there is none", "at least one pose", ""});
-  for (std::size_t i = 0; i < poses_.size(); ++i) {
-    const auto fault = fault_of(i == 0 ? nullptr : &poses_[i - 1], poses_[i]);
-    if (fault) {
-      throw Error(
-          {"timed poses, entry " + std::to_string(i + 1), fault->found, fault->allowed, ""});
-    }
-    poses_[i].orientation.normalize();
+  check(poses_);
+  for (TimedPose& pose : poses_) pose.orientation.normalize();
+}
+
+TimedPoses TimedPoses::restored(std::vector<TimedPose> poses) {
+  check(poses);
+  constexpr double kRounding = 8.0 * std::numeric_limits<double>::epsilon();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const double length = poses[i].orientation.norm();
+    if (std::abs(length - 1.0) <= kRounding) continue;
+    fail(i, {TimedPoseFault::Part::orientation, "a quaternion that is not normalised",
+             "a quaternion of length 1"});
   }
+  TimedPoses result;
+  result.poses_ = std::move(poses);
+  return result;
 }
 
 std::size_t TimedPoses::next_after(std::int64_t t_ns) const {

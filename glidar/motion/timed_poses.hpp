@@ -45,6 +45,10 @@ class TimedPoses {
   /// length 1.
   explicit TimedPoses(std::vector<TimedPose> poses);
 
+  /// The same of poses() of another, whose quaternions are kept to the bit. Throws Error also when
+  /// one is not normalised.
+  static TimedPoses restored(std::vector<TimedPose> poses);
+
   [[nodiscard]] Pose pose_at(std::int64_t t_ns) const;
 
   /// The same for many times; quick when they increase.
@@ -55,6 +59,8 @@ class TimedPoses {
   [[nodiscard]] std::span<const TimedPose> poses() const { return poses_; }
 
  private:
+  TimedPoses() = default;
+
   [[nodiscard]] std::size_t next_after(std::int64_t t_ns) const;
   /// The pose between entry next - 1 and entry next, which are those around t_ns.
   void between(std::size_t next, std::int64_t t_ns, Pose& pose) const;

@@ -19,8 +19,8 @@ from ._mesh import Mesh, from_open3d, from_trimesh
 from ._object import Object
 from ._poses import look_at, pose, quaternion
 from ._scene import Mount, Scene, load_scene, surface_names
-from ._sensor import Sensor, SheetEntry, camera, load_sensor, sensor_file, sensor_names, sensor_sheet
-from ._simulator import Simulator, simulate, simulate_batch, simulate_rig
+from ._sensor import Sensor, SheetEntry, camera, load_sensor, sensor, sensor_file, sensor_names, sensor_sheet
+from ._simulator import Simulator, simulate, simulate_batch, simulate_iter, simulate_rig
 from ._status import Cause, Status
 from ._story import Drawn, Echo, Reading, Step, Story
 from ._trajectory import Trajectory
@@ -61,11 +61,13 @@ __all__ = [
     "look_at",
     "pose",
     "quaternion",
+    "sensor",
     "sensor_file",
     "sensor_names",
     "sensor_sheet",
     "simulate",
     "simulate_batch",
+    "simulate_iter",
     "simulate_rig",
     "surface_names",
     "verify",

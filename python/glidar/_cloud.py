@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,17 +13,36 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import FloatArray, shape_text
+from ._inputs import MOST_32, FloatArray, floats, shape_text, text_of, whole
+from ._state import key_of, part, restoring, stated
 
 Array = npt.NDArray[Any]
+
+
+@dataclass(frozen=True)
+class _StoredCloud:
+    """A cloud that comes from a pickle: what ``Cloud`` asks of the library's."""
+
+    rows: int
+    cols: int
+    frame_id: str
+    world_from_cloud: FloatArray
+    columns: list[str]
+    arrays: list[Array]
+
+    def column(self, index: int) -> Array:
+        """(rows, cols) or (rows, cols, k)."""
+        return self.arrays[index]
 
 
 class Cloud(Mapping[str, Array]):
     """Columns of a frame in a coordinate frame, by name. An organised cloud's arrays are (rows, cols)
     or (rows, cols, k), one of hits alone (n,) or (n, k). They are the caller's own, may be written
-    to, and export __dlpack__."""
+    to, and export __dlpack__. Two clouds are equal when their columns, frame and pose are, to the last
+    bit. A cloud cannot be hashed, because it can be changed. copy.copy shares the arrays, copy.deepcopy
+    does not."""
 
-    def __init__(self, core: _core.Cloud, flat: bool) -> None:
+    def __init__(self, core: _core.Cloud | _StoredCloud, flat: bool) -> None:
         self._core = core
         self._places = {name: index for index, name in enumerate(core.columns)}
         self._flat = flat
@@ -32,6 +52,38 @@ class Cloud(Mapping[str, Array]):
             raise Error("cloud", f"no column {name!r}", ", ".join(self._places), "ask for it: cloud(columns=[...])")
         column = self._core.column(self._places[name])
         return column[0] if self._flat else column
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Cloud):
+            return NotImplemented
+        return self._key() == other._key()
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def _key(self) -> object:
+        return key_of([dict(self), self.frame_id, self.world_from_cloud])
+
+    def __getstate__(self) -> dict[str, Any]:
+        core = self._core
+        return stated(
+            "Cloud",
+            shape=(core.rows, core.cols),
+            flat=self._flat,
+            frame_id=core.frame_id,
+            world_from_cloud=core.world_from_cloud,
+            columns={name: core.column(index) for name, index in self._places.items()},
+        )
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        with restoring("Cloud", state):
+            rows, cols = (whole(size, "shape", MOST_32) for size in part(state, "shape", tuple))
+            columns = {text_of(name, "columns"): array for name, array in part(state, "columns", dict).items()}
+            for name, array in columns.items():
+                if not isinstance(array, np.ndarray) or array.shape[:2] != (rows, cols):
+                    raise ValueError(f"column {name!r} is not an array {rows} x {cols}")
+            pose = floats(state["world_from_cloud"], "world_from_cloud", (4, 4))
+            stored = _StoredCloud(rows, cols, part(state, "frame_id", str), pose, list(columns), list(columns.values()))
+            Cloud.__init__(self, stored, part(state, "flat", bool))
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._places)

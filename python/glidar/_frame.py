@@ -16,7 +16,9 @@ from ._cloud import Cloud
 from ._errors import Error
 from ._information import Information
 from ._inputs import MOST_32, FloatArray, column_list, floats, log, one_of, path_of, whole
+from ._origin import Origin
 from ._pictures import html_picture, html_table, plot_points, show_images
+from ._state import Immutable, key_of, part, restoring, stated
 from ._status import Cause, Status
 from ._story import Story, story_of
 from ._truth import Truth
@@ -24,14 +26,52 @@ from ._truth import Truth
 _PCD = ("ascii", "binary", "binary_compressed")
 
 
-class Frame:
+class Frame(Immutable):
     """One measurement: what the sensor reports per beam, with the truth attached. Arrays are
-    (rows, cols), read-only views of the frame's memory, which they keep alive."""
+    (rows, cols), read-only views of the frame's memory, which they keep alive.
 
-    __slots__ = ("_core",)
+    Two frames are equal when their poses, numbers and all kept columns are, to the last bit. Frames can be
+    hashed, copied and pickled. A pickled frame takes its columns, its sensor and its scene with it; the
+    scene, which names files, is read when ``cloud``, ``save`` or ``explain`` need it.
+    """
 
-    def __init__(self, core: _core.Frame) -> None:
+    __slots__ = ("_core", "_has_scene", "_origin")
+
+    def __init__(self, core: _core.Frame, origin: Origin) -> None:
         self._core = core
+        self._origin = origin
+        self._has_scene = True
+
+    def _with_scene(self) -> _core.Frame:
+        """The frame with the scene that it was measured of."""
+        if not self._has_scene:
+            self._origin.attach(self._core)
+            self._has_scene = True
+        return self._core
+
+    def __getstate__(self) -> dict[str, Any]:
+        core = self._core
+        return stated("Frame", numbers=_core.frame_state(core), arrays=_core.frame_arrays(core), origin=self._origin)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        with restoring("Frame", state):
+            self._has_scene = False
+            self._origin = part(state, "origin", Origin)
+            sensor = self._origin.sensor._core
+            self._core = _core.restore_frame(part(state, "numbers", dict), part(state, "arrays", dict), sensor)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Frame):
+            return NotImplemented
+        if self._core is other._core:
+            return True
+        return self._numbers() == other._numbers() and _core.has_same_columns(self._core, other._core)
+
+    def __hash__(self) -> int:
+        return hash((self.rows, self.cols, self.seed, self.number, self.sensor_id, self.stamp_ns))
+
+    def _numbers(self) -> object:
+        return (self.rows, self.cols, self.frame_id, key_of(_core.frame_state(self._core)))
 
     @property
     def rows(self) -> int:
@@ -85,7 +125,7 @@ class Frame:
     @property
     def truth(self) -> Truth:
         """What is there."""
-        return Truth(self._core)
+        return Truth(self)
 
     @property
     def stamp_ns(self) -> int:
@@ -145,7 +185,7 @@ class Frame:
         names = column_list(columns)
         if hits_only and "xyz" not in names:
             names.append("xyz")
-        return Cloud(self._core.cloud(names, frame, deskew, hits_only), hits_only)
+        return Cloud(self._with_scene().cloud(names, frame, deskew, hits_only), hits_only)
 
     def save(
         self,
@@ -193,7 +233,7 @@ class Frame:
         options.set_sidecar(sidecar)
         options.set_layout(layout or "")
         options.set_depth_units_per_m(scale)
-        self._core.save(path_of(path, "path"), options, log)
+        self._with_scene().save(path_of(path, "path"), options, log)
 
     def show(self) -> Any:
         """A matplotlib figure: depth and intensity, as images. Jupyter draws it; elsewhere
@@ -235,7 +275,7 @@ class Frame:
         Raises:
             Error: there is no such entry.
         """
-        return story_of(_core.explain(self._core, self._entry(index, row, col, hits_only)))
+        return story_of(_core.explain(self._with_scene(), self._entry(index, row, col, hits_only)))
 
     def _entry(self, index: int | None, row: int | None, col: int | None, hits_only: bool) -> int:
         if index is None and row is not None and col is not None:

@@ -18,6 +18,7 @@ from ._errors import Error
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 MOST_32 = 2**32 - 1  # of what C++ counts in 32 bits
+MOST_64 = 2**64 - 1
 
 _LOGGER = logging.getLogger("glidar")
 _DEFAULT_COLUMNS = ("xyz", "intensity", "range", "normal", "instance", "class")

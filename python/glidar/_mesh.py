@@ -11,11 +11,13 @@ import numpy as np
 import numpy.typing as npt
 
 from ._errors import Error
+from ._state import same_parts
 
 
-@dataclass(frozen=True, eq=False)  # arrays have no single answer
+@dataclass(frozen=True, eq=False)  # == of arrays has no single answer
 class Mesh:
-    """A triangle mesh: arrays with one row per vertex, or per triangle."""
+    """A triangle mesh: arrays with one row per vertex, or per triangle. Meshes are equal when their
+    arrays have the same types, shapes and bits; they cannot be hashed, because arrays can be changed."""
 
     vertices: npt.ArrayLike
     """(V, 3), m, in the object's own frame."""
@@ -27,6 +29,11 @@ class Mesh:
     """(V, 2), v upwards."""
     colours: npt.ArrayLike | None = None
     """(V, 3), rgb 0..1."""
+
+    def __eq__(self, other: object) -> bool:
+        return same_parts(self, other)
+
+    __hash__ = None  # type: ignore[assignment]
 
     def to_trimesh(self) -> Any:
         """The same as trimesh.Trimesh, vertices and triangles in the same order."""

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 class Object:
     """One placed model of a scene. Setting an attribute changes the scene: what was measured before
-    stays as it was."""
+    stays as it was. Objects are equal when they are the same place of the same scene. Pickled or copied
+    deeply, an object takes its scene with it."""
 
     __slots__ = ("_index", "_scene")
 
@@ -29,12 +30,20 @@ class Object:
         self._scene = scene
         self._index = index
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Object):
+            return NotImplemented
+        return self._scene is other._scene and self._index == other._index
+
+    def __hash__(self) -> int:
+        return hash((id(self._scene), self._index))
+
     def _info(self) -> dict[str, Any]:
         return self._scene._core.object(self._index)
 
     def _set(self, **changes: Any) -> None:
         self._scene._simulators.clear()
-        self._scene._core.set_object(self._index, changes)
+        self._scene._recipe.set_object(self._index, changes)
 
     @property
     def index(self) -> int:
@@ -107,7 +116,7 @@ class Object:
             Error: names the field, what is allowed and the nearest known key.
         """
         self._scene._simulators.clear()
-        self._scene._core.set_materials(self._index, json.dumps(plain(changes, "materials")))
+        self._scene._recipe.set_materials(self._index, json.dumps(plain(changes, "materials"), ensure_ascii=False))
 
     @property
     def source(self) -> str:

@@ -16,11 +16,15 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import FloatArray, floats, log, numbers, one_of, path_of, text_of
+from ._inputs import FloatArray, floats, numbers, one_of, path_of, text_of
 from ._mesh import Mesh, mesh_of
 from ._object import Object
+from ._recipe import Recipe
 from ._sensor import Sensor, load_sensor, plain
 from ._simulator import Simulator
+from ._state import restoring, same_parts, stated
+
+CoreScene: TypeAlias = _core.Scene
 
 _UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254}
 _AXES = ("x", "y", "z")
@@ -28,9 +32,9 @@ _MOST_SIMULATORS = 8
 _UNIT_TOLERANCE = 1e-3  # of what was rounded to three digits in a file
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mount:
-    """A sensor on the rig of a scene file."""
+    """A sensor on the rig of a scene file. Mounts are equal when all their parts are."""
 
     name: str
     number: int
@@ -39,9 +43,19 @@ class Mount:
     rig_from_sensor: FloatArray
     """4x4."""
 
+    def __eq__(self, other: object) -> bool:
+        return same_parts(self, other)
+
+    __hash__ = None  # type: ignore[assignment]  # the array can be changed
+
 
 class Scene:
     """All there is to see: models, each placed as an object.
+
+    Two scenes are equal when they have the same objects, meshes, materials, motion and sensors, to the
+    last bit, wherever they come from. A scene cannot be hashed, because it can be changed. A copy can be
+    changed apart from the original and shares its memory until then. A pickled scene names the files it
+    was read from, with hashes of their contents, and holds the arrays of meshes made in code.
 
     Args:
         source: a scene file (.yaml, .yml), a model file, or "builtin:asteroid", "builtin:sphere",
@@ -61,14 +75,18 @@ class Scene:
         up: str | None = None,
     ) -> None:
         self._simulators: dict[tuple[int, str, int], Simulator] = {}
-        self._core = _core.Scene()
+        self._recipe = Recipe.empty()
         if source is None:
             return
         path = path_of(source, "scene")
         if path.endswith((".yaml", ".yml")):
-            self._core = _core.load_scene(path, _metres(unit), _axis(up), True, log)
+            self._recipe = Recipe.of_file(path, _metres(unit), _axis(up))
         else:
-            self._core.add_model(path, _metres(unit), _axis(up), True, log)
+            self._recipe.add_model(path, _metres(unit), _axis(up))
+
+    @property
+    def _core(self) -> CoreScene:
+        return self._recipe.core
 
     @staticmethod
     def from_dict(description: Mapping[str, Any]) -> Scene:
@@ -78,9 +96,34 @@ class Scene:
         Raises:
             Error: names the field, what is allowed and the nearest known key.
         """
+        return Scene._made(Recipe.of_text(json.dumps(plain(description, "scene"), ensure_ascii=False)))
+
+    @staticmethod
+    def _made(recipe: Recipe) -> Scene:
         scene = Scene()
-        scene._core = _core.parse_scene(json.dumps(plain(description, "scene")), log)
+        scene._recipe = recipe
         return scene
+
+    def __copy__(self) -> Scene:
+        return Scene._made(self._recipe.copy())
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> Scene:
+        return self.__copy__()
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene):
+            return NotImplemented
+        return self is other or self._recipe.key() == other._recipe.key()
+
+    __hash__ = None  # type: ignore[assignment]  # it can be changed
+
+    def __getstate__(self) -> dict[str, Any]:
+        return stated("Scene", **self._recipe.state())
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self._simulators = {}
+        with restoring("Scene", state):
+            self._recipe = Recipe.restored(state)
 
     def add_model(
         self,
@@ -97,7 +140,7 @@ class Scene:
             placing: pose (4x4), scale, name, id, class_name, materials of the object.
         """
         self._simulators.clear()
-        index = self._core.add_model(path_of(source, "model"), _metres(unit), _axis(up), True, log)
+        index = self._recipe.add_model(path_of(source, "model"), _metres(unit), _axis(up))
         return self._placed(index, placing)
 
     def add_mesh(
@@ -139,7 +182,7 @@ class Scene:
             "uvs": _per_vertex(mesh.uvs, "uvs", count, 2),
             "colours": _fractions(_per_vertex(mesh.colours, "colours", count, 3)),
         }
-        index = self._core.add_mesh(text_of(placing.get("name") or "mesh", "name"), arrays)
+        index = self._recipe.add_mesh(text_of(placing.get("name") or "mesh", "name"), arrays)
         self._simulators.clear()
         return self._placed(index, placing)
 
@@ -153,16 +196,16 @@ class Scene:
             remedy = "scene.add_mesh(of.mesh) takes the mesh of another scene's"
             raise Error("copy", f"{of!r} is of another scene", "an object of this scene", remedy)
         self._simulators.clear()
-        return self._placed(self._core.add_instance(of.index), placing)
+        return self._placed(self._recipe.add_instance(of.index), placing)
 
     def _placed(self, index: int, placing: dict[str, Any]) -> Object:
         """The object just added, with what is given of it, a name of its own and a number."""
         made = Object(self, index)
         try:
-            self._core.set_object(index, {"name": self._free_name(made.name), "id": self._free_id(index)})
+            self._recipe.set_object(index, {"name": self._free_name(made.name), "id": self._free_id(index)})
             self._place(made, placing)
         except BaseException:
-            self._core.drop_last()
+            self._recipe.drop_last()
             raise
         return made
 

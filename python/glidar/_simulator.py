@@ -5,7 +5,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from copy import copy
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,20 +14,25 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import MOST_32, column_list, one_of, whole, whole_numbers
+from ._inputs import MOST_32, MOST_64, column_list, one_of, whole, whole_numbers
 from ._frame import Frame
+from ._lazily import DEFAULT_SEED, Inputs, Piece
+from ._origin import Origin, SceneSource
 from ._sensor import Sensor
+from ._state import Immutable, refuse_pickle
 from ._trajectory import PoseLike, Trajectory, object_trajectories, trajectories
 
 if TYPE_CHECKING:
     from ._scene import Scene
 
 _RENDERERS = ("auto", "embree", "raster", "opengl")
-_MOST_64 = 2**64 - 1
 
 
-class Simulator:
+class Simulator(Immutable):
     """A scene and a sensor made ready, so that measuring costs nothing but the measurement.
+
+    It is its own copy, and it cannot be pickled: pickle scene and sensor, and make a simulator of them
+    where they arrive.
 
     It keeps the scene as it is now: later changes of the scene are not seen. May be used from any
     thread; measurements of one scene take turns, each on all threads, without Python's lock.
@@ -47,8 +53,15 @@ class Simulator:
             raise Error("sensor", "the scene has none", "a sensor", "glidar.camera() makes one")
         one_of(renderer, "renderer", _RENDERERS)
         self.sensor = chosen
+        self._origin = Origin(SceneSource(copy(scene)), chosen, renderer, threads)
         self._usual_fields = _core.fields_for(column_list(None))
         self._core = _core.make_simulator(scene._core, chosen._core, renderer, whole(threads, "threads", 4096))
+
+    __reduce_ex__ = refuse_pickle(
+        "Simulator",
+        "it holds a renderer and cannot be pickled",
+        "pickle its scene and its sensor, and make another where they arrive: glidar.Simulator(scene, sensor)",
+    )
 
     def simulate(
         self,
@@ -68,15 +81,16 @@ class Simulator:
             self._core.simulate_one(
                 sensor,
                 object_trajectories(objects, 1, self._core.objects),
-                (whole(seed, "seed", _MOST_64), whole(frame, "frame", MOST_32), whole(sensor_id, "sensor_id", MOST_32)),
+                (whole(seed, "seed", MOST_64), whole(frame, "frame", MOST_32), whole(sensor_id, "sensor_id", MOST_32)),
                 self._fields(columns),
-            )
+            ),
+            self._origin,
         )
 
     def simulate_batch(
         self,
         poses: PoseLike | Sequence[PoseLike],
-        seeds: int | npt.ArrayLike = 1,
+        seeds: int | npt.ArrayLike | None = None,
         *,
         frames: int | npt.ArrayLike = 0,
         objects: PoseLike | Sequence[PoseLike] | None = None,
@@ -85,6 +99,54 @@ class Simulator:
     ) -> list[Frame]:
         """Measures many times in one call; see ``glidar.simulate_batch``."""
         return self._measure(self._sensors(poses), objects, seeds, frames, columns, sensor_id)
+
+    def simulate_iter(
+        self,
+        poses: Iterable[PoseLike],
+        seeds: int | Iterable[int] | None = None,
+        *,
+        frames: int | Iterable[int] = 0,
+        objects: PoseLike | Sequence[PoseLike] | Iterator[Sequence[PoseLike]] | None = None,
+        columns: str | Iterable[str] | None = None,
+        sensor_id: int = 0,
+        batch: int = 8,
+    ) -> Iterator[Frame]:
+        """Measures one frame after the other; see ``glidar.simulate_iter``."""
+        inputs = Inputs(poses, seeds, frames, objects, self._core.objects)
+        together = whole(batch, "batch", MOST_32)
+        if together == 0:
+            raise Error("batch", "0", "a whole number from 1")
+        return self._iterate(inputs, self._fields(columns), whole(sensor_id, "sensor_id", MOST_32), together)
+
+    def _iterate(self, inputs: Inputs, fields: _core.HitFields, sensor_id: int, batch: int) -> Iterator[Frame]:
+        while True:
+            piece, fault = inputs.take(batch)
+            yield from self._frames_of(piece, fields, sensor_id)
+            if fault is not None:
+                raise fault
+            if len(piece.sensors) < batch:
+                return
+
+    def _frames_of(self, piece: Piece, fields: _core.HitFields, sensor_id: int) -> Iterator[Frame]:
+        """The frames of a piece; none is kept here once it was handed out."""
+        if not piece.sensors:
+            return
+        try:
+            measured = self._measured(piece, fields, sensor_id)
+        except Error as error:
+            if len(piece.sensors) == 1:
+                raise Error(f"frame {piece.first}, {error.where}", error.found, error.allowed, error.remedy) from error
+            for k in range(len(piece.sensors)):  # which of them is it?
+                yield from self._frames_of(piece.sliced(k), fields, sensor_id)
+            return
+        measured.reverse()
+        while measured:
+            yield Frame(measured.pop(), self._origin)
+
+    def _measured(self, piece: Piece, fields: _core.HitFields, sensor_id: int) -> list[_core.Frame]:
+        objects = None if piece.objects is None else _core.joined(piece.objects)
+        keys = (np.array(piece.seeds, np.uint64), np.array(piece.numbers, np.uint32), sensor_id)
+        return self._core.simulate(_core.joined(piece.sensors), objects, keys, fields)
 
     def _sensors(self, poses: PoseLike | Sequence[PoseLike] | None) -> _core.Trajectories:
         if poses is None:
@@ -98,7 +160,7 @@ class Simulator:
         self,
         sensors: _core.Trajectories,
         objects: PoseLike | Sequence[PoseLike] | None,
-        seeds: int | npt.ArrayLike,
+        seeds: int | npt.ArrayLike | None,
         numbers: int | npt.ArrayLike,
         columns: str | Iterable[str] | None,
         sensor_id: int,
@@ -108,13 +170,13 @@ class Simulator:
             sensors,
             object_trajectories(objects, count, self._core.objects),
             (
-                whole_numbers(seeds, "seed", count, 64),
+                whole_numbers(DEFAULT_SEED + np.arange(count) if seeds is None else seeds, "seed", count, 64),
                 whole_numbers(numbers, "frame", count, 32),
                 whole(sensor_id, "sensor_id", MOST_32),
             ),
             self._fields(columns),
         )
-        return [Frame(core) for core in measured]
+        return [Frame(core, self._origin) for core in measured]
 
 
 def _checked(scene: Scene) -> Scene:
@@ -168,7 +230,7 @@ def simulate_batch(
     scene: Scene,
     sensor: Sensor | str | os.PathLike[str] | None,
     poses: PoseLike | Sequence[PoseLike],
-    seeds: int | npt.ArrayLike = 1,
+    seeds: int | npt.ArrayLike | None = None,
     *,
     frames: int | npt.ArrayLike = 0,
     objects: PoseLike | Sequence[PoseLike] | None = None,
@@ -182,7 +244,7 @@ def simulate_batch(
 
     Args:
         poses: world_from_sensor, (N, 4, 4), or a list of N poses and trajectories.
-        seeds: N seeds, or one for all.
+        seeds: N seeds, or one for all; None: 1 + k for frame k, so that every frame has noise of its own.
         frames: N frame numbers, or one for all.
         objects: poses of the scene's k objects: (N, k, 4, 4), or (k, 4, 4) or a list of k poses and
             trajectories for all frames; None: as the scene says.
@@ -192,6 +254,45 @@ def simulate_batch(
     simulator = _checked(scene).simulator(sensor, renderer=renderer, threads=threads)
     return simulator.simulate_batch(
         poses, seeds, frames=frames, objects=objects, columns=columns, sensor_id=sensor_id
+    )
+
+
+def simulate_iter(
+    scene: Scene,
+    sensor: Sensor | str | os.PathLike[str] | None,
+    poses: Iterable[PoseLike],
+    seeds: int | Iterable[int] | None = None,
+    *,
+    frames: int | Iterable[int] = 0,
+    objects: PoseLike | Sequence[PoseLike] | Iterator[Sequence[PoseLike]] | None = None,
+    columns: str | Iterable[str] | None = None,
+    sensor_id: int = 0,
+    renderer: str = "auto",
+    threads: int = 0,
+    batch: int = 8,
+) -> Iterator[Frame]:
+    """Measures a scene at many poses and hands out one frame after the other, the same to the bit as those
+    of ``simulate_batch``. Neither poses nor frames are kept: a generator of millions of poses takes no more
+    memory than one of ten. The loop may be left at any frame.
+
+    Args:
+        poses: world_from_sensor: an array (N, 4, 4), or any iterable of poses and trajectories.
+        seeds: one for each pose from any iterable, or one for all; None: 1 + k for frame k.
+        frames: frame numbers; one for each pose from any iterable, or one for all.
+        objects: poses of the scene's k objects for all frames: (k, 4, 4), or a list of k poses and
+            trajectories. Or for each frame: (N, k, 4, 4), or an iterator over such for one frame. None: as
+            the scene says.
+        batch: so many poses are read and measured before the first of their frames is handed out, from
+            1; 1 where a pose depends on the frame before it.
+
+    Raises:
+        Error: names the frame by its index, such as poses[7]; frames before it were handed out.
+
+    The other arguments and errors are those of ``simulate``.
+    """
+    simulator = _checked(scene).simulator(sensor, renderer=renderer, threads=threads)
+    return simulator.simulate_iter(
+        poses, seeds, frames=frames, objects=objects, columns=columns, sensor_id=sensor_id, batch=batch
     )
 
 

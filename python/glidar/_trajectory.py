@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from typing import TypeAlias, Union
+from typing import Any, TypeAlias, Union
 
 import numpy as np
 import numpy.typing as npt
@@ -14,6 +14,7 @@ import numpy.typing as npt
 from . import _core
 from ._errors import Error
 from ._inputs import FloatArray, floats, shape_text
+from ._state import Immutable, key_of, part, restoring, stated
 
 _MOST_S = 9.2e9
 
@@ -32,14 +33,36 @@ def _times_ns(value_s: npt.ArrayLike, where: str) -> npt.NDArray[np.int64]:
     return np.rint(seconds * 1e9).astype(np.int64)
 
 
-class Trajectory:
+class Trajectory(Immutable):
     """A pose as a pure function of time: of a sensor (world_from_sensor) or an object
-    (world_from_object). Times are seconds; nanoseconds inside. Immutable."""
+    (world_from_object). Times are seconds; nanoseconds inside. Immutable. Two are equal when they are of
+    one kind with the same numbers, to the last bit; they can be hashed, copied and pickled."""
 
     __slots__ = ("_core",)
 
     def __init__(self, core: _core.Trajectories) -> None:
         self._core = core
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Trajectory):
+            return NotImplemented
+        return self._key() == other._key()
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def _key(self) -> object:
+        return key_of(_core.trajectory_states(self._core))
+
+    def __getstate__(self) -> dict[str, Any]:
+        return stated("Trajectory", motion=_core.trajectory_states(self._core))
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        with restoring("Trajectory", state):
+            motion = _core.restore_trajectories(part(state, "motion", list))
+            if len(motion) != 1:
+                raise ValueError(f"{len(motion)} trajectories instead of one")
+            self._core = motion
 
     @staticmethod
     def constant(pose: npt.ArrayLike) -> Trajectory:
@@ -141,12 +164,20 @@ class Trajectory:
 PoseLike: TypeAlias = Union[npt.ArrayLike, Trajectory]
 
 
+def _has_trajectory(value: object) -> bool:
+    """Whether it is a Trajectory or a list with one, which NumPy makes no array of."""
+    if isinstance(value, (list, tuple)):
+        return any(isinstance(part, Trajectory) for part in value)
+    return isinstance(value, Trajectory)
+
+
 def trajectories(value: PoseLike | Sequence[PoseLike], where: str) -> _core.Trajectories:
     """One trajectory, or many: of arrays (N, 4, 4) or a list of poses and trajectories."""
     if isinstance(value, Trajectory):
         return value._core
-    if isinstance(value, (list, tuple)) and any(isinstance(part, Trajectory) for part in value):
-        return _core.joined([trajectories(part, f"{where}[{k}]") for k, part in enumerate(value)])
+    if _has_trajectory(value):
+        parts: Sequence[PoseLike] = value  # type: ignore[assignment]
+        return _core.joined([trajectories(part, f"{where}[{k}]") for k, part in enumerate(parts)])
     if type(value) is np.ndarray and value.shape == (4, 4) and value.dtype == np.float64:
         return _core.constant(np.ascontiguousarray(value)[None], where)  # which looks at the numbers too
     if np.ndim(value) == 2:  # type: ignore[arg-type]
@@ -155,20 +186,20 @@ def trajectories(value: PoseLike | Sequence[PoseLike], where: str) -> _core.Traj
 
 
 def object_trajectories(
-    value: PoseLike | Sequence[PoseLike] | None, count: int, objects: int
+    value: PoseLike | Sequence[PoseLike] | None, count: int, objects: int, where: str = "objects"
 ) -> _core.Trajectories | None:
     """Of `objects` objects for `count` frames: for each frame or the same for all."""
     if value is None:
         return None
-    if not isinstance(value, Trajectory) and np.ndim(value) == 4:  # type: ignore[arg-type]
-        poses = floats(value, "objects", (None, None, 4, 4))
+    if not _has_trajectory(value) and np.ndim(value) == 4:  # type: ignore[arg-type]
+        poses = floats(value, where, (None, None, 4, 4))
         if poses.shape[:2] != (count, objects):
             found = f"an array {shape_text(poses.shape)}"
-            raise Error("objects", found, f"{count} x {objects} x 4 x 4: frames, then objects")
-        return _core.constant(poses.reshape(-1, 4, 4), "objects")
-    result = trajectories(value, "objects")
+            raise Error(where, found, f"{count} x {objects} x 4 x 4: frames, then objects")
+        return _core.constant(poses.reshape(-1, 4, 4), where)
+    result = trajectories(value, where)
     if len(result) != objects:
-        raise Error("objects", f"{len(result)} poses", f"{objects}, one per object of the scene")
+        raise Error(where, f"{len(result)} poses", f"{objects}, one per object of the scene")
     return result
 
 

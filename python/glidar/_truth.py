@@ -4,14 +4,16 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
-from . import _core
 from ._errors import Error
 from ._inputs import FloatArray
+
+if TYPE_CHECKING:
+    from ._frame import Frame
 
 
 class Truth:
@@ -19,13 +21,13 @@ class Truth:
     (rows, cols, k), read-only views of the frame's memory. NaN, and 2**32 - 1 for indices, where the
     beam hits nothing. What the frame's columns do not need is not kept: asking for it is an Error."""
 
-    __slots__ = ("_core",)
+    __slots__ = ("_frame",)
 
-    def __init__(self, core: _core.Frame) -> None:
-        self._core = core
+    def __init__(self, frame: Frame) -> None:
+        self._frame = frame
 
     def _kept(self, name: str) -> npt.NDArray[Any]:
-        found = self._core.truth(name)
+        found = self._frame._core.truth(name)
         if found is None:
             raise Error(f"truth.{name}", "not kept", "", "simulate(..., columns='all') keeps all truth")
         return found

@@ -8,6 +8,10 @@
 
 #include <nanobind/ndarray.h>
 
+#include <array>
+#include <cstring>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,6 +36,36 @@ inline Matrix4 matrix_of(const Pose& pose) {
 template <class T, class Shape>
 nb::ndarray<nb::numpy, T> array_at(T* data, const Shape& shape, nb::handle owner) {
   return nb::ndarray<nb::numpy, T>(data, shape.size(), shape.data(), owner);
+}
+
+/// Copies of the rows of an array, of which each has the numbers of a Vector; none of no array.
+template <class Vector, class Array>
+std::vector<Vector> vectors(const std::optional<Array>& given) {
+  if (!given) return {};
+  std::vector<Vector> result(given->shape(0));
+  if (!result.empty())
+    std::memcpy(static_cast<void*>(result.data()), given->data(), result.size() * sizeof(Vector));
+  return result;
+}
+
+/// A copy of what lies in memory as rows of kColumns numbers; None when there is nothing.
+template <class T, std::size_t kColumns, class Values>
+nb::object rows_of(const Values& values) {
+  if (values.empty()) return nb::none();
+  static_assert(sizeof(values[0]) == kColumns * sizeof(T));
+  auto copy = std::make_unique<Values>(values);
+  auto* data = reinterpret_cast<T*>(copy->data());
+  const std::array<std::size_t, 2> shape = {values.size(), kColumns};
+  const nb::capsule owner(copy.release(),
+                          [](void* kept) noexcept { delete static_cast<Values*>(kept); });
+  return nb::cast(array_at(data, shape, owner));
+}
+
+/// An entry of a dict, where it has one that is not None.
+template <class T>
+std::optional<T> entry(const nb::dict& dict, const char* key) {
+  if (!dict.contains(key) || dict[key].is_none()) return std::nullopt;
+  return nb::cast<T>(dict[key]);
 }
 
 }  // namespace glidar::python

@@ -86,9 +86,9 @@ PointCloud make_cloud(const Measured& m, const std::vector<std::string>& columns
                       const std::string& frame, bool deskew) {
   CloudFrame axes = cloud_frame(frame, *m.beams, m.frame.world_from_sensor);
   axes.deskew = deskew;
-  axes.workers = &m.prepared->renderer->workers();
+  axes.workers = &m.scene().renderer->workers();
   PointCloud cloud;
-  make_point_cloud(m.frame, *m.beams, *m.prepared->scene, axes, columns, cloud);
+  make_point_cloud(m.frame, *m.beams, *m.scene().scene, axes, columns, cloud);
   return cloud;
 }
 
@@ -129,7 +129,7 @@ struct SaveOptions {
 
 void save_to(const Measured& m, const std::filesystem::path& path, const SaveOptions& options,
              const Report& report) {
-  protect_files(m.prepared->files, path);
+  protect_files(m.scene().files, path);
   protect_files(m.sensor->sensor().files, path);
   const FileFormat& format = format_for(path);
   std::vector<std::string> columns = format.takes_more ? options.columns : format.columns;
@@ -140,10 +140,10 @@ void save_to(const Measured& m, const std::filesystem::path& path, const SaveOpt
     if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
   }
   const auto sink = make_file_sink(path, options.sink,
-                                   {.scene = *m.prepared->scene,
+                                   {.scene = *m.scene().scene,
                                     .sensor = m.sensor->sensor(),
                                     .beams = *m.beams,
-                                    .renderer = std::string(m.prepared->renderer->name())},
+                                    .renderer = std::string(m.scene().renderer->name())},
                                    report);
   sink->write(make_cloud(m, columns, options.frame, options.deskew), m.frame);
 }
@@ -222,6 +222,14 @@ void FramePool::give_back(Frame frame) noexcept {
   if (spare_beams_ + beams > kMostSpareBeams || spare_.size() == spare_.capacity()) return;
   spare_beams_ += beams;
   spare_.push_back(std::move(frame));
+}
+
+PreparedScene& Measured::scene() const {
+  if (prepared) return *prepared;
+  throw Error({.where = "frame",
+               .found = "its scene is not there yet",
+               .allowed = "a frame that was given its scene",
+               .remedy = ""});
 }
 
 void bind_frame(nb::module_& module) {

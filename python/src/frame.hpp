@@ -30,15 +30,18 @@ struct Measured {
       : pool(std::move(from)), frame(std::move(measured)) {}
   Measured(const Measured&) = delete;
   Measured& operator=(const Measured&) = delete;
-  ~Measured() { pool->give_back(std::move(frame)); }
+  ~Measured() {
+    if (pool) pool->give_back(std::move(frame));
+  }
+  /// The scene that it was measured of. Throws Error where a restored frame has none yet.
+  [[nodiscard]] PreparedScene& scene() const;
 
-  std::shared_ptr<FramePool> pool;
+  std::shared_ptr<FramePool> pool;  ///< that takes the frame's memory back; may be none
   Frame frame;
-  std::shared_ptr<PreparedScene> prepared;
+  std::shared_ptr<PreparedScene> prepared;  ///< none: of a restored frame, until it is needed
   std::shared_ptr<SensorHandle> sensor;
   std::shared_ptr<const Beams> beams;
   std::shared_ptr<const Motion> motion;
-  HitFields fields;  ///< of the truth that was asked for
 };
 
 }  // namespace glidar::python

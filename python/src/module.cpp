@@ -9,10 +9,13 @@ NB_MODULE(_core, module) {
   module.def("version", &glidar::version, "Its version, major.minor.patch.");
   glidar::python::bind_errors(module);
   glidar::python::bind_motion(module);
+  glidar::python::bind_trajectory_state(module);
   glidar::python::bind_scene(module);
+  glidar::python::bind_scene_state(module);
   glidar::python::bind_sensor(module);
   glidar::python::bind_frame(module);
   glidar::python::bind_simulator(module);
+  glidar::python::bind_frame_state(module);
   glidar::python::bind_story(module);
   glidar::python::bind_tools(module);
 }

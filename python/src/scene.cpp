@@ -3,6 +3,7 @@
 #include "scene.hpp"
 
 #include "report.hpp"
+#include "scene_state.hpp"
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/file_guard.hpp>
@@ -18,8 +19,6 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
-#include <array>
-#include <cstring>
 
 namespace glidar::python {
 namespace {
@@ -55,9 +54,10 @@ SceneHandle load(const std::filesystem::path& path, double metres_per_unit,
       [&](Watch& watch) { return load_scene_file(path, options, report_to(log, watch)); }));
 }
 
-SceneHandle parse(const std::string& text, const nb::object& log) {
+SceneHandle parse(const std::string& text, const nb::object& log,
+                  const std::filesystem::path& folder) {
   return handle_of(
-      unlocked([&](Watch& watch) { return parse_scene(text, report_to(log, watch)); }));
+      unlocked([&](Watch& watch) { return parse_scene(text, report_to(log, watch), folder); }));
 }
 
 /// Whatever is added to a scene whose instances move stands still.
@@ -80,28 +80,6 @@ std::size_t add_model(SceneHandle& handle, const std::string& source, double met
 }
 
 using Floats3 = Table<float, 3>;
-
-template <class Vector, class Array>
-std::vector<Vector> vectors(const std::optional<Array>& given) {
-  if (!given) return {};
-  std::vector<Vector> result(given->shape(0));
-  if (!result.empty())
-    std::memcpy(static_cast<void*>(result.data()), given->data(), result.size() * sizeof(Vector));
-  return result;
-}
-
-/// A copy of what lies in memory as rows of kColumns numbers; None when there is nothing.
-template <class T, std::size_t kColumns, class Values>
-nb::object rows_of(const Values& values) {
-  if (values.empty()) return nb::none();
-  static_assert(sizeof(values[0]) == kColumns * sizeof(T));
-  auto copy = std::make_unique<Values>(values);
-  auto* data = reinterpret_cast<T*>(copy->data());
-  const std::array<std::size_t, 2> shape = {values.size(), kColumns};
-  const nb::capsule owner(copy.release(),
-                          [](void* kept) noexcept { delete static_cast<Values*>(kept); });
-  return nb::cast(array_at(data, shape, owner));
-}
 
 nb::dict mesh_of(const SceneHandle& handle, std::size_t index) {
   const Scene& scene = *handle.scene;
@@ -150,25 +128,28 @@ Mesh make_mesh(const std::string& name, const MeshArrays& arrays) {
   return mesh;
 }
 
-/// An entry of a dict, where it has one that is not None.
-template <class T>
-std::optional<T> entry(const nb::dict& dict, const char* key) {
-  if (!dict.contains(key) || dict[key].is_none()) return std::nullopt;
-  return nb::cast<T>(dict[key]);
-}
-
-std::size_t add_mesh(SceneHandle& handle, const std::string& name, const nb::dict& arrays) {
+std::size_t add_made_mesh(SceneHandle& handle, Mesh mesh) {
   Model model;
-  model.source = "array:" + name;
-  model.mesh =
-      make_mesh(name, {entry<Table<double, 3>>(arrays, "vertices").value(),
-                       entry<Table<std::uint32_t, 3>>(arrays, "triangles").value(),
-                       entry<Floats3>(arrays, "normals"), entry<Table<float, 2>>(arrays, "uvs"),
-                       entry<Floats3>(arrays, "colours")});
+  model.source = "array:" + mesh.name;
+  model.mesh = std::move(mesh);
   model.materials = {Material{}};
   const std::size_t instance = glidar::add_model(handle.change(), std::move(model));
   add_still(handle);
   return instance;
+}
+
+std::size_t add_mesh(SceneHandle& handle, const std::string& name, const nb::dict& arrays) {
+  return add_made_mesh(
+      handle,
+      make_mesh(name, {entry<Table<double, 3>>(arrays, "vertices").value(),
+                       entry<Table<std::uint32_t, 3>>(arrays, "triangles").value(),
+                       entry<Floats3>(arrays, "normals"), entry<Table<float, 2>>(arrays, "uvs"),
+                       entry<Floats3>(arrays, "colours")}));
+}
+
+/// A mesh from its pickled state.
+std::size_t restore_mesh(SceneHandle& handle, const nb::dict& state) {
+  return add_made_mesh(handle, mesh_from(state));
 }
 
 std::size_t add_instance(SceneHandle& handle, std::size_t of) {
@@ -209,8 +190,9 @@ void set_object(SceneHandle& handle, std::size_t index, const nb::dict& changes)
   }
 }
 
-void set_materials_of(SceneHandle& handle, std::size_t index, const std::string& text) {
-  set_materials(handle.change(), index, text);
+void set_materials_of(SceneHandle& handle, std::size_t index, const std::string& text,
+                      const std::filesystem::path& folder) {
+  set_materials(handle.change(), index, text, folder);
 }
 
 std::vector<std::string> materials_of(const SceneHandle& handle, std::size_t index) {
@@ -309,12 +291,16 @@ void bind_scene(nb::module_& module) {
            nb::arg("up").none(), nb::arg("use_cache"), nb::arg("log").none())
       .def("add_mesh", add_mesh, nb::arg("name"), nb::arg("arrays"),
            nb::sig("def add_mesh(self, name: str, arrays: dict[str, typing.Any]) -> int"))
+      .def("restore_mesh", restore_mesh, nb::arg("state"),
+           nb::sig("def restore_mesh(self, state: dict[str, typing.Any]) -> int"))
       .def("add_instance", add_instance, nb::arg("of"))
       .def("set_object", set_object, nb::arg("index"), nb::arg("changes"),
            nb::sig("def set_object(self, index: int, changes: dict[str, typing.Any]) -> None"))
       .def("mesh", mesh_of, nb::arg("index"),
            nb::sig("def mesh(self, index: int) -> dict[str, numpy.ndarray | None]"))
-      .def("set_materials", set_materials_of, nb::arg("index"), nb::arg("text"))
+      .def("set_materials", set_materials_of, nb::arg("index"), nb::arg("text"),
+           nb::arg("folder") = std::filesystem::path(),
+           nb::sig("def set_materials(self, index: int, text: str, folder: str = '') -> None"))
       .def("materials", materials_of, nb::arg("index"))
       .def("object", object_info, nb::arg("index"),
            nb::sig("def object(self, index: int) -> dict[str, typing.Any]"))
@@ -324,7 +310,9 @@ void bind_scene(nb::module_& module) {
       .def("drop_last", drop_last)
       .def("rig", rig_of, nb::sig("def rig(self) -> list[tuple[str, Sensor, numpy.ndarray]]"))
       .def("rig_motion", rig_motion_of);
-  module.def("parse_scene", parse, nb::arg("text"), nb::arg("log").none());
+  module.def("parse_scene", parse, nb::arg("text"), nb::arg("log").none(),
+             nb::arg("folder") = std::filesystem::path(),
+             nb::sig("def parse_scene(text: str, log: object | None, folder: str = '') -> Scene"));
   module.def("load_scene", load, nb::arg("path"), nb::arg("metres_per_unit"), nb::arg("up").none(),
              nb::arg("use_cache"), nb::arg("log").none(),
              nb::sig("def load_scene(path: str, metres_per_unit: float, up: int | None, "

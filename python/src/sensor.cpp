@@ -5,12 +5,15 @@
 #include "convert.hpp"
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/sensor_document.hpp>
 #include <glidar/io/sensor_file.hpp>
+#include <glidar/io/sensor_options.hpp>
 #include <glidar/io/sensor_presets.hpp>
 #include <glidar/io/sidecar.hpp>
 
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -19,6 +22,7 @@
 
 #include <array>
 #include <cmath>
+#include <tuple>
 
 namespace glidar::python {
 namespace {
@@ -52,8 +56,36 @@ Shared load(const std::string& name_or_path) {
   return make(load_sensor_file(find_sensor_file(name_or_path)));
 }
 
-Shared parse(const std::string& text) {
-  return make(parse_sensor(text));
+/// A table of beams as Python has it: `shape` (rows, cols), `period_ns`, and arrays of one row per
+/// beam, of which only `directions` must be there.
+BeamTable table_of(const nb::dict& arrays) {
+  BeamTable table;
+  std::tie(table.rows, table.cols) =
+      nb::cast<std::pair<std::uint32_t, std::uint32_t>>(arrays["shape"]);
+  table.period_ns = nb::cast<double>(arrays["period_ns"]);
+  table.directions = vectors<Eigen::Vector3d>(entry<Table<double, 3>>(arrays, "directions"));
+  table.origins_m = vectors<Eigen::Vector3d>(entry<Table<double, 3>>(arrays, "origins_m"));
+  table.times_ns = vectors<double>(entry<Numbers<double>>(arrays, "times_ns"));
+  table.rings = vectors<std::uint16_t>(entry<Numbers<std::uint16_t>>(arrays, "rings"));
+  return table;
+}
+
+/// A sensor from the keys of a sensor file; `files` is what it was read from in the first place.
+Shared parse(const std::string& text, const std::optional<nb::dict>& table,
+             const std::vector<std::string>& files) {
+  Sensor sensor = table ? parse_sensor(text, table_of(*table)) : parse_sensor(text);
+  sensor.files.insert(sensor.files.end(), files.begin(), files.end());
+  return make(std::move(sensor));
+}
+
+/// Changes by option, as the command line's.
+Shared changed(const SensorHandle& handle, const SensorOptions& options) {
+  const SensorOptionNames names;
+  Sensor sensor = handle.sensor();
+  apply_scan(options, names, sensor);
+  apply_weather(options, names, sensor);
+  apply_returns(options, names, sensor);
+  return make(std::move(sensor));
 }
 
 Shared made_ideal(const SensorHandle& handle) {
@@ -65,6 +97,27 @@ template <class T, class Values, class Shape>
 nb::object per_beam(const Values& values, const Shape& shape, nb::handle owner) {
   const T* data = values.empty() ? nullptr : reinterpret_cast<const T*>(values.data());
   return nb::cast(array_at(data, shape, owner));
+}
+
+/// The table of a sensor that is one, as restore_sensor() takes it; None for other optics. Its
+/// arrays are views of the sensor's memory.
+nb::object beam_table(const nb::handle& self) {
+  const auto* table = std::get_if<BeamTable>(&nb::cast<const SensorHandle&>(self).sensor().optics);
+  if (table == nullptr) return nb::none();
+  const std::array<std::size_t, 1> count = {table->directions.size()};
+  const std::array<std::size_t, 2> triples = {count[0], 3};
+  const auto kept = [](const auto& values, nb::object array) {
+    return values.empty() ? nb::none() : array;
+  };
+  nb::dict arrays;
+  arrays["shape"] = nb::make_tuple(table->rows, table->cols);
+  arrays["period_ns"] = table->period_ns;
+  arrays["directions"] = per_beam<const double>(table->directions, triples, self);
+  arrays["origins_m"] =
+      kept(table->origins_m, per_beam<const double>(table->origins_m, triples, self));
+  arrays["times_ns"] = kept(table->times_ns, per_beam<const double>(table->times_ns, count, self));
+  arrays["rings"] = kept(table->rings, per_beam<const std::uint16_t>(table->rings, count, self));
+  return arrays;
 }
 
 nb::object directions(const nb::handle& self) {
@@ -92,6 +145,22 @@ std::vector<std::string> preset_names() {
   return names;
 }
 
+void bind_options(nb::module_& module) {
+  nb::class_<SensorOptions>(module, "SensorOptions")
+      .def(nb::init<>())
+      .def_rw("rate_hz", &SensorOptions::rate_hz)
+      .def_rw("columns_per_turn", &SensorOptions::columns_per_turn)
+      .def_rw("visibility_m", &SensorOptions::visibility_m)
+      .def_rw("rain_mm_h", &SensorOptions::rain_mm_per_h)
+      .def_rw("snow_mm_h", &SensorOptions::snow_mm_per_h)
+      .def(
+          "set_returns",
+          [](SensorOptions& self, const std::vector<std::string>& words) {
+            self.returns = parse_returns("returns", words);
+          },
+          nb::arg("words"));
+}
+
 }  // namespace
 
 SensorHandle::SensorHandle(Sensor sensor)
@@ -108,6 +177,7 @@ std::shared_ptr<const Beams> SensorHandle::beams(std::uint32_t number) const {
 }
 
 void bind_sensor(nb::module_& module) {
+  bind_options(module);
   nb::class_<SensorHandle>(module, "Sensor")
       .def_prop_ro("name", [](const SensorHandle& self) { return self.sensor().name; })
       .def_prop_ro("rate_hz", [](const SensorHandle& self) { return self.sensor().rate_hz; })
@@ -117,10 +187,18 @@ void bind_sensor(nb::module_& module) {
       .def_prop_ro("returns", [](const SensorHandle& self) { return self.beams(0)->returns; })
       .def_prop_ro("frame_id", [](const SensorHandle& self) { return self.beams(0)->frame_id; })
       .def_prop_ro("directions", directions, nb::sig("def directions(self) -> numpy.ndarray"))
+      .def_prop_ro("files", [](const SensorHandle& self) { return self.sensor().files; })
       .def("description", description)
+      .def("document", [](const SensorHandle& self) { return sensor_document(self.sensor()); })
+      .def("beam_table", beam_table,
+           nb::sig("def beam_table(self) -> dict[str, typing.Any] | None"))
+      .def("changed", changed, nb::arg("options"))
       .def("ideal", made_ideal);
   module.def("load_sensor", load, nb::arg("name_or_path"));
-  module.def("parse_sensor", parse, nb::arg("text"));
+  module.def("parse_sensor", parse, nb::arg("text"), nb::arg("table").none() = nb::none(),
+             nb::arg("files") = std::vector<std::string>(),
+             nb::sig("def parse_sensor(text: str, table: dict[str, typing.Any] | None = None, "
+                     "files: list[str] = []) -> Sensor"));
   module.def("sensor_sheet", sheet, nb::arg("name_or_path"),
              nb::sig("def sensor_sheet(name_or_path: str) -> list[tuple[str, str, str, bool]]"));
   module.def("sensor_file", find_sensor_file, nb::arg("name_or_path"));

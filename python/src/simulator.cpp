@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include "frame.hpp"
+#include "frame_state.hpp"
 #include "report.hpp"
 
 #include <glidar/core/point_cloud.hpp>
@@ -74,7 +75,6 @@ std::unique_ptr<Measured> start(const Simulator& simulator, const Batch& batch, 
   measured->sensor = simulator.sensor;
   measured->beams = simulator.sensor->beams(batch.numbers[k]);
   measured->motion = std::make_shared<const Motion>(motion_of(simulator, batch, k));
-  measured->fields = batch.fields;
   Frame& frame = measured->frame;
   frame.number = batch.numbers[k];
   frame.stamp_ns = scan_window(simulator.sensor->sensor(), frame.number).start_ns;
@@ -165,6 +165,12 @@ Trajectories usual_motion(const Simulator& simulator) {
                                  : frame_view(*beams, scene, from, up)}}};
 }
 
+/// Gives a restored frame the scene that it was measured of.
+void attach(const Simulator& simulator, Measured& measured) {
+  require_hits_of(*simulator.prepared->scene, measured);
+  measured.prepared = simulator.prepared;
+}
+
 HitFields fields(const std::vector<std::string>& columns) {
   return fields_for(columns);
 }
@@ -182,6 +188,7 @@ void bind_simulator(nb::module_& module) {
       .def("simulate_one", simulate_one, nb::arg("sensor"), nb::arg("objects").none(),
            nb::arg("key"), nb::arg("fields"))
       .def("usual_motion", usual_motion)
+      .def("attach", attach, nb::arg("frame"))
       .def_prop_ro("objects",
                    [](const Simulator& self) { return self.prepared->scene->instances.size(); });
   module.def("make_simulator", make_simulator, nb::arg("scene"), nb::arg("sensor"),

@@ -73,6 +73,28 @@ TEST(TimedPoses, NameTheEntryAndItsFault) {
       HasSubstr("length 1"));
 }
 
+/// Dividing a quaternion by its length again may change its last bit, so a copy must not.
+TEST(TimedPoses, RestoredOnesKeepEveryBit) {
+  std::vector<TimedPose> poses;
+  for (int k = 0; k < 1000; ++k) {
+    const Eigen::Quaterniond q(0.1 + k, 0.7 - 3.0 * k, 0.3 * k, 1.1);
+    poses.push_back({.t_ns = k, .orientation = q.normalized()});
+  }
+  const TimedPoses first(std::move(poses));
+  const TimedPoses again = TimedPoses::restored({first.poses().begin(), first.poses().end()});
+  for (std::size_t k = 0; k < first.poses().size(); ++k) {
+    EXPECT_EQ(first.poses()[k].orientation.coeffs(), again.poses()[k].orientation.coeffs());
+  }
+}
+
+TEST(TimedPoses, RestoredOnesAreChecked) {
+  EXPECT_THROW(TimedPoses::restored({}), Error);
+  EXPECT_THROW(TimedPoses::restored({{.t_ns = 1}, {.t_ns = 1}}), Error);
+  const Eigen::Quaterniond nearly(1.0001, 0.0, 0.0, 0.0);  // files may hold it, restored poses not
+  EXPECT_NO_THROW(TimedPoses({{.t_ns = 1, .orientation = nearly}}));
+  EXPECT_THROW(TimedPoses::restored({{.t_ns = 1, .orientation = nearly}}), Error);
+}
+
 TEST(Trajectory, ManyTimesAtOnceAreTheSameAsOneByOne) {
   std::vector<TimedPose> poses;
   for (int i = 0; i < 200; ++i) {

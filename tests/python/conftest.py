@@ -3,6 +3,7 @@
 """What tests of the Python package share. Run by ctest with PYTHONPATH and PATH set; alone:
 PYTHONPATH=build/dev/python PATH=build/dev/apps/glidar:$PATH build/venv/bin/python -m pytest tests/python"""
 
+import pickle
 import subprocess
 import sys
 from pathlib import Path
@@ -32,6 +33,25 @@ def noisy():
     return glidar.camera(64, 48, fov_deg=30.0, noise=[{"type": "range_gaussian", "sigma_m": 0.01}, {"type": "dropout", "probability": 0.1}])
 
 
+@pytest.fixture(scope="session")
+def built():
+    """A scene with a model, meshes made in code, a copy, changed attributes and materials."""
+    scene = glidar.Scene(ROOT / "models/satellite/satellite.obj")
+    corners = np.array([[0.1, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) + 1e7  # has an origin of its own
+    faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    colours = np.linspace(0, 1, 12).reshape(4, 3)
+    first = scene.add_mesh(corners, faces, colours=colours, name="first", pose=glidar.pose([-1e7, -1e7, -1e7]))
+    first.set_materials({"*": {"diffuse": [0.1, 0.7, 0.3]}})
+    scene.add_copy(first, name="second", class_name="part", scale=0.7)
+    with pytest.raises(glidar.Error):
+        scene.add_model("builtin:box", name="second")  # is taken away again
+    scene.add_model("builtin:sphere", pose=glidar.pose([3, 0, 0]), class_name="ball")
+    for k in range(50):
+        scene["second"].pose = glidar.pose([0.1 * k - 1e7, -1e7, -1e7])
+    scene["second"].class_name = "other"
+    return scene
+
+
 @pytest.fixture
 def program():
     """Runs the command line; gives what it prints, or its error."""
@@ -56,3 +76,26 @@ def same(one, other):
     """Whether two frames are the same to the bit."""
     names = ("range_m", "intensity", "status", "sigma_m")
     return all(getattr(one, n).tobytes() == getattr(other, n).tobytes() for n in names)
+
+
+def again(value, protocol=pickle.HIGHEST_PROTOCOL):
+    """What comes back from a pickle."""
+    return pickle.loads(pickle.dumps(value, protocol))
+
+
+#: A trajectory of every kind.
+TRAJECTORIES = {
+    "constant": lambda: glidar.Trajectory.constant(glidar.look_at([1, 2, 3], [0, 0.1, 0])),
+    "spin": lambda: glidar.Trajectory.spin(glidar.look_at([1, 2, 3], [0, 0.1, 0]), [0.1, 0.2, 0.3], t0_s=0.1),
+    "twist": lambda: glidar.Trajectory.twist(np.eye(4), [0.1, 0, 0.3], [1, 2, 3], in_world=True, t0_s=-3),
+    "timed": lambda: glidar.Trajectory.timed(
+        np.arange(200) / 7, np.stack([glidar.look_at([5, 0.1 * k, 1], [0, 0, 0.01 * k]) for k in range(200)])
+    ),
+    "tumbling": lambda: glidar.Trajectory.tumbling(
+        glidar.look_at([1, 2, 3], [0, 0.1, 0]),
+        [1, 2.5, 3],
+        [0.1, 1.0, 0.01],
+        body_from_principal=glidar.pose([0.1, 0, 0]),
+        velocity_m_s=[1, 0, 0.1],
+    ),
+}

@@ -42,17 +42,24 @@ def test_every_name_has_a_docstring_and_the_document_tells_of_it():
         assert re.search(rf"\b{name}\b", text), name
 
 
-def test_notebook_runs_and_is_kept_without_outputs(folder, monkeypatch):
-    nbclient = pytest.importorskip("nbclient")
+NOTEBOOK = ROOT / "examples/notebooks/first_steps.ipynb"
+
+
+def test_the_notebook_is_kept_without_outputs():
     nbformat = pytest.importorskip("nbformat")
-    path = ROOT / "examples/notebooks/first_steps.ipynb"
-    notebook = nbformat.read(path, as_version=4)
-    for cell in notebook.cells:
+    for cell in nbformat.read(NOTEBOOK, as_version=4).cells:
         if cell.cell_type == "code":
             assert cell.outputs == []
             assert cell.execution_count is None
-    monkeypatch.delenv("MPLBACKEND")
-    nbclient.NotebookClient(notebook, timeout=MAX_WAIT_S, resources={"metadata": {"path": str(folder)}}).execute()
+
+
+@pytest.mark.parametrize("started_from", [NOTEBOOK.parent, ROOT], ids=["its own folder", "the clone"])
+def test_the_notebook_runs_from(started_from):
+    nbclient = pytest.importorskip("nbclient")
+    nbformat = pytest.importorskip("nbformat")
+    notebook = nbformat.read(NOTEBOOK, as_version=4)
+    before = sorted(os.listdir(started_from))
+    nbclient.NotebookClient(notebook, timeout=MAX_WAIT_S, resources={"metadata": {"path": str(started_from)}}).execute()
     shown = [out for cell in notebook.cells if cell.cell_type == "code" for out in cell.outputs]
     assert any("image/png" in out.get("data", {}) for out in shown)
-    assert os.listdir(folder)
+    assert sorted(os.listdir(started_from)) == before

@@ -254,10 +254,14 @@ def test_copies_are_of_objects_of_the_same_scene():
         assert "sphere" not in repr(scene)
 
 
-def test_meshes_compare_by_identity():
-    mesh = glidar.Mesh(BOX, FACES)
-    assert mesh == mesh
-    assert mesh != glidar.Mesh(BOX, FACES)
+def test_meshes_are_equal_when_their_arrays_are():
+    mesh = glidar.Mesh(np.array(BOX), FACES)
+    assert mesh == glidar.Mesh(np.array(BOX), FACES)
+    assert mesh != glidar.Mesh(np.array(BOX) + 1, FACES)
+    assert mesh != glidar.Mesh(np.array(BOX, np.float32), FACES)
+    assert mesh != "a mesh"
+    with pytest.raises(TypeError):
+        hash(mesh)
 
 
 def test_placing_may_be_left_open():

@@ -36,6 +36,21 @@ def test_a_dict_is_the_same_as_the_file_with_its_keys(tmp_path):
         assert glidar.Sensor.from_dict(keys).describe() == glidar.load_sensor(name).describe()
 
 
+def test_the_dict_of_a_sensor_is_a_sensor_file(tmp_path):
+    yaml = pytest.importorskip("yaml")
+    for name in ("VLP-16", "OS1-32", "Livox-Mid-40", "Kinect-v2"):
+        sensor = glidar.load_sensor(name)
+        for text in (yaml.safe_dump(sensor.to_dict(), allow_unicode=True), json.dumps(sensor.to_dict())):
+            (tmp_path / "sensor.yaml").write_text(text)
+            assert glidar.load_sensor(tmp_path / "sensor.yaml") == sensor
+
+
+def test_a_name_in_any_letters_comes_back(tmp_path):
+    sensor = glidar.camera(4, 4, name='a "camera": \u00e4 \U0001f600')
+    assert sensor.name == 'a "camera": \u00e4 \U0001f600'
+    assert glidar.Sensor.from_dict(sensor.to_dict()) == sensor
+
+
 def test_a_dict_may_hold_numpy_numbers():
     sensor = glidar.Sensor.from_dict(
         {

@@ -1,0 +1,222 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""How a scene was made, step by step, so that another process can make it again."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _core
+from ._errors import Error
+from ._inputs import log, one_of
+from ._state import key_of, part
+
+_BUILTIN = "builtin:"
+
+#: A step: what was done, and with what.
+Step = tuple[str, dict[str, Any]]
+
+
+class Recipe:
+    """A scene and the steps that made it. Every change goes through here.
+
+    Changes of one object's attributes are merged, so that moving an object a million times is one step.
+    """
+
+    def __init__(self, core: _core.Scene, steps: list[Step]) -> None:
+        self.core = core
+        self._steps = steps
+        self._latest: dict[int, dict[str, Any]] = {}  # of each object the changes that later ones may join
+        self._files: dict[str, str] = {}  # what was read, and where it is
+        self._note_files()
+
+    def _note_files(self) -> None:
+        """Relative names count from the working folder of this moment."""
+        for name in self.core.files:
+            self._files.setdefault(name, os.path.abspath(name))
+
+    @staticmethod
+    def empty() -> Recipe:
+        """Of a scene without objects."""
+        return Recipe(_core.Scene(), [])
+
+    @staticmethod
+    def of_file(path: str, metres: float, up: int | None) -> Recipe:
+        """Of a scene file."""
+        core = _core.load_scene(path, metres, up, True, log)
+        return Recipe(core, [("scene_file", {"path": path, "folder": os.getcwd(), "metres": metres, "up": up})])
+
+    @staticmethod
+    def of_text(text: str, folder: str = "") -> Recipe:
+        """Of the keys of a scene file; paths count from the folder, or from the working folder."""
+        core = _core.parse_scene(text, log, folder)
+        return Recipe(core, [("scene", {"text": text, "folder": folder or os.getcwd()})])
+
+    def copy(self) -> Recipe:
+        """The same, to be changed apart from this. Costs no memory until then."""
+        steps = [(name, {**given, "changes": dict(given["changes"])} if name == "set" else given) for name, given in self._steps]
+        copied = Recipe(_core.copy_scene(self.core), steps)
+        copied._files = dict(self._files)
+        return copied
+
+    def _add(self, name: str, **arguments: Any) -> None:
+        self._steps.append((name, arguments))
+        self._latest.clear()
+
+    def add_model(self, path: str, metres: float, up: int | None) -> int:
+        """Adds a model file, or a built-in model."""
+        index = self.core.add_model(path, metres, up, True, log)
+        self._add("model", path=path, folder=os.getcwd(), metres=metres, up=up)
+        self._note_files()
+        return index
+
+    def add_mesh(self, name: str, arrays: dict[str, Any]) -> int:
+        """Adds a mesh from arrays. The step refers to the mesh: its arrays lie in the scene."""
+        index = self.core.add_mesh(name, arrays)
+        self._add("mesh", mesh=_core.mesh_count(self.core) - 1)
+        return index
+
+    def add_instance(self, of: int) -> int:
+        """Adds another object with the mesh of one."""
+        index = self.core.add_instance(of)
+        self._add("copy", of=of)
+        return index
+
+    def drop_last(self) -> None:
+        """Takes the last object away."""
+        self.core.drop_last()
+        self._add("drop")
+
+    def set_object(self, index: int, changes: dict[str, Any]) -> None:
+        """Sets attributes of an object."""
+        self.core.set_object(index, changes)
+        kept = {name: np.array(value) if isinstance(value, np.ndarray) else value for name, value in changes.items()}
+        if index in self._latest:
+            self._latest[index].update(kept)
+            return
+        self._steps.append(("set", {"index": index, "changes": kept}))
+        self._latest[index] = kept
+
+    def set_materials(self, index: int, text: str, folder: str = "") -> None:
+        """Changes materials of an object; paths count from the folder, or from the working folder."""
+        self.core.set_materials(index, text, folder)
+        self._steps.append(("materials", {"index": index, "text": text, "folder": folder or os.getcwd()}))
+
+    def key(self) -> object:
+        """A hashable value that two scenes share only if all that can be measured of them is the same."""
+        sensors = [(name, core.document(), core.beam_table(), pose) for name, core, pose in self.core.rig()]
+        return key_of([_core.scene_digest(self.core), _core.placing_state(self.core), sensors])
+
+    def digest(self) -> str:
+        """A hash of that."""
+        return hashlib.sha256(repr(self.key()).encode()).hexdigest()
+
+    def state(self) -> dict[str, Any]:
+        """All that makes the scene again: steps, arrays of meshes, hashes of files."""
+        steps: list[Step] = []
+        for name, arguments in self._steps:
+            if name == "mesh":
+                arguments = {"state": _core.mesh_state(self.core, arguments["mesh"])}
+            steps.append((name, arguments))
+        files = {name: _hash_of(name) for name in self._files.values() if not _is_preset(name)}
+        return {"steps": steps, "files": files, "classes": self.core.class_names, "digest": self.digest()}
+
+    @staticmethod
+    def restored(state: Mapping[str, Any]) -> Recipe:
+        """The scene of a state.
+
+        Raises:
+            Error: a file is not there or has changed, or the scene has become another one.
+        """
+        for name, known in part(state, "files", dict).items():
+            _require_unchanged(name, known)
+        recipe = Recipe.empty()
+        steps = part(state, "steps", list)
+        if steps and steps[0][0] in ("scene_file", "scene"):
+            recipe = _restored_base(*steps[0])
+            steps = steps[1:]
+        _core.add_classes(recipe.core, part(state, "classes", list))
+        for name, arguments in steps:
+            recipe._redo(name, arguments)
+        if recipe.digest() != state["digest"]:
+            raise Error(
+                "pickled Scene",
+                "its files and steps make another scene than the one that was pickled",
+                "",
+                "a file had changed before it was pickled, or another version of glidar wrote it: pickle it again",
+            )
+        return recipe
+
+    def _redo(self, name: str, arguments: dict[str, Any]) -> None:
+        one_of(name, "pickled Scene, step", ("model", "mesh", "copy", "drop", "set", "materials"))
+        if name == "model":
+            self.add_model(_reached(arguments), arguments["metres"], arguments["up"])
+        elif name == "mesh":
+            self.core.restore_mesh(_plain_arrays(part(arguments, "state", dict)))
+            self._add("mesh", mesh=_core.mesh_count(self.core) - 1)
+        elif name == "copy":
+            self.add_instance(self._known(arguments["of"]))
+        elif name == "drop":
+            self.drop_last()
+        elif name == "set":
+            self.set_object(self._known(arguments["index"]), part(arguments, "changes", dict))
+        else:
+            self.set_materials(self._known(arguments["index"]), part(arguments, "text", str), _folder(arguments))
+
+    def _known(self, index: int) -> int:
+        if not 0 <= index < len(self.core):
+            raise IndexError(f"object {index} of {len(self.core)}")
+        return index
+
+
+def _restored_base(name: str, arguments: dict[str, Any]) -> Recipe:
+    if name == "scene":
+        return Recipe.of_text(part(arguments, "text", str), _folder(arguments))
+    return Recipe.of_file(_reached(arguments), arguments["metres"], arguments["up"])
+
+
+def _folder(arguments: dict[str, Any]) -> str:
+    """The folder from which paths count; empty where it is the working folder."""
+    folder = part(arguments, "folder", str)
+    return "" if folder == os.getcwd() else folder
+
+
+def _reached(arguments: dict[str, Any]) -> str:
+    """A path as it was given, or from its folder where the working folder is another."""
+    path = part(arguments, "path", str)
+    return path if path.startswith(_BUILTIN) else str(Path(_folder(arguments), path))
+
+
+def _plain_arrays(mesh: dict[str, Any]) -> dict[str, Any]:
+    """The arrays of a mesh, which the library reads as they lie in memory."""
+    return {
+        name: np.ascontiguousarray(value) if isinstance(value, np.ndarray) else value for name, value in mesh.items()
+    }
+
+
+def _is_preset(name: str) -> bool:
+    """Presets are installed elsewhere on another machine; the digest of the scene tells whether they differ."""
+    return os.path.dirname(name) == os.path.dirname(_core.sensor_file(_core.preset_names()[0]))
+
+
+def _hash_of(name: str) -> str:
+    found = _core.hash_file(name)
+    if found is None:
+        raise Error(name, "the scene was read from this file, which is not there any more", "", "put it back to pickle")
+    return found
+
+
+def _require_unchanged(name: str, known: str | None) -> None:
+    found = _core.hash_file(name)
+    if found is None:
+        remedy = "a scene is pickled by the names of its files: put the file there, on this machine too"
+        raise Error(name, "the pickled scene was read from this file, which is not there", "", remedy)
+    if found != known:
+        remedy = "pickle the scene again, or put the former file back"
+        raise Error(name, f"the file has changed since the scene was pickled (hash {found})", f"hash {known}", remedy)

@@ -1,0 +1,231 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "scene_state.hpp"
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/content_hash.hpp>
+
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <type_traits>
+
+namespace glidar::python {
+namespace {
+
+/// Adds values to a hash, each list with its length before it, so that no two contents give the
+/// same bytes.
+class Digest {
+ public:
+  template <class Number>
+  requires std::is_arithmetic_v<Number> || std::is_enum_v<Number>
+  void add(const Number& number) { hash_.add(&number, sizeof(Number)); }
+  void add(const std::string& text) { add_bytes(text.data(), text.size(), 1); }
+  template <class Scalar, int kRows, int kCols>
+  void add(const Eigen::Matrix<Scalar, kRows, kCols>& matrix) {
+    hash_.add(matrix.data(), sizeof(Scalar) * static_cast<std::size_t>(matrix.size()));
+  }
+  template <class Value>
+  void add(const std::vector<Value>& values) {
+    if constexpr (std::is_same_v<Value, std::string>) {
+      add(values.size());
+      for (const std::string& text : values) add(text);
+    } else {
+      add_bytes(values.data(), values.size(), sizeof(Value));  // numbers side by side, no padding
+    }
+  }
+  [[nodiscard]] std::string text() const { return hex(hash_.value()); }
+
+ private:
+  void add_bytes(const void* bytes, std::size_t count, std::size_t size) {
+    add(count);
+    if (count > 0) hash_.add(bytes, count * size);
+  }
+
+  ContentHash hash_;
+};
+
+void add(const Mesh& mesh, Digest& digest) {
+  digest.add(mesh.name);
+  digest.add(mesh.origin_m);
+  digest.add(mesh.positions_m);
+  digest.add(mesh.normals);
+  for (const auto& uvs : mesh.uvs) digest.add(uvs);
+  digest.add(mesh.tangents);
+  digest.add(mesh.colours);
+  digest.add(mesh.triangles);
+  digest.add(mesh.material_slots);
+}
+
+void add(const TextureUse& use, Digest& digest) {
+  digest.add(use.texture);
+  digest.add(use.uv_set);
+  digest.add(use.wrap_u);
+  digest.add(use.wrap_v);
+  digest.add(use.filter);
+  digest.add(use.uv_scale_rotate);
+  digest.add(use.uv_offset);
+}
+
+void add(const Backscatter& backscatter, Digest& digest) {
+  struct Adder {
+    Digest& to;
+    void operator()(const Lambert& /*none*/) const {}
+    void operator()(const PhongLike& s) const {
+      to.add(s.specular_share);
+      to.add(s.exponent);
+    }
+    void operator()(const OrenNayar& s) const { to.add(s.roughness_rad); }
+    void operator()(const RetroReflector& s) const {
+      to.add(s.gain);
+      to.add(s.width_rad);
+    }
+    void operator()(const Glossy& s) const {
+      to.add(s.matt_share);
+      to.add(s.lobe_gain);
+      to.add(s.width_rad);
+    }
+  };
+  digest.add(backscatter.index());
+  std::visit(Adder{digest}, backscatter);
+}
+
+void add(const Material& material, Digest& digest) {
+  digest.add(material.name);
+  for (const Eigen::Vector3f* colour : {&material.ambient, &material.diffuse, &material.specular}) {
+    digest.add(*colour);
+  }
+  for (const float number : {material.shininess, material.opacity, material.alpha_cutoff,
+                             material.mirror, material.noise_scale, material.normal_scale}) {
+    digest.add(number);
+  }
+  add(material.backscatter, digest);
+  digest.add(material.spectrum);
+  for (const TextureUse* use :
+       {&material.diffuse_texture, &material.specular_texture, &material.alpha_texture,
+        &material.normal_texture, &material.noise_texture}) {
+    add(*use, digest);
+  }
+}
+
+void add(const Texture& texture, Digest& digest) {
+  digest.add(texture.width);
+  digest.add(texture.height);
+  digest.add(texture.channels);
+  digest.add(texture.texels);
+}
+
+void add(const Instance& instance, Digest& digest) {
+  digest.add(instance.name);
+  digest.add(instance.mesh);
+  digest.add(Eigen::Matrix4d(instance.world_from_object.matrix()));
+  digest.add(instance.scale);
+  digest.add(instance.id);
+  digest.add(instance.class_id);
+  digest.add(instance.materials);
+}
+
+template <class Part>
+void add_all(const std::vector<Part>& parts, Digest& digest) {
+  digest.add(parts.size());
+  for (const Part& part : parts) add(part, digest);
+}
+
+Eigen::Vector3d origin_in(const nb::dict& state) {
+  const auto origin_m = nb::cast<Eigen::Vector3d>(state["origin_m"]);
+  if (origin_m.allFinite()) return origin_m;
+  throw Error({.where = "mesh",
+               .found = "an origin that is not finite",
+               .allowed = "three finite numbers",
+               .remedy = ""});
+}
+
+}  // namespace
+
+std::string digest_of(const Scene& scene) {
+  Digest digest;
+  add_all(scene.meshes, digest);
+  add_all(scene.materials, digest);
+  add_all(scene.textures, digest);
+  add_all(scene.instances, digest);
+  digest.add(scene.class_names);
+  return digest.text();
+}
+
+nb::dict mesh_state(const SceneHandle& handle, std::size_t index) {
+  const Mesh& mesh = handle.scene->meshes.at(index);
+  nb::dict state;
+  state["name"] = mesh.name;
+  state["origin_m"] = mesh.origin_m;
+  state["positions_m"] = rows_of<float, 3>(mesh.positions_m);
+  state["triangles"] = rows_of<std::uint32_t, 3>(mesh.triangles);
+  state["normals"] = rows_of<float, 3>(mesh.normals);
+  state["uvs"] = rows_of<float, 2>(mesh.uvs[0]);
+  state["colours"] = rows_of<float, 3>(mesh.colours);
+  return state;
+}
+
+Mesh mesh_from(const nb::dict& state) {
+  Mesh mesh;
+  mesh.name = nb::cast<std::string>(state["name"]);
+  mesh.origin_m = origin_in(state);
+  const auto positions = entry<Table<float, 3>>(state, "positions_m").value();
+  mesh.positions_m.reserve(positions.shape(0) + 1);  // renderers need no copy
+  mesh.positions_m.resize(positions.shape(0));
+  std::copy_n(positions.data(), positions.size(),
+              reinterpret_cast<float*>(mesh.positions_m.data()));
+  mesh.triangles = vectors<Triangle>(entry<Table<std::uint32_t, 3>>(state, "triangles"));
+  mesh.normals = vectors<Eigen::Vector3f>(entry<Table<float, 3>>(state, "normals"));
+  mesh.uvs[0] = vectors<Eigen::Vector2f>(entry<Table<float, 2>>(state, "uvs"));
+  mesh.colours = vectors<Eigen::Vector3f>(entry<Table<float, 3>>(state, "colours"));
+  validate(mesh);
+  return mesh;
+}
+
+void add_classes(SceneHandle& handle, const std::vector<std::string>& names) {
+  std::vector<std::string>& known = handle.change().class_names;
+  for (const std::string& name : names) {
+    if (std::find(known.begin(), known.end(), name) == known.end()) known.push_back(name);
+  }
+}
+
+/// How the scene file moves objects and the rig, and where it puts the rig.
+nb::dict placing_state(const SceneHandle& handle) {
+  nb::dict state;
+  state["motion"] = states_of(handle.motion);
+  std::vector<Trajectory> rig;
+  if (handle.rig_motion) rig.push_back(*handle.rig_motion);
+  if (handle.world_from_rig) rig.emplace_back(ConstantPose{*handle.world_from_rig});
+  state["rig"] = states_of(rig);
+  state["looks_at"] = handle.looks_at;
+  return state;
+}
+
+std::optional<std::string> hash_of_file(const std::filesystem::path& path) {
+  const std::optional<Hash128> hash = hash_file(path);
+  return hash ? std::optional(hex(*hash)) : std::nullopt;
+}
+
+void bind_scene_state(nb::module_& module) {
+  module.def(
+      "copy_scene", [](const SceneHandle& scene) { return SceneHandle(scene); }, nb::arg("scene"));
+  module.def(
+      "scene_digest", [](const SceneHandle& scene) { return digest_of(*scene.scene); },
+      nb::arg("scene"));
+  module.def(
+      "mesh_count", [](const SceneHandle& scene) { return scene.scene->meshes.size(); },
+      nb::arg("scene"));
+  module.def("mesh_state", mesh_state, nb::arg("scene"), nb::arg("index"),
+             nb::sig("def mesh_state(scene: Scene, index: int) -> dict[str, typing.Any]"));
+  module.def("add_classes", add_classes, nb::arg("scene"), nb::arg("names"));
+  module.def("placing_state", placing_state, nb::arg("scene"),
+             nb::sig("def placing_state(scene: Scene) -> dict[str, typing.Any]"));
+  module.def("hash_file", hash_of_file, nb::arg("path"),
+             nb::sig("def hash_file(path: str) -> str | None"));
+}
+
+}  // namespace glidar::python

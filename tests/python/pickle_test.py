@@ -1,0 +1,285 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Objects can be pickled, copied and compared, and lose nothing by it."""
+
+import copy
+import pickle
+
+import numpy as np
+import pytest
+from conftest import ROOT, TRAJECTORIES, again, same
+
+import glidar
+
+PROTOCOLS = range(2, pickle.HIGHEST_PROTOCOL + 1)
+
+
+@pytest.mark.parametrize("protocol", PROTOCOLS)
+def test_a_sensor_comes_back_the_same(protocol):
+    for sensor in (glidar.load_sensor("VLP-16"), glidar.load_sensor("Kinect-v2"), glidar.camera(64, 48)):
+        back = again(sensor, protocol)
+        assert back == sensor
+        assert hash(back) == hash(sensor)
+        assert back.describe() == sensor.describe()
+        assert back.directions.tobytes() == sensor.directions.tobytes()
+
+
+def test_every_preset_comes_back_the_same_from_pickle_and_dict():
+    for name in glidar.sensor_names():
+        sensor = glidar.load_sensor(name)
+        for back in (again(sensor), glidar.Sensor.from_dict(sensor.to_dict())):
+            assert back == sensor, name
+            assert back.describe() == sensor.describe(), name
+            assert back.directions.tobytes() == sensor.directions.tobytes(), name
+
+
+def test_sensors_with_one_number_apart_are_not_equal():
+    near = glidar.camera(8, 8, fov_deg=20.0)
+    assert near == glidar.camera(8, 8, fov_deg=20.0)
+    assert near != glidar.camera(8, 8, fov_deg=np.nextafter(20.0, 21.0))
+    assert near != glidar.camera(8, 8, fov_deg=20.0, name="other")
+    assert near != "camera"
+    assert len({near, glidar.camera(8, 8, fov_deg=20.0), near.ideal()}) == 1  # a camera without noise is ideal
+
+
+@pytest.mark.parametrize("protocol", PROTOCOLS)
+def test_a_scene_comes_back_the_same(built, protocol):
+    back = again(built, protocol)
+    assert back == built
+    assert [o.name for o in back] == [o.name for o in built]
+    assert back.class_names == built.class_names
+    for one, other in zip(back, built, strict=True):
+        assert one.mesh == other.mesh
+        assert (one.id, one.class_name, one.scale, one.source) == (other.id, other.class_name, other.scale, other.source)
+        assert one.pose.tobytes() == other.pose.tobytes()
+        assert one.materials == other.materials
+
+
+def test_what_comes_back_measures_the_same_bytes(built, noisy):
+    scene, sensor = again((built, noisy))
+    pose = glidar.look_at([6, 3, 2], [0, 0, 0])
+    one = glidar.simulate(built, noisy, pose, seed=5, columns="all")
+    other = glidar.simulate(scene, sensor, pose, seed=5, columns="all")
+    assert one.hits > 100
+    assert same(one, other)
+    assert one == other
+
+
+def test_a_scene_file_with_a_rig_and_motion_comes_back_the_same(tmp_path):
+    path = tmp_path / "scene.yaml"
+    path.write_text(
+        """models:
+  - {model: "builtin:sphere", name: ball, pose: {position: [5, 0, 0]}, motion: {spin: {rate_deg_s: [0, 0, 70]}}}
+  - {model: "builtin:box", name: box, pose: {position: [0, 5, 0]}}
+sensors:
+  - {name: front, sensor: VLP-16, pose: {position: [0, 0, 0.2]}}
+  - {name: top, sensor: {optics: {width: 16, height: 16, fov_deg: 60}}}
+rig_pose: {position: [0.2, 0, 0]}
+rig_motion: {twist: {velocity_m_s: [0.5, 0, 0]}}
+"""
+    )
+    scene = glidar.Scene(path)
+    scene["box"].pose = glidar.pose([0, 6, 0])
+    back = again(scene)
+    assert back == scene
+    assert back.rig == scene.rig
+    for name, frame in glidar.simulate_rig(scene, seed=3).items():
+        assert frame == glidar.simulate_rig(back, seed=3)[name]
+
+
+def test_a_scene_from_a_dict_comes_back_in_another_folder(tmp_path, monkeypatch):
+    (tmp_path / "models").symlink_to(ROOT / "models")
+    monkeypatch.chdir(tmp_path)
+    scene = glidar.Scene.from_dict({"models": [{"model": "models/satellite/satellite.obj"}]})
+    stored = pickle.dumps(scene)
+    monkeypatch.chdir("/")
+    assert pickle.loads(stored) == scene
+    relative = pickle.dumps(scene.objects[0])
+    assert pickle.loads(relative).mesh == scene.objects[0].mesh
+
+
+def test_a_file_that_changed_is_told(tmp_path):
+    model = tmp_path / "one.obj"
+    model.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    stored = pickle.dumps(glidar.Scene(model))
+    assert len(pickle.loads(stored)) == 1
+    model.write_text("v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n")
+    with pytest.raises(glidar.Error, match="one.obj: the file has changed since the scene was pickled"):
+        pickle.loads(stored)
+    model.unlink()
+    with pytest.raises(glidar.Error, match="one.obj: the pickled scene was read from this file, which is not there"):
+        pickle.loads(stored)
+
+
+def test_a_file_that_changed_before_pickling_is_told(tmp_path):
+    model = tmp_path / "one.obj"
+    model.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    scene = glidar.Scene(model)
+    model.write_text("v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n")
+    with pytest.raises(glidar.Error, match="another scene than the one that was pickled"):
+        again(scene)
+    model.unlink()
+    with pytest.raises(glidar.Error, match="is not there any more"):
+        pickle.dumps(scene)
+
+
+def test_moving_an_object_often_does_not_make_the_pickle_larger(built):
+    scene = copy.copy(built)
+    scene["first"].pose = glidar.pose([0, 0, 1])
+    before = len(pickle.dumps(scene))
+    for k in range(1000):
+        scene["first"].pose = glidar.pose([0, 0, 1 + k])
+    assert abs(len(pickle.dumps(scene)) - before) < 100
+
+
+def test_a_copy_of_a_scene_is_changed_apart_from_it(built):
+    for made in (copy.copy(built), copy.deepcopy(built)):
+        assert made == built
+        made["first"].pose = glidar.pose([0, 0, 9])
+        assert made != built
+        assert built["first"].pose[2, 3] == -1e7
+        made["first"].pose = built["first"].pose
+        assert made == built
+    with pytest.raises(TypeError):
+        hash(built)
+
+
+def test_scenes_are_equal_by_what_they_hold_and_not_by_how_it_was_made():
+    one, other = glidar.Scene(), glidar.Scene()
+    one.add_model("builtin:box", name="a", pose=glidar.pose([1, 2, 3]))
+    box = other.add_model("builtin:box", name="b")
+    assert one != other
+    box.pose = glidar.pose([1, 2, 3])
+    box.name = "a"
+    assert one == other
+    box.set_materials({"*": {"diffuse": [0.1, 0.1, 0.1]}})
+    assert one != other
+
+
+@pytest.mark.parametrize("protocol", PROTOCOLS)
+@pytest.mark.parametrize("kind", TRAJECTORIES)
+def test_a_trajectory_comes_back_the_same(kind, protocol):
+    one = TRAJECTORIES[kind]()
+    back = again(one, protocol)
+    times = np.linspace(-5, 50, 333)
+    assert back == one
+    assert hash(back) == hash(one)
+    assert back.poses_at(times).tobytes() == one.poses_at(times).tobytes()
+    assert one != TRAJECTORIES["spin" if kind != "spin" else "constant"]()
+    assert copy.copy(one) is one
+    assert copy.deepcopy(one) is one
+
+
+@pytest.mark.parametrize("protocol", PROTOCOLS)
+def test_a_frame_comes_back_the_same_and_does_all_that_it_did(built, noisy, tmp_path, protocol):
+    frame = glidar.simulate(built, noisy, seed=9, frame=4, columns="all", sensor_id=2)
+    back = again(frame, protocol)
+    assert back == frame
+    assert hash(back) == hash(frame)
+    assert (back.seed, back.number, back.sensor_id, back.stamp_ns) == (9, 4, 2, frame.stamp_ns)
+    assert back.truth.normal.tobytes() == frame.truth.normal.tobytes()
+    assert back.cloud("all", frame="world") == frame.cloud("all", frame="world")
+    assert str(back.explain(100)) == str(frame.explain(100))
+    assert np.array_equal(back.information().matrix, frame.information().matrix)
+    for one, name in ((frame, "one.npz"), (back, "two.npz")):
+        one.save(tmp_path / name, columns="all", sidecar=False)
+    assert (tmp_path / "one.npz").read_bytes() == (tmp_path / "two.npz").read_bytes()
+
+
+def test_a_frame_of_moving_things_comes_back_the_same(asteroid):
+    drive = glidar.Trajectory.timed([0, 1], np.stack([glidar.pose([-4, 0, 0]), glidar.pose([-3, 0, 0])]))
+    spin = glidar.Trajectory.spin(np.eye(4), [0, 0, 2])
+    frame = glidar.simulate(asteroid, "VLP-16", drive, objects=[spin], columns="all")
+    back = again(frame)
+    assert back == frame
+    assert back.cloud(["xyz"], deskew=True) == frame.cloud(["xyz"], deskew=True)
+    assert str(back.explain(0, hits_only=True)) == str(frame.explain(0, hits_only=True))
+
+
+def test_a_frame_from_a_pickle_reads_its_scene_when_it_needs_it(tmp_path, camera):
+    model = tmp_path / "one.obj"
+    model.write_text("v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n")
+    frame = glidar.simulate(glidar.Scene(model), camera, glidar.look_at([0, 0, 5], [0, 0, 0], [0, 1, 0]))
+    stored = pickle.dumps(frame)
+    model.unlink()
+    back = pickle.loads(stored)
+    assert np.array_equal(back.range_m, frame.range_m, equal_nan=True)
+    with pytest.raises(glidar.Error, match="which is not there"):
+        back.cloud()
+
+
+def test_a_frame_takes_the_scene_that_it_saw_with_it(built, camera):
+    scene = copy.copy(built)
+    frames = []
+    for k in range(3):
+        scene["sphere"].pose = glidar.pose([3, 0, 0.1 * k])
+        frames.append(glidar.simulate(scene, camera, glidar.look_at([9, 0, 1], [3, 0, 0]), columns="all"))
+    scene["sphere"].class_name = "late"
+    stored = [pickle.dumps(frame) for frame in frames]
+    for frame, text in zip(frames, stored, strict=True):
+        back = pickle.loads(text)
+        assert back.cloud("all", frame="world") == frame.cloud("all", frame="world")
+        assert str(back.explain(1000)) == str(frame.explain(1000))
+
+
+def test_frames_with_one_number_apart_are_not_equal(asteroid, noisy):
+    pose = glidar.look_at([5, 0, 0], [0, 0, 0])
+    frame = glidar.simulate(asteroid, noisy, pose, seed=1)
+    assert frame == glidar.simulate(asteroid, noisy, pose, seed=1)
+    assert frame != glidar.simulate(asteroid, noisy, pose, seed=2)
+    assert frame != glidar.simulate(asteroid, noisy, pose, seed=1, columns=["xyz"])
+    assert copy.copy(frame) is frame
+    assert copy.deepcopy(frame) is frame
+
+
+@pytest.mark.parametrize("hits_only", [False, True])
+def test_a_cloud_comes_back_the_same(asteroid, camera, hits_only):
+    cloud = glidar.simulate(asteroid, camera).cloud(["xyz", "intensity", "status"], hits_only=hits_only, frame="world")
+    for protocol in PROTOCOLS:
+        back = again(cloud, protocol)
+        assert back == cloud
+        assert list(back) == list(cloud)
+        assert (back.frame_id, back.points) == (cloud.frame_id, cloud.points)
+    shallow, deep = copy.copy(cloud), copy.deepcopy(cloud)
+    assert np.shares_memory(shallow["xyz"], cloud["xyz"])
+    deep["intensity"][0] = 7
+    assert deep != cloud
+    assert back == cloud
+
+
+def test_large_arrays_go_out_of_band(asteroid, noisy):
+    frame = glidar.simulate(asteroid, noisy, columns="all")
+    for value in (frame, frame.cloud("all")):
+        buffers = []
+        stored = pickle.dumps(value, protocol=5, buffer_callback=buffers.append)
+        outside = sum(len(b.raw()) for b in buffers)
+        assert outside > 10 * noisy.rows * noisy.cols
+        assert pickle.loads(stored, buffers=[bytes(b.raw()) for b in buffers]) == value
+
+
+def test_small_values_come_back_the_same(built, camera):
+    frame = glidar.simulate(built, camera)
+    mesh = built["first"].mesh
+    assert again(mesh) == mesh
+    assert mesh != built["sphere"].mesh
+    with pytest.raises(TypeError):
+        hash(mesh)
+    assert np.array_equal(again(frame.truth).range_m, frame.truth.range_m, equal_nan=True)
+    assert str(again(frame.explain(5))) == str(frame.explain(5))
+    assert again(glidar.Status.hit) is glidar.Status.hit
+    first = built["first"]
+    assert first == built["first"]
+    assert first != built["second"]
+    assert hash(first) == hash(built["first"])
+    moved = copy.deepcopy(first)
+    assert moved.name == "first"
+    assert moved != first
+
+
+def test_a_simulator_says_that_it_cannot_be_pickled_and_what_to_do(asteroid, camera):
+    simulator = glidar.Simulator(asteroid, camera)
+    for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
+        with pytest.raises(glidar.Error, match="cannot be pickled; pickle its scene and its sensor"):
+            pickle.dumps(simulator, protocol)
+    assert copy.copy(simulator) is simulator
+    assert copy.deepcopy(simulator) is simulator
