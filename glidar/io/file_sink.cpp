@@ -74,6 +74,14 @@ const std::vector<Format>& formats() {
        Content::per_beam,
        no_fields,
        write_transform},
+      {{".bev.png", "picture of the cloud from above", cloud_picture_columns(), false},
+       Content::per_beam,
+       no_fields,
+       write_bird_eye},
+      {{".view.png", "picture of the cloud in perspective", cloud_picture_columns(), false},
+       Content::per_beam,
+       no_fields,
+       write_perspective},
   };
   return kFormats;
 }
@@ -165,6 +173,14 @@ void check_needed_columns(const FileFormat& format, const PointCloud& cloud,
   }
 }
 
+void check_picture_size(const CloudPictureOptions& options) {
+  for (const std::uint32_t side : {options.width, options.height}) {
+    if (side >= kMinPictureSide && side <= kMaxPictureSide) continue;
+    throw Error({"picture size", fmt::format("{} x {} pixels", options.width, options.height),
+                 fmt::format("sides from {} to {}", kMinPictureSide, kMaxPictureSide), ""});
+  }
+}
+
 class FileSink : public CloudSink {
  public:
   FileSink(std::filesystem::path path, const Format& format, const FileSinkOptions& options,
@@ -232,6 +248,12 @@ class FileSink : public CloudSink {
 
 }  // namespace
 
+std::span<const std::string> colour_by_names() {
+  static const std::vector<std::string> kNames = {"height", "range", "intensity",
+                                                  "ring",   "class", "instance"};
+  return kNames;
+}
+
 std::span<const FileFormat> file_formats() {
   static const std::vector<FileFormat> kTold = [] {
     std::vector<FileFormat> told;
@@ -255,6 +277,7 @@ std::unique_ptr<CloudSink> make_file_sink(const std::filesystem::path& path,
     throw Error({"depth_png_units_per_m", fmt::format("{}", options.depth_png_units_per_m),
                  "a number above 0", "1000 for millimetres"});
   }
+  check_picture_size(options.picture);
   return std::make_unique<FileSink>(path, format, options, context, std::move(report));
 }
 

@@ -106,6 +106,16 @@ inline void add_scan_columns(PointCloud& cloud) {
   });
 }
 
+/// What pictures of clouds need besides.
+inline void add_picture_columns(PointCloud& cloud) {
+  add_column<double>(cloud, "range", {"range"}, [](std::size_t i, std::size_t) {
+    return is_miss(i) ? std::nan("") : 1.0 + static_cast<double>(i);
+  });
+  add_column<std::uint32_t>(cloud, "class", {"class"}, [](std::size_t i, std::size_t) {
+    return is_miss(i) ? kNoHit : static_cast<std::uint32_t>(i % 2);
+  });
+}
+
 inline void set_frame(CloudFixture& made) {
   Frame& frame = made.frame;
   const std::size_t count = std::size_t{made.rows} * made.cols;

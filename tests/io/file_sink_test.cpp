@@ -31,10 +31,10 @@ TEST(FileFormats, TheLongestSuffixWins) {
 
 TEST(FileFormats, AnUnknownSuffixTellsAllAndTheNearest) {
   const std::string text = error_text([] { format_for("a.pdc"); });
-  EXPECT_THAT(
-      text,
-      AllOf(HasSubstr("no format has the suffix .pdc"), HasSubstr("did you mean .pcd?"),
-            HasSubstr(".pcd .ply .npz .csv .bin .npy .depth.png .paper.png .png .transform")));
+  EXPECT_THAT(text,
+              AllOf(HasSubstr("no format has the suffix .pdc"), HasSubstr("did you mean .pcd?"),
+                    HasSubstr(".pcd .ply .npz .csv .bin .npy .depth.png .paper.png .png .transform "
+                              ".bev.png .view.png")));
   EXPECT_THAT(error_text([] { format_for("cloud"); }), HasSubstr("the name has no suffix"));
   EXPECT_THAT(error_text([] { format_for("out/.pcd"); }), HasSubstr("the name has no suffix"));
 }
@@ -62,9 +62,13 @@ TEST(FileSink, WritesCloudAndSidecarAndNothingElse) {
 
 TEST(FileSink, ImagesAndPosesHaveNoSidecar) {
   const testing::TestFolder folder;
-  for (const char* name : {"a.npy", "a.png", "a.depth.png", "a.paper.png", "a.transform"})
-    write_cloud(make_fixture(), folder / name);
-  EXPECT_EQ(folder.names().size(), 5U);
+  for (const char* name :
+       {"a.npy", "a.png", "a.depth.png", "a.paper.png", "a.transform", "a.bev.png", "a.view.png"}) {
+    CloudFixture made = make_fixture();
+    fixture::add_picture_columns(made.cloud);
+    write_cloud(made, folder / name);
+  }
+  EXPECT_EQ(folder.names().size(), 7U);
 }
 
 TEST(FileSink, TheSidecarCanBeLeftOut) {
@@ -113,8 +117,10 @@ TEST(FileSink, AnErrorLeavesTheOldFilesAsTheyWere) {
 
 TEST(FileSink, TheSameCloudGivesTheSameBytesInEveryFormat) {
   const testing::TestFolder folder;
-  const CloudFixture made = make_fixture(60, 70);
-  const CloudFixture other = make_fixture(31, 17);
+  CloudFixture made = make_fixture(60, 70);
+  CloudFixture other = make_fixture(31, 17);
+  fixture::add_picture_columns(made.cloud);
+  fixture::add_picture_columns(other.cloud);
   FileSinkOptions options;
   options.pcd = PcdEncoding::binary_compressed;
   for (const FileFormat& format : file_formats()) {

@@ -38,7 +38,10 @@ void write_all(const CloudFixture& made, const std::filesystem::path& folder) {
   ascii.ply_ascii = true;
   FileSinkOptions compressed;
   compressed.pcd = PcdEncoding::binary_compressed;
-  for (const FileFormat& format : file_formats()) write_cloud(made, folder / ("a" + format.suffix));
+  CloudFixture pictured = made;
+  fixture::add_picture_columns(pictured.cloud);
+  for (const FileFormat& format : file_formats())
+    write_cloud(format.takes_more ? made : pictured, folder / ("a" + format.suffix));
   write_layouts(made, folder);
   write_cloud(made, folder / "ascii.pcd", ascii);
   write_cloud(made, folder / "ascii.ply", ascii);
