@@ -80,22 +80,6 @@ std::vector<std::string> columns_of(const FileFormat& format,
   return columns;
 }
 
-FileSinkOptions sink_options(const OutputFlags& flags) {
-  FileSinkOptions options;
-  options.pcd = flags.pcd_encoding == "ascii"    ? PcdEncoding::ascii
-                : flags.pcd_encoding == "binary" ? PcdEncoding::binary
-                                                 : PcdEncoding::binary_compressed;
-  options.ply_ascii = flags.ply_ascii;
-  options.dense = flags.dense;
-  options.layout = flags.layout;
-  options.sidecar = !flags.no_sidecar;
-  const double scale = flags.depth_scale.value_or(options.depth_png_units_per_m);
-  require(scale > 0.0 && std::isfinite(scale), "--depth-scale", scale, "a finite number above 0");
-  options.depth_png_units_per_m = scale;
-  options.picture = picture_options(flags);
-  return options;
-}
-
 /// "WxH" in pixels.
 std::array<std::uint32_t, 2> parse_size(std::string_view option, const std::string& text) {
   std::array<std::uint32_t, 2> size = {};
@@ -128,6 +112,22 @@ CloudPictureOptions picture_options(const OutputFlags& flags) {
   if (!flags.view_eye.empty()) options.eye_m = parse_vector("--view-eye", flags.view_eye);
   if (!flags.view_target.empty())
     options.target_m = parse_vector("--view-target", flags.view_target);
+  return options;
+}
+
+FileSinkOptions sink_options(const OutputFlags& flags) {
+  FileSinkOptions options;
+  options.pcd = flags.pcd_encoding == "ascii"    ? PcdEncoding::ascii
+                : flags.pcd_encoding == "binary" ? PcdEncoding::binary
+                                                 : PcdEncoding::binary_compressed;
+  options.ply_ascii = flags.ply_ascii;
+  options.dense = flags.dense;
+  options.layout = flags.layout;
+  options.sidecar = !flags.no_sidecar;
+  const double scale = flags.depth_scale.value_or(options.depth_png_units_per_m);
+  require(scale > 0.0 && std::isfinite(scale), "--depth-scale", scale, "a finite number above 0");
+  options.depth_png_units_per_m = scale;
+  options.picture = picture_options(flags);
   return options;
 }
 

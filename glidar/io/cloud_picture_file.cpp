@@ -130,6 +130,7 @@ void draw_note(Picture& picture, const Layout& layout, const std::string& note) 
 }
 
 std::string outside_text(const PointImage& image, std::size_t points) {
+  if (points == 0) return "no returns";
   if (image.outside == 0) return "";
   return fmt::format("{} of {} points are outside", image.outside, points);
 }
@@ -240,7 +241,9 @@ Picture draw_view(const CloudFile& job) {
                  0.0, 0.0},
                 0.7 * layout.letters);
   }
-  draw_note(picture, layout, fmt::format("grid {} m", scale_number(grid.step_m, grid.step_m)));
+  const std::string nothing = scene.shown.points_m.empty() ? ", no returns" : "";
+  draw_note(picture, layout,
+            fmt::format("grid {} m{}", scale_number(grid.step_m, grid.step_m), nothing));
   draw_key(picture, layout, scene.colours);
   return picture;
 }

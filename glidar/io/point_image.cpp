@@ -55,7 +55,7 @@ bool is_within(const PointImage& image, double x, double y) {
 
 /// The middle part of the points along an axis.
 std::array<double, 2> middle_of(std::span<const Eigen::Vector3d> points_m, Eigen::Index axis) {
-  constexpr double kLeftOut = 0.08;  // at each end
+  constexpr double kLeftOut = 0.05;  // at each end
   std::vector<double> values;
   values.reserve(points_m.size());
   for (const Eigen::Vector3d& point : points_m) values.push_back(point[axis]);
@@ -96,9 +96,9 @@ TopView fit_top_view(std::span<const Eigen::Vector3d> points_m, const Eigen::Vec
   const Eigen::Vector2d low(std::min(across.low, also_m.x()), std::min(upright.low, also_m.y()));
   const Eigen::Vector2d high(std::max(across.high, also_m.x()), std::max(upright.high, also_m.y()));
   constexpr double kMargin = 1.04;
-  constexpr double kLeast_m = 1e-3;
+  const double least_m = points_m.empty() ? 2.0 : 0.1;
   const double width =
-      std::max({kMargin * (high.x() - low.x()), kMargin * shape * (high.y() - low.y()), kLeast_m});
+      std::max({kMargin * (high.x() - low.x()), kMargin * shape * (high.y() - low.y()), least_m});
   const Eigen::Vector2d middle = 0.5 * (low + high);
   const Eigen::Vector2d half(0.5 * width, 0.5 * width / shape);
   return {middle.x() - half.x(), middle.x() + half.x(), middle.y() - half.y(),
@@ -156,13 +156,16 @@ Perspective fit_perspective(std::span<const Eigen::Vector3d> points_m, std::size
         std::max({distance_m, std::abs(axes.right.dot(corner)) / (shape * kHalfView) - along,
                   std::abs(axes.down.dot(corner)) / kHalfView - along});
   }
-  return {box.center() - distance_m * ahead, box.center(), width, height};
+  constexpr double kMargin = 1.08;  // for points about the box and the size of dots
+  return {box.center() - kMargin * distance_m * ahead, box.center(), width, height};
 }
 
 PointImage draw_perspective(std::span<const Eigen::Vector3d> points_m, const Perspective& view) {
   PointImage image = make_image(view.width, view.height);
   const double typical_m = (view.target_m - view.eye_m).norm();
-  const double side = std::clamp(dot_side(image, points_m.size(), 0.3), 1.5, 4.0);
+  const double even = dot_side(image, points_m.size(), 0.3);
+  const double side = std::clamp(even, 1.5, 4.0);
+  const double smallest = even < 1.0 ? 1.0 : 2.0;  // dense clouds need no dots to be seen
   constexpr double kLargest = 7.0;
   for (std::size_t i = 0; i < points_m.size(); ++i) {
     const Eigen::Vector3d place = view.project(points_m[i]);
@@ -170,7 +173,7 @@ PointImage draw_perspective(std::span<const Eigen::Vector3d> points_m, const Per
       ++image.outside;
       continue;
     }
-    const double size = std::clamp(side * typical_m / place.z(), 1.0, kLargest);
+    const double size = std::clamp(side * typical_m / place.z(), smallest, kLargest);
     draw_dot(image, {place.x(), place.y(), place.z(), std::lround(size)},
              static_cast<std::uint32_t>(i));
   }
@@ -180,6 +183,7 @@ PointImage draw_perspective(std::span<const Eigen::Vector3d> points_m, const Per
 std::vector<double> shade_edges(const PointImage& image) {
   constexpr double kStrength = 12.0;
   constexpr double kDarkest = 0.35;
+  constexpr double kSteps = 16.0;  // finer ones are not seen, but make files nearly twice as large
   const auto width = static_cast<std::int64_t>(image.width);
   const auto height = static_cast<std::int64_t>(image.height);
   const std::int64_t reach = std::max<std::int64_t>(1, width / 1000);
@@ -198,7 +202,8 @@ std::vector<double> shade_edges(const PointImage& image) {
       if (std::isinf(before)) continue;
       sum += std::max(0.0, std::log2(image.depths[pixel] / before));
     }
-    shades[pixel] = kDarkest + (1.0 - kDarkest) * std::exp(-kStrength * sum);
+    const double shade = kDarkest + (1.0 - kDarkest) * std::exp(-kStrength * sum);
+    shades[pixel] = std::round(kSteps * shade) / kSteps;
   }
   return shades;
 }
