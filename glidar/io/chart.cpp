@@ -246,9 +246,10 @@ void draw_legend(Picture& picture, const Box& place, const std::vector<LegendEnt
   const double left =
       static_cast<double>(place.x) + std::max(0.0, 0.5 * (static_cast<double>(place.width) - used));
   for (std::size_t i = 0; i < entries.size(); ++i) {
+    const std::size_t row = i / columns.count;
     const double x = left + columns.width * static_cast<double>(i % columns.count);
     const double y = static_cast<double>(place.y) +
-                     legend_entry_height(size_px) * (0.5 + static_cast<double>(i / columns.count));
+                     legend_entry_height(size_px) * (0.5 + static_cast<double>(row));
     fill(picture, {whole(x), whole(y - 0.5 * static_cast<double>(patch)), patch, patch},
          entries[i].colour);
     draw_text(picture, {x + 1.3 * size_px, y, Align::left}, entries[i].text, {size_px, kInk});

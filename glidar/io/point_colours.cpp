@@ -91,23 +91,21 @@ std::vector<LegendEntry> legend_of(const std::map<std::uint32_t, std::size_t>& c
   return legend;
 }
 
+/// What a number of the column stands for.
+LegendEntry entry_of(const Scene& scene, std::uint32_t number, bool is_class) {
+  if (number == kNoHit) return {kNothing, "no object"};
+  if (!is_class) return {category_colour(number), instance_name(scene, number)};
+  // number 0 is what has no class
+  return {number == 0 ? kNothing : category_colour(number - 1), class_name(scene, number)};
+}
+
 PointColours colour_by_number(const CloudFile& job, const ShownPoints& shown, bool is_class) {
-  const Scene& scene = job.context.scene;
   std::map<std::uint32_t, std::size_t> counts;
   std::map<std::uint32_t, LegendEntry> entries;
   PointColours result;
   for (const double value : numbers_of(job, shown, is_class ? "class" : "instance")) {
     const auto number = static_cast<std::uint32_t>(value);
-    if (counts[number]++ == 0) {
-      if (number == kNoHit) {
-        entries[number] = {kNothing, "no object"};
-      } else if (is_class) {  // number 0 is what has no class
-        entries[number] = {number == 0 ? kNothing : category_colour(number - 1),
-                           class_name(scene, number)};
-      } else {
-        entries[number] = {category_colour(number), instance_name(scene, number)};
-      }
-    }
+    if (counts[number]++ == 0) entries[number] = entry_of(job.context.scene, number, is_class);
     result.colours.push_back(entries[number].colour);
   }
   result.legend = legend_of(counts, entries);

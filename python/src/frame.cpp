@@ -19,6 +19,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <numeric>
 #include <span>
 
 namespace glidar::python {
@@ -227,20 +228,19 @@ std::vector<std::string> known_colours() {
 
 ColourScale scale_of(const nb::ndarray<const double, nb::ndim<1>, nb::c_contig>& values,
                      bool from_zero) {
-  return make_colour_scale(
-      std::span(values.data(), values.size()),
-      from_zero ? ColourScale::Start::zero : ColourScale::Start::lowest);
+  return make_colour_scale(std::span(values.data(), values.size()),
+                           from_zero ? ColourScale::Start::zero : ColourScale::Start::lowest);
 }
 
 /// The picture's beams as rows x cols, 0xFFFFFFFF where there is none.
 nb::object shown_beams(nb::handle self) {
   auto& picture = nb::cast<BeamPicture&>(self);
   if (picture.beams.empty()) {
-    const std::size_t pixels = std::size_t{picture.rows} * picture.cols;
-    for (std::size_t i = 0; i < pixels; ++i) picture.beams.push_back(picture.beam_at(i));
+    picture.beams.resize(std::size_t{picture.rows} * picture.cols);
+    std::iota(picture.beams.begin(), picture.beams.end(), picture.first);
   }
-  return nb::cast(array_at(picture.beams.data(),
-                           std::array<std::size_t, 2>{picture.rows, picture.cols}, self));
+  return nb::cast(
+      array_at(picture.beams.data(), std::array<std::size_t, 2>{picture.rows, picture.cols}, self));
 }
 
 void bind_pictures(nb::module_& module) {
@@ -250,10 +250,13 @@ void bind_pictures(nb::module_& module) {
       .def_ro("clips_low", &ColourScale::clips_low)
       .def_ro("clips_high", &ColourScale::clips_high)
       .def_ro("has_values", &ColourScale::has_values)
-      .def("ends", [](const ColourScale& self, const std::string& unit) {
-        const auto [low, high] = scale_ends(self, unit);
-        return std::vector<std::string>{low, high};
-      }, nb::arg("unit"));
+      .def(
+          "ends",
+          [](const ColourScale& self, const std::string& unit) {
+            const auto [low, high] = scale_ends(self, unit);
+            return std::vector<std::string>{low, high};
+          },
+          nb::arg("unit"));
   module.def("colour_scale", scale_of, nb::arg("values"), nb::arg("from_zero"),
              nb::sig("def colour_scale(values: numpy.ndarray, from_zero: bool) -> ColourScale"));
   module.def("colour_by_names", known_colours);

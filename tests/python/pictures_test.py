@@ -85,7 +85,7 @@ def test_the_scale_is_what_the_percentiles_say(from_zero):
 
 
 def test_lidars_are_shown_upright_by_angle(asteroid):
-    frame = glidar.simulate("builtin:box", "OS1-32", np.eye(4), seed=1)
+    frame = glidar.simulate(glidar.Scene("builtin:box"), "OS1-32", np.eye(4), seed=1)
     figure = frame.show()
     assert [axis.get_title() for axis in figure.axes[:2]] == ["range, m", "intensity"]
     assert "azimuth" in figure.axes[0].get_xlabel()
@@ -97,14 +97,14 @@ def test_lidars_are_shown_upright_by_angle(asteroid):
 
 
 def test_scanners_of_one_line_are_shown_from_above():
-    figure = glidar.simulate("builtin:box", "TiM781", np.eye(4)).show()
+    figure = glidar.simulate(glidar.Scene("builtin:box"), "TiM781", np.eye(4)).show()
     assert figure.axes[0].get_xlabel() == "x, m"
     assert np.isfinite(pixels_of(figure, 0)).any()
 
 
 @pytest.mark.parametrize("colour_by", ["height", "range", "intensity", "ring", "class", "instance"])
 def test_clouds_have_pictures_from_above_and_in_perspective(colour_by, tmp_path):
-    frame = glidar.simulate("builtin:box", "VLP-16", np.eye(4))
+    frame = glidar.simulate(glidar.Scene("builtin:box"), "VLP-16", np.eye(4))
     for picture in (
         frame.bird_eye(colour_by=colour_by, size=(400, 300)),
         frame.perspective(colour_by=colour_by, size=(400, 300), eye=[-3, 0, 4], target=[0, 0, 0]),
