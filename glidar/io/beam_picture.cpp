@@ -50,26 +50,30 @@ std::int64_t dot_pixels(const BeamPicture& picture, std::size_t beams) {
   return std::lround(std::clamp(1.2 * std::sqrt(share), kSmallest, kLargest));
 }
 
-/// Fills a dot around every mark, the farthest first, so that the nearest stays visible.
+/// A square of pixels from its left and top, as far as it is inside.
+void fill_dot(BeamPicture& picture, std::int64_t left, std::int64_t top, std::int64_t dot,
+              std::uint32_t beam) {
+  const auto cols = static_cast<std::int64_t>(picture.cols);
+  const auto rows = static_cast<std::int64_t>(picture.rows);
+  for (std::int64_t row = std::max<std::int64_t>(top, 0); row < std::min(top + dot, rows); ++row) {
+    const std::int64_t begin = std::max<std::int64_t>(left, 0);
+    const std::int64_t end = std::min(left + dot, cols);
+    for (std::int64_t col = begin; col < end; ++col)
+      picture.beams[static_cast<std::size_t>(row * cols + col)] = beam;
+  }
+}
+
+/// A dot around every mark, the farthest first, so that the nearest stays visible.
 void draw_marks(BeamPicture& picture, std::vector<Mark>& marks, std::int64_t dot) {
   std::stable_sort(marks.begin(), marks.end(),
                    [](const Mark& a, const Mark& b) { return a.range_m > b.range_m; });
-  const auto cols = static_cast<std::int64_t>(picture.cols);
-  const auto rows = static_cast<std::int64_t>(picture.rows);
   for (const Mark& mark : marks) {
     const double x = (mark.across - picture.left) / (picture.right - picture.left);
     const double y = (picture.top - mark.up) / (picture.top - picture.bottom);
     const bool is_inside = x >= 0.0 && x <= 1.0 && y >= 0.0 && y <= 1.0;
     if (!is_inside) continue;
-    const auto left = static_cast<std::int64_t>(x * static_cast<double>(cols)) - dot / 2;
-    const auto top = static_cast<std::int64_t>(y * static_cast<double>(rows)) - dot / 2;
-    for (std::int64_t row = std::max<std::int64_t>(top, 0); row < std::min(top + dot, rows);
-         ++row) {
-      for (std::int64_t col = std::max<std::int64_t>(left, 0); col < std::min(left + dot, cols);
-           ++col) {
-        picture.beams[static_cast<std::size_t>(row * cols + col)] = mark.beam;
-      }
-    }
+    fill_dot(picture, static_cast<std::int64_t>(x * picture.cols) - dot / 2,
+             static_cast<std::int64_t>(y * picture.rows) - dot / 2, dot, mark.beam);
   }
 }
 
