@@ -28,3 +28,24 @@ std::string_view @function@(std::string_view file) {
 ]])
   set(${output} ${path} PARENT_SCOPE)
 endfunction()
+
+# glidar_embed_bytes(OUTPUT_VARIABLE HEADER FUNCTION FILE): likewise for the bytes of one file.
+function(glidar_embed_bytes output header function file)
+  file(READ ${file} bytes HEX)
+  string(REGEX REPLACE "(..)" "0x\\1," bytes ${bytes})
+  string(REGEX REPLACE "(................................................................................)"
+                       "\\1\n" bytes ${bytes})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${file})
+  string(REPLACE "::" "_" stem ${function})
+  set(path ${CMAKE_CURRENT_BINARY_DIR}/${stem}.cpp)
+  file(CONFIGURE OUTPUT ${path} @ONLY CONTENT [[
+#include <@header@>
+
+std::span<const unsigned char> @function@() {
+  static constexpr unsigned char kBytes[] = {
+@bytes@};
+  return kBytes;
+}
+]])
+  set(${output} ${path} PARENT_SCOPE)
+endfunction()

@@ -8,8 +8,9 @@ from pathlib import Path
 
 from modelmaker.asteroid import make_asteroid
 from modelmaker.satellite import make_satellite
+from modelmaker.street import make_street
 
-MAKERS = {"asteroid": make_asteroid, "satellite": make_satellite}
+MAKERS = {"asteroid": make_asteroid, "satellite": make_satellite, "street": make_street}
 
 
 def main():

@@ -31,6 +31,10 @@ struct OutputFlags {
   bool ply_ascii = false;
   bool no_sidecar = false;
   std::optional<double> depth_scale;
+  std::string colour_by = "height";
+  std::string picture_size;  ///< WxH; empty: not given
+  std::string view_eye;      ///< X,Y,Z; empty: not given
+  std::string view_target;
 
   bool operator==(const OutputFlags&) const = default;
 };

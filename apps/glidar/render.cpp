@@ -24,6 +24,7 @@ constexpr const char* kExamples = R"(Examples:
   glidar render builtin:torus --fx 500 --cx 300 --cy 250 -w 640 --height 480 -o torus.depth.png
   glidar render builtin:sphere --columns all -o sphere.npz
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --columns all -o room.pcd -o room.png
+  glidar render builtin:box --sensor OS1-128 --eye 0,0,0 --colour-by range -o room.bev.png
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --layout velodyne --dense -o scan.pcd
   glidar render builtin:box --sensor OS1-32 --eye 0,0,0 --camera-dr 0,1,0 --duration 1 -o scan.pcd
   glidar render builtin:box -o - --format csv | head -3

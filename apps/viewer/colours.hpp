@@ -17,10 +17,4 @@ inline constexpr std::array<std::string_view, 3> kColourMaps = {"viridis", "rain
 /// Of a number from 0 (dark, or blue) to 1 (bright, or red); what lies outside counts as the end.
 Colour colour_of(ColourMap map, double t);
 
-/// The colour of a hue from 0 to 1: red, yellow, green, cyan, blue, magenta, red.
-Colour hue(double turn);
-
-/// Neighbouring numbers get colours far apart: hues a golden section of the circle apart.
-Colour colour_of_number(std::uint32_t number);
-
 }  // namespace glidar::app

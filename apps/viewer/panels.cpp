@@ -210,7 +210,8 @@ void show_entry(const LegendEntry& entry, bool is_last) {
 
 /// The colour map between the ends of the scale.
 void show_scale(const Look& look, const SensorPicture& picture) {
-  text(fmt::format("{:.5g}", picture.low));
+  const auto [low, high] = scale_ends(picture.scale, unit_of(look.quantity));
+  text(low);
   ImGui::SameLine();
   constexpr int kSteps = 64;
   const float height = ImGui::GetTextLineHeight();
@@ -226,7 +227,7 @@ void show_scale(const Look& look, const SensorPicture& picture) {
   }
   ImGui::Dummy(ImVec2(width * kSteps, height));
   ImGui::SameLine();
-  text(fmt::format("{:.5g} {}", picture.high, unit_of(look.quantity)));
+  text(high);
 }
 
 }  // namespace
@@ -276,7 +277,7 @@ void show_legend(const Viewer& viewer) {
   if (!has_scale(viewer.look.quantity)) {
     for (const LegendEntry& entry : picture.legend)
       show_entry(entry, &entry == &picture.legend.back());
-  } else if (picture.low > picture.high) {
+  } else if (!picture.scale.has_values) {
     text("no returns");
   } else {
     show_scale(viewer.look, picture);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace glidar::app {
@@ -55,16 +56,25 @@ Eigen::Vector2d dragged(ImGuiMouseButton button) {
   return {by.x / height, by.y / height};
 }
 
-/// Where the sensor's picture lies: as large as fits; a camera's pixels are square, a scanner's
-/// rows are as high as they must be for its picture to be seen.
-Area fitted(const Beams& beams, const ImVec2& corner, const ImVec2& room) {
-  const float cols = std::max<float>(1.0F, static_cast<float>(beams.cols));
-  const float rows = std::max<float>(1.0F, static_cast<float>(beams.rows));
+/// Where the sensor's picture is: as large as fits; a scanner's rows are as high as they must be for
+/// its picture to be seen, other pixels are square.
+Area fitted(const BeamPicture& layout, const ImVec2& corner, const ImVec2& room) {
+  const float cols = std::max<float>(1.0F, static_cast<float>(layout.cols));
+  const float rows = std::max<float>(1.0F, static_cast<float>(layout.rows));
   constexpr float kWidest = 2.5F;  // times as wide as high
-  const float shape = beams.pinhole ? cols / rows : std::clamp(cols / rows, 0.5F, kWidest);
+  const bool is_grid = layout.kind == BeamPicture::Kind::grid;
+  const float shape = is_grid ? std::clamp(cols / rows, 0.5F, kWidest) : cols / rows;
   const float width = std::max(1.0F, std::min(room.x, room.y * shape));
   const float height = width / shape;
   return {corner.x + 0.5F * (room.x - width), corner.y + 0.5F * (room.y - height), width, height};
+}
+
+/// A pixel that shows the beam; empty: none does.
+std::optional<std::size_t> pixel_of(const BeamPicture& layout, std::size_t beam) {
+  if (layout.beams.empty()) return beam - layout.first;
+  const auto found = std::find(layout.beams.begin(), layout.beams.end(), beam);
+  if (found == layout.beams.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - layout.beams.begin());
 }
 
 ImTextureID texture_id(GLuint name) {
@@ -77,23 +87,25 @@ ImTextureID texture_id(GLuint name) {
 void Screen::upload(const Viewer& viewer) {
   if (uploaded_ == viewer.version() || viewer.shot() == nullptr) return;
   uploaded_ = viewer.version();
-  upload_picture(*viewer.shot()->beams, viewer.picture().colours);
+  upload_picture(viewer.picture());
   upload_points(viewer);
   cloud_.set_lines(viewer.guides());
 }
 
-void Screen::upload_picture(const Beams& beams, const std::vector<Colour>& colours) {
+void Screen::upload_picture(const SensorPicture& picture) {
   constexpr std::size_t kMost = 4096;  // pixels to a side that every device takes
-  const std::size_t step_x = std::max<std::size_t>(1, (beams.cols + kMost - 1) / kMost);
-  const std::size_t step_y = std::max<std::size_t>(1, (beams.rows + kMost - 1) / kMost);
+  const BeamPicture& layout = picture.layout;
+  const std::size_t step_x = std::max<std::size_t>(1, (layout.cols + kMost - 1) / kMost);
+  const std::size_t step_y = std::max<std::size_t>(1, (layout.rows + kMost - 1) / kMost);
   std::vector<Colour> thinned;
-  for (std::size_t row = 0; row < beams.rows; row += step_y) {
-    for (std::size_t col = 0; col < beams.cols; col += step_x) {
-      thinned.push_back(colours[row * beams.cols + col]);
+  for (std::size_t row = 0; row < layout.rows; row += step_y) {
+    for (std::size_t col = 0; col < layout.cols; col += step_x) {
+      const std::uint32_t beam = layout.beam_at(row * layout.cols + col);
+      thinned.push_back(beam == BeamPicture::kNoBeam ? kPlotGround : picture.colours[beam]);
     }
   }
-  const auto width = static_cast<GLsizei>((beams.cols + step_x - 1) / step_x);
-  const auto height = static_cast<GLsizei>((beams.rows + step_y - 1) / step_y);
+  const auto width = static_cast<GLsizei>((layout.cols + step_x - 1) / step_x);
+  const auto height = static_cast<GLsizei>((layout.rows + step_y - 1) / step_y);
   glBindTexture(GL_TEXTURE_2D, sensor_.name());
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, width, height, 0, GL_RGB, GL_UNSIGNED_BYTE,
@@ -133,11 +145,11 @@ void Screen::draw_cloud(const Viewer& viewer, int width, int height) {
 
 void Screen::show_sensor_view(Viewer& viewer) {
   if (viewer.shot() == nullptr) return;
-  const Beams& beams = *viewer.shot()->beams;
+  const BeamPicture& layout = viewer.picture().layout;
   ImVec2 room = ImGui::GetContentRegionAvail();
   room.y = std::max(1.0F, room.y - 2.0F * ImGui::GetTextLineHeightWithSpacing());
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const Area area = fitted(beams, corner, room);
+  const Area area = fitted(layout, corner, room);
   const ImVec2 first(area.x, area.y);
   const ImVec2 last(area.x + area.width, area.y + area.height);
   ImGui::SetCursorScreenPos(first);
@@ -145,12 +157,12 @@ void Screen::show_sensor_view(Viewer& viewer) {
   ImDrawList& draw = *ImGui::GetWindowDrawList();
   draw.AddImage(texture_id(sensor_.name()), first, last);
   use_mouse_on_sensor(viewer);
-  if (viewer.picked()) {
-    const auto col = static_cast<float>(*viewer.picked() % beams.cols);
-    const std::size_t whole_row = *viewer.picked() / beams.cols;
+  if (const auto pixel = viewer.picked() ? pixel_of(layout, *viewer.picked()) : std::nullopt) {
+    const auto col = static_cast<float>(*pixel % layout.cols);
+    const std::size_t whole_row = *pixel / layout.cols;
     const auto row = static_cast<float>(whole_row);
-    const float x = area.x + (col + 0.5F) * area.width / static_cast<float>(beams.cols);
-    const float y = area.y + (row + 0.5F) * area.height / static_cast<float>(beams.rows);
+    const float x = area.x + (col + 0.5F) * area.width / static_cast<float>(layout.cols);
+    const float y = area.y + (row + 0.5F) * area.height / static_cast<float>(layout.rows);
     draw.AddCircle(ImVec2(x, y), 7.0F, kMark, 0, 2.0F);
   }
   ImGui::SetCursorScreenPos(ImVec2(corner.x, corner.y + room.y));
@@ -164,14 +176,16 @@ void Screen::use_mouse_on_sensor(Viewer& viewer) {
     viewer.step_sensor(ImGui::GetIO().MouseWheel);
   }
   if (!is_clicked()) return;
-  const Beams& beams = *viewer.shot()->beams;
+  const BeamPicture& layout = viewer.picture().layout;
   const ImVec2 first = ImGui::GetItemRectMin();
   const ImVec2 size = ImGui::GetItemRectSize();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
-  const double col = std::floor((mouse.x - first.x) / size.x * static_cast<float>(beams.cols));
-  const double row = std::floor((mouse.y - first.y) / size.y * static_cast<float>(beams.rows));
-  if (col < 0.0 || row < 0.0 || col >= beams.cols || row >= beams.rows) return;
-  viewer.pick(static_cast<std::size_t>(row) * beams.cols + static_cast<std::size_t>(col));
+  const double col = std::floor((mouse.x - first.x) / size.x * static_cast<float>(layout.cols));
+  const double row = std::floor((mouse.y - first.y) / size.y * static_cast<float>(layout.rows));
+  if (col < 0.0 || row < 0.0 || col >= layout.cols || row >= layout.rows) return;
+  const std::uint32_t beam =
+      layout.beam_at(static_cast<std::size_t>(row) * layout.cols + static_cast<std::size_t>(col));
+  if (beam != BeamPicture::kNoBeam) viewer.pick(beam);
 }
 
 void Screen::show_cloud_view(Viewer& viewer) {

@@ -23,7 +23,7 @@ class Screen {
   void use_mouse_on_sensor(Viewer& viewer);
   void use_mouse_on_cloud(Viewer& viewer);
   void upload(const Viewer& viewer);
-  void upload_picture(const Beams& beams, const std::vector<Colour>& colours);
+  void upload_picture(const SensorPicture& picture);
   void upload_points(const Viewer& viewer);
   void draw_cloud(const Viewer& viewer, int width, int height);
 

@@ -10,8 +10,6 @@
 namespace glidar::app {
 namespace {
 
-constexpr Colour kNoReturn = {34, 34, 40};
-
 double value_of(const Frame& frame, const Beams& beams, Quantity quantity, std::size_t i) {
   if (frame.status[i] != Status::hit) return std::numeric_limits<double>::quiet_NaN();
   if (quantity == Quantity::intensity) return double{frame.intensity[i]};
@@ -23,22 +21,33 @@ void colour_by_scale(const Frame& frame, const Beams& beams, Quantity quantity, 
                      SensorPicture& picture) {
   const std::size_t size = frame.status.size();
   const bool is_near_bright = quantity != Quantity::intensity;
-  picture.low = std::numeric_limits<double>::infinity();
-  picture.high = -picture.low;
+  std::vector<double> values;
+  values.reserve(size);
+  for (std::size_t i = 0; i < size; ++i) values.push_back(value_of(frame, beams, quantity, i));
+  picture.scale =
+      make_colour_scale(values, quantity == Quantity::intensity ? ColourScale::Start::zero
+                                                                : ColourScale::Start::lowest);
   for (std::size_t i = 0; i < size; ++i) {
-    const double value = value_of(frame, beams, quantity, i);
-    if (std::isnan(value)) continue;
-    picture.low = std::min(picture.low, value);
-    picture.high = std::max(picture.high, value);
-  }
-  if (quantity == Quantity::intensity) picture.low = 0.0;
-  const double span = picture.high - picture.low;
-  for (std::size_t i = 0; i < size; ++i) {
-    const double value = value_of(frame, beams, quantity, i);
-    if (std::isnan(value)) continue;
-    const double t = span > 0.0 ? (value - picture.low) / span : 0.0;
+    if (!std::isfinite(values[i])) continue;
+    const double t = picture.scale.fraction(values[i]);
     picture.colours[i] = colour_of(map, is_near_bright ? 1.0 - t : t);
   }
+}
+
+/// All returns, one below the other where they have one width; else the first.
+BeamPicture layout_of(const Frame& frame, const Beams& beams) {
+  BeamPicture all = make_beam_picture(beams, frame.range_m);
+  if (all.kind == BeamPicture::Kind::image) {
+    all.rows = beams.rows;  // the beams are in this order already
+    return all;
+  }
+  for (std::uint32_t k = 1; k < beams.returns; ++k) {
+    const BeamPicture next = make_beam_picture(beams, frame.range_m, k);
+    if (next.cols != all.cols) continue;
+    all.beams.insert(all.beams.end(), next.beams.begin(), next.beams.end());
+    all.rows += next.rows;
+  }
+  return all;
 }
 
 void colour_by_normal(const Frame& frame, const Beams& beams, SensorPicture& picture) {
@@ -63,13 +72,13 @@ void colour_by_instance(const Frame& frame, const Scene& scene, SensorPicture& p
   for (std::size_t i = 0; i < frame.status.size(); ++i) {
     const std::uint32_t instance = frame.truth.instance[i];
     if (frame.status[i] != Status::hit || instance == kNoHit) continue;
-    picture.colours[i] = colour_of_number(instance);
+    picture.colours[i] = category_colour(instance);
     seen[instance] = true;
   }
   for (const auto& [instance, is_seen] : seen) {
     const Instance& it = scene.instances[instance];
     picture.legend.push_back(
-        {colour_of_number(instance), it.name + " (id " + std::to_string(it.id) + ")"});
+        {category_colour(instance), it.name + " (id " + std::to_string(it.id) + ")"});
   }
 }
 
@@ -99,13 +108,14 @@ std::string_view unit_of(Quantity quantity) {
 Colour colour_of(Status status) {
   if (status == Status::hit) return {225, 225, 230};
   if (status == Status::miss) return kNoReturn;
-  return colour_of_number(static_cast<std::uint32_t>(status));
+  return category_colour(static_cast<std::uint32_t>(status));
 }
 
 void make_sensor_picture(const Frame& frame, const Beams& beams, const Scene& scene,
                          Quantity quantity, ColourMap map, SensorPicture& picture) {
   picture.colours.assign(frame.status.size(), kNoReturn);
   picture.legend.clear();
+  picture.layout = layout_of(frame, beams);
   switch (quantity) {
     case Quantity::depth:
     case Quantity::range:

@@ -6,6 +6,9 @@
 #include <glidar/core/beams.hpp>
 #include <glidar/core/frame.hpp>
 #include <glidar/core/scene.hpp>
+#include <glidar/io/beam_picture.hpp>
+#include <glidar/io/chart.hpp>
+#include <glidar/io/colour_scale.hpp>
 
 #include <array>
 #include <string>
@@ -19,17 +22,11 @@ enum class Quantity : std::uint8_t { depth, range, intensity, normals, instance,
 inline constexpr std::array<std::string_view, 6> kQuantities = {"depth",   "range",    "intensity",
                                                                 "normals", "instance", "status"};
 
-/// A colour and what it stands for.
-struct LegendEntry {
-  Colour colour;
-  std::string text;
-};
-
 /// A measurement in colours, one for each beam, and what they mean.
 struct SensorPicture {
   std::vector<Colour> colours;      ///< rows x cols, row by row
-  double low = 0.0;                 ///< of the quantities that have a scale
-  double high = 0.0;                ///< below `low` when no beam has a return
+  BeamPicture layout;               ///< where each beam is shown; all returns, one below the other
+  ColourScale scale;                ///< of the quantities that have one
   std::vector<LegendEntry> legend;  ///< of the others
 };
 

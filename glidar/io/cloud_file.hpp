@@ -87,6 +87,18 @@ void write_paper_png(const CloudFile& job, AtomicFile& file);
 /// A picture for people: coloured depth and grey intensity with their scales.
 void write_preview(const CloudFile& job, AtomicFile& file);
 
+/// What write_bird_eye and write_perspective need of a cloud.
+std::vector<std::string> cloud_picture_columns();
+
+/// A picture of the cloud straight from above, x to the right and y up, with axes, coloured as
+/// options.picture says; the highest point wins. The cloud's axes are turned so that z is up.
+/// Throws Error when a camera's cloud is to be coloured by ring.
+void write_bird_eye(const CloudFile& job, AtomicFile& file);
+
+/// The same in perspective, with a grid on the ground; the nearest point wins. Also throws Error
+/// when the eye is at the target.
+void write_perspective(const CloudFile& job, AtomicFile& file);
+
 /// cloud_from_object of the first instance without its scale, 4x4, a row per line, 17 digits.
 /// Throws Error when the frame has no instance.
 void write_transform(const CloudFile& job, AtomicFile& file);

@@ -5,8 +5,7 @@
 #include <glidar/core/error.hpp>
 #include <glidar/io/cloud_file.hpp>
 #include <glidar/io/cloud_layout.hpp>
-#include <glidar/io/kitti_files.hpp>
-#include <glidar/io/staged_files.hpp>
+#include <glidar/io/format_table.hpp>
 #include <glidar/io/stored_columns.hpp>
 
 #include <fmt/format.h>
@@ -15,156 +14,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
-#include <iterator>
 #include <system_error>
 #include <utility>
 
 namespace glidar {
 namespace {
-
-/// Which misses go into the file, and whether a sidecar belongs to it.
-enum class Content : std::uint8_t {
-  points,    ///< a cloud: organised or dense, as the options say
-  kitti,     ///< a cloud: always dense, with KITTI's intensity
-  image,     ///< always the whole frame, with a sidecar
-  per_beam,  ///< a picture for people or a pose: always the whole frame, no sidecar
-};
-
-struct Format {
-  FileFormat told;
-  Content content;
-  std::vector<Field> (*fields)(const PointCloud&);  ///< what it stores of each point
-  void (*write)(const CloudFile&, AtomicFile&);     ///< nullptr: `beside` writes it all
-  /// Adds further files; nullptr: there are none.
-  void (*beside)(const CloudFile&, const std::filesystem::path&, StagedFiles&) = nullptr;
-  const char* pixels = "";  ///< what those of an image are, for its sidecar
-};
-
-/// Of formats that are no table of points.
-std::vector<Field> no_fields(const PointCloud& /*cloud*/) {
-  return {};
-}
-
-/// Images besides those of formats().
-std::vector<Format> image_formats() {
-  return {
-      {{".depth.tiff", "32-bit depth image, metres", {"depth"}, false},
-       Content::image,
-       depth_fields,
-       write_depth_tiff,
-       nullptr,
-       "depth in metres as 32-bit float; NaN: no return"},
-      {{".rgb.png", "surface colour, lit at the sensor", {"colour", "incidence"}, false},
-       Content::image,
-       no_fields,
-       write_rgb_png,
-       nullptr,
-       "surface colour times cosine of incidence times 255 as 8-bit RGB; black: nothing there"},
-      {{".normal.png", "16-bit normals", {"normal"}, false},
-       Content::image,
-       no_fields,
-       write_normal_png,
-       nullptr,
-       "unit normal n in frame_id as 16-bit RGB v: n = 2 v / 65535 - 1; 0 0 0: nothing there"},
-      {{".instance.png", "16-bit instance ids", {"instance"}, false},
-       Content::image,
-       no_fields,
-       write_instance_png,
-       nullptr,
-       "id of the instance as 16-bit grey; 0: nothing there"},
-      {{".class.png", "class ids", {"class"}, false},
-       Content::image,
-       no_fields,
-       write_class_png,
-       nullptr,
-       "id of the class as grey; 0: unlabelled, or nothing there"},
-  };
-}
-
-std::vector<Format> with_images(std::vector<Format> formats) {
-  for (const Format& format : image_formats()) formats.push_back(format);
-  return formats;
-}
-
-const std::vector<Format>& formats() {
-  static const std::vector<Format> kFormats = with_images({
-      {{".pcd", "Point Cloud Library", {"xyz"}, true}, Content::points, pcd_fields, write_pcd},
-      {{".ply", "Stanford polygon file", {"xyz"}, true}, Content::points, ply_fields, write_ply},
-      {{".npz", "NumPy archive of all columns", {"xyz"}, true},
-       Content::points,
-       native_fields,
-       write_npz},
-      {{".csv", "text table", {"xyz"}, true}, Content::points, native_fields, write_csv},
-      {{".bin", "KITTI Velodyne, with .label", {"xyz", "intensity"}, false},
-       Content::kitti,
-       kitti_fields,
-       write_kitti,
-       stage_labels_beside},
-      {{".kitti", "folder: velodyne calib label_2 labels", {"xyz", "intensity"}, false, true},
-       Content::kitti,
-       kitti_fields,
-       nullptr,
-       stage_kitti_folder},
-      {{".npy", "NumPy depth image, metres", {"depth"}, false},
-       Content::image,
-       depth_fields,
-       write_depth_npy,
-       nullptr,
-       "depth in metres as 32-bit float; NaN: no return"},
-      {{".depth.png", "16-bit depth image", {"depth"}, false},
-       Content::image,
-       no_fields,
-       write_depth_png,
-       nullptr,
-       "depth times units_per_m as 16-bit grey; 0: no return"},
-      {{".paper.png", "RGBA picture of --render-target paper", {}, false},
-       Content::per_beam,
-       no_fields,
-       write_paper_png},
-      {{".png", "preview picture", {"depth", "intensity"}, false},
-       Content::per_beam,
-       no_fields,
-       write_preview},
-      {{".transform", "4x4 pose of the first object", {}, false},
-       Content::per_beam,
-       no_fields,
-       write_transform},
-  });
-  return kFormats;
-}
-
-std::vector<std::string> suffixes() {
-  std::vector<std::string> all;
-  for (const Format& format : formats()) all.push_back(format.told.suffix);
-  return all;
-}
-
-std::string lower_case(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return text;
-}
-
-const Format& find_format(const std::filesystem::path& path) {
-  const std::string name = lower_case(path.filename().string());
-  const Format* best = nullptr;
-  for (const Format& format : formats()) {
-    const std::string& suffix = format.told.suffix;
-    if (name.size() <= suffix.size() || !name.ends_with(suffix)) continue;
-    if (best == nullptr || suffix.size() > best->told.suffix.size()) best = &format;
-  }
-  if (best != nullptr) return *best;
-  const std::string suffix = lower_case(path.extension().string());
-  const std::vector<std::string> all = suffixes();
-  const std::string nearest = suffix.empty() ? "" : nearest_word(suffix, all);
-  throw Error({path.string(),
-               suffix.empty() ? "the name has no suffix that tells the format"
-                              : fmt::format("no format has the suffix {}", suffix),
-               fmt::format("{}", fmt::join(all, " ")),
-               nearest.empty() ? "" : fmt::format("did you mean {}?", nearest)});
-}
 
 void check_folder(const std::filesystem::path& path, const Format& format) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
@@ -226,6 +81,14 @@ void check_needed_columns(const FileFormat& format, const PointCloud& cloud,
     throw Error({path.string(), fmt::format("the cloud has no column {}", needed),
                  fmt::format("{} needs {}", format.suffix, fmt::join(format.columns, " ")),
                  fmt::format("it has: {}; ask for {} too", fmt::join(there, " "), needed)});
+  }
+}
+
+void check_picture_size(const CloudPictureOptions& options) {
+  for (const std::uint32_t side : {options.width, options.height}) {
+    if (side >= kMinPictureSide && side <= kMaxPictureSide) continue;
+    throw Error({"picture size", fmt::format("{} x {} pixels", options.width, options.height),
+                 fmt::format("sides from {} to {}", kMinPictureSide, kMaxPictureSide), ""});
   }
 }
 
@@ -321,6 +184,7 @@ class FormatSink : public FileSink {
 
 void check(const FileSinkOptions& options) {
   if (!options.layout.empty()) layout_named(options.layout);
+  check_picture_size(options.picture);
   if (options.depth_png_units_per_m > 0.0 && !std::isinf(options.depth_png_units_per_m)) return;
   throw Error({"depth_png_units_per_m", fmt::format("{}", options.depth_png_units_per_m),
                "a finite number above 0", "1000 for millimetres"});
@@ -333,17 +197,10 @@ bool looks_back(const Beams& beams) {
 
 }  // namespace
 
-std::span<const FileFormat> file_formats() {
-  static const std::vector<FileFormat> kTold = [] {
-    std::vector<FileFormat> told;
-    for (const Format& format : formats()) told.push_back(format.told);
-    return told;
-  }();
-  return kTold;
-}
-
-const FileFormat& format_for(const std::filesystem::path& path) {
-  return find_format(path).told;
+std::span<const std::string> colour_by_names() {
+  static const std::vector<std::string> kNames = {"height", "range", "intensity",
+                                                  "ring",   "class", "instance"};
+  return kNames;
 }
 
 bool is_text(const FileFormat& format, const FileSinkOptions& options) {

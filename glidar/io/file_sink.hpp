@@ -6,8 +6,11 @@
 #include <glidar/core/report.hpp>
 #include <glidar/sensor/sensor.hpp>
 
+#include <Eigen/Core>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -16,6 +19,24 @@ namespace glidar {
 
 enum class PcdEncoding : std::uint8_t { ascii, binary, binary_compressed };
 
+/// What gives the points of .bev.png and .view.png their colours.
+enum class ColourBy : std::uint8_t { height, range, intensity, ring, object_class, instance };
+
+inline constexpr std::uint32_t kMinPictureSide = 200;  ///< pixels: letters and a plot fit
+inline constexpr std::uint32_t kMaxPictureSide = 8192;
+
+/// Pictures of a cloud from above and in perspective.
+struct CloudPictureOptions {
+  ColourBy colour_by = ColourBy::height;
+  std::uint32_t width = 1400;  ///< pixels, of the whole picture
+  std::uint32_t height = 1000;
+  std::optional<Eigen::Vector3d> eye_m = {};     ///< of the perspective, in the cloud's frame;
+  std::optional<Eigen::Vector3d> target_m = {};  ///< empty: so that most points are seen
+};
+
+/// The names of ColourBy, in its order: height range intensity ring class instance.
+std::span<const std::string> colour_by_names();
+
 struct FileSinkOptions {
   PcdEncoding pcd = PcdEncoding::binary;
   bool ply_ascii = false;
@@ -23,6 +44,7 @@ struct FileSinkOptions {
   bool sidecar = true;      ///< write FILE.json beside a cloud
   std::string layout = {};  ///< of cloud_layouts(), for formats that take columns; empty: none
   double depth_png_units_per_m = 1000.0;  ///< 16-bit depth PNG: 1000 = millimetres
+  CloudPictureOptions picture = {};
   Progress progress = {};  ///< of one file, by its points; images and NPZ do not tell
 };
 

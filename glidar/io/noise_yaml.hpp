@@ -4,8 +4,8 @@
 
 // Private to glidar/io.
 
-#include <glidar/io/yaml_reader.hpp>
 #include <glidar/io/json_numbers.hpp>
+#include <glidar/io/yaml_reader.hpp>
 #include <glidar/sensor/noise.hpp>
 
 #include <nlohmann/json.hpp>

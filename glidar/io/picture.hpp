@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 namespace glidar {
@@ -13,6 +12,8 @@ struct Colour {
   std::uint8_t r = 0;
   std::uint8_t g = 0;
   std::uint8_t b = 0;
+
+  bool operator==(const Colour&) const = default;
 };
 static_assert(sizeof(Colour) == 3, "written to files as it is");
 
@@ -32,19 +33,24 @@ struct Box {
 
 Picture make_picture(std::size_t width, std::size_t height, Colour background);
 
-/// The box must lie inside the picture.
+/// The part of the box that is inside the picture.
 void fill(Picture& picture, const Box& box, Colour colour);
-
-/// Letters are 5 x 7 dots with one dot between; `dot` is the size of a dot in pixels.
-inline constexpr std::size_t kTextHeightDots = 7;
-std::size_t text_width(std::string_view text, std::size_t dot);
-
-/// Draws digits, ". - +" and the few letters that scales need (others are left blank) with the
-/// upper left corner at x, y. The text must lie inside the picture.
-void draw_text(Picture& picture, const Box& corner_and_dot, std::string_view text, Colour colour);
 
 /// The colour map viridis (Nathaniel Smith and Stefan van der Walt, CC0), from dark (0) to bright
 /// (1), interpolated between 33 of its entries.
 Colour viridis(double t);
+
+/// From black (0) to white (1).
+Colour grey(double t);
+
+/// From a grey that shows on the dark ground of a plot (0) to white (1).
+Colour light_grey(double t);
+
+/// The colour of a hue from 0 to 1: red, yellow, green, cyan, blue, magenta, red.
+Colour hue(double turn);
+
+/// Colours of things that are counted, neighbours far apart: twelve chosen ones that show on dark
+/// ground, then hues a golden section of the circle apart.
+Colour category_colour(std::uint32_t number);
 
 }  // namespace glidar

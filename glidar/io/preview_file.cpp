@@ -1,201 +1,217 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/beam_picture.hpp>
+#include <glidar/io/chart.hpp>
 #include <glidar/io/cloud_file.hpp>
-#include <glidar/io/picture.hpp>
 #include <glidar/io/png_image.hpp>
 
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
 namespace glidar {
 namespace {
 
-constexpr Colour kCanvas = {17, 17, 20};
-constexpr Colour kNoReturn = {34, 34, 40};
-constexpr Colour kInk = {205, 205, 210};
-
-using Ramp = Colour (*)(double);
-
-/// One picture of the pair and its scale.
+/// A number of every beam, in colours.
 struct Panel {
-  std::string title;
-  std::string unit;
-  Ramp ramp = nullptr;
-  double low = 0.0;
-  double high = 0.0;
-  bool any = false;            ///< false: no beam has a return, low and high mean nothing
-  std::vector<Colour> pixels;  ///< one per beam
+  ColourBar bar;
+  const std::vector<double>& values;  ///< one per beam, NaN without a return
+  const BeamPicture& beams;
 };
 
 /// All lengths in pixels.
 struct Layout {
   std::size_t zoom;  ///< pixels per beam across, so that small images can be seen
   std::size_t tall;  ///< and upright: scanners have few rows and many columns
-  std::size_t dot;   ///< of the letters
+  double letters;
   std::size_t gap;
-  std::size_t footer;  ///< height of the scale below a panel
+  Box plot;  ///< in its cell
   std::size_t cell_width;
   std::size_t cell_height;
-  bool stacked;  ///< wide images stand one above the other
+  std::size_t cells_across;
 };
 
 /// Near is bright.
-Colour depth_ramp(double t) {
+Colour near_ramp(double t) {
   return viridis(1.0 - t);
 }
 
-Colour grey_ramp(double t) {
-  const auto level = static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(t, 0.0, 1.0)));
-  return {level, level, level};
+bool has_axes(const BeamPicture& beams) {
+  return beams.kind != BeamPicture::Kind::image;
 }
 
-void colour_pixels(Panel& panel, const std::vector<double>& depths_m, const auto& value_of) {
-  panel.pixels.assign(depths_m.size(), kNoReturn);
-  const double span = panel.high - panel.low;
-  for (std::size_t i = 0; i < depths_m.size(); ++i) {
-    if (std::isnan(depths_m[i])) continue;
-    const double t = span > 0.0 ? (double{value_of(i)} - panel.low) / span : 0.0;
-    panel.pixels[i] = panel.ramp(t);
-  }
-}
-
-Panel distance_panel(std::string title, const std::vector<double>& depths_m) {
-  Panel panel{std::move(title),
-              " m",
-              depth_ramp,
-              std::numeric_limits<double>::infinity(),
-              -std::numeric_limits<double>::infinity(),
-              false,
-              {}};
-  for (const double depth_m : depths_m) {
-    if (std::isnan(depth_m)) continue;
-    panel.any = true;
-    panel.low = std::min(panel.low, depth_m);
-    panel.high = std::max(panel.high, depth_m);
-  }
-  colour_pixels(panel, depths_m, [&](std::size_t i) { return depths_m[i]; });
-  return panel;
-}
-
-Panel intensity_panel(const std::vector<double>& depths_m, const std::vector<float>& intensity) {
-  Panel panel{"intensity", "", grey_ramp, 0.0, 0.0, false, {}};
-  for (std::size_t i = 0; i < depths_m.size(); ++i) {
-    if (std::isnan(depths_m[i])) continue;
-    panel.any = true;
-    panel.high = std::max(panel.high, double{intensity[i]});
-  }
-  colour_pixels(panel, depths_m, [&](std::size_t i) { return intensity[i]; });
-  return panel;
-}
-
-/// As many digits as tell the ends of the scale apart to a percent.
-std::string number_text(double value, double span) {
-  if (value == 0.0) return "0";
-  const double needed = span > 0.0 ? 2.0 - std::floor(std::log10(span)) : 3.0;
-  const int decimals = static_cast<int>(std::clamp(needed, 0.0, 9.0));
-  const std::string plain = fmt::format("{:.{}f}", value, decimals);
-  constexpr std::size_t kLongest = 12;
-  return plain.size() <= kLongest ? plain : fmt::format("{:.4g}", value);
-}
-
-/// What stands left and right of the colour bar.
-std::array<std::string, 2> scale_texts(const Panel& panel) {
-  if (!panel.any) return {panel.title + "  no hits", ""};
-  const double span = panel.high - panel.low;
-  return {panel.title + "  " + number_text(panel.low, span),
-          number_text(panel.high, span) + panel.unit};
-}
-
-Layout make_layout(const PointCloud& cloud, const std::array<Panel, 2>& panels) {
+Layout make_layout(const BeamPicture& beams) {
   constexpr std::size_t kUsual = 512;
-  const std::size_t longer = std::max<std::size_t>({cloud.rows, cloud.cols, 1});
-  Layout layout{};
-  layout.zoom = std::max<std::size_t>(1, kUsual / longer);
   constexpr std::size_t kLeastShape = 8;  // a picture is at most so many times as wide as high
   constexpr std::size_t kTallest = 64;
-  const std::size_t width = cloud.cols * layout.zoom;
-  layout.tall = std::clamp<std::size_t>(width / (kLeastShape * std::max(1U, cloud.rows)),
-                                        layout.zoom, std::max(layout.zoom, kTallest));
-  layout.dot = std::clamp<std::size_t>((width + 768) / 512, 1, 6);
-  layout.gap = 8 * layout.dot;
-  layout.footer = (kTextHeightDots + 4) * layout.dot;
-  layout.cell_width = width;
-  for (const Panel& panel : panels) {
-    const auto [left, right] = scale_texts(panel);
-    const std::size_t bar = 36 * layout.dot;
-    layout.cell_width = std::max(
-        layout.cell_width, text_width(left, layout.dot) + bar + text_width(right, layout.dot));
-  }
-  layout.cell_height = cloud.rows * layout.tall + layout.footer;
-  layout.stacked = cloud.cols > 2 * cloud.rows;
+  const std::size_t cols = std::max(1U, beams.cols);
+  const std::size_t rows = std::max(1U, beams.rows);
+  Layout layout{};
+  layout.zoom = std::max<std::size_t>(1, kUsual / std::max(cols, rows));
+  const std::size_t width = cols * layout.zoom;
+  layout.tall = std::clamp<std::size_t>(width / (kLeastShape * rows), layout.zoom,
+                                        std::max(layout.zoom, kTallest));
+  const std::size_t height = rows * layout.tall;
+  layout.letters = 12.0 + static_cast<double>(std::max(width, height)) / 128.0;
+  layout.gap = static_cast<std::size_t>(layout.letters);
+  const auto pixels = [](double length) { return static_cast<std::size_t>(std::ceil(length)); };
+  const std::size_t left = has_axes(beams) ? pixels(upright_axis_width(layout.letters)) : 0;
+  const std::size_t top = has_axes(beams) ? pixels(1.8 * layout.letters) : 0;
+  const std::size_t axis = has_axes(beams) ? pixels(across_axis_height(layout.letters)) : 0;
+  const std::size_t bar = pixels(colour_bar_height(layout.letters)) + layout.gap;
+  const std::size_t room = std::max(width, pixels(18.0 * layout.letters));  // for the bar
+  layout.plot = {left + (room - width) / 2, top, width, height};
+  layout.cell_width = left + room + left / 2;
+  layout.cell_height = top + height + axis + bar;
+  layout.cells_across = width > 2 * height ? 1 : 2;
   return layout;
 }
 
-void draw_bar(Picture& picture, const Box& box, Ramp ramp) {
-  const double last = std::max(1.0, static_cast<double>(box.width) - 1.0);
-  for (std::size_t i = 0; i < box.width; ++i)
-    fill(picture, {box.x + i, box.y, 1, box.height}, ramp(static_cast<double>(i) / last));
-}
-
-void draw_scale(Picture& picture, const Panel& panel, const Layout& layout, Box place) {
-  const std::size_t dot = layout.dot;
-  const auto [left, right] = scale_texts(panel);
-  draw_text(picture, {place.x, place.y, dot, dot}, left, kInk);
-  if (!panel.any) return;
-  const std::size_t right_width = text_width(right, dot);
-  draw_text(picture, {place.x + place.width - right_width, place.y, dot, dot}, right, kInk);
-  const std::size_t space = 6 * dot;
-  const std::size_t start = text_width(left, dot) + space;
-  draw_bar(
-      picture,
-      {place.x + start, place.y, place.width - start - right_width - space, kTextHeightDots * dot},
-      panel.ramp);
-}
-
-void draw_panel(Picture& picture, const Panel& panel, const Layout& layout, const Box& place) {
-  const std::size_t zoom = layout.zoom;
-  const std::size_t cols = place.width / zoom;
-  const std::size_t left = place.x + (layout.cell_width - place.width) / 2;
-  for (std::size_t i = 0; i < panel.pixels.size(); ++i) {
-    fill(picture, {left + i % cols * zoom, place.y + i / cols * layout.tall, zoom, layout.tall},
-         panel.pixels[i]);
+/// Rows of a grid have their own elevations; other pictures have even ones.
+std::vector<AxisLabel> upright_labels(const BeamPicture& beams, const Box& plot, double letters) {
+  const auto height = static_cast<double>(plot.height);
+  const double room = 2.2 * letters;
+  const bool in_degrees = beams.kind != BeamPicture::Kind::top;
+  if (beams.kind != BeamPicture::Kind::grid)
+    return axis_labels({"", beams.top, beams.bottom, in_degrees}, height, room);
+  const std::size_t rows = beams.row_elevations_deg.size();
+  const auto fit = static_cast<std::size_t>(std::max(1.0, height / room));
+  const std::size_t steps = std::min<std::size_t>({fit, rows - 1, 6});
+  std::vector<AxisLabel> labels;
+  for (std::size_t i = 0; i <= steps; ++i) {
+    const std::size_t row = i * (rows - 1) / std::max<std::size_t>(steps, 1);
+    labels.push_back({(static_cast<double>(row) + 0.5) / static_cast<double>(rows),
+                      scale_number(beams.row_elevations_deg[row], 10.0) + "\u00b0"});
   }
-  draw_scale(picture, panel, layout,
-             {place.x, place.y + place.height + 4 * layout.dot, layout.cell_width, layout.footer});
+  return labels;
+}
+
+void draw_axes(Picture& picture, const Panel& panel, const Box& plot, double letters) {
+  const BeamPicture& beams = panel.beams;
+  const bool is_top = beams.kind == BeamPicture::Kind::top;
+  draw_across_axis(picture, plot, {is_top ? "x, m" : "azimuth", beams.left, beams.right, !is_top},
+                   letters);
+  draw_upright_axis(picture, plot, is_top ? "y, m" : "elevation",
+                    upright_labels(beams, plot, letters), letters);
+  if (!is_top) return;
+  const double x = -beams.left / (beams.right - beams.left) * static_cast<double>(plot.width);
+  const double y = beams.top / (beams.top - beams.bottom) * static_cast<double>(plot.height);
+  draw_sensor(picture, plot,
+              {static_cast<double>(plot.x) + x, static_cast<double>(plot.y) + y, 1.0, 0.0},
+              letters);
+}
+
+Colour pixel_colour(const Panel& panel, std::uint32_t beam) {
+  const double value = panel.values[beam];
+  return std::isfinite(value) ? panel.bar.ramp(panel.bar.scale.fraction(value)) : kNoReturn;
+}
+
+void draw_panel(Picture& picture, const Panel& panel, const Layout& layout, const Box& cell) {
+  const Box plot{cell.x + layout.plot.x, cell.y + layout.plot.y, layout.plot.width,
+                 layout.plot.height};
+  fill(picture, plot, kPlotGround);
+  const BeamPicture& beams = panel.beams;
+  for (std::size_t i = 0; i < std::size_t{beams.rows} * beams.cols; ++i) {
+    const std::uint32_t beam = beams.beam_at(i);
+    if (beam == BeamPicture::kNoBeam) continue;
+    fill(picture,
+         {plot.x + i % beams.cols * layout.zoom, plot.y + i / beams.cols * layout.tall, layout.zoom,
+          layout.tall},
+         pixel_colour(panel, beam));
+  }
+  if (has_axes(beams)) draw_axes(picture, panel, plot, layout.letters);
+  const double bar_y =
+      static_cast<double>(cell.y + cell.height) - colour_bar_height(layout.letters);
+  const double margin = has_axes(beams) ? upright_axis_width(layout.letters) : 0.0;
+  const auto left = static_cast<std::size_t>(margin);
+  draw_colour_bar(picture,
+                  {cell.x + left, static_cast<std::size_t>(bar_y), cell.width - left - left / 2, 0},
+                  panel.bar, layout.letters);
+}
+
+/// What the panels show.
+struct Measured {
+  std::string distance_title;         ///< "depth" or "range"
+  std::vector<double> distance_m;     ///< one per beam, NaN without a return
+  std::vector<double> intensity;      ///< likewise
+  std::vector<BeamPicture> pictures;  ///< one per return
+};
+
+Measured measured_of(const CloudFile& job) {
+  const PointCloud& cloud = job.cloud;
+  const Beams& beams = job.context.beams;
+  Measured measured;
+  // the depth of what is behind a scanner would be negative
+  const bool is_camera = looks_along_z(beams);
+  measured.distance_title = is_camera ? "depth" : "range";
+  const std::vector<double>& range_m = job.frame.range_m;
+  if (is_camera) {
+    measured.distance_m = std::get<std::vector<double>>(find_column(cloud, "depth")->values);
+  } else {
+    measured.distance_m = range_m;
+    for (double& distance_m : measured.distance_m) distance_m += beams.range_offset_m;
+  }
+  const auto& intensity = std::get<std::vector<float>>(find_column(cloud, "intensity")->values);
+  for (std::size_t i = 0; i < intensity.size(); ++i) {
+    measured.intensity.push_back(std::isnan(measured.distance_m[i])
+                                     ? std::numeric_limits<double>::quiet_NaN()
+                                     : double{intensity[i]});
+  }
+  for (std::uint32_t k = 0; k < beams.returns; ++k) {
+    measured.pictures.push_back(is_camera
+                                    ? make_image_picture(cloud.rows / beams.returns, cloud.cols, k)
+                                    : make_beam_picture(beams, range_m, k));
+  }
+  return measured;
+}
+
+/// Distance and intensity of every return; all returns have the same scale.
+std::vector<Panel> panels_of(const Measured& measured) {
+  const ColourScale distance = make_colour_scale(measured.distance_m);
+  const ColourScale intensity = make_colour_scale(measured.intensity, ColourScale::Start::zero);
+  std::vector<Panel> panels;
+  for (std::size_t k = 0; k < measured.pictures.size(); ++k) {
+    const BeamPicture::Kind kind = measured.pictures[k].kind;
+    const bool is_plot = kind == BeamPicture::Kind::angles || kind == BeamPicture::Kind::top;
+    const std::string number =
+        measured.pictures.size() > 1 ? fmt::format(" of return {}", k + 1) : "";
+    panels.push_back({{measured.distance_title + number, "m", distance, near_ramp},
+                      measured.distance_m,
+                      measured.pictures[k]});
+    panels.push_back({{"intensity" + number, "", intensity, is_plot ? light_grey : grey},
+                      measured.intensity,
+                      measured.pictures[k]});
+  }
+  return panels;
 }
 
 }  // namespace
 
 void write_preview(const CloudFile& job, AtomicFile& file) {
-  const PointCloud& cloud = job.cloud;
-  // the depth of what lies behind a scanner would be negative
-  const bool camera = looks_along_z(job.context.beams);
-  const std::string title = camera ? "depth" : "range";
-  std::vector<double> depths_m = std::get<std::vector<double>>(find_column(cloud, "depth")->values);
-  if (!camera) {
-    depths_m = job.frame.range_m;
-    for (double& range_m : depths_m) range_m += job.context.beams.range_offset_m;
+  const Measured measured = measured_of(job);
+  const std::vector<Panel> panels = panels_of(measured);
+  Layout layout = make_layout(measured.pictures.front());
+  for (const BeamPicture& beams : measured.pictures) {  // tops of several returns differ in size
+    const Layout other = make_layout(beams);
+    layout.cell_width = std::max(layout.cell_width, other.cell_width);
+    layout.cell_height = std::max(layout.cell_height, other.cell_height);
   }
-  const auto& intensity = std::get<std::vector<float>>(find_column(cloud, "intensity")->values);
-  const std::array<Panel, 2> panels = {distance_panel(title, depths_m),
-                                       intensity_panel(depths_m, intensity)};
-  const Layout layout = make_layout(cloud, panels);
-  const std::size_t step_x = layout.stacked ? 0 : layout.cell_width + layout.gap;
-  const std::size_t step_y = layout.stacked ? layout.cell_height + layout.gap : 0;
-  Picture picture = make_picture(2 * layout.gap + layout.cell_width + step_x,
-                                 2 * layout.gap + layout.cell_height + step_y, kCanvas);
+  const std::size_t down = panels.size() / layout.cells_across;
+  Picture picture =
+      make_picture(layout.cells_across * (layout.cell_width + layout.gap) + layout.gap,
+                   down * (layout.cell_height + layout.gap) + layout.gap, kCanvas);
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    draw_panel(picture, panels[i], layout,
-               {layout.gap + i * step_x, layout.gap + i * step_y, cloud.cols * layout.zoom,
-                cloud.rows * layout.tall});
+    Layout own = make_layout(panels[i].beams);
+    const Box cell{layout.gap + i % layout.cells_across * (layout.cell_width + layout.gap),
+                   layout.gap + i / layout.cells_across * (layout.cell_height + layout.gap),
+                   own.cell_width, own.cell_height};
+    draw_panel(picture, panels[i], own, cell);
   }
   write_png({PngKind::rgb8, static_cast<std::uint32_t>(picture.width),
              static_cast<std::uint32_t>(picture.height), std::as_bytes(std::span(picture.pixels)),
-             title + " beside intensity"},
+             measured.distance_title + " beside intensity"},
             file);
 }
 

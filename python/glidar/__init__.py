@@ -17,6 +17,7 @@ from ._frame import Frame
 from ._information import Direction, Information
 from ._mesh import Mesh, from_open3d, from_trimesh
 from ._object import Object
+from ._pictures import Picture
 from ._poses import look_at, pose, quaternion
 from ._scene import Mount, Scene, load_scene, surface_names
 from ._sensor import Sensor, SheetEntry, camera, load_sensor, sensor, sensor_file, sensor_names, sensor_sheet
@@ -41,6 +42,7 @@ __all__ = [
     "Mesh",
     "Mount",
     "Object",
+    "Picture",
     "Reading",
     "Scene",
     "Sensor",

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,15 +16,32 @@ from . import _core
 from ._cloud import Cloud
 from ._errors import Error
 from ._information import Information
-from ._inputs import MOST_32, FloatArray, column_list, floats, log, one_of, path_of, whole
+from ._inputs import MOST_32, FloatArray, column_list, floats, log, one_of, path_of, whole, whole_numbers
 from ._origin import Origin
-from ._pictures import html_picture, html_table, plot_points, show_images
+from ._pictures import IMAGE, Picture, html_picture, html_table, picture_of, plot_points, show_images
 from ._state import Immutable, key_of, part, restoring, stated
 from ._status import Cause, Status
 from ._story import Story, story_of
 from ._truth import Truth
 
 _PCD = ("ascii", "binary", "binary_compressed")
+
+
+def _set_picture(
+    options: _core.SaveOptions,
+    colour_by: str,
+    size: tuple[int, int],
+    eye: npt.ArrayLike | None,
+    target: npt.ArrayLike | None,
+) -> None:
+    """Options of pictures of clouds."""
+    one_of(colour_by, "colour_by", _core.colour_by_names())
+    width, height = (int(side) for side in whole_numbers(size, "picture_size", 2, 32))
+    options.set_picture(colour_by, width, height)
+    if eye is not None:
+        options.set_view_eye(floats(eye, "view_eye", (3,)))
+    if target is not None:
+        options.set_view_target(floats(target, "view_target", (3,)))
 
 
 class Frame(Immutable):
@@ -200,9 +218,14 @@ class Frame(Immutable):
         ply_ascii: bool = False,
         depth_units_per_m: float = 1000.0,
         sidecar: bool = True,
+        colour_by: str = "height",
+        picture_size: tuple[int, int] = (1400, 1000),
+        view_eye: npt.ArrayLike | None = None,
+        view_target: npt.ArrayLike | None = None,
     ) -> None:
         """Writes a file as ``glidar render -o PATH`` does; the suffix says what: .pcd .ply .npz .csv
-        .bin .kitti .npy .depth.png .depth.tiff .rgb.png .normal.png .instance.png .class.png .png .transform.
+        .bin .kitti .npy .depth.png .depth.tiff .rgb.png .normal.png .instance.png .class.png .png .bev.png
+        .view.png .transform.
 
         Args:
             columns, frame, hits_only, deskew: as for ``cloud``.
@@ -211,6 +234,11 @@ class Frame(Immutable):
             ply_ascii: PLY as text.
             depth_units_per_m: of 16-bit depth images.
             sidecar: write PATH.json beside a cloud or image.
+            colour_by: of .bev.png and .view.png: "height", "range", "intensity", "ring", "class" or
+                "instance".
+            picture_size: width and height of these, pixels.
+            view_eye, view_target: where .view.png is seen from, and what it looks at, (3,), m, in the
+                axes of the cloud; None: so that most points are seen.
 
         Raises:
             Error: an unknown suffix or layout, no such folder, a column that was not kept, a file that
@@ -233,13 +261,62 @@ class Frame(Immutable):
         options.set_sidecar(sidecar)
         options.set_layout(layout or "")
         options.set_depth_units_per_m(scale)
+        _set_picture(options, colour_by, picture_size, view_eye, view_target)
         self._with_scene().save(path_of(path, "path"), options, log)
 
+    def bird_eye(
+        self, *, colour_by: str = "height", size: tuple[int, int] = (1400, 1000), frame: str = "sensor"
+    ) -> Picture:
+        """The hits from above, x to the right and y up, with axes in metres: as ``save`` writes .bev.png.
+
+        Args:
+            colour_by, size: as colour_by and picture_size of ``save``.
+            frame: axes, as for ``cloud``.
+
+        Raises:
+            Error: rings of a camera, or an unknown name.
+        """
+        return picture_of(
+            lambda path: self.save(path, colour_by=colour_by, picture_size=size, frame=frame), "picture.bev.png"
+        )
+
+    def perspective(
+        self,
+        *,
+        colour_by: str = "height",
+        size: tuple[int, int] = (1400, 1000),
+        frame: str = "sensor",
+        eye: npt.ArrayLike | None = None,
+        target: npt.ArrayLike | None = None,
+    ) -> Picture:
+        """The hits in perspective, with a grid on the ground: as ``save`` writes .view.png.
+
+        Args:
+            colour_by, size, eye, target: as colour_by, picture_size, view_eye and view_target of
+                ``save``.
+            frame: axes, as for ``cloud``.
+
+        Raises:
+            Error: rings of a camera, an unknown name, or an eye at the target.
+        """
+
+        def write(path: Path) -> None:
+            self.save(
+                path, colour_by=colour_by, picture_size=size, frame=frame, view_eye=eye, view_target=target
+            )
+
+        return picture_of(write, "picture.view.png")
+
     def show(self) -> Any:
-        """A matplotlib figure: depth and intensity, as images. Jupyter draws it; elsewhere
-        ``matplotlib.pyplot.show()`` opens it."""
-        depth = self.cloud(["depth"])["depth"]
-        return show_images({"depth, m": depth, "intensity": self.intensity})
+        """A matplotlib figure: depth (of LiDARs: range) and intensity, as images; of LiDARs upright, by
+        azimuth and elevation, or from above. Jupyter draws it; elsewhere ``matplotlib.pyplot.show()``
+        opens it."""
+        layouts = [self._core.picture(number) for number in range(self._core.returns)]
+        is_camera = layouts[0].kind == IMAGE
+        name, distance = ("depth, m", self.cloud(["depth"])["depth"]) if is_camera else (
+            "range, m", self.range_m + self._core.range_offset_m)
+        intensity = np.where(np.isfinite(distance), self.intensity, np.nan)
+        return show_images({name: distance, "intensity": intensity}, layouts)
 
     def plot(self, *, colour: str = "intensity", frame: str = "world", most: int = 20000) -> Any:
         """A matplotlib figure: the hits in space.

@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 import base64
+import os
+import struct
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -13,7 +15,11 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from . import _core
 from ._errors import Error
+
+IMAGE, GRID, _ANGLES, TOP = range(4)  # kinds of _core.BeamPicture
+NO_BEAM = 0xFFFFFFFF
 
 
 def pyplot() -> Any:
@@ -25,18 +31,65 @@ def pyplot() -> Any:
     return matplotlib.pyplot
 
 
-def show_images(images: dict[str, npt.NDArray[Any]]) -> Any:
-    """A figure with an image for each name, with its scale."""
-    rows, cols = next(iter(images.values())).shape
+def scale_of(values: npt.NDArray[Any], from_zero: bool = False) -> _core.ColourScale:
+    """The scale that all pictures of GLIDAR have: without the odd value far from all others."""
+    return _core.colour_scale(np.ascontiguousarray(values, dtype=np.float64).ravel(), from_zero)
+
+
+def _limits(scale: _core.ColourScale) -> dict[str, Any]:
+    """Of matplotlib: the ends of the colours."""
+    return {"vmin": scale.low, "vmax": scale.high} if scale.has_values else {}
+
+
+def _extend(scale: _core.ColourScale) -> str:
+    """Of matplotlib: which ends of the bar are arrows, because values lie beyond."""
+    return {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}[scale.clips_low, scale.clips_high]
+
+
+def _arranged(values: npt.NDArray[Any], layout: _core.BeamPicture) -> npt.NDArray[np.float64]:
+    """Values of beams as the picture's rows and columns, NaN where it shows none."""
+    beams = layout.beams
+    is_shown = beams != NO_BEAM
+    return np.where(is_shown, values.ravel()[np.where(is_shown, beams, 0)], np.nan)
+
+
+def _draw_image(axis: Any, image: npt.NDArray[Any], layout: _core.BeamPicture, options: dict[str, Any]) -> Any:
+    """One image on its axes: pixels of a camera, angles, or metres from above."""
+    if layout.kind == IMAGE:
+        drawn = axis.imshow(image, interpolation="nearest", **options)
+        axis.set(xlabel="column", ylabel="row")
+        return drawn
+    options["aspect"] = "auto" if layout.kind == GRID else "equal"
+    bottom, top = (len(image) - 0.5, -0.5) if layout.kind == GRID else (layout.bottom, layout.top)
+    drawn = axis.imshow(image, interpolation="nearest", extent=(layout.left, layout.right, bottom, top), **options)
+    if layout.kind == TOP:
+        axis.set(xlabel="x, m", ylabel="y, m")
+        axis.plot(0.0, 0.0, marker=">", color="black")
+        return drawn
+    axis.set(xlabel="azimuth, \N{DEGREE SIGN}", ylabel="elevation, \N{DEGREE SIGN}")
+    if layout.kind == GRID:  # rows have angles of their own
+        rows = np.unique(np.linspace(0, len(image) - 1, 5).astype(int))
+        axis.set_yticks(rows, [f"{layout.row_elevations_deg[row]:.3g}" for row in rows])
+    return drawn
+
+
+def show_images(images: dict[str, npt.NDArray[Any]], layouts: list[_core.BeamPicture]) -> Any:
+    """A figure with an image for each name and each return, with its scale."""
+    rows, cols = layouts[0].beams.shape
     is_wide = cols > 2 * rows
-    shape = (len(images), 1) if is_wide else (1, len(images))
-    figure, axes = pyplot().subplots(*shape, figsize=(9.0, 4.0), layout="constrained", squeeze=False)
-    for axis, (name, image) in zip(axes.flat, images.items(), strict=True):
-        colours = "gray" if name.startswith("intensity") else "viridis_r"
-        drawn = axis.imshow(image, cmap=colours, interpolation="nearest", aspect="auto" if is_wide else "equal")
-        axis.set(title=name, xlabel="column", ylabel="row")
-        if np.isfinite(image).any():
-            figure.colorbar(drawn, ax=axis)
+    count = len(images) * len(layouts)
+    shape = (count, 1) if is_wide else (len(layouts), len(images))
+    size = (9.0, max(4.0, 2.0 * count) if is_wide else 4.0 * len(layouts))
+    figure, axes = pyplot().subplots(*shape, figsize=size, layout="constrained", squeeze=False)
+    shown = [(name, number) for number in range(len(layouts)) for name in images]
+    for axis, (name, number) in zip(axes.flat, shown, strict=True):
+        is_intensity = name.startswith("intensity")
+        scale = scale_of(images[name], is_intensity)
+        options = {"cmap": "gray" if is_intensity else "viridis_r", **_limits(scale)}
+        drawn = _draw_image(axis, _arranged(images[name], layouts[number]), layouts[number], options)
+        axis.set_title(name if len(layouts) == 1 else f"{name}, return {number + 1}")
+        if scale.has_values:
+            figure.colorbar(drawn, ax=axis, extend=_extend(scale))
     return figure
 
 
@@ -44,12 +97,41 @@ def plot_points(xyz: npt.NDArray[Any], values: npt.NDArray[Any], label: str, tit
     """A figure of points in space, coloured, with equal scales along all axes."""
     figure = pyplot().figure(figsize=(7.0, 6.0), layout="constrained")
     axis = figure.add_subplot(projection="3d")
-    drawn = axis.scatter(xyz[:, 0], xyz[:, 1], xyz[:, 2], c=values, s=2.0, cmap="viridis")
+    scale = scale_of(values, label == "intensity")
+    drawn = axis.scatter(xyz[:, 0], xyz[:, 1], xyz[:, 2], c=values, s=2.0, cmap="viridis", **_limits(scale))
     axis.set(xlabel="x, m", ylabel="y, m", zlabel="z, m", title=title)
     if len(xyz):
         axis.set_aspect("equal")
-        figure.colorbar(drawn, ax=axis, label=label, shrink=0.7)
+        figure.colorbar(drawn, ax=axis, label=label, shrink=0.7, extend=_extend(scale))
     return figure
+
+
+class Picture:
+    """A PNG picture. Jupyter shows it."""
+
+    __slots__ = ("data",)
+
+    def __init__(self, data: bytes) -> None:
+        self.data = data  # the bytes of the PNG file
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Writes the PNG file."""
+        Path(path).write_bytes(self.data)
+
+    def _repr_png_(self) -> bytes:
+        return self.data
+
+    def __repr__(self) -> str:
+        width, height = struct.unpack(">II", self.data[16:24])
+        return f"<glidar.Picture of {width} x {height} pixels>"
+
+
+def picture_of(write: Callable[[Path], None], name: str) -> Picture:
+    """The PNG file that `write` makes under a name."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / name
+        write(path)
+        return Picture(path.read_bytes())
 
 
 def html_table(rows: dict[str, object]) -> str:
@@ -60,8 +142,5 @@ def html_table(rows: dict[str, object]) -> str:
 
 def html_picture(write: Callable[[Path], None]) -> str:
     """The PNG file that `write` makes, as a part of a page."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "preview.png"
-        write(path)
-        text = base64.b64encode(path.read_bytes()).decode()
+    text = base64.b64encode(picture_of(write, "preview.png").data).decode()
     return f"<img src='data:image/png;base64,{text}' style='max-width:100%'>"

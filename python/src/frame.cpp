@@ -5,7 +5,9 @@
 #include "report.hpp"
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/beam_picture.hpp>
 #include <glidar/io/cloud_layout.hpp>
+#include <glidar/io/colour_scale.hpp>
 #include <glidar/io/file_guard.hpp>
 #include <glidar/io/file_sink.hpp>
 #include <glidar/io/needed_columns.hpp>
@@ -17,6 +19,9 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <numeric>
+#include <span>
 
 namespace glidar::python {
 namespace {
@@ -156,6 +161,16 @@ void save(const Measured& measured, const std::filesystem::path& path, SaveOptio
   });
 }
 
+/// Of .bev.png and .view.png; the name is one of colour_by_names().
+void set_picture(SaveOptions& self, const std::string& colour_by, std::uint32_t width,
+                 std::uint32_t height) {
+  const auto names = colour_by_names();
+  const auto place = std::find(names.begin(), names.end(), colour_by);
+  self.sink.picture.colour_by = static_cast<ColourBy>(std::distance(names.begin(), place));
+  self.sink.picture.width = width;
+  self.sink.picture.height = height;
+}
+
 template <auto kMember>
 auto sink_member() {
   return [](SaveOptions& self, std::remove_reference_t<decltype(self.sink.*kMember)> value) {
@@ -175,6 +190,15 @@ void bind_save_options(nb::module_& module) {
             self.sink.pcd = static_cast<PcdEncoding>(encoding);
           },
           nb::arg("encoding"))
+      .def("set_picture", set_picture, nb::arg("colour_by"), nb::arg("width"), nb::arg("height"))
+      .def(
+          "set_view_eye",
+          [](SaveOptions& self, const Eigen::Vector3d& at) { self.sink.picture.eye_m = at; },
+          nb::arg("eye_m"))
+      .def(
+          "set_view_target",
+          [](SaveOptions& self, const Eigen::Vector3d& at) { self.sink.picture.target_m = at; },
+          nb::arg("target_m"))
       .def("set_ply_ascii", sink_member<&FileSinkOptions::ply_ascii>(), nb::arg("value"))
       .def("set_dense", sink_member<&FileSinkOptions::dense>(), nb::arg("value"))
       .def("set_sidecar", sink_member<&FileSinkOptions::sidecar>(), nb::arg("value"))
@@ -197,6 +221,58 @@ void bind_cloud(nb::module_& module) {
       .def_prop_ro("columns", column_names_of)
       .def("column", cloud_column, nb::arg("index"),
            nb::sig("def column(self, index: int) -> numpy.ndarray"));
+}
+
+std::vector<std::string> known_colours() {
+  return {colour_by_names().begin(), colour_by_names().end()};
+}
+
+ColourScale scale_of(const nb::ndarray<const double, nb::ndim<1>, nb::c_contig>& values,
+                     bool from_zero) {
+  return make_colour_scale(std::span(values.data(), values.size()),
+                           from_zero ? ColourScale::Start::zero : ColourScale::Start::lowest);
+}
+
+/// The picture's beams as rows x cols, 0xFFFFFFFF where there is none.
+nb::object shown_beams(nb::handle self) {
+  auto& picture = nb::cast<BeamPicture&>(self);
+  if (picture.beams.empty()) {
+    picture.beams.resize(std::size_t{picture.rows} * picture.cols);
+    std::iota(picture.beams.begin(), picture.beams.end(), picture.first);
+  }
+  return nb::cast(
+      array_at(picture.beams.data(), std::array<std::size_t, 2>{picture.rows, picture.cols}, self));
+}
+
+void bind_pictures(nb::module_& module) {
+  nb::class_<ColourScale>(module, "ColourScale")
+      .def_ro("low", &ColourScale::low)
+      .def_ro("high", &ColourScale::high)
+      .def_ro("clips_low", &ColourScale::clips_low)
+      .def_ro("clips_high", &ColourScale::clips_high)
+      .def_ro("has_values", &ColourScale::has_values)
+      .def(
+          "ends",
+          [](const ColourScale& self, const std::string& unit) {
+            const auto [low, high] = scale_ends(self, unit);
+            return std::vector<std::string>{low, high};
+          },
+          nb::arg("unit"));
+  module.def("colour_scale", scale_of, nb::arg("values"), nb::arg("from_zero"),
+             nb::sig("def colour_scale(values: numpy.ndarray, from_zero: bool) -> ColourScale"));
+  module.def("colour_by_names", known_colours);
+  nb::class_<BeamPicture>(module, "BeamPicture")
+      .def_prop_ro("kind", [](const BeamPicture& self) { return static_cast<int>(self.kind); })
+      .def_prop_ro("beams", shown_beams, nb::sig("def beams(self) -> numpy.ndarray"))
+      .def_ro("left", &BeamPicture::left)
+      .def_ro("right", &BeamPicture::right)
+      .def_ro("top", &BeamPicture::top)
+      .def_ro("bottom", &BeamPicture::bottom)
+      .def_ro("row_elevations_deg", &BeamPicture::row_elevations_deg);
+}
+
+BeamPicture beam_picture(const Measured& measured, std::uint32_t number_of_return) {
+  return make_beam_picture(*measured.beams, measured.frame.range_m, number_of_return);
 }
 
 }  // namespace
@@ -236,6 +312,7 @@ void bind_frame(nb::module_& module) {
   bind_save_options(module);
   module.def("cloud_column_names", known_columns);
   bind_cloud(module);
+  bind_pictures(module);
   nb::class_<Measured>(module, "Frame")
       .def_prop_ro("rows", [](const Measured& self) { return self.frame.rows; })
       .def_prop_ro("cols", [](const Measured& self) { return self.frame.cols; })
@@ -251,6 +328,10 @@ void bind_frame(nb::module_& module) {
            nb::sig("def measured(self, name: str) -> numpy.ndarray | None"))
       .def("truth", true_column, nb::arg("name"),
            nb::sig("def truth(self, name: str) -> numpy.ndarray | None"))
+      .def_prop_ro("returns", [](const Measured& self) { return self.beams->returns; })
+      .def_prop_ro("range_offset_m",
+                   [](const Measured& self) { return self.beams->range_offset_m; })
+      .def("picture", beam_picture, nb::arg("number_of_return"))
       .def("cloud", cloud_of, nb::arg("columns"), nb::arg("frame"), nb::arg("deskew"),
            nb::arg("hits_only"))
       .def("save", save, nb::arg("path"), nb::arg("options"), nb::arg("log").none(),

@@ -50,8 +50,11 @@ def short(number, digits):
     return "0" if text in ("-0", "") else text
 
 
-def write_obj(path, parts, comment):
-    """One object per part, one usemtl per run of a material; polygons become triangles."""
+def write_obj(path, parts, comment, materials=None):
+    """One object per part, one usemtl per run of a material; polygons become triangles.
+
+    materials: name of the MTL file; none: that of path.
+    """
     points, uvs, normals = Pool("v", 5), Pool("vt", 4), Pool("vn", 4)
     faces = []
     for part in parts:
@@ -67,7 +70,7 @@ def write_obj(path, parts, comment):
                     for c, uv, n in zip(part.polygons[f], part.uvs[f], made[f], strict=True)]
             for k in range(1, len(keys) - 1):
                 faces.append(f"f {keys[0]} {keys[k]} {keys[k + 1]}")
-    head = [f"# {line}" for line in comment] + [f"mtllib {path.stem}.mtl"]
+    head = [f"# {line}" for line in comment] + [f"mtllib {materials or path.stem + '.mtl'}"]
     lines = head + points.lines() + uvs.lines() + normals.lines() + faces
     path.write_text("\n".join(lines) + "\n", encoding="ascii", newline="\n")
 

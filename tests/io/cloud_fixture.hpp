@@ -89,6 +89,9 @@ inline void add_image_columns(PointCloud& cloud) {
     return is_miss(i) ? std::numeric_limits<float>::quiet_NaN()
                       : 0.01F * static_cast<float>(i % 150);
   });
+  add_column<double>(cloud, "range", {"range"}, [](std::size_t i, std::size_t) {
+    return is_miss(i) ? std::numeric_limits<double>::quiet_NaN() : 1.0 + static_cast<double>(i);
+  });
   add_column<std::uint32_t>(cloud, "class", {"class"}, [](std::size_t i, std::size_t) {
     return is_miss(i) ? kNoHit : static_cast<std::uint32_t>(i % 3);
   });

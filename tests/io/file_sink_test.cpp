@@ -34,8 +34,9 @@ TEST(FileFormats, AnUnknownSuffixTellsAllAndTheNearest) {
   EXPECT_THAT(
       text,
       AllOf(HasSubstr("no format has the suffix .pdc"), HasSubstr("did you mean .pcd?"),
-            HasSubstr(".pcd .ply .npz .csv .bin .kitti .npy .depth.png .paper.png .png .transform "
-                      ".depth.tiff .rgb.png .normal.png .instance.png .class.png")));
+            HasSubstr(
+                ".pcd .ply .npz .csv .bin .kitti .npy .depth.png .paper.png .png .transform "
+                ".bev.png .view.png .depth.tiff .rgb.png .normal.png .instance.png .class.png")));
   EXPECT_THAT(error_text([] { format_for("cloud"); }), HasSubstr("the name has no suffix"));
   EXPECT_THAT(error_text([] { format_for("out/.pcd"); }), HasSubstr("the name has no suffix"));
 }
@@ -63,9 +64,11 @@ TEST(FileSink, WritesCloudAndSidecarAndNothingElse) {
 
 TEST(FileSink, PreviewsAndPosesHaveNoSidecar) {
   const testing::TestFolder folder;
-  for (const char* name : {"a.png", "a.paper.png", "a.transform"})
-    write_cloud(make_fixture(), folder / name);
-  EXPECT_EQ(folder.names().size(), 3U);
+  CloudFixture made = make_fixture();
+  fixture::add_image_columns(made.cloud);
+  for (const char* name : {"a.png", "a.paper.png", "a.transform", "a.bev.png", "a.view.png"})
+    write_cloud(made, folder / name);
+  EXPECT_EQ(folder.names().size(), 5U);
 }
 
 TEST(FileSink, ImagesHaveASidecarThatSaysWhatThePixelsAre) {

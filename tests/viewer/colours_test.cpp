@@ -37,10 +37,10 @@ TEST(ColourOf, RainbowRunsFromBlueToRedAndGreyIsEven) {
   EXPECT_EQ(apart(colour_of(ColourMap::grey, 0.5), {128, 128, 128}), 0);
 }
 
-TEST(ColourOfNumber, TellsTheFirstSixteenApart) {
+TEST(CategoryColour, TellsTheFirstSixteenApart) {
   for (std::uint32_t a = 0; a < 16; ++a) {
     for (std::uint32_t b = 0; b < a; ++b) {
-      EXPECT_GT(apart(colour_of_number(a), colour_of_number(b)), 40) << a << " and " << b;
+      EXPECT_GT(apart(category_colour(a), category_colour(b)), 40) << a << " and " << b;
     }
   }
 }

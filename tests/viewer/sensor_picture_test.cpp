@@ -41,23 +41,23 @@ class SensorPictureTest : public testing::Test {
 
 TEST_F(SensorPictureTest, ScalesDepthAlongTheBoresightAndRangeAlongTheBeam) {
   const SensorPicture depth = picture_of(Quantity::depth);
-  EXPECT_DOUBLE_EQ(depth.low, 1.0);
-  EXPECT_NEAR(depth.high, 4.0, 1e-12) << "of a 3-4-5 triangle";
+  EXPECT_DOUBLE_EQ(depth.scale.low, 1.0);
+  EXPECT_NEAR(depth.scale.high, 4.0, 1e-12) << "of a 3-4-5 triangle";
   const SensorPicture range = picture_of(Quantity::range);
-  EXPECT_DOUBLE_EQ(range.high, 5.0);
+  EXPECT_DOUBLE_EQ(range.scale.high, 5.0);
   EXPECT_EQ(range.colours[0].r, 255) << "near is bright";
   EXPECT_EQ(range.colours[1].r, 0);
 }
 
 TEST_F(SensorPictureTest, CountsRangesFromWhereTheSensorDoes) {
   beams_.range_offset_m = 0.5;
-  EXPECT_DOUBLE_EQ(picture_of(Quantity::range).low, 1.5);
+  EXPECT_DOUBLE_EQ(picture_of(Quantity::range).scale.low, 1.5);
 }
 
 TEST_F(SensorPictureTest, ScalesIntensityFromZero) {
   const SensorPicture picture = picture_of(Quantity::intensity);
-  EXPECT_DOUBLE_EQ(picture.low, 0.0);
-  EXPECT_DOUBLE_EQ(picture.high, 0.5);
+  EXPECT_DOUBLE_EQ(picture.scale.low, 0.0);
+  EXPECT_DOUBLE_EQ(picture.scale.high, 0.5);
   EXPECT_EQ(picture.colours[0].g, 255);
   EXPECT_EQ(picture.colours[1].g, 128);
 }
@@ -90,7 +90,30 @@ TEST_F(SensorPictureTest, CountsEveryStatus) {
 TEST_F(SensorPictureTest, HasNoScaleWithoutReturns) {
   frame_.status = {Status::miss, Status::miss, Status::miss};
   const SensorPicture picture = picture_of(Quantity::depth);
-  EXPECT_LT(picture.high, picture.low);
+  EXPECT_FALSE(picture.scale.has_values);
+}
+
+TEST_F(SensorPictureTest, KeepsItsColoursWhenOneEchoIsFarAway) {
+  constexpr std::size_t kBeams = 1000;
+  beams_.cols = kBeams;
+  beams_.directions.assign(kBeams, direction_through(0.0, 0.0));
+  frame_.status.assign(kBeams, Status::hit);
+  frame_.range_m.clear();
+  for (std::size_t i = 0; i < kBeams; ++i)
+    frame_.range_m.push_back(1.0 + 0.001 * static_cast<double>(i));
+  frame_.range_m[500] = 100.0;
+  frame_.intensity.assign(kBeams, 0.5F);
+  const SensorPicture picture = picture_of(Quantity::range);
+  EXPECT_LT(picture.scale.high, 2.01);
+  EXPECT_TRUE(picture.scale.clips_high);
+  EXPECT_NEAR(picture.colours[250].r, 191, 3) << "a quarter of the way from near to far";
+}
+
+TEST_F(SensorPictureTest, ShowsACamerasPixelsInTheirOrder) {
+  const SensorPicture picture = picture_of(Quantity::range);
+  EXPECT_EQ(picture.layout.kind, BeamPicture::Kind::image);
+  EXPECT_EQ(picture.layout.cols, 3U);
+  EXPECT_EQ(picture.layout.beam_at(2), 2U);
 }
 
 TEST_F(SensorPictureTest, ShowsAWallSquareOnInOneColour) {

@@ -13,12 +13,14 @@ import numpy as np
 from PIL import Image
 
 from glidar import Error
+from glidar._pictures import scale_of
 from glidar.campaign import charts, files, folder as folders, index, rotations
 from glidar.campaign.finish import MANIFEST_FILE
 
 REPORT_FILE = "report.html"
 EXAMPLES = 12
 MOST_FAULTS = 20
+NO_RETURN = 44, 44, 52  # as in PNG files
 PICTURE = 160  # pixels, of the longer side
 KNOWN = {"trial", "shard", "ok", "error", "seed", "scene", "sensor"}
 STYLE = """
@@ -128,20 +130,39 @@ def _target(campaign):
                     float)
 
 
-def _distributions(table, campaign):
+def _single_value(values):
+    """The one number that all finite values are; None where they differ or there are none."""
+    finite = values[np.isfinite(values)]
+    return float(finite[0]) if len(finite) and (finite == finite[0]).all() else None
+
+
+def _columns(table, campaign):
+    """(name, numbers) of all that has a distribution."""
     ok = table["ok"].to_numpy(zero_copy_only=False)
-    distance = np.linalg.norm(_position(table) - _target(campaign), axis=1)
-    parts = [charts.histogram("distance from the target, m", distance)]
+    yield "distance from the target, m", np.linalg.norm(_position(table) - _target(campaign), axis=1)
     facts = set(index.FACTS)
     for name in table.column_names:
         if name in KNOWN or name in index.POSE:
             continue
         values = np.asarray(table[name].to_numpy(), float)
-        parts.append(charts.histogram(name, values[ok] if name in facts else values))
+        yield name, values[ok] if name in facts else values
+
+
+def _distributions(table, campaign):
+    """Charts of what differs between trials; what is the same in all is listed."""
+    parts, constants = [], []
+    for name, values in _columns(table, campaign):
+        value = _single_value(values)
+        if value is None:
+            parts.append(charts.histogram(name, values))
+        else:
+            constants.append(f"{name} = {value:.6g}")
     for name in ("scene", "sensor"):
         words, counts = np.unique(table[name].to_numpy(), return_counts=True)
         if len(words) > 1:
             parts.append(charts.bars(name, [str(w) for w in words], [int(c) for c in counts]))
+    if constants:
+        parts.append(f"<p><small>The same in all trials: {escape('; '.join(constants))}.</small></p>")
     return "".join(parts)
 
 
@@ -161,15 +182,18 @@ def _coverage(table, campaign):
     return "".join(parts)
 
 
-def _colour_picture(values):
-    """Near is dark, far is bright; black where there is nothing."""
+def _colour_picture(values, column):
+    """The picture and its scale in words. Near is bright, as in all pictures of GLIDAR; dark grey where
+    there is nothing; a few odd values do not spoil the scale."""
     values = np.asarray(values, float)
     seen = np.isfinite(values) & (values > 0)
-    pixels = np.zeros((*values.shape, 3), np.uint8)
-    if seen.any():
-        least, most = values[seen].min(), values[seen].max()
-        pixels[seen] = charts.colours((values[seen] - least) / max(most - least, 1e-12))
-    return Image.fromarray(pixels)
+    is_distance = column != "intensity"
+    scale = scale_of(values[seen], from_zero=not is_distance)
+    pixels = np.full((*values.shape, 3), NO_RETURN, np.uint8)
+    span = scale.high - scale.low
+    share = np.clip((values[seen] - scale.low) / span, 0, 1) if span > 0 else (values[seen] > scale.low) * 1.0
+    pixels[seen] = charts.colours(1.0 - share) if is_distance else np.rint(255 * share).astype(np.uint8)[:, None]
+    return Image.fromarray(pixels), " to ".join(scale.ends("m" if is_distance else ""))
 
 
 def _shown(picture):
@@ -183,7 +207,7 @@ def _shown(picture):
 
 
 def _pick(file, trial):
-    """(title, picture) of a trial of an NPZ shard."""
+    """(title, picture, its scale) of a trial of an NPZ shard."""
     for key in file.files:
         prefix = key[: -len("trial")] if key.endswith("trial") else None
         if prefix is None or trial not in file[key]:
@@ -191,7 +215,7 @@ def _pick(file, trial):
         row = int(np.flatnonzero(file[key] == trial)[0])
         for column in ("depth", "range", "intensity"):
             if prefix + column in file.files:
-                return column, _colour_picture(file[prefix + column][row])
+                return column, *_colour_picture(file[prefix + column][row], column)
     return None
 
 
@@ -210,7 +234,7 @@ def _examples(folder, table):
         with np.load(folder.root / names[0]) as file:
             found = _pick(file, trial)
         if found:
-            parts.append(charts.figure(f"trial {trial}: {found[0]}", _shown(found[1])))
+            parts.append(charts.figure(f"trial {trial}: {found[0]}", _shown(found[1]), found[2]))
     return "".join(parts) or "<p>The NPZ shards hold neither depth, range nor intensity.</p>"
 
 

@@ -294,11 +294,11 @@ class Formats(unittest.TestCase):
 
     def test_preview(self):
         image, _ = formats.read_png(FOLDER / "small" / "a.png")
-        zoom, gap = 512 // 5, 16
+        zoom, gap = 512 // 5, 15  # letters of 12 + 510 / 128 pixels
         panel = image[gap + zoom // 2 :: zoom, gap + zoom // 2 :: zoom][:4, :5].astype(int)
         light = panel.sum(2).reshape(-1)
         miss = np.arange(20) % 3 == 2
-        self.assertTrue((light[miss] < 120).all(), light)
+        self.assertTrue((light[miss] < 150).all(), light)
         self.assertTrue((np.diff(light[~miss]) < 0).all(), light)  # near is bright
         self.assertTrue(panel.reshape(-1, 3)[0].tolist() == [253, 231, 37])
         grey = image[gap + zoom // 2 :: zoom, 5 * zoom + 2 * gap + zoom // 2 :: zoom][:4, :5]

@@ -170,6 +170,33 @@ def test_the_map_keeps_areas(sine):
     assert area(x, y) / (2 * np.pi) == pytest.approx(0.2 / (2 * np.pi) * (sine[1] - sine[0]) / 2, rel=1e-3)
 
 
+def test_near_is_bright_and_one_far_echo_does_not_spoil_the_scale():
+    depth = np.linspace(2.0, 4.0, 400).reshape(20, 20)
+    depth[10, 10], depth[0, 1] = 100.0, np.nan
+    picture, scale = campaign_report._colour_picture(depth, "depth")
+    pixels = np.asarray(picture).astype(int)
+    assert pixels[0, 0].sum() > 3 * pixels[19, 19].sum()  # viridis: yellow and purple
+    assert (pixels[10, 10] == pixels[19, 19]).all() and tuple(pixels[0, 1]) == campaign_report.NO_RETURN
+    assert scale.startswith("2 to \N{GREATER-THAN OR EQUAL TO} 3.9") and scale.endswith("m")
+
+
+def test_intensity_is_grey_from_zero():
+    picture, scale = campaign_report._colour_picture(np.array([[1.0, 2.0], [0.5, np.nan]]), "intensity")
+    assert np.asarray(picture)[:, :, 0].tolist() == [[128, 255], [64, 44]] and scale == "0 to 2"
+
+
+def test_what_is_the_same_in_all_trials_has_no_chart(campaign):
+    campaign.run("out")
+    text = (campaign.call("report", "out"), (campaign.folder / "out" / "report.html").read_text("utf-8"))[1]
+    assert "all are" not in text.split("<h2>Speed")[0]
+
+
+def test_constants_are_listed():
+    assert campaign_report._single_value(np.array([2.0, np.nan, 2.0])) == 2.0
+    assert campaign_report._single_value(np.array([2.0, 3.0])) is None
+    assert campaign_report._single_value(np.array([np.nan])) is None
+
+
 def test_colours_run_from_dark_to_bright():
     brightness = charts.colours(np.linspace(0, 1, 20)).astype(int).sum(axis=1)
     assert brightness[-1] > brightness[0] and (np.diff(brightness) >= -8).all()

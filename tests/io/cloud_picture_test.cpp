@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/point_colours.hpp>
+
+#include <glidar/sensor/scan.hpp>
+
+#include <support/error_text.hpp>
+#include <support/test_folder.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <fstream>
+#include <limits>
+
+namespace glidar {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+/// A LiDAR's cloud of four beams: two on a car, one miss, one echo of noise.
+struct Made {
+  Scene scene;
+  Sensor sensor;
+  Beams beams;
+  Frame frame;
+  PointCloud cloud;
+  FileSinkOptions options;
+
+  [[nodiscard]] SidecarContext context() const { return {scene, sensor, beams, "embree"}; }
+};
+
+template <class T>
+void add(PointCloud& cloud, const std::string& name, std::vector<T> values) {
+  const std::size_t width = values.size() / cloud.size();
+  std::vector<std::string> components;
+  for (std::size_t i = 0; i < width; ++i) components.push_back(name + std::to_string(i));
+  cloud.columns.push_back({name, components, std::move(values)});
+}
+
+Made make(bool is_camera = false) {
+  Made made;
+  made.scene.class_names = {"unlabelled", "car", "road"};
+  made.scene.instances.resize(1);
+  made.scene.instances[0].name = "my car";
+  made.scene.instances[0].id = 7;
+  made.scene.instances[0].class_id = 1;
+  made.beams.rows = made.frame.rows = made.cloud.rows = 2;
+  made.beams.cols = made.frame.cols = made.cloud.cols = 2;
+  if (!is_camera) made.beams.boresight = Eigen::Vector3d::UnitX();
+  made.beams.directions.assign(4, made.beams.boresight);
+  made.cloud.frame_id = "lidar_frame";
+  made.frame.range_m = {4.0, 5.0, kNan, 90.0};
+  add<double>(made.cloud, "xyz", {4, 1, 0, 5, -1, 1, kNan, kNan, kNan, 0, 90, 2});
+  add<double>(made.cloud, "range", made.frame.range_m);
+  add<float>(made.cloud, "intensity", {1.0F, std::numeric_limits<float>::quiet_NaN(), 0.0F, 3.0F});
+  add<std::uint16_t>(made.cloud, "ring", {0, 0, 1, 1});
+  add<std::uint32_t>(made.cloud, "class", {1, 0, kNoHit, kNoHit});
+  add<std::uint32_t>(made.cloud, "instance", {7, 7, kNoHit, kNoHit});
+  return made;
+}
+
+PointColours colours_by(Made made, ColourBy by) {
+  made.options.picture.colour_by = by;
+  const SidecarContext context = made.context();
+  const CloudFile job{made.cloud, made.frame, made.options, context, {}};
+  return colour_points(job, {{{4, 1, 0}, {5, -1, 1}, {0, 90, 2}}, {0, 1, 3}});
+}
+
+std::string written(const Made& made, const std::string& name) {
+  const testing::TestFolder folder;
+  const SidecarContext context = made.context();
+  make_file_sink(folder / name, made.options, context)->write(made.cloud, made.frame);
+  std::ifstream in(folder / name, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+/// Width and height as the head of a PNG has them (RFC 2083, IHDR).
+std::array<unsigned, 2> png_size(const std::string& png) {
+  const auto number = [&png](std::size_t at) {
+    unsigned value = 0;
+    for (std::size_t i = at; i < at + 4; ++i)
+      value = value * 256U + static_cast<unsigned char>(png.at(i));
+    return value;
+  };
+  return {number(16), number(20)};
+}
+
+TEST(PointColours, OfNumbersHaveABarAndOfThingsALegend) {
+  for (const ColourBy by :
+       {ColourBy::height, ColourBy::range, ColourBy::intensity, ColourBy::ring}) {
+    const PointColours colours = colours_by(make(), by);
+    EXPECT_TRUE(colours.bar.has_value());
+    EXPECT_TRUE(colours.legend.empty());
+    EXPECT_EQ(colours.colours.size(), 3U);
+  }
+  EXPECT_FALSE(colours_by(make(), ColourBy::object_class).bar.has_value());
+}
+
+TEST(PointColours, HaveTheScaleOfTheirNumbers) {
+  const PointColours height = colours_by(make(), ColourBy::height);
+  EXPECT_EQ(height.bar->scale.low, 0.0);
+  EXPECT_EQ(height.bar->scale.high, 2.0);
+  EXPECT_EQ(height.bar->unit, "m");
+  const PointColours range = colours_by(make(), ColourBy::range);
+  EXPECT_GT(range.colours[0].r, range.colours[2].r) << "near is bright";
+}
+
+TEST(PointColours, NameClassesAndInstances) {
+  const PointColours classes = colours_by(make(), ColourBy::object_class);
+  ASSERT_EQ(classes.legend.size(), 3U);
+  std::vector<std::string> names;
+  for (const LegendEntry& entry : classes.legend) names.push_back(entry.text);
+  EXPECT_THAT(names, ::testing::UnorderedElementsAre("car", "unlabelled", "no object"));
+  const PointColours instances = colours_by(make(), ColourBy::instance);
+  EXPECT_EQ(instances.legend.at(0).text, "my car") << "the most frequent comes first";
+  EXPECT_EQ(instances.colours[0], instances.colours[1]);
+  EXPECT_NE(instances.colours[0], instances.colours[2]);
+}
+
+TEST(PointColours, AreGreyWhereThereIsNoNumber) {
+  const PointColours intensity = colours_by(make(), ColourBy::intensity);
+  EXPECT_EQ(intensity.bar->scale.high, 3.0);
+  EXPECT_NE(intensity.colours[1], intensity.colours[0]);
+}
+
+TEST(PointColours, OfACamerasRingsDoNotExist) {
+  EXPECT_THAT(error_text([] { colours_by(make(true), ColourBy::ring); }),
+              HasSubstr("ring: a camera has no rings; allowed: height, range, intensity, class"));
+}
+
+TEST(CloudPicture, HasTheSizeAskedFor) {
+  Made made = make();
+  made.options.picture.width = 640;
+  made.options.picture.height = 480;
+  for (const char* name : {"a.bev.png", "a.view.png"}) {
+    EXPECT_EQ(png_size(written(made, name)), (std::array<unsigned, 2>{640, 480})) << name;
+  }
+}
+
+TEST(CloudPicture, OfNothingIsDrawnToo) {
+  Made made = make();
+  made.cloud.columns[0].values = std::vector<double>(12, kNan);
+  for (const char* name : {"a.bev.png", "a.view.png"}) EXPECT_GT(written(made, name).size(), 1000U);
+}
+
+TEST(CloudPicture, OfACameraHasItsOwnAxes) {
+  const Made made = make(true);
+  for (const char* name : {"a.bev.png", "a.view.png"}) EXPECT_GT(written(made, name).size(), 1000U);
+}
+
+TEST(CloudPicture, RefusesSizesAndEyesThatCannotBe) {
+  Made made = make();
+  made.options.picture.eye_m = made.options.picture.target_m = Eigen::Vector3d(1.0, 2.0, 3.0);
+  EXPECT_THAT(error_text([&] { written(made, "a.view.png"); }),
+              HasSubstr("view_eye: it is where the view looks at"));
+  made.options.picture.width = 10;
+  EXPECT_THAT(error_text([&] { written(made, "a.bev.png"); }),
+              HasSubstr("picture size: 10 x 1000 pixels; allowed: sides from 200 to 8192"));
+}
+
+TEST(CloudPicture, LeavesNoFileAfterAnError) {
+  const testing::TestFolder folder;
+  Made made = make(true);
+  made.options.picture.colour_by = ColourBy::ring;
+  const SidecarContext context = made.context();
+  const auto sink = make_file_sink(folder / "a.bev.png", made.options, context);
+  EXPECT_THROW(sink->write(made.cloud, made.frame), Error);
+  EXPECT_TRUE(folder.names().empty());
+}
+
+}  // namespace
+}  // namespace glidar
