@@ -30,7 +30,7 @@ ALLOWED = {
         "core", "sensor", "motion", "render", "moving_cast", "setup", "pulse_cast", "simulate",
         "explain",
     },
-    "verify": {"core", "sensor", "render", "verify"},
+    "verify": {"core", "sensor", "motion", "render", "moving_cast", "verify"},
     "story_text": {
         "core", "sensor", "motion", "render", "moving_cast", "setup", "pulse_cast", "simulate",
         "explain", "io", "story_text",

@@ -4,6 +4,7 @@
 
 #include <glidar/core/scene.hpp>
 #include <glidar/core/workers.hpp>
+#include <glidar/render/exact_search.hpp>
 #include <glidar/render/resolve.hpp>
 
 namespace glidar {
@@ -12,10 +13,11 @@ namespace glidar {
 struct CpuBase {
   /// Throws Error unless the scene is valid.
   CpuBase(const Scene& scene, unsigned threads)
-      : workers(threads), resolver((validate(scene), scene)) {}
+      : workers(threads), resolver((validate(scene), scene)), search(resolver) {}
 
   Workers workers;
   Resolver resolver;
+  ExactSearch search;
 };
 
 }  // namespace glidar

@@ -20,8 +20,6 @@ struct Work {
   ExactBlock exact;
   Lanes<double> x;  ///< where the beams cross the plane at depth 1
   Lanes<double> y;
-  std::array<std::uint32_t, kLanes> row;  ///< of the drawn pixels
-  std::array<std::uint32_t, kLanes> col;
   std::array<std::uint32_t, kLanes> number;  ///< drawn there
   std::uint32_t certain = 0;                 ///< bit i: lane i meets its triangle
   unsigned used = 0;
@@ -43,43 +41,20 @@ std::uint32_t told(const PictureWriting& w, const Found& found) {
                                    : w.resolver.told(found.instance, found.primitive);
 }
 
-/// What was drawn at the up to eight pixels around one.
-std::span<const Found> found_around(const PictureWriting& w, std::uint32_t row, std::uint32_t col,
-                                    std::array<Found, 8>& found) {
-  std::size_t used = 0;
-  const std::uint32_t end_row = std::min(row + 2, w.drawn.rows);
-  const std::uint32_t end_col = std::min(col + 2, w.drawn.cols);
-  for (std::uint32_t r = row == 0 ? 0 : row - 1; r < end_row; ++r) {
-    for (std::uint32_t c = col == 0 ? 0 : col - 1; c < end_col; ++c) {
-      if (r == row && c == col) continue;
-      found[used++] = w.triangles.found(w.numbers[std::size_t{r} * w.drawn.cols + c]);
-    }
-  }
-  return {found.data(), used};
-}
-
 /// What the beam of a lane in doubt meets.
-Found settled(const PictureWriting& w, const Work& work, unsigned lane, const Found& told) {
-  const std::size_t beam = work.block.beam[lane];
-  const std::uint32_t row = work.row[lane];
-  const std::uint32_t col = work.col[lane];
-  if (!w.search) {
-    std::array<Found, 8> around;
-    return w.settler.settle(beam, told, found_around(w, row, col, around));
-  }
+Found settled(const PictureWriting& w, std::size_t beam, const Found& told) {
   const Found near = w.settler.meet_around(beam, told);
-  return near.instance != kNoHit ? near
-                                 : w.search(beam, w.drawn.first_row + row, w.drawn.first_col + col);
+  return near.instance != kNoHit ? near : w.search.nearest(beam);
 }
 
-/// Puts right the lanes in doubt; true when that changed the block.
-bool settle(const PictureWriting& w, std::uint32_t doubtful, Work& work) {
-  HitBlock& block = work.block;
+/// Puts these lanes right by an exact test; true when that changed the block.
+template <class Test>
+bool correct(const PictureWriting& w, std::uint32_t lanes, const Test& test, HitBlock& block) {
   bool changed = false;
-  for (; doubtful != 0; doubtful &= doubtful - 1) {
-    const auto lane = static_cast<unsigned>(std::countr_zero(doubtful));
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const auto lane = static_cast<unsigned>(std::countr_zero(lanes));
     const Found before{block.instance[lane], block.primitive[lane]};
-    const Found after = settled(w, work, lane, before);
+    const Found after = test(block.beam[lane], before);
     if (after == before) continue;
     changed = true;
     if (after.instance == kNoHit) {
@@ -102,6 +77,17 @@ std::uint32_t ahead(const ExactBlock& exact) {
   return mask;
 }
 
+/// Decides between surfaces of several instances that lie closer together than the picture shows.
+void choose_among_instances(const PictureWriting& w, Work& work) {
+  const std::uint32_t lanes = w.search.overlapping(work.block, work.exact);
+  const auto choose = [&](std::size_t beam, const Found& found) {
+    return w.search.nearest_around(beam, found);
+  };
+  if (lanes != 0 && correct(w, lanes, choose, work.block)) {
+    w.resolver.measure(work.beams, work.block, work.exact);
+  }
+}
+
 /// Writes the collected hits.
 void finish(const PictureWriting& w, Work& work) {
   if (work.used == 0) return;
@@ -117,10 +103,12 @@ void finish(const PictureWriting& w, Work& work) {
   const std::uint32_t uncertain = block.mask & ~(work.certain & ahead(work.exact));
   const std::uint32_t in_doubt =
       uncertain == 0 ? 0 : doubtful(w.resolver, block, work.exact) & uncertain;
-  if (in_doubt != 0 && settle(w, in_doubt, work) && block.mask != 0) {
+  const auto settle = [&](std::size_t beam, const Found& told) { return settled(w, beam, told); };
+  if (in_doubt != 0 && correct(w, in_doubt, settle, block) && block.mask != 0) {
     w.resolver.measure(work.beams, block, work.exact);
   }
   if (block.mask == 0) return;
+  if (w.search.has_overlaps()) choose_among_instances(w, work);
   w.resolver.write(w.request.beams, w.request.fields, block, work.exact, w.hits);
 }
 
@@ -167,8 +155,6 @@ void collect(const PictureWriting& w, std::uint32_t row, std::uint32_t col, std:
   const std::uint32_t picture_row = w.drawn.first_row + row;
   const std::uint32_t picture_col = w.drawn.first_col + col;
   const unsigned lane = work.used++;
-  work.row[lane] = row;
-  work.col[lane] = col;
   work.number[lane] = number;
   work.x[lane] = w.points.x[picture_col];
   work.y[lane] = w.points.y[picture_row];
@@ -204,6 +190,34 @@ void collect_row(const PictureWriting& w, std::uint32_t row, Works& works) {
   }
 }
 
+/// Writes the hits that are known without the picture over what it shows. The beams in the range
+/// that belong to columns beside the part are not known.
+void write_known(const PictureWriting& w, const BeamRange& beams) {
+  const auto first =
+      std::lower_bound(w.known.begin(), w.known.end(), beams.begin,
+                       [](const KnownHit& hit, std::size_t beam) { return hit.beam < beam; });
+  Work work;
+  work.certain = 0xffffffffU;
+  work.block.mask = 0;
+  for (auto hit = first; hit != w.known.end() && hit->beam < beams.end; ++hit) {
+    if (hit->found.instance == kNoHit) {
+      write_misses(w.request.fields, hit->beam, 1, w.hits);
+      continue;
+    }
+    const unsigned lane = work.used++;
+    work.x[lane] = w.points.x[hit->beam % w.request.beams.cols];
+    work.y[lane] = w.points.y[hit->beam / w.request.beams.cols];
+    work.block.beam[lane] = hit->beam;
+    work.block.instance[lane] = hit->found.instance;
+    work.block.primitive[lane] = told(w, hit->found);
+    work.block.mask |= 1U << lane;
+    if (work.used < kLanes) continue;
+    finish(w, work);
+    work.block.mask = 0;
+  }
+  finish(w, work);
+}
+
 }  // namespace
 
 DepthRange depths_of(const CastRequest& request, const Resolver& resolver,
@@ -223,6 +237,7 @@ void write_rows(const PictureWriting& w, std::uint32_t begin, std::uint32_t end)
   Works works;
   for (std::uint32_t row = begin; row < end; ++row) collect_row(w, row, works);
   for (std::size_t i = 0; i < works.ring.size(); ++i) go_on(w, works);
+  if (!w.known.empty()) write_known(w, {beams_of(w, begin).begin, beams_of(w, end - 1).end});
   if (!w.request.then) return;
   for (std::uint32_t row = begin; row < end; ++row) w.request.then(beams_of(w, row));
 }

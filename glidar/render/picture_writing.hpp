@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/function_ref.hpp>
 #include <glidar/core/work_count.hpp>
 #include <glidar/render/depth_range.hpp>
+#include <glidar/render/exact_search.hpp>
 #include <glidar/render/plane_points.hpp>
 #include <glidar/render/renderer.hpp>
 #include <glidar/render/settle.hpp>
@@ -14,6 +14,12 @@
 #include <span>
 
 namespace glidar {
+
+/// What a beam meets.
+struct KnownHit {
+  std::size_t beam;
+  Found found;
+};
 
 /// What turns a picture of triangle numbers, or a part of one, into hits.
 struct PictureWriting {
@@ -26,10 +32,9 @@ struct PictureWriting {
   std::span<const std::uint32_t> numbers;  ///< of these, row by row
   PixelRect part;                          ///< those of them whose hits are written
   Hits& hits;
-  /// What a beam meets among all triangles that there are at this row and column of the picture.
-  /// Asked where none around the one told is met. Empty: what was told at the pixels around is
-  /// tried.
-  FunctionRef<Found(std::size_t beam, std::uint32_t row, std::uint32_t col)> search = {};
+  const ExactSearch& search;  ///< for beams that meet no triangle around the one drawn
+  /// Beams whose hits are known already, whatever was drawn, in rising order.
+  std::span<const KnownHit> known = {};
 };
 
 /// The planes that hug all instances that are there for a cast; the resolver has its poses. One

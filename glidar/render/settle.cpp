@@ -4,7 +4,6 @@
 
 #include <glidar/core/simd.hpp>
 #include <glidar/render/corners.hpp>
-#include <glidar/render/surface.hpp>
 
 #include <algorithm>
 
@@ -29,19 +28,6 @@ GLIDAR_SIMD std::uint32_t outside(const ExactBlock& e, const CornerBlock& c) {
   std::uint32_t mask = 0;
   for (unsigned i = 0; i < kLanes; ++i) mask |= bits[i];
   return mask;
-}
-
-/// The weights of corners 1 and 2 where a beam meets a triangle's plane.
-Eigen::Vector2f weights(const Mesh& mesh, std::uint32_t triangle, const Eigen::Vector3d& point) {
-  const Triangle& t = mesh.triangles[triangle];
-  const Eigen::Vector3d v0 = mesh.positions_m[t[0]].cast<double>();
-  const Eigen::Vector3d e1 = mesh.positions_m[t[1]].cast<double>() - v0;
-  const Eigen::Vector3d e2 = mesh.positions_m[t[2]].cast<double>() - v0;
-  const Eigen::Vector3d normal = e1.cross(e2);
-  const double whole = normal.squaredNorm();
-  const Eigen::Vector3d from = point - v0;
-  return Eigen::Vector2d(normal.dot(from.cross(e2)) / whole, normal.dot(e1.cross(from)) / whole)
-      .cast<float>();
 }
 
 }  // namespace
@@ -73,72 +59,36 @@ Judgement Settler::judgement(std::size_t beam, std::uint32_t instance) const {
           .slack_m = slack(view.scale * (reach + view.sensor_in_object.norm()))};
 }
 
-void Settler::consider(Judgement& judgement, const Found& candidate) const {
-  if (meets(judgement.beam, candidate)) judgement.consider(candidate);
-}
-
-bool Settler::meets(std::size_t beam, const Found& candidate) const {
-  const Instance& instance = resolver_.scene().instances[candidate.instance];
-  const Mesh& mesh = resolver_.mesh(candidate.instance);
-  const ObjectRay ray = ray_in(resolver_.view(candidate.instance), beams_, beam);
-  const TrianglePlane& plane = resolver_.plane(candidate.instance, candidate.primitive);
-  if (cull_back_faces_ && plane.normal.dot(ray.direction) > 0.0) return false;
-  const std::uint16_t slot = material_slot(mesh, candidate.primitive);
-  if (!(resolver_.scene().materials[instance.materials[slot]].alpha_cutoff > 0.0F)) return true;
-  const Eigen::Vector3d point = ray.origin + distance_to(plane, ray) * ray.direction;
-  const SurfacePlace place{mesh, instance, candidate.primitive,
-                           weights(mesh, candidate.primitive, point)};
-  return !is_cut_out(resolver_.scene(), place);
-}
-
-void Settler::consider_around(Judgement& judgement, const Found& middle) const {
+/// Calls take(candidate) for the triangles around one that do not let the beam through.
+template <class Take>
+void Settler::for_triangles_around(std::size_t beam, const Found& middle, const Take& take) const {
   const std::uint32_t mesh = resolver_.scene().instances[middle.instance].mesh;
   for (const std::uint32_t vertex : resolver_.mesh(middle.instance).triangles[middle.primitive]) {
     for (const std::uint32_t t : meshes_[mesh].neighbours.around(vertex)) {
-      if (t != middle.primitive) consider(judgement, {middle.instance, t});
+      const Found candidate{middle.instance, t};
+      if (t != middle.primitive && meets(beam, candidate)) take(candidate);
     }
   }
 }
 
 /// Goes from a triangle to the one around it that is closest to the beam, and on, until one is met
 /// or none is closer.
-Judgement Settler::search_from(std::size_t beam, const Found& start) const {
-  Judgement found = judgement(beam, start.instance);
-  consider(found, start);
-  Found middle = start;
-  for (int step = 0; step < kMostSteps && found.nearest.instance == kNoHit; ++step) {
-    consider_around(found, middle);
+Found Settler::meet_around(std::size_t beam, const Found& told) const {
+  Judgement found = judgement(beam, told.instance);
+  if (meets(beam, told)) found.consider(told);
+  if (found.is_clear()) return told;
+  const auto consider = [&](const Found& candidate) { found.consider(candidate); };
+  for_triangles_around(beam, told, consider);
+  Found middle = told;
+  for (int step = 1; step < kMostSteps && found.nearest.instance == kNoHit; ++step) {
     if (found.closest.instance == kNoHit || found.closest == middle) break;
     middle = found.closest;
+    for_triangles_around(beam, middle, consider);
   }
-  return found;
-}
-
-Found Settler::nearest_of(std::size_t beam, std::span<const Found> candidates) const {
-  if (candidates.empty()) return {};
-  Judgement all = judgement(beam, candidates.front().instance);
-  for (const Found& candidate : candidates) {
-    all.slack_m = judgement(beam, candidate.instance).slack_m;
-    consider(all, candidate);
-  }
-  return all.nearest;
-}
-
-Found Settler::settle(std::size_t beam, const Found& told, std::span<const Found> around) const {
-  const Judgement first = search_from(beam, told);
-  if (first.nearest.instance != kNoHit) return first.nearest;
-
-  Judgement all = first;
-  bool passes = false;
-  for (const Found& other : around) {
-    passes = passes || other.instance == kNoHit;
-    if (other.instance == kNoHit || other == told) continue;
-    const Judgement found = search_from(beam, other);
-    const Found& best = found.nearest.instance == kNoHit ? found.closest : found.nearest;
-    if (best.instance != kNoHit) all.consider(best);
-  }
-  if (all.nearest.instance != kNoHit) return all.nearest;
-  return passes ? Found{} : all.closest;
+  if (found.nearest.instance == kNoHit) return {};
+  middle = found.nearest;
+  for_triangles_around(beam, middle, [&](const Found& tied) { found.consider_tie(tied); });
+  return found.nearest;
 }
 
 }  // namespace glidar

@@ -8,7 +8,6 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
-#include <span>
 #include <vector>
 
 namespace glidar {
@@ -34,27 +33,19 @@ class Settler {
   Settler(const Resolver& resolver, const std::vector<KnownMesh>& meshes, const Beams& beams,
           bool cull_back_faces);
 
-  /// What the beam meets, from what was told at its pixel and at the pixels around it (kNoHit where
-  /// nothing was).
-  [[nodiscard]] Found settle(std::size_t beam, const Found& told,
-                             std::span<const Found> around) const;
+  /// What the beam meets among the triangles around the one told, the lowest of those that meet
+  /// where it does; nothing when it meets none.
+  [[nodiscard]] Found meet_around(std::size_t beam, const Found& told) const;
 
-  /// What the beam meets among the triangles around the one told; nothing when it meets none.
-  [[nodiscard]] Found meet_around(std::size_t beam, const Found& told) const {
-    return search_from(beam, told).nearest;
+  /// See stops().
+  [[nodiscard]] bool meets(std::size_t beam, const Found& candidate) const {
+    return stops(resolver_, beams_, beam, cull_back_faces_, candidate);
   }
-
-  /// The nearest of these that the beam meets; nothing when it meets none.
-  [[nodiscard]] Found nearest_of(std::size_t beam, std::span<const Found> candidates) const;
-
-  /// False where a triangle lets a beam through: by its side, or by a hole of its alpha mask.
-  [[nodiscard]] bool meets(std::size_t beam, const Found& candidate) const;
 
  private:
   [[nodiscard]] Judgement judgement(std::size_t beam, std::uint32_t instance) const;
-  void consider(Judgement& judgement, const Found& candidate) const;
-  void consider_around(Judgement& judgement, const Found& middle) const;
-  [[nodiscard]] Judgement search_from(std::size_t beam, const Found& start) const;
+  template <class Take>
+  void for_triangles_around(std::size_t beam, const Found& middle, const Take& take) const;
 
   const Resolver& resolver_;
   const std::vector<KnownMesh>& meshes_;

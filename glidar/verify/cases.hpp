@@ -36,6 +36,6 @@ const std::vector<double>& verify_distances();
 
 /// Places the shape, casts a camera's rays and random ones, and judges them by the closed form.
 VerifyResult run_case(const VerifyCase& verify_case, const Shape& shape,
-                      const RendererOptions& options);
+                      const VerifySubject& subject);
 
 }  // namespace glidar

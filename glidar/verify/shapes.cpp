@@ -229,14 +229,38 @@ std::vector<Shape> make_shapes() {
   return {make_box(), make_plane(), make_tetrahedron(), make_cylinder(), make_sphere()};
 }
 
+void add_shape(Scene& scene, Mesh mesh, double scale, const Pose& world_from_object) {
+  Instance instance;
+  instance.name = mesh.name;
+  instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+  instance.scale = scale;
+  instance.materials = {0};
+  instance.world_from_object = world_from_object;
+  scene.meshes.push_back(std::move(mesh));
+  scene.sources.emplace_back();
+  if (scene.materials.empty()) scene.materials.emplace_back();
+  scene.instances.push_back(std::move(instance));
+}
+
+RealPlace place_from(const Pose& world_from_object, const Eigen::Vector3d& viewpoint) {
+  return {.rotation = world_from_object.linear().cast<Real>(),
+          .shift = world_from_object.translation().cast<Real>() - viewpoint.cast<Real>()};
+}
+
+RealVector place_vertex(const Mesh& mesh, std::uint32_t vertex, double scale,
+                        const RealPlace& place) {
+  const RealVector in_object = mesh.origin_m.cast<Real>() + mesh.positions_m[vertex].cast<Real>();
+  return place.rotation * (static_cast<Real>(scale) * in_object) + place.shift;
+}
+
 ClosedForm make_closed_form(const Shape& shape, double scale, const Pose& world_from_object,
                             const Eigen::Vector3d& viewpoint) {
-  const Eigen::Matrix<Real, 3, 3> rotation = world_from_object.linear().cast<Real>();
-  const RealVector shift = world_from_object.translation().cast<Real>() - viewpoint.cast<Real>();
-  const auto place = [&](std::uint32_t vertex) -> RealVector {
-    const RealVector in_object =
-        shape.mesh.origin_m.cast<Real>() + shape.mesh.positions_m[vertex].cast<Real>();
-    return rotation * (static_cast<Real>(scale) * in_object) + shift;
+  return make_closed_form(shape, scale, place_from(world_from_object, viewpoint));
+}
+
+ClosedForm make_closed_form(const Shape& shape, double scale, const RealPlace& at) {
+  const auto place = [&](std::uint32_t vertex) {
+    return place_vertex(shape.mesh, vertex, scale, at);
   };
   ClosedForm form{.sides = {}, .solid = shape.solid};
   for (const Face& face : shape.faces) {
@@ -257,6 +281,25 @@ TrueHit intersect(const ClosedForm& form, const RealVector& origin, const RealVe
                   Real edge_tolerance_m) {
   return form.solid ? intersect_solid(form, origin, direction, edge_tolerance_m)
                     : intersect_face(form, origin, direction, edge_tolerance_m);
+}
+
+TrueHit leave(const ClosedForm& form, const RealVector& origin, const RealVector& direction,
+              Real edge_tolerance_m) {
+  const Clip c = clip(form, origin, direction);
+  TrueHit result;
+  const HalfSpace& exit = form.sides[c.exit];
+  const Real slope = exit.normal.dot(direction);
+  result.hit = c.leave * slope > edge_tolerance_m;
+  if (!result.hit) {
+    // The ray starts on the side by which it leaves: it must clearly go away from it.
+    result.clear = slope > kGrazingCosine;
+    return result;
+  }
+  result.range_m = c.leave;
+  result.normal = -exit.normal;
+  result.clear =
+      clear_of_edges(form, c.exit, origin + c.leave * direction, direction, edge_tolerance_m);
+  return result;
 }
 
 }  // namespace glidar

@@ -4,6 +4,7 @@
 
 #include <glidar/core/mesh.hpp>
 #include <glidar/core/pose.hpp>
+#include <glidar/core/scene.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -30,6 +31,9 @@ struct Shape {
 /// Box, plane, tetrahedron, cylinder of 24 facets, sphere of 80 facets.
 std::vector<Shape> make_shapes();
 
+/// Adds an instance of a mesh of its own.
+void add_shape(Scene& scene, Mesh mesh, double scale, const Pose& world_from_object);
+
 /// All points with normal . p <= offset, relative to the sensor, in world axes.
 struct HalfSpace {
   RealVector normal;  ///< unit, outwards
@@ -42,6 +46,21 @@ struct ClosedForm {
   std::vector<HalfSpace> sides;
   bool solid = true;
 };
+
+/// Where an object is seen from a viewpoint: p = rotation * (scale * p_object) + shift.
+struct RealPlace {
+  Eigen::Matrix<Real, 3, 3> rotation;
+  RealVector shift;
+};
+
+/// In world axes, relative to a position in the world.
+RealPlace place_from(const Pose& world_from_object, const Eigen::Vector3d& viewpoint);
+
+/// A vertex of a mesh that is there.
+RealVector place_vertex(const Mesh& mesh, std::uint32_t vertex, double scale,
+                        const RealPlace& place);
+
+ClosedForm make_closed_form(const Shape& shape, double scale, const RealPlace& place);
 
 /// The shape at world_from_object * (scale * p), seen from a position in the world.
 ClosedForm make_closed_form(const Shape& shape, double scale, const Pose& world_from_object,
@@ -65,5 +84,10 @@ inline constexpr Real kGrazingCosine = 1e-3L;
 /// 1978).
 TrueHit intersect(const ClosedForm& form, const RealVector& origin, const RealVector& direction,
                   Real edge_tolerance_m);
+
+/// Where a ray from inside a convex body, or from a point of its surface, leaves it; a miss where
+/// it does not go through it. A ray from the surface that runs along it is not clear.
+TrueHit leave(const ClosedForm& form, const RealVector& origin, const RealVector& direction,
+              Real edge_tolerance_m);
 
 }  // namespace glidar

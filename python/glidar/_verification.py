@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The accuracy of ranges and normals on this machine."""
+"""The accuracy of hits, ids, ranges and normals on this machine."""
 
 from __future__ import annotations
 
@@ -12,8 +12,10 @@ from ._inputs import one_of, whole
 
 @dataclass(frozen=True)
 class VerifyRow:
-    """One shape at one distance, in all sizes and places (docs/accuracy.md)."""
+    """One case with one shape at one distance (docs/accuracy.md)."""
 
+    name: str
+    """Of the case, such as "one shape at rest"."""
     shape: str
     distance_m: float
     rays: int
@@ -23,40 +25,58 @@ class VerifyRow:
     """Not judged."""
     wrong_hits: int
     wrong_misses: int
+    wrong_ids: int
+    """Hits with another instance, or a triangle that does not hold the true point."""
     range_error_m: float
     """Largest."""
     range_error_ulp: float
     """Largest, in steps of float32 at the true range."""
     normal_error_rad: float
     """Largest."""
-    passed: bool
+    known_failure: str
+    """Why this renderer is known to fail here; empty: it has to pass."""
+    verdict: str
+    """"passed", "FAILED", "known failure", "FIXED" (it passes, though it is listed as a known
+    failure), or "not applicable" (the renderer does not cast such beams)."""
+
+    @property
+    def passed(self) -> bool:
+        """Within all bounds."""
+        return self.verdict == "passed"
 
 
 @dataclass(frozen=True)
 class Verification:
-    """What ``glidar.verify()`` found; true when all is within the bounds."""
+    """What ``glidar.verify()`` found; true when every row passed, failed as known, or does not apply."""
 
     rows: tuple[VerifyRow, ...]
 
     @property
     def passed(self) -> bool:
-        """Ranges within 1 step of float32, normals within 1e-6 rad, no wrong hit, no wrong miss."""
-        return all(row.passed for row in self.rows)
+        """Ranges within 0.001 steps of float32, normals within 1e-6 rad, no wrong hit, miss or id, but
+        for known failures. False also when a known failure passes: then the list needs correction."""
+        return all(row.verdict not in ("FAILED", "FIXED") for row in self.rows)
 
     def __bool__(self) -> bool:
         return self.passed
 
     def __str__(self) -> str:
-        rays = sum(row.rays for row in self.rows)
-        worst = max(row.range_error_ulp for row in self.rows)
-        wrong = sum(row.wrong_hits + row.wrong_misses for row in self.rows)
-        verdict = "passed" if self.passed else "FAILED"
-        return f"{verdict}: {rays} rays, largest range error {worst:.2e} ulp of float32, {wrong} wrong hits or misses"
+        good = [row for row in self.rows if row.passed]
+        worst = max((row.range_error_ulp for row in good), default=0.0)
+        known = sum(row.verdict == "known failure" for row in self.rows)
+        bad = [f"{row.name}, {row.shape}, {row.distance_m:g} m: {row.verdict}"
+               for row in self.rows if row.verdict in ("FAILED", "FIXED")]
+        verdict = "passed" if self.passed else "FAILED (" + "; ".join(bad) + ")"
+        return (f"{verdict}: {sum(row.rays for row in good)} rays in {len(good)} rows, "
+                f"largest range error {worst:.2e} ulp of float32, {known} known failures")
 
 
 def verify(*, renderer: str = "auto", threads: int = 0) -> Verification:
     """Measures the accuracy of a renderer on this machine, as ``glidar verify`` does: every shape at
-    every distance from 0.1 m to 10 km, judged by its closed form."""
+    every distance from 0.1 m to 10 km, and the hard cases, compared with closed forms.
+
+    renderer: "auto", "embree", "raster" or "opengl"; the last two cast pinhole cameras only, and rows
+    without such beams do not apply to them. threads: 0: one per processor."""
     one_of(renderer, "renderer", ("auto", "embree", "raster", "opengl"))
     names = VerifyRow.__dataclass_fields__
     rows = _core.verify(renderer, whole(threads, "threads", 4096))

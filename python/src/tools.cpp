@@ -72,6 +72,7 @@ void bind_information(nb::module_& module) {
 void bind_tools(nb::module_& module) {
   bind_information(module);
   nb::class_<VerifyRow>(module, "VerifyRow")
+      .def_ro("name", &VerifyRow::name)
       .def_ro("shape", &VerifyRow::shape)
       .def_ro("distance_m", &VerifyRow::distance_m)
       .def_prop_ro("rays", [](const VerifyRow& self) { return self.result.rays; })
@@ -80,12 +81,15 @@ void bind_tools(nb::module_& module) {
       .def_prop_ro("near_edges", [](const VerifyRow& self) { return self.result.near_edges; })
       .def_prop_ro("wrong_hits", [](const VerifyRow& self) { return self.result.wrong_hits; })
       .def_prop_ro("wrong_misses", [](const VerifyRow& self) { return self.result.wrong_misses; })
+      .def_prop_ro("wrong_ids", [](const VerifyRow& self) { return self.result.wrong_ids; })
       .def_prop_ro("range_error_m", [](const VerifyRow& self) { return self.result.range_error_m; })
       .def_prop_ro("range_error_ulp",
                    [](const VerifyRow& self) { return self.result.range_error_ulp; })
       .def_prop_ro("normal_error_rad",
                    [](const VerifyRow& self) { return self.result.normal_error_rad; })
-      .def_prop_ro("passed", [](const VerifyRow& self) { return self.result.passed(); });
+      .def_ro("known_failure", &VerifyRow::known_failure)
+      .def_prop_ro("verdict",
+                   [](const VerifyRow& self) { return std::string(verdict_name(self.verdict())); });
   module.def("verify", verified, nb::arg("renderer"), nb::arg("threads"));
   module.def("surface_names", surface_names);
 }

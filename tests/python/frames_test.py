@@ -179,5 +179,17 @@ def test_information_of_a_plane_knows_what_it_does_not_determine():
 def test_verify_passes_on_this_machine():
     found = glidar.verify()
     assert found.passed, str(found)
-    assert len(found.rows) > 10
-    assert all(row.judged_hits > 0 for row in found.rows)
+    assert len(found.rows) > 40
+    assert all(row.judged_hits > 0 and row.rays > 0 for row in found.rows)
+    assert {row.name for row in found.rows} == {
+        "one shape at rest", "several instances", "above a planet", "moving sensor and target",
+        "sensor on a vertex", "at vertices and edges", "beside the outline"}
+    assert all(row.wrong_ids == 0 and row.range_error_ulp <= 1e-3 for row in found.rows if row.passed)
+    assert all(row.known_failure for row in found.rows if row.verdict == "known failure")
+
+
+def test_verify_tells_which_rows_do_not_apply_to_a_camera_only_renderer():
+    found = glidar.verify(renderer="raster")
+    assert found.passed, str(found)
+    left_out = {row.name for row in found.rows if row.verdict == "not applicable"}
+    assert left_out == {"moving sensor and target", "at vertices and edges", "beside the outline"}

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/random.hpp>
-#include <glidar/verify/cases.hpp>
 #include <glidar/verify/shapes.hpp>
 
 #include <gtest/gtest.h>
@@ -137,30 +136,25 @@ TEST(VerifyShapes, AgreeWithBruteForceOverTheirTriangles) {
   }
 }
 
-TEST(VerifyCases, EmbreeIsWithinBoundsAtBothEndsOfTheDistances) {
+TEST(VerifyShapes, RaysFromInsideAndFromAVertexLeaveByTheRightSide) {
   const std::vector<Shape> shapes = make_shapes();
-  for (const double distance_m : {0.1, 10000.0}) {
-    for (const VerifyCase& c : make_cases(0, distance_m)) {
-      VerifyResult result = run_case(c, shapes[c.shape], {});
-      EXPECT_TRUE(result.passed()) << result.range_error_ulp << " ulp, offset " << c.offset_m;
-    }
-  }
-}
-
-TEST(VerifyCases, AnyErrorOverItsBoundFails) {
-  const VerifyResult good{.rays = 1000, .judged_hits = 500, .judged_misses = 490, .near_edges = 10};
-  EXPECT_TRUE(good.passed());
-  const auto spoiled = [&](auto member, auto value) {
-    VerifyResult result = good;
-    result.*member = value;
-    return result.passed();
-  };
-  EXPECT_FALSE(spoiled(&VerifyResult::wrong_hits, std::size_t{1}));
-  EXPECT_FALSE(spoiled(&VerifyResult::wrong_misses, std::size_t{1}));
-  EXPECT_FALSE(spoiled(&VerifyResult::range_error_ulp, 1.01));
-  EXPECT_FALSE(spoiled(&VerifyResult::normal_error_rad, 1.1e-6));
-  EXPECT_FALSE(spoiled(&VerifyResult::judged_hits, std::size_t{0}));
-  EXPECT_FALSE(spoiled(&VerifyResult::near_edges, std::size_t{100}));
+  const Shape& box = shape_named(shapes, "box");
+  const ClosedForm inside = make_closed_form(box, 2.0, Pose::Identity(), {0.25, 0.0, 0.0});
+  const TrueHit hit = leave(inside, RealVector::Zero(), {1.0L, 0.0L, 0.0L}, 1e-12L);
+  EXPECT_TRUE(hit.hit && hit.clear);
+  EXPECT_EQ(hit.range_m, 0.75L);
+  EXPECT_EQ(hit.normal, RealVector(-1.0L, 0.0L, 0.0L));
+  const ClosedForm corner = make_closed_form(box, 2.0, Pose::Identity(), {1.0, 1.25, 0.75});
+  const TrueHit out = leave(corner, RealVector::Zero(), {0.6L, 0.8L, 0.0L}, 1e-12L);
+  EXPECT_FALSE(out.hit);
+  EXPECT_TRUE(out.clear);
+  const TrueHit through = leave(corner, RealVector::Zero(), {-1.0L, 0.0L, 0.0L}, 1e-12L);
+  EXPECT_FALSE(through.clear);  // along two sides
+  const RealVector across = RealVector(-2.0L, -2.5L, -1.5L).normalized();
+  const TrueHit far =
+      leave(corner, RealVector::Zero(), RealVector(-0.6L, -0.6L, -0.52L).normalized(), 1e-12L);
+  EXPECT_TRUE(far.hit && far.clear);
+  EXPECT_FALSE(leave(corner, RealVector::Zero(), across, 1e-12L).clear);  // to the far corner
 }
 
 }  // namespace

@@ -25,6 +25,7 @@ struct Job {
   GridWindow window;  ///< beams outside of it miss
   const HitFields& fields;
   const Resolver& resolver;
+  const ExactSearch& search;
   const embree::Probe& probe;
   bool cull_back_faces;
   bool has_wide_packets;
@@ -113,13 +114,14 @@ void trace(const Job& job, TileWork& work) {
   }
 }
 
-/// Puts right the lanes in doubt; true when that changed the block.
-bool settle(const Job& job, std::uint32_t doubtful, HitBlock& block) {
+/// Puts these lanes right by an exact test; true when that changed the block.
+template <class Test>
+bool correct(const Job& job, std::uint32_t lanes, const Test& test, HitBlock& block) {
   bool changed = false;
-  for (; doubtful != 0; doubtful &= doubtful - 1) {
-    const auto lane = static_cast<unsigned>(std::countr_zero(doubtful));
+  for (; lanes != 0; lanes &= lanes - 1) {
+    const auto lane = static_cast<unsigned>(std::countr_zero(lanes));
     const Found before{block.instance[lane], block.primitive[lane]};
-    const Found after = job.probe.settle(block.beam[lane], before);
+    const Found after = test(block.beam[lane], before);
     if (after.instance == before.instance && after.primitive == before.primitive) continue;
     changed = true;
     if (after.instance == kNoHit) {
@@ -132,16 +134,32 @@ bool settle(const Job& job, std::uint32_t doubtful, HitBlock& block) {
   return changed;
 }
 
+/// Decides between surfaces of several instances that lie closer together than single precision
+/// resolves.
+void choose_among_instances(const Job& job, TileWork& work) {
+  const std::uint32_t lanes = job.search.overlapping(work.block, work.exact);
+  const auto choose = [&](std::size_t beam, const Found& found) {
+    return job.search.nearest_around(beam, found);
+  };
+  if (lanes != 0 && correct(job, lanes, choose, work.block)) {
+    job.resolver.measure(work.beams, work.block, work.exact);
+  }
+}
+
 /// Writes the hits of a traced tile over the misses that stand there.
 void finish(const Job& job, TileWork& work) {
   HitBlock& block = work.block;
   if (block.mask != 0) {
     job.resolver.measure(work.beams, block, work.exact);
     const std::uint32_t doubtful = job.probe.doubtful(block, work.exact, work.rays);
-    if (doubtful != 0 && settle(job, doubtful, block) && block.mask != 0) {
+    const auto settle = [&](std::size_t beam, const Found& found) {
+      return job.probe.settle(beam, found);
+    };
+    if (doubtful != 0 && correct(job, doubtful, settle, block) && block.mask != 0) {
       job.resolver.measure(work.beams, block, work.exact);
     }
   }
+  if (block.mask != 0 && job.search.has_overlaps()) choose_among_instances(job, work);
   if (block.mask != 0) job.resolver.write(job.beams, job.fields, block, work.exact, job.hits);
 }
 
@@ -201,13 +219,15 @@ class EmbreeRenderer final : public Renderer {
       if (request.cull_back_faces) world_->filter_everything();
       world_->place(request);
     });
-    const embree::Probe probe(*world_, resolver, request.beams, request.cull_back_faces);
+    base_->search.prepare(request);
+    const embree::Probe probe(*world_, resolver, base_->search, request);
     find_plane_points(request.beams, points_);
     const Job job{.beams = request.beams,
                   .points = points_,
                   .window = window_on(resolver, world_->mesh_boxes(), request.present, points_),
                   .fields = request.fields,
                   .resolver = resolver,
+                  .search = base_->search,
                   .probe = probe,
                   .cull_back_faces = request.cull_back_faces,
                   .has_wide_packets = world_->has_wide_packets(),

@@ -3,13 +3,11 @@
 #include <glidar/render/embree/settle.hpp>
 
 #include <glidar/core/simd.hpp>
-#include <glidar/render/judgement.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 namespace glidar::embree {
 namespace {
@@ -26,8 +24,6 @@ constexpr double kClear =
 // Embree's weights and normal.
 constexpr double kCertainHairs = 4.0;
 constexpr float kLargestCoordinate = 1e18F;  // Embree stops the program at numbers it cannot square
-constexpr int kRingSteps = 8;
-constexpr double kRingHairs = 2.0;
 
 /// An axis far from the direction and from the axes of any grid, so that a hair across both never
 /// runs along a grid's edges.
@@ -124,12 +120,14 @@ GLIDAR_SIMD std::uint32_t doubt(const RTCHit16& hit, const ExactBlock& exact,
 
 }  // namespace
 
-Probe::Probe(const World& world, const Resolver& resolver, const Beams& beams, bool cull_back_faces)
+Probe::Probe(const World& world, const Resolver& resolver, const ExactSearch& search,
+             const CastRequest& request)
     : world_(world),
       space_(world.space()),
       resolver_(resolver),
-      beams_(beams),
-      cull_back_faces_(cull_back_faces),
+      search_(search),
+      beams_(request.beams),
+      cull_back_faces_(request.cull_back_faces),
       hair_(kHairPerRadius * std::min(space_.radius, kMostReaches * space_.least_reach)),
       slack_(slack(space_.radius + space_.sensor_in_trace.norm())) {}
 
@@ -145,14 +143,6 @@ FilterContext Probe::context() const {
 /// As much as single precision may move a beam where it hits this instance.
 double Probe::hair_of(std::uint32_t instance) const {
   return std::max(hair_, kHairPerRadius * world_.reach(instance));
-}
-
-ObjectRay Probe::exact_ray(std::size_t beam) const {
-  ObjectRay ray{space_.sensor_in_trace, space_.trace_from_sensor * beams_.directions[beam]};
-  if (!beams_.origins_m.empty()) {
-    ray.origin += space_.trace_from_sensor * beams_.origins_m[beam] / space_.metres_per_unit;
-  }
-  return ray;
 }
 
 void Probe::set_rays(const std::array<std::size_t, kLanes>& beam, const BeamBlock& in_sensor,
@@ -177,54 +167,13 @@ std::uint32_t Probe::doubtful(const HitBlock& block, const ExactBlock& exact,
   return doubt(rays.hit, exact, needed, narrowness) & block.mask;
 }
 
-Found Probe::trace(std::size_t beam, const Eigen::Vector3d& origin,
-                   const Eigen::Vector3d& direction) const {
-  FilterContext filter = context();
-  RTCRayHit one{};
-  one.ray.org_x = static_cast<float>(origin.x());
-  one.ray.org_y = static_cast<float>(origin.y());
-  one.ray.org_z = static_cast<float>(origin.z());
-  one.ray.dir_x = static_cast<float>(direction.x());
-  one.ray.dir_y = static_cast<float>(direction.y());
-  one.ray.dir_z = static_cast<float>(direction.z());
-  one.ray.tfar = std::numeric_limits<float>::infinity();
-  one.ray.mask = ~0U;
-  one.ray.id = static_cast<unsigned>(beam);
-  one.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-  one.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  intersect_one(space_.scene, filter.embree, one);
-  if (one.hit.geomID == RTC_INVALID_GEOMETRY_ID) return {};
-  const unsigned instance = one.hit.instID[0];
-  return {instance == RTC_INVALID_GEOMETRY_ID ? 0U : instance, one.hit.primID};
-}
-
 Found Probe::settle(std::size_t beam, const Found& found) const {
   Judgement judgement{.resolver = resolver_,
                       .beams = beams_,
                       .beam = beam,
                       .slack_m = slack_ * space_.metres_per_unit};
   judgement.consider(found);
-  if (judgement.nearest.instance != kNoHit) return found;
-
-  ObjectRay ray = exact_ray(beam);
-  const double along = (space_.centre - ray.origin).dot(ray.direction) - kClear * space_.radius;
-  if (along > 0.0) ray.origin += along * ray.direction;
-  const Eigen::Vector3d side = ray.direction.cross(axis_across(ray.direction)).normalized();
-  const Eigen::Vector3d up = ray.direction.cross(side);
-  bool passes = false;
-  for (int step = 0; step <= kRingSteps; ++step) {
-    const double angle = 2.0 * std::numbers::pi * (step - 0.5) / kRingSteps;
-    const double away = step == 0 ? 0.0 : kRingHairs * hair_of(found.instance);
-    const Eigen::Vector3d beside = away * (std::cos(angle) * side + std::sin(angle) * up);
-    const Found candidate = trace(beam, ray.origin + beside, ray.direction);
-    if (candidate.instance == kNoHit) {
-      passes = true;
-    } else {
-      judgement.consider(candidate);
-    }
-  }
-  if (judgement.nearest.instance != kNoHit) return judgement.nearest;
-  return passes ? Found{} : judgement.closest;
+  return judgement.is_clear() ? found : search_.nearest(beam);
 }
 
 }  // namespace glidar::embree

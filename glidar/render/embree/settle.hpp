@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/render/embree/embree_world.hpp>
-#include <glidar/render/judgement.hpp>
+#include <glidar/render/exact_search.hpp>
 #include <glidar/render/resolve.hpp>
 
 #include <cstdint>
@@ -16,10 +16,11 @@ namespace glidar::embree {
 /// functions around the vertex are then all rounding noise. So every ray is traced a hair beside
 /// the true beam, by an offset well above that noise, where signs are certain. The triangle found
 /// is the true beam's unless the beam runs within a hair of its border; that is told from the
-/// barycentric weights, and then the triangles around are judged in double on the true beam.
+/// barycentric weights, and then the true beam is tested in double.
 class Probe {
  public:
-  Probe(const World& world, const Resolver& resolver, const Beams& beams, bool cull_back_faces);
+  Probe(const World& world, const Resolver& resolver, const ExactSearch& search,
+        const CastRequest& request);
 
   [[nodiscard]] const TraceSpace& space() const { return space_; }
   [[nodiscard]] FilterContext context() const;
@@ -38,18 +39,16 @@ class Probe {
   [[nodiscard]] std::uint32_t doubtful(const HitBlock& block, const ExactBlock& exact,
                                        const RayHits& rays) const;
 
-  /// The true beam's triangle among those around the one found.
+  /// The true beam's triangle, which may be the one found or another.
   [[nodiscard]] Found settle(std::size_t beam, const Found& found) const;
 
  private:
   [[nodiscard]] double hair_of(std::uint32_t instance) const;
-  [[nodiscard]] ObjectRay exact_ray(std::size_t beam) const;
-  [[nodiscard]] Found trace(std::size_t beam, const Eigen::Vector3d& origin,
-                            const Eigen::Vector3d& direction) const;
 
   const World& world_;
   const TraceSpace& space_;
   const Resolver& resolver_;
+  const ExactSearch& search_;
   const Beams& beams_;
   bool cull_back_faces_;
   double hair_;   ///< the offset, in units of the trace space

@@ -10,8 +10,11 @@
 #include <glidar/render/opengl/triangle_drawing.hpp>
 #include <glidar/render/picture_writing.hpp>
 #include <glidar/render/pinhole_only.hpp>
+#include <glidar/render/silhouettes.hpp>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <span>
 #include <utility>
@@ -29,10 +32,15 @@ class OpenglRenderer final : public Renderer {
                  std::unique_ptr<opengl::Context> context)
       : workers_(options.threads),
         resolver_(scene),
+        search_(resolver_),
         meshes_(scene.meshes.begin(), scene.meshes.end()),
         context_(std::move(context)) {
+    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+      edges_.push_back(mesh_edges(scene.meshes[i], meshes_[i].neighbours));
+    }
     const opengl::FreshState state(*context_);
     gpu_ = std::make_unique<OnDevice>(scene);
+    silhouettes_.emplace(doubt_px());
   }
 
   ~OpenglRenderer() override {
@@ -123,6 +131,8 @@ class OpenglRenderer final : public Renderer {
       find_plane_points(request.beams, points_);
       const bool is_first_part = picture.rect.first_row == 0 && picture.rect.first_col == 0;
       if (is_first_part) count_.emplace(request.progress, request.beams.size());
+      search_.prepare(request);
+      search_silhouettes(request, picture.rect);
       const Settler settler(resolver_, meshes_, request.beams, request.cull_back_faces);
       write_picture({.request = request,
                      .resolver = resolver_,
@@ -132,7 +142,9 @@ class OpenglRenderer final : public Renderer {
                      .drawn = picture.rect,
                      .numbers = numbers.subspan(i * pixels, pixels),
                      .part = picture.rect,
-                     .hits = *hits[picture.cast]},
+                     .hits = *hits[picture.cast],
+                     .search = search_,
+                     .known = known_},
                     workers_, *count_);
       const bool is_last_part = picture.rect.first_row + picture.rect.rows == request.beams.rows &&
                                 picture.rect.first_col + picture.rect.cols == request.beams.cols;
@@ -140,13 +152,39 @@ class OpenglRenderer final : public Renderer {
     }
   }
 
+  /// Decides the beams that pass a silhouette so closely that the driver's rounding may have moved
+  /// it over them.
+  void search_silhouettes(const CastRequest& request, const PixelRect& part) {
+    const std::vector<std::size_t>& beams = silhouettes_->find(request, resolver_, edges_, part);
+    known_.resize(beams.size());
+    constexpr std::size_t kBeamsPerTask = 16;
+    workers_.for_ranges(beams.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        known_[i] = {beams[i], search_.nearest(beams[i])};
+      }
+    });
+  }
+
+  /// How far a driver may move a border: corners are rounded to its grid, both across and along,
+  /// and rounded in single precision before.
+  static double doubt_px() {
+    constexpr double kLeast_px = 1.0 / 128.0;
+    GLint bits = 0;
+    glGetIntegerv(GL_SUBPIXEL_BITS, &bits);
+    return std::max(kLeast_px, std::ldexp(2.0, -bits));
+  }
+
   Workers workers_;
   Resolver resolver_;
+  ExactSearch search_;
   std::vector<KnownMesh> meshes_;
+  std::vector<std::vector<MeshEdge>> edges_;  ///< per mesh
   std::unique_ptr<opengl::Context> context_;
   std::unique_ptr<OnDevice> gpu_;
   std::vector<opengl::Picture> pictures_;  ///< of the batch under way
   std::vector<opengl::PictureGroup> groups_;
+  std::optional<SilhouettePixels> silhouettes_;
+  std::vector<KnownHit> known_;     ///< of the picture whose hits are written
   PlanePoints points_;              ///< of the picture whose hits are written
   std::optional<WorkCount> count_;  ///< of its cast
 };

@@ -186,24 +186,4 @@ void draw_cluster(const Drawing& drawing, const Sighting& sighting, const PixelP
   }
 }
 
-void add_candidates(const Drawing& drawing, const Sighting& sighting, const PixelPlace& first,
-                    Canvas& canvas, const PixelPlace& pixel, std::vector<Found>& candidates) {
-  const Placed placed{drawing, sighting.instance, first.col, first.row, canvas};
-  const PackedMesh& mesh = mesh_of(drawing, sighting);
-  const Aim aim = aim_at(placed, mesh, sighting.cluster);
-  const int col = pixel.col - first.col;
-  const int row = pixel.row - first.row;
-  Footprints f;
-  for (const Pack& pack : packs_of(mesh, sighting.cluster)) {
-    find_footprints(aim, pack.corners, f);
-    for (unsigned lane = 0; lane < kLanes; ++lane) {
-      const auto size = static_cast<Size>(f.size[lane]);
-      const bool is_there = f.left[lane] <= col && col <= f.right[lane] && f.top[lane] <= row &&
-                            row <= f.bottom[lane];
-      if (size == Size::nothing || (size != Size::large && !is_there)) continue;
-      candidates.push_back({sighting.instance, pack.primitive[lane]});
-    }
-  }
-}
-
 }  // namespace glidar::raster

@@ -40,8 +40,4 @@ struct PixelPlace {
 void draw_cluster(const Drawing& drawing, const Sighting& sighting, const PixelPlace& first,
                   Canvas& canvas);
 
-/// Adds those of a cluster's triangles that may be met by the beam of a pixel of such a canvas.
-void add_candidates(const Drawing& drawing, const Sighting& sighting, const PixelPlace& first,
-                    Canvas& canvas, const PixelPlace& pixel, std::vector<Found>& candidates);
-
 }  // namespace glidar::raster

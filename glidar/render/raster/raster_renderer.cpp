@@ -31,7 +31,6 @@ struct Desk {
   raster::Canvas canvas;
   std::vector<std::uint32_t> numbers;
   std::vector<std::uint64_t> order;  ///< of the clusters: the nearest first
-  std::vector<Found> candidates;     ///< for a beam in doubt
 };
 
 /// Desks that threads take and give back, so that a later cast finds them ready.
@@ -99,6 +98,7 @@ class RasterRenderer final : public Renderer {
     check_pinhole(request.beams, "raster");
     resize(hits, request.beams.size(), request.fields);
     base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
+    base_->search.prepare(request);
     find_plane_points(request.beams, points_);
     WorkCount count(request.progress, request.beams.size());
     const DepthRange depths = depths_of(request, base_->resolver, known_);
@@ -193,7 +193,7 @@ class RasterRenderer final : public Renderer {
       for (std::size_t i = begin; i < end; ++i) {
         const raster::Part part = parts_.part(i);
         draw_part(drawing, part, parts_.seen_in(i), *desk);
-        write_part(drawing, part, parts_.seen_in(i), *desk, hits);
+        write_part(drawing, part, *desk, hits);
         count.add(std::size_t{part.written.rows} * part.written.cols);
       }
       desks_.give_back(std::move(desk));
@@ -201,11 +201,8 @@ class RasterRenderer final : public Renderer {
   }
 
   /// Writes the hits of what was drawn.
-  void write_part(const Drawing& drawing, const raster::Part& part,
-                  std::span<const std::uint32_t> seen, Desk& desk, Hits& hits) const {
-    const auto search = [&](std::size_t beam, std::uint32_t row, std::uint32_t col) {
-      return search_at(drawing, seen, part, {beam, row, col}, desk);
-    };
+  void write_part(const Drawing& drawing, const raster::Part& part, const Desk& desk,
+                  Hits& hits) const {
     write_rows({.request = drawing.request,
                 .resolver = base_->resolver,
                 .settler = drawing.settler,
@@ -215,7 +212,7 @@ class RasterRenderer final : public Renderer {
                 .numbers = desk.numbers,
                 .part = part.written,
                 .hits = hits,
-                .search = FunctionRef<Found(std::size_t, std::uint32_t, std::uint32_t)>(search)},
+                .search = base_->search},
                0, part.written.rows);
   }
 
@@ -233,28 +230,6 @@ class RasterRenderer final : public Renderer {
 
   [[nodiscard]] const Sighting& sighting_at(std::uint64_t key) const {
     return sightings_[static_cast<std::uint32_t>(key)];
-  }
-
-  /// A beam's place.
-  struct Pixel {
-    std::size_t beam;
-    std::uint32_t row;
-    std::uint32_t col;
-  };
-
-  /// What a beam meets among all triangles of the clusters that may be seen at its pixel, also of
-  /// those found hidden: perhaps it was the falsely told one that hid them.
-  Found search_at(const Drawing& drawing, std::span<const std::uint32_t> seen,
-                  const raster::Part& part, const Pixel& pixel, Desk& desk) const {
-    const auto row = static_cast<std::int32_t>(pixel.row);
-    const auto col = static_cast<std::int32_t>(pixel.col);
-    desk.candidates.clear();
-    for (const std::uint32_t index : seen) {
-      const Sighting& at = sightings_[index];
-      if (col < at.left || col > at.right || row < at.top || row > at.bottom) continue;
-      raster::add_candidates(drawing, at, first_of(part), desk.canvas, {col, row}, desk.candidates);
-    }
-    return drawing.settler.nearest_of(pixel.beam, desk.candidates);
   }
 
   /// Draws the clusters that are seen in a part, the nearest first, but for those found hidden.

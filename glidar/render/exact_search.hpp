@@ -1,0 +1,61 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/judgement.hpp>
+#include <glidar/render/renderer.hpp>
+#include <glidar/render/triangle_tree.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace glidar {
+
+/// The exact test, in double, over all triangles that a beam may meet: what renderers ask for the
+/// few beams that single precision leaves in doubt. Of surfaces that coincide where a beam meets
+/// them (see slack()) it returns the lowest (instance, triangle).
+class ExactSearch {
+ public:
+  /// The resolver must outlive the search.
+  explicit ExactSearch(const Resolver& resolver)
+      : resolver_(resolver), trees_(resolver.scene()), boxes_(resolver.scene().meshes.size()) {}
+
+  /// Takes the instances of the next cast, which must outlive its queries; the resolver has its
+  /// poses.
+  void prepare(const CastRequest& request);
+
+  /// The first surface that a beam meets; instance kNoHit: none.
+  [[nodiscard]] Found nearest(std::size_t beam) const;
+
+  /// True when boxes of instances overlap, so that surfaces of several may coincide.
+  [[nodiscard]] bool has_overlaps() const { return has_overlaps_; }
+
+  /// A bit for every hit lane in whose place another instance may have a surface.
+  [[nodiscard]] std::uint32_t overlapping(const HitBlock& block, const ExactBlock& exact) const;
+
+  /// What a beam meets first among all surfaces so near the one found that single precision may
+  /// have mistaken their order.
+  [[nodiscard]] Found nearest_around(std::size_t beam, const Found& found) const;
+
+ private:
+  [[nodiscard]] Judgement judgement(std::size_t beam) const;
+  [[nodiscard]] double slack_of(std::uint32_t instance, const ObjectRay& ray) const;
+  template <class Take>
+  void for_triangles_on(Judgement& judgement, const Take& take) const;
+  template <class Take>
+  void for_triangles_at(Judgement& judgement, const Found& found, const Take& take) const;
+  [[nodiscard]] bool is_in_box(std::uint32_t instance, const Eigen::Vector3d& in_sensor_m) const;
+
+  const Resolver& resolver_;
+  TriangleTrees trees_;
+  std::vector<Eigen::AlignedBox3d> boxes_;  ///< per mesh, relative to its origin
+  bool has_boxes_ = false;
+  const CastRequest* request_ = nullptr;
+  bool has_overlaps_ = false;
+  std::vector<std::vector<std::uint32_t>> others_;  ///< per instance: those whose boxes overlap
+  std::vector<Eigen::AlignedBox3d> seen_boxes_;     ///< per instance, in the sensor's frame, m
+  std::vector<std::uint32_t> order_;                ///< of instances, by their boxes
+};
+
+}  // namespace glidar

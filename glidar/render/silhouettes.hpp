@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/neighbours.hpp>
+#include <glidar/render/renderer.hpp>
+#include <glidar/render/resolve.hpp>
+#include <glidar/render/triangle_picture.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace glidar {
+
+/// An edge of a mesh with its two triangles.
+struct MeshEdge {
+  static constexpr std::uint32_t kNone = 0xffffffffU;
+
+  std::uint32_t from;    ///< vertex
+  std::uint32_t to;      ///< vertex
+  std::uint32_t first;   ///< triangle
+  std::uint32_t second;  ///< triangle; kNone: there is no other, or more than one
+};
+
+/// The edges of a mesh. Vertices at one position count as one; triangles without area have none.
+std::vector<MeshEdge> mesh_edges(const Mesh& mesh, const Neighbours& neighbours);
+
+/// The pixels whose beams pass a silhouette closely: an edge with a triangle on one side only, or
+/// with one triangle that faces the sensor and one that does not. Elsewhere the surface goes on
+/// beyond an edge, so that a rasterizer that moves the edge picks at worst an adjacent triangle.
+class SilhouettePixels {
+ public:
+  /// Beams within `band_px` of a silhouette, in pixels, are found.
+  explicit SilhouettePixels(double band_px) : band_px_(band_px) {}
+
+  /// Finds those in a part of the picture, as row * columns of the whole picture + column, in
+  /// rising order. `edges` has the edges of each mesh; the resolver has the cast's poses.
+  const std::vector<std::size_t>& find(const CastRequest& request, const Resolver& resolver,
+                                       const std::vector<std::vector<MeshEdge>>& edges,
+                                       const PixelRect& part);
+
+ private:
+  double band_px_;
+  std::vector<std::size_t> pixels_;
+};
+
+}  // namespace glidar

@@ -1,0 +1,33 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+
+namespace glidar {
+
+/// Four uniform random numbers from 0 to 1, a function of a case's number and an index.
+std::array<double, 4> probe_draw(std::uint32_t number, std::uint32_t index);
+
+/// A uniformly distributed rotation (Shoemake, "Uniform random rotations", Graphics Gems III).
+Eigen::Quaterniond random_rotation(const std::array<double, 4>& u);
+
+/// Unit directions uniformly distributed within an angle of +z.
+Eigen::Vector3d random_direction(double u0, double u1, double half_angle_rad);
+
+/// The beams of a small camera.
+Beams camera_probes(double half_view_rad);
+
+/// Beams of one row without structure; no origins: all zero.
+Beams loose_probes(std::vector<Eigen::Vector3d> directions,
+                   std::vector<Eigen::Vector3d> origins_m = {});
+
+/// 4096 beams in random directions within an angle of +z, from origins in a square of this width
+/// beside the sensor's. Draws 1 to 4096 of the case.
+Beams random_probes(std::uint32_t number, double half_view_rad, double spread_m);
+
+}  // namespace glidar

@@ -1,0 +1,224 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/verify/special_cases.hpp>
+
+#include <glidar/verify/aimed_probes.hpp>
+#include <glidar/verify/judge.hpp>
+#include <glidar/verify/moving_case.hpp>
+#include <glidar/verify/probes.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace glidar {
+namespace {
+
+/// Of distance and size: some hundred roundings of double. Rays that pass an outline nearer are not
+/// judged.
+constexpr double kExactTolerance = 1e-13;
+
+/// A shape in the world.
+struct Stand {
+  const Shape& shape;
+  double scale;
+  Pose world_from_object;
+};
+
+Scene make_scene(const std::vector<Stand>& stands) {
+  Scene scene;
+  for (const Stand& stand : stands) {
+    add_shape(scene, stand.shape.mesh, stand.scale, stand.world_from_object);
+  }
+  return scene;
+}
+
+TrueScene truth_of(const std::vector<Stand>& stands, const Eigen::Vector3d& viewpoint) {
+  TrueScene truth;
+  for (const Stand& stand : stands) {
+    truth.shapes.push_back(
+        place_shape(stand.shape, stand.scale, place_from(stand.world_from_object, viewpoint)));
+  }
+  return truth;
+}
+
+VerifyResult cast_and_judge(Renderer& renderer, const TrueScene& truth,
+                            const Pose& world_from_sensor, const Beams& beams) {
+  Hits hits;
+  renderer.cast(
+      {.beams = beams, .world_from_sensor = world_from_sensor, .fields = {.normal = true}}, hits);
+  return judge_cast(truth, world_from_sensor, beams, hits);
+}
+
+/// A camera's beams and, for renderers that cast them, random ones.
+VerifyResult cast_view(const VerifySubject& subject, Renderer& renderer, const TrueScene& truth,
+                       const Pose& world_from_sensor, double half_view_rad) {
+  constexpr std::uint32_t kNumber = 90001;
+  constexpr double kSpread_m = 0.1;
+  VerifyResult result =
+      cast_and_judge(renderer, truth, world_from_sensor, camera_probes(half_view_rad));
+  if (subject.casts_any_beams) {
+    result.add(cast_and_judge(renderer, truth, world_from_sensor,
+                              random_probes(kNumber, half_view_rad, kSpread_m)));
+  }
+  return result;
+}
+
+/// Two of each shape in a cloud of 40 m, and one shape 10 m from the sensor.
+std::vector<Stand> cloud_of_shapes(const std::vector<Shape>& shapes, const Pose& world_from_sensor,
+                                   double distance_m) {
+  constexpr std::uint32_t kNumber = 90010;
+  constexpr double kHalfSize_m = 20.0;
+  std::vector<Stand> stands;
+  for (std::uint32_t i = 0; i < 2 * shapes.size(); ++i) {
+    const std::array<double, 4> u = probe_draw(kNumber, 2 * i);
+    const Eigen::Vector3d in_sensor =
+        kHalfSize_m * (2.0 * Eigen::Vector3d(u[0], u[1], u[2]) - Eigen::Vector3d::Ones()) +
+        Eigen::Vector3d(0.0, 0.0, distance_m);
+    const Eigen::Quaterniond attitude = random_rotation(probe_draw(kNumber, 2 * i + 1));
+    stands.push_back({shapes[i % shapes.size()], 2.0 + 4.0 * u[3],
+                      make_pose(world_from_sensor * in_sensor, attitude)});
+  }
+  const Eigen::Vector3d near = world_from_sensor * Eigen::Vector3d(3.0, 0.0, 10.0);
+  stands.push_back({shapes[0], 1.5, make_pose(near, random_rotation(probe_draw(kNumber, 1000)))});
+  return stands;
+}
+
+VerifyResult several_instances(const VerifySubject& subject, const std::vector<Shape>& shapes,
+                               double distance_m) {
+  constexpr double kHalfView_m = 25.0;
+  constexpr double kWide_rad = 0.5;
+  const Pose world_from_sensor =
+      make_pose({12.0, -7.0, 3.0}, random_rotation(probe_draw(90011, 0)));
+  const std::vector<Stand> stands = cloud_of_shapes(shapes, world_from_sensor, distance_m);
+  const Scene scene = make_scene(stands);
+  const std::unique_ptr<Renderer> renderer = subject.make(scene);
+  TrueScene truth = truth_of(stands, world_from_sensor.translation());
+  truth.edge_tolerance_m = kExactTolerance * distance_m;
+  VerifyResult result =
+      cast_view(subject, *renderer, truth, world_from_sensor, std::atan(kHalfView_m / distance_m));
+  result.add(cast_view(subject, *renderer, truth, world_from_sensor, kWide_rad));
+  if (!subject.casts_any_beams) return result;
+  // Single precision is wrong for a beam in some thousand here, and for fewer the nearer it is: as
+  // many more that several are, on any processor.
+  constexpr double kBeamsTimesDistance = 1.28e6;
+  constexpr std::uint32_t kNumber = 90100;
+  const auto casts = static_cast<std::uint32_t>(kBeamsTimesDistance / distance_m);
+  for (std::uint32_t i = 0; i < casts; ++i) {
+    result.add(
+        cast_and_judge(*renderer, truth, world_from_sensor,
+                       random_probes(kNumber + i, std::atan(kHalfView_m / distance_m), 0.1)));
+  }
+  return result;
+}
+
+VerifyResult above_a_planet(const VerifySubject& subject, const Shape& shape, double height_m) {
+  constexpr double kRadius_m = 6.371e6;
+  constexpr double kHalfView_rad = 0.8;
+  constexpr std::size_t kFace = 17;
+  const Pose world_from_object = make_pose({}, random_rotation(probe_draw(90020, 0)));
+  std::array<Eigen::Vector3d, 3> corner;
+  for (std::size_t k = 0; k < 3; ++k) {
+    corner[k] = world_from_object *
+                (kRadius_m * shape.mesh.positions_m[shape.faces[kFace][k]].cast<double>());
+  }
+  const Eigen::Vector3d up = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+  const Eigen::Vector3d eye = (corner[0] + corner[1] + corner[2]) / 3.0 + height_m * up;
+  const Eigen::Vector3d ahead = (corner[0] - corner[1]).normalized() - 0.5 * up;
+  const Pose world_from_sensor = look_at(eye, eye + ahead, up);
+  const std::vector<Stand> stands = {{shape, kRadius_m, world_from_object}};
+  const Scene scene = make_scene(stands);
+  TrueScene truth = truth_of(stands, eye);
+  truth.edge_tolerance_m = kExactTolerance * kRadius_m;
+  return cast_view(subject, *subject.make(scene), truth, world_from_sensor, kHalfView_rad);
+}
+
+/// All poses and sizes are such that the sensor is on the vertices exactly.
+VerifyResult sensor_on_vertices(const VerifySubject& subject, const Shape& shape) {
+  constexpr double kScale = 2.0;
+  constexpr std::size_t kMostVertices = 8;
+  const std::vector<Stand> stands = {{shape, kScale, Pose::Identity()}};
+  const Scene scene = make_scene(stands);
+  const std::unique_ptr<Renderer> renderer = subject.make(scene);
+  VerifyResult result;
+  const std::size_t count = std::min(kMostVertices, shape.mesh.positions_m.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d eye = kScale * shape.mesh.positions_m[i].cast<double>();
+    const Pose into = look_at(eye, {0.01, 0.02, 0.03}, {0.1, 0.2, 1.0});
+    TrueScene truth = truth_of(stands, eye);
+    truth.edge_tolerance_m = kExactTolerance * kScale;
+    truth.is_from_inside = true;
+    result.add(cast_and_judge(*renderer, truth, into, camera_probes(0.25 * std::numbers::pi)));
+    result.add(cast_and_judge(*renderer, truth, into, camera_probes(0.45 * std::numbers::pi)));
+    if (!subject.casts_any_beams) continue;
+    Beams all_around = random_probes(90030, std::numbers::pi, 0.0);
+    all_around.origins_m.clear();
+    result.add(cast_and_judge(*renderer, truth, into, all_around));
+  }
+  return result;
+}
+
+/// Which beams are aimed at a shape.
+using Aim = Beams (*)(const AimedAt&);
+
+VerifyResult aimed_beams(const VerifySubject& subject, const Shape& shape, double distance_m,
+                         Aim aim) {
+  constexpr std::uint32_t kNumber = 90040;
+  constexpr std::uint32_t kEyes = 24;
+  const Pose world_from_object =
+      make_pose({4.0, -1.0, 2.0}, random_rotation(probe_draw(kNumber, 0)));
+  const std::vector<Stand> stands = {{shape, 1.5, world_from_object}};
+  const Scene scene = make_scene(stands);
+  const std::unique_ptr<Renderer> renderer = subject.make(scene);
+  VerifyResult result;
+  for (std::uint32_t i = 1; i <= kEyes; ++i) {
+    const Eigen::Quaterniond view = random_rotation(probe_draw(kNumber, i));
+    const Eigen::Vector3d eye =
+        world_from_object.translation() - view * Eigen::Vector3d(0.0, 0.0, distance_m + 1.5);
+    const Pose world_from_sensor = make_pose(eye, view);
+    const TrueScene truth = truth_of(stands, eye);
+    const Beams beams = aim({.placed = truth.shapes[0],
+                             .sensor_from_axes = world_from_sensor.linear().transpose(),
+                             .number = kNumber + i});
+    result.add(cast_and_judge(*renderer, truth, world_from_sensor, beams));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<SpecialCase> special_cases(const std::vector<Shape>& shapes) {
+  std::vector<SpecialCase> cases;
+  for (const double distance_m : {1e4, 1e5}) {
+    cases.push_back({"several instances", "all", distance_m, false, [&, distance_m](const auto& s) {
+                       return several_instances(s, shapes, distance_m);
+                     }});
+  }
+  const Shape& sphere = shapes.back();
+  constexpr double kHeight_m = 1.5;
+  cases.push_back({"above a planet", sphere.name, kHeight_m, false,
+                   [&](const auto& s) { return above_a_planet(s, sphere, kHeight_m); }});
+  cases.push_back({"moving sensor and target", shapes.front().name, 10.0, true,
+                   [&](const auto& s) { return moving_sensor_and_target(s, shapes); }});
+  for (const Shape& shape : shapes) {
+    if (!shape.solid) continue;
+    cases.push_back({"sensor on a vertex", shape.name, 0.0, false,
+                     [&](const auto& s) { return sensor_on_vertices(s, shape); }});
+  }
+  for (const Shape& shape : shapes) {
+    if (!shape.solid) continue;
+    for (const double distance_m : {1.0, 1000.0}) {
+      cases.push_back(
+          {"at vertices and edges", shape.name, distance_m, true, [&, distance_m](const auto& s) {
+             return aimed_beams(s, shape, distance_m, beams_at_vertices_and_edges);
+           }});
+    }
+    cases.push_back({"beside the outline", shape.name, 1.0, true, [&](const auto& s) {
+                       return aimed_beams(s, shape, 1.0, beams_beside_outline);
+                     }});
+  }
+  return cases;
+}
+
+}  // namespace glidar

@@ -1,0 +1,205 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Of surfaces that coincide every renderer reports the lowest (instance, triangle).
+#include <render/renderer_suite.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+using testing::builtin_scene;
+using testing::camera_beams;
+using testing::turned;
+
+class CoincidentSurfaces : public testing::RendererSuite {
+ protected:
+  static std::size_t count(const Hits& hits, std::uint32_t instance) {
+    return static_cast<std::size_t>(
+        std::count(hits.instance.begin(), hits.instance.end(), instance));
+  }
+
+  /// A second instance, with a mesh of its own.
+  static Instance& add(Scene& scene, Mesh mesh) {
+    Instance instance = scene.instances[0];
+    instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+    scene.meshes.push_back(std::move(mesh));
+    scene.sources.emplace_back();
+    scene.instances.push_back(instance);
+    return scene.instances.back();
+  }
+
+  /// Expects that every hit belongs to instance 0.
+  static void expect_first_only(const Scene& scene, std::size_t least) {
+    for (const double distance_m : {4.0, 400.0}) {
+      const Eigen::Vector3d object = scene.instances[0].world_from_object.translation();
+      const Pose pose = look_at(object + distance_m * Eigen::Vector3d(0.6, -0.3, 0.74), object,
+                                Eigen::Vector3d::UnitZ());
+      const Hits hits = cast(scene, camera_beams(120, 100, 30.0 * distance_m), pose);
+      EXPECT_EQ(count(hits, 1), 0U) << "at " << distance_m << " m";
+      EXPECT_GT(count(hits, 0), least) << "at " << distance_m << " m";
+    }
+  }
+};
+
+TEST_P(CoincidentSurfaces, OfIdenticalInstancesTheFirstIsReported) {
+  Scene scene = builtin_scene("asteroid");
+  scene.instances[0].world_from_object = turned(0.7, {1.0, 2.0, 3.0}, {0.4, -0.2, 3.0});
+  scene.instances.push_back(scene.instances[0]);
+  expect_first_only(scene, 1000);
+}
+
+TEST_P(CoincidentSurfaces, IdenticalInstancesHaveTheTrianglesAndRangesOfOneAlone) {
+  Scene scene = builtin_scene("sphere");
+  scene.instances[0].world_from_object = turned(0.7, {1.0, 2.0, 3.0}, {0.1, -0.2, 5.0});
+  const Beams beams = camera_beams(150, 120, 200.0);
+  const Hits alone = cast(scene, beams, Pose::Identity());
+  scene.instances.push_back(scene.instances[0]);
+  scene.instances.push_back(scene.instances[0]);
+  const Hits all = cast(scene, beams, Pose::Identity());
+  EXPECT_EQ(all.instance, alone.instance);
+  EXPECT_EQ(all.primitive, alone.primitive);
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (alone.instance[i] == kNoHit) continue;
+    EXPECT_EQ(all.range_m[i], alone.range_m[i]) << i;
+  }
+}
+
+TEST_P(CoincidentSurfaces, AFirstInstanceThatIsNotPresentLeavesTheNext) {
+  Scene scene = builtin_scene("sphere");
+  scene.instances.push_back(scene.instances[0]);
+  scene.instances.push_back(scene.instances[0]);
+  const Beams beams = camera_beams(40, 40, 40.0);
+  const std::vector<std::uint8_t> present = {0, 1, 1};
+  Hits hits;
+  renderer(scene)->cast({.beams = beams,
+                         .world_from_sensor = turned(0.2, {0.0, 1.0, 0.0}, {-0.6, 0.1, -3.0}),
+                         .fields = {},
+                         .present = present},
+                        hits);
+  EXPECT_GT(count(hits, 1), 300U);
+  EXPECT_EQ(count(hits, 0) + count(hits, 2), 0U);
+}
+
+TEST_P(CoincidentSurfaces, OfDifferentMeshesOfOneGeometryTheFirstIsReported) {
+  Scene scene = builtin_scene("torus");
+  Mesh other = scene.meshes[0];
+  std::reverse(other.triangles.begin(), other.triangles.end());
+  add(scene, std::move(other));
+  expect_first_only(scene, 1000);
+}
+
+TEST_P(CoincidentSurfaces, OfOppositeWindingsTheFirstIsReported) {
+  Scene scene = builtin_scene("torus");
+  Mesh other = scene.meshes[0];
+  for (Triangle& t : other.triangles) std::swap(t[0], t[1]);
+  add(scene, std::move(other));
+  expect_first_only(scene, 1000);
+}
+
+TEST_P(CoincidentSurfaces, OfMeshesThatScalesMakeEqualTheFirstIsReported) {
+  Scene scene = builtin_scene("asteroid");
+  scene.instances[0].world_from_object = turned(1.1, {0.3, -1.0, 0.2}, {12.5, 3.0, -4.0});
+  Mesh half = scene.meshes[0];
+  for (Eigen::Vector3f& p : half.positions_m) p *= 0.25F;  // exact
+  half.origin_m *= 0.25;
+  add(scene, std::move(half)).scale = 4.0;
+  expect_first_only(scene, 1000);
+}
+
+/// Two planes at z = 0 of a common frame, one three times as large, with other triangles and axes.
+Scene planes_in_one_place(const Pose& world_from_planes, bool is_large_first) {
+  Scene scene = builtin_scene("plane");
+  scene.instances.push_back(scene.instances[0]);
+  Instance& large = scene.instances[is_large_first ? 0 : 1];
+  Instance& small = scene.instances[is_large_first ? 1 : 0];
+  large.scale = 3.0;
+  large.world_from_object =
+      world_from_planes * turned(0.3, Eigen::Vector3d::UnitZ(), {0.25, -0.125, 0.0});
+  small.world_from_object = world_from_planes;
+  return scene;
+}
+
+/// Casts at both, from so far along the planes' own (x, y, z), and expects the small plane (if it
+/// comes first) exactly where the beams meet it.
+void expect_small_inside_large(const Scene& scene, const Hits& hits, const Beams& beams,
+                               const Pose& planes_from_sensor) {
+  std::size_t on_small = 0;
+  std::size_t on_large = 0;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (hits.instance[i] == kNoHit) continue;
+    const Eigen::Vector3d direction = planes_from_sensor.linear() * beams.directions[i];
+    const Eigen::Vector3d eye = planes_from_sensor.translation();
+    const Eigen::Vector3d point = eye - eye.z() / direction.z() * direction;
+    const double beyond = point.head<2>().cwiseAbs().maxCoeff() - 1.0;
+    if (std::abs(beyond) < 1e-5 * eye.norm()) continue;  // single precision at the border
+    EXPECT_EQ(hits.instance[i], beyond < 0.0 ? 0U : 1U) << "beam " << i;
+    ++(beyond < 0.0 ? on_small : on_large);
+  }
+  EXPECT_GT(on_small, 500U);
+  EXPECT_GT(on_large, 500U);
+  EXPECT_EQ(scene.instances.size(), 2U);
+}
+
+TEST_P(CoincidentSurfaces, OfPlanesOfDifferentTrianglesInOnePlaceTheFirstIsReported) {
+  const Pose world_from_planes = turned(0.9, {1.0, 0.4, -0.3}, {100.0, -20.0, 7.0});
+  for (const double distance_m : {3.0, 300.0, 10000.0}) {
+    const Beams beams = camera_beams(100, 100, 25.0 * distance_m);
+    const Pose planes_from_sensor = look_at(distance_m * Eigen::Vector3d(0.3, 0.4, 0.866),
+                                            Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitY());
+    const Scene large_first = planes_in_one_place(world_from_planes, true);
+    const Hits all = cast(large_first, beams, world_from_planes * planes_from_sensor);
+    EXPECT_EQ(count(all, 1), 0U) << "at " << distance_m << " m";
+    EXPECT_GT(count(all, 0), 3000U) << "at " << distance_m << " m";
+    const Scene small_first = planes_in_one_place(world_from_planes, false);
+    const Hits both = cast(small_first, beams, world_from_planes * planes_from_sensor);
+    expect_small_inside_large(small_first, both, beams, planes_from_sensor);
+  }
+}
+
+TEST_P(CoincidentSurfaces, ASurfaceNearerThanSinglePrecisionResolvesIsReported) {
+  for (const std::uint32_t nearer : {0U, 1U}) {
+    Scene scene = planes_in_one_place(Pose(Eigen::Translation3d(0.0, 0.0, 3.0)), true);
+    scene.instances[nearer].world_from_object.translation().z() -= 1e-9;
+    scene.instances[1].scale = 4.0;
+    const Hits hits = cast(scene, camera_beams(60, 60, 60.0), Pose::Identity());
+    EXPECT_EQ(count(hits, nearer), 3600U);
+  }
+}
+
+TEST_P(CoincidentSurfaces, CullingLeavesTheOneThatFacesTheSensor) {
+  Scene scene = builtin_scene("plane");
+  Mesh other = scene.meshes[0];
+  for (Triangle& t : other.triangles) std::swap(t[0], t[1]);
+  add(scene, std::move(other));
+  const Pose behind = look_at({0.1, 0.2, -1.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitY());
+  const Beams beams = camera_beams(30, 30, 60.0);
+  EXPECT_EQ(count(cast(scene, beams, behind, false), 0), 900U);
+  EXPECT_EQ(count(cast(scene, beams, behind, true), 1), 900U);
+}
+
+TEST_P(CoincidentSurfaces, HolesOfTheFirstShowTheSecond) {
+  Scene scene = builtin_scene("plane");
+  add(scene, scene.meshes[0]);
+  scene.textures.push_back(
+      {.name = "mask", .width = 2, .height = 1, .channels = 1, .texels = {0, 255}});
+  scene.materials.push_back(scene.materials[0]);
+  scene.instances[1].materials = {1};
+  Material& material = scene.materials[0];
+  material.alpha_cutoff = 0.5F;
+  material.alpha_texture = {.texture = 0, .wrap_u = Wrap::clamp, .filter = Filter::nearest};
+  const Pose pose = look_at({0.0, 0.0, 1.5}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitY());
+  const Beams beams = camera_beams(16, 16, 16.0);
+  const Hits hits = cast(scene, beams, pose);
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const double x = (pose.linear() * beams.directions[i]).x();
+    EXPECT_EQ(hits.instance[i], x > 0.0 ? 0U : 1U) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, CoincidentSurfaces, ::testing::ValuesIn(renderer_kinds()),
+                         [](const auto& test) { return test.param; });
+
+}  // namespace
+}  // namespace glidar

@@ -1,0 +1,196 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/verify/cases.hpp>
+#include <glidar/verify/known_failures.hpp>
+#include <glidar/verify/special_cases.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+/// A renderer that spoils the hits of another.
+class Spoiled final : public Renderer {
+ public:
+  using Spoil = std::function<void(Hits&)>;
+  Spoiled(std::unique_ptr<Renderer> inner, Spoil spoil)
+      : inner_(std::move(inner)), spoil_(std::move(spoil)) {}
+
+  [[nodiscard]] std::string_view name() const override { return inner_->name(); }
+  [[nodiscard]] Workers& workers() override { return inner_->workers(); }
+  void cast(const CastRequest& request, Hits& hits) override {
+    inner_->cast(request, hits);
+    spoil_(hits);
+  }
+
+ private:
+  std::unique_ptr<Renderer> inner_;
+  Spoil spoil_;
+};
+
+VerifySubject subject(
+    const std::string& kind, const Spoiled::Spoil& spoil = [](Hits&) {}) {
+  return {.renderer = kind,
+          .casts_any_beams = kind != "raster" && kind != "opengl",
+          .make = [=](const Scene& scene) -> std::unique_ptr<Renderer> {
+            return std::make_unique<Spoiled>(make_renderer(scene, {.kind = kind, .threads = 2}),
+                                             spoil);
+          }};
+}
+
+/// Adds 0.002 steps of float32 to every range.
+void shift_ranges(Hits& hits) {
+  for (double& range_m : hits.range_m) {
+    if (!std::isfinite(range_m)) continue;
+    const auto single = static_cast<float>(range_m);
+    range_m += 0.002 * (std::nextafter(single, std::numeric_limits<float>::infinity()) - single);
+  }
+}
+
+void swap_triangles(Hits& hits) {
+  for (std::uint32_t& primitive : hits.primitive) {
+    if (primitive != kNoHit) primitive ^= 1U;
+  }
+}
+
+void swap_instances(Hits& hits) {
+  for (std::uint32_t& instance : hits.instance) {
+    if (instance != kNoHit) instance = instance == 0 ? 1 : 0;
+  }
+}
+
+void lose_one_hit(Hits& hits) {
+  const auto hit = std::find_if(hits.instance.begin(), hits.instance.end(),
+                                [](std::uint32_t i) { return i != kNoHit; });
+  if (hit == hits.instance.end()) return;
+  hits.range_m[static_cast<std::size_t>(hit - hits.instance.begin())] =
+      std::numeric_limits<double>::quiet_NaN();
+  *hit = kNoHit;
+}
+
+class SpecialCases : public ::testing::Test {
+ protected:
+  /// The first case of a name.
+  const SpecialCase& named(const std::string& name) {
+    return *std::find_if(cases_.begin(), cases_.end(),
+                         [&](const SpecialCase& c) { return c.name == name; });
+  }
+  [[nodiscard]] const std::vector<SpecialCase>& all() const { return cases_; }
+  [[nodiscard]] const std::vector<Shape>& shapes() const { return shapes_; }
+
+ private:
+  std::vector<Shape> shapes_ = make_shapes();
+  std::vector<SpecialCase> cases_ = special_cases(shapes_);
+};
+
+VerifyRow row_of(const SpecialCase& c, const VerifySubject& subject) {
+  VerifyRow row{.name = c.name, .shape = c.shape, .distance_m = c.distance_m};
+  row.result = c.run(subject);
+  row.known_failure = known_failure(subject.renderer, row);
+  return row;
+}
+
+TEST(VerifyCases, EmbreeIsWithinBoundsAtBothEndsOfTheDistances) {
+  const std::vector<Shape> shapes = make_shapes();
+  for (const double distance_m : {0.1, 10000.0}) {
+    for (const VerifyCase& c : make_cases(0, distance_m)) {
+      const VerifyResult result = run_case(c, shapes[c.shape], subject("embree"));
+      EXPECT_TRUE(result.passed()) << result.range_error_ulp << " ulp, offset " << c.offset_m;
+    }
+  }
+}
+
+TEST_F(SpecialCases, EveryRayRendererPassesEachOrFailsAsKnown) {
+  for (const SpecialCase& c : all()) {
+    const VerifyRow row = row_of(c, subject("embree"));
+    EXPECT_TRUE(all_passed({row})) << c.name << ", " << c.shape << ", " << c.distance_m;
+    EXPECT_GT(row.result.judged_hits, 100U) << c.name << ", " << c.shape;
+    EXPECT_GT(row.result.judged_misses, 20U) << c.name << ", " << c.shape;
+  }
+}
+
+TEST_F(SpecialCases, TheRasterPassesTheOnesWithPinholesOrFailsAsKnown) {
+  std::size_t applied = 0;
+  for (const SpecialCase& c : all()) {
+    if (c.needs_any_beams) continue;
+    ++applied;
+    EXPECT_TRUE(all_passed({row_of(c, subject("raster"))})) << c.name << ", " << c.shape;
+  }
+  EXPECT_EQ(applied, 7U);
+}
+
+TEST_F(SpecialCases, ShiftedRangesAreCaughtInEach) {
+  for (const char* name :
+       {"several instances", "moving sensor and target", "at vertices and edges"}) {
+    const VerifyResult result = named(name).run(subject("embree", shift_ranges));
+    EXPECT_GT(result.range_error_ulp, kRangeBound_ulp) << name;
+    EXPECT_FALSE(result.passed()) << name;
+  }
+}
+
+TEST_F(SpecialCases, SwappedIdsAreCaughtInEach) {
+  for (const char* name : {"several instances", "moving sensor and target", "sensor on a vertex"}) {
+    EXPECT_GT(named(name).run(subject("embree", swap_triangles)).wrong_ids, 100U) << name;
+  }
+  const VerifyResult swapped = named("several instances").run(subject("raster", swap_instances));
+  EXPECT_GT(swapped.wrong_ids, 100U);
+}
+
+TEST_F(SpecialCases, ALostHitIsCaughtInEach) {
+  for (const char* name :
+       {"several instances", "moving sensor and target", "at vertices and edges"}) {
+    EXPECT_GT(named(name).run(subject("embree", lose_one_hit)).wrong_misses, 0U) << name;
+  }
+}
+
+TEST_F(SpecialCases, ShiftedRangesAndSwappedIdsAreCaughtOfOneShapeAtRest) {
+  const VerifyCase c = make_cases(0, 10.0)[0];
+  EXPECT_TRUE(run_case(c, shapes()[0], subject("raster")).passed());
+  EXPECT_FALSE(run_case(c, shapes()[0], subject("raster", shift_ranges)).passed());
+  EXPECT_FALSE(run_case(c, shapes()[0], subject("raster", swap_triangles)).passed());
+  EXPECT_FALSE(run_case(c, shapes()[0], subject("raster", lose_one_hit)).passed());
+}
+
+TEST(VerifyResult, AnyErrorOverItsBoundFails) {
+  const VerifyResult good{.rays = 1000, .judged_hits = 500, .judged_misses = 490, .near_edges = 10};
+  EXPECT_TRUE(good.passed());
+  const auto spoiled = [&](auto member, auto value) {
+    VerifyResult result = good;
+    result.*member = value;
+    return result.passed();
+  };
+  EXPECT_FALSE(spoiled(&VerifyResult::wrong_hits, std::size_t{1}));
+  EXPECT_FALSE(spoiled(&VerifyResult::wrong_misses, std::size_t{1}));
+  EXPECT_FALSE(spoiled(&VerifyResult::wrong_ids, std::size_t{1}));
+  EXPECT_FALSE(spoiled(&VerifyResult::range_error_ulp, 0.00101));
+  EXPECT_FALSE(spoiled(&VerifyResult::normal_error_rad, 1.1e-6));
+  EXPECT_FALSE(spoiled(&VerifyResult::judged_hits, std::size_t{0}));
+  EXPECT_FALSE(spoiled(&VerifyResult::near_edges, std::size_t{100}));
+}
+
+TEST(VerifyRow, AKnownFailureIsNoErrorUnlessItPasses) {
+  const VerifyResult good{.rays = 1000, .judged_hits = 500, .judged_misses = 490, .near_edges = 10};
+  VerifyResult bad = good;
+  bad.wrong_hits = 3;
+  const auto row = [](const VerifyResult& result, const char* known, bool applies) {
+    return VerifyRow{
+        .name = "a", .shape = "b", .result = result, .known_failure = known, .applies = applies};
+  };
+  EXPECT_EQ(row(good, "", true).verdict(), Verdict::passed);
+  EXPECT_EQ(row(bad, "", true).verdict(), Verdict::failed);
+  EXPECT_EQ(row(bad, "why", true).verdict(), Verdict::known_failure);
+  EXPECT_EQ(row(good, "why", true).verdict(), Verdict::fixed);
+  EXPECT_EQ(row({}, "", false).verdict(), Verdict::not_applicable);
+  EXPECT_TRUE(all_passed({row(good, "", true), row(bad, "why", true), row({}, "", false)}));
+  EXPECT_FALSE(all_passed({row(good, "", true), row(bad, "", true)}));
+  EXPECT_FALSE(all_passed({row(good, "why", true)}));
+}
+
+}  // namespace
+}  // namespace glidar
