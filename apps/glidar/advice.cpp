@@ -17,6 +17,13 @@ constexpr double kSmallModel_m = 0.001;
 constexpr double kLargeRatio = 1000.0;  // between size and distance: a wrong unit
 constexpr double kMostlyInside = 0.9;   // of the hits are on back faces: seen from inside
 
+/// True when nobody specified the unit of some model: neither the user nor its file.
+bool has_assumed_unit(const Scene& scene) {
+  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
+    return instance.mesh >= scene.sources.size() || !scene.sources[instance.mesh].unit_known;
+  });
+}
+
 /// The scene as the sensor sees it, without looking at single triangles.
 struct Sight {
   double size_m = 0.0;        ///< diagonal of the scene's box
@@ -208,17 +215,19 @@ void add_inside_advice(const View& view, const Sight& sight, const std::vector<s
   }
 }
 
-void add_ratio_advice(const Sight& sight, std::vector<std::string>& advice) {
+/// A unit is only doubted where it was assumed.
+void add_ratio_advice(const Sight& sight, bool is_unit_assumed, std::vector<std::string>& advice) {
   if (sight.size_m > kLargeRatio * sight.distance_m) {
-    advice.push_back(
-        fmt::format("the scene is {:.6g} m across but its middle is only {:.6g} m from "
-                    "the sensor; if the file is in millimetres, give --unit mm",
-                    sight.size_m, sight.distance_m));
+    advice.push_back(fmt::format(
+        "the scene is {:.6g} m across but its middle is only {:.6g} m from the sensor; {}",
+        sight.size_m, sight.distance_m,
+        is_unit_assumed ? "if the file is in millimetres, give --unit mm"
+                        : "if that is not meant, check the pose and --scale"));
   } else if (sight.distance_m > kLargeRatio * sight.size_m) {
     advice.push_back(
         fmt::format("the scene is {:.6g} m across but {:.6g} m from the sensor; if that "
-                    "is not meant, check --unit, --scale and the pose",
-                    sight.size_m, sight.distance_m));
+                    "is not meant, check {}--scale and the pose",
+                    sight.size_m, sight.distance_m, is_unit_assumed ? "--unit, " : ""));
   }
 }
 
@@ -255,7 +264,7 @@ FrameSummary summarise(const Frame& frame) {
 
 std::vector<std::string> size_advice(const Scene& scene, bool sized) {
   const Eigen::AlignedBox3d box = bounds(scene);
-  if (sized || box.isEmpty()) return {};
+  if (sized || box.isEmpty() || !has_assumed_unit(scene)) return {};
   const double size_m = box.diagonal().norm();
   if (size_m > kLargeModel_m) {
     return {
@@ -273,9 +282,6 @@ std::vector<std::string> size_advice(const Scene& scene, bool sized) {
 }
 
 std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box) {
-  if (format.starts_with("glTF")) {
-    return "in glTF files y is up; --up y makes that +z, which is up here";
-  }
   const bool says_nothing_of_up = format.find("PLY") != std::string::npos ||
                                   format.find("STL") != std::string::npos ||
                                   format.starts_with("Wavefront") || format == "OFF";
@@ -308,7 +314,7 @@ std::vector<std::string> view_advice(const View& view) {
   if (summary.hits == 0) {
     advice.push_back("nothing was measured: " + reason_for_no_hits(view, sight, summary));
   } else if (around.empty()) {
-    add_ratio_advice(sight, advice);
+    add_ratio_advice(sight, has_assumed_unit(view.scene), advice);
   }
   return advice;
 }

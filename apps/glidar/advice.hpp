@@ -33,12 +33,12 @@ struct FrameSummary {
 
 FrameSummary summarise(const Frame& frame);
 
-/// What the user should know about a model of doubtful size; `sized` tells that the unit or the
-/// scale was given. Empty: nothing.
+/// What the user should know about a model of doubtful size. Nothing where the unit or the scale
+/// was given (`sized`), or every model file declares its unit.
 std::vector<std::string> size_advice(const Scene& scene, bool sized);
 
-/// A hint at --up, for models whose up is not +z by their format or, as a guess, by how they stand:
-/// on or above zero along one axis, and across it along the others. Empty: none.
+/// A hint at --up, for formats that declare no up axis: a guess from how the model is placed, on or
+/// above zero along y and across zero along the others. Empty: none.
 std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box);
 /// Where a LiDAR was put that no option placed.
 std::string beside_advice(const Scene& scene, const Pose& world_from_sensor);

@@ -110,7 +110,7 @@ void print_table(const ModelReport& report, const std::string& up_hint) {
   line("from", vector_text(report.min_m, ", ") + " m");
   line("to", vector_text(report.max_m, ", ") + " m");
   line("unit", report.unit_guess);
-  if (!up_hint.empty()) line("up", up_hint);
+  line("up", report.up + (up_hint.empty() ? "" : "; " + up_hint));
   line("surface", fmt::format("{}, winding {}, area {:.6g} m2", report.closed ? "closed" : "open",
                               to_string(report.winding), report.check.area_m2));
   line("faults", fault_text(report.check));
@@ -153,7 +153,10 @@ Json json_of(const ModelReport& report, const std::string& up_hint) {
                {"min_m", json_of(report.min_m)},
                {"max_m", json_of(report.max_m)},
                {"size_m", json_of(report.size_m)},
+               {"metres_per_unit", report.metres_per_unit},
+               {"unit_declared", report.unit_declared ? Json(*report.unit_declared) : Json()},
                {"unit_guess", report.unit_guess},
+               {"up", report.up},
                {"up_guess", up_hint},
                {"closed", report.closed},
                {"winding", to_string(report.winding)},

@@ -11,11 +11,17 @@ namespace glidar::app {
 
 void add_model_flags(CLI::App& command, ModelFlags& flags) {
   const std::string group = "Model";
-  add_choice(command, {"--unit", "UNIT", "Unit of the model file: mm, cm, m or in [m]", group},
-             {"mm", "cm", "m", "in"}, flags.unit);
   add_choice(command,
-             {"--up", "AXIS", "Axis of the model file that points up: x, y or z [z]", group},
-             {"x", "y", "z"}, flags.up);
+             {"--unit", "UNIT",
+              "Unit of the model file: mm, cm, m or in [what the file declares, else m]", group},
+             {"mm", "cm", "m", "in"}, flags.unit);
+  add_choice(
+      command,
+      {"--up", "AXIS",
+       "Axis of the model file that points up: x, y or z [what the file declares, else z]", group},
+      {"x", "y", "z"}, flags.up);
+  command.add_flag("--centre", flags.centre, "Move the middle of the model's box to its origin")
+      ->group(group);
   command.add_flag("--no-cache", flags.no_cache, "Neither read nor write the cache of models")
       ->group(group);
   add_text(command, {"--cache-folder", "DIR", "Folder of that cache [~/.cache/glidar]", group},
@@ -30,6 +36,7 @@ ModelOptions model_options(const ModelFlags& flags) {
   if (flags.up == "x") options.up = Axis::x;
   if (flags.up == "y") options.up = Axis::y;
   if (flags.up == "z") options.up = Axis::z;
+  options.centre = flags.centre;
   options.use_cache = !flags.no_cache;
   options.cache_folder = flags.cache_folder;
   return options;

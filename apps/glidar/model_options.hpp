@@ -9,10 +9,11 @@
 
 namespace glidar::app {
 
-/// --unit --up --no-cache --cache-folder.
+/// --unit --up --centre --no-cache --cache-folder.
 struct ModelFlags {
-  std::string unit;  ///< empty: not given, metres
-  std::string up;    ///< empty: axes as in the file
+  std::string unit;  ///< empty: not given, what the file declares, else metres
+  std::string up;    ///< empty: what the file declares, else axes as in the file
+  bool centre = false;
   bool no_cache = false;
   std::string cache_folder;
 };

@@ -70,30 +70,40 @@ void check_upright(const char* options, const Eigen::Vector3d& forward, const Ei
                          text_of(Eigen::Vector3d(Eigen::Vector3d::Unit(flattest)))});
 }
 
-/// The point that --eye without --target heads for. A LiDAR stays upright.
-Eigen::Vector3d usual_target(const Eigen::Vector3d& eye, const Scene& scene,
-                             const Eigen::Vector3d& up, bool upright) {
+Eigen::Vector3d middle_of(const Scene& scene) {
   const Eigen::AlignedBox3d box = bounds(scene);
-  const Eigen::Vector3d middle =
-      box.isEmpty() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(box.center());
-  if (!upright) return middle;
-  const Eigen::Vector3d z = up.normalized();
-  const Eigen::Vector3d way = middle - eye;
-  const Eigen::Vector3d level = way - way.dot(z) * z;
-  constexpr double kStraightBelow = 1e-9;
-  return eye + (level.norm() > kStraightBelow * way.norm() ? level : z.unitOrthogonal());
+  return box.isEmpty() ? Eigen::Vector3d::Zero() : Eigen::Vector3d(box.center());
 }
 
-Pose eye_pose(const PoseFlags& flags, const Scene& scene, const Eigen::Vector3d& up, bool upright) {
+/// A LiDAR that nothing aims: x forward and z up as in the world, whatever the scene. Another up
+/// direction tilts it, with the heading as near to the world's x as that allows.
+Pose level_pose(const Eigen::Vector3d& eye, const std::optional<Eigen::Vector3d>& up) {
+  const Eigen::Vector3d forward = Eigen::Vector3d::UnitX();
+  if (!up) return Pose(Eigen::Translation3d(eye));
+  check_upright("--eye and --up-vector", forward, *up);
+  const Eigen::Vector3d z = up->stableNormalized();
+  Pose pose = Pose::Identity();
+  pose.linear().col(2) = z;
+  pose.linear().col(0) = (forward - forward.dot(z) * z).normalized();
+  pose.linear().col(1) = z.cross(pose.linear().col(0));
+  pose.translation() = eye;
+  return pose;
+}
+
+/// The pose by --eye, --target and --up-vector.
+Pose eye_pose(const PoseFlags& flags, const Scene& scene, const std::optional<Eigen::Vector3d>& up,
+              bool along_x) {
   if (flags.eye.empty()) fail("--target", "there is no --eye", "give --eye x,y,z too");
   const Eigen::Vector3d eye = parse_position("--eye", flags.eye);
-  const Eigen::Vector3d target = flags.target.empty() ? usual_target(eye, scene, up, upright)
-                                                      : parse_position("--target", flags.target);
+  if (along_x && flags.target.empty()) return level_pose(eye, up);
+  const Eigen::Vector3d target =
+      flags.target.empty() ? middle_of(scene) : parse_position("--target", flags.target);
   if (eye == target) {
     fail("--eye", "'" + flags.eye + "' is the point looked at", "give another --eye or --target");
   }
-  check_upright("--eye, --target and --up-vector", target - eye, up);
-  return look_at(eye, target, up);
+  if (up) check_upright("--eye, --target and --up-vector", target - eye, *up);
+  const Pose world_from_optical = up ? look_at(eye, target, *up) : look_at(eye, target);
+  return along_x ? world_from_optical * optical_from_body() : world_from_optical;
 }
 
 Pose parse_pose(std::string_view option, const std::string& text) {
@@ -132,12 +142,16 @@ void add_pose_flags(CLI::App& command, PoseFlags& flags) {
   const std::string group = "Pose (default: the scene fills the view, seen from 2,-3,2)";
   add_text(command, {"--eye", "X,Y,Z", "Sensor position in the world, m", group}, flags.eye,
            parse_position);
-  add_text(
-      command,
-      {"--target", "X,Y,Z", "Point the sensor looks at, m [scene's middle; LiDARs: level]", group},
-      flags.target, parse_position);
   add_text(command,
-           {"--up-vector", "X,Y,Z", "World direction that is up in the image [0,0,1]", group},
+           {"--target", "X,Y,Z",
+            "Point the sensor looks at, m [the middle of the scene's box; LiDARs: none, x forward]",
+            group},
+           flags.target, parse_position);
+  add_text(command,
+           {"--up-vector", "X,Y,Z",
+            "World direction that is up in the image [0,0,1; 1,0,0 when it looks straight up or "
+            "down]",
+            group},
            flags.up_vector, parse_vector);
   add_text(command,
            {"--sensor-pose", "X,Y,Z,QW,QX,QY,QZ",
@@ -198,11 +212,13 @@ Pose pose_sensor(const PoseFlags& flags, const ScenePose& from_scene_file, const
   if (!up_used && !flags.up_vector.empty()) {
     fail("--up-vector", "the pose is already complete", "leave it out, or give --eye");
   }
-  const Eigen::Vector3d up = flags.up_vector.empty() ? Eigen::Vector3d(Eigen::Vector3d::UnitZ())
-                                                     : parse_vector("--up-vector", flags.up_vector);
+  const std::optional<Eigen::Vector3d> up_given =
+      flags.up_vector.empty() ? std::nullopt
+                              : std::optional(parse_vector("--up-vector", flags.up_vector));
+  const Eigen::Vector3d up = up_given.value_or(Eigen::Vector3d::UnitZ());
   const bool along_x = !looks_along_z(beams);
   const Pose optical_from_sensor = along_x ? optical_from_body() : Pose::Identity();
-  if (eye_given(flags)) return eye_pose(flags, scene, up, along_x) * optical_from_sensor;
+  if (eye_given(flags)) return eye_pose(flags, scene, up_given, along_x);
   if (legacy_given(flags)) return legacy_pose(flags) * optical_from_sensor;
   if (!flags.sensor_pose.empty()) return parse_pose("--sensor-pose", flags.sensor_pose);
   if (from_scene_file.world_from_sensor) {

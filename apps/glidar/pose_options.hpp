@@ -53,8 +53,9 @@ void pose_model(const PoseFlags& flags, Scene& scene);
 
 /// The sensor's pose by the flags; else `from_scene_file`; else the scene framed by these beams.
 /// Throws Error when flags contradict each other.
-/// A sensor whose boresight is +x (LiDAR) is aimed with it; --eye without --target and the framing
-/// leave it upright.
+/// A sensor whose boresight is +x (LiDAR) is aimed with it; --eye without --target leaves its axes
+/// those of the world (x forward, z up), and the framing leaves it upright. A camera with --eye
+/// alone looks at the middle of the box around the scene.
 Pose pose_sensor(const PoseFlags& flags, const ScenePose& from_scene_file, const Beams& beams,
                  const Scene& scene);
 

@@ -3,6 +3,7 @@
 #include <import/bake_mesh.hpp>
 
 #include <import/mesh_part.hpp>
+#include <import/part_origins.hpp>
 
 #include <fmt/format.h>
 
@@ -11,25 +12,6 @@
 
 namespace glidar::import {
 namespace {
-
-/// The box of all vertices that triangles use.
-Eigen::AlignedBox3d box_of(const Walk& walk) {
-  Eigen::AlignedBox3d box;
-  for (const Placed& placed : walk.placed) extend_box(box, placed);
-  return box;
-}
-
-Eigen::Vector3d origin_for(const Eigen::AlignedBox3d& box) {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  if (box.isEmpty()) return origin;
-  for (int axis = 0; axis < 3; ++axis) {
-    // Middle and half width of finite floats cannot overflow in double.
-    const double middle = 0.5 * (box.min()[axis] + box.max()[axis]);
-    const double half = 0.5 * (box.max()[axis] - box.min()[axis]);
-    if (std::abs(middle) >= 2.0 * half) origin[axis] = double{static_cast<float>(middle)};
-  }
-  return origin;
-}
 
 template <class T>
 void join(std::vector<T>& all, const std::vector<T>& part, std::size_t before, std::size_t added,
@@ -57,6 +39,14 @@ void append(Mesh& mesh, const Mesh& part, std::uint16_t slot) {
     mesh.triangles.push_back({t[0] + shift, t[1] + shift, t[2] + shift});
   }
   mesh.material_slots.resize(mesh.triangles.size(), slot);
+}
+
+/// What is appended next is relative to this origin.
+void begin_run(Mesh& mesh, const Eigen::Vector3d& origin_m) {
+  if (mesh.origins.empty()) mesh.origin_m = origin_m;
+  if (!mesh.origins.empty() && mesh.origins.back().origin_m == origin_m) return;
+  mesh.origins.push_back({static_cast<std::uint32_t>(mesh.positions_m.size()),
+                          static_cast<std::uint32_t>(mesh.triangles.size()), origin_m});
 }
 
 void note(Model& model, std::uint64_t count, const char* text) {
@@ -92,16 +82,17 @@ void note_precision(const Eigen::AlignedBox3d& box, Model& model) {
 }  // namespace
 
 void bake(const Walk& walk, const BakeOptions& options, Model& model) {
-  const Eigen::AlignedBox3d box = box_of(walk);
+  const std::vector<Eigen::Vector3d> origins = part_origins(walk);
   Repairs repairs;
   Mesh& mesh = model.mesh;
-  mesh.origin_m = origin_for(box);
   mesh.triangles.reserve(walk.triangles);
-  for (const Placed& placed : walk.placed) {
+  for (std::size_t i = 0; i < walk.placed.size(); ++i) {
+    const Placed& placed = walk.placed[i];
     const std::uint16_t slot = options.slot_of_material.at(material_of(placed));
     const auto first = static_cast<std::uint32_t>(mesh.triangles.size());
-    Mesh part = make_part(placed, mesh.origin_m, options, options.needs.at(slot), repairs);
+    Mesh part = make_part(placed, origins[i], options, options.needs.at(slot), repairs);
     const auto count = static_cast<std::uint32_t>(part.triangles.size());
+    begin_run(mesh, origins[i]);
     append(mesh, part, slot);
     model.parts.push_back({placed.name, first, count});
   }
@@ -112,7 +103,8 @@ void bake(const Walk& walk, const BakeOptions& options, Model& model) {
                               repairs.not_finite),
                   "mend the file"};
   }
-  note_precision(box, model);
+  if (mesh.origins.size() == 1) mesh.origins.clear();
+  note_precision(box_of(walk), model);
   if (model.materials.size() == 1) mesh.material_slots.clear();
 }
 

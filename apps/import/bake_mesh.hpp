@@ -27,9 +27,7 @@ struct BakeOptions {
 
 /// Fills the model's mesh, parts and notes from the placed meshes: node transforms applied in
 /// double, triangles that touch NaN or infinity left out, the fronts of mirrored parts turned back.
-/// Along an axis on which the whole model lies farther from zero than its own size, the mesh's
-/// origin is the middle of its box, else zero: either way single precision takes the file's
-/// coordinates without rounding (Sterbenz 1974). Throws Refusal when no triangle is left.
+/// Origins are those of part_origins(). Throws Refusal when no triangle is left.
 void bake(const Walk& walk, const BakeOptions& options, Model& model);
 
 }  // namespace glidar::import

@@ -4,10 +4,11 @@
 
 #include <import/bake_mesh.hpp>
 #include <import/confined_io.hpp>
+#include <import/declared_frame.hpp>
+#include <import/gltf_transforms.hpp>
 #include <import/loaded_libraries.hpp>
 #include <import/read_materials.hpp>
 
-#include <assimp/config.h>
 #include <assimp/importerdesc.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -16,6 +17,7 @@
 #include <assimp/ProgressHandler.hpp>
 
 #include <algorithm>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <new>
@@ -96,20 +98,6 @@ std::vector<std::string> texture_folders(const std::vector<std::string>& read,
   return folders;
 }
 
-/// FBX tells its unit (in centimetres) and Assimp does not apply it: the user decides.
-void note_unit(const aiScene& scene, Model& model) {
-  double centimetres = 0.0;
-  float single = 0.0F;
-  if (scene.mMetaData == nullptr) return;
-  if (!scene.mMetaData->Get("UnitScaleFactor", centimetres)) {
-    if (!scene.mMetaData->Get("UnitScaleFactor", single)) return;
-    centimetres = double{single};
-  }
-  model.notes.push_back(
-      fmt::format("the file says that its unit is {:g} m; coordinates are taken as they are",
-                  centimetres / 100));
-}
-
 }  // namespace
 
 ImportedModel import_model(const std::filesystem::path& canonical_model, double crease_angle_rad,
@@ -119,26 +107,33 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   // Never destroyed: taking a deep tree apart recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
   importer.SetIOHandler(new ConfinedIo(folder, log));
-  // The file's own axes; without it z-up files would be turned, though not those of other formats.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);
   importer.SetProgressHandler(new Progress(progress));
-  const aiScene* scene = importer.ReadFile(canonical_model.string(), kSteps);
-  if (scene == nullptr) refuse(importer.GetErrorString(), *log);
+  if (importer.ReadFile(canonical_model.string(), kSteps) == nullptr) {
+    refuse(importer.GetErrorString(), *log);
+  }
+  // Taken from the importer, which lives on for its files: its own scene cannot be changed.
+  aiScene* scene = importer.GetOrphanedScene();
   ImportedModel imported;
   Model& model = imported.model;
   model.format = importer_name(importer);
-  const Walk walked = walk(*scene);
+  model.declared = take_declared_frame(*scene, model.format, canonical_model.string(),
+                                       *importer.GetIOHandler(), model.notes);
+  const bool gltf = model.format.find("glTF") != std::string::npos;
+  NodeTransforms transforms;
+  if (gltf) {
+    std::ifstream file(canonical_model, std::ios::binary);
+    transforms = gltf_transforms(file, *scene);
+  }
+  const Walk walked = walk(*scene, transforms);
   const MtlOptions mtl = read_mtl_options(log->read);
   imported.texture_folders = texture_folders(log->read, folder);
   folder.also.assign(imported.texture_folders.begin(), imported.texture_folders.end());
   TextureStore textures(*scene, folder, *log, imported);
-  const bool gltf = model.format.find("glTF") != std::string::npos;
   BakeOptions options;
   options.crease_angle_rad = crease_angle_rad;
   options.facet_normals = model.format.find("(STL)") != std::string::npos;
   read_materials(*scene, walked, {textures, mtl, gltf}, model, options);
   model.notes.insert(model.notes.end(), log->notes.begin(), log->notes.end());
-  note_unit(*scene, model);
   bake(walked, options, model);
   imported.absent = log->absent;
   imported.files = log->read;

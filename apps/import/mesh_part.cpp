@@ -170,7 +170,8 @@ std::size_t material_of(const Placed& placed) {
   return placed.mesh->mMaterialIndex;
 }
 
-void extend_box(Eigen::AlignedBox3d& box, const Placed& placed) {
+void for_used_vertices(const Placed& placed,
+                       const std::function<void(const Eigen::Vector3d&)>& visit) {
   const aiMesh& mesh = *placed.mesh;
   std::vector<bool> used(mesh.mNumVertices, false);
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
@@ -181,7 +182,7 @@ void extend_box(Eigen::AlignedBox3d& box, const Placed& placed) {
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
     if (!used[v]) continue;
     const Eigen::Vector3d p = moved(placed, mesh.mVertices[v]);
-    if (p.allFinite()) box.extend(p);
+    if (p.allFinite()) visit(p);
   }
 }
 

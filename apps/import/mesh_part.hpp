@@ -8,6 +8,7 @@
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 
 namespace glidar::import {
 
@@ -21,8 +22,9 @@ struct Repairs {
 /// The file's material of a placed mesh.
 std::size_t material_of(const Placed& placed);
 
-/// Extends the box by the finite vertices that triangles use, in the model's frame.
-void extend_box(Eigen::AlignedBox3d& box, const Placed& placed);
+/// Visits the finite vertices that triangles use, in the model's frame.
+void for_used_vertices(const Placed& placed,
+                       const std::function<void(const Eigen::Vector3d&)>& visit);
 
 /// One placed mesh in the model's frame, relative to `origin`, vertices merged and its normals (and
 /// tangents, if needed) there.

@@ -57,7 +57,7 @@ Refusal no_triangles(const std::string& instead) {
       "mesh first)"};
 }
 
-Walk walk(const aiScene& scene) {
+Walk walk(const aiScene& scene, const NodeTransforms& transforms) {
   Walk result;
   // A stack of our own: hostile trees are deep.
   std::vector<Visit> stack;
@@ -69,8 +69,10 @@ Walk walk(const aiScene& scene) {
     }
     const Visit visit = stack.back();
     stack.pop_back();
+    const auto known = transforms.find(visit.node);
     const Eigen::Matrix4d model_from_node =
-        visit.model_from_parent * matrix(visit.node->mTransformation);
+        visit.model_from_parent *
+        (known == transforms.end() ? matrix(visit.node->mTransformation) : known->second);
     place_meshes(scene, *visit.node, model_from_node, result);
     for (unsigned child = visit.node->mNumChildren; child-- > 0;) {
       stack.push_back({visit.node->mChildren[child], model_from_node});

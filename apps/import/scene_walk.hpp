@@ -5,9 +5,11 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 struct aiMesh;
+struct aiNode;
 struct aiScene;
 
 namespace glidar::import {
@@ -35,7 +37,10 @@ struct Walk {
   std::uint64_t skinned = 0;           ///< meshes with a skeleton
 };
 
+/// parent_from_node of nodes whose transform is known better than the importer's single precision.
+using NodeTransforms = std::unordered_map<const aiNode*, Eigen::Matrix4d>;
+
 /// Walks the file's tree. Throws Refusal when it holds no triangles, or more than can be had.
-Walk walk(const aiScene& scene);
+Walk walk(const aiScene& scene, const NodeTransforms& transforms);
 
 }  // namespace glidar::import

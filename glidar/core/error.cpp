@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -19,8 +21,16 @@ std::string sentence(const ErrorParts& parts) {
   return text;
 }
 
-/// Levenshtein distance with two rows.
+std::string lower(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return result;
+}
+
+/// Optimal string alignment: insertions, deletions, substitutions and exchanged neighbours
+/// (Damerau 1964), with three rows.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> before_previous(b.size() + 1);
   std::vector<std::size_t> previous(b.size() + 1);
   std::vector<std::size_t> current(b.size() + 1);
   std::iota(previous.begin(), previous.end(), std::size_t{0});
@@ -29,10 +39,47 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
     for (std::size_t j = 0; j < b.size(); ++j) {
       const std::size_t substituted = previous[j] + (a[i] == b[j] ? 0U : 1U);
       current[j + 1] = std::min({substituted, previous[j + 1] + 1, current[j] + 1});
+      const bool exchanged = i > 0 && j > 0 && a[i] == b[j - 1] && a[i - 1] == b[j];
+      if (exchanged) current[j + 1] = std::min(current[j + 1], before_previous[j - 1] + 1);
     }
+    std::swap(before_previous, previous);
     std::swap(previous, current);
   }
   return previous[b.size()];
+}
+
+/// True when one is the other with more words ("range", "range_m") or a longer last word ("inch",
+/// "in"). Fewer letters than that begin too many words.
+bool is_extension(std::string_view word, std::string_view candidate) {
+  constexpr std::size_t kPrefix = 3;
+  const bool is_longer = candidate.size() > word.size();
+  const std::string_view shorter = is_longer ? word : candidate;
+  const std::string_view longer = is_longer ? candidate : word;
+  if (shorter.empty() || !longer.starts_with(shorter) || longer.size() == shorter.size())
+    return false;
+  return longer[shorter.size()] == '_' || (is_longer && shorter.size() >= kPrefix);
+}
+
+/// True when the word is one of the candidate's words ("deg" of "fov_deg").
+bool is_word_of(std::string_view word, std::string_view candidate) {
+  constexpr std::size_t kWord = 3;
+  return word.size() >= kWord && candidate.ends_with(word) && candidate.size() > word.size() &&
+         candidate[candidate.size() - word.size() - 1] == '_';
+}
+
+/// How unlike two words are: 2 for each wrong letter, 3 where one continues or ends with the other;
+/// nothing where one is not meant by the other.
+std::optional<std::size_t> unlikeness(std::string_view word, std::string_view candidate) {
+  constexpr std::size_t kExtension = 3;
+  // one wrong letter of one, or two of three, make another word; so do two of five with the first
+  const std::size_t few = word.size() <= 1 ? 0 : 1;
+  const std::size_t most = word.size() <= 3 ? few : std::max<std::size_t>(2, word.size() / 3);
+  const std::size_t distance = edit_distance(word, candidate);
+  const bool is_short = word.size() <= 5 && distance > 1;
+  const bool is_near = distance <= most && !(is_short && !candidate.starts_with(word.front()));
+  if (is_near && distance <= 1) return 2 * distance;
+  if (is_extension(word, candidate) || is_word_of(word, candidate)) return kExtension;
+  return is_near ? std::optional(2 * distance) : std::nullopt;
 }
 
 }  // namespace
@@ -52,14 +99,15 @@ void require_number(bool holds, const char* where, double found, const char* all
 }
 
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
+  const std::string wanted = lower(word);
   std::string best;
-  std::size_t best_distance = std::max<std::size_t>(2, word.size() / 3) + 1;
+  std::size_t least = std::numeric_limits<std::size_t>::max();
   for (const std::string& candidate : candidates) {
-    const std::size_t distance = edit_distance(word, candidate);
-    if (distance < best_distance) {
-      best_distance = distance;
-      best = candidate;
-    }
+    if (wanted.empty()) break;
+    const std::optional<std::size_t> unlike = unlikeness(wanted, lower(candidate));
+    if (!unlike || *unlike >= least) continue;
+    least = *unlike;
+    best = candidate;
   }
   return best;
 }

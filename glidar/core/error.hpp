@@ -34,8 +34,8 @@ std::string number_text(double value);
 /// Throws Error naming a number that is not allowed: `where` is what it belongs to, "pinhole, fx".
 void require_number(bool holds, const char* where, double found, const char* allowed);
 
-/// The candidate closest to `word` by edit distance, or "" when none is near (more than a third of
-/// its letters away). For "did you mean" in error texts.
+/// The candidate probably meant by `word`: by its letters (up to a third wrong, in capitals or
+/// not), or as one continues or ends with the other ("range_m", "range"); "" for none.
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
 
 }  // namespace glidar

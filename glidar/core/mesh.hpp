@@ -13,9 +13,17 @@ namespace glidar {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
+/// The origin of a run of vertices and triangles, up to the next run.
+struct MeshOrigin {
+  std::uint32_t first_vertex = 0;
+  std::uint32_t first_triangle = 0;
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
+};
+
 /// A triangle mesh in its own object frame (metres, right-handed).
-/// A vertex stands at `origin_m + positions_m[i]`: single precision is kept only relative to an
-/// origin nearby, so that a mesh far from its frame's zero loses no detail.
+/// The position of a vertex is `origin_m + positions_m[i]`, or, where `origins` is not empty, the
+/// origin of its run + positions_m[i] (vertex_m() does both): single precision is relative to a
+/// nearby origin, so that parts far from the frame's zero and from each other lose no detail.
 /// V vertices, T triangles. The front of a triangle is where its corners run counter-clockwise.
 struct Mesh {
   std::string name;
@@ -29,7 +37,18 @@ struct Mesh {
       colours;                      ///< V, rgb 0..1, multiplies the diffuse colour; empty: white
   std::vector<Triangle> triangles;  ///< T, each corner < V
   std::vector<std::uint16_t> material_slots;  ///< T, index into Instance::materials; empty: all 0
+  /// Runs in rising order, the first from vertex 0 and triangle 0; the triangles of a run use its
+  /// vertices alone. Empty: origin_m holds for all. Otherwise origin_m is not used.
+  std::vector<MeshOrigin> origins = {};
 };
+
+/// The origin that the position of a vertex is relative to.
+const Eigen::Vector3d& origin_of(const Mesh& mesh, std::uint32_t vertex);
+
+/// The position of a vertex in the object frame, m.
+inline Eigen::Vector3d vertex_m(const Mesh& mesh, std::uint32_t vertex) {
+  return origin_of(mesh, vertex) + mesh.positions_m[vertex].cast<double>();
+}
 
 /// The box around all finite vertices, in the object frame; empty box for an empty mesh.
 Eigen::AlignedBox3d bounds(const Mesh& mesh);
@@ -42,8 +61,8 @@ inline std::uint16_t material_slot(const Mesh& mesh, std::uint32_t triangle) {
 /// One past the largest slot that a triangle uses (at least 1).
 std::uint32_t slot_count(const Mesh& mesh);
 
-/// Throws Error unless every array has its stated size, every corner is a vertex and every
-/// position is finite.
+/// Throws Error unless every array has its stated size, every corner is a vertex (of the triangle's
+/// own run), runs rise and every position is finite.
 void validate(const Mesh& mesh);
 
 }  // namespace glidar

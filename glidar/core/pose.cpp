@@ -45,6 +45,12 @@ Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Ei
   return world_from_camera;
 }
 
+Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target) {
+  const Eigen::Vector3d forward = (target - eye).stableNormalized();
+  const bool is_vertical = forward.head<2>().norm() <= kVerticalSine;
+  return look_at(eye, target, is_vertical ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ());
+}
+
 Pose optical_from_body() {
   Pose pose = Pose::Identity();
   pose.linear() << 0, -1, 0, 0, 0, -1, 1, 0, 0;

@@ -20,6 +20,15 @@ inline constexpr double kLargestCoordinate_m = 1e15;
 /// parallel to the boresight.
 Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Eigen::Vector3d& up);
 
+/// The same without an up direction: +z of the world is up in the image. Where the line of sight is
+/// vertical (its angle to +z or -z has a sine of at most kVerticalSine) that is not defined, and +x
+/// of the world is up: seen from above, the picture is a map with x upwards.
+/// No rule can be continuous there (a sphere has no tangent field without a zero).
+Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target);
+
+/// Sine of the angle to the vertical up to which a line of sight counts as vertical: 1 um at 1 m.
+inline constexpr double kVerticalSine = 1e-6;
+
 /// Turns the axes of bodies and LiDARs (x forward, y left, z up) into the optical frame's (x right,
 /// y down, z forward), REP-103. look_at(...) * optical_from_body() aims a sensor whose boresight is
 /// +x.

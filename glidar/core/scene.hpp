@@ -28,7 +28,14 @@ struct MeshSource {
   std::string path;  ///< the file, or "builtin:NAME"
   std::string hash;  ///< hash of the file's content, hexadecimal; empty for built-in meshes
   std::vector<std::string> files =
-      {};  ///< all that it was read from, textures too; canonical paths
+      {};                        ///< all that it was read from, textures too; canonical paths
+  double metres_per_unit = 1.0;  ///< applied: what one unit of the file is
+  bool unit_known = false;       ///< the file or the user specified it, it is not an assumption
+  std::string up = {};           ///< applied: this axis of the file became z; empty: axes as in it
+  /// The mesh is this multiple, along its own x, y and z, of mesh `unstretched` (an index into
+  /// Scene::meshes).
+  Eigen::Vector3d stretch = Eigen::Vector3d::Ones();
+  std::uint32_t unstretched = 0;  ///< only used where stretch is not 1, 1, 1
 };
 
 /// All there is to see, as plain arrays and indices.

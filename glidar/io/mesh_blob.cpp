@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <type_traits>
 
@@ -72,6 +73,16 @@ void visit(A& archive, T& text) {
   archive.raw(text.data(), size);
 }
 
+template <class A, class T>
+requires Is<T, std::optional<double>> || Is<T, std::optional<Axis>>
+void visit(A& archive, T& value) {
+  std::uint8_t is_there = value.has_value() ? 1 : 0;
+  visit(archive, is_there);
+  if (is_there == 0) return;
+  if constexpr (A::kReads) value.emplace();
+  visit(archive, *value);
+}
+
 template <class T>
 inline constexpr bool kVector = false;
 template <class T>
@@ -117,9 +128,17 @@ auto fields(Is<Material> auto& m) {
                   m.normal_texture);
 }
 
+auto fields(Is<MeshOrigin> auto& o) {
+  return std::tie(o.first_vertex, o.first_triangle, o.origin_m);
+}
+
 auto fields(Is<Mesh> auto& m) {
   return std::tie(m.name, m.origin_m, m.positions_m, m.normals, m.uvs[0], m.uvs[1], m.tangents,
-                  m.colours, m.triangles, m.material_slots);
+                  m.colours, m.triangles, m.material_slots, m.origins);
+}
+
+auto fields(Is<ModelFrame> auto& frame) {
+  return std::tie(frame.metres_per_unit, frame.up);
 }
 
 auto fields(Is<ModelPart> auto& part) {
@@ -137,8 +156,8 @@ auto fields(Is<TextureLookup> auto& lookup) {
 auto fields(Is<ImportedModel> auto& imported) {
   auto& model = imported.model;
   return std::tie(model.format, model.mesh, model.materials, model.textures, model.parts,
-                  model.missing_textures, model.notes, imported.files, imported.absent,
-                  imported.texture_folders, imported.lookups, imported.libraries);
+                  model.missing_textures, model.notes, model.declared, imported.files,
+                  imported.absent, imported.texture_folders, imported.lookups, imported.libraries);
 }
 
 auto fields(Is<ImportFailure> auto& failure) {
@@ -230,7 +249,15 @@ void check(const Mesh& mesh) {
   if (mesh.triangles.empty()) refuse("no triangles");
 }
 
+void check(const ModelFrame& declared) {
+  const double metres = declared.metres_per_unit.value_or(1.0);
+  if (!std::isfinite(metres) || !(metres > 0.0) || declared.up.value_or(Axis::z) > Axis::z) {
+    refuse("an impossible unit or up axis");
+  }
+}
+
 void check(const Model& model) {
+  check(model.declared);
   check(model.mesh);
   if (model.materials.size() < slot_count(model.mesh)) refuse("a triangle without a material");
   for (const Material& material : model.materials) check(material, model.textures.size());

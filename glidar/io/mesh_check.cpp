@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/mesh_check.hpp>
 
+#include <glidar/core/mesh_pieces.hpp>
 #include <glidar/io/vertex_weld.hpp>
 
 #include <algorithm>
@@ -103,10 +104,25 @@ void count_vertices(const Mesh& mesh, const std::vector<std::uint32_t>& place, M
   }
 }
 
+void add(const MeshCheck& part, MeshCheck& all) {
+  all.open_edges += part.open_edges;
+  all.crowded_edges += part.crowded_edges;
+  all.inconsistent_edges += part.inconsistent_edges;
+  all.degenerate_triangles += part.degenerate_triangles;
+  all.duplicate_triangles += part.duplicate_triangles;
+  all.duplicate_vertices += part.duplicate_vertices;
+  all.unused_vertices += part.unused_vertices;
+  all.area_m2 += part.area_m2;
+  all.signed_volume_m3 += part.signed_volume_m3;
+}
+
 }  // namespace
 
 MeshCheck check_mesh(const Mesh& mesh) {
   MeshCheck check;
+  // Pieces share no positions, so what is found in each adds up.
+  for (const MeshPiece& piece : cut_at_origins(mesh)) add(check_mesh(piece.mesh), check);
+  if (!mesh.origins.empty()) return check;
   if (mesh.triangles.empty()) return check;
   const std::vector<std::uint32_t> place = first_at_position(mesh.positions_m);
   const std::vector<Triangle> triangles = by_place(mesh, place);

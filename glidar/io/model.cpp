@@ -9,6 +9,7 @@
 #include <glidar/io/model_place.hpp>
 #include <glidar/io/nearest_file.hpp>
 
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <string_view>
@@ -26,8 +27,8 @@ void require(bool holds, const char* option, double found, const char* allowed) 
 }
 
 void check(const ModelOptions& options) {
-  require(std::isfinite(options.metres_per_unit) && options.metres_per_unit > 0.0,
-          "metres_per_unit", options.metres_per_unit, "a finite number above 0");
+  const double unit = options.metres_per_unit.value_or(1.0);
+  require(std::isfinite(unit) && unit > 0.0, "metres_per_unit", unit, "a finite number above 0");
   require(options.crease_angle_rad >= 0.0 && options.crease_angle_rad <= std::numbers::pi,
           "crease_angle_rad", options.crease_angle_rad, "0 to pi");
   require(options.time_limit_s >= 0.0 && options.time_limit_s <= 1e6, "time_limit_s",
@@ -90,6 +91,36 @@ Loaded load_file(const fs::path& file, const ModelOptions& options, const Report
   return import(file, options, report, entry);
 }
 
+/// Options override what the file declares.
+void place(Model& model, const ModelOptions& options) {
+  model.applied = {
+      options.metres_per_unit ? options.metres_per_unit : model.declared.metres_per_unit,
+      options.up ? options.up : model.declared.up};
+  place_mesh(model.mesh, model.applied, options.centre);
+}
+
+std::string up_text(const std::optional<Axis>& up) {
+  constexpr std::array<const char*, 3> kNames = {"x", "y", "z"};
+  return up ? kNames.at(static_cast<std::size_t>(*up)) : "";
+}
+
+/// The mesh stretched by these factors: one that is there already, or a new one.
+std::uint32_t stretched_mesh(Scene& scene, std::uint32_t mesh, const Eigen::Vector3d& factors) {
+  for (std::uint32_t i = 0; i < scene.meshes.size(); ++i) {
+    if (scene.sources[i].unstretched == mesh && scene.sources[i].stretch == factors) return i;
+  }
+  MeshSource source = scene.sources[mesh];
+  source.stretch = factors;
+  source.unstretched = mesh;
+  scene.meshes.push_back(stretched(scene.meshes[mesh], factors));
+  scene.sources.push_back(std::move(source));
+  return static_cast<std::uint32_t>(scene.meshes.size() - 1);
+}
+
+bool is_stretched(const MeshSource& source) {
+  return source.stretch != Eigen::Vector3d::Ones();
+}
+
 void tell(const Model& model, const Report& report) {
   for (const std::string& note : model.notes) report.info(model.source + ": " + note);
   if (model.missing_textures.empty()) return;
@@ -109,7 +140,7 @@ Model load_model(const std::string& source, const ModelOptions& options, const R
   check(options);
   if (source.starts_with(kBuiltinPrefix)) {
     Model model = make_builtin_model(std::string_view(source).substr(kBuiltinPrefix.size()));
-    place_mesh(model.mesh, options);
+    place(model, options);
     return model;
   }
   const fs::path file = model_file(source);
@@ -120,7 +151,7 @@ Model load_model(const std::string& source, const ModelOptions& options, const R
   model.files = std::move(loaded.imported.files);
   model.from_cache = loaded.from_cache;
   model.mesh.name = fs::path(source).stem().string();
-  place_mesh(model.mesh, options);
+  place(model, options);
   tell(model, report);
   return model;
 }
@@ -143,9 +174,35 @@ std::size_t add_model(Scene& scene, Model model) {
   }
   std::move(model.textures.begin(), model.textures.end(), std::back_inserter(scene.textures));
   scene.meshes.push_back(std::move(model.mesh));
-  scene.sources.push_back({std::move(model.source), std::move(model.hash), std::move(model.files)});
+  scene.sources.push_back({.path = std::move(model.source),
+                           .hash = std::move(model.hash),
+                           .files = std::move(model.files),
+                           .metres_per_unit = model.applied.metres_per_unit.value_or(1.0),
+                           .unit_known = model.applied.metres_per_unit.has_value(),
+                           .up = up_text(model.applied.up)});
   scene.instances.push_back(std::move(instance));
   return scene.instances.size() - 1;
+}
+
+void set_scale(Scene& scene, std::size_t instance, const Eigen::Vector3d& scale) {
+  const bool allowed = (scale.array() > 0.0).all() && scale.maxCoeff() <= kLargestCoordinate_m;
+  if (!allowed) {
+    throw Error({.where = "scale",
+                 .found = number_text(scale.x()) + ", " + number_text(scale.y()) + ", " +
+                          number_text(scale.z()),
+                 .allowed = "numbers above 0, up to 1e15",
+                 .remedy = "a mirrored model is another model: mirror it in its file"});
+  }
+  Instance& changed = scene.instances.at(instance);
+  const MeshSource& source = scene.sources.at(changed.mesh);
+  const std::uint32_t mesh = is_stretched(source) ? source.unstretched : changed.mesh;
+  const bool is_uniform = scale.x() == scale.y() && scale.y() == scale.z();
+  changed.mesh = is_uniform ? mesh : stretched_mesh(scene, mesh, scale);
+  changed.scale = is_uniform ? scale.x() : 1.0;
+}
+
+Eigen::Vector3d scale_of(const Scene& scene, const Instance& instance) {
+  return instance.scale * scene.sources.at(instance.mesh).stretch;
 }
 
 }  // namespace glidar

@@ -16,14 +16,23 @@ namespace glidar {
 enum class Axis : std::uint8_t { x, y, z };
 
 struct ModelOptions {
-  double metres_per_unit = 1.0;  ///< what one unit of the file is
-  std::optional<Axis> up;        ///< this axis of the file becomes z; none: axes as in the file
+  /// What one unit of the file is; none: what the file declares, else 1.
+  std::optional<double> metres_per_unit;
+  /// This axis of the file becomes z; none: the one that the file declares, else axes as in it.
+  std::optional<Axis> up;
+  bool centre = false;  ///< move the middle of the model's box to the origin
   double crease_angle_rad =
       0.785398163397448310;  ///< made normals do not smooth over sharper edges
   bool use_cache = true;
   std::filesystem::path cache_folder;    ///< empty: $XDG_CACHE_HOME/glidar or ~/.cache/glidar
   double time_limit_s = 0.0;             ///< for the import process; 0: 20 s, more for big files
   std::uint64_t memory_limit_bytes = 0;  ///< for the import process; 0: 1 GiB, more for big files
+};
+
+/// The unit and the up axis of a model's coordinates.
+struct ModelFrame {
+  std::optional<double> metres_per_unit;
+  std::optional<Axis> up;
 };
 
 /// A run of triangles that was one mesh of the file.
@@ -52,17 +61,22 @@ struct Model {
   std::vector<ModelPart> parts;
   std::vector<MissingTexture> missing_textures;
   std::vector<std::string> notes;  ///< what was left out or repaired, in words
+  ModelFrame declared = {};        ///< by the file or by the standard of its format
+  ModelFrame applied = {};  ///< by load_model(); no unit: 1 was assumed; no up: axes as in the file
   bool from_cache = false;
 };
 
-/// Loads a file of any format that Assimp reads, or "builtin:asteroid|sphere|box|torus|plane".
+/// Loads a file of any format that Assimp reads, or a built-in model (make_builtin_model()).
 /// The importer runs in a process of its own (glidar-import) with limits on time and memory, and
 /// reads only below the model's folder (in a model package with `model.config`, or with `meshes`
 /// and `materials` side by side, below the package's).
-/// Coordinates and axes are as the file has them, with node transforms, whichever axis it says is
-/// up; COLLADA's unit is applied by the importer, FBX' is not (Model::notes tells it). Then
-/// metres_per_unit and up act. The mesh's origin is away from zero only along axes on which the
-/// model is, so that no single-precision coordinate of the file is rounded. Normals of STL are its
+/// Coordinates are those of the file with node transforms. Unit and up axis are those of the
+/// options, else those that the file declares: COLLADA (`unit`, `up_axis`; without them 1 m and y),
+/// FBX (UnitScaleFactor in cm, UpAxis), 3MF and AMF (`unit`; without it 1 mm; z is up), glTF (1 m
+/// and y by its standard); other formats declare nothing, and 1 m and the axes of the file are
+/// assumed. The mesh's origin is away from zero only along axes on which the model is, so that no
+/// single-precision coordinate of the file is rounded; parts that are far from each other have
+/// origins of their own (Mesh::origins). Normals of STL are its
 /// facets' and count as missing; points and lines are left out and told in notes.
 /// Missing textures and notes are told through report, and progress when it takes over half a
 /// second: "loading NAME" with a fraction, negative while unknown.
@@ -73,5 +87,15 @@ Model load_model(const std::string& source, const ModelOptions& options, const R
 /// Appends the model's mesh, materials and textures to the scene and one instance of it with
 /// identity pose, which the caller may change. Returns the instance's index.
 std::size_t add_model(Scene& scene, Model model);
+
+/// Scales an instance along its model's own axes: p_world = pose * (scale_x x, scale_y y, scale_z
+/// z). Three equal factors become Instance::scale. For others the scene gets a stretched copy of
+/// the mesh, with the normals of the stretched surface, which instances of equal factors share, and
+/// Instance::scale is 1.
+/// Throws Error unless all are above 0, up to 1e15.
+void set_scale(Scene& scene, std::size_t instance, const Eigen::Vector3d& scale);
+
+/// The factors of set_scale().
+Eigen::Vector3d scale_of(const Scene& scene, const Instance& instance);
 
 }  // namespace glidar

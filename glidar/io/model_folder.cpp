@@ -30,11 +30,14 @@ ModelFolder model_folder(const fs::path& canonical_model) {
 
 ConfinedFile confine(const fs::path& wanted, const ModelFolder& folder) {
   if (wanted.native().find('\0') != std::string::npos) return {Access::absent, {}};
-  const fs::path lexical = (folder.folder / wanted).lexically_normal();
-  if (!inside(lexical, folder.root)) return {Access::outside, {}};
+  const fs::path path = folder.folder / wanted;
+  const fs::path lexical = path.lexically_normal();
   std::error_code error;
-  const fs::path real = fs::canonical(lexical, error);
-  if (error) return {Access::absent, {}};
+  // Behind a link, "link/.." is the parent of what it points to.
+  fs::path real = fs::canonical(path, error);
+  // Files name folders that are not there ("..\\source\\..\\wood.png"): without them it may be.
+  if (error && inside(lexical, folder.root)) real = fs::canonical(lexical, error);
+  if (error) return {inside(lexical, folder.root) ? Access::absent : Access::outside, {}};
   if (!inside(real, folder.root)) return {Access::outside, {}};
   if (!fs::is_regular_file(real, error) || error) return {Access::not_a_file, {}};
   return {Access::granted, real};

@@ -35,6 +35,30 @@ Winding winding_of(const MeshCheck& check, bool closed) {
   return check.signed_volume_m3 > 0.0 ? Winding::outward : Winding::inward;
 }
 
+/// "declared by the file", or how what was applied differs from it.
+template <class Value, class Text>
+std::string origin_of(const std::optional<Value>& declared, const std::optional<Value>& applied,
+                      const Text& text) {
+  if (declared == applied) return "declared by the file or its format";
+  return declared ? "as specified; the file declares " + text(*declared) : "as specified";
+}
+
+std::string unit_sentence(const Model& model, double longest_side_m) {
+  const std::optional<double>& applied = model.applied.metres_per_unit;
+  if (!applied) return "1 m assumed, the file declares none; " + guess_unit(longest_side_m);
+  const auto text = [](double metres) { return fmt::format("{:g} m", metres); };
+  return text(*applied) + ", " + origin_of(model.declared.metres_per_unit, applied, text);
+}
+
+std::string up_sentence(const Model& model) {
+  const std::optional<Axis>& applied = model.applied.up;
+  if (!applied) return "axes as in the file, which declares none";
+  const auto text = [](Axis axis) {
+    return std::string(1, static_cast<char>('x' + static_cast<int>(axis)));
+  };
+  return text(*applied) + " of the file is z here, " + origin_of(model.declared.up, applied, text);
+}
+
 }  // namespace
 
 std::string to_string(Winding winding) {
@@ -92,7 +116,10 @@ ModelReport inspect(const Model& model) {
   }
   report.missing_textures = model.missing_textures;
   report.notes = model.notes;
-  report.unit_guess = guess_unit(report.size_m.maxCoeff());
+  report.metres_per_unit = model.applied.metres_per_unit.value_or(1.0);
+  report.unit_declared = model.declared.metres_per_unit;
+  report.unit_guess = unit_sentence(model, report.size_m.maxCoeff());
+  report.up = up_sentence(model);
   return report;
 }
 

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,8 +59,11 @@ struct ModelReport {
   std::vector<MaterialSummary> materials;
   std::vector<TextureSummary> textures;  ///< found
   std::vector<MissingTexture> missing_textures;
-  std::vector<std::string> notes;  ///< NaN parts, points and lines left out, repairs
-  std::string unit_guess;          ///< a sentence
+  std::vector<std::string> notes;       ///< NaN parts, points and lines left out, repairs
+  double metres_per_unit = 1.0;         ///< applied
+  std::optional<double> unit_declared;  ///< metres, by the file
+  std::string unit_guess;  ///< a sentence: where the unit is from or, where it is assumed, a guess
+  std::string up;          ///< a sentence: which axis became z, and who said so
 };
 
 ModelReport inspect(const Model& model);

@@ -73,7 +73,7 @@ Pose read_look_at(const YamlField& field) {
   const Eigen::Vector3d target = triple(need(field, "target"), kCoordinate);
   const auto up = find(field, "up");
   try {
-    return look_at(eye, target, up ? triple(*up, kFinite) : Eigen::Vector3d::UnitZ());
+    return up ? look_at(eye, target, triple(*up, kFinite)) : look_at(eye, target);
   } catch (const Error& error) {
     reject(field, error.parts().found, error.parts().allowed, error.parts().remedy);
   }

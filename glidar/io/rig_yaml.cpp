@@ -3,6 +3,7 @@
 #include <glidar/io/rig_yaml.hpp>
 
 #include <glidar/io/motion_yaml.hpp>
+#include <glidar/io/nearest_file.hpp>
 #include <glidar/io/pose_yaml.hpp>
 #include <glidar/io/sensor_file.hpp>
 #include <glidar/io/sensor_presets.hpp>
@@ -19,7 +20,26 @@ namespace fs = std::filesystem;
 constexpr std::size_t kMostSensors = 256;
 constexpr std::size_t kLongestName = 31;
 
-/// A sensor: a map, a sensor file, or the name of a sensor that comes along.
+/// Loads a sensor file that this field names; errors in it are reported with both places.
+Sensor load_named_sensor(const YamlField& field, const fs::path& file) {
+  try {
+    return load_sensor_file(file);
+  } catch (const Error& error) {
+    reject_at(where(field), error);
+  }
+}
+
+/// The file of a bundled sensor.
+fs::path find_bundled_sensor(const YamlField& field) {
+  try {
+    return find_sensor_file(field.node.Scalar());
+  } catch (const Error& error) {
+    const ErrorParts& parts = error.parts();
+    reject(field, parts.found, "a map, " + parts.allowed, parts.remedy);
+  }
+}
+
+/// A sensor: a map, a sensor file, or the name of a bundled sensor.
 Sensor read_scene_sensor(const YamlField& field, std::vector<std::string>& files) {
   if (field.node.IsMap()) return read_sensor(field);
   if (!field.node.IsScalar() || field.node.Scalar().empty()) {
@@ -28,13 +48,16 @@ Sensor read_scene_sensor(const YamlField& field, std::vector<std::string>& files
   const std::string file = path_beside(field);
   const fs::path named = field.node.Scalar();
   const bool is_name = !named.has_parent_path() && !named.has_extension() && !fs::exists(file);
-  if (is_name) return load_sensor_file(find_sensor_file(field.node.Scalar()));
+  if (is_name) return load_named_sensor(field, find_bundled_sensor(field));
   if (!fs::exists(file)) {
+    const std::string nearest = nearest_file(file);
+    const bool is_near = !nearest.empty() && nearest != fs::path(field.file).filename();
     reject(field, "no such file: " + file, "a map, or the path of a sensor file",
-           "paths are relative to the folder of this file");
+           is_near ? "did you mean '" + nearest + "'?"
+                   : "paths are relative to the folder of this file");
   }
   files.push_back(file);
-  return load_sensor_file(file);
+  return load_named_sensor(field, file);
 }
 
 bool is_plain(char letter) {

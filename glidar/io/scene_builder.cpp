@@ -13,42 +13,40 @@ namespace glidar {
 namespace {
 
 /// Instances that agree in these share one mesh.
-using LoadKey = std::tuple<std::string, double, std::optional<Axis>>;
+using LoadKey = std::tuple<std::string, std::optional<double>, std::optional<Axis>, bool>;
+
+/// The same text for every spelling of a file's path.
+std::string real_path(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::path real = std::filesystem::canonical(path, error);
+  return error ? path : real.string();
+}
 
 LoadKey load_key(const PlannedInstance& planned) {
-  std::error_code error;
-  const std::filesystem::path real = std::filesystem::canonical(planned.source, error);
-  return {error ? planned.source : real.string(), planned.options.metres_per_unit,
-          planned.options.up};
+  return {real_path(planned.source), planned.options.metres_per_unit, planned.options.up,
+          planned.options.centre};
 }
 
 /// Where in Scene::textures the files lie that this scene names.
 using TexturePlaces = std::map<std::string, std::int32_t>;
 
-/// Says where in the scene file the matter is.
-[[noreturn]] void tell_at(const std::string& where, const Error& error) {
-  const ErrorParts& parts = error.parts();
-  const std::string place = parts.where.empty() ? "" : parts.where + ": ";
-  throw Error({where, place + parts.found, parts.allowed, parts.remedy});
-}
-
 Model load_for(const PlannedInstance& planned, const ModelLoader& load) {
   try {
     return load(planned.source, planned.options);
   } catch (const Error& error) {
-    tell_at(planned.where, error);
+    reject_at(planned.where, error);
   }
 }
 
 /// The texture of a file, loaded when it is named for the first time.
 std::int32_t place_of(const MaterialOverride& change, TexturePlaces& places, Scene& scene) {
   const auto next = static_cast<std::int32_t>(scene.textures.size());
-  const auto [place, is_new] = places.try_emplace(change.noise_texture, next);
+  const auto [place, is_new] = places.try_emplace(real_path(change.noise_texture), next);
   if (!is_new) return place->second;
   try {
     scene.textures.push_back(read_png_texture(change.noise_texture));
   } catch (const Error& error) {
-    tell_at(change.where_noise_texture, error);
+    reject_at(change.where_noise_texture, error);
   }
   return next;
 }
@@ -146,11 +144,15 @@ Scene build_scene(const ScenePlan& plan, const ModelLoader& load) {
     Instance instance = loaded.at(key);
     instance.name = planned.name;
     instance.world_from_object = planned.world_from_object;
-    instance.scale = planned.scale;
     instance.id = planned.id;
     instance.class_id = class_index(planned.class_name, scene.class_names);
     override_materials(planned.overrides, places, instance, scene);
     scene.instances.push_back(std::move(instance));
+    try {
+      set_scale(scene, scene.instances.size() - 1, planned.scale);
+    } catch (const Error& error) {
+      reject_at(planned.where, error);
+    }
   }
   validate(scene);
   return scene;

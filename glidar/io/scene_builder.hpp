@@ -38,8 +38,8 @@ struct PlannedInstance {
   std::string source;  ///< as load_model takes it; relative paths are resolved already
   std::string where;   ///< the field `model`, for errors
   ModelOptions options;
-  std::string name;  ///< unique in the scene
-  double scale = 1.0;
+  std::string name;                                 ///< unique in the scene
+  Eigen::Vector3d scale = Eigen::Vector3d::Ones();  ///< along the model's own axes
   Pose world_from_object = Pose::Identity();
   std::optional<Trajectory> motion;  ///< empty: it stands still
   std::uint32_t id = 0;

@@ -20,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr NumberRule kScale = {0.0, kLargestCoordinate_m, true, "a number above 0 and below 1e15"};
+constexpr NumberRule kSize_m = {0.0, kLargestCoordinate_m, true, "metres above 0 and below 1e15"};
 constexpr NumberRule kShininess = {0.0, 128.0, false, "a number from 0 to 128"};
 
 std::string resolved(const YamlField& field) {
@@ -28,7 +29,10 @@ std::string resolved(const YamlField& field) {
 }
 
 std::string stem(const std::string& source) {
-  if (source.starts_with(kBuiltinPrefix)) return source.substr(kBuiltinPrefix.size());
+  if (source.starts_with(kBuiltinPrefix)) {
+    const std::string name = source.substr(kBuiltinPrefix.size());
+    return name.substr(0, name.find(':'));
+  }
   return fs::path(source).stem().string();
 }
 
@@ -40,7 +44,40 @@ ModelOptions read_options(const YamlField& model, const ModelOptions& defaults) 
   if (const auto up = find(model, "up")) {
     options.up = static_cast<Axis>(one_of(*up, {"x", "y", "z"}));
   }
+  if (const auto centre = find(model, "centre")) options.centre = boolean(*centre);
   return options;
+}
+
+/// One factor, or one for each of the model's own axes.
+Eigen::Vector3d read_scale(const YamlField& field) {
+  if (field.node.IsSequence()) return triple(field, kScale);
+  return Eigen::Vector3d::Constant(number(field, kScale));
+}
+
+/// A size of a built-in model as its source names it.
+std::string size_text(const YamlField& field) {
+  if (!field.node.IsSequence()) return number_text(number(field, kSize_m));
+  std::string numbers;
+  for (const YamlField& one : items(field)) {
+    numbers += (numbers.empty() ? "" : ",") + number_text(number(one, kSize_m));
+  }
+  return numbers;
+}
+
+/// The model's source with the sizes that a built-in model is given beside its name.
+std::string read_source(const YamlField& field) {
+  const YamlField model = need(field, "model");
+  std::string source = resolved(model);
+  for (const char* key : {"size", "radius", "tube_radius"}) {
+    const auto size = find(field, key);
+    if (!size) continue;
+    if (!source.starts_with(kBuiltinPrefix)) {
+      reject(*size, "given for a model file", "sizes of built-in models alone",
+             "change the size of a model file with 'scale' or 'unit'");
+    }
+    source += std::string(":") + key + "=" + size_text(*size);
+  }
+  return source;
 }
 
 MaterialOverride read_override(const std::string& material, const YamlField& field) {
@@ -90,14 +127,13 @@ void read_placing(const YamlField& field, PlannedInstance& planned,
 
 PlannedInstance read_model(const YamlField& field, const ModelOptions& defaults,
                            std::vector<std::string>& files) {
-  require_map(field, {"model", "name", "unit", "up", "scale", "pose", "id", "class", "materials",
-                      "motion"});
-  const YamlField model = need(field, "model");
+  require_map(field, {"model", "name", "unit", "up", "centre", "size", "radius", "tube_radius",
+                      "scale", "pose", "id", "class", "materials", "motion"});
   PlannedInstance planned;
-  planned.source = resolved(model);
-  planned.where = where(model);
+  planned.source = read_source(field);
+  planned.where = where(need(field, "model"));
   planned.options = read_options(field, defaults);
-  planned.scale = number_or(field, "scale", kScale, 1.0);
+  if (const auto scale = find(field, "scale")) planned.scale = read_scale(*scale);
   read_placing(field, planned, files);
   if (const auto name = find(field, "class")) planned.class_name = text(*name);
   if (const auto materials = find(field, "materials")) {

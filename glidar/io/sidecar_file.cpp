@@ -137,6 +137,12 @@ Json cloud_json(const CloudFile& job, const std::filesystem::path& path) {
           {"image", image_json(job)}};
 }
 
+/// A factor, or one for each of the model's own axes.
+Json scale_json(const Instance& instance, const MeshSource& source) {
+  if (source.stretch == Eigen::Vector3d::Ones()) return instance.scale;
+  return vector_json(instance.scale * source.stretch);
+}
+
 Json instances_json(const CloudFile& job) {
   const Scene& scene = job.context.scene;
   Json instances = Json::array();
@@ -149,7 +155,9 @@ Json instances_json(const CloudFile& job) {
                  {"class", scene.class_names.at(instance.class_id)},
                  {"model", source.path},
                  {"model_hash", source.hash.empty() ? Json() : Json(source.hash)},
-                 {"scale", instance.scale}};
+                 {"metres_per_unit", source.metres_per_unit},
+                 {"up", source.up.empty() ? Json() : Json(source.up)},
+                 {"scale", scale_json(instance, source)}};
     told["world_from_object"] = pose_json(job.frame.world_from_instance.at(i));
     instances.push_back(told);
   }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/yaml_reader.hpp>
 
-#include <glidar/core/error.hpp>
 #include <glidar/io/text_file.hpp>
 
 #include <yaml-cpp/depthguard.h>
@@ -149,6 +148,12 @@ void reject(const YamlField& field, std::string found, std::string allowed, std:
   throw Error({where(field), std::move(found), std::move(allowed), std::move(remedy)});
 }
 
+void reject_at(const std::string& where, const Error& error) {
+  const ErrorParts& parts = error.parts();
+  const std::string place = parts.where.empty() ? "" : parts.where + ": ";
+  throw Error({where, place + parts.found, parts.allowed, parts.remedy});
+}
+
 std::string describe(const YamlField& field) {
   switch (field.node.Type()) {
     case YAML::NodeType::Null:
@@ -245,8 +250,10 @@ std::string text(const YamlField& field) {
 }
 
 std::string path_beside(const YamlField& field) {
-  const std::filesystem::path folder = std::filesystem::path(field.file).parent_path();
-  return (folder / text(field)).lexically_normal().string();
+  fs::path path = fs::path(field.file).parent_path() / text(field);
+  // Behind a link, "link/.." is the parent of what it points to: only the system knows.
+  const bool goes_up = std::find(path.begin(), path.end(), "..") != path.end();
+  return goes_up ? path.string() : path.lexically_normal().string();
 }
 
 std::size_t one_of(const YamlField& field, const std::vector<std::string>& words) {

@@ -4,6 +4,7 @@
 
 // Private to glidar/io: reading YAML so that every error tells file:line:column and the field.
 
+#include <glidar/core/error.hpp>
 #include <glidar/core/pose.hpp>
 #include <glidar/core/table.hpp>
 
@@ -59,6 +60,10 @@ std::string where(const YamlField& field);
 [[noreturn]] void reject(const YamlField& field, std::string found, std::string allowed,
                          std::string remedy = "");
 
+/// Throws an error again from a place in this file that refers to what is wrong: `where` of the
+/// error itself goes into the sentence.
+[[noreturn]] void reject_at(const std::string& where, const Error& error);
+
 /// What a field holds, for error texts: "a map", "the text 'abc'" ...
 std::string describe(const YamlField& field);
 
@@ -89,7 +94,8 @@ std::uint32_t whole_number(const YamlField& field, std::uint32_t least, std::uin
 bool boolean(const YamlField& field);
 /// Any scalar but an empty one.
 std::string text(const YamlField& field);
-/// A path, seen from the file's own folder.
+/// A path, seen from the file's own folder. "..", also behind a symbolic link, means what it means
+/// to the system.
 std::string path_beside(const YamlField& field);
 /// The place of the text in `words`; throws Error when it is none of them.
 std::size_t one_of(const YamlField& field, const std::vector<std::string>& words);

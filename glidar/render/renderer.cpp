@@ -6,6 +6,7 @@
 #include <glidar/render/auto_renderer.hpp>
 #include <glidar/render/embree/embree_renderer.hpp>
 #include <glidar/render/opengl/opengl_renderer.hpp>
+#include <glidar/render/pieces_renderer.hpp>
 #include <glidar/render/raster/raster_renderer.hpp>
 
 #include <algorithm>
@@ -83,7 +84,10 @@ const std::vector<std::string>& renderer_kinds() {
 std::unique_ptr<Renderer> make_renderer(const Scene& scene, const RendererOptions& options) {
   std::string names;
   for (const Kind& kind : kinds()) {
-    if (kind.name == options.kind) return kind.make(scene, options);
+    if (kind.name == options.kind) {
+      const auto make = [&](const Scene& whole) { return kind.make(whole, options); };
+      return has_pieces(scene) ? make_pieces_renderer(scene, make) : make(scene);
+    }
     names += (names.empty() ? "" : ", ") + kind.name;
   }
   throw Error({.where = "renderer",

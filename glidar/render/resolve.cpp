@@ -268,8 +268,11 @@ void Resolver::write(const Beams& beams, const HitFields& fields, const HitBlock
     if (fields.incidence) hits.cos_incidence[beam] = static_cast<float>(std::abs(exact.cosine[i]));
     if (fields.depth) hits.depth_m[beam] = depth_m(beams, beam, hits.range_m[beam]);
     if (!fields.object_point) return;
-    hits.object_point_m[beam] = mesh(block.instance[i]).origin_m +
-                                (exact.origin.get(i) + exact.distance[i] * exact.direction.get(i));
+    const Eigen::Vector3d point =
+        mesh(block.instance[i]).origin_m +
+        (exact.origin.get(i) + exact.distance[i] * exact.direction.get(i));
+    hits.object_point_m[beam] =
+        point.cwiseQuotient(scene_.sources[scene_.instances[block.instance[i]].mesh].stretch);
   });
   if (fields.normal) write_directions(block, exact.normal, exact.cosine, hits.normal);
   if (needs_corners(fields)) write_surface(fields, block, exact, hits);

@@ -41,8 +41,7 @@ template <typename Visit>
 void visit_corners(const Instance& instance, const Mesh& mesh, const Visit& visit) {
   for (const Triangle& triangle : mesh.triangles) {
     for (const std::uint32_t corner : triangle) {
-      const Eigen::Vector3d in_object = mesh.origin_m + mesh.positions_m[corner].cast<double>();
-      visit(instance.world_from_object * (instance.scale * in_object));
+      visit(instance.world_from_object * (instance.scale * vertex_m(mesh, corner)));
     }
   }
 }

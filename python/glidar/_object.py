@@ -8,10 +8,11 @@ import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import numpy.typing as npt
 
 from ._errors import Error
-from ._inputs import FloatArray, floats, text_of, whole
+from ._inputs import FloatArray, floats, numbers, text_of, whole
 from ._mesh import Mesh
 from ._sensor import plain
 
@@ -92,13 +93,18 @@ class Object:
         self._set(pose=floats(pose, "pose", (4, 4))[None])
 
     @property
-    def scale(self) -> float:
-        """p_world = pose (scale p_object)."""
-        return float(self._info()["scale"])
+    def scale(self) -> float | tuple[float, float, float]:
+        """p_world = pose (scale p_object): one factor, or (x, y, z) along the object's own axes.
+
+        Different factors cost a stretched copy of the mesh."""
+        x, y, z = self._info()["scale"]
+        return float(x) if x == y == z else (float(x), float(y), float(z))
 
     @scale.setter
-    def scale(self, scale: float) -> None:
-        self._set(scale=float(floats(scale, "scale", ())))
+    def scale(self, scale: npt.ArrayLike) -> None:
+        given = numbers(scale, "scale", (3,))
+        factors = floats(given, "scale", (3,)) if given.ndim else np.full(3, float(floats(given, "scale", ())))
+        self._set(scale=tuple(factors.tolist()))
 
     @property
     def materials(self) -> list[str]:

@@ -54,13 +54,14 @@ def _rigid(rotation: FloatArray, position: FloatArray, name: str) -> FloatArray:
 
 
 def look_at(
-    eye: npt.ArrayLike, target: npt.ArrayLike, up: npt.ArrayLike = (0.0, 0.0, 1.0), *, boresight: str = "z"
+    eye: npt.ArrayLike, target: npt.ArrayLike, up: npt.ArrayLike | None = None, *, boresight: str = "z"
 ) -> FloatArray:
     """The pose (world_from_sensor, 4x4) of a sensor at `eye` that looks at `target`.
 
     Args:
         eye, target: positions in the world, m.
-        up: the world's direction that is up for the sensor.
+        up: the world's direction that is up for the sensor; None: +z, and +x where the line of sight
+            is vertical (the sine of its angle to z is at most 1e-6).
         boresight: "z" for cameras (x right, y down, z forward), "x" for LiDARs (x forward, y left,
             z up); ``Sensor.boresight`` tells.
 
@@ -69,7 +70,8 @@ def look_at(
     """
     if boresight not in ("x", "z"):
         raise Error("boresight", repr(boresight), "'x' or 'z'")
-    optical = _core.look_at(floats(eye, "eye", (3,)), floats(target, "target", (3,)), floats(up, "up", (3,)))
+    upwards = None if up is None else floats(up, "up", (3,))
+    optical = _core.look_at(floats(eye, "eye", (3,)), floats(target, "target", (3,)), upwards)
     if boresight == "z":
         return optical
     optical_from_body = np.array([[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])

@@ -47,10 +47,10 @@ class Recipe:
         return Recipe(_core.Scene(), [])
 
     @staticmethod
-    def of_file(path: str, metres: float, up: int | None) -> Recipe:
-        """Of a scene file."""
-        core = _core.load_scene(path, metres, up, True, log)
-        return Recipe(core, [("scene_file", {"path": path, "folder": os.getcwd(), "metres": metres, "up": up})])
+    def of_file(path: str, options: dict[str, Any]) -> Recipe:
+        """Of a scene file, whose models are read with these options."""
+        core = _core.load_scene(path, options, log)
+        return Recipe(core, [("scene_file", {"path": path, "folder": os.getcwd(), "options": options})])
 
     @staticmethod
     def of_text(text: str, folder: str = "") -> Recipe:
@@ -69,10 +69,10 @@ class Recipe:
         self._steps.append((name, arguments))
         self._latest.clear()
 
-    def add_model(self, path: str, metres: float, up: int | None) -> int:
-        """Adds a model file, or a built-in model."""
-        index = self.core.add_model(path, metres, up, True, log)
-        self._add("model", path=path, folder=os.getcwd(), metres=metres, up=up)
+    def add_model(self, path: str, options: dict[str, Any]) -> int:
+        """Adds a model file, or a built-in model, read with these options."""
+        index = self.core.add_model(path, options, log)
+        self._add("model", path=path, folder=os.getcwd(), options=options)
         self._note_files()
         return index
 
@@ -156,7 +156,7 @@ class Recipe:
     def _redo(self, name: str, arguments: dict[str, Any]) -> None:
         one_of(name, "pickled Scene, step", ("model", "mesh", "copy", "drop", "set", "materials"))
         if name == "model":
-            self.add_model(_reached(arguments), arguments["metres"], arguments["up"])
+            self.add_model(_reached(arguments), part(arguments, "options", dict))
         elif name == "mesh":
             self.core.restore_mesh(_plain_arrays(part(arguments, "state", dict)))
             self._add("mesh", mesh=_core.mesh_count(self.core) - 1)
@@ -178,7 +178,7 @@ class Recipe:
 def _restored_base(name: str, arguments: dict[str, Any]) -> Recipe:
     if name == "scene":
         return Recipe.of_text(part(arguments, "text", str), _folder(arguments))
-    return Recipe.of_file(_reached(arguments), arguments["metres"], arguments["up"])
+    return Recipe.of_file(_reached(arguments), part(arguments, "options", dict))
 
 
 def _folder(arguments: dict[str, Any]) -> str:

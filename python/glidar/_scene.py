@@ -59,9 +59,13 @@ class Scene:
 
     Args:
         source: a scene file (.yaml, .yml), a model file, or "builtin:asteroid", "builtin:sphere",
-            "builtin:box", "builtin:torus", "builtin:plane"; None: an empty scene.
-        unit: of a model file's numbers: "m", "cm", "mm", "in", or metres per unit.
-        up: the axis of a model file that becomes z: "x", "y", "z"; None: axes as in the file.
+            "builtin:box", "builtin:torus", "builtin:plane", with sizes if wanted:
+            "builtin:box:size=2,1,0.5", "builtin:sphere:radius=3"; None: an empty scene.
+        unit: of a model file's numbers: "m", "cm", "mm", "in", or metres per unit; None: what the file
+            declares, else "m".
+        up: the axis of a model file that becomes z: "x", "y", "z"; None: what the file declares, else
+            axes as in the file.
+        centre: move the middle of a model's box to its origin.
 
     Raises:
         Error: the file cannot be read, with line, column and field where it has them.
@@ -71,8 +75,9 @@ class Scene:
         self,
         source: str | os.PathLike[str] | None = None,
         *,
-        unit: str | float = "m",
+        unit: str | float | None = None,
         up: str | None = None,
+        centre: bool = False,
     ) -> None:
         self._simulators: dict[tuple[int, str, int], Simulator] = {}
         self._recipe = Recipe.empty()
@@ -80,9 +85,9 @@ class Scene:
             return
         path = path_of(source, "scene")
         if path.endswith((".yaml", ".yml")):
-            self._recipe = Recipe.of_file(path, _metres(unit), _axis(up))
+            self._recipe = Recipe.of_file(path, _options(unit, up, centre))
         else:
-            self._recipe.add_model(path, _metres(unit), _axis(up))
+            self._recipe.add_model(path, _options(unit, up, centre))
 
     @property
     def _core(self) -> CoreScene:
@@ -129,18 +134,20 @@ class Scene:
         self,
         source: str | os.PathLike[str],
         *,
-        unit: str | float = "m",
+        unit: str | float | None = None,
         up: str | None = None,
+        centre: bool = False,
         **placing: Any,
     ) -> Object:
         """Adds a model file or "builtin:NAME".
 
         Args:
-            unit, up: as for ``Scene``.
-            placing: pose (4x4), scale, name, id, class_name, materials of the object.
+            unit, up, centre: as for ``Scene``.
+            placing: pose (4x4), scale (one factor, or three along the object's own axes), name, id,
+                class_name, materials of the object.
         """
         self._simulators.clear()
-        index = self._recipe.add_model(path_of(source, "model"), _metres(unit), _axis(up))
+        index = self._recipe.add_model(path_of(source, "model"), _options(unit, up, centre))
         return self._placed(index, placing)
 
     def add_mesh(
@@ -301,9 +308,19 @@ class Scene:
         return f"<glidar.Scene of {len(self)} objects: {', '.join(o.name for o in self.objects[:4])}>"
 
 
-def load_scene(path: str | os.PathLike[str], *, unit: str | float = "m", up: str | None = None) -> Scene:
+def load_scene(
+    path: str | os.PathLike[str], *, unit: str | float | None = None, up: str | None = None, centre: bool = False
+) -> Scene:
     """The scene of a scene file, a model file, or "builtin:NAME"; as ``Scene(path)``."""
-    return Scene(path, unit=unit, up=up)
+    return Scene(path, unit=unit, up=up, centre=centre)
+
+
+def _options(unit: str | float | None, up: str | None, centre: bool) -> dict[str, Any]:
+    """How a model file is read, as the extension takes it."""
+    if not isinstance(centre, bool):
+        raise Error("centre", repr(centre), "True or False")
+    metres = None if unit is None else _metres(unit)
+    return {"metres_per_unit": metres, "up": _axis(up), "centre": centre}
 
 
 def _metres(unit: str | float) -> float:

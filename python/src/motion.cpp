@@ -111,8 +111,8 @@ std::pair<std::int64_t, std::int64_t> span_of(const Trajectories& trajectories) 
 }
 
 Matrix4 looking_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
-                   const Eigen::Vector3d& up) {
-  return matrix_of(look_at(eye, target, up));
+                   const std::optional<Eigen::Vector3d>& up) {
+  return matrix_of(up ? look_at(eye, target, *up) : look_at(eye, target));
 }
 
 Matrix4 making_pose(const Eigen::Vector3d& xyz, const Eigen::Vector4d& wxyz) {
@@ -171,7 +171,7 @@ void bind_motion(nb::module_& module) {
                      "start_ns: int | None) -> Trajectories"));
   module.def("mounted", part_of, nb::arg("body"), nb::arg("body_from_part"));
   module.def("joined", joined, nb::arg("parts"));
-  module.def("look_at", looking_at, nb::arg("eye"), nb::arg("target"), nb::arg("up"));
+  module.def("look_at", looking_at, nb::arg("eye"), nb::arg("target"), nb::arg("up").none());
   module.def("quaternion", quaternion_of, nb::arg("rotation"));
   module.def("make_pose", making_pose, nb::arg("xyz"), nb::arg("wxyz"));
 }

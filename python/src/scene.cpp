@@ -10,6 +10,7 @@
 #include <glidar/io/surfaces.hpp>
 
 #include <nanobind/eigen/dense.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
@@ -23,11 +24,12 @@
 namespace glidar::python {
 namespace {
 
-ModelOptions model_options(double metres_per_unit, const std::optional<int>& up, bool use_cache) {
+/// What Python says of how a model is to be read.
+ModelOptions model_options(const nb::dict& given) {
   ModelOptions options;
-  options.metres_per_unit = metres_per_unit;
-  if (up) options.up = static_cast<Axis>(*up);
-  options.use_cache = use_cache;
+  options.metres_per_unit = entry<double>(given, "metres_per_unit");
+  if (const auto up = entry<int>(given, "up")) options.up = static_cast<Axis>(*up);
+  options.centre = entry<bool>(given, "centre").value_or(false);
   return options;
 }
 
@@ -47,9 +49,8 @@ SceneHandle handle_of(SceneFile file) {
   return handle;
 }
 
-SceneHandle load(const std::filesystem::path& path, double metres_per_unit,
-                 const std::optional<int>& up, bool use_cache, const nb::object& log) {
-  const ModelOptions options = model_options(metres_per_unit, up, use_cache);
+SceneHandle load(const std::filesystem::path& path, const nb::dict& given, const nb::object& log) {
+  const ModelOptions options = model_options(given);
   return handle_of(unlocked(
       [&](Watch& watch) { return load_scene_file(path, options, report_to(log, watch)); }));
 }
@@ -69,9 +70,9 @@ void add_still(SceneHandle& handle) {
   }
 }
 
-std::size_t add_model(SceneHandle& handle, const std::string& source, double metres_per_unit,
-                      const std::optional<int>& up, bool use_cache, const nb::object& log) {
-  const ModelOptions options = model_options(metres_per_unit, up, use_cache);
+std::size_t add_model(SceneHandle& handle, const std::string& source, const nb::dict& given,
+                      const nb::object& log) {
+  const ModelOptions options = model_options(given);
   Model model =
       unlocked([&](Watch& watch) { return load_model(source, options, report_to(log, watch)); });
   const std::size_t instance = glidar::add_model(handle.change(), std::move(model));
@@ -83,10 +84,12 @@ using Floats3 = Table<float, 3>;
 
 nb::dict mesh_of(const SceneHandle& handle, std::size_t index) {
   const Scene& scene = *handle.scene;
-  const Mesh& mesh = scene.meshes.at(scene.instances.at(index).mesh);
+  const std::uint32_t placed = scene.instances.at(index).mesh;
+  const bool is_stretched = scene.sources.at(placed).stretch != Eigen::Vector3d::Ones();
+  const Mesh& mesh = scene.meshes.at(is_stretched ? scene.sources[placed].unstretched : placed);
   std::vector<Eigen::Vector3d> vertices;
-  for (const Eigen::Vector3f& position : mesh.positions_m) {
-    vertices.emplace_back(mesh.origin_m + position.cast<double>());
+  for (std::uint32_t v = 0; v < mesh.positions_m.size(); ++v) {
+    vertices.push_back(vertex_m(mesh, v));
   }
   nb::dict arrays;
   arrays["vertices"] = rows_of<double, 3>(vertices);
@@ -166,13 +169,14 @@ std::uint32_t class_number(Scene& scene, const std::string& name) {
   return number;
 }
 
+using Scale = std::array<double, 3>;
+
 /// Sets what is given of an object.
 void set_object(SceneHandle& handle, std::size_t index, const nb::dict& changes) {
   Scene& scene = handle.change();
   Instance changed = scene.instances.at(index);
   const auto pose = entry<PoseArray>(changes, "pose");
   if (pose) changed.world_from_object = pose_of(*pose, 0, "pose");
-  changed.scale = entry<double>(changes, "scale").value_or(changed.scale);
   changed.name = entry<std::string>(changes, "name").value_or(changed.name);
   changed.id = entry<std::uint32_t>(changes, "id").value_or(changed.id);
   if (const auto name = entry<std::string>(changes, "class_name")) {
@@ -180,6 +184,9 @@ void set_object(SceneHandle& handle, std::size_t index, const nb::dict& changes)
   }
   std::swap(scene.instances[index], changed);
   try {
+    if (const auto scale = entry<Scale>(changes, "scale")) {
+      set_scale(scene, index, {(*scale)[0], (*scale)[1], (*scale)[2]});
+    }
     validate(scene);
   } catch (...) {
     std::swap(scene.instances[index], changed);
@@ -211,7 +218,8 @@ nb::dict object_info(const SceneHandle& handle, std::size_t index) {
   info["id"] = instance.id;
   info["class_name"] = scene.class_names.at(instance.class_id);
   info["pose"] = nb::cast(matrix_of(instance.world_from_object));
-  info["scale"] = instance.scale;
+  const Eigen::Vector3d scale = scale_of(scene, instance);
+  info["scale"] = nb::make_tuple(scale.x(), scale.y(), scale.z());
   info["source"] = scene.sources.at(instance.mesh).path;
   info["triangles"] = scene.meshes.at(instance.mesh).triangles.size();
   info["vertices"] = scene.meshes.at(instance.mesh).positions_m.size();
@@ -287,8 +295,9 @@ void bind_scene(nb::module_& module) {
   nb::class_<SceneHandle>(module, "Scene")
       .def(nb::init<>())
       .def("__len__", [](const SceneHandle& self) { return self.scene->instances.size(); })
-      .def("add_model", add_model, nb::arg("source"), nb::arg("metres_per_unit"),
-           nb::arg("up").none(), nb::arg("use_cache"), nb::arg("log").none())
+      .def("add_model", add_model, nb::arg("source"), nb::arg("options"), nb::arg("log").none(),
+           nb::sig("def add_model(self, source: str, options: dict[str, typing.Any], "
+                   "log: object | None) -> int"))
       .def("add_mesh", add_mesh, nb::arg("name"), nb::arg("arrays"),
            nb::sig("def add_mesh(self, name: str, arrays: dict[str, typing.Any]) -> int"))
       .def("restore_mesh", restore_mesh, nb::arg("state"),
@@ -313,10 +322,9 @@ void bind_scene(nb::module_& module) {
   module.def("parse_scene", parse, nb::arg("text"), nb::arg("log").none(),
              nb::arg("folder") = std::filesystem::path(),
              nb::sig("def parse_scene(text: str, log: object | None, folder: str = '') -> Scene"));
-  module.def("load_scene", load, nb::arg("path"), nb::arg("metres_per_unit"), nb::arg("up").none(),
-             nb::arg("use_cache"), nb::arg("log").none(),
-             nb::sig("def load_scene(path: str, metres_per_unit: float, up: int | None, "
-                     "use_cache: bool, log: object | None) -> Scene"));
+  module.def("load_scene", load, nb::arg("path"), nb::arg("options"), nb::arg("log").none(),
+             nb::sig("def load_scene(path: str, options: dict[str, typing.Any], "
+                     "log: object | None) -> Scene"));
 }
 
 }  // namespace glidar::python

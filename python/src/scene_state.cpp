@@ -59,6 +59,12 @@ void add(const Mesh& mesh, Digest& digest) {
   digest.add(mesh.colours);
   digest.add(mesh.triangles);
   digest.add(mesh.material_slots);
+  digest.add(mesh.origins.size());
+  for (const MeshOrigin& run : mesh.origins) {
+    digest.add(run.first_vertex);
+    digest.add(run.first_triangle);
+    digest.add(run.origin_m);
+  }
 }
 
 void add(const TextureUse& use, Digest& digest) {

@@ -13,10 +13,31 @@ Eigen::AlignedBox3d box(const Eigen::Vector3d& least, const Eigen::Vector3d& mos
   return {least, most};
 }
 
-TEST(UpAdvice, GltfIsYUpByItsDefinition) {
-  const std::string advice = up_advice("glTF2", box({-1, -1, -1}, {1, 1, 1}));
-  EXPECT_NE(advice.find("--up y"), std::string::npos);
-  EXPECT_EQ(advice.find("guess"), std::string::npos);
+TEST(UpAdvice, SaysNothingOfFormatsThatDeclareTheirUpAxis) {
+  for (const char* format : {"glTF2", "Collada", "Autodesk FBX", "3mf"}) {
+    EXPECT_EQ(up_advice(format, box({-1, 0, -1}, {1, 2, 1})), "") << format;
+  }
+}
+
+Scene square_of(double side_m, bool unit_known) {
+  Scene scene;
+  Mesh mesh;
+  const auto half = static_cast<float>(0.5 * side_m);
+  mesh.positions_m = {{-half, -half, 0.0F}, {half, -half, 0.0F}, {half, half, 0.0F}};
+  mesh.triangles = {{0, 1, 2}};
+  scene.meshes.push_back(mesh);
+  scene.sources.push_back({.path = "a", .hash = "", .unit_known = unit_known});
+  scene.materials.emplace_back();
+  scene.instances.push_back({.name = "a", .materials = {0}});
+  return scene;
+}
+
+TEST(SizeAdvice, DoubtsAssumedUnitsOnly) {
+  EXPECT_EQ(size_advice(square_of(5000.0, false), false).size(), 1U);
+  EXPECT_TRUE(size_advice(square_of(5000.0, false), true).empty());
+  EXPECT_TRUE(size_advice(square_of(5000.0, true), false).empty());
+  EXPECT_EQ(size_advice(square_of(1e-4, false), false).size(), 1U);
+  EXPECT_TRUE(size_advice(square_of(1e-4, true), false).empty());
 }
 
 TEST(UpAdvice, GuessesYForWhatStandsOnOrAboveZeroAlongYAlone) {

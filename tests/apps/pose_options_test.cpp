@@ -150,7 +150,8 @@ TEST(PoseOptions, SayWhatIsWrong) {
   expect_sensor_error({.sensor_pose = "1e300,0,0,1,0,0,0"}, "--sensor-pose: 1e+300; allowed");
   expect_sensor_error({.eye = "1e16,0,0"}, "--eye: 1e+16; allowed");
   expect_sensor_error({.eye = "1,2,3", .target = "1,2,3"}, "--eye: '1,2,3' is the point looked at");
-  expect_sensor_error({.eye = "0,0,5", .target = "0,0,0"}, "for example --up-vector 1,0,0");
+  expect_sensor_error({.eye = "0,0,5", .target = "0,0,0", .up_vector = "0,0,1"},
+                      "for example --up-vector 1,0,0");
   expect_sensor_error({.eye = "5,0,0", .up_vector = "0,0,0"}, "--up-vector: the sensor looks");
   expect_sensor_error({.up_vector = "2,-3,2"}, "parallel to its up vector 2,-3,2");
   expect_sensor_error({.camera_z = 1e300}, "--camera-z: 1e+300; allowed");
@@ -221,10 +222,41 @@ TEST(LidarPose, EyeAndTargetAimTheXAxis) {
   EXPECT_NEAR((pose.linear() * Eigen::Vector3d::UnitY()).z(), 0.0, kExact);  // no roll
 }
 
-TEST(LidarPose, EyeAloneStandsUprightAndHeadsForTheMiddle) {
-  const Pose pose = pose_sensor({.eye = "4,0.5,7"}, {}, lidar(-0.2, 0.2), one_triangle());
-  EXPECT_LT((pose.linear() * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitZ()).norm(), kExact);
-  EXPECT_LT((pose.linear() * Eigen::Vector3d::UnitX() + Eigen::Vector3d::UnitX()).norm(), kExact);
+TEST(LidarPose, EyeAloneKeepsTheAxesOfTheWorldWhateverTheScene) {
+  Scene scene = one_triangle();
+  const Pose alone = pose_sensor({.eye = "4,0.5,7"}, {}, lidar(-0.2, 0.2), scene);
+  EXPECT_EQ(alone.linear(), Eigen::Matrix3d::Identity());
+  EXPECT_EQ(alone.translation(), Eigen::Vector3d(4.0, 0.5, 7.0));
+  scene.instances.push_back(scene.instances[0]);
+  scene.instances[1].world_from_object.translation() = Eigen::Vector3d(50.0, 80.0, 0.0);
+  const Pose among = pose_sensor({.eye = "4,0.5,7"}, {}, lidar(-0.2, 0.2), scene);
+  EXPECT_EQ(among.matrix(), alone.matrix());
+}
+
+TEST(LidarPose, EyeWithUpVectorTiltsItAndHeadsForXAsFarAsThatGoes) {
+  const Pose pose = pose_sensor({.eye = "0,0,1", .up_vector = "0,-1,1"}, {}, lidar(-0.2, 0.2), {});
+  EXPECT_LT((pose.linear().col(0) - Eigen::Vector3d::UnitX()).norm(), kExact);
+  EXPECT_LT((pose.linear().col(2) - Eigen::Vector3d(0.0, -1.0, 1.0).normalized()).norm(), kExact);
+  const Pose leaning =
+      pose_sensor({.eye = "0,0,1", .up_vector = "1,0,1"}, {}, lidar(-0.2, 0.2), {});
+  EXPECT_TRUE(is_rigid(leaning));
+  EXPECT_LT((leaning.linear().col(0) - Eigen::Vector3d(1.0, 0.0, -1.0).normalized()).norm(),
+            kExact);
+  EXPECT_THROW(pose_sensor({.eye = "0,0,1", .up_vector = "1,0,0"}, {}, lidar(-0.2, 0.2), {}),
+               Error);
+}
+
+TEST(LidarPose, TargetStraightBelowTakesTheWorldsXAsUp) {
+  const Pose pose =
+      pose_sensor({.eye = "1,2,9", .target = "1,2,0"}, {}, lidar(-0.2, 0.2), one_triangle());
+  EXPECT_EQ(pose.linear().col(0), Eigen::Vector3d(0.0, 0.0, -1.0));
+  EXPECT_EQ(pose.linear().col(2), Eigen::Vector3d(1.0, 0.0, 0.0));
+}
+
+TEST(PoseOptions, CameraStraightAboveLooksDownWithTheWorldsXUpwards) {
+  const Pose pose = pose_sensor({.eye = "0.5,0.5,6"}, {}, camera(), one_triangle());
+  EXPECT_EQ(pose.linear().col(2), Eigen::Vector3d(0.0, 0.0, -1.0));
+  EXPECT_EQ(pose.linear().col(1), Eigen::Vector3d(-1.0, 0.0, 0.0));
 }
 
 TEST(LidarPose, LookAtOfASceneFileAimsTheXAxis) {

@@ -108,7 +108,7 @@ class Refusals(CliTest):
                 (("--columns", "xyz,foo"), "--columns"),
                 (("--sensor-pose", "0,0,0,0,0,0,0"), "--sensor-pose"),
                 (("--sensor-pose", "nan,0,0,1,0,0,0"), "--sensor-pose"),
-                (("--eye", "0,0,5"), "--up-vector 1,0,0"),
+                (("--eye", "0,0,5", "--up-vector", "0,0,1"), "--up-vector 1,0,0"),
                 (("--cloud-frame", "rso"), "did you mean ros?"),
                 (("--renderer", "magic"), "embree")):
             with self.subTest(arguments):

@@ -39,6 +39,38 @@ TEST(NearestWord, FindsTheTypo) {
   EXPECT_EQ(nearest_word("fov_dge", known), "fov_deg");
 }
 
+TEST(NearestWord, FindsLongerAndShorterKeys) {
+  const std::vector<std::string> pose = {"position", "orientation", "rotation_vector", "euler_deg"};
+  EXPECT_EQ(nearest_word("euler", pose), "euler_deg");
+  EXPECT_EQ(nearest_word("rotation", pose), "rotation_vector");
+  EXPECT_EQ(nearest_word("position_m", pose), "position");
+  const std::vector<std::string> sensor = {"name", "rate_hz", "range_m", "fov_deg", "noise"};
+  EXPECT_EQ(nearest_word("range", sensor), "range_m");
+  EXPECT_EQ(nearest_word("rate", sensor), "rate_hz");
+  EXPECT_EQ(nearest_word("fov", sensor), "fov_deg");
+  EXPECT_EQ(nearest_word("deg", sensor), "fov_deg");
+}
+
+TEST(NearestWord, PrefersOneWrongLetterToALongerKey) {
+  const std::vector<std::string> known = {"range_max_m", "ranges"};
+  EXPECT_EQ(nearest_word("range", known), "ranges");
+}
+
+TEST(NearestWord, CountsExchangedLettersOnceAndNoCapitals) {
+  EXPECT_EQ(nearest_word("rso", std::vector<std::string>{"gl", "ros"}), "ros");
+  EXPECT_EQ(nearest_word("EULER", std::vector<std::string>{"euler_deg"}), "euler_deg");
+  EXPECT_EQ(nearest_word("vlp-17", std::vector<std::string>{"VLP-16"}), "VLP-16");
+}
+
+TEST(NearestWord, SuggestsNoNonsense) {
+  EXPECT_EQ(nearest_word("w", std::vector<std::string>{"x", "y", "z"}), "");
+  EXPECT_EQ(nearest_word("up", std::vector<std::string>{"id", "optics"}), "");
+  EXPECT_EQ(nearest_word("fov", std::vector<std::string>{"fx", "fy", "far_m"}), "");
+  EXPECT_EQ(nearest_word("r", std::vector<std::string>{"rotation_vector"}), "");
+  EXPECT_EQ(nearest_word("", std::vector<std::string>{"id", "x"}), "");
+  EXPECT_EQ(nearest_word("colour", std::vector<std::string>{"mirror", "unit"}), "");
+}
+
 TEST(NearestWord, SaysNothingWhenNothingIsNear) {
   const std::vector<std::string> known = {"width", "height"};
   EXPECT_EQ(nearest_word("temperature", known), "");

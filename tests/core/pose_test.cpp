@@ -28,6 +28,39 @@ TEST(LookAt, RefusesWhatHasNoDirection) {
   EXPECT_THROW(look_at(here, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero()), Error);
 }
 
+TEST(LookAt, WithoutUpVectorShowsTheWorldsZUpwards) {
+  const Pose pose = look_at({1.0, 2.0, 3.0}, {-2.0, 7.0, 3.5});
+  EXPECT_TRUE(
+      pose.isApprox(look_at({1.0, 2.0, 3.0}, {-2.0, 7.0, 3.5}, Eigen::Vector3d::UnitZ()), 0.0));
+}
+
+TEST(LookAt, StraightUpOrDownShowsTheWorldsXUpwards) {
+  for (const double target_z : {-4.0, 12.0}) {
+    const Pose pose = look_at({1.0, 2.0, 3.0}, {1.0, 2.0, target_z});
+    EXPECT_TRUE(is_rigid(pose));
+    EXPECT_EQ(pose.linear().col(2), Eigen::Vector3d(0.0, 0.0, target_z < 3.0 ? -1.0 : 1.0));
+    EXPECT_EQ(pose.linear().col(1), Eigen::Vector3d(-1.0, 0.0, 0.0));  // down in the image is -x
+  }
+  const Pose down = look_at({0.0, 0.0, 5.0}, {0.0, 0.0, 0.0});
+  EXPECT_EQ(down.linear().col(0), Eigen::Vector3d(0.0, -1.0, 0.0));  // right in the image is -y
+}
+
+TEST(LookAt, CountsAsVerticalUpToTheNamedSine) {
+  const double inside = 0.5 * kVerticalSine;
+  const double outside = 2.0 * kVerticalSine;
+  // beside the vertical along y: within the threshold x is up, beyond it z, which is -y here
+  const Pose vertical = look_at({0.0, 0.0, 1.0}, {0.0, inside, 0.0});
+  const Pose slanted = look_at({0.0, 0.0, 1.0}, {0.0, outside, 0.0});
+  EXPECT_LT((vertical.linear().col(1) + Eigen::Vector3d::UnitX()).norm(), 1e-5);
+  EXPECT_LT((slanted.linear().col(1) + Eigen::Vector3d::UnitY()).norm(), 1e-5);
+  EXPECT_TRUE(is_rigid(vertical));
+  EXPECT_TRUE(is_rigid(slanted));
+}
+
+TEST(LookAt, WithoutUpVectorRefusesTheSamePoint) {
+  EXPECT_THROW(look_at({1.0, 2.0, 3.0}, {1.0, 2.0, 3.0}), Error);
+}
+
 TEST(NumbersOf, ListsPositionAndQuaternionWithPositiveW) {
   const Pose pose = make_pose({1.0, 2.0, 3.0}, Eigen::Quaterniond(-0.5, 0.5, 0.5, -0.5));
   PoseNumbers wanted;

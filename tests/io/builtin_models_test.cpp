@@ -192,6 +192,62 @@ TEST(BuiltinModels, AreTheSameBytesEverywhere) {
   }
 }
 
+TEST(BuiltinModels, HaveTheSizesAfterTheirNames) {
+  const auto sizes = [](const std::string& name) -> Eigen::Vector3d {
+    return bounds(make_builtin_model(name).mesh).sizes();
+  };
+  EXPECT_EQ(sizes("box:size=2.5,1,0.25"), Eigen::Vector3d(2.5, 1.0, 0.25));
+  EXPECT_EQ(sizes("box:size=3"), Eigen::Vector3d(3.0, 3.0, 3.0));
+  EXPECT_EQ(sizes("plane:size=4,0.5"), Eigen::Vector3d(4.0, 0.5, 0.0));
+  EXPECT_LT((sizes("torus:radius=3:tube_radius=0.5") - Eigen::Vector3d(7.0, 7.0, 1.0)).norm(),
+            1e-6);
+  const Model ball = make_builtin_model("sphere:radius=0.125");
+  EXPECT_EQ(ball.source, "builtin:sphere:radius=0.125");
+  EXPECT_EQ(ball.mesh.name, "sphere");
+  for (std::size_t v = 0; v < ball.mesh.positions_m.size(); ++v) {
+    EXPECT_NEAR(ball.mesh.positions_m[v].norm(), 0.125F, 1e-7F);
+    EXPECT_NEAR(ball.mesh.normals[v].norm(), 1.0F, 1e-6F);
+  }
+}
+
+TEST(BuiltinModels, DefaultSizesGiveTheSameBytes) {
+  EXPECT_EQ(hash(make_builtin_model("box:size=2").mesh), hash(mesh_of("box")));
+  EXPECT_EQ(hash(make_builtin_model("sphere:radius=1").mesh), hash(mesh_of("sphere")));
+  EXPECT_EQ(hash(make_builtin_model("torus:radius=1:tube_radius=0.4").mesh),
+            hash(mesh_of("torus")));
+}
+
+TEST(BuiltinModels, WrongSizesAreErrors) {
+  const std::map<std::string, std::string> errors = {
+      {"box:sise=2",
+       "builtin:box:sise=2: 'sise' is no size of this model; allowed: size; did you "
+       "mean 'size'?"},
+      {"asteroid:size=2",
+       "builtin:asteroid:size=2: 'size' is no size of this model; allowed: no "
+       "sizes; 'scale' changes that of any model"},
+      {"box:size=1,2", "builtin:box:size=1,2: 2 numbers; allowed: one number, or 3"},
+      {"box:size=1,0,1",
+       "builtin:box:size=1,0,1: a size of '0'; allowed: metres above 0, up to "
+       "1e15"},
+      {"sphere:radius=nan",
+       "builtin:sphere:radius=nan: a size of 'nan'; allowed: metres above 0, "
+       "up to 1e15"},
+      {"sphere:radius",
+       "builtin:sphere:radius: 'radius' without a number; allowed: "
+       "radius=NUMBER, in metres"},
+      {"torus:tube_radius=1",
+       "builtin:torus:tube_radius=1: a tube of radius 1; allowed: a "
+       "tube_radius below the radius, 1"}};
+  for (const auto& [name, text] : errors) {
+    try {
+      make_builtin_model(name);
+      ADD_FAILURE() << name;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.what(), text);
+    }
+  }
+}
+
 TEST(BuiltinModels, UnknownNameIsToldWithTheNearestOne) {
   try {
     make_builtin_model("astroid");

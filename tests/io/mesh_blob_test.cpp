@@ -42,6 +42,7 @@ ImportedModel example() {
   model.parts = {{"first", 0, 1}, {"second", 1, 1}};
   model.missing_textures = {{"gone.png", "not found"}};
   model.notes = {"a note"};
+  model.declared = {0.0254, Axis::y};
   return imported;
 }
 
@@ -118,7 +119,15 @@ TEST(MeshBlob, UnsoundModelsAreRefusedThoughTheChecksumFits) {
       [](Model& m) {
         m.textures[0] = {"", 1U << 31U, 1U << 31U, 4, {}};
       },
-      [](Model& m) { m.parts[1].triangle_count = 4'000'000'000U; }};
+      [](Model& m) { m.parts[1].triangle_count = 4'000'000'000U; },
+      [](Model& m) { m.declared.metres_per_unit = 0.0; },
+      [](Model& m) { m.declared.up = static_cast<Axis>(3); },
+      [](Model& m) {
+        m.mesh.origins = {{1, 0, {0, 0, 0}}};
+      },
+      [](Model& m) {
+        m.mesh.origins = {{0, 0, {0, 0, 0}}, {2, 1, {0, 0, 0}}};  // a triangle of two runs
+      }};
   for (std::size_t i = 0; i < harms.size(); ++i) {
     ImportedModel imported = example();
     harms[i](imported.model);

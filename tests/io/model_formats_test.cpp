@@ -55,8 +55,10 @@ TEST(ModelFormats, ColladaKeepsTheAxesOfTheFileWhicheverIsUp) {
 
 TEST(ModelFormats, AZUpColladaBarrierStandsOnTheGround) {
   GLIDAR_NEED_DATA();
-  const Eigen::AlignedBox3d box = bounds(
-      load(testing::data_folder() / "scenes/gazebo/jersey_barrier/meshes/jersey_barrier.dae").mesh);
+  const Eigen::AlignedBox3d box =
+      bounds(load(testing::data_folder() / "scenes/gazebo/jersey_barrier/meshes/jersey_barrier.dae",
+                  testing::as_declared())
+                 .mesh);
   EXPECT_NEAR(box.min().z(), 0.0, 1e-3);
   EXPECT_NEAR(box.max().z(), 1.143, 1e-3);  // the height in the package's model.sdf
 }

@@ -83,6 +83,18 @@ TEST(LoadModel, UnitsScale) {
   EXPECT_EQ(bounds(load_model("builtin:box", options, {}).mesh).sizes(), Eigen::Vector3d(4, 4, 4));
 }
 
+TEST(LoadModel, CentreMovesTheMiddleOfTheBoxToTheOriginExactly) {
+  const TestFolder temp;
+  ModelOptions options = without_cache();
+  const auto file = temp.write("a.obj", "v 1000.1 2 3\nv 1004.1 2 3\nv 1000.1 7 9\nf 1 2 3\n");
+  const Mesh plain = load(file, options).mesh;
+  options.centre = true;
+  const Mesh centred = load(file, options).mesh;
+  EXPECT_EQ(bounds(centred).center(), Eigen::Vector3d::Zero());
+  EXPECT_EQ(centred.positions_m, plain.positions_m);
+  EXPECT_EQ(Eigen::Vector3d(plain.origin_m - centred.origin_m), bounds(plain).center());
+}
+
 TEST(LoadModel, ImpossibleOptionsAreErrors) {
   for (const double bad : {0.0, -1.0, std::nan(""), double{INFINITY}}) {
     ModelOptions options = without_cache();

@@ -29,10 +29,19 @@ inline std::filesystem::path data_folder() {
   return folder != nullptr ? folder : "";
 }
 
-inline ModelOptions without_cache() {
+/// With the unit and the up axis that the file declares.
+inline ModelOptions as_declared() {
   ModelOptions options;
   options.use_cache = false;
   options.time_limit_s = 30.0;
+  return options;
+}
+
+/// With the numbers and axes of the file.
+inline ModelOptions without_cache() {
+  ModelOptions options = as_declared();
+  options.metres_per_unit = 1.0;
+  options.up = Axis::z;
   return options;
 }
 

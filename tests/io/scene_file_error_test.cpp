@@ -66,15 +66,22 @@ const BadFile kBadScenes[] = {
     {"ModelWithoutFile", "models:\n  - {model: a}\n  - {name: b}\n",
      "s.yaml:3:5: models[1]: the key 'model' is missing; add 'model: ...'"},
     {"UnknownModelKey", model("scal: 2"),
-     "s.yaml:3:5: models[0].scal: unknown key 'scal'; allowed: model, name, unit, up, scale, pose, "
-     "id, class, materials, motion; did you mean 'scale'?"},
+     "s.yaml:3:5: models[0].scal: unknown key 'scal'; allowed: model, name, unit, up, centre, "
+     "size, radius, tube_radius, scale, pose, id, class, materials, motion; did you mean 'scale'?"},
     {"UnknownUnit", model("unit: inch"),
      "s.yaml:3:11: models[0].unit: 'inch'; allowed: mm, cm, m, in; did you mean 'in'?"},
-    {"UnknownAxis", model("up: w"),
-     "s.yaml:3:9: models[0].up: 'w'; allowed: x, y, z; did you "
-     "mean 'x'?"},
+    {"UnknownAxis", model("up: w"), "s.yaml:3:9: models[0].up: 'w'; allowed: x, y, z"},
     {"ScaleZero", model("scale: 0"),
      "s.yaml:3:12: models[0].scale: 0; allowed: a number above 0 and below 1e15"},
+    {"ScaleOfTwo", model("scale: [1, 2]"),
+     "s.yaml:3:12: models[0].scale: a list of 2; allowed: a list of 3 numbers"},
+    {"ScaleMirrors", model("scale: [1, -2, 1]"),
+     "s.yaml:3:16: models[0].scale[1]: -2; allowed: a number above 0 and below 1e15"},
+    {"ScaleNanAlongOneAxis", model("scale: [1, 1, .nan]"),
+     "s.yaml:3:19: models[0].scale[2]: .nan; allowed: a number above 0 and below 1e15"},
+    {"EulerWithoutItsUnit", model("pose: {euler: {yaw: 1}}"),
+     "s.yaml:3:12: models[0].pose.euler: unknown key 'euler'; allowed: " + kPoseKeys +
+         "; did you mean 'euler_deg'?"},
     {"ScaleNan", model("scale: .nan"),
      "s.yaml:3:12: models[0].scale: .nan; allowed: a number above 0 and below 1e15"},
     {"ScaleBeyondReach", model("scale: 1e300"),
@@ -182,7 +189,8 @@ const BadFile kBadScenes[] = {
     {"LookAtNothing", with_model("sensor_pose: {look_at: {eye: [1, 0, 0], target: [1, 0, 0]}}"),
      "s.yaml:2:24: sensor_pose.look_at: eye and target are the same point; allowed: two distinct "
      "points"},
-    {"LookAtAlongUp", with_model("sensor_pose: {look_at: {eye: [0, 0, 5], target: [0, 0, 0]}}"),
+    {"LookAtAlongUp",
+     with_model("sensor_pose: {look_at: {eye: [0, 0, 5], target: [0, 0, 0], up: [0, 0, 2]}}"),
      "s.yaml:2:24: sensor_pose.look_at: the up vector is parallel to the line of sight; allowed: "
      "an up vector that is not; choose another up vector"},
     {"LookAtWithoutTarget", with_model("sensor_pose: {look_at: {eye: [0, 0, 5]}}"),
@@ -191,12 +199,50 @@ const BadFile kBadScenes[] = {
 
 INSTANTIATE_TEST_SUITE_P(All, SceneFileError, ::testing::ValuesIn(kBadScenes), bad_file_name);
 
-TEST(SceneFileErrors, ErrorsInTheSensorFileNameThatFile) {
+TEST(SceneFileErrors, ErrorsInTheSensorFileNameThatFileAndWhereTheSceneNamesIt) {
   const TestFolder folder;
   (void)folder.write("c.yaml", "optics:\n  width: 0\n");
   const auto file = folder.write("s.yaml", with_model("sensor: c.yaml"));
   EXPECT_EQ(error_of(folder, [&] { read_scene_plan(file, {}); }),
-            "c.yaml:2:10: optics.width: 0; allowed: a whole number from 1 to 65536");
+            "s.yaml:2:9: sensor: c.yaml:2:10: optics.width: 0; allowed: a whole number from 1 to "
+            "65536");
+}
+
+std::string sensor_error(const std::string& name) {
+  const TestFolder folder;
+  (void)folder.write("camera.yaml", "optics: {width: 5, height: 4, fov_deg: 30}\n");
+  const auto file = folder.write("s.yaml", with_model("sensor: " + name));
+  return error_of(folder, [&] { read_scene_plan(file, {}); });
+}
+
+TEST(SceneFileErrors, SensorsThatAreNotThereAreReportedWithTheirPlaceInTheScene) {
+  const std::string preset = sensor_error("VLP-17");
+  EXPECT_TRUE(preset.starts_with("s.yaml:2:9: sensor: 'VLP-17' is neither a file nor the name"))
+      << preset;
+  EXPECT_TRUE(preset.ends_with("did you mean VLP-16?")) << preset;
+  EXPECT_EQ(sensor_error("camra.yaml"),
+            "s.yaml:2:9: sensor: no such file: camra.yaml; allowed: a map, or the path of a sensor "
+            "file; did you mean 'camera.yaml'?");
+}
+
+TEST(SceneFileErrors, WrongSizesOfBuiltInModelsAreReportedWithTheirPlace) {
+  const TestFolder folder;
+  const auto error = [&](const std::string& content) {
+    const auto file = folder.write("s.yaml", content);
+    return error_of(folder, [&] { load_scene_file(file, {}, {}); });
+  };
+  EXPECT_EQ(error("models: [{model: 'builtin:box', radius: 2}]\n"),
+            "s.yaml:1:18: models[0].model: builtin:box:radius=2: 'radius' is no size of this "
+            "model; allowed: size");
+  EXPECT_EQ(error("models: [{model: 'builtin:box', size: [1, 2]}]\n"),
+            "s.yaml:1:18: models[0].model: builtin:box:size=1,2: 2 numbers; allowed: one number, "
+            "or 3");
+  EXPECT_EQ(error("models: [{model: 'builtin:sphere', radius: -1}]\n"),
+            "s.yaml:1:44: models[0].radius: -1; allowed: metres above 0 and below 1e15");
+  EXPECT_EQ(
+      error("models: [{model: a.ply, size: 2}]\n"),
+      "s.yaml:1:31: models[0].size: given for a model file; allowed: sizes of built-in models "
+      "alone; change the size of a model file with 'scale' or 'unit'");
 }
 
 }  // namespace

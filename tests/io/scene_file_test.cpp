@@ -85,7 +85,7 @@ models:
   EXPECT_EQ(rock.name, "big rock");
   EXPECT_EQ(rock.options.metres_per_unit, 0.001);
   EXPECT_EQ(rock.options.up, Axis::y);
-  EXPECT_EQ(rock.scale, 2.5);
+  EXPECT_EQ(rock.scale, Eigen::Vector3d::Constant(2.5));
   EXPECT_EQ(rock.world_from_object.translation(), Eigen::Vector3d(1, -2, 3e6));
   EXPECT_EQ(rock.world_from_object.linear(),
             Eigen::Vector3d(-1, -1, 1).asDiagonal().toDenseMatrix());
@@ -102,6 +102,11 @@ models:
   EXPECT_FALSE(scene.world_from_rig.has_value());
 }
 
+TEST(SceneFile, SensorLooksStraightDownWithoutAnUpVector) {
+  const Pose pose = sensor_pose("look_at: {eye: [1, 2, 9], target: [1, 2, 0]}");
+  EXPECT_TRUE(pose.isApprox(look_at({1, 2, 9}, {1, 2, 0}, {1, 0, 0}), 0.0));
+}
+
 TEST(SceneFile, DefaultsOfAModel) {
   ModelOptions defaults;
   defaults.metres_per_unit = 0.01;
@@ -113,7 +118,7 @@ TEST(SceneFile, DefaultsOfAModel) {
   EXPECT_EQ(scene.instances[0].options.metres_per_unit, 0.01);
   EXPECT_EQ(scene.instances[0].options.up, Axis::x);
   EXPECT_FALSE(scene.instances[0].options.use_cache);
-  EXPECT_EQ(scene.instances[0].scale, 1.0);
+  EXPECT_EQ(scene.instances[0].scale, Eigen::Vector3d::Ones());
   EXPECT_TRUE(scene.instances[0].world_from_object.isApprox(Pose::Identity(), 0.0));
   EXPECT_EQ(scene.instances[0].id, 1U);
   EXPECT_EQ(scene.instances[1].id, 2U);
@@ -347,8 +352,8 @@ TEST(SetMaterials, ChangesOneInstanceAsASceneFileDoes) {
 }
 
 TEST(SceneFile, ExampleLoads) {
-  const SceneFile file = load_scene_file(
-      std::filesystem::path(kSourceFolder) / "examples/two_rocks.yaml", {}, {});
+  const SceneFile file =
+      load_scene_file(std::filesystem::path(kSourceFolder) / "examples/two_rocks.yaml", {}, {});
   ASSERT_EQ(file.scene.instances.size(), 3U);
   EXPECT_EQ(file.scene.meshes.size(), 2U);
   EXPECT_EQ(file.scene.instances[0].mesh, file.scene.instances[1].mesh);

@@ -75,6 +75,27 @@ TEST(TextureSearch, ModelConfigMarksAPackage) {
             file.string());
 }
 
+TEST(TextureSearch, GoesUpBehindALinkAsTheSystemDoes) {
+  const TestFolder temp;
+  temp.write("deep/inner/x", "x");
+  temp.write("wood.png", "wrong");
+  const fs::path file = temp.write("deep/wood.png", "right");
+  fs::create_directory_symlink(temp.path() / "deep/inner", temp.path() / "link");
+  const ModelFolder folder{temp.path(), temp.path(), {}};
+  EXPECT_EQ(confine("link/../wood.png", folder).path, file);
+  EXPECT_EQ(confine("gone/../wood.png", folder).path, temp.path() / "wood.png");
+  EXPECT_EQ(confine("link/../../../secret.png", folder).access, Access::outside);
+}
+
+TEST(TextureSearch, ALinkThatLeadsOutIsRefusedOnTheWayUpToo) {
+  const TestFolder temp;
+  temp.write("elsewhere/inner/x", "x");
+  temp.write("elsewhere/secret.png", "x");
+  const fs::path model = temp.write("model/a.obj", "x");
+  fs::create_directory_symlink(temp.path() / "elsewhere/inner", temp.path() / "model/link");
+  EXPECT_EQ(confine("link/../secret.png", model_folder(model)).access, Access::outside);
+}
+
 TEST(TextureSearch, NothingOutsideTheRootIsFound) {
   const TestFolder temp;
   temp.write("secret.png", "x");

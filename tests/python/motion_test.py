@@ -36,6 +36,14 @@ def test_look_at_has_the_target_ahead():
         assert ahead[:3] == pytest.approx([distance, 0, 0] if boresight == "x" else [0, 0, distance], abs=1e-12)
 
 
+def test_look_at_straight_down_has_the_worlds_x_upwards():
+    camera = glidar.look_at([1, 2, 5], [1, 2, 0])
+    assert np.array_equal(camera[:3, :3], np.array([[0, -1, 0], [-1, 0, 0], [0, 0, -1]]))
+    lidar = glidar.look_at([1, 2, 5], [1, 2, 0], boresight="x")
+    assert np.array_equal(lidar[:3, 0], [0, 0, -1])
+    assert np.array_equal(lidar[:3, 2], [1, 0, 0])
+
+
 def test_poses_of_single_precision_are_made_rigid(asteroid, camera):
     pose = glidar.look_at([4, 4, 3], [0, 0, 0])
     frame = glidar.simulate(asteroid, camera, pose.astype(np.float32))
@@ -54,7 +62,7 @@ def test_poses_of_single_precision_are_made_rigid(asteroid, camera):
         (lambda: glidar.pose(matrix=2 * np.eye(3)), "no rigid transform"),
         (lambda: glidar.pose(matrix=-np.eye(3)), "no rigid transform"),
         (lambda: glidar.look_at([0, 0, 0], [0, 0, 0]), "same point"),
-        (lambda: glidar.look_at([0, 0, 5], [0, 0, 0]), "parallel"),
+        (lambda: glidar.look_at([0, 0, 5], [0, 0, 0], [0, 0, 1]), "parallel"),
         (lambda: glidar.look_at([0, 0, 5], [0, 0, 0], boresight="y"), "boresight: 'y'"),
         (lambda: glidar.quaternion(np.eye(4), "zyxw"), "order: 'zyxw'"),
         (lambda: glidar.quaternion(3 * np.eye(3), "wxyz"), "matrix"),

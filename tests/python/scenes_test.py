@@ -94,6 +94,50 @@ def test_objects_are_placed_named_and_changed(camera):
     assert np.array_equal(before.world_from_objects[1], np.eye(4))
 
 
+def test_scales_per_axis_stretch_an_object_and_go_back(camera):
+    scene = glidar.Scene()
+    ball = scene.add_model("builtin:sphere", scale=(2.0, 0.5, 1.25))
+    assert ball.scale == (2.0, 0.5, 1.25)
+    low, high = scene.bounds
+    assert high - low == pytest.approx([4, 1, 2.5], abs=1e-5)
+    assert ball.mesh.vertices.max() == pytest.approx(1.0, abs=1e-3)  # before scale
+    frame = glidar.simulate(scene, camera, POSE, columns="all")
+    hit = frame.status == glidar.Status.HIT
+    point = frame.truth.object_point[hit] * np.array(ball.scale)
+    # on the ellipsoid but for the facets of the mesh
+    assert np.allclose(np.sum((point / np.array(ball.scale)) ** 2, axis=1), 1.0, atol=0.01)
+    ball.scale = 3
+    assert ball.scale == 3.0
+    assert scene.bounds[1] == pytest.approx([3, 3, 3], abs=1e-5)
+    for bad in (0, -1, (1, -1, 1), (1, 0, 1), (1, 2), np.nan, (1, np.nan, 1), "big"):
+        with pytest.raises(glidar.Error, match="scale"):
+            ball.scale = bad
+    assert ball.scale == 3.0
+
+
+def test_built_in_models_have_sizes():
+    box = glidar.Scene("builtin:box:size=4,2,1")
+    assert box.objects[0].name == "box"
+    assert box.bounds[1] == pytest.approx([2, 1, 0.5])
+    with pytest.raises(glidar.Error, match="'sise' is no size of this model.*did you mean 'size'"):
+        glidar.Scene("builtin:box:sise=4")
+
+
+def test_units_and_up_axes_are_those_the_file_declares_unless_given(tmp_path):
+    (tmp_path / "a.amf").write_text(
+        '<?xml version="1.0"?><amf unit="inch"><object id="1"><mesh><vertices>'
+        + "".join(f"<vertex><coordinates><x>{x}</x><y>{y}</y><z>{z}</z></coordinates></vertex>" for x, y, z in np.eye(3))
+        + "</vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume></mesh></object></amf>"
+    )
+    path = tmp_path / "a.amf"
+    assert glidar.Scene(path).bounds[1] == pytest.approx(np.full(3, 0.0254), rel=1e-6)
+    assert glidar.Scene(path, unit="m").bounds[1] == pytest.approx(np.ones(3))
+    centred = glidar.Scene(path, unit="m", centre=True).bounds
+    assert centred[0] == pytest.approx(np.full(3, -0.5))
+    with pytest.raises(glidar.Error, match="centre"):
+        glidar.Scene(path, centre=1)
+
+
 def test_frames_keep_the_scene_that_they_saw(camera):
     scene = glidar.Scene("builtin:sphere")
     scene.objects[0].id = 3

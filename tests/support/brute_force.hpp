@@ -34,9 +34,8 @@ inline Judged judge(const Scene& scene, const Eigen::Vector3d& origin,
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       Eigen::Vector3d corner[3];
       for (std::size_t k = 0; k < 3; ++k) {
-        corner[k] = instance.world_from_object *
-                    (instance.scale *
-                     (mesh.origin_m + mesh.positions_m[mesh.triangles[t][k]].cast<double>()));
+        corner[k] =
+            instance.world_from_object * (instance.scale * vertex_m(mesh, mesh.triangles[t][k]));
       }
       const Eigen::Vector3d e1 = corner[1] - corner[0];
       const Eigen::Vector3d e2 = corner[2] - corner[0];

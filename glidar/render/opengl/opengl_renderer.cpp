@@ -9,6 +9,7 @@
 #include <glidar/render/opengl/picture_plan.hpp>
 #include <glidar/render/opengl/triangle_drawing.hpp>
 #include <glidar/render/picture_writing.hpp>
+#include <glidar/render/pieces_renderer.hpp>
 #include <glidar/render/pinhole_only.hpp>
 #include <glidar/render/silhouettes.hpp>
 
@@ -193,14 +194,17 @@ class OpenglRenderer final : public Renderer {
 
 std::unique_ptr<Renderer> make_opengl_renderer(const Scene& scene, const RendererOptions& options) {
   validate(scene);
-  return std::make_unique<OpenglRenderer>(
-      scene, options, std::make_unique<opengl::EglContext>(options.graphics_device));
+  return make_opengl_renderer(scene, options,
+                              std::make_unique<opengl::EglContext>(options.graphics_device));
 }
 
 std::unique_ptr<Renderer> make_opengl_renderer(const Scene& scene, const RendererOptions& options,
                                                std::unique_ptr<opengl::Context> context) {
   validate(scene);
-  return std::make_unique<OpenglRenderer>(scene, options, std::move(context));
+  const auto make = [&](const Scene& whole) -> std::unique_ptr<Renderer> {
+    return std::make_unique<OpenglRenderer>(whole, options, std::move(context));
+  };
+  return has_pieces(scene) ? make_pieces_renderer(scene, make) : make(scene);
 }
 
 }  // namespace glidar

@@ -6,6 +6,7 @@
 #include <glidar/render/opengl/paper_drawing.hpp>
 #include <glidar/render/opengl/paper_target.hpp>
 #include <glidar/render/paper_picture.hpp>
+#include <glidar/render/pieces_renderer.hpp>
 #include <glidar/render/pinhole_only.hpp>
 #include <glidar/render/visible_depths.hpp>
 
@@ -89,14 +90,17 @@ class OpenglPaperCamera final : public PaperCamera {
 
 std::unique_ptr<PaperCamera> make_paper_camera(const Scene& scene, const RendererOptions& options) {
   validate(scene);
-  return std::make_unique<OpenglPaperCamera>(
-      scene, options, std::make_unique<opengl::EglContext>(options.graphics_device));
+  return make_paper_camera(scene, options,
+                           std::make_unique<opengl::EglContext>(options.graphics_device));
 }
 
 std::unique_ptr<PaperCamera> make_paper_camera(const Scene& scene, const RendererOptions& options,
                                                std::unique_ptr<opengl::Context> context) {
   validate(scene);
-  return std::make_unique<OpenglPaperCamera>(scene, options, std::move(context));
+  const auto make = [&](const Scene& whole) -> std::unique_ptr<PaperCamera> {
+    return std::make_unique<OpenglPaperCamera>(whole, options, std::move(context));
+  };
+  return has_pieces(scene) ? make_pieces_camera(scene, make) : make(scene);
 }
 
 }  // namespace glidar

@@ -12,19 +12,31 @@ from glidar.campaign import files, loading, yaml_file as yf
 
 FOLDER = "bop"
 # What makes a model of a scene file an object of BOP, with what the scene file may leave out.
-SHAPE = {"model": "", "unit": "m", "up": "", "scale": "1"}
+SHAPE = {"model": "", "unit": "", "up": "", "centre": "false", "size": "", "radius": "", "tube_radius": "",
+         "scale": "1"}
+NUMBERS = ("size", "radius", "tube_radius", "scale")
 MM_PER_M = 1000.0
 DISTANCES = 1 << 22  # that are in memory together
 
 
 def _shape(field):
-    """The values of SHAPE; two spellings of a path or of a number are the same."""
+    """The values of SHAPE; two spellings of a path or of numbers are the same."""
     found = yf.entries(field)
-    model, unit, up, scale = (str(found[key].node.value) if key in found else usual
-                              for key, usual in SHAPE.items())
+    shape = {key: _texts(found[key].node) if key in found else (usual,) for key, usual in SHAPE.items()}
+    (model,) = shape.pop("model")
     if not model.startswith("builtin:"):
-        model = os.path.normpath(os.path.join(os.path.dirname(field.file), model))
-    return model, unit, up, float(scale)
+        model = os.path.realpath(os.path.join(os.path.dirname(field.file), model))
+    for key in NUMBERS:
+        shape[key] = tuple(float(text) for text in shape[key] if text)
+    if len(set(shape["scale"])) == 1:
+        shape["scale"] = shape["scale"][:1]
+    return model, *shape.values()
+
+
+def _texts(node):
+    """The text of a plain value, or those of a list."""
+    values = node.value if isinstance(node.value, list) else [node]
+    return tuple(str(one.value) for one in values)
 
 
 def _shapes(source):
@@ -150,7 +162,7 @@ def _meshes(plan):
             if object_id not in done:
                 done.add(object_id)
                 placed = scene.objects[place]
-                yield object_id, placed.mesh.vertices * placed.scale * MM_PER_M, placed.mesh.triangles
+                yield object_id, placed.mesh.vertices * np.asarray(placed.scale) * MM_PER_M, placed.mesh.triangles
 
 
 def _contents(plan):

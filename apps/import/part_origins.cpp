@@ -1,0 +1,166 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <import/part_origins.hpp>
+
+#include <import/mesh_part.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <tuple>
+
+namespace glidar::import {
+namespace {
+
+/// Parts of one origin.
+struct Group {
+  Eigen::AlignedBox3d box;
+  double rounding = 0.0;  ///< largest, of a coordinate relative to the common origin
+};
+
+Eigen::Vector3d origin_for(const Eigen::AlignedBox3d& box) {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  if (box.isEmpty()) return origin;
+  for (int axis = 0; axis < 3; ++axis) {
+    // Middle and half width of finite floats cannot overflow in double.
+    const double middle = 0.5 * (box.min()[axis] + box.max()[axis]);
+    const double half = 0.5 * (box.max()[axis] - box.min()[axis]);
+    if (std::abs(middle) >= 2.0 * half) origin[axis] = double{static_cast<float>(middle)};
+  }
+  return origin;
+}
+
+double rounding_of(const Eigen::Vector3d& relative) {
+  return (relative.cast<float>().cast<double>() - relative).cwiseAbs().maxCoeff();
+}
+
+/// What each part covers, and how it is rounded.
+std::vector<Group> measure(const Walk& walk, const Eigen::Vector3d& common) {
+  std::vector<Group> parts(walk.placed.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    for_used_vertices(walk.placed[i], [&](const Eigen::Vector3d& p) {
+      parts[i].box.extend(p);
+      parts[i].rounding = std::max(parts[i].rounding, rounding_of(p - common));
+    });
+  }
+  return parts;
+}
+
+/// Sets of parts, by a representative (Tarjan's disjoint sets, with path halving).
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t size) : parent_(size) {
+    std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
+  }
+  std::uint32_t find(std::uint32_t i) {
+    while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) { parent_[find(b)] = find(a); }
+
+ private:
+  std::vector<std::uint32_t> parent_;
+};
+
+/// Joins parts that would have a vertex in common if all had the common origin.
+void join_neighbours(const Walk& walk, const Eigen::Vector3d& common, DisjointSets& sets) {
+  using Place = std::tuple<float, float, float, std::uint32_t>;
+  std::vector<Place> places;
+  for (std::uint32_t i = 0; i < walk.placed.size(); ++i) {
+    for_used_vertices(walk.placed[i], [&](const Eigen::Vector3d& p) {
+      const Eigen::Vector3f v = (p - common).cast<float>();
+      places.emplace_back(v.x(), v.y(), v.z(), i);
+    });
+  }
+  std::sort(places.begin(), places.end());
+  for (std::size_t k = 1; k < places.size(); ++k) {
+    const auto& [x, y, z, part] = places[k];
+    const auto& [before_x, before_y, before_z, before] = places[k - 1];
+    if (x == before_x && y == before_y && z == before_z) sets.join(before, part);
+  }
+}
+
+std::vector<Group> merged(const std::vector<Group>& parts,
+                          const std::vector<std::uint32_t>& group_of) {
+  std::vector<Group> groups(parts.size());
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    Group& group = groups[group_of[i]];
+    if (!parts[i].box.isEmpty()) group.box.extend(parts[i].box);
+    group.rounding = std::max(group.rounding, parts[i].rounding);
+  }
+  return groups;
+}
+
+using Cell = std::array<double, 3>;
+
+Cell cell_of(const Group& group, double size) {
+  const Eigen::Vector3d middle = group.box.center() / size;
+  return {std::floor(middle.x()), std::floor(middle.y()), std::floor(middle.z())};
+}
+
+/// Gathers groups in the cells of a grid, which is as fine as the number of origins allows.
+void gather_in_cells(const std::vector<Group>& parts, std::vector<std::uint32_t>& group_of) {
+  const std::vector<Group> groups = merged(parts, group_of);
+  constexpr double kFinest = 2.0;  // half of it is rounded by at most 2^-25 = 3e-8
+  std::map<Cell, std::uint32_t> cells;
+  double size = kFinest;
+  for (;; size *= 2.0) {
+    cells.clear();
+    for (std::uint32_t i = 0; i < groups.size(); ++i) {
+      if (groups[i].rounding > kLargestRounding) cells.try_emplace(cell_of(groups[i], size), i);
+    }
+    if (cells.size() <= kMostOrigins) break;
+  }
+  for (std::uint32_t& group : group_of) {
+    if (groups[group].rounding > kLargestRounding) group = cells.at(cell_of(groups[group], size));
+  }
+}
+
+/// Its own origin where that is much nearer than the common one.
+Eigen::Vector3d origin_of_group(const Group& group, const Eigen::Vector3d& common) {
+  if (group.rounding <= kLargestRounding) return common;
+  constexpr double kNearer = 0.25;
+  const double from_common = (group.box.min() - common)
+                                 .cwiseAbs()
+                                 .cwiseMax((group.box.max() - common).cwiseAbs())
+                                 .maxCoeff();
+  const double half = 0.5 * group.box.sizes().maxCoeff();
+  if (half > kNearer * from_common) return common;
+  return group.box.center().cast<float>().cast<double>();
+}
+
+}  // namespace
+
+Eigen::AlignedBox3d box_of(const Walk& walk) {
+  Eigen::AlignedBox3d box;
+  for (const Placed& placed : walk.placed) {
+    for_used_vertices(placed, [&](const Eigen::Vector3d& p) { box.extend(p); });
+  }
+  return box;
+}
+
+std::vector<Eigen::Vector3d> part_origins(const Walk& walk) {
+  const Eigen::Vector3d common = origin_for(box_of(walk));
+  std::vector<Eigen::Vector3d> origins(walk.placed.size(), common);
+  const std::vector<Group> parts = measure(walk, common);
+  const bool is_rounded = std::any_of(parts.begin(), parts.end(), [](const Group& part) {
+    return part.rounding > kLargestRounding;
+  });
+  if (parts.size() < 2 || !is_rounded) return origins;
+  DisjointSets sets(parts.size());
+  join_neighbours(walk, common, sets);
+  std::vector<std::uint32_t> group_of(parts.size());
+  for (std::uint32_t i = 0; i < parts.size(); ++i) group_of[i] = sets.find(i);
+  gather_in_cells(parts, group_of);
+  const std::vector<Group> groups = merged(parts, group_of);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    origins[i] = origin_of_group(groups[group_of[i]], common);
+  }
+  return origins;
+}
+
+}  // namespace glidar::import

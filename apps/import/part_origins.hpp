@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <import/scene_walk.hpp>
+
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <vector>
+
+namespace glidar::import {
+
+/// The origin of each placed mesh, to which its single-precision coordinates are relative.
+/// Along an axis on which the whole model is farther from zero than its own size, that is the
+/// middle of its box, else zero: either way single precision takes the file's coordinates without
+/// rounding (Sterbenz 1974). Nodes may place parts between the numbers of single precision. Where
+/// that rounds by more than kLargestRounding units, parts far from the common origin get origins
+/// nearby, at most kMostOrigins in all. Parts that share a vertex position share their origin, so
+/// that no gap opens between them.
+std::vector<Eigen::Vector3d> part_origins(const Walk& walk);
+
+inline constexpr double kLargestRounding = 1e-6;
+inline constexpr std::size_t kMostOrigins = 64;
+
+/// The box of all vertices that triangles use.
+Eigen::AlignedBox3d box_of(const Walk& walk);
+
+}  // namespace glidar::import

@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/pieces_renderer.hpp>
+
+#include <glidar/core/mesh_pieces.hpp>
+
+#include <algorithm>
+#include <cstddef>
+#include <deque>
+#include <utility>
+#include <vector>
+
+namespace glidar {
+namespace {
+
+/// A scene with one instance per piece of every instance.
+class PiecesScene {
+ public:
+  explicit PiecesScene(const Scene& whole) : whole_(whole) {
+    validate(whole);
+    scene_.materials = whole.materials;
+    scene_.textures = whole.textures;
+    scene_.class_names = whole.class_names;
+    for (std::size_t i = 0; i < whole.meshes.size(); ++i) add(whole.meshes[i], whole.sources[i]);
+    for (std::uint32_t i = 0; i < whole.instances.size(); ++i) place(whole.instances[i], i);
+  }
+
+  [[nodiscard]] const Scene& scene() const { return scene_; }
+  [[nodiscard]] const Scene& whole() const { return whole_; }
+
+  /// What a cast needs of its request's arrays, one entry per piece.
+  struct Arrays {
+    std::vector<Pose> poses;
+    std::vector<std::uint8_t> present;
+  };
+
+  /// The request for the pieces. Throws Error unless it fits the whole scene.
+  [[nodiscard]] CastRequest for_pieces(const CastRequest& request, Arrays& arrays) const {
+    check(request, whole_);
+    arrays.poses.clear();
+    arrays.present.clear();
+    for (const std::uint32_t instance : instance_of_) {
+      arrays.poses.push_back(request.world_from_instance.empty()
+                                 ? whole_.instances[instance].world_from_object
+                                 : request.world_from_instance[instance]);
+      if (!request.present.empty()) arrays.present.push_back(request.present[instance]);
+    }
+    CastRequest pieces = request;
+    pieces.world_from_instance = arrays.poses;
+    pieces.present = arrays.present;
+    return pieces;
+  }
+
+  /// From pieces to the instances and triangles of the whole scene.
+  void rename(BeamRange range, Hits& hits) const {
+    for (std::size_t i = range.begin; i < range.end; ++i) {
+      const std::uint32_t piece = hits.instance[i];
+      if (piece == kNoHit) continue;
+      const std::vector<std::uint32_t>& triangles = triangles_[scene_.instances[piece].mesh];
+      if (!triangles.empty()) hits.primitive[i] = triangles[hits.primitive[i]];
+      hits.instance[i] = instance_of_[piece];
+    }
+  }
+
+ private:
+  void add(const Mesh& mesh, const MeshSource& source) {
+    std::vector<std::uint32_t>& pieces = pieces_of_mesh_.emplace_back();
+    const auto add_piece = [&](Mesh piece, std::vector<std::uint32_t> triangles) {
+      pieces.push_back(static_cast<std::uint32_t>(scene_.meshes.size()));
+      scene_.meshes.push_back(std::move(piece));
+      scene_.sources.push_back(source);
+      triangles_.push_back(std::move(triangles));
+    };
+    if (mesh.origins.empty()) return add_piece(mesh, {});
+    for (MeshPiece& piece : cut_at_origins(mesh)) {
+      add_piece(std::move(piece.mesh), std::move(piece.triangles));
+    }
+  }
+
+  void place(const Instance& instance, std::uint32_t index) {
+    for (const std::uint32_t mesh : pieces_of_mesh_[instance.mesh]) {
+      scene_.instances.push_back(instance);
+      scene_.instances.back().mesh = mesh;
+      instance_of_.push_back(index);
+    }
+  }
+
+  const Scene& whole_;
+  Scene scene_;
+  std::vector<std::vector<std::uint32_t>> pieces_of_mesh_;
+  std::vector<std::vector<std::uint32_t>> triangles_;  ///< per piece; empty: as in the mesh
+  std::vector<std::uint32_t> instance_of_;             ///< per piece that is placed
+};
+
+class PiecesRenderer final : public Renderer {
+ public:
+  PiecesRenderer(const Scene& scene, const MakeRenderer& make)
+      : pieces_(scene), renderer_(make(pieces_.scene())) {}
+
+  [[nodiscard]] std::string_view name() const override { return renderer_->name(); }
+  [[nodiscard]] Workers& workers() override { return renderer_->workers(); }
+
+  void cast(const CastRequest& request, Hits& hits) override {
+    Hits* const one = &hits;
+    cast_batch({&request, 1}, {&one, 1});
+  }
+
+  void cast_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits) override {
+    check_batch(requests, hits);
+    arrays_.resize(requests.size());
+    // References to these are handed out: they must not move.
+    std::deque<Renaming> renamings;
+    std::vector<CastRequest> for_pieces;
+    for (std::size_t i = 0; i < requests.size(); ++i) {
+      const Renaming& renaming = renamings.emplace_back(Renaming{pieces_, *hits[i], requests[i]});
+      for_pieces.push_back(pieces_.for_pieces(requests[i], arrays_[i]));
+      for_pieces.back().then = FunctionRef<void(BeamRange)>(renaming);
+    }
+    renderer_->cast_batch(for_pieces, hits);
+  }
+
+ private:
+  /// Renames what a run of beams hit before anybody else sees it.
+  struct Renaming {
+    const PiecesScene& pieces;
+    Hits& hits;
+    const CastRequest& request;
+    void operator()(BeamRange range) const {
+      pieces.rename(range, hits);
+      if (request.then) request.then(range);
+    }
+  };
+
+  PiecesScene pieces_;
+  std::unique_ptr<Renderer> renderer_;
+  std::vector<PiecesScene::Arrays> arrays_;
+};
+
+class PiecesCamera final : public PaperCamera {
+ public:
+  PiecesCamera(const Scene& scene, const MakePaperCamera& make)
+      : pieces_(scene), camera_(make(pieces_.scene())) {}
+
+  void draw(const CastRequest& request, const Light& light,
+            const std::optional<PaperPlanes>& planes, PaperPicture& picture) override {
+    camera_->draw(pieces_.for_pieces(request, arrays_), light, planes, picture);
+  }
+
+ private:
+  PiecesScene pieces_;
+  std::unique_ptr<PaperCamera> camera_;
+  PiecesScene::Arrays arrays_;
+};
+
+}  // namespace
+
+bool has_pieces(const Scene& scene) {
+  return std::any_of(scene.meshes.begin(), scene.meshes.end(),
+                     [](const Mesh& mesh) { return !mesh.origins.empty(); });
+}
+
+std::unique_ptr<Renderer> make_pieces_renderer(const Scene& scene, const MakeRenderer& make) {
+  return std::make_unique<PiecesRenderer>(scene, make);
+}
+
+std::unique_ptr<PaperCamera> make_pieces_camera(const Scene& scene, const MakePaperCamera& make) {
+  return std::make_unique<PiecesCamera>(scene, make);
+}
+
+}  // namespace glidar

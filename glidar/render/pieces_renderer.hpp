@@ -1,0 +1,27 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/paper_picture.hpp>
+#include <glidar/render/renderer.hpp>
+
+#include <functional>
+#include <memory>
+
+namespace glidar {
+
+/// True when a mesh of the scene has parts with origins of their own (Mesh::origins).
+bool has_pieces(const Scene& scene);
+
+using MakeRenderer = std::function<std::unique_ptr<Renderer>(const Scene&)>;
+using MakePaperCamera = std::function<std::unique_ptr<PaperCamera>(const Scene&)>;
+
+/// Renderers know meshes of one origin only. This one gives `make` a copy of the scene in which
+/// every piece of a mesh is an instance, and turns what is found there back into the instances and
+/// triangles of the scene. Throws Error unless the scene is valid.
+std::unique_ptr<Renderer> make_pieces_renderer(const Scene& scene, const MakeRenderer& make);
+
+/// The same for a paper camera, whose pictures name no instances.
+std::unique_ptr<PaperCamera> make_pieces_camera(const Scene& scene, const MakePaperCamera& make);
+
+}  // namespace glidar

@@ -1,0 +1,40 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""How model files are read: unit, up axis, centre, and sizes of built-in models."""
+
+import json
+import os
+import unittest
+
+from cli_support import CliTest
+
+
+class ModelOptions(CliTest):
+    def test_unit_and_up_of_the_file_are_applied_and_reported(self):
+        self.write("a.amf", '<?xml version="1.0"?><amf unit="inch"><object id="1"><mesh><vertices>' + "".join(
+            f"<vertex><coordinates><x>{x}</x><y>{y}</y><z>{z}</z></coordinates></vertex>"
+            for x, y, z in ((0, 0, 0), (100, 0, 0), (0, 200, 0))) +
+            "</vertices><volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume></mesh></object></amf>")
+        report = json.loads(self.succeed("info", "a.amf", "--json").stdout)
+        self.assertEqual((report["metres_per_unit"], report["unit_declared"]), (0.0254, 0.0254))
+        self.assertAlmostEqual(report["size_m"][1], 5.08, places=5)
+        self.assertIn("0.0254 m, declared by the file", self.succeed("info", "a.amf").stdout)
+        done = self.succeed("render", "a.amf", "-o", "x.pcd")
+        self.assertNotIn("--u", done.stderr)  # nothing to hint at: the file says both
+        with open(os.path.join(self.folder, "x.pcd.json"), encoding="utf-8") as file:
+            instance = json.load(file)["instances"][0]
+        self.assertEqual((instance["metres_per_unit"], instance["up"]), (0.0254, "z"))
+        report = json.loads(self.succeed("info", "a.amf", "--unit", "m", "--json").stdout)
+        self.assertEqual((report["metres_per_unit"], report["unit_declared"]), (1.0, 0.0254))
+
+    def test_centre_and_sizes(self):
+        self.write("far.obj", "v 1000 0 0\nv 1004 0 0\nv 1000 2 0\nf 1 2 3\n")
+        report = json.loads(self.succeed("info", "far.obj", "--centre", "--json").stdout)
+        self.assertEqual(report["min_m"], [-2.0, -1.0, 0.0])
+        report = json.loads(self.succeed("info", "builtin:box:size=4,2,1", "--json").stdout)
+        self.assertEqual(report["size_m"], [4.0, 2.0, 1.0])
+        self.assertIn("allowed: size", self.refused("info", "builtin:box:radius=4"))
+
+
+if __name__ == "__main__":
+    unittest.main()

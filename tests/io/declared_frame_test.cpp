@@ -1,0 +1,195 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Units and up axes that model files declare. Expected numbers are those written in the files.
+#include <glidar/io/model.hpp>
+#include <glidar/io/model_report.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "model_test_support.hpp"
+
+namespace glidar {
+namespace {
+
+using testing::as_declared;
+using ::testing::Contains;
+using testing::data_folder;
+using testing::gltf;
+using ::testing::HasSubstr;
+using testing::load;
+using testing::TestFolder;
+
+Eigen::Vector3d corner(const Model& model, std::size_t i) {
+  return vertex_m(model.mesh, model.mesh.triangles.at(0)[i]);
+}
+
+/// A triangle with the corners (1, 2, 3), (4, 2, 3) and (1, 7, 9).
+std::string collada(const std::string& asset) {
+  return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema"
+version="1.4.1"><asset>)" +
+         asset + R"(</asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="a" count="9">1 2 3 4 2 3 1 7 9</float_array>
+<technique_common><accessor source="#a" count="3" stride="3"><param name="X" type="float"/>
+<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node>
+</visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+}
+
+std::string amf(const std::string& attribute) {
+  return "<?xml version=\"1.0\"?>\n<amf" + attribute +
+         "><object id=\"1\"><mesh><vertices>"
+         "<vertex><coordinates><x>0</x><y>0</y><z>0</z></coordinates></vertex>"
+         "<vertex><coordinates><x>2</x><y>0</y><z>0</z></coordinates></vertex>"
+         "<vertex><coordinates><x>0</x><y>4</y><z>0</z></coordinates></vertex></vertices>"
+         "<volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume></mesh></object>"
+         "</amf>\n";
+}
+
+TEST(DeclaredFrame, UnitAndUpAxisOfColladaAreApplied) {
+  struct Case {
+    const char* up;
+    Axis axis;
+    Eigen::Vector3d first;  ///< (1, 2, 3) in metres with this axis as z
+  };
+  const std::vector<Case> cases = {{"X_UP", Axis::x, {0.02, 0.03, 0.01}},
+                                   {"Y_UP", Axis::y, {0.01, -0.03, 0.02}},
+                                   {"Z_UP", Axis::z, {0.01, 0.02, 0.03}}};
+  const TestFolder temp;
+  for (const Case& one : cases) {
+    const Model model =
+        load(temp.write("a.dae", collada("<unit name=\"centimeter\" meter=\"0.01\"/><up_axis>" +
+                                         std::string(one.up) + "</up_axis>")),
+             as_declared());
+    EXPECT_EQ(model.declared.metres_per_unit, 0.01) << one.up;
+    EXPECT_EQ(model.declared.up, one.axis) << one.up;
+    EXPECT_LT((corner(model, 0) - one.first).norm(), 1e-8) << one.up;
+  }
+}
+
+TEST(DeclaredFrame, ColladaWithoutBothIsInMetresAndYUp) {
+  const TestFolder temp;
+  const Model model = load(temp.write("a.dae", collada("")), as_declared());
+  EXPECT_EQ(model.applied.metres_per_unit, 1.0);
+  EXPECT_EQ(model.applied.up, Axis::y);
+  EXPECT_EQ(corner(model, 0), Eigen::Vector3d(1.0, -3.0, 2.0));
+}
+
+TEST(DeclaredFrame, OptionsOverrideTheFile) {
+  const TestFolder temp;
+  const auto file = temp.write("a.dae", collada("<unit meter=\"0.0254\"/><up_axis>Y_UP</up_axis>"));
+  ModelOptions options = as_declared();
+  options.metres_per_unit = 1.0;
+  options.up = Axis::z;
+  EXPECT_EQ(corner(load(file, options), 0), Eigen::Vector3d(1.0, 2.0, 3.0));
+  options.metres_per_unit = 0.5;  // and not 0.5 x 0.0254
+  EXPECT_EQ(corner(load(file, options), 0), Eigen::Vector3d(0.5, 1.0, 1.5));
+}
+
+TEST(DeclaredFrame, AUnitOfZeroIsNotedAndNotApplied) {
+  const TestFolder temp;
+  const Model model = load(temp.write("a.dae", collada("<unit meter=\"0\"/>")), as_declared());
+  EXPECT_FALSE(model.applied.metres_per_unit.has_value());
+  EXPECT_THAT(model.notes, Contains(HasSubstr("1 m is assumed")));
+  EXPECT_EQ(bounds(model.mesh).sizes().maxCoeff(), 6.0);
+}
+
+TEST(DeclaredFrame, GltfIsInMetresAndYUpByItsStandard) {
+  const TestFolder temp;
+  const auto file = temp.write("a.gltf", gltf(R"([{"mesh":0,"translation":[1,2,3]}])"));
+  EXPECT_EQ(corner(load(file, as_declared()), 0), Eigen::Vector3d(1.0, -3.0, 2.0));
+  ModelOptions options = as_declared();
+  options.up = Axis::z;
+  EXPECT_EQ(corner(load(file, options), 0), Eigen::Vector3d(1.0, 2.0, 3.0));
+}
+
+TEST(DeclaredFrame, UnitsOfAmfAreApplied) {
+  const TestFolder temp;
+  const auto size = [&](const std::string& attribute) -> Eigen::Vector3d {
+    return bounds(load(temp.write("a.amf", amf(attribute)), as_declared()).mesh).sizes();
+  };
+  EXPECT_LT((size(" unit=\"inch\"") - Eigen::Vector3d(0.0508, 0.1016, 0.0)).norm(), 1e-8);
+  EXPECT_LT((size("") - Eigen::Vector3d(0.002, 0.004, 0.0)).norm(), 1e-9);
+  EXPECT_THAT(testing::load_error(temp.write("a.amf", amf(" unit='ell'")), as_declared()),
+              HasSubstr("\"ell\" in node <unit> has incorrect value"));
+}
+
+TEST(DeclaredFrame, FormatsThatDeclareNothingStayAsTheyAre) {
+  const TestFolder temp;
+  const Model model =
+      load(temp.write("a.obj", "v 1 2 3\nv 4 2 3\nv 1 7 9\nf 1 2 3\n"), as_declared());
+  EXPECT_FALSE(model.applied.metres_per_unit.has_value());
+  EXPECT_FALSE(model.applied.up.has_value());
+  EXPECT_EQ(corner(model, 0), Eigen::Vector3d(1.0, 2.0, 3.0));
+}
+
+TEST(DeclaredFrame, ReportsSayWhereUnitAndUpAxisAreFrom) {
+  const TestFolder temp;
+  const auto file = temp.write("a.dae", collada("<unit meter=\"0.01\"/><up_axis>Y_UP</up_axis>"));
+  const ModelReport declared = inspect(load(file, as_declared()));
+  EXPECT_EQ(declared.unit_guess, "0.01 m, declared by the file or its format");
+  EXPECT_EQ(declared.up, "y of the file is z here, declared by the file or its format");
+  ModelOptions options = as_declared();
+  options.metres_per_unit = 1.0;
+  EXPECT_EQ(inspect(load(file, options)).unit_guess, "1 m, as specified; the file declares 0.01 m");
+  const auto obj = temp.write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_EQ(inspect(load(obj, as_declared())).unit_guess,
+            "1 m assumed, the file declares none; plausible as metres: 1 m across");
+}
+
+TEST(DeclaredFrame, OfRealFiles) {
+  GLIDAR_NEED_DATA();
+  struct Case {
+    const char* path;
+    double metres_per_unit;
+    Axis up;
+  };
+  // as written in the files, read with a text editor
+  for (const Case& one :
+       std::vector<Case>{{"textured/assimp/Collada/duck.dae", 0.01, Axis::y},
+                         {"textured/assimp/Collada/cube_with_2UVs.DAE", 0.0254, Axis::z},
+                         {"textured/assimp/Collada/lights.dae", 1.0, Axis::z},
+                         {"textured/dae/CesiumMilkTruck/CesiumMilkTruck.dae", 1.0, Axis::y},
+                         {"scenes/turtlebot3_world/meshes/wall.dae", 0.0254, Axis::y},
+                         {"textured/assimp/FBX/cubes_with_names.fbx", 0.01, Axis::y},
+                         {"textured/assimp/FBX/cubes_with_mirroring_and_pivot.fbx", 1.0, Axis::y},
+                         {"textured/assimp/FBX/embedded_ascii/box.FBX", 1.0, Axis::z},
+                         {"textured/assimp/3MF/box.3mf", 0.001, Axis::z},
+                         {"textured/gltf/Box/glTF/Box.gltf", 1.0, Axis::y},
+                         {"textured/assimp/AMF/test_with_mat.amf", 0.0254, Axis::z}}) {
+    const Model model = load(data_folder() / one.path, as_declared());
+    EXPECT_EQ(model.declared.metres_per_unit, one.metres_per_unit) << one.path;
+    EXPECT_EQ(model.declared.up, one.up) << one.path;
+    // the numbers of the file alone, times the unit, in the other axes
+    const Eigen::Vector3d size = bounds(load(data_folder() / one.path).mesh).sizes();
+    Eigen::Vector3d expected = one.metres_per_unit * size;
+    if (one.up == Axis::y) std::swap(expected.y(), expected.z());
+    const Eigen::Vector3d found = bounds(model.mesh).sizes();
+    EXPECT_LT((found - expected).norm(), 1e-6 * expected.norm()) << one.path;
+  }
+}
+
+TEST(DeclaredFrame, SizesOfRealFilesAreThoseWrittenInThem) {
+  GLIDAR_NEED_DATA();
+  const auto size = [](const char* path) -> Eigen::Vector3d {
+    return bounds(load(data_folder() / path, as_declared()).mesh).sizes();
+  };
+  // vertices of 10 x 20 x 30 mm
+  EXPECT_LT((size("textured/assimp/3MF/box.3mf") - Eigen::Vector3d(0.01, 0.02, 0.03)).norm(), 1e-8);
+  // a pyramid of 1 inch
+  EXPECT_LT(
+      (size("textured/assimp/AMF/test_with_mat.amf") - Eigen::Vector3d::Constant(0.0254)).norm(),
+      1e-8);
+}
+
+}  // namespace
+}  // namespace glidar

@@ -1,0 +1,74 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Scales along the axes of a model.
+#include <glidar/core/error.hpp>
+#include <glidar/io/builtin_models.hpp>
+#include <glidar/io/scene_file.hpp>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+TEST(SceneFile, DifferentFactorsStretchACopyOfTheMeshThatEqualOnesShare) {
+  const Scene scene = parse_scene(R"(models:
+  - {model: 'builtin:box'}
+  - {model: 'builtin:box', scale: [1, 2, 3]}
+  - {model: 'builtin:box', scale: [1, 2, 3]}
+  - {model: 'builtin:box', scale: [2, 2, 2]}
+  - {model: 'builtin:box', scale: [1, 2, 4]}
+)",
+                                  {})
+                          .scene;
+  ASSERT_EQ(scene.meshes.size(), 3U);
+  EXPECT_EQ(scene.instances[1].mesh, scene.instances[2].mesh);
+  EXPECT_EQ(scene.instances[3].mesh, scene.instances[0].mesh);
+  EXPECT_EQ(scene.instances[3].scale, 2.0);
+  EXPECT_EQ(scene.instances[1].scale, 1.0);
+  EXPECT_EQ(scale_of(scene, scene.instances[4]), Eigen::Vector3d(1.0, 2.0, 4.0));
+  EXPECT_EQ(bounds(scene.meshes[scene.instances[1].mesh]).sizes(), Eigen::Vector3d(2.0, 4.0, 6.0));
+  EXPECT_EQ(scene.sources[scene.instances[1].mesh].path, "builtin:box");
+}
+
+Scene scene_of(const char* name) {
+  Scene scene;
+  add_model(scene, make_builtin_model(name));
+  return scene;
+}
+
+TEST(SetScale, GoesBackToTheMeshAsLoaded) {
+  Scene scene = scene_of("box");
+  set_scale(scene, 0, {0.1, 0.3, 0.7});
+  set_scale(scene, 0, {0.7, 0.1, 0.3});
+  set_scale(scene, 0, Eigen::Vector3d::Constant(3.0));
+  EXPECT_EQ(scene.instances[0].scale, 3.0);
+  EXPECT_EQ(bounds(scene.meshes[scene.instances[0].mesh]).sizes(), Eigen::Vector3d(2.0, 2.0, 2.0));
+  EXPECT_EQ(scale_of(scene, scene.instances[0]), Eigen::Vector3d::Constant(3.0));
+}
+
+TEST(SetScale, RefusesZeroMirrorsAndNotANumber) {
+  Scene scene = scene_of("box");
+  for (const double bad : {0.0, -1.0, std::nan(""), double{INFINITY}, 1e300}) {
+    EXPECT_THROW(set_scale(scene, 0, {1.0, bad, 1.0}), Error) << bad;
+    EXPECT_THROW(set_scale(scene, 0, Eigen::Vector3d::Constant(bad)), Error) << bad;
+  }
+  EXPECT_EQ(scene.instances[0].scale, 1.0);
+  EXPECT_EQ(scene.meshes.size(), 1U);
+}
+
+TEST(SetScale, NormalsAreThoseOfTheStretchedSurface) {
+  Scene scene = scene_of("sphere");
+  const Eigen::Vector3d axes_m(2.0, 0.5, 1.25);
+  set_scale(scene, 0, axes_m);
+  const Mesh& mesh = scene.meshes[scene.instances[0].mesh];
+  for (std::uint32_t v = 0; v < mesh.positions_m.size(); ++v) {
+    // of the ellipsoid x^2/a^2 + y^2/b^2 + z^2/c^2 = 1: its gradient
+    const Eigen::Vector3d gradient = vertex_m(mesh, v).cwiseQuotient(axes_m.cwiseProduct(axes_m));
+    EXPECT_LT((mesh.normals[v].cast<double>() - gradient.normalized()).norm(), 1e-6) << v;
+  }
+}
+
+}  // namespace
+}  // namespace glidar
