@@ -22,37 +22,6 @@ using testing::load;
 using testing::TestFolder;
 namespace fs = std::filesystem;
 
-/// One triangle (1 2 3) (4 2 3) (1 7 9) with this axis up.
-std::string collada(const std::string& up_axis) {
-  return R"(<?xml version="1.0"?>
-<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-<asset><unit name="meter" meter="1"/><up_axis>)" +
-         up_axis + R"(</up_axis></asset>
-<library_geometries><geometry id="g"><mesh>
-<source id="p"><float_array id="a" count="9">1 2 3 4 2 3 1 7 9</float_array>
-<technique_common><accessor source="#a" count="3" stride="3"><param name="X" type="float"/>
-<param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
-<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
-<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
-</mesh></geometry></library_geometries>
-<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node>
-</visual_scene></library_visual_scenes>
-<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
-}
-
-TEST(ModelFormats, ColladaKeepsTheAxesOfTheFileWhicheverIsUp) {
-  const TestFolder temp;
-  for (const char* up : {"X_UP", "Y_UP", "Z_UP"}) {
-    const Mesh mesh = load(temp.write("a.dae", collada(up))).mesh;
-    const auto corner = [&](std::size_t i) -> Eigen::Vector3d {
-      return mesh.origin_m + mesh.positions_m[mesh.triangles.at(0)[i]].cast<double>();
-    };
-    EXPECT_EQ(corner(0), Eigen::Vector3d(1, 2, 3)) << up;
-    EXPECT_EQ(corner(1), Eigen::Vector3d(4, 2, 3)) << up;
-    EXPECT_EQ(corner(2), Eigen::Vector3d(1, 7, 9)) << up;
-  }
-}
-
 TEST(ModelFormats, AZUpColladaBarrierStandsOnTheGround) {
   GLIDAR_NEED_DATA();
   const Eigen::AlignedBox3d box =
