@@ -78,7 +78,7 @@ LegendColumns legend_columns(const std::vector<LegendEntry>& entries, double wid
 
 }  // namespace
 
-std::vector<AxisLabel> axis_labels(const Axis& axis, double pixels, double room_px) {
+std::vector<AxisLabel> axis_labels(const PlotAxis& axis, double pixels, double room_px) {
   const double low = std::min(axis.first, axis.last);
   const double high = std::max(axis.first, axis.last);
   if (!(high > low) || !(pixels > 0.0)) return {};
@@ -112,7 +112,7 @@ double legend_entry_height(double size_px) {
   return 1.5 * size_px;
 }
 
-void draw_across_axis(Picture& picture, const Box& plot, const Axis& axis, double size_px) {
+void draw_across_axis(Picture& picture, const Box& plot, const PlotAxis& axis, double size_px) {
   const auto left = static_cast<double>(plot.x);
   const auto width = static_cast<double>(plot.width);
   const auto bottom = static_cast<double>(plot.y + plot.height);

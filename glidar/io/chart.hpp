@@ -21,7 +21,7 @@ inline constexpr Colour kSensorInk = {255, 255, 255};
 inline constexpr Colour kInk = {222, 222, 228};
 
 /// One side of a plot: the numbers at its first and at its last edge.
-struct Axis {
+struct PlotAxis {
   std::string title;  ///< with its unit
   double first = 0.0;
   double last = 1.0;
@@ -35,7 +35,7 @@ struct AxisLabel {
 };
 
 /// Round numbers along an axis of so many pixels, with room for labels of a size.
-std::vector<AxisLabel> axis_labels(const Axis& axis, double pixels, double room_px);
+std::vector<AxisLabel> axis_labels(const PlotAxis& axis, double pixels, double room_px);
 
 /// Space that the parts of a plot need, in pixels, by the size of the letters.
 double across_axis_height(double size_px);
@@ -44,7 +44,7 @@ double colour_bar_height(double size_px);
 double legend_entry_height(double size_px);
 
 /// Marks, numbers and the title below the plot.
-void draw_across_axis(Picture& picture, const Box& plot, const Axis& axis, double size_px);
+void draw_across_axis(Picture& picture, const Box& plot, const PlotAxis& axis, double size_px);
 /// Likewise at its left, where `labels` are counted from the top; the title is above the plot.
 void draw_upright_axis(Picture& picture, const Box& plot, const std::string& title,
                        const std::vector<AxisLabel>& labels, double size_px);

@@ -144,7 +144,7 @@ Picture draw_bird_eye(const CloudFile& job) {
   const PointImage image = draw_top_view(scene.shown.points_m, view, plot.width, plot.height);
   Picture picture = make_picture(job.options.picture.width, job.options.picture.height, kCanvas);
   fill(picture, plot, kPlotGround);
-  const Axis across{"x, m", view.left_m, view.right_m};
+  const PlotAxis across{"x, m", view.left_m, view.right_m};
   const std::vector<AxisLabel> upright = axis_labels(
       {"", view.top_m, view.bottom_m}, static_cast<double>(plot.height), 3.0 * layout.letters);
   draw_grid(picture, plot,

@@ -101,7 +101,7 @@ void size_sides(Side& across, Side& upright) {
 
 void draw_axes(Picture& picture, const Box& plot, const Side& across, const Side& upright) {
   fill(picture, plot, kPlotGround);
-  const Axis azimuth{"azimuth", across.high_deg, across.low_deg, true};  // left is left
+  const PlotAxis azimuth{"azimuth", across.high_deg, across.low_deg, true};  // left is left
   const std::vector<AxisLabel> elevations =
       axis_labels({"", upright.high_deg, upright.low_deg, true}, static_cast<double>(plot.height),
                   2.0 * kLetters);
