@@ -64,8 +64,7 @@ void add_publishing_flags(CLI::App& command, StreamFlags& flags) {
             [&flags](std::int64_t n) { flags.subscribers = static_cast<std::uint64_t>(n); });
   add_option(
       command,
-      {"--subscription-timeout", "S", "Waits S seconds after a handshake for its subscription [10]",
-       group},
+      {"--subscription-timeout", "S", "Waits S seconds for subscriptions to follow [10]", group},
       [&flags](std::string_view option, const std::string& text) {
         flags.subscription_timeout_s = parse_number(option, text);
         require(flags.subscription_timeout_s >= 0.0 && flags.subscription_timeout_s <= kLongest_s,

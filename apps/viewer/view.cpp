@@ -301,7 +301,7 @@ Command add_view(CLI::App& program) {
             [&frames = flags->frames](std::int64_t n) { frames = static_cast<std::uint32_t>(n); });
   command
       .add_flag("--print-state", flags->prints_state,
-                "Print a line, for scripts, whenever the window shows all that is known")
+                "Print a line whenever all is drawn, for scripts")
       ->group(group);
   return [flags] { return run(*flags); };
 }
