@@ -21,9 +21,9 @@ namespace glidar::app {
 struct OutputFlags {
   std::vector<std::string> paths;  ///< "-": standard output
   std::string format;              ///< of standard output, without the dot; empty: not given
-  std::string legacy_name;  ///< --pcd NAME; empty: not given
-  std::string columns;      ///< empty: not given
-  std::string layout;       ///< empty: not given
+  std::string legacy_name;         ///< --pcd NAME; empty: not given
+  std::string columns;             ///< empty: not given
+  std::string layout;              ///< empty: not given
   std::string cloud_frame = "sensor";
   std::string pcd_encoding = "binary";
   bool dense = false;

@@ -22,12 +22,13 @@ sensors:
     sensor: {optics: {type: pinhole, width: 40, height: 30, fov_deg: 40}}
     pose: {euler_deg: {roll: -90, yaw: -90}}
 """
+PLACED = "rig_pose: {position: [0, 0, 0]}\n"
 
 
 class Rigs(CliTest):
     def setUp(self):
         super().setUp()
-        self.write("rig.yaml", RIG)
+        self.write("rig.yaml", RIG + PLACED)
 
     def test_an_output_that_does_not_fit_a_sensor_is_left_out_with_a_note(self):
         done = self.succeed("render", "rig.yaml", "-o", "r.depth.png", "-o", "r.pcd", "--no-sidecar")
@@ -35,7 +36,7 @@ class Rigs(CliTest):
         self.assertIn("r.depth.png is not written for lidar: it has beams that point back", done.stderr)
 
     def test_an_output_that_fits_none_of_the_sensors_is_an_error_before_any_work(self):
-        self.write("rig.yaml", RIG[: RIG.index("  - name: camera")] + "  - {name: second, sensor: VLP-16}\n")
+        self.write("rig.yaml", RIG[: RIG.index("  - name: camera")] + "  - {name: second, sensor: VLP-16}\n" + PLACED)
         told = self.refused("render", "rig.yaml", "-o", "r.pcd", "-o", "r.depth.png")
         self.assertIn("fits none of the sensors on the rig: lidar: it has beams", told)
         self.assertIn("write .npy or .depth.tiff", told)
@@ -60,10 +61,11 @@ class Failures(CliTest):
         self.assertIn("--depth-scale", told)
 
     def test_an_error_lists_what_was_written_before_it(self):
-        # turned away, the camera sees nothing at first, then the box
+        # the box is farther than 65535 / 6200 m from the second frame on
         self.write("scene.yaml", "models: [{model: builtin:box, pose: {position: [0, 0, 10]},"
                                  " motion: {twist: {velocity_m_s: [0, 0, 2]}}}]\n"
-                                 "sensor: {optics: {type: pinhole, width: 8, height: 6, fov_deg: 20}, rate_hz: 1}\n")
+                                 "sensor: {optics: {type: pinhole, width: 8, height: 6, fov_deg: 20}, rate_hz: 1}\n"
+                                 "sensor_pose: {position: [0, 0, 0]}\n")
         done = self.run_program("render", "scene.yaml", "--duration", "3", "--no-sidecar", "-o", "a.depth.png",
                                 "--depth-scale", "6200", "--quiet")
         self.assertEqual(done.returncode, 2, done.stderr)
