@@ -6,6 +6,7 @@
 #include <glidar/io/cloud_file.hpp>
 #include <glidar/io/cloud_layout.hpp>
 #include <glidar/io/format_table.hpp>
+#include <glidar/io/kitti_files.hpp>
 #include <glidar/io/stored_columns.hpp>
 
 #include <fmt/format.h>
