@@ -76,34 +76,41 @@ double ExactSearch::slack_of(std::uint32_t instance, const ObjectRay& ray) const
   return slack(resolver_.view(instance).scale * (tree.reach() + ray.origin.norm()));
 }
 
-/// Calls take(candidate) for the triangles that the beam may meet before the nearest so far.
+bool ExactSearch::stops_beam(const Judgement& judgement, const Found& candidate) const {
+  return stops(resolver_, request_->beams, judgement.beam, request_->cull_back_faces, candidate);
+}
+
+/// Calls take(candidate) for an instance's triangles that the beam may meet before the nearest so
+/// far.
 template <class Take>
-void ExactSearch::for_triangles_on(Judgement& judgement, const Take& take) const {
-  const std::vector<Instance>& instances = resolver_.scene().instances;
-  for (std::uint32_t i = 0; i < instances.size(); ++i) {
-    if (!is_present(*request_, i)) continue;
-    const InstanceView& view = resolver_.view(i);
-    const ObjectRay ray = ray_in(view, request_->beams, judgement.beam);
-    judgement.slack_m = slack_of(i, ray);
-    const double margin = 2.0 * judgement.slack_m / view.scale;
-    double most = judgement.nearest_range_m / view.scale + margin;
-    trees_.of_mesh(instances[i].mesh).visit_along(ray, margin, most, [&](std::uint32_t triangle) {
-      const Found candidate{i, triangle};
-      if (!stops(resolver_, request_->beams, judgement.beam, request_->cull_back_faces,
-                 candidate)) {
-        return;
-      }
-      take(candidate);
-      most = judgement.nearest_range_m / view.scale + margin;
-    });
-  }
+void ExactSearch::for_triangles_on(Judgement& judgement, std::uint32_t instance,
+                                   const Take& take) const {
+  const InstanceView& view = resolver_.view(instance);
+  const ObjectRay ray = ray_in(view, request_->beams, judgement.beam);
+  judgement.slack_m = slack_of(instance, ray);
+  const double margin = 2.0 * judgement.slack_m / view.scale;
+  double most = judgement.nearest_range_m / view.scale + margin;
+  const auto visit = [&](std::uint32_t triangle) {
+    const Found candidate{instance, triangle};
+    if (!stops_beam(judgement, candidate)) return;
+    take(candidate);
+    most = judgement.nearest_range_m / view.scale + margin;
+  };
+  trees_.of_mesh(resolver_.scene().instances[instance].mesh).visit_along(ray, margin, most, visit);
 }
 
 Found ExactSearch::nearest(std::size_t beam) const {
   Judgement all = judgement(beam);
-  for_triangles_on(all, [&](const Found& candidate) { all.consider(candidate); });
+  const auto count = static_cast<std::uint32_t>(resolver_.scene().instances.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!is_present(*request_, i)) continue;
+    for_triangles_on(all, i, [&](const Found& candidate) { all.consider(candidate); });
+  }
   if (all.nearest.instance == kNoHit) return {};
-  for_triangles_on(all, [&](const Found& candidate) { all.consider_tie(candidate); });
+  for (std::uint32_t i = 0; i < count; ++i) {
+    if (!is_present(*request_, i)) continue;
+    for_triangles_on(all, i, [&](const Found& candidate) { all.consider_tie(candidate); });
+  }
   return all.nearest;
 }
 
@@ -135,38 +142,42 @@ std::uint32_t ExactSearch::overlapping(const HitBlock& block, const ExactBlock& 
   return mask;
 }
 
+/// Calls take(candidate) for an instance's triangles around a point of the beam.
+template <class Take>
+void ExactSearch::for_triangles_at(Judgement& judgement, std::uint32_t instance, double range_m,
+                                   const Take& take) const {
+  const InstanceView& view = resolver_.view(instance);
+  const ObjectRay ray = ray_in(view, request_->beams, judgement.beam);
+  const TriangleTree& tree = trees_.of_mesh(resolver_.scene().instances[instance].mesh);
+  const double distance = range_m / view.scale;
+  const double room = kSinglePart * (distance + tree.reach());
+  judgement.slack_m = slack_of(instance, ray);
+  const auto visit = [&](std::uint32_t triangle) {
+    const Found candidate{instance, triangle};
+    if (stops_beam(judgement, candidate)) take(candidate);
+  };
+  tree.visit_at(ray.origin + distance * ray.direction, room, visit);
+}
+
 /// Calls take(candidate) for the one found and for the triangles that other instances have there.
 template <class Take>
-void ExactSearch::for_triangles_at(Judgement& judgement, const Found& found,
-                                   const Take& take) const {
-  const std::vector<Instance>& instances = resolver_.scene().instances;
-  const InstanceView& own = resolver_.view(found.instance);
-  const ObjectRay own_ray = ray_in(own, request_->beams, judgement.beam);
-  const double range_m =
-      own.scale * distance_to(resolver_.plane(found.instance, found.primitive), own_ray);
-  judgement.slack_m = slack_of(found.instance, own_ray);
+void ExactSearch::for_triangles_around(Judgement& judgement, const Found& found,
+                                       const Take& take) const {
+  const InstanceView& view = resolver_.view(found.instance);
+  const ObjectRay ray = ray_in(view, request_->beams, judgement.beam);
+  const TrianglePlane& plane = resolver_.plane(found.instance, found.primitive);
+  judgement.slack_m = slack_of(found.instance, ray);
   take(found);
   for (const std::uint32_t i : others_[found.instance]) {
-    const InstanceView& view = resolver_.view(i);
-    const ObjectRay ray = ray_in(view, request_->beams, judgement.beam);
-    const TriangleTree& tree = trees_.of_mesh(instances[i].mesh);
-    const double distance = range_m / view.scale;
-    const double room = kSinglePart * (distance + tree.reach());
-    judgement.slack_m = slack_of(i, ray);
-    tree.visit_at(ray.origin + distance * ray.direction, room, [&](std::uint32_t triangle) {
-      const Found candidate{i, triangle};
-      if (stops(resolver_, request_->beams, judgement.beam, request_->cull_back_faces, candidate)) {
-        take(candidate);
-      }
-    });
+    for_triangles_at(judgement, i, view.scale * distance_to(plane, ray), take);
   }
 }
 
 Found ExactSearch::nearest_around(std::size_t beam, const Found& found) const {
   Judgement all = judgement(beam);
-  for_triangles_at(all, found, [&](const Found& candidate) { all.consider(candidate); });
+  for_triangles_around(all, found, [&](const Found& candidate) { all.consider(candidate); });
   if (all.nearest.instance == kNoHit) return found;
-  for_triangles_at(all, found, [&](const Found& candidate) { all.consider_tie(candidate); });
+  for_triangles_around(all, found, [&](const Found& candidate) { all.consider_tie(candidate); });
   return all.nearest;
 }
 

@@ -41,10 +41,14 @@ class ExactSearch {
  private:
   [[nodiscard]] Judgement judgement(std::size_t beam) const;
   [[nodiscard]] double slack_of(std::uint32_t instance, const ObjectRay& ray) const;
+  [[nodiscard]] bool stops_beam(const Judgement& judgement, const Found& candidate) const;
   template <class Take>
-  void for_triangles_on(Judgement& judgement, const Take& take) const;
+  void for_triangles_on(Judgement& judgement, std::uint32_t instance, const Take& take) const;
   template <class Take>
-  void for_triangles_at(Judgement& judgement, const Found& found, const Take& take) const;
+  void for_triangles_at(Judgement& judgement, std::uint32_t instance, double range_m,
+                        const Take& take) const;
+  template <class Take>
+  void for_triangles_around(Judgement& judgement, const Found& found, const Take& take) const;
   [[nodiscard]] bool is_in_box(std::uint32_t instance, const Eigen::Vector3d& in_sensor_m) const;
 
   const Resolver& resolver_;

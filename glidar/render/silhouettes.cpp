@@ -120,26 +120,30 @@ std::vector<MeshEdge> mesh_edges(const Mesh& mesh, const Neighbours& neighbours)
   return edges;
 }
 
+void SilhouettePixels::add(const CastRequest& request, const Resolver& resolver,
+                           std::uint32_t instance, const std::vector<MeshEdge>& edges,
+                           const PixelRect& part) {
+  const Eigen::Matrix<double, 3, 4> seen = sensor_from_object(resolver.view(instance));
+  const std::vector<Eigen::Vector3f>& positions = resolver.mesh(instance).positions_m;
+  const auto found = [&](std::size_t row, std::size_t col) {
+    pixels_.push_back(row * request.beams.cols + col);
+  };
+  for (const MeshEdge& edge : edges) {
+    if (!is_silhouette(resolver, instance, edge)) continue;
+    const PixelLine line =
+        project(seen * positions[edge.from].cast<double>().homogeneous(),
+                seen * positions[edge.to].cast<double>().homogeneous(), *request.beams.pinhole);
+    if (line.is_seen) for_pixels_by(line, band_px_, part, found);
+  }
+}
+
 const std::vector<std::size_t>& SilhouettePixels::find(
     const CastRequest& request, const Resolver& resolver,
     const std::vector<std::vector<MeshEdge>>& edges, const PixelRect& part) {
   pixels_.clear();
   const std::vector<Instance>& instances = resolver.scene().instances;
-  const PinholeIntrinsics& pinhole = *request.beams.pinhole;
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
-    if (!is_present(request, i)) continue;
-    const Eigen::Matrix<double, 3, 4> seen = sensor_from_object(resolver.view(i));
-    const std::vector<Eigen::Vector3f>& positions = resolver.mesh(i).positions_m;
-    for (const MeshEdge& edge : edges[instances[i].mesh]) {
-      if (!is_silhouette(resolver, i, edge)) continue;
-      const PixelLine line =
-          project(seen * positions[edge.from].cast<double>().homogeneous(),
-                  seen * positions[edge.to].cast<double>().homogeneous(), pinhole);
-      if (!line.is_seen) continue;
-      for_pixels_by(line, band_px_, part, [&](std::size_t row, std::size_t col) {
-        pixels_.push_back(row * request.beams.cols + col);
-      });
-    }
+    if (is_present(request, i)) add(request, resolver, i, edges[instances[i].mesh], part);
   }
   std::sort(pixels_.begin(), pixels_.end());
   pixels_.erase(std::unique(pixels_.begin(), pixels_.end()), pixels_.end());

@@ -40,6 +40,9 @@ class SilhouettePixels {
                                        const PixelRect& part);
 
  private:
+  void add(const CastRequest& request, const Resolver& resolver, std::uint32_t instance,
+           const std::vector<MeshEdge>& edges, const PixelRect& part);
+
   double band_px_;
   std::vector<std::size_t> pixels_;
 };

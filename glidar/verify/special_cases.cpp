@@ -186,6 +186,19 @@ VerifyResult aimed_beams(const VerifySubject& subject, const Shape& shape, doubl
   return result;
 }
 
+/// Beams that are aimed at vertices, edges and outlines.
+void add_aimed_cases(const Shape& shape, std::vector<SpecialCase>& cases) {
+  for (const double distance_m : {1.0, 1000.0}) {
+    cases.push_back({"at vertices and edges", shape.name, distance_m, true,
+                     [&shape, distance_m](const auto& s) {
+                       return aimed_beams(s, shape, distance_m, beams_at_vertices_and_edges);
+                     }});
+  }
+  cases.push_back({"beside the outline", shape.name, 1.0, true, [&shape](const auto& s) {
+                     return aimed_beams(s, shape, 1.0, beams_beside_outline);
+                   }});
+}
+
 }  // namespace
 
 std::vector<SpecialCase> special_cases(const std::vector<Shape>& shapes) {
@@ -207,16 +220,7 @@ std::vector<SpecialCase> special_cases(const std::vector<Shape>& shapes) {
                      [&](const auto& s) { return sensor_on_vertices(s, shape); }});
   }
   for (const Shape& shape : shapes) {
-    if (!shape.solid) continue;
-    for (const double distance_m : {1.0, 1000.0}) {
-      cases.push_back(
-          {"at vertices and edges", shape.name, distance_m, true, [&, distance_m](const auto& s) {
-             return aimed_beams(s, shape, distance_m, beams_at_vertices_and_edges);
-           }});
-    }
-    cases.push_back({"beside the outline", shape.name, 1.0, true, [&](const auto& s) {
-                       return aimed_beams(s, shape, 1.0, beams_beside_outline);
-                     }});
+    if (shape.solid) add_aimed_cases(shape, cases);
   }
   return cases;
 }
