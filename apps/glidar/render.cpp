@@ -27,7 +27,7 @@ constexpr const char* kExamples = R"(Examples:
   glidar render builtin:box --sensor OS1-128 --eye 0,0,0 --colour-by range -o room.bev.png
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --layout velodyne --dense -o scan.pcd
   glidar render builtin:box --sensor OS1-32 --eye 0,0,0 --camera-dr 0,1,0 --duration 1 -o scan.pcd
-  glidar render builtin:box -o - --format csv | head -3
+  glidar render builtin:box -o - --format csv
   glidar render builtin:asteroid --model-q 0.7,0,0.7,0 --camera-z 10 --pcd view
 With your own files:
   glidar render part.stl --unit mm --up y -o part.pcd
