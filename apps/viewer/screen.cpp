@@ -56,8 +56,8 @@ Eigen::Vector2d dragged(ImGuiMouseButton button) {
   return {by.x / height, by.y / height};
 }
 
-/// Where the sensor's picture is: as large as fits; a scanner's rows are as high as they must be for
-/// its picture to be seen, other pixels are square.
+/// Where the sensor's picture is: as large as fits; a scanner's rows are as high as they must be
+/// for its picture to be seen, other pixels are square.
 Area fitted(const BeamPicture& layout, const ImVec2& corner, const ImVec2& room) {
   const float cols = std::max<float>(1.0F, static_cast<float>(layout.cols));
   const float rows = std::max<float>(1.0F, static_cast<float>(layout.rows));

@@ -237,5 +237,19 @@ class Satellite(unittest.TestCase):
             self.assertEqual(set(np.unique(opacity)), {0, 255})
 
 
+class Street(unittest.TestCase):
+    """The things of examples/street.yaml."""
+
+    FOLDER = MODELS / "street"
+
+    def test_stands_on_the_ground_in_metres(self):
+        heights = {"house": (8, 13), "car": (1.3, 1.6), "tree": (5, 8), "lamp": (6, 7), "person": (1.6, 1.9)}
+        for name, (low, high) in heights.items():
+            lines = (self.FOLDER / f"{name}.obj").read_text(encoding="ascii").splitlines()
+            z = [float(line.split()[3]) for line in lines if line.startswith("v ")]
+            self.assertAlmostEqual(min(z), 0.0, delta=0.03, msg=name)
+            self.assertTrue(low < max(z) < high, f"{name} is {max(z)} m tall")
+
+
 if __name__ == "__main__":
     unittest.main()
