@@ -106,7 +106,7 @@ nb::object beam_table(const nb::handle& self) {
   if (table == nullptr) return nb::none();
   const std::array<std::size_t, 1> count = {table->directions.size()};
   const std::array<std::size_t, 2> triples = {count[0], 3};
-  const auto kept = [](const auto& values, nb::object array) {
+  const auto kept = [](const auto& values, const nb::object& array) {
     return values.empty() ? nb::none() : array;
   };
   nb::dict arrays;
