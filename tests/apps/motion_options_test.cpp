@@ -104,10 +104,17 @@ TEST(InformationOptions, FileStandsBesideTheOutput) {
 }
 
 TEST(InformationOptions, SigmaMustBeAboveZeroAndWanted) {
-  EXPECT_NO_THROW(check(InformationFlags{.wanted = true, .sigma_m = 0.1}));
-  EXPECT_NO_THROW(check(InformationFlags{}));
-  EXPECT_THROW(check(InformationFlags{.wanted = true, .sigma_m = 0.0}), Error);
-  EXPECT_THROW(check(InformationFlags{.wanted = false, .sigma_m = 0.1}), Error);
+  const OutputFlags file{.paths = {"a.pcd"}};
+  EXPECT_NO_THROW(check(InformationFlags{.wanted = true, .sigma_m = 0.1}, file));
+  EXPECT_NO_THROW(check(InformationFlags{}, file));
+  EXPECT_THROW(check(InformationFlags{.wanted = true, .sigma_m = 0.0}, file), Error);
+  EXPECT_THROW(check(InformationFlags{.wanted = false, .sigma_m = 0.1}, file), Error);
+}
+
+TEST(InformationOptions, NeedAFileBesideWhichTheirsIsWritten) {
+  const InformationFlags wanted{.wanted = true};
+  EXPECT_THROW(check(wanted, {.paths = {"-"}, .format = "pcd"}), Error);
+  EXPECT_NO_THROW(check(wanted, {.paths = {"-", "a.pcd"}, .format = "pcd"}));
 }
 
 }  // namespace
