@@ -6,6 +6,7 @@
 #include <apps/glidar/naming.hpp>
 #include <apps/glidar/numbers.hpp>
 #include <apps/glidar/option_kinds.hpp>
+#include <apps/glidar/picture_options.hpp>
 #include <apps/glidar/pose_options.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/atomic_file.hpp>
@@ -106,41 +107,6 @@ std::vector<std::string> columns_of(const FileFormat& format,
   std::vector<std::string> columns = asked;
   for (const std::string& name : format.columns) add_missing(name, columns);
   return columns;
-}
-
-/// "WxH" in pixels.
-std::array<std::uint32_t, 2> parse_size(std::string_view option, const std::string& text) {
-  std::array<std::uint32_t, 2> size = {};
-  const char* const end = text.data() + text.size();
-  const auto [cross, width_error] = std::from_chars(text.data(), end, size[0]);
-  const bool has_cross = width_error == std::errc() && cross != end && *cross == 'x';
-  const auto [last, height_error] = std::from_chars(has_cross ? cross + 1 : end, end, size[1]);
-  const bool is_allowed = has_cross && height_error == std::errc() && last == end &&
-                          std::min(size[0], size[1]) >= kMinPictureSide &&
-                          std::max(size[0], size[1]) <= kMaxPictureSide;
-  if (is_allowed) return size;
-  throw Error({.where = std::string(option),
-               .found = "'" + text + "'",
-               .allowed = fmt::format("WIDTHxHEIGHT in pixels, each from {} to {}", kMinPictureSide,
-                                      kMaxPictureSide),
-               .remedy = "for example 1400x1000"});
-}
-
-/// Of .bev.png and .view.png.
-CloudPictureOptions picture_options(const OutputFlags& flags) {
-  CloudPictureOptions options;
-  const auto names = colour_by_names();
-  options.colour_by = static_cast<ColourBy>(
-      std::distance(names.begin(), std::find(names.begin(), names.end(), flags.colour_by)));
-  if (!flags.picture_size.empty()) {
-    const auto [width, height] = parse_size("--picture-size", flags.picture_size);
-    options.width = width;
-    options.height = height;
-  }
-  if (!flags.view_eye.empty()) options.eye_m = parse_vector("--view-eye", flags.view_eye);
-  if (!flags.view_target.empty())
-    options.target_m = parse_vector("--view-target", flags.view_target);
-  return options;
 }
 
 FileSinkOptions sink_options(const OutputFlags& flags) {
@@ -251,26 +217,6 @@ std::string suffix_list() {
   std::string text;
   for (const FileFormat& format : file_formats()) text += " " + format.suffix;
   return text;
-}
-
-/// Options of .bev.png and .view.png.
-void add_picture_flags(CLI::App& command, OutputFlags& flags, const std::string& group) {
-  const auto is_vector = [](std::string_view option, const std::string& text) {
-    parse_vector(option, text);
-  };
-  add_choice(
-      command,
-      {"--colour-by", "NAME",
-       "Of .bev.png, .view.png: height, range, intensity, ring, class, instance [height]", group},
-      {colour_by_names().begin(), colour_by_names().end()}, flags.colour_by);
-  add_text(command, {"--picture-size", "WxH", "Of these, in pixels [1400x1000]", group},
-           flags.picture_size,
-           [](std::string_view option, const std::string& text) { parse_size(option, text); });
-  add_text(command,
-           {"--view-eye", "X,Y,Z", "Camera of .view.png, m, axes of the cloud [all seen]", group},
-           flags.view_eye, is_vector);
-  add_text(command, {"--view-target", "X,Y,Z", "Where it looks, likewise [all seen]", group},
-           flags.view_target, is_vector);
 }
 
 }  // namespace

@@ -81,17 +81,17 @@ std::string information_json(const PoseInformation& information) {
                           {"displacement", vector_json(direction.displacement)}});
   }
   Json all = {{"convention", kConvention},
-                    {"returns", information.returns},
-                    {"left_out", information.left_out},
-                    {"assumed_sigma_m",
-                     information.assumed_sigma_m ? Json(*information.assumed_sigma_m) : Json()},
-                    {"information", matrix_json(information.matrix)},
-                    {"covariance", matrix_json(information.covariance)},
-                    {"bound", vector_json(information.bound)},
-                    {"condition", information.condition},
-                    {"length_m", information.length_m},
-                    {"middle_m", vector_json(information.middle_m)},
-                    {"directions", directions}};
+              {"returns", information.returns},
+              {"left_out", information.left_out},
+              {"assumed_sigma_m",
+               information.assumed_sigma_m ? Json(*information.assumed_sigma_m) : Json()},
+              {"information", matrix_json(information.matrix)},
+              {"covariance", matrix_json(information.covariance)},
+              {"bound", vector_json(information.bound)},
+              {"condition", information.condition},
+              {"length_m", information.length_m},
+              {"middle_m", vector_json(information.middle_m)},
+              {"directions", directions}};
   remove_negative_zeros(all);
   return all.dump(2) + "\n";
 }

@@ -84,16 +84,16 @@ Json list_of(const Entries& entries, Function number_of) {
 
 Json json_of(const Spinning& s) {
   using Channel = SpinningChannel;
-  Json told = {
-      {"type", "spinning"},
-      {"rotation_hz", s.rotation_hz},
-      {"turn", s.turn == Spinning::Turn::clockwise ? "clockwise" : "counterclockwise"},
-      {"start_azimuth_deg", in_unit(s.start_azimuth_rad, kDegree)},
-      {"columns_per_turn", s.columns_per_turn},
-      {"sequence_us", in_unit(sequence_period_ns(s), kMicrosecond_ns)},
-      {"beam_origin_mm", in_unit(s.beam_origin_m, kMillimetre_m)},
-      {"sector",
-       {{"from_deg", in_unit(s.sector_start_rad, kDegree)}, {"width_deg", in_unit(s.sector_width_rad, kDegree)}}}};
+  Json told = {{"type", "spinning"},
+               {"rotation_hz", s.rotation_hz},
+               {"turn", s.turn == Spinning::Turn::clockwise ? "clockwise" : "counterclockwise"},
+               {"start_azimuth_deg", in_unit(s.start_azimuth_rad, kDegree)},
+               {"columns_per_turn", s.columns_per_turn},
+               {"sequence_us", in_unit(sequence_period_ns(s), kMicrosecond_ns)},
+               {"beam_origin_mm", in_unit(s.beam_origin_m, kMillimetre_m)},
+               {"sector",
+                {{"from_deg", in_unit(s.sector_start_rad, kDegree)},
+                 {"width_deg", in_unit(s.sector_width_rad, kDegree)}}}};
   const auto add = [&](const char* key, auto number_of) {
     told[key] = list_of(s.channels, number_of);
   };

@@ -104,7 +104,8 @@ TEST(InformationOptions, FileStandsBesideTheOutput) {
 }
 
 TEST(InformationOptions, SigmaMustBeAboveZeroAndWanted) {
-  const OutputFlags file{.paths = {"a.pcd"}};
+  OutputFlags file;
+  file.paths = {"a.pcd"};
   EXPECT_NO_THROW(check(InformationFlags{.wanted = true, .sigma_m = 0.1}, file));
   EXPECT_NO_THROW(check(InformationFlags{}, file));
   EXPECT_THROW(check(InformationFlags{.wanted = true, .sigma_m = 0.0}, file), Error);
@@ -113,8 +114,12 @@ TEST(InformationOptions, SigmaMustBeAboveZeroAndWanted) {
 
 TEST(InformationOptions, NeedAFileBesideWhichTheirsIsWritten) {
   const InformationFlags wanted{.wanted = true};
-  EXPECT_THROW(check(wanted, {.paths = {"-"}, .format = "pcd"}), Error);
-  EXPECT_NO_THROW(check(wanted, {.paths = {"-", "a.pcd"}, .format = "pcd"}));
+  OutputFlags outputs;
+  outputs.format = "pcd";
+  outputs.paths = {"-"};
+  EXPECT_THROW(check(wanted, outputs), Error);
+  outputs.paths = {"-", "a.pcd"};
+  EXPECT_NO_THROW(check(wanted, outputs));
 }
 
 }  // namespace

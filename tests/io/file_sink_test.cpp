@@ -176,6 +176,7 @@ TEST(FileSink, TheSameCloudGivesTheSameBytesInEveryFormat) {
   fixture::add_image_columns(made.cloud);
   fixture::add_image_columns(other.cloud);
   for (const FileFormat& format : file_formats()) {
+    if (format.is_folder) continue;  // of several files
     write_cloud(made, folder / ("a" + format.suffix), options);
     write_cloud(other, folder / ("between" + format.suffix), options);
     write_cloud(made, folder / ("b" + format.suffix), options);

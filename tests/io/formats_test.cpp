@@ -19,6 +19,7 @@ namespace glidar {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::ContainsRegex;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -287,7 +288,7 @@ TEST(Sidecar, NeverHoldsAWordThatJsonHasNot) {
   write_cloud(made, folder / "a.npz");
   const std::string text = file_bytes(folder / "a.npz.json");
   EXPECT_TRUE(nlohmann::json::accept(text));
-  EXPECT_THAT(text, AllOf(Not(HasSubstr("nan")), Not(HasSubstr("inf"))));
+  EXPECT_THAT(text, Not(ContainsRegex("[^a-z_\"](nan|inf)")));  // "camera_info" may stay
 }
 
 }  // namespace

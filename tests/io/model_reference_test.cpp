@@ -103,7 +103,7 @@ Case read_case(const fs::path& folder) {
 
 /// Distance along the ray and barycentrics of corners 1 and 2, on the triangle's plane.
 Eigen::Vector3d meet(const Mesh& mesh, const Triangle& t, const Ray& ray) {
-  const Eigen::Vector3d a = mesh.origin_m + mesh.positions_m[t[0]].cast<double>();
+  const Eigen::Vector3d a = vertex_m(mesh, t[0]);
   Eigen::Matrix3d system;
   system.col(0) = -ray.direction;
   system.col(1) = (mesh.positions_m[t[1]] - mesh.positions_m[t[0]]).cast<double>();

@@ -74,7 +74,7 @@ const BadFile kBadFiles[] = {
     {"UnknownKey", kPulsed + "weather: {rain: 3}\n",
      "s.yaml:4:11: weather.rain: unknown key 'rain'; allowed: visibility_m, visibility_kind, "
      "fog_model, fog_backscatter_per_sr, fog_looks, rain_mm_per_h, rain_model, snow_mm_per_h, "
-     "snow_model, least_signal"},
+     "snow_model, least_signal; did you mean 'rain_mm_per_h'?"},
     {"MisspeltKey", kPulsed + "weather: {visiblity_m: 3}\n",
      "s.yaml:4:11: weather.visiblity_m: unknown key 'visiblity_m'; allowed: visibility_m, "
      "visibility_kind, fog_model, fog_backscatter_per_sr, fog_looks, rain_mm_per_h, rain_model, "

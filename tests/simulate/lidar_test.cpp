@@ -40,6 +40,7 @@ struct Room {
     const auto& range = std::get<std::vector<double>>(find_column(cloud, "range")->values);
     std::size_t wrong = 0;
     for (std::size_t i = 0; i < beams.size(); ++i) {
+      if (std::isnan(beams.directions[i].x())) continue;  // a pixel that the lens does not image
       const Eigen::Vector3d p(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]);
       const Eigen::Vector3d o =
           beams.origins_m.empty() ? Eigen::Vector3d::Zero() : beams.origins_m[i];
@@ -59,8 +60,10 @@ TEST(Lidar, EveryPresetCastsInARoom) {
     EXPECT_LT(sensor.limits.near_m, kHalfSide_m);
     sensor.limits.far_m = 100.0;  // rooms corners may lie beyond a short sensor's end
     const Room room(sensor);
-    EXPECT_EQ(std::count(room.frame.status.begin(), room.frame.status.end(), Status::hit),
-              static_cast<std::ptrdiff_t>(room.frame.status.size()));
+    const auto& status = room.frame.status;
+    EXPECT_EQ(std::count(status.begin(), status.end(), Status::hit) +
+                  std::count(status.begin(), status.end(), Status::no_beam),
+              static_cast<std::ptrdiff_t>(status.size()));
   }
 }
 

@@ -37,9 +37,13 @@ struct Ball {
     simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
   }
 
+  /// Of the pixels that have a beam.
   [[nodiscard]] double share_of_hits() const {
-    const auto hits = std::count(frame.status.begin(), frame.status.end(), Status::hit);
-    return static_cast<double>(hits) / static_cast<double>(frame.status.size());
+    const auto count = [&](Status status) {
+      return static_cast<double>(std::count(frame.status.begin(), frame.status.end(), status));
+    };
+    const double beams_there = static_cast<double>(frame.status.size()) - count(Status::no_beam);
+    return count(Status::hit) / beams_there;
   }
 
   /// Rms over the hits of error(beam); false echoes, far off, are left out.
