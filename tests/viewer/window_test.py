@@ -24,8 +24,27 @@ except ImportError as missing:
 # Places in the window of 1280 x 720.
 SENSOR = (540, 330)  # the middle of the left view
 CLOUD = (1030, 330)
+RIGHT_BOX = (638, 330)  # of TWO_BOXES in the left view
+SECOND_SENSOR = (100, 91)  # in the list
 SENSOR_BOX = (300, 30, 770, 600)
 CLOUD_BOX = (780, 30, 1270, 600)
+
+TWO_BOXES = """models:
+  - {model: builtin:box, name: left, scale: 0.5, pose: {position: [0, 1.5, 0]}}
+  - {model: builtin:box, name: right, scale: 0.5, pose: {position: [0, -1.5, 0]}}
+"""
+CAMERA = """
+sensor: {optics: {type: pinhole, width: 64, height: 64, fov_deg: 40}}
+sensor_pose: {position: [-10, 0, 0], euler_deg: {roll: -90, yaw: -90}}
+"""
+RIG = """
+sensors:
+  - {name: lidar, sensor: VLP-16}
+  - name: camera
+    sensor: {optics: {type: pinhole, width: 64, height: 64, fov_deg: 40}}
+    pose: {position: [0, 0, 0], euler_deg: {roll: -90, yaw: -90}}
+rig_pose: {position: [-10, 0, 0]}
+"""
 
 
 def difference(a, b):
@@ -237,6 +256,33 @@ class ViewerWindowTest(DisplayTest):
                                                     picture.crop((300, 470, 1270, 650))) > 2.0,
                          "the story below the views")
             window.quit()
+
+    def test_a_click_on_a_point_selects_its_object_and_f_frames_it(self):
+        self.write("scene.yaml", TWO_BOXES + CAMERA)
+        with Window(self, "scene.yaml") as window:
+            self.assertEqual(window.state()["object"], 0)
+            window.point(*RIGHT_BOX)
+            self.display.xdotool("click", 1)
+            window.wait_for("the selection", object=1)
+            upper = (*CLOUD_BOX[:3], 350)  # above the story
+            before = self.display.grab().crop(upper)
+            window.key("f")
+            window.shows(lambda picture: difference(before, picture.crop(upper)) > 1.0, "the object from near")
+            window.quit()
+
+    def test_the_list_of_sensors_shows_another_sensor_of_a_rig(self):
+        self.write("rig.yaml", TWO_BOXES + RIG)
+        with Window(self, "rig.yaml") as window:
+            self.assertEqual(window.state()["sensor"], 0)
+            before = self.display.grab().crop(SENSOR_BOX)
+            window.point(*SECOND_SENSOR)
+            self.display.xdotool("click", 1)
+            window.wait_for("the camera", sensor=1)
+            window.shows(lambda picture: difference(before, picture.crop(SENSOR_BOX)) > 2.0, "its picture")
+            window.save("buffer")
+            window.quit()
+        self.succeed("render", "rig.yaml", "--mount", "camera", "--pcd", "expected")
+        self.assertEqual(self.read("buffer.pcd"), self.read("expected.pcd"))
 
     def test_nothing_is_drawn_while_nothing_changes(self):
         with Window(self, "builtin:asteroid") as window:
