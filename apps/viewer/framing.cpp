@@ -90,7 +90,7 @@ std::optional<FieldOfView> field_of_view(const Beams& beams) {
 Visibility visibility(const FieldOfView& field, const Pose& world_from_sensor,
                       std::span<const Eigen::Vector3d> corners_m) {
   const Pose sensor_from_world = world_from_sensor.inverse();
-  std::array<std::size_t, 4> beyond{};  // each edge
+  std::array<std::size_t, 5> beyond{};  // each edge, and behind the sensor
   for (const Eigen::Vector3d& corner : corners_m) {
     const Eigen::Vector3d at = sensor_from_world * corner;
     const double ahead = at.dot(field.axes.ahead);
@@ -100,8 +100,8 @@ Visibility visibility(const FieldOfView& field, const Pose& world_from_sensor,
     beyond[1] += -left > field.right * ahead ? 1 : 0;
     beyond[2] += up > field.up * ahead ? 1 : 0;
     beyond[3] += -up > field.down * ahead ? 1 : 0;
+    beyond[4] += ahead <= 0.0 ? 1 : 0;
   }
-  // behind the sensor, `ahead` is negative and at least one of two opposite edges is passed
   const std::size_t most = *std::max_element(beyond.begin(), beyond.end());
   if (most == 0) return Visibility::inside;
   return most == corners_m.size() ? Visibility::outside : Visibility::partly;

@@ -48,8 +48,8 @@ std::optional<FieldOfView> field_of_view(const Beams& beams);
 /// How much of something is in the picture, regardless of what hides it.
 enum class Visibility : std::uint8_t { inside, partly, outside };
 
-/// For the convex hull of the corners (world). `outside` is certain: all corners are beyond one
-/// edge of the picture.
+/// For the convex hull of the corners (world). `outside` is certain: all corners are behind
+/// the sensor or beyond one edge of the picture.
 Visibility visibility(const FieldOfView& field, const Pose& world_from_sensor,
                       std::span<const Eigen::Vector3d> corners_m);
 

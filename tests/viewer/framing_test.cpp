@@ -135,6 +135,7 @@ TEST(Framing, TellsInsideFromPartlyAndOutside) {
   EXPECT_EQ(visibility(field, pose, cube({5.0, 0.0, 10.0}, 1.0)), Visibility::partly);
   EXPECT_EQ(visibility(field, pose, cube({8.0, 0.0, 10.0}, 1.0)), Visibility::outside);
   EXPECT_EQ(visibility(field, pose, cube({0.0, 0.0, -10.0}, 1.0)), Visibility::outside) << "behind";
+  EXPECT_EQ(visibility(field, pose, cube({0.0, 0.0, -10.0}, 9.0)), Visibility::outside);
   EXPECT_EQ(visibility(field, pose, cube({0.0, 0.0, 0.0}, 1.0)), Visibility::partly) << "around it";
 }
 
