@@ -11,6 +11,7 @@ namespace glidar::app {
 namespace {
 
 constexpr Colour kGrid = {120, 120, 130};
+constexpr Colour kSelected = {255, 140, 40};
 constexpr Colour kFrustum = {255, 200, 80};
 
 void add(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, Colour colour,
@@ -92,6 +93,15 @@ void add_axes(const Pose& anchor_from_frame, double length_m, Lines& lines) {
     add(anchor_from_frame.translation(),
         anchor_from_frame * (length_m * Eigen::Vector3d(Eigen::Vector3d::Unit(axis))),
         kAxes.at(static_cast<std::size_t>(axis)), 255, lines);
+  }
+}
+
+void add_boxes(std::span<const Eigen::Vector3d> corners_m, Lines& lines) {
+  constexpr std::uint8_t kClear = 200;
+  for (std::size_t i = 0; i < corners_m.size(); ++i) {
+    for (const std::size_t axis : {1U, 2U, 4U}) {
+      if ((i & axis) == 0) add(corners_m[i], corners_m[i + axis], kSelected, kClear, lines);
+    }
   }
 }
 

@@ -7,6 +7,7 @@
 #include <glidar/io/picture.hpp>
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 namespace glidar::app {
@@ -31,6 +32,10 @@ void add_grid(const Eigen::Vector3d& about_m, double extent_m, double spacing_m,
 
 /// Axes of this pose: x red, y green, z blue.
 void add_axes(const Pose& anchor_from_frame, double length_m, Lines& lines);
+
+/// The edges of boxes, 8 corners each: corner i ^ 1, i ^ 2 and i ^ 4 are the neighbours of corner
+/// i.
+void add_boxes(std::span<const Eigen::Vector3d> corners_m, Lines& lines);
 
 /// The edges of what the beams reach, up to a range: the border of the beams' grid, and lines to it
 /// from where they start.

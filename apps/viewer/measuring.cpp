@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <exception>
 #include <new>
@@ -20,6 +21,7 @@ namespace glidar::app {
 struct Measuring::Opened {
   std::shared_ptr<const RenderFlags> flags;
   std::shared_ptr<Session> session;
+  std::size_t mount = 0;  ///< the one that the following are of
   std::shared_ptr<const Sensor> noisy;
   std::shared_ptr<const Sensor> still;
   std::shared_ptr<const Beams> beams;
@@ -40,9 +42,11 @@ Motion moved_all(const Motion& motion, const Ask& ask) {
   if (ask.sensor_moved.matrix() != Pose::Identity().matrix()) {
     result.world_from_sensor = moved(ask.sensor_moved, motion.world_from_sensor);
   }
-  if (ask.objects_moved.matrix() == Pose::Identity().matrix()) return result;
-  for (Trajectory& trajectory : result.world_from_instance) {
-    trajectory = moved(ask.objects_moved, trajectory);
+  std::vector<Trajectory>& instances = result.world_from_instance;
+  const std::size_t count = std::min(ask.objects_moved.size(), instances.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const Pose& by = ask.objects_moved[i];
+    if (by.matrix() != Pose::Identity().matrix()) instances[i] = moved(by, instances[i]);
   }
   return result;
 }
@@ -67,7 +71,10 @@ std::string written_text(const std::vector<Output>& outputs) {
 }  // namespace
 
 bool operator==(const Ask& a, const Ask& b) {
-  return a.flags == b.flags && a.objects_moved.matrix() == b.objects_moved.matrix() &&
+  const auto is_same = [](const Pose& p, const Pose& q) { return p.matrix() == q.matrix(); };
+  return a.flags == b.flags && a.mount == b.mount &&
+         std::equal(a.objects_moved.begin(), a.objects_moved.end(), b.objects_moved.begin(),
+                    b.objects_moved.end(), is_same) &&
          a.sensor_moved.matrix() == b.sensor_moved.matrix() && a.number == b.number &&
          a.seed == b.seed && a.has_noise == b.has_noise;
 }
@@ -191,12 +198,19 @@ void Measuring::open_for(const Ask& ask) {
   open(*ask.flags, {}, console_, *opened->session);
   refused_.reset();
   opened->flags = ask.flags;
-  const Mount& mount = only_mount(*opened->session);
-  opened->noisy = std::make_shared<Sensor>(mount.sensor);
-  opened->still = std::make_shared<Sensor>(without_noise(mount.sensor));
-  opened->beams = std::make_shared<Beams>(mount.beams);
   opened_ = std::move(opened);
+  use_mount(ask.mount);
   shots_.clear();
+}
+
+/// Turns to a sensor of what is open, at its first frame.
+void Measuring::use_mount(std::size_t index) {
+  const Mount& mount = opened_->session->mounts.at(index);
+  opened_->mount = index;
+  opened_->noisy = std::make_shared<Sensor>(mount.sensor);
+  opened_->still = std::make_shared<Sensor>(without_noise(mount.sensor));
+  opened_->beams = std::make_shared<Beams>(mount.beams);
+  opened_->number = 0;
 }
 
 std::shared_ptr<Snapshot> Measuring::spare() {
@@ -211,6 +225,8 @@ std::shared_ptr<Snapshot> Measuring::spare() {
 /// All of the shot but the measurement.
 void Measuring::prepare(const Ask& ask, Snapshot& shot) {
   if (!opened_ || opened_->flags != ask.flags) open_for(ask);
+  if (opened_->mount != ask.mount) use_mount(ask.mount);
+  const Mount& mount = opened_->session->mounts[ask.mount];
   if (opened_->number != ask.number) {
     const Sensor& sensor = *opened_->noisy;
     opened_->beams = std::make_shared<Beams>(make_beams(sensor, scan_window(sensor, ask.number)));
@@ -220,9 +236,9 @@ void Measuring::prepare(const Ask& ask, Snapshot& shot) {
   shot.session = opened_->session;
   shot.sensor = ask.has_noise ? opened_->noisy : opened_->still;
   shot.beams = opened_->beams;
-  shot.motion = moved_all(only_mount(*opened_->session).motion, ask);
+  shot.motion = moved_all(mount.motion, ask);
   shot.frame.number = ask.number;
-  shot.frame.sensor_id = only_mount(*opened_->session).id;
+  shot.frame.sensor_id = mount.id;
   shot.frame.stamp_ns = scan_window(*shot.sensor, ask.number).start_ns;
   shot.frame.seed = ask.seed;
 }

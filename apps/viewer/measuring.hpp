@@ -23,9 +23,10 @@ namespace glidar::app {
 /// What is to be measured.
 struct Ask {
   std::shared_ptr<const RenderFlags> flags;  ///< another one: what it names is opened anew
-  Pose objects_moved = Pose::Identity();     ///< moved_from_world of all objects
-  Pose sensor_moved = Pose::Identity();      ///< moved_from_world of the sensor
-  std::uint32_t number = 0;                  ///< of the frame
+  std::size_t mount = 0;                     ///< index of the sensor among the session's mounts
+  std::vector<Pose> objects_moved = {};  ///< moved_from_world per instance; empty: none is moved
+  Pose sensor_moved = Pose::Identity();  ///< moved_from_world of the sensor and its rig
+  std::uint32_t number = 0;              ///< of the frame
   std::uint64_t seed = 1;
   bool has_noise = true;  ///< false: no random errors
 };
@@ -78,6 +79,7 @@ class Measuring {
   void do_one(std::unique_lock<std::mutex>& lock);
   std::function<void()> next_task();
   void open_for(const Ask& ask);
+  void use_mount(std::size_t index);
   void prepare(const Ask& ask, Snapshot& shot);
   void measure_now(const Ask& ask);
   void explain_now(const Ask& ask, std::size_t entry);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/panels.hpp>
 
+#include <apps/viewer/object_panel.hpp>
+#include <apps/viewer/widgets.hpp>
 #include <glidar/io/noise_text.hpp>
 #include <glidar/io/sensor_presets.hpp>
 
@@ -19,16 +21,6 @@ namespace glidar::app {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-
-void text(const std::string& line) {
-  ImGui::TextUnformatted(line.c_str(), line.c_str() + line.size());
-}
-
-void wrapped(const std::string& line) {
-  ImGui::PushTextWrapPos(0.0F);
-  text(line);
-  ImGui::PopTextWrapPos();
-}
 
 ImU32 packed(Colour colour) {
   return IM_COL32(colour.r, colour.g, colour.b, 255);
@@ -96,11 +88,29 @@ void show_sensor_numbers(const Snapshot& shot) {
   ImGui::TreePop();
 }
 
+/// The sensors of the scene; a click shows another one.
+void show_mounts(Viewer& viewer) {
+  const std::vector<Mount>& mounts = viewer.shot()->session->mounts;
+  for (std::size_t i = 0; i < mounts.size(); ++i) {
+    const Mount& mount = mounts[i];
+    const std::string line = mount.name.empty()
+                                 ? mount.sensor.name
+                                 : fmt::format("{}: {}", mount.name, mount.sensor.name);
+    ImGui::PushID(static_cast<int>(i));
+    if (ImGui::Selectable(line.c_str(), i == viewer.ask().mount)) viewer.use_mount(i);
+    ImGui::PopID();
+  }
+}
+
 void show_sensor(Viewer& viewer) {
   const SensorFlags& flags = viewer.ask().flags->sensor;
   std::size_t chosen = 0;
   const std::string shown = flags.file.empty() ? "as given" : flags.file;
-  if (choose("preset", shown, preset_names(), chosen)) viewer.use_sensor(preset_names()[chosen]);
+  if (viewer.shot() != nullptr) show_mounts(viewer);
+  const bool has_rig = viewer.shot() != nullptr && viewer.shot()->session->mounts.size() > 1;
+  if (!has_rig && choose("preset", shown, preset_names(), chosen)) {
+    viewer.use_sensor(preset_names()[chosen]);
+  }
   if (viewer.shot() != nullptr) show_sensor_numbers(*viewer.shot());
   bool has_noise = viewer.ask().has_noise;
   if (ImGui::Checkbox("noise", &has_noise)) viewer.set_noise(has_noise);
@@ -112,43 +122,9 @@ void show_sensor(Viewer& viewer) {
   if (choose("renderer", viewer.ask().flags->renderer.kind, renderer_kinds(), chosen)) {
     viewer.use_renderer(renderer_kinds()[chosen]);
   }
-}
-
-/// Position and attitude to read and to type over; true when they were.
-bool edit_pose(const char* name, Pose& pose) {
-  ImGui::PushID(name);
-  text(name);
-  Eigen::Vector3d position_m = pose.translation();
-  // about the fixed axes x, y, z in this order: roll, pitch, yaw
-  const Eigen::Matrix3d r = pose.linear();
-  std::array<double, 3> rpy_deg = {kDegrees * std::atan2(r(2, 1), r(2, 2)),
-                                   kDegrees * std::asin(std::clamp(-r(2, 0), -1.0, 1.0)),
-                                   kDegrees * std::atan2(r(1, 0), r(0, 0))};
-  ImGui::PushItemWidth(ImGui::GetFontSize() * 15.5F);
-  ImGui::InputScalarN("m", ImGuiDataType_Double, position_m.data(), 3, nullptr, nullptr, "%.5g");
-  bool is_changed = ImGui::IsItemDeactivatedAfterEdit();
-  ImGui::InputScalarN("rpy deg", ImGuiDataType_Double, rpy_deg.data(), 3, nullptr, nullptr, "%.2f");
-  is_changed = ImGui::IsItemDeactivatedAfterEdit() || is_changed;
-  ImGui::PopItemWidth();
-  ImGui::PopID();
-  if (!is_changed || !position_m.allFinite()) return false;
-  using Axis = Eigen::Vector3d;
-  const Eigen::Quaterniond attitude = Eigen::AngleAxisd(rpy_deg[2] / kDegrees, Axis::UnitZ()) *
-                                      Eigen::AngleAxisd(rpy_deg[1] / kDegrees, Axis::UnitY()) *
-                                      Eigen::AngleAxisd(rpy_deg[0] / kDegrees, Axis::UnitX());
-  pose = make_pose(position_m, attitude);
-  return true;
-}
-
-void show_pose(Viewer& viewer) {
-  const Snapshot* shot = viewer.shot();
-  if (shot == nullptr) return;
-  Pose sensor = shot->frame.world_from_sensor;
-  if (edit_pose("sensor in the world", sensor)) viewer.set_sensor_pose(sensor);
-  if (shot->frame.world_from_instance.empty()) return;
-  Pose object = shot->frame.world_from_instance[0];
-  const std::string name = shot->session->scene.instances[0].name + " in the world";
-  if (edit_pose(name.c_str(), object)) viewer.set_object_pose(object);
+  if (viewer.shot() == nullptr) return;
+  Pose pose = viewer.shot()->frame.world_from_sensor;
+  if (edit_pose("sensor in the world", pose)) viewer.set_sensor_pose(pose);
 }
 
 void show_look(Viewer& viewer) {
@@ -190,8 +166,11 @@ void show_help() {
       "s save cloud and transform\n"
       "+ - move the sensor nearer, farther\n"
       "space pause, r reset, Esc quit\n"
-      "left view: drag turns the object, wheel moves the sensor, click tells a beam's story\n"
+      "f frame the selected object in both views\n"
+      "left view: drag turns the selected object, wheel moves the sensor, click tells a beam's "
+      "story\n"
       "right view: drag goes round, right drag shifts, wheel zooms, click tells a point's story\n"
+      "a click on a point selects its object\n"
       "drop a model or scene file to open it");
 }
 
@@ -237,7 +216,7 @@ void show_controls(Viewer& viewer) {
   constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
   ImGui::PushItemWidth(ImGui::GetFontSize() * 12.0F);
   if (ImGui::CollapsingHeader("Sensor", kOpen)) show_sensor(viewer);
-  if (ImGui::CollapsingHeader("Pose", kOpen)) show_pose(viewer);
+  if (ImGui::CollapsingHeader("Objects", kOpen)) show_objects(viewer);
   if (ImGui::CollapsingHeader("View", kOpen)) show_look(viewer);
   if (ImGui::CollapsingHeader("Time", kOpen)) show_time(viewer);
   show_help();

@@ -165,6 +165,10 @@ void Screen::show_sensor_view(Viewer& viewer) {
     const float y = area.y + (row + 0.5F) * area.height / static_cast<float>(layout.rows);
     draw.AddCircle(ImVec2(x, y), 7.0F, kMark, 0, 2.0F);
   }
+  if (viewer.selection_visibility() == Visibility::outside) {
+    const std::string hint = viewer.selected_name() + " is outside this picture: f brings it back";
+    draw.AddText(ImVec2(area.x + 6.0F, area.y + 4.0F), kMark, hint.c_str());
+  }
   ImGui::SetCursorScreenPos(ImVec2(corner.x, corner.y + room.y));
   show_legend(viewer);
 }
@@ -198,6 +202,7 @@ void Screen::show_cloud_view(Viewer& viewer) {
   ImGui::InvisibleButton("cloud", room,
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
+  viewer.look.aspect = static_cast<double>(room.x) / static_cast<double>(room.y);
   use_mouse_on_cloud(viewer);
   draw_cloud(viewer, static_cast<int>(room.x), static_cast<int>(room.y));
   ImDrawList& draw = *ImGui::GetWindowDrawList();

@@ -28,12 +28,16 @@ using Clock = std::chrono::steady_clock;
 constexpr const char* kExamples =
     R"(Left: what the sensor sees. Right: its point cloud, with the sensor's frustum, axes and a grid.
 Keys: s saves cloud and transform (buffer.pcd, buffer.transform, or what -o and --pcd say), + and -
-move the sensor, space pauses, r resets, Esc quits. Drag on the left to turn the object, on the
-right to go round; click a point to see its story. Drop a model or scene file to open it.
+move the sensor, space pauses, r resets, Esc quits. Keys and mouse act on the selected object: the
+first one, until another is selected in the list or by a click on one of its points. f frames it in
+both views. Drag on the left to turn it, on the right to orbit the cloud; a click on a point also
+explains its measurement. Scene files with a rig of sensors: select the sensor in the list, or show
+one alone with --mount. Drop a model or scene file to open it.
 Examples:
   glidar view builtin:asteroid
   glidar view builtin:torus --model-dr 0,0.5,0.2
   glidar view builtin:box --sensor VLP-16 --eye 0,0,0
+  glidar view examples/rig.yaml
 Without hands, for scripts:
   xvfb-run -a glidar view builtin:torus --screenshot view.png)";
 
@@ -171,10 +175,13 @@ void Show::print_state(bool is_hidden) {
   was_hidden_ = is_hidden;
   const WindowSize size = window_->size();
   const MouseInput& mouse = window_->mouse();
+  const std::optional<std::size_t> selected = viewer_.selection().object();
+  const std::int64_t object = selected ? static_cast<std::int64_t>(*selected) : -1;
   fmt::print(
-      "state: picture={} frame={} size={}x{} hidden={} x={} y={} buttons={} wheel={} keys={}\n",
+      "state: picture={} frame={} size={}x{} hidden={} x={} y={} buttons={} wheel={} keys={} "
+      "object={} sensor={}\n",
       drawn_, viewer_.shot()->ask.number, size.width, size.height, is_hidden ? 1 : 0, mouse.x,
-      mouse.y, mouse.buttons, mouse.wheel_steps, keys_);
+      mouse.y, mouse.buttons, mouse.wheel_steps, keys_, object, viewer_.shot()->ask.mount);
   std::fflush(stdout);
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/viewer.hpp>
 
-#include <fmt/format.h>
+#include <apps/viewer/cloud_points.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -42,20 +42,6 @@ Pose tidy(const Pose& pose) {
   return make_pose(pose.translation(), Eigen::Quaterniond(pose.linear()).normalized());
 }
 
-void points_from(const Snapshot& shot, const Eigen::Vector3d& anchor_m,
-                 std::vector<Eigen::Vector3f>& points) {
-  const CloudFrame cloud_frame{
-      .frame_id = "anchor", .cloud_from_sensor = shifted(-anchor_m) * shot.frame.world_from_sensor};
-  const std::vector<std::string> columns = {"xyz"};
-  PointCloud cloud;
-  make_point_cloud(shot.frame, *shot.beams, shot.session->scene, cloud_frame, columns, cloud);
-  const auto& xyz = std::get<std::vector<double>>(cloud.columns[0].values);
-  points.resize(cloud.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    points[i] = Eigen::Vector3d(xyz[3 * i], xyz[3 * i + 1], xyz[3 * i + 2]).cast<float>();
-  }
-}
-
 }  // namespace
 
 Viewer::Viewer(const RenderFlags& flags, Measuring& measuring) : measuring_(measuring) {
@@ -87,7 +73,12 @@ bool Viewer::take_news() {
   errors.insert(errors.end(), news_.errors.begin(), news_.errors.end());
   if (!news_.messages.empty()) message = news_.messages.back();
   if (news_.story) story = *news_.story;
-  if (news_.is_refused && shot()) ask_.flags = shot()->ask.flags;
+  if (news_.is_refused && shot()) {
+    ask_.flags = shot()->ask.flags;
+    ask_.mount = shot()->ask.mount;
+    ask_.objects_moved = shot()->ask.objects_moved;
+    ask_.sensor_moved = shot()->ask.sensor_moved;
+  }
   const bool is_new = shot() != before;
   if (is_new) show_shot(shot()->ask.flags != shown_flags_);
   return is_new || news_.story || !news_.errors.empty() || !news_.messages.empty() ||
@@ -97,26 +88,34 @@ bool Viewer::take_news() {
 /// Looks at what was opened from where all of it is seen.
 void Viewer::begin_session() {
   const Snapshot& now = *shot();
+  selection_.begin(now.session->scene, shown_flags_ && shown_flags_->input == now.ask.flags->input);
   shown_flags_ = now.ask.flags;
   const Eigen::AlignedBox3d box = bounds(now.session->scene);
   anchor_m_ = box.isEmpty() ? Eigen::Vector3d(now.frame.world_from_sensor.translation())
                             : Eigen::Vector3d(box.center());
   const Eigen::Vector3d sensor_m = now.frame.world_from_sensor.translation() - anchor_m_;
-  const double size_m = box.isEmpty() ? 1.0 : box.diagonal().norm();
-  look.orbit = {.pivot_m = 0.45 * sensor_m,
-                .yaw_rad = std::atan2(sensor_m.y(), sensor_m.x()) + 0.9,
-                .pitch_rad = 0.45,
-                .distance_m = 1.8 * std::max(size_m, sensor_m.norm())};
-  const bool is_camera = looks_along_z(*now.beams);
-  if (look.quantity == Quantity::depth && !is_camera) look.quantity = Quantity::range;
-  if (look.quantity == Quantity::range && is_camera) look.quantity = Quantity::depth;
+  Eigen::AlignedBox3d anchored = box;
+  if (!box.isEmpty()) anchored.translate(-anchor_m_);
+  look.orbit = view_of_all(anchored, sensor_m, look.aspect);
   const std::vector<std::string> advice =
       view_advice({now.session->scene, *now.sensor, *now.beams, now.frame});
   if (!advice.empty()) message = advice.front();
 }
 
+void Viewer::begin_sensor() {
+  const Beams& beams = *shot()->beams;
+  shown_mount_ = shot()->ask.mount;
+  field_ = field_of_view(beams);
+  const bool is_camera = looks_along_z(beams);
+  if (look.quantity == Quantity::depth && !is_camera) look.quantity = Quantity::range;
+  if (look.quantity == Quantity::range && is_camera) look.quantity = Quantity::depth;
+}
+
 void Viewer::show_shot(bool is_new_session) {
   if (is_new_session) begin_session();
+  if (is_new_session || shot()->ask.mount != shown_mount_) begin_sensor();
+  look_for_selection();
+  keep_in_view();
   summary_ = summarise(shot()->frame);
   if (picked_ && *picked_ >= shot()->beams->size()) pick({});
   tell_story();
@@ -133,7 +132,7 @@ void Viewer::look_changed() {
   if (!shot()) return;
   const Snapshot& now = *shot();
   make_sensor_picture(now.frame, *now.beams, now.session->scene, look.quantity, look.map, picture_);
-  points_from(now, anchor_m_, points_);
+  make_cloud_points(now, anchor_m_, points_);
   guides_.clear();
   const Pose anchor_from_sensor = shifted(-anchor_m_) * now.frame.world_from_sensor;
   const double distance_m = anchor_from_sensor.translation().norm();
@@ -145,6 +144,7 @@ void Viewer::look_changed() {
   add_axes(shifted({0.0, 0.0, floor_m}), look.grid_m, guides_);
   add_axes(anchor_from_sensor, look.grid_m, guides_);
   add_frustum(*now.beams, anchor_from_sensor, std::max(distance_m, look.grid_m), guides_);
+  add_selection_box();
   ++version_;
 }
 
@@ -161,13 +161,18 @@ void Viewer::type(unsigned letter) {
       return toggle_play();
     case 'r':
       return reset();
+    case 'f':
+    case 'F':
+      return frame_selected();
     default:
       return;
   }
 }
 
 void Viewer::open(const std::string& path) {
-  ask_.objects_moved = ask_.sensor_moved = Pose::Identity();
+  ask_.objects_moved.clear();
+  ask_.sensor_moved = Pose::Identity();
+  ask_.mount = 0;
   ask_.number = 0;
   time_s_ = 0.0;
   pick({});
@@ -191,6 +196,14 @@ void Viewer::use_renderer(const std::string& kind) {
   ask_for(flags);
 }
 
+void Viewer::use_mount(std::size_t index) {
+  if (!is_open() || index == ask_.mount || index >= shot()->session->mounts.size()) return;
+  ask_.mount = index;
+  ask_.number = static_cast<std::uint32_t>(time_s_ * rate_hz());
+  pick({});
+  update();
+}
+
 void Viewer::set_noise(bool is_on) {
   ask_.has_noise = is_on;
   update();
@@ -210,7 +223,8 @@ void Viewer::save() {
 }
 
 void Viewer::reset() {
-  ask_.objects_moved = ask_.sensor_moved = Pose::Identity();
+  ask_.objects_moved.clear();
+  ask_.sensor_moved = Pose::Identity();
   ask_.number = 0;
   time_s_ = 0.0;
   message = "back to the start";
@@ -225,20 +239,92 @@ void Viewer::toggle_play() {
   is_playing_ = !is_playing_;
 }
 
+/// Whether what is shown is of the file and the options requested last.
+bool Viewer::is_open() const {
+  return shot() != nullptr && shot()->ask.flags == ask_.flags;
+}
+
+double Viewer::rate_hz() const {
+  const std::vector<Mount>& mounts = shot()->session->mounts;
+  return mounts[std::min(ask_.mount, mounts.size() - 1)].sensor.rate_hz;
+}
+
 Eigen::Vector3d Viewer::middle_m() const {
-  // the scene's middle, as each object carries it along
-  const std::vector<Instance>& instances = shot()->session->scene.instances;
-  if (instances.empty()) return anchor_m_;
-  Eigen::Vector3d sum_m = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < instances.size(); ++i) {
-    sum_m += shot()->frame.world_from_instance[i] *
-             (instances[i].world_from_object.inverse() * anchor_m_);
+  const std::vector<Eigen::Vector3d> corners_m = selection_.corners_m(shot()->frame);
+  return corners_m.empty() ? anchor_m_ : sphere_around(corners_m).middle_m;
+}
+
+std::string Viewer::selected_name() const {
+  const std::optional<std::size_t> object = selection_.object();
+  if (!object || shot() == nullptr) return "all objects";
+  return shot()->session->scene.instances[*object].name;
+}
+
+void Viewer::look_for_selection() {
+  visibility_ = Visibility::inside;
+  const std::vector<Eigen::Vector3d> corners_m = selection_.corners_m(shot()->frame);
+  if (!field_ || corners_m.empty()) return;
+  visibility_ = visibility(*field_, shot()->frame.world_from_sensor, corners_m);
+}
+
+/// Shows which of several objects is selected.
+void Viewer::add_selection_box() {
+  if (!selection_.object() || shot()->session->scene.instances.size() < 2) return;
+  std::vector<Eigen::Vector3d> corners_m = selection_.corners_m(shot()->frame);
+  for (Eigen::Vector3d& corner : corners_m) corner -= anchor_m_;
+  add_boxes(corners_m, guides_);
+}
+
+void Viewer::keep_in_view() {
+  // one correction at a time: the next one only once this one is measured
+  if (!keeps_in_view_ || !field_ || !(shot()->ask == ask_)) return;
+  const Eigen::Vector3d middle = middle_m();
+  const Pose& world_from_sensor = shot()->frame.world_from_sensor;
+  if (visibility(*field_, world_from_sensor, {&middle, 1}) == Visibility::inside) return;
+  const std::optional<Pose> turned = turned_towards(*field_, world_from_sensor, middle);
+  if (turned) set_sensor_pose(*turned);
+}
+
+void Viewer::set_keeps_in_view(bool is_on) {
+  keeps_in_view_ = is_on;
+  if (shot() != nullptr) keep_in_view();
+}
+
+void Viewer::select(std::optional<std::size_t> object) {
+  if (!is_open()) return;
+  selection_.select(object);
+  look_for_selection();
+  keep_in_view();
+  look_changed();
+}
+
+void Viewer::frame_selected() {
+  if (!is_open()) return;
+  const std::vector<Eigen::Vector3d> corners_m = selection_.corners_m(shot()->frame);
+  if (corners_m.empty()) {
+    message = "nothing to frame: " + selected_name() + " without vertices";
+    return;
   }
-  return sum_m / static_cast<double>(instances.size());
+  Sphere sphere = sphere_around(corners_m);
+  sphere.middle_m -= anchor_m_;
+  frame_sphere(look.orbit, sphere, look.aspect);
+  message = "framed " + selected_name();
+  look_changed();
+  if (!field_) return;
+  const std::optional<Pose> pose =
+      pose_that_shows(*field_, shot()->frame.world_from_sensor, corners_m);
+  if (!pose) return;
+  message += "; aimed the sensor at it (r resets)";
+  set_sensor_pose(*pose);
+}
+
+Pose& Viewer::moved_object(std::size_t object) {
+  ask_.objects_moved.resize(shot()->session->scene.instances.size(), Pose::Identity());
+  return ask_.objects_moved.at(object);
 }
 
 void Viewer::turn_objects(const Eigen::Vector2d& drag) {
-  if (!shot()) return;
+  if (!is_open()) return;
   const SensorAxes axes = axes_of(*shot()->beams);
   const Eigen::Matrix3d rotation = shot()->frame.world_from_sensor.linear();
   const Eigen::Vector3d right = rotation * -axes.left;
@@ -247,13 +333,15 @@ void Viewer::turn_objects(const Eigen::Vector2d& drag) {
   const Eigen::Vector3d turn_rad = std::numbers::pi * (drag.x() * up + drag.y() * right);
   const double angle_rad = turn_rad.norm();
   if (angle_rad == 0.0) return;
-  const Eigen::AngleAxisd by(angle_rad, turn_rad / angle_rad);
-  ask_.objects_moved = tidy(turned_about(middle_m(), by) * ask_.objects_moved);
+  const Pose turn = turned_about(middle_m(), Eigen::AngleAxisd(angle_rad, turn_rad / angle_rad));
+  for (std::size_t i = 0; i < shot()->session->scene.instances.size(); ++i) {
+    if (selection_.includes(i)) moved_object(i) = tidy(turn * moved_object(i));
+  }
   update();
 }
 
 void Viewer::step_sensor(double steps) {
-  if (!shot()) return;
+  if (!is_open()) return;
   constexpr double kStep = 0.05;
   const Eigen::Vector3d way_m = middle_m() - shot()->frame.world_from_sensor.translation();
   const double share = 1.0 - std::pow(1.0 - kStep, steps);
@@ -262,14 +350,20 @@ void Viewer::step_sensor(double steps) {
 }
 
 void Viewer::set_sensor_pose(const Pose& world_from_sensor) {
+  if (!is_open()) return;
+  const Snapshot& now = *shot();
   ask_.sensor_moved =
-      tidy(world_from_sensor * shot()->frame.world_from_sensor.inverse() * ask_.sensor_moved);
+      tidy(world_from_sensor * now.frame.world_from_sensor.inverse() * now.ask.sensor_moved);
   update();
 }
 
-void Viewer::set_object_pose(const Pose& world_from_object) {
-  ask_.objects_moved = tidy(world_from_object * shot()->frame.world_from_instance.at(0).inverse() *
-                            ask_.objects_moved);
+void Viewer::set_object_pose(std::size_t object, const Pose& world_from_object) {
+  if (!is_open()) return;
+  const Snapshot& now = *shot();
+  Pose moved_before = Pose::Identity();
+  if (object < now.ask.objects_moved.size()) moved_before = now.ask.objects_moved[object];
+  moved_object(object) =
+      tidy(world_from_object * now.frame.world_from_instance.at(object).inverse() * moved_before);
   update();
 }
 
@@ -277,7 +371,11 @@ void Viewer::pick(std::optional<std::size_t> entry) {
   picked_ = entry;
   told_.reset();
   story.clear();
-  if (entry) is_playing_ = false;
+  if (entry) {
+    is_playing_ = false;
+    const std::uint32_t object = shot()->frame.truth.instance[*entry];
+    if (shot()->frame.status[*entry] == Status::hit && object != kNoHit) select(object);
+  }
   tell_story();
 }
 
@@ -290,12 +388,12 @@ void Viewer::turn_to(std::uint32_t number) {
 void Viewer::advance(double seconds) {
   if (!is_playing_ || !is_moving()) return;
   time_s_ += seconds;
-  turn_to(static_cast<std::uint32_t>(time_s_ * shot()->sensor->rate_hz));
+  turn_to(static_cast<std::uint32_t>(time_s_ * rate_hz()));
 }
 
 std::optional<double> Viewer::next_frame_s() const {
   if (!is_playing_ || !is_moving()) return std::nullopt;
-  return std::max(0.0, (ask_.number + 1) / shot()->sensor->rate_hz - time_s_);
+  return std::max(0.0, (ask_.number + 1) / rate_hz() - time_s_);
 }
 
 }  // namespace glidar::app

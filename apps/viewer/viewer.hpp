@@ -3,9 +3,11 @@
 #pragma once
 
 #include <apps/glidar/advice.hpp>
+#include <apps/viewer/framing.hpp>
 #include <apps/viewer/guide_lines.hpp>
 #include <apps/viewer/measuring.hpp>
 #include <apps/viewer/orbit.hpp>
+#include <apps/viewer/selection.hpp>
 #include <apps/viewer/sensor_picture.hpp>
 
 #include <Eigen/Core>
@@ -22,6 +24,7 @@ struct Look {
   ColourMap map = ColourMap::viridis;
   float point_size = 2.0F;  ///< pixels
   Orbit orbit;
+  double aspect = 0.8;  ///< width / height of the cloud's view
   double grid_m = 1.0;  ///< spacing
 };
 
@@ -46,6 +49,13 @@ class Viewer {
   }
   [[nodiscard]] std::optional<std::size_t> picked() const { return picked_; }
   [[nodiscard]] bool is_playing() const { return is_playing_; }
+  /// The objects that keys, mouse and panels act on.
+  [[nodiscard]] const Selection& selection() const { return selection_; }
+  /// Name of the selected object, or "all objects".
+  [[nodiscard]] std::string selected_name() const;
+  /// How much of the selected objects is in the sensor's picture; `inside` where it has no edges.
+  [[nodiscard]] Visibility selection_visibility() const { return visibility_; }
+  [[nodiscard]] bool keeps_in_view() const { return keeps_in_view_; }
   /// Whether sensor or objects move by themselves.
   [[nodiscard]] bool is_moving() const;
   /// Grows with every change of what is drawn from points, picture and guides.
@@ -66,18 +76,29 @@ class Viewer {
   void open(const std::string& path);
   void use_sensor(const std::string& preset);
   void use_renderer(const std::string& kind);
+  /// Shows another sensor of the rig, at the same time.
+  void use_mount(std::size_t index);
   void set_noise(bool is_on);
   void set_seed(std::uint64_t seed);
   void save();
   void reset();
   void toggle_play();
-  /// Turns the objects by a drag of so many heights of the sensor's picture.
+  /// Selects an object by its index; empty: all objects.
+  void select(std::optional<std::size_t> object);
+  /// Shows the selected objects in the cloud's view, and aims the sensor at them if its picture
+  /// does not contain them.
+  void frame_selected();
+  /// While on, turns the sensor whenever the middle of the selected objects leaves its picture.
+  void set_keeps_in_view(bool is_on);
+  /// Turns the selected objects about their middle by a drag of so many heights of the sensor's
+  /// picture.
   void turn_objects(const Eigen::Vector2d& drag);
-  /// Moves the sensor towards the objects by steps of a twentieth of the distance.
+  /// Moves the sensor towards the selected objects by steps of a twentieth of the distance.
   void step_sensor(double steps);
   void set_sensor_pose(const Pose& world_from_sensor);
-  void set_object_pose(const Pose& world_from_object);
-  /// Marks an entry and has its story told, now and whenever it is measured anew; time stops.
+  void set_object_pose(std::size_t object, const Pose& world_from_object);
+  /// Marks an entry, selects the object that it hit, and has its story told, now and whenever it is
+  /// measured anew; time stops.
   void pick(std::optional<std::size_t> entry);
 
   /// Lets time go on while it plays.
@@ -92,6 +113,13 @@ class Viewer {
   void update();
   void show_shot(bool is_new_session);
   void begin_session();
+  void begin_sensor();
+  void look_for_selection();
+  void add_selection_box();
+  void keep_in_view();
+  [[nodiscard]] bool is_open() const;
+  [[nodiscard]] double rate_hz() const;
+  [[nodiscard]] Pose& moved_object(std::size_t object);
   void tell_story();
   [[nodiscard]] Eigen::Vector3d middle_m() const;
 
@@ -103,6 +131,11 @@ class Viewer {
   Lines guides_;
   Eigen::Vector3d anchor_m_ = Eigen::Vector3d::Zero();
   std::shared_ptr<const RenderFlags> shown_flags_;
+  std::size_t shown_mount_ = 0;
+  Selection selection_;
+  std::optional<FieldOfView> field_;  ///< of the sensor shown
+  Visibility visibility_ = Visibility::inside;
+  bool keeps_in_view_ = false;
   std::optional<std::size_t> picked_;
   std::optional<Ask> told_;  ///< whose story is asked for
   bool is_playing_ = true;

@@ -83,5 +83,18 @@ TEST(AddFrustum, LeavesOutWhereThereIsNoBeam) {
   EXPECT_TRUE(lines.empty());
 }
 
+TEST(AddBoxes, DrawsTheTwelveEdgesOfEachBox) {
+  std::vector<Eigen::Vector3d> corners_m;
+  for (int box = 0; box < 2; ++box) {
+    for (int i = 0; i < 8; ++i) corners_m.emplace_back(i & 1, (i >> 1) & 1, 10 * box + (i >> 2));
+  }
+  Lines lines;
+  add_boxes(corners_m, lines);
+  ASSERT_EQ(lines.size(), 2U * 2U * 12U);
+  for (std::size_t k = 0; k < lines.size(); k += 2) {
+    EXPECT_EQ((lines[k].position_m - lines[k + 1].position_m).norm(), 1.0F) << "no diagonals";
+  }
+}
+
 }  // namespace
 }  // namespace glidar::app

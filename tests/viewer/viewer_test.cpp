@@ -1,14 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/viewer/viewer.hpp>
+#include <tests/viewer/viewer_fixture.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <condition_variable>
 #include <filesystem>
 #include <fstream>
-#include <mutex>
 #include <numbers>
 
 namespace glidar::app {
@@ -16,52 +14,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-/// A viewer without a window, and a folder that it works in.
-class ViewerTest : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
-    std::filesystem::create_directories(folder_);
-    flags_.input = "builtin:asteroid";
-    flags_.sensor.width = flags_.sensor.height = 32;
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  /// Lets the viewer take news until the condition holds; false after ten minutes, as machines may
-  /// be very busy.
-  template <class Condition>
-  bool wait_until(Viewer& viewer, const Condition& holds) {
-    for (int i = 0; i < 6000 && !holds(); ++i) {
-      std::unique_lock lock(mutex_);
-      woken_.wait_for(lock, std::chrono::milliseconds(100), [this] { return is_woken_; });
-      is_woken_ = false;
-      lock.unlock();
-      viewer.take_news();
-    }
-    return holds();
-  }
-
-  /// The shot of what is asked for last.
-  const Snapshot& shot_of(Viewer& viewer) {
-    EXPECT_TRUE(wait_until(
-        viewer, [&] { return viewer.shot() != nullptr && viewer.shot()->ask == viewer.ask(); }));
-    return *viewer.shot();
-  }
-
-  std::filesystem::path folder_;
-  RenderFlags flags_;
-  Console console_{true};
-  std::mutex mutex_;
-  std::condition_variable woken_;
-  bool is_woken_ = false;
-  Measuring measuring_{console_, [this] {
-                         const std::lock_guard lock(mutex_);
-                         is_woken_ = true;
-                         woken_.notify_one();
-                       }};
-};
 
 double distance_m(const Snapshot& shot) {
   return shot.frame.world_from_sensor.translation().norm();
@@ -121,7 +73,7 @@ TEST_F(ViewerTest, PutsSensorAndObjectWhereTheyAreTyped) {
   viewer.set_sensor_pose(sensor);
   EXPECT_TRUE(shot_of(viewer).frame.world_from_sensor.isApprox(sensor, 1e-12));
   const Pose object = make_pose({0.1, 0.2, 0.3}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5));
-  viewer.set_object_pose(object);
+  viewer.set_object_pose(0, object);
   EXPECT_TRUE(shot_of(viewer).frame.world_from_instance[0].isApprox(object, 1e-12));
 }
 

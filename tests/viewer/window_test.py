@@ -6,161 +6,42 @@ import os
 import re
 import subprocess
 import sys
-import threading
 import unittest
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, HERE)
 sys.path.insert(0, os.path.join(os.path.dirname(HERE), "apps"))
 try:
-    from cli_support import BOX, MAX_WAIT_S, CliTest
-    from display import Display, missing_programs
-    from PIL import Image, ImageChops, ImageStat
+    from cli_support import BOX
+    from display import missing_programs
+    from PIL import Image, ImageStat
     from waiting import let_time_pass, wait_until
+    from window_support import CLOUD, CLOUD_BOX, SENSOR, SENSOR_BOX, DisplayTest, Window, difference, is_red
 except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
 
 # Places in the window of 1280 x 720.
-SENSOR = (540, 330)  # the middle of the left view
-CLOUD = (1030, 330)
-SENSOR_BOX = (300, 30, 770, 600)
-CLOUD_BOX = (780, 30, 1270, 600)
+RIGHT_BOX = (638, 330)  # of TWO_BOXES in the left view
+SECOND_SENSOR = (100, 91)  # in the list
+POSITION_X = (40, 437)  # of the selected object of TWO_BOXES
 
-
-def difference(a, b):
-    """Mean of the differences of two pictures, of 255."""
-    return sum(ImageStat.Stat(ImageChops.difference(a, b)).mean) / 3.0
-
-
-class Window:
-    """A running glidar view; a context that ends it. What it does is known from the lines of --print-state."""
-
-    def __init__(self, test, *arguments):
-        self._test = test
-        self._display = test.display
-        self.program = subprocess.Popen(
-            ["glidar", "view", "--print-state", *arguments], cwd=test.folder, env=test.environment,
-            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-        self._out, self._err, self._keys = [], [], 0
-        self._readers = [threading.Thread(target=self._read, args=pair)
-                         for pair in ((self.program.stdout, self._out), (self.program.stderr, self._err))]
-        for reader in self._readers:
-            reader.start()
-
-    @staticmethod
-    def _read(stream, lines):
-        for line in stream:
-            lines.append(line)
-
-    def __enter__(self):
-        self.number = self._display.window("GLIDAR")
-        self.wait_for("its first picture")
-        return self
-
-    def __exit__(self, *error):
-        if self.program.poll() is None:
-            self.program.kill()
-        self.program.wait()
-        for reader in self._readers:
-            reader.join()
-        for stream in (self.program.stdout, self.program.stderr):
-            stream.close()
-
-    def state(self):
-        """The last one that it printed, as numbers and text by name; empty if there is none."""
-        lines = [line for line in self._out if line.startswith("state: ")]
-        pairs = (word.split("=") for word in lines[-1].split()[1:]) if lines else ()
-        return {name: int(value) if value.lstrip("-").isdigit() else value for name, value in pairs}
-
-    def wait_for(self, what, **wanted):
-        """The first state with these values; a function is a condition of the value."""
-        def is_there():
-            state = self.state()
-            fits = all(value(state[name]) if callable(value) else state[name] == value
-                       for name, value in wanted.items()) if state else False
-            return state if fits else None
-        return wait_until(is_there, what, self.program)
-
-    def key(self, *keys):
-        """Types characters; what they do is seen in the window afterwards."""
-        for key in keys:
-            self._display.xdotool("key", key)
-        self._keys += len(keys)
-        self.wait_for("the keys", keys=self._keys)
-
-    def point(self, x, y):
-        self._display.xdotool("mousemove", x, y)
-        self.wait_for("the pointer", x=x, y=y)
-
-    def wheel_up(self):
-        before = self.state()["wheel"]
-        self._display.xdotool("click", 4)
-        self.wait_for("the wheel", wheel=before + 1)
-
-    def drag(self, start, way):
-        """In steps, each of which is seen before the next one, as by a hand."""
-        self.point(*start)
-        self._display.xdotool("mousedown", 1)
-        self.wait_for("the button", buttons=1)
-        for step in range(1, 6):
-            self.point(start[0] + way[0] * step // 5, start[1] + way[1] * step // 5)
-        self._display.xdotool("mouseup", 1)
-        self.wait_for("the button's release", buttons=0)
-
-    def minimise(self):
-        """The number of pictures until then."""
-        self._display.set_minimised(self.number, True)
-        return self.wait_for("it to be hidden", hidden=1)["picture"]
-
-    def restore(self):
-        """The number of pictures until it is there again."""
-        self._display.set_minimised(self.number, False)
-        return self.wait_for("it to be shown", hidden=0)["picture"]
-
-    def shows(self, condition, what):
-        """Waits until a picture of the display fulfils the condition."""
-        wait_until(lambda: condition(self._display.grab()), what, self.program)
-
-    def quit(self):
-        """By Esc; what it printed."""
-        self._display.xdotool("key", "Escape")
-        self.program.wait(timeout=MAX_WAIT_S)
-        for reader in self._readers:
-            reader.join()
-        self._test.assertEqual(self.program.returncode, 0, self._err)
-        return "".join(self._out + self._err)
-
-    def save(self, name):
-        """Presses s; the 4x4 transform that is written."""
-        self._display.xdotool("key", "s")
-        self._keys += 1
-        path = os.path.join(self._test.folder, name + ".transform")
-        wait_until(lambda: os.path.exists(path), path, self.program)
-        with open(path, encoding="utf-8") as text:
-            return [[float(x) for x in line.split()] for line in text]
-
-
-def is_red(picture):
-    """Whether the panel of errors is there."""
-    red = picture.getpixel((900, 40))
-    return red[0] > 2 * red[1]
-
-
-class DisplayTest(CliTest):
-    """Has a display of its own."""
-
-    @classmethod
-    def setUpClass(cls):
-        cls.display = Display().__enter__()
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.display.__exit__()
-
-    def setUp(self):
-        super().setUp()
-        self.environment["DISPLAY"] = self.display.name
+TWO_BOXES = """models:
+  - {model: builtin:box, name: left, scale: 0.5, pose: {position: [0, 1.5, 0]}}
+  - {model: builtin:box, name: right, scale: 0.5, pose: {position: [0, -1.5, 0]}}
+"""
+CAMERA = """
+sensor: {optics: {type: pinhole, width: 64, height: 64, fov_deg: 40}}
+sensor_pose: {position: [-10, 0, 0], euler_deg: {roll: -90, yaw: -90}}
+"""
+RIG = """
+sensors:
+  - {name: lidar, sensor: VLP-16}
+  - name: camera
+    sensor: {optics: {type: pinhole, width: 64, height: 64, fov_deg: 40}}
+    pose: {position: [0, 0, 0], euler_deg: {roll: -90, yaw: -90}}
+rig_pose: {position: [-10, 0, 0]}
+"""
 
 
 class ViewerWindowTest(DisplayTest):
@@ -237,6 +118,48 @@ class ViewerWindowTest(DisplayTest):
                                                     picture.crop((300, 470, 1270, 650))) > 2.0,
                          "the story below the views")
             window.quit()
+
+    def test_a_click_on_a_point_selects_its_object_and_f_frames_it(self):
+        self.write("scene.yaml", TWO_BOXES + CAMERA)
+        with Window(self, "scene.yaml") as window:
+            self.assertEqual(window.state()["object"], 0)
+            window.point(*RIGHT_BOX)
+            self.display.xdotool("click", 1)
+            window.wait_for("the selection", object=1)
+            upper = (*CLOUD_BOX[:3], 350)  # above the story
+            before = self.display.grab().crop(upper)
+            window.key("f")
+            window.shows(lambda picture: difference(before, picture.crop(upper)) > 1.0, "the object from near")
+            window.quit()
+
+    def test_a_position_typed_over_moves_the_object(self):
+        self.write("scene.yaml", TWO_BOXES + CAMERA)
+        with Window(self, "scene.yaml") as window:
+            before = self.display.grab().crop(SENSOR_BOX)
+            window.drag(POSITION_X, (0, 0))  # a slow click: the cursor is behind the 0
+            self.display.xdotool("key", "5")  # 05
+            window.point(*CLOUD)
+            self.display.xdotool("click", 1)  # leaves the field, which applies it
+            window.shows(lambda picture: difference(before, picture.crop(SENSOR_BOX)) > 0.5, "the object farther away")
+            window.save("buffer")
+            window.quit()
+        self.write("scene.yaml", TWO_BOXES.replace("[0, 1.5, 0]", "[5, 1.5, 0]") + CAMERA)
+        self.succeed("render", "scene.yaml", "--pcd", "expected")
+        self.assertEqual(self.read("buffer.pcd"), self.read("expected.pcd"))
+
+    def test_the_list_of_sensors_shows_another_sensor_of_a_rig(self):
+        self.write("rig.yaml", TWO_BOXES + RIG)
+        with Window(self, "rig.yaml") as window:
+            self.assertEqual(window.state()["sensor"], 0)
+            before = self.display.grab().crop(SENSOR_BOX)
+            window.point(*SECOND_SENSOR)
+            self.display.xdotool("click", 1)
+            window.wait_for("the camera", sensor=1)
+            window.shows(lambda picture: difference(before, picture.crop(SENSOR_BOX)) > 2.0, "its picture")
+            window.save("buffer")
+            window.quit()
+        self.succeed("render", "rig.yaml", "--mount", "camera", "--pcd", "expected")
+        self.assertEqual(self.read("buffer.pcd"), self.read("expected.pcd"))
 
     def test_nothing_is_drawn_while_nothing_changes(self):
         with Window(self, "builtin:asteroid") as window:

@@ -1,0 +1,12 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/viewer/viewer.hpp>
+
+namespace glidar::app {
+
+/// The scene's objects in a list to select from, and the pose of the selected one.
+void show_objects(Viewer& viewer);
+
+}  // namespace glidar::app

@@ -1,0 +1,80 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/viewer/widgets.hpp>
+
+#include <apps/viewer/shown_numbers.hpp>
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace glidar::app {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+/// Signs that the window's font lacks.
+void replace_all(const std::string& what, const std::string& with, std::string& line) {
+  for (std::size_t at = line.find(what); at != std::string::npos; at = line.find(what, at)) {
+    line.replace(at, what.size(), with);
+  }
+}
+
+struct NumberFormat {
+  int decimals;
+  const char* printf_format;
+};
+
+/// Three numbers in a row; true when one was typed over.
+bool edit_numbers(const char* label, const NumberFormat& format, Eigen::Vector3d& numbers) {
+  const Eigen::Vector3d shown =
+      numbers.unaryExpr([&](double value) { return rounded(value, format.decimals); });
+  Eigen::Vector3d typed = shown;
+  ImGui::InputScalarN(label, ImGuiDataType_Double, typed.data(), 3, nullptr, nullptr,
+                      format.printf_format);
+  for (int i = 0; i < 3; ++i) {
+    if (typed[i] != shown[i]) numbers[i] = typed[i];
+  }
+  return ImGui::IsItemDeactivatedAfterEdit();
+}
+
+}  // namespace
+
+void text(const std::string& line) {
+  std::string shown = without_negative_zeros(line);
+  replace_all("\u2265", ">=", shown);
+  replace_all("\u2264", "<=", shown);
+  ImGui::TextUnformatted(shown.c_str(), shown.c_str() + shown.size());
+}
+
+void wrapped(const std::string& line) {
+  ImGui::PushTextWrapPos(0.0F);
+  text(line);
+  ImGui::PopTextWrapPos();
+}
+
+bool edit_pose(const char* name, Pose& pose) {
+  ImGui::PushID(name);
+  text(name);
+  Eigen::Vector3d position_m = pose.translation();
+  const Eigen::Matrix3d r = pose.linear();
+  Eigen::Vector3d rpy_deg = kDegrees * Eigen::Vector3d(std::atan2(r(2, 1), r(2, 2)),
+                                                       std::asin(std::clamp(-r(2, 0), -1.0, 1.0)),
+                                                       std::atan2(r(1, 0), r(0, 0)));
+  ImGui::PushItemWidth(ImGui::GetFontSize() * 15.5F);
+  bool is_changed = edit_numbers("m", {6, "%.6g"}, position_m);
+  is_changed = edit_numbers("rpy deg", {2, "%.2f"}, rpy_deg) || is_changed;
+  ImGui::PopItemWidth();
+  ImGui::PopID();
+  if (!is_changed || !position_m.allFinite() || !rpy_deg.allFinite()) return false;
+  using Axis = Eigen::Vector3d;
+  const Eigen::Quaterniond attitude = Eigen::AngleAxisd(rpy_deg[2] / kDegrees, Axis::UnitZ()) *
+                                      Eigen::AngleAxisd(rpy_deg[1] / kDegrees, Axis::UnitY()) *
+                                      Eigen::AngleAxisd(rpy_deg[0] / kDegrees, Axis::UnitX());
+  pose = make_pose(position_m, attitude);
+  return true;
+}
+
+}  // namespace glidar::app
