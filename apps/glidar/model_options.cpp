@@ -11,15 +11,13 @@ namespace glidar::app {
 
 void add_model_flags(CLI::App& command, ModelFlags& flags) {
   const std::string group = "Model";
-  add_choice(command,
-             {"--unit", "UNIT",
-              "Unit of the model file: mm, cm, m or in [what the file declares, else m]", group},
-             {"mm", "cm", "m", "in"}, flags.unit);
   add_choice(
       command,
-      {"--up", "AXIS",
-       "Axis of the model file that points up: x, y or z [what the file declares, else z]", group},
-      {"x", "y", "z"}, flags.up);
+      {"--unit", "UNIT", "Unit of the file: mm, cm, m or in [as the file declares, or m]", group},
+      {"mm", "cm", "m", "in"}, flags.unit);
+  add_choice(command,
+             {"--up", "AXIS", "Axis that points up: x, y or z [as the file declares, or z]", group},
+             {"x", "y", "z"}, flags.up);
   command.add_flag("--centre", flags.centre, "Move the middle of the model's box to its origin")
       ->group(group);
   command.add_flag("--no-cache", flags.no_cache, "Neither read nor write the cache of models")

@@ -59,10 +59,10 @@ void add_picture_flags(CLI::App& command, OutputFlags& flags, const std::string&
   };
   add_choice(
       command,
-      {"--colour-by", "NAME",
-       "Of .bev.png, .view.png: height, range, intensity, ring, class, instance [height]", group},
+      {"--colour-by", "NAME", "Colour: height range intensity ring class instance [height]", group},
       {colour_by_names().begin(), colour_by_names().end()}, flags.colour_by);
-  add_text(command, {"--picture-size", "WxH", "Of these, in pixels [1400x1000]", group},
+  add_text(command,
+           {"--picture-size", "WxH", "Size of .bev.png and .view.png in pixels [1400x1000]", group},
            flags.picture_size,
            [](std::string_view option, const std::string& text) { parse_size(option, text); });
   add_text(command,

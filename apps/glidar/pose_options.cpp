@@ -142,16 +142,13 @@ void add_pose_flags(CLI::App& command, PoseFlags& flags) {
   const std::string group = "Pose (default: the scene fills the view, seen from 2,-3,2)";
   add_text(command, {"--eye", "X,Y,Z", "Sensor position in the world, m", group}, flags.eye,
            parse_position);
-  add_text(command,
-           {"--target", "X,Y,Z",
-            "Point the sensor looks at, m [the middle of the scene's box; LiDARs: none, x forward]",
-            group},
-           flags.target, parse_position);
+  add_text(
+      command,
+      {"--target", "X,Y,Z", "Point the sensor looks at, m [the scene; LiDARs: along x]", group},
+      flags.target, parse_position);
   add_text(command,
            {"--up-vector", "X,Y,Z",
-            "World direction that is up in the image [0,0,1; 1,0,0 when it looks straight up or "
-            "down]",
-            group},
+            "Direction up in the image [0,0,1; 1,0,0 if it looks vertically]", group},
            flags.up_vector, parse_vector);
   add_text(command,
            {"--sensor-pose", "X,Y,Z,QW,QX,QY,QZ",
