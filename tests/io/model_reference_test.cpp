@@ -121,7 +121,9 @@ TEST_P(ModelReference, TheNamedTrianglesLieWhereTheRaysAre) {
   const auto stable = read_npy<std::uint8_t>(folder / "stable_mask.npy");
   const bool textured = fs::exists(folder / "uv.npy");
   const auto uv = textured ? read_npy<float>(folder / "uv.npy") : std::vector<float>();
-  const Mesh mesh = testing::load(testing::data_folder() / truth.model).mesh;
+  ModelOptions options = testing::as_declared();  // the references are in metres
+  options.up = Axis::z;                           // with the axes of the file
+  const Mesh mesh = testing::load(testing::data_folder() / truth.model, options).mesh;
   std::size_t looked_at = 0;
   for (std::size_t i = 0; i < triangle.size(); ++i) {
     if (triangle[i] < 0 || stable[i] == 0) continue;

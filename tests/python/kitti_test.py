@@ -123,6 +123,6 @@ def test_a_bin_has_labels_beside_it_where_there_are_classes(tmp_path):
     none = cloud["instance"] == 0xFFFFFFFF
     wanted = np.where(none, 0, cloud["class"] | cloud["instance"] << 16).ravel()
     np.testing.assert_array_equal(np.fromfile(tmp_path / "a.label", "<u4"), wanted)
-    plain = glidar.simulate("builtin:box", glidar.load_sensor("VLP-16"), pose=glidar.pose([0, 0, 0]), columns="all")
+    plain = glidar.simulate(glidar.Scene("builtin:box"), glidar.load_sensor("VLP-16"), pose=glidar.pose([0, 0, 0]), columns="all")
     plain.save(tmp_path / "b.bin", sidecar=False)
     assert not (tmp_path / "b.label").exists()

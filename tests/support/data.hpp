@@ -26,12 +26,10 @@ inline std::filesystem::path data_folder() {
     GTEST_SKIP() << "GLIDAR_DATA is not set: no real data to test with"; \
   }
 
-/// A model of the data folder in the units and axes of its file, which the references are in,
-/// without touching the user's cache.
+/// A model of the data folder with the axes of its file, which the references have, without touching the user's cache.
 inline Model load_data_model(const std::string& path) {
   ModelOptions options;
   options.use_cache = false;
-  options.metres_per_unit = 1.0;
   options.up = Axis::z;
   return load_model((data_folder() / path).string(), options, {});
 }

@@ -14,6 +14,8 @@ FOLDER = "bop"
 # What makes a model of a scene file an object of BOP, with what the scene file may leave out.
 SHAPE = {"model": "", "unit": "", "up": "", "centre": "false", "size": "", "radius": "", "tube_radius": "",
          "scale": "1"}
+# Formats that declare unit and up axis themselves; in files of others, left out means metres.
+DECLARING = (".dae", ".fbx", ".3mf", ".amf", ".gltf", ".glb")
 NUMBERS = ("size", "radius", "tube_radius", "scale")
 MM_PER_M = 1000.0
 DISTANCES = 1 << 22  # that are in memory together
@@ -24,6 +26,8 @@ def _shape(field):
     found = yf.entries(field)
     shape = {key: _texts(found[key].node) if key in found else (usual,) for key, usual in SHAPE.items()}
     (model,) = shape.pop("model")
+    if not model.lower().endswith(DECLARING) and shape["unit"] == ("",):
+        shape["unit"] = ("m",)
     if not model.startswith("builtin:"):
         model = os.path.realpath(os.path.join(os.path.dirname(field.file), model))
     for key in NUMBERS:
