@@ -225,7 +225,7 @@ void add_output_flags(CLI::App& command, OutputFlags& flags) {
   const std::string group = "Output (names are explained below)";
   command
       .add_option("-o,--output", flags.paths,
-                  "File to write, repeatable; its suffix says what; - for\nstandard output")
+                  "File to write, repeatable; its suffix says what; -: stdout")
       ->type_name("FILE")
       ->allow_extra_args(false)
       ->group(group);
@@ -258,7 +258,7 @@ void add_output_flags(CLI::App& command, OutputFlags& flags) {
 std::string output_names_text() {
   std::string text = "Output files by suffix:\n";
   for (const FileFormat& format : file_formats()) {
-    text += fmt::format("  {:<12} {}\n", format.suffix, format.description);
+    text += fmt::format("  {:<13} {}\n", format.suffix, format.description);
   }
   text += "\nColumns of clouds (* those of default):\n";
   std::string names;

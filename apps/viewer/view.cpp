@@ -37,7 +37,8 @@ Examples:
   glidar view builtin:asteroid
   glidar view builtin:torus --model-dr 0,0.5,0.2
   glidar view builtin:box --sensor VLP-16 --eye 0,0,0
-  glidar view examples/rig.yaml
+With your own files:
+  glidar view rig.yaml
 Without hands, for scripts:
   xvfb-run -a glidar view builtin:torus --screenshot view.png)";
 

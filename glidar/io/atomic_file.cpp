@@ -71,15 +71,27 @@ void unlist(int slot) {
   throw Error({path.string(), fmt::format("cannot {}: {}", what, reason), "", remedy});
 }
 
-/// A new file in `folder` that nobody else has open; its name and descriptor.
-std::pair<std::filesystem::path, int> open_temporary(const std::filesystem::path& folder,
-                                                     const std::filesystem::path& wanted,
-                                                     mode_t mode) {
+/// A temporary file, listed as unfinished.
+struct Temporary {
+  std::filesystem::path name;
+  int descriptor = -1;
+  int slot = -1;  ///< in the list; -1: the list is full
+};
+
+/// A new file in `folder` that nobody else has open. It is listed before it exists, so that a
+/// signal at any moment leaves nothing behind.
+Temporary open_temporary(const std::filesystem::path& folder, const std::filesystem::path& wanted,
+                         mode_t mode) {
   for (unsigned attempt = 0;; ++attempt) {
     std::filesystem::path name = folder / fmt::format(".glidar-{}-{}.tmp", ::getpid(), attempt);
+    std::error_code ignored;
+    if (std::filesystem::exists(name, ignored)) continue;  // another file of this process
+    const int slot = list_unfinished(name.native());
     const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
-    if (descriptor >= 0) return {std::move(name), descriptor};
-    if (errno != EEXIST && errno != EINTR) fail(wanted, "create a file in this folder", errno);
+    const int code = errno;
+    if (descriptor >= 0) return {std::move(name), descriptor, slot};
+    unlist(slot);
+    if (code != EEXIST && code != EINTR) fail(wanted, "create a file in this folder", code);
   }
 }
 
@@ -95,9 +107,10 @@ AtomicFile::AtomicFile(const std::filesystem::path& path, Readers readers) : pat
   buffer_.resize(kPieceBytes);
   constexpr mode_t kUsual = 0666;
   constexpr mode_t kOwner = 0600;
-  std::tie(temporary_, descriptor_) =
-      open_temporary(folder, path, readers == Readers::owner ? kOwner : kUsual);
-  slot_ = list_unfinished(temporary_.native());
+  Temporary made = open_temporary(folder, path, readers == Readers::owner ? kOwner : kUsual);
+  temporary_ = std::move(made.name);
+  descriptor_ = made.descriptor;
+  slot_ = made.slot;
 }
 
 AtomicFile::AtomicFile(int target, const std::filesystem::path& name)

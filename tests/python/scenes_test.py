@@ -103,7 +103,7 @@ def test_scales_per_axis_stretch_an_object_and_go_back(camera):
     assert ball.mesh.vertices.max() == pytest.approx(1.0, abs=1e-3)  # before scale
     frame = glidar.simulate(scene, camera, POSE, columns="all")
     hit = frame.status == glidar.Status.hit
-    point = frame.truth.object_point[hit] * np.array(ball.scale)
+    point = frame.truth.object_point_m[hit] * np.array(ball.scale)
     # on the ellipsoid but for the facets of the mesh
     assert np.allclose(np.sum((point / np.array(ball.scale)) ** 2, axis=1), 1.0, atol=0.01)
     ball.scale = 3

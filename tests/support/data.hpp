@@ -26,7 +26,8 @@ inline std::filesystem::path data_folder() {
     GTEST_SKIP() << "GLIDAR_DATA is not set: no real data to test with"; \
   }
 
-/// A model of the data folder with the axes of its file, which the references have, without touching the user's cache.
+/// A model of the data folder with the axes of its file, which the references have, without
+/// touching the user's cache.
 inline Model load_data_model(const std::string& path) {
   ModelOptions options;
   options.use_cache = false;
