@@ -9,7 +9,7 @@
 
 struct aiScene;
 
-namespace Assimp {
+namespace Assimp {  // NOLINT(readability-identifier-naming): the library's own
 class IOSystem;
 }
 
