@@ -83,17 +83,18 @@ const std::vector<std::string>& renderer_kinds() {
 
 std::unique_ptr<Renderer> make_renderer(const Scene& scene, const RendererOptions& options) {
   std::string names;
-  for (const Kind& kind : kinds()) {
-    if (kind.name == options.kind) {
-      const auto make = [&](const Scene& whole) { return kind.make(whole, options); };
-      return has_pieces(scene) ? make_pieces_renderer(scene, make) : make(scene);
-    }
+  const auto found = std::find_if(kinds().begin(), kinds().end(), [&](const Kind& kind) {
     names += (names.empty() ? "" : ", ") + kind.name;
+    return kind.name == options.kind;
+  });
+  if (found == kinds().end()) {
+    throw Error({.where = "renderer",
+                 .found = "'" + options.kind + "' is not known",
+                 .allowed = names,
+                 .remedy = ""});
   }
-  throw Error({.where = "renderer",
-               .found = "'" + options.kind + "' is not known",
-               .allowed = names,
-               .remedy = ""});
+  const auto make = [&](const Scene& whole) { return found->make(whole, options); };
+  return has_pieces(scene) ? make_pieces_renderer(scene, make) : make(scene);
 }
 
 }  // namespace glidar
