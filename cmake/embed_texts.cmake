@@ -29,7 +29,7 @@ std::string_view @function@(std::string_view file) {
   set(${output} ${path} PARENT_SCOPE)
 endfunction()
 
-# glidar_embed_bytes(OUTPUT_VARIABLE HEADER FUNCTION FILE): likewise for the bytes of one file.
+# glidar_embed_bytes(OUTPUT_VARIABLE HEADER FUNCTION FILE): the same for the bytes of one file.
 function(glidar_embed_bytes output header function file)
   file(READ ${file} bytes HEX)
   string(REGEX REPLACE "(..)" "0x\\1," bytes ${bytes})

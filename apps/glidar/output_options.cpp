@@ -300,7 +300,7 @@ OutputFlags numbered(const OutputFlags& flags, std::uint32_t frame) {
 
 OutputFlags labelled(const OutputFlags& flags, const std::string& label) {
   if (writes_standard_output(flags)) {
-    throw Error({"--output -", "several clouds are written, which one stream cannot tell apart",
+    throw Error({"--output -", "several clouds are written, which one stream cannot separate",
                  "one frame of one sensor on standard output",
                  "use glidar render without --duration, and --mount to choose one of a rig's "
                  "sensors, or write files"});

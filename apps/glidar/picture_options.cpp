@@ -68,7 +68,8 @@ void add_picture_flags(CLI::App& command, OutputFlags& flags, const std::string&
   add_text(command,
            {"--view-eye", "X,Y,Z", "Camera of .view.png, m, axes of the cloud [all seen]", group},
            flags.view_eye, is_vector);
-  add_text(command, {"--view-target", "X,Y,Z", "Where it looks, likewise [all seen]", group},
+  add_text(command,
+           {"--view-target", "X,Y,Z", "Point that this camera looks at, m [all seen]", group},
            flags.view_target, is_vector);
 }
 

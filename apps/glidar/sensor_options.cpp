@@ -24,7 +24,7 @@ namespace {
 
 constexpr std::int64_t kDefaultSide = 256;  // of the 2015 program, like the field of view
 constexpr double kDefaultFov_deg = 20.0;
-constexpr double kLargestPixels = 1e9;   // likewise
+constexpr double kLargestPixels = 1e9;   // pixels
 constexpr double kLargestAmbient = 1e6;  // keeps intensities far from float's end
 constexpr double kBytesPerBeam = 250.0;  // beam, truth, measurement and cloud together
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;

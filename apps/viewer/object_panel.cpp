@@ -14,7 +14,7 @@
 namespace glidar::app {
 namespace {
 
-/// A row of the list; empty: all objects. `scrolled_to`: the row that was last brought into sight.
+/// A row of the list; empty: all objects. `scrolled_to`: the row that was last scrolled to.
 void show_row(Viewer& viewer, const std::string& name, std::optional<std::size_t> object,
               int& scrolled_to) {
   ImGui::TableNextRow();
@@ -23,7 +23,7 @@ void show_row(Viewer& viewer, const std::string& name, std::optional<std::size_t
   if (ImGui::Selectable(name.c_str(), is_selected, ImGuiSelectableFlags_SpanAllColumns)) {
     viewer.select(object);
   }
-  // a click on a point may have selected a row that is not in sight
+  // a click on a point may have selected a row outside the visible part
   const int row = object ? static_cast<int>(*object) : -1;
   if (!is_selected || scrolled_to == row) return;
   scrolled_to = row;

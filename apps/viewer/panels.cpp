@@ -167,7 +167,7 @@ void show_help() {
       "+ - move the sensor nearer, farther\n"
       "space pause, r reset, Esc quit\n"
       "f frame the selected object in both views\n"
-      "left view: drag turns the selected object, wheel moves the sensor, click tells a beam's "
+      "left view: drag turns the selected object, wheel moves the sensor, click explains a beam's "
       "story\n"
       "right view: drag goes round, right drag shifts, wheel zooms, click tells a point's story\n"
       "a click on a point selects its object\n"

@@ -23,7 +23,7 @@ struct CloudScene {
   PointColours colours;
   Eigen::Matrix3d up_from_cloud;
   Eigen::Vector3d sensor_m;  ///< in the frame with z up
-  Eigen::Vector3d ahead;     ///< of the sensor, likewise
+  Eigen::Vector3d ahead;     ///< of the sensor, in the same frame
 };
 
 /// Turns the cloud's axes so that z is up: the world's are like that; others are the sensor's,

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kPercentile = 0.01;   // left out at each end
 constexpr double kNearby = 0.25;       // of the span: an extreme so near is the end
-constexpr double kSameNumber = 0.001;  // of the values: likewise where there is no span
+constexpr double kSameNumber = 0.001;  // of the values, where there is no span
 
 }  // namespace
 

@@ -33,7 +33,7 @@ struct ColourScale {
 ColourScale make_colour_scale(std::span<const double> values,
                               ColourScale::Start start = ColourScale::Start::lowest);
 
-/// A number for a scale of this span: enough digits to tell its ends apart to a percent, U+2212 as
+/// A number for a scale of this span: enough digits to resolve a percent of the span, U+2212 as
 /// the minus sign.
 std::string scale_number(double value, double span);
 

@@ -32,7 +32,7 @@ struct TextStyle {
   Colour colour = {};
 };
 
-/// Draws a line of UTF-8 with smooth edges; what lies outside of the picture is left out. The same
+/// Draws a line of UTF-8 with smooth edges; pixels outside the picture are left out. The same
 /// pixels on every machine.
 void draw_text(Picture& picture, const TextPlace& place, std::string_view text,
                const TextStyle& style);

@@ -71,7 +71,7 @@ struct LevelBox {
   double rotation_y = 0.0;                           ///< from the camera's x to the object's x axis
 };
 
-/// The heading of an object's x axis; of one that stands on end, of its y axis less a quarter turn.
+/// The heading of an object's x axis; of one that is upright, of its y axis less a quarter turn.
 double heading(const Eigen::Matrix3d& camera_from_object) {
   constexpr double kUpright = 1e-6;
   const Eigen::Vector3d x = camera_from_object.col(0);
@@ -128,7 +128,7 @@ struct ImageBox {
   double truncated = 0.0;      ///< share of its area outside
 };
 
-/// The box of what lies before the camera; empty when nothing of it is in the image.
+/// The box of what is in front of the camera; empty when nothing of it is in the image.
 std::optional<ImageBox> image_box(const Seen& seen, const Camera& camera) {
   constexpr double kNearest_m = 1e-3;
   Eigen::AlignedBox2d whole;
@@ -168,7 +168,7 @@ std::string type_of(const std::string& name) {
   return word;
 }
 
-/// Nothing tells how much others hide of an object.
+/// How much others hide of an object is not known.
 constexpr int kOcclusionUnknown = 3;
 
 std::string object_line(const std::string& type, const Seen& seen, const Camera& camera) {

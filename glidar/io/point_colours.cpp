@@ -91,7 +91,7 @@ std::vector<LegendEntry> legend_of(const std::map<std::uint32_t, std::size_t>& c
   return legend;
 }
 
-/// What a number of the column stands for.
+/// What a number of the column means.
 LegendEntry entry_of(const Scene& scene, std::uint32_t number, bool is_class) {
   if (number == kNoHit) return {kNothing, "no object"};
   if (!is_class) return {category_colour(number), instance_name(scene, number)};

@@ -136,7 +136,7 @@ double size_of(const Vector3d& numbers) {
 /// Everything in ordered axes, see ordered_axes(), and rates in units of `unit`. The rates are
 /// those of Landau & Lifshitz, section 37. The attitude is the shortest rotation that takes the
 /// angular momentum L, as the body sees it, to z, and then a turn about z; unlike Euler's angles it
-/// is regular wherever L lies within 90 degrees of the third axis, as it always does here. The rate
+/// is regular wherever L is within 90 degrees of the third axis, as it always does here. The rate
 /// of that turn is (w . l + w3) / (1 + l3) with l = L / |L|: all terms are positive.
 struct Tumbling::Solution {
   Matrix3d ordered_from_principal;

@@ -9,7 +9,7 @@
 namespace glidar {
 namespace {
 
-/// Single precision tells two surfaces apart only when they are farther apart than this part of
+/// Single precision separates two surfaces only when they are farther apart than this part of
 /// their distance and size: 16 roundings.
 constexpr double kSinglePart = 0x1p-20;
 

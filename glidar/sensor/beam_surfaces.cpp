@@ -18,7 +18,7 @@ double tolerance_m(const SurfacePoint& a, const SurfacePoint& b, double distance
   return kBend * distance_m + kRounding * std::max(a.range_m, b.range_m);
 }
 
-/// How far b lies in front of a's plane, along a's ray; below 0: behind.
+/// How far b is in front of a's plane, along a's ray, m; below 0: behind.
 double in_front_m(const SurfacePoint& a, const Eigen::Vector3d& from_a_to_b) {
   constexpr double kGrazing = 1e-9;
   return a.normal.dot(from_a_to_b) / std::max(a.cos_incidence, kGrazing);

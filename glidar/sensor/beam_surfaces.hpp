@@ -20,7 +20,7 @@ struct SurfacePoint {
   std::uint32_t ray = 0;  ///< which of the beam's sub-rays
 };
 
-/// True when no continuous surface explains both points: each lies on the other side of the other's
+/// True when no continuous surface explains both points: each is on the other side of the other's
 /// tangent plane (the nearer one in front, the farther one behind), by more than the tolerance
 /// along the ray. At an edge or on a curved surface that is visible from one point to the other,
 /// both lie on the same side: behind each other's plane where it is convex, in front where it is

@@ -52,7 +52,7 @@ RealVector normal_of(const RealTriangle& corner) {
   return (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
 }
 
-/// True when a point lies in a triangle of a placed shape.
+/// True when a point is in a triangle of a placed shape.
 bool holds(const PlacedShape& placed, std::uint32_t triangle, const RealVector& point,
            Real tolerance_m) {
   if (triangle >= placed.shape.mesh.triangles.size()) return false;

@@ -201,7 +201,7 @@ def _plain_arrays(mesh: dict[str, Any]) -> dict[str, Any]:
 
 
 def _is_preset(name: str) -> bool:
-    """Presets are installed elsewhere on another machine; the digest of the scene tells whether they differ."""
+    """Presets are installed elsewhere on another machine; the digest of the scene shows whether they differ."""
     return os.path.dirname(name) == os.path.dirname(_core.sensor_file(_core.preset_names()[0]))
 
 

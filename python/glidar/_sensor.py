@@ -99,8 +99,8 @@ class Sensor(Immutable):
             rate_hz: frames per second; of a spinning sensor: turns.
             columns_per_turn: of a spinning sensor, 1 to 1048576.
             visibility_m: in fog, 1 to 1e6 m; 0: no fog. For sensors with pulsed light.
-            rain_mm_h: rain, 0 to 1000 mm/h; likewise.
-            snow_mm_h: snow as melted water, 0 to 1000 mm/h; likewise.
+            rain_mm_h: rain, 0 to 1000 mm/h; for pulsed light only.
+            snow_mm_h: snow as melted water, 0 to 1000 mm/h; for pulsed light only.
 
         None keeps what the sensor has.
 

@@ -70,7 +70,7 @@ def key_of(value: object) -> object:
     if isinstance(value, np.ndarray):
         return (value.shape, value.dtype.str, value.tobytes())
     if isinstance(value, float):
-        return ("float", value.hex(), str(value))  # unlike ==, tells -0.0 from 0.0, and NaN is NaN
+        return ("float", value.hex(), str(value))  # unlike ==, distinguishes -0.0 from 0.0, and NaN equals NaN
     return value
 
 

@@ -48,7 +48,7 @@ std::vector<Vector> vectors(const std::optional<Array>& given) {
   return result;
 }
 
-/// A copy of what lies in memory as rows of kColumns numbers; None when there is nothing.
+/// A copy of rows of kColumns numbers in memory; None when there is nothing.
 template <class T, std::size_t kColumns, class Values>
 nb::object rows_of(const Values& values) {
   if (values.empty()) return nb::none();

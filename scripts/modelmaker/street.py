@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What stands in examples/street.yaml: one small OBJ for each thing that has a class of its own.
+"""The objects of examples/street.yaml: one small OBJ for each thing that has a class of its own.
 
-Houses and cars look along -y and +x; everything stands on z = 0.
+Houses and cars look along -y and +x; everything rests on z = 0.
 """
 
 import numpy as np

@@ -56,14 +56,14 @@ class Packages(unittest.TestCase):
         names = [re.match(r"[^_]+", file.name)[0] for file in made]
         if names != ["glidar", "libglidar-dev"]:
             raise AssertionError(f"packages: {made}")
-        cls.program, cls.library = (
+        cls.program, cls.development = (
             Package(file, cls.work / name) for file, name in zip(made, names, strict=True)
         )
         cls.version = run("glidar", "--version").split()[-1]
         cls.architecture = run("dpkg", "--print-architecture").strip()
 
     def test_fields_describe_the_package(self):
-        for package, section in ((self.program, "science"), (self.library, "libdevel")):
+        for package, section in ((self.program, "science"), (self.development, "libdevel")):
             with self.subTest(package.name):
                 self.assertEqual(package.fields["Version"], self.version)
                 self.assertEqual(package.fields["Architecture"], self.architecture)
@@ -83,7 +83,7 @@ class Packages(unittest.TestCase):
         )
 
     def test_library_depends_on_the_program_of_the_same_version(self):
-        self.assertEqual(self.library.needs()["glidar"], f"glidar (= {self.version})")
+        self.assertEqual(self.development.needs()["glidar"], f"glidar (= {self.version})")
 
     def test_library_depends_on_what_its_cmake_package_looks_for(self):
         """A pkg-config or CMake file of every dependency belongs to a package that is named."""
@@ -93,11 +93,11 @@ class Packages(unittest.TestCase):
         for module in modules:
             folder = run("pkg-config", "--variable=pcfiledir", module).strip()
             owner = run("dpkg", "-S", f"{folder}/{module}.pc").split(":")[0]
-            self.assertIn(owner, self.library.needs())
+            self.assertIn(owner, self.development.needs())
         for name in re.findall(r"find_dependency\((\w+)", config):
             known = {"PNG": "libpng-dev", "PkgConfig": "pkg-config"}
             package = known.get(name, f"lib{name.lower().removesuffix('3')}")
-            self.assertTrue(any(entry.startswith(package) for entry in self.library.needs()), name)
+            self.assertTrue(any(entry.startswith(package) for entry in self.development.needs()), name)
 
     def test_program_holds_programs_and_data(self):
         wanted = {"usr/bin/glidar", "usr/libexec/glidar/glidar-import"}
@@ -124,18 +124,18 @@ class Packages(unittest.TestCase):
         headers = (ROOT / "glidar/public_headers.txt").read_text(encoding="utf-8").split("\n")
         wanted = {f"usr/include/{header}" for header in headers if header and not header.startswith("#")}
         self.assertGreater(len(wanted), 10)
-        self.assertLessEqual(wanted, self.library.files)
-        self.assertTrue(any(re.fullmatch(r"usr/lib/.*libglidar_core\.a", file) for file in self.library.files))
-        self.assertTrue(any(file.endswith("cmake/glidar/glidarConfig.cmake") for file in self.library.files))
+        self.assertLessEqual(wanted, self.development.files)
+        self.assertTrue(any(re.fullmatch(r"usr/lib/.*libglidar_core\.a", file) for file in self.development.files))
+        self.assertTrue(any(file.endswith("cmake/glidar/glidarConfig.cmake") for file in self.development.files))
 
     def test_no_file_is_in_both_or_only_for_the_build(self):
-        self.assertEqual(self.program.files & self.library.files, set())
-        for file in self.program.files | self.library.files:
+        self.assertEqual(self.program.files & self.development.files, set())
+        for file in self.program.files | self.development.files:
             self.assertTrue(file.startswith("usr/"), file)
             self.assertNotRegex(file, r"__pycache__|\.pyc$|CMakeLists\.txt$|_tests?$")
 
     def test_files_belong_to_root_and_only_root_writes_them(self):
-        for line in self.program.listing + self.library.listing:
+        for line in self.program.listing + self.development.listing:
             self.assertRegex(line, r"^[-d][rwx-]{4}-[rwx-]{2}-[rwx-] root/root|^l[rwx]{9} root/root")
 
     def test_programs_search_libraries_in_no_folder_of_the_build(self):

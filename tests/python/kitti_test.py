@@ -88,7 +88,7 @@ def test_boxes_are_tight_around_the_meshes_and_in_the_image(folder):
     p2 = calibration["P2"]
     car = next(box for box in boxes if box["type"] == "parked_car")
     h, w, l = car["hwl"]
-    np.testing.assert_allclose([w, l], h, atol=ROUNDING_M)  # builtin:box is a cube that stands level
+    np.testing.assert_allclose([w, l], h, atol=ROUNDING_M)  # builtin:box is a cube, here level
     c, s = np.cos(car["rotation_y"]), np.sin(car["rotation_y"])
     corners = np.array([[x, y, z] for x in (-l / 2, l / 2) for y in (-h, 0) for z in (-w / 2, w / 2)])
     corners = corners @ np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]).T + car["location"]

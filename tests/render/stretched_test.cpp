@@ -27,7 +27,7 @@ TEST_P(StretchedSuite, HitsAndNormalsAreThoseOfTheEllipsoid) {
     ++on_object;
     const testing::Judged truth =
         testing::judge(scene, Eigen::Vector3d::Zero(), beams.directions[i]);
-    constexpr double kBorder_m = 0.01;  // nearer to an edge the renderer may tell the neighbour
+    constexpr double kBorder_m = 0.01;  // nearer to an edge the renderer may report the neighbour
     if (truth.border_m > kBorder_m) {
       EXPECT_EQ(hits.primitive[i], truth.primitive) << i;
       EXPECT_NEAR(hits.range_m[i], truth.range_m, 1e-11) << i;

@@ -60,7 +60,7 @@ class CloudPublisher final : public CloudSink {
   /// Whether at least so many peers have shaken hands, and the subscription of each peer that did
   /// has arrived, so that none of them misses the next cloud: a subscription comes over another
   /// connection than the handshake, often later. Once `subscription_timeout` has passed since the
-  /// last handshake, the log is told and missing subscriptions are not waited for any more.
+  /// last handshake, a message is logged and the wait for missing subscriptions ends.
   /// Always true for 0.
   [[nodiscard]] bool has(std::uint64_t subscribers);
   /// Handshakes whose subscription has arrived.

@@ -52,15 +52,6 @@ void init_context(QueryContext& context) {
 #endif
 }
 
-void intersect_one(RTCScene scene, QueryContext& context, RTCRayHit& ray) {
-#ifdef GLIDAR_EMBREE_4
-  RTCIntersectArguments all = arguments(context, RTC_RAY_QUERY_FLAG_NONE);
-  rtcIntersect1(scene, &ray, &all);
-#else
-  rtcIntersect1(scene, &context, &ray);
-#endif
-}
-
 void intersect_packet(RTCScene scene, QueryContext& context, const int* valid, RTCRayHit16& rays) {
 #ifdef GLIDAR_EMBREE_4
   RTCIntersectArguments all = arguments(context, RTC_RAY_QUERY_FLAG_COHERENT);

@@ -29,9 +29,6 @@ using QueryContext = RTCIntersectContext;
 /// Sets the context to Embree's defaults. Every context starts with it.
 void init_context(QueryContext& context);
 
-/// Intersects one ray.
-void intersect_one(RTCScene scene, QueryContext& context, RTCRayHit& ray);
-
 /// Intersects a packet of 16 rays that run alike, those whose `valid` is -1.
 void intersect_packet(RTCScene scene, QueryContext& context, const int* valid, RTCRayHit16& rays);
 
