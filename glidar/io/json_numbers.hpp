@@ -15,6 +15,9 @@ namespace glidar {
 /// least 5e-16. The rounded number is taken only when it converts back to exactly `value`.
 double in_unit(double value, double unit);
 
+/// How a number in the library's units becomes one of a file's unit, as in_unit does.
+using InUnit = double (*)(double inside, double unit);
+
 /// Writes 0.0 for every -0.0 in the document.
 void remove_negative_zeros(nlohmann::ordered_json& json);
 

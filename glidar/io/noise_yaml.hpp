@@ -17,9 +17,6 @@ namespace glidar {
 /// Reads a list of steps, each a map with the key 'type' and the numbers of its kind.
 std::vector<NoiseStep> read_noise(const YamlField& field);
 
-/// How a number in the library's units becomes one of a file's unit.
-using InUnit = double (*)(double inside, double unit);
-
 /// The list as the sidecar tells it, with every number, those by default too.
 nlohmann::ordered_json noise_json(const std::vector<NoiseStep>& noise, InUnit convert = in_unit);
 

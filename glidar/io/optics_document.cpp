@@ -94,28 +94,14 @@ Json document_of(const Spinning& s) {
   return told;
 }
 
-Json document_of(const Raster& r) {
-  return {{"type", "raster"},
-          {"elevation_deg", exact_list(r.elevations_rad, kDegree)},
-          {"azimuth_deg", exact_list(r.azimuths_rad, kDegree)},
-          {"point_us", exact_in(r.point_ns, kMicrosecond_ns)},
-          {"line_us", exact_in(r.line_ns, kMicrosecond_ns)},
-          {"to_and_fro", r.to_and_fro}};
+Json document_of(const Raster& raster) {
+  Json told = optics_json(raster, exact_in);
+  told.erase("scan_hz");  // follows from the rate
+  return told;
 }
 
-Json document_of(const Prism& p) {
-  Json prisms = Json::array();
-  for (const RisleyPrism& prism : p.prisms) {
-    prisms.push_back({{"rotation_hz", prism.rotation_hz},
-                      {"apex_deg", exact_in(prism.apex_rad, kDegree)},
-                      {"phase_deg", exact_in(prism.phase_rad, kDegree)},
-                      {"refractive_index", prism.refractive_index},
-                      {"slope", prism.slope == RisleyPrism::Slope::entry ? "entry" : "exit"}});
-  }
-  return {{"type", "prism"},
-          {"pulse_hz", p.pulse_hz},
-          {"prisms", prisms},
-          {"incident_right", p.incident_right}};
+Json document_of(const Prism& prism) {
+  return optics_json(prism, exact_in);
 }
 
 Json document_of(const BeamTable& /*table*/) {

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/optics_json.hpp>
 
-#include <glidar/io/json_numbers.hpp>
-
 #include <array>
 #include <numbers>
 #include <string_view>
@@ -60,7 +58,7 @@ Json distortion_json(const Fisheye& d) {
   return {{"model", "fisheye"}, {"k1", d.k1}, {"k2", d.k2}, {"k3", d.k3}, {"k4", d.k4}};
 }
 
-Json json_of(const Pinhole& pinhole) {
+Json json_of(const Pinhole& pinhole, InUnit /*convert*/) {
   const PinholeIntrinsics& i = pinhole.intrinsics;
   return {{"type", "pinhole"},
           {"width", i.width},
@@ -82,48 +80,48 @@ Json list_of(const Entries& entries, Function number_of) {
   return list;
 }
 
-Json json_of(const Spinning& s) {
+Json json_of(const Spinning& s, InUnit convert) {
   using Channel = SpinningChannel;
   Json told = {{"type", "spinning"},
                {"rotation_hz", s.rotation_hz},
                {"turn", s.turn == Spinning::Turn::clockwise ? "clockwise" : "counterclockwise"},
-               {"start_azimuth_deg", in_unit(s.start_azimuth_rad, kDegree)},
+               {"start_azimuth_deg", convert(s.start_azimuth_rad, kDegree)},
                {"columns_per_turn", s.columns_per_turn},
-               {"sequence_us", in_unit(sequence_period_ns(s), kMicrosecond_ns)},
-               {"beam_origin_mm", in_unit(s.beam_origin_m, kMillimetre_m)},
+               {"sequence_us", convert(sequence_period_ns(s), kMicrosecond_ns)},
+               {"beam_origin_mm", convert(s.beam_origin_m, kMillimetre_m)},
                {"sector",
-                {{"from_deg", in_unit(s.sector_start_rad, kDegree)},
-                 {"width_deg", in_unit(s.sector_width_rad, kDegree)}}}};
+                {{"from_deg", convert(s.sector_start_rad, kDegree)},
+                 {"width_deg", convert(s.sector_width_rad, kDegree)}}}};
   const auto add = [&](const char* key, auto number_of) {
     told[key] = list_of(s.channels, number_of);
   };
-  add("elevation_deg", [](const Channel& c) { return in_unit(c.elevation_rad, kDegree); });
-  add("azimuth_left_deg", [](const Channel& c) { return in_unit(c.azimuth_offset_rad, kDegree); });
-  add("fire_time_us", [](const Channel& c) { return in_unit(c.fire_time_ns, kMicrosecond_ns); });
-  add("origin_out_mm", [](const Channel& c) { return in_unit(c.origin_m.x(), kMillimetre_m); });
-  add("origin_left_mm", [](const Channel& c) { return in_unit(c.origin_m.y(), kMillimetre_m); });
-  add("origin_up_mm", [](const Channel& c) { return in_unit(c.origin_m.z(), kMillimetre_m); });
+  add("elevation_deg", [&](const Channel& c) { return convert(c.elevation_rad, kDegree); });
+  add("azimuth_left_deg", [&](const Channel& c) { return convert(c.azimuth_offset_rad, kDegree); });
+  add("fire_time_us", [&](const Channel& c) { return convert(c.fire_time_ns, kMicrosecond_ns); });
+  add("origin_out_mm", [&](const Channel& c) { return convert(c.origin_m.x(), kMillimetre_m); });
+  add("origin_left_mm", [&](const Channel& c) { return convert(c.origin_m.y(), kMillimetre_m); });
+  add("origin_up_mm", [&](const Channel& c) { return convert(c.origin_m.z(), kMillimetre_m); });
   add("ring", [](const Channel& c) { return c.ring; });
   return told;
 }
 
-Json json_of(const Raster& r) {
-  const auto degrees = [](double angle_rad) { return in_unit(angle_rad, kDegree); };
+Json json_of(const Raster& r, InUnit convert) {
+  const auto degrees = [&](double angle_rad) { return convert(angle_rad, kDegree); };
   return {{"type", "raster"},
           {"scan_hz", r.scan_hz},
           {"elevation_deg", list_of(r.elevations_rad, degrees)},
           {"azimuth_deg", list_of(r.azimuths_rad, degrees)},
-          {"point_us", in_unit(r.point_ns, kMicrosecond_ns)},
-          {"line_us", in_unit(r.line_ns, kMicrosecond_ns)},
+          {"point_us", convert(r.point_ns, kMicrosecond_ns)},
+          {"line_us", convert(r.line_ns, kMicrosecond_ns)},
           {"to_and_fro", r.to_and_fro}};
 }
 
-Json json_of(const Prism& p) {
+Json json_of(const Prism& p, InUnit convert) {
   Json prisms = Json::array();
   for (const RisleyPrism& prism : p.prisms) {
     prisms.push_back({{"rotation_hz", prism.rotation_hz},
-                      {"apex_deg", in_unit(prism.apex_rad, kDegree)},
-                      {"phase_deg", in_unit(prism.phase_rad, kDegree)},
+                      {"apex_deg", convert(prism.apex_rad, kDegree)},
+                      {"phase_deg", convert(prism.phase_rad, kDegree)},
                       {"refractive_index", prism.refractive_index},
                       {"slope", prism.slope == RisleyPrism::Slope::entry ? "entry" : "exit"}});
   }
@@ -134,11 +132,11 @@ Json json_of(const Prism& p) {
 }
 
 /// The beams themselves are too many for a sidecar; clouds carry what was measured on them.
-Json json_of(const BeamTable& t) {
+Json json_of(const BeamTable& t, InUnit convert) {
   return {{"type", "table"},
           {"rows", t.rows},
           {"cols", t.cols},
-          {"period_us", in_unit(t.period_ns, kMicrosecond_ns)},
+          {"period_us", convert(t.period_ns, kMicrosecond_ns)},
           {"times", !t.times_ns.empty()},
           {"origins", !t.origins_m.empty()}};
 }
@@ -165,8 +163,8 @@ Json camera_info_json(const Optics& optics) {
           {"p", std::array{i.fx, 0.0, cx, 0.0, 0.0, i.fy, cy, 0.0, 0.0, 0.0, 1.0, 0.0}}};
 }
 
-Json optics_json(const Optics& optics) {
-  return std::visit([](const auto& o) { return json_of(o); }, optics);
+Json optics_json(const Optics& optics, InUnit convert) {
+  return std::visit([&](const auto& o) { return json_of(o, convert); }, optics);
 }
 
 }  // namespace glidar

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace glidar {
 namespace {
@@ -67,25 +68,47 @@ Sums added(const Sums& to, double factor, const Sums& from, const Sums& up_to) {
           to.sine + factor * (up_to.sine - from.sine)};
 }
 
+/// The cells of a beam, one after the other.
+class FogCells {
+ public:
+  FogCells(const VaryingFog& fog, const Draw& draw)
+      : fog_(fog),
+        uniforms_(draw),
+        from_m_(fog.profile.start_m + (uniforms_.next() - 1.0) * fog.cell_m) {}
+
+  [[nodiscard]] double next_from_m() const { return from_m_; }
+
+  FogCell next() {
+    const FogCell cell{std::max(from_m_, fog_.profile.start_m),
+                       gamma_factor(fog_.looks, uniforms_)};
+    from_m_ += fog_.cell_m;
+    return cell;
+  }
+
+ private:
+  const VaryingFog& fog_;
+  Uniforms uniforms_;
+  double from_m_;
+};
+
 /// The fog of a beam, integrated node by node.
 class Integral {
  public:
-  Integral(const VaryingFog& fog, std::vector<FogCell> cells, double end_m)
-      : fog_(fog), cells_(std::move(cells)) {
-    cells_.push_back({end_m, 0.0});
-  }
+  Integral(const VaryingFog& fog, double end_m, const Draw& draw)
+      : fog_(fog), cells_(fog, draw), end_m_(end_m), cell_(cells_.next()), next_(following()) {}
 
   /// Up to a node not before the one of the last call.
   Sums to(std::size_t node) {
     const double range_m = fog_.profile.start_m + static_cast<double>(node) * step_m();
-    while (cell_ + 1 < cells_.size() && cells_[cell_ + 1].from_m <= range_m) {
-      const Sums border = sums_to(fog_.profile, cells_[cell_ + 1].from_m);
-      before_ = added(before_, cells_[cell_].factor, border_, border);
+    while (next_.from_m <= range_m) {
+      const Sums border = sums_to(fog_.profile, next_.from_m);
+      before_ = added(before_, cell_.factor, border_, border);
       border_ = border;
-      ++cell_;
+      cell_ = next_;
+      next_ = following();
     }
     const Sums& here = fog_.nodes[std::min(node, fog_.nodes.size() - 1)];
-    return added(before_, cells_[cell_].factor, border_, here);
+    return added(before_, cell_.factor, border_, here);
   }
 
   [[nodiscard]] double step_m() const {
@@ -93,9 +116,18 @@ class Integral {
   }
 
  private:
+  /// What comes after cell_: from end_m on there is no fog.
+  FogCell following() {
+    if (cells_.next_from_m() < end_m_) return cells_.next();
+    const bool has_ended = cell_.from_m >= end_m_;
+    return {has_ended ? std::numeric_limits<double>::infinity() : end_m_, 0.0};
+  }
+
   const VaryingFog& fog_;
-  std::vector<FogCell> cells_;  ///< the last one without fog
-  std::size_t cell_ = 0;
+  FogCells cells_;
+  double end_m_;
+  FogCell cell_;
+  FogCell next_;
   Sums before_{};  ///< the cell
   Sums border_{};  ///< of the profile, where the cell begins
 };
@@ -126,20 +158,15 @@ VaryingFog varying_fog(const PulseLight& light, double backscatter_per_m_sr, dou
 
 void draw_fog_cells(const VaryingFog& fog, double end_m, Draw draw, std::vector<FogCell>& cells) {
   cells.clear();
-  Uniforms uniforms(draw);
-  double from_m = fog.profile.start_m + (uniforms.next() - 1.0) * fog.cell_m;
-  for (; from_m < std::min(end_m, fog.end_m); from_m += fog.cell_m) {
-    cells.push_back({std::max(from_m, fog.profile.start_m), gamma_factor(fog.looks, uniforms)});
-  }
+  FogCells source(fog, draw);
+  while (source.next_from_m() < std::min(end_m, fog.end_m)) cells.push_back(source.next());
 }
 
 SoftEcho echo_before(const VaryingFog& fog, double hard_range_m, const Draw& draw) {
   const double start_m = fog.profile.start_m;
   const double end_m = std::min(hard_range_m, fog.end_m);
   if (fog.nodes.empty() || !(end_m > start_m)) return {};
-  std::vector<FogCell> cells;
-  draw_fog_cells(fog, end_m, draw, cells);
-  Integral integral(fog, std::move(cells), end_m);
+  Integral integral(fog, end_m, draw);
   constexpr std::size_t kPulse = VaryingFog::kNodesPerPulse;
   std::array<Sums, kPulse> past{};  // a pulse's length ago
   const auto last = static_cast<std::size_t>((end_m - start_m) / integral.step_m()) + kPulse + 2;

@@ -60,7 +60,10 @@ class Recipe:
 
     def copy(self) -> Recipe:
         """The same, to be changed apart from this. Costs no memory until then."""
-        steps = [(name, {**given, "changes": dict(given["changes"])} if name == "set" else given) for name, given in self._steps]
+        steps = [
+            (name, {**given, "changes": dict(given["changes"])} if name == "set" else given)
+            for name, given in self._steps
+        ]
         copied = Recipe(_core.copy_scene(self.core), steps)
         copied._files = dict(self._files)
         return copied
