@@ -149,8 +149,9 @@ std::string reason_for_no_hits(const View& view, const Sight& sight, const Frame
   if (2.0 * half_size_rad < 2.0 * sight.pixel_rad) {
     return fmt::format(
         "the scene is too small to be met by a beam: {:.6g} m across at {:.6g} m is "
-        "{:.2g} pixels; go nearer, narrow --fov, check --unit, or {}",
-        sight.size_m, sight.distance_m, 2.0 * half_size_rad / sight.pixel_rad, kFrameIt);
+        "{:.2g} pixels; go nearer, narrow --fov, {}or {}",
+        sight.size_m, sight.distance_m, 2.0 * half_size_rad / sight.pixel_rad,
+        has_assumed_unit(view.scene) ? "check --unit, " : "", kFrameIt);
   }
   if (view.sensor.cull_back_faces) {
     return "only back faces may be there, and --cull-back-faces lets beams through; leave it out";

@@ -169,8 +169,7 @@ void check_names(const std::vector<Output>& outputs, const std::string& input) {
   std::set<std::filesystem::path> seen;
   for (const Output& output : outputs) {
     const bool is_input = is_same_file(output.path, input);
-    const bool twice =
-        !seen.insert(std::filesystem::absolute(output.path).lexically_normal()).second;
+    const bool twice = !seen.insert(real_path(output.path)).second;
     if (!is_input && !twice) continue;
     throw Error({.where = "--output, " + output.path.string(),
                  .found = is_input ? "is an input file" : "is given twice as output",
@@ -205,7 +204,7 @@ void commit_all(const std::vector<Output>& outputs) {
     } catch (const Error& error) {
       ErrorParts parts = error.parts();
       parts.remedy += (parts.remedy.empty() ? "" : "; ") +
-                      (placed.empty() ? "no output of this frame was written"
+                      (placed.empty() ? "no file of this frame was written"
                                       : "these outputs are written:" + placed);
       throw Error(parts);
     }
@@ -253,6 +252,11 @@ void add_output_flags(CLI::App& command, OutputFlags& flags) {
   add_picture_flags(command, flags, group);
   command.add_flag("--no-sidecar", flags.no_sidecar, "Write no FILE.json beside clouds")
       ->group(group);
+}
+
+void hide_standard_output(CLI::App& command) {
+  command.get_option("--output")->description("File to write, repeatable; its suffix says what");
+  command.get_option("--format")->group("");
 }
 
 std::string output_names_text() {

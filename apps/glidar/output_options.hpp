@@ -41,6 +41,9 @@ struct OutputFlags {
 
 void add_output_flags(CLI::App& command, OutputFlags& flags);
 
+/// Leaves standard output out of the help of a command that writes sequences.
+void hide_standard_output(CLI::App& command);
+
 /// What the names of suffixes, columns and axes mean, for the end of --help.
 std::string output_names_text();
 

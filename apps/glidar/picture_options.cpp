@@ -47,15 +47,21 @@ CloudPictureOptions picture_options(const OutputFlags& flags) {
     options.width = width;
     options.height = height;
   }
-  if (!flags.view_eye.empty()) options.eye_m = parse_vector("--view-eye", flags.view_eye);
+  if (!flags.view_eye.empty()) options.eye_m = parse_position("--view-eye", flags.view_eye);
   if (!flags.view_target.empty())
-    options.target_m = parse_vector("--view-target", flags.view_target);
+    options.target_m = parse_position("--view-target", flags.view_target);
+  if (options.eye_m && options.target_m && *options.eye_m == *options.target_m) {
+    throw Error({.where = "--view-eye",
+                 .found = "it is where the view looks at",
+                 .allowed = "a place apart from --view-target",
+                 .remedy = ""});
+  }
   return options;
 }
 
 void add_picture_flags(CLI::App& command, OutputFlags& flags, const std::string& group) {
   const auto is_vector = [](std::string_view option, const std::string& text) {
-    parse_vector(option, text);
+    parse_position(option, text);
   };
   add_choice(
       command,

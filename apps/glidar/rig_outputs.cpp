@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/rig_outputs.hpp>
 
+#include <apps/glidar/picture_options.hpp>
+
 #include <glidar/core/error.hpp>
 
 #include <fmt/format.h>
@@ -9,22 +11,26 @@
 namespace glidar::app {
 namespace {
 
-[[noreturn]] void refuse(const std::string& path, const std::string& reasons) {
+[[noreturn]] void refuse(const std::string& path, const FileFormat& format,
+                         const std::string& reasons) {
   throw Error(
       {.where = "--output, " + path,
        .found = "fits none of the sensors on the rig: " + reasons,
        .allowed = "an output that fits at least one of them",
-       .remedy = "write .npy or .depth.tiff, which hold any depth, or a cloud such as .pcd"});
+       .remedy = format.suffix == ".depth.png"
+                     ? "write .npy or .depth.tiff, which hold any depth, or a cloud such as .pcd"
+                     : "choose another --colour-by"});
 }
 
 /// Adds a path to the outputs of the sensors that it fits.
-void distribute(const std::string& path, const FileFormat& format, const Session& session,
+void distribute(const std::string& path, const OutputFlags& flags, const Session& session,
                 std::vector<OutputFlags>& outputs, Console& console) {
+  const FileFormat& format = format_of(flags, path);
   std::string reasons;
   std::size_t fitting = 0;
   for (std::size_t i = 0; i < session.mounts.size(); ++i) {
     const Mount& mount = session.mounts[i];
-    const std::string reason = misfit(format, mount.sensor, mount.beams);
+    const std::string reason = misfit(format, picture_options(flags), mount.sensor, mount.beams);
     if (reason.empty()) {
       outputs[i].paths.push_back(path);
       ++fitting;
@@ -32,7 +38,7 @@ void distribute(const std::string& path, const FileFormat& format, const Session
     }
     reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", mount.name, reason);
   }
-  if (fitting == 0) refuse(path, reasons);
+  if (fitting == 0) refuse(path, format, reasons);
   if (!reasons.empty()) console.info(fmt::format("{} is not written for {}", path, reasons));
 }
 
@@ -44,7 +50,7 @@ std::vector<OutputFlags> outputs_by_sensor(const RenderFlags& flags, const Sessi
   if (session.mounts.size() == 1) return outputs;
   for (OutputFlags& output : outputs) output.paths.clear();
   for (const std::string& path : flags.output.paths) {
-    distribute(path, format_of(flags.output, path), session, outputs, console);
+    distribute(path, flags.output, session, outputs, console);
   }
   return outputs;
 }

@@ -154,6 +154,7 @@ void check_simulator(const StreamFlags& flags) {
 
 void add_stream_flags(CLI::App& command, StreamFlags& flags) {
   add_render_flags(command, flags.render);
+  hide_standard_output(command);
   add_pace_flags(command, flags);
   add_publishing_flags(command, flags);
   add_pose_source_flags(command, flags);
@@ -162,6 +163,7 @@ void add_stream_flags(CLI::App& command, StreamFlags& flags) {
 
 void add_replay_flags(CLI::App& command, StreamFlags& flags) {
   add_output_flags(command, flags.render.output);
+  hide_standard_output(command);
   const std::string group = "Pace and end";
   add_option(command,
              {"--rate", "HZ", "Frames per second at most; 0 or max: no limit [max]", group},

@@ -71,6 +71,13 @@ void unlist(int slot) {
   throw Error({path.string(), fmt::format("cannot {}: {}", what, reason), "", remedy});
 }
 
+/// To a descriptor of others: what was sent cannot be taken back.
+[[noreturn]] void fail_sent(const std::filesystem::path& path, int code) {
+  throw Error({path.string(),
+               fmt::format("cannot write: {}", std::generic_category().message(code)), "",
+               "what was sent before is not whole; write to a file instead"});
+}
+
 /// A temporary file, listed as unfinished.
 struct Temporary {
   std::filesystem::path name;
@@ -191,7 +198,7 @@ void AtomicFile::send() const {
       if (written < 0 && errno == EINTR) continue;
       if (written < 0 && errno == EPIPE)
         throw ClosedPipe({path_.string(), "nobody reads it any more", "", ""});
-      if (written < 0) fail(path_, "write", errno);
+      if (written < 0) fail_sent(path_, errno);
       rest = rest.subspan(static_cast<std::size_t>(written));
     }
   }

@@ -24,13 +24,14 @@ double wrapped(double angle_rad) {
 struct Angles {
   std::size_t rows;
   std::size_t cols;
+  std::size_t first_col;            ///< that comes first here, the others follow in turn
   std::vector<double> azimuth_rad;  ///< NaN where there is no beam
   std::vector<double> elevation_rad;
 };
 
 Angles angles_of(const Beams& beams, std::size_t first_beam) {
   const SensorAxes axes = axes_of(beams);
-  Angles angles{beams.rows / beams.returns, beams.cols, {}, {}};
+  Angles angles{beams.rows / beams.returns, beams.cols, 0, {}, {}};
   for (std::size_t i = first_beam; i < first_beam + beams.pulses(); ++i) {
     angles.azimuth_rad.push_back(azimuth_rad(axes, beams.directions[i]));
     angles.elevation_rad.push_back(elevation_rad(axes, beams.directions[i]));
@@ -38,18 +39,62 @@ Angles angles_of(const Beams& beams, std::size_t first_beam) {
   return angles;
 }
 
-/// The mean step of azimuth from column to column, by all neighbours; 0 when there are none.
-double step_of(const Angles& angles) {
+/// The steps of azimuth from column to column in all rows; NaN next to no beam and at a row's end.
+std::vector<double> steps_of(const Angles& angles) {
+  std::vector<double> steps(angles.azimuth_rad.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i + 1 < steps.size(); ++i) {
+    if ((i + 1) % angles.cols != 0)
+      steps[i] = wrapped(angles.azimuth_rad[i + 1] - angles.azimuth_rad[i]);
+  }
+  return steps;
+}
+
+/// NaN when there are no numbers.
+double median(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return std::isnan(value); });
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// The usual step, and the column after which the azimuth jumps to where the first column goes on:
+/// a sector that the head enters in the middle. The last column when there is no jump.
+struct Steps {
+  double mean_rad = 0.0;
+  std::size_t jump_col = 0;
+};
+
+/// A step of 0 when there are none.
+Steps usual_steps(const Angles& angles) {
+  const std::vector<double> steps = steps_of(angles);
+  const double usual_rad = median(steps);
+  Steps found{0.0, angles.cols - 1};
   double sum = 0.0;
   std::size_t count = 0;
-  for (std::size_t i = 0; i + 1 < angles.azimuth_rad.size(); ++i) {
-    if ((i + 1) % angles.cols == 0) continue;
-    const double step = wrapped(angles.azimuth_rad[i + 1] - angles.azimuth_rad[i]);
-    if (std::isnan(step)) continue;
-    sum += step;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (std::isnan(steps[i])) continue;
+    if (std::abs(steps[i] - usual_rad) > std::abs(usual_rad)) {
+      found.jump_col = i % angles.cols;
+      continue;
+    }
+    sum += steps[i];
     ++count;
   }
-  return count == 0 ? 0.0 : sum / static_cast<double>(count);
+  if (count > 0) found.mean_rad = sum / static_cast<double>(count);
+  return found;
+}
+
+/// Begins every row with the column after the jump.
+void begin_after(Angles& angles, std::size_t jump_col) {
+  angles.first_col = (jump_col + 1) % angles.cols;
+  for (std::vector<double>* values : {&angles.azimuth_rad, &angles.elevation_rad}) {
+    for (std::size_t row = 0; row < angles.rows; ++row) {
+      const auto begin = values->begin() + static_cast<std::ptrdiff_t>(row * angles.cols);
+      std::rotate(begin, begin + static_cast<std::ptrdiff_t>(angles.first_col),
+                  begin + static_cast<std::ptrdiff_t>(angles.cols));
+    }
+  }
 }
 
 /// A row's azimuth in column 0, by its first beam, and its elevation.
@@ -90,61 +135,77 @@ std::vector<Row> rows_of(const Angles& angles, double step_rad) {
   return rows;
 }
 
-/// The azimuth of the leftmost column and how many columns there are.
+/// Pixels count to the right, where azimuths are smaller; pixel 0 looks along `zero_rad`.
 struct Extent {
-  double left_rad;
-  std::size_t cols;
+  double zero_rad;
+  std::int64_t first;  ///< the leftmost pixel
+  std::int64_t cols;
   bool is_turn;
 };
 
+/// The pixel of a row's column 0.
+std::int64_t pixel_of(const Row& row, double zero_rad, double size_rad) {
+  return std::lround((zero_rad - row.azimuth_rad) / size_rad);
+}
+
 Extent extent_of(const std::vector<Row>& rows, double step_rad, std::size_t cols) {
   const double size_rad = std::abs(step_rad);
-  if (size_rad * (static_cast<double>(cols) + 1.0) >= kTurn) return {std::numbers::pi, cols, true};
-  const auto [least, greatest] =
-      std::minmax_element(rows.begin(), rows.end(),
-                          [](const Row& a, const Row& b) { return a.azimuth_rad < b.azimuth_rad; });
-  const double across_rad = step_rad * static_cast<double>(cols - 1);
-  const double left_rad = greatest->azimuth_rad + std::max(0.0, across_rad);
-  const double right_rad = least->azimuth_rad + std::min(0.0, across_rad);
-  return {left_rad, static_cast<std::size_t>(std::lround((left_rad - right_rad) / size_rad)) + 1,
-          false};
+  const auto count = static_cast<std::int64_t>(cols);
+  if (size_rad * (static_cast<double>(cols) + 1.0) >= kTurn)
+    return {std::numbers::pi, 0, count, true};
+  const double zero_rad = rows.front().azimuth_rad;
+  std::int64_t least = 0;
+  std::int64_t most = 0;
+  for (const Row& row : rows) {
+    const std::int64_t pixel = pixel_of(row, zero_rad, size_rad);
+    least = std::min(least, pixel);
+    most = std::max(most, pixel);
+  }
+  const std::int64_t first = step_rad < 0.0 ? least : least - (count - 1);
+  return {zero_rad, first, most - least + count, false};
+}
+
+/// Fills in which beam each pixel shows.
+void place_beams(const Angles& angles, const std::vector<Row>& rows, const Extent& extent,
+                 double step_rad, std::uint32_t first_beam, BeamPicture& picture) {
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const std::int64_t start =
+        pixel_of(rows[r], extent.zero_rad, std::abs(step_rad)) - extent.first;
+    for (std::size_t col = 0; col < angles.cols; ++col) {
+      const auto along = static_cast<std::int64_t>(col);
+      std::int64_t place = start + (step_rad < 0.0 ? along : -along);
+      if (extent.is_turn) place = ((place % extent.cols) + extent.cols) % extent.cols;
+      const std::size_t beam_col = (col + angles.first_col) % angles.cols;
+      picture.beams.at(r * picture.cols + static_cast<std::size_t>(place)) =
+          first_beam + static_cast<std::uint32_t>(rows[r].number * angles.cols + beam_col);
+    }
+  }
 }
 
 }  // namespace
 
 std::optional<BeamPicture> make_grid_picture(const Beams& beams, std::uint32_t first_beam) {
-  const Angles angles = angles_of(beams, first_beam);
-  const double step_rad = step_of(angles);
-  const bool is_more_than_a_turn =
-      std::abs(step_rad) * (static_cast<double>(angles.cols) - 1.0) > kTurn;
-  if (angles.rows < 2 || angles.cols < 2 || step_rad == 0.0 || is_more_than_a_turn)
-    return std::nullopt;
+  Angles angles = angles_of(beams, first_beam);
+  if (angles.rows < 2 || angles.cols < 2) return std::nullopt;
+  const auto [step_rad, jump_col] = usual_steps(angles);
+  const double size_rad = std::abs(step_rad);
+  const bool is_more_than_a_turn = size_rad * (static_cast<double>(angles.cols) - 1.0) > kTurn;
+  if (step_rad == 0.0 || is_more_than_a_turn) return std::nullopt;
+  begin_after(angles, jump_col);
   const std::vector<Row> rows = rows_of(angles, step_rad);
   if (rows.empty()) return std::nullopt;
   const Extent extent = extent_of(rows, step_rad, angles.cols);
-  const double size_rad = std::abs(step_rad);
-  BeamPicture picture{
-      .kind = BeamPicture::Kind::grid,
-      .rows = static_cast<std::uint32_t>(rows.size()),
-      .cols = static_cast<std::uint32_t>(extent.cols),
-      .beams = std::vector<std::uint32_t>(rows.size() * extent.cols, BeamPicture::kNoBeam),
-      .row_elevations_deg = {}};
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    picture.row_elevations_deg.push_back(kDegrees * rows[r].elevation_rad);
-    const auto shift =
-        static_cast<std::int64_t>(std::lround((extent.left_rad - rows[r].azimuth_rad) / size_rad));
-    for (std::size_t col = 0; col < angles.cols; ++col) {
-      const auto along = static_cast<std::int64_t>(col);
-      std::int64_t place = shift + (step_rad < 0.0 ? along : -along);
-      const auto cols = static_cast<std::int64_t>(extent.cols);
-      if (extent.is_turn) place = ((place % cols) + cols) % cols;
-      const auto pixel = r * extent.cols + static_cast<std::size_t>(place);
-      picture.beams[pixel] =
-          first_beam + static_cast<std::uint32_t>(rows[r].number * angles.cols + col);
-    }
-  }
+  BeamPicture picture{.kind = BeamPicture::Kind::grid,
+                      .rows = static_cast<std::uint32_t>(rows.size()),
+                      .cols = static_cast<std::uint32_t>(extent.cols),
+                      .beams = {},
+                      .row_elevations_deg = {}};
+  picture.beams.assign(std::size_t{picture.rows} * picture.cols, BeamPicture::kNoBeam);
+  for (const Row& row : rows) picture.row_elevations_deg.push_back(kDegrees * row.elevation_rad);
+  place_beams(angles, rows, extent, step_rad, first_beam, picture);
   const double across_rad = extent.is_turn ? kTurn : size_rad * static_cast<double>(extent.cols);
-  picture.left = kDegrees * (extent.left_rad + (extent.is_turn ? 0.0 : 0.5 * size_rad));
+  const double left_rad = extent.zero_rad - size_rad * static_cast<double>(extent.first);
+  picture.left = kDegrees * (left_rad + (extent.is_turn ? 0.0 : 0.5 * size_rad));
   picture.right = picture.left - kDegrees * across_rad;
   picture.top = picture.row_elevations_deg.front();
   picture.bottom = picture.row_elevations_deg.back();

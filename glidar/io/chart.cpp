@@ -61,6 +61,19 @@ void cut_arrow(Picture& picture, const Box& bar, bool at_left) {
   }
 }
 
+/// The text, or as much of its beginning as has room, with an ellipsis.
+std::string cut_text(const std::string& text, double width, double size_px) {
+  if (text_width(text, size_px) <= width) return text;
+  std::string cut = text;
+  while (!cut.empty() && text_width(cut + "...", size_px) > width) {
+    cut.pop_back();
+    // not within a letter of several bytes
+    while (!cut.empty() && (static_cast<unsigned char>(text[cut.size()]) & 0xC0U) == 0x80U)
+      cut.pop_back();
+  }
+  return cut + "...";
+}
+
 struct LegendColumns {
   std::size_t count;
   double width;
@@ -230,6 +243,19 @@ void draw_colour_bar(Picture& picture, const Box& place, const ColourBar& bar, d
     draw_text(picture, {left + 0.5 * width, text_y, Align::centre}, high, style);
   }
   draw_text(picture, {left + 0.5 * width, title_y, Align::centre}, bar.title, style);
+}
+
+std::vector<LegendEntry> fitted_legend(const std::vector<LegendEntry>& entries, double width,
+                                       double height, double size_px) {
+  std::vector<LegendEntry> fitted = entries;
+  for (LegendEntry& entry : fitted) {
+    entry.text = cut_text(entry.text, 0.5 * width - 3.0 * size_px, size_px);
+  }
+  while (fitted.size() > 1 && legend_height(fitted, width, size_px) > height) {
+    fitted.pop_back();
+    fitted.back() = {kCanvas, fmt::format("and {} others", entries.size() - fitted.size() + 1)};
+  }
+  return fitted;
 }
 
 double legend_height(const std::vector<LegendEntry>& entries, double width, double size_px) {

@@ -81,6 +81,10 @@ struct LegendEntry {
   std::string text;
 };
 
+/// As many entries, from the first, as a legend of this size has room for, long texts cut off; the
+/// last one then says how many others there are.
+std::vector<LegendEntry> fitted_legend(const std::vector<LegendEntry>& entries, double width,
+                                       double height, double size_px);
 /// The height that a legend needs in this width.
 double legend_height(const std::vector<LegendEntry>& entries, double width, double size_px);
 /// Entries in columns, row by row.

@@ -60,7 +60,8 @@ CloudScene scene_of(const CloudFile& job) {
 struct Layout {
   double letters;
   Box plot;
-  Box key;  ///< of the bar or the legend
+  Box key;                          ///< of the bar or the legend
+  std::vector<LegendEntry> legend;  ///< those that have room
 };
 
 Layout make_layout(const CloudPictureOptions& options, const PointColours& colours, bool has_axes) {
@@ -72,8 +73,11 @@ Layout make_layout(const CloudPictureOptions& options, const PointColours& colou
   const double top = has_axes ? 2.2 * layout.letters : gap;
   const double axis = has_axes ? across_axis_height(layout.letters) : 0.0;
   const double key_width = width - left - gap;
+  constexpr double kMostLegend = 0.3;  // of the height
+  layout.legend =
+      fitted_legend(colours.legend, key_width, kMostLegend * options.height, layout.letters);
   const double key = colours.bar ? colour_bar_height(layout.letters)
-                                 : legend_height(colours.legend, key_width, layout.letters);
+                                 : legend_height(layout.legend, key_width, layout.letters);
   const double plot = std::max(16.0, options.height - top - axis - key - 2.0 * gap);
   const auto pixels = [](double length) { return static_cast<std::size_t>(std::max(1.0, length)); };
   layout.plot = {pixels(left), pixels(top), pixels(key_width), pixels(plot)};
@@ -89,7 +93,7 @@ void draw_key(Picture& picture, const Layout& layout, const PointColours& colour
         {layout.key.x + inset, layout.key.y, layout.key.width - 2 * inset, layout.key.height},
         *colours.bar, layout.letters);
   } else {
-    draw_legend(picture, layout.key, colours.legend, layout.letters);
+    draw_legend(picture, layout.key, layout.legend, layout.letters);
   }
 }
 
@@ -241,9 +245,10 @@ Picture draw_view(const CloudFile& job) {
                  0.0, 0.0},
                 0.7 * layout.letters);
   }
-  const std::string nothing = scene.shown.points_m.empty() ? ", no returns" : "";
+  const std::string outside = outside_text(image, scene.shown.points_m.size());
   draw_note(picture, layout,
-            fmt::format("grid {} m{}", scale_number(grid.step_m, grid.step_m), nothing));
+            fmt::format("grid {} m{}{}", scale_number(grid.step_m, grid.step_m),
+                        outside.empty() ? "" : ", ", outside));
   draw_key(picture, layout, scene.colours);
   return picture;
 }

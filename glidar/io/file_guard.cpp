@@ -9,12 +9,17 @@
 
 namespace glidar {
 
+std::filesystem::path real_path(const std::filesystem::path& path) {
+  const std::filesystem::path whole = std::filesystem::absolute(path);
+  std::error_code no_such_folder;
+  const std::filesystem::path folder =
+      std::filesystem::canonical(whole.parent_path(), no_such_folder);
+  return no_such_folder ? whole.lexically_normal() : folder / whole.filename();
+}
+
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  const auto plain = [](const std::filesystem::path& path) {
-    return std::filesystem::absolute(path).lexically_normal();
-  };
   std::error_code no_such_file;  // then it is not the same either, but for its name
-  return plain(a) == plain(b) || std::filesystem::equivalent(a, b, no_such_file);
+  return real_path(a) == real_path(b) || std::filesystem::equivalent(a, b, no_such_file);
 }
 
 std::vector<std::string> files_of(const Scene& scene) {

@@ -10,6 +10,10 @@
 
 namespace glidar {
 
+/// The path without symbolic links in its folders; "..", also behind a link, as the system takes
+/// it.
+std::filesystem::path real_path(const std::filesystem::path& path);
+
 /// True for two names of one file, also of one that is not there yet.
 bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
 

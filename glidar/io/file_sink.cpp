@@ -210,8 +210,14 @@ bool is_text(const FileFormat& format, const FileSinkOptions& options) {
   return format.suffix == ".csv" || format.suffix == ".transform";
 }
 
-std::string misfit(const FileFormat& format, const Sensor& sensor, const Beams& beams) {
-  if (format.suffix != ".depth.png" || std::holds_alternative<Pinhole>(sensor.optics)) return "";
+std::string misfit(const FileFormat& format, const CloudPictureOptions& picture,
+                   const Sensor& sensor, const Beams& beams) {
+  const bool is_camera = std::holds_alternative<Pinhole>(sensor.optics);
+  const bool shows_cloud = format.suffix == ".bev.png" || format.suffix == ".view.png";
+  if (shows_cloud && is_camera && picture.colour_by == ColourBy::ring) {
+    return "a camera has no rings to colour by";
+  }
+  if (format.suffix != ".depth.png" || is_camera) return "";
   return looks_back(beams) ? "it has beams that point back, where depths are negative" : "";
 }
 

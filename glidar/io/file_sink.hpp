@@ -82,8 +82,10 @@ const FileFormat& format_for(const std::filesystem::path& path);
 bool is_text(const FileFormat& format, const FileSinkOptions& options);
 
 /// Why a sensor of a rig has no output of this format, as the rest of a sentence ("the depths of
-/// its beams behind it ..."); empty: it has. A depth image is for sensors that look ahead.
-std::string misfit(const FileFormat& format, const Sensor& sensor, const Beams& beams);
+/// its beams behind it ..."); empty: it has. A depth image is for sensors that look ahead, a
+/// picture of a cloud by ring for those with rings.
+std::string misfit(const FileFormat& format, const CloudPictureOptions& picture,
+                   const Sensor& sensor, const Beams& beams);
 
 /// Writes files in two steps, so that the files of several sinks appear together or not at all.
 class FileSink : public CloudSink {

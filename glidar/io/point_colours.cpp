@@ -73,21 +73,14 @@ std::string instance_name(const Scene& scene, std::uint32_t id) {
                                                                : found->name;
 }
 
-/// The commonest numbers with their names, and how many others there are.
+/// Numbers with their names, the commonest first.
 std::vector<LegendEntry> legend_of(const std::map<std::uint32_t, std::size_t>& counts,
                                    const std::map<std::uint32_t, LegendEntry>& entries) {
-  constexpr std::size_t kMostEntries = 24;
   std::vector<std::pair<std::uint32_t, std::size_t>> order(counts.begin(), counts.end());
   std::stable_sort(order.begin(), order.end(),
                    [](const auto& a, const auto& b) { return a.second > b.second; });
   std::vector<LegendEntry> legend;
-  for (const auto& [number, count] : order) {
-    if (legend.size() == kMostEntries) break;
-    legend.push_back(entries.at(number));
-  }
-  if (order.size() > kMostEntries) {
-    legend.push_back({kCanvas, fmt::format("and {} others", order.size() - kMostEntries)});
-  }
+  for (const auto& [number, count] : order) legend.push_back(entries.at(number));
   return legend;
 }
 

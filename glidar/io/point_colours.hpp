@@ -23,7 +23,7 @@ struct ShownPoints {
 struct PointColours {
   std::vector<Colour> colours;  ///< one per point
   std::optional<ColourBar> bar;
-  std::vector<LegendEntry> legend;
+  std::vector<LegendEntry> legend;  ///< the commonest first
 };
 
 /// Colours by what the options say. Throws Error when a camera is to be coloured by ring.

@@ -51,10 +51,14 @@ Layout make_layout(const BeamPicture& beams) {
   Layout layout{};
   layout.zoom = std::max<std::size_t>(1, kUsual / std::max(cols, rows));
   const std::size_t width = cols * layout.zoom;
+  constexpr std::size_t kMostPixels = std::size_t{1} << 26U;  // that rows are stretched to
+  const std::size_t tallest = std::min(kTallest, kMostPixels / (width * rows));
   layout.tall = std::clamp<std::size_t>(width / (kLeastShape * rows), layout.zoom,
-                                        std::max(layout.zoom, kTallest));
+                                        std::max(layout.zoom, tallest));
   const std::size_t height = rows * layout.tall;
-  layout.letters = 12.0 + static_cast<double>(std::max(width, height)) / 128.0;
+  constexpr double kLargestLetters = 48.0;
+  layout.letters =
+      std::min(kLargestLetters, 12.0 + static_cast<double>(std::max(width, height)) / 128.0);
   layout.gap = static_cast<std::size_t>(layout.letters);
   const auto pixels = [](double length) { return static_cast<std::size_t>(std::ceil(length)); };
   const std::size_t left = has_axes(beams) ? pixels(upright_axis_width(layout.letters)) : 0;

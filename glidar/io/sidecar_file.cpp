@@ -81,7 +81,8 @@ Json sensor_json(const Sensor& sensor, const Beams& beams) {
           {"camera_info", camera_info_json(sensor.optics)},
           {"rate_hz", sensor.rate_hz},
           {"wavelength_nm", in_unit(sensor.wavelength_m, kNano)},
-          {"range_offset_m", beams.range_offset_m},
+          // the quotient has few digits where the product that sensor files are read by has not
+          {"range_offset_m", in_unit(beams.range_offset_m, kMilli) / 1000.0},
           {"limits",
            {{"near_m", sensor.limits.near_m},
             {"far_m", sensor.limits.far_m},

@@ -95,6 +95,24 @@ class StandardOutput(CliTest):
             os.remove(os.path.join(self.folder, "a." + name))
         self.assertEqual(self.files(), [])
 
+    def test_a_full_disk_is_told_without_claims_about_what_was_sent(self):
+        with open("/dev/full", "wb") as full:
+            done = subprocess.run(["glidar", "render", "builtin:box", "-o", "-", "--format", "csv"], cwd=self.folder,
+                                  env=self.environment, stdout=full, stderr=subprocess.PIPE, text=True, timeout=300,
+                                  check=False)  # fmt: skip
+        self.assertEqual(done.returncode, 2, done.stderr)
+        self.assertIn("what was sent before is not whole", done.stderr)
+        self.assertNotIn("left behind", done.stderr)
+        self.assertEqual(self.files(), [])
+
+    def test_commands_that_write_sequences_do_not_offer_it(self):
+        for command in ("stream", "replay"):
+            told = self.succeed(command, "--help").stdout
+            self.assertIn("--output", told)
+            self.assertNotIn("stdout", told)
+            self.assertNotIn("--format", told)
+        self.assertIn("-: stdout", self.succeed("render", "--help").stdout)
+
     def test_files_are_written_beside_it(self):
         done = self.succeed("render", "builtin:box", "-o", "-", "--format", "csv", "-o", "a.pcd", "--quiet")
         self.assertEqual(self.files(), ["a.pcd", "a.pcd.json"])

@@ -38,6 +38,10 @@ class Refusals(CliTest):
         self.assertIn("no folder", self.refused("render", "builtin:box", "-o", "no/such/x.pcd"))
         self.assertIn("-o cloud.pcd", self.refused("render", "builtin:box"))
         self.assertIn("given twice", self.refused("render", "builtin:box", "-o", "a.pcd", "-o", "./a.pcd"))
+        os.makedirs(os.path.join(self.folder, "real/sub"))
+        os.symlink("real/sub", os.path.join(self.folder, "link"))
+        self.assertIn("given twice",
+                      self.refused("render", "builtin:box", "-o", "link/../a.csv", "-o", "real/a.csv"))
         self.write("box.obj", BOX)
         os.rename(os.path.join(self.folder, "box.obj"), os.path.join(self.folder, "in.ply"))
         self.assertIn("is an input", self.refused("render", "in.ply", "-o", "in.ply"))

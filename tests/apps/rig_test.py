@@ -78,6 +78,15 @@ class Files(RigTest):
         self.assertIn("1200", told)
         self.assertIn("range_gaussian", told)
 
+    def test_a_picture_by_ring_is_left_out_for_the_cameras(self):
+        for name in ("b.bev.png", "b.view.png"):
+            done = self.succeed("render", "rig.yaml", "--colour-by", "ring", "-o", name)
+            self.assertIn(name.replace("b.", "b_lidar."), self.files())
+            self.assertNotIn(name.replace("b.", "b_camera."), self.files())
+            self.assertIn("camera: a camera has no rings to colour by", done.stderr)
+        error = self.refused("render", "rig.yaml", "--mount", "camera", "--colour-by", "ring", "-o", "c.bev.png")
+        self.assertIn("a camera has no rings", error)
+
     def test_what_cannot_be_is_refused(self):
         for arguments, words in ((("--mount", "radar"), "allowed: lidar, camera, twin"),
                                  (("--sensor", "VLP-16"), "--mount NAME chooses one of lidar, camera, twin")):

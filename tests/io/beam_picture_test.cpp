@@ -103,6 +103,58 @@ TEST(BeamPicture, OfASectorIsAsWideAsAllRowsTogether) {
   EXPECT_NEAR(picture.left, 10.5, 1e-9);
 }
 
+TEST(BeamPicture, HasEveryBeamOfASectorOnceForAnyShiftOfRows) {
+  // half a step is the edge: the roundings of two rows differ there
+  for (const double step_deg : {-1.0, 1.0, -360.0 / 512.0}) {
+    for (const double steps : {-3.5, -0.5, 0.25, 0.5, 1.5, 2.5, 17.49999, 17.5, 17.50001}) {
+      for (const std::uint32_t cols : {2U, 30U, 31U, 90U}) {
+        const Beams beams = staggered(steps * step_deg, cols, step_deg);
+        const BeamPicture picture = make_beam_picture(beams, no_returns(beams));
+        ASSERT_EQ(picture.kind, BeamPicture::Kind::grid);
+        std::multiset<std::uint32_t> shown(picture.beams.begin(), picture.beams.end());
+        shown.erase(BeamPicture::kNoBeam);
+        EXPECT_EQ(shown.size(), beams.size()) << step_deg << " " << steps << " " << cols;
+        EXPECT_EQ(std::set<std::uint32_t>(shown.begin(), shown.end()).size(), beams.size());
+        EXPECT_LE(widest_column_deg(picture, beams), std::abs(step_deg) * 1.001);
+      }
+    }
+  }
+}
+
+/// The sensor file of a head of five rows that measures part of a turn.
+Sensor sector_sensor(const std::string& optics) {
+  return parse_sensor(
+      "name: sector\nrate_hz: 10\noptics: {type: spinning, columns_per_turn: 360, " + optics +
+      "}\n");
+}
+
+TEST(BeamPicture, OfASectorThatTheHeadEntersInTheMiddleIsOneGrid) {
+  const Sensor sensor =
+      sector_sensor("elevation_deg: [4, 2, 0], sector: {from_deg: -60, to_deg: 60}");
+  const Beams beams = make_beams(sensor);
+  const BeamPicture picture = make_beam_picture(beams, no_returns(beams));
+  ASSERT_EQ(picture.kind, BeamPicture::Kind::grid);
+  EXPECT_EQ(picture.rows, 3U);
+  EXPECT_EQ(picture.cols, beams.cols);
+  EXPECT_NEAR(picture.left, 60.0, 1.1);
+  EXPECT_NEAR(picture.right, -60.0, 1.1);
+  for (std::uint32_t col = 0; col < picture.cols; ++col) {
+    const double shown_deg =
+        picture.left - (col + 0.5) * (picture.left - picture.right) / picture.cols;
+    EXPECT_NEAR(azimuth_deg(beams, picture.beam_at(col)), shown_deg, 0.51);
+  }
+}
+
+TEST(BeamPicture, OfAStaggeredSectorIsDrawnWhole) {
+  const Sensor sensor = sector_sensor(
+      "elevation_deg: [1, -1], azimuth_left_deg: [0, -0.5], start_azimuth_deg: 30, sector: "
+      "{from_deg: 0, to_deg: 30}");
+  const Beams beams = make_beams(sensor);
+  const BeamPicture picture = make_beam_picture(beams, no_returns(beams));
+  const std::set<std::uint32_t> shown(picture.beams.begin(), picture.beams.end());
+  EXPECT_GE(shown.size(), beams.size());
+}
+
 TEST(BeamPicture, PutsTheHighestRowOnTop) {
   Beams beams = staggered(0.0);
   std::rotate(beams.directions.begin(), beams.directions.begin() + 360, beams.directions.end());

@@ -1,5 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/font.hpp>
+#include <glidar/io/png_texture.hpp>
 #include <glidar/io/point_colours.hpp>
 
 #include <glidar/sensor/scan.hpp>
@@ -121,6 +123,29 @@ TEST(PointColours, NameClassesAndInstances) {
   EXPECT_NE(instances.colours[0], instances.colours[2]);
 }
 
+TEST(Legend, NamesAsManyAsHaveRoomAndCountsTheOthers) {
+  std::vector<LegendEntry> entries;
+  for (int i = 0; i < 100; ++i) entries.push_back({{1, 2, 3}, "class number " + std::to_string(i)});
+  const std::vector<LegendEntry> fitted = fitted_legend(entries, 400.0, 90.0, 10.0);
+  EXPECT_LE(legend_height(fitted, 400.0, 10.0), 90.0);
+  ASSERT_GE(fitted.size(), 5U);
+  EXPECT_EQ(fitted[0].text, "class number 0");
+  EXPECT_EQ(fitted.back().text, "and " + std::to_string(100 - (fitted.size() - 1)) + " others");
+  EXPECT_EQ(fitted_legend({entries[0], entries[1]}, 400.0, 90.0, 10.0).back().text,
+            "class number 1");
+}
+
+TEST(Legend, CutsLongNamesBetweenLetters) {
+  std::string name;
+  for (int i = 0; i < 200; ++i) name += "\u00e9";  // two bytes each
+  const std::vector<LegendEntry> fitted = fitted_legend({{{1, 2, 3}, name}}, 400.0, 90.0, 10.0);
+  const std::string& text = fitted.at(0).text;
+  EXPECT_LE(text_width(text, 10.0), 200.0);
+  ASSERT_GT(text.size(), 13U);
+  EXPECT_EQ(text.substr(text.size() - 3), "...");
+  EXPECT_EQ(text.size() % 2, 1U) << "whole letters and three points";
+}
+
 TEST(PointColours, AreGreyWhereThereIsNoNumber) {
   const PointColours intensity = colours_by(make(), ColourBy::intensity);
   EXPECT_EQ(intensity.bar->scale.high, 3.0);
@@ -141,15 +166,64 @@ TEST(CloudPicture, HasTheSizeAskedFor) {
   }
 }
 
-TEST(CloudPicture, OfNothingIsDrawnToo) {
-  Made made = make();
-  made.cloud.columns[0].values = std::vector<double>(12, kNan);
-  for (const char* name : {"a.bev.png", "a.view.png"}) EXPECT_GT(written(made, name).size(), 1000U);
+/// The pixels of a colour in a picture's plot: how many, and their mean place.
+struct Spots {
+  std::size_t count = 0;
+  double col = 0.0;
+  double row = 0.0;
+};
+Spots spots_of(const Made& made, const char* name, const Colour& colour) {
+  const testing::TestFolder folder;
+  const SidecarContext context = made.context();
+  make_file_sink(folder / name, made.options, context)->write(made.cloud, made.frame);
+  const Texture png = read_png_texture(folder / name);
+  Spots spots;
+  const std::size_t plot_rows = png.height - png.height / 6;  // the legend is below
+  for (std::size_t i = 0; i < png.width * plot_rows; ++i) {
+    const std::uint8_t* rgb = &png.texels[i * png.channels];
+    if (rgb[0] != colour.r || rgb[1] != colour.g || rgb[2] != colour.b) continue;
+    ++spots.count;
+    spots.col += static_cast<double>(i % png.width);
+    spots.row += static_cast<double>(i / png.width);
+  }
+  spots.col /= static_cast<double>(spots.count);
+  spots.row /= static_cast<double>(spots.count);
+  return spots;
 }
 
-TEST(CloudPicture, OfACameraHasItsOwnAxes) {
-  const Made made = make(true);
-  for (const char* name : {"a.bev.png", "a.view.png"}) EXPECT_GT(written(made, name).size(), 1000U);
+/// A cloud of one point.
+Made one_point(bool is_camera, const std::vector<double>& xyz) {
+  Made made = make(is_camera);
+  made.options.picture.colour_by = ColourBy::object_class;
+  made.scene.class_names = {"unlabelled", "car"};
+  made.cloud.columns[0].values = std::vector<double>{xyz[0], xyz[1], xyz[2], kNan, kNan, kNan,
+                                                     kNan,   kNan,   kNan,   kNan, kNan, kNan};
+  return made;
+}
+
+TEST(CloudPicture, OfNothingIsDrawnWithoutPoints) {
+  Made made = make();
+  const Colour point = colours_by(make(), ColourBy::object_class).colours[0];
+  made.options.picture.colour_by = ColourBy::object_class;
+  for (const char* name : {"a.bev.png", "a.view.png"}) {
+    EXPECT_GT(spots_of(made, name, point).count, 0U) << name;
+  }
+  made.cloud.columns[0].values = std::vector<double>(12, kNan);
+  for (const char* name : {"a.bev.png", "a.view.png"}) {
+    EXPECT_EQ(spots_of(made, name, point).count, 0U) << name;
+  }
+}
+
+TEST(CloudPicture, HasAheadToTheRightAndLeftUpForEverySensor) {
+  const Colour point = colours_by(make(), ColourBy::object_class).colours[0];
+  const Made lidar = one_point(false, {5.0, 2.0, 0.0});   // x ahead, y to the left
+  const Made camera = one_point(true, {-2.0, 0.0, 5.0});  // x to the right, z ahead
+  const Spots of_lidar = spots_of(lidar, "a.bev.png", point);
+  const Spots of_camera = spots_of(camera, "a.bev.png", point);
+  ASSERT_GT(of_lidar.count, 0U);
+  EXPECT_EQ(of_lidar.count, of_camera.count);
+  EXPECT_NEAR(of_lidar.col, of_camera.col, 1.0);
+  EXPECT_NEAR(of_lidar.row, of_camera.row, 1.0);
 }
 
 TEST(CloudPicture, RefusesSizesAndEyesThatCannotBe) {

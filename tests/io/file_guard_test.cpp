@@ -39,6 +39,14 @@ TEST_F(FileGuard, KnowsAFileThatIsNotThereYetByItsPlace) {
   EXPECT_NO_THROW(protect_files({folder / "a.ply"}, folder / "new.ply"));
 }
 
+TEST_F(FileGuard, TakesDotDotBehindALinkAsTheSystemDoes) {
+  std::filesystem::create_directories(folder / "real" / "sub");
+  std::filesystem::create_directory_symlink(folder / "real" / "sub", folder / "link");
+  EXPECT_TRUE(is_same_file(folder / "link" / ".." / "new.ply", folder / "real" / "new.ply"));
+  EXPECT_FALSE(is_same_file(folder / "link" / ".." / "a.ply", folder / "a.ply"));
+  EXPECT_NO_THROW(protect_files({folder / "a.ply"}, folder / "link" / ".." / "a.ply"));
+}
+
 TEST_F(FileGuard, ListsTheFilesOfAllModels) {
   Scene scene;
   scene.sources = {{.path = "a.obj", .hash = "", .files = {"a.obj", "a.mtl"}},

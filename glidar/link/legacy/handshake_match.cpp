@@ -24,8 +24,8 @@ void HandshakeMatch::set_subscribers(std::uint64_t count) {
       ++early_;
     }
   }
-  // Which one left is not known. To take it for one without a handshake may lead to waiting in
-  // vain, never to a cloud that is sent too early.
+  // Which one left is not known. It is taken for one without a handshake, which may lead to waiting
+  // in vain.
   for (; subscribers_ > count; --subscribers_) {
     if (early_ > 0) {
       --early_;

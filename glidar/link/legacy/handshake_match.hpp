@@ -8,7 +8,8 @@ namespace glidar::legacy {
 
 /// Which handshakes have no subscription yet. A peer's handshake and its subscription come over
 /// different connections, in any order, and do not say that they belong together: each handshake is
-/// matched with one subscriber, the first that is not matched yet.
+/// matched with one subscriber, the first that is not matched yet. Exact when all subscribers shake
+/// hands; a subscriber that does not may be taken for that of a later handshake.
 class HandshakeMatch {
  public:
   void add_handshake();
