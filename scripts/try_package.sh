@@ -39,7 +39,7 @@ as_root() { "$bare" run "$folder" "$@"; }
 as_user() { as_root runuser -u tester -- env -C /home/tester HOME=/home/tester "$@"; }
 
 install_packages() {
-  as_root apt-get update -q >/dev/null
+  check "the lists of packages can be read" as_root apt-get update -q
   if ! as_root apt-get install -q -y "$@" >"$log" 2>&1; then
     say "the packages do not install on $suite:"
     grep -A 30 -E 'unmet dependencies|^E:|Depends:' "$log" || cat "$log"
@@ -66,6 +66,7 @@ links_work() {
 programs_are_clean() {
   local program
   for program in usr/bin/glidar usr/libexec/glidar/glidar-import; do
+    test -f "$folder/$program" || return 1
     if readelf -d "$folder/$program" | grep -E 'R(UN)?PATH'; then return 1; fi
     if grep -aoE "${root}[^[:cntrl:]]*" "$folder/$program"; then return 1; fi
   done
@@ -98,7 +99,7 @@ try_program() {
 }
 
 try_library() {
-  as_root apt-get install -q -y --no-install-recommends g++ cmake make >"$log" 2>&1
+  check "a compiler and CMake install" as_root apt-get install -q -y --no-install-recommends g++ cmake make
   cp -r "$root/tests/consumer" "$folder/home/tester/consumer"
   as_root chown -R tester /home/tester/consumer
   check "find_package(glidar) builds a program that measures" as_user bash -c '

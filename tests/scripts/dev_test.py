@@ -15,16 +15,19 @@ ROOT = Path(__file__).resolve().parents[2]
 TIME_LIMIT_S = 300
 REAL = "bash awk sort paste mkdir grep tail dirname nproc env cat xargs realpath cmp".split()
 
-# dpkg-query knows what the file `states` lists, one package and its status per line.
+# dpkg-query knows what the file `states` lists, one package and its status per line; one package may have several,
+# of several architectures.
 DPKG_QUERY = """#!/bin/bash
 [[ "$1 $2" == "-W -f" ]] || exit 2
+known=0
 while read -r package status; do
   if [[ $package == "$4" ]]; then
     text=${3//'${db:Status-Status}'/$status}
     printf "${text//%/%%}"
-    exit 0
+    known=1
   fi
 done <"$STATES"
+((known == 0)) || exit 0
 echo "dpkg-query: no packages found matching $4" >&2
 exit 1
 """
@@ -101,6 +104,15 @@ class Dev(unittest.TestCase):
         self.assertEqual((status, errors), (0, ""))
         self.assertEqual(calls, [UPDATE, INSTALL + "bare purged removed unpacked"])
         self.assertIn("installing 4 packages: bare purged removed unpacked", output)
+
+    def test_a_package_of_two_architectures_is_there_when_one_is_installed(self):
+        self.packages = "one lint\n"
+        for states in (("installed", "installed"), ("installed", "config-files"), ("not-installed", "installed")):
+            with self.subTest(states):
+                self.states = "".join(f"one {state}\n" for state in states)
+                self.assertEqual(self.dev()[3], [])
+        self.states = "one not-installed\none config-files\n"
+        self.assertEqual(self.dev()[3], [UPDATE, INSTALL + "one"])
 
     def test_each_status_alone_decides(self):
         self.packages = "one lint\n"
