@@ -1,0 +1,86 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The runner of clang-tidy checks sources together where they go together, and finds the faults of each."""
+
+import shutil
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+import run_clang_tidy  # noqa: E402
+
+GOOD = "namespace glidar {{\nint {0}(int count) {{\n  return count;\n}}\n}}\n"
+BAD = "namespace glidar {{\nint {0}(int count, int unused) {{\n  return count;\n}}\n}}\n"
+
+
+class Grouping(unittest.TestCase):
+    def setUp(self):
+        self.root = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        self.addCleanup(setattr, run_clang_tidy, "ROOT", run_clang_tidy.ROOT)
+        run_clang_tidy.ROOT = self.root
+        shutil.copy(ROOT / ".clang-tidy", self.root)
+
+    def source(self, name, text, options="-O2"):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+        return path, str(self.root), f"c++ {options} -o {path.stem}.o -c {path}"
+
+    def names(self, sources, **words):
+        return [[file.stem for file, _, _ in members] for members in run_clang_tidy.groups_of(sources, **words)]
+
+    def test_sources_of_a_folder_go_together_up_to_a_number(self):
+        sources = [self.source(f"glidar/{name}.cpp", GOOD.format(name)) for name in "abcde"]
+        self.assertEqual(self.names(sources, size=3), [["a", "b", "c"], ["d", "e"]])
+
+    def test_sources_of_other_folders_and_options_do_not(self):
+        sources = [self.source("glidar/a.cpp", ""), self.source("glidar/io/b.cpp", ""),
+                   self.source("glidar/c.cpp", "", "-O3")]
+        self.assertEqual(self.names(sources), [["a"], ["b"], ["c"]])
+
+    def test_sources_that_define_the_same_do_not(self):
+        for text in ("constexpr double kLimit_m = 1.0;\n", "constexpr int kTable[3] = {1, 2, 3};\n",
+                     "struct Row {\n};\n", "double wrapped(double angle_rad) {\n", "using Points = int;\n"):
+            with self.subTest(text):
+                sources = [self.source("glidar/a.cpp", text), self.source("glidar/b.cpp", text)]
+                self.assertEqual(self.names(sources), [["a"], ["b"]])
+
+    def test_overloads_and_words_in_functions_do_not_part_them(self):
+        sources = [self.source("glidar/a.cpp", "using ::testing::Eq;\nint size(A a) {\n  const int row = 1;\n}\n"),
+                   self.source("glidar/b.cpp", "using ::testing::Eq;\nint size(B b) {\n  const int row = 1;\n}\n")]
+        self.assertEqual(self.names(sources), [["a", "b"]])
+
+    @unittest.skipIf(shutil.which("clang-tidy") is None, "no clang-tidy")
+    def test_a_fault_of_one_source_is_told_of_it_and_good_ones_pass(self):
+        build = self.root / "build"
+        (build / "tidy").mkdir(parents=True)
+        good = [self.source(f"glidar/{name}.cpp", GOOD.format(name)) for name in "ab"]
+        self.assertEqual(run_clang_tidy.check(build, good, "0"), "")
+        self.assertTrue((build / "tidy/0").exists())
+        bad = self.source("glidar/c.cpp", BAD.format("c"))
+        self.write_database(build, [*good, bad])
+        told = run_clang_tidy.check(build, [*good, bad], "1")
+        self.assertRegex(told, r"glidar/c\.cpp:2:22: error: parameter 'unused' is unused")
+        self.assertFalse((build / "tidy/1").exists())
+
+    @unittest.skipIf(shutil.which("clang-tidy") is None, "no clang-tidy")
+    def test_sources_that_do_not_compile_together_are_checked_one_by_one(self):
+        build = self.root / "build"
+        (build / "tidy").mkdir(parents=True)
+        both = [self.source("glidar/a.cpp", "namespace {\nint hidden;\n}\nint glidar_a = hidden;\n"),
+                self.source("glidar/b.cpp", "namespace {\nlong hidden;\n}\nlong glidar_b = hidden;\n")]
+        self.write_database(build, both)
+        self.assertFalse(run_clang_tidy.check_together(build, both, "2"))
+        self.assertEqual(run_clang_tidy.check(build, both, "2"), "")
+
+    def write_database(self, build, sources):
+        entries = [{"directory": folder, "command": command, "file": str(file)} for file, folder, command in sources]
+        (build / "compile_commands.json").write_text(run_clang_tidy.json.dumps(entries), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    unittest.main()
