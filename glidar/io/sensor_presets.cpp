@@ -6,6 +6,7 @@
 #include <glidar/io/data_folder.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <string_view>
 
@@ -37,7 +38,10 @@ ValueCount count_values(const SensorSheet& sheet) {
   for (const SheetEntry& entry : sheet.entries) {
     const std::string_view key = entry.key;
     const std::string_view last = key.substr(key.rfind('.') + 1);
-    if (last == "name" || last == "type" || last == "kind") continue;
+    // words and conventions that the sensor's documents do not know
+    constexpr std::array<std::string_view, 5> kNoValues = {"name", "type", "kind", "along",
+                                                           "pixel_centre"};
+    if (std::find(kNoValues.begin(), kNoValues.end(), last) != kNoValues.end()) continue;
     ++count.total;
     if (entry.verified && !entry.source.empty()) ++count.backed;
   }
