@@ -201,11 +201,7 @@ void stage_kitti_folder(const CloudFile& job, const std::filesystem::path& folde
   AtomicFile& points = files.add(folder / "velodyne" / (number + ".bin"));
   write_kitti(velodyne, points);
   points.finish();
-  if (is_labelled) {
-    AtomicFile& labels = files.add(folder / "labels" / (number + ".label"));
-    write_kitti_labels(velodyne, labels);
-    labels.finish();
-  }
+  stage_kitti_labels(velodyne, folder / "labels" / (number + ".label"), files);
   add_text(folder / "calib" / (number + ".txt"), kitti_calibration(context.sensor), files);
   add_text(folder / "label_2" / (number + ".txt"),
            kitti_labels(context.scene, context.sensor, job.frame), files);
