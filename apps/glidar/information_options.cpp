@@ -38,18 +38,23 @@ void check(const InformationFlags& flags, const OutputFlags& outputs) {
   throw Error({"--information-sigma", "there is no --information", "", "give --information too"});
 }
 
-std::filesystem::path information_path(const std::filesystem::path& output) {
+std::filesystem::path information_path(const std::filesystem::path& output,
+                                       std::optional<std::uint32_t> frame) {
   const std::string name = output.string();
-  return name.substr(0, name.size() - format_for(output).suffix.size()) + ".information.json";
+  const FileFormat& format = format_for(output);
+  const bool is_numbered = frame && format.is_folder;  // the names of other formats have the number
+  return name.substr(0, name.size() - format.suffix.size()) +
+         (is_numbered ? fmt::format("_{:06}", *frame) : "") + ".information.json";
 }
 
 void tell_information(const InformationFlags& flags, const Frame& frame, const Beams& beams,
-                      const std::vector<Output>& outputs, std::FILE* to) {
+                      const std::vector<Output>& outputs, std::optional<std::uint32_t> number,
+                      std::FILE* to) {
   if (!flags.wanted) return;
   InformationOptions options;
   options.sigma_m = flags.sigma_m.value_or(options.sigma_m);
   const PoseInformation information = pose_information(frame, beams, options);
-  const std::filesystem::path path = information_path(outputs.front().path);
+  const std::filesystem::path path = information_path(outputs.front().path, number);
   write_information(information, path);
   if (to != nullptr) fmt::print(to, "{}wrote {}\n", information_text(information), path.string());
 }

@@ -5,6 +5,7 @@
 #include <apps/glidar/cli_fwd.hpp>
 #include <apps/glidar/output_options.hpp>
 
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <optional>
@@ -23,11 +24,15 @@ void add_information_flags(CLI::App& command, InformationFlags& flags);
 /// the outputs.
 void check(const InformationFlags& flags, const OutputFlags& outputs);
 
-/// NAME.information.json beside an output NAME.SUFFIX.
-std::filesystem::path information_path(const std::filesystem::path& output);
+/// NAME.information.json beside an output NAME.SUFFIX. Of a sequence in one folder NAME.SUFFIX each
+/// frame has a file, NAME_NNNNNN.information.json, as the frames of other formats have.
+std::filesystem::path information_path(const std::filesystem::path& output,
+                                       std::optional<std::uint32_t> frame = {});
 
 /// If wanted: writes the file beside the first output and prints the table to `to`; nullptr: not.
+/// `number` is that of a frame of a sequence.
 void tell_information(const InformationFlags& flags, const Frame& frame, const Beams& beams,
-                      const std::vector<Output>& outputs, std::FILE* to);
+                      const std::vector<Output>& outputs, std::optional<std::uint32_t> number,
+                      std::FILE* to);
 
 }  // namespace glidar::app

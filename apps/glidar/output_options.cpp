@@ -143,7 +143,7 @@ Output plan_output(const std::string& path, const OutputFlags& flags,
                    const FileSinkOptions& options, const SidecarContext& context,
                    const Report& report) {
   const FileFormat& format = format_of(flags, path);
-  Output output{.path = path,
+  Output output{.path = path == kStandardOutput ? std::filesystem::path(path) : output_path(path),
                 .columns = columns_of(format, asked_columns(flags)),
                 .cloud_frame = flags.cloud_frame,
                 .deskew = flags.deskew,
@@ -311,6 +311,7 @@ OutputFlags labelled(const OutputFlags& flags, const std::string& label) {
   }
   OutputFlags result = flags;
   for (std::string& path : result.paths) {
+    path = output_path(path);
     path.insert(path.size() - format_for(path).suffix.size(), "_" + label);
   }
   if (!result.legacy_name.empty()) result.legacy_name += "_" + label;

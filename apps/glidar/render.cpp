@@ -14,6 +14,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 
 namespace glidar::app {
 namespace {
@@ -77,7 +78,9 @@ void write(const RenderFlags& flags, const View& view, const std::vector<Output>
   std::FILE* to = writes_standard_output(flags.output) ? stderr : stdout;
   if (flags.quiet) to = nullptr;
   if (to != nullptr) print_summary(view, outputs, to);
-  tell_information(flags.information, view.frame, view.beams, outputs, to);
+  std::optional<std::uint32_t> number;
+  if (flags.duration_s) number = view.frame.number;
+  tell_information(flags.information, view.frame, view.beams, outputs, number, to);
 }
 
 /// Of a run: what is measured and written.

@@ -2,50 +2,136 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/declared_frame.hpp>
 
+#include <import/text_source.hpp>
+#include <import/xml_reader.hpp>
+
 #include <assimp/scene.h>
 #include <fmt/format.h>
-#include <zip.h>
-#include <assimp/IOStream.hpp>
-#include <assimp/IOSystem.hpp>
 
+#include <algorithm>
 #include <array>
-#include <cmath>
+#include <charconv>
 #include <cstdint>
-#include <memory>
+#include <limits>
 #include <optional>
 #include <string_view>
+#include <system_error>
+#include <utility>
 
 namespace glidar::import {
 namespace {
 
 constexpr double kCentimetre_m = 0.01;
 constexpr double kMillimetre_m = 0.001;
-constexpr std::size_t kHead = 65536;  ///< bytes in which the first element of a file is looked for
+/// Units beyond are mistakes, and take numbers out of single precision.
+constexpr double kSmallestUnit_m = 1e-18;
+constexpr double kLargestUnit_m = 1e18;
 
 bool is_usable(double metres) {
-  return std::isfinite(metres) && metres > 0.0;
+  return metres >= kSmallestUnit_m && metres <= kLargestUnit_m;
 }
 
-void note_useless_unit(double metres, std::vector<std::string>& notes) {
+void note_useless_unit(const std::string& metres, std::vector<std::string>& notes) {
+  notes.push_back("the file declares a unit of " + metres + " m, which cannot be: 1 m is assumed");
+}
+
+void note_no_element(const char* name, const char* assumed, std::vector<std::string>& notes) {
   notes.push_back(
-      fmt::format("the file declares a unit of {:g} m, which cannot be: 1 m is assumed", metres));
+      fmt::format("the element <{}> of the file was not found, which declares its unit: "
+                  "{} assumed",
+                  name, assumed));
 }
 
-/// Assimp multiplies the unit and a rotation that makes y up into the root node. There they are
-/// read, and taken away, since whoever loads the model may choose others.
-ModelFrame take_collada(aiScene& scene, std::vector<std::string>& notes) {
-  ModelFrame frame;
-  aiMatrix4x4& root = scene.mRootNode->mTransformation;
-  const std::array<float, 3> to_y = {root.b1, root.b2, root.b3};
-  for (std::size_t axis = 0; axis < to_y.size(); ++axis) {
-    if (!(to_y[axis] > 0.0F)) continue;
-    // the decimal number that was rounded to single precision
-    frame.metres_per_unit = std::stod(fmt::format("{}", to_y[axis]));
-    frame.up = static_cast<Axis>(axis);
+/// A decimal number of XML; nan for anything else.
+double number_of(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  double number = 0.0;
+  const auto [stop, problem] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_number = problem == std::errc() && stop == text.data() + text.size();
+  return is_number ? number : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// What the asset of a COLLADA document declares, with the defaults of the standard.
+struct ColladaAsset {
+  std::string meter = "1";
+  std::string up_axis = "Y_UP";
+};
+
+/// The first asset of the document itself; empty: it is no such document.
+std::optional<ColladaAsset> collada_asset(TextSource text) {
+  using Kind = XmlEvent::Kind;
+  const std::vector<std::string> asset = {"COLLADA", "asset"};
+  ColladaAsset found;
+  XmlReader reader(std::move(text));
+  std::vector<std::string> path;
+  std::string up_axis;
+  bool is_collada = false;
+  for (XmlEvent event = reader.next(); event.kind != Kind::finished; event = reader.next()) {
+    if (event.kind == Kind::start) path.push_back(event.name);
+    if (path.empty()) continue;
+    if (path.front() != asset.front()) return std::nullopt;
+    is_collada = true;
+    const bool is_in_asset =
+        path.size() == 3 && std::equal(asset.begin(), asset.end(), path.begin());
+    if (is_in_asset && path.back() == "up_axis") up_axis += event.text;
+    const auto meter = event.attributes.find("meter");
+    if (is_in_asset && path.back() == "unit" && meter != event.attributes.end())
+      found.meter = trimmed(meter->second);
+    if (event.kind != Kind::end) continue;
+    if (path == asset) break;
+    path.pop_back();
   }
-  if (!frame.metres_per_unit) note_useless_unit(double{root.b2}, notes);
-  root = aiMatrix4x4();
+  if (!is_collada) return std::nullopt;
+  if (!trimmed(up_axis).empty()) found.up_axis = trimmed(up_axis);
+  return found;
+}
+
+std::optional<Axis> axis_named(std::string_view name) {
+  constexpr std::array<std::string_view, 3> kNames = {"X_UP", "Y_UP", "Z_UP"};
+  const auto* const known = std::find(kNames.begin(), kNames.end(), name);
+  if (known == kNames.end()) return std::nullopt;
+  return static_cast<Axis>(known - kNames.begin());
+}
+
+/// Assimp multiplies the unit and a rotation that makes y up into the root node, in single
+/// precision. They are taken away, since whoever loads the model may choose others.
+ModelFrame take_collada(aiScene& scene, TextSource text, std::vector<std::string>& notes) {
+  scene.mRootNode->mTransformation = aiMatrix4x4();
+  const std::optional<ColladaAsset> asset = collada_asset(std::move(text));
+  if (!asset) {
+    note_no_element("COLLADA", "1 m and the axes of the file are", notes);
+    return {};
+  }
+  ModelFrame frame;
+  const double metres = number_of(asset->meter);
+  if (is_usable(metres)) {
+    frame.metres_per_unit = metres;
+  } else {
+    note_useless_unit("'" + asset->meter + "'", notes);
+  }
+  frame.up = axis_named(asset->up_axis);
+  if (!frame.up) {
+    notes.push_back("the file declares the unknown up axis '" + asset->up_axis +
+                    "': its axes are kept");
+  }
   return frame;
+}
+
+/// The document of a COLLADA file, which a .zae archive contains and its manifest names.
+TextSource collada_text(const std::string& file, Assimp::IOSystem& files) {
+  const std::vector<std::string> names = zip_names(file);
+  if (names.empty()) return file_text(files, file);
+  XmlReader manifest(zip_text(file, "manifest.xml"));
+  bool is_root = false;
+  for (XmlEvent event = manifest.next(); event.kind != XmlEvent::Kind::finished;
+       event = manifest.next()) {
+    if (is_root && event.kind == XmlEvent::Kind::text)
+      return zip_text(file, zip_name(trimmed(event.text)));
+    is_root = event.kind == XmlEvent::Kind::start && event.name == "dae_root";
+  }
+  const auto first = std::find_if(names.begin(), names.end(),
+                                  [](const std::string& name) { return name.ends_with(".dae"); });
+  return zip_text(file, first == names.end() ? "" : *first);
 }
 
 template <class T>
@@ -63,7 +149,7 @@ ModelFrame read_fbx(const aiScene& scene, std::vector<std::string>& notes) {
   if (centimetres && is_usable(*centimetres)) {
     frame.metres_per_unit = *centimetres * kCentimetre_m;
   } else if (centimetres) {
-    note_useless_unit(*centimetres * kCentimetre_m, notes);
+    note_useless_unit(fmt::format("{:g}", *centimetres * kCentimetre_m), notes);
   }
   const auto axis = metadata<std::int32_t>(scene, "UpAxis");
   if (!axis || *axis < 0 || *axis > 2) return frame;
@@ -75,32 +161,19 @@ ModelFrame read_fbx(const aiScene& scene, std::vector<std::string>& notes) {
   return frame;
 }
 
-/// The first bytes of a file; empty when it cannot be read.
-std::string head_of(Assimp::IOSystem& files, const std::string& name) {
-  Assimp::IOStream* stream = files.Open(name.c_str(), "rb");
-  if (stream == nullptr) return "";
-  std::string text(kHead, '\0');
-  text.resize(stream->Read(text.data(), 1, text.size()));
-  files.Close(stream);
-  return text;
-}
-
-/// The value of the attribute `unit` of the first element `name`; empty: it has none.
-std::string unit_attribute(const std::string& xml, const std::string& name) {
-  const std::size_t start = xml.find("<" + name);
-  if (start == std::string::npos) return "";
-  const std::string element = xml.substr(start, xml.find('>', start) - start);
-  for (const std::string quote : {"\"", "'"}) {
-    const std::size_t at = element.find(" unit=" + quote);
-    if (at == std::string::npos) continue;
-    const std::size_t first = at + std::string_view(" unit=\"").size();
-    return element.substr(first, element.find(quote, first) - first);
-  }
-  return "";
+/// An attribute of the document's element `name`, "" where it has none; empty: the document has
+/// another element, or none.
+std::optional<std::string> root_attribute(TextSource text, std::string_view name,
+                                          const std::string& attribute) {
+  XmlReader reader(std::move(text));
+  XmlEvent event = reader.next();
+  while (event.kind == XmlEvent::Kind::text) event = reader.next();
+  if (event.kind != XmlEvent::Kind::start || event.name != name) return std::nullopt;
+  return trimmed(event.attributes[attribute]);
 }
 
 /// A unit of 3MF and AMF. Their default is the millimetre, their up axis is z.
-ModelFrame printed(const std::string& unit, std::vector<std::string>& notes) {
+ModelFrame printed(TextSource text, const char* element, std::vector<std::string>& notes) {
   struct Named {
     std::string_view name;
     double metres;
@@ -112,43 +185,45 @@ ModelFrame printed(const std::string& unit, std::vector<std::string>& notes) {
                                             {"foot", 0.3048},
                                             {"feet", 0.3048},
                                             {"meter", 1.0}}};
-  if (unit.empty()) return {kMillimetre_m, Axis::z};
-  for (const Named& known : kUnits) {
-    if (known.name == unit) return {known.metres, Axis::z};
+  const std::optional<std::string> unit = root_attribute(std::move(text), element, "unit");
+  if (!unit) {
+    note_no_element(element, "1 m is", notes);
+    return {std::nullopt, Axis::z};
   }
-  notes.push_back("the file declares the unknown unit '" + unit + "': 1 m is assumed");
+  if (unit->empty()) return {kMillimetre_m, Axis::z};
+  for (const Named& known : kUnits) {
+    if (known.name == *unit) return {known.metres, Axis::z};
+  }
+  notes.push_back("the file declares the unknown unit '" + *unit + "': 1 m is assumed");
   return {std::nullopt, Axis::z};
 }
 
-struct CloseZip {
-  void operator()(zip_t* archive) const { zip_discard(archive); }
-  void operator()(zip_file_t* part) const { zip_fclose(part); }
-};
-
-/// The first bytes of the model part of a 3MF package; empty when there is none.
-std::string head_of_3mf(const std::string& file) {
-  const std::unique_ptr<zip_t, CloseZip> archive(zip_open(file.c_str(), ZIP_RDONLY, nullptr));
-  if (archive == nullptr) return "";
-  const std::unique_ptr<zip_file_t, CloseZip> part(zip_fopen(archive.get(), "3D/3dmodel.model", 0));
-  if (part == nullptr) return "";
-  std::string text(kHead, '\0');
-  const zip_int64_t read = zip_fread(part.get(), text.data(), text.size());
-  text.resize(read > 0 ? static_cast<std::size_t>(read) : 0);
-  return text;
+/// The model of a 3MF package: the part that its relationships name (Open Packaging Conventions).
+TextSource model_of_3mf(const std::string& file) {
+  constexpr std::string_view kModel = "/3dmanufacturing/2013/01/3dmodel";
+  XmlReader relations(zip_text(file, "_rels/.rels"));
+  for (XmlEvent event = relations.next(); event.kind != XmlEvent::Kind::finished;
+       event = relations.next()) {
+    if (event.kind == XmlEvent::Kind::start && event.attributes["Type"].ends_with(kModel))
+      return zip_text(file, zip_name(event.attributes["Target"]));
+  }
+  return zip_text(file, "3D/3dmodel.model");
 }
 
 }  // namespace
 
 ModelFrame take_declared_frame(aiScene& scene, const std::string& format, const std::string& file,
                                Assimp::IOSystem& files, std::vector<std::string>& notes) {
-  if (format.find("Collada") != std::string::npos) return take_collada(scene, notes);
+  if (format.find("Collada") != std::string::npos) {
+    return take_collada(scene, collada_text(file, files), notes);
+  }
   if (format.find("FBX") != std::string::npos) return read_fbx(scene, notes);
   if (format.starts_with("glTF")) return {1.0, Axis::y};
   if (format.starts_with("3mf") || format.starts_with("3MF")) {
-    return printed(unit_attribute(head_of_3mf(file), "model"), notes);
+    return printed(model_of_3mf(file), "model", notes);
   }
   if (format.find("AMF") != std::string::npos) {
-    return printed(unit_attribute(head_of(files, file), "amf"), notes);
+    return printed(file_text(files, file), "amf", notes);
   }
   return {};
 }

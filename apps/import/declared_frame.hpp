@@ -19,8 +19,8 @@ namespace glidar::import {
 /// and makes sure that the importer's scene is in the file's own numbers and axes. `format` is
 /// Model::format. What is declared but of no use is reported in notes.
 /// Sources: COLLADA 1.5 (asset: unit, up_axis), glTF 2.0 section 3.4, 3MF core specification 1.3
-/// section 3.2 (model: unit), AMF (ISO/ASTM 52915, unit), FBX GlobalSettings (UnitScaleFactor in
-/// cm, UpAxis).
+/// section 3.2 (model: unit; the part of the package that _rels/.rels names), AMF (ISO/ASTM 52915,
+/// unit), FBX GlobalSettings (UnitScaleFactor in cm, UpAxis).
 ModelFrame take_declared_frame(aiScene& scene, const std::string& format, const std::string& file,
                                Assimp::IOSystem& files, std::vector<std::string>& notes);
 

@@ -23,6 +23,11 @@ Eigen::Vector3d moved(const Placed& placed, const aiVector3D& v) {
          placed.model_from_mesh.topRightCorner<3, 1>();
 }
 
+/// In the range of single precision, which also origins are rounded to.
+bool is_representable(const Eigen::Vector3d& p) {
+  return p.cast<float>().allFinite();
+}
+
 /// A triangle of valid corners; anything else is left by the steps before, or by damage.
 bool is_triangle(const aiFace& face, unsigned vertices) {
   return face.mNumIndices == 3 && face.mIndices[0] < vertices && face.mIndices[1] < vertices &&
@@ -73,8 +78,9 @@ std::vector<bool> take_positions(const Placed& placed, const Eigen::Vector3d& or
   std::vector<bool> finite(mesh.mNumVertices);
   part.positions_m.resize(mesh.mNumVertices);
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
-    const Eigen::Vector3f p = plain(moved(placed, mesh.mVertices[v]) - origin);
-    finite[v] = p.allFinite();
+    const Eigen::Vector3d in_model = moved(placed, mesh.mVertices[v]);
+    const Eigen::Vector3f p = plain(in_model - origin);
+    finite[v] = is_representable(in_model) && p.allFinite();
     part.positions_m[v] = finite[v] ? p : Eigen::Vector3f::Zero();
   }
   return finite;
@@ -182,7 +188,7 @@ void for_used_vertices(const Placed& placed,
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
     if (!used[v]) continue;
     const Eigen::Vector3d p = moved(placed, mesh.mVertices[v]);
-    if (p.allFinite()) visit(p);
+    if (is_representable(p)) visit(p);
   }
 }
 

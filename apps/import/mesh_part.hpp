@@ -22,7 +22,8 @@ struct Repairs {
 /// The file's material of a placed mesh.
 std::size_t material_of(const Placed& placed);
 
-/// Visits the finite vertices that triangles use, in the model's frame.
+/// Visits the vertices that triangles use, in the model's frame, that are in the range of single
+/// precision. Triangles of others are left out.
 void for_used_vertices(const Placed& placed,
                        const std::function<void(const Eigen::Vector3d&)>& visit);
 

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -235,7 +236,13 @@ void set_size(std::string_view name, const Builtin& builtin, std::string_view pa
 Sizes sizes_of(std::string_view name, const Builtin& builtin,
                std::span<const std::string_view> parameters) {
   Sizes sizes;
-  for (const std::string_view parameter : parameters) set_size(name, builtin, parameter, sizes);
+  std::set<std::string_view> given;
+  for (const std::string_view parameter : parameters) {
+    const std::string_view key = parameter.substr(0, parameter.find('='));
+    set_size(name, builtin, parameter, sizes);
+    if (!given.insert(key).second)
+      refuse(name, "'" + std::string(key) + "' is given twice", "each size once", "");
+  }
   if (builtin.has_tube && sizes.tube_radius >= sizes.radius) {
     refuse(name, "a tube of radius " + number_text(sizes.tube_radius),
            "a tube_radius below the radius, " + number_text(sizes.radius), "");

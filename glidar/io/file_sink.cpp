@@ -9,6 +9,7 @@
 #include <glidar/io/kitti_files.hpp>
 #include <glidar/io/stored_columns.hpp>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -22,20 +23,27 @@
 namespace glidar {
 namespace {
 
+void check_writable(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) == 0) return;
+  throw Error({path.string(), fmt::format("the folder {} cannot be written to", folder.string()),
+               "", "write to another folder"});
+}
+
 void check_folder(const std::filesystem::path& path, const Format& format) {
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   std::error_code ignored;  // a folder that cannot be looked at is none for us
+  if (!path.has_filename()) {
+    throw Error({path.string(), "is the name of a folder", "a file name",
+                 "leave out the separator at its end"});
+  }
   if (!std::filesystem::is_directory(folder, ignored)) {
     throw Error({path.string(), fmt::format("there is no folder {}", folder.string()), "",
                  "make it first, or correct the path"});
   }
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    throw Error({path.string(), fmt::format("the folder {} cannot be written to", folder.string()),
-                 "", "write to another folder"});
-  }
   const bool wants_folder = format.told.is_folder;
-  if (std::filesystem::exists(path, ignored) &&
-      std::filesystem::is_directory(path, ignored) != wants_folder) {
+  const bool is_folder = std::filesystem::is_directory(path, ignored);
+  check_writable(path, wants_folder && is_folder ? path : folder);
+  if (std::filesystem::exists(path, ignored) && is_folder != wants_folder) {
     throw Error({path.string(), wants_folder ? "is no folder" : "is a folder",
                  wants_folder ? "a folder, or none yet" : "a file name", "choose another name"});
   }
@@ -230,9 +238,10 @@ std::unique_ptr<FileSink> make_file_sink(const std::filesystem::path& path,
                                          const FileSinkOptions& options,
                                          const SidecarContext& context, Report report) {
   const Format& format = find_format(path);
-  check_folder(path, format);
+  const std::filesystem::path output = output_path(path);
+  check_folder(output, format);
   check(options);
-  return std::make_unique<FormatSink>(Target{path}, format, options, context, std::move(report));
+  return std::make_unique<FormatSink>(Target{output}, format, options, context, std::move(report));
 }
 
 std::unique_ptr<FileSink> make_stream_sink(int descriptor, const std::filesystem::path& name,

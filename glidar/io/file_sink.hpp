@@ -75,7 +75,12 @@ struct FileFormat {
 /// All formats, for help and errors.
 std::span<const FileFormat> file_formats();
 
-/// The format for a path by its suffix. Throws Error naming all suffixes and the nearest.
+/// The path of an output: for formats that are folders without the separators that end it, which
+/// the completion of names in shells appends ("out.kitti/"). Throws Error as format_for() does.
+std::filesystem::path output_path(const std::filesystem::path& path);
+
+/// The format for a path by its suffix; separators at its end do not count. Throws Error naming all
+/// suffixes and the nearest.
 const FileFormat& format_for(const std::filesystem::path& path);
 
 /// True for formats that are plain text with these options, fit for a terminal.

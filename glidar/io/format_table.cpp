@@ -132,9 +132,18 @@ std::string lower_case(std::string text) {
   return text;
 }
 
+std::filesystem::path without_separators(const std::filesystem::path& path) {
+  return path.has_filename() ? path : path.parent_path();
+}
+
 }  // namespace
 
-const Format& find_format(const std::filesystem::path& path) {
+std::filesystem::path output_path(const std::filesystem::path& path) {
+  return find_format(path).told.is_folder ? without_separators(path) : path;
+}
+
+const Format& find_format(const std::filesystem::path& given) {
+  const std::filesystem::path path = without_separators(given);
   const std::string name = lower_case(path.filename().string());
   const Format* best = nullptr;
   for (const Format& format : formats()) {
@@ -146,7 +155,7 @@ const Format& find_format(const std::filesystem::path& path) {
   const std::string suffix = lower_case(path.extension().string());
   const std::vector<std::string> all = suffixes();
   const std::string nearest = suffix.empty() ? "" : nearest_word(suffix, all);
-  throw Error({path.string(),
+  throw Error({given.string(),
                suffix.empty() ? "the name has no suffix that tells the format"
                               : fmt::format("no format has the suffix {}", suffix),
                fmt::format("{}", fmt::join(all, " ")),

@@ -34,8 +34,9 @@ struct Format {
 /// All formats, in the order in which they are listed to users.
 const std::vector<Format>& formats();
 
-/// The format whose suffix the name ends with, the longest one that fits.
+/// The format whose suffix the name ends with, the longest one that fits; separators at the end of
+/// the path do not count.
 /// Throws Error naming all formats and the nearest.
-const Format& find_format(const std::filesystem::path& path);
+const Format& find_format(const std::filesystem::path& given);
 
 }  // namespace glidar

@@ -79,8 +79,16 @@ void write_kitti_labels(const CloudFile& job, AtomicFile& file) {
 
 void stage_labels_beside(const CloudFile& job, const std::filesystem::path& path,
                          StagedFiles& files) {
-  if (!has_classes(job.context.scene)) return;
-  AtomicFile& labels = files.add(std::filesystem::path(path).replace_extension(".label"));
+  stage_kitti_labels(job, std::filesystem::path(path).replace_extension(".label"), files);
+}
+
+void stage_kitti_labels(const CloudFile& job, const std::filesystem::path& path,
+                        StagedFiles& files) {
+  if (!has_classes(job.context.scene)) {
+    files.remove(path);
+    return;
+  }
+  AtomicFile& labels = files.add(path);
   write_kitti_labels(job, labels);
   labels.finish();
 }

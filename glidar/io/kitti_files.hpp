@@ -26,7 +26,12 @@ bool has_classes(const Scene& scene);
 /// Error for ids beyond 16 bits.
 void write_kitti_labels(const CloudFile& job, AtomicFile& file);
 
-/// Adds OUT.label beside OUT.bin, for scenes with classes. Throws Error.
+/// Adds the labels of a cloud for scenes with classes; for others removes those of an earlier
+/// cloud, which would have the name of this one's. Throws Error.
+void stage_kitti_labels(const CloudFile& job, const std::filesystem::path& path,
+                        StagedFiles& files);
+
+/// The same for OUT.label beside OUT.bin.
 void stage_labels_beside(const CloudFile& job, const std::filesystem::path& path,
                          StagedFiles& files);
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
+#include <glidar/io/image_box.hpp>
 #include <glidar/io/kitti_files.hpp>
 
 #include <fmt/format.h>
@@ -19,20 +20,10 @@
 namespace glidar {
 namespace {
 
-/// Rectified camera of an image: pixel = P point, pixel centres at whole coordinates.
-struct Camera {
-  double fx = 0.0;
-  double fy = 0.0;
-  double cx = 0.0;
-  double cy = 0.0;
-  double width = 0.0;
-  double height = 0.0;
-};
-
 /// The left colour camera of KITTI's first day (2011_09_26, P_rect_02), for LiDARs without one.
-constexpr Camera kKittiCamera = {721.5377, 721.5377, 609.5593, 172.854, 1242.0, 375.0};
+constexpr RectifiedCamera kKittiCamera = {721.5377, 721.5377, 609.5593, 172.854, 1242.0, 375.0};
 
-Camera camera_of(const Sensor& sensor) {
+RectifiedCamera camera_of(const Sensor& sensor) {
   const auto* pinhole = std::get_if<Pinhole>(&sensor.optics);
   if (pinhole == nullptr) return kKittiCamera;
   const PinholeIntrinsics& i = pinhole->intrinsics;
@@ -85,66 +76,22 @@ double wrapped(double angle_rad) {
   return std::remainder(angle_rad, 2.0 * std::numbers::pi);
 }
 
-/// Calls `take` with every corner of every triangle.
-template <class Function>
-void for_corners(const Mesh& mesh, Function take) {
-  for (const Triangle& triangle : mesh.triangles) {
-    for (const std::uint32_t corner : triangle)
-      take(mesh.origin_m + mesh.positions_m[corner].cast<double>());
-  }
-}
-
-/// An instance as the camera sees it.
-struct Seen {
-  const Mesh& mesh;
-  Pose camera_from_object;
-  double scale = 1.0;
-
-  [[nodiscard]] Eigen::Vector3d at(const Eigen::Vector3d& point) const {
-    return camera_from_object * (scale * point);
-  }
-};
-
 /// The tight box around the mesh in its heading.
-LevelBox level_box(const Seen& seen) {
+LevelBox level_box(const PlacedMesh& seen) {
   LevelBox box;
   box.rotation_y = wrapped(heading(seen.camera_from_object.linear()));
   const Eigen::Matrix3d camera_from_box =
       Eigen::AngleAxisd(box.rotation_y, Eigen::Vector3d::UnitY()).toRotationMatrix();
   Eigen::AlignedBox3d extent;
-  for_corners(seen.mesh, [&](const Eigen::Vector3d& corner) {
-    extent.extend(camera_from_box.transpose() * seen.at(corner));
-  });
+  for (const Triangle& triangle : seen.mesh.triangles) {
+    for (const std::uint32_t corner : triangle)
+      extent.extend(camera_from_box.transpose() * seen.in_camera(corner));
+  }
   box.size = extent.sizes();
   Eigen::Vector3d bottom = extent.center();
   bottom.y() = extent.max().y();
   box.bottom = camera_from_box * bottom;
   return box;
-}
-
-/// What of an instance is in the image.
-struct ImageBox {
-  Eigen::AlignedBox2d inside;  ///< pixels
-  double truncated = 0.0;      ///< share of its area outside
-};
-
-/// The box of what is in front of the camera; empty when nothing of it is in the image.
-std::optional<ImageBox> image_box(const Seen& seen, const Camera& camera) {
-  constexpr double kNearest_m = 1e-3;
-  Eigen::AlignedBox2d whole;
-  for_corners(seen.mesh, [&](const Eigen::Vector3d& corner) {
-    const Eigen::Vector3d p = seen.at(corner);
-    if (p.z() < kNearest_m) return;
-    whole.extend(Eigen::Vector2d(camera.fx * p.x() / p.z() + camera.cx,
-                                 camera.fy * p.y() / p.z() + camera.cy));
-  });
-  if (whole.isEmpty()) return std::nullopt;
-  const Eigen::AlignedBox2d image(Eigen::Vector2d::Zero(),
-                                  Eigen::Vector2d(camera.width - 1.0, camera.height - 1.0));
-  const Eigen::AlignedBox2d inside = whole.intersection(image);
-  if (inside.isEmpty()) return std::nullopt;
-  const double area = whole.volume();
-  return ImageBox{inside, area > 0.0 ? 1.0 - inside.volume() / area : 0.0};
 }
 
 /// Six decimals, never -0.
@@ -171,7 +118,8 @@ std::string type_of(const std::string& name) {
 /// How much others hide of an object is not known.
 constexpr int kOcclusionUnknown = 3;
 
-std::string object_line(const std::string& type, const Seen& seen, const Camera& camera) {
+std::string object_line(const std::string& type, const PlacedMesh& seen,
+                        const RectifiedCamera& camera) {
   const std::optional<ImageBox> image = image_box(seen, camera);
   const LevelBox box = level_box(seen);
   const double alpha = wrapped(box.rotation_y - std::atan2(box.bottom.x(), box.bottom.z()));
@@ -186,7 +134,7 @@ std::string object_line(const std::string& type, const Seen& seen, const Camera&
 }
 
 /// A region of the image without labels; none where the object is not in the image.
-std::string dont_care_line(const Seen& seen, const Camera& camera) {
+std::string dont_care_line(const PlacedMesh& seen, const RectifiedCamera& camera) {
   const std::optional<ImageBox> image = image_box(seen, camera);
   if (!image) return "";
   return "DontCare -1 -1 -10 " + box_text(image) + " -1 -1 -1 -1000 -1000 -1000 -10\n";
@@ -211,7 +159,7 @@ void add_text(const std::filesystem::path& path, const std::string& text, Staged
 }  // namespace
 
 std::string kitti_calibration(const Sensor& sensor) {
-  const Camera camera = camera_of(sensor);
+  const RectifiedCamera camera = camera_of(sensor);
   Eigen::Matrix4d projection = Eigen::Matrix4d::Identity();
   projection.block<2, 3>(0, 0) << camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy;
   const Eigen::Matrix4d none = Eigen::Matrix4d::Identity();
@@ -224,14 +172,14 @@ std::string kitti_calibration(const Sensor& sensor) {
 
 std::string kitti_labels(const Scene& scene, const Sensor& sensor, const Frame& frame) {
   const std::set<std::uint32_t> met(frame.truth.instance.begin(), frame.truth.instance.end());
-  const Camera camera = camera_of(sensor);
+  const RectifiedCamera camera = camera_of(sensor);
   const Pose camera_from_world = camera_from_sensor(sensor) * frame.world_from_sensor.inverse();
   std::string text;
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
     if (!met.contains(i)) continue;
     const Instance& instance = scene.instances[i];
-    const Seen seen{scene.meshes.at(instance.mesh),
-                    camera_from_world * frame.world_from_instance.at(i), instance.scale};
+    const PlacedMesh seen{scene.meshes.at(instance.mesh),
+                          camera_from_world * frame.world_from_instance.at(i), instance.scale};
     const std::string type = type_of(scene.class_names.at(instance.class_id));
     text += instance.class_id == 0 ? dont_care_line(seen, camera) : object_line(type, seen, camera);
   }
@@ -253,11 +201,7 @@ void stage_kitti_folder(const CloudFile& job, const std::filesystem::path& folde
   AtomicFile& points = files.add(folder / "velodyne" / (number + ".bin"));
   write_kitti(velodyne, points);
   points.finish();
-  if (is_labelled) {
-    AtomicFile& labels = files.add(folder / "labels" / (number + ".label"));
-    write_kitti_labels(velodyne, labels);
-    labels.finish();
-  }
+  stage_kitti_labels(velodyne, folder / "labels" / (number + ".label"), files);
   add_text(folder / "calib" / (number + ".txt"), kitti_calibration(context.sensor), files);
   add_text(folder / "label_2" / (number + ".txt"),
            kitti_labels(context.scene, context.sensor, job.frame), files);

@@ -17,7 +17,7 @@ void turn(V& v, Axis up) {
   const S y = v.y();
   const S z = v.z();
   if (up == Axis::y) {
-    v.y() = -z;
+    v.y() = S{0} - z;  // never -0
     v.z() = y;
   } else if (up == Axis::x) {
     v.x() = y;

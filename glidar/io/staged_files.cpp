@@ -5,6 +5,19 @@
 #include <system_error>
 
 namespace glidar {
+namespace {
+
+void remove_outdated(const std::filesystem::path& path) {
+  std::error_code failure;
+  if (!std::filesystem::is_regular_file(path, failure)) return;
+  std::filesystem::remove(path, failure);
+  if (!failure) return;
+  throw Error({path.string(),
+               "cannot remove this file, which belongs to an earlier output: " + failure.message(),
+               "", "write to another folder"});
+}
+
+}  // namespace
 
 void StagedFiles::add_folder(const std::filesystem::path& path) {
   std::error_code failure;
@@ -15,6 +28,8 @@ void StagedFiles::add_folder(const std::filesystem::path& path) {
 }
 
 void StagedFiles::commit() {
+  for (const std::filesystem::path& path : removals_) remove_outdated(path);
+  removals_.clear();
   for (auto file = files_.rbegin(); file != files_.rend(); ++file) file->commit();
   files_.clear();
   folders_.clear();
@@ -22,6 +37,7 @@ void StagedFiles::commit() {
 
 void StagedFiles::clear() noexcept {
   files_.clear();
+  removals_.clear();
   std::error_code ignored;  // a folder that somebody else uses by now stays
   for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder)
     std::filesystem::remove(*folder, ignored);

@@ -25,10 +25,13 @@ class StagedFiles {
   AtomicFile& add(int target, const std::filesystem::path& name) {
     return files_.emplace_back(target, name);
   }
+  /// Removes a regular file at commit(), if it is there by then: one of an earlier output that does
+  /// not belong to the new files.
+  void remove(const std::filesystem::path& path) { removals_.push_back(path); }
   /// Makes a folder unless it is there. Throws Error.
   void add_folder(const std::filesystem::path& path);
-  /// Names the files, the one added first last: whoever waits for it finds the others too. Throws
-  /// Error.
+  /// Removes what is outdated, then names the files, the one added first last: whoever waits for it
+  /// finds the others too. Throws Error.
   void commit();
   /// Removes everything that is not committed.
   void clear() noexcept;
@@ -36,6 +39,7 @@ class StagedFiles {
  private:
   std::list<AtomicFile> files_;  // an AtomicFile does not move
   std::vector<std::filesystem::path> folders_;
+  std::vector<std::filesystem::path> removals_;
 };
 
 }  // namespace glidar

@@ -35,6 +35,17 @@ class ModelOptions(CliTest):
         self.assertEqual(report["size_m"], [4.0, 2.0, 1.0])
         self.assertIn("allowed: size", self.refused("info", "builtin:box:radius=4"))
 
+    def test_a_size_in_the_name_and_beside_it_is_refused(self):
+        self.write("twice.yaml", "models: [{model: 'builtin:box:size=3', size: [1, 2, 3]}]\nsensor: VLP-16\n")
+        self.assertIn("'size' is given twice", self.refused("render", "twice.yaml", "-o", "x.pcd"))
+
+    def test_no_number_of_a_turned_model_is_minus_zero(self):
+        self.write("flat.obj", "v 0 0 0\nv 4 0 0\nv 0 2 0\nf 1 2 3\n")
+        for up in "xyz":
+            text = self.succeed("info", "flat.obj", "--up", up).stdout
+            self.assertNotRegex(text, r"-0(?![.\d])|-0\.0*(?!\d)", up)
+            self.assertNotRegex(self.succeed("info", "flat.obj", "--up", up, "--json").stdout, r"-0\.0[,\]\s]", up)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -103,6 +103,12 @@ TEST(InformationOptions, FileStandsBesideTheOutput) {
   EXPECT_EQ(information_path("view.depth.png"), "view.information.json");
 }
 
+TEST(InformationOptions, EveryFrameHasAFileAlsoWhereFramesShareAFolder) {
+  EXPECT_EQ(information_path("x/out.kitti"), "x/out.information.json");
+  EXPECT_EQ(information_path("x/out.kitti", 3), "x/out_000003.information.json");
+  EXPECT_EQ(information_path("x/cloud_000003.pcd", 3), "x/cloud_000003.information.json");
+}
+
 TEST(InformationOptions, SigmaMustBeAboveZeroAndWanted) {
   OutputFlags file;
   file.paths = {"a.pcd"};

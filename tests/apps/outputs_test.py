@@ -53,6 +53,15 @@ class Rigs(CliTest):
         self.assertEqual(done.stdout.count("\n"), 40 * 30 + 1)
 
 
+class Folders(CliTest):
+    def test_every_frame_of_a_folder_has_its_own_information(self):
+        self.succeed("render", "builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "--duration", "0.2",
+                     "--information", "-o", "out.kitti/")  # fmt: skip
+        found = sorted(name for name in os.listdir(self.folder) if name.endswith(".information.json"))
+        self.assertEqual(found, ["out_000000.information.json", "out_000001.information.json"])
+        self.assertEqual(len(os.listdir(os.path.join(self.folder, "out.kitti", "velodyne"))), 2)
+
+
 class Failures(CliTest):
     def test_when_one_output_fails_none_of_the_frame_is_there(self):
         # the box is 7 m and more away: 20000 units per metre do not fit 16 bits

@@ -232,6 +232,8 @@ TEST(BuiltinModels, WrongSizesAreErrors) {
       {"sphere:radius=nan",
        "builtin:sphere:radius=nan: a size of 'nan'; allowed: metres above 0, "
        "up to 1e15"},
+      {"box:size=1:size=2",
+       "builtin:box:size=1:size=2: 'size' is given twice; allowed: each size once"},
       {"sphere:radius",
        "builtin:sphere:radius: 'radius' without a number; allowed: "
        "radius=NUMBER, in metres"},

@@ -6,7 +6,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <zip.h>
 
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -53,6 +55,145 @@ std::string amf(const std::string& attribute) {
          "<vertex><coordinates><x>0</x><y>4</y><z>0</z></coordinates></vertex></vertices>"
          "<volume><triangle><v1>0</v1><v2>1</v2><v3>2</v3></triangle></volume></mesh></object>"
          "</amf>\n";
+}
+
+/// A 3MF package of parts by name, written by libzip.
+std::filesystem::path package(const std::filesystem::path& path,
+                              const std::map<std::string, std::string>& parts) {
+  zip_t* archive = zip_open(path.c_str(), ZIP_CREATE | ZIP_TRUNCATE, nullptr);
+  for (const auto& [name, text] : parts) {
+    zip_source_t* source = zip_source_buffer(archive, text.data(), text.size(), 0);
+    zip_file_add(archive, name.c_str(), source, ZIP_FL_OVERWRITE);
+  }
+  EXPECT_EQ(zip_close(archive), 0) << path;
+  return path;
+}
+
+/// A triangle of 2 x 4 units; `start`: what is in the file before the content of its model.
+std::filesystem::path model_3mf(const TestFolder& folder, const std::string& start,
+                                const std::string& part = "3D/3dmodel.model") {
+  const std::string mesh =
+      "<resources><object id=\"1\" type=\"model\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/>"
+      "<vertex x=\"2\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"4\" z=\"0\"/></vertices><triangles>"
+      "<triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh></object></resources>"
+      "<build><item objectid=\"1\"/></build></model>";
+  return package(
+      folder / "a.3mf",
+      {{part, start + mesh},
+       {"_rels/.rels",
+        "<?xml version=\"1.0\"?><Relationships "
+        "xmlns=\"http://schemas.openxmlformats.org/package/2006/relationships\">"
+        "<Relationship Id=\"r9\" Target=\"/Metadata/thumbnail.png\" "
+        "Type=\"http://schemas.openxmlformats.org/package/2006/relationships/metadata/thumbnail\"/>"
+        "<Relationship Target=\"/" +
+            part +
+            "\" Id=\"rel0\" "
+            "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\" "
+            "/></Relationships>"},
+       {"[Content_Types].xml",
+        "<?xml version=\"1.0\"?><Types "
+        "xmlns=\"http://schemas.openxmlformats.org/package/2006/content-types\"/>"}});
+}
+
+constexpr const char* k3mf = "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\"";
+
+TEST(DeclaredFrame, TheUnitOf3mfIsFoundHoweverItsXmlIsWritten) {
+  const std::string space = std::string(k3mf) + " ";
+  const std::string big_comment = "<!-- " + std::string(70000, 'x') + " -->";
+  const std::vector<std::string> starts = {
+      "<model unit=\"inch\" " + space + ">",
+      "<?xml version=\"1.0\"?>\n<model\n\t" + space + "\n\tunit=\"inch\"\n>",
+      "<model " + space + " unit = 'inch' xml:lang=\"en-US\">",
+      "<model " + space + "xml:lang=\"a &gt; > b\" unit=\"inch\">",
+      "<!-- <model unit=\"meter\"> --><model " + space + "unit=\"inch\">",
+      "<?xml version=\"1.0\"?>" + big_comment + "<model " + space + "unit=\"inch\">" + big_comment,
+      "<?xml version=\"1.0\"?><?note <model unit=\"meter\"> ?><model " + space + "unit=\"inch\">",
+      "<model " + space + "data-unit=\"meter\" unit=\"inch\">",
+  };
+  const TestFolder temp;
+  for (const std::string& start : starts) {
+    const Model model = load(model_3mf(temp, start), as_declared());
+    EXPECT_EQ(model.declared.metres_per_unit, 0.0254) << start.substr(0, 200);
+    EXPECT_NEAR(bounds(model.mesh).sizes().y(), 0.1016, 1e-8) << start.substr(0, 200);
+  }
+  EXPECT_EQ(load(model_3mf(temp, "<model " + space + ">"), as_declared()).declared.metres_per_unit,
+            0.001);
+}
+
+TEST(DeclaredFrame, ThePartOf3mfThatRelationshipsNameIsRead) {
+  const TestFolder temp;
+  const auto file =
+      model_3mf(temp, "<model unit=\"foot\" " + std::string(k3mf) + ">", "3D/part.model");
+  EXPECT_EQ(load(file, as_declared()).declared.metres_per_unit, 0.3048);
+}
+
+TEST(DeclaredFrame, UnitsOfAmfAreFoundBehindComments) {
+  const TestFolder temp;
+  const std::string text = amf("\n\tversion = '1.1'\n\tunit = 'inch'\n");
+  std::string commented = text;
+  commented.insert(text.find("<amf"),
+                   "<!-- <amf unit=\"meter\"> " + std::string(70000, ' ') + "-->");
+  for (const std::string& one : {text, commented}) {
+    EXPECT_EQ(load(temp.write("a.amf", one), as_declared()).declared.metres_per_unit, 0.0254);
+  }
+}
+
+TEST(DeclaredFrame, NumbersAndNamesOfColladaAreReadWithoutTheSpaceAroundThem) {
+  const TestFolder temp;
+  const Model model =
+      load(temp.write(
+               "a.dae",
+               collada("<unit\n name='inch'\n meter = \" 0.0254 \"/><up_axis>\n Z_UP </up_axis>")),
+           as_declared());
+  EXPECT_EQ(model.declared.metres_per_unit, 0.0254);
+  EXPECT_EQ(model.declared.up, Axis::z);
+  EXPECT_LT((corner(model, 0) - 0.0254 * Eigen::Vector3d(1, 2, 3)).norm(), 1e-8);
+  const Model commented = load(
+      temp.write("a.dae", collada("<!-- <unit meter=\"7\"/><up_axis>X_UP</up_axis> --><contributor>"
+                                  "<unit meter=\"8\"/></contributor><unit meter=\"0.5\"/>"
+                                  "<up_axis><!-- X_UP -->Z_UP</up_axis>")),
+      as_declared());
+  EXPECT_EQ(commented.declared.metres_per_unit, 0.5);
+  EXPECT_EQ(commented.declared.up, Axis::z);
+}
+
+TEST(DeclaredFrame, AUselessUnitOfColladaIsNotedAsWrittenAndTheUpAxisIsKept) {
+  const TestFolder temp;
+  for (const char* meter : {"1e50", "-1", "nan", "inf", "one", ""}) {
+    const Model model = load(temp.write("a.dae", collada("<unit meter=\"" + std::string(meter) +
+                                                         "\"/><up_axis>X_UP</up_axis>")),
+                             as_declared());
+    EXPECT_FALSE(model.applied.metres_per_unit.has_value()) << meter;
+    EXPECT_THAT(model.notes, Contains("the file declares a unit of '" + std::string(meter) +
+                                      "' m, which cannot be: 1 m is assumed"));
+    EXPECT_EQ(model.applied.up, Axis::x) << meter;
+    EXPECT_EQ(corner(model, 0), Eigen::Vector3d(2.0, 3.0, 1.0)) << meter;
+  }
+}
+
+TEST(DeclaredFrame, AnUnknownUpAxisOfColladaIsNoted) {
+  const TestFolder temp;
+  const Model model =
+      load(temp.write("a.dae", collada("<unit meter=\"2\"/><up_axis>UP</up_axis>")), as_declared());
+  EXPECT_EQ(model.applied.metres_per_unit, 2.0);
+  EXPECT_FALSE(model.applied.up.has_value());
+  EXPECT_THAT(model.notes, Contains(HasSubstr("unknown up axis 'UP': its axes are kept")));
+}
+
+TEST(DeclaredFrame, ColladaInAnArchiveIsThatOfItsManifest) {
+  const TestFolder temp;
+  const std::string root = collada("<unit meter=\"0.25\"/><up_axis>Z_UP</up_axis>");
+  const std::string other = collada("<unit meter=\"4\"/>");
+  const std::string manifest =
+      "<?xml version=\"1.0\"?><!-- <dae_root>a.dae</dae_root> -->\n"
+      "<dae_root>./b%20c.dae</dae_root>";
+  const Model named = load(
+      package(temp / "a.zae", {{"a.dae", other}, {"b c.dae", root}, {"manifest.xml", manifest}}),
+      as_declared());
+  EXPECT_EQ(named.declared.metres_per_unit, 0.25);
+  EXPECT_EQ(named.declared.up, Axis::z);
+  const Model only = load(package(temp / "b.zae", {{"b c.dae", root}}), as_declared());
+  EXPECT_EQ(only.declared.metres_per_unit, 0.25);
 }
 
 TEST(DeclaredFrame, UnitAndUpAxisOfColladaAreApplied) {
@@ -157,6 +298,8 @@ TEST(DeclaredFrame, OfRealFiles) {
   for (const Case& one :
        std::vector<Case>{{"textured/assimp/Collada/duck.dae", 0.01, Axis::y},
                          {"textured/assimp/Collada/cube_with_2UVs.DAE", 0.0254, Axis::z},
+                         {"textured/assimp/Collada/duck.zae", 0.01, Axis::y},
+                         {"textured/assimp/Collada/cube_UTF8BOM.dae", 0.01, Axis::y},
                          {"textured/assimp/Collada/lights.dae", 1.0, Axis::z},
                          {"textured/dae/CesiumMilkTruck/CesiumMilkTruck.dae", 1.0, Axis::y},
                          {"scenes/turtlebot3_world/meshes/wall.dae", 0.0254, Axis::y},

@@ -11,6 +11,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <unistd.h>
+
+#include <filesystem>
 #include <thread>
 
 namespace glidar {
@@ -54,6 +57,96 @@ TEST(FileSink, RefusesBadPlacesAtOnce) {
   FileSinkOptions options;
   options.depth_png_units_per_m = 0.0;
   EXPECT_THROW(make_file_sink(folder / "a.depth.png", options, context), Error);
+}
+
+TEST(FileSink, SeparatorsAfterTheNameOfAFolderDoNotCount) {
+  const testing::TestFolder folder;
+  EXPECT_EQ(format_for("out.kitti/").suffix, ".kitti");
+  EXPECT_EQ(output_path("x/out.kitti//"), "x/out.kitti");
+  EXPECT_EQ(output_path("x/out.kitti"), "x/out.kitti");
+  const CloudFixture made = make_fixture();
+  for (int time = 0; time < 2; ++time) {
+    write_cloud(made, (folder / "out.kitti").string() + "/");
+    EXPECT_THAT(folder.names(), ElementsAre("out.kitti"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "out.kitti/velodyne/000000.bin"));
+  }
+}
+
+TEST(FileSink, ASeparatorAfterTheNameOfAFileIsAnError) {
+  const testing::TestFolder folder;
+  const CloudFixture made = make_fixture();
+  EXPECT_THAT(error_text([&] { write_cloud(made, (folder / "a.pcd").string() + "/"); }),
+              AllOf(HasSubstr("a.pcd/: is the name of a folder"), HasSubstr("leave out")));
+  EXPECT_THAT(error_text([] { format_for("/"); }), HasSubstr("the name has no suffix"));
+}
+
+/// Runs as an ordinary user, whom permissions stop; true where that is possible.
+template <class Work>
+bool as_ordinary_user(const Work& work) {
+  constexpr uid_t kNobody = 65534;
+  const bool is_root = ::geteuid() == 0;
+  if (is_root && ::seteuid(kNobody) != 0) return false;
+  work();
+  return !is_root || ::seteuid(0) == 0;
+}
+
+TEST(FileSink, AFolderNeedsItsOwnPermissionsAndNotThoseOfItsParent) {
+  namespace fs = std::filesystem;
+  const testing::TestFolder folder;
+  const CloudFixture made = make_fixture();
+  const SidecarContext context = made.context();
+  fs::create_directories(folder / "in/x.kitti");
+  constexpr auto kReadable = fs::perms{0555};
+  fs::permissions(folder.path(), fs::perms::all);
+  fs::permissions(folder / "in/x.kitti", fs::perms::all);
+  fs::permissions(folder / "in", kReadable);
+  std::string refused_parent;
+  std::string refused_folder;
+  const bool done = as_ordinary_user([&] {
+    EXPECT_EQ(error_text([&] { write_cloud(made, folder / "in/x.kitti"); }), "no error");
+    refused_parent = error_text([&] { make_file_sink(folder / "in/new.kitti", {}, context); });
+  });
+  fs::permissions(folder / "in", fs::perms::all);
+  fs::permissions(folder / "in/x.kitti", kReadable);
+  as_ordinary_user([&] {
+    refused_folder = error_text([&] { make_file_sink(folder / "in/x.kitti", {}, context); });
+  });
+  fs::permissions(folder / "in/x.kitti", fs::perms::all);
+  if (!done) GTEST_SKIP() << "cannot become an ordinary user";
+  EXPECT_THAT(refused_parent, HasSubstr("cannot be written to"));
+  EXPECT_THAT(refused_folder, HasSubstr("x.kitti cannot be written to"));
+}
+
+/// The fixture with classes; ids of instances are in the cloud already.
+CloudFixture with_classes() {
+  CloudFixture made = make_fixture();
+  made.scene.class_names.emplace_back("rock");
+  made.scene.instances[0].class_id = 1;
+  fixture::add_image_columns(made.cloud);
+  return made;
+}
+
+TEST(FileSink, LabelsOfAnEarlierCloudAreGoneWithIt) {
+  const testing::TestFolder folder;
+  CloudFixture labelled = with_classes();
+  write_cloud(labelled, folder / "a.bin", {.sidecar = false});
+  EXPECT_THAT(folder.names(), ElementsAre("a.bin", "a.label"));
+  const CloudFixture plain = make_fixture();
+  const SidecarContext context = plain.context();
+  make_file_sink(folder / "a.bin", {.sidecar = false}, context)->stage(plain.cloud, plain.frame);
+  EXPECT_THAT(folder.names(), ElementsAre("a.bin", "a.label")) << "not before commit()";
+  write_cloud(plain, folder / "a.bin", {.sidecar = false});
+  EXPECT_THAT(folder.names(), ElementsAre("a.bin"));
+  std::filesystem::create_directory(folder / "a.label");
+  write_cloud(plain, folder / "a.bin", {.sidecar = false});
+  EXPECT_THAT(folder.names(), ElementsAre("a.bin", "a.label")) << "a folder is none of ours";
+
+  write_cloud(labelled, folder / "a.kitti");
+  labelled.frame.number = 1;
+  write_cloud(labelled, folder / "a.kitti");
+  write_cloud(plain, folder / "a.kitti");
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.kitti/labels/000000.label"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "a.kitti/labels/000001.label"));
 }
 
 TEST(FileSink, WritesCloudAndSidecarAndNothingElse) {

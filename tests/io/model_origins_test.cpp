@@ -83,6 +83,19 @@ TEST(ModelOrigins, NodesFarFromEachOtherAreExactToAFractionOfAMicrometre) {
   EXPECT_NO_THROW(validate(model.mesh));
 }
 
+TEST(ModelOrigins, PartsBeyondSinglePrecisionAreLeftOutAndTheOthersStay) {
+  const TestFolder temp;
+  const Model model =
+      load(temp.write("a.gltf", gltf(R"([{"children":[1,2]},{"mesh":0,"translation":[1,0,0]},)"
+                                     R"({"translation":[3e38,0,0],"children":[3]},)"
+                                     R"({"mesh":0,"translation":[3e38,0,0]}])")));
+  ASSERT_EQ(model.mesh.triangles.size(), 1U);
+  EXPECT_EQ(vertex_m(model.mesh, model.mesh.triangles[0][0]), Eigen::Vector3d(1, 0, 0));
+  EXPECT_THAT(model.notes, ::testing::Contains(::testing::HasSubstr(
+                               "1 triangles touch coordinates that are not finite: left out")));
+  EXPECT_NO_THROW(validate(model.mesh));
+}
+
 TEST(ModelOrigins, PartsStayInTheOrderOfTheFile) {
   const TestFolder temp;
   const Model model = load(temp.write("a.gltf", gltf(nodes_of(far_nodes()))));

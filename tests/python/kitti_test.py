@@ -2,11 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """KITTI's folder, read as the readme of the object development kit says, by nothing of ours."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
+from PIL import Image
 
 import glidar
 
+EXAMPLES = Path(__file__).parents[2] / "examples"
 ROUNDING_M = 1e-5  # six decimals of labels, and points of 32 bits at some metres
 
 SCENE = """models:
@@ -106,8 +110,67 @@ def test_boxes_are_tight_around_the_meshes_and_in_the_image(folder):
     np.testing.assert_allclose(np.exp(1j * car["alpha"]), np.exp(1j * alpha), atol=1e-5)
 
 
+def saved_camera_frame(scene, camera, folder, position=(0.0, 0.0, 0.0)):
+    """The boxes of label_2 and the pixels of the image of instances."""
+    pose = glidar.pose(position, matrix=[[0, 0, 1], [-1, 0, 0], [0, -1, 0]])  # looks along x
+    frame = glidar.simulate(scene, camera, pose=pose, columns="all")
+    frame.save(folder / "out.kitti")
+    frame.save(folder / "out.instance.png")
+    pixels = np.array(Image.open(folder / "out.instance.png")).astype(int)
+    return read_labels(folder / "out.kitti" / "label_2" / "000000.txt"), pixels
+
+
+def pixel_box(found):
+    v, u = np.nonzero(found)
+    return np.array([u.min(), v.min(), u.max(), v.max()], float)
+
+
+PARTLY_BEHIND = {
+    "floor": {"model": "builtin:box:size=30,6,0.2", "position": [-5, 2, -1.5]},
+    "wall at the side": {"model": "builtin:box:size=20,0.3,3", "position": [-4, -2, 0.5], "yaw": 20},
+    "room around": {"model": "builtin:box:size=8,6,3", "position": [1, 0, 0]},
+    "beam overhead": {"model": "builtin:box:size=12,0.4,0.4", "position": [3, 0.5, 1.2], "yaw": -10},
+    "in front": {"model": "builtin:sphere:radius=1", "position": [6, 1, 0]},
+    "cut off": {"model": "builtin:torus", "position": [4, 3, 0.5], "yaw": 50},
+}
+
+
+@pytest.mark.parametrize("name", PARTLY_BEHIND)
+def test_bbox_is_that_of_the_pixels_of_an_object_alone(tmp_path, name):
+    about = PARTLY_BEHIND[name]
+    scene = glidar.Scene()
+    yaw = np.deg2rad(about.get("yaw", 0))
+    turned = [[np.cos(yaw), -np.sin(yaw), 0], [np.sin(yaw), np.cos(yaw), 0], [0, 0, 1]]
+    scene.add_model(about["model"], name=name, id=5, class_name="thing",
+                    pose=glidar.pose(about["position"], matrix=turned))  # fmt: skip
+    (box,), pixels = saved_camera_frame(scene, glidar.camera(240, 160, fov_deg=80.0), tmp_path)
+    wanted = pixel_box(pixels == 5)
+    # pixels are met at their centres, so that less than one is missing at each side
+    assert (box["bbox"][:2] <= wanted[:2] + 0.001).all() and (box["bbox"][2:] >= wanted[2:] - 0.001).all()
+    np.testing.assert_allclose(box["bbox"], wanted, atol=1.01)
+    assert (box["truncated"] == 0) == (name == "in front")
+    assert (box["truncated"] > 0.99) == (name not in ("in front", "cut off"))
+
+
+def test_boxes_of_the_street_hold_their_pixels_and_the_pavement_is_plausible(tmp_path):
+    scene = glidar.Scene(EXAMPLES / "street.yaml")
+    boxes, pixels = saved_camera_frame(scene, glidar.camera(320, 200, fov_deg=80.0), tmp_path, (0.0, -0.9, 1.9))
+    instances = np.unique(pixels[pixels > 0])
+    assert len(boxes) >= len(instances) > 10
+    for instance in instances:
+        wanted = pixel_box(pixels == instance)
+        holding = [b for b in boxes if (b["bbox"][:2] <= wanted[:2] + 0.001).all()
+                   and (b["bbox"][2:] >= wanted[2:] - 0.001).all()]  # fmt: skip
+        assert holding, instance
+    pavement = next(box for box in boxes if box["type"] == "pavement")
+    horizon = (200 - 1) / 2
+    assert pavement["bbox"][1] > horizon, "it is below the camera"
+    np.testing.assert_allclose(pavement["bbox"][[0, 2, 3]], [0, 319, 199], atol=1e-6)
+
+
 def test_objects_without_a_class_are_not_cared_for(folder):
     unknown = [box for box in read_labels(folder / "label_2" / "000000.txt") if box["type"] == "DontCare"]
+    assert unknown, "the sphere is in the image of both sensors"
     for box in unknown:
         assert box["truncated"] == box["occluded"] == -1 and box["alpha"] == -10
         assert (box["hwl"] == -1).all() and (box["location"] == -1000).all() and box["rotation_y"] == -10

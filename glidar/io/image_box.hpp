@@ -1,0 +1,49 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io: the part of an image that a mesh covers.
+
+#include <glidar/core/mesh.hpp>
+#include <glidar/core/pose.hpp>
+
+#include <Eigen/Geometry>
+#include <cstdint>
+#include <optional>
+
+namespace glidar {
+
+/// Rectified camera (x right, y down, z forward), in pixels; whole coordinates are pixel centres.
+struct RectifiedCamera {
+  double fx = 0.0;
+  double fy = 0.0;
+  double cx = 0.0;
+  double cy = 0.0;
+  double width = 0.0;
+  double height = 0.0;
+};
+
+/// A mesh in the frame of a camera.
+struct PlacedMesh {
+  const Mesh& mesh;
+  Pose camera_from_object;
+  double scale = 1.0;
+
+  [[nodiscard]] Eigen::Vector3d in_camera(std::uint32_t vertex) const {
+    return camera_from_object * (scale * vertex_m(mesh, vertex));
+  }
+};
+
+/// The box of a mesh in an image.
+struct ImageBox {
+  Eigen::AlignedBox2d inside;  ///< pixels, from the first pixel's centre to the last one's
+  /// Share of the projection's box that is outside; almost 1 for a mesh that reaches behind the
+  /// camera, whose projection is as large as the plane of the image.
+  double truncated = 0.0;
+};
+
+/// The tight box of what is in front of the camera and in the image, hidden or not; empty when
+/// there is nothing of the mesh.
+std::optional<ImageBox> image_box(const PlacedMesh& placed, const RectifiedCamera& camera);
+
+}  // namespace glidar
