@@ -180,6 +180,7 @@ std::size_t add_model(Scene& scene, Model model) {
   const auto first_texture = static_cast<std::int32_t>(scene.textures.size());
   Instance instance;
   instance.name = model.mesh.name;
+  instance.id = static_cast<std::uint32_t>(scene.instances.size() + 1);
   instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
   for (Material& material : model.materials) {
     for (TextureUse* use :

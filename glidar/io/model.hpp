@@ -85,7 +85,8 @@ struct Model {
 Model load_model(const std::string& source, const ModelOptions& options, const Report& report);
 
 /// Appends the model's mesh, materials and textures to the scene and one instance of it with
-/// identity pose, which the caller may change. Returns the instance's index.
+/// identity pose and its place in the scene, counted from 1, as its id; the caller may change both.
+/// Returns the instance's index.
 std::size_t add_model(Scene& scene, Model model);
 
 /// Scales an instance along its model's own axes: p_world = pose * (scale_x x, scale_y y, scale_z
