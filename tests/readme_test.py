@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What README.md shows works: its marked shell blocks run, its C++ is that of examples/render.cpp."""
+"""What README.md and docs/files.md show works: marked shell blocks and the commands of pictures run, the C++ is that of
+examples/render.cpp."""
 
 import os
 import re
@@ -20,6 +21,15 @@ class Readme(unittest.TestCase):
     def test_marked_shell_blocks_run(self):
         blocks = re.findall(r"<!-- run by tests/readme_test.py -->\n```sh\n(.*?)```", README, re.DOTALL)
         self.assertGreaterEqual(len(blocks), 1)
+        self.run_blocks(blocks)
+
+    def test_the_commands_of_pictures_run(self):
+        first = re.search(r"`(glidar render examples/street\.yaml .*?)`", README)[1]
+        files = (ROOT / "docs/files.md").read_text(encoding="utf-8")
+        self.run_blocks([first, re.search(r"### Pictures\n\n```sh\n(.*?)```", files, re.DOTALL)[1]])
+
+    def run_blocks(self, blocks):
+        """Runs each in one folder: without warnings, and it writes its outputs."""
         with tempfile.TemporaryDirectory() as folder:
             for shown in ("models", "examples", "sensors"):
                 (Path(folder) / shown).symlink_to(ROOT / shown)

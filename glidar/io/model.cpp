@@ -9,6 +9,7 @@
 #include <glidar/io/model_place.hpp>
 #include <glidar/io/nearest_file.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -104,7 +105,8 @@ std::string up_text(const std::optional<Axis>& up) {
   return up ? kNames.at(static_cast<std::size_t>(*up)) : "";
 }
 
-/// The mesh stretched by these factors: one that is there already, or a new one.
+/// The mesh stretched by these factors: one that is there already, or a new one. Changes nothing
+/// when it throws.
 std::uint32_t stretched_mesh(Scene& scene, std::uint32_t mesh, const Eigen::Vector3d& factors) {
   for (std::uint32_t i = 0; i < scene.meshes.size(); ++i) {
     if (scene.sources[i].unstretched == mesh && scene.sources[i].stretch == factors) return i;
@@ -112,13 +114,30 @@ std::uint32_t stretched_mesh(Scene& scene, std::uint32_t mesh, const Eigen::Vect
   MeshSource source = scene.sources[mesh];
   source.stretch = factors;
   source.unstretched = mesh;
-  scene.meshes.push_back(stretched(scene.meshes[mesh], factors));
+  Mesh made = stretched(scene.meshes[mesh], factors);
+  validate(made);
+  scene.sources.reserve(scene.sources.size() + 1);
+  scene.meshes.push_back(std::move(made));
   scene.sources.push_back(std::move(source));
   return static_cast<std::uint32_t>(scene.meshes.size() - 1);
 }
 
 bool is_stretched(const MeshSource& source) {
   return source.stretch != Eigen::Vector3d::Ones();
+}
+
+/// Removes a stretched mesh that no instance has any more.
+void drop_unused(Scene& scene, std::uint32_t mesh) {
+  const auto uses = [mesh](const Instance& instance) { return instance.mesh == mesh; };
+  if (!is_stretched(scene.sources[mesh]) ||
+      std::any_of(scene.instances.begin(), scene.instances.end(), uses)) {
+    return;
+  }
+  scene.meshes.erase(scene.meshes.begin() + mesh);
+  scene.sources.erase(scene.sources.begin() + mesh);
+  const auto move_up = [mesh](std::uint32_t& index) { index -= index > mesh ? 1U : 0U; };
+  for (Instance& instance : scene.instances) move_up(instance.mesh);
+  for (MeshSource& source : scene.sources) move_up(source.unstretched);
 }
 
 void tell(const Model& model, const Report& report) {
@@ -161,6 +180,7 @@ std::size_t add_model(Scene& scene, Model model) {
   const auto first_texture = static_cast<std::int32_t>(scene.textures.size());
   Instance instance;
   instance.name = model.mesh.name;
+  instance.id = static_cast<std::uint32_t>(scene.instances.size() + 1);
   instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
   for (Material& material : model.materials) {
     for (TextureUse* use :
@@ -194,11 +214,13 @@ void set_scale(Scene& scene, std::size_t instance, const Eigen::Vector3d& scale)
                  .remedy = "a mirrored model is another model: mirror it in its file"});
   }
   Instance& changed = scene.instances.at(instance);
-  const MeshSource& source = scene.sources.at(changed.mesh);
-  const std::uint32_t mesh = is_stretched(source) ? source.unstretched : changed.mesh;
+  const std::uint32_t former = changed.mesh;
+  const MeshSource& source = scene.sources.at(former);
+  const std::uint32_t mesh = is_stretched(source) ? source.unstretched : former;
   const bool is_uniform = scale.x() == scale.y() && scale.y() == scale.z();
   changed.mesh = is_uniform ? mesh : stretched_mesh(scene, mesh, scale);
   changed.scale = is_uniform ? scale.x() : 1.0;
+  drop_unused(scene, former);
 }
 
 Eigen::Vector3d scale_of(const Scene& scene, const Instance& instance) {

@@ -85,14 +85,17 @@ struct Model {
 Model load_model(const std::string& source, const ModelOptions& options, const Report& report);
 
 /// Appends the model's mesh, materials and textures to the scene and one instance of it with
-/// identity pose, which the caller may change. Returns the instance's index.
+/// identity pose and its place in the scene, counted from 1, as its id; the caller may change both.
+/// Returns the instance's index.
 std::size_t add_model(Scene& scene, Model model);
 
 /// Scales an instance along its model's own axes: p_world = pose * (scale_x x, scale_y y, scale_z
 /// z). Three equal factors become Instance::scale. For others the scene gets a stretched copy of
 /// the mesh, with the normals of the stretched surface, which instances of equal factors share, and
-/// Instance::scale is 1.
-/// Throws Error unless all are above 0, up to 1e15.
+/// Instance::scale is 1. A stretched mesh that no instance has any more is removed, which changes
+/// the indices of meshes after it.
+/// Throws Error, and changes nothing, unless all are above 0, up to 1e15, and the stretched mesh is
+/// within reach.
 void set_scale(Scene& scene, std::size_t instance, const Eigen::Vector3d& scale);
 
 /// The factors of set_scale().

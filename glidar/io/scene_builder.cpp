@@ -125,8 +125,16 @@ void set_materials(Scene& scene, std::size_t instance, const std::string& text,
                    const std::filesystem::path& folder) {
   TexturePlaces places;
   Instance changed = scene.instances.at(instance);
-  override_materials(read_overrides(read_yaml_text((folder / "materials").string(), text)), places,
-                     changed, scene);
+  const auto overrides = read_overrides(read_yaml_text((folder / "materials").string(), text));
+  const std::size_t materials = scene.materials.size();
+  const std::size_t textures = scene.textures.size();
+  try {
+    override_materials(overrides, places, changed, scene);
+  } catch (...) {
+    scene.materials.resize(materials);
+    scene.textures.resize(textures);
+    throw;
+  }
   scene.instances[instance] = std::move(changed);
 }
 

@@ -81,6 +81,8 @@ class Cloud(Mapping[str, Array]):
             for name, array in columns.items():
                 if not isinstance(array, np.ndarray) or array.shape[:2] != (rows, cols):
                     raise ValueError(f"column {name!r} is not an array {rows} x {cols}")
+            # buffers beside a pickle may be read-only
+            columns = {name: a if a.flags.writeable else a.copy() for name, a in columns.items()}
             pose = floats(state["world_from_cloud"], "world_from_cloud", (4, 4))
             stored = _StoredCloud(rows, cols, part(state, "frame_id", str), pose, list(columns), list(columns.values()))
             Cloud.__init__(self, stored, part(state, "flat", bool))

@@ -53,18 +53,25 @@ class Frame(Immutable):
     scene, which names files, is read when ``cloud``, ``save`` or ``explain`` need it.
     """
 
-    __slots__ = ("_core", "_has_scene", "_origin")
+    __slots__ = ("_core", "_has_renderer", "_has_scene", "_origin")
 
     def __init__(self, core: _core.Frame, origin: Origin) -> None:
         self._core = core
         self._origin = origin
-        self._has_scene = True
+        self._has_scene = self._has_renderer = True
 
     def _with_scene(self) -> _core.Frame:
         """The frame with the scene that it was measured of."""
         if not self._has_scene:
-            self._origin.attach(self._core)
+            self._origin.attach_scene(self._core)
             self._has_scene = True
+        return self._core
+
+    def _with_renderer(self) -> _core.Frame:
+        """The frame with scene and renderer, to be measured again."""
+        if not self._has_renderer:
+            self._origin.attach_renderer(self._core)
+            self._has_renderer = True
         return self._core
 
     def __getstate__(self) -> dict[str, Any]:
@@ -73,7 +80,7 @@ class Frame(Immutable):
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         with restoring("Frame", state):
-            self._has_scene = False
+            self._has_scene = self._has_renderer = False
             self._origin = part(state, "origin", Origin)
             sensor = self._origin.sensor._core
             self._core = _core.restore_frame(part(state, "numbers", dict), part(state, "arrays", dict), sensor)
@@ -352,7 +359,7 @@ class Frame(Immutable):
         Raises:
             Error: there is no such entry.
         """
-        return story_of(_core.explain(self._with_scene(), self._entry(index, row, col, hits_only)))
+        return story_of(_core.explain(self._with_renderer(), self._entry(index, row, col, hits_only)))
 
     def _entry(self, index: int | None, row: int | None, col: int | None, hits_only: bool) -> int:
         if index is None and row is not None and col is not None:

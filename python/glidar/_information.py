@@ -11,10 +11,11 @@ from typing import Any
 
 from . import _core
 from ._inputs import FloatArray, path_of
+from ._state import Immutable, SameContent, key_of, part, restoring, stated
 
 
-@dataclass(frozen=True)
-class Direction:
+@dataclass(frozen=True, eq=False)
+class Direction(SameContent):
     """One of six independent displacements."""
 
     eigenvalue: float
@@ -26,17 +27,33 @@ class Direction:
     words: str
 
 
-class Information:
+class Information(Immutable):
     """Fisher's information about a pose by point-to-plane ranging, and the bounds that follow.
 
     Displacements are six numbers, in the reference frame: rotation (rad) about x, y, z, then
-    translation (m) along x, y, z. ``str`` is a table for people.
+    translation (m) along x, y, z. ``str`` is a table for people. Can be compared, hashed, copied and
+    pickled.
     """
 
     __slots__ = ("_core",)
 
     def __init__(self, core: _core.Information) -> None:
         self._core = core
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Information):
+            return NotImplemented
+        return key_of(_core.information_state(self._core)) == key_of(_core.information_state(other._core))
+
+    def __hash__(self) -> int:
+        return hash(key_of(_core.information_state(self._core)))
+
+    def __getstate__(self) -> dict[str, Any]:
+        return stated("Information", parts=_core.information_state(self._core))
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        with restoring("Information", state):
+            self._core = _core.restore_information(part(state, "parts", dict))
 
     @property
     def matrix(self) -> FloatArray:

@@ -38,12 +38,12 @@ def _fits(size: int, wanted: int | None) -> bool:
     return size > 0 if wanted is None else size == wanted
 
 
-def numbers(value: object, where: str, shape: Sequence[int | None]) -> npt.NDArray[Any]:
-    """An array of anything that NumPy makes one of."""
+def numbers(value: object, where: str, shape: Sequence[int | None], allowed: str = "") -> npt.NDArray[Any]:
+    """An array of anything that NumPy makes one of; errors name the shape, or what is allowed instead."""
     try:
         return np.asarray(value)
     except (TypeError, ValueError, RuntimeError) as problem:  # ragged, or on another device
-        raise Error(where, f"no array: {problem}", f"an array {shape_text(shape)}") from problem
+        raise Error(where, f"no array: {problem}", allowed or f"an array {shape_text(shape)}") from problem
 
 
 def floats(value: object, where: str, shape: Sequence[int | None]) -> FloatArray:
@@ -66,7 +66,7 @@ def floats(value: object, where: str, shape: Sequence[int | None]) -> FloatArray
 def whole(value: object, where: str, most: int) -> int:
     """A whole number from 0 to `most`."""
     try:
-        number = operator.index(value)  # type: ignore[arg-type]
+        number = -1 if isinstance(value, bool) else operator.index(value)  # type: ignore[arg-type]
     except TypeError:
         number = -1
     if not 0 <= number <= most:
@@ -77,10 +77,10 @@ def whole(value: object, where: str, most: int) -> int:
 def whole_numbers(value: object, where: str, count: int, bits: int) -> npt.NDArray[Any]:
     """`count` whole numbers from 0 below 2**bits: given as such, or one for all."""
     dtype = np.dtype(f"uint{bits}")
-    if np.ndim(value) == 0:  # type: ignore[arg-type]
-        return np.full(count, whole(value, where, 2**bits - 1), dtype)
     allowed = f"{count} whole numbers from 0 to {2**bits - 1}, or one for all"
-    given = numbers(value, where, (count,))
+    given = numbers(value, where, (count,), allowed)
+    if given.ndim == 0:
+        return np.full(count, whole(value, where, 2**bits - 1), dtype)
     if given.shape != (count,) or given.dtype.kind not in "iu":
         raise Error(where, f"an array {shape_text(given.shape)} of {given.dtype}", allowed)
     if count and (int(given.min()) < 0 or int(given.max()) > 2**bits - 1):

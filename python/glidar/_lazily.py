@@ -14,7 +14,7 @@ import numpy as np
 from . import _core
 from ._errors import Error
 from ._inputs import MOST_32, MOST_64, whole
-from ._trajectory import object_trajectories, trajectories
+from ._trajectory import Trajectory, is_per_frame, object_trajectories, trajectories
 
 DEFAULT_SEED = 1  # as on the command line
 
@@ -43,14 +43,16 @@ class Inputs:
     """Iterators over poses, seeds, frame numbers and poses of objects, which advance together."""
 
     def __init__(self, poses: Any, seeds: Any, numbers: Any, objects: Any, count: int) -> None:
+        if _is_single(poses):
+            poses = [poses]
         if not isinstance(poses, Iterable):
             raise Error("poses", f"a {type(poses).__name__}", "an array N x 4 x 4, a list or a generator of poses")
         for name, values in (("seeds", seeds), ("frames", numbers)):
-            _require_one_for_each(name, values, poses)
+            _require_one_for_each(name, values, poses, "one for each pose, or one for all")
         self._poses = enumerate(iter(poses))
         self._seed_of = _per_frame(seeds, "seeds", MOST_64)
         self._number_of = _per_frame(numbers, "frames", MOST_32)
-        self._objects_of = _objects_per_frame(objects, count)
+        self._objects_of = _objects_per_frame(objects, count, poses)
 
     def take(self, count: int) -> tuple[Piece, Exception | None]:
         """The next frames, up to `count`; fewer at the end, and before a fault, which comes with them."""
@@ -88,9 +90,18 @@ def _joined(one: Piece, other: Piece) -> Piece:
     )
 
 
-def _require_one_for_each(name: str, values: Any, poses: Any) -> None:
-    if hasattr(values, "__len__") and hasattr(poses, "__len__") and np.ndim(values) > 0 and len(values) != len(poses):
-        raise Error(name, f"{len(values)} for {len(poses)} poses", "one for each pose, or one for all")
+def _is_single(poses: Any) -> bool:
+    """Whether it is one pose, which simulate_batch takes too."""
+    if isinstance(poses, (list, tuple)) and len(poses) == 4:
+        rows = [row for row in poses if isinstance(row, (list, tuple, np.ndarray)) and len(row) == 4]
+        return len(rows) == 4 and not any(hasattr(number, "__len__") for row in rows for number in row)
+    return isinstance(poses, Trajectory) or getattr(poses, "ndim", None) == 2
+
+
+def _require_one_for_each(name: str, values: Any, poses: Any, allowed: str) -> None:
+    is_several = hasattr(values, "__len__") and getattr(values, "ndim", 1) > 0
+    if is_several and hasattr(poses, "__len__") and len(values) != len(poses):
+        raise Error(name, f"{len(values)} for {len(poses)} poses", allowed)
 
 
 def _next_of(values: Iterator[Any], name: str, index: int) -> Any:
@@ -110,12 +121,13 @@ def _per_frame(values: Any, name: str, most: int) -> Callable[[int], int]:
     return lambda index: whole(_next_of(several, name, index), f"{name}[{index}]", most)
 
 
-def _objects_per_frame(objects: Any, count: int) -> Callable[[int], _core.Trajectories | None]:
+def _objects_per_frame(objects: Any, count: int, poses: Any) -> Callable[[int], _core.Trajectories | None]:
     """Trajectories of all objects in each frame: None, the same for all frames, or the next of many."""
-    is_iterator = isinstance(objects, Iterator)
-    if not is_iterator and not (isinstance(objects, np.ndarray) and objects.ndim == 4):
-        same = object_trajectories(objects, 1, count)
-        return lambda index: same
+    if not isinstance(objects, Iterator):
+        if objects is None or not is_per_frame(objects, "objects"):
+            same = object_trajectories(objects, 1, count)
+            return lambda index: same
+        _require_one_for_each("objects", objects, poses, "poses for each frame, or the same for all")
     several = iter(objects)
 
     def of(index: int) -> _core.Trajectories | None:

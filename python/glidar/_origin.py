@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 from weakref import WeakValueDictionary
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
 
 #: Scenes of unpickled frames by their digests, so that frames of one scene share it.
 _RESTORED: WeakValueDictionary[str, Scene] = WeakValueDictionary()
+#: The last of them, kept for the next frame where frames are unpickled, used and dropped one by one.
+_LATEST: deque[Scene] = deque(maxlen=1)
 
 
 class SceneSource:
@@ -57,6 +60,7 @@ def _restored(state: dict[str, Any] | None) -> Scene:
         found = Scene.__new__(Scene)
         found.__setstate__(state or {})
         _RESTORED[str(digest)] = found
+    _LATEST.append(found)
     return found
 
 
@@ -69,13 +73,24 @@ class Origin:
     renderer: str
     threads: int
 
-    def attach(self, frame: _core.Frame) -> None:
-        """Gives a frame from a pickle its scene.
+    def attach_scene(self, frame: _core.Frame) -> None:
+        """Gives a frame from a pickle its scene. Needs no renderer, which this machine may not have.
 
         Raises:
             Error: the scene cannot be made, or it is not the one of the frame.
         """
+        _core.attach_scene(frame, self._restored_scene()._core, self.renderer)
+
+    def attach_renderer(self, frame: _core.Frame) -> None:
+        """Gives a frame from a pickle its scene and what measures it again.
+
+        Raises:
+            Error: the scene cannot be made, it is not the one of the frame, or the renderer cannot be built.
+        """
+        core = self._restored_scene()._core
+        _core.make_simulator(core, self.sensor._core, self.renderer, self.threads).attach(frame)
+
+    def _restored_scene(self) -> Scene:
         if not isinstance(self.scene, SceneSource) or not isinstance(self.sensor, Sensor):
             raise Error("pickled Frame", "a malformed state (its scene or its sensor is something else)")
-        scene = self.scene.get()
-        _core.make_simulator(scene._core, self.sensor._core, self.renderer, self.threads).attach(frame)
+        return self.scene.get()

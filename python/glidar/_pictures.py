@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
+from ._inputs import path_of
 
 IMAGE, GRID, _ANGLES, TOP = range(4)  # kinds of _core.BeamPicture
 NO_BEAM = 0xFFFFFFFF
@@ -115,8 +116,12 @@ class Picture:
         self.data = data  # the bytes of the PNG file
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the PNG file."""
-        Path(path).write_bytes(self.data)
+        """Writes the PNG file, whole or not at all.
+
+        Raises:
+            Error: no such folder, a full disk ...; what stood under the name stays.
+        """
+        _core.write_file(path_of(path, "path"), self.data)
 
     def _repr_png_(self) -> bytes:
         return self.data

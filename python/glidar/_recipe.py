@@ -50,13 +50,13 @@ class Recipe:
     def of_file(path: str, options: dict[str, Any]) -> Recipe:
         """Of a scene file, whose models are read with these options."""
         core = _core.load_scene(path, options, log)
-        return Recipe(core, [("scene_file", {"path": path, "folder": os.getcwd(), "options": options})])
+        return Recipe(core, [("scene_file", {"path": path, "folder": _working_folder(), "options": options})])
 
     @staticmethod
     def of_text(text: str, folder: str = "") -> Recipe:
         """Of the keys of a scene file; paths count from the folder, or from the working folder."""
         core = _core.parse_scene(text, log, folder)
-        return Recipe(core, [("scene", {"text": text, "folder": folder or os.getcwd()})])
+        return Recipe(core, [("scene", {"text": text, "folder": folder or _working_folder()})])
 
     def copy(self) -> Recipe:
         """The same, to be changed apart from this. Costs no memory until then."""
@@ -75,14 +75,14 @@ class Recipe:
     def add_model(self, path: str, options: dict[str, Any]) -> int:
         """Adds a model file, or a built-in model, read with these options."""
         index = self.core.add_model(path, options, log)
-        self._add("model", path=path, folder=os.getcwd(), options=options)
+        self._add("model", path=path, folder=_working_folder(), options=options)
         self._note_files()
         return index
 
     def add_mesh(self, name: str, arrays: dict[str, Any]) -> int:
         """Adds a mesh from arrays. The step refers to the mesh: its arrays lie in the scene."""
         index = self.core.add_mesh(name, arrays)
-        self._add("mesh", mesh=_core.mesh_count(self.core) - 1)
+        self._add("mesh", mesh=_core.loaded_mesh_count(self.core) - 1)
         return index
 
     def add_instance(self, of: int) -> int:
@@ -109,7 +109,8 @@ class Recipe:
     def set_materials(self, index: int, text: str, folder: str = "") -> None:
         """Changes materials of an object; paths count from the folder, or from the working folder."""
         self.core.set_materials(index, text, folder)
-        self._steps.append(("materials", {"index": index, "text": text, "folder": folder or os.getcwd()}))
+        arguments = {"index": index, "text": text, "folder": folder or _working_folder()}
+        self._steps.append(("materials", arguments))
 
     def key(self) -> object:
         """A hashable value that two scenes share only if all that can be measured of them is the same."""
@@ -162,7 +163,7 @@ class Recipe:
             self.add_model(_reached(arguments), part(arguments, "options", dict))
         elif name == "mesh":
             self.core.restore_mesh(_plain_arrays(part(arguments, "state", dict)))
-            self._add("mesh", mesh=_core.mesh_count(self.core) - 1)
+            self._add("mesh", mesh=_core.loaded_mesh_count(self.core) - 1)
         elif name == "copy":
             self.add_instance(self._known(arguments["of"]))
         elif name == "drop":
@@ -184,10 +185,18 @@ def _restored_base(name: str, arguments: dict[str, Any]) -> Recipe:
     return Recipe.of_file(_reached(arguments), part(arguments, "options", dict))
 
 
+def _working_folder() -> str:
+    """Where relative paths count from; empty where it was deleted, so that none leads anywhere."""
+    try:
+        return os.getcwd()
+    except FileNotFoundError:
+        return ""
+
+
 def _folder(arguments: dict[str, Any]) -> str:
     """The folder from which paths count; empty where it is the working folder."""
     folder = part(arguments, "folder", str)
-    return "" if folder == os.getcwd() else folder
+    return "" if folder == _working_folder() else folder
 
 
 def _reached(arguments: dict[str, Any]) -> str:

@@ -251,8 +251,9 @@ def _number(value: object, where: str) -> float:
 
 
 def _columns(value: object) -> int:
-    if isinstance(value, (int, np.integer)) and abs(int(value)) < 2**63:  # the library looks closer
-        return int(value)
+    if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
+        if abs(int(value)) < 2**63:  # the library looks closer
+            return int(value)
     raise Error("columns_per_turn", repr(value), "a whole number from 1 to 1048576")
 
 

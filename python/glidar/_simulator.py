@@ -276,12 +276,12 @@ def simulate_iter(
     memory than one of ten. The loop may be left at any frame.
 
     Args:
-        poses: world_from_sensor: an array (N, 4, 4), or any iterable of poses and trajectories.
+        poses: world_from_sensor: an array (N, 4, 4), any iterable of poses and trajectories, or one alone.
         seeds: one for each pose from any iterable, or one for all; None: 1 + k for frame k.
         frames: frame numbers; one for each pose from any iterable, or one for all.
         objects: poses of the scene's k objects for all frames: (k, 4, 4), or a list of k poses and
-            trajectories. Or for each frame: (N, k, 4, 4), or an iterator over such for one frame. None: as
-            the scene says.
+            trajectories. Or for each frame: (N, k, 4, 4), as an array or nested lists, or an iterator over
+            such for one frame. None: as the scene says.
         batch: so many poses are read and measured before the first of their frames is handed out, from
             1; 1 where a pose depends on the frame before it.
 

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 
 from . import _core
 from ._inputs import FloatArray
+from ._state import SameContent
 from ._status import Cause, Status
 
 
-@dataclass(frozen=True)
-class Reading:
+@dataclass(frozen=True, eq=False)
+class Reading(SameContent):
     """What the sensor would report at some point of its measurement."""
 
     status: Status
@@ -23,8 +24,8 @@ class Reading:
     sigma_m: float
 
 
-@dataclass(frozen=True)
-class Drawn:
+@dataclass(frozen=True, eq=False)
+class Drawn(SameContent):
     """A random number that a step of noise took."""
 
     law: str
@@ -36,16 +37,16 @@ class Drawn:
     """Of a chance: the probability that it is held against."""
 
 
-@dataclass(frozen=True)
-class Step:
+@dataclass(frozen=True, eq=False)
+class Step(SameContent):
     """One step of noise."""
 
     drawn: tuple[Drawn, ...]
     after: Reading
 
 
-@dataclass(frozen=True)
-class Echo:
+@dataclass(frozen=True, eq=False)
+class Echo(SameContent):
     """A peak of the light of a pulse that came back and was told from noise."""
 
     range_m: float
@@ -55,8 +56,8 @@ class Echo:
     is_mixed: bool
 
 
-@dataclass(frozen=True)
-class Story:
+@dataclass(frozen=True, eq=False)
+class Story(SameContent):
     """How an entry of a frame came to be; ``str`` tells it in words, as ``glidar explain`` does."""
 
     entry: int

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import FloatArray, floats, shape_text
+from ._inputs import FloatArray, floats, numbers, shape_text
 from ._state import Immutable, key_of, part, restoring, stated
 
 _MOST_S = 9.2e9
@@ -180,9 +180,15 @@ def trajectories(value: PoseLike | Sequence[PoseLike], where: str) -> _core.Traj
         return _core.joined([trajectories(part, f"{where}[{k}]") for k, part in enumerate(parts)])
     if type(value) is np.ndarray and value.shape == (4, 4) and value.dtype == np.float64:
         return _core.constant(np.ascontiguousarray(value)[None], where)  # which looks at the numbers too
-    if np.ndim(value) == 2:  # type: ignore[arg-type]
-        return _core.constant(floats(value, where, (4, 4))[None], where)
-    return _core.constant(floats(value, where, (None, 4, 4)), where)
+    given = numbers(value, where, (None, 4, 4))
+    if given.ndim == 2:
+        return _core.constant(floats(given, where, (4, 4))[None], where)
+    return _core.constant(floats(given, where, (None, 4, 4)), where)
+
+
+def is_per_frame(value: object, where: str) -> bool:
+    """Whether these are poses of objects for each frame: N x k x 4 x 4."""
+    return not _has_trajectory(value) and numbers(value, where, (None, None, 4, 4)).ndim == 4
 
 
 def object_trajectories(
@@ -191,7 +197,7 @@ def object_trajectories(
     """Of `objects` objects for `count` frames: for each frame or the same for all."""
     if value is None:
         return None
-    if not _has_trajectory(value) and np.ndim(value) == 4:  # type: ignore[arg-type]
+    if is_per_frame(value, where):
         poses = floats(value, where, (None, None, 4, 4))
         if poses.shape[:2] != (count, objects):
             found = f"an array {shape_text(poses.shape)}"

@@ -91,7 +91,7 @@ PointCloud make_cloud(const Measured& m, const std::vector<std::string>& columns
                       const std::string& frame, bool deskew) {
   CloudFrame axes = cloud_frame(frame, *m.beams, m.frame.world_from_sensor);
   axes.deskew = deskew;
-  axes.workers = &m.scene().renderer->workers();
+  if (const auto& renderer = m.scene().renderer) axes.workers = &renderer->workers();
   PointCloud cloud;
   make_point_cloud(m.frame, *m.beams, *m.scene().scene, axes, columns, cloud);
   return cloud;
@@ -148,7 +148,7 @@ void save_to(const Measured& m, const std::filesystem::path& path, const SaveOpt
                                    {.scene = *m.scene().scene,
                                     .sensor = m.sensor->sensor(),
                                     .beams = *m.beams,
-                                    .renderer = std::string(m.scene().renderer->name())},
+                                    .renderer = m.scene().kind},
                                    report);
   sink->write(make_cloud(m, columns, options.frame, options.deskew), m.frame);
 }
@@ -300,7 +300,12 @@ void FramePool::give_back(Frame frame) noexcept {
   spare_.push_back(std::move(frame));
 }
 
-PreparedScene& Measured::scene() const {
+const PreparedScene& Measured::scene() const {
+  if (unrendered) return *unrendered;
+  return rendered();
+}
+
+PreparedScene& Measured::rendered() const {
   if (prepared) return *prepared;
   throw Error({.where = "frame",
                .found = "its scene is not there yet",

@@ -33,12 +33,18 @@ struct Measured {
   ~Measured() {
     if (pool) pool->give_back(std::move(frame));
   }
-  /// The scene that it was measured of. Throws Error where a restored frame has none yet.
-  [[nodiscard]] PreparedScene& scene() const;
+  /// The scene that it was measured of, maybe without a renderer. Throws Error where a restored
+  /// frame has none yet.
+  [[nodiscard]] const PreparedScene& scene() const;
+  /// The same with its renderer.
+  [[nodiscard]] PreparedScene& rendered() const;
 
   std::shared_ptr<FramePool> pool;  ///< that takes the frame's memory back; may be none
   Frame frame;
-  std::shared_ptr<PreparedScene> prepared;  ///< none: of a restored frame, until it is needed
+  // of a restored frame each is set when it is needed, and never changed, as other threads may use
+  // it
+  std::shared_ptr<PreparedScene> prepared;
+  std::shared_ptr<const PreparedScene> unrendered;  ///< of restored frames only
   std::shared_ptr<SensorHandle> sensor;
   std::shared_ptr<const Beams> beams;
   std::shared_ptr<const Motion> motion;

@@ -171,9 +171,10 @@ std::uint32_t class_number(Scene& scene, const std::string& name) {
 
 using Scale = std::array<double, 3>;
 
-/// Sets what is given of an object.
+/// Sets what is given of an object; changes nothing when it throws.
 void set_object(SceneHandle& handle, std::size_t index, const nb::dict& changes) {
   Scene& scene = handle.change();
+  const std::size_t classes = scene.class_names.size();
   Instance changed = scene.instances.at(index);
   const auto pose = entry<PoseArray>(changes, "pose");
   if (pose) changed.world_from_object = pose_of(*pose, 0, "pose");
@@ -184,12 +185,13 @@ void set_object(SceneHandle& handle, std::size_t index, const nb::dict& changes)
   }
   std::swap(scene.instances[index], changed);
   try {
+    validate(scene);
     if (const auto scale = entry<Scale>(changes, "scale")) {
       set_scale(scene, index, {(*scale)[0], (*scale)[1], (*scale)[2]});
     }
-    validate(scene);
   } catch (...) {
     std::swap(scene.instances[index], changed);
+    scene.class_names.resize(classes);
     throw;
   }
   if (pose && !handle.motion.empty()) {
@@ -242,9 +244,10 @@ std::optional<Trajectories> rig_motion_of(const SceneHandle& handle) {
   return std::nullopt;
 }
 
-/// Takes the last object away.
+/// Takes the last object away, and its stretched mesh.
 void drop_last(SceneHandle& handle) {
   Scene& scene = handle.change();
+  set_scale(scene, scene.instances.size() - 1, Eigen::Vector3d::Ones());
   scene.instances.pop_back();
   if (!handle.motion.empty()) handle.motion.resize(scene.instances.size());
 }
@@ -275,14 +278,20 @@ std::vector<std::string> files_read(const SceneHandle& handle) {
   return files;
 }
 
+std::shared_ptr<PreparedScene> unrendered(const SceneHandle& handle, const std::string& kind) {
+  auto made = std::make_shared<PreparedScene>();
+  made->kind = kind;
+  made->scene = handle.scene;
+  made->files = files_read(handle);
+  return made;
+}
+
 std::shared_ptr<PreparedScene> prepare(SceneHandle& handle, const RendererOptions& options) {
   const std::pair key(options.kind, options.threads);
   if (const auto found = handle.prepared.find(key); found != handle.prepared.end()) {
     return found->second;
   }
-  auto made = std::make_shared<PreparedScene>();
-  made->scene = handle.scene;
-  made->files = files_read(handle);
+  auto made = unrendered(handle, options.kind);
   {
     const nb::gil_scoped_release release;
     made->renderer = make_renderer(*made->scene, options);

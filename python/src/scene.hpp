@@ -19,9 +19,10 @@ namespace glidar::python {
 
 /// A scene with its renderer, built once. Measurements share it and take turns.
 struct PreparedScene {
+  std::string kind;  ///< of the renderer
   std::shared_ptr<const Scene> scene;
-  std::vector<std::string> files;  ///< all that was read for it
-  std::unique_ptr<Renderer> renderer;
+  std::vector<std::string> files;      ///< all that was read for it
+  std::unique_ptr<Renderer> renderer;  ///< none: see unrendered()
   std::mutex turn;
 };
 
@@ -50,6 +51,9 @@ struct SceneHandle {
 
 /// All files that a scene was read from: its own, those of models, textures and sensors.
 std::vector<std::string> files_read(const SceneHandle& handle);
+
+/// The scene without a renderer, which is built only where something is measured.
+std::shared_ptr<PreparedScene> unrendered(const SceneHandle& handle, const std::string& kind);
 
 /// Builds the renderer, or gives the one that was built. Called with Python's lock, which it gives
 /// up while it builds.

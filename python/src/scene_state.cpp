@@ -12,6 +12,9 @@
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <map>
 #include <type_traits>
 
 namespace glidar::python {
@@ -50,7 +53,6 @@ class Digest {
 };
 
 void add(const Mesh& mesh, Digest& digest) {
-  digest.add(mesh.name);
   digest.add(mesh.origin_m);
   digest.add(mesh.positions_m);
   digest.add(mesh.normals);
@@ -65,16 +67,6 @@ void add(const Mesh& mesh, Digest& digest) {
     digest.add(run.first_triangle);
     digest.add(run.origin_m);
   }
-}
-
-void add(const TextureUse& use, Digest& digest) {
-  digest.add(use.texture);
-  digest.add(use.uv_set);
-  digest.add(use.wrap_u);
-  digest.add(use.wrap_v);
-  digest.add(use.filter);
-  digest.add(use.uv_scale_rotate);
-  digest.add(use.uv_offset);
 }
 
 void add(const Backscatter& backscatter, Digest& digest) {
@@ -100,24 +92,6 @@ void add(const Backscatter& backscatter, Digest& digest) {
   std::visit(Adder{digest}, backscatter);
 }
 
-void add(const Material& material, Digest& digest) {
-  digest.add(material.name);
-  for (const Eigen::Vector3f* colour : {&material.ambient, &material.diffuse, &material.specular}) {
-    digest.add(*colour);
-  }
-  for (const float number : {material.shininess, material.opacity, material.alpha_cutoff,
-                             material.mirror, material.noise_scale, material.normal_scale}) {
-    digest.add(number);
-  }
-  add(material.backscatter, digest);
-  digest.add(material.spectrum);
-  for (const TextureUse* use :
-       {&material.diffuse_texture, &material.specular_texture, &material.alpha_texture,
-        &material.normal_texture, &material.noise_texture}) {
-    add(*use, digest);
-  }
-}
-
 void add(const Texture& texture, Digest& digest) {
   digest.add(texture.width);
   digest.add(texture.height);
@@ -125,20 +99,86 @@ void add(const Texture& texture, Digest& digest) {
   digest.add(texture.texels);
 }
 
-void add(const Instance& instance, Digest& digest) {
-  digest.add(instance.name);
-  digest.add(instance.mesh);
-  digest.add(Eigen::Matrix4d(instance.world_from_object.matrix()));
-  digest.add(instance.scale);
-  digest.add(instance.id);
-  digest.add(instance.class_id);
-  digest.add(instance.materials);
-}
+/// Adds what instances refer to by its content, so that neither indices nor what no instance
+/// reaches counts. Each mesh and texture is hashed once.
+class Contents {
+ public:
+  explicit Contents(const Scene& scene) : scene_(scene) {}
 
-template <class Part>
-void add_all(const std::vector<Part>& parts, Digest& digest) {
-  digest.add(parts.size());
-  for (const Part& part : parts) add(part, digest);
+  void add(const Instance& instance, Digest& digest) {
+    const MeshSource& source = scene_.sources[instance.mesh];
+    const bool is_stretched = source.stretch != Eigen::Vector3d::Ones();
+    digest.add(instance.name);
+    digest.add(hash_of(meshes_, scene_.meshes, is_stretched ? source.unstretched : instance.mesh));
+    digest.add(source.stretch);
+    digest.add(Eigen::Matrix4d(instance.world_from_object.matrix()));
+    digest.add(instance.scale);
+    digest.add(instance.id);
+    digest.add(instance.class_id);
+    digest.add(scene_.class_names[instance.class_id]);
+    digest.add(instance.materials.size());
+    for (const std::uint32_t index : instance.materials) add(scene_.materials[index], digest);
+  }
+
+ private:
+  using Hashes = std::map<std::size_t, std::string>;
+
+  template <class Part>
+  static const std::string& hash_of(Hashes& known, const std::vector<Part>& parts,
+                                    std::size_t index) {
+    const auto [place, is_new] = known.try_emplace(index);
+    if (is_new) {
+      Digest digest;
+      python::add(parts[index], digest);
+      place->second = digest.text();
+    }
+    return place->second;
+  }
+
+  void add(const TextureUse& use, Digest& digest) {
+    digest.add(use.used());
+    if (!use.used()) return;
+    digest.add(hash_of(textures_, scene_.textures, static_cast<std::size_t>(use.texture)));
+    digest.add(use.uv_set);
+    digest.add(use.wrap_u);
+    digest.add(use.wrap_v);
+    digest.add(use.filter);
+    digest.add(use.uv_scale_rotate);
+    digest.add(use.uv_offset);
+  }
+
+  void add(const Material& material, Digest& digest) {
+    digest.add(material.name);
+    for (const Eigen::Vector3f* colour :
+         {&material.ambient, &material.diffuse, &material.specular}) {
+      digest.add(*colour);
+    }
+    for (const float number : {material.shininess, material.opacity, material.alpha_cutoff,
+                               material.mirror, material.noise_scale, material.normal_scale}) {
+      digest.add(number);
+    }
+    python::add(material.backscatter, digest);
+    digest.add(material.spectrum);
+    for (const TextureUse* use :
+         {&material.diffuse_texture, &material.specular_texture, &material.alpha_texture,
+          &material.normal_texture, &material.noise_texture}) {
+      add(*use, digest);
+    }
+  }
+
+  const Scene& scene_;
+  Hashes meshes_;
+  Hashes textures_;
+};
+
+/// The meshes that were loaded or made, without stretched copies of them: none of them is ever
+/// removed.
+std::vector<std::size_t> loaded_meshes(const Scene& scene) {
+  std::vector<std::size_t> found;
+  for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
+    if (scene.sources[i].stretch == Eigen::Vector3d::Ones()) found.push_back(i);
+  }
+  return found;
 }
 
 Eigen::Vector3d origin_in(const nb::dict& state) {
@@ -154,16 +194,14 @@ Eigen::Vector3d origin_in(const nb::dict& state) {
 
 std::string digest_of(const Scene& scene) {
   Digest digest;
-  add_all(scene.meshes, digest);
-  add_all(scene.materials, digest);
-  add_all(scene.textures, digest);
-  add_all(scene.instances, digest);
-  digest.add(scene.class_names);
+  Contents contents(scene);
+  digest.add(scene.instances.size());
+  for (const Instance& instance : scene.instances) contents.add(instance, digest);
   return digest.text();
 }
 
 nb::dict mesh_state(const SceneHandle& handle, std::size_t index) {
-  const Mesh& mesh = handle.scene->meshes.at(index);
+  const Mesh& mesh = handle.scene->meshes.at(loaded_meshes(*handle.scene).at(index));
   nb::dict state;
   state["name"] = mesh.name;
   state["origin_m"] = mesh.origin_m;
@@ -223,7 +261,8 @@ void bind_scene_state(nb::module_& module) {
       "scene_digest", [](const SceneHandle& scene) { return digest_of(*scene.scene); },
       nb::arg("scene"));
   module.def(
-      "mesh_count", [](const SceneHandle& scene) { return scene.scene->meshes.size(); },
+      "loaded_mesh_count",
+      [](const SceneHandle& scene) { return loaded_meshes(*scene.scene).size(); },
       nb::arg("scene"));
   module.def("mesh_state", mesh_state, nb::arg("scene"), nb::arg("index"),
              nb::sig("def mesh_state(scene: Scene, index: int) -> dict[str, typing.Any]"));

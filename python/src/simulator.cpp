@@ -165,10 +165,16 @@ Trajectories usual_motion(const Simulator& simulator) {
                                  : frame_view(*beams, scene, from, up)}}};
 }
 
-/// Gives a restored frame the scene that it was measured of.
+/// Gives a restored frame the scene that it was measured of, and the renderer.
 void attach(const Simulator& simulator, Measured& measured) {
   require_hits_of(*simulator.prepared->scene, measured);
-  measured.prepared = simulator.prepared;
+  if (!measured.prepared) measured.prepared = simulator.prepared;
+}
+
+/// Gives it the scene alone, of which clouds and files are made without a renderer.
+void attach_scene(Measured& measured, const SceneHandle& scene, const std::string& renderer) {
+  require_hits_of(*scene.scene, measured);
+  if (!measured.unrendered) measured.unrendered = unrendered(scene, renderer);
 }
 
 HitFields fields(const std::vector<std::string>& columns) {
@@ -191,6 +197,7 @@ void bind_simulator(nb::module_& module) {
       .def("attach", attach, nb::arg("frame"))
       .def_prop_ro("objects",
                    [](const Simulator& self) { return self.prepared->scene->instances.size(); });
+  module.def("attach_scene", attach_scene, nb::arg("frame"), nb::arg("scene"), nb::arg("renderer"));
   module.def("make_simulator", make_simulator, nb::arg("scene"), nb::arg("sensor"),
              nb::arg("renderer"), nb::arg("threads"));
 }

@@ -22,11 +22,11 @@ struct Told {
 };
 
 Setup setup_of(const Measured& measured, const Progress& progress) {
-  return {.scene = *measured.scene().scene,
+  return {.scene = *measured.rendered().scene,
           .sensor = measured.sensor->sensor(),
           .beams = *measured.beams,
           .motion = *measured.motion,
-          .renderer = *measured.scene().renderer,
+          .renderer = *measured.rendered().renderer,
           .progress = progress};
 }
 
@@ -38,7 +38,7 @@ Told explained(const Measured& measured, std::size_t entry) {
     frame.sensor_id = measured.frame.sensor_id;
     frame.number = measured.frame.number;
     const Setup setup = setup_of(measured, watch.progress());
-    const std::lock_guard turn(measured.scene().turn);
+    const std::lock_guard turn(measured.rendered().turn);
     Told told{explain(setup, entry, frame), ""};
     told.text = story_text(told.story, setup, frame);
     return told;

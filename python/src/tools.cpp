@@ -4,6 +4,7 @@
 #include "frame.hpp"
 #include "report.hpp"
 
+#include <glidar/io/atomic_file.hpp>
 #include <glidar/io/information_file.hpp>
 #include <glidar/io/surfaces.hpp>
 #include <glidar/sensor/information.hpp>
@@ -42,6 +43,52 @@ std::vector<std::string> surface_names() {
   return names;
 }
 
+nb::dict state_of(const PoseInformation& information) {
+  nb::list directions;
+  for (const InformationDirection& one : information.directions) {
+    directions.append(nb::make_tuple(one.eigenvalue, one.degenerate, one.displacement, one.words));
+  }
+  nb::dict state;
+  state["matrix"] = information.matrix;
+  state["covariance"] = information.covariance;
+  state["bound"] = information.bound;
+  state["directions"] = directions;
+  state["condition"] = information.condition;
+  state["length_m"] = information.length_m;
+  state["middle_m"] = information.middle_m;
+  state["returns"] = information.returns;
+  state["left_out"] = information.left_out;
+  state["assumed_sigma_m"] = information.assumed_sigma_m;
+  return state;
+}
+
+PoseInformation restore_information(const nb::dict& state) {
+  PoseInformation information;
+  information.matrix = nb::cast<Matrix6>(state["matrix"]);
+  information.covariance = nb::cast<Matrix6>(state["covariance"]);
+  information.bound = nb::cast<Vector6>(state["bound"]);
+  const auto directions = nb::cast<nb::list>(state["directions"]);
+  for (std::size_t k = 0; k < information.directions.size(); ++k) {
+    const auto one = nb::cast<nb::tuple>(directions[k]);
+    information.directions[k] = {nb::cast<double>(one[0]), nb::cast<bool>(one[1]),
+                                 nb::cast<Vector6>(one[2]), nb::cast<std::string>(one[3])};
+  }
+  information.condition = nb::cast<double>(state["condition"]);
+  information.length_m = nb::cast<double>(state["length_m"]);
+  information.middle_m = nb::cast<Eigen::Vector3d>(state["middle_m"]);
+  information.returns = nb::cast<std::size_t>(state["returns"]);
+  information.left_out = nb::cast<std::size_t>(state["left_out"]);
+  information.assumed_sigma_m = nb::cast<std::optional<double>>(state["assumed_sigma_m"]);
+  return information;
+}
+
+/// Writes a file whole or not at all.
+void write_file(const std::filesystem::path& path, const nb::bytes& data) {
+  AtomicFile file(path);
+  file.write(std::string_view(data.c_str(), data.size()));
+  file.commit();
+}
+
 void bind_information(nb::module_& module) {
   nb::class_<InformationDirection>(module, "Direction")
       .def_ro("eigenvalue", &InformationDirection::eigenvalue)
@@ -65,6 +112,10 @@ void bind_information(nb::module_& module) {
            nb::sig("def save(self, path: str) -> None"));
   module.def("information", information, nb::arg("frame"), nb::arg("sigma_m"),
              nb::arg("sensor_from_reference"), nb::arg("instance").none());
+  module.def("information_state", state_of, nb::arg("information"),
+             nb::sig("def information_state(information: Information) -> dict[str, typing.Any]"));
+  module.def("restore_information", restore_information, nb::arg("state"),
+             nb::sig("def restore_information(state: dict[str, typing.Any]) -> Information"));
 }
 
 }  // namespace
@@ -92,6 +143,8 @@ void bind_tools(nb::module_& module) {
                    [](const VerifyRow& self) { return std::string(verdict_name(self.verdict())); });
   module.def("verify", verified, nb::arg("renderer"), nb::arg("threads"));
   module.def("surface_names", surface_names);
+  module.def("write_file", write_file, nb::arg("path"), nb::arg("data"),
+             nb::sig("def write_file(path: str, data: bytes) -> None"));
 }
 
 }  // namespace glidar::python

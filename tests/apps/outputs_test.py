@@ -4,6 +4,7 @@
 """Which files a command leaves behind, and standard output as one of them. The built program is found in
 PATH."""
 
+import json
 import os
 import pty
 import resource
@@ -11,7 +12,7 @@ import signal
 import subprocess
 import unittest
 
-from cli_support import CliTest
+from cli_support import MAX_WAIT_S, CliTest
 
 RIG = """models:
   - {model: builtin:box, pose: {position: [6, 0, 0]}}
@@ -85,7 +86,7 @@ class Failures(CliTest):
         limit = 3_000_000  # bytes of one file: a.csv is larger, a.depth.png smaller
         done = subprocess.run(
             ["glidar", "render", "builtin:box", "-o", "a.depth.png", "-o", "a.csv", "--columns", "all"],
-            cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=300, check=False,
+            cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=MAX_WAIT_S, check=False,
             preexec_fn=lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
                                 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))  # fmt: skip
         self.assertEqual(done.returncode, 2, done.stderr)
@@ -93,12 +94,19 @@ class Failures(CliTest):
         self.assertEqual(self.files(), [])
 
 
+class Images(CliTest):
+    def test_a_model_given_directly_has_an_id_that_fits_an_image_of_instances(self):
+        self.succeed("render", "builtin:box", "-o", "x.instance.png", "-o", "x.pcd")
+        with open(os.path.join(self.folder, "x.instance.png.json"), encoding="utf-8") as file:
+            self.assertEqual([one["id"] for one in json.load(file)["instances"]], [1])
+
+
 class StandardOutput(CliTest):
     def test_it_holds_the_bytes_of_the_file_and_nothing_else(self):
         for name in ("pcd", "ply", "csv", "bin", "npz", "depth.png", "depth.tiff"):
             self.succeed("render", "builtin:box", "-o", "a." + name, "--no-sidecar", "--quiet")
             done = subprocess.run(["glidar", "render", "builtin:box", "-o", "-", "--format", name], cwd=self.folder,
-                                  env=self.environment, capture_output=True, timeout=300, check=True)  # fmt: skip
+                                  env=self.environment, capture_output=True, timeout=MAX_WAIT_S, check=True)  # fmt: skip
             self.assertEqual(done.stdout, self.bytes_of("a." + name), name)
             self.assertIn(b"wrote -", done.stderr)
             os.remove(os.path.join(self.folder, "a." + name))
@@ -107,7 +115,7 @@ class StandardOutput(CliTest):
     def test_a_full_disk_is_told_without_claims_about_what_was_sent(self):
         with open("/dev/full", "wb") as full:
             done = subprocess.run(["glidar", "render", "builtin:box", "-o", "-", "--format", "csv"], cwd=self.folder,
-                                  env=self.environment, stdout=full, stderr=subprocess.PIPE, text=True, timeout=300,
+                                  env=self.environment, stdout=full, stderr=subprocess.PIPE, text=True, timeout=MAX_WAIT_S,
                                   check=False)  # fmt: skip
         self.assertEqual(done.returncode, 2, done.stderr)
         self.assertIn("what was sent before is not whole", done.stderr)
@@ -152,7 +160,7 @@ class StandardOutput(CliTest):
         ours, theirs = pty.openpty()
         self.addCleanup(os.close, ours)
         done = subprocess.run(["glidar", "render", "builtin:box", "-o", "-", "--format", "pcd"], cwd=self.folder,
-                              env=self.environment, stdout=theirs, stderr=subprocess.PIPE, text=True, timeout=300,
+                              env=self.environment, stdout=theirs, stderr=subprocess.PIPE, text=True, timeout=MAX_WAIT_S,
                               check=False)  # fmt: skip
         os.close(theirs)
         self.assertEqual(done.returncode, 2)

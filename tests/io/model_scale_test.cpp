@@ -48,6 +48,32 @@ TEST(SetScale, GoesBackToTheMeshAsLoaded) {
   EXPECT_EQ(scale_of(scene, scene.instances[0]), Eigen::Vector3d::Constant(3.0));
 }
 
+TEST(SetScale, KeepsNoStretchedMeshThatNoInstanceHas) {
+  Scene scene = scene_of("box");
+  add_model(scene, make_builtin_model("sphere"));
+  scene.instances.push_back(Instance(scene.instances[0]));
+  for (int k = 0; k < 100; ++k) set_scale(scene, 0, {1.0, 2.0, 3.0 + k});
+  EXPECT_EQ(scene.meshes.size(), 3U);
+  set_scale(scene, 1, {2.0, 1.0, 1.0});
+  set_scale(scene, 2, {1.0, 2.0, 102.0});
+  EXPECT_EQ(scene.instances[0].mesh, scene.instances[2].mesh);
+  set_scale(scene, 0, Eigen::Vector3d::Ones());
+  EXPECT_EQ(scene.meshes.size(), 4U);  // the other one has it still
+  set_scale(scene, 2, {1.0, 1.0, 2.0});
+  ASSERT_EQ(scene.meshes.size(), 4U);
+  ASSERT_EQ(scene.sources.size(), 4U);
+  const auto size_m = [&](std::size_t i) {
+    const Eigen::AlignedBox3d box = bounds(scene.meshes.at(scene.instances[i].mesh));
+    return Eigen::Vector3d(box.max() - box.min());
+  };
+  EXPECT_EQ(size_m(0), Eigen::Vector3d(2.0, 2.0, 2.0));
+  EXPECT_NEAR(size_m(1).x(), 2.0 * size_m(1).z(), 0.01);  // the sphere
+  EXPECT_EQ(size_m(2), Eigen::Vector3d(2.0, 2.0, 4.0));
+  for (std::size_t i = 0; i < 3; ++i) set_scale(scene, i, Eigen::Vector3d::Constant(3.0));
+  EXPECT_EQ(scene.meshes.size(), 2U);
+  EXPECT_NO_THROW(validate(scene));
+}
+
 TEST(SetScale, RefusesZeroMirrorsAndNotANumber) {
   Scene scene = scene_of("box");
   for (const double bad : {0.0, -1.0, std::nan(""), double{INFINITY}, 1e300}) {

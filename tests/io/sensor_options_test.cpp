@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/sensor_options.hpp>
 
-#include <glidar/io/sensor_file.hpp>
-#include <glidar/io/sensor_presets.hpp>
-
+#include <support/preset.hpp>
 #include "yaml_files.hpp"
 
 #include <limits>
@@ -12,9 +10,7 @@
 namespace glidar {
 namespace {
 
-Sensor preset(const std::string& name) {
-  return load_sensor_file(find_sensor_file(name));
-}
+using testing::preset;
 
 /// All options, as Python applies them.
 Sensor with(Sensor sensor, const SensorOptions& options) {

@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/sensor_file.hpp>
+#include <support/preset.hpp>
 
 #include <gtest/gtest.h>
 
@@ -67,9 +68,7 @@ constexpr std::array kSheets = std::to_array<Sheet>({
     {"paper-256", 256, 256, 1'966'080, 20, 20},
 });
 
-Sensor preset(const std::string& name) {
-  return load_sensor_file(find_sensor_file(name));
-}
+using testing::preset;
 
 /// Angle in degrees between the first and the last beam of a row or column of pixels.
 double span_deg(const Beams& beams, std::size_t first, std::size_t count, std::size_t step) {

@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What README.md, docs/python.md and the notebook show works."""
 
+import inspect
+import json
 import os
 import re
 
@@ -42,6 +44,40 @@ def test_every_name_has_a_docstring_and_the_document_tells_of_it():
         assert re.search(rf"\b{name}\b", text), name
 
 
+def calls(text):
+    """Names and arguments of the calls in the table of all names."""
+    table = text[text.index("## All names") : text.index("## Poses and motion")]
+    for row in re.findall(r"^\| (`.*?) \| ", table, re.MULTILINE):
+        yield from re.findall(r"`(\w[\w.]*)\((.*?)\)`", row)
+
+
+def named(name):
+    """What a name of the table is: scene.bounds is that of the class Scene."""
+    owner, _, method = name.rpartition(".")
+    return getattr(getattr(glidar, owner[0].upper() + owner[1:]), method) if owner else getattr(glidar, name)
+
+
+def test_the_table_of_all_names_has_the_arguments_of_the_functions():
+    found = list(calls((ROOT / "docs/python.md").read_text(encoding="utf-8")))
+    assert len(found) > 20
+    for name, text in found:
+        parameters = {key: one for key, one in inspect.signature(named(name)).parameters.items() if key != "self"}
+        kinds = {one.kind for one in parameters.values()}
+        words = [] if "{" in text else [word for word in re.split(r", | or ", text) if word]
+        positional = words.index("*") if "*" in words else len(words)
+        listed = [word.partition("=") for word in words if word not in ("*", "...")]
+        for place, (word, _, default) in enumerate(listed):
+            if word not in parameters:
+                assert inspect.Parameter.VAR_KEYWORD in kinds, f"{name} has no {word}"
+                continue
+            if default and default != "...":
+                assert repr(parameters[word].default) == default, f"{name}, {word}"
+            if place >= positional:
+                assert parameters[word].kind is inspect.Parameter.KEYWORD_ONLY, f"{name}, {word}"
+        if words and "..." not in text and inspect.Parameter.VAR_KEYWORD not in kinds:
+            assert {word for word, _, _ in listed} == set(parameters), name
+
+
 NOTEBOOK = ROOT / "examples/notebooks/first_steps.ipynb"
 
 
@@ -51,6 +87,14 @@ def test_the_notebook_is_kept_without_outputs():
         if cell.cell_type == "code":
             assert cell.outputs == []
             assert cell.execution_count is None
+
+
+def test_the_notebook_says_where_to_start_it(tmp_path, monkeypatch):
+    cells = json.loads(NOTEBOOK.read_text(encoding="utf-8"))["cells"]
+    first = next(cell for cell in cells if cell["cell_type"] == "code")
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(FileNotFoundError, match="no models/satellite/.* start the notebook in a clone of GLIDAR"):
+        exec("".join(first["source"]), {})
 
 
 @pytest.mark.parametrize("started_from", [NOTEBOOK.parent, ROOT], ids=["its own folder", "the clone"])

@@ -3,11 +3,13 @@
 """Depth images by their sidecars alone, with Open3D and OpenCV, and the images of what is there."""
 
 import json
+import re
 
 import cv2
 import numpy as np
 import open3d as o3d
 import pytest
+from conftest import ROOT
 from PIL import Image
 
 import glidar
@@ -78,6 +80,40 @@ def test_opencv_finds_the_points_of_a_depth_image_of_a_distorted_camera(tmp_path
     found = np.column_stack([plane[:, 0] * z[:, None], z])
     wanted = frame.cloud(["xyz"])["xyz"][rows, cols]
     assert len(found) > 500
+    np.testing.assert_allclose(found, wanted, atol=TOLERANCE_M)
+
+
+def room():
+    """Something in front of every pixel of a wide lens."""
+    made = scene()
+    made.add_model("builtin:plane", name="floor", scale=50.0, pose=glidar.look_at([0, 0, 1.2], [0, 0.1, 0], [0, 1, 0]))
+    return made
+
+
+def documented():
+    """The points that the example of docs/files.md finds in a.depth.tiff."""
+    text = (ROOT / "docs/files.md").read_text(encoding="utf-8")
+    (block,) = (found for found in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "import cv2" in found)
+    names = {}
+    exec(compile(block, "docs/files.md", "exec"), names)
+    return names["points"]
+
+
+CAMERAS = {
+    **{name: lambda name=name: glidar.load_sensor(name) for name in ("D435", "Azure-Kinect-NFOV", "Azure-Kinect-WFOV", "Kinect-v2")},
+    "fisheye": lambda: glidar.camera(320, 240, fx=160.0, distortion=FISHEYE),
+    "none": lambda: glidar.camera(320, 240),
+}
+
+
+@pytest.mark.parametrize("name", CAMERAS)
+def test_the_example_of_the_documentation_finds_the_points_of_a_depth_image(tmp_path, monkeypatch, name):
+    frame = glidar.simulate(room(), CAMERAS[name](), pose=np.eye(4))
+    frame.save(tmp_path / "a.depth.tiff")
+    monkeypatch.chdir(tmp_path)
+    found = documented()
+    wanted = frame.cloud(["xyz"], hits_only=True)["xyz"]
+    assert len(found) == len(wanted) > 10_000
     np.testing.assert_allclose(found, wanted, atol=TOLERANCE_M)
 
 

@@ -126,3 +126,17 @@ def test_pictures_of_clouds_refuse_what_cannot_be(frame):
     ):
         with pytest.raises(glidar.Error, match=words):
             action()
+
+
+def test_a_picture_is_saved_whole_or_not_at_all(frame, tmp_path):
+    picture = frame.bird_eye()
+    picture.save(tmp_path / "a.png")
+    assert (tmp_path / "a.png").read_bytes() == picture.data
+    with pytest.raises(glidar.Error, match="nonexistent/x.png"):
+        picture.save("/nonexistent/x.png")
+    with pytest.raises(glidar.Error, match="path: a float"):
+        picture.save(1.5)
+    tmp_path.joinpath("folder.png").mkdir()
+    with pytest.raises(glidar.Error, match="folder.png"):
+        picture.save(tmp_path / "folder.png")
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["a.png", "folder.png"]

@@ -3,11 +3,10 @@
 // An echo is mixed when it merges surfaces with a gap between them, and only then.
 #include <glidar/io/builtin_models.hpp>
 #include <glidar/io/model.hpp>
-#include <glidar/io/sensor_file.hpp>
-#include <glidar/io/sensor_presets.hpp>
 #include <glidar/sensor/footprint.hpp>
 #include <glidar/simulate.hpp>
 #include <simulate/panels.hpp>
+#include <support/preset.hpp>
 
 #include <gtest/gtest.h>
 
@@ -22,12 +21,7 @@ namespace glidar {
 namespace {
 
 using Eigen::Vector3d;
-
-Sensor preset(const std::string& name) {
-  Sensor sensor = load_sensor_file(find_sensor_file(name));
-  sensor.noise.clear();
-  return sensor;
-}
+using testing::noise_free_preset;
 
 Frame shoot(const Scene& scene, const Sensor& sensor, const Pose& world_from_sensor) {
   const auto renderer = make_renderer(scene, {.threads = 2});
@@ -60,7 +54,7 @@ TEST_P(OnAPlane, NoReturnIsMixedAtAnyRange) {
   for (const double height_m : {1.5, 2.0, 8.0}) {
     Pose pose = Pose::Identity();
     pose.translation().z() = height_m;
-    const Frame frame = shoot(scene, preset(GetParam()), pose);
+    const Frame frame = shoot(scene, noise_free_preset(GetParam()), pose);
     EXPECT_EQ(count(frame, Cause::mixed), 0) << height_m;
     EXPECT_GT(count(frame, Cause::surface), 1000) << height_m;
   }
@@ -115,7 +109,7 @@ TEST(Mixed, IsNoReturnOfAGentlyCurvedRoadOfManyTriangles) {
   });
   Pose pose = Pose::Identity();
   pose.translation().z() = 2.5;
-  const Frame frame = shoot(scene_of({road}), preset("OS1-128"), pose);
+  const Frame frame = shoot(scene_of({road}), noise_free_preset("OS1-128"), pose);
   EXPECT_GT(count(frame, Cause::surface), 10000);
   EXPECT_EQ(count(frame, Cause::mixed), 0);
 }

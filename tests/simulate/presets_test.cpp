@@ -7,6 +7,7 @@
 #include <glidar/io/sensor_presets.hpp>
 #include <glidar/simulate.hpp>
 #include <support/data.hpp>
+#include <support/preset.hpp>
 
 #include <gtest/gtest.h>
 #include <io/yaml_files.hpp>
@@ -16,9 +17,7 @@
 namespace glidar {
 namespace {
 
-Sensor preset(const std::string& name) {
-  return load_sensor_file(find_sensor_file(name));
-}
+using testing::preset;
 
 /// What a sensor sees inside a matt ball: every beam meets it square on, but for its small facets.
 struct Ball {
