@@ -77,10 +77,14 @@ void write_kitti_labels(const CloudFile& job, AtomicFile& file) {
   }
 }
 
+std::filesystem::path labels_path(const std::filesystem::path& path) {
+  return std::filesystem::path(path).replace_extension(".label");
+}
+
 void stage_labels_beside(const CloudFile& job, const std::filesystem::path& path,
                          StagedFiles& files) {
   if (!has_classes(job.context.scene)) return;
-  AtomicFile& labels = files.add(std::filesystem::path(path).replace_extension(".label"));
+  AtomicFile& labels = files.add(labels_path(path));
   write_kitti_labels(job, labels);
   labels.finish();
 }

@@ -26,6 +26,9 @@ bool has_classes(const Scene& scene);
 /// Error for ids beyond 16 bits.
 void write_kitti_labels(const CloudFile& job, AtomicFile& file);
 
+/// OUT.label beside OUT.bin.
+std::filesystem::path labels_path(const std::filesystem::path& path);
+
 /// Adds OUT.label beside OUT.bin, for scenes with classes. Throws Error.
 void stage_labels_beside(const CloudFile& job, const std::filesystem::path& path,
                          StagedFiles& files);

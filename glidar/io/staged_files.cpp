@@ -2,9 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/staged_files.hpp>
 
+#include <glidar/io/file_guard.hpp>
+#include <glidar/io/folder_lock.hpp>
+
+#include <optional>
 #include <system_error>
 
 namespace glidar {
+
+AtomicFile& StagedFiles::add(const std::filesystem::path& path) {
+  protect_files(protected_, path);
+  return files_.emplace_back(path);
+}
 
 void StagedFiles::add_folder(const std::filesystem::path& path) {
   std::error_code failure;
@@ -15,6 +24,9 @@ void StagedFiles::add_folder(const std::filesystem::path& path) {
 }
 
 void StagedFiles::commit() {
+  std::optional<FolderLock> lock;
+  if (files_.size() > 1)
+    lock.emplace(std::filesystem::absolute(files_.front().path()).parent_path());
   for (auto file = files_.rbegin(); file != files_.rend(); ++file) file->commit();
   files_.clear();
   folders_.clear();
