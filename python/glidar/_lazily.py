@@ -13,7 +13,7 @@ import numpy as np
 
 from . import _core
 from ._errors import Error
-from ._inputs import MOST_32, MOST_64, whole
+from ._inputs import MOST_32, MOST_64, dimensions, whole
 from ._trajectory import object_trajectories, trajectories
 
 DEFAULT_SEED = 1  # as on the command line
@@ -89,7 +89,7 @@ def _joined(one: Piece, other: Piece) -> Piece:
 
 
 def _require_one_for_each(name: str, values: Any, poses: Any) -> None:
-    if hasattr(values, "__len__") and hasattr(poses, "__len__") and np.ndim(values) > 0 and len(values) != len(poses):
+    if hasattr(values, "__len__") and hasattr(poses, "__len__") and dimensions(values, name) > 0 and len(values) != len(poses):
         raise Error(name, f"{len(values)} for {len(poses)} poses", "one for each pose, or one for all")
 
 

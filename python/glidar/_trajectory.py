@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import FloatArray, floats, shape_text
+from ._inputs import FloatArray, dimensions, floats, path_of, shape_text
 from ._state import Immutable, key_of, part, restoring, stated
 
 _MOST_S = 9.2e9
@@ -142,7 +142,9 @@ class Trajectory(Immutable):
             start_s: shifts all times so that the first is this.
         """
         start = None if start_s is None else _ns(start_s, "start_s")
-        return Trajectory(_core.load_trajectory(os.fspath(path), rate_hz, os.fspath(times_file or ""), start))
+        rate = None if rate_hz is None else float(floats(rate_hz, "rate_hz", ()))
+        times = "" if times_file is None else path_of(times_file, "times_file")
+        return Trajectory(_core.load_trajectory(path_of(path, "path"), rate, times, start))
 
     def pose_at(self, time_s: float) -> FloatArray:
         """The pose at a time, 4x4."""
@@ -180,7 +182,7 @@ def trajectories(value: PoseLike | Sequence[PoseLike], where: str) -> _core.Traj
         return _core.joined([trajectories(part, f"{where}[{k}]") for k, part in enumerate(parts)])
     if type(value) is np.ndarray and value.shape == (4, 4) and value.dtype == np.float64:
         return _core.constant(np.ascontiguousarray(value)[None], where)  # which looks at the numbers too
-    if np.ndim(value) == 2:  # type: ignore[arg-type]
+    if dimensions(value, where) == 2:
         return _core.constant(floats(value, where, (4, 4))[None], where)
     return _core.constant(floats(value, where, (None, 4, 4)), where)
 
@@ -191,7 +193,7 @@ def object_trajectories(
     """Of `objects` objects for `count` frames: for each frame or the same for all."""
     if value is None:
         return None
-    if not _has_trajectory(value) and np.ndim(value) == 4:  # type: ignore[arg-type]
+    if not _has_trajectory(value) and dimensions(value, where) == 4:
         poses = floats(value, where, (None, None, 4, 4))
         if poses.shape[:2] != (count, objects):
             found = f"an array {shape_text(poses.shape)}"

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from glidar import Error
+from glidar._inputs import path_of
 from glidar.campaign import files, names, records
 from glidar.campaign.plan import PLAN_FILE, identity
 
@@ -119,7 +120,7 @@ def difference(old, new, path=""):
 
 def opened(root):
     """A campaign's folder and its campaign.json."""
-    folder = Folder(Path(root))
+    folder = Folder(Path(path_of(root, "folder")))
     if not folder.plan_file().is_file():
         raise Error(str(root), "it holds no campaign", "a folder that glidar campaign run wrote", "")
     return folder, records.read_campaign(folder.plan_file())

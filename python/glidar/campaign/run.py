@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from glidar import Error
+from glidar._inputs import MOST_32, path_of, whole
 from glidar.campaign import bop_models, files, finish as finishing, folder as folders, index, names, records
 from glidar.campaign.folder import Folder
 from glidar.campaign.local import require_guard, run_local
@@ -27,6 +28,10 @@ class Part:
 
     index: int = 0
     count: int = 1
+
+    def __post_init__(self) -> None:
+        if whole(self.index, "part, index", MOST_32) >= whole(self.count, "part, count", MOST_32):
+            raise Error("part", f"{self.index} of {self.count}", "an index from 0 to below the count")
 
     def shards(self, total: int) -> list[int]:
         return list(range(self.index, total, self.count))
@@ -62,8 +67,8 @@ def _prepare(plan: Plan, folder: Folder) -> bool:
 def claimed(spec_path: StrPath, root: StrPath, is_part: bool = False) -> Iterator[tuple[Plan, Folder]]:
     """Reads the campaign and claims its folder; where an error comes before anything is measured, for nothing.
     Parts may share the folder, and leave it."""
-    plan = make_plan(read_spec(spec_path))
-    folder = Folder(Path(root))
+    plan = make_plan(read_spec(path_of(spec_path, "campaign")))
+    folder = Folder(Path(path_of(root, "folder")))
     is_new = _prepare(plan, folder)
     try:
         yield plan, folder
@@ -98,6 +103,7 @@ def run(spec_path: StrPath, root: StrPath, part: Part = Part(), workers: int = 0
         Error: bad input, or no room; trials that fail are counted in the outcome.
     """
     require_guard()
+    whole(workers, "workers", MOST_32)
     with claimed(spec_path, root, part.count > 1) as (plan, folder):
         wanted = part.shards(plan.shards)
         todo = folders.missing(folder, wanted)
@@ -208,6 +214,9 @@ def merge(sources: Sequence[StrPath], root: StrPath) -> Outcome:
     Raises:
         Error: parts of different campaigns, and files that are not what their receipts say.
     """
+    sources, root = [path_of(source, "part") for source in sources], path_of(root, "folder")
+    if not sources:
+        raise Error("parts", "there are none", "folders of parts of a campaign")
     described = folders.opened(sources[0])[1]
     for source in sources[1:]:
         folders.require_same(source, folders.opened(source)[1], described,

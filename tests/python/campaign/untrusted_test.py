@@ -252,3 +252,16 @@ def test_records_of_a_run_pass_their_own_checks(folder):
     assert records.read_manifest(folder / "whole" / "manifest.json")["trials"] == 8
     count, wrong = run.check(folder / "whole")
     assert count > 60 and not wrong
+
+
+@pytest.mark.parametrize("value", [10**30, None, 3.5, "a\0b", "\ud800", "x" * 10_000, []])
+def test_odd_paths_and_counts_are_errors(folder, value):
+    for use in (lambda: run.run(value, folder / "out", quiet=True), lambda: run.check(value), lambda: report.page(value),
+                lambda: run.merge([value], folder / "out"), lambda: run.merge([folder / "p0"], value),
+                lambda: run.Part(value, 2), lambda: run.Part(0, value),
+                lambda: run.run(folder / "none.yaml", folder / "out", workers=value, quiet=True)):
+        with pytest.raises(Error):
+            use()
+    for index, count in ((0, 0), (2, 2), (-1, 2)):
+        with pytest.raises(Error):
+            run.Part(index, count)
