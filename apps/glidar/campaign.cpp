@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands.hpp>
 #include <apps/glidar/exit_code.hpp>
+#include <apps/glidar/program_search.hpp>
 #include <glidar/core/error.hpp>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <string>
 #include <system_error>
@@ -38,7 +40,8 @@ Examples:
   glidar campaign report views
 
 They run in the program glidar-campaign of GLIDAR's Python package, beside this program or in PATH,
-else as 'python3 -m glidar.campaign'. docs/campaigns.md tells what a campaign file may hold.
+else as 'python3 -P -m glidar.campaign'. Only absolute folders of PATH and PYTHONPATH count, so that
+nothing in the current folder is run. docs/campaigns.md tells what a campaign file may hold.
 Exit codes: 0 done, 1 done but trials failed or files differ, 2 bad input, 130 interrupted.)";
 
 /// Runs the module where it is installed, and tells like us where it is not.
@@ -68,12 +71,25 @@ fs::path beside_this_program() {
   return !error && ::access(program.c_str(), X_OK) == 0 ? program : fs::path();
 }
 
-/// Puts another program into the place of this one; returns only when there is none.
-void become(std::vector<std::string> arguments) {
+/// Puts another program into the place of this one; returns only when it cannot be run.
+void become(const fs::path& program, std::vector<std::string> arguments) {
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
-  ::execvp(pointers.front(), pointers.data());
+  ::execv(program.c_str(), pointers.data());
+}
+
+/// What the program and its own children look for by PATH and PYTHONPATH comes from absolute
+/// folders alone: an empty entry is the current folder, which may hold a stranger's files.
+void keep_absolute_folders() {
+  for (const char* name : {"PATH", "PYTHONPATH"}) {
+    const char* const value = std::getenv(name);
+    if (value == nullptr) continue;
+    const std::string kept = joined_folders(absolute_folders(value));
+    if (kept.empty()) ::unsetenv(name);
+    if (!kept.empty()) ::setenv(name, kept.c_str(), 1);
+  }
+  ::setenv("PYTHONSAFEPATH", "1", 1);  // as -P, for glidar-campaign and its workers too
 }
 
 std::vector<std::string> joined(std::vector<std::string> first,
@@ -84,11 +100,17 @@ std::vector<std::string> joined(std::vector<std::string> first,
 
 int run(const std::vector<std::string>& arguments) {
   std::fflush(nullptr);
+  const std::vector<fs::path> folders = program_folders();
+  keep_absolute_folders();
   if (const fs::path program = beside_this_program(); !program.empty()) {
-    become(joined({program.string()}, arguments));
+    become(program, joined({program.string()}, arguments));
   }
-  become(joined({kName}, arguments));
-  become(joined({"python3", "-c", kPythonCode, missing().what()}, arguments));
+  for (const fs::path& program : find_programs(kName, folders)) {
+    become(program, joined({program.string()}, arguments));
+  }
+  for (const fs::path& python : find_programs("python3", folders)) {
+    become(python, joined({"python3", "-P", "-c", kPythonCode, missing().what()}, arguments));
+  }
   throw missing();
 }
 

@@ -4,9 +4,10 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/atomic_file.hpp>
+#include <glidar/io/input_file.hpp>
 
 #include <filesystem>
-#include <fstream>
+#include <sstream>
 
 namespace glidar::app {
 namespace {
@@ -24,7 +25,8 @@ link::CurveKeys make_file(const std::string& path, Console& console) {
 
 link::CurveKeys curve_keys(const std::string& path, Console& console) {
   if (!std::filesystem::exists(path)) return make_file(path, console);
-  std::ifstream file(path);
+  const InputFileKind kind{.name = "a file of two keys", .largest_mib = 1, .remedy_if_larger = ""};
+  std::istringstream file(read_input_file(path, kind));
   std::string first;
   std::string second;
   link::CurveKeys keys;

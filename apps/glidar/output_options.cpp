@@ -344,7 +344,9 @@ std::vector<Output> plan_outputs(const OutputFlags& flags, const std::string& in
 }
 
 void protect_files(const std::vector<std::string>& read, const std::vector<Output>& outputs) {
-  for (const Output& output : outputs) protect_files(read, output.path);
+  for (const Output& output : outputs) {
+    for (const std::filesystem::path& file : output.sink->files()) protect_files(read, file);
+  }
 }
 
 HitFields fields_for(const std::vector<Output>& outputs) {

@@ -117,7 +117,8 @@ void measure_all(Job& job, const OutputFlags& files, Mount& mount, Console& cons
                          .sensor = mount.sensor,
                          .beams = mount.beams,
                          .renderer = renderer_name(flags),
-                         .command = job.command};
+                         .command = job.command,
+                         .inputs = session.files};
   if (!label_of(flags, mount).empty()) {
     context.command.arguments.insert(context.command.arguments.end(), {"--mount", mount.name});
   }

@@ -4,6 +4,7 @@
 #include <apps/glidar/exit_code.hpp>
 #include <apps/glidar/option_kinds.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/io/file_guard.hpp>
 #include <glidar/io/pattern_picture.hpp>
 #include <glidar/io/receiver_yaml.hpp>
 #include <glidar/io/sensor_presets.hpp>
@@ -300,7 +301,8 @@ int list_all(const SensorsFlags& flags) {
 int run(const SensorsFlags& flags) {
   if (flags.surfaces) return list_surfaces(flags);
   if (flags.name.empty()) return list_all(flags);
-  const SensorSheet sheet = load_sensor_sheet(find_sensor_file(flags.name));
+  const std::filesystem::path file = find_sensor_file(flags.name);
+  const SensorSheet sheet = load_sensor_sheet(file);
   const Beams beams = make_beams(sheet.sensor);
   const Summary summary = summarise(sheet, beams);
   if (flags.json) {
@@ -311,6 +313,9 @@ int run(const SensorsFlags& flags) {
     print_sheet(sheet, summary);
   }
   if (flags.picture.empty()) return kDone;
+  std::vector<std::string> inputs = sheet.sensor.files;
+  inputs.push_back(file.string());
+  protect_files(inputs, flags.picture);
   write_pattern_picture(beams, flags.picture);
   if (!flags.json) fmt::print("\nwrote {}\n", flags.picture);
   return kDone;

@@ -227,6 +227,7 @@ void check(const StreamFlags& flags) {
 }
 
 std::vector<std::string> taken_files(const StreamFlags& flags, std::vector<std::string> read) {
+  if (!flags.curve_keys.empty()) read.push_back(flags.curve_keys);
   for (const std::string& file : {flags.replay, flags.stats, flags.record}) {
     if (file.empty()) continue;
     protect_files(read, file);

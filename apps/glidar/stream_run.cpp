@@ -275,7 +275,8 @@ std::vector<Output> StreamRun::plan(const OutputFlags& files, const Mount& mount
   SidecarContext context{.scene = session_.scene,
                          .sensor = mount.sensor,
                          .beams = beams,
-                         .renderer = renderer_name(flags_.render)};
+                         .renderer = renderer_name(flags_.render),
+                         .inputs = taken_};
   if (!flags_.physics_port && !recording_) {  // else the command does not tell the poses
     context.command = flags_.command;
     const std::string label = label_of(flags_.render, mount);

@@ -271,7 +271,8 @@ void Measuring::save_now(const Ask& ask, const OutputFlags& flags) {
   const SidecarContext context{.scene = shot.session->scene,
                                .sensor = *shot.sensor,
                                .beams = *shot.beams,
-                               .renderer = renderer_name(*ask.flags)};
+                               .renderer = renderer_name(*ask.flags),
+                               .inputs = shot.session->files};
   const std::vector<Output> outputs =
       plan_outputs(flags, ask.flags->input, context, console_.report());
   protect_files(shot.session->files, outputs);

@@ -6,6 +6,7 @@
 #include <apps/glidar/option_kinds.hpp>
 #include <apps/viewer/screen.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/io/file_guard.hpp>
 #include <glidar/io/png_image.hpp>
 
 #include <fmt/format.h>
@@ -267,6 +268,7 @@ int run(ViewFlags& flags) {
   if (screenshot) {
     Picture picture;
     for (int i = 0; i < kSettling; ++i) show.draw(&picture);
+    protect_files(viewer.shot()->session->files, flags.screenshot);
     write_screenshot(picture, *screenshot);
   }
   if (!flags.render.quiet) fmt::print("drew {} pictures of the window\n", show.drawn());

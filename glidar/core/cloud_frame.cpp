@@ -3,6 +3,7 @@
 #include <glidar/core/cloud_frame.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
 
 #include <vector>
 
@@ -39,7 +40,7 @@ CloudFrame cloud_frame(const std::string& name, const Beams& beams, const Pose& 
   }
   const std::string nearest = nearest_word(name, cloud_frame_names());
   throw Error({.where = "coordinate frame",
-               .found = "'" + name + "'",
+               .found = "'" + excerpt(name) + "'",
                .allowed = "sensor, optical, ros, gl, world, legacy",
                .remedy = nearest.empty() ? "" : "did you mean " + nearest + "?"});
 }

@@ -3,6 +3,7 @@
 #include <glidar/core/point_cloud.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -309,7 +310,7 @@ const ColumnKind& kind_named(std::string_view name) {
     allowed += (allowed.empty() ? "" : " ") + known;
   const std::string nearest = nearest_word(name, cloud_column_names());
   throw Error({.where = "cloud column",
-               .found = "'" + std::string(name) + "' is not known",
+               .found = "'" + excerpt(name) + "' is not known",
                .allowed = allowed,
                .remedy = nearest.empty() ? "" : "did you mean '" + nearest + "'?"});
 }

@@ -3,6 +3,7 @@
 #include <glidar/io/builtin_models.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
 #include <glidar/io/mesh_making.hpp>
 
 #include <algorithm>
@@ -167,7 +168,7 @@ std::vector<std::string> size_keys(const Builtin& builtin) {
 
 [[noreturn]] void refuse(std::string_view name, std::string found, std::string allowed,
                          std::string remedy) {
-  throw Error({.where = std::string(kBuiltinPrefix) + std::string(name),
+  throw Error({.where = std::string(kBuiltinPrefix) + excerpt(name),
                .found = std::move(found),
                .allowed = std::move(allowed),
                .remedy = std::move(remedy)});
@@ -198,7 +199,7 @@ std::vector<double> lengths_of(std::string_view name, std::string_view text, std
     const auto [stop, problem] = std::from_chars(one.data(), end, length);
     const bool is_number = problem == std::errc() && stop == end;
     if (!is_number || !(length > 0.0) || length > kLargestCoordinate_m) {
-      refuse(name, "a size of '" + std::string(one) + "'", "metres above 0, up to 1e15", "");
+      refuse(name, "a size of '" + excerpt(one) + "'", "metres above 0, up to 1e15", "");
     }
     lengths.push_back(length);
   }
@@ -217,7 +218,7 @@ void set_size(std::string_view name, const Builtin& builtin, std::string_view pa
   const std::vector<std::string> keys = size_keys(builtin);
   if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
     const std::string nearest = nearest_word(key, keys);
-    refuse(name, "'" + key + "' is no size of this model",
+    refuse(name, "'" + excerpt(key) + "' is no size of this model",
            keys.empty() ? "no sizes; 'scale' changes that of any model" : joined(keys),
            nearest.empty() ? "" : "did you mean '" + nearest + "'?");
   }

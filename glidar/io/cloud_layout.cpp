@@ -3,6 +3,7 @@
 #include <glidar/io/cloud_layout.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -174,7 +175,7 @@ std::size_t place_of(std::string_view name) {
     names.push_back(layout.name);
   }
   const std::string near = nearest_word(name, names);
-  throw Error({"cloud layout", fmt::format("'{}' is not known", name),
+  throw Error({"cloud layout", fmt::format("'{}' is not known", excerpt(name)),
                fmt::format("{}", fmt::join(names, " ")),
                near.empty() ? "" : fmt::format("did you mean '{}'?", near)});
 }

@@ -30,8 +30,14 @@ std::vector<std::string> files_of(const Scene& scene) {
   return files;
 }
 
-void protect_files(const std::vector<std::string>& read, const std::filesystem::path& output) {
-  const auto is_it = [&](const std::string& file) { return is_same_file(output, file); };
+void protect_files(std::span<const std::string> read, const std::filesystem::path& output) {
+  std::error_code ignored;  // what cannot be looked at is compared by its name
+  const std::filesystem::path name = real_path(output);
+  const bool is_there = std::filesystem::exists(output, ignored);
+  const auto is_it = [&](const std::string& file) {
+    return real_path(file) == name ||
+           (is_there && std::filesystem::equivalent(file, output, ignored));
+  };
   if (std::none_of(read.begin(), read.end(), is_it)) return;
   throw Error({.where = output.string(),
                .found = "is an input file: the scene was read from it, or it is written otherwise",

@@ -5,6 +5,7 @@
 #include <glidar/core/scene.hpp>
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,6 @@ bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b
 std::vector<std::string> files_of(const Scene& scene);
 
 /// Throws Error when `output` is a file that was read.
-void protect_files(const std::vector<std::string>& read, const std::filesystem::path& output);
+void protect_files(std::span<const std::string> read, const std::filesystem::path& output);
 
 }  // namespace glidar

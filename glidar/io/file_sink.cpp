@@ -115,7 +115,18 @@ class FormatSink : public FileSink {
         format_(format),
         options_(options),
         context_(std::move(context)),
-        report_(std::move(report)) {}
+        report_(std::move(report)) {
+    staged_.protect(context_.inputs);
+  }
+
+  [[nodiscard]] std::vector<std::filesystem::path> files() const override {
+    std::vector<std::filesystem::path> all = {target_.path};
+    if (target_.descriptor >= 0) return all;
+    if (has_sidecar()) all.push_back(sidecar_path());
+    if (format_.beside != nullptr && !format_.told.is_folder)
+      all.push_back(labels_path(target_.path));
+    return all;
+  }
 
   void stage(const PointCloud& cloud, const Frame& frame) override {
     staged_.clear();
@@ -133,6 +144,13 @@ class FormatSink : public FileSink {
   void commit() override { staged_.commit(); }
 
  private:
+  [[nodiscard]] bool has_sidecar() const {
+    return options_.sidecar && format_.content != Content::per_beam && !format_.told.is_folder;
+  }
+  [[nodiscard]] std::filesystem::path sidecar_path() const {
+    return target_.path.string() + ".json";
+  }
+
   void stage_points(const PointCloud& cloud, const Frame& frame) {
     const bool dense =
         format_.content == Content::kitti || (format_.content == Content::points && options_.dense);
@@ -171,9 +189,8 @@ class FormatSink : public FileSink {
     }
     if (is_stream) return;
     if (format_.beside != nullptr) format_.beside(job, path, staged_);
-    const bool is_described = format_.content != Content::per_beam && !format_.told.is_folder;
-    if (!options_.sidecar || !is_described) return;
-    AtomicFile& sidecar = staged_.add(path.string() + ".json");
+    if (!has_sidecar()) return;
+    AtomicFile& sidecar = staged_.add(sidecar_path());
     sidecar.write(sidecar_text(job, path));
     sidecar.finish();
   }

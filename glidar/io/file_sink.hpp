@@ -61,6 +61,8 @@ struct SidecarContext {
   const Beams& beams;
   std::string renderer;
   CommandRecord command = {};  ///< lets `glidar explain` repeat the measurement
+  /// Files that were read or are written otherwise: no file of the cloud may replace one of them.
+  std::span<const std::string> inputs = {};
 };
 
 /// One output format.
@@ -95,7 +97,10 @@ std::string misfit(const FileFormat& format, const CloudPictureOptions& picture,
 /// Writes files in two steps, so that the files of several sinks appear together or not at all.
 class FileSink : public CloudSink {
  public:
-  /// Writes all files of the cloud under temporary names. Throws Error; then nothing of it is left.
+  /// The files that a cloud is written to, as far as they can be told before; a folder itself.
+  [[nodiscard]] virtual std::vector<std::filesystem::path> files() const = 0;
+  /// Writes all files of the cloud under temporary names. Throws Error, also when one of them
+  /// is among the context's inputs; then nothing of it is left.
   virtual void stage(const PointCloud& cloud, const Frame& frame) = 0;
   /// Gives the staged files their names. Throws Error when the system refuses.
   virtual void commit() = 0;

@@ -3,6 +3,7 @@
 #include <glidar/io/format_table.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
 #include <glidar/io/kitti_files.hpp>
 
 #include <fmt/format.h>
@@ -157,7 +158,7 @@ const Format& find_format(const std::filesystem::path& given) {
   const std::string nearest = suffix.empty() ? "" : nearest_word(suffix, all);
   throw Error({given.string(),
                suffix.empty() ? "the name has no suffix that tells the format"
-                              : fmt::format("no format has the suffix {}", suffix),
+                              : fmt::format("no format has the suffix {}", excerpt(suffix)),
                fmt::format("{}", fmt::join(all, " ")),
                nearest.empty() ? "" : fmt::format("did you mean {}?", nearest)});
 }

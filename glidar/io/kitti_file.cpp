@@ -77,9 +77,13 @@ void write_kitti_labels(const CloudFile& job, AtomicFile& file) {
   }
 }
 
+std::filesystem::path labels_path(const std::filesystem::path& path) {
+  return std::filesystem::path(path).replace_extension(".label");
+}
+
 void stage_labels_beside(const CloudFile& job, const std::filesystem::path& path,
                          StagedFiles& files) {
-  stage_kitti_labels(job, std::filesystem::path(path).replace_extension(".label"), files);
+  stage_kitti_labels(job, labels_path(path), files);
 }
 
 void stage_kitti_labels(const CloudFile& job, const std::filesystem::path& path,

@@ -31,7 +31,10 @@ void write_kitti_labels(const CloudFile& job, AtomicFile& file);
 void stage_kitti_labels(const CloudFile& job, const std::filesystem::path& path,
                         StagedFiles& files);
 
-/// The same for OUT.label beside OUT.bin.
+/// OUT.label beside OUT.bin.
+std::filesystem::path labels_path(const std::filesystem::path& path);
+
+/// stage_kitti_labels for OUT.label beside OUT.bin.
 void stage_labels_beside(const CloudFile& job, const std::filesystem::path& path,
                          StagedFiles& files);
 

@@ -1,10 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
+#include <glidar/io/json_text.hpp>
 #include <glidar/io/ray_file.hpp>
 #include <glidar/io/text_file.hpp>
-
-#include <nlohmann/json.hpp>
 
 #include <charconv>
 #include <cmath>
@@ -25,9 +24,12 @@ constexpr double kTwoPi = 2.0 * std::numbers::pi;
 }
 
 Json parse(const std::filesystem::path& path) {
-  const Json all = Json::parse(read_text_file(path, kMetadata), nullptr, false);
-  if (!all.is_object()) fail(path.string(), "no JSON object", "Ouster metadata");
-  return all;
+  try {
+    Json all = parse_json<Json>(path.string(), read_text_file(path, kMetadata));
+    if (all.is_object()) return all;
+  } catch (const Json::exception&) {  // as below
+  }
+  fail(path.string(), "no JSON object", "Ouster metadata");
 }
 
 /// The value of a key, at the top (old layout) or in the part where new firmware puts it.
@@ -47,7 +49,7 @@ const Json& need(const Json& all, const char* part, const char* key, const std::
 double finite(const Json& value, const std::string& where) {
   const double number = value.is_number() ? value.get<double>() : std::nan("");
   if (std::isfinite(number)) return number;
-  fail(where, value.dump().substr(0, 40), "a number");
+  fail(where, shown_json(value), "a number");
 }
 
 std::vector<double> angles(const Json& all, const char* key, const std::string& file) {
@@ -74,7 +76,7 @@ std::pair<std::uint32_t, double> mode_of(const Json& all, const std::string& fil
     std::from_chars(mode.data() + x + 1, end, rate_hz);
   }
   if (columns < 1 || columns > kMostColumns || rate_hz < 1 || rate_hz > 1000) {
-    fail(file + ": lidar_mode", "'" + mode.substr(0, 40) + "'", "COLUMNSxRATE such as 1024x10");
+    fail(file + ": lidar_mode", "'" + excerpt(mode) + "'", "COLUMNSxRATE such as 1024x10");
   }
   return {columns, rate_hz};
 }

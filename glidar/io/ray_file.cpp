@@ -20,6 +20,7 @@ const TextFileKind kTable = {"a CSV table of beams", 64, ""};  // some million s
 const TextFileKind kRays = {"an NPY array of rays", 512, ""};
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kNanoseconds = 1e9;
+constexpr double kMaxTime_s = 100.0 * 24.0 * 3600.0;  // a double holds each nanosecond
 
 [[noreturn]] void fail(const std::string& where, std::string found, std::string allowed,
                        std::string remedy = "") {
@@ -164,6 +165,11 @@ BeamTable load_scan_csv(const fs::path& path) {
       fail(path.string() + ":" + std::to_string(number), "no three numbers",
            "Time/s,Azimuth/deg,Zenith/deg");
     }
+    if (std::abs(values->x()) > kMaxTime_s) {
+      fail(path.string() + ":" + std::to_string(number),
+           "a time of " + number_text(values->x()) + " s", "times within 100 days of zero",
+           "give times in seconds");
+    }
     table.times_ns.push_back(values->x() * kNanoseconds);
     table.directions.push_back(direction_at(values->y() * kDegree, (90.0 - values->z()) * kDegree));
   });
@@ -180,11 +186,13 @@ BeamTable load_scan_csv(const fs::path& path) {
   table.cols = static_cast<std::uint32_t>(size);
   const double last_ns = table.times_ns.back();
   table.period_ns = last_ns + last_ns / static_cast<double>(size - 1);
+  if (table.period_ns > kMaxTime_s * kNanoseconds)
+    fail(path.string(), "shots over more than 100 days", "100 days in all");
   return table;
 }
 
 BeamTable load_ray_npy(const fs::path& path) {
-  const std::string bytes = read_binary_file(path, kRays);
+  const std::string bytes = read_input_file(path, kRays);
   const NpyHead head = read_npy_head(path.string(), bytes);
   const auto [rows, cols, width] = ray_shape(path.string(), head, bytes.size());
   BeamTable table;

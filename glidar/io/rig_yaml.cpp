@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/rig_yaml.hpp>
 
+#include <glidar/core/excerpt.hpp>
 #include <glidar/io/motion_yaml.hpp>
 #include <glidar/io/nearest_file.hpp>
 #include <glidar/io/pose_yaml.hpp>
@@ -52,7 +53,7 @@ Sensor read_scene_sensor(const YamlField& field, std::vector<std::string>& files
   if (!fs::exists(file)) {
     const std::string nearest = nearest_file(file);
     const bool is_near = !nearest.empty() && nearest != fs::path(field.file).filename();
-    reject(field, "no such file: " + file, "a map, or the path of a sensor file",
+    reject(field, "no such file: " + excerpt(file), "a map, or the path of a sensor file",
            is_near ? "did you mean '" + nearest + "'?"
                    : "paths are relative to the folder of this file");
   }
@@ -67,7 +68,7 @@ bool is_plain(char letter) {
 std::string read_name(const YamlField& field, const std::vector<RigSensor>& others) {
   std::string name = text(field);
   if (name.size() > kLongestName || !std::all_of(name.begin(), name.end(), is_plain)) {
-    reject(field, "'" + name + "'", "up to 31 letters, digits, - and _",
+    reject(field, "'" + excerpt(name) + "'", "up to 31 letters, digits, - and _",
            "files and topics are named by it");
   }
   const auto is_same = [&](const RigSensor& other) { return other.name == name; };

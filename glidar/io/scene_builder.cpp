@@ -3,11 +3,13 @@
 #include <glidar/io/scene_builder.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
 #include <glidar/io/png_texture.hpp>
 
 #include <algorithm>
 #include <map>
 #include <tuple>
+#include <unordered_map>
 
 namespace glidar {
 namespace {
@@ -22,8 +24,13 @@ std::string real_path(const std::string& path) {
   return error ? path : real.string();
 }
 
-LoadKey load_key(const PlannedInstance& planned) {
-  return {real_path(planned.source), planned.options.metres_per_unit, planned.options.up,
+/// The texts of paths that many instances have, which the system is asked for once.
+using RealPaths = std::unordered_map<std::string, std::string>;
+
+LoadKey load_key(const PlannedInstance& planned, RealPaths& known) {
+  const auto [real, is_new] = known.try_emplace(planned.source);
+  if (is_new) real->second = real_path(planned.source);
+  return {real->second, planned.options.metres_per_unit, planned.options.up,
           planned.options.centre};
 }
 
@@ -86,7 +93,7 @@ void require_known(const MaterialOverride& change, const Instance& instance, con
     listed += (listed.empty() ? "'" : ", '") + name + "'";
   }
   const std::string nearest = nearest_word(change.material, names);
-  throw Error({change.where, "the model has no material '" + change.material + "'",
+  throw Error({change.where, "the model has no material '" + excerpt(change.material) + "'",
                listed + ", or '*' for all",
                nearest.empty() ? "" : "did you mean '" + nearest + "'?"});
 }
@@ -111,12 +118,24 @@ void override_materials(const std::vector<MaterialOverride>& overrides, TextureP
   }
 }
 
-std::uint32_t class_index(const std::string& name, std::vector<std::string>& names) {
+/// Where in Scene::class_names the names are.
+using ClassPlaces = std::unordered_map<std::string, std::uint32_t>;
+
+std::uint32_t class_index(const std::string& name, ClassPlaces& places,
+                          std::vector<std::string>& names) {
   if (name.empty()) return 0;
-  const auto at = std::find(names.begin(), names.end(), name);
-  const auto index = static_cast<std::uint32_t>(at - names.begin());
-  if (at == names.end()) names.push_back(name);
-  return index;
+  const auto next = static_cast<std::uint32_t>(names.size());
+  const auto [place, is_new] = places.try_emplace(name, next);
+  if (is_new) names.push_back(name);
+  return place->second;
+}
+
+ClassPlaces places_of(const std::vector<std::string>& names) {
+  ClassPlaces places;
+  for (const std::string& name : names) {
+    places.try_emplace(name, static_cast<std::uint32_t>(places.size()));
+  }
+  return places;
 }
 
 }  // namespace
@@ -142,8 +161,10 @@ Scene build_scene(const ScenePlan& plan, const ModelLoader& load) {
   Scene scene;
   TexturePlaces places;
   std::map<LoadKey, Instance> loaded;  // as the model came, before this file's changes
+  RealPaths real_paths;
+  ClassPlaces classes = places_of(scene.class_names);
   for (const PlannedInstance& planned : plan.instances) {
-    const LoadKey key = load_key(planned);
+    const LoadKey key = load_key(planned, real_paths);
     if (!loaded.contains(key)) {
       const std::size_t first = add_model(scene, load_for(planned, load));
       loaded[key] = scene.instances[first];
@@ -153,7 +174,7 @@ Scene build_scene(const ScenePlan& plan, const ModelLoader& load) {
     instance.name = planned.name;
     instance.world_from_object = planned.world_from_object;
     instance.id = planned.id;
-    instance.class_id = class_index(planned.class_name, scene.class_names);
+    instance.class_id = class_index(planned.class_name, classes, scene.class_names);
     override_materials(planned.overrides, places, instance, scene);
     scene.instances.push_back(std::move(instance));
     try {

@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/excerpt.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/io/builtin_models.hpp>
 #include <glidar/io/length_unit.hpp>
@@ -12,7 +13,9 @@
 
 #include <algorithm>
 #include <map>
-#include <set>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
 
 namespace glidar {
 namespace {
@@ -145,22 +148,23 @@ PlannedInstance read_model(const YamlField& field, const ModelOptions& defaults,
 /// Names given in the file stand; the others get their file's name, with a number where it is
 /// taken.
 void read_names(const std::vector<YamlField>& models, std::vector<PlannedInstance>& planned) {
-  std::set<std::string> taken;
+  std::unordered_set<std::string> taken;
+  std::unordered_map<std::string, std::uint64_t> counted;  // by file: how many names it has given
   for (std::size_t i = 0; i < models.size(); ++i) {
     const auto field = find(models[i], "name");
     if (!field) continue;
     planned[i].name = text(*field);
     if (taken.insert(planned[i].name).second) continue;
-    reject(*field, "the name '" + planned[i].name + "' is given twice", "each name once",
+    reject(*field, "the name '" + excerpt(planned[i].name) + "' is given twice", "each name once",
            "choose another name");
   }
   for (PlannedInstance& instance : planned) {
     if (!instance.name.empty()) continue;
     const std::string base = stem(instance.source);
-    instance.name = base;
-    for (int n = 2; !taken.insert(instance.name).second; ++n) {
-      instance.name = base + "_" + std::to_string(n);
-    }
+    std::uint64_t& n = counted[base];
+    do {
+      instance.name = ++n == 1 ? base : base + "_" + std::to_string(n);
+    } while (!taken.insert(instance.name).second);
   }
 }
 

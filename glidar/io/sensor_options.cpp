@@ -3,6 +3,7 @@
 #include <glidar/io/sensor_options.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
 #include <glidar/io/receiver_yaml.hpp>
 
 #include <fmt/format.h>
@@ -39,7 +40,7 @@ std::vector<Return> parse_count(const std::string& option, const std::string& wo
   std::uint32_t count = 0;
   const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), count);
   if (problem != std::errc{} || count < 1 || count > kMostReturns) {
-    refuse_returns(option, "'" + word + "'", "");
+    refuse_returns(option, "'" + excerpt(word) + "'", "");
   }
   return nearest_returns(count);
 }
@@ -54,7 +55,7 @@ std::vector<Return> parse_returns(const std::string& option,
   for (const std::string& word : words) {
     if (std::find(names.begin(), names.end(), word) == names.end()) {
       const std::string nearest = nearest_word(word, names);
-      refuse_returns(option, "'" + word + "'",
+      refuse_returns(option, "'" + excerpt(word) + "'",
                      nearest.empty() ? "" : "did you mean " + nearest + "?");
     }
     returns.push_back(return_named(word));

@@ -3,6 +3,7 @@
 #include <glidar/io/sensor_presets.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
 #include <glidar/io/data_folder.hpp>
 
 #include <algorithm>
@@ -74,7 +75,7 @@ fs::path find_sensor_file(const std::string& name_or_path) {
   const auto at = std::find(names.begin(), names.end(), nearest);
   throw Error(
       {.where = "sensor",
-       .found = "'" + name_or_path + "' is neither a file nor the name of a sensor",
+       .found = "'" + excerpt(name_or_path) + "' is neither a file nor the name of a sensor",
        .allowed = "a sensor file (.yaml), or one of " + all_names(files),
        .remedy = nearest.empty()
                      ? "see 'glidar sensors'"

@@ -4,11 +4,12 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/io/content_hash.hpp>
+#include <glidar/io/json_text.hpp>
+#include <glidar/io/recorded_path.hpp>
 #include <glidar/io/text_file.hpp>
 
 #include <cmath>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <type_traits>
 
 namespace glidar {
@@ -24,13 +25,16 @@ std::uint64_t whole(const Json& told) {
   if (told.is_number_unsigned() && told.get<std::uint64_t>() <= kMost) {
     return told.get<std::uint64_t>();
   }
-  throw Json::type_error::create(302, told.dump() + " is no count", &told);
+  throw Json::type_error::create(302, shown_json(told) + " is no count", &told);
 }
 
 CommandRecord read_command(const Json& told, const std::filesystem::path& sidecar) {
   if (told.is_null()) return {};
-  return {.arguments = told.at("arguments").get<std::vector<std::string>>(),
-          .folder = folder_beside(sidecar, told.at("folder").get<std::string>())};
+  const auto arguments = told.at("arguments").get<std::vector<std::string>>();
+  const auto folder = told.at("folder").get<std::string>();
+  for (const std::string& argument : arguments) check_recorded_argument(sidecar, argument);
+  check_recorded_path(sidecar, "folder", folder);
+  return {.arguments = arguments, .folder = folder_beside(sidecar, folder)};
 }
 
 Sidecar read(const Json& told, const std::filesystem::path& path) {
@@ -88,10 +92,10 @@ Sidecar read_sidecar(const std::filesystem::path& cloud) {
                  .remedy = "write the cloud again, with -o and without --no-sidecar"});
   }
   try {
-    return read(Json::parse(read_text_file(path, kSidecar)), path);
+    return read(parse_json<Json>(path.string(), read_text_file(path, kSidecar)), path);
   } catch (const Json::exception& error) {
     throw Error({.where = path.string(),
-                 .found = std::string("not a sidecar of this version: ") + error.what(),
+                 .found = std::string("not a sidecar of this version: ") + excerpt(error.what()),
                  .allowed = "the file that glidar wrote beside the cloud",
                  .remedy = "write the cloud again"});
   }

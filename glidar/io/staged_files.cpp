@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/staged_files.hpp>
 
+#include <glidar/io/file_guard.hpp>
+#include <glidar/io/folder_lock.hpp>
+
+#include <optional>
 #include <system_error>
 
 namespace glidar {
@@ -19,6 +23,11 @@ void remove_outdated(const std::filesystem::path& path) {
 
 }  // namespace
 
+AtomicFile& StagedFiles::add(const std::filesystem::path& path) {
+  protect_files(protected_, path);
+  return files_.emplace_back(path);
+}
+
 void StagedFiles::add_folder(const std::filesystem::path& path) {
   std::error_code failure;
   if (std::filesystem::create_directory(path, failure)) folders_.push_back(path);
@@ -28,6 +37,9 @@ void StagedFiles::add_folder(const std::filesystem::path& path) {
 }
 
 void StagedFiles::commit() {
+  std::optional<FolderLock> lock;
+  if (files_.size() + removals_.size() > 1 && !files_.empty())
+    lock.emplace(std::filesystem::absolute(files_.front().path()).parent_path());
   for (const std::filesystem::path& path : removals_) remove_outdated(path);
   removals_.clear();
   for (auto file = files_.rbegin(); file != files_.rend(); ++file) file->commit();

@@ -6,6 +6,8 @@
 
 #include <filesystem>
 #include <list>
+#include <span>
+#include <string>
 #include <vector>
 
 namespace glidar {
@@ -19,8 +21,11 @@ class StagedFiles {
   StagedFiles& operator=(const StagedFiles&) = delete;
   ~StagedFiles() { clear(); }
 
-  /// A new file, to be written to and finished by the caller. Throws Error as AtomicFile does.
-  AtomicFile& add(const std::filesystem::path& path) { return files_.emplace_back(path); }
+  /// Files that none of those that are added may replace; they must outlive this.
+  void protect(std::span<const std::string> read) { protected_ = read; }
+  /// A new file, to be written to and finished by the caller. Throws Error as AtomicFile does, and
+  /// when it would replace a protected file.
+  AtomicFile& add(const std::filesystem::path& path);
   /// The same for an open file of the system, which is sent the bytes.
   AtomicFile& add(int target, const std::filesystem::path& name) {
     return files_.emplace_back(target, name);
@@ -31,12 +36,15 @@ class StagedFiles {
   /// Makes a folder unless it is there. Throws Error.
   void add_folder(const std::filesystem::path& path);
   /// Removes what is outdated, then names the files, the one added first last: whoever waits for it
-  /// finds the others too. Throws Error.
+  /// finds the others too. Programs that write the same files at once take turns, by a lock on the
+  /// folder of the file added first, so that all files in place are of one of them; file systems
+  /// without locks do without. Throws Error.
   void commit();
   /// Removes everything that is not committed.
   void clear() noexcept;
 
  private:
+  std::span<const std::string> protected_;
   std::list<AtomicFile> files_;  // an AtomicFile does not move
   std::vector<std::filesystem::path> folders_;
   std::vector<std::filesystem::path> removals_;

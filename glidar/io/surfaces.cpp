@@ -3,6 +3,7 @@
 #include <glidar/io/surfaces.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
 #include <glidar/io/data_folder.hpp>
 #include <glidar/io/pulse_yaml.hpp>
 
@@ -47,7 +48,7 @@ Surface find_surface(const std::string& name, const std::string& where) {
   }
   const std::string nearest = nearest_word(name, names);
   throw Error(
-      {where, "'" + name + "' is no surface that comes along", listed,
+      {where, "'" + excerpt(name) + "' is no surface that comes along", listed,
        nearest.empty() ? "see 'glidar sensors --surfaces'" : "did you mean '" + nearest + "'?"});
 }
 

@@ -4,28 +4,23 @@
 
 // Private to glidar/io.
 
-#include <cstdint>
+#include <glidar/io/input_file.hpp>
+
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace glidar {
 
-/// What a text file is to be, for errors.
-struct TextFileKind {
-  std::string name;  ///< "a YAML file"
-  std::uintmax_t largest_mib = 1;
-  std::string remedy_if_larger;
-};
+using TextFileKind = InputFileKind;
 
-/// The whole file. Throws Error: missing (with the nearest name in its folder), not a regular file,
-/// too large, unreadable, or with zero bytes in it.
+/// The whole file, see read_input_file. Throws Error likewise, and when it has zero bytes in it.
 std::string read_text_file(const std::filesystem::path& file, const TextFileKind& kind);
 
-/// The same for a file that may hold any bytes.
-std::string read_binary_file(const std::filesystem::path& file, const TextFileKind& kind);
+/// Throws Error, with file and line, where a text is not UTF-8.
+void require_utf8(const std::filesystem::path& file, std::string_view text);
 
-/// A word of a file, cut and without control characters, fit for one line of an error.
+/// A word of a file, fit for one line of an error among others; see excerpt().
 std::string shown(std::string_view word);
 
 }  // namespace glidar

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/yaml_reader.hpp>
 
+#include <glidar/core/excerpt.hpp>
 #include <glidar/io/text_file.hpp>
+#include <glidar/io/yaml_budget.hpp>
 
 #include <yaml-cpp/depthguard.h>
 
@@ -18,8 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// yaml-cpp takes about 250 bytes of memory for each byte of a hostile file: half a GiB in all.
-constexpr std::uintmax_t kLargestFile_mib = 2;
+constexpr std::uintmax_t kLargestFile_mib =
+    8;  // a list of a million aliases; see check_yaml_budget
 
 std::string position(const std::string& file, const YAML::Mark& mark) {
   if (mark.is_null()) return file;
@@ -43,11 +45,12 @@ std::string advice(const std::string& content, int line) {
 
 std::vector<YAML::Node> parse(const std::string& file, const std::string& content) {
   try {
+    check_yaml_budget(file, content);
     return YAML::LoadAll(content);
   } catch (const YAML::DeepRecursion& error) {
     throw Error({position(file, error.mark), "nested too deeply", "a sensor or scene file", ""});
   } catch (const YAML::Exception& error) {
-    throw Error({position(file, error.mark), "not YAML: " + error.msg, "",
+    throw Error({position(file, error.mark), "not YAML: " + excerpt(error.msg), "",
                  advice(content, error.mark.line)});
   }
 }
@@ -131,6 +134,7 @@ YamlField read_yaml(const fs::path& file) {
   const std::string content =
       read_text_file(file, {"a YAML file", kLargestFile_mib,
                             "name models by their path, do not put them into the file"});
+  require_utf8(file, content);
   return root_of(file.string(), parse(file.string(), content));
 }
 
@@ -250,7 +254,11 @@ std::string text(const YamlField& field) {
 }
 
 std::string path_beside(const YamlField& field) {
-  fs::path path = fs::path(field.file).parent_path() / text(field);
+  constexpr std::size_t kMaxPath_bytes = 4096;  // Linux' own limit
+  const std::string named = text(field);
+  if (named.size() > kMaxPath_bytes || named.find('\0') != std::string::npos)
+    reject(field, describe(field), "a path of at most 4096 bytes without zero bytes");
+  fs::path path = fs::path(field.file).parent_path() / named;
   // Behind a link, "link/.." is the parent of what it points to: only the system knows.
   const bool goes_up = std::find(path.begin(), path.end(), "..") != path.end();
   return goes_up ? path.string() : path.lexically_normal().string();

@@ -47,8 +47,8 @@ inline constexpr NumberRule kCoordinate = {-kLargestCoordinate_m, kLargestCoordi
                                            "a number from -1e15 to 1e15"};
 inline constexpr NumberRule kZeroToOne = {0.0, 1.0, false, "a number from 0 to 1"};
 
-/// Reads a file that holds one YAML map. Throws Error: missing, not a file, over 2 MiB, empty, bad
-/// syntax, nested too deeply, several documents, not a map.
+/// Reads a file that holds one YAML map in UTF-8. Throws Error: missing, no file, over 8 MiB, bad
+/// syntax, empty, nested too deeply, too many values, several documents, not a map.
 YamlField read_yaml(const std::filesystem::path& file);
 
 /// The same of a text that is no file: errors name it and the field, no line.

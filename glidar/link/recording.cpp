@@ -3,12 +3,14 @@
 #include <glidar/link/recording.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
+#include <glidar/io/recorded_path.hpp>
 #include <glidar/io/sidecar.hpp>
 
 #include <array>
 #include <limits>
 #define JSON_DIAGNOSTICS 1  // its errors name the key
-#include <nlohmann/json.hpp>
+#include <glidar/io/json_text.hpp>
 #include <utility>
 
 namespace glidar::link {
@@ -17,6 +19,9 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::uint64_t kFormat = 1;
+constexpr std::size_t kMaxLine_bytes = std::size_t{1} << 28U;      // half a million objects
+constexpr std::uintmax_t kMaxFile_mib = std::uintmax_t{1} << 24U;  // read line by line
+const InputFileKind kRecording = {"a recording by glidar stream --record", kMaxFile_mib, ""};
 constexpr std::size_t kPoseNumbers = 12;
 constexpr std::size_t kBodyNumbers = kPoseNumbers + 6;
 
@@ -69,23 +74,28 @@ Count count_of(const Json& json, const char* key) {
   const bool fits =
       told.is_number_unsigned() && told.get<std::uint64_t>() <= std::numeric_limits<Count>::max();
   if (fits) return told.get<Count>();
-  throw Json::other_error::create(502, std::string(key) + ": " + told.dump() + " is no count",
+  throw Json::other_error::create(502, std::string(key) + ": " + shown_json(told) + " is no count",
                                   &json);
 }
 
 RecordingHead head_of(const Json& json, const std::filesystem::path& path) {
   if (count_of<std::uint64_t>(json, "recording") != kFormat) {
     throw Json::other_error::create(
-        502, "a recording of format " + json.at("recording").dump() + ", this program knows 1",
+        502, "a recording of format " + shown_json(json.at("recording")) + ", this program knows 1",
         &json);
   }
   RecordingHead head;
   head.version = json.at("glidar").get<std::string>();
   const Json& command = json.at("command");
+  check_recorded_path(path.string() + ":1", "folder", command.at("folder").get<std::string>());
   head.command = {.arguments = command.at("arguments").get<std::vector<std::string>>(),
                   .folder = folder_beside(path, command.at("folder").get<std::string>())};
+  for (const std::string& argument : head.command.arguments) {
+    check_recorded_argument(path.string() + ":1", argument);
+  }
   for (const Json& file : json.at("files")) {
     head.files.push_back({file.at("path").get<std::string>(), file.at("hash").get<std::string>()});
+    check_recorded_path(path.string() + ":1", "files, path", head.files.back().path);
   }
   return head;
 }
@@ -155,15 +165,14 @@ void RecordingWriter::commit() {
   file_.commit();
 }
 
-RecordingReader::RecordingReader(const std::filesystem::path& path) : path_(path) {
-  if (!std::filesystem::is_regular_file(path)) refuse(path.string(), "there is no such file");
-  file_.open(path);
+RecordingReader::RecordingReader(const std::filesystem::path& path)
+    : path_(path), file_(path, kRecording, kMaxLine_bytes) {
   std::string line;
   if (!take_line(line)) refuse(path.string(), "it is empty or cannot be read");
   try {
-    head_ = head_of(Json::parse(line), path);
+    head_ = head_of(parse_json<Json>(where(), line), path);
   } catch (const Json::exception& error) {
-    refuse(where(), error.what());
+    refuse(where(), excerpt(error.what()));
   }
 }
 
@@ -172,26 +181,28 @@ std::string RecordingReader::where() const {
 }
 
 bool RecordingReader::take_line(std::string& line) {
-  do {  // who edits one may leave blank lines
-    if (std::getline(file_, line)) ++line_;
-  } while (file_ && line.find_first_not_of(" \t\r") == std::string::npos);
-  if (file_.bad()) refuse(where(), "it cannot be read further");
-  return !file_.fail();
+  while (file_.next(line)) {
+    ++line_;
+    // who edits one may leave blank lines
+    if (line.find_first_not_of(" \t\r") != std::string::npos) return true;
+  }
+  return false;
 }
 
 std::optional<RecordedFrame> RecordingReader::next() {
   std::string line;
   if (!take_line(line)) refuse(where(), "it ends before its last line, which tells \"frames\"");
   try {
-    const Json json = Json::parse(line);
+    const Json json = parse_json<Json>(where(), line);
     if (!json.contains("frames")) {
       ++frames_;
       return frame_of(json);
     }
     if (count_of<std::uint64_t>(json, "frames") == frames_) return std::nullopt;
-    refuse(where(), std::to_string(frames_) + " frames, where it tells " + json["frames"].dump());
+    refuse(where(),
+           std::to_string(frames_) + " frames, where it tells " + shown_json(json["frames"]));
   } catch (const Json::exception& error) {
-    refuse(where(), error.what());
+    refuse(where(), excerpt(error.what()));
   }
 }
 

@@ -4,11 +4,11 @@
 
 #include <glidar/io/atomic_file.hpp>
 #include <glidar/io/file_sink.hpp>
+#include <glidar/io/line_file.hpp>
 #include <glidar/link/lockstep/messages.hpp>
 
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <vector>
@@ -67,7 +67,7 @@ class RecordingReader {
   bool take_line(std::string& line);
 
   std::filesystem::path path_;
-  std::ifstream file_;
+  LineFile file_;
   std::uint64_t line_ = 0;
   std::uint64_t frames_ = 0;  ///< read so far
   RecordingHead head_;

@@ -44,8 +44,11 @@ std::int64_t tick_ns(const Ticks& ticks, std::int64_t k) {
 TickRange ticks_in(const Ticks& ticks, const ScanWindow& window, std::size_t most) {
   check(window);
   constexpr double kLeastPeriod_ns = 1.0;
-  require_number(ticks.period_ns >= kLeastPeriod_ns && std::isfinite(ticks.period_ns),
-                 "optics, period", ticks.period_ns, "1 ns or more");
+  constexpr double kMost_ns = static_cast<double>(kFarthest_ns);
+  require_number(ticks.period_ns >= kLeastPeriod_ns && ticks.period_ns <= kMost_ns,
+                 "optics, period", ticks.period_ns, "ns from 1 to 8.64e15, 100 days");
+  require_number(std::abs(ticks.first_ns) <= kMost_ns, "optics, first time", ticks.first_ns,
+                 "ns within 8.64e15, 100 days, of zero");
   const TickRange range = {first_from(ticks, window.start_ns), first_from(ticks, window.end_ns)};
   require_number(range.size() <= most, "optics, shots in a frame",
                  static_cast<double>(range.size()), "134217728 beams in all");

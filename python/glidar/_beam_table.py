@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from ._errors import Error
+from ._errors import Error, shown
 from ._inputs import MOST_32, floats, numbers, shape_text, whole
 from ._state import part
 
@@ -42,7 +42,7 @@ def table_of_optics(optics: Mapping[str, Any]) -> dict[str, Any]:
     if unknown:
         raise Error("optics", f"the unknown key {unknown[0]!r}", ", ".join(sorted(_TABLE_KEYS)))
     if optics.get("type") != "table":
-        raise Error("optics.type", repr(optics.get("type")), "'table', since directions are given")
+        raise Error("optics.type", shown(optics.get("type")), "'table', since directions are given")
     shape = numbers(optics["directions"], "optics.directions", (None, None, 3)).shape
     if len(shape) != 3 or shape[2] != 3 or min(shape) == 0:
         raise Error("optics.directions", f"an array {shape_text(shape)}", "an array rows x cols x 3")

@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._cloud import Cloud
-from ._errors import Error
+from ._errors import Error, shown
 from ._information import Information
 from ._inputs import MOST_32, FloatArray, column_list, floats, log, one_of, path_of, whole, whole_numbers
 from ._origin import Origin
@@ -335,7 +335,7 @@ class Frame(Immutable):
         """
         cloud = self.cloud(["xyz", colour], frame=frame, hits_only=True)
         if cloud[colour].ndim != 1:
-            raise Error("colour", repr(colour), "a column of one number per point, such as range")
+            raise Error("colour", shown(colour), "a column of one number per point, such as range")
         if whole(most, "most", MOST_32) == 0:
             raise Error("most", "0", "a whole number from 1")
         step = max(1, -(-cloud.points // most))

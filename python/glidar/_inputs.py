@@ -7,6 +7,7 @@ from __future__ import annotations
 import logging
 import operator
 import os
+import re
 from collections.abc import Iterable, Sequence
 from typing import Any, TypeAlias
 
@@ -14,11 +15,13 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._errors import Error
+from ._errors import Error, excerpt, shown
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
 MOST_32 = 2**32 - 1  # of what C++ counts in 32 bits
 MOST_64 = 2**64 - 1
+MOST_PATH = 4096
+_ODD = re.compile("[\0\ud800-\udfff]")
 
 _LOGGER = logging.getLogger("glidar")
 _DEFAULT_COLUMNS = ("xyz", "intensity", "range", "normal", "instance", "class")
@@ -43,7 +46,7 @@ def numbers(value: object, where: str, shape: Sequence[int | None], allowed: str
     try:
         return np.asarray(value)
     except (TypeError, ValueError, RuntimeError) as problem:  # ragged, or on another device
-        raise Error(where, f"no array: {problem}", allowed or f"an array {shape_text(shape)}") from problem
+        raise Error(where, f"no array: {excerpt(problem)}", allowed or f"an array {shape_text(shape)}") from problem
 
 
 def floats(value: object, where: str, shape: Sequence[int | None]) -> FloatArray:
@@ -70,7 +73,7 @@ def whole(value: object, where: str, most: int) -> int:
     except TypeError:
         number = -1
     if not 0 <= number <= most:
-        raise Error(where, repr(value), f"a whole number from 0 to {most}")
+        raise Error(where, shown(value), f"a whole number from 0 to {most}")
     return number
 
 
@@ -89,24 +92,27 @@ def whole_numbers(value: object, where: str, count: int, bits: int) -> npt.NDArr
 
 
 def text_of(value: object, where: str) -> str:
-    """A text."""
-    if isinstance(value, str):
+    """A text, which has no zero byte and no half of a letter."""
+    if isinstance(value, str) and not _ODD.search(value):
         return value
-    raise Error(where, repr(value), "a text")
+    raise Error(where, shown(value), "a text")
 
 
 def path_of(value: object, where: str) -> str:
     """A name or a path."""
-    if isinstance(value, (str, bytes, os.PathLike)):
-        return os.fsdecode(value)
-    raise Error(where, f"a {type(value).__name__}", "a name or a path")
+    if not isinstance(value, (str, bytes, os.PathLike)):
+        raise Error(where, f"a {type(value).__name__}", "a name or a path")
+    path = os.fsdecode(value)
+    if len(path) > MOST_PATH or _ODD.search(path):
+        raise Error(where, shown(value), f"at most {MOST_PATH} letters in UTF-8 without zero bytes", "rename the file")
+    return path
 
 
 def one_of(value: str, where: str, words: Sequence[str]) -> str:
     """A word of a list."""
-    if value in words:
+    if isinstance(value, str) and value in words:
         return value
-    raise Error(where, repr(value), ", ".join(words))
+    raise Error(where, shown(value), ", ".join(words))
 
 
 def column_list(columns: str | Iterable[str] | None) -> list[str]:
@@ -116,6 +122,6 @@ def column_list(columns: str | Iterable[str] | None) -> list[str]:
     if columns == "all":
         return _core.cloud_column_names()
     if not isinstance(columns, Iterable):
-        raise Error("columns", repr(columns), "names of columns")
+        raise Error("columns", shown(columns), "names of columns")
     names = columns.split(",") if isinstance(columns, str) else columns
     return list(dict.fromkeys(text_of(name, "columns") for name in names))

@@ -59,8 +59,15 @@ class Mesh:
         return mesh
 
 
+def _require_parts(mesh: object, *names: str) -> None:
+    for name in names:
+        if not hasattr(mesh, name):
+            raise Error("mesh", f"a {type(mesh).__name__} without {name}", f"a mesh with {', '.join(names)}")
+
+
 def from_trimesh(mesh: Any) -> Mesh:
     """The vertices, faces and vertex colours of a trimesh.Trimesh."""
+    _require_parts(mesh, "vertices", "faces")
     visual = getattr(mesh, "visual", None)
     colours = None
     if getattr(visual, "kind", None) == "vertex":
@@ -70,6 +77,7 @@ def from_trimesh(mesh: Any) -> Mesh:
 
 def from_open3d(mesh: Any) -> Mesh:
     """The mesh of an open3d.geometry.TriangleMesh, with its vertex normals and colours."""
+    _require_parts(mesh, "vertices", "triangles", "vertex_normals", "vertex_colors")
     normals, colours = np.asarray(mesh.vertex_normals), np.asarray(mesh.vertex_colors)
     return Mesh(
         np.asarray(mesh.vertices),

@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._errors import Error
+from ._errors import Error, shown
 from ._inputs import FloatArray, floats, numbers
 
 
@@ -69,7 +69,7 @@ def look_at(
         Error: eye and target coincide, or `up` is parallel to the line of sight.
     """
     if boresight not in ("x", "z"):
-        raise Error("boresight", repr(boresight), "'x' or 'z'")
+        raise Error("boresight", shown(boresight), "'x' or 'z'")
     upwards = None if up is None else floats(up, "up", (3,))
     optical = _core.look_at(floats(eye, "eye", (3,)), floats(target, "target", (3,)), upwards)
     if boresight == "z":
@@ -86,7 +86,7 @@ def quaternion(matrix: npt.ArrayLike, order: str) -> FloatArray:
         Error: a wrong shape or order, or a matrix that is no rotation.
     """
     if order not in ("wxyz", "xyzw"):
-        raise Error("order", repr(order), "'wxyz' or 'xyzw'")
+        raise Error("order", shown(order), "'wxyz' or 'xyzw'")
     given = numbers(matrix, "matrix", (4, 4))
     size = 4 if given.shape == (4, 4) else 3
     rotation = floats(given, "matrix", (size, size))[:3, :3]

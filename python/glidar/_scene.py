@@ -15,8 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._errors import Error
-from ._inputs import FloatArray, floats, numbers, one_of, path_of, text_of
+from ._errors import Error, shown
+from ._inputs import FloatArray, floats, numbers, one_of, path_of, text_of, whole
 from ._mesh import Mesh, mesh_of
 from ._object import Object
 from ._recipe import Recipe
@@ -199,6 +199,8 @@ class Scene:
         Args:
             placing: pose (4x4), scale, name, id, class_name, materials; as those of the first when not given.
         """
+        if not isinstance(of, Object):
+            raise Error("copy", shown(of), "an object of this scene")
         if of._scene is not self:
             remedy = "scene.add_mesh(of.mesh) takes the mesh of another scene's"
             raise Error("copy", f"{of!r} is of another scene", "an object of this scene", remedy)
@@ -245,7 +247,7 @@ class Scene:
         for candidate in self.objects:
             if candidate.name == name:
                 return candidate
-        raise Error("object", repr(name), ", ".join(o.name for o in self.objects) or "the scene is empty")
+        raise Error("object", shown(name), ", ".join(o.name for o in self.objects) or "the scene is empty")
 
     def __len__(self) -> int:
         return len(self._core)
@@ -282,7 +284,7 @@ class Scene:
     ) -> Simulator:
         """What measures this scene with a sensor: the same one again when it was asked for before."""
         chosen = self._chosen(sensor)
-        key = (id(chosen._core), renderer, threads)
+        key = (id(chosen._core), text_of(renderer, "renderer"), whole(threads, "threads", 4096))
         found = self._simulators.get(key)
         if found is None:
             found = Simulator(self, chosen, renderer=renderer, threads=threads)
@@ -318,7 +320,7 @@ def load_scene(
 def _options(unit: str | float | None, up: str | None, centre: bool) -> dict[str, Any]:
     """How a model file is read, as the extension takes it."""
     if not isinstance(centre, bool):
-        raise Error("centre", repr(centre), "True or False")
+        raise Error("centre", shown(centre), "True or False")
     metres = None if unit is None else _metres(unit)
     return {"metres_per_unit": metres, "up": _axis(up), "centre": centre}
 

@@ -14,12 +14,17 @@ import numpy as np
 
 from . import _core
 from ._beam_table import optics_of_table, stored_table, table_of_optics
-from ._errors import Error
+from ._errors import Error, excerpt, shown
 from ._inputs import MOST_32, FloatArray, numbers, path_of, text_of, whole
 from ._state import Immutable, key_of, part, restoring, stated
 
 _DEEPEST = 32
+_MOST_WHOLE = 10**300
 _KINDS = ("camera", "spinning", "raster", "prism", "table")
+
+
+def _key_text(key: object) -> str:
+    return key if isinstance(key, str) else shown(key)
 
 
 def plain(value: object, where: str, depth: int = 0) -> object:
@@ -27,14 +32,19 @@ def plain(value: object, where: str, depth: int = 0) -> object:
     if depth > _DEEPEST:
         raise Error(where[:80] + "...", f"more than {_DEEPEST} levels deep, or within itself", "lists and dicts")
     if isinstance(value, Mapping):
-        return {str(key): plain(part, f"{where}.{key}", depth + 1) for key, part in value.items()}
+        return {text_of(_key_text(key), where): plain(part, f"{where}.{excerpt(_key_text(key))}", depth + 1)
+                for key, part in value.items()}
     if isinstance(value, (list, tuple)):
         return [plain(part, f"{where}[{k}]", depth + 1) for k, part in enumerate(value)]
     if isinstance(value, (np.ndarray, np.generic)):
         return plain(value.tolist(), where, depth + 1)
     if isinstance(value, os.PathLike):
-        return os.fspath(value)
-    if value is None or isinstance(value, (bool, int, float, str)):
+        return path_of(value, where)
+    if isinstance(value, str):
+        return text_of(value, where)
+    if isinstance(value, int) and abs(value) > _MOST_WHOLE:
+        raise Error(where, shown(value), "whole numbers within 1e300")
+    if value is None or isinstance(value, (bool, int, float)):
         return value
     raise Error(where, f"a {type(value).__name__}", "numbers, texts, lists and dicts")
 
@@ -246,7 +256,7 @@ def _number(value: object, where: str) -> float:
     """A number, which the library checks; also one that is not finite."""
     given = numbers(value, where, ())
     if given.shape != () or given.dtype.kind not in "fiu":
-        raise Error(where, repr(value), "a number")
+        raise Error(where, shown(value), "a number")
     return float(given)
 
 
@@ -254,13 +264,13 @@ def _columns(value: object) -> int:
     if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
         if abs(int(value)) < 2**63:  # the library looks closer
             return int(value)
-    raise Error("columns_per_turn", repr(value), "a whole number from 1 to 1048576")
+    raise Error("columns_per_turn", shown(value), "a whole number from 1 to 1048576")
 
 
 def _return_words(returns: object) -> list[str]:
     """Names of returns, or a number as the one word."""
     if isinstance(returns, str):
-        return returns.split(",")
+        return text_of(returns, "returns").split(",")
     if isinstance(returns, Iterable):
         return [text_of(name, "returns") for name in returns]
     return [str(whole(returns, "returns", MOST_32))]

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _core
-from ._errors import Error
+from ._errors import Error, shown
 from ._inputs import MOST_32, MOST_64, column_list, one_of, whole, whole_numbers
 from ._frame import Frame
 from ._lazily import DEFAULT_SEED, Inputs, Piece
@@ -48,12 +48,14 @@ class Simulator(Immutable):
     def __init__(
         self, scene: Scene, sensor: Sensor | None = None, *, renderer: str = "auto", threads: int = 0
     ) -> None:
-        chosen = scene.sensor if sensor is None else sensor
+        chosen = _checked(scene).sensor if sensor is None else sensor
+        if chosen is not None and not isinstance(chosen, Sensor):
+            raise Error("sensor", shown(chosen), "a Sensor", "glidar.load_sensor() reads one")
         if chosen is None:
             raise Error("sensor", "the scene has none", "a sensor", "glidar.camera() makes one")
         one_of(renderer, "renderer", _RENDERERS)
         self.sensor = chosen
-        self._origin = Origin(SceneSource(copy(scene)), chosen, renderer, threads)
+        self._origin = Origin(SceneSource(copy(_checked(scene))), chosen, renderer, threads)
         self._usual_fields = _core.fields_for(column_list(None))
         self._core = _core.make_simulator(scene._core, chosen._core, renderer, whole(threads, "threads", 4096))
 

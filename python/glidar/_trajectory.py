@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import FloatArray, floats, numbers, shape_text
+from ._inputs import FloatArray, floats, numbers, path_of, shape_text
 from ._state import Immutable, key_of, part, restoring, stated
 
 _MOST_S = 9.2e9
@@ -142,7 +142,9 @@ class Trajectory(Immutable):
             start_s: shifts all times so that the first is this.
         """
         start = None if start_s is None else _ns(start_s, "start_s")
-        return Trajectory(_core.load_trajectory(os.fspath(path), rate_hz, os.fspath(times_file or ""), start))
+        rate = None if rate_hz is None else float(floats(rate_hz, "rate_hz", ()))
+        times = "" if times_file is None else path_of(times_file, "times_file")
+        return Trajectory(_core.load_trajectory(path_of(path, "path"), rate, times, start))
 
     def pose_at(self, time_s: float) -> FloatArray:
         """The pose at a time, 4x4."""

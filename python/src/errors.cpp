@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include "bind.hpp"
+#include "report.hpp"
 
 #include <glidar/core/error.hpp>
 
@@ -16,7 +16,8 @@ void raise(const std::exception_ptr& thrown, void* /*payload*/) {
   } catch (const Error& error) {
     const ErrorParts& parts = error.parts();
     const nb::object type = nb::module_::import_("glidar._errors").attr("Error");
-    const nb::object made = type(parts.where, parts.found, parts.allowed, parts.remedy);
+    const nb::object made = type(text_of(parts.where), text_of(parts.found), text_of(parts.allowed),
+                                 text_of(parts.remedy));
     PyErr_SetObject(type.ptr(), made.ptr());
   }
 }

@@ -134,8 +134,10 @@ struct SaveOptions {
 
 void save_to(const Measured& m, const std::filesystem::path& path, const SaveOptions& options,
              const Report& report) {
-  protect_files(m.scene().files, path);
-  protect_files(m.sensor->sensor().files, path);
+  std::vector<std::string> inputs = m.scene().files;
+  const std::vector<std::string>& more = m.sensor->sensor().files;
+  inputs.insert(inputs.end(), more.begin(), more.end());
+  protect_files(inputs, path);
   const FileFormat& format = format_for(path);
   std::vector<std::string> columns = format.takes_more ? options.columns : format.columns;
   if (!options.sink.layout.empty() && format.takes_more) {
@@ -148,7 +150,8 @@ void save_to(const Measured& m, const std::filesystem::path& path, const SaveOpt
                                    {.scene = *m.scene().scene,
                                     .sensor = m.sensor->sensor(),
                                     .beams = *m.beams,
-                                    .renderer = m.scene().kind},
+                                    .renderer = m.scene().kind,
+                                    .inputs = inputs},
                                    report);
   sink->write(make_cloud(m, columns, options.frame, options.deskew), m.frame);
 }

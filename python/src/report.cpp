@@ -26,8 +26,7 @@ Report report_to(const nb::object& log, Watch& watch) {
   report.log = [&log, &watch](Severity severity, std::string_view message) {
     const nb::gil_scoped_acquire acquire;
     try {
-      log(severity == Severity::warning ? "warning" : "info",
-          nb::str(message.data(), message.size()));
+      log(severity == Severity::warning ? "warning" : "info", text_of(message));
     } catch (nb::python_error& error) {
       watch.give_up(error);
     }

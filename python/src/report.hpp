@@ -11,6 +11,12 @@
 
 namespace glidar::python {
 
+/// Names of files and words in them need not be UTF-8: what is not is spelled \xE9.
+inline nb::object text_of(std::string_view bytes) {
+  const auto size = static_cast<Py_ssize_t>(bytes.size());
+  return nb::steal(PyUnicode_DecodeUTF8(bytes.data(), size, "backslashreplace"));
+}
+
 /// Thrown through GLIDAR when Python was interrupted; Python knows its own error.
 struct Interrupted {};
 

@@ -211,7 +211,7 @@ class Refusals(ReplayTest):
                 self.assertIn(words, self.refused("replay", "bad.jsonl"))
         self.assertIn("no such file", self.refused("replay", "none.jsonl"))
         os.mkfifo(os.path.join(self.folder, "pipe"))
-        self.assertIn("no such file", self.refused("replay", "pipe"))
+        self.assertIn("not a regular file", self.refused("replay", "pipe"))
 
     def test_a_line_that_is_cut_or_wrong_is_named(self):
         self.record_scene()

@@ -292,8 +292,8 @@ const BadFile kBadFiles[] = {
     {"Binary", std::string("name: a\0b\n", 10), "s.yaml: binary data; allowed: a YAML file"},
     {"DeeplyNestedFlow", std::string(200000, '['),
      "s.yaml:1:1: nested too deeply; allowed: a sensor or scene file"},
-    {"HugeFile", std::string((2U << 20U) + 1, ' '),
-     "s.yaml: a file of more than 2 MiB; allowed: a YAML file of at most 2 MiB; name models by "
+    {"HugeFile", std::string((8U << 20U) + 1, ' '),
+     "s.yaml: a file of more than 8 MiB; allowed: a YAML file of at most 8 MiB; name models by "
      "their path, do not put them into the file"},
     {"ControlCharactersAreNotPrinted", "\"a\\n\\e\": 1\n",
      "s.yaml:1:1: a?\?: unknown key 'a?\?'; allowed: name, optics, rate_hz, "

@@ -103,3 +103,57 @@ def test_models_are_found_whatever_the_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert glidar.Scene(ROOT / "models/satellite/satellite.obj").objects[0].triangles > 0
     assert np.isfinite(glidar.load_sensor("OS1-32").directions).all()
+
+
+ODD = [10**30, -1, 2**64, float("nan"), float("inf"), -0.5, "x", "\ud800", "a\0b", b"\xff", [], {}, [[1, 2], [3]], object(), 1e308,
+       10**5000, "x" * 100_000, np.array([1 + 2j]), np.array(["a"]), (), "/dev/zero", "."]
+SCENE, CAMERA = glidar.load_scene("builtin:box"), glidar.camera(8, 6)
+EYE = np.eye(4)[None]
+USES = {
+    "load_scene": glidar.load_scene, "load_sensor": glidar.load_sensor, "sensor_file": glidar.sensor_file,
+    "width": lambda v: glidar.camera(v, 4), "noise": lambda v: glidar.camera(4, 4, noise=v),
+    "from_dict": glidar.Sensor.from_dict, "scene from_dict": glidar.Scene.from_dict,
+    "key": lambda v: glidar.Sensor.from_dict({v: 1} if isinstance(v, (str, int, float)) else v),
+    "pose": lambda v: glidar.simulate(SCENE, CAMERA, v), "seed": lambda v: glidar.simulate(SCENE, CAMERA, seed=v),
+    "frame": lambda v: glidar.simulate(SCENE, CAMERA, frame=v), "columns": lambda v: glidar.simulate(SCENE, CAMERA, columns=v),
+    "objects": lambda v: glidar.simulate(SCENE, CAMERA, objects=v), "threads": lambda v: SCENE.simulator(CAMERA, threads=v),
+    "renderer": lambda v: SCENE.simulator(CAMERA, renderer=v), "scene": lambda v: glidar.simulate(v, CAMERA),
+    "sensor": lambda v: glidar.simulate(SCENE, v), "simulator": lambda v: glidar.Simulator(SCENE, v),
+    "seeds": lambda v: glidar.simulate_batch(SCENE, CAMERA, EYE, v), "frames": lambda v: glidar.simulate_batch(SCENE, CAMERA, EYE, frames=v),
+    "iter seeds": lambda v: list(glidar.simulate_iter(SCENE, CAMERA, EYE, v)), "poses": lambda v: glidar.simulate_batch(SCENE, CAMERA, v),
+    "batch": lambda v: list(glidar.simulate_iter(SCENE, CAMERA, EYE, batch=v)), "add_copy": SCENE.add_copy, "add_model": SCENE.add_model,
+    "returns": lambda v: glidar.sensor("VLP-16", returns=v), "rate": lambda v: glidar.sensor("VLP-16", rate_hz=v),
+    "name": lambda v: setattr(SCENE.objects[0], "name", v), "id": lambda v: setattr(SCENE.objects[0], "id", v),
+    "trajectory": glidar.Trajectory.load, "kitti rate": lambda v: glidar.Trajectory.load(__file__, rate_hz=v),
+    "open3d": glidar.from_open3d, "trimesh": glidar.from_trimesh, "look_at": lambda v: glidar.look_at(v, v),
+    "quaternion": lambda v: glidar.quaternion(np.eye(3), v), "explain": lambda v: glidar.simulate(SCENE, CAMERA).explain(v),
+}
+
+
+@pytest.mark.parametrize("use", USES)
+def test_every_odd_value_is_an_error_that_quotes_little(use):
+    for value in ODD:
+        try:
+            USES[use](value)
+        except glidar.Error as error:
+            assert len(str(error)) < 1200 and "\0" not in str(error)
+
+
+def test_names_that_are_not_utf8_are_errors_with_a_text(tmp_path):
+    name = str(tmp_path).encode() + b"/\xff.yaml"
+    Path(name.decode("utf-8", "surrogateescape")).write_text("optics: 3\n")
+    for use in (glidar.load_sensor, glidar.load_scene):
+        with pytest.raises(glidar.Error) as caught:
+            use(name)
+        assert "UTF-8" in str(caught.value)
+
+
+def test_files_that_are_not_utf8_are_errors(tmp_path):
+    (tmp_path / "s.yaml").write_bytes(b"name: caf\xe9\n")
+    (tmp_path / "t.csv").write_bytes(b"\xff\xfe 1 2\n")
+    (tmp_path / "c.yaml").write_bytes(b"optics: {type: table, file: t.csv}\n")
+    for use, name in ((glidar.load_sensor, "s.yaml"), (glidar.load_scene, "s.yaml"), (glidar.load_sensor, "c.yaml"),
+                      (glidar.Trajectory.load, "t.csv")):
+        with pytest.raises(glidar.Error) as caught:
+            use(tmp_path / name)
+        assert str(caught.value)

@@ -8,6 +8,7 @@ import signal
 import sys
 
 from glidar import Error
+from glidar._errors import excerpt
 from glidar.campaign.progress import tell_warnings
 
 DONE, TRIALS_FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
@@ -23,15 +24,15 @@ class Parser(argparse.ArgumentParser):
 
 
 def _part(text):
-    match = re.fullmatch(r"(\d+)/(\d+)", text)
+    match = re.fullmatch(r"([0-9]{1,9})/([0-9]{1,9})", text)
     if not match or not int(match[1]) < int(match[2]):
-        raise argparse.ArgumentTypeError(f"'{text}'; allowed: i/N with i from 0 to N - 1")
+        raise argparse.ArgumentTypeError(f"'{excerpt(text)}'; allowed: i/N with i from 0 to N - 1")
     return int(match[1]), int(match[2])
 
 
 def _count(text):
-    if not text.isdigit() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"'{text}'; allowed: a whole number from 1")
+    if not re.fullmatch("[0-9]{1,9}", text) or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"'{excerpt(text)}'; allowed: a whole number from 1 to 999999999")
     return int(text)
 
 

@@ -13,12 +13,20 @@ import hashlib
 import json
 import os
 import secrets
+import re
 import shutil
 import socket
+import stat
 from pathlib import Path
 
 from glidar import Error
+from glidar._errors import excerpt
 
+MOST_BYTES = 1 << 40  # of a file that is hashed or copied piece by piece
+MOST_JSON_BYTES = 1 << 30
+MOST_JSON_LEVELS = 64
+STRING = re.compile(rb'"(?:[^"\\]|\\.)*"')
+NO_BRACKETS = bytes(set(range(256)) - set(b"[]{}"))
 FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 
@@ -122,13 +130,70 @@ def write_json(scratch, final, value):
     write_bytes(scratch, final, json_bytes(value))
 
 
-def read_json(path):
+def open_input(path, most=MOST_BYTES):
+    """A regular file of at most so many bytes, opened for reading. A pipe or device is refused, and cannot block."""
     try:
-        return json.loads(Path(path).read_bytes())
+        descriptor = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_CLOEXEC)
     except OSError as error:
-        raise Error(str(path), f"it cannot be read: {error.strerror}", "", "") from None
+        raise Error(str(path), f"it cannot be read: {error.strerror}", "a file that can be read", "") from None
+    except ValueError as error:  # a zero byte, or letters that no file name can have
+        raise Error(excerpt(path), f"it is no name of a file: {error}", "a path", "") from None
+    file = os.fdopen(descriptor, "rb") if stat.S_ISREG(os.fstat(descriptor).st_mode) else None
+    if file is None:
+        os.close(descriptor)
+        raise Error(str(path), "it is a folder, a pipe or a device", "a regular file", "")
+    size = os.fstat(descriptor).st_size
+    if size > most:
+        file.close()
+        raise Error(str(path), f"a file of {size >> 20} MiB", f"a file of at most {most >> 20} MiB", "")
+    return file
+
+
+def read_bytes(path, most):
+    """The content of a regular file of at most so many bytes."""
+    with open_input(path, most) as file:
+        try:
+            data = file.read(most + 1)
+        except OSError as error:
+            raise Error(str(path), f"it cannot be read: {error.strerror}", "", "") from None
+    if len(data) > most:
+        raise Error(str(path), "a file that grows while it is read", f"a file of at most {most >> 20} MiB", "")
+    return data
+
+
+def copy(source, target):
+    """Copies a regular file."""
+    with open_input(source) as file, open(target, "wb") as copied:
+        shutil.copyfileobj(file, copied, 1 << 20)
+
+
+def _is_too_deep(data):
+    """Whether JSON is nested too deeply for what works through it by recursion."""
+    brackets = STRING.sub(b"", data).translate(None, NO_BRACKETS)
+    for _ in range(MOST_JSON_LEVELS):
+        if not brackets:
+            return False
+        brackets = brackets.replace(b"[]", b"").replace(b"{}", b"")
+    return bool(brackets)
+
+
+def _no_number(word):
+    raise ValueError(f"{word} is no number in JSON")
+
+
+def read_json(path):
+    """What a JSON file holds; every fault of it is an Error."""
+    data = read_bytes(path, MOST_JSON_BYTES)
+    try:
+        value = json.loads(data, parse_constant=_no_number)
+        is_too_deep = _is_too_deep(data)
+    except RecursionError:
+        is_too_deep = True
     except ValueError as error:
-        raise Error(str(path), f"it is no JSON: {error}", "", "") from None
+        raise Error(str(path), f"it is no JSON: {excerpt(error)}", "", "") from None
+    if is_too_deep:
+        raise Error(str(path), "JSON nested too deeply", f"about {MOST_JSON_LEVELS} levels", "")
+    return value
 
 
 def hash_bytes(data):
@@ -138,7 +203,7 @@ def hash_bytes(data):
 def hash_file(path):
     """SHA-256 of a file, hexadecimal, as sha256sum prints it."""
     try:
-        with open(path, "rb", buffering=0) as file:
+        with open_input(path) as file:
             return hashlib.file_digest(file, "sha256").hexdigest()
     except OSError as error:
         raise Error(str(path), f"it cannot be read: {error.strerror}", "", "") from None

@@ -8,7 +8,7 @@ import platform
 
 import numpy as np
 
-from glidar.campaign import files, index, rotations
+from glidar.campaign import files, index, records, rotations
 
 MANIFEST_FILE = "manifest.json"
 PACKAGES = ["numpy", "scipy", "pyarrow", "pillow"]
@@ -66,12 +66,12 @@ def _write_index(folder, scratch, shards):
     return index.INDEX_FILE
 
 
-def _receipts(folder, shards):
+def _receipts(folder, described):
     """Every receipt: the shards' in order, then those of what is there once."""
-    for shard in range(shards):
-        yield files.read_json(folder.receipt(shard))
+    for shard in range(described["shards"]):
+        yield records.read_receipt(folder.receipt(shard), described)
     for path in folder.extras():
-        yield files.read_json(path)
+        yield records.read_receipt(path, described)
 
 
 def _write_manifest(folder, scratch, described, once):
@@ -86,7 +86,7 @@ def _write_manifest(folder, scratch, described, once):
                 whole = folder.root / name
                 entry = [files.hash_file(whole), whole.stat().st_size]
                 file.write(f"{json.dumps(name)}: {json.dumps(entry)},\n")
-            for receipt in _receipts(folder, described["shards"]):
+            for receipt in _receipts(folder, described):
                 trials += receipt["trials"]
                 failed += receipt["failed"]
                 for name, entry in sorted(receipt["files"].items()):

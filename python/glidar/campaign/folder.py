@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from glidar import Error
-from glidar.campaign import files
+from glidar._inputs import path_of
+from glidar.campaign import files, names, records
 from glidar.campaign.plan import PLAN_FILE, identity
 
 
@@ -54,7 +55,7 @@ def claim(folder, plan):
     """Makes the folder the campaign's own, or checks that it is; returns whether it was not before."""
     wanted = describe(plan)
     if folder.plan_file().exists():
-        require_same(folder.root, files.read_json(folder.plan_file()), wanted)
+        require_same(folder.root, records.read_campaign(folder.plan_file()), wanted)
         return False
     require_empty(folder.root)
     with files.scratch(folder.root) as scratch:
@@ -119,18 +120,18 @@ def difference(old, new, path=""):
 
 def opened(root):
     """A campaign's folder and its campaign.json."""
-    folder = Folder(Path(root))
+    folder = Folder(Path(path_of(root, "folder")))
     if not folder.plan_file().is_file():
         raise Error(str(root), "it holds no campaign", "a folder that glidar campaign run wrote", "")
-    return folder, files.read_json(folder.plan_file())
+    return folder, records.read_campaign(folder.plan_file())
 
 
-def is_done(folder, shard):
-    """Whether a shard has its receipt, and its files as long as the receipt says."""
+def is_done(folder, shard, described):
+    """Whether a shard has its receipt, and its files as long as the receipt says; `described`: campaign.json."""
     path = folder.receipt(shard)
     if not path.is_file():
         return False
-    for name, (_, size) in files.read_json(path)["files"].items():
+    for name, (_, size) in records.read_receipt(path, described)["files"].items():
         try:
             if (folder.root / name).stat().st_size != size:
                 return False
@@ -141,7 +142,15 @@ def is_done(folder, shard):
 
 def missing(folder, shards):
     """Those of the shards that are not done."""
-    return [shard for shard in shards if not is_done(folder, shard)]
+    described = records.read_campaign(folder.plan_file())
+    return [shard for shard in shards if not is_done(folder, shard, described)]
+
+
+def count_missing(folder, described):
+    """How many shards are not done: found by the receipts that are there, however many shards there should be."""
+    shards = {names.receipt_shard(path) for path in records.receipts_in(folder.root)} - {None}
+    return described["shards"] - sum(shard < described["shards"] and is_done(folder, shard, described)
+                                     for shard in shards)
 
 
 def note(folder, **words):

@@ -6,7 +6,9 @@ from collections import Counter
 
 import numpy as np
 
-from glidar.campaign import rotations
+from glidar import Error
+from glidar._errors import excerpt
+from glidar.campaign import files, rotations
 
 INDEX_FILE = "index.parquet"
 FACTS = ["beams", "hits", "range_min_m", "range_max_m", "intensity_mean"]
@@ -81,7 +83,10 @@ def join(parts, path):
     writer = None
     try:
         for part in parts:
-            table = pq.read_table(part)
+            table = read(part)
+            if writer and table.schema != writer.schema:
+                raise Error(str(part), "its columns are not those of the other parts", "parts of one campaign",
+                            "remove its receipt and run that part again")
             writer = writer or pq.ParquetWriter(path, table.schema, compression="zstd")
             writer.write_table(table)
     finally:
@@ -91,11 +96,9 @@ def join(parts, path):
 
 def count_errors(parts):
     """How often each error text stands in parts of the index."""
-    import pyarrow.parquet as pq
-
     counts = Counter()
     for part in parts:
-        counts.update(text for text in pq.read_table(part, columns=["error"])["error"].to_pylist() if text)
+        counts.update(text for text in read(part)["error"].to_pylist() if text)
     return counts
 
 
@@ -104,6 +107,32 @@ def batches(path, columns=None):
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    with pq.ParquetFile(path) as file:
+    with files.open_input(path) as opened, pq.ParquetFile(opened) as file:
         for batch in file.iter_batches(columns=columns):
             yield pa.table(batch)
+
+
+def _no_index(path, what):
+    return Error(str(path), f"it is no index of trials: {excerpt(what)}", "a file that glidar campaign wrote",
+                 "glidar campaign check lists the files that differ")
+
+
+def read(path):
+    """An index or a part of one, with the columns that all have."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    try:
+        with files.open_input(path) as file:
+            table = pq.read_table(file)
+    except (pa.ArrowException, OSError) as error:
+        raise _no_index(path, error) from None
+    kinds = {"trial": pa.types.is_integer, "shard": pa.types.is_integer, "ok": pa.types.is_boolean,
+             "error": pa.types.is_string, "scene": pa.types.is_string, "sensor": pa.types.is_string}
+    kinds |= dict.fromkeys(POSE, pa.types.is_floating)
+    for name, is_right in kinds.items():
+        if table.schema.names.count(name) != 1 or not is_right(table.schema.field(name).type):
+            raise _no_index(path, f"column {name}")
+        if table[name].null_count:
+            raise _no_index(path, f"column {name} has gaps")
+    return table

@@ -2,11 +2,19 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """NPZ shards: the columns of many trials as arrays trial x row x column."""
 
+import contextlib
+import re
 import zipfile
 
 import numpy as np
 
+from glidar import Error
+from glidar._errors import excerpt
+from glidar.campaign import files
+
 FOLDER = "npz"
+MEMBER = re.compile(r"(?:\d{1,10}x\d{1,10}/)?[a-z_]{1,64}\.npy", re.ASCII)
+MOST_BYTES = 1 << 34  # of an array, unpacked
 REAL = {"f32": np.dtype(np.float32), "f64": np.dtype(np.float64)}
 
 
@@ -26,6 +34,19 @@ def write_npz(path, arrays, compress):
                 np.lib.format.write_array_header_1_0(member, header)
                 if array.size:
                     member.write(array.reshape(-1).view(np.uint8))
+
+
+@contextlib.contextmanager
+def opened(path):
+    """An NPZ shard, whose members have the names and sizes that shards have."""
+    with files.open_input(path) as file, np.load(file, allow_pickle=False) as arrays:
+        if not isinstance(arrays, np.lib.npyio.NpzFile):
+            raise Error(str(path), "it is no NPZ file", "a file that glidar campaign wrote", "")
+        for member in arrays.zip.infolist():
+            if not MEMBER.fullmatch(member.filename) or member.file_size > MOST_BYTES:
+                raise Error(f"{path}: {excerpt(member.filename)}", f"a member of {member.file_size} bytes",
+                            f"names of columns, and at most {MOST_BYTES} bytes", "")
+        yield arrays
 
 
 class NpzOutput:

@@ -11,12 +11,13 @@ from pathlib import Path
 
 import glidar
 from glidar import Error
-from glidar.campaign import files, inputs, sensor_files, variants, yaml_file as yf
+from glidar.campaign import files, inputs, records, sensor_files, variants, yaml_file as yf
 from glidar.campaign.spec import Spec
 
 FORMAT = 2  # of the campaign folder
 SHARD_BEAMS = 1 << 22  # in a shard, where the campaign file does not say how many trials
 LEAST_SHARD_TRIALS, LARGEST_SHARD_TRIALS = 16, 1024
+MOST_SHARDS = records.MOST_SHARDS
 PLAN_FILE = "campaign.json"
 
 
@@ -137,4 +138,7 @@ def make_plan(spec):
     _check_variations(spec, sensors, "sensor")
     known = [sensor_files.look(s) for s in sensors]
     shard_trials = spec.shard_trials or _auto_shard_trials(max(k.beams for k in known))
+    if spec.trials > MOST_SHARDS * shard_trials:
+        raise Error(f"{spec.file}: shard_trials", f"{spec.trials} trials in shards of {shard_trials}",
+                    f"at most {MOST_SHARDS} shards", f"set shard_trials to {-(-spec.trials // MOST_SHARDS)} or more")
     return Plan(spec, scenes, sensors, tuple(k.boresight for k in known), shard_trials)

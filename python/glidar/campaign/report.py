@@ -6,6 +6,8 @@ import base64
 import io
 import json
 import os
+import zipfile
+import zlib
 from html import escape
 from pathlib import Path
 
@@ -13,8 +15,9 @@ import numpy as np
 from PIL import Image
 
 from glidar import Error
+from glidar._errors import excerpt
 from glidar._pictures import scale_of
-from glidar.campaign import charts, files, folder as folders, index, rotations
+from glidar.campaign import charts, files, folder as folders, index, npz_output, records, rotations
 from glidar.campaign.finish import MANIFEST_FILE
 
 REPORT_FILE = "report.html"
@@ -70,12 +73,23 @@ def _summary(manifest):
 def _log_lines(folder):
     lines = []
     for path in sorted((folder.root / "log").glob("*.jsonl")):
-        for text in path.read_text(encoding="utf-8").splitlines():
+        for text in files.read_bytes(path, files.MOST_JSON_BYTES).decode("utf-8", "replace").splitlines():
             try:
-                lines.append({**json.loads(text), "by": path.stem})
-            except ValueError:
-                pass  # the last line of a killed process
+                entry = json.loads(text)
+            except (ValueError, RecursionError):
+                continue  # the last line of a killed process
+            if _is_log_entry(entry):
+                lines.append({**entry, "by": path.stem})
     return sorted(lines, key=lambda entry: entry["time_s"])
+
+
+def _is_log_entry(entry):
+    """Whether it has the numbers that are reported; logs say nothing about results, so others are passed over."""
+    if not isinstance(entry, dict):
+        return False
+    keys = ("time_s", "seconds", "trials") if "shard" in entry else ("time_s",)
+    values = [entry.get(key) for key in keys]
+    return all(isinstance(value, (int, float)) and 0 <= value < 1e15 for value in values)
 
 
 def _time_at_work(end_s, seconds):
@@ -206,8 +220,17 @@ def _shown(picture):
     return f'<img src="data:image/png;base64,{data}" width="{size[0]}" height="{size[1]}" alt="">'
 
 
-def _pick(file, trial):
+def _pick(path, trial):
     """(title, picture, its scale) of a trial of an NPZ shard."""
+    try:
+        with npz_output.opened(path) as file:
+            return _picked(file, trial)
+    except (ValueError, OSError, IndexError, EOFError, zipfile.BadZipFile, zlib.error) as error:
+        raise Error(str(path), f"it is no NPZ shard: {excerpt(error)}", "a file that glidar campaign wrote",
+                    "glidar campaign check lists the files that differ") from None
+
+
+def _picked(file, trial):
     for key in file.files:
         prefix = key[: -len("trial")] if key.endswith("trial") else None
         if prefix is None or trial not in file[key]:
@@ -219,7 +242,7 @@ def _pick(file, trial):
     return None
 
 
-def _examples(folder, table):
+def _examples(folder, table, described):
     trials = table["trial"].to_numpy()[table["ok"].to_numpy(zero_copy_only=False)]
     if len(trials) == 0:
         return "<p>No trial succeeded.</p>"
@@ -227,12 +250,11 @@ def _examples(folder, table):
     chosen = np.unique(trials[np.linspace(0, len(trials) - 1, EXAMPLES).astype(int)])
     parts = []
     for trial in chosen:
-        names = [n for n in files.read_json(folder.receipt(by_trial[trial]))["files"]
-                 if n.startswith("npz/")]
+        receipt = records.read_receipt(folder.receipt(by_trial[trial]), described)
+        names = [n for n in receipt["files"] if n.startswith("npz/")]
         if not names:
             return "<p>Pictures are made of NPZ shards, and this campaign writes none.</p>"
-        with np.load(folder.root / names[0]) as file:
-            found = _pick(file, trial)
+        found = _pick(folder.root / names[0], trial)
         if found:
             parts.append(charts.figure(f"trial {trial}: {found[0]}", _shown(found[1]), found[2]))
     return "".join(parts) or "<p>The NPZ shards hold neither depth, range nor intensity.</p>"
@@ -240,19 +262,17 @@ def _examples(folder, table):
 
 def page(root: str | os.PathLike[str]) -> str:
     """The text of the report."""
-    folder, _ = folders.opened(root)
+    folder, described = folders.opened(root)
     if not (folder.root / MANIFEST_FILE).is_file():
         raise Error(str(root), "the campaign is not finished", "a folder with manifest.json",
                     "run glidar campaign run again, or merge its parts")
-    import pyarrow.parquet as pq
-
-    manifest = files.read_json(folder.root / MANIFEST_FILE)
+    manifest = records.read_manifest(folder.root / MANIFEST_FILE)
     campaign = manifest["plan"]["campaign"]
-    table = pq.read_table(folder.root / index.INDEX_FILE)
+    table = index.read(folder.root / index.INDEX_FILE)
     sections = [("Summary", _summary(manifest)), ("Failures", _failures(table)),
                 ("Distributions", _distributions(table, campaign)),
                 ("Coverage", _coverage(table, campaign)),
-                ("Example views", _examples(folder, table)),
+                ("Example views", _examples(folder, table, described)),
                 ("Speed", _speed(folder))]
     body = "".join(f"<h2>{title}</h2>{content}" for title, content in sections)
     name = escape(campaign["name"])
@@ -266,7 +286,7 @@ def _require_foreign(root, path):
     if not path.is_relative_to(root):
         return
     name = path.relative_to(root)
-    listed = files.read_json(root / MANIFEST_FILE)["files"]
+    listed = records.read_manifest(root / MANIFEST_FILE)["files"]
     if name.as_posix() in [*listed, MANIFEST_FILE] or name.parts[:1] in [("receipts",), ("parts",), ("log",)]:
         raise Error(str(path), "it is a file of the campaign", "another name",
                     f"without -o the report is {root / REPORT_FILE}")

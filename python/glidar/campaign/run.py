@@ -4,13 +4,13 @@
 
 import contextlib
 import os
-import shutil
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from glidar import Error
-from glidar.campaign import bop_models, files, finish as finishing, folder as folders, index
+from glidar._inputs import MOST_32, path_of, whole
+from glidar.campaign import bop_models, files, finish as finishing, folder as folders, index, names, records
 from glidar.campaign.folder import Folder
 from glidar.campaign.local import require_guard, run_local
 from glidar.campaign.plan import Plan, make_plan
@@ -28,6 +28,10 @@ class Part:
 
     index: int = 0
     count: int = 1
+
+    def __post_init__(self) -> None:
+        if whole(self.index, "part, index", MOST_32) >= whole(self.count, "part, count", MOST_32):
+            raise Error("part", f"{self.index} of {self.count}", "an index from 0 to below the count")
 
     def shards(self, total: int) -> list[int]:
         return list(range(self.index, total, self.count))
@@ -63,8 +67,8 @@ def _prepare(plan: Plan, folder: Folder) -> bool:
 def claimed(spec_path: StrPath, root: StrPath, is_part: bool = False) -> Iterator[tuple[Plan, Folder]]:
     """Reads the campaign and claims its folder; where an error comes before anything is measured, for nothing.
     Parts may share the folder, and leave it."""
-    plan = make_plan(read_spec(spec_path))
-    folder = Folder(Path(root))
+    plan = make_plan(read_spec(path_of(spec_path, "campaign")))
+    folder = Folder(Path(path_of(root, "folder")))
     is_new = _prepare(plan, folder)
     try:
         yield plan, folder
@@ -76,7 +80,8 @@ def claimed(spec_path: StrPath, root: StrPath, is_part: bool = False) -> Iterato
 
 def _counts(folder, shards):
     """(trials, failed) of shards that are done."""
-    receipts = [files.read_json(folder.receipt(shard)) for shard in shards]
+    described = records.read_campaign(folder.plan_file())
+    receipts = [records.read_receipt(folder.receipt(shard), described) for shard in shards]
     return sum(r["trials"] for r in receipts), sum(r["failed"] for r in receipts)
 
 
@@ -98,6 +103,7 @@ def run(spec_path: StrPath, root: StrPath, part: Part = Part(), workers: int = 0
         Error: bad input, or no room; trials that fail are counted in the outcome.
     """
     require_guard()
+    whole(workers, "workers", MOST_32)
     with claimed(spec_path, root, part.count > 1) as (plan, folder):
         wanted = part.shards(plan.shards)
         todo = folders.missing(folder, wanted)
@@ -126,7 +132,8 @@ def _measure(plan: Plan, folder: Folder, todo: list[int], execute: Execute | Non
 
 def _commonest(folder: Folder, shards: Sequence[int]) -> str:
     """Of the errors of failed trials the commonest, in words."""
-    failing = (folder.part(s) for s in shards if files.read_json(folder.receipt(s))["failed"])
+    described = records.read_campaign(folder.plan_file())
+    failing = (folder.part(s) for s in shards if records.read_receipt(folder.receipt(s), described)["failed"])
     counts = index.count_errors(failing)
     if not counts:
         return ""
@@ -135,11 +142,11 @@ def _commonest(folder: Folder, shards: Sequence[int]) -> str:
 
 
 def _finished(folder: Folder, rate: float = 0.0) -> Outcome:
-    described = files.read_json(folder.plan_file())
+    described = records.read_campaign(folder.plan_file())
     shards = range(described["shards"])
-    missing = folders.missing(folder, shards)
+    missing = folders.count_missing(folder, described)
     if missing:
-        return Outcome(0, 0, False, len(missing), rate)
+        return Outcome(0, 0, False, missing, rate)
     trials, failed = finishing.finish(folder, described)
     return Outcome(trials, failed, True, 0, rate, _commonest(folder, shards) if failed else "")
 
@@ -152,11 +159,13 @@ def _bad_content(path: Path) -> Error:
 def _adopt(name, entry, source, target, scratch):
     """Takes a file over from another folder, if it is what its receipt says."""
     digest, _ = entry
+    for root in (source, target):
+        names.require_inside(root, root / name)
     if (target / name).is_file() and files.hash_file(target / name) == digest:
         return
     path = scratch.path(Path(name).name)
     try:
-        shutil.copyfile(source / name, path)
+        files.copy(source / name, path)
     except OSError as error:
         raise files.write_error(target / name, error) from None
     if files.hash_file(path) != digest:
@@ -164,31 +173,33 @@ def _adopt(name, entry, source, target, scratch):
     files.publish(path, target / name)
 
 
-def _adopt_receipt(receipt, source, target, scratch):
+def _adopt_receipt(receipt, source, target, scratch, described):
     """Takes over all files of a receipt, and then the receipt."""
     relative = receipt.relative_to(source)
-    content = files.read_json(receipt)
+    content = records.read_receipt(receipt, described)
     known = target / relative
+    for root in (source, target):
+        names.require_inside(root, root / relative)
     if known.is_file():
-        if files.read_json(known) != content:
+        if records.read_receipt(known, described) != content:
             raise Error(str(receipt), f"it differs from {known}", "parts of one campaign give the "
                         "same shard the same content", "were they run by the same versions?")
         return
     for name, entry in sorted(content["files"].items()):
         _adopt(name, entry, source, target, scratch)
-    files.write_bytes(scratch, known, receipt.read_bytes())
+    files.write_bytes(scratch, known, files.json_bytes(content))
 
 
 def _open_target(sources, root, described, scratch):
     """The folder of the whole: a new one, or one of the campaign whose files are what their receipts say."""
     target = Folder(Path(root))
     if target.plan_file().is_file():
-        folders.require_same(root, files.read_json(target.plan_file()), described)
+        folders.require_same(root, records.read_campaign(target.plan_file()), described)
     else:
         folders.require_empty(target.root)
-        files.write_bytes(scratch, target.plan_file(), Folder(Path(sources[0])).plan_file().read_bytes())
-    for receipt in sorted((target.root / "receipts").glob("*.json")):
-        for name in folders.wrong_files(target.root, files.read_json(receipt)["files"]):
+        files.write_json(scratch, target.plan_file(), described)
+    for receipt in records.receipts_in(target.root):
+        for name in folders.wrong_files(target.root, records.read_receipt(receipt, described)["files"]):
             raise _bad_content(target.root / name)
     return target
 
@@ -203,6 +214,9 @@ def merge(sources: Sequence[StrPath], root: StrPath) -> Outcome:
     Raises:
         Error: parts of different campaigns, and files that are not what their receipts say.
     """
+    sources, root = [path_of(source, "part") for source in sources], path_of(root, "folder")
+    if not sources:
+        raise Error("parts", "there are none", "folders of parts of a campaign")
     described = folders.opened(sources[0])[1]
     for source in sources[1:]:
         folders.require_same(source, folders.opened(source)[1], described,
@@ -211,21 +225,27 @@ def merge(sources: Sequence[StrPath], root: StrPath) -> Outcome:
         target = _open_target(sources, root, described, scratch)
         for source in map(Path, sources):
             if source.resolve() != target.root.resolve():
-                for receipt in sorted((source / "receipts").glob("*.json")):
-                    _adopt_receipt(receipt, source, target.root, scratch)
+                for receipt in records.receipts_in(source):
+                    _adopt_receipt(receipt, source, target.root, scratch, described)
                 _adopt_logs(source, target.root)
     files.remove_leftovers(root)
     return _finished(target)
 
 
 def _adopt_logs(source, target):
-    for log in (source / "log").glob("*.jsonl"):
-        (target / "log").mkdir(parents=True, exist_ok=True)
-        shutil.copyfile(log, target / "log" / log.name)
+    for log in filter(names.is_log, (source / "log").glob("*.jsonl")):
+        copied = target / "log" / log.name
+        names.require_inside(source, log)
+        names.require_inside(target, copied)
+        try:
+            copied.parent.mkdir(parents=True, exist_ok=True)
+            files.copy(log, copied)
+        except OSError as error:
+            raise files.write_error(copied, error) from None
 
 
 def check(root: StrPath) -> tuple[int, list[str]]:
     """Compares every file with the manifest: (how many there are, names of those that differ or are missing)."""
     folder, _ = folders.opened(root)
-    listed = files.read_json(folder.root / finishing.MANIFEST_FILE)["files"]
+    listed = records.read_manifest(folder.root / finishing.MANIFEST_FILE)["files"]
     return len(listed), list(folders.wrong_files(folder.root, listed))

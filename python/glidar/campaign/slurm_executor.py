@@ -2,18 +2,20 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A campaign as a Slurm job array: task i of N measures part i, a last job merges."""
 
+import os
 import re
 import shlex
-import shutil
 import subprocess
 import sys
 from pathlib import Path
 
 from glidar import Error
+from glidar._errors import excerpt
 from glidar.campaign import files, run as running
 
 TASKS = 8
-PROGRAM = f"{shlex.quote(sys.executable)} -m glidar.campaign"
+# -P: no module comes from the folder that the job happens to run in
+PROGRAM = f"{shlex.quote(sys.executable)} -P -m glidar.campaign"
 
 ARRAY = """#!/bin/sh
 #SBATCH --job-name={name}
@@ -43,12 +45,21 @@ def scripts(flags, count):
     return ARRAY.format(**words), MERGE.format(**words)
 
 
+def _find_program(name):
+    """A program of an absolute folder in PATH; None where there is none. Others would run what a folder holds."""
+    for folder in os.environ.get("PATH", os.defpath).split(os.pathsep):
+        path = os.path.join(folder, name)
+        if os.path.isabs(folder) and os.path.isfile(path) and os.access(path, os.X_OK):
+            return path
+    return None
+
+
 def _sbatch(script, *options):
     """The number of the job."""
-    done = subprocess.run(["sbatch", "--parsable", *options, str(script)], capture_output=True,
+    done = subprocess.run([_find_program("sbatch"), "--parsable", *options, str(script)], capture_output=True,
                           text=True, check=False)
     if done.returncode != 0 and "--wait" not in options:
-        raise Error("sbatch", done.stderr.strip() or f"exit code {done.returncode}", "", "")
+        raise Error("sbatch", excerpt(done.stderr.strip()) or f"exit code {done.returncode}", "", "")
     return done.stdout.strip().split(";")[0]
 
 
@@ -76,7 +87,7 @@ def _submit_array(paths):
 def submit(flags):
     """Writes and submits the scripts; waits for the end where that is asked for. Returns the Outcome
     when it is known."""
-    if not shutil.which("sbatch"):
+    if not _find_program("sbatch"):
         raise Error("--executor slurm", "there is no program sbatch", "a machine that submits to Slurm",
                     "install slurm-client, or run the parts by hand: --shard i/N")
     if flags.shard != (0, 1):

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import yaml
 
+from glidar._errors import excerpt
 from glidar.campaign import yaml_file as yf
 
 PATH = re.compile(r"(scene|sensor)((?:\.[A-Za-z_]\w*|\[[^\[\]]+\])+)")
@@ -34,7 +35,7 @@ def read_target(field, path):
     """Takes a dotted path apart; `field` is what it is given for."""
     match = PATH.fullmatch(path)
     if not match:
-        yf.reject(field, f"'{path}'", "scene.KEY or sensor.KEY, e.g. sensor.noise[0].sigma_m, "
+        yf.reject(field, f"'{excerpt(path)}'", "scene.KEY or sensor.KEY, e.g. sensor.noise[0].sigma_m, "
                   "scene.models[rock].scale")
     steps = [key or f"[{index}]" for key, index in STEP.findall(match[2])]
     return Target(match[1], tuple(steps))
@@ -45,7 +46,7 @@ def _element(field, word):
     elements = yf.items(field, 0)
     if word.isdecimal():
         if len(word) > MOST_DIGITS or int(word) >= len(elements):
-            yf.reject(field, f"there is no element [{word}]", f"[0] to [{len(elements) - 1}]")
+            yf.reject(field, f"there is no element [{excerpt(word)}]", f"[0] to [{len(elements) - 1}]")
         return elements[int(word)]
     names = []
     for element in elements:
@@ -54,7 +55,7 @@ def _element(field, word):
         if names[-1] == word:
             return element
     known = [name for name in names if name]
-    return yf.reject(field, f"no element has the name '{word}'", ", ".join(known) or "[0], [1], ...",
+    return yf.reject(field, f"no element has the name '{excerpt(word)}'", ", ".join(known) or "[0], [1], ...",
                      yf.did_you_mean(word, known))
 
 
@@ -81,7 +82,7 @@ def find(field, target, is_replaced=True):
 def _entry(field, key):
     found = yf.entries(field)
     if key not in found:
-        yf.reject(field, f"there is no key '{key}'", ", ".join(found) or "no key",
+        yf.reject(field, f"there is no key '{excerpt(key)}'", ", ".join(found) or "no key",
                   yf.did_you_mean(key, list(found))
                   or "write it into the file with its usual value, so that it can be varied")
     return found[key]

@@ -7,7 +7,7 @@ import threading
 import time
 from dataclasses import dataclass
 
-from glidar.campaign import files, folder as folders
+from glidar.campaign import files, folder as folders, records
 from glidar.campaign.measure import Measurer
 from glidar.campaign.shard_writer import ShardWriter
 from glidar.campaign.trials import draw_trials
@@ -127,5 +127,5 @@ def work(plan, folder, shards, threads, report):
 
 def recall(folder, shard):
     """The Done of a shard that was done before."""
-    receipt = files.read_json(folder.receipt(shard))
+    receipt = records.read_receipt(folder.receipt(shard), records.read_campaign(folder.plan_file()))
     return Done(shard, receipt["trials"], receipt["failed"], 0.0)

@@ -10,9 +10,13 @@ from dataclasses import dataclass
 import yaml
 
 from glidar import Error
+from glidar._errors import excerpt
+from glidar.campaign import files
 
 LARGEST_BYTES = 2 << 20
-LONGEST_SHOWN = 80  # letters of a value in an error text
+MOST_NODES = 1_000_000  # of a file with its aliases written out, and NODES_PER_BYTE more for each byte
+NODES_PER_BYTE = 2
+LONGEST_WORD = 200  # that a known one is looked for
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
 
 
@@ -54,6 +58,8 @@ def reject(field, found, allowed="", remedy=""):
 
 
 def did_you_mean(word, known):
+    if len(word) > LONGEST_WORD:
+        return ""
     near = difflib.get_close_matches(word, known, 1)
     return f"did you mean '{near[0]}'?" if near else ""
 
@@ -67,7 +73,7 @@ def describe(field):
         return f"a list of {len(node.value)}"
     if node.value == "" and node.style is None:
         return "nothing"
-    shown = node.value if len(node.value) <= LONGEST_SHOWN else node.value[:LONGEST_SHOWN] + "..."
+    shown = excerpt(node.value)
     return shown if is_number(node) else f"the text '{shown}'"
 
 
@@ -80,20 +86,15 @@ def is_number(node):
 def syntax_error(path, error):
     mark = getattr(error, "problem_mark", None)
     place = f"{path}:{mark.line + 1}:{mark.column + 1}" if mark else str(path)
-    return Error(place, getattr(error, "problem", None) or str(error).replace("\n", " "),
+    return Error(place, excerpt(getattr(error, "problem", None) or error),
                  "YAML with one map", "")
 
 
 def read_text(path):
     """The text of a YAML file; every fault of reading is an Error."""
+    data = files.read_bytes(path, LARGEST_BYTES)
     try:
-        with open(path, "rb") as file:
-            data = file.read(LARGEST_BYTES + 1)
-        if len(data) > LARGEST_BYTES:
-            raise Error(str(path), "the file is larger than 2 MiB", "a YAML file of at most 2 MiB", "")
         return data.decode("utf-8")
-    except OSError as error:
-        raise Error(str(path), f"it cannot be read: {error.strerror}", "a YAML file", "") from None
     except UnicodeDecodeError:
         raise Error(str(path), "it is not text in UTF-8", "a YAML file", "") from None
 
@@ -113,11 +114,52 @@ def parse(text, path):
     """The map that a YAML text holds, as a Field."""
     try:
         documents = list(yaml.compose_all(text, Loader=Loader))
-    except (yaml.YAMLError, RecursionError) as error:
+    except RecursionError:
+        raise Error(str(path), "nested too deeply", "YAML of some hundred levels", "") from None
+    except (yaml.YAMLError, ValueError, OverflowError) as error:  # ValueError: a letter by a number that there is not
         raise syntax_error(path, error) from None
     if len(documents) != 1 or not isinstance(documents[0], yaml.MappingNode):
         raise Error(str(path), "it is empty, no map, or several documents", "YAML with one map", "")
-    return Field(str(path), "", documents[0])
+    field = Field(str(path), "", documents[0])
+    _require_few_nodes(field, MOST_NODES + NODES_PER_BYTE * len(text))
+    return field
+
+
+def _children(node):
+    if isinstance(node, yaml.MappingNode):
+        return [part for pair in node.value for part in pair]
+    return node.value if isinstance(node, yaml.SequenceNode) else []
+
+
+def _require_text(file, node):
+    """Escapes may spell half a letter, or a zero byte, which ends a name for the system."""
+    if "\0" in node.value or any("\ud800" <= letter <= "\udfff" for letter in node.value):
+        reject(Field(file, "", node), "a text with a zero byte or half a letter", "text in UTF-8")
+
+
+def _require_few_nodes(field, most):
+    """Throws Error where aliases, written out, make a small file a large one, or one without an end."""
+    sizes = {}  # by identity; 0: of a node that holds this one
+    stack = [field.node]
+    while stack:
+        node = stack[-1]
+        if sizes.get(id(node)):
+            stack.pop()
+        elif isinstance(node, yaml.ScalarNode):
+            _require_text(field.file, node)
+            sizes[id(node)] = 1
+        elif id(node) not in sizes:
+            sizes[id(node)] = 0
+            inner = [child for child in _children(node) if not sizes.get(id(child))]
+            if any(id(child) in sizes for child in inner):
+                reject(Field(field.file, "", node), "an alias of what holds it", "aliases of other values")
+            stack += inner
+        else:
+            sizes[id(node)] = 1 + sum(sizes[id(child)] for child in _children(node))
+            if sizes[id(node)] > most:
+                reject(Field(field.file, "", node), f"more than {most} values once its aliases are written out",
+                       f"{MOST_NODES} values, and {NODES_PER_BYTE} more for each byte of the file",
+                       "use fewer aliases, or smaller ones")
 
 
 def read_yaml(path):
@@ -125,7 +167,8 @@ def read_yaml(path):
 
 
 def child(field, key, node):
-    return Field(field.file, f"{field.path}.{key}" if field.path else str(key), node)
+    name = excerpt(key)
+    return Field(field.file, f"{field.path}.{name}" if field.path else name, node)
 
 
 def entries(field):
@@ -148,7 +191,7 @@ def require_keys(field, known):
     for name, value in found.items():
         if name not in known:
             key = next(k for k, v in field.node.value if k.value == name)
-            reject(Field(field.file, value.path, key), f"unknown key '{name}'", ", ".join(known),
+            reject(Field(field.file, value.path, key), f"unknown key '{excerpt(name)}'", ", ".join(known),
                    did_you_mean(name, known))
     return found
 
@@ -204,7 +247,7 @@ def text(field):
 def one_of(field, words):
     word = text(field)
     if word not in words:
-        reject(field, f"'{word}'", ", ".join(words), did_you_mean(word, words))
+        reject(field, f"'{excerpt(word)}'", ", ".join(words), did_you_mean(word, words))
     return word
 
 

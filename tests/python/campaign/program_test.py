@@ -87,3 +87,36 @@ def test_packages_that_are_not_installed_are_told_with_what_to_do(tmp_path):
                           check=False)
     assert done.returncode == 2 and done.stderr.count("\n") == 1
     assert "'yaml' is missing" in done.stderr and "pip install" in done.stderr
+
+
+def test_nothing_in_the_current_folder_is_run(tmp_path):
+    """Neither programs by empty and relative folders of PATH nor modules by those of PYTHONPATH."""
+    attack = "open('ATTACKED', 'w').write('x')\n"
+    package = tmp_path / "glidar" / "campaign"
+    package.mkdir(parents=True)
+    for path in (package.parent / "__init__.py", package / "__init__.py", package / "__main__.py"):
+        path.write_text("import pathlib; pathlib.Path('ATTACKED').write_text('x')\n")
+    for name in ("usercustomize.py", "sitecustomize.py", "runpy.py", "yaml.py", "numpy.py", "argparse.py"):
+        (tmp_path / name).write_text(attack)
+    (tmp_path / "bin").mkdir()
+    for name in ("glidar-campaign", "python3", "bin/glidar-campaign", "bin/python3"):
+        (tmp_path / name).write_text("#!/bin/sh\ntouch ATTACKED\n")
+        (tmp_path / name).chmod(0o755)
+    here = str(Path(sys.executable).parent)
+    environment = dict(os.environ, PATH=f":.:bin:./bin::{here}:{os.environ['PATH']}:",
+                       PYTHONPATH=f":.:{os.environ.get('PYTHONPATH', '')}:")
+    for arguments in (["--help"], ["run", "none.yaml", "-o", "x"], ["check", "none"]):
+        done = subprocess.run([shutil.which("glidar"), "campaign", *arguments], cwd=tmp_path, env=environment,
+                              capture_output=True, text=True, timeout=MAX_WAIT_S, check=False)
+        assert not (tmp_path / "ATTACKED").exists(), arguments
+        assert "Traceback" not in done.stderr
+    assert "none" in done.stderr
+
+
+def test_a_path_of_relative_folders_alone_finds_no_program(tmp_path):
+    (tmp_path / "glidar-campaign").write_text("#!/bin/sh\ntouch ATTACKED\n")
+    (tmp_path / "glidar-campaign").chmod(0o755)
+    for path in (".", "", ":", "bin:.."):
+        done = glidar_program(tmp_path, "campaign", "check", "x", path=path)
+        assert done.returncode == 2 and "neither beside glidar nor in PATH" in done.stderr
+        assert not (tmp_path / "ATTACKED").exists()

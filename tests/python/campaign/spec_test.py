@@ -189,3 +189,39 @@ def test_numbers_are_spelled_so_that_they_read_back_the_same():
     for value in (0.1, 1e-300, 123456789.0, -2.5, 1 / 3):
         assert float(variants.number_text(value)) == value
     assert variants.number_text(128.0) == "128"
+
+
+def test_aliases_that_write_out_to_a_vast_file_are_refused(tmp_path):
+    path = tmp_path / "campaign.yaml"
+    levels = "".join(f"a{i + 1}: &a{i + 1} [{', '.join([f'*a{i}'] * 10)}]\n" for i in range(40))
+    path.write_text(f"a0: &a0 [1]\n{levels}")
+    with pytest.raises(Error, match="once its aliases are written out; allowed: 1000000 values"):
+        spec.read_spec(path)
+
+
+def test_an_alias_of_what_holds_it_is_refused(tmp_path):
+    path = tmp_path / "campaign.yaml"
+    path.write_text("name: x\nvary: &a\n  b: [1, *a]\n")
+    with pytest.raises(Error, match="an alias of what holds it"):
+        spec.read_spec(path)
+
+
+@pytest.mark.parametrize("text", ["[" * 50_000, "{a: " * 50_000, "- " * 50_000, "a: \"\\U99999999\"", "a: \0",
+                                  'scene: "\\ud800"', 'name: "a\\0b"'])
+def test_hostile_yaml_is_an_error(tmp_path, text):
+    path = tmp_path / "campaign.yaml"
+    path.write_text(text)
+    with pytest.raises(Error) as raised:
+        spec.read_spec(path)
+    assert len(str(raised.value)) < 600
+
+
+def test_errors_quote_at_most_200_bytes_without_control_characters(tmp_path):
+    path = tmp_path / "campaign.yaml"
+    for text in (f"{'k' * 100_000}: 1\n", f"seed: {'9' * 100_000}\n", f"sampling: {'w' * 100_000}\n",
+                 '"a\\nb\\e[31mred": 1\n'):
+        path.write_text(text)
+        with pytest.raises(Error) as raised:
+            spec.read_spec(path)
+        found = raised.value.found + raised.value.where.replace(str(path), "")
+        assert len(found) < 500 and "\n" not in found and "\x1b" not in found

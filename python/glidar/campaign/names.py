@@ -1,0 +1,87 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Names of a campaign's files, as receipts and manifests list them.
+
+Such a list may come from somebody else. A name in it is joined to a folder only where it has the form of the
+names that a campaign writes; then it cannot lead out of the folder, nor replace another shard's files.
+"""
+
+import re
+from pathlib import Path
+
+from glidar import Error
+from glidar._errors import excerpt
+
+HASH = "[0-9a-f]{16}"
+IMAGES = "depth|gray|mask|mask_visib"
+OF_SHARDS = re.compile(
+    rf"parts/(?P<part>\d{{6,}})\.parquet|npz/shard-(?P<npz>\d{{6,}})-{HASH}\.npz"
+    rf"|bop/(?:train|val|test)/(?P<bop>\d{{6,}})/(?:(?:{IMAGES})/\d{{6,}}(?:_\d{{6,}})?\.png"
+    r"|scene_(?:camera|gt|gt_info)\.json)", re.ASCII)
+OF_TRIALS = re.compile(
+    r"pcd/(?P<pcd>\d{9,})\.pcd|ply/(?P<ply>\d{9,})\.ply"
+    r"|kitti/(?:velodyne|labels|label_2|calib)/(?P<kitti>\d{9,})\.(?:bin|label|txt)", re.ASCII)
+ONCE = re.compile(r"bop/models/(?:obj_\d{6,}\.ply|models_info\.json)|bop/camera\.json", re.ASCII)
+WHOLE = {"campaign.json", "index.parquet", "trajectory.tum", "kitti/poses.txt"}
+RECEIPT = re.compile(r"(?P<shard>\d{6,})\.json|once-bop\.json", re.ASCII)
+LOG = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9_.-]{0,254}\.jsonl", re.ASCII)
+
+
+def _number(match):
+    """The number in a name; None where the name does not have this form."""
+    found = [text for text in match.groupdict().values() if text] if match else []
+    return int(found[0]) if found and len(found[0]) <= 18 else None
+
+
+def _fits_shard(name, shard, trials):
+    """Whether a shard writes such a file; `trials`: a range of its trials."""
+    if _number(OF_SHARDS.fullmatch(name)) == shard:
+        return True
+    number = _number(OF_TRIALS.fullmatch(name))
+    return number is not None and number in trials
+
+
+def _reject(path, name, allowed):
+    raise Error(str(path), f"it lists the file '{excerpt(name)}'", allowed,
+                "take the part from whoever measured it again; this one may be damaged or forged")
+
+
+def require_shard_files(path, listed, shard, trials):
+    """Throws Error where the receipt of a shard lists a file that this shard does not write."""
+    for name in listed:
+        if not _fits_shard(name, shard, trials):
+            _reject(path, name, f"files that shard {shard} writes, such as npz/shard-{shard:06}-HASH.npz")
+
+
+def require_once_files(path, listed):
+    """The same for the receipt of what is written once for all shards."""
+    for name in listed:
+        if not ONCE.fullmatch(name):
+            _reject(path, name, "files of bop/models, and bop/camera.json")
+
+
+def require_manifest_files(path, listed):
+    """The same for a manifest, which lists all files of a campaign."""
+    for name in listed:
+        known = name in WHOLE or any(form.fullmatch(name) for form in (OF_SHARDS, OF_TRIALS, ONCE))
+        if not known:
+            _reject(path, name, "files that glidar campaign writes, such as npz/shard-000000-HASH.npz")
+
+
+def receipt_shard(path):
+    """Which shard a receipt is of; None: of what is written once. Throws Error where it has another name."""
+    match = RECEIPT.fullmatch(Path(path).name)
+    if not match:
+        raise Error(str(path), "a file among the receipts that is none", "000003.json, once-bop.json", "remove it")
+    return _number(match)
+
+
+def is_log(path):
+    return LOG.fullmatch(Path(path).name) is not None
+
+
+def require_inside(root, path):
+    """Throws Error where links lead from a campaign's folder to a place outside it."""
+    if not Path(path).resolve().is_relative_to(Path(root).resolve()):
+        raise Error(str(path), "a link leads out of the campaign's folder", "a folder without such links",
+                    "copy the files into the folder")

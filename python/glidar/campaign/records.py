@@ -1,0 +1,175 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""campaign.json, receipts and the manifest, read and checked.
+
+Parts of a campaign come from other machines and people, so nothing in these files is taken for granted: what
+these functions return has the keys, types and bounds that the rest relies on.
+"""
+
+import re
+import reprlib
+from pathlib import Path
+
+from glidar import Error
+from glidar._errors import excerpt
+from glidar.campaign import files, names
+
+MOST_TRIALS = 1 << 32
+MOST_SHARD_TRIALS = 1 << 16
+SHA256 = re.compile("[0-9a-f]{64}", re.ASCII)
+MOST_SHARDS = 1 << 22
+MOST_BYTES = 1 << 62  # of a file
+
+
+class _Record:
+    """A value of a JSON file, with its place for errors."""
+
+    def __init__(self, file, place, value):
+        self.file, self.place, self.value = file, place, value
+
+    def reject(self, allowed):
+        where = f"{self.file}: {self.place}" if self.place else str(self.file)
+        raise Error(where, f"it is {excerpt(reprlib.repr(self.value))}", allowed,
+                    "the file was not written by this version of glidar campaign, or was changed")
+
+    def of(self, kind, allowed):
+        # a bool is an int for Python, and is none here
+        if not isinstance(self.value, kind) or isinstance(self.value, bool) and kind is not bool:
+            self.reject(allowed)
+        return self.value
+
+    def map(self):
+        return self.of(dict, "a map")
+
+    def at(self, key):
+        if key not in self.map():
+            raise Error(str(self.file), f"the key '{f'{self.place}.{key}'.strip('.')}' is missing",
+                        "a file that glidar campaign wrote", "")
+        return _Record(self.file, f"{self.place}.{key}".strip("."), self.value[key])
+
+    def items(self):
+        self.of(list, "a list")
+        return [_Record(self.file, f"{self.place}[{i}]", value) for i, value in enumerate(self.value)]
+
+    def whole(self, least, most):
+        allowed = f"a whole number from {least} to {most}"
+        if not least <= self.of(int, allowed) <= most:
+            self.reject(allowed)
+        return self.value
+
+    def text(self):
+        return self.of(str, "a text")
+
+    def flag(self):
+        return self.of(bool, "true or false")
+
+    def sha256(self):
+        if not SHA256.fullmatch(self.of(str, "a SHA-256 hash")):
+            self.reject("a SHA-256 hash of 64 digits")
+        return self.value
+
+
+def _read(path):
+    return _Record(path, "", files.read_json(path))
+
+
+def _check_listed(listed):
+    """A map of names to [hash, size]."""
+    for name in listed.map():
+        entry = listed.at(name)
+        if len(entry.items()) != 2:
+            entry.reject("[SHA-256, size in bytes]")
+        hashed, size = entry.items()
+        hashed.sha256()
+        size.whole(0, MOST_BYTES)
+    return listed.value
+
+
+def _check_counts(record):
+    trials = record.at("trials").whole(0, MOST_TRIALS)
+    record.at("failed").whole(0, trials)
+
+
+def _check_vector(record):
+    if record.value is not None and len(record.items()) != 3:
+        record.reject("three numbers")
+    for one in record.items() if record.value is not None else []:
+        one.of((int, float), "a number")
+
+
+def _check_meaning(campaign):
+    """What finishing and reporting read of the campaign's spec."""
+    campaign.at("name").text()
+    campaign.at("method").text()
+    campaign.at("seed").whole(0, (1 << 64) - 1)
+    outputs = campaign.at("outputs")
+    for key in ("tum", "kitti"):
+        outputs.at(key).flag()
+    pose = campaign.at("pose")
+    for key, part in (("target", pose.at("orientation")), ("centre", pose.at("position"))):
+        if key in part.map():
+            _check_vector(part.at(key))
+
+
+def _check_plan(plan):
+    plan.at("glidar").text()
+    _check_meaning(plan.at("campaign"))
+    for key in ("scenes", "sensors"):
+        for source in plan.at(key).items():
+            source.at("name").text()
+            source.at("fault").flag()
+
+
+def read_campaign(path):
+    """campaign.json of a campaign's folder."""
+    record = _read(path)
+    record.at("hash").sha256()
+    trials = record.at("trials").whole(1, MOST_TRIALS)
+    shard_trials = record.at("shard_trials").whole(1, MOST_SHARD_TRIALS)
+    shards = -(-trials // shard_trials)
+    record.at("shards").whole(shards, min(shards, MOST_SHARDS))
+    record.at("one_shape").flag()
+    _check_plan(record.at("plan"))
+    return record.value
+
+
+def _shard_trials(described, shard):
+    """The trials of a shard."""
+    first = shard * described["shard_trials"]
+    return range(first, min(first + described["shard_trials"], described["trials"]))
+
+
+def read_receipt(path, described):
+    """A receipt of this campaign, whose campaign.json is `described`."""
+    shard = names.receipt_shard(path)
+    record = _read(path)
+    _check_counts(record)
+    listed = _check_listed(record.at("files"))
+    if shard is None:
+        names.require_once_files(path, listed)
+        return record.value
+    if shard >= described["shards"]:
+        raise Error(str(path), f"a receipt of shard {shard}", f"shards from 0 to {described['shards'] - 1}", "remove it")
+    record.at("shard").whole(shard, shard)
+    trials = _shard_trials(described, shard)
+    record.at("trials").whole(len(trials), len(trials))
+    names.require_shard_files(path, listed, shard, trials)
+    return record.value
+
+
+def read_manifest(path):
+    """The manifest of a finished campaign."""
+    record = _read(path)
+    record.at("campaign").sha256()
+    _check_counts(record)
+    _check_plan(record.at("plan"))
+    versions = record.at("versions")
+    for name in versions.map():
+        versions.at(name).text()
+    names.require_manifest_files(path, _check_listed(record.at("files")))
+    return record.value
+
+
+def receipts_in(root):
+    """The files of a folder's receipts."""
+    return sorted((Path(root) / "receipts").glob("*.json"))

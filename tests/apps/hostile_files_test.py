@@ -1,0 +1,144 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Input files of strangers: none makes the program wait, crash, or replace another file."""
+
+import json
+import os
+import unittest
+
+from cli_support import BOX, CliTest
+
+HEAD = {"recording": 1, "glidar": "0.1.0", "command": {"arguments": ["stream", "builtin:box"], "folder": "."}}
+DEEP = 100_000
+CAMERA = "optics: {type: pinhole, width: 8, height: 6, fov_deg: 40}\n"
+
+
+class Pipes(CliTest):
+    def setUp(self):
+        super().setUp()
+        os.mkfifo(os.path.join(self.folder, "pipe"))
+        for suffix in ("yaml", "csv", "npy", "json", "obj", "ply"):
+            os.symlink("pipe", os.path.join(self.folder, f"pipe.{suffix}"))
+
+    def test_no_option_waits_for_a_pipe(self):
+        box = ("render", "builtin:box")
+        cases = {
+            "model": ("render", "pipe.obj"), "scene": ("render", "pipe.yaml"), "sensor": (*box, "--sensor", "pipe.yaml"),
+            "trajectory": (*box, "--trajectory", "pipe.csv"), "device": ("render", "/dev/zero"),
+            "device as sensor": (*box, "--sensor", "/dev/zero")}
+        for name, command in cases.items():
+            with self.subTest(name):
+                error = self.refused(*command, "-o", "x.pcd")
+                self.assertRegex(error, "not a regular file|not a file")
+        self.assertIn("not a regular file", self.refused("explain", "pipe", "--index", "0"))
+        self.assertIn("not a regular file",
+                      self.refused("stream", "builtin:box", "--lockstep", "ipc://x.socket", "--curve-keys", "pipe"))
+
+    def test_no_file_that_another_names_is_waited_for(self):
+        self.write("noise.yaml", "models:\n- {model: builtin:box, materials: {'*': {noise_texture: pipe}}}\n")
+        self.write("sensor.yaml", "models: [{model: builtin:box}]\nsensor: pipe.yaml\n")
+        self.write("model.yaml", "models: [{model: pipe.ply}]\n")
+        self.write("motion.yaml", "models: [{model: builtin:box, motion: {trajectory: pipe.csv}}]\n")
+        for name in ("noise", "sensor", "model", "motion"):
+            with self.subTest(name):
+                self.refused("render", f"{name}.yaml", "-o", "x.pcd")
+
+    def test_files_of_a_recording_that_are_none_count_as_changed(self):
+        for path in ("pipe", "/dev/zero", "."):
+            self.write("r.jsonl", json.dumps({**HEAD, "files": [{"path": path, "hash": "x"}]}) + '\n{"frames": 0}\n')
+            self.assertIn(f"{path} has changed", self.succeed("replay", "r.jsonl").stderr)
+
+
+class Text(CliTest):
+    def test_deeply_nested_json_is_refused(self):
+        deep = "[" * DEEP + "]" * DEEP
+        self.write("r.jsonl", f'{{"recording":{deep}}}\n')
+        self.assertIn("r.jsonl:1: JSON nested too deeply", self.refused("replay", "r.jsonl"))
+        self.write("a.pcd", "")
+        self.write("a.pcd.json", f'{{"glidar":"x","command":null,"frame":{deep}}}')
+        self.assertIn("nested too deeply", self.refused("explain", "a.pcd", "--index", "0"))
+        self.write("ou.json", f'{{"beam_altitude_angles":{deep}}}')
+        self.write("s.yaml", "optics: {type: ouster, file: ou.json}\n")
+        self.assertIn("nested too deeply", self.refused("render", "builtin:box", "--sensor", "s.yaml", "-o", "x.pcd"))
+
+    def test_errors_quote_little_of_a_file(self):
+        for text in ('{"recording": "' + "x" * 100_000 + '"}', '{"recording": 1, "' + "x" * 100_000, "\x1b[2J" * 10_000,
+                     '{"recording": ' + "9" * 100_000 + "}"):
+            self.write("r.jsonl", text + "\n")
+            error = self.refused("replay", "r.jsonl")
+            self.assertLess(len(error), 700)
+            self.assertNotIn("\x1b", error)
+        self.write("s.yaml", f"name: a\n{'k' * 100_000}: 1\n")
+        self.assertLess(len(self.refused("render", "builtin:box", "--sensor", "s.yaml", "-o", "x.pcd")), 1500)
+
+    def test_a_recording_names_paths_without_control_characters(self):
+        for change in ({"files": [{"path": "a\0b", "hash": "x"}]}, {"files": [{"path": "", "hash": "x"}]},
+                       {"files": [], "command": {"arguments": ["stream", "a\nb"], "folder": "."}},
+                       {"files": [], "command": {"arguments": ["stream"], "folder": "a\0"}}):
+            self.write("r.jsonl", json.dumps({**HEAD, **change}) + '\n{"frames": 0}\n')
+            self.assertIn("without control characters", self.refused("replay", "r.jsonl"))
+
+    def test_times_beyond_what_counts_nanoseconds_are_refused(self):
+        self.write("s.yaml", "optics: {type: table, file: t.csv}\n")
+        for time in ("1e12", "9223372036854775807", "-1e12", "8640001"):
+            rows = "".join(f"0.0000{i},{i},90\n" for i in range(10, 20))
+            self.write("t.csv", "Time/s,Azimuth/deg,Zenith/deg\n" + rows + f"{time},1,90\n")
+            error = self.refused("render", "builtin:box", "--sensor", "s.yaml", "-o", "x.pcd")
+            self.assertIn("t.csv:12: a time of", error)
+            self.assertIn("within 100 days", error)
+
+
+class Guard(CliTest):
+    """No file that was read is replaced, whatever output would have its name."""
+
+    def setUp(self):
+        super().setUp()
+        self.write("box.obj", BOX)
+
+    def kept(self, name, text, *command):
+        self.write(name, text)
+        self.assertIn("is an input file", self.refused(*command))
+        self.assertEqual(self.bytes_of(name).decode(), text)
+
+    def test_sidecars(self):
+        self.write("scene.yaml", "models: [{model: box.obj}]\nsensor: q.pcd.json\n")
+        self.kept("q.pcd.json", CAMERA, "render", "scene.yaml", "-o", "q.pcd")
+        self.write("two.yaml", "models: [{model: box.obj}]\nsensor: q_000001.pcd.json\n")
+        self.kept("q_000000.pcd.json", CAMERA, "render", "box.obj", "--sensor", "q_000000.pcd.json", "--duration", "0.05",
+                  "-o", "q.pcd")
+        self.kept("q_000000.pcd.json", CAMERA, "stream", "box.obj", "--sensor", "q_000000.pcd.json", "--frames", "1",
+                  "-o", "q.pcd")
+        self.succeed("render", "scene.yaml", "-o", "q.pcd", "--no-sidecar")
+
+    def test_labels_and_folders_of_kitti(self):
+        self.write("scene.yaml", "models: [{model: box.obj, class: box}]\nsensor: q.label\n")
+        self.kept("q.label", CAMERA, "render", "scene.yaml", "-o", "q.bin")
+        os.makedirs(os.path.join(self.folder, "k.kitti", "calib"))
+        self.write("folder.yaml", "models: [{model: box.obj}]\nsensor: k.kitti/calib/000000.txt\n")
+        self.kept("k.kitti/calib/000000.txt", CAMERA, "render", "folder.yaml", "-o", "k.kitti")
+        self.assertEqual(os.listdir(os.path.join(self.folder, "k.kitti")), ["calib"])
+
+    def test_files_of_the_sensors_of_a_rig(self):
+        self.write("rig.yaml", "models: [{model: box.obj}]\nrig_pose: {position: [0, 0, 5]}\n"
+                               "sensors: [{name: a, sensor: q_a.pcd.json}, {name: b, sensor: q_a.pcd.json}]\n")
+        self.kept("q_a.pcd.json", CAMERA, "render", "rig.yaml", "-o", "q.pcd")
+
+    def test_pictures_statistics_and_recordings(self):
+        os.symlink("mine.yaml", os.path.join(self.folder, "mine.png"))
+        self.write("mine.yaml", CAMERA)
+        done = self.run_program("sensors", "mine.yaml", "-o", "mine.png")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("is an input file", done.stderr)
+        self.assertTrue(os.path.islink(os.path.join(self.folder, "mine.png")))
+        for option in ("--stats", "--record"):
+            self.kept("mine.yaml", CAMERA, "stream", "box.obj", "--sensor", "mine.yaml", "--frames", "1", "-o", "x.pcd",
+                      option, "mine.yaml")
+            done = self.run_program("stream", "box.obj", "--sensor", "mine.yaml", "--frames", "1", "-o", "x.pcd", option,
+                                    "x_000000.pcd.json")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn("x_000000.pcd.json: is an input file", done.stderr)
+            self.assertFalse(os.path.exists(os.path.join(self.folder, "x_000000.pcd")))
+
+
+if __name__ == "__main__":
+    unittest.main()

