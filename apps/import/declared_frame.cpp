@@ -5,8 +5,6 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 #include <zip.h>
-#include <assimp/IOStream.hpp>
-#include <assimp/IOSystem.hpp>
 
 #include <array>
 #include <cmath>
@@ -75,16 +73,6 @@ ModelFrame read_fbx(const aiScene& scene, std::vector<std::string>& notes) {
   return frame;
 }
 
-/// The first bytes of a file; empty when it cannot be read.
-std::string head_of(Assimp::IOSystem& files, const std::string& name) {
-  Assimp::IOStream* stream = files.Open(name.c_str(), "rb");
-  if (stream == nullptr) return "";
-  std::string text(kHead, '\0');
-  text.resize(stream->Read(text.data(), 1, text.size()));
-  files.Close(stream);
-  return text;
-}
-
 /// The value of the attribute `unit` of the first element `name`; empty: it has none.
 std::string unit_attribute(const std::string& xml, const std::string& name) {
   const std::size_t start = xml.find("<" + name);
@@ -126,8 +114,11 @@ struct CloseZip {
 };
 
 /// The first bytes of the model part of a 3MF package; empty when there is none.
-std::string head_of_3mf(const std::string& file) {
-  const std::unique_ptr<zip_t, CloseZip> archive(zip_open(file.c_str(), ZIP_RDONLY, nullptr));
+std::string head_of_3mf(std::string_view package) {
+  zip_source_t* source = zip_source_buffer_create(package.data(), package.size(), 0, nullptr);
+  if (source == nullptr) return "";
+  const std::unique_ptr<zip_t, CloseZip> archive(zip_open_from_source(source, ZIP_RDONLY, nullptr));
+  if (archive == nullptr) zip_source_free(source);
   if (archive == nullptr) return "";
   const std::unique_ptr<zip_file_t, CloseZip> part(zip_fopen(archive.get(), "3D/3dmodel.model", 0));
   if (part == nullptr) return "";
@@ -139,16 +130,16 @@ std::string head_of_3mf(const std::string& file) {
 
 }  // namespace
 
-ModelFrame take_declared_frame(aiScene& scene, const std::string& format, const std::string& file,
-                               Assimp::IOSystem& files, std::vector<std::string>& notes) {
+ModelFrame take_declared_frame(aiScene& scene, const std::string& format, FileContent& file,
+                               std::vector<std::string>& notes) {
   if (format.find("Collada") != std::string::npos) return take_collada(scene, notes);
   if (format.find("FBX") != std::string::npos) return read_fbx(scene, notes);
   if (format.starts_with("glTF")) return {1.0, Axis::y};
   if (format.starts_with("3mf") || format.starts_with("3MF")) {
-    return printed(unit_attribute(head_of_3mf(file), "model"), notes);
+    return printed(unit_attribute(head_of_3mf(file.whole()), "model"), notes);
   }
   if (format.find("AMF") != std::string::npos) {
-    return printed(unit_attribute(head_of(files, file), "amf"), notes);
+    return printed(unit_attribute(std::string(file.head(kHead)), "amf"), notes);
   }
   return {};
 }
