@@ -21,6 +21,8 @@ struct ImportedModel {
   std::vector<TextureLookup> lookups;        ///< every texture file that was searched
   std::vector<std::string> libraries;        ///< paths of those that the import program ran with
   std::vector<std::string> hashes;  ///< of the bytes that were parsed, hexadecimal; one per file
+  std::vector<std::string>
+      sandbox_notes;  ///< mechanisms that the system lacked when it was imported; not cached
 };
 
 }  // namespace glidar

@@ -74,6 +74,8 @@ Loaded import(const fs::path& file, const ModelOptions& options, const Report& r
     loaded.imported = take_model(run, request);
   }
   loaded.hash = combined_hash(loaded.imported.hashes);
+  // They are about this run, not about the model.
+  std::vector<std::string> sandbox_notes = std::exchange(loaded.imported.sandbox_notes, {});
   const std::string changed = changed_file(loaded.imported, file);
   if (!changed.empty()) {
     report.warn(changed +
@@ -82,6 +84,8 @@ Loaded import(const fs::path& file, const ModelOptions& options, const Report& r
     const std::string unwritten = write_cache(*entry, loaded.imported, file);
     if (!unwritten.empty()) report.info(unwritten);
   }
+  std::vector<std::string>& notes = loaded.imported.model.notes;
+  std::move(sandbox_notes.begin(), sandbox_notes.end(), std::back_inserter(notes));
   return loaded;
 }
 
