@@ -2,14 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/gltf_transforms.hpp>
 
+#include <import/gltf_file.hpp>
+
 #include <assimp/scene.h>
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
-#include <array>
-#include <cstdint>
-#include <cstring>
 #include <set>
 #include <string>
 #include <vector>
@@ -122,14 +121,6 @@ NodeTransforms matched(const Json& file, const aiNode& root) {
 }
 
 }  // namespace
-
-std::string_view gltf_json(std::string_view file) {
-  constexpr std::size_t kHead = 20;  // of the file, and of its first chunk
-  if (file.size() < kHead || !file.starts_with("glTF")) return file;
-  std::uint32_t size = 0;
-  std::memcpy(&size, file.data() + 12, sizeof size);
-  return file.substr(kHead, size);
-}
 
 NodeTransforms gltf_transforms(std::string_view file, const aiScene& scene) {
   if (scene.mRootNode == nullptr) return {};

@@ -9,9 +9,6 @@
 
 namespace glidar::import {
 
-/// The JSON of a .gltf file, or of the first chunk of a .glb file.
-std::string_view gltf_json(std::string_view file);
-
 /// The transforms of a glTF file's nodes (.gltf or .glb, glTF 2.0 section 3.5.3) in double: Assimp
 /// keeps single precision, which is 5e-4 m off 10 km away. Nodes of the file and of the importer's
 /// scene are matched by their places in the tree; where a transform does not agree with the

@@ -5,6 +5,7 @@
 #include <import/bake_mesh.hpp>
 #include <import/confined_io.hpp>
 #include <import/declared_frame.hpp>
+#include <import/gltf_extensions.hpp>
 #include <import/gltf_transforms.hpp>
 #include <import/loaded_libraries.hpp>
 #include <import/read_materials.hpp>
@@ -105,6 +106,7 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   FileLog log;
   const auto own = files.content(canonical_model.string());  // the first of the files
   if (own == nullptr) throw Refusal{"cannot be opened", "check who may read it"};
+  replace_gltf_extensions(canonical_model, folder, files, log);
   // Never destroyed: taking a deep tree apart recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
   importer.SetIOHandler(new ConfinedIo(folder, files, log));

@@ -26,13 +26,14 @@ std::vector<std::string> enter_sandbox(const std::filesystem::path& root, int la
   ::close_range(static_cast<unsigned>(last_fd) + 1, UINT_MAX, 0);
   const std::string no_landlock = restrict_files(root);
   if (!no_landlock.empty()) {
-    notes.push_back("the import process was not confined to the model's folder by Landlock (" +
-                    no_landlock + ")");
+    notes.push_back(
+        "the import process ran without Landlock, which confines it to the model's folder (" +
+        no_landlock + ")");
   }
   const std::string no_filter =
       filter_system_calls(no_landlock.empty() ? Openat2::allowed : Openat2::refused);
   if (!no_filter.empty()) {
-    notes.push_back("the system calls of the import process were not filtered by seccomp (" +
+    notes.push_back("the import process ran without its filter of system calls, seccomp (" +
                     no_filter + ")");
   }
   return notes;
