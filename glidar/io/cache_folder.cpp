@@ -60,7 +60,7 @@ std::string distrust(const struct stat& info, const fs::path& path) {
   if ((info.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
     return fmt::format(
         "the cache folder {} is accessible to other users (mode {:04o}), so models are not cached; "
-        "run: chmod 700 '{}'",
+        "run: chmod 700 '{}' (or name another by --cache-folder)",
         path.string(), info.st_mode & 07777U, path.string());
   }
   return "";

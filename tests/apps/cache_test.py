@@ -24,6 +24,15 @@ class Cache(CliTest):
             self.assertIn("chmod 700 'shared'", warning)
         self.assertEqual(os.listdir(shared), [])
 
+    def test_the_warning_is_printed_once_for_a_scene(self):
+        os.mkdir(os.path.join(self.folder, "shared"))
+        os.chmod(os.path.join(self.folder, "shared"), 0o750)
+        self.write("box2.obj", BOX)
+        self.write("scene.yaml", "models: [{model: box.obj}, {model: box2.obj}]\nsensor_pose: {position: [0, 0, -9]}\n"
+                                 "sensor: {optics: {type: pinhole, width: 4, height: 4, fov_deg: 20}}\n")
+        done = self.succeed("render", "scene.yaml", "--cache-folder", "shared", "-o", "x.pcd")
+        self.assertEqual(done.stderr.count("the cache folder shared"), 1, done.stderr)
+
     def test_a_limit_that_is_no_number_is_refused(self):
         self.environment["GLIDAR_CACHE_LIMIT_MIB"] = "2G"
         error = self.refused("info", "box.obj")
