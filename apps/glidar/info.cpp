@@ -191,7 +191,10 @@ ModelReport examine(const InfoFlags& flags) {
   Console console;
   const Working working(console, "reading " + flags.input);
   Report report_to_console = console.report();
-  report_to_console.log = nullptr;  // all it would say is in the table
+  report_to_console.log = [&](Severity severity, std::string_view message) {
+    const bool is_in_table = message.starts_with(flags.input + ": ");
+    if (severity == Severity::warning && !is_in_table) console.warn(message);
+  };
   const Model model = load_model(flags.input, model_options(flags.model), report_to_console);
   console.tell("examining " + flags.input, -1.0);
   return inspect(model);

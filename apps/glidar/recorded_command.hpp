@@ -11,11 +11,13 @@
 
 namespace glidar::app {
 
-/// The arguments without those that change nothing in a cloud.
+/// The arguments without those that change nothing in a cloud: --threads, --quiet, and the options
+/// of the model cache, which belong to the user who runs the command.
 std::vector<std::string> lasting(const std::vector<std::string>& arguments);
 
-/// Sets a subcommand's options from the arguments that a file tells. Throws Error, naming the file,
-/// when they are those of another subcommand or not understood.
+/// Sets a subcommand's options from the lasting() arguments of a file: a file names no cache
+/// folder. Throws Error, naming the file, when they are those of another subcommand or not
+/// understood.
 void parse_recorded(const std::vector<std::string>& arguments, const std::string& subcommand,
                     const std::string& file, CLI::App& command);
 

@@ -6,8 +6,8 @@
 #include <assimp/IOStream.hpp>
 
 #include <algorithm>
-#include <cstdio>
-#include <filesystem>
+#include <cstring>
+#include <limits>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -25,35 +25,47 @@ class EndlessReading : public std::runtime_error {
   EndlessReading() : std::runtime_error("the file ends too early, its data is cut off") {}
 };
 
+/// Reads a file's private copy, or a text in its place, with the semantics of std::fread and fseek.
 class ReadStream : public Assimp::IOStream {
  public:
-  ReadStream(std::FILE* file, std::size_t size) : file_(file), size_(size) {}
-  ~ReadStream() override { std::fclose(file_); }
-  ReadStream(const ReadStream&) = delete;
-  ReadStream& operator=(const ReadStream&) = delete;
+  explicit ReadStream(std::shared_ptr<FileContent> file)
+      : file_(std::move(file)), size_(file_->size()) {}
+  explicit ReadStream(std::string_view text) : text_(text), size_(text.size()) {}
 
   std::size_t Read(void* buffer, std::size_t size, std::size_t count) override {
     if (size == 0 || count == 0) return 0;
-    const std::size_t got = std::fread(buffer, size, count, file_);
-    reads_of_nothing_ = got > 0 ? 0 : reads_of_nothing_ + 1;
+    const std::size_t wanted = count > kMax / size ? kMax : size * count;
+    const std::string_view bytes = up_to(wanted > kMax - at_ ? kMax : at_ + wanted);
+    const std::string_view got = bytes.substr(std::min(at_, bytes.size()));
+    std::memcpy(buffer, got.data(), got.size());
+    at_ += got.size();
+    reads_of_nothing_ = got.size() >= size ? 0 : reads_of_nothing_ + 1;
     if (reads_of_nothing_ > kMostReadsOfNothing) throw EndlessReading();
-    return got;
+    return got.size() / size;
   }
   std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }
   aiReturn Seek(std::size_t offset, aiOrigin origin) override {
-    const int from = origin == aiOrigin_SET   ? SEEK_SET
-                     : origin == aiOrigin_CUR ? SEEK_CUR
-                                              : SEEK_END;
-    const int failed = std::fseek(file_, static_cast<long>(offset), from);
-    return failed == 0 ? aiReturn_SUCCESS : aiReturn_FAILURE;
+    const std::size_t from = origin == aiOrigin_SET ? 0 : origin == aiOrigin_CUR ? at_ : size_;
+    const std::size_t target = from + offset;  // a negative offset wraps
+    if (target > kMax / 2) return aiReturn_FAILURE;
+    at_ = target;
+    return aiReturn_SUCCESS;
   }
-  std::size_t Tell() const override { return static_cast<std::size_t>(std::ftell(file_)); }
-  std::size_t FileSize() const override { return size_; }
+  [[nodiscard]] std::size_t Tell() const override { return at_; }
+  [[nodiscard]] std::size_t FileSize() const override { return size_; }
   void Flush() override {}
 
  private:
-  std::FILE* file_;
+  static constexpr std::size_t kMax = std::numeric_limits<std::size_t>::max();
+
+  [[nodiscard]] std::string_view up_to(std::size_t end) const {
+    return file_ != nullptr ? file_->head(end) : text_.substr(0, end);
+  }
+
+  std::shared_ptr<FileContent> file_;  ///< null: `text_`
+  std::string_view text_;
   std::size_t size_;
+  std::size_t at_ = 0;
   unsigned reads_of_nothing_ = 0;  ///< one after another, whatever was sought in between
 };
 
@@ -72,18 +84,19 @@ void add_once(std::vector<std::string>& list, std::string item) {
   if (std::find(list.begin(), list.end(), item) == list.end()) list.push_back(std::move(item));
 }
 
-ConfinedIo::ConfinedIo(ModelFolder folder, std::shared_ptr<FileLog> log)
-    : folder_(std::move(folder)), log_(std::move(log)) {}
+ConfinedIo::ConfinedIo(ModelFolder folder, ModelFiles& files, FileLog& log)
+    : folder_(std::move(folder)), files_(files), log_(log) {}
 
 ConfinedFile ConfinedIo::find(const char* path) const {
   std::string tidy = path;
+  if (files_.replacement(tidy) != nullptr) return {Access::granted, tidy};
   ConfinedFile file = confine(tidy, folder_);
   if (file.access == Access::granted) return file;
-  add_once(log_->absent, tidy);
+  add_once(log_.absent, tidy);
   std::replace(tidy.begin(), tidy.end(), '\\', '/');
   if (tidy == path) return file;
   file = confine(tidy, folder_);
-  if (file.access != Access::granted) add_once(log_->absent, tidy);
+  if (file.access != Access::granted) add_once(log_.absent, tidy);
   return file;
 }
 
@@ -95,18 +108,20 @@ Assimp::IOStream* ConfinedIo::Open(const char* path, const char* mode) {
   if (std::string_view(mode).find_first_of("wa+") != std::string_view::npos) return nullptr;
   const ConfinedFile file = find(path);
   if (file.access != Access::granted) {
-    add_once(log_->notes,
+    add_once(log_.notes,
              fmt::format("'{}' is not read: {}", shown(path, folder_), reason(file.access)));
     return nullptr;
   }
-  std::FILE* opened = std::fopen(file.path.c_str(), "rbe");
-  if (opened == nullptr) {
-    add_once(log_->notes, fmt::format("'{}' cannot be opened", shown(path, folder_)));
-    add_once(log_->absent, path);
+  if (const std::string* text = files_.replacement(file.path.string())) {
+    return new ReadStream(*text);
+  }
+  std::shared_ptr<FileContent> content = files_.content(file.path.string());
+  if (content == nullptr) {
+    add_once(log_.notes, fmt::format("'{}' cannot be opened", shown(path, folder_)));
+    add_once(log_.absent, path);
     return nullptr;
   }
-  add_once(log_->read, file.path.string());
-  return new ReadStream(opened, std::filesystem::file_size(file.path));
+  return new ReadStream(std::move(content));
 }
 
 void ConfinedIo::Close(Assimp::IOStream* stream) {

@@ -2,29 +2,31 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <import/model_files.hpp>
+
 #include <glidar/io/model_folder.hpp>
 
 #include <assimp/IOSystem.hpp>
 
-#include <memory>
 #include <string>
 #include <vector>
 
 namespace glidar::import {
 
-/// Every file that was asked for, each once, in the order of asking.
+/// Files that were requested and not read, each once, in the order of requests.
 struct FileLog {
-  std::vector<std::string> read;    ///< canonical paths
   std::vector<std::string> absent;  ///< not there, or not to be read
-  std::vector<std::string> notes;   ///< what the user should know of the latter
+  std::vector<std::string> notes;   ///< what the user should know of them
 };
 
 void add_once(std::vector<std::string>& list, std::string item);
 
-/// Assimp's view of the files: reading only, regular files inside the model's root only.
+/// Assimp's view of the files: reading only, regular files inside the model's root only, from their
+/// private copies.
 class ConfinedIo : public Assimp::IOSystem {
  public:
-  ConfinedIo(ModelFolder folder, std::shared_ptr<FileLog> log);
+  /// Assimp owns this object, and uses it as long as it reads; files and log last as long.
+  ConfinedIo(ModelFolder folder, ModelFiles& files, FileLog& log);
   bool Exists(const char* path) const override;
   char getOsSeparator() const override { return '/'; }
   Assimp::IOStream* Open(const char* path, const char* mode) override;
@@ -37,7 +39,8 @@ class ConfinedIo : public Assimp::IOSystem {
   [[nodiscard]] ConfinedFile find(const char* path) const;
 
   ModelFolder folder_;
-  std::shared_ptr<FileLog> log_;  ///< Assimp owns this object, the log outlives it
+  ModelFiles& files_;
+  FileLog& log_;
 };
 
 }  // namespace glidar::import

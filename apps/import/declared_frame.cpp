@@ -118,9 +118,9 @@ ModelFrame take_collada(aiScene& scene, TextSource text, std::vector<std::string
 }
 
 /// The document of a COLLADA file, which a .zae archive contains and its manifest names.
-TextSource collada_text(const std::string& file, Assimp::IOSystem& files) {
+TextSource collada_text(std::string_view file) {
   const std::vector<std::string> names = zip_names(file);
-  if (names.empty()) return file_text(files, file);
+  if (names.empty()) return plain_text(file);
   XmlReader manifest(zip_text(file, "manifest.xml"));
   bool is_root = false;
   for (XmlEvent event = manifest.next(); event.kind != XmlEvent::Kind::finished;
@@ -199,7 +199,7 @@ ModelFrame printed(TextSource text, const char* element, std::vector<std::string
 }
 
 /// The model of a 3MF package: the part that its relationships name (Open Packaging Conventions).
-TextSource model_of_3mf(const std::string& file) {
+TextSource model_of_3mf(std::string_view file) {
   constexpr std::string_view kModel = "/3dmanufacturing/2013/01/3dmodel";
   XmlReader relations(zip_text(file, "_rels/.rels"));
   for (XmlEvent event = relations.next(); event.kind != XmlEvent::Kind::finished;
@@ -212,18 +212,18 @@ TextSource model_of_3mf(const std::string& file) {
 
 }  // namespace
 
-ModelFrame take_declared_frame(aiScene& scene, const std::string& format, const std::string& file,
-                               Assimp::IOSystem& files, std::vector<std::string>& notes) {
+ModelFrame take_declared_frame(aiScene& scene, const std::string& format, FileContent& file,
+                               std::vector<std::string>& notes) {
   if (format.find("Collada") != std::string::npos) {
-    return take_collada(scene, collada_text(file, files), notes);
+    return take_collada(scene, collada_text(file.whole()), notes);
   }
   if (format.find("FBX") != std::string::npos) return read_fbx(scene, notes);
   if (format.starts_with("glTF")) return {1.0, Axis::y};
   if (format.starts_with("3mf") || format.starts_with("3MF")) {
-    return printed(model_of_3mf(file), "model", notes);
+    return printed(model_of_3mf(file.whole()), "model", notes);
   }
   if (format.find("AMF") != std::string::npos) {
-    return printed(file_text(files, file), "amf", notes);
+    return printed(plain_text(file.whole()), "amf", notes);
   }
   return {};
 }

@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <import/model_files.hpp>
+
 #include <glidar/io/model.hpp>
 
 #include <string>
 #include <vector>
 
 struct aiScene;
-
-namespace Assimp {  // NOLINT(readability-identifier-naming): the library's own
-class IOSystem;
-}
 
 namespace glidar::import {
 
@@ -21,7 +19,7 @@ namespace glidar::import {
 /// Sources: COLLADA 1.5 (asset: unit, up_axis), glTF 2.0 section 3.4, 3MF core specification 1.3
 /// section 3.2 (model: unit; the part of the package that _rels/.rels names), AMF (ISO/ASTM 52915,
 /// unit), FBX GlobalSettings (UnitScaleFactor in cm, UpAxis).
-ModelFrame take_declared_frame(aiScene& scene, const std::string& format, const std::string& file,
-                               Assimp::IOSystem& files, std::vector<std::string>& notes);
+ModelFrame take_declared_frame(aiScene& scene, const std::string& format, FileContent& file,
+                               std::vector<std::string>& notes);
 
 }  // namespace glidar::import

@@ -45,6 +45,13 @@ void drop_opaque_alpha(Texture& t) {
   t.channels = fewer;
 }
 
+/// Khronos Texture 2.0, section 3.1.
+bool is_ktx2(std::span<const std::uint8_t> bytes) {
+  constexpr std::array<std::uint8_t, 12> kMark = {0xAB, 'K',  'T',  'X',  ' ',  '2',
+                                                  '0',  0xBB, '\r', '\n', 0x1A, '\n'};
+  return bytes.size() >= kMark.size() && std::equal(kMark.begin(), kMark.end(), bytes.begin());
+}
+
 Decoded no_image(std::string reason) {
   return {{}, std::move(reason)};
 }
@@ -83,6 +90,11 @@ Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget) 
   int channels = 0;
   if (bytes.size() > INT_MAX) return no_image("the file is too large");
   const int size = static_cast<int>(bytes.size());
+  if (is_ktx2(bytes)) {
+    return no_image(
+        "a KTX2 image (KHR_texture_basisu), which GLIDAR does not read: export the model "
+        "with PNG or JPEG textures");
+  }
   if (stbi_info_from_memory(bytes.data(), size, &width, &height, &channels) == 0) {
     return no_image("not an image that can be read (PNG, JPEG, BMP, TGA, GIF, PSD, HDR, PNM)");
   }
@@ -127,12 +139,18 @@ Decoded decode_embedded(const aiTexture& texture, std::uint64_t budget) {
   return decoded;
 }
 
-Decoded decode_data_uri(const std::string& uri, std::uint64_t budget) {
+std::vector<std::uint8_t> data_uri_bytes(const std::string& uri) {
   const std::size_t comma = uri.find(',');
   if (comma == std::string::npos || uri.substr(0, comma).find("base64") == std::string::npos) {
-    return no_image("a data URI that is not base64");
+    return {};
   }
-  return decode_image(base64_decoded(std::string_view(uri).substr(comma + 1)), budget);
+  return base64_decoded(std::string_view(uri).substr(comma + 1));
+}
+
+Decoded decode_data_uri(const std::string& uri, std::uint64_t budget) {
+  const std::vector<std::uint8_t> bytes = data_uri_bytes(uri);
+  if (bytes.empty()) return no_image("a data URI that is not base64");
+  return decode_image(bytes, budget);
 }
 
 }  // namespace glidar::import

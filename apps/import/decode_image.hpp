@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <vector>
 
 struct aiTexture;
 
@@ -26,6 +27,9 @@ Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget);
 
 /// An image inside the model file: compressed bytes, or raw texels.
 Decoded decode_embedded(const aiTexture& texture, std::uint64_t budget);
+
+/// The content of "data:...;base64,..."; empty when it has none.
+std::vector<std::uint8_t> data_uri_bytes(const std::string& uri);
 
 /// "data:image/png;base64,...".
 Decoded decode_data_uri(const std::string& uri, std::uint64_t budget);

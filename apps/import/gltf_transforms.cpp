@@ -2,15 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/gltf_transforms.hpp>
 
+#include <import/gltf_file.hpp>
+
 #include <assimp/scene.h>
 
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
-#include <array>
-#include <cstdint>
-#include <cstring>
-#include <iterator>
 #include <set>
 #include <string>
 #include <vector>
@@ -20,30 +18,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The JSON of a .gltf file, or of the first chunk of a .glb file.
-std::string json_text(std::istream& file) {
-  constexpr std::size_t kHead = 20;  // of the file, and of its first chunk
-  std::array<char, kHead> head{};
-  file.read(head.data(), kHead);
-  const auto read = static_cast<std::size_t>(file.gcount());
-  if (read < kHead || std::memcmp(head.data(), "glTF", 4) != 0) {
-    std::string text(head.data(), read);
-    file.clear();
-    text.append(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
-    return text;
-  }
-  std::uint32_t size = 0;
-  std::memcpy(&size, head.data() + 12, sizeof size);
-  std::string text;
-  std::istreambuf_iterator<char> byte(file);
-  for (std::uint32_t i = 0; i < size && byte != std::istreambuf_iterator<char>(); ++i, ++byte) {
-    text.push_back(*byte);
-  }
-  return text;
-}
-
 /// Without the parts that may be large: data in texts, tables of accessors.
-Json parse_tree(const std::string& text) {
+Json parse_tree(std::string_view text) {
   static const std::set<std::string> kWanted = {"scene", "scenes", "nodes"};
   const auto keep = [](int depth, Json::parse_event_t event, const Json& parsed) {
     const bool is_top_key = depth == 1 && event == Json::parse_event_t::key;
@@ -146,10 +122,10 @@ NodeTransforms matched(const Json& file, const aiNode& root) {
 
 }  // namespace
 
-NodeTransforms gltf_transforms(std::istream& file, const aiScene& scene) {
+NodeTransforms gltf_transforms(std::string_view file, const aiScene& scene) {
   if (scene.mRootNode == nullptr) return {};
   try {
-    const Json tree = parse_tree(json_text(file));
+    const Json tree = parse_tree(gltf_json(file));
     return tree.is_object() ? matched(tree, *scene.mRootNode) : NodeTransforms{};
   } catch (const Json::exception&) {
     return {};  // a value of another type than the standard's: the importer knows better

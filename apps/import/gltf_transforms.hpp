@@ -5,7 +5,7 @@
 #include <import/scene_walk.hpp>
 
 #include <Eigen/Core>
-#include <istream>
+#include <string_view>
 
 namespace glidar::import {
 
@@ -13,6 +13,6 @@ namespace glidar::import {
 /// keeps single precision, which is 5e-4 m off 10 km away. Nodes of the file and of the importer's
 /// scene are matched by their places in the tree; where a transform does not agree with the
 /// importer's to single precision, or the file cannot be understood, the importer's holds.
-NodeTransforms gltf_transforms(std::istream& file, const aiScene& scene);
+NodeTransforms gltf_transforms(std::string_view file, const aiScene& scene);
 
 }  // namespace glidar::import

@@ -5,6 +5,7 @@
 #include <import/bake_mesh.hpp>
 #include <import/confined_io.hpp>
 #include <import/declared_frame.hpp>
+#include <import/gltf_extensions.hpp>
 #include <import/gltf_transforms.hpp>
 #include <import/loaded_libraries.hpp>
 #include <import/read_materials.hpp>
@@ -17,9 +18,7 @@
 #include <assimp/ProgressHandler.hpp>
 
 #include <algorithm>
-#include <fstream>
 #include <limits>
-#include <memory>
 #include <new>
 #include <string_view>
 
@@ -103,48 +102,40 @@ std::vector<std::string> texture_folders(const std::vector<std::string>& read,
 ImportedModel import_model(const std::filesystem::path& canonical_model, double crease_angle_rad,
                            const std::function<void(double)>& progress) {
   ModelFolder folder = model_folder(canonical_model);
-  const auto log = std::make_shared<FileLog>();
+  ModelFiles files(folder);
+  FileLog log;
+  const auto own = files.content(canonical_model.string());  // the first of the files
+  if (own == nullptr) throw Refusal{"cannot be opened", "check who may read it"};
+  replace_gltf_extensions(canonical_model, folder, files, log);
   // Never destroyed: taking a deep tree apart recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
-  importer.SetIOHandler(new ConfinedIo(folder, log));
+  importer.SetIOHandler(new ConfinedIo(folder, files, log));
   importer.SetProgressHandler(new Progress(progress));
   if (importer.ReadFile(canonical_model.string(), kSteps) == nullptr) {
-    refuse(importer.GetErrorString(), *log);
+    refuse(importer.GetErrorString(), log);
   }
   // Taken from the importer, which lives on for its files: its own scene cannot be changed.
   aiScene* scene = importer.GetOrphanedScene();
   ImportedModel imported;
   Model& model = imported.model;
   model.format = importer_name(importer);
-  model.declared = take_declared_frame(*scene, model.format, canonical_model.string(),
-                                       *importer.GetIOHandler(), model.notes);
+  model.declared = take_declared_frame(*scene, model.format, *own, model.notes);
   const bool gltf = model.format.find("glTF") != std::string::npos;
-  NodeTransforms transforms;
-  if (gltf) {
-    std::ifstream file(canonical_model, std::ios::binary);
-    transforms = gltf_transforms(file, *scene);
-  }
-  const Walk walked = walk(*scene, transforms);
-  const MtlOptions mtl = read_mtl_options(log->read);
-  imported.texture_folders = texture_folders(log->read, folder);
+  const Walk walked = walk(*scene, gltf ? gltf_transforms(own->whole(), *scene) : NodeTransforms{});
+  const MtlOptions mtl = read_mtl_options(files);
+  imported.texture_folders = texture_folders(files.paths(), folder);
   folder.also.assign(imported.texture_folders.begin(), imported.texture_folders.end());
-  TextureStore textures(*scene, folder, *log, imported);
+  TextureStore textures(*scene, folder, files, imported);
   BakeOptions options;
   options.crease_angle_rad = crease_angle_rad;
   options.facet_normals = model.format.find("(STL)") != std::string::npos;
   read_materials(*scene, walked, {textures, mtl, gltf}, model, options);
-  model.notes.insert(model.notes.end(), log->notes.begin(), log->notes.end());
+  model.notes.insert(model.notes.end(), log.notes.begin(), log.notes.end());
   bake(walked, options, model);
-  imported.absent = log->absent;
-  imported.files = log->read;
+  imported.absent.insert(imported.absent.end(), log.absent.begin(), log.absent.end());
+  imported.files = files.paths();
+  imported.hashes = files.hashes();
   imported.libraries = loaded_libraries();
-  const auto own =
-      std::find(imported.files.begin(), imported.files.end(), canonical_model.string());
-  if (own == imported.files.end()) {
-    imported.files.insert(imported.files.begin(), canonical_model.string());
-  } else {
-    std::rotate(imported.files.begin(), own, own + 1);
-  }
   return imported;
 }
 

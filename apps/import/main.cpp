@@ -3,13 +3,15 @@
 
 // glidar-import MODEL CREASE_ANGLE_RAD MEMORY_BYTES TIME_S PARENT
 // Reads one model and writes one frame (glidar/io/mesh_blob.hpp) to descriptor 3: the model, or why
-// there is none. Percents of progress go to descriptor 4, one byte each. The GLIDAR library starts
-// it; it is of no use by hand.
+// there is none. It reads the model in a sandbox (sandbox.hpp). Percents of progress go to
+// descriptor 4, one byte each. The GLIDAR library starts it; it is of no use by hand.
 
 #include <import/import_model.hpp>
 #include <import/process_limits.hpp>
+#include <import/sandbox.hpp>
 
 #include <glidar/io/mesh_blob.hpp>
+#include <glidar/io/model_folder.hpp>
 
 #include <unistd.h>
 
@@ -17,6 +19,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <vector>
 
 namespace glidar::import {
 namespace {
@@ -34,9 +37,13 @@ void tell_progress(double fraction) {
 }
 
 int answer(const char* const* arguments) {
+  const std::vector<std::string> notes =
+      enter_sandbox(model_folder(arguments[1]).root, kProgressFd);
   try {
-    write_model(kAnswerFd,
-                import_model(arguments[1], std::strtod(arguments[2], nullptr), tell_progress));
+    ImportedModel imported =
+        import_model(arguments[1], std::strtod(arguments[2], nullptr), tell_progress);
+    imported.sandbox_notes = notes;
+    write_model(kAnswerFd, imported);
   } catch (const Refusal& refusal) {
     write_failure(kAnswerFd, {refusal.found, refusal.remedy});
   }

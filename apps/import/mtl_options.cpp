@@ -8,7 +8,7 @@
 #include <array>
 #include <cctype>
 #include <cstdlib>
-#include <fstream>
+#include <sstream>
 #include <string_view>
 #include <utility>
 
@@ -148,11 +148,13 @@ void MtlOptions::refine(const std::string& material, unsigned type,
   }
 }
 
-MtlOptions read_mtl_options(const std::vector<std::string>& files) {
+MtlOptions read_mtl_options(ModelFiles& files) {
   MtlOptions options;
-  for (const std::string& path : files) {
+  for (const std::string& path : files.paths()) {
     if (!lower(path).ends_with(".mtl")) continue;
-    std::ifstream file(path);
+    const auto content = files.content(path);
+    if (content == nullptr) continue;
+    std::istringstream file{std::string(content->whole())};
     std::string material;
     for (std::string line; std::getline(file, line);) {
       std::string_view text = line;

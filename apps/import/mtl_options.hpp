@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <import/model_files.hpp>
 #include <import/texture_use.hpp>
 
 #include <Eigen/Core>
@@ -33,6 +34,6 @@ struct MtlOptions {
 };
 
 /// Reads the material files among those that were read for a model.
-MtlOptions read_mtl_options(const std::vector<std::string>& files);
+MtlOptions read_mtl_options(ModelFiles& files);
 
 }  // namespace glidar::import

@@ -47,7 +47,8 @@ bool apply(const ProcessLimits& limits) {
   const auto seconds = static_cast<std::uint64_t>(std::ceil(limits.time_s)) + 1;
   const bool limited = limit(RLIMIT_CORE, 0) && limit(RLIMIT_STACK, kStackBytes) &&
                        limit(RLIMIT_CPU, seconds) && limit(RLIMIT_FSIZE, limits.memory_bytes) &&
-                       (!kLimitAddresses || limit(RLIMIT_AS, limits.memory_bytes));
+                       (!kLimitAddresses || limit(RLIMIT_AS, limits.memory_bytes)) &&
+                       (!kLimitAddresses || limit(RLIMIT_NPROC, 0));
   const bool bound =
       ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && ::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0;
   // The parent may have died before the request to be told.

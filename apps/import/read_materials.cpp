@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/read_materials.hpp>
 
+#include <import/confined_io.hpp>
 #include <import/texture_use.hpp>
 
 #include <assimp/GltfMaterial.h>

@@ -3,8 +3,6 @@
 #include <import/text_source.hpp>
 
 #include <zip.h>
-#include <assimp/IOStream.hpp>
-#include <assimp/IOSystem.hpp>
 
 #include <charconv>
 #include <memory>
@@ -14,9 +12,13 @@ namespace {
 
 constexpr std::size_t kPiece = 65536;
 
-std::shared_ptr<zip_t> open_zip(const std::string& archive) {
-  return {zip_open(archive.c_str(), ZIP_RDONLY, nullptr), [](zip_t* opened) {
-            if (opened != nullptr) zip_discard(opened);
+std::shared_ptr<zip_t> open_zip(std::string_view archive) {
+  zip_source_t* source = zip_source_buffer_create(archive.data(), archive.size(), 0, nullptr);
+  if (source == nullptr) return nullptr;
+  zip_t* opened = zip_open_from_source(source, ZIP_RDONLY, nullptr);
+  if (opened == nullptr) zip_source_free(source);
+  return {opened, [](zip_t* unused) {
+            if (unused != nullptr) zip_discard(unused);
           }};
 }
 
@@ -31,19 +33,15 @@ bool decode(std::string_view digits, char& decoded) {
 
 }  // namespace
 
-TextSource file_text(Assimp::IOSystem& files, const std::string& name) {
-  const std::shared_ptr<Assimp::IOStream> stream(files.Open(name.c_str(), "rb"),
-                                                 [&files](Assimp::IOStream* opened) {
-                                                   if (opened != nullptr) files.Close(opened);
-                                                 });
-  return [stream] {
-    std::string piece(stream ? kPiece : 0, '\0');
-    if (stream) piece.resize(stream->Read(piece.data(), 1, piece.size()));
+TextSource plain_text(std::string_view text) {
+  return [text]() mutable {
+    const std::string piece(text.substr(0, kPiece));
+    text.remove_prefix(piece.size());
     return piece;
   };
 }
 
-TextSource zip_text(const std::string& archive, const std::string& name) {
+TextSource zip_text(std::string_view archive, const std::string& name) {
   const std::shared_ptr<zip_t> opened = open_zip(archive);
   zip_file_t* found = opened ? zip_fopen(opened.get(), name.c_str(), ZIP_FL_NOCASE) : nullptr;
   // it is closed before its archive
@@ -58,7 +56,7 @@ TextSource zip_text(const std::string& archive, const std::string& name) {
   };
 }
 
-std::vector<std::string> zip_names(const std::string& archive) {
+std::vector<std::string> zip_names(std::string_view archive) {
   std::vector<std::string> names;
   const std::shared_ptr<zip_t> opened = open_zip(archive);
   const zip_int64_t count = opened ? zip_get_num_entries(opened.get(), 0) : 0;

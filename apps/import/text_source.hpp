@@ -7,23 +7,19 @@
 #include <string_view>
 #include <vector>
 
-namespace Assimp {  // NOLINT(readability-identifier-naming): the library's own
-class IOSystem;
-}
-
 namespace glidar::import {
 
 /// The next bytes of a text; empty at its end.
 using TextSource = std::function<std::string()>;
 
-/// A file of the importer; one that cannot be read has no bytes.
-TextSource file_text(Assimp::IOSystem& files, const std::string& name);
+/// A text in memory, which must last as long as it is read.
+TextSource plain_text(std::string_view text);
 
-/// A file in a ZIP archive, capital letters or not; one that cannot be read has no bytes.
-TextSource zip_text(const std::string& archive, const std::string& name);
+/// A file in a ZIP archive in memory, capital letters or not; one that cannot be read has no bytes.
+TextSource zip_text(std::string_view archive, const std::string& name);
 
 /// The names in a ZIP archive, in its order; none when it cannot be read.
-std::vector<std::string> zip_names(const std::string& archive);
+std::vector<std::string> zip_names(std::string_view archive);
 
 /// The name of a file in an archive from a reference to it: "./a%20b.dae" or "/a%20b.dae" is
 /// "a b.dae".

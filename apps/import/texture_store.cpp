@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/texture_store.hpp>
 
+#include <import/confined_io.hpp>
 #include <import/decode_image.hpp>
 
 #include <glidar/io/height_map.hpp>
@@ -11,35 +12,34 @@
 #include <assimp/texture.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
+#include <string_view>
+#include <system_error>
 #include <utility>
-#include <vector>
 
 namespace glidar::import {
 namespace {
 
-/// The whole file, if it is no larger than what could become a texture.
-std::vector<std::uint8_t> content(const std::string& path) {
+/// Larger files cannot become a texture, and are not read.
+bool is_too_large(const std::string& path) {
   constexpr std::uintmax_t kMostBytes = std::uintmax_t{256} << 20U;
   std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  std::vector<std::uint8_t> bytes;
-  if (error || size > kMostBytes) return bytes;
-  bytes.resize(size);
-  std::ifstream file(path, std::ios::binary);
-  file.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  bytes.resize(static_cast<std::size_t>(file.gcount()));
-  return bytes;
+  return std::filesystem::file_size(path, error) > kMostBytes || error;
+}
+
+Decoded decode_file(ModelFiles& files, const std::string& path, std::uint64_t budget) {
+  const auto content = files.content(path);
+  if (content == nullptr) return {{}, "cannot be opened"};
+  const std::string_view bytes = content->whole();
+  return decode_image({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, budget);
 }
 
 constexpr std::size_t kLongestName = 1024;  // of a missing texture, for the user's eyes
 
 }  // namespace
 
-TextureStore::TextureStore(const aiScene& scene, ModelFolder folder, FileLog& log,
+TextureStore::TextureStore(const aiScene& scene, ModelFolder folder, ModelFiles& files,
                            ImportedModel& imported)
-    : scene_(scene), folder_(std::move(folder)), log_(log), imported_(imported) {}
+    : scene_(scene), folder_(std::move(folder)), files_(files), imported_(imported) {}
 
 std::int32_t TextureStore::keep(Texture texture) {
   budget_ -= texture.texels.size();
@@ -60,9 +60,12 @@ std::int32_t TextureStore::decode(const std::string& name) {
     decoded.reason = lookup.reason;
     imported_.lookups.push_back(std::move(lookup));
     if (const auto known = by_file_.find(file); known != by_file_.end()) return known->second;
-    if (!file.empty()) {
-      add_once(log_.read, file);
-      decoded = decode_image(content(file), budget_);
+    if (!file.empty() && is_too_large(file)) {
+      decoded.reason = "too large: the file has more than 256 MiB";
+      add_once(imported_.absent, file);
+    } else if (!file.empty()) {
+      decoded = decode_file(files_, file, budget_);
+      files_.release(file);
     }
   }
   if (!decoded.reason.empty()) {

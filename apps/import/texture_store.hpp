@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <import/confined_io.hpp>
+#include <import/model_files.hpp>
 
 #include <glidar/io/imported_model.hpp>
 
@@ -18,7 +18,8 @@ namespace glidar::import {
 /// Finds and decodes the textures that materials name, each once, into the model.
 class TextureStore {
  public:
-  TextureStore(const aiScene& scene, ModelFolder folder, FileLog& log, ImportedModel& imported);
+  TextureStore(const aiScene& scene, ModelFolder folder, ModelFiles& files,
+               ImportedModel& imported);
 
   /// Index of the texture, TextureUse::kNone when it cannot be had (and is listed as missing).
   std::int32_t colours(const std::string& name);
@@ -36,7 +37,7 @@ class TextureStore {
 
   const aiScene& scene_;
   ModelFolder folder_;
-  FileLog& log_;
+  ModelFiles& files_;
   ImportedModel& imported_;
   std::uint64_t budget_ = std::uint64_t{512} << 20U;
   std::map<std::string, std::int32_t> by_name_;

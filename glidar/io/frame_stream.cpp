@@ -15,7 +15,7 @@ namespace glidar {
 namespace {
 
 constexpr std::uint64_t kMark = 0x3142'5241'4449'4C47;  // "GLIDARB1" on a little-endian machine
-constexpr std::uint32_t kVersion = 2;                   // raised when the layout of a frame changes
+constexpr std::uint32_t kVersion = 3;                   // raised when the layout of a frame changes
 constexpr std::size_t kBuffer = std::size_t{1} << 16U;
 
 [[noreturn]] void damaged(const std::string& found) {

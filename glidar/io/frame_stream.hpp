@@ -12,7 +12,7 @@
 namespace glidar {
 
 /// What a frame holds.
-enum class FrameKind : std::uint32_t { model = 1, failure = 2, cache_index = 3 };
+enum class FrameKind : std::uint32_t { model = 1, failure = 2, cached_file = 3 };
 
 /// The head of a frame: bytes that a file or a pipe's memory holds as one checked piece.
 /// Little-endian machines only (all that Embree runs on), checked through `mark`.

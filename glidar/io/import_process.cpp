@@ -18,11 +18,10 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <optional>
 #include <vector>
-
-extern char** environ;
 
 namespace glidar {
 namespace {
@@ -47,6 +46,29 @@ double seconds_since(Clock::time_point start) {
                .remedy = ""});
 }
 
+/// What the process gets of the environment: where the dynamic loader looks for libraries, and, if
+/// it is built with sanitizers, their options. A model that takes it over finds no secret there.
+std::vector<std::string> environment() {
+  std::vector<const char*> names = {"LD_LIBRARY_PATH"};
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  names.insert(names.end(), {"ASAN_OPTIONS", "LSAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS"});
+#endif
+  std::vector<std::string> all;
+  for (const char* name : names) {
+    const char* value = std::getenv(name);
+    if (value != nullptr) all.push_back(std::string(name) + "=" + value);
+  }
+  return all;
+}
+
+/// As posix_spawn takes them; refers to the texts.
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
 /// Its standard streams lead nowhere, descriptors 3 and 4 are ours, all others are closed.
 class SpawnPlan {
  public:
@@ -64,12 +86,10 @@ class SpawnPlan {
   ~SpawnPlan() { posix_spawn_file_actions_destroy(&actions_); }
 
   pid_t start(const std::string& program, std::vector<std::string> arguments) const {
-    std::vector<char*> argv;
-    for (std::string& argument : arguments) argv.push_back(argument.data());
-    argv.push_back(nullptr);
+    std::vector<std::string> variables = environment();
     pid_t child = 0;
-    const int error =
-        ::posix_spawn(&child, program.c_str(), &actions_, nullptr, argv.data(), environ);
+    const int error = ::posix_spawn(&child, program.c_str(), &actions_, nullptr,
+                                    pointers_to(arguments).data(), pointers_to(variables).data());
     if (error != 0) cannot_start(program, error);
     return child;
   }

@@ -20,6 +20,9 @@ struct ImportedModel {
   std::vector<std::string> texture_folders;  ///< ModelFolder::also of the searches
   std::vector<TextureLookup> lookups;        ///< every texture file that was searched
   std::vector<std::string> libraries;        ///< paths of those that the import program ran with
+  std::vector<std::string> hashes;  ///< of the bytes that were parsed, hexadecimal; one per file
+  std::vector<std::string>
+      sandbox_notes;  ///< mechanisms that the system lacked when it was imported; not cached
 };
 
 }  // namespace glidar

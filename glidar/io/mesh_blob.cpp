@@ -157,7 +157,8 @@ auto fields(Is<ImportedModel> auto& imported) {
   auto& model = imported.model;
   return std::tie(model.format, model.mesh, model.materials, model.textures, model.parts,
                   model.missing_textures, model.notes, model.declared, imported.files,
-                  imported.absent, imported.texture_folders, imported.lookups, imported.libraries);
+                  imported.absent, imported.texture_folders, imported.lookups, imported.libraries,
+                  imported.hashes, imported.sandbox_notes);
 }
 
 auto fields(Is<ImportFailure> auto& failure) {
@@ -165,9 +166,7 @@ auto fields(Is<ImportFailure> auto& failure) {
 }
 
 auto fields(Is<CacheIndex> auto& index) {
-  return std::tie(index.importer, index.files, index.hashes, index.absent, index.texture_folders,
-                  index.lookups, index.root, index.folder, index.libraries,
-                  index.states_of_libraries);
+  return std::tie(index.importer, index.root, index.folder, index.states_of_libraries);
 }
 
 template <class A, class T>
@@ -178,22 +177,20 @@ void visit(A& archive, T& record) {
   std::apply([&archive](auto&... field) { (visit(archive, field), ...); }, fields(record));
 }
 
-template <class T>
-void write_frame(int fd, FrameKind kind, const T& value) {
+template <class... T>
+void write_frame(int fd, FrameKind kind, const T&... values) {
   FrameWriter frame(fd, kind);
   Out archive{frame};
-  visit(archive, value);
+  (visit(archive, values), ...);
   frame.finish();
 }
 
-template <class T>
-T read_frame(FrameReader& frame, FrameKind kind) {
+template <class... T>
+void read_frame(FrameReader& frame, FrameKind kind, T&... values) {
   if (frame.kind() != kind) refuse("a frame of another kind");
-  T value;
   In archive{frame};
-  visit(archive, value);
+  (visit(archive, values), ...);
   frame.finish();
-  return value;
 }
 
 // What the type system does not promise about a model that was read.
@@ -268,6 +265,12 @@ void check(const Model& model) {
   }
 }
 
+void check(const ImportedModel& imported) {
+  check(imported.model);
+  if (imported.files.empty()) refuse("no file that it was read from");
+  if (imported.files.size() != imported.hashes.size()) refuse("files without their hashes");
+}
+
 }  // namespace
 
 void write_model(int fd, const ImportedModel& imported) {
@@ -275,9 +278,9 @@ void write_model(int fd, const ImportedModel& imported) {
 }
 
 ImportedModel read_model(FrameReader& frame) {
-  auto imported = read_frame<ImportedModel>(frame, FrameKind::model);
-  check(imported.model);
-  if (imported.files.empty()) refuse("no file that it was read from");
+  ImportedModel imported;
+  read_frame(frame, FrameKind::model, imported);
+  check(imported);
   return imported;
 }
 
@@ -286,21 +289,22 @@ void write_failure(int fd, const ImportFailure& failure) {
 }
 
 ImportFailure read_failure(FrameReader& frame) {
-  return read_frame<ImportFailure>(frame, FrameKind::failure);
+  ImportFailure failure;
+  read_frame(frame, FrameKind::failure, failure);
+  return failure;
 }
 
-void write_cache_index(int fd, const CacheIndex& index) {
-  write_frame(fd, FrameKind::cache_index, index);
+void write_cached_file(int fd, const CacheIndex& index, const ImportedModel& imported) {
+  write_frame(fd, FrameKind::cached_file, index, imported);
 }
 
-CacheIndex read_cache_index(FrameReader& frame) {
-  auto index = read_frame<CacheIndex>(frame, FrameKind::cache_index);
-  if (index.files.empty() || index.files.size() != index.hashes.size()) {
-    refuse("a cache without its files' hashes");
-  }
-  if (index.libraries.size() != index.states_of_libraries.size())
+CachedFile read_cached_file(FrameReader& frame) {
+  CachedFile cached;
+  read_frame(frame, FrameKind::cached_file, cached.index, cached.imported);
+  check(cached.imported);
+  if (cached.imported.libraries.size() != cached.index.states_of_libraries.size())
     refuse("a cache without its libraries' states");
-  return index;
+  return cached;
 }
 
 }  // namespace glidar

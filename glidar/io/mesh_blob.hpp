@@ -32,22 +32,24 @@ struct ImportFailure {
 void write_failure(int fd, const ImportFailure& failure);
 ImportFailure read_failure(FrameReader& frame);
 
-/// The first frame of a cache file: what its model was made with and from.
+/// What a cached model was made with, beside what ImportedModel lists.
 struct CacheIndex {
-  std::string importer;             ///< version of everything that shapes the model
-  std::vector<std::string> files;   ///< paths
-  std::vector<std::string> hashes;  ///< of their content, hexadecimal; one per file
-  std::vector<std::string> absent;
-  std::vector<std::string> texture_folders;
-  std::vector<TextureLookup> lookups;
-  std::string root;  ///< folder and root that the lookups were made in
+  std::string importer;  ///< version of everything that shapes the model
+  std::string root;      ///< folder and root that textures were searched in
   std::string folder;
-  std::vector<std::string> libraries;  ///< paths of those that the import program ran with
   std::vector<std::string>
       states_of_libraries;  ///< one per library; another one makes the file void
 };
 
-void write_cache_index(int fd, const CacheIndex& index);
-CacheIndex read_cache_index(FrameReader& frame);
+/// A cache file: index, dependencies with their hashes, and model in one frame, whose hash covers
+/// all of them.
+struct CachedFile {
+  CacheIndex index;
+  ImportedModel imported;
+};
+
+void write_cached_file(int fd, const CacheIndex& index, const ImportedModel& imported);
+/// Checks what read_model() checks.
+CachedFile read_cached_file(FrameReader& frame);
 
 }  // namespace glidar

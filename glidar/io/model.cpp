@@ -74,16 +74,24 @@ Loaded import(const fs::path& file, const ModelOptions& options, const Report& r
     const ImportRun run = run_import(request, report);
     loaded.imported = take_model(run, request);
   }
-  const std::vector<std::string> hashes = hash_files(loaded.imported, file);
-  loaded.hash = combined_hash(hashes);
-  if (!entry) return loaded;
-  const std::string unwritten = write_cache(*entry, loaded.imported, hashes, file);
-  if (!unwritten.empty()) report.info(unwritten);
+  loaded.hash = combined_hash(loaded.imported.hashes);
+  // They are about this run, not about the model.
+  std::vector<std::string> sandbox_notes = std::exchange(loaded.imported.sandbox_notes, {});
+  const std::string changed = changed_file(loaded.imported, file);
+  if (!changed.empty()) {
+    report.warn(changed +
+                " was changed while it was read; the model is that of its content before");
+  } else if (entry) {
+    const std::string unwritten = write_cache(*entry, loaded.imported, file);
+    if (!unwritten.empty()) report.info(unwritten);
+  }
+  std::vector<std::string>& notes = loaded.imported.model.notes;
+  std::move(sandbox_notes.begin(), sandbox_notes.end(), std::back_inserter(notes));
   return loaded;
 }
 
 Loaded load_file(const fs::path& file, const ModelOptions& options, const Report& report) {
-  const auto entry = options.use_cache ? cache_entry(file, options) : std::nullopt;
+  const auto entry = options.use_cache ? cache_entry(file, options, report) : std::nullopt;
   if (entry) {
     if (auto cached = read_cache(*entry, file)) {
       return {std::move(cached->imported), std::move(cached->hash), true};

@@ -7,34 +7,18 @@
 #include <glidar/io/content_hash.hpp>
 #include <glidar/io/import_process.hpp>
 #include <glidar/io/mesh_blob.hpp>
-#include <glidar/io/unique_fd.hpp>
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdlib>
-#include <cstring>
-#include <system_error>
+#include <utility>
 
 namespace glidar {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::optional<fs::path> cache_folder(const ModelOptions& options) {
-  if (!options.cache_folder.empty()) return options.cache_folder;
-  const auto variable = [](const char* name) -> fs::path {
-    const char* value = std::getenv(name);
-    return value != nullptr ? value : "";
-  };
-  // The XDG base directory specification: relative values are invalid.
-  if (const fs::path xdg = variable("XDG_CACHE_HOME"); xdg.is_absolute()) return xdg / "glidar";
-  if (const fs::path home = variable("HOME"); home.is_absolute()) return home / ".cache" / "glidar";
-  return std::nullopt;
-}
 
 /// Tells a new version of an installed program or library without reading it; empty: not there.
 std::string file_state(const fs::path& path) {
@@ -64,76 +48,85 @@ bool still_absent(const std::string& path, const ModelFolder& folder) {
 }
 
 /// True when importing now would read the very same bytes.
-bool holds(const CacheIndex& index, const CacheEntry& entry, const fs::path& canonical_model) {
+bool holds(const CachedFile& cached, const CacheEntry& entry, const fs::path& canonical_model) {
+  const CacheIndex& index = cached.index;
+  const ImportedModel& imported = cached.imported;
   ModelFolder folder = model_folder(canonical_model);
-  folder.also.assign(index.texture_folders.begin(), index.texture_folders.end());
+  folder.also.assign(imported.texture_folders.begin(), imported.texture_folders.end());
   if (index.importer != entry.importer || index.importer.empty() ||
-      index.files.front() != canonical_model.string() || index.root != folder.root.string() ||
+      imported.files.front() != canonical_model.string() || index.root != folder.root.string() ||
       index.folder != folder.folder.string() ||
-      index.states_of_libraries != file_states(index.libraries)) {
+      index.states_of_libraries != file_states(imported.libraries)) {
     return false;
   }
-  for (const std::string& path : index.absent) {
+  for (const std::string& path : imported.absent) {
     if (!still_absent(path, folder)) return false;
   }
-  for (const TextureLookup& lookup : index.lookups) {
+  for (const TextureLookup& lookup : imported.lookups) {
     if (find_texture(lookup.name, folder) != lookup) return false;
   }
-  for (std::size_t i = 0; i < index.files.size(); ++i) {
-    const auto hash = hash_file(index.files[i]);
-    if (!hash || hex(*hash) != index.hashes[i]) return false;
-  }
-  return true;
+  return changed_file(imported, canonical_model).empty();
 }
 
-std::string why(const fs::path& path, int error) {
-  return "the cache " + path.string() + " cannot be written: " + std::strerror(error);
+[[noreturn]] void refuse_answer(const fs::path& canonical_model, const std::string& found) {
+  throw Error({.where = canonical_model.string(),
+               .found = "the import process gave a damaged answer (" + found + ")",
+               .allowed = "",
+               .remedy = "save the model in another format (PLY, OBJ or glTF)"});
 }
 
 }  // namespace
 
-std::optional<CacheEntry> cache_entry(const fs::path& canonical_model,
-                                      const ModelOptions& options) {
-  const auto folder = cache_folder(options);
-  if (!folder) return std::nullopt;
+std::optional<CacheEntry> cache_entry(const fs::path& canonical_model, const ModelOptions& options,
+                                      const Report& report) {
+  const auto path = cache_folder_path(options);
+  if (!path) return std::nullopt;
+  const std::uint64_t limit_bytes = cache_limit_bytes();
+  CacheFolder folder = open_cache_folder(*path);
+  if (!folder.problem.empty()) {
+    report.warn(folder.problem);
+    return std::nullopt;
+  }
   const std::string key =
       fmt::format("{}\n{:.17g}", canonical_model.string(), options.crease_angle_rad);
   ContentHash hash;
   hash.add(key.data(), key.size());
-  return CacheEntry{*folder / (hex(hash.value()) + ".model"), importer_version()};
+  return CacheEntry{std::move(folder), hex(hash.value()) + ".model", importer_version(),
+                    limit_bytes};
 }
 
 std::optional<CachedModel> read_cache(const CacheEntry& entry, const fs::path& canonical_model) {
-  const UniqueFd fd(::open(entry.file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+  const UniqueFd fd = open_entry(entry.folder, entry.name);
   if (!fd) return std::nullopt;
   try {
-    FrameReader head(fd.get());
-    const CacheIndex index = read_cache_index(head);
-    if (!holds(index, entry, canonical_model)) return std::nullopt;
-    FrameReader body(fd.get());
-    return CachedModel{read_model(body), combined_hash(index.hashes)};
+    FrameReader frame(fd.get());
+    CachedFile cached = read_cached_file(frame);
+    if (!holds(cached, entry, canonical_model)) return std::nullopt;
+    touch_entry(fd);
+    std::string hash = combined_hash(cached.imported.hashes);
+    return CachedModel{std::move(cached.imported), std::move(hash)};
   } catch (const Error&) {
     return std::nullopt;  // damaged or of an older layout: it is made anew
   }
 }
 
-std::vector<std::string> hash_files(const ImportedModel& imported,
-                                    const fs::path& canonical_model) {
+std::string changed_file(const ImportedModel& imported, const fs::path& canonical_model) {
   const ModelFolder folder = model_folder(canonical_model);
-  std::vector<std::string> hashes;
-  for (const std::string& file : imported.files) {
-    // The list comes from the import process: it gets no file read here that it may not read.
-    const bool allowed = confine(file, folder).path == file;
-    const auto hash = allowed ? hash_file(file) : std::nullopt;
-    if (!hash) {
-      throw Error({.where = canonical_model.string(),
-                   .found = "its file " + file + " cannot be read again",
-                   .allowed = "",
-                   .remedy = "try again"});
-    }
-    hashes.push_back(hex(*hash));
+  if (imported.files.front() != canonical_model.string()) {
+    refuse_answer(canonical_model, "it is about another model");
   }
-  return hashes;
+  for (const std::string& place : imported.texture_folders) {
+    if (!is_inside(place, folder.root)) refuse_answer(canonical_model, "a folder outside");
+  }
+  std::string changed;
+  for (std::size_t i = 0; i < imported.files.size() && changed.empty(); ++i) {
+    const std::string& file = imported.files[i];
+    const ConfinedFile confined = confine(file, folder);
+    if (confined.access == Access::outside) refuse_answer(canonical_model, "a file outside");
+    const auto hash = confined.path == file ? hash_file(file) : std::nullopt;
+    if (!hash || hex(*hash) != imported.hashes[i]) changed = file;
+  }
+  return changed;
 }
 
 std::string combined_hash(std::vector<std::string> hashes) {
@@ -144,29 +137,12 @@ std::string combined_hash(std::vector<std::string> hashes) {
 }
 
 std::string write_cache(const CacheEntry& entry, const ImportedModel& imported,
-                        const std::vector<std::string>& hashes, const fs::path& canonical_model) {
-  std::error_code error;
-  fs::create_directories(entry.file.parent_path(), error);
-  if (error) return why(entry.file.parent_path(), error.value());
-  std::string temporary = entry.file.string() + ".XXXXXX";
-  const UniqueFd fd(::mkostemp(temporary.data(), O_CLOEXEC));
-  if (!fd) return why(entry.file, errno);
+                        const fs::path& canonical_model) {
   const ModelFolder folder = model_folder(canonical_model);
-  try {
-    write_cache_index(
-        fd.get(), {entry.importer, imported.files, hashes, imported.absent,
-                   imported.texture_folders, imported.lookups, folder.root.string(),
-                   folder.folder.string(), imported.libraries, file_states(imported.libraries)});
-    write_model(fd.get(), imported);
-  } catch (const Error& failure) {
-    fs::remove(temporary, error);
-    return "the cache cannot be written: " + failure.parts().found;
-  }
-  fs::rename(temporary, entry.file, error);
-  if (!error) return "";
-  const std::string reason = why(entry.file, error.value());
-  fs::remove(temporary, error);
-  return reason;
+  const CacheIndex index{entry.importer, folder.root.string(), folder.folder.string(),
+                         file_states(imported.libraries)};
+  return store_entry(entry.folder, entry.name, entry.limit_bytes,
+                     [&](int fd) { write_cached_file(fd, index, imported); });
 }
 
 }  // namespace glidar

@@ -6,17 +6,12 @@
 #include <system_error>
 
 namespace glidar {
-namespace {
-
 namespace fs = std::filesystem;
 
-/// True when `path` is `root` or lies below it; both absolute and normalised.
-bool inside(const fs::path& path, const fs::path& root) {
+bool is_inside(const fs::path& path, const fs::path& root) {
   const auto [in_root, in_path] = std::mismatch(root.begin(), root.end(), path.begin(), path.end());
   return in_root == root.end();
 }
-
-}  // namespace
 
 ModelFolder model_folder(const fs::path& canonical_model) {
   const fs::path folder = canonical_model.parent_path();
@@ -36,9 +31,9 @@ ConfinedFile confine(const fs::path& wanted, const ModelFolder& folder) {
   // Behind a link, "link/.." is the parent of what it points to.
   fs::path real = fs::canonical(path, error);
   // Files name folders that are not there ("..\\source\\..\\wood.png"): without them it may be.
-  if (error && inside(lexical, folder.root)) real = fs::canonical(lexical, error);
-  if (error) return {inside(lexical, folder.root) ? Access::absent : Access::outside, {}};
-  if (!inside(real, folder.root)) return {Access::outside, {}};
+  if (error && is_inside(lexical, folder.root)) real = fs::canonical(lexical, error);
+  if (error) return {is_inside(lexical, folder.root) ? Access::absent : Access::outside, {}};
+  if (!is_inside(real, folder.root)) return {Access::outside, {}};
   if (!fs::is_regular_file(real, error) || error) return {Access::not_a_file, {}};
   return {Access::granted, real};
 }

@@ -22,6 +22,9 @@ struct ModelFolder {
 /// or the model lies in a folder `meshes` that has a folder `materials` beside it.
 ModelFolder model_folder(const std::filesystem::path& canonical_model);
 
+/// True when `path` is `root` or below it; both absolute and normalised.
+bool is_inside(const std::filesystem::path& path, const std::filesystem::path& root);
+
 enum class Access : std::uint8_t { granted, absent, outside, not_a_file };
 
 struct ConfinedFile {

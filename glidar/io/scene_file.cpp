@@ -5,6 +5,10 @@
 #include <glidar/io/scene_builder.hpp>
 
 #include <algorithm>
+#include <functional>
+#include <memory>
+#include <set>
+#include <string_view>
 
 namespace glidar {
 namespace {
@@ -19,10 +23,21 @@ std::vector<Trajectory> trajectories(const ScenePlan& plan) {
   return all;
 }
 
+/// The same without repetitions: what is wrong with the model cache concerns every model.
+Report each_once(const Report& report) {
+  if (!report.log) return report;
+  const auto reported = std::make_shared<std::set<std::string, std::less<>>>();
+  const auto log = [reported, log = report.log](Severity severity, std::string_view message) {
+    if (reported->emplace(message).second) log(severity, message);
+  };
+  return {log, report.progress};
+}
+
 /// The scene as planned, with its models.
 SceneFile load_plan(const ScenePlan& plan, const Report& report) {
+  const Report once = each_once(report);
   const auto load = [&](const std::string& source, const ModelOptions& options) {
-    return load_model(source, options, report);
+    return load_model(source, options, once);
   };
   return {.scene = build_scene(plan, load),
           .sensors = plan.sensors,

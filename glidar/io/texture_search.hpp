@@ -17,6 +17,9 @@ struct TextureLookup {
   bool operator==(const TextureLookup&) const = default;
 };
 
+/// The text with %20 and the like replaced by the characters that they stand for.
+std::string percent_decoded(const std::string& text);
+
 /// Looks for the file that a model means by a texture name, never outside the model's root.
 /// The name is tidied (spaces around it, backslashes, `file://`, %20), absolute and `C:\` paths are
 /// cut to their base name, and it is looked for as given, then by its base name, in the model's

@@ -71,8 +71,11 @@ class CliTest(unittest.TestCase):
         self.environment = dict(os.environ, XDG_CACHE_HOME=os.path.join(self.folder, ".cache"))
 
     def run_program(self, *arguments):
-        return subprocess.run(["glidar", *arguments], cwd=self.folder, env=self.environment,
+        done = subprocess.run(["glidar", *arguments], cwd=self.folder, env=self.environment,
                               capture_output=True, text=True, timeout=MAX_WAIT_S, check=False)
+        # on systems without Landlock or seccomp, and with sanitizers
+        done.stderr = re.sub(r"(?m)^glidar: .*: the import process ran without .*\n", "", done.stderr)
+        return done
 
     def succeed(self, *arguments):
         done = self.run_program(*arguments)

@@ -49,6 +49,18 @@ class Replay(ReplayTest):
         self.assertEqual(self.files_of("again"), self.files_of("first"))
         self.assertEqual(len(set(self.files_of("first").values())), 6)
 
+    def test_recordings_do_not_name_the_cache_folder(self):
+        self.record_scene("--cache-folder", "own_cache")
+        head = self.lines()[0]
+        arguments = head["command"]["arguments"]
+        self.assertFalse([one for one in arguments if "cache" in one], arguments)
+        self.assertTrue(os.listdir(os.path.join(self.folder, "own_cache")))
+        for spelling in (["--cache-folder", "evil"], ["--cache-folder=evil"]):
+            head["command"]["arguments"] = arguments + spelling
+            self.write("evil.jsonl", "\n".join(map(json.dumps, [head, *self.lines()[1:]])) + "\n")
+            self.succeed("replay", "evil.jsonl")
+            self.assertNotIn("evil", self.files())
+
     def test_of_a_rig_tells_its_sensors_apart(self):
         self.write("rig.yaml", "models: [{model: box.obj, pose: {position: [6, 0, 0]}}]\n"
                                "sensors: [{name: a, sensor: VLP-16}, {name: b, sensor: VLP-16}]\n"

@@ -23,6 +23,7 @@ void rewind(const UniqueFd& fd) {
 ImportedModel example() {
   ImportedModel imported;
   imported.files = {"/a/model.obj"};
+  imported.hashes = {std::string(32, 'a')};
   imported.absent = {"/a/model.mtl"};
   imported.lookups = {{"wood.png", "/a/wood.png", ""}};
   Model& model = imported.model;

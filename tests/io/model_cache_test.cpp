@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/model_cache.hpp>
 
+#include <glidar/io/content_hash.hpp>
+#include <glidar/io/import_process.hpp>
 #include <glidar/io/mesh_blob.hpp>
 
-#include <io/model_test_support.hpp>
+#include <io/model_cache_fixture.hpp>
 
 #include <gmock/gmock.h>
 
@@ -18,31 +20,11 @@
 namespace glidar {
 namespace {
 
+using ::testing::HasSubstr;
 using testing::TestFolder;
+using testing::Variable;
+using ModelCache = testing::ModelCacheTest;
 namespace fs = std::filesystem;
-
-/// A model with a material file and one texture found, one missing; and a cache folder.
-class ModelCache : public ::testing::Test {
- protected:
-  ModelCache() {
-    options_.cache_folder = cache_.path() / "models";
-    temp_.write("a.mtl", "newmtl paint\nmap_Kd paint.ppm\nmap_Ks shine.ppm\n");
-    temp_.write("paint.ppm", testing::ppm(1, 1, "abc"));
-    file_ = temp_.write("a.obj", testing::quad_obj("a.mtl"));
-  }
-
-  Model load() const { return testing::load(file_, options_); }
-  fs::path cache_file() const { return fs::directory_iterator(options_.cache_folder)->path(); }
-  std::size_t cache_files() const {
-    return static_cast<std::size_t>(
-        std::distance(fs::directory_iterator(options_.cache_folder), {}));
-  }
-
-  TestFolder temp_;
-  TestFolder cache_;
-  ModelOptions options_;
-  fs::path file_;
-};
 
 std::string bytes(const Model& model) {
   const TestFolder temp;
@@ -147,45 +129,23 @@ TEST_F(ModelCache, ADamagedFileIsMadeAnew) {
 
 TEST_F(ModelCache, AnotherImporterMakesItAnew) {
   load();
-  auto entry = cache_entry(fs::canonical(file_), options_);
+  auto entry = cache_entry(fs::canonical(file_), options_, {});
   ASSERT_TRUE(entry);
   EXPECT_TRUE(read_cache(*entry, fs::canonical(file_)).has_value());
   entry->importer += "x";
   EXPECT_FALSE(read_cache(*entry, fs::canonical(file_)).has_value());
 }
 
-/// The environment variable has this value while it lives.
-class Variable {
- public:
-  Variable(const char* name, const std::string& value) : name_(name) {
-    if (const char* old = std::getenv(name)) old_ = old;
-    ::setenv(name, value.c_str(), 1);
-  }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-  ~Variable() {
-    if (old_) {
-      ::setenv(name_, old_->c_str(), 1);
-    } else {
-      ::unsetenv(name_);
-    }
-  }
-
- private:
-  const char* name_;
-  std::optional<std::string> old_;
-};
-
 TEST_F(ModelCache, AnUpgradedImporterLibraryMakesItAnew) {
   load();
   std::FILE* opened = std::fopen(cache_file().c_str(), "rb");
-  FrameReader head(::fileno(opened));
-  const CacheIndex index = read_cache_index(head);
+  FrameReader frame(::fileno(opened));
+  const std::vector<std::string> used = read_cached_file(frame).imported.libraries;
   std::fclose(opened);
-  const auto assimp = std::find_if(
-      index.libraries.begin(), index.libraries.end(),
-      [](const std::string& path) { return path.find("libassimp") != std::string::npos; });
-  ASSERT_NE(assimp, index.libraries.end());
+  const auto assimp = std::find_if(used.begin(), used.end(), [](const std::string& path) {
+    return path.find("libassimp") != std::string::npos;
+  });
+  ASSERT_NE(assimp, used.end());
 
   const TestFolder libraries;
   const fs::path copy = libraries.path() / fs::path(*assimp).filename();
@@ -206,7 +166,76 @@ TEST_F(ModelCache, AFolderThatCannotBeWrittenIsOnlyTold) {
   const Report report{[&told](Severity, std::string_view text) { told += text; }, {}};
   const Model model = load_model(file_.string(), options_, report);
   EXPECT_EQ(model.mesh.triangles.size(), 2U);
-  EXPECT_THAT(told, ::testing::HasSubstr("cache"));
+  EXPECT_THAT(told, HasSubstr("cache"));
+}
+
+/// A cache entry is one piece: the index of one model and the mesh of another are no model.
+TEST_F(ModelCache, PartsOfTwoEntriesAreNoEntry) {
+  const fs::path other = temp_.write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  load();
+  const std::string own_name = entry_name();
+  const std::string own = testing::read_file(options_.cache_folder / own_name);
+  testing::load(other, options_);
+  std::string theirs;
+  for (const auto& entry : fs::directory_iterator(options_.cache_folder)) {
+    if (entry.path().filename() != own_name) theirs = testing::read_file(entry.path());
+  }
+  ASSERT_FALSE(theirs.empty());
+  // Wherever two files are joined, with the head of either: at least one byte is foreign.
+  for (std::size_t cut = 1; cut < std::min(own.size(), theirs.size()); cut += 101) {
+    std::ofstream(options_.cache_folder / own_name, std::ios::binary)
+        << own.substr(0, cut) + theirs.substr(cut);
+    ASSERT_FALSE(load().from_cache) << cut;
+  }
+  // An entry of another model under this one's name.
+  std::ofstream(options_.cache_folder / own_name, std::ios::binary) << theirs;
+  EXPECT_FALSE(load().from_cache);
+  EXPECT_TRUE(load().from_cache);
+}
+
+/// Replaces the model by another file while the import process runs: the script moves it there once
+/// the true import program has answered.
+TEST_F(ModelCache, AFileThatIsReplacedWhileItIsReadIsNotCached) {
+  const std::string importer = import_program().string();
+  const fs::path script = temp_.write(
+      "import", "#!/bin/sh\n'" + importer + "' \"$1\" \"$2\" \"$3\" \"$4\" $$\n" + "code=$?\nmv '" +
+                    (temp_ / "new.obj").string() + "' \"$1\"\n" + "exit $code\n");
+  fs::permissions(script, fs::perms::owner_all);
+  temp_.write("new.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  const std::string old_hash = load().hash;
+  fs::remove_all(options_.cache_folder);
+  {
+    const Variable helper("GLIDAR_IMPORT_HELPER", script.string());
+    std::string text;
+    const Report report{[&text](Severity, std::string_view message) { text += message; }, {}};
+    const Model model = load_model(file_.string(), options_, report);
+    EXPECT_EQ(model.mesh.triangles.size(), 2U);
+    EXPECT_EQ(model.hash, old_hash);  // of what was parsed, not of what is there now
+    EXPECT_THAT(text, HasSubstr("a.obj was changed while it was read"));
+  }
+  EXPECT_EQ(cache_files(), 0U);
+  const Model after = load();
+  EXPECT_FALSE(after.from_cache);
+  EXPECT_EQ(after.mesh.triangles.size(), 1U);
+  EXPECT_NE(after.hash, old_hash);
+}
+
+/// A hostile model may have taken over the import process, which then says what it likes.
+TEST_F(ModelCache, TheWordOfTheImportProcessAloneStoresNothing) {
+  ImportedModel imported;
+  imported.files = {file_.string()};
+  imported.hashes = {std::string(32, '0')};
+  EXPECT_EQ(changed_file(imported, file_), file_.string());
+  imported.hashes = {hex(*hash_file(file_))};
+  EXPECT_EQ(changed_file(imported, file_), "");
+  imported.texture_folders = {"/etc"};
+  EXPECT_THROW(changed_file(imported, file_), Error);
+  imported.texture_folders = {};
+  imported.files.emplace_back("/etc/passwd");
+  imported.hashes.push_back(hex(*hash_file("/etc/passwd")));
+  EXPECT_THROW(changed_file(imported, file_), Error);
+  imported.files = {(temp_ / "a.mtl").string()};
+  EXPECT_THROW(changed_file(imported, file_), Error);
 }
 
 TEST_F(ModelCache, TwoAtOnceBothGetTheModel) {

@@ -17,8 +17,8 @@ using ::testing::AllOf;
 using ::testing::Contains;
 using testing::gltf;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using testing::load;
+using ::testing::Not;
 using testing::TestFolder;
 namespace fs = std::filesystem;
 
@@ -42,8 +42,9 @@ std::vector<std::string> notes_of_mtl(const std::string& material) {
 TEST(ModelFormats, UniformTranslucencyIsToldToBeSolid) {
   EXPECT_THAT(notes_of_mtl("d 0.3"), Contains(HasSubstr("transparency is shown solid")));
   EXPECT_THAT(notes_of_mtl("Tr 0.7"), Contains(HasSubstr("transparency is shown solid")));
-  EXPECT_THAT(notes_of_mtl("d 1"), IsEmpty());
-  EXPECT_THAT(notes_of_mtl("d 0.3\nmap_d mask.ppm"), IsEmpty());  // the mask says where it is cut
+  EXPECT_THAT(notes_of_mtl("d 1"), Not(Contains(HasSubstr("transparency"))));
+  EXPECT_THAT(notes_of_mtl("d 0.3\nmap_d mask.ppm"),
+              Not(Contains(HasSubstr("transparency"))));  // the mask says where it is cut
 }
 
 TEST(ModelFormats, GltfIsToldToBeSolidOnlyWhereItBlends) {
@@ -54,8 +55,8 @@ TEST(ModelFormats, GltfIsToldToBeSolidOnlyWhereItBlends) {
     return load(temp.write("a.gltf", gltf(R"([{"mesh":0}])", material))).notes;
   };
   EXPECT_THAT(notes("BLEND"), Contains(HasSubstr("transparency is shown solid")));
-  EXPECT_THAT(notes("OPAQUE"), IsEmpty());
-  EXPECT_THAT(notes("MASK"), IsEmpty());
+  EXPECT_THAT(notes("OPAQUE"), Not(Contains(HasSubstr("transparency"))));
+  EXPECT_THAT(notes("MASK"), Not(Contains(HasSubstr("transparency"))));
 }
 
 TEST(ModelFormats, APlyCutOffInItsHeaderIsRefusedBeforeTheTimeRunsOut) {
@@ -82,7 +83,7 @@ TEST(ModelFormats, ATextureOfASiblingFolderIsMissingWithTheRemedy) {
   EXPECT_THAT(model.missing_textures[0].reason,
               AllOf(HasSubstr("outside the model's folder"), HasSubstr("copy it in there")));
   temp.write("model/paint.ppm", testing::ppm(1, 1, "abc"));
-  EXPECT_THAT(load(temp.path() / "model/a.obj").missing_textures, IsEmpty());
+  EXPECT_THAT(load(temp.path() / "model/a.obj").missing_textures, ::testing::IsEmpty());
 }
 
 // KHR_texture_transform, "Example JSON": offset (0, 1), a quarter turn and half size show "only the

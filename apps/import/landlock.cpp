@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <import/landlock.hpp>
+
+#include <glidar/io/unique_fd.hpp>
+
+#include <fcntl.h>
+#include <linux/landlock.h>
+#include <sys/syscall.h>
+
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+
+namespace glidar::import {
+namespace {
+
+// The headers of Debian 12 know version 2 of the interface, kernels of today version 7: what came
+// since is written out (https://docs.kernel.org/userspace-api/landlock.html).
+
+struct RulesetAttributes {
+  std::uint64_t files = 0;
+  std::uint64_t network = 0;  ///< from version 4
+  std::uint64_t scopes = 0;   ///< from version 6
+};
+
+constexpr std::uint64_t bits(unsigned count) {
+  return (std::uint64_t{1} << count) - 1;
+}
+
+/// Everything that this version of the interface can forbid.
+RulesetAttributes everything(long version) {
+  RulesetAttributes all;
+  all.files = bits(version >= 5 ? 16 : version >= 3 ? 15 : version >= 2 ? 14 : 13);
+  if (version >= 4) all.network = bits(2);  // bind and connect TCP
+  if (version >= 6) all.scopes = bits(2);   // abstract UNIX sockets, signals
+  return all;
+}
+
+/// An older kernel takes the attributes that it knows only.
+std::size_t size_for(long version) {
+  const std::size_t fields = version >= 6 ? 3 : version >= 4 ? 2 : 1;
+  return fields * sizeof(std::uint64_t);
+}
+
+std::string why(const char* what) {
+  if (errno == ENOSYS) return "this kernel does not have it";
+  if (errno == EOPNOTSUPP) return "it is switched off in this kernel";
+  return std::string(what) + ": " + std::strerror(errno);
+}
+
+}  // namespace
+
+std::string restrict_files(const std::filesystem::path& root) {
+  const long version =
+      ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
+  if (version < 1) return why("asking for its version");
+  const RulesetAttributes all = everything(version);
+  const UniqueFd ruleset(
+      static_cast<int>(::syscall(SYS_landlock_create_ruleset, &all, size_for(version), 0)));
+  if (!ruleset) return why("making rules");
+  const UniqueFd folder(::open(root.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+  if (!folder) return why("opening the model's folder");
+  landlock_path_beneath_attr rule{};
+  rule.allowed_access = LANDLOCK_ACCESS_FS_READ_FILE | LANDLOCK_ACCESS_FS_READ_DIR;
+  rule.parent_fd = folder.get();
+  if (::syscall(SYS_landlock_add_rule, ruleset.get(), LANDLOCK_RULE_PATH_BENEATH, &rule, 0) != 0) {
+    return why("allowing the model's folder");
+  }
+  if (::syscall(SYS_landlock_restrict_self, ruleset.get(), 0) != 0)
+    return why("applying the rules");
+  return "";
+}
+
+}  // namespace glidar::import

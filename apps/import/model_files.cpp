@@ -1,0 +1,103 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <import/model_files.hpp>
+
+#include <import/open_beneath.hpp>
+
+#include <glidar/io/content_hash.hpp>
+
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <utility>
+
+namespace glidar::import {
+namespace {
+
+/// Importers look at the first bytes of a file to find out whose format it is. A file that turns
+/// out to be of no format is not read any further.
+constexpr std::size_t kFirstPiece = std::size_t{1} << 20U;
+
+}  // namespace
+
+/// Bytes read, fewer than `size` only where the file ends.
+std::size_t FileContent::read_some(char* to, std::size_t size) {
+  std::size_t have = 0;
+  while (have < size) {
+    const ssize_t got = ::read(file_.get(), to + have, size - have);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) break;
+    have += static_cast<std::size_t>(got);
+  }
+  is_at_end_ = is_at_end_ || have < size;
+  return have;
+}
+
+std::string_view FileContent::head(std::size_t end) {
+  end = std::min(end, size_);
+  if (end > bytes_.size() && !is_at_end_) {
+    bytes_.reserve(end > kFirstPiece ? size_ : std::min(size_, kFirstPiece));
+    const std::size_t have = bytes_.size();
+    bytes_.resize(end);
+    bytes_.resize(have + read_some(bytes_.data() + have, end - have));
+  }
+  return std::string_view(bytes_).substr(0, end);
+}
+
+std::string FileContent::hash() {
+  ContentHash hash;
+  hash.add(bytes_.data(), bytes_.size());
+  // No further than importers could read, although the file may have grown since.
+  std::size_t left = is_at_end_ ? 0 : size_ - bytes_.size();
+  std::string piece(std::min(left, kFirstPiece), '\0');
+  while (left > 0) {
+    const std::size_t got = read_some(piece.data(), std::min(left, piece.size()));
+    hash.add(piece.data(), got);
+    left = is_at_end_ ? 0 : left - got;
+  }
+  is_at_end_ = true;
+  return hex(hash.value());
+}
+
+ModelFiles::ModelFiles(ModelFolder folder)
+    : folder_(std::move(folder)), root_(open_root(folder_.root)) {}
+
+std::shared_ptr<FileContent> ModelFiles::content(const std::string& path) {
+  if (const auto known = entries_.find(path); known != entries_.end()) return known->second.content;
+  UniqueFd file = open_beneath(root_.get(), folder_.root, path);
+  struct stat info {};
+  if (!file || ::fstat(file.get(), &info) != 0 || !S_ISREG(info.st_mode)) return nullptr;
+  const auto content =
+      std::make_shared<FileContent>(std::move(file), static_cast<std::size_t>(info.st_size));
+  entries_.emplace(path, Entry{content, ""});
+  paths_.push_back(path);
+  return content;
+}
+
+void ModelFiles::release(const std::string& path) {
+  const auto entry = entries_.find(path);
+  if (entry == entries_.end() || entry->second.content == nullptr) return;
+  entry->second.hash = entry->second.content->hash();
+  entry->second.content = nullptr;
+}
+
+void ModelFiles::replace(const std::string& path, std::string content) {
+  replacements_[path] = std::move(content);
+}
+
+const std::string* ModelFiles::replacement(const std::string& path) const {
+  const auto found = replacements_.find(path);
+  return found == replacements_.end() ? nullptr : &found->second;
+}
+
+std::vector<std::string> ModelFiles::hashes() {
+  std::vector<std::string> all;
+  for (const std::string& path : paths_) {
+    const Entry& entry = entries_.at(path);
+    all.push_back(entry.content == nullptr ? entry.hash : entry.content->hash());
+  }
+  return all;
+}
+
+}  // namespace glidar::import

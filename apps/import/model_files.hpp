@@ -1,0 +1,75 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/model_folder.hpp>
+#include <glidar/io/unique_fd.hpp>
+
+#include <cstddef>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glidar::import {
+
+/// A private copy of one file, read as far as it was needed. Every byte is read from the file once,
+/// so that whoever parses the content and whoever hashes it see the same bytes, whatever happens to
+/// the file meanwhile.
+class FileContent {
+ public:
+  FileContent(UniqueFd file, std::size_t size) : file_(std::move(file)), size_(size) {}
+  [[nodiscard]] std::size_t size() const { return size_; }  ///< when the file was opened
+  /// The first `end` bytes, fewer where the file ends.
+  std::string_view head(std::size_t end);
+  std::string_view whole() { return head(size_); }
+  /// Hexadecimal, of the whole file; what was not read is hashed without keeping it, and cannot be
+  /// read afterwards.
+  std::string hash();
+
+ private:
+  std::size_t read_some(char* to, std::size_t size);
+
+  UniqueFd file_;
+  std::size_t size_;
+  std::string bytes_;
+  bool is_at_end_ = false;
+};
+
+/// The files that a model is read from, each opened once.
+class ModelFiles {
+ public:
+  explicit ModelFiles(ModelFolder folder);
+
+  /// The content of a regular file below the model's root; `path` is canonical. Null when it cannot
+  /// be opened.
+  std::shared_ptr<FileContent> content(const std::string& path);
+  /// Frees the content of a file that nothing needs again; its hash is kept.
+  void release(const std::string& path);
+
+  /// Makes importers read `content` in the place of a file. The file's own content is still the one
+  /// that is hashed. A path that is no file becomes one that importers can read.
+  void replace(const std::string& path, std::string content);
+  /// What importers read in the place of this file; null: the file itself.
+  [[nodiscard]] const std::string* replacement(const std::string& path) const;
+
+  /// Canonical paths of all files that were opened, in the order of opening.
+  [[nodiscard]] const std::vector<std::string>& paths() const { return paths_; }
+  /// Hexadecimal hashes of their content, in the same order.
+  std::vector<std::string> hashes();
+
+ private:
+  struct Entry {
+    std::shared_ptr<FileContent> content;
+    std::string hash;  ///< empty until it is known
+  };
+
+  ModelFolder folder_;
+  UniqueFd root_;
+  std::vector<std::string> paths_;
+  std::map<std::string, Entry> entries_;
+  std::map<std::string, std::string> replacements_;
+};
+
+}  // namespace glidar::import

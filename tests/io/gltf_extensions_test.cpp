@@ -1,0 +1,367 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// glTF files with compressed meshes and textures. The compressed meshes are made here, by Draco's
+// own encoder.
+#include <glidar/io/model.hpp>
+
+#include <io/model_test_support.hpp>
+
+#include <draco/compression/encode.h>
+#include <draco/mesh/mesh.h>
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <string_view>
+
+namespace glidar {
+namespace {
+
+using Json = nlohmann::json;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+using testing::TestFolder;
+
+/// A sheet of n x n squares, 2 n^2 triangles, whose heights differ.
+struct Sheet {
+  std::uint32_t n = 3;
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<Eigen::Vector2f> uvs;
+  std::vector<Triangle> triangles;
+
+  explicit Sheet(std::uint32_t squares) : n(squares) {
+    const auto step = static_cast<float>(n);
+    for (std::uint32_t i = 0; i <= n; ++i) {
+      for (std::uint32_t j = 0; j <= n; ++j) {
+        const auto x = static_cast<float>(j);
+        const auto y = static_cast<float>(i);
+        positions.emplace_back(x, y, 0.125F * static_cast<float>((i * j) % 5));
+        uvs.emplace_back(x / step, y / step);
+      }
+    }
+    for (std::uint32_t i = 0; i < n; ++i) {
+      for (std::uint32_t j = 0; j < n; ++j) {
+        const std::uint32_t k = i * (n + 1) + j;
+        triangles.push_back({k, k + 1, k + n + 2});
+        triangles.push_back({k, k + n + 2, k + n + 1});
+      }
+    }
+  }
+};
+
+struct Compressed {
+  std::string bytes;
+  std::uint32_t position_id = 0;
+  std::uint32_t uv_id = 0;
+};
+
+template <class V>
+std::uint32_t add_attribute(draco::Mesh& mesh, draco::GeometryAttribute::Type type,
+                            const std::vector<V>& values) {
+  constexpr auto kComponents = static_cast<std::int8_t>(V::RowsAtCompileTime);
+  draco::GeometryAttribute attribute;
+  attribute.Init(type, nullptr, kComponents, draco::DT_FLOAT32, false, sizeof(V), 0);
+  const auto count = static_cast<std::uint32_t>(values.size());
+  const int id = mesh.AddAttribute(attribute, true, count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    mesh.attribute(id)->SetAttributeValue(draco::AttributeValueIndex(i), values[i].data());
+  }
+  return mesh.attribute(id)->unique_id();
+}
+
+/// Without loss unless `position_bits` are given.
+Compressed compress(const Sheet& sheet, int position_bits = 0) {
+  draco::Mesh mesh;
+  mesh.set_num_points(static_cast<std::uint32_t>(sheet.positions.size()));
+  for (const Triangle& t : sheet.triangles) {
+    mesh.AddFace({{draco::PointIndex(t[0]), draco::PointIndex(t[1]), draco::PointIndex(t[2])}});
+  }
+  Compressed result;
+  result.position_id = add_attribute(mesh, draco::GeometryAttribute::POSITION, sheet.positions);
+  result.uv_id = add_attribute(mesh, draco::GeometryAttribute::TEX_COORD, sheet.uvs);
+  draco::Encoder encoder;
+  if (position_bits > 0) {
+    encoder.SetAttributeQuantization(draco::GeometryAttribute::POSITION, position_bits);
+  }
+  draco::EncoderBuffer buffer;
+  EXPECT_TRUE(encoder.EncodeMeshToBuffer(mesh, &buffer).ok());
+  result.bytes.assign(buffer.data(), buffer.size());
+  return result;
+}
+
+constexpr const char* kDraco = "KHR_draco_mesh_compression";
+
+/// A glTF of one compressed mesh; its one buffer has no URI yet.
+Json gltf_of(const Sheet& sheet, const Compressed& compressed) {
+  const Json extension = {
+      {"bufferView", 0},
+      {"attributes", {{"POSITION", compressed.position_id}, {"TEXCOORD_0", compressed.uv_id}}}};
+  const auto n = static_cast<float>(sheet.n);
+  return {{"asset", {{"version", "2.0"}}},
+          {"extensionsUsed", {kDraco}},
+          {"extensionsRequired", {kDraco}},
+          {"scenes", {{{"nodes", {0}}}}},
+          {"scene", 0},
+          {"nodes", {{{"mesh", 0}, {"translation", {10, 0, 0}}}}},
+          {"meshes",
+           {{{"primitives",
+              {{{"attributes", {{"POSITION", 0}, {"TEXCOORD_0", 1}}},
+                {"indices", 2},
+                {"extensions", {{kDraco, extension}}}}}}}}},
+          {"accessors",
+           {{{"componentType", 5126},
+             {"count", sheet.positions.size()},
+             {"type", "VEC3"},
+             {"min", {0, 0, 0}},
+             {"max", {n, n, 1}}},
+            {{"componentType", 5126}, {"count", sheet.uvs.size()}, {"type", "VEC2"}},
+            {{"componentType", 5125}, {"count", sheet.triangles.size() * 3}, {"type", "SCALAR"}}}},
+          {"bufferViews", {{{"buffer", 0}, {"byteLength", compressed.bytes.size()}}}},
+          {"buffers", {{{"byteLength", compressed.bytes.size()}}}}};
+}
+
+void append(std::string& bytes, std::uint32_t value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+/// RFC 4648, without padding.
+std::string base64(const std::string& bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  std::uint32_t bits = 0;
+  unsigned count = 0;
+  for (const char c : bytes) {
+    bits = (bits << 8U) | static_cast<unsigned char>(c);
+    for (count += 8; count >= 6; count -= 6) text += kDigits[(bits >> (count - 6)) & 63U];
+  }
+  if (count > 0) text += kDigits[(bits << (6 - count)) & 63U];
+  return text;
+}
+
+std::string glb_of(const Json& json, std::string body) {
+  std::string text = json.dump();
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  body.resize((body.size() + 3) / 4 * 4);
+  std::string file = "glTF";
+  append(file, 2);
+  append(file, static_cast<std::uint32_t>(12 + 8 + text.size() + 8 + body.size()));
+  append(file, static_cast<std::uint32_t>(text.size()));
+  file += "JSON" + text;
+  append(file, static_cast<std::uint32_t>(body.size()));
+  file += std::string("BIN\0", 4) + body;
+  return file;
+}
+
+/// The corners of every triangle, in any order: encoders exchange triangles and their corners.
+std::vector<std::array<float, 3>> sorted_corners(
+    const std::vector<Triangle>& triangles,
+    const std::function<Eigen::Vector3f(std::uint32_t)>& position) {
+  std::vector<std::array<float, 3>> all;
+  for (const Triangle& t : triangles) {
+    for (const std::uint32_t corner : t) {
+      const Eigen::Vector3f p = position(corner);
+      all.push_back({p.x(), p.y(), p.z()});
+    }
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+void expect_is(const Model& model, const Sheet& sheet) {
+  const auto expected = sorted_corners(sheet.triangles, [&](std::uint32_t i) {
+    return Eigen::Vector3f(sheet.positions[i] + Eigen::Vector3f(10, 0, 0));
+  });
+  const auto found = sorted_corners(model.mesh.triangles, [&](std::uint32_t i) {
+    return Eigen::Vector3f(vertex_m(model.mesh, i).cast<float>());
+  });
+  EXPECT_EQ(found, expected);
+}
+
+class GltfDraco : public ::testing::Test {
+ protected:
+  TestFolder temp_;
+};
+
+TEST_F(GltfDraco, MeshesWithFewAndManyVerticesAreRead) {
+  // Assimp 5.2 itself fails for indices of 32 bits, with any number of vertices.
+  for (const std::uint32_t squares : {3U, 300U}) {
+    const Sheet sheet(squares);
+    const Compressed compressed = compress(sheet);
+    Json json = gltf_of(sheet, compressed);
+    json["buffers"][0]["uri"] = "a%20b.bin";
+    temp_.write("a b.bin", compressed.bytes);
+    const Model model = testing::load(temp_.write("a.gltf", json.dump()));
+    expect_is(model, sheet);
+    EXPECT_EQ(model.format, "glTF2");
+    EXPECT_EQ(model.files.size(), 2U);  // so that another buffer voids the cache
+  }
+}
+
+TEST_F(GltfDraco, IndicesOf16BitsAreRead) {
+  const Sheet sheet(20);
+  const Compressed compressed = compress(sheet);
+  Json json = gltf_of(sheet, compressed);
+  json["accessors"][2]["componentType"] = 5123;
+  EXPECT_NO_THROW(
+      expect_is(testing::load(temp_.write("a.glb", glb_of(json, compressed.bytes))), sheet));
+}
+
+TEST_F(GltfDraco, BinaryFilesAndDataUrisAreRead) {
+  const Sheet sheet(40);
+  const Compressed compressed = compress(sheet);
+  Json json = gltf_of(sheet, compressed);
+  expect_is(testing::load(temp_.write("a.glb", glb_of(json, compressed.bytes))), sheet);
+  const Sheet small(1);
+  const Compressed few = compress(small);
+  Json inline_json = gltf_of(small, few);
+  inline_json["buffers"][0]["uri"] = "data:application/octet-stream;base64," + base64(few.bytes);
+  expect_is(testing::load(temp_.write("b.gltf", inline_json.dump())), small);
+}
+
+TEST_F(GltfDraco, TextureCoordinatesBelongToTheirVertices) {
+  const Sheet sheet(5);
+  const Compressed compressed = compress(sheet);
+  Json json = gltf_of(sheet, compressed);
+  json["images"] = {{{"uri", "paint.ppm"}}};
+  json["textures"] = {{{"source", 0}}};
+  json["materials"] = {{{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}};
+  json["meshes"][0]["primitives"][0]["material"] = 0;
+  temp_.write("paint.ppm", testing::ppm(2, 2, "abc"));
+  const Model model = testing::load(temp_.write("a.glb", glb_of(json, compressed.bytes)));
+  ASSERT_EQ(model.mesh.uvs[0].size(), model.mesh.positions_m.size());
+  for (std::uint32_t i = 0; i < model.mesh.positions_m.size(); ++i) {
+    const Eigen::Vector3d p = vertex_m(model.mesh, i) - Eigen::Vector3d(10, 0, 0);
+    const Eigen::Vector2f uv = model.mesh.uvs[0][i];  // v down in the file, up here
+    EXPECT_FLOAT_EQ(uv.x(), static_cast<float>(p.x()) / 5.0F);
+    EXPECT_FLOAT_EQ(1.0F - uv.y(), static_cast<float>(p.y()) / 5.0F);
+  }
+}
+
+TEST_F(GltfDraco, QuantizedPositionsAreWithinHalfAStep) {
+  const Sheet sheet(30);
+  constexpr int kBits = 11;
+  const Compressed compressed = compress(sheet, kBits);
+  const Model model =
+      testing::load(temp_.write("a.glb", glb_of(gltf_of(sheet, compressed), compressed.bytes)));
+  const double step = 30.0 / ((1 << kBits) - 1);
+  ASSERT_EQ(model.mesh.triangles.size(), sheet.triangles.size());
+  for (std::uint32_t i = 0; i < model.mesh.positions_m.size(); ++i) {
+    const Eigen::Vector3d p = vertex_m(model.mesh, i);
+    EXPECT_NEAR(p.x(), std::round(p.x()), 0.51 * step);
+    EXPECT_NEAR(p.y(), std::round(p.y()), 0.51 * step);
+  }
+}
+
+TEST_F(GltfDraco, AChangedBufferVoidsTheCache) {
+  ModelOptions options;
+  options.cache_folder = temp_ / "cache";
+  const auto write = [&](const Sheet& sheet) {
+    const Compressed compressed = compress(sheet);
+    Json json = gltf_of(sheet, compressed);
+    json["buffers"][0]["uri"] = "a.bin";
+    temp_.write("a.bin", compressed.bytes);
+    return temp_.write("a.gltf", json.dump());
+  };
+  const auto model = write(Sheet(3));
+  testing::load(model, options);
+  EXPECT_TRUE(testing::load(model, options).from_cache);
+  write(Sheet(4));
+  const Model changed = testing::load(model, options);
+  EXPECT_FALSE(changed.from_cache);
+  EXPECT_EQ(changed.mesh.triangles.size(), 32U);
+}
+
+TEST_F(GltfDraco, DamagedDataIsAnErrorThatNamesTheExtension) {
+  const Sheet sheet(20);
+  Compressed compressed = compress(sheet);
+  const Json json = gltf_of(sheet, compressed);
+  std::string cut = compressed.bytes;
+  std::fill(cut.begin() + 40, cut.end(), '\x7f');
+  for (const std::string& body : {cut, std::string(compressed.bytes.size(), 'x'), std::string()}) {
+    EXPECT_THAT(testing::load_error(temp_.write("a.glb", glb_of(json, body)).string()),
+                AllOf(HasSubstr("its Draco data (KHR_draco_mesh_compression) cannot be decoded"),
+                      HasSubstr("the file is damaged")));
+  }
+}
+
+TEST_F(GltfDraco, ABufferOutsideTheModelsFolderIsNotRead) {
+  const Sheet sheet(3);
+  const Compressed compressed = compress(sheet);
+  Json json = gltf_of(sheet, compressed);
+  json["buffers"][0]["uri"] = "../a.bin";
+  temp_.write("a.bin", compressed.bytes);
+  EXPECT_THAT(testing::load_error(temp_.write("model/a.gltf", json.dump()).string()),
+              AllOf(HasSubstr("'../a.bin'"), HasSubstr("outside the model's folder")));
+}
+
+TEST(GltfExtensions, MeshoptIsRefusedByItsName) {
+  const TestFolder temp;
+  Json json = Json::parse(testing::gltf(R"([{"mesh":0}])"));
+  const auto error = [&] {
+    return testing::load_error(temp.write("a.gltf", json.dump()).string());
+  };
+  const auto is_named =
+      AllOf(HasSubstr("compressed by EXT_meshopt_compression, which GLIDAR does not read"),
+            HasSubstr("gltfpack: without -c and -cc"), Not(HasSubstr("damaged")));
+  json["extensionsUsed"] = {"EXT_meshopt_compression"};
+  EXPECT_EQ(error(), "");  // the file has uncompressed data too
+  json["extensionsRequired"] = {"EXT_meshopt_compression"};
+  EXPECT_THAT(error(), is_named);
+  json.erase("extensionsRequired");
+  json["buffers"][0].erase("uri");
+  json["buffers"][0]["extensions"] = {{"EXT_meshopt_compression", {{"fallback", true}}}};
+  EXPECT_THAT(error(), is_named);
+}
+
+constexpr const char* kKtx2 = "\xABKTX 20\xBB\r\n\x1A\n and more";
+
+TEST(GltfExtensions, KtxTexturesAreReportedByTheirExtension) {
+  const TestFolder temp;
+  temp.write("paint.ktx2", kKtx2);
+  temp.write("paint.ppm", testing::ppm(1, 1, "abc"));
+  Json json = Json::parse(testing::gltf(
+      R"([{"mesh":0}])", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})"));
+  json["images"] = {{{"uri", "paint.ktx2"}, {"mimeType", "image/ktx2"}}, {{"uri", "paint.ppm"}}};
+  json["textures"] = {{{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}}};
+  json["extensionsUsed"] = {"KHR_texture_basisu"};
+  json["extensionsRequired"] = {"KHR_texture_basisu"};
+  const Model model = testing::load(temp.write("a.gltf", json.dump()));
+  EXPECT_EQ(model.mesh.triangles.size(), 1U);
+  ASSERT_EQ(model.missing_textures.size(), 1U);
+  EXPECT_EQ(model.missing_textures[0].name, "paint.ktx2");
+  EXPECT_THAT(model.missing_textures[0].reason,
+              AllOf(HasSubstr("KTX2"), HasSubstr("KHR_texture_basisu"), HasSubstr("PNG or JPEG")));
+  // With another image beside it, that one is used.
+  json["textures"][0]["source"] = 1;
+  json.erase("extensionsRequired");
+  const Model painted = testing::load(temp.write("a.gltf", json.dump()));
+  EXPECT_TRUE(painted.missing_textures.empty());
+  ASSERT_EQ(painted.textures.size(), 1U);
+  EXPECT_EQ(painted.textures[0].texels.at(0), 'a');
+}
+
+TEST(GltfExtensions, AKtxImageInsideABinaryFileIsReportedToo) {
+  const TestFolder temp;
+  const std::string image(kKtx2);
+  Json json = Json::parse(testing::gltf(
+      R"([{"mesh":0}])", R"({"pbrMetallicRoughness":{"baseColorTexture":{"index":0}}})"));
+  json["buffers"].insert(json["buffers"].begin(), {{"byteLength", image.size()}});
+  for (Json& view : json["bufferViews"]) view["buffer"] = 1;
+  json["bufferViews"].push_back({{"buffer", 0}, {"byteLength", image.size()}});
+  json["images"] = {{{"bufferView", 2}, {"mimeType", "image/ktx2"}}};
+  json["textures"] = {{{"extensions", {{"KHR_texture_basisu", {{"source", 0}}}}}}};
+  json["extensionsUsed"] = {"KHR_texture_basisu"};
+  json["extensionsRequired"] = {"KHR_texture_basisu"};
+  const Model model = testing::load(temp.write("a.glb", glb_of(json, image)));
+  ASSERT_EQ(model.missing_textures.size(), 1U);
+  EXPECT_THAT(model.missing_textures[0].reason, HasSubstr("KHR_texture_basisu"));
+}
+
+}  // namespace
+}  // namespace glidar
