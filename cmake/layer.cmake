@@ -13,6 +13,7 @@ target_compile_options(
             # with the same results
             -fno-math-errno -fno-trapping-math
             $<$<BOOL:${GLIDAR_WARNINGS_AS_ERRORS}>:-Werror>)
+glidar_harden(glidar_settings INTERFACE)
 
 # glidar_layer(NAME SOURCES files... PUBLIC layers... PRIVATE libraries...): one library per layer,
 # by default from all sources of the folder of its name.

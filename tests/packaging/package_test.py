@@ -7,11 +7,15 @@ install and run on a bare system is tried by `./dev package --try`."""
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+import check_binaries  # noqa: E402
+
 BUILD = Path(shutil.which("glidar")).resolve().parents[2]
 TIME_LIMIT_S = 600
 DOCS = "usr/share/doc/glidar"
@@ -73,6 +77,13 @@ class Packages(unittest.TestCase):
                 name = f"{package.fields['Package']}_{self.version}_{self.architecture}.deb"
                 self.assertEqual(package.name, name)
         self.assertIn("glidar[campaign]", self.program.fields["Description"])
+
+    def test_programs_look_for_libraries_in_safe_places_only(self):
+        for package, least in ((self.program, 2), (self.development, 0)):
+            with self.subTest(package.name):
+                count, complaints = check_binaries.check([package.folder], search_path_only=True)
+                self.assertEqual(complaints, [])
+                self.assertGreaterEqual(count, least)
 
     def test_program_depends_on_the_libraries_it_links_and_recommends_those_it_opens(self):
         needed = " ".join(self.program.needs())

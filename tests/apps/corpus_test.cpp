@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// The files that the fuzzers keep, in every build.
+#include "fuzz/file_decoders.hpp"
+
+#include <support/source_folder.hpp>
+
+#include <gmock/gmock.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+#include <string>
+
+namespace glidar {
+namespace {
+
+/// The files of a reader's corpus that it takes.
+std::set<std::string> taken(const testing::FileDecoder& decoder, std::size_t& files) {
+  std::set<std::string> names;
+  const auto folder =
+      std::filesystem::path(kSourceFolder) / "tests/fuzz/corpus" / std::string(decoder.name);
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::ifstream file(entry.path(), std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+    ++files;
+    if (testing::try_file_decoder(decoder, std::as_bytes(std::span(bytes)))) {
+      names.insert(entry.path().filename().string());
+    }
+  }
+  return names;
+}
+
+TEST(FileCorpus, IsTakenWhereItIsAFileOfItsKindAndRefusedWithAnErrorElsewhere) {
+  const std::map<std::string_view, std::set<std::string>> expected = {
+      {"sensor", {"pinhole", "fisheye", "spinning", "raster", "prism", "alias"}},
+      {"scene", {"models", "rig"}},
+      {"beam_csv", {"plain", "livox"}},
+      {"beam_npy", {"rays", "floats"}},
+      {"ouster", {"plain", "window"}},
+      {"trajectory", {"tum", "kitti", "csv"}},
+      {"png", {"RGB", "RGBA", "L"}},
+      {"sidecar", {"camera"}},
+      {"recording", {"two_frames"}},
+      {"pose_text", {"position", "quaternion"}},
+  };
+  for (const testing::FileDecoder& decoder : testing::file_decoders()) {
+    std::size_t files = 0;
+    const std::set<std::string> names = taken(decoder, files);
+    const auto found = expected.find(decoder.name);
+    if (found == expected.end()) continue;  // made by the test of the model cache
+    EXPECT_EQ(names, found->second) << decoder.name;
+    EXPECT_GT(files, names.size()) << decoder.name << ": its corpus has files that are refused";
+  }
+}
+
+}  // namespace
+}  // namespace glidar

@@ -1,0 +1,133 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "file_decoders.hpp"
+
+#include <apps/glidar/numbers.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/io/mesh_blob.hpp>
+#include <glidar/io/png_texture.hpp>
+#include <glidar/io/ray_file.hpp>
+#include <glidar/io/scene_file.hpp>
+#include <glidar/io/sensor_file.hpp>
+#include <glidar/io/sidecar.hpp>
+#include <glidar/io/trajectory_file.hpp>
+#include <glidar/io/unique_fd.hpp>
+#include <glidar/link/recording.hpp>
+
+#include <fcntl.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+
+namespace glidar::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+void read_scene(const fs::path& file) {
+  ModelOptions options;
+  options.use_cache = false;
+  options.time_limit_s = 5.0;
+  load_scene_file(file, options, {});
+}
+
+/// The file is a cloud's sidecar.
+void read_sidecar_of_cloud(const fs::path& file) {
+  read_sidecar(fs::path(file).replace_extension());
+}
+
+void read_recording(const fs::path& file) {
+  link::RecordingReader reader(file);
+  while (reader.next()) {
+  }
+}
+
+/// Frames of a model, a failure or a cache's index, as long as there are some.
+void read_frames(const fs::path& file) {
+  const UniqueFd fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  for (;;) {
+    FrameReader frame(fd.get());
+    if (frame.kind() == FrameKind::model) {
+      read_model(frame);
+    } else if (frame.kind() == FrameKind::failure) {
+      read_failure(frame);
+    } else {
+      read_cache_index(frame);
+    }
+  }
+}
+
+/// Poses and numbers as the command line takes them.
+void read_pose_text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  const std::string text((std::istreambuf_iterator<char>(in)), {});
+  if (std::count(text.begin(), text.end(), ',') == 2) {
+    app::parse_position("--eye", text);
+  } else {
+    app::parse_quaternion("--pose", text);
+    app::parse_angle_axis("--pose", text);
+  }
+}
+
+constexpr std::array<FileDecoder, 11> kDecoders = {{
+    {"sensor", "sensor.yaml", [](const fs::path& file) { load_sensor_file(file); }},
+    {"scene", "scene.yaml", read_scene},
+    {"beam_csv", "beams.csv", [](const fs::path& file) { load_scan_csv(file); }},
+    {"beam_npy", "beams.npy", [](const fs::path& file) { load_ray_npy(file); }},
+    {"ouster", "metadata.json", [](const fs::path& file) { load_ouster_metadata(file); }},
+    {"trajectory", "poses.txt", [](const fs::path& file) { load_trajectory_file(file); }},
+    {"png", "texture.png", [](const fs::path& file) { read_png_texture(file); }},
+    {"sidecar", "cloud.pcd.json", read_sidecar_of_cloud},
+    {"recording", "stream.jsonl", read_recording},
+    {"mesh_blob", "a.model", read_frames},
+    {"pose_text", "pose.txt", read_pose_text},
+}};
+
+/// A folder in memory, where there is one, that lasts as long as the process.
+const fs::path& scratch_folder() {
+  static const fs::path folder = [] {
+    const fs::path base = fs::is_directory("/dev/shm") ? "/dev/shm" : fs::temp_directory_path();
+    std::string name = base / "glidar-decoders-XXXXXX";
+    if (::mkdtemp(name.data()) == nullptr) throw std::runtime_error("cannot make a folder " + name);
+    static const std::string made = name;
+    std::atexit([] {
+      std::error_code ignored;
+      fs::remove_all(made, ignored);
+    });
+    return fs::path(made);
+  }();
+  return folder;
+}
+
+}  // namespace
+
+std::span<const FileDecoder> file_decoders() {
+  return kDecoders;
+}
+
+const FileDecoder& file_decoder(std::string_view name) {
+  for (const FileDecoder& decoder : kDecoders) {
+    if (decoder.name == name) return decoder;
+  }
+  throw std::out_of_range("no decoder " + std::string(name));
+}
+
+bool try_file_decoder(const FileDecoder& decoder, std::span<const std::byte> bytes) {
+  const fs::path file = scratch_folder() / decoder.file_name;
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(bytes.data()),
+             static_cast<std::streamsize>(bytes.size()));
+  try {
+    decoder.read(file);
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace glidar::testing
