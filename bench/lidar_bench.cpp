@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // What a LiDAR's measurement and noise cost beside the bare cast of the same beams: one turn of a
-// VLP-16 in a furnished room.
+// VLP-16 in a furnished room. And what it costs that surfaces of a thousand objects may coincide with
+// the ground on which they stand.
 #include "ratio_reporter.hpp"
 
 #include <glidar/io/builtin_models.hpp>
@@ -30,6 +31,25 @@ Scene make_room() {
   put("torus", 0.4, {1.0, -2.5, 0.1});
   put("sphere", 0.5, {-1.5, -2.0, 0.0});
   put("box", 0.4, {3.0, -2.0, -0.9});
+  return scene;
+}
+
+/// A ground of 200 m x 200 m 2 m below the sensor, and 1000 boxes of 1 m at this height over it.
+Scene make_field(double height_m) {
+  Scene scene;
+  add_model(scene, make_builtin_model("plane"));
+  scene.instances[0].scale = 100.0;
+  scene.instances[0].world_from_object.translation().z() = -2.0;
+  add_model(scene, make_builtin_model("box"));
+  Instance box = scene.instances.back();
+  scene.instances.pop_back();
+  box.scale = 0.5;
+  for (int i = 0; i < 1000; ++i) {
+    const double x = 5.0 * (i % 40) - 97.5;
+    const double y = 7.5 * (i / 40) - 90.0;  // NOLINT(bugprone-integer-division): a row
+    box.world_from_object.translation() = Eigen::Vector3d(x, y, -1.5 + height_m);
+    scene.instances.push_back(box);
+  }
   return scene;
 }
 
@@ -120,6 +140,10 @@ void register_simulation(const Stage& stage, const Sensor& sensor, const Motion&
 
 int main(int argc, char** argv) {
   const glidar::bench::Stage stage;
+  glidar::bench::Stage standing;
+  glidar::bench::Stage hovering;
+  standing.scene = glidar::bench::make_field(0.0);
+  hovering.scene = glidar::bench::make_field(0.01);
   std::vector<glidar::bench::Ratio> ratios;
   for (const unsigned threads : {1U, 2U}) {
     const std::string at = std::to_string(threads) + " threads ";
@@ -131,6 +155,10 @@ int main(int argc, char** argv) {
     glidar::bench::register_simulation(stage, stage.noisy, stage.motion, threads,
                                        at + "with noise");
     glidar::bench::register_simulation(stage, stage.sensor, stage.moving, threads, at + "moving");
+    glidar::bench::register_cast(standing, threads, 1, at + "1000 boxes on a ground");
+    glidar::bench::register_cast(hovering, threads, 1, at + "1000 boxes over a ground");
+    ratios.push_back({at + "boxes on a ground / over it", at + "1000 boxes over a ground",
+                      at + "1000 boxes on a ground", 0.7});
     ratios.push_back({at + "simulate / cast", at + "cast", at + "simulate", 0.6});
     ratios.push_back({at + "moving along timed poses / cast", at + "cast", at + "moving", 0.3});
     ratios.push_back({at + "footprint of seven sub-rays / seven casts", at + "seven casts",

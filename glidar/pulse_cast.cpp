@@ -146,14 +146,14 @@ void add_weather(const Block& block, const Draw& draw, double surface_m,
 /// Adds the receiver's noise to the echoes and keeps those that it can tell from it. The k-th echo
 /// of a beam draws block k.
 void detect(const Block& block, const Draw& draw, double first_noise, EchoWork& work) {
-  const double sigma = block.light.noise_sigma;
   std::size_t kept = 0;
   for (std::size_t k = 0; k < work.echoes; ++k) {
     PulseEcho echo = work.echo[k];
-    if (sigma > 0.0) {
+    if (block.light.noise_sigma > 0.0) {
       Draw of_echo = draw;
       of_echo.block = static_cast<std::uint32_t>(k);
-      echo.signal += sigma * (k == 0 ? first_noise : normals(random_words(of_echo))[0]);
+      echo.signal = with_noise(block.light, echo.signal,
+                               k == 0 ? first_noise : normals(random_words(of_echo))[0]);
     }
     if (echo.signal >= 1.0) work.echo[kept++] = echo;
   }

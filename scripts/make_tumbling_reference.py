@@ -4,7 +4,7 @@
 """Writes tests/motion/tumbling_reference.csv: attitudes and rates of torque-free bodies.
 
 Euler's equations and the quaternion's are integrated by Taylor series of order 48 in fixed-point
-numbers of 640 bits, which shares nothing with the closed form under test. Every row is computed
+numbers of 512 bits, which shares nothing with the closed form under test. Every row is computed
 twice, with steps of unlike length, and refused where the two differ by more than 1e-30.
 
 usage: make_tumbling_reference.py tests/motion/tumbling_reference.csv

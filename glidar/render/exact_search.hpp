@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/render/instance_tree.hpp>
 #include <glidar/render/judgement.hpp>
 #include <glidar/render/renderer.hpp>
 #include <glidar/render/triangle_tree.hpp>
@@ -29,10 +30,11 @@ class ExactSearch {
   [[nodiscard]] Found nearest(std::size_t beam) const;
 
   /// True when boxes of instances overlap, so that surfaces of several may coincide.
-  [[nodiscard]] bool has_overlaps() const { return has_overlaps_; }
+  [[nodiscard]] bool has_overlaps() const { return instances_.has_overlaps(); }
 
-  /// A bit for every hit lane in whose place another instance may have a surface.
-  [[nodiscard]] std::uint32_t overlapping(const HitBlock& block, const ExactBlock& exact) const;
+  /// A bit for every hit lane in whose place another instance has a triangle's box.
+  [[nodiscard]] std::uint32_t overlapping(const HitBlock& block, const BeamBlock& beams,
+                                          const ExactBlock& exact) const;
 
   /// What a beam meets first among all surfaces so near the one found that single precision may
   /// have mistaken their order.
@@ -45,21 +47,24 @@ class ExactSearch {
   template <class Take>
   void for_triangles_on(Judgement& judgement, std::uint32_t instance, const Take& take) const;
   template <class Take>
+  void for_triangles_ahead(Judgement& judgement, const Take& take) const;
+  template <class Take>
   void for_triangles_at(Judgement& judgement, std::uint32_t instance, double range_m,
                         const Take& take) const;
   template <class Take>
-  void for_triangles_around(Judgement& judgement, const Found& found, const Take& take) const;
-  [[nodiscard]] bool is_in_box(std::uint32_t instance, const Eigen::Vector3d& in_sensor_m) const;
+  void for_triangles_around(Judgement& judgement, const Found& found, double range_m,
+                            const Take& take) const;
+  [[nodiscard]] ObjectRay ray_in_tree(std::size_t beam) const;
+  [[nodiscard]] std::uint32_t lanes_at(std::uint32_t instance, std::uint32_t lanes,
+                                       const Eigen::AlignedBox3d& around,
+                                       const Lanes3<double>& in_tree) const;
 
   const Resolver& resolver_;
   TriangleTrees trees_;
   std::vector<Eigen::AlignedBox3d> boxes_;  ///< per mesh, relative to its origin
   bool has_boxes_ = false;
   const CastRequest* request_ = nullptr;
-  bool has_overlaps_ = false;
-  std::vector<std::vector<std::uint32_t>> others_;  ///< per instance: those whose boxes overlap
-  std::vector<Eigen::AlignedBox3d> seen_boxes_;     ///< per instance, in the sensor's frame, m
-  std::vector<std::uint32_t> order_;                ///< of instances, by their boxes
+  InstanceTree instances_;
 };
 
 }  // namespace glidar

@@ -73,8 +73,12 @@ void Judgement::consider(const Found& candidate) {
     closest_inside_m = at.inside_m;
     closest = candidate;
   }
-  if (at.inside_m >= -slack_m && at.range_m < nearest_range_m) {
+  const bool is_nearer =
+      at.range_m < nearest_range_m ||
+      (at.range_m == nearest_range_m && is_lower(candidate, nearest));  // in whatever order
+  if (at.inside_m >= -slack_m && is_nearer) {
     nearest_range_m = at.range_m;
+    nearest_cosine = at.cosine;
     nearest_slack_m = slack_m;
     nearest_inside_m = at.inside_m;
     nearest = candidate;
@@ -85,7 +89,10 @@ void Judgement::consider_tie(const Found& candidate) {
   if (!is_lower(candidate, nearest)) return;
   const Meeting at = meet(candidate);
   if (!(at.range_m > 0.0) || !(at.inside_m >= -slack_m)) return;
-  const double apart_m = std::abs(at.cosine) * (at.range_m - nearest_range_m);
+  // Along the normal of the one that the beam meets more steeply: in the plane of the other the
+  // range is that of rounding.
+  const double cosine = std::max(std::abs(at.cosine), std::abs(nearest_cosine));
+  const double apart_m = cosine * (at.range_m - nearest_range_m);
   if (apart_m <= slack_m + nearest_slack_m) nearest = candidate;
 }
 

@@ -4,6 +4,7 @@
 
 #include <glidar/render/resolve.hpp>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -51,6 +52,7 @@ struct Judgement {
   Found nearest = {};  ///< of those the beam meets
   Found closest = {};  ///< to the beam, of those it misses by more than rounding
   double nearest_range_m = std::numeric_limits<double>::infinity();
+  double nearest_cosine = 0.0;  ///< of its normal and the beam
   double nearest_slack_m = 0.0;
   double nearest_inside_m = 0.0;  ///< how far the nearest's borders are from the beam
   double closest_inside_m = -std::numeric_limits<double>::infinity();
@@ -58,12 +60,15 @@ struct Judgement {
   void consider(const Found& candidate);
 
   /// Takes the candidate instead of the nearest when both coincide where the beam meets them and
-  /// the candidate is the lower in the scene's order.
+  /// the candidate is the lower in the scene's order. They coincide when they are no farther apart
+  /// than slack(), measured across the one that the beam meets more steeply.
   void consider_tie(const Found& candidate);
 
-  /// True when the beam meets the nearest clearly inside of its borders.
+  /// True when the beam meets the nearest clearly inside of its borders. Rounding moves the place
+  /// along the beam by slack() over the cosine: in the plane of a triangle nothing is clear.
   [[nodiscard]] bool is_clear() const {
-    return nearest.instance != kNoHit && nearest_inside_m > nearest_slack_m;
+    return nearest.instance != kNoHit &&
+           nearest_inside_m * std::abs(nearest_cosine) > nearest_slack_m;
   }
 
  private:

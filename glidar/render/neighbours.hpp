@@ -16,6 +16,9 @@ class Neighbours {
  public:
   explicit Neighbours(const Mesh& mesh);
 
+  /// The number of a vertex's position; equal numbers, same position.
+  [[nodiscard]] std::uint32_t place(std::uint32_t vertex) const { return place_[vertex]; }
+
   /// The triangles around a vertex, each once per corner that it has there.
   [[nodiscard]] std::span<const std::uint32_t> around(std::uint32_t vertex) const {
     const std::uint32_t place = place_[vertex];

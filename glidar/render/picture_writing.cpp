@@ -79,7 +79,7 @@ std::uint32_t ahead(const ExactBlock& exact) {
 
 /// Decides between surfaces of several instances that lie closer together than the picture shows.
 void choose_among_instances(const PictureWriting& w, Work& work) {
-  const std::uint32_t lanes = w.search.overlapping(work.block, work.exact);
+  const std::uint32_t lanes = w.search.overlapping(work.block, work.beams, work.exact);
   const auto choose = [&](std::size_t beam, const Found& found) {
     return w.search.nearest_around(beam, found);
   };

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <deque>
 #include <utility>
 #include <vector>
 
@@ -107,16 +106,17 @@ class PiecesRenderer final : public Renderer {
 
   void cast_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits) override {
     check_batch(requests, hits);
-    arrays_.resize(requests.size());
-    // References to these are handed out: they must not move.
-    std::deque<Renaming> renamings;
-    std::vector<CastRequest> for_pieces;
+    if (arrays_.size() < requests.size()) arrays_.resize(requests.size());
+    renamings_.clear();
+    renamings_.reserve(requests.size());  // references to them are handed out: they must not move
+    requests_.clear();
+    requests_.reserve(requests.size());
     for (std::size_t i = 0; i < requests.size(); ++i) {
-      const Renaming& renaming = renamings.emplace_back(Renaming{pieces_, *hits[i], requests[i]});
-      for_pieces.push_back(pieces_.for_pieces(requests[i], arrays_[i]));
-      for_pieces.back().then = FunctionRef<void(BeamRange)>(renaming);
+      const Renaming& renaming = renamings_.emplace_back(Renaming{pieces_, *hits[i], requests[i]});
+      requests_.push_back(pieces_.for_pieces(requests[i], arrays_[i]));
+      requests_.back().then = FunctionRef<void(BeamRange)>(renaming);
     }
-    renderer_->cast_batch(for_pieces, hits);
+    renderer_->cast_batch(requests_, hits);
   }
 
  private:
@@ -133,7 +133,10 @@ class PiecesRenderer final : public Renderer {
 
   PiecesScene pieces_;
   std::unique_ptr<Renderer> renderer_;
+  // Kept, so that a later cast allocates nothing.
   std::vector<PiecesScene::Arrays> arrays_;
+  std::vector<Renaming> renamings_;
+  std::vector<CastRequest> requests_;
 };
 
 class PiecesCamera final : public PaperCamera {

@@ -14,6 +14,8 @@ namespace {
 // of the farthest corner's distance.
 constexpr float kAreaRounding = 0x1p-20F;
 constexpr int kMostSteps = 8;  // from triangle to triangle, where they are smaller than the grid
+// More triangles around a vertex, such as the hub of a fan, take longer than a search of all.
+constexpr std::size_t kMaxAround = 256;
 
 GLIDAR_SIMD std::uint32_t outside(const ExactBlock& e, const CornerBlock& c) {
   Lanes<std::uint32_t> bits;
@@ -28,6 +30,13 @@ GLIDAR_SIMD std::uint32_t outside(const ExactBlock& e, const CornerBlock& c) {
   std::uint32_t mask = 0;
   for (unsigned i = 0; i < kLanes; ++i) mask |= bits[i];
   return mask;
+}
+
+bool is_crowded(const Mesh& mesh, const Neighbours& neighbours, std::uint32_t triangle) {
+  const Triangle& corners = mesh.triangles[triangle];
+  return std::any_of(corners.begin(), corners.end(), [&](std::uint32_t vertex) {
+    return neighbours.around(vertex).size() > kMaxAround;
+  });
 }
 
 }  // namespace
@@ -77,16 +86,22 @@ Found Settler::meet_around(std::size_t beam, const Found& told) const {
   Judgement found = judgement(beam, told.instance);
   if (meets(beam, told)) found.consider(told);
   if (found.is_clear()) return told;
+  const Mesh& mesh = resolver_.mesh(told.instance);
+  const Neighbours& neighbours =
+      meshes_[resolver_.scene().instances[told.instance].mesh].neighbours;
+  if (is_crowded(mesh, neighbours, told.primitive)) return {};
   const auto consider = [&](const Found& candidate) { found.consider(candidate); };
   for_triangles_around(beam, told, consider);
   Found middle = told;
   for (int step = 1; step < kMostSteps && found.nearest.instance == kNoHit; ++step) {
     if (found.closest.instance == kNoHit || found.closest == middle) break;
     middle = found.closest;
+    if (is_crowded(mesh, neighbours, middle.primitive)) return {};
     for_triangles_around(beam, middle, consider);
   }
   if (found.nearest.instance == kNoHit) return {};
   middle = found.nearest;
+  if (is_crowded(mesh, neighbours, middle.primitive)) return {};
   for_triangles_around(beam, middle, [&](const Found& tied) { found.consider_tie(tied); });
   return found.nearest;
 }

@@ -34,7 +34,8 @@ class Settler {
           bool cull_back_faces);
 
   /// What the beam meets among the triangles around the one told, the lowest of those that meet
-  /// where it does; nothing when it meets none.
+  /// where it does; nothing when it meets none, or when there are so many that a search of all is
+  /// quicker.
   [[nodiscard]] Found meet_around(std::size_t beam, const Found& told) const;
 
   /// See stops().

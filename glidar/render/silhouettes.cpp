@@ -3,33 +3,40 @@
 #include <glidar/render/silhouettes.hpp>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <tuple>
 
 namespace glidar {
 namespace {
 
-bool has_corner(const Mesh& mesh, std::uint32_t triangle, const Eigen::Vector3f& position) {
-  const Triangle& t = mesh.triangles[triangle];
-  return std::any_of(t.begin(), t.end(),
-                     [&](std::uint32_t vertex) { return mesh.positions_m[vertex] == position; });
-}
+/// One side of a triangle. Those along one edge have equal places.
+struct HalfEdge {
+  std::uint32_t low;    ///< place of an end, see Neighbours
+  std::uint32_t high;   ///< place of the other; not lower
+  std::uint32_t index;  ///< 3 * triangle + its corner at the beginning
 
-/// The other triangles along an edge of a triangle: their number and the lowest.
-struct Others {
-  std::size_t count = 0;
-  std::uint32_t lowest = MeshEdge::kNone;
+  [[nodiscard]] std::uint32_t triangle() const { return index / 3; }
+  [[nodiscard]] bool is_along(const HalfEdge& other) const {
+    return low == other.low && high == other.high;
+  }
+  [[nodiscard]] bool operator<(const HalfEdge& other) const {
+    return std::tie(low, high, index) < std::tie(other.low, other.high, other.index);
+  }
 };
 
-Others others_along(const Mesh& mesh, const Neighbours& neighbours, std::uint32_t triangle,
-                    std::uint32_t from, std::uint32_t to) {
-  Others others;
-  for (const std::uint32_t t : neighbours.around(from)) {
-    if (t == triangle || !has_corner(mesh, t, mesh.positions_m[to])) continue;
-    ++others.count;
-    others.lowest = std::min(others.lowest, t);
+/// Edge by edge, and along an edge by the triangles' order.
+std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh, const Neighbours& neighbours) {
+  std::vector<HalfEdge> halves;
+  halves.reserve(3 * mesh.triangles.size());
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      const std::uint32_t from = neighbours.place(mesh.triangles[t][k]);
+      const std::uint32_t to = neighbours.place(mesh.triangles[t][(k + 1) % 3]);
+      if (from != to) halves.push_back({std::min(from, to), std::max(from, to), 3 * t + k});
+    }
   }
-  return others;
+  std::sort(halves.begin(), halves.end());
+  return halves;
 }
 
 /// -1: the sensor is behind the triangle, 1: in front of it, 0: in its plane as far as double
@@ -106,16 +113,16 @@ void for_pixels_by(const PixelLine& line, double band_px, const PixelRect& part,
 }  // namespace
 
 std::vector<MeshEdge> mesh_edges(const Mesh& mesh, const Neighbours& neighbours) {
+  const std::vector<HalfEdge> halves = sorted_half_edges(mesh, neighbours);
   std::vector<MeshEdge> edges;
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = mesh.triangles[t][k];
-      const std::uint32_t to = mesh.triangles[t][(k + 1) % 3];
-      if (mesh.positions_m[from] == mesh.positions_m[to]) continue;
-      const Others others = others_along(mesh, neighbours, t, from, to);
-      if (others.lowest < t) continue;  // it has the edge already
-      edges.push_back({from, to, t, others.count == 1 ? others.lowest : MeshEdge::kNone});
-    }
+  for (std::size_t begin = 0, end = 0; begin < halves.size(); begin = end) {
+    const HalfEdge& first = halves[begin];
+    while (end < halves.size() && halves[end].is_along(first)) ++end;
+    const bool is_pair = end - begin == 2 && halves[begin + 1].triangle() != first.triangle();
+    const Triangle& corners = mesh.triangles[first.triangle()];
+    const std::uint32_t k = first.index % 3;
+    edges.push_back({corners[k], corners[(k + 1) % 3], first.triangle(),
+                     is_pair ? halves[begin + 1].triangle() : MeshEdge::kNone});
   }
   return edges;
 }

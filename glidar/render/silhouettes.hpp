@@ -22,7 +22,8 @@ struct MeshEdge {
   std::uint32_t second;  ///< triangle; kNone: there is no other, or more than one
 };
 
-/// The edges of a mesh. Vertices at one position count as one; triangles without area have none.
+/// The edges of a mesh, each once. Vertices at one position count as one; two corners at one
+/// position have no edge between them.
 std::vector<MeshEdge> mesh_edges(const Mesh& mesh, const Neighbours& neighbours);
 
 /// The pixels whose beams pass a silhouette closely: an edge with a triangle on one side only, or

@@ -11,14 +11,13 @@ namespace glidar {
 TriangleTree::TriangleTree(const Mesh& mesh) : triangles_(draw_order(mesh, {}).drawn) {
   if (triangles_.empty()) return;
   std::vector<Box>& leaves = levels_.emplace_back();
-  for (std::size_t i = 0; i < triangles_.size(); ++i) {
-    for (const std::uint32_t vertex : mesh.triangles[triangles_[i]]) {
-      const Eigen::Vector3f& p = mesh.positions_m[vertex];
-      if (leaves.size() == i / kFan) leaves.push_back({p, p});
-      Box& box = leaves.back();
-      box.min = box.min.cwiseMin(p);
-      box.max = box.max.cwiseMax(p);
-    }
+  leaves.reserve(triangles_.size());
+  for (const std::uint32_t triangle : triangles_) {
+    const Triangle& t = mesh.triangles[triangle];
+    const Eigen::Vector3f& a = mesh.positions_m[t[0]];
+    const Eigen::Vector3f& b = mesh.positions_m[t[1]];
+    const Eigen::Vector3f& c = mesh.positions_m[t[2]];
+    leaves.push_back({a.cwiseMin(b).cwiseMin(c), a.cwiseMax(b).cwiseMax(c)});
   }
   while (levels_.back().size() > 1) {
     std::vector<Box> next;

@@ -5,6 +5,7 @@
 #include <glidar/render/resolve.hpp>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,9 +15,9 @@
 
 namespace glidar {
 
-/// Bounding boxes over the triangles of a mesh: eight triangles to a box, eight boxes to a box of
-/// the next level. For the few beams that need a test of every triangle they may meet. All
-/// coordinates are in object units relative to the mesh's origin.
+/// Bounding boxes of the triangles of a mesh, and eight boxes to a box of the next level. For the
+/// few beams that need a test of every triangle they may meet. All coordinates are in object units
+/// relative to the mesh's origin.
 class TriangleTree {
  public:
   explicit TriangleTree(const Mesh& mesh);
@@ -38,6 +39,13 @@ class TriangleTree {
   template <class Visit>
   void visit_at(const Eigen::Vector3d& point, double margin, const Visit& visit) const {
     visit_all([&](const Box& box) { return holds(box, margin, point); }, visit);
+  }
+
+  /// True when the box of some triangle, grown by `margin`, intersects this one.
+  [[nodiscard]] bool has_any_near(const Eigen::AlignedBox3d& box, double margin) const {
+    const Eigen::Vector3d room = Eigen::Vector3d::Constant(margin);
+    return !levels_.empty() &&
+           has_near(levels_.size() - 1, 0, {box.min() - room, box.max() + room});
   }
 
  private:
@@ -62,19 +70,28 @@ class TriangleTree {
   template <class Test, class Visit>
   void visit_box(std::size_t level, std::size_t index, const Test& test, const Visit& visit) const {
     if (!test(levels_[level][index])) return;
-    const std::size_t below = level == 0 ? triangles_.size() : levels_[level - 1].size();
-    const std::size_t end = std::min(below, (index + 1) * kFan);
-    for (std::size_t i = index * kFan; i < end; ++i) {
-      if (level == 0) {
-        visit(triangles_[i]);
-      } else {
-        visit_box(level - 1, i, test, visit);
-      }
+    if (level == 0) return visit(triangles_[index]);
+    const std::size_t end = std::min(levels_[level - 1].size(), (index + 1) * kFan);
+    for (std::size_t i = index * kFan; i < end; ++i) visit_box(level - 1, i, test, visit);
+  }
+
+  [[nodiscard]] bool has_near(std::size_t level, std::size_t index,
+                              const Eigen::AlignedBox3d& box) const {
+    const Box& node = levels_[level][index];
+    if ((node.min.cast<double>().array() > box.max().array()).any() ||
+        (node.max.cast<double>().array() < box.min().array()).any()) {
+      return false;
     }
+    if (level == 0) return true;
+    const std::size_t end = std::min(levels_[level - 1].size(), (index + 1) * kFan);
+    for (std::size_t i = index * kFan; i < end; ++i) {
+      if (has_near(level - 1, i, box)) return true;
+    }
+    return false;
   }
 
   std::vector<std::uint32_t> triangles_;  ///< along a curve through space
-  std::vector<std::vector<Box>> levels_;  ///< the last has one box
+  std::vector<std::vector<Box>> levels_;  ///< the first of triangles; the last has one box
   Eigen::AlignedBox3d box_;
   double reach_ = 0.0;
 };

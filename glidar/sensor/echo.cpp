@@ -46,15 +46,26 @@ bool is_stronger(const Path& a, const Path& b) {
   return a.signal > b.signal || (a.signal == b.signal && a.range_m < b.range_m);
 }
 
+/// Surfaces that send back less than this part of an echo's light do not mix it: they move its
+/// range by less than this part of the gap, which in one echo is a few lengths of the pulse, so by
+/// about a millimetre.
+constexpr double kMinMixedShare = 1e-3;
+
 bool is_mixed(const EchoWork& work, const Group& group) {
-  const Path* first = nullptr;  // that met something
+  const Path* strongest = nullptr;  // that met something
+  double sum = 0.0;
   for (std::size_t i = group.begin; i < group.end; ++i) {
     const Path& path = work.path[i];
     if (path.source == kNoHit) continue;
-    if (first != nullptr && path.surface != first->surface) return true;
-    first = &path;
+    sum += path.signal;
+    if (strongest == nullptr || is_stronger(path, *strongest)) strongest = &path;
   }
-  return false;
+  double others = 0.0;
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    const Path& path = work.path[i];
+    if (path.source != kNoHit && path.surface != strongest->surface) others += path.signal;
+  }
+  return others > kMinMixedShare * sum;
 }
 
 /// The echo of a group: centroid and the height of the waveform there, width and strongest path.

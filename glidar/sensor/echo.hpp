@@ -56,7 +56,7 @@ struct PulseEcho {
   double signal;            ///< height of the peak
   double sigma_m;           ///< its width: the pulse's and the spread of its paths
   std::uint32_t strongest;  ///< of its paths
-  bool is_mixed;            ///< its paths come from surfaces with a gap between them
+  bool is_mixed;            ///< its light comes from surfaces with a gap between them
 };
 
 /// The paths and echoes of one beam, on the stack.
@@ -85,8 +85,8 @@ struct EchoWork {
 /// Finds the peaks of the sum of the paths' pulses, in order of range. Sorts the paths by range
 /// unless all are within near_m, such as the beam's width, of each other: that saves time. Two
 /// equal pulses have two peaks when they are more than two standard deviations apart, c FWHM /
-/// 2.355 in range; below that they are one echo at their weighted mean. An echo is mixed when its
-/// paths, but for those of the air, are of more than one surface.
+/// 2.355 in range; below that they are one echo at their weighted mean. An echo is mixed when at
+/// least 1/1000 of its light, but for that of the air, is of other surfaces than the strongest.
 void find_echoes(double sigma_m, double near_m, EchoWork& work);
 
 /// Takes away echoes nearer than separation_m to a stronger one.

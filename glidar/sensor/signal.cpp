@@ -116,9 +116,12 @@ bool spreads_by_square(const PulseLight& light) {
          light.weather_extinction_per_m == 0.0;
 }
 
-void measure_hit(const PulseLight& light, double signal, double error, std::size_t beam,
-                 Frame& frame) {
-  const double received = signal + error;
+/// See kMinSignalToNoise; a signal over the threshold is never lost.
+bool is_lost_in_noise(const PulseLight& light, double signal) {
+  return signal < std::min(kMinSignalToNoise * light.noise_sigma, 1.0);
+}
+
+void measure_hit(const PulseLight& light, double received, std::size_t beam, Frame& frame) {
   frame.intensity[beam] = static_cast<float>(received);
   if (received < 1.0) {
     lose(frame, beam, why_faint(light, received, frame.truth.range_m[beam]));
@@ -206,7 +209,12 @@ Status why_faint(const PulseLight& light, double signal, double range_m) {
   return clear < 1.0 ? Status::below_threshold : Status::weather;
 }
 
+double with_noise(const PulseLight& light, double signal, double normal) {
+  return is_lost_in_noise(light, signal) ? signal : signal + light.noise_sigma * normal;
+}
+
 double detection_probability(const PulseLight& light, double signal) {
+  if (is_lost_in_noise(light, signal)) return 0.0;
   if (light.noise_sigma == 0.0) return signal >= 1.0 ? 1.0 : 0.0;
   return 0.5 * std::erfc((1.0 - signal) / (light.noise_sigma * std::numbers::sqrt2));
 }
@@ -233,7 +241,7 @@ void measure_signal(const PulseLight& light, const Scene& scene, double waveleng
       if (light.noise_sigma > 0.0) draw_normals(draw_of(frame, Purpose::detection, i), noise);
     }
     if (frame.status[i] == Status::hit) {
-      measure_hit(light, signals[k], light.noise_sigma * noise[k], i, frame);
+      measure_hit(light, with_noise(light, signals[k], noise[k]), i, frame);
     } else {
       frame.intensity[i] = 0.0F;
     }

@@ -4,12 +4,11 @@
 
 #include <glidar/verify/verify.hpp>
 
-#include <string>
 #include <string_view>
 
 namespace glidar {
 
-/// Why a renderer is known to fail a row's case; empty: it has to pass.
-std::string known_failure(std::string_view renderer, const VerifyRow& row);
+/// Why, and by how much, a renderer is known to fail a row's case; no reason: it has to pass.
+KnownFailure known_failure(std::string_view renderer, const VerifyRow& row);
 
 }  // namespace glidar

@@ -33,8 +33,19 @@ struct VerifyResult {
   double normal_error_rad = 0.0;  ///< largest
 
   void add(const VerifyResult& other);
+  [[nodiscard]] std::size_t wrong() const { return wrong_hits + wrong_misses + wrong_ids; }
   /// Within all bounds, with hits and misses to show for it.
   [[nodiscard]] bool passed() const;
+};
+
+/// By how much a renderer may fail a row.
+struct KnownFailure {
+  std::string reason = {};       ///< empty: the row has to pass
+  double max_wrong_share = 0.0;  ///< wrong hits, misses and ids, of the rays
+  double max_range_error_ulp = kRangeBound_ulp;
+
+  /// True when a result is no worse than this. The normal of a wrong triangle does not count.
+  [[nodiscard]] bool covers(const VerifyResult& result) const;
 };
 
 /// A renderer to verify.
@@ -47,9 +58,9 @@ struct VerifySubject {
 /// What became of a row.
 enum class Verdict : std::uint8_t {
   passed,          ///< within all bounds
-  failed,          ///< and was to pass
+  failed,          ///< a row that has to pass, or by more than is known
   known_failure,   ///< failed as known; not an error
-  fixed,           ///< passed, though listed as a known failure: the list is to be corrected
+  fixed,           ///< passed, though listed as a known failure; not an error: drivers differ
   not_applicable,  ///< the renderer does not cast such beams
 };
 
@@ -59,7 +70,7 @@ struct VerifyRow {
   std::string shape;
   double distance_m = 0.0;
   VerifyResult result = {};
-  std::string known_failure = {};  ///< why it fails with this renderer; empty: it has to pass
+  KnownFailure known = {};  ///< of this renderer
   bool applies = true;
 
   [[nodiscard]] Verdict verdict() const;
@@ -73,7 +84,7 @@ std::string_view verdict_name(Verdict verdict);
 std::vector<VerifyRow> verify(const VerifySubject& subject, const Progress& progress);
 std::vector<VerifyRow> verify(const RendererOptions& options, const Progress& progress);
 
-/// True when every row passed, failed as known, or does not apply.
+/// True when no row failed, but as known.
 bool all_passed(const std::vector<VerifyRow>& rows);
 
 }  // namespace glidar

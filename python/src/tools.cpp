@@ -138,7 +138,7 @@ void bind_tools(nb::module_& module) {
                    [](const VerifyRow& self) { return self.result.range_error_ulp; })
       .def_prop_ro("normal_error_rad",
                    [](const VerifyRow& self) { return self.result.normal_error_rad; })
-      .def_ro("known_failure", &VerifyRow::known_failure)
+      .def_prop_ro("known_failure", [](const VerifyRow& self) { return self.known.reason; })
       .def_prop_ro("verdict",
                    [](const VerifyRow& self) { return std::string(verdict_name(self.verdict())); });
   module.def("verify", verified, nb::arg("renderer"), nb::arg("threads"));

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace glidar {
 namespace {
@@ -166,6 +167,92 @@ TEST_P(CoincidentSurfaces, ASurfaceNearerThanSinglePrecisionResolvesIsReported) 
     const Hits hits = cast(scene, camera_beams(60, 60, 60.0), Pose::Identity());
     EXPECT_EQ(count(hits, nearer), 3600U);
   }
+}
+
+/// A ground and 400 plates that lie on it, in the ground's plane; the ground comes last.
+Scene plates_on_ground(const Pose& world) {
+  Scene scene = builtin_scene("plane");
+  Instance one = scene.instances[0];
+  scene.instances.clear();
+  for (int i = 0; i < 400; ++i) {
+    one.scale = 0.2;
+    one.world_from_object =
+        world * turned(0.1 * i, Eigen::Vector3d::UnitZ(), {i % 20 - 9.5, i / 20 - 9.5, 0.0});
+    scene.instances.push_back(one);
+  }
+  one.scale = 20.0;
+  one.world_from_object = world;
+  scene.instances.push_back(one);
+  return scene;
+}
+
+TEST_P(CoincidentSurfaces, OfPlatesOnAGroundThePlatesAreReportedAndAGroundInFrontHidesThem) {
+  const Pose world = turned(2.0, {1.0, 0.7, -0.4}, {3.0, 40.0, -5.0});
+  const Pose pose = world * look_at({0.0, -6.0, 12.0}, {0.1, 0.2, 0.0}, Eigen::Vector3d::UnitZ());
+  const Beams beams = camera_beams(160, 120, 150.0);
+  Scene scene = plates_on_ground(world);
+  const Hits hits = cast(scene, beams, pose);
+  const std::size_t on_plates = beams.size() - count(hits, 400) - count(hits, kNoHit);
+  EXPECT_GT(count(hits, 400), 1000U);
+  EXPECT_GT(on_plates, 1000U);
+  std::size_t checked = 0;
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (hits.instance[i] == kNoHit) continue;
+    const Eigen::Vector3d point =
+        world.inverse() * (pose * (hits.range_m[i] * beams.directions[i]));
+    const Eigen::Vector2d cell = (point.head<2>().array() + 10.0).floor();
+    if (cell.minCoeff() < 0.0 || cell.maxCoeff() > 19.0) continue;
+    const auto plate = static_cast<std::uint32_t>(cell.x() + 20.0 * cell.y());
+    const Eigen::Vector3d local =
+        scene.instances[plate].world_from_object.inverse() * (world * point);
+    const double beyond = local.head<2>().cwiseAbs().maxCoeff() - 0.2;
+    if (std::abs(beyond) < 1e-4) continue;  // single precision at the border
+    ++checked;
+    EXPECT_EQ(hits.instance[i], beyond < 0.0 ? plate : 400U) << i;
+  }
+  EXPECT_GT(checked, 5000U);
+  std::rotate(scene.instances.begin(), scene.instances.end() - 1, scene.instances.end());
+  const Hits hidden = cast(scene, beams, pose);
+  EXPECT_EQ(count(hidden, 0), beams.size() - count(hits, kNoHit));
+}
+
+/// A floor, and a wall across it 3 m ahead, in a world that is turned. The sensor is in the floor's
+/// plane and so is every beam, so that rounding decides where a beam meets the floor.
+struct EdgeOnFloor {
+  Scene scene = testing::builtin_scene("plane");
+  Pose world_from_sensor;
+
+  explicit EdgeOnFloor(const Pose& world) {
+    const auto quarter = [](const Eigen::Vector3d& axis) {
+      return turned(0.5 * std::numbers::pi, axis, Eigen::Vector3d::Zero());
+    };
+    scene.instances.push_back(scene.instances[0]);
+    scene.instances[0].scale = 10.0;
+    scene.instances[0].world_from_object = world;
+    scene.instances[1].scale = 4.0;
+    scene.instances[1].world_from_object = world * quarter(Eigen::Vector3d::UnitY());
+    // Forward along x of the floor, to the right along -y.
+    world_from_sensor = world * Eigen::Translation3d(-3.0, 0.3, 0.0) *
+                        quarter(-Eigen::Vector3d::UnitX()) * quarter(Eigen::Vector3d::UnitY());
+  }
+};
+
+TEST_P(CoincidentSurfaces, AFloorSeenEdgeOnIsNotReportedBehindTheWallInFront) {
+  testing::Draws draws(5);
+  const Beams beams = camera_beams(65, 1, 100.0);
+  std::size_t on_wall = 0;
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d at(draws.next(), draws.next(), draws.next());
+    const EdgeOnFloor stage(turned(6.0 * draws.next(), draws.direction(), at));
+    const Hits hits = cast(stage.scene, beams, stage.world_from_sensor);
+    on_wall += count(hits, 1);
+    for (std::size_t k = 0; k < beams.size(); ++k) {
+      ASSERT_NE(hits.instance[k], kNoHit) << "world " << i << ", beam " << k;
+      EXPECT_LE(hits.range_m[k] * beams.directions[k].z(), 3.0 + 1e-9)
+          << "world " << i << ", beam " << k << ", instance " << hits.instance[k];
+    }
+  }
+  EXPECT_GT(on_wall, 1000U);
 }
 
 TEST_P(CoincidentSurfaces, CullingLeavesTheOneThatFacesTheSensor) {

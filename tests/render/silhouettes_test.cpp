@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace glidar {
 namespace {
@@ -103,6 +104,27 @@ TEST_P(Silhouettes, TheSameFromFarAway) {
   expect_brute_force(scene, beams, pose, beams.size() * 9 / 10);
 }
 
+/// A cone of so many triangles around its tip that most beams pass borders of several.
+Mesh cone(std::uint32_t count) {
+  Mesh fan;
+  fan.positions_m.emplace_back(0.0F, 0.0F, 1.0F);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / count;
+    fan.positions_m.emplace_back(static_cast<float>(std::cos(angle)),
+                                 static_cast<float>(std::sin(angle)), 0.0F);
+    fan.triangles.push_back({0, i + 1, (i + 1) % count + 1});
+  }
+  return fan;
+}
+
+TEST_P(Silhouettes, AConeOfManyTrianglesAroundItsTipIsWholeAndMeetsWhatBruteForceMeets) {
+  Scene scene = testing::builtin_scene("plane");
+  scene.meshes[0] = cone(3000);
+  const Pose pose = look_at({0.4, 0.3, 6.0}, {0.0, 0.0, 0.5}, Eigen::Vector3d::UnitY());
+  const Beams beams = camera_beams(32, 32, 80.0);
+  expect_brute_force(scene, beams, pose, GetParam() == "embree" ? 10 : 600);
+}
+
 INSTANTIATE_TEST_SUITE_P(All, Silhouettes, ::testing::ValuesIn(renderer_kinds()),
                          [](const auto& test) { return test.param; });
 
@@ -117,6 +139,32 @@ TEST(MeshEdges, AClosedMeshHasTwoTrianglesAtEachEdgeAndAnOpenOneEnds) {
   EXPECT_EQ(std::count_if(open.begin(), open.end(),
                           [](const MeshEdge& edge) { return edge.second == MeshEdge::kNone; }),
             4);
+}
+
+TEST(MeshEdges, AFanOfAHundredThousandTrianglesHasItsEdges) {
+  // The work is that of a sort: over the pairs of triangles around the hub it would take minutes.
+  constexpr std::uint32_t kCount = 100'000;
+  const Mesh fan = cone(kCount);
+  const std::vector<MeshEdge> edges = mesh_edges(fan, Neighbours(fan));
+  EXPECT_EQ(edges.size(), 2 * kCount);
+  EXPECT_EQ(std::count_if(edges.begin(), edges.end(),
+                          [](const MeshEdge& edge) { return edge.second == MeshEdge::kNone; }),
+            kCount);
+}
+
+TEST(MeshEdges, OfThreeTrianglesAtAnEdgeNoneIsTheOther) {
+  Mesh mesh;
+  mesh.positions_m = {{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F},  {0.0F, 1.0F, 0.0F},
+                      {0.0F, 0.0F, 1.0F}, {0.0F, -1.0F, 0.0F}, {1.0F, 0.0F, 0.0F}};
+  mesh.triangles = {{2, 0, 1}, {0, 3, 5}, {1, 0, 4}, {0, 0, 4}};
+  const std::vector<MeshEdge> edges = mesh_edges(mesh, Neighbours(mesh));
+  EXPECT_EQ(edges.size(), 7U);
+  const auto shared = std::find_if(edges.begin(), edges.end(), [](const MeshEdge& edge) {
+    return edge.from == 0 && edge.to == 1;
+  });
+  ASSERT_NE(shared, edges.end());
+  EXPECT_EQ(shared->first, 0U);
+  EXPECT_EQ(shared->second, MeshEdge::kNone);
 }
 
 TEST(SilhouettePixels, AreThoseByTheOutlineAndNotThoseByInnerEdges) {

@@ -97,6 +97,12 @@ TEST(FindEchoes, AreMixedWhenTheyMergeMoreThanOneSurface) {
   EXPECT_FALSE(is_mixed({first, {25.0, 1.0, 1, Cause::surface, 1}})) << "two echoes";
   EXPECT_FALSE(is_mixed({first, {20.1, 1.0, kNoHit, Cause::fog, 0}})) << "air is no surface";
   EXPECT_TRUE(is_mixed({first, {20.1, 1.0, 0, Cause::ghost, kGhostSurface}}));
+  EXPECT_FALSE(is_mixed({first, {20.1, 0.0, 1, Cause::surface, 1}})) << "black surface behind";
+  EXPECT_FALSE(is_mixed({{20.1, 0.0, 1, Cause::surface, 1}, first})) << "black surface in front";
+  EXPECT_FALSE(is_mixed({first, {20.1, 9e-4, 1, Cause::surface, 1}}));
+  EXPECT_TRUE(is_mixed({first, {20.1, 1.1e-3, 1, Cause::surface, 1}}));
+  const Path faint{20.1, 7e-4, 1, Cause::surface, 1};
+  EXPECT_TRUE(is_mixed({first, faint, faint})) << "two sub-rays on one surface";
 }
 
 TEST(FindEchoes, NamesTheStrongestPath) {

@@ -210,6 +210,20 @@ TEST(MeasureSignal, ReportsWithTheProbabilityOfTheSheet) {
   }
 }
 
+TEST(MeasureSignal, NoiseAloneIsNoReturnOfASurface) {
+  const PulseLight light{
+      .reference_reflectance = 0.8, .reference_range_m = 100.0, .noise_sigma = 0.4};
+  Stage faint(100000, 1000.0);  // a signal of 0.01: noise passes the threshold once in 150 beams
+  faint.measure(light);
+  EXPECT_EQ(faint.share_of(Status::hit), 0.0);
+  EXPECT_EQ(faint.share_of(Status::below_threshold), 1.0);
+  EXPECT_EQ(detection_probability(light, 0.01), 0.0);
+  Stage weak(100000, 400.0);  // a signal of 0.0625, above a tenth of the noise's deviation
+  weak.measure(light);
+  EXPECT_NEAR(weak.share_of(Status::hit), detection_probability(light, 0.0625), 0.001);
+  EXPECT_GT(weak.share_of(Status::hit), 0.005);
+}
+
 TEST(MeasureSignal, DependsOnTheBeamAndNotOnHowBeamsAreShared) {
   const PulseLight light{.reference_range_m = 100.0, .noise_sigma = 0.3};
   Stage whole(1000, 95.0);

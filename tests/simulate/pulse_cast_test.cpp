@@ -202,6 +202,16 @@ TEST(MeasurePulses, TellFirstStrongestAndLast) {
   EXPECT_EQ(frame.rows, 3U);
 }
 
+TEST(MeasurePulses, NoiseAloneIsNoEchoOfASurface) {
+  Stage stage;
+  stage.sensor.pulse->noise_sigma = 0.4;  // passes the threshold once in 150 beams
+  stage.sensor.receiver.returns = {kLast};
+  stage.sensor.optics = pinhole_from_fov(100, 100, 1e-3);
+  stage.add_wall(1000.0);  // a signal of 0.01
+  const Frame frame = stage.shoot();
+  EXPECT_EQ(std::count(frame.status.begin(), frame.status.end(), Status::below_threshold), 10000);
+}
+
 TEST(MeasurePulses, HideAnEchoTooCloseToAStrongerOne) {
   Stage stage;
   stage.spread(2e-3, 4);

@@ -140,6 +140,48 @@ TEST(Simulate, AllocatesNothingInTheSteadyState) {
   EXPECT_EQ(allocations - before, 0U);
 }
 
+/// Spheres that overlap, one of them in two parts with origins of their own.
+Scene overlapping_parts() {
+  Scene scene = testing::scene_of(make_builtin_model("sphere"));
+  scene.instances.push_back(scene.instances[0]);
+  scene.instances[1].world_from_object.translation().x() = 0.5;
+  Mesh parts = scene.meshes[0];
+  const auto vertices = static_cast<std::uint32_t>(parts.positions_m.size());
+  const auto triangles = static_cast<std::uint32_t>(parts.triangles.size());
+  for (std::uint32_t i = 0; i < vertices; ++i) {
+    parts.positions_m.push_back(Eigen::Vector3f(parts.positions_m[i]));
+    if (!parts.normals.empty()) parts.normals.push_back(Eigen::Vector3f(parts.normals[i]));
+  }
+  for (std::uint32_t t = 0; t < triangles; ++t) {
+    const Triangle& one = parts.triangles[t];
+    parts.triangles.push_back({one[0] + vertices, one[1] + vertices, one[2] + vertices});
+  }
+  parts.origins = {{0, 0, parts.origin_m}, {vertices, triangles, {0.0, 0.7, 0.0}}};
+  parts.origin_m.setZero();
+  scene.instances[1].mesh = 1;
+  scene.meshes.push_back(std::move(parts));
+  scene.sources.emplace_back();
+  return scene;
+}
+
+TEST(Simulate, AllocatesNothingInTheSteadyStateForOverlappingPartsOfMeshes) {
+  const Scene scene = overlapping_parts();
+  for (const char* kind : {"raster", "embree"}) {
+    const std::unique_ptr<Renderer> renderer = make_renderer(scene, {.kind = kind, .threads = 1});
+    Sensor sensor;
+    sensor.optics = pinhole_from_fov(64, 64, 0.5);
+    const Beams beams = make_beams(sensor);
+    CastRequest request{.beams = beams, .fields = {.normal = true}};
+    request.world_from_sensor.translation().z() = -8.0;
+    Hits hits;
+    for (int warm_up = 0; warm_up < 3; ++warm_up) renderer->cast(request, hits);
+    EXPECT_GT(std::count(hits.instance.begin(), hits.instance.end(), 1U), 10);
+    const std::size_t before = allocations;
+    for (int i = 0; i < 10; ++i) renderer->cast(request, hits);
+    EXPECT_EQ(allocations - before, 0U) << kind;
+  }
+}
+
 TEST(Simulate, TellsItsProgressFromBeginningToEndAndMeasuresTheSame) {
   Stage stage(512);
   std::vector<double> told;

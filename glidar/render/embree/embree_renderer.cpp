@@ -137,7 +137,7 @@ bool correct(const Job& job, std::uint32_t lanes, const Test& test, HitBlock& bl
 /// Decides between surfaces of several instances that lie closer together than single precision
 /// resolves.
 void choose_among_instances(const Job& job, TileWork& work) {
-  const std::uint32_t lanes = job.search.overlapping(work.block, work.exact);
+  const std::uint32_t lanes = job.search.overlapping(work.block, work.beams, work.exact);
   const auto choose = [&](std::size_t beam, const Found& found) {
     return job.search.nearest_around(beam, found);
   };

@@ -1,0 +1,93 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/renderer.hpp>
+#include <glidar/render/resolve.hpp>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace glidar {
+
+/// A tree of bounding boxes over the instances of one cast, eight boxes to a node. It finds the
+/// instances near a point or along a beam without a test of each.
+///
+/// The tree has its own frame, in metres: its origin is the sensor's, and its axes are those of the
+/// largest instance. So boxes on a ground stay small, however sensor and ground are turned.
+class InstanceTree {
+ public:
+  using Box = Eigen::AlignedBox3d;
+
+  /// Builds the tree over the instances that are present. The resolver has the cast's poses;
+  /// `mesh_boxes` are relative to the origins of the meshes. Every box is grown by what single
+  /// precision may be wrong by there.
+  void build(const CastRequest& request, const Resolver& resolver, std::span<const Box> mesh_boxes);
+
+  [[nodiscard]] const Eigen::Matrix3d& tree_from_sensor() const { return tree_from_sensor_; }
+
+  /// True when boxes of instances overlap.
+  [[nodiscard]] bool has_overlaps() const { return has_overlaps_; }
+
+  /// The part of an instance's box that the boxes of others overlap; empty: none does.
+  [[nodiscard]] const Box& shared(std::uint32_t instance) const { return shared_[instance]; }
+
+  /// Calls visit(instance) for every instance whose box intersects this one, until it returns
+  /// false.
+  template <class Visit>
+  void visit_near(const Box& box, const Visit& visit) const {
+    visit_all([&](const Box& node) { return node.intersects(box); }, visit);
+  }
+
+  /// Calls visit(instance) for every instance whose box meets the ray (in the tree's frame) before
+  /// the distance `max_m`, which visit may lower, until it returns false.
+  template <class Visit>
+  void visit_along(const ObjectRay& ray, const double& max_m, const Visit& visit) const {
+    visit_all([&](const Box& node) { return meets(node, ray, max_m); }, visit);
+  }
+
+ private:
+  static constexpr std::size_t kFan = 8;
+  static constexpr std::size_t kMaxLevels = 12;  // for all numbers of 32 bits
+
+  static bool meets(const Box& box, const ObjectRay& ray, double max_m);
+  void sort_instances();
+  void build_nodes();
+  void find_shared();
+
+  template <class Test, class Visit>
+  void visit_all(const Test& test, const Visit& visit) const {
+    if (!order_.empty()) visit_node(level_count_ - 1, 0, test, visit);
+  }
+
+  /// False when visit() has ended the search.
+  template <class Test, class Visit>
+  bool visit_node(std::size_t level, std::size_t index, const Test& test,
+                  const Visit& visit) const {
+    if (!test(nodes_[level_begin_[level] + index])) return true;
+    if (level == 0) return visit(order_[index].second);
+    const std::size_t below = level_begin_[level] - level_begin_[level - 1];
+    const std::size_t end = std::min(below, (index + 1) * kFan);
+    for (std::size_t i = index * kFan; i < end; ++i) {
+      if (!visit_node(level - 1, i, test, visit)) return false;
+    }
+    return true;
+  }
+
+  Eigen::Matrix3d tree_from_sensor_ = Eigen::Matrix3d::Identity();
+  bool has_overlaps_ = false;
+  std::vector<Box> boxes_;   ///< per instance; empty: not present
+  std::vector<Box> shared_;  ///< per instance
+  std::vector<std::pair<std::uint64_t, std::uint32_t>> order_;  ///< place on a curve, instance
+  std::vector<Box> nodes_;                                      ///< level by level from the leaves
+  std::array<std::size_t, kMaxLevels> level_begin_ = {};
+  std::size_t level_count_ = 0;
+};
+
+}  // namespace glidar
