@@ -22,6 +22,12 @@ constexpr std::uint64_t kFreeBytes = 4096;
 /// Connections that have asked for nothing for so long make room for new ones.
 constexpr std::chrono::seconds kGrace{1};
 
+/// Connections that may have been accepted before new ones could be held back.
+constexpr std::size_t kBacklog = 64;
+
+/// Those below are needed to write a file.
+constexpr int kLastDescriptors = 8;
+
 /// Identifies a socket as long as the system runs; 0: the descriptor is no socket.
 std::uint64_t cookie_of(int descriptor) {
   std::uint64_t cookie = 0;
@@ -47,7 +53,11 @@ std::uint64_t received_bytes(int descriptor) {
 void shut_down(int descriptor, std::uint64_t cookie) {
   const int held = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);  // is not given to another meanwhile
   const int used = held >= 0 ? held : descriptor;
-  if (cookie_of(used) == cookie) ::shutdown(used, SHUT_RDWR);
+  if (cookie_of(used) == cookie) {
+    const linger abort = {.l_onoff = 1, .l_linger = 0};  // a peer that still sends notices at once
+    ::setsockopt(used, SOL_SOCKET, SO_LINGER, &abort, sizeof(abort));
+    ::shutdown(used, SHUT_RDWR);
+  }
   if (held >= 0) ::close(held);
 }
 
@@ -78,7 +88,7 @@ ConnectionGuard::ConnectionGuard(const ConnectionLimits& limits, FaultLog& fault
     : limits_(limits),
       faults_(faults),
       keeps_events_(keeps_events),
-      allowance_(static_cast<double>(limits.connections)),
+      allowance_(burst()),
       refilled_(Clock::now()) {}
 
 void ConnectionGuard::on_listening(int descriptor) {
@@ -90,13 +100,17 @@ void ConnectionGuard::on_accepted(int descriptor) {
   const std::lock_guard lock(mutex_);
   connections_[descriptor] = {.cookie = cookie_of(descriptor), .since = Clock::now()};
   allowance_ -= 1.0;
-  if (descriptor >= descriptor_limit() - reserved_descriptors()) {
-    hold_back_for_lack();
-    make_room(descriptor, "");
-  } else if (open_connections() > limits_.connections) {
-    make_room(descriptor, "connection limit");
+  const int last = descriptor_limit() - kLastDescriptors;
+  if (descriptor >= descriptor_limit() - reserved_descriptors()) hold_back_for_lack();
+  if (is_full()) hold_back();
+  if (descriptor >= last || open_connections() > 2 * limits_.connections + kBacklog) {
+    cut(connections_.find(descriptor), "", "");
   }
-  if (allowance_ < 1.0) hold_back();
+  if (allowance_ >= 1.0 || is_held_back()) return;
+  hold_back();
+  faults_.tell("connection rate",
+               "more than " + std::to_string(static_cast<int>(limits_.connections_per_s)) +
+                   " new connections per second (--limit connections-per-s); new ones wait");
 }
 
 void ConnectionGuard::on_accept_failed(int error) {
@@ -132,12 +146,10 @@ void ConnectionGuard::look() {
   });
   check_unread();
   refill(Clock::now());
-  if (lacks_descriptors_) {
-    if (has_few_descriptors()) return free_descriptors();
-    lacks_descriptors_ = false;
-  }
-  const double needed = std::max(1.0, limits_.connections_per_s / 10.0);
-  if (listener_ && listener_->is_paused() && allowance_ >= needed) listener_->resume();
+  lacks_descriptors_ = lacks_descriptors_ && has_few_descriptors();
+  if (is_full()) make_room();
+  const double needed = std::max(1.0, burst() / 10.0);
+  if (is_held_back() && !is_full() && allowance_ >= needed) listener_->resume();
 }
 
 bool ConnectionGuard::needs_look() const {
@@ -185,31 +197,49 @@ void ConnectionGuard::note(PeerEvent event) {
 
 void ConnectionGuard::refill(Clock::time_point now) {
   const std::chrono::duration<double> passed = now - std::exchange(refilled_, now);
-  allowance_ = std::min(allowance_ + passed.count() * limits_.connections_per_s,
-                        static_cast<double>(limits_.connections));
+  allowance_ = std::min(allowance_ + passed.count() * limits_.connections_per_s, burst());
+}
+
+/// Connections that may come at once.
+double ConnectionGuard::burst() const {
+  return std::max(static_cast<double>(limits_.connections), limits_.connections_per_s);
+}
+
+bool ConnectionGuard::is_full() const {
+  return lacks_descriptors_ || open_connections() >= limits_.connections;
 }
 
 /// The oldest connection that never asked for anything gives way to a new one.
-void ConnectionGuard::make_room(int newest, const std::string& fault) {
-  auto victim = connections_.find(newest);
+void ConnectionGuard::make_room() {
   const Clock::time_point latest = Clock::now() - kGrace;
-  for (auto one = connections_.begin(); one != connections_.end(); ++one) {
-    const Connection& connection = one->second;
-    if (connection.is_cut || connection.has_delivered || connection.since > latest) continue;
-    if (victim->first == newest || connection.since < victim->second.since) victim = one;
+  for (std::size_t open = open_connections(); is_full() && open > 0; --open) {
+    auto victim = connections_.end();
+    for (auto one = connections_.begin(); one != connections_.end(); ++one) {
+      const Connection& connection = one->second;
+      if (connection.is_cut || connection.has_delivered || connection.since > latest) continue;
+      if (victim == connections_.end() || connection.since < victim->second.since) victim = one;
+    }
+    if (victim == connections_.end()) return;
+    cut(victim, "connection limit",
+        "at most " + std::to_string(limits_.connections) +
+            " connections at a port (--limit connections): one that asked for nothing was closed");
+    if (lacks_descriptors_) return;  // one each time: its descriptor is not free yet
   }
-  cut(victim, fault,
-      "at most " + std::to_string(limits_.connections) +
-          " connections at a port (--limit connections): one that asked for nothing was closed");
+}
+
+bool ConnectionGuard::is_held_back() const {
+  return listener_ && listener_->is_paused();
+}
+
+void ConnectionGuard::hold_back() {
+  if (listener_ && !listener_->is_paused()) listener_->pause();
 }
 
 /// None comes until there is room again.
 void ConnectionGuard::hold_back_for_lack() {
   report_descriptors();
   lacks_descriptors_ = true;
-  if (!listener_) return;
-  if (!listener_->is_paused()) listener_->pause();
-  listener_->discard_waiting();
+  hold_back();
 }
 
 /// So that files can still be written: the newest connections go.
@@ -219,22 +249,16 @@ void ConnectionGuard::free_descriptors() {
   for (auto one = connections_.lower_bound(first); one != connections_.end(); ++one) {
     if (!one->second.is_cut) cut(one, "", "");
   }
+  if (listener_) listener_->discard_waiting();
 }
 
 void ConnectionGuard::report_descriptors() {
-  if (std::exchange(is_lack_reported_, true)) return;
-  faults_.tell("file descriptors used up",
+  const char* const kind = "file descriptors used up";
+  if (faults_.counts().count(kind) > 0) return;  // once, of all ports
+  faults_.tell(kind,
                "of " + std::to_string(descriptor_limit()) +
                    ", the last ones are kept for files; new connections are closed. Raise the "
                    "limit (ulimit -n) or lower --limit connections");
-}
-
-void ConnectionGuard::hold_back() {
-  if (!listener_ || listener_->is_paused()) return;
-  listener_->pause();
-  faults_.tell("connection rate",
-               "more than " + std::to_string(static_cast<int>(limits_.connections_per_s)) +
-                   " new connections per second (--limit connections-per-s); new ones wait");
 }
 
 /// A message that never ends, or many that nobody has read yet.

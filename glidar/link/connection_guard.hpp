@@ -87,8 +87,11 @@ class ConnectionGuard {
   using Connections = std::map<int, Connection>;
 
   void note(PeerEvent event);
+  [[nodiscard]] double burst() const;
   void refill(Clock::time_point now);
-  void make_room(int newest, const std::string& fault);
+  [[nodiscard]] bool is_full() const;
+  [[nodiscard]] bool is_held_back() const;
+  void make_room();
   void hold_back_for_lack();
   void free_descriptors();
   void hold_back();
@@ -108,7 +111,6 @@ class ConnectionGuard {
   Clock::time_point refilled_;
   bool is_refused_ = false;  ///< the connection that leaves next
   bool lacks_descriptors_ = false;
-  bool is_lack_reported_ = false;
 };
 
 }  // namespace glidar::link

@@ -12,7 +12,7 @@ namespace glidar::link {
 /// What peers may use, one of them or all together. `limits()` describes each.
 struct Limits {
   std::int64_t connections = 256;
-  std::int64_t connections_per_s = 100;
+  std::int64_t connections_per_s = 500;
   std::int64_t handshake_s = 5;
   std::int64_t request_mib = 16;
   std::int64_t requests = 16;

@@ -21,8 +21,12 @@ class LockstepServerTest : public ::testing::Test {
   LockstepServerTest() {
     server = testing::at_free_port([&](const link::Endpoint& at) {
       endpoint = at;
-      return std::make_unique<Server>(context, ServerOptions{.endpoint = at}, faults);
+      return std::make_unique<Server>(context, options(at), faults);
     });
+  }
+  /// Connections come as fast as they can here.
+  static ServerOptions options(const link::Endpoint& at) {
+    return {.endpoint = at, .limits = {.connections_per_s = 1'000'000}};
   }
   link::Socket client() {
     link::Socket socket(context, {.kind = link::SocketKind::request});
@@ -84,6 +88,71 @@ TEST_F(LockstepServerTest, LosesNoneOf10000RepliesAmongPeersThatSendGarbage) {
     }
   }
   EXPECT_GE(server->counts().received, 10'000U);
+}
+
+/// A DEALER that sends requests and reads no replies.
+class Flooder {
+ public:
+  explicit Flooder(const link::Endpoint& at) : peer_(at) { EXPECT_TRUE(peer_.shake("DEALER")); }
+  void send() {
+    const std::vector<std::byte> request = encode(Request(Describe{7}));
+    const std::string body(reinterpret_cast<const char*>(request.data()), request.size());
+    std::string many;
+    for (int k = 0; k < 1000; ++k) {
+      many += testing::zmtp_part("", true) + testing::zmtp_part(body, false);
+    }
+    peer_.send(many);
+  }
+
+ private:
+  RawPeer peer_;
+};
+
+TEST_F(LockstepServerTest, AnswersOthersWhileOneClientFloodsItAndReadsNothing) {
+  Flooder flooder(endpoint);
+  link::Socket asking = client();
+  for (std::uint64_t id = 100; id < 300; ++id) {
+    flooder.send();
+    ASSERT_TRUE(is_answered(asking, id));
+  }
+  EXPECT_GT(server->counts().refused, 0U);
+  EXPECT_GT(faults.counts().at("requests refused"), 0U);
+}
+
+TEST_F(LockstepServerTest, DropsTheRequestsOfAClientThatHasLeft) {
+  link::Socket asking = client();
+  ASSERT_TRUE(is_answered(asking, 1));
+  std::optional<Received> received;
+  {
+    link::Socket leaves = client();
+    leaves.send(encode(Request(Describe{2})));
+    ASSERT_TRUE(soon([&] { return (received = server->receive()).has_value(); }));
+    EXPECT_TRUE(server->is_wanted(received->to));
+  }
+  EXPECT_TRUE(soon([&] { return !server->is_wanted(received->to); }));
+  server->drop(received->to);
+  EXPECT_TRUE(is_answered(asking, 3));
+}
+
+TEST_F(LockstepServerTest, ReservesMemoryForRepliesUpToTheLimit) {
+  constexpr std::int64_t kMib = 1 << 20;
+  link::Socket first = client();
+  link::Socket second = client();
+  std::vector<Received> received;
+  for (link::Socket* asking : {&first, &second}) {
+    asking->send(encode(Request(Describe{1})));
+    ASSERT_TRUE(soon([&] {
+      std::optional<Received> one = server->receive();
+      if (one) received.push_back(std::move(*one));
+      return one.has_value();
+    }));
+  }
+  EXPECT_TRUE(server->reserve(received[0].to, 1500 * kMib));
+  EXPECT_TRUE(server->reserve(received[0].to, 1500 * kMib));  // once
+  EXPECT_FALSE(server->reserve(received[1].to, 600 * kMib));
+  server->reply_description(received[0].to, "done");
+  EXPECT_TRUE(soon([&] { return server->reserve(received[1].to, 600 * kMib); }));
+  server->drop(received[1].to);
 }
 
 }  // namespace
