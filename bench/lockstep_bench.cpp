@@ -84,19 +84,19 @@ void serve_frame(const std::string& path, std::uint32_t side, const std::string&
   lockstep::Server server(context, {.endpoint = link::parse_endpoint(endpoint)}, faults);
   link::CloudPool clouds;
   for (;;) {
-    const std::optional<lockstep::Request> request = server.receive();
-    if (!request) {
+    const std::optional<lockstep::Received> received = server.receive();
+    if (!received) {
       link::wait_for({&server.socket()}, -1, std::chrono::milliseconds(1000));
       continue;
     }
     const std::shared_ptr<PointCloud> cloud = clouds.take();
     make_point_cloud(frame, beams, model.scene,
                      {.frame_id = "camera", .workers = &renderer->workers()},
-                     std::get<lockstep::Measure>(*request).columns, *cloud);
+                     std::get<lockstep::Measure>(received->request).columns, *cloud);
     const lockstep::CloudReply reply = {
         .head = {.rows = cloud->rows, .cols = cloud->cols, .frame_id = cloud->frame_id},
         .cloud = cloud};
-    server.reply(1, std::span(&reply, 1));
+    server.reply(received->to, std::span(&reply, 1));
   }
 }
 

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <atomic>
 #include <csignal>
+#include <ctime>
 #include <string_view>
 
 namespace glidar::app {
@@ -29,10 +30,27 @@ extern "C" void end_now(int number) {
 // A signal handler takes no arguments, so these have to be the process's own.
 constinit std::atomic<int> noted{0};
 constinit std::atomic<int> noting_pipe{-1};
+constinit std::atomic<timer_t> deadline{};
+constinit std::atomic<bool> has_deadline{false};
 static_assert(std::atomic<int>::is_always_lock_free, "used in signal handlers");
 
+/// Also async-signal-safe. 0: never.
+void end_after(std::chrono::nanoseconds time) {
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(time);
+  const itimerspec once = {
+      .it_interval = {},
+      .it_value = {.tv_sec = seconds.count(), .tv_nsec = (time - seconds).count()}};
+  if (has_deadline.load()) timer_settime(deadline.load(), 0, &once, nullptr);
+}
+
+extern "C" void end_late(int /*number*/) {
+  end_now(noted.load());
+}
+
 extern "C" void note(int number) {
+  constexpr std::chrono::milliseconds kPatience{1500};
   if (noted.exchange(number) != 0) end_now(number);
+  if (number == SIGTERM) end_after(kPatience);
   [[maybe_unused]] const ssize_t told = write(noting_pipe.load(), "!", 1);
 }
 
@@ -62,17 +80,28 @@ StopRequest::StopRequest() {
   writing_ = ends[1];
   noted = 0;
   noting_pipe = writing_;
+  struct sigaction late {};
+  late.sa_handler = end_late;
+  sigaction(SIGALRM, &late, nullptr);
+  timer_t timer{};
+  has_deadline = timer_create(CLOCK_MONOTONIC, nullptr, &timer) == 0;  // it sends SIGALRM
+  deadline = timer;
   handle_by(note);
 }
 
 StopRequest::~StopRequest() {
   handle_by(end_now);
+  if (has_deadline.exchange(false)) timer_delete(deadline.load());
   close(reading_);
   close(writing_);
 }
 
 int StopRequest::signal() const {
   return noted.load();
+}
+
+void StopRequest::disarm() const {
+  end_after({});
 }
 
 void StopRequest::ask() {

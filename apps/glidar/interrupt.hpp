@@ -13,7 +13,8 @@ namespace glidar::app {
 void end_cleanly_on_interrupt();
 
 /// While it lives, the first of these signals is only noted, for work that has to be ended in good
-/// order; the second ends the program at once as above. One at a time.
+/// order; the second ends the program at once as above, and so does SIGTERM itself unless its work
+/// calls disarm() within 1.5 s. One at a time.
 class StopRequest {
  public:
   StopRequest();
@@ -26,6 +27,8 @@ class StopRequest {
   [[nodiscard]] bool is_asked() const { return signal() != 0 || is_asked_; }
   /// The same without a signal, from any thread.
   void ask();
+  /// The work has begun to end in good order, which takes a limited time.
+  void disarm() const;
   /// A file descriptor that can be read once one came.
   [[nodiscard]] int descriptor() const { return reading_; }
   /// Waits until one comes, at most until then.

@@ -4,6 +4,7 @@
 
 #include <apps/glidar/curve_keys.hpp>
 #include <apps/glidar/placed_motion.hpp>
+#include <apps/glidar/reply_size.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/simulate.hpp>
 
@@ -21,7 +22,8 @@ namespace glidar::app {
 namespace {
 
 lockstep::ServerOptions server_options(const StreamFlags& flags, Console& console) {
-  lockstep::ServerOptions options{.endpoint = link::parse_endpoint(flags.lockstep)};
+  lockstep::ServerOptions options{.endpoint = link::parse_endpoint(flags.lockstep),
+                                  .limits = flags.limits};
   if (!flags.curve_keys.empty()) options.curve = curve_keys(flags.curve_keys, console);
   return options;
 }
@@ -50,6 +52,7 @@ LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
   for (const Mount& mount : session_.mounts) {
     beams_.push_back(std::make_shared<const Beams>(mount.beams));
   }
+  frame_s_.resize(beams_.size());
 }
 
 int LockstepRun::run() {
@@ -63,43 +66,108 @@ int LockstepRun::run() {
     finish(error.what());
     throw;
   }
+  stop.disarm();
+  for (const Job& job : std::exchange(jobs_, {})) {
+    server_.reply_error(job.to, "request: GLIDAR was ended by a signal");
+  }
   finish(fmt::format("signal {}", stop.signal()));
   constexpr int kSignalled = 128;  // as shells have it
   return kSignalled + stop.signal();
 }
 
-/// Answers the next request, or waits a while for one.
+/// Receives the next request and works at one of those in work, in turn; or waits a while for one.
 void LockstepRun::serve(const StopRequest& stop) {
-  constexpr std::chrono::milliseconds kPatience{1000};
-  const std::optional<lockstep::Request> request = server_.receive();
-  if (!request) return link::wait_for({&server_.socket()}, stop.descriptor(), kPatience);
-  answer(*request);
-  record();
+  if (std::optional<lockstep::Received> received = server_.receive()) start(std::move(*received));
+  if (jobs_.empty()) {
+    return link::wait_for({&server_.socket()}, stop.descriptor(), server_.patience());
+  }
+  Job job = std::move(jobs_.front());
+  jobs_.pop_front();
+  const Progress progress = try_advance(job);
+  if (progress == Progress::answered) return record(job);
+  jobs_.push_back(std::move(job));
+  constexpr std::chrono::milliseconds kForMemory{5};
+  if (progress == Progress::waits_for_memory) link::wait_for({}, stop.descriptor(), kForMemory);
+}
+
+void LockstepRun::start(lockstep::Received received) {
+  const lockstep::ReplyTo to = std::move(received.to);
+  try {
+    auto* const measure = std::get_if<lockstep::Measure>(&received.request);
+    if (measure == nullptr) return server_.reply_description(to, description().dump());
+    const std::int64_t bytes = check(*measure);
+    jobs_.push_back({.measure = std::move(*measure), .to = to, .bytes = bytes});
+  } catch (const std::exception& error) {
+    server_.reply_error(to, error.what());
+  }
+}
+
+/// Whatever goes wrong with one request is its client's to know.
+LockstepRun::Progress LockstepRun::try_advance(Job& job) {
+  try {
+    return advance(job);
+  } catch (const std::bad_alloc&) {
+    server_.reply_error(job.to, "request: needs more memory than there is; ask for fewer moments");
+  } catch (const std::exception& error) {
+    server_.reply_error(job.to, error.what());
+  }
+  job.frames.clear();
+  return Progress::answered;
+}
+
+LockstepRun::Progress LockstepRun::advance(Job& job) {
+  if (!server_.is_wanted(job.to)) {
+    server_.drop(job.to);
+    job.frames.clear();
+    return Progress::answered;
+  }
+  check_deadline(job);
+  if (!server_.reserve(job.to, job.bytes)) return Progress::waits_for_memory;
+  const std::span<const lockstep::Moment> all = job.measure.moments;
+  const std::size_t first = job.replies.size();
+  const std::size_t count = std::min(frames_at_once(job), all.size() - first);
+  const auto begin = std::chrono::steady_clock::now();
+  measure_some(job, all.subspan(first, count));
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  frame_s_[job.measure.sensor] = taken.count() / static_cast<double>(count);
+  if (first + count < all.size()) return Progress::goes_on;
+  server_.reply(job.to, job.replies);
+  return Progress::answered;
 }
 
 /// The frames that were replied. A recording that cannot go on ends the server: it would not be
 /// one.
-void LockstepRun::record() {
+void LockstepRun::record(const Job& job) {
   if (!recorder_) return;
-  for (const link::RecordedFrame& frame : std::exchange(measured_, {})) recorder_->write(frame);
+  for (const link::RecordedFrame& frame : job.frames) recorder_->write(frame);
 }
 
-/// Whatever goes wrong with one request is its client's to know.
-void LockstepRun::answer(const lockstep::Request& request) {
-  const std::uint64_t id = std::visit([](const auto& kind) { return kind.id; }, request);
-  try {
-    if (const auto* wanted = std::get_if<lockstep::Measure>(&request)) return measure(*wanted);
-    describe(std::get<lockstep::Describe>(request));
-  } catch (const std::bad_alloc&) {
-    measured_.clear();
-    server_.reply_error(id, "request: needs more memory than there is; ask for fewer moments");
-  } catch (const std::exception& error) {
-    measured_.clear();
-    server_.reply_error(id, error.what());
+void LockstepRun::check_deadline(const Job& job) const {
+  const link::Limits& limits = flags_.limits;
+  if (std::chrono::steady_clock::now() - job.to.since <= std::chrono::seconds(limits.request_s)) {
+    return;
   }
+  throw Error({"request, time",
+               fmt::format("{} of {} moments are measured after {} s", job.replies.size(),
+                           job.measure.moments.size(), limits.request_s),
+               limit_text(limits, &link::Limits::request_s),
+               "ask for fewer moments at once, or start GLIDAR with a higher limit"});
 }
 
-void LockstepRun::describe(const lockstep::Describe& describe) {
+/// Many small frames together take less time than one by one, but others wait for them, and so does
+/// a signal.
+std::size_t LockstepRun::frames_at_once(const Job& job) const {
+  constexpr double kMaxFrames = 32.0;
+  constexpr double kMaxBeams = 1 << 20;  // the memory of many large frames
+  constexpr double kMax_s = 0.1;
+  const double frame_s = frame_s_[job.measure.sensor];
+  if (frame_s == 0.0) return 1;
+  const auto beams = static_cast<double>(beams_[job.measure.sensor]->size());
+  const double frames = std::min({kMaxFrames, kMaxBeams / beams, kMax_s / frame_s});
+  return static_cast<std::size_t>(std::max(1.0, frames));
+}
+
+nlohmann::ordered_json LockstepRun::description() const {
   nlohmann::ordered_json objects = nlohmann::ordered_json::array();
   for (const Instance& instance : session_.scene.instances) {
     objects.push_back({{"name", instance.name},
@@ -118,16 +186,15 @@ void LockstepRun::describe(const lockstep::Describe& describe) {
                        {"world_from_sensor", json_of(pose_at(mount.motion.world_from_sensor, 0))},
                        {"rig_from_sensor", json_of(mount.rig_from_sensor)}});
   }
-  const nlohmann::ordered_json text = {
-      {"sensors", sensors},
-      {"world_from_rig", json_of(pose_at(session_.motion.world_from_rig, 0))},
-      {"objects", objects},
-      {"columns",
-       std::vector<std::string>(cloud_column_names().begin(), cloud_column_names().end())}};
-  server_.reply_description(describe.id, text.dump());
+  return {{"sensors", sensors},
+          {"world_from_rig", json_of(pose_at(session_.motion.world_from_rig, 0))},
+          {"objects", objects},
+          {"columns",
+           std::vector<std::string>(cloud_column_names().begin(), cloud_column_names().end())}};
 }
 
-void LockstepRun::check(const lockstep::Measure& measure) const {
+/// Returns the size of the reply.
+std::int64_t LockstepRun::check(const lockstep::Measure& measure) const {
   const std::size_t sensors = session_.mounts.size();
   if (measure.sensor >= sensors) {
     refuse("sensor", std::to_string(measure.sensor),
@@ -144,18 +211,20 @@ void LockstepRun::check(const lockstep::Measure& measure) const {
   if (measure.hits_only && std::find(columns.begin(), columns.end(), "xyz") == columns.end()) {
     refuse("flags", "hits only, without the column xyz", "xyz among the columns");
   }
-}
-
-void LockstepRun::measure(const lockstep::Measure& measure) {
-  constexpr std::size_t kTogether = 32;  // frames that are held at a time
-  check(measure);
-  measured_.clear();
-  std::vector<lockstep::CloudReply> replies;
-  const std::span<const lockstep::Moment> all = measure.moments;
-  for (std::size_t first = 0; first < all.size(); first += kTogether) {
-    measure_some(measure, all.subspan(first, std::min(kTogether, all.size() - first)), replies);
+  const std::size_t points = beams_[measure.sensor]->size();
+  const std::int64_t bytes = reply_bytes(columns, points, measure.moments.size());
+  const link::Limits& limits = flags_.limits;
+  if (bytes > link::bytes_of_mib(std::min(limits.reply_mib, limits.memory_mib))) {
+    constexpr double kMib = 1 << 20;
+    throw Error(
+        {"request, size of the reply",
+         fmt::format("up to {:.1f} MiB: {} clouds of {} points", static_cast<double>(bytes) / kMib,
+                     measure.moments.size(), points),
+         limit_text(limits, limits.reply_mib <= limits.memory_mib ? &link::Limits::reply_mib
+                                                                  : &link::Limits::memory_mib),
+         "ask for fewer moments or columns at once, or start GLIDAR with a higher limit"});
   }
-  server_.reply(measure.id, replies);
+  return bytes;
 }
 
 std::shared_ptr<const Beams> LockstepRun::beams_of(std::uint32_t index,
@@ -165,9 +234,8 @@ std::shared_ptr<const Beams> LockstepRun::beams_of(std::uint32_t index,
   return std::make_shared<const Beams>(make_beams(sensor, scan_window(sensor, number)));
 }
 
-void LockstepRun::measure_some(const lockstep::Measure& measure,
-                               std::span<const lockstep::Moment> moments,
-                               std::vector<lockstep::CloudReply>& replies) {
+void LockstepRun::measure_some(Job& job, std::span<const lockstep::Moment> moments) {
+  const lockstep::Measure& measure = job.measure;
   const Mount& mount = session_.mounts[measure.sensor];
   std::vector<std::shared_ptr<const Beams>> beams;
   std::vector<Motion> motions;
@@ -193,8 +261,8 @@ void LockstepRun::measure_some(const lockstep::Measure& measure,
   simulate_batch(setups, glidar::fields_for(measure.columns),
                  std::span(frames_).first(moments.size()));
   for (std::size_t i = 0; i < moments.size(); ++i) {
-    if (recorder_) measured_.push_back(line_of(measure.sensor, frames_[i], &moments[i]));
-    replies.push_back(cloud_of(measure, frames_[i], *beams[i]));
+    if (recorder_) job.frames.push_back(line_of(measure.sensor, frames_[i], &moments[i]));
+    job.replies.push_back(cloud_of(measure, frames_[i], *beams[i]));
   }
 }
 

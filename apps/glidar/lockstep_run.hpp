@@ -12,6 +12,11 @@
 #include <glidar/link/fault_log.hpp>
 #include <glidar/link/lockstep/server.hpp>
 
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <memory>
 #include <span>
 #include <string>
@@ -24,18 +29,31 @@ class LockstepRun {
  public:
   /// Listens, then loads what the flags name. Throws Error.
   LockstepRun(const StreamFlags& flags, Console& console);
-  /// Until a signal comes; returns the exit code.
+  /// Until a signal comes, to which requests in work are answered with an error; returns the exit
+  /// code.
   int run();
 
  private:
+  /// A request in work. Several clients' requests take turns, some frames each.
+  struct Job {
+    lockstep::Measure measure;
+    lockstep::ReplyTo to;
+    std::int64_t bytes = 0;  ///< of the reply, at most
+    std::vector<lockstep::CloudReply> replies = {};
+    std::vector<link::RecordedFrame> frames = {};  ///< to be recorded once it is answered
+  };
+  enum class Progress : std::uint8_t { waits_for_memory, goes_on, answered };
+
   void serve(const StopRequest& stop);
-  void answer(const lockstep::Request& request);
-  void record();
-  void describe(const lockstep::Describe& describe);
-  void measure(const lockstep::Measure& measure);
-  void check(const lockstep::Measure& measure) const;
-  void measure_some(const lockstep::Measure& measure, std::span<const lockstep::Moment> moments,
-                    std::vector<lockstep::CloudReply>& replies);
+  void start(lockstep::Received received);
+  Progress advance(Job& job);
+  Progress try_advance(Job& job);
+  void record(const Job& job);
+  [[nodiscard]] nlohmann::ordered_json description() const;
+  [[nodiscard]] std::int64_t check(const lockstep::Measure& measure) const;
+  void check_deadline(const Job& job) const;
+  [[nodiscard]] std::size_t frames_at_once(const Job& job) const;
+  void measure_some(Job& job, std::span<const lockstep::Moment> moments);
   [[nodiscard]] std::shared_ptr<const Beams> beams_of(std::uint32_t sensor,
                                                       std::uint32_t number) const;
   [[nodiscard]] lockstep::CloudReply cloud_of(const lockstep::Measure& measure, const Frame& frame,
@@ -53,7 +71,8 @@ class LockstepRun {
   std::vector<std::shared_ptr<const Beams>> beams_;  ///< of each sensor's frame 0
   link::CloudPool clouds_;
   std::vector<Frame> frames_;
-  std::vector<link::RecordedFrame> measured_;  ///< for the request under way
+  std::vector<double> frame_s_;  ///< that a frame of each sensor took last; 0: not known
+  std::deque<Job> jobs_;         ///< at most one of each client
 };
 
 }  // namespace glidar::app

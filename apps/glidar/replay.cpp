@@ -5,6 +5,7 @@
 #include <apps/glidar/stream_options.hpp>
 #include <apps/glidar/stream_run.hpp>
 #include <glidar/io/content_hash.hpp>
+#include <glidar/link/listener.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -67,6 +68,7 @@ int run(const StreamFlags& chosen) {
   make_absolute(flags);
   enter(recording.head().command, file);
   compare_files(recording.head(), console);
+  link::raise_descriptor_limit(2 * flags.limits.connections);
   StreamRun stream(std::move(flags), console);
   return stream.run();
 }

@@ -8,6 +8,7 @@
 #include <apps/glidar/stream_options.hpp>
 #include <apps/glidar/stream_run.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/link/listener.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -45,6 +46,7 @@ Exit codes: 0 done, or the simulator ended; 2 bad input; 3 no pose for --pose-ti
 int run(const StreamFlags& given) {
   check(given);
   StreamFlags flags = given;
+  link::raise_descriptor_limit(2 * flags.limits.connections);
   Console console(flags.render.quiet);
   if (!flags.lockstep.empty()) return LockstepRun(flags, console).run();
   StreamRun stream(std::move(flags), console);

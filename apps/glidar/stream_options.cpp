@@ -109,6 +109,19 @@ void add_lockstep_flags(CLI::App& command, StreamFlags& flags) {
            flags.curve_keys);
 }
 
+void add_limit_flag(CLI::App& command, StreamFlags& flags) {
+  CLI::Option* const option = command.add_option_function<std::vector<std::string>>(
+      "--limit",
+      [&flags](const std::vector<std::string>& given) {
+        for (const std::string& one : given) set_limit(flags.limits, one);
+      },
+      "Limits what peers may use, may be repeated; docs/link.md lists the names");
+  option->type_name("NAME=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  option->group("Limits of peers");
+}
+
 bool writes_files(const OutputFlags& files) {
   return !files.paths.empty() || !files.legacy_name.empty();
 }
@@ -159,6 +172,7 @@ void add_stream_flags(CLI::App& command, StreamFlags& flags) {
   add_publishing_flags(command, flags);
   add_pose_source_flags(command, flags);
   add_lockstep_flags(command, flags);
+  add_limit_flag(command, flags);
 }
 
 void add_replay_flags(CLI::App& command, StreamFlags& flags) {
@@ -179,6 +193,7 @@ void add_replay_flags(CLI::App& command, StreamFlags& flags) {
   add_text(command, {"--stats", "FILE", "Writes counts and latencies as JSON at the end", group},
            flags.stats);
   add_publishing_flags(command, flags);
+  add_limit_flag(command, flags);
   constexpr std::int64_t kMostThreads = 1024;
   add_whole(command, {"--threads", "N", "Number of threads, 0: one per processor [0]", "Run"},
             {0, kMostThreads},
@@ -242,6 +257,7 @@ legacy::CloudPublisherOptions publisher_options(const StreamFlags& flags) {
       .keeps_newest = flags.publishes_newest,
       .queue = flags.publish_queue,
       .every = flags.publish_every,
+      .limits = flags.limits,
       .timestamps = flags.physics_port ? legacy::Timestamps::of_poses : legacy::Timestamps::counted,
       .subscription_timeout = std::chrono::round<std::chrono::milliseconds>(
           std::chrono::duration<double>(flags.subscription_timeout_s))};

@@ -6,6 +6,7 @@
 #include <apps/glidar/render_options.hpp>
 #include <glidar/link/legacy/cloud_publisher.hpp>
 #include <glidar/link/legacy/pose_receiver.hpp>
+#include <glidar/link/limits.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -34,6 +35,7 @@ struct StreamFlags {
   std::optional<std::uint16_t> physics_port;  ///< of the poses; empty: from the command line
   int pose_queue = 0;                         ///< 0: the newest pose only
   std::string lockstep;    ///< endpoint at which requests are answered; empty: none
+  link::Limits limits;     ///< of peers
   std::string curve_keys;  ///< file of the keys that it is encrypted with; empty: it is not
   std::optional<double> pose_timeout_s;  ///< empty: waits for ever
 };

@@ -16,6 +16,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <csignal>
 #include <exception>
 #include <limits>
 #include <utility>
@@ -175,7 +176,9 @@ int StreamRun::run() {
     exit_code_ = simulator != nullptr && simulator->has_timed_out() ? kNoPoses : kDone;
     constexpr int kSignalled = 128;  // as shells have it
     if (stop.is_asked()) exit_code_ = kSignalled + stop.signal();
-    finish(stop.is_asked() ? fmt::format("signal {}", stop.signal()) : source->ending());
+    stop.disarm();
+    finish(stop.is_asked() ? fmt::format("signal {}", stop.signal()) : source->ending(),
+           stop.signal() == SIGTERM);
   } catch (const std::exception& error) {
     try {
       if (!is_finished_) finish(error.what());
@@ -322,7 +325,9 @@ void StreamRun::look_after_peers() {
   console_.status(status_text(stats_) + (publisher_ ? publishing_text(publisher_->counts()) : ""));
 }
 
-void StreamRun::finish(const std::string& ending) {
+void StreamRun::finish(const std::string& ending, bool is_urgent) {
+  constexpr std::chrono::milliseconds kUnhurried{1000};
+  constexpr std::chrono::milliseconds kUrgent{400};  // of three waits that take so long at most
   is_finished_ = true;
   console_.status("");
   std::exception_ptr failure;  // the first; the other steps are taken all the same
@@ -333,7 +338,7 @@ void StreamRun::finish(const std::string& ending) {
       if (!failure) failure = std::current_exception();
     }
   };
-  if (publisher_) attempt([&] { publisher_->shut_down(); });
+  if (publisher_) attempt([&] { publisher_->shut_down(is_urgent ? kUrgent : kUnhurried); });
   faults_.flush();
   StreamSummary summary{.stats = stats_,
                         .ending = ending,

@@ -50,7 +50,7 @@ class StreamRun {
   void write_files(const Shot& shot);
   void publish(const Shot& shot);
   void look_after_peers();
-  void finish(const std::string& ending);
+  void finish(const std::string& ending, bool is_urgent = false);
 
   StreamFlags flags_;
   Console& console_;

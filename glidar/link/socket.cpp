@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/link/ipc_place.hpp>
+#include <glidar/link/socket_monitor.hpp>
 #include <glidar/link/subscription_table.hpp>
 
 #include <zmq.hpp>
@@ -12,8 +13,6 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
-#include <charconv>
-#include <cstring>
 #include <utility>
 
 namespace glidar::link {
@@ -28,6 +27,8 @@ zmq::socket_type type_of(const SocketOptions& options) {
       return zmq::socket_type::req;
     case SocketKind::reply:
       return zmq::socket_type::rep;
+    case SocketKind::router:
+      return zmq::socket_type::router;
     case SocketKind::publish:
       break;
   }
@@ -72,9 +73,6 @@ void let_go(void* /*bytes*/, void* owner) {
   delete static_cast<std::shared_ptr<const void>*>(owner);
 }
 
-/// Subscriptions to longer ones are no concern of anybody here.
-constexpr std::size_t kLongestTopic = 64;
-
 /// The result of an action that a signal may break off; it is then done again.
 template <class Action>
 auto unbroken(const Action& action) {
@@ -89,7 +87,7 @@ auto unbroken(const Action& action) {
 
 /// The descriptor of the connection that a message came by. The end of a subscription has none when
 /// the connection ended first.
-int connection_of(zmq::message_t& message) {
+int connection_of(const zmq::message_t& message) {
   const int descriptor = zmq_msg_get(message.handle(), ZMQ_SRCFD);
   return descriptor < 0 ? SubscriptionTable::kUnknownConnection : descriptor;
 }
@@ -109,39 +107,6 @@ struct Context::Impl {
 Context::Context() : impl_(std::make_unique<Impl>()) {}
 Context::~Context() = default;
 
-std::string text_of(const Endpoint& endpoint) {
-  if (!endpoint.path.empty()) return "ipc://" + endpoint.path;
-  return "tcp://" + endpoint.host + ":" +
-         (endpoint.port == 0 ? "*" : std::to_string(endpoint.port));
-}
-
-Endpoint parse_endpoint(const std::string& text) {
-  constexpr std::string_view kTcp = "tcp://";
-  constexpr std::string_view kIpc = "ipc://";
-  const auto refuse = [&](const char* remedy) {
-    throw Error({.where = "endpoint",
-                 .found = "'" + text + "'",
-                 .allowed = "tcp://HOST:PORT with a port up to 65535, or ipc://PATH",
-                 .remedy = remedy});
-  };
-  if (text.starts_with(kIpc)) {
-    constexpr std::size_t kLongest = 107;  // sun_path of unix(7)
-    const std::string path = text.substr(kIpc.size());
-    if (path.empty() || path.size() > kLongest) refuse("give a path of 1 to 107 letters");
-    return {.host = {}, .port = 0, .path = path};
-  }
-  const std::size_t colon = text.rfind(':');
-  if (!text.starts_with(kTcp) || colon <= kTcp.size()) refuse("for example tcp://127.0.0.1:5600");
-  Endpoint endpoint{.host = text.substr(kTcp.size(), colon - kTcp.size())};
-  const std::string_view port = std::string_view(text).substr(colon + 1);
-  if (port == "*") return endpoint;
-  const auto [stop, fault] = std::from_chars(port.data(), port.data() + port.size(), endpoint.port);
-  if (fault != std::errc() || stop != port.data() + port.size() || endpoint.port == 0) {
-    refuse("a port is a number from 1 to 65535, or * for any");
-  }
-  return endpoint;
-}
-
 CurveKeys make_curve_keys() {
   constexpr std::size_t kLetters = 40;
   std::array<char, kLetters + 1> public_key{};
@@ -154,6 +119,7 @@ struct Message::Impl {
   zmq::message_t message;
   bool is_part = false;
   bool is_last = true;
+  std::uint64_t cookie = 0;
 };
 
 Message::Message() : impl_(std::make_unique<Impl>()) {}
@@ -173,35 +139,55 @@ bool Message::is_last() const {
   return impl_->is_last;
 }
 
+ConnectionId Message::connection() const {
+  return {connection_of(impl_->message), impl_->cookie};
+}
+
 struct Socket::Impl {
   zmq::socket_t socket;
-  zmq::socket_t monitor;  ///< tells of connections
+  std::unique_ptr<SocketMonitor> monitor;  ///< ends before the socket
   bool follows_part = false;
   SubscriptionTable subscriptions;
+  SubscriptionLimits subscription_limits;
   int send_queue;
   std::shared_ptr<std::atomic<int>> flying = std::make_shared<std::atomic<int>>(0);
   bool is_behind = false;  ///< a subscriber's queue was full
 
   Impl(zmq::context_t& context, const SocketOptions& options)
       : socket(context, type_of(options)),
-        monitor(context, zmq::socket_type::pair),
+        subscription_limits(options.subscriptions),
         send_queue(options.send_queue) {}
-  Impl(const Impl&) = delete;
-  Impl& operator=(const Impl&) = delete;
-  /// The monitor ends first: it is told by the socket.
-  ~Impl() { zmq_socket_monitor(socket.handle(), nullptr, 0); }
 
-  void watch(std::uint64_t number) {
-    constexpr int kEvents = ZMQ_EVENT_HANDSHAKE_SUCCEEDED | ZMQ_EVENT_DISCONNECTED |
-                            ZMQ_EVENT_HANDSHAKE_FAILED_NO_DETAIL |
-                            ZMQ_EVENT_HANDSHAKE_FAILED_PROTOCOL;
-    const std::string name = "inproc://monitor-" + std::to_string(number);
-    if (zmq_socket_monitor(socket.handle(), name.c_str(), kEvents) != 0) throw zmq::error_t();
-    monitor.set(zmq::sockopt::linger, 0);
-    monitor.set(zmq::sockopt::rcvhwm, 0);  // a full queue would hold up ZeroMQ's thread
-    monitor.connect(name);
-  }
+  [[nodiscard]] ConnectionGuard* guard() const { return monitor ? monitor->guard() : nullptr; }
 };
+
+namespace {
+
+/// Connections that ended without a word are noticed by the kernel, after some minutes.
+void protect(zmq::socket_t& socket, const ConnectionLimits& limits) {
+  constexpr int kBacklog = 64;
+  constexpr int kIdle_s = 60;
+  const std::chrono::milliseconds handshake = limits.handshake;
+  socket.set(zmq::sockopt::handshake_ivl, static_cast<int>(millis(handshake)));
+  socket.set(zmq::sockopt::backlog, kBacklog);
+  socket.set(zmq::sockopt::tcp_keepalive, 1);
+  socket.set(zmq::sockopt::tcp_keepalive_idle, kIdle_s);
+}
+
+std::unique_ptr<SocketMonitor> make_monitor(zmq::context_t& context, zmq::socket_t& socket,
+                                            const SocketOptions& options, std::uint64_t number) {
+  if (!options.is_watched && !options.protection) return nullptr;
+  std::unique_ptr<ConnectionGuard> guard;
+  if (options.protection) {
+    protect(socket, options.protection->limits);
+    guard = std::make_unique<ConnectionGuard>(options.protection->limits,
+                                              options.protection->faults, options.is_watched);
+  }
+  return std::make_unique<SocketMonitor>(context.handle(), socket.handle(), std::to_string(number),
+                                         std::move(guard));
+}
+
+}  // namespace
 
 Socket::Socket(Context& context, const SocketOptions& options)
     : impl_(std::make_unique<Impl>(context.impl_->context, options)) {
@@ -215,8 +201,9 @@ Socket::Socket(Context& context, const SocketOptions& options)
     socket.set(zmq::sockopt::curve_server, 1);
     socket.set(zmq::sockopt::curve_secretkey, options.curve->secret_key);
   }
+  if (options.kind == SocketKind::router) socket.set(zmq::sockopt::router_mandatory, true);
   if (type_of(options) == zmq::socket_type::xpub) socket.set(zmq::sockopt::xpub_verboser, 1);
-  if (options.is_watched) impl_->watch(context.impl_->sockets++);
+  impl_->monitor = make_monitor(context.impl_->context, socket, options, context.impl_->sockets++);
 }
 
 Socket::~Socket() = default;
@@ -244,6 +231,10 @@ void Socket::subscribe(std::string_view topic) {
   impl_->socket.set(zmq::sockopt::subscribe, std::string(topic));
 }
 
+void Socket::set_linger(std::chrono::milliseconds linger) {
+  impl_->socket.set(zmq::sockopt::linger, static_cast<int>(millis(linger)));
+}
+
 std::optional<Message> Socket::receive() {
   zmq::message_t received;
   const auto take = [&] { return impl_->socket.recv(received, zmq::recv_flags::dontwait); };
@@ -253,6 +244,9 @@ std::optional<Message> Socket::receive() {
   message.impl_->is_part = follows || received.more();
   message.impl_->is_last = !received.more();
   message.impl_->message = std::move(received);
+  if (impl_->guard() != nullptr && message.is_last()) {
+    message.impl_->cookie = impl_->guard()->delivered(message.connection().descriptor);
+  }
   return message;
 }
 
@@ -262,18 +256,34 @@ bool Socket::send(std::span<const std::byte> bytes) {
   return unbroken(give).has_value();
 }
 
-bool Socket::send_parts(std::span<const Part> parts) {
+namespace {
+
+/// Without waiting. A router refuses the first part when its peer has left or reads too slowly; the
+/// parts after it are accepted.
+Sending send_now(zmq::socket_t& socket, zmq::message_t& message, zmq::send_flags flags) {
+  try {
+    const auto give = [&] { return socket.send(message, flags | zmq::send_flags::dontwait); };
+    return unbroken(give) ? Sending::sent : Sending::queue_full;
+  } catch (const zmq::error_t& error) {
+    if (error.num() != EHOSTUNREACH) throw;
+    return Sending::peer_gone;
+  }
+}
+
+}  // namespace
+
+Sending Socket::send_parts(std::span<const Part> parts) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     auto owner = std::make_unique<std::shared_ptr<const void>>(parts[i].owner);
     // ZeroMQ only reads what is sent
     auto* bytes = const_cast<std::byte*>(parts[i].bytes.data());
     zmq::message_t message(bytes, parts[i].bytes.size(), let_go, owner.get());
     owner.release();  // NOLINT(bugprone-unused-return-value): the message has it
-    const auto flags = i + 1 < parts.size() ? zmq::send_flags::sndmore | zmq::send_flags::dontwait
-                                            : zmq::send_flags::dontwait;
-    if (!unbroken([&] { return impl_->socket.send(message, flags); })) return false;
+    const auto flags = i + 1 < parts.size() ? zmq::send_flags::sndmore : zmq::send_flags::none;
+    const Sending sending = send_now(impl_->socket, message, flags);
+    if (sending != Sending::sent) return sending;
   }
-  return true;
+  return Sending::sent;
 }
 
 std::string Socket::bound_to() const {
@@ -325,42 +335,55 @@ bool Socket::publish(std::span<const std::byte> bytes, std::chrono::milliseconds
 
 SubscriptionCount Socket::subscriptions(std::span<const std::string> topics) {
   if (impl_->socket.get(zmq::sockopt::type) != ZMQ_XPUB) return {};
-  while (std::optional<Message> message = receive()) {
-    // a byte, 1 for a subscription and 0 for its end, and the topic
-    const std::span<const std::byte> bytes = message->bytes();
-    if (bytes.empty() || bytes.size() > kLongestTopic || std::to_integer<int>(bytes[0]) > 1) {
-      continue;
-    }
-    const std::string topic(reinterpret_cast<const char*>(bytes.data()) + 1, bytes.size() - 1);
-    const int connection = connection_of(message->impl_->message);
-    if (bytes[0] == std::byte{1}) {
-      impl_->subscriptions.add(connection, topic);
-    } else {
-      impl_->subscriptions.remove(connection, topic);
-    }
+  constexpr int kMaxAtOnce = 1000;  // others wait until the caller has done something else
+  for (int i = 0; i < kMaxAtOnce; ++i) {
+    const std::optional<Message> message = receive();
+    if (!message) break;
+    note_subscription(*message);
   }
   return {.is_known = true, .subscribers = impl_->subscriptions.subscribers(topics)};
 }
 
-std::vector<PeerEvent> Socket::events() {
-  std::vector<PeerEvent> found;
-  zmq::message_t head;
-  zmq::message_t address;
-  while (impl_->monitor.recv(head, zmq::recv_flags::dontwait)) {
-    if (head.more()) (void)impl_->monitor.recv(address, zmq::recv_flags::none);
-    std::uint16_t event = 0;
-    if (head.size() < sizeof(event)) continue;
-    std::memcpy(&event, head.data(), sizeof(event));
-    if (event == ZMQ_EVENT_HANDSHAKE_SUCCEEDED) {
-      found.push_back(PeerEvent::joined);
-    } else if (event == ZMQ_EVENT_DISCONNECTED) {
-      found.push_back(PeerEvent::left);
-    } else {
-      found.push_back(PeerEvent::refused);
-    }
+/// The message is a byte, 1 for a subscription and 0 for its end, and the topic.
+void Socket::note_subscription(const Message& message) {
+  const SubscriptionLimits& limits = impl_->subscription_limits;
+  const std::span<const std::byte> bytes = message.bytes();
+  const ConnectionId connection = message.connection();
+  if (bytes.empty() || std::to_integer<int>(bytes[0]) > 1) {
+    return cut_off(connection, "stranger refused",
+                   "a peer sent a message to the port of the clouds, which takes none");
   }
+  if (bytes.size() > 1 + limits.topic_bytes) {
+    return cut_off(connection, "subscription limit",
+                   "a topic has " + std::to_string(bytes.size() - 1) + " bytes; allowed are " +
+                       std::to_string(limits.topic_bytes) + " (--limit topic-bytes)");
+  }
+  const std::string topic(reinterpret_cast<const char*>(bytes.data()) + 1, bytes.size() - 1);
+  if (bytes[0] == std::byte{0}) return impl_->subscriptions.remove(connection.descriptor, topic);
+  if (impl_->subscriptions.add(connection.descriptor, topic) <= limits.subscriptions) return;
+  cut_off(connection, "subscription limit",
+          "a peer has more than " + std::to_string(limits.subscriptions) +
+              " subscriptions (--limit subscriptions)");
+}
+
+std::vector<PeerEvent> Socket::events() {
+  if (!impl_->monitor) return {};
+  std::vector<PeerEvent> found = impl_->monitor->events();
   notice_news(impl_->socket);  // who joined again is subscribed to anew before it is told
   return found;
+}
+
+void Socket::cut_off(const ConnectionId& connection, const std::string& fault,
+                     const std::string& why) {
+  if (impl_->guard() != nullptr) impl_->guard()->cut_off(connection, fault, why);
+}
+
+std::uint64_t Socket::taken_bytes(const ConnectionId& connection) const {
+  return impl_->guard() != nullptr ? impl_->guard()->taken_bytes(connection) : 0;
+}
+
+bool Socket::is_open(const ConnectionId& connection) const {
+  return impl_->guard() == nullptr || impl_->guard()->is_open(connection);
 }
 
 void wait_for(std::initializer_list<const Socket*> sockets, int descriptor,

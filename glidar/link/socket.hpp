@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/link/connection_guard.hpp>
+#include <glidar/link/endpoint.hpp>
 #include <glidar/link/payload.hpp>
 
 #include <chrono>
@@ -34,17 +36,6 @@ class Context {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A place in the network: an IPv4 address, a name, or "*" for all of this machine. Or, within this
-/// machine, a file that sockets of its file system meet at.
-struct Endpoint {
-  std::string host;
-  std::uint16_t port = 0;  ///< 0: any that is free
-  std::string path = {};   ///< of the file; empty: host and port
-};
-std::string text_of(const Endpoint& endpoint);
-/// Of "tcp://HOST:PORT" or "ipc://PATH"; throws Error on anything else.
-Endpoint parse_endpoint(const std::string& text);
-
 /// Keys of CURVE (https://rfc.zeromq.org/spec/26), 40 letters of Z85 each.
 struct CurveKeys {
   std::string public_key;
@@ -52,12 +43,30 @@ struct CurveKeys {
 };
 CurveKeys make_curve_keys();
 
-enum class SocketKind : std::uint8_t { publish, subscribe, request, reply };
+enum class SocketKind : std::uint8_t {
+  publish,
+  subscribe,
+  request,
+  reply,
+  router  ///< answers many requests at once; see Router
+};
 
 /// What ZeroMQ reports of subscribers: how many connections have subscribed to a topic.
 struct SubscriptionCount {
   bool is_known = false;  ///< not of sockets that keep the newest message only
   std::uint64_t subscribers = 0;
+};
+
+/// Limits of a socket that listens, and who is told of what exceeds them; must outlive it.
+struct Protection {
+  ConnectionLimits limits;
+  FaultLog& faults;
+};
+
+/// What one subscriber may subscribe to.
+struct SubscriptionLimits {
+  std::size_t subscriptions = 64;
+  std::size_t topic_bytes = 64;
 };
 
 struct SocketOptions {
@@ -71,16 +80,18 @@ struct SocketOptions {
   bool is_watched = false;              ///< events() tells of its connections
   /// Of who listens: peers must know the public key, and all is encrypted. Empty: anybody may.
   std::optional<CurveKeys> curve = {};
+  std::optional<Protection> protection = {};  ///< empty: any number of connections
+  SubscriptionLimits subscriptions = {};
 };
+
+/// What became of a message. No other peer is affected in any case.
+enum class Sending : std::uint8_t { sent, queue_full, peer_gone };
 
 /// One part of a message, and who keeps its bytes until they are sent.
 struct Part {
   std::span<const std::byte> bytes;
   std::shared_ptr<const void> owner;
 };
-
-/// What happened to a socket's connections.
-enum class PeerEvent : std::uint8_t { joined, left, refused };
 
 /// Bytes of a message that was received; valid until it is destroyed.
 class Message {
@@ -94,6 +105,8 @@ class Message {
   [[nodiscard]] bool is_whole() const;
   /// False when another part follows, which is here too.
   [[nodiscard]] bool is_last() const;
+  /// That it came by. The cookie is known of the last part, where the socket has protection.
+  [[nodiscard]] ConnectionId connection() const;
 
  private:
   friend class Socket;
@@ -117,11 +130,15 @@ class Socket {
   /// Where it listens, with the port that was free.
   [[nodiscard]] std::string bound_to() const;
 
+  /// Replaces the option, for what is unsent when it is closed.
+  void set_linger(std::chrono::milliseconds linger);
+
   std::optional<Message> receive();
   /// To the one peer; false: there is none or its queue is full.
   bool send(std::span<const std::byte> bytes);
-  /// The same of several parts, none of which is copied; their owners are let go in another thread.
-  bool send_parts(std::span<const Part> parts);
+  /// The same of several parts, none of which is copied; their owners are released in another
+  /// thread. A router sends to the peer whose identity is the first part.
+  Sending send_parts(std::span<const Part> parts);
 
   /// To all subscribers, without a copy. False: the queue of one or more was full, and these miss
   /// it, if they want its topic.
@@ -134,8 +151,15 @@ class Socket {
   /// What happened since the last call, if it is watched; to be called now and then, as what is not
   /// taken is kept.
   std::vector<PeerEvent> events();
+  /// Closes a connection, if the socket has protection, and reports it as a fault of this kind.
+  void cut_off(const ConnectionId& connection, const std::string& fault, const std::string& why);
+  /// What the peer has received of what was sent to it; 0: not known, or without protection.
+  [[nodiscard]] std::uint64_t taken_bytes(const ConnectionId& connection) const;
+  /// False: it has ended; true without protection.
+  [[nodiscard]] bool is_open(const ConnectionId& connection) const;
 
  private:
+  void note_subscription(const Message& message);
   [[nodiscard]] bool has_full_queue() const;
 
   friend void wait_for(std::initializer_list<const Socket*>, int, std::chrono::milliseconds);

@@ -14,35 +14,39 @@ bool begins_any(const std::string& begin, std::span<const std::string> topics) {
 
 }  // namespace
 
-void SubscriptionTable::add(int connection, const std::string& topic) {
-  ++connections_[connection][topic];
+std::size_t SubscriptionTable::add(int connection, const std::string& topic) {
+  Connection& subscriber = connections_[connection];
+  ++subscriber.topics[topic];
+  return ++subscriber.subscriptions;
 }
 
 void SubscriptionTable::remove(int connection, const std::string& topic) {
   auto found = connections_.find(connection);
   if (connection == kUnknownConnection &&
-      (found == connections_.end() || found->second.count(topic) == 0)) {
+      (found == connections_.end() || found->second.topics.count(topic) == 0)) {
     // a connection's number may be used again before the end of the first one is reported, so the
     // one that has the topic twice goes first
     const auto rank = [&topic](const auto& entry) {
-      const auto subscriptions = entry.second.find(topic);
-      if (subscriptions == entry.second.end()) return entry.second.size() + 2;
-      return subscriptions->second > 1 ? std::size_t{0} : entry.second.size();
+      const Topics& topics = entry.second.topics;
+      const auto subscriptions = topics.find(topic);
+      if (subscriptions == topics.end()) return topics.size() + 2;
+      return subscriptions->second > 1 ? std::size_t{0} : topics.size();
     };
     found = std::min_element(connections_.begin(), connections_.end(),
                              [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
   }
-  if (found == connections_.end() || found->second.count(topic) == 0) return;
-  Topics& topics = found->second;
+  if (found == connections_.end() || found->second.topics.count(topic) == 0) return;
+  Topics& topics = found->second.topics;
+  --found->second.subscriptions;
   if (--topics[topic] == 0) topics.erase(topic);
   if (topics.empty()) connections_.erase(found);
 }
 
 std::uint64_t SubscriptionTable::subscribers(std::span<const std::string> topics) const {
   std::uint64_t count = 0;
-  for (const auto& [connection, subscribed] : connections_) {
+  for (const auto& [connection, subscriber] : connections_) {
     std::uint64_t wanted = 0;
-    for (const auto& [topic, subscriptions] : subscribed) {
+    for (const auto& [topic, subscriptions] : subscriber.topics) {
       if (begins_any(topic, topics)) wanted += subscriptions;
     }
     count += connection == kUnknownConnection ? wanted : std::min<std::uint64_t>(wanted, 1);

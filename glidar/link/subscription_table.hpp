@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -16,8 +17,9 @@ class SubscriptionTable {
   /// For reports that do not name their connection: those of connections that ended.
   static constexpr int kUnknownConnection = -1;
 
-  /// Without a connection each subscription counts as a subscriber of its own.
-  void add(int connection, const std::string& topic);
+  /// Returns how many subscriptions the connection has now. Without a connection each subscription
+  /// counts as a subscriber of its own.
+  std::size_t add(int connection, const std::string& topic);
   /// Without a connection any one that has this topic loses it: the one with the fewest topics.
   void remove(int connection, const std::string& topic);
 
@@ -28,7 +30,11 @@ class SubscriptionTable {
  private:
   using Topics = std::map<std::string, std::uint64_t>;  ///< subscriptions of each
 
-  std::map<int, Topics> connections_;
+  struct Connection {
+    Topics topics;
+    std::size_t subscriptions = 0;  ///< of all topics
+  };
+  std::map<int, Connection> connections_;
 };
 
 }  // namespace glidar::link

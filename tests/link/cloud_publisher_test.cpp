@@ -6,6 +6,7 @@
 
 #include "loopback.hpp"
 #include "message_bytes.hpp"
+#include "raw_peer.hpp"
 #include "support/error_text.hpp"
 
 #include <gmock/gmock.h>
@@ -236,6 +237,17 @@ TEST_F(CloudPublisherTest, AnswersAHandshakeWithContentsAndSaysSo) {
   }));
   EXPECT_TRUE(soon([&] { return hand.receive().has_value(); }));
   EXPECT_THAT(said, ::testing::ElementsAre(HasSubstr("more than the empty message")));
+}
+
+TEST_F(CloudPublisherTest, AnswersEveryHandshakeAmongPeersThatSendGarbage) {
+  publish();
+  const link::Endpoint hands = {endpoint.host, static_cast<std::uint16_t>(endpoint.port + 1)};
+  const std::vector<testing::Garbage> garbage = testing::garbage();
+  for (std::size_t k = 0; k < 4 * garbage.size(); ++k) {
+    const testing::RawPeer stranger = testing::stranger(hands, garbage[k % garbage.size()]);
+    const link::Socket hand = shaken_hand();
+  }
+  EXPECT_GE(publisher->counts().handshakes, 4 * garbage.size());
 }
 
 TEST_F(CloudPublisherTest, SendsACloudOncePerTimestamp) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/legacy/cloud_publisher.hpp>
 
+#include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstring>
 #include <sstream>
@@ -13,26 +15,45 @@ namespace {
 
 using std::chrono_literals::operator""ms;
 
-/// For the last messages, when a subscriber is slow.
-constexpr auto kPatience = 1000ms;
 /// With keeps_newest ZeroMQ reports connections but no subscriptions, which come right after.
 constexpr auto kSettling = 1000ms;
 constexpr auto kLook = 10ms;
 constexpr std::int64_t kLargestHandshakeBytes = 1024;
+/// So that a flood of handshakes does not stop the clouds.
+constexpr int kMaxHandshakesAtOnce = 64;
 
-link::SocketOptions cloud_socket(const CloudPublisherOptions& options) {
+const std::array<link::Part, 1> kEmpty;
+
+/// Of ZeroMQ's handshake too.
+constexpr std::int64_t kLargestSubscription_bytes = 1024;
+
+/// Peers send subscriptions and empty messages only.
+link::Protection protection_of(const CloudPublisherOptions& options, link::FaultLog& faults) {
+  constexpr std::uint64_t kUnread_bytes = std::uint64_t{64} << 10;
+  constexpr std::uint64_t kAllUnread_bytes = std::uint64_t{1} << 20;
+  return {.limits = link::connection_limits(options.limits, kUnread_bytes, kAllUnread_bytes),
+          .faults = faults};
+}
+
+link::SocketOptions cloud_socket(const CloudPublisherOptions& options, link::FaultLog& faults) {
+  const link::Limits& limits = options.limits;
   return {.kind = link::SocketKind::publish,
           .send_queue = options.queue,
           .keeps_newest = options.keeps_newest,
-          .linger = kPatience,
-          .is_watched = true};
+          .largest_message_bytes = kLargestSubscription_bytes,
+          .is_watched = true,
+          .protection = protection_of(options, faults),
+          .subscriptions = {.subscriptions = static_cast<std::size_t>(limits.subscriptions),
+                            .topic_bytes = static_cast<std::size_t>(limits.topic_bytes)}};
 }
 
-link::SocketOptions handshake_socket_options() {
-  return {.kind = link::SocketKind::reply,
+link::SocketOptions handshakes_socket(const CloudPublisherOptions& options,
+                                      link::FaultLog& faults) {
+  return {.send_queue = kMaxHandshakesAtOnce,
+          .receive_queue = kMaxHandshakesAtOnce,
           .largest_message_bytes = kLargestHandshakeBytes,
-          .linger = kPatience,
-          .is_watched = true};
+          .is_watched = true,
+          .protection = protection_of(options, faults)};
 }
 
 }  // namespace
@@ -45,8 +66,8 @@ CloudPublisher::CloudPublisher(link::Context& context, const CloudPublisherOptio
                                link::FaultLog& faults)
     : options_(options),
       faults_(faults),
-      clouds_(context, cloud_socket(options)),
-      handshakes_(context, handshake_socket_options()) {
+      clouds_(context, cloud_socket(options, faults)),
+      handshakes_(context, handshakes_socket(options, faults), faults) {
   clouds_.bind(options.endpoint);
   handshakes_.bind({options.endpoint.host, static_cast<std::uint16_t>(options.endpoint.port + 1)});
 }
@@ -105,20 +126,25 @@ void CloudPublisher::serve() {
   notice_peers();
 }
 
-void CloudPublisher::shut_down() {
+void CloudPublisher::shut_down(std::chrono::milliseconds patience) {
   serve();
-  const auto until = std::chrono::steady_clock::now() + kPatience;
+  clouds_.set_linger(patience);
+  handshakes_.socket().set_linger(patience);
+  const auto until = std::chrono::steady_clock::now() + patience;
   while (!is_settled() && std::chrono::steady_clock::now() < until) {
     link::wait_for({&clouds_}, -1, kLook);
     serve();
   }
-  if (match_.pending() > 0) give_up_subscriptions(kPatience);
+  if (match_.pending() > 0) give_up_subscriptions(patience);
   // the clouds' topics last: with keeps_newest only the last message is sure to arrive
   std::vector<std::string> ending = {"p", "P"};
   for (const auto& [sensor, topic] : topics_) ending.push_back(topic);
   ending.emplace_back(1, kCloudTopic);
+  const auto queues_until = std::chrono::steady_clock::now() + patience;
   for (const std::string& topic : ending) {
-    if (clouds_.publish(encode_shutdown(topic), kPatience)) continue;
+    const auto left = std::chrono::ceil<std::chrono::milliseconds>(
+        queues_until - std::chrono::steady_clock::now());
+    if (clouds_.publish(encode_shutdown(topic), std::max(left, 0ms))) continue;
     faults_.tell("shutdown missed", "a subscriber does not read; it may wait for more clouds");
   }
 }
@@ -142,14 +168,17 @@ std::uint64_t CloudPublisher::timestamp_of(const Frame& frame) {
 }
 
 void CloudPublisher::answer_handshakes() {
-  while (const std::optional<link::Message> request = handshakes_.receive()) {
-    if (!request->is_last()) continue;  // a reply is due after the last part
-    if (!request->bytes().empty() || !request->is_whole()) {
+  for (int i = 0; i < kMaxHandshakesAtOnce; ++i) {
+    const std::optional<link::Delivered> request = handshakes_.receive();
+    if (!request) return;
+    if (!request->body.bytes().empty() || !request->is_single) {
       faults_.tell("odd handshake",
                    "a subscriber sent more than the empty message that 2015's protocol has; "
                    "answered all the same");
     }
-    handshakes_.send({});
+    if (handshakes_.reply(request->from, kEmpty) != link::Sending::sent) {
+      faults_.tell("handshake not answered", "the peer has left, or reads no replies");
+    }
     ++counts_.handshakes;
     match_.add_handshake();
     last_handshake_ = last_change_ = std::chrono::steady_clock::now();
@@ -177,7 +206,7 @@ void CloudPublisher::notice_peers() {
       faults_.tell("stranger refused", "something that is no subscriber came to the clouds' port");
     }
   }
-  for (const link::PeerEvent event : handshakes_.events()) {
+  for (const link::PeerEvent event : handshakes_.socket().events()) {
     if (event != link::PeerEvent::refused) continue;
     faults_.tell("stranger refused",
                  "something else than a subscriber came to the handshakes' port");

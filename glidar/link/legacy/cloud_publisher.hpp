@@ -6,7 +6,7 @@
 #include <glidar/link/fault_log.hpp>
 #include <glidar/link/legacy/handshake_match.hpp>
 #include <glidar/link/legacy/legacy_codec.hpp>
-#include <glidar/link/socket.hpp>
+#include <glidar/link/router.hpp>
 
 #include <chrono>
 #include <cstdint>
@@ -29,6 +29,7 @@ struct CloudPublisherOptions {
   bool keeps_newest = false;     ///< slow subscribers get the newest cloud only
   int queue = 32;                ///< clouds that wait for each subscriber; 0: any number
   std::uint32_t every = 1;       ///< publishes only every so many frames, from the first on
+  link::Limits limits = {};
   Timestamps timestamps = Timestamps::counted;
   /// How long the first cloud waits for the subscription of a peer that has shaken hands.
   std::chrono::milliseconds subscription_timeout{10'000};
@@ -65,11 +66,11 @@ class CloudPublisher final : public CloudSink {
   [[nodiscard]] bool has(std::uint64_t subscribers);
   /// Handshakes whose subscription has arrived.
   [[nodiscard]] std::uint64_t ready() const { return match_.matched(); }
-  /// Tells subscribers that it is over; waits up to a second for subscriptions that are missing,
-  /// and another one for full queues.
-  void shut_down();
+  /// Tells subscribers that it is over; waits so long at most for subscriptions that are missing,
+  /// again for full queues, and, when it is destroyed, again for what is on its way.
+  void shut_down(std::chrono::milliseconds patience = std::chrono::seconds(1));
 
-  [[nodiscard]] const link::Socket& handshake_socket() const { return handshakes_; }
+  [[nodiscard]] const link::Socket& handshake_socket() const { return handshakes_.socket(); }
 
   struct Counts {
     std::uint64_t handshakes = 0;
@@ -95,7 +96,7 @@ class CloudPublisher final : public CloudSink {
   CloudPublisherOptions options_;
   link::FaultLog& faults_;
   link::Socket clouds_;
-  link::Socket handshakes_;
+  link::Router handshakes_;
   std::shared_ptr<link::PayloadPool> pool_ = std::make_shared<link::PayloadPool>();
   std::map<std::uint32_t, std::uint64_t> counted_;          ///< clouds of each sensor
   std::map<std::uint32_t, std::string> topics_;             ///< by sensor

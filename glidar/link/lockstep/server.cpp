@@ -4,6 +4,7 @@
 
 #include <glidar/core/error.hpp>
 
+#include <cstring>
 #include <utility>
 #include <vector>
 
@@ -16,67 +17,192 @@ link::Part part_of(std::vector<std::byte> bytes) {
   return {.bytes = *owner, .owner = owner};
 }
 
-link::SocketOptions socket_options(const ServerOptions& options) {
+link::SocketOptions socket_options(const ServerOptions& options, link::FaultLog& faults) {
   constexpr std::chrono::milliseconds kLinger{500};  // for the last reply
-  return {.kind = link::SocketKind::reply,
-          .largest_message_bytes = static_cast<std::int64_t>(kLargestRequest_bytes),
+  constexpr std::uint64_t kTogether = 4;  // clients that send requests of the maximum size at once
+  const link::Limits& limits = options.limits;
+  const auto request_bytes = static_cast<std::uint64_t>(link::bytes_of_mib(limits.request_mib));
+  const auto queue = static_cast<int>(limits.requests);
+  return {.send_queue = 2 * queue,  // and errors that refuse what exceeds it
+          .receive_queue = queue,
+          .largest_message_bytes = static_cast<std::int64_t>(request_bytes),
           .linger = kLinger,
-          .curve = options.curve};
+          .curve = options.curve,
+          .protection = link::Protection{
+              .limits = link::connection_limits(limits, request_bytes, kTogether * request_bytes),
+              .faults = faults}};
 }
+
+/// A reply on its way; ends in ZeroMQ's thread, once it was handed to the system or its client has
+/// left.
+struct Sent {
+  std::vector<link::Part> parts;
+  std::shared_ptr<Unread> client;
+  std::shared_ptr<Unread> all;
+  std::int64_t bytes = 0;
+
+  void count(std::int64_t sign) const {
+    for (const auto& unread : {client, all}) {
+      unread->replies += sign;
+      unread->bytes += sign * bytes;
+    }
+  }
+  Sent(std::vector<link::Part> all_parts, std::shared_ptr<Unread> of_client,
+       std::shared_ptr<Unread> of_all)
+      : parts(std::move(all_parts)), client(std::move(of_client)), all(std::move(of_all)) {
+    for (const link::Part& part : parts) bytes += static_cast<std::int64_t>(part.bytes.size());
+    count(1);
+  }
+  Sent(const Sent&) = delete;
+  Sent& operator=(const Sent&) = delete;
+  ~Sent() { count(-1); }
+};
 
 }  // namespace
 
 Server::Server(link::Context& context, const ServerOptions& options, link::FaultLog& faults)
-    : faults_(faults), socket_(context, socket_options(options)) {
-  socket_.bind(options.endpoint);
+    : limits_(options.limits),
+      faults_(faults),
+      router_(context, socket_options(options, faults), faults),
+      queue_(options.limits) {
+  router_.bind(options.endpoint);
 }
 
-std::optional<Request> Server::receive() {
-  std::optional<link::Message> message = socket_.receive();
-  if (!message) return std::nullopt;
-  ++counts_.received;
-  const bool is_single = message->is_whole();
-  while (!message->is_last()) message = socket_.receive();  // parts come together
+std::optional<Received> Server::receive() {
+  constexpr int kMaxRefused = 16;  // before the caller gets its turn
+  collect();
+  look_after_clients(std::chrono::seconds(limits_.request_s));
+  for (int i = 0; i < kMaxRefused; ++i) {
+    std::optional<Waiting> waiting = queue_.next();
+    if (!waiting) return std::nullopt;
+    ReplyTo to{.from = waiting->message.from, .since = waiting->since};
+    if (!is_wanted(to)) {
+      drop(to);
+    } else if (std::optional<Request> request = read(*waiting, to)) {
+      return Received{std::move(*request), std::move(to)};
+    }
+  }
+  return std::nullopt;
+}
+
+/// Takes what has arrived. What one client sends too much is refused here, so that it neither fills
+/// the memory nor delays others.
+void Server::collect() {
+  constexpr int kMaxAtOnce = 256;
+  const Clock::time_point now = Clock::now();
+  for (int i = 0; i < kMaxAtOnce; ++i) {
+    std::optional<link::Delivered> message = router_.receive();
+    if (!message) return;
+    ++counts_.received;
+    const std::string why = queue_.add(*message, now);
+    if (!why.empty()) refuse(*message, why);
+  }
+}
+
+/// The one in work goes on.
+void Server::refuse(const link::Delivered& message, std::string_view why) {
+  constexpr std::size_t kIdAt = 8;
+  const Bytes bytes = message.body.bytes();
   std::uint64_t id = 0;
+  if (bytes.size() >= kIdAt + sizeof(id)) std::memcpy(&id, bytes.data() + kIdAt, sizeof(id));
+  ++counts_.refused;
+  faults_.tell("requests refused", why);
+  const link::ReturnAddress& to = message.from;
+  const auto text = std::as_bytes(std::span(why));
+  const std::vector<link::Part> parts = {part_of(encode_text_head(id, TextKind::error)),
+                                         part_of({text.begin(), text.end()})};
+  (void)router_.reply(to, parts);  // of one that does not read
+}
+
+std::optional<Request> Server::read(const Waiting& waiting, ReplyTo& to) {
   try {
-    if (!is_single) {
+    if (!waiting.message.is_single) {
       throw Error({"request", "a message of several parts", "one part", ""});
     }
-    return decode_request(message->bytes(), id);
+    return decode_request(waiting.message.body.bytes(), to.id);
   } catch (const Error& error) {
-    reply_error(id, error.what());
+    reply_error(to, error.what());
     return std::nullopt;
   }
 }
 
-void Server::reply(std::uint64_t id, std::span<const CloudReply> clouds) {
+void Server::look_after_clients(std::chrono::seconds patience) {
+  constexpr std::chrono::milliseconds kPause{100};
+  const Clock::time_point now = Clock::now();
+  if (now - looked_ < kPause) return;
+  looked_ = now;
+  queue_.look(
+      now, patience,
+      [this](const link::ConnectionId& client) { return router_.socket().taken_bytes(client); },
+      [this](const link::ConnectionId& client) {
+        router_.socket().cut_off(client, "client cut off", "it does not read its replies");
+      });
+}
+
+bool Server::is_wanted(const ReplyTo& to) const {
+  return router_.socket().is_open(to.from.connection);
+}
+
+void Server::drop(const ReplyTo& to) {
+  queue_.done(to.from.client);
+  reserved_bytes_ -= to.reserved_bytes;
+}
+
+bool Server::reserve(ReplyTo& to, std::int64_t bytes) {
+  if (to.reserved_bytes > 0) return true;
+  const std::int64_t used = queue_.waiting_bytes() + queue_.all_unread()->bytes + reserved_bytes_;
+  if (used > 0 && used + bytes > link::bytes_of_mib(limits_.memory_mib)) {
+    look_after_clients(std::chrono::seconds(1));
+    return false;
+  }
+  to.reserved_bytes = bytes;
+  reserved_bytes_ += bytes;
+  return true;
+}
+
+void Server::reply(const ReplyTo& to, std::span<const CloudReply> clouds) {
   std::vector<CloudHead> heads;
   for (const CloudReply& reply : clouds) heads.push_back(reply.head);
-  std::vector<link::Part> parts = {part_of(encode_head(id, heads, *clouds.front().cloud))};
+  std::vector<link::Part> parts = {part_of(encode_head(to.id, heads, *clouds.front().cloud))};
   for (const CloudReply& reply : clouds) {
     for (const Column& column : reply.cloud->columns) {
       parts.push_back({.bytes = bytes_of(column), .owner = reply.cloud});
     }
   }
   counts_.clouds += clouds.size();
-  if (!socket_.send_parts(parts)) faults_.tell("replies not sent", "the client's queue is full");
+  send(to, std::move(parts));
 }
 
-void Server::reply_text(std::uint64_t id, TextKind kind, std::string_view text) {
+void Server::reply_text(const ReplyTo& to, TextKind kind, std::string_view text) {
   const auto bytes = std::as_bytes(std::span(text));
-  const std::vector<link::Part> parts = {part_of(encode_text_head(id, kind)),
-                                         part_of({bytes.begin(), bytes.end()})};
-  if (!socket_.send_parts(parts)) faults_.tell("replies not sent", "the client's queue is full");
+  send(to, {part_of(encode_text_head(to.id, kind)), part_of({bytes.begin(), bytes.end()})});
 }
 
-void Server::reply_error(std::uint64_t id, std::string_view text) {
+/// A client that has left needs no reply.
+void Server::send(const ReplyTo& to, std::vector<link::Part> parts) {
+  drop(to);
+  const auto sent = std::make_shared<const Sent>(std::move(parts), queue_.unread_of(to.from),
+                                                 queue_.all_unread());
+  std::vector<link::Part> shared = sent->parts;
+  for (link::Part& part : shared) part.owner = sent;
+  if (router_.reply(to.from, shared) != link::Sending::queue_full) return;
+  faults_.tell("replies not sent", "the client does not read them");
+}
+
+void Server::reply_error(const ReplyTo& to, std::string_view text) {
   ++counts_.refused;
   faults_.tell("requests refused", text);
-  reply_text(id, TextKind::error, text);
+  reply_text(to, TextKind::error, text);
 }
 
-void Server::reply_description(std::uint64_t id, std::string_view json) {
-  reply_text(id, TextKind::description, json);
+void Server::reply_description(const ReplyTo& to, std::string_view json) {
+  reply_text(to, TextKind::description, json);
+}
+
+std::chrono::milliseconds Server::patience() const {
+  constexpr std::chrono::milliseconds kIdle{1000};
+  constexpr std::chrono::milliseconds kBusy{50};
+  return queue_.has_clients() ? kBusy : kIdle;
 }
 
 }  // namespace glidar::lockstep

@@ -1,0 +1,306 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/connection_guard.hpp>
+
+#include <fcntl.h>
+#include <linux/tcp.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <utility>
+
+namespace glidar::link {
+namespace {
+
+/// Handshakes and heartbeats of ZeroMQ are bytes without a message: so many a second are free.
+constexpr double kFreeBytes_per_s = 32.0;
+constexpr std::uint64_t kFreeBytes = 4096;
+
+/// Connections that have asked for nothing for so long make room for new ones.
+constexpr std::chrono::seconds kGrace{1};
+
+/// Connections that may have been accepted before new ones could be held back.
+constexpr std::size_t kBacklog = 64;
+
+/// Those below are needed to write a file.
+constexpr int kLastDescriptors = 8;
+
+/// Identifies a socket as long as the system runs; 0: the descriptor is no socket.
+std::uint64_t cookie_of(int descriptor) {
+  std::uint64_t cookie = 0;
+  socklen_t size = sizeof(cookie);
+  return ::getsockopt(descriptor, SOL_SOCKET, SO_COOKIE, &cookie, &size) == 0 ? cookie : 0;
+}
+
+/// The kernel's counts of a TCP connection; zeros of others.
+tcp_info info_of(int descriptor) {
+  tcp_info info{};
+  socklen_t size = sizeof(info);
+  if (::getsockopt(descriptor, IPPROTO_TCP, TCP_INFO, &info, &size) != 0) return {};
+  return info;
+}
+
+/// What the kernel has received, read or not.
+std::uint64_t received_bytes(int descriptor) {
+  return info_of(descriptor).tcpi_bytes_received;
+}
+
+/// Ends a connection, whoever has its descriptor. Another socket that got its number meanwhile is
+/// left alone.
+void shut_down(int descriptor, std::uint64_t cookie) {
+  const int held = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);  // is not given to another meanwhile
+  const int used = held >= 0 ? held : descriptor;
+  if (cookie_of(used) == cookie) {
+    const linger abort = {.l_onoff = 1, .l_linger = 0};  // a peer that still sends notices at once
+    ::setsockopt(used, SOL_SOCKET, SO_LINGER, &abort, sizeof(abort));
+    ::shutdown(used, SHUT_RDWR);
+  }
+  if (held >= 0) ::close(held);
+}
+
+/// Descriptors that are left to files and other sockets.
+int reserved_descriptors() {
+  return std::clamp(descriptor_limit() / 4, 16, 256);
+}
+
+bool has_few_descriptors() {
+  const int next = ::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0);
+  if (next >= 0) ::close(next);
+  return next < 0 || next >= descriptor_limit() - reserved_descriptors();
+}
+
+}  // namespace
+
+ConnectionLimits connection_limits(const Limits& limits, std::uint64_t unread_bytes,
+                                   std::uint64_t all_unread_bytes) {
+  return {.connections = static_cast<std::size_t>(limits.connections),
+          .connections_per_s = static_cast<double>(limits.connections_per_s),
+          .handshake = std::chrono::seconds(limits.handshake_s),
+          .unread_bytes = unread_bytes,
+          .all_unread_bytes = all_unread_bytes};
+}
+
+ConnectionGuard::ConnectionGuard(const ConnectionLimits& limits, FaultLog& faults,
+                                 bool keeps_events)
+    : limits_(limits),
+      faults_(faults),
+      keeps_events_(keeps_events),
+      allowance_(burst()),
+      refilled_(Clock::now()) {}
+
+void ConnectionGuard::on_listening(int descriptor) {
+  const std::lock_guard lock(mutex_);
+  listener_.emplace(descriptor);
+}
+
+void ConnectionGuard::on_accepted(int descriptor) {
+  const std::lock_guard lock(mutex_);
+  connections_[descriptor] = {.cookie = cookie_of(descriptor), .since = Clock::now()};
+  allowance_ -= 1.0;
+  const int last = descriptor_limit() - kLastDescriptors;
+  if (descriptor >= descriptor_limit() - reserved_descriptors()) hold_back_for_lack();
+  if (is_full()) hold_back();
+  if (descriptor >= last || open_connections() > 2 * limits_.connections + kBacklog) {
+    cut(connections_.find(descriptor), "", "");
+  }
+  if (allowance_ >= 1.0 || is_held_back()) return;
+  hold_back();
+  faults_.tell("connection rate",
+               "more than " + std::to_string(static_cast<int>(limits_.connections_per_s)) +
+                   " new connections per second (--limit connections-per-s); new ones wait");
+}
+
+void ConnectionGuard::on_accept_failed(int error) {
+  if (error != EMFILE && error != ENFILE) return;
+  const std::lock_guard lock(mutex_);
+  free_descriptors();
+}
+
+void ConnectionGuard::on_joined() {
+  const std::lock_guard lock(mutex_);
+  note(PeerEvent::joined);
+}
+
+void ConnectionGuard::on_left(int descriptor) {
+  const std::lock_guard lock(mutex_);
+  connections_.erase(descriptor);
+  if (!std::exchange(is_refused_, false)) note(PeerEvent::left);
+}
+
+/// ZeroMQ reports next that it left.
+void ConnectionGuard::on_refused() {
+  const std::lock_guard lock(mutex_);
+  is_refused_ = true;
+  if (events_.empty() || events_.back() != PeerEvent::refused) {  // one of many will do
+    note(PeerEvent::refused);
+  }
+}
+
+void ConnectionGuard::look() {
+  const std::lock_guard lock(mutex_);
+  std::erase_if(connections_, [](const auto& entry) {
+    return cookie_of(entry.first) != entry.second.cookie;  // it has ended
+  });
+  check_unread();
+  refill(Clock::now());
+  lacks_descriptors_ = lacks_descriptors_ && has_few_descriptors();
+  if (is_full()) make_room();
+  const double needed = std::max(1.0, burst() / 10.0);
+  if (is_held_back() && !is_full() && allowance_ >= needed) listener_->resume();
+}
+
+bool ConnectionGuard::needs_look() const {
+  const std::lock_guard lock(mutex_);
+  return !connections_.empty() || (listener_ && listener_->is_paused());
+}
+
+std::uint64_t ConnectionGuard::delivered(int descriptor) {
+  const std::lock_guard lock(mutex_);
+  const auto found = connections_.find(descriptor);
+  if (found == connections_.end()) return 0;
+  found->second.read_bytes = received_bytes(descriptor);
+  found->second.has_delivered = true;
+  return found->second.cookie;
+}
+
+void ConnectionGuard::cut_off(const ConnectionId& connection, const std::string& fault,
+                              const std::string& why) {
+  const std::lock_guard lock(mutex_);
+  const auto found = connections_.find(connection.descriptor);
+  if (found == connections_.end() || found->second.is_cut) return;
+  if (connection.cookie == 0 || connection.cookie == found->second.cookie) cut(found, fault, why);
+}
+
+bool ConnectionGuard::is_open(const ConnectionId& connection) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = connections_.find(connection.descriptor);
+  return connection.cookie == 0 ||
+         (found != connections_.end() && found->second.cookie == connection.cookie &&
+          !found->second.is_cut);
+}
+
+std::uint64_t ConnectionGuard::taken_bytes(const ConnectionId& connection) const {
+  return is_open(connection) ? info_of(connection.descriptor).tcpi_bytes_acked : 0;
+}
+
+std::vector<PeerEvent> ConnectionGuard::events() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(events_, {});
+}
+
+void ConnectionGuard::note(PeerEvent event) {
+  if (keeps_events_) events_.push_back(event);
+}
+
+void ConnectionGuard::refill(Clock::time_point now) {
+  const std::chrono::duration<double> passed = now - std::exchange(refilled_, now);
+  allowance_ = std::min(allowance_ + passed.count() * limits_.connections_per_s, burst());
+}
+
+/// Connections that may come at once.
+double ConnectionGuard::burst() const {
+  return std::max(static_cast<double>(limits_.connections), limits_.connections_per_s);
+}
+
+bool ConnectionGuard::is_full() const {
+  return lacks_descriptors_ || open_connections() >= limits_.connections;
+}
+
+/// The oldest connection that never asked for anything gives way to a new one.
+void ConnectionGuard::make_room() {
+  const Clock::time_point latest = Clock::now() - kGrace;
+  for (std::size_t open = open_connections(); is_full() && open > 0; --open) {
+    auto victim = connections_.end();
+    for (auto one = connections_.begin(); one != connections_.end(); ++one) {
+      const Connection& connection = one->second;
+      if (connection.is_cut || connection.has_delivered || connection.since > latest) continue;
+      if (victim == connections_.end() || connection.since < victim->second.since) victim = one;
+    }
+    if (victim == connections_.end()) return;
+    cut(victim, "connection limit",
+        "at most " + std::to_string(limits_.connections) +
+            " connections at a port (--limit connections): one that asked for nothing was closed");
+    if (lacks_descriptors_) return;  // one each time: its descriptor is not free yet
+  }
+}
+
+bool ConnectionGuard::is_held_back() const {
+  return listener_ && listener_->is_paused();
+}
+
+void ConnectionGuard::hold_back() {
+  if (listener_ && !listener_->is_paused()) listener_->pause();
+}
+
+/// None comes until there is room again.
+void ConnectionGuard::hold_back_for_lack() {
+  report_descriptors();
+  lacks_descriptors_ = true;
+  hold_back();
+}
+
+/// So that files can still be written: the newest connections go.
+void ConnectionGuard::free_descriptors() {
+  hold_back_for_lack();
+  const int first = descriptor_limit() - reserved_descriptors();
+  for (auto one = connections_.lower_bound(first); one != connections_.end(); ++one) {
+    if (!one->second.is_cut) cut(one, "", "");
+  }
+  if (listener_) listener_->discard_waiting();
+}
+
+void ConnectionGuard::report_descriptors() {
+  const char* const kind = "file descriptors used up";
+  if (faults_.counts().count(kind) > 0) return;  // once, of all ports
+  faults_.tell(kind,
+               "of " + std::to_string(descriptor_limit()) +
+                   ", the last ones are kept for files; new connections are closed. Raise the "
+                   "limit (ulimit -n) or lower --limit connections");
+}
+
+/// A message that never ends, or many that nobody has read yet.
+void ConnectionGuard::check_unread() {
+  const Clock::time_point now = Clock::now();
+  std::uint64_t all = 0;
+  std::uint64_t most = 0;
+  auto largest = connections_.end();
+  for (auto one = connections_.begin(); one != connections_.end(); ++one) {
+    const Connection& connection = one->second;
+    if (connection.is_cut) continue;
+    const std::chrono::duration<double> age = now - connection.since;
+    const std::uint64_t read = connection.read_bytes + kFreeBytes +
+                               static_cast<std::uint64_t>(age.count() * kFreeBytes_per_s);
+    const std::uint64_t received = received_bytes(one->first);
+    const std::uint64_t unread = received > read ? received - read : 0;
+    if (unread > limits_.unread_bytes) {
+      cut(one, "peer cut off",
+          "it sent " + std::to_string(unread) + " bytes that make no whole message; allowed are " +
+              std::to_string(limits_.unread_bytes));
+      continue;
+    }
+    all += unread;
+    if (unread > std::exchange(most, std::max(most, unread))) largest = one;
+  }
+  if (all <= limits_.all_unread_bytes) return;
+  cut(largest, "peer cut off",
+      "unfinished messages of all peers have " + std::to_string(all) + " bytes, allowed are " +
+          std::to_string(limits_.all_unread_bytes) + "; it sent the most");
+}
+
+void ConnectionGuard::cut(Connections::iterator connection, const std::string& fault,
+                          const std::string& why) {
+  connection->second.is_cut = true;
+  shut_down(connection->first, connection->second.cookie);
+  if (!fault.empty()) faults_.tell(fault, why);
+}
+
+std::size_t ConnectionGuard::open_connections() const {
+  return static_cast<std::size_t>(
+      std::count_if(connections_.begin(), connections_.end(),
+                    [](const auto& entry) { return !entry.second.is_cut; }));
+}
+
+}  // namespace glidar::link

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/endpoint.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <charconv>
+#include <string_view>
+
+namespace glidar::link {
+
+std::string text_of(const Endpoint& endpoint) {
+  if (!endpoint.path.empty()) return "ipc://" + endpoint.path;
+  return "tcp://" + endpoint.host + ":" +
+         (endpoint.port == 0 ? "*" : std::to_string(endpoint.port));
+}
+
+Endpoint parse_endpoint(const std::string& text) {
+  constexpr std::string_view kTcp = "tcp://";
+  constexpr std::string_view kIpc = "ipc://";
+  const auto refuse = [&](const char* remedy) {
+    throw Error({.where = "endpoint",
+                 .found = "'" + text + "'",
+                 .allowed = "tcp://HOST:PORT with a port up to 65535, or ipc://PATH",
+                 .remedy = remedy});
+  };
+  if (text.starts_with(kIpc)) {
+    constexpr std::size_t kLongest = 107;  // sun_path of unix(7)
+    const std::string path = text.substr(kIpc.size());
+    if (path.empty() || path.size() > kLongest) refuse("give a path of 1 to 107 letters");
+    return {.host = {}, .port = 0, .path = path};
+  }
+  const std::size_t colon = text.rfind(':');
+  if (!text.starts_with(kTcp) || colon <= kTcp.size()) refuse("for example tcp://127.0.0.1:5600");
+  Endpoint endpoint{.host = text.substr(kTcp.size(), colon - kTcp.size())};
+  const std::string_view port = std::string_view(text).substr(colon + 1);
+  if (port == "*") return endpoint;
+  const auto [stop, fault] = std::from_chars(port.data(), port.data() + port.size(), endpoint.port);
+  if (fault != std::errc() || stop != port.data() + port.size() || endpoint.port == 0) {
+    refuse("a port is a number from 1 to 65535, or * for any");
+  }
+  return endpoint;
+}
+
+}  // namespace glidar::link

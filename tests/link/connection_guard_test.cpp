@@ -1,0 +1,170 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/connection_guard.hpp>
+
+#include <glidar/link/router.hpp>
+
+#include "loopback.hpp"
+#include "message_bytes.hpp"
+#include "raw_peer.hpp"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <memory>
+#include <mutex>
+
+namespace glidar::link {
+namespace {
+
+using ::testing::HasSubstr;
+using testing::MessageBytes;
+using testing::RawPeer;
+using testing::soon;
+
+class ConnectionGuardTest : public ::testing::Test {
+ protected:
+  void listen(const ConnectionLimits& limits) {
+    router = testing::at_free_port([&](const Endpoint& at) {
+      endpoint = at;
+      auto made = std::make_unique<Router>(
+          context, SocketOptions{.protection = Protection{limits, faults}}, faults);
+      made->bind(at);
+      return made;
+    });
+  }
+  /// Whether a new client is answered, however long that takes.
+  bool serves_a_new_client() {
+    Socket client(context, {.kind = SocketKind::request});
+    client.connect(endpoint);
+    client.send(MessageBytes().text("x").bytes);
+    return soon([&] {
+      while (const std::optional<Delivered> request = router->receive()) {
+        const std::vector<Part> parts = {part_of("y")};
+        router->reply(request->from, parts);
+      }
+      return client.receive().has_value();
+    });
+  }
+  bool becomes_fault(const std::string& kind) {
+    return soon([&] { return faults.counts().count(kind) > 0; });
+  }
+  std::string said(const std::string& kind) {
+    const std::lock_guard lock(mutex);
+    for (const std::string& text : texts) {
+      if (text.starts_with(kind)) return text;
+    }
+    return "";
+  }
+
+  std::mutex mutex;  // faults are reported by another thread
+  std::vector<std::string> texts;
+  FaultLog faults{{.log =
+                       [this](Severity, std::string_view t) {
+                         const std::lock_guard lock(mutex);
+                         texts.emplace_back(t);
+                       },
+                   .progress = {}}};
+  Context context;
+  Endpoint endpoint;
+  std::unique_ptr<Router> router;
+};
+
+TEST_F(ConnectionGuardTest, CutsOffAMessageThatNeverEndsAndServesOthers) {
+  listen({.unread_bytes = 100'000});
+  const RawPeer endless(endpoint);
+  ASSERT_TRUE(endless.shake("DEALER"));
+  std::string parts;
+  for (int k = 0; k < 1000; ++k) parts += testing::zmtp_part("x", true);
+  EXPECT_TRUE(soon([&] {
+    endless.send(parts);
+    return endless.is_closed();
+  }));
+  EXPECT_THAT(said("peer cut off"), HasSubstr("allowed are 100000"));
+  EXPECT_TRUE(serves_a_new_client());
+}
+
+TEST_F(ConnectionGuardTest, CutsOffWhoSentTheMostWhenAllTogetherSendTooMuch) {
+  listen({.unread_bytes = 1 << 20, .all_unread_bytes = 1 << 20});
+  std::vector<RawPeer> peers;
+  for (int k = 0; k < 8; ++k) {
+    ASSERT_TRUE(peers.emplace_back(endpoint).shake("DEALER"));
+    ASSERT_TRUE(peers.back().send(testing::zmtp_part(std::string(100 + k, 'x'), true)));
+  }
+  const std::string part = std::string("\1\xff", 2) + std::string(255, 'x');
+  std::string parts;
+  for (int k = 0; k < 700; ++k) parts += part;  // 180 kB
+  for (const RawPeer& peer : peers) peer.send(parts);
+  EXPECT_TRUE(becomes_fault("peer cut off"));
+  EXPECT_TRUE(serves_a_new_client());
+}
+
+TEST_F(ConnectionGuardTest, DoesNotCountWhatWasDelivered) {
+  listen({.unread_bytes = 10'000, .all_unread_bytes = 10'000});
+  const RawPeer steady(endpoint);
+  ASSERT_TRUE(steady.shake("DEALER"));
+  const std::string message =
+      testing::zmtp_part("", true) + testing::zmtp_part(std::string(200, 'x'), false);
+  for (int k = 0; k < 500; ++k) {
+    ASSERT_TRUE(steady.send(message));
+    ASSERT_TRUE(soon([&] { return router->receive().has_value(); }));
+  }
+  EXPECT_FALSE(steady.is_closed());
+  EXPECT_TRUE(faults.counts().empty());
+}
+
+TEST_F(ConnectionGuardTest, ManyIdleConnectionsDoNotKeepANewClientOut) {
+  listen({.connections = 8, .connections_per_s = 1000.0});
+  std::vector<RawPeer> idle;
+  for (int k = 0; k < 40; ++k) idle.emplace_back(endpoint);
+  EXPECT_TRUE(serves_a_new_client());
+  EXPECT_TRUE(becomes_fault("connection limit"));
+  EXPECT_THAT(said("connection limit"), HasSubstr("at most 8 connections"));
+  EXPECT_TRUE(soon([&] {
+    return std::count_if(idle.begin(), idle.end(),
+                         [](const RawPeer& peer) { return !peer.is_closed(); }) <= 8;
+  }));
+}
+
+TEST_F(ConnectionGuardTest, AClientThatWasServedKeepsItsConnection) {
+  listen({.connections = 4, .connections_per_s = 1000.0});
+  const RawPeer client(endpoint);
+  ASSERT_TRUE(client.shake("DEALER"));
+  client.send(testing::zmtp_part("", true) + testing::zmtp_part("x", false));
+  ASSERT_TRUE(soon([&] { return router->receive().has_value(); }));
+  std::vector<RawPeer> idle;
+  for (int k = 0; k < 40; ++k) idle.emplace_back(endpoint);
+  EXPECT_TRUE(serves_a_new_client());
+  EXPECT_FALSE(client.is_closed());
+}
+
+TEST_F(ConnectionGuardTest, HoldsBackConnectionsThatComeTooFastAndServesThemLater) {
+  listen({.connections = 20, .connections_per_s = 10.0});
+  for (int k = 0; k < 30; ++k) {
+    ASSERT_TRUE(serves_a_new_client()) << k;
+  }
+  EXPECT_TRUE(becomes_fault("connection rate"));
+  EXPECT_THAT(said("connection rate"), HasSubstr("--limit connections-per-s"));
+}
+
+TEST_F(ConnectionGuardTest, KnowsWhetherAConnectionIsOpenAndWhatItsPeerHasReceived) {
+  listen({});
+  auto client = std::make_unique<Socket>(context, SocketOptions{.kind = SocketKind::request});
+  client->connect(endpoint);
+  client->send(MessageBytes().text("x").bytes);
+  std::optional<Delivered> request;
+  ASSERT_TRUE(soon([&] { return (request = router->receive()).has_value(); }));
+  const ConnectionId connection = request->from.connection;
+  EXPECT_NE(connection.cookie, 0U);
+  EXPECT_TRUE(router->socket().is_open(connection));
+  const std::uint64_t before = router->socket().taken_bytes(connection);
+  const std::vector<Part> parts = {part_of(std::string(1000, 'y'))};
+  ASSERT_EQ(router->reply(request->from, parts), Sending::sent);
+  EXPECT_TRUE(soon([&] { return router->socket().taken_bytes(connection) >= before + 1000; }));
+  client.reset();
+  EXPECT_TRUE(soon([&] { return !router->socket().is_open(connection); }));
+  EXPECT_FALSE(router->socket().is_open({connection.descriptor, connection.cookie + 1}));
+}
+
+}  // namespace
+}  // namespace glidar::link

@@ -1,0 +1,159 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/link/lockstep/server.hpp>
+
+#include "loopback.hpp"
+#include "raw_peer.hpp"
+
+#include <gmock/gmock.h>
+
+#include <memory>
+
+namespace glidar::lockstep {
+namespace {
+
+using testing::RawPeer;
+using testing::soon;
+using std::chrono_literals::operator""ms;
+
+class LockstepServerTest : public ::testing::Test {
+ protected:
+  LockstepServerTest() {
+    server = testing::at_free_port([&](const link::Endpoint& at) {
+      endpoint = at;
+      return std::make_unique<Server>(context, options(at), faults);
+    });
+  }
+  /// Connections come as fast as they can here.
+  static ServerOptions options(const link::Endpoint& at) {
+    return {.endpoint = at, .limits = {.connections_per_s = 1'000'000}};
+  }
+  link::Socket client() {
+    link::Socket socket(context, {.kind = link::SocketKind::request});
+    socket.connect(endpoint);
+    return socket;
+  }
+  /// Answers what there is with the number of the request.
+  void serve() {
+    while (const std::optional<Received> received = server->receive()) {
+      server->reply_description(received->to, std::to_string(received->to.id));
+    }
+  }
+  /// Whether this request of the client is answered with its own reply.
+  bool is_answered(link::Socket& asking, std::uint64_t id) {
+    asking.send(encode(Request(Describe{id})));
+    std::vector<std::string> parts;
+    const auto has_reply = [&] {
+      while (const std::optional<link::Message> part = asking.receive()) {
+        parts.emplace_back(reinterpret_cast<const char*>(part->bytes().data()),
+                           part->bytes().size());
+        if (part->is_last()) return true;
+      }
+      return false;
+    };
+    const bool is_replied = soon([&] {  // it pauses between its attempts
+      for (int i = 0; i < 1000; ++i) {
+        serve();
+        if (has_reply()) return true;
+        link::wait_for({&server->socket(), &asking}, -1, 10ms);
+      }
+      return false;
+    });
+    return is_replied && parts.size() == 2 && parts[1] == std::to_string(id);
+  }
+
+  std::vector<std::string> said;
+  link::FaultLog faults{
+      {.log = [this](Severity, std::string_view t) { said.emplace_back(t); }, .progress = {}}};
+  link::Context context;
+  link::Endpoint endpoint;
+  std::unique_ptr<Server> server;
+};
+
+TEST_F(LockstepServerTest, LosesNoneOf10000RepliesAmongPeersThatSendGarbage) {
+  const std::vector<testing::Garbage> garbage = testing::garbage();
+  std::vector<link::Socket> steady;
+  for (int k = 0; k < 3; ++k) steady.push_back(client());
+  std::vector<RawPeer> open;  // some stay for a while
+  for (std::uint64_t id = 0; id < 10'000; ++id) {
+    if (id % 5 == 0) {
+      open.push_back(testing::stranger(endpoint, garbage[id / 5 % garbage.size()]));
+      if (open.size() == 10) open.clear();
+    }
+    if (id % 20 == 0) {
+      link::Socket fresh = client();
+      ASSERT_TRUE(is_answered(fresh, id));
+    } else {
+      ASSERT_TRUE(is_answered(steady[id % steady.size()], id));
+    }
+  }
+  EXPECT_GE(server->counts().received, 10'000U);
+}
+
+/// A DEALER that sends requests and reads no replies.
+class Flooder {
+ public:
+  explicit Flooder(const link::Endpoint& at) : peer_(at) { EXPECT_TRUE(peer_.shake("DEALER")); }
+  void send() {
+    const std::vector<std::byte> request = encode(Request(Describe{7}));
+    const std::string body(reinterpret_cast<const char*>(request.data()), request.size());
+    std::string many;
+    for (int k = 0; k < 1000; ++k) {
+      many += testing::zmtp_part("", true) + testing::zmtp_part(body, false);
+    }
+    peer_.send(many);
+  }
+
+ private:
+  RawPeer peer_;
+};
+
+TEST_F(LockstepServerTest, AnswersOthersWhileOneClientFloodsItAndReadsNothing) {
+  Flooder flooder(endpoint);
+  link::Socket asking = client();
+  for (std::uint64_t id = 100; id < 300; ++id) {
+    flooder.send();
+    ASSERT_TRUE(is_answered(asking, id));
+  }
+  EXPECT_GT(server->counts().refused, 0U);
+  EXPECT_GT(faults.counts().at("requests refused"), 0U);
+}
+
+TEST_F(LockstepServerTest, DropsTheRequestsOfAClientThatHasLeft) {
+  link::Socket asking = client();
+  ASSERT_TRUE(is_answered(asking, 1));
+  std::optional<Received> received;
+  {
+    link::Socket leaves = client();
+    leaves.send(encode(Request(Describe{2})));
+    ASSERT_TRUE(soon([&] { return (received = server->receive()).has_value(); }));
+    EXPECT_TRUE(server->is_wanted(received->to));
+  }
+  EXPECT_TRUE(soon([&] { return !server->is_wanted(received->to); }));
+  server->drop(received->to);
+  EXPECT_TRUE(is_answered(asking, 3));
+}
+
+TEST_F(LockstepServerTest, ReservesMemoryForRepliesUpToTheLimit) {
+  constexpr std::int64_t kMib = 1 << 20;
+  link::Socket first = client();
+  link::Socket second = client();
+  std::vector<Received> received;
+  for (link::Socket* asking : {&first, &second}) {
+    asking->send(encode(Request(Describe{1})));
+    ASSERT_TRUE(soon([&] {
+      std::optional<Received> one = server->receive();
+      if (one) received.push_back(std::move(*one));
+      return one.has_value();
+    }));
+  }
+  EXPECT_TRUE(server->reserve(received[0].to, 1500 * kMib));
+  EXPECT_TRUE(server->reserve(received[0].to, 1500 * kMib));  // once
+  EXPECT_FALSE(server->reserve(received[1].to, 600 * kMib));
+  server->reply_description(received[0].to, "done");
+  EXPECT_TRUE(soon([&] { return server->reserve(received[1].to, 600 * kMib); }));
+  server->drop(received[1].to);
+}
+
+}  // namespace
+}  // namespace glidar::lockstep
