@@ -2,12 +2,14 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Asks much of glidar stream for a long time, in lock-step and as in 2015 at once: steady and reconnecting clients, some
-that vanish or send nonsense, and a subscriber that never reads. Tells latencies, missed clouds and memory over time.
+that vanish or send nonsense, and a subscriber that never reads. Tells latencies, missed clouds and memory over time. With
+--hostile also peers that send garbage, endless messages and floods, ask for too much, and hold connections.
 
 Exit code 1 unless memory is flat, every request was answered, and every reply was the first one's bytes again.
 """
 
 import argparse
+import contextlib
 import json
 import signal
 import struct
@@ -23,16 +25,20 @@ from pathlib import Path
 import numpy as np
 import zmq
 
+import hostile
+
 # Resident memory of the last quarter of the time may exceed that of the second by so much: arenas of malloc come and go
 # with threads and clients, some 0.1 MB. A leak of one reply (100 kB) in a hundred exceeds it in ten seconds, one of 100
 # bytes a request in two minutes.
 MEMORY_TOLERANCE_MB = 2.0
+HOSTILE_TOLERANCE_MB = 20.0  # endless messages are cut off at different sizes; a leak of one of them is several MB
 MEMORY_LOOK_S = 0.5
 MAX_WAIT_S = 600  # for a reply, a beginning and an end; machines may be very busy
 SIZE = ("builtin:asteroid", "--width", "64", "--height", "64", "--fov", "30")
 EXAMPLE = """examples:
   ./dev soak             # an hour; picture in out/soak.png
   ./dev soak 180
+  scripts/soak.py --hostile --seconds 600 --picture hostile.png
   scripts/soak.py --seconds 180 --picture soak.png    # with glidar in PATH"""
 
 
@@ -47,6 +53,7 @@ class Findings:
     connections: int = 0
     clouds: int = 0
     lost_clouds: int = 0
+    attacks: int = 0
     faults: list = field(default_factory=list)
     lock: threading.Lock = field(default_factory=threading.Lock)
 
@@ -63,8 +70,8 @@ class Findings:
 class Soak:
     """Both programs, and the clients around them, each in a thread."""
 
-    def __init__(self, folder, seconds):
-        self.folder, self.seconds, self.findings = Path(folder), seconds, Findings()
+    def __init__(self, folder, seconds, is_hostile=False):
+        self.folder, self.seconds, self.findings, self.is_hostile = Path(folder), seconds, Findings(), is_hostile
         self.context, self.over, self.first_replies = zmq.Context(), threading.Event(), {}
         self.log = open(self.folder / "log.txt", "w", encoding="utf-8")
         self.lockstep = self.start("--lockstep", "tcp://127.0.0.1:*", "--stats", "lockstep.json")
@@ -104,6 +111,9 @@ class Soak:
         """Resident memory of both programs over time, once every client has begun: rows of seconds, MB, MB."""
         clients = [self.ask, self.ask, self.ask_and_reconnect, self.vanish, self.send_nonsense, self.read,
                    self.read_and_reconnect, self.never_read]
+        if self.is_hostile:
+            clients += [self.send_garbage, self.send_endless, self.subscribe_without_end, self.hold_connections,
+                        self.flood, self.ask_for_too_much]
         threads = [threading.Thread(target=self.guarded, args=(client, seed)) for seed, client in enumerate(clients)]
         for thread in threads:
             thread.start()
@@ -234,6 +244,78 @@ class Soak:
             self.over.wait()
 
 
+    # hostile peers: whatever they do, the clients above must not notice
+
+    def attack(self, do, pause_s=0.2):
+        """Again and again; a connection that is closed or refused is what should happen."""
+        while not self.over.wait(pause_s):
+            with contextlib.suppress(OSError):
+                do()
+            self.findings.add(attacks=1)
+
+    def ports(self):
+        """(port, type of socket that may connect to it) of everything that listens."""
+        return [(int(self.endpoint.split(":")[-1]), b"DEALER"), (self.port, b"SUB"), (self.port + 1, b"DEALER")]
+
+    def send_garbage(self, _random):
+        def do():
+            for port, _ in self.ports():
+                for garbage in hostile.GARBAGE:
+                    with hostile.Peer(port) as peer:
+                        peer.send(garbage)
+        self.attack(do)
+
+    def send_endless(self, _random):
+        small, large = hostile.part(b"", more=True) * 10_000, hostile.part(b"\5" * 1_000_000, more=True)
+
+        def do():
+            for port, socket_type in self.ports():
+                for data in (small, large):
+                    self.send_until_closed(port, socket_type, data)
+        self.attack(do)
+
+    def subscribe_without_end(self, random):
+        def do():
+            topics = [b"\1" + random.bytes(40) for _ in range(2000)]
+            self.send_until_closed(self.port, b"SUB", b"".join(map(hostile.part, topics)))
+            self.send_until_closed(self.port, b"SUB", hostile.part(b"\1" + random.bytes(900_000)))
+        self.attack(do)
+
+    def flood(self, _random):
+        """Requests and handshakes of one client that reads no replies, for a second."""
+        def do():
+            requests = hostile.part(b"", more=True) + hostile.part(hostile.request())
+            handshakes = hostile.part(b"", more=True) + hostile.part(b"")
+            for (port, socket_type), data in zip(self.ports()[::2], (requests, handshakes)):
+                self.send_until_closed(port, socket_type, data * 1000, seconds=1)
+        self.attack(do)
+
+    def send_until_closed(self, port, socket_type, data, seconds=5):
+        with hostile.Peer(port, socket_type) as peer:
+            end = time.monotonic() + seconds
+            while time.monotonic() < end and not self.over.is_set() and not peer.is_closed():
+                peer.send_some(data)
+
+    def hold_connections(self, _random):
+        def do():
+            with contextlib.ExitStack() as held:
+                for port, _ in self.ports():
+                    for _ in range(100):
+                        held.enter_context(hostile.Peer(port))
+                self.over.wait(2)
+        self.attack(do)
+
+    def ask_for_too_much(self, _random):
+        columns = [b"xyz", b"true_xyz", b"normal", b"intensity", b"range"]
+
+        def do():
+            with self.connect() as client:
+                client.send(hostile.request(65536, columns))
+                if struct.unpack_from("<H", client.recv_multipart()[0], 6)[0] != 3:
+                    raise ValueError("a reply of 19 GB was not refused")
+        self.attack(do)
+
+
 def request(number):
     """One of 40 that are unlike in pose, motion, seed, columns, and number of moments."""
     random = np.random.default_rng(number)
@@ -264,15 +346,15 @@ def growth_mb(times, memory):
     return np.median(memory[quarter == 3]) - np.median(memory[quarter == 1])
 
 
-def judge(findings, memory):
+def judge(findings, memory, tolerance_mb=MEMORY_TOLERANCE_MB):
     """Everything that must not be."""
     if findings.faults:
         return findings.faults
     faults = []
     for column, name in ((1, "lock-step"), (2, "streaming")):
         growth = growth_mb(memory[:, 0], memory[:, column])
-        if growth > MEMORY_TOLERANCE_MB:
-            faults.append(f"{name}: memory grew by {growth:.1f} MB, allowed are {MEMORY_TOLERANCE_MB}")
+        if growth > tolerance_mb:
+            faults.append(f"{name}: memory grew by {growth:.1f} MB, allowed are {tolerance_mb}")
     if not findings.has_all():
         faults.append("a client did nothing")
     return faults
@@ -292,6 +374,8 @@ def report(findings, memory, stats, latencies):
     for column, name in ((1, "lock-step"), (2, "streaming")):
         print(f"memory, {name}: {memory[0, column]:.1f} MB at first, {memory[:, column].max():.1f} MB at most, "
               f"{growth_mb(memory[:, 0], memory[:, column]):+.2f} MB from the second quarter to the last")
+    if findings.attacks:
+        print(f"{findings.attacks} attacks; cut off or refused: {served.get('faults')} {streamed.get('faults')}")
     print(f"{findings.connections} connections; {served.get('requests')} messages served")
 
 
@@ -323,17 +407,18 @@ def main(arguments=None):
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=3600, help="how long [3600]")
     parser.add_argument("--picture", metavar="FILE", help="draws memory and latency over time, as PNG")
+    parser.add_argument("--hostile", action="store_true", help="with peers that keep to no rules")
     flags = parser.parse_args(arguments)
     if flags.seconds < 10:
         parser.error("--seconds: at least 10, or memory says nothing")
     with tempfile.TemporaryDirectory() as folder:
-        soak = Soak(folder, flags.seconds)
+        soak = Soak(folder, flags.seconds, flags.hostile)
         try:
             memory = soak.run()
         finally:
             stats = soak.end()
         log = Path(folder, "log.txt").read_text(encoding="utf-8")
-    faults = judge(soak.findings, memory)
+    faults = judge(soak.findings, memory, HOSTILE_TOLERANCE_MB if flags.hostile else MEMORY_TOLERANCE_MB)
     if not soak.findings.faults:
         latencies = np.concatenate([np.array(one).reshape(-1, 2) for one in soak.findings.latencies])
         report(soak.findings, memory, stats, latencies)
