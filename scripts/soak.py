@@ -9,7 +9,6 @@ Exit code 1 unless memory is flat, every request was answered, and every reply w
 """
 
 import argparse
-import contextlib
 import json
 import signal
 import struct
@@ -25,7 +24,7 @@ from pathlib import Path
 import numpy as np
 import zmq
 
-import hostile
+from hostile_clients import HostileClients
 
 # Resident memory of the last quarter of the time may exceed that of the second by so much: arenas of malloc come and go
 # with threads and clients, some 0.1 MB. A leak of one reply (100 kB) in a hundred exceeds it in ten seconds, one of 100
@@ -67,7 +66,7 @@ class Findings:
                 setattr(self, name, getattr(self, name) + count)
 
 
-class Soak:
+class Soak(HostileClients):
     """Both programs, and the clients around them, each in a thread."""
 
     def __init__(self, folder, seconds, is_hostile=False):
@@ -112,8 +111,7 @@ class Soak:
         clients = [self.ask, self.ask, self.ask_and_reconnect, self.vanish, self.send_nonsense, self.read,
                    self.read_and_reconnect, self.never_read]
         if self.is_hostile:
-            clients += [self.send_garbage, self.send_endless, self.subscribe_without_end, self.hold_connections,
-                        self.flood, self.ask_for_too_much]
+            clients += self.hostile_clients()
         threads = [threading.Thread(target=self.guarded, args=(client, seed)) for seed, client in enumerate(clients)]
         for thread in threads:
             thread.start()
@@ -242,78 +240,6 @@ class Soak:
     def never_read(self, _random):
         with self.subscriber(rcvhwm=1, rcvbuf=65536):
             self.over.wait()
-
-
-    # hostile peers: whatever they do, the clients above must not notice
-
-    def attack(self, do, pause_s=0.2):
-        """Again and again; a connection that is closed or refused is what should happen."""
-        while not self.over.wait(pause_s):
-            with contextlib.suppress(OSError):
-                do()
-            self.findings.add(attacks=1)
-
-    def ports(self):
-        """(port, type of socket that may connect to it) of everything that listens."""
-        return [(int(self.endpoint.split(":")[-1]), b"DEALER"), (self.port, b"SUB"), (self.port + 1, b"DEALER")]
-
-    def send_garbage(self, _random):
-        def do():
-            for port, _ in self.ports():
-                for garbage in hostile.GARBAGE:
-                    with hostile.Peer(port) as peer:
-                        peer.send(garbage)
-        self.attack(do)
-
-    def send_endless(self, _random):
-        small, large = hostile.part(b"", more=True) * 10_000, hostile.part(b"\5" * 1_000_000, more=True)
-
-        def do():
-            for port, socket_type in self.ports():
-                for data in (small, large):
-                    self.send_until_closed(port, socket_type, data)
-        self.attack(do)
-
-    def subscribe_without_end(self, random):
-        def do():
-            topics = [b"\1" + random.bytes(40) for _ in range(2000)]
-            self.send_until_closed(self.port, b"SUB", b"".join(map(hostile.part, topics)))
-            self.send_until_closed(self.port, b"SUB", hostile.part(b"\1" + random.bytes(900_000)))
-        self.attack(do)
-
-    def flood(self, _random):
-        """Requests and handshakes of one client that reads no replies, for a second."""
-        def do():
-            requests = hostile.part(b"", more=True) + hostile.part(hostile.request())
-            handshakes = hostile.part(b"", more=True) + hostile.part(b"")
-            for (port, socket_type), data in zip(self.ports()[::2], (requests, handshakes)):
-                self.send_until_closed(port, socket_type, data * 1000, seconds=1)
-        self.attack(do)
-
-    def send_until_closed(self, port, socket_type, data, seconds=5):
-        with hostile.Peer(port, socket_type) as peer:
-            end = time.monotonic() + seconds
-            while time.monotonic() < end and not self.over.is_set() and not peer.is_closed():
-                peer.send_some(data)
-
-    def hold_connections(self, _random):
-        def do():
-            with contextlib.ExitStack() as held:
-                for port, _ in self.ports():
-                    for _ in range(100):
-                        held.enter_context(hostile.Peer(port))
-                self.over.wait(2)
-        self.attack(do)
-
-    def ask_for_too_much(self, _random):
-        columns = [b"xyz", b"true_xyz", b"normal", b"intensity", b"range"]
-
-        def do():
-            with self.connect() as client:
-                client.send(hostile.request(65536, columns))
-                if struct.unpack_from("<H", client.recv_multipart()[0], 6)[0] != 3:
-                    raise ValueError("a reply of 19 GB was not refused")
-        self.attack(do)
 
 
 def request(number):
