@@ -2,7 +2,8 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
 """Asks much of glidar stream for a long time, in lock-step and as in 2015 at once: steady and reconnecting clients, some
-that vanish or send nonsense, and a subscriber that never reads. Tells latencies, missed clouds and memory over time.
+that vanish or send nonsense, and a subscriber that never reads. Tells latencies, missed clouds and memory over time. With
+--hostile also peers that send garbage, endless messages and floods, ask for too much, and hold connections.
 
 Exit code 1 unless memory is flat, every request was answered, and every reply was the first one's bytes again.
 """
@@ -23,16 +24,20 @@ from pathlib import Path
 import numpy as np
 import zmq
 
+from hostile_clients import HostileClients
+
 # Resident memory of the last quarter of the time may exceed that of the second by so much: arenas of malloc come and go
 # with threads and clients, some 0.1 MB. A leak of one reply (100 kB) in a hundred exceeds it in ten seconds, one of 100
 # bytes a request in two minutes.
 MEMORY_TOLERANCE_MB = 2.0
+HOSTILE_TOLERANCE_MB = 20.0  # endless messages are cut off at different sizes; a leak of one of them is several MB
 MEMORY_LOOK_S = 0.5
 MAX_WAIT_S = 600  # for a reply, a beginning and an end; machines may be very busy
 SIZE = ("builtin:asteroid", "--width", "64", "--height", "64", "--fov", "30")
 EXAMPLE = """examples:
   ./dev soak             # an hour; picture in out/soak.png
   ./dev soak 180
+  scripts/soak.py --hostile --seconds 600 --picture hostile.png
   scripts/soak.py --seconds 180 --picture soak.png    # with glidar in PATH"""
 
 
@@ -47,6 +52,7 @@ class Findings:
     connections: int = 0
     clouds: int = 0
     lost_clouds: int = 0
+    attacks: int = 0
     faults: list = field(default_factory=list)
     lock: threading.Lock = field(default_factory=threading.Lock)
 
@@ -60,11 +66,11 @@ class Findings:
                 setattr(self, name, getattr(self, name) + count)
 
 
-class Soak:
+class Soak(HostileClients):
     """Both programs, and the clients around them, each in a thread."""
 
-    def __init__(self, folder, seconds):
-        self.folder, self.seconds, self.findings = Path(folder), seconds, Findings()
+    def __init__(self, folder, seconds, is_hostile=False):
+        self.folder, self.seconds, self.findings, self.is_hostile = Path(folder), seconds, Findings(), is_hostile
         self.context, self.over, self.first_replies = zmq.Context(), threading.Event(), {}
         self.log = open(self.folder / "log.txt", "w", encoding="utf-8")
         self.lockstep = self.start("--lockstep", "tcp://127.0.0.1:*", "--stats", "lockstep.json")
@@ -104,6 +110,8 @@ class Soak:
         """Resident memory of both programs over time, once every client has begun: rows of seconds, MB, MB."""
         clients = [self.ask, self.ask, self.ask_and_reconnect, self.vanish, self.send_nonsense, self.read,
                    self.read_and_reconnect, self.never_read]
+        if self.is_hostile:
+            clients += self.hostile_clients()
         threads = [threading.Thread(target=self.guarded, args=(client, seed)) for seed, client in enumerate(clients)]
         for thread in threads:
             thread.start()
@@ -264,15 +272,15 @@ def growth_mb(times, memory):
     return np.median(memory[quarter == 3]) - np.median(memory[quarter == 1])
 
 
-def judge(findings, memory):
+def judge(findings, memory, tolerance_mb=MEMORY_TOLERANCE_MB):
     """Everything that must not be."""
     if findings.faults:
         return findings.faults
     faults = []
     for column, name in ((1, "lock-step"), (2, "streaming")):
         growth = growth_mb(memory[:, 0], memory[:, column])
-        if growth > MEMORY_TOLERANCE_MB:
-            faults.append(f"{name}: memory grew by {growth:.1f} MB, allowed are {MEMORY_TOLERANCE_MB}")
+        if growth > tolerance_mb:
+            faults.append(f"{name}: memory grew by {growth:.1f} MB, allowed are {tolerance_mb}")
     if not findings.has_all():
         faults.append("a client did nothing")
     return faults
@@ -292,6 +300,8 @@ def report(findings, memory, stats, latencies):
     for column, name in ((1, "lock-step"), (2, "streaming")):
         print(f"memory, {name}: {memory[0, column]:.1f} MB at first, {memory[:, column].max():.1f} MB at most, "
               f"{growth_mb(memory[:, 0], memory[:, column]):+.2f} MB from the second quarter to the last")
+    if findings.attacks:
+        print(f"{findings.attacks} attacks; cut off or refused: {served.get('faults')} {streamed.get('faults')}")
     print(f"{findings.connections} connections; {served.get('requests')} messages served")
 
 
@@ -323,17 +333,18 @@ def main(arguments=None):
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--seconds", type=float, default=3600, help="how long [3600]")
     parser.add_argument("--picture", metavar="FILE", help="draws memory and latency over time, as PNG")
+    parser.add_argument("--hostile", action="store_true", help="with peers that keep to no rules")
     flags = parser.parse_args(arguments)
     if flags.seconds < 10:
         parser.error("--seconds: at least 10, or memory says nothing")
     with tempfile.TemporaryDirectory() as folder:
-        soak = Soak(folder, flags.seconds)
+        soak = Soak(folder, flags.seconds, flags.hostile)
         try:
             memory = soak.run()
         finally:
             stats = soak.end()
         log = Path(folder, "log.txt").read_text(encoding="utf-8")
-    faults = judge(soak.findings, memory)
+    faults = judge(soak.findings, memory, HOSTILE_TOLERANCE_MB if flags.hostile else MEMORY_TOLERANCE_MB)
     if not soak.findings.faults:
         latencies = np.concatenate([np.array(one).reshape(-1, 2) for one in soak.findings.latencies])
         report(soak.findings, memory, stats, latencies)

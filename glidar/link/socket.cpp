@@ -10,7 +10,6 @@
 #include <zmq.hpp>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cerrno>
 #include <utility>
@@ -106,14 +105,6 @@ struct Context::Impl {
 
 Context::Context() : impl_(std::make_unique<Impl>()) {}
 Context::~Context() = default;
-
-CurveKeys make_curve_keys() {
-  constexpr std::size_t kLetters = 40;
-  std::array<char, kLetters + 1> public_key{};
-  std::array<char, kLetters + 1> secret_key{};
-  if (zmq_curve_keypair(public_key.data(), secret_key.data()) != 0) throw zmq::error_t();
-  return {public_key.data(), secret_key.data()};
-}
 
 struct Message::Impl {
   zmq::message_t message;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/link/connection_guard.hpp>
+#include <glidar/link/curve.hpp>
 #include <glidar/link/endpoint.hpp>
 #include <glidar/link/payload.hpp>
 
@@ -35,13 +36,6 @@ class Context {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
-
-/// Keys of CURVE (https://rfc.zeromq.org/spec/26), 40 letters of Z85 each.
-struct CurveKeys {
-  std::string public_key;
-  std::string secret_key;
-};
-CurveKeys make_curve_keys();
 
 enum class SocketKind : std::uint8_t {
   publish,

@@ -101,7 +101,7 @@ TEST(RequestQueue, FindsClientsThatTakeNothingOfTheirReplies) {
   std::uint64_t taken = 0;
   std::vector<int> stalled;
   const Clock::time_point start = Clock::now();
-  for (int second = 0; second < 5; ++second) {
+  for (int second = 0; second < 4; ++second) {
     queue.look(
         start + std::chrono::seconds(second), std::chrono::seconds(3),
         [&](const link::ConnectionId& client) { return client.descriptor == 1 ? ++taken : 0; },
