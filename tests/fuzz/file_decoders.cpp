@@ -47,18 +47,16 @@ void read_recording(const fs::path& file) {
   }
 }
 
-/// Frames of a model, a failure or a cache's index, as long as there are some.
-void read_frames(const fs::path& file) {
+/// One frame: a model, a failure or a file of the cache.
+void read_frame(const fs::path& file) {
   const UniqueFd fd(::open(file.c_str(), O_RDONLY | O_CLOEXEC));
-  for (;;) {
-    FrameReader frame(fd.get());
-    if (frame.kind() == FrameKind::model) {
-      read_model(frame);
-    } else if (frame.kind() == FrameKind::failure) {
-      read_failure(frame);
-    } else {
-      read_cache_index(frame);
-    }
+  FrameReader frame(fd.get());
+  if (frame.kind() == FrameKind::model) {
+    read_model(frame);
+  } else if (frame.kind() == FrameKind::failure) {
+    read_failure(frame);
+  } else {
+    read_cached_file(frame);
   }
 }
 
@@ -84,7 +82,7 @@ constexpr std::array<FileDecoder, 11> kDecoders = {{
     {"png", "texture.png", [](const fs::path& file) { read_png_texture(file); }},
     {"sidecar", "cloud.pcd.json", read_sidecar_of_cloud},
     {"recording", "stream.jsonl", read_recording},
-    {"mesh_blob", "a.model", read_frames},
+    {"mesh_blob", "a.model", read_frame},
     {"pose_text", "pose.txt", read_pose_text},
 }};
 
