@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // What a LiDAR's measurement and noise cost beside the bare cast of the same beams: one turn of a
-// VLP-16 in a furnished room. And what it costs that surfaces of a thousand objects may coincide with
-// the ground on which they stand.
+// VLP-16 in a furnished room. And what it costs that surfaces of a thousand objects may coincide
+// with the ground on which they stand.
 #include "ratio_reporter.hpp"
 
 #include <glidar/io/builtin_models.hpp>

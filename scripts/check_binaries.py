@@ -17,7 +17,7 @@ import sys
 from pathlib import Path
 
 OWN = re.compile(r"(glidar|libglidar|_core)[^/]*$")
-NOT_SHIPPED = re.compile(r"_(tests|bench|baseline)$|glidar_(example|fuzz|io_files)")
+NOT_SHIPPED = re.compile(r"_(tests|bench|baseline)$|glidar_(example|fuzz|io_files|sandbox_probe|without_sandbox)")
 
 
 def elf_files(folder):

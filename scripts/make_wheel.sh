@@ -25,7 +25,7 @@ cmake --install "$build" --prefix "$folder/prefix" >"$folder/install.log"
 PATH=$venv:$PATH auditwheel repair "${drivers[@]/#/--exclude=}" -w "$folder/repaired" "$folder"/raw/glidar-*.whl
 
 unzip -q "$folder"/repaired/glidar-*.whl -d "$folder/unpacked"
-"$root/scripts/check_binaries.py" ${CHECK_BINARIES_OPTIONS:-} "$folder/unpacked"
+"$root/scripts/check_binaries.py" "$folder/unpacked"
 
 python3 -m venv "$folder/venv"
 "$folder/venv/bin/pip" install --disable-pip-version-check -q "$folder"/repaired/glidar-*.whl \

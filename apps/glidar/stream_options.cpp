@@ -115,7 +115,7 @@ void add_limit_flag(CLI::App& command, StreamFlags& flags) {
       [&flags](const std::vector<std::string>& given) {
         for (const std::string& one : given) set_limit(flags.limits, one);
       },
-      "Limits what peers may use, may be repeated; docs/link.md lists the names");
+      "Limits what peers may use, repeatable (docs/link.md)");
   option->type_name("NAME=VALUE")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

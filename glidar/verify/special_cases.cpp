@@ -19,6 +19,9 @@ namespace {
 /// judged.
 constexpr double kExactTolerance = 1e-13;
 
+/// Of the sensor above a planet. Not local to the function that makes its case, which it outlives.
+constexpr double kHeight_m = 1.5;
+
 /// A shape in the world.
 struct Stand {
   const Shape& shape;
@@ -117,7 +120,7 @@ VerifyResult above_a_planet(const VerifySubject& subject, const Shape& shape, do
   constexpr double kRadius_m = 6.371e6;
   constexpr double kHalfView_rad = 0.8;
   constexpr std::size_t kFace = 17;
-  const Pose world_from_object = make_pose({}, random_rotation(probe_draw(90020, 0)));
+  const Pose world_from_object = make_pose(Eigen::Vector3d::Zero(), random_rotation(probe_draw(90020, 0)));
   std::array<Eigen::Vector3d, 3> corner;
   for (std::size_t k = 0; k < 3; ++k) {
     corner[k] = world_from_object *
@@ -209,7 +212,6 @@ std::vector<SpecialCase> special_cases(const std::vector<Shape>& shapes) {
                      }});
   }
   const Shape& sphere = shapes.back();
-  constexpr double kHeight_m = 1.5;
   cases.push_back({"above a planet", sphere.name, kHeight_m, false,
                    [&](const auto& s) { return above_a_planet(s, sphere, kHeight_m); }});
   cases.push_back({"moving sensor and target", shapes.front().name, 10.0, true,

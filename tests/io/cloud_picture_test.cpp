@@ -202,9 +202,8 @@ Made one_point(bool is_camera, const std::vector<double>& xyz) {
 }
 
 TEST(CloudPicture, OfNothingIsDrawnWithoutPoints) {
-  Made made = make();
+  Made made = one_point(false, {5.0, 2.0, 0.0});
   const Colour point = colours_by(make(), ColourBy::object_class).colours[0];
-  made.options.picture.colour_by = ColourBy::object_class;
   for (const char* name : {"a.bev.png", "a.view.png"}) {
     EXPECT_GT(spots_of(made, name, point).count, 0U) << name;
   }

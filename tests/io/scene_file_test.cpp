@@ -297,7 +297,7 @@ TEST(SceneFile, AMissingNoiseTextureIsToldWithItsPlace) {
                 std::ref(loader));
   });
   EXPECT_TRUE(error.starts_with(
-      "scene.yaml:1:54: models[0].materials.Bus.noise_texture: no.png: No such file"))
+      "scene.yaml:1:54: models[0].materials.Bus.noise_texture: no.png: no such file"))
       << error;
 }
 

@@ -202,7 +202,7 @@ def test_a_value_that_stands_at_several_places_by_an_alias_does_not_vary(tmp_pat
 
 def test_a_file_within_itself_ends_and_is_refused(campaign):
     campaign.write("scene.yaml", "a: &a\n  b: *a\nmodels: []\n")
-    assert "unknown key 'a'" in campaign.run("out", code=1)
+    assert "scene.yaml:1:4: an alias of what holds it" in campaign.run("out", code=2)
 
 
 TWICE = [
