@@ -12,10 +12,12 @@
 #include <array>
 #include <atomic>
 #include <cerrno>
+#include <chrono>
 #include <cstdio>
 #include <cstring>
 #include <string>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 namespace glidar {
@@ -89,6 +91,10 @@ struct Temporary {
 /// signal at any moment leaves nothing behind.
 Temporary open_temporary(const std::filesystem::path& folder, const std::filesystem::path& wanted,
                          mode_t mode) {
+  // Clients that use up all descriptors are cut off by another thread soon.
+  constexpr unsigned kMostWaits = 200;
+  constexpr std::chrono::milliseconds kWait{10};
+  unsigned waits = 0;
   for (unsigned attempt = 0;; ++attempt) {
     std::filesystem::path name = folder / fmt::format(".glidar-{}-{}.tmp", ::getpid(), attempt);
     std::error_code ignored;
@@ -98,6 +104,10 @@ Temporary open_temporary(const std::filesystem::path& folder, const std::filesys
     const int code = errno;
     if (descriptor >= 0) return {std::move(name), descriptor, slot};
     unlist(slot);
+    if ((code == EMFILE || code == ENFILE) && waits++ < kMostWaits) {
+      std::this_thread::sleep_for(kWait);
+      continue;
+    }
     if (code != EEXIST && code != EINTR) fail(wanted, "create a file in this folder", code);
   }
 }
