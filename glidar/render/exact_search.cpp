@@ -38,8 +38,8 @@ GLIDAR_SIMD void find_points(const BeamBlock& beams, const Lanes<double>& range_
 
 /// A bit for every lane whose point is in the box.
 GLIDAR_SIMD std::uint32_t lanes_in(const Eigen::AlignedBox3d& box, const Lanes3<double>& p) {
-  const Eigen::Vector3d low = box.min();
-  const Eigen::Vector3d high = box.max();
+  const Eigen::Vector3d& low = box.min();
+  const Eigen::Vector3d& high = box.max();
   Lanes<std::uint32_t> bits;
   for (unsigned i = 0; i < kLanes; ++i) {
     const int x = static_cast<int>(p.x[i] >= low.x()) & static_cast<int>(p.x[i] <= high.x());
