@@ -96,9 +96,18 @@ void ConnectionGuard::on_listening(int descriptor) {
   listener_.emplace(descriptor);
 }
 
+ConnectionGuard::Connection& ConnectionGuard::take_note(int descriptor) {
+  Connection& connection = connections_[descriptor];
+  const std::uint64_t cookie = cookie_of(descriptor);
+  if (connection.cookie != cookie || cookie == 0) {
+    connection = {.cookie = cookie, .since = Clock::now()};
+  }
+  return connection;
+}
+
 void ConnectionGuard::on_accepted(int descriptor) {
   const std::lock_guard lock(mutex_);
-  connections_[descriptor] = {.cookie = cookie_of(descriptor), .since = Clock::now()};
+  take_note(descriptor);
   allowance_ -= 1.0;
   const int last = descriptor_limit() - kLastDescriptors;
   if (descriptor >= descriptor_limit() - reserved_descriptors()) hold_back_for_lack();
@@ -159,11 +168,13 @@ bool ConnectionGuard::needs_look() const {
 
 std::uint64_t ConnectionGuard::delivered(int descriptor) {
   const std::lock_guard lock(mutex_);
-  const auto found = connections_.find(descriptor);
-  if (found == connections_.end()) return 0;
-  found->second.read_bytes = received_bytes(descriptor);
-  found->second.has_delivered = true;
-  return found->second.cookie;
+  // A message may be here before ZeroMQ's report that its connection was accepted, and after its
+  // end.
+  if (connections_.find(descriptor) == connections_.end() && cookie_of(descriptor) == 0) return 0;
+  Connection& connection = take_note(descriptor);
+  connection.read_bytes = received_bytes(descriptor);
+  connection.has_delivered = true;
+  return connection.cookie;
 }
 
 void ConnectionGuard::cut_off(const ConnectionId& connection, const std::string& fault,

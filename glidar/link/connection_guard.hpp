@@ -86,6 +86,8 @@ class ConnectionGuard {
   };
   using Connections = std::map<int, Connection>;
 
+  /// The entry of an open connection; a new one unless it is known.
+  Connection& take_note(int descriptor);
   void note(PeerEvent event);
   [[nodiscard]] double burst() const;
   void refill(Clock::time_point now);
