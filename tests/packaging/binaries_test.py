@@ -41,7 +41,11 @@ class Binaries(unittest.TestCase):
 
     def test_all_that_is_built_has_safe_search_paths_and_is_hardened(self):
         self.require_sound(BUILD / "apps", least=2)
-        self.require_sound(BUILD / "tests", least=8)
+        # not the folders below: other tests make and remove files there
+        programs = [path for path in (BUILD / "tests").glob("glidar_*") if path.is_file() and os.access(path, os.X_OK)]
+        self.assertGreaterEqual(len(programs), 8)
+        for program in programs:
+            self.assertEqual(check_binaries.faults(program, search_path_only=not is_hardened()), [], program)
         if (BUILD / "python/glidar").is_dir():
             self.require_sound(BUILD / "python", least=1)
 
