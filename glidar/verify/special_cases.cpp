@@ -120,7 +120,8 @@ VerifyResult above_a_planet(const VerifySubject& subject, const Shape& shape, do
   constexpr double kRadius_m = 6.371e6;
   constexpr double kHalfView_rad = 0.8;
   constexpr std::size_t kFace = 17;
-  const Pose world_from_object = make_pose(Eigen::Vector3d::Zero(), random_rotation(probe_draw(90020, 0)));
+  const Pose world_from_object =
+      make_pose(Eigen::Vector3d::Zero(), random_rotation(probe_draw(90020, 0)));
   std::array<Eigen::Vector3d, 3> corner;
   for (std::size_t k = 0; k < 3; ++k) {
     corner[k] = world_from_object *
