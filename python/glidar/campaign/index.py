@@ -107,9 +107,17 @@ def batches(path, columns=None):
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    with files.open_input(path) as opened, pq.ParquetFile(opened) as file:
+    with files.open_input(path) as opened, _native(opened) as source, pq.ParquetFile(source) as file:
         for batch in file.iter_batches(columns=columns):
             yield pa.table(batch)
+
+
+def _native(opened):
+    """The same file for Arrow alone. Its threads hold what they read from a little longer; were it a file of Python,
+    a thread that lets go of it while Python ends would abort the program (apache/arrow issue 34314)."""
+    import pyarrow as pa
+
+    return pa.OSFile(f"/proc/self/fd/{opened.fileno()}")
 
 
 def _no_index(path, what):
@@ -123,8 +131,8 @@ def read(path):
     import pyarrow.parquet as pq
 
     try:
-        with files.open_input(path) as file:
-            table = pq.read_table(file)
+        with files.open_input(path) as opened, _native(opened) as source:
+            table = pq.read_table(source)
     except (pa.ArrowException, OSError) as error:
         raise _no_index(path, error) from None
     kinds = {"trial": pa.types.is_integer, "shard": pa.types.is_integer, "ok": pa.types.is_boolean,
