@@ -5,7 +5,8 @@
 # LIB_FUZZING_ENGINE, WORK and OUT; the fuzzers with their corpora and dictionaries come into OUT.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-: "${CXX:=clang++}" "${CXXFLAGS:=-O1 -g1 -fsanitize=fuzzer-no-link,address}" "${LIB_FUZZING_ENGINE:=-fsanitize=fuzzer}"
+: "${CXX:=clang++}" "${LIB_FUZZING_ENGINE:=-fsanitize=fuzzer}"
+: "${CXXFLAGS:=-O1 -g1 -fsanitize=fuzzer-no-link,address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer}"
 : "${WORK:=build/oss-fuzz}" "${OUT:=build/oss-fuzz/out}"
 export CXX CXXFLAGS LIB_FUZZING_ENGINE
 
