@@ -15,8 +15,7 @@
 namespace glidar::link {
 namespace {
 
-/// Handshakes and heartbeats of ZeroMQ are bytes without a message: so many a second are free.
-constexpr double kFreeBytes_per_s = 32.0;
+/// For ZeroMQ's handshake.
 constexpr std::uint64_t kFreeBytes = 4096;
 
 /// Connections that have asked for nothing for so long make room for new ones.
@@ -54,9 +53,10 @@ void shut_down(int descriptor, std::uint64_t cookie) {
   const int held = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);  // is not given to another meanwhile
   const int used = held >= 0 ? held : descriptor;
   if (cookie_of(used) == cookie) {
-    const linger abort = {.l_onoff = 1, .l_linger = 0};  // a peer that still sends notices at once
-    ::setsockopt(used, SOL_SOCKET, SO_LINGER, &abort, sizeof(abort));
-    ::shutdown(used, SHUT_RDWR);
+    // Linux resets a TCP connection that is connected to nothing, and drops what was not read yet
+    // (tcp_disconnect); connections of other kinds refuse that.
+    const sockaddr nobody = {.sa_family = AF_UNSPEC, .sa_data = {}};
+    if (::connect(used, &nobody, sizeof(nobody)) != 0) ::shutdown(used, SHUT_RDWR);
   }
   if (held >= 0) ::close(held);
 }
@@ -172,7 +172,7 @@ std::uint64_t ConnectionGuard::delivered(int descriptor) {
   // end.
   if (connections_.find(descriptor) == connections_.end() && cookie_of(descriptor) == 0) return 0;
   Connection& connection = take_note(descriptor);
-  connection.read_bytes = received_bytes(descriptor);
+  if (!limits_.counts_delivered) connection.read_bytes = received_bytes(descriptor);
   connection.has_delivered = true;
   return connection.cookie;
 }
@@ -272,7 +272,7 @@ void ConnectionGuard::report_descriptors() {
                    "limit (ulimit -n) or lower --limit connections");
 }
 
-/// A message that never ends, or many that nobody has read yet.
+/// A message that never ends, many that nobody has read yet, or more than such peers have to say.
 void ConnectionGuard::check_unread() {
   const Clock::time_point now = Clock::now();
   std::uint64_t all = 0;
@@ -283,13 +283,14 @@ void ConnectionGuard::check_unread() {
     if (connection.is_cut) continue;
     const std::chrono::duration<double> age = now - connection.since;
     const std::uint64_t read = connection.read_bytes + kFreeBytes +
-                               static_cast<std::uint64_t>(age.count() * kFreeBytes_per_s);
+                               static_cast<std::uint64_t>(age.count() * limits_.free_bytes_per_s);
     const std::uint64_t received = received_bytes(one->first);
     const std::uint64_t unread = received > read ? received - read : 0;
     if (unread > limits_.unread_bytes) {
       cut(one, "peer cut off",
-          "it sent " + std::to_string(unread) + " bytes that make no whole message; allowed are " +
-              std::to_string(limits_.unread_bytes));
+          "it sent " + std::to_string(unread) +
+              (limits_.counts_delivered ? " bytes" : " bytes that make no whole message") +
+              "; allowed are " + std::to_string(limits_.unread_bytes));
       continue;
     }
     all += unread;

@@ -32,6 +32,9 @@ struct ConnectionLimits {
   std::chrono::seconds handshake{5};
   std::uint64_t unread_bytes = std::uint64_t{64} << 10;     ///< of one: received, not yet delivered
   std::uint64_t all_unread_bytes = std::uint64_t{1} << 20;  ///< of all
+  /// Of one, free at any time: handshakes and heartbeats are bytes without a message.
+  double free_bytes_per_s = 32.0;
+  bool counts_delivered = false;  ///< what was delivered counts as well: peers have little to say
 };
 
 /// Of a port whose peers send at most so much before it is delivered, one or all of them.
@@ -41,7 +44,8 @@ ConnectionLimits connection_limits(const Limits& limits, std::uint64_t unread_by
 /// Watches the connections of a listening socket and closes those that exceed the limits. ZeroMQ
 /// itself accepts any number, and gathers any number of parts of a message in memory before it
 /// delivers the first one. This class counts, from the reports of ZeroMQ's monitor and the kernel's
-/// counters, and shuts connections down from outside; ZeroMQ then frees what it holds of them.
+/// counters, and ends connections from outside, together with what ZeroMQ has not yet read of them;
+/// ZeroMQ then frees what it holds.
 /// Functions may be called from any thread; those that begin with "on" report what the monitor
 /// reported.
 class ConnectionGuard {

@@ -150,6 +150,10 @@ struct Socket::Impl {
         send_queue(options.send_queue) {}
 
   [[nodiscard]] ConnectionGuard* guard() const { return monitor ? monitor->guard() : nullptr; }
+  /// Before ZeroMQ takes in what has arrived, which it does whenever the socket is used.
+  void refuse_who_sent_too_much() const {
+    if (guard() != nullptr) guard()->look();
+  }
 };
 
 namespace {
@@ -303,6 +307,7 @@ bool Socket::has_full_queue() const {
 }
 
 bool Socket::publish(Payload payload) {
+  impl_->refuse_who_sent_too_much();
   const bool was_full = has_full_queue();
   auto owned = std::make_unique<Flying>(Flying{std::move(payload), impl_->flying});
   const std::span<std::byte> bytes = owned->payload.bytes();
@@ -326,6 +331,7 @@ bool Socket::publish(std::span<const std::byte> bytes, std::chrono::milliseconds
 
 SubscriptionCount Socket::subscriptions(std::span<const std::string> topics) {
   if (impl_->socket.get(zmq::sockopt::type) != ZMQ_XPUB) return {};
+  impl_->refuse_who_sent_too_much();
   constexpr int kMaxAtOnce = 1000;  // others wait until the caller has done something else
   for (int i = 0; i < kMaxAtOnce; ++i) {
     const std::optional<Message> message = receive();
@@ -360,6 +366,7 @@ void Socket::note_subscription(const Message& message) {
 std::vector<PeerEvent> Socket::events() {
   if (!impl_->monitor) return {};
   std::vector<PeerEvent> found = impl_->monitor->events();
+  impl_->refuse_who_sent_too_much();
   notice_news(impl_->socket);  // who joined again is subscribed to anew before it is told
   return found;
 }

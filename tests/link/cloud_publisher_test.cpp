@@ -250,6 +250,23 @@ TEST_F(CloudPublisherTest, AnswersEveryHandshakeAmongPeersThatSendGarbage) {
   EXPECT_GE(publisher->counts().handshakes, 4 * garbage.size());
 }
 
+TEST_F(CloudPublisherTest, CutsOffWhoSubscribesWithoutEndHoweverFastThatIsTaken) {
+  publish();
+  const testing::RawPeer flood(endpoint);
+  ASSERT_TRUE(flood.shake("SUB"));
+  int topic = 0;
+  EXPECT_TRUE(soon([&] {
+    const std::string name = std::to_string(topic++) + std::string(40, 't');
+    flood.send(testing::zmtp_part('\1' + name, false) +
+               testing::zmtp_part(std::string(1, '\0') + name, false));
+    publisher->serve();
+    return flood.is_closed();
+  }));
+  EXPECT_EQ(faults.counts().count("peer cut off"), 1U);
+  link::Socket steady = subscriber();
+  EXPECT_TRUE(has_subscribers(1));
+}
+
 TEST_F(CloudPublisherTest, SendsACloudOncePerTimestamp) {
   publish({.timestamps = Timestamps::of_poses});
   link::Socket socket = subscriber();

@@ -2,13 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/connection_guard.hpp>
 
+#include <glidar/io/unique_fd.hpp>
 #include <glidar/link/router.hpp>
 
 #include "loopback.hpp"
 #include "message_bytes.hpp"
 #include "raw_peer.hpp"
 
+#include <arpa/inet.h>
 #include <gmock/gmock.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
 
 #include <algorithm>
 #include <memory>
@@ -111,6 +115,44 @@ TEST_F(ConnectionGuardTest, DoesNotCountWhatWasDelivered) {
   }
   EXPECT_FALSE(steady.is_closed());
   EXPECT_TRUE(faults.counts().empty());
+}
+
+TEST_F(ConnectionGuardTest, CountsWhatWasDeliveredOfPeersThatHaveLittleToSay) {
+  listen({.unread_bytes = 10'000, .free_bytes_per_s = 0.0, .counts_delivered = true});
+  const RawPeer talker(endpoint);
+  ASSERT_TRUE(talker.shake("DEALER"));
+  const std::string message =
+      testing::zmtp_part("", true) + testing::zmtp_part(std::string(200, 'x'), false);
+  EXPECT_TRUE(soon([&] {
+    talker.send(message);
+    while (router->receive()) {
+    }
+    return talker.is_closed();
+  }));
+  EXPECT_THAT(said("peer cut off"), HasSubstr("bytes; allowed are 10000"));
+  EXPECT_TRUE(serves_a_new_client());
+}
+
+TEST_F(ConnectionGuardTest, WhoIsCutOffIsNotReadToTheEnd) {
+  const UniqueFd listener(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  sockaddr_in address = {};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof(address);
+  auto* const any = reinterpret_cast<sockaddr*>(&address);
+  ASSERT_EQ(::bind(listener.get(), any, size), 0);
+  ASSERT_EQ(::listen(listener.get(), 1), 0);
+  ASSERT_EQ(::getsockname(listener.get(), any, &size), 0);
+  const RawPeer peer({"127.0.0.1", ntohs(address.sin_port)});
+  const UniqueFd accepted(::accept4(listener.get(), nullptr, nullptr, SOCK_CLOEXEC));
+  ConnectionGuard guard({}, faults);
+  guard.on_accepted(accepted.get());
+  ASSERT_TRUE(peer.send(std::string(1000, 'x')));
+  char byte = 0;
+  ASSERT_EQ(::recv(accepted.get(), &byte, 1, 0), 1);  // the others are here too
+  guard.cut_off({accepted.get(), 0}, "a fault", "because");
+  EXPECT_LE(::recv(accepted.get(), &byte, 1, MSG_DONTWAIT), 0);
+  EXPECT_TRUE(soon([&] { return peer.is_closed(); }));
 }
 
 TEST_F(ConnectionGuardTest, ManyIdleConnectionsDoNotKeepANewClientOut) {

@@ -27,22 +27,42 @@ const std::array<link::Part, 1> kEmpty;
 /// Of ZeroMQ's handshake too.
 constexpr std::int64_t kLargestSubscription_bytes = 1024;
 
-/// Peers send subscriptions and empty messages only.
-link::Protection protection_of(const CloudPublisherOptions& options, link::FaultLog& faults) {
+/// Subscriptions that ZeroMQ reads of a peer before others have their turn.
+constexpr int kSubscriptionsAtOnce = 32;
+
+/// Of who shakes hands: peers send empty messages only.
+link::Protection hand_protection(const CloudPublisherOptions& options, link::FaultLog& faults) {
   constexpr std::uint64_t kUnread_bytes = std::uint64_t{64} << 10;
   constexpr std::uint64_t kAllUnread_bytes = std::uint64_t{1} << 20;
   return {.limits = link::connection_limits(options.limits, kUnread_bytes, kAllUnread_bytes),
           .faults = faults};
 }
 
+/// Of subscribers, who send subscriptions only. ZeroMQ keeps each letter of each topic in a tree of
+/// its own before anything can be refused, and goes through the tree whenever a subscriber leaves.
+link::Protection subscriber_protection(const CloudPublisherOptions& options,
+                                       link::FaultLog& faults) {
+  constexpr std::int64_t kHead_bytes = 16;     // of a subscription's message, and to spare
+  constexpr double kFreeBytes_per_s = 1024.0;  // ten changes and a hundred heartbeats
+  const link::Limits& limits = options.limits;
+  const auto bytes =
+      static_cast<std::uint64_t>(limits.subscriptions * (limits.topic_bytes + kHead_bytes));
+  const auto all_bytes = bytes * static_cast<std::uint64_t>(limits.connections);
+  link::ConnectionLimits of_connections = link::connection_limits(limits, bytes, all_bytes);
+  of_connections.free_bytes_per_s = kFreeBytes_per_s;
+  of_connections.counts_delivered = true;
+  return {.limits = of_connections, .faults = faults};
+}
+
 link::SocketOptions cloud_socket(const CloudPublisherOptions& options, link::FaultLog& faults) {
   const link::Limits& limits = options.limits;
   return {.kind = link::SocketKind::publish,
           .send_queue = options.queue,
+          .receive_queue = kSubscriptionsAtOnce,
           .keeps_newest = options.keeps_newest,
           .largest_message_bytes = kLargestSubscription_bytes,
           .is_watched = true,
-          .protection = protection_of(options, faults),
+          .protection = subscriber_protection(options, faults),
           .subscriptions = {.subscriptions = static_cast<std::size_t>(limits.subscriptions),
                             .topic_bytes = static_cast<std::size_t>(limits.topic_bytes)}};
 }
@@ -53,7 +73,7 @@ link::SocketOptions handshakes_socket(const CloudPublisherOptions& options,
           .receive_queue = kMaxHandshakesAtOnce,
           .largest_message_bytes = kLargestHandshakeBytes,
           .is_watched = true,
-          .protection = protection_of(options, faults)};
+          .protection = hand_protection(options, faults)};
 }
 
 }  // namespace
