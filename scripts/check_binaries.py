@@ -6,7 +6,7 @@
 usage: check_binaries.py [--search-path-only] FOLDER...; exit status 1 when something is wrong.
 The search path must not depend on the current folder. GLIDAR's own files must also be position-independent,
 bound before they run with read-only relocations, without executable stack, and compiled with the stack
-protector and checked copies (cmake/hardening.cmake).
+protector, checked copies and, on x86-64, marked targets of indirect jumps (cmake/hardening.cmake).
 """
 
 import argparse
@@ -17,6 +17,9 @@ import sys
 from pathlib import Path
 
 OWN = re.compile(r"(glidar|libglidar|_core)[^/]*$")
+X86_64 = 62  # e_machine of an ELF file
+ENDBR64 = b"\xf3\x0f\x1e\xfa"  # marks where indirect jumps may lead (Intel CET)
+FEWEST_MARKS = 8  # the startup code of some systems has a few; each function of ours that may be called so has one
 NOT_SHIPPED = re.compile(r"_(tests|bench|baseline)$|glidar_(example|fuzz|io_files|sandbox_probe|without_sandbox)")
 
 
@@ -61,12 +64,21 @@ def hardening_faults(dynamic, segments, symbols):
         yield "copies are not checked (_FORTIFY_SOURCE)"
 
 
+def jump_target_faults(content):
+    """What is wrong with the marks of jump targets. The note that says that a whole program has them is not asked for:
+    the startup code of Debian 12 has none, so no program there gets it."""
+    machine = int.from_bytes(content[18:20], "little")
+    if machine == X86_64 and content.count(ENDBR64) < FEWEST_MARKS:
+        yield "targets of indirect jumps are not marked (-fcf-protection)"
+
+
 def faults(path, search_path_only=False):
     """All that is wrong with one file, in words."""
     dynamic = readelf("-d", path)
     found = list(search_path_faults(dynamic))
     if not search_path_only and OWN.match(path.name) and not NOT_SHIPPED.search(path.name):
         found += hardening_faults(dynamic, readelf("-lh", path), readelf("--dyn-syms", path))
+        found += jump_target_faults(Path(path).read_bytes())
     return found
 
 
