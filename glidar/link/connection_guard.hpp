@@ -7,6 +7,7 @@
 #include <glidar/link/listener.hpp>
 
 #include <chrono>
+#include <compare>
 #include <cstdint>
 #include <map>
 #include <mutex>
@@ -23,6 +24,8 @@ enum class PeerEvent : std::uint8_t { joined, left, refused };
 struct ConnectionId {
   int descriptor = -1;       ///< -1: not known
   std::uint64_t cookie = 0;  ///< 0: not known
+
+  auto operator<=>(const ConnectionId&) const = default;
 };
 
 /// What connections to one listening socket may use.

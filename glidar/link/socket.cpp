@@ -88,7 +88,7 @@ auto unbroken(const Action& action) {
 /// the connection ended first.
 int connection_of(const zmq::message_t& message) {
   const int descriptor = zmq_msg_get(message.handle(), ZMQ_SRCFD);
-  return descriptor < 0 ? SubscriptionTable::kUnknownConnection : descriptor;
+  return descriptor < 0 ? SubscriptionTable::kUnknownConnection.descriptor : descriptor;
 }
 
 /// A socket does what is due only when it is used; this uses it.
@@ -356,8 +356,8 @@ void Socket::note_subscription(const Message& message) {
                        std::to_string(limits.topic_bytes) + " (--limit topic-bytes)");
   }
   const std::string topic(reinterpret_cast<const char*>(bytes.data()) + 1, bytes.size() - 1);
-  if (bytes[0] == std::byte{0}) return impl_->subscriptions.remove(connection.descriptor, topic);
-  if (impl_->subscriptions.add(connection.descriptor, topic) <= limits.subscriptions) return;
+  if (bytes[0] == std::byte{0}) return impl_->subscriptions.remove(connection, topic);
+  if (impl_->subscriptions.add(connection, topic) <= limits.subscriptions) return;
   cut_off(connection, "subscription limit",
           "a peer has more than " + std::to_string(limits.subscriptions) +
               " subscriptions (--limit subscriptions)");

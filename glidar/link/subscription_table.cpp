@@ -14,43 +14,45 @@ bool begins_any(const std::string& begin, std::span<const std::string> topics) {
 
 }  // namespace
 
-std::size_t SubscriptionTable::add(int connection, const std::string& topic) {
-  Connection& subscriber = connections_[connection];
-  ++subscriber.topics[topic];
-  return ++subscriber.subscriptions;
+std::size_t SubscriptionTable::add(const ConnectionId& connection, const std::string& topic) {
+  Topics& topics = connections_[connection];
+  std::uint64_t& subscriptions = topics[topic];
+  if (connection == kUnknownConnection || subscriptions == 0) ++subscriptions;
+  return topics.size();
 }
 
-void SubscriptionTable::remove(int connection, const std::string& topic) {
+void SubscriptionTable::remove(const ConnectionId& connection, const std::string& topic) {
   auto found = connections_.find(connection);
   if (connection == kUnknownConnection &&
-      (found == connections_.end() || found->second.topics.count(topic) == 0)) {
-    // a connection's number may be used again before the end of the first one is reported, so the
-    // one that has the topic twice goes first
+      (found == connections_.end() || found->second.count(topic) == 0)) {
     const auto rank = [&topic](const auto& entry) {
-      const Topics& topics = entry.second.topics;
-      const auto subscriptions = topics.find(topic);
-      if (subscriptions == topics.end()) return topics.size() + 2;
-      return subscriptions->second > 1 ? std::size_t{0} : topics.size();
+      const Topics& topics = entry.second;
+      return topics.count(topic) == 0 ? topics.size() + 2 : topics.size();
     };
     found = std::min_element(connections_.begin(), connections_.end(),
                              [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
   }
-  if (found == connections_.end() || found->second.topics.count(topic) == 0) return;
-  Topics& topics = found->second.topics;
-  --found->second.subscriptions;
+  if (found == connections_.end() || found->second.count(topic) == 0) return;
+  Topics& topics = found->second;
   if (--topics[topic] == 0) topics.erase(topic);
   if (topics.empty()) connections_.erase(found);
 }
 
 std::uint64_t SubscriptionTable::subscribers(std::span<const std::string> topics) const {
   std::uint64_t count = 0;
-  for (const auto& [connection, subscriber] : connections_) {
+  for (const auto& [connection, of_connection] : connections_) {
     std::uint64_t wanted = 0;
-    for (const auto& [topic, subscriptions] : subscriber.topics) {
+    for (const auto& [topic, subscriptions] : of_connection) {
       if (begins_any(topic, topics)) wanted += subscriptions;
     }
     count += connection == kUnknownConnection ? wanted : std::min<std::uint64_t>(wanted, 1);
   }
+  return count;
+}
+
+std::size_t SubscriptionTable::size() const {
+  std::size_t count = 0;
+  for (const auto& [connection, topics] : connections_) count += topics.size();
   return count;
 }
 

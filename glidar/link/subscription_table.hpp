@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/link/connection_guard.hpp>
+
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -11,30 +13,28 @@
 namespace glidar::link {
 
 /// Which connections have subscribed to which topics, from the reports of ZeroMQ's XPUB socket. A
-/// connection with several subscriptions is one subscriber.
+/// connection with several subscriptions is one subscriber. Its second subscription to the same
+/// topic changes nothing, because ZeroMQ reports only one end of both.
 class SubscriptionTable {
  public:
   /// For reports that do not name their connection: those of connections that ended.
-  static constexpr int kUnknownConnection = -1;
+  static constexpr ConnectionId kUnknownConnection = {};
 
   /// Returns how many subscriptions the connection has now. Without a connection each subscription
   /// counts as a subscriber of its own.
-  std::size_t add(int connection, const std::string& topic);
+  std::size_t add(const ConnectionId& connection, const std::string& topic);
   /// Without a connection any one that has this topic loses it: the one with the fewest topics.
-  void remove(int connection, const std::string& topic);
+  void remove(const ConnectionId& connection, const std::string& topic);
 
   /// Connections that receive messages of at least one of these topics. A subscription receives all
   /// topics that begin with its own.
   [[nodiscard]] std::uint64_t subscribers(std::span<const std::string> topics) const;
+  /// Subscriptions of all connections.
+  [[nodiscard]] std::size_t size() const;
 
  private:
-  using Topics = std::map<std::string, std::uint64_t>;  ///< subscriptions of each
-
-  struct Connection {
-    Topics topics;
-    std::size_t subscriptions = 0;  ///< of all topics
-  };
-  std::map<int, Connection> connections_;
+  using Topics = std::map<std::string, std::uint64_t>;  ///< subscriptions; 1 of a known connection
+  std::map<ConnectionId, Topics> connections_;
 };
 
 }  // namespace glidar::link

@@ -11,42 +11,42 @@ namespace glidar::link {
 namespace {
 
 const std::vector<std::string> kTopics = {"c", "/a", "/b"};
-constexpr int kUnknown = SubscriptionTable::kUnknownConnection;
+constexpr ConnectionId kUnknown = SubscriptionTable::kUnknownConnection;
 
 TEST(SubscriptionTable, CountsConnectionsNotSubscriptions) {
   SubscriptionTable table;
   EXPECT_EQ(table.subscribers(kTopics), 0U);
-  table.add(7, "/a");
-  table.add(7, "/b");
+  table.add({7, 100 + 7}, "/a");
+  table.add({7, 100 + 7}, "/b");
   EXPECT_EQ(table.subscribers(kTopics), 1U);
-  table.add(8, "/a");
+  table.add({8, 100 + 8}, "/a");
   EXPECT_EQ(table.subscribers(kTopics), 2U);
 }
 
 TEST(SubscriptionTable, ASubscriptionCountsForTopicsThatBeginWithIt) {
   SubscriptionTable table;
-  table.add(1, "");
-  table.add(2, "/");
-  table.add(3, "/ab");  // longer than any topic
-  table.add(4, "x");
+  table.add({1, 100 + 1}, "");
+  table.add({2, 100 + 2}, "/");
+  table.add({3, 100 + 3}, "/ab");  // longer than any topic
+  table.add({4, 100 + 4}, "x");
   EXPECT_EQ(table.subscribers(kTopics), 2U);
 }
 
 TEST(SubscriptionTable, AConnectionLeavesWithItsLastSubscription) {
   SubscriptionTable table;
-  table.add(1, "/a");
-  table.add(1, "/b");
-  table.remove(1, "/a");
+  table.add({1, 100 + 1}, "/a");
+  table.add({1, 100 + 1}, "/b");
+  table.remove({1, 100 + 1}, "/a");
   EXPECT_EQ(table.subscribers(kTopics), 1U);
-  table.remove(1, "/b");
+  table.remove({1, 100 + 1}, "/b");
   EXPECT_EQ(table.subscribers(kTopics), 0U);
 }
 
 TEST(SubscriptionTable, AConnectionThatEndedIsOneThatHadItsTopics) {
   SubscriptionTable table;
-  table.add(1, "/a");
-  table.add(1, "c");
-  table.add(2, "c");
+  table.add({1, 100 + 1}, "/a");
+  table.add({1, 100 + 1}, "c");
+  table.add({2, 100 + 2}, "c");
   table.remove(kUnknown, "c");  // the second one ended
   EXPECT_EQ(table.subscribers(kTopics), 1U);
   EXPECT_EQ(table.subscribers(std::vector<std::string>{"/a"}), 1U);
@@ -56,14 +56,21 @@ TEST(SubscriptionTable, AConnectionThatEndedIsOneThatHadItsTopics) {
 }
 
 /// The system may give the number to a new connection before the end of the old one is reported.
-TEST(SubscriptionTable, ANumberThatIsUsedAgainStaysOneConnection) {
+TEST(SubscriptionTable, AnOldConnectionOfTheSameNumberCountsUntilItsEndIsReported) {
   SubscriptionTable table;
-  table.add(1, "c");
-  table.add(2, "c");
-  table.add(1, "c");
+  table.add({1, 100}, "c");
+  table.add({1, 101}, "c");
   EXPECT_EQ(table.subscribers(kTopics), 2U);
   table.remove(kUnknown, "c");
-  EXPECT_EQ(table.subscribers(kTopics), 2U);
+  EXPECT_EQ(table.subscribers(kTopics), 1U);
+}
+
+TEST(SubscriptionTable, RepeatedSubscriptionsAreGoneWithTheOneEndThatIsReported) {
+  SubscriptionTable table;
+  for (int k = 0; k < 100; ++k) EXPECT_EQ(table.add({1, 100}, "c"), 1U);
+  EXPECT_EQ(table.size(), 1U);
+  table.remove(kUnknown, "c");
+  EXPECT_EQ(table.size(), 0U);
 }
 
 TEST(SubscriptionTable, SubscriptionsOfUnknownConnectionsCountOneByOne) {
@@ -79,11 +86,11 @@ TEST(SubscriptionTable, SubscriptionsOfUnknownConnectionsCountOneByOne) {
 TEST(SubscriptionTable, TheEndOfWhatNeverBeganChangesNothing) {
   SubscriptionTable table;
   table.remove(kUnknown, "c");
-  table.remove(3, "c");
-  table.add(1, "c");
+  table.remove({3, 100 + 3}, "c");
+  table.add({1, 100 + 1}, "c");
   table.remove(kUnknown, "/a");
-  table.remove(1, "/a");
-  table.remove(3, "c");
+  table.remove({1, 100 + 1}, "/a");
+  table.remove({3, 100 + 3}, "c");
   EXPECT_EQ(table.subscribers(kTopics), 1U);
 }
 
