@@ -17,7 +17,8 @@
 namespace glidar::link {
 namespace {
 
-/// XPUB speaks as PUB does and tells of subscriptions besides, but cannot keep the newest only.
+/// XPUB speaks as PUB does and tells of subscriptions besides, but cannot keep
+/// the newest only.
 zmq::socket_type type_of(const SocketOptions& options) {
   switch (options.kind) {
     case SocketKind::subscribe:
@@ -61,7 +62,8 @@ struct Flying {
   std::shared_ptr<std::atomic<int>> count;
 };
 
-/// Gives a payload back to its pool once ZeroMQ has no more use for it, in ZeroMQ's own thread.
+/// Gives a payload back to its pool once ZeroMQ has no more use for it, in
+/// ZeroMQ's own thread.
 void release(void* /*bytes*/, void* flying) {
   --*static_cast<Flying*>(flying)->count;
   delete static_cast<Flying*>(flying);
@@ -84,8 +86,8 @@ auto unbroken(const Action& action) {
   }
 }
 
-/// The descriptor of the connection that a message came by. The end of a subscription has none when
-/// the connection ended first.
+/// The descriptor of the connection that a message came by. The end of a
+/// subscription has none when the connection ended first.
 int connection_of(const zmq::message_t& message) {
   const int descriptor = zmq_msg_get(message.handle(), ZMQ_SRCFD);
   return descriptor < 0 ? SubscriptionTable::kUnknownConnection.descriptor : descriptor;
@@ -150,15 +152,22 @@ struct Socket::Impl {
         send_queue(options.send_queue) {}
 
   [[nodiscard]] ConnectionGuard* guard() const { return monitor ? monitor->guard() : nullptr; }
-  /// Before ZeroMQ takes in what has arrived, which it does whenever the socket is used.
+  /// Before ZeroMQ takes in what has arrived, which it does whenever the socket
+  /// is used.
   void refuse_who_sent_too_much() const {
     if (guard() != nullptr) guard()->look();
+  }
+  void forget_ended() {
+    if (guard() == nullptr) return;
+    subscriptions.forget_ended([this](const ConnectionId& one) { return guard()->is_open(one); },
+                               SubscriptionTable::Clock::now());
   }
 };
 
 namespace {
 
-/// Connections that ended without a word are noticed by the kernel, after some minutes.
+/// Connections that ended without a word are noticed by the kernel, after some
+/// minutes.
 void protect(zmq::socket_t& socket, const ConnectionLimits& limits) {
   constexpr int kBacklog = 64;
   constexpr int kIdle_s = 60;
@@ -253,8 +262,8 @@ bool Socket::send(std::span<const std::byte> bytes) {
 
 namespace {
 
-/// Without waiting. A router refuses the first part when its peer has left or reads too slowly; the
-/// parts after it are accepted.
+/// Without waiting. A router refuses the first part when its peer has left or
+/// reads too slowly; the parts after it are accepted.
 Sending send_now(zmq::socket_t& socket, zmq::message_t& message, zmq::send_flags flags) {
   try {
     const auto give = [&] { return socket.send(message, flags | zmq::send_flags::dontwait); };
@@ -287,7 +296,8 @@ std::string Socket::bound_to() const {
 
 namespace {
 
-/// First only if all queues have room, so that a full one is noticed; then to those that have.
+/// First only if all queues have room, so that a full one is noticed; then to
+/// those that have.
 bool publish_now(zmq::socket_t& socket, zmq::message_t& message, zmq::send_flags flags) {
   notice_news(socket);  // such as that a queue has room again
   socket.set(zmq::sockopt::xpub_nodrop, true);
@@ -299,8 +309,9 @@ bool publish_now(zmq::socket_t& socket, zmq::message_t& message, zmq::send_flags
 
 }  // namespace
 
-/// ZeroMQ tells of a full queue once and then leaves it out until half of it was read. What is
-/// half on its way counts too, so that this may be late to see it, but not early.
+/// ZeroMQ tells of a full queue once and then leaves it out until half of it
+/// was read. What is half on its way counts too, so that this may be late to
+/// see it, but not early.
 bool Socket::has_full_queue() const {
   impl_->is_behind = impl_->is_behind && *impl_->flying > impl_->send_queue / 2;
   return impl_->is_behind;
@@ -335,13 +346,17 @@ SubscriptionCount Socket::subscriptions(std::span<const std::string> topics) {
   constexpr int kMaxAtOnce = 1000;  // others wait until the caller has done something else
   for (int i = 0; i < kMaxAtOnce; ++i) {
     const std::optional<Message> message = receive();
-    if (!message) break;
+    if (!message) {
+      impl_->forget_ended();
+      break;
+    }
     note_subscription(*message);
   }
   return {.is_known = true, .subscribers = impl_->subscriptions.subscribers(topics)};
 }
 
-/// The message is a byte, 1 for a subscription and 0 for its end, and the topic.
+/// The message is a byte, 1 for a subscription and 0 for its end, and the
+/// topic.
 void Socket::note_subscription(const Message& message) {
   const SubscriptionLimits& limits = impl_->subscription_limits;
   const std::span<const std::byte> bytes = message.bytes();

@@ -3,6 +3,7 @@
 #include <glidar/link/subscription_table.hpp>
 
 #include <algorithm>
+#include <iterator>
 
 namespace glidar::link {
 namespace {
@@ -15,7 +16,7 @@ bool begins_any(const std::string& begin, std::span<const std::string> topics) {
 }  // namespace
 
 std::size_t SubscriptionTable::add(const ConnectionId& connection, const std::string& topic) {
-  Topics& topics = connections_[connection];
+  Topics& topics = connections_[connection].topics;
   std::uint64_t& subscriptions = topics[topic];
   if (connection == kUnknownConnection || subscriptions == 0) ++subscriptions;
   return topics.size();
@@ -24,25 +25,25 @@ std::size_t SubscriptionTable::add(const ConnectionId& connection, const std::st
 void SubscriptionTable::remove(const ConnectionId& connection, const std::string& topic) {
   auto found = connections_.find(connection);
   if (connection == kUnknownConnection &&
-      (found == connections_.end() || found->second.count(topic) == 0)) {
+      (found == connections_.end() || found->second.topics.count(topic) == 0)) {
     const auto rank = [&topic](const auto& entry) {
-      const Topics& topics = entry.second;
+      const Topics& topics = entry.second.topics;
       return topics.count(topic) == 0 ? topics.size() + 2 : topics.size();
     };
     found = std::min_element(connections_.begin(), connections_.end(),
                              [&](const auto& a, const auto& b) { return rank(a) < rank(b); });
   }
-  if (found == connections_.end() || found->second.count(topic) == 0) return;
-  Topics& topics = found->second;
+  if (found == connections_.end() || found->second.topics.count(topic) == 0) return;
+  Topics& topics = found->second.topics;
   if (--topics[topic] == 0) topics.erase(topic);
   if (topics.empty()) connections_.erase(found);
 }
 
 std::uint64_t SubscriptionTable::subscribers(std::span<const std::string> topics) const {
   std::uint64_t count = 0;
-  for (const auto& [connection, of_connection] : connections_) {
+  for (const auto& [connection, one] : connections_) {
     std::uint64_t wanted = 0;
-    for (const auto& [topic, subscriptions] : of_connection) {
+    for (const auto& [topic, subscriptions] : one.topics) {
       if (begins_any(topic, topics)) wanted += subscriptions;
     }
     count += connection == kUnknownConnection ? wanted : std::min<std::uint64_t>(wanted, 1);
@@ -52,8 +53,22 @@ std::uint64_t SubscriptionTable::subscribers(std::span<const std::string> topics
 
 std::size_t SubscriptionTable::size() const {
   std::size_t count = 0;
-  for (const auto& [connection, topics] : connections_) count += topics.size();
+  for (const auto& [connection, one] : connections_) count += one.topics.size();
   return count;
+}
+
+void SubscriptionTable::forget_ended(const std::function<bool(const ConnectionId&)>& is_open,
+                                     Clock::time_point now) {
+  for (auto one = connections_.begin(); one != connections_.end();) {
+    const bool is_known = one->first != kUnknownConnection;
+    // one without a cookie had ended when its subscription was read
+    if (!is_known || (one->first.cookie != 0 && is_open(one->first))) {
+      ++one;
+      continue;
+    }
+    if (!one->second.ended) one->second.ended = now;
+    one = now - *one->second.ended >= kEnd ? connections_.erase(one) : std::next(one);
+  }
 }
 
 }  // namespace glidar::link

@@ -4,9 +4,12 @@
 
 #include <glidar/link/connection_guard.hpp>
 
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -17,6 +20,8 @@ namespace glidar::link {
 /// topic changes nothing, because ZeroMQ reports only one end of both.
 class SubscriptionTable {
  public:
+  using Clock = std::chrono::steady_clock;
+
   /// For reports that do not name their connection: those of connections that ended.
   static constexpr ConnectionId kUnknownConnection = {};
 
@@ -32,9 +37,20 @@ class SubscriptionTable {
   /// Subscriptions of all connections.
   [[nodiscard]] std::size_t size() const;
 
+  /// To be called when there are no more reports. What is left of a connection that ended kEnd ago
+  /// was reported twice: once under its number, and once after the end, under no or another one.
+  void forget_ended(const std::function<bool(const ConnectionId&)>& is_open, Clock::time_point now);
+  /// By then ZeroMQ has reported the end of all its subscriptions.
+  static constexpr std::chrono::seconds kEnd{10};
+
  private:
   using Topics = std::map<std::string, std::uint64_t>;  ///< subscriptions; 1 of a known connection
-  std::map<ConnectionId, Topics> connections_;
+
+  struct Connection {
+    Topics topics;
+    std::optional<Clock::time_point> ended;
+  };
+  std::map<ConnectionId, Connection> connections_;
 };
 
 }  // namespace glidar::link

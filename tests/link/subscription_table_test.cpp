@@ -73,6 +73,22 @@ TEST(SubscriptionTable, RepeatedSubscriptionsAreGoneWithTheOneEndThatIsReported)
   EXPECT_EQ(table.size(), 0U);
 }
 
+TEST(SubscriptionTable, WhatIsLeftOfAnEndedConnectionIsForgottenLater) {
+  SubscriptionTable table;
+  table.add({1, 100}, "c");
+  table.add({1, 100}, "/a");
+  table.add({1, 0}, "c");     // again, read after the end
+  table.add({2, 200}, "c");   // is open
+  table.add(kUnknown, "/b");  // nobody knows
+  const auto is_open = [](const ConnectionId& connection) { return connection.cookie == 200; };
+  const auto start = SubscriptionTable::Clock::now();
+  table.forget_ended(is_open, start);
+  EXPECT_EQ(table.size(), 5U);
+  table.forget_ended(is_open, start + SubscriptionTable::kEnd);
+  EXPECT_EQ(table.size(), 2U);
+  EXPECT_EQ(table.subscribers(kTopics), 2U);
+}
+
 TEST(SubscriptionTable, SubscriptionsOfUnknownConnectionsCountOneByOne) {
   SubscriptionTable table;
   table.add(kUnknown, "c");
