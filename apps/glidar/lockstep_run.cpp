@@ -45,7 +45,9 @@ LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
       faults_(console.report()),
       server_(context_, server_options(flags, console), faults_) {
   if (!flags_.stats.empty()) stats_file_ = std::make_unique<AtomicFile>(flags_.stats);
-  if (!flags_.record.empty()) recorder_ = std::make_unique<Recorder>(flags_.record);
+  if (!flags_.record.empty()) {
+    recorder_ = std::make_unique<Recorder>(flags_.record, flags_.durability);
+  }
   open(flags_.render, {}, console_, session_);
   (void)taken_files(flags_, session_.files);
   if (recorder_) recorder_->begin(session_, flags_.command);
@@ -292,6 +294,7 @@ lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, con
 void LockstepRun::finish(const std::string& ending) {
   faults_.flush();
   const lockstep::Server::Counts& counts = server_.counts();
+  if (recorder_) recorder_->commit();  // before statistics, which may have no room
   if (stats_file_) {
     const nlohmann::ordered_json text = {{"ended_by", ending},
                                          {"requests", counts.received},
@@ -301,7 +304,6 @@ void LockstepRun::finish(const std::string& ending) {
     stats_file_->write(text.dump(2) + "\n");
     stats_file_->commit();
   }
-  if (recorder_) recorder_->commit();
   if (flags_.render.quiet) return;
   fmt::print("{} requests, {} refused; {} clouds\n", counts.received, counts.refused,
              counts.clouds);

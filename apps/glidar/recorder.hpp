@@ -13,14 +13,16 @@ namespace glidar::app {
 class Recorder {
  public:
   /// Throws Error when no file can be made there.
-  explicit Recorder(const std::string& path) : writer_(path) {}
+  Recorder(const std::string& path, link::Durability durability)
+      : writer_(path), durability_(durability) {}
   /// Once the session is open.
   void begin(const Session& session, const CommandRecord& command);
   void write(const link::RecordedFrame& frame) { writer_.write(frame); }
-  void commit() { writer_.commit(); }
+  void commit() { writer_.commit(durability_); }
 
  private:
   link::RecordingWriter writer_;
+  link::Durability durability_;
 };
 
 /// The line of a frame by one of the session's sensors; `placed`: where a client or simulator put

@@ -33,6 +33,7 @@ A client that places everything and asks for every frame (docs/link.md):
 Again, the same bytes, here or elsewhere:
   glidar stream builtin:asteroid --model-dr 0,0.5,0 --frames 20 --record r.jsonl -o scan.pcd
   glidar replay r.jsonl
+  glidar stream builtin:asteroid --frames 20 --record r.jsonl --durable   # survives a loss of power
 Watch from Python (python3-zmq); docs/link.md has the bytes of all messages:
   s = zmq.Context().socket(zmq.SUB); s.connect("tcp://127.0.0.1:5555"); s.subscribe("c")
 

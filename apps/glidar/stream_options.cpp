@@ -50,6 +50,11 @@ void add_pace_flags(CLI::App& command, StreamFlags& flags) {
            flags.stats);
   add_text(command, {"--record", "FILE", "Keeps poses, seeds and command for glidar replay", group},
            flags.record);
+  command
+      .add_flag_callback(
+          "--durable", [&flags] { flags.durability = link::Durability::synced; },
+          "Syncs the finished --record FILE and its folder to the disk (fsync) [off]")
+      ->group(group);
 }
 
 void add_publishing_flags(CLI::App& command, StreamFlags& flags) {
@@ -214,6 +219,10 @@ StreamFlags replayed(StreamFlags recorded, const StreamFlags& chosen) {
 }
 
 void check(const StreamFlags& flags) {
+  if (flags.durability != link::Durability::none && flags.record.empty()) {
+    refuse("--durable", "given without --record",
+           "it is about recordings alone: give --record too");
+  }
   if (!flags.lockstep.empty()) return check_lockstep(flags);
   if (!flags.curve_keys.empty()) {
     refuse("--curve-keys", "given without --lockstep", "only that link is encrypted");

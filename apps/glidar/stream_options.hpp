@@ -7,6 +7,7 @@
 #include <glidar/link/legacy/cloud_publisher.hpp>
 #include <glidar/link/legacy/pose_receiver.hpp>
 #include <glidar/link/limits.hpp>
+#include <glidar/link/recording.hpp>
 
 #include <cstdint>
 #include <optional>
@@ -21,6 +22,7 @@ struct StreamFlags {
   std::optional<std::uint64_t> frames;  ///< empty: no such limit
   std::string stats;                    ///< file; empty: none
   std::string record;                   ///< file that keeps what the frames depend on; empty: none
+  link::Durability durability = link::Durability::none;  ///< of that file
   std::string replay;                 ///< file of that kind that the frames come from; empty: none
   double replay_rate_hz = 0.0;        ///< 0: as fast as it goes
   CommandRecord command;              ///< this one, for the recording

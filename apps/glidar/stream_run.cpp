@@ -58,7 +58,8 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
     naming("--stats", [&] { stats_file_ = std::make_unique<AtomicFile>(flags_.stats); });
   }
   if (!flags_.record.empty()) {
-    naming("--record", [&] { recorder_ = std::make_unique<Recorder>(flags_.record); });
+    naming("--record",
+           [&] { recorder_ = std::make_unique<Recorder>(flags_.record, flags_.durability); });
   }
   if (!flags_.replay.empty()) recording_ = std::make_unique<link::RecordingReader>(flags_.replay);
   if (flags_.port) {

@@ -3,6 +3,7 @@
 #include <glidar/io/atomic_file.hpp>
 
 #include <glidar/core/error.hpp>
+#include <glidar/io/file_sync.hpp>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -192,6 +193,14 @@ void AtomicFile::commit() {
   if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, "put in place", errno);
   temporary_.clear();
   unlist(std::exchange(slot_, -1));
+}
+
+void AtomicFile::commit_durably() {
+  if (target_ >= 0) return commit();
+  flush();
+  sync_file(descriptor_, path_);
+  commit();
+  sync_folder_of(path_);
 }
 
 void AtomicFile::send() const {

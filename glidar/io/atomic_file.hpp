@@ -59,6 +59,12 @@ class AtomicFile {
   /// ClosedPipe when it was to go to a pipe that nobody reads.
   void commit();
 
+  /// In the place of finish() and commit(), for a file that a loss of power does not undo: the
+  /// bytes are on the disk before the file gets its name, and the name when this returns. Throws
+  /// Error also when the disk cannot confirm one of them; where that is the name, the file is in
+  /// place. What commit() sends to an open file of the system is not synced.
+  void commit_durably();
+
   /// The name the file will have.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 

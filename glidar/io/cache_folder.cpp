@@ -158,6 +158,12 @@ class Temporary {
   [[nodiscard]] int fd() const { return fd_.get(); }
   /// 0 or an error number.
   [[nodiscard]] int error() const { return fd_ ? 0 : error_; }
+  /// 0 or an error number; some file systems find only on closing that a disk or quota is full.
+  [[nodiscard]] int error_of_closing() const {
+    const int copy = ::fcntl(fd_.get(), F_DUPFD_CLOEXEC, 0);  // the file stays locked
+    if (copy < 0) return errno;
+    return ::close(copy) == 0 || errno == EINTR ? 0 : errno;
+  }
   int rename_to(const std::string& entry) {
     is_renamed_ = ::renameat(folder_, name_.c_str(), folder_, entry.c_str()) == 0;
     return is_renamed_ ? 0 : errno;
@@ -260,7 +266,8 @@ std::string store_entry(const CacheFolder& folder, const std::string& name,
     return fmt::format("the model is not cached: it takes {} MiB, the limit of all is {} MiB ({})",
                        (info.st_size + (1 << 20U) - 1) >> 20U, limit_bytes >> 20U, kLimitVariable);
   }
-  const int error = temporary.rename_to(name);
+  int error = temporary.error_of_closing();
+  if (error == 0) error = temporary.rename_to(name);
   if (error != 0) return because(reason(error));
   evict(folder, limit_bytes, name);
   return "";

@@ -83,7 +83,7 @@ Loaded import(const fs::path& file, const ModelOptions& options, const Report& r
                 " was changed while it was read; the model is that of its content before");
   } else if (entry) {
     const std::string unwritten = write_cache(*entry, loaded.imported, file);
-    if (!unwritten.empty()) report.info(unwritten);
+    if (!unwritten.empty()) report.warn(unwritten);
   }
   std::vector<std::string>& notes = loaded.imported.model.notes;
   std::move(sandbox_notes.begin(), sandbox_notes.end(), std::back_inserter(notes));

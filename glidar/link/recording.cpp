@@ -160,8 +160,9 @@ void RecordingWriter::write(const RecordedFrame& frame) {
   ++frames_;
 }
 
-void RecordingWriter::commit() {
+void RecordingWriter::commit(Durability durability) {
   file_.write(line_of({{"frames", frames_}}));
+  if (durability == Durability::synced) return file_.commit_durably();
   file_.commit();
 }
 

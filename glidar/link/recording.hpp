@@ -38,6 +38,9 @@ struct RecordedFrame {
   std::string frame_hash;  ///< of what the frame reports
 };
 
+/// Whether a finished recording is synced to the disk.
+enum class Durability : std::uint8_t { none, synced };
+
 /// Writes a recording; it appears under its name when it is whole.
 class RecordingWriter {
  public:
@@ -46,8 +49,9 @@ class RecordingWriter {
   /// Once, before the first frame.
   void begin(const RecordingHead& head);
   void write(const RecordedFrame& frame);
-  /// Once, after the last frame.
-  void commit();
+  /// Once, after the last frame. Durably: the file survives a loss of power from then on, and an
+  /// Error is thrown also when the disk does not confirm that.
+  void commit(Durability durability = Durability::none);
 
  private:
   AtomicFile file_;

@@ -183,9 +183,10 @@ def _contents(plan):
 
 def write(plan, folder):
     """Writes models, models_info.json and camera.json, and their receipt."""
-    listed = {}
-    with files.scratch(folder.root) as scratch:
+    listed, written = {}, []
+    with folder.scratch() as scratch:
         for name, data in _contents(plan):
-            files.write_bytes(scratch, folder.root / name, data)
+            written.append(files.prepare_bytes(scratch, folder.root / name, data))
             listed[name] = [files.hash_bytes(data), len(data)]
+        files.publish_all(scratch, written)
         files.write_json(scratch, folder.once("bop"), {"trials": 0, "failed": 0, "files": listed})

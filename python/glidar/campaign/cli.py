@@ -36,6 +36,12 @@ def _count(text):
     return int(text)
 
 
+def _add_durable(command):
+    command.add_argument("--durable", action=argparse.BooleanOptionalAction, default=True,
+                         help="sync files to the disk before a receipt lists them, so that a loss of power undoes "
+                              "nothing that is done")
+
+
 def make_parser():
     parser = Parser(prog="glidar campaign", description="Monte Carlo campaigns", epilog=CODES,
                     allow_abbrev=False)
@@ -58,11 +64,13 @@ def make_parser():
     run.add_argument("--sbatch", metavar="OPTION", action="append", default=[],
                      help="a line for sbatch, e.g. --sbatch=--time=10:00; may be given again")
     run.add_argument("--wait", action="store_true", help="wait until Slurm has finished the campaign")
+    _add_durable(run)
     run.add_argument("--quiet", action="store_true", help="no progress display")
     merge = commands.add_parser("merge", help="finish a campaign that ran in parts", epilog=CODES,
                                 allow_abbrev=False)
     merge.add_argument("parts", metavar="DIR", nargs="+", help="folders of the parts")
     merge.add_argument("-o", "--output", metavar="DIR", help="folder of the whole (default: the first)")
+    _add_durable(merge)
     report = commands.add_parser("report", help="write report.html", epilog=CODES, allow_abbrev=False)
     report.add_argument("folder", metavar="DIR")
     report.add_argument("-o", "--output", metavar="FILE", help="default: DIR/report.html")
@@ -110,7 +118,7 @@ def _run(flags):
         outcome = slurm_executor.submit(flags)
         return DONE if outcome is None else _tell(outcome, flags.output)
     outcome = running.run(flags.campaign, flags.output, running.Part(*flags.shard), flags.workers,
-                          _executor(flags), flags.quiet)
+                          _executor(flags), flags.quiet, durable=flags.durable)
     return _tell(outcome, flags.output)
 
 
@@ -118,7 +126,7 @@ def _merge(flags):
     from glidar.campaign import run as running
 
     root = flags.output or flags.parts[0]
-    return _tell(running.merge(flags.parts, root), root)
+    return _tell(running.merge(flags.parts, root, flags.durable), root)
 
 
 def _report(flags):

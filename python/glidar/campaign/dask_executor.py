@@ -5,17 +5,18 @@
 A worker may die: Dask gives its task to another, and shards with a receipt are passed over.
 """
 
+import dataclasses
+
 from glidar import Error
 from glidar.campaign import folder as folders, work as works
-from glidar.campaign.folder import Folder
 
 TASKS_PER_WORKER = 4  # so that the last ones end together
 CONNECT_S = 10
 
 
-def run_shards(plan, root, shards):
+def run_shards(plan, folder, shards):
     """The task of one thread of a worker: what each of the shards came to."""
-    folder, done = Folder(root), []
+    done = []
     works.work(plan, folder, folders.missing(folder, shards), 1, done.append)
     known = {d.shard: d for d in done}
     return [known.get(shard) or works.recall(folder, shard) for shard in shards]
@@ -42,8 +43,8 @@ def dask_executor(address):
                         "start it with: dask scheduler") from None
         with client:
             workers = max(1, sum(client.nthreads().values()))
-            root = folder.root.resolve()
-            futures = [client.submit(run_shards, plan, root, run, pure=False)
+            absolute = dataclasses.replace(folder, root=folder.root.resolve())
+            futures = [client.submit(run_shards, plan, absolute, run, pure=False)
                        for run in _tasks(shards, TASKS_PER_WORKER * workers)]
             try:
                 for future in as_completed(futures, loop=client.loop):

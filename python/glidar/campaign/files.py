@@ -3,11 +3,11 @@
 """Files that are there whole or not at all.
 
 They are written in the campaign folder's `tmp` and renamed, so that a program killed at any moment
-leaves nothing behind that looks like a result.
+leaves nothing behind that looks like a result. What is written durably is also there after a loss of
+power: data is synced before the rename, folders after it.
 """
 
 import contextlib
-import errno
 import glob
 import hashlib
 import json
@@ -21,18 +21,18 @@ from pathlib import Path
 
 from glidar import Error
 from glidar._errors import excerpt
+from glidar.campaign import durable as disk
 
 MOST_BYTES = 1 << 40  # of a file that is hashed or copied piece by piece
 MOST_JSON_BYTES = 1 << 30
 MOST_JSON_LEVELS = 64
 STRING = re.compile(rb'"(?:[^"\\]|\\.)*"')
 NO_BRACKETS = bytes(set(range(256)) - set(b"[]{}"))
-FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 
 def write_error(path, error):
     """What a fault of writing says; where space ran out, that the campaign can go on."""
-    if error.errno in FULL:
+    if error.errno in disk.FULL:
         return Error(str(path), f"it cannot be written: {os.strerror(error.errno)}",
                      "a disk with room for all outputs",
                      "make room and run the same command again: it goes on where it stopped")
@@ -40,21 +40,32 @@ def write_error(path, error):
 
 
 class Scratch:
-    """A folder for what is being written, of this writer alone, within the campaign's `tmp`."""
+    """A folder for what is being written, of this writer alone, within the campaign's `tmp`. What is published from a
+    durable one is synced to the disk."""
 
-    def __init__(self, root):
+    def __init__(self, root, durable=False):
         name = f"{socket.gethostname()}-{os.getpid()}-{secrets.token_hex(4)}"
         self.folder = Path(root) / "tmp" / name
+        self.newest = self.folder  # the path given last
+        self.folders = disk.Folders(root) if durable else None
         self._count = 0
 
     def path(self, name):
         """A path to write to; unique, with the name's ending."""
         try:
+            if self.folders:
+                self.folders.note_new()
             self.folder.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise write_error(self.folder, error) from None
         self._count += 1
-        return self.folder / f"{self._count}-{name}"
+        self.newest = self.folder / f"{self._count}-{name}"
+        return self.newest
+
+    def sync_folders(self, folders):
+        """Of a durable one: waits until the names in folders are on the disk."""
+        if self.folders:
+            self.folders.sync(folders)
 
     def remove(self):
         shutil.rmtree(self.folder, ignore_errors=True)
@@ -74,9 +85,9 @@ def _is_running(pid):
 
 
 @contextlib.contextmanager
-def scratch(root):
+def scratch(root, durable=False):
     """A Scratch that is gone at the end, whatever happens."""
-    own = Scratch(root)
+    own = Scratch(root, durable)
     try:
         yield own
     finally:
@@ -100,17 +111,27 @@ def _remove_empty(folder):
         pass
 
 
-def publish(written, final):
+def publish_all(scratch, pairs, kept=()):
+    """Renames finished files to their places: (written, final) pairs. From a durable scratch their data is on the disk
+    before, and their names when this returns; `kept`: files for which the same holds then, that have their names."""
+    if scratch.folders:
+        disk.sync_files([*kept, *(written for written, _ in pairs)])
+    for written, final in pairs:
+        try:
+            Path(final).parent.mkdir(parents=True, exist_ok=True)
+            os.replace(written, final)
+        except OSError as error:
+            raise write_error(final, error) from None
+    scratch.sync_folders({Path(final).parent for final in [*kept, *(final for _, final in pairs)]})
+
+
+def publish(scratch, written, final):
     """Renames a finished file to its place."""
-    try:
-        Path(final).parent.mkdir(parents=True, exist_ok=True)
-        os.replace(written, final)
-    except OSError as error:
-        raise write_error(final, error) from None
+    publish_all(scratch, [(written, final)])
 
 
-def write_bytes(scratch, final, data):
-    """Writes a file whole or not at all."""
+def prepare_bytes(scratch, final, data):
+    """Writes a file to be published, and gives the pair for publish_all."""
     path = scratch.path(Path(final).name)
     try:
         with open(path, "wb") as file:
@@ -118,7 +139,12 @@ def write_bytes(scratch, final, data):
     except OSError as error:
         path.unlink(missing_ok=True)
         raise write_error(final, error) from None
-    publish(path, final)
+    return path, final
+
+
+def write_bytes(scratch, final, data):
+    """Writes a file whole or not at all."""
+    publish_all(scratch, [prepare_bytes(scratch, final, data)])
 
 
 def json_bytes(value):

@@ -52,7 +52,7 @@ def _write_lines(folder, scratch, name, lines_of):
                 file.writelines(lines_of(table))
     except OSError as error:
         raise files.write_error(folder.root / name, error) from None
-    files.publish(path, folder.root / name)
+    files.publish(scratch, path, folder.root / name)
     return name
 
 
@@ -62,7 +62,7 @@ def _write_index(folder, scratch, shards):
         index.join((folder.part(shard) for shard in range(shards)), path)
     except OSError as error:
         raise files.write_error(folder.root / index.INDEX_FILE, error) from None
-    files.publish(path, folder.root / index.INDEX_FILE)
+    files.publish(scratch, path, folder.root / index.INDEX_FILE)
     return index.INDEX_FILE
 
 
@@ -99,14 +99,15 @@ def _write_manifest(folder, scratch, described, once):
             file.write(rest.lstrip("{\n"))
     except OSError as error:
         raise files.write_error(folder.root / MANIFEST_FILE, error) from None
-    files.publish(path, folder.root / MANIFEST_FILE)
+    files.publish(scratch, path, folder.root / MANIFEST_FILE)
     return trials, failed
 
 
 def finish(folder, described):
     """Index, trajectories and manifest of a campaign whose shards are all done; returns (trials,
     failed)."""
-    with files.scratch(folder.root) as scratch:
+    with folder.scratch() as scratch:
+        scratch.sync_folders([folder.receipt(0).parent])  # a run may have been killed between a receipt and that
         once = [_write_index(folder, scratch, described["shards"])]
         outputs = described["plan"]["campaign"]["outputs"]
         if outputs["tum"]:

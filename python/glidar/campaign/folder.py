@@ -24,6 +24,11 @@ from glidar.campaign.plan import PLAN_FILE, identity
 @dataclass(frozen=True)
 class Folder:
     root: Path
+    durable: bool = False  # what is written survives a loss of power
+
+    def scratch(self):
+        """A folder for what is being written; a context."""
+        return files.scratch(self.root, self.durable)
 
     def plan_file(self):
         return self.root / PLAN_FILE
@@ -58,7 +63,7 @@ def claim(folder, plan):
         require_same(folder.root, records.read_campaign(folder.plan_file()), wanted)
         return False
     require_empty(folder.root)
-    with files.scratch(folder.root) as scratch:
+    with folder.scratch() as scratch:
         files.write_json(scratch, folder.plan_file(), wanted)
     return True
 

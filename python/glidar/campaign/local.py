@@ -10,7 +10,6 @@ from multiprocessing import connection
 
 from glidar import Error
 from glidar.campaign import work as works
-from glidar.campaign.folder import Folder
 from glidar.campaign.progress import tell_warnings
 
 AHEAD = 2  # shards a worker holds: one is measured, one is written
@@ -36,7 +35,7 @@ def usual_workers(plan):
     return cores() if texts or len(plan.scenes) * len(plan.sensors) > 1 else 1
 
 
-def _serve(plan, root, threads, pipe):
+def _serve(plan, folder, threads, pipe):
     """A worker process: shards come through the pipe, what is done goes back, None ends."""
     def shards():
         while True:
@@ -49,7 +48,7 @@ def _serve(plan, root, threads, pipe):
 
     tell_warnings()
     try:
-        works.work(plan, Folder(root), shards(), threads, lambda done: pipe.send(("done", done)))
+        works.work(plan, folder, shards(), threads, lambda done: pipe.send(("done", done)))
         pipe.send(("end", None))
     except Error as error:
         pipe.send(("error", (error.where, error.found, error.allowed, error.remedy)))
@@ -60,11 +59,11 @@ def _serve(plan, root, threads, pipe):
 
 
 class _Worker:
-    def __init__(self, context, plan, root, threads):
+    def __init__(self, context, plan, folder, threads):
         self.pipe, theirs = context.Pipe()
         self.held = []
         self.asked_to_end = False
-        self.process = context.Process(target=_serve, args=(plan, root, threads, theirs), daemon=True)
+        self.process = context.Process(target=_serve, args=(plan, folder, threads, theirs), daemon=True)
         self.process.start()
         theirs.close()
 
@@ -86,7 +85,7 @@ class _Pool:
         self.workers = []
 
     def start(self):
-        self.workers.append(_Worker(self._context, self._plan, self._folder.root, self._threads))
+        self.workers.append(_Worker(self._context, self._plan, self._folder, self._threads))
 
     def run(self, shards, count):
         waiting = deque(shards)

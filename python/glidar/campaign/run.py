@@ -64,11 +64,12 @@ def _prepare(plan: Plan, folder: Folder) -> bool:
 
 
 @contextlib.contextmanager
-def claimed(spec_path: StrPath, root: StrPath, is_part: bool = False) -> Iterator[tuple[Plan, Folder]]:
+def claimed(spec_path: StrPath, root: StrPath, is_part: bool = False,
+            durable: bool = False) -> Iterator[tuple[Plan, Folder]]:
     """Reads the campaign and claims its folder; where an error comes before anything is measured, for nothing.
     Parts may share the folder, and leave it."""
     plan = make_plan(read_spec(path_of(spec_path, "campaign")))
-    folder = Folder(Path(path_of(root, "folder")))
+    folder = Folder(Path(path_of(root, "folder")), durable)
     is_new = _prepare(plan, folder)
     try:
         yield plan, folder
@@ -86,7 +87,7 @@ def _counts(folder, shards):
 
 
 def run(spec_path: StrPath, root: StrPath, part: Part = Part(), workers: int = 0,
-        execute: Execute | None = None, quiet: bool = False) -> Outcome:
+        execute: Execute | None = None, quiet: bool = False, *, durable: bool = True) -> Outcome:
     """Measures what is missing of a part of the campaign, and finishes the campaign when nothing is.
 
     Worker processes import the script that calls this: the call stands below `if __name__ == "__main__":`, unless
@@ -98,13 +99,15 @@ def run(spec_path: StrPath, root: StrPath, part: Part = Part(), workers: int = 0
         workers: processes; 0: one, and where scenes or sensors differ from trial to trial one per core.
         execute: runs shards: `execute(plan, folder, shards, report)`; None: this machine does.
         quiet: shows no progress.
+        durable: syncs every file to the disk before a receipt lists it (fsync), so that a loss of power undoes
+            nothing that is done.
 
     Raises:
-        Error: bad input, or no room; trials that fail are counted in the outcome.
+        Error: bad input, no room, or a disk that fails; trials that fail are counted in the outcome.
     """
     require_guard()
     whole(workers, "workers", MOST_32)
-    with claimed(spec_path, root, part.count > 1) as (plan, folder):
+    with claimed(spec_path, root, part.count > 1, durable) as (plan, folder):
         wanted = part.shards(plan.shards)
         todo = folders.missing(folder, wanted)
         done, failed = _counts(folder, sorted(set(wanted) - set(todo)))
@@ -157,12 +160,12 @@ def _bad_content(path: Path) -> Error:
 
 
 def _adopt(name, entry, source, target, scratch):
-    """Takes a file over from another folder, if it is what its receipt says."""
+    """Copies a file of another folder, if it is what its receipt says; None: it has its place already."""
     digest, _ = entry
     for root in (source, target):
         names.require_inside(root, root / name)
     if (target / name).is_file() and files.hash_file(target / name) == digest:
-        return
+        return None
     path = scratch.path(Path(name).name)
     try:
         files.copy(source / name, path)
@@ -170,7 +173,7 @@ def _adopt(name, entry, source, target, scratch):
         raise files.write_error(target / name, error) from None
     if files.hash_file(path) != digest:
         raise _bad_content(source / name)
-    files.publish(path, target / name)
+    return path
 
 
 def _adopt_receipt(receipt, source, target, scratch, described):
@@ -185,31 +188,31 @@ def _adopt_receipt(receipt, source, target, scratch, described):
             raise Error(str(receipt), f"it differs from {known}", "parts of one campaign give the "
                         "same shard the same content", "were they run by the same versions?")
         return
-    for name, entry in sorted(content["files"].items()):
-        _adopt(name, entry, source, target, scratch)
+    copied = {name: _adopt(name, entry, source, target, scratch) for name, entry in sorted(content["files"].items())}
+    files.publish_all(scratch, [(path, target / name) for name, path in copied.items() if path],
+                      [target / name for name, path in copied.items() if not path])
     files.write_bytes(scratch, known, files.json_bytes(content))
 
 
-def _open_target(sources, root, described, scratch):
+def _open_target(target, described, scratch):
     """The folder of the whole: a new one, or one of the campaign whose files are what their receipts say."""
-    target = Folder(Path(root))
     if target.plan_file().is_file():
-        folders.require_same(root, records.read_campaign(target.plan_file()), described)
+        folders.require_same(target.root, records.read_campaign(target.plan_file()), described)
     else:
         folders.require_empty(target.root)
         files.write_json(scratch, target.plan_file(), described)
     for receipt in records.receipts_in(target.root):
         for name in folders.wrong_files(target.root, records.read_receipt(receipt, described)["files"]):
             raise _bad_content(target.root / name)
-    return target
 
 
-def merge(sources: Sequence[StrPath], root: StrPath) -> Outcome:
+def merge(sources: Sequence[StrPath], root: StrPath, durable: bool = True) -> Outcome:
     """Brings the parts of a campaign together and finishes it.
 
     Args:
         sources: folders of the parts.
         root: folder of the whole: one of the parts, or another.
+        durable: as in run().
 
     Raises:
         Error: parts of different campaigns, and files that are not what their receipts say.
@@ -221,8 +224,9 @@ def merge(sources: Sequence[StrPath], root: StrPath) -> Outcome:
     for source in sources[1:]:
         folders.require_same(source, folders.opened(source)[1], described,
                              f"parts of one campaign, here that of {sources[0]}", "")
-    with files.scratch(root) as scratch:
-        target = _open_target(sources, root, described, scratch)
+    target = Folder(Path(root), durable)
+    with target.scratch() as scratch:
+        _open_target(target, described, scratch)
         for source in map(Path, sources):
             if source.resolve() != target.root.resolve():
                 for receipt in records.receipts_in(source):

@@ -42,27 +42,29 @@ class ShardWriter:
             self.fail(row, str(error))
             return
         except OSError as error:
-            raise files.write_error(self._folder.root, error) from None
+            raise files.write_error(self._scratch.newest, error) from None
         self._facts[row] = index.facts_of(frame)
 
     def fail(self, row, text):
         self._errors[row] = text
 
     def commit(self):
-        """Publishes everything, the receipt last; returns (trials, failures)."""
+        """Publishes everything, the receipt last, of a durable folder once all else is on the disk; returns
+        (trials, failures)."""
         try:
             written = [pair for output in self._outputs for pair in output.finish()]
             part = self._scratch.path("part.parquet")
             rows = index.rows(self._plan, self._shard, self._trials, self._errors, self._facts)
             index.write_part(part, rows)
         except OSError as error:
-            raise files.write_error(self._folder.root, error) from None
-        listed = {}
+            raise files.write_error(self._scratch.newest, error) from None
+        listed, published = {}, []
         for name, path in written + [(self._part_name(), part)]:
             digest, size = files.hash_file(path), path.stat().st_size
             name = name.replace("{hash}", digest[:NAME_DIGITS])
             listed[name] = [digest, size]
-            files.publish(path, self._folder.root / name)
+            published.append((path, self._folder.root / name))
+        files.publish_all(self._scratch, published)
         failed = sum(1 for text in self._errors if text)
         receipt = {"shard": self._shard, "trials": len(self._trials), "failed": failed,
                    "files": listed}

@@ -23,14 +23,14 @@ ARRAY = """#!/bin/sh
 #SBATCH --output={log}/slurm-%A-%a.txt
 {options}
 exec {program} run {campaign} -o {root} --shard "$SLURM_ARRAY_TASK_ID/{count}" \\
-  --workers "${{SLURM_CPUS_PER_TASK:-1}}" --quiet
+  --workers "${{SLURM_CPUS_PER_TASK:-1}}" --quiet {durable}
 """
 
 MERGE = """#!/bin/sh
 #SBATCH --job-name={name}-merge
 #SBATCH --output={log}/slurm-%j-merge.txt
 {options}
-exec {program} merge {root}
+exec {program} merge {root} {durable}
 """
 
 
@@ -40,7 +40,7 @@ def scripts(flags, count):
     name = re.sub(r"[^A-Za-z0-9_.-]", "_", Path(flags.campaign).stem)
     words = {"name": name, "last": count - 1, "count": count, "log": root / "log",
              "options": "\n".join(f"#SBATCH {option}" for option in flags.sbatch) or "#",
-             "program": PROGRAM, "root": shlex.quote(str(root)),
+             "durable": "--durable" if flags.durable else "--no-durable", "program": PROGRAM, "root": shlex.quote(str(root)),
              "campaign": shlex.quote(str(Path(flags.campaign).resolve()))}
     return ARRAY.format(**words), MERGE.format(**words)
 
@@ -92,7 +92,7 @@ def submit(flags):
                     "install slurm-client, or run the parts by hand: --shard i/N")
     if flags.shard != (0, 1):
         raise Error("--shard", "given with --executor slurm, whose tasks are the parts", "", "")
-    with running.claimed(flags.campaign, flags.output) as (plan, folder):
+    with running.claimed(flags.campaign, flags.output, durable=flags.durable) as (plan, folder):
         count = min(flags.tasks or TASKS, plan.shards)
         paths = _write_scripts(folder, scripts(flags, count))
         array = _submit_array(paths)
@@ -100,4 +100,4 @@ def submit(flags):
     wait = ["--wait"] if flags.wait else []
     merge = _sbatch(paths[1], f"--dependency=afterany:{array}", *wait)
     print(f"submitted job {merge}: merge, when they have ended", flush=True)
-    return running.merge([flags.output], flags.output) if flags.wait else None
+    return running.merge([flags.output], flags.output, flags.durable) if flags.wait else None

@@ -7,7 +7,7 @@ import threading
 import time
 from dataclasses import dataclass
 
-from glidar.campaign import files, folder as folders, records
+from glidar.campaign import folder as folders, records
 from glidar.campaign.measure import Measurer
 from glidar.campaign.shard_writer import ShardWriter
 from glidar.campaign.trials import draw_trials
@@ -73,7 +73,7 @@ class Writer:
 
     def _run(self):
         try:
-            with files.scratch(self._folder.root) as scratch:
+            with self._folder.scratch() as scratch:
                 while (piece := self._next()) is not None:
                     self._write_shard(scratch, *piece)
         except BaseException as fault:  # it is raised again where the shards come from

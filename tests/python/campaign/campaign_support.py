@@ -29,6 +29,13 @@ pose:
 """
 
 
+def contents_of(root):
+    """Hash of every file that is the same in every run: all but the logs."""
+    return {str(path.relative_to(root)): hashlib.sha256(path.read_bytes()).hexdigest()
+            for path in sorted(root.rglob("*"))
+            if path.is_file() and path.relative_to(root).parts[0] not in ("log", "report.html")}
+
+
 class Campaign:
     def __init__(self, folder):
         self.folder = folder
@@ -61,8 +68,4 @@ class Campaign:
         return self.call("run", "campaign.yaml", "-o", output, *arguments, code=code, **more)
 
     def contents(self, output):
-        """Hash of every file that is the same in every run: all but the logs."""
-        root = self.folder / output
-        return {str(path.relative_to(root)): hashlib.sha256(path.read_bytes()).hexdigest()
-                for path in sorted(root.rglob("*"))
-                if path.is_file() and path.relative_to(root).parts[0] not in ("log", "report.html")}
+        return contents_of(self.folder / output)

@@ -1,0 +1,110 @@
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Disks that fail under a campaign: every error is reported, what is done stays done, and the same command then gives the
+same bytes."""
+
+import functools
+import json
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from campaign_support import Campaign
+from faults import ERRORS, NO_LIBRARY, Faults, library
+from waiting import MAX_WAIT_S
+
+pytestmark = pytest.mark.skipif(not library(), reason=NO_LIBRARY)
+RUNS = Path(__file__).with_name("fault_runs.py")
+SCENE = """models:
+  - {name: rock, model: builtin:box, scale: 1}
+  - {name: moon, model: builtin:box, scale: 0.3, pose: {position: [1.2, 0, 0]}}
+"""
+RUN = ("run", "campaign.yaml", "-o", "out", "--workers", "1", "--quiet")
+MERGE = ("merge", "p0", "p1", "-o", "out")
+FAULTS = [(RUN, "open", "EIO"), (RUN, "write", "EIO"), (RUN, "write", "ENOSPC"), (RUN, "sync", "EIO"),
+          (RUN, "rename", "EIO"), (RUN, "close", "EIO"), (MERGE, "write", "ENOSPC"), (MERGE, "sync", "EIO"),
+          (MERGE, "rename", "EIO"), (MERGE, "close", "EIO")]
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A campaign with all outputs, its parts, and the bytes of the whole."""
+    campaign = Campaign(tmp_path_factory.mktemp("faults"))
+    text = (campaign.folder / "campaign.yaml").read_text()
+    campaign.write("campaign.yaml", text.replace("trials: 40", "trials: 2").replace("shard_trials: 4", "shard_trials: 1")
+                   + "outputs: {npz: true, pcd: true, kitti: true, tum: true, bop: {images: [depth]}}\n")
+    campaign.write("scene.yaml", SCENE)
+    campaign.write("camera.yaml", "optics: {type: pinhole, width: 8, height: 6, fov_deg: 40}\n")
+    campaign.run("whole", "--no-durable")
+    for i in (0, 1):
+        campaign.run(f"p{i}", "--shard", f"{i}/2")
+    return campaign
+
+
+@functools.cache
+def with_faults(campaign, call, error, command):
+    """A record of fault_runs.py for each fault."""
+    state = campaign.folder / "faults"
+    shutil.rmtree(campaign.folder / "out", ignore_errors=True)
+    faults = Faults(state, campaign.folder / "out")
+    done = subprocess.run([sys.executable, str(RUNS), str(state), "out", call, error, *command], cwd=campaign.folder,
+                          env=campaign.environment | faults.environment, capture_output=True, text=True,
+                          timeout=MAX_WAIT_S, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    return [json.loads(line) for line in done.stdout.splitlines()]
+
+
+def check(record, whole, error):
+    """What a run left that met a fault, and what the next one made of it."""
+    described = f"call {record['at']}, on {record['path']}: {record['text']}"
+    if record["code"] == 0:  # logs may miss lines
+        assert "/out/log/" in record["path"], described
+    else:
+        assert record["code"] == 2, described
+        assert record["text"].startswith("glidar: error: ") and ERRORS[error] in record["text"], described
+        assert "out/" in record["text"].split(": ")[2], described
+    assert record["left"].items() <= whole.items(), described  # whole files alone, and none in tmp
+    assert record["again"] == 0, record["told"]
+    assert record["contents"] == whole, described
+
+
+@pytest.mark.parametrize("command, call, error", FAULTS, ids=[f"{f[0][0]}-{f[1]}-{f[2]}" for f in FAULTS])
+def test_every_failed_call_is_reported_and_the_next_run_gives_the_same_bytes(made, command, call, error):
+    whole = made.contents("whole")
+    records = with_faults(made, call, error, command)
+    assert len(records) >= 20
+    for record in records:
+        check(record, whole, error)
+
+
+def test_nothing_is_synced_where_that_is_not_wanted(made):
+    assert with_faults(made, "sync", "EIO", (*RUN, "--no-durable")) == []
+    assert with_faults(made, "sync", "EIO", (*MERGE, "--no-durable")) == []
+
+
+def test_every_file_and_folder_is_synced(made):
+    """Each call of sync fails once, so all that are synced are found."""
+    root = str((made.folder / "out").resolve())
+    paths = {record["path"].replace(root, "out") for record in with_faults(made, "sync", "EIO", RUN)}
+    folders = {str(Path("out", name).parent) for name in made.contents("whole")}
+    above = {str(path) for folder in folders for path in Path(folder).parents} - {"."}
+    assert folders | above <= paths
+    scratch = [path for path in paths if path.startswith("out/tmp/")]
+    assert {Path(path).suffix for path in scratch} == {".npz", ".pcd", ".bin", ".label", ".txt", ".png", ".json",
+                                                       ".parquet", ".ply", ".tum"}
+
+
+def test_the_data_of_a_shard_is_synced_before_its_names_and_both_before_its_receipt(made):
+    """A run that stops at any sync leaves receipts of what was synced before alone."""
+    seen = []
+    for record in with_faults(made, "sync", "EIO", RUN):
+        receipts = {name for name in record["left"] if name.startswith("receipts/0")}
+        if "/tmp/" in record["path"] and record["path"].endswith((".npz", ".pcd", ".png", ".bin", ".parquet")):
+            seen.append((record["path"], receipts))
+            names = {name for name in record["left"] if name.startswith("npz/")}
+            assert len(names) == len(receipts), record  # no data of this shard has a name yet
+        if record["path"].endswith("/out/npz"):
+            assert len([name for name in record["left"] if name.startswith("npz/")]) == len(receipts) + 1
+    assert seen
