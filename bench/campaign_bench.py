@@ -3,12 +3,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A campaign's speed against the bare measurement of the same trials: simulate_batch with the same
 poses, seeds and columns, in batches of the same size, without writing. Both take turns, since machines
-are noisy.
+are noisy. With --sync: what the campaign's --durable costs, against the same campaign without, and the time that fsync
+takes in the thread that writes, which measuring does not wait for unless it is the slower one.
 
 usage: campaign_bench.py [--trials 10000] [--size 128] [--turns 5] [--workers N] [--scene SCENE.yaml]
+                         [--outputs YAML] [--folder DIR] [--sync]
 """
 
 import argparse
+import os
 import resource
 import tempfile
 import time
@@ -30,6 +33,7 @@ trials: {trials}
 pose:
   position: {{shell: {{radius_m: [3, 5]}}}}
   orientation: {{look_at: {{off_deg: 3, roll_deg: {{uniform: [-180, 180]}}}}}}
+outputs: {outputs}
 """
 
 
@@ -54,14 +58,56 @@ def bare_seconds(plan, simulator):
     return seconds
 
 
-def campaign_seconds(path, workers):
+def campaign_seconds(path, workers, durable=False):
     """The whole campaign: drawing, measuring, writing, index and manifest."""
     with tempfile.TemporaryDirectory(dir=path.parent) as folder:
         start = clock()
-        outcome = run.run(path, Path(folder) / "out", workers=workers, quiet=True)
+        outcome = run.run(path, Path(folder) / "out", workers=workers, quiet=True, durable=durable)
         seconds = clock() - start
     assert outcome.failed == 0
     return seconds
+
+
+class SyncClock:
+    """Counts calls of os.fsync, and the time that they take; threads that wait at the same time count once each."""
+
+    def __init__(self):
+        self.seconds, self.calls, self._sync = 0.0, 0, os.fsync
+
+    def __enter__(self):
+        def sync(descriptor):
+            start = time.perf_counter()
+            self._sync(descriptor)
+            self.seconds += time.perf_counter() - start
+            self.calls += 1
+
+        os.fsync = sync
+        return self
+
+    def __exit__(self, *_):
+        os.fsync = self._sync
+
+
+def compare_syncs(path, flags):
+    """Campaigns with and without sync in turns; prints the ratio of their times, and the share of fsync."""
+    rows = []
+    campaign_seconds(path, flags.workers)  # once, so that all is loaded
+    for turn in range(flags.turns):
+        seconds = {}
+        for durable in (turn % 2 == 0, turn % 2 == 1):
+            with SyncClock() as clock_of_syncs:
+                seconds[durable] = campaign_seconds(path, flags.workers, durable)[0]
+            if durable:
+                syncs = clock_of_syncs
+        rows.append((seconds[True] / seconds[False], syncs.seconds / seconds[True], seconds[False]))
+        print(f"turn {turn}: {seconds[False]:.2f} s, durable {seconds[True]:.2f} s, of it fsync {syncs.seconds:.2f} s in "
+              f"{syncs.calls} calls", flush=True)
+    ratio, share, plain = np.median(rows, axis=0)
+    low, high = np.percentile([row[0] for row in rows], [25, 75])
+    noise = np.percentile([row[2] for row in rows], 75) / np.percentile([row[2] for row in rows], 25)
+    print(f"{flags.trials} frames of {flags.size}x{flags.size}, outputs {flags.outputs}: durable takes {ratio:.3f} of the time "
+          f"without (quartiles {low:.3f} to {high:.3f}), fsync {100 * share:.1f} % of the time; without, quartiles differ "
+          f"by a factor of {noise:.3f}")
 
 
 def main():
@@ -71,15 +117,21 @@ def main():
     parser.add_argument("--turns", type=int, default=5)
     parser.add_argument("--workers", type=int, default=0)
     parser.add_argument("--scene", default="")
+    parser.add_argument("--outputs", default="{npz: true}")
+    parser.add_argument("--folder", help="where the campaign is written [a temporary folder]")
+    parser.add_argument("--sync", action="store_true", help="measure --durable instead")
     flags = parser.parse_args()
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(dir=flags.folder) as folder:
         folder = Path(folder)
         scene = Path(flags.scene).resolve() if flags.scene else folder / "scene.yaml"
         if not flags.scene:
             scene.write_text(SCENE)
         (folder / "sensor.yaml").write_text(SENSOR.format(size=flags.size))
         path = folder / "campaign.yaml"
-        path.write_text(CAMPAIGN.format(scene=scene, trials=flags.trials))
+        path.write_text(CAMPAIGN.format(scene=scene, trials=flags.trials, outputs=flags.outputs))
+        if flags.sync:
+            compare_syncs(path, flags)
+            return
         plan = plans.make_plan(spec.read_spec(path))
         simulator = glidar.Simulator(glidar.load_scene(scene),
                                      glidar.load_sensor(folder / "sensor.yaml"))

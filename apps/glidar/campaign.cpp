@@ -36,6 +36,7 @@ Examples:
   glidar campaign run views.yaml -o views
   glidar campaign run views.yaml -o part0 --shard 0/2
   glidar campaign merge part0 part1 -o views
+  glidar campaign run views.yaml -o views --no-durable   # does not wait for the disk
   glidar campaign run views.yaml -o views --executor slurm --tasks 16
   glidar campaign report views
 

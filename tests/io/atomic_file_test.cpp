@@ -85,6 +85,35 @@ TEST(AtomicFile, KeepsTheOrderOfSmallAndLargeWrites) {
   EXPECT_EQ(found, "aX" + large.substr(1) + "c");
 }
 
+TEST(AtomicFile, ADurableCommitReplacesTheOldFileAndLeavesNothingElse) {
+  const testing::TestFolder folder;
+  for (const char* text : {"old", "new"}) {
+    AtomicFile file(folder / "a.txt");
+    file.write(text);
+    file.commit_durably();
+    EXPECT_EQ(file_bytes(folder / "a.txt"), text);
+  }
+  EXPECT_THAT(folder.names(), ElementsAre("a.txt"));
+}
+
+TEST(AtomicFile, ADurableCommitOnAFullDiskLeavesTheOldFile) {
+  const testing::TestFolder folder;
+  {
+    AtomicFile file(folder / "a.txt");
+    file.write("old");
+    file.commit();
+  }
+  const FullDisk full(4096);
+  EXPECT_THAT(error_text([&] {
+                AtomicFile file(folder / "a.txt");
+                file.write(std::string(100'000, 'x'));
+                file.commit_durably();
+              }),
+              HasSubstr("File too large"));
+  EXPECT_EQ(file_bytes(folder / "a.txt"), "old");
+  EXPECT_THAT(folder.names(), ElementsAre("a.txt"));
+}
+
 TEST(AtomicFile, TellsAFullDiskAndLeavesNothing) {
   const testing::TestFolder folder;
   const FullDisk full(4096);

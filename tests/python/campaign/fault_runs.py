@@ -17,6 +17,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "support"))
 from faults import Faults  # noqa: E402
 
 from campaign_support import contents_of  # noqa: E402
+from glidar.campaign import durable  # noqa: E402
 from glidar.campaign.cli import main  # noqa: E402
 
 
@@ -51,6 +52,7 @@ def start():
     output = Path(output)
     faults = Faults(state, output)
     faults.disarm()
+    durable.THREADS = 1  # the calls come in the same order in every run
     for record in runs(faults, output, call, error, arguments):
         print(json.dumps(record), flush=True)
 

@@ -5,6 +5,7 @@ same bytes."""
 
 import functools
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -23,7 +24,7 @@ SCENE = """models:
 """
 RUN = ("run", "campaign.yaml", "-o", "out", "--workers", "1", "--quiet")
 MERGE = ("merge", "p0", "p1", "-o", "out")
-FAULTS = [(RUN, "open", "EIO"), (RUN, "write", "EIO"), (RUN, "write", "ENOSPC"), (RUN, "sync", "EIO"),
+FAULTS = [(RUN, "open", "ENOSPC"), (RUN, "write", "EIO"), (RUN, "write", "ENOSPC"), (RUN, "sync", "EIO"),
           (RUN, "rename", "EIO"), (RUN, "close", "EIO"), (MERGE, "write", "ENOSPC"), (MERGE, "sync", "EIO"),
           (MERGE, "rename", "EIO"), (MERGE, "close", "EIO")]
 
@@ -58,13 +59,14 @@ def with_faults(campaign, call, error, command):
 
 def check(record, whole, error):
     """What a run left that met a fault, and what the next one made of it."""
+    reason = re.compile(f"{ERRORS[error]}|error closing file")  # the latter is Arrow's
     described = f"call {record['at']}, on {record['path']}: {record['text']}"
     if record["code"] == 0:  # logs may miss lines
         assert "/out/log/" in record["path"], described
     else:
         assert record["code"] == 2, described
-        assert record["text"].startswith("glidar: error: ") and ERRORS[error] in record["text"], described
-        assert "out/" in record["text"].split(": ")[2], described
+        assert record["text"].startswith("glidar: error: ") and reason.search(record["text"]), described
+        assert re.search(r"\bout\b", record["text"].split(": ")[2]), described
     assert record["left"].items() <= whole.items(), described  # whole files alone, and none in tmp
     assert record["again"] == 0, record["told"]
     assert record["contents"] == whole, described
@@ -92,8 +94,8 @@ def test_every_file_and_folder_is_synced(made):
     above = {str(path) for folder in folders for path in Path(folder).parents} - {"."}
     assert folders | above <= paths
     scratch = [path for path in paths if path.startswith("out/tmp/")]
-    assert {Path(path).suffix for path in scratch} == {".npz", ".pcd", ".bin", ".label", ".txt", ".png", ".json",
-                                                       ".parquet", ".ply", ".tum"}
+    assert {Path(path).suffix for path in scratch} == {".npz", ".pcd", ".bin", ".txt", ".png", ".json", ".parquet",
+                                                       ".ply", ".tum"}
 
 
 def test_the_data_of_a_shard_is_synced_before_its_names_and_both_before_its_receipt(made):
