@@ -14,6 +14,7 @@ import argparse
 import os
 import resource
 import tempfile
+import threading
 import time
 from pathlib import Path
 
@@ -69,16 +70,23 @@ def campaign_seconds(path, workers, durable=False):
 
 
 class SyncClock:
-    """Counts calls of os.fsync, and the time that they take; threads that wait at the same time count once each."""
+    """Counts calls of os.fsync, and the time during which one thread or more waits for it."""
 
     def __init__(self):
         self.seconds, self.calls, self._sync = 0.0, 0, os.fsync
+        self._waiting, self._since, self._lock = 0, 0.0, threading.Lock()
+
+    def _note(self, change):
+        with self._lock:
+            now = time.perf_counter()
+            self.seconds += now - self._since if self._waiting else 0.0
+            self._waiting, self._since = self._waiting + change, now
 
     def __enter__(self):
         def sync(descriptor):
-            start = time.perf_counter()
+            self._note(1)
             self._sync(descriptor)
-            self.seconds += time.perf_counter() - start
+            self._note(-1)
             self.calls += 1
 
         os.fsync = sync
