@@ -53,7 +53,7 @@ void add_pace_flags(CLI::App& command, StreamFlags& flags) {
   command
       .add_flag_callback(
           "--durable", [&flags] { flags.durability = link::Durability::synced; },
-          "Syncs the finished --record FILE and its folder to the disk (fsync) [off]")
+          "Syncs the finished --record file to the disk [off]")
       ->group(group);
 }
 
