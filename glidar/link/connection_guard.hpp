@@ -7,12 +7,12 @@
 #include <glidar/link/listener.hpp>
 
 #include <chrono>
-#include <compare>
 #include <cstdint>
 #include <map>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace glidar::link {
@@ -25,7 +25,10 @@ struct ConnectionId {
   int descriptor = -1;       ///< -1: not known
   std::uint64_t cookie = 0;  ///< 0: not known
 
-  auto operator<=>(const ConnectionId&) const = default;
+  bool operator==(const ConnectionId&) const = default;
+  bool operator<(const ConnectionId& other) const {
+    return std::tie(descriptor, cookie) < std::tie(other.descriptor, other.cookie);
+  }
 };
 
 /// What connections to one listening socket may use.

@@ -4,6 +4,9 @@
 
 #include <glidar/core/error.hpp>
 
+#include <zmq.h>
+
+#include <cerrno>
 #include <charconv>
 #include <string_view>
 
@@ -13,6 +16,23 @@ std::string text_of(const Endpoint& endpoint) {
   if (!endpoint.path.empty()) return "ipc://" + endpoint.path;
   return "tcp://" + endpoint.host + ":" +
          (endpoint.port == 0 ? "*" : std::to_string(endpoint.port));
+}
+
+void fail_at(const Endpoint& endpoint, int error, const char* doing) {
+  std::string remedy;
+  if (error == EADDRINUSE) {
+    remedy = "another program has this port: end it, or choose another port";
+  } else if (error == EADDRNOTAVAIL || error == ENODEV) {
+    remedy = "give an address of this machine, such as 127.0.0.1, or * for all";
+  } else if (error == EINVAL) {
+    remedy = "give an IPv4 address or a host's name";
+  } else if (error == EACCES) {
+    remedy = "choose a port from 1024 on";
+  }
+  throw Error({.where = text_of(endpoint),
+               .found = std::string("cannot ") + doing + ": " + zmq_strerror(error),
+               .allowed = "",
+               .remedy = remedy});
 }
 
 Endpoint parse_endpoint(const std::string& text) {

@@ -15,6 +15,8 @@ struct Endpoint {
   std::string path = {};   ///< of the file; empty: host and port
 };
 std::string text_of(const Endpoint& endpoint);
+/// Throws the Error of a socket that cannot be used there; `error`: errno, or one of ZeroMQ.
+[[noreturn]] void fail_at(const Endpoint& endpoint, int error, const char* doing);
 /// Of "tcp://HOST:PORT" or "ipc://PATH"; throws Error on anything else.
 Endpoint parse_endpoint(const std::string& text);
 

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/socket.hpp>
 
-#include <glidar/core/error.hpp>
 #include <glidar/link/ipc_place.hpp>
 #include <glidar/link/socket_monitor.hpp>
 #include <glidar/link/subscription_table.hpp>
@@ -17,8 +16,7 @@
 namespace glidar::link {
 namespace {
 
-/// XPUB speaks as PUB does and tells of subscriptions besides, but cannot keep
-/// the newest only.
+/// XPUB speaks as PUB does and tells of subscriptions besides, but cannot keep the newest only.
 zmq::socket_type type_of(const SocketOptions& options) {
   switch (options.kind) {
     case SocketKind::subscribe:
@@ -35,23 +33,6 @@ zmq::socket_type type_of(const SocketOptions& options) {
   return options.keeps_newest ? zmq::socket_type::pub : zmq::socket_type::xpub;
 }
 
-[[noreturn]] void fail(const Endpoint& endpoint, const zmq::error_t& error, const char* doing) {
-  std::string remedy;
-  if (error.num() == EADDRINUSE) {
-    remedy = "another program has this port: end it, or choose another port";
-  } else if (error.num() == EADDRNOTAVAIL || error.num() == ENODEV) {
-    remedy = "give an address of this machine, such as 127.0.0.1, or * for all";
-  } else if (error.num() == EINVAL) {
-    remedy = "give an IPv4 address or a host's name";
-  } else if (error.num() == EACCES) {
-    remedy = "choose a port from 1024 on";
-  }
-  throw Error({.where = text_of(endpoint),
-               .found = std::string("cannot ") + doing + ": " + error.what(),
-               .allowed = "",
-               .remedy = remedy});
-}
-
 std::chrono::milliseconds::rep millis(std::chrono::milliseconds time) {
   return time.count();
 }
@@ -62,8 +43,7 @@ struct Flying {
   std::shared_ptr<std::atomic<int>> count;
 };
 
-/// Gives a payload back to its pool once ZeroMQ has no more use for it, in
-/// ZeroMQ's own thread.
+/// Gives a payload back to its pool once ZeroMQ has no more use for it, in ZeroMQ's own thread.
 void release(void* /*bytes*/, void* flying) {
   --*static_cast<Flying*>(flying)->count;
   delete static_cast<Flying*>(flying);
@@ -86,8 +66,8 @@ auto unbroken(const Action& action) {
   }
 }
 
-/// The descriptor of the connection that a message came by. The end of a
-/// subscription has none when the connection ended first.
+/// The descriptor of the connection that a message came by. The end of a subscription has none when
+/// the connection ended first.
 int connection_of(const zmq::message_t& message) {
   const int descriptor = zmq_msg_get(message.handle(), ZMQ_SRCFD);
   return descriptor < 0 ? SubscriptionTable::kUnknownConnection.descriptor : descriptor;
@@ -152,8 +132,7 @@ struct Socket::Impl {
         send_queue(options.send_queue) {}
 
   [[nodiscard]] ConnectionGuard* guard() const { return monitor ? monitor->guard() : nullptr; }
-  /// Before ZeroMQ takes in what has arrived, which it does whenever the socket
-  /// is used.
+  /// Before ZeroMQ takes in what has arrived, which it does whenever the socket is used.
   void refuse_who_sent_too_much() const {
     if (guard() != nullptr) guard()->look();
   }
@@ -166,8 +145,7 @@ struct Socket::Impl {
 
 namespace {
 
-/// Connections that ended without a word are noticed by the kernel, after some
-/// minutes.
+/// Connections that ended without a word are noticed by the kernel, after some minutes.
 void protect(zmq::socket_t& socket, const ConnectionLimits& limits) {
   constexpr int kBacklog = 64;
   constexpr int kIdle_s = 60;
@@ -219,7 +197,7 @@ void Socket::bind(const Endpoint& endpoint) {
   try {
     impl_->socket.bind(text_of(endpoint));
   } catch (const zmq::error_t& error) {
-    fail(endpoint, error, "listen there");
+    fail_at(endpoint, error.num(), "listen there");
   }
 }
 
@@ -227,7 +205,7 @@ void Socket::connect(const Endpoint& endpoint) {
   try {
     impl_->socket.connect(text_of(endpoint));
   } catch (const zmq::error_t& error) {
-    fail(endpoint, error, "connect to it");
+    fail_at(endpoint, error.num(), "connect to it");
   }
 }
 
@@ -262,8 +240,8 @@ bool Socket::send(std::span<const std::byte> bytes) {
 
 namespace {
 
-/// Without waiting. A router refuses the first part when its peer has left or
-/// reads too slowly; the parts after it are accepted.
+/// Without waiting. A router refuses the first part when its peer has left or reads too slowly; the
+/// parts after it are accepted.
 Sending send_now(zmq::socket_t& socket, zmq::message_t& message, zmq::send_flags flags) {
   try {
     const auto give = [&] { return socket.send(message, flags | zmq::send_flags::dontwait); };
@@ -296,8 +274,7 @@ std::string Socket::bound_to() const {
 
 namespace {
 
-/// First only if all queues have room, so that a full one is noticed; then to
-/// those that have.
+/// First only if all queues have room, so that a full one is noticed; then to those that have.
 bool publish_now(zmq::socket_t& socket, zmq::message_t& message, zmq::send_flags flags) {
   notice_news(socket);  // such as that a queue has room again
   socket.set(zmq::sockopt::xpub_nodrop, true);
@@ -309,9 +286,8 @@ bool publish_now(zmq::socket_t& socket, zmq::message_t& message, zmq::send_flags
 
 }  // namespace
 
-/// ZeroMQ tells of a full queue once and then leaves it out until half of it
-/// was read. What is half on its way counts too, so that this may be late to
-/// see it, but not early.
+/// ZeroMQ tells of a full queue once and then leaves it out until half of it was read. What is
+/// half on its way counts too, so that this may be late to see it, but not early.
 bool Socket::has_full_queue() const {
   impl_->is_behind = impl_->is_behind && *impl_->flying > impl_->send_queue / 2;
   return impl_->is_behind;
@@ -355,8 +331,7 @@ SubscriptionCount Socket::subscriptions(std::span<const std::string> topics) {
   return {.is_known = true, .subscribers = impl_->subscriptions.subscribers(topics)};
 }
 
-/// The message is a byte, 1 for a subscription and 0 for its end, and the
-/// topic.
+/// The message is a byte, 1 for a subscription and 0 for its end, and the topic.
 void Socket::note_subscription(const Message& message) {
   const SubscriptionLimits& limits = impl_->subscription_limits;
   const std::span<const std::byte> bytes = message.bytes();
