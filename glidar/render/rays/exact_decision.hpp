@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/common/triangle_blocks.hpp>
+#include <glidar/render/rays/ray_packet.hpp>
+
+namespace glidar::rays {
+
+/// Applies the hit rule to a triangle that single precision left in doubt, and to the ray's nearest
+/// one if its distance is not known yet; keeps the nearer.
+void decide(const TriangleBlock* blocks, RayPacket& packet, unsigned lane, std::uint32_t slot);
+
+/// Computes packet.distance of every active ray that hits, by the rule.
+void complete_distances(const TriangleBlock* blocks, RayPacket& packet);
+
+/// The mesh's index of the triangle that a ray hits; kNoTriangle: none.
+inline std::uint32_t primitive_of(const TriangleBlock* blocks, const RayPacket& packet,
+                                  unsigned lane) {
+  const std::uint32_t slot = packet.slot[lane];
+  if (slot == kNoTriangle) return kNoTriangle;
+  return blocks[slot / kBlockSize].primitive[slot % kBlockSize];
+}
+
+}  // namespace glidar::rays

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/rays/ray_packet.hpp>
+#include <glidar/render/rays/ray_tree.hpp>
+
+namespace glidar::rays {
+
+/// The inner loops, compiled for one instruction set. kernel.cpp is compiled once for each, with
+/// GLIDAR_KERNEL as its name.
+struct Kernel {
+  const char* name;  ///< "baseline", "avx2", "avx512"
+  /// Completes a packet whose rays are set, for a mesh and the rays of the mask `active`, at least
+  /// one: nothing is hit yet.
+  void (*start)(RayPacket& packet, const MeshSphere& sphere, std::uint32_t active);
+  /// Tests the rays of `lanes` with the triangles of a cluster.
+  void (*test_leaf)(const TreeView& tree, std::uint32_t cluster, RayPacket& packet,
+                    std::uint32_t lanes);
+  /// Finds the nearest triangle of every active ray of a started packet.
+  void (*trace)(const TreeView& tree, RayPacket& packet);
+  /// The same for one ray at a time: for rays in unrelated directions.
+  void (*trace_single)(const TreeView& tree, RayPacket& packet);
+};
+
+}  // namespace glidar::rays

@@ -1,0 +1,252 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/rays/leaf_test.hpp>
+
+// Many rays of a packet against the triangles of a cluster: eight triangles at once against all
+// directions of the packet, then what remains against the rays.
+namespace glidar::rays::GLIDAR_KERNEL {
+
+/// The directions of a packet, as one box.
+struct DirectionBox {
+  Vector<Float8> middle;
+  Vector<Float8> half;
+
+  GLIDAR_INLINE explicit DirectionBox(const RayPacket& p)
+      : middle{Float8::all(p.middle[0]), Float8::all(p.middle[1]), Float8::all(p.middle[2])},
+        half{Float8::all(p.half[0]), Float8::all(p.half[1]), Float8::all(p.half[2])} {}
+
+  /// The largest d.q of any direction d in the box.
+  [[nodiscard]] GLIDAR_INLINE Float8 largest(const Vector<Float8>& q) const {
+    return dot(middle, q) + dot(half, magnitude(q));
+  }
+};
+
+/// The edge functions' largest values for a packet: the lowest of the three, turned so that those
+/// of a triangle that is hit are positive.
+GLIDAR_INLINE Float8 largest_edge(const DirectionBox& box, const Vector<Float8>& q1,
+                                  const Vector<Float8>& q2, const Vector<Float8>& n) {
+  return least(least(box.largest(q1), box.largest(q2)), box.largest(n - q1 - q2));
+}
+
+/// Numbers of eight triangles, to be read one triangle at a time.
+template <unsigned kRows>
+struct Rows {
+  alignas(32) float at[kRows][kBlockSize];
+
+  GLIDAR_INLINE void set(unsigned row, Float8 x) { store(at[row], x); }
+  GLIDAR_INLINE void set(unsigned row, const Vector<Float8>& v) {
+    set(row, v.x);
+    set(row + 1, v.y);
+    set(row + 2, v.z);
+  }
+  [[nodiscard]] GLIDAR_INLINE LaneFloat all(unsigned row, unsigned i) const {
+    return LaneFloat::all(at[row][i]);
+  }
+  [[nodiscard]] GLIDAR_INLINE Vector<LaneFloat> all3(unsigned row, unsigned i) const {
+    return {all(row, i), all(row + 1, i), all(row + 2, i)};
+  }
+  [[nodiscard]] GLIDAR_INLINE ErrorBounds<LaneFloat> bounds(unsigned row, unsigned i) const {
+    return {all(row, i), all(row + 1, i), all(row + 2, i)};
+  }
+  GLIDAR_INLINE void set(unsigned row, const ErrorBounds<Float8>& b) {
+    set(row, b.edge);
+    set(row + 1, b.det);
+    set(row + 2, b.den);
+  }
+};
+
+/// Rays [first, first + LaneFloat::kWidth) of a packet.
+GLIDAR_INLINE Vector<LaneFloat> directions(const RayPacket& p, unsigned first) {
+  return {LaneFloat::load(p.direction[0] + first), LaneFloat::load(p.direction[1] + first),
+          LaneFloat::load(p.direction[2] + first)};
+}
+
+/// A triangle's slot and the rays that it is tested with.
+struct LaneGroup {
+  unsigned first;         ///< rays [first, first + LaneFloat::kWidth)
+  LaneFloat::Mask lanes;  ///< those that are not surely outside
+  std::uint32_t slot;
+};
+
+/// Weighs one triangle for some rays, keeps it where it is surely nearer, and applies the rule
+/// where that is in doubt.
+GLIDAR_INLINE void take(const TreeView& tree, RayPacket& p, const LaneGroup& group,
+                        const EdgeTest<LaneFloat>& edges, LaneFloat det,
+                        const ErrorBounds<LaneFloat>& bounds) {
+  const unsigned first = group.first;
+  const Interval<LaneFloat> best = {LaneFloat::load(p.low + first), LaneFloat::load(p.high + first),
+                                    LaneFloat::load(p.near_low + first),
+                                    LaneFloat::load(p.near_high + first)};
+  const Verdict<LaneFloat> verdict = weigh(edges, group.lanes, det, bounds, best);
+  const std::uint32_t accepted = bits(verdict.accepted);
+  if (accepted != 0) {
+    store(p.low + first, select(verdict.accepted, verdict.low, best.low));
+    store(p.high + first, select(verdict.accepted, verdict.high, best.high));
+    p.known &= ~(accepted << first);
+    for_bits(accepted, [&](unsigned i) { p.slot[first + i] = group.slot; });
+  }
+  for_bits(bits(verdict.doubtful),
+           [&](unsigned i) { decide(tree.blocks, p, first + i, group.slot); });
+}
+
+/// Some rays with a common origin against one triangle. Rows: q1, q2, n, det, bounds, all turned so
+/// that det is positive; then the edge functions of a hit are not negative.
+GLIDAR_INLINE void test_common_triangle(const TreeView& tree, RayPacket& p, std::uint32_t lanes,
+                                        const Rows<13>& rows, std::uint32_t slot) {
+  const unsigned i = slot % kBlockSize;
+  const Vector<LaneFloat> q1 = rows.all3(0, i);
+  const Vector<LaneFloat> q2 = rows.all3(3, i);
+  const Vector<LaneFloat> n = rows.all3(6, i);
+  const ErrorBounds<LaneFloat> bounds = rows.bounds(10, i);
+  for (unsigned first = 0; first < kPacketSize; first += LaneFloat::kWidth) {
+    const Vector<LaneFloat> d = directions(p, first);
+    const EdgeTest<LaneFloat> edges(dot(d, q2), dot(d, q1), dot(d, n));
+    const auto left = ~(edges.lowest < -bounds.edge) & LaneFloat::mask(lanes >> first);
+    if (bits(left) == 0) continue;
+    take(tree, p, {first, left, slot}, edges, rows.all(9, i), bounds);
+  }
+}
+
+/// Some rays with a common origin against the triangles of a cluster.
+inline void test_common(const TreeView& tree, const TriangleCluster& cluster, RayPacket& p,
+                        std::uint32_t lanes, const LocalOrigin& origin) {
+  const float scaled = scaled_reach(origin.reach);
+  const DirectionBox box(p);
+  for (std::uint32_t b = 0; b < block_count(cluster.count); ++b) {
+    const std::uint32_t block = cluster.first_block + b;
+    const BlockSetup s = set_up(tree.blocks[block], cluster, origin.at, scaled);
+    const Vector<Float8> q1 = flip_sign(s.q1, s.det);
+    const Vector<Float8> q2 = flip_sign(s.q2, s.det);
+    const Vector<Float8> n = flip_sign(s.n, s.det);
+    const Float8 det = magnitude(s.det);
+    const Mask8 faces = det > s.bounds.det;  // its sign is sure
+    const Mask8 outside = largest_edge(box, q1, q2, n) < s.bounds.edge * Float8::all(-2.0F);
+    const std::uint32_t left = ~bits(outside & faces) & present(cluster, b);
+    if (left == 0) continue;
+    Rows<13> rows;
+    rows.set(0, q1);
+    rows.set(3, q2);
+    rows.set(6, n);
+    rows.set(9, det);
+    rows.set(10, s.bounds);
+    const std::uint32_t facing = bits(faces);
+    for_bits(left & facing, [&](unsigned i) {
+      test_common_triangle(tree, p, lanes, rows, block * kBlockSize + i);
+    });
+    for_bits(left & ~facing,
+             [&](unsigned i) { decide_lanes(tree, p, lanes, block * kBlockSize + i); });
+  }
+}
+
+/// The origins of a packet's rays relative to a cluster, and a ball around them.
+struct LocalOrigins {
+  alignas(64) float at[3][kPacketSize];
+  float middle[3];
+  double spread;  ///< from the middle, in the largest coordinate
+  double reach;   ///< from any of them to the farthest corner
+};
+
+inline LocalOrigins local_origins(const RayPacket& p, const TriangleCluster& cluster) {
+  LocalOrigins origins;
+  double spread = 0.0;
+  double largest = 0.0;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    float* at = origins.at[axis];
+    const auto centre = static_cast<double>(cluster.centre[axis]);
+    for (unsigned i = 0; i < kPacketSize; ++i) {
+      at[i] = static_cast<float>(p.exact_origin[axis][i] + p.shift[i] * p.exact_direction[axis][i] -
+                                 centre);
+    }
+    const float low = lowest_lane(at);
+    const float high = highest_lane(at);
+    origins.middle[axis] = 0.5F * (low + high);
+    spread = larger(spread, 0.5 * (static_cast<double>(high) - static_cast<double>(low)));
+    largest = larger(largest, larger(__builtin_fabs(low), __builtin_fabs(high)));
+  }
+  origins.spread = 1.001 * spread + 0x1p-22 * largest;
+  origins.reach =
+      largest + static_cast<double>(cluster.radius) + origins.spread + p.rounding * 0x1p-26;
+  return origins;
+}
+
+/// What the rays with origins of their own need of a triangle. Rows: a, e1, e2, n, bounds.
+struct SpreadTriangle {
+  const Rows<15>& rows;
+  const LocalOrigins& origins;
+  std::uint32_t slot;
+};
+
+GLIDAR_INLINE void test_spread_triangle(const TreeView& tree, RayPacket& p, std::uint32_t lanes,
+                                        const SpreadTriangle& triangle) {
+  const Rows<15>& rows = triangle.rows;
+  const unsigned i = triangle.slot % kBlockSize;
+  const Vector<LaneFloat> e1 = rows.all3(3, i);
+  const Vector<LaneFloat> e2 = rows.all3(6, i);
+  const Vector<LaneFloat> n = rows.all3(9, i);
+  const ErrorBounds<LaneFloat> bounds = rows.bounds(12, i);
+  for (unsigned first = 0; first < kPacketSize; first += LaneFloat::kWidth) {
+    const Vector<LaneFloat> origin = {LaneFloat::load(triangle.origins.at[0] + first),
+                                      LaneFloat::load(triangle.origins.at[1] + first),
+                                      LaneFloat::load(triangle.origins.at[2] + first)};
+    const Vector<LaneFloat> a = rows.all3(0, i) - origin;
+    const Vector<LaneFloat> d = directions(p, first);
+    const EdgeTest<LaneFloat> edges(dot(d, cross(e2, a)), dot(d, cross(a, e1)), dot(d, n));
+    const auto outside = (edges.lowest < -bounds.edge) & (edges.highest > bounds.edge);
+    const auto left = ~outside & LaneFloat::mask(lanes >> first);
+    if (bits(left) == 0) continue;
+    take(tree, p, {first, left, triangle.slot}, edges, dot(a, n), bounds);
+  }
+}
+
+/// Some rays, each with its own origin, against the triangles of a cluster. The setup about the
+/// middle of the origins only rejects: moved by the spread, an edge function changes by at most
+/// 1.8 spread (s1 + s2), and det by spread s1 s2.
+inline void test_spread(const TreeView& tree, const TriangleCluster& cluster, RayPacket& p,
+                        std::uint32_t lanes) {
+  const LocalOrigins origins = local_origins(p, cluster);
+  if (!(origins.reach < kMaxReach)) return decide_all(tree, cluster, p, lanes);
+  const float scaled = scaled_reach(origins.reach);
+  const auto spread = static_cast<float>(origins.spread);
+  const Float8 edge_room =
+      Float8::all(-(2.0F + 1.81F * spread / scaled));  // bounds.edge > scaled (s1 + s2)
+  const Float8 det_room = Float8::all(spread * (1.01F / (10.0F * 0x1p-24F)));
+  const DirectionBox box(p);
+  for (std::uint32_t b = 0; b < block_count(cluster.count); ++b) {
+    const std::uint32_t block = cluster.first_block + b;
+    const BlockSetup s = set_up(tree.blocks[block], cluster, origins.middle, scaled);
+    const Float8 largest =
+        largest_edge(box, flip_sign(s.q1, s.det), flip_sign(s.q2, s.det), flip_sign(s.n, s.det));
+    const Mask8 faces = magnitude(s.det) > multiply_add(s.bounds.den, det_room, s.bounds.det);
+    const Mask8 outside = largest < s.bounds.edge * edge_room;
+    const std::uint32_t left = ~bits(outside & faces) & present(cluster, b);
+    if (left == 0) continue;
+    Rows<15> rows;
+    rows.set(0, s.corners.a);
+    rows.set(3, s.corners.e1);
+    rows.set(6, s.corners.e2);
+    rows.set(9, s.n);
+    rows.set(12, s.bounds);
+    for_bits(left, [&](unsigned i) {
+      test_spread_triangle(tree, p, lanes, {rows, origins, block * kBlockSize + i});
+    });
+  }
+}
+
+/// The rays of `lanes` against the triangles of a cluster.
+inline void test_leaf(const TreeView& tree, std::uint32_t index, RayPacket& p,
+                      std::uint32_t lanes) {
+  constexpr int kFewLanes = 2;
+  const TriangleCluster& cluster = tree.clusters[index];
+  if (__builtin_popcount(lanes) <= kFewLanes) {
+    for_bits(lanes, [&](unsigned lane) { test_ray(tree, cluster, p, lane); });
+    return;
+  }
+  if (!p.has_common_origin) return test_spread(tree, cluster, p, lanes);
+  const LocalOrigin origin = local_origin(p, 0, cluster);
+  if (!(origin.reach < kMaxReach)) return decide_all(tree, cluster, p, lanes);
+  test_common(tree, cluster, p, lanes, origin);
+}
+
+}  // namespace glidar::rays::GLIDAR_KERNEL

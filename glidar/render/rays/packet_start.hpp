@@ -1,0 +1,145 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/rays/ray_packet.hpp>
+
+// Completes a packet of which the exact rays are set.
+namespace glidar::rays::GLIDAR_KERNEL {
+
+inline constexpr float kLargest = __builtin_huge_valf();
+
+GLIDAR_INLINE double larger(double a, double b) {
+  return a > b ? a : b;
+}
+
+/// The lowest of sixteen numbers.
+GLIDAR_INLINE float lowest_lane(const float* of_lane) {
+  LaneFloat lowest = LaneFloat::load(of_lane);
+  for (unsigned i = LaneFloat::kWidth; i < kPacketSize; i += LaneFloat::kWidth) {
+    lowest = least(lowest, LaneFloat::load(of_lane + i));
+  }
+  return lowest_of(lowest);
+}
+
+GLIDAR_INLINE float highest_lane(const float* of_lane) {
+  LaneFloat highest = LaneFloat::load(of_lane);
+  for (unsigned i = LaneFloat::kWidth; i < kPacketSize; i += LaneFloat::kWidth) {
+    highest = greatest(highest, LaneFloat::load(of_lane + i));
+  }
+  return -lowest_of(-highest);
+}
+
+/// How far along each ray the mesh's sphere begins, for rays that start far from it; otherwise 0.
+GLIDAR_INLINE void set_shifts(RayPacket& p, const MeshSphere& sphere) {
+  const double near = 1.001 * sphere.radius;
+  const double limit = kUnmovedRadii * sphere.radius * kUnmovedRadii * sphere.radius;
+  for (unsigned i = 0; i < kPacketSize; ++i) {
+    const double x = sphere.centre[0] - p.exact_origin[0][i];
+    const double y = sphere.centre[1] - p.exact_origin[1][i];
+    const double z = sphere.centre[2] - p.exact_origin[2][i];
+    const double along = x * p.exact_direction[0][i] + y * p.exact_direction[1][i] +
+                         z * p.exact_direction[2][i] - near;
+    const double shift = along > 0.0 ? along : 0.0;
+    p.shift[i] = x * x + y * y + z * z <= limit ? 0.0 : shift;
+  }
+}
+
+/// How far, along each axis, a ray in single precision may be from the true one within the mesh.
+/// Rounding the origin moves it by u |o|, rounding the direction by t u |d| at distance t, where
+/// u = 2^-24, |o| <= |c| + |o - c| and t <= |o - c| + R. Computing o + shift d in double adds
+/// 2^-53 of the numbers in it, and rounding o +- padding to single precision another u |o|.
+GLIDAR_INLINE void find_padding(const RayPacket& p, const MeshSphere& sphere, double* padding,
+                                double* rounding) {
+  double reach = 0.0;
+  for (const double x : sphere.centre) reach = larger(reach, __builtin_fabs(x));
+  reach += sphere.radius;
+  for (unsigned i = 0; i < kPacketSize; ++i) {
+    double distance = 0.0;
+    double size = 0.0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const double o = p.exact_origin[axis][i];
+      const double moved = o + p.shift[i] * p.exact_direction[axis][i];
+      distance += __builtin_fabs(moved - sphere.centre[axis]);
+      size += __builtin_fabs(o);
+    }
+    rounding[i] = 2.0 * p.shift[i] + size;
+    padding[i] = 0x1p-22 * (2.0 * distance + reach) + 0x1p-50 * rounding[i];
+  }
+}
+
+GLIDAR_INLINE void round_rays(RayPacket& p, const double* padding) {
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    for (unsigned i = 0; i < kPacketSize; ++i) {
+      const double d = p.exact_direction[axis][i];
+      const double o = p.exact_origin[axis][i] + p.shift[i] * d;
+      p.direction[axis][i] = static_cast<float>(d);
+      p.origin_low[axis][i] = static_cast<float>(o - padding[i]);
+      p.origin_high[axis][i] = static_cast<float>(o + padding[i]);
+    }
+  }
+  for (unsigned i = 0; i < kPacketSize; ++i) {
+    const auto near = static_cast<float>(-p.shift[i]);
+    p.near_low[i] = near + 0x1p-22F * near;  // near is not positive
+    p.near_high[i] = near - 0x1p-22F * near;
+  }
+}
+
+/// The middle and half width of the directions, with room for their rounding and its own.
+GLIDAR_INLINE void bound_directions(RayPacket& p) {
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    const float low = lowest_lane(p.direction[axis]);
+    const float high = highest_lane(p.direction[axis]);
+    p.middle[axis] = 0.5F * (low + high);
+    p.half[axis] = 0.5F * (high - low) + 0x1p-22F;
+  }
+}
+
+GLIDAR_INLINE bool all_start_alike(const RayPacket& p) {
+  unsigned others = 0;
+  for (unsigned i = 0; i < kPacketSize; ++i) {
+    others += static_cast<unsigned>(p.exact_origin[0][i] != p.exact_origin[0][0]) |
+              static_cast<unsigned>(p.exact_origin[1][i] != p.exact_origin[1][0]) |
+              static_cast<unsigned>(p.exact_origin[2][i] != p.exact_origin[2][0]) |
+              static_cast<unsigned>(p.shift[i] != 0.0);
+  }
+  return others == 0;
+}
+
+/// Rays that are not active repeat the first active one, so that bounds of all are those of the
+/// active; they are never tested.
+GLIDAR_INLINE void repeat_ray(RayPacket& p, std::uint32_t active) {
+  const auto first = static_cast<unsigned>(__builtin_ctz(active));
+  for (unsigned i = 0; i < kPacketSize; ++i) {
+    if ((active >> i & 1U) != 0) continue;
+    p.high[i] = p.low[i] = -kLargest;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      p.exact_direction[axis][i] = p.exact_direction[axis][first];
+      p.exact_origin[axis][i] = p.exact_origin[axis][first];
+    }
+  }
+}
+
+inline void start(RayPacket& p, const MeshSphere& sphere, std::uint32_t active) {
+  for (unsigned i = 0; i < kPacketSize; ++i) {
+    p.low[i] = kLargest;
+    p.high[i] = kLargest;
+    p.slot[i] = kNoTriangle;
+  }
+  if (active != (1U << kPacketSize) - 1U) repeat_ray(p, active);
+  p.active = active;
+  p.known = 0;
+  p.prepared = 0;
+  p.decisions = 0;
+  alignas(64) double padding[kPacketSize];
+  alignas(64) double rounding[kPacketSize];
+  set_shifts(p, sphere);
+  find_padding(p, sphere, padding, rounding);
+  round_rays(p, padding);
+  p.rounding = 0.0;
+  for (const double r : rounding) p.rounding = larger(p.rounding, r);
+  p.has_common_origin = all_start_alike(p);
+  bound_directions(p);
+}
+
+}  // namespace glidar::rays::GLIDAR_KERNEL

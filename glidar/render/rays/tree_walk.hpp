@@ -1,0 +1,267 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/rays/leaf_packet.hpp>
+
+// The walk through a tree of eight children per node. It only has to be conservative: what it
+// visits in vain costs time, no result depends on it.
+namespace glidar::rays::GLIDAR_KERNEL {
+
+/// Slabs are computed with three roundings: a box is entered where near <= far * kSlabRoom.
+inline constexpr float kSlabRoom = 1.0F + 6.0F * 0x1p-23F;
+/// An entry distance is at most this part of the computed one closer.
+inline constexpr float kEntryRoom = 1.0F - 0x1p-20F;
+/// Components below it are replaced: that moves a ray by less than its padding.
+inline constexpr float kLeastComponent = 1e-18F;
+inline constexpr unsigned kStackSize = 7 * kMaxTreeDepth + 8;
+
+/// A child that is still to be visited: its index, and its box as 8 * index of its parent + its
+/// place there. One number, written and read at once.
+using Visit = std::uint64_t;
+inline constexpr std::uint32_t kNoBox = 0xFFFFFFFFU;
+
+GLIDAR_INLINE Visit visit_of(std::int32_t child, std::uint32_t box) {
+  return static_cast<Visit>(static_cast<std::uint32_t>(child)) << 32U | box;
+}
+GLIDAR_INLINE std::int32_t child_of(Visit visit) {
+  return static_cast<std::int32_t>(visit >> 32U);
+}
+GLIDAR_INLINE std::uint32_t box_of(Visit visit) {
+  return static_cast<std::uint32_t>(visit);
+}
+
+struct Stack {
+  unsigned size = 0;
+  float near[kStackSize];  ///< no ray enters it before
+  Visit visit[kStackSize];
+
+  explicit Stack(std::int32_t root) { put(size++, 0.0F, visit_of(root, kNoBox)); }
+
+  GLIDAR_INLINE void put(unsigned place, float entry, Visit what) {
+    near[place] = entry;
+    visit[place] = what;
+  }
+
+  /// Adds the children of a node whose bits are set, the nearest on top.
+  GLIDAR_INLINE void push(const TreeView& tree, std::uint32_t node, std::uint32_t children,
+                          const float (&entries)[8]) {
+    const unsigned bottom = size;
+    for_bits(children, [&](unsigned i) {
+      const std::int32_t child = tree.nodes[node].child[i];
+      if (child == kNoChild) return;
+      prefetch(tree, child);
+      const float entry = entries[i] * kEntryRoom;
+      unsigned place = size++;
+      for (; place > bottom && near[place - 1] < entry; --place) {
+        put(place, near[place - 1], visit[place - 1]);
+      }
+      put(place, entry, visit_of(child, 8 * node + i));
+    });
+  }
+
+  GLIDAR_INLINE static void prefetch(const TreeView& tree, std::int32_t child) {
+    const bool is_node = child >= 0;
+    const char* what =
+        is_node ? reinterpret_cast<const char*>(&tree.nodes[child])
+                : reinterpret_cast<const char*>(&tree.blocks[tree.clusters[~child].first_block]);
+    __builtin_prefetch(what);
+    __builtin_prefetch(what + 64);
+    __builtin_prefetch(what + 128);
+    __builtin_prefetch(what + 192);
+    if (!is_node) __builtin_prefetch(what + 256);
+  }
+};
+
+GLIDAR_INLINE float reciprocal(float component) {
+  const float size = component < 0.0F ? -component : component;
+  return 1.0F / (size < kLeastComponent ? kLeastComponent : component);
+}
+
+/// One ray and the boxes of eight children.
+struct RaySlabs {
+  Float8 near_origin[3];
+  Float8 far_origin[3];
+  Float8 inverse[3];
+  bool is_negative[3];
+
+  RaySlabs(const RayPacket& p, unsigned lane) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const float r = reciprocal(p.direction[axis][lane]);
+      const Float8 low = Float8::all(p.origin_low[axis][lane]);
+      const Float8 high = Float8::all(p.origin_high[axis][lane]);
+      is_negative[axis] = r < 0.0F;
+      inverse[axis] = Float8::all(r);
+      near_origin[axis] = is_negative[axis] ? low : high;
+      far_origin[axis] = is_negative[axis] ? high : low;
+    }
+  }
+
+  /// Bits of the children that the ray enters before `end`, and where.
+  GLIDAR_INLINE std::uint32_t entered(const TreeNode& node, float end, float (&near)[8]) const {
+    Float8 first = Float8::all(0.0F);
+    Float8 last = Float8::all(end);
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const float* near_bound = is_negative[axis] ? node.high[axis] : node.low[axis];
+      const float* far_bound = is_negative[axis] ? node.low[axis] : node.high[axis];
+      first = greatest((Float8::load(near_bound) - near_origin[axis]) * inverse[axis], first);
+      last = least((Float8::load(far_bound) - far_origin[axis]) * inverse[axis], last);
+    }
+    store(near, first);
+    return bits(first <= last * Float8::all(kSlabRoom));
+  }
+};
+
+/// One ray below a node or leaf.
+inline void trace_below(const TreeView& tree, RayPacket& p, unsigned lane, std::int32_t root) {
+  const RaySlabs slabs(p, lane);
+  Stack stack(root);
+  alignas(32) float near[8];
+  while (stack.size > 0) {
+    --stack.size;
+    if (stack.near[stack.size] > p.high[lane]) continue;
+    const std::int32_t child = child_of(stack.visit[stack.size]);
+    if (child < 0) {
+      test_ray(tree, tree.clusters[~child], p, lane);
+      continue;
+    }
+    const auto index = static_cast<std::uint32_t>(child);
+    const std::uint32_t entered = slabs.entered(tree.nodes[index], p.high[lane], near);
+    if (entered != 0) stack.push(tree, index, entered, near);
+  }
+}
+
+/// All rays of a packet as one beam: intervals of origins and of reciprocal directions. An axis
+/// along which directions change sign rejects nothing.
+struct Beam {
+  enum class Sign { mixed, positive, negative };
+  Sign sign[3];
+  Float8 origin_low[3];
+  Float8 origin_high[3];
+  Float8 inverse_low[3];  ///< of the components' sizes
+  Float8 inverse_high[3];
+
+  explicit Beam(const RayPacket& p) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      origin_low[axis] = Float8::all(lowest_lane(p.origin_low[axis]));
+      origin_high[axis] = Float8::all(highest_lane(p.origin_high[axis]));
+      set_directions(axis, p.middle[axis] - p.half[axis], p.middle[axis] + p.half[axis]);
+    }
+  }
+
+  void set_directions(unsigned axis, float low, float high) {
+    constexpr float kRoom = 0x1p-21F;
+    sign[axis] = low > 0.0F ? Sign::positive : high < 0.0F ? Sign::negative : Sign::mixed;
+    if (sign[axis] == Sign::mixed) return;
+    const float least_size = low > 0.0F ? low : -high;
+    const float largest_size = low > 0.0F ? high : -low;
+    inverse_low[axis] = Float8::all((1.0F - kRoom) / largest_size);
+    inverse_high[axis] = Float8::all((1.0F + kRoom) / least_size);
+  }
+
+  /// Bits of the children that some ray may enter before `end`, and bounds of where.
+  GLIDAR_INLINE std::uint32_t entered(const TreeNode& node, float end, float (&near)[8]) const {
+    Float8 first = Float8::all(0.0F);
+    Float8 last = Float8::all(end);
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      if (sign[axis] == Sign::mixed) continue;
+      const bool is_positive = sign[axis] == Sign::positive;
+      const Float8 low = Float8::load(node.low[axis]);
+      const Float8 high = Float8::load(node.high[axis]);
+      const Float8 to_near = is_positive ? low - origin_high[axis] : origin_low[axis] - high;
+      const Float8 to_far = is_positive ? high - origin_low[axis] : origin_high[axis] - low;
+      const Float8 a = inverse_low[axis];
+      const Float8 b = inverse_high[axis];
+      first = greatest(least(to_near * a, to_near * b), first);
+      last = least(greatest(to_far * a, to_far * b), last);
+    }
+    store(near, first);
+    return bits(first <= last * Float8::all(kSlabRoom));
+  }
+};
+
+/// The rays of a packet, one by one, and a single box.
+struct PacketSlabs {
+  alignas(64) float inverse[3][kPacketSize];
+
+  explicit PacketSlabs(const RayPacket& p) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      for (unsigned i = 0; i < kPacketSize; i += LaneFloat::kWidth) {
+        const LaneFloat d = LaneFloat::load(p.direction[axis] + i);
+        const LaneFloat tiny = LaneFloat::all(kLeastComponent);
+        const LaneFloat replaced = select(magnitude(d) < tiny, tiny, d);
+        store(inverse[axis] + i, LaneFloat::all(1.0F) / replaced);
+      }
+    }
+  }
+
+  /// Bits of the rays that enter a child's box before their nearest hit.
+  [[nodiscard]] GLIDAR_INLINE std::uint32_t entering(const TreeNode& node, unsigned child,
+                                                     const RayPacket& p) const {
+    std::uint32_t entering = 0;
+    for (unsigned i = 0; i < kPacketSize; i += LaneFloat::kWidth) {
+      LaneFloat first = LaneFloat::all(0.0F);
+      LaneFloat last = LaneFloat::load(p.high + i);
+      for (unsigned axis = 0; axis < 3; ++axis) {
+        const LaneFloat r = LaneFloat::load(inverse[axis] + i);
+        const LaneFloat x =
+            (LaneFloat::all(node.low[axis][child]) - LaneFloat::load(p.origin_high[axis] + i)) * r;
+        const LaneFloat y =
+            (LaneFloat::all(node.high[axis][child]) - LaneFloat::load(p.origin_low[axis] + i)) * r;
+        first = greatest(least(x, y), first);
+        last = least(greatest(x, y), last);
+      }
+      entering |= bits(first <= last * LaneFloat::all(kSlabRoom)) << i;
+    }
+    return entering & p.active;
+  }
+};
+
+/// The largest distance at which some ray still looks for something nearer.
+GLIDAR_INLINE float farthest(const RayPacket& p) {
+  return highest_lane(p.high);
+}
+
+/// What is left of a walk when few rays, or a leaf, are reached. True when there was something.
+GLIDAR_INLINE bool finish(const TreeView& tree, RayPacket& p, std::int32_t child,
+                          std::uint32_t rays) {
+  constexpr int kFewRays = 3;
+  if (child < 0) {
+    test_leaf(tree, static_cast<std::uint32_t>(~child), p, rays);
+    return true;
+  }
+  if (__builtin_popcount(rays) > kFewRays) return false;
+  for_bits(rays, [&](unsigned lane) { trace_below(tree, p, lane, child); });
+  return true;
+}
+
+/// All rays of a packet together, few of them one by one.
+inline void trace(const TreeView& tree, RayPacket& p) {
+  const Beam beam(p);
+  const PacketSlabs slabs(p);
+  Stack stack(0);
+  float end = kLargest;
+  alignas(32) float near[8];
+  while (stack.size > 0) {
+    --stack.size;
+    if (stack.near[stack.size] > end) continue;
+    const std::uint32_t box = box_of(stack.visit[stack.size]);
+    const std::int32_t child = child_of(stack.visit[stack.size]);
+    std::uint32_t rays = p.active;
+    if (box != kNoBox) rays = slabs.entering(tree.nodes[box / 8], box % 8, p);
+    if (rays == 0) continue;
+    if (finish(tree, p, child, rays)) {
+      end = farthest(p);
+      continue;
+    }
+    const auto index = static_cast<std::uint32_t>(child);
+    const std::uint32_t entered = beam.entered(tree.nodes[index], end, near);
+    if (entered != 0) stack.push(tree, index, entered, near);
+  }
+}
+
+inline void trace_single(const TreeView& tree, RayPacket& p) {
+  for_bits(p.active, [&](unsigned lane) { trace_below(tree, p, lane, 0); });
+}
+
+}  // namespace glidar::rays::GLIDAR_KERNEL

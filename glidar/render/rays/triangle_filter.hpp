@@ -1,0 +1,177 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/common/triangle_blocks.hpp>
+
+// The filter in single precision: it rejects and accepts triangles where its error bounds leave no
+// doubt, and bounds their distances. docs/ray-casting.md derives the bounds. u = 2^-24.
+namespace glidar::rays::GLIDAR_KERNEL {
+
+template <class F>
+struct Vector {
+  F x;
+  F y;
+  F z;
+};
+
+template <class F>
+GLIDAR_INLINE F dot(const Vector<F>& a, const Vector<F>& b) {
+  return multiply_add(a.x, b.x, multiply_add(a.y, b.y, a.z * b.z));
+}
+
+template <class F>
+GLIDAR_INLINE F determinant(F a, F b, F c, F d) {
+  return multiply_subtract(a, b, c * d);
+}
+
+template <class F>
+GLIDAR_INLINE Vector<F> cross(const Vector<F>& a, const Vector<F>& b) {
+  return {determinant(a.y, b.z, a.z, b.y), determinant(a.z, b.x, a.x, b.z),
+          determinant(a.x, b.y, a.y, b.x)};
+}
+
+template <class F>
+GLIDAR_INLINE Vector<F> operator-(const Vector<F>& a, const Vector<F>& b) {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+
+template <class F>
+GLIDAR_INLINE Vector<F> magnitude(const Vector<F>& a) {
+  return {magnitude(a.x), magnitude(a.y), magnitude(a.z)};
+}
+
+template <class F>
+GLIDAR_INLINE Vector<F> flip_sign(const Vector<F>& a, F sign) {
+  return {flip_sign(a.x, sign), flip_sign(a.y, sign), flip_sign(a.z, sign)};
+}
+
+/// |x| + |y| + |z|
+template <class F>
+GLIDAR_INLINE F sum_of_sizes(const Vector<F>& a) {
+  return magnitude(a.x) + magnitude(a.y) + magnitude(a.z);
+}
+
+/// Beyond this distance of a cluster, products might overflow: there the rule decides everything.
+inline constexpr double kMaxReach = 0x1p36;
+/// What is added to distances and areas so that their bounds also cover underflow. A triangle below
+/// some nanometres is in doubt more often.
+inline constexpr double kReachRoom = 0x1p-40;
+inline constexpr float kAreaRoom = 0x1p-60F;
+
+/// 24 u L, with room for rounding; L: the largest distance of a corner, in the largest coordinate.
+GLIDAR_INLINE float scaled_reach(double reach) {
+  return static_cast<float>(24.01 * 0x1p-24 * (reach + kReachRoom));
+}
+
+/// Corners of triangles relative to their cluster's centre.
+template <class F>
+struct Corners {
+  Vector<F> a;   ///< first corner
+  Vector<F> e1;  ///< from it to the second
+  Vector<F> e2;  ///< from it to the third
+};
+
+/// Bounds of the errors of edge functions, of det and of den.
+template <class F>
+struct ErrorBounds {
+  F edge;
+  F det;
+  F den;
+};
+
+/// Eight triangles as seen from an origin A away. For a direction d, the edge functions are
+/// v = d.q1, u = d.q2 and w = den - u - v with den = d.n; the plane is at the distance det / den.
+struct BlockSetup {
+  Corners<Float8> corners;
+  Vector<Float8> q1;  ///< A x e1
+  Vector<Float8> q2;  ///< e2 x A
+  Vector<Float8> n;   ///< e1 x e2
+  Float8 det;         ///< A.n
+  ErrorBounds<Float8> bounds;
+};
+
+/// The edge functions of rays and triangles.
+template <class F>
+struct EdgeTest {
+  F lowest;
+  F highest;
+  F den;
+
+  GLIDAR_INLINE EdgeTest(F u, F v, F d) : den(d) {
+    const F w = d - u - v;
+    lowest = least(least(u, v), w);
+    highest = greatest(greatest(u, v), w);
+  }
+};
+
+GLIDAR_INLINE Vector<Float8> corner_rows(const float (&rows)[3][kBlockSize]) {
+  return {Float8::load(rows[0]), Float8::load(rows[1]), Float8::load(rows[2])};
+}
+
+GLIDAR_INLINE BlockSetup set_up(const TriangleBlock& block, const TriangleCluster& cluster,
+                                const float (&origin)[3], float scaled) {
+  BlockSetup s;
+  const Vector<Float8> p = corner_rows(block.corner[0]);
+  s.corners.a = p - Vector<Float8>{Float8::all(cluster.centre[0]), Float8::all(cluster.centre[1]),
+                                   Float8::all(cluster.centre[2])};
+  s.corners.e1 = corner_rows(block.corner[1]) - p;
+  s.corners.e2 = corner_rows(block.corner[2]) - p;
+  const Vector<Float8> a =
+      s.corners.a -
+      Vector<Float8>{Float8::all(origin[0]), Float8::all(origin[1]), Float8::all(origin[2])};
+  s.q1 = cross(a, s.corners.e1);
+  s.q2 = cross(s.corners.e2, a);
+  s.n = cross(s.corners.e1, s.corners.e2);
+  s.det = dot(a, s.n);
+  const Float8 s1 = sum_of_sizes(s.corners.e1);
+  const Float8 s2 = sum_of_sizes(s.corners.e2);
+  const Float8 area = multiply_add(s1, s2, Float8::all(kAreaRoom));
+  const Float8 reach = Float8::all(scaled);
+  s.bounds.edge = multiply_add(reach, s1 + s2, Float8::all(24.0F * 0x1p-24F) * area);
+  s.bounds.det = reach * area * Float8::all(0.5F);
+  s.bounds.den = area * Float8::all(10.0F * 0x1p-24F);
+  return s;
+}
+
+/// What is known of a ray's nearest triangle, as in RayPacket.
+template <class F>
+struct Interval {
+  F low;
+  F high;
+  F near_low;
+  F near_high;
+};
+
+/// What becomes of rays and triangles that are not surely outside.
+template <class F>
+struct Verdict {
+  typename F::Mask accepted;  ///< surely hit, and surely nearer
+  typename F::Mask doubtful;  ///< for the rule
+  F low;                      ///< bounds of the distance
+  F high;
+};
+
+template <class F>
+GLIDAR_INLINE Verdict<F> weigh(const EdgeTest<F>& edges, typename F::Mask candidates, F det,
+                               const ErrorBounds<F>& bounds, const Interval<F>& best) {
+  const F den = magnitude(edges.den);
+  const auto is_known = den > bounds.den * F::all(4.0F);
+  const F inverse = F::all(1.0F) / edges.den;
+  const F t = det * inverse;
+  const F size = magnitude(t);
+  F error = multiply_add(size, bounds.den, bounds.det) * F::all(1.5F) * magnitude(inverse);
+  error = multiply_add(size, F::all(0x1p-21F), error);
+  Verdict<F> verdict;
+  verdict.low = t - error;
+  verdict.high = t + error;
+  const auto is_beside = (verdict.low > best.high) | (verdict.high < best.near_low);
+  const auto rest = candidates & ~(is_known & is_beside);
+  const auto is_inside = (edges.lowest > bounds.edge) | (edges.highest < -bounds.edge);
+  const auto is_nearer = (verdict.high < best.low) & (verdict.low > best.near_high);
+  verdict.accepted = rest & is_known & is_inside & is_nearer;
+  verdict.doubtful = rest & ~verdict.accepted;
+  return verdict;
+}
+
+}  // namespace glidar::rays::GLIDAR_KERNEL

@@ -1,0 +1,38 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Kernels for one instruction set define no function that the linker could share with the rest of the program.
+
+The linker keeps one copy of an inline function. If it were the one with AVX-512, other processors would stop at it.
+"""
+
+import os
+import re
+import subprocess
+import sys
+import unittest
+
+OBJECTS = [path for path in os.environ.get("GLIDAR_KERNEL_OBJECTS", "").split(",") if path]
+DEFINED = re.compile(r"^[0-9a-f]+ [A-Zuvw] (.*)$")
+
+
+def defined_in(path):
+    done = subprocess.run(["nm", "-C", "--defined-only", path], capture_output=True, text=True, check=True)
+    return [found[1] for found in map(DEFINED.match, done.stdout.splitlines()) if found]
+
+
+class KernelSymbols(unittest.TestCase):
+    def test_are_all_in_the_namespace_of_the_instruction_set(self):
+        for path in OBJECTS:
+            isa = re.search(r"glidar_kernel_(\w+)\.dir", path)[1]
+            names = defined_in(path)
+            self.assertTrue(any("kKernel" in name for name in names), path)
+            others = [name for name in names if f"glidar::rays::{isa}::" not in name and not name.startswith(".")]
+            self.assertEqual(others, [], path)
+
+
+if __name__ == "__main__":
+    if not OBJECTS:
+        print("GLIDAR_KERNEL_OBJECTS is not set, or this processor has one kernel only")
+        sys.exit(77)
+    unittest.main()
