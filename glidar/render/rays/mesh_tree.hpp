@@ -1,0 +1,36 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/workers.hpp>
+#include <glidar/render/rays/ray_packet.hpp>
+#include <glidar/render/rays/ray_tree.hpp>
+
+#include <vector>
+
+namespace glidar::rays {
+
+/// The largest coordinate of a vertex that a tree holds, 7.9e28: boxes are in single precision.
+inline constexpr float kMaxTreeCoordinate = 0x1p96F;
+
+/// A tree over the triangles of a mesh. What rays hit does not depend on how it is built.
+struct MeshTree {
+  std::vector<TreeNode> nodes;
+  std::vector<TriangleCluster> clusters;
+  std::vector<TriangleBlock> blocks;
+  MeshSphere sphere;
+
+  [[nodiscard]] TreeView view() const { return {nodes.data(), clusters.data(), blocks.data()}; }
+  /// Memory, without what vectors hold in reserve.
+  [[nodiscard]] std::size_t bytes() const;
+};
+
+struct TreeOptions {
+  std::uint32_t cluster_size = 8;  ///< most triangles of a leaf, 1 to 64
+  std::uint32_t bins = 16;         ///< places to cut per axis, 2 to 16
+};
+
+/// Builds the tree. Throws Error on a vertex beyond kMaxTreeCoordinate.
+MeshTree build_mesh_tree(const MeshTriangles& mesh, const TreeOptions& options, Workers& workers);
+
+}  // namespace glidar::rays

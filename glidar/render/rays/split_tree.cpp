@@ -1,0 +1,276 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/rays/split_tree.hpp>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_invoke.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+namespace glidar::rays {
+namespace {
+
+using Quad = float __attribute__((vector_size(16), may_alias));
+using Indices = std::int32_t __attribute__((vector_size(16)));
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::uint32_t kMaxBins = 16;
+constexpr std::uint32_t kFewReferences = 64;           ///< of which half the bins suffice
+constexpr std::uint32_t kParallelReferences = 4096;    ///< worth a task
+constexpr std::uint32_t kParallelBinning = 64 * 1024;  ///< worth several for one node
+constexpr unsigned kBalancedDepth = 40;                ///< deeper nodes are halved
+constexpr float kMinExtent = 0x1p-100F;  ///< of middles that are cut: 16 / it is finite
+
+Quad low_of(const BoxReference& r) {
+  return *reinterpret_cast<const Quad*>(r.low);
+}
+Quad high_of(const BoxReference& r) {
+  return *reinterpret_cast<const Quad*>(r.high);
+}
+Quad all(float x) {
+  return Quad{x, x, x, x};
+}
+Quad least(Quad a, Quad b) {
+  return a < b ? a : b;
+}
+Quad greatest(Quad a, Quad b) {
+  return a > b ? a : b;
+}
+
+/// x, y, z; the fourth number has no meaning.
+struct Box {
+  Quad low = all(kInfinity);
+  Quad high = all(-kInfinity);
+
+  void extend(Quad other_low, Quad other_high) {
+    low = least(low, other_low);
+    high = greatest(high, other_high);
+  }
+  void extend(const Box& other) { extend(other.low, other.high); }
+  /// Half its surface; 0 for an empty box.
+  [[nodiscard]] float area() const {
+    const Quad size = high - low;
+    return size[0] < 0.0F ? 0.0F : size[0] * size[1] + size[1] * size[2] + size[2] * size[0];
+  }
+};
+
+/// The boxes of some references, and of twice their middles.
+struct Extent {
+  Box boxes;
+  Box middles;
+
+  void extend(const BoxReference& r) {
+    boxes.extend(low_of(r), high_of(r));
+    const Quad middle = low_of(r) + high_of(r);
+    middles.extend(middle, middle);
+  }
+  void extend(const Extent& other) {
+    boxes.extend(other.boxes);
+    middles.extend(other.middles);
+  }
+};
+
+/// Where a middle falls among the bins, along all axes.
+struct Binning {
+  Quad low;
+  Quad scale;
+
+  Binning(const Box& middles, std::uint32_t bins) : low(middles.low) {
+    const Quad size = middles.high - middles.low;
+    const Quad wide = all(0.9999F * static_cast<float>(bins)) / size;
+    scale = size > all(kMinExtent) ? wide : all(0.0F);
+  }
+  [[nodiscard]] Indices of(const BoxReference& r) const {
+    return __builtin_convertvector((low_of(r) + high_of(r) - low) * scale, Indices);
+  }
+};
+
+struct Bins {
+  std::array<std::array<Box, kMaxBins>, 3> box;
+  std::array<std::array<std::uint32_t, kMaxBins>, 3> count{};
+
+  void add(const BoxReference& r, const Binning& binning) {
+    const Indices at = binning.of(r);
+    const Quad low = low_of(r);
+    const Quad high = high_of(r);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto bin = static_cast<std::size_t>(at[axis]);
+      box[axis][bin].extend(low, high);
+      ++count[axis][bin];
+    }
+  }
+  void add(const Bins& other, std::uint32_t bins) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t i = 0; i < bins; ++i) {
+        box[axis][i].extend(other.box[axis][i]);
+        count[axis][i] += other.count[axis][i];
+      }
+    }
+  }
+};
+
+struct Split {
+  float cost = kInfinity;  ///< infinite: there is none
+  std::size_t axis = 0;
+  std::int32_t bin = 0;  ///< first of the second side
+};
+
+/// Tests are made in blocks of eight, but half a block is a saving too: it leaves room to merge.
+float test_cost(const Box& box, std::uint32_t count) {
+  const std::uint32_t half_blocks = (count + 3) / 4;
+  return box.area() * static_cast<float>(half_blocks);
+}
+
+void find_split_along(const Bins& bins, std::uint32_t bin_count, std::size_t axis, Split& best) {
+  std::array<float, kMaxBins> cost_above{};
+  std::uint32_t count = 0;
+  Box box;
+  for (std::size_t i = bin_count - 1; i > 0; --i) {
+    box.extend(bins.box[axis][i]);
+    count += bins.count[axis][i];
+    cost_above[i] = count == 0 ? kInfinity : test_cost(box, count);
+  }
+  box = {};
+  count = 0;
+  for (std::size_t i = 1; i < bin_count; ++i) {
+    box.extend(bins.box[axis][i - 1]);
+    count += bins.count[axis][i - 1];
+    if (count == 0) continue;
+    const float cost = test_cost(box, count) + cost_above[i];
+    if (cost < best.cost) best = {cost, axis, static_cast<std::int32_t>(i)};
+  }
+}
+
+/// Builds the nodes of the subtrees. The subtree of n references has up to 2 n - 1 nodes, which
+/// follow its root; so every place is known beforehand, and threads need not agree on any.
+class Builder {
+ public:
+  Builder(std::span<BoxReference> references, const SplitOptions& options, SplitNode* nodes)
+      : references_(references), options_(options), nodes_(nodes) {}
+
+  void build() const {
+    const Extent extent = extent_of(references_);
+    build({0, static_cast<std::uint32_t>(references_.size())}, extent, 0, 0);
+  }
+
+ private:
+  struct Range {
+    std::uint32_t begin;
+    std::uint32_t end;
+    [[nodiscard]] std::uint32_t size() const { return end - begin; }
+  };
+
+  [[nodiscard]] static Extent extent_of(std::span<const BoxReference> references) {
+    Extent extent;
+    for (const BoxReference& r : references) extent.extend(r);
+    return extent;
+  }
+
+  [[nodiscard]] std::span<BoxReference> in(Range range) const {
+    return references_.subspan(range.begin, range.size());
+  }
+
+  void build(Range range, const Extent& extent, std::uint32_t index, unsigned depth) const {
+    SplitNode& node = nodes_[index];
+    for (int axis = 0; axis < 3; ++axis) {
+      node.low[axis] = extent.boxes.low[axis];
+      node.high[axis] = extent.boxes.high[axis];
+    }
+    node.first = range.begin;
+    node.count = range.size();
+    if (range.size() <= options_.leaf_size) return;
+    std::array<Extent, 2> sides;
+    const std::uint32_t middle = cut(range, extent, depth, sides);
+    node.first = index + 2 * (middle - range.begin);
+    node.count = 0;
+    const std::uint32_t second = node.first;
+    const auto build_first = [&] { build({range.begin, middle}, sides[0], index + 1, depth + 1); };
+    const auto build_second = [&] { build({middle, range.end}, sides[1], second, depth + 1); };
+    if (range.size() >= kParallelReferences) {
+      tbb::parallel_invoke(build_first, build_second);
+    } else {
+      build_first();
+      build_second();
+    }
+  }
+
+  /// Sorts references into two sides; returns where the second one begins.
+  std::uint32_t cut(Range range, const Extent& extent, unsigned depth,
+                    std::array<Extent, 2>& sides) const {
+    const std::uint32_t bins =
+        range.size() > kFewReferences ? options_.bins : (options_.bins + 1) / 2;
+    const Binning binning(extent.middles, bins);
+    Split best;
+    if (depth < std::min(kBalancedDepth, options_.max_depth / 2)) {
+      best = find_split(range, binning, bins);
+    }
+    if (best.cost < kInfinity) return partition(range, binning, best, sides);
+    const std::uint32_t middle = range.begin + range.size() / 2;
+    sides[0] = extent_of(in({range.begin, middle}));
+    sides[1] = extent_of(in({middle, range.end}));
+    return middle;
+  }
+
+  [[nodiscard]] Split find_split(Range range, const Binning& binning, std::uint32_t count) const {
+    Bins bins;
+    if (range.size() < kParallelBinning) {
+      for (const BoxReference& r : in(range)) bins.add(r, binning);
+    } else {
+      bins = tbb::parallel_reduce(
+          tbb::blocked_range<std::uint32_t>(range.begin, range.end, kParallelBinning / 4), Bins{},
+          [&](const auto& part, Bins some) {
+            for (const BoxReference& r : in({part.begin(), part.end()})) some.add(r, binning);
+            return some;
+          },
+          [&](Bins a, const Bins& b) {
+            a.add(b, count);
+            return a;
+          });
+    }
+    Split best;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      if (binning.scale[axis] > 0.0F) find_split_along(bins, count, axis, best);
+    }
+    return best;
+  }
+
+  std::uint32_t partition(Range range, const Binning& binning, const Split& split,
+                          std::array<Extent, 2>& sides) const {
+    const auto is_first = [&](const BoxReference& r) {
+      return binning.of(r)[split.axis] < split.bin;
+    };
+    std::uint32_t low = range.begin;
+    std::uint32_t high = range.end;
+    while (low < high) {
+      if (is_first(references_[low])) {
+        sides[0].extend(references_[low++]);
+        continue;
+      }
+      --high;
+      sides[1].extend(references_[low]);
+      std::swap(references_[low], references_[high]);
+    }
+    return low;
+  }
+
+  std::span<BoxReference> references_;
+  const SplitOptions& options_;
+  SplitNode* nodes_;
+};
+
+}  // namespace
+
+std::unique_ptr<SplitNode[]> build_split_tree(std::span<BoxReference> references,
+                                              const SplitOptions& options, Workers& workers) {
+  if (references.empty()) return nullptr;
+  auto nodes = std::make_unique_for_overwrite<SplitNode[]>(2 * references.size());
+  const Builder builder(references, options, nodes.get());
+  workers.execute([&] { builder.build(); });
+  return nodes;
+}
+
+}  // namespace glidar::rays

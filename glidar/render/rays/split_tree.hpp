@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/workers.hpp>
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+namespace glidar::rays {
+
+/// The box of a triangle and its index.
+struct alignas(16) BoxReference {
+  float low[3];
+  std::uint32_t index;
+  float high[3];
+  std::uint32_t unused;
+};
+
+/// A node of a binary tree over boxes: a leaf holds references [first, first + count).
+struct alignas(16) SplitNode {
+  float low[3];
+  std::uint32_t first;  ///< leaf: its first reference; otherwise index of the second child, the
+                        ///< first one follows the node
+  float high[3];
+  std::uint32_t count;  ///< 0: not a leaf
+};
+
+struct SplitOptions {
+  std::uint32_t leaf_size = 8;  ///< largest
+  std::uint32_t bins = 16;      ///< places to cut per axis, up to 16
+  unsigned max_depth = 70;      ///< of leaves
+};
+
+/// Sorts the references into leaves by binned surface area heuristic (I. Wald, "On fast
+/// Construction of SAH-based Bounding Volume Hierarchies", 2007). Returns the nodes, the root
+/// first; nullptr for no references. The result does not depend on the number of threads.
+std::unique_ptr<SplitNode[]> build_split_tree(std::span<BoxReference> references,
+                                              const SplitOptions& options, Workers& workers);
+
+}  // namespace glidar::rays
