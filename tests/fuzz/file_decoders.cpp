@@ -49,7 +49,8 @@ void read_recording(const fs::path& file) {
   }
 }
 
-/// Puts the right checksum into a frame: a fuzzer would not find it, and stay outside what it guards.
+/// Puts the right checksum into a frame: a fuzzer would not find it, and stay outside what it
+/// guards.
 void put_checksum(const fs::path& file) {
   std::fstream stream(file, std::ios::in | std::ios::out | std::ios::binary);
   const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
