@@ -4,6 +4,8 @@
 
 #include <import/mesh_part.hpp>
 
+#include <glidar/core/single_precision.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -29,13 +31,13 @@ Eigen::Vector3d origin_for(const Eigen::AlignedBox3d& box) {
     // Middle and half width of finite floats cannot overflow in double.
     const double middle = 0.5 * (box.min()[axis] + box.max()[axis]);
     const double half = 0.5 * (box.max()[axis] - box.min()[axis]);
-    if (std::abs(middle) >= 2.0 * half) origin[axis] = double{static_cast<float>(middle)};
+    if (std::abs(middle) >= 2.0 * half) origin[axis] = rounded_to_float(middle);
   }
   return origin;
 }
 
 double rounding_of(const Eigen::Vector3d& relative) {
-  return (relative.cast<float>().cast<double>() - relative).cwiseAbs().maxCoeff();
+  return (relative.unaryExpr(&rounded_to_float) - relative).cwiseAbs().maxCoeff();
 }
 
 /// What each part covers, and how it is rounded.
@@ -130,7 +132,7 @@ Eigen::Vector3d origin_of_group(const Group& group, const Eigen::Vector3d& commo
                                  .maxCoeff();
   const double half = 0.5 * group.box.sizes().maxCoeff();
   if (half > kNearer * from_common) return common;
-  return group.box.center().cast<float>().cast<double>();
+  return group.box.center().unaryExpr(&rounded_to_float);
 }
 
 }  // namespace

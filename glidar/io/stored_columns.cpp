@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/stored_columns.hpp>
 
+#include <glidar/core/single_precision.hpp>
+
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,7 +15,7 @@ namespace {
 double rounding(const Column& column) {
   double farthest = 0.0;
   for (const double value : std::get<std::vector<double>>(column.values)) {
-    const double moved = std::abs(value - double{static_cast<float>(value)});
+    const double moved = std::abs(value - rounded_to_float(value));
     if (moved > farthest) farthest = moved;  // false for misses, which are NaN
   }
   return farthest;

@@ -6,6 +6,7 @@
 #include "scene_state.hpp"
 
 #include <glidar/core/error.hpp>
+#include <glidar/core/single_precision.hpp>
 #include <glidar/io/file_guard.hpp>
 #include <glidar/io/surfaces.hpp>
 
@@ -116,7 +117,7 @@ Mesh make_mesh(const std::string& name, const MeshArrays& arrays) {
   const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>> points(
       arrays.vertices.data(), static_cast<Eigen::Index>(count), 3);
   // near an origin single precision keeps every detail; at zero it is what files have
-  if (count > 0 && !points.cast<float>().cast<double>().isApprox(points, 0.0)) {
+  if (count > 0 && !points.unaryExpr(&rounded_to_float).isApprox(points, 0.0)) {
     mesh.origin_m = 0.5 * (points.colwise().minCoeff() + points.colwise().maxCoeff()).transpose();
   }
   mesh.positions_m.reserve(count + 1);
