@@ -20,7 +20,7 @@ OWN = re.compile(r"(glidar|libglidar|_core)[^/]*$")
 X86_64 = 62  # e_machine of an ELF file
 ENDBR64 = b"\xf3\x0f\x1e\xfa"  # marks where indirect jumps may lead (Intel CET)
 FEWEST_MARKS = 8  # the startup code of some systems has a few; each function of ours that may be called so has one
-NOT_SHIPPED = re.compile(r"_(tests|bench|baseline)$|glidar_(example|fuzz|io_files|sandbox_probe|without_sandbox)")
+NOT_SHIPPED = re.compile(r"_(tests|bench|baseline|driver)$|glidar_(example|fuzz|io_files|sandbox_probe|without_sandbox)")
 
 
 def elf_files(folder):

@@ -4,6 +4,7 @@
 """The check of programs and libraries lets a good one pass and names every kind of fault."""
 
 import shutil
+import platform
 import subprocess
 import sys
 import tempfile
@@ -17,6 +18,8 @@ import check_binaries  # noqa: E402
 CODE = """
 #include <stdio.h>
 #include <string.h>
+int one(void) { return 1; } int two(void) { return 2; } int three(void) { return 3; } int four(void) { return 4; }
+int five(void) { return 5; } int six(void) { return 6; } int seven(void) { return 7; } int eight(void) { return 8; }
 int main(int argc, char** argv) {
   char text[16];
   strcpy(text, argv[argc - 1]);  /* a copy that can be checked */
@@ -25,6 +28,8 @@ int main(int argc, char** argv) {
 """
 GOOD = ("-O2", "-U_FORTIFY_SOURCE", "-D_FORTIFY_SOURCE=2", "-fstack-protector-strong", "-fPIE", "-pie",
         "-Wl,-z,relro,-z,now,-z,noexecstack")
+MARKS_JUMPS = ("-fcf-protection=full",) if platform.machine() == "x86_64" else ()
+GOOD += MARKS_JUMPS
 
 
 class CheckBinaries(unittest.TestCase):
@@ -69,6 +74,11 @@ class CheckBinaries(unittest.TestCase):
                 ("-U_FORTIFY_SOURCE", "copies are not checked (_FORTIFY_SOURCE)")):
             with self.subTest(option):
                 self.assertEqual(self.complaints(*GOOD, option), [fault])
+
+    @unittest.skipUnless(MARKS_JUMPS, "targets of jumps are marked on x86-64 only")
+    def test_unmarked_targets_of_jumps_are_found(self):
+        self.assertEqual(self.complaints(*GOOD, "-fcf-protection=none"),
+                         ["targets of indirect jumps are not marked (-fcf-protection)"])
 
     def test_libraries_of_others_need_a_safe_search_path_only(self):
         self.assertEqual(self.complaints("-Wl,-rpath,:", "-no-pie", name="libfoo.so.1"), [
