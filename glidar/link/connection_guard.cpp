@@ -170,7 +170,7 @@ std::uint64_t ConnectionGuard::delivered(int descriptor) {
   const std::lock_guard lock(mutex_);
   // A message may be here before ZeroMQ's report that its connection was accepted, and after its
   // end.
-  if (connections_.find(descriptor) == connections_.end() && cookie_of(descriptor) == 0) return 0;
+  if (cookie_of(descriptor) == 0) return 0;
   Connection& connection = take_note(descriptor);
   if (!limits_.counts_delivered) connection.read_bytes = received_bytes(descriptor);
   connection.has_delivered = true;

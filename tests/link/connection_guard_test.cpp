@@ -155,6 +155,21 @@ TEST_F(ConnectionGuardTest, WhoIsCutOffIsNotReadToTheEnd) {
   EXPECT_TRUE(soon([&] { return peer.is_closed(); }));
 }
 
+TEST_F(ConnectionGuardTest, WhatIsReadOfAConnectionAfterItsEndDoesNotReviveIt) {
+  int ends[2];
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
+  const UniqueFd other(ends[1]);
+  ConnectionGuard guard({}, faults);
+  guard.on_accepted(ends[0]);
+  guard.cut_off({ends[0], 0}, "a fault", "because");
+  ::close(ends[0]);
+  for (int k = 0; k < 10; ++k) {
+    EXPECT_EQ(guard.delivered(ends[0]), 0U);
+    guard.cut_off({ends[0], 0}, "a fault", "because");
+  }
+  EXPECT_EQ(faults.counts().at("a fault"), 1U);
+}
+
 TEST_F(ConnectionGuardTest, ManyIdleConnectionsDoNotKeepANewClientOut) {
   listen({.connections = 8, .connections_per_s = 1000.0});
   std::vector<RawPeer> idle;
