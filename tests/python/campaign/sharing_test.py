@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """A campaign's folder when several runs, ends before the end and other names share it."""
 
+import itertools
 import os
 import signal
 import subprocess
@@ -84,12 +85,22 @@ def test_an_ended_run_of_many_workers_leaves_nothing_half_written(campaign, end)
     assert not (campaign.folder / "out" / "tmp").exists()
 
 
+def put_a_file_in_place_of(folder):
+    """Repeats until it is done, because a worker may make the folder again between the two steps."""
+    for k in itertools.count():
+        folder.rename(folder.parent.parent / f"moved_{k}")
+        try:
+            folder.write_text("in the way")
+            return
+        except IsADirectoryError:
+            pass
+
+
 def test_an_error_of_many_workers_leaves_nothing_half_written(campaign):
     slow(campaign)
     process = campaign.start("run", "campaign.yaml", "-o", "out", "--workers", "2")
     wait_until((campaign.folder / "out" / "receipts").exists, "the first receipts", process, pause_s=0.001)
-    (campaign.folder / "out" / "npz").rename(campaign.folder / "npz")
-    (campaign.folder / "out" / "npz").write_text("in the way")
+    put_a_file_in_place_of(campaign.folder / "out" / "npz")
     out, err = process.communicate(timeout=MAX_WAIT_S)
     assert process.returncode == 2 and "cannot be written" in err, out + err
     assert not (campaign.folder / "out" / "tmp").exists()
