@@ -69,8 +69,8 @@ void register_model(const Model* model, std::uint32_t side, double goal,
   };
   const std::string at = model->name + " " + std::to_string(side) + " ";
   add<Pipeline2015>(at + "2015", model, side);
-  for (const Ours& ours : {Ours{"embree", "embree", false}, Ours{"opengl", "opengl", false},
-                           Ours{"opengl, paper target", "embree", true}}) {
+  for (const Ours& ours : {Ours{"rays", "rays", false}, Ours{"opengl", "opengl", false},
+                           Ours{"opengl, paper target", "rays", true}}) {
     add<Clouds>(at + ours.name, model, ours.kind, ours.is_paper, side);
     ratios.push_back({at + ours.name + " / 2015", at + "2015", at + ours.name, goal});
   }

@@ -3,10 +3,10 @@
 // How much memory a scene and its renderer take, against what they need: the mesh as it is in the
 // scene and Embree's own structures over the same triangles. Each is measured in a process of its
 // own, so that nothing left over from one counts for another.
+#include "embree_api.hpp"
 #include "ratio_reporter.hpp"
 
 #include <glidar/io/model.hpp>
-#include <glidar/render/embree/embree_api.hpp>
 #include <glidar/render/renderer.hpp>
 
 #include <malloc.h>
@@ -116,7 +116,7 @@ void measure_ours(const std::string& model, Memory& memory) {
   Scene scene;
   add_model(scene, load_model(model, {}, {}));
   const double with_scene = held_bytes();
-  const auto renderer = make_renderer(scene, {.kind = "embree"});
+  const auto renderer = make_renderer(scene, {.kind = "rays"});
   memory.mesh = mesh_bytes(scene.meshes[0]);
   memory.scene = with_scene - before;
   memory.renderer = held_bytes() - with_scene;

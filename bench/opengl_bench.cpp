@@ -64,12 +64,12 @@ void register_model(const Model& model, std::uint32_t side, std::vector<Ratio>& 
   const std::string at = model.name + " " + std::to_string(side) + " ";
   register_raw(at + "raw numbers", model, kRawNumbers, side);
   register_cast(at + "opengl", model, "opengl", side);
-  register_cast(at + "embree", model, "embree", side);
+  register_cast(at + "rays", model, "rays", side);
   register_raw(at + "raw paper", model, kRawPaper, side);
   register_paper(at + "paper", model, side);
   ratios.push_back({at + "cast / raw OpenGL", at + "raw numbers", at + "opengl", kGoal});
   ratios.push_back({at + "paper target / raw OpenGL", at + "raw paper", at + "paper", kGoal});
-  ratios.push_back({at + "opengl / embree", at + "embree", at + "opengl", 0.0});
+  ratios.push_back({at + "opengl / rays", at + "rays", at + "opengl", 0.0});
 }
 
 void register_batches(const Model& model, std::uint32_t side, std::vector<Ratio>& ratios) {

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/mesh.hpp>
-#include <glidar/render/embree/embree_api.hpp>
+#include "embree_api.hpp"
 
 #include <cstdint>
 #include <string>

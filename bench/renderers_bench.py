@@ -16,7 +16,7 @@ try:
 except ImportError as missing:
     sys.exit(f"{missing}; install GLIDAR (docs/python.md) and what scripts/requirements.txt names")
 
-KINDS = ("embree", "raster", "auto")
+KINDS = ("rays", "raster", "auto")
 SIDES = (32, 64, 128, 256, 512, 1024)
 EXAMPLE = """example:
   PYTHONPATH=build/release/python build/venv/bin/python bench/renderers_bench.py --plot docs/images/raster.png \\
@@ -51,11 +51,11 @@ def plot(found, path):
     figure, axes = pyplot.subplots(figsize=(7, 4), layout="constrained")
     for name, rows in found.items():
         per_beam = [row[0] for row in rows]
-        line, = axes.plot(per_beam, [row[1]["embree"] / row[1]["raster"] for row in rows], "o-", label=f"{name}: raster")
-        axes.plot(per_beam, [row[1]["embree"] / row[1]["auto"] for row in rows], "x--", color=line.get_color(),
+        line, = axes.plot(per_beam, [row[1]["rays"] / row[1]["raster"] for row in rows], "o-", label=f"{name}: raster")
+        axes.plot(per_beam, [row[1]["rays"] / row[1]["auto"] for row in rows], "x--", color=line.get_color(),
                   label=f"{name}: auto")
     axes.axhline(1.0, color="grey", linewidth=0.8)
-    axes.set(xscale="log", xlabel="triangles per beam", ylabel="Embree's time / its own",
+    axes.set(xscale="log", xlabel="triangles per beam", ylabel="time of rays / its own",
              title="A frame with intensity, square pictures of 32 to 1024 pixels")
     axes.legend(fontsize="small")
     figure.savefig(path, dpi=110)
@@ -74,8 +74,8 @@ def main():
         rows = found[name] = [measure(path, side, flags.rounds) for side in SIDES]
         for side, (per_beam, seconds) in zip(SIDES, rows):
             words = ", ".join(f"{kind} {1e3 * seconds[kind]:.2f} ms" for kind in KINDS)
-            print(f"{name} {side}x{side}, {per_beam:.2g} triangles per beam: {words}; Embree / raster "
-                  f"{seconds['embree'] / seconds['raster']:.2f}, / auto {seconds['embree'] / seconds['auto']:.2f}",
+            print(f"{name} {side}x{side}, {per_beam:.2g} triangles per beam: {words}; rays / raster "
+                  f"{seconds['rays'] / seconds['raster']:.2f}, / auto {seconds['rays'] / seconds['auto']:.2f}",
                   flush=True)
     if flags.plot:
         plot(found, flags.plot)

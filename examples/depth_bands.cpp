@@ -135,7 +135,7 @@ void show_bands(const char* path) {
       .fields = {.depth = true}};
   glidar::Hits truth;
   glidar::Hits drawn;
-  glidar::make_renderer(scene, {.kind = "embree"})->cast(request, truth);
+  glidar::make_renderer(scene, {.kind = "rays"})->cast(request, truth);
   glidar::make_renderer(scene, {.kind = "opengl"})->cast(request, drawn);
 
   const auto camera = glidar::make_paper_camera(scene, {});

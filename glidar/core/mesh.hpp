@@ -28,7 +28,7 @@ struct MeshOrigin {
 struct Mesh {
   std::string name;
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3f> positions_m;  ///< V; with room for one more, renderers need no copy
+  std::vector<Eigen::Vector3f> positions_m;  ///< V
   std::vector<Eigen::Vector3f> normals;      ///< V unit vectors; empty: flat shading
   std::array<std::vector<Eigen::Vector2f>, 2> uvs;  ///< two sets of V, v upwards; empty: none
   std::vector<Eigen::Vector4f>

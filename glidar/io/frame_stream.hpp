@@ -15,7 +15,7 @@ namespace glidar {
 enum class FrameKind : std::uint32_t { model = 1, failure = 2, cached_file = 3 };
 
 /// The head of a frame: bytes that a file or a pipe's memory holds as one checked piece.
-/// Little-endian machines only (all that Embree runs on), checked through `mark`.
+/// Little-endian machines only (all that GLIDAR supports), checked through `mark`.
 struct FrameHead {
   std::uint64_t mark = 0;
   std::uint32_t version = 0;

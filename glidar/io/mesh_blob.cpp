@@ -101,7 +101,6 @@ void visit(A& archive, V& values) {
     if (size > archive.frame.remaining() / each || (!kPlain<T> && size > kMostRecords)) {
       refuse("an array longer than the data");
     }
-    values.reserve(size + 1);  // so that Embree, which reads beyond the last vertex, may share them
     values.resize(size);
   }
   if constexpr (kPlain<T>) {

@@ -3,7 +3,7 @@
 #include <glidar/render/auto_renderer.hpp>
 
 #include <glidar/render/cpu_base.hpp>
-#include <glidar/render/embree/embree_renderer.hpp>
+#include <glidar/render/rays/rays_renderer.hpp>
 #include <glidar/render/grid_window.hpp>
 #include <glidar/render/pinhole_only.hpp>
 #include <glidar/render/raster/raster_renderer.hpp>
@@ -46,8 +46,8 @@ class AutoRenderer final : public Renderer {
       if (raster_ == nullptr) raster_ = make_raster_renderer(base_);
       return *raster_;
     }
-    if (embree_ == nullptr) embree_ = make_embree_renderer(base_);
-    return *embree_;
+    if (rays_ == nullptr) rays_ = make_rays_renderer(base_);
+    return *rays_;
   }
 
   bool is_for_raster(const CastRequest& request) {
@@ -80,7 +80,7 @@ class AutoRenderer final : public Renderer {
   bool can_draw_;                           ///< the raster has numbers for all triangles
   PlanePoints points_;
   std::unique_ptr<Renderer> raster_;
-  std::unique_ptr<Renderer> embree_;
+  std::unique_ptr<Renderer> rays_;
 };
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <glidar/core/scene.hpp>
 #include <glidar/core/workers.hpp>
-#include <glidar/render/exact_search.hpp>
+#include <glidar/render/rays/scene_search.hpp>
 #include <glidar/render/resolve.hpp>
 
 namespace glidar {
@@ -13,11 +13,11 @@ namespace glidar {
 struct CpuBase {
   /// Throws Error unless the scene is valid.
   CpuBase(const Scene& scene, unsigned threads)
-      : workers(threads), resolver((validate(scene), scene)), search(resolver) {}
+      : workers(threads), resolver((validate(scene), scene)), search(resolver, workers) {}
 
   Workers workers;
   Resolver resolver;
-  ExactSearch search;
+  rays::SceneSearch search;
 };
 
 }  // namespace glidar

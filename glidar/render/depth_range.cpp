@@ -7,6 +7,12 @@
 
 namespace glidar {
 
+Eigen::AlignedBox3d local_box(const Mesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Vector3f& p : mesh.positions_m) box.extend(p.cast<double>());
+  return box;
+}
+
 void extend_depths(const InstanceView& view, const Eigen::AlignedBox3d& box, double& nearest_m,
                    double& farthest_m) {
   if (box.isEmpty()) return;

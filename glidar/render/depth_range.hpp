@@ -17,6 +17,9 @@ struct DepthRange {
   [[nodiscard]] bool is_empty() const { return !(far_m > near_m); }
 };
 
+/// The box around a mesh's vertices, relative to its origin; empty for an empty mesh.
+Eigen::AlignedBox3d local_box(const Mesh& mesh);
+
 /// Depths of a box of an instance (mesh's frame, relative to its origin), from the sensor's plane.
 /// The nearest may be negative.
 void extend_depths(const InstanceView& view, const Eigen::AlignedBox3d& box, double& nearest_m,

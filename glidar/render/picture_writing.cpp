@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/picture_writing.hpp>
 
+#include <glidar/render/doubt.hpp>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -41,29 +43,25 @@ std::uint32_t told(const PictureWriting& w, const Found& found) {
                                    : w.resolver.told(found.instance, found.primitive);
 }
 
-/// What the beam of a lane in doubt meets.
-Found settled(const PictureWriting& w, std::size_t beam, const Found& told) {
-  const Found near = w.settler.meet_around(beam, told);
-  return near.instance != kNoHit ? near : w.search.nearest(beam);
-}
-
-/// Puts these lanes right by an exact test; true when that changed the block.
-template <class Test>
-bool correct(const PictureWriting& w, std::uint32_t lanes, const Test& test, HitBlock& block) {
+/// Puts these lanes right by the hit rule; true when that changed the block.
+bool correct(const PictureWriting& w, std::uint32_t lanes, const BeamBlock& beams,
+             HitBlock& block) {
+  HitBlock exact = block;
+  exact.mask = lanes;
+  w.search.find(beams, exact);
   bool changed = false;
   for (; lanes != 0; lanes &= lanes - 1) {
     const auto lane = static_cast<unsigned>(std::countr_zero(lanes));
-    const Found before{block.instance[lane], block.primitive[lane]};
-    const Found after = test(block.beam[lane], before);
-    if (after == before) continue;
-    changed = true;
-    if (after.instance == kNoHit) {
+    if ((exact.mask >> lane & 1U) == 0) {
+      changed = true;
       block.mask &= ~(1U << lane);
       write_misses(w.request.fields, block.beam[lane], 1, w.hits);
       continue;
     }
-    block.instance[lane] = after.instance;
-    block.primitive[lane] = told(w, after);
+    changed = changed || block.instance[lane] != exact.instance[lane] ||
+              block.primitive[lane] != exact.primitive[lane];
+    block.instance[lane] = exact.instance[lane];
+    block.primitive[lane] = exact.primitive[lane];
   }
   return changed;
 }
@@ -79,11 +77,8 @@ std::uint32_t ahead(const ExactBlock& exact) {
 
 /// Decides between surfaces of several instances that lie closer together than the picture shows.
 void choose_among_instances(const PictureWriting& w, Work& work) {
-  const std::uint32_t lanes = w.search.overlapping(work.block, work.beams, work.exact);
-  const auto choose = [&](std::size_t beam, const Found& found) {
-    return w.search.nearest_around(beam, found);
-  };
-  if (lanes != 0 && correct(w, lanes, choose, work.block)) {
+  const std::uint32_t lanes = w.overlaps.lanes_near(work.block, work.beams, work.exact);
+  if (lanes != 0 && correct(w, lanes, work.beams, work.block) && work.block.mask != 0) {
     w.resolver.measure(work.beams, work.block, work.exact);
   }
 }
@@ -103,12 +98,12 @@ void finish(const PictureWriting& w, Work& work) {
   const std::uint32_t uncertain = block.mask & ~(work.certain & ahead(work.exact));
   const std::uint32_t in_doubt =
       uncertain == 0 ? 0 : doubtful(w.resolver, block, work.exact) & uncertain;
-  const auto settle = [&](std::size_t beam, const Found& told) { return settled(w, beam, told); };
-  if (in_doubt != 0 && correct(w, in_doubt, settle, block) && block.mask != 0) {
+  if (in_doubt != 0 && correct(w, in_doubt, work.beams, block) && block.mask != 0) {
     w.resolver.measure(work.beams, block, work.exact);
   }
   if (block.mask == 0) return;
-  if (w.search.has_overlaps()) choose_among_instances(w, work);
+  if (w.overlaps.has_any()) choose_among_instances(w, work);
+  if (block.mask == 0) return;
   w.resolver.write(w.request.beams, w.request.fields, block, work.exact, w.hits);
 }
 
@@ -221,13 +216,13 @@ void write_known(const PictureWriting& w, const BeamRange& beams) {
 }  // namespace
 
 DepthRange depths_of(const CastRequest& request, const Resolver& resolver,
-                     std::span<const KnownMesh> meshes) {
+                     std::span<const Eigen::AlignedBox3d> mesh_boxes) {
   double nearest_m = std::numeric_limits<double>::infinity();
   double farthest_m = -std::numeric_limits<double>::infinity();
   const std::vector<Instance>& instances = resolver.scene().instances;
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
     if (!is_present(request, i)) continue;
-    extend_depths(resolver.view(i), meshes[instances[i].mesh].box, nearest_m, farthest_m);
+    extend_depths(resolver.view(i), mesh_boxes[instances[i].mesh], nearest_m, farthest_m);
   }
   if (!(farthest_m > 0.0)) return {0.0, 0.0};
   return hugging(nearest_m, farthest_m);

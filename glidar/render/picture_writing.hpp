@@ -4,10 +4,11 @@
 
 #include <glidar/core/work_count.hpp>
 #include <glidar/render/depth_range.hpp>
-#include <glidar/render/exact_search.hpp>
+#include <glidar/render/found.hpp>
+#include <glidar/render/overlaps.hpp>
 #include <glidar/render/plane_points.hpp>
+#include <glidar/render/rays/beam_search.hpp>
 #include <glidar/render/renderer.hpp>
-#include <glidar/render/settle.hpp>
 #include <glidar/render/triangle_picture.hpp>
 
 #include <cstdint>
@@ -25,22 +26,22 @@ struct KnownHit {
 struct PictureWriting {
   const CastRequest& request;
   const Resolver& resolver;
-  const Settler& settler;
   const TriangleNumbers& triangles;
   const PlanePoints& points;
   PixelRect drawn;                         ///< the pixels whose numbers are known
   std::span<const std::uint32_t> numbers;  ///< of these, row by row
   PixelRect part;                          ///< those of them whose hits are written
   Hits& hits;
-  const ExactSearch& search;  ///< for beams that meet no triangle around the one drawn
+  const rays::BeamSearch& search;  ///< for beams in doubt
+  const Overlaps& overlaps;
   /// Beams whose hits are known already, whatever was drawn, in rising order.
   std::span<const KnownHit> known = {};
 };
 
 /// The planes that hug all instances that are there for a cast; the resolver has its poses. One
-/// known mesh per mesh.
+/// box per mesh, relative to its origin.
 DepthRange depths_of(const CastRequest& request, const Resolver& resolver,
-                     std::span<const KnownMesh> meshes);
+                     std::span<const Eigen::AlignedBox3d> mesh_boxes);
 
 /// Writes the hits of rows [begin, end) of the part and tells the request of them.
 void write_rows(const PictureWriting& writing, std::uint32_t begin, std::uint32_t end);

@@ -27,7 +27,7 @@ inline void check_pinhole(const Beams& beams, const char* renderer) {
                .found = found,
                .allowed = "a pinhole camera at rest, without distortion and with beams from one "
                           "point",
-               .remedy = "use --renderer embree"});
+               .remedy = "use --renderer rays"});
 }
 
 }  // namespace glidar

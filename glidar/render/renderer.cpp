@@ -4,10 +4,10 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/render/auto_renderer.hpp>
-#include <glidar/render/embree/embree_renderer.hpp>
 #include <glidar/render/opengl/opengl_renderer.hpp>
 #include <glidar/render/pieces_renderer.hpp>
 #include <glidar/render/raster/raster_renderer.hpp>
+#include <glidar/render/rays/rays_renderer.hpp>
 
 #include <algorithm>
 #include <array>
@@ -24,7 +24,7 @@ struct Kind {
 
 const std::array<Kind, 4>& kinds() {
   static const std::array<Kind, 4> all = {{{"auto", make_auto_renderer},
-                                           {"embree", make_embree_renderer},
+                                           {"rays", make_rays_renderer},
                                            {"raster", make_raster_renderer},
                                            {"opengl", make_opengl_renderer}}};
   return all;

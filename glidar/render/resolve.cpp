@@ -3,6 +3,7 @@
 #include <glidar/render/resolve.hpp>
 
 #include <glidar/core/simd.hpp>
+#include <glidar/render/common/triangle_blocks.hpp>
 #include <glidar/render/corners.hpp>
 
 #include <algorithm>
@@ -33,21 +34,6 @@ std::uint32_t others_than(const HitBlock& block, std::uint32_t instance) {
 
 bool is_one_instance(const HitBlock& block) {
   return others_than(block, block.instance[0]) == 0;
-}
-
-/// The beams in the frame of one instance, as ray_in().
-GLIDAR_SIMD void look_from(const InstanceView& view, const BeamBlock& beams, ExactBlock& exact) {
-  rotate(view.object_from_sensor, beams.direction, exact.direction);
-  const Eigen::Vector3d& sensor = view.sensor_in_object;
-  for (unsigned i = 0; i < kLanes; ++i) exact.origin.x[i] = sensor.x();
-  for (unsigned i = 0; i < kLanes; ++i) exact.origin.y[i] = sensor.y();
-  for (unsigned i = 0; i < kLanes; ++i) exact.origin.z[i] = sensor.z();
-  if (!beams.has_origins) return;
-  Lanes3<double> offset_m;
-  rotate(view.object_from_sensor, beams.origin_m, offset_m);
-  for (unsigned i = 0; i < kLanes; ++i) exact.origin.x[i] += offset_m.x[i] / view.scale;
-  for (unsigned i = 0; i < kLanes; ++i) exact.origin.y[i] += offset_m.y[i] / view.scale;
-  for (unsigned i = 0; i < kLanes; ++i) exact.origin.z[i] += offset_m.z[i] / view.scale;
 }
 
 /// Takes the rays of the lanes that hit the instance.
@@ -175,6 +161,21 @@ ObjectRay ray_in(const InstanceView& view, const Beams& beams, std::size_t beam)
   return ray;
 }
 
+GLIDAR_SIMD void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes3<double>& origin,
+                         Lanes3<double>& direction) {
+  rotate(view.object_from_sensor, beams.direction, direction);
+  const Eigen::Vector3d& sensor = view.sensor_in_object;
+  for (unsigned i = 0; i < kLanes; ++i) origin.x[i] = sensor.x();
+  for (unsigned i = 0; i < kLanes; ++i) origin.y[i] = sensor.y();
+  for (unsigned i = 0; i < kLanes; ++i) origin.z[i] = sensor.z();
+  if (!beams.has_origins) return;
+  Lanes3<double> offset_m;
+  rotate(view.object_from_sensor, beams.origin_m, offset_m);
+  for (unsigned i = 0; i < kLanes; ++i) origin.x[i] += offset_m.x[i] / view.scale;
+  for (unsigned i = 0; i < kLanes; ++i) origin.y[i] += offset_m.y[i] / view.scale;
+  for (unsigned i = 0; i < kLanes; ++i) origin.z[i] += offset_m.z[i] / view.scale;
+}
+
 Resolver::Resolver(const Scene& scene) : scene_(scene) {
   planes_.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
@@ -209,7 +210,8 @@ Resolver::Resolver(const Scene& scene) : scene_(scene) {
          .slots = mesh.material_slots.empty() ? nullptr : mesh.material_slots.data(),
          .looks = looks_[i].data(),
          .has_normal_map = std::any_of(looks_[i].begin(), looks_[i].end(),
-                                       [](const SlotLook& look) { return look.has_normal_map; })});
+                                       [](const SlotLook& look) { return look.has_normal_map; }),
+         .is_masked = has_mask(scene, instance)});
   }
 }
 
@@ -247,15 +249,32 @@ void Resolver::measure(const BeamBlock& beams, HitBlock& block, ExactBlock& exac
     exact.normal.set(i, triangle.normal);
     exact.offset[i] = triangle.offset;
   }
-  look_from(views_[block.instance[0]], beams, exact);
+  rays_in(views_[block.instance[0]], beams, exact.origin, exact.direction);
   ExactBlock seen;
   for (std::uint32_t rest = others_than(block, block.instance[0]); rest != 0;) {
     const std::uint32_t instance = block.instance[static_cast<unsigned>(std::countr_zero(rest))];
-    look_from(views_[instance], beams, seen);
+    rays_in(views_[instance], beams, seen.origin, seen.direction);
     take_rays(block, instance, seen, exact);
     rest &= others_than(block, instance);
   }
   intersect_planes(exact);
+  measure_grazing(block, exact);
+}
+
+/// A plane that is met almost edge-on is met where rounding decides. The hit rule's distance is
+/// always between those of the triangle's corners.
+void Resolver::measure_grazing(const HitBlock& block, ExactBlock& exact) const {
+  constexpr double kGrazing = 0x1p-20;  // below it, the plane has lost 20 of its 52 bits
+  std::uint32_t grazing = 0;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    grazing |= static_cast<std::uint32_t>(!(std::abs(exact.cosine[i]) > kGrazing)) << i;
+  }
+  for_lanes(grazing & block.mask, [&](unsigned i) {
+    const HitRay ray = make_hit_ray(exact.origin.get(i), exact.direction.get(i));
+    const double distance =
+        hit_distance(ray, corners_of(mesh(block.instance[i]), block.primitive[i]));
+    if (distance > 0.0) exact.distance[i] = distance;
+  });
 }
 
 void Resolver::write(const Beams& beams, const HitFields& fields, const HitBlock& block,

@@ -59,6 +59,10 @@ struct BeamBlock {
   bool has_origins = false;  ///< else they start at the sensor's zero, and origin_m is not set
 };
 
+/// The beams in the view of an instance, lane by lane as ray_in().
+void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes3<double>& origin,
+             Lanes3<double>& direction);
+
 /// Up to kLanes hits: who was hit by which beam. Only lanes of the mask count.
 struct HitBlock {
   std::uint32_t mask = 0;  ///< bit i: lane i holds a hit
@@ -121,6 +125,9 @@ class Resolver {
     return twins == nullptr ? primitive : twins[primitive];
   }
 
+  /// True when a material of the instance has an alpha mask.
+  [[nodiscard]] bool is_masked(std::uint32_t instance) const { return known_[instance].is_masked; }
+
   /// Asks the memory for a lane's triangle.
   void prefetch(const HitBlock& block, unsigned lane, bool with_corners) const {
     const std::uint32_t primitive = block.primitive[lane];
@@ -141,6 +148,7 @@ class Resolver {
              const ExactBlock& exact, Hits& hits) const;
 
  private:
+  void measure_grazing(const HitBlock& block, ExactBlock& exact) const;
   void write_directions(const HitBlock& block, const Lanes3<double>& front,
                         const Lanes<double>& cosine, std::vector<Eigen::Vector3f>& column) const;
   struct Corners {
@@ -180,6 +188,7 @@ class Resolver {
     const std::uint16_t* slots;  ///< nullptr: all triangles have material slot 0
     const SlotLook* looks;       ///< per material slot
     bool has_normal_map;         ///< in any slot
+    bool is_masked;              ///< see Resolver::is_masked()
   };
 
   const Scene& scene_;

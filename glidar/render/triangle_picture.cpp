@@ -18,7 +18,7 @@ TriangleNumbers::TriangleNumbers(const Scene& scene, const char* renderer)
     throw Error({.where = std::string(renderer) + " renderer",
                  .found = "too many triangles: " + std::to_string(next),
                  .allowed = "up to 2147483647, those of every instance counted",
-                 .remedy = "use --renderer embree"});
+                 .remedy = "use --renderer rays"});
   }
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/render/judgement.hpp>
+#include <glidar/render/found.hpp>
 
 #include <algorithm>
 #include <cstdint>

@@ -77,7 +77,7 @@ std::vector<VerifyRow> verify(const VerifySubject& subject, const Progress& prog
   const auto count = static_cast<double>(shapes.size() * distances.size() + specials.size());
   std::vector<VerifyRow> rows;
   const auto add = [&](VerifyRow row) {
-    row.known = known_failure(subject.renderer, row);
+    row.known = known_failure(row);
     rows.push_back(std::move(row));
     if (progress) progress(static_cast<double>(rows.size()) / count);
   };

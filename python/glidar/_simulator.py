@@ -25,7 +25,7 @@ from ._trajectory import PoseLike, Trajectory, object_trajectories, trajectories
 if TYPE_CHECKING:
     from ._scene import Scene
 
-_RENDERERS = ("auto", "embree", "raster", "opengl")
+_RENDERERS = ("auto", "rays", "raster", "opengl")
 
 
 class Simulator(Immutable):
@@ -40,7 +40,7 @@ class Simulator(Immutable):
     Args:
         scene: what is measured.
         sensor: what measures; None: that of the scene file.
-        renderer: "auto": "raster" for cameras without distortion where that is quicker, else "embree"; both on the
+        renderer: "auto": "raster" for cameras without distortion where that is quicker, else "rays"; both on the
             processor. "opengl" draws on a graphics device (cameras without distortion).
         threads: of the renderer; 0: one per processor.
     """

@@ -75,9 +75,9 @@ def verify(*, renderer: str = "auto", threads: int = 0) -> Verification:
     """Measures the accuracy of a renderer on this machine, as ``glidar verify`` does: every shape at
     every distance from 0.1 m to 10 km, and the hard cases, compared with closed forms.
 
-    renderer: "auto", "embree", "raster" or "opengl"; the last two cast pinhole cameras only, and rows
+    renderer: "auto", "rays", "raster" or "opengl"; the last two cast pinhole cameras only, and rows
     without such beams do not apply to them. threads: 0: one per processor."""
-    one_of(renderer, "renderer", ("auto", "embree", "raster", "opengl"))
+    one_of(renderer, "renderer", ("auto", "rays", "raster", "opengl"))
     names = VerifyRow.__dataclass_fields__
     rows = _core.verify(renderer, whole(threads, "threads", 4096))
     return Verification(tuple(VerifyRow(**{name: getattr(row, name) for name in names}) for row in rows))

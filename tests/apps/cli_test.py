@@ -374,7 +374,7 @@ class Verify(CliTest):
         self.assertRegex(done.stdout, r"several instances +all +100000 .* passed")
 
     def test_unknown_renderer(self):
-        self.assertIn("embree", self.refused("verify", "--renderer", "magic"))
+        self.assertIn("rays", self.refused("verify", "--renderer", "magic"))
 
 
 class Interrupt(CliTest):

@@ -36,7 +36,7 @@ class OpenglRenderer(CliTest):
         self.succeed("render", *VIEW, *arguments, "-o", name)
         return self.bytes_of(name)
 
-    def test_clouds_are_those_of_embree_to_the_byte(self):
+    def test_clouds_are_those_of_rays_to_the_byte(self):
         self.assertEqual(self.render("drawn.csv", "--renderer", "opengl"),
                          self.render("cast.csv"))
 
@@ -87,7 +87,7 @@ class OpenglRenderer(CliTest):
         self.environment["__EGL_VENDOR_LIBRARY_FILENAMES"] = "/nowhere"
         error = self.refused("render", *VIEW, "--renderer", "opengl", "-o", "x.pcd")
         self.assertIn("libgl1-mesa-dri", error)
-        self.assertIn("--renderer embree", error)
+        self.assertIn("--renderer rays", error)
 
 
 if __name__ == "__main__":

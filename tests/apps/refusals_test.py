@@ -114,7 +114,7 @@ class Refusals(CliTest):
                 (("--sensor-pose", "nan,0,0,1,0,0,0"), "--sensor-pose"),
                 (("--eye", "0,0,5", "--up-vector", "0,0,1"), "--up-vector 1,0,0"),
                 (("--cloud-frame", "rso"), "did you mean ros?"),
-                (("--renderer", "magic"), "embree")):
+                (("--renderer", "magic"), "rays")):
             with self.subTest(arguments):
                 self.assertIn(text, self.refused(*render, *arguments))
 
@@ -132,7 +132,7 @@ class Refusals(CliTest):
         self.assertIn(".pcd .ply .npz .csv", error)
 
     def test_options_are_checked_before_anything_is_loaded(self):
-        for arguments, text in ((("--renderer", "magic"), "--renderer: 'magic'; allowed: auto, embree"),
+        for arguments, text in ((("--renderer", "magic"), "--renderer: 'magic'; allowed: auto, rays"),
                                 (("--eye", "1,2"), "--eye"),
                                 (("--fov", "200"), "--fov")):
             error = self.refused("render", "nofile.ply", "-o", "x.pcd", *arguments)

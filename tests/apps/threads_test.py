@@ -18,7 +18,7 @@ class Threads(CliTest):
         return self.bytes_of("a.npz")
 
     def test_give_the_same_bytes_and_no_warning(self):
-        for renderer in ("embree", "raster", "auto"):
+        for renderer in ("rays", "raster", "auto"):
             view = ("-w", "96", "--height", "64", "--renderer", renderer)
             first, *others = (self.rendered(threads, *view) for threads in THREADS)
             for threads, other in zip(THREADS[1:], others):

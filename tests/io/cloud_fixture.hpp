@@ -30,7 +30,7 @@ struct CloudFixture {
   Frame frame;
   PointCloud cloud;
 
-  [[nodiscard]] SidecarContext context() const { return {scene, sensor, beams, "embree"}; }
+  [[nodiscard]] SidecarContext context() const { return {scene, sensor, beams, "rays"}; }
 };
 
 inline bool is_miss(std::size_t i) {

@@ -32,7 +32,7 @@ struct Made {
   PointCloud cloud;
   FileSinkOptions options;
 
-  [[nodiscard]] SidecarContext context() const { return {scene, sensor, beams, "embree"}; }
+  [[nodiscard]] SidecarContext context() const { return {scene, sensor, beams, "rays"}; }
 };
 
 template <class T>

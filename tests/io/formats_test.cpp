@@ -237,7 +237,7 @@ TEST(Sidecar, TellsSensorPosesSeedModelAndCounts) {
   made.sensor.name = "bad \xFF utf-8 \"quoted\"\n";
   const nlohmann::json told = sidecar_of(made);
   EXPECT_EQ(told.at("glidar"), version());
-  EXPECT_EQ(told.at("renderer"), "embree");
+  EXPECT_EQ(told.at("renderer"), "rays");
   EXPECT_EQ(told.at("seed"), made.frame.seed);
   EXPECT_EQ(told.at("stamp_ns"), made.frame.stamp_ns);
   EXPECT_EQ(told.at("sensor").at("optics").at("fx"), 123.25);

@@ -122,8 +122,8 @@ def test_opengl_measures_from_any_thread(asteroid, camera):
         first = glidar.simulate(asteroid, camera, renderer="opengl")
     except glidar.Error as error:
         pytest.skip(str(error))
-    embree = glidar.simulate(asteroid, camera)
-    assert abs(first.hits - embree.hits) <= 3
+    cast = glidar.simulate(asteroid, camera)
+    assert abs(first.hits - cast.hits) <= 3
     found = []
     threads = [
         threading.Thread(target=lambda: found.append(glidar.simulate(asteroid, camera, renderer="opengl")))

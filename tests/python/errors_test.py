@@ -88,7 +88,7 @@ def test_ctrl_c_ends_the_loading_of_a_model_and_its_process(tmp_path, monkeypatc
 
 
 def test_ctrl_c_ends_verify():
-    assert completed(glidar._core.verify, "embree", 1) == []
+    assert completed(glidar._core.verify, "rays", 1) == []
 
 
 def test_what_the_library_tells_goes_to_the_log(caplog, tmp_path):

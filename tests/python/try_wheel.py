@@ -20,7 +20,7 @@ frame.save("scan.pcd")
 
 # files that the process has open: libraries, all from the package or the system
 mapped = {line.split()[-1] for line in Path("/proc/self/maps").read_text().splitlines() if ".so" in line}
-foreign = [m for m in mapped if any(word in m for word in ("embree", "tbb", "yaml-cpp", "libzip")) and sys.prefix not in m]
+foreign = [m for m in mapped if any(word in m for word in ("rays", "tbb", "yaml-cpp", "libzip")) and sys.prefix not in m]
 assert not foreign, foreign
 
 program = Path(sys.prefix) / "bin/glidar"

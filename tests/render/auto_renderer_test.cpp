@@ -25,21 +25,21 @@ bool are_same(const Hits& a, const Hits& b) {
 // Beams along the edges of a box, where the two may tell one triangle or its neighbour.
 const Pose kAlongEdges = look_at({4.0, 4.0, 0.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
 
-TEST(AutoRenderer, TellsWhatTheRasterTellsOfPinholesAndWhatEmbreeTellsOfAllOthers) {
+TEST(AutoRenderer, TellsWhatTheRasterTellsOfPinholesAndWhatRaysTellOfAllOthers) {
   const Scene scene = builtin_scene("asteroid");
   Beams beams = camera_beams(201, 151, 150.0);
   EXPECT_TRUE(are_same(cast_by("auto", scene, beams, kAlongEdges),
                        cast_by("raster", scene, beams, kAlongEdges)));
   beams.pinhole.reset();
   EXPECT_TRUE(are_same(cast_by("auto", scene, beams, kAlongEdges),
-                       cast_by("embree", scene, beams, kAlongEdges)));
+                       cast_by("rays", scene, beams, kAlongEdges)));
 }
 
 TEST(AutoRenderer, CastsRaysWhereTrianglesFarOutnumberBeams) {
   const Scene scene = builtin_scene("asteroid");
   const Beams beams = camera_beams(9, 9, 8.0);
   EXPECT_TRUE(are_same(cast_by("auto", scene, beams, kAlongEdges),
-                       cast_by("embree", scene, beams, kAlongEdges)));
+                       cast_by("rays", scene, beams, kAlongEdges)));
 }
 
 TEST(AutoRenderer, ChoosesAnewForEachCast) {

@@ -196,7 +196,7 @@ TEST(OpenglReset, SaysWhoseFaultItIsAndWhatToDo) {
   EXPECT_EQ(text(GL_UNKNOWN_CONTEXT_RESET),
             "OpenGL: the graphics device was reset: its context is lost, with the frame under way; "
             "make a new renderer, or start again; if it comes back, update the driver, choose "
-            "another --graphics-device, or use --renderer embree");
+            "another --graphics-device, or use --renderer rays");
   EXPECT_NE(text(GL_GUILTY_CONTEXT_RESET).find("because of what was drawn"), std::string::npos);
   EXPECT_NE(text(GL_INNOCENT_CONTEXT_RESET).find("because of another program"), std::string::npos);
 }

@@ -44,7 +44,7 @@ TEST(RasterRenderer, SomethingAsFarAsCanBeDoesNotHideWhatIsNear) {
   const Beams beams = camera_beams(160, 120, 150.0);
   const Hits drawn = cast_by("raster", scene, beams, Pose::Identity());
   scene.instances.pop_back();
-  EXPECT_LE(others(drawn, cast_by("embree", scene, beams, Pose::Identity())), 2U);
+  EXPECT_LE(others(drawn, cast_by("rays", scene, beams, Pose::Identity())), 2U);
 }
 
 TEST(RasterRenderer, SeesFromWithinAndFromBetweenTriangles) {
@@ -57,7 +57,7 @@ TEST(RasterRenderer, SeesFromWithinAndFromBetweenTriangles) {
   for (int i = 0; i < 12; ++i) {  // from the middle to close under the surface
     const Pose pose = look_at(middle + 0.08 * i * draws.direction(), middle + draws.direction(),
                               Eigen::Vector3d::UnitZ());
-    const Hits cast = cast_by("embree", scene, beams, pose);
+    const Hits cast = cast_by("rays", scene, beams, pose);
     differ += others(cast_by("raster", scene, beams, pose), cast);
     for (const double range : cast.range_m) hits += std::isnan(range) ? 0U : 1U;
   }
@@ -69,7 +69,7 @@ TEST(RasterRenderer, CullsBacksAsCastRaysDo) {
   const Scene scene = builtin_scene("torus");
   const Beams beams = camera_beams(160, 120, 100.0);
   const Pose pose = look_at({1.0, 0.0, 0.1}, {0.0, 1.0, 0.0}, Eigen::Vector3d::UnitZ());
-  const Hits cast = cast_by("embree", scene, beams, pose, true);
+  const Hits cast = cast_by("rays", scene, beams, pose, true);
   EXPECT_LE(others(cast_by("raster", scene, beams, pose, true), cast), 2U);
 }
 
@@ -90,7 +90,7 @@ TEST(RasterRenderer, HolesAreHolesInTrianglesOfEverySize) {
   for (const double distance : {60.0, 6.0, 1.0, 0.2}) {
     const Pose pose =
         look_at({0.3 * distance, 0.1, distance}, {0.05, 0.1, 0.0}, Eigen::Vector3d::UnitY());
-    const Hits cast = cast_by("embree", scene, beams, pose);
+    const Hits cast = cast_by("rays", scene, beams, pose);
     EXPECT_LE(others(cast_by("raster", scene, beams, pose), cast), 8U) << distance;
   }
 }
@@ -133,7 +133,7 @@ TEST(RasterRenderer, FromATrianglesPlaneItSeesWhatIsBeyond) {
   const Pose pose = look_at({0.3, 0.2, 0.0}, {3.0, 0.3, -0.2}, Eigen::Vector3d::UnitZ());
   const Hits drawn = cast_by("raster", scene, beams, pose);
   for (const double range : drawn.range_m) EXPECT_FALSE(range < 2.0);
-  EXPECT_EQ(others(drawn, cast_by("embree", scene, beams, pose)), 0U);
+  EXPECT_EQ(others(drawn, cast_by("rays", scene, beams, pose)), 0U);
 }
 
 TEST(RasterRenderer, AMeshOfFineAndOfVastTrianglesDoesNotLeak) {

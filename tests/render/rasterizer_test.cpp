@@ -67,7 +67,7 @@ TEST_P(Rasterizer, TellsTheVeryBitsOfCastRaysOnADenseMesh) {
   const Pose pose = look_at({3.0, 1.0, 1.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const CastRequest request{.beams = beams, .world_from_sensor = pose, .fields = kAllHitFields};
   const Compared compared =
-      compare(cast_by(GetParam(), scene, request), cast_by("embree", scene, request));
+      compare(cast_by(GetParam(), scene, request), cast_by("rays", scene, request));
   EXPECT_GT(compared.hits, 30'000U);
   EXPECT_LE(compared.other_triangle, compared.hits / 10'000);
   // The outline is some 1000 pixels long, and in doubt 1/128 of a pixel to either side.
@@ -85,7 +85,7 @@ TEST_P(Rasterizer, TellsTheVeryBitsOfCastRaysOnTheBunny) {
         look_at(middle + distance_m * Eigen::Vector3d(0.6, 0.0, 0.8), middle, {0.0, 1.0, 0.0});
     const CastRequest request{.beams = beams, .world_from_sensor = pose, .fields = kAllHitFields};
     const Compared compared =
-        compare(cast_by(GetParam(), scene, request), cast_by("embree", scene, request));
+        compare(cast_by(GetParam(), scene, request), cast_by("rays", scene, request));
     EXPECT_GT(compared.hits, 10'000U) << distance_m;
     EXPECT_LE(compared.other_triangle, compared.hits / 2000) << distance_m;
     EXPECT_LE(compared.other_surface, 10U) << distance_m;
@@ -100,7 +100,7 @@ TEST_P(Rasterizer, DrawsPicturesLargerThanOnePart) {
   const Pose pose = look_at({4.0, 3.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Beams large = pinhole_beams(k);
   const Hits drawn = draw(scene, large, pose);
-  const Hits cast = cast_by("embree", scene,
+  const Hits cast = cast_by("rays", scene,
                             {.beams = large, .world_from_sensor = pose, .fields = kAllHitFields});
   const Compared compared = compare(drawn, cast);
   EXPECT_GT(compared.hits, 500'000U);
@@ -119,7 +119,7 @@ TEST_P(Rasterizer, FollowsAnyPrincipalPointFocalLengthsAndPixelCentre) {
         5.0 * direction_through(plane_x(k, 100), plane_y(k, 50));
     const CastRequest request{.beams = beams, .fields = kAllHitFields};
     const Compared compared =
-        compare(cast_by(GetParam(), scene, request), cast_by("embree", scene, request));
+        compare(cast_by(GetParam(), scene, request), cast_by("rays", scene, request));
     EXPECT_GT(compared.hits, 3'000U);
     EXPECT_LE(compared.other_surface, 5U);
   }
@@ -187,7 +187,7 @@ TEST_P(Rasterizer, MasksOfSomeSlotsKeepTheTrianglesNumbers) {
   const Pose pose = look_at({2.0, 1.0, 1.5}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const CastRequest request{.beams = beams, .world_from_sensor = pose, .fields = kAllHitFields};
   const Compared compared =
-      compare(cast_by(GetParam(), scene, request), cast_by("embree", scene, request));
+      compare(cast_by(GetParam(), scene, request), cast_by("rays", scene, request));
   EXPECT_GT(compared.hits, 10'000U);
   EXPECT_LE(compared.other_triangle + compared.other_surface, compared.hits / 200);
 }
@@ -274,14 +274,14 @@ TEST_P(Rasterizer, RefusesBeamsThatAreNotAPinholes) {
   EXPECT_EQ(refusal(),
             std::string(GetParam()) +
                 " renderer: beams with origins of their own; allowed: a pinhole camera at rest, "
-                "without distortion and with beams from one point; use --renderer embree");
+                "without distortion and with beams from one point; use --renderer rays");
   beams.origins_m.clear();
   beams.pinhole.reset();
   EXPECT_EQ(refusal(),
             std::string(GetParam()) +
                 " renderer: beams that are not a pinhole's straight grid; allowed: a pinhole "
                 "camera at rest, without distortion and with beams from one point; use --renderer "
-                "embree");
+                "rays");
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Rasterizer, ::testing::Values("raster", "opengl"),

@@ -119,7 +119,7 @@ TEST_P(RendererLeak, AMillionBeamsAtVerticesAndEdgesOfTheBunnyDoNotLeak) {
   expect_no_leak(*renderer(scene), scene);
 }
 
-INSTANTIATE_TEST_SUITE_P(All, RendererLeak, ::testing::Values("embree"),
+INSTANTIATE_TEST_SUITE_P(All, RendererLeak, ::testing::Values("rays"),
                          [](const auto& test) { return test.param; });
 
 }  // namespace

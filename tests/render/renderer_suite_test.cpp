@@ -361,7 +361,7 @@ TEST_P(RendererSuite, TheSameBytesForAnyNumberOfThreads) {
 
 INSTANTIATE_TEST_SUITE_P(All, RendererSuite, ::testing::ValuesIn(renderer_kinds()),
                          [](const auto& test) { return test.param; });
-INSTANTIATE_TEST_SUITE_P(All, AnyBeamsSuite, ::testing::Values("auto", "embree"),
+INSTANTIATE_TEST_SUITE_P(All, AnyBeamsSuite, ::testing::Values("auto", "rays"),
                          [](const auto& test) { return test.param; });
 
 TEST(MakeRenderer, NamesTheKindsThereAre) {
@@ -371,7 +371,7 @@ TEST(MakeRenderer, NamesTheKindsThereAre) {
     FAIL() << "no error";
   } catch (const Error& error) {
     EXPECT_STREQ(error.what(),
-                 "renderer: 'opengel' is not known; allowed: auto, embree, raster, opengl");
+                 "renderer: 'opengel' is not known; allowed: auto, rays, raster, opengl");
   }
 }
 

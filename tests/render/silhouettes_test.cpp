@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Beams that pass silhouettes by less than a rasterizer's grid meet what brute force in double
 // says.
-#include <glidar/render/settle.hpp>
 #include <glidar/render/silhouettes.hpp>
 #include <render/renderer_suite.hpp>
 
@@ -65,7 +64,7 @@ class Silhouettes : public testing::RendererSuite {
   /// Beams this near a border are not compared: rays of single precision are traced 2^-20 of the
   /// scene's radius beside the beam; brute force itself is off by some roundings of double.
   static double room_m(const Scene& scene) {
-    return GetParam() == "embree" ? 0x1p-18 * bounds(scene).diagonal().norm() : 1e-12;
+    return GetParam() == "rays" ? 0x1p-18 * bounds(scene).diagonal().norm() : 1e-12;
   }
 
   static void expect_brute_force(const Scene& scene, const Beams& beams, const Pose& pose,
@@ -92,7 +91,7 @@ TEST_P(Silhouettes, BeamsWithinAGridStepOfABorderMeetWhatBruteForceMeets) {
     const Scene scene = triangles_at_beams(seed);
     // Single precision refuses a share of these beams; the others compare all but ties.
     expect_brute_force(scene, beams, Pose::Identity(),
-                       GetParam() == "embree" ? beams.size() * 8 / 10 : beams.size() - 5);
+                       GetParam() == "rays" ? beams.size() * 8 / 10 : beams.size() - 5);
   }
 }
 
@@ -122,7 +121,7 @@ TEST_P(Silhouettes, AConeOfManyTrianglesAroundItsTipIsWholeAndMeetsWhatBruteForc
   scene.meshes[0] = cone(3000);
   const Pose pose = look_at({0.4, 0.3, 6.0}, {0.0, 0.0, 0.5}, Eigen::Vector3d::UnitY());
   const Beams beams = camera_beams(32, 32, 80.0);
-  expect_brute_force(scene, beams, pose, GetParam() == "embree" ? 10 : 600);
+  expect_brute_force(scene, beams, pose, GetParam() == "rays" ? 10 : 600);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Silhouettes, ::testing::ValuesIn(renderer_kinds()),

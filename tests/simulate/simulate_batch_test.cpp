@@ -94,7 +94,7 @@ TEST_P(SimulateBatch, SensorsMayDiffer) {
   std::vector<glidar::Setup> setups = {setup(0), setup(1)};
   setups.push_back({scene_, culling, beams_, motions_[2], *renderer_});
   setups.push_back({scene_, plain, plain_beams, motions_[3], *renderer_});
-  if (GetParam() == "embree") {  // a shadow's beams have origins of their own
+  if (GetParam() == "rays") {  // a shadow's beams have origins of their own
     setups.push_back({scene_, shadowed, beams_, motions_[4], *renderer_});
   }
   expect_as_one_by_one(setups);

@@ -166,7 +166,7 @@ Scene overlapping_parts() {
 
 TEST(Simulate, AllocatesNothingInTheSteadyStateForOverlappingPartsOfMeshes) {
   const Scene scene = overlapping_parts();
-  for (const char* kind : {"raster", "embree"}) {
+  for (const char* kind : {"raster", "rays"}) {
     const std::unique_ptr<Renderer> renderer = make_renderer(scene, {.kind = kind, .threads = 1});
     Sensor sensor;
     sensor.optics = pinhole_from_fov(64, 64, 0.5);

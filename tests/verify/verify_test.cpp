@@ -97,15 +97,15 @@ class SpecialCases : public ::testing::Test {
 VerifyRow row_of(const SpecialCase& c, const VerifySubject& subject) {
   VerifyRow row{.name = c.name, .shape = c.shape, .distance_m = c.distance_m};
   row.result = c.run(subject);
-  row.known = known_failure(subject.renderer, row);
+  row.known = known_failure(row);
   return row;
 }
 
-TEST(VerifyCases, EmbreeIsWithinBoundsAtBothEndsOfTheDistances) {
+TEST(VerifyCases, RaysAreWithinBoundsAtBothEndsOfTheDistances) {
   const std::vector<Shape> shapes = make_shapes();
   for (const double distance_m : {0.1, 10000.0}) {
     for (const VerifyCase& c : make_cases(0, distance_m)) {
-      const VerifyResult result = run_case(c, shapes[c.shape], subject("embree"));
+      const VerifyResult result = run_case(c, shapes[c.shape], subject("rays"));
       EXPECT_TRUE(result.passed()) << result.range_error_ulp << " ulp, offset " << c.offset_m;
     }
   }
@@ -113,7 +113,7 @@ TEST(VerifyCases, EmbreeIsWithinBoundsAtBothEndsOfTheDistances) {
 
 TEST_F(SpecialCases, EveryRayRendererPassesEachOrFailsAsKnown) {
   for (const SpecialCase& c : all()) {
-    const VerifyRow row = row_of(c, subject("embree"));
+    const VerifyRow row = row_of(c, subject("rays"));
     EXPECT_TRUE(all_passed({row})) << c.name << ", " << c.shape << ", " << c.distance_m;
     EXPECT_NE(row.verdict(), Verdict::fixed) << "take it off the list: " << c.name;
     EXPECT_GT(row.result.judged_hits, 100U) << c.name << ", " << c.shape;
@@ -136,7 +136,7 @@ TEST_F(SpecialCases, TheRasterPassesTheOnesWithPinholesOrFailsAsKnown) {
 TEST_F(SpecialCases, ShiftedRangesAreCaughtInEach) {
   for (const char* name :
        {"several instances", "moving sensor and target", "at vertices and edges"}) {
-    const VerifyResult result = named(name).run(subject("embree", shift_ranges));
+    const VerifyResult result = named(name).run(subject("rays", shift_ranges));
     EXPECT_GT(result.range_error_ulp, kRangeBound_ulp) << name;
     EXPECT_FALSE(result.passed()) << name;
   }
@@ -144,7 +144,7 @@ TEST_F(SpecialCases, ShiftedRangesAreCaughtInEach) {
 
 TEST_F(SpecialCases, SwappedIdsAreCaughtInEach) {
   for (const char* name : {"several instances", "moving sensor and target", "sensor on a vertex"}) {
-    EXPECT_GT(named(name).run(subject("embree", swap_triangles)).wrong_ids, 100U) << name;
+    EXPECT_GT(named(name).run(subject("rays", swap_triangles)).wrong_ids, 100U) << name;
   }
   const VerifyResult swapped = named("several instances").run(subject("raster", swap_instances));
   EXPECT_GT(swapped.wrong_ids, 100U);
@@ -153,7 +153,7 @@ TEST_F(SpecialCases, SwappedIdsAreCaughtInEach) {
 TEST_F(SpecialCases, ALostHitIsCaughtInEach) {
   for (const char* name :
        {"several instances", "moving sensor and target", "at vertices and edges"}) {
-    EXPECT_GT(named(name).run(subject("embree", lose_one_hit)).wrong_misses, 0U) << name;
+    EXPECT_GT(named(name).run(subject("rays", lose_one_hit)).wrong_misses, 0U) << name;
   }
 }
 
@@ -194,8 +194,8 @@ TEST_F(SpecialCases, AKnownFailureThatGetsWorseFails) {
                       for (int i = 0; i < 100; ++i) shift_ranges(hits);
                     }),
             Verdict::failed);
-  EXPECT_EQ(verdict("several instances", "embree", swap_instances), Verdict::failed);
-  EXPECT_EQ(verdict("beside the outline", "embree",
+  EXPECT_EQ(verdict("several instances", "rays", swap_instances), Verdict::failed);
+  EXPECT_EQ(verdict("beside the outline", "rays",
                     [](Hits& hits) {
                       for (double& range_m : hits.range_m) range_m *= 1.001;
                     }),

@@ -126,7 +126,7 @@ TEST_F(ViewerTest, ChangesSensorAndRenderer) {
   shot_of(viewer);
   viewer.use_renderer("opengl");
   EXPECT_EQ(shot_of(viewer).session->renderer->name(), "opengl");
-  viewer.use_renderer("embree");
+  viewer.use_renderer("rays");
   viewer.use_sensor("VLP-16");
   EXPECT_EQ(shot_of(viewer).beams->rows, 16U);
   EXPECT_EQ(viewer.look.quantity, Quantity::range) << "depth means nothing to a scanner";
@@ -139,11 +139,11 @@ TEST_F(ViewerTest, TellsWhyItRefusesAndGoesOnWithWhatItHad) {
   shot_of(viewer);
   viewer.use_renderer("opengl");  // scanners are no central projection
   ASSERT_TRUE(wait_until(viewer, [&] { return !viewer.errors.empty(); }));
-  EXPECT_THAT(viewer.errors.front(), HasSubstr("--renderer embree"));
+  EXPECT_THAT(viewer.errors.front(), HasSubstr("--renderer rays"));
   viewer.open((folder_ / "missing.obj").string());
   ASSERT_TRUE(wait_until(viewer, [&] { return viewer.errors.size() > 1; }));
   EXPECT_THAT(viewer.errors.back(), HasSubstr("missing.obj"));
-  viewer.use_renderer("embree");
+  viewer.use_renderer("rays");
   EXPECT_GT(shot_of(viewer).beams->size(), 0U);
 }
 

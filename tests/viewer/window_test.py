@@ -265,9 +265,9 @@ class ScreenshotTest(DisplayTest):
             self.assertLess(difference(views, expected.convert("RGB")), 2.0)
 
     def test_the_opengl_renderer_shows_the_same(self):
-        embree, _ = self.shoot("builtin:torus")
+        cast, _ = self.shoot("builtin:torus")
         opengl, _ = self.shoot("builtin:torus", "--renderer", "opengl")
-        self.assertLess(difference(embree.crop(SENSOR_BOX), opengl.crop(SENSOR_BOX)), 0.5)
+        self.assertLess(difference(cast.crop(SENSOR_BOX), opengl.crop(SENSOR_BOX)), 0.5)
 
     def test_frames_count_the_sensors_frames_and_are_the_same_again(self):
         arguments = ("builtin:asteroid", "--model-dr", "0,2,0", "--frames", "7")

@@ -43,6 +43,14 @@ double determinant(const Sheared& p, const Sheared& q) {
   return (first - second) + error;
 }
 
+/// What the rounding of two corners may change of their determinant, in roundings: each coordinate
+/// is wrong by less than 2^-52 of |x| + |y| + |z|.
+inline double determinant_room(const Sheared& p, const Sheared& q) {
+  const double width_p = std::abs(p.x) + std::abs(p.y);
+  const double width_q = std::abs(q.x) + std::abs(q.y);
+  return width_p * (width_q + std::abs(q.z)) + width_q * (width_p + std::abs(p.z));
+}
+
 /// The sum of three numbers, the same for every order of them.
 inline double sum_in_any_order(double a, double b, double c) {
   const double low = std::min(a, b);
@@ -62,6 +70,11 @@ inline double depth_on_edge(const Sheared& p, const Sheared& q) {
   return (p.z * to_q + q.z * to_p) / (to_p + to_q);
 }
 
+/// True when not all corners are on one side of the origin: then the origin may be on the triangle.
+inline bool reaches_around(double a, double b, double c) {
+  return std::min(std::min(a, b), c) <= 0.0 && std::max(std::max(a, b), c) >= 0.0;
+}
+
 /// hit_distance() by the given product.
 template <class Product>
 double distance(const HitRay& ray, const HitTriangle& triangle) {
@@ -74,6 +87,13 @@ double distance(const HitRay& ray, const HitTriangle& triangle) {
   const bool has_negative = u < 0.0 || v < 0.0 || w < 0.0;
   const bool has_positive = u > 0.0 || v > 0.0 || w > 0.0;
   if (has_negative == has_positive) return 0.0;  // outside, or edge-on: all are zero
+  const double volume = sum_in_any_order(u * a.z, v * b.z, w * c.z);
+  if (reaches_around(a.z, b.z, c.z)) {
+    const double room = sum_in_any_order(determinant_room(c, b) * std::abs(a.z),
+                                         determinant_room(a, c) * std::abs(b.z),
+                                         determinant_room(b, a) * std::abs(c.z));
+    if (!(std::abs(volume) > kTouching * room)) return 0.0;
+  }
   double depth;
   if (w == 0.0) {
     depth = depth_on_edge(a, b);
@@ -82,7 +102,7 @@ double distance(const HitRay& ray, const HitTriangle& triangle) {
   } else if (v == 0.0) {
     depth = depth_on_edge(c, a);
   } else {
-    depth = sum_in_any_order(u * a.z, v * b.z, w * c.z) / sum_in_any_order(u, v, w);
+    depth = volume / sum_in_any_order(u, v, w);
   }
   const double distance = depth / ray.along;
   return distance > 0.0 ? distance : 0.0;

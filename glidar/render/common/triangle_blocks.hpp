@@ -49,6 +49,15 @@ inline std::uint32_t block_count(std::uint32_t count) {
 void pack_cluster(const MeshTriangles& mesh, std::span<std::uint32_t> chosen,
                   TriangleCluster& cluster, std::vector<TriangleBlock>& blocks);
 
+/// A triangle of a mesh, relative to its origin.
+inline HitTriangle corners_of(const Mesh& mesh, std::uint32_t triangle) {
+  const auto corner = [&](std::size_t k) {
+    const Eigen::Vector3f& p = mesh.positions_m[mesh.triangles[triangle][k]];
+    return std::array<float, 3>{p.x(), p.y(), p.z()};
+  };
+  return {corner(0), corner(1), corner(2)};
+}
+
 /// A triangle by its slot: kBlockSize * block + place in the block.
 inline HitTriangle triangle_at(const TriangleBlock* blocks, std::uint32_t slot) {
   const TriangleBlock& block = blocks[slot / kBlockSize];

@@ -37,7 +37,7 @@ namespace {
 
 constexpr const char* kInstall =
     "install a driver: libegl1, libopengl0 and, for drawing in software, libgl1-mesa-dri (Debian, "
-    "Ubuntu); or use --renderer embree";
+    "Ubuntu); or use --renderer rays";
 
 [[noreturn]] void fail(std::string found) {
   throw Error({.where = "OpenGL",

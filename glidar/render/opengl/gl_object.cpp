@@ -18,7 +18,7 @@ void check_reset(GLenum status) {
                         ": its context is lost, with the frame under way",
                .allowed = "",
                .remedy = "make a new renderer, or start again; if it comes back, update the "
-                         "driver, choose another --graphics-device, or use --renderer embree"});
+                         "driver, choose another --graphics-device, or use --renderer rays"});
 }
 
 void check_not_lost() {
@@ -39,7 +39,7 @@ void check_gl(const char* doing) {
                .found = std::string(doing) + " failed" +
                         (is_memory ? ": memory ran out" : " (code " + std::to_string(code) + ")"),
                .allowed = "",
-               .remedy = is_memory ? "use a smaller model, or --renderer embree" : ""});
+               .remedy = is_memory ? "use a smaller model, or --renderer rays" : ""});
 }
 
 }  // namespace glidar::opengl

@@ -43,7 +43,7 @@ void NumberTarget::make_room(const PictureSize& size) {
     throw Error({.where = "OpenGL",
                  .found = "the driver draws no pictures of 32-bit numbers",
                  .allowed = "",
-                 .remedy = "update the driver, or use --renderer embree"});
+                 .remedy = "update the driver, or use --renderer rays"});
   }
 }
 

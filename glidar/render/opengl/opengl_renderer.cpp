@@ -11,6 +11,7 @@
 #include <glidar/render/picture_writing.hpp>
 #include <glidar/render/pieces_renderer.hpp>
 #include <glidar/render/pinhole_only.hpp>
+#include <glidar/render/rays/scene_search.hpp>
 #include <glidar/render/silhouettes.hpp>
 
 #include <algorithm>
@@ -33,11 +34,11 @@ class OpenglRenderer final : public Renderer {
                  std::unique_ptr<opengl::Context> context)
       : workers_(options.threads),
         resolver_(scene),
-        search_(resolver_),
-        meshes_(scene.meshes.begin(), scene.meshes.end()),
+        search_(resolver_, workers_),
         context_(std::move(context)) {
-    for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
-      edges_.push_back(mesh_edges(scene.meshes[i], meshes_[i].neighbours));
+    for (const Mesh& mesh : scene.meshes) {
+      boxes_.push_back(local_box(mesh));
+      edges_.push_back(mesh_edges(mesh, Neighbours(mesh)));
     }
     const opengl::FreshState state(*context_);
     gpu_ = std::make_unique<OnDevice>(scene);
@@ -81,7 +82,7 @@ class OpenglRenderer final : public Renderer {
   void plan(const CastRequest& request, std::size_t cast, Hits& hits) {
     resize(hits, request.beams.size(), request.fields);
     resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
-    const DepthRange depths = depths_of(request, resolver_, meshes_);
+    const DepthRange depths = depths_of(request, resolver_, boxes_);
     if (!depths.is_empty() && request.beams.size() > 0) {
       opengl::add_parts(request.beams, cast, depths, pictures_);
       return;
@@ -133,18 +134,19 @@ class OpenglRenderer final : public Renderer {
       const bool is_first_part = picture.rect.first_row == 0 && picture.rect.first_col == 0;
       if (is_first_part) count_.emplace(request.progress, request.beams.size());
       search_.prepare(request);
+      if (!overlaps_) overlaps_.emplace(resolver_, search_.trees());
+      overlaps_->prepare(request);
       search_silhouettes(request, picture.rect);
-      const Settler settler(resolver_, meshes_, request.beams, request.cull_back_faces);
       write_picture({.request = request,
                      .resolver = resolver_,
-                     .settler = settler,
                      .triangles = gpu_->drawing.numbers(),
                      .points = points_,
                      .drawn = picture.rect,
                      .numbers = numbers.subspan(i * pixels, pixels),
                      .part = picture.rect,
                      .hits = *hits[picture.cast],
-                     .search = search_,
+                     .search = search_.beams(),
+                     .overlaps = *overlaps_,
                      .known = known_},
                     workers_, *count_);
       const bool is_last_part = picture.rect.first_row + picture.rect.rows == request.beams.rows &&
@@ -161,7 +163,7 @@ class OpenglRenderer final : public Renderer {
     constexpr std::size_t kBeamsPerTask = 16;
     workers_.for_ranges(beams.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        known_[i] = {beams[i], search_.nearest(beams[i])};
+        known_[i] = {beams[i], search_.beams().find(beams[i])};
       }
     });
   }
@@ -177,8 +179,9 @@ class OpenglRenderer final : public Renderer {
 
   Workers workers_;
   Resolver resolver_;
-  ExactSearch search_;
-  std::vector<KnownMesh> meshes_;
+  rays::SceneSearch search_;
+  std::optional<Overlaps> overlaps_;
+  std::vector<Eigen::AlignedBox3d> boxes_;    ///< per mesh, relative to its origin
   std::vector<std::vector<MeshEdge>> edges_;  ///< per mesh
   std::unique_ptr<opengl::Context> context_;
   std::unique_ptr<OnDevice> gpu_;

@@ -13,7 +13,7 @@ namespace {
   throw Error({.where = "OpenGL",
                .found = "the driver does not accept " + what + ": " + log,
                .allowed = "",
-               .remedy = "update the driver, or use --renderer embree"});
+               .remedy = "update the driver, or use --renderer rays"});
 }
 
 std::string joined(std::initializer_list<std::string_view> texts,

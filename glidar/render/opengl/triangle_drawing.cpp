@@ -24,7 +24,7 @@ const Scene& checked(const Scene& scene) {
     throw Error({.where = "opengl renderer",
                  .found = "too many triangles in one mesh: " + std::to_string(own),
                  .allowed = "up to 715827882",
-                 .remedy = "use --renderer embree"});
+                 .remedy = "use --renderer rays"});
   }
   return scene;
 }

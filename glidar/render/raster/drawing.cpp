@@ -71,15 +71,19 @@ bool is_inside(const Shape& shape, float across, float down) {
 
 /// Draws pixel by pixel, looking for holes.
 void draw_with_holes(const Placed& placed, const Shape& shape, std::uint32_t primitive) {
-  const std::size_t cols = placed.drawing.request.beams.cols;
-  const Found found{placed.instance, primitive};
+  const CastRequest& request = placed.drawing.request;
+  const auto is_hole = [&](std::size_t beam) {
+    return !stops(placed.drawing.resolver, request.beams, beam, request.cull_back_faces,
+                  {placed.instance, primitive});
+  };
+  const std::size_t cols = request.beams.cols;
   for (int row = shape.rect.top; row <= shape.rect.bottom; ++row) {
     for (int col = shape.rect.left; col <= shape.rect.right; ++col) {
       const auto across = static_cast<float>(col - shape.rect.left);
       const auto down = static_cast<float>(row - shape.rect.top);
       const std::size_t beam = static_cast<std::size_t>(placed.first_row + row) * cols +
                                static_cast<std::size_t>(placed.first_col + col);
-      if (!is_inside(shape, across, down) || !placed.drawing.settler.meets(beam, found)) continue;
+      if (!is_inside(shape, across, down) || is_hole(beam)) continue;
       const float nearness = shape.nearness_at_corner + shape.nearness_per_col * across +
                              shape.nearness_per_row * down;
       placed.canvas.offer(col, row, std::clamp(nearness, shape.farthest, shape.nearest),

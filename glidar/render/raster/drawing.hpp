@@ -7,7 +7,6 @@
 #include <glidar/render/raster/packed_mesh.hpp>
 #include <glidar/render/raster/sight.hpp>
 #include <glidar/render/renderer.hpp>
-#include <glidar/render/settle.hpp>
 #include <glidar/render/triangle_picture.hpp>
 
 #include <cstdint>
@@ -22,7 +21,6 @@ struct Drawing {
   const std::vector<PackedMesh>& meshes;
   const std::vector<PixelView>& views;  ///< per instance
   const TriangleNumbers& triangles;
-  const Settler& settler;
   const std::vector<std::uint8_t>& has_mask;  ///< per instance
   Nearness nearness;
 };

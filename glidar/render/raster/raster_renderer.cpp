@@ -17,6 +17,7 @@
 #include <bit>
 #include <cmath>
 #include <mutex>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -82,9 +83,11 @@ class RasterRenderer final : public Renderer {
   explicit RasterRenderer(std::shared_ptr<CpuBase> base)
       : base_(std::move(base)),
         packed_(scene().meshes.begin(), scene().meshes.end()),
-        known_(scene().meshes.begin(), scene().meshes.end()),
         triangles_(scene(), "raster") {
-    for (const Mesh& mesh : scene().meshes) boxes_.push_back(bounds(mesh));
+    for (const Mesh& mesh : scene().meshes) {
+      boxes_.push_back(bounds(mesh));
+      local_boxes_.push_back(local_box(mesh));
+    }
     for (const Instance& instance : scene().instances) {
       has_mask_.push_back(static_cast<std::uint8_t>(has_mask(scene(), instance)));
     }
@@ -99,9 +102,11 @@ class RasterRenderer final : public Renderer {
     resize(hits, request.beams.size(), request.fields);
     base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
     base_->search.prepare(request);
+    if (!overlaps_) overlaps_.emplace(base_->resolver, base_->search.trees());
+    overlaps_->prepare(request);
     find_plane_points(request.beams, points_);
     WorkCount count(request.progress, request.beams.size());
-    const DepthRange depths = depths_of(request, base_->resolver, known_);
+    const DepthRange depths = depths_of(request, base_->resolver, local_boxes_);
     const GridWindow window = depths.is_empty()
                                   ? GridWindow{.end_row = 0, .end_col = 0}
                                   : window_on(base_->resolver, boxes_, request.present, points_);
@@ -179,13 +184,11 @@ class RasterRenderer final : public Renderer {
     find_sightings(request, window, nearness);
     parts_.cut(window, request.beams.rows, request.beams.cols);
     parts_.sort(sightings_);
-    const Settler settler(base_->resolver, known_, request.beams, request.cull_back_faces);
     const Drawing drawing{.request = request,
                           .resolver = base_->resolver,
                           .meshes = packed_,
                           .views = views_,
                           .triangles = triangles_,
-                          .settler = settler,
                           .has_mask = has_mask_,
                           .nearness = nearness};
     base_->workers.for_ranges(parts_.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -205,14 +208,14 @@ class RasterRenderer final : public Renderer {
                   Hits& hits) const {
     write_rows({.request = drawing.request,
                 .resolver = base_->resolver,
-                .settler = drawing.settler,
                 .triangles = triangles_,
                 .points = points_,
                 .drawn = part.drawn,
                 .numbers = desk.numbers,
                 .part = part.written,
                 .hits = hits,
-                .search = base_->search},
+                .search = base_->search.beams(),
+                .overlaps = *overlaps_},
                0, part.written.rows);
   }
 
@@ -266,9 +269,10 @@ class RasterRenderer final : public Renderer {
 
   std::shared_ptr<CpuBase> base_;
   std::vector<raster::PackedMesh> packed_;
-  std::vector<KnownMesh> known_;
   TriangleNumbers triangles_;
-  std::vector<Eigen::AlignedBox3d> boxes_;  ///< per mesh
+  std::vector<Eigen::AlignedBox3d> boxes_;        ///< per mesh, in the object's frame
+  std::vector<Eigen::AlignedBox3d> local_boxes_;  ///< per mesh, relative to its origin
+  std::optional<Overlaps> overlaps_;
   std::vector<std::uint8_t> has_mask_;      ///< per instance
   PlanePoints points_;
   std::vector<raster::PixelView> views_;  ///< per instance

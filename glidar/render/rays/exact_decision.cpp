@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/rays/exact_decision.hpp>
 
+#include <array>
 #include <cassert>
 #include <cmath>
 
@@ -40,21 +41,53 @@ std::uint32_t primitive_at(const TriangleBlock* blocks, std::uint32_t slot) {
   return blocks[slot / kBlockSize].primitive[slot % kBlockSize];
 }
 
+using Vector = std::array<double, 3>;
+
+Vector edge(const std::array<float, 3>& from, const std::array<float, 3>& to) {
+  return {double{to[0]} - double{from[0]}, double{to[1]} - double{from[1]},
+          double{to[2]} - double{from[2]}};
+}
+
+double dot(const Vector& a, const Vector& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+/// How much farther a triangle may be that ties with this one.
+double tie_room(const RayPacket& packet, unsigned lane, const HitTriangle& triangle) {
+  if (packet.tie_reach == 0.0) return 0.0;
+  const auto& d = packet.exact_direction;
+  return tie_window(packet.tie_reach, triangle, {d[0][lane], d[1][lane], d[2][lane]});
+}
+
 }  // namespace
+
+double tie_window(double reach, const HitTriangle& triangle, const Vector& direction) {
+  const Vector p = edge(triangle.a, triangle.b);
+  const Vector q = edge(triangle.a, triangle.c);
+  const Vector n = {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2],
+                    p[0] * q[1] - p[1] * q[0]};
+  const double along = std::abs(dot(n, direction));
+  return kTiePart * reach * (std::sqrt(dot(n, n)) / along);
+}
 
 void decide(const TriangleBlock* blocks, RayPacket& packet, unsigned lane, std::uint32_t slot) {
   const double distance = distance_to(blocks, packet, lane, slot);
   if (distance == 0.0) return;
+  const std::uint32_t primitive = primitive_at(blocks, slot);
+  if (packet.stops != nullptr && !packet.stops(packet.context, lane, primitive)) return;
+  const double tie = tie_room(packet, lane, triangle_at(blocks, slot));
   if (packet.slot[lane] != kNoTriangle) {
     complete_distance(blocks, packet, lane);
     const HitCandidate nearest{packet.distance[lane], 0, primitive_at(blocks, packet.slot[lane])};
-    if (!is_nearer({distance, 0, primitive_at(blocks, slot)}, nearest)) return;
+    const double apart = std::abs(distance - nearest.distance);
+    if (apart > 0.0 && !(apart > tie)) packet.tied |= 1U << lane;
+    if (!is_nearer({distance, 0, primitive}, nearest)) return;
   }
   packet.slot[lane] = slot;
   packet.distance[lane] = distance;
   packet.known |= 1U << lane;
   const auto rounded = static_cast<float>(distance - packet.shift[lane]);
-  const float room = 0x1p-22F * std::abs(rounded) + 0x1p-120F;
+  const float room = 0x1p-22F * std::abs(rounded) + 0x1p-120F + static_cast<float>(1.01 * tie);
   packet.low[lane] = rounded - room;
   packet.high[lane] = rounded + room;
 }

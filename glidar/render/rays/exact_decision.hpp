@@ -5,11 +5,19 @@
 #include <glidar/render/common/triangle_blocks.hpp>
 #include <glidar/render/rays/ray_packet.hpp>
 
+#include <array>
+#include <cstdint>
+
 namespace glidar::rays {
 
 /// Applies the hit rule to a triangle that single precision left in doubt, and to the ray's nearest
 /// one if its distance is not known yet; keeps the nearer.
 void decide(const TriangleBlock* blocks, RayPacket& packet, unsigned lane, std::uint32_t slot);
+
+/// How much farther a triangle may be that ties with this one, see RayPacket::tie_reach; the ray's
+/// direction is a unit vector.
+double tie_window(double reach, const HitTriangle& triangle,
+                  const std::array<double, 3>& direction);
 
 /// Computes packet.distance of every active ray that hits, by the rule.
 void complete_distances(const TriangleBlock* blocks, RayPacket& packet);

@@ -7,6 +7,10 @@
 
 namespace glidar::rays {
 
+/// What is done with the rays of `lanes` in a leaf. It may lower packet.high of them.
+using VisitLeaf = void (*)(void* context, std::uint32_t leaf, RayPacket& packet,
+                           std::uint32_t lanes);
+
 /// The inner loops, compiled for one instruction set. kernel.cpp is compiled once for each, with
 /// GLIDAR_KERNEL as its name.
 struct Kernel {
@@ -21,6 +25,9 @@ struct Kernel {
   void (*trace)(const TreeView& tree, RayPacket& packet);
   /// The same for one ray at a time: for rays in unrelated directions.
   void (*trace_single)(const TreeView& tree, RayPacket& packet);
+  /// Calls visit() for the leaves that rays of a started packet enter before packet.high, about the
+  /// nearest first. The tree needs no clusters and blocks.
+  void (*visit_leaves)(const TreeView& tree, RayPacket& packet, VisitLeaf visit, void* context);
 };
 
 }  // namespace glidar::rays

@@ -80,14 +80,15 @@ GLIDAR_INLINE void take(const TreeView& tree, RayPacket& p, const LaneGroup& gro
                                     LaneFloat::load(p.near_low + first),
                                     LaneFloat::load(p.near_high + first)};
   const Verdict<LaneFloat> verdict = weigh(edges, group.lanes, det, bounds, best);
-  const std::uint32_t accepted = bits(verdict.accepted);
+  const std::uint32_t inside = bits(verdict.accepted);
+  const std::uint32_t accepted = p.stops == nullptr ? inside : 0;
   if (accepted != 0) {
     store(p.low + first, select(verdict.accepted, verdict.low, best.low));
     store(p.high + first, select(verdict.accepted, verdict.high, best.high));
     p.known &= ~(accepted << first);
     for_bits(accepted, [&](unsigned i) { p.slot[first + i] = group.slot; });
   }
-  for_bits(bits(verdict.doubtful),
+  for_bits((inside & ~accepted) | bits(verdict.doubtful),
            [&](unsigned i) { decide(tree.blocks, p, first + i, group.slot); });
 }
 

@@ -86,12 +86,12 @@ inline void test_ray(const TreeView& tree, const TriangleCluster& cluster, RayPa
     const Interval<Float8> best = {Float8::all(p.low[lane]), Float8::all(p.high[lane]),
                                    Float8::all(p.near_low[lane]), Float8::all(p.near_high[lane])};
     const Verdict<Float8> verdict = weigh(edges, Float8::mask(candidates), s.det, s.bounds, best);
-    const std::uint32_t accepted = bits(verdict.accepted);
+    const std::uint32_t accepted = p.stops == nullptr ? bits(verdict.accepted) : 0;
     alignas(32) float low[kBlockSize];
     alignas(32) float high[kBlockSize];
     store(low, verdict.low);
     store(high, verdict.high);
-    for_bits(accepted | bits(verdict.doubtful), [&](unsigned i) {
+    for_bits(bits(verdict.accepted) | bits(verdict.doubtful), [&](unsigned i) {
       const std::uint32_t slot = block * kBlockSize + i;
       const bool is_sure = (accepted >> i & 1U) != 0;
       if (is_sure && high[i] < p.low[lane]) return accept(p, lane, slot, low[i], high[i]);

@@ -3,7 +3,7 @@
 #include <glidar/render/rays/mesh_tree.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/render/rays/split_tree.hpp>
+#include <glidar/render/rays/collapse_tree.hpp>
 
 #include <algorithm>
 #include <array>
@@ -16,7 +16,6 @@ namespace {
 
 constexpr std::size_t kGrain = 4096;
 constexpr std::uint32_t kMaxClusterSize = 64;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 void check_vertices(const MeshTriangles& mesh) {
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -43,113 +42,38 @@ BoxReference make_reference(const MeshTriangles& mesh, std::size_t index) {
   return reference;
 }
 
-std::vector<BoxReference> make_references(const MeshTriangles& mesh, Workers& workers) {
+/// As the planes that ranges are computed from, see triangle_planes().
+bool has_area(const MeshTriangles& mesh, std::size_t index) {
+  const auto& [a, b, c] = mesh.triangles[index];
+  const Eigen::Vector3d corner = mesh.positions[a].cast<double>();
+  const Eigen::Vector3d first = mesh.positions[b].cast<double>() - corner;
+  const Eigen::Vector3d second = mesh.positions[c].cast<double>() - corner;
+  return !first.cross(second).isZero(0.0);
+}
+
+std::vector<BoxReference> make_references(const MeshTriangles& mesh, bool with_flat,
+                                          Workers& workers) {
   std::vector<BoxReference> references(mesh.triangles.size());
+  constexpr std::uint32_t kFlat = 1;
   workers.for_ranges(references.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) references[i] = make_reference(mesh, i);
+    for (std::size_t i = begin; i < end; ++i) {
+      references[i] = make_reference(mesh, i);
+      references[i].unused = !with_flat && !has_area(mesh, i) ? kFlat : 0;
+    }
   });
+  std::erase_if(references, [](const BoxReference& r) { return r.unused == kFlat; });
   return references;
-}
-
-float area_of(const SplitNode& node) {
-  const float x = node.high[0] - node.low[0];
-  const float y = node.high[1] - node.low[1];
-  const float z = node.high[2] - node.low[2];
-  return x * y + y * z + z * x;
-}
-
-/// Turns the binary tree into one of eight children per node, and its leaves into clusters.
-class Collapse {
- public:
-  Collapse(const SplitNode* split, MeshTree& tree) : split_(split), tree_(tree) {}
-
-  /// References of each cluster, in the order of clusters.
-  struct Leaf {
-    std::uint32_t first;
-    std::uint32_t count;
-  };
-  std::vector<Leaf> leaves;
-
-  void add_node(std::uint32_t root) {
-    const auto index = static_cast<std::int32_t>(tree_.nodes.size());
-    tree_.nodes.emplace_back();
-    const Children children = children_of(root);
-    for (unsigned i = 0; i < 8; ++i) set_child(tree_.nodes[index], i, children);
-    for (unsigned i = 0; i < children.count; ++i) {
-      if (split_[children.at[i]].count != 0) continue;
-      const auto child = static_cast<std::int32_t>(tree_.nodes.size());
-      tree_.nodes[static_cast<std::size_t>(index)].child[i] = child;
-      add_node(children.at[i]);
-    }
-  }
-
- private:
-  struct Children {
-    std::array<std::uint32_t, 8> at{};
-    unsigned count = 0;
-  };
-
-  /// The node's two children, of which the largest is replaced by its own until there are eight.
-  [[nodiscard]] Children children_of(std::uint32_t root) const {
-    Children children;
-    children.at[0] = root;
-    children.count = 1;
-    while (children.count < 8) {
-      unsigned largest = 8;
-      float area = -1.0F;
-      for (unsigned i = 0; i < children.count; ++i) {
-        const SplitNode& node = split_[children.at[i]];
-        if (node.count != 0 || area_of(node) <= area) continue;
-        largest = i;
-        area = area_of(node);
-      }
-      if (largest == 8) break;
-      const std::uint32_t opened = children.at[largest];
-      children.at[largest] = opened + 1;
-      children.at[children.count++] = split_[opened].first;
-    }
-    return children;
-  }
-
-  void set_child(TreeNode& node, unsigned i, const Children& children) {
-    const bool is_there = i < children.count;
-    const SplitNode* child = is_there ? &split_[children.at[i]] : nullptr;
-    for (int axis = 0; axis < 3; ++axis) {
-      node.low[axis][i] = is_there ? child->low[axis] : kInfinity;
-      node.high[axis][i] = is_there ? child->high[axis] : -kInfinity;
-    }
-    node.child[i] = kNoChild;
-    if (!is_there || child->count == 0) return;
-    node.child[i] = ~static_cast<std::int32_t>(leaves.size());
-    leaves.push_back({child->first, child->count});
-  }
-
-  const SplitNode* split_;
-  MeshTree& tree_;
-};
-
-MeshSphere sphere_of(const SplitNode& root) {
-  MeshSphere sphere;
-  double squared = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double low = root.low[axis];
-    const double high = root.high[axis];
-    sphere.centre[axis] = 0.5 * (low + high);
-    squared += (high - low) * (high - low);
-  }
-  sphere.radius = 0.5 * std::sqrt(squared) * (1.0 + 1e-12);
-  return sphere;
 }
 
 /// What is copied into blocks.
 struct Packing {
   const MeshTriangles& mesh;
-  const std::vector<Collapse::Leaf>& leaves;
+  const std::vector<LeafRange>& leaves;
   const std::vector<BoxReference>& references;
 };
 
 void pack_leaf(const Packing& packing, std::size_t index, MeshTree& tree) {
-  const Collapse::Leaf& leaf = packing.leaves[index];
+  const LeafRange& leaf = packing.leaves[index];
   std::array<std::uint32_t, kMaxClusterSize> chosen{};
   for (std::uint32_t k = 0; k < leaf.count; ++k) {
     chosen[k] = packing.references[leaf.first + k].index;
@@ -172,7 +96,55 @@ void pack(const Packing& packing, MeshTree& tree, Workers& workers) {
   });
 }
 
+Eigen::AlignedBox3d child_box(const TreeNode& node, unsigned child) {
+  Eigen::AlignedBox3d box;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min()[axis] = double{node.low[axis][child]};
+    box.max()[axis] = double{node.high[axis][child]};
+  }
+  return box;
+}
+
+Eigen::AlignedBox3d triangle_box(const TriangleBlock& block, unsigned i) {
+  Eigen::AlignedBox3d box;
+  for (const auto& corner : block.corner) {
+    box.extend(Eigen::Vector3d(double{corner[0][i]}, double{corner[1][i]}, double{corner[2][i]}));
+  }
+  return box;
+}
+
+bool has_triangle_in(const MeshTree& tree, std::int32_t index, const Eigen::AlignedBox3d& box) {
+  if (index < 0) {
+    const TriangleCluster& cluster = tree.clusters[static_cast<std::size_t>(~index)];
+    for (std::uint32_t i = 0; i < cluster.count; ++i) {
+      const TriangleBlock& block = tree.blocks[cluster.first_block + i / kBlockSize];
+      if (triangle_box(block, i % kBlockSize).intersects(box)) return true;
+    }
+    return false;
+  }
+  const TreeNode& node = tree.nodes[static_cast<std::size_t>(index)];
+  for (unsigned i = 0; i < 8; ++i) {
+    if (node.child[i] == kNoChild || !child_box(node, i).intersects(box)) continue;
+    if (has_triangle_in(tree, node.child[i], box)) return true;
+  }
+  return false;
+}
+
 }  // namespace
+
+Eigen::AlignedBox3d box_of(const MeshTree& tree) {
+  Eigen::AlignedBox3d box;
+  if (tree.nodes.empty()) return box;
+  for (unsigned i = 0; i < 8; ++i) {
+    if (tree.nodes[0].child[i] != kNoChild) box.extend(child_box(tree.nodes[0], i));
+  }
+  return box;
+}
+
+bool has_triangle_near(const MeshTree& tree, const Eigen::AlignedBox3d& box, double margin) {
+  const Eigen::Vector3d room = Eigen::Vector3d::Constant(margin);
+  return !tree.nodes.empty() && has_triangle_in(tree, 0, {box.min() - room, box.max() + room});
+}
 
 std::size_t MeshTree::bytes() const {
   return nodes.size() * sizeof(TreeNode) + clusters.size() * sizeof(TriangleCluster) +
@@ -182,7 +154,8 @@ std::size_t MeshTree::bytes() const {
 MeshTree build_mesh_tree(const MeshTriangles& mesh, const TreeOptions& options, Workers& workers) {
   check_vertices(mesh);
   MeshTree tree;
-  std::vector<BoxReference> references = make_references(mesh, workers);
+  std::vector<BoxReference> references =
+      make_references(mesh, options.with_flat_triangles, workers);
   const SplitOptions split_options = {
       .leaf_size = std::clamp(options.cluster_size, 1U, kMaxClusterSize),
       .bins = std::clamp(options.bins, 2U, 16U),
@@ -190,9 +163,9 @@ MeshTree build_mesh_tree(const MeshTriangles& mesh, const TreeOptions& options, 
   const auto split = build_split_tree(references, split_options, workers);
   if (split == nullptr) return tree;
   tree.sphere = sphere_of(split[0]);
-  Collapse collapse(split.get(), tree);
-  collapse.add_node(0);
-  pack({mesh, collapse.leaves, references}, tree, workers);
+  std::vector<LeafRange> leaves;
+  collapse_tree(split.get(), tree.nodes, leaves);
+  pack({mesh, leaves, references}, tree, workers);
   return tree;
 }
 

@@ -6,6 +6,7 @@
 #include <glidar/render/rays/ray_packet.hpp>
 #include <glidar/render/rays/ray_tree.hpp>
 
+#include <Eigen/Geometry>
 #include <vector>
 
 namespace glidar::rays {
@@ -25,9 +26,16 @@ struct MeshTree {
   [[nodiscard]] std::size_t bytes() const;
 };
 
+/// The box of all triangles; empty when there are none.
+Eigen::AlignedBox3d box_of(const MeshTree& tree);
+
+/// True when the box of some triangle, grown by `margin`, intersects this one.
+bool has_triangle_near(const MeshTree& tree, const Eigen::AlignedBox3d& box, double margin);
+
 struct TreeOptions {
   std::uint32_t cluster_size = 8;  ///< most triangles of a leaf, 1 to 64
   std::uint32_t bins = 16;         ///< places to cut per axis, 2 to 16
+  bool with_flat_triangles = true;  ///< those without area, which only rounding makes visible
 };
 
 /// Builds the tree. Throws Error on a vertex beyond kMaxTreeCoordinate.

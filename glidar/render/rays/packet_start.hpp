@@ -65,6 +65,8 @@ GLIDAR_INLINE void find_padding(const RayPacket& p, const MeshSphere& sphere, do
     }
     rounding[i] = 2.0 * p.shift[i] + size;
     padding[i] = 0x1p-22 * (2.0 * distance + reach) + 0x1p-50 * rounding[i];
+    // Bounds of distances hold what ties: 12 u 2^-26 of it is at least kTiePart tie_reach.
+    rounding[i] += 0x1p4 * p.tie_reach;
   }
 }
 
@@ -131,6 +133,7 @@ inline void start(RayPacket& p, const MeshSphere& sphere, std::uint32_t active) 
   p.known = 0;
   p.prepared = 0;
   p.decisions = 0;
+  p.tied = 0;
   alignas(64) double padding[kPacketSize];
   alignas(64) double rounding[kPacketSize];
   set_shifts(p, sphere);

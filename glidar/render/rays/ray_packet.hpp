@@ -45,7 +45,19 @@ struct alignas(64) RayPacket {
   std::uint32_t prepared;  ///< bit i: rule[i] is set
   HitRay rule[kPacketSize];
   std::uint32_t decisions;  ///< how often the rule was applied
+
+  /// Set before start(). Distances of two triangles tie where they differ by at most
+  /// kTiePart * tie_reach / |cos| (cos: of either normal and the ray); 0: only equal distances tie.
+  double tie_reach = 0.0;
+  /// Bit i: ray i met two triangles whose distances tie without being equal.
+  std::uint32_t tied;
+  /// Set before start(): false where a triangle lets a ray through. nullptr: none does.
+  bool (*stops)(const void* context, unsigned lane, std::uint32_t primitive) = nullptr;
+  const void* context = nullptr;  ///< the first argument of stops()
 };
+
+/// 512 roundings of a coordinate: those of two surfaces.
+inline constexpr double kTiePart = 0x1p-43;
 
 /// Where a mesh's vertices are: within `radius` of the centre.
 struct MeshSphere {

@@ -62,6 +62,7 @@ struct Stack {
 
   GLIDAR_INLINE static void prefetch(const TreeView& tree, std::int32_t child) {
     const bool is_node = child >= 0;
+    if (!is_node && tree.blocks == nullptr) return;
     const char* what =
         is_node ? reinterpret_cast<const char*>(&tree.nodes[child])
                 : reinterpret_cast<const char*>(&tree.blocks[tree.clusters[~child].first_block]);
@@ -112,8 +113,29 @@ struct RaySlabs {
   }
 };
 
+/// Leaves of triangles.
+struct TriangleLeaves {
+  const TreeView& tree;
+
+  GLIDAR_INLINE void operator()(std::uint32_t leaf, RayPacket& p, std::uint32_t lanes) const {
+    test_leaf(tree, leaf, p, lanes);
+  }
+};
+
+/// Leaves that a function looks into.
+struct VisitedLeaves {
+  VisitLeaf visit;
+  void* context;
+
+  GLIDAR_INLINE void operator()(std::uint32_t leaf, RayPacket& p, std::uint32_t lanes) const {
+    visit(context, leaf, p, lanes);
+  }
+};
+
 /// One ray below a node or leaf.
-inline void trace_below(const TreeView& tree, RayPacket& p, unsigned lane, std::int32_t root) {
+template <class Leaves>
+void trace_below(const TreeView& tree, RayPacket& p, const Leaves& leaves, unsigned lane,
+                 std::int32_t root) {
   const RaySlabs slabs(p, lane);
   Stack stack(root);
   alignas(32) float near[8];
@@ -122,7 +144,7 @@ inline void trace_below(const TreeView& tree, RayPacket& p, unsigned lane, std::
     if (stack.near[stack.size] > p.high[lane]) continue;
     const std::int32_t child = child_of(stack.visit[stack.size]);
     if (child < 0) {
-      test_ray(tree, tree.clusters[~child], p, lane);
+      leaves(static_cast<std::uint32_t>(~child), p, 1U << lane);
       continue;
     }
     const auto index = static_cast<std::uint32_t>(child);
@@ -223,20 +245,22 @@ GLIDAR_INLINE float farthest(const RayPacket& p) {
 }
 
 /// What is left of a walk when few rays, or a leaf, are reached. True when there was something.
-GLIDAR_INLINE bool finish(const TreeView& tree, RayPacket& p, std::int32_t child,
-                          std::uint32_t rays) {
+template <class Leaves>
+GLIDAR_INLINE bool finish(const TreeView& tree, RayPacket& p, const Leaves& leaves,
+                          std::int32_t child, std::uint32_t rays) {
   constexpr int kFewRays = 3;
   if (child < 0) {
-    test_leaf(tree, static_cast<std::uint32_t>(~child), p, rays);
+    leaves(static_cast<std::uint32_t>(~child), p, rays);
     return true;
   }
   if (__builtin_popcount(rays) > kFewRays) return false;
-  for_bits(rays, [&](unsigned lane) { trace_below(tree, p, lane, child); });
+  for_bits(rays, [&](unsigned lane) { trace_below(tree, p, leaves, lane, child); });
   return true;
 }
 
 /// All rays of a packet together, few of them one by one.
-inline void trace(const TreeView& tree, RayPacket& p) {
+template <class Leaves>
+void walk(const TreeView& tree, RayPacket& p, const Leaves& leaves) {
   const Beam beam(p);
   const PacketSlabs slabs(p);
   Stack stack(0);
@@ -250,7 +274,7 @@ inline void trace(const TreeView& tree, RayPacket& p) {
     std::uint32_t rays = p.active;
     if (box != kNoBox) rays = slabs.entering(tree.nodes[box / 8], box % 8, p);
     if (rays == 0) continue;
-    if (finish(tree, p, child, rays)) {
+    if (finish(tree, p, leaves, child, rays)) {
       end = farthest(p);
       continue;
     }
@@ -260,8 +284,17 @@ inline void trace(const TreeView& tree, RayPacket& p) {
   }
 }
 
+inline void trace(const TreeView& tree, RayPacket& p) {
+  walk(tree, p, TriangleLeaves{tree});
+}
+
 inline void trace_single(const TreeView& tree, RayPacket& p) {
-  for_bits(p.active, [&](unsigned lane) { trace_below(tree, p, lane, 0); });
+  const TriangleLeaves leaves{tree};
+  for_bits(p.active, [&](unsigned lane) { trace_below(tree, p, leaves, lane, 0); });
+}
+
+inline void visit_leaves(const TreeView& tree, RayPacket& p, VisitLeaf visit, void* context) {
+  walk(tree, p, VisitedLeaves{visit, context});
 }
 
 }  // namespace glidar::rays::GLIDAR_KERNEL

@@ -74,6 +74,29 @@ TEST(HitRule, BordersBelongToTheTriangle) {
   EXPECT_EQ(distance_of({0.5, 0.5 + 0x1p-53, 0}, {0, 0, 1}, triangle), 0.0);
 }
 
+TEST(HitRule, FromASurfaceTheSurfaceIsNotHit) {
+  Numbers numbers(77);
+  for (int i = 0; i < 20'000; ++i) {
+    const double size = std::pow(10.0, numbers.in(-6.0, 6.0));
+    const std::array<Eigen::Vector3f, 3> p = {numbers.in_cube(size).cast<float>(),
+                                              numbers.in_cube(size).cast<float>(),
+                                              numbers.in_cube(size).cast<float>()};
+    const Eigen::Vector3d edge = p[1].cast<double>() - p[0].cast<double>();
+    const Eigen::Vector3d other = p[2].cast<double>() - p[0].cast<double>();
+    const double weight = numbers.in(0.05, 0.45);
+    const Eigen::Vector3d origin =
+        p[0].cast<double>() + weight * edge + numbers.in(0.05, 0.45) * other;
+    // from steep to almost in the triangle's plane
+    const double steepness = std::pow(10.0, -2.0 * (i % 5));
+    const Eigen::Vector3d direction =
+        (edge.normalized() + steepness * numbers.direction()).normalized();
+    const auto corner = [&](std::size_t k) {
+      return std::array<float, 3>{p[k].x(), p[k].y(), p[k].z()};
+    };
+    EXPECT_EQ(distance_of(origin, direction, {corner(0), corner(1), corner(2)}), 0.0) << i;
+  }
+}
+
 TEST(HitRule, NothingBehindOrAtTheOriginIsHit) {
   const HitTriangle triangle = unit_triangle();
   EXPECT_EQ(distance_of({0.25, 0.25, 2}, {0, 0, 1}, triangle), 0.0);

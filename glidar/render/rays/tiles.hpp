@@ -11,7 +11,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace glidar::embree {
+namespace glidar::rays {
 
 /// A small rectangle of the beam grid: neighbours travel together, lane by lane, row by row.
 struct Tile {
@@ -86,4 +86,4 @@ class Tiling {
   std::uint32_t tile_cols_ = 0;
 };
 
-}  // namespace glidar::embree
+}  // namespace glidar::rays

@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/instance_tree.hpp>
+#include <glidar/render/rays/scene_trees.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace glidar {
+
+/// Finds hits in whose place another instance has a triangle too: a picture does not show which of
+/// two surfaces is nearer when they lie closer together than it resolves.
+class Overlaps {
+ public:
+  /// Both must outlive this.
+  Overlaps(const Resolver& resolver, const rays::SceneTrees& trees)
+      : resolver_(resolver), trees_(trees) {}
+
+  /// Takes the instances of the next cast; the resolver and the trees have its poses.
+  void prepare(const CastRequest& request);
+
+  /// True when boxes of instances overlap.
+  [[nodiscard]] bool has_any() const { return instances_.has_overlaps(); }
+
+  /// A bit for every hit lane in whose place another instance has a triangle's box.
+  [[nodiscard]] std::uint32_t lanes_near(const HitBlock& block, const BeamBlock& beams,
+                                         const ExactBlock& exact) const;
+
+ private:
+  [[nodiscard]] std::uint32_t lanes_at(std::uint32_t instance, std::uint32_t lanes,
+                                       const Eigen::AlignedBox3d& around,
+                                       const Lanes3<double>& in_tree) const;
+
+  const Resolver& resolver_;
+  const rays::SceneTrees& trees_;
+  std::vector<Eigen::AlignedBox3d> boxes_;  ///< per mesh, relative to its origin
+  InstanceTree instances_;
+};
+
+}  // namespace glidar

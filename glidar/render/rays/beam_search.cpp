@@ -1,0 +1,235 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/rays/beam_search.hpp>
+
+#include <glidar/render/rays/exact_decision.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace glidar::rays {
+namespace {
+
+static_assert(kLanes == kPacketSize);
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+template <class Body>
+void for_lanes(std::uint32_t lanes, const Body& body) {
+  for (; lanes != 0; lanes &= lanes - 1) body(static_cast<unsigned>(std::countr_zero(lanes)));
+}
+
+void set_rays(const Lanes3<double>& origin, const Lanes3<double>& direction, RayPacket& packet) {
+  static_assert(sizeof(packet.exact_origin) == sizeof(origin));
+  std::memcpy(packet.exact_origin, &origin, sizeof(origin));
+  std::memcpy(packet.exact_direction, &direction, sizeof(direction));
+}
+
+/// Lanes whose directions are numbers.
+std::uint32_t lanes_with_direction(const Lanes3<double>& direction) {
+  std::uint32_t lanes = 0;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const double sum = direction.x[i] + direction.y[i] + direction.z[i];
+    lanes |= static_cast<std::uint32_t>(sum == sum) << i;
+  }
+  return lanes;
+}
+
+/// The least float that is not below the value by more than its own rounding.
+float upper(double value) {
+  const auto rounded = static_cast<float>(value);
+  return rounded + 0x1p-22F * std::abs(rounded) + 0x1p-120F;
+}
+
+/// What a triangle's filter functions need to know, see RayPacket::stops.
+struct StopContext {
+  const CastView& cast;
+  const HitBlock& block;
+  std::uint32_t instance;
+
+  static bool stops(const void* context, unsigned lane, std::uint32_t primitive) {
+    const auto& self = *static_cast<const StopContext*>(context);
+    return glidar::stops(self.cast.resolver, self.cast.request.beams, self.block.beam[lane],
+                         self.cast.request.cull_back_faces, {self.instance, primitive});
+  }
+};
+
+/// Up to sixteen beams through one instance.
+class InstanceTrace {
+ public:
+  InstanceTrace(const CastView& cast, const Kernel& kernel, const HitBlock& block)
+      : cast_(cast), kernel_(kernel), stop_{cast, block, 0} {}
+
+  RayPacket packet;
+
+  /// Sets the rays. Without lanes there is nothing to trace.
+  void start(std::uint32_t instance, const BeamBlock& beams, std::uint32_t lanes) {
+    const InstanceView& view = cast_.resolver.view(instance);
+    Lanes3<double> origin;
+    Lanes3<double> direction;
+    rays_in(view, beams, origin, direction);
+    set_rays(origin, direction, packet);
+    stop_.instance = instance;
+    packet.tie_reach = cast_.trees.largest_reach_m() / view.scale;
+    const bool asks = cast_.request.cull_back_faces || cast_.resolver.is_masked(instance);
+    packet.stops = asks ? StopContext::stops : nullptr;
+    packet.context = &stop_;
+    kernel_.start(packet, cast_.trees.of_instance(instance).sphere, lanes);
+  }
+
+  void trace() { kernel_.trace(tree().view(), packet); }
+
+  [[nodiscard]] std::uint32_t primitive(unsigned lane) const {
+    return primitive_of(tree().blocks.data(), packet, lane);
+  }
+
+ private:
+  [[nodiscard]] const MeshTree& tree() const { return cast_.trees.of_instance(stop_.instance); }
+
+  const CastView& cast_;
+  const Kernel& kernel_;
+  StopContext stop_;
+};
+
+/// What a lane has found in all instances so far.
+struct Nearest {
+  Found found;
+  double low_m = kInfinity;  ///< bounds of the distance
+  double high_m = kInfinity;
+};
+
+/// Up to sixteen beams through all instances.
+class SceneTrace {
+ public:
+  SceneTrace(const CastView& cast, const Kernel& kernel, const BeamBlock& beams,
+             const HitBlock& block)
+      : cast_(cast), kernel_(kernel), beams_(beams), block_(block), inner_(cast, kernel, block) {}
+
+  /// Returns the lanes of which some distances tie.
+  std::uint32_t trace(std::uint32_t lanes) {
+    Lanes3<double> origin;
+    Lanes3<double> direction;
+    // The tree's frame is like that of an instance.
+    rays_in({cast_.trees.tree_from_sensor(), cast_.trees.sensor_in_tree(), 1.0}, beams_, origin,
+            direction);
+    RayPacket packet;
+    set_rays(origin, direction, packet);
+    kernel_.start(packet, cast_.trees.instance_sphere(), lanes);
+    kernel_.visit_leaves(
+        cast_.trees.instance_tree(), packet,
+        [](void* self, std::uint32_t leaf, RayPacket& outer, std::uint32_t entering) {
+          static_cast<SceneTrace*>(self)->visit(leaf, outer, entering);
+        },
+        this);
+    return tied_;
+  }
+
+  [[nodiscard]] const Found& found(unsigned lane) const { return nearest_[lane].found; }
+
+ private:
+  void visit(std::uint32_t leaf, RayPacket& outer, std::uint32_t lanes) {
+    const std::uint32_t instance = cast_.trees.instance_in(leaf);
+    const double scale = cast_.resolver.view(instance).scale;
+    RayPacket& p = inner_.packet;
+    inner_.start(instance, beams_, lanes);
+    for_lanes(lanes, [&](unsigned i) {
+      if (nearest_[i].found.instance == kNoHit) return;
+      const double end = nearest_[i].high_m / scale;
+      p.high[i] = upper(end - p.shift[i] + 0x1p-50 * end);
+    });
+    inner_.trace();
+    tied_ |= p.tied;
+    for_lanes(lanes, [&](unsigned i) {
+      if (p.slot[i] == kNoTriangle) return;
+      take(i, {instance, inner_.primitive(i)}, scale);
+      outer.high[i] = upper(nearest_[i].high_m - outer.shift[i] + 0x1p-50 * nearest_[i].high_m);
+    });
+  }
+
+  /// Keeps the nearer of what a lane has found and what the inner packet found.
+  void take(unsigned lane, const Found& found, double scale) {
+    const RayPacket& p = inner_.packet;
+    const double room = 0x1p-50 * p.shift[lane];
+    Nearest& nearest = nearest_[lane];
+    const Nearest other{found, scale * (p.shift[lane] + double{p.low[lane]} - room),
+                        scale * (p.shift[lane] + double{p.high[lane]} + room)};
+    const bool is_first = nearest.found.instance == kNoHit;
+    if (!is_first && other.low_m > nearest.high_m) return;
+    if (is_first || other.high_m < nearest.low_m || decide(lane, found)) nearest = other;
+  }
+
+  /// True when the beam meets this one before the nearest so far.
+  bool decide(unsigned lane, const Found& found) {
+    const std::size_t beam = block_.beam[lane];
+    const Found& before = nearest_[lane].found;
+    const double before_m = hit_distance_m(cast_, beam, before);
+    const double found_m = hit_distance_m(cast_, beam, found);
+    const double apart_m = std::abs(found_m - before_m);
+    const double window_m =
+        tie_window_m(cast_, beam, found, cast_.trees.largest_reach_m());
+    if (apart_m > 0.0 && !(apart_m > window_m)) tied_ |= 1U << lane;
+    return is_nearer({found_m, found.instance, found.primitive},
+                     {before_m, before.instance, before.primitive});
+  }
+
+  const CastView& cast_;
+  const Kernel& kernel_;
+  const BeamBlock& beams_;
+  const HitBlock& block_;
+  InstanceTrace inner_;
+  std::array<Nearest, kLanes> nearest_;
+  std::uint32_t tied_ = 0;
+};
+
+}  // namespace
+
+void BeamSearch::find(const BeamBlock& beams, HitBlock& block) const {
+  const std::uint32_t lanes = block.mask & lanes_with_direction(beams.direction);
+  const std::vector<std::uint32_t>& instances = cast_.trees.instances();
+  block.mask = 0;
+  if (lanes == 0 || instances.empty()) return;
+  std::uint32_t tied = 0;
+  const auto set = [&](unsigned lane, const Found& found) {
+    if (found.instance == kNoHit) return;
+    block.mask |= 1U << lane;
+    block.instance[lane] = found.instance;
+    block.primitive[lane] = found.primitive;
+  };
+  if (instances.size() == 1) {
+    InstanceTrace trace(cast_, kernel_, block);
+    trace.start(instances[0], beams, lanes);
+    trace.trace();
+    tied = trace.packet.tied;
+    for_lanes(lanes, [&](unsigned i) {
+      const std::uint32_t primitive = trace.primitive(i);
+      if (primitive != kNoTriangle) set(i, {instances[0], primitive});
+    });
+  } else {
+    SceneTrace trace(cast_, kernel_, beams, block);
+    tied = trace.trace(lanes);
+    for_lanes(lanes, [&](unsigned i) { set(i, trace.found(i)); });
+  }
+  for_lanes(tied & block.mask, [&](unsigned i) {
+    set(i, lowest_of_ties(cast_, block.beam[i], {block.instance[i], block.primitive[i]}));
+  });
+}
+
+Found BeamSearch::find(std::size_t beam) const {
+  const Beams& all = cast_.request.beams;
+  BeamBlock beams;
+  HitBlock block;
+  block.mask = 1;
+  block.beam.fill(beam);
+  beams.has_origins = !all.origins_m.empty();
+  for (unsigned i = 0; i < kLanes; ++i) {
+    beams.direction.set(i, all.directions[beam]);
+    if (beams.has_origins) beams.origin_m.set(i, all.origins_m[beam]);
+  }
+  find(beams, block);
+  if (block.mask == 0) return {};
+  return {block.instance[0], block.primitive[0]};
+}
+
+}  // namespace glidar::rays

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/rays/ray_packet.hpp>
+#include <glidar/render/rays/ray_tree.hpp>
+#include <glidar/render/rays/split_tree.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace glidar::rays {
+
+/// References of a leaf: [first, first + count).
+struct LeafRange {
+  std::uint32_t first;
+  std::uint32_t count;
+};
+
+/// Turns a binary tree, of which there is at least the root, into one of eight children per node.
+/// Leaf i, named ~i by the nodes, is leaves[i].
+void collapse_tree(const SplitNode* split, std::vector<TreeNode>& nodes,
+                   std::vector<LeafRange>& leaves);
+
+/// A sphere around the box of a node.
+MeshSphere sphere_of(const SplitNode& root);
+
+}  // namespace glidar::rays

@@ -1,0 +1,193 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/rays/rays_renderer.hpp>
+
+#include <glidar/core/work_count.hpp>
+#include <glidar/render/grid_window.hpp>
+#include <glidar/render/plane_points.hpp>
+#include <glidar/render/rays/tiles.hpp>
+#include <glidar/render/resolve.hpp>
+
+#include <array>
+#include <bit>
+#include <memory>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+/// What one cast hands to every tile.
+struct Job {
+  const Beams& beams;
+  const PlanePoints& points;
+  GridWindow window;  ///< beams outside of it miss
+  const HitFields& fields;
+  const Resolver& resolver;
+  const rays::BeamSearch& search;
+  bool with_corners;  ///< the fields need those of triangles
+  Hits& hits;
+};
+
+/// All that is worked out for one tile.
+struct TileWork {
+  HitBlock block;
+  BeamBlock beams;
+  ExactBlock exact;
+};
+
+/// Collects the beams of a tile that lies wholly in a pinhole's grid.
+void gather_pinhole(const PlanePoints& points, const rays::Tile& tile, TileWork& work) {
+  const std::uint32_t column_mask = (1U << tile.width_shift) - 1U;
+  Lanes<double> x;
+  Lanes<double> y;
+  const std::size_t first = tile.beam(0);
+  for (unsigned lane = 0; lane < kLanes; ++lane) {
+    const std::uint32_t row = lane >> tile.width_shift;
+    const std::uint32_t col = lane & column_mask;
+    x[lane] = points.x[tile.first_col + col];
+    y[lane] = points.y[tile.first_row + row];
+    work.block.beam[lane] = first + std::size_t{row} * tile.cols + col;
+  }
+  work.block.mask = (1U << kLanes) - 1U;
+  directions_through(x, y, work.beams.direction);
+}
+
+/// Collects the tile's beams; lanes beyond the grid's border repeat the first, outside of the mask.
+void gather_beams(const Beams& beams, const rays::Tile& tile, TileWork& work) {
+  const bool whole = tile.is_whole(kLanes);
+  const std::size_t first = tile.beam(0);
+  const std::uint32_t column_mask = (1U << tile.width_shift) - 1U;
+  work.block.mask = 0;
+  for (unsigned lane = 0; lane < kLanes; ++lane) {
+    const std::size_t beam =
+        first + std::size_t{lane >> tile.width_shift} * tile.cols + (lane & column_mask);
+    const bool inside = whole || tile.beam(lane) != rays::Tile::kOutside;
+    work.block.mask |= static_cast<std::uint32_t>(inside) << lane;
+    work.block.beam[lane] = inside ? beam : first;
+    work.beams.direction.set(lane, beams.directions[work.block.beam[lane]]);
+  }
+  work.beams.has_origins = !beams.origins_m.empty();
+  if (!work.beams.has_origins) return;
+  for (unsigned lane = 0; lane < kLanes; ++lane) {
+    work.beams.origin_m.set(lane, beams.origins_m[work.block.beam[lane]]);
+  }
+}
+
+/// Asks the memory for a tile's beams ahead of time.
+void prefetch(const Beams& beams, const rays::Tile& tile) {
+  for (unsigned lane = 0; lane < kLanes; lane += 2) {  // two directions and a half per cache line
+    const std::size_t beam = tile.beam(lane);
+    if (beam == rays::Tile::kOutside) continue;
+    __builtin_prefetch(&beams.directions[beam]);
+    if (!beams.origins_m.empty()) __builtin_prefetch(&beams.origins_m[beam]);
+  }
+}
+
+/// Writes the hits of a traced tile over the misses that stand there.
+void finish(const Job& job, TileWork& work) {
+  if (work.block.mask == 0) return;
+  job.resolver.measure(work.beams, work.block, work.exact);
+  job.resolver.write(job.beams, job.fields, work.block, work.exact, job.hits);
+}
+
+/// Collects and traces the beams of tile i.
+void start(const Job& job, const rays::Tiling& tiling, std::size_t i, std::size_t end,
+           TileWork& work) {
+  const rays::Tile tile = tiling.tile(i);
+  if (!job.window.meets(tile.window(kLanes))) {
+    work.block.mask = 0;
+    return;
+  }
+  if (!job.points.x.empty() && tile.is_whole(kLanes)) {
+    gather_pinhole(job.points, tile, work);
+  } else {
+    gather_beams(job.beams, tile, work);
+    if (i + 1 < end) prefetch(job.beams, tiling.tile(i + 1));
+  }
+  job.search.find(work.beams, work.block);
+  for (std::uint32_t lanes = work.block.mask; lanes != 0; lanes &= lanes - 1) {
+    job.resolver.prefetch(work.block, static_cast<unsigned>(std::countr_zero(lanes)),
+                          job.with_corners);
+  }
+}
+
+/// Casts tiles [begin, end). Three are under way at a time, so that what the later steps of one
+/// read from memory (planes and corners of its triangles) comes while the next is traced.
+void cast_tiles(const Job& job, const rays::Tiling& tiling, std::size_t begin, std::size_t end) {
+  std::array<TileWork, 3> ring;
+  tiling.for_beam_rows(begin, end, [&](BeamRange row) {
+    write_misses(job.fields, row.begin, row.end - row.begin, job.hits);
+  });
+  for (std::size_t i = begin; i < end + 2; ++i) {
+    if (i < end) start(job, tiling, i, end, ring[i % ring.size()]);
+    if (i >= begin + 1 && i - 1 < end) {
+      job.resolver.prefetch_corners(ring[(i - 1) % ring.size()].block, job.fields);
+    }
+    if (i >= begin + 2) finish(job, ring[(i - 2) % ring.size()]);
+  }
+}
+
+class RaysRenderer final : public Renderer {
+ public:
+  explicit RaysRenderer(std::shared_ptr<CpuBase> base)
+      : base_(std::move(base)) {
+    for (const Mesh& mesh : base_->resolver.scene().meshes) mesh_boxes_.push_back(bounds(mesh));
+  }
+
+  [[nodiscard]] std::string_view name() const override { return "rays"; }
+  [[nodiscard]] Workers& workers() override { return base_->workers; }
+
+  void cast(const CastRequest& request, Hits& hits) override {
+    Resolver& resolver = base_->resolver;
+    check(request, resolver.scene());
+    resize(hits, request.beams.size(), request.fields);
+    if (!is_anything_present(request, resolver.scene())) {
+      write_misses(request.fields, 0, request.beams.size(), hits);
+      if (request.then) request.then({0, request.beams.size()});
+      return;
+    }
+    resolver.set_poses(request.world_from_sensor, request.world_from_instance);
+    base_->search.prepare(request);
+    find_plane_points(request.beams, points_);
+    const Job job{.beams = request.beams,
+                  .points = points_,
+                  .window = window_on(resolver, mesh_boxes_, request.present, points_),
+                  .fields = request.fields,
+                  .resolver = resolver,
+                  .search = base_->search.beams(),
+                  .with_corners = needs_corners(request.fields),
+                  .hits = hits};
+    const rays::Tiling tiling(request.beams);
+    WorkCount count(request.progress, tiling.size());
+    workers().for_ranges(tiling.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
+      while (begin < end) {
+        const std::size_t run_end = tiling.end_of_run(begin, end, kTilesPerTask);
+        cast_tiles(job, tiling, begin, run_end);
+        if (request.then) tiling.for_beam_rows(begin, run_end, request.then);
+        count.add(run_end - begin);
+        begin = run_end;
+      }
+    });
+    count.finish();
+  }
+
+ private:
+  // About 50 microseconds of work, and its hits fit into a core's own cache.
+  static constexpr std::size_t kTilesPerTask = 64;
+
+  std::shared_ptr<CpuBase> base_;
+  PlanePoints points_;
+  std::vector<Eigen::AlignedBox3d> mesh_boxes_;  ///< per mesh, in the object's frame
+};
+
+}  // namespace
+
+std::unique_ptr<Renderer> make_rays_renderer(const Scene& scene, const RendererOptions& options) {
+  return make_rays_renderer(std::make_shared<CpuBase>(scene, options.threads));
+}
+
+std::unique_ptr<Renderer> make_rays_renderer(std::shared_ptr<CpuBase> base) {
+  return std::make_unique<RaysRenderer>(std::move(base));
+}
+
+}  // namespace glidar

@@ -1,0 +1,13 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/rays/scene_search.hpp>
+
+namespace glidar::rays {
+
+void SceneSearch::prepare(const CastRequest& request) {
+  if (trees_ == nullptr) trees_ = std::make_unique<SceneTrees>(resolver_.scene(), workers_);
+  trees_->place(request, resolver_, workers_);
+  beams_.emplace(CastView{*trees_, resolver_, request}, kernel_);
+}
+
+}  // namespace glidar::rays

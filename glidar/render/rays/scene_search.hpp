@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/rays/beam_search.hpp>
+#include <glidar/render/rays/kernels.hpp>
+#include <glidar/render/rays/scene_trees.hpp>
+
+#include <memory>
+#include <optional>
+
+namespace glidar::rays {
+
+/// Searches what beams hit, cast after cast. Renderers over the same scene may share it. Its trees
+/// are built at the first cast.
+class SceneSearch {
+ public:
+  /// Both must outlive the search.
+  SceneSearch(const Resolver& resolver, Workers& workers)
+      : resolver_(resolver), workers_(workers) {}
+
+  /// Takes the poses of the next cast, whose request must outlive its queries; the resolver has
+  /// them too.
+  void prepare(const CastRequest& request);
+
+  /// The search of the cast prepared last.
+  [[nodiscard]] const BeamSearch& beams() const { return *beams_; }
+  [[nodiscard]] const SceneTrees& trees() const { return *trees_; }
+
+ private:
+  const Resolver& resolver_;
+  Workers& workers_;
+  const Kernel& kernel_ = select_kernel();
+  std::unique_ptr<SceneTrees> trees_;
+  std::optional<BeamSearch> beams_;
+};
+
+}  // namespace glidar::rays

@@ -1,0 +1,132 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/rays/scene_trees.hpp>
+
+#include <glidar/render/rays/collapse_tree.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace glidar::rays {
+namespace {
+
+/// Sizes of coordinates times this bound what double precision may be wrong by, some 256 roundings.
+constexpr double kRoom = 0x1p-44;
+/// The tree is built anew when the sensor moves by this part of its size: then boxes near the
+/// sensor, which single precision rounds by 2^-24 of their distance from the origin, stay small.
+constexpr double kMoved = 0x1p-8;
+
+const Pose& pose_of(const Scene& scene, const CastRequest& request, std::size_t instance) {
+  return request.world_from_instance.empty() ? scene.instances[instance].world_from_object
+                                             : request.world_from_instance[instance];
+}
+
+float below(double value) {
+  return std::nextafter(static_cast<float>(value), -std::numeric_limits<float>::infinity());
+}
+float above(double value) {
+  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
+}
+
+}  // namespace
+
+SceneTrees::SceneTrees(const Scene& scene, Workers& workers)
+    : scene_(scene), reach_m_(scene.instances.size(), 0.0) {
+  for (const Mesh& mesh : scene.meshes) {
+    const MeshTriangles triangles{mesh.positions_m, mesh.triangles};
+    mesh_trees_.push_back(build_mesh_tree(triangles, {.with_flat_triangles = false}, workers));
+    const Eigen::AlignedBox3d box = box_of(mesh_trees_.back());
+    mesh_reach_.push_back(
+        box.isEmpty() ? 0.0 : box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm());
+  }
+}
+
+void SceneTrees::place(const CastRequest& request, const Resolver& resolver, Workers& workers) {
+  if (!is_placed(request)) {
+    keep_poses(request);
+    origin_m_ = request.world_from_sensor.translation();
+    if (instances_.size() > 1) build_instance_tree(workers);
+  }
+  find_reaches(resolver);
+  tree_from_sensor_ = tree_from_world_ * request.world_from_sensor.linear();
+  sensor_in_tree_ = tree_from_world_ * (request.world_from_sensor.translation() - origin_m_);
+}
+
+void SceneTrees::find_reaches(const Resolver& resolver) {
+  largest_reach_m_ = 0.0;
+  for (const std::uint32_t i : instances_) {
+    const InstanceView& view = resolver.view(i);
+    reach_m_[i] =
+        view.scale * (mesh_reach_[scene_.instances[i].mesh] + view.sensor_in_object.norm());
+    largest_reach_m_ = std::max(largest_reach_m_, reach_m_[i]);
+  }
+}
+
+bool SceneTrees::is_placed(const CastRequest& request) const {
+  if (placed_.size() != scene_.instances.size()) return false;
+  const double moved_m = (request.world_from_sensor.translation() - origin_m_).norm();
+  if (instances_.size() > 1 && moved_m > kMoved * sphere_.radius) return false;
+  for (std::size_t i = 0; i < placed_.size(); ++i) {
+    if ((present_[i] != 0) != is_present(request, i)) return false;
+    if (placed_[i].matrix() != pose_of(scene_, request, i).matrix()) return false;
+  }
+  return true;
+}
+
+void SceneTrees::keep_poses(const CastRequest& request) {
+  placed_.resize(scene_.instances.size());
+  present_.resize(scene_.instances.size());
+  instances_.clear();
+  double largest_m = -1.0;
+  for (std::uint32_t i = 0; i < placed_.size(); ++i) {
+    placed_[i] = pose_of(scene_, request, i);
+    present_[i] = static_cast<std::uint8_t>(is_present(request, i));
+    if (present_[i] == 0 || of_instance(i).nodes.empty()) continue;
+    instances_.push_back(i);
+    const double size_m = scene_.instances[i].scale * of_instance(i).sphere.radius;
+    if (!(size_m > largest_m)) continue;
+    largest_m = size_m;
+    tree_from_world_ = placed_[i].linear().transpose();
+  }
+}
+
+BoxReference SceneTrees::reference_of(std::uint32_t instance) const {
+  const double scale = scene_.instances[instance].scale;
+  const Eigen::Vector3d& mesh_origin = scene_.meshes[scene_.instances[instance].mesh].origin_m;
+  const Eigen::AlignedBox3d box = box_of(of_instance(instance));
+  const Eigen::Matrix3d turn = tree_from_world_ * placed_[instance].linear();
+  const Eigen::Vector3d shift = placed_[instance].translation() - origin_m_;
+  const Eigen::Vector3d in_object = scale * (mesh_origin + box.center());
+  const Eigen::Vector3d middle = tree_from_world_ * shift + turn * in_object;
+  const double size = placed_[instance].translation().norm() + origin_m_.norm() +
+                      scale * (mesh_origin.norm() + mesh_reach_[scene_.instances[instance].mesh]);
+  const Eigen::Vector3d half =
+      (turn.cwiseAbs() * (0.5 * scale * box.sizes())).array() + kRoom * size;
+  BoxReference reference{};
+  for (int axis = 0; axis < 3; ++axis) {
+    reference.low[axis] = below(middle[axis] - half[axis]);
+    reference.high[axis] = above(middle[axis] + half[axis]);
+  }
+  return reference;
+}
+
+void SceneTrees::build_instance_tree(Workers& workers) {
+  constexpr std::size_t kGrain = 512;
+  std::vector<BoxReference> references(instances_.size());
+  workers.for_ranges(references.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      references[k] = reference_of(instances_[k]);
+      references[k].index = instances_[k];
+    }
+  });
+  const SplitOptions options = {.leaf_size = 1, .max_depth = kMaxTreeDepth - 2};
+  const auto split = build_split_tree(references, options, workers);
+  sphere_ = sphere_of(split[0]);
+  std::vector<LeafRange> leaves;
+  collapse_tree(split.get(), nodes_, leaves);
+  of_leaf_.clear();
+  for (const LeafRange& leaf : leaves) of_leaf_.push_back(references[leaf.first].index);
+}
+
+}  // namespace glidar::rays

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/rays/mesh_tree.hpp>
+#include <glidar/render/rays/split_tree.hpp>
+#include <glidar/render/renderer.hpp>
+#include <glidar/render/resolve.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace glidar::rays {
+
+/// The trees of a scene: one over the triangles of each mesh, in the mesh's frame, and above them
+/// one over the boxes of the instances. The latter has a frame of its own, in metres: its origin is
+/// where the sensor was when it was built, and its axes are those of the largest instance, so that
+/// boxes on a ground stay small however the ground is turned.
+class SceneTrees {
+ public:
+  /// The scene must outlive the trees.
+  SceneTrees(const Scene& scene, Workers& workers);
+
+  /// Takes the poses of the next cast; the resolver has them too. The tree over the instances is
+  /// built anew only when an instance moved, or the sensor moved far.
+  void place(const CastRequest& request, const Resolver& resolver, Workers& workers);
+
+  [[nodiscard]] const MeshTree& of_mesh(std::uint32_t mesh) const { return mesh_trees_[mesh]; }
+  [[nodiscard]] const MeshTree& of_instance(std::uint32_t instance) const {
+    return mesh_trees_[scene_.instances[instance].mesh];
+  }
+
+  /// From an instance's origin to its farthest vertex, object units.
+  [[nodiscard]] double reach(std::uint32_t instance) const {
+    return mesh_reach_[scene_.instances[instance].mesh];
+  }
+
+  /// Instances that are there and have triangles.
+  [[nodiscard]] const std::vector<std::uint32_t>& instances() const { return instances_; }
+
+  /// The tree over instances(), for two of them or more; without clusters and blocks.
+  [[nodiscard]] TreeView instance_tree() const { return {nodes_.data(), nullptr, nullptr}; }
+  [[nodiscard]] const std::vector<TreeNode>& instance_nodes() const { return nodes_; }
+  /// The instance in a leaf of that tree.
+  [[nodiscard]] std::uint32_t instance_in(std::uint32_t leaf) const { return of_leaf_[leaf]; }
+  [[nodiscard]] const MeshSphere& instance_sphere() const { return sphere_; }
+  [[nodiscard]] const Eigen::Matrix3d& tree_from_sensor() const { return tree_from_sensor_; }
+  [[nodiscard]] const Eigen::Vector3d& sensor_in_tree() const { return sensor_in_tree_; }
+
+  /// From an instance's origin to its farthest vertex and to the sensor, metres: its coordinates
+  /// are rounded by 2^-53 of it.
+  [[nodiscard]] double reach_m(std::uint32_t instance) const { return reach_m_[instance]; }
+  /// The largest of them.
+  [[nodiscard]] double largest_reach_m() const { return largest_reach_m_; }
+
+ private:
+  void find_reaches(const Resolver& resolver);
+  [[nodiscard]] bool is_placed(const CastRequest& request) const;
+  void keep_poses(const CastRequest& request);
+  void build_instance_tree(Workers& workers);
+  [[nodiscard]] BoxReference reference_of(std::uint32_t instance) const;
+
+  const Scene& scene_;
+  std::vector<MeshTree> mesh_trees_;  ///< per mesh
+  std::vector<double> mesh_reach_;    ///< per mesh: to its farthest vertex, object units
+  std::vector<std::uint32_t> instances_;
+  std::vector<double> reach_m_;  ///< per instance
+  double largest_reach_m_ = 0.0;
+
+  std::vector<Pose> placed_;           ///< per instance, as the tree has them
+  std::vector<std::uint8_t> present_;  ///< likewise
+  Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< of the tree's frame, in the world
+  Eigen::Matrix3d tree_from_world_ = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d tree_from_sensor_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d sensor_in_tree_ = Eigen::Vector3d::Zero();
+  std::vector<TreeNode> nodes_;
+  std::vector<std::uint32_t> of_leaf_;
+  MeshSphere sphere_;
+};
+
+}  // namespace glidar::rays

@@ -1,0 +1,144 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/rays/ties.hpp>
+
+#include <glidar/render/rays/exact_decision.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace glidar::rays {
+namespace {
+
+/// A ray up to a distance, in the frame of a tree.
+struct Segment {
+  ObjectRay ray;
+  double margin;  ///< boxes are grown by it
+  double end;
+};
+
+/// By slabs: T. L. Kay and J. T. Kajiya, "Ray tracing complex scenes" (1986).
+bool meets(const TreeNode& node, unsigned child, const Segment& segment) {
+  double enter = 0.0;
+  double leave = segment.end;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double low = double{node.low[axis][child]} - segment.margin - segment.ray.origin[axis];
+    const double high = double{node.high[axis][child]} + segment.margin - segment.ray.origin[axis];
+    const double d = segment.ray.direction[axis];
+    if (d == 0.0) {
+      if (low > 0.0 || high < 0.0) return false;
+      continue;
+    }
+    enter = std::max(enter, std::min(low / d, high / d));
+    leave = std::min(leave, std::max(low / d, high / d));
+  }
+  return enter <= leave + segment.margin;
+}
+
+/// Calls visit(leaf) for all leaves that the segment meets.
+template <class Visit>
+void for_leaves_on(const TreeNode* nodes, std::uint32_t index, const Segment& segment,
+                   const Visit& visit) {
+  const TreeNode& node = nodes[index];
+  for (unsigned i = 0; i < 8; ++i) {
+    const std::int32_t child = node.child[i];
+    if (child == kNoChild || !meets(node, i, segment)) continue;
+    if (child < 0) {
+      visit(static_cast<std::uint32_t>(~child));
+    } else {
+      for_leaves_on(nodes, static_cast<std::uint32_t>(child), segment, visit);
+    }
+  }
+}
+
+/// Finds triangles of a scene that a beam meets up to a distance.
+class Candidates {
+ public:
+  Candidates(const CastView& cast, std::size_t beam, double end_m)
+      : cast_(cast), beam_(beam), end_m_(end_m) {}
+
+  /// Calls visit(triangle, distance in metres) for every triangle that stops the beam.
+  template <class Visit>
+  void visit_all(const Visit& visit) const {
+    const std::vector<std::uint32_t>& instances = cast_.trees.instances();
+    if (instances.size() == 1) return visit_instance(instances[0], visit);
+    const Segment segment{ray_in_tree(), kRoom * cast_.trees.largest_reach_m(), end_m_};
+    for_leaves_on(cast_.trees.instance_nodes().data(), 0, segment, [&](std::uint32_t leaf) {
+      visit_instance(cast_.trees.instance_in(leaf), visit);
+    });
+  }
+
+ private:
+  static constexpr double kRoom = 0x1p-40;  // many roundings of a coordinate
+
+  [[nodiscard]] ObjectRay ray_in_tree() const {
+    const Beams& beams = cast_.request.beams;
+    const Eigen::Matrix3d& turn = cast_.trees.tree_from_sensor();
+    ObjectRay ray{cast_.trees.sensor_in_tree(), turn * beams.directions[beam_]};
+    if (!beams.origins_m.empty()) ray.origin += turn * beams.origins_m[beam_];
+    return ray;
+  }
+
+  template <class Visit>
+  void visit_instance(std::uint32_t instance, const Visit& visit) const {
+    const InstanceView& view = cast_.resolver.view(instance);
+    const MeshTree& tree = cast_.trees.of_instance(instance);
+    const ObjectRay ray = ray_in(view, cast_.request.beams, beam_);
+    const Segment segment{ray, kRoom * cast_.trees.reach_m(instance) / view.scale,
+                          end_m_ / view.scale};
+    const HitRay rule = make_hit_ray(ray.origin, ray.direction);
+    for_leaves_on(tree.nodes.data(), 0, segment, [&](std::uint32_t leaf) {
+      const TriangleCluster& cluster = tree.clusters[leaf];
+      const std::uint32_t first = cluster.first_block * kBlockSize;
+      for (std::uint32_t slot = first; slot < first + cluster.count; ++slot) {
+        const double distance = hit_distance(rule, triangle_at(tree.blocks.data(), slot));
+        if (distance == 0.0) continue;
+        const Found found{instance,
+                          tree.blocks[slot / kBlockSize].primitive[slot % kBlockSize]};
+        if (does_stop(found)) visit(found, distance * view.scale);
+      }
+    });
+  }
+
+  [[nodiscard]] bool does_stop(const Found& found) const {
+    return stops(cast_.resolver, cast_.request.beams, beam_, cast_.request.cull_back_faces, found);
+  }
+
+  const CastView& cast_;
+  std::size_t beam_;
+  double end_m_;
+};
+
+}  // namespace
+
+double hit_distance_m(const CastView& cast, std::size_t beam, const Found& triangle) {
+  const InstanceView& view = cast.resolver.view(triangle.instance);
+  const ObjectRay ray = ray_in(view, cast.request.beams, beam);
+  const HitTriangle corners = corners_of(cast.resolver.mesh(triangle.instance), triangle.primitive);
+  return view.scale * hit_distance(make_hit_ray(ray.origin, ray.direction), corners);
+}
+
+double tie_window_m(const CastView& cast, std::size_t beam, const Found& triangle, double reach_m) {
+  const ObjectRay ray = ray_in(cast.resolver.view(triangle.instance), cast.request.beams, beam);
+  const HitTriangle corners = corners_of(cast.resolver.mesh(triangle.instance), triangle.primitive);
+  return tie_window(reach_m, corners, {ray.direction.x(), ray.direction.y(), ray.direction.z()});
+}
+
+Found lowest_of_ties(const CastView& cast, std::size_t beam, const Found& nearest) {
+  const double nearest_m = hit_distance_m(cast, beam, nearest);
+  const double reach_m = cast.trees.reach_m(nearest.instance);
+  const double end_m =
+      nearest_m + tie_window_m(cast, beam, nearest, cast.trees.largest_reach_m());
+  Found lowest = nearest;
+  Candidates(cast, beam, end_m).visit_all([&](const Found& found, double distance_m) {
+    if (!is_lower(found, lowest)) return;
+    const double both_m = 0.5 * (reach_m + cast.trees.reach_m(found.instance));
+    const double window_m = std::min(tie_window_m(cast, beam, found, both_m),
+                                     tie_window_m(cast, beam, nearest, both_m));
+    if (distance_m - nearest_m <= window_m) lowest = found;
+  });
+  return lowest;
+}
+
+}  // namespace glidar::rays

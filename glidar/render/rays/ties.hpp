@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/found.hpp>
+#include <glidar/render/rays/scene_trees.hpp>
+
+#include <cstddef>
+
+namespace glidar::rays {
+
+/// One cast, as every part of the search needs it.
+struct CastView {
+  const SceneTrees& trees;
+  const Resolver& resolver;
+  const CastRequest& request;
+};
+
+/// The distance at which a beam meets a triangle by the hit rule, metres; 0: it does not.
+double hit_distance_m(const CastView& cast, std::size_t beam, const Found& triangle);
+
+/// How much farther a triangle may be that ties with this one, metres: surfaces of two instances
+/// that lie on each other are apart by the rounding of their coordinates, kTiePart / 2 of each
+/// reach, measured across the one that the beam meets more steeply. `reach_m`: the sum of both
+/// reaches, halved, or a bound of it.
+double tie_window_m(const CastView& cast, std::size_t beam, const Found& triangle, double reach_m);
+
+/// The lowest instance and triangle of those that tie with the nearest one, see tie_window_m().
+Found lowest_of_ties(const CastView& cast, std::size_t beam, const Found& nearest);
+
+}  // namespace glidar::rays

@@ -1,0 +1,261 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// Through trees, packets and single-precision filters, beams find what the hit rule finds among all
+// triangles of all instances.
+#include <glidar/render/rays/scene_search.hpp>
+
+#include <glidar/render/rays/exact_decision.hpp>
+#include <render/renderer_suite.hpp>
+
+#include <algorithm>
+#include <bit>
+
+namespace glidar {
+namespace {
+
+using testing::builtin_scene;
+using testing::camera_beams;
+using testing::Draws;
+using testing::loose_beams;
+using testing::turned;
+
+/// A scene, a cast and its search.
+class Stage {
+ public:
+  Scene scene;
+  Beams beams;
+  Pose world_from_sensor;
+  bool cull_back_faces;
+  std::vector<std::uint8_t> present = {};
+
+  Stage(Scene all, Beams some, const Pose& pose, bool culls = false)
+      : scene(std::move(all)),
+        beams(std::move(some)),
+        world_from_sensor(pose),
+        cull_back_faces(culls),
+        resolver_(scene),
+        workers_(2),
+        search_(resolver_, workers_) {}
+
+  /// Searches all beams, 16 at a time and one by one; expects no difference.
+  std::vector<Found> search() {
+    prepare();
+    std::vector<Found> found(beams.size());
+    for (std::size_t first = 0; first < beams.size(); first += kLanes) find(first, found);
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      EXPECT_EQ(search_.beams().find(i), found[i]) << "beam " << i;
+    }
+    return found;
+  }
+
+  /// The same by the rule alone: the least distance, then the lowest of those that tie with it.
+  std::vector<Found> search_by_rule() {
+    prepare();
+    std::vector<Found> found(beams.size());
+    for (std::size_t i = 0; i < beams.size(); ++i) found[i] = nearest_of_all(i);
+    return found;
+  }
+
+  std::size_t hits(const std::vector<Found>& found) const {
+    return found.size() - static_cast<std::size_t>(std::count(found.begin(), found.end(), Found{}));
+  }
+
+ private:
+  void prepare() {
+    request_.emplace(CastRequest{.beams = beams,
+                                 .world_from_sensor = world_from_sensor,
+                                 .cull_back_faces = cull_back_faces,
+                                 .present = present});
+    resolver_.set_poses(world_from_sensor, {});
+    search_.prepare(*request_);
+  }
+
+  void find(std::size_t first, std::vector<Found>& found) const {
+    HitBlock block;
+    BeamBlock lanes;
+    lanes.has_origins = !beams.origins_m.empty();
+    block.mask = 0;
+    for (unsigned lane = 0; lane < kLanes; ++lane) {
+      const std::size_t beam = std::min(first + lane, beams.size() - 1);
+      block.mask |= static_cast<std::uint32_t>(first + lane < beams.size()) << lane;
+      block.beam[lane] = beam;
+      lanes.direction.set(lane, beams.directions[beam]);
+      if (lanes.has_origins) lanes.origin_m.set(lane, beams.origins_m[beam]);
+    }
+    search_.beams().find(lanes, block);
+    for (unsigned lane = 0; lane < kLanes; ++lane) {
+      if ((block.mask >> lane & 1U) == 0) continue;
+      found[block.beam[lane]] = {block.instance[lane], block.primitive[lane]};
+    }
+  }
+
+  struct Candidate {
+    Found found;
+    double distance_m;
+  };
+
+  [[nodiscard]] Found nearest_of_all(std::size_t beam) const {
+    const rays::CastView cast{search_.trees(), resolver_, *request_};
+    std::vector<Candidate> all;
+    for (const std::uint32_t instance : search_.trees().instances()) {
+      const Mesh& mesh = resolver_.mesh(instance);
+      for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (std::isnan(resolver_.plane(instance, t).offset)) continue;  // without area
+        const double distance_m = rays::hit_distance_m(cast, beam, {instance, t});
+        if (!(distance_m > 0.0)) continue;
+        if (!stops(resolver_, beams, beam, cull_back_faces, {instance, t})) continue;
+        all.push_back({{instance, t}, distance_m});
+      }
+    }
+    if (all.empty()) return {};
+    const auto is_before = [](const Candidate& a, const Candidate& b) {
+      return is_nearer({a.distance_m, a.found.instance, a.found.primitive},
+                       {b.distance_m, b.found.instance, b.found.primitive});
+    };
+    const Candidate nearest = *std::min_element(all.begin(), all.end(), is_before);
+    Found lowest = nearest.found;
+    for (const Candidate& c : all) {
+      const double reach_m = 0.5 * (search_.trees().reach_m(nearest.found.instance) +
+                                    search_.trees().reach_m(c.found.instance));
+      const double window_m = std::min(rays::tie_window_m(cast, beam, c.found, reach_m),
+                                       rays::tie_window_m(cast, beam, nearest.found, reach_m));
+      const bool ties = c.distance_m - nearest.distance_m <= window_m;
+      if (ties && is_lower(c.found, lowest)) lowest = c.found;
+    }
+    return lowest;
+  }
+
+  Resolver resolver_;
+  Workers workers_;
+  rays::SceneSearch search_;
+  std::optional<CastRequest> request_;
+};
+
+/// Bodies of many sizes around a point of the world.
+Scene crowd(std::size_t count, std::uint64_t seed, const Eigen::Vector3d& middle_m) {
+  Draws draws(seed);
+  Scene scene = builtin_scene("box");
+  add_model(scene, make_builtin_model("torus"));
+  const std::vector<Instance> models = scene.instances;
+  scene.instances.clear();
+  for (std::size_t i = 0; i < count; ++i) {
+    Instance instance = models[i % 8 == 0 ? 1 : 0];
+    instance.scale = std::pow(10.0, -1.0 + 2.0 * draws.next());
+    const Eigen::Vector3d at_m(draws.next() - 0.5, draws.next() - 0.5, draws.next() - 0.5);
+    instance.world_from_object = turned(6.0 * draws.next(), draws.direction(), middle_m + 60 * at_m);
+    scene.instances.push_back(instance);
+  }
+  return scene;
+}
+
+/// Beams from one point or many, in related or unrelated directions.
+Beams some_beams(std::size_t count, bool has_origins, bool is_coherent, std::uint64_t seed) {
+  Draws draws(seed);
+  std::vector<Eigen::Vector3d> directions;
+  std::vector<Eigen::Vector3d> origins;
+  Eigen::Vector3d middle = draws.direction();
+  for (std::size_t i = 0; i < count; ++i) {
+    if (i % 16 == 0) middle = draws.direction();
+    directions.push_back(is_coherent ? (middle + 0.05 * draws.direction()).normalized()
+                                     : draws.direction());
+    if (has_origins) origins.push_back(0.3 * draws.direction());
+  }
+  return loose_beams(directions, origins);
+}
+
+TEST(BeamSearch, FindsWhatTheRuleFindsAmongManyInstances) {
+  for (const bool has_origins : {false, true}) {
+    for (const bool is_coherent : {false, true}) {
+      const std::uint64_t seed = 2 * static_cast<unsigned>(has_origins) + 1;
+      Stage stage(crowd(40, seed, Eigen::Vector3d::Zero()),
+                  some_beams(320, has_origins, is_coherent, seed), Pose::Identity());
+      const std::vector<Found> found = stage.search();
+      EXPECT_GT(stage.hits(found), 30U);
+      EXPECT_EQ(found, stage.search_by_rule());
+    }
+  }
+}
+
+TEST(BeamSearch, IsExactAMillionKilometresFromTheWorldsOrigin) {
+  const Eigen::Vector3d far_m(1e9, -2e9, 5e8);
+  Stage stage(crowd(60, 3, far_m), some_beams(400, true, true, 4),
+              turned(0.3, {1, 2, 3}, far_m + Eigen::Vector3d(1.0, 2.0, 3.0)));
+  const std::vector<Found> found = stage.search();
+  EXPECT_GT(stage.hits(found), 80U);
+  EXPECT_EQ(found, stage.search_by_rule());
+}
+
+TEST(BeamSearch, FindsTheFarAmongTheNearAndTheSmallAmongTheVast) {
+  Scene scene = crowd(20, 5, Eigen::Vector3d::Zero());
+  for (const auto& [scale, distance_m] : {std::pair{6.4e6, 6.5e6}, {1e-3, 8.0}, {50.0, 1e5}}) {
+    Instance instance = scene.instances[0];  // a torus: many triangles
+    instance.scale = scale;
+    instance.world_from_object = turned(1.0, {1, 1, 0}, {0.0, 0.0, distance_m});
+    scene.instances.push_back(instance);
+  }
+  Stage stage(scene, camera_beams(32, 32, 24.0), Pose::Identity());
+  const std::vector<Found> found = stage.search();
+  EXPECT_GT(stage.hits(found), 500U);
+  EXPECT_EQ(found, stage.search_by_rule());
+}
+
+TEST(BeamSearch, SkipsWhatIsAbsentAndCullsBackFaces) {
+  for (const bool culls : {false, true}) {
+    Stage stage(crowd(40, 6, Eigen::Vector3d::Zero()), some_beams(320, false, true, 7),
+                Pose::Identity(), culls);
+    stage.present.assign(40, 1);
+    for (std::size_t i = 0; i < 40; i += 3) stage.present[i] = 0;
+    const std::vector<Found> found = stage.search();
+    for (const Found& f : found) EXPECT_TRUE(f.instance == kNoHit || f.instance % 3 != 0);
+    EXPECT_EQ(found, stage.search_by_rule());
+  }
+}
+
+TEST(BeamSearch, OfTilesOnEachOtherItReportsTheLowest) {
+  // The same square cut in other ways, placed by other poses: distances differ by rounding.
+  Scene scene = builtin_scene("plane");
+  const Instance one = scene.instances[0];
+  Draws draws(8);
+  scene.instances.clear();
+  for (int i = 0; i < 12; ++i) {
+    Instance instance = one;
+    const double quarter = 0.5 * std::numbers::pi * (i % 4);
+    instance.world_from_object = turned(0.4, {1.0, 2.0, 0.5}, {3.0, 1.0, 2.0}) *
+                                 turned(quarter, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero());
+    scene.instances.push_back(instance);
+  }
+  const Eigen::Vector3d eye = {5.0, 2.0, 7.0};
+  Stage stage(scene, camera_beams(50, 50, 60.0),
+              look_at(eye, {3.0, 1.0, 2.0}, Eigen::Vector3d::UnitZ()));
+  const std::vector<Found> found = stage.search();
+  EXPECT_GT(stage.hits(found), 400U);
+  for (const Found& f : found) EXPECT_TRUE(f.instance == 0 || f.instance == kNoHit);
+  EXPECT_EQ(found, stage.search_by_rule());
+}
+
+TEST(BeamSearch, FollowsInstancesAndSensorsThatMove) {
+  Stage stage(crowd(30, 9, Eigen::Vector3d::Zero()), some_beams(160, false, true, 10),
+              Pose::Identity());
+  for (int step = 0; step < 4; ++step) {
+    EXPECT_EQ(stage.search(), stage.search_by_rule()) << step;
+    stage.world_from_sensor.translation() += Eigen::Vector3d(0.01, 0.4, step * 3.0);
+    if (step == 2) stage.scene.instances[3].world_from_object.translation().x() += 2.0;
+  }
+}
+
+TEST(BeamSearch, FindsNothingInAnEmptySceneAndAlongBeamsThatAreNotNumbers) {
+  Scene empty = builtin_scene("box");
+  empty.instances.clear();
+  Stage none(empty, some_beams(20, false, true, 11), Pose::Identity());
+  EXPECT_EQ(none.hits(none.search()), 0U);
+  Beams beams = some_beams(32, false, true, 12);
+  beams.directions[5].setConstant(std::numeric_limits<double>::quiet_NaN());
+  Scene around = builtin_scene("box");
+  Stage inside(around, beams, Pose::Identity());
+  const std::vector<Found> found = inside.search();
+  EXPECT_EQ(found[5], Found{});
+  EXPECT_EQ(inside.hits(found), 31U);
+}
+
+}  // namespace
+}  // namespace glidar
