@@ -167,7 +167,8 @@ void register_renderer(const Stage& stage, const std::string& kind, unsigned thr
     count_rays(state);
   })->UseRealTime();
   const bool casts_rays = kind == "rays";  // the goals are its own
-  ratios.push_back({name + "cast / raw Embree", at + "raw", name + "cast", casts_rays ? 0.85 : 0.0});
+  ratios.push_back(
+      {name + "cast / raw Embree", at + "raw", name + "cast", casts_rays ? 0.85 : 0.0});
   ratios.push_back(
       {name + "simulate / raw Embree", at + "raw", name + "simulate", casts_rays ? 0.7 : 0.0});
 }

@@ -108,6 +108,7 @@ class Show {
   std::uint64_t drawn_ = 0;
   std::uint64_t keys_ = 0;  ///< letters typed
   bool was_hidden_ = false;
+  bool is_moving_ = false;  ///< when last looked at
 };
 
 /// What an event changes may show two pictures later: panels take their places one after another.
@@ -154,6 +155,7 @@ void Show::draw(Picture* picture) {
 /// Until something happens, or the next frame of a motion is due.
 void Show::wait() {
   const std::optional<double> due_s = viewer_.next_frame_s();
+  if (std::exchange(is_moving_, due_s.has_value()) && !due_s) unsettled_ = kSettling;
   if (unsettled_ > 0) {
     WindowSystem::poll();
     return;

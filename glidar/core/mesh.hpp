@@ -28,8 +28,8 @@ struct MeshOrigin {
 struct Mesh {
   std::string name;
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3f> positions_m;  ///< V
-  std::vector<Eigen::Vector3f> normals;      ///< V unit vectors; empty: flat shading
+  std::vector<Eigen::Vector3f> positions_m;         ///< V
+  std::vector<Eigen::Vector3f> normals;             ///< V unit vectors; empty: flat shading
   std::array<std::vector<Eigen::Vector2f>, 2> uvs;  ///< two sets of V, v upwards; empty: none
   std::vector<Eigen::Vector4f>
       tangents;  ///< V, xyz along +u, w = sign of the bitangent; empty: none

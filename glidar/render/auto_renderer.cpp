@@ -3,10 +3,10 @@
 #include <glidar/render/auto_renderer.hpp>
 
 #include <glidar/render/cpu_base.hpp>
-#include <glidar/render/rays/rays_renderer.hpp>
 #include <glidar/render/grid_window.hpp>
 #include <glidar/render/pinhole_only.hpp>
 #include <glidar/render/raster/raster_renderer.hpp>
+#include <glidar/render/rays/rays_renderer.hpp>
 #include <glidar/render/triangle_picture.hpp>
 
 #include <algorithm>

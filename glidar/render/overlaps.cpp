@@ -104,8 +104,8 @@ void Overlaps::prepare(const CastRequest& request) {
 /// Which of these lanes' points are in the box of one of an instance's triangles. `around` holds
 /// them all, in the tree's frame: most blocks are far from all triangles.
 std::uint32_t Overlaps::lanes_at(std::uint32_t instance, std::uint32_t lanes,
-                                    const Eigen::AlignedBox3d& around,
-                                    const Lanes3<double>& in_tree) const {
+                                 const Eigen::AlignedBox3d& around,
+                                 const Lanes3<double>& in_tree) const {
   const InstanceView& view = resolver_.view(instance);
   const rays::MeshTree& tree = trees_.of_instance(instance);
   const Eigen::Matrix3d turn =
@@ -125,7 +125,7 @@ std::uint32_t Overlaps::lanes_at(std::uint32_t instance, std::uint32_t lanes,
 }
 
 std::uint32_t Overlaps::lanes_near(const HitBlock& block, const BeamBlock& beams,
-                                       const ExactBlock& exact) const {
+                                   const ExactBlock& exact) const {
   Lanes<double> range_m;
   for (unsigned i = 0; i < kLanes; ++i) {
     range_m[i] = exact.distance[i] * resolver_.view(block.instance[i]).scale;

@@ -100,8 +100,8 @@ TEST_P(Rasterizer, DrawsPicturesLargerThanOnePart) {
   const Pose pose = look_at({4.0, 3.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Beams large = pinhole_beams(k);
   const Hits drawn = draw(scene, large, pose);
-  const Hits cast = cast_by("rays", scene,
-                            {.beams = large, .world_from_sensor = pose, .fields = kAllHitFields});
+  const Hits cast =
+      cast_by("rays", scene, {.beams = large, .world_from_sensor = pose, .fields = kAllHitFields});
   const Compared compared = compare(drawn, cast);
   EXPECT_GT(compared.hits, 500'000U);
   EXPECT_LE(compared.other_surface, 50U);

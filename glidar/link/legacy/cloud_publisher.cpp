@@ -8,6 +8,7 @@
 #include <cstring>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <utility>
 
 namespace glidar::legacy {
@@ -18,6 +19,8 @@ using std::chrono_literals::operator""ms;
 /// With keeps_newest ZeroMQ reports connections but no subscriptions, which come right after.
 constexpr auto kSettling = 1000ms;
 constexpr auto kLook = 10ms;
+/// Time for ZeroMQ's thread to take the last message of a conflating pipe.
+constexpr auto kLastMessageTaken = 250ms;
 constexpr std::int64_t kLargestHandshakeBytes = 1024;
 /// So that a flood of handshakes does not stop the clouds.
 constexpr int kMaxHandshakesAtOnce = 64;
@@ -167,6 +170,9 @@ void CloudPublisher::shut_down(std::chrono::milliseconds patience) {
     if (clouds_.publish(encode_shutdown(topic), std::max(left, 0ms))) continue;
     faults_.tell("shutdown missed", "a subscriber does not read; it may wait for more clouds");
   }
+  // The end of a conflating pipe replaces a message that libzmq has not yet taken from it.
+  if (options_.keeps_newest)
+    std::this_thread::sleep_for(std::min<std::chrono::milliseconds>(patience, kLastMessageTaken));
 }
 
 /// Of clouds and of their end, which is 2015's on a rig too.

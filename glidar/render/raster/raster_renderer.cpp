@@ -273,7 +273,7 @@ class RasterRenderer final : public Renderer {
   std::vector<Eigen::AlignedBox3d> boxes_;        ///< per mesh, in the object's frame
   std::vector<Eigen::AlignedBox3d> local_boxes_;  ///< per mesh, relative to its origin
   std::optional<Overlaps> overlaps_;
-  std::vector<std::uint8_t> has_mask_;      ///< per instance
+  std::vector<std::uint8_t> has_mask_;  ///< per instance
   PlanePoints points_;
   std::vector<raster::PixelView> views_;  ///< per instance
   std::vector<raster::ClusterRange> pieces_;

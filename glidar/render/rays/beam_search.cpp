@@ -167,8 +167,7 @@ class SceneTrace {
     const double before_m = hit_distance_m(cast_, beam, before);
     const double found_m = hit_distance_m(cast_, beam, found);
     const double apart_m = std::abs(found_m - before_m);
-    const double window_m =
-        tie_window_m(cast_, beam, found, cast_.trees.largest_reach_m());
+    const double window_m = tie_window_m(cast_, beam, found, cast_.trees.largest_reach_m());
     if (apart_m > 0.0 && !(apart_m > window_m)) tied_ |= 1U << lane;
     return is_nearer({found_m, found.instance, found.primitive},
                      {before_m, before.instance, before.primitive});

@@ -23,6 +23,7 @@
 namespace glidar::rays::GLIDAR_KERNEL {
 
 extern const Kernel kKernel;
-const Kernel kKernel = {GLIDAR_NAME(GLIDAR_KERNEL), start, test_leaf, trace, trace_single, visit_leaves};
+const Kernel kKernel = {
+    GLIDAR_NAME(GLIDAR_KERNEL), start, test_leaf, trace, trace_single, visit_leaves};
 
 }  // namespace glidar::rays::GLIDAR_KERNEL

@@ -129,8 +129,7 @@ void cast_tiles(const Job& job, const rays::Tiling& tiling, std::size_t begin, s
 
 class RaysRenderer final : public Renderer {
  public:
-  explicit RaysRenderer(std::shared_ptr<CpuBase> base)
-      : base_(std::move(base)) {
+  explicit RaysRenderer(std::shared_ptr<CpuBase> base) : base_(std::move(base)) {
     for (const Mesh& mesh : base_->resolver.scene().meshes) mesh_boxes_.push_back(bounds(mesh));
   }
 

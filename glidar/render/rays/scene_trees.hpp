@@ -67,8 +67,8 @@ class SceneTrees {
   std::vector<double> reach_m_;  ///< per instance
   double largest_reach_m_ = 0.0;
 
-  std::vector<Pose> placed_;           ///< per instance, as the tree has them
-  std::vector<std::uint8_t> present_;  ///< likewise
+  std::vector<Pose> placed_;                            ///< per instance, as the tree has them
+  std::vector<std::uint8_t> present_;                   ///< likewise
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< of the tree's frame, in the world
   Eigen::Matrix3d tree_from_world_ = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d tree_from_sensor_ = Eigen::Matrix3d::Identity();

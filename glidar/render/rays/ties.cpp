@@ -94,8 +94,7 @@ class Candidates {
       for (std::uint32_t slot = first; slot < first + cluster.count; ++slot) {
         const double distance = hit_distance(rule, triangle_at(tree.blocks.data(), slot));
         if (distance == 0.0) continue;
-        const Found found{instance,
-                          tree.blocks[slot / kBlockSize].primitive[slot % kBlockSize]};
+        const Found found{instance, tree.blocks[slot / kBlockSize].primitive[slot % kBlockSize]};
         if (does_stop(found)) visit(found, distance * view.scale);
       }
     });
@@ -128,8 +127,7 @@ double tie_window_m(const CastView& cast, std::size_t beam, const Found& triangl
 Found lowest_of_ties(const CastView& cast, std::size_t beam, const Found& nearest) {
   const double nearest_m = hit_distance_m(cast, beam, nearest);
   const double reach_m = cast.trees.reach_m(nearest.instance);
-  const double end_m =
-      nearest_m + tie_window_m(cast, beam, nearest, cast.trees.largest_reach_m());
+  const double end_m = nearest_m + tie_window_m(cast, beam, nearest, cast.trees.largest_reach_m());
   Found lowest = nearest;
   Candidates(cast, beam, end_m).visit_all([&](const Found& found, double distance_m) {
     if (!is_lower(found, lowest)) return;

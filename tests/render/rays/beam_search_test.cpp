@@ -142,7 +142,8 @@ Scene crowd(std::size_t count, std::uint64_t seed, const Eigen::Vector3d& middle
     Instance instance = models[i % 8 == 0 ? 1 : 0];
     instance.scale = std::pow(10.0, -1.0 + 2.0 * draws.next());
     const Eigen::Vector3d at_m(draws.next() - 0.5, draws.next() - 0.5, draws.next() - 0.5);
-    instance.world_from_object = turned(6.0 * draws.next(), draws.direction(), middle_m + 60 * at_m);
+    instance.world_from_object =
+        turned(6.0 * draws.next(), draws.direction(), middle_m + 60 * at_m);
     scene.instances.push_back(instance);
   }
   return scene;
