@@ -115,7 +115,7 @@ Eigen::AlignedBox3d triangle_box(const TriangleBlock& block, unsigned i) {
 
 bool has_triangle_in(const MeshTree& tree, std::int32_t index, const Eigen::AlignedBox3d& box) {
   if (index < 0) {
-    const TriangleCluster& cluster = tree.clusters[static_cast<std::size_t>(~index)];
+    const TriangleCluster& cluster = tree.clusters[static_cast<std::uint32_t>(~index)];
     for (std::uint32_t i = 0; i < cluster.count; ++i) {
       const TriangleBlock& block = tree.blocks[cluster.first_block + i / kBlockSize];
       if (triangle_box(block, i % kBlockSize).intersects(box)) return true;
