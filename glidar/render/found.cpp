@@ -15,6 +15,7 @@ Eigen::Vector2f weights(const Mesh& mesh, std::uint32_t triangle, const Eigen::V
   const Eigen::Vector3d e2 = mesh.positions_m[t[2]].cast<double>() - v0;
   const Eigen::Vector3d normal = e1.cross(e2);
   const double whole = normal.squaredNorm();
+  if (whole == 0.0) return Eigen::Vector2f::Constant(1.0F / 3.0F);
   const Eigen::Vector3d from = point - v0;
   return Eigen::Vector2d(normal.dot(from.cross(e2)) / whole, normal.dot(e1.cross(from)) / whole)
       .cast<float>();

@@ -9,7 +9,7 @@ using Box = InstanceTree::Box;
 
 /// A mesh's box in the tree's frame, metres; grown by 16 roundings of single precision.
 Box box_in(const Eigen::Matrix3d& tree_from_sensor, const InstanceView& view, const Box& box) {
-  constexpr double kSinglePart = 0x1p-20;  // of distance and size, as in ExactSearch
+  constexpr double kSinglePart = 0x1p-20;  // of distance and size, as in Overlaps
   const Eigen::Matrix<double, 3, 4> placed = tree_from_sensor * sensor_from_object(view);
   const Eigen::Vector3d middle = placed * box.center().homogeneous();
   Eigen::Vector3d half = placed.leftCols<3>().cwiseAbs() * (0.5 * box.sizes());

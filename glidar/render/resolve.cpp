@@ -3,8 +3,8 @@
 #include <glidar/render/resolve.hpp>
 
 #include <glidar/core/simd.hpp>
-#include <glidar/render/common/triangle_blocks.hpp>
 #include <glidar/render/corners.hpp>
+#include <glidar/render/grazing.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -79,11 +79,13 @@ GLIDAR_SIMD void turn_to_sensor(const Eigen::Matrix3d& sensor_from_object, const
 /// Weights of corners 1 and 2 of the hit point.
 GLIDAR_SIMD void weigh(const ExactBlock& e, const CornerBlock& c, Lanes<float>& w1,
                        Lanes<float>& w2) {
+  constexpr float kThird = 1.0F / 3.0F;
   for (unsigned i = 0; i < kLanes; ++i) {
     const CornerAreas areas = areas_around(e, c, i);
     const float whole = areas.at_0 + areas.at_1 + areas.at_2;
-    w1[i] = areas.at_1 / whole;
-    w2[i] = areas.at_2 / whole;
+    const bool has_area = whole != 0.0F;
+    w1[i] = has_area ? areas.at_1 / whole : kThird;
+    w2[i] = has_area ? areas.at_2 / whole : kThird;
   }
 }
 
@@ -258,23 +260,7 @@ void Resolver::measure(const BeamBlock& beams, HitBlock& block, ExactBlock& exac
     rest &= others_than(block, instance);
   }
   intersect_planes(exact);
-  measure_grazing(block, exact);
-}
-
-/// A plane that is met almost edge-on is met where rounding decides. The hit rule's distance is
-/// always between those of the triangle's corners.
-void Resolver::measure_grazing(const HitBlock& block, ExactBlock& exact) const {
-  constexpr double kGrazing = 0x1p-20;  // below it, the plane has lost 20 of its 52 bits
-  std::uint32_t grazing = 0;
-  for (unsigned i = 0; i < kLanes; ++i) {
-    grazing |= static_cast<std::uint32_t>(!(std::abs(exact.cosine[i]) > kGrazing)) << i;
-  }
-  for_lanes(grazing & block.mask, [&](unsigned i) {
-    const HitRay ray = make_hit_ray(exact.origin.get(i), exact.direction.get(i));
-    const double distance =
-        hit_distance(ray, corners_of(mesh(block.instance[i]), block.primitive[i]));
-    if (distance > 0.0) exact.distance[i] = distance;
-  });
+  measure_grazing(*this, block, exact);
 }
 
 void Resolver::write(const Beams& beams, const HitFields& fields, const HitBlock& block,

@@ -148,7 +148,6 @@ class Resolver {
              const ExactBlock& exact, Hits& hits) const;
 
  private:
-  void measure_grazing(const HitBlock& block, ExactBlock& exact) const;
   void write_directions(const HitBlock& block, const Lanes3<double>& front,
                         const Lanes<double>& cosine, std::vector<Eigen::Vector3f>& column) const;
   struct Corners {

@@ -70,9 +70,32 @@ inline double depth_on_edge(const Sheared& p, const Sheared& q) {
   return (p.z * to_q + q.z * to_p) / (to_p + to_q);
 }
 
-/// True when not all corners are on one side of the origin: then the origin may be on the triangle.
-inline bool reaches_around(double a, double b, double c) {
-  return std::min(std::min(a, b), c) <= 0.0 && std::max(std::max(a, b), c) >= 0.0;
+/// |x| + |y| + |z| of (p - o) x (q - o), twice the area of a triangle or a little more.
+inline double area_at(const Sheared& o, const Sheared& p, const Sheared& q) {
+  const Sheared e = {p.x - o.x, p.y - o.y, p.z - o.z};
+  const Sheared f = {q.x - o.x, q.y - o.y, q.z - o.z};
+  return std::abs(e.y * f.z - e.z * f.y) + std::abs(e.z * f.x - e.x * f.z) +
+         std::abs(e.x * f.y - e.y * f.x);
+}
+
+/// The largest of three numbers.
+inline double largest(double a, double b, double c) {
+  return std::max(std::max(a, b), c);
+}
+
+/// True for an origin on the triangle, as far as rounding tells: not all corners are on one side of
+/// it, and `volume`, its distance from the plane times twice the area, is within what rounding may
+/// make of zero. The second bound is for slivers, whose volume is always small: the distance itself
+/// is then within kTouchingHeight of the corners' size.
+inline bool is_touching(const Sheared& a, const Sheared& b, const Sheared& c, double volume) {
+  if (std::min(std::min(a.z, b.z), c.z) > 0.0 || largest(a.z, b.z, c.z) < 0.0) return false;
+  const double room = sum_in_any_order(determinant_room(c, b) * std::abs(a.z),
+                                       determinant_room(a, c) * std::abs(b.z),
+                                       determinant_room(b, a) * std::abs(c.z));
+  const auto size = [](const Sheared& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); };
+  const double area = largest(area_at(a, b, c), area_at(b, c, a), area_at(c, a, b));
+  return std::abs(volume) <= kTouching * room &&
+         std::abs(volume) <= kTouchingHeight * largest(size(a), size(b), size(c)) * area;
 }
 
 /// hit_distance() by the given product.
@@ -88,12 +111,7 @@ double distance(const HitRay& ray, const HitTriangle& triangle) {
   const bool has_positive = u > 0.0 || v > 0.0 || w > 0.0;
   if (has_negative == has_positive) return 0.0;  // outside, or edge-on: all are zero
   const double volume = sum_in_any_order(u * a.z, v * b.z, w * c.z);
-  if (reaches_around(a.z, b.z, c.z)) {
-    const double room = sum_in_any_order(determinant_room(c, b) * std::abs(a.z),
-                                         determinant_room(a, c) * std::abs(b.z),
-                                         determinant_room(b, a) * std::abs(c.z));
-    if (!(std::abs(volume) > kTouching * room)) return 0.0;
-  }
+  if (is_touching(a, b, c, volume)) return 0.0;
   double depth;
   if (w == 0.0) {
     depth = depth_on_edge(a, b);

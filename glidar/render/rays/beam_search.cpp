@@ -27,17 +27,24 @@ void set_rays(const Lanes3<double>& origin, const Lanes3<double>& direction, Ray
   std::memcpy(packet.exact_direction, &direction, sizeof(direction));
 }
 
-/// Lanes whose directions are numbers.
-std::uint32_t lanes_with_direction(const Lanes3<double>& direction) {
+/// Lanes whose directions are numbers and whose origins are within reach.
+std::uint32_t usable_lanes(const BeamBlock& beams) {
+  const Lanes3<double>& d = beams.direction;
+  const Lanes3<double>& o = beams.origin_m;
   std::uint32_t lanes = 0;
   for (unsigned i = 0; i < kLanes; ++i) {
-    const double sum = direction.x[i] + direction.y[i] + direction.z[i];
-    lanes |= static_cast<std::uint32_t>(sum == sum) << i;
+    const double sum = d.x[i] + d.y[i] + d.z[i];
+    bool is_usable = sum - sum == 0.0;
+    if (beams.has_origins) {
+      const double size = std::abs(o.x[i]) + std::abs(o.y[i]) + std::abs(o.z[i]);
+      is_usable = is_usable && size <= 3.0 * kLargestCoordinate_m;
+    }
+    lanes |= static_cast<std::uint32_t>(is_usable) << i;
   }
   return lanes;
 }
 
-/// The least float that is not below the value by more than its own rounding.
+/// A float that is surely not below the value.
 float upper(double value) {
   const auto rounded = static_cast<float>(value);
   return rounded + 0x1p-22F * std::abs(rounded) + 0x1p-120F;
@@ -167,7 +174,9 @@ class SceneTrace {
     const double before_m = hit_distance_m(cast_, beam, before);
     const double found_m = hit_distance_m(cast_, beam, found);
     const double apart_m = std::abs(found_m - before_m);
-    const double window_m = tie_window_m(cast_, beam, found, cast_.trees.largest_reach_m());
+    const double reach_m = cast_.trees.largest_reach_m();
+    const double window_m = std::max(tie_window_m(cast_, beam, found, reach_m),
+                                     tie_window_m(cast_, beam, before, reach_m));
     if (apart_m > 0.0 && !(apart_m > window_m)) tied_ |= 1U << lane;
     return is_nearer({found_m, found.instance, found.primitive},
                      {before_m, before.instance, before.primitive});
@@ -185,7 +194,7 @@ class SceneTrace {
 }  // namespace
 
 void BeamSearch::find(const BeamBlock& beams, HitBlock& block) const {
-  const std::uint32_t lanes = block.mask & lanes_with_direction(beams.direction);
+  const std::uint32_t lanes = block.mask & usable_lanes(beams);
   const std::vector<std::uint32_t>& instances = cast_.trees.instances();
   block.mask = 0;
   if (lanes == 0 || instances.empty()) return;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/rays/exact_decision.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cassert>
 #include <cmath>
@@ -67,7 +68,8 @@ double tie_window(double reach, const HitTriangle& triangle, const Vector& direc
   const Vector n = {p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2],
                     p[0] * q[1] - p[1] * q[0]};
   const double along = std::abs(dot(n, direction));
-  return kTiePart * reach * (std::sqrt(dot(n, n)) / along);
+  const double across = along > 0.0 ? std::sqrt(dot(n, n)) / along : 1.0;  // 1: without area
+  return kTiePart * reach * across;
 }
 
 void decide(const TriangleBlock* blocks, RayPacket& packet, unsigned lane, std::uint32_t slot) {
@@ -80,7 +82,9 @@ void decide(const TriangleBlock* blocks, RayPacket& packet, unsigned lane, std::
     complete_distance(blocks, packet, lane);
     const HitCandidate nearest{packet.distance[lane], 0, primitive_at(blocks, packet.slot[lane])};
     const double apart = std::abs(distance - nearest.distance);
-    if (apart > 0.0 && !(apart > tie)) packet.tied |= 1U << lane;
+    const HitTriangle before = triangle_at(blocks, packet.slot[lane]);
+    const double widest = std::max(tie, tie_room(packet, lane, before));
+    if (apart > 0.0 && !(apart > widest)) packet.tied |= 1U << lane;
     if (!is_nearer({distance, 0, primitive}, nearest)) return;
   }
   packet.slot[lane] = slot;

@@ -42,26 +42,11 @@ BoxReference make_reference(const MeshTriangles& mesh, std::size_t index) {
   return reference;
 }
 
-/// As the planes that ranges are computed from, see triangle_planes().
-bool has_area(const MeshTriangles& mesh, std::size_t index) {
-  const auto& [a, b, c] = mesh.triangles[index];
-  const Eigen::Vector3d corner = mesh.positions[a].cast<double>();
-  const Eigen::Vector3d first = mesh.positions[b].cast<double>() - corner;
-  const Eigen::Vector3d second = mesh.positions[c].cast<double>() - corner;
-  return !first.cross(second).isZero(0.0);
-}
-
-std::vector<BoxReference> make_references(const MeshTriangles& mesh, bool with_flat,
-                                          Workers& workers) {
+std::vector<BoxReference> make_references(const MeshTriangles& mesh, Workers& workers) {
   std::vector<BoxReference> references(mesh.triangles.size());
-  constexpr std::uint32_t kFlat = 1;
   workers.for_ranges(references.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      references[i] = make_reference(mesh, i);
-      references[i].unused = !with_flat && !has_area(mesh, i) ? kFlat : 0;
-    }
+    for (std::size_t i = begin; i < end; ++i) references[i] = make_reference(mesh, i);
   });
-  std::erase_if(references, [](const BoxReference& r) { return r.unused == kFlat; });
   return references;
 }
 
@@ -154,8 +139,7 @@ std::size_t MeshTree::bytes() const {
 MeshTree build_mesh_tree(const MeshTriangles& mesh, const TreeOptions& options, Workers& workers) {
   check_vertices(mesh);
   MeshTree tree;
-  std::vector<BoxReference> references =
-      make_references(mesh, options.with_flat_triangles, workers);
+  std::vector<BoxReference> references = make_references(mesh, workers);
   const SplitOptions split_options = {
       .leaf_size = std::clamp(options.cluster_size, 1U, kMaxClusterSize),
       .bins = std::clamp(options.bins, 2U, 16U),

@@ -33,9 +33,8 @@ Eigen::AlignedBox3d box_of(const MeshTree& tree);
 bool has_triangle_near(const MeshTree& tree, const Eigen::AlignedBox3d& box, double margin);
 
 struct TreeOptions {
-  std::uint32_t cluster_size = 8;   ///< most triangles of a leaf, 1 to 64
-  std::uint32_t bins = 16;          ///< places to cut per axis, 2 to 16
-  bool with_flat_triangles = true;  ///< those without area, which only rounding makes visible
+  std::uint32_t cluster_size = 8;  ///< most triangles of a leaf, 1 to 64
+  std::uint32_t bins = 16;         ///< places to cut per axis, 2 to 16
 };
 
 /// Builds the tree. Throws Error on a vertex beyond kMaxTreeCoordinate.

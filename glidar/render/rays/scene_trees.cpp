@@ -35,7 +35,7 @@ SceneTrees::SceneTrees(const Scene& scene, Workers& workers)
     : scene_(scene), reach_m_(scene.instances.size(), 0.0) {
   for (const Mesh& mesh : scene.meshes) {
     const MeshTriangles triangles{mesh.positions_m, mesh.triangles};
-    mesh_trees_.push_back(build_mesh_tree(triangles, {.with_flat_triangles = false}, workers));
+    mesh_trees_.push_back(build_mesh_tree(triangles, {}, workers));
     const Eigen::AlignedBox3d box = box_of(mesh_trees_.back());
     mesh_reach_.push_back(
         box.isEmpty() ? 0.0 : box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm());

@@ -15,7 +15,7 @@ struct alignas(16) BoxReference {
   float low[3];
   std::uint32_t index;
   float high[3];
-  std::uint32_t unused;  ///< here
+  std::uint32_t unused;
 };
 
 /// A node of a binary tree over boxes: a leaf holds references [first, first + count).

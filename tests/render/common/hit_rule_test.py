@@ -75,16 +75,25 @@ def is_crossed(signs):
     return (any(s < 0 for s in signs)) != (any(s > 0 for s in signs))
 
 
-def is_touching(signs, corners, roundings):
-    """True for an origin that is so few roundings of the coordinates from the triangle's plane."""
+def cross(u, v):
+    return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+
+
+def touching(signs, corners):
+    """How far an origin is from a triangle's plane, as parts of what counts as zero for products and for the height;
+    None if all corners are on one side, or a sliver's area is itself within rounding."""
     if min(p[2] for p in corners) > 0 or max(p[2] for p in corners) < 0:
-        return False
+        return None
     widths = [abs(p[0]) + abs(p[1]) for p in corners]
     sizes = [width + abs(p[2]) for width, p in zip(widths, corners)]
     room = sum((widths[i] * sizes[j] + widths[j] * sizes[i]) * abs(corners[k][2])
                for i, j, k in ((1, 2, 0), (0, 2, 1), (0, 1, 2)))
-    volume = sum(s * p[2] for s, p in zip(signs, corners))
-    return abs(volume) << 53 <= roundings * room
+    volume = abs(sum(s * p[2] for s, p in zip(signs, corners)))
+    a, b, c = corners
+    area = sum(abs(x) for x in cross([q - p for p, q in zip(a, b)], [q - p for p, q in zip(a, c)]))
+    if volume == 0 or area << 40 <= max(sizes)**2:
+        return Fraction(0), Fraction(0)
+    return Fraction(volume << 49, room), Fraction(volume << 44, max(sizes) * area)
 
 
 def depth(signs, corners):
@@ -110,11 +119,15 @@ class HitRule(unittest.TestCase):
             flat, shift = integers([x for p in sheared for x in p])
             corners = [flat[3 * k:3 * k + 3] for k in range(3)]
             signs = determinants(corners)
-            if not is_crossed(signs) or is_touching(signs, corners, 8):
+            if not is_crossed(signs):
                 self.assertEqual(distance, 0.0, (i, case))
                 continue
-            if is_touching(signs, corners, 32):
-                continue  # too close to what counts as touching, 16 roundings
+            parts = touching(signs, corners)
+            if parts is not None and max(parts) < 0.5 and min(parts) > 0:
+                self.assertEqual(distance, 0.0, (i, case))
+                continue
+            if parts is not None and max(parts) < 2:
+                continue  # within rounding of what counts as touching
             along = case[1][axes(case[1])[2]]
             expected = depth(signs, corners) / 2**shift / Fraction(along)
             room = Fraction(16 * ROUNDING * max(abs(p[2]) for p in sheared) / abs(along)) + Fraction(TINY)
@@ -140,7 +153,8 @@ class HitRule(unittest.TestCase):
             if min(abs(s) for s in signs) <= 4 * wrong * (width + wrong) or self.is_tiny(case):
                 continue
             ahead = depth(signs, corners) if is_crossed(signs) else 0
-            if is_crossed(signs) and (abs(ahead) <= wrong or is_touching(signs, corners, 64)):
+            parts = touching(signs, corners)
+            if is_crossed(signs) and (abs(ahead) <= wrong or (parts is not None and max(parts) < 4)):
                 continue  # the origin is on the triangle
             clear += 1
             self.assertEqual(distance > 0.0, ahead > 0, (i, case))

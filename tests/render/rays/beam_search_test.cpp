@@ -100,7 +100,6 @@ class Stage {
     for (const std::uint32_t instance : search_.trees().instances()) {
       const Mesh& mesh = resolver_.mesh(instance);
       for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-        if (std::isnan(resolver_.plane(instance, t).offset)) continue;  // without area
         const double distance_m = rays::hit_distance_m(cast, beam, {instance, t});
         if (!(distance_m > 0.0)) continue;
         if (!stops(resolver_, beams, beam, cull_back_faces, {instance, t})) continue;
@@ -234,6 +233,35 @@ TEST(BeamSearch, OfTilesOnEachOtherItReportsTheLowest) {
   EXPECT_EQ(found, stage.search_by_rule());
 }
 
+/// A square whose halves are stitched along its diagonal by a triangle of this width.
+Scene stitched_square(float width) {
+  Scene scene = builtin_scene("plane");
+  Mesh& mesh = scene.meshes[0];
+  mesh = Mesh();
+  mesh.positions_m = {{-64, -1, 0}, {0, width, 0}, {64, 1, 0}, {0, -64, 0}, {0, 64, 0}};
+  mesh.triangles = {{0, 3, 2}, {0, 1, 4}, {1, 2, 4}, {0, 2, 1}};
+  return scene;
+}
+
+TEST(BeamSearch, NoneLeaksWhereATriangleWithoutWidthStitchesOthers) {
+  Draws draws(13);
+  for (const float width : {1e-3F, 1e-9F, 1e-11F, 1e-12F, 1e-14F, 1e-30F, 0.0F}) {
+    std::vector<Eigen::Vector3d> directions;
+    std::vector<Eigen::Vector3d> origins;
+    for (int i = 0; i < 4000; ++i) {
+      const double at = 20.0 * (draws.next() - 0.5);
+      const Eigen::Vector3d target(at, at / 64.0 + width * (draws.next() - 0.5), 0.0);
+      const Eigen::Vector3d up(draws.next() - 0.5, draws.next() - 0.5, 0.2 + draws.next());
+      origins.push_back(target + (0.5 + 20.0 * draws.next()) * up);
+      directions.push_back((target - origins.back()).normalized());
+    }
+    Stage stage(stitched_square(width), loose_beams(directions, origins), Pose::Identity());
+    const std::vector<Found> found = stage.search();
+    EXPECT_EQ(stage.hits(found), found.size()) << width;
+    EXPECT_EQ(found, stage.search_by_rule()) << width;
+  }
+}
+
 TEST(BeamSearch, FollowsInstancesAndSensorsThatMove) {
   Stage stage(crowd(30, 9, Eigen::Vector3d::Zero()), some_beams(160, false, true, 10),
               Pose::Identity());
@@ -249,13 +277,15 @@ TEST(BeamSearch, FindsNothingInAnEmptySceneAndAlongBeamsThatAreNotNumbers) {
   empty.instances.clear();
   Stage none(empty, some_beams(20, false, true, 11), Pose::Identity());
   EXPECT_EQ(none.hits(none.search()), 0U);
-  Beams beams = some_beams(32, false, true, 12);
+  Beams beams = some_beams(32, true, true, 12);
   beams.directions[5].setConstant(std::numeric_limits<double>::quiet_NaN());
+  beams.origins_m[9].x() = std::numeric_limits<double>::infinity();
+  beams.origins_m[20].y() = 1e200;
   Scene around = builtin_scene("box");
   Stage inside(around, beams, Pose::Identity());
   const std::vector<Found> found = inside.search();
-  EXPECT_EQ(found[5], Found{});
-  EXPECT_EQ(inside.hits(found), 31U);
+  for (const std::size_t i : {5U, 9U, 20U}) EXPECT_EQ(found[i], Found{}) << i;
+  EXPECT_EQ(inside.hits(found), 29U);
 }
 
 }  // namespace

@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/grazing.hpp>
+
+#include <glidar/render/common/triangle_blocks.hpp>
+
+#include <bit>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+/// The plane of a triangle without area, which a beam meets where rounding gives it some: through
+/// its longest edge, across the beam as far as that allows.
+void face_beam(unsigned lane, const HitTriangle& triangle, ExactBlock& exact) {
+  const auto vector = [](const std::array<float, 3>& p) {
+    return Eigen::Vector3d(double{p[0]}, double{p[1]}, double{p[2]});
+  };
+  const Eigen::Vector3d a = vector(triangle.a);
+  Eigen::Vector3d edge = vector(triangle.b) - a;
+  const Eigen::Vector3d other = vector(triangle.c) - a;
+  if (other.squaredNorm() > edge.squaredNorm()) edge = other;
+  const Eigen::Vector3d d = exact.direction.get(lane);
+  const Eigen::Vector3d along = edge.normalized();
+  const Eigen::Vector3d normal = (along * along.dot(d) - d).normalized();
+  exact.normal.set(lane, normal);
+  exact.offset[lane] = normal.dot(a);
+  exact.cosine[lane] = normal.dot(d);
+}
+
+}  // namespace
+
+void measure_grazing(const Resolver& resolver, const HitBlock& block, ExactBlock& exact) {
+  constexpr double kGrazing = 0x1p-20;  // below it, the plane has lost 20 of its 52 bits
+  std::uint32_t unsure = 0;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const int is_steep = static_cast<int>(std::abs(exact.cosine[i]) > kGrazing);
+    const int is_ahead = static_cast<int>(exact.distance[i] > 0.0);
+    unsure |= static_cast<std::uint32_t>((is_steep & is_ahead) ^ 1) << i;
+  }
+  for (std::uint32_t lanes = unsure & block.mask; lanes != 0; lanes &= lanes - 1) {
+    const auto i = static_cast<unsigned>(std::countr_zero(lanes));
+    const HitRay ray = make_hit_ray(exact.origin.get(i), exact.direction.get(i));
+    const HitTriangle corners = corners_of(resolver.mesh(block.instance[i]), block.primitive[i]);
+    if (std::isnan(exact.offset[i])) face_beam(i, corners, exact);
+    const double distance = hit_distance(ray, corners);
+    if (distance > 0.0) exact.distance[i] = distance;
+  }
+}
+
+}  // namespace glidar
