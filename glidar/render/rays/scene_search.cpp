@@ -5,9 +5,8 @@
 namespace glidar::rays {
 
 void SceneSearch::prepare(const CastRequest& request) {
-  if (trees_ == nullptr) trees_ = std::make_unique<SceneTrees>(resolver_.scene(), workers_);
-  trees_->place(request, resolver_, workers_);
-  beams_.emplace(CastView{*trees_, resolver_, request}, kernel_);
+  trees_.place(request, resolver_, workers_);
+  beams_.emplace(CastView{trees_, resolver_, request}, kernel_);
 }
 
 }  // namespace glidar::rays

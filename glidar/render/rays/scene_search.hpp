@@ -6,18 +6,16 @@
 #include <glidar/render/rays/kernels.hpp>
 #include <glidar/render/rays/scene_trees.hpp>
 
-#include <memory>
 #include <optional>
 
 namespace glidar::rays {
 
-/// Searches what beams hit, cast after cast. Renderers over the same scene may share it. Its trees
-/// are built at the first cast.
+/// Searches what beams hit, cast after cast. Renderers over the same scene may share it.
 class SceneSearch {
  public:
-  /// Both must outlive the search.
+  /// Builds the trees of the meshes. Both must outlive the search.
   SceneSearch(const Resolver& resolver, Workers& workers)
-      : resolver_(resolver), workers_(workers) {}
+      : resolver_(resolver), workers_(workers), trees_(resolver.scene(), workers) {}
 
   /// Takes the poses of the next cast, whose request must outlive its queries; the resolver has
   /// them too.
@@ -25,13 +23,13 @@ class SceneSearch {
 
   /// The search of the cast prepared last.
   [[nodiscard]] const BeamSearch& beams() const { return *beams_; }
-  [[nodiscard]] const SceneTrees& trees() const { return *trees_; }
+  [[nodiscard]] const SceneTrees& trees() const { return trees_; }
 
  private:
   const Resolver& resolver_;
   Workers& workers_;
   const Kernel& kernel_ = select_kernel();
-  std::unique_ptr<SceneTrees> trees_;
+  SceneTrees trees_;
   std::optional<BeamSearch> beams_;
 };
 
