@@ -100,9 +100,10 @@ class Lockstep(LimitsTest):
     def test_sigterm_ends_a_request_in_work_with_words(self):
         program = self.listen("--limit", "reply-mib=100000", "--limit", "memory-mib=100000",
                               size=("--width", "512", "--height", "512"))
-        asking, other = self.client(), self.client()
-        asking.send(request(10_000))
-        self.assertTrue(self.is_answered(other))  # it is in work
+        asking = self.client()
+        self.assertTrue(self.is_answered(asking))
+        asking.send(request(10_000))  # over a connection that is there, and so before that of another
+        self.assertTrue(self.is_answered(self.client()))  # it is in work
         self.stop(program)
         self.assertEqual(self.kind_and_text(asking), (3, "request: GLIDAR was ended by a signal"))
 
