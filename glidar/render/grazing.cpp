@@ -4,7 +4,6 @@
 
 #include <glidar/render/common/triangle_blocks.hpp>
 
-#include <bit>
 #include <cmath>
 
 namespace glidar {
@@ -38,14 +37,13 @@ void measure_grazing(const Resolver& resolver, const HitBlock& block, ExactBlock
     const int is_ahead = static_cast<int>(exact.distance[i] > 0.0);
     unsure |= static_cast<std::uint32_t>((is_steep & is_ahead) ^ 1) << i;
   }
-  for (std::uint32_t lanes = unsure & block.mask; lanes != 0; lanes &= lanes - 1) {
-    const auto i = static_cast<unsigned>(std::countr_zero(lanes));
+  for_lanes(unsure & block.mask, [&](unsigned i) {
     const HitRay ray = make_hit_ray(exact.origin.get(i), exact.direction.get(i));
     const HitTriangle corners = corners_of(resolver.mesh(block.instance[i]), block.primitive[i]);
     if (std::isnan(exact.offset[i])) face_beam(i, corners, exact);
     const double distance = hit_distance(ray, corners);
     if (distance > 0.0) exact.distance[i] = distance;
-  }
+  });
 }
 
 }  // namespace glidar

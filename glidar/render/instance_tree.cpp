@@ -96,23 +96,4 @@ void InstanceTree::find_shared() {
   }
 }
 
-/// By slabs: T. L. Kay and J. T. Kajiya, "Ray tracing complex scenes" (1986).
-bool InstanceTree::meets(const Box& box, const ObjectRay& ray, double max_m) {
-  double enter = 0.0;
-  double leave = max_m;
-  for (int k = 0; k < 3; ++k) {
-    const double low = box.min()[k] - ray.origin[k];
-    const double high = box.max()[k] - ray.origin[k];
-    if (ray.direction[k] == 0.0) {
-      if (low > 0.0 || high < 0.0) return false;
-      continue;
-    }
-    const double first = low / ray.direction[k];
-    const double second = high / ray.direction[k];
-    enter = std::max(enter, std::min(first, second));
-    leave = std::min(leave, std::max(first, second));
-  }
-  return enter <= leave;
-}
-
 }  // namespace glidar

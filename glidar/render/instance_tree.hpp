@@ -17,7 +17,7 @@
 namespace glidar {
 
 /// A tree of bounding boxes over the instances of one cast, eight boxes to a node. It finds the
-/// instances near a point or along a beam without a test of each.
+/// instances near a point without a test of each.
 ///
 /// The tree has its own frame, in metres: its origin is the sensor's, and its axes are those of the
 /// largest instance. So boxes on a ground stay small, however sensor and ground are turned.
@@ -42,40 +42,26 @@ class InstanceTree {
   /// false.
   template <class Visit>
   void visit_near(const Box& box, const Visit& visit) const {
-    visit_all([&](const Box& node) { return node.intersects(box); }, visit);
-  }
-
-  /// Calls visit(instance) for every instance whose box meets the ray (in the tree's frame) before
-  /// the distance `max_m`, which visit may lower, until it returns false.
-  template <class Visit>
-  void visit_along(const ObjectRay& ray, const double& max_m, const Visit& visit) const {
-    visit_all([&](const Box& node) { return meets(node, ray, max_m); }, visit);
+    if (!order_.empty()) visit_node(level_count_ - 1, 0, box, visit);
   }
 
  private:
   static constexpr std::size_t kFan = 8;
   static constexpr std::size_t kMaxLevels = 12;  // for all numbers of 32 bits
 
-  static bool meets(const Box& box, const ObjectRay& ray, double max_m);
   void sort_instances();
   void build_nodes();
   void find_shared();
 
-  template <class Test, class Visit>
-  void visit_all(const Test& test, const Visit& visit) const {
-    if (!order_.empty()) visit_node(level_count_ - 1, 0, test, visit);
-  }
-
   /// False when visit() has ended the search.
-  template <class Test, class Visit>
-  bool visit_node(std::size_t level, std::size_t index, const Test& test,
-                  const Visit& visit) const {
-    if (!test(nodes_[level_begin_[level] + index])) return true;
+  template <class Visit>
+  bool visit_node(std::size_t level, std::size_t index, const Box& box, const Visit& visit) const {
+    if (!nodes_[level_begin_[level] + index].intersects(box)) return true;
     if (level == 0) return visit(order_[index].second);
     const std::size_t below = level_begin_[level] - level_begin_[level - 1];
     const std::size_t end = std::min(below, (index + 1) * kFan);
     for (std::size_t i = index * kFan; i < end; ++i) {
-      if (!visit_node(level - 1, i, test, visit)) return false;
+      if (!visit_node(level - 1, i, box, visit)) return false;
     }
     return true;
   }

@@ -4,6 +4,8 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <bit>
+#include <cstdint>
 
 namespace glidar {
 
@@ -34,6 +36,12 @@ struct Lanes3 {
     return {x[lane], y[lane], z[lane]};
   }
 };
+
+/// Calls body(lane) for every lane of a mask.
+template <class Body>
+void for_lanes(std::uint32_t mask, const Body& body) {
+  for (; mask != 0; mask &= mask - 1) body(static_cast<unsigned>(std::countr_zero(mask)));
+}
 
 /// out = matrix * in, lane by lane.
 template <class T>

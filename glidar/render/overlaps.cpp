@@ -93,11 +93,14 @@ std::uint32_t lanes_on(std::uint32_t instance, const HitBlock& block) {
 
 }  // namespace
 
-void Overlaps::prepare(const CastRequest& request) {
-  boxes_.clear();
-  for (std::uint32_t mesh = 0; mesh < resolver_.scene().meshes.size(); ++mesh) {
-    boxes_.push_back(box_of(trees_.of_mesh(mesh)));
+Overlaps::Overlaps(const Resolver& resolver, const rays::SceneTrees& trees)
+    : resolver_(resolver), trees_(trees) {
+  for (std::uint32_t mesh = 0; mesh < resolver.scene().meshes.size(); ++mesh) {
+    boxes_.push_back(box_of(trees.of_mesh(mesh)));
   }
+}
+
+void Overlaps::prepare(const CastRequest& request) {
   instances_.build(request, resolver_, boxes_);
 }
 

@@ -15,8 +15,7 @@ namespace glidar {
 class Overlaps {
  public:
   /// Both must outlive this.
-  Overlaps(const Resolver& resolver, const rays::SceneTrees& trees)
-      : resolver_(resolver), trees_(trees) {}
+  Overlaps(const Resolver& resolver, const rays::SceneTrees& trees);
 
   /// Takes the instances of the next cast; the resolver and the trees have its poses.
   void prepare(const CastRequest& request);

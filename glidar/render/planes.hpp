@@ -18,8 +18,4 @@ struct TrianglePlane {
 /// One per triangle, in double from the mesh's vertices.
 std::vector<TrianglePlane> triangle_planes(const Mesh& mesh);
 
-/// 1 / smallest height of every triangle; infinite or NaN for one without area. Apart from the
-/// planes, so that these are 32 bytes.
-std::vector<float> triangle_narrowness(const Mesh& mesh);
-
 }  // namespace glidar

@@ -17,12 +17,6 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr float kNaNf = std::numeric_limits<float>::quiet_NaN();
 
-/// Calls body(lane) for every lane of a mask.
-template <class Body>
-void for_lanes(std::uint32_t mask, const Body& body) {
-  for (; mask != 0; mask &= mask - 1) body(static_cast<unsigned>(std::countr_zero(mask)));
-}
-
 /// The lanes that hit another instance than this.
 std::uint32_t others_than(const HitBlock& block, std::uint32_t instance) {
   std::uint32_t others = 0;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <tuple>
 
 namespace glidar {
@@ -11,7 +12,7 @@ namespace {
 
 /// One side of a triangle. Those along one edge have equal places.
 struct HalfEdge {
-  std::uint32_t low;    ///< place of an end, see Neighbours
+  std::uint32_t low;    ///< place of an end, see number_positions()
   std::uint32_t high;   ///< place of the other; not lower
   std::uint32_t index;  ///< 3 * triangle + its corner at the beginning
 
@@ -24,14 +25,35 @@ struct HalfEdge {
   }
 };
 
+bool is_before(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+}
+
+/// The number of each vertex's position; equal numbers, same position.
+std::vector<std::uint32_t> number_positions(const std::vector<Eigen::Vector3f>& positions) {
+  std::vector<std::uint32_t> order(positions.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return is_before(positions[a], positions[b]);
+  });
+  std::vector<std::uint32_t> place(positions.size());
+  std::uint32_t places = 0;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    if (i == 0 || positions[order[i]] != positions[order[i - 1]]) ++places;
+    place[order[i]] = places - 1;
+  }
+  return place;
+}
+
 /// Edge by edge, and along an edge by the triangles' order.
-std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh, const Neighbours& neighbours) {
+std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh) {
+  const std::vector<std::uint32_t> place = number_positions(mesh.positions_m);
   std::vector<HalfEdge> halves;
   halves.reserve(3 * mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     for (std::uint32_t k = 0; k < 3; ++k) {
-      const std::uint32_t from = neighbours.place(mesh.triangles[t][k]);
-      const std::uint32_t to = neighbours.place(mesh.triangles[t][(k + 1) % 3]);
+      const std::uint32_t from = place[mesh.triangles[t][k]];
+      const std::uint32_t to = place[mesh.triangles[t][(k + 1) % 3]];
       if (from != to) halves.push_back({std::min(from, to), std::max(from, to), 3 * t + k});
     }
   }
@@ -112,8 +134,8 @@ void for_pixels_by(const PixelLine& line, double band_px, const PixelRect& part,
 
 }  // namespace
 
-std::vector<MeshEdge> mesh_edges(const Mesh& mesh, const Neighbours& neighbours) {
-  const std::vector<HalfEdge> halves = sorted_half_edges(mesh, neighbours);
+std::vector<MeshEdge> mesh_edges(const Mesh& mesh) {
+  const std::vector<HalfEdge> halves = sorted_half_edges(mesh);
   std::vector<MeshEdge> edges;
   for (std::size_t begin = 0, end = 0; begin < halves.size(); begin = end) {
     const HalfEdge& first = halves[begin];

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/render/neighbours.hpp>
 #include <glidar/render/renderer.hpp>
 #include <glidar/render/resolve.hpp>
 #include <glidar/render/triangle_picture.hpp>
@@ -24,7 +23,7 @@ struct MeshEdge {
 
 /// The edges of a mesh, each once. Vertices at one position count as one; two corners at one
 /// position have no edge between them.
-std::vector<MeshEdge> mesh_edges(const Mesh& mesh, const Neighbours& neighbours);
+std::vector<MeshEdge> mesh_edges(const Mesh& mesh);
 
 /// The pixels whose beams pass a silhouette closely: an edge with a triangle on one side only, or
 /// with one triangle that faces the sensor and one that does not. Elsewhere the surface goes on

@@ -91,30 +91,6 @@ TEST(InstanceTree, FindsTheInstancesAroundAPoint) {
   }
 }
 
-TEST(InstanceTree, FindsTheInstancesAlongARayUpToADistance) {
-  const Stage stage(300, 3);
-  Draws draws(4);
-  std::size_t all = 0;
-  for (int k = 0; k < 200; ++k) {
-    const ObjectRay ray{20.0 * Eigen::Vector3d(draws.next() - 0.5, draws.next() - 0.5, 0.0),
-                        draws.direction()};
-    const double max_m = 20.0 * draws.next();
-    std::set<std::uint32_t> found;
-    stage.tree.visit_along(ray, max_m, [&](std::uint32_t i) { return found.insert(i).second; });
-    all += found.size();
-    for (int step = 0; step <= 50; ++step) {  // points of the ray
-      const Eigen::Vector3d point = ray.origin + step / 50.0 * max_m * ray.direction;
-      for (std::uint32_t i = 0; i < stage.present.size(); ++i) {
-        if (stage.present[i] != 0 && stage.boxes[i].contains(point)) {
-          EXPECT_EQ(found.count(i), 1U) << i;
-        }
-      }
-    }
-  }
-  EXPECT_GT(all, 200U);
-  EXPECT_LT(all, 200U * 100U);
-}
-
 TEST(InstanceTree, EndsASearchWhenItIsTold) {
   const Stage stage(100, 5);
   int visited = 0;

@@ -129,11 +129,11 @@ INSTANTIATE_TEST_SUITE_P(All, Silhouettes, ::testing::ValuesIn(renderer_kinds())
 
 TEST(MeshEdges, AClosedMeshHasTwoTrianglesAtEachEdgeAndAnOpenOneEnds) {
   const Scene box = testing::builtin_scene("box");
-  const std::vector<MeshEdge> closed = mesh_edges(box.meshes[0], Neighbours(box.meshes[0]));
+  const std::vector<MeshEdge> closed = mesh_edges(box.meshes[0]);
   EXPECT_EQ(closed.size(), 18U);  // 12 and a diagonal a face, though its faces share no vertices
   for (const MeshEdge& edge : closed) EXPECT_NE(edge.second, MeshEdge::kNone);
   const Scene plane = testing::builtin_scene("plane");
-  const std::vector<MeshEdge> open = mesh_edges(plane.meshes[0], Neighbours(plane.meshes[0]));
+  const std::vector<MeshEdge> open = mesh_edges(plane.meshes[0]);
   EXPECT_EQ(open.size(), 5U);
   EXPECT_EQ(std::count_if(open.begin(), open.end(),
                           [](const MeshEdge& edge) { return edge.second == MeshEdge::kNone; }),
@@ -144,7 +144,7 @@ TEST(MeshEdges, AFanOfAHundredThousandTrianglesHasItsEdges) {
   // The work is that of a sort: over the pairs of triangles around the hub it would take minutes.
   constexpr std::uint32_t kCount = 100'000;
   const Mesh fan = cone(kCount);
-  const std::vector<MeshEdge> edges = mesh_edges(fan, Neighbours(fan));
+  const std::vector<MeshEdge> edges = mesh_edges(fan);
   EXPECT_EQ(edges.size(), 2 * kCount);
   EXPECT_EQ(std::count_if(edges.begin(), edges.end(),
                           [](const MeshEdge& edge) { return edge.second == MeshEdge::kNone; }),
@@ -156,7 +156,7 @@ TEST(MeshEdges, OfThreeTrianglesAtAnEdgeNoneIsTheOther) {
   mesh.positions_m = {{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F},  {0.0F, 1.0F, 0.0F},
                       {0.0F, 0.0F, 1.0F}, {0.0F, -1.0F, 0.0F}, {1.0F, 0.0F, 0.0F}};
   mesh.triangles = {{2, 0, 1}, {0, 3, 5}, {1, 0, 4}, {0, 0, 4}};
-  const std::vector<MeshEdge> edges = mesh_edges(mesh, Neighbours(mesh));
+  const std::vector<MeshEdge> edges = mesh_edges(mesh);
   EXPECT_EQ(edges.size(), 7U);
   const auto shared = std::find_if(edges.begin(), edges.end(), [](const MeshEdge& edge) {
     return edge.from == 0 && edge.to == 1;
@@ -173,8 +173,7 @@ TEST(SilhouettePixels, AreThoseByTheOutlineAndNotThoseByInnerEdges) {
       Eigen::Vector3d(-0.5 / 64.0 * 4.0 + 0.003 / 64.0 * 4.0, 0.01, 4.0);
   const Beams beams = camera_beams(kSide, kSide, kSide);
   Resolver resolver(scene);
-  const std::vector<std::vector<MeshEdge>> edges = {
-      mesh_edges(scene.meshes[0], Neighbours(scene.meshes[0]))};
+  const std::vector<std::vector<MeshEdge>> edges = {mesh_edges(scene.meshes[0])};
   const CastRequest request{.beams = beams};
   resolver.set_poses(Pose::Identity(), {});
   SilhouettePixels pixels(1.0 / 128.0);

@@ -83,7 +83,7 @@ inline double largest(double a, double b, double c) {
   return std::max(std::max(a, b), c);
 }
 
-/// True for an origin on the triangle, as far as rounding tells: not all corners are on one side of
+/// True for an origin on the triangle, within rounding: not all corners are on one side of
 /// it, and `volume`, its distance from the plane times twice the area, is within what rounding may
 /// make of zero. The second bound is for slivers, whose volume is always small: the distance itself
 /// is then within kTouchingHeight of the corners' size.

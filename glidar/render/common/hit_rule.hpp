@@ -16,9 +16,10 @@ inline constexpr double kMaxHitDirection = 0x1p64;
 /// Sheared coordinates below it count as zero: 5.7e-73, far below the least float, 1.4e-45.
 inline constexpr double kMinHitCoordinate = 0x1p-240;
 
-/// An origin on a triangle does not see it: 16 roundings of the determinants' products,
+/// An origin counts as on a triangle, and does not hit it, within both of these bounds: 16
+/// roundings of the products that its distance from the plane is computed from,
 inline constexpr double kTouching = 0x1p-49;
-/// and at most this part of the corners' size away from its plane.
+/// and this part of the corners' size as that distance.
 inline constexpr double kTouchingHeight = 0x1p-44;
 
 /// A ray prepared for the hit rule, in the frame of a mesh's vertices. Make it with make_hit_ray().

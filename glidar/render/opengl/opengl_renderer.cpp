@@ -38,7 +38,7 @@ class OpenglRenderer final : public Renderer {
         context_(std::move(context)) {
     for (const Mesh& mesh : scene.meshes) {
       boxes_.push_back(local_box(mesh));
-      edges_.push_back(mesh_edges(mesh, Neighbours(mesh)));
+      edges_.push_back(mesh_edges(mesh));
     }
     const opengl::FreshState state(*context_);
     gpu_ = std::make_unique<OnDevice>(scene);

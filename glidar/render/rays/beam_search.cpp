@@ -5,7 +5,6 @@
 #include <glidar/render/rays/exact_decision.hpp>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -15,11 +14,6 @@ namespace {
 
 static_assert(kLanes == kPacketSize);
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-template <class Body>
-void for_lanes(std::uint32_t lanes, const Body& body) {
-  for (; lanes != 0; lanes &= lanes - 1) body(static_cast<unsigned>(std::countr_zero(lanes)));
-}
 
 void set_rays(const Lanes3<double>& origin, const Lanes3<double>& direction, RayPacket& packet) {
   static_assert(sizeof(packet.exact_origin) == sizeof(origin));

@@ -5,8 +5,7 @@
 #include <glidar/render/rays/kernel.hpp>
 #include <glidar/render/rays/ties.hpp>
 
-#include <cstdint>
-#include <vector>
+#include <cstddef>
 
 namespace glidar::rays {
 

@@ -9,7 +9,6 @@
 #include <glidar/render/resolve.hpp>
 
 #include <array>
-#include <bit>
 #include <memory>
 #include <utility>
 
@@ -105,10 +104,8 @@ void start(const Job& job, const rays::Tiling& tiling, std::size_t i, std::size_
     if (i + 1 < end) prefetch(job.beams, tiling.tile(i + 1));
   }
   job.search.find(work.beams, work.block);
-  for (std::uint32_t lanes = work.block.mask; lanes != 0; lanes &= lanes - 1) {
-    job.resolver.prefetch(work.block, static_cast<unsigned>(std::countr_zero(lanes)),
-                          job.with_corners);
-  }
+  for_lanes(work.block.mask,
+            [&](unsigned lane) { job.resolver.prefetch(work.block, lane, job.with_corners); });
 }
 
 /// Casts tiles [begin, end). Three are under way at a time, so that what the later steps of one

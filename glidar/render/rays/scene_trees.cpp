@@ -13,7 +13,7 @@ namespace {
 
 /// Sizes of coordinates times this bound what double precision may be wrong by, some 256 roundings.
 constexpr double kRoom = 0x1p-44;
-/// The tree is built anew when the sensor moves by this part of its size: then boxes near the
+/// The tree is rebuilt when the sensor moves by this part of its size: then boxes near the
 /// sensor, which single precision rounds by 2^-24 of their distance from the origin, stay small.
 constexpr double kMoved = 0x1p-8;
 

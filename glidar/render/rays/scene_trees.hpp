@@ -22,7 +22,7 @@ class SceneTrees {
   SceneTrees(const Scene& scene, Workers& workers);
 
   /// Takes the poses of the next cast; the resolver has them too. The tree over the instances is
-  /// built anew only when an instance moved, or the sensor moved far.
+  /// rebuilt only when an instance moved, or the sensor moved far.
   void place(const CastRequest& request, const Resolver& resolver, Workers& workers);
 
   [[nodiscard]] const MeshTree& of_mesh(std::uint32_t mesh) const { return mesh_trees_[mesh]; }
