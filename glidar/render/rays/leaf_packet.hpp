@@ -57,10 +57,10 @@ struct Rows {
   }
 };
 
-/// Rays [first, first + LaneFloat::kWidth) of a packet.
-GLIDAR_INLINE Vector<LaneFloat> directions(const RayPacket& p, unsigned first) {
-  return {LaneFloat::load(p.direction[0] + first), LaneFloat::load(p.direction[1] + first),
-          LaneFloat::load(p.direction[2] + first)};
+/// Rays [first, first + LaneFloat::kWidth) of three rows.
+GLIDAR_INLINE Vector<LaneFloat> lanes_of(const float (&rows)[3][kPacketSize], unsigned first) {
+  return {LaneFloat::load(rows[0] + first), LaneFloat::load(rows[1] + first),
+          LaneFloat::load(rows[2] + first)};
 }
 
 /// A triangle's slot and the rays that it is tested with.
@@ -102,7 +102,7 @@ GLIDAR_INLINE void test_common_triangle(const TreeView& tree, RayPacket& p, std:
   const Vector<LaneFloat> n = rows.all3(6, i);
   const ErrorBounds<LaneFloat> bounds = rows.bounds(10, i);
   for (unsigned first = 0; first < kPacketSize; first += LaneFloat::kWidth) {
-    const Vector<LaneFloat> d = directions(p, first);
+    const Vector<LaneFloat> d = lanes_of(p.direction, first);
     const EdgeTest<LaneFloat> edges(dot(d, q2), dot(d, q1), dot(d, n));
     const auto left = ~(edges.lowest < -bounds.edge) & LaneFloat::mask(lanes >> first);
     if (bits(left) == 0) continue;
@@ -141,96 +141,61 @@ inline void test_common(const TreeView& tree, const TriangleCluster& cluster, Ra
   }
 }
 
-/// The origins of a packet's rays relative to a cluster, and a ball around them.
-struct LocalOrigins {
-  alignas(64) float at[3][kPacketSize];
-  float middle[3];
-  double spread;  ///< from the middle, in the largest coordinate
-  double reach;   ///< from any of them to the farthest corner
-};
-
-inline LocalOrigins local_origins(const RayPacket& p, const TriangleCluster& cluster) {
-  LocalOrigins origins;
-  double spread = 0.0;
-  double largest = 0.0;
-  for (unsigned axis = 0; axis < 3; ++axis) {
-    float* at = origins.at[axis];
-    const auto centre = static_cast<double>(cluster.centre[axis]);
-    for (unsigned i = 0; i < kPacketSize; ++i) {
-      at[i] = static_cast<float>(p.exact_origin[axis][i] + p.shift[i] * p.exact_direction[axis][i] -
-                                 centre);
-    }
-    const float low = lowest_lane(at);
-    const float high = highest_lane(at);
-    origins.middle[axis] = 0.5F * (low + high);
-    spread = larger(spread, 0.5 * (static_cast<double>(high) - static_cast<double>(low)));
-    largest = larger(largest, larger(__builtin_fabs(low), __builtin_fabs(high)));
-  }
-  origins.spread = 1.001 * spread + 0x1p-22 * largest;
-  origins.reach =
-      largest + static_cast<double>(cluster.radius) + origins.spread + p.rounding * 0x1p-26;
-  return origins;
-}
-
-/// What the rays with origins of their own need of a triangle. Rows: a, e1, e2, n, bounds.
-struct SpreadTriangle {
-  const Rows<15>& rows;
-  const LocalOrigins& origins;
-  std::uint32_t slot;
-};
-
+/// Some rays, each with its own origin, against one triangle. Rows: q1, q2, n, det about the middle
+/// of the origins; e1, e2, bounds. From an origin s beside the middle, the edge functions of a
+/// direction d are d.q1 - e1.(d x s) and d.q2 + e2.(d x s), and det is less by s.n.
 GLIDAR_INLINE void test_spread_triangle(const TreeView& tree, RayPacket& p, std::uint32_t lanes,
-                                        const SpreadTriangle& triangle) {
-  const Rows<15>& rows = triangle.rows;
-  const unsigned i = triangle.slot % kBlockSize;
-  const Vector<LaneFloat> e1 = rows.all3(3, i);
-  const Vector<LaneFloat> e2 = rows.all3(6, i);
-  const Vector<LaneFloat> n = rows.all3(9, i);
-  const ErrorBounds<LaneFloat> bounds = rows.bounds(12, i);
+                                        const Rows<19>& rows, std::uint32_t slot) {
+  const unsigned i = slot % kBlockSize;
+  const Vector<LaneFloat> q1 = rows.all3(0, i);
+  const Vector<LaneFloat> q2 = rows.all3(3, i);
+  const Vector<LaneFloat> n = rows.all3(6, i);
+  const Vector<LaneFloat> e1 = rows.all3(10, i);
+  const Vector<LaneFloat> e2 = rows.all3(13, i);
+  const ErrorBounds<LaneFloat> bounds = rows.bounds(16, i);
   for (unsigned first = 0; first < kPacketSize; first += LaneFloat::kWidth) {
-    const Vector<LaneFloat> origin = {LaneFloat::load(triangle.origins.at[0] + first),
-                                      LaneFloat::load(triangle.origins.at[1] + first),
-                                      LaneFloat::load(triangle.origins.at[2] + first)};
-    const Vector<LaneFloat> a = rows.all3(0, i) - origin;
-    const Vector<LaneFloat> d = directions(p, first);
-    const EdgeTest<LaneFloat> edges(dot(d, cross(e2, a)), dot(d, cross(a, e1)), dot(d, n));
+    const Vector<LaneFloat> d = lanes_of(p.direction, first);
+    const Vector<LaneFloat> moment = lanes_of(p.moment, first);
+    const EdgeTest<LaneFloat> edges(dot(d, q2) + dot(moment, e2), dot(d, q1) - dot(moment, e1),
+                                    dot(d, n));
     const auto outside = (edges.lowest < -bounds.edge) & (edges.highest > bounds.edge);
     const auto left = ~outside & LaneFloat::mask(lanes >> first);
     if (bits(left) == 0) continue;
-    take(tree, p, {first, left, triangle.slot}, edges, dot(a, n), bounds);
+    const LaneFloat det = rows.all(9, i) - dot(lanes_of(p.offset, first), n);
+    take(tree, p, {first, left, slot}, edges, det, bounds);
   }
 }
 
 /// Some rays, each with its own origin, against the triangles of a cluster. The setup about the
-/// middle of the origins only rejects: moved by the spread, an edge function changes by at most
-/// 1.8 spread (s1 + s2), and det by spread s1 s2.
+/// middle of the origins rejects for all rays: moved by the spread, an edge function changes by at
+/// most 1.8 spread (s1 + s2), and det by spread s1 s2.
 inline void test_spread(const TreeView& tree, const TriangleCluster& cluster, RayPacket& p,
-                        std::uint32_t lanes) {
-  const LocalOrigins origins = local_origins(p, cluster);
-  if (!(origins.reach < kMaxReach)) return decide_all(tree, cluster, p, lanes);
-  const float scaled = scaled_reach(origins.reach);
-  const auto spread = static_cast<float>(origins.spread);
+                        std::uint32_t lanes, const LocalOrigin& origin) {
+  const float scaled = scaled_reach(origin.reach);
+  const auto spread = static_cast<float>(p.spread);
   const Float8 edge_room =
       Float8::all(-(2.0F + 1.81F * spread / scaled));  // bounds.edge > scaled (s1 + s2)
   const Float8 det_room = Float8::all(spread * (1.01F / (10.0F * 0x1p-24F)));
   const DirectionBox box(p);
   for (std::uint32_t b = 0; b < block_count(cluster.count); ++b) {
     const std::uint32_t block = cluster.first_block + b;
-    const BlockSetup s = set_up(tree.blocks[block], cluster, origins.middle, scaled);
+    const BlockSetup s = set_up(tree.blocks[block], cluster, origin.at, scaled);
     const Float8 largest =
         largest_edge(box, flip_sign(s.q1, s.det), flip_sign(s.q2, s.det), flip_sign(s.n, s.det));
     const Mask8 faces = magnitude(s.det) > multiply_add(s.bounds.den, det_room, s.bounds.det);
     const Mask8 outside = largest < s.bounds.edge * edge_room;
     const std::uint32_t left = ~bits(outside & faces) & present(cluster, b);
     if (left == 0) continue;
-    Rows<15> rows;
-    rows.set(0, s.corners.a);
-    rows.set(3, s.corners.e1);
-    rows.set(6, s.corners.e2);
-    rows.set(9, s.n);
-    rows.set(12, s.bounds);
+    Rows<19> rows;
+    rows.set(0, s.q1);
+    rows.set(3, s.q2);
+    rows.set(6, s.n);
+    rows.set(9, s.det);
+    rows.set(10, s.corners.e1);
+    rows.set(13, s.corners.e2);
+    rows.set(16, s.bounds);
     for_bits(left, [&](unsigned i) {
-      test_spread_triangle(tree, p, lanes, {rows, origins, block * kBlockSize + i});
+      test_spread_triangle(tree, p, lanes, rows, block * kBlockSize + i);
     });
   }
 }
@@ -244,10 +209,11 @@ inline void test_leaf(const TreeView& tree, std::uint32_t index, RayPacket& p,
     for_bits(lanes, [&](unsigned lane) { test_ray(tree, cluster, p, lane); });
     return;
   }
-  if (!p.has_common_origin) return test_spread(tree, cluster, p, lanes);
-  const LocalOrigin origin = local_origin(p, 0, cluster);
+  LocalOrigin origin = local_origin(p.middle_origin, cluster, p.rounding);
+  origin.reach += p.spread;
   if (!(origin.reach < kMaxReach)) return decide_all(tree, cluster, p, lanes);
-  test_common(tree, cluster, p, lanes, origin);
+  if (p.has_common_origin) return test_common(tree, cluster, p, lanes, origin);
+  test_spread(tree, cluster, p, lanes, origin);
 }
 
 }  // namespace glidar::rays::GLIDAR_KERNEL

@@ -22,24 +22,33 @@ GLIDAR_INLINE void for_bits(std::uint32_t set, const Act& act) {
   for (; set != 0; set &= set - 1) act(static_cast<unsigned>(__builtin_ctz(set)));
 }
 
-/// The origin of a ray, moved, relative to a cluster's centre.
+/// An origin relative to a cluster's centre.
 struct LocalOrigin {
   float at[3];
   double reach;  ///< to the farthest corner, in the largest coordinate
 };
 
-GLIDAR_INLINE LocalOrigin local_origin(const RayPacket& p, unsigned lane,
-                                       const TriangleCluster& cluster) {
+GLIDAR_INLINE LocalOrigin local_origin(const double (&of_rays)[3], const TriangleCluster& cluster,
+                                       double rounding) {
   LocalOrigin origin;
   double largest = 0.0;
   for (unsigned axis = 0; axis < 3; ++axis) {
-    const double x = p.exact_origin[axis][lane] + p.shift[lane] * p.exact_direction[axis][lane] -
-                     static_cast<double>(cluster.centre[axis]);
+    const double x = of_rays[axis] - static_cast<double>(cluster.centre[axis]);
     origin.at[axis] = static_cast<float>(x);
     largest = larger(largest, __builtin_fabs(x));
   }
-  origin.reach = largest + static_cast<double>(cluster.radius) + p.rounding * 0x1p-26;
+  origin.reach = largest + static_cast<double>(cluster.radius) + rounding * 0x1p-26;
   return origin;
+}
+
+/// The origin of one ray, moved.
+GLIDAR_INLINE LocalOrigin local_origin(const RayPacket& p, unsigned lane,
+                                       const TriangleCluster& cluster) {
+  double moved[3];
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    moved[axis] = p.exact_origin[axis][lane] + p.shift[lane] * p.exact_direction[axis][lane];
+  }
+  return local_origin(moved, cluster, p.rounding);
 }
 
 /// The rule for one triangle and some rays.

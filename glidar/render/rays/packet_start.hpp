@@ -108,6 +108,38 @@ GLIDAR_INLINE bool all_start_alike(const RayPacket& p) {
   return others == 0;
 }
 
+/// The moved origins relative to their middle.
+GLIDAR_INLINE void find_offsets(RayPacket& p) {
+  p.spread = 0.0;
+  for (unsigned axis = 0; axis < 3; ++axis) {
+    p.middle_origin[axis] = p.exact_origin[axis][0];
+    if (p.has_common_origin) continue;
+    alignas(64) double moved[kPacketSize];
+    double low = kLargest;
+    double high = -kLargest;
+    for (unsigned i = 0; i < kPacketSize; ++i) {
+      moved[i] = p.exact_origin[axis][i] + p.shift[i] * p.exact_direction[axis][i];
+      low = moved[i] < low ? moved[i] : low;
+      high = larger(high, moved[i]);
+    }
+    const double middle = 0.5 * low + 0.5 * high;
+    p.middle_origin[axis] = middle;
+    p.spread = larger(p.spread, larger(high - middle, middle - low));
+    for (unsigned i = 0; i < kPacketSize; ++i) {
+      p.offset[axis][i] = static_cast<float>(moved[i] - middle);
+    }
+  }
+  if (p.has_common_origin) return;
+  for (unsigned i = 0; i < kPacketSize; ++i) {
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const unsigned next = (axis + 1) % 3;
+      const unsigned last = (axis + 2) % 3;
+      p.moment[axis][i] =
+          p.direction[next][i] * p.offset[last][i] - p.direction[last][i] * p.offset[next][i];
+    }
+  }
+}
+
 /// Rays that are not active repeat the first active one, so that bounds of all are those of the
 /// active; they are never tested.
 GLIDAR_INLINE void repeat_ray(RayPacket& p, std::uint32_t active) {
@@ -142,6 +174,7 @@ inline void start(RayPacket& p, const MeshSphere& sphere, std::uint32_t active) 
   p.rounding = 0.0;
   for (const double r : rounding) p.rounding = larger(p.rounding, r);
   p.has_common_origin = all_start_alike(p);
+  find_offsets(p);
   bound_directions(p);
 }
 

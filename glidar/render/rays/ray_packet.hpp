@@ -23,6 +23,9 @@ struct alignas(64) RayPacket {
   /// by the ray in single precision.
   float origin_low[3][kPacketSize];
   float origin_high[3][kPacketSize];
+  /// From middle_origin to each moved origin, and direction x offset. Unset if all are equal.
+  float offset[3][kPacketSize];
+  float moment[3][kPacketSize];
   /// What is known of the distance by the rule, minus shift: it is between these. Infinite: no hit.
   float low[kPacketSize];
   float high[kPacketSize];
@@ -34,9 +37,11 @@ struct alignas(64) RayPacket {
   double shift[kPacketSize];
   double distance[kPacketSize];  ///< to the nearest triangle by the rule, where `known` has a bit
 
-  std::uint32_t active;    ///< bit i: ray i is traced
-  bool has_common_origin;  ///< all origins are equal and no ray is moved
-  float middle[3];         ///< of the active directions: each is within `half` of it
+  std::uint32_t active;     ///< bit i: ray i is traced
+  bool has_common_origin;   ///< all origins are equal and no ray is moved
+  double middle_origin[3];  ///< of the moved origins
+  double spread;            ///< no moved origin is farther from it, in any coordinate
+  float middle[3];          ///< of the active directions: each is within `half` of it
   float half[3];
   /// 2 |shift| + |o|_1 of the worst ray: origins relative to a cluster are computed in double, with
   /// errors of 2^-53 of it; the kernels allow 2^-26 of it before multiplying with 2^-24.
