@@ -24,6 +24,16 @@ double in_front_m(const SurfacePoint& a, const Eigen::Vector3d& from_a_to_b) {
   return a.normal.dot(from_a_to_b) / std::max(a.cos_incidence, kGrazing);
 }
 
+/// True when all rays hit, and the same triangle.
+bool is_one_triangle(const Hits& hits, std::size_t first, std::size_t count) {
+  unsigned others = 0;
+  for (std::size_t i = first; i < first + count; ++i) {
+    others |= static_cast<unsigned>(hits.instance[i] != hits.instance[first]) |
+              static_cast<unsigned>(hits.primitive[i] != hits.primitive[first]);
+  }
+  return others == 0;
+}
+
 using Labels = std::vector<std::uint16_t>;
 
 /// Joins the sets of two members; a set's number is its first member.
@@ -54,6 +64,8 @@ bool has_gap(const SurfacePoint& a, const SurfacePoint& b) {
 
 void BeamSurfaces::find(const Beams& rays, const Hits& hits, std::size_t first, std::size_t count) {
   points_.clear();
+  of_ray_.assign(count, 0);
+  if (is_one_triangle(hits, first, count)) return;
   for (std::size_t k = 0; k < count; ++k) {
     const std::size_t i = first + k;
     if (hits.instance[i] == kNoHit) continue;
@@ -65,7 +77,6 @@ void BeamSurfaces::find(const Beams& rays, const Hits& hits, std::size_t first, 
     point.range_m = hits.range_m[i];
     point.ray = static_cast<std::uint32_t>(k);
   }
-  of_ray_.assign(count, 0);
   label();
 }
 

@@ -5,6 +5,7 @@
 #include <glidar/core/elementary.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/light_speed.hpp>
+#include <glidar/core/simd.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -22,24 +23,74 @@ struct Group {
   std::size_t end;
 };
 
-/// exp(-y) from 0 on, nothing beyond a pulse's reach. Most paths of a footprint are near each
-/// other: then its series to y^4, whose next term is below 1e-11, is quicker.
-double fading(double y) {
-  constexpr double kSmall = 1.0 / 64.0;
-  if (y >= kSmall) return y < 0.5 * kReach * kReach ? natural_exp(-y) : 0.0;
+constexpr double kSmall = 1.0 / 64.0;
+
+/// exp(-y) from 0 to kSmall, by its series to y^4, whose next term is below 1e-11.
+inline double slight_fading(double y) {
   return 1.0 - y * (1.0 - y * (1.0 / 2.0 - y * (1.0 / 6.0 - y * (1.0 / 24.0))));
 }
 
-/// The sum of the group's pulses at a range.
-double waveform(const EchoWork& work, const Group& group, double sigma_m, double range_m) {
-  const double per_sigma = 1.0 / sigma_m;
-  double sum = 0.0;
-  for (std::size_t i = group.begin; i < group.end; ++i) {
-    const double x = (work.path[i].range_m - range_m) * per_sigma;
-    sum += work.path[i].signal * fading(0.5 * x * x);
-  }
-  return sum;
+/// exp(-y), nothing beyond a pulse's reach.
+inline double strong_fading(double y) {
+  return y < 0.5 * kReach * kReach ? natural_exp(-y) : 0.0;
 }
+
+/// exp(-y) from 0 on. Most paths of a footprint are near each other: then the series is quicker.
+double fading(double y) {
+  return y < kSmall ? slight_fading(y) : strong_fading(y);
+}
+
+/// The sum of the group's pulses, in samples at regular ranges.
+class Waveform {
+ public:
+  Waveform(const EchoWork& work, const Group& group, double sigma_m)
+      : work_(work), group_(group), per_sigma_(1.0 / sigma_m), step_m_(kStep * sigma_m) {}
+
+  /// The range of sample k; 0 is at the nearest path.
+  [[nodiscard]] double place_m(std::ptrdiff_t k) const {
+    return work_.path[group_.begin].range_m + static_cast<double>(k) * step_m_;
+  }
+
+  /// Sample k; rising from -1 on.
+  double at(std::ptrdiff_t k) {
+    if (k >= first_ + kAtOnce) sample_from(k);
+    return samples_[static_cast<std::size_t>(k - first_)];
+  }
+
+ private:
+  static constexpr std::ptrdiff_t kAtOnce = 16;
+
+  void sample_from(std::ptrdiff_t k) {
+    first_ = k;
+    samples_.fill(0.0);
+    std::array<double, kAtOnce> places_m;
+    for (std::size_t j = 0; j < places_m.size(); ++j) {
+      places_m[j] = place_m(first_ + static_cast<std::ptrdiff_t>(j));
+    }
+    for (std::size_t i = group_.begin; i < group_.end; ++i) {
+      const Path& path = work_.path[i];
+      add_pulse(path.range_m, path.signal, per_sigma_, places_m.data(), samples_.data());
+    }
+  }
+
+  GLIDAR_SIMD static void add_pulse(double range_m, double signal, double per_sigma,
+                                    const double* places_m, double* samples) {
+    for (std::ptrdiff_t j = 0; j < kAtOnce; ++j) {
+      const double x = (range_m - places_m[j]) * per_sigma;
+      const double y = 0.5 * x * x;
+      const double slight = slight_fading(y);
+      const double strong = strong_fading(y);
+      samples[j] += signal * (y < kSmall ? slight : strong);
+    }
+  }
+
+  const EchoWork& work_;
+  Group group_;
+  double per_sigma_;
+  double step_m_;
+  std::ptrdiff_t first_ = -1 - kAtOnce;
+  std::array<double, kAtOnce> samples_;
+};
 
 /// The stronger of two paths, at the same strength the nearer.
 bool is_stronger(const Path& a, const Path& b) {
@@ -106,13 +157,11 @@ double peak_height(double before, double at, double after) {
 /// Cuts a wide group at the valleys of its waveform. Paths beyond kReach of a valley are skipped by
 /// waveform().
 void split(const Group& group, double sigma_m, EchoWork& work) {
-  const double start_m = work.path[group.begin].range_m;
-  const double end_m = work.path[group.end - 1].range_m;
-  const double step_m = kStep * sigma_m;
-  const auto samples = static_cast<std::size_t>(std::ceil((end_m - start_m) / step_m)) + 1;
-  const auto place = [&](std::size_t k) { return start_m + static_cast<double>(k) * step_m; };
-  double before = waveform(work, group, sigma_m, start_m - step_m);
-  double at = waveform(work, group, sigma_m, start_m);
+  const double extent_m = work.path[group.end - 1].range_m - work.path[group.begin].range_m;
+  const auto samples = static_cast<std::ptrdiff_t>(std::ceil(extent_m / (kStep * sigma_m))) + 1;
+  Waveform waveform(work, group, sigma_m);
+  double before = waveform.at(-1);
+  double at = waveform.at(0);
   double height = 0.0;
   bool rose = true;
   std::size_t from = group.begin;
@@ -124,13 +173,13 @@ void split(const Group& group, double sigma_m, EchoWork& work) {
     from = to;
     height = 0.0;
   };
-  for (std::size_t k = 0; k < samples; ++k) {
-    const double after = waveform(work, group, sigma_m, place(k + 1));
+  for (std::ptrdiff_t k = 0; k < samples; ++k) {
+    const double after = waveform.at(k + 1);
     if (at >= before && at > after) {
       height = std::max(height, peak_height(before, at, after));
       rose = false;
     } else if (!rose && at <= before && at < after) {
-      const double valley_m = place(k);
+      const double valley_m = waveform.place_m(k);
       std::size_t to = from;
       while (to < group.end && work.path[to].range_m < valley_m) ++to;
       close(to);
