@@ -117,7 +117,7 @@ void register_sub_cast(const Stage& stage, unsigned threads, const std::string& 
       renderer->cast({.beams = rays,
                       .world_from_sensor = Pose::Identity(),
                       .world_from_instance = {},
-                      .fields = {.shading = true, .reflectance = true}},
+                      .fields = {.shading = true, .diffuse = true}},
                      hits);
     }
     count_rays(stage, state);

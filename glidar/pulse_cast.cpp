@@ -50,7 +50,7 @@ bool has_mirrors(const Scene& scene) {
 
 HitFields with_light(HitFields fields) {
   fields.shading = true;
-  fields.reflectance = true;
+  fields.diffuse = true;
   return fields;
 }
 

@@ -73,7 +73,8 @@ Started start(const Setup& setup, const HitFields& fields, Frame& frame) {
   const Sensor& sensor = setup.sensor;
   HitFields needed = fields;
   needed.shading = true;  // the light needs them
-  needed.reflectance = true;
+  needed.diffuse = needed.diffuse || sensor.pulse.has_value();
+  needed.reflectance = needed.reflectance || !sensor.pulse;
   needed.normal = needed.normal || sensor.projector_m.has_value();
   add_needs(sensor.noise, needed);
   return {setup, frame, aimed_beams(sensor.noise, setup.beams, setup.renderer.workers(), frame),

@@ -25,6 +25,7 @@ void resize(Hits& hits, std::size_t size, const HitFields& fields) {
   hits.cos_shading.resize(size_if(fields.shading));
   hits.barycentrics.resize(size_if(fields.barycentrics));
   hits.colour.resize(size_if(fields.colour));
+  hits.diffuse.resize(size_if(fields.diffuse));
   hits.reflectance.resize(size_if(fields.reflectance));
   hits.object_point_m.resize(size_if(fields.object_point));
   hits.noise_scale.resize(size_if(fields.noise_scale));
@@ -42,6 +43,7 @@ void copy_hit(const Hits& from, std::size_t source, const HitFields& fields, Hit
   if (fields.shading) to.cos_shading[target] = from.cos_shading[source];
   if (fields.barycentrics) to.barycentrics[target] = from.barycentrics[source];
   if (fields.colour) to.colour[target] = from.colour[source];
+  if (fields.diffuse) to.diffuse[target] = from.diffuse[source];
   if (fields.reflectance) to.reflectance[target] = from.reflectance[source];
   if (fields.object_point) to.object_point_m[target] = from.object_point_m[source];
   if (fields.noise_scale) to.noise_scale[target] = from.noise_scale[source];
@@ -68,6 +70,7 @@ void write_misses(const HitFields& fields, std::size_t first, std::size_t count,
   fill_vectors(fields.barycentrics, hits.barycentrics, kNaNf);
   fill_vectors(fields.object_point, hits.object_point_m, kNaN);
   fill_vectors(fields.colour, hits.colour, 0.0F);
+  fill(fields.diffuse, hits.diffuse, 0.0F);
   fill(fields.reflectance, hits.reflectance, Reflectance{});
   fill(fields.noise_scale, hits.noise_scale, 1.0F);
 }

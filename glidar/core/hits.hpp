@@ -21,6 +21,7 @@ struct HitFields {
   bool shading = false;
   bool barycentrics = false;
   bool colour = false;
+  bool diffuse = false;
   bool reflectance = false;
   bool object_point = false;
   bool noise_scale = false;
@@ -34,6 +35,7 @@ inline constexpr HitFields kAllHitFields = {.depth = true,
                                             .shading = true,
                                             .barycentrics = true,
                                             .colour = true,
+                                            .diffuse = true,
                                             .reflectance = true,
                                             .object_point = true,
                                             .noise_scale = true,
@@ -50,8 +52,8 @@ struct Reflectance {
 
 /// Geometric truth per beam: no noise, no radiometry. N = number of beams. Range, instance and
 /// primitive are always there; the other columns are empty unless asked for.
-/// A miss has range NaN, ids kNoHit and NaN (colour and reflectance: 0, noise scale: 1) in every
-/// other column. Normals are unit vectors in the sensor's frame, turned towards the sensor.
+/// A miss has range NaN, ids kNoHit and NaN (colour, diffuse and reflectance: 0, noise scale: 1) in
+/// every other column. Normals are unit vectors in the sensor's frame, turned towards the sensor.
 struct Hits {
   std::vector<double> range_m;           ///< N, along the beam from its origin
   std::vector<std::uint32_t> instance;   ///< N, index into Scene::instances
@@ -65,6 +67,7 @@ struct Hits {
                                    ///< surface turns away though its triangle does not
   std::vector<Eigen::Vector2f> barycentrics;  ///< N, weights of corners 1 and 2
   std::vector<Eigen::Vector3f> colour;   ///< N, diffuse rgb: material x texture x vertex colour
+  std::vector<float> diffuse;            ///< N, Reflectance::diffuse alone, which pulses see
   std::vector<Reflectance> reflectance;  ///< N
   std::vector<Eigen::Vector3d>
       object_point_m;              ///< N, the hit in the object's own frame, before scale

@@ -37,11 +37,17 @@ void validate(const Instance& instance, const Scene& scene) {
 }
 
 void validate(const Texture& texture) {
-  const std::size_t size = std::size_t{texture.width} * texture.height * texture.channels;
-  if (size > 0 && texture.channels <= 4 && texture.texels.size() == size) return;
+  constexpr std::size_t kMostTexels = std::size_t{1} << 30U;
+  const std::size_t texels = std::size_t{texture.width} * texture.height;
+  const std::size_t size = texels * texture.channels;
+  if (size > 0 && texture.channels <= 4 && texture.texels.size() == size && texels <= kMostTexels) {
+    return;
+  }
   throw Error({.where = "texture '" + texture.name + "'",
-               .found = std::to_string(texture.texels.size()) + " bytes",
-               .allowed = "width x height x channels bytes, 1 to 4 channels, at least one texel",
+               .found = std::to_string(texture.texels.size()) + " bytes, " +
+                        std::to_string(texture.width) + " x " + std::to_string(texture.height) +
+                        " texels",
+               .allowed = "width x height x channels bytes, 1 to 4 channels, 1 to 2^30 texels",
                .remedy = ""});
 }
 

@@ -122,8 +122,8 @@ bool has_mask(const Scene& scene, const Instance& instance) {
 }
 
 bool needs_corners(const HitFields& fields) {
-  return fields.barycentrics || fields.shading_normal || fields.shading || fields.colour ||
-         fields.reflectance || fields.noise_scale;
+  return fields.barycentrics || fields.shading_normal || fields.shading ||
+         SurfaceColours::needed(fields);
 }
 
 InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
@@ -167,27 +167,21 @@ GLIDAR_SIMD void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes
   if (!beams.has_origins) return;
   Lanes3<double> offset_m;
   rotate(view.object_from_sensor, beams.origin_m, offset_m);
-  for (unsigned i = 0; i < kLanes; ++i) origin.x[i] += offset_m.x[i] / view.scale;
-  for (unsigned i = 0; i < kLanes; ++i) origin.y[i] += offset_m.y[i] / view.scale;
-  for (unsigned i = 0; i < kLanes; ++i) origin.z[i] += offset_m.z[i] / view.scale;
+  if (view.scale != 1.0) {  // divisions take as long as all the rest
+    for (unsigned i = 0; i < kLanes; ++i) offset_m.x[i] /= view.scale;
+    for (unsigned i = 0; i < kLanes; ++i) offset_m.y[i] /= view.scale;
+    for (unsigned i = 0; i < kLanes; ++i) offset_m.z[i] /= view.scale;
+  }
+  for (unsigned i = 0; i < kLanes; ++i) origin.x[i] += offset_m.x[i];
+  for (unsigned i = 0; i < kLanes; ++i) origin.y[i] += offset_m.y[i];
+  for (unsigned i = 0; i < kLanes; ++i) origin.z[i] += offset_m.z[i];
 }
 
-Resolver::Resolver(const Scene& scene) : scene_(scene) {
+Resolver::Resolver(const Scene& scene) : scene_(scene), colours_(scene) {
   planes_.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
     planes_.push_back(triangle_planes(mesh));
     twins_.push_back(first_twins(mesh));
-  }
-  looks_.reserve(scene.instances.size());
-  for (const Instance& instance : scene.instances) {
-    std::vector<SlotLook>& looks = looks_.emplace_back();
-    for (const std::uint32_t index : instance.materials) {
-      const Material& material = scene.materials[index];
-      const Mesh& mesh = scene.meshes[instance.mesh];
-      looks.push_back({.plain = plain_colour(material),
-                       .has_texture = has_texture(material, mesh),
-                       .has_normal_map = has_normal_map(material, mesh)});
-    }
   }
   known_.reserve(scene.instances.size());
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
@@ -203,10 +197,10 @@ Resolver::Resolver(const Scene& scene) : scene_(scene) {
          .normals = mesh.normals.empty() ? nullptr : mesh.normals.data(),
          .planes = planes_[instance.mesh].data(),
          .twins = may_swap ? twins.data() : nullptr,
-         .slots = mesh.material_slots.empty() ? nullptr : mesh.material_slots.data(),
-         .looks = looks_[i].data(),
-         .has_normal_map = std::any_of(looks_[i].begin(), looks_[i].end(),
-                                       [](const SlotLook& look) { return look.has_normal_map; }),
+         .has_normal_map = std::any_of(instance.materials.begin(), instance.materials.end(),
+                                       [&](std::uint32_t material) {
+                                         return has_normal_map(scene.materials[material], mesh);
+                                       }),
          .is_masked = has_mask(scene, instance)});
   }
 }
@@ -331,8 +325,7 @@ void Resolver::write_surface(const HitFields& fields, const HitBlock& block,
     for_lanes(block.mask, [&](unsigned i) { hits.barycentrics[block.beam[i]] = {w1[i], w2[i]}; });
   }
   if (with_normals) write_shading(fields, block, exact, {w1, w2, corners.normal}, hits);
-  if (fields.colour || fields.reflectance || fields.noise_scale)
-    write_colours(fields, block, w1, w2, hits);
+  if (SurfaceColours::needed(fields)) colours_.write(fields, block, w1, w2, hits);
 }
 
 SurfacePlace Resolver::place_of(const HitBlock& block, unsigned lane, const Lanes<float>& w1,
@@ -344,28 +337,11 @@ SurfacePlace Resolver::place_of(const HitBlock& block, unsigned lane, const Lane
 void Resolver::bend_normals(const HitBlock& block, const Lanes<float>& w1, const Lanes<float>& w2,
                             Lanes3<double>& normals) const {
   for_lanes(block.mask, [&](unsigned i) {
-    if (!known_[block.instance[i]].has_normal_map || !look(block, i).has_normal_map) return;
+    if (!known_[block.instance[i]].has_normal_map) return;
     const SurfacePlace place = place_of(block, i, w1, w2);
+    if (!has_normal_map(material_at(scene_, place), place.mesh)) return;
     const Eigen::Vector3f smooth = normals.get(i).cast<float>();
     normals.set(i, bent_normal(scene_, place, smooth).cast<double>());
-  });
-}
-
-void Resolver::write_colours(const HitFields& fields, const HitBlock& block, const Lanes<float>& w1,
-                             const Lanes<float>& w2, Hits& hits) const {
-  for_lanes(block.mask, [&](unsigned i) {
-    const SlotLook& known = look(block, i);
-    const std::size_t beam = block.beam[i];
-    if (!known.has_texture) {
-      if (fields.colour) hits.colour[beam] = known.plain.rgb;
-      if (fields.reflectance) hits.reflectance[beam] = known.plain.reflectance;
-      if (fields.noise_scale) hits.noise_scale[beam] = known.plain.noise_scale;
-      return;
-    }
-    const SurfaceColour colour = colour_at(scene_, place_of(block, i, w1, w2));
-    if (fields.colour) hits.colour[beam] = colour.rgb;
-    if (fields.reflectance) hits.reflectance[beam] = colour.reflectance;
-    if (fields.noise_scale) hits.noise_scale[beam] = colour.noise_scale;
   });
 }
 

@@ -5,9 +5,10 @@
 #include <glidar/core/beams.hpp>
 #include <glidar/core/hits.hpp>
 #include <glidar/core/scene.hpp>
-#include <glidar/render/lanes.hpp>
+#include <glidar/render/hit_block.hpp>
 #include <glidar/render/planes.hpp>
 #include <glidar/render/surface.hpp>
+#include <glidar/render/surface_colours.hpp>
 
 #include <cstdint>
 #include <span>
@@ -63,14 +64,6 @@ struct BeamBlock {
 void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes3<double>& origin,
              Lanes3<double>& direction);
 
-/// Up to kLanes hits: who was hit by which beam. Only lanes of the mask count.
-struct HitBlock {
-  std::uint32_t mask = 0;  ///< bit i: lane i holds a hit
-  std::array<std::size_t, kLanes> beam;
-  std::array<std::uint32_t, kLanes> instance;
-  std::array<std::uint32_t, kLanes> primitive;
-};
-
 /// The exact geometry of a block's hits, in the objects' frames and units.
 struct ExactBlock {
   Lanes3<double> normal;     ///< of the triangle's front
@@ -92,13 +85,6 @@ struct CornerBlock {
     c1.set(lane, of_vertex[triangle[1]]);
     c2.set(lane, of_vertex[triangle[2]]);
   }
-};
-
-/// What is known beforehand of the material in one slot of an instance.
-struct SlotLook {
-  SurfaceColour plain;
-  bool has_texture;
-  bool has_normal_map;
 };
 
 /// Turns (beam, instance, primitive) into exact hit columns. Shared by all renderers, so that the
@@ -165,16 +151,10 @@ class Resolver {
                      const Weights& weights, Hits& hits) const;
   void write_surface(const HitFields& fields, const HitBlock& block, const ExactBlock& exact,
                      Hits& hits) const;
-  [[nodiscard]] const SlotLook& look(const HitBlock& block, unsigned lane) const {
-    const Known& known = known_[block.instance[lane]];
-    return known.looks[known.slots == nullptr ? 0 : known.slots[block.primitive[lane]]];
-  }
   [[nodiscard]] SurfacePlace place_of(const HitBlock& block, unsigned lane, const Lanes<float>& w1,
                                       const Lanes<float>& w2) const;
   void bend_normals(const HitBlock& block, const Lanes<float>& w1, const Lanes<float>& w2,
                     Lanes3<double>& normals) const;
-  void write_colours(const HitFields& fields, const HitBlock& block, const Lanes<float>& w1,
-                     const Lanes<float>& w2, Hits& hits) const;
 
   /// Where an instance's data lie, for few hops from a hit to its triangle.
   struct Known {
@@ -184,9 +164,7 @@ class Resolver {
     const Eigen::Vector3f* normals;  ///< nullptr: flat shading
     const TrianglePlane* planes;
     const std::uint32_t* twins;  ///< nullptr: all triangles differ
-    const std::uint16_t* slots;  ///< nullptr: all triangles have material slot 0
-    const SlotLook* looks;       ///< per material slot
-    bool has_normal_map;         ///< in any slot
+    bool has_normal_map;         ///< in some slot
     bool is_masked;              ///< see Resolver::is_masked()
   };
 
@@ -194,8 +172,8 @@ class Resolver {
   std::vector<std::vector<TrianglePlane>> planes_;  ///< per mesh
   std::vector<std::vector<std::uint32_t>> twins_;   ///< per mesh
   std::vector<Known> known_;                        ///< per instance
-  std::vector<std::vector<SlotLook>> looks_;        ///< per instance and material slot
-  std::vector<InstanceView> views_;                 ///< per instance
+  SurfaceColours colours_;
+  std::vector<InstanceView> views_;  ///< per instance
 };
 
 }  // namespace glidar

@@ -65,41 +65,4 @@ Eigen::Vector3f bent_normal(const Scene& scene, const SurfacePlace& place,
   return bent_length > kShortest ? Eigen::Vector3f(normal / bent_length) : smooth;
 }
 
-SurfaceColour plain_colour(const Material& material) {
-  return {.rgb = material.diffuse,
-          .reflectance = {.diffuse = luminance(material.diffuse),
-                          .ambient = luminance(material.ambient),
-                          .specular = luminance(material.specular),
-                          .shininess = material.shininess},
-          .noise_scale = material.noise_scale};
-}
-
-bool has_texture(const Material& material, const Mesh& mesh) {
-  return material.diffuse_texture.used() || material.specular_texture.used() ||
-         material.noise_texture.used() || !mesh.colours.empty();
-}
-
-SurfaceColour colour_at(const Scene& scene, const SurfacePlace& place) {
-  const Material& material = material_at(scene, place);
-  Eigen::Vector3f tint = Eigen::Vector3f::Ones();
-  if (material.diffuse_texture.used()) {
-    tint = texel_at(scene, place, material.diffuse_texture).head<3>();
-  }
-  if (!place.mesh.colours.empty()) {
-    tint = tint.cwiseProduct(interpolate(place.mesh.colours, place)).eval();
-  }
-  Eigen::Vector3f specular = material.specular;
-  if (material.specular_texture.used()) {
-    specular = specular.cwiseProduct(texel_at(scene, place, material.specular_texture).head<3>());
-  }
-  const Eigen::Vector3f diffuse = material.diffuse.cwiseProduct(tint);
-  return {.rgb = diffuse,
-          .reflectance = {.diffuse = luminance(diffuse),
-                          .ambient = luminance(material.ambient.cwiseProduct(tint)),
-                          .specular = luminance(specular),
-                          .shininess = material.shininess},
-          .noise_scale = noise_scale_at(material, scene.textures,
-                                        uv_at(place, material.noise_texture.uv_set))};
-}
-
 }  // namespace glidar

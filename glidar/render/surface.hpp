@@ -34,20 +34,4 @@ bool has_normal_map(const Material& material, const Mesh& mesh);
 Eigen::Vector3f bent_normal(const Scene& scene, const SurfacePlace& place,
                             const Eigen::Vector3f& smooth);
 
-/// The colours of equation (5) at a place, and the scale of random errors.
-struct SurfaceColour {
-  Eigen::Vector3f rgb;  ///< diffuse
-  Reflectance reflectance;
-  float noise_scale;
-};
-
-/// The material's own colours.
-SurfaceColour plain_colour(const Material& material);
-
-/// True when a texture or vertex colours change what plain_colour tells.
-bool has_texture(const Material& material, const Mesh& mesh);
-
-/// Colours after textures and vertex colours.
-SurfaceColour colour_at(const Scene& scene, const SurfacePlace& place);
-
 }  // namespace glidar

@@ -63,7 +63,7 @@ class Surface {
 
   [[nodiscard]] double sent_back_at(const Hits& hits, std::size_t beam) const {
     const double cosine = std::clamp<double>(hits.cos_shading[beam], 0.0, 1.0);
-    return sent_back(material_->backscatter, reflectance(hits.reflectance[beam].diffuse), cosine);
+    return sent_back(material_->backscatter, reflectance(hits.diffuse[beam]), cosine);
   }
 
  private:
@@ -111,8 +111,20 @@ GLIDAR_SIMD void spread_by_square(const PulseLight& light, const double* range_m
   }
 }
 
-bool spreads_by_square(const PulseLight& light) {
-  return light.range_exponent == 2.0 && light.overlap.empty() && light.extinction_per_m == 0.0 &&
+/// The same for any exponent.
+GLIDAR_SIMD void spread_by_power(const PulseLight& light, const double* range_m, std::size_t count,
+                                 double* signals) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double range = signals[i] > 0.0 ? range_m[i] : 1.0;  // a miss has no range
+    const double spread = power(light.reference_range_m / range, light.range_exponent);
+    const double signal = signals[i] / light.reference_reflectance * spread;
+    signals[i] = signals[i] > 0.0 ? signal : 0.0;
+  }
+}
+
+/// True when the range alone weakens the signal.
+bool only_spreads(const PulseLight& light) {
+  return light.overlap.empty() && light.extinction_per_m == 0.0 &&
          light.weather_extinction_per_m == 0.0;
 }
 
@@ -194,8 +206,9 @@ void signals_of_hits(const PulseLight& light, const Scene& scene, double wavelen
   collect_sent(scene, wavelength_m, hits, range, signals);
   const double* range_m = &hits.range_m[range.begin];
   const std::size_t count = range.end - range.begin;
-  if (spreads_by_square(light)) {
-    spread_by_square(light, range_m, count, signals.data());
+  if (only_spreads(light)) {
+    const auto spread = light.range_exponent == 2.0 ? spread_by_square : spread_by_power;
+    spread(light, range_m, count, signals.data());
     return;
   }
   for (std::size_t k = 0; k < count; ++k) {

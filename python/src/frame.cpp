@@ -70,6 +70,7 @@ nb::object true_column(nb::handle self, const std::string& name) {
   if (name == "cos_shading") return column<float>(m, self, truth.cos_shading);
   if (name == "barycentrics") return column<float, 2>(m, self, truth.barycentrics);
   if (name == "colour") return column<float, 3>(m, self, truth.colour);
+  if (name == "diffuse") return column<float>(m, self, truth.diffuse);
   if (name == "reflectance") return column<float, 4>(m, self, truth.reflectance);
   if (name == "object_point_m") return column<double, 3>(m, self, truth.object_point_m);
   if (name == "noise_scale") return column<float>(m, self, truth.noise_scale);

@@ -67,6 +67,7 @@ void each_column(AnyFrame& frame, const Visit& visit) {
   visit("truth.cos_shading", truth.cos_shading);
   visit("truth.barycentrics", truth.barycentrics);
   visit("truth.colour", truth.colour);
+  visit("truth.diffuse", truth.diffuse);
   visit("truth.reflectance", truth.reflectance);
   visit("truth.object_point_m", truth.object_point_m);
   visit("truth.noise_scale", truth.noise_scale);

@@ -185,7 +185,7 @@ struct Stage {
     frame.truth.instance.assign(size, 0);
     frame.truth.primitive.assign(size, 0);
     frame.truth.cos_shading.assign(size, 1.0F);
-    frame.truth.reflectance.assign(size, {.diffuse = 0.8F});
+    frame.truth.diffuse.assign(size, 0.8F);
   }
   void measure(const PulseLight& light) {
     measure_signal(light, scene, 905e-9, {0, beams.size()}, frame);
@@ -266,7 +266,7 @@ TEST(MeasureSignal, TakesTheReflectanceAtTheSensorsWavelength) {
   EXPECT_EQ(reflectance_at(material, 1550e-9), 0.4);
   stage.measure({.reference_reflectance = 0.1, .reference_range_m = 100.0});
   EXPECT_NEAR(stage.frame.intensity[0], 3.1F, 1e-6F);
-  stage.frame.truth.reflectance[0].diffuse = 0.4F;  // a texture that halves it
+  stage.frame.truth.diffuse[0] = 0.4F;  // a texture that halves it
   stage.measure({.reference_reflectance = 0.1, .reference_range_m = 100.0});
   EXPECT_NEAR(stage.frame.intensity[0], 1.55F, 1e-6F);
 }

@@ -1,0 +1,114 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// How many times faster than the real sensor a frame is simulated, with everything that the named
+// sensor has by default: footprint, returns and noise. The scene is a textured model, by default
+// the apartment of the folder GLIDAR_DATA; the sensor stands 1.5 m above its zero.
+#include <glidar/io/model.hpp>
+#include <glidar/io/sensor_file.hpp>
+#include <glidar/io/sensor_presets.hpp>
+#include <glidar/simulate.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <exception>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace glidar::bench {
+namespace {
+
+constexpr int kRounds = 15;
+constexpr unsigned kThreads = 2;
+
+struct Goal {
+  const char* sensor;
+  double times;  ///< faster than the sensor
+};
+constexpr Goal kGoals[] = {{"VLP-16", 12.0}, {"OS1-128", 4.0},   {"Livox-Avia", 12.0},
+                           {"D435", 4.0},    {"Kinect-v1", 3.0}, {"Azure-Kinect-NFOV", 3.0}};
+
+/// 1.5 m above the scene's zero, looking along +x.
+Pose standing_pose(const Beams& beams) {
+  Pose pose = Pose::Identity();
+  pose.translation() = Eigen::Vector3d(0.0, 0.0, 1.5);
+  const SensorAxes axes = axes_of(beams);
+  Eigen::Matrix3d sensor_from_world;
+  sensor_from_world << axes.ahead, axes.left, axes.up;
+  pose.linear() = sensor_from_world.transpose();
+  return pose;
+}
+
+class Case {
+ public:
+  Case(const Scene& scene, const Goal& goal)
+      : goal_(goal),
+        scene_(scene),
+        sensor_(load_sensor_file(find_sensor_file(goal.sensor))),
+        beams_(make_beams(sensor_)),
+        motion_(standing_still(scene, standing_pose(beams_))),
+        renderer_(make_renderer(scene, {.threads = kThreads})) {}
+
+  void run() {
+    const auto start = std::chrono::steady_clock::now();
+    simulate({scene_, sensor_, beams_, motion_, *renderer_}, {}, frame_);
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start;
+    seconds_.push_back(elapsed.count());
+  }
+
+  void print() {
+    const auto middle = seconds_.begin() + static_cast<std::ptrdiff_t>(seconds_.size() / 2);
+    std::nth_element(seconds_.begin(), middle, seconds_.end());
+    const auto seen = std::count(frame_.status.begin(), frame_.status.end(), Status::hit);
+    const double times = 1.0 / (sensor_.rate_hz * *middle);
+    std::printf("%-20s %9zu %9td %9.2f %9.2f %8.1f %s\n", goal_.sensor, beams_.size(), seen,
+                1e3 * *middle, times, goal_.times, times >= goal_.times ? "" : "  below");
+  }
+
+ private:
+  Goal goal_;
+  const Scene& scene_;
+  Sensor sensor_;
+  Beams beams_;
+  Motion motion_;
+  std::unique_ptr<Renderer> renderer_;
+  Frame frame_;
+  std::vector<double> seconds_;
+};
+
+/// All named sensors, or the one whose name is given.
+void run(const std::string& model, const std::string& only) {
+  Scene scene;
+  add_model(scene, load_model(model, {}, {}));
+  std::vector<std::unique_ptr<Case>> cases;
+  for (const Goal& goal : kGoals) {
+    if (only.empty() || only == goal.sensor) cases.push_back(std::make_unique<Case>(scene, goal));
+  }
+  for (int round = 0; round < kRounds; ++round) {
+    for (const auto& one : cases) one->run();
+  }
+  std::printf("%-20s %9s %9s %9s %9s %8s\n", "sensor", "beams", "hits", "ms", "real time", "goal");
+  for (const auto& one : cases) one->print();
+}
+
+}  // namespace
+}  // namespace glidar::bench
+
+int main(int argc, char** argv) {
+  const char* data = std::getenv("GLIDAR_DATA");
+  if (argc < 2 && data == nullptr) {
+    std::fputs("usage: real_time_bench [MODEL [SENSOR]]; without MODEL, set GLIDAR_DATA\n", stderr);
+    return 2;
+  }
+  try {
+    glidar::bench::run(
+        argc > 1 ? argv[1] : std::string(data) + "/scenes/gazebo/apartment/meshes/apartment.dae",
+        argc > 2 ? argv[2] : "");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "real_time_bench: %s\n", error.what());
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,21 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/lanes.hpp>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace glidar {
+
+/// Up to kLanes hits: who was hit by which beam. Only lanes of the mask count.
+struct HitBlock {
+  std::uint32_t mask = 0;  ///< bit i: lane i holds a hit
+  std::array<std::size_t, kLanes> beam;
+  std::array<std::uint32_t, kLanes> instance;
+  std::array<std::uint32_t, kLanes> primitive;
+};
+
+}  // namespace glidar

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/material.hpp>
+#include <glidar/render/lanes.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace glidar {
+
+/// The colours of a texture in a layout for look-ups: four bytes per texel, in tiles of 4x4 that
+/// fill one cache line each. So the four texels around a place are mostly in one line, and those of
+/// neighbouring hits in the same.
+class LookupTexture {
+ public:
+  LookupTexture() = default;
+  explicit LookupTexture(const Texture& texture);
+
+  [[nodiscard]] bool is_empty() const { return texels_.empty(); }
+
+  /// The rgb at sixteen texture coordinates, to the bit as sample() returns it.
+  void sample(const TextureUse& use, const Lanes<float>& u, const Lanes<float>& v,
+              Lanes3<float>& rgb) const;
+
+ private:
+  void fetch(const Lanes<std::int32_t>& row, const Lanes<std::int32_t>& column,
+             Lanes3<float>& rgb) const;
+
+  std::uint32_t width_ = 0;
+  std::uint32_t height_ = 0;
+  std::uint32_t tile_columns_ = 0;
+  std::vector<std::uint32_t> texels_;  ///< red in the lowest byte, then green and blue
+};
+
+}  // namespace glidar

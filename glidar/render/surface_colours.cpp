@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/surface_colours.hpp>
+
+#include <glidar/core/simd.hpp>
+#include <glidar/render/surface.hpp>
+
+namespace glidar {
+namespace {
+
+/// One number at each corner of sixteen triangles.
+struct CornerValues {
+  Lanes<float> at_0;
+  Lanes<float> at_1;
+  Lanes<float> at_2;
+};
+
+/// A component of a vertex attribute at the corners of the group's triangles; lanes of others take
+/// the first of the group.
+template <class Vector>
+void gather(const std::vector<Vector>& of_vertex, Eigen::Index component,
+            const std::array<const Triangle*, kLanes>& triangles, CornerValues& values) {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const Triangle& corners = *triangles[i];
+    values.at_0[i] = of_vertex[corners[0]][component];
+    values.at_1[i] = of_vertex[corners[1]][component];
+    values.at_2[i] = of_vertex[corners[2]][component];
+  }
+}
+
+GLIDAR_SIMD void interpolate(const CornerValues& c, const Lanes<float>& w1, const Lanes<float>& w2,
+                             Lanes<float>& out) {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    out[i] = (1.0F - w1[i] - w2[i]) * c.at_0[i] + w1[i] * c.at_1[i] + w2[i] * c.at_2[i];
+  }
+}
+
+void fill(const Eigen::Vector3f& colour, Lanes3<float>& rgb) {
+  rgb.x.at.fill(colour.x());
+  rgb.y.at.fill(colour.y());
+  rgb.z.at.fill(colour.z());
+}
+
+GLIDAR_SIMD void multiply(const Lanes3<float>& by, Lanes3<float>& rgb) {
+  for (unsigned i = 0; i < kLanes; ++i) rgb.x[i] *= by.x[i];
+  for (unsigned i = 0; i < kLanes; ++i) rgb.y[i] *= by.y[i];
+  for (unsigned i = 0; i < kLanes; ++i) rgb.z[i] *= by.z[i];
+}
+
+/// Of the product of a colour and a tint.
+GLIDAR_SIMD void luminances(const Eigen::Vector3f& colour, const Lanes3<float>& tint,
+                            Lanes<float>& out) {
+  const float red = colour.x();
+  const float green = colour.y();
+  const float blue = colour.z();
+  for (unsigned i = 0; i < kLanes; ++i) {
+    out[i] = 0.2126F * (red * tint.x[i]) + 0.7152F * (green * tint.y[i]) +
+             0.0722F * (blue * tint.z[i]);  // as luminance()
+  }
+}
+
+bool has_tint(const Material& material, const Mesh& mesh) {
+  return material.diffuse_texture.used() || !mesh.colours.empty();
+}
+
+}  // namespace
+
+SurfaceColours::SurfaceColours(const Scene& scene) : scene_(scene) {
+  slots_.reserve(scene.instances.size());
+  textures_.resize(scene.textures.size());
+  const auto prepare = [&](const TextureUse& use) {
+    if (!use.used()) return;
+    const auto index = static_cast<std::size_t>(use.texture);
+    if (textures_[index].is_empty()) textures_[index] = LookupTexture(scene.textures[index]);
+  };
+  for (const Instance& instance : scene.instances) {
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const std::vector<std::uint16_t>& of_triangle = mesh.material_slots;
+    Slots& slots = slots_.emplace_back();
+    slots.of_triangle = of_triangle.empty() ? nullptr : of_triangle.data();
+    for (const std::uint32_t index : instance.materials) {
+      const Material& material = scene.materials[index];
+      slots.all.push_back({&mesh,
+                           &material,
+                           {.diffuse = luminance(material.diffuse),
+                            .ambient = luminance(material.ambient),
+                            .specular = luminance(material.specular),
+                            .shininess = material.shininess},
+                           has_tint(material, mesh)});
+      prepare(material.diffuse_texture);
+      prepare(material.specular_texture);
+    }
+  }
+}
+
+const SurfaceColours::Slot& SurfaceColours::slot_of(std::uint32_t instance,
+                                                    std::uint32_t primitive) const {
+  const Slots& slots = slots_[instance];
+  return slots.all[slots.of_triangle == nullptr ? 0 : slots.of_triangle[primitive]];
+}
+
+void SurfaceColours::write(const HitFields& fields, const HitBlock& block, const Lanes<float>& w1,
+                           const Lanes<float>& w2, Hits& hits) const {
+  std::array<const Slot*, kLanes> slots{};
+  for_lanes(block.mask,
+            [&](unsigned i) { slots[i] = &slot_of(block.instance[i], block.primitive[i]); });
+  for (std::uint32_t rest = block.mask; rest != 0;) {
+    const Slot* slot = slots[static_cast<unsigned>(std::countr_zero(rest))];
+    std::uint32_t lanes = 0;
+    for (unsigned i = 0; i < kLanes; ++i) {
+      lanes |= static_cast<std::uint32_t>(slots[i] == slot) << i;
+    }
+    write(fields, {*slot, lanes, block, w1, w2}, hits);
+    rest &= ~lanes;
+  }
+}
+
+void SurfaceColours::write(const HitFields& fields, const Group& group, Hits& hits) const {
+  const Slot& slot = group.slot;
+  if (fields.noise_scale) write_noise_scale(group, hits);
+  if (slot.has_tint || slot.material->specular_texture.used()) {
+    return write_tinted(fields, group, hits);
+  }
+  for_lanes(group.lanes, [&](unsigned i) {
+    const std::size_t beam = group.block.beam[i];
+    if (fields.diffuse) hits.diffuse[beam] = slot.plain.diffuse;
+    if (fields.colour) hits.colour[beam] = slot.material->diffuse;
+    if (fields.reflectance) hits.reflectance[beam] = slot.plain;
+  });
+}
+
+void SurfaceColours::write_tinted(const HitFields& fields, const Group& group, Hits& hits) const {
+  if (!fields.diffuse && !fields.colour && !fields.reflectance) return;
+  const Material& material = *group.slot.material;
+  Lanes3<float> tint;
+  fill(Eigen::Vector3f::Ones(), tint);
+  multiply_by_texture(group, material.diffuse_texture, tint);
+  multiply_by_vertex_colours(group, tint);
+  Lanes<float> diffuse;
+  luminances(material.diffuse, tint, diffuse);
+  if (fields.diffuse) {
+    for_lanes(group.lanes, [&](unsigned i) { hits.diffuse[group.block.beam[i]] = diffuse[i]; });
+  }
+  if (fields.colour) {
+    for_lanes(group.lanes, [&](unsigned i) {
+      hits.colour[group.block.beam[i]] = material.diffuse.cwiseProduct(tint.get(i));
+    });
+  }
+  if (!fields.reflectance) return;
+  Lanes3<float> shine;
+  fill(Eigen::Vector3f::Ones(), shine);
+  multiply_by_texture(group, material.specular_texture, shine);
+  Lanes<float> ambient;
+  Lanes<float> specular;
+  luminances(material.ambient, tint, ambient);
+  luminances(material.specular, shine, specular);
+  for_lanes(group.lanes, [&](unsigned i) {
+    hits.reflectance[group.block.beam[i]] = {diffuse[i], ambient[i], specular[i],
+                                             material.shininess};
+  });
+}
+
+void SurfaceColours::write_noise_scale(const Group& group, Hits& hits) const {
+  const Material& material = *group.slot.material;
+  for_lanes(group.lanes, [&](unsigned i) {
+    const HitBlock& block = group.block;
+    float& scale = hits.noise_scale[block.beam[i]];
+    scale = material.noise_scale;
+    if (!material.noise_texture.used()) return;
+    const SurfacePlace place{*group.slot.mesh,
+                             scene_.instances[block.instance[i]],
+                             block.primitive[i],
+                             {group.w1[i], group.w2[i]}};
+    scale = noise_scale_at(material, scene_.textures, uv_at(place, material.noise_texture.uv_set));
+  });
+}
+
+std::array<const Triangle*, kLanes> SurfaceColours::triangles_of(const Group& group) {
+  const auto first = static_cast<unsigned>(std::countr_zero(group.lanes));
+  std::array<const Triangle*, kLanes> triangles;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const unsigned lane = (group.lanes >> i & 1U) != 0 ? i : first;
+    triangles[i] = &group.slot.mesh->triangles[group.block.primitive[lane]];
+  }
+  return triangles;
+}
+
+void SurfaceColours::multiply_by_texture(const Group& group, const TextureUse& use,
+                                         Lanes3<float>& rgb) const {
+  if (!use.used()) return;
+  const std::vector<Eigen::Vector2f>& uvs = group.slot.mesh->uvs[use.uv_set];
+  Lanes<float> u{};
+  Lanes<float> v{};
+  if (!uvs.empty()) {
+    const std::array<const Triangle*, kLanes> triangles = triangles_of(group);
+    CornerValues values;
+    gather(uvs, 0, triangles, values);
+    interpolate(values, group.w1, group.w2, u);
+    gather(uvs, 1, triangles, values);
+    interpolate(values, group.w1, group.w2, v);
+  }
+  Lanes3<float> texels;
+  textures_[static_cast<std::size_t>(use.texture)].sample(use, u, v, texels);
+  multiply(texels, rgb);
+}
+
+void SurfaceColours::multiply_by_vertex_colours(const Group& group, Lanes3<float>& rgb) {
+  const std::vector<Eigen::Vector3f>& colours = group.slot.mesh->colours;
+  if (colours.empty()) return;
+  const std::array<const Triangle*, kLanes> triangles = triangles_of(group);
+  Lanes3<float> blended;
+  Lanes<float>* components[] = {&blended.x, &blended.y, &blended.z};
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    CornerValues values;
+    gather(colours, k, triangles, values);
+    interpolate(values, group.w1, group.w2, *components[k]);
+  }
+  multiply(blended, rgb);
+}
+
+}  // namespace glidar

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/hits.hpp>
+#include <glidar/core/scene.hpp>
+#include <glidar/render/hit_block.hpp>
+#include <glidar/render/lookup_texture.hpp>
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace glidar {
+
+/// The colours of equation (5) and the scale of random errors at hits: those of the material times
+/// those of textures and vertex colours.
+class SurfaceColours {
+ public:
+  /// The scene must outlive this.
+  explicit SurfaceColours(const Scene& scene);
+
+  /// True when some of the fields are written by write().
+  static bool needed(const HitFields& fields) {
+    return fields.diffuse || fields.colour || fields.reflectance || fields.noise_scale;
+  }
+
+  /// Writes the columns for the hits of a block, of whose triangles w1 and w2 weigh corners 1
+  /// and 2.
+  void write(const HitFields& fields, const HitBlock& block, const Lanes<float>& w1,
+             const Lanes<float>& w2, Hits& hits) const;
+
+ private:
+  /// A material as one instance has it.
+  struct Slot {
+    const Mesh* mesh;
+    const Material* material;
+    Reflectance plain;  ///< without textures
+    bool has_tint;      ///< a texture or vertex colours change the diffuse colour
+  };
+  /// The slots of an instance.
+  struct Slots {
+    const std::uint16_t* of_triangle;  ///< nullptr: all triangles have slot 0
+    std::vector<Slot> all;
+  };
+  /// Hits of one slot.
+  struct Group {
+    const Slot& slot;
+    std::uint32_t lanes;
+    const HitBlock& block;
+    const Lanes<float>& w1;
+    const Lanes<float>& w2;
+  };
+
+  [[nodiscard]] const Slot& slot_of(std::uint32_t instance, std::uint32_t primitive) const;
+  void write(const HitFields& fields, const Group& group, Hits& hits) const;
+  void write_tinted(const HitFields& fields, const Group& group, Hits& hits) const;
+  void write_noise_scale(const Group& group, Hits& hits) const;
+  static std::array<const Triangle*, kLanes> triangles_of(const Group& group);
+  void multiply_by_texture(const Group& group, const TextureUse& use, Lanes3<float>& rgb) const;
+  static void multiply_by_vertex_colours(const Group& group, Lanes3<float>& rgb);
+
+  const Scene& scene_;
+  std::vector<Slots> slots_;             ///< per instance
+  std::vector<LookupTexture> textures_;  ///< per texture of the scene; empty: not of colours
+};
+
+}  // namespace glidar
