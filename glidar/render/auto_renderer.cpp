@@ -29,7 +29,7 @@ class AutoRenderer final : public Renderer {
     for (const Instance& instance : scene.instances) {
       all += scene.meshes[instance.mesh].triangles.size();
     }
-    can_draw_ = all < kCertain;
+    can_draw_ = all < kNoNumber;
   }
 
   [[nodiscard]] std::string_view name() const override { return "auto"; }

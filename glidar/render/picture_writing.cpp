@@ -24,6 +24,7 @@ struct Work {
   Lanes<double> y;
   std::array<std::uint32_t, kLanes> number;  ///< drawn there
   std::uint32_t certain = 0;                 ///< bit i: lane i meets its triangle
+  std::uint32_t contested = 0;               ///< bit i: lane i may meet another one before
   unsigned used = 0;
 };
 
@@ -96,8 +97,9 @@ void finish(const PictureWriting& w, Work& work) {
   directions_through(work.x, work.y, work.beams.direction);
   w.resolver.measure(work.beams, block, work.exact);
   const std::uint32_t uncertain = block.mask & ~(work.certain & ahead(work.exact));
-  const std::uint32_t in_doubt =
+  const std::uint32_t beside =
       uncertain == 0 ? 0 : doubtful(w.resolver, block, work.exact) & uncertain;
+  const std::uint32_t in_doubt = beside | (work.contested & block.mask);
   if (in_doubt != 0 && correct(w, in_doubt, work.beams, block) && block.mask != 0) {
     w.resolver.measure(work.beams, block, work.exact);
   }
@@ -111,9 +113,11 @@ void finish(const PictureWriting& w, Work& work) {
 void look_up(const PictureWriting& w, Work& work) {
   work.block.mask = static_cast<std::uint32_t>((std::uint64_t{1} << work.used) - 1);
   work.certain = 0;
+  work.contested = 0;
   const bool with_corners = needs_corners(w.request.fields);
   for (unsigned lane = 0; lane < work.used; ++lane) {
     work.certain |= static_cast<std::uint32_t>((work.number[lane] & kCertain) != 0) << lane;
+    work.contested |= static_cast<std::uint32_t>((work.number[lane] & kContested) != 0) << lane;
     const Found found = w.triangles.found(work.number[lane]);
     work.block.instance[lane] = found.instance;
     work.block.primitive[lane] = told(w, found);

@@ -14,7 +14,7 @@ TriangleNumbers::TriangleNumbers(const Scene& scene, const char* renderer)
   for (const Instance& instance : scene.instances) {
     first_.push_back(static_cast<std::uint32_t>(next));
     next += scene.meshes[instance.mesh].triangles.size();
-    if (next < kCertain) continue;
+    if (next < kNoNumber) continue;
     throw Error({.where = std::string(renderer) + " renderer",
                  .found = "too many triangles: " + std::to_string(next),
                  .allowed = "up to 2147483647, those of every instance counted",

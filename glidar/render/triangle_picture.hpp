@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <vector>
 
 namespace glidar {
@@ -19,13 +18,19 @@ struct PixelRect {
   std::uint32_t cols;
 };
 
-/// "No triangle": nothing was drawn at the pixel.
-inline constexpr std::uint32_t kNoNumber = std::numeric_limits<std::uint32_t>::max();
-
 /// Set in the number of a triangle that the pixel's beam certainly does not pass by.
 inline constexpr std::uint32_t kCertain = std::uint32_t{1} << 31U;
 
-/// The triangles of all instances, numbered through, so that 31 bits tell both.
+/// Set in the number of a pixel where another triangle is so close that the beam has to be cast.
+inline constexpr std::uint32_t kContested = std::uint32_t{1} << 30U;
+
+/// The bits of a number that are a triangle's.
+inline constexpr std::uint32_t kNumberBits = kContested - 1;
+
+/// "No triangle": nothing was drawn at the pixel. Greater than all triangles' numbers.
+inline constexpr std::uint32_t kNoNumber = kNumberBits;
+
+/// The triangles of all instances, numbered through, so that 30 bits hold both.
 class TriangleNumbers {
  public:
   /// Throws Error, naming the renderer, when the scene has more triangles than numbers.
@@ -43,7 +48,7 @@ class TriangleNumbers {
   /// What a number of the picture tells.
   [[nodiscard]] Found found(std::uint32_t number) const {
     if (number == kNoNumber) return {};
-    number &= ~kCertain;
+    number &= kNumberBits;
     const std::uint32_t instance =
         first_.size() == 1
             ? 0

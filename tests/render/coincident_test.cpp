@@ -285,6 +285,48 @@ TEST_P(CoincidentSurfaces, HolesOfTheFirstShowTheSecond) {
   }
 }
 
+/// Two sheets of one mesh over each other, cut into triangles differently.
+Mesh two_sheets(float height_m) {
+  constexpr int kSide = 12;
+  Mesh mesh;
+  for (const bool is_upper : {false, true}) {
+    const Eigen::Rotation2Df turn(is_upper ? 0.4F : 0.0F);
+    const auto first = static_cast<std::uint32_t>(mesh.positions_m.size());
+    for (int k = 0; k < kSide * kSide; ++k) {
+      const Eigen::Vector2f at = turn * Eigen::Vector2f(static_cast<float>(k % kSide) - 5.5F,
+                                                        static_cast<float>(k / kSide) - 5.5F);
+      mesh.positions_m.emplace_back(at.x(), at.y(), is_upper ? height_m : 0.0F);
+    }
+    for (std::uint32_t k = 0; k + kSide + 1 < kSide * kSide; ++k) {
+      if (k % kSide == kSide - 1) continue;
+      const std::uint32_t at = first + k;
+      mesh.triangles.push_back({at, at + 1, at + kSide});
+      mesh.triangles.push_back({at + 1, at + kSide + 1, at + kSide});
+    }
+  }
+  return mesh;
+}
+
+TEST_P(CoincidentSurfaces, OfSheetsOfOneMeshThatNearlyTouchTheSameTrianglesAreReportedAsByRays) {
+  if (GetParam() == "opengl") {
+    GTEST_SKIP() << "a graphics device decides between surfaces of one mesh by its own depth";
+  }
+  const Beams beams = camera_beams(120, 90, 100.0);
+  for (const float height_m : {0.0F, 1e-9F, 1e-7F, -1e-7F, 1e-6F, 1e-5F, 1e-3F}) {
+    Scene scene = builtin_scene("plane");
+    scene.meshes[0] = two_sheets(height_m);
+    for (const double distance_m : {3.0, 30.0, 3000.0}) {
+      const Pose pose = look_at(distance_m * Eigen::Vector3d(0.5, -0.4, 0.77), {0.1, 0.2, 0.0},
+                                Eigen::Vector3d::UnitZ());
+      const Hits hits = cast(scene, beams, pose);
+      const auto rays = make_renderer(scene, {.kind = "rays"});
+      Hits expected;
+      rays->cast({.beams = beams, .world_from_sensor = pose}, expected);
+      EXPECT_EQ(hits.primitive, expected.primitive) << height_m << " m, from " << distance_m;
+    }
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(All, CoincidentSurfaces, ::testing::ValuesIn(renderer_kinds()),
                          [](const auto& test) { return test.param; });
 

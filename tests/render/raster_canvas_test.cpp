@@ -32,9 +32,16 @@ std::vector<std::uint32_t> numbers_of(const Canvas& canvas) {
   return numbers;
 }
 
+/// The numbers without what is marked.
+std::vector<std::uint32_t> triangles_of(const Canvas& canvas) {
+  std::vector<std::uint32_t> numbers = numbers_of(canvas);
+  for (std::uint32_t& number : numbers) number &= kNumberBits | kCertain;
+  return numbers;
+}
+
 std::unique_ptr<Canvas> empty_canvas(int cols, int rows) {
   auto canvas = std::make_unique<Canvas>();
-  canvas->clear(cols, rows);
+  canvas->clear(cols, rows, 1.0F);
   return canvas;
 }
 
@@ -58,9 +65,9 @@ std::vector<Shape> many_shapes(int cols, int rows) {
 TEST(RasterCanvas, IsEmptyAtFirstAndAfterItIsCleared) {
   const auto canvas = empty_canvas(10, 6);
   EXPECT_EQ(numbers_of(*canvas), std::vector<std::uint32_t>(60, kNoNumber));
-  canvas->offer(3, 2, 0.5F, 7);
+  canvas->offer(3, 2, 0.5F, 0.0F, 7);
   EXPECT_EQ(numbers_of(*canvas)[2 * 10 + 3], 7U);
-  canvas->clear(9, 5);
+  canvas->clear(9, 5, 1.0F);
   EXPECT_EQ(numbers_of(*canvas), std::vector<std::uint32_t>(45, kNoNumber));
 }
 
@@ -73,7 +80,7 @@ TEST(RasterCanvas, TheNearestStaysInWhateverOrderItComes) {
   std::shuffle(shapes.begin(), shapes.end(), std::mt19937(5));
   const auto shuffled = empty_canvas(cols, rows);
   for (const Shape& shape : shapes) shuffled->draw(shape);
-  EXPECT_EQ(numbers_of(*forward), numbers_of(*shuffled));
+  EXPECT_EQ(triangles_of(*forward), triangles_of(*shuffled));
 }
 
 TEST(RasterCanvas, OfEquallyNearTheLowerNumberStays) {
@@ -81,11 +88,43 @@ TEST(RasterCanvas, OfEquallyNearTheLowerNumberStays) {
   canvas->draw(square({0, 7, 0, 7}, 0.5F, 5));
   canvas->draw(square({0, 7, 0, 7}, 0.5F, 3));
   canvas->draw(square({0, 7, 0, 7}, 0.5F, 4));
-  canvas->offer(1, 1, 0.5F, 9 | kCertain);
-  canvas->offer(2, 1, 0.5F, 1 | kCertain);
+  canvas->offer(1, 1, 0.5F, 0.0F, 9 | kCertain);
+  canvas->offer(2, 1, 0.5F, 0.0F, 1 | kCertain);
   const std::vector<std::uint32_t> numbers = numbers_of(*canvas);
-  EXPECT_EQ(numbers[8 + 1], 3U | kCertain);
-  EXPECT_EQ(numbers[8 + 2], 1U | kCertain);
+  EXPECT_EQ(numbers[8 + 1], 3U | kCertain | kContested);
+  EXPECT_EQ(numbers[8 + 2], 1U | kCertain | kContested);
+}
+
+TEST(RasterCanvas, MarksSurfacesTooCloseToTellInEitherOrder) {
+  const Shape near = square({0, 7, 0, 7}, 0.5F, 5);
+  for (const float apart : {0x1p-24F, 0x1p-20F, -0x1p-24F, -0x1p-20F}) {
+    const Shape far = square({0, 7, 0, 7}, 0.5F - apart, 3);
+    for (const bool is_swapped : {false, true}) {
+      const auto canvas = empty_canvas(8, 8);
+      canvas->draw(is_swapped ? far : near);
+      canvas->draw(is_swapped ? near : far);
+      const std::uint32_t number = numbers_of(*canvas)[3 * 8 + 3];
+      EXPECT_EQ(number, (apart > 0.0F ? 5U : 3U) | kCertain | kContested) << apart;
+    }
+  }
+}
+
+TEST(RasterCanvas, MarksNoneOfSurfacesThatAreClearlyApart) {
+  const auto canvas = empty_canvas(8, 8);
+  canvas->draw(square({0, 7, 0, 7}, 0.5F, 5));
+  canvas->draw(square({0, 7, 0, 7}, 0.5F - 0x1p-16F, 3));
+  canvas->offer(1, 1, 0.5F - 0x1p-16F, 0.0F, 4);
+  EXPECT_EQ(numbers_of(*canvas)[3 * 8 + 3], 5U | kCertain);
+  EXPECT_EQ(numbers_of(*canvas)[8 + 1], 5U | kCertain);
+}
+
+TEST(RasterCanvas, MarksASurfaceWhoseNearnessIsRough) {
+  Shape rough = square({0, 7, 0, 7}, 0.5F, 5);
+  rough.room = 0.01F;
+  const auto canvas = empty_canvas(8, 8);
+  canvas->draw(rough);
+  canvas->draw(square({0, 7, 0, 7}, 0.6F, 3));
+  EXPECT_EQ(numbers_of(*canvas)[3 * 8 + 3], 3U | kCertain | kContested);
 }
 
 TEST(RasterCanvas, TellsWhatIsCertainByTheDistanceFromBorders) {

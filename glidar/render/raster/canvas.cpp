@@ -51,7 +51,7 @@ struct Block {
   float shape_nearness;
 };
 
-[[gnu::always_inline]] inline void draw_block(const Shape& s, const BlockSteps& steps,
+[[gnu::always_inline]] inline void draw_block(const Shape& s, float scale, const BlockSteps& steps,
                                               const Block& block) {
   float* const nearness = block.nearness;
   std::uint32_t* const numbers = block.numbers;
@@ -66,14 +66,21 @@ struct Block {
     const std::uint32_t number = numbers[i];
     const int inside =
         static_cast<int>(b0 >= 0.0F) & static_cast<int>(b1 >= 0.0F) & static_cast<int>(b2 >= 0.0F);
+    const float close = closeness(held, scale, s.room);
     const int nearer =
         static_cast<int>(held > before) |
-        (static_cast<int>(held == before) & static_cast<int>(s.number < (number & ~kCertain)));
+        (static_cast<int>(held == before) & static_cast<int>(s.number < (number & kNumberBits)));
+    const int rough = static_cast<int>(is_rough(held, scale, s.room)) & nearer;
+    const int is_close =
+        static_cast<int>(held >= before - close) & static_cast<int>(held <= before + close);
+    const int contested = inside & (is_close | rough);
     const int certain = static_cast<int>(b0 >= s.certain[0]) &
                         static_cast<int>(b1 >= s.certain[1]) & static_cast<int>(b2 >= s.certain[2]);
     const bool draws = (inside & nearer) != 0;
     nearness[i] = draws ? held : before;
-    numbers[i] = draws ? (s.number | static_cast<std::uint32_t>(certain) << 31U) : number;
+    const std::uint32_t drawn = s.number | static_cast<std::uint32_t>(certain) << 31U;
+    numbers[i] = (draws ? drawn | (number & kContested) : number) |
+                 static_cast<std::uint32_t>(contested) << 30U;
   }
 }
 
@@ -91,8 +98,8 @@ struct Block {
   return true;
 }
 
-GLIDAR_SIMD void draw_blocks(const Shape& s, std::size_t blocks_in_row, float* nearness,
-                             std::uint32_t* numbers) {
+GLIDAR_SIMD void draw_blocks(const Shape& s, float scale, std::size_t blocks_in_row,
+                             float* nearness, std::uint32_t* numbers) {
   constexpr int kSide = 4;
   BlockSteps steps;
   find_steps(s, steps);
@@ -105,7 +112,7 @@ GLIDAR_SIMD void draw_blocks(const Shape& s, std::size_t blocks_in_row, float* n
       const std::size_t place = (first + static_cast<std::size_t>(col / kSide)) * kLanes;
       block.nearness = nearness + place;
       block.numbers = numbers + place;
-      draw_block(s, steps, block);
+      draw_block(s, scale, steps, block);
     }
   }
 }
@@ -119,9 +126,10 @@ GLIDAR_SIMD void draw_blocks(const Shape& s, std::size_t blocks_in_row, float* n
 
 }  // namespace
 
-void Canvas::clear(int cols, int rows) {
+void Canvas::clear(int cols, int rows, float scale) {
   cols_ = cols;
   rows_ = rows;
+  scale_ = scale;
   const std::size_t used = static_cast<std::size_t>((rows + kCell - 1) / kCell) * kCell * kSide;
   // The cells' pixels outside hide nothing and are not drawn.
   const bool is_whole = cols == kSide && rows % kCell == 0;
@@ -152,7 +160,8 @@ float Canvas::least_in(int cell_col, int cell_row) {
   return least_[cell];
 }
 
-bool Canvas::hides(const CanvasRect& rect, float nearness) {
+bool Canvas::hides(const CanvasRect& rect, float at_most) {
+  const float nearness = at_most + closeness(at_most, scale_, 0.0F);
   if (rect.right - rect.left < kCell && rect.bottom - rect.top < kCell) {
     return hides_pixels(rect, nearness);
   }
@@ -182,7 +191,7 @@ void Canvas::mark_drawn(const CanvasRect& rect) {
 }
 
 void Canvas::draw(const Shape& shape) {
-  draw_blocks(shape, kBlocks, nearness_.data(), numbers_.data());
+  draw_blocks(shape, scale_, kBlocks, nearness_.data(), numbers_.data());
 }
 
 void Canvas::copy_numbers(std::vector<std::uint32_t>& numbers) const {

@@ -32,37 +32,59 @@ struct Shape {
   float nearness_at_corner;
   float farthest;  ///< nearness is held between these
   float nearest;
+  float room;  ///< what interpolation may make nearness wrong by, see closeness()
   std::uint32_t number;
   CanvasRect rect;  ///< of the pixels it may cover
 };
 
-/// A part of a picture while it is drawn: per pixel the nearest triangle's number. What is drawn
-/// does not depend on the order in which it comes: of two that are equally near the lower number
-/// stays. Pixels lie in memory in blocks of 4x4.
+/// How far nearness may differ for a surface to be in doubt, of two that are not rough: 32
+/// roundings of the nearness and of the depths that it comes from, `scale` being Nearness::factor,
+/// and what interpolation adds. The beams there are cast, so it only has to be large enough.
+[[gnu::always_inline]] inline float closeness(float nearness, float scale, float room) {
+  return 0x1p-19F * (nearness + scale) + room;
+}
+
+/// True where interpolation adds much: then the beam is cast in any case.
+[[gnu::always_inline]] inline bool is_rough(float nearness, float scale, float room) {
+  return room > 0x1p-21F * (nearness + scale);
+}
+
+/// A part of a picture while it is drawn: per pixel the nearest triangle's number. Where another
+/// triangle is too close to tell which is nearer, or was while one of them was visible, and where a
+/// visible one is or was rough, the number has kContested set. What is drawn does not depend on the
+/// order in which it comes: of two that are equally near the lower number stays. Pixels lie in
+/// memory in blocks of 4x4.
 class Canvas {
  public:
   static constexpr int kSide = 128;  ///< most columns and rows
 
-  /// Makes it empty, of this size.
-  void clear(int cols, int rows);
+  /// Makes it empty, of this size; scale: Nearness::factor of what will be drawn.
+  void clear(int cols, int rows, float scale);
 
   [[nodiscard]] int cols() const { return cols_; }
   [[nodiscard]] int rows() const { return rows_; }
 
-  /// True when everything in the rectangle is nearer already.
+  /// True when everything in the rectangle is clearly nearer already.
   [[nodiscard]] bool hides(const CanvasRect& rect, float nearness);
 
   /// To be called when something was drawn there.
   void mark_drawn(const CanvasRect& rect);
 
-  /// Draws one pixel if it is nearer than what is there. The number may have kCertain set.
-  void offer(int col, int row, float nearness, std::uint32_t number) {
+  /// Draws one pixel if it is nearer than what is there. The number may have kCertain set; `room`
+  /// is that of a shape.
+  void offer(int col, int row, float nearness, float room, std::uint32_t number) {
     const std::size_t at = place(col, row);
     const float before = nearness_[at];
-    if (nearness < before) return;
-    if (nearness == before && (number & ~kCertain) >= (numbers_[at] & ~kCertain)) return;
-    nearness_[at] = nearness;
-    numbers_[at] = number;
+    const float close = closeness(nearness, scale_, room);
+    if (nearness < before - close) return;
+    const std::uint32_t old = numbers_[at];
+    const bool draws =
+        nearness > before || (nearness == before && (number & kNumberBits) < (old & kNumberBits));
+    const bool is_contested =
+        nearness <= before + close || (draws && is_rough(nearness, scale_, room));
+    const std::uint32_t contested = (old & kContested) | (is_contested ? kContested : 0);
+    nearness_[at] = draws ? nearness : before;
+    numbers_[at] = (draws ? number : old) | contested;
   }
 
   /// Draws all pixels of a shape, and perhaps some in the blocks around its rectangle.
@@ -93,6 +115,7 @@ class Canvas {
 
   int cols_ = 0;
   int rows_ = 0;
+  float scale_ = 1.0F;
   alignas(64) std::array<float, kPixels> nearness_;  ///< of what is drawn; below all: nothing
   alignas(64) std::array<std::uint32_t, kPixels> numbers_;
   std::array<float, std::size_t{kCells} * kCells> least_;  ///< per cell, of its pixels

@@ -86,7 +86,7 @@ void draw_with_holes(const Placed& placed, const Shape& shape, std::uint32_t pri
       if (!is_inside(shape, across, down) || is_hole(beam)) continue;
       const float nearness = shape.nearness_at_corner + shape.nearness_per_col * across +
                              shape.nearness_per_row * down;
-      placed.canvas.offer(col, row, std::clamp(nearness, shape.farthest, shape.nearest),
+      placed.canvas.offer(col, row, std::clamp(nearness, shape.farthest, shape.nearest), shape.room,
                           shape.number);
     }
   }
@@ -138,7 +138,8 @@ void draw_small(const Placed& placed, const Footprints& f, unsigned lane, std::u
                            f.nearness_per_col[lane] * static_cast<float>(across) +
                            f.nearness_per_row[lane] * static_cast<float>(down);
     placed.canvas.offer(f.left[lane] + across, f.top[lane] + down,
-                        std::clamp(nearness, f.farthest[lane], f.nearest[lane]), number | certain);
+                        std::clamp(nearness, f.farthest[lane], f.nearest[lane]), f.room[lane],
+                        number | certain);
   }
 }
 

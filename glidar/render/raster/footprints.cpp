@@ -16,6 +16,9 @@ namespace {
 constexpr float kLeast_px = -64.0F;
 constexpr float kMost_px = 192.0F;
 
+// Eight roundings, of each term of an interpolation.
+constexpr float kInterpolation = 0x1p-21F;
+
 /// A corner of each triangle on the canvas.
 struct Spot {
   Lanes<float> col;
@@ -41,6 +44,9 @@ struct Spot {
   }
 }
 
+[[gnu::always_inline]] inline float size_of(float value) {
+  return value < 0.0F ? -value : value;
+}
 [[gnu::always_inline]] inline float least(float a, float b, float c) {
   const float ab = a < b ? a : b;
   return ab < c ? ab : c;
@@ -134,6 +140,19 @@ struct Spot {
                               f.nearness_per_row[i] * (static_cast<float>(f.top[i]) - row);
     f.farthest[i] = least(near, spots[1].nearness[i], spots[2].nearness[i]);
     f.nearest[i] = most(near, spots[1].nearness[i], spots[2].nearness[i]);
+    // Sizes of the terms of the area and of the gradient: their roundings count as many times more
+    // as the terms cancel out.
+    const float area_terms = size_of(col_1 * row_2) + size_of(col_2 * row_1);
+    const float across = size_of(near_1 * row_2) + size_of(near_2 * row_1);
+    const float down = size_of(near_2 * col_1) + size_of(near_1 * col_2);
+    const float farther_col =
+        static_cast<float>(f.right[i] - f.left[i]) + size_of(static_cast<float>(f.left[i]) - col);
+    const float farther_row =
+        static_cast<float>(f.bottom[i] - f.top[i]) + size_of(static_cast<float>(f.top[i]) - row);
+    const float steepness = (across * farther_col + down * farther_row) * size_of(inverse);
+    const float room = kInterpolation * (1.0F + area_terms * size_of(inverse)) * steepness;
+    const float whole = f.nearest[i] - f.farthest[i];  // nearness is held within it
+    f.room[i] = room < whole ? room : whole;
     const int is_culled = static_cast<int>(aim.cull_back_faces) & static_cast<int>(area > 0.0F);
     const int is_gone = (is_culled | static_cast<int>(area == 0.0F)) &
                         static_cast<int>(f.size[i] != static_cast<int>(Size::large));
@@ -182,6 +201,7 @@ Shape Footprints::shape(unsigned lane, std::uint32_t number) const {
           .nearness_at_corner = nearness_at_corner[lane],
           .farthest = farthest[lane],
           .nearest = nearest[lane],
+          .room = room[lane],
           .number = number,
           .rect = {left[lane], right[lane], top[lane], bottom[lane]}};
 }
@@ -304,6 +324,12 @@ std::optional<Shape> shape_of(const Eigen::Matrix3d& corners, const Nearness& ne
   shape.farthest = static_cast<float>(nearness.at(depth));
   shape.nearest = least_depth > 0.0 ? static_cast<float>(nearness.at(least_depth))
                                     : std::numeric_limits<float>::max();
+  const auto cols = static_cast<float>(shape.rect.right - shape.rect.left + kSmall);
+  const auto rows = static_cast<float>(shape.rect.bottom - shape.rect.top + kSmall);
+  shape.room = std::min(
+      shape.nearest - shape.farthest,
+      kInterpolation * (size_of(shape.nearness_at_corner) + size_of(shape.nearness_per_col) * cols +
+                        size_of(shape.nearness_per_row) * rows));
   return shape;
 }
 

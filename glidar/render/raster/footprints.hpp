@@ -49,6 +49,7 @@ struct Footprints {
   Lanes<float> nearness_at_corner;
   Lanes<float> farthest;
   Lanes<float> nearest;
+  Lanes<float> room;
   Lanes<std::int32_t> left;
   Lanes<std::int32_t> right;
   Lanes<std::int32_t> top;

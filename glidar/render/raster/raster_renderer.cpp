@@ -240,7 +240,7 @@ class RasterRenderer final : public Renderer {
                  std::span<const std::uint32_t> seen, Desk& desk) const {
     const auto cols = static_cast<int>(part.drawn.cols);
     const auto rows = static_cast<int>(part.drawn.rows);
-    desk.canvas.clear(cols, rows);
+    desk.canvas.clear(cols, rows, static_cast<float>(drawing.nearness.factor));
     desk.order.clear();
     for (const std::uint32_t index : seen) desk.order.push_back(key(sightings_[index], index));
     std::sort(desk.order.begin(), desk.order.end());

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""Compares the renderers, to the bit, on all models below folders.
+
+usage: PYTHONPATH=build/dev/python build/venv/bin/python scripts/compare_renderers.py [OPTION...] FOLDER...
+
+Each model is seen from around it, from places in its box and from some of its vertices. Range, instance, triangle
+and normal of every beam must have the same bits for all renderers. Prints the views that differ, and exits with 1 if
+there is one. Files that are no model, or that cannot be read, are counted.
+"""
+
+import argparse
+import pathlib
+import sys
+
+import numpy as np
+
+import glidar
+
+SUFFIXES = {".3ds", ".3mf", ".amf", ".dae", ".fbx", ".glb", ".gltf", ".lwo", ".obj", ".off", ".ply", ".stl", ".x"}
+COLUMNS = ("range_m", "instance", "primitive", "normal")
+
+
+def models_below(folders):
+    files = (file for folder in folders for file in sorted(pathlib.Path(folder).rglob("*")))
+    return [file for file in files if file.suffix.lower() in SUFFIXES]
+
+
+def eyes(scene, views, random):
+    """Positions of the sensor, by turns outside, inside and on a vertex."""
+    low, high = scene.bounds
+    middle, size = (low + high) / 2, np.linalg.norm(high - low)
+    vertices = scene.objects[0].mesh.vertices if hasattr(scene.objects[0], "mesh") else None
+    for k in range(views):
+        outward = random.normal(size=3)
+        outside = middle + size * random.uniform(0.6, 3.0) * outward / np.linalg.norm(outward)
+        inside = low + random.uniform(size=3) * (high - low)
+        if k % 3 == 0:
+            yield outside
+        elif k % 3 == 1 or vertices is None or len(vertices) == 0:
+            yield inside
+        else:
+            yield np.asarray(vertices[random.integers(len(vertices))], dtype=float)
+
+
+def target(scene, random):
+    low, high = scene.bounds
+    return low + random.uniform(size=3) * (high - low)
+
+
+def truth_of(scene, camera, pose, renderer):
+    frame = scene.simulator(camera, renderer=renderer).simulate(pose, columns="all")
+    return {name: np.ascontiguousarray(getattr(frame.truth, name)) for name in COLUMNS}
+
+
+def differing(first, second):
+    """Beams of which some column differs in its bits."""
+    differs = np.zeros(first["range_m"].size, dtype=bool)
+    for name in COLUMNS:
+        a, b = (x[name].reshape(differs.size, -1).view(np.uint8).reshape(differs.size, -1) for x in (first, second))
+        differs |= (a != b).any(axis=1)
+    return np.flatnonzero(differs)
+
+
+def compare(file, options, random):
+    """Returns beams compared and beams that differ."""
+    scene = glidar.Scene(str(file))
+    camera = glidar.camera(options.side, options.side, fov_deg=60.0)
+    beams = wrong = 0
+    for eye in eyes(scene, options.views, random):
+        at = target(scene, random)
+        if np.allclose(eye, at):
+            continue
+        pose = glidar.look_at(eye, at)
+        truths = {renderer: truth_of(scene, camera, pose, renderer) for renderer in options.renderers}
+        reference = options.renderers[0]
+        for renderer in options.renderers[1:]:
+            found = differing(truths[reference], truths[renderer])
+            beams += options.side**2
+            wrong += found.size
+            if found.size > 0:
+                print(f"{file}: {reference} and {renderer} differ for {found.size} beams, the first {found[0]}; "
+                      f"eye {eye.tolist()}, at {at.tolist()}", flush=True)  # fmt: skip
+    return beams, wrong
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("folders", nargs="+", metavar="FOLDER")
+    parser.add_argument("--views", type=int, default=3, help="views of each model")
+    parser.add_argument("--side", type=int, default=256, help="pixels of a view's side")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--renderers", nargs="+", default=["rays", "raster"], help="the first is the reference")
+    options = parser.parse_args()
+    random = np.random.default_rng(options.seed)
+    files = models_below(options.folders)
+    beams = wrong = unread = 0
+    for file in files:
+        try:
+            more_beams, more_wrong = compare(file, options, random)
+        except glidar.Error as error:
+            unread += 1
+            if "--verbose" in sys.argv:
+                print(error)
+            continue
+        beams += more_beams
+        wrong += more_wrong
+    print(f"{len(files) - unread} models, {unread} files not read, {beams} comparisons, {wrong} beams differ")
+    return 1 if wrong > 0 or beams == 0 else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
