@@ -182,6 +182,10 @@ Resolver::Resolver(const Scene& scene) : scene_(scene), colours_(scene) {
   for (const Mesh& mesh : scene.meshes) {
     planes_.push_back(triangle_planes(mesh));
     twins_.push_back(first_twins(mesh));
+    distinct_.push_back(without_copies(mesh, twins_.back()));
+  }
+  for (const Instance& instance : scene.instances) {
+    if (has_mask(scene, instance)) distinct_[instance.mesh].clear();  // holes of copies may differ
   }
   known_.reserve(scene.instances.size());
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {

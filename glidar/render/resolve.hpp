@@ -21,6 +21,12 @@ namespace glidar {
 /// differ.
 std::vector<std::uint32_t> first_twins(const Mesh& mesh);
 
+/// The triangles of a mesh without copies: those that an earlier triangle equals corner on corner
+/// and in its sense of rotation are left out. Rising indices; empty when there are no copies.
+/// `twins`: first_twins(mesh).
+std::vector<std::uint32_t> without_copies(const Mesh& mesh,
+                                          const std::vector<std::uint32_t>& twins);
+
 /// True when a material of the instance has an alpha mask.
 bool has_mask(const Scene& scene, const Instance& instance);
 
@@ -111,6 +117,11 @@ class Resolver {
     return twins == nullptr ? primitive : twins[primitive];
   }
 
+  /// The triangles of a mesh that a cast may report; empty: all of them.
+  [[nodiscard]] std::span<const std::uint32_t> distinct(std::size_t mesh) const {
+    return distinct_[mesh];
+  }
+
   /// True when a material of the instance has an alpha mask.
   [[nodiscard]] bool is_masked(std::uint32_t instance) const { return known_[instance].is_masked; }
 
@@ -169,9 +180,10 @@ class Resolver {
   };
 
   const Scene& scene_;
-  std::vector<std::vector<TrianglePlane>> planes_;  ///< per mesh
-  std::vector<std::vector<std::uint32_t>> twins_;   ///< per mesh
-  std::vector<Known> known_;                        ///< per instance
+  std::vector<std::vector<TrianglePlane>> planes_;    ///< per mesh
+  std::vector<std::vector<std::uint32_t>> twins_;     ///< per mesh
+  std::vector<std::vector<std::uint32_t>> distinct_;  ///< per mesh, see distinct()
+  std::vector<Known> known_;                          ///< per instance
   SurfaceColours colours_;
   std::vector<InstanceView> views_;  ///< per instance
 };

@@ -62,7 +62,37 @@ std::size_t earlier_twin(const Mesh& mesh, const std::vector<Key>& keys, std::si
   return i;
 }
 
+/// True for twins whose corners follow each other in the same sense.
+bool turn_alike(const Mesh& mesh, std::uint32_t a, std::uint32_t b) {
+  const auto position = [&](std::uint32_t triangle, std::size_t k) -> const Eigen::Vector3f& {
+    return mesh.positions_m[mesh.triangles[triangle][k % 3]];
+  };
+  for (std::size_t shift = 0; shift < 3; ++shift) {
+    if (position(a, 0) == position(b, shift) && position(a, 1) == position(b, shift + 1) &&
+        position(a, 2) == position(b, shift + 2)) {
+      return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
+
+std::vector<std::uint32_t> without_copies(const Mesh& mesh,
+                                          const std::vector<std::uint32_t>& twins) {
+  std::vector<std::uint32_t> distinct;
+  if (twins.empty()) return distinct;
+  distinct.reserve(twins.size());
+  std::vector<std::uint8_t> is_turned_kept(twins.size(), 0);  // of each first one's opposites
+  for (std::uint32_t i = 0; i < twins.size(); ++i) {
+    const std::uint32_t first = twins[i];
+    const bool is_copy = first != i && turn_alike(mesh, first, i);
+    if (is_copy || is_turned_kept[first] != 0) continue;
+    is_turned_kept[first] = static_cast<std::uint8_t>(first != i);
+    distinct.push_back(i);
+  }
+  return distinct;
+}
 
 std::vector<std::uint32_t> first_twins(const Mesh& mesh) {
   const std::vector<Key> keys = sorted_keys(mesh);

@@ -35,7 +35,8 @@ static_assert(sizeof(TriangleCluster) == 24);
 struct MeshTriangles {
   std::span<const Eigen::Vector3f> positions;
   std::span<const Triangle> triangles;
-  std::uint32_t first_primitive = 0;  ///< index in the mesh of triangles[0]
+  std::uint32_t first_primitive = 0;           ///< index in the mesh of triangles[0]
+  std::span<const std::uint32_t> chosen = {};  ///< indices of those that count; empty: all do
 };
 
 /// Blocks that `count` triangles take.

@@ -25,12 +25,14 @@ struct Place {
   std::uint32_t triangle;
 };
 
-/// Those with a plane.
-std::vector<Place> places(const Mesh& mesh) {
+/// Those of the chosen with a plane.
+std::vector<Place> places(const Mesh& mesh, std::span<const std::uint32_t> chosen) {
   const std::vector<TrianglePlane> planes = triangle_planes(mesh);
+  const std::size_t count = chosen.empty() ? mesh.triangles.size() : chosen.size();
   std::vector<Place> all;
-  all.reserve(mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+  all.reserve(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t t = chosen.empty() ? i : chosen[i];
     if (std::isnan(planes[t].normal.x())) continue;
     constexpr float kThird = 1.0F / 3.0F;  // before the sum: that of large ones would overflow
     all.push_back(
@@ -89,8 +91,8 @@ Pack pack(const Mesh& mesh, std::span<const Place> own, const Eigen::Vector3f& m
 
 }  // namespace
 
-PackedMesh::PackedMesh(const Mesh& mesh) {
-  std::vector<Place> sorted = places(mesh);
+PackedMesh::PackedMesh(const Mesh& mesh, std::span<const std::uint32_t> chosen) {
+  std::vector<Place> sorted = places(mesh, chosen);
   sort_in_space(sorted);
   const std::span<const Place> all(sorted);
   clusters = (all.size() + kClusterTriangles - 1) / kClusterTriangles;

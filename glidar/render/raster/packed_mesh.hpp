@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace glidar::raster {
@@ -27,7 +28,8 @@ struct Boxes {
 /// A mesh cut into clusters of triangles that lie near each other, so that many are found hidden or
 /// out of sight at once. Triangles without area, which nothing can hit, are left out.
 struct PackedMesh {
-  explicit PackedMesh(const Mesh& mesh);
+  /// `chosen`: indices of the triangles that count; empty: all do.
+  explicit PackedMesh(const Mesh& mesh, std::span<const std::uint32_t> chosen = {});
 
   std::vector<Pack> packs;  ///< kPacksPerCluster per cluster, fewer in the last
   std::size_t clusters = 0;

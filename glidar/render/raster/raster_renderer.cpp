@@ -81,10 +81,10 @@ std::uint64_t key(const Sighting& sighting, std::uint32_t index) {
 class RasterRenderer final : public Renderer {
  public:
   explicit RasterRenderer(std::shared_ptr<CpuBase> base)
-      : base_(std::move(base)),
-        packed_(scene().meshes.begin(), scene().meshes.end()),
-        triangles_(scene(), "raster") {
-    for (const Mesh& mesh : scene().meshes) {
+      : base_(std::move(base)), triangles_(scene(), "raster") {
+    for (std::size_t i = 0; i < scene().meshes.size(); ++i) {
+      const Mesh& mesh = scene().meshes[i];
+      packed_.emplace_back(mesh, base_->resolver.distinct(i));
       boxes_.push_back(bounds(mesh));
       local_boxes_.push_back(local_box(mesh));
     }

@@ -43,9 +43,12 @@ BoxReference make_reference(const MeshTriangles& mesh, std::size_t index) {
 }
 
 std::vector<BoxReference> make_references(const MeshTriangles& mesh, Workers& workers) {
-  std::vector<BoxReference> references(mesh.triangles.size());
+  const bool has_all = mesh.chosen.empty();
+  std::vector<BoxReference> references(has_all ? mesh.triangles.size() : mesh.chosen.size());
   workers.for_ranges(references.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) references[i] = make_reference(mesh, i);
+    for (std::size_t i = begin; i < end; ++i) {
+      references[i] = make_reference(mesh, has_all ? i : mesh.chosen[i]);
+    }
   });
   return references;
 }

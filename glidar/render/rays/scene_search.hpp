@@ -15,7 +15,7 @@ class SceneSearch {
  public:
   /// Builds the trees of the meshes. Both must outlive the search.
   SceneSearch(const Resolver& resolver, Workers& workers)
-      : resolver_(resolver), workers_(workers), trees_(resolver.scene(), workers) {}
+      : resolver_(resolver), workers_(workers), trees_(resolver, workers) {}
 
   /// Takes the poses of the next cast, whose request must outlive its queries; the resolver has
   /// them too.

@@ -31,10 +31,12 @@ float above(double value) {
 
 }  // namespace
 
-SceneTrees::SceneTrees(const Scene& scene, Workers& workers)
-    : scene_(scene), reach_m_(scene.instances.size(), 0.0) {
-  for (const Mesh& mesh : scene.meshes) {
-    const MeshTriangles triangles{mesh.positions_m, mesh.triangles};
+SceneTrees::SceneTrees(const Resolver& resolver, Workers& workers)
+    : scene_(resolver.scene()), reach_m_(scene_.instances.size(), 0.0) {
+  for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
+    const Mesh& mesh = scene_.meshes[i];
+    const MeshTriangles triangles{
+        .positions = mesh.positions_m, .triangles = mesh.triangles, .chosen = resolver.distinct(i)};
     mesh_trees_.push_back(build_mesh_tree(triangles, {}, workers));
     const Eigen::AlignedBox3d box = box_of(mesh_trees_.back());
     mesh_reach_.push_back(

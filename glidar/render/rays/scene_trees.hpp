@@ -19,7 +19,7 @@ namespace glidar::rays {
 class SceneTrees {
  public:
   /// The scene must outlive the trees.
-  SceneTrees(const Scene& scene, Workers& workers);
+  SceneTrees(const Resolver& resolver, Workers& workers);
 
   /// Takes the poses of the next cast; the resolver has them too. The tree over the instances is
   /// rebuilt only when an instance moved, or the sensor moved far.
