@@ -163,17 +163,9 @@ class SceneTrace {
 
   /// True when the beam meets this one before the nearest so far.
   bool decide(unsigned lane, const Found& found) {
-    const std::size_t beam = block_.beam[lane];
-    const Found& before = nearest_[lane].found;
-    const double before_m = hit_distance_m(cast_, beam, before);
-    const double found_m = hit_distance_m(cast_, beam, found);
-    const double apart_m = std::abs(found_m - before_m);
-    const double reach_m = cast_.trees.largest_reach_m();
-    const double window_m = std::max(tie_window_m(cast_, beam, found, reach_m),
-                                     tie_window_m(cast_, beam, before, reach_m));
-    if (apart_m > 0.0 && !(apart_m > window_m)) tied_ |= 1U << lane;
-    return is_nearer({found_m, found.instance, found.primitive},
-                     {before_m, before.instance, before.primitive});
+    const HitOrder order = order_of_hits(cast_, block_.beam[lane], found, nearest_[lane].found);
+    if (order.ties) tied_ |= 1U << lane;
+    return order.is_nearer;
   }
 
   const CastView& cast_;

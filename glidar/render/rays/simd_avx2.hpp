@@ -20,6 +20,7 @@ struct Float8 {
   __m256 v;
 
   GLIDAR_INLINE static Float8 load(const float* p) { return {_mm256_load_ps(p)}; }
+  GLIDAR_INLINE static Float8 load_unaligned(const float* p) { return {_mm256_loadu_ps(p)}; }
   GLIDAR_INLINE static Float8 all(float x) { return {_mm256_set1_ps(x)}; }
   GLIDAR_INLINE static Mask8 mask(std::uint32_t bits) {
     const __m256i of_lane = _mm256_setr_epi32(1, 2, 4, 8, 16, 32, 64, 128);
@@ -30,6 +31,9 @@ struct Float8 {
 
 GLIDAR_INLINE void store(float* p, Float8 a) {
   _mm256_store_ps(p, a.v);
+}
+GLIDAR_INLINE void store_unaligned(float* p, Float8 a) {
+  _mm256_storeu_ps(p, a.v);
 }
 GLIDAR_INLINE Float8 operator+(Float8 a, Float8 b) {
   return {_mm256_add_ps(a.v, b.v)};

@@ -11,6 +11,7 @@ namespace glidar::rays::GLIDAR_KERNEL {
 
 using Quad = float __attribute__((vector_size(16)));
 using QuadInMemory = float __attribute__((vector_size(16), may_alias));
+using QuadAnywhere = float __attribute__((vector_size(16), may_alias, aligned(4)));
 using QuadMask = std::int32_t __attribute__((vector_size(16)));
 
 struct Mask8 {
@@ -28,6 +29,10 @@ struct Float8 {
     return {*reinterpret_cast<const QuadInMemory*>(p),
             *reinterpret_cast<const QuadInMemory*>(p + 4)};
   }
+  GLIDAR_INLINE static Float8 load_unaligned(const float* p) {
+    return {*reinterpret_cast<const QuadAnywhere*>(p),
+            *reinterpret_cast<const QuadAnywhere*>(p + 4)};
+  }
   GLIDAR_INLINE static Float8 all(float x) { return {Quad{x, x, x, x}, Quad{x, x, x, x}}; }
   /// Bit i of `bits`: lane i.
   GLIDAR_INLINE static Mask8 mask(std::uint32_t bits) {
@@ -41,6 +46,10 @@ struct Float8 {
 GLIDAR_INLINE void store(float* p, Float8 a) {
   *reinterpret_cast<QuadInMemory*>(p) = a.low;
   *reinterpret_cast<QuadInMemory*>(p + 4) = a.high;
+}
+GLIDAR_INLINE void store_unaligned(float* p, Float8 a) {
+  *reinterpret_cast<QuadAnywhere*>(p) = a.low;
+  *reinterpret_cast<QuadAnywhere*>(p + 4) = a.high;
 }
 GLIDAR_INLINE Float8 operator+(Float8 a, Float8 b) {
   return {a.low + b.low, a.high + b.high};

@@ -124,6 +124,19 @@ double tie_window_m(const CastView& cast, std::size_t beam, const Found& triangl
   return tie_window(reach_m, corners, {ray.direction.x(), ray.direction.y(), ray.direction.z()});
 }
 
+HitOrder order_of_hits(const CastView& cast, std::size_t beam, const Found& found,
+                       const Found& before) {
+  const double before_m = hit_distance_m(cast, beam, before);
+  const double found_m = hit_distance_m(cast, beam, found);
+  const double apart_m = std::abs(found_m - before_m);
+  const double reach_m = cast.trees.largest_reach_m();
+  const double window_m =
+      std::max(tie_window_m(cast, beam, found, reach_m), tie_window_m(cast, beam, before, reach_m));
+  return {.is_nearer = is_nearer({found_m, found.instance, found.primitive},
+                                 {before_m, before.instance, before.primitive}),
+          .ties = apart_m > 0.0 && !(apart_m > window_m)};
+}
+
 Found lowest_of_ties(const CastView& cast, std::size_t beam, const Found& nearest) {
   const double nearest_m = hit_distance_m(cast, beam, nearest);
   const double reach_m = cast.trees.reach_m(nearest.instance);

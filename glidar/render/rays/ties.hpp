@@ -25,6 +25,15 @@ double hit_distance_m(const CastView& cast, std::size_t beam, const Found& trian
 /// reaches, halved, or a bound of it.
 double tie_window_m(const CastView& cast, std::size_t beam, const Found& triangle, double reach_m);
 
+/// How a triangle compares with another that the same beam hits, of another instance.
+struct HitOrder {
+  bool is_nearer;  ///< it is hit first
+  bool ties;       ///< their distances differ, but by no more than tie_window_m()
+};
+
+HitOrder order_of_hits(const CastView& cast, std::size_t beam, const Found& found,
+                       const Found& before);
+
 /// The lowest instance and triangle of those that tie with the nearest one, see tie_window_m().
 Found lowest_of_ties(const CastView& cast, std::size_t beam, const Found& nearest);
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/render/rays/kernel.hpp>
 #include <glidar/render/rays/leaf_packet.hpp>
 
 // The walk through a tree of eight children per node. It only has to be conservative: what it

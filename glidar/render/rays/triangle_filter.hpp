@@ -98,28 +98,43 @@ struct EdgeTest {
   F highest;
   F den;
 
+  /// Of rays that surely pass inside of all edges.
+  GLIDAR_INLINE static EdgeTest inside(F d) {
+    const F infinite = F::all(__builtin_huge_valf());
+    EdgeTest test;
+    test.lowest = infinite;
+    test.highest = infinite;
+    test.den = d;
+    return test;
+  }
+
   GLIDAR_INLINE EdgeTest(F u, F v, F d) : den(d) {
     const F w = d - u - v;
     lowest = least(least(u, v), w);
     highest = greatest(greatest(u, v), w);
   }
+
+ private:
+  EdgeTest() = default;
 };
 
 GLIDAR_INLINE Vector<Float8> corner_rows(const float (&rows)[3][kBlockSize]) {
   return {Float8::load(rows[0]), Float8::load(rows[1]), Float8::load(rows[2])};
 }
 
-GLIDAR_INLINE BlockSetup set_up(const TriangleBlock& block, const TriangleCluster& cluster,
-                                const float (&origin)[3], float scaled) {
-  BlockSetup s;
+GLIDAR_INLINE Corners<Float8> corners_in(const TriangleBlock& block,
+                                         const TriangleCluster& cluster) {
   const Vector<Float8> p = corner_rows(block.corner[0]);
-  s.corners.a = p - Vector<Float8>{Float8::all(cluster.centre[0]), Float8::all(cluster.centre[1]),
-                                   Float8::all(cluster.centre[2])};
-  s.corners.e1 = corner_rows(block.corner[1]) - p;
-  s.corners.e2 = corner_rows(block.corner[2]) - p;
-  const Vector<Float8> a =
-      s.corners.a -
-      Vector<Float8>{Float8::all(origin[0]), Float8::all(origin[1]), Float8::all(origin[2])};
+  const Vector<Float8> centre = {Float8::all(cluster.centre[0]), Float8::all(cluster.centre[1]),
+                                 Float8::all(cluster.centre[2])};
+  return {p - centre, corner_rows(block.corner[1]) - p, corner_rows(block.corner[2]) - p};
+}
+
+/// `a`: the first corners from the origin; `scaled`: see scaled_reach().
+GLIDAR_INLINE BlockSetup set_up(const Corners<Float8>& corners, const Vector<Float8>& a,
+                                float scaled) {
+  BlockSetup s;
+  s.corners = corners;
   s.q1 = cross(a, s.corners.e1);
   s.q2 = cross(s.corners.e2, a);
   s.n = cross(s.corners.e1, s.corners.e2);
@@ -132,6 +147,14 @@ GLIDAR_INLINE BlockSetup set_up(const TriangleBlock& block, const TriangleCluste
   s.bounds.det = reach * area * Float8::all(0.5F);
   s.bounds.den = area * Float8::all(10.0F * 0x1p-24F);
   return s;
+}
+
+GLIDAR_INLINE BlockSetup set_up(const TriangleBlock& block, const TriangleCluster& cluster,
+                                const float (&origin)[3], float scaled) {
+  const Corners<Float8> corners = corners_in(block, cluster);
+  const Vector<Float8> from = {Float8::all(origin[0]), Float8::all(origin[1]),
+                               Float8::all(origin[2])};
+  return set_up(corners, corners.a - from, scaled);
 }
 
 /// What is known of a ray's nearest triangle, as in RayPacket.

@@ -26,7 +26,7 @@ class KernelSymbols(unittest.TestCase):
         for path in OBJECTS:
             isa = re.search(r"glidar_kernel_(\w+)\.dir", path)[1]
             names = defined_in(path)
-            self.assertTrue(any("kKernel" in name for name in names), path)
+            self.assertTrue(any("Kernel" in name for name in names), path)
             others = [name for name in names if f"glidar::rays::{isa}::" not in name and not name.startswith(".")]
             self.assertEqual(others, [], path)
 

@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/renderer.hpp>
+
+#include <memory>
+
+namespace glidar {
+
+/// Rasterization on the CPU: pinhole cameras by raster/, scanners by scan_raster/. Others are
+/// refused. Each is built when it is first needed.
+std::unique_ptr<Renderer> make_rasters(const Scene& scene, const RendererOptions& options);
+
+}  // namespace glidar

@@ -1,0 +1,154 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/scan_raster/beam_angles.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace glidar::scan_raster {
+namespace {
+
+constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+/// Tangent of 80 degrees: the sector's frame has no room for steeper beams.
+constexpr double kMaxTangent = 5.67;
+/// A row whose azimuths deviate from their columns by more is not in the grid, columns.
+constexpr double kMaxSpread = 4.0;
+/// A sector is at least eight columns wide and must be below 57 degrees.
+constexpr double kMaxStep_rad = 0.06;
+constexpr double kMinStep_rad = 1e-6;
+/// The step of a grid with one column: any will do.
+constexpr double kAnyStep_rad = 0.01;
+
+double wrapped(double angle_rad) {
+  return angle_rad - kTurn_rad * std::floor(angle_rad / kTurn_rad + 0.5);
+}
+
+/// What is known of a row before the grid is.
+struct RawRow {
+  std::size_t beams = 0;
+  bool is_steep = false;
+  double low_tangent = 0.0;
+  double high_tangent = 0.0;
+  double step_rad = 0.0;   ///< mean, from column to column
+  double phase_rad = 0.0;  ///< middle azimuth, less that of the columns
+  double spread_rad = 0.0;
+};
+
+/// The row's azimuths, NaN where there is no beam.
+void find_azimuths(const Beams& beams, std::uint32_t row, std::vector<double>& azimuths,
+                   RawRow& raw) {
+  const SensorAxes axes = axes_of(beams);
+  raw.low_tangent = kMaxTangent;
+  raw.high_tangent = -kMaxTangent;
+  for (std::uint32_t c = 0; c < beams.cols; ++c) {
+    const Eigen::Vector3d& d = beams.directions[std::size_t{row} * beams.cols + c];
+    const double x = axes.ahead.dot(d);
+    const double y = axes.left.dot(d);
+    const double tangent = axes.up.dot(d) / std::sqrt(x * x + y * y);
+    azimuths[c] = std::atan2(y, x);
+    if (std::isnan(azimuths[c])) continue;
+    ++raw.beams;
+    raw.is_steep = raw.is_steep || !(std::abs(tangent) <= kMaxTangent);
+    raw.low_tangent = std::min(raw.low_tangent, tangent);
+    raw.high_tangent = std::max(raw.high_tangent, tangent);
+  }
+}
+
+double mean_step(const std::vector<double>& azimuths) {
+  double sum_rad = 0.0;
+  std::size_t first = azimuths.size();
+  std::size_t last = 0;
+  for (std::size_t c = 0; c < azimuths.size(); ++c) {
+    if (std::isnan(azimuths[c])) continue;
+    if (first == azimuths.size()) {
+      first = c;
+    } else {
+      sum_rad += wrapped(azimuths[c] - azimuths[last]);
+    }
+    last = c;
+  }
+  return last > first && first < azimuths.size() ? sum_rad / static_cast<double>(last - first)
+                                                 : 0.0;
+}
+
+/// Fits azimuths phase + c * step.
+void fit_row(const std::vector<double>& azimuths, double step_rad, RawRow& raw) {
+  double start_rad = std::numeric_limits<double>::quiet_NaN();
+  double low_rad = 0.0;
+  double high_rad = 0.0;
+  for (std::size_t c = 0; c < azimuths.size(); ++c) {
+    if (std::isnan(azimuths[c])) continue;
+    const double rest_rad = azimuths[c] - static_cast<double>(c) * step_rad;
+    if (std::isnan(start_rad)) start_rad = rest_rad;
+    const double off_rad = wrapped(rest_rad - start_rad);
+    low_rad = std::min(low_rad, off_rad);
+    high_rad = std::max(high_rad, off_rad);
+  }
+  raw.phase_rad = start_rad + 0.5 * (low_rad + high_rad);
+  raw.spread_rad = high_rad - low_rad;
+}
+
+/// Places a fitted row in the grid.
+RowAngles place_row(const RawRow& raw, std::uint32_t source, const BeamAngles& grid) {
+  constexpr double kRoom = 1e-3;
+  RowAngles row;
+  row.source = source;
+  if (raw.beams == 0) return row;
+  const double offset = wrapped(raw.phase_rad - grid.phase_rad) / grid.step_rad;
+  const double half = 0.5 * raw.spread_rad / std::abs(grid.step_rad) + kRoom;
+  row.shift = static_cast<std::int32_t>(std::floor(offset + 0.5));
+  row.low_tangent = raw.low_tangent;
+  row.high_tangent = raw.high_tangent;
+  row.low_deviation = offset - row.shift - half;
+  row.high_deviation = offset - row.shift + half;
+  row.is_in_grid = !raw.is_steep && 2.0 * half <= kMaxSpread;
+  return row;
+}
+
+/// Finds the step from the row with the most beams.
+std::size_t find_step(const std::vector<RawRow>& raw, BeamAngles& angles) {
+  const auto fullest = std::max_element(
+      raw.begin(), raw.end(), [](const RawRow& a, const RawRow& b) { return a.beams < b.beams; });
+  angles.step_rad = fullest->beams > 1 ? fullest->step_rad : kAnyStep_rad;
+  return static_cast<std::size_t>(fullest - raw.begin());
+}
+
+const char* misfit_of_step(double step_rad) {
+  if (!(std::abs(step_rad) >= kMinStep_rad)) return "beams of a row with the same azimuth";
+  if (!(std::abs(step_rad) <= kMaxStep_rad)) return "columns more than 3.4 degrees apart";
+  return "";
+}
+
+}  // namespace
+
+void measure_angles(const Beams& beams, Workers& workers, BeamAngles& angles) {
+  angles.rows.clear();
+  angles.misfit.clear();
+  if (beams.size() == 0) {
+    angles.misfit = "no beams";
+    return;
+  }
+  std::vector<RawRow> raw(beams.rows);
+  std::vector<std::vector<double>> azimuths(beams.rows);
+  const auto for_rows = [&](const auto& body) {
+    workers.for_ranges(beams.rows, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t row = begin; row < end; ++row) body(row);
+    });
+  };
+  for_rows([&](std::size_t row) {
+    azimuths[row].resize(beams.cols);
+    find_azimuths(beams, static_cast<std::uint32_t>(row), azimuths[row], raw[row]);
+    raw[row].step_rad = mean_step(azimuths[row]);
+  });
+  const std::size_t reference = find_step(raw, angles);
+  angles.misfit = misfit_of_step(angles.step_rad);
+  if (!angles.misfit.empty()) return;
+  for_rows([&](std::size_t row) { fit_row(azimuths[row], angles.step_rad, raw[row]); });
+  angles.phase_rad = raw[reference].phase_rad;
+  for (std::uint32_t row = 0; row < beams.rows; ++row) {
+    angles.rows.push_back(place_row(raw[row], row, angles));
+  }
+}
+
+}  // namespace glidar::scan_raster

@@ -1,0 +1,37 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+#include <glidar/core/workers.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace glidar::scan_raster {
+
+/// A row of beams as a row of the grid: column c has about the azimuth
+/// phase + (c + shift) * step of the grid. What deviates from it is measured.
+struct RowAngles {
+  std::uint32_t source = 0;  ///< row of the beams
+  bool is_in_grid = false;   ///< otherwise its beams are cast as rays
+  double low_tangent = 0.0;  ///< of the elevations
+  double high_tangent = 0.0;
+  std::int32_t shift = 0;      ///< columns
+  double low_deviation = 0.0;  ///< of azimuths from those of their columns, columns
+  double high_deviation = 0.0;
+};
+
+/// Azimuths and elevations of beams, and how well they fit a grid.
+struct BeamAngles {
+  double phase_rad = 0.0;  ///< azimuth of column 0
+  double step_rad = 0.0;   ///< from column to column, signed
+  std::vector<RowAngles> rows;
+  std::string misfit;  ///< why the beams form no grid; empty: they do
+};
+
+/// Measures beams. Azimuths and elevations are those about axes_of(beams).
+void measure_angles(const Beams& beams, Workers& workers, BeamAngles& angles);
+
+}  // namespace glidar::scan_raster

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+#include <glidar/core/workers.hpp>
+#include <glidar/render/scan_raster/beam_angles.hpp>
+#include <glidar/render/scan_raster/sector_table.hpp>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace glidar::scan_raster {
+
+/// Beams as a grid of rows of equal elevation and columns of equal azimuth, cut into sectors.
+class BeamGrid {
+ public:
+  /// Measures the beams, unless they are bit for bit those measured last.
+  void measure(const Beams& beams, Workers& workers);
+
+  /// Why the beams form no grid; empty: they do. Otherwise only other_rows() is of use.
+  [[nodiscard]] const std::string& misfit() const { return angles_.misfit; }
+
+  [[nodiscard]] GridView view() const;
+  [[nodiscard]] const std::vector<SectorTable>& sectors() const { return sectors_; }
+
+  /// Rows of beams that are not in the grid.
+  [[nodiscard]] const std::vector<std::uint32_t>& other_rows() const { return other_rows_; }
+
+ private:
+  [[nodiscard]] bool has_measured(const Beams& beams, Workers& workers) const;
+  void sort_rows();
+  void find_misfit(const Beams& beams);
+  void find_columns(const Beams& beams);
+  void find_bins();
+  void build_sectors(const Beams& beams, Workers& workers);
+
+  Beams measured_;  ///< directions, origins and what their axes depend on
+  BeamAngles angles_;
+  std::vector<RowAngles> rows_;  ///< of the grid, rising
+  std::vector<std::uint32_t> other_rows_;
+  GridColumns columns_;
+  std::vector<float> low_deviation_;  ///< per row
+  std::vector<float> high_deviation_;
+  std::vector<std::int32_t> first_row_;  ///< per bin
+  std::vector<std::int32_t> last_row_;
+  double lowest_tangent_ = 0.0;
+  double highest_tangent_ = 0.0;
+  std::vector<SectorTable> sectors_;
+};
+
+}  // namespace glidar::scan_raster

@@ -1,0 +1,153 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/scan_raster/cell_rect.hpp>
+
+// One triangle against the beams of eight cells side by side.
+namespace glidar::rays::GLIDAR_KERNEL {
+
+using scan_raster::Placement;
+using scan_raster::SectorPicture;
+using scan_raster::SectorView;
+
+/// All that drawing an instance needs.
+struct Drawing {
+  const GridView& grid;
+  const SectorView& sector;
+  const Placement& placement;
+  const SectorPicture& picture;
+  Turn turn;
+
+  GLIDAR_INLINE Drawing(const GridView& g, const SectorView& s, const Placement& p,
+                        const SectorPicture& c)
+      : grid(g), sector(s), placement(p), picture(c), turn(p.sector_from_object) {}
+};
+
+/// Bounds of edge functions and of den, where their vectors were turned into the sector's frame: a
+/// product of three terms with a rounded matrix adds 4 u |q|_1 <= 8 u L s to the 20 u L s of
+/// rays/triangle_filter.hpp, whose bounds are 24 u L s; and 4 u s1 s2 to 8.2 u s1 s2 (10).
+inline constexpr float kTurnRoom = 1.5F;
+
+/// Numbers of eight triangles, to be read one triangle at a time. Distances det / den are in
+/// metres.
+struct TriangleRows {
+  static constexpr unsigned kQ1 = 0;
+  static constexpr unsigned kQ2 = 3;
+  static constexpr unsigned kN = 6;
+  static constexpr unsigned kDet = 9;
+  static constexpr unsigned kEdgeBound = 10;
+  static constexpr unsigned kDetBound = 11;
+  static constexpr unsigned kDenBound = 12;
+  static constexpr unsigned kE1 = 13;  ///< only for beams with origins of their own
+  static constexpr unsigned kE2 = 16;
+  static constexpr unsigned kCount = 19;
+  alignas(32) float at[kCount][kBlockSize];
+
+  GLIDAR_INLINE void set(unsigned row, Float8 x) { store(at[row], x); }
+  GLIDAR_INLINE void set(unsigned row, const Vector<Float8>& v) {
+    set(row, v.x);
+    set(row + 1, v.y);
+    set(row + 2, v.z);
+  }
+  [[nodiscard]] GLIDAR_INLINE Float8 all(unsigned row, unsigned i) const {
+    return Float8::all(at[row][i]);
+  }
+  [[nodiscard]] GLIDAR_INLINE Vector<Float8> all3(unsigned row, unsigned i) const {
+    return {all(row, i), all(row + 1, i), all(row + 2, i)};
+  }
+  [[nodiscard]] GLIDAR_INLINE ErrorBounds<Float8> bounds(unsigned i) const {
+    return {all(kEdgeBound, i), all(kDetBound, i), all(kDenBound, i)};
+  }
+};
+
+/// One of eight triangles.
+struct RowTriangle {
+  const TriangleRows& rows;
+  unsigned index;      ///< of the eight
+  std::uint32_t slot;  ///< in the tree
+  bool faces;          ///< the sign of det is sure, and the rows are turned so that it is positive
+};
+
+GLIDAR_INLINE Vector<Float8> load3(const float* const (&of_cell)[3], std::size_t cell) {
+  return {Float8::load_unaligned(of_cell[0] + cell), Float8::load_unaligned(of_cell[1] + cell),
+          Float8::load_unaligned(of_cell[2] + cell)};
+}
+
+/// A number as its bits, so that it can be blended with others.
+GLIDAR_INLINE float bits_of_number(std::uint32_t number) {
+  float result;
+  __builtin_memcpy(&result, &number, sizeof(result));
+  return result;
+}
+
+/// Keeps the triangle in the cells where it is surely nearer, and applies the rule where that is in
+/// doubt.
+GLIDAR_INLINE void keep_nearer(const Drawing& drawing, const RowTriangle& triangle,
+                               std::size_t cell, const EdgeTest<Float8>& edges, Mask8 candidates,
+                               Float8 det) {
+  const SectorPicture& picture = drawing.picture;
+  const Placement& placement = drawing.placement;
+  const Float8 zero = Float8::all(0.0F);
+  const Interval<Float8> best = {Float8::load_unaligned(picture.low + cell),
+                                 Float8::load_unaligned(picture.high + cell), zero, zero};
+  const Verdict<Float8> verdict =
+      weigh(edges, candidates, det, triangle.rows.bounds(triangle.index), best);
+  std::uint32_t doubtful = bits(verdict.doubtful);
+  const std::uint32_t accepted = bits(verdict.accepted);
+  if (placement.asks) {
+    doubtful |= accepted;
+  } else if (accepted != 0) {
+    const Float8 number = Float8::all(bits_of_number(placement.first_number + triangle.slot));
+    store_unaligned(picture.low + cell, select(verdict.accepted, verdict.low, best.low));
+    store_unaligned(picture.high + cell, select(verdict.accepted, verdict.high, best.high));
+    const Float8 before = Float8::load_unaligned(picture.number + cell);
+    store_unaligned(picture.number + cell, select(verdict.accepted, number, before));
+  }
+  for (; doubtful != 0; doubtful &= doubtful - 1) {
+    const auto lane = static_cast<std::uint32_t>(__builtin_ctz(doubtful));
+    placement.decide(placement.context, static_cast<std::uint32_t>(cell) + lane, triangle.slot);
+  }
+}
+
+/// det of the cells' beams: the origin's, less that of their offsets.
+template <bool kOwnOrigins>
+GLIDAR_INLINE Float8 det_at(const Drawing& drawing, const RowTriangle& t, std::size_t cell) {
+  const Float8 det = t.rows.all(TriangleRows::kDet, t.index);
+  if constexpr (kOwnOrigins) {
+    return det - dot(load3(drawing.sector.offset, cell), t.rows.all3(TriangleRows::kN, t.index));
+  }
+  return det;
+}
+
+/// Cells [cell, cell + 8). A beam beside the sector's last column is tested in vain.
+template <bool kOwnOrigins>
+GLIDAR_INLINE void test_cells(const Drawing& drawing, const RowTriangle& t, std::size_t cell) {
+  const Vector<Float8> d = load3(drawing.sector.direction, cell);
+  const Float8 den = dot(d, t.rows.all3(TriangleRows::kN, t.index));
+  Float8 v = dot(d, t.rows.all3(TriangleRows::kQ1, t.index));
+  Float8 u = dot(d, t.rows.all3(TriangleRows::kQ2, t.index));
+  if constexpr (kOwnOrigins) {  // d.((A - o) x e1) = d.q1 - (d x o).e1
+    const Vector<Float8> m = load3(drawing.sector.moment, cell);
+    v = v - dot(m, t.rows.all3(TriangleRows::kE1, t.index));
+    u = u + dot(m, t.rows.all3(TriangleRows::kE2, t.index));
+  }
+  const EdgeTest<Float8> edges(u, v, den);
+  const Float8 bound = t.rows.all(TriangleRows::kEdgeBound, t.index);
+  Mask8 outside = edges.lowest < -bound;
+  if (!t.faces) outside = outside & (edges.highest > bound);
+  const Mask8 candidates = ~outside;
+  if (bits(candidates) == 0) return;
+  keep_nearer(drawing, t, cell, edges, candidates, det_at<kOwnOrigins>(drawing, t, cell));
+}
+
+/// The same where all beams surely pass inside of the edges.
+template <bool kOwnOrigins>
+GLIDAR_INLINE void test_inside(const Drawing& drawing, const RowTriangle& t, std::size_t cell) {
+  const Vector<Float8> d = load3(drawing.sector.direction, cell);
+  const EdgeTest<Float8> edges =
+      EdgeTest<Float8>::inside(dot(d, t.rows.all3(TriangleRows::kN, t.index)));
+  keep_nearer(drawing, t, cell, edges, Float8::mask(0xFF), det_at<kOwnOrigins>(drawing, t, cell));
+}
+
+}  // namespace glidar::rays::GLIDAR_KERNEL

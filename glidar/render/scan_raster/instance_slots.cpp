@@ -1,0 +1,118 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/scan_raster/instance_slots.hpp>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace glidar::scan_raster {
+namespace {
+
+/// Coordinates and scales for which the kernels' products neither overflow nor underflow.
+constexpr double kMaxReach = 0x1p34;
+constexpr double kMaxScale = 0x1p20;
+/// What a rotation may lack, far below the kernels' rounding.
+constexpr double kRotationTolerance = 0x1p-30;
+/// Boxes in single precision: some 20 roundings of 2^-24.
+constexpr double kBoxRoom = 0x1p-19;
+
+double largest(const double (&values)[3]) {
+  return std::max({std::abs(values[0]), std::abs(values[1]), std::abs(values[2])});
+}
+
+/// Bounds the coordinates of all vertices and of the sensor.
+double size_of(const rays::MeshSphere& sphere, const Eigen::Vector3d& sensor) {
+  return largest(sphere.centre) + sphere.radius + sensor.cwiseAbs().maxCoeff();
+}
+
+bool is_rotation(const Eigen::Matrix3d& m) {
+  const Eigen::Matrix3d rest = m * m.transpose() - Eigen::Matrix3d::Identity();
+  return rest.cwiseAbs().maxCoeff() <= kRotationTolerance && m.determinant() > 0.0;
+}
+
+bool is_within_bounds(const InstanceView& view, const rays::MeshSphere& sphere) {
+  return is_rotation(view.object_from_sensor) && view.scale <= kMaxScale &&
+         view.scale >= 1.0 / kMaxScale && size_of(sphere, view.sensor_in_object) <= kMaxReach;
+}
+
+/// From the sensor to the instance's sphere, metres; below zero inside of it.
+double distance_m(const InstanceView& view, const rays::MeshSphere& sphere) {
+  const Eigen::Map<const Eigen::Vector3d> centre(sphere.centre);
+  return view.scale * ((view.sensor_in_object - centre).norm() - sphere.radius);
+}
+
+float above(double value) {
+  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
+}
+
+}  // namespace
+
+bool InstanceSlots::prepare(const rays::SceneTrees& trees, const Resolver& resolver) {
+  trees_ = &trees;
+  order_ = trees.instances();
+  for (const std::uint32_t i : order_) {
+    if (!is_within_bounds(resolver.view(i), trees.of_instance(i).sphere)) return false;
+  }
+  std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const double a_m = distance_m(resolver.view(a), trees.of_instance(a).sphere);
+    const double b_m = distance_m(resolver.view(b), trees.of_instance(b).sphere);
+    return a_m != b_m ? a_m < b_m : a < b;
+  });
+  return give_numbers();
+}
+
+bool InstanceSlots::give_numbers() {
+  std::uint64_t next = 0;
+  starts_.clear();
+  first_number_.clear();
+  for (const std::uint32_t i : trees_->instances()) {
+    first_number_.resize(i + 1, kNoNumber);
+    first_number_[i] = static_cast<std::uint32_t>(next);
+    starts_.push_back(first_number_[i]);
+    next += std::uint64_t{kBlockSize} * trees_->of_instance(i).blocks.size();
+    if (next >= kNoNumber) return false;
+  }
+  return true;
+}
+
+std::uint32_t InstanceSlots::instance_of(std::uint32_t number) const {
+  if (starts_.size() == 1) return trees_->instances()[0];
+  const auto after = std::upper_bound(starts_.begin(), starts_.end(), number);
+  return trees_->instances()[static_cast<std::size_t>(after - starts_.begin()) - 1];
+}
+
+Found InstanceSlots::found(std::uint32_t number) const {
+  if (number == kNoNumber) return {};
+  const std::uint32_t instance = instance_of(number);
+  const std::uint32_t slot = number - first_number_[instance];
+  const TriangleBlock& block = trees_->of_instance(instance).blocks[slot / kBlockSize];
+  return {instance, block.primitive[slot % kBlockSize]};
+}
+
+Placement place(const rays::SceneTrees& trees, const InstanceView& view, std::uint32_t instance,
+                const SectorTable& sector) {
+  const rays::MeshTree& tree = trees.of_instance(instance);
+  const Eigen::Matrix3d& turn = view.object_from_sensor;
+  const Eigen::Vector3d origin = view.sensor_in_object + turn * sector.origin_m() / view.scale;
+  const Eigen::Matrix3f sector_from_object =
+      (sector.sector_from_sensor() * turn.transpose()).cast<float>();
+  Placement p{};
+  p.tree = tree.view();
+  for (int axis = 0; axis < 3; ++axis) {
+    p.origin[axis] = origin[axis];
+    p.foot[axis] = above(sector.foot_m()[axis] / view.scale);
+    for (int i = 0; i < 3; ++i) p.sector_from_object[axis][i] = sector_from_object(axis, i);
+  }
+  p.behind = above(sector.behind_m() / view.scale);
+  p.distance = above(sector.distance_m() / view.scale);
+  p.metres = view.scale;
+  // As in packet_start.hpp.
+  p.rounding = origin.lpNorm<1>() + 2.0 * sector.distance_m() / view.scale +
+               0x1p4 * trees.largest_reach_m() / view.scale;
+  p.room = above(kBoxRoom * size_of(tree.sphere, origin));
+  return p;
+}
+
+}  // namespace glidar::scan_raster

@@ -1,0 +1,45 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/found.hpp>
+#include <glidar/render/rays/scene_trees.hpp>
+#include <glidar/render/scan_raster/sector_table.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace glidar::scan_raster {
+
+/// The instances of a cast in the order in which they are drawn, and numbers for the slots of all
+/// their triangles.
+class InstanceSlots {
+ public:
+  /// Takes the instances that are there; the resolver and the trees have the poses of the cast.
+  /// False when single precision has no bounds for some instance: the cast is for rays.
+  bool prepare(const rays::SceneTrees& trees, const Resolver& resolver);
+
+  [[nodiscard]] const std::vector<std::uint32_t>& order() const { return order_; }
+  [[nodiscard]] std::uint32_t first_number(std::uint32_t instance) const {
+    return first_number_[instance];
+  }
+
+  /// The instance of a number.
+  [[nodiscard]] std::uint32_t instance_of(std::uint32_t number) const;
+  /// The triangle of a number; kNoNumber: none.
+  [[nodiscard]] Found found(std::uint32_t number) const;
+
+ private:
+  bool give_numbers();
+
+  const rays::SceneTrees* trees_ = nullptr;
+  std::vector<std::uint32_t> order_;         ///< about the nearest first
+  std::vector<std::uint32_t> first_number_;  ///< per instance of the scene
+  std::vector<std::uint32_t> starts_;        ///< first numbers of trees_->instances(), rising
+};
+
+/// An instance as a sector sees it, but for what decides hits.
+Placement place(const rays::SceneTrees& trees, const InstanceView& view, std::uint32_t instance,
+                const SectorTable& sector);
+
+}  // namespace glidar::scan_raster

@@ -1,0 +1,14 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/scan_raster/kernel.hpp>
+
+#include <string_view>
+
+namespace glidar::scan_raster {
+
+/// The kernel for the instruction set of the ray caster's kernel of this name.
+const Kernel& find_kernel(std::string_view name);
+
+}  // namespace glidar::scan_raster

@@ -1,0 +1,242 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/rays/leaf_test.hpp>
+#include <glidar/render/scan_raster/large_triangle.hpp>
+
+// The triangles of a cluster: which cells they cover, then these cells' beams.
+namespace glidar::rays::GLIDAR_KERNEL {
+
+/// Triangles that take more vectors of cells than this are drawn by tiles.
+inline constexpr std::int32_t kSmallTriangle = 16;
+
+/// The sector's origin as a cluster sees it.
+struct LeafOrigin {
+  float at[3];
+  float scaled;   ///< see scaled_reach()
+  float foot[3];  ///< Placement::foot and what positions in the sector's frame may be wrong by
+  float behind;
+
+  GLIDAR_INLINE LeafOrigin(const Placement& placement, const TriangleCluster& cluster) {
+    double largest = 0.0;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      const double x = placement.origin[axis] - static_cast<double>(cluster.centre[axis]);
+      at[axis] = static_cast<float>(x);
+      largest = larger(largest, __builtin_fabs(x));
+    }
+    const double reach = largest + static_cast<double>(cluster.radius) +
+                         2.0 * static_cast<double>(placement.distance) +
+                         placement.rounding * 0x1p-26;
+    scaled = scaled_reach(reach);
+    // Some 24 roundings of 2^-24: of the corner, of its edges, and of turning both.
+    const auto room = static_cast<float>(0x1p-19 * (reach + kReachRoom));
+    for (unsigned axis = 0; axis < 3; ++axis) foot[axis] = placement.foot[axis] + room;
+    behind = placement.behind + foot[0];
+  }
+};
+
+/// Eight triangles in the sector's frame.
+struct SeenBlock {
+  Vector<Float8> corner[3];
+  Vector<Float8> e1;
+  Vector<Float8> e2;
+
+  GLIDAR_INLINE SeenBlock(const Turn& turn, const Vector<Float8>& a, const Corners<Float8>& corners)
+      : e1(turn(corners.e1)), e2(turn(corners.e2)) {
+    corner[0] = turn(a);
+    corner[1] = sum(corner[0], e1);
+    corner[2] = sum(corner[0], e2);
+  }
+
+  GLIDAR_INLINE static Vector<Float8> sum(const Vector<Float8>& p, const Vector<Float8>& q) {
+    return {p.x + q.x, p.y + q.y, p.z + q.z};
+  }
+  template <class Of>
+  [[nodiscard]] GLIDAR_INLINE Float8 lowest(const Of& of) const {
+    return least(least(of(corner[0]), of(corner[1])), of(corner[2]));
+  }
+  template <class Of>
+  [[nodiscard]] GLIDAR_INLINE Float8 highest(const Of& of) const {
+    return greatest(greatest(of(corner[0]), of(corner[1])), of(corner[2]));
+  }
+};
+
+/// Bits of the triangles that are beside the sector, above or below it: for those of which a corner
+/// is not in front.
+GLIDAR_INLINE std::uint32_t find_beside(const GridView& grid, const SeenBlock& seen,
+                                        const LeafOrigin& origin) {
+  using V = Vector<Float8>;
+  const Float8 side = Float8::all(grid.max_slope);
+  const Float8 high = Float8::all(grid.highest_slope);
+  const Float8 low = Float8::all(grid.lowest_slope);
+  const auto room_of = [&](float foot, float slope) {
+    const float size = slope < 0.0F ? -slope : slope;
+    return Float8::all(foot + size * origin.foot[0] + (1.0F + size) * origin.behind);
+  };
+  const Float8 side_room = room_of(origin.foot[1], grid.max_slope);
+  return bits((seen.lowest([&](const V& p) { return p.y - side * p.x; }) > side_room) |
+              (seen.highest([&](const V& p) { return p.y + side * p.x; }) < -side_room) |
+              (seen.lowest([&](const V& p) { return p.z - high * p.x; }) >
+               room_of(origin.foot[2], grid.highest_slope)) |
+              (seen.highest([&](const V& p) { return p.z - low * p.x; }) <
+               -room_of(origin.foot[2], grid.lowest_slope)));
+}
+
+/// The slopes of triangles whose corners are all in front by twice the foot's depth. A corner seen
+/// from h beside the origin has another slope s, by at most (h_side + |s| h_forward) / (z - h).
+GLIDAR_INLINE Slopes slopes_of(const SeenBlock& seen, const LeafOrigin& origin, Float8 forward) {
+  const Float8 one = Float8::all(1.0F);
+  const Float8 least_forward = Float8::all(2.0F * origin.foot[0]);
+  Float8 side[3];
+  Float8 up[3];
+  for (unsigned k = 0; k < 3; ++k) {
+    const Float8 inverse = one / greatest(seen.corner[k].x, least_forward);
+    side[k] = seen.corner[k].y * inverse;
+    up[k] = seen.corner[k].z * inverse;
+  }
+  const Float8 inverse = one / greatest(forward, least_forward);
+  const Float8 nearness = inverse * multiply_add(inverse, least_forward, one);
+  const auto low = [](const Float8(&s)[3]) { return least(least(s[0], s[1]), s[2]); };
+  const auto high = [](const Float8(&s)[3]) { return greatest(greatest(s[0], s[1]), s[2]); };
+  Slopes slopes = {low(side), high(side), low(up), high(up)};
+  const auto widen = [&](float foot, Float8& first, Float8& last) {
+    const Float8 largest = greatest(magnitude(first), magnitude(last));
+    const Float8 by =
+        nearness * multiply_add(largest, Float8::all(origin.foot[0]), Float8::all(foot));
+    first = first - by;
+    last = last + by;
+  };
+  widen(origin.foot[1], slopes.side_low, slopes.side_high);
+  widen(origin.foot[2], slopes.up_low, slopes.up_high);
+  return slopes;
+}
+
+/// What is left of eight triangles, and where.
+struct BlockCells {
+  std::uint32_t left;
+  std::uint32_t around;  ///< those that may cover any cell
+  CellRects rects;
+
+  GLIDAR_INLINE BlockCells(const Drawing& drawing, const SeenBlock& seen, const LeafOrigin& origin,
+                           std::uint32_t existing) {
+    const auto forward = [](const Vector<Float8>& p) { return p.x; };
+    const Float8 nearest = seen.lowest(forward);
+    const std::uint32_t behind = bits(seen.highest(forward) < Float8::all(-origin.behind));
+    left = existing & ~behind;
+    around = bits(nearest < Float8::all(2.0F * origin.foot[0])) & left;
+    if (around != 0) {
+      const std::uint32_t beside = find_beside(drawing.grid, seen, origin) & around;
+      around &= ~beside;
+      left &= ~beside;
+    }
+    if (left == 0) return;
+    left &= around | find_cells(drawing.grid, slopes_of(seen, origin, nearest), rects);
+  }
+};
+
+/// The rows of the triangles, turned so that det is positive.
+template <bool kOwnOrigins>
+GLIDAR_INLINE void fill_rows(const Drawing& drawing, const BlockSetup& s, const SeenBlock& seen,
+                             TriangleRows& rows) {
+  const auto metres = static_cast<float>(drawing.placement.metres);
+  const Float8 scale = Float8::all(metres);
+  rows.set(TriangleRows::kQ1, flip_sign(drawing.turn(s.q1), s.det));
+  rows.set(TriangleRows::kQ2, flip_sign(drawing.turn(s.q2), s.det));
+  rows.set(TriangleRows::kN, flip_sign(drawing.turn(s.n), s.det));
+  const Float8 det = magnitude(s.det) * scale;
+  rows.set(TriangleRows::kDet, det);
+  const Float8 turned = Float8::all(kTurnRoom);
+  rows.set(TriangleRows::kEdgeBound, s.bounds.edge * turned);
+  rows.set(TriangleRows::kDetBound,
+           multiply_add(s.bounds.det, Float8::all(1.001F * metres), det * Float8::all(0x1p-22F)));
+  rows.set(TriangleRows::kDenBound, s.bounds.den * turned);
+  if constexpr (kOwnOrigins) {
+    const Float8 inverse = Float8::all(1.0F / metres);
+    const auto scaled = [&](const Vector<Float8>& e) {
+      const Vector<Float8> turned_e = flip_sign(e, s.det);
+      return Vector<Float8>{turned_e.x * inverse, turned_e.y * inverse, turned_e.z * inverse};
+    };
+    rows.set(TriangleRows::kE1, scaled(seen.e1));
+    rows.set(TriangleRows::kE2, scaled(seen.e2));
+  }
+}
+
+/// Bits of the triangles that all beams see from the same side.
+template <bool kOwnOrigins>
+GLIDAR_INLINE std::uint32_t find_facing(const Drawing& drawing, const TriangleRows& rows) {
+  Float8 bound = Float8::load(rows.at[TriangleRows::kDetBound]);
+  if constexpr (kOwnOrigins) {
+    constexpr float kRoom = 1.001F;
+    const Vector<Float8> n = {Float8::load(rows.at[TriangleRows::kN]),
+                              Float8::load(rows.at[TriangleRows::kN + 1]),
+                              Float8::load(rows.at[TriangleRows::kN + 2])};
+    bound = multiply_add(largest_product(drawing.sector.max_offset, n), Float8::all(kRoom), bound);
+  }
+  return bits(Float8::load(rows.at[TriangleRows::kDet]) > bound);
+}
+
+/// A triangle of few cells: eight columns at a time of each row.
+template <bool kOwnOrigins>
+GLIDAR_INLINE void draw_small(const Drawing& drawing, const RowTriangle& t, const CellRects& rects,
+                              CellRect rect) {
+  const GridView& grid = drawing.grid;
+  const std::uint32_t last_tile = grid.columns / kTileColumns - 1;
+  for (std::int32_t row = rect.first_row; row <= rect.last_row; ++row) {
+    rects.cut(grid, t.index, grid.low_deviation[row], grid.high_deviation[row], rect);
+    std::uint32_t* stale = drawing.picture.is_stale +
+                           static_cast<std::size_t>(row) / kTileRows * std::size_t{grid.tile_pitch};
+    for (auto column = static_cast<std::uint32_t>(rect.first_column);
+         static_cast<std::int32_t>(column) <= rect.last_column; column += kTileColumns) {
+      const std::uint32_t next = column / kTileColumns + 1;
+      stale[column / kTileColumns] = 1;
+      stale[next < last_tile ? next : last_tile] = 1;
+      test_cells<kOwnOrigins>(drawing, t, static_cast<std::size_t>(row) * grid.pitch + column);
+    }
+  }
+}
+
+template <bool kOwnOrigins>
+GLIDAR_INLINE void draw_triangle(const Drawing& drawing, const RowTriangle& t,
+                                 const BlockCells& cells) {
+  if ((cells.around >> t.index & 1U) != 0) {
+    draw_large<kOwnOrigins>(drawing, t, whole_sector(drawing.grid));
+    return;
+  }
+  const CellRect rect = cells.rects.at(drawing.grid, t.index);
+  if (rect.is_empty()) return;
+  const std::int32_t rows = rect.last_row - rect.first_row + 1;
+  const std::int32_t vectors = (rect.last_column - rect.first_column) / 8 + 1;
+  if (rows * vectors <= kSmallTriangle) {
+    draw_small<kOwnOrigins>(drawing, t, cells.rects, rect);
+  } else {
+    draw_large<kOwnOrigins>(drawing, t, rect);
+  }
+}
+
+template <bool kOwnOrigins>
+void draw_leaf(const Drawing& drawing, std::uint32_t index) {
+  const TreeView& tree = drawing.placement.tree;
+  const TriangleCluster& cluster = tree.clusters[index];
+  const LeafOrigin origin(drawing.placement, cluster);
+  for (std::uint32_t b = 0; b < block_count(cluster.count); ++b) {
+    const std::uint32_t block = cluster.first_block + b;
+    const Corners<Float8> corners = corners_in(tree.blocks[block], cluster);
+    const Vector<Float8> a =
+        corners.a - Vector<Float8>{Float8::all(origin.at[0]), Float8::all(origin.at[1]),
+                                   Float8::all(origin.at[2])};
+    const SeenBlock seen(drawing.turn, a, corners);
+    const BlockCells cells(drawing, seen, origin, present(cluster, b));
+    if (cells.left == 0) continue;
+    const BlockSetup s = set_up(corners, a, origin.scaled);
+    TriangleRows rows;
+    fill_rows<kOwnOrigins>(drawing, s, seen, rows);
+    const std::uint32_t faces = find_facing<kOwnOrigins>(drawing, rows);
+    for_bits(cells.left, [&](unsigned i) {
+      draw_triangle<kOwnOrigins>(drawing, {rows, i, block * kBlockSize + i, (faces >> i & 1U) != 0},
+                                 cells);
+    });
+  }
+}
+
+}  // namespace glidar::rays::GLIDAR_KERNEL

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/scan_raster/scan_renderer.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/work_count.hpp>
+#include <glidar/render/scan_raster/kernels.hpp>
+#include <glidar/render/scan_raster/sector_decision.hpp>
+#include <glidar/render/scan_raster/sector_writer.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <mutex>
+#include <numeric>
+#include <utility>
+
+namespace glidar::scan_raster {
+namespace {
+
+/// What one thread draws a sector with.
+struct Desk {
+  std::vector<float> low;
+  std::vector<float> high;
+  std::vector<float> number;
+  std::vector<float> farthest;
+  std::vector<std::uint32_t> is_stale;
+  std::vector<std::size_t> handed_over;
+
+  SectorPicture clear(const SectorTable& sector) {
+    low.assign(sector.start().begin(), sector.start().end());
+    high = low;
+    number.assign(low.size(), std::bit_cast<float>(kNoNumber));
+    farthest.assign(sector.tile_start().begin(), sector.tile_start().end());
+    is_stale.assign(farthest.size(), 0);
+    return {low.data(), high.data(), number.data(), farthest.data(), is_stale.data()};
+  }
+};
+
+/// One cast, as its threads see it.
+struct Job {
+  const CastRequest& request;
+  const BeamGrid& grid;
+  const GridView view;
+  const rays::CastView cast;
+  const InstanceSlots& slots;
+  const Kernel& kernel;
+  const HitTarget target;
+};
+
+void draw_sector(const Job& job, const SectorTable& sector, Desk& desk) {
+  const SectorPicture picture = desk.clear(sector);
+  const SectorView beams = sector.view();
+  SectorDecision decision(job.cast, job.slots);
+  decision.start(sector, picture);
+  for (const std::uint32_t instance : job.slots.order()) {
+    Placement placement = place(job.cast.trees, job.cast.resolver.view(instance), instance, sector);
+    decision.set_instance(instance, placement);
+    job.kernel.draw(job.view, beams, placement, picture);
+  }
+  SectorWriter writer(job.target);
+  writer.write_rows(sector, picture, job.slots);
+  desk.handed_over.clear();
+  for (const std::uint32_t cell : decision.handed_over()) {
+    desk.handed_over.push_back(sector.beam(cell));
+  }
+  writer.cast_rays(desk.handed_over);
+}
+
+/// A run of beams, cast as rays.
+void cast_run(const HitTarget& target, BeamRange run, Desk& desk) {
+  write_misses(target.request.fields, run.begin, run.end - run.begin, target.hits);
+  desk.handed_over.resize(run.end - run.begin);
+  std::iota(desk.handed_over.begin(), desk.handed_over.end(), run.begin);
+  SectorWriter(target).cast_rays(desk.handed_over);
+}
+
+}  // namespace
+
+/// Desks that threads take and give back, so that a later cast finds them ready.
+class ScanRenderer::Desks {
+ public:
+  std::unique_ptr<Desk> take() {
+    const std::scoped_lock lock(mutex_);
+    if (free_.empty()) return std::make_unique<Desk>();
+    std::unique_ptr<Desk> desk = std::move(free_.back());
+    free_.pop_back();
+    return desk;
+  }
+  void give_back(std::unique_ptr<Desk> desk) {
+    const std::scoped_lock lock(mutex_);
+    free_.push_back(std::move(desk));
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<Desk>> free_;
+};
+
+ScanRenderer::ScanRenderer(std::shared_ptr<CpuBase> base)
+    : base_(std::move(base)), desks_(std::make_unique<Desks>()) {}
+ScanRenderer::~ScanRenderer() = default;
+
+const BeamGrid& ScanRenderer::grid_of(const Beams& beams) {
+  grid_.measure(beams, base_->workers);
+  return grid_;
+}
+
+void ScanRenderer::cast(const CastRequest& request, Hits& hits) {
+  check(request, base_->resolver.scene());
+  const std::string& misfit = grid_of(request.beams).misfit();
+  if (!misfit.empty()) {
+    throw Error({.where = "raster renderer",
+                 .found = misfit,
+                 .allowed = "a pinhole camera at rest without distortion, or beams in rows of "
+                            "equal elevation and columns of equal azimuth",
+                 .remedy = "use --renderer rays"});
+  }
+  resize(hits, request.beams.size(), request.fields);
+  if (!is_anything_present(request, base_->resolver.scene())) {
+    write_misses(request.fields, 0, request.beams.size(), hits);
+    if (request.then) request.then({0, request.beams.size()});
+    return;
+  }
+  base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
+  base_->search.prepare(request);
+  draw(request, hits);
+}
+
+void ScanRenderer::draw(const CastRequest& request, Hits& hits) {
+  const HitTarget target{request, base_->resolver, base_->search.beams(), hits};
+  const bool has_bounds = slots_.prepare(base_->search.trees(), base_->resolver);
+  const Job job{.request = request,
+                .grid = grid_,
+                .view = grid_.view(),
+                .cast = {base_->search.trees(), base_->resolver, request},
+                .slots = slots_,
+                .kernel = find_kernel(rays::select_kernel().name),
+                .target = target};
+  WorkCount count(request.progress, request.beams.size());
+  const auto finish = [&](BeamRange run) {
+    if (request.then) request.then(run);
+    count.add(run.end - run.begin);
+  };
+  const auto finish_sector = [&](const SectorTable& sector) {
+    for (const SectorRow& row : sector.rows()) {
+      if (row.count != 0) finish({row.first_beam, row.first_beam + row.count});
+    }
+  };
+  base_->workers.for_ranges(grid_.sectors().size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::unique_ptr<Desk> desk = desks_->take();
+    for (std::size_t i = begin; i < end; ++i) {
+      const SectorTable& sector = grid_.sectors()[i];
+      if (has_bounds) {
+        draw_sector(job, sector, *desk);
+      } else {
+        for (const SectorRow& row : sector.rows()) {
+          if (row.count == 0) continue;
+          cast_run(target, {row.first_beam, row.first_beam + row.count}, *desk);
+        }
+      }
+      finish_sector(sector);
+    }
+    desks_->give_back(std::move(desk));
+  });
+  const std::vector<std::uint32_t>& rest = grid_.other_rows();
+  base_->workers.for_ranges(rest.size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::unique_ptr<Desk> desk = desks_->take();
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t first = std::size_t{rest[i]} * request.beams.cols;
+      cast_run(target, {first, first + request.beams.cols}, *desk);
+      finish({first, first + request.beams.cols});
+    }
+    desks_->give_back(std::move(desk));
+  });
+  count.finish();
+}
+
+}  // namespace glidar::scan_raster

@@ -1,0 +1,38 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/cpu_base.hpp>
+#include <glidar/render/renderer.hpp>
+#include <glidar/render/scan_raster/beam_grid.hpp>
+#include <glidar/render/scan_raster/instance_slots.hpp>
+
+#include <memory>
+
+namespace glidar::scan_raster {
+
+/// Draws triangles onto the beams of spinning and line scanners, see docs/raster.md: the same bits
+/// as rays. Refuses beams that form no grid.
+class ScanRenderer final : public Renderer {
+ public:
+  explicit ScanRenderer(std::shared_ptr<CpuBase> base);
+  ~ScanRenderer() override;
+
+  [[nodiscard]] std::string_view name() const override { return "raster"; }
+  [[nodiscard]] Workers& workers() override { return base_->workers; }
+  void cast(const CastRequest& request, Hits& hits) override;
+
+  /// The grid of the beams: measured for these unless it is theirs already.
+  const BeamGrid& grid_of(const Beams& beams);
+
+ private:
+  class Desks;
+  void draw(const CastRequest& request, Hits& hits);
+
+  std::shared_ptr<CpuBase> base_;
+  BeamGrid grid_;
+  InstanceSlots slots_;
+  std::unique_ptr<Desks> desks_;
+};
+
+}  // namespace glidar::scan_raster

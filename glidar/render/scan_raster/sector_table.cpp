@@ -1,0 +1,188 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/scan_raster/sector_table.hpp>
+
+#include <glidar/core/pose.hpp>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace glidar::scan_raster {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kNoBeam = -1.0F;
+/// What single precision may add to a bound.
+constexpr double kRoom = 1.0 + 0x1p-20;
+
+/// Forward at an azimuth, to the side of rising columns, up.
+Eigen::Matrix3d sector_frame(const SensorAxes& axes, double azimuth_rad, bool rises) {
+  const Eigen::Vector3d forward =
+      std::cos(azimuth_rad) * axes.ahead + std::sin(azimuth_rad) * axes.left;
+  const Eigen::Vector3d left =
+      std::cos(azimuth_rad) * axes.left - std::sin(azimuth_rad) * axes.ahead;
+  Eigen::Matrix3d rows;
+  rows.row(0) = forward;
+  rows.row(1) = rises ? left : Eigen::Vector3d(-left);
+  rows.row(2) = axes.up;
+  return rows;
+}
+
+/// Others hit nothing, see rays::BeamSearch.
+bool is_beam(const Beams& beams, std::size_t i) {
+  return beams.directions[i].allFinite() &&
+         (beams.origins_m.empty() || beams.origins_m[i].lpNorm<1>() <= 3.0 * kLargestCoordinate_m);
+}
+
+}  // namespace
+
+void SectorTable::build(const Beams& beams, std::span<const RowAngles> rows,
+                        const GridColumns& columns, std::uint32_t index) {
+  const std::int32_t first_column =
+      columns.first + static_cast<std::int32_t>(index * columns.width);
+  const double middle = first_column + 0.5 * columns.width - 0.5;
+  sector_from_sensor_ = sector_frame(axes_of(beams), columns.phase_rad + middle * columns.step_rad,
+                                     columns.step_rad > 0.0);
+  pitch_ = columns.pitch();
+  start_.assign(columns.cells(), kNoBeam);
+  place_rows(beams, rows, columns, first_column);
+  set_directions(beams);
+  set_origins(beams);
+  find_tiles(columns);
+}
+
+void SectorTable::place_rows(const Beams& beams, std::span<const RowAngles> rows,
+                             const GridColumns& columns, std::int32_t first_column) {
+  rows_.clear();
+  first_beam_.clear();
+  for (std::size_t j = 0; j < rows.size(); ++j) {
+    const std::size_t row_start = std::size_t{rows[j].source} * beams.cols;
+    const std::int64_t start = std::int64_t{first_column} - rows[j].shift;
+    const auto cols = static_cast<std::int64_t>(beams.cols);
+    const std::int64_t begin = std::clamp<std::int64_t>(start, 0, cols);
+    const std::int64_t end = std::clamp<std::int64_t>(start + columns.width, 0, cols);
+    // Below zero it wraps around, and comes back when a cell's column is added.
+    first_beam_.push_back(row_start + static_cast<std::size_t>(start));
+    rows_.push_back({row_start + static_cast<std::size_t>(begin),
+                     j * pitch_ + static_cast<std::size_t>(begin - start),
+                     static_cast<std::uint32_t>(std::max<std::int64_t>(end - begin, 0))});
+    if (end <= begin) rows_.back().count = 0;
+    for (std::uint32_t i = 0; i < rows_.back().count; ++i) {
+      if (!is_beam(beams, rows_.back().first_beam + i)) continue;
+      start_[rows_.back().first_cell + i] = kInfinity;
+    }
+  }
+}
+
+void SectorTable::set_directions(const Beams& beams) {
+  for (std::vector<float>& component : direction_) component.assign(start_.size(), 0.0F);
+  // Cells without a beam repeat the one before, so that bounds of tiles are those of their beams.
+  Eigen::Vector3f last = Eigen::Vector3f::UnitX();
+  const auto first = std::find(start_.begin(), start_.end(), kInfinity) - start_.begin();
+  if (first < static_cast<std::ptrdiff_t>(start_.size())) {
+    last = (sector_from_sensor_ * beams.directions[beam(static_cast<std::size_t>(first))])
+               .cast<float>();
+  }
+  for (std::size_t cell = 0; cell < start_.size(); ++cell) {
+    if (start_[cell] == kInfinity) {
+      last = (sector_from_sensor_ * beams.directions[beam(cell)]).cast<float>();
+    }
+    for (int axis = 0; axis < 3; ++axis) direction_[axis][cell] = last[axis];
+  }
+}
+
+void SectorTable::set_origins(const Beams& beams) {
+  origin_m_.setZero();
+  foot_m_.setZero();
+  behind_m_ = 0.0;
+  distance_m_ = 0.0;
+  max_moment_.setZero();
+  max_offset_.setZero();
+  for (int axis = 0; axis < 3; ++axis) {
+    moment_[axis].clear();
+    offset_[axis].clear();
+  }
+  if (beams.origins_m.empty()) return;
+  const auto for_beams = [&](const auto& visit) {
+    for (std::size_t cell = 0; cell < start_.size(); ++cell) {
+      if (start_[cell] == kInfinity) visit(cell, beam(cell));
+    }
+  };
+  // A line may be moved along itself, so the middle of the lines' feet is the sector's origin.
+  Eigen::AlignedBox3d starts;
+  for_beams([&](std::size_t, std::size_t i) { starts.extend(beams.origins_m[i]); });
+  if (starts.isEmpty()) return;
+  const auto foot_from = [&](const Eigen::Vector3d& from, std::size_t i) -> Eigen::Vector3d {
+    const Eigen::Vector3d offset = beams.origins_m[i] - from;
+    return offset - offset.dot(beams.directions[i]) * beams.directions[i];
+  };
+  Eigen::AlignedBox3d feet;
+  for_beams([&](std::size_t, std::size_t i) {
+    feet.extend(starts.center() + foot_from(starts.center(), i));
+  });
+  origin_m_ = feet.center();
+  for (int axis = 0; axis < 3; ++axis) {
+    moment_[axis].assign(start_.size(), 0.0F);
+    offset_[axis].assign(start_.size(), 0.0F);
+  }
+  for_beams([&](std::size_t cell, std::size_t i) {
+    const Eigen::Vector3d offset = sector_from_sensor_ * (beams.origins_m[i] - origin_m_);
+    const Eigen::Vector3d direction = sector_from_sensor_ * beams.directions[i];
+    // The sector's frame may be left-handed, so the product is one of the sensor's frame.
+    const Eigen::Vector3d product = beams.directions[i].cross(beams.origins_m[i] - origin_m_);
+    const Eigen::Vector3f moment = (sector_from_sensor_ * product).cast<float>();
+    const Eigen::Vector3f rounded = offset.cast<float>();
+    for (int axis = 0; axis < 3; ++axis) {
+      moment_[axis][cell] = moment[axis];
+      offset_[axis][cell] = rounded[axis];
+    }
+    max_moment_ = max_moment_.cwiseMax(moment.cwiseAbs());
+    max_offset_ = max_offset_.cwiseMax(rounded.cwiseAbs());
+    const Eigen::Vector3d foot = sector_from_sensor_ * foot_from(origin_m_, i);
+    foot_m_ = foot_m_.cwiseMax(kRoom * foot.cwiseAbs());
+    behind_m_ = std::max(behind_m_, -kRoom * offset.dot(direction));
+    distance_m_ = std::max(distance_m_, kRoom * offset.norm());
+  });
+}
+
+void SectorTable::find_tiles(const GridColumns& columns) {
+  tile_start_.assign(columns.tiles(), kNoBeam);
+  for (int axis = 0; axis < 3; ++axis) {
+    tile_middle_[axis].assign(columns.tiles(), 0.0F);
+    tile_half_[axis].assign(columns.tiles(), 0.0F);
+  }
+  for (std::uint32_t y = 0; y < columns.rows / kTileRows; ++y) {
+    for (std::uint32_t x = 0; x < columns.width / kTileColumns; ++x) {
+      const std::size_t tile = std::size_t{y} * columns.tile_pitch() + x;
+      Eigen::AlignedBox3f box;
+      for (std::uint32_t i = 0; i < kTileRows * kTileColumns; ++i) {
+        const std::size_t cell = std::size_t{y * kTileRows + i / kTileColumns} * pitch_ +
+                                 x * kTileColumns + i % kTileColumns;
+        tile_start_[tile] = std::max(tile_start_[tile], start_[cell]);
+        box.extend(Eigen::Vector3f(direction_[0][cell], direction_[1][cell], direction_[2][cell]));
+      }
+      for (int axis = 0; axis < 3; ++axis) {
+        tile_middle_[axis][tile] = box.center()[axis];
+        tile_half_[axis][tile] = 0.5F * box.sizes()[axis] + 0x1p-22F;
+      }
+    }
+  }
+}
+
+SectorView SectorTable::view() const {
+  SectorView view{};
+  for (int axis = 0; axis < 3; ++axis) {
+    view.direction[axis] = direction_[axis].data();
+    view.moment[axis] = moment_[axis].empty() ? nullptr : moment_[axis].data();
+    view.offset[axis] = offset_[axis].empty() ? nullptr : offset_[axis].data();
+    view.max_moment[axis] = max_moment_[axis];
+    view.max_offset[axis] = max_offset_[axis];
+    view.tile_middle[axis] = tile_middle_[axis].data();
+    view.tile_half[axis] = tile_half_[axis].data();
+  }
+  return view;
+}
+
+}  // namespace glidar::scan_raster

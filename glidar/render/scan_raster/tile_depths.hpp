@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/scan_raster/cell_test.hpp>
+
+// How far a sector's tiles still look for something nearer.
+namespace glidar::rays::GLIDAR_KERNEL {
+
+using scan_raster::kTileColumns;
+using scan_raster::kTileRows;
+
+/// A rectangle of tiles, both ends included.
+struct TileRect {
+  std::uint8_t first_column;
+  std::uint8_t last_column;
+  std::uint16_t first_row;
+  std::uint16_t last_row;
+};
+
+GLIDAR_INLINE TileRect tiles_of(const CellRect& rect) {
+  return {static_cast<std::uint8_t>(rect.first_column / static_cast<int>(kTileColumns)),
+          static_cast<std::uint8_t>(rect.last_column / static_cast<int>(kTileColumns)),
+          static_cast<std::uint16_t>(rect.first_row / static_cast<int>(kTileRows)),
+          static_cast<std::uint16_t>(rect.last_row / static_cast<int>(kTileRows))};
+}
+
+/// The largest distance in a tile.
+inline float farthest_in(const Drawing& drawing, std::uint32_t row, std::uint32_t column) {
+  const std::size_t pitch = drawing.grid.pitch;
+  const float* high = drawing.picture.high + std::size_t{row} * kTileRows * pitch +
+                      std::size_t{column} * kTileColumns;
+  Float8 largest = Float8::load_unaligned(high);
+  for (unsigned i = 1; i < kTileRows; ++i)
+    largest = greatest(largest, Float8::load_unaligned(high + i * pitch));
+  return -lowest_of(-largest);
+}
+
+/// True where some tile still looks for something at this distance.
+inline bool is_visible(const Drawing& drawing, const TileRect& rect, float distance) {
+  const SectorPicture& picture = drawing.picture;
+  for (std::uint32_t row = rect.first_row; row <= rect.last_row; ++row) {
+    for (std::uint32_t column = rect.first_column; column <= rect.last_column; ++column) {
+      const std::size_t tile = std::size_t{row} * drawing.grid.tile_pitch + column;
+      if (picture.farthest[tile] < distance) continue;
+      if (picture.is_stale[tile] == 0) return true;
+      picture.is_stale[tile] = 0;
+      picture.farthest[tile] = farthest_in(drawing, row, column);
+      if (!(picture.farthest[tile] < distance)) return true;
+    }
+  }
+  return false;
+}
+
+}  // namespace glidar::rays::GLIDAR_KERNEL

@@ -1,0 +1,52 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <render/scan_raster/scanner.hpp>
+
+#include <cstring>
+
+namespace glidar::testing {
+namespace {
+
+template <class T>
+void expect_same_bytes(const std::vector<T>& found, const std::vector<T>& expected,
+                       const char* column) {
+  ASSERT_EQ(found.size(), expected.size()) << column;
+  if (found.empty()) return;
+  if (std::memcmp(found.data(), expected.data(), found.size() * sizeof(T)) == 0) return;
+  std::size_t differ = 0;
+  std::size_t first = found.size();
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    if (std::memcmp(&found[i], &expected[i], sizeof(T)) == 0) continue;
+    ++differ;
+    first = std::min(first, i);
+  }
+  ADD_FAILURE() << column << ": " << differ << " of " << found.size()
+                << " beams differ, the first is " << first;
+}
+
+}  // namespace
+
+std::size_t expect_same_hits(const Hits& found, const Hits& expected) {
+  expect_same_bytes(found.instance, expected.instance, "instance");
+  expect_same_bytes(found.primitive, expected.primitive, "primitive");
+  expect_same_bytes(found.range_m, expected.range_m, "range");
+  expect_same_bytes(found.normal, expected.normal, "normal");
+  expect_same_bytes(found.barycentrics, expected.barycentrics, "barycentrics");
+  expect_same_bytes(found.depth_m, expected.depth_m, "depth");
+  expect_same_bytes(found.reflectance, expected.reflectance, "reflectance");
+  std::size_t hits = 0;
+  for (const std::uint32_t instance : expected.instance) hits += instance == kNoHit ? 0 : 1;
+  return hits;
+}
+
+std::size_t expect_same_as_rays(const Scene& scene, const CastRequest& request) {
+  return expect_same_hits(cast_with("raster", scene, request), cast_with("rays", scene, request));
+}
+
+std::size_t expect_same_as_rays(const Scene& scene, const Beams& beams,
+                                const Pose& world_from_sensor) {
+  return expect_same_as_rays(
+      scene, {.beams = beams, .world_from_sensor = world_from_sensor, .fields = kAllHitFields});
+}
+
+}  // namespace glidar::testing
