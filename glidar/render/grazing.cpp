@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/grazing.hpp>
 
+#include <glidar/core/simd.hpp>
 #include <glidar/render/common/triangle_blocks.hpp>
 
 #include <cmath>
@@ -27,10 +28,23 @@ void face_beam(unsigned lane, const HitTriangle& triangle, ExactBlock& exact) {
   exact.cosine[lane] = normal.dot(d);
 }
 
+constexpr double kGrazing = 0x1p-20;  // below it, the plane has lost 20 of its 52 bits
+
+/// True when the planes are good enough for all lanes.
+GLIDAR_SIMD bool are_all_sure(const ExactBlock& exact) {
+  int unsure = 0;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const int is_steep = static_cast<int>(std::abs(exact.cosine[i]) > kGrazing);
+    const int is_ahead = static_cast<int>(exact.distance[i] > 0.0);
+    unsure |= (is_steep & is_ahead) ^ 1;
+  }
+  return unsure == 0;
+}
+
 }  // namespace
 
 void measure_grazing(const Resolver& resolver, const HitBlock& block, ExactBlock& exact) {
-  constexpr double kGrazing = 0x1p-20;  // below it, the plane has lost 20 of its 52 bits
+  if (are_all_sure(exact)) return;
   std::uint32_t unsure = 0;
   for (unsigned i = 0; i < kLanes; ++i) {
     const int is_steep = static_cast<int>(std::abs(exact.cosine[i]) > kGrazing);

@@ -16,6 +16,8 @@ struct HitBlock {
   std::array<std::size_t, kLanes> beam;
   std::array<std::uint32_t, kLanes> instance;
   std::array<std::uint32_t, kLanes> primitive;
+  bool is_one_triangle = false;  ///< surely all lanes of the mask hit the same one
+  bool is_run = false;           ///< surely all lanes hit, and their beams follow each other
 };
 
 }  // namespace glidar

@@ -44,6 +44,14 @@ GLIDAR_SIMD void take_rays(const HitBlock& block, std::uint32_t instance, const 
   }
 }
 
+/// The same plane for all lanes.
+void repeat_plane(const TrianglePlane& plane, ExactBlock& exact) {
+  exact.normal.x.at.fill(plane.normal.x());
+  exact.normal.y.at.fill(plane.normal.y());
+  exact.normal.z.at.fill(plane.normal.z());
+  exact.offset.at.fill(plane.offset);
+}
+
 /// cosine = n.d, distance = (offset - n.o) / (n.d), as distance_to().
 GLIDAR_SIMD void intersect_planes(ExactBlock& e) {
   for (unsigned i = 0; i < kLanes; ++i) {
@@ -238,10 +246,14 @@ void Resolver::measure(const BeamBlock& beams, HitBlock& block, ExactBlock& exac
     block.instance[i] = block.instance[first];
     block.primitive[i] = block.primitive[first];
   }
-  for (unsigned i = 0; i < kLanes; ++i) {
-    const TrianglePlane& triangle = plane(block.instance[i], block.primitive[i]);
-    exact.normal.set(i, triangle.normal);
-    exact.offset[i] = triangle.offset;
+  if (block.is_one_triangle) {
+    repeat_plane(plane(block.instance[0], block.primitive[0]), exact);
+  } else {
+    for (unsigned i = 0; i < kLanes; ++i) {
+      const TrianglePlane& triangle = plane(block.instance[i], block.primitive[i]);
+      exact.normal.set(i, triangle.normal);
+      exact.offset[i] = triangle.offset;
+    }
   }
   rays_in(views_[block.instance[0]], beams, exact.origin, exact.direction);
   ExactBlock seen;
@@ -255,13 +267,30 @@ void Resolver::measure(const BeamBlock& beams, HitBlock& block, ExactBlock& exac
   measure_grazing(*this, block, exact);
 }
 
-void Resolver::write(const Beams& beams, const HitFields& fields, const HitBlock& block,
-                     const ExactBlock& exact, Hits& hits) const {
+void Resolver::write_ranges(const HitBlock& block, const ExactBlock& exact, Hits& hits) const {
+  if (block.is_run && is_one_instance(block)) {
+    const auto first = static_cast<std::ptrdiff_t>(block.beam[0]);
+    const double scale = views_[block.instance[0]].scale;
+    std::transform(exact.distance.at.begin(), exact.distance.at.end(), hits.range_m.begin() + first,
+                   [&](double distance) { return distance * scale; });
+    std::copy(block.instance.begin(), block.instance.end(), hits.instance.begin() + first);
+    std::copy(block.primitive.begin(), block.primitive.end(), hits.primitive.begin() + first);
+    return;
+  }
   for_lanes(block.mask, [&](unsigned i) {
     const std::size_t beam = block.beam[i];
     hits.range_m[beam] = exact.distance[i] * views_[block.instance[i]].scale;
     hits.instance[beam] = block.instance[i];
     hits.primitive[beam] = block.primitive[i];
+  });
+}
+
+void Resolver::write(const Beams& beams, const HitFields& fields, const HitBlock& block,
+                     const ExactBlock& exact, Hits& hits) const {
+  write_ranges(block, exact, hits);
+  const bool has_more = fields.incidence || fields.depth || fields.object_point;
+  for_lanes(has_more ? block.mask : 0, [&](unsigned i) {
+    const std::size_t beam = block.beam[i];
     if (fields.incidence) hits.cos_incidence[beam] = static_cast<float>(std::abs(exact.cosine[i]));
     if (fields.depth) hits.depth_m[beam] = depth_m(beams, beam, hits.range_m[beam]);
     if (!fields.object_point) return;
@@ -281,7 +310,11 @@ void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& fro
   if (is_one_instance(block)) {
     Lanes3<float> turned;
     turn_to_sensor(views_[block.instance[0]].object_from_sensor.transpose(), front, cosine, turned);
-    for_lanes(block.mask, [&](unsigned i) { column[block.beam[i]] = turned.get(i); });
+    if (block.is_run) {
+      for (unsigned i = 0; i < kLanes; ++i) column[block.beam[0] + i] = turned.get(i);
+    } else {
+      for_lanes(block.mask, [&](unsigned i) { column[block.beam[i]] = turned.get(i); });
+    }
     return;
   }
   for_lanes(block.mask, [&](unsigned i) {

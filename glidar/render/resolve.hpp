@@ -145,6 +145,7 @@ class Resolver {
              const ExactBlock& exact, Hits& hits) const;
 
  private:
+  void write_ranges(const HitBlock& block, const ExactBlock& exact, Hits& hits) const;
   void write_directions(const HitBlock& block, const Lanes3<double>& front,
                         const Lanes<double>& cosine, std::vector<Eigen::Vector3f>& column) const;
   struct Corners {

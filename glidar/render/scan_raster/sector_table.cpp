@@ -3,6 +3,7 @@
 #include <glidar/render/scan_raster/sector_table.hpp>
 
 #include <glidar/core/pose.hpp>
+#include <glidar/render/lanes.hpp>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -77,19 +78,23 @@ void SectorTable::place_rows(const Beams& beams, std::span<const RowAngles> rows
 }
 
 void SectorTable::set_directions(const Beams& beams) {
-  for (std::vector<float>& component : direction_) component.assign(start_.size(), 0.0F);
+  for (int axis = 0; axis < 3; ++axis) {
+    direction_[axis].resize(start_.size());
+    exact_direction_[axis].resize(start_.size() + kLanes);
+  }
   // Cells without a beam repeat the one before, so that bounds of tiles are those of their beams.
-  Eigen::Vector3f last = Eigen::Vector3f::UnitX();
-  const auto first = std::find(start_.begin(), start_.end(), kInfinity) - start_.begin();
-  if (first < static_cast<std::ptrdiff_t>(start_.size())) {
-    last = (sector_from_sensor_ * beams.directions[beam(static_cast<std::size_t>(first))])
-               .cast<float>();
+  const auto first = std::find(start_.begin(), start_.end(), kInfinity);
+  Eigen::Vector3d exact = Eigen::Vector3d::UnitX();
+  if (first != start_.end()) {
+    exact = beams.directions[beam(static_cast<std::size_t>(first - start_.begin()))];
   }
   for (std::size_t cell = 0; cell < start_.size(); ++cell) {
-    if (start_[cell] == kInfinity) {
-      last = (sector_from_sensor_ * beams.directions[beam(cell)]).cast<float>();
+    if (start_[cell] == kInfinity) exact = beams.directions[beam(cell)];
+    const Eigen::Vector3f turned = (sector_from_sensor_ * exact).cast<float>();
+    for (int axis = 0; axis < 3; ++axis) {
+      exact_direction_[axis][cell] = exact[axis];
+      direction_[axis][cell] = turned[axis];
     }
-    for (int axis = 0; axis < 3; ++axis) direction_[axis][cell] = last[axis];
   }
 }
 

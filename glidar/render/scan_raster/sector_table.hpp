@@ -51,6 +51,11 @@ class SectorTable {
     return first_beam_[cell / pitch_] + cell % pitch_;
   }
 
+  /// Components of the beams' directions in the sensor's frame, per cell, and kLanes more.
+  [[nodiscard]] const double* exact_direction(int axis) const {
+    return exact_direction_[axis].data();
+  }
+
   /// Per cell: infinity, or -1 where there is no beam.
   [[nodiscard]] const std::vector<float>& start() const { return start_; }
   /// Per tile: the largest of them.
@@ -83,6 +88,7 @@ class SectorTable {
   std::vector<std::size_t> first_beam_;  ///< per row: of cell 0, were there one
   std::vector<float> start_;
   std::vector<float> tile_start_;
+  std::vector<double> exact_direction_[3];
   std::vector<float> direction_[3];
   std::vector<float> moment_[3];
   std::vector<float> offset_[3];

@@ -4,58 +4,82 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 
 namespace glidar::scan_raster {
 
-void SectorWriter::take_beams(Work& work, std::size_t first, unsigned count) const {
+void SectorWriter::take_beams(const SectorTable& sector, const RowRun& run, Work& work) const {
   const Beams& beams = target_.request.beams;
-  work.beams.has_origins = !beams.origins_m.empty();
   for (unsigned lane = 0; lane < kLanes; ++lane) {
-    work.block.beam[lane] = first + std::min(lane, count - 1);
-    work.beams.direction.set(lane, beams.directions[work.block.beam[lane]]);
+    work.block.beam[lane] = run.first_beam + std::min(lane, run.count - 1);
   }
+  // Vectors are copied: those made of single numbers could not be read at once.
+  Lanes3<double>& direction = work.beams.direction;
+  const auto take = [&](int axis, Lanes<double>& component) {
+    std::memcpy(&component, sector.exact_direction(axis) + run.first_cell, sizeof(component));
+  };
+  take(0, direction.x);
+  take(1, direction.y);
+  take(2, direction.z);
+  work.beams.has_origins = !beams.origins_m.empty();
   if (!work.beams.has_origins) return;
   for (unsigned lane = 0; lane < kLanes; ++lane) {
     work.beams.origin_m.set(lane, beams.origins_m[work.block.beam[lane]]);
   }
 }
 
-/// Sets what the lanes of the mask found.
-void SectorWriter::find_cells(const float* numbers, const InstanceSlots& slots, Work& work) const {
-  for (std::uint32_t lanes = work.block.mask; lanes != 0; lanes &= lanes - 1) {
+/// Sets what the lanes of the mask found. Neighbours mostly found the same.
+void SectorWriter::find_cells(const float* numbers, const InstanceSlots& slots, Work& work) {
+  HitBlock& block = work.block;
+  bool differs = false;
+  for (std::uint32_t lanes = block.mask; lanes != 0; lanes &= lanes - 1) {
     const auto lane = static_cast<unsigned>(std::countr_zero(lanes));
-    const Found found = slots.found(std::bit_cast<std::uint32_t>(numbers[lane]));
-    work.block.instance[lane] = found.instance;
-    work.block.primitive[lane] = found.primitive;
-    target_.resolver.prefetch(work.block, lane, needs_corners(target_.request.fields));
+    const auto number = std::bit_cast<std::uint32_t>(numbers[lane]);
+    const bool is_new = number != last_number_;
+    if (is_new) {
+      last_number_ = number;
+      last_found_ = slots.found(number);
+    }
+    block.instance[lane] = last_found_.instance;
+    block.primitive[lane] = last_found_.primitive;
+    if (is_new) target_.resolver.prefetch(block, lane, with_corners_);
+    differs = differs || (is_new && lanes != block.mask);
   }
+  block.is_one_triangle = !differs;
 }
 
 void SectorWriter::write_rows(const SectorTable& sector, const SectorPicture& picture,
                               const InstanceSlots& slots) {
-  const HitFields& fields = target_.request.fields;
   begun_ = 0;
+  last_number_ = kNoNumber;
   for (const SectorRow& row : sector.rows()) {
     for (std::uint32_t done = 0; done < row.count; done += kLanes) {
-      const unsigned count = std::min(row.count - done, std::uint32_t{kLanes});
-      const float* numbers = picture.number + row.first_cell + done;
-      Work& work = next();
-      work.block.mask = 0;
-      for (unsigned lane = 0; lane < count; ++lane) {
-        const bool is_hit = std::bit_cast<std::uint32_t>(numbers[lane]) != kNoNumber;
-        work.block.mask |= static_cast<std::uint32_t>(is_hit) << lane;
-      }
-      if (std::popcount(work.block.mask) != static_cast<int>(count)) {
-        write_misses(fields, row.first_beam + done, count, target_.hits);
-      }
-      if (work.block.mask != 0) {
-        take_beams(work, row.first_beam + done, count);
-        find_cells(numbers, slots, work);
-      }
-      pass_on();
+      write_run(sector, picture, slots,
+                {row.first_beam + done, row.first_cell + done,
+                 std::min(row.count - done, std::uint32_t{kLanes})});
     }
   }
   finish();
+}
+
+void SectorWriter::write_run(const SectorTable& sector, const SectorPicture& picture,
+                             const InstanceSlots& slots, const RowRun& run) {
+  const float* numbers = picture.number + run.first_cell;
+  Work& work = next();
+  work.block.mask = 0;
+  for (unsigned lane = 0; lane < run.count; ++lane) {
+    const bool is_hit = std::bit_cast<std::uint32_t>(numbers[lane]) != kNoNumber;
+    work.block.mask |= static_cast<std::uint32_t>(is_hit) << lane;
+  }
+  if (work.block.mask != (1U << run.count) - 1U) {
+    write_misses(target_.request.fields, run.first_beam, run.count, target_.hits);
+  }
+  if (work.block.mask != 0) {
+    work.block.is_run = work.block.mask == (1U << kLanes) - 1U;
+    take_beams(sector, run, work);
+    find_cells(numbers, slots, work);
+  }
+  pass_on();
 }
 
 void SectorWriter::cast_rays(std::span<const std::size_t> some) {
@@ -64,6 +88,8 @@ void SectorWriter::cast_rays(std::span<const std::size_t> some) {
   for (std::size_t done = 0; done < some.size(); done += kLanes) {
     const std::size_t count = std::min(some.size() - done, std::size_t{kLanes});
     Work& work = next();
+    work.block.is_one_triangle = false;
+    work.block.is_run = false;
     work.beams.has_origins = !beams.origins_m.empty();
     for (unsigned lane = 0; lane < kLanes; ++lane) {
       const std::size_t beam = some[done + std::min<std::size_t>(lane, count - 1)];

@@ -24,7 +24,8 @@ struct HitTarget {
 /// other blocks are worked on.
 class SectorWriter {
  public:
-  explicit SectorWriter(const HitTarget& target) : target_(target) {}
+  explicit SectorWriter(const HitTarget& target)
+      : target_(target), with_corners_(needs_corners(target.request.fields)) {}
 
   /// Hits and misses of all beams of a sector's rows. Cells handed over count as misses.
   void write_rows(const SectorTable& sector, const SectorPicture& picture,
@@ -40,14 +41,26 @@ class SectorWriter {
     ExactBlock exact;
   };
 
-  void take_beams(Work& work, std::size_t first, unsigned count) const;
-  void find_cells(const float* numbers, const InstanceSlots& slots, Work& work) const;
+  /// Up to kLanes beams of a row.
+  struct RowRun {
+    std::size_t first_beam;
+    std::size_t first_cell;
+    std::uint32_t count;
+  };
+
+  void write_run(const SectorTable& sector, const SectorPicture& picture,
+                 const InstanceSlots& slots, const RowRun& run);
+  void take_beams(const SectorTable& sector, const RowRun& run, Work& work) const;
+  void find_cells(const float* numbers, const InstanceSlots& slots, Work& work);
   Work& next() { return ring_[begun_++ % ring_.size()]; }
   void pass_on();
   void finish();
   void write(Work& work) const;
 
   HitTarget target_;
+  bool with_corners_;
+  std::uint32_t last_number_ = kNoNumber;  ///< the cell before found this
+  Found last_found_;
   std::array<Work, 3> ring_;
   std::size_t begun_ = 0;
 };
