@@ -7,6 +7,8 @@
 #include <glidar/render/pinhole_only.hpp>
 #include <glidar/render/raster/raster_renderer.hpp>
 #include <glidar/render/rays/rays_renderer.hpp>
+#include <glidar/render/scan_raster/scan_cost.hpp>
+#include <glidar/render/scan_raster/scan_renderer.hpp>
 #include <glidar/render/triangle_picture.hpp>
 
 #include <algorithm>
@@ -19,6 +21,9 @@ namespace {
 /// The raster works through all triangles in view, a ray through few of them: where there are more
 /// of them per beam, rays are quicker (by bench/renderers_bench.py from 30 to 60 on).
 constexpr std::uint64_t kMostPerBeam = 40;
+/// The same for scanners: by bench/scan_bench the raster takes half the time at 2 triangles per
+/// beam, the same time at 25.
+constexpr double kMostPerScannerBeam = 12.0;
 
 class AutoRenderer final : public Renderer {
  public:
@@ -37,6 +42,7 @@ class AutoRenderer final : public Renderer {
 
   void cast(const CastRequest& request, Hits& hits) override {
     check(request, base_->resolver.scene());
+    if (is_for_scan_raster(request)) return scan_raster_->cast_prepared(request, hits);
     quicker(request).cast(request, hits);
   }
 
@@ -48,6 +54,21 @@ class AutoRenderer final : public Renderer {
     }
     if (rays_ == nullptr) rays_ = make_rays_renderer(base_);
     return *rays_;
+  }
+
+  /// Prepares the cast where it returns true.
+  bool is_for_scan_raster(const CastRequest& request) {
+    if (!is_anything_present(request, base_->resolver.scene()) || request.beams.pinhole ||
+        !scan_raster::may_form_grid(request.beams))
+      return false;
+    if (scan_raster_ == nullptr) {
+      scan_raster_ = std::make_unique<scan_raster::ScanRenderer>(base_);
+    }
+    const scan_raster::BeamGrid& grid = scan_raster_->grid_of(request.beams);
+    if (!grid.misfit().empty()) return false;
+    base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
+    base_->search.prepare(request);
+    return scan_raster::triangles_per_beam(grid, request.beams, *base_) <= kMostPerScannerBeam;
   }
 
   bool is_for_raster(const CastRequest& request) {
@@ -80,6 +101,7 @@ class AutoRenderer final : public Renderer {
   bool can_draw_;                           ///< the raster has numbers for all triangles
   PlanePoints points_;
   std::unique_ptr<Renderer> raster_;
+  std::unique_ptr<scan_raster::ScanRenderer> scan_raster_;
   std::unique_ptr<Renderer> rays_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <render/renderer_suite.hpp>
+#include <render/scan_raster/scanner.hpp>
 
 #include <cstring>
 
@@ -9,6 +10,8 @@ namespace {
 
 using testing::builtin_scene;
 using testing::camera_beams;
+using testing::Scanner;
+using testing::scanner_beams;
 
 Hits cast_by(const char* kind, const Scene& scene, const Beams& beams, const Pose& pose) {
   Hits hits;
@@ -54,6 +57,17 @@ TEST(AutoRenderer, ChoosesAnewForEachCast) {
                      hits);
       EXPECT_TRUE(are_same(hits, cast_by("auto", scene, *beams, kAlongEdges)));
     }
+  }
+}
+
+TEST(AutoRenderer, TellsWhatRaysTellOfScannersOfAllKinds) {
+  const Scene scene = builtin_scene("asteroid");
+  for (const Scanner& scanner : {Scanner{.rows = 64, .cols = 1024},  // few triangles per beam
+                                 Scanner{.rows = 4, .cols = 64},     // many
+                                 Scanner{.rows = 16, .cols = 512, .origin_m = 0.05}}) {
+    const Beams beams = scanner_beams(scanner);
+    EXPECT_TRUE(are_same(cast_by("auto", scene, beams, Pose::Identity()),
+                         cast_by("rays", scene, beams, Pose::Identity())));
   }
 }
 

@@ -120,7 +120,35 @@ const char* misfit_of_step(double step_rad) {
   return "";
 }
 
+/// The step between two neighbours at a place of a row; NaN where one is missing.
+double step_at(const Beams& beams, const SensorAxes& axes, std::size_t beam) {
+  return wrapped(azimuth_rad(axes, beams.directions[beam + 1]) -
+                 azimuth_rad(axes, beams.directions[beam]));
+}
+
 }  // namespace
+
+bool may_form_grid(const Beams& beams) {
+  constexpr std::size_t kSamples = 64;
+  constexpr std::size_t kLeastColumns = 16;
+  if (beams.cols < kLeastColumns) return false;
+  const SensorAxes axes = axes_of(beams);
+  std::vector<double> steps;
+  for (std::size_t k = 0; k < kSamples; ++k) {
+    const std::size_t row = k * beams.rows / kSamples;
+    // Spread over the columns of every row, and not in step with anything.
+    const std::size_t column = k * 7919 % (beams.cols - 1);
+    const double step = step_at(beams, axes, row * beams.cols + column);
+    if (!std::isnan(step)) steps.push_back(step);
+  }
+  if (2 * steps.size() < kSamples) return false;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  const double step = *middle;
+  const auto differs = [&](double other) { return !(std::abs(other - step) <= std::abs(step)); };
+  return 4 * static_cast<std::size_t>(std::count_if(steps.begin(), steps.end(), differs)) <
+         steps.size();
+}
 
 void measure_angles(const Beams& beams, Workers& workers, BeamAngles& angles) {
   angles.rows.clear();

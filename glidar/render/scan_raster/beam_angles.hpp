@@ -31,6 +31,9 @@ struct BeamAngles {
   std::string misfit;  ///< why the beams form no grid; empty: they do
 };
 
+/// False where some neighbours show at once that the beams form no grid, or most are missing.
+bool may_form_grid(const Beams& beams);
+
 /// Measures beams. Azimuths and elevations are those about axes_of(beams).
 void measure_angles(const Beams& beams, Workers& workers, BeamAngles& angles);
 

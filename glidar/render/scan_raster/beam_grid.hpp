@@ -13,6 +13,12 @@
 
 namespace glidar::scan_raster {
 
+/// Tangents of the elevations of all rows.
+struct TangentRange {
+  double low;
+  double high;
+};
+
 /// Beams as a grid of rows of equal elevation and columns of equal azimuth, cut into sectors.
 class BeamGrid {
  public:
@@ -22,6 +28,10 @@ class BeamGrid {
   /// Why the beams form no grid; empty: they do. Otherwise only other_rows() is of use.
   [[nodiscard]] const std::string& misfit() const { return angles_.misfit; }
 
+  [[nodiscard]] const GridColumns& columns() const { return columns_; }
+  [[nodiscard]] TangentRange tangents() const {
+    return {rows_.front().low_tangent, rows_.back().high_tangent};
+  }
   [[nodiscard]] GridView view() const;
   [[nodiscard]] const std::vector<SectorTable>& sectors() const { return sectors_; }
 

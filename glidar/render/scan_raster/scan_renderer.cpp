@@ -115,18 +115,19 @@ void ScanRenderer::cast(const CastRequest& request, Hits& hits) {
                             "equal elevation and columns of equal azimuth",
                  .remedy = "use --renderer rays"});
   }
-  resize(hits, request.beams.size(), request.fields);
   if (!is_anything_present(request, base_->resolver.scene())) {
+    resize(hits, request.beams.size(), request.fields);
     write_misses(request.fields, 0, request.beams.size(), hits);
     if (request.then) request.then({0, request.beams.size()});
     return;
   }
   base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
   base_->search.prepare(request);
-  draw(request, hits);
+  cast_prepared(request, hits);
 }
 
-void ScanRenderer::draw(const CastRequest& request, Hits& hits) {
+void ScanRenderer::cast_prepared(const CastRequest& request, Hits& hits) {
+  resize(hits, request.beams.size(), request.fields);
   const HitTarget target{request, base_->resolver, base_->search.beams(), hits};
   const bool has_bounds = slots_.prepare(base_->search.trees(), base_->resolver);
   const Job job{.request = request,

@@ -22,12 +22,15 @@ class ScanRenderer final : public Renderer {
   [[nodiscard]] Workers& workers() override { return base_->workers; }
   void cast(const CastRequest& request, Hits& hits) override;
 
+  /// The same where beams were just taken by grid_of() and form a grid, some instance is there, and
+  /// the resolver and the search of the base have the cast's poses.
+  void cast_prepared(const CastRequest& request, Hits& hits);
+
   /// The grid of the beams: measured for these unless it is theirs already.
   const BeamGrid& grid_of(const Beams& beams);
 
  private:
   class Desks;
-  void draw(const CastRequest& request, Hits& hits);
 
   std::shared_ptr<CpuBase> base_;
   BeamGrid grid_;
