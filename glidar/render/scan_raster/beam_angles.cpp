@@ -3,7 +3,9 @@
 #include <glidar/render/scan_raster/beam_angles.hpp>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace glidar::scan_raster {
@@ -133,21 +135,22 @@ bool may_form_grid(const Beams& beams) {
   constexpr std::size_t kLeastColumns = 16;
   if (beams.cols < kLeastColumns) return false;
   const SensorAxes axes = axes_of(beams);
-  std::vector<double> steps;
+  std::array<double, kSamples> steps;
+  std::size_t count = 0;
   for (std::size_t k = 0; k < kSamples; ++k) {
     const std::size_t row = k * beams.rows / kSamples;
     // Spread over the columns of every row, and not in step with anything.
     const std::size_t column = k * 7919 % (beams.cols - 1);
     const double step = step_at(beams, axes, row * beams.cols + column);
-    if (!std::isnan(step)) steps.push_back(step);
+    if (!std::isnan(step)) steps[count++] = step;
   }
-  if (2 * steps.size() < kSamples) return false;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
+  if (2 * count < kSamples) return false;
+  const auto end = steps.begin() + static_cast<std::ptrdiff_t>(count);
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(count / 2);
+  std::nth_element(steps.begin(), middle, end);
   const double step = *middle;
   const auto differs = [&](double other) { return !(std::abs(other - step) <= std::abs(step)); };
-  return 4 * static_cast<std::size_t>(std::count_if(steps.begin(), steps.end(), differs)) <
-         steps.size();
+  return 4 * static_cast<std::size_t>(std::count_if(steps.begin(), end, differs)) < count;
 }
 
 void measure_angles(const Beams& beams, Workers& workers, BeamAngles& angles) {

@@ -50,8 +50,8 @@ struct Job {
 void draw_sector(const Job& job, const SectorTable& sector, Desk& desk) {
   const SectorPicture picture = desk.clear(sector);
   const SectorView beams = sector.view();
-  SectorDecision decision(job.cast, job.slots);
-  decision.start(sector, picture);
+  desk.handed_over.clear();
+  SectorDecision decision(job.cast, job.slots, sector, picture, desk.handed_over);
   for (const std::uint32_t instance : job.slots.order()) {
     Placement placement = place(job.cast.trees, job.cast.resolver.view(instance), instance, sector);
     decision.set_instance(instance, placement);
@@ -59,10 +59,6 @@ void draw_sector(const Job& job, const SectorTable& sector, Desk& desk) {
   }
   SectorWriter writer(job.target);
   writer.write_rows(sector, picture, job.slots);
-  desk.handed_over.clear();
-  for (const std::uint32_t cell : decision.handed_over()) {
-    desk.handed_over.push_back(sector.beam(cell));
-  }
   writer.cast_rays(desk.handed_over);
 }
 

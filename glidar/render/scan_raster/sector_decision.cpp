@@ -20,12 +20,6 @@ float above(double value) {
 
 }  // namespace
 
-void SectorDecision::start(const SectorTable& sector, const SectorPicture& picture) {
-  sector_ = &sector;
-  picture_ = picture;
-  handed_over_.clear();
-}
-
 void SectorDecision::set_instance(std::uint32_t instance, Placement& placement) {
   instance_ = instance;
   placement.first_number = slots_.first_number(instance);
@@ -53,7 +47,7 @@ void SectorDecision::hand_over(std::uint32_t cell) {
   picture_.low[cell] = -1.0F;
   picture_.high[cell] = -1.0F;
   picture_.number[cell] = std::bit_cast<float>(kNoNumber);
-  handed_over_.push_back(cell);
+  handed_over_.push_back(sector_.beam(cell));
 }
 
 /// Compares the triangle with the nearest one so far if that is of the same instance.
@@ -87,7 +81,7 @@ bool SectorDecision::is_first(std::uint32_t cell, const Found& found, double low
 
 void SectorDecision::decide(std::uint32_t cell, std::uint32_t slot) {
   if (picture_.high[cell] < 0.0F) return;
-  beam_ = sector_->beam(cell);
+  beam_ = sector_.beam(cell);
   trace(cell, slot);
   const bool is_hit = packet_.slot[0] == slot;
   const double scale = cast_.resolver.view(instance_).scale;

@@ -14,33 +14,31 @@ namespace glidar::scan_raster {
 /// Applies the hit rule to cells and triangles that single precision leaves in doubt.
 class SectorDecision {
  public:
-  SectorDecision(const rays::CastView& cast, const InstanceSlots& slots)
-      : cast_(cast), slots_(slots) {}
+  /// `handed_over`: see hand_over().
+  SectorDecision(const rays::CastView& cast, const InstanceSlots& slots, const SectorTable& sector,
+                 const SectorPicture& picture, std::vector<std::size_t>& handed_over)
+      : cast_(cast), slots_(slots), sector_(sector), picture_(picture), handed_over_(handed_over) {}
 
-  /// Takes the next sector, and forgets the cells handed over.
-  void start(const SectorTable& sector, const SectorPicture& picture);
   /// Takes the next instance, and completes its placement.
   void set_instance(std::uint32_t instance, Placement& placement);
-
-  /// Cells for which the nearest triangle is to be found by rays, since some tie: they count as
-  /// cells without a beam.
-  [[nodiscard]] const std::vector<std::uint32_t>& handed_over() const { return handed_over_; }
 
  private:
   void decide(std::uint32_t cell, std::uint32_t slot);
   void trace(std::uint32_t cell, std::uint32_t slot);
   [[nodiscard]] bool is_first(std::uint32_t cell, const Found& found, double low_m, double high_m);
+  /// Leaves a cell to rays, since some triangles tie: it counts as one without a beam, and its beam
+  /// is added to those handed over.
   void hand_over(std::uint32_t cell);
   [[nodiscard]] std::uint32_t number_at(std::uint32_t cell) const;
 
   rays::CastView cast_;
   const InstanceSlots& slots_;
-  const SectorTable* sector_ = nullptr;
-  SectorPicture picture_{};
+  const SectorTable& sector_;
+  SectorPicture picture_;
+  std::vector<std::size_t>& handed_over_;
   std::uint32_t instance_ = 0;
   std::size_t beam_ = 0;
   rays::RayPacket packet_{};  ///< of which the first ray is used
-  std::vector<std::uint32_t> handed_over_;
 };
 
 }  // namespace glidar::scan_raster
