@@ -24,7 +24,7 @@ struct Desk {
   std::vector<float> number;
   std::vector<float> farthest;
   std::vector<std::uint32_t> is_stale;
-  std::vector<std::size_t> handed_over;
+  DecisionMemory memory;
 
   SectorPicture clear(const SectorTable& sector) {
     low.assign(sector.start().begin(), sector.start().end());
@@ -50,8 +50,8 @@ struct Job {
 void draw_sector(const Job& job, const SectorTable& sector, Desk& desk) {
   const SectorPicture picture = desk.clear(sector);
   const SectorView beams = sector.view();
-  desk.handed_over.clear();
-  SectorDecision decision(job.cast, job.slots, sector, picture, desk.handed_over);
+  desk.memory.clear(sector.start().size());
+  SectorDecision decision(job.cast, job.slots, sector, picture, desk.memory);
   for (const std::uint32_t instance : job.slots.order()) {
     Placement placement = place(job.cast.trees, job.cast.resolver.view(instance), instance, sector);
     decision.set_instance(instance, placement);
@@ -59,15 +59,15 @@ void draw_sector(const Job& job, const SectorTable& sector, Desk& desk) {
   }
   SectorWriter writer(job.target);
   writer.write_rows(sector, picture, job.slots);
-  writer.cast_rays(desk.handed_over);
+  writer.cast_rays(desk.memory.handed_over);
 }
 
 /// A run of beams, cast as rays.
 void cast_run(const HitTarget& target, BeamRange run, Desk& desk) {
   write_misses(target.request.fields, run.begin, run.end - run.begin, target.hits);
-  desk.handed_over.resize(run.end - run.begin);
-  std::iota(desk.handed_over.begin(), desk.handed_over.end(), run.begin);
-  SectorWriter(target).cast_rays(desk.handed_over);
+  desk.memory.handed_over.resize(run.end - run.begin);
+  std::iota(desk.memory.handed_over.begin(), desk.memory.handed_over.end(), run.begin);
+  SectorWriter(target).cast_rays(desk.memory.handed_over);
 }
 
 }  // namespace

@@ -47,7 +47,7 @@ void SectorDecision::hand_over(std::uint32_t cell) {
   picture_.low[cell] = -1.0F;
   picture_.high[cell] = -1.0F;
   picture_.number[cell] = std::bit_cast<float>(kNoNumber);
-  handed_over_.push_back(sector_.beam(cell));
+  memory_.handed_over.push_back(sector_.beam(cell));
 }
 
 /// Compares the triangle with the nearest one so far if that is of the same instance.
@@ -64,6 +64,9 @@ void SectorDecision::trace(std::uint32_t cell, std::uint32_t slot) {
     packet_.slot[0] = number - slots_.first_number(instance_);
     packet_.low[0] = below(double{picture_.low[cell]} / view.scale);
     packet_.high[0] = above(double{picture_.high[cell]} / view.scale);
+    const DecisionMemory::Known& known = memory_.known[cell];
+    packet_.distance[0] = known.distance;
+    packet_.known = known.number == number ? 1 : 0;
   }
   rays::decide(cast_.trees.of_instance(instance_).blocks.data(), packet_, 0, slot);
 }
@@ -79,6 +82,14 @@ bool SectorDecision::is_first(std::uint32_t cell, const Found& found, double low
   return order.is_nearer;
 }
 
+/// Keeps what was computed of the nearest triangle, which stays.
+void SectorDecision::keep_distance(std::uint32_t cell) {
+  const std::uint32_t number = number_at(cell);
+  const bool is_its = number != kNoNumber && packet_.known != 0 &&
+                      number == slots_.first_number(instance_) + packet_.slot[0];
+  if (is_its) memory_.known[cell] = {number, packet_.distance[0]};
+}
+
 void SectorDecision::decide(std::uint32_t cell, std::uint32_t slot) {
   if (picture_.high[cell] < 0.0F) return;
   beam_ = sector_.beam(cell);
@@ -90,10 +101,11 @@ void SectorDecision::decide(std::uint32_t cell, std::uint32_t slot) {
   const std::uint32_t number = slots_.first_number(instance_) + slot;
   const bool is_nearest = is_hit && is_first(cell, slots_.found(number), low_m, high_m);
   if (packet_.tied != 0) return hand_over(cell);
-  if (!is_nearest) return;
+  if (!is_nearest) return keep_distance(cell);
   picture_.low[cell] = below(low_m);
   picture_.high[cell] = above(high_m);
   picture_.number[cell] = std::bit_cast<float>(number);
+  if (packet_.known != 0) memory_.known[cell] = {number, packet_.distance[0]};
 }
 
 }  // namespace glidar::scan_raster
