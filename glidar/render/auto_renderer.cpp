@@ -58,7 +58,7 @@ class AutoRenderer final : public Renderer {
 
   /// Prepares the cast where it returns true.
   bool is_for_scan_raster(const CastRequest& request) {
-    if (!is_anything_present(request, base_->resolver.scene()) || request.beams.pinhole ||
+    if (!is_anything_present(request, base_->resolver.scene()) || looks_along_z(request.beams) ||
         !scan_raster::may_form_grid(request.beams))
       return false;
     if (scan_raster_ == nullptr) {

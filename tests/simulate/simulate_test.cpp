@@ -164,6 +164,32 @@ Scene overlapping_parts() {
   return scene;
 }
 
+TEST(Simulate, AllocatesNothingInTheSteadyStateForScannersWhoseBeamsChange) {
+  const Scene scene = overlapping_parts();
+  for (const char* kind : {"raster", "auto"}) {
+    const std::unique_ptr<Renderer> renderer = make_renderer(scene, {.kind = kind, .threads = 1});
+    Sensor sensor;
+    Raster& raster = sensor.optics.emplace<Raster>();
+    for (int i = 0; i < 300; ++i) raster.azimuths_rad.push_back(0.01 * i - 1.5);
+    for (int i = 0; i < 30; ++i) raster.elevations_rad.push_back(0.01 * i - 0.15);
+    Beams beams = make_beams(sensor);
+    CastRequest request{.beams = beams, .fields = {.normal = true}};
+    request.world_from_sensor.translation().x() = -4.0;
+    Hits hits;
+    const auto cast = [&](int times) {
+      for (int i = 0; i < times; ++i) {
+        std::swap(beams.directions[5], beams.directions[6]);
+        renderer->cast(request, hits);
+      }
+    };
+    cast(3);
+    EXPECT_GT(std::count(hits.instance.begin(), hits.instance.end(), 1U), 10);
+    const std::size_t before = allocations;
+    cast(10);
+    EXPECT_EQ(allocations - before, 0U) << kind;
+  }
+}
+
 TEST(Simulate, AllocatesNothingInTheSteadyStateForOverlappingPartsOfMeshes) {
   const Scene scene = overlapping_parts();
   for (const char* kind : {"raster", "rays"}) {

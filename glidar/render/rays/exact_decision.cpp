@@ -60,24 +60,27 @@ double tie_room(const RayPacket& packet, unsigned lane, const HitTriangle& trian
   return tie_window(packet.tie_reach, triangle, {d[0][lane], d[1][lane], d[2][lane]});
 }
 
-bool have_same_corners(const HitTriangle& a, const HitTriangle& b) {
-  const std::array<std::array<float, 3>, 3> first = {a.a, a.b, a.c};
-  const std::array<std::array<float, 3>, 3> second = {b.a, b.b, b.c};
-  return std::is_permutation(first.begin(), first.end(), second.begin());
-}
-
 /// True where the triangle has the corners of the ray's nearest one, in any order: by the rule
 /// their distances are equal, so that the lower one is kept.
 bool decide_by_corners(const TriangleBlock* blocks, RayPacket& packet, unsigned lane,
                        std::uint32_t slot) {
   const std::uint32_t before = packet.slot[lane];
   if (before == kNoTriangle || packet.stops != nullptr) return false;
-  if (!have_same_corners(triangle_at(blocks, before), triangle_at(blocks, slot))) return false;
+  if (!have_same_corners(blocks, before, slot)) return false;
   if (primitive_at(blocks, slot) < primitive_at(blocks, before)) packet.slot[lane] = slot;
   return true;
 }
 
 }  // namespace
+
+bool have_same_corners(const TriangleBlock* blocks, std::uint32_t slot, std::uint32_t other) {
+  const HitTriangle a = triangle_at(blocks, slot);
+  const HitTriangle b = triangle_at(blocks, other);
+  if (a.a != b.a && a.a != b.b && a.a != b.c) return false;
+  const std::array<std::array<float, 3>, 3> first = {a.a, a.b, a.c};
+  const std::array<std::array<float, 3>, 3> second = {b.a, b.b, b.c};
+  return std::is_permutation(first.begin(), first.end(), second.begin());
+}
 
 double tie_window(double reach, const HitTriangle& triangle, const Vector& direction) {
   const Vector p = edge(triangle.a, triangle.b);

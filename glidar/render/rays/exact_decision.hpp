@@ -14,6 +14,14 @@ namespace glidar::rays {
 /// one if its distance is not known yet; keeps the nearer.
 void decide(const TriangleBlock* blocks, RayPacket& packet, unsigned lane, std::uint32_t slot);
 
+/// True for two triangles with the same corners in any order: by the rule, their distances are
+/// equal.
+bool have_same_corners(const TriangleBlock* blocks, std::uint32_t slot, std::uint32_t other);
+
+/// True for two triangles with the same corners in any order: by the rule, their distances are
+/// equal.
+bool have_same_corners(const TriangleBlock* blocks, std::uint32_t slot, std::uint32_t other);
+
 /// How much farther a triangle may be that ties with this one, see RayPacket::tie_reach; the ray's
 /// direction is a unit vector.
 double tie_window(double reach, const HitTriangle& triangle,

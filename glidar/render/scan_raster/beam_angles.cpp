@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 
 namespace glidar::scan_raster {
 namespace {
@@ -26,20 +27,9 @@ double wrapped(double angle_rad) {
   return angle_rad - kTurn_rad * std::floor(angle_rad / kTurn_rad + 0.5);
 }
 
-/// What is known of a row before the grid is.
-struct RawRow {
-  std::size_t beams = 0;
-  bool is_steep = false;
-  double low_tangent = 0.0;
-  double high_tangent = 0.0;
-  double step_rad = 0.0;   ///< mean, from column to column
-  double phase_rad = 0.0;  ///< middle azimuth, less that of the columns
-  double spread_rad = 0.0;
-};
-
 /// The row's azimuths, NaN where there is no beam.
-void find_azimuths(const Beams& beams, std::uint32_t row, std::vector<double>& azimuths,
-                   RawRow& raw) {
+void find_azimuths(const Beams& beams, std::uint32_t row, std::span<double> azimuths, RawRow& raw) {
+  raw = {};
   const SensorAxes axes = axes_of(beams);
   raw.low_tangent = kMaxTangent;
   raw.high_tangent = -kMaxTangent;
@@ -57,7 +47,7 @@ void find_azimuths(const Beams& beams, std::uint32_t row, std::vector<double>& a
   }
 }
 
-double mean_step(const std::vector<double>& azimuths) {
+double mean_step(std::span<const double> azimuths) {
   double sum_rad = 0.0;
   std::size_t first = azimuths.size();
   std::size_t last = 0;
@@ -75,7 +65,7 @@ double mean_step(const std::vector<double>& azimuths) {
 }
 
 /// Fits azimuths phase + c * step.
-void fit_row(const std::vector<double>& azimuths, double step_rad, RawRow& raw) {
+void fit_row(std::span<const double> azimuths, double step_rad, RawRow& raw) {
   double start_rad = std::numeric_limits<double>::quiet_NaN();
   double low_rad = 0.0;
   double high_rad = 0.0;
@@ -160,22 +150,25 @@ void measure_angles(const Beams& beams, Workers& workers, BeamAngles& angles) {
     angles.misfit = "no beams";
     return;
   }
-  std::vector<RawRow> raw(beams.rows);
-  std::vector<std::vector<double>> azimuths(beams.rows);
+  std::vector<RawRow>& raw = angles.raw;
+  raw.resize(beams.rows);
+  angles.azimuths_rad.resize(beams.size());
+  const auto azimuths = [&](std::size_t row) {
+    return std::span(angles.azimuths_rad).subspan(row * beams.cols, beams.cols);
+  };
   const auto for_rows = [&](const auto& body) {
     workers.for_ranges(beams.rows, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t row = begin; row < end; ++row) body(row);
     });
   };
   for_rows([&](std::size_t row) {
-    azimuths[row].resize(beams.cols);
-    find_azimuths(beams, static_cast<std::uint32_t>(row), azimuths[row], raw[row]);
-    raw[row].step_rad = mean_step(azimuths[row]);
+    find_azimuths(beams, static_cast<std::uint32_t>(row), azimuths(row), raw[row]);
+    raw[row].step_rad = mean_step(azimuths(row));
   });
   const std::size_t reference = find_step(raw, angles);
   angles.misfit = misfit_of_step(angles.step_rad);
   if (!angles.misfit.empty()) return;
-  for_rows([&](std::size_t row) { fit_row(azimuths[row], angles.step_rad, raw[row]); });
+  for_rows([&](std::size_t row) { fit_row(azimuths(row), angles.step_rad, raw[row]); });
   angles.phase_rad = raw[reference].phase_rad;
   for (std::uint32_t row = 0; row < beams.rows; ++row) {
     angles.rows.push_back(place_row(raw[row], row, angles));

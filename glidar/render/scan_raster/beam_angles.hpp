@@ -5,6 +5,7 @@
 #include <glidar/core/beams.hpp>
 #include <glidar/core/workers.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -23,12 +24,26 @@ struct RowAngles {
   double high_deviation = 0.0;
 };
 
+/// What is known of a row before the grid is.
+struct RawRow {
+  std::size_t beams = 0;
+  bool is_steep = false;
+  double low_tangent = 0.0;
+  double high_tangent = 0.0;
+  double step_rad = 0.0;   ///< mean, from column to column
+  double phase_rad = 0.0;  ///< middle azimuth, less that of the columns
+  double spread_rad = 0.0;
+};
+
 /// Azimuths and elevations of beams, and how well they fit a grid.
 struct BeamAngles {
   double phase_rad = 0.0;  ///< azimuth of column 0
   double step_rad = 0.0;   ///< from column to column, signed
   std::vector<RowAngles> rows;
   std::string misfit;  ///< why the beams form no grid; empty: they do
+
+  std::vector<double> azimuths_rad;  ///< per beam; NaN where there is none
+  std::vector<RawRow> raw;           ///< per row of the beams
 };
 
 /// False where some neighbours show at once that the beams form no grid, or most are missing.

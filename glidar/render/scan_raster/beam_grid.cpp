@@ -92,8 +92,10 @@ void BeamGrid::sort_rows() {
       other_rows_.push_back(row.source);
     }
   }
-  std::stable_sort(rows_.begin(), rows_.end(), [](const RowAngles& a, const RowAngles& b) {
-    return a.low_tangent + a.high_tangent < b.low_tangent + b.high_tangent;
+  std::sort(rows_.begin(), rows_.end(), [](const RowAngles& a, const RowAngles& b) {
+    const double a_middle = a.low_tangent + a.high_tangent;
+    const double b_middle = b.low_tangent + b.high_tangent;
+    return a_middle != b_middle ? a_middle < b_middle : a.source < b.source;
   });
   for (std::size_t i = 1; i < rows_.size(); ++i) {
     rows_[i].high_tangent = std::max(rows_[i].high_tangent, rows_[i - 1].high_tangent);

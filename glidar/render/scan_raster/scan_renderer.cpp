@@ -4,7 +4,6 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/work_count.hpp>
-#include <glidar/render/scan_raster/kernels.hpp>
 #include <glidar/render/scan_raster/sector_decision.hpp>
 #include <glidar/render/scan_raster/sector_writer.hpp>
 
@@ -24,7 +23,7 @@ struct Desk {
   std::vector<float> number;
   std::vector<float> farthest;
   std::vector<std::uint32_t> is_stale;
-  DecisionMemory memory;
+  std::vector<std::size_t> handed_over;
 
   SectorPicture clear(const SectorTable& sector) {
     low.assign(sector.start().begin(), sector.start().end());
@@ -50,8 +49,8 @@ struct Job {
 void draw_sector(const Job& job, const SectorTable& sector, Desk& desk) {
   const SectorPicture picture = desk.clear(sector);
   const SectorView beams = sector.view();
-  desk.memory.clear(sector.start().size());
-  SectorDecision decision(job.cast, job.slots, sector, picture, desk.memory);
+  desk.handed_over.clear();
+  SectorDecision decision(job.cast, job.slots, sector, picture, desk.handed_over);
   for (const std::uint32_t instance : job.slots.order()) {
     Placement placement = place(job.cast.trees, job.cast.resolver.view(instance), instance, sector);
     decision.set_instance(instance, placement);
@@ -59,15 +58,15 @@ void draw_sector(const Job& job, const SectorTable& sector, Desk& desk) {
   }
   SectorWriter writer(job.target);
   writer.write_rows(sector, picture, job.slots);
-  writer.cast_rays(desk.memory.handed_over);
+  writer.cast_rays(desk.handed_over);
 }
 
 /// A run of beams, cast as rays.
 void cast_run(const HitTarget& target, BeamRange run, Desk& desk) {
   write_misses(target.request.fields, run.begin, run.end - run.begin, target.hits);
-  desk.memory.handed_over.resize(run.end - run.begin);
-  std::iota(desk.memory.handed_over.begin(), desk.memory.handed_over.end(), run.begin);
-  SectorWriter(target).cast_rays(desk.memory.handed_over);
+  desk.handed_over.resize(run.end - run.begin);
+  std::iota(desk.handed_over.begin(), desk.handed_over.end(), run.begin);
+  SectorWriter(target).cast_rays(desk.handed_over);
 }
 
 }  // namespace
@@ -131,7 +130,7 @@ void ScanRenderer::cast_prepared(const CastRequest& request, Hits& hits) {
                 .view = grid_.view(),
                 .cast = {base_->search.trees(), base_->resolver, request},
                 .slots = slots_,
-                .kernel = find_kernel(rays::select_kernel().name),
+                .kernel = kernel_,
                 .target = target};
   WorkCount count(request.progress, request.beams.size());
   const auto finish = [&](BeamRange run) {

@@ -6,6 +6,7 @@
 #include <glidar/render/renderer.hpp>
 #include <glidar/render/scan_raster/beam_grid.hpp>
 #include <glidar/render/scan_raster/instance_slots.hpp>
+#include <glidar/render/scan_raster/kernels.hpp>
 
 #include <memory>
 
@@ -33,6 +34,7 @@ class ScanRenderer final : public Renderer {
   class Desks;
 
   std::shared_ptr<CpuBase> base_;
+  const Kernel& kernel_ = find_kernel(rays::select_kernel().name);
   BeamGrid grid_;
   InstanceSlots slots_;
   std::unique_ptr<Desks> desks_;

@@ -22,6 +22,7 @@ float above(double value) {
 
 void SectorDecision::set_instance(std::uint32_t instance, Placement& placement) {
   instance_ = instance;
+  compared_ = kNoNumber;
   placement.first_number = slots_.first_number(instance);
   placement.asks = cast_.request.cull_back_faces || cast_.resolver.is_masked(instance);
   placement.context = this;
@@ -47,7 +48,7 @@ void SectorDecision::hand_over(std::uint32_t cell) {
   picture_.low[cell] = -1.0F;
   picture_.high[cell] = -1.0F;
   picture_.number[cell] = std::bit_cast<float>(kNoNumber);
-  memory_.handed_over.push_back(sector_.beam(cell));
+  handed_over_.push_back(sector_.beam(cell));
 }
 
 /// Compares the triangle with the nearest one so far if that is of the same instance.
@@ -64,9 +65,6 @@ void SectorDecision::trace(std::uint32_t cell, std::uint32_t slot) {
     packet_.slot[0] = number - slots_.first_number(instance_);
     packet_.low[0] = below(double{picture_.low[cell]} / view.scale);
     packet_.high[0] = above(double{picture_.high[cell]} / view.scale);
-    const DecisionMemory::Known& known = memory_.known[cell];
-    packet_.distance[0] = known.distance;
-    packet_.known = known.number == number ? 1 : 0;
   }
   rays::decide(cast_.trees.of_instance(instance_).blocks.data(), packet_, 0, slot);
 }
@@ -82,16 +80,28 @@ bool SectorDecision::is_first(std::uint32_t cell, const Found& found, double low
   return order.is_nearer;
 }
 
-/// Keeps what was computed of the nearest triangle, which stays.
-void SectorDecision::keep_distance(std::uint32_t cell) {
+/// True where the triangle has the corners of the cell's nearest one: the lower one is kept. Cells
+/// in a row mostly ask for the same two.
+bool SectorDecision::is_coincident(std::uint32_t cell, std::uint32_t slot) {
   const std::uint32_t number = number_at(cell);
-  const bool is_its = number != kNoNumber && packet_.known != 0 &&
-                      number == slots_.first_number(instance_) + packet_.slot[0];
-  if (is_its) memory_.known[cell] = {number, packet_.distance[0]};
+  if (number == kNoNumber || packet_.stops != nullptr) return false;
+  if (number != compared_ || slot != compared_slot_) {
+    compared_ = number;
+    compared_slot_ = slot;
+    const std::uint32_t before = number - slots_.first_number(instance_);
+    const TriangleBlock* blocks = cast_.trees.of_instance(instance_).blocks.data();
+    is_same_ =
+        slots_.instance_of(number) == instance_ && rays::have_same_corners(blocks, before, slot);
+    const std::uint32_t other = slots_.first_number(instance_) + slot;
+    lower_ =
+        is_same_ && slots_.found(other).primitive < slots_.found(number).primitive ? other : number;
+  }
+  if (is_same_) picture_.number[cell] = std::bit_cast<float>(lower_);
+  return is_same_;
 }
 
 void SectorDecision::decide(std::uint32_t cell, std::uint32_t slot) {
-  if (picture_.high[cell] < 0.0F) return;
+  if (picture_.high[cell] < 0.0F || is_coincident(cell, slot)) return;
   beam_ = sector_.beam(cell);
   trace(cell, slot);
   const bool is_hit = packet_.slot[0] == slot;
@@ -101,11 +111,10 @@ void SectorDecision::decide(std::uint32_t cell, std::uint32_t slot) {
   const std::uint32_t number = slots_.first_number(instance_) + slot;
   const bool is_nearest = is_hit && is_first(cell, slots_.found(number), low_m, high_m);
   if (packet_.tied != 0) return hand_over(cell);
-  if (!is_nearest) return keep_distance(cell);
+  if (!is_nearest) return;
   picture_.low[cell] = below(low_m);
   picture_.high[cell] = above(high_m);
   picture_.number[cell] = std::bit_cast<float>(number);
-  if (packet_.known != 0) memory_.known[cell] = {number, packet_.distance[0]};
 }
 
 }  // namespace glidar::scan_raster

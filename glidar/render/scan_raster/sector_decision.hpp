@@ -11,51 +11,38 @@
 
 namespace glidar::scan_raster {
 
-/// What is kept for the decisions in a sector.
-struct DecisionMemory {
-  /// The rule's distance to a cell's nearest triangle, object units, as long as it has this number.
-  struct Known {
-    std::uint32_t number;
-    double distance;
-  };
-  std::vector<Known> known;              ///< per cell
-  std::vector<std::size_t> handed_over;  ///< beams for rays, see SectorDecision::hand_over()
-
-  /// Forgets all, for a sector of so many cells.
-  void clear(std::size_t cells) {
-    known.assign(cells, {kNoNumber, 0.0});
-    handed_over.clear();
-  }
-};
-
 /// Applies the hit rule to cells and triangles that single precision leaves in doubt.
 class SectorDecision {
  public:
-  /// The memory is clear.
+  /// Adds to `handed_over`, see hand_over().
   SectorDecision(const rays::CastView& cast, const InstanceSlots& slots, const SectorTable& sector,
-                 const SectorPicture& picture, DecisionMemory& memory)
-      : cast_(cast), slots_(slots), sector_(sector), picture_(picture), memory_(memory) {}
+                 const SectorPicture& picture, std::vector<std::size_t>& handed_over)
+      : cast_(cast), slots_(slots), sector_(sector), picture_(picture), handed_over_(handed_over) {}
 
   /// Takes the next instance, and completes its placement.
   void set_instance(std::uint32_t instance, Placement& placement);
 
  private:
   void decide(std::uint32_t cell, std::uint32_t slot);
+  bool is_coincident(std::uint32_t cell, std::uint32_t slot);
   void trace(std::uint32_t cell, std::uint32_t slot);
   [[nodiscard]] bool is_first(std::uint32_t cell, const Found& found, double low_m, double high_m);
   /// Leaves a cell to rays, since some triangles tie: it counts as one without a beam, and its beam
   /// is added to those handed over.
   void hand_over(std::uint32_t cell);
-  void keep_distance(std::uint32_t cell);
   [[nodiscard]] std::uint32_t number_at(std::uint32_t cell) const;
 
   rays::CastView cast_;
   const InstanceSlots& slots_;
   const SectorTable& sector_;
   SectorPicture picture_;
-  DecisionMemory& memory_;
+  std::vector<std::size_t>& handed_over_;
   std::uint32_t instance_ = 0;
   std::size_t beam_ = 0;
+  std::uint32_t compared_ = kNoNumber;  ///< number and slot that were compared last
+  std::uint32_t compared_slot_ = 0;
+  bool is_same_ = false;      ///< they have the same corners
+  std::uint32_t lower_ = 0;   ///< then the one to keep
   rays::RayPacket packet_{};  ///< of which the first ray is used
 };
 
