@@ -3,8 +3,8 @@
 #include <glidar/render/resolve.hpp>
 
 #include <glidar/core/simd.hpp>
-#include <glidar/render/corners.hpp>
 #include <glidar/render/grazing.hpp>
+#include <glidar/render/shade.hpp>
 
 #include <algorithm>
 #include <bit>
@@ -78,48 +78,8 @@ GLIDAR_SIMD void turn_to_sensor(const Eigen::Matrix3d& sensor_from_object, const
   }
 }
 
-/// Weights of corners 1 and 2 of the hit point.
-GLIDAR_SIMD void weigh(const ExactBlock& e, const CornerBlock& c, Lanes<float>& w1,
-                       Lanes<float>& w2) {
-  constexpr float kThird = 1.0F / 3.0F;
-  for (unsigned i = 0; i < kLanes; ++i) {
-    const CornerAreas areas = areas_around(e, c, i);
-    const float whole = areas.at_0 + areas.at_1 + areas.at_2;
-    const bool has_area = whole != 0.0F;
-    w1[i] = has_area ? areas.at_1 / whole : kThird;
-    w2[i] = has_area ? areas.at_2 / whole : kThird;
-  }
-}
-
-/// w0 a + w1 b + w2 c, normalised; `flat` where that has no length.
-GLIDAR_SIMD void blend_normals(const CornerBlock& n, const Lanes<float>& w1, const Lanes<float>& w2,
-                               const Lanes3<double>& flat, Lanes3<double>& out) {
-  constexpr float kShortest = 1e-12F;  // squared; opposite normals cancel out
-  for (unsigned i = 0; i < kLanes; ++i) {
-    const float w0 = 1.0F - w1[i] - w2[i];
-    const float x = w0 * n.c0.x[i] + w1[i] * n.c1.x[i] + w2[i] * n.c2.x[i];
-    const float y = w0 * n.c0.y[i] + w1[i] * n.c1.y[i] + w2[i] * n.c2.y[i];
-    const float z = w0 * n.c0.z[i] + w1[i] * n.c1.z[i] + w2[i] * n.c2.z[i];
-    const float squared = x * x + y * y + z * z;
-    const bool has_length = squared > kShortest;
-    const float inverse = 1.0F / std::sqrt(has_length ? squared : 1.0F);
-    out.x[i] = has_length ? static_cast<double>(x * inverse) : flat.x[i];
-    out.y[i] = has_length ? static_cast<double>(y * inverse) : flat.y[i];
-    out.z[i] = has_length ? static_cast<double>(z * inverse) : flat.z[i];
-  }
-}
-
 bool needs_normals(const HitFields& fields) {
   return fields.shading_normal || fields.shading;
-}
-
-/// Cosines between -beams and normals that lie on the side of the plane's, turned to the sensor.
-GLIDAR_SIMD void cosines(const ExactBlock& e, const Lanes3<double>& normal, Lanes<float>& out) {
-  for (unsigned i = 0; i < kLanes; ++i) {
-    const double along = normal.x[i] * e.direction.x[i] + normal.y[i] * e.direction.y[i] +
-                         normal.z[i] * e.direction.z[i];
-    out[i] = static_cast<float>(e.cosine[i] > 0.0 ? along : -along);
-  }
 }
 
 }  // namespace
@@ -310,11 +270,7 @@ void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& fro
   if (is_one_instance(block)) {
     Lanes3<float> turned;
     turn_to_sensor(views_[block.instance[0]].object_from_sensor.transpose(), front, cosine, turned);
-    if (block.is_run) {
-      for (unsigned i = 0; i < kLanes; ++i) column[block.beam[0] + i] = turned.get(i);
-    } else {
-      for_lanes(block.mask, [&](unsigned i) { column[block.beam[i]] = turned.get(i); });
-    }
+    for_lanes(block.mask, [&](unsigned i) { column[block.beam[i]] = turned.get(i); });
     return;
   }
   for_lanes(block.mask, [&](unsigned i) {

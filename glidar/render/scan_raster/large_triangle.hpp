@@ -105,25 +105,34 @@ GLIDAR_INLINE std::uint32_t tiles_between(std::uint32_t base, std::uint32_t firs
   return all;
 }
 
+/// Eight tiles side by side, of which the bits of `left` are in the rectangle.
+template <bool kOwnOrigins>
+GLIDAR_INLINE void draw_tiles(const Drawing& drawing, const RowTriangle& t, const CellRect& rect,
+                              const OriginSpread& spread, std::size_t tile, std::uint32_t left) {
+  std::uint32_t inside = 0;
+  if (t.faces) {
+    const TileTest test = test_tiles<kOwnOrigins>(drawing, t, spread, tile);
+    left &= ~test.outside;
+    inside = test.inside;
+  }
+  const auto row = static_cast<std::uint32_t>(tile / drawing.grid.tile_pitch);
+  const auto base = static_cast<std::uint32_t>(tile % drawing.grid.tile_pitch);
+  for (; left != 0; left &= left - 1) {
+    const auto i = static_cast<std::uint32_t>(__builtin_ctz(left));
+    drawing.picture.is_stale[tile + i] = 1;
+    test_tile<kOwnOrigins>(drawing, t, rect, row, base + i, (inside >> i & 1U) != 0);
+  }
+}
+
 template <bool kOwnOrigins>
 void draw_large(const Drawing& drawing, const RowTriangle& t, const CellRect& rect) {
   const TileRect tiles = tiles_of(rect);
   const OriginSpread spread = spread_of<kOwnOrigins>(drawing, t);
   for (std::uint32_t row = tiles.first_row; row <= tiles.last_row; ++row) {
     for (std::uint32_t base = tiles.first_column & ~7U; base <= tiles.last_column; base += 8) {
-      const std::size_t tile = std::size_t{row} * drawing.grid.tile_pitch + base;
-      std::uint32_t left = tiles_between(base, tiles.first_column, tiles.last_column);
-      std::uint32_t inside = 0;
-      if (t.faces) {
-        const TileTest test = test_tiles<kOwnOrigins>(drawing, t, spread, tile);
-        left &= ~test.outside;
-        inside = test.inside;
-      }
-      for (; left != 0; left &= left - 1) {
-        const auto i = static_cast<std::uint32_t>(__builtin_ctz(left));
-        drawing.picture.is_stale[tile + i] = 1;
-        test_tile<kOwnOrigins>(drawing, t, rect, row, base + i, (inside >> i & 1U) != 0);
-      }
+      draw_tiles<kOwnOrigins>(drawing, t, rect, spread,
+                              std::size_t{row} * drawing.grid.tile_pitch + base,
+                              tiles_between(base, tiles.first_column, tiles.last_column));
     }
   }
 }

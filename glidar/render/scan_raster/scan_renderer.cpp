@@ -44,6 +44,7 @@ struct Job {
   const InstanceSlots& slots;
   const Kernel& kernel;
   const HitTarget target;
+  const bool has_bounds;  ///< otherwise all beams are cast as rays
 };
 
 void draw_sector(const Job& job, const SectorTable& sector, Desk& desk) {
@@ -67,6 +68,19 @@ void cast_run(const HitTarget& target, BeamRange run, Desk& desk) {
   desk.handed_over.resize(run.end - run.begin);
   std::iota(desk.handed_over.begin(), desk.handed_over.end(), run.begin);
   SectorWriter(target).cast_rays(desk.handed_over);
+}
+
+/// Calls visit(range) for the beams of every row of a sector.
+template <class Visit>
+void for_runs(const SectorTable& sector, const Visit& visit) {
+  for (const SectorRow& row : sector.rows()) {
+    if (row.count != 0) visit(BeamRange{row.first_beam, row.first_beam + row.count});
+  }
+}
+
+void cast_sector(const Job& job, const SectorTable& sector, Desk& desk) {
+  if (job.has_bounds) return draw_sector(job, sector, desk);
+  for_runs(sector, [&](BeamRange run) { cast_run(job.target, run, desk); });
 }
 
 }  // namespace
@@ -123,7 +137,6 @@ void ScanRenderer::cast(const CastRequest& request, Hits& hits) {
 
 void ScanRenderer::cast_prepared(const CastRequest& request, Hits& hits) {
   resize(hits, request.beams.size(), request.fields);
-  const HitTarget target{request, base_->resolver, base_->search.beams(), hits};
   const bool has_bounds = slots_.prepare(base_->search.trees(), base_->resolver);
   const Job job{.request = request,
                 .grid = grid_,
@@ -131,44 +144,33 @@ void ScanRenderer::cast_prepared(const CastRequest& request, Hits& hits) {
                 .cast = {base_->search.trees(), base_->resolver, request},
                 .slots = slots_,
                 .kernel = kernel_,
-                .target = target};
+                .target = {request, base_->resolver, base_->search.beams(), hits},
+                .has_bounds = has_bounds};
   WorkCount count(request.progress, request.beams.size());
   const auto finish = [&](BeamRange run) {
     if (request.then) request.then(run);
     count.add(run.end - run.begin);
   };
-  const auto finish_sector = [&](const SectorTable& sector) {
-    for (const SectorRow& row : sector.rows()) {
-      if (row.count != 0) finish({row.first_beam, row.first_beam + row.count});
-    }
-  };
-  base_->workers.for_ranges(grid_.sectors().size(), 1, [&](std::size_t begin, std::size_t end) {
-    std::unique_ptr<Desk> desk = desks_->take();
-    for (std::size_t i = begin; i < end; ++i) {
-      const SectorTable& sector = grid_.sectors()[i];
-      if (has_bounds) {
-        draw_sector(job, sector, *desk);
-      } else {
-        for (const SectorRow& row : sector.rows()) {
-          if (row.count == 0) continue;
-          cast_run(target, {row.first_beam, row.first_beam + row.count}, *desk);
-        }
-      }
-      finish_sector(sector);
-    }
-    desks_->give_back(std::move(desk));
+  for_each(grid_.sectors().size(), [&](std::size_t i, Desk& desk) {
+    cast_sector(job, grid_.sectors()[i], desk);
+    for_runs(grid_.sectors()[i], finish);
   });
-  const std::vector<std::uint32_t>& rest = grid_.other_rows();
-  base_->workers.for_ranges(rest.size(), 1, [&](std::size_t begin, std::size_t end) {
-    std::unique_ptr<Desk> desk = desks_->take();
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t first = std::size_t{rest[i]} * request.beams.cols;
-      cast_run(target, {first, first + request.beams.cols}, *desk);
-      finish({first, first + request.beams.cols});
-    }
-    desks_->give_back(std::move(desk));
+  for_each(grid_.other_rows().size(), [&](std::size_t i, Desk& desk) {
+    const std::size_t first = std::size_t{grid_.other_rows()[i]} * request.beams.cols;
+    const BeamRange row{first, first + request.beams.cols};
+    cast_run(job.target, row, desk);
+    finish(row);
   });
   count.finish();
+}
+
+template <class Body>
+void ScanRenderer::for_each(std::size_t pieces, const Body& body) {
+  base_->workers.for_ranges(pieces, 1, [&](std::size_t begin, std::size_t end) {
+    std::unique_ptr<Desk> desk = desks_->take();
+    for (std::size_t i = begin; i < end; ++i) body(i, *desk);
+    desks_->give_back(std::move(desk));
+  });
 }
 
 }  // namespace glidar::scan_raster

@@ -33,6 +33,10 @@ class ScanRenderer final : public Renderer {
  private:
   class Desks;
 
+  /// Calls body(i, desk) for each piece, on all threads.
+  template <class Body>
+  void for_each(std::size_t pieces, const Body& body);
+
   std::shared_ptr<CpuBase> base_;
   const Kernel& kernel_ = find_kernel(rays::select_kernel().name);
   BeamGrid grid_;

@@ -158,21 +158,23 @@ void SectorTable::find_tiles(const GridColumns& columns) {
     tile_middle_[axis].assign(columns.tiles(), 0.0F);
     tile_half_[axis].assign(columns.tiles(), 0.0F);
   }
-  for (std::uint32_t y = 0; y < columns.rows / kTileRows; ++y) {
-    for (std::uint32_t x = 0; x < columns.width / kTileColumns; ++x) {
-      const std::size_t tile = std::size_t{y} * columns.tile_pitch() + x;
-      Eigen::AlignedBox3f box;
-      for (std::uint32_t i = 0; i < kTileRows * kTileColumns; ++i) {
-        const std::size_t cell = std::size_t{y * kTileRows + i / kTileColumns} * pitch_ +
-                                 x * kTileColumns + i % kTileColumns;
-        tile_start_[tile] = std::max(tile_start_[tile], start_[cell]);
-        box.extend(Eigen::Vector3f(direction_[0][cell], direction_[1][cell], direction_[2][cell]));
-      }
-      for (int axis = 0; axis < 3; ++axis) {
-        tile_middle_[axis][tile] = box.center()[axis];
-        tile_half_[axis][tile] = 0.5F * box.sizes()[axis] + 0x1p-22F;
-      }
+  for (std::size_t y = 0; y < columns.rows / kTileRows; ++y) {
+    for (std::size_t x = 0; x < columns.width / kTileColumns; ++x) {
+      bound_tile(y * columns.tile_pitch() + x, y * kTileRows * pitch_ + x * kTileColumns);
     }
+  }
+}
+
+void SectorTable::bound_tile(std::size_t tile, std::size_t first_cell) {
+  Eigen::AlignedBox3f box;
+  for (std::size_t i = 0; i < std::size_t{kTileRows} * kTileColumns; ++i) {
+    const std::size_t cell = first_cell + i / kTileColumns * pitch_ + i % kTileColumns;
+    tile_start_[tile] = std::max(tile_start_[tile], start_[cell]);
+    box.extend(Eigen::Vector3f(direction_[0][cell], direction_[1][cell], direction_[2][cell]));
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    tile_middle_[axis][tile] = box.center()[axis];
+    tile_half_[axis][tile] = 0.5F * box.sizes()[axis] + 0x1p-22F;
   }
 }
 

@@ -77,6 +77,7 @@ class SectorTable {
   void set_directions(const Beams& beams);
   void set_origins(const Beams& beams);
   void find_tiles(const GridColumns& columns);
+  void bound_tile(std::size_t tile, std::size_t first_cell);
 
   Eigen::Matrix3d sector_from_sensor_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
