@@ -15,8 +15,6 @@
 namespace glidar::app {
 namespace {
 
-constexpr double kSmallestScale = 1e-15;
-constexpr double kLargestScale = 1e15;        // what a scene takes
 constexpr double kLegacyDistance_m = 1000.0;  // --camera-z of the 2015 program
 
 /// From the front right and above, for models whose up is +z and whose front is -y.

@@ -5,27 +5,44 @@
 #include <glidar/core/error.hpp>
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace glidar {
 namespace {
 
-void require(bool holds, const Instance& instance, std::string found, std::string allowed) {
+void require(bool holds, const Instance& instance, std::string found, std::string allowed,
+             std::string remedy = "") {
   if (holds) return;
   throw Error({.where = "instance '" + instance.name + "'",
                .found = std::move(found),
                .allowed = std::move(allowed),
-               .remedy = ""});
+               .remedy = std::move(remedy)});
+}
+
+/// The largest coordinate of a mesh, in the object frame.
+double reach_of(const Mesh& mesh) {
+  const Eigen::AlignedBox3d box = bounds(mesh);
+  return box.isEmpty() ? 0.0 : box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+}
+
+void validate_reach(const Instance& instance, double mesh_reach) {
+  const double reach_m = instance.scale * mesh_reach;
+  require(mesh_reach == 0.0 || (reach_m >= kSmallestReach_m && reach_m <= kLargestCoordinate_m),
+          instance, "its vertices reach " + number_text(reach_m) + " m from its origin",
+          "1e-30 m to 1e15 m", "choose another unit or scale, or an origin nearer to the vertices");
 }
 
 void validate(const Instance& instance, const Scene& scene) {
   require(instance.mesh < scene.meshes.size(), instance, "mesh " + std::to_string(instance.mesh),
           "an index of the scene's meshes");
-  require(instance.scale > 0.0 && instance.scale <= kLargestCoordinate_m, instance,
-          "scale " + number_text(instance.scale), "a number above 0, up to 1e15");
+  require(instance.scale >= kSmallestScale && instance.scale <= kLargestScale, instance,
+          "scale " + number_text(instance.scale), "1e-15 to 1e15", "choose another unit or scale");
   require(is_rigid(instance.world_from_object), instance, "a pose that is not a rigid transform",
           "finite numbers and a rotation");
   require(instance.world_from_object.translation().cwiseAbs().maxCoeff() <= kLargestCoordinate_m,
-          instance, "a position beyond reach", "up to 1e15 m from the world's origin");
+          instance, "a position beyond reach", "up to 1e15 m from the world's origin",
+          "move the world's origin nearer to it");
   require(instance.class_id < scene.class_names.size(), instance,
           "class " + std::to_string(instance.class_id), "an index of the scene's class names");
   require(instance.materials.size() >= slot_count(scene.meshes[instance.mesh]), instance,
@@ -91,9 +108,16 @@ void validate(const Scene& scene) {
                  .allowed = std::to_string(scene.meshes.size()) + " (one per mesh)",
                  .remedy = ""});
   }
-  for (const Mesh& mesh : scene.meshes) validate(mesh);
+  std::vector<double> reaches;
+  for (const Mesh& mesh : scene.meshes) {
+    validate(mesh);
+    reaches.push_back(reach_of(mesh));
+  }
   for (const Texture& texture : scene.textures) validate(texture);
-  for (const Instance& instance : scene.instances) validate(instance, scene);
+  for (const Instance& instance : scene.instances) {
+    validate(instance, scene);
+    validate_reach(instance, reaches[instance.mesh]);
+  }
   for (const Material& material : scene.materials) {
     validate(material.diffuse_texture, scene, material);
     validate(material.specular_texture, scene, material);

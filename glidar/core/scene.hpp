@@ -38,6 +38,12 @@ struct MeshSource {
   std::uint32_t unstretched = 0;  ///< only used where stretch is not 1, 1, 1
 };
 
+/// The scale of an instance and the reach of its vertices, in metres from its origin, where it has
+/// any: single precision holds products of both with room to spare.
+inline constexpr double kSmallestScale = 1e-15;
+inline constexpr double kLargestScale = 1e15;
+inline constexpr double kSmallestReach_m = 1e-30;
+
 /// All there is to see, as plain arrays and indices.
 struct Scene {
   std::vector<Mesh> meshes;

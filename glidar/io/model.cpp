@@ -213,12 +213,13 @@ std::size_t add_model(Scene& scene, Model model) {
 }
 
 void set_scale(Scene& scene, std::size_t instance, const Eigen::Vector3d& scale) {
-  const bool allowed = (scale.array() > 0.0).all() && scale.maxCoeff() <= kLargestCoordinate_m;
+  const bool allowed =
+      (scale.array() >= kSmallestScale).all() && (scale.array() <= kLargestScale).all();
   if (!allowed) {
     throw Error({.where = "scale",
                  .found = number_text(scale.x()) + ", " + number_text(scale.y()) + ", " +
                           number_text(scale.z()),
-                 .allowed = "numbers above 0, up to 1e15",
+                 .allowed = "numbers from 1e-15 to 1e15",
                  .remedy = "a mirrored model is another model: mirror it in its file"});
   }
   Instance& changed = scene.instances.at(instance);

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr NumberRule kScale = {0.0, kLargestCoordinate_m, true, "a number above 0 and below 1e15"};
+constexpr NumberRule kScale = {kSmallestScale, kLargestScale, false, "a number from 1e-15 to 1e15"};
 constexpr NumberRule kSize_m = {0.0, kLargestCoordinate_m, true, "metres above 0 and below 1e15"};
 constexpr NumberRule kShininess = {0.0, 128.0, false, "a number from 0 to 128"};
 

@@ -38,10 +38,32 @@ bool is_anything_present(const CastRequest& request, const Scene& scene) {
                      [](std::uint8_t present) { return present != 0; });
 }
 
+namespace {
+
+bool is_in_reach(const Pose& world_from_source) {
+  const Eigen::Vector3d position = world_from_source.translation();
+  return position.cwiseAbs().maxCoeff() <= kLargestCoordinate_m && position.allFinite();
+}
+
+/// Of instances that are where the cast says.
+void check_poses(const CastRequest& request, const Scene& scene) {
+  for (std::size_t i = 0; i < request.world_from_instance.size(); ++i) {
+    const bool is_present = request.present.empty() || request.present[i] != 0;
+    if (!is_present || is_in_reach(request.world_from_instance[i])) continue;
+    throw Error({.where = "cast",
+                 .found = "instance '" + scene.instances[i].name + "' is out of reach",
+                 .allowed = "up to 1e15 m from the world's origin",
+                 .remedy = "end its motion earlier, or move the world's origin nearer to it"});
+  }
+}
+
+}  // namespace
+
 void check(const CastRequest& request, const Scene& scene) {
-  const auto require = [](bool holds, const char* found, const char* allowed) {
+  const auto require = [](bool holds, const char* found, const char* allowed,
+                          const char* remedy = "") {
     if (holds) return;
-    throw Error({.where = "cast", .found = found, .allowed = allowed, .remedy = ""});
+    throw Error({.where = "cast", .found = found, .allowed = allowed, .remedy = remedy});
   };
   const Beams& beams = request.beams;
   require(beams.directions.size() == std::size_t{beams.rows} * beams.cols,
@@ -53,9 +75,9 @@ void check(const CastRequest& request, const Scene& scene) {
           "poses of other instances", "one pose per instance, or none");
   require(request.present.empty() || request.present.size() == scene.instances.size(),
           "presence of other instances", "one entry per instance, or none");
-  const Eigen::Vector3d sensor = request.world_from_sensor.translation();
-  require(sensor.cwiseAbs().maxCoeff() <= kLargestCoordinate_m && sensor.allFinite(),
-          "the sensor stands out of reach", "up to 1e15 m from the world's origin");
+  require(is_in_reach(request.world_from_sensor), "the sensor is out of reach",
+          "up to 1e15 m from the world's origin", "move the world's origin nearer to it");
+  check_poses(request, scene);
 }
 
 void check_batch(std::span<const CastRequest> requests, std::span<Hits* const> hits) {
@@ -88,10 +110,11 @@ std::unique_ptr<Renderer> make_renderer(const Scene& scene, const RendererOption
     return kind.name == options.kind;
   });
   if (found == kinds().end()) {
+    const std::string nearest = nearest_word(options.kind, renderer_kinds());
     throw Error({.where = "renderer",
                  .found = "'" + options.kind + "' is not known",
                  .allowed = names,
-                 .remedy = ""});
+                 .remedy = nearest.empty() ? "" : "did you mean '" + nearest + "'?"});
   }
   const auto make = [&](const Scene& whole) { return found->make(whole, options); };
   return has_pieces(scene) ? make_pieces_renderer(scene, make) : make(scene);

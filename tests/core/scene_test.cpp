@@ -60,9 +60,33 @@ TEST(SceneValidate, AcceptsAGoodScene) {
   EXPECT_EQ(error_of([](Scene&) {}), "");
 }
 
+/// The triangle with this corner in place of the one farthest from its origin.
+std::string error_of_reach(float reach, double scale) {
+  return error_of([=](Scene& s) {
+    s.meshes[0].origin_m.setZero();
+    s.meshes[0].positions_m = {{0.0F, 0.0F, 0.0F}, {reach, 0.0F, 0.0F}, {0.0F, -reach, 0.0F}};
+    s.instances[0].scale = scale;
+  });
+}
+
+TEST(SceneValidate, VerticesReachAsFarAsAllRenderersMeasureTheSame) {
+  EXPECT_EQ(error_of_reach(0.0F, 1.0), "");
+  for (const double scale : {kSmallestScale, 1.0, 1e6}) {
+    const auto most = static_cast<float>(0.9 * kLargestCoordinate_m / scale);
+    const auto least = static_cast<float>(1.1 * kSmallestReach_m / scale);
+    for (const float reach : {most, least}) EXPECT_EQ(error_of_reach(reach, scale), "");
+    for (const float reach : {2.0F * most, 0.5F * least}) {
+      EXPECT_NE(error_of_reach(reach, scale), "") << reach << " at scale " << scale;
+    }
+  }
+  EXPECT_EQ(error_of_reach(0x1p100F, 1.0),
+            "instance 'i': its vertices reach 1.2676506002282294e+30 m from its origin; allowed: "
+            "1e-30 m to 1e15 m; choose another unit or scale, or an origin nearer to the vertices");
+}
+
 TEST(SceneValidate, NamesWhatIsWrong) {
   EXPECT_EQ(error_of([](Scene& s) { s.instances[0].scale = 0.0; }),
-            "instance 'i': scale 0; allowed: a number above 0, up to 1e15");
+            "instance 'i': scale 0; allowed: 1e-15 to 1e15; choose another unit or scale");
   EXPECT_EQ(error_of([](Scene& s) { s.instances[0].mesh = 1; }),
             "instance 'i': mesh 1; allowed: an index of the scene's meshes");
   EXPECT_EQ(error_of([](Scene& s) { s.instances[0].world_from_object.linear()(0, 0) = 3.0; }),
@@ -82,7 +106,8 @@ TEST(SceneValidate, NamesWhatIsWrong) {
   EXPECT_EQ(error_of([](Scene& s) { s.sources.clear(); }),
             "scene, sources: 0 entries; allowed: 1 (one per mesh)");
   EXPECT_EQ(error_of([](Scene& s) { s.instances[0].world_from_object.translation().x() = 1e30; }),
-            "instance 'i': a position beyond reach; allowed: up to 1e15 m from the world's origin");
+            "instance 'i': a position beyond reach; allowed: up to 1e15 m from the world's origin; "
+            "move the world's origin nearer to it");
   EXPECT_EQ(error_of([](Scene& s) { s.meshes[0].triangles[0][1] = 3; }),
             "mesh 't', triangles: a corner is vertex 3; allowed: below 3");
   EXPECT_EQ(error_of([](Scene& s) { s.meshes[0].normals.resize(2); }),

@@ -370,8 +370,10 @@ TEST(MakeRenderer, NamesTheKindsThereAre) {
     make_renderer(scene, {.kind = "opengel"});
     FAIL() << "no error";
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(),
-                 "renderer: 'opengel' is not known; allowed: auto, rays, raster, opengl");
+    EXPECT_STREQ(
+        error.what(),
+        "renderer: 'opengel' is not known; allowed: auto, rays, raster, opengl; did you mean "
+        "'opengl'?");
   }
 }
 
