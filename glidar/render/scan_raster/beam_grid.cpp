@@ -107,7 +107,7 @@ void BeamGrid::sort_rows() {
 
 void BeamGrid::find_misfit(const Beams& beams) {
   if (2 * rows_.size() < beams.rows || rows_.empty()) {
-    angles_.misfit = "rows that are steep or have no equal columns";
+    angles_.misfit = "beams without rows of equal columns (such as the sub-rays of footprints)";
     return;
   }
   double sum = 0.0;
