@@ -7,6 +7,7 @@
 #include <glidar/render/picture_writing.hpp>
 #include <glidar/render/pinhole_only.hpp>
 #include <glidar/render/plane_points.hpp>
+#include <glidar/render/pool.hpp>
 #include <glidar/render/raster/drawing.hpp>
 #include <glidar/render/raster/packed_mesh.hpp>
 #include <glidar/render/raster/parts.hpp>
@@ -16,7 +17,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <mutex>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -32,26 +32,6 @@ struct Desk {
   raster::Canvas canvas;
   std::vector<std::uint32_t> numbers;
   std::vector<std::uint64_t> order;  ///< of the clusters: the nearest first
-};
-
-/// Desks that threads take and give back, so that a later cast finds them ready.
-class Desks {
- public:
-  std::unique_ptr<Desk> take() {
-    const std::scoped_lock lock(mutex_);
-    if (free_.empty()) return std::make_unique<Desk>();
-    std::unique_ptr<Desk> desk = std::move(free_.back());
-    free_.pop_back();
-    return desk;
-  }
-  void give_back(std::unique_ptr<Desk> desk) {
-    const std::scoped_lock lock(mutex_);
-    free_.push_back(std::move(desk));
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Desk>> free_;
 };
 
 constexpr std::size_t kAhead = 3;  // clusters on their way from memory
@@ -280,7 +260,7 @@ class RasterRenderer final : public Renderer {
   std::vector<std::vector<Sighting>> found_;  ///< per piece
   std::vector<Sighting> sightings_;           ///< all of them
   raster::Parts parts_;
-  Desks desks_;
+  Pool<Desk> desks_;
 };
 
 }  // namespace

@@ -4,12 +4,12 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/work_count.hpp>
+#include <glidar/render/pool.hpp>
 #include <glidar/render/scan_raster/sector_decision.hpp>
 #include <glidar/render/scan_raster/sector_writer.hpp>
 
 #include <algorithm>
 #include <bit>
-#include <mutex>
 #include <numeric>
 #include <utility>
 
@@ -86,24 +86,7 @@ void cast_sector(const Job& job, const SectorTable& sector, Desk& desk) {
 }  // namespace
 
 /// Desks that threads take and give back, so that a later cast finds them ready.
-class ScanRenderer::Desks {
- public:
-  std::unique_ptr<Desk> take() {
-    const std::scoped_lock lock(mutex_);
-    if (free_.empty()) return std::make_unique<Desk>();
-    std::unique_ptr<Desk> desk = std::move(free_.back());
-    free_.pop_back();
-    return desk;
-  }
-  void give_back(std::unique_ptr<Desk> desk) {
-    const std::scoped_lock lock(mutex_);
-    free_.push_back(std::move(desk));
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<Desk>> free_;
-};
+class ScanRenderer::Desks : public Pool<Desk> {};
 
 ScanRenderer::ScanRenderer(std::shared_ptr<CpuBase> base)
     : base_(std::move(base)), desks_(std::make_unique<Desks>()) {}
