@@ -101,8 +101,9 @@ TEST(SceneValidate, NamesWhatIsWrong) {
   EXPECT_EQ(error_of([](Scene& s) { s.materials[0].diffuse_texture.uv_set = 2; }),
             "material 'default': uv set 2; allowed: 0 or 1");
   EXPECT_EQ(error_of([](Scene& s) { s.textures.emplace_back().name = "t"; }),
-            "texture 't': 0 bytes; allowed: width x height x channels bytes, 1 to 4 channels, at "
-            "least one texel");
+            "texture 't': 0 bytes, 0 x 0 texels; allowed: width x height x channels bytes, 1 to 4 "
+            "channels, "
+            "1 to 2^30 texels");
   EXPECT_EQ(error_of([](Scene& s) { s.sources.clear(); }),
             "scene, sources: 0 entries; allowed: 1 (one per mesh)");
   EXPECT_EQ(error_of([](Scene& s) { s.instances[0].world_from_object.translation().x() = 1e30; }),
