@@ -31,14 +31,14 @@ def eyes(scene, views, random):
     """Positions of the sensor, by turns outside, inside and on a vertex."""
     low, high = scene.bounds
     middle, size = (low + high) / 2, np.linalg.norm(high - low)
-    vertices = scene.objects[0].mesh.vertices if hasattr(scene.objects[0], "mesh") else None
+    vertices = scene.objects[0].mesh.vertices
     for k in range(views):
         outward = random.normal(size=3)
         outside = middle + size * random.uniform(0.6, 3.0) * outward / np.linalg.norm(outward)
         inside = low + random.uniform(size=3) * (high - low)
         if k % 3 == 0:
             yield outside
-        elif k % 3 == 1 or vertices is None or len(vertices) == 0:
+        elif k % 3 == 1 or len(vertices) == 0:
             yield inside
         else:
             yield np.asarray(vertices[random.integers(len(vertices))], dtype=float)
@@ -92,6 +92,7 @@ def main():
     parser.add_argument("--side", type=int, default=256, help="pixels of a view's side")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--renderers", nargs="+", default=["rays", "raster"], help="the first is the reference")
+    parser.add_argument("--verbose", action="store_true", help="say why files are not read")
     options = parser.parse_args()
     random = np.random.default_rng(options.seed)
     files = models_below(options.folders)
@@ -101,7 +102,7 @@ def main():
             more_beams, more_wrong = compare(file, options, random)
         except glidar.Error as error:
             unread += 1
-            if "--verbose" in sys.argv:
+            if options.verbose:
                 print(error)
             continue
         beams += more_beams

@@ -30,14 +30,17 @@ void face_beam(unsigned lane, const HitTriangle& triangle, ExactBlock& exact) {
 
 constexpr double kGrazing = 0x1p-20;  // below it, the plane has lost 20 of its 52 bits
 
+/// 0 where the plane is good enough for a lane, else 1. A number, so that loops become vectors.
+[[gnu::always_inline]] inline unsigned is_unsure(const ExactBlock& exact, unsigned lane) {
+  const auto is_steep = static_cast<unsigned>(std::abs(exact.cosine[lane]) > kGrazing);
+  const auto is_ahead = static_cast<unsigned>(exact.distance[lane] > 0.0);
+  return (is_steep & is_ahead) ^ 1U;
+}
+
 /// True when the planes are good enough for all lanes.
 GLIDAR_SIMD bool are_all_sure(const ExactBlock& exact) {
-  int unsure = 0;
-  for (unsigned i = 0; i < kLanes; ++i) {
-    const int is_steep = static_cast<int>(std::abs(exact.cosine[i]) > kGrazing);
-    const int is_ahead = static_cast<int>(exact.distance[i] > 0.0);
-    unsure |= (is_steep & is_ahead) ^ 1;
-  }
+  unsigned unsure = 0;
+  for (unsigned i = 0; i < kLanes; ++i) unsure |= is_unsure(exact, i);
   return unsure == 0;
 }
 
@@ -46,11 +49,7 @@ GLIDAR_SIMD bool are_all_sure(const ExactBlock& exact) {
 void measure_grazing(const Resolver& resolver, const HitBlock& block, ExactBlock& exact) {
   if (are_all_sure(exact)) return;
   std::uint32_t unsure = 0;
-  for (unsigned i = 0; i < kLanes; ++i) {
-    const int is_steep = static_cast<int>(std::abs(exact.cosine[i]) > kGrazing);
-    const int is_ahead = static_cast<int>(exact.distance[i] > 0.0);
-    unsure |= static_cast<std::uint32_t>((is_steep & is_ahead) ^ 1) << i;
-  }
+  for (unsigned i = 0; i < kLanes; ++i) unsure |= is_unsure(exact, i) << i;
   for_lanes(unsure & block.mask, [&](unsigned i) {
     const HitRay ray = make_hit_ray(exact.origin.get(i), exact.direction.get(i));
     const HitTriangle corners = corners_of(resolver.mesh(block.instance[i]), block.primitive[i]);

@@ -26,7 +26,7 @@ std::uint32_t rgb_of(const Texture& texture, std::size_t texel) {
   return red | std::uint32_t{bytes[1]} << 8U | std::uint32_t{bytes[2]} << 16U;
 }
 
-/// How texture coordinates become places among texels along one axis.
+/// Size and wrap mode of a texture along one axis.
 struct Axis {
   double size;
   double period;  ///< of repeat and mirror
@@ -50,13 +50,13 @@ struct Axis {
   }
 };
 
-/// Texel coordinates, see sample(): whole ones and what is left.
+/// Texel coordinates, see sample(): whole and fractional parts.
 struct Place {
   Lanes<double> first;
   Lanes<float> rest;
 };
 
-/// Uses of a texture without the texture.
+/// One row of TextureUse's transform of texture coordinates.
 struct Transform {
   float at_u;
   float at_v;
@@ -71,7 +71,7 @@ inline double held(double x) {
   return above < kFar ? above : kFar;
 }
 
-/// Places along an axis from texture coordinates 0..1 that are finite.
+/// Places along an axis; `at`: finite coordinates, 1 at the end of the texture.
 GLIDAR_SIMD void find_places(const Lanes<double>& at, double size, bool is_nearest, Place& place) {
   const double half = is_nearest ? 0.0 : 0.5;
   for (unsigned i = 0; i < kLanes; ++i) {
@@ -149,16 +149,15 @@ LookupTexture::LookupTexture(const Texture& texture)
   }
 }
 
-void LookupTexture::fetch(const Lanes<std::int32_t>& row, const Lanes<std::int32_t>& column,
-                          Lanes3<float>& rgb) const {
-  load(texels_.data(), tile_columns_, row, column, rgb);
-}
-
 void LookupTexture::sample(const TextureUse& use, const Lanes<float>& u, const Lanes<float>& v,
                            Lanes3<float>& rgb) const {
   const bool is_nearest = use.filter == Filter::nearest;
   const Axis columns(width_, use.wrap_u);
   const Axis rows(height_, use.wrap_v);
+  const auto fetch = [&](const Lanes<std::int32_t>& at_row, const Lanes<std::int32_t>& at_column,
+                         Lanes3<float>& out) {
+    load(texels_.data(), tile_columns_, at_row, at_column, out);
+  };
   Lanes<double> x;
   Lanes<double> y;
   Lanes<std::int32_t> is_finite;

@@ -10,9 +10,9 @@
 
 namespace glidar {
 
-/// The colours of a texture in a layout for look-ups: four bytes per texel, in tiles of 4x4 that
-/// fill one cache line each. So the four texels around a place are mostly in one line, and those of
-/// neighbouring hits in the same.
+/// The colours of a texture in a layout for look-ups: four bytes per texel, in tiles of 4x4 texels,
+/// which are as large as a cache line. So the four texels around a place, and those of neighbouring
+/// hits, are mostly close together in memory.
 class LookupTexture {
  public:
   LookupTexture() = default;
@@ -25,9 +25,6 @@ class LookupTexture {
               Lanes3<float>& rgb) const;
 
  private:
-  void fetch(const Lanes<std::int32_t>& row, const Lanes<std::int32_t>& column,
-             Lanes3<float>& rgb) const;
-
   std::uint32_t width_ = 0;
   std::uint32_t height_ = 0;
   std::uint32_t tile_columns_ = 0;

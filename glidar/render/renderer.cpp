@@ -48,8 +48,7 @@ bool is_in_reach(const Pose& world_from_source) {
 /// Of instances that are where the cast says.
 void check_poses(const CastRequest& request, const Scene& scene) {
   for (std::size_t i = 0; i < request.world_from_instance.size(); ++i) {
-    const bool is_present = request.present.empty() || request.present[i] != 0;
-    if (!is_present || is_in_reach(request.world_from_instance[i])) continue;
+    if (!is_present(request, i) || is_in_reach(request.world_from_instance[i])) continue;
     throw Error({.where = "cast",
                  .found = "instance '" + scene.instances[i].name + "' is out of reach",
                  .allowed = "up to 1e15 m from the world's origin",

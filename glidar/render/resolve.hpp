@@ -23,9 +23,9 @@ std::vector<std::uint32_t> first_twins(const Mesh& mesh);
 
 /// The triangles of a mesh without copies: those that an earlier triangle equals corner on corner
 /// and in its sense of rotation are left out. Rising indices; empty when there are no copies.
-/// `twins`: first_twins(mesh).
+/// `firsts`: first_twins(mesh).
 std::vector<std::uint32_t> without_copies(const Mesh& mesh,
-                                          const std::vector<std::uint32_t>& twins);
+                                          const std::vector<std::uint32_t>& firsts);
 
 /// True when a material of the instance has an alpha mask.
 bool has_mask(const Scene& scene, const Instance& instance);

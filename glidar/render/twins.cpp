@@ -62,7 +62,7 @@ std::size_t earlier_twin(const Mesh& mesh, const std::vector<Key>& keys, std::si
   return i;
 }
 
-/// True for twins whose corners follow each other in the same sense.
+/// True where two triangles of the same corners list them in the same sense of rotation.
 bool turn_alike(const Mesh& mesh, std::uint32_t a, std::uint32_t b) {
   const auto position = [&](std::uint32_t triangle, std::size_t k) -> const Eigen::Vector3f& {
     return mesh.positions_m[mesh.triangles[triangle][k % 3]];
@@ -79,16 +79,16 @@ bool turn_alike(const Mesh& mesh, std::uint32_t a, std::uint32_t b) {
 }  // namespace
 
 std::vector<std::uint32_t> without_copies(const Mesh& mesh,
-                                          const std::vector<std::uint32_t>& twins) {
+                                          const std::vector<std::uint32_t>& firsts) {
   std::vector<std::uint32_t> distinct;
-  if (twins.empty()) return distinct;
-  distinct.reserve(twins.size());
-  std::vector<std::uint8_t> is_turned_kept(twins.size(), 0);  // of each first one's opposites
-  for (std::uint32_t i = 0; i < twins.size(); ++i) {
-    const std::uint32_t first = twins[i];
+  if (firsts.empty()) return distinct;
+  distinct.reserve(firsts.size());
+  std::vector<std::uint8_t> has_opposite(firsts.size(), 0);  // per first one: one is kept
+  for (std::uint32_t i = 0; i < firsts.size(); ++i) {
+    const std::uint32_t first = firsts[i];
     const bool is_copy = first != i && turn_alike(mesh, first, i);
-    if (is_copy || is_turned_kept[first] != 0) continue;
-    is_turned_kept[first] = static_cast<std::uint8_t>(first != i);
+    if (is_copy || has_opposite[first] != 0) continue;
+    has_opposite[first] = static_cast<std::uint8_t>(first != i);
     distinct.push_back(i);
   }
   return distinct;

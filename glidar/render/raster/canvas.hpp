@@ -50,10 +50,10 @@ struct Shape {
 }
 
 /// A part of a picture while it is drawn: per pixel the nearest triangle's number. Where another
-/// triangle is too close to tell which is nearer, or was while one of them was visible, and where a
-/// visible one is or was rough, the number has kContested set. What is drawn does not depend on the
-/// order in which it comes: of two that are equally near the lower number stays. Pixels lie in
-/// memory in blocks of 4x4.
+/// triangle is too close to decide which is nearer, or where interpolation is rough, the number has
+/// kContested set, also when something nearer was drawn over both later. What is drawn does not
+/// depend on the order in which it comes: of two that are equally near the lower number stays.
+/// Pixels lie in memory in blocks of 4x4.
 class Canvas {
  public:
   static constexpr int kSide = 128;  ///< most columns and rows
@@ -64,8 +64,8 @@ class Canvas {
   [[nodiscard]] int cols() const { return cols_; }
   [[nodiscard]] int rows() const { return rows_; }
 
-  /// True when everything in the rectangle is clearly nearer already.
-  [[nodiscard]] bool hides(const CanvasRect& rect, float nearness);
+  /// True when everything in the rectangle is clearly nearer already than `at_most`.
+  [[nodiscard]] bool hides(const CanvasRect& rect, float at_most);
 
   /// To be called when something was drawn there.
   void mark_drawn(const CanvasRect& rect);

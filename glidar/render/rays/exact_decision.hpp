@@ -18,10 +18,6 @@ void decide(const TriangleBlock* blocks, RayPacket& packet, unsigned lane, std::
 /// equal.
 bool have_same_corners(const TriangleBlock* blocks, std::uint32_t slot, std::uint32_t other);
 
-/// True for two triangles with the same corners in any order: by the rule, their distances are
-/// equal.
-bool have_same_corners(const TriangleBlock* blocks, std::uint32_t slot, std::uint32_t other);
-
 /// How much farther a triangle may be that ties with this one, see RayPacket::tie_reach; the ray's
 /// direction is a unit vector.
 double tie_window(double reach, const HitTriangle& triangle,

@@ -18,7 +18,7 @@ namespace glidar::rays {
 /// boxes on a ground stay small however the ground is turned.
 class SceneTrees {
  public:
-  /// The scene must outlive the trees.
+  /// The resolver's scene must outlive the trees.
   SceneTrees(const Resolver& resolver, Workers& workers);
 
   /// Takes the poses of the next cast; the resolver has them too. The tree over the instances is
