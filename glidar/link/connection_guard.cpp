@@ -135,7 +135,12 @@ void ConnectionGuard::on_joined() {
 
 void ConnectionGuard::on_left(int descriptor) {
   const std::lock_guard lock(mutex_);
-  connections_.erase(descriptor);
+  const auto found = connections_.find(descriptor);
+  // Another connection may have the descriptor by now; one that is just ending goes at the next
+  // look.
+  if (found != connections_.end() && cookie_of(descriptor) != found->second.cookie) {
+    connections_.erase(found);
+  }
   if (!std::exchange(is_refused_, false)) note(PeerEvent::left);
 }
 

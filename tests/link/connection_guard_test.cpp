@@ -10,11 +10,14 @@
 #include "raw_peer.hpp"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <mutex>
 
@@ -73,6 +76,30 @@ class ConnectionGuardTest : public ::testing::Test {
   Endpoint endpoint;
   std::unique_ptr<Router> router;
 };
+
+/// A connected socket with this descriptor.
+void connect_at(int descriptor) {
+  std::array<int, 2> pair{};
+  ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM, 0, pair.data()), 0);
+  ASSERT_EQ(::dup2(pair[0], descriptor), descriptor);
+  ::close(pair[0]);
+  ::close(pair[1]);
+}
+
+TEST_F(ConnectionGuardTest, KeepsAConnectionWhoseDescriptorIsReportedClosedLate) {
+  const UniqueFd place(::open("/dev/null", O_RDONLY | O_CLOEXEC));
+  ConnectionGuard guard({}, faults);
+  connect_at(place.get());
+  guard.on_accepted(place.get());
+  const ConnectionId first{place.get(), guard.delivered(place.get())};
+  connect_at(place.get());
+  guard.on_accepted(place.get());
+  const ConnectionId second{place.get(), guard.delivered(place.get())};
+  guard.on_left(place.get());  // the first one
+  EXPECT_FALSE(guard.is_open(first));
+  EXPECT_TRUE(guard.is_open(second));
+  EXPECT_TRUE(guard.needs_look());
+}
 
 TEST_F(ConnectionGuardTest, CutsOffAMessageThatNeverEndsAndServesOthers) {
   listen({.unread_bytes = 100'000});
