@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/rays/scene_trees.hpp>
 
-#include <glidar/render/rays/collapse_tree.hpp>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -16,6 +14,8 @@ constexpr double kRoom = 0x1p-44;
 /// The tree is rebuilt when the sensor moves by this part of its size: then boxes near the
 /// sensor, which single precision rounds by 2^-24 of their distance from the origin, stay small.
 constexpr double kMoved = 0x1p-8;
+/// It is rebuilt when more than this part of the instances moved in one step.
+constexpr std::size_t kFew = 8;
 
 const Pose& pose_of(const Scene& scene, const CastRequest& request, std::size_t instance) {
   return request.world_from_instance.empty() ? scene.instances[instance].world_from_object
@@ -45,7 +45,7 @@ SceneTrees::SceneTrees(const Resolver& resolver, Workers& workers)
 }
 
 void SceneTrees::place(const CastRequest& request, const Resolver& resolver, Workers& workers) {
-  if (!is_placed(request)) {
+  if (!follow(request)) {
     keep_poses(request);
     origin_m_ = request.world_from_sensor.translation();
     if (instances_.size() > 1) build_instance_tree(workers);
@@ -65,15 +65,31 @@ void SceneTrees::find_reaches(const Resolver& resolver) {
   }
 }
 
-bool SceneTrees::is_placed(const CastRequest& request) const {
+bool SceneTrees::follow(const CastRequest& request) {
+  if (!has_same_instances(request) || !is_sensor_near(request)) return false;
+  moved_.clear();
+  for (std::uint32_t i = 0; i < placed_.size(); ++i) {
+    if (placed_[i].matrix() != pose_of(scene_, request, i).matrix()) moved_.push_back(i);
+  }
+  if (kFew * moved_.size() > instances_.size()) return false;
+  for (const std::uint32_t i : moved_) {
+    placed_[i] = pose_of(scene_, request, i);
+    if (present_[i] != 0 && !of_instance(i).nodes.empty()) boxes_.move(reference_of(i));
+  }
+  return moved_.empty() || !boxes_.is_worn();
+}
+
+bool SceneTrees::has_same_instances(const CastRequest& request) const {
   if (placed_.size() != scene_.instances.size()) return false;
-  const double moved_m = (request.world_from_sensor.translation() - origin_m_).norm();
-  if (instances_.size() > 1 && moved_m > kMoved * sphere_.radius) return false;
-  for (std::size_t i = 0; i < placed_.size(); ++i) {
+  for (std::size_t i = 0; i < present_.size(); ++i) {
     if ((present_[i] != 0) != is_present(request, i)) return false;
-    if (placed_[i].matrix() != pose_of(scene_, request, i).matrix()) return false;
   }
   return true;
+}
+
+bool SceneTrees::is_sensor_near(const CastRequest& request) const {
+  const double moved_m = (request.world_from_sensor.translation() - origin_m_).norm();
+  return instances_.size() < 2 || moved_m <= kMoved * boxes_.sphere().radius;
 }
 
 void SceneTrees::keep_poses(const CastRequest& request) {
@@ -110,6 +126,7 @@ BoxReference SceneTrees::reference_of(std::uint32_t instance) const {
     reference.low[axis] = below(middle[axis] - half[axis]);
     reference.high[axis] = above(middle[axis] + half[axis]);
   }
+  reference.index = instance;
   return reference;
 }
 
@@ -117,18 +134,9 @@ void SceneTrees::build_instance_tree(Workers& workers) {
   constexpr std::size_t kGrain = 512;
   std::vector<BoxReference> references(instances_.size());
   workers.for_ranges(references.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      references[k] = reference_of(instances_[k]);
-      references[k].index = instances_[k];
-    }
+    for (std::size_t k = begin; k < end; ++k) references[k] = reference_of(instances_[k]);
   });
-  const SplitOptions options = {.leaf_size = 1, .max_depth = kMaxTreeDepth - 2};
-  const auto split = build_split_tree(references, options, workers);
-  sphere_ = sphere_of(split[0]);
-  std::vector<LeafRange> leaves;
-  collapse_tree(split.get(), nodes_, leaves);
-  of_leaf_.clear();
-  for (const LeafRange& leaf : leaves) of_leaf_.push_back(references[leaf.first].index);
+  boxes_.build(references, scene_.instances.size(), workers);
 }
 
 }  // namespace glidar::rays

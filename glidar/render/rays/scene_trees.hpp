@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <glidar/render/rays/box_tree.hpp>
 #include <glidar/render/rays/mesh_tree.hpp>
-#include <glidar/render/rays/split_tree.hpp>
 #include <glidar/render/renderer.hpp>
 #include <glidar/render/resolve.hpp>
 
@@ -22,7 +22,7 @@ class SceneTrees {
   SceneTrees(const Resolver& resolver, Workers& workers);
 
   /// Takes the poses of the next cast; the resolver has them too. The tree over the instances is
-  /// rebuilt only when an instance moved, or the sensor moved far.
+  /// fitted to the few that moved, and rebuilt when many moved or the sensor moved far.
   void place(const CastRequest& request, const Resolver& resolver, Workers& workers);
 
   [[nodiscard]] const MeshTree& of_mesh(std::uint32_t mesh) const { return mesh_trees_[mesh]; }
@@ -39,11 +39,15 @@ class SceneTrees {
   [[nodiscard]] const std::vector<std::uint32_t>& instances() const { return instances_; }
 
   /// The tree over instances(), for two of them or more; without clusters and blocks.
-  [[nodiscard]] TreeView instance_tree() const { return {nodes_.data(), nullptr, nullptr}; }
-  [[nodiscard]] const std::vector<TreeNode>& instance_nodes() const { return nodes_; }
+  [[nodiscard]] TreeView instance_tree() const {
+    return {instance_nodes().data(), nullptr, nullptr};
+  }
+  [[nodiscard]] const std::vector<TreeNode>& instance_nodes() const { return boxes_.nodes(); }
   /// The instance in a leaf of that tree.
-  [[nodiscard]] std::uint32_t instance_in(std::uint32_t leaf) const { return of_leaf_[leaf]; }
-  [[nodiscard]] const MeshSphere& instance_sphere() const { return sphere_; }
+  [[nodiscard]] std::uint32_t instance_in(std::uint32_t leaf) const {
+    return boxes_.index_in(leaf);
+  }
+  [[nodiscard]] const MeshSphere& instance_sphere() const { return boxes_.sphere(); }
   [[nodiscard]] const Eigen::Matrix3d& tree_from_sensor() const { return tree_from_sensor_; }
   [[nodiscard]] const Eigen::Vector3d& sensor_in_tree() const { return sensor_in_tree_; }
 
@@ -55,7 +59,10 @@ class SceneTrees {
 
  private:
   void find_reaches(const Resolver& resolver);
-  [[nodiscard]] bool is_placed(const CastRequest& request) const;
+  /// Follows the instances that moved; false: the tree has to be rebuilt.
+  [[nodiscard]] bool follow(const CastRequest& request);
+  [[nodiscard]] bool has_same_instances(const CastRequest& request) const;
+  [[nodiscard]] bool is_sensor_near(const CastRequest& request) const;
   void keep_poses(const CastRequest& request);
   void build_instance_tree(Workers& workers);
   [[nodiscard]] BoxReference reference_of(std::uint32_t instance) const;
@@ -73,9 +80,8 @@ class SceneTrees {
   Eigen::Matrix3d tree_from_world_ = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d tree_from_sensor_ = Eigen::Matrix3d::Identity();
   Eigen::Vector3d sensor_in_tree_ = Eigen::Vector3d::Zero();
-  std::vector<TreeNode> nodes_;
-  std::vector<std::uint32_t> of_leaf_;
-  MeshSphere sphere_;
+  BoxTree boxes_;                     ///< of instances_, for two of them or more
+  std::vector<std::uint32_t> moved_;  ///< since the last cast
 };
 
 }  // namespace glidar::rays

@@ -272,6 +272,21 @@ TEST(BeamSearch, FollowsInstancesAndSensorsThatMove) {
   }
 }
 
+TEST(BeamSearch, FollowsTheFewOfManyInstancesThatMove) {
+  Stage stage(crowd(60, 14, Eigen::Vector3d::Zero()), some_beams(160, false, true, 15),
+              Pose::Identity());
+  Draws draws(16);
+  for (int step = 0; step < 12; ++step) {
+    EXPECT_EQ(stage.search(), stage.search_by_rule()) << step;
+    for (int i = 0; i < 3; ++i) {
+      const auto moved = static_cast<std::size_t>(60.0 * draws.next());
+      const double far_m = step == 8 ? 1e6 : 20.0;
+      stage.scene.instances[moved].world_from_object =
+          turned(6.0 * draws.next(), draws.direction(), far_m * draws.direction());
+    }
+  }
+}
+
 TEST(BeamSearch, FindsNothingInAnEmptySceneAndAlongBeamsThatAreNotNumbers) {
   Scene empty = builtin_scene("box");
   empty.instances.clear();

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+// A scene of 100,000 instances: how long until it can be cast, and what it costs that one of them
+// moves.
+#include "ratio_reporter.hpp"
+
+#include <glidar/io/builtin_models.hpp>
+#include <glidar/render/renderer.hpp>
+#include <glidar/sensor/pinhole.hpp>
+
+namespace glidar::bench {
+namespace {
+
+constexpr int kSide = 316;
+
+/// Boxes of 1 m on a grid of 3 m, of uneven heights.
+Scene make_boxes() {
+  Scene scene;
+  add_model(scene, make_builtin_model("box"));
+  Instance box = scene.instances[0];
+  box.scale = 0.5;
+  scene.instances.clear();
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const int row = i / kSide;
+    box.world_from_object.translation() =
+        Eigen::Vector3d(3.0 * (i % kSide), 3.0 * row, 0.1 * (i % 7));
+    scene.instances.push_back(box);
+  }
+  return scene;
+}
+
+struct Stage {
+  Scene scene = make_boxes();
+  Beams beams = make_beams(pinhole_from_fov(512, 512, 1.0));
+  Pose world_from_sensor = look_at({-20.0, -30.0, 60.0}, {300.0, 300.0, 0.0}, {0.0, 0.0, 1.0});
+  std::vector<Pose> poses;
+
+  Stage() {
+    for (const Instance& instance : scene.instances) poses.push_back(instance.world_from_object);
+  }
+
+  void cast(Renderer& renderer, Hits& hits) const {
+    renderer.cast({.beams = beams,
+                   .world_from_sensor = world_from_sensor,
+                   .world_from_instance = poses,
+                   .fields = {.normal = true}},
+                  hits);
+  }
+};
+
+void register_first_cast(const Stage& stage, const std::string& name) {
+  benchmark::RegisterBenchmark(
+      name.c_str(),
+      [&stage](benchmark::State& state) {
+        for (auto _ : state) {
+          Hits hits;
+          stage.cast(*make_renderer(stage.scene, {.kind = "rays", .threads = 2}), hits);
+        }
+      })
+      ->UseRealTime()
+      ->Unit(benchmark::kMillisecond);
+}
+
+/// `moved`: how many instances move before each cast.
+void register_casts(Stage& stage, std::size_t moved, const std::string& name) {
+  benchmark::RegisterBenchmark(name.c_str(),
+                               [&stage, moved](benchmark::State& state) {
+                                 const auto renderer =
+                                     make_renderer(stage.scene, {.kind = "rays", .threads = 2});
+                                 Hits hits;
+                                 stage.cast(*renderer, hits);
+                                 std::size_t step = 0;
+                                 for (auto _ : state) {
+                                   for (std::size_t i = 0; i < moved; ++i) {
+                                     Pose& pose = stage.poses[(997 * ++step) % stage.poses.size()];
+                                     pose.translation().z() = 0.01 * static_cast<double>(step % 50);
+                                   }
+                                   stage.cast(*renderer, hits);
+                                 }
+                               })
+      ->UseRealTime()
+      ->Unit(benchmark::kMillisecond);
+}
+
+}  // namespace
+}  // namespace glidar::bench
+
+int main(int argc, char** argv) {
+  glidar::bench::Stage stage;
+  glidar::bench::register_first_cast(stage, "first cast");
+  glidar::bench::register_casts(stage, 0, "at rest");
+  glidar::bench::register_casts(stage, 1, "one moves");
+  glidar::bench::register_casts(stage, 1000, "1000 move");
+  return glidar::bench::run(argc, argv,
+                            {{"one of 100,000 moves / none does", "at rest", "one moves", 0.99},
+                             {"1000 move / none does", "at rest", "1000 move", 0.0}});
+}

@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/rays/box_tree.hpp>
+
+#include <glidar/render/rays/collapse_tree.hpp>
+
+#include <algorithm>
+
+namespace glidar::rays {
+namespace {
+
+/// The box around a node's children; those that are not there have empty ones.
+SplitNode box_around(const TreeNode& node) {
+  SplitNode box{};
+  for (int axis = 0; axis < 3; ++axis) {
+    box.low[axis] = *std::min_element(node.low[axis], node.low[axis] + 8);
+    box.high[axis] = *std::max_element(node.high[axis], node.high[axis] + 8);
+  }
+  return box;
+}
+
+/// Half the surface of a box.
+double area_of(const SplitNode& box) {
+  const double x = double{box.high[0]} - box.low[0];
+  const double y = double{box.high[1]} - box.low[1];
+  const double z = double{box.high[2]} - box.low[2];
+  return x * y + y * z + z * x;
+}
+
+}  // namespace
+
+void BoxTree::build(std::span<BoxReference> boxes, std::size_t count, Workers& workers) {
+  const SplitOptions options = {.leaf_size = 1, .max_depth = kMaxTreeDepth - 2};
+  const auto split = build_split_tree(boxes, options, workers);
+  sphere_ = sphere_of(split[0]);
+  std::vector<LeafRange> leaves;
+  collapse_tree(split.get(), nodes_, leaves);
+  index_of_leaf_.clear();
+  for (const LeafRange& leaf : leaves) index_of_leaf_.push_back(boxes[leaf.first].index);
+  find_places(count);
+  area_ = 0.0;
+  for (const TreeNode& node : nodes_) area_ += area_of(box_around(node));
+  built_area_ = area_;
+}
+
+BoxTree::Place& BoxTree::place_of(std::int32_t child) {
+  if (child >= 0) return place_of_node_[static_cast<std::uint32_t>(child)];
+  return place_of_box_[index_of_leaf_[static_cast<std::uint32_t>(~child)]];
+}
+
+void BoxTree::find_places(std::size_t count) {
+  place_of_node_.resize(nodes_.size());
+  place_of_box_.resize(count);
+  for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
+    for (std::uint32_t i = 0; i < 8; ++i) {
+      const std::int32_t child = nodes_[node].child[i];
+      if (child != kNoChild) place_of(child) = {node, i};
+    }
+  }
+}
+
+void BoxTree::move(const BoxReference& box) {
+  Place place = place_of_box_[box.index];
+  const float* low = box.low;
+  const float* high = box.high;
+  SplitNode around{};
+  for (;;) {
+    TreeNode& node = nodes_[place.node];
+    area_ -= area_of(box_around(node));
+    for (int axis = 0; axis < 3; ++axis) {
+      node.low[axis][place.child] = low[axis];
+      node.high[axis][place.child] = high[axis];
+    }
+    around = box_around(node);
+    area_ += area_of(around);
+    if (place.node == 0) break;
+    low = around.low;
+    high = around.high;
+    place = place_of_node_[place.node];
+  }
+  sphere_ = sphere_of(around);
+}
+
+}  // namespace glidar::rays

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/rays/ray_packet.hpp>
+#include <glidar/render/rays/ray_tree.hpp>
+#include <glidar/render/rays/split_tree.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace glidar::rays {
+
+/// A tree over boxes that may move, one box per leaf.
+class BoxTree {
+ public:
+  /// At least one box. Their indices are less than `count` and differ.
+  void build(std::span<BoxReference> boxes, std::size_t count, Workers& workers);
+
+  /// Moves the box of this index, and fits those above to it.
+  void move(const BoxReference& box);
+
+  /// True when boxes have moved so that the tree should be built again: the areas of its nodes'
+  /// boxes, by which the time of a search grows, have doubled.
+  [[nodiscard]] bool is_worn() const { return area_ > 2.0 * built_area_; }
+
+  [[nodiscard]] const std::vector<TreeNode>& nodes() const { return nodes_; }
+  /// The index of the box in a leaf.
+  [[nodiscard]] std::uint32_t index_in(std::uint32_t leaf) const { return index_of_leaf_[leaf]; }
+  /// Around all boxes.
+  [[nodiscard]] const MeshSphere& sphere() const { return sphere_; }
+
+ private:
+  /// A child of a node.
+  struct Place {
+    std::uint32_t node;
+    std::uint32_t child;
+  };
+  Place& place_of(std::int32_t child);
+  void find_places(std::size_t count);
+
+  std::vector<TreeNode> nodes_;
+  std::vector<Place> place_of_node_;  ///< of the root: not used
+  std::vector<Place> place_of_box_;   ///< by index
+  std::vector<std::uint32_t> index_of_leaf_;
+  MeshSphere sphere_;
+  double area_ = 0.0;  ///< of the boxes around the nodes, added up
+  double built_area_ = 0.0;
+};
+
+}  // namespace glidar::rays
