@@ -91,7 +91,7 @@ VerifyResult run_case(const VerifyCase& c, const Shape& shape, const VerifySubje
                                                           stage.world_from_sensor.translation()))},
                         .edge_tolerance_m = kEdgeTolerance * c.radius_m};
   std::vector<Beams> casts = {camera_probes(half_view_rad(c))};
-  if (subject.casts_any_beams) {
+  if (subject.casts == BeamKind::any) {
     const double spread_m = 0.05 * std::min(c.radius_m, c.distance_m);
     casts.push_back(random_probes(c.number, half_view_rad(c), spread_m));
   }

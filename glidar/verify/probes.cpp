@@ -38,6 +38,29 @@ Beams camera_probes(double half_view_rad) {
   return make_beams(pinhole_from_fov(kImageSide, kImageSide, 2.0 * half_view_rad));
 }
 
+Beams scanner_probes() {
+  constexpr std::uint32_t kRows = 32;
+  constexpr std::uint32_t kColumns = 1024;
+  constexpr double kStep_rad = 2.0 * std::numbers::pi / kColumns;
+  Beams beams;
+  beams.rows = kRows;
+  beams.cols = kColumns;
+  beams.frame_id = "verify";
+  beams.boresight = Eigen::Vector3d::UnitX();
+  for (std::uint32_t row = 0; row < kRows; ++row) {
+    const double part = (row + 0.5) / kRows - 0.5;
+    const double elevation_rad = 0.5 * part + 1.2 * part * part * part;
+    for (std::uint32_t col = 0; col < kColumns; ++col) {
+      const double azimuth_rad = kStep_rad * (col + 0.25 * (row % 4));
+      const Eigen::Vector3d direction(std::cos(azimuth_rad) * std::cos(elevation_rad),
+                                      std::sin(azimuth_rad) * std::cos(elevation_rad),
+                                      std::sin(elevation_rad));
+      beams.directions.push_back(direction.normalized());
+    }
+  }
+  return beams;
+}
+
 Beams loose_probes(std::vector<Eigen::Vector3d> directions,
                    std::vector<Eigen::Vector3d> origins_m) {
   Beams beams;

@@ -22,6 +22,10 @@ Eigen::Vector3d random_direction(double u0, double u1, double half_angle_rad);
 /// The beams of a small camera.
 Beams camera_probes(double half_view_rad);
 
+/// The beams of a spinning scanner: 32 rows of uneven elevations, staggered by up to a column, 1024
+/// columns.
+Beams scanner_probes();
+
 /// Beams of one row without structure; no origins: all zero.
 Beams loose_probes(std::vector<Eigen::Vector3d> directions,
                    std::vector<Eigen::Vector3d> origins_m = {});

@@ -61,7 +61,7 @@ VerifyResult cast_view(const VerifySubject& subject, Renderer& renderer, const T
   constexpr double kSpread_m = 0.1;
   VerifyResult result =
       cast_and_judge(renderer, truth, world_from_sensor, camera_probes(half_view_rad));
-  if (subject.casts_any_beams) {
+  if (subject.casts == BeamKind::any) {
     result.add(cast_and_judge(renderer, truth, world_from_sensor,
                               random_probes(kNumber, half_view_rad, kSpread_m)));
   }
@@ -102,7 +102,7 @@ VerifyResult several_instances(const VerifySubject& subject, const std::vector<S
   VerifyResult result =
       cast_view(subject, *renderer, truth, world_from_sensor, std::atan(kHalfView_m / distance_m));
   result.add(cast_view(subject, *renderer, truth, world_from_sensor, kWide_rad));
-  if (!subject.casts_any_beams) return result;
+  if (subject.casts != BeamKind::any) return result;
   // Single precision is wrong for a beam in some thousand here, and for fewer the nearer it is: as
   // many more that several are, on any processor.
   constexpr double kBeamsTimesDistance = 1.28e6;
@@ -114,6 +114,27 @@ VerifyResult several_instances(const VerifySubject& subject, const std::vector<S
                        random_probes(kNumber + i, std::atan(kHalfView_m / distance_m), 0.1)));
   }
   return result;
+}
+
+/// Bodies all around a scanner, and some of its beams between them.
+VerifyResult scanner_among_bodies(const VerifySubject& subject, const std::vector<Shape>& shapes) {
+  constexpr std::uint32_t kNumber = 90060;
+  constexpr std::uint32_t kBodies = 40;
+  const Pose world_from_sensor =
+      make_pose({-3.0, 8.0, 1.0}, random_rotation(probe_draw(kNumber, 0)));
+  std::vector<Stand> stands;
+  for (std::uint32_t i = 0; i < kBodies; ++i) {
+    const std::array<double, 4> u = probe_draw(kNumber, 2 * i + 1);
+    const double distance_m = 5.0 + 5.0 * i;
+    const Eigen::Vector3d way = random_direction(u[0], u[1], std::numbers::pi);
+    stands.push_back({shapes[i % shapes.size()], 0.4 * distance_m * (0.2 + u[2]),
+                      make_pose(world_from_sensor * (distance_m * way),
+                                random_rotation(probe_draw(kNumber, 2 * i + 2)))});
+  }
+  const Scene scene = make_scene(stands);
+  TrueScene truth = truth_of(stands, world_from_sensor.translation());
+  truth.edge_tolerance_m = kExactTolerance * 5.0 * kBodies;
+  return cast_and_judge(*subject.make(scene), truth, world_from_sensor, scanner_probes());
 }
 
 VerifyResult above_a_planet(const VerifySubject& subject, const Shape& shape, double height_m) {
@@ -155,7 +176,7 @@ VerifyResult sensor_on_vertices(const VerifySubject& subject, const Shape& shape
     truth.is_from_inside = true;
     result.add(cast_and_judge(*renderer, truth, into, camera_probes(0.25 * std::numbers::pi)));
     result.add(cast_and_judge(*renderer, truth, into, camera_probes(0.45 * std::numbers::pi)));
-    if (!subject.casts_any_beams) continue;
+    if (subject.casts != BeamKind::any) continue;
     Beams all_around = random_probes(90030, std::numbers::pi, 0.0);
     all_around.origins_m.clear();
     result.add(cast_and_judge(*renderer, truth, into, all_around));
@@ -193,12 +214,12 @@ VerifyResult aimed_beams(const VerifySubject& subject, const Shape& shape, doubl
 /// Beams that are aimed at vertices, edges and outlines.
 void add_aimed_cases(const Shape& shape, std::vector<SpecialCase>& cases) {
   for (const double distance_m : {1.0, 1000.0}) {
-    cases.push_back({"at vertices and edges", shape.name, distance_m, true,
+    cases.push_back({"at vertices and edges", shape.name, distance_m, BeamKind::any,
                      [&shape, distance_m](const auto& s) {
                        return aimed_beams(s, shape, distance_m, beams_at_vertices_and_edges);
                      }});
   }
-  cases.push_back({"beside the outline", shape.name, 1.0, true, [&shape](const auto& s) {
+  cases.push_back({"beside the outline", shape.name, 1.0, BeamKind::any, [&shape](const auto& s) {
                      return aimed_beams(s, shape, 1.0, beams_beside_outline);
                    }});
 }
@@ -208,18 +229,20 @@ void add_aimed_cases(const Shape& shape, std::vector<SpecialCase>& cases) {
 std::vector<SpecialCase> special_cases(const std::vector<Shape>& shapes) {
   std::vector<SpecialCase> cases;
   for (const double distance_m : {1e4, 1e5}) {
-    cases.push_back({"several instances", "all", distance_m, false, [&, distance_m](const auto& s) {
-                       return several_instances(s, shapes, distance_m);
-                     }});
+    cases.push_back(
+        {"several instances", "all", distance_m, BeamKind::pinhole,
+         [&, distance_m](const auto& s) { return several_instances(s, shapes, distance_m); }});
   }
   const Shape& sphere = shapes.back();
-  cases.push_back({"above a planet", sphere.name, kHeight_m, false,
+  cases.push_back({"above a planet", sphere.name, kHeight_m, BeamKind::pinhole,
                    [&](const auto& s) { return above_a_planet(s, sphere, kHeight_m); }});
-  cases.push_back({"moving sensor and target", shapes.front().name, 10.0, true,
+  cases.push_back({"scanner among bodies", "all", 5.0, BeamKind::scanner,
+                   [&](const auto& s) { return scanner_among_bodies(s, shapes); }});
+  cases.push_back({"moving sensor and target", shapes.front().name, 10.0, BeamKind::any,
                    [&](const auto& s) { return moving_sensor_and_target(s, shapes); }});
   for (const Shape& shape : shapes) {
     if (!shape.solid) continue;
-    cases.push_back({"sensor on a vertex", shape.name, 0.0, false,
+    cases.push_back({"sensor on a vertex", shape.name, 0.0, BeamKind::pinhole,
                      [&](const auto& s) { return sensor_on_vertices(s, shape); }});
   }
   for (const Shape& shape : shapes) {

@@ -16,13 +16,13 @@ struct SpecialCase {
   std::string name;
   std::string shape;
   double distance_m = 0.0;
-  bool needs_any_beams = false;  ///< it has no beams of a pinhole
+  BeamKind needs = BeamKind::pinhole;  ///< of its beams, at least some
   std::function<VerifyResult(const VerifySubject&)> run;
 };
 
-/// Several instances 10 km and 100 km away and one nearby, a sensor 1.5 m above a planet, a moving
-/// sensor and a moving target, sensors on vertices, beams at vertices and edges, and beams beside
-/// outlines. The shapes must outlive the cases.
+/// Several instances 10 km and 100 km away and one nearby, a sensor 1.5 m above a planet, a a
+/// scanner among bodies, a moving sensor and a moving target, sensors on vertices, beams at
+/// vertices and edges, and beams beside outlines. The shapes must outlive the cases.
 std::vector<SpecialCase> special_cases(const std::vector<Shape>& shapes);
 
 }  // namespace glidar

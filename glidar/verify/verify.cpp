@@ -23,7 +23,7 @@ VerifyRow run_row(const std::vector<Shape>& shapes, std::size_t shape, double di
 
 VerifyRow run_row(const SpecialCase& special, const VerifySubject& subject) {
   VerifyRow row{.name = special.name, .shape = special.shape, .distance_m = special.distance_m};
-  row.applies = subject.casts_any_beams || !special.needs_any_beams;
+  row.applies = subject.casts >= special.needs;
   if (row.applies) row.result = special.run(subject);
   return row;
 }
@@ -90,9 +90,14 @@ std::vector<VerifyRow> verify(const VerifySubject& subject, const Progress& prog
 
 std::vector<VerifyRow> verify(const RendererOptions& options, const Progress& progress) {
   return verify({.renderer = options.kind,
-                 .casts_any_beams = options.kind != "raster" && options.kind != "opengl",
+                 .casts = beams_of_renderer(options.kind),
                  .make = [&](const Scene& scene) { return make_renderer(scene, options); }},
                 progress);
+}
+
+BeamKind beams_of_renderer(std::string_view kind) {
+  if (kind == "opengl") return BeamKind::pinhole;
+  return kind == "raster" ? BeamKind::scanner : BeamKind::any;
 }
 
 bool all_passed(const std::vector<VerifyRow>& rows) {

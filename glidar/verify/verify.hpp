@@ -48,10 +48,20 @@ struct KnownFailure {
   [[nodiscard]] bool covers(const VerifyResult& result) const;
 };
 
+/// What beams a renderer casts, or a case needs. Each kind contains the ones before it.
+enum class BeamKind : std::uint8_t {
+  pinhole,
+  scanner,  ///< rows of equal elevation, columns of equal azimuth
+  any,
+};
+
+/// The beams that a renderer of this kind casts.
+BeamKind beams_of_renderer(std::string_view kind);
+
 /// A renderer to verify.
 struct VerifySubject {
-  std::string renderer;         ///< its kind, by which known failures are listed
-  bool casts_any_beams = true;  ///< false: only those of one pinhole
+  std::string renderer;  ///< its kind, by which known failures are listed
+  BeamKind casts = BeamKind::any;
   std::function<std::unique_ptr<Renderer>(const Scene&)> make;
 };
 

@@ -78,7 +78,7 @@ class OpenglRenderer(CliTest):
     def test_what_it_cannot_draw_is_refused(self):
         self.assertIn("add --renderer opengl",
                       self.refused("render", *VIEW, "--render-target", "paper", "-o", "x.pcd"))
-        self.assertIn("not applicable: it has no beams of a pinhole camera",
+        self.assertIn("not applicable: it has other beams than this renderer casts",
                       self.succeed("verify", "--renderer", "opengl").stdout)
         self.assertIn("graphics device: 63; allowed: 0: ", self.refused(
             "render", *VIEW, "--renderer", "opengl", "--graphics-device", "63", "-o", "x.pcd"))
