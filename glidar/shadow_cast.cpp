@@ -20,19 +20,22 @@ Eigen::Vector3d from_projector(const Beams& aimed, const Eigen::Vector3d& projec
 
 /// Beams from the projector to all hits.
 void aim_at_hits(const Beams& aimed, const Eigen::Vector3d& projector_m, const Frame& frame,
-                 Beams& beams) {
+                 Workers& workers, Beams& beams) {
   beams.rows = aimed.rows;
   beams.cols = aimed.cols;
   beams.boresight = aimed.boresight;
   beams.times_ns = aimed.times_ns;
-  beams.origins_m.assign(aimed.size(), projector_m);
+  beams.origins_m.resize(aimed.size());
   beams.directions.resize(aimed.size());
-  for (std::size_t i = 0; i < aimed.size(); ++i) {
-    beams.directions[i].setConstant(kNaN);
-    if (frame.status[i] != Status::hit || frame.truth.instance[i] == kNoHit) continue;
-    const Eigen::Vector3d way = from_projector(aimed, projector_m, frame.truth, i);
-    if (way.norm() > 0.0) beams.directions[i] = way.normalized();
-  }
+  workers.for_ranges(aimed.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      beams.origins_m[i] = projector_m;
+      beams.directions[i].setConstant(kNaN);
+      if (frame.status[i] != Status::hit || frame.truth.instance[i] == kNoHit) continue;
+      const Eigen::Vector3d way = from_projector(aimed, projector_m, frame.truth, i);
+      if (way.norm() > 0.0) beams.directions[i] = way.normalized();
+    }
+  });
 }
 
 /// Whether something stands before the hit, or its other side is lit.
@@ -49,7 +52,7 @@ bool is_dark(const Beams& aimed, const Eigen::Vector3d& projector_m, const Frame
 void cast_shadows(const Setup& setup, const Eigen::Vector3d& projector_m, const Beams& aimed,
                   Frame& frame) {
   Scratch& memory = frame.scratch;
-  aim_at_hits(aimed, projector_m, frame, memory.sub_beams);
+  aim_at_hits(aimed, projector_m, frame, setup.renderer.workers(), memory.sub_beams);
   cast_moving(world_of(setup, frame), request_of(setup, frame, memory.sub_beams, {}), memory,
               memory.sub_hits);
   setup.renderer.workers().for_ranges(
