@@ -24,29 +24,52 @@ struct Pattern {
   std::uint32_t cols;
   double low_deg;
   double high_deg;
-  double raw_goal;  ///< raster / raw Embree in the scenes with few, some and many triangles
+  double spread_deg;  ///< between the middle and each of six rays around it; 0: single rays
+  double raw_goal;    ///< raster / raw Embree in the scenes with few, some and many triangles
   double some_goal;
   double many_goal;
 };
 
+/// Rays that stand for one beam.
+std::uint32_t rays_per_beam(const Pattern& pattern) {
+  return pattern.spread_deg > 0.0 ? 7 : 1;
+}
+
+/// Each ray of a beam has a row of its own.
 Beams make_beams(const Pattern& pattern) {
   constexpr double kDegree = std::numbers::pi / 180.0;
+  const std::uint32_t rays = rays_per_beam(pattern);
   Beams beams;
-  beams.rows = pattern.rows;
+  beams.rows = pattern.rows * rays;
   beams.cols = pattern.cols;
   beams.frame_id = "lidar_frame";
   beams.boresight = Eigen::Vector3d::UnitX();
-  for (std::uint32_t row = 0; row < pattern.rows; ++row) {
-    const double part = static_cast<double>(row) / (pattern.rows - 1);
-    const double up = kDegree * (pattern.high_deg + part * (pattern.low_deg - pattern.high_deg));
+  for (std::uint32_t row = 0; row < beams.rows; ++row) {
+    const double part = static_cast<double>(row / rays) / (pattern.rows - 1);
+    const double turn = std::numbers::pi / 3.0 * (row % rays);
+    const double spread = row % rays == 0 ? 0.0 : kDegree * pattern.spread_deg;
+    const double up = kDegree * (pattern.high_deg + part * (pattern.low_deg - pattern.high_deg)) +
+                      spread * std::sin(turn);
     for (std::uint32_t col = 0; col < pattern.cols; ++col) {
-      const double azimuth = 2.0 * std::numbers::pi * col / pattern.cols;
+      const double azimuth =
+          2.0 * std::numbers::pi * col / pattern.cols + spread * std::cos(turn) / std::cos(up);
       const Eigen::Vector3d d(std::cos(azimuth) * std::cos(up), std::sin(azimuth) * std::cos(up),
                               std::sin(up));
       beams.directions.push_back(d.normalized());
     }
   }
   return beams;
+}
+
+/// Beam after beam.
+RayList packets_of_rays(const Beams& beams, std::uint32_t rays, const Eigen::Vector3d& origin) {
+  RayList list{true, {}};
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const std::size_t beam = i / rays;
+    const std::size_t row = beam / beams.cols * rays + i % rays;
+    list.rays.push_back({origin, beams.directions[row * beams.cols + beam % beams.cols]});
+  }
+  return list;
 }
 
 /// Beams in packets of 4 x 4, which Embree traces fastest.
@@ -175,7 +198,10 @@ void add_pattern(const Stage& stage, const Pattern& pattern, std::vector<Ratio>&
   const std::string at = stage.name + " " + pattern.name + " ";
   const auto beams = std::make_shared<Beams>(make_beams(pattern));
   const Mesh& mesh = stage.scene.meshes[0];
-  const auto list = std::make_shared<RayList>(packets_of(*beams, stage.sensor_m - mesh.origin_m));
+  const std::uint32_t rays = rays_per_beam(pattern);
+  const Eigen::Vector3d from = stage.sensor_m - mesh.origin_m;
+  const auto list = std::make_shared<RayList>(rays > 1 ? packets_of_rays(*beams, rays, from)
+                                                       : packets_of(*beams, from));
   const auto raw = std::make_shared<RawRays>(mesh, *list, 16, "");
   add(at + "raw", beams->size(), [list, raw] { raw->cast(); });
   for (const char* kind : {"rays", "raster", "auto"}) {
@@ -202,8 +228,9 @@ int main(int argc, char** argv) {
   }
   stages.push_back(glidar::bench::make_cave());
   stages.push_back(glidar::bench::make_rocks());
-  const std::vector<Pattern> patterns = {{"64x2048", 64, 2048, -24.8, 2.0, 4.0, 2.5, 1.1},
-                                         {"16x1800", 16, 1800, -15.0, 15.0, 3.0, 1.8, 1.1}};
+  const std::vector<Pattern> patterns = {{"64x2048", 64, 2048, -24.8, 2.0, 0.0, 4.0, 2.5, 1.1},
+                                         {"16x1800", 16, 1800, -15.0, 15.0, 0.0, 3.0, 1.8, 1.1},
+                                         {"64x2048x7", 64, 2048, -24.8, 2.0, 0.06, 3.5, 2.5, 1.4}};
   std::vector<glidar::bench::Ratio> ratios;
   for (const auto& stage : stages) {
     std::printf("%s: %zu triangles\n", stage->name.c_str(),
