@@ -11,7 +11,7 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kBeamsPerTask = 1024;
+constexpr std::size_t kMovedBeamsPerTask = 1024;
 
 bool stands(const Trajectory& trajectory) {
   return std::holds_alternative<ConstantPose>(trajectory);
@@ -154,7 +154,7 @@ struct MovingCast {
 
   template <class Work>
   void in_runs(const Work& work) const {
-    world.renderer.workers().for_ranges(request.beams.size(), kBeamsPerTask,
+    world.renderer.workers().for_ranges(request.beams.size(), kMovedBeamsPerTask,
                                         [&](std::size_t begin, std::size_t end) {
                                           work(BeamRange{begin, end});
                                         });
@@ -264,7 +264,7 @@ void deskew(const World& world, const Beams& nominal, const Beams& aimed,
     deskewed.start_from_sensor[i] = Eigen::Quaterniond(pose.linear()).cast<float>();
   };
   world.renderer.workers().for_ranges(
-      nominal.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
+      nominal.size(), kMovedBeamsPerTask, [&](std::size_t begin, std::size_t end) {
         at_their_times(trajectory, {}, world.stamp_ns, nominal, {begin, end}, place);
       });
 }

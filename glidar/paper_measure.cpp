@@ -2,16 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/paper_measure.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 
 #include <cmath>
-#include <limits>
 
 namespace glidar {
 namespace {
 
-constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kBeamsPerTask = 4096;
+constexpr std::size_t kPixelsPerTask = 4096;
 
 /// What the picture has no room for.
 void check(const Setup& setup, const Frame& frame) {
@@ -43,11 +42,11 @@ void measure_paper(const Setup& setup, const PaperTarget& paper, Frame& frame) {
       frame.status[i] =
           is_seen ? judge(setup.sensor.limits, setup.beams, i, frame.range_m[i]) : Status::miss;
       if (frame.status[i] == Status::hit) continue;
-      frame.range_m[i] = kNoRange;
+      frame.range_m[i] = kNaN;
       frame.intensity[i] = 0.0F;
     }
   };
-  setup.renderer.workers().for_ranges(setup.beams.size(), kBeamsPerTask, read);
+  setup.renderer.workers().for_ranges(setup.beams.size(), kPixelsPerTask, read);
 }
 
 }  // namespace glidar

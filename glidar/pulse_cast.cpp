@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/pulse_cast.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/gaussian.hpp>
 #include <glidar/moving_cast.hpp>
 #include <glidar/sensor/beam_surfaces.hpp>
@@ -9,15 +10,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace glidar {
 namespace {
 
 // For every thread: with their hits, some 90 bytes each, they fit into a core's own cache.
 constexpr std::size_t kSubBeamsPerBlock = std::size_t{1} << 14U;
-constexpr std::size_t kBeamsPerTask = kDrawBatch;
-constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kPulsesPerTask = kDrawBatch;
 
 /// One block of beams that is being measured.
 struct Block {
@@ -178,7 +177,7 @@ void report_echo(const Block& block, const PulseEcho& echo, const Path& path, st
 
 /// The surface that stands for a beam without a return: that of the strongest path.
 Path strongest_surface(const EchoWork& work) {
-  if (work.paths == 0) return {kNoRange, 0.0, kNoHit, Cause::none};
+  if (work.paths == 0) return {kNaN, 0.0, kNoHit, Cause::none};
   return *std::max_element(work.path.begin(),
                            work.path.begin() + static_cast<std::ptrdiff_t>(work.paths),
                            [](const Path& a, const Path& b) { return a.signal < b.signal; });
@@ -336,12 +335,12 @@ void measure_block(const Block& block, bool mirrors) {
   if (mirrors) cast_mirrored(block);
   memory.sub_signals.resize(memory.sub_beams.size());
   const std::size_t count = block.range.end - block.range.begin;
-  const std::size_t runs = (count + kBeamsPerTask - 1) / kBeamsPerTask;
+  const std::size_t runs = (count + kPulsesPerTask - 1) / kPulsesPerTask;
   block.setup.renderer.workers().for_ranges(runs, 1, [&](std::size_t begin, std::size_t end) {
     Tools tools;
     for (std::size_t run = begin; run < end; ++run) {
-      const std::size_t first = block.range.begin + run * kBeamsPerTask;
-      const std::size_t last = std::min(first + kBeamsPerTask, block.range.end);
+      const std::size_t first = block.range.begin + run * kPulsesPerTask;
+      const std::size_t last = std::min(first + kPulsesPerTask, block.range.end);
       find_signals(block, {first, last});
       draw(block.light, block.frame, first, tools.draws);
       for (std::size_t beam = first; beam < last; ++beam) measure_beam(block, beam, tools);
@@ -357,9 +356,9 @@ void measure_some(const Setup& setup, const HitFields& fields, const Beams& aime
   const std::vector<SubRay> rays =
       setup.sensor.footprint ? sub_rays(*setup.sensor.footprint) : std::vector<SubRay>(1);
   const std::size_t step =
-      std::max<std::size_t>(
-          1, kSubBeamsPerBlock * setup.renderer.workers().threads() / rays.size() / kBeamsPerTask) *
-      kBeamsPerTask;
+      std::max<std::size_t>(1, kSubBeamsPerBlock * setup.renderer.workers().threads() /
+                                   rays.size() / kPulsesPerTask) *
+      kPulsesPerTask;
   const bool mirrors = has_mirrors(setup.scene);
   const std::optional<PreparedWeather> weather = weather_of(setup.sensor);
   const PulseLight& light = weather ? weather->light : *setup.sensor.pulse;
@@ -391,8 +390,8 @@ void measure_pulses(const Setup& setup, const HitFields& fields, const Beams& ai
 PulseTrace trace_pulse(const Setup& setup, const Beams& aimed, std::size_t pulse, Frame frame) {
   PulseTrace trace;
   trace.pulse = pulse;
-  const std::size_t first = pulse - pulse % kBeamsPerTask;
-  const std::size_t last = std::min(first + kBeamsPerTask, aimed.pulses());
+  const std::size_t first = pulse - pulse % kPulsesPerTask;
+  const std::size_t last = std::min(first + kPulsesPerTask, aimed.pulses());
   measure_some(setup, {}, aimed, {first, last}, frame, &trace);
   return trace;
 }

@@ -2,13 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/shadow_cast.hpp>
 
-#include <limits>
+#include <glidar/core/constants.hpp>
 
 namespace glidar {
 namespace {
 
-constexpr std::size_t kBeamsPerTask = 4096;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kHitsPerTask = 4096;
 
 /// Where a beam's hit is, seen from the projector, in the sensor's frame.
 Eigen::Vector3d from_projector(const Beams& aimed, const Eigen::Vector3d& projector_m,
@@ -27,7 +26,7 @@ void aim_at_hits(const Beams& aimed, const Eigen::Vector3d& projector_m, const F
   beams.times_ns = aimed.times_ns;
   beams.origins_m.resize(aimed.size());
   beams.directions.resize(aimed.size());
-  workers.for_ranges(aimed.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
+  workers.for_ranges(aimed.size(), kHitsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       beams.origins_m[i] = projector_m;
       beams.directions[i].setConstant(kNaN);
@@ -56,7 +55,7 @@ void cast_shadows(const Setup& setup, const Eigen::Vector3d& projector_m, const 
   cast_moving(world_of(setup, frame), request_of(setup, frame, memory.sub_beams, {}), memory,
               memory.sub_hits);
   setup.renderer.workers().for_ranges(
-      aimed.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
+      aimed.size(), kHitsPerTask, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
           if (frame.status[i] != Status::hit || frame.truth.instance[i] == kNoHit) continue;
           if (is_dark(aimed, projector_m, frame, i)) lose(frame, i, Status::occluded);

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/simulate.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/motion/beam_poses.hpp>
 #include <glidar/paper_measure.hpp>
@@ -10,15 +11,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace glidar {
 namespace {
-
-constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
 
 /// Range and status of a run of beams from the truth.
 void measure_range(const Limits& limits, const Beams& beams, BeamRange range, Frame& frame) {
@@ -29,7 +27,7 @@ void measure_range(const Limits& limits, const Beams& beams, BeamRange range, Fr
     frame.range_m[i] = range_m;
     if (!std::isnan(range_m)) {
       frame.status[i] = sees_all ? Status::hit : judge(limits, beams, i, range_m);
-      if (frame.status[i] != Status::hit) frame.range_m[i] = kNoRange;
+      if (frame.status[i] != Status::hit) frame.range_m[i] = kNaN;
     } else {
       const bool has_beam = !may_lack_beams || !std::isnan(beams.directions[i].x());
       frame.status[i] = has_beam ? Status::miss : Status::no_beam;

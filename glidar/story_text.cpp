@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/story_text.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/io/noise_text.hpp>
 
 #include <fmt/format.h>
@@ -9,13 +10,10 @@
 
 #include <cmath>
 #include <iterator>
-#include <numbers>
 #include <string_view>
 
 namespace glidar {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// What the parts of a story are told from.
 struct Teller {
@@ -61,12 +59,12 @@ void tell_beam(Teller& to) {
   if (std::isnan(nominal.x())) return;
   const SensorAxes axes = axes_of(beams);
   to.line("aimed", "azimuth {:.6f} deg, elevation {:.6f} deg, {} in '{}'",
-          kDegrees * azimuth_rad(axes, nominal), kDegrees * elevation_rad(axes, nominal),
-          triple(nominal), beams.frame_id);
+          kDegreesPerRadian * azimuth_rad(axes, nominal),
+          kDegreesPerRadian * elevation_rad(axes, nominal), triple(nominal), beams.frame_id);
   if (to.story.direction != nominal) {
     to.line("went", "azimuth {:.6f} deg, elevation {:.6f} deg, by errors of pointing",
-            kDegrees * azimuth_rad(axes, to.story.direction),
-            kDegrees * elevation_rad(axes, to.story.direction));
+            kDegreesPerRadian * azimuth_rad(axes, to.story.direction),
+            kDegreesPerRadian * elevation_rad(axes, to.story.direction));
   }
 }
 
@@ -104,7 +102,7 @@ void tell_hit(Teller& to) {
   if (to.story.pulse && to.story.pulse->sub_rays > 1)
     to.line("", "by the sub-ray of the strongest way");
   to.line("", "range {:.9g} m, depth {:.9g} m, incidence {:.4f} deg", truth.range_m[i],
-          truth.depth_m[i], kDegrees * std::acos(std::min(1.0F, truth.cos_incidence[i])));
+          truth.depth_m[i], kDegreesPerRadian * std::acos(std::min(1.0F, truth.cos_incidence[i])));
   to.line("", "at {} of the object, normal {} in the sensor's frame",
           triple(truth.object_point_m[i]), triple(truth.normal[i].cast<double>()));
 }

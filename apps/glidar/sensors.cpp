@@ -3,6 +3,7 @@
 #include <apps/glidar/commands.hpp>
 #include <apps/glidar/exit_code.hpp>
 #include <apps/glidar/option_kinds.hpp>
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/file_guard.hpp>
 #include <glidar/io/pattern_picture.hpp>
@@ -87,11 +88,11 @@ void measure_view(const Beams& beams, const PinholeIntrinsics& k, Summary& summa
 
 /// Angles between the outermost beams about the boresight; of a camera between its image's edges.
 void measure_view(const Sensor& sensor, const Beams& beams, Summary& summary) {
-  constexpr double kDegrees = 180.0 / std::numbers::pi;
   if (beams.pinhole) {
-    summary.across_deg = 2.0 * kDegrees * std::atan(0.5 * beams.pinhole->width / beams.pinhole->fx);
+    summary.across_deg =
+        2.0 * kDegreesPerRadian * std::atan(0.5 * beams.pinhole->width / beams.pinhole->fx);
     summary.upright_deg =
-        2.0 * kDegrees * std::atan(0.5 * beams.pinhole->height / beams.pinhole->fy);
+        2.0 * kDegreesPerRadian * std::atan(0.5 * beams.pinhole->height / beams.pinhole->fy);
     return;
   }
   if (const auto* pinhole = std::get_if<Pinhole>(&sensor.optics)) {
@@ -110,8 +111,8 @@ void measure_view(const Sensor& sensor, const Beams& beams, Summary& summary) {
   const auto* spinning = std::get_if<Spinning>(&sensor.optics);
   const bool whole_turn =
       spinning != nullptr && spinning->sector_width_rad >= 2.0 * std::numbers::pi;
-  summary.across_deg = whole_turn ? 360.0 : kDegrees * std::max(0.0, high.x() - low.x());
-  summary.upright_deg = kDegrees * std::max(0.0, high.y() - low.y());
+  summary.across_deg = whole_turn ? 360.0 : kDegreesPerRadian * std::max(0.0, high.x() - low.x());
+  summary.upright_deg = kDegreesPerRadian * std::max(0.0, high.y() - low.y());
 }
 
 Summary summarise(const SensorSheet& sheet, const Beams& beams) {

@@ -4,6 +4,7 @@
 
 #include <apps/viewer/object_panel.hpp>
 #include <apps/viewer/widgets.hpp>
+#include <glidar/core/constants.hpp>
 #include <glidar/io/noise_text.hpp>
 #include <glidar/io/sensor_presets.hpp>
 
@@ -13,14 +14,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <string>
 #include <string_view>
 
 namespace glidar::app {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 ImU32 packed(Colour colour) {
   return IM_COL32(colour.r, colour.g, colour.b, 255);
@@ -71,8 +69,8 @@ void show_sensor_numbers(const Snapshot& shot) {
   if (beams.pinhole) {
     const PinholeIntrinsics& k = *beams.pinhole;
     text(fmt::format("fx {:.1f} fy {:.1f}, {:.1f} x {:.1f} deg", k.fx, k.fy,
-                     2.0 * kDegrees * std::atan(0.5 * k.width / k.fx),
-                     2.0 * kDegrees * std::atan(0.5 * k.height / k.fy)));
+                     2.0 * kDegreesPerRadian * std::atan(0.5 * k.width / k.fx),
+                     2.0 * kDegreesPerRadian * std::atan(0.5 * k.height / k.fy)));
   }
   text(limit_text(sensor.limits));
   text(sensor.pulse ? "pulsed light" : "light at the sensor (paper)");

@@ -2,18 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/widgets.hpp>
 
+#include <glidar/core/constants.hpp>
+
 #include <apps/viewer/shown_numbers.hpp>
 
 #include <imgui.h>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace glidar::app {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 /// Signs that the window's font lacks.
 void replace_all(const std::string& what, const std::string& with, std::string& line) {
@@ -60,9 +59,10 @@ bool edit_pose(const char* name, Pose& pose) {
   text(name);
   Eigen::Vector3d position_m = pose.translation();
   const Eigen::Matrix3d r = pose.linear();
-  Eigen::Vector3d rpy_deg = kDegrees * Eigen::Vector3d(std::atan2(r(2, 1), r(2, 2)),
-                                                       std::asin(std::clamp(-r(2, 0), -1.0, 1.0)),
-                                                       std::atan2(r(1, 0), r(0, 0)));
+  Eigen::Vector3d rpy_deg =
+      kDegreesPerRadian * Eigen::Vector3d(std::atan2(r(2, 1), r(2, 2)),
+                                          std::asin(std::clamp(-r(2, 0), -1.0, 1.0)),
+                                          std::atan2(r(1, 0), r(0, 0)));
   ImGui::PushItemWidth(ImGui::GetFontSize() * 15.5F);
   bool is_changed = edit_numbers("m", {6, "%.6g"}, position_m);
   is_changed = edit_numbers("rpy deg", {2, "%.2f"}, rpy_deg) || is_changed;
@@ -70,9 +70,10 @@ bool edit_pose(const char* name, Pose& pose) {
   ImGui::PopID();
   if (!is_changed || !position_m.allFinite() || !rpy_deg.allFinite()) return false;
   using Axis = Eigen::Vector3d;
-  const Eigen::Quaterniond attitude = Eigen::AngleAxisd(rpy_deg[2] / kDegrees, Axis::UnitZ()) *
-                                      Eigen::AngleAxisd(rpy_deg[1] / kDegrees, Axis::UnitY()) *
-                                      Eigen::AngleAxisd(rpy_deg[0] / kDegrees, Axis::UnitX());
+  const Eigen::Quaterniond attitude =
+      Eigen::AngleAxisd(rpy_deg[2] / kDegreesPerRadian, Axis::UnitZ()) *
+      Eigen::AngleAxisd(rpy_deg[1] / kDegreesPerRadian, Axis::UnitY()) *
+      Eigen::AngleAxisd(rpy_deg[0] / kDegreesPerRadian, Axis::UnitX());
   pose = make_pose(position_m, attitude);
   return true;
 }

@@ -2,16 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/hits.hpp>
 
+#include <glidar/core/constants.hpp>
+
 #include <algorithm>
 #include <type_traits>
 
 namespace glidar {
-namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr float kNaNf = std::numeric_limits<float>::quiet_NaN();
-
-}  // namespace
+namespace {}  // namespace
 
 void resize(Hits& hits, std::size_t size, const HitFields& fields) {
   const auto size_if = [size](bool asked) { return asked ? size : std::size_t{0}; };

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/beam_grid.hpp>
 
+#include <glidar/core/constants.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -12,7 +14,6 @@ namespace glidar {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kEven_rad = 1e-3;  // a row is level to so much
 constexpr double kEvenSteps = 0.5;  // and its columns are where they belong to so many steps
 
@@ -201,12 +202,13 @@ std::optional<BeamPicture> make_grid_picture(const Beams& beams, std::uint32_t f
                       .beams = {},
                       .row_elevations_deg = {}};
   picture.beams.assign(std::size_t{picture.rows} * picture.cols, BeamPicture::kNoBeam);
-  for (const Row& row : rows) picture.row_elevations_deg.push_back(kDegrees * row.elevation_rad);
+  for (const Row& row : rows)
+    picture.row_elevations_deg.push_back(kDegreesPerRadian * row.elevation_rad);
   place_beams(angles, rows, extent, step_rad, first_beam, picture);
   const double across_rad = extent.is_turn ? kTurn : size_rad * static_cast<double>(extent.cols);
   const double left_rad = extent.zero_rad - size_rad * static_cast<double>(extent.first);
-  picture.left = kDegrees * (left_rad + (extent.is_turn ? 0.0 : 0.5 * size_rad));
-  picture.right = picture.left - kDegrees * across_rad;
+  picture.left = kDegreesPerRadian * (left_rad + (extent.is_turn ? 0.0 : 0.5 * size_rad));
+  picture.right = picture.left - kDegreesPerRadian * across_rad;
   picture.top = picture.row_elevations_deg.front();
   picture.bottom = picture.row_elevations_deg.back();
   return picture;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/beam_picture.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/io/beam_grid.hpp>
 #include <glidar/io/colour_scale.hpp>
 
@@ -10,14 +11,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <tuple>
 #include <utility>
 
 namespace glidar {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kLonger = 900.0;  // pixels of scattered pictures
 constexpr double kShorter = 90.0;  // at least
 
@@ -91,7 +90,7 @@ BeamPicture make_angle_picture(const Beams& beams, std::span<const double> range
     const Eigen::Vector3d& d = beams.directions[i];
     if (std::isnan(d.x())) continue;
     marks.push_back(
-        {kDegrees * azimuth_rad(axes, d), kDegrees * elevation_rad(axes, d), i,
+        {kDegreesPerRadian * azimuth_rad(axes, d), kDegreesPerRadian * elevation_rad(axes, d), i,
          std::isnan(range_m[i]) ? std::numeric_limits<double>::infinity() : range_m[i]});
   }
   BeamPicture picture{.kind = BeamPicture::Kind::angles, .beams = {}, .row_elevations_deg = {}};

@@ -136,9 +136,9 @@ void evict(const CacheFolder& folder, std::uint64_t limit_bytes, const std::stri
 }
 
 /// A temporary file that this process has locked; it goes with its owner unless it was renamed.
-class Temporary {
+class TemporaryEntry {
  public:
-  Temporary(const CacheFolder& folder, const std::string& entry) : folder_(folder.fd.get()) {
+  TemporaryEntry(const CacheFolder& folder, const std::string& entry) : folder_(folder.fd.get()) {
     constexpr int kAttempts = 100;
     for (int i = 0; i < kAttempts && !fd_; ++i) {
       name_ = fmt::format("{}.{:016x}", entry, random());
@@ -149,9 +149,9 @@ class Temporary {
       if (file && is_ours(file)) fd_ = std::move(file);
     }
   }
-  Temporary(const Temporary&) = delete;
-  Temporary& operator=(const Temporary&) = delete;
-  ~Temporary() {
+  TemporaryEntry(const TemporaryEntry&) = delete;
+  TemporaryEntry& operator=(const TemporaryEntry&) = delete;
+  ~TemporaryEntry() {
     if (fd_ && !is_renamed_) ::unlinkat(folder_, name_.c_str(), 0);
   }
 
@@ -253,7 +253,7 @@ std::string store_entry(const CacheFolder& folder, const std::string& name,
     return fmt::format("the cache {} cannot be written: {}", folder.path.string(), why);
   };
   remove_stale_files(folder);
-  Temporary temporary(folder, name);
+  TemporaryEntry temporary(folder, name);
   if (temporary.error() != 0) return because(reason(temporary.error()));
   try {
     write(temporary.fd());

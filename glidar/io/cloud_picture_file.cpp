@@ -57,15 +57,16 @@ CloudScene scene_of(const CloudFile& job) {
 }
 
 /// The picture's parts, in pixels.
-struct Layout {
+struct PictureLayout {
   double letters;
   Box plot;
   Box key;                          ///< of the bar or the legend
   std::vector<LegendEntry> legend;  ///< those that have room
 };
 
-Layout make_layout(const CloudPictureOptions& options, const PointColours& colours, bool has_axes) {
-  Layout layout{};
+PictureLayout make_layout(const CloudPictureOptions& options, const PointColours& colours,
+                          bool has_axes) {
+  PictureLayout layout{};
   const auto width = static_cast<double>(options.width);
   layout.letters = std::max(10.0, width / 75.0);
   const double gap = layout.letters;
@@ -85,7 +86,7 @@ Layout make_layout(const CloudPictureOptions& options, const PointColours& colou
   return layout;
 }
 
-void draw_key(Picture& picture, const Layout& layout, const PointColours& colours) {
+void draw_key(Picture& picture, const PictureLayout& layout, const PointColours& colours) {
   if (colours.bar) {
     const std::size_t inset = layout.key.width / 6;  // a bar need not be as wide as the plot
     draw_colour_bar(
@@ -117,7 +118,7 @@ void draw_points(Picture& picture, const Box& plot, const PointImage& image,
 }
 
 /// A line of text in the lower right corner of the plot, on ground of its own.
-void draw_note(Picture& picture, const Layout& layout, const std::string& note) {
+void draw_note(Picture& picture, const PictureLayout& layout, const std::string& note) {
   if (note.empty()) return;
   const Box& plot = layout.plot;
   const double size_px = 0.9 * layout.letters;
@@ -141,7 +142,7 @@ std::string outside_text(const PointImage& image, std::size_t points) {
 
 Picture draw_bird_eye(const CloudFile& job) {
   const CloudScene scene = scene_of(job);
-  const Layout layout = make_layout(job.options.picture, scene.colours, true);
+  const PictureLayout layout = make_layout(job.options.picture, scene.colours, true);
   const Box& plot = layout.plot;
   const double shape = static_cast<double>(plot.width) / static_cast<double>(plot.height);
   const TopView view = fit_top_view(scene.shown.points_m, scene.sensor_m, shape);
@@ -230,7 +231,7 @@ void draw_ground(Picture& picture, const Box& plot, const Perspective& view,
 
 Picture draw_view(const CloudFile& job) {
   const CloudScene scene = scene_of(job);
-  const Layout layout = make_layout(job.options.picture, scene.colours, false);
+  const PictureLayout layout = make_layout(job.options.picture, scene.colours, false);
   const Box& plot = layout.plot;
   const Perspective view = view_of(job, scene, plot);
   const PointImage image = draw_perspective(scene.shown.points_m, view);

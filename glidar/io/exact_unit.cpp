@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/exact_unit.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/json_numbers.hpp>
 
 #include <bit>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 namespace glidar {
 namespace {
@@ -23,7 +23,6 @@ std::optional<double> find_exact_in(double inside, double unit) {
   const double clean = in_unit(inside, unit);
   if (is_same(clean * unit, inside)) return clean;
   constexpr int kNeighbours = 4;  // quotient and product round once each: two would do
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
   double below = inside / unit;
   double above = below;
   for (int k = 0; k <= kNeighbours; ++k) {

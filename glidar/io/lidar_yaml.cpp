@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/constants.hpp>
 #include <glidar/io/optics_yaml.hpp>
 
 #include <algorithm>
@@ -10,8 +11,6 @@ namespace {
 constexpr std::size_t kMostChannels = 4096;
 constexpr std::size_t kMostAngles = 65536;
 constexpr std::uint32_t kMostColumns = 1U << 20U;
-constexpr double kMicrosecond_ns = 1e3;
-constexpr double kMillimetre_m = 1e-3;
 constexpr NumberRule kElevation = {-90.0, 90.0, false, "degrees from -90 to 90"};
 constexpr NumberRule kTurn = {-360.0, 360.0, false, "degrees from -360 to 360"};
 constexpr NumberRule kSector_rad = {-20.0, 20.0, false, "radians from -20 to 20"};

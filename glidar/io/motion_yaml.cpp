@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/motion_yaml.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/pose_yaml.hpp>
 #include <glidar/io/trajectory_file.hpp>
@@ -9,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <numbers>
 #include <string_view>
 
 namespace glidar {
@@ -17,7 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr NumberRule kRate = {-1e9, 1e9, false, "a number from -1e9 to 1e9"};
 constexpr NumberRule kSpeed = {-kLargestCoordinate_m, kLargestCoordinate_m, false,
                                "a number from -1e15 to 1e15"};

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/optics_document.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/exact_unit.hpp>
 #include <glidar/io/optics_json.hpp>
@@ -13,10 +14,6 @@ namespace glidar {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kMicrosecond_ns = 1e3;
-constexpr double kMillimetre_m = 1e-3;
 
 Json exact_list(const std::vector<double>& inside, double unit) {
   Json list = Json::array();

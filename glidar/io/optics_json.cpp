@@ -2,18 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/optics_json.hpp>
 
+#include <glidar/core/constants.hpp>
+
 #include <array>
-#include <numbers>
 #include <string_view>
 
 namespace glidar {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kMicrosecond_ns = 1e3;
-constexpr double kMillimetre_m = 1e-3;
 
 /// The name of a model among ROS' (sensor_msgs/distortion_models.hpp) and its coefficients in
 /// OpenCV's order.

@@ -4,12 +4,11 @@
 
 // Private to glidar/io: the optics of sensor files, one function for each `type`.
 
+#include <glidar/core/constants.hpp>
 #include <glidar/io/yaml_reader.hpp>
 #include <glidar/sensor/sensor.hpp>
 
 namespace glidar {
-
-inline constexpr double kDegree = std::numbers::pi / 180.0;
 
 Pinhole read_pinhole(const YamlField& field);
 Spinning read_spinning(const YamlField& field);

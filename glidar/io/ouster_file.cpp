@@ -1,5 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/json_text.hpp>
 #include <glidar/io/ray_file.hpp>
@@ -11,29 +12,25 @@
 namespace glidar {
 namespace {
 
-using Json = nlohmann::json;
-
 const TextFileKind kMetadata = {"a JSON file of an Ouster sensor", 1, ""};
 constexpr std::size_t kMostRows = 4096;
 constexpr std::uint32_t kMostColumns = 65536;
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
 [[noreturn]] void fail(const std::string& where, std::string found, std::string allowed) {
   throw Error({where, std::move(found), std::move(allowed), "give the sensor's own metadata JSON"});
 }
 
-Json parse(const std::filesystem::path& path) {
+nlohmann::json parse(const std::filesystem::path& path) {
   try {
-    Json all = parse_json<Json>(path.string(), read_text_file(path, kMetadata));
+    nlohmann::json all = parse_json<nlohmann::json>(path.string(), read_text_file(path, kMetadata));
     if (all.is_object()) return all;
-  } catch (const Json::exception&) {  // as below
+  } catch (const nlohmann::json::exception&) {  // as below
   }
   fail(path.string(), "no JSON object", "Ouster metadata");
 }
 
 /// The value of a key, at the top (old layout) or in the part where new firmware puts it.
-const Json* find(const Json& all, const char* part, const char* key) {
+const nlohmann::json* find(const nlohmann::json& all, const char* part, const char* key) {
   if (const auto at = all.find(key); at != all.end()) return &*at;
   const auto inner = all.find(part);
   if (inner == all.end() || !inner->is_object()) return nullptr;
@@ -41,31 +38,32 @@ const Json* find(const Json& all, const char* part, const char* key) {
   return at == inner->end() ? nullptr : &*at;
 }
 
-const Json& need(const Json& all, const char* part, const char* key, const std::string& where) {
-  if (const Json* value = find(all, part, key)) return *value;
+const nlohmann::json& need(const nlohmann::json& all, const char* part, const char* key,
+                           const std::string& where) {
+  if (const nlohmann::json* value = find(all, part, key)) return *value;
   fail(where, std::string("the key ") + key + " is missing", "");
 }
 
-double finite(const Json& value, const std::string& where) {
+double finite(const nlohmann::json& value, const std::string& where) {
   const double number = value.is_number() ? value.get<double>() : std::nan("");
   if (std::isfinite(number)) return number;
   fail(where, shown_json(value), "a number");
 }
 
-std::vector<double> angles(const Json& all, const char* key, const std::string& file) {
+std::vector<double> angles(const nlohmann::json& all, const char* key, const std::string& file) {
   const std::string where = file + ": " + key;
-  const Json& list = need(all, "beam_intrinsics", key, file);
+  const nlohmann::json& list = need(all, "beam_intrinsics", key, file);
   if (!list.is_array() || list.empty() || list.size() > kMostRows) {
     fail(where, "no list of angles", "1 to 4096 numbers");
   }
   std::vector<double> values;
-  for (const Json& value : list) values.push_back(finite(value, where));
+  for (const nlohmann::json& value : list) values.push_back(finite(value, where));
   return values;
 }
 
 /// "1024x10": columns of a turn and turns per second.
-std::pair<std::uint32_t, double> mode_of(const Json& all, const std::string& file) {
-  const Json& value = need(all, "config_params", "lidar_mode", file);
+std::pair<std::uint32_t, double> mode_of(const nlohmann::json& all, const std::string& file) {
+  const nlohmann::json& value = need(all, "config_params", "lidar_mode", file);
   const std::string mode = value.is_string() ? value.get<std::string>() : "";
   const std::size_t x = mode.find('x');
   std::uint32_t columns = 0;
@@ -82,8 +80,8 @@ std::pair<std::uint32_t, double> mode_of(const Json& all, const std::string& fil
 }
 
 /// The columns that the sensor sends, [first, last], as a sector of the turn.
-void apply_column_window(const Json& all, const std::string& file, Spinning& s) {
-  const Json* window = find(all, "data_format", "column_window");
+void apply_column_window(const nlohmann::json& all, const std::string& file, Spinning& s) {
+  const nlohmann::json* window = find(all, "data_format", "column_window");
   if (window == nullptr) window = find(all, "lidar_data_format", "column_window");
   if (window == nullptr) return;
   const std::string where = file + ": column_window";
@@ -103,7 +101,7 @@ void apply_column_window(const Json& all, const std::string& file, Spinning& s) 
 }  // namespace
 
 Spinning load_ouster_metadata(const std::filesystem::path& path) {
-  const Json all = parse(path);
+  const nlohmann::json all = parse(path);
   const std::string file = path.string();
   const std::vector<double> altitudes_deg = angles(all, "beam_altitude_angles", file);
   const std::vector<double> azimuths_deg = angles(all, "beam_azimuth_angles", file);
@@ -114,7 +112,8 @@ Spinning load_ouster_metadata(const std::filesystem::path& path) {
   std::tie(s.columns_per_turn, s.rotation_hz) = mode_of(all, file);
   // theta_encoder = 2 pi (1 - m / W) in the lidar frame, which is the sensor's turned by pi
   s.start_azimuth_rad = std::numbers::pi;
-  const Json& origin = need(all, "beam_intrinsics", "lidar_origin_to_beam_origin_mm", file);
+  const nlohmann::json& origin =
+      need(all, "beam_intrinsics", "lidar_origin_to_beam_origin_mm", file);
   s.beam_origin_m = finite(origin, file + ": lidar_origin_to_beam_origin_mm") * 1e-3;
   for (std::size_t row = 0; row < altitudes_deg.size(); ++row) {
     SpinningChannel channel;

@@ -39,7 +39,7 @@ std::string_view ply_type(Stored stored) {
   return "uint";
 }
 
-std::string header(const CloudFile& job, std::span<const Field> fields) {
+std::string ply_header(const CloudFile& job, std::span<const Field> fields) {
   std::string text = fmt::format("ply\nformat {} 1.0\ncomment glidar {}, metres in the frame {}\n",
                                  job.options.ply_ascii ? "ascii" : "binary_little_endian",
                                  version(), one_line(job.cloud.frame_id));
@@ -78,7 +78,7 @@ std::vector<Field> ply_fields(const PointCloud& cloud) {
 
 void write_ply(const CloudFile& job, AtomicFile& file) {
   const std::span<const Field> fields = job.fields;
-  file.write(header(job, fields));
+  file.write(ply_header(job, fields));
   if (job.options.ply_ascii) {
     write_text_rows(fields, job.cloud.size(), ' ', file, job.options.progress);
   } else {

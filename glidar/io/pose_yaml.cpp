@@ -2,14 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/pose_yaml.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
-
-#include <numbers>
 
 namespace glidar {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 Eigen::Quaterniond read_quaternion(const YamlField& field) {
   if (field.node.IsSequence()) {

@@ -22,7 +22,7 @@ struct Panel {
 };
 
 /// All lengths in pixels.
-struct Layout {
+struct PreviewLayout {
   std::size_t zoom;  ///< pixels per beam across, so that small images can be seen
   std::size_t tall;  ///< and upright: scanners have few rows and many columns
   double letters;
@@ -42,13 +42,13 @@ bool has_axes(const BeamPicture& beams) {
   return beams.kind != BeamPicture::Kind::image;
 }
 
-Layout make_layout(const BeamPicture& beams) {
+PreviewLayout make_layout(const BeamPicture& beams) {
   constexpr std::size_t kUsual = 512;
   constexpr std::size_t kLeastShape = 8;  // a picture is at most so many times as wide as high
   constexpr std::size_t kTallest = 64;
   const std::size_t cols = std::max(1U, beams.cols);
   const std::size_t rows = std::max(1U, beams.rows);
-  Layout layout{};
+  PreviewLayout layout{};
   layout.zoom = std::max<std::size_t>(1, kUsual / std::max(cols, rows));
   const std::size_t width = cols * layout.zoom;
   constexpr std::size_t kMostPixels = std::size_t{1} << 26U;  // that rows are stretched to
@@ -112,7 +112,8 @@ Colour pixel_colour(const Panel& panel, std::uint32_t beam) {
   return std::isfinite(value) ? panel.bar.ramp(panel.bar.scale.fraction(value)) : kNoReturn;
 }
 
-void draw_panel(Picture& picture, const Panel& panel, const Layout& layout, const Box& cell) {
+void draw_panel(Picture& picture, const Panel& panel, const PreviewLayout& layout,
+                const Box& cell) {
   const Box plot{cell.x + layout.plot.x, cell.y + layout.plot.y, layout.plot.width,
                  layout.plot.height};
   fill(picture, plot, kPlotGround);
@@ -196,9 +197,9 @@ std::vector<Panel> panels_of(const Measured& measured) {
 void write_preview(const CloudFile& job, AtomicFile& file) {
   const Measured measured = measured_of(job);
   const std::vector<Panel> panels = panels_of(measured);
-  Layout layout = make_layout(measured.pictures.front());
+  PreviewLayout layout = make_layout(measured.pictures.front());
   for (const BeamPicture& beams : measured.pictures) {  // tops of several returns differ in size
-    const Layout other = make_layout(beams);
+    const PreviewLayout other = make_layout(beams);
     layout.cell_width = std::max(layout.cell_width, other.cell_width);
     layout.cell_height = std::max(layout.cell_height, other.cell_height);
   }
@@ -207,7 +208,7 @@ void write_preview(const CloudFile& job, AtomicFile& file) {
       make_picture(layout.cells_across * (layout.cell_width + layout.gap) + layout.gap,
                    down * (layout.cell_height + layout.gap) + layout.gap, kCanvas);
   for (std::size_t i = 0; i < panels.size(); ++i) {
-    Layout own = make_layout(panels[i].beams);
+    PreviewLayout own = make_layout(panels[i].beams);
     const Box cell{layout.gap + i % layout.cells_across * (layout.cell_width + layout.gap),
                    layout.gap + i / layout.cells_across * (layout.cell_height + layout.gap),
                    own.cell_width, own.cell_height};

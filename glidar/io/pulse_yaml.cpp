@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/pulse_yaml.hpp>
 
-#include <numbers>
+#include <glidar/core/constants.hpp>
+
 #include <string>
 
 namespace glidar {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr NumberRule kReflectance = {0.0, 1000.0, true, "a number above 0, up to 1000"};
 constexpr NumberRule kRange = {0.0, 1e9, true, "metres above 0, up to 1e9"};
 constexpr NumberRule kRangeFromZero = {0.0, 1e9, false, "metres from 0 to 1e9"};

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/ray_file.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/text_file.hpp>
 
@@ -18,8 +19,6 @@ namespace fs = std::filesystem;
 
 const TextFileKind kTable = {"a CSV table of beams", 64, ""};  // some million shots
 const TextFileKind kRays = {"an NPY array of rays", 512, ""};
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kNanoseconds = 1e9;
 constexpr double kMaxTime_s = 100.0 * 24.0 * 3600.0;  // a double holds each nanosecond
 
 [[noreturn]] void fail(const std::string& where, std::string found, std::string allowed,
@@ -170,7 +169,7 @@ BeamTable load_scan_csv(const fs::path& path) {
            "a time of " + number_text(values->x()) + " s", "times within 100 days of zero",
            "give times in seconds");
     }
-    table.times_ns.push_back(values->x() * kNanoseconds);
+    table.times_ns.push_back(values->x() * kSecond_ns);
     table.directions.push_back(direction_at(values->y() * kDegree, (90.0 - values->z()) * kDegree));
   });
   const std::size_t size = table.directions.size();
@@ -186,7 +185,7 @@ BeamTable load_scan_csv(const fs::path& path) {
   table.cols = static_cast<std::uint32_t>(size);
   const double last_ns = table.times_ns.back();
   table.period_ns = last_ns + last_ns / static_cast<double>(size - 1);
-  if (table.period_ns > kMaxTime_s * kNanoseconds)
+  if (table.period_ns > kMaxTime_s * kSecond_ns)
     fail(path.string(), "shots over more than 100 days", "100 days in all");
   return table;
 }

@@ -15,20 +15,18 @@
 namespace glidar {
 namespace {
 
-using Json = nlohmann::json;
-
 const TextFileKind kSidecar = {"the JSON file that glidar writes beside a cloud", 512, ""};
 
 /// A count of 32 bits.
-std::uint64_t whole(const Json& told) {
+std::uint64_t whole(const nlohmann::json& told) {
   constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
   if (told.is_number_unsigned() && told.get<std::uint64_t>() <= kMost) {
     return told.get<std::uint64_t>();
   }
-  throw Json::type_error::create(302, shown_json(told) + " is no count", &told);
+  throw nlohmann::json::type_error::create(302, shown_json(told) + " is no count", &told);
 }
 
-CommandRecord read_command(const Json& told, const std::filesystem::path& sidecar) {
+CommandRecord read_command(const nlohmann::json& told, const std::filesystem::path& sidecar) {
   if (told.is_null()) return {};
   const auto arguments = told.at("arguments").get<std::vector<std::string>>();
   const auto folder = told.at("folder").get<std::string>();
@@ -37,18 +35,18 @@ CommandRecord read_command(const Json& told, const std::filesystem::path& sideca
   return {.arguments = arguments, .folder = folder_beside(sidecar, folder)};
 }
 
-Sidecar read(const Json& told, const std::filesystem::path& path) {
+Sidecar read(const nlohmann::json& told, const std::filesystem::path& path) {
   Sidecar sidecar;
   sidecar.path = path;
   sidecar.version = told.at("glidar").get<std::string>();
   sidecar.command = read_command(told.at("command"), path);
   sidecar.frame = static_cast<std::uint32_t>(whole(told.at("frame")));
   sidecar.frame_hash = told.at("frame_hash").get<std::string>();
-  const Json& cloud = told.at("cloud");
+  const nlohmann::json& cloud = told.at("cloud");
   sidecar.points = whole(cloud.at("rows")) * whole(cloud.at("cols"));
   sidecar.hits = whole(told.at("beams_by_status").at("hit"));
-  for (const Json& instance : told.at("instances")) {
-    const Json& hash = instance.at("model_hash");
+  for (const nlohmann::json& instance : told.at("instances")) {
+    const nlohmann::json& hash = instance.at("model_hash");
     sidecar.model_hashes.push_back(hash.is_null() ? "" : hash.get<std::string>());
   }
   return sidecar;
@@ -92,8 +90,8 @@ Sidecar read_sidecar(const std::filesystem::path& cloud) {
                  .remedy = "write the cloud again, with -o and without --no-sidecar"});
   }
   try {
-    return read(parse_json<Json>(path.string(), read_text_file(path, kSidecar)), path);
-  } catch (const Json::exception& error) {
+    return read(parse_json<nlohmann::json>(path.string(), read_text_file(path, kSidecar)), path);
+  } catch (const nlohmann::json::exception& error) {
     throw Error({.where = path.string(),
                  .found = std::string("not a sidecar of this version: ") + excerpt(error.what()),
                  .allowed = "the file that glidar wrote beside the cloud",

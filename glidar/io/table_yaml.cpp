@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/constants.hpp>
 #include <glidar/io/optics_yaml.hpp>
 #include <glidar/io/ray_file.hpp>
 
 namespace glidar {
 namespace {
 
-constexpr double kMicrosecond_ns = 1e3;
 constexpr NumberRule kPoint_us = {1e-3, 1e6, false, "microseconds from 0.001 to 1e6"};
 
 /// Cuts a list of beams into rows of equal length.

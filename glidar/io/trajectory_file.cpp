@@ -18,7 +18,8 @@ namespace {
 
 using Part = TimedPoseFault::Part;
 
-constexpr std::uintmax_t kLargestFile_mib = 512;  // five million poses of a hundred characters
+constexpr std::uintmax_t kMaxTrajectoryFile_mib =
+    512;  // five million poses of a hundred characters
 constexpr std::array<const char*, 8> kNames = {"t", "x", "y", "z", "qx", "qy", "qz", "qw"};
 constexpr std::size_t kTum = kNames.size();
 constexpr std::size_t kKitti = 12;
@@ -28,7 +29,7 @@ using Columns = std::array<std::size_t, kTum>;
 constexpr Columns kTumColumns = {0, 1, 2, 3, 4, 5, 6, 7};
 
 TextFileKind file_kind() {
-  return {"a trajectory file", kLargestFile_mib, "cut it, or thin it out"};
+  return {"a trajectory file", kMaxTrajectoryFile_mib, "cut it, or thin it out"};
 }
 
 void require_count(const TextRows& rows, std::size_t count, const char* what) {

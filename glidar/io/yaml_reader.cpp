@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kLargestFile_mib =
+constexpr std::uintmax_t kMaxYamlFile_mib =
     8;  // a list of a million aliases; see check_yaml_budget
 
 std::string position(const std::string& file, const YAML::Mark& mark) {
@@ -132,7 +132,7 @@ YamlField root_of(const std::string& name, const std::vector<YAML::Node>& docume
 
 YamlField read_yaml(const fs::path& file) {
   const std::string content =
-      read_text_file(file, {"a YAML file", kLargestFile_mib,
+      read_text_file(file, {"a YAML file", kMaxYamlFile_mib,
                             "name models by their path, do not put them into the file"});
   require_utf8(file, content);
   return root_of(file.string(), parse(file.string(), content));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/resolve.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/simd.hpp>
 #include <glidar/render/grazing.hpp>
 #include <glidar/render/shade.hpp>
@@ -9,13 +10,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
 
 namespace glidar {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr float kNaNf = std::numeric_limits<float>::quiet_NaN();
 
 /// The lanes that hit another instance than this.
 std::uint32_t others_than(const HitBlock& block, std::uint32_t instance) {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kNegligible = 1e-3;
 
-std::string number_text(double value) {
+std::string rounded_text(double value) {
   constexpr std::size_t kRoom = 32;
   std::array<char, kRoom> text{};
   const int length = std::snprintf(text.data(), text.size(), "%.4g", value + 0.0);
@@ -21,7 +21,7 @@ std::string number_text(double value) {
 std::string triple_text(const Eigen::Vector3d& v, double negligible) {
   std::string text;
   for (const double value : {v.x(), v.y(), v.z()}) {
-    text += (text.empty() ? "(" : ", ") + number_text(std::abs(value) < negligible ? 0.0 : value);
+    text += (text.empty() ? "(" : ", ") + rounded_text(std::abs(value) < negligible ? 0.0 : value);
   }
   return text + ")";
 }
@@ -51,7 +51,7 @@ std::string displacement_words(const Vector6& displacement, double length_m) {
   const double negligible = kNegligible * length_m;
   std::string text = "rotation about " + axis_text(rotation.normalized());
   if (point.norm() > negligible) text += " through " + triple_text(point, negligible) + " m";
-  if (std::abs(pitch) > negligible) text += ", with " + number_text(pitch) + " m along it per rad";
+  if (std::abs(pitch) > negligible) text += ", with " + rounded_text(pitch) + " m along it per rad";
   return text;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/footprint.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/simd.hpp>
 
@@ -14,8 +15,7 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kBeamsPerTask = 128;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kBeamsPerSpread = 128;
 
 /// What lies between two radii, as u = 2 r^2 / w^2: the share of a Gaussian's energy, and its mean
 /// of u. The share beyond u is exp(-u), the integral of u exp(-u) is -(u + 1) exp(-u).
@@ -192,7 +192,7 @@ void spread(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range
   out.directions.resize(count);
   out.origins_m.resize(has_offsets ? count : 0);
   out.times_ns.resize(beams.times_ns.empty() ? 0 : count);
-  workers.for_ranges(range.end - range.begin, kBeamsPerTask,
+  workers.for_ranges(range.end - range.begin, kBeamsPerSpread,
                      [&](std::size_t begin, std::size_t end) {
                        for (std::size_t k = begin; k < end; k += kAtOnce) {
                          const std::size_t beam = range.begin + k;

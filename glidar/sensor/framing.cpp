@@ -2,18 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/framing.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 
 namespace glidar {
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A wider cone is treated as this one: from nearer the perspective would be grotesque.
 constexpr double kWidestHalfAngle_rad = std::numbers::pi / 3.0;
@@ -23,7 +21,7 @@ constexpr double kWidestHalfAngle_rad = std::numbers::pi / 3.0;
 /// the boresight, and for wide views.
 constexpr double kLeastGap = 0.02;
 
-[[noreturn]] void fail(std::string found, std::string remedy) {
+[[noreturn]] void refuse_framing(std::string found, std::string remedy) {
   throw Error({.where = "framing the scene",
                .found = std::move(found),
                .allowed = "",
@@ -185,7 +183,7 @@ double enclosed_angle_rad(const Beams& beams, const Eigen::Vector3d& axis) {
 
 void require_camera(const Beams& beams) {
   if (beams.size() == 0 || !looks_along_z(beams)) {
-    fail("the sensor is not a camera that looks along +z", "give the sensor's pose");
+    refuse_framing("the sensor is not a camera that looks along +z", "give the sensor's pose");
   }
 }
 
@@ -196,8 +194,9 @@ Pose frame_view(const Beams& beams, const Scene& scene, const Eigen::Vector3d& f
   require_camera(beams);
   Eigen::AlignedBox3d box;
   for_each_corner(scene, [&](const Eigen::Vector3d& world) { box.extend(world); });
-  if (box.isEmpty()) fail("there are no triangles", "load a model that has some");
-  if (!(box.diagonal().norm() > 0.0)) fail("all vertices are one point", "give the sensor's pose");
+  if (box.isEmpty()) refuse_framing("there are no triangles", "load a model that has some");
+  if (!(box.diagonal().norm() > 0.0))
+    refuse_framing("all vertices are one point", "give the sensor's pose");
 
   // Axes first, about the scene's centre; then the position in these axes.
   Pose pose = look_at(box.center() + from_direction, box.center(), up);
@@ -209,7 +208,7 @@ Pose frame_view(const Beams& beams, const Scene& scene, const Eigen::Vector3d& f
       beams.directions[std::size_t{beams.rows / 2} * beams.cols + beams.cols / 2];
   const double half_angle_rad = std::isnan(axis.x()) ? 0.0 : enclosed_angle_rad(beams, axis);
   if (!(half_angle_rad > 0.0)) {
-    fail("the image has no area around its middle", "give the sensor's pose");
+    refuse_framing("the image has no area around its middle", "give the sensor's pose");
   }
   const Retreat retreat = fit_cone(axis, half_angle_rad, scene, pose);
   return pose * Eigen::Translation3d(clear_of_box(retreat, scene, pose));

@@ -11,7 +11,7 @@ namespace glidar {
 namespace {
 
 /// A wider fan is treated as this one: from nearer little of the scene would be before the sensor.
-constexpr double kWidestHalfAngle_rad = std::numbers::pi / 3.0;
+constexpr double kWidestFan_rad = std::numbers::pi / 3.0;
 constexpr double kHalfAngleOfALine_rad = std::numbers::pi / 6.0;  // at twice the radius
 constexpr double kLeastHalfAngle_rad = 1e-3;
 
@@ -20,7 +20,7 @@ struct Elevations {
   double half_rad = 0.0;
 };
 
-[[noreturn]] void fail(std::string found, std::string remedy) {
+[[noreturn]] void refuse_placing(std::string found, std::string remedy) {
   throw Error({.where = "placing the sensor beside the scene",
                .found = std::move(found),
                .allowed = "",
@@ -39,11 +39,11 @@ Elevations elevations_of(const Beams& beams) {
     high_rad = std::max(high_rad, elevation_rad);
     side_rad = std::max(side_rad, std::abs(std::atan2(d.y(), d.x())));
   }
-  if (low_rad > high_rad) fail("the sensor has no beams", "");
+  if (low_rad > high_rad) refuse_placing("the sensor has no beams", "");
   const double half_rad = 0.5 * (high_rad - low_rad);
   const double fan_rad = half_rad > kLeastHalfAngle_rad ? half_rad : kHalfAngleOfALine_rad;
   return {0.5 * (low_rad + high_rad),
-          std::min({fan_rad, std::max(side_rad, kLeastHalfAngle_rad), kWidestHalfAngle_rad})};
+          std::min({fan_rad, std::max(side_rad, kLeastHalfAngle_rad), kWidestFan_rad})};
 }
 
 }  // namespace
@@ -51,17 +51,17 @@ Elevations elevations_of(const Beams& beams) {
 Pose stand_beside(const Beams& beams, const Scene& scene, const Eigen::Vector3d& from_direction,
                   const Eigen::Vector3d& up) {
   if (beams.size() == 0 || !beams.boresight.isApprox(Eigen::Vector3d::UnitX())) {
-    fail("the sensor is no LiDAR that heads for +x", "give the sensor's pose");
+    refuse_placing("the sensor is no LiDAR that heads for +x", "give the sensor's pose");
   }
   const Eigen::AlignedBox3d box = bounds(scene);
   if (box.isEmpty() || !(box.diagonal().norm() > 0.0)) {
-    fail("the scene has no triangles or no size", "give the sensor's pose");
+    refuse_placing("the scene has no triangles or no size", "give the sensor's pose");
   }
   const Elevations fan = elevations_of(beams);
   const Eigen::Vector3d z = up.normalized();
   const Eigen::Vector3d side = from_direction - from_direction.dot(z) * z;
   if (!(side.norm() > 1e-9 * from_direction.norm())) {
-    fail("the up vector is parallel to the line of sight", "choose another up vector");
+    refuse_placing("the up vector is parallel to the line of sight", "choose another up vector");
   }
   const double distance_m = 0.5 * box.diagonal().norm() / std::sin(fan.half_rad);
   const Eigen::Vector3d eye =

@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/information.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 
 #include <Eigen/Eigenvalues>
 
 #include <cmath>
-#include <limits>
 #include <utility>
 
 namespace glidar {
@@ -18,7 +18,6 @@ using Eigen::Vector3d;
 // Normals are single precision: what is degenerate gets (1e-7)^2 of the best direction's
 // information for each of them, and more where points lie far from their middle.
 constexpr double kDegenerate = 1e-11;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 [[noreturn]] void fail(const char* where, std::string found, std::string allowed) {
   throw Error({where, std::move(found), std::move(allowed), ""});

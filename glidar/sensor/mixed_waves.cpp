@@ -103,12 +103,12 @@ void make_rows(double per_m, std::size_t count, Neighbourhood& n) {
 }
 
 /// A stretch of a run that lies in one row: `count` pixels from place `begin` of the run.
-struct Stretch {
+struct PixelRun {
   std::size_t begin;
   std::size_t count;
 };
 
-void mix_stretch(const Shares& shares, std::span<const double> per_m, const Stretch& stretch,
+void mix_stretch(const Shares& shares, std::span<const double> per_m, const PixelRun& stretch,
                  Neighbourhood& n, WavePhases& phases) {
   const std::size_t wide = stretch.count + 2;
   double* amplitude = phases.amplitude.data() + stretch.begin;

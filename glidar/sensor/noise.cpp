@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/noise.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/simd.hpp>
 #include <glidar/sensor/noise_batch.hpp>
 
@@ -12,7 +13,6 @@
 namespace glidar {
 namespace {
 
-constexpr double kNoRange = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kGrain = 8 * kDrawBatch;
 
 template <class Step>
@@ -95,7 +95,7 @@ void load_depth(const Beams& beams, NoiseBatch& batch) {
 }
 
 /// Steps [begin, end) of a list; the first of them may look around, the others do not.
-struct Stretch {
+struct NoiseRun {
   const std::vector<NoiseStep>& noise;
   std::size_t begin;
   std::size_t end;
@@ -104,10 +104,10 @@ struct Stretch {
   [[nodiscard]] bool is_last() const { return end == noise.size(); }
 };
 
-void load(const Stretch& stretch, const NoiseView& view, NoiseBatch& batch) {
+void load(const NoiseRun& stretch, const NoiseView& view, NoiseBatch& batch) {
   const Frame& frame = view.frame;
   batch.frame_s = stretch.frame_s;
-  load_column(frame.range_m, batch, kNoRange, batch.range_m);
+  load_column(frame.range_m, batch, kNaN, batch.range_m);
   load_column(frame.sigma_m, batch, 0.0, batch.variance_m2);
   square(batch.variance_m2);
   load_column(frame.intensity, batch, 0.0, batch.intensity);
@@ -158,7 +158,7 @@ void store(const NoiseView& view, NoiseBatch& batch) {
 
 /// Calls body(batch) for all runs of a frame, loaded.
 template <class Body>
-void for_batches(const Stretch& stretch, const NoiseView& view, Workers& workers,
+void for_batches(const NoiseRun& stretch, const NoiseView& view, Workers& workers,
                  const Body& body) {
   const std::size_t size = view.frame.range_m.size();
   const std::size_t runs = (size + kDrawBatch - 1) / kDrawBatch;
@@ -173,7 +173,7 @@ void for_batches(const Stretch& stretch, const NoiseView& view, Workers& workers
   });
 }
 
-void prepare_step(const Stretch& stretch, const NoiseView& view, NoiseBatch& batch) {
+void prepare_step(const NoiseRun& stretch, const NoiseView& view, NoiseBatch& batch) {
   batch.draw = draw_of(view.frame, purpose_of(stretch.begin), batch.first);
   std::visit(
       [&](const auto& step) {
@@ -182,7 +182,7 @@ void prepare_step(const Stretch& stretch, const NoiseView& view, NoiseBatch& bat
       stretch.noise[stretch.begin]);
 }
 
-void apply_steps(const Stretch& stretch, const NoiseView& view, NoiseBatch& batch) {
+void apply_steps(const NoiseRun& stretch, const NoiseView& view, NoiseBatch& batch) {
   for (std::size_t k = stretch.begin; k < stretch.end; ++k) {
     batch.draw = draw_of(view.frame, purpose_of(k), batch.first);
     std::visit(
@@ -207,7 +207,7 @@ void turn_beams(const std::vector<NoiseStep>& noise, const Frame& frame, BeamRan
 }
 
 /// Applies steps of which at most the first looks around.
-void apply_stretch(const Stretch& stretch, const NoiseView& view, Workers& workers) {
+void apply_stretch(const NoiseRun& stretch, const NoiseView& view, Workers& workers) {
   if (looks_around(stretch.noise[stretch.begin])) {
     for_batches(stretch, view, workers,
                 [&](NoiseBatch& batch) { prepare_step(stretch, view, batch); });

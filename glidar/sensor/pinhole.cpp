@@ -2,17 +2,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/pinhole.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 
 #include <Eigen/LU>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace glidar {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 void validate(const PinholeIntrinsics& k) {
   require_number(k.width >= 1 && k.width <= kLargestImageSide, "pinhole, width", k.width,

@@ -3,6 +3,7 @@
 #include <glidar/sensor/prism.hpp>
 
 #include <cmath>
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 #include <limits>
 #include <numbers>
@@ -10,7 +11,6 @@
 namespace glidar {
 namespace {
 
-constexpr double kNanoseconds = 1e9;
 constexpr std::size_t kMostParts = 64;
 
 void validate(const RisleyPrism& p) {
@@ -32,8 +32,8 @@ void validate(const Prism& prism) {
   for (const double right : prism.incident_right) {
     require_number(std::abs(right) < 1.0, "optics, incident beam", right, "above -1 and below 1");
   }
-  require_number(prism.pulse_hz > 0.0 && prism.pulse_hz <= kNanoseconds,
-                 "optics, pulses per second", prism.pulse_hz, "above 0, up to 1e9");
+  require_number(prism.pulse_hz > 0.0 && prism.pulse_hz <= kSecond_ns, "optics, pulses per second",
+                 prism.pulse_hz, "above 0, up to 1e9");
   for (const RisleyPrism& p : prism.prisms) validate(p);
 }
 
@@ -85,7 +85,7 @@ Eigen::Vector3d pass_all(const Prism& prism, const std::vector<double>& phases_r
 Beams make_beams(const Prism& prism, const ScanWindow& window) {
   validate(prism);
   const std::size_t rows = prism.incident_right.size();
-  const Ticks pulses = {0.0, kNanoseconds / prism.pulse_hz};
+  const Ticks pulses = {0.0, kSecond_ns / prism.pulse_hz};
   const TickRange range = ticks_in(pulses, window, kMostBeams / rows);
   Beams beams;
   beams.rows = static_cast<std::uint32_t>(rows);

@@ -13,10 +13,10 @@ namespace glidar {
 namespace {
 
 constexpr double kFwhmPerSigma = 2.3548200450309493;  // 2 sqrt(2 ln 2)
-constexpr double kDarkest = 1e-9;                     // intensity 0 would have an infinite error
+constexpr double kMinIntensity = 1e-9;                // intensity 0 would have an infinite error
 
 inline double not_dark(double intensity) {
-  return intensity > kDarkest ? intensity : kDarkest;
+  return intensity > kMinIntensity ? intensity : kMinIntensity;
 }
 
 /// A variance as a function of the intensity I: the sum of constant, per_intensity / I and

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/raster.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/sensor/beam_table.hpp>
 
@@ -10,8 +11,6 @@
 
 namespace glidar {
 namespace {
-
-constexpr double kNanoseconds = 1e9;
 
 bool all_finite(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
@@ -38,7 +37,7 @@ BeamTable in_order(const Raster& r) {
   BeamTable table;
   table.rows = static_cast<std::uint32_t>(r.elevations_rad.size());
   table.cols = static_cast<std::uint32_t>(r.azimuths_rad.size());
-  table.period_ns = kNanoseconds / r.scan_hz;
+  table.period_ns = kSecond_ns / r.scan_hz;
   for (std::size_t line = 0; line < table.rows; ++line) {
     const bool backwards = r.to_and_fro && line % 2 == 1;
     for (std::size_t point = 0; point < table.cols; ++point) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/sensor.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 
 #include <cmath>
@@ -75,9 +76,8 @@ void check_weather(const Sensor& sensor) {
 }
 
 ScanWindow scan_window(const Sensor& sensor, std::uint32_t frame) {
-  constexpr double kNanoseconds = 1e9;
   const auto start_of = [&](double count) {
-    return static_cast<std::int64_t>(std::llround(count * kNanoseconds / sensor.rate_hz));
+    return static_cast<std::int64_t>(std::llround(count * kSecond_ns / sensor.rate_hz));
   };
   return {start_of(frame), start_of(frame + 1.0)};
 }

@@ -4,14 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
 #include <numeric>
 
 namespace glidar {
 namespace {
 
-constexpr double kTwoPi = 2.0 * std::numbers::pi;
-constexpr double kNanoseconds = 1e9;
 constexpr std::size_t kMostChannels = 4096;
 constexpr double kMostTurns_hz = 1e4;
 
@@ -20,7 +19,7 @@ void validate(const SpinningChannel& channel) {
                  channel.elevation_rad, "-pi/2 to pi/2");
   require_number(std::isfinite(channel.azimuth_offset_rad), "optics, azimuth offset",
                  channel.azimuth_offset_rad, "a finite angle");
-  require_number(std::abs(channel.fire_time_ns) <= kNanoseconds, "optics, fire time",
+  require_number(std::abs(channel.fire_time_ns) <= kSecond_ns, "optics, fire time",
                  channel.fire_time_ns, "-1e9 to 1e9 ns");
   require_number(channel.origin_m.allFinite(), "optics, origin offset", channel.origin_m.norm(),
                  "finite metres");
@@ -57,7 +56,7 @@ double turned(const Spinning& s, std::int64_t k) {
     const auto columns = std::int64_t{s.columns_per_turn};
     return static_cast<double>(k % columns) / static_cast<double>(columns);
   }
-  return std::fmod(static_cast<double>(k) * s.sequence_ns * s.rotation_hz / kNanoseconds, 1.0);
+  return std::fmod(static_cast<double>(k) * s.sequence_ns * s.rotation_hz / kSecond_ns, 1.0);
 }
 
 double sense(const Spinning& s) {
@@ -131,8 +130,7 @@ void put_shot(const Spinning& s, const SpinningChannel& channel, double head_rad
 }  // namespace
 
 double sequence_period_ns(const Spinning& s) {
-  return s.columns_per_turn > 0 ? kNanoseconds / (s.rotation_hz * s.columns_per_turn)
-                                : s.sequence_ns;
+  return s.columns_per_turn > 0 ? kSecond_ns / (s.rotation_hz * s.columns_per_turn) : s.sequence_ns;
 }
 
 Beams make_beams(const Spinning& s, const ScanWindow& window) {
@@ -140,7 +138,7 @@ Beams make_beams(const Spinning& s, const ScanWindow& window) {
   const std::vector<std::size_t> rows = rows_of(s);
   const std::vector<std::int64_t> sequences = sequences_in(s, window);
   const double period_ns = sequence_period_ns(s);
-  const double turn_rad_per_ns = sense(s) * kTwoPi * s.rotation_hz / kNanoseconds;
+  const double turn_rad_per_ns = sense(s) * kTwoPi * s.rotation_hz / kSecond_ns;
   Beams beams = make_grid(s, sequences.size());
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const SpinningChannel& channel = s.channels[rows[row]];

@@ -16,7 +16,7 @@
 namespace glidar {
 namespace {
 
-constexpr double kDarkest = 1e-9;
+constexpr double kMinAmplitude = 1e-9;
 
 /// The frequencies, the finest first, and what the search for the range needs of them.
 struct Waves {
@@ -68,7 +68,7 @@ GLIDAR_SIMD void phase_of_range(double per_m, const Batch<double>& range_m, Batc
 GLIDAR_SIMD void spread(const ContinuousWave& law, const Batch<double>& amplitude,
                         const Batch<double>& scale, Batch<double>& sigma_turns) {
   for (std::size_t i = 0; i < kDrawBatch; ++i) {
-    const double light = amplitude[i] > kDarkest ? amplitude[i] : kDarkest;
+    const double light = amplitude[i] > kMinAmplitude ? amplitude[i] : kMinAmplitude;
     const double signal = law.electrons_at_full_scale * light;
     sigma_turns[i] = std::sqrt(0.5 * (law.background_electrons + signal)) /
                      (law.contrast * signal) * scale[i] * (0.5 * std::numbers::inv_pi);

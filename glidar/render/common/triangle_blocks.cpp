@@ -2,18 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/common/triangle_blocks.hpp>
 
+#include <glidar/render/common/rounding.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 namespace glidar {
 namespace {
-
-/// The least float that is not below the value.
-float round_up(double value) {
-  const auto rounded = static_cast<float>(value);
-  return std::nextafter(rounded, std::numeric_limits<float>::infinity());
-}
 
 Eigen::AlignedBox3f box_of(const MeshTriangles& mesh, std::span<const std::uint32_t> chosen) {
   Eigen::AlignedBox3f box;
@@ -37,7 +33,7 @@ void pack_cluster(const MeshTriangles& mesh, std::span<std::uint32_t> chosen,
     cluster.centre[axis] = centre;
     radius = std::max({radius, high - double{centre}, double{centre} - low});
   }
-  cluster.radius = round_up(radius);
+  cluster.radius = next_above(radius);
   cluster.count = static_cast<std::uint32_t>(chosen.size());
   for (std::uint32_t slot = 0; slot < kBlockSize * block_count(cluster.count); ++slot) {
     const std::uint32_t t = chosen[std::min(slot, cluster.count - 1)];

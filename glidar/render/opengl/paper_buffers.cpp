@@ -44,7 +44,7 @@ void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& dra
 }
 
 /// Blends of unit vectors that lie less than 120 degrees from each other have some length.
-bool is_smooth(const Mesh& mesh, const Triangle& t) {
+bool has_smooth_normals(const Mesh& mesh, const Triangle& t) {
   constexpr float kCosineOf120 = -0.5F;
   if (mesh.normals.empty()) return false;
   const Eigen::Vector3f& a = mesh.normals[t[0]];
@@ -57,7 +57,7 @@ std::vector<std::uint32_t> kinds_of(const Mesh& mesh) {
   std::vector<std::uint32_t> kinds;
   kinds.reserve(mesh.triangles.size());
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
-    kinds.push_back(kind_of(material_slot(mesh, i), is_smooth(mesh, mesh.triangles[i])));
+    kinds.push_back(kind_of(material_slot(mesh, i), has_smooth_normals(mesh, mesh.triangles[i])));
   }
   return kinds;
 }

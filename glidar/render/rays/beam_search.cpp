@@ -2,18 +2,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/rays/beam_search.hpp>
 
+#include <glidar/core/constants.hpp>
+#include <glidar/render/common/rounding.hpp>
 #include <glidar/render/rays/exact_decision.hpp>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <limits>
 
 namespace glidar::rays {
 namespace {
 
 static_assert(kLanes == kPacketSize);
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 void set_rays(const Lanes3<double>& origin, const Lanes3<double>& direction, RayPacket& packet) {
   static_assert(sizeof(packet.exact_origin) == sizeof(origin));
@@ -36,12 +36,6 @@ std::uint32_t usable_lanes(const BeamBlock& beams) {
     lanes |= static_cast<std::uint32_t>(is_usable) << i;
   }
   return lanes;
-}
-
-/// A float that is surely not below the value.
-float upper(double value) {
-  const auto rounded = static_cast<float>(value);
-  return rounded + 0x1p-22F * std::abs(rounded) + 0x1p-120F;
 }
 
 /// What a triangle's filter functions need to know, see RayPacket::stops.
@@ -138,14 +132,15 @@ class SceneTrace {
     for_lanes(lanes, [&](unsigned i) {
       if (nearest_[i].found.instance == kNoHit) return;
       const double end = nearest_[i].high_m / scale;
-      p.high[i] = upper(end - p.shift[i] + 0x1p-50 * end);
+      p.high[i] = well_above(end - p.shift[i] + 0x1p-50 * end);
     });
     inner_.trace();
     tied_ |= p.tied;
     for_lanes(lanes, [&](unsigned i) {
       if (p.slot[i] == kNoTriangle) return;
       take(i, {instance, inner_.primitive(i)}, scale);
-      outer.high[i] = upper(nearest_[i].high_m - outer.shift[i] + 0x1p-50 * nearest_[i].high_m);
+      outer.high[i] =
+          well_above(nearest_[i].high_m - outer.shift[i] + 0x1p-50 * nearest_[i].high_m);
     });
   }
 

@@ -19,14 +19,6 @@ SplitNode box_around(const TreeNode& node) {
   return box;
 }
 
-/// Half the surface of a box.
-double area_of(const SplitNode& box) {
-  const double x = double{box.high[0]} - box.low[0];
-  const double y = double{box.high[1]} - box.low[1];
-  const double z = double{box.high[2]} - box.low[2];
-  return x * y + y * z + z * x;
-}
-
 }  // namespace
 
 void BoxTree::build(std::span<BoxReference> boxes, std::size_t count, Workers& workers) {
@@ -39,7 +31,7 @@ void BoxTree::build(std::span<BoxReference> boxes, std::size_t count, Workers& w
   for (const LeafRange& leaf : leaves) index_of_leaf_.push_back(boxes[leaf.first].index);
   find_places(count);
   area_ = 0.0;
-  for (const TreeNode& node : nodes_) area_ += area_of(box_around(node));
+  for (const TreeNode& node : nodes_) area_ += half_area(box_around(node));
   built_area_ = area_;
 }
 
@@ -66,13 +58,13 @@ void BoxTree::move(const BoxReference& box) {
   SplitNode around{};
   for (;;) {
     TreeNode& node = nodes_[place.node];
-    area_ -= area_of(box_around(node));
+    area_ -= half_area(box_around(node));
     for (int axis = 0; axis < 3; ++axis) {
       node.low[axis][place.child] = low[axis];
       node.high[axis][place.child] = high[axis];
     }
     around = box_around(node);
-    area_ += area_of(around);
+    area_ += half_area(around);
     if (place.node == 0) break;
     low = around.low;
     high = around.high;

@@ -2,21 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/rays/collapse_tree.hpp>
 
+#include <glidar/core/constants.hpp>
+
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace glidar::rays {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-float area_of(const SplitNode& node) {
-  const float x = node.high[0] - node.low[0];
-  const float y = node.high[1] - node.low[1];
-  const float z = node.high[2] - node.low[2];
-  return x * y + y * z + z * x;
-}
 
 class Collapse {
  public:
@@ -49,12 +41,12 @@ class Collapse {
     children.count = 1;
     while (children.count < 8) {
       unsigned largest = 8;
-      float area = -1.0F;
+      double area = -1.0;
       for (unsigned i = 0; i < children.count; ++i) {
         const SplitNode& node = split_[children.at[i]];
-        if (node.count != 0 || area_of(node) <= area) continue;
+        if (node.count != 0 || half_area(node) <= area) continue;
         largest = i;
-        area = area_of(node);
+        area = half_area(node);
       }
       if (largest == 8) break;
       const std::uint32_t opened = children.at[largest];
@@ -68,8 +60,8 @@ class Collapse {
     const bool is_there = i < children.count;
     const SplitNode* child = is_there ? &split_[children.at[i]] : nullptr;
     for (int axis = 0; axis < 3; ++axis) {
-      node.low[axis][i] = is_there ? child->low[axis] : kInfinity;
-      node.high[axis][i] = is_there ? child->high[axis] : -kInfinity;
+      node.low[axis][i] = is_there ? child->low[axis] : kInfinityf;
+      node.high[axis][i] = is_there ? child->high[axis] : -kInfinityf;
     }
     node.child[i] = kNoChild;
     if (!is_there || child->count == 0) return;

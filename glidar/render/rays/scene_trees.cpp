@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/rays/scene_trees.hpp>
 
+#include <glidar/render/common/rounding.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,13 +22,6 @@ constexpr std::size_t kFew = 8;
 const Pose& pose_of(const Scene& scene, const CastRequest& request, std::size_t instance) {
   return request.world_from_instance.empty() ? scene.instances[instance].world_from_object
                                              : request.world_from_instance[instance];
-}
-
-float below(double value) {
-  return std::nextafter(static_cast<float>(value), -std::numeric_limits<float>::infinity());
-}
-float above(double value) {
-  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
 }
 
 }  // namespace
@@ -123,8 +118,8 @@ BoxReference SceneTrees::reference_of(std::uint32_t instance) const {
       (turn.cwiseAbs() * (0.5 * scale * box.sizes())).array() + kRoom * size;
   BoxReference reference{};
   for (int axis = 0; axis < 3; ++axis) {
-    reference.low[axis] = below(middle[axis] - half[axis]);
-    reference.high[axis] = above(middle[axis] + half[axis]);
+    reference.low[axis] = next_below(middle[axis] - half[axis]);
+    reference.high[axis] = next_above(middle[axis] + half[axis]);
   }
   reference.index = instance;
   return reference;

@@ -2,13 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/rays/split_tree.hpp>
 
+#include <glidar/core/constants.hpp>
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <utility>
 
 namespace glidar::rays {
@@ -17,7 +18,6 @@ namespace {
 using Quad = float __attribute__((vector_size(16), may_alias));
 using Indices = std::int32_t __attribute__((vector_size(16)));
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kMaxBins = 16;
 constexpr std::uint32_t kFewReferences = 64;           ///< of which half the bins suffice
 constexpr std::uint32_t kParallelReferences = 4096;    ///< worth a task
@@ -43,8 +43,8 @@ Quad greatest(Quad a, Quad b) {
 
 /// x, y, z; the fourth number has no meaning.
 struct Box {
-  Quad low = all(kInfinity);
-  Quad high = all(-kInfinity);
+  Quad low = all(kInfinityf);
+  Quad high = all(-kInfinityf);
 
   void extend(Quad other_low, Quad other_high) {
     low = least(low, other_low);
@@ -114,7 +114,7 @@ struct Bins {
 };
 
 struct Split {
-  float cost = kInfinity;  ///< infinite: there is none
+  float cost = kInfinityf;  ///< infinite: there is none
   std::size_t axis = 0;
   std::int32_t bin = 0;  ///< first of the second side
 };
@@ -132,7 +132,7 @@ void find_split_along(const Bins& bins, std::uint32_t bin_count, std::size_t axi
   for (std::size_t i = bin_count - 1; i > 0; --i) {
     box.extend(bins.box[axis][i]);
     count += bins.count[axis][i];
-    cost_above[i] = count == 0 ? kInfinity : test_cost(box, count);
+    cost_above[i] = count == 0 ? kInfinityf : test_cost(box, count);
   }
   box = {};
   count = 0;
@@ -208,7 +208,7 @@ class Builder {
     if (depth < std::min(kBalancedDepth, options_.max_depth / 2)) {
       best = find_split(range, binning, bins);
     }
-    if (best.cost < kInfinity) return partition(range, binning, best, sides);
+    if (best.cost < kInfinityf) return partition(range, binning, best, sides);
     const std::uint32_t middle = range.begin + range.size() / 2;
     sides[0] = extent_of(in({range.begin, middle}));
     sides[1] = extent_of(in({middle, range.end}));

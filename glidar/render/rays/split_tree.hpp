@@ -27,6 +27,14 @@ struct alignas(16) SplitNode {
   std::uint32_t count;  ///< 0: not a leaf
 };
 
+/// Half the surface of a node's box.
+inline double half_area(const SplitNode& node) {
+  const double x = double{node.high[0]} - node.low[0];
+  const double y = double{node.high[1]} - node.low[1];
+  const double z = double{node.high[2]} - node.low[2];
+  return x * y + y * z + z * x;
+}
+
 struct SplitOptions {
   std::uint32_t leaf_size = 8;  ///< largest
   std::uint32_t bins = 16;      ///< places to cut per axis, up to 16

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/scan_raster/beam_grid.hpp>
 
+#include <glidar/render/common/rounding.hpp>
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -44,13 +46,6 @@ double margin_of(const std::vector<RowAngles>& rows) {
     margin = std::max({margin, -row.low_deviation, row.high_deviation});
   }
   return margin + 2.0;
-}
-
-float below(double value) {
-  return std::nextafter(static_cast<float>(value), -std::numeric_limits<float>::infinity());
-}
-float above(double value) {
-  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
 }
 
 }  // namespace
@@ -140,8 +135,8 @@ void BeamGrid::find_columns(const Beams& beams) {
   low_deviation_.clear();
   high_deviation_.clear();
   for (const RowAngles& row : rows_) {
-    low_deviation_.push_back(below(row.low_deviation));
-    high_deviation_.push_back(above(row.high_deviation));
+    low_deviation_.push_back(next_below(row.low_deviation));
+    high_deviation_.push_back(next_above(row.high_deviation));
   }
 }
 
@@ -186,12 +181,12 @@ GridView BeamGrid::view() const {
   view.middle_column = 0.5F * static_cast<float>(columns_.width) - 0.5F;
   view.column_room = static_cast<float>(kColumnRoom + kAzimuthRoom_rad / step_rad);
   const double half_rad = (0.5 * columns_.width + margin_of(rows_)) * step_rad;
-  view.max_slope = above(std::tan(half_rad));
-  view.lowest_tangent = below(lowest_tangent_);
-  view.highest_tangent = above(highest_tangent_);
+  view.max_slope = next_above(std::tan(half_rad));
+  view.lowest_tangent = next_below(lowest_tangent_);
+  view.highest_tangent = next_above(highest_tangent_);
   const double secant = 1.0001 / std::cos(half_rad);
-  view.lowest_slope = below(std::min(lowest_tangent_, lowest_tangent_ * secant));
-  view.highest_slope = above(std::max(highest_tangent_, highest_tangent_ * secant));
+  view.lowest_slope = next_below(std::min(lowest_tangent_, lowest_tangent_ * secant));
+  view.highest_slope = next_above(std::max(highest_tangent_, highest_tangent_ * secant));
   view.bins_per_tangent = static_cast<float>(kElevationBins / (highest_tangent_ - lowest_tangent_));
   view.first_row = first_row_.data();
   view.last_row = last_row_.data();

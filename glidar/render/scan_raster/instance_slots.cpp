@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/scan_raster/instance_slots.hpp>
 
+#include <glidar/render/common/rounding.hpp>
+
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -41,10 +43,6 @@ bool is_within_bounds(const InstanceView& view, const rays::MeshSphere& sphere) 
 double distance_m(const InstanceView& view, const rays::MeshSphere& sphere) {
   const Eigen::Map<const Eigen::Vector3d> centre(sphere.centre);
   return view.scale * ((view.sensor_in_object - centre).norm() - sphere.radius);
-}
-
-float above(double value) {
-  return std::nextafter(static_cast<float>(value), std::numeric_limits<float>::infinity());
 }
 
 }  // namespace
@@ -102,16 +100,16 @@ Placement place(const rays::SceneTrees& trees, const InstanceView& view, std::ui
   p.tree = tree.view();
   for (int axis = 0; axis < 3; ++axis) {
     p.origin[axis] = origin[axis];
-    p.foot[axis] = above(sector.foot_m()[axis] / view.scale);
+    p.foot[axis] = next_above(sector.foot_m()[axis] / view.scale);
     for (int i = 0; i < 3; ++i) p.sector_from_object[axis][i] = sector_from_object(axis, i);
   }
-  p.behind = above(sector.behind_m() / view.scale);
-  p.distance = above(sector.distance_m() / view.scale);
+  p.behind = next_above(sector.behind_m() / view.scale);
+  p.distance = next_above(sector.distance_m() / view.scale);
   p.metres = view.scale;
   // As in packet_start.hpp.
   p.rounding = origin.lpNorm<1>() + 2.0 * sector.distance_m() / view.scale +
                0x1p4 * trees.largest_reach_m() / view.scale;
-  p.room = above(kBoxRoom * size_of(tree.sphere, origin));
+  p.room = next_above(kBoxRoom * size_of(tree.sphere, origin));
   return p;
 }
 

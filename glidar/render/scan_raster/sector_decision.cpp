@@ -2,23 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/scan_raster/sector_decision.hpp>
 
+#include <glidar/render/common/rounding.hpp>
 #include <glidar/render/rays/exact_decision.hpp>
 
 #include <bit>
 #include <cmath>
 
 namespace glidar::scan_raster {
-namespace {
-
-float below(double value) {
-  const auto rounded = static_cast<float>(value);
-  return rounded - 0x1p-22F * std::abs(rounded) - 0x1p-120F;
-}
-float above(double value) {
-  return -below(-value);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 void SectorDecision::set_instance(std::uint32_t instance, Placement& placement) {
   instance_ = instance;
@@ -63,8 +54,8 @@ void SectorDecision::trace(std::uint32_t cell, std::uint32_t slot) {
   const std::uint32_t number = number_at(cell);
   if (number != kNoNumber && slots_.instance_of(number) == instance_) {
     packet_.slot[0] = number - slots_.first_number(instance_);
-    packet_.low[0] = below(double{picture_.low[cell]} / view.scale);
-    packet_.high[0] = above(double{picture_.high[cell]} / view.scale);
+    packet_.low[0] = well_below(double{picture_.low[cell]} / view.scale);
+    packet_.high[0] = well_above(double{picture_.high[cell]} / view.scale);
   }
   rays::decide(cast_.trees.of_instance(instance_).blocks.data(), packet_, 0, slot);
 }
@@ -112,8 +103,8 @@ void SectorDecision::decide(std::uint32_t cell, std::uint32_t slot) {
   const bool is_nearest = is_hit && is_first(cell, slots_.found(number), low_m, high_m);
   if (packet_.tied != 0) return hand_over(cell);
   if (!is_nearest) return;
-  picture_.low[cell] = below(low_m);
-  picture_.high[cell] = above(high_m);
+  picture_.low[cell] = well_below(low_m);
+  picture_.high[cell] = well_above(high_m);
   picture_.number[cell] = std::bit_cast<float>(number);
 }
 

@@ -2,18 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/scan_raster/sector_table.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/core/pose.hpp>
 #include <glidar/render/lanes.hpp>
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace glidar::scan_raster {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kNoBeam = -1.0F;
 /// What single precision may add to a bound.
 constexpr double kRoom = 1.0 + 0x1p-20;
@@ -72,7 +71,7 @@ void SectorTable::place_rows(const Beams& beams, std::span<const RowAngles> rows
     if (end <= begin) rows_.back().count = 0;
     for (std::uint32_t i = 0; i < rows_.back().count; ++i) {
       if (!is_beam(beams, rows_.back().first_beam + i)) continue;
-      start_[rows_.back().first_cell + i] = kInfinity;
+      start_[rows_.back().first_cell + i] = kInfinityf;
     }
   }
 }
@@ -83,13 +82,13 @@ void SectorTable::set_directions(const Beams& beams) {
     exact_direction_[axis].resize(start_.size() + kLanes);
   }
   // Cells without a beam repeat the one before, so that bounds of tiles are those of their beams.
-  const auto first = std::find(start_.begin(), start_.end(), kInfinity);
+  const auto first = std::find(start_.begin(), start_.end(), kInfinityf);
   Eigen::Vector3d exact = Eigen::Vector3d::UnitX();
   if (first != start_.end()) {
     exact = beams.directions[beam(static_cast<std::size_t>(first - start_.begin()))];
   }
   for (std::size_t cell = 0; cell < start_.size(); ++cell) {
-    if (start_[cell] == kInfinity) exact = beams.directions[beam(cell)];
+    if (start_[cell] == kInfinityf) exact = beams.directions[beam(cell)];
     const Eigen::Vector3f turned = (sector_from_sensor_ * exact).cast<float>();
     for (int axis = 0; axis < 3; ++axis) {
       exact_direction_[axis][cell] = exact[axis];
@@ -112,7 +111,7 @@ void SectorTable::set_origins(const Beams& beams) {
   if (beams.origins_m.empty()) return;
   const auto for_beams = [&](const auto& visit) {
     for (std::size_t cell = 0; cell < start_.size(); ++cell) {
-      if (start_[cell] == kInfinity) visit(cell, beam(cell));
+      if (start_[cell] == kInfinityf) visit(cell, beam(cell));
     }
   };
   // A line may be moved along itself, so the middle of the lines' feet is the sector's origin.

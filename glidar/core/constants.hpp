@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <limits>
+#include <numbers>
+
+namespace glidar {
+
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+inline constexpr float kNaNf = std::numeric_limits<float>::quiet_NaN();
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
+inline constexpr float kInfinityf = std::numeric_limits<float>::infinity();
+
+inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< radians
+inline constexpr double kDegreesPerRadian =
+    180.0 / std::numbers::pi;  ///< not 1 / kDegree to the bit
+inline constexpr double kTwoPi = 2.0 * std::numbers::pi;
+inline constexpr double kMillimetre_m = 1e-3;
+inline constexpr double kMicrosecond_ns = 1e3;
+inline constexpr double kSecond_ns = 1e9;
+
+}  // namespace glidar
