@@ -13,7 +13,7 @@
 namespace glidar {
 namespace {
 
-constexpr std::uint32_t kPiece = 128;  // columns that are looked through at once
+constexpr std::uint32_t kColumnsAtOnce = 128;  // columns that are looked through at once
 
 /// Up to kLanes hits on their way.
 struct Work {
@@ -140,7 +140,7 @@ void go_on(const PictureWriting& w, Works& works) {
 
 /// Lists the columns of a piece of a row where something was drawn; returns how many.
 std::uint32_t list_drawn(const std::uint32_t* numbers, std::uint32_t begin, std::uint32_t end,
-                         std::array<std::uint32_t, kPiece>& cols) {
+                         std::array<std::uint32_t, kColumnsAtOnce>& cols) {
   std::uint32_t count = 0;
   for (std::uint32_t col = begin; col < end; ++col) {  // a branch would often be mistaken
     cols[count] = col;
@@ -173,9 +173,9 @@ void collect_row(const PictureWriting& w, std::uint32_t row, Works& works) {
   const std::uint32_t drawn_col = w.part.first_col - w.drawn.first_col;
   const std::uint32_t* numbers =
       w.numbers.data() + std::size_t{drawn_row} * w.drawn.cols + drawn_col;
-  std::array<std::uint32_t, kPiece> cols;
-  for (std::uint32_t begin = 0; begin < w.part.cols; begin += kPiece) {
-    const std::uint32_t end = std::min(begin + kPiece, w.part.cols);
+  std::array<std::uint32_t, kColumnsAtOnce> cols;
+  for (std::uint32_t begin = 0; begin < w.part.cols; begin += kColumnsAtOnce) {
+    const std::uint32_t end = std::min(begin + kColumnsAtOnce, w.part.cols);
     const std::uint32_t count = list_drawn(numbers, begin, end, cols);
     // In long strokes, hits being written over them; only where all are hits there is no need.
     if (count < end - begin) write_misses(w.request.fields, first + begin, end - begin, w.hits);

@@ -84,12 +84,12 @@ DepthSpan depths_of(const Planes& planes, const Mesh& mesh, const Triangle& tria
 template <class Work>
 DepthSpan joined(std::size_t count, Workers& workers, std::vector<DepthSpan>& spans,
                  const Work& work) {
-  constexpr std::size_t kPiece = 16384;
-  const std::size_t pieces = (count + kPiece - 1) / kPiece;
+  constexpr std::size_t kDepthsPerPiece = 16384;
+  const std::size_t pieces = (count + kDepthsPerPiece - 1) / kDepthsPerPiece;
   spans.assign(pieces, {});
   workers.for_ranges(pieces, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      spans[i] = work(i * kPiece, std::min(count, (i + 1) * kPiece));
+      spans[i] = work(i * kDepthsPerPiece, std::min(count, (i + 1) * kDepthsPerPiece));
     }
   });
   DepthSpan all;

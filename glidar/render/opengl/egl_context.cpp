@@ -14,8 +14,6 @@
 
 namespace glidar::opengl {
 
-namespace {
-
 /// What is current in this thread. EGL has one current context for OpenGL and OpenGL ES together,
 /// so it is this one also when a window's library made it.
 struct Current {
@@ -24,8 +22,6 @@ struct Current {
   EGLSurface draw = eglGetCurrentSurface(EGL_DRAW);
   EGLSurface read = eglGetCurrentSurface(EGL_READ);
 };
-
-}  // namespace
 
 struct EglContext::Handles {
   EGLDisplay display = EGL_NO_DISPLAY;

@@ -130,15 +130,15 @@ class RasterRenderer final : public Renderer {
 
   void find_sightings(const CastRequest& request, const GridWindow& window,
                       const raster::Nearness& nearness) {
-    constexpr std::uint32_t kPiece = 1024;
+    constexpr std::uint32_t kClustersPerPiece = 1024;
     views_.clear();
     pieces_.clear();
     for (std::uint32_t i = 0; i < scene().instances.size(); ++i) {
       views_.push_back(raster::pixel_view(base_->resolver.view(i), *request.beams.pinhole));
       const auto clusters =
           static_cast<std::uint32_t>(is_present(request, i) ? packed_of(i).clusters : 0);
-      for (std::uint32_t first = 0; first < clusters; first += kPiece) {
-        pieces_.push_back({i, first, std::min(first + kPiece, clusters)});
+      for (std::uint32_t first = 0; first < clusters; first += kClustersPerPiece) {
+        pieces_.push_back({i, first, std::min(first + kClustersPerPiece, clusters)});
       }
     }
     found_.resize(std::max(found_.size(), pieces_.size()));

@@ -14,7 +14,6 @@
 #include <utility>
 
 namespace glidar::scan_raster {
-namespace {
 
 /// What one thread draws a sector with.
 struct Desk {
@@ -34,6 +33,8 @@ struct Desk {
     return {low.data(), high.data(), number.data(), farthest.data(), is_stale.data()};
   }
 };
+
+namespace {
 
 /// One cast, as its threads see it.
 struct Job {
