@@ -24,6 +24,10 @@ constexpr std::uint64_t kMostPerBeam = 40;
 /// The same for scanners: by bench/scan_bench the raster takes half the time at 2 triangles per
 /// beam, the same time at 25.
 constexpr double kMostPerScannerBeam = 12.0;
+/// The same for cameras with lenses, by bench/lens_bench and pictures of other sizes: for each beam
+/// that may hit something, and for any beam, since rays are slower to find nothing.
+constexpr double kMostPerLensBeam = 4.0;
+constexpr double kMostPerAnyLensBeam = 0.6;
 
 class AutoRenderer final : public Renderer {
  public:
@@ -58,9 +62,10 @@ class AutoRenderer final : public Renderer {
 
   /// Prepares the cast where it returns true.
   bool is_for_scan_raster(const CastRequest& request) {
-    if (!is_anything_present(request, base_->resolver.scene()) || looks_along_z(request.beams) ||
-        !scan_raster::may_form_grid(request.beams))
+    if (!is_anything_present(request, base_->resolver.scene()) ||
+        why_not_drawn(request.beams) == nullptr || !scan_raster::may_form_grid(request.beams)) {
       return false;
+    }
     if (scan_raster_ == nullptr) {
       scan_raster_ = std::make_unique<scan_raster::ScanRenderer>(base_);
     }
@@ -68,7 +73,12 @@ class AutoRenderer final : public Renderer {
     if (!grid.misfit().empty()) return false;
     base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
     base_->search.prepare(request);
-    return scan_raster::triangles_per_beam(grid, request.beams, *base_) <= kMostPerScannerBeam;
+    const auto seen = scan_raster::count_seen(grid, request.beams, *base_);
+    const double most = grid.is_camera()
+                            ? kMostPerLensBeam * seen.beams +
+                                  kMostPerAnyLensBeam * static_cast<double>(request.beams.size())
+                            : kMostPerScannerBeam * seen.beams;
+    return seen.triangles <= most;
   }
 
   bool is_for_raster(const CastRequest& request) {

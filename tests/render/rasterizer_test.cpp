@@ -270,11 +270,10 @@ TEST_P(Rasterizer, RefusesBeamsThatItCannotDraw) {
   const Scene scene = builtin_scene("box");
   Beams beams = camera_beams(4, 4, 4.0);
   const bool is_raster = GetParam() == std::string("raster");
-  const auto refusal = [&](const char* pinhole) {
+  const auto refusal = [&](const std::string& found) {
     const std::string text = error_text([&] { draw(scene, beams, Pose::Identity()); });
-    const std::string found = is_raster ? "columns more than 3.4 degrees apart" : pinhole;
     const std::string allowed =
-        is_raster ? "a pinhole camera at rest without distortion, or beams in rows of equal "
+        is_raster ? "a camera at rest, with a smooth lens or none, or beams in rows of equal "
                     "elevation and columns of equal azimuth"
                   : "a pinhole camera at rest, without distortion and with beams from one point";
     EXPECT_EQ(text, std::string(GetParam()) + " renderer: " + found + "; allowed: " + allowed +
@@ -284,7 +283,8 @@ TEST_P(Rasterizer, RefusesBeamsThatItCannotDraw) {
   refusal("beams with origins of their own");
   beams.origins_m.clear();
   beams.pinhole.reset();
-  refusal("beams that are not a pinhole's straight grid");
+  refusal(is_raster ? "a lens's picture of fewer than 16 rows or columns"
+                    : "beams that are not a pinhole's straight grid");
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Rasterizer, ::testing::Values("raster", "opengl"),

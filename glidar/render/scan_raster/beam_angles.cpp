@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/scan_raster/beam_angles.hpp>
 
+#include <glidar/render/scan_raster/grid_view.hpp>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,8 +17,6 @@ namespace {
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 /// Tangent of 80 degrees: the sector's frame has no room for steeper beams.
 constexpr double kMaxTangent = 5.67;
-/// A row whose azimuths deviate from their columns by more is not in the grid, columns.
-constexpr double kMaxSpread = 4.0;
 /// A sector is at least eight columns wide and must be below 57 degrees.
 constexpr double kMaxStep_rad = 0.06;
 constexpr double kMinStep_rad = 1e-6;
@@ -83,12 +83,11 @@ void fit_row(std::span<const double> azimuths, double step_rad, RawRow& raw) {
 
 /// Places a fitted row in the grid.
 RowAngles place_row(const RawRow& raw, std::uint32_t source, const BeamAngles& grid) {
-  constexpr double kRoom = 1e-3;
   RowAngles row;
   row.source = source;
   if (raw.beams == 0) return row;
   const double offset = wrapped(raw.phase_rad - grid.phase_rad) / grid.step_rad;
-  const double half = 0.5 * raw.spread_rad / std::abs(grid.step_rad) + kRoom;
+  const double half = 0.5 * raw.spread_rad / std::abs(grid.step_rad) + kDeviationRoom;
   row.shift = static_cast<std::int32_t>(std::floor(offset + 0.5));
   row.low_tangent = raw.low_tangent;
   row.high_tangent = raw.high_tangent;
@@ -120,7 +119,7 @@ double step_at(const Beams& beams, const SensorAxes& axes, std::size_t beam) {
 
 }  // namespace
 
-bool may_form_grid(const Beams& beams) {
+bool may_form_scan(const Beams& beams) {
   constexpr std::size_t kSamples = 64;
   constexpr std::size_t kLeastColumns = 16;
   if (beams.cols < kLeastColumns) return false;

@@ -46,8 +46,9 @@ struct BeamAngles {
   std::vector<RawRow> raw;           ///< per row of the beams
 };
 
-/// False where some neighbours show at once that the beams form no grid, or most are missing.
-bool may_form_grid(const Beams& beams);
+/// False where some neighbours show at once that the beams are not those of a scanner, or most are
+/// missing.
+bool may_form_scan(const Beams& beams);
 
 /// Measures beams. Azimuths and elevations are those about axes_of(beams).
 void measure_angles(const Beams& beams, Workers& workers, BeamAngles& angles);

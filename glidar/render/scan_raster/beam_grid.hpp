@@ -4,60 +4,58 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/core/workers.hpp>
-#include <glidar/render/scan_raster/beam_angles.hpp>
-#include <glidar/render/scan_raster/sector_table.hpp>
+#include <glidar/render/scan_raster/camera_grid.hpp>
+#include <glidar/render/scan_raster/scanner_grid.hpp>
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 namespace glidar::scan_raster {
 
-/// Tangents of the elevations of all rows.
-struct TangentRange {
-  double low;
-  double high;
-};
+/// False where some neighbours show at once that the beams form no grid, or most are missing.
+bool may_form_grid(const Beams& beams);
 
-/// Beams as a grid of rows of equal elevation and columns of equal azimuth, cut into sectors.
+/// Beams as a grid, cut into sectors: those of cameras as a picture, all others as rows of equal
+/// elevation and columns of equal azimuth.
 class BeamGrid {
  public:
-  /// Measures the beams, unless they are bit for bit those measured last.
   void measure(const Beams& beams, Workers& workers);
 
-  /// Why the beams form no grid; empty: they do. Otherwise only other_rows() is of use.
-  [[nodiscard]] const std::string& misfit() const { return angles_.misfit; }
+  /// True where the beams are bit for bit those measured.
+  [[nodiscard]] bool has_measured(const Beams& beams, Workers& workers) const;
+  /// Beams measured.
+  [[nodiscard]] std::size_t size() const { return measured_.size(); }
 
-  [[nodiscard]] const GridColumns& columns() const { return columns_; }
-  [[nodiscard]] TangentRange tangents() const {
-    return {rows_.front().low_tangent, rows_.back().high_tangent};
+  [[nodiscard]] bool is_camera() const { return looks_along_z(measured_); }
+  [[nodiscard]] const CameraGrid& camera() const { return camera_; }
+  [[nodiscard]] const ScannerGrid& scanner() const { return scanner_; }
+
+  /// Why the beams form no grid; empty: they do. Otherwise only that is of use.
+  [[nodiscard]] const std::string& misfit() const {
+    return is_camera() ? camera_.misfit() : scanner_.misfit();
   }
-  [[nodiscard]] GridView view() const;
-  [[nodiscard]] const std::vector<SectorTable>& sectors() const { return sectors_; }
-
-  /// Rows of beams that are not in the grid.
-  [[nodiscard]] const std::vector<std::uint32_t>& other_rows() const { return other_rows_; }
+  [[nodiscard]] const std::vector<SectorTable>& sectors() const {
+    return is_camera() ? camera_.sectors() : scanner_.sectors();
+  }
+  [[nodiscard]] GridView view(std::size_t sector) const {
+    return is_camera() ? camera_.blocks()[sector].view() : scanner_.view();
+  }
+  /// False for a sector whose beams are to be cast as rays.
+  [[nodiscard]] bool is_drawn(std::size_t sector) const {
+    return !is_camera() || camera_.blocks()[sector].is_drawn();
+  }
+  /// Rows of beams that are in no sector.
+  [[nodiscard]] const std::vector<std::uint32_t>& other_rows() const {
+    return is_camera() ? no_rows_ : scanner_.other_rows();
+  }
 
  private:
-  [[nodiscard]] bool has_measured(const Beams& beams, Workers& workers) const;
-  void sort_rows();
-  void find_misfit(const Beams& beams);
-  void find_columns(const Beams& beams);
-  void find_bins();
-  void build_sectors(const Beams& beams, Workers& workers);
-
-  Beams measured_;  ///< directions, origins and what their axes depend on
-  BeamAngles angles_;
-  std::vector<RowAngles> rows_;  ///< of the grid, rising
-  std::vector<std::uint32_t> other_rows_;
-  GridColumns columns_;
-  std::vector<float> low_deviation_;  ///< per row
-  std::vector<float> high_deviation_;
-  std::vector<std::int32_t> first_row_;  ///< per bin
-  std::vector<std::int32_t> last_row_;
-  double lowest_tangent_ = 0.0;
-  double highest_tangent_ = 0.0;
-  std::vector<SectorTable> sectors_;
+  Beams measured_;  ///< directions, origins, returns and what their axes depend on
+  CameraGrid camera_;
+  ScannerGrid scanner_;
+  std::vector<std::uint32_t> no_rows_;
 };
 
 }  // namespace glidar::scan_raster

@@ -8,6 +8,7 @@
 // Which cells of a sector may see something: never too few.
 namespace glidar::rays::GLIDAR_KERNEL {
 
+using scan_raster::ElevationRows;
 using scan_raster::GridView;
 using scan_raster::kElevationBins;
 
@@ -36,17 +37,19 @@ struct Slopes {
   Float8 up_high;
 };
 
+/// Added before a number is truncated: at most its ceiling.
+inline constexpr float kCeiling = 0.9999F;
+
 /// Eight rectangles of cells, before they are cut at whole columns.
 struct CellRects {
-  alignas(32) float first[8];  ///< azimuths, columns
+  alignas(32) float first[8];  ///< columns
   alignas(32) float last[8];
-  alignas(32) float first_bin[8];  ///< elevations, bins
-  alignas(32) float last_bin[8];
+  alignas(32) float first_up[8];  ///< bins of elevations, or rows
+  alignas(32) float last_up[8];
 
   /// Columns that may see it, with these bounds of their deviations.
   GLIDAR_INLINE void cut(const GridView& grid, unsigned i, float low_deviation,
                          float high_deviation, CellRect& rect) const {
-    constexpr float kCeiling = 0.9999F;  // truncated: at most the ceiling
     const auto end = static_cast<std::int32_t>(grid.columns) - 1;
     const auto low = static_cast<std::int32_t>(first[i] - high_deviation + kCeiling);
     const float high = last[i] - low_deviation;
@@ -55,11 +58,12 @@ struct CellRects {
     rect.last_column = whole > end ? end : whole;
   }
 
+  /// All rows and columns that may see it. Cells: AngleCells or SlopeCells.
+  template <class Cells>
   [[nodiscard]] GLIDAR_INLINE CellRect at(const GridView& grid, unsigned i) const {
     CellRect rect;
     cut(grid, i, grid.min_deviation, grid.max_deviation, rect);
-    rect.first_row = grid.first_row[static_cast<std::int32_t>(first_bin[i])];
-    rect.last_row = grid.last_row[static_cast<std::int32_t>(last_bin[i])];
+    Cells::cut_rows(grid, first_up[i], last_up[i], rect);
     return rect;
   }
 };
@@ -94,34 +98,82 @@ GLIDAR_INLINE Float8 high_cosine(Float8 x) {
   return cosine_series(x * x, Float8::all(0.2734375F));
 }
 
-/// The cells of what has these slopes. Returns a bit for each that the sector may see.
-GLIDAR_INLINE std::uint32_t find_cells(const GridView& grid, const Slopes& s, CellRects& rects) {
-  const float limit = grid.max_slope;
-  auto meets = (s.side_low <= Float8::all(limit)) & (Float8::all(-limit) <= s.side_high);
-  const Float8 low = clamp(s.side_low, -limit, limit);
-  const Float8 high = clamp(s.side_high, -limit, limit);
-  const Float8 scale = Float8::all(grid.columns_per_rad);
-  const Float8 first = Float8::all(grid.middle_column - grid.column_room);
-  const Float8 last = Float8::all(grid.middle_column + grid.column_room);
-  store(rects.first, multiply_add(arc_tangent(low), scale, first));
-  store(rects.last, multiply_add(arc_tangent(high), scale, last));
-  // The tangent of the elevation is up / forward times the cosine of the azimuth.
-  const Float8 zero = Float8::all(0.0F);
-  const Float8 widest = greatest(magnitude(low), magnitude(high));
-  const Float8 narrowest = greatest(greatest(low, -high), zero);
-  const Float8 low_cos = low_cosine(widest);
-  const Float8 high_cos = high_cosine(narrowest);
-  const Float8 bottom = least(s.up_low * low_cos, s.up_low * high_cos);
-  const Float8 top = greatest(s.up_high * low_cos, s.up_high * high_cos);
-  meets = meets & (bottom <= Float8::all(grid.highest_tangent)) &
-          (Float8::all(grid.lowest_tangent) <= top);
-  const Float8 bins = Float8::all(grid.bins_per_tangent);
-  const Float8 offset = Float8::all(-grid.lowest_tangent * grid.bins_per_tangent);
-  const auto end = static_cast<float>(kElevationBins);
-  store(rects.first_bin, clamp(multiply_add(bottom, bins, offset), 0.0F, end));
-  store(rects.last_bin, clamp(multiply_add(top, bins, offset), 0.0F, end));
-  return bits(meets);
-}
+/// Columns of equal azimuth and rows of equal elevation.
+struct AngleCells {
+  /// Slopes are those of the sector's own frame.
+  static constexpr bool kIsTurned = true;
+
+  /// The cells of what has these slopes. Returns a bit for each that the sector may see.
+  GLIDAR_INLINE static std::uint32_t find(const GridView& grid, const Slopes& s, CellRects& rects) {
+    const float limit = grid.max_slope;
+    auto meets = (s.side_low <= Float8::all(limit)) & (Float8::all(-limit) <= s.side_high);
+    const Float8 low = clamp(s.side_low, -limit, limit);
+    const Float8 high = clamp(s.side_high, -limit, limit);
+    const Float8 scale = Float8::all(grid.columns_per_unit);
+    const Float8 first = Float8::all(grid.middle_column - grid.column_room);
+    const Float8 last = Float8::all(grid.middle_column + grid.column_room);
+    store(rects.first, multiply_add(arc_tangent(low), scale, first));
+    store(rects.last, multiply_add(arc_tangent(high), scale, last));
+    // The tangent of the elevation is up / forward times the cosine of the azimuth.
+    const Float8 zero = Float8::all(0.0F);
+    const Float8 widest = greatest(magnitude(low), magnitude(high));
+    const Float8 narrowest = greatest(greatest(low, -high), zero);
+    const Float8 low_cos = low_cosine(widest);
+    const Float8 high_cos = high_cosine(narrowest);
+    const Float8 bottom = least(s.up_low * low_cos, s.up_low * high_cos);
+    const Float8 top = greatest(s.up_high * low_cos, s.up_high * high_cos);
+    const ElevationRows& rows = grid.elevations;
+    meets = meets & (bottom <= Float8::all(rows.highest_tangent)) &
+            (Float8::all(rows.lowest_tangent) <= top);
+    const Float8 bins = Float8::all(rows.bins_per_tangent);
+    const Float8 offset = Float8::all(-rows.lowest_tangent * rows.bins_per_tangent);
+    const auto end = static_cast<float>(kElevationBins);
+    store(rects.first_up, clamp(multiply_add(bottom, bins, offset), 0.0F, end));
+    store(rects.last_up, clamp(multiply_add(top, bins, offset), 0.0F, end));
+    return bits(meets);
+  }
+
+  /// Bins to rows.
+  GLIDAR_INLINE static void cut_rows(const GridView& grid, float first, float last,
+                                     CellRect& rect) {
+    rect.first_row = grid.elevations.first_row[static_cast<std::int32_t>(first)];
+    rect.last_row = grid.elevations.last_row[static_cast<std::int32_t>(last)];
+  }
+};
+
+/// Columns and rows of equal slopes.
+struct SlopeCells {
+  static constexpr bool kIsTurned = false;
+
+  /// As AngleCells::find().
+  GLIDAR_INLINE static std::uint32_t find(const GridView& grid, const Slopes& s, CellRects& rects) {
+    const float limit = grid.max_slope;
+    const auto meets = (s.side_low <= Float8::all(limit)) & (Float8::all(-limit) <= s.side_high) &
+                       (s.up_low <= Float8::all(grid.highest_slope)) &
+                       (Float8::all(grid.lowest_slope) <= s.up_high);
+    const Float8 columns = Float8::all(grid.columns_per_unit);
+    store(rects.first, multiply_add(clamp(s.side_low, -limit, limit), columns,
+                                    Float8::all(grid.middle_column - grid.column_room)));
+    store(rects.last, multiply_add(clamp(s.side_high, -limit, limit), columns,
+                                   Float8::all(grid.middle_column + grid.column_room)));
+    const Float8 rows = Float8::all(grid.slopes.rows_per_slope);
+    const Float8 bottom = clamp(s.up_low, grid.lowest_slope, grid.highest_slope);
+    const Float8 top = clamp(s.up_high, grid.lowest_slope, grid.highest_slope);
+    store(rects.first_up, multiply_add(bottom, rows, Float8::all(grid.slopes.first_row)));
+    store(rects.last_up, multiply_add(top, rows, Float8::all(grid.slopes.last_row)));
+    return bits(meets);
+  }
+
+  /// Rows to whole rows.
+  GLIDAR_INLINE static void cut_rows(const GridView& grid, float first, float last,
+                                     CellRect& rect) {
+    const auto end = static_cast<std::int32_t>(grid.rows) - 1;
+    const auto low = static_cast<std::int32_t>(first + kCeiling);
+    const std::int32_t high = last < 0.0F ? -1 : static_cast<std::int32_t>(last);
+    rect.first_row = low < 0 ? 0 : low;
+    rect.last_row = high > end ? end : high;
+  }
+};
 
 /// From an instance's frame into the sector's, or for vectors of any unit.
 struct Turn {

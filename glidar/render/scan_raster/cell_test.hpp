@@ -18,11 +18,23 @@ struct Drawing {
   const Placement& placement;
   const SectorPicture& picture;
   Turn turn;
+  Turn slopes;  ///< into the frame of slopes
 
   GLIDAR_INLINE Drawing(const GridView& g, const SectorView& s, const Placement& p,
                         const SectorPicture& c)
-      : grid(g), sector(s), placement(p), picture(c), turn(p.sector_from_object) {}
+      : grid(g),
+        sector(s),
+        placement(p),
+        picture(c),
+        turn(p.sector_from_object),
+        slopes(p.slopes_from_object) {}
 };
+
+/// Into the frame in which these cells have their slopes.
+template <class Cells>
+GLIDAR_INLINE const Turn& slopes_frame(const Drawing& drawing) {
+  return Cells::kIsTurned ? drawing.turn : drawing.slopes;
+}
 
 /// Bounds of edge functions and of den, where their vectors were turned into the sector's frame: a
 /// product of three terms with a rounded matrix adds 4 u |q|_1 <= 8 u L s to the 20 u L s of

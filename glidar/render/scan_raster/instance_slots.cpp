@@ -94,14 +94,20 @@ Placement place(const rays::SceneTrees& trees, const InstanceView& view, std::ui
   const rays::MeshTree& tree = trees.of_instance(instance);
   const Eigen::Matrix3d& turn = view.object_from_sensor;
   const Eigen::Vector3d origin = view.sensor_in_object + turn * sector.origin_m() / view.scale;
+  const SectorFrame& frame = sector.frame();
   const Eigen::Matrix3f sector_from_object =
-      (sector.sector_from_sensor() * turn.transpose()).cast<float>();
+      (frame.sector_from_sensor * turn.transpose()).cast<float>();
+  const Eigen::Matrix3f slopes_from_object =
+      (frame.slopes_from_sensor * turn.transpose()).cast<float>();
   Placement p{};
   p.tree = tree.view();
   for (int axis = 0; axis < 3; ++axis) {
     p.origin[axis] = origin[axis];
     p.foot[axis] = next_above(sector.foot_m()[axis] / view.scale);
-    for (int i = 0; i < 3; ++i) p.sector_from_object[axis][i] = sector_from_object(axis, i);
+    for (int i = 0; i < 3; ++i) {
+      p.sector_from_object[axis][i] = sector_from_object(axis, i);
+      p.slopes_from_object[axis][i] = slopes_from_object(axis, i);
+    }
   }
   p.behind = next_above(sector.behind_m() / view.scale);
   p.distance = next_above(sector.distance_m() / view.scale);

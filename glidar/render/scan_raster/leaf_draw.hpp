@@ -36,7 +36,7 @@ struct LeafOrigin {
   }
 };
 
-/// Eight triangles in the sector's frame.
+/// Eight triangles in the frame of slopes.
 struct SeenBlock {
   Vector<Float8> corner[3];
   Vector<Float8> e1;
@@ -118,24 +118,29 @@ struct BlockCells {
   std::uint32_t around;  ///< those that may cover any cell
   CellRects rects;
 
-  GLIDAR_INLINE BlockCells(const Drawing& drawing, const SeenBlock& seen, const LeafOrigin& origin,
-                           std::uint32_t existing) {
+  template <class Cells>
+  GLIDAR_INLINE static BlockCells find(const Drawing& drawing, const SeenBlock& seen,
+                                       const LeafOrigin& origin, std::uint32_t existing) {
+    BlockCells cells;
     const auto forward = [](const Vector<Float8>& p) { return p.x; };
     const Float8 nearest = seen.lowest(forward);
     const std::uint32_t behind = bits(seen.highest(forward) < Float8::all(-origin.behind));
-    left = existing & ~behind;
-    around = bits(nearest < Float8::all(2.0F * origin.foot[0])) & left;
-    if (around != 0) {
-      const std::uint32_t beside = find_beside(drawing.grid, seen, origin) & around;
-      around &= ~beside;
-      left &= ~beside;
+    cells.left = existing & ~behind;
+    cells.around = bits(nearest < Float8::all(2.0F * origin.foot[0])) & cells.left;
+    if (cells.around != 0) {
+      const std::uint32_t beside = find_beside(drawing.grid, seen, origin) & cells.around;
+      cells.around &= ~beside;
+      cells.left &= ~beside;
     }
-    if (left == 0) return;
-    left &= around | find_cells(drawing.grid, slopes_of(seen, origin, nearest), rects);
+    if (cells.left == 0) return cells;
+    const Slopes slopes = slopes_of(seen, origin, nearest);
+    cells.left &= cells.around | Cells::find(drawing.grid, slopes, cells.rects);
+    return cells;
   }
 };
 
-/// The rows of the triangles, turned so that det is positive.
+/// The rows of the triangles, turned so that det is positive. With origins of their own, `seen` is
+/// in the sector's frame.
 template <bool kOwnOrigins>
 GLIDAR_INLINE void fill_rows(const Drawing& drawing, const BlockSetup& s, const SeenBlock& seen,
                              TriangleRows& rows) {
@@ -196,14 +201,14 @@ GLIDAR_INLINE void draw_small(const Drawing& drawing, const RowTriangle& t, cons
   }
 }
 
-template <bool kOwnOrigins>
+template <class Cells, bool kOwnOrigins>
 GLIDAR_INLINE void draw_triangle(const Drawing& drawing, const RowTriangle& t,
                                  const BlockCells& cells) {
   if ((cells.around >> t.index & 1U) != 0) {
     draw_large<kOwnOrigins>(drawing, t, whole_sector(drawing.grid));
     return;
   }
-  const CellRect rect = cells.rects.at(drawing.grid, t.index);
+  const CellRect rect = cells.rects.at<Cells>(drawing.grid, t.index);
   if (rect.is_empty()) return;
   const std::int32_t rows = rect.last_row - rect.first_row + 1;
   const std::int32_t vectors = (rect.last_column - rect.first_column) / 8 + 1;
@@ -214,7 +219,7 @@ GLIDAR_INLINE void draw_triangle(const Drawing& drawing, const RowTriangle& t,
   }
 }
 
-template <bool kOwnOrigins>
+template <class Cells, bool kOwnOrigins>
 void draw_leaf(const Drawing& drawing, std::uint32_t index) {
   const TreeView& tree = drawing.placement.tree;
   const TriangleCluster& cluster = tree.clusters[index];
@@ -225,16 +230,16 @@ void draw_leaf(const Drawing& drawing, std::uint32_t index) {
     const Vector<Float8> a =
         corners.a - Vector<Float8>{Float8::all(origin.at[0]), Float8::all(origin.at[1]),
                                    Float8::all(origin.at[2])};
-    const SeenBlock seen(drawing.turn, a, corners);
-    const BlockCells cells(drawing, seen, origin, present(cluster, b));
+    const SeenBlock seen(slopes_frame<Cells>(drawing), a, corners);
+    const auto cells = BlockCells::find<Cells>(drawing, seen, origin, present(cluster, b));
     if (cells.left == 0) continue;
     const BlockSetup s = set_up(corners, a, origin.scaled);
     TriangleRows rows;
     fill_rows<kOwnOrigins>(drawing, s, seen, rows);
     const std::uint32_t faces = find_facing<kOwnOrigins>(drawing, rows);
     for_bits(cells.left, [&](unsigned i) {
-      draw_triangle<kOwnOrigins>(drawing, {rows, i, block * kBlockSize + i, (faces >> i & 1U) != 0},
-                                 cells);
+      draw_triangle<Cells, kOwnOrigins>(
+          drawing, {rows, i, block * kBlockSize + i, (faces >> i & 1U) != 0}, cells);
     });
   }
 }

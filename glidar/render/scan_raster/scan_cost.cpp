@@ -16,53 +16,81 @@ constexpr std::size_t kLeastSamples = 8;
 /// An instance costs a sector about as much as this many triangles.
 constexpr double kTrianglesPerInstance = 15.0;
 
-/// What is in view, in bins of azimuth and elevation.
-class View {
+/// Where a point is in a view, each from 0 up to 1; elsewhere beside the view.
+struct Place {
+  double across;
+  double up;
+};
+
+/// The view of a scanner, by azimuth and elevation.
+class ScannerView {
  public:
-  View(const BeamGrid& grid, const Beams& beams)
+  ScannerView(const ScannerGrid& grid, const Beams& beams)
       : axes_(axes_of(beams)), columns_(grid.columns()), tangents_(grid.tangents()) {}
 
-  /// True when a point in the sensor's frame is in view; takes its bin.
-  bool take(const Eigen::Vector3d& point) {
+  [[nodiscard]] Place operator()(const Eigen::Vector3d& point) const {
     const double x = axes_.ahead.dot(point);
     const double y = axes_.left.dot(point);
     const double tangent = axes_.up.dot(point) / std::sqrt(x * x + y * y);
-    const double column = column_at(std::atan2(y, x));
-    if (!(tangent >= tangents_.low && tangent <= tangents_.high) || column >= columns_.count) {
+    const double turn = 2.0 * std::numbers::pi / std::abs(columns_.step_rad);
+    const double column =
+        (std::atan2(y, x) - columns_.phase_rad) / columns_.step_rad - columns_.first;
+    const double height = tangents_.high - tangents_.low;
+    const bool is_level = !(height > 0.0) && tangent == tangents_.low;
+    return {(column - turn * std::floor(column / turn)) / columns_.count,
+            is_level ? 0.0 : (tangent - tangents_.low) / height};
+  }
+
+ private:
+  SensorAxes axes_;
+  GridColumns columns_;
+  TangentRange tangents_;
+};
+
+/// The view of a camera.
+class CameraView {
+ public:
+  explicit CameraView(const CameraGrid& grid) : points_(grid.points()) {}
+
+  [[nodiscard]] Place operator()(const Eigen::Vector3d& point) const {
+    const Eigen::Vector2d part =
+        (picture_point(point) - points_.min()).cwiseQuotient(points_.sizes());
+    return {part.x(), part.y()};
+  }
+
+ private:
+  Eigen::AlignedBox2d points_;
+};
+
+/// The parts of a view in which something was seen.
+class SeenParts {
+ public:
+  /// True when the place is in view.
+  bool take(const Place& place) {
+    if (!(place.across >= 0.0 && place.across < 1.0 && place.up >= 0.0 && place.up <= 1.0)) {
       return false;
     }
-    const double height = tangents_.high - tangents_.low;
-    const double part = height > 0.0 ? (tangent - tangents_.low) / height : 0.0;
-    const auto row = std::min(static_cast<std::size_t>(part * kRows), kRows - 1);
-    const auto col = static_cast<std::size_t>(column / columns_.count * kCols);
-    seen_.set(row * kCols + std::min(col, kCols - 1));
+    const auto row = std::min(static_cast<std::size_t>(place.up * kRows), kRows - 1);
+    const auto col = std::min(static_cast<std::size_t>(place.across * kCols), kCols - 1);
+    seen_.set(row * kCols + col);
     return true;
   }
 
-  [[nodiscard]] double part_seen() const {
+  /// Of the whole view.
+  [[nodiscard]] double share() const {
     return static_cast<double>(seen_.count()) / (kRows * kCols);
   }
 
  private:
   static constexpr std::size_t kRows = 16;
   static constexpr std::size_t kCols = 64;
-
-  /// From the first column on.
-  [[nodiscard]] double column_at(double azimuth_rad) const {
-    const double turn = 2.0 * std::numbers::pi / std::abs(columns_.step_rad);
-    const double column = (azimuth_rad - columns_.phase_rad) / columns_.step_rad - columns_.first;
-    return column - turn * std::floor(column / turn);
-  }
-
-  SensorAxes axes_;
-  GridColumns columns_;
-  TangentRange tangents_;
   std::bitset<kRows * kCols> seen_;
 };
 
 /// The instance's triangles in view.
+template <class View>
 double count_triangles(const rays::MeshTree& tree, const InstanceView& from, std::size_t samples,
-                       View& view) {
+                       const View& view, SeenParts& parts) {
   const std::size_t clusters = tree.clusters.size();
   const std::size_t stride = std::max<std::size_t>(1, clusters / samples);
   std::size_t seen = 0;
@@ -72,28 +100,34 @@ double count_triangles(const rays::MeshTree& tree, const InstanceView& from, std
         Eigen::Map<const Eigen::Vector3f>(tree.clusters[i].centre).cast<double>();
     const Eigen::Vector3d point =
         from.object_from_sensor.transpose() * (centre - from.sensor_in_object);
-    seen += view.take(point) ? 1 : 0;
+    seen += parts.take(view(point)) ? 1 : 0;
     ++looked_at;
   }
   return static_cast<double>(kBlockSize * tree.blocks.size()) * static_cast<double>(seen) /
          static_cast<double>(looked_at);
 }
 
-}  // namespace
-
-double triangles_per_beam(const BeamGrid& grid, const Beams& beams, const CpuBase& base) {
+template <class View>
+SeenTriangles count_in(const View& view, const BeamGrid& grid, std::size_t beams,
+                       const CpuBase& base) {
   const rays::SceneTrees& trees = base.search.trees();
   const std::vector<std::uint32_t>& instances = trees.instances();
-  if (instances.empty()) return 0.0;
-  View view(grid, beams);
-  const std::size_t samples = std::max(kSamples / instances.size(), kLeastSamples);
+  SeenParts parts;
+  const std::size_t samples = kSamples / std::max<std::size_t>(instances.size(), 1);
   double triangles = kTrianglesPerInstance * static_cast<double>(instances.size()) *
                      static_cast<double>(grid.sectors().size());
   for (const std::uint32_t i : instances) {
-    triangles += count_triangles(trees.of_instance(i), base.resolver.view(i), samples, view);
+    triangles += count_triangles(trees.of_instance(i), base.resolver.view(i),
+                                 std::max(samples, kLeastSamples), view, parts);
   }
-  const double seeing = view.part_seen() * static_cast<double>(beams.size());
-  return triangles / std::max(seeing, 1.0);
+  return {triangles, parts.share() * static_cast<double>(beams)};
+}
+
+}  // namespace
+
+SeenTriangles count_seen(const BeamGrid& grid, const Beams& beams, const CpuBase& base) {
+  return grid.is_camera() ? count_in(CameraView(grid.camera()), grid, beams.size(), base)
+                          : count_in(ScannerView(grid.scanner(), beams), grid, beams.size(), base);
 }
 
 }  // namespace glidar::scan_raster

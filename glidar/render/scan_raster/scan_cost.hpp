@@ -7,9 +7,14 @@
 
 namespace glidar::scan_raster {
 
-/// About how many triangles of a scene are in the view of a grid, for each of the beams that may
-/// hit some. It follows from the scene, the beams and the poses; the resolver and the trees have
+/// What a grid sees.
+struct SeenTriangles {
+  double triangles;  ///< in the grid's view
+  double beams;      ///< that may hit some
+};
+
+/// About that. It follows from the scene, the beams and the poses; the resolver and the trees have
 /// those of the cast. A sample of clusters is looked at.
-double triangles_per_beam(const BeamGrid& grid, const Beams& beams, const CpuBase& base);
+SeenTriangles count_seen(const BeamGrid& grid, const Beams& beams, const CpuBase& base);
 
 }  // namespace glidar::scan_raster

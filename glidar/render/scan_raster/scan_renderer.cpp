@@ -40,7 +40,6 @@ namespace {
 struct Job {
   const CastRequest& request;
   const BeamGrid& grid;
-  const GridView view;
   const rays::CastView cast;
   const InstanceSlots& slots;
   const Kernel& kernel;
@@ -48,7 +47,9 @@ struct Job {
   const bool has_bounds;  ///< otherwise all beams are cast as rays
 };
 
-void draw_sector(const Job& job, const SectorTable& sector, Desk& desk) {
+void draw_sector(const Job& job, std::size_t index, Desk& desk) {
+  const SectorTable& sector = job.grid.sectors()[index];
+  const GridView view = job.grid.view(index);
   const SectorPicture picture = desk.clear(sector);
   const SectorView beams = sector.view();
   desk.handed_over.clear();
@@ -56,7 +57,7 @@ void draw_sector(const Job& job, const SectorTable& sector, Desk& desk) {
   for (const std::uint32_t instance : job.slots.order()) {
     Placement placement = place(job.cast.trees, job.cast.resolver.view(instance), instance, sector);
     decision.set_instance(instance, placement);
-    job.kernel.draw(job.view, beams, placement, picture);
+    job.kernel.draw(view, beams, placement, picture);
   }
   SectorWriter writer(job.target);
   writer.write_rows(sector, picture, job.slots);
@@ -79,9 +80,9 @@ void for_runs(const SectorTable& sector, const Visit& visit) {
   }
 }
 
-void cast_sector(const Job& job, const SectorTable& sector, Desk& desk) {
-  if (job.has_bounds) return draw_sector(job, sector, desk);
-  for_runs(sector, [&](BeamRange run) { cast_run(job.target, run, desk); });
+void cast_sector(const Job& job, std::size_t index, Desk& desk) {
+  if (job.has_bounds && job.grid.is_drawn(index)) return draw_sector(job, index, desk);
+  for_runs(job.grid.sectors()[index], [&](BeamRange run) { cast_run(job.target, run, desk); });
 }
 
 }  // namespace
@@ -94,8 +95,8 @@ ScanRenderer::ScanRenderer(std::shared_ptr<CpuBase> base)
 ScanRenderer::~ScanRenderer() = default;
 
 const BeamGrid& ScanRenderer::grid_of(const Beams& beams) {
-  grid_.measure(beams, base_->workers);
-  return grid_;
+  grid_ = &grids_.of(beams, base_->workers);
+  return *grid_;
 }
 
 void ScanRenderer::cast(const CastRequest& request, Hits& hits) {
@@ -104,8 +105,9 @@ void ScanRenderer::cast(const CastRequest& request, Hits& hits) {
   if (!misfit.empty()) {
     throw Error({.where = "raster renderer",
                  .found = misfit,
-                 .allowed = "a pinhole camera at rest without distortion, or beams in rows of "
-                            "equal elevation and columns of equal azimuth",
+                 .allowed =
+                     "a camera at rest, with a smooth lens or none, or beams in rows of equal "
+                     "elevation and columns of equal azimuth",
                  .remedy = "use --renderer rays"});
   }
   if (!is_anything_present(request, base_->resolver.scene())) {
@@ -123,8 +125,7 @@ void ScanRenderer::cast_prepared(const CastRequest& request, Hits& hits) {
   resize(hits, request.beams.size(), request.fields);
   const bool has_bounds = slots_.prepare(base_->search.trees(), base_->resolver);
   const Job job{.request = request,
-                .grid = grid_,
-                .view = grid_.view(),
+                .grid = *grid_,
                 .cast = {base_->search.trees(), base_->resolver, request},
                 .slots = slots_,
                 .kernel = kernel_,
@@ -135,12 +136,12 @@ void ScanRenderer::cast_prepared(const CastRequest& request, Hits& hits) {
     if (request.then) request.then(run);
     count.add(run.end - run.begin);
   };
-  for_each(grid_.sectors().size(), [&](std::size_t i, Desk& desk) {
-    cast_sector(job, grid_.sectors()[i], desk);
-    for_runs(grid_.sectors()[i], finish);
+  for_each(grid_->sectors().size(), [&](std::size_t i, Desk& desk) {
+    cast_sector(job, i, desk);
+    for_runs(grid_->sectors()[i], finish);
   });
-  for_each(grid_.other_rows().size(), [&](std::size_t i, Desk& desk) {
-    const std::size_t first = std::size_t{grid_.other_rows()[i]} * request.beams.cols;
+  for_each(grid_->other_rows().size(), [&](std::size_t i, Desk& desk) {
+    const std::size_t first = std::size_t{grid_->other_rows()[i]} * request.beams.cols;
     const BeamRange row{first, first + request.beams.cols};
     cast_run(job.target, row, desk);
     finish(row);

@@ -4,7 +4,7 @@
 
 #include <glidar/render/cpu_base.hpp>
 #include <glidar/render/renderer.hpp>
-#include <glidar/render/scan_raster/beam_grid.hpp>
+#include <glidar/render/scan_raster/beam_grids.hpp>
 #include <glidar/render/scan_raster/instance_slots.hpp>
 #include <glidar/render/scan_raster/kernels.hpp>
 
@@ -12,8 +12,8 @@
 
 namespace glidar::scan_raster {
 
-/// Draws triangles onto the beams of spinning and line scanners, see docs/raster.md: the same bits
-/// as rays. Refuses beams that form no grid.
+/// Draws triangles onto the beams of scanners and of cameras with any lens, see docs/raster.md: the
+/// same bits as rays. Refuses beams that form no grid.
 class ScanRenderer final : public Renderer {
  public:
   explicit ScanRenderer(std::shared_ptr<CpuBase> base);
@@ -27,7 +27,7 @@ class ScanRenderer final : public Renderer {
   /// the resolver and the search of the base have the cast's poses.
   void cast_prepared(const CastRequest& request, Hits& hits);
 
-  /// The grid of the beams: measured for these unless it is theirs already.
+  /// The grid of the beams, valid until the next call.
   const BeamGrid& grid_of(const Beams& beams);
 
  private:
@@ -39,7 +39,8 @@ class ScanRenderer final : public Renderer {
 
   std::shared_ptr<CpuBase> base_;
   const Kernel& kernel_ = find_kernel(rays::select_kernel().name);
-  BeamGrid grid_;
+  BeamGrids grids_;
+  const BeamGrid* grid_ = nullptr;  ///< of the beams taken last
   InstanceSlots slots_;
   std::unique_ptr<Desks> desks_;
 };

@@ -18,29 +18,43 @@ inline constexpr std::uint32_t kTileRows = 4;
 inline constexpr std::uint32_t kElevationBins = 4096;
 inline constexpr std::uint32_t kNoNumber = std::numeric_limits<std::uint32_t>::max();
 
-/// The grid of beams, as far as all its sectors share it. A cell is a row and a column of a sector;
-/// rows go up. Angles are measured from the real directions, so that any beams are inside of these
-/// bounds.
-struct GridView {
-  std::uint32_t rows;     ///< a multiple of kTileRows
-  std::uint32_t columns;  ///< of a sector, a multiple of kTileColumns
-  std::uint32_t pitch;    ///< cells from row to row: unaligned vectors reach beyond the last column
-  std::uint32_t tile_pitch;  ///< tiles from row to row of tiles, a multiple of 8
-  float columns_per_rad;
-  float middle_column;   ///< where a sector's forward axis points
-  float column_room;     ///< what the kernels' azimuths may be wrong by, columns
-  float max_slope;       ///< of side / forward in a sector, with room
+/// Rows of equal elevation, found by a table.
+struct ElevationRows {
   float lowest_tangent;  ///< of elevations, with room
   float highest_tangent;
-  float lowest_slope;  ///< of up / forward in a sector, with room
-  float highest_slope;
   float bins_per_tangent;
   const std::int32_t* first_row;  ///< per bin: lowest row that an elevation from it on may meet
   const std::int32_t* last_row;   ///< per bin: highest row that an elevation up to it may meet
-  const float* low_deviation;     ///< per row: of azimuths from those of their columns, columns
+};
+
+/// Rows of equal slopes up / forward.
+struct SlopeRows {
+  float rows_per_slope;
+  float first_row;  ///< of slope 0, less what deviates
+  float last_row;   ///< the same, with what deviates
+};
+
+/// Where the cells of a sector are. A cell is a row and a column; the axis up is that of rising
+/// rows. Columns are those of equal azimuth or, with SlopeRows, of equal slopes side / forward. All
+/// is measured from the real directions, so that any beams are inside of these bounds.
+struct GridView {
+  std::uint32_t rows;     ///< a multiple of kTileRows
+  std::uint32_t columns;  ///< a multiple of kTileColumns
+  std::uint32_t pitch;    ///< cells from row to row: unaligned vectors reach beyond the last column
+  std::uint32_t tile_pitch;  ///< tiles from row to row of tiles, a multiple of 8
+  float columns_per_unit;    ///< of azimuth (rad) or of slope
+  float middle_column;       ///< where the forward axis points
+  float column_room;         ///< what the kernels' columns may be wrong by
+  float max_slope;           ///< of side / forward, with room
+  float lowest_slope;        ///< of up / forward, with room
+  float highest_slope;
+  const float* low_deviation;  ///< per row: of beams from their columns, columns
   const float* high_deviation;
   float min_deviation;  ///< of all rows
   float max_deviation;
+  bool has_slopes;  ///< columns and rows are those of slopes
+  ElevationRows elevations;
+  SlopeRows slopes;
 };
 
 /// Some columns of the grid. Vectors are in the sector's frame: forward, to the side of rising
@@ -70,7 +84,10 @@ struct Placement {
   rays::TreeView tree;
   double origin[3];                ///< of the sector, object units
   float sector_from_object[3][3];  ///< rotation
-  double metres;                   ///< per object unit
+  /// Into the frame of the sector's slopes, whose axes are unit vectors, but at right angles only
+  /// for columns of equal azimuth: there it is the rotation.
+  float slopes_from_object[3][3];
+  double metres;  ///< per object unit
   /// As RayPacket::rounding.
   double rounding;
   float room;  ///< what boxes in the sector's frame may be wrong by, object units

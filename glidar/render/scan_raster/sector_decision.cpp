@@ -9,7 +9,6 @@
 #include <cmath>
 
 namespace glidar::scan_raster {
-namespace {}  // namespace
 
 void SectorDecision::set_instance(std::uint32_t instance, Placement& placement) {
   instance_ = instance;

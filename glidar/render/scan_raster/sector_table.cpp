@@ -17,19 +17,6 @@ constexpr float kNoBeam = -1.0F;
 /// What single precision may add to a bound.
 constexpr double kRoom = 1.0 + 0x1p-20;
 
-/// Forward at an azimuth, to the side of rising columns, up.
-Eigen::Matrix3d sector_frame(const SensorAxes& axes, double azimuth_rad, bool rises) {
-  const Eigen::Vector3d forward =
-      std::cos(azimuth_rad) * axes.ahead + std::sin(azimuth_rad) * axes.left;
-  const Eigen::Vector3d left =
-      std::cos(azimuth_rad) * axes.left - std::sin(azimuth_rad) * axes.ahead;
-  Eigen::Matrix3d rows;
-  rows.row(0) = forward;
-  rows.row(1) = rises ? left : Eigen::Vector3d(-left);
-  rows.row(2) = axes.up;
-  return rows;
-}
-
 /// Others hit nothing, see rays::BeamSearch.
 bool is_beam(const Beams& beams, std::size_t i) {
   return beams.directions[i].allFinite() &&
@@ -38,37 +25,32 @@ bool is_beam(const Beams& beams, std::size_t i) {
 
 }  // namespace
 
-void SectorTable::build(const Beams& beams, std::span<const RowAngles> rows,
-                        const GridColumns& columns, std::uint32_t index) {
-  const std::int32_t first_column =
-      columns.first + static_cast<std::int32_t>(index * columns.width);
-  const double middle = first_column + 0.5 * columns.width - 0.5;
-  sector_from_sensor_ = sector_frame(axes_of(beams), columns.phase_rad + middle * columns.step_rad,
-                                     columns.step_rad > 0.0);
-  pitch_ = columns.pitch();
-  start_.assign(columns.cells(), kNoBeam);
-  place_rows(beams, rows, columns, first_column);
+void SectorTable::build(const Beams& beams, const SectorShape& shape, const SectorFrame& frame,
+                        std::span<const RowStart> rows) {
+  frame_ = frame;
+  pitch_ = shape.pitch();
+  start_.assign(shape.cells(), kNoBeam);
+  place_rows(beams, shape, rows);
   set_directions(beams);
   set_origins(beams);
-  find_tiles(columns);
+  find_tiles(shape);
 }
 
-void SectorTable::place_rows(const Beams& beams, std::span<const RowAngles> rows,
-                             const GridColumns& columns, std::int32_t first_column) {
+void SectorTable::place_rows(const Beams& beams, const SectorShape& shape,
+                             std::span<const RowStart> rows) {
   rows_.clear();
   first_beam_.clear();
+  const auto cols = static_cast<std::int64_t>(beams.cols);
   for (std::size_t j = 0; j < rows.size(); ++j) {
-    const std::size_t row_start = std::size_t{rows[j].source} * beams.cols;
-    const std::int64_t start = std::int64_t{first_column} - rows[j].shift;
-    const auto cols = static_cast<std::int64_t>(beams.cols);
+    const std::size_t row_start = std::size_t{rows[j].row} * beams.cols;
+    const std::int64_t start = rows[j].column;
     const std::int64_t begin = std::clamp<std::int64_t>(start, 0, cols);
-    const std::int64_t end = std::clamp<std::int64_t>(start + columns.width, 0, cols);
+    const std::int64_t end = std::clamp<std::int64_t>(start + shape.columns, 0, cols);
     // Below zero it wraps around, and comes back when a cell's column is added.
     first_beam_.push_back(row_start + static_cast<std::size_t>(start));
     rows_.push_back({row_start + static_cast<std::size_t>(begin),
                      j * pitch_ + static_cast<std::size_t>(begin - start),
                      static_cast<std::uint32_t>(std::max<std::int64_t>(end - begin, 0))});
-    if (end <= begin) rows_.back().count = 0;
     for (std::uint32_t i = 0; i < rows_.back().count; ++i) {
       if (!is_beam(beams, rows_.back().first_beam + i)) continue;
       start_[rows_.back().first_cell + i] = kInfinityf;
@@ -81,7 +63,7 @@ void SectorTable::set_directions(const Beams& beams) {
     direction_[axis].resize(start_.size());
     exact_direction_[axis].resize(start_.size() + kLanes);
   }
-  // Cells without a beam repeat the one before, so that bounds of tiles are those of their beams.
+  // Cells without a beam repeat the one before: any direction will do.
   const auto first = std::find(start_.begin(), start_.end(), kInfinityf);
   Eigen::Vector3d exact = Eigen::Vector3d::UnitX();
   if (first != start_.end()) {
@@ -89,7 +71,7 @@ void SectorTable::set_directions(const Beams& beams) {
   }
   for (std::size_t cell = 0; cell < start_.size(); ++cell) {
     if (start_[cell] == kInfinityf) exact = beams.directions[beam(cell)];
-    const Eigen::Vector3f turned = (sector_from_sensor_ * exact).cast<float>();
+    const Eigen::Vector3f turned = (frame_.sector_from_sensor * exact).cast<float>();
     for (int axis = 0; axis < 3; ++axis) {
       exact_direction_[axis][cell] = exact[axis];
       direction_[axis][cell] = turned[axis];
@@ -132,11 +114,11 @@ void SectorTable::set_origins(const Beams& beams) {
     offset_[axis].assign(start_.size(), 0.0F);
   }
   for_beams([&](std::size_t cell, std::size_t i) {
-    const Eigen::Vector3d offset = sector_from_sensor_ * (beams.origins_m[i] - origin_m_);
-    const Eigen::Vector3d direction = sector_from_sensor_ * beams.directions[i];
+    const Eigen::Vector3d offset = frame_.sector_from_sensor * (beams.origins_m[i] - origin_m_);
+    const Eigen::Vector3d direction = frame_.sector_from_sensor * beams.directions[i];
     // The sector's frame may be left-handed, so the product is one of the sensor's frame.
     const Eigen::Vector3d product = beams.directions[i].cross(beams.origins_m[i] - origin_m_);
-    const Eigen::Vector3f moment = (sector_from_sensor_ * product).cast<float>();
+    const Eigen::Vector3f moment = (frame_.sector_from_sensor * product).cast<float>();
     const Eigen::Vector3f rounded = offset.cast<float>();
     for (int axis = 0; axis < 3; ++axis) {
       moment_[axis][cell] = moment[axis];
@@ -144,22 +126,22 @@ void SectorTable::set_origins(const Beams& beams) {
     }
     max_moment_ = max_moment_.cwiseMax(moment.cwiseAbs());
     max_offset_ = max_offset_.cwiseMax(rounded.cwiseAbs());
-    const Eigen::Vector3d foot = sector_from_sensor_ * foot_from(origin_m_, i);
+    const Eigen::Vector3d foot = frame_.sector_from_sensor * foot_from(origin_m_, i);
     foot_m_ = foot_m_.cwiseMax(kRoom * foot.cwiseAbs());
     behind_m_ = std::max(behind_m_, -kRoom * offset.dot(direction));
     distance_m_ = std::max(distance_m_, kRoom * offset.norm());
   });
 }
 
-void SectorTable::find_tiles(const GridColumns& columns) {
-  tile_start_.assign(columns.tiles(), kNoBeam);
+void SectorTable::find_tiles(const SectorShape& shape) {
+  tile_start_.assign(shape.tiles(), kNoBeam);
   for (int axis = 0; axis < 3; ++axis) {
-    tile_middle_[axis].assign(columns.tiles(), 0.0F);
-    tile_half_[axis].assign(columns.tiles(), 0.0F);
+    tile_middle_[axis].assign(shape.tiles(), 0.0F);
+    tile_half_[axis].assign(shape.tiles(), 0.0F);
   }
-  for (std::size_t y = 0; y < columns.rows / kTileRows; ++y) {
-    for (std::size_t x = 0; x < columns.width / kTileColumns; ++x) {
-      bound_tile(y * columns.tile_pitch() + x, y * kTileRows * pitch_ + x * kTileColumns);
+  for (std::size_t y = 0; y < shape.rows / kTileRows; ++y) {
+    for (std::size_t x = 0; x < shape.columns / kTileColumns; ++x) {
+      bound_tile(y * shape.tile_pitch() + x, y * kTileRows * pitch_ + x * kTileColumns);
     }
   }
 }
@@ -168,9 +150,11 @@ void SectorTable::bound_tile(std::size_t tile, std::size_t first_cell) {
   Eigen::AlignedBox3f box;
   for (std::size_t i = 0; i < std::size_t{kTileRows} * kTileColumns; ++i) {
     const std::size_t cell = first_cell + i / kTileColumns * pitch_ + i % kTileColumns;
+    if (start_[cell] < 0.0F) continue;
     tile_start_[tile] = std::max(tile_start_[tile], start_[cell]);
     box.extend(Eigen::Vector3f(direction_[0][cell], direction_[1][cell], direction_[2][cell]));
   }
+  if (box.isEmpty()) return;
   for (int axis = 0; axis < 3; ++axis) {
     tile_middle_[axis][tile] = box.center()[axis];
     tile_half_[axis][tile] = 0.5F * box.sizes()[axis] + 0x1p-22F;

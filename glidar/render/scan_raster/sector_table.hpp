@@ -3,7 +3,6 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
-#include <glidar/render/scan_raster/beam_angles.hpp>
 #include <glidar/render/scan_raster/sector.hpp>
 
 #include <Eigen/Core>
@@ -14,20 +13,33 @@
 
 namespace glidar::scan_raster {
 
-/// How the columns of a grid are cut into sectors.
-struct GridColumns {
-  std::int32_t first = 0;   ///< the lowest column + shift of any beam
-  std::uint32_t count = 0;  ///< from there to the highest
-  std::uint32_t width = 0;  ///< columns of a sector
-  std::uint32_t rows = 0;   ///< a multiple of kTileRows
-  double phase_rad = 0.0;   ///< azimuth of column 0
-  double step_rad = 0.0;
+/// Cells of a sector.
+struct SectorShape {
+  std::uint32_t columns = 0;  ///< a multiple of kTileColumns
+  std::uint32_t rows = 0;     ///< a multiple of kTileRows
 
-  [[nodiscard]] std::uint32_t pitch() const { return width + kTileColumns; }
-  [[nodiscard]] std::uint32_t tile_pitch() const { return (width / kTileColumns + 7U) / 8U * 8U; }
+  /// The least shape that has room for so many.
+  static SectorShape around(std::uint32_t columns, std::uint32_t rows) {
+    return {(columns + kTileColumns - 1) / kTileColumns * kTileColumns,
+            (rows + kTileRows - 1) / kTileRows * kTileRows};
+  }
+  [[nodiscard]] std::uint32_t pitch() const { return columns + kTileColumns; }
+  [[nodiscard]] std::uint32_t tile_pitch() const { return (columns / kTileColumns + 7U) / 8U * 8U; }
   [[nodiscard]] std::size_t cells() const { return std::size_t{rows} * pitch(); }
   [[nodiscard]] std::size_t tiles() const { return std::size_t{rows} / kTileRows * tile_pitch(); }
-  [[nodiscard]] std::uint32_t sectors() const { return (count + width - 1) / width; }
+};
+
+/// Axes of a sector in the sensor's frame, as rows of matrices: forward, to the side of rising
+/// columns, to that of rising rows.
+struct SectorFrame {
+  Eigen::Matrix3d sector_from_sensor = Eigen::Matrix3d::Identity();  ///< orthogonal
+  Eigen::Matrix3d slopes_from_sensor = Eigen::Matrix3d::Identity();  ///< see Placement
+};
+
+/// Where a row of a sector begins in the beams: at a column below zero, it has no beams there.
+struct RowStart {
+  std::uint32_t row;
+  std::int64_t column;
 };
 
 /// Beams of a row that stand side by side in a sector.
@@ -37,12 +49,12 @@ struct SectorRow {
   std::uint32_t count;
 };
 
-/// The beams of one sector, in its own frame: forward, to the side of rising columns, up.
+/// The beams of one sector, in its own frame.
 class SectorTable {
  public:
-  /// `rows`: those of the grid, rising.
-  void build(const Beams& beams, std::span<const RowAngles> rows, const GridColumns& columns,
-             std::uint32_t index);
+  /// `rows`: at most those of the shape. Where there are fewer, or the beams end, cells have none.
+  void build(const Beams& beams, const SectorShape& shape, const SectorFrame& frame,
+             std::span<const RowStart> rows);
 
   [[nodiscard]] SectorView view() const;
   [[nodiscard]] const std::vector<SectorRow>& rows() const { return rows_; }
@@ -61,7 +73,7 @@ class SectorTable {
   /// Per tile: the largest of them.
   [[nodiscard]] const std::vector<float>& tile_start() const { return tile_start_; }
 
-  [[nodiscard]] const Eigen::Matrix3d& sector_from_sensor() const { return sector_from_sensor_; }
+  [[nodiscard]] const SectorFrame& frame() const { return frame_; }
   /// In the sensor's frame, metres.
   [[nodiscard]] const Eigen::Vector3d& origin_m() const { return origin_m_; }
   /// Half sizes of a box around the origin, in the sector's frame, that the beams' lines cross.
@@ -72,14 +84,13 @@ class SectorTable {
   [[nodiscard]] double distance_m() const { return distance_m_; }
 
  private:
-  void place_rows(const Beams& beams, std::span<const RowAngles> rows, const GridColumns& columns,
-                  std::int32_t first_column);
+  void place_rows(const Beams& beams, const SectorShape& shape, std::span<const RowStart> rows);
   void set_directions(const Beams& beams);
   void set_origins(const Beams& beams);
-  void find_tiles(const GridColumns& columns);
+  void find_tiles(const SectorShape& shape);
   void bound_tile(std::size_t tile, std::size_t first_cell);
 
-  Eigen::Matrix3d sector_from_sensor_ = Eigen::Matrix3d::Identity();
+  SectorFrame frame_;
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d foot_m_ = Eigen::Vector3d::Zero();
   double behind_m_ = 0.0;

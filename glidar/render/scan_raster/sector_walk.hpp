@@ -15,13 +15,13 @@ struct NodeVisit {
   TileRect tiles;
 };
 
-/// Eight boxes in the sector's frame, grown by the foot of the beams.
+/// Eight boxes in the frame of slopes, grown by the foot of the beams.
 struct SeenBoxes {
   Vector<Float8> middle;
   Vector<Float8> half;
   Float8 squared_distance;  ///< from the origin, object units
 
-  GLIDAR_INLINE SeenBoxes(const Drawing& drawing, const TreeNode& node) {
+  GLIDAR_INLINE SeenBoxes(const Drawing& drawing, const Turn& turn, const TreeNode& node) {
     const Placement& p = drawing.placement;
     Float8 centre[3];
     Float8 size[3];
@@ -35,11 +35,11 @@ struct SeenBoxes {
       centre[axis] = (low + high) * Float8::all(0.5F);
       size[axis] = (high - low) * Float8::all(0.5F);
     }
-    middle = drawing.turn({centre[0], centre[1], centre[2]});
+    middle = turn({centre[0], centre[1], centre[2]});
     const Vector<Float8> sizes = {size[0], size[1], size[2]};
-    half = {dot(magnitude(drawing.turn.forward), sizes) + Float8::all(p.room + p.foot[0]),
-            dot(magnitude(drawing.turn.side), sizes) + Float8::all(p.room + p.foot[1]),
-            dot(magnitude(drawing.turn.up), sizes) + Float8::all(p.room + p.foot[2])};
+    half = {dot(magnitude(turn.forward), sizes) + Float8::all(p.room + p.foot[0]),
+            dot(magnitude(turn.side), sizes) + Float8::all(p.room + p.foot[1]),
+            dot(magnitude(turn.up), sizes) + Float8::all(p.room + p.foot[2])};
   }
 
   /// Bits of the boxes that are behind the sector, beside, above or below it.
@@ -99,13 +99,14 @@ class VisitStack {
 };
 
 /// Adds the children of a node that the sector may see.
-inline void push_children(const Drawing& drawing, const TreeNode& node, VisitStack& stack) {
+template <class Cells>
+void push_children(const Drawing& drawing, const TreeNode& node, VisitStack& stack) {
   const Placement& p = drawing.placement;
-  const SeenBoxes boxes(drawing, node);
+  const SeenBoxes boxes(drawing, slopes_frame<Cells>(drawing), node);
   const Float8 nearest = boxes.middle.x - boxes.half.x;
   const std::uint32_t around = bits(nearest <= Float8::all(p.room));
   CellRects rects;
-  const std::uint32_t seen = find_cells(drawing.grid, boxes.slopes(nearest), rects);
+  const std::uint32_t seen = Cells::find(drawing.grid, boxes.slopes(nearest), rects);
   alignas(32) float squared_distance[8];
   store(squared_distance, boxes.squared_distance);
   const unsigned bottom = stack.size();
@@ -113,7 +114,7 @@ inline void push_children(const Drawing& drawing, const TreeNode& node, VisitSta
     const std::int32_t child = node.child[i];
     if (child == kNoChild) return;
     const bool is_around = (around >> i & 1U) != 0;
-    const CellRect rect = is_around ? whole_sector(drawing.grid) : rects.at(drawing.grid, i);
+    const CellRect rect = is_around ? whole_sector(drawing.grid) : rects.at<Cells>(drawing.grid, i);
     if (rect.is_empty()) return;
     Stack::prefetch(p.tree, child);
     const float distance = __builtin_sqrtf(squared_distance[i]) * kEntryRoom - p.room - p.distance;
@@ -122,16 +123,16 @@ inline void push_children(const Drawing& drawing, const TreeNode& node, VisitSta
   });
 }
 
-template <bool kOwnOrigins>
+template <class Cells, bool kOwnOrigins>
 void draw_tree(const Drawing& drawing) {
   VisitStack stack(tiles_of(whole_sector(drawing.grid)));
   while (!stack.is_empty()) {
     const NodeVisit visit = stack.pop();
     if (!is_visible(drawing, visit.tiles, visit.near)) continue;
     if (visit.child < 0) {
-      draw_leaf<kOwnOrigins>(drawing, static_cast<std::uint32_t>(~visit.child));
+      draw_leaf<Cells, kOwnOrigins>(drawing, static_cast<std::uint32_t>(~visit.child));
     } else {
-      push_children(drawing, drawing.placement.tree.nodes[visit.child], stack);
+      push_children<Cells>(drawing, drawing.placement.tree.nodes[visit.child], stack);
     }
   }
 }
@@ -139,10 +140,12 @@ void draw_tree(const Drawing& drawing) {
 inline void draw_instance(const GridView& grid, const SectorView& sector,
                           const Placement& placement, const SectorPicture& picture) {
   const Drawing drawing(grid, sector, placement, picture);
-  if (sector.moment[0] == nullptr) {
-    draw_tree<false>(drawing);
+  if (grid.has_slopes) {
+    draw_tree<SlopeCells, false>(drawing);
+  } else if (sector.moment[0] == nullptr) {
+    draw_tree<AngleCells, false>(drawing);
   } else {
-    draw_tree<true>(drawing);
+    draw_tree<AngleCells, true>(drawing);
   }
 }
 

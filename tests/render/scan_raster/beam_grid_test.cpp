@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Beams are recognised as grids, and others are not.
+// Beams are recognised as grids of a scanner or a camera, and others are not.
 #include <glidar/render/scan_raster/beam_grid.hpp>
 
 #include <glidar/io/sensor_file.hpp>
@@ -42,9 +42,33 @@ TEST(BeamGrid, RefusesBeamsWithoutRowsOrColumns) {
   Draws draws(1);
   Beams random = scanner_beams({});
   for (Eigen::Vector3d& direction : random.directions) direction = draws.direction();
-  for (const Beams& beams : {random, preset_beams("Livox-Mid-40"), preset_beams("Livox-Avia"),
-                             testing::camera_beams(320, 240, 150.0)}) {
+  for (const Beams& beams : {random, preset_beams("Livox-Mid-40"), preset_beams("Livox-Avia")}) {
     EXPECT_FALSE(may_form_grid(beams) && grid_of(beams).misfit().empty());
+    EXPECT_NE(grid_of(beams).misfit(), "");
+  }
+}
+
+TEST(BeamGrid, TakesCamerasOfAllLenses) {
+  for (const char* name : {"Azure-Kinect-NFOV", "Azure-Kinect-NFOV-2x2", "Azure-Kinect-WFOV",
+                           "Azure-Kinect-WFOV-2x2", "Kinect-v2", "D435"}) {
+    const Beams beams = preset_beams(name);
+    EXPECT_TRUE(may_form_grid(beams)) << name;
+    const BeamGrid grid = grid_of(beams);
+    EXPECT_EQ(grid.misfit(), "") << name;
+    EXPECT_TRUE(grid.is_camera()) << name;
+    for (std::size_t i = 0; i < grid.sectors().size(); ++i) EXPECT_TRUE(grid.is_drawn(i)) << name;
+  }
+}
+
+TEST(BeamGrid, RefusesCamerasThatAreNoPicture) {
+  Draws draws(1);
+  Beams random = testing::camera_beams(64, 48, 50.0);
+  random.pinhole.reset();
+  for (Eigen::Vector3d& direction : random.directions) direction = draws.direction();
+  Beams with_origins = testing::camera_beams(64, 48, 50.0);
+  with_origins.origins_m.assign(with_origins.size(), Eigen::Vector3d::UnitX());
+  for (const Beams& beams : {random, with_origins, testing::camera_beams(640, 1, 500.0)}) {
+    EXPECT_FALSE(may_form_grid(beams));
     EXPECT_NE(grid_of(beams).misfit(), "");
   }
 }
@@ -56,9 +80,9 @@ TEST(BeamGrid, LeavesSteepRowsToRays) {
 }
 
 TEST(BeamGrid, HasEveryBeamInOneCell) {
-  for (const Scanner& scanner :
-       {Scanner{}, Scanner{.rows = 8, .stagger_rad = 0.06}, Scanner{.rows = 5, .span_rad = -1.0}}) {
-    const Beams beams = scanner_beams(scanner);
+  for (const Beams& beams :
+       {scanner_beams({}), scanner_beams({.rows = 8, .stagger_rad = 0.06}),
+        scanner_beams({.rows = 5, .span_rad = -1.0}), testing::camera_beams(201, 133, 150.0)}) {
     std::set<std::size_t> seen;
     const BeamGrid grid = grid_of(beams);
     for (const SectorTable& sector : grid.sectors()) {
@@ -76,16 +100,17 @@ TEST(BeamGrid, HasEveryBeamInOneCell) {
 }
 
 /// The bounds of rows and columns hold for the directions themselves.
-TEST(BeamGrid, BoundsItsBeams) {
+TEST(BeamGrid, BoundsTheBeamsOfAScanner) {
   const Beams beams = scanner_beams({.rows = 33, .cols = 500, .stagger_rad = 0.05, .uneven = 0.8});
   const BeamGrid grid = grid_of(beams);
-  const GridView view = grid.view();
+  const GridView view = grid.view(0);
   for (const SectorTable& sector : grid.sectors()) {
     for (std::size_t cell = 0; cell < sector.start().size(); ++cell) {
       if (sector.start()[cell] < 0.0F) continue;
-      const Eigen::Vector3d d = sector.sector_from_sensor() * beams.directions[sector.beam(cell)];
+      const Eigen::Vector3d d =
+          sector.frame().sector_from_sensor * beams.directions[sector.beam(cell)];
       const auto row = static_cast<std::int32_t>(cell / view.pitch);
-      const double column = std::atan(d.y() / d.x()) * view.columns_per_rad + view.middle_column;
+      const double column = std::atan(d.y() / d.x()) * view.columns_per_unit + view.middle_column;
       const double deviation = column - static_cast<double>(cell % view.pitch);
       EXPECT_GE(deviation, view.low_deviation[row]);
       EXPECT_LE(deviation, view.high_deviation[row]);
@@ -93,30 +118,56 @@ TEST(BeamGrid, BoundsItsBeams) {
       EXPECT_GT(d.z() / d.x(), view.lowest_slope);
       EXPECT_LT(d.z() / d.x(), view.highest_slope);
       const double tangent = d.z() / std::hypot(d.x(), d.y());
+      const ElevationRows& rows = view.elevations;
       const auto bin =
-          static_cast<std::size_t>((tangent - view.lowest_tangent) * view.bins_per_tangent);
-      EXPECT_LE(view.first_row[bin], row);
-      EXPECT_GE(view.last_row[bin], row);
+          static_cast<std::size_t>((tangent - rows.lowest_tangent) * rows.bins_per_tangent);
+      EXPECT_LE(rows.first_row[bin], row);
+      EXPECT_GE(rows.last_row[bin], row);
     }
   }
 }
 
-TEST(BeamGrid, IsMeasuredAnewWhenOneBitOfABeamChanges) {
-  Workers workers(1);
-  BeamGrid grid;
-  Beams beams = scanner_beams({});
-  grid.measure(beams, workers);
-  Eigen::Vector3d& changed = beams.directions[1234];
-  changed.z() = std::nextafter(changed.z(), 1.0);
-  grid.measure(beams, workers);
-  bool is_found = false;
-  for (const SectorTable& sector : grid.sectors()) {
+/// The same for the slopes of a camera.
+TEST(BeamGrid, BoundsTheBeamsOfACamera) {
+  const Beams beams = preset_beams("Azure-Kinect-WFOV-2x2");
+  const BeamGrid grid = grid_of(beams);
+  for (std::size_t i = 0; i < grid.sectors().size(); ++i) {
+    const SectorTable& sector = grid.sectors()[i];
+    const GridView view = grid.view(i);
     for (std::size_t cell = 0; cell < sector.start().size(); ++cell) {
-      if (sector.start()[cell] < 0.0F || sector.beam(cell) != 1234) continue;
-      is_found = sector.exact_direction(2)[cell] == changed.z();
+      if (sector.start()[cell] < 0.0F) continue;
+      const Eigen::Vector3d d =
+          sector.frame().slopes_from_sensor * beams.directions[sector.beam(cell)];
+      const auto row = static_cast<std::int32_t>(cell / view.pitch);
+      const double column = d.y() / d.x() * view.columns_per_unit + view.middle_column;
+      const double deviation = column - static_cast<double>(cell % view.pitch);
+      EXPECT_GE(deviation, view.low_deviation[row]);
+      EXPECT_LE(deviation, view.high_deviation[row]);
+      EXPECT_LT(std::abs(d.y() / d.x()), view.max_slope);
+      EXPECT_GT(d.z() / d.x(), view.lowest_slope);
+      EXPECT_LT(d.z() / d.x(), view.highest_slope);
+      EXPECT_LE(d.z() / d.x() * view.slopes.rows_per_slope + view.slopes.first_row, row);
+      EXPECT_GE(d.z() / d.x() * view.slopes.rows_per_slope + view.slopes.last_row, row);
     }
   }
-  EXPECT_TRUE(is_found);
+}
+
+/// Each block is nearly a pinhole camera, so that what covers few pixels is tested with few beams.
+TEST(BeamGrid, HasNarrowBoundsForCameras) {
+  for (const char* name :
+       {"Azure-Kinect-NFOV", "Azure-Kinect-WFOV", "Azure-Kinect-WFOV-2x2", "Kinect-v2", "D435"}) {
+    const BeamGrid grid = grid_of(preset_beams(name));
+    double columns = 0.0;
+    double rows = 0.0;
+    for (std::size_t i = 0; i < grid.sectors().size(); ++i) {
+      const GridView view = grid.view(i);
+      columns += view.max_deviation - view.min_deviation;
+      rows += view.slopes.last_row - view.slopes.first_row;
+    }
+    const auto sectors = static_cast<double>(grid.sectors().size());
+    EXPECT_LT(columns / sectors, 1.0) << name;
+    EXPECT_LT(rows / sectors, 1.0) << name;
+  }
 }
 
 }  // namespace

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+#include <glidar/core/workers.hpp>
+#include <glidar/render/scan_raster/camera_block.hpp>
+
+#include <string>
+#include <vector>
+
+namespace glidar::scan_raster {
+
+/// False where some neighbours show at once that the beams are not those of a picture, or most are
+/// missing.
+bool may_form_picture(const Beams& beams);
+
+/// Beams of a camera with any lens: their directions vary smoothly over rows and columns. Sectors
+/// are blocks of columns and rows.
+class CameraGrid {
+ public:
+  void measure(const Beams& beams, Workers& workers);
+
+  /// Why the beams form no grid; empty: they do. Otherwise only that is of use.
+  [[nodiscard]] const std::string& misfit() const { return misfit_; }
+
+  [[nodiscard]] const std::vector<SectorTable>& sectors() const { return sectors_; }
+  /// One per sector.
+  [[nodiscard]] const std::vector<CameraBlock>& blocks() const { return blocks_; }
+
+  /// Around the points of a sample of the beams, see picture_point().
+  [[nodiscard]] const Eigen::AlignedBox2d& points() const { return points_; }
+
+ private:
+  void find_misfit(const Beams& beams);
+  void find_blocks(const Beams& beams, Workers& workers);
+  void build_sector(const Beams& beams, std::size_t index);
+  void count_drawn();
+
+  std::string misfit_;
+  std::vector<CameraBlock> blocks_;
+  std::vector<SectorTable> sectors_;
+  Eigen::AlignedBox2d points_;
+};
+
+}  // namespace glidar::scan_raster

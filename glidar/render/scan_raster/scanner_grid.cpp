@@ -1,0 +1,186 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/scan_raster/scanner_grid.hpp>
+
+#include <glidar/render/common/rounding.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar::scan_raster {
+namespace {
+
+/// Half a sector is at most this wide, with two columns more on each side: wide enough for buffers
+/// that fill a core's own cache, narrow enough for tight rectangles.
+constexpr double kMaxHalfSector_rad = 0.42;
+constexpr std::uint32_t kMaxSectorColumns = 128;
+/// Of which rows may overlap: their intervals of elevations, added up, over the whole one.
+constexpr double kMaxCrowding = 4.0;
+/// Of cells without a beam where rows begin at different azimuths: this part of all, and some.
+constexpr double kMaxShifted = 0.5;
+constexpr std::uint32_t kShiftedRoom = 64;
+/// What the kernels' tangents of elevations may be wrong by: some roundings of numbers up to 6.
+constexpr double kTangentRoom = 0x1p-19;
+/// What their arc tangent may be wrong by, see arc_tangent().
+constexpr double kAzimuthRoom_rad = 2e-5;
+
+/// Padding in a sector on each side of its columns, columns.
+double margin_of(const std::vector<RowAngles>& rows) {
+  double margin = 0.0;
+  for (const RowAngles& row : rows) {
+    margin = std::max({margin, -row.low_deviation, row.high_deviation});
+  }
+  return margin + 2.0;
+}
+
+/// Forward at an azimuth, to the side of rising columns, up.
+Eigen::Matrix3d sector_frame(const SensorAxes& axes, double azimuth_rad, bool rises) {
+  const Eigen::Vector3d forward =
+      std::cos(azimuth_rad) * axes.ahead + std::sin(azimuth_rad) * axes.left;
+  const Eigen::Vector3d left =
+      std::cos(azimuth_rad) * axes.left - std::sin(azimuth_rad) * axes.ahead;
+  Eigen::Matrix3d rows;
+  rows.row(0) = forward;
+  rows.row(1) = rises ? left : Eigen::Vector3d(-left);
+  rows.row(2) = axes.up;
+  return rows;
+}
+
+}  // namespace
+
+void ScannerGrid::measure(const Beams& beams, Workers& workers) {
+  measure_angles(beams, workers, angles_);
+  sort_rows();
+  if (angles_.misfit.empty()) find_misfit(beams);
+  if (!angles_.misfit.empty()) {
+    sectors_.clear();
+    return;
+  }
+  find_columns(beams);
+  find_bins();
+  build_sectors(beams, workers);
+}
+
+/// Both ends of the rows' elevations are made to rise, which only widens them.
+void ScannerGrid::sort_rows() {
+  rows_.clear();
+  other_rows_.clear();
+  for (const RowAngles& row : angles_.rows) {
+    if (row.is_in_grid) {
+      rows_.push_back(row);
+    } else {
+      other_rows_.push_back(row.source);
+    }
+  }
+  std::sort(rows_.begin(), rows_.end(), [](const RowAngles& a, const RowAngles& b) {
+    const double a_middle = a.low_tangent + a.high_tangent;
+    const double b_middle = b.low_tangent + b.high_tangent;
+    return a_middle != b_middle ? a_middle < b_middle : a.source < b.source;
+  });
+  for (std::size_t i = 1; i < rows_.size(); ++i) {
+    rows_[i].high_tangent = std::max(rows_[i].high_tangent, rows_[i - 1].high_tangent);
+  }
+  for (std::size_t i = rows_.size(); i > 1; --i) {
+    rows_[i - 2].low_tangent = std::min(rows_[i - 2].low_tangent, rows_[i - 1].low_tangent);
+  }
+}
+
+void ScannerGrid::find_misfit(const Beams& beams) {
+  if (2 * rows_.size() < beams.rows || rows_.empty()) {
+    angles_.misfit = "beams without rows of equal columns (such as the sub-rays of footprints)";
+    return;
+  }
+  double sum = 0.0;
+  for (const RowAngles& row : rows_) sum += row.high_tangent - row.low_tangent;
+  const double whole = rows_.back().high_tangent - rows_.front().low_tangent;
+  if (sum > kMaxCrowding * beams.returns * whole) {
+    angles_.misfit = "rows that are no lines of equal elevation";
+    return;
+  }
+  const auto by_shift = [](const RowAngles& a, const RowAngles& b) { return a.shift < b.shift; };
+  const auto [least, greatest] = std::minmax_element(rows_.begin(), rows_.end(), by_shift);
+  columns_.first = least->shift;
+  columns_.count = beams.cols + static_cast<std::uint32_t>(greatest->shift - least->shift);
+  if (columns_.count - beams.cols > kMaxShifted * beams.cols + kShiftedRoom) {
+    angles_.misfit = "rows that begin at very different azimuths";
+  }
+}
+
+void ScannerGrid::find_columns(const Beams& beams) {
+  columns_.phase_rad = angles_.phase_rad;
+  columns_.step_rad = angles_.step_rad;
+  const double half = kMaxHalfSector_rad / std::abs(angles_.step_rad) - margin_of(rows_);
+  const auto most = static_cast<std::uint32_t>(
+      std::clamp(2.0 * half, double{kTileColumns}, double{kMaxSectorColumns}));
+  shape_ = SectorShape::around(beams.cols, static_cast<std::uint32_t>(rows_.size()));
+  shape_.columns = std::min(most / kTileColumns * kTileColumns, shape_.columns);
+  low_deviation_.clear();
+  high_deviation_.clear();
+  for (const RowAngles& row : rows_) {
+    low_deviation_.push_back(next_below(row.low_deviation));
+    high_deviation_.push_back(next_above(row.high_deviation));
+  }
+}
+
+void ScannerGrid::find_bins() {
+  // Room around, so that a bin is never narrower than what tangents may be wrong by.
+  constexpr double kAround = 1e-2;
+  lowest_tangent_ = rows_.front().low_tangent - kAround;
+  highest_tangent_ = rows_.back().high_tangent + kAround;
+  const double width = (highest_tangent_ - lowest_tangent_) / kElevationBins;
+  first_row_.resize(kElevationBins + 1);
+  last_row_.resize(kElevationBins + 1);
+  const double room = kTangentRoom + 0.02 * width;
+  for (std::uint32_t bin = 0; bin <= kElevationBins; ++bin) {
+    const double bottom = lowest_tangent_ + bin * width - room;
+    const double top = lowest_tangent_ + (bin + 1) * width + room;
+    const auto first = std::partition_point(
+        rows_.begin(), rows_.end(), [&](const RowAngles& r) { return r.high_tangent < bottom; });
+    const auto end = std::partition_point(rows_.begin(), rows_.end(),
+                                          [&](const RowAngles& r) { return r.low_tangent <= top; });
+    first_row_[bin] = static_cast<std::int32_t>(first - rows_.begin());
+    last_row_[bin] = static_cast<std::int32_t>(end - rows_.begin()) - 1;
+  }
+}
+
+void ScannerGrid::build_sectors(const Beams& beams, Workers& workers) {
+  sectors_.resize((columns_.count + shape_.columns - 1) / shape_.columns);
+  const SensorAxes axes = axes_of(beams);
+  const auto build = [&](std::size_t i, std::vector<RowStart>& starts) {
+    const std::int64_t first = columns_.first + static_cast<std::int64_t>(i * shape_.columns);
+    starts.clear();
+    for (const RowAngles& row : rows_) starts.push_back({row.source, first - row.shift});
+    const double middle = static_cast<double>(first) + 0.5 * shape_.columns - 0.5;
+    const Eigen::Matrix3d frame = sector_frame(
+        axes, columns_.phase_rad + middle * columns_.step_rad, columns_.step_rad > 0.0);
+    sectors_[i].build(beams, shape_, {frame, frame}, starts);
+  };
+  workers.for_ranges(sectors_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    std::vector<RowStart> starts;
+    for (std::size_t i = begin; i < end; ++i) build(i, starts);
+  });
+}
+
+GridView ScannerGrid::view() const {
+  GridView view{};
+  set_shape(shape_, view);
+  const double step_rad = std::abs(columns_.step_rad);
+  view.columns_per_unit = static_cast<float>(1.0 / step_rad);
+  view.middle_column = 0.5F * static_cast<float>(shape_.columns) - 0.5F;
+  view.column_room = static_cast<float>(kCellRoom + kAzimuthRoom_rad / step_rad);
+  const double half_rad = (0.5 * shape_.columns + margin_of(rows_)) * step_rad;
+  view.max_slope = next_above(std::tan(half_rad));
+  const double secant = 1.0001 / std::cos(half_rad);
+  view.lowest_slope = next_below(std::min(lowest_tangent_, lowest_tangent_ * secant));
+  view.highest_slope = next_above(std::max(highest_tangent_, highest_tangent_ * secant));
+  view.elevations = {
+      .lowest_tangent = next_below(lowest_tangent_),
+      .highest_tangent = next_above(highest_tangent_),
+      .bins_per_tangent = static_cast<float>(kElevationBins / (highest_tangent_ - lowest_tangent_)),
+      .first_row = first_row_.data(),
+      .last_row = last_row_.data()};
+  set_deviations(low_deviation_, high_deviation_, view);
+  return view;
+}
+
+}  // namespace glidar::scan_raster
