@@ -91,22 +91,28 @@ EGLDisplay display_of(EGLDeviceEXT device) {
   return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
 }
 
-/// An OpenGL 3.3 context; EGL_NO_CONTEXT where that cannot be had. One that tells when the graphics
-/// device was reset, if the driver makes such.
-EGLContext make_context_of_api(EGLDisplay display) {
-  constexpr std::array<EGLint, 6> kVersion = {
-      EGL_CONTEXT_MAJOR_VERSION,       3,
-      EGL_CONTEXT_MINOR_VERSION,       3,
+/// A core context of this version; EGL_NO_CONTEXT where that cannot be had. One that tells when the
+/// graphics device was reset, if the driver makes such.
+EGLContext make_context_of_version(EGLDisplay display, EGLint major, EGLint minor) {
+  const std::array<EGLint, 6> version = {
+      EGL_CONTEXT_MAJOR_VERSION,       major,
+      EGL_CONTEXT_MINOR_VERSION,       minor,
       EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
-  std::vector<EGLint> attributes(kVersion.begin(), kVersion.end());
+  std::vector<EGLint> attributes(version.begin(), version.end());
   attributes.insert(attributes.end(), {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
                                        EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE});
   EGLContext context =
       eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
   if (context != EGL_NO_CONTEXT) return context;
-  attributes.assign(kVersion.begin(), kVersion.end());
+  attributes.assign(version.begin(), version.end());
   attributes.push_back(EGL_NONE);
   return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+}
+
+/// Some drivers give the version that is asked for and no later one.
+EGLContext make_context_of_api(EGLDisplay display) {
+  EGLContext context = make_context_of_version(display, 4, 5);
+  return context != EGL_NO_CONTEXT ? context : make_context_of_version(display, 3, 3);
 }
 
 /// A context without config and surface; EGL_NO_CONTEXT where that cannot be had. A display stays
