@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/opengl/projection.hpp>
 
+#include <cmath>
+
 namespace glidar::opengl {
 
 Eigen::Matrix4f clip_from_object(const InstanceView& view, const PinholeIntrinsics& k,
@@ -19,7 +21,9 @@ Eigen::Matrix4f clip_from_object(const InstanceView& view, const PinholeIntrinsi
   clip.row(2) = -to_depth * seen.row(2);
   clip(2, 3) += to_depth * depths.far_m;
   clip.row(3) = seen.row(2);
-  return clip.cast<float>();
+  // Some graphics devices draw nothing at 1e-30 m. A factor of all four coordinates changes nothing
+  // else, and a power of two no digit.
+  return (std::ldexp(1.0, -std::ilogb(depths.far_m)) * clip).cast<float>();
 }
 
 }  // namespace glidar::opengl
