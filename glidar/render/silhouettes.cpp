@@ -62,21 +62,19 @@ std::vector<HalfEdge> sorted_half_edges(const Mesh& mesh) {
 }
 
 /// -1: the sensor is behind the triangle, 1: in front of it, 0: in its plane as far as double
-/// resolves.
-int side_of(const Resolver& resolver, std::uint32_t instance, std::uint32_t triangle) {
+/// resolves. `distance`: from the mesh's origin to the sensor.
+std::int8_t side_of(const TrianglePlane& plane, const Eigen::Vector3d& sensor, double distance) {
   constexpr double kRounding = 0x1p-44;  // see slack()
-  const Eigen::Vector3d& sensor = resolver.view(instance).sensor_in_object;
-  const TrianglePlane& plane = resolver.plane(instance, triangle);
   const double above = plane.normal.dot(sensor) - plane.offset;
-  const double room = kRounding * (sensor.norm() + std::abs(plane.offset));
-  if (!(std::abs(above) > room)) return 0;
-  return above > 0.0 ? 1 : -1;
+  const double room = kRounding * (distance + std::abs(plane.offset));
+  const int side = static_cast<int>(above > room) - static_cast<int>(above < -room);
+  return static_cast<std::int8_t>(side);
 }
 
-bool is_silhouette(const Resolver& resolver, std::uint32_t instance, const MeshEdge& edge) {
+bool is_silhouette(const MeshEdge& edge, const std::vector<std::int8_t>& sides) {
   if (edge.second == MeshEdge::kNone) return true;
-  const int side = side_of(resolver, instance, edge.first);
-  return side == 0 || side != side_of(resolver, instance, edge.second);
+  const std::int8_t side = sides[edge.first];
+  return side == 0 || side != sides[edge.second];
 }
 
 /// The part of a line in front of the sensor, as columns and rows of the picture; pixel centres are
@@ -132,6 +130,34 @@ void for_pixels_by(const PixelLine& line, double band_px, const PixelRect& part,
   }
 }
 
+/// The edges of an instance and where a pinhole sees them.
+struct EdgeView {
+  const std::vector<MeshEdge>& edges;
+  const std::vector<std::int8_t>& sides;  ///< see side_of()
+  const std::vector<Eigen::Vector3f>& positions;
+  Eigen::Matrix<double, 3, 4> sensor_from_object;
+  const Beams& beams;
+  const PixelRect& part;
+  double band_px;
+
+  [[nodiscard]] Eigen::Vector3d point(std::uint32_t vertex) const {
+    return sensor_from_object * positions[vertex].cast<double>().homogeneous();
+  }
+
+  /// Adds the pixels by those of the edges [begin, end) that are silhouettes.
+  void add_pixels(std::size_t begin, std::size_t end, std::vector<std::size_t>& pixels) const {
+    for (std::size_t i = begin; i < end; ++i) {
+      const MeshEdge& edge = edges[i];
+      if (!is_silhouette(edge, sides)) continue;
+      const PixelLine line = project(point(edge.from), point(edge.to), *beams.pinhole);
+      if (!line.is_seen) continue;
+      for_pixels_by(line, band_px, part, [&](std::size_t row, std::size_t col) {
+        pixels.push_back(row * beams.cols + col);
+      });
+    }
+  }
+};
+
 }  // namespace
 
 std::vector<MeshEdge> mesh_edges(const Mesh& mesh) {
@@ -149,30 +175,54 @@ std::vector<MeshEdge> mesh_edges(const Mesh& mesh) {
   return edges;
 }
 
+void SilhouettePixels::find_sides(const Resolver& resolver, std::uint32_t instance,
+                                  Workers& workers) {
+  constexpr std::size_t kTrianglesPerTask = 16384;
+  const Eigen::Vector3d& sensor = resolver.view(instance).sensor_in_object;
+  const double distance = sensor.norm();
+  sides_.resize(resolver.mesh(instance).triangles.size());
+  workers.for_ranges(sides_.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const TrianglePlane& plane = resolver.plane(instance, static_cast<std::uint32_t>(i));
+      sides_[i] = side_of(plane, sensor, distance);
+    }
+  });
+}
+
 void SilhouettePixels::add(const CastRequest& request, const Resolver& resolver,
                            std::uint32_t instance, const std::vector<MeshEdge>& edges,
-                           const PixelRect& part) {
-  const Eigen::Matrix<double, 3, 4> seen = sensor_from_object(resolver.view(instance));
-  const std::vector<Eigen::Vector3f>& positions = resolver.mesh(instance).positions_m;
-  const auto found = [&](std::size_t row, std::size_t col) {
-    pixels_.push_back(row * request.beams.cols + col);
-  };
-  for (const MeshEdge& edge : edges) {
-    if (!is_silhouette(resolver, instance, edge)) continue;
-    const PixelLine line =
-        project(seen * positions[edge.from].cast<double>().homogeneous(),
-                seen * positions[edge.to].cast<double>().homogeneous(), *request.beams.pinhole);
-    if (line.is_seen) for_pixels_by(line, band_px_, part, found);
+                           const PixelRect& part, Workers& workers) {
+  constexpr std::size_t kEdgesPerPiece = 16384;
+  find_sides(resolver, instance, workers);
+  const EdgeView view{.edges = edges,
+                      .sides = sides_,
+                      .positions = resolver.mesh(instance).positions_m,
+                      .sensor_from_object = sensor_from_object(resolver.view(instance)),
+                      .beams = request.beams,
+                      .part = part,
+                      .band_px = band_px_};
+  const std::size_t count = (edges.size() + kEdgesPerPiece - 1) / kEdgesPerPiece;
+  pieces_.resize(std::max(pieces_.size(), count));
+  workers.for_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      pieces_[i].clear();
+      view.add_pixels(i * kEdgesPerPiece, std::min((i + 1) * kEdgesPerPiece, edges.size()),
+                      pieces_[i]);
+    }
+  });
+  for (std::size_t i = 0; i < count; ++i) {
+    pixels_.insert(pixels_.end(), pieces_[i].begin(), pieces_[i].end());
   }
 }
 
 const std::vector<std::size_t>& SilhouettePixels::find(
     const CastRequest& request, const Resolver& resolver,
-    const std::vector<std::vector<MeshEdge>>& edges, const PixelRect& part) {
+    const std::vector<std::vector<MeshEdge>>& edges, const PixelRect& part, Workers& workers) {
   pixels_.clear();
   const std::vector<Instance>& instances = resolver.scene().instances;
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
-    if (is_present(request, i)) add(request, resolver, i, edges[instances[i].mesh], part);
+    if (!is_present(request, i)) continue;
+    add(request, resolver, i, edges[instances[i].mesh], part, workers);
   }
   std::sort(pixels_.begin(), pixels_.end());
   pixels_.erase(std::unique(pixels_.begin(), pixels_.end()), pixels_.end());

@@ -37,13 +37,16 @@ class SilhouettePixels {
   /// rising order. `edges` has the edges of each mesh; the resolver has the cast's poses.
   const std::vector<std::size_t>& find(const CastRequest& request, const Resolver& resolver,
                                        const std::vector<std::vector<MeshEdge>>& edges,
-                                       const PixelRect& part);
+                                       const PixelRect& part, Workers& workers);
 
  private:
+  void find_sides(const Resolver& resolver, std::uint32_t instance, Workers& workers);
   void add(const CastRequest& request, const Resolver& resolver, std::uint32_t instance,
-           const std::vector<MeshEdge>& edges, const PixelRect& part);
+           const std::vector<MeshEdge>& edges, const PixelRect& part, Workers& workers);
 
   double band_px_;
+  std::vector<std::int8_t> sides_;  ///< per triangle of an instance: where the sensor is
+  std::vector<std::vector<std::size_t>> pieces_;  ///< pixels found in each piece of the edges
   std::vector<std::size_t> pixels_;
 };
 

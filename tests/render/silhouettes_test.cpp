@@ -177,13 +177,15 @@ TEST(SilhouettePixels, AreThoseByTheOutlineAndNotThoseByInnerEdges) {
   const CastRequest request{.beams = beams};
   resolver.set_poses(Pose::Identity(), {});
   SilhouettePixels pixels(1.0 / 128.0);
+  Workers workers(2);
   const std::vector<std::size_t> found =
-      pixels.find(request, resolver, edges, {0, 0, kSide, kSide});
+      pixels.find(request, resolver, edges, {0, 0, kSide, kSide}, workers);
   EXPECT_EQ(found.size(), 64U);  // 32 rows at the left and at the right border
   for (const std::size_t pixel : found) {
     EXPECT_TRUE(pixel % kSide == 15 || pixel % kSide == 47) << pixel;
   }
-  const std::vector<std::size_t> part = pixels.find(request, resolver, edges, {16, 16, 10, 40});
+  const std::vector<std::size_t> part =
+      pixels.find(request, resolver, edges, {16, 16, 10, 40}, workers);
   EXPECT_EQ(part.size(), 10U);
 }
 

@@ -158,7 +158,8 @@ class OpenglRenderer final : public Renderer {
   /// Decides the beams that pass a silhouette so closely that the driver's rounding may have moved
   /// it over them.
   void search_silhouettes(const CastRequest& request, const PixelRect& part) {
-    const std::vector<std::size_t>& beams = silhouettes_->find(request, resolver_, edges_, part);
+    const std::vector<std::size_t>& beams =
+        silhouettes_->find(request, resolver_, edges_, part, workers_);
     known_.resize(beams.size());
     constexpr std::size_t kBeamsPerTask = 16;
     workers_.for_ranges(beams.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
