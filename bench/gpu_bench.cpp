@@ -1,9 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Where the time of the OpenGL renderer goes on a graphics device (GLIDAR_GRAPHICS_DEVICE chooses
-// it), and what a rasteriser in compute shaders would take. Medians. The clock of a driver in
-// software counts rasterising alone.
-#include "compute_raster.hpp"
+// it), and what casting in compute shaders takes. Medians. The clock of a driver in software counts
+// rasterising alone.
+#include "compute_caster.hpp"
+#include "compute_shaders.hpp"
 #include "many_views.hpp"
 
 #include <glidar/core/workers.hpp>
@@ -15,6 +16,8 @@
 #include <bit>
 #include <chrono>
 #include <cstdio>
+#include <string>
+#include <string_view>
 
 namespace glidar::bench {
 namespace {
@@ -149,28 +152,75 @@ void print_batches(const Model& model, std::uint32_t side) {
               ManyViews::kViews, 1.0 / batch_s);
 }
 
-/// The triangles drawn, and rasterised by compute shaders; both read back.
+bool is_software() {
+  opengl::EglContext context(chosen_device());
+  const opengl::Use use(context);
+  const std::string_view name = std::bit_cast<const char*>(glGetString(GL_RENDERER));
+  return name.find("llvmpipe") != std::string_view::npos;
+}
+
+/// What a batch has in common with rays.
+struct Comparison {
+  std::size_t beams = 0;
+  std::size_t hits = 0;
+  std::size_t undecided = 0;
+  std::size_t different = 0;
+};
+
+void compare_with_rays(const Model& model, const Beams& beams, const std::vector<Pose>& poses,
+                       const BatchHits& batch, Comparison& result) {
+  const auto rays = make_renderer(model.scene, {.kind = "rays"});
+  Hits hits;
+  result.undecided += batch.undecided;
+  for (std::size_t view = 0; view < poses.size(); ++view) {
+    rays->cast({.beams = beams, .world_from_sensor = poses[view]}, hits);
+    for (std::size_t i = 0; i < beams.size(); ++i) {
+      const std::size_t place = view * beams.size() + i;
+      const bool is_hit = hits.primitive[i] != kNoHit;
+      const bool is_same = batch.primitive[place] == hits.primitive[i] &&
+                           (!is_hit || std::bit_cast<std::uint64_t>(batch.range_m[place]) ==
+                                           std::bit_cast<std::uint64_t>(hits.range_m[i]));
+      ++result.beams;
+      result.hits += is_hit ? 1 : 0;
+      result.different += is_same ? 0 : 1;
+    }
+  }
+}
+
+/// Batches of random views, cast by compute shaders while those before are read and decided.
 void print_compute(const Model& model, std::uint32_t side) {
-  RawOpengl drawn(model, kRawNumbers, side);
-  if (!ComputeRaster::is_possible()) {
-    std::printf("%s %u: no compute shaders here\n", model.name.c_str(), side);
-    return;
+  const bool is_slow = is_software();
+  const std::size_t views = is_slow ? 1 : 256;
+  constexpr std::uint64_t kBatches = 4;
+  const Beams beams = make_beams(pinhole_from_fov(side, side, kFov_rad));
+  ComputeCaster caster(model.scene, beams, views);
+  std::vector<std::vector<Pose>> poses;
+  Comparison all;
+  for (std::uint64_t i = 0; i < kBatches; ++i) {
+    poses.push_back(poses_around(model, i + 1, views));
+    caster.start(poses.back());
+    compare_with_rays(model, beams, poses.back(), caster.finish(), all);
   }
-  const double draw_s = median_seconds([&] { drawn.draw_and_read(); });
-  ComputeRaster computed(model, side);
-  const double compute_s = median_seconds([&] { computed.draw_and_read(); });
-  std::size_t seen = 0;
-  std::size_t same = 0;
-  for (std::size_t i = 0; i < drawn.pixels().size(); ++i) {
-    if (drawn.pixels()[i] == 0xffffffffU) continue;
-    ++seen;
-    same += drawn.pixels()[i] == computed.pixels()[i] ? 1 : 0;
-  }
+  const std::size_t rounds = is_slow ? 1 : 4;  // through the batches, in one measurement
+  const double seconds = median_seconds([&] {
+    for (std::size_t i = 0; i < rounds * kBatches + ComputeCaster::kUnderWay - 1; ++i) {
+      if (i < rounds * kBatches) caster.start(poses[i % kBatches]);
+      if (i + 1 >= ComputeCaster::kUnderWay) caster.finish();
+    }
+  });
+  const double kernel_s = median_device_seconds([&] {
+    caster.start(poses[0]);
+    caster.finish();
+  });
+  const double rounds_s = seconds / static_cast<double>(rounds);
   std::printf(
-      "%s %u: drawn %.2f ms, by compute shaders %.2f ms (%.2f times as fast), %.2f %% of "
-      "pixels alike\n",
-      model.name.c_str(), side, 1e3 * draw_s, 1e3 * compute_s, draw_s / compute_s,
-      100.0 * static_cast<double>(same) / static_cast<double>(std::max<std::size_t>(seen, 1)));
+      "%s %u, cast by compute shaders: %.1f million hits/s, %.1f million beams/s, %.0f views/s; "
+      "%.3f ms a batch of %zu on the device's clock\n",
+      model.name.c_str(), side, 1e-6 * static_cast<double>(all.hits) / rounds_s,
+      1e-6 * static_cast<double>(all.beams) / rounds_s,
+      static_cast<double>(kBatches * views) / rounds_s, 1e3 * kernel_s, views);
+  std::printf("  %zu of %zu beams differ from rays; %.2e of them in doubt\n", all.different,
+              all.beams, static_cast<double>(all.undecided) / static_cast<double>(all.beams));
 }
 
 void run_all() {
@@ -179,7 +229,12 @@ void run_all() {
   for (const auto& model : models()) {
     for (const std::uint32_t side : {256U, 512U, 1024U}) print_breakdown(*model, side);
     print_batches(*model, 128);
-    for (const std::uint32_t side : {128U, 512U, 1024U}) print_compute(*model, side);
+    if (const std::string missing = ComputeCaster::missing(); missing.empty()) {
+      print_compute(*model, 128);
+      if (!is_software()) print_compute(*model, 512);
+    } else {
+      std::printf("no casting by compute shaders: %s\n", missing.c_str());
+    }
   }
 }
 

@@ -19,6 +19,21 @@ inline RendererOptions options(const char* kind) {
   return {.kind = kind, .threads = kThreads, .graphics_device = chosen_device()};
 }
 
+/// Random sides of a model, seen from as far as its own place.
+inline std::vector<Pose> poses_around(const Model& model, std::uint64_t seed, std::size_t count) {
+  const Eigen::Vector3d middle = bounds(model.scene).center();
+  const double distance_m = (model.world_from_sensor.translation() - middle).norm();
+  std::vector<Pose> poses;
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const RandomWords words = random_words({.seed = seed, .block = i});
+    const Eigen::Vector3d side(uniform(words[0]) - 0.5, uniform(words[1]) - 0.5,
+                               uniform(words[2]) - 0.5);
+    poses.push_back(
+        look_at(middle + distance_m * side.normalized(), middle, Eigen::Vector3d::UnitY()));
+  }
+  return poses;
+}
+
 /// Frames from many sides of a model, each with normals, as a Monte Carlo run takes them.
 class ManyViews {
  public:
@@ -28,18 +43,10 @@ class ManyViews {
       : renderer_(make_renderer(model.scene, options(kind))),
         beams_(make_beams(pinhole_from_fov(side, side, kFov_rad))),
         hits_(kViews) {
-    const Eigen::Vector3d middle = bounds(model.scene).center();
-    const double distance_m = (model.world_from_sensor.translation() - middle).norm();
-    for (std::uint32_t i = 0; i < kViews; ++i) {
-      const RandomWords words = random_words({.seed = 1, .block = i});
-      const Eigen::Vector3d side_of(uniform(words[0]) - 0.5, uniform(words[1]) - 0.5,
-                                    uniform(words[2]) - 0.5);
-      requests_.push_back({.beams = beams_,
-                           .world_from_sensor = look_at(middle + distance_m * side_of.normalized(),
-                                                        middle, Eigen::Vector3d::UnitY()),
-                           .fields = {.normal = true}});
-      all_.push_back(&hits_[i]);
+    for (const Pose& pose : poses_around(model, 1, kViews)) {
+      requests_.push_back({.beams = beams_, .world_from_sensor = pose, .fields = {.normal = true}});
     }
+    for (Hits& hits : hits_) all_.push_back(&hits);
   }
 
   void one_by_one() {

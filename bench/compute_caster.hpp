@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "compute_scene.hpp"
+
+#include <glidar/render/opengl/egl_context.hpp>
+#include <glidar/render/rays/scene_search.hpp>
+#include <glidar/render/renderer.hpp>
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glidar::bench {
+
+/// What the beams of some views hit, view by view.
+struct BatchHits {
+  std::span<std::uint32_t> primitive;  ///< kMissed: nothing
+  std::span<double> range_m;           ///< of hits; unset elsewhere
+  std::size_t undecided;               ///< beams that the host had to decide
+};
+
+/// Casts many views of one sensor in compute shaders (OpenGL 4.3 and 64-bit numbers), with the
+/// results of `--renderer rays`, bit by bit. A thread per beam walks the tree that rays search;
+/// single precision rejects triangles, double accepts one where its bounds leave no doubt that the
+/// hit rule does so too, and measures its range in the order of Resolver. Beams for which bounds
+/// leave a doubt (on borders, between surfaces that coincide, almost edge-on, at the sensor) are
+/// listed, and the host decides them by BeamSearch and Resolver.
+///
+/// Limits: one instance, no alpha masks, no culled faces, beams from the sensor's origin; meshes in
+/// which all triangles coincide with others are decided by the host throughout.
+class ComputeCaster {
+ public:
+  /// Why the device cannot do so, or empty. Compares its arithmetic with the processor's.
+  static std::string missing();
+
+  /// The scene must outlive the caster.
+  ComputeCaster(const Scene& scene, const Beams& beams, std::size_t views);
+
+  /// Batches that may be started before the first is finished.
+  static constexpr std::size_t kUnderWay = 3;
+
+  /// Starts a batch; up to as many poses of the sensor as the constructor was given.
+  void start(std::span<const Pose> world_from_sensor);
+
+  /// Waits for the batch that was started first and decides what is in doubt. The hits are valid
+  /// until the next start().
+  const BatchHits& finish();
+
+ private:
+  /// Memory of the host that the device writes to.
+  struct Mapped {
+    opengl::Buffer buffer;
+    void* data = nullptr;
+  };
+  struct Batch {
+    opengl::Buffer views;
+    Mapped numbers;
+    Mapped ranges;
+    opengl::Buffer doubts;  ///< how many, and which
+    Mapped doubts_copy;
+    GLsync done = nullptr;
+    std::vector<Pose> poses;
+    BatchHits hits;
+  };
+  /// What lives on the device.
+  struct OnDevice {
+    opengl::Program program;
+    std::optional<ComputeScene> scene;
+    std::array<Batch, kUnderWay> batches;
+  };
+
+  void make_room(Batch& batch) const;
+  /// Of the list of doubts.
+  [[nodiscard]] GLsizeiptr doubts_bytes() const;
+  void upload_views(const Batch& batch) const;
+  void decide(Batch& batch);
+  void decide_view(const Batch& batch, std::size_t view, std::span<const std::uint32_t> places);
+  void decide_beam(const CastRequest& request, std::size_t beam, std::uint32_t& primitive,
+                   double& range_m) const;
+
+  const Scene& scene_;
+  const Beams& beams_;
+  std::size_t views_;
+  Workers workers_;
+  Resolver resolver_;
+  rays::SceneSearch search_;
+  opengl::EglContext context_;
+  opengl::Use use_;
+  std::unique_ptr<OnDevice> gpu_;
+  std::size_t started_ = 0;
+  std::size_t finished_ = 0;
+};
+
+}  // namespace glidar::bench

@@ -1,0 +1,31 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+#include <glidar/core/workers.hpp>
+#include <glidar/render/opengl/gl_object.hpp>
+#include <glidar/render/resolve.hpp>
+
+#include <array>
+
+namespace glidar::bench {
+
+/// What the casting shader reads of a scene with one instance, in the memory of the graphics
+/// device: a tree over its triangles as rays search it, their planes and the beams.
+class ComputeScene {
+ public:
+  /// Needs a current context. Throws Error for a scene that the shader cannot cast into.
+  ComputeScene(const Resolver& resolver, const Beams& beams, Workers& workers);
+
+  /// Binds the buffers, and sets the uniforms of the current program.
+  void bind() const;
+
+ private:
+  std::array<opengl::Buffer, 4> buffers_;  ///< nodes, triangles, planes, directions
+  std::array<GLuint, 2> size_;
+  std::array<double, 4> sphere_;
+  std::array<float, 2> reach_;
+};
+
+}  // namespace glidar::bench
