@@ -51,14 +51,8 @@ void for_row(const Beams& beams, const BeamRect& rect, std::uint32_t row, std::u
   }
 }
 
-}  // namespace
-
-Eigen::Vector2d picture_point(const Eigen::Vector3d& direction) {
-  return direction.head<2>() / (direction.norm() + direction.z());
-}
-
 /// How far beams are from the cells of a map.
-class CameraBlock::Bounds {
+class Bounds {
  public:
   explicit Bounds(const ProjectiveMap& map) : map_(map) {}
 
@@ -116,6 +110,12 @@ class CameraBlock::Bounds {
   double widest_row_ = 0.0;
   Range row_offsets_;
 };
+
+}  // namespace
+
+Eigen::Vector2d picture_point(const Eigen::Vector3d& direction) {
+  return direction.head<2>() / (direction.norm() + direction.z());
+}
 
 void CameraBlock::measure(const Beams& beams) {
   set_shape(shape(), view_);

@@ -48,8 +48,6 @@ class CameraBlock {
   [[nodiscard]] const Eigen::AlignedBox2d& points() const { return points_; }
 
  private:
-  class Bounds;
-
   void count_beams(const Beams& beams);
   bool fit(const Beams& beams);
   void bound(const Beams& beams);
