@@ -44,6 +44,11 @@ std::uint32_t told(const PictureWriting& w, const Found& found) {
                                    : w.resolver.told(found.instance, found.primitive);
 }
 
+bool is_close(const PictureWriting& w, const Found& found) {
+  return w.sheets != nullptr &&
+         w.sheets->is_close(found.instance, w.resolver.told(found.instance, found.primitive));
+}
+
 /// Puts these lanes right by the hit rule; true when that changed the block.
 bool correct(const PictureWriting& w, std::uint32_t lanes, const BeamBlock& beams,
              HitBlock& block) {
@@ -117,8 +122,9 @@ void look_up(const PictureWriting& w, Work& work) {
   const bool with_corners = needs_corners(w.request.fields);
   for (unsigned lane = 0; lane < work.used; ++lane) {
     work.certain |= static_cast<std::uint32_t>((work.number[lane] & kCertain) != 0) << lane;
-    work.contested |= static_cast<std::uint32_t>((work.number[lane] & kContested) != 0) << lane;
     const Found found = w.triangles.found(work.number[lane]);
+    const bool is_contested = (work.number[lane] & kContested) != 0 || is_close(w, found);
+    work.contested |= static_cast<std::uint32_t>(is_contested) << lane;
     work.block.instance[lane] = found.instance;
     work.block.primitive[lane] = told(w, found);
     w.resolver.prefetch(work.block, lane, with_corners);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <glidar/core/work_count.hpp>
+#include <glidar/render/close_sheets.hpp>
 #include <glidar/render/depth_range.hpp>
 #include <glidar/render/found.hpp>
 #include <glidar/render/overlaps.hpp>
@@ -34,6 +35,8 @@ struct PictureWriting {
   Hits& hits;
   const rays::BeamSearch& search;  ///< for beams in doubt
   const Overlaps& overlaps;
+  /// Whose triangles are cast, as the picture does not tell sheets apart; nullptr: none.
+  const CloseSheets* sheets = nullptr;
   /// Beams whose hits are known already, whatever was drawn, in rising order.
   std::span<const KnownHit> known = {};
 };

@@ -33,6 +33,8 @@ class SilhouettePixels {
   /// Beams within `band_px` of a silhouette, in pixels, are found.
   explicit SilhouettePixels(double band_px) : band_px_(band_px) {}
 
+  [[nodiscard]] double band_px() const { return band_px_; }
+
   /// Finds those in a part of the picture, as row * columns of the whole picture + column, in
   /// rising order. `edges` has the edges of each mesh; the resolver has the cast's poses.
   const std::vector<std::size_t>& find(const CastRequest& request, const Resolver& resolver,

@@ -3,6 +3,7 @@
 #include <glidar/render/opengl/opengl_renderer.hpp>
 
 #include <glidar/core/work_count.hpp>
+#include <glidar/render/close_sheets.hpp>
 #include <glidar/render/opengl/draw_state.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/render/opengl/number_target.hpp>
@@ -40,6 +41,7 @@ class OpenglRenderer final : public Renderer {
       boxes_.push_back(local_box(mesh));
       edges_.push_back(mesh_edges(mesh));
     }
+    sheets_.emplace(resolver_, search_.trees(), boxes_, workers_);
     const opengl::FreshState state(*context_);
     gpu_ = std::make_unique<OnDevice>(scene);
     silhouettes_.emplace(doubt_px());
@@ -136,7 +138,8 @@ class OpenglRenderer final : public Renderer {
       search_.prepare(request);
       if (!overlaps_) overlaps_.emplace(resolver_, search_.trees());
       overlaps_->prepare(request);
-      search_silhouettes(request, picture.rect);
+      sheets_->prepare(request, silhouettes_->band_px());
+      search_known(request, picture);
       write_picture({.request = request,
                      .resolver = resolver_,
                      .triangles = gpu_->drawing.numbers(),
@@ -147,6 +150,7 @@ class OpenglRenderer final : public Renderer {
                      .hits = *hits[picture.cast],
                      .search = search_.beams(),
                      .overlaps = *overlaps_,
+                     .sheets = &*sheets_,
                      .known = known_},
                     workers_, *count_);
       const bool is_last_part = picture.rect.first_row + picture.rect.rows == request.beams.rows &&
@@ -155,11 +159,45 @@ class OpenglRenderer final : public Renderer {
     }
   }
 
-  /// Decides the beams that pass a silhouette so closely that the driver's rounding may have moved
-  /// it over them.
-  void search_silhouettes(const CastRequest& request, const PixelRect& part) {
-    const std::vector<std::size_t>& beams =
-        silhouettes_->find(request, resolver_, edges_, part, workers_);
+  /// True when surfaces may be so near to the sensor that the picture's nearest plane cuts them
+  /// off, or that rounding moves them to the other side of the sensor.
+  [[nodiscard]] bool is_something_at_sensor(const CastRequest& request,
+                                            const DepthRange& depths) const {
+    constexpr double kNearPart = 0x1p-19;  // some times hugging()'s least part
+    const double slope = std::max({std::abs(points_.x.front()), std::abs(points_.x.back()),
+                                   std::abs(points_.y.front()), std::abs(points_.y.back())});
+    if (depths.near_m > kNearPart * depths.far_m) return false;
+    const double reach_m = kNearPart * depths.far_m * (1.0 + 2.0 * slope);
+    for (std::uint32_t i = 0; i < resolver_.scene().instances.size(); ++i) {
+      if (!is_present(request, i)) continue;
+      const InstanceView& view = resolver_.view(i);
+      const Eigen::AlignedBox3d sensor(view.sensor_in_object, view.sensor_in_object);
+      if (has_triangle_near(search_.trees().of_instance(i), sensor, reach_m / view.scale)) {
+        return true;
+      }
+    }
+    return false;
+  }
+
+  /// Decides the beams for which the picture does not do: those that pass a silhouette so closely
+  /// that the driver's rounding may have moved it over them, or all where something is right at the
+  /// sensor.
+  void search_known(const CastRequest& request, const opengl::Picture& picture) {
+    if (is_something_at_sensor(request, picture.depths)) {
+      all_beams_.clear();
+      const PixelRect& part = picture.rect;
+      for (std::size_t row = part.first_row; row < part.first_row + part.rows; ++row) {
+        for (std::size_t col = part.first_col; col < part.first_col + part.cols; ++col) {
+          all_beams_.push_back(row * request.beams.cols + col);
+        }
+      }
+      search_beams(all_beams_);
+      return;
+    }
+    search_beams(silhouettes_->find(request, resolver_, edges_, picture.rect, workers_));
+  }
+
+  void search_beams(const std::vector<std::size_t>& beams) {
     known_.resize(beams.size());
     constexpr std::size_t kBeamsPerTask = 16;
     workers_.for_ranges(beams.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
@@ -182,6 +220,7 @@ class OpenglRenderer final : public Renderer {
   Resolver resolver_;
   rays::SceneSearch search_;
   std::optional<Overlaps> overlaps_;
+  std::optional<CloseSheets> sheets_;
   std::vector<Eigen::AlignedBox3d> boxes_;    ///< per mesh, relative to its origin
   std::vector<std::vector<MeshEdge>> edges_;  ///< per mesh
   std::unique_ptr<opengl::Context> context_;
@@ -189,6 +228,7 @@ class OpenglRenderer final : public Renderer {
   std::vector<opengl::Picture> pictures_;  ///< of the batch under way
   std::vector<opengl::PictureGroup> groups_;
   std::optional<SilhouettePixels> silhouettes_;
+  std::vector<std::size_t> all_beams_;
   std::vector<KnownHit> known_;     ///< of the picture whose hits are written
   PlanePoints points_;              ///< of the picture whose hits are written
   std::optional<WorkCount> count_;  ///< of its cast

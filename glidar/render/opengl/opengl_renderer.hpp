@@ -15,9 +15,8 @@ namespace glidar {
 ///
 /// It draws pinhole cameras without distortion only, all beams of which start at the sensor's
 /// origin, and throws Error for other beams: to read those off depth images would not be exact.
-/// A beam meets the same triangle as a cast ray unless it passes within 1/128 of a pixel of a
-/// silhouette, or of the border of a hole in an alpha mask: there it may tell what is on the other
-/// side. Surfaces nearer than 1e-7 of the farthest depth are not seen.
+/// A beam meets the same triangle as a cast ray unless it passes within some 1/64 of a pixel of the
+/// border of a hole in an alpha mask, or of a line in which surfaces of one mesh cut each other.
 std::unique_ptr<Renderer> make_opengl_renderer(const Scene& scene, const RendererOptions& options);
 
 /// The same over a context of the caller's, say that of a window; options.graphics_device is not
