@@ -184,17 +184,21 @@ class OpenglRenderer final : public Renderer {
   /// sensor.
   void search_known(const CastRequest& request, const opengl::Picture& picture) {
     if (is_something_at_sensor(request, picture.depths)) {
-      all_beams_.clear();
-      const PixelRect& part = picture.rect;
-      for (std::size_t row = part.first_row; row < part.first_row + part.rows; ++row) {
-        for (std::size_t col = part.first_col; col < part.first_col + part.cols; ++col) {
-          all_beams_.push_back(row * request.beams.cols + col);
-        }
-      }
+      list_beams(request.beams, picture.rect);
       search_beams(all_beams_);
-      return;
+    } else {
+      search_beams(silhouettes_->find(request, resolver_, edges_, picture.rect, workers_));
     }
-    search_beams(silhouettes_->find(request, resolver_, edges_, picture.rect, workers_));
+  }
+
+  /// All of a part of the picture.
+  void list_beams(const Beams& beams, const PixelRect& part) {
+    all_beams_.clear();
+    for (std::size_t row = part.first_row; row < part.first_row + part.rows; ++row) {
+      for (std::size_t col = part.first_col; col < part.first_col + part.cols; ++col) {
+        all_beams_.push_back(row * beams.cols + col);
+      }
+    }
   }
 
   void search_beams(const std::vector<std::size_t>& beams) {
