@@ -8,8 +8,8 @@
 
 namespace glidar {
 
-/// Rasterization on the CPU: pinhole cameras by raster/, scanners by scan_raster/. Others are
-/// refused. Each is built when it is first needed.
+/// Rasterization on the CPU: pinhole cameras by raster/, scanners and cameras with lenses by
+/// scan_raster/. Others are refused. Each is built when it is first needed.
 std::unique_ptr<Renderer> make_rasters(const Scene& scene, const RendererOptions& options);
 
 }  // namespace glidar

@@ -40,7 +40,7 @@ class Simulator(Immutable):
     Args:
         scene: what is measured.
         sensor: what measures; None: that of the scene file.
-        renderer: "auto": "raster" for cameras without distortion and for scanners where that is quicker, else "rays";
+        renderer: "auto": "raster" for cameras and scanners where that is quicker, else "rays";
             both on the processor. "opengl" draws on a graphics device (cameras without distortion).
         threads: of the renderer; 0: one per processor.
     """
