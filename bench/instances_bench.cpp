@@ -8,6 +8,8 @@
 #include <glidar/render/renderer.hpp>
 #include <glidar/sensor/pinhole.hpp>
 
+#include <vector>
+
 namespace glidar::bench {
 namespace {
 
@@ -61,6 +63,14 @@ void register_first_cast(const Stage& stage, const std::string& name) {
       ->Unit(benchmark::kMillisecond);
 }
 
+/// Moves so many instances; `step` counts moves.
+void move_some(std::size_t count, std::size_t& step, std::vector<Pose>& poses) {
+  for (std::size_t i = 0; i < count; ++i) {
+    Pose& pose = poses[(997 * ++step) % poses.size()];
+    pose.translation().z() = 0.01 * static_cast<double>(step % 50);
+  }
+}
+
 /// `moved`: how many instances move before each cast.
 void register_casts(Stage& stage, std::size_t moved, const std::string& name) {
   benchmark::RegisterBenchmark(name.c_str(),
@@ -71,10 +81,7 @@ void register_casts(Stage& stage, std::size_t moved, const std::string& name) {
                                  stage.cast(*renderer, hits);
                                  std::size_t step = 0;
                                  for (auto _ : state) {
-                                   for (std::size_t i = 0; i < moved; ++i) {
-                                     Pose& pose = stage.poses[(997 * ++step) % stage.poses.size()];
-                                     pose.translation().z() = 0.01 * static_cast<double>(step % 50);
-                                   }
+                                   move_some(moved, step, stage.poses);
                                    stage.cast(*renderer, hits);
                                  }
                                })

@@ -45,7 +45,8 @@ Beams make_beams(const Pattern& pattern) {
   beams.frame_id = "lidar_frame";
   beams.boresight = Eigen::Vector3d::UnitX();
   for (std::uint32_t row = 0; row < beams.rows; ++row) {
-    const double part = static_cast<double>(row / rays) / (pattern.rows - 1);
+    const std::uint32_t beam_row = row / rays;
+    const double part = static_cast<double>(beam_row) / (pattern.rows - 1);
     const double turn = std::numbers::pi / 3.0 * (row % rays);
     const double spread = row % rays == 0 ? 0.0 : kDegree * pattern.spread_deg;
     const double up = kDegree * (pattern.high_deg + part * (pattern.low_deg - pattern.high_deg)) +
