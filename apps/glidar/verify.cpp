@@ -31,7 +31,7 @@ Every ray is compared with closed forms in extended precision, independent of al
 hit or miss, instance and triangle, range and normal. With "one shape at rest" rays that pass an
 edge nearer than 2e-6 of the shape's radius are not judged.
 Bounds: range within 0.001 steps (ulp) of float32, normals within 1e-6 rad, nothing wrong.
-opengl casts pinhole cameras only, raster also scanners: cases with other beams do not apply to them.
+opengl casts pinhole cameras only, raster also scanners: cases with other beams do not apply.
 A known failure is a documented limit of a renderer, up to a known number of wrong rays and a known
 range error; anything worse is a failure. FIXED: a known failure passes on this machine.
 Exit codes: 0 all passed or known, 1 a failure, 2 bad input.)";

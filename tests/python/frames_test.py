@@ -182,8 +182,8 @@ def test_verify_passes_on_this_machine():
     assert len(found.rows) > 40
     assert all(row.judged_hits > 0 and row.rays > 0 for row in found.rows)
     assert {row.name for row in found.rows} == {
-        "one shape at rest", "several instances", "above a planet", "moving sensor and target",
-        "sensor on a vertex", "at vertices and edges", "beside the outline"}
+        "one shape at rest", "several instances", "above a planet", "scanner among bodies",
+        "moving sensor and target", "sensor on a vertex", "at vertices and edges", "beside the outline"}
     assert all(row.wrong_ids == 0 and row.range_error_ulp <= 1e-3 for row in found.rows if row.passed)
     assert all(row.known_failure for row in found.rows if row.verdict == "known failure")
 
