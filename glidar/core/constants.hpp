@@ -13,8 +13,8 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr float kInfinityf = std::numeric_limits<float>::infinity();
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< radians
-inline constexpr double kDegreesPerRadian =
-    180.0 / std::numbers::pi;  ///< not 1 / kDegree to the bit
+/// Not 1 / kDegree to the bit.
+inline constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 inline constexpr double kTwoPi = 2.0 * std::numbers::pi;
 inline constexpr double kMillimetre_m = 1e-3;
 inline constexpr double kMicrosecond_ns = 1e3;

@@ -8,8 +8,6 @@
 #include <type_traits>
 
 namespace glidar {
-namespace {}  // namespace
-
 void resize(Hits& hits, std::size_t size, const HitFields& fields) {
   const auto size_if = [size](bool asked) { return asked ? size : std::size_t{0}; };
   hits.range_m.resize(size);

@@ -18,34 +18,34 @@ namespace {
 const TextFileKind kSidecar = {"the JSON file that glidar writes beside a cloud", 512, ""};
 
 /// A count of 32 bits.
-std::uint64_t whole(const nlohmann::json& told) {
+std::uint64_t whole(const nlohmann::json& json) {
   constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-  if (told.is_number_unsigned() && told.get<std::uint64_t>() <= kMost) {
-    return told.get<std::uint64_t>();
+  if (json.is_number_unsigned() && json.get<std::uint64_t>() <= kMost) {
+    return json.get<std::uint64_t>();
   }
-  throw nlohmann::json::type_error::create(302, shown_json(told) + " is no count", &told);
+  throw nlohmann::json::type_error::create(302, shown_json(json) + " is no count", &json);
 }
 
-CommandRecord read_command(const nlohmann::json& told, const std::filesystem::path& sidecar) {
-  if (told.is_null()) return {};
-  const auto arguments = told.at("arguments").get<std::vector<std::string>>();
-  const auto folder = told.at("folder").get<std::string>();
+CommandRecord read_command(const nlohmann::json& json, const std::filesystem::path& sidecar) {
+  if (json.is_null()) return {};
+  const auto arguments = json.at("arguments").get<std::vector<std::string>>();
+  const auto folder = json.at("folder").get<std::string>();
   for (const std::string& argument : arguments) check_recorded_argument(sidecar, argument);
   check_recorded_path(sidecar, "folder", folder);
   return {.arguments = arguments, .folder = folder_beside(sidecar, folder)};
 }
 
-Sidecar read(const nlohmann::json& told, const std::filesystem::path& path) {
+Sidecar read(const nlohmann::json& json, const std::filesystem::path& path) {
   Sidecar sidecar;
   sidecar.path = path;
-  sidecar.version = told.at("glidar").get<std::string>();
-  sidecar.command = read_command(told.at("command"), path);
-  sidecar.frame = static_cast<std::uint32_t>(whole(told.at("frame")));
-  sidecar.frame_hash = told.at("frame_hash").get<std::string>();
-  const nlohmann::json& cloud = told.at("cloud");
+  sidecar.version = json.at("glidar").get<std::string>();
+  sidecar.command = read_command(json.at("command"), path);
+  sidecar.frame = static_cast<std::uint32_t>(whole(json.at("frame")));
+  sidecar.frame_hash = json.at("frame_hash").get<std::string>();
+  const nlohmann::json& cloud = json.at("cloud");
   sidecar.points = whole(cloud.at("rows")) * whole(cloud.at("cols"));
-  sidecar.hits = whole(told.at("beams_by_status").at("hit"));
-  for (const nlohmann::json& instance : told.at("instances")) {
+  sidecar.hits = whole(json.at("beams_by_status").at("hit"));
+  for (const nlohmann::json& instance : json.at("instances")) {
     const nlohmann::json& hash = instance.at("model_hash");
     sidecar.model_hashes.push_back(hash.is_null() ? "" : hash.get<std::string>());
   }

@@ -18,8 +18,8 @@ namespace {
 
 using Part = TimedPoseFault::Part;
 
-constexpr std::uintmax_t kMaxTrajectoryFile_mib =
-    512;  // five million poses of a hundred characters
+// Five million poses of a hundred characters.
+constexpr std::uintmax_t kMaxTrajectoryFile_mib = 512;
 constexpr std::array<const char*, 8> kNames = {"t", "x", "y", "z", "qx", "qy", "qz", "qw"};
 constexpr std::size_t kTum = kNames.size();
 constexpr std::size_t kKitti = 12;

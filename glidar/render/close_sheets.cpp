@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/close_sheets.hpp>
 
+#include <glidar/core/constants.hpp>
 #include <glidar/render/depth_range.hpp>
 #include <glidar/render/rays/exact_decision.hpp>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 namespace glidar {
 namespace {
@@ -131,7 +131,6 @@ class GapSearch {
 
   /// How far `other` is from the plane of the sheet where one covers the other, or infinite.
   [[nodiscard]] double gap_between(const Sheet& sheet, const Corners& other) const {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
     const double plane = sheet.normal.dot(sheet.corners[0]);
     const double a = sheet.normal.dot(other[0]) - plane;
     const double b = sheet.normal.dot(other[1]) - plane;
@@ -215,7 +214,7 @@ void CloseSheets::prepare(const CastRequest& request, double band_px) {
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
     if (!is_present(request, i)) continue;
     const InstanceView& view = resolver_.view(i);
-    double nearest_m = std::numeric_limits<double>::infinity();
+    double nearest_m = kInfinity;
     double farthest_m = 0.0;
     extend_depths(view, boxes_[instances[i].mesh], nearest_m, farthest_m);
     const double reach = trees_.reach(i);

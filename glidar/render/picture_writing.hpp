@@ -35,7 +35,8 @@ struct PictureWriting {
   Hits& hits;
   const rays::BeamSearch& search;  ///< for beams in doubt
   const Overlaps& overlaps;
-  /// Whose triangles are cast, as the picture does not tell sheets apart; nullptr: none.
+  /// Beams that hit its triangles are cast, because the picture may show either sheet; nullptr:
+  /// none.
   const CloseSheets* sheets = nullptr;
   /// Beams whose hits are known already, whatever was drawn, in rising order.
   std::span<const KnownHit> known = {};

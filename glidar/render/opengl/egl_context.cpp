@@ -91,8 +91,8 @@ EGLDisplay display_of(EGLDeviceEXT device) {
   return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
 }
 
-/// A core context of this version; EGL_NO_CONTEXT where that cannot be had. One that tells when the
-/// graphics device was reset, if the driver makes such.
+/// A core context of this version; EGL_NO_CONTEXT where that cannot be had. It reports
+/// resets of the graphics device if the driver supports that.
 EGLContext make_context_of_version(EGLDisplay display, EGLint major, EGLint minor) {
   const std::array<EGLint, 6> version = {
       EGL_CONTEXT_MAJOR_VERSION,       major,
@@ -109,7 +109,7 @@ EGLContext make_context_of_version(EGLDisplay display, EGLint major, EGLint mino
   return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
 }
 
-/// Some drivers give the version that is asked for and no later one.
+/// Some drivers return exactly the requested version, not the latest compatible one.
 EGLContext make_context_of_api(EGLDisplay display) {
   EGLContext context = make_context_of_version(display, 4, 5);
   return context != EGL_NO_CONTEXT ? context : make_context_of_version(display, 3, 3);

@@ -28,7 +28,7 @@ struct ProjectiveMap {
 };
 
 /// The map whose columns and rows are about those of the beams, by least squares; none where there
-/// are too few beams, or they lie on a line.
+/// are too few beams, or they are all on a line.
 std::optional<ProjectiveMap> fit_projective_map(std::span<const PlacedBeam> beams);
 
 }  // namespace glidar::scan_raster
