@@ -88,6 +88,12 @@ class GapSearch {
     visit(0, {sheet, slot, box, pairs});
   }
 
+  /// The same for all triangles of a cluster.
+  void add_pairs_of(const TriangleCluster& cluster, std::vector<ClosePair>& pairs) const {
+    const std::uint32_t first = cluster.first_block * kBlockSize;
+    for (std::uint32_t k = 0; k < cluster.count; ++k) add_pairs(first + k, pairs);
+  }
+
  private:
   struct Query {
     const Sheet& sheet;
@@ -161,10 +167,7 @@ std::vector<ClosePair> find_pairs(const MeshTree& tree, double reach, Workers& w
   workers.for_ranges(tasks, 1, [&](std::size_t begin, std::size_t end) {
     const std::size_t last = std::min(end * kClustersPerTask, tree.clusters.size());
     for (std::size_t i = begin * kClustersPerTask; i < last; ++i) {
-      const std::uint32_t first = tree.clusters[i].first_block * kBlockSize;
-      for (std::uint32_t k = 0; k < tree.clusters[i].count; ++k) {
-        search.add_pairs(first + k, found[begin]);
-      }
+      search.add_pairs_of(tree.clusters[i], found[begin]);
     }
   });
   std::vector<ClosePair> pairs;
