@@ -82,6 +82,12 @@ bool add_quarters(const BeamRect& rect, std::vector<CameraBlock>& blocks) {
   return true;
 }
 
+void measure_blocks(const Beams& beams, Workers& workers, std::vector<CameraBlock>& blocks) {
+  workers.for_ranges(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) blocks[i].measure(beams);
+  });
+}
+
 }  // namespace
 
 bool may_form_picture(const Beams& beams) {
@@ -126,9 +132,7 @@ void CameraGrid::find_misfit(const Beams& beams) {
 void CameraGrid::find_blocks(const Beams& beams, Workers& workers) {
   std::vector<CameraBlock> blocks = cut_picture(beams);
   while (!blocks.empty()) {
-    workers.for_ranges(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) blocks[i].measure(beams);
-    });
+    measure_blocks(beams, workers, blocks);
     std::vector<CameraBlock> smaller;
     for (CameraBlock& block : blocks) {
       if (!block.is_rough() || !add_quarters(block.rect(), smaller)) {
