@@ -135,9 +135,8 @@ void CameraGrid::find_blocks(const Beams& beams, Workers& workers) {
     measure_blocks(beams, workers, blocks);
     std::vector<CameraBlock> smaller;
     for (CameraBlock& block : blocks) {
-      if (!block.is_rough() || !add_quarters(block.rect(), smaller)) {
-        blocks_.push_back(std::move(block));
-      }
+      const bool is_cut = block.is_rough() && add_quarters(block.rect(), smaller);
+      if (!is_cut) blocks_.push_back(std::move(block));
     }
     blocks = std::move(smaller);
   }
