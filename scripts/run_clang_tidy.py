@@ -3,7 +3,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs clang-tidy over the project's own sources, in parallel.
 
-usage: run_clang_tidy.py BUILD_FOLDER JOBS; exit status 1 when it finds something.
+usage: run_clang_tidy.py BUILD_FOLDER JOBS [COMMIT]; exit status 1 when it finds something.
+With a COMMIT, only sources are checked that differ from it or include, also indirectly, a file that does.
+All are checked if the repository lacks the commit.
 Most of the time goes into the headers of others, so several sources of a folder that are compiled alike are
 checked as one, which takes a quarter of the time. Sources that do not go together, as they define the same
 name, are checked one by one. A group that passed is not checked again until one of its files, a header of
@@ -19,13 +21,12 @@ import sys
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
+from affected_sources import affected, changed_since
+from source_groups import groups
+
 ROOT = Path(__file__).resolve().parent.parent
 FOLDERS = ("glidar", "apps", "bench", "examples", "python", "tests")
 GROUP_SIZE = 8
-# What a source defines for itself: constants and types by name, functions by the line that they begin with.
-DEFINITIONS = re.compile(
-    r"^(?:(?:static |inline )*const(?:expr|init)? [^(={;\n]*?(\w+)(?:\[\w*\])? ?[={;]|(?:struct|class|enum class) (\w+)|using (\w+) ="
-    r"|(\w[^;=\n]* [&*]?\w+\([^;\n]*[{,]$))", re.MULTILINE)
 
 
 def own_sources(build):
@@ -44,24 +45,9 @@ def flags_of(file, command):
     return re.sub(r" -o \S+ -c \S+$| -o \S+", "", command.replace(str(file), "FILE"))
 
 
-def definitions(text):
-    return {next(filter(None, found)) for found in DEFINITIONS.findall(text)} - {"namespace"}
-
-
 def groups_of(sources, size=GROUP_SIZE):
     """Sources of one folder with the same flags, at most `size` together, none of which define the same names."""
-    groups = []
-    for file, directory, command in sources:
-        kind = (file.parent, directory, flags_of(file, command))
-        names = definitions(file.read_text(encoding="utf-8"))
-        for other_kind, members, taken in groups:
-            if other_kind == kind and len(members) < size and not names & taken:
-                members.append((file, directory, command))
-                taken |= names
-                break
-        else:
-            groups.append((kind, [(file, directory, command)], names))
-    return [members for _, members, _ in groups]
+    return groups(sources, size, lambda source: (source[0].parent, source[1], flags_of(source[0], source[2])))
 
 
 def hash_of_shared():
@@ -117,12 +103,21 @@ def check_together(build, members, key):
     return status == 0
 
 
+def sources_to_check(build, commit):
+    sources = own_sources(build)
+    changed = changed_since(ROOT, commit) if commit else None
+    if changed is None:
+        return sources
+    wanted = affected(ROOT, {file for file, _, _ in sources}, changed)
+    return [source for source in sources if source[0] in wanted]
+
+
 def main():
     build, jobs = Path(sys.argv[1]).resolve(), int(sys.argv[2])
     (build / "tidy").mkdir(exist_ok=True)
     shared = hash_of_shared()
     waiting = []
-    for members in groups_of(own_sources(build)):
+    for members in groups_of(sources_to_check(build, sys.argv[3] if len(sys.argv) > 3 else None)):
         key = hashlib.sha256(shared)
         for file, _, command in members:
             key.update(command.encode() + file.read_bytes())

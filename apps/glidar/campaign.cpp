@@ -99,7 +99,7 @@ std::vector<std::string> joined(std::vector<std::string> first,
   return first;
 }
 
-int run(const std::vector<std::string>& arguments) {
+int run_campaign(const std::vector<std::string>& arguments) {
   std::fflush(nullptr);
   const std::vector<fs::path> folders = program_folders();
   keep_absolute_folders();
@@ -130,7 +130,7 @@ Command add_campaign(CLI::App& program) {
                    .allowed = "run, merge, report, check",
                    .remedy = "see glidar campaign --help"});
     }
-    return run(arguments);
+    return run_campaign(arguments);
   };
 }
 

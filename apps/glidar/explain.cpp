@@ -19,7 +19,7 @@
 namespace glidar::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kExplainExamples =
     R"(Repeats the measurement that a cloud came from, as its sidecar (CLOUD.json) tells, and prints how
 one point came to be: the beam, what it met, the light, echoes, every step of noise with the
 random numbers that it drew, and what was reported.
@@ -119,7 +119,7 @@ void check(const ExplainFlags& flags) {
          "--index N, or --row R and --col C, with --return K if it is not the first", "");
 }
 
-int run(const ExplainFlags& flags) {
+int run_explain(const ExplainFlags& flags) {
   check(flags);
   Console console;
   const Sidecar sidecar = read_sidecar(flags.cloud);
@@ -152,7 +152,7 @@ int run(const ExplainFlags& flags) {
 Command add_explain(CLI::App& program) {
   CLI::App& command = *program.add_subcommand("explain", "Tell how a point of a cloud came to be");
   const auto flags = std::make_shared<ExplainFlags>();
-  command.footer(kExamples);
+  command.footer(kExplainExamples);
   command
       .add_option("CLOUD", flags->cloud, "A cloud by render or stream, with its sidecar beside it")
       ->required()
@@ -169,7 +169,7 @@ Command add_explain(CLI::App& program) {
   whole("--col", "C", "Which column, from 0", flags->col);
   add_whole(command, {"--return", "K", "Which return of that beam, from 1 [1]", group}, {1, 16},
             [&n = flags->return_number](std::int64_t k) { n = k; });
-  return [flags] { return run(*flags); };
+  return [flags] { return run_explain(*flags); };
 }
 
 }  // namespace glidar::app

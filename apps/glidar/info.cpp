@@ -21,7 +21,7 @@
 namespace glidar::app {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kInfoExamples = R"(Examples:
   glidar info builtin:asteroid
   glidar info builtin:torus --json
 With your own files:
@@ -200,7 +200,7 @@ ModelReport examine(const InfoFlags& flags) {
   return inspect(model);
 }
 
-int run(const InfoFlags& flags) {
+int run_info(const InfoFlags& flags) {
   const ModelReport report = examine(flags);
   const std::string up_hint =
       flags.model.up.empty()
@@ -221,13 +221,13 @@ int run(const InfoFlags& flags) {
 Command add_info(CLI::App& program) {
   CLI::App& command = *program.add_subcommand("info", "Tell what a model file holds");
   const auto flags = std::make_shared<InfoFlags>();
-  command.footer(kExamples);
+  command.footer(kInfoExamples);
   command.add_option("MODEL", flags->input, "Model file or builtin:NAME")
       ->required()
       ->type_name("");
   add_model_flags(command, flags->model);
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
-  return [flags] { return run(*flags); };
+  return [flags] { return run_info(*flags); };
 }
 
 }  // namespace glidar::app

@@ -14,10 +14,6 @@
 namespace glidar::app {
 namespace {
 
-[[noreturn]] void fail(std::string where, std::string found, std::string remedy) {
-  throw Error({std::move(where), std::move(found), "", std::move(remedy)});
-}
-
 Eigen::Vector3d parse_rate(std::string_view option, const std::string& text) {
   constexpr double kMost_rad_s = 1e9;
   const Eigen::Vector3d rate = parse_vector(option, text);
@@ -41,14 +37,18 @@ TimedPoses load_sensor_poses(const MotionFlags& flags) {
 void check(const MotionFlags& flags, bool pose_given) {
   if (flags.trajectory.empty()) {
     if (flags.trajectory_rate_hz || !flags.trajectory_times.empty() || flags.trajectory_start_s) {
-      fail("--trajectory-rate, --trajectory-times, --trajectory-start", "there is no --trajectory",
-           "give --trajectory FILE too");
+      throw Error({.where = "--trajectory-rate, --trajectory-times, --trajectory-start",
+                   .found = "there is no --trajectory",
+                   .allowed = "",
+                   .remedy = "give --trajectory FILE too"});
     }
     return;
   }
   if (pose_given || !flags.camera_dr.empty()) {
-    fail("--trajectory", "given beside options that say where the sensor is or how it turns",
-         "leave out one or the other");
+    throw Error({.where = "--trajectory",
+                 .found = "given beside options that say where the sensor is or how it turns",
+                 .allowed = "",
+                 .remedy = "leave out one or the other"});
   }
 }
 
@@ -89,7 +89,10 @@ Trajectory sensor_trajectory(const MotionFlags& flags, const Pose& world_from_se
     return ConstantPose{world_from_sensor};
   }
   if (from_scene_file && !pose_given) {
-    fail("--camera-dr", "the scene file already moves the sensor", "leave the option out");
+    throw Error({.where = "--camera-dr",
+                 .found = "the scene file already moves the sensor",
+                 .allowed = "",
+                 .remedy = "leave the option out"});
   }
   const Eigen::Vector3d legacy_rate = parse_rate("--camera-dr", flags.camera_dr);
   return Spin{.pose = world_from_sensor,
@@ -101,11 +104,13 @@ std::vector<Trajectory> instance_trajectories(const MotionFlags& flags, const Sc
                                               const std::vector<Trajectory>& from_scene_file) {
   if (flags.model_dr.empty()) return from_scene_file;
   if (scene.instances.size() != 1 || !from_scene_file.empty()) {
-    fail("--model-dr",
-         from_scene_file.empty()
-             ? "the scene has " + std::to_string(scene.instances.size()) + " objects"
-             : "the scene file already moves its objects",
-         "write the motion into the scene file");
+    throw Error(
+        {.where = "--model-dr",
+         .found = from_scene_file.empty()
+                      ? "the scene has " + std::to_string(scene.instances.size()) + " objects"
+                      : "the scene file already moves its objects",
+         .allowed = "",
+         .remedy = "write the motion into the scene file"});
   }
   return {Spin{.pose = scene.instances[0].world_from_object,
                .rate_rad_s = parse_rate("--model-dr", flags.model_dr)}};

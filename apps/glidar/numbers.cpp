@@ -15,7 +15,7 @@
 namespace glidar::app {
 namespace {
 
-[[noreturn]] void fail(std::string_view option, std::string found, std::string allowed) {
+[[noreturn]] void throw_bad_value(std::string_view option, std::string found, std::string allowed) {
   throw Error({.where = std::string(option),
                .found = std::move(found),
                .allowed = std::move(allowed),
@@ -35,7 +35,7 @@ std::optional<double> number(std::string_view text) {
 
 double parse_number(std::string_view option, std::string_view text) {
   const std::optional<double> value = number(text);
-  if (!value) fail(option, fmt::format("'{}'", text), "a number");
+  if (!value) throw_bad_value(option, fmt::format("'{}'", text), "a number");
   return *value;
 }
 
@@ -46,7 +46,8 @@ std::vector<std::string> parse_list(std::string_view option, std::string_view te
     const std::size_t comma = text.find(',', begin);
     parts.emplace_back(text.substr(begin, comma - begin));
     if (parts.back().empty()) {
-      fail(option, fmt::format("'{}' has an empty part", text), "parts with one comma between");
+      throw_bad_value(option, fmt::format("'{}' has an empty part", text),
+                      "parts with one comma between");
     }
     if (comma == std::string_view::npos) return parts;
     begin = comma + 1;
@@ -60,11 +61,12 @@ std::vector<double> parse_numbers(std::string_view option, std::string_view text
   std::vector<double> numbers;
   for (const std::string& part : parse_list(option, text)) {
     const std::optional<double> value = number(part);
-    if (!value || !std::isfinite(*value)) fail(option, fmt::format("'{}'", part), allowed);
+    if (!value || !std::isfinite(*value))
+      throw_bad_value(option, fmt::format("'{}'", part), allowed);
     numbers.push_back(*value);
   }
   if (numbers.size() != count) {
-    fail(option, fmt::format("'{}' ({} numbers)", text, numbers.size()), allowed);
+    throw_bad_value(option, fmt::format("'{}' ({} numbers)", text, numbers.size()), allowed);
   }
   return numbers;
 }
@@ -89,7 +91,7 @@ Eigen::Vector3d parse_position(std::string_view option, std::string_view text) {
 
 Eigen::Quaterniond unit_quaternion(std::string_view option, const std::array<double, 4>& wxyz) {
   Eigen::Vector4d n(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  if (n.isZero(0.0)) fail(option, "a quaternion of length 0", "any other length");
+  if (n.isZero(0.0)) throw_bad_value(option, "a quaternion of length 0", "any other length");
   n.stableNormalize();  // the squares of 1e300 and 1e-300 are beyond double
   return {n[0], n[1], n[2], n[3]};
 }
@@ -102,12 +104,12 @@ Eigen::Quaterniond parse_quaternion(std::string_view option, std::string_view te
 Eigen::Quaterniond parse_angle_axis(std::string_view option, std::string_view text) {
   const std::vector<double> n = parse_numbers(option, text, 4, "angle,x,y,z (radians, axis)");
   const Eigen::Vector3d axis(n[1], n[2], n[3]);
-  if (axis.isZero(0.0)) fail(option, "an axis of length 0", "any other length");
+  if (axis.isZero(0.0)) throw_bad_value(option, "an axis of length 0", "any other length");
   return Eigen::Quaterniond(Eigen::AngleAxisd(n[0], axis.stableNormalized()));
 }
 
 void require(bool holds, std::string_view option, double value, std::string_view allowed) {
-  if (!holds) fail(option, number_text(value), std::string(allowed));
+  if (!holds) throw_bad_value(option, number_text(value), std::string(allowed));
 }
 
 }  // namespace glidar::app

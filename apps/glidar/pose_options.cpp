@@ -23,18 +23,14 @@ const Eigen::Vector3d& three_quarters() {
   return kDirection;
 }
 
-[[noreturn]] void fail(std::string where, std::string found, std::string remedy) {
-  throw Error({.where = std::move(where),
-               .found = std::move(found),
-               .allowed = "",
-               .remedy = std::move(remedy)});
-}
-
 /// An attitude given as a quaternion or as an angle and axis; nothing when not given.
 std::optional<Eigen::Quaterniond> attitude(const std::string& name, const std::string& quaternion,
                                            const std::string& angle_axis) {
   if (!quaternion.empty() && !angle_axis.empty()) {
-    fail(name + "-q and " + name + "-r", "both are given", "give one of them");
+    throw Error({.where = name + "-q and " + name + "-r",
+                 .found = "both are given",
+                 .allowed = "",
+                 .remedy = "give one of them"});
   }
   if (!quaternion.empty()) return parse_quaternion(name + "-q", quaternion);
   if (!angle_axis.empty()) return parse_angle_axis(name + "-r", angle_axis);
@@ -91,13 +87,20 @@ Pose level_pose(const Eigen::Vector3d& eye, const std::optional<Eigen::Vector3d>
 /// The pose by --eye, --target and --up-vector.
 Pose eye_pose(const PoseFlags& flags, const Scene& scene, const std::optional<Eigen::Vector3d>& up,
               bool along_x) {
-  if (flags.eye.empty()) fail("--target", "there is no --eye", "give --eye x,y,z too");
+  if (flags.eye.empty())
+    throw Error({.where = "--target",
+                 .found = "there is no --eye",
+                 .allowed = "",
+                 .remedy = "give --eye x,y,z too"});
   const Eigen::Vector3d eye = parse_position("--eye", flags.eye);
   if (along_x && flags.target.empty()) return level_pose(eye, up);
   const Eigen::Vector3d target =
       flags.target.empty() ? middle_of(scene) : parse_position("--target", flags.target);
   if (eye == target) {
-    fail("--eye", "'" + flags.eye + "' is the point looked at", "give another --eye or --target");
+    throw Error({.where = "--eye",
+                 .found = "'" + flags.eye + "' is the point looked at",
+                 .allowed = "",
+                 .remedy = "give another --eye or --target"});
   }
   if (up) check_upright("--eye, --target and --up-vector", target - eye, *up);
   const Pose world_from_optical = up ? look_at(eye, target, *up) : look_at(eye, target);
@@ -174,9 +177,12 @@ void pose_model(const PoseFlags& flags, Scene& scene) {
   const auto model_q = attitude("--model", flags.model_q, flags.model_r);
   if (!model_q && !flags.scale) return;
   if (scene.instances.size() != 1) {
-    fail("--scale, --model-q, --model-r",
-         "the scene has " + std::to_string(scene.instances.size()) + " objects",
-         "these options move a single model; write poses and scales into the scene file");
+    throw Error(
+        {.where = "--scale, --model-q, --model-r",
+         .found = "the scene has " + std::to_string(scene.instances.size()) + " objects",
+         .allowed = "",
+         .remedy =
+             "these options move a single model; write poses and scales into the scene file"});
   }
   if (flags.scale) {
     require(*flags.scale >= kSmallestScale && *flags.scale <= kLargestScale, "--scale",
@@ -185,8 +191,10 @@ void pose_model(const PoseFlags& flags, Scene& scene) {
   }
   if (!model_q) return;
   if (!scene.instances[0].world_from_object.isApprox(Pose::Identity())) {
-    fail("--model-q, --model-r", "the scene file already gives the model's pose",
-         "turn it in the scene file");
+    throw Error({.where = "--model-q, --model-r",
+                 .found = "the scene file already gives the model's pose",
+                 .allowed = "",
+                 .remedy = "turn it in the scene file"});
   }
   scene.instances[0].world_from_object = legacy_world_from_object(*model_q);
 }
@@ -200,12 +208,18 @@ Pose pose_sensor(const PoseFlags& flags, const ScenePose& from_scene_file, const
   const int ways =
       int{eye_given(flags)} + int{legacy_given(flags)} + int{!flags.sensor_pose.empty()};
   if (ways > 1) {
-    fail("--eye, --sensor-pose and --camera-z", "the pose is given in several ways",
-         "give --eye and --target, or --sensor-pose, or --camera-z with --camera-q");
+    throw Error(
+        {.where = "--eye, --sensor-pose and --camera-z",
+         .found = "the pose is given in several ways",
+         .allowed = "",
+         .remedy = "give --eye and --target, or --sensor-pose, or --camera-z with --camera-q"});
   }
   const bool up_used = eye_given(flags) || (ways == 0 && !from_scene_file.world_from_sensor);
   if (!up_used && !flags.up_vector.empty()) {
-    fail("--up-vector", "the pose is already complete", "leave it out, or give --eye");
+    throw Error({.where = "--up-vector",
+                 .found = "the pose is already complete",
+                 .allowed = "",
+                 .remedy = "leave it out, or give --eye"});
   }
   const std::optional<Eigen::Vector3d> up_given =
       flags.up_vector.empty() ? std::nullopt

@@ -23,7 +23,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 /// How often who waits looks whether it waits for too long.
-constexpr std::chrono::milliseconds kLook{100};
+constexpr std::chrono::milliseconds kPoseWait{100};
 
 }  // namespace
 
@@ -120,7 +120,7 @@ std::optional<legacy::Placement> SimulatorSource::wait_for_pose() {
       has_timed_out_ = true;
       ending_ = fmt::format("no pose came for {} s", *options_.timeout_s);
     } else {
-      link::wait_for({&receiver_.pose_socket()}, stop_.descriptor(), kLook);
+      link::wait_for({&receiver_.pose_socket()}, stop_.descriptor(), kPoseWait);
     }
   }
   return std::nullopt;

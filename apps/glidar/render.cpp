@@ -19,7 +19,7 @@
 namespace glidar::app {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kRenderExamples = R"(Examples:
   glidar render builtin:asteroid -o asteroid.pcd -o asteroid.png
   glidar render builtin:box --eye 4,-6,3 --target 0,0,0 --width 640 --height 480 --fov 40 -o box.ply
   glidar render builtin:torus --fx 500 --cx 300 --cy 250 -w 640 --height 480 -o torus.depth.png
@@ -138,7 +138,7 @@ void measure_all(Job& job, const OutputFlags& files, Mount& mount, Console& cons
   }
 }
 
-int run(const RenderFlags& flags, const std::vector<std::string>& arguments) {
+int run_render(const RenderFlags& flags, const std::vector<std::string>& arguments) {
   Console console(flags.quiet);
   check(flags.information, flags.output);
   if (flags.duration_s) numbered(flags.output, 0);  // only for its errors
@@ -174,9 +174,9 @@ Command add_render(CLI::App& program, const std::vector<std::string>& arguments)
   CLI::App& command =
       *program.add_subcommand("render", "Measure a model or scene with a 3D sensor");
   const auto flags = std::make_shared<RenderFlags>();
-  command.footer(output_names_text() + kExamples);
+  command.footer(output_names_text() + kRenderExamples);
   add_render_flags(command, *flags);
-  return [flags, arguments] { return run(*flags, arguments); };
+  return [flags, arguments] { return run_render(*flags, arguments); };
 }
 
 }  // namespace glidar::app

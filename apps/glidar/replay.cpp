@@ -17,7 +17,7 @@
 namespace glidar::app {
 namespace {
 
-constexpr const char* kExamples =
+constexpr const char* kReplayExamples =
     R"(Measures every frame of a recording again and compares it with what was recorded: the first that
 comes out otherwise is an error. Writes files (-o) or publishes (--port) as `glidar stream` does.
 Examples:
@@ -59,7 +59,7 @@ void make_absolute(StreamFlags& flags) {
   }
 }
 
-int run(const StreamFlags& chosen) {
+int run_replay(const StreamFlags& chosen) {
   const std::string file = chosen.replay;
   const link::RecordingReader recording(file);
   StreamFlags flags = replayed(flags_of(recording.head(), file), chosen);
@@ -78,12 +78,12 @@ int run(const StreamFlags& chosen) {
 Command add_replay(CLI::App& program) {
   CLI::App& command = *program.add_subcommand("replay", "Measure a recorded stream again");
   const auto flags = std::make_shared<StreamFlags>();
-  command.footer(kExamples);
+  command.footer(kReplayExamples);
   command.add_option("RECORDING", flags->replay, "A file by glidar stream --record")
       ->required()
       ->type_name("");
   add_replay_flags(command, *flags);
-  return [flags] { return run(*flags); };
+  return [flags] { return run_replay(*flags); };
 }
 
 }  // namespace glidar::app

@@ -36,7 +36,7 @@ constexpr std::int64_t kHead_bytes = 120;
 }  // namespace
 
 std::int64_t point_bytes(std::span<const std::string> columns) {
-  (void)fields_for(columns);  // throws on an unknown name
+  (void)glidar::fields_for(columns);  // throws on an unknown name
   std::int64_t bytes = 0;
   for (const std::string& name : columns) {
     const auto* const found = std::find_if(

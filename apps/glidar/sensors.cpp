@@ -28,7 +28,7 @@
 namespace glidar::app {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kSensorsExamples = R"(Examples:
   glidar sensors
   glidar sensors VLP-16
   glidar sensors Livox-Mid-40 -o pattern.png
@@ -299,7 +299,7 @@ int list_all(const SensorsFlags& flags) {
   return kDone;
 }
 
-int run(const SensorsFlags& flags) {
+int run_sensors(const SensorsFlags& flags) {
   if (flags.surfaces) return list_surfaces(flags);
   if (flags.name.empty()) return list_all(flags);
   const std::filesystem::path file = find_sensor_file(flags.name);
@@ -328,14 +328,14 @@ Command add_sensors(CLI::App& program) {
   CLI::App& command =
       *program.add_subcommand("sensors", "List the sensors that come along, or tell about one");
   const auto flags = std::make_shared<SensorsFlags>();
-  command.footer(kExamples);
+  command.footer(kSensorsExamples);
   command.add_option("name", flags->name, "Name of a sensor, or a sensor file")->type_name("NAME");
   add_text(command, {"-o,--output", "OUT.png", "Picture of its beams' directions (PNG)", "Options"},
            flags->picture, require_png);
   command.add_flag("--surfaces", flags->surfaces,
                    "List the surfaces that come along and what they send back");
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
-  return [flags] { return run(*flags); };
+  return [flags] { return run_sensors(*flags); };
 }
 
 }  // namespace glidar::app

@@ -20,7 +20,7 @@
 namespace glidar::app {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kStreamExamples = R"(Examples:
   glidar stream builtin:asteroid --model-dr 0,0.5,0 --rate 10 --port 5555
   glidar stream builtin:asteroid --rate max --port 5555 --subscribers 0 --stats stats.json
   glidar stream builtin:box --sensor VLP-16 --eye 0,0,0 --duration 0.2 -o scan.pcd
@@ -44,7 +44,7 @@ A pose message places the scene and the sensor:
 Exit codes: 0 done, or the simulator ended; 2 bad input; 3 no pose for --pose-timeout;
 130 after Ctrl-C, 143 after SIGTERM; subscribers are told that it ends in any case.)";
 
-int run(const StreamFlags& given) {
+int run_stream(const StreamFlags& given) {
   check(given);
   StreamFlags flags = given;
   link::raise_descriptor_limit(2 * flags.limits.connections);
@@ -60,11 +60,11 @@ Command add_stream(CLI::App& program, const std::vector<std::string>& arguments)
   CLI::App& command =
       *program.add_subcommand("stream", "Measure again and again: poses in, clouds out");
   const auto flags = std::make_shared<StreamFlags>();
-  command.footer(output_names_text() + kExamples);
+  command.footer(output_names_text() + kStreamExamples);
   add_stream_flags(command, *flags);
   return [flags, arguments] {
     flags->command = {.arguments = lasting(arguments), .folder = std::filesystem::current_path()};
-    return run(*flags);
+    return run_stream(*flags);
   };
 }
 

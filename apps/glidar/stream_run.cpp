@@ -31,7 +31,7 @@ const std::vector<std::string> kPublishedColumns = {"xyz", "intensity"};
 constexpr std::chrono::milliseconds kShow{200};
 
 /// How often partners are looked after that are waited for.
-constexpr std::chrono::milliseconds kLook{20};
+constexpr std::chrono::milliseconds kStreamWait{20};
 
 /// Whether every frame has the same beams; those of scanners move on.
 bool has_fixed_beams(const Sensor& sensor) {
@@ -212,7 +212,7 @@ bool StreamRun::wait_for_partners(const StopRequest& stop) {
     show_partners(ready);
     link::wait_for({publisher_ ? &publisher_->handshake_socket() : nullptr,
                     receiver_ ? &receiver_->handshake_socket() : nullptr},
-                   stop.descriptor(), kLook);
+                   stop.descriptor(), kStreamWait);
   }
   return !stop.is_asked();
 }

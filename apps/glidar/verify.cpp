@@ -19,7 +19,7 @@
 namespace glidar::app {
 namespace {
 
-constexpr const char* kExamples = R"(Examples:
+constexpr const char* kVerifyExamples = R"(Examples:
   glidar verify
   glidar verify --threads 1 --json
   glidar verify --renderer raster
@@ -137,7 +137,7 @@ void print_json(const std::vector<VerifyRow>& rows, const std::string& renderer)
   fmt::print("{}\n", report.dump(2));
 }
 
-int run(const VerifyFlags& flags) {
+int run_verify(const VerifyFlags& flags) {
   Console console;
   std::vector<VerifyRow> rows;
   {
@@ -158,10 +158,10 @@ Command add_verify(CLI::App& program) {
   CLI::App& command = *program.add_subcommand(
       "verify", "Prove the accuracy of hits, ids, ranges and normals on this machine");
   const auto flags = std::make_shared<VerifyFlags>();
-  command.footer(kExamples);
+  command.footer(kVerifyExamples);
   add_run_flags(command, flags->renderer, "Options");
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
-  return [flags] { return run(*flags); };
+  return [flags] { return run_verify(*flags); };
 }
 
 }  // namespace glidar::app
