@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Groups C++ sources that can be compiled together, because none of them define the same names.
+"""Groups C++ sources that can be compiled together, because none of them define or shadow the others' names.
 
 usage: source_groups.py SIZE FILE...; prints a line per group: its files, separated by semicolons.
 Sources of one group are in the same folder. A group has at most SIZE sources.
@@ -15,6 +15,8 @@ from pathlib import Path
 DEFINITIONS = re.compile(
     r"^(?:(?:static |inline )*const(?:expr|init)? [^(={;\n]*?(\w+)(?:\[\w*\])? ?[={;]|(?:struct|class|enum class) (\w+)|using (\w+) ="
     r"|(\w[^;=\n]* [&*]?\w+\([^;\n]*[{,]$))", re.MULTILINE)
+# Constants of functions; in another source of the group they must not shadow a definition.
+LOCAL_CONSTANTS = re.compile(r"^\s+(?:static )?const(?:expr)? [^(={;\n]*?(\w+)(?:\[\w*\])? ?[={]", re.MULTILINE)
 
 
 def definitions(text):
@@ -27,15 +29,17 @@ def groups(sources, size, kind_of):
     that begins with its path."""
     found = []
     for source in sources:
-        kind, names = kind_of(source), definitions(source[0].read_text(encoding="utf-8"))
-        for other_kind, members, taken in found:
-            if other_kind == kind and len(members) < size and not names & taken:
+        kind, text = kind_of(source), source[0].read_text(encoding="utf-8")
+        names, constants = definitions(text), set(LOCAL_CONSTANTS.findall(text))
+        for other_kind, members, taken, shadowing in found:
+            if other_kind == kind and len(members) < size and not (names & (taken | shadowing) or constants & taken):
                 members.append(source)
                 taken |= names
+                shadowing |= constants
                 break
         else:
-            found.append((kind, [source], names))
-    return [members for _, members, _ in found]
+            found.append((kind, [source], names, constants))
+    return [members for _, members, *_ in found]
 
 
 def main():

@@ -15,7 +15,7 @@
 namespace glidar::app {
 namespace {
 
-constexpr auto kPatience = std::chrono::seconds(2);
+constexpr auto kProgressDelay = std::chrono::seconds(2);
 constexpr auto kRedraw = std::chrono::milliseconds(100);
 
 void print(const std::string& text) {
@@ -109,7 +109,7 @@ void Console::begin(std::string_view task) {
 void Console::redraw() {
   const std::lock_guard lock(mutex_);
   const Clock::time_point now = Clock::now();
-  if (now - work_started_ < kPatience) return;
+  if (now - work_started_ < kProgressDelay) return;
   const double elapsed_s = std::chrono::duration<double>(now - task_started_).count();
   // back to the line's start, and empty it
   print("\r\033[K" + progress_line(task_, fraction_, elapsed_s, terminal_columns() - 1));

@@ -49,6 +49,12 @@ class Grouping(unittest.TestCase):
                 sources = [self.source("glidar/a.cpp", text), self.source("glidar/b.cpp", text)]
                 self.assertEqual(self.names(sources), [["a"], ["b"]])
 
+    def test_a_local_constant_and_a_definition_of_its_name_part_them(self):
+        sources = [self.source("glidar/a.cpp", "constexpr double kDegree = 0.01;\n"),
+                   self.source("glidar/b.cpp", "void turn() {\n  constexpr double kDegree = 0.02;\n}\n"),
+                   self.source("glidar/c.cpp", "void bend() {\n  constexpr double kDegree = 0.03;\n}\n")]
+        self.assertEqual(self.names(sources), [["a"], ["b", "c"]])
+
     def test_overloads_and_words_in_functions_do_not_part_them(self):
         sources = [self.source("glidar/a.cpp", "using ::testing::Eq;\nint size(A a) {\n  const int row = 1;\n}\n"),
                    self.source("glidar/b.cpp", "using ::testing::Eq;\nint size(B b) {\n  const int row = 1;\n}\n")]
