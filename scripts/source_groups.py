@@ -19,9 +19,18 @@ DEFINITIONS = re.compile(
 LOCAL_CONSTANTS = re.compile(r"^\s+(?:static )?const(?:expr)? [^(={;\n]*?(\w+)(?:\[\w*\])? ?[={]", re.MULTILINE)
 
 
+def signature(line):
+    """A function's first line without the names of its parameters."""
+    name, _, parameters = line.partition("(")
+    types = [re.sub(r"(?<=[&*\s])\w+$", "", part.strip(" {)")) for part in parameters.split(",")]
+    return f"{name.split()[-1]}({','.join(kind.replace(' ', '') for kind in types)}"
+
+
 def definitions(text):
     """The names that a source defines at namespace scope."""
-    return {next(filter(None, found)) for found in DEFINITIONS.findall(text)} - {"namespace"}
+    found = DEFINITIONS.findall(text)
+    return {next(filter(None, names)) for *names, _ in found if any(names)} - {"namespace"} | {
+        signature(function) for *_, function in found if function}
 
 
 def groups(sources, size, kind_of):

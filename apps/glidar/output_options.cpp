@@ -349,7 +349,7 @@ void protect_files(const std::vector<std::string>& read, const std::vector<Outpu
   }
 }
 
-HitFields fields_for(const std::vector<Output>& outputs) {
+HitFields fields_for_outputs(const std::vector<Output>& outputs) {
   std::vector<std::string> columns;
   for (const Output& output : outputs) {
     for (const std::string& name : output.columns) add_missing(name, columns);

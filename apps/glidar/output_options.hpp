@@ -84,7 +84,7 @@ using glidar::protect_files;
 void protect_files(const std::vector<std::string>& read, const std::vector<Output>& outputs);
 
 /// The hit columns that all outputs together need.
-HitFields fields_for(const std::vector<Output>& outputs);
+HitFields fields_for_outputs(const std::vector<Output>& outputs);
 
 /// Writes them all; reports which one is being written. They get their names together: when one
 /// fails, none of the frame's files is there. Should the system refuse a name, the error lists the

@@ -63,7 +63,7 @@ void print_summary(const View& view, const std::vector<Output>& outputs, std::FI
 }
 
 HitFields needed_fields(const RenderFlags& flags, const std::vector<Output>& outputs) {
-  HitFields fields = fields_for(outputs);
+  HitFields fields = fields_for_outputs(outputs);
   fields.normal = fields.normal || flags.information.wanted;
   return fields;
 }

@@ -14,7 +14,7 @@
 namespace glidar {
 namespace {
 
-using testing::ElementsAre;
+using ::testing::ElementsAre;
 
 std::vector<double> counted(std::size_t size) {
   std::vector<double> values(size);

@@ -13,7 +13,7 @@
 namespace glidar::lockstep {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 /// Bytes put together by hand, from the tables of docs/link.md.
 class Hand {
@@ -84,7 +84,7 @@ TEST(DecodeRequest, ReadsEveryFieldOfBytesWrittenByHand) {
   const auto& measure = std::get<Measure>(request);
   EXPECT_EQ(measure.id, 77U);
   EXPECT_TRUE(measure.hits_only);
-  EXPECT_THAT(measure.columns, testing::ElementsAre("xyz", "intensity"));
+  EXPECT_THAT(measure.columns, ::testing::ElementsAre("xyz", "intensity"));
   ASSERT_EQ(measure.moments.size(), 1U);
   const Moment& moment = measure.moments[0];
   EXPECT_EQ(moment.t_ns, -5);

@@ -55,6 +55,11 @@ class Grouping(unittest.TestCase):
                    self.source("glidar/c.cpp", "void bend() {\n  constexpr double kDegree = 0.03;\n}\n")]
         self.assertEqual(self.names(sources), [["a"], ["b", "c"]])
 
+    def test_functions_whose_parameters_differ_by_name_part_them(self):
+        sources = [self.source("glidar/a.cpp", "int size(const A& first, B* second) {\n}\n"),
+                   self.source("glidar/b.cpp", "int size(const A& one, B* other) {\n}\n")]
+        self.assertEqual(self.names(sources), [["a"], ["b"]])
+
     def test_overloads_and_words_in_functions_do_not_part_them(self):
         sources = [self.source("glidar/a.cpp", "using ::testing::Eq;\nint size(A a) {\n  const int row = 1;\n}\n"),
                    self.source("glidar/b.cpp", "using ::testing::Eq;\nint size(B b) {\n  const int row = 1;\n}\n")]

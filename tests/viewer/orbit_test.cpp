@@ -85,10 +85,10 @@ TEST(PointAt, FindsTheNearestToTheEyeThatLiesUnderThePointer) {
                                                {nan, nan, nan},
                                                {3.0F, 2.0F, 0.0F},
                                                {20.0F, 0.0F, 0.0F}};  // behind the eye
-  EXPECT_THAT(point_at(orbit, points, {0.0, 0.0}, 0.01), testing::Optional(1U));
+  EXPECT_THAT(point_at(orbit, points, {0.0, 0.0}, 0.01), ::testing::Optional(1U));
   EXPECT_EQ(point_at(orbit, points, {0.0, 0.9}, 0.01), std::nullopt);
   const double y = 2.0 / 7.0 / std::tan(kOrbitFov_rad / 2.0);  // +y is to the right from +x
-  EXPECT_THAT(point_at(orbit, points, {y, 0.0}, 0.01), testing::Optional(3U));
+  EXPECT_THAT(point_at(orbit, points, {y, 0.0}, 0.01), ::testing::Optional(3U));
 }
 
 }  // namespace

@@ -11,7 +11,7 @@
 namespace glidar::app {
 namespace {
 
-using testing::HasSubstr;
+using ::testing::HasSubstr;
 
 constexpr double kRounding = 1e-9;
 

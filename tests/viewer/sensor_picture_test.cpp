@@ -82,7 +82,7 @@ TEST_F(SensorPictureTest, CountsEveryStatus) {
   const SensorPicture picture = picture_of(Quantity::status);
   std::vector<std::string> texts;
   for (const LegendEntry& entry : picture.legend) texts.push_back(entry.text);
-  EXPECT_THAT(texts, testing::ElementsAre(std::string(name(Status::hit)) + ": 1",
+  EXPECT_THAT(texts, ::testing::ElementsAre(std::string(name(Status::hit)) + ": 1",
                                           std::string(name(Status::miss)) + ": 1",
                                           std::string(name(Status::dropped)) + ": 1"));
 }

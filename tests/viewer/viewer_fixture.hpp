@@ -19,8 +19,8 @@ namespace glidar::app {
 class ViewerTest : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              ::testing::UnitTest::GetInstance()->current_test_info()->name();
     std::filesystem::create_directories(folder_);
     flags_.input = "builtin:asteroid";
     flags_.sensor.width = flags_.sensor.height = 32;

@@ -12,8 +12,8 @@
 namespace glidar::app {
 namespace {
 
-using testing::HasSubstr;
-using testing::IsEmpty;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 double distance_m(const Snapshot& shot) {
   return shot.frame.world_from_sensor.translation().norm();
