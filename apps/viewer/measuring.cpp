@@ -276,7 +276,7 @@ void Measuring::save_now(const Ask& ask, const OutputFlags& flags) {
   const std::vector<Output> outputs =
       plan_outputs(flags, ask.flags->input, context, console_.report());
   protect_files(shot.session->files, outputs);
-  simulate(setup_of(shot), fields_for(outputs), shot.frame);
+  simulate(setup_of(shot), fields_for_outputs(outputs), shot.frame);
   write_outputs(outputs, shot.frame, *shot.beams, shot.session->scene, console_.report());
   say(written_text(outputs));
 }
