@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // A client of `glidar stream builtin:asteroid --lockstep tcp://127.0.0.1:5600`, from the tables of
-// docs/link.md alone.
+// docs/link/lockstep.md alone.
 // [docs]
 #include <algorithm>
 #include <cstdint>

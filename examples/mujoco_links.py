@@ -78,7 +78,7 @@ class Glidar:
 
 
 class Lockstep(Glidar):
-    """Asks for every frame; docs/link.md has the tables of bytes."""
+    """Asks for every frame; docs/link/lockstep.md has the tables of bytes."""
 
     name = "lock-step"
 

@@ -70,7 +70,7 @@ class Peer:
 
 
 def request(moments=1, columns=(b"xyz",), number=7):
-    """A request in lock-step of the same moment again and again: docs/link.md."""
+    """A request in lock-step of the same moment again and again: docs/link/lockstep.md."""
     start = struct.pack("<4s2HQ6I", b"GLDR", 1, 1, number, 0, 0, len(columns), moments, 0, 0)
     sensor = struct.pack("<13d", 6, 0, 0, 0.5, -0.5, -0.5, 0.5, 0, 0, 0, 0, 0, 0)
     return start + b"".join(name.ljust(24, b"\0") for name in columns) + (struct.pack("<qQII", 0, 1, 0, 0) + sensor) * moments

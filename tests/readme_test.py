@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What README.md and docs/files.md show works: marked shell blocks and the commands of pictures run, the C++ is that of
-examples/render.cpp."""
+"""What README.md and docs/files/pictures.md show works: marked shell blocks and the commands of pictures run, the C++
+is that of examples/render.cpp."""
 
 import os
 import re
@@ -25,8 +25,8 @@ class Readme(unittest.TestCase):
 
     def test_the_commands_of_pictures_run(self):
         first = re.search(r"`(glidar render examples/street\.yaml .*?)`", README)[1]
-        files = (ROOT / "docs/files.md").read_text(encoding="utf-8")
-        self.run_blocks([first, re.search(r"### Pictures\n\n```sh\n(.*?)```", files, re.DOTALL)[1]])
+        pictures = (ROOT / "docs/files/pictures.md").read_text(encoding="utf-8")
+        self.run_blocks([first, re.search(r"```sh\n(.*?)```", pictures, re.DOTALL)[1]])
 
     def run_blocks(self, blocks):
         """Runs each in one folder: without warnings, and it writes its outputs."""

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The client in C++ that docs/link.md shows, against glidar stream --lockstep."""
+"""The client in C++ that docs/link/lockstep.md shows, against glidar stream --lockstep."""
 
 import os
 import subprocess

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""glidar stream --lockstep, asked by a client that is written from docs/link.md alone: its own example."""
+"""glidar stream --lockstep, asked by a client that is written from docs/link/lockstep.md alone: its own example."""
 
 import json
 import os
@@ -21,7 +21,7 @@ except ImportError as missing:
 
 from cli_support import MAX_WAIT_S, CliTest
 
-DOCS = (Path(__file__).resolve().parents[2] / "docs" / "link.md").read_text(encoding="utf-8")
+DOCS = (Path(__file__).resolve().parents[2] / "docs" / "link" / "lockstep.md").read_text(encoding="utf-8")
 EXAMPLE = re.search(r"<!-- run by tests/apps/lockstep_test.py -->\n```python\n(.*?)```", DOCS, re.DOTALL)[1]
 CLIENT = {}
 exec(EXAMPLE[:EXAMPLE.index("socket = ")], CLIENT)  # the functions of the example

@@ -136,7 +136,7 @@ class Ends(StreamTest):
 class Documentation(StreamTest):
     def test_has_a_client_and_a_simulator_that_work(self):
         root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
-        with open(os.path.join(root, "docs", "link.md"), encoding="utf-8") as file:
+        with open(os.path.join(root, "docs", "link", "woods2016-protocol.md"), encoding="utf-8") as file:
             client, simulator = re.findall(r"```python\n(.*?)```", file.read(), re.DOTALL)[:2]
         for shown, used in (("5555", self.port), ("5556", self.port + 1), ("5557", self.physics),
                             ("5558", self.physics + 1)):

@@ -221,7 +221,7 @@ class Options(StreamTest):
             self.assertIn(word, error)
 
     def test_the_documentation_lists_every_limit_with_its_default(self):
-        docs = (Path(__file__).resolve().parents[2] / "docs" / "link.md").read_text(encoding="utf-8")
+        docs = (Path(__file__).resolve().parents[2] / "docs" / "link" / "limits.md").read_text(encoding="utf-8")
         refused = self.refused("stream", self.box, "--port", str(self.port), "--limit", "nonsense=1")
         names = refused.split("names: ")[1].split(";")[0].strip().split(", ")
         self.assertGreater(len(names), 8)

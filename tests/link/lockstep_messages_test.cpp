@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-/// Bytes put together by hand, from the tables of docs/link.md.
+/// Bytes put together by hand, from the tables of docs/link/lockstep.md.
 class Hand {
  public:
   template <class Number>

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What README.md, docs/python.md and the notebook show works."""
+"""What README.md, the pages about Python and the notebook show works."""
 
 import inspect
 import json
@@ -28,7 +28,7 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
-@pytest.mark.parametrize("name", ["README.md", "docs/python.md"])
+@pytest.mark.parametrize("name", ["README.md", "docs/python.md", "docs/python/pickle.md"])
 def test_python_of_a_document_runs(name, folder):
     found = blocks(name)
     assert found
@@ -38,16 +38,15 @@ def test_python_of_a_document_runs(name, folder):
 
 
 def test_every_name_has_a_docstring_and_the_document_tells_of_it():
-    text = (ROOT / "docs/python.md").read_text(encoding="utf-8")
+    text = (ROOT / "docs/python/reference.md").read_text(encoding="utf-8")
     for name in glidar.__all__:
         assert getattr(glidar, name).__doc__, name
         assert re.search(rf"\b{name}\b", text), name
 
 
 def calls(text):
-    """Names and arguments of the calls in the table of all names."""
-    table = text[text.index("## All names") : text.index("## Poses and motion")]
-    for row in re.findall(r"^\| (`.*?) \| ", table, re.MULTILINE):
+    """Names and arguments of the calls in the first columns of the tables."""
+    for row in re.findall(r"^\| (`.*?) \| ", text, re.MULTILINE):
         yield from re.findall(r"`(\w[\w.]*)\((.*?)\)`", row)
 
 
@@ -57,8 +56,8 @@ def named(name):
     return getattr(getattr(glidar, owner[0].upper() + owner[1:]), method) if owner else getattr(glidar, name)
 
 
-def test_the_table_of_all_names_has_the_arguments_of_the_functions():
-    found = list(calls((ROOT / "docs/python.md").read_text(encoding="utf-8")))
+def test_the_tables_of_all_names_have_the_arguments_of_the_functions():
+    found = list(calls((ROOT / "docs/python/reference.md").read_text(encoding="utf-8")))
     assert len(found) > 20
     for name, text in found:
         parameters = {key: one for key, one in inspect.signature(named(name)).parameters.items() if key != "self"}

@@ -91,11 +91,11 @@ def room():
 
 
 def documented():
-    """The points that the example of docs/files.md finds in a.depth.tiff."""
-    text = (ROOT / "docs/files.md").read_text(encoding="utf-8")
+    """The points that the example of docs/files/images.md finds in a.depth.tiff."""
+    text = (ROOT / "docs/files/images.md").read_text(encoding="utf-8")
     (block,) = (found for found in re.findall(r"```python\n(.*?)```", text, re.DOTALL) if "import cv2" in found)
     names = {}
-    exec(compile(block, "docs/files.md", "exec"), names)
+    exec(compile(block, "docs/files/images.md", "exec"), names)
     return names["points"]
 
 

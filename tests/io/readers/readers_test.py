@@ -48,7 +48,7 @@ def expected(name):
     }
 
 
-# Name, NumPy type and offset in a packed point, as the drivers that docs/files.md names publish them.
+# Name, NumPy type and offset in a packed point, as the drivers that docs/files/layouts.md names publish them.
 LAYOUTS = {
     "minimal": "x <f4 0, y <f4 4, z <f4 8",
     "velodyne": "x <f4 0, y <f4 4, z <f4 8, intensity <f4 12, ring <u2 16, time <f4 18",

@@ -1,0 +1,94 @@
+#!/usr/bin/env python3
+# SPDX-FileCopyrightText: 2026 The GLIDAR developers
+# SPDX-License-Identifier: BSD-3-Clause
+"""The check of wording names the line of every discouraged word, reads prose only, and its list of exceptions shrinks."""
+
+import io
+import sys
+import tempfile
+import unittest
+from contextlib import redirect_stdout
+from pathlib import Path
+from unittest import mock
+
+ROOT = Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+import check_prose  # noqa: E402
+
+
+def complaints(text, path="page.md"):
+    return check_prose.check_text(path, text)
+
+
+class Markdown(unittest.TestCase):
+    def test_plain_text_passes(self):
+        self.assertEqual(complaints("# Limits\nThe standard output is a data sheet; the ground truth is printed.\n"), [])
+
+    def test_a_discouraged_word_is_reported_with_its_line_and_replacement(self):
+        self.assertEqual(complaints("# Page\n\nA matt wall.\n"), ["page.md:3: 'matt'; use: diffuse"])
+
+    def test_case_does_not_matter(self):
+        self.assertEqual(len(complaints("Told by the sensor.\n")), 1)
+
+    def test_every_pattern_finds_something(self):
+        samples = (
+            "tells|said|stands|standing still|lies|goes with|goes on|comes along|matt|square on|hair|twins|"
+            "who is slow|by itself|asked for|judged|settled|hugs|sightings|lamp|the sheet|the truth|a fault|story|anew|"
+            "but for|in the place of|to the bit|to and fro|the way of the 2015 program|one learns|laid out|likewise|if not said"
+        )
+        found = "\n".join(complaints(samples))
+        for rule, advice in check_prose.RULES:
+            self.assertRegex(samples, rule)
+            self.assertIn(f"use: {advice}", found)
+
+    def test_code_and_links_are_not_prose(self):
+        for text in ("```text\nmatt surface\n```\n", "use `matt_share` or `matt`\n", "The output:\n\n    matt\n\n    matt\n",
+                     "[a wall](matt.md)\n", "<!-- matt -->\n", "--matt and matt_share and told()\n"):
+            self.assertEqual(complaints(text), [], text)
+
+    def test_text_behind_code_keeps_its_line(self):
+        self.assertEqual(complaints("```\na\n```\n`b` is\nmatt\n"), ["page.md:5: 'matt'; use: diffuse"])
+
+
+class Sources(unittest.TestCase):
+    def test_comments_and_strings_of_cpp_are_read(self):
+        text = '// told\nint told = 1; /* it\n lies */ auto a = "matt";\nauto b = R"(\nhair)";\n'
+        self.assertEqual([one.split(";")[0] for one in complaints(text, "a.cpp")],
+                         ["a.cpp:1: 'told'", "a.cpp:3: 'lies'", "a.cpp:3: 'matt'", "a.cpp:5: 'hair'"])
+
+    def test_comments_and_strings_of_python_are_read(self):
+        text = 'told = 1  # told\n"""It\nlies."""\nprint(f"matt {told}")\n'
+        self.assertEqual([one.split(";")[0] for one in complaints(text, "a.py")],
+                         ["a.py:1: 'told'", "a.py:3: 'lies'", "a.py:4: 'matt'"])
+
+
+class Pending(unittest.TestCase):
+    def run_check(self, *arguments):
+        """The exit code and output for a folder with a clean and an unclean page, both on the list."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            (folder / "good.md").write_text("A diffuse wall.\n", encoding="utf-8")
+            (folder / "bad.md").write_text("A matt wall.\n", encoding="utf-8")
+            (folder / "pending.txt").write_text("# why\nbad.md\ngood.md\n", encoding="utf-8")
+            with mock.patch.multiple(check_prose, ROOT=folder, PENDING=folder / "pending.txt",
+                                     tracked=lambda _: ["bad.md", "good.md"]), redirect_stdout(io.StringIO()) as out:
+                code = check_prose.main(list(arguments))
+            return code, out.getvalue(), (folder / "pending.txt").read_text(encoding="utf-8")
+
+    def test_a_clean_file_on_the_list_is_an_error(self):
+        code, out, _ = self.run_check()
+        self.assertEqual(code, 1)
+        self.assertIn("good.md is clean", out)
+        self.assertNotIn("bad.md", out)
+
+    def test_update_removes_clean_files_only(self):
+        code, out, listed = self.run_check("--update")
+        self.assertEqual((code, out, listed), (0, "", "# why\nbad.md\n"))
+
+    def test_a_file_that_is_named_is_checked_even_if_it_is_on_the_list(self):
+        code, out, _ = self.run_check("bad.md")
+        self.assertEqual((code, out), (1, "bad.md:1: 'matt'; use: diffuse\n"))
+
+
+if __name__ == "__main__":
+    unittest.main()
