@@ -37,7 +37,7 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/glidarConfig.cmake
 
 # The links and the commands of the installed README work in its folder: what they name is beside it,
 # the data as links.
-install(FILES LICENSE README.md CHANGELOG.md CONTRIBUTING.md SECURITY.md packaging/copyright
+install(FILES LICENSE README.md CHANGELOG.md CITATION.cff CONTRIBUTING.md SECURITY.md packaging/copyright
         DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs examples DESTINATION ${CMAKE_INSTALL_DOCDIR}
         PATTERN "CMakeLists.txt" EXCLUDE PATTERN "__pycache__" EXCLUDE)

@@ -119,7 +119,7 @@ class Packages(unittest.TestCase):
             self.assertTrue((self.program.folder / program).stat().st_mode & 0o111, program)
 
     def test_program_holds_all_documentation(self):
-        wanted = {"README.md", "CHANGELOG.md", "CONTRIBUTING.md", "LICENSE", "copyright"}
+        wanted = {"README.md", "CHANGELOG.md", "CITATION.cff", "CONTRIBUTING.md", "LICENSE", "copyright"}
         wanted |= tracked("docs") | tracked("examples")
         self.assertLessEqual({f"{DOCS}/{file}" for file in wanted}, self.program.files)
 
