@@ -4,7 +4,7 @@
 """Runs the steps of the Dockerfile without Docker: each image is a bare Debian in a folder (bare_debian.sh).
 
 usage: try_dockerfile.py [FOLDER]; FOLDER (default: build/docker) gets one system per image. Needs root.
-Then it renders with the last image as an arbitrary user in a mounted folder, as README.md shows.
+Then it renders with the last image as an arbitrary user in a mounted folder, as docs/install.md shows.
 """
 
 import fnmatch
