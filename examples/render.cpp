@@ -17,18 +17,15 @@ void render(const std::string& path) {
   // [README]
   glidar::Scene scene;
   glidar::add_model(scene, glidar::load_model("builtin:asteroid", {}, {}));
-
   glidar::Sensor sensor;
   sensor.optics = glidar::pinhole_from_fov(512, 512, 0.4);  // radians
   const glidar::Beams beams = glidar::make_beams(sensor);
   const glidar::Motion motion = glidar::standing_still(
       scene, glidar::look_at({6.0, 0.0, 2.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}));
   const auto renderer = glidar::make_renderer(scene, {});
-
   const std::vector<std::string> columns = {"xyz", "intensity", "normal"};
   glidar::Frame frame;
   glidar::simulate({scene, sensor, beams, motion, *renderer}, glidar::fields_for(columns), frame);
-
   glidar::PointCloud cloud;
   glidar::make_point_cloud(frame, beams, scene, {.frame_id = beams.frame_id}, columns, cloud);
   glidar::make_file_sink(path, {}, {scene, sensor, beams, "auto"})->write(cloud, frame);
