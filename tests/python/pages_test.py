@@ -2,8 +2,15 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """What the pages that need packages from PyPI show works; the other pages: tests/docs_test.py."""
 
+import re
+import sys
+import types
+
+import numpy as np
 import pytest
-from doc_blocks import link_inputs, run_page
+from doc_blocks import ROOT, link_inputs, run_page
+
+import glidar
 
 NAME = "tests/python/pages_test.py"
 
@@ -12,3 +19,28 @@ NAME = "tests/python/pages_test.py"
 def test_the_blocks_of_a_page_run(page, tmp_path):
     link_inputs(tmp_path)
     run_page(page, NAME, tmp_path)
+
+
+class StandIn(types.SimpleNamespace):
+    """A ROS message: its fields are set by name."""
+
+    FLOAT32, FLOAT64, UINT8, UINT16, UINT32 = 7, 8, 2, 4, 6  # of sensor_msgs/PointField
+
+
+def test_the_message_of_the_cookbook_has_the_points_of_the_file(tmp_path, monkeypatch):
+    for name in ("sensor_msgs", "sensor_msgs.msg", "std_msgs", "std_msgs.msg"):
+        module = types.ModuleType(name)
+        module.PointCloud2 = module.PointField = module.Header = StandIn
+        monkeypatch.setitem(sys.modules, name, module)
+    text = (ROOT / "docs/cookbook.md").read_text(encoding="utf-8")
+    names = {}
+    exec(re.search(r"```python\n(from sensor_msgs.*?)```", text, re.DOTALL)[1], names)
+    frame = glidar.simulate(glidar.Scene("builtin:box"), "VLP-16", np.eye(4))
+    frame.save(tmp_path / "scan.pcd", layout="autoware")
+    message = names["to_message"](tmp_path / "scan.pcd", StandIn())
+    assert (message.height, message.width, message.point_step) == (16, frame.range_m.shape[1], 32)
+    kinds = {7: "<f4", 8: "<f8", 2: "u1", 4: "<u2", 6: "<u4"}
+    point = np.dtype({"names": [one.name for one in message.fields], "formats": [kinds[one.datatype] for one in message.fields],
+                      "offsets": [one.offset for one in message.fields], "itemsize": message.point_step})
+    points = np.frombuffer(message.data, point).reshape(message.height, message.width)
+    assert np.array_equal(points["distance"], frame.cloud(["range"])["range"].astype("f4"), equal_nan=True)
