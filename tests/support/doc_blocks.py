@@ -9,11 +9,14 @@ A comment above a fenced block says what becomes of it, NAME being the test that
 A block `text` below a block that runs is its output, abridged: every number in it must be in the real output.
 """
 
+import contextlib
 import os
 import re
 import shlex
+import signal
 import subprocess
 import sys
+import tempfile
 from pathlib import Path
 
 from waiting import MAX_WAIT_S
@@ -64,16 +67,19 @@ def run_block(language, text, folder, code=""):
     """What a block prints, on both streams. `code` is the exit code that the page shows, if any."""
     start = {"sh": ["bash", "-euo", "pipefail", "-c"], "python": [sys.executable, "-c"]}[language]
     path = f"{Path(folder).resolve() / '.bin'}{os.pathsep}{os.environ['PATH']}"
-    done = subprocess.run(
-        [*start, text],
-        cwd=folder,
-        env={**os.environ, "PATH": path, "XDG_CACHE_HOME": str(folder), "MPLBACKEND": "Agg"},
-        capture_output=True,
-        text=True,
-        timeout=MAX_WAIT_S,
-        check=False,
-    )
-    assert done.returncode == int(code or 0), f"exit code {done.returncode}\n{text}\n{done.stdout}\n{done.stderr}"
+    environment = {**os.environ, "PATH": path, "XDG_CACHE_HOME": str(folder), "MPLBACKEND": "Agg"}
+    with tempfile.TemporaryFile("w+") as out, tempfile.TemporaryFile("w+") as err:  # files: pipes would wait for orphans
+        program = subprocess.Popen([*start, text], cwd=folder, env=environment, stdout=out, stderr=err, start_new_session=True)
+        try:
+            program.wait(MAX_WAIT_S)
+        finally:
+            with contextlib.suppress(ProcessLookupError):  # programs in the background that a failed block leaves
+                os.killpg(program.pid, signal.SIGKILL)
+            program.wait()
+        out.seek(0)
+        err.seek(0)
+        printed, messages = out.read(), err.read()
+    assert program.returncode == int(code or 0), f"exit code {program.returncode}\n{text}\n{printed}\n{messages}"
     if not code:
-        assert "warning" not in done.stderr, f"{text}\n{done.stderr}"
-    return done.stdout + done.stderr
+        assert "warning" not in messages, f"{text}\n{messages}"
+    return printed + messages
