@@ -5,8 +5,8 @@
 #include "embree_api.hpp"
 #include "ratio_reporter.hpp"
 
-#include <glidar/io/model.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/model/model.hpp>
+#include <glidar/simulate/simulate.hpp>
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -160,7 +160,7 @@ void register_renderer(const Stage& stage, const std::string& kind, unsigned thr
   benchmark::RegisterBenchmark((name + "simulate").c_str(), [&stage, kind,
                                                              threads](benchmark::State& state) {
     const auto renderer = make_renderer(stage.scene, {.kind = kind, .threads = threads});
-    const Motion motion = standing_still(stage.scene, stage.world_from_sensor);
+    const Motion motion = static_motion(stage.scene, stage.world_from_sensor);
     const Setup setup{stage.scene, stage.sensor, stage.beams, motion, *renderer};
     Frame frame;
     for (auto _ : state) simulate(setup, {}, frame);

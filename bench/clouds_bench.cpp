@@ -6,7 +6,7 @@
 #include "ratio_reporter.hpp"
 
 #include <glidar/core/point_cloud.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/simulate/simulate.hpp>
 
 #include <array>
 #include <string>
@@ -20,7 +20,7 @@ class Clouds {
   Clouds(const Model* model, const char* kind, bool is_paper, std::uint32_t side)
       : model_(*model),
         renderer_(make_renderer(model->scene, options(kind))),
-        motion_(standing_still(model->scene, model->world_from_sensor)) {
+        motion_(static_motion(model->scene, model->world_from_sensor)) {
     sensor_.optics = pinhole_from_fov(side, side, kFov_rad);
     beams_ = make_beams(sensor_);
     if (is_paper) camera_ = make_paper_camera(model->scene, options("opengl"));
@@ -28,12 +28,12 @@ class Clouds {
 
   void measure() {
     Setup setup{model_.scene, sensor_, beams_, motion_, *renderer_};
-    if (camera_) setup.paper.emplace(PaperTarget{*camera_});
+    if (camera_) setup.paper.emplace(Woods2016Target{*camera_});
     simulate(setup, {}, frame_);
     make_point_cloud(frame_, beams_, model_.scene,
-                     {.frame_id = "camera", .workers = &renderer_->workers()}, kColumns,
+                     {.frame_id = "camera", .thread_pool = &renderer_->thread_pool()}, kColumns,
                      organised_);
-    compact(organised_, cloud_);
+    remove_invalid_points(organised_, cloud_);
   }
 
  private:
@@ -43,7 +43,7 @@ class Clouds {
   Beams beams_;
   std::unique_ptr<Renderer> renderer_;
   Motion motion_;
-  std::unique_ptr<PaperCamera> camera_;
+  std::unique_ptr<Woods2016Camera> camera_;
   Frame frame_;
   PointCloud organised_;
   PointCloud cloud_;

@@ -4,7 +4,7 @@
 #include "compute_shaders.hpp"
 #include "raw_opengl.hpp"
 
-#include <glidar/core/random.hpp>
+#include <glidar/math/random.hpp>
 
 #include <bit>
 
@@ -82,7 +82,7 @@ std::vector<double> ranges_on_device(const std::vector<Case>& cases) {
 std::string ComputeCaster::missing() {
   constexpr int kLeast = 44;
   opengl::EglContext context(chosen_device());
-  const opengl::Use use(context);
+  const opengl::ScopedContext use(context);
   if (epoxy_gl_version() < kLeast) return "no OpenGL 4.4";
   const std::vector<Case> cases = random_cases();
   const std::vector<double> ranges = ranges_on_device(cases);

@@ -41,15 +41,15 @@ ComputeCaster::ComputeCaster(const Scene& scene, const Beams& beams, std::size_t
     : scene_(scene),
       beams_(beams),
       views_(views),
-      workers_(0),
+      thread_pool_(0),
       resolver_(scene),
-      search_(resolver_, workers_),
+      search_(resolver_, thread_pool_),
       context_(chosen_device()),
       use_(context_),
       gpu_(std::make_unique<OnDevice>()) {
   compile(gpu_->program, {{GL_COMPUTE_SHADER, caster_shader().c_str()}});
   glUseProgram(gpu_->program.name());
-  gpu_->scene.emplace(resolver_, beams, workers_);
+  gpu_->scene.emplace(resolver_, beams, thread_pool_);
   gpu_->scene->bind();
   for (Batch& batch : gpu_->batches) make_room(batch);
   opengl::check_gl("preparing a cast");
@@ -163,7 +163,7 @@ void ComputeCaster::decide_view(const Batch& batch, std::size_t view,
   resolver_.set_poses(request.world_from_sensor, {});
   search_.prepare(request);
   constexpr std::size_t kBeamsPerTask = 64;
-  workers_.for_ranges(places.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
+  thread_pool_.parallel_for(places.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       decide_beam(request, places[i] - view * beams_.size(), batch.hits.primitive[places[i]],
                   batch.hits.range_m[places[i]]);
@@ -174,8 +174,8 @@ void ComputeCaster::decide_view(const Batch& batch, std::size_t view,
 void ComputeCaster::decide_beam(const CastRequest& request, std::size_t beam,
                                 std::uint32_t& primitive, double& range_m) const {
   const Found found = search_.beams().find(beam);
-  primitive = found.instance == kNoHit ? kMissed : found.primitive;
-  if (found.instance == kNoHit) return;
+  primitive = found.instance == kInvalidId ? kMissed : found.primitive;
+  if (found.instance == kInvalidId) return;
   HitBlock block;
   BeamBlock lanes;
   ExactBlock exact;

@@ -86,11 +86,11 @@ class ComputeCaster {
   const Scene& scene_;
   const Beams& beams_;
   std::size_t views_;
-  Workers workers_;
+  ThreadPool thread_pool_;
   Resolver resolver_;
   rays::SceneSearch search_;
   opengl::EglContext context_;
-  opengl::Use use_;
+  opengl::ScopedContext use_;
   std::unique_ptr<OnDevice> gpu_;
   std::size_t started_ = 0;
   std::size_t finished_ = 0;

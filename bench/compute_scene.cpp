@@ -80,13 +80,13 @@ void fill(const opengl::Buffer& buffer, const std::vector<Value>& values) {
 
 }  // namespace
 
-ComputeScene::ComputeScene(const Resolver& resolver, const Beams& beams, Workers& workers)
+ComputeScene::ComputeScene(const Resolver& resolver, const Beams& beams, ThreadPool& thread_pool)
     : size_{beams.cols, beams.rows}, sphere_{}, reach_{} {
   check_scene(resolver, beams);
   const Mesh& mesh = resolver.mesh(0);
   const MeshTree tree = rays::build_mesh_tree(
       {.positions = mesh.positions_m, .triangles = mesh.triangles, .chosen = resolver.distinct(0)},
-      {.cluster_size = kDeviceLeaf}, workers);
+      {.cluster_size = kDeviceLeaf}, thread_pool);
   sphere_ = {tree.sphere.centre[0], tree.sphere.centre[1], tree.sphere.centre[2],
              tree.sphere.radius};
   std::vector<std::uint32_t> first;

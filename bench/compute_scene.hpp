@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
-#include <glidar/core/workers.hpp>
+#include <glidar/math/thread_pool.hpp>
 #include <glidar/render/opengl/gl_object.hpp>
 #include <glidar/render/resolve.hpp>
 
@@ -16,7 +16,7 @@ namespace glidar::bench {
 class ComputeScene {
  public:
   /// Needs a current context. Throws Error for a scene that the shader cannot cast into.
-  ComputeScene(const Resolver& resolver, const Beams& beams, Workers& workers);
+  ComputeScene(const Resolver& resolver, const Beams& beams, ThreadPool& thread_pool);
 
   /// Binds the buffers, and sets the uniforms of the current program.
   void bind() const;

@@ -3,8 +3,8 @@
 // Writing clouds against plain writing, and loading models against Assimp alone.
 #include "ratio_reporter.hpp"
 
-#include <glidar/io/file_sink.hpp>
-#include <glidar/io/model.hpp>
+#include <glidar/io/formats/file_sink.hpp>
+#include <glidar/io/model/model.hpp>
 
 #include <assimp/postprocess.h>
 #include <fcntl.h>

@@ -7,7 +7,7 @@
 #include "compute_shaders.hpp"
 #include "many_views.hpp"
 
-#include <glidar/core/workers.hpp>
+#include <glidar/math/thread_pool.hpp>
 #include <glidar/render/opengl/number_target.hpp>
 #include <glidar/render/opengl/projection.hpp>
 #include <glidar/render/opengl/triangle_drawing.hpp>
@@ -62,7 +62,7 @@ double median_device_seconds(const auto& action) {
 
 void print_transfer() {
   opengl::EglContext context(chosen_device());
-  const opengl::Use use(context);
+  const opengl::ScopedContext use(context);
   std::printf("device: %s\n", std::bit_cast<const char*>(glGetString(GL_RENDERER)));
   constexpr std::uint32_t kSide = 2048;
   constexpr double kBytes = 4.0 * kSide * kSide;
@@ -103,7 +103,7 @@ void print_breakdown(const Model& model, std::uint32_t side) {
   const double cast_s = median_seconds([&] { renderer->cast(request, hits); });
 
   opengl::EglContext context(chosen_device());
-  const opengl::Use use(context);
+  const opengl::ScopedContext use(context);
   Resolver resolver(model.scene);
   resolver.set_poses(model.world_from_sensor, {});
   const opengl::TriangleDrawing drawing(model.scene);
@@ -154,7 +154,7 @@ void print_batches(const Model& model, std::uint32_t side) {
 
 bool is_software() {
   opengl::EglContext context(chosen_device());
-  const opengl::Use use(context);
+  const opengl::ScopedContext use(context);
   const std::string_view name = std::bit_cast<const char*>(glGetString(GL_RENDERER));
   return name.find("llvmpipe") != std::string_view::npos;
 }
@@ -176,7 +176,7 @@ void compare_with_rays(const Model& model, const Beams& beams, const std::vector
     rays->cast({.beams = beams, .world_from_sensor = poses[view]}, hits);
     for (std::size_t i = 0; i < beams.size(); ++i) {
       const std::size_t place = view * beams.size() + i;
-      const bool is_hit = hits.primitive[i] != kNoHit;
+      const bool is_hit = hits.primitive[i] != kInvalidId;
       const bool is_same = batch.primitive[place] == hits.primitive[i] &&
                            (!is_hit || std::bit_cast<std::uint64_t>(batch.range_m[place]) ==
                                            std::bit_cast<std::uint64_t>(hits.range_m[i]));

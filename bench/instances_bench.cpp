@@ -4,9 +4,9 @@
 // moves.
 #include "ratio_reporter.hpp"
 
-#include <glidar/io/builtin_models.hpp>
+#include <glidar/io/model/builtin_models.hpp>
 #include <glidar/render/renderer.hpp>
-#include <glidar/sensor/pinhole.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 
 #include <vector>
 

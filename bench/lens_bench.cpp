@@ -4,10 +4,10 @@
 // time, with range, normal and triangle of every hit.
 #include "ratio_reporter.hpp"
 
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/io/model.hpp>
-#include <glidar/io/sensor_file.hpp>
-#include <glidar/io/sensor_presets.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/io/model/model.hpp>
 #include <glidar/render/renderer.hpp>
 
 #include <Eigen/Geometry>

@@ -5,11 +5,11 @@
 // with the ground on which they stand.
 #include "ratio_reporter.hpp"
 
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/io/sensor_file.hpp>
-#include <glidar/io/sensor_presets.hpp>
-#include <glidar/sensor/footprint.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/sensor/lidar/footprint.hpp>
+#include <glidar/simulate/simulate.hpp>
 
 namespace glidar::bench {
 namespace {
@@ -55,17 +55,17 @@ Scene make_field(double height_m) {
 
 struct Stage {
   Scene scene = make_room();
-  Sensor sensor = ideal(load_sensor_file(find_sensor_file("VLP-16")));
+  Sensor sensor = ground_truth_sensor(load_sensor_file(find_sensor_file("VLP-16")));
   Sensor noisy = sensor;
   Sensor wide = sensor;  ///< its beams are seven sub-rays
   Beams beams = make_beams(sensor);
-  Motion motion = standing_still(scene, Pose::Identity());
+  Motion motion = static_motion(scene, Pose::Identity());
   Motion moving = motion;
 
   Stage() {
     noisy.noise = {RangeGaussian{.sigma_m = 0.01}, Dropout{.probability = 0.01},
-                   RangeQuantum{.step_m = 0.002}};
-    wide.pulse = PulseLight{};
+                   RangeQuantization{.step_m = 0.002}};
+    wide.pulse = LidarEquation{};
     wide.footprint = Footprint{.divergence_x_rad = 3e-3,
                                .divergence_y_rad = 1.5e-3,
                                .exit_x_m = 0.0095,
@@ -110,8 +110,8 @@ void register_sub_cast(const Stage& stage, unsigned threads, const std::string& 
   benchmark::RegisterBenchmark(name.c_str(), [&stage, threads](benchmark::State& state) {
     const auto renderer = make_renderer(stage.scene, {.threads = threads});
     Beams rays;
-    spread(sub_rays(*stage.wide.footprint), stage.beams, {0, stage.beams.size()},
-           renderer->workers(), rays);
+    expand_beams(sample_footprint(*stage.wide.footprint), stage.beams, {0, stage.beams.size()},
+                 renderer->thread_pool(), rays);
     Hits hits;
     for (auto _ : state) {
       renderer->cast({.beams = rays,

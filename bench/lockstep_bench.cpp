@@ -5,8 +5,8 @@
 #include "ratio_reporter.hpp"
 #include "raw_opengl.hpp"
 
-#include <apps/glidar/lockstep_run.hpp>
-#include <glidar/simulate.hpp>
+#include <apps/glidar/run/lockstep_run.hpp>
+#include <glidar/simulate/simulate.hpp>
 
 #include <fmt/format.h>
 #include <sys/wait.h>
@@ -75,7 +75,7 @@ void serve_frame(const std::string& path, std::uint32_t side, const std::string&
   sensor.optics = pinhole_from_fov(side, side, kFov_rad);
   const Beams beams = make_beams(sensor);
   const auto renderer = make_renderer(model.scene, {.threads = kThreads});
-  const Motion motion = standing_still(model.scene, model.world_from_sensor);
+  const Motion motion = static_motion(model.scene, model.world_from_sensor);
   Frame frame;
   simulate({model.scene, sensor, beams, motion, *renderer}, {}, frame);
   link::Context context;
@@ -91,7 +91,7 @@ void serve_frame(const std::string& path, std::uint32_t side, const std::string&
     }
     const std::shared_ptr<PointCloud> cloud = clouds.take();
     make_point_cloud(frame, beams, model.scene,
-                     {.frame_id = "camera", .workers = &renderer->workers()},
+                     {.frame_id = "camera", .thread_pool = &renderer->thread_pool()},
                      std::get<lockstep::Measure>(received->request).columns, *cloud);
     const lockstep::CloudReply reply = {
         .head = {.rows = cloud->rows, .cols = cloud->cols, .frame_id = cloud->frame_id},
@@ -158,7 +158,7 @@ class Ways {
   Ways(const Model& model, const Servers& servers, std::uint32_t side)
       : model_(model),
         servers_(servers),
-        motion_(standing_still(model.scene, model.world_from_sensor)) {
+        motion_(static_motion(model.scene, model.world_from_sensor)) {
     sensor_.optics = pinhole_from_fov(side, side, kFov_rad);
     beams_ = make_beams(sensor_);
     lockstep::Moment moment{.t_ns = 0, .seed = 1, .number = 0, .sensor = {}, .objects = {}};

@@ -4,7 +4,7 @@
 
 #include "raw_opengl.hpp"
 
-#include <glidar/core/random.hpp>
+#include <glidar/math/random.hpp>
 #include <glidar/render/renderer.hpp>
 #include <glidar/sensor/sensor.hpp>
 

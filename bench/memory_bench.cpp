@@ -6,7 +6,7 @@
 #include "embree_api.hpp"
 #include "ratio_reporter.hpp"
 
-#include <glidar/io/model.hpp>
+#include <glidar/io/model/model.hpp>
 #include <glidar/render/renderer.hpp>
 
 #include <malloc.h>

@@ -4,8 +4,8 @@
 // standard library: a Mersenne twister and std::normal_distribution, added to every range.
 #include "ratio_reporter.hpp"
 
-#include <glidar/core/gaussian.hpp>
-#include <glidar/sensor/noise.hpp>
+#include <glidar/math/gaussian.hpp>
+#include <glidar/sensor/noise/noise.hpp>
 
 #include <random>
 
@@ -18,7 +18,7 @@ constexpr std::uint32_t kSide = 512;
 struct Stage {
   Beams beams;
   Frame frame;
-  Workers workers{1};
+  ThreadPool thread_pool{1};
 
   Stage() {
     const std::size_t size = std::size_t{kSide} * kSide;
@@ -26,8 +26,8 @@ struct Stage {
     beams.cols = kSide;
     beams.directions.assign(size, Eigen::Vector3d(0.0, 0.6, 0.8));
     resize(frame, size);
-    frame.truth.cos_incidence.assign(size, 0.8F);
-    frame.truth.noise_scale.assign(size, 1.0F);
+    frame.ground_truth.cos_incidence.assign(size, 0.8F);
+    frame.ground_truth.noise_scale.assign(size, 1.0F);
     refill();
   }
 
@@ -49,8 +49,9 @@ void bench_step(const std::string& name, const std::vector<NoiseStep>& noise) {
     Stage stage;
     for (auto _ : state) {
       stage.refill();
-      benchmark::DoNotOptimize(&aimed_beams(noise, stage.beams, stage.workers, stage.frame));
-      apply_noise(noise, 0.1, stage.beams, stage.workers, stage.frame);
+      benchmark::DoNotOptimize(
+          &perturbed_beams(noise, stage.beams, stage.thread_pool, stage.frame));
+      apply_noise(noise, 0.1, stage.beams, stage.thread_pool, stage.frame);
     }
     count_beams(state);
   });
@@ -94,16 +95,17 @@ void register_steps() {
   bench_step("refill and nothing", {});
   bench_step("range_gaussian", {RangeGaussian{.sigma_m = 0.02}});
   bench_step("range_snr", {RangeSnr{.floor_m = 0.01, .k_m = 0.3, .snr_at_full_scale = 250.0}});
-  bench_step("range_pulse", {RangePulse{.pulse_fwhm_s = 5e-9, .sample_s = 1e-9, .noise = 0.01}});
-  bench_step("range_photons", {RangePhotons{.pulse_fwhm_s = 5e-9, .photons_at_full_scale = 1e4}});
-  bench_step("range_2015 uniform", {Range2015{.additive_m = 0.01}});
-  bench_step("range_quantum", {RangeQuantum{.step_m = 0.002}});
+  bench_step("range_crlb", {RangeCrlb{.pulse_fwhm_s = 5e-9, .sample_s = 1e-9, .noise = 0.01}});
+  bench_step("range_shot_noise",
+             {RangeShotNoise{.pulse_fwhm_s = 5e-9, .photons_at_full_scale = 1e4}});
+  bench_step("range_uniform uniform", {RangeUniform{.additive_m = 0.01}});
+  bench_step("range_quantization", {RangeQuantization{.step_m = 0.002}});
   bench_step("range_bias", {RangeBias{.sigma_m = 0.01}});
   bench_step("range_drift", {RangeDrift{.sigma_m = 0.01, .tau_s = 60.0}});
   bench_step("dropout", {Dropout{.probability = 0.01}});
   bench_step("crosstalk", {Crosstalk{.probability = 0.01}});
-  bench_step("false_echoes", {FalseEchoes{.rate_hz = 1e4, .far_m = 100.0}});
-  bench_step("disparity_quantum", {DisparityQuantum{.k_m = 351.3}});
+  bench_step("false_alarms", {FalseAlarms{.rate_hz = 1e4, .far_m = 100.0}});
+  bench_step("disparity_quantization", {DisparityQuantization{.k_m = 351.3}});
   bench_step("khoshelham", {Khoshelham{}});
   bench_step("nguyen_axial", {NguyenAxial{}});
   bench_step("nguyen_lateral", {NguyenLateral{}});
@@ -123,7 +125,7 @@ void register_steps() {
   bench_step("encoder_error", {EncoderError{.step_rad = 1e-4, .eccentricity_rad = 1e-4}});
   bench_step("five steps of a lidar",
              {RangeBias{.sigma_m = 0.01}, RangeSnr{.k_m = 0.3, .snr_at_full_scale = 250.0},
-              Dropout{.probability = 0.01}, RangeQuantum{.step_m = 0.002},
+              Dropout{.probability = 0.01}, RangeQuantization{.step_m = 0.002},
               IntensityGaussian{.sigma = 0.01}});
 }
 

@@ -6,7 +6,7 @@
 #include "many_views.hpp"
 #include "ratio_reporter.hpp"
 
-#include <glidar/simulate.hpp>
+#include <glidar/simulate/simulate.hpp>
 
 #include <memory>
 
@@ -45,8 +45,8 @@ void register_paper(const std::string& name, const Model& model, std::uint32_t s
   add(name, [&model, side](benchmark::State& state) {
     const auto camera = make_paper_camera(model.scene, options("opengl"));
     const Beams beams = make_beams(pinhole_from_fov(side, side, kFov_rad));
-    Workers workers(kThreads);
-    PaperPicture picture;
+    ThreadPool thread_pool(kThreads);
+    Woods2016Framebuffer picture;
     std::vector<double> range_m(beams.size());
     std::vector<float> intensity(beams.size());
     const auto read = [&](std::size_t begin, std::size_t end) {
@@ -54,7 +54,7 @@ void register_paper(const std::string& name, const Model& model, std::uint32_t s
     };
     for (auto _ : state) {
       camera->draw({.beams = beams, .world_from_sensor = model.world_from_sensor}, {}, {}, picture);
-      workers.for_ranges(beams.size(), 4096, read);
+      thread_pool.parallel_for(beams.size(), 4096, read);
     }
   });
 }

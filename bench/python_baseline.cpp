@@ -6,8 +6,8 @@
 // of processor time that it took, by one thread. Memory is reused, as a loop in C++ would.
 
 #include <glidar/core/point_cloud.hpp>
-#include <glidar/io/model.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/model/model.hpp>
+#include <glidar/simulate/simulate.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -34,7 +34,7 @@ std::vector<glidar::Motion> motions(const glidar::Scene& scene) {
     const Eigen::Vector3d eye =
         middle + distance_m * Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0);
     const glidar::Pose pose = glidar::look_at(eye, middle, Eigen::Vector3d::UnitZ());
-    all.push_back(glidar::standing_still(scene, pose));
+    all.push_back(glidar::static_motion(scene, pose));
   }
   return all;
 }
@@ -57,7 +57,7 @@ int main(int argc, char** argv) {
   const auto renderer = glidar::make_renderer(scene, {.threads = 1});
   const std::vector<std::string> columns = {"xyz",    "intensity", "range",
                                             "normal", "instance",  "class"};
-  const glidar::HitFields fields = glidar::fields_for(columns);
+  const glidar::HitFieldMask fields = glidar::fields_needed_by(columns);
   const std::vector<glidar::Motion> all = motions(scene);
   std::vector<glidar::Setup> setups;
   for (const glidar::Motion& motion : all)

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/model.hpp>
+#include <glidar/io/model/model.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/render/opengl/gl_object.hpp>
 
@@ -84,7 +84,7 @@ class RawOpengl {
 
   const Model& model_;
   opengl::EglContext context_;
-  opengl::Use use_;
+  opengl::ScopedContext use_;
   const Raw& raw_;
   GLsizei side_;
   GLsizei count_;

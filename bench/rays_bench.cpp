@@ -6,8 +6,8 @@
 #include "ratio_reporter.hpp"
 #include "raw_rays.hpp"
 
-#include <glidar/core/simd.hpp>
-#include <glidar/io/model.hpp>
+#include <glidar/io/model/model.hpp>
+#include <glidar/math/simd.hpp>
 #include <glidar/render/rays/exact_decision.hpp>
 #include <glidar/render/rays/kernels.hpp>
 #include <glidar/render/rays/mesh_tree.hpp>
@@ -185,8 +185,8 @@ struct Stage {
 };
 
 rays::MeshTree build(const Mesh& mesh, unsigned threads) {
-  Workers workers(threads);
-  return rays::build_mesh_tree({mesh.positions_m, mesh.triangles}, {}, workers);
+  ThreadPool thread_pool(threads);
+  return rays::build_mesh_tree({mesh.positions_m, mesh.triangles}, {}, thread_pool);
 }
 
 std::unique_ptr<Stage> make_stage(const std::string& name, const std::string& model) {

@@ -3,10 +3,10 @@
 // How many times faster than the real sensor a frame is simulated, with everything that the named
 // sensor has by default: footprint, returns and noise. The scene is a textured model, by default
 // the apartment of the folder GLIDAR_DATA; the sensor stands 1.5 m above its zero.
-#include <glidar/io/model.hpp>
-#include <glidar/io/sensor_file.hpp>
-#include <glidar/io/sensor_presets.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
+#include <glidar/io/model/model.hpp>
+#include <glidar/simulate/simulate.hpp>
 
 #include <algorithm>
 #include <chrono>
@@ -48,7 +48,7 @@ class Case {
         scene_(scene),
         sensor_(load_sensor_file(find_sensor_file(goal.sensor))),
         beams_(make_beams(sensor_)),
-        motion_(standing_still(scene, standing_pose(beams_))),
+        motion_(static_motion(scene, standing_pose(beams_))),
         renderer_(make_renderer(scene, {.threads = kThreads})) {}
 
   void run() {

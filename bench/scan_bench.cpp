@@ -5,7 +5,7 @@
 #include "ratio_reporter.hpp"
 #include "raw_rays.hpp"
 
-#include <glidar/io/builtin_models.hpp>
+#include <glidar/io/model/builtin_models.hpp>
 #include <glidar/render/renderer.hpp>
 
 #include <cmath>

@@ -3,11 +3,11 @@
 // Clouds published over a socket against the bare measurement: how much of the rate is left.
 #include "ratio_reporter.hpp"
 
-#include <apps/glidar/delivery.hpp>
-#include <glidar/io/model.hpp>
+#include <apps/glidar/run/delivery.hpp>
+#include <glidar/io/model/model.hpp>
 #include <glidar/link/legacy/cloud_publisher.hpp>
-#include <glidar/sensor/framing.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/sensor/view_placement.hpp>
+#include <glidar/simulate/simulate.hpp>
 
 #include <atomic>
 #include <chrono>
@@ -34,7 +34,8 @@ struct View {
     add_model(scene, load_model(model, {}, {}));
     sensor.optics = pinhole_from_fov(kPixels, kPixels, 0.35);
     beams = make_beams(sensor);
-    motion = standing_still(scene, frame_view(beams, scene, {2.0, -3.0, 2.0}, {0.0, 0.0, 1.0}));
+    motion =
+        static_motion(scene, fit_camera_to_scene(beams, scene, {2.0, -3.0, 2.0}, {0.0, 0.0, 1.0}));
     renderer = make_renderer(scene, {.threads = threads});
   }
   void measure(Frame& frame) const {

@@ -4,11 +4,11 @@
 // what hugging planes and more bits do about it. Prints a table of the errors and draws a rock's
 // cloud from the side, into the file named (depth_bands.png).
 #include <glidar/core/error.hpp>
-#include <glidar/io/atomic_file.hpp>
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/io/picture.hpp>
-#include <glidar/io/png_image.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/files/atomic_file.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/io/pictures/picture.hpp>
+#include <glidar/io/pictures/png_image.hpp>
+#include <glidar/simulate/simulate.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -18,7 +18,7 @@
 
 namespace {
 
-using glidar::PaperPicture;
+using glidar::Woods2016Framebuffer;
 
 constexpr int kSkipped = 77;  // CTest's word for "cannot be tested here"
 constexpr std::size_t kPanel = 360;
@@ -38,7 +38,7 @@ glidar::Scene make_rock() {
 
 /// What the picture would tell if it had one channel for the depth: the more significant byte of
 /// two is that of 256 steps between the same planes.
-Depths one_channel(const PaperPicture& picture) {
+Depths one_channel(const Woods2016Framebuffer& picture) {
   const double step_m = (picture.far_m - picture.near_m) / 256.0;
   Depths depths{.how = "8 bits, planes at 0.1 and 20 m", .step_m = step_m, .depth_m = {}};
   for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
@@ -49,7 +49,7 @@ Depths one_channel(const PaperPicture& picture) {
   return depths;
 }
 
-Depths two_channels(const PaperPicture& picture, const glidar::Beams& beams) {
+Depths two_channels(const Woods2016Framebuffer& picture, const glidar::Beams& beams) {
   Depths depths{.how = "16 bits, planes that hug",
                 .step_m = (picture.far_m - picture.near_m) / 65536.0,
                 .depth_m = std::vector<double>(beams.size())};
@@ -139,9 +139,9 @@ void show_bands(const char* path) {
   glidar::make_renderer(scene, {.kind = "opengl"})->cast(request, drawn);
 
   const auto camera = glidar::make_paper_camera(scene, {});
-  PaperPicture picture;
+  Woods2016Framebuffer picture;
   std::vector<Depths> ways;
-  camera->draw(request, {}, glidar::PaperPlanes{0.1, 20.0}, picture);
+  camera->draw(request, {}, glidar::Woods2016DepthPlanes{0.1, 20.0}, picture);
   ways.push_back(one_channel(picture));
   camera->draw(request, {}, {}, picture);
   ways.push_back(two_channels(picture, beams));

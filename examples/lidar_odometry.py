@@ -90,7 +90,7 @@ def street(seed=3):
 def copy_of(scene, first, mesh, name, material, pose):
     """The first of its kind brings the mesh, others share it."""
     if first is not None:
-        scene.add_copy(first, name=f"{name}_{len(scene)}", pose=pose)
+        scene.add_instance(first, name=f"{name}_{len(scene)}", pose=pose)
         return first
     return scene.add_mesh(*mesh, name=f"{name}_{len(scene)}", class_name=name, materials=material, pose=pose)
 
@@ -209,7 +209,7 @@ def flags_of(arguments):
     parser.add_argument("--sensor", default="VLP-16", help="as glidar sensors lists them [VLP-16]")
     parser.add_argument("--street", type=int, default=3, help="seed of what stands beside the road [3]")
     parser.add_argument("--seed", type=int, default=1, help="of the sensor's noise [1]")
-    parser.add_argument("--ideal", action="store_true", help="the sensor without its noise")
+    parser.add_argument("--ground-truth", action="store_true", help="the sensor without its noise")
     parser.add_argument("--write", metavar="FOLDER", help="writes trajectories (TUM, KITTI) and scans (KITTI)")
     parser.add_argument("--picture", metavar="FILE", help="draws map, trajectories and errors, for example as PNG")
     flags = parser.parse_args(arguments)
@@ -227,7 +227,7 @@ def main(arguments=None):
     sensor = glidar.load_sensor(flags.sensor)
     if sensor.kind != "spinning":
         sys.exit(f"lidar_odometry: {flags.sensor} does not spin; `glidar sensors` tells which do, such as VLP-16")
-    sensor = sensor.ideal() if flags.ideal else sensor
+    sensor = sensor.ground_truth() if flags.ground_truth else sensor
     scans, trajectory = drive(street(flags.street), sensor, flags.seconds, flags.seed)
     runs = [odometry(name, scans, trajectory, sensor.rate_hz) for name in RUNS]
     print(f"{len(scans)} scans, {SPEED_M_S * flags.seconds:.0f} m; ATE after alignment, RPE over a second\n"

@@ -13,37 +13,23 @@ from pathlib import Path
 # Which layers the files of a layer may include. Folders that are not named (apps, tests, bench,
 # examples) may include any.
 ALLOWED = {
-    "core": {"core"},
-    "sensor": {"core", "sensor"},
-    "motion": {"core", "motion"},
-    "render": {"core", "render"},
-    "moving_cast": {"core", "motion", "render", "moving_cast"},
-    "setup": {"core", "sensor", "motion", "render", "moving_cast", "setup"},
-    "pulse_cast": {"core", "sensor", "motion", "render", "moving_cast", "setup", "pulse_cast"},
-    "shadow_cast": {"core", "sensor", "motion", "render", "moving_cast", "setup", "shadow_cast"},
-    "paper_measure": {"core", "sensor", "motion", "render", "setup", "paper_measure"},
-    "simulate": {
-        "core", "sensor", "motion", "render", "moving_cast", "setup", "pulse_cast", "shadow_cast",
-        "paper_measure", "simulate",
-    },
-    "explain": {
-        "core", "sensor", "motion", "render", "moving_cast", "setup", "pulse_cast", "simulate",
-        "explain",
-    },
-    "verify": {"core", "sensor", "motion", "render", "moving_cast", "verify"},
-    "story_text": {
-        "core", "sensor", "motion", "render", "moving_cast", "setup", "pulse_cast", "simulate",
-        "explain", "io", "story_text",
-    },
-    "io": {"core", "sensor", "motion", "io"},
-    "link": {"core", "io", "link"},
+    "math": {"math"},
+    "core": {"math", "core"},
+    "sensor": {"math", "core", "sensor"},
+    "motion": {"math", "core", "motion"},
+    "render": {"math", "core", "render"},
+    "simulate": {"math", "core", "sensor", "motion", "render", "simulate"},
+    "verify": {"math", "core", "sensor", "motion", "render", "simulate", "verify"},
+    "explain": {"math", "core", "sensor", "motion", "render", "simulate", "io", "explain"},
+    "io": {"math", "core", "sensor", "motion", "io"},
+    "link": {"math", "core", "io", "link"},
 }
 PUBLIC_LIST = "glidar/public_headers.txt"
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 
 
 def layer_of(path):
-    """The layer of "glidar/core/pose.hpp" is "core", that of "glidar/simulate.hpp" "simulate"."""
+    """The layer of "glidar/core/pose.hpp" is "core", that of "glidar/simulate/simulate.hpp" "simulate"."""
     parts = Path(path).parts
     if len(parts) < 2 or parts[0] != "glidar":
         return None

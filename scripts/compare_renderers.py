@@ -51,7 +51,7 @@ def target(scene, random):
 
 def truth_of(scene, camera, pose, renderer):
     frame = scene.simulator(camera, renderer=renderer).simulate(pose, columns="all")
-    return {name: np.ascontiguousarray(getattr(frame.truth, name)) for name in COLUMNS}
+    return {name: np.ascontiguousarray(getattr(frame.ground_truth, name)) for name in COLUMNS}
 
 
 def differing(first, second):

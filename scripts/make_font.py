@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Cuts the font of pictures, glidar/io/font/DejaVuSans-subset.ttf, out of DejaVu Sans.
+"""Cuts the font of pictures, glidar/io/pictures/font/DejaVuSans-subset.ttf, out of DejaVu Sans.
 
 usage: make_font.py [DejaVuSans.ttf]; the default is that of Debian's fonts-dejavu-core 2.37.
 Needs fontTools (scripts/requirements.txt: a dependency of matplotlib).
@@ -13,7 +13,7 @@ from pathlib import Path
 from fontTools import subset
 
 SOURCE = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"
-TARGET = Path(__file__).resolve().parents[1] / "glidar" / "io" / "font" / "DejaVuSans-subset.ttf"
+TARGET = Path(__file__).resolve().parents[1] / "glidar" / "io" / "pictures" / "font" / "DejaVuSans-subset.ttf"
 # ASCII, Latin-1, Latin Extended-A, Greek, Cyrillic; dashes, the ellipsis, minus, not greater, not less
 CHARACTERS = [range(0x20, 0x7F), range(0xA0, 0x180), range(0x391, 0x3CA), range(0x410, 0x450),
               [0x2013, 0x2014, 0x2026, 0x2212, 0x2264, 0x2265]]

@@ -58,9 +58,9 @@ def open3d_hits(origin, directions, vertices, triangles):
 
 def glidar_hits(scene, camera, pose):
     frame = scene.simulator(camera, renderer="rays").simulate(pose, columns="all")
-    numbers = np.asarray(frame.truth.primitive, dtype=np.int64).ravel()
-    hit = np.isfinite(frame.truth.range_m.ravel())
-    return np.where(hit, frame.truth.range_m.ravel(), np.inf), np.where(hit, numbers, -1)
+    numbers = np.asarray(frame.ground_truth.primitive, dtype=np.int64).ravel()
+    hit = np.isfinite(frame.ground_truth.range_m.ravel())
+    return np.where(hit, frame.ground_truth.range_m.ravel(), np.inf), np.where(hit, numbers, -1)
 
 
 def errors(found, exact):

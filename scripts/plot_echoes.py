@@ -48,10 +48,10 @@ class Stage:
             f"models:\n{models}sensor: sensor.yaml\nsensor_pose: {{position: [0, 0, 0]}}\n",
             encoding="utf-8")
         (self.folder / "sensor.yaml").write_text(
-            f"optics: {optics}\npulse_light: {light}\n{more}\n", encoding="utf-8")
+            f"optics: {optics}\nlidar_equation: {light}\n{more}\n", encoding="utf-8")
         subprocess.run(
             [self.program, "render", "scene.yaml", "--quiet", "--no-sidecar", "--seed", str(seed),
-             "--columns", "range,true_range,intensity,azimuth,status", "-o", "cloud.npz"],
+             "--fields", "range,true_range,intensity,azimuth,status", "-o", "cloud.npz"],
             cwd=self.folder, check=True)
         return {name: column.ravel() for name, column in np.load(self.folder / "cloud.npz").items()}
 
@@ -148,7 +148,7 @@ def signal_decades(light):
     return lambda stage, z: math.log10(float(stage.wall(z, light)["intensity"][0]))
 
 
-def sent_back(surface):
+def backscatter(surface):
     """Relative to a white matt surface seen square on."""
     def measure(stage, tilt_deg):
         cloud = stage.shoot(tilted(math.radians(tilt_deg)), LINE, STRONG, surface=surface)
@@ -157,7 +157,7 @@ def sent_back(surface):
 
 
 def retro_decades(stage, tilt_deg):
-    return math.log10(sent_back("{type: retro, gain: 300, width_deg: 30}")(stage, tilt_deg))
+    return math.log10(backscatter("{type: retro, gain: 300, width_deg: 30}")(stage, tilt_deg))
 
 
 def share_seen(sigma):
@@ -242,13 +242,13 @@ CASES = [
               "{reference_reflectance: 0.01, reference_range_m: 100, overlap: [[0, 0], [50, 1]]}"),
                  lambda z: math.log10(100 * (100 / z) ** 2 * min(1, z / 50)))]),
     Case("backscatter", "over white matt, square on", "incidence, deg", DEGREES,
-         [Series("lambert", sent_back("{type: lambert}"), lambda t: math.cos(math.radians(t))),
-          Series("oren_nayar, 30 deg", sent_back("{type: oren_nayar, roughness_deg: 30}"),
+         [Series("lambert", backscatter("{type: lambert}"), lambda t: math.cos(math.radians(t))),
+          Series("oren_nayar, 30 deg", backscatter("{type: oren_nayar, roughness_deg: 30}"),
                  oren_nayar_law),
-          Series("phong, 0.4, 20", sent_back("{type: phong, specular_share: 0.4, exponent: 20}"),
+          Series("phong, 0.4, 20", backscatter("{type: phong, specular_share: 0.4, exponent: 20}"),
                  phong_law)]),
     Case("backscatter: glossy, 10 deg", "over white matt, square on", "incidence, deg", DEGREES,
-         [Series("", sent_back("{type: glossy, matt_share: 0.05, lobe_gain: 2, width_deg: 10}"),
+         [Series("", backscatter("{type: glossy, matt_share: 0.05, lobe_gain: 2, width_deg: 10}"),
                  glossy_law)]),
     Case("backscatter: retro, 30 deg", "log10 over white matt", "incidence, deg", DEGREES,
          [Series("", retro_decades, lambda t: math.log10(300) - (t / 30) ** 2 / math.log(10))]),

@@ -20,7 +20,7 @@ LOOKS = [1, 4, 16]
 COLOURS = [(200, 60, 40), (30, 70, 160), (60, 130, 60)]
 SENSOR = """optics: {width: 200, height: 100, fov_deg: 0.5}
 wavelength_nm: 903
-pulse_light: {reference_reflectance: 0.9, reference_range_m: 100}
+lidar_equation: {reference_reflectance: 0.9, reference_range_m: 100}
 receiver: {pulse_ns: 5, returns: [first]}
 """
 
@@ -28,14 +28,14 @@ receiver: {pulse_ns: 5, returns: [first]}
 def echoes(program, looks, folder):
     """Ranges and signals of a camera that looks through fog of 50 m visibility."""
     (folder / "sensor.yaml").write_text(
-        SENSOR + f"weather: {{visibility_m: 50, fog_looks: {looks}, least_signal: 1}}\n",
+        SENSOR + f"weather: {{visibility_m: 50, fog_looks: {looks}, min_signal: 1}}\n",
         encoding="utf-8")
     subprocess.run(
         [program, "render", "builtin:plane", "--sensor", "sensor.yaml", "--eye", "0,0,30",
-         "--target", "0,0,0", "--up-vector", "0,1,0", "--columns", "range,intensity,cause",
+         "--target", "0,0,0", "--up-vector", "0,1,0", "--fields", "range,intensity,return_source",
          "--quiet", "-o", "cloud.npz"], cwd=folder, check=True)
     cloud = np.load(folder / "cloud.npz")
-    fog = cloud["cause"].ravel() == 5
+    fog = cloud["return_source"].ravel() == 5
     return cloud["range"].ravel()[fog].astype(float), cloud["intensity"].ravel()[fog].astype(float)
 
 

@@ -19,7 +19,7 @@ SIZE = (900, 330)
 X_M = (-4.4, 4.4)
 Z_M = (12.1, 9.0)  # top to bottom; the sensor is below
 SENSOR = """optics: {width: 801, height: 1, fx: 1000, fy: 1000}
-pulse_light: {reference_reflectance: 0.01, reference_range_m: 1e4}
+lidar_equation: {reference_reflectance: 0.01, reference_range_m: 1e4}
 footprint: {divergence_mrad: 6, exit_mm: 0, rings: 2}
 receiver: {pulse_ns: 5, returns: [strongest]}
 """
@@ -42,11 +42,11 @@ def measure(program, folder):
         f"models:\n{models}sensor: sensor.yaml\nsensor_pose: {{position: [0, 0, 0]}}\n",
         encoding="utf-8")
     (folder / "sensor.yaml").write_text(SENSOR, encoding="utf-8")
-    subprocess.run([program, "render", "scene.yaml", "--quiet", "--no-sidecar", "--columns",
-                    "range,azimuth,cause", "-o", "cloud.npz"], cwd=folder, check=True)
+    subprocess.run([program, "render", "scene.yaml", "--quiet", "--no-sidecar", "--fields",
+                    "range,azimuth,return_source", "-o", "cloud.npz"], cwd=folder, check=True)
     cloud = {name: column.ravel() for name, column in np.load(folder / "cloud.npz").items()}
     seen = np.isfinite(cloud["range"])
-    return cloud["range"][seen], cloud["azimuth"][seen], cloud["cause"][seen]
+    return cloud["range"][seen], cloud["azimuth"][seen], cloud["return_source"][seen]
 
 
 def main():

@@ -49,7 +49,7 @@ class Stage:
             f"optics: {optics}\nlight: {LIGHT}\n{more}noise: [{step}]\n", encoding="utf-8")
         subprocess.run(
             [self.program, "render", "scene.yaml", "--sensor", "sensor.yaml", "--quiet",
-             "--no-sidecar", "--columns", columns, *options, "-o", "cloud.npz"],
+             "--no-sidecar", "--fields", columns, *options, "-o", "cloud.npz"],
             cwd=self.folder, check=True)
         return [dict(np.load(file)) for file in sorted(self.folder.glob("cloud*.npz"))]
 
@@ -89,14 +89,14 @@ def lost(step):
 
 
 def quantum_mm(stage, true_mm):
-    cloud = stage.wall("{type: range_quantum, step_m: 0.002}", 1.0 + 1e-3 * true_mm,
+    cloud = stage.wall("{type: range_quantization, step_m: 0.002}", 1.0 + 1e-3 * true_mm,
                        optics="{width: 1, height: 1, fov_deg: 0.001}")
     return 1e3 * (float(cloud["range"].ravel()[0]) - 1.0)
 
 
 def level_mm(stage, depth_m):
     """From the level of disparity at a depth to the next one."""
-    step = "{type: disparity_quantum, k_m: 351.3}"
+    step = "{type: disparity_quantization, k_m: 351.3}"
     first, second = (1.0 / (round(351.3 / depth_m) - k) * 351.3 for k in (0, 1))
     told = [float(np.nanmean(stage.wall(step, z)["depth"])) for z in (first, second)]
     return 1e3 * (told[1] - told[0])
@@ -137,7 +137,7 @@ def crosstalk_share(stage, place):
 
 def arrivals_share(stage, range_m):
     """Share of beams into the void with an echo from before this range."""
-    step = "{type: false_echoes, rate_hz: 5e6, near_m: 0, far_m: 100}"
+    step = "{type: false_alarms, rate_hz: 5e6, near_m: 0, far_m: 100}"
     stage.scene("builtin:plane")
     cloud = stage.render(CAMERA, step, ["--eye", "0,0,5", "--target", "0,0,10", "--up-vector",
                                         "0,1,0"])[0]
@@ -227,14 +227,14 @@ CASES = [
                lambda z: 5.0 + 2.0 * z),
     signal_case("range_snr", "{type: range_snr, floor_m: 0.005, k_m: 0.3, snr_at_full_scale: 250}",
                 lambda i: 1e3 * math.sqrt(0.005 ** 2 + 0.3 ** 2 / (250 * i))),
-    signal_case("range_pulse", "{type: range_pulse, pulse_fwhm_ns: 5, sample_ns: 1, noise: 0.01}",
+    signal_case("range_crlb", "{type: range_crlb, pulse_fwhm_ns: 5, sample_ns: 1, noise: 0.01}",
                 lambda i: 1e3 * HALF_LIGHT * 0.01 / i * math.sqrt(
                     2 * 5e-9 / 2.3548 * 1e-9 / math.sqrt(math.pi))),
-    signal_case("range_photons", "{type: range_photons, pulse_fwhm_ns: 5, "
+    signal_case("range_shot_noise", "{type: range_shot_noise, pulse_fwhm_ns: 5, "
                 "photons_at_full_scale: 1000}", lambda i: 1e3 * PULSE_M / math.sqrt(1000 * i)),
-    depth_case("range_2015 (uniform)", "{type: range_2015, additive_m: 0.01, "
+    depth_case("range_uniform (uniform)", "{type: range_uniform, additive_m: 0.01, "
                "multiplicative: 0.01}", lambda z: 10 * math.sqrt((1 + z * z) / 3)),
-    Case("range_quantum, 2 mm", "reported, mm", "true mm", [0.3 + 0.75 * k for k in range(11)],
+    Case("range_quantization, 2 mm", "reported, mm", "true mm", [0.3 + 0.75 * k for k in range(11)],
          quantum_mm, lambda x: 2.0 * math.floor(x / 2.0 + 0.5)),
     Case("range_bias, 400 rings", "quantiles, mm", "normal quantiles", [-2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5,
                                                              2], bias_quantile_mm,
@@ -246,9 +246,9 @@ CASES = [
          lambda z: 1 - 0.95 * (1 - 0.6 * min(max((z - 1) / 3, 0), 1))),
     Case("crosstalk", "share of foreign ranges below", "near to wall",
          [0, 0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 1], crosstalk_share, lambda x: x),
-    Case("false_echoes, 5 MHz", "share with an echo before", "range, m", [5, 15, 25, 40, 55, 70, 85, 99],
+    Case("false_alarms, 5 MHz", "share with an echo before", "range, m", [5, 15, 25, 40, 55, 70, 85, 99],
          arrivals_share, lambda r: 1 - math.exp(-5e6 * r / HALF_LIGHT)),
-    Case("disparity_quantum", "from level to level, mm", "depth, m", DEPTHS_M, level_mm,
+    Case("disparity_quantization", "from level to level, mm", "depth, m", DEPTHS_M, level_mm,
          lambda z: 1e3 * z * z / 351.3),
     depth_case("kinect_v1", "{type: kinect_v1}",
                lambda z: 1e3 * z * z / 345.489 * math.sqrt(0.44 ** 2 + 1 / 12)),

@@ -59,12 +59,12 @@ def intensities(program, weather, nanometres, folder):
     """Of a camera before a plane."""
     (folder / "sensor.yaml").write_text(
         f"optics: {{width: 16, height: 12, fov_deg: 0.5}}\nwavelength_nm: {nanometres}\n"
-        "pulse_light: {reference_reflectance: 0.01, reference_range_m: 1e6}\n"
+        "lidar_equation: {reference_reflectance: 0.01, reference_range_m: 1e6}\n"
         "receiver: {returns: [last]}\n"  # the plane, behind the echoes of the air
         f"weather: {{fog_backscatter_per_sr: 0{weather}}}\n", encoding="utf-8")
     subprocess.run(
         [program, "render", "builtin:plane", "--sensor", "sensor.yaml", "--eye",
-         f"0,0,{DISTANCE_M}", "--target", "0,0,0", "--up-vector", "0,1,0", "--columns",
+         f"0,0,{DISTANCE_M}", "--target", "0,0,0", "--up-vector", "0,1,0", "--fields",
          "range,intensity", "--quiet", "-o", "cloud.npz"], cwd=folder, check=True)
     cloud = np.load(folder / "cloud.npz")
     return cloud["range"].astype(float), cloud["intensity"].astype(float)

@@ -77,8 +77,8 @@ class Soak(HostileClients):
         self.endpoint = self.lockstep.stdout.readline().split()[-1]
         while True:  # two free ports side by side
             self.port = 20000 + 2 * int(np.random.default_rng().integers(6000))
-            self.stream = self.start("--port", str(self.port), "--subscription-timeout", "0", "--pub-hwm", "4",
-                                     "--rate", "60", "--model-dr", "0,0.5,0", "--stats", "stream.json")
+            self.stream = self.start("--port", str(self.port), "--subscription-timeout", "0", "--publish-queue", "4",
+                                     "--rate", "60", "--object-rate", "0,0.5,0", "--stats", "stream.json")
             if self.listens():
                 break
         self.begin_stream()

@@ -1,13 +1,13 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <apps/glidar/commands.hpp>
-#include <apps/glidar/exit_code.hpp>
-#include <apps/glidar/help_text.hpp>
-#include <apps/glidar/interrupt.hpp>
+#include <apps/glidar/commands/commands.hpp>
+#include <apps/glidar/options/help_text.hpp>
+#include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/interrupt.hpp>
 #include <apps/viewer/view.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/core/version.hpp>
-#include <glidar/io/atomic_file.hpp>
+#include <glidar/io/files/atomic_file.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -26,7 +26,7 @@ namespace {
 constexpr const char* kExamples = R"(Examples:
   glidar render builtin:asteroid -o asteroid.pcd -o asteroid.png
   glidar view builtin:asteroid
-  glidar stream builtin:asteroid --model-dr 0,0.5,0 --port 5555
+  glidar stream builtin:asteroid --object-rate 0,0.5,0 --port 5555
   glidar explain asteroid.pcd --index 30000
   glidar info builtin:torus
   glidar sensors
@@ -55,14 +55,14 @@ std::string explain_extra(const CLI::App& program, const Commands& commands, std
   const CLI::App& command = chosen(program);
   word = word.substr(0, word.find('='));
   if (word.starts_with("-")) {
-    const std::string nearest = nearest_word(word, option_names(command));
+    const std::string nearest = closest_match(word, option_names(command));
     return nearest.empty() ? fmt::format("unknown option {}; see --help", word)
                            : fmt::format("unknown option {}; did you mean {}?", word, nearest);
   }
   if (&command != &program) return fmt::format("unexpected word '{}'; see --help", word);
   std::vector<std::string> names = {"--help"};
   for (const auto& [name, run] : commands) names.push_back(name);
-  const std::string nearest = nearest_word(word, names);
+  const std::string nearest = closest_match(word, names);
   return nearest.empty()
              ? fmt::format(
                    "'{0}' is no subcommand; to measure a model: glidar render {0} -o cloud.pcd",

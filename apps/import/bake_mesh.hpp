@@ -4,7 +4,7 @@
 
 #include <import/scene_walk.hpp>
 
-#include <glidar/io/imported_model.hpp>
+#include <glidar/io/model/imported_model.hpp>
 
 #include <array>
 #include <cstdint>

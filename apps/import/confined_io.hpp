@@ -4,7 +4,7 @@
 
 #include <import/model_files.hpp>
 
-#include <glidar/io/model_folder.hpp>
+#include <glidar/io/model/model_folder.hpp>
 
 #include <assimp/IOSystem.hpp>
 

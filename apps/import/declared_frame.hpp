@@ -4,7 +4,7 @@
 
 #include <import/model_files.hpp>
 
-#include <glidar/io/model.hpp>
+#include <glidar/io/model/model.hpp>
 
 #include <string>
 #include <vector>

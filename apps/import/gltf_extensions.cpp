@@ -7,7 +7,7 @@
 #include <import/gltf_file.hpp>
 #include <import/scene_walk.hpp>
 
-#include <glidar/io/texture_search.hpp>
+#include <glidar/io/model/texture_search.hpp>
 
 #include <nlohmann/json.hpp>
 

@@ -29,9 +29,9 @@ namespace {
 constexpr unsigned kSteps = aiProcess_ValidateDataStructure | aiProcess_Triangulate |
                             aiProcess_SortByPType | aiProcess_GenUVCoords;
 
-class Progress : public Assimp::ProgressHandler {
+class ProgressCallback : public Assimp::ProgressHandler {
  public:
-  explicit Progress(std::function<void(double)> tell) : tell_(std::move(tell)) {}
+  explicit ProgressCallback(std::function<void(double)> tell) : tell_(std::move(tell)) {}
   bool Update(float fraction) override {
     if (fraction >= 0.0F) tell_(fraction);
     return true;
@@ -110,7 +110,7 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   // Never destroyed: taking a deep tree apart recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
   importer.SetIOHandler(new ConfinedIo(folder, files, log));
-  importer.SetProgressHandler(new Progress(progress));
+  importer.SetProgressHandler(new ProgressCallback(progress));
   if (importer.ReadFile(canonical_model.string(), kSteps) == nullptr) {
     refuse(importer.GetErrorString(), log);
   }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/landlock.hpp>
 
-#include <glidar/io/unique_fd.hpp>
+#include <glidar/io/files/unique_fd.hpp>
 
 #include <fcntl.h>
 #include <linux/landlock.h>

@@ -2,16 +2,16 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // glidar-import MODEL CREASE_ANGLE_RAD MEMORY_BYTES TIME_S PARENT
-// Reads one model and writes one frame (glidar/io/mesh_blob.hpp) to descriptor 3: the model, or why
-// there is none. It reads the model in a sandbox (sandbox.hpp). Percents of progress go to
+// Reads one model and writes one frame (glidar/io/model/mesh_blob.hpp) to descriptor 3: the model,
+// or why there is none. It reads the model in a sandbox (sandbox.hpp). Percents of progress go to
 // descriptor 4, one byte each. The GLIDAR library starts it; it is of no use by hand.
 
 #include <import/import_model.hpp>
 #include <import/process_limits.hpp>
 #include <import/sandbox.hpp>
 
-#include <glidar/io/mesh_blob.hpp>
-#include <glidar/io/model_folder.hpp>
+#include <glidar/io/model/mesh_blob.hpp>
+#include <glidar/io/model/model_folder.hpp>
 
 #include <unistd.h>
 
@@ -32,7 +32,7 @@ constexpr int kExitNoMemory = 3;
 
 void tell_progress(double fraction) {
   const auto percent = static_cast<unsigned char>(fraction <= 1.0 ? fraction * 100.0 : 100.0);
-  // Progress is a courtesy: a full or closed pipe must not stop the work.
+  // ProgressCallback is a courtesy: a full or closed pipe must not stop the work.
   [[maybe_unused]] const ssize_t written = ::write(kProgressFd, &percent, 1);
 }
 

@@ -4,7 +4,7 @@
 
 #include <import/open_beneath.hpp>
 
-#include <glidar/io/content_hash.hpp>
+#include <glidar/io/files/content_hash.hpp>
 
 #include <sys/stat.h>
 

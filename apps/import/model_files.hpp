@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/model_folder.hpp>
-#include <glidar/io/unique_fd.hpp>
+#include <glidar/io/files/unique_fd.hpp>
+#include <glidar/io/model/model_folder.hpp>
 
 #include <cstddef>
 #include <map>

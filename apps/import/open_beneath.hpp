@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/unique_fd.hpp>
+#include <glidar/io/files/unique_fd.hpp>
 
 #include <filesystem>
 

@@ -4,7 +4,7 @@
 
 #include <import/mesh_part.hpp>
 
-#include <glidar/core/single_precision.hpp>
+#include <glidar/math/single_precision.hpp>
 
 #include <algorithm>
 #include <array>

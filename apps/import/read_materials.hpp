@@ -5,7 +5,7 @@
 #include <import/mtl_options.hpp>
 #include <import/texture_store.hpp>
 
-#include <glidar/io/imported_model.hpp>
+#include <glidar/io/model/imported_model.hpp>
 
 struct aiMaterial;
 

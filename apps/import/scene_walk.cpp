@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <import/scene_walk.hpp>
 
-#include <glidar/io/mesh_blob.hpp>
+#include <glidar/io/model/mesh_blob.hpp>
 
 #include <assimp/scene.h>
 

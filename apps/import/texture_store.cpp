@@ -5,8 +5,8 @@
 #include <import/confined_io.hpp>
 #include <import/decode_image.hpp>
 
-#include <glidar/io/height_map.hpp>
-#include <glidar/io/texture_search.hpp>
+#include <glidar/io/model/height_map.hpp>
+#include <glidar/io/model/texture_search.hpp>
 
 #include <assimp/scene.h>
 #include <assimp/texture.h>

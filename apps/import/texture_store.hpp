@@ -4,7 +4,7 @@
 
 #include <import/model_files.hpp>
 
-#include <glidar/io/imported_model.hpp>
+#include <glidar/io/model/imported_model.hpp>
 
 #include <cstdint>
 #include <map>

@@ -10,7 +10,7 @@ namespace glidar::app {
 void make_cloud_points(const Snapshot& shot, const Eigen::Vector3d& anchor_m,
                        std::vector<Eigen::Vector3f>& points) {
   const Pose anchor_from_world(Eigen::Translation3d(-anchor_m));
-  const CloudFrame cloud_frame{
+  const OutputFrame cloud_frame{
       .frame_id = "anchor", .cloud_from_sensor = anchor_from_world * shot.frame.world_from_sensor};
   const std::vector<std::string> columns = {"xyz"};
   PointCloud cloud;

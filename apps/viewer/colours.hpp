@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/picture.hpp>
+#include <glidar/io/pictures/picture.hpp>
 
 #include <array>
 #include <cstdint>

@@ -4,7 +4,7 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/core/pose.hpp>
-#include <glidar/io/picture.hpp>
+#include <glidar/io/pictures/picture.hpp>
 
 #include <Eigen/Core>
 #include <span>

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/measuring.hpp>
 
-#include <apps/glidar/advice.hpp>
-#include <glidar/explain.hpp>
-#include <glidar/simulate.hpp>
-#include <glidar/story_text.hpp>
+#include <apps/glidar/run/advice.hpp>
+#include <glidar/explain/trace_text.hpp>
+#include <glidar/simulate/explain.hpp>
+#include <glidar/simulate/simulate.hpp>
 
 #include <fmt/format.h>
 
@@ -40,13 +40,13 @@ Sensor without_noise(Sensor sensor) {
 Motion moved_all(const Motion& motion, const Ask& ask) {
   Motion result = motion;
   if (ask.sensor_moved.matrix() != Pose::Identity().matrix()) {
-    result.world_from_sensor = moved(ask.sensor_moved, motion.world_from_sensor);
+    result.world_from_sensor = transformed(ask.sensor_moved, motion.world_from_sensor);
   }
   std::vector<Trajectory>& instances = result.world_from_instance;
   const std::size_t count = std::min(ask.objects_moved.size(), instances.size());
   for (std::size_t i = 0; i < count; ++i) {
     const Pose& by = ask.objects_moved[i];
-    if (by.matrix() != Pose::Identity().matrix()) instances[i] = moved(by, instances[i]);
+    if (by.matrix() != Pose::Identity().matrix()) instances[i] = transformed(by, instances[i]);
   }
   return result;
 }
@@ -58,7 +58,7 @@ Setup setup_of(const Snapshot& shot) {
               .beams = *shot.beams,
               .motion = shot.motion,
               .renderer = *session.renderer};
-  if (session.paper) setup.paper.emplace(PaperTarget{.camera = *session.paper});
+  if (session.paper) setup.paper.emplace(Woods2016Target{.camera = *session.paper});
   return setup;
 }
 
@@ -229,7 +229,8 @@ void Measuring::prepare(const Ask& ask, Snapshot& shot) {
   const Mount& mount = opened_->session->mounts[ask.mount];
   if (opened_->number != ask.number) {
     const Sensor& sensor = *opened_->noisy;
-    opened_->beams = std::make_shared<Beams>(make_beams(sensor, scan_window(sensor, ask.number)));
+    opened_->beams =
+        std::make_shared<Beams>(make_beams(sensor, frame_interval(sensor, ask.number)));
     opened_->number = ask.number;
   }
   shot.ask = ask;
@@ -239,7 +240,7 @@ void Measuring::prepare(const Ask& ask, Snapshot& shot) {
   shot.motion = moved_all(mount.motion, ask);
   shot.frame.number = ask.number;
   shot.frame.sensor_id = mount.id;
-  shot.frame.stamp_ns = scan_window(*shot.sensor, ask.number).start_ns;
+  shot.frame.stamp_ns = frame_interval(*shot.sensor, ask.number).start_ns;
   shot.frame.seed = ask.seed;
 }
 
@@ -259,8 +260,8 @@ void Measuring::explain_now(const Ask& ask, std::size_t entry) {
   Snapshot shot;
   prepare(ask, shot);
   const Setup setup = setup_of(shot);
-  const Story story = glidar::explain(setup, entry, shot.frame);
-  std::string text = story_text(story, setup, shot.frame);
+  const PointTrace story = glidar::explain(setup, entry, shot.frame);
+  std::string text = format_trace(story, setup, shot.frame);
   const std::lock_guard lock(mutex_);
   news_.story = std::move(text);
 }
@@ -275,7 +276,7 @@ void Measuring::save_now(const Ask& ask, const OutputFlags& flags) {
                                .inputs = shot.session->files};
   const std::vector<Output> outputs =
       plan_outputs(flags, ask.flags->input, context, console_.report());
-  protect_files(shot.session->files, outputs);
+  refuse_overwrite_of_inputs(shot.session->files, outputs);
   simulate(setup_of(shot), fields_for_outputs(outputs), shot.frame);
   write_outputs(outputs, shot.frame, *shot.beams, shot.session->scene, console_.report());
   say(written_text(outputs));

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <apps/glidar/console.hpp>
-#include <apps/glidar/session.hpp>
+#include <apps/glidar/run/console.hpp>
+#include <apps/glidar/run/session.hpp>
 
 #include <condition_variable>
 #include <cstddef>

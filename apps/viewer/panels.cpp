@@ -4,9 +4,9 @@
 
 #include <apps/viewer/object_panel.hpp>
 #include <apps/viewer/widgets.hpp>
-#include <glidar/core/constants.hpp>
-#include <glidar/io/noise_text.hpp>
-#include <glidar/io/sensor_presets.hpp>
+#include <glidar/io/config/noise_text.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <fmt/format.h>
 #include <imgui.h>

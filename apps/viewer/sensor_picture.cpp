@@ -56,7 +56,7 @@ void colour_by_normal(const Frame& frame, const Beams& beams, SensorPicture& pic
   seen_from_sensor << -axes.left.cast<float>().transpose(), axes.up.cast<float>().transpose(),
       -axes.ahead.cast<float>().transpose();
   for (std::size_t i = 0; i < frame.status.size(); ++i) {
-    const Eigen::Vector3f& normal = frame.truth.normal[i];
+    const Eigen::Vector3f& normal = frame.ground_truth.normal[i];
     if (frame.status[i] != Status::hit || std::isnan(normal.x())) continue;
     const Eigen::Vector3f seen = 255.0F * (0.5F * (seen_from_sensor * normal).array() + 0.5F);
     picture.colours[i] = {static_cast<std::uint8_t>(seen.x()), static_cast<std::uint8_t>(seen.y()),
@@ -70,8 +70,8 @@ void colour_by_normal(const Frame& frame, const Beams& beams, SensorPicture& pic
 void colour_by_instance(const Frame& frame, const Scene& scene, SensorPicture& picture) {
   std::map<std::uint32_t, bool> seen;
   for (std::size_t i = 0; i < frame.status.size(); ++i) {
-    const std::uint32_t instance = frame.truth.instance[i];
-    if (frame.status[i] != Status::hit || instance == kNoHit) continue;
+    const std::uint32_t instance = frame.ground_truth.instance[i];
+    if (frame.status[i] != Status::hit || instance == kInvalidId) continue;
     picture.colours[i] = category_colour(instance);
     seen[instance] = true;
   }

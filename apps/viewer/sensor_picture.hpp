@@ -6,9 +6,9 @@
 #include <glidar/core/beams.hpp>
 #include <glidar/core/frame.hpp>
 #include <glidar/core/scene.hpp>
-#include <glidar/io/beam_picture.hpp>
-#include <glidar/io/chart.hpp>
-#include <glidar/io/colour_scale.hpp>
+#include <glidar/io/pictures/beam_picture.hpp>
+#include <glidar/io/pictures/chart.hpp>
+#include <glidar/io/pictures/colour_scale.hpp>
 
 #include <array>
 #include <string>
@@ -31,7 +31,7 @@ struct SensorPicture {
 };
 
 /// Beams without a return are grey. Near is bright. Normals are seen from the sensor: red to the
-/// right, green up, blue towards it. Needs frame.truth.normal for normals.
+/// right, green up, blue towards it. Needs frame.ground_truth.normal for normals.
 void make_sensor_picture(const Frame& frame, const Beams& beams, const Scene& scene,
                          Quantity quantity, ColourMap map, SensorPicture& picture);
 

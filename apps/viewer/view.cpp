@@ -2,12 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/view.hpp>
 
-#include <apps/glidar/exit_code.hpp>
-#include <apps/glidar/option_kinds.hpp>
+#include <apps/glidar/options/option_kinds.hpp>
+#include <apps/glidar/run/exit_code.hpp>
 #include <apps/viewer/screen.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/file_guard.hpp>
-#include <glidar/io/png_image.hpp>
+#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/pictures/png_image.hpp>
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -33,10 +33,10 @@ move the sensor, space pauses, r resets, Esc quits. Keys and mouse act on the se
 first one, until another is selected in the list or by a click on one of its points. f frames it in
 both views. Drag on the left to turn it, on the right to orbit the cloud; a click on a point also
 explains its measurement. Scene files with a rig of sensors: select the sensor in the list, or show
-one alone with --mount. Drop a model or scene file to open it.
+one alone with --sensor-name. Drop a model or scene file to open it.
 Examples:
   glidar view builtin:asteroid
-  glidar view builtin:torus --model-dr 0,0.5,0.2
+  glidar view builtin:torus --object-rate 0,0.5,0.2
   glidar view builtin:box --sensor VLP-16 --eye 0,0,0
 With your own files:
   glidar view rig.yaml
@@ -270,7 +270,7 @@ int run(ViewFlags& flags) {
   if (screenshot) {
     Picture picture;
     for (int i = 0; i < kSettling; ++i) show.draw(&picture);
-    protect_files(viewer.shot()->session->files, flags.screenshot);
+    refuse_overwrite_of_inputs(viewer.shot()->session->files, flags.screenshot);
     write_screenshot(picture, *screenshot);
   }
   if (!flags.render.quiet) fmt::print("drew {} pictures of the window\n", show.drawn());

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <apps/glidar/commands.hpp>
+#include <apps/glidar/commands/commands.hpp>
 
 namespace glidar::app {
 

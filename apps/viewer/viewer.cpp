@@ -233,7 +233,7 @@ void Viewer::reset() {
 
 void Viewer::toggle_play() {
   if (!is_moving()) {
-    message = "nothing moves; --model-dr X,Y,Z turns the model";
+    message = "nothing moves; --object-rate X,Y,Z turns the model";
     return;
   }
   is_playing_ = !is_playing_;
@@ -373,8 +373,8 @@ void Viewer::pick(std::optional<std::size_t> entry) {
   story.clear();
   if (entry) {
     is_playing_ = false;
-    const std::uint32_t object = shot()->frame.truth.instance[*entry];
-    if (shot()->frame.status[*entry] == Status::hit && object != kNoHit) select(object);
+    const std::uint32_t object = shot()->frame.ground_truth.instance[*entry];
+    if (shot()->frame.status[*entry] == Status::hit && object != kInvalidId) select(object);
   }
   tell_story();
 }

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <apps/glidar/advice.hpp>
+#include <apps/glidar/run/advice.hpp>
 #include <apps/viewer/framing.hpp>
 #include <apps/viewer/guide_lines.hpp>
 #include <apps/viewer/measuring.hpp>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/widgets.hpp>
 
-#include <glidar/core/constants.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <apps/viewer/shown_numbers.hpp>
 

@@ -61,7 +61,7 @@ struct Beams {
   std::optional<PinholeIntrinsics> pinhole;
 
   [[nodiscard]] std::size_t size() const { return directions.size(); }
-  [[nodiscard]] std::size_t pulses() const { return directions.size() / returns; }
+  [[nodiscard]] std::size_t firings() const { return directions.size() / returns; }
 };
 
 /// Axes of a sensor's frame.

@@ -98,7 +98,7 @@ void require_number(bool holds, const char* where, double found, const char* all
   }
 }
 
-std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
+std::string closest_match(std::string_view word, std::span<const std::string> candidates) {
   constexpr std::size_t kMaxWord_bytes = 100;  // comparing takes the product of both lengths
   if (word.size() > kMaxWord_bytes) return "";
   const std::string wanted = lower(word);

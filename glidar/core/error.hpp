@@ -36,6 +36,6 @@ void require_number(bool holds, const char* where, double found, const char* all
 
 /// The candidate probably meant by `word`: by its letters (up to a third wrong, in capitals or
 /// not), or as one continues or ends with the other ("range_m", "range"); "" for none.
-std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
+std::string closest_match(std::string_view word, std::span<const std::string> candidates);
 
 }  // namespace glidar

@@ -16,58 +16,58 @@ std::string_view name(Status status) {
       return "too near";
     case Status::too_far:
       return "too far";
-    case Status::no_beam:
-      return "no beam";
+    case Status::invalid_pixel:
+      return "invalid pixel";
     case Status::below_threshold:
       return "below threshold";
     case Status::dropped:
       return "dropped";
     case Status::occluded:
       return "occluded";
-    case Status::wrapped:
-      return "wrapped";
+    case Status::phase_ambiguous:
+      return "phase ambiguous";
     case Status::saturated:
       return "saturated";
     case Status::weather:
       return "weather";
-    case Status::no_echo:
-      return "no echo";
+    case Status::no_return_of_rank:
+      return "no return of that rank";
   }
   return "unknown";
 }
 
-std::string_view name(Cause cause) {
+std::string_view name(ReturnSource cause) {
   switch (cause) {
-    case Cause::none:
+    case ReturnSource::none:
       return "none";
-    case Cause::surface:
+    case ReturnSource::surface:
       return "surface";
-    case Cause::mixed:
-      return "mixed";
-    case Cause::ghost:
+    case ReturnSource::mixed_pixel:
+      return "mixed pixel";
+    case ReturnSource::ghost:
       return "ghost";
-    case Cause::false_alarm:
+    case ReturnSource::false_alarm:
       return "false alarm";
-    case Cause::fog:
+    case ReturnSource::fog:
       return "fog";
-    case Cause::rain:
+    case ReturnSource::rain:
       return "rain";
-    case Cause::snow:
+    case ReturnSource::snow:
       return "snow";
-    case Cause::crosstalk:
+    case ReturnSource::crosstalk:
       return "crosstalk";
   }
   return "unknown";
 }
 
-void lose(Frame& frame, std::size_t entry, Status why) {
+void invalidate_return(Frame& frame, std::size_t entry, Status why) {
   frame.status[entry] = why;
   frame.range_m[entry] = std::numeric_limits<double>::quiet_NaN();
   frame.intensity[entry] = 0.0F;
-  if (!frame.cause.empty()) frame.cause[entry] = Cause::none;
+  if (!frame.return_source.empty()) frame.return_source[entry] = ReturnSource::none;
 }
 
-Draw draw_of(const Frame& frame, Purpose purpose, std::size_t beam) {
+RngKey rng_key(const Frame& frame, Purpose purpose, std::size_t beam) {
   return {.seed = frame.seed,
           .sensor = frame.sensor_id,
           .frame = frame.number,

@@ -2,13 +2,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/hits.hpp>
 
-#include <glidar/core/constants.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <algorithm>
 #include <type_traits>
 
 namespace glidar {
-void resize(Hits& hits, std::size_t size, const HitFields& fields) {
+void resize(Hits& hits, std::size_t size, const HitFieldMask& fields) {
   const auto size_if = [size](bool asked) { return asked ? size : std::size_t{0}; };
   hits.range_m.resize(size);
   hits.instance.resize(size);
@@ -26,7 +26,7 @@ void resize(Hits& hits, std::size_t size, const HitFields& fields) {
   hits.noise_scale.resize(size_if(fields.noise_scale));
 }
 
-void copy_hit(const Hits& from, std::size_t source, const HitFields& fields, Hits& to,
+void copy_hit(const Hits& from, std::size_t source, const HitFieldMask& fields, Hits& to,
               std::size_t target) {
   to.range_m[target] = from.range_m[source];
   to.instance[target] = from.instance[source];
@@ -44,7 +44,7 @@ void copy_hit(const Hits& from, std::size_t source, const HitFields& fields, Hit
   if (fields.noise_scale) to.noise_scale[target] = from.noise_scale[source];
 }
 
-void write_misses(const HitFields& fields, std::size_t first, std::size_t count, Hits& hits) {
+void write_misses(const HitFieldMask& fields, std::size_t first, std::size_t count, Hits& hits) {
   const auto fill = [first, count](bool asked, auto& column, const auto& value) {
     if (asked) std::fill_n(column.begin() + static_cast<std::ptrdiff_t>(first), count, value);
   };
@@ -55,8 +55,8 @@ void write_misses(const HitFields& fields, std::size_t first, std::size_t count,
     if (asked && count > 0) std::fill_n(column[first].data(), kSize * count, value);
   };
   fill(true, hits.range_m, kNaN);
-  fill(true, hits.instance, kNoHit);
-  fill(true, hits.primitive, kNoHit);
+  fill(true, hits.instance, kInvalidId);
+  fill(true, hits.primitive, kInvalidId);
   fill(fields.depth, hits.depth_m, kNaN);
   fill_vectors(fields.normal, hits.normal, kNaNf);
   fill_vectors(fields.shading_normal, hits.shading_normal, kNaNf);

@@ -10,10 +10,10 @@
 namespace glidar {
 
 /// "No such instance / primitive": the beam hit nothing.
-inline constexpr std::uint32_t kNoHit = std::numeric_limits<std::uint32_t>::max();
+inline constexpr std::uint32_t kInvalidId = std::numeric_limits<std::uint32_t>::max();
 
 /// Which optional columns of Hits a cast fills. Only what is asked for is computed.
-struct HitFields {
+struct HitFieldMask {
   bool depth = false;
   bool normal = false;
   bool shading_normal = false;
@@ -28,18 +28,18 @@ struct HitFields {
   bool poses = false;  ///< no column of Hits, but Frame::beam_poses
 };
 
-inline constexpr HitFields kAllHitFields = {.depth = true,
-                                            .normal = true,
-                                            .shading_normal = true,
-                                            .incidence = true,
-                                            .shading = true,
-                                            .barycentrics = true,
-                                            .colour = true,
-                                            .diffuse = true,
-                                            .reflectance = true,
-                                            .object_point = true,
-                                            .noise_scale = true,
-                                            .poses = true};
+inline constexpr HitFieldMask kAllHitFields = {.depth = true,
+                                               .normal = true,
+                                               .shading_normal = true,
+                                               .incidence = true,
+                                               .shading = true,
+                                               .barycentrics = true,
+                                               .colour = true,
+                                               .diffuse = true,
+                                               .reflectance = true,
+                                               .object_point = true,
+                                               .noise_scale = true,
+                                               .poses = true};
 
 /// What a surface does with the paper's light (equation 5): luminances after textures, and the
 /// exponent. All zero where nothing was hit.
@@ -52,8 +52,9 @@ struct Reflectance {
 
 /// Geometric truth per beam: no noise, no radiometry. N = number of beams. Range, instance and
 /// primitive are always there; the other columns are empty unless asked for.
-/// A miss has range NaN, ids kNoHit and NaN (colour, diffuse and reflectance: 0, noise scale: 1) in
-/// every other column. Normals are unit vectors in the sensor's frame, turned towards the sensor.
+/// A miss has range NaN, ids kInvalidId and NaN (colour, diffuse and reflectance: 0, noise scale:
+/// 1) in every other column. Normals are unit vectors in the sensor's frame, turned towards the
+/// sensor.
 struct Hits {
   std::vector<double> range_m;           ///< N, along the beam from its origin
   std::vector<std::uint32_t> instance;   ///< N, index into Scene::instances
@@ -76,13 +77,13 @@ struct Hits {
 
 /// Gives every asked-for column `size` entries (contents unspecified) and empties the others'.
 /// Keeps capacity, so a second call of the same size allocates nothing.
-void resize(Hits& hits, std::size_t size, const HitFields& fields);
+void resize(Hits& hits, std::size_t size, const HitFieldMask& fields);
 
 /// Writes misses at beams [first, first + count).
-void write_misses(const HitFields& fields, std::size_t first, std::size_t count, Hits& hits);
+void write_misses(const HitFieldMask& fields, std::size_t first, std::size_t count, Hits& hits);
 
 /// Copies all asked-for columns of one hit.
-void copy_hit(const Hits& from, std::size_t source, const HitFields& fields, Hits& to,
+void copy_hit(const Hits& from, std::size_t source, const HitFieldMask& fields, Hits& to,
               std::size_t target);
 
 }  // namespace glidar

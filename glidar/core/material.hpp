@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/backscatter.hpp>
-#include <glidar/core/table.hpp>
+#include <glidar/core/brdf.hpp>
+#include <glidar/math/lookup_table.hpp>
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -50,9 +50,9 @@ struct Material {
   float shininess = 0.0F;     ///< exponent s of equation 5, 0..128
   float opacity = 1.0F;       ///< multiplied by the alpha texture
   float alpha_cutoff = 0.0F;  ///< a texel whose opacity is below lets the ray through; 0: solid
-  Backscatter backscatter;    ///< what pulses see of it; its reflectance is that of `spectrum`
+  Brdf backscatter;           ///< what pulses see of it; its reflectance is that of `spectrum`
   float mirror = 0.0F;        ///< share of a pulse's light that goes on as from a mirror, 0..1
-  Table spectrum;             ///< wavelength in m, reflectance 0..1; empty: the luminance of
+  LookupTable spectrum;       ///< wavelength in m, reflectance 0..1; empty: the luminance of
                               ///< `diffuse`
   float noise_scale = 1.0F;   ///< multiplies random errors of sensors; times the noise texture
   float normal_scale = 1.0F;  ///< strength of the normal map's x and y

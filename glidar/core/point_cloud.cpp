@@ -18,7 +18,7 @@ struct Source {
   const Scene& scene;
   const Pose cloud_from_sensor;
   bool deskew;
-  Workers* workers;
+  ThreadPool* thread_pool;
 };
 
 using Fill = void (*)(const Source&, Column&);
@@ -27,7 +27,7 @@ using Fill = void (*)(const Source&, Column&);
 struct ColumnKind {
   std::string name;
   std::vector<std::string> components;
-  HitFields needs;
+  HitFieldMask needs;
   Fill fill;
 };
 
@@ -46,8 +46,8 @@ template <class Body>
 void for_pieces(const Source& source, const Body& body) {
   constexpr std::size_t kPoints = 16384;  // a piece is worth waking a thread for
   const std::size_t size = source.beams.size();
-  if (source.workers == nullptr) return body(0, size);
-  source.workers->for_ranges(size, kPoints, body);
+  if (source.thread_pool == nullptr) return body(0, size);
+  source.thread_pool->parallel_for(size, kPoints, body);
 }
 
 /// One number a point, from a function of the beam's index.
@@ -94,19 +94,20 @@ void fill_xyz(const Source& s, Column& column) {
 
 void fill_true_xyz(const Source& s, Column& column) {
   const Frame::Deskewed& moved = s.frame.deskewed;
-  const Vectors& aimed = s.frame.scratch.aimed.directions;
+  const Vectors& aimed = s.frame.workspace.aimed.directions;
   if (moved.directions.empty()) {
-    return fill_points(s, s.frame.truth.range_m, aimed.empty() ? s.beams.directions : aimed,
+    return fill_points(s, s.frame.ground_truth.range_m, aimed.empty() ? s.beams.directions : aimed,
                        s.beams.origins_m, column);
   }
-  fill_points(s, s.frame.truth.range_m,
+  fill_points(s, s.frame.ground_truth.range_m,
               moved.true_directions.empty() ? moved.directions : moved.true_directions,
               moved.origins_m, column);
 }
 
 void fill_true_range(const Source& s, Column& column) {
-  fill_each<double>(
-      s, column, [&](std::size_t i) { return s.frame.truth.range_m[i] + s.beams.range_offset_m; });
+  fill_each<double>(s, column, [&](std::size_t i) {
+    return s.frame.ground_truth.range_m[i] + s.beams.range_offset_m;
+  });
 }
 
 void fill_sigma(const Source& s, Column& column) {
@@ -139,16 +140,16 @@ void fill_directions(const Source& s, Column& column, const std::vector<Eigen::V
 }
 
 void fill_normal(const Source& s, Column& column) {
-  fill_directions(s, column, s.frame.truth.normal);
+  fill_directions(s, column, s.frame.ground_truth.normal);
 }
 
 void fill_shading_normal(const Source& s, Column& column) {
-  fill_directions(s, column, s.frame.truth.shading_normal);
+  fill_directions(s, column, s.frame.ground_truth.shading_normal);
 }
 
 void fill_incidence(const Source& s, Column& column) {
   fill_each<float>(s, column, [&](std::size_t i) {
-    return std::acos(std::min(s.frame.truth.cos_incidence[i], 1.0F));
+    return std::acos(std::min(s.frame.ground_truth.cos_incidence[i], 1.0F));
   });
 }
 
@@ -156,8 +157,8 @@ void fill_incidence(const Source& s, Column& column) {
 template <class Function>
 void fill_of_instance(const Source& s, Column& column, Function number_of) {
   fill_each<std::uint32_t>(s, column, [&](std::size_t i) {
-    const std::uint32_t instance = s.frame.truth.instance[i];
-    return instance == kNoHit ? kNoHit : number_of(s.scene.instances[instance]);
+    const std::uint32_t instance = s.frame.ground_truth.instance[i];
+    return instance == kInvalidId ? kInvalidId : number_of(s.scene.instances[instance]);
   });
 }
 
@@ -170,20 +171,22 @@ void fill_class(const Source& s, Column& column) {
 }
 
 void fill_primitive(const Source& s, Column& column) {
-  fill_each<std::uint32_t>(s, column, [&](std::size_t i) { return s.frame.truth.primitive[i]; });
+  fill_each<std::uint32_t>(s, column,
+                           [&](std::size_t i) { return s.frame.ground_truth.primitive[i]; });
 }
 
 void fill_barycentrics(const Source& s, Column& column) {
-  fill_vectors<float, 2>(s, column, [&](std::size_t i) { return s.frame.truth.barycentrics[i]; });
+  fill_vectors<float, 2>(s, column,
+                         [&](std::size_t i) { return s.frame.ground_truth.barycentrics[i]; });
 }
 
 void fill_colour(const Source& s, Column& column) {
-  fill_vectors<float, 3>(s, column, [&](std::size_t i) { return s.frame.truth.colour[i]; });
+  fill_vectors<float, 3>(s, column, [&](std::size_t i) { return s.frame.ground_truth.colour[i]; });
 }
 
 void fill_object_point(const Source& s, Column& column) {
   fill_vectors<double, 3>(s, column,
-                          [&](std::size_t i) { return s.frame.truth.object_point_m[i]; });
+                          [&](std::size_t i) { return s.frame.ground_truth.object_point_m[i]; });
 }
 
 void fill_status(const Source& s, Column& column) {
@@ -193,7 +196,7 @@ void fill_status(const Source& s, Column& column) {
 
 void fill_row(const Source& s, Column& column) {
   fill_each<std::uint32_t>(s, column, [&](std::size_t i) {
-    return static_cast<std::uint32_t>(i % s.beams.pulses() / s.beams.cols);
+    return static_cast<std::uint32_t>(i % s.beams.firings() / s.beams.cols);
   });
 }
 
@@ -208,14 +211,14 @@ void fill_ring(const Source& s, Column& column) {
 
 void fill_return(const Source& s, Column& column) {
   fill_each<std::uint8_t>(
-      s, column, [&](std::size_t i) { return static_cast<std::uint8_t>(i / s.beams.pulses()); });
+      s, column, [&](std::size_t i) { return static_cast<std::uint8_t>(i / s.beams.firings()); });
 }
 
 void fill_cause(const Source& s, Column& column) {
-  const std::vector<Cause>& causes = s.frame.cause;
+  const std::vector<ReturnSource>& causes = s.frame.return_source;
   fill_each<std::uint8_t>(s, column, [&](std::size_t i) {
-    const Cause told = causes.empty() ? Cause::surface : causes[i];
-    return static_cast<std::uint8_t>(s.frame.status[i] == Status::hit ? told : Cause::none);
+    const ReturnSource told = causes.empty() ? ReturnSource::surface : causes[i];
+    return static_cast<std::uint8_t>(s.frame.status[i] == Status::hit ? told : ReturnSource::none);
   });
 }
 
@@ -291,7 +294,7 @@ const std::vector<ColumnKind>& column_kinds() {
       {"ring", {"ring"}, {}, fill_ring},
       {"time", {"time"}, {}, fill_time},
       {"return", {"return"}, {}, fill_return},
-      {"cause", {"cause"}, {}, fill_cause},
+      {"return_source", {"return_source"}, {}, fill_cause},
       {"azimuth", {"azimuth"}, {}, fill_azimuth},
       {"elevation", {"elevation"}, {}, fill_elevation},
       {"stamp", {"stamp"}, {}, fill_stamp},
@@ -308,7 +311,7 @@ const ColumnKind& kind_named(std::string_view name) {
   std::string allowed;
   for (const std::string& known : cloud_column_names())
     allowed += (allowed.empty() ? "" : " ") + known;
-  const std::string nearest = nearest_word(name, cloud_column_names());
+  const std::string nearest = closest_match(name, cloud_column_names());
   throw Error({.where = "cloud column",
                .found = "'" + excerpt(name) + "' is not known",
                .allowed = allowed,
@@ -316,8 +319,8 @@ const ColumnKind& kind_named(std::string_view name) {
 }
 
 /// True when the frame kept what the column needs.
-bool has(const Frame& frame, const HitFields& needs) {
-  const Hits& truth = frame.truth;
+bool has(const Frame& frame, const HitFieldMask& needs) {
+  const Hits& truth = frame.ground_truth;
   const std::size_t size = frame.range_m.size();
   const auto kept = [size](bool needed, std::size_t found) { return !needed || found == size; };
   return kept(needs.normal, truth.normal.size()) &&
@@ -340,10 +343,10 @@ std::span<const std::string> cloud_column_names() {
   return names;
 }
 
-HitFields fields_for(std::span<const std::string> column_names) {
-  HitFields fields;
+HitFieldMask fields_needed_by(std::span<const std::string> column_names) {
+  HitFieldMask fields;
   for (const std::string& name : column_names) {
-    const HitFields& needs = kind_named(name).needs;
+    const HitFieldMask& needs = kind_named(name).needs;
     fields.normal |= needs.normal;
     fields.shading_normal |= needs.shading_normal;
     fields.incidence |= needs.incidence;
@@ -356,22 +359,27 @@ HitFields fields_for(std::span<const std::string> column_names) {
 }
 
 void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene,
-                      const CloudFrame& cloud_frame, std::span<const std::string> column_names,
+                      const OutputFrame& cloud_frame, std::span<const std::string> column_names,
                       PointCloud& cloud) {
   cloud.rows = frame.rows;
   cloud.cols = frame.cols;
   cloud.frame_id = cloud_frame.frame_id;
   cloud.world_from_cloud = frame.world_from_sensor * cloud_frame.cloud_from_sensor.inverse();
   cloud.columns.resize(column_names.size());
-  const Source source{
-      frame, beams, scene, cloud_frame.cloud_from_sensor, cloud_frame.deskew, cloud_frame.workers};
+  const Source source{frame,
+                      beams,
+                      scene,
+                      cloud_frame.cloud_from_sensor,
+                      cloud_frame.deskew,
+                      cloud_frame.thread_pool};
   for (std::size_t c = 0; c < column_names.size(); ++c) {
     const ColumnKind& kind = kind_named(column_names[c]);
     if (!has(frame, kind.needs)) {
-      throw Error({.where = "cloud column '" + kind.name + "'",
-                   .found = "the frame was cast without it",
-                   .allowed = "",
-                   .remedy = "measure with this column: fields_for() in C++, columns= in Python"});
+      throw Error(
+          {.where = "cloud column '" + kind.name + "'",
+           .found = "the frame was cast without it",
+           .allowed = "",
+           .remedy = "measure with this column: fields_needed_by() in C++, columns= in Python"});
     }
     cloud.columns[c].name = kind.name;
     cloud.columns[c].components = kind.components;

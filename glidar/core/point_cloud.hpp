@@ -3,8 +3,8 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
-#include <glidar/core/cloud_frame.hpp>
 #include <glidar/core/frame.hpp>
+#include <glidar/core/output_frame.hpp>
 #include <glidar/core/scene.hpp>
 
 #include <cstdint>
@@ -38,12 +38,12 @@ struct PointCloud {
 
 /// Names make_point_cloud knows, in the order files list them:
 /// xyz true_xyz intensity range true_range sigma depth normal shading_normal incidence instance
-/// class primitive barycentrics colour object_point status row col ring time return cause azimuth
-/// elevation stamp sensor_pose object_pose
+/// class primitive barycentrics colour object_point status row col ring time return return_source
+/// azimuth elevation stamp sensor_pose object_pose
 std::span<const std::string> cloud_column_names();
 
 /// The optional hit columns that these cloud columns need. Throws Error on an unknown name.
-HitFields fields_for(std::span<const std::string> column_names);
+HitFieldMask fields_needed_by(std::span<const std::string> column_names);
 
 /// Fills `cloud` with the named columns of a frame, reusing its memory.
 ///  xyz           f64 x3, metres in `cloud_frame`, from the measured range; NaN unless a hit
@@ -56,12 +56,12 @@ HitFields fields_for(std::span<const std::string> column_names);
 ///  sigma         f32, metres, standard deviation of the range's random error
 ///  normal, shading_normal  f32 x3, unit, in `cloud_frame`
 ///  incidence     f32, radians
-///  instance, class  u32, the instance's id and class_id; kNoHit where there is none
-///  primitive     u32, triangle of the mesh; kNoHit where there is none
+///  instance, class  u32, the instance's id and class_id; kInvalidId where there is none
+///  primitive     u32, triangle of the mesh; kInvalidId where there is none
 ///  barycentrics  f32 x2; colour f32 x3; object_point f64 x3 in the object's own frame
 ///  status        u8, see Status; row, col u32
 ///  ring          u16, channel number; time u32, ns since the frame's start
-///  return        u8, from 0: which of the sensor's returns; cause u8, see Cause
+///  return        u8, from 0: which of the sensor's returns; return_source u8, see ReturnSource
 ///  azimuth, elevation  f64, radians, where the beam was aimed in the sensor's frame: to the left
 ///  of
 ///                the boresight (-pi to pi), and up; of LiDARs that is from +x towards +y, and
@@ -72,7 +72,7 @@ HitFields fields_for(std::span<const std::string> column_names);
 ///                NaN where there is none
 /// Throws Error when a column is unknown or the frame was cast without what it needs.
 void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene,
-                      const CloudFrame& cloud_frame, std::span<const std::string> column_names,
+                      const OutputFrame& cloud_frame, std::span<const std::string> column_names,
                       PointCloud& cloud);
 
 /// The column of this name, or nullptr.
@@ -80,6 +80,6 @@ const Column* find_column(const PointCloud& cloud, std::string_view name);
 
 /// The points whose x is a number, as one row (needs the column xyz); the memory of `hits`, another
 /// cloud, is reused. Throws Error when there are no coordinates.
-void compact(const PointCloud& cloud, PointCloud& hits);
+void remove_invalid_points(const PointCloud& cloud, PointCloud& hits);
 
 }  // namespace glidar

@@ -57,7 +57,7 @@ Pose optical_from_body() {
   return pose;
 }
 
-Pose legacy_from_optical() {
+Pose woods2016_from_optical() {
   Pose pose = Pose::Identity();
   pose.linear().diagonal() = Eigen::Vector3d(-1.0, -1.0, 1.0);
   return pose;
@@ -82,7 +82,7 @@ Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orie
   return pose;
 }
 
-Pose exponential(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& translation_m) {
+Pose se3_exp(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& translation_m) {
   const double angle = rotation_rad.stableNorm();
   Pose pose = Pose::Identity();
   pose.translation() = translation_m;
@@ -100,10 +100,10 @@ Pose exponential(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& tra
   return pose;
 }
 
-PoseNumbers numbers_of(const Pose& pose) {
+PoseVector to_xyz_wxyz(const Pose& pose) {
   Eigen::Quaterniond q(pose.linear());
   if (q.w() < 0.0) q.coeffs() = -q.coeffs();
-  PoseNumbers numbers;
+  PoseVector numbers;
   numbers << pose.translation(), q.w(), q.vec();
   return numbers;
 }

@@ -36,7 +36,7 @@ Pose optical_from_body();
 
 /// The 2015 program's sensor frame: x left, y up, z forward. The optical frame (x right, y down)
 /// turned by pi about z.
-Pose legacy_from_optical();
+Pose woods2016_from_optical();
 
 /// The pose with this attitude and position; the quaternion is normalised.
 /// Throws Error when it is zero or anything is not finite or beyond kLargestCoordinate_m.
@@ -45,11 +45,11 @@ Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orie
 /// The exponential of a twist, in SE(3): the motion of a screw that turns by `rotation_rad` (axis
 /// times angle) while the body's origin moves on by `translation_m` as seen from the moving body.
 /// Lynch & Park, "Modern Robotics" (2017), equation 3.88.
-Pose exponential(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& translation_m);
+Pose se3_exp(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& translation_m);
 
 /// A pose as files list it: position x y z in metres, unit quaternion w x y z with w not negative.
-using PoseNumbers = Eigen::Matrix<double, 7, 1>;
-PoseNumbers numbers_of(const Pose& pose);
+using PoseVector = Eigen::Matrix<double, 7, 1>;
+PoseVector to_xyz_wxyz(const Pose& pose);
 
 /// True when every number is finite and the linear part is a rotation to within `tolerance`.
 bool is_rigid(const Pose& pose, double tolerance = 1e-9);

@@ -4,7 +4,7 @@
 
 namespace glidar {
 
-Progress part_of(const Progress& whole, double begin, double end) {
+ProgressCallback subrange(const ProgressCallback& whole, double begin, double end) {
   if (!whole) return {};
   return [&whole, begin, end](double fraction) { whole(begin + fraction * (end - begin)); };
 }

@@ -9,10 +9,10 @@ namespace glidar {
 
 /// Told how much of a work is done, from 0 to 1; empty: nobody asks. Called from the threads that
 /// do the work, one call at a time.
-using Progress = std::function<void(double fraction_done)>;
+using ProgressCallback = std::function<void(double fraction_done)>;
 
 /// The progress of one part of a work, from `begin` to `end` of it. Refers to `whole`.
-Progress part_of(const Progress& whole, double begin, double end);
+ProgressCallback subrange(const ProgressCallback& whole, double begin, double end);
 
 enum class Severity { info, warning };
 

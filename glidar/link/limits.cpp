@@ -44,7 +44,7 @@ const LimitKind& kind_of(std::string_view name, std::string_view text) {
     names.emplace_back(kind.name);
     allowed += (allowed.empty() ? "" : ", ") + names.back();
   }
-  const std::string nearest = nearest_word(std::string(name), names);
+  const std::string nearest = closest_match(std::string(name), names);
   throw Error({.where = "--limit",
                .found = "'" + std::string(text) + "'",
                .allowed = "NAME=VALUE with one of these names: " + allowed,

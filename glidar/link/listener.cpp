@@ -79,9 +79,9 @@ void raise_descriptor_limit(std::int64_t connections) {
 
 int descriptor_limit() {
   rlimit limit{};
-  constexpr rlim_t kMax = std::numeric_limits<int>::max();
-  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return static_cast<int>(kMax);
-  return static_cast<int>(std::min(limit.rlim_cur, kMax));
+  constexpr rlim_t kMaxConnections = std::numeric_limits<int>::max();
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return static_cast<int>(kMaxConnections);
+  return static_cast<int>(std::min(limit.rlim_cur, kMaxConnections));
 }
 
 }  // namespace glidar::link

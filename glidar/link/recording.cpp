@@ -4,13 +4,13 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/excerpt.hpp>
-#include <glidar/io/recorded_path.hpp>
-#include <glidar/io/sidecar.hpp>
+#include <glidar/io/files/recorded_path.hpp>
+#include <glidar/io/formats/sidecar.hpp>
 
 #include <array>
 #include <limits>
 #define JSON_DIAGNOSTICS 1  // its errors name the key
-#include <glidar/io/json_text.hpp>
+#include <glidar/io/config/json_text.hpp>
 #include <utility>
 
 namespace glidar::link {
@@ -89,7 +89,7 @@ RecordingHead head_of(const Json& json, const std::filesystem::path& path) {
   const Json& command = json.at("command");
   check_recorded_path(path.string() + ":1", "folder", command.at("folder").get<std::string>());
   head.command = {.arguments = command.at("arguments").get<std::vector<std::string>>(),
-                  .folder = folder_beside(path, command.at("folder").get<std::string>())};
+                  .folder = resolve_folder(path, command.at("folder").get<std::string>())};
   for (const std::string& argument : head.command.arguments) {
     check_recorded_argument(path.string() + ":1", argument);
   }
@@ -132,7 +132,7 @@ void RecordingWriter::begin(const RecordingHead& head) {
                      {"glidar", head.version},
                      {"command",
                       {{"arguments", head.command.arguments},
-                       {"folder", folder_seen_from(file_.path(), head.command.folder)}}},
+                       {"folder", relative_folder(file_.path(), head.command.folder)}}},
                      {"files", files}};
   try {
     file_.write(line_of(json));

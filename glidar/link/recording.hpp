@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/atomic_file.hpp>
-#include <glidar/io/file_sink.hpp>
-#include <glidar/io/line_file.hpp>
+#include <glidar/io/files/atomic_file.hpp>
+#include <glidar/io/formats/file_sink.hpp>
+#include <glidar/io/formats/line_file.hpp>
 #include <glidar/link/lockstep/messages.hpp>
 
 #include <cstdint>

@@ -147,11 +147,11 @@ namespace {
 
 /// Connections that ended without a word are noticed by the kernel, after some minutes.
 void protect(zmq::socket_t& socket, const ConnectionLimits& limits) {
-  constexpr int kBacklog = 64;
+  constexpr int kSocketBacklog = 64;
   constexpr int kIdle_s = 60;
   const std::chrono::milliseconds handshake = limits.handshake;
   socket.set(zmq::sockopt::handshake_ivl, static_cast<int>(millis(handshake)));
-  socket.set(zmq::sockopt::backlog, kBacklog);
+  socket.set(zmq::sockopt::backlog, kSocketBacklog);
   socket.set(zmq::sockopt::tcp_keepalive, 1);
   socket.set(zmq::sockopt::tcp_keepalive_idle, kIdle_s);
 }
@@ -307,10 +307,12 @@ bool Socket::publish(Payload payload) {
 }
 
 bool Socket::publish(std::span<const std::byte> bytes, std::chrono::milliseconds patience) {
-  constexpr std::chrono::milliseconds kLook{5};
+  constexpr std::chrono::milliseconds kSocketWait{5};
   const auto until = std::chrono::steady_clock::now() + patience;
-  while (has_full_queue() && std::chrono::steady_clock::now() < until) wait_for({}, -1, kLook);
-  if (std::exchange(impl_->is_behind, false)) patience = kLook;  // in vain, which is enough once
+  while (has_full_queue() && std::chrono::steady_clock::now() < until)
+    wait_for({}, -1, kSocketWait);
+  if (std::exchange(impl_->is_behind, false))
+    patience = kSocketWait;  // in vain, which is enough once
   zmq::message_t message(bytes.data(), bytes.size());
   impl_->socket.set(zmq::sockopt::sndtimeo, static_cast<int>(millis(patience)));
   return publish_now(impl_->socket, message, zmq::send_flags::none);

@@ -8,7 +8,7 @@ namespace glidar {
 
 Pose pose_at(const ConstantTwist& twist, std::int64_t t_ns) {
   const double s = seconds_between(twist.t0_ns, t_ns);
-  const Pose moved = exponential(twist.angular_rad_s * s, twist.linear_m_s * s);
+  const Pose moved = se3_exp(twist.angular_rad_s * s, twist.linear_m_s * s);
   return twist.frame == TwistFrame::body ? twist.pose * moved : moved * twist.pose;
 }
 

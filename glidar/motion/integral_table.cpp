@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/motion/integral_table.hpp>
 
-#include <glidar/core/elementary.hpp>
+#include <glidar/math/elementary.hpp>
 
 #include <algorithm>
 #include <cmath>

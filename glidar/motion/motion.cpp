@@ -19,7 +19,7 @@ Pose pose_at(const TimedPoses& poses, std::int64_t t_ns) {
   return poses.pose_at(t_ns);
 }
 
-Pose pose_at(const Tumbling& tumbling, std::int64_t t_ns) {
+Pose pose_at(const TorqueFreeRotation& tumbling, std::int64_t t_ns) {
   return tumbling.pose_at(t_ns);
 }
 
@@ -74,11 +74,11 @@ Trajectory moved_by(const Pose& moved, const TimedPoses& timed) {
   return TimedPoses(std::move(poses));
 }
 
-Trajectory moved_by(const Pose& moved, const Tumbling& tumbling) {
-  TumblingStart start = tumbling.start();
+Trajectory moved_by(const Pose& moved, const TorqueFreeRotation& tumbling) {
+  InitialRotation start = tumbling.start();
   start.world_from_body = moved * start.world_from_body;
   start.velocity_m_s = moved.linear() * start.velocity_m_s;
-  return Tumbling(start);
+  return TorqueFreeRotation(start);
 }
 
 Trajectory moved_by(const Pose& moved, const Mounted& mounted) {
@@ -116,7 +116,7 @@ Trajectory mounted_on(const TimedPoses& body, const Pose& part) {
   return Mounted{body, part};
 }
 
-Trajectory mounted_on(const Tumbling& body, const Pose& part) {
+Trajectory mounted_on(const TorqueFreeRotation& body, const Pose& part) {
   return Mounted{body, part};
 }
 
@@ -126,7 +126,7 @@ Trajectory mounted_on(Mounted body, const Pose& part) {
 }
 
 void check(const TimedPoses& /*checked when made*/) {}
-void check(const Tumbling& /*checked when made*/) {}
+void check(const TorqueFreeRotation& /*checked when made*/) {}
 
 void check(const Mounted& mounted) {
   require(is_rigid(mounted.carrier_from_body), "mounted, pose", "not a rigid transform");
@@ -173,14 +173,14 @@ void validate(const Trajectory& trajectory) {
   std::visit([](const auto& kind) { check(kind); }, trajectory);
 }
 
-TimeSpan known_times(const Trajectory& trajectory) {
+TimeInterval valid_interval(const Trajectory& trajectory) {
   const TimedPoses* timed = timed_poses(trajectory);
-  return timed != nullptr ? TimeSpan{timed->first_ns(), timed->last_ns()} : TimeSpan{};
+  return timed != nullptr ? TimeInterval{timed->first_ns(), timed->last_ns()} : TimeInterval{};
 }
 
-void warn_of_held_poses(const Trajectory& trajectory, std::string_view name, const TimeSpan& asked,
-                        const Report& report) {
-  const TimeSpan known = known_times(trajectory);
+void warn_extrapolation(const Trajectory& trajectory, std::string_view name,
+                        const TimeInterval& asked, const Report& report) {
+  const TimeInterval known = valid_interval(trajectory);
   if (asked.first_ns >= known.first_ns && asked.last_ns <= known.last_ns) return;
   report.warn(std::string(name) + ": the trajectory is known from " + seconds_text(known.first_ns) +
               " to " + seconds_text(known.last_ns) + ", asked for is " +
@@ -188,7 +188,7 @@ void warn_of_held_poses(const Trajectory& trajectory, std::string_view name, con
               "; outside, the pose at its end holds");
 }
 
-Motion standing_still(const Scene& scene, const Pose& world_from_sensor) {
+Motion static_motion(const Scene& scene, const Pose& world_from_sensor) {
   Motion motion{.world_from_sensor = ConstantPose{world_from_sensor}, .world_from_instance = {}};
   motion.world_from_instance.reserve(scene.instances.size());
   for (const Instance& instance : scene.instances) {
@@ -197,9 +197,9 @@ Motion standing_still(const Scene& scene, const Pose& world_from_sensor) {
   return motion;
 }
 
-Motion moving(const Scene& scene, const Trajectory& world_from_sensor,
-              const std::vector<Trajectory>& world_from_instance) {
-  Motion motion = standing_still(scene, Pose::Identity());
+Motion make_motion(const Scene& scene, const Trajectory& world_from_sensor,
+                   const std::vector<Trajectory>& world_from_instance) {
+  Motion motion = static_motion(scene, Pose::Identity());
   motion.world_from_sensor = world_from_sensor;
   if (world_from_instance.empty()) return motion;
   if (world_from_instance.size() != scene.instances.size()) {
@@ -210,17 +210,17 @@ Motion moving(const Scene& scene, const Trajectory& world_from_sensor,
   return motion;
 }
 
-Trajectory moved(const Pose& moved_from_world, const Trajectory& trajectory) {
+Trajectory transformed(const Pose& moved_from_world, const Trajectory& trajectory) {
   return std::visit([&](const auto& kind) { return moved_by(moved_from_world, kind); }, trajectory);
 }
 
-Trajectory mounted(const Trajectory& world_from_body, const Pose& body_from_part) {
+Trajectory compose_extrinsic(const Trajectory& world_from_body, const Pose& body_from_part) {
   if (body_from_part.matrix() == Pose::Identity().matrix()) return world_from_body;
   return std::visit([&](const auto& kind) { return mounted_on(kind, body_from_part); },
                     world_from_body);
 }
 
-void place(const Motion& motion, Frame& frame) {
+void sample_poses(const Motion& motion, Frame& frame) {
   frame.world_from_sensor = pose_at(motion.world_from_sensor, frame.stamp_ns);
   frame.world_from_instance.resize(motion.world_from_instance.size());
   for (std::size_t i = 0; i < motion.world_from_instance.size(); ++i) {

@@ -9,7 +9,7 @@
 #include <glidar/motion/mounted.hpp>
 #include <glidar/motion/spin.hpp>
 #include <glidar/motion/timed_poses.hpp>
-#include <glidar/motion/tumbling.hpp>
+#include <glidar/motion/torque_free_rotation.hpp>
 
 #include <cstdint>
 #include <limits>
@@ -26,7 +26,8 @@ struct ConstantPose {
 };
 
 /// A pose as a function of time.
-using Trajectory = std::variant<ConstantPose, ConstantTwist, Spin, TimedPoses, Tumbling, Mounted>;
+using Trajectory =
+    std::variant<ConstantPose, ConstantTwist, Spin, TimedPoses, TorqueFreeRotation, Mounted>;
 
 /// A pure function: the same time gives the same bits, in any order of asking.
 Pose pose_at(const Trajectory& trajectory, std::int64_t t_ns);
@@ -40,17 +41,17 @@ void poses_at(const Trajectory& trajectory, std::span<const std::int64_t> t_ns,
 void validate(const Trajectory& trajectory);
 
 /// From the first to the last time, both included.
-struct TimeSpan {
+struct TimeInterval {
   std::int64_t first_ns = std::numeric_limits<std::int64_t>::min();
   std::int64_t last_ns = std::numeric_limits<std::int64_t>::max();
 };
 
 /// The times for which the trajectory is known; all, except for timed poses.
-TimeSpan known_times(const Trajectory& trajectory);
+TimeInterval valid_interval(const Trajectory& trajectory);
 
 /// Warns when some of the times asked for lie outside those known, where the end pose holds.
-void warn_of_held_poses(const Trajectory& trajectory, std::string_view name, const TimeSpan& asked,
-                        const Report& report);
+void warn_extrapolation(const Trajectory& trajectory, std::string_view name,
+                        const TimeInterval& asked, const Report& report);
 
 /// Where everything is at any time.
 struct Motion {
@@ -59,20 +60,20 @@ struct Motion {
 };
 
 /// The sensor at this pose, every instance where the scene puts it.
-Motion standing_still(const Scene& scene, const Pose& world_from_sensor);
+Motion static_motion(const Scene& scene, const Pose& world_from_sensor);
 
 /// The scene's instances on these trajectories, the sensor on its own; none: every instance stands
 /// still. Throws Error unless there are none or one per instance.
-Motion moving(const Scene& scene, const Trajectory& world_from_sensor,
-              const std::vector<Trajectory>& world_from_instance);
+Motion make_motion(const Scene& scene, const Trajectory& world_from_sensor,
+                   const std::vector<Trajectory>& world_from_instance);
 
 /// The same motion after all of it was moved: moved_from_world * pose_at(trajectory, t).
-Trajectory moved(const Pose& moved_from_world, const Trajectory& trajectory);
+Trajectory transformed(const Pose& moved_from_world, const Trajectory& trajectory);
 
 /// The motion of what is fixed to a body: pose_at(world_from_body, t) * body_from_part.
-Trajectory mounted(const Trajectory& world_from_body, const Pose& body_from_part);
+Trajectory compose_extrinsic(const Trajectory& world_from_body, const Pose& body_from_part);
 
 /// Writes the poses of all at frame.stamp_ns into the frame.
-void place(const Motion& motion, Frame& frame);
+void sample_poses(const Motion& motion, Frame& frame);
 
 }  // namespace glidar

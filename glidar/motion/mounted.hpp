@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/motion/timed_poses.hpp>
-#include <glidar/motion/tumbling.hpp>
+#include <glidar/motion/torque_free_rotation.hpp>
 
 #include <cstdint>
 #include <variant>
@@ -12,7 +12,7 @@ namespace glidar {
 
 /// Fixed to a body whose way has no closed form for any other of its points.
 struct Mounted {
-  std::variant<TimedPoses, Tumbling> carrier;
+  std::variant<TimedPoses, TorqueFreeRotation> carrier;
   Pose carrier_from_body = Pose::Identity();
 };
 

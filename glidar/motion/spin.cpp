@@ -8,7 +8,7 @@ namespace glidar {
 
 Pose pose_at(const Spin& spin, std::int64_t t_ns) {
   const double s = seconds_between(spin.t0_ns, t_ns);
-  return spin.pose * exponential(spin.rate_rad_s * s, Eigen::Vector3d::Zero());
+  return spin.pose * se3_exp(spin.rate_rad_s * s, Eigen::Vector3d::Zero());
 }
 
 }  // namespace glidar

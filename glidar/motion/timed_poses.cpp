@@ -19,36 +19,36 @@ void to_pose(const TimedPose& timed, Pose& pose) {
   pose.makeAffine();
 }
 
-[[noreturn]] void fail(std::size_t entry, const TimedPoseFault& fault) {
+[[noreturn]] void fail(std::size_t entry, const TimedPoseError& fault) {
   throw Error({"timed poses, entry " + std::to_string(entry + 1), fault.found, fault.allowed, ""});
 }
 
 void check(const std::vector<TimedPose>& poses) {
   if (poses.empty()) throw Error({"timed poses", "there is none", "at least one pose", ""});
   for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (const auto fault = fault_of(i == 0 ? nullptr : &poses[i - 1], poses[i])) fail(i, *fault);
+    if (const auto fault = find_error(i == 0 ? nullptr : &poses[i - 1], poses[i])) fail(i, *fault);
   }
 }
 
 }  // namespace
 
-std::optional<TimedPoseFault> fault_of(const TimedPose* before, const TimedPose& next) {
-  using Part = TimedPoseFault::Part;
+std::optional<TimedPoseError> find_error(const TimedPose* before, const TimedPose& next) {
+  using Part = TimedPoseError::Part;
   if (before != nullptr && next.t_ns == before->t_ns) {
-    return TimedPoseFault{Part::time, "the time of the pose before again", "times that increase"};
+    return TimedPoseError{Part::time, "the time of the pose before again", "times that increase"};
   }
   if (before != nullptr && next.t_ns < before->t_ns) {
-    return TimedPoseFault{Part::time, "a time before that of the pose before",
+    return TimedPoseError{Part::time, "a time before that of the pose before",
                           "times that increase"};
   }
   if (!next.position_m.allFinite() ||
       next.position_m.cwiseAbs().maxCoeff() > kLargestCoordinate_m) {
-    return TimedPoseFault{Part::position, "a position that is not finite or too large",
+    return TimedPoseError{Part::position, "a position that is not finite or too large",
                           "coordinates up to 1e15 m"};
   }
   const double length = next.orientation.norm();
   if (!(std::abs(length - 1.0) <= kQuaternionTolerance)) {
-    return TimedPoseFault{Part::orientation, "a quaternion of length " + std::to_string(length),
+    return TimedPoseError{Part::orientation, "a quaternion of length " + std::to_string(length),
                           "length 1 to within 0.001"};
   }
   return std::nullopt;
@@ -65,7 +65,7 @@ TimedPoses TimedPoses::restored(std::vector<TimedPose> poses) {
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const double length = poses[i].orientation.norm();
     if (std::abs(length - 1.0) <= kRounding) continue;
-    fail(i, {TimedPoseFault::Part::orientation, "a quaternion that is not normalised",
+    fail(i, {TimedPoseError::Part::orientation, "a quaternion that is not normalised",
              "a quaternion of length 1"});
   }
   TimedPoses result;

@@ -21,7 +21,7 @@ struct TimedPose {
 };
 
 /// What keeps a pose from following another, and which part of it.
-struct TimedPoseFault {
+struct TimedPoseError {
   enum class Part : std::uint8_t { time, position, orientation };
   Part part = Part::time;
   std::string found;
@@ -33,7 +33,7 @@ struct TimedPoseFault {
 inline constexpr double kQuaternionTolerance = 1e-3;
 
 /// The first fault of `next`, if it has any; `before` is the pose before it, nullptr for the first.
-std::optional<TimedPoseFault> fault_of(const TimedPose* before, const TimedPose& next);
+std::optional<TimedPoseError> find_error(const TimedPose* before, const TimedPose& next);
 
 /// Poses at increasing times. Between them the position goes straight and the orientation turns
 /// about one axis at one rate, the short way (slerp: Shoemake, SIGGRAPH 1985). Before the first and

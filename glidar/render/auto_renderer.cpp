@@ -42,7 +42,7 @@ class AutoRenderer final : public Renderer {
   }
 
   [[nodiscard]] std::string_view name() const override { return "auto"; }
-  [[nodiscard]] Workers& workers() override { return base_->workers; }
+  [[nodiscard]] ThreadPool& thread_pool() override { return base_->thread_pool; }
 
   void cast(const CastRequest& request, Hits& hits) override {
     check(request, base_->resolver.scene());
@@ -62,7 +62,7 @@ class AutoRenderer final : public Renderer {
 
   /// Prepares the cast where it returns true.
   bool is_for_scan_raster(const CastRequest& request) {
-    if (!is_anything_present(request, base_->resolver.scene()) ||
+    if (!any_instance_enabled(request, base_->resolver.scene()) ||
         why_not_drawn(request.beams) == nullptr || !scan_raster::may_form_grid(request.beams)) {
       return false;
     }
@@ -91,7 +91,7 @@ class AutoRenderer final : public Renderer {
     const Scene& scene = base_->resolver.scene();
     std::uint64_t all = 0;
     for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-      if (is_present(request, i)) all += scene.meshes[scene.instances[i].mesh].triangles.size();
+      if (is_enabled(request, i)) all += scene.meshes[scene.instances[i].mesh].triangles.size();
     }
     return all;
   }
@@ -100,7 +100,7 @@ class AutoRenderer final : public Renderer {
   std::uint64_t beams_in_view(const CastRequest& request) {
     base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
     find_plane_points(request.beams, points_);
-    const GridWindow window = window_on(base_->resolver, boxes_, request.present, points_);
+    const GridWindow window = window_on(base_->resolver, boxes_, request.instance_enabled, points_);
     const std::uint64_t rows = std::min(window.end_row, request.beams.rows) - window.first_row;
     const std::uint64_t cols = std::min(window.end_col, request.beams.cols) - window.first_col;
     return rows * cols;

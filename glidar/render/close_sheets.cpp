@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/close_sheets.hpp>
 
-#include <glidar/core/constants.hpp>
+#include <glidar/math/constants.hpp>
 #include <glidar/render/depth_range.hpp>
 #include <glidar/render/rays/exact_decision.hpp>
 
@@ -159,12 +159,12 @@ class GapSearch {
   double largest_;
 };
 
-std::vector<ClosePair> find_pairs(const MeshTree& tree, double reach, Workers& workers) {
+std::vector<ClosePair> find_pairs(const MeshTree& tree, double reach, ThreadPool& thread_pool) {
   constexpr std::size_t kClustersPerTask = 256;
   const GapSearch search(tree, reach);
   const std::size_t tasks = (tree.clusters.size() + kClustersPerTask - 1) / kClustersPerTask;
   std::vector<std::vector<ClosePair>> found(tasks);
-  workers.for_ranges(tasks, 1, [&](std::size_t begin, std::size_t end) {
+  thread_pool.parallel_for(tasks, 1, [&](std::size_t begin, std::size_t end) {
     const std::size_t last = std::min(end * kClustersPerTask, tree.clusters.size());
     for (std::size_t i = begin * kClustersPerTask; i < last; ++i) {
       search.add_pairs_of(tree.clusters[i], found[begin]);
@@ -180,7 +180,7 @@ std::vector<ClosePair> find_pairs(const MeshTree& tree, double reach, Workers& w
 }  // namespace
 
 CloseSheets::CloseSheets(const Resolver& resolver, const rays::SceneTrees& trees,
-                         std::span<const Eigen::AlignedBox3d> boxes, Workers& workers)
+                         std::span<const Eigen::AlignedBox3d> boxes, ThreadPool& thread_pool)
     : resolver_(resolver), trees_(trees), boxes_(boxes) {
   const Scene& scene = resolver.scene();
   gaps_.resize(scene.meshes.size());
@@ -190,7 +190,7 @@ CloseSheets::CloseSheets(const Resolver& resolver, const rays::SceneTrees& trees
     const std::uint32_t mesh = scene.instances[i].mesh;
     if (is_done[mesh] || trees.of_mesh(mesh).nodes.empty()) continue;
     is_done[mesh] = true;
-    for (const ClosePair& pair : find_pairs(trees.of_mesh(mesh), trees.reach(i), workers)) {
+    for (const ClosePair& pair : find_pairs(trees.of_mesh(mesh), trees.reach(i), thread_pool)) {
       gaps_[mesh].push_back({pair.first, pair.gap});
       gaps_[mesh].push_back({pair.second, pair.gap});
     }
@@ -208,21 +208,21 @@ void CloseSheets::set_bits(std::uint32_t mesh) {
 }
 
 void CloseSheets::prepare(const CastRequest& request, double band_px) {
-  constexpr double kSinglePart = 0x1p-20;  // of depths and sizes: 16 roundings
+  constexpr double kSingleRoundingPart = 0x1p-20;  // of depths and sizes: 16 roundings
   const PinholeIntrinsics& pinhole = *request.beams.pinhole;
   const double pixel = 1.0 / std::min(std::abs(pinhole.fx), std::abs(pinhole.fy));
   const std::vector<Instance>& instances = resolver_.scene().instances;
   closeness_.assign(instances.size(), {nullptr, false});
   limits_.assign(gaps_.size(), -1.0);
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
-    if (!is_present(request, i)) continue;
+    if (!is_enabled(request, i)) continue;
     const InstanceView& view = resolver_.view(i);
     double nearest_m = kInfinity;
     double farthest_m = 0.0;
     extend_depths(view, boxes_[instances[i].mesh], nearest_m, farthest_m);
     const double reach = trees_.reach(i);
     const double far = farthest_m / view.scale;
-    const double limit = 2.0 * band_px * pixel * far + kSinglePart * (far + reach);
+    const double limit = 2.0 * band_px * pixel * far + kSingleRoundingPart * (far + reach);
     closeness_[i].has_all = limit > kLargestGapPart * reach;
     double& of_mesh = limits_[instances[i].mesh];
     if (!closeness_[i].has_all) of_mesh = std::max(of_mesh, limit);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/workers.hpp>
+#include <glidar/math/thread_pool.hpp>
 #include <glidar/render/rays/scene_trees.hpp>
 
 #include <Eigen/Geometry>
@@ -19,7 +19,7 @@ class CloseSheets {
   /// Compares each triangle with those around it; both must outlive this. Boxes: one per mesh,
   /// relative to its origin.
   CloseSheets(const Resolver& resolver, const rays::SceneTrees& trees,
-              std::span<const Eigen::AlignedBox3d> boxes, Workers& workers);
+              std::span<const Eigen::AlignedBox3d> boxes, ThreadPool& thread_pool);
 
   /// Takes the poses of the next cast, which the resolver has. The driver moves what it draws by
   /// up to band_px.

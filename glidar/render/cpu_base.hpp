@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/scene.hpp>
-#include <glidar/core/workers.hpp>
+#include <glidar/math/thread_pool.hpp>
 #include <glidar/render/rays/scene_search.hpp>
 #include <glidar/render/resolve.hpp>
 
@@ -13,9 +13,9 @@ namespace glidar {
 struct CpuBase {
   /// Throws Error unless the scene is valid.
   CpuBase(const Scene& scene, unsigned threads)
-      : workers(threads), resolver((validate(scene), scene)), search(resolver, workers) {}
+      : thread_pool(threads), resolver((validate(scene), scene)), search(resolver, thread_pool) {}
 
-  Workers workers;
+  ThreadPool thread_pool;
   Resolver resolver;
   rays::SceneSearch search;
 };

@@ -11,7 +11,7 @@ namespace glidar {
 namespace {
 
 constexpr int kBits = 16;  // of a place, along each axis
-constexpr float kSteps = (1U << kBits) - 1;
+constexpr float kOrderSteps = (1U << kBits) - 1;
 constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
 
 /// Two zeros before every bit.
@@ -27,14 +27,14 @@ class Curve {
   explicit Curve(const Mesh& mesh) {
     for (const Eigen::Vector3f& p : mesh.positions_m) box_.extend(p);
     const float size = box_.isEmpty() ? 0.0F : box_.sizes().maxCoeff();
-    steps_per_metre_ = size > 0.0F ? kSteps / size : 0.0F;
+    steps_per_metre_ = size > 0.0F ? kOrderSteps / size : 0.0F;
   }
 
   [[nodiscard]] std::uint64_t at(const Eigen::Vector3f& position) const {
     const Eigen::Vector3f step = steps_per_metre_ * (position - box_.min());
     std::uint64_t place = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      place |= spread(static_cast<std::uint64_t>(std::min(std::max(0.0F, step[axis]), kSteps)))
+      place |= spread(static_cast<std::uint64_t>(std::min(std::max(0.0F, step[axis]), kOrderSteps)))
                << axis;
     }
     return place;

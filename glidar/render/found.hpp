@@ -10,10 +10,10 @@
 
 namespace glidar {
 
-/// A triangle of an instance; instance kNoHit: none.
+/// A triangle of an instance; instance kInvalidId: none.
 struct Found {
-  std::uint32_t instance = kNoHit;
-  std::uint32_t primitive = kNoHit;
+  std::uint32_t instance = kInvalidId;
+  std::uint32_t primitive = kInvalidId;
 
   bool operator==(const Found&) const = default;
 };

@@ -9,12 +9,12 @@ using Box = InstanceTree::Box;
 
 /// A mesh's box in the tree's frame, metres; grown by 16 roundings of single precision.
 Box box_in(const Eigen::Matrix3d& tree_from_sensor, const InstanceView& view, const Box& box) {
-  constexpr double kSinglePart = 0x1p-20;  // of distance and size, as in Overlaps
+  constexpr double kBoxRoundingPart = 0x1p-20;  // of distance and size, as in Overlaps
   const Eigen::Matrix<double, 3, 4> placed = tree_from_sensor * sensor_from_object(view);
   const Eigen::Vector3d middle = placed * box.center().homogeneous();
   Eigen::Vector3d half = placed.leftCols<3>().cwiseAbs() * (0.5 * box.sizes());
   const double reach = view.scale * box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm();
-  half.array() += kSinglePart * (middle.norm() + half.norm() + reach);
+  half.array() += kBoxRoundingPart * (middle.norm() + half.norm() + reach);
   return {middle - half, middle + half};
 }
 
@@ -35,7 +35,7 @@ void InstanceTree::build(const CastRequest& request, const Resolver& resolver,
   order_.clear();
   double largest_m = -1.0;
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
-    if (!is_present(request, i) || box_of(i).isEmpty()) continue;
+    if (!is_enabled(request, i) || box_of(i).isEmpty()) continue;
     order_.emplace_back(0, i);
     const double size_m = resolver.view(i).scale * box_of(i).diagonal().norm();
     if (!(size_m > largest_m)) continue;
@@ -53,13 +53,13 @@ void InstanceTree::build(const CastRequest& request, const Resolver& resolver,
 
 /// Along G. M. Morton's curve ("A computer oriented geodetic data base", 1966).
 void InstanceTree::sort_instances() {
-  constexpr double kSteps = 65535.0;
+  constexpr double kMortonSteps = 65535.0;
   Box middles;
   for (const auto& [place, i] : order_) middles.extend(boxes_[i].center());
   const double size_m = order_.size() < 2 ? 0.0 : middles.sizes().maxCoeff();
   if (!(size_m > 0.0)) return;
   for (auto& [place, i] : order_) {
-    const Eigen::Vector3d step = kSteps / size_m * (boxes_[i].center() - middles.min());
+    const Eigen::Vector3d step = kMortonSteps / size_m * (boxes_[i].center() - middles.min());
     place = spread(step.x()) | (spread(step.y()) << 1U) | (spread(step.z()) << 2U);
   }
   std::sort(order_.begin(), order_.end());

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/lookup_texture.hpp>
 
-#include <glidar/core/simd.hpp>
+#include <glidar/math/simd.hpp>
 
 #include <cmath>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/overlaps.hpp>
 
-#include <glidar/core/simd.hpp>
+#include <glidar/math/simd.hpp>
 
 #include <bit>
 #include <limits>

@@ -136,7 +136,7 @@ void look_up(const PictureWriting& w, Work& work) {
 void go_on(const PictureWriting& w, Works& works) {
   look_up(w, works.filling());
   Work& before = works.before();
-  HitFields fields = w.request.fields;
+  HitFieldMask fields = w.request.fields;
   // For their doubts.
   fields.barycentrics = fields.barycentrics || (before.block.mask & ~before.certain) != 0;
   w.resolver.prefetch_corners(before.block, fields);
@@ -205,7 +205,7 @@ void write_known(const PictureWriting& w, const BeamRange& beams) {
   work.certain = 0xffffffffU;
   work.block.mask = 0;
   for (auto hit = first; hit != w.known.end() && hit->beam < beams.end; ++hit) {
-    if (hit->found.instance == kNoHit) {
+    if (hit->found.instance == kInvalidId) {
       write_misses(w.request.fields, hit->beam, 1, w.hits);
       continue;
     }
@@ -231,7 +231,7 @@ DepthRange depths_of(const CastRequest& request, const Resolver& resolver,
   double farthest_m = -std::numeric_limits<double>::infinity();
   const std::vector<Instance>& instances = resolver.scene().instances;
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
-    if (!is_present(request, i)) continue;
+    if (!is_enabled(request, i)) continue;
     extend_depths(resolver.view(i), mesh_boxes[instances[i].mesh], nearest_m, farthest_m);
   }
   if (!(farthest_m > 0.0)) return {0.0, 0.0};
@@ -243,15 +243,15 @@ void write_rows(const PictureWriting& w, std::uint32_t begin, std::uint32_t end)
   for (std::uint32_t row = begin; row < end; ++row) collect_row(w, row, works);
   for (std::size_t i = 0; i < works.ring.size(); ++i) go_on(w, works);
   if (!w.known.empty()) write_known(w, {beams_of(w, begin).begin, beams_of(w, end - 1).end});
-  if (!w.request.then) return;
-  for (std::uint32_t row = begin; row < end; ++row) w.request.then(beams_of(w, row));
+  if (!w.request.on_tile_done) return;
+  for (std::uint32_t row = begin; row < end; ++row) w.request.on_tile_done(beams_of(w, row));
 }
 
-void write_picture(const PictureWriting& writing, Workers& workers, WorkCount& count) {
+void write_picture(const PictureWriting& writing, ThreadPool& thread_pool, ProgressCounter& count) {
   constexpr std::uint32_t kBeamsPerTask = 1024;
   const PixelRect& part = writing.part;
   const std::uint32_t rows_per_task = std::max(1U, kBeamsPerTask / part.cols);
-  workers.for_ranges(part.rows, rows_per_task, [&](std::size_t begin, std::size_t end) {
+  thread_pool.parallel_for(part.rows, rows_per_task, [&](std::size_t begin, std::size_t end) {
     const auto last = static_cast<std::uint32_t>(end);
     for (auto row = static_cast<std::uint32_t>(begin); row < last; row += rows_per_task) {
       const std::uint32_t next = std::min(row + rows_per_task, last);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/work_count.hpp>
+#include <glidar/core/progress_counter.hpp>
 #include <glidar/render/close_sheets.hpp>
 #include <glidar/render/depth_range.hpp>
 #include <glidar/render/found.hpp>
@@ -51,6 +51,6 @@ DepthRange depths_of(const CastRequest& request, const Resolver& resolver,
 void write_rows(const PictureWriting& writing, std::uint32_t begin, std::uint32_t end);
 
 /// Writes the hits of the whole part, sharing rows out among threads.
-void write_picture(const PictureWriting& writing, Workers& workers, WorkCount& count);
+void write_picture(const PictureWriting& writing, ThreadPool& thread_pool, ProgressCounter& count);
 
 }  // namespace glidar

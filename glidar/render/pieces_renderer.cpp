@@ -30,23 +30,24 @@ class PiecesScene {
   /// What a cast needs of its request's arrays, one entry per piece.
   struct Arrays {
     std::vector<Pose> poses;
-    std::vector<std::uint8_t> present;
+    std::vector<std::uint8_t> instance_enabled;
   };
 
   /// The request for the pieces. Throws Error unless it fits the whole scene.
   [[nodiscard]] CastRequest for_pieces(const CastRequest& request, Arrays& arrays) const {
     check(request, whole_);
     arrays.poses.clear();
-    arrays.present.clear();
+    arrays.instance_enabled.clear();
     for (const std::uint32_t instance : instance_of_) {
       arrays.poses.push_back(request.world_from_instance.empty()
                                  ? whole_.instances[instance].world_from_object
                                  : request.world_from_instance[instance]);
-      if (!request.present.empty()) arrays.present.push_back(request.present[instance]);
+      if (!request.instance_enabled.empty())
+        arrays.instance_enabled.push_back(request.instance_enabled[instance]);
     }
     CastRequest pieces = request;
     pieces.world_from_instance = arrays.poses;
-    pieces.present = arrays.present;
+    pieces.instance_enabled = arrays.instance_enabled;
     return pieces;
   }
 
@@ -54,7 +55,7 @@ class PiecesScene {
   void rename(BeamRange range, Hits& hits) const {
     for (std::size_t i = range.begin; i < range.end; ++i) {
       const std::uint32_t piece = hits.instance[i];
-      if (piece == kNoHit) continue;
+      if (piece == kInvalidId) continue;
       const std::vector<std::uint32_t>& triangles = triangles_[scene_.instances[piece].mesh];
       if (!triangles.empty()) hits.primitive[i] = triangles[hits.primitive[i]];
       hits.instance[i] = instance_of_[piece];
@@ -97,7 +98,7 @@ class PiecesRenderer final : public Renderer {
       : pieces_(scene), renderer_(make(pieces_.scene())) {}
 
   [[nodiscard]] std::string_view name() const override { return renderer_->name(); }
-  [[nodiscard]] Workers& workers() override { return renderer_->workers(); }
+  [[nodiscard]] ThreadPool& thread_pool() override { return renderer_->thread_pool(); }
 
   void cast(const CastRequest& request, Hits& hits) override {
     Hits* const one = &hits;
@@ -114,7 +115,7 @@ class PiecesRenderer final : public Renderer {
     for (std::size_t i = 0; i < requests.size(); ++i) {
       const Renaming& renaming = renamings_.emplace_back(Renaming{pieces_, *hits[i], requests[i]});
       requests_.push_back(pieces_.for_pieces(requests[i], arrays_[i]));
-      requests_.back().then = FunctionRef<void(BeamRange)>(renaming);
+      requests_.back().on_tile_done = FunctionRef<void(BeamRange)>(renaming);
     }
     renderer_->cast_batch(requests_, hits);
   }
@@ -127,7 +128,7 @@ class PiecesRenderer final : public Renderer {
     const CastRequest& request;
     void operator()(BeamRange range) const {
       pieces.rename(range, hits);
-      if (request.then) request.then(range);
+      if (request.on_tile_done) request.on_tile_done(range);
     }
   };
 
@@ -139,19 +140,20 @@ class PiecesRenderer final : public Renderer {
   std::vector<CastRequest> requests_;
 };
 
-class PiecesCamera final : public PaperCamera {
+class PiecesCamera final : public Woods2016Camera {
  public:
   PiecesCamera(const Scene& scene, const MakePaperCamera& make)
       : pieces_(scene), camera_(make(pieces_.scene())) {}
 
-  void draw(const CastRequest& request, const Light& light,
-            const std::optional<PaperPlanes>& planes, PaperPicture& picture) override {
+  void draw(const CastRequest& request, const PhongHeadlight& light,
+            const std::optional<Woods2016DepthPlanes>& planes,
+            Woods2016Framebuffer& picture) override {
     camera_->draw(pieces_.for_pieces(request, arrays_), light, planes, picture);
   }
 
  private:
   PiecesScene pieces_;
-  std::unique_ptr<PaperCamera> camera_;
+  std::unique_ptr<Woods2016Camera> camera_;
   PiecesScene::Arrays arrays_;
 };
 
@@ -166,7 +168,8 @@ std::unique_ptr<Renderer> make_pieces_renderer(const Scene& scene, const MakeRen
   return std::make_unique<PiecesRenderer>(scene, make);
 }
 
-std::unique_ptr<PaperCamera> make_pieces_camera(const Scene& scene, const MakePaperCamera& make) {
+std::unique_ptr<Woods2016Camera> make_pieces_camera(const Scene& scene,
+                                                    const MakePaperCamera& make) {
   return std::make_unique<PiecesCamera>(scene, make);
 }
 

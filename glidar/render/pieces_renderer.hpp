@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/render/paper_picture.hpp>
 #include <glidar/render/renderer.hpp>
+#include <glidar/render/woods2016_framebuffer.hpp>
 
 #include <functional>
 #include <memory>
@@ -14,7 +14,7 @@ namespace glidar {
 bool has_pieces(const Scene& scene);
 
 using MakeRenderer = std::function<std::unique_ptr<Renderer>(const Scene&)>;
-using MakePaperCamera = std::function<std::unique_ptr<PaperCamera>(const Scene&)>;
+using MakePaperCamera = std::function<std::unique_ptr<Woods2016Camera>(const Scene&)>;
 
 /// Renderers know meshes of one origin only. This one gives `make` a copy of the scene in which
 /// every piece of a mesh is an instance, and turns what is found there back into the instances and
@@ -22,6 +22,7 @@ using MakePaperCamera = std::function<std::unique_ptr<PaperCamera>(const Scene&)
 std::unique_ptr<Renderer> make_pieces_renderer(const Scene& scene, const MakeRenderer& make);
 
 /// The same for a paper camera, whose pictures name no instances.
-std::unique_ptr<PaperCamera> make_pieces_camera(const Scene& scene, const MakePaperCamera& make);
+std::unique_ptr<Woods2016Camera> make_pieces_camera(const Scene& scene,
+                                                    const MakePaperCamera& make);
 
 }  // namespace glidar

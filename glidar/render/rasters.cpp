@@ -16,7 +16,7 @@ class Rasters final : public Renderer {
       : base_(std::make_shared<CpuBase>(scene, threads)) {}
 
   [[nodiscard]] std::string_view name() const override { return "raster"; }
-  [[nodiscard]] Workers& workers() override { return base_->workers; }
+  [[nodiscard]] ThreadPool& thread_pool() override { return base_->thread_pool; }
 
   void cast(const CastRequest& request, Hits& hits) override {
     renderer_for(request.beams).cast(request, hits);

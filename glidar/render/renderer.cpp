@@ -32,9 +32,9 @@ const std::array<Kind, 4>& kinds() {
 
 }  // namespace
 
-bool is_anything_present(const CastRequest& request, const Scene& scene) {
-  if (request.present.empty()) return !scene.instances.empty();
-  return std::any_of(request.present.begin(), request.present.end(),
+bool any_instance_enabled(const CastRequest& request, const Scene& scene) {
+  if (request.instance_enabled.empty()) return !scene.instances.empty();
+  return std::any_of(request.instance_enabled.begin(), request.instance_enabled.end(),
                      [](std::uint8_t present) { return present != 0; });
 }
 
@@ -48,7 +48,7 @@ bool is_in_reach(const Pose& world_from_source) {
 /// Of instances that are where the cast says.
 void check_poses(const CastRequest& request, const Scene& scene) {
   for (std::size_t i = 0; i < request.world_from_instance.size(); ++i) {
-    if (!is_present(request, i) || is_in_reach(request.world_from_instance[i])) continue;
+    if (!is_enabled(request, i) || is_in_reach(request.world_from_instance[i])) continue;
     throw Error({.where = "cast",
                  .found = "instance '" + scene.instances[i].name + "' is out of reach",
                  .allowed = "up to 1e15 m from the world's origin",
@@ -72,8 +72,9 @@ void check(const CastRequest& request, const Scene& scene) {
   require(request.world_from_instance.empty() ||
               request.world_from_instance.size() == scene.instances.size(),
           "poses of other instances", "one pose per instance, or none");
-  require(request.present.empty() || request.present.size() == scene.instances.size(),
-          "presence of other instances", "one entry per instance, or none");
+  require(
+      request.instance_enabled.empty() || request.instance_enabled.size() == scene.instances.size(),
+      "presence of other instances", "one entry per instance, or none");
   require(is_in_reach(request.world_from_sensor), "the sensor is out of reach",
           "up to 1e15 m from the world's origin", "move the world's origin nearer to it");
   check_poses(request, scene);
@@ -109,7 +110,7 @@ std::unique_ptr<Renderer> make_renderer(const Scene& scene, const RendererOption
     return kind.name == options.kind;
   });
   if (found == kinds().end()) {
-    const std::string nearest = nearest_word(options.kind, renderer_kinds());
+    const std::string nearest = closest_match(options.kind, renderer_kinds());
     throw Error({.where = "renderer",
                  .found = "'" + options.kind + "' is not known",
                  .allowed = names,

@@ -8,7 +8,7 @@
 #include <glidar/core/hits.hpp>
 #include <glidar/core/report.hpp>
 #include <glidar/core/scene.hpp>
-#include <glidar/core/workers.hpp>
+#include <glidar/math/thread_pool.hpp>
 
 #include <cstdint>
 #include <memory>
@@ -26,23 +26,23 @@ struct CastRequest {
   Pose world_from_sensor = Pose::Identity();
   /// One per instance; empty: where the scene puts them.
   std::span<const Pose> world_from_instance = {};
-  HitFields fields = {};
+  HitFieldMask fields = {};
   bool cull_back_faces = false;
   /// One per instance, 0: it is not there for this cast; empty: all are.
-  std::span<const std::uint8_t> present = {};
+  std::span<const std::uint8_t> instance_enabled = {};
   /// Called for every beam once, in runs, when the beams' hits are known, by the thread that found
   /// them and so while they are near in memory. Empty: not called.
-  FunctionRef<void(BeamRange)> then = {};
-  Progress progress = {};  ///< told while the beams are cast
+  FunctionRef<void(BeamRange)> on_tile_done = {};
+  ProgressCallback progress = {};  ///< told while the beams are cast
 };
 
 /// True when the instance is there for this cast.
-inline bool is_present(const CastRequest& request, std::size_t instance) {
-  return request.present.empty() || request.present[instance] != 0;
+inline bool is_enabled(const CastRequest& request, std::size_t instance) {
+  return request.instance_enabled.empty() || request.instance_enabled[instance] != 0;
 }
 
 /// True when some instance is there.
-bool is_anything_present(const CastRequest& request, const Scene& scene);
+bool any_instance_enabled(const CastRequest& request, const Scene& scene);
 
 /// Throws Error unless there is a beam for every row and column, a pose for every instance (or
 /// none), and the sensor stands within reach.
@@ -62,7 +62,7 @@ class Renderer {
   [[nodiscard]] virtual std::string_view name() const = 0;
 
   /// The threads it runs on; for other work on the same frame.
-  virtual Workers& workers() = 0;
+  virtual ThreadPool& thread_pool() = 0;
 
   /// Fills `hits`. The result does not depend on the number of threads. A second cast of the same
   /// size allocates nothing.

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/resolve.hpp>
 
-#include <glidar/core/constants.hpp>
-#include <glidar/core/simd.hpp>
+#include <glidar/math/constants.hpp>
+#include <glidar/math/simd.hpp>
 #include <glidar/render/grazing.hpp>
 #include <glidar/render/shade.hpp>
 
@@ -75,7 +75,7 @@ GLIDAR_SIMD void turn_to_sensor(const Eigen::Matrix3d& sensor_from_object, const
   }
 }
 
-bool needs_normals(const HitFields& fields) {
+bool needs_normals(const HitFieldMask& fields) {
   return fields.shading_normal || fields.shading;
 }
 
@@ -86,7 +86,7 @@ bool has_mask(const Scene& scene, const Instance& instance) {
                      [&](std::uint32_t m) { return scene.materials[m].alpha_cutoff > 0.0F; });
 }
 
-bool needs_corners(const HitFields& fields) {
+bool needs_corners(const HitFieldMask& fields) {
   return fields.barycentrics || fields.shading_normal || fields.shading ||
          SurfaceColours::needed(fields);
 }
@@ -184,7 +184,7 @@ void Resolver::set_poses(const Pose& world_from_sensor, std::span<const Pose> wo
   }
 }
 
-void Resolver::prefetch_corners(const HitBlock& block, const HitFields& fields) const {
+void Resolver::prefetch_corners(const HitBlock& block, const HitFieldMask& fields) const {
   if (!needs_corners(fields)) return;
   const bool with_normals = needs_normals(fields);
   for_lanes(block.mask, [&](unsigned i) {
@@ -242,7 +242,7 @@ void Resolver::write_ranges(const HitBlock& block, const ExactBlock& exact, Hits
   });
 }
 
-void Resolver::write(const Beams& beams, const HitFields& fields, const HitBlock& block,
+void Resolver::write(const Beams& beams, const HitFieldMask& fields, const HitBlock& block,
                      const ExactBlock& exact, Hits& hits) const {
   write_ranges(block, exact, hits);
   const bool has_more = fields.incidence || fields.depth || fields.object_point;
@@ -290,7 +290,7 @@ void Resolver::gather(const HitBlock& block, bool with_normals, Corners& corners
   }
 }
 
-void Resolver::write_shading(const HitFields& fields, const HitBlock& block,
+void Resolver::write_shading(const HitFieldMask& fields, const HitBlock& block,
                              const ExactBlock& exact, const Weights& weights, Hits& hits) const {
   Lanes3<double> smooth;
   blend_normals(weights.normals, weights.w1, weights.w2, exact.normal, smooth);
@@ -303,7 +303,7 @@ void Resolver::write_shading(const HitFields& fields, const HitBlock& block,
   if (fields.shading_normal) write_directions(block, smooth, exact.cosine, hits.shading_normal);
 }
 
-void Resolver::write_surface(const HitFields& fields, const HitBlock& block,
+void Resolver::write_surface(const HitFieldMask& fields, const HitBlock& block,
                              const ExactBlock& exact, Hits& hits) const {
   const bool with_normals = needs_normals(fields);
   Corners corners;

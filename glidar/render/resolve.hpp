@@ -31,7 +31,7 @@ std::vector<std::uint32_t> without_copies(const Mesh& mesh,
 bool has_mask(const Scene& scene, const Instance& instance);
 
 /// True when some of the fields follow from where in its triangle a beam hits.
-bool needs_corners(const HitFields& fields);
+bool needs_corners(const HitFieldMask& fields);
 
 /// The sensor as one instance sees it: object units, relative to the mesh's origin.
 struct InstanceView {
@@ -134,14 +134,14 @@ class Resolver {
   }
 
   /// Asks the memory for the corners of a block's triangles, as far as the fields need them.
-  void prefetch_corners(const HitBlock& block, const HitFields& fields) const;
+  void prefetch_corners(const HitBlock& block, const HitFieldMask& fields) const;
 
   /// Exact range and incidence of a block with at least one hit. Lanes without a hit take the ids
   /// of one that has.
   void measure(const BeamBlock& beams, HitBlock& block, ExactBlock& exact) const;
 
   /// Writes the columns of a measured block.
-  void write(const Beams& beams, const HitFields& fields, const HitBlock& block,
+  void write(const Beams& beams, const HitFieldMask& fields, const HitBlock& block,
              const ExactBlock& exact, Hits& hits) const;
 
  private:
@@ -159,9 +159,9 @@ class Resolver {
     const Lanes<float>& w2;
     const CornerBlock& normals;
   };
-  void write_shading(const HitFields& fields, const HitBlock& block, const ExactBlock& exact,
+  void write_shading(const HitFieldMask& fields, const HitBlock& block, const ExactBlock& exact,
                      const Weights& weights, Hits& hits) const;
-  void write_surface(const HitFields& fields, const HitBlock& block, const ExactBlock& exact,
+  void write_surface(const HitFieldMask& fields, const HitBlock& block, const ExactBlock& exact,
                      Hits& hits) const;
   [[nodiscard]] SurfacePlace place_of(const HitBlock& block, unsigned lane, const Lanes<float>& w1,
                                       const Lanes<float>& w2) const;

@@ -176,24 +176,25 @@ std::vector<MeshEdge> mesh_edges(const Mesh& mesh) {
 }
 
 void SilhouettePixels::find_sides(const Resolver& resolver, std::uint32_t instance,
-                                  Workers& workers) {
+                                  ThreadPool& thread_pool) {
   constexpr std::size_t kTrianglesPerTask = 16384;
   const Eigen::Vector3d& sensor = resolver.view(instance).sensor_in_object;
   const double distance = sensor.norm();
   sides_.resize(resolver.mesh(instance).triangles.size());
-  workers.for_ranges(sides_.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const TrianglePlane& plane = resolver.plane(instance, static_cast<std::uint32_t>(i));
-      sides_[i] = side_of(plane, sensor, distance);
-    }
-  });
+  thread_pool.parallel_for(
+      sides_.size(), kTrianglesPerTask, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          const TrianglePlane& plane = resolver.plane(instance, static_cast<std::uint32_t>(i));
+          sides_[i] = side_of(plane, sensor, distance);
+        }
+      });
 }
 
 void SilhouettePixels::add(const CastRequest& request, const Resolver& resolver,
                            std::uint32_t instance, const std::vector<MeshEdge>& edges,
-                           const PixelRect& part, Workers& workers) {
+                           const PixelRect& part, ThreadPool& thread_pool) {
   constexpr std::size_t kEdgesPerPiece = 16384;
-  find_sides(resolver, instance, workers);
+  find_sides(resolver, instance, thread_pool);
   const EdgeView view{.edges = edges,
                       .sides = sides_,
                       .positions = resolver.mesh(instance).positions_m,
@@ -203,7 +204,7 @@ void SilhouettePixels::add(const CastRequest& request, const Resolver& resolver,
                       .band_px = band_px_};
   const std::size_t count = (edges.size() + kEdgesPerPiece - 1) / kEdgesPerPiece;
   pieces_.resize(std::max(pieces_.size(), count));
-  workers.for_ranges(count, 1, [&](std::size_t begin, std::size_t end) {
+  thread_pool.parallel_for(count, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       pieces_[i].clear();
       view.add_pixels(i * kEdgesPerPiece, std::min((i + 1) * kEdgesPerPiece, edges.size()),
@@ -217,12 +218,13 @@ void SilhouettePixels::add(const CastRequest& request, const Resolver& resolver,
 
 const std::vector<std::size_t>& SilhouettePixels::find(
     const CastRequest& request, const Resolver& resolver,
-    const std::vector<std::vector<MeshEdge>>& edges, const PixelRect& part, Workers& workers) {
+    const std::vector<std::vector<MeshEdge>>& edges, const PixelRect& part,
+    ThreadPool& thread_pool) {
   pixels_.clear();
   const std::vector<Instance>& instances = resolver.scene().instances;
   for (std::uint32_t i = 0; i < instances.size(); ++i) {
-    if (!is_present(request, i)) continue;
-    add(request, resolver, i, edges[instances[i].mesh], part, workers);
+    if (!is_enabled(request, i)) continue;
+    add(request, resolver, i, edges[instances[i].mesh], part, thread_pool);
   }
   std::sort(pixels_.begin(), pixels_.end());
   pixels_.erase(std::unique(pixels_.begin(), pixels_.end()), pixels_.end());

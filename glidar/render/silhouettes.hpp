@@ -39,12 +39,12 @@ class SilhouettePixels {
   /// rising order. `edges` has the edges of each mesh; the resolver has the cast's poses.
   const std::vector<std::size_t>& find(const CastRequest& request, const Resolver& resolver,
                                        const std::vector<std::vector<MeshEdge>>& edges,
-                                       const PixelRect& part, Workers& workers);
+                                       const PixelRect& part, ThreadPool& thread_pool);
 
  private:
-  void find_sides(const Resolver& resolver, std::uint32_t instance, Workers& workers);
+  void find_sides(const Resolver& resolver, std::uint32_t instance, ThreadPool& thread_pool);
   void add(const CastRequest& request, const Resolver& resolver, std::uint32_t instance,
-           const std::vector<MeshEdge>& edges, const PixelRect& part, Workers& workers);
+           const std::vector<MeshEdge>& edges, const PixelRect& part, ThreadPool& thread_pool);
 
   double band_px_;
   std::vector<std::int8_t> sides_;  ///< per triangle of an instance: where the sensor is

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/surface_colours.hpp>
 
-#include <glidar/core/simd.hpp>
+#include <glidar/math/simd.hpp>
 #include <glidar/render/surface.hpp>
 
 namespace glidar {
@@ -99,8 +99,8 @@ const SurfaceColours::Slot& SurfaceColours::slot_of(std::uint32_t instance,
   return slots.all[slots.of_triangle == nullptr ? 0 : slots.of_triangle[primitive]];
 }
 
-void SurfaceColours::write(const HitFields& fields, const HitBlock& block, const Lanes<float>& w1,
-                           const Lanes<float>& w2, Hits& hits) const {
+void SurfaceColours::write(const HitFieldMask& fields, const HitBlock& block,
+                           const Lanes<float>& w1, const Lanes<float>& w2, Hits& hits) const {
   std::array<const Slot*, kLanes> slots{};
   for_lanes(block.mask,
             [&](unsigned i) { slots[i] = &slot_of(block.instance[i], block.primitive[i]); });
@@ -115,7 +115,7 @@ void SurfaceColours::write(const HitFields& fields, const HitBlock& block, const
   }
 }
 
-void SurfaceColours::write(const HitFields& fields, const Group& group, Hits& hits) const {
+void SurfaceColours::write(const HitFieldMask& fields, const Group& group, Hits& hits) const {
   const Slot& slot = group.slot;
   if (fields.noise_scale) write_noise_scale(group, hits);
   if (slot.has_tint || slot.material->specular_texture.used()) {
@@ -129,7 +129,8 @@ void SurfaceColours::write(const HitFields& fields, const Group& group, Hits& hi
   });
 }
 
-void SurfaceColours::write_tinted(const HitFields& fields, const Group& group, Hits& hits) const {
+void SurfaceColours::write_tinted(const HitFieldMask& fields, const Group& group,
+                                  Hits& hits) const {
   if (!fields.diffuse && !fields.colour && !fields.reflectance) return;
   const Material& material = *group.slot.material;
   Lanes3<float> tint;

@@ -32,28 +32,28 @@ std::array<std::array<float, 3>, 3> sorted_corners(const Mesh& mesh, std::uint32
   return corners;
 }
 
-struct Key {
+struct CornerKey {
   std::uint64_t hash;
   std::uint32_t triangle;
 };
 
 /// Triangles by a hash of their corners that does not depend on the corners' order, then by index.
-std::vector<Key> sorted_keys(const Mesh& mesh) {
+std::vector<CornerKey> sorted_keys(const Mesh& mesh) {
   std::vector<std::uint64_t> vertex_hash(mesh.positions_m.size());
   std::transform(mesh.positions_m.begin(), mesh.positions_m.end(), vertex_hash.begin(), mixed);
-  std::vector<Key> keys(mesh.triangles.size());
+  std::vector<CornerKey> keys(mesh.triangles.size());
   for (std::uint32_t i = 0; i < keys.size(); ++i) {
     const Triangle& t = mesh.triangles[i];
     keys[i] = {vertex_hash[t[0]] + vertex_hash[t[1]] + vertex_hash[t[2]], i};
   }
-  std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
+  std::sort(keys.begin(), keys.end(), [](const CornerKey& a, const CornerKey& b) {
     return a.hash != b.hash ? a.hash < b.hash : a.triangle < b.triangle;
   });
   return keys;
 }
 
 /// The nearest earlier key of the same triangle, or i where there is none.
-std::size_t earlier_twin(const Mesh& mesh, const std::vector<Key>& keys, std::size_t i) {
+std::size_t earlier_twin(const Mesh& mesh, const std::vector<CornerKey>& keys, std::size_t i) {
   const auto corners = sorted_corners(mesh, keys[i].triangle);
   // Back through those of the same hash, which are few unless they are true twins.
   for (std::size_t j = i; j-- > 0 && keys[j].hash == keys[i].hash;) {
@@ -95,7 +95,7 @@ std::vector<std::uint32_t> without_copies(const Mesh& mesh,
 }
 
 std::vector<std::uint32_t> first_twins(const Mesh& mesh) {
-  const std::vector<Key> keys = sorted_keys(mesh);
+  const std::vector<CornerKey> keys = sorted_keys(mesh);
   std::vector<std::uint32_t> first;
   for (std::size_t i = 1; i < keys.size(); ++i) {
     const std::size_t j = earlier_twin(mesh, keys, i);

@@ -82,12 +82,12 @@ DepthSpan depths_of(const Planes& planes, const Mesh& mesh, const Triangle& tria
 
 /// Calls work(begin, end) on pieces of [0, count), and joins the spans that it returns.
 template <class Work>
-DepthSpan joined(std::size_t count, Workers& workers, std::vector<DepthSpan>& spans,
+DepthSpan joined(std::size_t count, ThreadPool& thread_pool, std::vector<DepthSpan>& spans,
                  const Work& work) {
   constexpr std::size_t kDepthsPerPiece = 16384;
   const std::size_t pieces = (count + kDepthsPerPiece - 1) / kDepthsPerPiece;
   spans.assign(pieces, {});
-  workers.for_ranges(pieces, 1, [&](std::size_t begin, std::size_t end) {
+  thread_pool.parallel_for(pieces, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       spans[i] = work(i * kDepthsPerPiece, std::min(count, (i + 1) * kDepthsPerPiece));
     }
@@ -100,29 +100,31 @@ DepthSpan joined(std::size_t count, Workers& workers, std::vector<DepthSpan>& sp
 }  // namespace
 
 DepthSpan VisibleDepths::of(const InstanceView& view, const Mesh& mesh, const PinholeIntrinsics& k,
-                            Workers& workers) {
+                            ThreadPool& thread_pool) {
   const Planes planes = view_planes(view, k);
   outside_.resize(mesh.positions_m.size());
   // Vertices that no triangle uses count too: loaders leave none.
-  DepthSpan span = joined(outside_.size(), workers, spans_, [&](std::size_t i, std::size_t end) {
-    DepthSpan inside;
-    for (; i < end; ++i) {
-      const Values values = values_at(planes, mesh.positions_m[i]);
-      outside_[i] = borders_beyond(values);
-      if (outside_[i] == 0) inside.extend(values[kDepth]);
-    }
-    return inside;
-  });
-  span.extend(joined(mesh.triangles.size(), workers, spans_, [&](std::size_t i, std::size_t end) {
-    DepthSpan inside;
-    for (; i < end; ++i) {
-      const Triangle& t = mesh.triangles[i];
-      const bool reaches_out = (outside_[t[0]] | outside_[t[1]] | outside_[t[2]]) != 0;
-      const bool is_beyond_one = (outside_[t[0]] & outside_[t[1]] & outside_[t[2]]) != 0;
-      if (reaches_out && !is_beyond_one) inside.extend(depths_of(planes, mesh, t));
-    }
-    return inside;
-  }));
+  DepthSpan span =
+      joined(outside_.size(), thread_pool, spans_, [&](std::size_t i, std::size_t end) {
+        DepthSpan inside;
+        for (; i < end; ++i) {
+          const Values values = values_at(planes, mesh.positions_m[i]);
+          outside_[i] = borders_beyond(values);
+          if (outside_[i] == 0) inside.extend(values[kDepth]);
+        }
+        return inside;
+      });
+  span.extend(
+      joined(mesh.triangles.size(), thread_pool, spans_, [&](std::size_t i, std::size_t end) {
+        DepthSpan inside;
+        for (; i < end; ++i) {
+          const Triangle& t = mesh.triangles[i];
+          const bool reaches_out = (outside_[t[0]] | outside_[t[1]] | outside_[t[2]]) != 0;
+          const bool is_beyond_one = (outside_[t[0]] & outside_[t[1]] & outside_[t[2]]) != 0;
+          if (reaches_out && !is_beyond_one) inside.extend(depths_of(planes, mesh, t));
+        }
+        return inside;
+      }));
   return span;
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/workers.hpp>
+#include <glidar/math/thread_pool.hpp>
 #include <glidar/render/resolve.hpp>
 
 #include <cstdint>
@@ -32,7 +32,7 @@ struct DepthSpan {
 class VisibleDepths {
  public:
   DepthSpan of(const InstanceView& view, const Mesh& mesh, const PinholeIntrinsics& k,
-               Workers& workers);
+               ThreadPool& thread_pool);
 
  private:
   std::vector<std::uint8_t> outside_;  ///< per vertex, a bit for every border it lies beyond

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
-#include <glidar/sensor/framing.hpp>
+#include <glidar/sensor/view_placement.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -48,8 +48,8 @@ Elevations elevations_of(const Beams& beams) {
 
 }  // namespace
 
-Pose stand_beside(const Beams& beams, const Scene& scene, const Eigen::Vector3d& from_direction,
-                  const Eigen::Vector3d& up) {
+Pose place_lidar_beside(const Beams& beams, const Scene& scene,
+                        const Eigen::Vector3d& from_direction, const Eigen::Vector3d& up) {
   if (beams.size() == 0 || !beams.boresight.isApprox(Eigen::Vector3d::UnitX())) {
     refuse_placing("the sensor is no LiDAR that heads for +x", "give the sensor's pose");
   }

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/sensor/sensor.hpp>
 
-#include <glidar/core/constants.hpp>
 #include <glidar/core/error.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <cmath>
 
@@ -38,7 +38,7 @@ void repeat_for_returns(std::size_t returns, Beams& beams) {
 
 }  // namespace
 
-Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double range_m) {
+Status check_limits(const Limits& limits, const Beams& beams, std::size_t beam, double range_m) {
   const double distance = limits.along == Limits::Along::depth ? depth_m(beams, beam, range_m)
                                                                : range_m + beams.range_offset_m;
   if (limits.near_m > 0.0 && distance < limits.near_m) return Status::too_near;
@@ -46,11 +46,11 @@ Status judge(const Limits& limits, const Beams& beams, std::size_t beam, double 
   return Status::hit;
 }
 
-Sensor ideal(Sensor sensor) {
+Sensor ground_truth_sensor(Sensor sensor) {
   sensor.pulse.reset();
   sensor.footprint.reset();
   sensor.weather.reset();
-  sensor.projector_m.reset();
+  sensor.projector_origin_m.reset();
   sensor.receiver = {};
   sensor.noise.clear();
   return sensor;
@@ -61,28 +61,29 @@ void set_rate(Sensor& sensor, double rate_hz) {
                  "frames per second from 1e-6 to 1e9");
   sensor.rate_hz = rate_hz;
   if (auto* spinning = std::get_if<Spinning>(&sensor.optics)) spinning->rotation_hz = rate_hz;
-  if (auto* raster = std::get_if<Raster>(&sensor.optics)) raster->scan_hz = rate_hz;
+  if (auto* raster = std::get_if<LineScan>(&sensor.optics)) raster->scan_hz = rate_hz;
 }
 
 void check_weather(const Sensor& sensor) {
   if (!sensor.weather) return;
   if (!sensor.pulse) {
-    throw Error({.where = "weather",
-                 .found = "the light of the sensor '" + sensor.name + "' is not pulsed",
-                 .allowed = "weather for a sensor with 'pulse_light'",
-                 .remedy = "describe its light by 'pulse_light' in a sensor file (docs/files.md)"});
+    throw Error(
+        {.where = "weather",
+         .found = "the light of the sensor '" + sensor.name + "' is not pulsed",
+         .allowed = "weather for a sensor with 'lidar_equation'",
+         .remedy = "describe its light by 'lidar_equation' in a sensor file (docs/files.md)"});
   }
   extinction_per_m(*sensor.weather, sensor.wavelength_m);
 }
 
-ScanWindow scan_window(const Sensor& sensor, std::uint32_t frame) {
+FrameInterval frame_interval(const Sensor& sensor, std::uint32_t frame) {
   const auto start_of = [&](double count) {
     return static_cast<std::int64_t>(std::llround(count * kSecond_ns / sensor.rate_hz));
   };
   return {start_of(frame), start_of(frame + 1.0)};
 }
 
-Beams make_beams(const Sensor& sensor, const ScanWindow& window) {
+Beams make_beams(const Sensor& sensor, const FrameInterval& window) {
   Beams beams =
       std::visit([&](const auto& optics) { return make_beams(optics, window); }, sensor.optics);
   repeat_for_returns(sensor.receiver.returns.size(), beams);
@@ -90,7 +91,7 @@ Beams make_beams(const Sensor& sensor, const ScanWindow& window) {
 }
 
 Beams make_beams(const Sensor& sensor) {
-  return make_beams(sensor, scan_window(sensor, 0));
+  return make_beams(sensor, frame_interval(sensor, 0));
 }
 
 }  // namespace glidar

@@ -19,7 +19,7 @@ double float_step(double value) {
 /// The nearest of all shapes that the ray meets.
 struct Nearest {
   TrueHit hit;
-  std::uint32_t instance = kNoHit;
+  std::uint32_t instance = kInvalidId;
 };
 
 Nearest find_nearest(const TrueScene& scene, const RealVector& origin,
@@ -96,7 +96,7 @@ void judge_beam(const TrueScene& scene, const RealVector& origin, const RealVect
     ++result.near_edges;
     return;
   }
-  const bool is_hit = reported.instance != kNoHit;
+  const bool is_hit = reported.instance != kInvalidId;
   ++(truth.hit.hit ? result.judged_hits : result.judged_misses);
   if (is_hit && !truth.hit.hit) ++result.wrong_hits;
   if (!is_hit && truth.hit.hit) ++result.wrong_misses;

@@ -27,7 +27,7 @@ constexpr std::array<Entry, 1> kKnown = {{
 
 }  // namespace
 
-KnownFailure known_failure(const VerifyRow& row) {
+KnownFailure known_failure(const AccuracyCase& row) {
   const auto* known = std::find_if(kKnown.begin(), kKnown.end(), [&](const Entry& entry) {
     return entry.name == row.name && (entry.shape.empty() || entry.shape == row.shape) &&
            (entry.distance_m == kAny || entry.distance_m == row.distance_m);

@@ -9,6 +9,6 @@
 namespace glidar {
 
 /// Why, and by how much, a renderer is known to fail a row's case; no reason: it has to pass.
-KnownFailure known_failure(const VerifyRow& row);
+KnownFailure known_failure(const AccuracyCase& row);
 
 }  // namespace glidar

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/verify/moving_case.hpp>
 
-#include <glidar/moving_cast.hpp>
+#include <glidar/simulate/moving_cast.hpp>
 #include <glidar/verify/judge.hpp>
 #include <glidar/verify/probes.hpp>
 
@@ -96,7 +96,7 @@ VerifyResult moving_sensor_and_target(const VerifySubject& subject,
   for (std::uint32_t i = 0; i < beams.cols; ++i) beams.times_ns.push_back(i * kStep_ns);
   const std::vector<Pose> poses = {pose_at(setting.target, kStamp_ns), setting.world_from_rest};
   const std::unique_ptr<Renderer> renderer = subject.make(scene);
-  Scratch memory;
+  Workspace memory;
   Hits hits;
   cast_moving({*renderer, scene, motion, kStamp_ns},
               {.beams = beams,

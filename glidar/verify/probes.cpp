@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/verify/probes.hpp>
 
-#include <glidar/core/random.hpp>
-#include <glidar/sensor/pinhole.hpp>
+#include <glidar/math/random.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 
 #include <cmath>
 #include <numbers>
@@ -13,7 +13,7 @@ namespace glidar {
 
 std::array<double, 4> probe_draw(std::uint32_t number, std::uint32_t index) {
   const RandomWords words =
-      random_words({.seed = 1, .frame = number, .beam = index, .purpose = Purpose::probe});
+      random_words({.seed = 1, .frame = number, .beam = index, .purpose = Purpose::verification});
   return {uniform(words[0]), uniform(words[1]), uniform(words[2]), uniform(words[3])};
 }
 

@@ -187,8 +187,8 @@ VerifyResult sensor_on_vertices(const VerifySubject& subject, const Shape& shape
 /// Which beams are aimed at a shape.
 using Aim = Beams (*)(const AimedAt&);
 
-VerifyResult aimed_beams(const VerifySubject& subject, const Shape& shape, double distance_m,
-                         Aim aim) {
+VerifyResult perturbed_beams(const VerifySubject& subject, const Shape& shape, double distance_m,
+                             Aim aim) {
   constexpr std::uint32_t kNumber = 90040;
   constexpr std::uint32_t kEyes = 24;
   const Pose world_from_object =
@@ -216,11 +216,11 @@ void add_aimed_cases(const Shape& shape, std::vector<SpecialCase>& cases) {
   for (const double distance_m : {1.0, 1000.0}) {
     cases.push_back({"at vertices and edges", shape.name, distance_m, BeamKind::any,
                      [&shape, distance_m](const auto& s) {
-                       return aimed_beams(s, shape, distance_m, beams_at_vertices_and_edges);
+                       return perturbed_beams(s, shape, distance_m, beams_at_vertices_and_edges);
                      }});
   }
   cases.push_back({"beside the outline", shape.name, 1.0, BeamKind::any, [&shape](const auto& s) {
-                     return aimed_beams(s, shape, 1.0, beams_beside_outline);
+                     return perturbed_beams(s, shape, 1.0, beams_beside_outline);
                    }});
 }
 

@@ -12,17 +12,18 @@
 namespace glidar {
 namespace {
 
-VerifyRow run_row(const std::vector<Shape>& shapes, std::size_t shape, double distance_m,
-                  const VerifySubject& subject) {
-  VerifyRow row{.name = "one shape at rest", .shape = shapes[shape].name, .distance_m = distance_m};
+AccuracyCase run_row(const std::vector<Shape>& shapes, std::size_t shape, double distance_m,
+                     const VerifySubject& subject) {
+  AccuracyCase row{
+      .name = "one shape at rest", .shape = shapes[shape].name, .distance_m = distance_m};
   for (const VerifyCase& c : make_cases(shape, distance_m)) {
     row.result.add(run_case(c, shapes[shape], subject));
   }
   return row;
 }
 
-VerifyRow run_row(const SpecialCase& special, const VerifySubject& subject) {
-  VerifyRow row{.name = special.name, .shape = special.shape, .distance_m = special.distance_m};
+AccuracyCase run_row(const SpecialCase& special, const VerifySubject& subject) {
+  AccuracyCase row{.name = special.name, .shape = special.shape, .distance_m = special.distance_m};
   row.applies = subject.casts >= special.needs;
   if (row.applies) row.result = special.run(subject);
   return row;
@@ -57,7 +58,7 @@ bool KnownFailure::covers(const VerifyResult& result) const {
          (result.wrong_ids > 0 || result.normal_error_rad <= kNormalBound_rad);
 }
 
-Verdict VerifyRow::verdict() const {
+Verdict AccuracyCase::verdict() const {
   if (!applies) return Verdict::not_applicable;
   const bool is_listed = !known.reason.empty();
   if (result.passed()) return is_listed ? Verdict::fixed : Verdict::passed;
@@ -70,13 +71,13 @@ std::string_view verdict_name(Verdict verdict) {
   return kNames[static_cast<std::size_t>(verdict)];
 }
 
-std::vector<VerifyRow> verify(const VerifySubject& subject, const Progress& progress) {
+std::vector<AccuracyCase> verify(const VerifySubject& subject, const ProgressCallback& progress) {
   const std::vector<Shape> shapes = make_shapes();
   const std::vector<double>& distances = verify_distances();
   const std::vector<SpecialCase> specials = special_cases(shapes);
   const auto count = static_cast<double>(shapes.size() * distances.size() + specials.size());
-  std::vector<VerifyRow> rows;
-  const auto add = [&](VerifyRow row) {
+  std::vector<AccuracyCase> rows;
+  const auto add = [&](AccuracyCase row) {
     row.known = known_failure(row);
     rows.push_back(std::move(row));
     if (progress) progress(static_cast<double>(rows.size()) / count);
@@ -88,7 +89,7 @@ std::vector<VerifyRow> verify(const VerifySubject& subject, const Progress& prog
   return rows;
 }
 
-std::vector<VerifyRow> verify(const RendererOptions& options, const Progress& progress) {
+std::vector<AccuracyCase> verify(const RendererOptions& options, const ProgressCallback& progress) {
   return verify({.renderer = options.kind,
                  .casts = beams_of_renderer(options.kind),
                  .make = [&](const Scene& scene) { return make_renderer(scene, options); }},
@@ -100,9 +101,9 @@ BeamKind beams_of_renderer(std::string_view kind) {
   return kind == "raster" ? BeamKind::scanner : BeamKind::any;
 }
 
-bool all_passed(const std::vector<VerifyRow>& rows) {
+bool all_passed(const std::vector<AccuracyCase>& rows) {
   return std::none_of(rows.begin(), rows.end(),
-                      [](const VerifyRow& row) { return row.verdict() == Verdict::failed; });
+                      [](const AccuracyCase& row) { return row.verdict() == Verdict::failed; });
 }
 
 }  // namespace glidar

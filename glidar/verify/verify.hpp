@@ -75,7 +75,7 @@ enum class Verdict : std::uint8_t {
 };
 
 /// One case with one shape at one distance.
-struct VerifyRow {
+struct AccuracyCase {
   std::string name;  ///< of the case
   std::string shape;
   double distance_m = 0.0;
@@ -91,10 +91,10 @@ std::string_view verdict_name(Verdict verdict);
 
 /// Measures the accuracy of ranges, normals and ids on this machine (docs/accuracy.md): every shape
 /// at every distance from 0.1 m to 10 km, and the special cases, judged by closed forms.
-std::vector<VerifyRow> verify(const VerifySubject& subject, const Progress& progress);
-std::vector<VerifyRow> verify(const RendererOptions& options, const Progress& progress);
+std::vector<AccuracyCase> verify(const VerifySubject& subject, const ProgressCallback& progress);
+std::vector<AccuracyCase> verify(const RendererOptions& options, const ProgressCallback& progress);
 
 /// True when no row failed, but as known.
-bool all_passed(const std::vector<VerifyRow>& rows);
+bool all_passed(const std::vector<AccuracyCase>& rows);
 
 }  // namespace glidar

@@ -14,47 +14,47 @@ from . import _core
 from ._cloud import Cloud
 from ._errors import Error
 from ._frame import Frame
-from ._information import Direction, Information
+from ._fisher_information import EigenDirection, FisherInformation
 from ._mesh import Mesh, from_open3d, from_trimesh
-from ._object import Object
+from ._object import SceneObject
 from ._pictures import Picture
 from ._poses import look_at, pose, quaternion
-from ._scene import Mount, Scene, load_scene, surface_names
-from ._sensor import Sensor, SheetEntry, camera, load_sensor, sensor, sensor_file, sensor_names, sensor_sheet
+from ._scene import RigSensor, Scene, load_scene, surface_names
+from ._sensor import Sensor, DatasheetEntry, camera, load_sensor, sensor, sensor_file, sensor_names, datasheet
 from ._simulator import Simulator, simulate, simulate_batch, simulate_iter, simulate_rig
-from ._status import Cause, Status
-from ._story import Drawn, Echo, Reading, Step, Story
+from ._status import ReturnSource, Status
+from ._point_trace import RandomSample, Echo, Measurement, NoiseStep, PointTrace
 from ._trajectory import Trajectory
-from ._truth import Truth
-from ._verification import Verification, VerifyRow, verify
+from ._ground_truth import GroundTruth
+from ._accuracy import AccuracyReport, AccuracyCase, verify
 
 __version__: str = _core.version()
 
 __all__ = [
-    "Cause",
+    "ReturnSource",
     "Cloud",
-    "Direction",
-    "Drawn",
+    "EigenDirection",
+    "RandomSample",
     "Echo",
     "Error",
     "Frame",
-    "Information",
+    "FisherInformation",
     "Mesh",
-    "Mount",
-    "Object",
+    "RigSensor",
+    "SceneObject",
     "Picture",
-    "Reading",
+    "Measurement",
     "Scene",
     "Sensor",
-    "SheetEntry",
+    "DatasheetEntry",
     "Simulator",
     "Status",
-    "Step",
-    "Story",
+    "NoiseStep",
+    "PointTrace",
     "Trajectory",
-    "Truth",
-    "Verification",
-    "VerifyRow",
+    "GroundTruth",
+    "AccuracyReport",
+    "AccuracyCase",
     "camera",
     "from_open3d",
     "from_trimesh",
@@ -66,7 +66,7 @@ __all__ = [
     "sensor",
     "sensor_file",
     "sensor_names",
-    "sensor_sheet",
+    "datasheet",
     "simulate",
     "simulate_batch",
     "simulate_iter",

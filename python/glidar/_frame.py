@@ -15,14 +15,14 @@ import numpy.typing as npt
 from . import _core
 from ._cloud import Cloud
 from ._errors import Error, shown
-from ._information import Information
+from ._fisher_information import FisherInformation
 from ._inputs import MOST_32, FloatArray, column_list, floats, log, one_of, path_of, whole, whole_numbers
 from ._origin import Origin
 from ._pictures import IMAGE, Picture, html_picture, html_table, picture_of, plot_points, show_images
 from ._state import Immutable, key_of, part, restoring, stated
-from ._status import Cause, Status
-from ._story import Story, story_of
-from ._truth import Truth
+from ._status import ReturnSource, Status
+from ._point_trace import PointTrace, story_of
+from ._ground_truth import GroundTruth
 
 _PCD = ("ascii", "binary", "binary_compressed")
 
@@ -124,12 +124,12 @@ class Frame(Immutable):
         return self._measured("status")
 
     @property
-    def cause(self) -> npt.NDArray[np.uint8]:
-        """What made a return: see ``Cause``."""
-        found = self._core.measured("cause")
+    def return_source(self) -> npt.NDArray[np.uint8]:
+        """What made a return: see ``ReturnSource``."""
+        found = self._core.measured("return_source")
         if found is not None:
             return found
-        return np.where(self.status == Status.hit, np.uint8(Cause.surface), np.uint8(Cause.none))
+        return np.where(self.status == Status.hit, np.uint8(ReturnSource.surface), np.uint8(ReturnSource.none))
 
     @property
     def sigma_m(self) -> npt.NDArray[np.float32]:
@@ -148,9 +148,9 @@ class Frame(Immutable):
         return int(np.count_nonzero(self.status == Status.hit))
 
     @property
-    def truth(self) -> Truth:
+    def ground_truth(self) -> GroundTruth:
         """What is there."""
-        return Truth(self)
+        return GroundTruth(self)
 
     @property
     def stamp_ns(self) -> int:
@@ -347,7 +347,7 @@ class Frame(Immutable):
 
     def explain(
         self, index: int | None = None, *, row: int | None = None, col: int | None = None, hits_only: bool = False
-    ) -> Story:
+    ) -> PointTrace:
         """How an entry came to be: the beam, what it met, the light, echoes, every step of noise with
         the random numbers that it drew. The frame is measured once more for it.
 
@@ -375,7 +375,7 @@ class Frame(Immutable):
 
     def information(
         self, *, sigma_m: float = 0.01, reference: npt.ArrayLike | None = None, instance: int | None = None
-    ) -> Information:
+    ) -> FisherInformation:
         """What the frame can tell about the sensor's pose: Fisher's matrix and the bounds of any
         estimate. Needs normals (the usual columns have them).
 
@@ -391,7 +391,7 @@ class Frame(Immutable):
         sigma = float(floats(sigma_m, "sigma_m", ()))
         objects = len(self._core.world_from_objects)
         only = None if instance is None else whole(instance, "instance", objects - 1)
-        return Information(_core.information(self._core, sigma, pose, only))
+        return FisherInformation(_core.information(self._core, sigma, pose, only))
 
     def __repr__(self) -> str:
         return f"<glidar.Frame {self.number} of {self.rows} x {self.cols} beams, {self.hits} hits, seed {self.seed}>"

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ._scene import Scene
 
 
-class Object:
+class SceneObject:
     """One placed model of a scene. Setting an attribute changes the scene: what was measured before
     stays as it was. Objects are equal when they are the same place of the same scene. Pickled or copied
     deeply, an object takes its scene with it."""
@@ -32,7 +32,7 @@ class Object:
         self._index = index
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Object):
+        if not isinstance(other, SceneObject):
             return NotImplemented
         return self._scene is other._scene and self._index == other._index
 
@@ -141,4 +141,4 @@ class Object:
         return int(self._info()["triangles"])
 
     def __repr__(self) -> str:
-        return f"<glidar.Object {self.index} {self.name!r} of {self.source}: {self.triangles} triangles>"
+        return f"<glidar.SceneObject {self.index} {self.name!r} of {self.source}: {self.triangles} triangles>"

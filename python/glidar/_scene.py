@@ -18,7 +18,7 @@ from . import _core
 from ._errors import Error, shown
 from ._inputs import FloatArray, floats, numbers, one_of, path_of, text_of, whole
 from ._mesh import Mesh, mesh_of
-from ._object import Object
+from ._object import SceneObject
 from ._recipe import Recipe
 from ._sensor import Sensor, load_sensor, plain
 from ._simulator import Simulator
@@ -33,7 +33,7 @@ _UNIT_TOLERANCE = 1e-3  # of what was rounded to three digits in a file
 
 
 @dataclass(frozen=True, eq=False)
-class Mount:
+class RigSensor:
     """A sensor on the rig of a scene file. Mounts are equal when all their parts are."""
 
     name: str
@@ -138,7 +138,7 @@ class Scene:
         up: str | None = None,
         centre: bool = False,
         **placing: Any,
-    ) -> Object:
+    ) -> SceneObject:
         """Adds a model file or "builtin:NAME".
 
         Args:
@@ -159,7 +159,7 @@ class Scene:
         uvs: npt.ArrayLike | None = None,
         colours: npt.ArrayLike | None = None,
         **placing: Any,
-    ) -> Object:
+    ) -> SceneObject:
         """Adds a mesh from arrays, or from what this and other libraries call a mesh.
 
         Args:
@@ -193,13 +193,13 @@ class Scene:
         self._simulators.clear()
         return self._placed(index, placing)
 
-    def add_copy(self, of: Object, **placing: Any) -> Object:
+    def add_instance(self, of: SceneObject, **placing: Any) -> SceneObject:
         """Adds another object with the mesh and materials of one that is there; costs no memory.
 
         Args:
             placing: pose (4x4), scale, name, id, class_name, materials; as those of the first when not given.
         """
-        if not isinstance(of, Object):
+        if not isinstance(of, SceneObject):
             raise Error("copy", shown(of), "an object of this scene")
         if of._scene is not self:
             remedy = "scene.add_mesh(of.mesh) takes the mesh of another scene's"
@@ -207,9 +207,9 @@ class Scene:
         self._simulators.clear()
         return self._placed(self._recipe.add_instance(of.index), placing)
 
-    def _placed(self, index: int, placing: dict[str, Any]) -> Object:
+    def _placed(self, index: int, placing: dict[str, Any]) -> SceneObject:
         """The object just added, with what is given of it, a name of its own and a number."""
-        made = Object(self, index)
+        made = SceneObject(self, index)
         try:
             self._recipe.set_object(index, {"name": self._free_name(made.name), "id": self._free_id(index)})
             self._place(made, placing)
@@ -228,7 +228,7 @@ class Scene:
         return next(number for number in itertools.count(index + 1) if number not in taken)
 
     @staticmethod
-    def _place(made: Object, placing: dict[str, Any]) -> None:
+    def _place(made: SceneObject, placing: dict[str, Any]) -> None:
         for name, value in placing.items():
             one_of(name, "argument", ("pose", "scale", "name", "id", "class_name", "materials"))
             if value is None:
@@ -239,11 +239,11 @@ class Scene:
                 setattr(made, name, value)
 
     @property
-    def objects(self) -> tuple[Object, ...]:
+    def objects(self) -> tuple[SceneObject, ...]:
         """All objects, in order."""
-        return tuple(Object(self, index) for index in range(len(self._core)))
+        return tuple(SceneObject(self, index) for index in range(len(self._core)))
 
-    def __getitem__(self, name: str) -> Object:
+    def __getitem__(self, name: str) -> SceneObject:
         for candidate in self.objects:
             if candidate.name == name:
                 return candidate
@@ -252,7 +252,7 @@ class Scene:
     def __len__(self) -> int:
         return len(self._core)
 
-    def __iter__(self) -> Iterator[Object]:
+    def __iter__(self) -> Iterator[SceneObject]:
         return iter(self.objects)
 
     @property
@@ -272,10 +272,10 @@ class Scene:
         return Sensor(rig[0][1]) if len(rig) == 1 else None
 
     @property
-    def rig(self) -> dict[str, Mount]:
+    def rig(self) -> dict[str, RigSensor]:
         """The sensors of the scene file by name; a single one has the name ""."""
         return {
-            name: Mount(name, number, Sensor(core), pose)
+            name: RigSensor(name, number, Sensor(core), pose)
             for number, (name, core, pose) in enumerate(self._core.rig())
         }
 

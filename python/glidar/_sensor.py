@@ -239,10 +239,10 @@ class Sensor(Immutable):
         told: dict[str, Any] = json.loads(self._core.description())
         return told
 
-    def ideal(self) -> Sensor:
+    def ground_truth(self) -> Sensor:
         """The same without noise, pulsed light, weather, footprint and further returns: it reports
         the geometric truth."""
-        return Sensor(self._core.ideal())
+        return Sensor(self._core.ground_truth())
 
     def __repr__(self) -> str:
         return f"<glidar.Sensor {self.name!r}: {self.kind}, {self.rows} x {self.cols}, {self.rate_hz:g} Hz>"
@@ -326,7 +326,7 @@ def sensor_names() -> list[str]:
 
 
 @dataclass(frozen=True)
-class SheetEntry:
+class DatasheetEntry:
     """One number of a sensor file and where it comes from."""
 
     key: str
@@ -337,9 +337,9 @@ class SheetEntry:
     """Against the maker's documents."""
 
 
-def sensor_sheet(name_or_path: str | os.PathLike[str]) -> list[SheetEntry]:
+def datasheet(name_or_path: str | os.PathLike[str]) -> list[DatasheetEntry]:
     """Every number of a preset or sensor file with its source, in the order of the file."""
-    return [SheetEntry(*entry) for entry in _core.sensor_sheet(path_of(name_or_path, "sensor"))]
+    return [DatasheetEntry(*entry) for entry in _core.datasheet(path_of(name_or_path, "sensor"))]
 
 
 def camera(
@@ -361,7 +361,7 @@ def camera(
         fx, fy: focal lengths in pixels; one of them: square pixels.
         cx, cy: principal point in pixels; the middle when not given.
         distortion: as in sensor files.
-        others: further keys of a sensor file: noise, limits, name, rate_hz, projector_m ...
+        others: further keys of a sensor file: noise, limits, name, rate_hz, projector_origin_m ...
 
     Raises:
         Error: names the field.

@@ -56,7 +56,7 @@ class Simulator(Immutable):
         one_of(renderer, "renderer", _RENDERERS)
         self.sensor = chosen
         self._origin = Origin(SceneSource(copy(_checked(scene))), chosen, renderer, threads)
-        self._usual_fields = _core.fields_for(column_list(None))
+        self._usual_fields = _core.fields_needed_by(column_list(None))
         self._core = _core.make_simulator(scene._core, chosen._core, renderer, whole(threads, "threads", 4096))
 
     __reduce_ex__ = refuse_pickle(
@@ -120,7 +120,7 @@ class Simulator(Immutable):
             raise Error("batch", "0", "a whole number from 1")
         return self._iterate(inputs, self._fields(columns), whole(sensor_id, "sensor_id", MOST_32), together)
 
-    def _iterate(self, inputs: Inputs, fields: _core.HitFields, sensor_id: int, batch: int) -> Iterator[Frame]:
+    def _iterate(self, inputs: Inputs, fields: _core.HitFieldMask, sensor_id: int, batch: int) -> Iterator[Frame]:
         while True:
             piece, fault = inputs.take(batch)
             yield from self._frames_of(piece, fields, sensor_id)
@@ -129,7 +129,7 @@ class Simulator(Immutable):
             if len(piece.sensors) < batch:
                 return
 
-    def _frames_of(self, piece: Piece, fields: _core.HitFields, sensor_id: int) -> Iterator[Frame]:
+    def _frames_of(self, piece: Piece, fields: _core.HitFieldMask, sensor_id: int) -> Iterator[Frame]:
         """The frames of a piece; none is kept here once it was handed out."""
         if not piece.sensors:
             return
@@ -145,7 +145,7 @@ class Simulator(Immutable):
         while measured:
             yield Frame(measured.pop(), self._origin)
 
-    def _measured(self, piece: Piece, fields: _core.HitFields, sensor_id: int) -> list[_core.Frame]:
+    def _measured(self, piece: Piece, fields: _core.HitFieldMask, sensor_id: int) -> list[_core.Frame]:
         objects = None if piece.objects is None else _core.joined(piece.objects)
         keys = (np.array(piece.seeds, np.uint64), np.array(piece.numbers, np.uint32), sensor_id)
         return self._core.simulate(_core.joined(piece.sensors), objects, keys, fields)
@@ -155,8 +155,8 @@ class Simulator(Immutable):
             return self._core.usual_motion()
         return trajectories(poses, "pose")
 
-    def _fields(self, columns: str | Iterable[str] | None) -> _core.HitFields:
-        return self._usual_fields if columns is None else _core.fields_for(column_list(columns))
+    def _fields(self, columns: str | Iterable[str] | None) -> _core.HitFieldMask:
+        return self._usual_fields if columns is None else _core.fields_needed_by(column_list(columns))
 
     def _measure(
         self,

@@ -12,22 +12,22 @@ class Status(enum.IntEnum):
     miss = 1
     too_near = 2
     too_far = 3
-    no_beam = 4
+    invalid_pixel = 4
     below_threshold = 5
     dropped = 6
     occluded = 7
-    wrapped = 8
+    phase_ambiguous = 8
     saturated = 9
     weather = 10
-    no_echo = 11
+    no_return_of_rank = 11
 
 
-class Cause(enum.IntEnum):
+class ReturnSource(enum.IntEnum):
     """What made a return."""
 
     none = 0
     surface = 1
-    mixed = 2
+    mixed_pixel = 2
     ghost = 3
     false_alarm = 4
     fog = 5

@@ -158,7 +158,7 @@ class Trajectory(Immutable):
     @property
     def known_s(self) -> tuple[float, float]:
         """First and last time for which it is known; about -9.2e9 and 9.2e9 when it is for all."""
-        first, last = self._core.known_times()
+        first, last = self._core.valid_interval()
         return first / 1e9, last / 1e9
 
 

@@ -5,12 +5,12 @@
 #include "report.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/beam_picture.hpp>
-#include <glidar/io/cloud_layout.hpp>
-#include <glidar/io/colour_scale.hpp>
-#include <glidar/io/file_guard.hpp>
-#include <glidar/io/file_sink.hpp>
-#include <glidar/io/needed_columns.hpp>
+#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/formats/cloud_layout.hpp>
+#include <glidar/io/formats/file_sink.hpp>
+#include <glidar/io/formats/needed_columns.hpp>
+#include <glidar/io/pictures/beam_picture.hpp>
+#include <glidar/io/pictures/colour_scale.hpp>
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/filesystem.h>
@@ -48,7 +48,7 @@ nb::object measured_column(nb::handle self, const std::string& name) {
   if (name == "range_m") return column<double>(m, self, m.frame.range_m);
   if (name == "intensity") return column<float>(m, self, m.frame.intensity);
   if (name == "status") return column<std::uint8_t>(m, self, m.frame.status);
-  if (name == "cause") return column<std::uint8_t>(m, self, m.frame.cause);
+  if (name == "return_source") return column<std::uint8_t>(m, self, m.frame.return_source);
   if (name == "sigma_m") return column<float>(m, self, m.frame.sigma_m);
   if (name == "sensor_pose")
     return column<double, 7>(m, self, m.frame.beam_poses.world_from_sensor);
@@ -59,7 +59,7 @@ nb::object measured_column(nb::handle self, const std::string& name) {
 
 nb::object true_column(nb::handle self, const std::string& name) {
   const auto& m = nb::cast<const Measured&>(self);
-  const Hits& truth = m.frame.truth;
+  const Hits& truth = m.frame.ground_truth;
   if (name == "range_m") return column<double>(m, self, truth.range_m);
   if (name == "instance") return column<std::uint32_t>(m, self, truth.instance);
   if (name == "primitive") return column<std::uint32_t>(m, self, truth.primitive);
@@ -90,9 +90,9 @@ struct CloudHandle {
 
 PointCloud make_cloud(const Measured& m, const std::vector<std::string>& columns,
                       const std::string& frame, bool deskew) {
-  CloudFrame axes = cloud_frame(frame, *m.beams, m.frame.world_from_sensor);
+  OutputFrame axes = output_frame(frame, *m.beams, m.frame.world_from_sensor);
   axes.deskew = deskew;
-  if (const auto& renderer = m.scene().renderer) axes.workers = &renderer->workers();
+  if (const auto& renderer = m.scene().renderer) axes.thread_pool = &renderer->thread_pool();
   PointCloud cloud;
   make_point_cloud(m.frame, *m.beams, *m.scene().scene, axes, columns, cloud);
   return cloud;
@@ -104,7 +104,7 @@ CloudHandle cloud_of(const Measured& measured, const std::vector<std::string>& c
   CloudHandle handle{make_cloud(measured, columns, frame, deskew)};
   if (hits_only) {
     PointCloud hits;
-    compact(handle.cloud, hits);
+    remove_invalid_points(handle.cloud, hits);
     handle.cloud = std::move(hits);
   }
   return handle;
@@ -138,11 +138,11 @@ void save_to(const Measured& m, const std::filesystem::path& path, const SaveOpt
   std::vector<std::string> inputs = m.scene().files;
   const std::vector<std::string>& more = m.sensor->sensor().files;
   inputs.insert(inputs.end(), more.begin(), more.end());
-  protect_files(inputs, path);
+  refuse_overwrite_of_inputs(inputs, path);
   const FileFormat& format = format_for(path);
   std::vector<std::string> columns = format.takes_more ? options.columns : format.columns;
   if (!options.sink.layout.empty() && format.takes_more) {
-    columns = layout_named(options.sink.layout).columns;
+    columns = find_layout(options.sink.layout).columns;
   }
   for (const std::string& name : needed_columns(format)) {
     if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
@@ -335,8 +335,8 @@ void bind_frame(nb::module_& module) {
       .def_prop_ro("world_from_objects", object_poses)
       .def("measured", measured_column, nb::arg("name"),
            nb::sig("def measured(self, name: str) -> numpy.ndarray | None"))
-      .def("truth", true_column, nb::arg("name"),
-           nb::sig("def truth(self, name: str) -> numpy.ndarray | None"))
+      .def("ground_truth", true_column, nb::arg("name"),
+           nb::sig("def ground_truth(self, name: str) -> numpy.ndarray | None"))
       .def_prop_ro("returns", [](const Measured& self) { return self.beams->returns; })
       .def_prop_ro("range_offset_m",
                    [](const Measured& self) { return self.beams->range_offset_m; })

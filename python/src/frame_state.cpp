@@ -48,7 +48,7 @@ void each_column(AnyFrame& frame, const Visit& visit) {
   visit("range_m", frame.range_m);
   visit("intensity", frame.intensity);
   visit("status", frame.status);
-  visit("cause", frame.cause);
+  visit("return_source", frame.return_source);
   visit("sigma_m", frame.sigma_m);
   visit("deskewed.directions", frame.deskewed.directions);
   visit("deskewed.true_directions", frame.deskewed.true_directions);
@@ -56,7 +56,7 @@ void each_column(AnyFrame& frame, const Visit& visit) {
   visit("deskewed.start_from_sensor", frame.deskewed.start_from_sensor);
   visit("beam_poses.world_from_sensor", frame.beam_poses.world_from_sensor);
   visit("beam_poses.world_from_object", frame.beam_poses.world_from_object);
-  auto& truth = frame.truth;
+  auto& truth = frame.ground_truth;
   visit("truth.range_m", truth.range_m);
   visit("truth.instance", truth.instance);
   visit("truth.primitive", truth.primitive);
@@ -125,16 +125,18 @@ void load_column(const nb::dict& arrays, const char* name, std::size_t size,
 
 /// The columns that every frame has, and codes that are known.
 void check_columns(const Frame& frame, std::size_t size) {
-  const Hits& truth = frame.truth;
+  const Hits& truth = frame.ground_truth;
   for (const std::size_t found :
        {frame.range_m.size(), frame.intensity.size(), frame.status.size(), truth.range_m.size(),
         truth.instance.size(), truth.primitive.size()}) {
     if (found != size) refuse("frame", "a column that every frame has is missing", "");
   }
   const auto too_large = [](auto last) { return [last](auto code) { return code > last; }; };
-  if (std::any_of(frame.status.begin(), frame.status.end(), too_large(Status::no_echo)) ||
-      std::any_of(frame.cause.begin(), frame.cause.end(), too_large(Cause::crosstalk))) {
-    refuse("frame", "a status or cause that is not known", "those of glidar.Status, glidar.Cause");
+  if (std::any_of(frame.status.begin(), frame.status.end(), too_large(Status::no_return_of_rank)) ||
+      std::any_of(frame.return_source.begin(), frame.return_source.end(),
+                  too_large(ReturnSource::crosstalk))) {
+    refuse("frame", "a status or cause that is not known",
+           "those of glidar.Status, glidar.ReturnSource");
   }
 }
 
@@ -191,10 +193,10 @@ void require_hits_of(const Scene& scene, const Measured& measured) {
       measured.frame.world_from_instance.size() != objects) {
     refuse("frame", "poses of another number of objects", std::to_string(objects) + " objects");
   }
-  const Hits& truth = measured.frame.truth;
+  const Hits& truth = measured.frame.ground_truth;
   for (std::size_t i = 0; i < truth.instance.size(); ++i) {
     const std::uint32_t instance = truth.instance[i];
-    if (instance == kNoHit) continue;
+    if (instance == kInvalidId) continue;
     if (instance < objects &&
         truth.primitive[i] < scene.meshes[scene.instances[instance].mesh].triangles.size())
       continue;

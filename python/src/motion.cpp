@@ -3,7 +3,7 @@
 #include "motion.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/trajectory_file.hpp>
+#include <glidar/io/formats/trajectory_file.hpp>
 #include <glidar/motion/mounted.hpp>
 
 #include <nanobind/eigen/dense.h>
@@ -62,12 +62,12 @@ Trajectories timed(const Numbers<std::int64_t>& t_ns, const PoseArray& poses) {
 Trajectories tumbling(const PoseArray& poses, const Eigen::Vector3d& moments_kg_m2,
                       const Eigen::Vector3d& rate_rad_s, const Eigen::Vector3d& velocity_m_s,
                       std::int64_t t0_ns) {
-  return one(Tumbling({.moments_kg_m2 = moments_kg_m2,
-                       .rate_rad_s = rate_rad_s,
-                       .world_from_body = pose_of(poses, 0, "pose"),
-                       .body_from_principal = pose_of(poses, 1, "body_from_principal"),
-                       .velocity_m_s = velocity_m_s,
-                       .t0_ns = t0_ns}));
+  return one(TorqueFreeRotation({.moments_kg_m2 = moments_kg_m2,
+                                 .rate_rad_s = rate_rad_s,
+                                 .world_from_body = pose_of(poses, 0, "pose"),
+                                 .body_from_principal = pose_of(poses, 1, "body_from_principal"),
+                                 .velocity_m_s = velocity_m_s,
+                                 .t0_ns = t0_ns}));
 }
 
 Trajectories load(const std::filesystem::path& path, std::optional<double> rate_hz,
@@ -86,7 +86,7 @@ Trajectories joined(const std::vector<Trajectories>& parts) {
 
 /// Where a part of the first body is.
 Trajectories part_of(const Trajectories& body, const PoseArray& body_from_part) {
-  return {{mounted(body.all.at(0), pose_of(body_from_part, 0, "rig_from_sensor"))}};
+  return {{compose_extrinsic(body.all.at(0), pose_of(body_from_part, 0, "rig_from_sensor"))}};
 }
 
 /// Poses of the first trajectory at many times, (N, 4, 4).
@@ -106,7 +106,7 @@ nb::ndarray<nb::numpy, double> poses_of(const Trajectories& trajectories,
 }
 
 std::pair<std::int64_t, std::int64_t> span_of(const Trajectories& trajectories) {
-  const TimeSpan span = known_times(trajectories.all.at(0));
+  const TimeInterval span = valid_interval(trajectories.all.at(0));
   return {span.first_ns, span.last_ns};
 }
 
@@ -157,7 +157,7 @@ void bind_motion(nb::module_& module) {
   nb::class_<Trajectories>(module, "Trajectories", "Poses as functions of time.")
       .def("__len__", [](const Trajectories& self) { return self.all.size(); })
       .def("poses_at", poses_of, nb::arg("t_ns"))
-      .def("known_times", span_of);
+      .def("valid_interval", span_of);
   module.def("constant", constant, nb::arg("poses"), nb::arg("name"));
   module.def("spin", spin, nb::arg("pose"), nb::arg("rate_rad_s"), nb::arg("t0_ns"));
   module.def("twist", twist, nb::arg("pose"), nb::arg("angular_rad_s"), nb::arg("linear_m_s"),

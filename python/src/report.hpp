@@ -21,7 +21,7 @@ inline nb::object text_of(std::string_view bytes) {
 struct Interrupted {};
 
 /// While GLIDAR works without Python's lock: looks now and then whether Ctrl-C was pressed.
-/// Progress may come from any thread; only the one that called runs Python's handlers.
+/// ProgressCallback may come from any thread; only the one that called runs Python's handlers.
 class Watch {
  public:
   Watch() : caller_(std::this_thread::get_id()), next_(Clock::now() + kPause) {}
@@ -30,7 +30,7 @@ class Watch {
   void look();
   /// Ends the work with this error where that can be raised; else Python only tells it.
   void give_up(nb::python_error& error) const;
-  Progress progress() {
+  ProgressCallback progress() {
     return [this](double /*fraction*/) { look(); };
   }
 

@@ -6,9 +6,9 @@
 #include "scene_state.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/single_precision.hpp>
-#include <glidar/io/file_guard.hpp>
-#include <glidar/io/surfaces.hpp>
+#include <glidar/io/config/surface_presets.hpp>
+#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/math/single_precision.hpp>
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/array.h>

@@ -5,7 +5,7 @@
 #include "motion.hpp"
 #include "sensor.hpp"
 
-#include <glidar/io/scene_file.hpp>
+#include <glidar/io/config/scene_file.hpp>
 #include <glidar/render/renderer.hpp>
 
 #include <map>

@@ -3,7 +3,7 @@
 #include "scene_state.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/content_hash.hpp>
+#include <glidar/io/files/content_hash.hpp>
 
 #include <nanobind/eigen/dense.h>
 #include <nanobind/stl/filesystem.h>
@@ -69,7 +69,7 @@ void add(const Mesh& mesh, Digest& digest) {
   }
 }
 
-void add(const Backscatter& backscatter, Digest& digest) {
+void add(const Brdf& backscatter, Digest& digest) {
   struct Adder {
     Digest& to;
     void operator()(const Lambert& /*none*/) const {}

@@ -5,11 +5,11 @@
 #include "convert.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/io/sensor_document.hpp>
-#include <glidar/io/sensor_file.hpp>
-#include <glidar/io/sensor_options.hpp>
-#include <glidar/io/sensor_presets.hpp>
-#include <glidar/io/sidecar.hpp>
+#include <glidar/io/config/sensor_document.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/sensor_options.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
+#include <glidar/io/formats/sidecar.hpp>
 
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
@@ -58,8 +58,8 @@ Shared load(const std::string& name_or_path) {
 
 /// A table of beams as Python has it: `shape` (rows, cols), `period_ns`, and arrays of one row per
 /// beam, of which only `directions` must be there.
-BeamTable table_of(const nb::dict& arrays) {
-  BeamTable table;
+RayTable table_of(const nb::dict& arrays) {
+  RayTable table;
   std::tie(table.rows, table.cols) =
       nb::cast<std::pair<std::uint32_t, std::uint32_t>>(arrays["shape"]);
   table.period_ns = nb::cast<double>(arrays["period_ns"]);
@@ -88,8 +88,8 @@ Shared changed(const SensorHandle& handle, const SensorOptions& options) {
   return make(std::move(sensor));
 }
 
-Shared made_ideal(const SensorHandle& handle) {
-  return make(ideal(handle.sensor()));
+Shared made_ground_truth(const SensorHandle& handle) {
+  return make(ground_truth_sensor(handle.sensor()));
 }
 
 /// An array of one number, or one vector, per beam.
@@ -102,7 +102,7 @@ nb::object per_beam(const Values& values, const Shape& shape, nb::handle owner) 
 /// The table of a sensor that is one, as restore_sensor() takes it; None for other optics. Its
 /// arrays are views of the sensor's memory.
 nb::object beam_table(const nb::handle& self) {
-  const auto* table = std::get_if<BeamTable>(&nb::cast<const SensorHandle&>(self).sensor().optics);
+  const auto* table = std::get_if<RayTable>(&nb::cast<const SensorHandle&>(self).sensor().optics);
   if (table == nullptr) return nb::none();
   const std::array<std::size_t, 1> count = {table->directions.size()};
   const std::array<std::size_t, 2> triples = {count[0], 3};
@@ -129,14 +129,14 @@ nb::object directions(const nb::handle& self) {
 /// One entry per number of the file: key, value, source, whether it is verified.
 nb::list sheet(const std::string& name_or_path) {
   nb::list list;
-  for (const SheetEntry& entry : load_sensor_sheet(find_sensor_file(name_or_path)).entries) {
+  for (const DatasheetEntry& entry : load_datasheet(find_sensor_file(name_or_path)).entries) {
     list.append(nb::make_tuple(entry.key, entry.value, entry.source, entry.verified));
   }
   return list;
 }
 
 std::string description(const SensorHandle& handle) {
-  return sensor_text(handle.sensor(), *handle.beams(0));
+  return sensor_to_json(handle.sensor(), *handle.beams(0));
 }
 
 std::vector<std::string> preset_names() {
@@ -170,7 +170,7 @@ std::shared_ptr<const Beams> SensorHandle::beams(std::uint32_t number) const {
   if (number == 0 || std::holds_alternative<Pinhole>(sensor_.optics)) return first_;
   const std::lock_guard lock(mutex_);
   if (last_number_ != number) {
-    last_ = std::make_shared<const Beams>(make_beams(sensor_, scan_window(sensor_, number)));
+    last_ = std::make_shared<const Beams>(make_beams(sensor_, frame_interval(sensor_, number)));
     last_number_ = number;
   }
   return last_;
@@ -193,14 +193,14 @@ void bind_sensor(nb::module_& module) {
       .def("beam_table", beam_table,
            nb::sig("def beam_table(self) -> dict[str, typing.Any] | None"))
       .def("changed", changed, nb::arg("options"))
-      .def("ideal", made_ideal);
+      .def("ground_truth", made_ground_truth);
   module.def("load_sensor", load, nb::arg("name_or_path"));
   module.def("parse_sensor", parse, nb::arg("text"), nb::arg("table").none() = nb::none(),
              nb::arg("files") = std::vector<std::string>(),
              nb::sig("def parse_sensor(text: str, table: dict[str, typing.Any] | None = None, "
                      "files: list[str] = []) -> Sensor"));
-  module.def("sensor_sheet", sheet, nb::arg("name_or_path"),
-             nb::sig("def sensor_sheet(name_or_path: str) -> list[tuple[str, str, str, bool]]"));
+  module.def("datasheet", sheet, nb::arg("name_or_path"),
+             nb::sig("def datasheet(name_or_path: str) -> list[tuple[str, str, str, bool]]"));
   module.def("sensor_file", find_sensor_file, nb::arg("name_or_path"));
   module.def("preset_names", preset_names);
 }

@@ -5,8 +5,8 @@
 #include "report.hpp"
 
 #include <glidar/core/point_cloud.hpp>
-#include <glidar/sensor/framing.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/sensor/view_placement.hpp>
+#include <glidar/simulate/simulate.hpp>
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
@@ -53,18 +53,19 @@ struct Batch {
   std::span<const std::uint64_t> seeds;
   std::span<const std::uint32_t> numbers;
   std::uint32_t sensor_id;
-  const HitFields& fields;
+  const HitFieldMask& fields;
 
   [[nodiscard]] std::size_t size() const { return sensors.all.size(); }
 };
 
 Motion motion_of(const Simulator& simulator, const Batch& batch, std::size_t k) {
   const Scene& scene = *simulator.prepared->scene;
-  if (!batch.objects) return moving(scene, batch.sensors.all[k], simulator.motion);
+  if (!batch.objects) return make_motion(scene, batch.sensors.all[k], simulator.motion);
   const std::vector<Trajectory>& all = batch.objects->all;
   const std::size_t count = scene.instances.size();
   const auto first = all.begin() + static_cast<std::ptrdiff_t>(all.size() == count ? 0 : k * count);
-  return moving(scene, batch.sensors.all[k], {first, first + static_cast<std::ptrdiff_t>(count)});
+  return make_motion(scene, batch.sensors.all[k],
+                     {first, first + static_cast<std::ptrdiff_t>(count)});
 }
 
 using Frames = std::vector<std::unique_ptr<Measured>>;
@@ -77,7 +78,7 @@ std::unique_ptr<Measured> start(const Simulator& simulator, const Batch& batch, 
   measured->motion = std::make_shared<const Motion>(motion_of(simulator, batch, k));
   Frame& frame = measured->frame;
   frame.number = batch.numbers[k];
-  frame.stamp_ns = scan_window(simulator.sensor->sensor(), frame.number).start_ns;
+  frame.stamp_ns = frame_interval(simulator.sensor->sensor(), frame.number).start_ns;
   frame.seed = batch.seeds[k];
   frame.sensor_id = batch.sensor_id;
   return measured;
@@ -117,7 +118,7 @@ using Key = std::tuple<std::uint64_t, std::uint32_t, std::uint32_t>;
 
 nb::list simulate_all(const Simulator& simulator, const Trajectories& sensors,
                       const std::optional<Trajectories>& objects, const Keys& keys,
-                      const HitFields& fields) {
+                      const HitFieldMask& fields) {
   const auto& [seeds, numbers, sensor_id] = keys;
   const Batch batch{.sensors = sensors,
                     .objects = objects,
@@ -136,7 +137,7 @@ nb::list simulate_all(const Simulator& simulator, const Trajectories& sensors,
 /// The same for one frame, with less ado.
 std::unique_ptr<Measured> simulate_one(const Simulator& simulator, const Trajectories& sensor,
                                        const std::optional<Trajectories>& objects, const Key& key,
-                                       const HitFields& fields) {
+                                       const HitFieldMask& fields) {
   const auto& [seed, number, sensor_id] = key;
   const Batch batch{.sensors = sensor,
                     .objects = objects,
@@ -161,8 +162,8 @@ Trajectories usual_motion(const Simulator& simulator) {
   const Eigen::Vector3d from(2.0, -3.0, 2.0);
   const Eigen::Vector3d up = Eigen::Vector3d::UnitZ();
   const Scene& scene = *simulator.prepared->scene;
-  return {{ConstantPose{is_lidar ? stand_beside(*beams, scene, from, up)
-                                 : frame_view(*beams, scene, from, up)}}};
+  return {{ConstantPose{is_lidar ? place_lidar_beside(*beams, scene, from, up)
+                                 : fit_camera_to_scene(*beams, scene, from, up)}}};
 }
 
 /// Gives a restored frame the scene that it was measured of, and the renderer.
@@ -177,20 +178,21 @@ void attach_scene(Measured& measured, const SceneHandle& scene, const std::strin
   if (!measured.unrendered) measured.unrendered = unrendered(scene, renderer);
 }
 
-HitFields fields(const std::vector<std::string>& columns) {
-  return fields_for(columns);
+HitFieldMask fields(const std::vector<std::string>& columns) {
+  return fields_needed_by(columns);
 }
 
 }  // namespace
 
 void bind_simulator(nb::module_& module) {
-  nb::class_<HitFields>(module, "HitFields", "What truth a frame keeps.");
-  module.def("fields_for", fields, nb::arg("columns"));
+  nb::class_<HitFieldMask>(module, "HitFieldMask", "What truth a frame keeps.");
+  module.def("fields_needed_by", fields, nb::arg("columns"));
   nb::class_<Simulator>(module, "Simulator")
-      .def("simulate", simulate_all, nb::arg("sensors"), nb::arg("objects").none(), nb::arg("keys"),
-           nb::arg("fields"),
-           nb::sig("def simulate(self, sensors: Trajectories, objects: Trajectories | None, keys: "
-                   "tuple[numpy.ndarray, numpy.ndarray, int], fields: HitFields) -> list[Frame]"))
+      .def(
+          "simulate", simulate_all, nb::arg("sensors"), nb::arg("objects").none(), nb::arg("keys"),
+          nb::arg("fields"),
+          nb::sig("def simulate(self, sensors: Trajectories, objects: Trajectories | None, keys: "
+                  "tuple[numpy.ndarray, numpy.ndarray, int], fields: HitFieldMask) -> list[Frame]"))
       .def("simulate_one", simulate_one, nb::arg("sensor"), nb::arg("objects").none(),
            nb::arg("key"), nb::arg("fields"))
       .def("usual_motion", usual_motion)

@@ -4,10 +4,10 @@
 #include "frame.hpp"
 #include "report.hpp"
 
-#include <glidar/io/atomic_file.hpp>
-#include <glidar/io/information_file.hpp>
-#include <glidar/io/surfaces.hpp>
-#include <glidar/sensor/information.hpp>
+#include <glidar/io/config/surface_presets.hpp>
+#include <glidar/io/files/atomic_file.hpp>
+#include <glidar/io/formats/fisher_information_file.hpp>
+#include <glidar/sensor/fisher_information.hpp>
 #include <glidar/verify/verify.hpp>
 
 #include <nanobind/eigen/dense.h>
@@ -20,10 +20,10 @@
 namespace glidar::python {
 namespace {
 
-PoseInformation information(const Measured& measured, double sigma_m,
-                            const PoseArray& sensor_from_reference,
-                            std::optional<std::uint32_t> instance) {
-  InformationOptions options;
+FisherInformation information(const Measured& measured, double sigma_m,
+                              const PoseArray& sensor_from_reference,
+                              std::optional<std::uint32_t> instance) {
+  FisherOptions options;
   options.sigma_m = sigma_m;
   options.sensor_from_reference = pose_of(sensor_from_reference, 0, "reference");
   options.instance = instance;
@@ -31,7 +31,7 @@ PoseInformation information(const Measured& measured, double sigma_m,
   return pose_information(measured.frame, *measured.beams, options);
 }
 
-std::vector<VerifyRow> verified(const std::string& renderer, unsigned threads) {
+std::vector<AccuracyCase> verified(const std::string& renderer, unsigned threads) {
   return unlocked([&](Watch& watch) {
     return verify({.kind = renderer, .threads = threads}, watch.progress());
   });
@@ -39,11 +39,11 @@ std::vector<VerifyRow> verified(const std::string& renderer, unsigned threads) {
 
 std::vector<std::string> surface_names() {
   std::vector<std::string> names;
-  for (const Surface& surface : load_surfaces()) names.push_back(surface.name);
+  for (const SurfacePreset& surface : load_surfaces()) names.push_back(surface.name);
   return names;
 }
 
-nb::dict state_of(const PoseInformation& information) {
+nb::dict state_of(const FisherInformation& information) {
   nb::list directions;
   for (const InformationDirection& one : information.directions) {
     directions.append(nb::make_tuple(one.eigenvalue, one.degenerate, one.displacement, one.words));
@@ -62,8 +62,8 @@ nb::dict state_of(const PoseInformation& information) {
   return state;
 }
 
-PoseInformation restore_information(const nb::dict& state) {
-  PoseInformation information;
+FisherInformation restore_information(const nb::dict& state) {
+  FisherInformation information;
   information.matrix = nb::cast<Matrix6>(state["matrix"]);
   information.covariance = nb::cast<Matrix6>(state["covariance"]);
   information.bound = nb::cast<Vector6>(state["bound"]);
@@ -90,57 +90,62 @@ void write_file(const std::filesystem::path& path, const nb::bytes& data) {
 }
 
 void bind_information(nb::module_& module) {
-  nb::class_<InformationDirection>(module, "Direction")
+  nb::class_<InformationDirection>(module, "EigenDirection")
       .def_ro("eigenvalue", &InformationDirection::eigenvalue)
       .def_ro("degenerate", &InformationDirection::degenerate)
       .def_ro("displacement", &InformationDirection::displacement)
       .def_ro("words", &InformationDirection::words);
-  nb::class_<PoseInformation>(module, "Information")
-      .def_ro("matrix", &PoseInformation::matrix)
-      .def_ro("covariance", &PoseInformation::covariance)
-      .def_ro("bound", &PoseInformation::bound)
-      .def_ro("directions", &PoseInformation::directions)
-      .def_ro("condition", &PoseInformation::condition)
-      .def_ro("length_m", &PoseInformation::length_m)
-      .def_ro("middle_m", &PoseInformation::middle_m)
-      .def_ro("returns", &PoseInformation::returns)
-      .def_ro("left_out", &PoseInformation::left_out)
-      .def_ro("assumed_sigma_m", &PoseInformation::assumed_sigma_m)
+  nb::class_<FisherInformation>(module, "FisherInformation")
+      .def_ro("matrix", &FisherInformation::matrix)
+      .def_ro("covariance", &FisherInformation::covariance)
+      .def_ro("bound", &FisherInformation::bound)
+      .def_ro("directions", &FisherInformation::directions)
+      .def_ro("condition", &FisherInformation::condition)
+      .def_ro("length_m", &FisherInformation::length_m)
+      .def_ro("middle_m", &FisherInformation::middle_m)
+      .def_ro("returns", &FisherInformation::returns)
+      .def_ro("left_out", &FisherInformation::left_out)
+      .def_ro("assumed_sigma_m", &FisherInformation::assumed_sigma_m)
       .def("text", information_text)
       .def("json", information_json)
       .def("save", write_information, nb::arg("path"),
            nb::sig("def save(self, path: str) -> None"));
   module.def("information", information, nb::arg("frame"), nb::arg("sigma_m"),
              nb::arg("sensor_from_reference"), nb::arg("instance").none());
-  module.def("information_state", state_of, nb::arg("information"),
-             nb::sig("def information_state(information: Information) -> dict[str, typing.Any]"));
+  module.def(
+      "information_state", state_of, nb::arg("information"),
+      nb::sig("def information_state(information: FisherInformation) -> dict[str, typing.Any]"));
   module.def("restore_information", restore_information, nb::arg("state"),
-             nb::sig("def restore_information(state: dict[str, typing.Any]) -> Information"));
+             nb::sig("def restore_information(state: dict[str, typing.Any]) -> FisherInformation"));
 }
 
 }  // namespace
 
 void bind_tools(nb::module_& module) {
   bind_information(module);
-  nb::class_<VerifyRow>(module, "VerifyRow")
-      .def_ro("name", &VerifyRow::name)
-      .def_ro("shape", &VerifyRow::shape)
-      .def_ro("distance_m", &VerifyRow::distance_m)
-      .def_prop_ro("rays", [](const VerifyRow& self) { return self.result.rays; })
-      .def_prop_ro("judged_hits", [](const VerifyRow& self) { return self.result.judged_hits; })
-      .def_prop_ro("judged_misses", [](const VerifyRow& self) { return self.result.judged_misses; })
-      .def_prop_ro("near_edges", [](const VerifyRow& self) { return self.result.near_edges; })
-      .def_prop_ro("wrong_hits", [](const VerifyRow& self) { return self.result.wrong_hits; })
-      .def_prop_ro("wrong_misses", [](const VerifyRow& self) { return self.result.wrong_misses; })
-      .def_prop_ro("wrong_ids", [](const VerifyRow& self) { return self.result.wrong_ids; })
-      .def_prop_ro("range_error_m", [](const VerifyRow& self) { return self.result.range_error_m; })
+  nb::class_<AccuracyCase>(module, "AccuracyCase")
+      .def_ro("name", &AccuracyCase::name)
+      .def_ro("shape", &AccuracyCase::shape)
+      .def_ro("distance_m", &AccuracyCase::distance_m)
+      .def_prop_ro("rays", [](const AccuracyCase& self) { return self.result.rays; })
+      .def_prop_ro("judged_hits", [](const AccuracyCase& self) { return self.result.judged_hits; })
+      .def_prop_ro("judged_misses",
+                   [](const AccuracyCase& self) { return self.result.judged_misses; })
+      .def_prop_ro("near_edges", [](const AccuracyCase& self) { return self.result.near_edges; })
+      .def_prop_ro("wrong_hits", [](const AccuracyCase& self) { return self.result.wrong_hits; })
+      .def_prop_ro("wrong_misses",
+                   [](const AccuracyCase& self) { return self.result.wrong_misses; })
+      .def_prop_ro("wrong_ids", [](const AccuracyCase& self) { return self.result.wrong_ids; })
+      .def_prop_ro("range_error_m",
+                   [](const AccuracyCase& self) { return self.result.range_error_m; })
       .def_prop_ro("range_error_ulp",
-                   [](const VerifyRow& self) { return self.result.range_error_ulp; })
+                   [](const AccuracyCase& self) { return self.result.range_error_ulp; })
       .def_prop_ro("normal_error_rad",
-                   [](const VerifyRow& self) { return self.result.normal_error_rad; })
-      .def_prop_ro("known_failure", [](const VerifyRow& self) { return self.known.reason; })
-      .def_prop_ro("verdict",
-                   [](const VerifyRow& self) { return std::string(verdict_name(self.verdict())); });
+                   [](const AccuracyCase& self) { return self.result.normal_error_rad; })
+      .def_prop_ro("known_failure", [](const AccuracyCase& self) { return self.known.reason; })
+      .def_prop_ro("verdict", [](const AccuracyCase& self) {
+        return std::string(verdict_name(self.verdict()));
+      });
   module.def("verify", verified, nb::arg("renderer"), nb::arg("threads"));
   module.def("surface_names", surface_names);
   module.def("write_file", write_file, nb::arg("path"), nb::arg("data"),

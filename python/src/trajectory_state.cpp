@@ -63,8 +63,8 @@ nb::dict state_of(const TimedPoses& timed) {
   return state;
 }
 
-nb::dict state_of(const Tumbling& tumbling) {
-  const TumblingStart& start = tumbling.start();
+nb::dict state_of(const TorqueFreeRotation& tumbling) {
+  const InitialRotation& start = tumbling.start();
   nb::dict state = of_kind("tumbling");
   state["moments_kg_m2"] = start.moments_kg_m2;
   state["rate_rad_s"] = start.rate_rad_s;
@@ -113,13 +113,13 @@ TimedPoses timed_from(const nb::dict& state) {
   return TimedPoses::restored(std::move(poses));
 }
 
-Tumbling tumbling_from(const nb::dict& state) {
-  return Tumbling({.moments_kg_m2 = vector_in(state, "moments_kg_m2"),
-                   .rate_rad_s = vector_in(state, "rate_rad_s"),
-                   .world_from_body = pose_in(state, "world_from_body"),
-                   .body_from_principal = pose_in(state, "body_from_principal"),
-                   .velocity_m_s = vector_in(state, "velocity_m_s"),
-                   .t0_ns = t0_in(state)});
+TorqueFreeRotation tumbling_from(const nb::dict& state) {
+  return TorqueFreeRotation({.moments_kg_m2 = vector_in(state, "moments_kg_m2"),
+                             .rate_rad_s = vector_in(state, "rate_rad_s"),
+                             .world_from_body = pose_in(state, "world_from_body"),
+                             .body_from_principal = pose_in(state, "body_from_principal"),
+                             .velocity_m_s = vector_in(state, "velocity_m_s"),
+                             .t0_ns = t0_in(state)});
 }
 
 [[noreturn]] void refuse_kind(const std::string& kind) {

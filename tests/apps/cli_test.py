@@ -87,7 +87,7 @@ class Render(CliTest):
     def test_framed_view_is_filled_but_not_cut(self):
         for size in (("64", "64"), ("200", "20"), ("20", "200")):
             self.succeed("render", "builtin:box", "-w", size[0], "--height", size[1],
-                         "-o", "a.csv", "--columns", "xyz,row,col,status")
+                         "-o", "a.csv", "--fields", "xyz,row,col,status")
             with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
                 lines = [line for line in file.read().split("\n") if line and line[0] != "#"]
             names = lines[0].split(",")
@@ -113,7 +113,7 @@ class Render(CliTest):
                                 ("from the cache", ("--threads", "2"))):
             outputs = [word for output in names for word in ("-o", output)]
             self.succeed("render", "box.obj", "-w", "301", "--height", "203", *arguments,
-                         "--columns", "all", *outputs)
+                         "--fields", "all", *outputs)
             contents[name] = [self.bytes_of(output) for output in names]
             self.assertEqual(contents[name], contents["1 thread"], name)
         self.assertIn("(from the cache)", self.succeed("info", "box.obj").stdout)
@@ -143,7 +143,7 @@ class Render(CliTest):
         self.write("box.obj", "mtllib paint.mtl\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl paint\n" + faces)
         contents = []
         for arguments in (("--no-cache",), ("--no-cache",), (), (), ("--cache-folder", "other")):
-            self.succeed("render", "box.obj", *arguments, "--columns", "all", "-o", "a.npz")
+            self.succeed("render", "box.obj", *arguments, "--fields", "all", "-o", "a.npz")
             with open(os.path.join(self.folder, "a.npz"), "rb") as file:
                 contents.append(file.read())
         self.assertIn('"from_cache": true', self.succeed("info", "box.obj", "--json").stdout)
@@ -185,13 +185,13 @@ class Render(CliTest):
     def test_cloud_frames_are_named_in_the_files(self):
         for frame, name in (("optical", "optical"), ("ros", "camera_frame"), ("gl", "gl"),
                             ("world", "world"), ("legacy", "legacy")):
-            self.succeed("render", "builtin:box", "--cloud-frame", frame, "-o", "a.pcd")
+            self.succeed("render", "builtin:box", "--frame", frame, "-o", "a.pcd")
             with open(os.path.join(self.folder, "a.pcd.json"), encoding="utf-8") as file:
                 self.assertIn(name, json.dumps(json.load(file)))
 
     def test_world_cloud_lies_on_the_model(self):
-        self.succeed("render", "builtin:box", "--cloud-frame", "world", "--dense", "-o", "a.csv",
-                     "--columns", "xyz")
+        self.succeed("render", "builtin:box", "--frame", "world", "--drop-invalid", "-o", "a.csv",
+                     "--fields", "xyz")
         with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
             lines = [line for line in file.read().split("\n") if line and line[0] != "#"]
         for line in lines[1:]:
@@ -225,14 +225,14 @@ class Render(CliTest):
 class Motion(CliTest):
     def test_information_stands_beside_the_output(self):
         told = self.succeed("render", "builtin:plane", "--eye", "0,0,5", "--target", "0,0,0",
-                            "--up-vector", "0,1,0", "--information", "-o", "view.pcd").stdout
+                            "--up-vector", "0,1,0", "--fisher", "-o", "view.pcd").stdout
         self.assertIn("sigma of ranges assumed: 0.01 m", told)
         self.assertIn("DEGENERATE   translation along x", told)
         with open(os.path.join(self.folder, "view.information.json"), encoding="utf-8") as file:
             information = json.load(file)
         self.assertEqual(sum(d["degenerate"] for d in information["directions"]), 3)
-        self.assertIn("give --information too", self.refused(
-            "render", "builtin:box", "--information-sigma", "0.1", "-o", "x.pcd"))
+        self.assertIn("give --fisher too", self.refused(
+            "render", "builtin:box", "--range-sigma", "0.1", "-o", "x.pcd"))
 
     def test_trajectory_places_the_sensor_at_time_zero(self):
         self.write("path.tum", "0 0 0 -7 0 0 0 1\n1 0 0 -6 0 0 0 1\n")
@@ -258,7 +258,7 @@ sensor_pose:
 
     def ids(self, *arguments):
         self.write("scene.yaml", self.SCENE)
-        done = self.succeed("render", "scene.yaml", *arguments, "--dense", "--columns", "xyz,instance",
+        done = self.succeed("render", "scene.yaml", *arguments, "--drop-invalid", "--fields", "xyz,instance",
                             "-o", "a.csv")
         with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
             lines = [line for line in file.read().split("\n") if line and line[0] != "#"]
@@ -381,7 +381,7 @@ class Interrupt(CliTest):
     def test_ctrl_c_leaves_no_files(self):
         with subprocess.Popen(
                 ["glidar", "render", "builtin:asteroid", "-w", "1200", "--height", "1200",
-                 "--columns", "all", "-o", "a.csv", "-o", "b.csv"],
+                 "--fields", "all", "-o", "a.csv", "-o", "b.csv"],
                 cwd=self.folder, env=self.environment, stdout=subprocess.PIPE,
                 stderr=subprocess.PIPE, text=True) as program:
             wait_until(self.files, "it was writing", program, pause_s=0.002)

@@ -15,7 +15,7 @@ ROOT = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
 SENSOR = """
 optics: {type: pinhole, width: 24, height: 20, fov_deg: 30}
 wavelength_nm: 905
-pulse_light: {reference_reflectance: 0.8, reference_range_m: 100, noise_sigma: 0.2}
+lidar_equation: {reference_reflectance: 0.8, reference_range_m: 100, noise_sigma: 0.2}
 footprint: {divergence_mrad: 3}
 receiver: {returns: [first, last]}
 weather: {rain_mm_per_h: 20, visibility_m: 60}
@@ -47,9 +47,9 @@ class Explain(CliTest):
 
     def test_every_point_has_a_story_that_ends_at_it(self):
         self.write("s.yaml", SENSOR)
-        columns = ("--columns", "xyz,range,intensity,status,row,col,return")
+        columns = ("--fields", "xyz,range,intensity,status,row,col,return")
         self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "--seed", "5", *columns, "-o", "all.csv")
-        self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "--seed", "5", *columns, "--dense",
+        self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "--seed", "5", *columns, "--drop-invalid",
                      "-o", "dense.csv")
         everything, dense = self.points_of("all.csv"), self.points_of("dense.csv")
         self.assertGreater(len(everything), len(dense))
@@ -67,10 +67,10 @@ class Explain(CliTest):
         self.write("s.yaml", SENSOR)
         self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "-o", "a.npz")
         story = self.story_of("a.npz", "--row", "10", "--col", "12")
-        self.assertEqual(list(story), ["beam", "fired", "aimed", "ray", "met", "light", "ways", "echoes",
+        self.assertEqual(list(story), ["beam", "fired", "aimed", "ray", "met", "light", "paths", "echoes",
                                        "received", "measured", "noise 1", "noise 2", "reported", "error"][:len(story)])
         self.assertIn("asteroid", story["met"][0])
-        self.assertIn("sub-rays", story["ways"][0])
+        self.assertIn("sub-rays", story["paths"][0])
         self.assertIn("drew normal", story["echoes"][1])
         self.assertIn("range_gaussian sigma_m 0.02", story["noise 1"][0])
 
@@ -80,7 +80,7 @@ optics: {type: pinhole, width: 24, height: 20, fov_deg: 30}
 noise: [{type: kinect_v1, window: 5}, {type: dropout, probability: 0.1, by_range_m: [[0, 0.5], [1000, 0.5]]}]
 """)
         self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "-o", "a.csv",
-                     "--columns", "xyz,range,intensity,status")
+                     "--fields", "xyz,range,intensity,status")
         story = self.story_of("a.csv", "--row", "10", "--col", "12")
         kinect, chance = story["noise 1"], story["noise 2"]
         self.assertRegex(kinect[2], r"drew normal \S+: error of the disparity: the mean of 5 x 5 pixels' numbers")
@@ -102,8 +102,8 @@ noise: [{type: kinect_v1, window: 5}, {type: dropout, probability: 0.1, by_range
     def test_frames_of_a_sequence_and_moved_folders_are_found(self):
         self.write("box.obj", box_of(2))
         os.mkdir(os.path.join(self.folder, "out"))
-        self.succeed("render", "box.obj", "--camera-dr", "0,1,0", "--camera-z", "9", "--duration", "0.1",
-                     "--threads", "1", "--quiet", "-o", "out/b.csv", "--columns", "xyz,range,intensity,status")
+        self.succeed("render", "box.obj", "--sensor-rate", "0,1,0", "--camera-z", "9", "--duration", "0.1",
+                     "--threads", "1", "--quiet", "-o", "out/b.csv", "--fields", "xyz,range,intensity,status")
         with open(os.path.join(self.folder, "out", "b_000002.csv.json"), encoding="utf-8") as file:
             told = json.load(file)
         self.assertEqual(told["frame"], 2)
@@ -121,7 +121,7 @@ noise: [{type: kinect_v1, window: 5}, {type: dropout, probability: 0.1, by_range
 
     def test_what_cannot_be_explained_is_refused(self):
         self.write("box.obj", box_of(2))
-        self.succeed("render", "box.obj", "-w", "8", "--height", "8", "-o", "b.pcd", "--dense")
+        self.succeed("render", "box.obj", "-w", "8", "--height", "8", "-o", "b.pcd", "--drop-invalid")
         self.succeed("render", "box.obj", "-w", "8", "--height", "8", "-o", "none.pcd", "--no-sidecar")
         explain = lambda *arguments: self.refused("explain", *arguments)
         self.assertIn("without --no-sidecar", explain("none.pcd", "--index", "0"))

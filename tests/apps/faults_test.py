@@ -19,7 +19,7 @@ from waiting import MAX_WAIT_S
 
 SIZE = ("--width", "16", "--height", "12", "--fov", "40", "--threads", "1", "--quiet")
 RENDER = ("render", "builtin:asteroid", *SIZE, "-o", "out/a.pcd", "-o", "out/b.npz", "-o", "out/c.depth.tiff")
-STREAM = ("stream", "builtin:asteroid", *SIZE, "--model-dr", "0,0.5,0", "--rate", "max", "--frames", "40")
+STREAM = ("stream", "builtin:asteroid", *SIZE, "--object-rate", "0,0.5,0", "--rate", "max", "--frames", "40")
 RECORD = (*STREAM, "--record", "out/r.jsonl")
 DURABLE = (*RECORD, "--durable")
 SEED = 17

@@ -15,7 +15,7 @@ STREET = pathlib.Path(__file__).parents[2] / "examples" / "street.yaml"
 class InstructionSets(CliTest):
     def render(self, name, *arguments):
         self.environment["GLIDAR_ISA"] = name
-        return self.run_program("render", *arguments, "--columns", "all", "-o", "a.npz")
+        return self.run_program("render", *arguments, "--fields", "all", "-o", "a.npz")
 
     def usable(self):
         names = []
@@ -38,7 +38,7 @@ class InstructionSets(CliTest):
         camera = ("builtin:asteroid", "-w", "128", "--height", "96")
         for arguments in ((*camera, "--renderer", "rays"), (*camera, "--renderer", "raster"),
                           ("builtin:torus", "--sensor", "VLP-16", "--eye", "3,0,0"), (str(STREET), ),
-                          ("builtin:torus", "--sensor", "OS1-64", "--eye", "3,0,0", "--ideal", "--renderer", "raster")):
+                          ("builtin:torus", "--sensor", "OS1-64", "--eye", "3,0,0", "--ground-truth", "--renderer", "raster")):
             first, *others = (self.rendered(name, *arguments) for name in usable)
             for name, other in zip(usable[1:], others):
                 self.assertEqual(other, first, f"{arguments[0]}, {name}")

@@ -95,7 +95,7 @@ class Lockstep(CliTest):
             columns = ["xyz", "intensity", "normal", "status", "instance"]
             _, cloud = ask(socket, columns, [(0, 5, 0, [SENSOR, ROCK])])[0]
         self.succeed("render", "builtin:asteroid", *self.SIZE, "--seed", "5", "--sensor-pose",
-                     "6,0,0,0.5,-0.5,-0.5,0.5", "--columns", ",".join(columns), "-o", "x.npz")
+                     "6,0,0,0.5,-0.5,-0.5,0.5", "--fields", ",".join(columns), "-o", "x.npz")
         with np.load(os.path.join(self.folder, "x.npz")) as written:
             for name in columns:
                 expected = written[name]
@@ -114,7 +114,7 @@ class Lockstep(CliTest):
 
     def test_beams_that_fire_later_see_a_moving_body_later(self):
         """A wall that comes nearer at 10 m/s: a turn of 0.1 s sees it up to 1 m nearer."""
-        with Server(self, "builtin:plane", "--scale", "1000", "--sensor", "VLP-16", "--ideal") as server:
+        with Server(self, "builtin:plane", "--scale", "1000", "--sensor", "VLP-16", "--ground-truth") as server:
             socket = server.connect()
             level = body((0, 0, 0))
             attitude = (0.7071067811865476, 0, 0.7071067811865476, 0)
@@ -251,8 +251,8 @@ class Lockstep(CliTest):
                                ("tcp://127.0.0.1:99999", "65535"), ("ipc://", "path"),
                                ("tcp://192.0.2.1:5600", "192.0.2.1")):
             self.assertRegex(self.refused("stream", "builtin:box", "--lockstep", endpoint), word)
-        for more in (["--port", "5555"], ["-o", "x.pcd"], ["--model-dr", "0,0,1"], ["--duration", "1"],
-                     ["--dense"], ["--columns", "xyz"], ["--depth-scale", "5000"]):
+        for more in (["--port", "5555"], ["-o", "x.pcd"], ["--object-rate", "0,0,1"], ["--duration", "1"],
+                     ["--drop-invalid"], ["--fields", "xyz"], ["--depth-scale", "5000"]):
             self.assertIn("--lockstep", self.refused("stream", "builtin:box", "--lockstep",
                                                      "tcp://127.0.0.1:*", *more))
         self.assertIn("--curve-keys", self.refused("stream", "builtin:box", "--port", "5555",

@@ -49,15 +49,15 @@ class Rigs(CliTest):
 
     def test_a_rig_does_not_fit_on_standard_output(self):
         told = self.refused("render", "rig.yaml", "-o", "-", "--format", "csv")
-        self.assertIn("--mount", told)
-        done = self.succeed("render", "rig.yaml", "--mount", "camera", "-o", "-", "--format", "csv")
+        self.assertIn("--sensor-name", told)
+        done = self.succeed("render", "rig.yaml", "--sensor-name", "camera", "-o", "-", "--format", "csv")
         self.assertEqual(done.stdout.count("\n"), 40 * 30 + 1)
 
 
 class Folders(CliTest):
     def test_every_frame_of_a_folder_has_its_own_information(self):
         self.succeed("render", "builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "--duration", "0.2",
-                     "--information", "-o", "out.kitti/")  # fmt: skip
+                     "--fisher", "-o", "out.kitti/")  # fmt: skip
         found = sorted(name for name in os.listdir(self.folder) if name.endswith(".information.json"))
         self.assertEqual(found, ["out_000000.information.json", "out_000001.information.json"])
         self.assertEqual(len(os.listdir(os.path.join(self.folder, "out.kitti", "velodyne"))), 2)
@@ -85,7 +85,7 @@ class Failures(CliTest):
     def test_a_full_disk_leaves_no_file_of_the_frame(self):
         limit = 3_000_000  # bytes of one file: a.csv is larger, a.depth.png smaller
         done = subprocess.run(
-            ["glidar", "render", "builtin:box", "-o", "a.depth.png", "-o", "a.csv", "--columns", "all"],
+            ["glidar", "render", "builtin:box", "-o", "a.depth.png", "-o", "a.csv", "--fields", "all"],
             cwd=self.folder, env=self.environment, capture_output=True, text=True, timeout=MAX_WAIT_S, check=False,
             preexec_fn=lambda: (signal.signal(signal.SIGXFSZ, signal.SIG_IGN),
                                 resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))))  # fmt: skip

@@ -28,7 +28,7 @@ class Pictures(CliTest):
         # The near face of a box 5 m ahead spans 2 atan(1 / 4) degrees: its left edge is in one column.
         self.write("s.yaml", "models: [{model: builtin:box, pose: {position: [5, 0, 0]}}]\nsensor: OS1-128\n"
                              "sensor_pose: {position: [0, 0, 0]}\n")
-        self.succeed("render", "s.yaml", "--ideal", "-o", "a.png")
+        self.succeed("render", "s.yaml", "--ground-truth", "-o", "a.png")
         plot = self.pixels("a.png")[56:56 + 128, 100:100 + 1024]  # its place follows from the letters' size
         self.assertEqual(tuple(plot[0, 0]), NO_RETURN)
         is_hit = (plot != NO_RETURN).any(axis=2)
@@ -42,7 +42,7 @@ class Pictures(CliTest):
         # A wall at x = 2 m, seen from the origin of a room: the column of the picture follows from the axis.
         self.write("s.yaml", "models: [{model: builtin:plane, scale: 3, pose: {position: [2, 0, 0], "
                              "euler_deg: {pitch: -90}}}]\nsensor: VLP-16\nsensor_pose: {position: [0, 0, 0]}\n")
-        self.succeed("render", "s.yaml", "--ideal", "-o", "a.bev.png")
+        self.succeed("render", "s.yaml", "--ground-truth", "-o", "a.bev.png")
         image = self.pixels("a.bev.png")
         self.assertEqual(image.shape, (1000, 1400, 3))
         saturation = image.max(axis=2) - image.min(axis=2)
@@ -71,7 +71,7 @@ class Pictures(CliTest):
         pictures = []
         for text in (room, room + tiny):
             self.write("s.yaml", text + "sensor: OS1-128\nsensor_pose: {position: [0, 0, 0]}\n")
-            self.succeed("render", "s.yaml", "--ideal", "-o", "a.png")
+            self.succeed("render", "s.yaml", "--ground-truth", "-o", "a.png")
             pictures.append(self.pixels("a.png")[56:56 + 128, 100:100 + 400])
         self.assertLess(np.abs(pictures[0] - pictures[1]).max(), 12)
 

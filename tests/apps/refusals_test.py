@@ -46,7 +46,7 @@ class Refusals(CliTest):
         os.rename(os.path.join(self.folder, "box.obj"), os.path.join(self.folder, "in.ply"))
         self.assertIn("is an input", self.refused("render", "in.ply", "-o", "in.ply"))
         self.assertIn("did you mean 'intensity'?",
-                      self.refused("render", "builtin:box", "-o", "x.pcd", "--columns", "xyz,intensty"))
+                      self.refused("render", "builtin:box", "-o", "x.pcd", "--fields", "xyz,intensty"))
 
     def test_files_of_the_scene_are_never_overwritten(self):
         self.write("paint.npy", "P6 1 1 255\nabc")
@@ -93,7 +93,7 @@ class Refusals(CliTest):
                 (("--threads", "-1"), "--threads"),
                 (("--unit", "km"), "--unit"),
                 (("--up", "w"), "--up"),
-                (("--cloud-frame", "body"), "--cloud-frame"),
+                (("--frame", "body"), "--frame"),
                 (("--width", "1.5"), "--width: '1.5'; allowed: a whole number"),
                 (("--width", ""), "--width"),
                 (("--pcd", ""), "--pcd"),
@@ -109,11 +109,11 @@ class Refusals(CliTest):
                 (("--rain", "-5"), "--rain: -5; allowed: a number from 0 to 1000"),
                 (("--snow", "nan"), "--snow: nan; allowed: a number from 0 to 1000"),
                 (("--visibility", "0.5"), "weather, visibility_m: 0.5; allowed: metres from 1"),
-                (("--columns", "xyz,foo"), "--columns"),
+                (("--fields", "xyz,foo"), "--fields"),
                 (("--sensor-pose", "0,0,0,0,0,0,0"), "--sensor-pose"),
                 (("--sensor-pose", "nan,0,0,1,0,0,0"), "--sensor-pose"),
                 (("--eye", "0,0,5", "--up-vector", "0,0,1"), "--up-vector 1,0,0"),
-                (("--cloud-frame", "rso"), "did you mean ros?"),
+                (("--frame", "rso"), "did you mean ros?"),
                 (("--renderer", "magic"), "rays")):
             with self.subTest(arguments):
                 self.assertIn(text, self.refused(*render, *arguments))
@@ -124,9 +124,9 @@ class Refusals(CliTest):
         self.assertIn("--layout: 'velodine'; allowed: minimal, velodyne, ouster, livox, autoware", error)
         self.assertIn("did you mean velodyne?", error)
         for columns in ("xyz", "default"):
-            error = self.refused(*render, "--layout", "velodyne", "--columns", columns)
-            self.assertIn("--layout and --columns: both are given", error)
-            self.assertIn("leave --columns out", error)
+            error = self.refused(*render, "--layout", "velodyne", "--fields", columns)
+            self.assertIn("--layout and --fields: both are given", error)
+            self.assertIn("leave --fields out", error)
         error = self.refused("render", "nofile.ply", "-o", "x.png", "-o", "x.bin", "--layout", "ouster")
         self.assertIn("no output takes a layout", error)
         self.assertIn(".pcd .ply .npz .csv", error)

@@ -81,7 +81,7 @@ class Replay(ReplayTest):
             self.assertIn("box.obj", self.refused("replay", os.path.join(elsewhere, "r.jsonl"), "--quiet").split("\n")[-2])
 
     def test_of_a_simulators_poses_gives_the_clouds_it_got(self):
-        program, simulator, subscriber = self.in_the_loop("--hwm", "100", "--record", "r.jsonl")
+        program, simulator, subscriber = self.in_the_loop("--pose-queue", "100", "--record", "r.jsonl")
         for k in range(5):
             attitude = (0.9, 0.1 * k, 0.2, -0.3)
             length = sum(x * x for x in attitude) ** 0.5
@@ -167,7 +167,7 @@ class Replay(ReplayTest):
 
 class Recording(ReplayTest):
     def test_is_whole_after_a_signal(self):
-        program = self.start(self.box, *SMALL, "--camera-z", "10", "--model-dr", "0,1,0", "--rate", "50", "--record",
+        program = self.start(self.box, *SMALL, "--camera-z", "10", "--object-rate", "0,1,0", "--rate", "50", "--record",
                              "r.jsonl", "-o", "s.pcd")
         wait_until(lambda: "s_000004.pcd" in self.files(), "five frames", program)
         program.send_signal(signal.SIGINT)

@@ -52,11 +52,11 @@ class Files(RigTest):
     def test_a_sensor_measures_the_same_alone(self):
         self.succeed("render", "rig.yaml", "-o", "all.pcd", "--no-sidecar")
         for name in ("lidar", "camera", "twin"):
-            self.succeed("render", "rig.yaml", "--mount", name, "-o", "one.pcd", "--no-sidecar")
+            self.succeed("render", "rig.yaml", "--sensor-name", name, "-o", "one.pcd", "--no-sidecar")
             self.assertEqual(self.bytes_of("one.pcd"), self.bytes_of(f"all_{name}.pcd"))
 
     def test_sensors_of_one_kind_at_one_place_draw_different_noise(self):
-        self.succeed("render", "rig.yaml", "-o", "all.npz", "--columns", "range,true_range")
+        self.succeed("render", "rig.yaml", "-o", "all.npz", "--fields", "range,true_range")
         camera, twin = (np.load(os.path.join(self.folder, f"all_{name}.npz")) for name in ("camera", "twin"))
         np.testing.assert_array_equal(camera["true_range"], twin["true_range"])
         hit = np.isfinite(camera["range"])
@@ -84,14 +84,14 @@ class Files(RigTest):
             self.assertIn(name.replace("b.", "b_lidar."), self.files())
             self.assertNotIn(name.replace("b.", "b_camera."), self.files())
             self.assertIn("camera: a camera has no rings to colour by", done.stderr)
-        error = self.refused("render", "rig.yaml", "--mount", "camera", "--colour-by", "ring", "-o", "c.bev.png")
+        error = self.refused("render", "rig.yaml", "--sensor-name", "camera", "--colour-by", "ring", "-o", "c.bev.png")
         self.assertIn("a camera has no rings", error)
 
     def test_what_cannot_be_is_refused(self):
-        for arguments, words in ((("--mount", "radar"), "allowed: lidar, camera, twin"),
-                                 (("--sensor", "VLP-16"), "--mount NAME chooses one of lidar, camera, twin")):
+        for arguments, words in ((("--sensor-name", "radar"), "allowed: lidar, camera, twin"),
+                                 (("--sensor", "VLP-16"), "--sensor-name NAME chooses one of lidar, camera, twin")):
             self.assertIn(words, self.refused("render", "rig.yaml", *arguments, "-o", "x.pcd"))
-        self.assertIn("a rig of sensors", self.refused("render", "box.obj", "--mount", "a", "-o", "x.pcd"))
+        self.assertIn("a rig of sensors", self.refused("render", "box.obj", "--sensor-name", "a", "-o", "x.pcd"))
 
 
 class Alone(RigTest):
@@ -102,9 +102,9 @@ class Alone(RigTest):
         self.assertIn("x_a.pcd", self.files())
 
     def test_a_lidar_turns_about_up_by_the_second_of_three_rates(self):
-        """--camera-dr counts along left, up, forward, whatever the sensor's own axes are."""
-        self.succeed("render", "box.obj", "--sensor", "VLP-16", "--ideal", "--sensor-pose", "0,0,0,1,0,0,0",
-                     "--camera-dr", "0,2,0", "--columns", "sensor_pose", "-o", "x.npz")
+        """--sensor-rate counts along left, up, forward, whatever the sensor's own axes are."""
+        self.succeed("render", "box.obj", "--sensor", "VLP-16", "--ground-truth", "--sensor-pose", "0,0,0,1,0,0,0",
+                     "--sensor-rate", "0,2,0", "--fields", "sensor_pose", "-o", "x.npz")
         with np.load(os.path.join(self.folder, "x.npz")) as written:
             turns = written["sensor_pose"].reshape(-1, 7)[:, 3:]
         self.assertGreater(turns[:, 3].max(), 0.05)  # about z
@@ -137,8 +137,8 @@ class Topics(RigTest):
         self.assertEqual([stamp for stamp, _ in turns], [1, 2, 3, 4])
         self.assertEqual([stamp for stamp, _ in pictures], list(range(1, 9)))
         self.assertEqual(self.stats()["frames"]["measured"], 4 + 8 + 8)
-        self.succeed("render", "rig.yaml", "--mount", "camera", "--duration", "0.4", "--cloud-frame", "legacy",
-                     "--columns", "xyz,intensity", "--dense", "-o", "c.npz")
+        self.succeed("render", "rig.yaml", "--sensor-name", "camera", "--duration", "0.4", "--frame", "legacy",
+                     "--fields", "xyz,intensity", "--drop-invalid", "-o", "c.npz")
         for k, (_, points) in enumerate(pictures):
             with np.load(os.path.join(self.folder, f"c_{k:06}.npz")) as written:
                 np.testing.assert_array_equal(points[:, :3], written["xyz"].reshape(-1, 3).astype("<f4"))
@@ -161,10 +161,10 @@ class Topics(RigTest):
         self.finished(program, 0)
 
     def test_that_keep_the_newest_alone_are_refused(self):
-        self.assertIn("--pub-conflate", self.refused("stream", "rig.yaml", "--port", str(self.port), "--pub-conflate", "1"))
+        self.assertIn("--publish-latest", self.refused("stream", "rig.yaml", "--port", str(self.port), "--publish-latest", "1"))
 
     def test_of_a_chosen_sensor_is_that_of_2015(self):
-        program = self.stream("--mount", "camera", "--frames", "2")
+        program = self.stream("--sensor-name", "camera", "--frames", "2")
         subscriber = self.subscriber()
         subscriber.shake()
         self.assertEqual(len(subscriber.clouds_until_shutdown()), 2)
@@ -174,7 +174,7 @@ class Topics(RigTest):
         rock = "    pose: {position: [6, 0, 0]}\n    motion: {spin: {rate_deg_s: [0, 40, 0]}}\n"
         self.write("rig.yaml", RIG.replace(rock, ""))
         simulator = self.simulator()
-        program = self.stream("--physics-port", str(self.physics), "--hwm", "10", "--subscribers", "2")
+        program = self.stream("--physics-port", str(self.physics), "--pose-queue", "10", "--subscribers", "2")
         subscribers = {name: self.subscriber(topic=topic(name)) for name in ("lidar", "twin")}
         for subscriber in subscribers.values():
             subscriber.shake()
@@ -208,7 +208,7 @@ class Requests(RigTest):
                 _, cloud = CLIENT["clouds"](socket.recv_multipart())[0]
                 self.assertEqual(cloud["xyz"].shape[:2], (sensor["rows"], sensor["cols"]))
             self.write("still.yaml", "\n".join(line for line in RIG.splitlines() if "motion" not in line))
-            self.succeed("render", "still.yaml", "--mount", "twin", "-o", "x.npz")
+            self.succeed("render", "still.yaml", "--sensor-name", "twin", "-o", "x.npz")
             with np.load(os.path.join(self.folder, "x.npz")) as written:
                 np.testing.assert_array_equal(cloud["xyz"].reshape(written["xyz"].shape), written["xyz"])
             socket.send(self.request(3, [(0, 1, 0, [body((0, 0, 0)), rock])]))
@@ -220,7 +220,7 @@ class Requests(RigTest):
                                 "sensors: [{name: arm, sensor: VLP-16, pose: {position: [2, 0, 0]}}]\n")
         attitude = (0.7071067811865476, 0, 0.7071067811865476, 0)
         rate = 0.5
-        with Server(self, "wall.yaml", "--ideal") as server:
+        with Server(self, "wall.yaml", "--ground-truth") as server:
             socket = server.connect()
             socket.send(self.request(0, [(0, 1, 0, [body((0, 0, 0), rate=(0, 0, rate)), body((20, 0, 0), attitude)])],
                                      ("azimuth", "elevation", "range", "time")))

@@ -47,7 +47,7 @@ class Sensors(CliTest):
         self.assertIn("--surfaces alone", self.refused("sensors", "VLP-16", "--surfaces"))
 
         box = ("render", "builtin:box", "--eye", "0,0,0", "-o", "a.csv", "--surface")
-        lidar = ("--sensor", "VLP-16", "--columns", "xyz,intensity")
+        lidar = ("--sensor", "VLP-16", "--fields", "xyz,intensity")
         self.succeed(*box, "black_paint", *lidar)
         with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
             next(file)
@@ -60,7 +60,7 @@ class Sensors(CliTest):
 
     def test_one_sensor_tells_its_sources_and_draws_its_pattern(self):
         text = self.succeed("sensors", "vlp-16", "-o", "pattern.png").stdout
-        self.assertIn("optics.sequence_us = 55.296", text)
+        self.assertIn("optics.firing_period_us = 55.296", text)
         self.assertIn("VLP-16 manual", text)
         with open(os.path.join(self.folder, "pattern.png"), "rb") as file:
             self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
@@ -76,7 +76,7 @@ class Sensors(CliTest):
 
     def test_renders_with_a_preset(self):
         done = self.succeed("render", "builtin:box", "--sensor", "vlp-16", "--eye", "0,0,0",
-                            "--columns", "xyz,range,ring,time", "-o", "room.npz")
+                            "--fields", "xyz,range,ring,time", "-o", "room.npz")
         self.assertIn("1809 x 16 beams, 28944 hits (100.0 %)", done.stdout)
         with open(os.path.join(self.folder, "room.npz.json"), encoding="utf-8") as file:
             sensor = json.load(file)["sensor"]
@@ -88,7 +88,7 @@ class Sensors(CliTest):
         self.write("room.yaml", "models: [{model: builtin:box, scale: 4}]\nsensor: VLP-16\n"
                                 "sensor_pose: {position: [0, 0, 0]}\n")
         walls = []
-        for ideal in ((), ("--ideal",)):
+        for ideal in ((), ("--ground-truth",)):
             self.succeed("render", "room.yaml", *ideal, "-o", "room.csv")
             with open(os.path.join(self.folder, "room.csv"), encoding="utf-8") as file:
                 next(file)
@@ -96,16 +96,16 @@ class Sensors(CliTest):
             with open(os.path.join(self.folder, "room.csv.json"), encoding="utf-8") as file:
                 sensor = json.load(file)["sensor"]
             self.assertEqual(bool(sensor["noise"]), not ideal)
-            self.assertEqual(sensor["pulse_light"] is None, bool(ideal))
+            self.assertEqual(sensor["lidar_equation"] is None, bool(ideal))
         self.assertGreater(max(abs(wall - 4) for wall in walls[0]), 0.01)
         self.assertLess(max(abs(wall - 4) for wall in walls[1]), 1e-9)
 
-    def test_the_paper_s_light_is_refused_where_pulse_light_is(self):
+    def test_the_paper_s_light_is_refused_where_lidar_equation_is(self):
         box = ("render", "builtin:box", "--eye", "0,0,0", "--sensor", "VLP-16", "-o", "a.pcd")
-        self.assertIn("--ambient: the sensor has pulse light; leave it out, or add --ideal",
+        self.assertIn("--ambient: the sensor has pulse light; leave it out, or add --ground-truth",
                       self.refused(*box, "--ambient", "0"))
         self.assertIn("--attenuation: the sensor has", self.refused(*box, "--attenuation", "1,0,0"))
-        self.succeed(*box, "--ambient", "0", "--ideal")
+        self.succeed(*box, "--ambient", "0", "--ground-truth")
 
     def test_without_a_pose_it_stands_beside_the_scene_and_says_so(self):
         done = self.succeed("render", "builtin:asteroid", "--sensor", "OS1-32", "-o", "a.pcd")
@@ -148,7 +148,7 @@ class Sensors(CliTest):
                             ("strongst", "did you mean strongest?"), ("first,", "an empty part"),
                             ("0", "how many of the nearest, 1 to 16"), (",".join(["last"] * 17), "17 returns")):
             self.assertIn(told, self.refused(*room, wrong, "-o", "a.pcd"))
-        self.assertIn("--returns: --ideal leaves", self.refused(*room, "last", "--ideal", "-o", "a.pcd"))
+        self.assertIn("--returns: --ground-truth leaves", self.refused(*room, "last", "--ground-truth", "-o", "a.pcd"))
         self.assertIn("--returns: the sensor has no pulse light", self.refused(
             "render", "builtin:box", "--returns", "last", "-o", "a.pcd"))
 

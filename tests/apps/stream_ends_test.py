@@ -92,7 +92,7 @@ class Ends(StreamTest):
 
     def test_at_once_when_the_disk_is_full_and_no_pose_comes(self):
         simulator = self.simulator()
-        program, subscriber = self.full_disk("--physics-port", str(self.physics), "--hwm", "10")
+        program, subscriber = self.full_disk("--physics-port", str(self.physics), "--pose-queue", "10")
         simulator.shake()
         simulator.send(pose_message(1))
         self.assertEqual(len(subscriber.clouds_until_shutdown()), 1)
@@ -117,7 +117,7 @@ class Ends(StreamTest):
         """The timeout is about waiting for a pose, not about frames that take long. Poses are sent before the
         handshake is answered, as a busy machine may need long between the two."""
         simulator = self.simulator()
-        program = self.publish("--physics-port", str(self.physics), "--hwm", "10", "--subscribers", "0",
+        program = self.publish("--physics-port", str(self.physics), "--pose-queue", "10", "--subscribers", "0",
                                "--rate", "0.15", "--pose-timeout", "5", "--frames", "2")
         simulator.shake(before_answer=[pose_message(stamp) for stamp in range(2)])
         self.finished(program, 0)
@@ -144,7 +144,7 @@ class Documentation(StreamTest):
             simulator = simulator.replace(shown, str(used))
         self.write("client.py", client)
         self.write("simulator.py", "import struct\nimport zmq\ncontext = zmq.Context()\n" + simulator)
-        program = self.publish("--physics-port", str(self.physics), "--hwm", "1000", "--pub-hwm", "1000")
+        program = self.publish("--physics-port", str(self.physics), "--pose-queue", "1000", "--publish-queue", "1000")
         programs = [subprocess.Popen([sys.executable, name], cwd=self.folder, stdout=subprocess.PIPE, text=True)
                     for name in ("simulator.py", "client.py")]
         for process in programs:
@@ -172,19 +172,19 @@ class Refusals(StreamTest):
         self.assertIn("--port", self.refused("stream", self.box))
 
     def test_options_of_files_that_are_not_written(self):
-        for option in (["--dense"], ["--layout", "velodyne"], ["--no-sidecar"]):
+        for option in (["--drop-invalid"], ["--layout", "velodyne"], ["--no-sidecar"]):
             self.assertIn("--output: not given", self.refused("stream", self.box, "--port", str(self.port), *option))
 
     def test_contradictions(self):
         physics = ("stream", self.box, "--port", str(self.port), "--physics-port")
         self.assertIn("overlap", self.refused(*physics, str(self.port + 1)))
-        self.assertIn("--model-dr", self.refused(*physics, str(self.physics), "--model-dr", "0,1,0"))
+        self.assertIn("--object-rate", self.refused(*physics, str(self.physics), "--object-rate", "0,1,0"))
         self.assertIn("--physics-port", self.refused("stream", self.box, "-p", "5555", "--pose-timeout", "1"))
 
     def test_values_out_of_range(self):
         for option, value in (("--port", "0"), ("--port", "65535"), ("--subscribers", "-1"),
-                              ("--pub-rate", "0"), ("--hwm", "x"), ("--rate", "-1"),
-                              ("--duration", "nan"), ("--frames", "0"), ("--pub-conflate", "2")):
+                              ("--publish-every", "0"), ("--pose-queue", "x"), ("--rate", "-1"),
+                              ("--duration", "nan"), ("--frames", "0"), ("--publish-latest", "2")):
             arguments = ["stream", self.box, "-o", "a.pcd", option, value]
             self.assertIn(option, self.refused(*arguments))
 

@@ -50,7 +50,7 @@ class Simulator(threading.Thread):
 class SlowJoiner(StreamTest):
     def program(self, name, physics, port):
         return self.start(self.box, "--width", "4", "--height", "4", "--port", str(port), "--subscribers", "0",
-                          "--physics-port", str(physics), "--hwm", "100", "--stats", name)
+                          "--physics-port", str(physics), "--pose-queue", "100", "--stats", name)
 
     def test_loses_no_pose_of_a_simulator_that_sends_at_once(self):
         for around in range(ROUNDS):
@@ -72,7 +72,7 @@ class SlowJoiner(StreamTest):
                 self.assertEqual(stats["clouds"]["sent"], POSES)
 
     def test_loses_none_of_one_that_comes_again(self):
-        program, simulator, subscriber = self.in_the_loop("--hwm", "100", "--pub-hwm", "100")
+        program, simulator, subscriber = self.in_the_loop("--pose-queue", "100", "--publish-queue", "100")
         simulator.close()
         for around in range(5):
             again = self.simulator()
@@ -87,7 +87,7 @@ class SlowJoiner(StreamTest):
         self.finished(program, 0)
 
     def test_asks_one_that_opens_the_poses_port_after_the_handshake(self):
-        program = self.publish("--subscribers", "0", "--physics-port", str(self.physics), "--hwm", "100")
+        program = self.publish("--subscribers", "0", "--physics-port", str(self.physics), "--pose-queue", "100")
         with self.context.socket(zmq.REP) as hand, self.context.socket(zmq.PUB) as poses:
             hand.bind(f"tcp://127.0.0.1:{self.physics + 1}")
             self.assertTrue(hand.poll(1000 * MAX_WAIT_S))
@@ -129,7 +129,7 @@ class LateSubscriber(StreamTest):
 
     def test_loses_no_cloud_of_a_simulators_poses(self):
         simulator = self.simulator()
-        program = self.publish("--physics-port", str(self.physics), "--hwm", "10", "--subscription-timeout", "1e9")
+        program = self.publish("--physics-port", str(self.physics), "--pose-queue", "10", "--subscription-timeout", "1e9")
 
         def send_all():
             simulator.shake(before_answer=[pose_message(stamp) for stamp in (7, 8, 11)])

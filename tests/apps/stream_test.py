@@ -44,7 +44,7 @@ class Clouds(StreamTest):
         self.assertLessEqual(stats["latency_ms"]["p50"], stats["latency_ms"]["p99"])
 
     def test_go_to_every_subscriber_the_same(self):
-        program = self.publish("--subscribers", "3", "--rate", "20", "--frames", "5", "--model-dr", "0,1,0")
+        program = self.publish("--subscribers", "3", "--rate", "20", "--frames", "5", "--object-rate", "0,1,0")
         subscribers = [self.subscriber() for _ in range(3)]
         for subscriber in subscribers:
             subscriber.shake()
@@ -72,7 +72,7 @@ class Clouds(StreamTest):
         self.finished(program, 130)
 
     def test_are_published_every_kth_frame(self):
-        program = self.publish("--pub-rate", "3", "--rate", "max", "--frames", "7")
+        program = self.publish("--publish-every", "3", "--rate", "max", "--frames", "7")
         subscriber = self.subscriber()
         subscriber.shake()
         self.assertEqual([t for t, _ in subscriber.clouds_until_shutdown()], [1, 2, 3])
@@ -81,7 +81,7 @@ class Clouds(StreamTest):
 
     def test_do_not_wait_for_a_subscriber_that_never_reads(self):
         program = self.publish_box("--camera-z", "4", "--subscribers", "2",
-                               "--rate", "max", "--frames", "120", "--pub-hwm", "2")
+                               "--rate", "max", "--frames", "120", "--publish-queue", "2")
         deaf = self.subscriber(rcvhwm=1)
         deaf.shake()
         reader = self.subscriber()
@@ -106,7 +106,7 @@ class Clouds(StreamTest):
                     return None
 
     def test_conflated_leave_the_newest_for_a_slow_subscriber(self):
-        program = self.publish_box("--camera-z", "4", "--pub-conflate", "1",
+        program = self.publish_box("--camera-z", "4", "--publish-latest", "1",
                                "--rate", "max", "--frames", "60")
         subscriber = self.subscriber()
         subscriber.shake()
@@ -135,14 +135,14 @@ class Clouds(StreamTest):
         self.finished(program, 143)
 
     def test_are_kept_as_numbered_files_like_those_of_render(self):
-        arguments = (self.box, *SMALL, "--model-dr", "0,1,0", "--columns", "xyz,intensity")
+        arguments = (self.box, *SMALL, "--object-rate", "0,1,0", "--fields", "xyz,intensity")
         self.succeed("stream", *arguments, "--rate", "max", "--frames", "3", "-o", "a.csv")
         self.succeed("render", *arguments, "--rate", "30", "--duration", "0.1", "-o", "b.csv")
         for k in range(3):
             self.assertEqual(self.bytes_of(f"a_00000{k}.csv"), self.bytes_of(f"b_00000{k}.csv"))
 
     def test_of_scanners_join_as_those_of_render(self):
-        arguments = ("builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "--columns", "xyz,time,ring")
+        arguments = ("builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "--fields", "xyz,time,ring")
         self.succeed("stream", *arguments, "--rate", "max", "--duration", "0.3", "-o", "a.csv")
         self.succeed("render", *arguments, "--duration", "0.3", "-o", "b.csv")
         for k in range(3):
@@ -152,7 +152,7 @@ class Clouds(StreamTest):
 
 class Poses(StreamTest):
     def test_place_object_and_sensor_by_attitudes(self):
-        program, simulator, subscriber = self.in_the_loop("--hwm", "100")
+        program, simulator, subscriber = self.in_the_loop("--pose-queue", "100")
         random = np.random.default_rng(1)
         for stamp in (5, 2**63 + 3, 2**64 - 1):
             obj = random.normal(size=4)
@@ -173,7 +173,7 @@ class Poses(StreamTest):
         self.assertEqual(self.stats()["ending"], "the simulator ended")
 
     def test_axes_are_left_up_and_forward(self):
-        program, simulator, subscriber = self.in_the_loop("--hwm", "10")
+        program, simulator, subscriber = self.in_the_loop("--pose-queue", "10")
         simulator.send(pose_message(1, translation=(0.7, 0.3, 10)))
         _, points = cloud(subscriber.receive())
         self.assertGreater(points[:, 0].mean(), 0.3)
@@ -182,7 +182,7 @@ class Poses(StreamTest):
         self.finished(program, 0)
 
     def test_of_one_timestamp_give_one_cloud(self):
-        program, simulator, subscriber = self.in_the_loop("--hwm", "100")
+        program, simulator, subscriber = self.in_the_loop("--pose-queue", "100")
         for stamp in (0, 0, 1, 1, 1, 2):
             simulator.send(pose_message(stamp))
         simulator.shut_down()
@@ -191,7 +191,7 @@ class Poses(StreamTest):
         self.assertEqual(self.stats()["poses"]["repeated"], 3)
 
     def test_that_are_none_are_refused_and_counted(self):
-        program, simulator, subscriber = self.in_the_loop("--hwm", "1000")
+        program, simulator, subscriber = self.in_the_loop("--pose-queue", "1000")
         good = pose_message(1)
         bad = [b"v", good[:-1], good + b"\0", b"v" + bytes(2**20), b"v" + os.urandom(50),
                pose_message(2, obj=(float("nan"), 0, 0, 0)), pose_message(3, sensor=(2, 0, 0, 0)),
@@ -223,7 +223,7 @@ class Poses(StreamTest):
         self.finished(program, 0)
 
     def test_going_back_in_time_is_told(self):
-        program, simulator, subscriber = self.in_the_loop("--hwm", "100")
+        program, simulator, subscriber = self.in_the_loop("--pose-queue", "100")
         for stamp in (7, 3, 4):
             simulator.send(pose_message(stamp))
         simulator.shut_down()
@@ -232,7 +232,7 @@ class Poses(StreamTest):
         self.assertEqual(self.stats()["faults"], {"time went back": 1})
 
     def test_of_a_simulator_that_comes_back_count_again(self):
-        program, simulator, subscriber = self.in_the_loop("--hwm", "10")
+        program, simulator, subscriber = self.in_the_loop("--pose-queue", "10")
         simulator.send(pose_message(1))
         cloud(subscriber.receive())
         simulator.close()

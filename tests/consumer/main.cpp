@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/simulate/simulate.hpp>
 
 #include <cmath>
 #include <cstdio>
@@ -13,7 +13,7 @@ int main() {
   glidar::Sensor sensor;
   sensor.optics = glidar::pinhole_from_fov(65, 65, 0.5);
   const glidar::Beams beams = glidar::make_beams(sensor);
-  const glidar::Motion motion = glidar::standing_still(
+  const glidar::Motion motion = glidar::static_motion(
       scene, glidar::look_at({3.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}));
   const auto renderer = glidar::make_renderer(scene, {});
   glidar::Frame frame;

@@ -35,46 +35,46 @@ TEST(NumberText, IsTheShortestThatReadsBackTheSame) {
 
 TEST(NearestWord, FindsTheTypo) {
   const std::vector<std::string> known = {"width", "height", "fov_deg"};
-  EXPECT_EQ(nearest_word("widht", known), "width");
-  EXPECT_EQ(nearest_word("fov_dge", known), "fov_deg");
+  EXPECT_EQ(closest_match("widht", known), "width");
+  EXPECT_EQ(closest_match("fov_dge", known), "fov_deg");
 }
 
 TEST(NearestWord, FindsLongerAndShorterKeys) {
   const std::vector<std::string> pose = {"position", "orientation", "rotation_vector", "euler_deg"};
-  EXPECT_EQ(nearest_word("euler", pose), "euler_deg");
-  EXPECT_EQ(nearest_word("rotation", pose), "rotation_vector");
-  EXPECT_EQ(nearest_word("position_m", pose), "position");
+  EXPECT_EQ(closest_match("euler", pose), "euler_deg");
+  EXPECT_EQ(closest_match("rotation", pose), "rotation_vector");
+  EXPECT_EQ(closest_match("position_m", pose), "position");
   const std::vector<std::string> sensor = {"name", "rate_hz", "range_m", "fov_deg", "noise"};
-  EXPECT_EQ(nearest_word("range", sensor), "range_m");
-  EXPECT_EQ(nearest_word("rate", sensor), "rate_hz");
-  EXPECT_EQ(nearest_word("fov", sensor), "fov_deg");
-  EXPECT_EQ(nearest_word("deg", sensor), "fov_deg");
+  EXPECT_EQ(closest_match("range", sensor), "range_m");
+  EXPECT_EQ(closest_match("rate", sensor), "rate_hz");
+  EXPECT_EQ(closest_match("fov", sensor), "fov_deg");
+  EXPECT_EQ(closest_match("deg", sensor), "fov_deg");
 }
 
 TEST(NearestWord, PrefersOneWrongLetterToALongerKey) {
   const std::vector<std::string> known = {"range_max_m", "ranges"};
-  EXPECT_EQ(nearest_word("range", known), "ranges");
+  EXPECT_EQ(closest_match("range", known), "ranges");
 }
 
 TEST(NearestWord, CountsExchangedLettersOnceAndNoCapitals) {
-  EXPECT_EQ(nearest_word("rso", std::vector<std::string>{"gl", "ros"}), "ros");
-  EXPECT_EQ(nearest_word("EULER", std::vector<std::string>{"euler_deg"}), "euler_deg");
-  EXPECT_EQ(nearest_word("vlp-17", std::vector<std::string>{"VLP-16"}), "VLP-16");
+  EXPECT_EQ(closest_match("rso", std::vector<std::string>{"gl", "ros"}), "ros");
+  EXPECT_EQ(closest_match("EULER", std::vector<std::string>{"euler_deg"}), "euler_deg");
+  EXPECT_EQ(closest_match("vlp-17", std::vector<std::string>{"VLP-16"}), "VLP-16");
 }
 
 TEST(NearestWord, SuggestsNoNonsense) {
-  EXPECT_EQ(nearest_word("w", std::vector<std::string>{"x", "y", "z"}), "");
-  EXPECT_EQ(nearest_word("up", std::vector<std::string>{"id", "optics"}), "");
-  EXPECT_EQ(nearest_word("fov", std::vector<std::string>{"fx", "fy", "far_m"}), "");
-  EXPECT_EQ(nearest_word("r", std::vector<std::string>{"rotation_vector"}), "");
-  EXPECT_EQ(nearest_word("", std::vector<std::string>{"id", "x"}), "");
-  EXPECT_EQ(nearest_word("colour", std::vector<std::string>{"mirror", "unit"}), "");
+  EXPECT_EQ(closest_match("w", std::vector<std::string>{"x", "y", "z"}), "");
+  EXPECT_EQ(closest_match("up", std::vector<std::string>{"id", "optics"}), "");
+  EXPECT_EQ(closest_match("fov", std::vector<std::string>{"fx", "fy", "far_m"}), "");
+  EXPECT_EQ(closest_match("r", std::vector<std::string>{"rotation_vector"}), "");
+  EXPECT_EQ(closest_match("", std::vector<std::string>{"id", "x"}), "");
+  EXPECT_EQ(closest_match("colour", std::vector<std::string>{"mirror", "unit"}), "");
 }
 
 TEST(NearestWord, SaysNothingWhenNothingIsNear) {
   const std::vector<std::string> known = {"width", "height"};
-  EXPECT_EQ(nearest_word("temperature", known), "");
-  EXPECT_EQ(nearest_word("x", std::vector<std::string>{}), "");
+  EXPECT_EQ(closest_match("temperature", known), "");
+  EXPECT_EQ(closest_match("x", std::vector<std::string>{}), "");
 }
 
 }  // namespace

@@ -33,13 +33,13 @@ struct Fixture {
     frame.range_m = {2.0, kNaN};
     frame.intensity = {0.5F, 0.0F};
     frame.status = {Status::hit, Status::miss};
-    frame.truth.range_m = frame.range_m;
-    frame.truth.instance = {0, kNoHit};
-    frame.truth.primitive = {42, kNoHit};
+    frame.ground_truth.range_m = frame.range_m;
+    frame.ground_truth.instance = {0, kInvalidId};
+    frame.ground_truth.primitive = {42, kInvalidId};
   }
 
   PointCloud cloud(const std::vector<std::string>& columns,
-                   const CloudFrame& in = {"c", Pose::Identity()}) {
+                   const OutputFrame& in = {"c", Pose::Identity()}) {
     PointCloud made;
     make_point_cloud(frame, beams, scene, in, columns, made);
     return made;
@@ -72,7 +72,7 @@ TEST(PointCloud, CountsTheBeamsOrigin) {
 TEST(PointCloud, StandsInTheNamedFrame) {
   Fixture f;
   f.frame.world_from_sensor.translation() = Eigen::Vector3d(0.0, 0.0, 10.0);
-  const CloudFrame world{"world", f.frame.world_from_sensor};
+  const OutputFrame world{"world", f.frame.world_from_sensor};
   const PointCloud cloud = f.cloud({"xyz"}, world);
   EXPECT_EQ(cloud.frame_id, "world");
   EXPECT_DOUBLE_EQ(values<double>(cloud, "xyz")[2], 11.6);
@@ -82,9 +82,9 @@ TEST(PointCloud, StandsInTheNamedFrame) {
 TEST(PointCloud, TellsIdsOfHitsAndOfMisses) {
   const PointCloud cloud =
       Fixture().cloud({"instance", "class", "primitive", "status", "row", "col"});
-  EXPECT_THAT(values<std::uint32_t>(cloud, "instance"), ::testing::ElementsAre(7, kNoHit));
-  EXPECT_THAT(values<std::uint32_t>(cloud, "class"), ::testing::ElementsAre(1, kNoHit));
-  EXPECT_THAT(values<std::uint32_t>(cloud, "primitive"), ::testing::ElementsAre(42, kNoHit));
+  EXPECT_THAT(values<std::uint32_t>(cloud, "instance"), ::testing::ElementsAre(7, kInvalidId));
+  EXPECT_THAT(values<std::uint32_t>(cloud, "class"), ::testing::ElementsAre(1, kInvalidId));
+  EXPECT_THAT(values<std::uint32_t>(cloud, "primitive"), ::testing::ElementsAre(42, kInvalidId));
   EXPECT_THAT(values<std::uint8_t>(cloud, "status"), ::testing::ElementsAre(0, 1));
   EXPECT_THAT(values<std::uint32_t>(cloud, "col"), ::testing::ElementsAre(0, 1));
 }
@@ -113,7 +113,7 @@ TEST(PointCloud, TellsWhereALidarsBeamsWereAimedWhateverTheCloudsFrame) {
   Fixture f;
   f.beams.boresight = Eigen::Vector3d::UnitX();
   f.beams.directions = {Eigen::Vector3d(-0.6, -0.8, 0.0), Eigen::Vector3d::Constant(kNaN)};
-  const CloudFrame turned{"c", make_pose({1, 2, 3}, Eigen::Quaterniond(0.0, 0.0, 0.0, 1.0))};
+  const OutputFrame turned{"c", make_pose({1, 2, 3}, Eigen::Quaterniond(0.0, 0.0, 0.0, 1.0))};
   const PointCloud cloud = f.cloud({"azimuth", "elevation"}, turned);
   EXPECT_DOUBLE_EQ(values<double>(cloud, "azimuth")[0], std::atan2(-0.8, -0.6));
   EXPECT_TRUE(std::isnan(values<double>(cloud, "azimuth")[1]));
@@ -131,8 +131,9 @@ TEST(PointCloud, ComesOutTheSameWhoeverMakesIt) {
   for (std::size_t i = 0; i < size; ++i) fixture.frame.range_m[i] = static_cast<double>(i) / 7.0;
   const std::vector<std::string> columns = {"xyz", "intensity", "range", "row"};
   const PointCloud alone = fixture.cloud(columns);
-  Workers workers(3);
-  const PointCloud together = fixture.cloud(columns, {.frame_id = "c", .workers = &workers});
+  ThreadPool thread_pool(3);
+  const PointCloud together =
+      fixture.cloud(columns, {.frame_id = "c", .thread_pool = &thread_pool});
   for (std::size_t c = 0; c < columns.size(); ++c) {
     EXPECT_EQ(together.columns[c].values, alone.columns[c].values) << columns[c];
   }
@@ -156,7 +157,7 @@ TEST(PointCloud, RefusesUnknownAndUncastColumns) {
 
 TEST(PointCloud, AsksForTheFieldsOfItsColumns) {
   const std::vector<std::string> names = {"xyz", "normal", "colour"};
-  const HitFields fields = fields_for(names);
+  const HitFieldMask fields = fields_needed_by(names);
   EXPECT_TRUE(fields.normal);
   EXPECT_TRUE(fields.colour);
   EXPECT_FALSE(fields.shading_normal);
@@ -166,7 +167,7 @@ TEST(PointCloud, AsksForTheFieldsOfItsColumns) {
 TEST(Compact, KeepsTheHitsOnly) {
   PointCloud cloud;
   cloud.columns = {{"other", {"a"}, std::vector<double>(9)}};  // whose memory is used again
-  compact(Fixture().cloud({"xyz", "instance", "stamp"}), cloud);
+  remove_invalid_points(Fixture().cloud({"xyz", "instance", "stamp"}), cloud);
   EXPECT_EQ(cloud.rows, 1U);
   EXPECT_EQ(cloud.cols, 1U);
   EXPECT_THAT(values<std::uint32_t>(cloud, "instance"), ::testing::ElementsAre(7));
@@ -176,7 +177,7 @@ TEST(Compact, KeepsTheHitsOnly) {
 
 TEST(Compact, NeedsCoordinates) {
   PointCloud cloud;
-  EXPECT_THROW(compact(Fixture().cloud({"range"}), cloud), Error);
+  EXPECT_THROW(remove_invalid_points(Fixture().cloud({"range"}), cloud), Error);
 }
 
 }  // namespace

@@ -63,9 +63,9 @@ TEST(LookAt, WithoutUpVectorRefusesTheSamePoint) {
 
 TEST(NumbersOf, ListsPositionAndQuaternionWithPositiveW) {
   const Pose pose = make_pose({1.0, 2.0, 3.0}, Eigen::Quaterniond(-0.5, 0.5, 0.5, -0.5));
-  PoseNumbers wanted;
+  PoseVector wanted;
   wanted << 1.0, 2.0, 3.0, 0.5, -0.5, -0.5, 0.5;
-  EXPECT_LT((numbers_of(pose) - wanted).norm(), 1e-15);
+  EXPECT_LT((to_xyz_wxyz(pose) - wanted).norm(), 1e-15);
 }
 
 TEST(MakePose, NormalisesTheQuaternion) {

@@ -2,17 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "file_decoders.hpp"
 
-#include <apps/glidar/numbers.hpp>
+#include <apps/glidar/options/numbers.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/content_hash.hpp>
-#include <glidar/io/mesh_blob.hpp>
-#include <glidar/io/png_texture.hpp>
-#include <glidar/io/ray_file.hpp>
-#include <glidar/io/scene_file.hpp>
-#include <glidar/io/sensor_file.hpp>
-#include <glidar/io/sidecar.hpp>
-#include <glidar/io/trajectory_file.hpp>
-#include <glidar/io/unique_fd.hpp>
+#include <glidar/io/config/ray_file.hpp>
+#include <glidar/io/config/scene_file.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/files/content_hash.hpp>
+#include <glidar/io/files/unique_fd.hpp>
+#include <glidar/io/formats/sidecar.hpp>
+#include <glidar/io/formats/trajectory_file.hpp>
+#include <glidar/io/model/mesh_blob.hpp>
+#include <glidar/io/model/png_texture.hpp>
 #include <glidar/link/recording.hpp>
 
 #include <fcntl.h>

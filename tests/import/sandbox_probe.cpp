@@ -10,8 +10,8 @@
 #include <import/process_limits.hpp>
 #include <import/sandbox.hpp>
 
-#include <glidar/io/mesh_blob.hpp>
-#include <glidar/io/model_folder.hpp>
+#include <glidar/io/model/mesh_blob.hpp>
+#include <glidar/io/model/model_folder.hpp>
 
 #include <arpa/inet.h>
 #include <dirent.h>

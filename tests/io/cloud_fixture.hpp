@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/file_sink.hpp>
+#include <glidar/io/formats/file_sink.hpp>
 #include <support/test_folder.hpp>
 
 #include <algorithm>
@@ -73,7 +73,7 @@ inline void add_columns(PointCloud& cloud) {
     return is_miss(i) ? 0.0F : rgb[c];
   });
   add_column<std::uint32_t>(cloud, "instance", {"instance"}, [](std::size_t i, std::size_t) {
-    return is_miss(i) ? kNoHit : static_cast<std::uint32_t>(i + 7);
+    return is_miss(i) ? kInvalidId : static_cast<std::uint32_t>(i + 7);
   });
   add_column<std::uint16_t>(cloud, "ring", {"ring"}, [](std::size_t i, std::size_t) {
     return static_cast<std::uint16_t>(i * 1000);
@@ -93,7 +93,7 @@ inline void add_image_columns(PointCloud& cloud) {
     return is_miss(i) ? std::numeric_limits<double>::quiet_NaN() : 1.0 + static_cast<double>(i);
   });
   add_column<std::uint32_t>(cloud, "class", {"class"}, [](std::size_t i, std::size_t) {
-    return is_miss(i) ? kNoHit : static_cast<std::uint32_t>(i % 3);
+    return is_miss(i) ? kInvalidId : static_cast<std::uint32_t>(i % 3);
   });
 }
 

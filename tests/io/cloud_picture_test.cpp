@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/font.hpp>
-#include <glidar/io/png_texture.hpp>
-#include <glidar/io/point_colours.hpp>
+#include <glidar/io/model/png_texture.hpp>
+#include <glidar/io/pictures/font.hpp>
+#include <glidar/io/pictures/point_colours.hpp>
 
-#include <glidar/sensor/scan.hpp>
+#include <glidar/sensor/optics/firing_schedule.hpp>
 
 #include <support/error_text.hpp>
 #include <support/test_folder.hpp>
@@ -60,8 +60,8 @@ Made make(bool is_camera = false) {
   add<double>(made.cloud, "range", made.frame.range_m);
   add<float>(made.cloud, "intensity", {1.0F, std::numeric_limits<float>::quiet_NaN(), 0.0F, 3.0F});
   add<std::uint16_t>(made.cloud, "ring", {0, 0, 1, 1});
-  add<std::uint32_t>(made.cloud, "class", {1, 0, kNoHit, kNoHit});
-  add<std::uint32_t>(made.cloud, "instance", {7, 7, kNoHit, kNoHit});
+  add<std::uint32_t>(made.cloud, "class", {1, 0, kInvalidId, kInvalidId});
+  add<std::uint32_t>(made.cloud, "instance", {7, 7, kInvalidId, kInvalidId});
   return made;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Units and up axes that model files declare. Expected numbers are those written in the files.
-#include <glidar/io/model.hpp>
-#include <glidar/io/model_report.hpp>
+#include <glidar/io/model/model.hpp>
+#include <glidar/io/model/model_report.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -288,7 +288,7 @@ TEST(DeclaredFrame, ReportsSayWhereUnitAndUpAxisAreFrom) {
 }
 
 TEST(DeclaredFrame, OfRealFiles) {
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   struct Case {
     const char* path;
     double metres_per_unit;
@@ -322,7 +322,7 @@ TEST(DeclaredFrame, OfRealFiles) {
 }
 
 TEST(DeclaredFrame, SizesOfRealFilesAreThoseWrittenInThem) {
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   const auto size = [](const char* path) -> Eigen::Vector3d {
     return bounds(load(data_folder() / path, as_declared()).mesh).sizes();
   };

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // glTF files with compressed meshes and textures. The compressed meshes are made here, by Draco's
 // own encoder.
-#include <glidar/io/model.hpp>
+#include <glidar/io/model/model.hpp>
 
 #include <io/model_test_support.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/import_process.hpp>
+#include <glidar/io/model/import_process.hpp>
 
 #include <io/model_test_support.hpp>
 
@@ -67,7 +67,7 @@ void expect_tamed(const fs::path& file) {
 class HostileModels : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(HostileModels, GiveAClearErrorOrAGoodMesh) {
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   const std::vector<fs::path> files = files_below(testing::data_folder() / "hostile" / GetParam());
   ASSERT_FALSE(files.empty());
   for (const fs::path& file : files) expect_tamed(file);
@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Data, HostileModels,
                          });
 
 TEST(HostileModels, NoPasswordsAreRead) {
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   const fs::path folder = testing::data_folder() / "hostile" / "synthetic";
   for (const char* name : {"gltf/buffer_traversal.gltf", "gltf/buffer_devzero.gltf"}) {
     const std::string text = testing::load_error((folder / name).string());
@@ -100,7 +100,7 @@ TEST(HostileModels, NoPasswordsAreRead) {
 }
 
 TEST(HostileModels, HugeTexturesAreMissingWithTheirSize) {
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   const fs::path folder = testing::data_folder() / "hostile" / "synthetic" / "images";
   for (const char* name : {"quad_bomb_30000x30000_1bit.obj", "quad_ppm_huge.obj"}) {
     const Model model = testing::load(folder / name);
@@ -110,7 +110,7 @@ TEST(HostileModels, HugeTexturesAreMissingWithTheirSize) {
 }
 
 TEST(HostileModels, TheTiniestTriangleKeepsItsCorners) {
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   const Model model =
       testing::load(testing::data_folder() / "hostile/synthetic/ply/denormals_and_tiny.ply");
   EXPECT_EQ(model.mesh.positions_m.size(), 3U);
@@ -119,7 +119,7 @@ TEST(HostileModels, TheTiniestTriangleKeepsItsCorners) {
 
 TEST(HostileModels, ACrashIsToldWithItsSignal) {
   GLIDAR_SKIP_SANITIZED();
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   const std::string text = testing::load_error(
       (testing::data_folder() / "hostile/synthetic/3mf/component_cycle.3mf").string());
   EXPECT_THAT(text, HasSubstr("component_cycle.3mf"));
@@ -129,7 +129,7 @@ TEST(HostileModels, ACrashIsToldWithItsSignal) {
 
 TEST(HostileModels, ABombIsToldWithItsLimit) {
   GLIDAR_SKIP_SANITIZED();
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   const std::string text = testing::load_error(
       (testing::data_folder() / "hostile/synthetic/dae/instance_bomb.dae").string());
   EXPECT_THAT(text, HasSubstr("more memory than 1024 MiB"));

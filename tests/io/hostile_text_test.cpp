@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Small files that would take the program's memory, stack or time: every reader has a budget.
-#include <glidar/io/json_text.hpp>
-#include <glidar/io/recorded_path.hpp>
-#include <glidar/io/scene_file.hpp>
-#include <glidar/io/sensor_file.hpp>
-#include <glidar/io/sidecar.hpp>
-#include <glidar/io/yaml_budget.hpp>
+#include <glidar/io/config/json_text.hpp>
+#include <glidar/io/config/scene_file.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/yaml_budget.hpp>
+#include <glidar/io/files/recorded_path.hpp>
+#include <glidar/io/formats/sidecar.hpp>
 #include <tests/support/error_text.hpp>
 #include <tests/support/test_folder.hpp>
 

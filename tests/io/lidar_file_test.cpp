@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "yaml_files.hpp"
 
-#include <glidar/io/npy.hpp>
-#include <glidar/io/sensor_file.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/formats/npy.hpp>
 #include <support/data.hpp>
 
 #include <array>
@@ -26,9 +26,9 @@ wavelength_nm: 905
 limits: {near_m: 0.5, far_m: 50, along: depth}
 optics:
   type: spinning
-  turn: counterclockwise
+  rotation_direction: counterclockwise
   start_azimuth_deg: 90
-  sequence_us: 50
+  firing_period_us: 50
   elevation_deg: [-10, 10]
   azimuth_right_deg: [1, -2]
   fire_time_us: [0, 2.5]
@@ -37,7 +37,7 @@ optics:
   origin_left_mm: [2, 3]
   origin_up_mm: 4
   beam_origin_mm: 15
-  sector: {from_deg: -60, to_deg: 30}
+  azimuth_range: {from_deg: -60, to_deg: 30}
 )");
   EXPECT_EQ(sensor.rate_hz, 20.0);
   EXPECT_DOUBLE_EQ(sensor.wavelength_m, 905e-9);
@@ -61,20 +61,20 @@ optics:
 TEST(LidarFile, ReadsRastersAndPrisms) {
   const Sensor sensor = load(
       "rate_hz: 15\noptics: {type: raster, azimuth_deg: {from: -1, to: 1, count: 3}, "
-      "elevation_deg: [5, 6], point_us: 10, line_us: 100, to_and_fro: true}\n");
-  const auto& raster = std::get<Raster>(sensor.optics);
+      "elevation_deg: [5, 6], point_us: 10, line_us: 100, bidirectional: true}\n");
+  const auto& raster = std::get<LineScan>(sensor.optics);
   EXPECT_EQ(raster.scan_hz, 15.0);
   ASSERT_EQ(raster.azimuths_rad.size(), 3U);
   EXPECT_DOUBLE_EQ(raster.azimuths_rad[2], kDegree);
   EXPECT_DOUBLE_EQ(raster.elevations_rad[1], 6 * kDegree);
   EXPECT_EQ(raster.line_ns, 100'000.0);
-  EXPECT_TRUE(raster.to_and_fro);
+  EXPECT_TRUE(raster.bidirectional);
   const Sensor livox = load(
-      "optics: {type: prism, pulse_hz: 1000, incident_right: [0.1, 0.2], prisms: "
+      "optics: {type: prism, pulse_hz: 1000, incidence_tangent: [0.1, 0.2], prisms: "
       "[{rotation_hz: -3, apex_deg: 20, phase_deg: 90, refractive_index: 1.4, slope: exit}]}\n");
   const auto& prism = std::get<Prism>(livox.optics);
   EXPECT_EQ(livox.rate_hz, 10.0);
-  EXPECT_EQ(prism.incident_right[1], 0.2);
+  EXPECT_EQ(prism.incidence_tangent[1], 0.2);
   EXPECT_EQ(prism.prisms[0].rotation_hz, -3.0);
   EXPECT_DOUBLE_EQ(prism.prisms[0].phase_rad, 90 * kDegree);
   EXPECT_EQ(prism.prisms[0].slope, RisleyPrism::Slope::exit);
@@ -86,7 +86,7 @@ TEST(LidarFile, ReadsLivoxTables) {
                      "Time/s,Azimuth/deg,Zenith/deg\r\n0.1,0,90\r\n0.2,90,60\r\n"
                      "0.3,10,100\r\n0.4,20,80\r\n");
   const auto file = folder.write("s.yaml", "optics: {type: table, file: scan.csv}\n");
-  const auto table = std::get<BeamTable>(load_sensor_file(file).optics);
+  const auto table = std::get<RayTable>(load_sensor_file(file).optics);
   ASSERT_EQ(table.cols, 4U);
   EXPECT_LT((table.directions[0] - Eigen::Vector3d::UnitX()).norm(), 1e-15);
   EXPECT_LT((table.directions[1] - direction_at(90 * kDegree, 30 * kDegree)).norm(), 1e-15);
@@ -94,7 +94,7 @@ TEST(LidarFile, ReadsLivoxTables) {
   EXPECT_NEAR(table.period_ns, 0.4e9, 1e-3);  // the first shot comes one step after the last
   const auto timed =
       folder.write("t.yaml", "optics: {type: table, file: scan.csv, point_us: 10, rows: 2}\n");
-  const auto other = std::get<BeamTable>(load_sensor_file(timed).optics);
+  const auto other = std::get<RayTable>(load_sensor_file(timed).optics);
   EXPECT_EQ(other.rows, 2U);
   EXPECT_EQ(other.times_ns[3], 30'000.0);
 }
@@ -109,11 +109,11 @@ TEST(LidarFile, ReadsArraysOfRays) {
   const TestFolder folder;
   (void)folder.write("rays.npy", npy({2, 6}, {1, 2, 3, 0, 0, 1, 4, 5, 6, 0, 2, 0}));
   const auto file = folder.write("s.yaml", "optics: {type: table, file: rays.npy}\n");
-  const auto table = std::get<BeamTable>(load_sensor_file(file).optics);
+  const auto table = std::get<RayTable>(load_sensor_file(file).optics);
   EXPECT_EQ(table.origins_m[1], Eigen::Vector3d(4, 5, 6));
   EXPECT_EQ(table.directions[1], Eigen::Vector3d(0, 2, 0));
   (void)folder.write("rays.npy", npy({2, 1, 3}, {1, 0, 0, 0, 1, 0}));
-  const auto grid = std::get<BeamTable>(load_sensor_file(file).optics);
+  const auto grid = std::get<RayTable>(load_sensor_file(file).optics);
   EXPECT_EQ(grid.rows, 2U);
   EXPECT_TRUE(grid.origins_m.empty());
 }
@@ -150,15 +150,16 @@ INSTANTIATE_TEST_SUITE_P(
                 "s.yaml:1:16: optics.type: 'spining'; allowed: pinhole, spinning, raster, prism, "
                 "table, ouster; did you mean 'spinning'?"},
         BadFile{"counts",
-                "optics: {type: spinning, sequence_us: 5, elevation_deg: [1, 2], "
+                "optics: {type: spinning, firing_period_us: 5, elevation_deg: [1, 2], "
                 "fire_time_us: [0]}\n",
-                "s.yaml:1:79: optics.fire_time_us: a list of 1; allowed: one number, or 2: one "
+                "s.yaml:1:84: optics.fire_time_us: a list of 1; allowed: one number, or 2: one "
                 "for each of elevation_deg"},
-        BadFile{"both",
-                "optics: {type: spinning, sequence_us: 5, columns_per_turn: 9, elevation_deg: "
-                "[1]}\n",
-                "s.yaml:1:39: optics.sequence_us: given beside 'columns_per_turn'; allowed: one "
-                "of columns_per_turn and sequence_us; remove one of them"},
+        BadFile{
+            "both",
+            "optics: {type: spinning, firing_period_us: 5, columns_per_turn: 9, elevation_deg: "
+            "[1]}\n",
+            "s.yaml:1:44: optics.firing_period_us: given beside 'columns_per_turn'; allowed: one "
+            "of columns_per_turn and firing_period_us; remove one of them"},
         BadFile{"csv", "optics: {type: table, file: bad.csv}\n",
                 "bad.csv:3: no three numbers; allowed: Time/s,Azimuth/deg,Zenith/deg"},
         BadFile{"falling", "optics: {type: table, file: falling.csv}\n",

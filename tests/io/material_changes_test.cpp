@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Changes of materials that are refused.
 #include <glidar/core/error.hpp>
-#include <glidar/io/scene_file.hpp>
+#include <glidar/io/config/scene_file.hpp>
 #include <support/source_folder.hpp>
 
 #include <gtest/gtest.h>

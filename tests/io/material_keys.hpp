@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/scene_file.hpp>
+#include <glidar/io/config/scene_file.hpp>
 #include <support/test_folder.hpp>
 
 #include <string>

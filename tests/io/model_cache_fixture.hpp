@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/model_cache.hpp>
+#include <glidar/io/model/model_cache.hpp>
 
 #include <io/model_test_support.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/import_process.hpp>
+#include <glidar/io/model/import_process.hpp>
 
 #include <io/model_test_support.hpp>
 
@@ -37,7 +37,7 @@ const std::map<std::string, std::string> kExceptions = {
 class DataModels : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(DataModels, LoadWithAllTheirTriangles) {
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   std::size_t loaded = 0;
   for (const auto& [path, triangles] : counted_triangles()) {
     if (!path.starts_with(std::string(GetParam()) + "/") || kExceptions.contains(path)) continue;
@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(Folders, DataModels, ::testing::Values("models", "textu
                          [](const auto& tested) { return std::string(tested.param); });
 
 TEST(DataModels, GazeboTexturesAreFoundInTheirPackage) {
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   const Model model =
       load(data_folder() / "scenes/gazebo/jersey_barrier/meshes/jersey_barrier.dae");
   EXPECT_TRUE(model.missing_textures.empty());
@@ -67,7 +67,7 @@ TEST(DataModels, GazeboTexturesAreFoundInTheirPackage) {
 }
 
 TEST(DataModels, WindowsPathsAreFound) {
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   for (const char* path : {"textured/assimp/OBJ/spider.obj",
                            "textured/obj_mtl/obj2gltf/box-windows-paths/box-windows-paths.obj",
                            "textured/trimesh/fuze.ply", "textured/trimesh/fuze.obj"}) {
@@ -78,7 +78,7 @@ TEST(DataModels, WindowsPathsAreFound) {
 }
 
 TEST(DataModels, EmbeddedTexturesAreRead) {
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   for (const char* path :
        {"textured/assimp/FBX/embedded_ascii/box.FBX", "textured/assimp/Collada/duck.zae"}) {
     EXPECT_EQ(load(data_folder() / path).textures.size(), 1U) << path;
@@ -86,7 +86,7 @@ TEST(DataModels, EmbeddedTexturesAreRead) {
 }
 
 TEST(DataModels, NormalMapsBringTangents) {
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   const Model model =
       load(data_folder() / "textured/gltf/NormalTangentTest/glTF/NormalTangentTest.gltf");
   EXPECT_TRUE(model.materials.at(0).normal_texture.used());
@@ -98,7 +98,7 @@ TEST(DataModels, NormalMapsBringTangents) {
 }
 
 TEST(DataModels, SamplerSettingsAreRead) {
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   const Model model =
       load(data_folder() / "textured/gltf/TextureSettingsTest/glTF/TextureSettingsTest.gltf");
   std::map<Wrap, int> wraps;

@@ -4,7 +4,7 @@
 #include <import/model_files.hpp>
 #include <import/open_beneath.hpp>
 
-#include <glidar/io/content_hash.hpp>
+#include <glidar/io/files/content_hash.hpp>
 
 #include <support/test_folder.hpp>
 

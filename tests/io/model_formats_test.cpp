@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // What single formats say of axes, transparency and textures, and what becomes of it.
-#include <glidar/io/import_process.hpp>
+#include <glidar/io/model/import_process.hpp>
 
 #include <io/model_test_support.hpp>
 
@@ -23,7 +23,7 @@ using testing::TestFolder;
 namespace fs = std::filesystem;
 
 TEST(ModelFormats, AZUpColladaBarrierStandsOnTheGround) {
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   const Eigen::AlignedBox3d box =
       bounds(load(testing::data_folder() / "scenes/gazebo/jersey_barrier/meshes/jersey_barrier.dae",
                   testing::as_declared())

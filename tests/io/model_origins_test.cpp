@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Parts of a model that are far from each other keep the precision of parts near zero.
 #include <glidar/core/mesh_pieces.hpp>
-#include <glidar/io/mesh_check.hpp>
-#include <glidar/io/model.hpp>
+#include <glidar/io/model/mesh_check.hpp>
+#include <glidar/io/model/model.hpp>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

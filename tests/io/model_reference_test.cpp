@@ -5,7 +5,7 @@
 // Here only the loader is on trial: the named triangle must lie where the pixel's ray is, at that
 // distance.
 
-#include <glidar/io/model.hpp>
+#include <glidar/io/model/model.hpp>
 
 #include <io/model_test_support.hpp>
 
@@ -114,7 +114,7 @@ Eigen::Vector3d meet(const Mesh& mesh, const Triangle& t, const Ray& ray) {
 class ModelReference : public ::testing::TestWithParam<const char*> {};
 
 TEST_P(ModelReference, TheNamedTrianglesLieWhereTheRaysAre) {
-  GLIDAR_NEED_DATA();
+  GLIDAR_NEEDS_DATA();
   const fs::path folder = testing::data_folder() / "reference" / "core" / GetParam();
   const Case truth = read_case(folder);
   const auto triangle = read_npy<std::int32_t>(folder / "triangle_id.npy");

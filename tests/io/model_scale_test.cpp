@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Scales along the axes of a model.
 #include <glidar/core/error.hpp>
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/io/scene_file.hpp>
+#include <glidar/io/config/scene_file.hpp>
+#include <glidar/io/model/builtin_models.hpp>
 
 #include <gtest/gtest.h>
 

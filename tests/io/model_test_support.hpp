@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include "support/data.hpp"
+
 #include <glidar/core/error.hpp>
-#include <glidar/io/model.hpp>
+#include <glidar/io/model/model.hpp>
 #include <support/test_folder.hpp>
 
 #include <gtest/gtest.h>
@@ -21,12 +23,6 @@ inline std::string read_file(const std::filesystem::path& path) {
   std::ostringstream content;
   content << std::ifstream(path, std::ios::binary).rdbuf();
   return content.str();
-}
-
-/// The folder of real data; empty where GLIDAR_DATA is unset.
-inline std::filesystem::path data_folder() {
-  const char* folder = std::getenv("GLIDAR_DATA");
-  return folder != nullptr ? folder : "";
 }
 
 /// With the unit and the up axis that the file declares.
@@ -110,10 +106,3 @@ inline std::string gltf(const std::string& nodes, const std::string& materials =
 #else
 #define GLIDAR_SKIP_SANITIZED() static_cast<void>(0)
 #endif
-
-/// Skips the test, saying so, without real data.
-#define GLIDAR_NEED_DATA()                                                         \
-  if (::glidar::testing::data_folder().empty()) {                                  \
-    GTEST_SKIP() << "set GLIDAR_DATA to the folder of real data to run this test"; \
-  }                                                                                \
-  static_cast<void>(0)

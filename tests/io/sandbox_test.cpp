@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // What a hostile model gains that takes control of the import process: tests/import/sandbox_probe.
-#include <glidar/io/import_process.hpp>
-#include <glidar/io/unique_fd.hpp>
+#include <glidar/io/files/unique_fd.hpp>
+#include <glidar/io/model/import_process.hpp>
 
 #include <io/model_cache_fixture.hpp>
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/connection_guard.hpp>
 
-#include <glidar/io/unique_fd.hpp>
+#include <glidar/io/files/unique_fd.hpp>
 #include <glidar/link/router.hpp>
 
 #include "loopback.hpp"

@@ -42,7 +42,7 @@ TEST(Exponential, IsItsPowerSeries) {
   const Eigen::Vector3d translation(0.3, -1.2, 2.0);
   for (const double angle : {0.0, 1e-9, 1e-4, 0.0999, 0.1001, 1.0, 3.0, 6.0}) {
     const Eigen::Vector3d rotation = angle * Eigen::Vector3d(2.0, -1.0, 2.0) / 3.0;
-    const Eigen::Matrix4d found = exponential(rotation, translation).matrix();
+    const Eigen::Matrix4d found = se3_exp(rotation, translation).matrix();
     // squaring twelve times multiplies roundings by 4096
     EXPECT_LT((found - series(rotation, translation)).norm(), 4e-12) << angle;
   }

@@ -16,7 +16,7 @@ TEST(StandingStill, PutsEverythingWhereTheSceneHasIt) {
   sensor.translation() = Eigen::Vector3d(0.0, 0.0, 9.0);
   Frame frame;
   frame.stamp_ns = 123;
-  place(standing_still(scene, sensor), frame);
+  sample_poses(static_motion(scene, sensor), frame);
   EXPECT_TRUE(frame.world_from_sensor.isApprox(sensor));
   ASSERT_EQ(frame.world_from_instance.size(), 1U);
   EXPECT_TRUE(frame.world_from_instance[0].isApprox(scene.instances[0].world_from_object));
@@ -32,17 +32,18 @@ std::vector<Trajectory> all_kinds() {
   const Pose start = make_pose({1.0, 2.0, 3.0}, Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5));
   const Eigen::Vector3d rate(0.3, -0.2, 0.7);
   const Eigen::Vector3d velocity(1.0, 0.5, -2.0);
-  return {ConstantPose{start},
-          ConstantTwist{start, rate, velocity, TwistFrame::body, 0},
-          ConstantTwist{start, rate, velocity, TwistFrame::world, 0},
-          Spin{.pose = start, .rate_rad_s = rate},
-          TimedPoses({{0, {0.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()},
-                      {1'000'000'000, {1.0, 0.0, 2.0}, Eigen::Quaterniond(0.6, 0.8, 0.0, 0.0)}}),
-          Tumbling({.moments_kg_m2 = {1.0, 2.0, 2.5},
-                    .rate_rad_s = rate,
-                    .world_from_body = start,
-                    .velocity_m_s = velocity}),
-          Mounted{Tumbling({.moments_kg_m2 = {1.0, 2.0, 2.5}, .rate_rad_s = rate}), start}};
+  return {
+      ConstantPose{start},
+      ConstantTwist{start, rate, velocity, TwistFrame::body, 0},
+      ConstantTwist{start, rate, velocity, TwistFrame::world, 0},
+      Spin{.pose = start, .rate_rad_s = rate},
+      TimedPoses({{0, {0.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()},
+                  {1'000'000'000, {1.0, 0.0, 2.0}, Eigen::Quaterniond(0.6, 0.8, 0.0, 0.0)}}),
+      TorqueFreeRotation({.moments_kg_m2 = {1.0, 2.0, 2.5},
+                          .rate_rad_s = rate,
+                          .world_from_body = start,
+                          .velocity_m_s = velocity}),
+      Mounted{TorqueFreeRotation({.moments_kg_m2 = {1.0, 2.0, 2.5}, .rate_rad_s = rate}), start}};
 }
 
 constexpr double kRoundingOfMounts = 1e-12;
@@ -50,7 +51,7 @@ constexpr double kRoundingOfMounts = 1e-12;
 TEST(Mounted, IsThePartOnTheBodyAtAnyTimeForEveryKind) {
   const Pose part = some_move();
   for (const Trajectory& body : all_kinds()) {
-    const Trajectory sensor = mounted(body, part);
+    const Trajectory sensor = compose_extrinsic(body, part);
     for (const std::int64_t t_ns : {-2'000'000'000LL, 0LL, 400'000'000LL, 7'300'000'000LL}) {
       const Pose expected = pose_at(body, t_ns) * part;
       EXPECT_TRUE(pose_at(sensor, t_ns).isApprox(expected, kRoundingOfMounts)) << body.index();
@@ -60,7 +61,7 @@ TEST(Mounted, IsThePartOnTheBodyAtAnyTimeForEveryKind) {
 
 TEST(Mounted, AtTheBodysOriginIsTheBodyToTheBit) {
   for (const Trajectory& body : all_kinds()) {
-    const Trajectory same = mounted(body, Pose::Identity());
+    const Trajectory same = compose_extrinsic(body, Pose::Identity());
     EXPECT_EQ(same.index(), body.index());
     EXPECT_EQ(pose_at(same, 700'000'000).matrix(), pose_at(body, 700'000'000).matrix());
   }
@@ -70,8 +71,8 @@ TEST(Mounted, ManyPosesAreThoseOneByOneAndKnownTimesAreTheCarriers) {
   const Trajectory carrier =
       TimedPoses({{0, {0.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()},
                   {1'000'000'000, {1.0, 0.0, 2.0}, Eigen::Quaterniond(0.6, 0.8, 0.0, 0.0)}});
-  const Trajectory sensor = mounted(carrier, some_move());
-  EXPECT_EQ(known_times(sensor).last_ns, 1'000'000'000);
+  const Trajectory sensor = compose_extrinsic(carrier, some_move());
+  EXPECT_EQ(valid_interval(sensor).last_ns, 1'000'000'000);
   const std::vector<std::int64_t> times = {-1, 0, 250'000'000, 999'999'999, 2'000'000'000};
   std::vector<Pose> poses(times.size());
   poses_at(sensor, times, poses);
@@ -83,7 +84,7 @@ TEST(Mounted, ManyPosesAreThoseOneByOneAndKnownTimesAreTheCarriers) {
 TEST(Mounted, WithAPoseThatIsNotRigidIsRefused) {
   Pose scaled = Pose::Identity();
   scaled.linear() *= 2.0;
-  EXPECT_THROW(validate(Mounted{Tumbling(TumblingStart{}), scaled}), Error);
+  EXPECT_THROW(validate(Mounted{TorqueFreeRotation(InitialRotation{}), scaled}), Error);
 }
 
 TEST(Moved, IsTheMoveAfterThePoseAtAnyTimeForEveryKind) {
@@ -92,7 +93,7 @@ TEST(Moved, IsTheMoveAfterThePoseAtAnyTimeForEveryKind) {
   const std::vector<Trajectory> kinds = all_kinds();
   ASSERT_EQ(kinds.back().index() + 1, std::variant_size_v<Trajectory>);
   for (const Trajectory& trajectory : kinds) {
-    const Trajectory result = moved(move, trajectory);
+    const Trajectory result = transformed(move, trajectory);
     EXPECT_EQ(result.index(), trajectory.index());
     for (const std::int64_t t_ns : {-500'000'000LL, 0LL, 400'000'000LL, 3'000'000'000LL}) {
       EXPECT_TRUE(pose_at(result, t_ns).isApprox(move * pose_at(trajectory, t_ns), kRounding))

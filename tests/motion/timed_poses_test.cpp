@@ -105,7 +105,7 @@ TEST(Trajectory, ManyTimesAtOnceAreTheSameAsOneByOne) {
   const std::vector<Trajectory> kinds = {
       ConstantPose{}, ConstantTwist{.angular_rad_s = {0.1, 0.2, 0.3}},
       Spin{.rate_rad_s = {0.1, 0.2, 0.3}}, TimedPoses(poses),
-      Tumbling({.moments_kg_m2 = {1.0, 2.0, 2.5}, .rate_rad_s = {0.1, 0.2, 0.3}})};
+      TorqueFreeRotation({.moments_kg_m2 = {1.0, 2.0, 2.5}, .rate_rad_s = {0.1, 0.2, 0.3}})};
   std::vector<std::int64_t> times;  // rising in small and large steps, falling, outside, on a pose
   for (int i = -20; i < 3000; ++i) times.push_back(70 * i);
   for (int i = 0; i < 500; ++i) times.push_back((i * 7919) % 200'000);
@@ -125,10 +125,10 @@ TEST(Trajectory, ManyTimesAtOnceAreTheSameAsOneByOne) {
 TEST(Trajectory, HeldPosesAreTold) {
   std::string said;
   const Report report{.log = [&](Severity, std::string_view text) { said = text; }, .progress = {}};
-  warn_of_held_poses(two(), "rock", {.first_ns = 1000, .last_ns = 2000}, report);
-  warn_of_held_poses(Spin{}, "rock", {.first_ns = -1000, .last_ns = 2000}, report);
+  warn_extrapolation(two(), "rock", {.first_ns = 1000, .last_ns = 2000}, report);
+  warn_extrapolation(Spin{}, "rock", {.first_ns = -1000, .last_ns = 2000}, report);
   EXPECT_EQ(said, "");
-  warn_of_held_poses(two(), "rock", {.first_ns = 1000, .last_ns = 2001}, report);
+  warn_extrapolation(two(), "rock", {.first_ns = 1000, .last_ns = 2001}, report);
   EXPECT_THAT(said, HasSubstr("rock: the trajectory is known from 0.000001 s to 0.000002 s"));
   EXPECT_THAT(said, HasSubstr("the pose at its end holds"));
 }
@@ -148,15 +148,15 @@ TEST(Moving, TakesOneTrajectoryPerInstanceOrNone) {
   Scene scene;
   scene.instances.push_back({.name = "a", .materials = {}});
   scene.instances[0].world_from_object.translation().x() = 4.0;
-  const Motion still = moving(scene, ConstantPose{}, {});
+  const Motion still = make_motion(scene, ConstantPose{}, {});
   EXPECT_EQ(pose_at(still.world_from_instance.at(0), 7).translation().x(), 4.0);
   const Motion turning =
-      moving(scene, ConstantPose{}, {ConstantTwist{.linear_m_s = {1.0, 0.0, 0.0}}});
+      make_motion(scene, ConstantPose{}, {ConstantTwist{.linear_m_s = {1.0, 0.0, 0.0}}});
   Frame frame;
   frame.stamp_ns = 2'000'000'000;
-  place(turning, frame);
+  sample_poses(turning, frame);
   EXPECT_DOUBLE_EQ(frame.world_from_instance.at(0).translation().x(), 2.0);
-  EXPECT_THROW(moving(scene, ConstantPose{}, {Spin{}, Spin{}}), Error);
+  EXPECT_THROW(make_motion(scene, ConstantPose{}, {Spin{}, Spin{}}), Error);
 }
 
 }  // namespace

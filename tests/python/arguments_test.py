@@ -43,7 +43,7 @@ def frames_both_ways(scene, sensor, poses, **options):
 def test_an_iterator_takes_what_a_batch_takes(camera):
     scene = glidar.Scene()
     scene.add_model("builtin:sphere", name="a")
-    scene.add_copy(scene["a"], name="b")
+    scene.add_instance(scene["a"], name="b")
     left, right = glidar.pose([-1, 0, 0]), glidar.pose([1, 0, 0])
     pose = glidar.look_at([0, -8, 0], [0, 0, 0])
     lists = [[left, right], [right, left], [left.tolist(), left]]

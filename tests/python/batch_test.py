@@ -43,12 +43,12 @@ def test_number_of_threads_does_not_change_a_bit(asteroid, noisy):
 def test_objects_have_poses_of_their_own_in_every_frame(camera):
     scene = glidar.Scene()
     scene.add_model("builtin:sphere", name="a")
-    scene.add_copy(scene["a"], name="b")
+    scene.add_instance(scene["a"], name="b")
     left, right = glidar.pose([-1, 0, 0]), glidar.pose([1, 0, 0])
     objects = np.stack([[left, right], [right, left], [left, left]])
     poses = np.repeat(glidar.look_at([0, -8, 0], [0, 0, 0])[None], 3, 0)
     frames = glidar.simulate_batch(scene, camera, poses, objects=objects)
-    first, second, third = (f.truth.instance for f in frames)
+    first, second, third = (f.ground_truth.instance for f in frames)
     assert np.array_equal(np.where(first < 2, 1 - first, first), second)
     assert set(np.unique(third[third < 2])) <= {0, 1}
     assert np.array_equal(frames[1].world_from_objects, objects[1])
@@ -59,7 +59,7 @@ def test_objects_have_poses_of_their_own_in_every_frame(camera):
 
 
 def test_frames_that_move_differ_from_those_that_stand(asteroid):
-    lidar = glidar.load_sensor("VLP-16").ideal()
+    lidar = glidar.load_sensor("VLP-16").ground_truth()
     pose = glidar.look_at([3, 0, 0], [0, 0, 0], boresight="x")
     still = glidar.simulate(asteroid, lidar, pose)
     spin = glidar.Trajectory.spin(np.eye(4), [0, 0, 3.0])

@@ -42,7 +42,7 @@ def built():
     colours = np.linspace(0, 1, 12).reshape(4, 3)
     first = scene.add_mesh(corners, faces, colours=colours, name="first", pose=glidar.pose([-1e7, -1e7, -1e7]))
     first.set_materials({"*": {"diffuse": [0.1, 0.7, 0.3]}})
-    scene.add_copy(first, name="second", class_name="part", scale=0.7)
+    scene.add_instance(first, name="second", class_name="part", scale=0.7)
     with pytest.raises(glidar.Error):
         scene.add_model("builtin:box", name="second")  # is taken away again
     scene.add_model("builtin:sphere", pose=glidar.pose([3, 0, 0]), class_name="ball")

@@ -63,14 +63,14 @@ def test_ctrl_c_ends_a_batch_and_all_goes_on(asteroid):
     sensor = glidar.camera(256, 256)
     poses = poses_around(3000)
     core = glidar.Simulator(asteroid, sensor)._core
-    fields = glidar._core.fields_for(["xyz"])
+    fields = glidar._core.fields_needed_by(["xyz"])
     assert completed(core.simulate, glidar._core.constant(poses, "poses"), None, keys(len(poses)), fields) == []
     assert glidar.simulate(asteroid, sensor, poses[0]).hits > 0
 
 
 def test_ctrl_c_ends_one_long_measurement(asteroid):
     simulator = glidar.Simulator(asteroid, glidar.camera(4000, 4000))
-    fields = glidar._core.fields_for(["xyz"])
+    fields = glidar._core.fields_needed_by(["xyz"])
     assert completed(simulator._core.simulate, simulator._core.usual_motion(), None, keys(1), fields) == []
     glidar.simulate(asteroid, glidar.camera(), poses_around(1)[0])
 
@@ -121,7 +121,7 @@ USES = {
     "sensor": lambda v: glidar.simulate(SCENE, v), "simulator": lambda v: glidar.Simulator(SCENE, v),
     "seeds": lambda v: glidar.simulate_batch(SCENE, CAMERA, EYE, v), "frames": lambda v: glidar.simulate_batch(SCENE, CAMERA, EYE, frames=v),
     "iter seeds": lambda v: list(glidar.simulate_iter(SCENE, CAMERA, EYE, v)), "poses": lambda v: glidar.simulate_batch(SCENE, CAMERA, v),
-    "batch": lambda v: list(glidar.simulate_iter(SCENE, CAMERA, EYE, batch=v)), "add_copy": SCENE.add_copy, "add_model": SCENE.add_model,
+    "batch": lambda v: list(glidar.simulate_iter(SCENE, CAMERA, EYE, batch=v)), "add_instance": SCENE.add_instance, "add_model": SCENE.add_model,
     "returns": lambda v: glidar.sensor("VLP-16", returns=v), "rate": lambda v: glidar.sensor("VLP-16", rate_hz=v),
     "name": lambda v: setattr(SCENE.objects[0], "name", v), "id": lambda v: setattr(SCENE.objects[0], "id", v),
     "trajectory": glidar.Trajectory.load, "kitti rate": lambda v: glidar.Trajectory.load(__file__, rate_hz=v),

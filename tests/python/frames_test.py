@@ -23,13 +23,13 @@ def test_arrays_are_read_only_views_of_one_memory(frame):
         assert not one.flags.writeable
         with pytest.raises(ValueError, match="read-only"):
             one[0, 0] = 0
-    assert frame.truth.normal.shape == (48, 64, 3)
-    assert frame.truth.normal.ctypes.data == frame.truth.normal.ctypes.data
+    assert frame.ground_truth.normal.shape == (48, 64, 3)
+    assert frame.ground_truth.normal.ctypes.data == frame.ground_truth.normal.ctypes.data
 
 
 def test_arrays_outlive_their_frame(asteroid, camera):
     frame = glidar.simulate(asteroid, camera)
-    kept, copy = frame.truth.range_m, frame.truth.range_m.copy()
+    kept, copy = frame.ground_truth.range_m, frame.ground_truth.range_m.copy()
     del frame
     gc.collect()
     glidar.simulate(asteroid, camera, glidar.look_at([9, 9, 9], [0, 0, 0]))
@@ -39,9 +39,9 @@ def test_arrays_outlive_their_frame(asteroid, camera):
 def test_status_says_why_a_return_is_missing(frame):
     assert frame.hits == np.isfinite(frame.range_m).sum() == (frame.status == glidar.Status.hit).sum()
     assert (frame.status == glidar.Status.dropped).any()
-    assert np.isfinite(frame.truth.range_m[frame.status == glidar.Status.dropped]).all()
-    assert np.isnan(frame.truth.range_m[frame.status == glidar.Status.miss]).all()
-    assert (frame.cause[frame.status == glidar.Status.hit] == glidar.Cause.surface).all()
+    assert np.isfinite(frame.ground_truth.range_m[frame.status == glidar.Status.dropped]).all()
+    assert np.isnan(frame.ground_truth.range_m[frame.status == glidar.Status.miss]).all()
+    assert (frame.return_source[frame.status == glidar.Status.hit] == glidar.ReturnSource.surface).all()
     assert np.allclose(frame.sigma_m[frame.status == glidar.Status.hit], 0.01)
 
 
@@ -55,10 +55,10 @@ def test_truth_is_that_of_a_sphere():
     scene = glidar.Scene()
     ball = scene.add_model("builtin:sphere", scale=2.0, id=17, class_name="ball")
     frame = glidar.simulate(scene, glidar.camera(33, 33, fov_deg=5.0), glidar.look_at([10, 0, 0], [0, 0, 0]), columns="all")
-    assert frame.truth.range_m[16, 16] == pytest.approx(8.0, abs=2e-3)  # 5,120 triangles
-    assert frame.truth.normal[16, 16] == pytest.approx([0, 0, -1], abs=0.05)
-    assert frame.truth.object_point_m[16, 16] == pytest.approx([1, 0, 0], abs=2e-3)
-    assert (frame.truth.instance == 0).all()
+    assert frame.ground_truth.range_m[16, 16] == pytest.approx(8.0, abs=2e-3)  # 5,120 triangles
+    assert frame.ground_truth.normal[16, 16] == pytest.approx([0, 0, -1], abs=0.05)
+    assert frame.ground_truth.object_point_m[16, 16] == pytest.approx([1, 0, 0], abs=2e-3)
+    assert (frame.ground_truth.instance == 0).all()
     cloud = frame.cloud(["instance", "class"])
     assert (cloud["instance"] == 17).all()
     assert scene.class_names[cloud["class"][0, 0]] == "ball"
@@ -68,7 +68,7 @@ def test_truth_is_that_of_a_sphere():
 def test_truth_that_was_not_kept_says_what_to_do(asteroid, camera):
     frame = glidar.simulate(asteroid, camera)
     with pytest.raises(glidar.Error, match=r"truth.colour: not kept; simulate\(..., columns='all'\)"):
-        _ = frame.truth.colour
+        _ = frame.ground_truth.colour
     with pytest.raises(glidar.Error):
         frame.cloud(["colour"])
 
@@ -140,7 +140,7 @@ def test_story_of_an_entry_tells_every_draw(frame):
     assert story.entry == index
     assert len(story.steps) == 2
     gaussian, dropout = story.steps
-    truth = frame.truth.range_m.flat[index]
+    truth = frame.ground_truth.range_m.flat[index]
     drawn = gaussian.drawn[0]
     assert drawn.law == "normal"
     assert gaussian.after.range_m == pytest.approx(truth + 0.01 * drawn.value, abs=1e-9)
@@ -169,7 +169,7 @@ def test_information_of_a_plane_knows_what_it_does_not_determine():
     assert np.allclose(told.matrix, told.matrix.T)
     assert [d.degenerate for d in told.directions] == [False] * 3 + [True] * 3
     # along the boresight, which is the plane's normal, every range tells 1 / (sigma cos)^2
-    cosines = frame.truth.cos_incidence[frame.status == glidar.Status.hit]
+    cosines = frame.ground_truth.cos_incidence[frame.status == glidar.Status.hit]
     assert told.matrix[5, 5] == pytest.approx((1.0 / (0.02 * cosines.astype(float)) ** 2).sum(), rel=1e-6)
     assert np.isinf(told.bound).sum() == 3
     assert told.to_dict()["returns"] == told.returns

@@ -45,7 +45,7 @@ def test_without_seeds_every_frame_has_noise_of_its_own(asteroid, noisy):
 def test_objects_are_the_same_for_all_frames_or_each_frame_has_its_own(camera):
     scene = glidar.Scene()
     scene.add_model("builtin:sphere", name="a")
-    scene.add_copy(scene["a"], name="b")
+    scene.add_instance(scene["a"], name="b")
     left, right = glidar.pose([-1, 0, 0]), glidar.pose([1, 0, 0])
     objects = np.stack([[left, right], [right, left], [left, left]])
     poses = np.repeat(glidar.look_at([0, -8, 0], [0, 0, 0])[None], 3, 0)

@@ -52,7 +52,7 @@ def folder(request, tmp_path_factory):
     (folder / "scene.yaml").write_text(SCENE)
     scene = glidar.Scene(folder / "scene.yaml")
     if request.param == "lidar":
-        sensor = glidar.load_sensor("OS1-64").ideal()
+        sensor = glidar.load_sensor("OS1-64").ground_truth()
         pose = glidar.pose([0.0, 0.0, 0.4])
     else:
         sensor = glidar.camera(200, 160, fov_deg=90.0)

@@ -130,7 +130,7 @@ def test_files_of_poses_are_read(tmp_path):
 
 
 def test_a_moving_sensor_skews_its_cloud_and_deskew_undoes_it():
-    lidar = glidar.load_sensor("VLP-16").ideal()
+    lidar = glidar.load_sensor("VLP-16").ground_truth()
     scene = glidar.Scene("builtin:box")
     moving = glidar.Trajectory.twist(np.eye(4), [0, 0, 1.0], [0.5, 0, 0])
     frame = glidar.simulate(scene, lidar, moving, columns="all")

@@ -40,7 +40,7 @@ def test_sensors_with_one_number_apart_are_not_equal():
     assert near != glidar.camera(8, 8, fov_deg=np.nextafter(20.0, 21.0))
     assert near != glidar.camera(8, 8, fov_deg=20.0, name="other")
     assert near != "camera"
-    assert len({near, glidar.camera(8, 8, fov_deg=20.0), near.ideal()}) == 1  # a camera without noise is ideal
+    assert len({near, glidar.camera(8, 8, fov_deg=20.0), near.ground_truth()}) == 1  # a camera without noise is ideal
 
 
 @pytest.mark.parametrize("protocol", PROTOCOLS)
@@ -178,7 +178,7 @@ def test_a_frame_comes_back_the_same_and_does_all_that_it_did(built, noisy, tmp_
     assert back == frame
     assert hash(back) == hash(frame)
     assert (back.seed, back.number, back.sensor_id, back.stamp_ns) == (9, 4, 2, frame.stamp_ns)
-    assert back.truth.normal.tobytes() == frame.truth.normal.tobytes()
+    assert back.ground_truth.normal.tobytes() == frame.ground_truth.normal.tobytes()
     assert back.cloud("all", frame="world") == frame.cloud("all", frame="world")
     assert str(back.explain(100)) == str(frame.explain(100))
     assert np.array_equal(back.information().matrix, frame.information().matrix)
@@ -304,7 +304,7 @@ def test_small_values_come_back_the_same(built, camera):
     assert mesh != built["sphere"].mesh
     with pytest.raises(TypeError):
         hash(mesh)
-    assert np.array_equal(again(frame.truth).range_m, frame.truth.range_m, equal_nan=True)
+    assert np.array_equal(again(frame.ground_truth).range_m, frame.ground_truth.range_m, equal_nan=True)
     for value in (frame.explain(5), frame.information()):
         for back in (again(value), copy.copy(value), copy.deepcopy(value)):
             assert back == value

@@ -24,14 +24,14 @@ def scene_file(tmp_path_factory):
 
 CASES = {
     "a.pcd": ({}, []),
-    "ascii.pcd": ({"pcd": "ascii", "columns": "all"}, ["--pcd-encoding", "ascii", "--columns", "all"]),
+    "ascii.pcd": ({"pcd": "ascii", "columns": "all"}, ["--pcd-encoding", "ascii", "--fields", "all"]),
     "small.pcd": ({"pcd": "binary_compressed"}, ["--pcd-encoding", "binary_compressed"]),
-    "dense.pcd": ({"hits_only": True, "frame": "world"}, ["--dense", "--cloud-frame", "world"]),
-    "layout.pcd": ({"layout": "velodyne", "hits_only": True}, ["--layout", "velodyne", "--dense"]),
-    "b.ply": ({"frame": "ros"}, ["--cloud-frame", "ros"]),
+    "dense.pcd": ({"hits_only": True, "frame": "world"}, ["--drop-invalid", "--frame", "world"]),
+    "layout.pcd": ({"layout": "velodyne", "hits_only": True}, ["--layout", "velodyne", "--drop-invalid"]),
+    "b.ply": ({"frame": "ros"}, ["--frame", "ros"]),
     "ascii.ply": ({"ply_ascii": True, "deskew": True}, ["--ply-ascii", "--deskew"]),
-    "c.npz": ({"columns": "all"}, ["--columns", "all"]),
-    "d.csv": ({"columns": ["xyz", "status"]}, ["--columns", "xyz,status"]),
+    "c.npz": ({"columns": "all"}, ["--fields", "all"]),
+    "d.csv": ({"columns": ["xyz", "status"]}, ["--fields", "xyz,status"]),
     "e.bin": ({}, []),
     "f.npy": ({}, []),
     "g.depth.png": ({"depth_units_per_m": 5000.0}, ["--depth-scale", "5000"]),
@@ -71,7 +71,7 @@ def test_lidar_by_name_is_that_of_the_command_line(tmp_path, program):
 
 
 def test_information_is_that_of_the_command_line(scene_file, tmp_path, program):
-    program("render", scene_file, "--information", "-o", tmp_path / "a.pcd")
+    program("render", scene_file, "--fisher", "-o", tmp_path / "a.pcd")
     told = glidar.simulate(glidar.Scene(scene_file)).information()
     told.save(tmp_path / "ours.json")
     assert (tmp_path / "ours.json").read_bytes() == (tmp_path / "a.information.json").read_bytes()

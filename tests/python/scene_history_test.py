@@ -130,11 +130,11 @@ def test_meshes_count_by_their_content_and_not_by_their_places():
     one, other = glidar.Scene(), glidar.Scene()
     for scene in (one, other):
         scene.add_mesh(*TRIANGLE, name="a")
-    one.add_copy(one["a"], name="b")  # shares the mesh
+    one.add_instance(one["a"], name="b")  # shares the mesh
     other.add_mesh(*TRIANGLE, name="b", id=2)
     assert one == other
     other.add_mesh([[0, 0, 0], [1, 0, 0], [0, 1, 1e-6]], [[0, 1, 2]], name="c")
-    one.add_copy(one["a"], name="c")
+    one.add_instance(one["a"], name="c")
     assert one != other
 
 

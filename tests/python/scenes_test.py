@@ -22,7 +22,7 @@ def test_mesh_of_arrays_is_measured_like_the_same_model(camera):
     theirs = glidar.simulate(glidar.Scene("builtin:box"), camera, POSE)
     assert ours.hits == theirs.hits > 0
     assert np.allclose(ours.range_m, theirs.range_m, atol=1e-6, equal_nan=True)
-    assert np.allclose(ours.truth.normal, theirs.truth.normal, atol=1e-6, equal_nan=True)
+    assert np.allclose(ours.ground_truth.normal, theirs.ground_truth.normal, atol=1e-6, equal_nan=True)
 
 
 def test_mesh_far_from_its_zero_keeps_its_detail(camera):
@@ -72,13 +72,13 @@ def test_normals_uvs_and_colours_are_kept():
         assert np.allclose(given, kept, atol=1e-7)
     assert np.array_equal(mesh.triangles, FACES)
     frame = glidar.simulate(scene, glidar.camera(), POSE, columns="all")
-    assert not np.allclose(frame.truth.normal, frame.truth.shading_normal, equal_nan=True)
+    assert not np.allclose(frame.ground_truth.normal, frame.ground_truth.shading_normal, equal_nan=True)
 
 
 def test_objects_are_placed_named_and_changed(camera):
     scene = glidar.Scene()
     first = scene.add_model("builtin:sphere", name="sun", pose=glidar.pose([0, 0, 5]), scale=2.0, id=9, class_name="star")
-    second = scene.add_copy(first, name="moon", pose=np.eye(4))
+    second = scene.add_instance(first, name="moon", pose=np.eye(4))
     assert [o.name for o in scene] == ["sun", "moon"]
     assert (first.id, first.scale, first.class_name, second.scale) == (9, 2.0, "star", 2.0)
     assert scene["moon"].index == 1
@@ -103,7 +103,7 @@ def test_scales_per_axis_stretch_an_object_and_go_back(camera):
     assert ball.mesh.vertices.max() == pytest.approx(1.0, abs=1e-3)  # before scale
     frame = glidar.simulate(scene, camera, POSE, columns="all")
     hit = frame.status == glidar.Status.hit
-    point = frame.truth.object_point_m[hit] * np.array(ball.scale)
+    point = frame.ground_truth.object_point_m[hit] * np.array(ball.scale)
     # on the ellipsoid but for the facets of the mesh
     assert np.allclose(np.sum((point / np.array(ball.scale)) ** 2, axis=1), 1.0, atol=0.01)
     ball.scale = 3
@@ -189,7 +189,7 @@ def test_a_dict_is_the_same_as_the_file_with_its_keys(tmp_path):
 
 def test_a_rig_is_measured_as_by_the_command_line(tmp_path, program):
     path = ROOT / "examples/rig.yaml"
-    program("render", path, "--seed", 5, "--columns", "all", "-o", tmp_path / "a.npz")
+    program("render", path, "--seed", 5, "--fields", "all", "-o", tmp_path / "a.npz")
     scene = glidar.Scene(path)
     assert scene.sensor is None
     assert [mount.number for mount in scene.rig.values()] == [0, 1]
@@ -294,7 +294,7 @@ def test_copies_are_of_objects_of_the_same_scene():
     ball = glidar.Scene("builtin:sphere")
     for scene in (glidar.Scene("builtin:asteroid"), glidar.Scene()):
         with pytest.raises(glidar.Error, match="of another scene"):
-            scene.add_copy(ball.objects[0])
+            scene.add_instance(ball.objects[0])
         assert "sphere" not in repr(scene)
 
 

@@ -25,7 +25,7 @@ def test_every_preset_loads_and_describes_itself():
 
 
 def test_numbers_of_a_preset_have_sources():
-    sheet = glidar.sensor_sheet("VLP-16")
+    sheet = glidar.datasheet("VLP-16")
     assert any(entry.key.startswith("optics.") and entry.source for entry in sheet)
 
 
@@ -75,7 +75,7 @@ def test_camera_is_that_of_the_command_line(tmp_path, program):
 
 
 def test_ideal_sensor_has_no_noise():
-    assert glidar.load_sensor("VLP-16").ideal().describe()["noise"] == []
+    assert glidar.load_sensor("VLP-16").ground_truth().describe()["noise"] == []
 
 
 def test_directions_are_those_of_the_pinhole():
@@ -137,7 +137,7 @@ def test_descriptions_have_the_numbers_of_the_files_of_presets_digit_by_digit():
     counted = []
     for name in glidar.sensor_names():
         given = yaml.safe_load(Path(glidar.sensor_file(name)).read_text(encoding="utf-8"))
-        if given.get("footprint", {}).get("widths") == "fwhm":
+        if given.get("footprint", {}).get("width_definition") == "fwhm":
             del given["footprint"]  # sidecars give the widths of 1/e2
         before = len(counted)
         _compare(given, glidar.load_sensor(name).describe(), counted)

@@ -20,9 +20,9 @@ class CloseSheetsTest : public ::testing::Test {
   /// The number of close triangles of the scene, seen by 100x100 beams from (0, 0, distance).
   std::size_t close_from(double distance_m) {
     resolver_ = std::make_unique<Resolver>(scene_);
-    const rays::SceneTrees trees(*resolver_, workers_);
+    const rays::SceneTrees trees(*resolver_, thread_pool_);
     const std::vector<Eigen::AlignedBox3d> boxes = {local_box(scene_.meshes[0])};
-    CloseSheets sheets(*resolver_, trees, boxes, workers_);
+    CloseSheets sheets(*resolver_, trees, boxes, thread_pool_);
     const Beams beams = camera_beams(100, 100, 100.0);
     const CastRequest request{
         .beams = beams,
@@ -53,7 +53,7 @@ class CloseSheetsTest : public ::testing::Test {
     }
   }
 
-  Workers workers_{2};
+  ThreadPool thread_pool_{2};
   Scene scene_;
   std::unique_ptr<Resolver> resolver_;
 };

@@ -62,7 +62,7 @@ TEST_P(CoincidentSurfaces, IdenticalInstancesHaveTheTrianglesAndRangesOfOneAlone
   EXPECT_EQ(all.instance, alone.instance);
   EXPECT_EQ(all.primitive, alone.primitive);
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (alone.instance[i] == kNoHit) continue;
+    if (alone.instance[i] == kInvalidId) continue;
     EXPECT_EQ(all.range_m[i], alone.range_m[i]) << i;
   }
 }
@@ -77,7 +77,7 @@ TEST_P(CoincidentSurfaces, AFirstInstanceThatIsNotPresentLeavesTheNext) {
   renderer(scene)->cast({.beams = beams,
                          .world_from_sensor = turned(0.2, {0.0, 1.0, 0.0}, {-0.6, 0.1, -3.0}),
                          .fields = {},
-                         .present = present},
+                         .instance_enabled = present},
                         hits);
   EXPECT_GT(count(hits, 1), 300U);
   EXPECT_EQ(count(hits, 0) + count(hits, 2), 0U);
@@ -129,7 +129,7 @@ void expect_small_inside_large(const Scene& scene, const Hits& hits, const Beams
   std::size_t on_small = 0;
   std::size_t on_large = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (hits.instance[i] == kNoHit) continue;
+    if (hits.instance[i] == kInvalidId) continue;
     const Eigen::Vector3d direction = planes_from_sensor.linear() * beams.directions[i];
     const Eigen::Vector3d eye = planes_from_sensor.translation();
     const Eigen::Vector3d point = eye - eye.z() / direction.z() * direction;
@@ -192,12 +192,12 @@ TEST_P(CoincidentSurfaces, OfPlatesOnAGroundThePlatesAreReportedAndAGroundInFron
   const Beams beams = camera_beams(160, 120, 150.0);
   Scene scene = plates_on_ground(world);
   const Hits hits = cast(scene, beams, pose);
-  const std::size_t on_plates = beams.size() - count(hits, 400) - count(hits, kNoHit);
+  const std::size_t on_plates = beams.size() - count(hits, 400) - count(hits, kInvalidId);
   EXPECT_GT(count(hits, 400), 1000U);
   EXPECT_GT(on_plates, 1000U);
   std::size_t checked = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (hits.instance[i] == kNoHit) continue;
+    if (hits.instance[i] == kInvalidId) continue;
     const Eigen::Vector3d point =
         world.inverse() * (pose * (hits.range_m[i] * beams.directions[i]));
     const Eigen::Vector2d cell = (point.head<2>().array() + 10.0).floor();
@@ -213,7 +213,7 @@ TEST_P(CoincidentSurfaces, OfPlatesOnAGroundThePlatesAreReportedAndAGroundInFron
   EXPECT_GT(checked, 5000U);
   std::rotate(scene.instances.begin(), scene.instances.end() - 1, scene.instances.end());
   const Hits hidden = cast(scene, beams, pose);
-  EXPECT_EQ(count(hidden, 0), beams.size() - count(hits, kNoHit));
+  EXPECT_EQ(count(hidden, 0), beams.size() - count(hits, kInvalidId));
 }
 
 /// A floor, and a wall across it 3 m ahead, in a world that is turned. The sensor is in the floor's
@@ -247,7 +247,7 @@ TEST_P(CoincidentSurfaces, AFloorSeenEdgeOnIsNotReportedBehindTheWallInFront) {
     const Hits hits = cast(stage.scene, beams, stage.world_from_sensor);
     on_wall += count(hits, 1);
     for (std::size_t k = 0; k < beams.size(); ++k) {
-      ASSERT_NE(hits.instance[k], kNoHit) << "world " << i << ", beam " << k;
+      ASSERT_NE(hits.instance[k], kInvalidId) << "world " << i << ", beam " << k;
       EXPECT_LE(hits.range_m[k] * beams.directions[k].z(), 3.0 + 1e-9)
           << "world " << i << ", beam " << k << ", instance " << hits.instance[k];
     }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/builtin_models.hpp>
+#include <glidar/io/model/builtin_models.hpp>
 #include <glidar/render/draw_order.hpp>
 
 #include <gtest/gtest.h>

@@ -44,7 +44,7 @@ class Stage {
     const CastRequest request{
         .beams = beams,
         .world_from_sensor = testing::turned(1.0, {0.3, 0.2, 1.0}, {1.0, -2.0, 3.0}),
-        .present = present};
+        .instance_enabled = present};
     resolver->set_poses(request.world_from_sensor, {});
     tree.build(request, *resolver, mesh_boxes);
     for (std::uint32_t i = 0; i < count; ++i) boxes.push_back(box(i));

@@ -4,7 +4,7 @@
 #include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/render/opengl/gl_object.hpp>
 #include <glidar/render/opengl/opengl_renderer.hpp>
-#include <glidar/render/paper_picture.hpp>
+#include <glidar/render/woods2016_framebuffer.hpp>
 #include <render/renderer_suite.hpp>
 #include <support/error_text.hpp>
 
@@ -27,7 +27,7 @@ class SharedContext final : public opengl::Context {
     ++uses_;
     shared_.make_current();
   }
-  void give_back() override { shared_.give_back(); }
+  void release() override { shared_.release(); }
 
  private:
   opengl::EglContext& shared_;
@@ -39,7 +39,7 @@ class NoContext final : public opengl::Context {
   void make_current() override {
     throw Error({.where = "window", .found = "it is closed", .allowed = "", .remedy = ""});
   }
-  void give_back() override {}
+  void release() override {}
 };
 
 class OpenglContext : public ::testing::Test {
@@ -77,21 +77,21 @@ TEST_F(OpenglContext, AnothersContextDrawsTheSameHitsAndTheSamePicture) {
   const std::unique_ptr<Renderer> theirs = renderer();
   const auto camera = make_paper_camera(scene_, {.threads = 1}, shared());
   Hits hits;
-  PaperPicture picture;
+  Woods2016Framebuffer picture;
   for (int frame = 0; frame < 3; ++frame) {  // in turns
     theirs->cast(request(), hits);
     camera->draw(request(), {}, {}, picture);
   }
   EXPECT_GT(uses_, 6);
   EXPECT_EQ(hits.primitive, expected());
-  PaperPicture own;
+  Woods2016Framebuffer own;
   make_paper_camera(scene_, {.threads = 1})->draw(request(), {}, {}, own);
   EXPECT_EQ(picture.rgba, own.rgba);
 }
 
 TEST_F(OpenglContext, WhatWasCurrentBeforeIsCurrentAfterwardsWithItsSurface) {
   opengl::EglContext other({});
-  const opengl::Use use(other);
+  const opengl::ScopedContext use(other);
   const EGLDisplay display = eglGetCurrentDisplay();
   const EGLContext context = eglGetCurrentContext();
   constexpr std::array<EGLint, 5> kPbuffer = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT,
@@ -125,11 +125,11 @@ TEST_F(OpenglContext, NothingIsCurrentAfterwardsWhereNothingWasBefore) {
 TEST_F(OpenglContext, TheStateThatOthersLeaveDoesNotMatter) {
   const std::unique_ptr<Renderer> theirs = renderer();
   const auto camera = make_paper_camera(scene_, {.threads = 1}, shared());
-  PaperPicture before;
+  Woods2016Framebuffer before;
   camera->draw(request(), {}, {}, before);
   GLuint sampler = 0;
   {
-    const opengl::Use use(*window_);
+    const opengl::ScopedContext use(*window_);
     for (const GLenum feature : {GL_SCISSOR_TEST, GL_BLEND, GL_CULL_FACE, GL_STENCIL_TEST,
                                  GL_RASTERIZER_DISCARD, GL_COLOR_LOGIC_OP, GL_PRIMITIVE_RESTART}) {
       glEnable(feature);
@@ -147,7 +147,7 @@ TEST_F(OpenglContext, TheStateThatOthersLeaveDoesNotMatter) {
   Hits hits;
   theirs->cast(request(), hits);
   EXPECT_EQ(hits.primitive, expected());
-  PaperPicture picture;
+  Woods2016Framebuffer picture;
   camera->draw(request(), {}, {}, picture);
   EXPECT_EQ(picture.rgba, before.rgba);
 }
@@ -156,7 +156,7 @@ TEST_F(OpenglContext, WhatDrawingChangesIsAsInANewContextAfterwards) {
   const std::unique_ptr<Renderer> theirs = renderer();
   Hits hits;
   theirs->cast(request(), hits);
-  const opengl::Use use(*window_);
+  const opengl::ScopedContext use(*window_);
   const auto value = [](GLenum name) {
     GLint found = 0;
     glGetIntegerv(name, &found);
@@ -182,7 +182,7 @@ TEST_F(OpenglContext, AContextThatCannotBeCurrentSaysWhy) {
 }
 
 TEST_F(OpenglContext, TellsOfResetsWhereTheDriverCan) {
-  const opengl::Use use(*window_);
+  const opengl::ScopedContext use(*window_);
   opengl::check_not_lost();
   if (epoxy_gl_version() < 45) GTEST_SKIP() << "this driver need not tell";
   GLint strategy = 0;

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Memory and open files stay as they are, however much is drawn and however often one begins anew.
-#include <glidar/render/paper_picture.hpp>
+#include <glidar/render/woods2016_framebuffer.hpp>
 #include <render/renderer_suite.hpp>
 
 #include <unistd.h>
@@ -77,7 +77,7 @@ TEST_F(OpenglLeak, BatchesAndChangesOfSizeHoldNoMoreAfterMany) {
 
 TEST_F(OpenglLeak, TenThousandPicturesOfThePapersCameraHoldNoMoreThanAThousand) {
   const auto camera = make_paper_camera(scene_, {.threads = 1});
-  PaperPicture picture;
+  Woods2016Framebuffer picture;
   expect_flat(1000, 10'000, 1.0, [&](int /*frame*/) {
     camera->draw({.beams = beams_, .world_from_sensor = pose_}, {}, {}, picture);
   });
@@ -95,7 +95,7 @@ TEST_F(OpenglLeak, AHundredRenderersComeAndGo) {
 }
 
 TEST_F(OpenglLeak, AHundredPaperCamerasComeAndGo) {
-  PaperPicture picture;
+  Woods2016Framebuffer picture;
   expect_flat(10, 100, 100 * kPerContext_MiB, [&](int /*frame*/) {
     make_paper_camera(scene_, {.threads = 1})
         ->draw({.beams = beams_, .world_from_sensor = pose_}, {}, {}, picture);

@@ -3,7 +3,7 @@
 // Meshes whose parts have origins of their own, in every renderer.
 #include <glidar/core/error.hpp>
 #include <glidar/core/mesh_pieces.hpp>
-#include <glidar/io/model.hpp>
+#include <glidar/io/model/model.hpp>
 #include <render/renderer_suite.hpp>
 
 #include <algorithm>
@@ -115,8 +115,8 @@ TEST_P(PiecesSuite, TellTheSameAsOneInstancePerPart) {
   const Hits whole = cast(scene, beams, pose);
   const Hits parts = cast(apart, beams, pose);
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    ASSERT_EQ(whole.instance[i] == kNoHit, parts.instance[i] == kNoHit) << i;
-    if (whole.instance[i] == kNoHit) continue;
+    ASSERT_EQ(whole.instance[i] == kInvalidId, parts.instance[i] == kInvalidId) << i;
+    if (whole.instance[i] == kInvalidId) continue;
     EXPECT_EQ(whole.instance[i], 1U);
     EXPECT_EQ(whole.primitive[i], 12U * (parts.instance[i] - 1U) + parts.primitive[i]);
     EXPECT_EQ(whole.range_m[i], parts.range_m[i]);
@@ -142,13 +142,13 @@ TEST_P(PiecesSuite, PosesPresenceAndBatchesAreThoseOfTheScene) {
       {.beams = beams,
        .world_from_sensor = pose,
        .world_from_instance = poses,
-       .present = only_first}};
+       .instance_enabled = only_first}};
   std::array<Hits, 2> batch;
   const std::array<Hits*, 2> into = {&batch[0], &batch[1]};
   device->cast_batch(requests, into);
   Hits one;
   CastRequest request = requests[0];
-  if (GetParam() == "raster") request.then = FunctionRef<void(BeamRange)>(count);
+  if (GetParam() == "raster") request.on_tile_done = FunctionRef<void(BeamRange)>(count);
   device->cast(request, one);
   EXPECT_EQ(told, GetParam() == "raster" ? beams.size() : 0U);
   EXPECT_EQ(batch[0].instance, one.instance);

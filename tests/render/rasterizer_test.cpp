@@ -47,9 +47,9 @@ struct Compared {
 Compared compare(const Hits& drawn, const Hits& cast) {
   Compared compared;
   for (std::size_t i = 0; i < cast.range_m.size(); ++i) {
-    if (cast.instance[i] != kNoHit) ++compared.hits;
+    if (cast.instance[i] != kInvalidId) ++compared.hits;
     if (drawn.instance[i] == cast.instance[i] && drawn.primitive[i] == cast.primitive[i]) {
-      if (cast.instance[i] == kNoHit) continue;
+      if (cast.instance[i] == kInvalidId) continue;
       EXPECT_EQ(drawn.range_m[i], cast.range_m[i]) << "beam " << i;
       EXPECT_EQ(drawn.normal[i], cast.normal[i]) << "beam " << i;
       EXPECT_EQ(drawn.shading_normal[i], cast.shading_normal[i]) << "beam " << i;
@@ -137,7 +137,7 @@ TEST_P(Rasterizer, SeesSurfacesAtTheSensorsNoseAndTenKilometresBehind) {
   const Hits drawn = draw(scene, beams, Pose::Identity());
   std::size_t near_hits = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    ASSERT_NE(drawn.instance[i], kNoHit) << "beam " << i;
+    ASSERT_NE(drawn.instance[i], kInvalidId) << "beam " << i;
     if (drawn.instance[i] == 1) continue;
     ++near_hits;
     EXPECT_NEAR(drawn.depth_m[i], 0.1, 1e-12);
@@ -155,7 +155,7 @@ TEST_P(Rasterizer, TellsThinLayersApartFromTenKilometres) {
   const Hits drawn = draw(scene, camera_beams(50, 50, 1e6), Pose::Identity());
   std::size_t found = 0;
   for (const std::uint32_t instance : drawn.instance) {
-    if (instance == kNoHit) continue;
+    if (instance == kInvalidId) continue;
     ++found;
     EXPECT_EQ(instance, 1U);
   }
@@ -199,12 +199,12 @@ TEST_P(Rasterizer, AbsentInstancesAreNotDrawn) {
   scene.instances[1].world_from_object.translation().z() = 9.0;
   const Beams beams = camera_beams(16, 16, 60.0);
   const auto middle = [&](std::vector<std::uint8_t> present) {
-    return cast_by(GetParam(), scene, {.beams = beams, .fields = {}, .present = present})
+    return cast_by(GetParam(), scene, {.beams = beams, .fields = {}, .instance_enabled = present})
         .instance[8 * 16 + 8];
   };
   EXPECT_EQ(middle({}), 0U);
   EXPECT_EQ(middle({0, 1}), 1U);
-  EXPECT_EQ(middle({0, 0}), kNoHit);
+  EXPECT_EQ(middle({0, 0}), kInvalidId);
 }
 
 TEST_P(Rasterizer, BeamsExactlyAtVerticesAndAlongEdgesDoNotLeak) {
@@ -259,7 +259,7 @@ TEST_P(Rasterizer, TellsOfEveryBeamOnceAndOfItsProgress) {
             {.beams = beams,
              .world_from_sensor = pose,
              .fields = {},
-             .then = FunctionRef<void(BeamRange)>(count),
+             .on_tile_done = FunctionRef<void(BeamRange)>(count),
              .progress = [&](double part) { progress = part; }});
     for (const std::atomic<int>& times : told) EXPECT_EQ(times, 1);
     EXPECT_EQ(progress, 1.0);

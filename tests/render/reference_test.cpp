@@ -128,7 +128,7 @@ void expect_reference(const Scene& scene, const Reference& reference, const Hits
     if (reference.is_stable[i] == 0) continue;
     ++compared;
     const double distance_m = reference.distance_m[i];
-    ASSERT_EQ(hits.instance[i] != kNoHit, distance_m != 0.0) << "beam " << i;
+    ASSERT_EQ(hits.instance[i] != kInvalidId, distance_m != 0.0) << "beam " << i;
     if (distance_m == 0.0) continue;
     const auto theirs = static_cast<std::uint32_t>(reference.triangle[i]);
     if (hits.primitive[i] != theirs) {
@@ -211,7 +211,7 @@ TEST_P(TextureCase, UvsInterpolateAsInTheReference) {
   const Mesh& mesh = scene.meshes[0];
   std::size_t compared = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (stable[i] == 0 || hits.instance[i] == kNoHit) continue;
+    if (stable[i] == 0 || hits.instance[i] == kInvalidId) continue;
     ++compared;
     const Triangle& t = mesh.triangles[hits.primitive[i]];
     const Eigen::Vector2f w = hits.barycentrics[i];
@@ -256,7 +256,7 @@ TEST(M3tOpengl, ItsDepthImageAndSilhouetteAreOurs) {
   double largest = 0.0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const bool theirs = std::isfinite(depth[i]) && depth[i] > 0.0F && depth[i] < 1.99F;
-    const bool ours = hits.instance[i] != kNoHit;
+    const bool ours = hits.instance[i] != kInvalidId;
     if (theirs != ours) ++differ;
     if (!theirs || !ours) continue;
     ++both;
@@ -301,14 +301,14 @@ TEST(StanfordScan, TheBunnySeenAsTheScannerSawItLiesOnTheScan) {
                                  hits);
   std::vector<double> distance;
   for (std::size_t i = 0; i < points; ++i) {
-    if (hits.instance[i] != kNoHit) {
+    if (hits.instance[i] != kInvalidId) {
       distance.push_back(std::abs(kStart - hits.range_m[i] - scanned_z[i]));
     }
   }
   ASSERT_GT(distance.size(), points * 98 / 100);
   std::vector<double> signed_distance;
   for (std::size_t i = 0; i < points; ++i) {
-    if (hits.instance[i] != kNoHit) {
+    if (hits.instance[i] != kInvalidId) {
       signed_distance.push_back(kStart - hits.range_m[i] - scanned_z[i]);
     }
   }

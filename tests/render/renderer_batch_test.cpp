@@ -49,13 +49,13 @@ class RendererBatch : public testing::RendererSuite {
       Hits alone;
       renderer_alone(*one, requests_[i], alone);
       expect_same(together[i], alone, i);
-      for (const std::uint32_t instance : alone.instance) found += instance != kNoHit ? 1 : 0;
+      for (const std::uint32_t instance : alone.instance) found += instance != kInvalidId ? 1 : 0;
     }
     EXPECT_GT(found, 20U * requests_.size());
   }
 
   static void renderer_alone(Renderer& one, CastRequest request, Hits& hits) {
-    request.then = {};
+    request.on_tile_done = {};
     request.progress = {};
     one.cast(request, hits);
   }
@@ -109,7 +109,7 @@ TEST_P(RendererBatch, EveryCastHasItsOwnPosesFieldsAndCulling) {
   requests_[1].world_from_instance = poses;
   requests_[2].fields = {};
   requests_[3].cull_back_faces = true;
-  requests_[5].present = present;
+  requests_[5].instance_enabled = present;
   expect_as_one_by_one();
 }
 
@@ -128,7 +128,7 @@ TEST_P(RendererBatch, TellsEveryCastOfItsBeamsOnceAndOfItsProgress) {
   for (std::size_t i = 0; i < kCasts; ++i) counters.push_back(counter(i));
   for (std::size_t i = 0; i < kCasts; ++i) {
     add(beams);
-    requests_.back().then = FunctionRef<void(BeamRange)>(counters[i]);
+    requests_.back().on_tile_done = FunctionRef<void(BeamRange)>(counters[i]);
     requests_.back().progress = [&progress, i](double part) { progress[i] = part; };
   }
   std::vector<Hits> all(kCasts);
@@ -150,7 +150,7 @@ TEST_P(RendererBatch, ACastThatIsBrokenOffDoesNotHarmTheNext) {
   std::vector<Hits*> hits;
   for (Hits& h : all) hits.push_back(&h);
   std::vector<CastRequest> broken(requests_.begin(), requests_.end());
-  broken[1].then = FunctionRef<void(BeamRange)>(breaking);
+  broken[1].on_tile_done = FunctionRef<void(BeamRange)>(breaking);
   EXPECT_THROW(one->cast_batch(broken, hits), std::runtime_error);
   one->cast_batch(requests_, hits);
   Hits expected;

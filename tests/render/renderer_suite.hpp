@@ -4,8 +4,8 @@
 
 // What the tests that every renderer passes share.
 #include <glidar/core/error.hpp>
-#include <glidar/core/random.hpp>
-#include <glidar/io/builtin_models.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/math/random.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/render/renderer.hpp>
 #include <support/brute_force.hpp>
@@ -42,7 +42,7 @@ class Draws {
   }
 
  private:
-  Draw draw_;
+  RngKey draw_;
   RandomWords words_{};
   unsigned used_ = 0;
 };

@@ -46,12 +46,12 @@ std::size_t expect_judged(const Scene& scene, const Beams& beams, const Pose& wo
         beams.origins_m.empty() ? Eigen::Vector3d::Zero() : beams.origins_m[i];
     const Eigen::Vector3d direction = world_from_sensor.linear() * beams.directions[i];
     const Judged truth = testing::judge(scene, world_from_sensor * offset, direction);
-    const double range_m = truth.instance == kNoHit ? farthest_m : truth.range_m;
+    const double range_m = truth.instance == kInvalidId ? farthest_m : truth.range_m;
     if (truth.border_m < std::max(kBorder * size, band_px / focal_px * range_m)) continue;
     ++compared;
     EXPECT_EQ(hits.instance[i], truth.instance) << "beam " << i;
     EXPECT_EQ(hits.primitive[i], truth.primitive) << "beam " << i;
-    if (truth.instance == kNoHit) {
+    if (truth.instance == kInvalidId) {
       EXPECT_TRUE(std::isnan(hits.range_m[i])) << "beam " << i;
       continue;
     }
@@ -117,7 +117,7 @@ TEST_P(RendererSuite, LosesNothingTenKilometresAwayFromAMillionMetresOff) {
   const Hits hits = cast(scene, beams, pose);
   std::size_t on_object = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (hits.instance[i] == kNoHit) continue;
+    if (hits.instance[i] == kInvalidId) continue;
     ++on_object;
     // The hit point lies on the box of half side 1: one coordinate is exactly 1, none is larger.
     const double largest = hits.object_point_m[i].cwiseAbs().maxCoeff();
@@ -134,7 +134,7 @@ TEST_P(RendererSuite, EveryColumnTellsOneStory) {
   const Hits hits = cast(scene, beams, Pose::Identity());
   const Mesh& mesh = scene.meshes[0];
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (hits.instance[i] == kNoHit) {
+    if (hits.instance[i] == kInvalidId) {
       EXPECT_TRUE(std::isnan(hits.depth_m[i]));
       EXPECT_TRUE(std::isnan(hits.normal[i].x()));
       EXPECT_TRUE(std::isnan(hits.object_point_m[i].x()));
@@ -195,7 +195,7 @@ TEST_P(RendererSuite, AVastObjectBehindASmallOneSpoilsNeither) {
   std::size_t of_small = 0;
   std::size_t differ = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (small.instance[i] == kNoHit) {
+    if (small.instance[i] == kInvalidId) {
       EXPECT_EQ(both.instance[i], 1U) << i;
       continue;
     }
@@ -268,7 +268,7 @@ TEST_P(RendererSuite, CutOutTexelsLetTheBeamThrough) {
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const Eigen::Vector3d in_world = pose.linear() * beams.directions[i];
     const Eigen::Vector3d point = pose.translation() + in_world * (-1.5 / in_world.z());
-    EXPECT_EQ(hits.instance[i] != kNoHit, point.x() > 0.0) << point.transpose();
+    EXPECT_EQ(hits.instance[i] != kInvalidId, point.x() > 0.0) << point.transpose();
   }
 }
 
@@ -281,7 +281,7 @@ TEST_P(RendererSuite, TellsTheFirstOfTrianglesThatLieOnEachOther) {
   const Hits hits = cast(scene, camera_beams(60, 60, 60.0), pose);
   std::size_t found = 0;
   for (const std::uint32_t primitive : hits.primitive) {
-    if (primitive == kNoHit) continue;
+    if (primitive == kInvalidId) continue;
     ++found;
     EXPECT_LT(primitive, once.size());
   }
@@ -295,7 +295,7 @@ TEST_P(AnyBeamsSuite, ABeamWithoutDirectionHitsNothing) {
   beams.directions[5].setConstant(std::numeric_limits<double>::quiet_NaN());
   const Hits hits = cast(scene, beams, Pose::Identity());
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    EXPECT_EQ(hits.instance[i] == kNoHit, i == 5);
+    EXPECT_EQ(hits.instance[i] == kInvalidId, i == 5);
   }
 }
 

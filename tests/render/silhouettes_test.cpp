@@ -78,7 +78,7 @@ class Silhouettes : public testing::RendererSuite {
       ++compared;
       ASSERT_EQ(hits.instance[i], truth.instance) << "beam " << i;
       ASSERT_EQ(hits.primitive[i], truth.primitive) << "beam " << i;
-      if (truth.instance == kNoHit) continue;
+      if (truth.instance == kInvalidId) continue;
       EXPECT_NEAR(hits.range_m[i], truth.range_m, 1e-12 * truth.range_m) << "beam " << i;
     }
     EXPECT_GE(compared, least_compared);
@@ -177,15 +177,15 @@ TEST(SilhouettePixels, AreThoseByTheOutlineAndNotThoseByInnerEdges) {
   const CastRequest request{.beams = beams};
   resolver.set_poses(Pose::Identity(), {});
   SilhouettePixels pixels(1.0 / 128.0);
-  Workers workers(2);
+  ThreadPool thread_pool(2);
   const std::vector<std::size_t> found =
-      pixels.find(request, resolver, edges, {0, 0, kSide, kSide}, workers);
+      pixels.find(request, resolver, edges, {0, 0, kSide, kSide}, thread_pool);
   EXPECT_EQ(found.size(), 64U);  // 32 rows at the left and at the right border
   for (const std::size_t pixel : found) {
     EXPECT_TRUE(pixel % kSide == 15 || pixel % kSide == 47) << pixel;
   }
   const std::vector<std::size_t> part =
-      pixels.find(request, resolver, edges, {16, 16, 10, 40}, workers);
+      pixels.find(request, resolver, edges, {16, 16, 10, 40}, thread_pool);
   EXPECT_EQ(part.size(), 10U);
 }
 

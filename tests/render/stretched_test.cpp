@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Objects with different scales along their axes, in every renderer.
-#include <glidar/io/model.hpp>
+#include <glidar/io/model/model.hpp>
 #include <render/renderer_suite.hpp>
 
 namespace glidar {
@@ -23,7 +23,7 @@ TEST_P(StretchedSuite, HitsAndNormalsAreThoseOfTheEllipsoid) {
   const Pose object_from_world = scene.instances[0].world_from_object.inverse();
   std::size_t on_object = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    if (hits.instance[i] == kNoHit) continue;
+    if (hits.instance[i] == kInvalidId) continue;
     ++on_object;
     const testing::Judged truth =
         testing::judge(scene, Eigen::Vector3d::Zero(), beams.directions[i]);

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/render/paper_picture.hpp>
 #include <glidar/render/visible_depths.hpp>
+#include <glidar/render/woods2016_framebuffer.hpp>
 #include <render/renderer_suite.hpp>
 
 namespace glidar {
@@ -13,10 +13,10 @@ using testing::camera_beams;
 DepthSpan depths(const Scene& scene, const Beams& beams, const Pose& world_from_sensor) {
   const Instance& instance = scene.instances[0];
   const Mesh& mesh = scene.meshes[instance.mesh];
-  Workers workers(2);
+  ThreadPool thread_pool(2);
   VisibleDepths visible;
   return visible.of(view_of(instance, mesh, instance.world_from_object, world_from_sensor), mesh,
-                    *beams.pinhole, workers);
+                    *beams.pinhole, thread_pool);
 }
 
 Pose at(double x, double y, double z) {
@@ -71,8 +71,8 @@ TEST(VisibleDepths, HugWhatBeamsMeetOnAnAsteroidThatFillsTheView) {
   EXPECT_LT(nearest - span.nearest_m, 0.02);  // pixels do not hit the nearest point itself
 }
 
-TEST(PaperPicture, DecodesToTheMiddleOfAStepAndDividesByTheBeamsSlope) {
-  PaperPicture picture{.rows = 1, .cols = 3, .near_m = 10.0, .far_m = 75.536, .rgba = {}};
+TEST(Woods2016Framebuffer, DecodesToTheMiddleOfAStepAndDividesByTheBeamsSlope) {
+  Woods2016Framebuffer picture{.rows = 1, .cols = 3, .near_m = 10.0, .far_m = 75.536, .rgba = {}};
   picture.rgba = {0, 0, 0, 0, 51, 1, 2, 255, 255, 255, 255, 255};
   const Beams beams = camera_beams(3, 1, 1.0);
   std::vector<double> range_m(3);

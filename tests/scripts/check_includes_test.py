@@ -20,8 +20,8 @@ GOOD = {
     "glidar/io/png_impl.hpp": "#pragma once\n#include <png.h>\n",
     "glidar/io/sink.cpp": "#include <glidar/io/sink.hpp>\n\n#include <glidar/io/png_impl.hpp>\n",
     "glidar/render/renderer.hpp": "#pragma once\n#include <glidar/core/pose.hpp>\n",
-    "glidar/simulate.hpp": "#pragma once\n#include <glidar/render/renderer.hpp>\n",
-    "apps/glidar/main.cpp": '#include "verbs.hpp"\n#include <glidar/simulate.hpp>\n',
+    "glidar/simulate/simulate.hpp": "#pragma once\n#include <glidar/render/renderer.hpp>\n",
+    "apps/glidar/main.cpp": '#include "verbs.hpp"\n#include <glidar/simulate/simulate.hpp>\n',
 }
 
 
@@ -53,7 +53,7 @@ class CheckIncludes(unittest.TestCase):
         self.expect({"glidar/render/renderer.hpp": text}, "render must not include io")
 
     def test_nobody_includes_the_simulation_from_below(self):
-        text = "#include <glidar/simulate.hpp>\n"
+        text = "#include <glidar/simulate/simulate.hpp>\n"
         self.expect({"glidar/motion/spin.cpp": text}, "motion must not include simulate")
 
     def test_unknown_layer_is_told(self):

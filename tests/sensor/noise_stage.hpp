@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/sensor/noise.hpp>
-#include <glidar/sensor/pinhole.hpp>
+#include <glidar/sensor/noise/noise.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ namespace glidar::testing {
 struct NoiseStage {
   Beams beams;
   Frame frame;
-  Workers workers{2};
+  ThreadPool thread_pool{2};
 
   NoiseStage(std::uint32_t rows, std::uint32_t cols, double range_m, double intensity = 1.0) {
     beams.rows = rows;
@@ -43,7 +43,7 @@ struct NoiseStage {
 
   void apply(const std::vector<NoiseStep>& noise) {
     constexpr double kFrame_s = 0.1;
-    apply_noise(noise, kFrame_s, beams, workers, frame);
+    apply_noise(noise, kFrame_s, beams, thread_pool, frame);
   }
 };
 

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/sensor/noise.hpp>
-#include <glidar/sensor/spinning.hpp>
+#include <glidar/sensor/noise/noise.hpp>
+#include <glidar/sensor/optics/spinning.hpp>
 
 #include <gtest/gtest.h>
 
@@ -231,8 +231,8 @@ TEST_P(OusterRecording, HasTheSimulatedQuantumOfRange) {
     frame.range_m[i] = 1.0 + 1e-4 * static_cast<double>(i);
     frame.status[i] = Status::hit;
   }
-  Workers workers(2);
-  apply_noise({RangeQuantum{.step_m = kQuantum_m}}, 0.1, beams, workers, frame);
+  ThreadPool thread_pool(2);
+  apply_noise({RangeQuantization{.step_m = kQuantum_m}}, 0.1, beams, thread_pool, frame);
   OusterColumn simulated;
   for (const double range_m : frame.range_m) {
     const double range_mm = 1e3 * (range_m + beams.range_offset_m);

@@ -17,7 +17,7 @@ namespace glidar::testing {
 /// One shot in absolute time; directions to the last bit.
 using Shot = std::tuple<std::int64_t, std::uint16_t, double, double, double>;
 
-inline void add_shots(const Beams& beams, const ScanWindow& window, std::vector<Shot>& shots) {
+inline void add_shots(const Beams& beams, const FrameInterval& window, std::vector<Shot>& shots) {
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const Eigen::Vector3d& d = beams.directions[i];
     shots.emplace_back(window.start_ns + beams.times_ns[i], beams.rings[i], d.x(), d.y(), d.z());
@@ -27,7 +27,7 @@ inline void add_shots(const Beams& beams, const ScanWindow& window, std::vector<
 /// Cuts the same stretch of time into windows of very different lengths and into one; both must
 /// give the same shots.
 inline void expect_windows_join(const Optics& optics, std::int64_t from_ns, std::int64_t to_ns) {
-  const auto beams_in = [&](const ScanWindow& window) {
+  const auto beams_in = [&](const FrameInterval& window) {
     return std::visit([&](const auto& o) { return make_beams(o, window); }, optics);
   };
   std::vector<Shot> whole;
@@ -37,7 +37,7 @@ inline void expect_windows_join(const Optics& optics, std::int64_t from_ns, std:
   std::int64_t start_ns = from_ns;
   for (std::size_t i = 0; start_ns < to_ns; ++i) {
     const std::int64_t length_ns = kLengths_ns.at(i % kLengths_ns.size());
-    const ScanWindow window = {start_ns, std::min(start_ns + length_ns, to_ns)};
+    const FrameInterval window = {start_ns, std::min(start_ns + length_ns, to_ns)};
     add_shots(beams_in(window), window, parts);
     start_ns = window.end_ns;
   }

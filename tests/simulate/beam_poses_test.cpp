@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
 #include <glidar/core/point_cloud.hpp>
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
 #include <support/error_text.hpp>
 
@@ -39,7 +39,7 @@ struct Stage {
     beams = make_beams(sensor);
     for (std::uint32_t i = 0; i < beams.size(); ++i) beams.times_ns.push_back(i * 1'000'000U);
     const Pose start = look_at({0.4, -0.3, 8.0}, {0, 0, 0}, Eigen::Vector3d::UnitY());
-    motion = standing_still(scene, start);
+    motion = static_motion(scene, start);
     motion.world_from_sensor = ConstantTwist{
         .pose = start, .angular_rad_s = {0.1, -0.2, 0.3}, .linear_m_s = {0.3, 0.2, 0.4}};
     motion.world_from_instance[0] =
@@ -49,7 +49,7 @@ struct Stage {
   }
 
   PointCloud shoot(const std::vector<std::string>& columns) {
-    simulate({scene, sensor, beams, motion, *renderer}, fields_for(columns), frame);
+    simulate({scene, sensor, beams, motion, *renderer}, fields_needed_by(columns), frame);
     PointCloud cloud;
     make_point_cloud(frame, beams, scene, {beams.frame_id}, columns, cloud);
     return cloud;
@@ -88,10 +88,10 @@ TEST(BeamPoses, AreThoseOfPosesAtWhenEachBeamLeaves) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     EXPECT_EQ(stamps[i], kStamp_ns + static_cast<std::int64_t>(i) * 1'000'000);
     EXPECT_TRUE(pose_of(row_of(cloud, "sensor_pose", i)).isApprox(sensor[i], 1e-14));
-    const std::uint32_t hit = stage.frame.truth.instance[i];
+    const std::uint32_t hit = stage.frame.ground_truth.instance[i];
     const double* object = row_of(cloud, "object_pose", i);
     ++seen[std::min(hit, 2U)];
-    if (hit == kNoHit) {
+    if (hit == kInvalidId) {
       EXPECT_TRUE(std::all_of(object, object + 7, [](double x) { return std::isnan(x); }));
     } else {
       EXPECT_TRUE(pose_of(object).isApprox(objects[hit][i], 1e-14));
@@ -105,8 +105,8 @@ TEST(BeamPoses, BringTheBeamAndTheObjectsPointTogether) {
   const PointCloud cloud = stage.shoot({"sensor_pose", "object_pose", "object_point", "range"});
   int hits = 0;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
-    const std::uint32_t hit = stage.frame.truth.instance[i];
-    if (hit == kNoHit) continue;
+    const std::uint32_t hit = stage.frame.ground_truth.instance[i];
+    if (hit == kInvalidId) continue;
     const Eigen::Vector3d object_point(row_of(cloud, "object_point", i));
     const Eigen::Vector3d by_object = pose_of(row_of(cloud, "object_pose", i)) *
                                       (stage.scene.instances[hit].scale * object_point);
@@ -121,7 +121,7 @@ TEST(BeamPoses, BringTheBeamAndTheObjectsPointTogether) {
 TEST(BeamPoses, OfAWorldAtRestAreTheFrames) {
   Stage stage;
   stage.motion =
-      standing_still(stage.scene, look_at({0.4, -0.3, 8.0}, {0, 0, 0}, Eigen::Vector3d::UnitY()));
+      static_motion(stage.scene, look_at({0.4, -0.3, 8.0}, {0, 0, 0}, Eigen::Vector3d::UnitY()));
   stage.beams.times_ns.clear();
   const PointCloud cloud = stage.shoot({"stamp", "sensor_pose", "object_pose"});
   EXPECT_THAT(std::get<std::vector<std::int64_t>>(find_column(cloud, "stamp")->values),
@@ -129,8 +129,8 @@ TEST(BeamPoses, OfAWorldAtRestAreTheFrames) {
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     EXPECT_TRUE(
         pose_of(row_of(cloud, "sensor_pose", i)).isApprox(stage.frame.world_from_sensor, 1e-14));
-    const std::uint32_t hit = stage.frame.truth.instance[i];
-    if (hit == kNoHit) continue;
+    const std::uint32_t hit = stage.frame.ground_truth.instance[i];
+    if (hit == kInvalidId) continue;
     EXPECT_TRUE(pose_of(row_of(cloud, "object_pose", i))
                     .isApprox(stage.frame.world_from_instance[hit], 1e-14));
   }

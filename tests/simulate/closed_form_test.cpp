@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Ranges of surfaces that have a closed form, from the sensor's numbers to the frame.
 #include <glidar/core/point_cloud.hpp>
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/io/sensor_file.hpp>
-#include <glidar/io/sensor_presets.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ TEST(ClosedForm, ALevelPlaneHasOneDepthAndALidarsRangesToTheFloor) {
   far.translation().z() = 7.0;
   const Scene wall = plane(far, 64.0);
   const Beams pixels = make_beams(camera(64, 1.2));
-  const Frame image = shoot(wall, pixels, standing_still(wall, Pose::Identity()));
+  const Frame image = shoot(wall, pixels, static_motion(wall, Pose::Identity()));
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     ASSERT_NEAR(depth_m(pixels, i, image.range_m[i]), 7.0, 7.0 * kDouble);
     const double cosine = pixels.directions[i].z();  // of the pixel's angle off the axis
@@ -54,7 +54,7 @@ TEST(ClosedForm, ALevelPlaneHasOneDepthAndALidarsRangesToTheFloor) {
   low.translation().z() = -1.8;
   const Scene floor = plane(low, 512.0);
   const Beams beams = make_beams(load_sensor_file(find_sensor_file("VLP-16")));
-  const Frame turn = shoot(floor, beams, standing_still(floor, Pose::Identity()));
+  const Frame turn = shoot(floor, beams, static_motion(floor, Pose::Identity()));
   std::size_t hits = 0;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const double down = -beams.directions[i].z();
@@ -75,12 +75,12 @@ TEST(ClosedForm, ATiltedPlaneIsAffineInInverseDepth) {
   const Scene scene = plane(pose, 64.0);
   const Pinhole optics = camera(96, 0.9);
   const Beams beams = make_beams(optics);
-  const Frame frame = shoot(scene, beams, standing_still(scene, Pose::Identity()));
+  const Frame frame = shoot(scene, beams, static_motion(scene, Pose::Identity()));
   const PinholeIntrinsics& k = optics.intrinsics;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const double facing = n.dot(beams.directions[i]);
     ASSERT_NEAR(frame.range_m[i], kDistance_m / facing, kDistance_m / facing * kDouble);
-    ASSERT_NEAR(frame.truth.cos_incidence[i], facing, kSingle);
+    ASSERT_NEAR(frame.ground_truth.cos_incidence[i], facing, kSingle);
     const double x = plane_x(k, static_cast<std::uint32_t>(i % beams.cols));
     const double y = plane_y(k, static_cast<std::uint32_t>(i / beams.cols));
     const double inverse = (n.x() * x + n.y() * y + n.z()) / kDistance_m;  // affine in u and v
@@ -118,7 +118,7 @@ TEST(ClosedForm, ASphereHasItsRangesAtTheVerticesOfItsMesh) {
   scene.instances[0].world_from_object.translation() = centre;
   const Beams beams = beams_at_vertices(scene, 0.1);
   ASSERT_GT(beams.size(), 800U);
-  const Frame frame = shoot(scene, beams, standing_still(scene, Pose::Identity()));
+  const Frame frame = shoot(scene, beams, static_motion(scene, Pose::Identity()));
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const double range_m = range_of_sphere(beams.directions[i], centre, 1.5);
     ASSERT_NEAR(frame.range_m[i], range_m, 3.0 * range_m * kSingle)
@@ -132,7 +132,7 @@ TEST(ClosedForm, ASphereHasItsOutlineAndItsShareOfBeams) {
   scene.instances[0].world_from_object.translation() = centre;
   const Pinhole optics = camera(400, 0.6);
   const Beams beams = make_beams(optics);
-  const Frame frame = shoot(scene, beams, standing_still(scene, Pose::Identity()));
+  const Frame frame = shoot(scene, beams, static_motion(scene, Pose::Identity()));
   const double half_angle = std::asin(1.0 / 5.0);
   double pixels = 0.0;
   double solid_angle = 0.0;
@@ -145,7 +145,7 @@ TEST(ClosedForm, ASphereHasItsOutlineAndItsShareOfBeams) {
     widest = std::max(widest, std::acos(cosine));
     const double range_m = range_of_sphere(beams.directions[i], centre, 1.0);
     // the mesh lies inside the sphere, by 0.0012 of its radius at most
-    if (frame.truth.cos_incidence[i] > 0.2F) {
+    if (frame.ground_truth.cos_incidence[i] > 0.2F) {
       ASSERT_GT(frame.range_m[i], range_m * (1.0 - kSingle));
       ASSERT_LT(frame.range_m[i], range_m + 0.0012 / 0.15);
     }
@@ -187,7 +187,7 @@ TEST(ClosedForm, ACylinderHasItsRangesFromInside) {
   const Eigen::Vector3d eye(0.7, -1.1, 0.4);
   pose.translation() = eye;
   const Beams beams = make_beams(load_sensor_file(find_sensor_file("VLP-16")));
-  const Frame frame = shoot(scene, beams, standing_still(scene, pose));
+  const Frame frame = shoot(scene, beams, static_motion(scene, pose));
   // a chord of angle a lies up to r (1 - cos(a / 2)) inside the cylinder
   const double inside_m = kRadius_m * (1.0 - std::cos(std::numbers::pi / kSides));
   for (std::size_t i = 0; i < beams.size(); ++i) {
@@ -211,7 +211,7 @@ TEST(ClosedForm, AMovingLidarsPointsLieOnTheWallOnceDeskewedAndAreOffByItsWayBef
   pose.translation().x() = 32.0;
   const Scene wall = plane(pose, 4096.0);
   const Beams beams = make_beams(load_sensor_file(find_sensor_file("VLP-16")));
-  Motion motion = standing_still(wall, Pose::Identity());
+  Motion motion = static_motion(wall, Pose::Identity());
   motion.world_from_sensor = ConstantTwist{.linear_m_s = {kSpeed_m_s, 0.0, 0.0}};
   const Frame frame = shoot(wall, beams, motion);
   std::array<PointCloud, 2> clouds;

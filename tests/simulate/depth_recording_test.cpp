@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Levels and noise of disparity against recordings of cameras of the Kinect's kind: the same
 // estimators look at both.
-#include <glidar/sensor/noise.hpp>
-#include <glidar/sensor/pinhole.hpp>
+#include <glidar/sensor/noise/noise.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 #include <support/data.hpp>
 
 #include <gtest/gtest.h>
@@ -114,8 +114,8 @@ std::vector<double> modelled(double k_m, double counts_per_m) {
     const Eigen::Vector3d& d = beams.directions[i];
     frame.range_m[i] = 2.2 / (d.z() - 0.3 * d.x());
   }
-  Workers workers(2);
-  apply_noise({KinectV1{.k_m = k_m}}, 1.0 / 30.0, beams, workers, frame);
+  ThreadPool thread_pool(2);
+  apply_noise({KinectV1{.k_m = k_m}}, 1.0 / 30.0, beams, thread_pool, frame);
   std::vector<double> depth_m;
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const double z = glidar::depth_m(beams, i, frame.range_m[i]);

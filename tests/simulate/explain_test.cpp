@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/error.hpp>
-#include <glidar/core/gaussian.hpp>
-#include <glidar/explain.hpp>
+#include <glidar/math/gaussian.hpp>
+#include <glidar/simulate/explain.hpp>
 #include <simulate/panels.hpp>
 
 #include <gtest/gtest.h>
@@ -24,10 +24,10 @@ struct Stage : testing::PanelScene {
     add_wall(8.0);
   }
   /// As simulated, or as explained when a story is asked for.
-  Frame shoot(std::size_t entry, Story* story) const {
+  Frame shoot(std::size_t entry, PointTrace* story) const {
     const auto renderer = make_renderer(scene, {.threads = 2});
     const Beams beams = make_beams(sensor);
-    const Motion motion = standing_still(scene, Pose::Identity());
+    const Motion motion = static_motion(scene, Pose::Identity());
     const Setup setup{scene, sensor, beams, motion, *renderer};
     Frame frame;
     frame.seed = 5;
@@ -44,7 +44,7 @@ struct Stage : testing::PanelScene {
 Stage noisy_stage() {
   Stage stage;
   stage.sensor.noise = {PointingJitter{1e-3, 1e-3}, RangeGaussian{.sigma_m = 0.1},
-                        RangeQuantum{.step_m = 0.05}, Dropout{.probability = 0.3}};
+                        RangeQuantization{.step_m = 0.05}, Dropout{.probability = 0.3}};
   return stage;
 }
 
@@ -52,7 +52,7 @@ void expect_same(const Frame& one, const Frame& other) {
   EXPECT_EQ(one.status, other.status);
   EXPECT_EQ(one.intensity, other.intensity);
   EXPECT_EQ(one.sigma_m, other.sigma_m);
-  EXPECT_EQ(one.cause, other.cause);
+  EXPECT_EQ(one.return_source, other.return_source);
   ASSERT_EQ(one.range_m.size(), other.range_m.size());
   for (std::size_t i = 0; i < one.range_m.size(); ++i) {
     if (!std::isnan(one.range_m[i])) {
@@ -65,11 +65,11 @@ TEST(Explain, MakesTheSameFrameAsSimulate) {
   for (Stage stage : {Stage(), noisy_stage()}) {
     for (const bool pulsed : {false, true}) {
       if (pulsed) {
-        stage.sensor.pulse = PulseLight{.noise_sigma = 0.1};
+        stage.sensor.pulse = LidarEquation{.noise_sigma = 0.1};
         stage.sensor.footprint = Footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3};
         stage.sensor.receiver.returns = {{Return::Order::nearest, 0}, {Return::Order::farthest, 0}};
       }
-      Story story;
+      PointTrace story;
       expect_same(stage.shoot(7, &story), stage.shoot(7, nullptr));
     }
   }
@@ -79,10 +79,10 @@ TEST(Explain, FollowsAnEntryThroughAllStepsOfNoise) {
   const Stage stage = noisy_stage();
   std::size_t dropped = 0;
   for (const std::size_t entry : {0U, 21U, 600U, 1111U, 1199U}) {
-    Story story;
+    PointTrace story;
     const Frame frame = stage.shoot(entry, &story);
     ASSERT_EQ(story.noise.size(), 4U);
-    EXPECT_EQ(story.measured.range_m, frame.truth.range_m[entry]);
+    EXPECT_EQ(story.measured.range_m, frame.ground_truth.range_m[entry]);
     EXPECT_EQ(story.noise[0].after.range_m, story.measured.range_m) << "the beam was turned before";
     const double noisy_m = story.measured.range_m + 0.1 * story.noise[1].draws.at(0).value;
     EXPECT_NEAR(story.noise[1].after.range_m, noisy_m, 1e-12);
@@ -99,7 +99,7 @@ TEST(Explain, FollowsAnEntryThroughAllStepsOfNoise) {
 
 TEST(Explain, TellsHowABeamReallyWent) {
   Stage stage;
-  Story story;
+  PointTrace story;
   stage.shoot(17, &story);
   EXPECT_EQ(story.direction, make_beams(stage.sensor).directions[17]);
   stage = noisy_stage();
@@ -114,19 +114,19 @@ TEST(Explain, TellsHowABeamReallyWent) {
 TEST(Explain, TracesTheEchoesOfAPulse) {
   Stage stage;
   stage.sensor.optics = pinhole_from_fov(1, 1, 1e-3);  // on the edge of the nearer wall
-  stage.sensor.pulse = PulseLight{};
+  stage.sensor.pulse = LidarEquation{};
   stage.sensor.footprint =
       Footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3, .rings = 2};
   stage.sensor.receiver.returns = {{Return::Order::nearest, 0}, {Return::Order::farthest, 0}};
-  Story story;
+  PointTrace story;
   const Frame frame = stage.shoot(1, &story);
   ASSERT_TRUE(story.pulse.has_value());
-  const PulseTrace& pulse = *story.pulse;
+  const WaveformTrace& pulse = *story.pulse;
   EXPECT_EQ(pulse.pulse, 0U) << "the second return of the first pulse";
-  EXPECT_EQ(pulse.sub_rays, sub_rays(*stage.sensor.footprint).size());
-  ASSERT_EQ(pulse.ways.size(), pulse.sub_rays);
+  EXPECT_EQ(pulse.sub_rays, sample_footprint(*stage.sensor.footprint).size());
+  ASSERT_EQ(pulse.light_paths.size(), pulse.sub_rays);
   double share = 0.0;
-  for (const PulseTrace::Way& way : pulse.ways) {
+  for (const WaveformTrace::LightPath& way : pulse.light_paths) {
     share += way.share;
     EXPECT_NEAR(way.path.range_m, way.instance == 0 ? 5.0 : 8.0, 1e-4);
     EXPECT_LT(way.path.source, pulse.sub_rays);
@@ -141,19 +141,20 @@ TEST(Explain, TracesTheEchoesOfAPulse) {
 
 TEST(Explain, MarksAMixedEchoAndTheSurfacesOfItsWays) {
   Stage stage;
-  stage.sensor.pulse = PulseLight{};
+  stage.sensor.pulse = LidarEquation{};
   stage.sensor.footprint = Footprint{.divergence_x_rad = 0.1, .divergence_y_rad = 0.1};
   stage.add_wall(5.3);
-  Story story;
+  PointTrace story;
   std::size_t mixed = 0;
   for (std::size_t entry = 0; entry < 20; ++entry) {
     const Frame frame = stage.shoot(entry, &story);
     ASSERT_TRUE(story.pulse.has_value());
     std::set<std::uint16_t> surfaces;
-    for (const PulseTrace::Way& way : story.pulse->ways) surfaces.insert(way.path.surface);
+    for (const WaveformTrace::LightPath& way : story.pulse->light_paths)
+      surfaces.insert(way.path.surface);
     ASSERT_EQ(story.pulse->echoes.size(), 1U);
     EXPECT_EQ(story.pulse->echoes[0].is_mixed, surfaces.size() > 1);
-    EXPECT_EQ(frame.cause[entry] == Cause::mixed, surfaces.size() > 1);
+    EXPECT_EQ(frame.return_source[entry] == ReturnSource::mixed_pixel, surfaces.size() > 1);
     if (surfaces.size() > 1) ++mixed;
   }
   EXPECT_GT(mixed, 0U);
@@ -162,11 +163,11 @@ TEST(Explain, MarksAMixedEchoAndTheSurfacesOfItsWays) {
 
 TEST(Explain, ShowsTheReceiversNoise) {
   Stage stage;
-  stage.sensor.pulse = PulseLight{.noise_sigma = 0.2};
+  stage.sensor.pulse = LidarEquation{.noise_sigma = 0.2};
   stage.sensor.receiver.returns = {{Return::Order::nearest, 0}};
-  Story story;
+  PointTrace story;
   const Frame frame = stage.shoot(300, &story);
-  const Draw draw = draw_of(frame, Purpose::detection, 300);
+  const RngKey draw = rng_key(frame, Purpose::detection, 300);
   ASSERT_EQ(story.pulse->echoes.size(), 1U);
   ASSERT_EQ(story.receiver_noise.size(), 1U);
   EXPECT_EQ(story.receiver_noise[0], normals(random_words(draw))[0]);
@@ -176,19 +177,19 @@ TEST(Explain, ShowsTheReceiversNoise) {
 
 TEST(Explain, TracesThePulseOfAnEntryThatIsPickedFromTheFrame) {
   Stage stage = noisy_stage();
-  stage.sensor.pulse = PulseLight{.noise_sigma = 0.2};
+  stage.sensor.pulse = LidarEquation{.noise_sigma = 0.2};
   stage.sensor.footprint = Footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3};
   stage.sensor.weather = Weather{.rain_mm_per_h = 20.0};
   const auto renderer = make_renderer(stage.scene, {.threads = 2});
   const Beams beams = make_beams(stage.sensor);
-  const Motion motion = standing_still(stage.scene, Pose::Identity());
+  const Motion motion = static_motion(stage.scene, Pose::Identity());
   const glidar::Setup setup{stage.scene, stage.sensor, beams, motion, *renderer};
   Frame frame;
   const auto last_hit = [](const Frame& measured) {
     const auto found = std::find(measured.status.rbegin(), measured.status.rend(), Status::hit);
     return static_cast<std::size_t>(found.base() - measured.status.begin()) - 1;
   };
-  const Story story = explain(setup, last_hit, frame);
+  const PointTrace story = explain(setup, last_hit, frame);
   EXPECT_EQ(frame.status[story.entry], Status::hit);
   EXPECT_EQ(last_hit(frame), story.entry);
   ASSERT_TRUE(story.pulse.has_value());
@@ -201,7 +202,7 @@ TEST(Explain, TracesThePulseOfAnEntryThatIsPickedFromTheFrame) {
 }
 
 TEST(Explain, RefusesAnEntryThatIsNotThere) {
-  Story story;
+  PointTrace story;
   try {
     Stage().shoot(1200, &story);
     FAIL();

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // The same bytes from every build type and any number of threads.
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
 
 #include <gtest/gtest.h>
@@ -30,17 +30,17 @@ TEST(Golden, TheAsteroidsFrameHasTheRecordedBytes) {
   sensor.optics = pinhole_from_fov(96, 64, 0.5);
   const Beams beams = make_beams(sensor);
   const Motion motion =
-      standing_still(scene, look_at({4.0, -3.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()));
+      static_motion(scene, look_at({4.0, -3.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()));
   const auto renderer = make_renderer(scene, {});
   Frame frame;
   simulate({scene, sensor, beams, motion, *renderer},
            {.normal = true, .shading_normal = true, .object_point = true}, frame);
   EXPECT_EQ(hash_of(frame.range_m), 9726207806536911748U);
   EXPECT_EQ(hash_of(frame.intensity), 2773538468981654652U);
-  EXPECT_EQ(hash_of(frame.truth.primitive), 9915169409929839669U);
-  EXPECT_EQ(hash_of(frame.truth.normal), 14283022333936143779U);
-  EXPECT_EQ(hash_of(frame.truth.shading_normal), 884859711244796085U);
-  EXPECT_EQ(hash_of(frame.truth.object_point_m), 13269653441643021824U);
+  EXPECT_EQ(hash_of(frame.ground_truth.primitive), 9915169409929839669U);
+  EXPECT_EQ(hash_of(frame.ground_truth.normal), 14283022333936143779U);
+  EXPECT_EQ(hash_of(frame.ground_truth.shading_normal), 884859711244796085U);
+  EXPECT_EQ(hash_of(frame.ground_truth.object_point_m), 13269653441643021824U);
 }
 
 }  // namespace

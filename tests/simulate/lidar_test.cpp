@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/point_cloud.hpp>
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/io/sensor_file.hpp>
-#include <glidar/io/sensor_presets.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ struct Room {
     const double side_m = bounds(scene).sizes().x();
     scene.instances[0].scale = 2.0 * kHalfSide_m / side_m;
     const Beams beams = make_beams(sensor);
-    const Motion motion = standing_still(scene, Pose::Identity());
+    const Motion motion = static_motion(scene, Pose::Identity());
     const auto renderer = make_renderer(scene, {.threads = 2});
     simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
     const std::vector<std::string> columns = {"xyz", "range", "ring", "time"};
@@ -56,19 +56,19 @@ struct Room {
 TEST(Lidar, EveryPresetCastsInARoom) {
   for (const auto& file : preset_files()) {
     SCOPED_TRACE(file.string());
-    Sensor sensor = ideal(load_sensor_file(file));
+    Sensor sensor = ground_truth_sensor(load_sensor_file(file));
     EXPECT_LT(sensor.limits.near_m, kHalfSide_m);
     sensor.limits.far_m = 100.0;  // rooms corners may lie beyond a short sensor's end
     const Room room(sensor);
     const auto& status = room.frame.status;
     EXPECT_EQ(std::count(status.begin(), status.end(), Status::hit) +
-                  std::count(status.begin(), status.end(), Status::no_beam),
+                  std::count(status.begin(), status.end(), Status::invalid_pixel),
               static_cast<std::ptrdiff_t>(status.size()));
   }
 }
 
 TEST(Lidar, CloudsTellRingAndTime) {
-  const Room room(ideal(load_sensor_file(find_sensor_file("VLP-16"))));
+  const Room room(ground_truth_sensor(load_sensor_file(find_sensor_file("VLP-16"))));
   const auto& ring = std::get<std::vector<std::uint16_t>>(find_column(room.cloud, "ring")->values);
   const auto& time = std::get<std::vector<std::uint32_t>>(find_column(room.cloud, "time")->values);
   EXPECT_EQ(room.cloud.rows, 16U);
@@ -79,17 +79,17 @@ TEST(Lidar, CloudsTellRingAndTime) {
 }
 
 TEST(Lidar, LimitsAreAboutTheReportedRange) {
-  Sensor sensor = ideal(load_sensor_file(find_sensor_file("OS0-128")));
+  Sensor sensor = ground_truth_sensor(load_sensor_file(find_sensor_file("OS0-128")));
   sensor.limits = {.near_m = 0.0, .far_m = 2.5, .along = Limits::Along::range};
   const Beams beams = make_beams(sensor);
   Scene scene = testing::scene_of(make_builtin_model("sphere"));
   scene.instances[0].scale = 5.0 / bounds(scene).sizes().x();  // radius 2.5 m or a little less
-  const Motion motion = standing_still(scene, Pose::Identity());
+  const Motion motion = static_motion(scene, Pose::Identity());
   const auto renderer = make_renderer(scene, {.threads = 2});
   Frame frame;
   simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
   for (std::size_t i = 0; i < frame.range_m.size(); ++i) {
-    const double reported_m = frame.truth.range_m[i] + beams.range_offset_m;
+    const double reported_m = frame.ground_truth.range_m[i] + beams.range_offset_m;
     EXPECT_EQ(frame.status[i], reported_m > 2.5 ? Status::too_far : Status::hit);
   }
 }
@@ -100,7 +100,7 @@ TEST(Ouster, RangesInsideASphereHaveTheClosedForm) {
   const Beams beams = make_beams(sensor);
   const Scene scene = testing::scene_of(make_builtin_model("sphere"));
   const double radius_m = 0.5 * bounds(scene).sizes().z();
-  const Motion motion = standing_still(scene, Pose::Identity());
+  const Motion motion = static_motion(scene, Pose::Identity());
   const auto renderer = make_renderer(scene, {.threads = 2});
   Frame frame;
   simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
@@ -111,7 +111,7 @@ TEST(Ouster, RangesInsideASphereHaveTheClosedForm) {
     const double k = std::cos(channel.azimuth_offset_rad) * std::cos(channel.elevation_rad);
     // r = n (1 - k) + sqrt(R^2 - n^2 (1 - k^2)); the mesh lies up to its sagitta inside
     const double closed_m = n * (1 - k) + std::sqrt(radius_m * radius_m - n * n * (1 - k * k));
-    const double found_m = frame.truth.range_m[i] + beams.range_offset_m;
+    const double found_m = frame.ground_truth.range_m[i] + beams.range_offset_m;
     ASSERT_LT(found_m, closed_m + 1e-7);
     ASSERT_GT(found_m, closed_m * (1 - 5e-3));
     sum_m += closed_m - found_m;

@@ -1,10 +1,10 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // An echo is mixed when it merges surfaces with a gap between them, and only then.
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/io/model.hpp>
-#include <glidar/sensor/footprint.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/io/model/model.hpp>
+#include <glidar/sensor/lidar/footprint.hpp>
+#include <glidar/simulate/simulate.hpp>
 #include <simulate/panels.hpp>
 #include <support/preset.hpp>
 
@@ -26,21 +26,21 @@ using testing::noise_free_preset;
 Frame shoot(const Scene& scene, const Sensor& sensor, const Pose& world_from_sensor) {
   const auto renderer = make_renderer(scene, {.threads = 2});
   const Beams beams = make_beams(sensor);
-  const Motion motion = standing_still(scene, world_from_sensor);
+  const Motion motion = static_motion(scene, world_from_sensor);
   Frame frame;
   simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
   return frame;
 }
 
-std::ptrdiff_t count(const Frame& frame, Cause cause) {
-  return std::count(frame.cause.begin(), frame.cause.end(), cause);
+std::ptrdiff_t count(const Frame& frame, ReturnSource cause) {
+  return std::count(frame.return_source.begin(), frame.return_source.end(), cause);
 }
 
 /// A wide pulsed camera along z; its pulses of 5 ns merge what is nearer than 0.64 m.
 Sensor camera(std::uint32_t width, std::uint32_t height, double fov_rad) {
   Sensor sensor;
   sensor.optics = pinhole_from_fov(width, height, fov_rad);
-  sensor.pulse = PulseLight{.reference_reflectance = 0.01, .reference_range_m = 1e4};
+  sensor.pulse = LidarEquation{.reference_reflectance = 0.01, .reference_range_m = 1e4};
   sensor.footprint = Footprint{.divergence_x_rad = 4e-3, .divergence_y_rad = 4e-3, .rings = 2};
   return sensor;
 }
@@ -55,8 +55,8 @@ TEST_P(OnAPlane, NoReturnIsMixedAtAnyRange) {
     Pose pose = Pose::Identity();
     pose.translation().z() = height_m;
     const Frame frame = shoot(scene, noise_free_preset(GetParam()), pose);
-    EXPECT_EQ(count(frame, Cause::mixed), 0) << height_m;
-    EXPECT_GT(count(frame, Cause::surface), 1000) << height_m;
+    EXPECT_EQ(count(frame, ReturnSource::mixed_pixel), 0) << height_m;
+    EXPECT_GT(count(frame, ReturnSource::surface), 1000) << height_m;
   }
 }
 
@@ -110,8 +110,8 @@ TEST(Mixed, IsNoReturnOfAGentlyCurvedRoadOfManyTriangles) {
   Pose pose = Pose::Identity();
   pose.translation().z() = 2.5;
   const Frame frame = shoot(scene_of({road}), noise_free_preset("OS1-128"), pose);
-  EXPECT_GT(count(frame, Cause::surface), 10000);
-  EXPECT_EQ(count(frame, Cause::mixed), 0);
+  EXPECT_GT(count(frame, ReturnSource::surface), 10000);
+  EXPECT_EQ(count(frame, ReturnSource::mixed_pixel), 0);
 }
 
 TEST(Mixed, IsNoReturnOfAWallOfTwoMeshesThatJoin) {
@@ -120,9 +120,9 @@ TEST(Mixed, IsNoReturnOfAWallOfTwoMeshesThatJoin) {
   stage.add_panel(Vector3d(0.1, -3.0, 20.0) - 6.0 * along, 6.0 * along, {0.0, 6.0, 0.0});
   stage.add_panel({0.1, -3.0, 20.0}, 6.0 * along, {0.0, 6.0, 0.0});
   const Frame frame = shoot(stage.scene, camera(60, 20, 0.06), Pose::Identity());
-  EXPECT_EQ(count(frame, Cause::mixed), 0);
-  EXPECT_EQ(count(frame, Cause::none), 0);
-  EXPECT_EQ(count(frame, Cause::surface), 60 * 20);
+  EXPECT_EQ(count(frame, ReturnSource::mixed_pixel), 0);
+  EXPECT_EQ(count(frame, ReturnSource::none), 0);
+  EXPECT_EQ(count(frame, ReturnSource::surface), 60 * 20);
 }
 
 TEST(Mixed, IsNoReturnOfASphereAloneOrACylinderAlone) {
@@ -144,18 +144,18 @@ TEST(Mixed, IsNoReturnOfASphereAloneOrACylinderAlone) {
   }
   for (const Scene& scene : {ball, scene_of({tube})}) {
     const Frame frame = shoot(scene, camera(120, 120, 0.2), Pose::Identity());
-    EXPECT_GT(count(frame, Cause::surface), 3000);
-    EXPECT_EQ(count(frame, Cause::mixed), 0);
+    EXPECT_GT(count(frame, ReturnSource::surface), 3000);
+    EXPECT_EQ(count(frame, ReturnSource::mixed_pixel), 0);
   }
 }
 
 /// Whether the sub-rays of each beam of a camera meet x below and above an edge at a distance.
 std::vector<bool> straddles(const Sensor& sensor, double edge_m, double distance_m) {
   const Beams beams = make_beams(sensor);
-  const std::vector<SubRay> rays = sub_rays(*sensor.footprint);
-  Workers workers(1);
+  const std::vector<SubRay> rays = sample_footprint(*sensor.footprint);
+  ThreadPool thread_pool(1);
   Beams spread_beams;
-  spread(rays, beams, {0, beams.size()}, workers, spread_beams);
+  expand_beams(rays, beams, {0, beams.size()}, thread_pool, spread_beams);
   std::vector<bool> result;
   for (std::size_t beam = 0; beam < beams.size(); ++beam) {
     std::size_t below = 0;
@@ -172,7 +172,9 @@ void expect_mixed_where(const std::vector<bool>& expected, const Frame& frame) {
   ASSERT_GT(std::count(expected.begin(), expected.end(), true), 10);
   for (std::size_t i = 0; i < expected.size(); ++i) {
     ASSERT_EQ(frame.status[i], Status::hit);
-    EXPECT_EQ(frame.cause[i], expected[i] ? Cause::mixed : Cause::surface) << i;
+    EXPECT_EQ(frame.return_source[i],
+              expected[i] ? ReturnSource::mixed_pixel : ReturnSource::surface)
+        << i;
   }
 }
 
@@ -192,7 +194,7 @@ TEST(Mixed, IsNoneOfTwoSurfacesThatTheReceiverTellsApart) {
   stage.add_wall(20.0, -50.0, 0.0123);
   stage.add_wall(22.0);
   const Frame frame = shoot(stage.scene, camera(64, 16, 0.05), Pose::Identity());
-  EXPECT_EQ(count(frame, Cause::mixed), 0);
+  EXPECT_EQ(count(frame, ReturnSource::mixed_pixel), 0);
 }
 
 TEST(Mixed, IsTheRimOfAThinWallBeforeTheFarSideOfItsOwnMesh) {
@@ -228,7 +230,7 @@ TEST(Mixed, IsTheNoseOfAStairFromAboveAndNoneOfStairsFromTheFront) {
     front.add_panel(corner, tread, {0.0, 6.0, 0.0});
   }
   const Frame frame = shoot(front.scene, sensor, Pose::Identity());
-  EXPECT_EQ(count(frame, Cause::surface), 64 * 16);
+  EXPECT_EQ(count(frame, ReturnSource::surface), 64 * 16);
 }
 
 }  // namespace

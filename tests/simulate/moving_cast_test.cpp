@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/core/point_cloud.hpp>
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
 
 #include <gtest/gtest.h>
@@ -24,7 +24,7 @@ struct Stage {
     sensor.optics = pinhole_from_fov(24, 16, 0.6);
     beams = make_beams(sensor);
     for (std::uint32_t i = 0; i < beams.size(); ++i) beams.times_ns.push_back(i * 1'000'000U);
-    motion = standing_still(scene, look_at({0.4, -0.3, 5.0}, {0, 0, 0}, Eigen::Vector3d::UnitY()));
+    motion = static_motion(scene, look_at({0.4, -0.3, 5.0}, {0, 0, 0}, Eigen::Vector3d::UnitY()));
     renderer = make_renderer(scene, {.threads = 2});
   }
   Setup setup() { return {scene, sensor, beams, motion, *renderer}; }
@@ -75,16 +75,16 @@ void expect_as_if_cast_alone(Stage& stage, const Frame& frame) {
                           .world_from_instance = poses,
                           .fields = kAllHitFields},
                          hits);
-    ASSERT_EQ(frame.truth.instance[i], hits.instance[0]) << "beam " << i;
-    if (hits.instance[0] == kNoHit) continue;
-    EXPECT_EQ(frame.truth.primitive[i], hits.primitive[0]);
-    EXPECT_NEAR(frame.truth.range_m[i], hits.range_m[0], kRounding_m);
-    EXPECT_NEAR(frame.truth.depth_m[i], hits.depth_m[0], kRounding_m);
-    EXPECT_LT((frame.truth.normal[i] - hits.normal[0]).norm(), 1e-6F);
-    EXPECT_LT((frame.truth.shading_normal[i] - hits.shading_normal[0]).norm(), 1e-5F);
-    EXPECT_NEAR(frame.truth.cos_incidence[i], hits.cos_incidence[0], 1e-6F);
-    EXPECT_NEAR(frame.truth.cos_shading[i], hits.cos_shading[0], 1e-5F);
-    EXPECT_LT((frame.truth.object_point_m[i] - hits.object_point_m[0]).norm(), 1e-12);
+    ASSERT_EQ(frame.ground_truth.instance[i], hits.instance[0]) << "beam " << i;
+    if (hits.instance[0] == kInvalidId) continue;
+    EXPECT_EQ(frame.ground_truth.primitive[i], hits.primitive[0]);
+    EXPECT_NEAR(frame.ground_truth.range_m[i], hits.range_m[0], kRounding_m);
+    EXPECT_NEAR(frame.ground_truth.depth_m[i], hits.depth_m[0], kRounding_m);
+    EXPECT_LT((frame.ground_truth.normal[i] - hits.normal[0]).norm(), 1e-6F);
+    EXPECT_LT((frame.ground_truth.shading_normal[i] - hits.shading_normal[0]).norm(), 1e-5F);
+    EXPECT_NEAR(frame.ground_truth.cos_incidence[i], hits.cos_incidence[0], 1e-6F);
+    EXPECT_NEAR(frame.ground_truth.cos_shading[i], hits.cos_shading[0], 1e-5F);
+    EXPECT_LT((frame.ground_truth.object_point_m[i] - hits.object_point_m[0]).norm(), 1e-12);
   }
 }
 
@@ -97,8 +97,8 @@ TEST(MovingCast, PutsADeskewedScanOfAPlaneOnThePlane) {
   PointCloud raw;
   PointCloud deskewed;
   const std::vector<std::string> columns = {"xyz", "normal"};
-  const CloudFrame world{.frame_id = "world", .cloud_from_sensor = frame.world_from_sensor};
-  CloudFrame deskewed_world = world;
+  const OutputFrame world{.frame_id = "world", .cloud_from_sensor = frame.world_from_sensor};
+  OutputFrame deskewed_world = world;
   deskewed_world.deskew = true;
   make_point_cloud(frame, stage.beams, stage.scene, world, columns, raw);
   make_point_cloud(frame, stage.beams, stage.scene, deskewed_world, columns, deskewed);
@@ -125,7 +125,7 @@ TEST(MovingCast, MeetsAnApproachingPlaneWhereItIsWhenTheBeamLeaves) {
   const Frame frame = stage.shoot(250'000'000);
   for (std::size_t i = 0; i < stage.beams.size(); ++i) {
     const double t_s = static_cast<double>(time_of(frame, stage.beams, i)) * 1e-9;
-    EXPECT_NEAR(frame.truth.depth_m[i], 5.0 - kSpeed_m_s * t_s, 1e-13);
+    EXPECT_NEAR(frame.ground_truth.depth_m[i], 5.0 - kSpeed_m_s * t_s, 1e-13);
   }
   EXPECT_TRUE(frame.deskewed.directions.empty()) << "the sensor stands still";
 }
@@ -144,8 +144,8 @@ TEST(MovingCast, SeesEveryBodyAtTheBeamsOwnTime) {
   const Frame frame = stage.shoot(10'000'000);
   expect_as_if_cast_alone(stage, frame);
   std::array<std::size_t, 3> seen{};
-  for (const std::uint32_t instance : frame.truth.instance) {
-    if (instance != kNoHit) ++seen[instance];
+  for (const std::uint32_t instance : frame.ground_truth.instance) {
+    if (instance != kInvalidId) ++seen[instance];
   }
   EXPECT_GT(seen[0], 20U);
   EXPECT_GT(seen[1], 20U);
@@ -202,10 +202,10 @@ TEST(MovingCast, AllocatesNoSecondTime) {
       ConstantTwist{.pose = pose_at(stage.motion.world_from_sensor, 0), .linear_m_s = {1, 0, 0}};
   Frame frame;
   simulate(stage.setup(), kAllHitFields, frame);
-  const void* const before = frame.scratch.moved.directions.data();
+  const void* const before = frame.workspace.moved.directions.data();
   const void* const deskewed = frame.deskewed.directions.data();
   simulate(stage.setup(), kAllHitFields, frame);
-  EXPECT_EQ(frame.scratch.moved.directions.data(), before);
+  EXPECT_EQ(frame.workspace.moved.directions.data(), before);
   EXPECT_EQ(frame.deskewed.directions.data(), deskewed);
 }
 

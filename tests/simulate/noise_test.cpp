@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Noise from the scene to the frame: the same bytes whatever the threads, and no more than asked.
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
 
 #include <gtest/gtest.h>
@@ -20,13 +20,13 @@ std::vector<NoiseStep> every_step() {
           IntensityGaussian{.sigma = 0.01, .relative = 0.02},
           RangeGaussian{.sigma_m = 0.001, .sigma_per_m = 1e-4},
           RangeSnr{.floor_m = 0.001, .k_m = 0.01, .snr_at_full_scale = 100.0},
-          RangePulse{.pulse_fwhm_s = 5e-9, .sample_s = 1e-9, .noise = 1e-4},
-          RangePhotons{.pulse_fwhm_s = 5e-9, .photons_at_full_scale = 1e5},
-          Range2015{.additive_m = 1e-3, .multiplicative = 1e-4},
+          RangeCrlb{.pulse_fwhm_s = 5e-9, .sample_s = 1e-9, .noise = 1e-4},
+          RangeShotNoise{.pulse_fwhm_s = 5e-9, .photons_at_full_scale = 1e5},
+          RangeUniform{.additive_m = 1e-3, .multiplicative = 1e-4},
           RangeBias{.offset_m = 0.01, .sigma_m = 0.001},
           RangeDrift{.sigma_m = 0.001, .tau_s = 1.0, .per_ring = true},
           Crosstalk{.probability = 0.01, .near_m = 0.5},
-          FalseEchoes{.rate_hz = 1e5, .near_m = 0.5, .far_m = 20.0, .intensity = 0.1},
+          FalseAlarms{.rate_hz = 1e5, .near_m = 0.5, .far_m = 20.0, .intensity = 0.1},
           Khoshelham{},
           NguyenAxial{},
           NguyenLateral{},
@@ -35,11 +35,11 @@ std::vector<NoiseStep> every_step() {
           ContinuousWave{
               .frequencies_hz = {80e6, 16e6, 120e6}, .electrons_at_full_scale = 1e5, .mixing = 0.1},
           KinectV1{},
-          DisparityQuantum{.k_m = 1e4},
+          DisparityQuantization{.k_m = 1e4},
           Dropout{.probability = 0.02,
                   .by_range_m = {{1.0, 0.0}, {10.0, 0.1}},
                   .by_incidence_rad = {{1.0, 0.0}, {1.6, 0.5}}},
-          RangeQuantum{.step_m = 1e-3},
+          RangeQuantization{.step_m = 1e-3},
           IntensityScale{.kind = IntensityScale::Kind::vendor}};
 }
 
@@ -55,7 +55,7 @@ struct Stage {
     sensor.optics = pinhole_from_fov(96, 64, 0.5);
     beams = make_beams(sensor);
     motion =
-        standing_still(scene, look_at({4.0, -3.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()));
+        static_motion(scene, look_at({4.0, -3.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()));
   }
   Frame shoot(unsigned threads, std::uint64_t seed = 1, std::uint32_t number = 0) const {
     const auto renderer = make_renderer(scene, {.threads = threads});
@@ -122,7 +122,7 @@ TEST(Noise, LeavesTheTruthAlone) {
   Stage stage;
   const Frame plain = stage.shoot(2);
   stage.sensor.noise = {RangeGaussian{.sigma_m = 0.01}, Dropout{.probability = 0.5}};
-  EXPECT_TRUE(same(plain.truth.range_m, stage.shoot(2).truth.range_m));
+  EXPECT_TRUE(same(plain.ground_truth.range_m, stage.shoot(2).ground_truth.range_m));
 }
 
 TEST(Noise, AMaterialScalesIt) {
@@ -133,8 +133,8 @@ TEST(Noise, AMaterialScalesIt) {
   const Frame scaled = stage.shoot(2);
   for (std::size_t i = 0; i < plain.range_m.size(); ++i) {
     if (plain.status[i] != Status::hit) continue;
-    const double error_m = plain.range_m[i] - plain.truth.range_m[i];
-    EXPECT_NEAR(scaled.range_m[i] - scaled.truth.range_m[i], 2.5 * error_m, 1e-14);
+    const double error_m = plain.range_m[i] - plain.ground_truth.range_m[i];
+    EXPECT_NEAR(scaled.range_m[i] - scaled.ground_truth.range_m[i], 2.5 * error_m, 1e-14);
     EXPECT_FLOAT_EQ(scaled.sigma_m[i], 0.025F);
   }
 }
@@ -142,8 +142,8 @@ TEST(Noise, AMaterialScalesIt) {
 TEST(Noise, ATextureScalesIt) {
   Stage stage;
   stage.scene = testing::scene_of(make_builtin_model("plane"));
-  stage.motion = standing_still(
-      stage.scene, look_at({0.0, 0.0, 3.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitY()));
+  stage.motion = static_motion(stage.scene,
+                               look_at({0.0, 0.0, 3.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitY()));
   Texture texture{.name = "halves", .width = 2, .height = 1, .channels = 1, .texels = {0, 255}};
   stage.scene.textures.push_back(texture);
   for (Material& material : stage.scene.materials) {
@@ -157,7 +157,7 @@ TEST(Noise, ATextureScalesIt) {
   double all = 0.0;
   for (std::size_t i = 0; i < frame.range_m.size(); ++i) {
     if (frame.status[i] != Status::hit) continue;
-    const double error_m = frame.range_m[i] - frame.truth.range_m[i];
+    const double error_m = frame.range_m[i] - frame.ground_truth.range_m[i];
     if (frame.sigma_m[i] == 0.0F) {
       EXPECT_EQ(error_m, 0.0);
       none += 1.0;
@@ -173,14 +173,14 @@ TEST(Noise, JitteredBeamsAreReportedWhereTheyShouldHaveGone) {
   Stage stage;
   stage.sensor.noise = {PointingJitter{.sigma_azimuth_rad = 0.01, .sigma_elevation_rad = 0.01}};
   stage.scene = testing::scene_of(make_builtin_model("plane"));
-  stage.motion = standing_still(
-      stage.scene, look_at({0.0, 0.0, 3.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitY()));
+  stage.motion = static_motion(stage.scene,
+                               look_at({0.0, 0.0, 3.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitY()));
   const Frame frame = stage.shoot(2);
   double squares = 0.0;
   double count = 0.0;
   for (std::size_t i = 0; i < frame.range_m.size(); ++i) {
     if (frame.status[i] != Status::hit) continue;
-    const Eigen::Vector3d& went = frame.scratch.aimed.directions[i];
+    const Eigen::Vector3d& went = frame.workspace.aimed.directions[i];
     EXPECT_NEAR(frame.range_m[i] * went.z(), 3.0, 1e-12);
     const double apart = std::acos(std::min(1.0, went.dot(stage.beams.directions[i])));
     squares += apart * apart;

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The picture of the 2016 paper against the truth that is attached to it.
 #include <glidar/core/error.hpp>
-#include <glidar/io/builtin_models.hpp>
+#include <glidar/io/model/builtin_models.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
 #include <support/error_text.hpp>
 #include <support/source_folder.hpp>
@@ -44,13 +44,13 @@ class PaperTargetTest : public ::testing::Test {
   }
 
   static Measured measure(const Scene& scene, const Sensor& sensor, const Pose& pose,
-                          std::optional<PaperPlanes> planes = {}) {
+                          std::optional<Woods2016DepthPlanes> planes = {}) {
     Measured measured;
     const Beams beams = make_beams(sensor);
-    const Motion motion = standing_still(scene, pose);
+    const Motion motion = static_motion(scene, pose);
     const auto renderer = make_renderer(scene, {.threads = 2});
     const auto camera = make_paper_camera(scene, {.kind = "opengl", .threads = 2});
-    const HitFields fields{.depth = true, .incidence = true};
+    const HitFieldMask fields{.depth = true, .incidence = true};
     simulate(
         {.scene = scene, .sensor = sensor, .beams = beams, .motion = motion, .renderer = *renderer},
         fields, measured.exact);
@@ -60,7 +60,7 @@ class PaperTargetTest : public ::testing::Test {
               .motion = motion,
               .renderer = *renderer,
               .progress = {},
-              .paper = PaperTarget{*camera, planes}},
+              .paper = Woods2016Target{*camera, planes}},
              fields, measured.frame);
     return measured;
   }
@@ -87,7 +87,7 @@ void expect_near_truth(const Measured& m, double most_other) {
     }
     if (frame.status[i] != Status::hit) continue;
     ++compared;
-    const double slope = frame.truth.depth_m[i] / frame.truth.range_m[i];
+    const double slope = frame.ground_truth.depth_m[i] / frame.ground_truth.range_m[i];
     const double depth_error = std::abs(frame.range_m[i] - m.exact.range_m[i]) * slope;
     const double light_error = std::abs(frame.intensity[i] - std::min(1.0F, m.exact.intensity[i]));
     if (depth_error > depth_tolerance || light_error > 1.0 / 255.0) ++other;
@@ -156,7 +156,7 @@ TEST_F(PaperTargetTest, ShowsShininessMasksNormalMapsAndFlatMeshes) {
 TEST_F(PaperTargetTest, PlanesThatDoNotHugCostTheirStep) {
   const Scene scene = builtin("sphere");
   const Pose pose = look_at({6.0, 1.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
-  const Measured m = measure(scene, camera(300, 200, 0.4), pose, PaperPlanes{1.0, 1001.0});
+  const Measured m = measure(scene, camera(300, 200, 0.4), pose, Woods2016DepthPlanes{1.0, 1001.0});
   EXPECT_EQ(m.frame.picture.far_m, 1001.0);
   EXPECT_TRUE(m.exact.picture.rgba.empty());
   expect_near_truth(m, 0.0005);  // of steps 500 times as large
@@ -172,7 +172,7 @@ TEST_F(PaperTargetTest, NothingInViewIsAllMisses) {
 TEST_F(PaperTargetTest, RefusesPulsedLightAndErrorsOfPointing) {
   const Scene scene = builtin("sphere");
   Sensor sensor = camera(20, 20, 0.4);
-  sensor.pulse = PulseLight{};
+  sensor.pulse = LidarEquation{};
   const std::string allowed =
       "; allowed: the paper's light, and beams that fire together where they are aimed; "
       "use --render-target float";

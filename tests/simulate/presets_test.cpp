@@ -1,11 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // The sensors that come along, with their light and noise, against their sheets and recordings.
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/io/scene_file.hpp>
-#include <glidar/io/sensor_file.hpp>
-#include <glidar/io/sensor_presets.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/config/scene_file.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
 #include <support/preset.hpp>
 
@@ -31,7 +31,7 @@ struct Ball {
       material.diffuse.setConstant(static_cast<float>(reflectance));
     }
     const auto renderer = make_renderer(scene, {.threads = 2});
-    const Motion motion = standing_still(scene, Pose::Identity());
+    const Motion motion = static_motion(scene, Pose::Identity());
     frame.seed = 5;
     simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
   }
@@ -41,7 +41,8 @@ struct Ball {
     const auto count = [&](Status status) {
       return static_cast<double>(std::count(frame.status.begin(), frame.status.end(), status));
     };
-    const double beams_there = static_cast<double>(frame.status.size()) - count(Status::no_beam);
+    const double beams_there =
+        static_cast<double>(frame.status.size()) - count(Status::invalid_pixel);
     return count(Status::hit) / beams_there;
   }
 
@@ -53,7 +54,7 @@ struct Ball {
     double count = 0.0;
     for (std::size_t i = 0; i < beams.size(); ++i) {
       if (frame.status[i] != Status::hit) continue;
-      if (std::abs(frame.range_m[i] - frame.truth.range_m[i]) > kFalse_m) continue;
+      if (std::abs(frame.range_m[i] - frame.ground_truth.range_m[i]) > kFalse_m) continue;
       squares += std::pow(error(i), 2);
       ++count;
     }
@@ -61,14 +62,14 @@ struct Ball {
   }
 
   [[nodiscard]] double range_error_m() const {
-    return rms([&](std::size_t i) { return frame.range_m[i] - frame.truth.range_m[i]; });
+    return rms([&](std::size_t i) { return frame.range_m[i] - frame.ground_truth.range_m[i]; });
   }
 
   /// Error of 1 / depth.
   [[nodiscard]] double inverse_depth_error_per_m() const {
     return rms([&](std::size_t i) {
       return 1.0 / depth_m(beams, i, frame.range_m[i]) -
-             1.0 / depth_m(beams, i, frame.truth.range_m[i]);
+             1.0 / depth_m(beams, i, frame.ground_truth.range_m[i]);
     });
   }
 };
@@ -102,7 +103,7 @@ TEST_P(PresetRange, IsThatOfTheSheetWithinOneMetre) {
   Sensor sensor = preset(pair.sensor);
   sensor.limits = {.along = Limits::Along::range};
   std::erase_if(sensor.noise, [](const NoiseStep& step) {
-    return std::holds_alternative<FalseEchoes>(step);  // they are no surface
+    return std::holds_alternative<FalseAlarms>(step);  // they are no surface
   });
   const auto seen = [&](double range_m) {
     return Ball(sensor, range_m, pair.reflectance).share_of_hits();
@@ -194,11 +195,11 @@ TEST(Surfaces, SendBackTheSignalOfTheRangeEquation) {
       "s.yaml",
       "models: [{model: builtin:box, scale: 10, materials: {\"*\": {surface: asphalt}}}]\n"
       "sensor: {optics: {width: 1, height: 1, fov_deg: 1}, wavelength_nm: 905,\n"
-      "  pulse_light: {reference_reflectance: 0.8, reference_range_m: 100}}\n");
+      "  lidar_equation: {reference_reflectance: 0.8, reference_range_m: 100}}\n");
   const SceneFile loaded = load_scene_file(file, {}, {});
   const Beams beams = make_beams(loaded.sensors.at(0).sensor);
   const auto renderer = make_renderer(loaded.scene, {.threads = 1});
-  const Motion motion = standing_still(loaded.scene, Pose::Identity());
+  const Motion motion = static_motion(loaded.scene, Pose::Identity());
   Frame frame;
   simulate({loaded.scene, loaded.sensors.at(0).sensor, beams, motion, *renderer}, {}, frame);
   EXPECT_NEAR(frame.range_m[0], 10.0, 1e-9);  // a wall of the box, square on
@@ -216,7 +217,7 @@ Frame look_past_a_box(const Sensor& sensor, double front_m) {
   const auto renderer = make_renderer(scene, {.threads = 2});
   const Beams beams = make_beams(sensor);
   Frame frame;
-  simulate({scene, sensor, beams, standing_still(scene, Pose::Identity()), *renderer}, {}, frame);
+  simulate({scene, sensor, beams, static_motion(scene, Pose::Identity()), *renderer}, {}, frame);
   return frame;
 }
 
@@ -240,21 +241,25 @@ TEST(Presets, OfVelodyneTellBothSurfacesOfACutBeamWhenAskedForTwoReturns) {
 // A pulse of 5 ns cannot tell surfaces 0.5 m apart.
 TEST(Presets, TellMixedEchoesUnlessTheyAreToBeIdeal) {
   const Frame wide = look_past_a_box(preset("OS1-128"), 3.5);
-  EXPECT_GT(std::count(wide.cause.begin(), wide.cause.end(), Cause::mixed), 0);
-  const Frame line = look_past_a_box(ideal(preset("OS1-128")), 3.5);
-  EXPECT_EQ(std::count(line.cause.begin(), line.cause.end(), Cause::mixed), 0);
+  EXPECT_GT(
+      std::count(wide.return_source.begin(), wide.return_source.end(), ReturnSource::mixed_pixel),
+      0);
+  const Frame line = look_past_a_box(ground_truth_sensor(preset("OS1-128")), 3.5);
+  EXPECT_EQ(
+      std::count(line.return_source.begin(), line.return_source.end(), ReturnSource::mixed_pixel),
+      0);
 }
 
 TEST(Ideal, LeavesTheGeometryAlone) {
   Sensor noisy = preset("VLP-16");
   noisy.weather = Weather{.rain_mm_per_h = 10.0};
-  noisy.projector_m = Eigen::Vector3d::UnitY();
-  const Sensor sensor = ideal(noisy);
+  noisy.projector_origin_m = Eigen::Vector3d::UnitY();
+  const Sensor sensor = ground_truth_sensor(noisy);
   EXPECT_FALSE(sensor.pulse.has_value());
   EXPECT_TRUE(noisy.footprint.has_value());
   EXPECT_FALSE(sensor.footprint.has_value());
   EXPECT_FALSE(sensor.weather.has_value());
-  EXPECT_FALSE(sensor.projector_m.has_value());
+  EXPECT_FALSE(sensor.projector_origin_m.has_value());
   EXPECT_TRUE(sensor.noise.empty());
   EXPECT_EQ(sensor.limits.far_m, noisy.limits.far_m);
   EXPECT_EQ(sensor.rate_hz, noisy.rate_hz);

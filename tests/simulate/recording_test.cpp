@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Range noise against a recording of a VLP-16: the same estimator looks at both.
-#include <glidar/sensor/noise.hpp>
+#include <glidar/sensor/noise/noise.hpp>
 #include <support/data.hpp>
 
 #include <gtest/gtest.h>
@@ -112,8 +112,8 @@ std::vector<Firing> with_noise(std::vector<Firing> firings, const std::vector<No
     frame.status[i] = is_hit ? Status::hit : Status::miss;
     frame.intensity[i] = static_cast<float>(firings[i / kChannels].intensity[i % kChannels]);
   }
-  Workers workers(2);
-  apply_noise(noise, 0.1, beams, workers, frame);
+  ThreadPool thread_pool(2);
+  apply_noise(noise, 0.1, beams, thread_pool, frame);
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const double range_m = frame.range_m[i];
     firings[i / kChannels].range_m[i % kChannels] = std::isnan(range_m) ? 0.0 : range_m;
@@ -142,8 +142,8 @@ TEST(Vlp16, RecordingAndModelHaveTheSameQuantumAndNoise) {
       read_firings(testing::data_folder() / "recordings/velodyne/sample_velodyne_vlp16_gps.pcap");
   ASSERT_GT(recorded.size(), 5000U);
   // sigma^2 = (6.2 mm)^2 + (17 mm)^2 / counts of intensity, in steps of 2 mm
-  const auto modelled = with_noise(
-      recorded, {RangeSnr{.floor_m = 0.0062, .k_m = 0.017}, RangeQuantum{.step_m = kQuantum_m}});
+  const auto modelled = with_noise(recorded, {RangeSnr{.floor_m = 0.0062, .k_m = 0.017},
+                                              RangeQuantization{.step_m = kQuantum_m}});
   constexpr double kFourSigmas = 0.01;  // 70000 returns, odd and even alike
   EXPECT_NEAR(odd_share(recorded), 0.5, kFourSigmas);
   EXPECT_NEAR(odd_share(modelled), 0.5, kFourSigmas);

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/builtin_models.hpp>
+#include <glidar/io/model/builtin_models.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
 #include <support/error_text.hpp>
 
@@ -28,7 +28,7 @@ class SimulateBatch : public ::testing::TestWithParam<std::string> {
     for (int i = 0; i < kFrames; ++i) {
       const Eigen::Vector3d eye(5.0 + i, 0.3 * i, 1.0 - 0.2 * i);
       motions_.push_back(
-          standing_still(scene_, look_at(eye, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ())));
+          static_motion(scene_, look_at(eye, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ())));
     }
   }
 
@@ -45,7 +45,7 @@ class SimulateBatch : public ::testing::TestWithParam<std::string> {
 
   /// Simulates all together, then each alone, and compares what is measured.
   void expect_as_one_by_one(const std::vector<glidar::Setup>& setups) const {
-    const HitFields fields{.depth = true, .normal = true};
+    const HitFieldMask fields{.depth = true, .normal = true};
     std::vector<Frame> frames;
     for (std::size_t i = 0; i < setups.size(); ++i) frames.push_back(seeded(static_cast<int>(i)));
     simulate_batch(setups, fields, frames);
@@ -61,8 +61,8 @@ class SimulateBatch : public ::testing::TestWithParam<std::string> {
       EXPECT_TRUE(same(frames[i].intensity, alone.intensity)) << i;
       EXPECT_EQ(frames[i].status, alone.status) << i;
       EXPECT_TRUE(same(frames[i].sigma_m, alone.sigma_m)) << i;
-      EXPECT_TRUE(same(frames[i].truth.normal, alone.truth.normal)) << i;
-      EXPECT_TRUE(same(frames[i].truth.depth_m, alone.truth.depth_m)) << i;
+      EXPECT_TRUE(same(frames[i].ground_truth.normal, alone.ground_truth.normal)) << i;
+      EXPECT_TRUE(same(frames[i].ground_truth.depth_m, alone.ground_truth.depth_m)) << i;
       for (const Status status : alone.status) hits += status == Status::hit ? 1 : 0;
     }
     EXPECT_GT(hits, 50U * setups.size());
@@ -87,7 +87,7 @@ TEST_P(SimulateBatch, SensorsMayDiffer) {
   culling.cull_back_faces = true;
   culling.limits.far_m = 7.0;
   Sensor shadowed = sensor_;
-  shadowed.projector_m = Eigen::Vector3d(0.3, 0.0, 0.0);
+  shadowed.projector_origin_m = Eigen::Vector3d(0.3, 0.0, 0.0);
   Sensor plain;
   plain.optics = pinhole_from_fov(20, 31, 0.6);
   const Beams plain_beams = make_beams(plain);
@@ -125,7 +125,7 @@ TEST(SimulateBatchOfEchoes, FramesThatTakeSeveralCastsAreThoseOfSimulateToo) {
     beams.times_ns[i] = static_cast<std::uint32_t>(1000 * i);
   }
   Motion spin =
-      standing_still(scene, look_at({4.0, 0.0, 1.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()));
+      static_motion(scene, look_at({4.0, 0.0, 1.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()));
   const Motion still = spin;
   spin.world_from_instance[0] = Spin{.rate_rad_s = 30.0 * Eigen::Vector3d::UnitZ()};
   const auto renderer = make_renderer(scene, {.threads = 2});
@@ -138,7 +138,7 @@ TEST(SimulateBatchOfEchoes, FramesThatTakeSeveralCastsAreThoseOfSimulateToo) {
     Frame alone;
     simulate(setups[i], {}, alone);
     EXPECT_EQ(frames[i].intensity, alone.intensity) << i;
-    EXPECT_EQ(frames[i].truth.primitive, alone.truth.primitive) << i;
+    EXPECT_EQ(frames[i].ground_truth.primitive, alone.ground_truth.primitive) << i;
   }
   EXPECT_NE(frames[0].intensity, frames[1].intensity);
   EXPECT_EQ(frames[0].intensity, frames[2].intensity);

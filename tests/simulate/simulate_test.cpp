@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
 
 #include <gtest/gtest.h>
@@ -64,10 +64,10 @@ struct Stage {
     sensor.optics = pinhole_from_fov(size, size, 0.5);
     beams = make_beams(sensor);
     motion =
-        standing_still(scene, look_at({0.0, 0.0, 5.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitY()));
+        static_motion(scene, look_at({0.0, 0.0, 5.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitY()));
     renderer = make_renderer(scene, {.threads = 2});
   }
-  Frame shoot(const HitFields& fields = {}) {
+  Frame shoot(const HitFieldMask& fields = {}) {
     Frame frame;
     simulate({scene, sensor, beams, motion, *renderer}, fields, frame);
     return frame;
@@ -114,7 +114,7 @@ TEST(Simulate, TellsWhatLiesOutsideTheDepthLimitsAndKeepsItsTruth) {
   const std::size_t middle = 16 * 8 + 8;
   EXPECT_EQ(frame.status[middle], Status::too_near);
   EXPECT_TRUE(std::isnan(frame.range_m[middle]));
-  EXPECT_FALSE(std::isnan(frame.truth.range_m[middle]));
+  EXPECT_FALSE(std::isnan(frame.ground_truth.range_m[middle]));
   stage.sensor.limits = {.far_m = 4.0};
   frame = stage.shoot();
   EXPECT_EQ(frame.status[middle], Status::too_far);
@@ -124,7 +124,7 @@ TEST(Simulate, TellsPixelsWithoutABeam) {
   Stage stage;
   stage.beams.directions[3].setConstant(std::nan(""));
   stage.beams.pinhole.reset();  // no longer its directions
-  EXPECT_EQ(stage.shoot().status[3], Status::no_beam);
+  EXPECT_EQ(stage.shoot().status[3], Status::invalid_pixel);
 }
 
 TEST(Simulate, AllocatesNothingInTheSteadyState) {
@@ -132,7 +132,7 @@ TEST(Simulate, AllocatesNothingInTheSteadyState) {
   stage.sensor.noise = {PointingJitter{.sigma_azimuth_rad = 1e-4}, RangeGaussian{.sigma_m = 0.01},
                         KinectV1{}, Dropout{.probability = 0.1}};
   const glidar::Setup setup{stage.scene, stage.sensor, stage.beams, stage.motion, *stage.renderer};
-  const HitFields fields{.depth = true, .normal = true, .object_point = true};
+  const HitFieldMask fields{.depth = true, .normal = true, .object_point = true};
   Frame frame;
   for (int warm_up = 0; warm_up < 3; ++warm_up) simulate(setup, fields, frame);
   const std::size_t before = allocations;
@@ -169,7 +169,7 @@ TEST(Simulate, AllocatesNothingInTheSteadyStateForScannersWhoseBeamsChange) {
   for (const char* kind : {"raster", "auto"}) {
     const std::unique_ptr<Renderer> renderer = make_renderer(scene, {.kind = kind, .threads = 1});
     Sensor sensor;
-    Raster& raster = sensor.optics.emplace<Raster>();
+    LineScan& raster = sensor.optics.emplace<LineScan>();
     for (int i = 0; i < 300; ++i) raster.azimuths_rad.push_back(0.01 * i - 1.5);
     for (int i = 0; i < 30; ++i) raster.elevations_rad.push_back(0.01 * i - 0.15);
     Beams beams = make_beams(sensor);

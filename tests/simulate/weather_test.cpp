@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Weather from the sensor to the frame.
 #include <glidar/core/error.hpp>
-#include <glidar/io/builtin_models.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Weather dark_fog(double visibility_m) {
 }
 
 /// A pulsed camera so far before a plane.
-Frame shoot(const std::optional<PulseLight>& pulse, const std::optional<Weather>& weather,
+Frame shoot(const std::optional<LidarEquation>& pulse, const std::optional<Weather>& weather,
             double distance_m, const std::optional<Footprint>& footprint = {}) {
   const Scene scene = testing::scene_of(make_builtin_model("plane"));
   Sensor sensor;
@@ -31,7 +31,7 @@ Frame shoot(const std::optional<PulseLight>& pulse, const std::optional<Weather>
   sensor.footprint = footprint;
   const Beams beams = make_beams(sensor);
   const Motion motion =
-      standing_still(scene, look_at({0.0, 0.0, distance_m}, {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}));
+      static_motion(scene, look_at({0.0, 0.0, distance_m}, {0.0, 0.0, 0.0}, {0.0, 1.0, 0.0}));
   const auto renderer = make_renderer(scene, {.threads = 1});
   Frame frame;
   simulate({scene, sensor, beams, motion, *renderer}, {}, frame);
@@ -39,10 +39,10 @@ Frame shoot(const std::optional<PulseLight>& pulse, const std::optional<Weather>
 }
 
 TEST(WeatherInAFrame, DimsEveryBeamByTheWayThereAndBack) {
-  const PulseLight light{.reference_range_m = 1000.0};
+  const LidarEquation light{.reference_range_m = 1000.0};
   Weather fog = dark_fog(1000.0);
   fog.rain_mm_per_h = 10.0;
-  fog.least_signal = 1e6;                          // drops that are seen have tests of their own
+  fog.min_signal = 1e6;                            // drops that are seen have tests of their own
   const double alpha_per_m = 3.050e-3 + 1.556e-3;  // Kim's, and Marshall and Palmer's drops
   const Frame clear = shoot(light, {}, 100.0);
   const Frame foggy = shoot(light, fog, 100.0);
@@ -51,12 +51,12 @@ TEST(WeatherInAFrame, DimsEveryBeamByTheWayThereAndBack) {
     ASSERT_EQ(foggy.status[i], Status::hit);
     EXPECT_EQ(foggy.range_m[i], clear.range_m[i]);
     EXPECT_NEAR(foggy.intensity[i] / clear.intensity[i],
-                std::exp(-2.0 * alpha_per_m * clear.truth.range_m[i]), 2e-4);
+                std::exp(-2.0 * alpha_per_m * clear.ground_truth.range_m[i]), 2e-4);
   }
 }
 
 TEST(WeatherInAFrame, DimsPulsesWithAFootprintToo) {
-  const PulseLight light{.reference_range_m = 1000.0};
+  const LidarEquation light{.reference_range_m = 1000.0};
   const Footprint footprint{.divergence_x_rad = 1e-4, .divergence_y_rad = 1e-4};
   const Frame clear = shoot(light, {}, 100.0, footprint);
   const Frame foggy = shoot(light, dark_fog(1000.0), 100.0, footprint);
@@ -69,7 +69,7 @@ TEST(WeatherInAFrame, DimsPulsesWithAFootprintToo) {
 }
 
 TEST(WeatherInAFrame, TakesReturnsAndSaysSo) {
-  const PulseLight light{.reference_reflectance = 0.01, .reference_range_m = 200.0};
+  const LidarEquation light{.reference_reflectance = 0.01, .reference_range_m = 200.0};
   const Frame clear = shoot(light, {}, 100.0);
   const Frame foggy = shoot(light, dark_fog(60.0), 100.0);
   const auto all = [](const Frame& frame, Status status) {
@@ -78,36 +78,37 @@ TEST(WeatherInAFrame, TakesReturnsAndSaysSo) {
   };
   EXPECT_TRUE(all(clear, Status::hit));
   EXPECT_TRUE(all(foggy, Status::weather));
-  EXPECT_NEAR(foggy.truth.range_m[31], 100.0, 1e-9);
+  EXPECT_NEAR(foggy.ground_truth.range_m[31], 100.0, 1e-9);
 }
 
 TEST(WeatherInAFrame, FogBeforeAFaintTargetIsReportedInItsPlace) {
-  const PulseLight light{.reference_range_m = 1000.0, .overlap = {{0.9, 0.0}, {1.0, 1.0}}};
+  const LidarEquation light{.reference_range_m = 1000.0, .overlap = {{0.9, 0.0}, {1.0, 1.0}}};
   const Weather fog{.visibility_m = 100.0};
   const Frame frame = shoot(light, fog, 100.0);
   for (std::size_t i = 0; i < frame.status.size(); ++i) {
     ASSERT_EQ(frame.status[i], Status::hit);
-    EXPECT_EQ(frame.cause[i], Cause::fog);
+    EXPECT_EQ(frame.return_source[i], ReturnSource::fog);
     EXPECT_LT(frame.range_m[i], 5.0);
-    EXPECT_NEAR(frame.truth.range_m[i], 100.0, 0.01) << "the truth stays: the plane";
+    EXPECT_NEAR(frame.ground_truth.range_m[i], 100.0, 0.01) << "the truth stays: the plane";
   }
 }
 
 TEST(WeatherInAFrame, DropsAreReportedWhereNothingElseIs) {
-  const PulseLight light{.reference_range_m = 1000.0};
+  const LidarEquation light{.reference_range_m = 1000.0};
   const Footprint footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3};
   // the plane is 2 m wide and 3 km away: the beams' edges see past it
   const Frame snow = shoot(light, Weather{.snow_mm_per_h = 20.0}, 3000.0, footprint);
   std::size_t flakes = 0;
   for (std::size_t i = 0; i < snow.status.size(); ++i) {
-    if (snow.cause[i] != Cause::snow) continue;
+    if (snow.return_source[i] != ReturnSource::snow) continue;
     ++flakes;
     EXPECT_GT(snow.range_m[i], 0.0);
     EXPECT_LT(snow.range_m[i], 3000.0);
     EXPECT_GE(snow.intensity[i], 1.0F);
   }
   EXPECT_GT(flakes, 0U);
-  EXPECT_EQ(std::count(snow.cause.begin(), snow.cause.end(), Cause::rain), 0);
+  EXPECT_EQ(std::count(snow.return_source.begin(), snow.return_source.end(), ReturnSource::rain),
+            0);
 }
 
 TEST(WeatherInAFrame, IsRefusedForLightThatIsNotPulsed) {

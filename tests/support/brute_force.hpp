@@ -14,8 +14,8 @@ namespace glidar::testing {
 
 /// What a beam meets, judged on every triangle in double. Shares no code with the renderers.
 struct Judged {
-  std::uint32_t instance = kNoHit;
-  std::uint32_t primitive = kNoHit;
+  std::uint32_t instance = kInvalidId;
+  std::uint32_t primitive = kInvalidId;
   double range_m = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< world, front side
   /// Distance in metres, over all triangles in front of the beam's hit, from the beam to the

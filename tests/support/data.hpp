@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/io/model.hpp>
+#include <glidar/io/model/model.hpp>
 
 #include <gtest/gtest.h>
 #include <cstdlib>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/core/random.hpp>
+#include <glidar/math/random.hpp>
 #include <glidar/verify/shapes.hpp>
 
 #include <gtest/gtest.h>

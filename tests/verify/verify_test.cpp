@@ -23,7 +23,7 @@ class Spoiled final : public Renderer {
       : inner_(std::move(inner)), spoil_(std::move(spoil)) {}
 
   [[nodiscard]] std::string_view name() const override { return inner_->name(); }
-  [[nodiscard]] Workers& workers() override { return inner_->workers(); }
+  [[nodiscard]] ThreadPool& thread_pool() override { return inner_->thread_pool(); }
   void cast(const CastRequest& request, Hits& hits) override {
     inner_->cast(request, hits);
     spoil_(hits);
@@ -55,27 +55,27 @@ void shift_ranges(Hits& hits) {
 
 void swap_triangles(Hits& hits) {
   for (std::uint32_t& primitive : hits.primitive) {
-    if (primitive != kNoHit) primitive ^= 1U;
+    if (primitive != kInvalidId) primitive ^= 1U;
   }
 }
 
 void swap_instances(Hits& hits) {
   for (std::uint32_t& instance : hits.instance) {
-    if (instance != kNoHit) instance = instance == 0 ? 1 : 0;
+    if (instance != kInvalidId) instance = instance == 0 ? 1 : 0;
   }
 }
 
 void lose_one_hit(Hits& hits) {
   const auto hit = std::find_if(hits.instance.begin(), hits.instance.end(),
-                                [](std::uint32_t i) { return i != kNoHit; });
+                                [](std::uint32_t i) { return i != kInvalidId; });
   if (hit == hits.instance.end()) return;
   hits.range_m[static_cast<std::size_t>(hit - hits.instance.begin())] =
       std::numeric_limits<double>::quiet_NaN();
-  *hit = kNoHit;
+  *hit = kInvalidId;
 }
 
 void lose_every_hit(Hits& hits) {
-  std::fill(hits.instance.begin(), hits.instance.end(), kNoHit);
+  std::fill(hits.instance.begin(), hits.instance.end(), kInvalidId);
   std::fill(hits.range_m.begin(), hits.range_m.end(), std::numeric_limits<double>::quiet_NaN());
 }
 
@@ -94,8 +94,8 @@ class SpecialCases : public ::testing::Test {
   std::vector<SpecialCase> cases_ = special_cases(shapes_);
 };
 
-VerifyRow row_of(const SpecialCase& c, const VerifySubject& subject) {
-  VerifyRow row{.name = c.name, .shape = c.shape, .distance_m = c.distance_m};
+AccuracyCase row_of(const SpecialCase& c, const VerifySubject& subject) {
+  AccuracyCase row{.name = c.name, .shape = c.shape, .distance_m = c.distance_m};
   row.result = c.run(subject);
   row.known = known_failure(row);
   return row;
@@ -113,7 +113,7 @@ TEST(VerifyCases, RaysAreWithinBoundsAtBothEndsOfTheDistances) {
 
 TEST_F(SpecialCases, EveryRayRendererPassesEachOrFailsAsKnown) {
   for (const SpecialCase& c : all()) {
-    const VerifyRow row = row_of(c, subject("rays"));
+    const AccuracyCase row = row_of(c, subject("rays"));
     EXPECT_TRUE(all_passed({row})) << c.name << ", " << c.shape << ", " << c.distance_m;
     EXPECT_NE(row.verdict(), Verdict::fixed) << "take it off the list: " << c.name;
     EXPECT_GT(row.result.judged_hits, 100U) << c.name << ", " << c.shape;
@@ -126,7 +126,7 @@ TEST_F(SpecialCases, TheRasterPassesTheOnesWithItsBeamsOrFailsAsKnown) {
   for (const SpecialCase& c : all()) {
     if (beams_of_renderer("raster") < c.needs) continue;
     ++applied;
-    const VerifyRow row = row_of(c, subject("raster"));
+    const AccuracyCase row = row_of(c, subject("raster"));
     EXPECT_TRUE(all_passed({row})) << c.name << ", " << c.shape;
     EXPECT_NE(row.verdict(), Verdict::fixed) << "take it off the list: " << c.name;
   }
@@ -202,7 +202,7 @@ TEST_F(SpecialCases, AKnownFailureThatGetsWorseFails) {
             Verdict::failed);
 }
 
-TEST(VerifyRow, AKnownFailureIsNoErrorUnlessItIsWorseThanKnown) {
+TEST(AccuracyCase, AKnownFailureIsNoErrorUnlessItIsWorseThanKnown) {
   const VerifyResult good{.rays = 1000, .judged_hits = 500, .judged_misses = 490, .near_edges = 10};
   VerifyResult bad = good;
   bad.wrong_hits = 2;
@@ -210,11 +210,12 @@ TEST(VerifyRow, AKnownFailureIsNoErrorUnlessItIsWorseThanKnown) {
   bad.range_error_ulp = 3.0;
   bad.normal_error_rad = 1.5;
   const auto row = [](const VerifyResult& result, const char* known, bool applies) {
-    return VerifyRow{.name = "a",
-                     .shape = "b",
-                     .result = result,
-                     .known = {.reason = known, .max_wrong_share = 0.003, .max_range_error_ulp = 3},
-                     .applies = applies};
+    return AccuracyCase{
+        .name = "a",
+        .shape = "b",
+        .result = result,
+        .known = {.reason = known, .max_wrong_share = 0.003, .max_range_error_ulp = 3},
+        .applies = applies};
   };
   EXPECT_EQ(row(good, "", true).verdict(), Verdict::passed);
   EXPECT_EQ(row(bad, "", true).verdict(), Verdict::failed);

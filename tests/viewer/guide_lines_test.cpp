@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/guide_lines.hpp>
 
-#include <glidar/sensor/pinhole.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 
 #include <gtest/gtest.h>
 

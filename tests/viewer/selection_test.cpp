@@ -49,7 +49,7 @@ class SelectionTest : public ViewerTest {
 
   /// A beam that hits the object.
   std::size_t beam_on(Viewer& viewer, std::uint32_t object) {
-    const std::vector<std::uint32_t>& hits = shot_of(viewer).frame.truth.instance;
+    const std::vector<std::uint32_t>& hits = shot_of(viewer).frame.ground_truth.instance;
     const auto found = std::find(hits.begin(), hits.end(), object);
     EXPECT_NE(found, hits.end());
     return static_cast<std::size_t>(found - hits.begin());

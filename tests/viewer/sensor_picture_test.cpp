@@ -21,9 +21,10 @@ class SensorPictureTest : public testing::Test {
     frame_.status = {Status::hit, Status::hit, Status::miss};
     frame_.range_m = {1.0, 5.0, NAN};
     frame_.intensity = {0.5F, 0.25F, 0.0F};
-    frame_.truth.normal = {Eigen::Vector3f(0.0F, 0.0F, -1.0F), Eigen::Vector3f(-1.0F, 0.0F, 0.0F),
-                           Eigen::Vector3f::Constant(NAN)};
-    frame_.truth.instance = {1, 0, kNoHit};
+    frame_.ground_truth.normal = {Eigen::Vector3f(0.0F, 0.0F, -1.0F),
+                                  Eigen::Vector3f(-1.0F, 0.0F, 0.0F),
+                                  Eigen::Vector3f::Constant(NAN)};
+    frame_.ground_truth.instance = {1, 0, kInvalidId};
     scene_.instances = {{.name = "rock", .id = 7, .materials = {}},
                         {.name = "box", .id = 9, .materials = {}}};
   }
@@ -83,8 +84,8 @@ TEST_F(SensorPictureTest, CountsEveryStatus) {
   std::vector<std::string> texts;
   for (const LegendEntry& entry : picture.legend) texts.push_back(entry.text);
   EXPECT_THAT(texts, ::testing::ElementsAre(std::string(name(Status::hit)) + ": 1",
-                                          std::string(name(Status::miss)) + ": 1",
-                                          std::string(name(Status::dropped)) + ": 1"));
+                                            std::string(name(Status::miss)) + ": 1",
+                                            std::string(name(Status::dropped)) + ": 1"));
 }
 
 TEST_F(SensorPictureTest, HasNoScaleWithoutReturns) {

@@ -96,7 +96,7 @@ class ViewerWindowTest(DisplayTest):
         self.assertEqual(zoomed, near)
 
     def test_space_pauses_a_turning_model(self):
-        with Window(self, "builtin:asteroid", "--model-dr", "0,0,1") as window:
+        with Window(self, "builtin:asteroid", "--object-rate", "0,0,1") as window:
             first = window.save("buffer")
             frame = window.state()["frame"]
             window.wait_for("time to go on", frame=lambda now: now > frame + 1)
@@ -158,7 +158,7 @@ class ViewerWindowTest(DisplayTest):
             window.shows(lambda picture: difference(before, picture.crop(SENSOR_BOX)) > 2.0, "its picture")
             window.save("buffer")
             window.quit()
-        self.succeed("render", "rig.yaml", "--mount", "camera", "--pcd", "expected")
+        self.succeed("render", "rig.yaml", "--sensor-name", "camera", "--pcd", "expected")
         self.assertEqual(self.read("buffer.pcd"), self.read("expected.pcd"))
 
     def test_nothing_is_drawn_while_nothing_changes(self):
@@ -189,7 +189,7 @@ class ViewerWindowTest(DisplayTest):
             window.quit()
 
     def test_a_minimised_window_of_what_moves_draws_nothing(self):
-        with Window(self, "builtin:asteroid", "--model-dr", "0,0,1") as window:
+        with Window(self, "builtin:asteroid", "--object-rate", "0,0,1") as window:
             window.wait_for("time to go on", frame=lambda now: now > 3)
             hidden = window.minimise()
             let_time_pass(2.0)
@@ -270,7 +270,7 @@ class ScreenshotTest(DisplayTest):
         self.assertLess(difference(cast.crop(SENSOR_BOX), opengl.crop(SENSOR_BOX)), 0.5)
 
     def test_frames_count_the_sensors_frames_and_are_the_same_again(self):
-        arguments = ("builtin:asteroid", "--model-dr", "0,2,0", "--frames", "7")
+        arguments = ("builtin:asteroid", "--object-rate", "0,2,0", "--frames", "7")
         first, told = self.shoot(*arguments)
         self.assertIn("7 frames in", told)
         second, _ = self.shoot(*arguments)

@@ -191,7 +191,7 @@ Moment read_moment(Reader& from, std::uint32_t index, std::uint32_t objects) {
 }
 
 void put_body(const Body& body, Writer& to) {
-  const PoseNumbers numbers = numbers_of(body.world_from_body);
+  const PoseVector numbers = to_xyz_wxyz(body.world_from_body);
   for (const double number : numbers) to.put(number);
   to.put_vector(body.rate_rad_s);
   to.put_vector(body.velocity_m_s);
@@ -291,7 +291,7 @@ std::vector<std::byte> encode_head(std::uint64_t id, std::span<const CloudHead> 
     to.put(head.cols);
     to.put(std::uint32_t{0});
     to.put_text(head.frame_id, kFrameId_bytes);
-    for (const double number : numbers_of(head.world_from_cloud)) to.put(number);
+    for (const double number : to_xyz_wxyz(head.world_from_cloud)) to.put(number);
   }
   return to.take();
 }

@@ -127,9 +127,9 @@ std::optional<Request> Server::read(const Waiting& waiting, ReplyTo& to) {
 }
 
 void Server::look_after_clients(std::chrono::seconds patience) {
-  constexpr std::chrono::milliseconds kPause{100};
+  constexpr std::chrono::milliseconds kServerPause{100};
   const Clock::time_point now = Clock::now();
-  if (now - looked_ < kPause) return;
+  if (now - looked_ < kServerPause) return;
   looked_ = now;
   queue_.look(
       now, patience,

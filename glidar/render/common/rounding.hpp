@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/constants.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <cmath>
 

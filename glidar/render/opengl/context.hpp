@@ -14,20 +14,20 @@ class Context {
   virtual ~Context() = default;
 
   /// Makes it current in this thread, or throws Error. Asked for by one thread at a time, and not
-  /// again before give_back().
+  /// again before release().
   virtual void make_current() = 0;
 
   /// Makes current again what was so before make_current(), in the same thread.
-  virtual void give_back() = 0;
+  virtual void release() = 0;
 };
 
 /// A context is current in this thread while this lives.
-class Use {
+class ScopedContext {
  public:
-  explicit Use(Context& context) : context_(context) { context_.make_current(); }
-  ~Use() { context_.give_back(); }
-  Use(const Use&) = delete;
-  Use& operator=(const Use&) = delete;
+  explicit ScopedContext(Context& context) : context_(context) { context_.make_current(); }
+  ~ScopedContext() { context_.release(); }
+  ScopedContext(const ScopedContext&) = delete;
+  ScopedContext& operator=(const ScopedContext&) = delete;
 
  private:
   Context& context_;

@@ -25,7 +25,7 @@ class FreshState {
   FreshState& operator=(const FreshState&) = delete;
 
  private:
-  Use use_;
+  ScopedContext use_;
 };
 
 /// Depth 1 is near and 0 far; rows run downwards in the picture, upwards in the window.

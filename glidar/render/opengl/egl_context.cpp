@@ -192,7 +192,7 @@ void EglContext::make_current() {
   handles_->before = before;
 }
 
-void EglContext::give_back() {
+void EglContext::release() {
   const Current before = *std::exchange(handles_->before, std::nullopt);
   if (before.context == EGL_NO_CONTEXT) {
     eglMakeCurrent(handles_->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);

@@ -24,7 +24,7 @@ class EglContext final : public Context {
   ~EglContext() override;
 
   void make_current() override;
-  void give_back() override;
+  void release() override;
 
  private:
   struct Handles;

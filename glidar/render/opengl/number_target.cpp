@@ -61,11 +61,11 @@ void NumberTarget::begin(const PictureSize& size) {
 }
 
 void NumberTarget::draw_into(std::uint32_t picture) {
-  constexpr GLuint kNothing = kNoNumber;
+  constexpr GLuint kNoNumberYet = kNoNumber;
   constexpr GLfloat kFarthest = 0.0F;
   glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frames_[picture].name());
   glViewport(0, 0, signed_size(size_.cols), signed_size(size_.rows));
-  glClearBufferuiv(GL_COLOR, 0, &kNothing);
+  glClearBufferuiv(GL_COLOR, 0, &kNoNumberYet);
   glClearBufferfv(GL_DEPTH, 0, &kFarthest);
 }
 

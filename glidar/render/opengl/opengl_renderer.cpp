@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/opengl/opengl_renderer.hpp>
 
-#include <glidar/core/work_count.hpp>
+#include <glidar/core/progress_counter.hpp>
 #include <glidar/render/close_sheets.hpp>
 #include <glidar/render/opengl/draw_state.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
@@ -33,15 +33,15 @@ class OpenglRenderer final : public Renderer {
  public:
   OpenglRenderer(const Scene& scene, const RendererOptions& options,
                  std::unique_ptr<opengl::Context> context)
-      : workers_(options.threads),
+      : thread_pool_(options.threads),
         resolver_(scene),
-        search_(resolver_, workers_),
+        search_(resolver_, thread_pool_),
         context_(std::move(context)) {
     for (const Mesh& mesh : scene.meshes) {
       boxes_.push_back(local_box(mesh));
       edges_.push_back(mesh_edges(mesh));
     }
-    sheets_.emplace(resolver_, search_.trees(), boxes_, workers_);
+    sheets_.emplace(resolver_, search_.trees(), boxes_, thread_pool_);
     const opengl::FreshState state(*context_);
     gpu_ = std::make_unique<OnDevice>(scene);
     silhouettes_.emplace(doubt_px());
@@ -53,7 +53,7 @@ class OpenglRenderer final : public Renderer {
   }
 
   [[nodiscard]] std::string_view name() const override { return "opengl"; }
-  [[nodiscard]] Workers& workers() override { return workers_; }
+  [[nodiscard]] ThreadPool& thread_pool() override { return thread_pool_; }
 
   void cast(const CastRequest& request, Hits& hits) override {
     const std::array<Hits*, 1> one = {&hits};
@@ -90,7 +90,7 @@ class OpenglRenderer final : public Renderer {
       return;
     }
     write_misses(request.fields, 0, request.beams.size(), hits);
-    if (request.then) request.then({0, request.beams.size()});
+    if (request.on_tile_done) request.on_tile_done({0, request.beams.size()});
     if (request.progress) request.progress(1.0);
   }
 
@@ -152,7 +152,7 @@ class OpenglRenderer final : public Renderer {
                      .overlaps = *overlaps_,
                      .sheets = &*sheets_,
                      .known = known_},
-                    workers_, *count_);
+                    thread_pool_, *count_);
       const bool is_last_part = picture.rect.first_row + picture.rect.rows == request.beams.rows &&
                                 picture.rect.first_col + picture.rect.cols == request.beams.cols;
       if (is_last_part) count_->finish();
@@ -169,7 +169,7 @@ class OpenglRenderer final : public Renderer {
     if (depths.near_m > kNearPart * depths.far_m) return false;
     const double reach_m = kNearPart * depths.far_m * (1.0 + 2.0 * slope);
     for (std::uint32_t i = 0; i < resolver_.scene().instances.size(); ++i) {
-      if (!is_present(request, i)) continue;
+      if (!is_enabled(request, i)) continue;
       const InstanceView& view = resolver_.view(i);
       const Eigen::AlignedBox3d sensor(view.sensor_in_object, view.sensor_in_object);
       if (has_triangle_near(search_.trees().of_instance(i), sensor, reach_m / view.scale)) {
@@ -187,7 +187,7 @@ class OpenglRenderer final : public Renderer {
       list_beams(request.beams, picture.rect);
       search_beams(all_beams_);
     } else {
-      search_beams(silhouettes_->find(request, resolver_, edges_, picture.rect, workers_));
+      search_beams(silhouettes_->find(request, resolver_, edges_, picture.rect, thread_pool_));
     }
   }
 
@@ -204,7 +204,7 @@ class OpenglRenderer final : public Renderer {
   void search_beams(const std::vector<std::size_t>& beams) {
     known_.resize(beams.size());
     constexpr std::size_t kBeamsPerTask = 16;
-    workers_.for_ranges(beams.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
+    thread_pool_.parallel_for(beams.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         known_[i] = {beams[i], search_.beams().find(beams[i])};
       }
@@ -214,13 +214,13 @@ class OpenglRenderer final : public Renderer {
   /// How far a driver may move a border: corners are rounded to its grid, both across and along,
   /// and rounded in single precision before.
   static double doubt_px() {
-    constexpr double kLeast_px = 1.0 / 128.0;
+    constexpr double kMinSilhouette_px = 1.0 / 128.0;
     GLint bits = 0;
     glGetIntegerv(GL_SUBPIXEL_BITS, &bits);
-    return std::max(kLeast_px, std::ldexp(2.0, -bits));
+    return std::max(kMinSilhouette_px, std::ldexp(2.0, -bits));
   }
 
-  Workers workers_;
+  ThreadPool thread_pool_;
   Resolver resolver_;
   rays::SceneSearch search_;
   std::optional<Overlaps> overlaps_;
@@ -233,9 +233,9 @@ class OpenglRenderer final : public Renderer {
   std::vector<opengl::PictureGroup> groups_;
   std::optional<SilhouettePixels> silhouettes_;
   std::vector<std::size_t> all_beams_;
-  std::vector<KnownHit> known_;     ///< of the picture whose hits are written
-  PlanePoints points_;              ///< of the picture whose hits are written
-  std::optional<WorkCount> count_;  ///< of its cast
+  std::vector<KnownHit> known_;           ///< of the picture whose hits are written
+  PlanePoints points_;                    ///< of the picture whose hits are written
+  std::optional<ProgressCounter> count_;  ///< of its cast
 };
 
 }  // namespace

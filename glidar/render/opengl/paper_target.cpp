@@ -9,7 +9,7 @@
 
 namespace glidar::opengl {
 
-void PaperTarget::begin(std::uint32_t rows, std::uint32_t cols) {
+void Woods2016Target::begin(std::uint32_t rows, std::uint32_t cols) {
   glBindFramebuffer(GL_FRAMEBUFFER, frame_.name());
   GLint most = 0;
   glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &most);
@@ -32,13 +32,13 @@ void PaperTarget::begin(std::uint32_t rows, std::uint32_t cols) {
     check_gl("making room for a picture");
   }
   glViewport(0, 0, cols_, rows_);
-  constexpr std::array<GLfloat, 4> kNothing = {0.0F, 0.0F, 0.0F, 0.0F};
+  constexpr std::array<GLfloat, 4> kNoPaper = {0.0F, 0.0F, 0.0F, 0.0F};
   constexpr GLfloat kFarthest = 0.0F;
-  glClearBufferfv(GL_COLOR, 0, kNothing.data());
+  glClearBufferfv(GL_COLOR, 0, kNoPaper.data());
   glClearBufferfv(GL_DEPTH, 0, &kFarthest);
 }
 
-void PaperTarget::read(std::vector<std::uint8_t>& rgba) {
+void Woods2016Target::read(std::vector<std::uint8_t>& rgba) {
   rgba.resize(std::size_t{4} * static_cast<std::size_t>(rows_) * static_cast<std::size_t>(cols_));
   glReadPixels(0, 0, cols_, rows_, GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
   check_not_lost();

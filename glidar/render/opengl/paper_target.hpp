@@ -10,7 +10,7 @@
 namespace glidar::opengl {
 
 /// A picture of four bytes a pixel, with depths. No multisampling: it would mix depths.
-class PaperTarget {
+class Woods2016Target {
  public:
   /// Makes room for so many pixels and draws into it from now on; all bytes are 0.
   void begin(std::uint32_t rows, std::uint32_t cols);

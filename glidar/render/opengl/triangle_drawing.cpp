@@ -72,7 +72,7 @@ void TriangleDrawing::draw(const CastRequest& request, const Resolver& resolver,
                            const PixelRect& rect, const DepthRange& depths) const {
   set_draw_state(has_clip_control_, request.cull_back_faces);
   for (std::uint32_t i = 0; i < scene_.instances.size(); ++i) {
-    if (!is_present(request, i)) continue;
+    if (!is_enabled(request, i)) continue;
     draw_instance(i, clip_from_object(resolver.view(i), *request.beams.pinhole, rect, depths));
   }
   glBindVertexArray(0);

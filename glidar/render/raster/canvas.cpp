@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/raster/canvas.hpp>
 
-#include <glidar/core/simd.hpp>
+#include <glidar/math/simd.hpp>
 
 #include <algorithm>
 #include <limits>
@@ -37,10 +37,10 @@ struct BlockSteps {
 
 /// What a border can gain within a block, from its first pixel.
 [[gnu::always_inline]] inline float gain(const Shape& s, std::size_t border) {
-  constexpr float kSteps = 3.0F;
+  constexpr float kDepthSteps = 3.0F;
   const float across = s.per_col[border] > 0.0F ? s.per_col[border] : 0.0F;
   const float down = s.per_row[border] > 0.0F ? s.per_row[border] : 0.0F;
-  return kSteps * (across + down);
+  return kDepthSteps * (across + down);
 }
 
 /// The pixels of a block: where it is, and a shape's values at its first pixel.

@@ -31,10 +31,11 @@ float least_depth(const Aim& aim, const Eigen::Vector3f& half) {
   constexpr float kLeastPart = 1.0F / 16.0F;
   // A column is a sum of three products: where their sizes add up to more than this many pixels,
   // its rounding comes near kBorderRoom_px.
-  constexpr float kMost_px = 128.0F;
+  constexpr float kMaxDrawing_px = 128.0F;
   const Eigen::Map<const Eigen::Matrix3f> turn(aim.turn.data());
   const Eigen::Vector3f reach = turn.cwiseAbs() * half;
-  return std::max(kLeastPart * (aim.depth + reach.z()), std::max(reach.x(), reach.y()) / kMost_px);
+  return std::max(kLeastPart * (aim.depth + reach.z()),
+                  std::max(reach.x(), reach.y()) / kMaxDrawing_px);
 }
 
 Aim aim_at(const Placed& placed, const PackedMesh& mesh, std::uint32_t cluster) {

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/raster/footprints.hpp>
 
-#include <glidar/core/simd.hpp>
+#include <glidar/math/simd.hpp>
 
 #include <Eigen/Geometry>
 #include <algorithm>
@@ -265,15 +265,17 @@ double volume_of(const Eigen::Matrix3d& corners) {
 
 /// The part of the canvas that a triangle in front of the sensor may cover; all of it for others.
 CanvasRect around(const Eigen::Matrix3d& corners, const CanvasRect& canvas) {
-  constexpr double kRoom_px = 1e-3;
+  constexpr double kFootprintRoom_px = 1e-3;
   if (!(corners.row(2).minCoeff() > 0.0)) return canvas;
   const Eigen::Array3d cols = corners.row(0).array() / corners.row(2).array();
   const Eigen::Array3d rows = corners.row(1).array() / corners.row(2).array();
   const auto first = [](double low, int least, int most) {
-    return static_cast<int>(std::ceil(std::clamp(low - kRoom_px, double(least), double(most))));
+    return static_cast<int>(
+        std::ceil(std::clamp(low - kFootprintRoom_px, double(least), double(most))));
   };
   const auto last = [](double high, int least, int most) {
-    return static_cast<int>(std::floor(std::clamp(high + kRoom_px, double(least), double(most))));
+    return static_cast<int>(
+        std::floor(std::clamp(high + kFootprintRoom_px, double(least), double(most))));
   };
   return {.left = first(cols.minCoeff(), canvas.left, canvas.right + 1),
           .right = last(cols.maxCoeff(), canvas.left - 1, canvas.right),

@@ -71,9 +71,9 @@ Eigen::Vector3f surround(const Mesh& mesh, std::span<const Place> own, unsigned 
   // Halves first: the sum of large ones would overflow.
   const Eigen::Vector3f middle = 0.5F * box.min() + 0.5F * box.max();
   const Eigen::Vector3f half = (box.max() - middle).cwiseMax(middle - box.min());
-  constexpr float kRoom = 1.0F + 4.0F * std::numeric_limits<float>::epsilon();
+  constexpr float kPackedRoom = 1.0F + 4.0F * std::numeric_limits<float>::epsilon();
   boxes.middle.set(lane, middle);
-  boxes.half.set(lane, kRoom * half);
+  boxes.half.set(lane, kPackedRoom * half);
   return middle;
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/raster/raster_renderer.hpp>
 
-#include <glidar/core/work_count.hpp>
+#include <glidar/core/progress_counter.hpp>
 #include <glidar/render/grid_window.hpp>
 #include <glidar/render/picture_writing.hpp>
 #include <glidar/render/pinhole_only.hpp>
@@ -74,7 +74,7 @@ class RasterRenderer final : public Renderer {
   }
 
   [[nodiscard]] std::string_view name() const override { return "raster"; }
-  [[nodiscard]] Workers& workers() override { return base_->workers; }
+  [[nodiscard]] ThreadPool& thread_pool() override { return base_->thread_pool; }
 
   void cast(const CastRequest& request, Hits& hits) override {
     check(request, scene());
@@ -85,11 +85,11 @@ class RasterRenderer final : public Renderer {
     if (!overlaps_) overlaps_.emplace(base_->resolver, base_->search.trees());
     overlaps_->prepare(request);
     find_plane_points(request.beams, points_);
-    WorkCount count(request.progress, request.beams.size());
+    ProgressCounter count(request.progress, request.beams.size());
     const DepthRange depths = depths_of(request, base_->resolver, local_boxes_);
-    const GridWindow window = depths.is_empty()
-                                  ? GridWindow{.end_row = 0, .end_col = 0}
-                                  : window_on(base_->resolver, boxes_, request.present, points_);
+    const GridWindow window =
+        depths.is_empty() ? GridWindow{.end_row = 0, .end_col = 0}
+                          : window_on(base_->resolver, boxes_, request.instance_enabled, points_);
     write_around(request, window, count, hits);
     if (!depths.is_empty() && window.first_row < window.end_row &&
         window.first_col < window.end_col) {
@@ -106,13 +106,13 @@ class RasterRenderer final : public Renderer {
   }
 
   /// Misses, outside of the window.
-  void write_around(const CastRequest& request, const GridWindow& window, WorkCount& count,
+  void write_around(const CastRequest& request, const GridWindow& window, ProgressCounter& count,
                     Hits& hits) {
     const std::uint32_t cols = request.beams.cols;
     const auto miss = [&](std::size_t begin, std::size_t end) {
       if (begin >= end) return;
       write_misses(request.fields, begin, end - begin, hits);
-      if (request.then) request.then({begin, end});
+      if (request.on_tile_done) request.on_tile_done({begin, end});
       count.add(end - begin);
     };
     const auto miss_row = [&](std::size_t row) {
@@ -122,10 +122,10 @@ class RasterRenderer final : public Renderer {
       if (is_beside) miss(first + std::min(window.end_col, cols), first + cols);
     };
     constexpr std::size_t kRowsPerTask = 4;
-    base_->workers.for_ranges(request.beams.rows, kRowsPerTask,
-                              [&](std::size_t begin, std::size_t end) {
-                                for (std::size_t row = begin; row < end; ++row) miss_row(row);
-                              });
+    base_->thread_pool.parallel_for(request.beams.rows, kRowsPerTask,
+                                    [&](std::size_t begin, std::size_t end) {
+                                      for (std::size_t row = begin; row < end; ++row) miss_row(row);
+                                    });
   }
 
   void find_sightings(const CastRequest& request, const GridWindow& window,
@@ -136,13 +136,13 @@ class RasterRenderer final : public Renderer {
     for (std::uint32_t i = 0; i < scene().instances.size(); ++i) {
       views_.push_back(raster::pixel_view(base_->resolver.view(i), *request.beams.pinhole));
       const auto clusters =
-          static_cast<std::uint32_t>(is_present(request, i) ? packed_of(i).clusters : 0);
+          static_cast<std::uint32_t>(is_enabled(request, i) ? packed_of(i).clusters : 0);
       for (std::uint32_t first = 0; first < clusters; first += kClustersPerPiece) {
         pieces_.push_back({i, first, std::min(first + kClustersPerPiece, clusters)});
       }
     }
     found_.resize(std::max(found_.size(), pieces_.size()));
-    base_->workers.for_ranges(pieces_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    base_->thread_pool.parallel_for(pieces_.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const raster::ClusterRange& piece = pieces_[i];
         found_[i].clear();
@@ -157,7 +157,7 @@ class RasterRenderer final : public Renderer {
   }
 
   void draw(const CastRequest& request, GridWindow window, const DepthRange& depths,
-            WorkCount& count, Hits& hits) {
+            ProgressCounter& count, Hits& hits) {
     window.end_row = std::min(window.end_row, request.beams.rows);
     window.end_col = std::min(window.end_col, request.beams.cols);
     const raster::Nearness nearness(depths);
@@ -171,7 +171,7 @@ class RasterRenderer final : public Renderer {
                           .triangles = triangles_,
                           .has_mask = has_mask_,
                           .nearness = nearness};
-    base_->workers.for_ranges(parts_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    base_->thread_pool.parallel_for(parts_.size(), 1, [&](std::size_t begin, std::size_t end) {
       std::unique_ptr<Desk> desk = desks_.take();
       for (std::size_t i = begin; i < end; ++i) {
         const raster::Part part = parts_.part(i);

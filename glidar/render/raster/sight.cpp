@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/raster/sight.hpp>
 
-#include <glidar/core/simd.hpp>
+#include <glidar/math/simd.hpp>
 
 #include <array>
 #include <cmath>
@@ -12,7 +12,7 @@ namespace glidar::raster {
 namespace {
 
 // Room for rounding, above that of all single precision here: part of a length, and pixels.
-constexpr double kRoom = 1e-5;
+constexpr double kSightRoom = 1e-5;
 constexpr double kRoom_px = 0.01;
 
 /// The eight corners of each box, as (column, row, 1) times depth.
@@ -119,7 +119,7 @@ GLIDAR_SIMD void look_at_boxes(const PixelView& view, const Nearness& nearness,
   for (unsigned i = 0; i < kLanes; ++i) {
     const double near = span.near[i];
     const bool is_ahead = span.far[i] > 0.0;
-    const bool is_around = near <= kRoom * span.far[i];  // or behind: then it may cover all
+    const bool is_around = near <= kSightRoom * span.far[i];  // or behind: then it may cover all
     const double left = is_around ? first_col : span.left[i] - kRoom_px;
     const double right = is_around ? last_col : span.right[i] + kRoom_px;
     const double top = is_around ? first_row : span.top[i] - kRoom_px;
@@ -130,7 +130,7 @@ GLIDAR_SIMD void look_at_boxes(const PixelView& view, const Nearness& nearness,
     sights.bottom[i] = is_ahead ? last_to(bottom, first_row, last_row) : -1;
     const double depth = is_around ? 1.0 : near;
     const double closest = nearness.factor * (nearness.far_m - depth) / depth;
-    const double bound = closest * (1.0 + kRoom) + kRoom * nearness.factor;
+    const double bound = closest * (1.0 + kSightRoom) + kSightRoom * nearness.factor;
     sights.nearness[i] = static_cast<float>(is_around ? kFar : bound);
   }
 }
@@ -144,7 +144,7 @@ bool is_beside(const PixelView& view, const Boxes& boxes, unsigned lane, const C
   const auto is_beyond = [&](const Row& inside) {
     const double size = inside.head<3>().cwiseAbs().dot(half);
     const double most = inside.head<3>().dot(middle) + inside[3] + size;
-    return most < -kRoom * (size + std::abs(inside[3]));
+    return most < -kSightRoom * (size + std::abs(inside[3]));
   };
   return is_beyond(pixel.row(0) - (pixels.left - kRoom_px) * pixel.row(2)) ||
          is_beyond((pixels.right + kRoom_px) * pixel.row(2) - pixel.row(0)) ||

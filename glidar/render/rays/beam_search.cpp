@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/rays/beam_search.hpp>
 
-#include <glidar/core/constants.hpp>
+#include <glidar/math/constants.hpp>
 #include <glidar/render/common/rounding.hpp>
 #include <glidar/render/rays/exact_decision.hpp>
 
@@ -130,7 +130,7 @@ class SceneTrace {
     RayPacket& p = inner_.packet;
     inner_.start(instance, beams_, lanes);
     for_lanes(lanes, [&](unsigned i) {
-      if (nearest_[i].found.instance == kNoHit) return;
+      if (nearest_[i].found.instance == kInvalidId) return;
       const double end = nearest_[i].high_m / scale;
       p.high[i] = well_above(end - p.shift[i] + 0x1p-50 * end);
     });
@@ -151,7 +151,7 @@ class SceneTrace {
     Nearest& nearest = nearest_[lane];
     const Nearest other{found, scale * (p.shift[lane] + double{p.low[lane]} - room),
                         scale * (p.shift[lane] + double{p.high[lane]} + room)};
-    const bool is_first = nearest.found.instance == kNoHit;
+    const bool is_first = nearest.found.instance == kInvalidId;
     if (!is_first && other.low_m > nearest.high_m) return;
     if (is_first || other.high_m < nearest.low_m || decide(lane, found)) nearest = other;
   }
@@ -181,7 +181,7 @@ void BeamSearch::find(const BeamBlock& beams, HitBlock& block) const {
   if (lanes == 0 || instances.empty()) return;
   std::uint32_t tied = 0;
   const auto set = [&](unsigned lane, const Found& found) {
-    if (found.instance == kNoHit) return;
+    if (found.instance == kInvalidId) return;
     block.mask |= 1U << lane;
     block.instance[lane] = found.instance;
     block.primitive[lane] = found.primitive;

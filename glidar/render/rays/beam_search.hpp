@@ -22,7 +22,7 @@ class BeamSearch {
   /// primitive; clears the bits of those that hit nothing.
   void find(const BeamBlock& beams, HitBlock& block) const;
 
-  /// What one beam hits; instance kNoHit: nothing.
+  /// What one beam hits; instance kInvalidId: nothing.
   [[nodiscard]] Found find(std::size_t beam) const;
 
  private:

@@ -21,9 +21,9 @@ SplitNode box_around(const TreeNode& node) {
 
 }  // namespace
 
-void BoxTree::build(std::span<BoxReference> boxes, std::size_t count, Workers& workers) {
+void BoxTree::build(std::span<BoxReference> boxes, std::size_t count, ThreadPool& thread_pool) {
   const SplitOptions options = {.leaf_size = 1, .max_depth = kMaxTreeDepth - 2};
-  const auto split = build_split_tree(boxes, options, workers);
+  const auto split = build_split_tree(boxes, options, thread_pool);
   sphere_ = sphere_of(split[0]);
   std::vector<LeafRange> leaves;
   collapse_tree(split.get(), nodes_, leaves);

@@ -17,7 +17,7 @@ namespace glidar::rays {
 class BoxTree {
  public:
   /// At least one box. Their indices are less than `count` and differ.
-  void build(std::span<BoxReference> boxes, std::size_t count, Workers& workers);
+  void build(std::span<BoxReference> boxes, std::size_t count, ThreadPool& thread_pool);
 
   /// Moves the box of this index, and fits those above to it.
   void move(const BoxReference& box);

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/rays/collapse_tree.hpp>
 
-#include <glidar/core/constants.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <array>
 #include <cmath>

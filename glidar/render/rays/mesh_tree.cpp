@@ -42,10 +42,10 @@ BoxReference make_reference(const MeshTriangles& mesh, std::size_t index) {
   return reference;
 }
 
-std::vector<BoxReference> make_references(const MeshTriangles& mesh, Workers& workers) {
+std::vector<BoxReference> make_references(const MeshTriangles& mesh, ThreadPool& thread_pool) {
   const bool has_all = mesh.chosen.empty();
   std::vector<BoxReference> references(has_all ? mesh.triangles.size() : mesh.chosen.size());
-  workers.for_ranges(references.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  thread_pool.parallel_for(references.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       references[i] = make_reference(mesh, has_all ? i : mesh.chosen[i]);
     }
@@ -71,7 +71,7 @@ void pack_leaf(const Packing& packing, std::size_t index, MeshTree& tree) {
 }
 
 /// Copies the triangles of the leaves into blocks.
-void pack(const Packing& packing, MeshTree& tree, Workers& workers) {
+void pack(const Packing& packing, MeshTree& tree, ThreadPool& thread_pool) {
   tree.clusters.resize(packing.leaves.size());
   std::uint32_t blocks = 0;
   for (std::size_t i = 0; i < tree.clusters.size(); ++i) {
@@ -79,9 +79,10 @@ void pack(const Packing& packing, MeshTree& tree, Workers& workers) {
     blocks += block_count(packing.leaves[i].count);
   }
   tree.blocks.resize(blocks);
-  workers.for_ranges(tree.clusters.size(), kGrain / 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) pack_leaf(packing, i, tree);
-  });
+  thread_pool.parallel_for(tree.clusters.size(), kGrain / 8,
+                           [&](std::size_t begin, std::size_t end) {
+                             for (std::size_t i = begin; i < end; ++i) pack_leaf(packing, i, tree);
+                           });
 }
 
 Eigen::AlignedBox3d child_box(const TreeNode& node, unsigned child) {
@@ -139,20 +140,21 @@ std::size_t MeshTree::bytes() const {
          blocks.size() * sizeof(TriangleBlock);
 }
 
-MeshTree build_mesh_tree(const MeshTriangles& mesh, const TreeOptions& options, Workers& workers) {
+MeshTree build_mesh_tree(const MeshTriangles& mesh, const TreeOptions& options,
+                         ThreadPool& thread_pool) {
   check_vertices(mesh);
   MeshTree tree;
-  std::vector<BoxReference> references = make_references(mesh, workers);
+  std::vector<BoxReference> references = make_references(mesh, thread_pool);
   const SplitOptions split_options = {
       .leaf_size = std::clamp(options.cluster_size, 1U, kMaxClusterSize),
       .bins = std::clamp(options.bins, 2U, 16U),
       .max_depth = kMaxTreeDepth - 2};
-  const auto split = build_split_tree(references, split_options, workers);
+  const auto split = build_split_tree(references, split_options, thread_pool);
   if (split == nullptr) return tree;
   tree.sphere = sphere_of(split[0]);
   std::vector<LeafRange> leaves;
   collapse_tree(split.get(), tree.nodes, leaves);
-  pack({mesh, leaves, references}, tree, workers);
+  pack({mesh, leaves, references}, tree, thread_pool);
   return tree;
 }
 

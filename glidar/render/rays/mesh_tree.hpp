@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/workers.hpp>
+#include <glidar/math/thread_pool.hpp>
 #include <glidar/render/rays/ray_packet.hpp>
 #include <glidar/render/rays/ray_tree.hpp>
 
@@ -38,6 +38,7 @@ struct TreeOptions {
 };
 
 /// Builds the tree. Throws Error on a vertex beyond kMaxTreeCoordinate.
-MeshTree build_mesh_tree(const MeshTriangles& mesh, const TreeOptions& options, Workers& workers);
+MeshTree build_mesh_tree(const MeshTriangles& mesh, const TreeOptions& options,
+                         ThreadPool& thread_pool);
 
 }  // namespace glidar::rays

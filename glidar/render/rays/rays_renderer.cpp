@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/rays/rays_renderer.hpp>
 
-#include <glidar/core/work_count.hpp>
+#include <glidar/core/progress_counter.hpp>
 #include <glidar/render/grid_window.hpp>
 #include <glidar/render/plane_points.hpp>
 #include <glidar/render/rays/tiles.hpp>
@@ -20,7 +20,7 @@ struct Job {
   const Beams& beams;
   const PlanePoints& points;
   GridWindow window;  ///< beams outside of it miss
-  const HitFields& fields;
+  const HitFieldMask& fields;
   const Resolver& resolver;
   const rays::BeamSearch& search;
   bool with_corners;  ///< the fields need those of triangles
@@ -131,15 +131,15 @@ class RaysRenderer final : public Renderer {
   }
 
   [[nodiscard]] std::string_view name() const override { return "rays"; }
-  [[nodiscard]] Workers& workers() override { return base_->workers; }
+  [[nodiscard]] ThreadPool& thread_pool() override { return base_->thread_pool; }
 
   void cast(const CastRequest& request, Hits& hits) override {
     Resolver& resolver = base_->resolver;
     check(request, resolver.scene());
     resize(hits, request.beams.size(), request.fields);
-    if (!is_anything_present(request, resolver.scene())) {
+    if (!any_instance_enabled(request, resolver.scene())) {
       write_misses(request.fields, 0, request.beams.size(), hits);
-      if (request.then) request.then({0, request.beams.size()});
+      if (request.on_tile_done) request.on_tile_done({0, request.beams.size()});
       return;
     }
     resolver.set_poses(request.world_from_sensor, request.world_from_instance);
@@ -147,23 +147,24 @@ class RaysRenderer final : public Renderer {
     find_plane_points(request.beams, points_);
     const Job job{.beams = request.beams,
                   .points = points_,
-                  .window = window_on(resolver, mesh_boxes_, request.present, points_),
+                  .window = window_on(resolver, mesh_boxes_, request.instance_enabled, points_),
                   .fields = request.fields,
                   .resolver = resolver,
                   .search = base_->search.beams(),
                   .with_corners = needs_corners(request.fields),
                   .hits = hits};
     const rays::Tiling tiling(request.beams);
-    WorkCount count(request.progress, tiling.size());
-    workers().for_ranges(tiling.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
-      while (begin < end) {
-        const std::size_t run_end = tiling.end_of_run(begin, end, kTilesPerTask);
-        cast_tiles(job, tiling, begin, run_end);
-        if (request.then) tiling.for_beam_rows(begin, run_end, request.then);
-        count.add(run_end - begin);
-        begin = run_end;
-      }
-    });
+    ProgressCounter count(request.progress, tiling.size());
+    thread_pool().parallel_for(
+        tiling.size(), kTilesPerTask, [&](std::size_t begin, std::size_t end) {
+          while (begin < end) {
+            const std::size_t run_end = tiling.end_of_run(begin, end, kTilesPerTask);
+            cast_tiles(job, tiling, begin, run_end);
+            if (request.on_tile_done) tiling.for_beam_rows(begin, run_end, request.on_tile_done);
+            count.add(run_end - begin);
+            begin = run_end;
+          }
+        });
     count.finish();
   }
 

@@ -5,7 +5,7 @@
 namespace glidar::rays {
 
 void SceneSearch::prepare(const CastRequest& request) {
-  trees_.place(request, resolver_, workers_);
+  trees_.place(request, resolver_, thread_pool_);
   beams_.emplace(CastView{trees_, resolver_, request}, kernel_);
 }
 

@@ -14,8 +14,8 @@ namespace glidar::rays {
 class SceneSearch {
  public:
   /// Builds the trees of the meshes. Both must outlive the search.
-  SceneSearch(const Resolver& resolver, Workers& workers)
-      : resolver_(resolver), workers_(workers), trees_(resolver, workers) {}
+  SceneSearch(const Resolver& resolver, ThreadPool& thread_pool)
+      : resolver_(resolver), thread_pool_(thread_pool), trees_(resolver, thread_pool) {}
 
   /// Takes the poses of the next cast, whose request must outlive its queries; the resolver has
   /// them too.
@@ -27,7 +27,7 @@ class SceneSearch {
 
  private:
   const Resolver& resolver_;
-  Workers& workers_;
+  ThreadPool& thread_pool_;
   const Kernel& kernel_ = select_kernel();
   SceneTrees trees_;
   std::optional<BeamSearch> beams_;

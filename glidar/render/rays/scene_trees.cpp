@@ -26,24 +26,25 @@ const Pose& pose_of(const Scene& scene, const CastRequest& request, std::size_t 
 
 }  // namespace
 
-SceneTrees::SceneTrees(const Resolver& resolver, Workers& workers)
+SceneTrees::SceneTrees(const Resolver& resolver, ThreadPool& thread_pool)
     : scene_(resolver.scene()), reach_m_(scene_.instances.size(), 0.0) {
   for (std::size_t i = 0; i < scene_.meshes.size(); ++i) {
     const Mesh& mesh = scene_.meshes[i];
     const MeshTriangles triangles{
         .positions = mesh.positions_m, .triangles = mesh.triangles, .chosen = resolver.distinct(i)};
-    mesh_trees_.push_back(build_mesh_tree(triangles, {}, workers));
+    mesh_trees_.push_back(build_mesh_tree(triangles, {}, thread_pool));
     const Eigen::AlignedBox3d box = box_of(mesh_trees_.back());
     mesh_reach_.push_back(
         box.isEmpty() ? 0.0 : box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).norm());
   }
 }
 
-void SceneTrees::place(const CastRequest& request, const Resolver& resolver, Workers& workers) {
+void SceneTrees::place(const CastRequest& request, const Resolver& resolver,
+                       ThreadPool& thread_pool) {
   if (!follow(request)) {
     keep_poses(request);
     origin_m_ = request.world_from_sensor.translation();
-    if (instances_.size() > 1) build_instance_tree(workers);
+    if (instances_.size() > 1) build_instance_tree(thread_pool);
   }
   find_reaches(resolver);
   tree_from_sensor_ = tree_from_world_ * request.world_from_sensor.linear();
@@ -77,7 +78,7 @@ bool SceneTrees::follow(const CastRequest& request) {
 bool SceneTrees::has_same_instances(const CastRequest& request) const {
   if (placed_.size() != scene_.instances.size()) return false;
   for (std::size_t i = 0; i < present_.size(); ++i) {
-    if ((present_[i] != 0) != is_present(request, i)) return false;
+    if ((present_[i] != 0) != is_enabled(request, i)) return false;
   }
   return true;
 }
@@ -94,7 +95,7 @@ void SceneTrees::keep_poses(const CastRequest& request) {
   double largest_m = -1.0;
   for (std::uint32_t i = 0; i < placed_.size(); ++i) {
     placed_[i] = pose_of(scene_, request, i);
-    present_[i] = static_cast<std::uint8_t>(is_present(request, i));
+    present_[i] = static_cast<std::uint8_t>(is_enabled(request, i));
     if (present_[i] == 0 || of_instance(i).nodes.empty()) continue;
     instances_.push_back(i);
     const double size_m = scene_.instances[i].scale * of_instance(i).sphere.radius;
@@ -125,13 +126,15 @@ BoxReference SceneTrees::reference_of(std::uint32_t instance) const {
   return reference;
 }
 
-void SceneTrees::build_instance_tree(Workers& workers) {
-  constexpr std::size_t kGrain = 512;
+void SceneTrees::build_instance_tree(ThreadPool& thread_pool) {
+  constexpr std::size_t kInstanceGrain = 512;
   std::vector<BoxReference> references(instances_.size());
-  workers.for_ranges(references.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) references[k] = reference_of(instances_[k]);
-  });
-  boxes_.build(references, scene_.instances.size(), workers);
+  thread_pool.parallel_for(references.size(), kInstanceGrain,
+                           [&](std::size_t begin, std::size_t end) {
+                             for (std::size_t k = begin; k < end; ++k)
+                               references[k] = reference_of(instances_[k]);
+                           });
+  boxes_.build(references, scene_.instances.size(), thread_pool);
 }
 
 }  // namespace glidar::rays

@@ -19,11 +19,11 @@ namespace glidar::rays {
 class SceneTrees {
  public:
   /// The resolver's scene must outlive the trees.
-  SceneTrees(const Resolver& resolver, Workers& workers);
+  SceneTrees(const Resolver& resolver, ThreadPool& thread_pool);
 
   /// Takes the poses of the next cast; the resolver has them too. The tree over the instances is
   /// fitted to the few that moved, and rebuilt when many moved or the sensor moved far.
-  void place(const CastRequest& request, const Resolver& resolver, Workers& workers);
+  void place(const CastRequest& request, const Resolver& resolver, ThreadPool& thread_pool);
 
   [[nodiscard]] const MeshTree& of_mesh(std::uint32_t mesh) const { return mesh_trees_[mesh]; }
   [[nodiscard]] const MeshTree& of_instance(std::uint32_t instance) const {
@@ -64,7 +64,7 @@ class SceneTrees {
   [[nodiscard]] bool has_same_instances(const CastRequest& request) const;
   [[nodiscard]] bool is_sensor_near(const CastRequest& request) const;
   void keep_poses(const CastRequest& request);
-  void build_instance_tree(Workers& workers);
+  void build_instance_tree(ThreadPool& thread_pool);
   [[nodiscard]] BoxReference reference_of(std::uint32_t instance) const;
 
   const Scene& scene_;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/rays/split_tree.hpp>
 
-#include <glidar/core/constants.hpp>
+#include <glidar/math/constants.hpp>
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_invoke.h>
@@ -265,11 +265,12 @@ class Builder {
 }  // namespace
 
 std::unique_ptr<SplitNode[]> build_split_tree(std::span<BoxReference> references,
-                                              const SplitOptions& options, Workers& workers) {
+                                              const SplitOptions& options,
+                                              ThreadPool& thread_pool) {
   if (references.empty()) return nullptr;
   auto nodes = std::make_unique_for_overwrite<SplitNode[]>(2 * references.size());
   const Builder builder(references, options, nodes.get());
-  workers.execute([&] { builder.build(); });
+  thread_pool.execute([&] { builder.build(); });
   return nodes;
 }
 

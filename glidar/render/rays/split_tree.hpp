@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/core/workers.hpp>
+#include <glidar/math/thread_pool.hpp>
 
 #include <cstdint>
 #include <memory>
@@ -45,6 +45,6 @@ struct SplitOptions {
 /// Construction of SAH-based Bounding Volume Hierarchies", 2007). Returns the nodes, the root
 /// first; nullptr for no references. The result does not depend on the number of threads.
 std::unique_ptr<SplitNode[]> build_split_tree(std::span<BoxReference> references,
-                                              const SplitOptions& options, Workers& workers);
+                                              const SplitOptions& options, ThreadPool& thread_pool);
 
 }  // namespace glidar::rays

@@ -63,14 +63,14 @@ class Candidates {
   void visit_all(const Visit& visit) const {
     const std::vector<std::uint32_t>& instances = cast_.trees.instances();
     if (instances.size() == 1) return visit_instance(instances[0], visit);
-    const Segment segment{ray_in_tree(), kRoom * cast_.trees.largest_reach_m(), end_m_};
+    const Segment segment{ray_in_tree(), kTieRoom * cast_.trees.largest_reach_m(), end_m_};
     for_leaves_on(cast_.trees.instance_nodes().data(), 0, segment, [&](std::uint32_t leaf) {
       visit_instance(cast_.trees.instance_in(leaf), visit);
     });
   }
 
  private:
-  static constexpr double kRoom = 0x1p-40;  // many roundings of a coordinate
+  static constexpr double kTieRoom = 0x1p-40;  // many roundings of a coordinate
 
   [[nodiscard]] ObjectRay ray_in_tree() const {
     const Beams& beams = cast_.request.beams;
@@ -85,7 +85,7 @@ class Candidates {
     const InstanceView& view = cast_.resolver.view(instance);
     const MeshTree& tree = cast_.trees.of_instance(instance);
     const ObjectRay ray = ray_in(view, cast_.request.beams, beam_);
-    const Segment segment{ray, kRoom * cast_.trees.reach_m(instance) / view.scale,
+    const Segment segment{ray, kTieRoom * cast_.trees.reach_m(instance) / view.scale,
                           end_m_ / view.scale};
     const HitRay rule = make_hit_ray(ray.origin, ray.direction);
     for_leaves_on(tree.nodes.data(), 0, segment, [&](std::uint32_t leaf) {

@@ -120,20 +120,20 @@ double step_at(const Beams& beams, const SensorAxes& axes, std::size_t beam) {
 }  // namespace
 
 bool may_form_scan(const Beams& beams) {
-  constexpr std::size_t kSamples = 64;
+  constexpr std::size_t kAngleSamples = 64;
   constexpr std::size_t kLeastColumns = 16;
   if (beams.cols < kLeastColumns) return false;
   const SensorAxes axes = axes_of(beams);
-  std::array<double, kSamples> steps;
+  std::array<double, kAngleSamples> steps;
   std::size_t count = 0;
-  for (std::size_t k = 0; k < kSamples; ++k) {
-    const std::size_t row = k * beams.rows / kSamples;
+  for (std::size_t k = 0; k < kAngleSamples; ++k) {
+    const std::size_t row = k * beams.rows / kAngleSamples;
     // Spread over the columns of every row, and not in step with anything.
     const std::size_t column = k * 7919 % (beams.cols - 1);
     const double step = step_at(beams, axes, row * beams.cols + column);
     if (!std::isnan(step)) steps[count++] = step;
   }
-  if (2 * count < kSamples) return false;
+  if (2 * count < kAngleSamples) return false;
   const auto end = steps.begin() + static_cast<std::ptrdiff_t>(count);
   const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(count / 2);
   std::nth_element(steps.begin(), middle, end);
@@ -142,7 +142,7 @@ bool may_form_scan(const Beams& beams) {
   return 4 * static_cast<std::size_t>(std::count_if(steps.begin(), end, differs)) < count;
 }
 
-void measure_angles(const Beams& beams, Workers& workers, BeamAngles& angles) {
+void measure_angles(const Beams& beams, ThreadPool& thread_pool, BeamAngles& angles) {
   angles.rows.clear();
   angles.misfit.clear();
   if (beams.size() == 0) {
@@ -156,7 +156,7 @@ void measure_angles(const Beams& beams, Workers& workers, BeamAngles& angles) {
     return std::span(angles.azimuths_rad).subspan(row * beams.cols, beams.cols);
   };
   const auto for_rows = [&](const auto& body) {
-    workers.for_ranges(beams.rows, 1, [&](std::size_t begin, std::size_t end) {
+    thread_pool.parallel_for(beams.rows, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t row = begin; row < end; ++row) body(row);
     });
   };

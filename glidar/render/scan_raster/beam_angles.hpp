@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
-#include <glidar/core/workers.hpp>
+#include <glidar/math/thread_pool.hpp>
 
 #include <cstddef>
 #include <cstdint>
@@ -51,6 +51,6 @@ struct BeamAngles {
 bool may_form_scan(const Beams& beams);
 
 /// Measures beams. Azimuths and elevations are those about axes_of(beams).
-void measure_angles(const Beams& beams, Workers& workers, BeamAngles& angles);
+void measure_angles(const Beams& beams, ThreadPool& thread_pool, BeamAngles& angles);
 
 }  // namespace glidar::scan_raster

@@ -9,11 +9,11 @@ namespace glidar::scan_raster {
 namespace {
 
 template <class T>
-bool are_same_bytes(const std::vector<T>& a, const std::vector<T>& b, Workers& workers) {
+bool are_same_bytes(const std::vector<T>& a, const std::vector<T>& b, ThreadPool& thread_pool) {
   if (a.size() != b.size()) return false;
-  constexpr std::size_t kGrain = 4096;
+  constexpr std::size_t kRowGrain = 4096;
   std::atomic<bool> same = true;
-  workers.for_ranges(a.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+  thread_pool.parallel_for(a.size(), kRowGrain, [&](std::size_t begin, std::size_t end) {
     if (std::memcmp(a[begin].data(), b[begin].data(), (end - begin) * sizeof(T)) != 0) same = false;
   });
   return same;
@@ -25,14 +25,14 @@ bool may_form_grid(const Beams& beams) {
   return looks_along_z(beams) ? may_form_picture(beams) : may_form_scan(beams);
 }
 
-bool BeamGrid::has_measured(const Beams& beams, Workers& workers) const {
+bool BeamGrid::has_measured(const Beams& beams, ThreadPool& thread_pool) const {
   return beams.rows == measured_.rows && beams.cols == measured_.cols &&
          beams.returns == measured_.returns && looks_along_z(beams) == looks_along_z(measured_) &&
-         are_same_bytes(beams.directions, measured_.directions, workers) &&
-         are_same_bytes(beams.origins_m, measured_.origins_m, workers);
+         are_same_bytes(beams.directions, measured_.directions, thread_pool) &&
+         are_same_bytes(beams.origins_m, measured_.origins_m, thread_pool);
 }
 
-void BeamGrid::measure(const Beams& beams, Workers& workers) {
+void BeamGrid::measure(const Beams& beams, ThreadPool& thread_pool) {
   measured_.rows = beams.rows;
   measured_.cols = beams.cols;
   measured_.returns = beams.returns;
@@ -40,9 +40,9 @@ void BeamGrid::measure(const Beams& beams, Workers& workers) {
   measured_.directions = beams.directions;
   measured_.origins_m = beams.origins_m;
   if (is_camera()) {
-    camera_.measure(beams, workers);
+    camera_.measure(beams, thread_pool);
   } else {
-    scanner_.measure(beams, workers);
+    scanner_.measure(beams, thread_pool);
   }
 }
 

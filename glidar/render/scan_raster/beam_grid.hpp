@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
-#include <glidar/core/workers.hpp>
+#include <glidar/math/thread_pool.hpp>
 #include <glidar/render/scan_raster/camera_grid.hpp>
 #include <glidar/render/scan_raster/scanner_grid.hpp>
 
@@ -21,10 +21,10 @@ bool may_form_grid(const Beams& beams);
 /// elevation and columns of equal azimuth.
 class BeamGrid {
  public:
-  void measure(const Beams& beams, Workers& workers);
+  void measure(const Beams& beams, ThreadPool& thread_pool);
 
   /// True where the beams are bit for bit those measured.
-  [[nodiscard]] bool has_measured(const Beams& beams, Workers& workers) const;
+  [[nodiscard]] bool has_measured(const Beams& beams, ThreadPool& thread_pool) const;
   /// Beams measured.
   [[nodiscard]] std::size_t size() const { return measured_.size(); }
 

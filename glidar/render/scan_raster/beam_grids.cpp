@@ -14,8 +14,10 @@ constexpr std::size_t kMaxBeams = std::size_t{1} << 21U;
 
 }  // namespace
 
-const BeamGrid& BeamGrids::of(const Beams& beams, Workers& workers) {
-  const auto has_measured = [&](const auto& grid) { return grid->has_measured(beams, workers); };
+const BeamGrid& BeamGrids::of(const Beams& beams, ThreadPool& thread_pool) {
+  const auto has_measured = [&](const auto& grid) {
+    return grid->has_measured(beams, thread_pool);
+  };
   auto found = std::find_if(grids_.begin(), grids_.end(), has_measured);
   if (found == grids_.end()) {
     std::size_t size = beams.size();
@@ -25,7 +27,7 @@ const BeamGrid& BeamGrids::of(const Beams& beams, Workers& workers) {
     // Otherwise the memory of the oldest grid is used again.
     if (grids_.empty() || has_room) grids_.push_back(std::make_unique<BeamGrid>());
     found = grids_.end() - 1;
-    (*found)->measure(beams, workers);
+    (*found)->measure(beams, thread_pool);
   }
   std::rotate(grids_.begin(), found, found + 1);
   return *grids_.front();

@@ -14,7 +14,7 @@ class BeamGrids {
  public:
   /// The grid of the beams: measured for these unless it is there already. Valid until the next
   /// call.
-  const BeamGrid& of(const Beams& beams, Workers& workers);
+  const BeamGrid& of(const Beams& beams, ThreadPool& thread_pool);
 
  private:
   std::vector<std::unique_ptr<BeamGrid>> grids_;  ///< the one used last first

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/scan_raster/camera_block.hpp>
 
-#include <glidar/core/constants.hpp>
+#include <glidar/math/constants.hpp>
 #include <glidar/render/common/rounding.hpp>
 #include <glidar/render/scan_raster/grid_view.hpp>
 

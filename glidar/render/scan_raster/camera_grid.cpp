@@ -82,8 +82,8 @@ bool add_quarters(const BeamRect& rect, std::vector<CameraBlock>& blocks) {
   return true;
 }
 
-void measure_blocks(const Beams& beams, Workers& workers, std::vector<CameraBlock>& blocks) {
-  workers.for_ranges(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
+void measure_blocks(const Beams& beams, ThreadPool& thread_pool, std::vector<CameraBlock>& blocks) {
+  thread_pool.parallel_for(blocks.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) blocks[i].measure(beams);
   });
 }
@@ -106,12 +106,12 @@ bool may_form_picture(const Beams& beams) {
   return 4 * known >= kPlaces && 4 * even >= 3 * known;
 }
 
-void CameraGrid::measure(const Beams& beams, Workers& workers) {
+void CameraGrid::measure(const Beams& beams, ThreadPool& thread_pool) {
   blocks_.clear();
   find_misfit(beams);
-  if (misfit_.empty()) find_blocks(beams, workers);
+  if (misfit_.empty()) find_blocks(beams, thread_pool);
   sectors_.resize(blocks_.size());
-  workers.for_ranges(blocks_.size(), 1, [&](std::size_t begin, std::size_t end) {
+  thread_pool.parallel_for(blocks_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) build_sector(beams, i);
   });
   points_.setEmpty();
@@ -129,10 +129,10 @@ void CameraGrid::find_misfit(const Beams& beams) {
 }
 
 /// Blocks in which beams deviate much are cut again.
-void CameraGrid::find_blocks(const Beams& beams, Workers& workers) {
+void CameraGrid::find_blocks(const Beams& beams, ThreadPool& thread_pool) {
   std::vector<CameraBlock> blocks = cut_picture(beams);
   while (!blocks.empty()) {
-    measure_blocks(beams, workers, blocks);
+    measure_blocks(beams, thread_pool, blocks);
     std::vector<CameraBlock> smaller;
     for (CameraBlock& block : blocks) {
       const bool is_cut = block.is_rough() && add_quarters(block.rect(), smaller);

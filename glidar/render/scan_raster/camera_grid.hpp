@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
-#include <glidar/core/workers.hpp>
+#include <glidar/math/thread_pool.hpp>
 #include <glidar/render/scan_raster/camera_block.hpp>
 
 #include <string>
@@ -19,7 +19,7 @@ bool may_form_picture(const Beams& beams);
 /// are blocks of columns and rows.
 class CameraGrid {
  public:
-  void measure(const Beams& beams, Workers& workers);
+  void measure(const Beams& beams, ThreadPool& thread_pool);
 
   /// Why the beams form no grid; empty: they do. Otherwise only that is of use.
   [[nodiscard]] const std::string& misfit() const { return misfit_; }
@@ -33,7 +33,7 @@ class CameraGrid {
 
  private:
   void find_misfit(const Beams& beams);
-  void find_blocks(const Beams& beams, Workers& workers);
+  void find_blocks(const Beams& beams, ThreadPool& thread_pool);
   void build_sector(const Beams& beams, std::size_t index);
   void count_drawn();
 

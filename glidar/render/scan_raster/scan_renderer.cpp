@@ -3,7 +3,7 @@
 #include <glidar/render/scan_raster/scan_renderer.hpp>
 
 #include <glidar/core/error.hpp>
-#include <glidar/core/work_count.hpp>
+#include <glidar/core/progress_counter.hpp>
 #include <glidar/render/pool.hpp>
 #include <glidar/render/scan_raster/sector_decision.hpp>
 #include <glidar/render/scan_raster/sector_writer.hpp>
@@ -95,7 +95,7 @@ ScanRenderer::ScanRenderer(std::shared_ptr<CpuBase> base)
 ScanRenderer::~ScanRenderer() = default;
 
 const BeamGrid& ScanRenderer::grid_of(const Beams& beams) {
-  grid_ = &grids_.of(beams, base_->workers);
+  grid_ = &grids_.of(beams, base_->thread_pool);
   return *grid_;
 }
 
@@ -110,10 +110,10 @@ void ScanRenderer::cast(const CastRequest& request, Hits& hits) {
                      "elevation and columns of equal azimuth",
                  .remedy = "use --renderer rays"});
   }
-  if (!is_anything_present(request, base_->resolver.scene())) {
+  if (!any_instance_enabled(request, base_->resolver.scene())) {
     resize(hits, request.beams.size(), request.fields);
     write_misses(request.fields, 0, request.beams.size(), hits);
-    if (request.then) request.then({0, request.beams.size()});
+    if (request.on_tile_done) request.on_tile_done({0, request.beams.size()});
     return;
   }
   base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
@@ -131,9 +131,9 @@ void ScanRenderer::cast_prepared(const CastRequest& request, Hits& hits) {
                 .kernel = kernel_,
                 .target = {request, base_->resolver, base_->search.beams(), hits},
                 .has_bounds = has_bounds};
-  WorkCount count(request.progress, request.beams.size());
+  ProgressCounter count(request.progress, request.beams.size());
   const auto finish = [&](BeamRange run) {
-    if (request.then) request.then(run);
+    if (request.on_tile_done) request.on_tile_done(run);
     count.add(run.end - run.begin);
   };
   for_each(grid_->sectors().size(), [&](std::size_t i, Desk& desk) {
@@ -151,7 +151,7 @@ void ScanRenderer::cast_prepared(const CastRequest& request, Hits& hits) {
 
 template <class Body>
 void ScanRenderer::for_each(std::size_t pieces, const Body& body) {
-  base_->workers.for_ranges(pieces, 1, [&](std::size_t begin, std::size_t end) {
+  base_->thread_pool.parallel_for(pieces, 1, [&](std::size_t begin, std::size_t end) {
     std::unique_ptr<Desk> desk = desks_->take();
     for (std::size_t i = begin; i < end; ++i) body(i, *desk);
     desks_->give_back(std::move(desk));

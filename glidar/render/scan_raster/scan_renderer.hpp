@@ -20,7 +20,7 @@ class ScanRenderer final : public Renderer {
   ~ScanRenderer() override;
 
   [[nodiscard]] std::string_view name() const override { return "raster"; }
-  [[nodiscard]] Workers& workers() override { return base_->workers; }
+  [[nodiscard]] ThreadPool& thread_pool() override { return base_->thread_pool; }
   void cast(const CastRequest& request, Hits& hits) override;
 
   /// The same where beams were just taken by grid_of() and form a grid, some instance is there, and

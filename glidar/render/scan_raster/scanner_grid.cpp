@@ -48,8 +48,8 @@ Eigen::Matrix3d sector_frame(const SensorAxes& axes, double azimuth_rad, bool ri
 
 }  // namespace
 
-void ScannerGrid::measure(const Beams& beams, Workers& workers) {
-  measure_angles(beams, workers, angles_);
+void ScannerGrid::measure(const Beams& beams, ThreadPool& thread_pool) {
+  measure_angles(beams, thread_pool, angles_);
   sort_rows();
   if (angles_.misfit.empty()) find_misfit(beams);
   if (!angles_.misfit.empty()) {
@@ -58,7 +58,7 @@ void ScannerGrid::measure(const Beams& beams, Workers& workers) {
   }
   find_columns(beams);
   find_bins();
-  build_sectors(beams, workers);
+  build_sectors(beams, thread_pool);
 }
 
 /// Both ends of the rows' elevations are made to rise, which only widens them.
@@ -143,7 +143,7 @@ void ScannerGrid::find_bins() {
   }
 }
 
-void ScannerGrid::build_sectors(const Beams& beams, Workers& workers) {
+void ScannerGrid::build_sectors(const Beams& beams, ThreadPool& thread_pool) {
   sectors_.resize((columns_.count + shape_.columns - 1) / shape_.columns);
   const SensorAxes axes = axes_of(beams);
   const auto build = [&](std::size_t i, std::vector<RowStart>& starts) {
@@ -155,7 +155,7 @@ void ScannerGrid::build_sectors(const Beams& beams, Workers& workers) {
         axes, columns_.phase_rad + middle * columns_.step_rad, columns_.step_rad > 0.0);
     sectors_[i].build(beams, shape_, {frame, frame}, starts);
   };
-  workers.for_ranges(sectors_.size(), 1, [&](std::size_t begin, std::size_t end) {
+  thread_pool.parallel_for(sectors_.size(), 1, [&](std::size_t begin, std::size_t end) {
     std::vector<RowStart> starts;
     for (std::size_t i = begin; i < end; ++i) build(i, starts);
   });

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
-#include <glidar/core/workers.hpp>
+#include <glidar/math/thread_pool.hpp>
 #include <glidar/render/scan_raster/beam_angles.hpp>
 #include <glidar/render/scan_raster/grid_view.hpp>
 #include <glidar/render/scan_raster/sector_table.hpp>
@@ -32,7 +32,7 @@ struct GridColumns {
 /// are some columns each.
 class ScannerGrid {
  public:
-  void measure(const Beams& beams, Workers& workers);
+  void measure(const Beams& beams, ThreadPool& thread_pool);
 
   /// Why the beams form no grid; empty: they do. Otherwise only that is of use.
   [[nodiscard]] const std::string& misfit() const { return angles_.misfit; }
@@ -53,7 +53,7 @@ class ScannerGrid {
   void find_misfit(const Beams& beams);
   void find_columns(const Beams& beams);
   void find_bins();
-  void build_sectors(const Beams& beams, Workers& workers);
+  void build_sectors(const Beams& beams, ThreadPool& thread_pool);
 
   BeamAngles angles_;
   std::vector<RowAngles> rows_;  ///< of the grid, rising

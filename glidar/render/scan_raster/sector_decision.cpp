@@ -62,7 +62,7 @@ void SectorDecision::trace(std::uint32_t cell, std::uint32_t slot) {
 /// Compares with the nearest triangle so far if that is of another instance.
 bool SectorDecision::is_first(std::uint32_t cell, const Found& found, double low_m, double high_m) {
   const Found before = slots_.found(number_at(cell));
-  if (before.instance == kNoHit || before.instance == found.instance) return true;
+  if (before.instance == kInvalidId || before.instance == found.instance) return true;
   if (low_m > double{picture_.high[cell]}) return false;
   if (high_m < double{picture_.low[cell]}) return true;
   const rays::HitOrder order = rays::order_of_hits(cast_, beam_, found, before);

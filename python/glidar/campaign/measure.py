@@ -69,7 +69,7 @@ class Measured:
 
     @property
     def instance(self):
-        return self._frame.truth.instance
+        return self._frame.ground_truth.instance
 
     @property
     def intrinsics(self):
@@ -87,7 +87,7 @@ class Measured:
             poses[i] = own
             alone = self._stage.canvas.simulate(self.world_from_sensor, objects=poses,
                                                 columns=["instance"])
-            masks.append(alone.truth.instance == i)
+            masks.append(alone.ground_truth.instance == i)
         return masks
 
 

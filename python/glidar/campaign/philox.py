@@ -3,7 +3,7 @@
 """Random numbers that are a pure function of (campaign seed, trial, purpose).
 
 Philox4x32-10 of Salmon, Moraes, Dror, Shaw: "Parallel random numbers: as easy as 1, 2, 3", SC'11, as
-in glidar/core/random.cpp, over many counters at once. So any trial can be drawn by itself, in any
+in glidar/math/random.cpp, over many counters at once. So any trial can be drawn by itself, in any
 order, on any machine.
 """
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 // Writes the fixture's cloud in every format into the folder given, for readers_test.py.
-#include <glidar/io/cloud_layout.hpp>
+#include <glidar/io/formats/cloud_layout.hpp>
 
 #include <io/cloud_fixture.hpp>
 
@@ -16,7 +16,7 @@ namespace {
 void write_layouts(CloudFixture made, const std::filesystem::path& folder) {
   fixture::add_scan_columns(made.cloud);
   std::vector<std::string> layouts = {""};
-  for (const CloudLayout& layout : cloud_layouts()) layouts.push_back(layout.name);
+  for (const PointFieldLayout& layout : cloud_layouts()) layouts.push_back(layout.name);
   for (const std::string& layout : layouts) {
     const auto write = [&](const char* name, const FileSinkOptions& with) {
       FileSinkOptions options = with;

@@ -151,7 +151,7 @@ def test_every_key_whose_text_the_readers_take_as_a_path_is_known():
     """Where the library's readers seek files beside their own: a new place needs its key in FILE_KEYS."""
     assert variants.FILE_KEYS == PATHS.keys()
     found = {}
-    for source in sorted((ROOT / "glidar" / "io").glob("*.cpp")):
+    for source in sorted((ROOT / "glidar" / "io").rglob("*.cpp")):
         count = len(re.findall(r"(?<!string )\b(?:path_beside|existing_file|resolved)\(", source.read_text()))
         if count:
             found[source.name] = count

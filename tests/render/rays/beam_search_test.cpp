@@ -34,8 +34,8 @@ class Stage {
         world_from_sensor(pose),
         cull_back_faces(culls),
         resolver_(scene),
-        workers_(2),
-        search_(resolver_, workers_) {}
+        thread_pool_(2),
+        search_(resolver_, thread_pool_) {}
 
   /// Searches all beams, 16 at a time and one by one; expects no difference.
   std::vector<Found> search() {
@@ -65,7 +65,7 @@ class Stage {
     request_.emplace(CastRequest{.beams = beams,
                                  .world_from_sensor = world_from_sensor,
                                  .cull_back_faces = cull_back_faces,
-                                 .present = present});
+                                 .instance_enabled = present});
     resolver_.set_poses(world_from_sensor, {});
     search_.prepare(*request_);
   }
@@ -125,7 +125,7 @@ class Stage {
   }
 
   Resolver resolver_;
-  Workers workers_;
+  ThreadPool thread_pool_;
   rays::SceneSearch search_;
   std::optional<CastRequest> request_;
 };
@@ -206,7 +206,7 @@ TEST(BeamSearch, SkipsWhatIsAbsentAndCullsBackFaces) {
     stage.present.assign(40, 1);
     for (std::size_t i = 0; i < 40; i += 3) stage.present[i] = 0;
     const std::vector<Found> found = stage.search();
-    for (const Found& f : found) EXPECT_TRUE(f.instance == kNoHit || f.instance % 3 != 0);
+    for (const Found& f : found) EXPECT_TRUE(f.instance == kInvalidId || f.instance % 3 != 0);
     EXPECT_EQ(found, stage.search_by_rule());
   }
 }
@@ -229,7 +229,7 @@ TEST(BeamSearch, OfTilesOnEachOtherItReportsTheLowest) {
               look_at(eye, {3.0, 1.0, 2.0}, Eigen::Vector3d::UnitZ()));
   const std::vector<Found> found = stage.search();
   EXPECT_GT(stage.hits(found), 400U);
-  for (const Found& f : found) EXPECT_TRUE(f.instance == 0 || f.instance == kNoHit);
+  for (const Found& f : found) EXPECT_TRUE(f.instance == 0 || f.instance == kInvalidId);
   EXPECT_EQ(found, stage.search_by_rule());
 }
 

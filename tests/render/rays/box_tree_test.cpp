@@ -32,7 +32,7 @@ class BoxTreeTest : public ::testing::Test {
  protected:
   void build() {
     std::vector<BoxReference> sorted = boxes;
-    tree.build(sorted, kBoxes, workers);
+    tree.build(sorted, kBoxes, thread_pool);
   }
 
   /// The index of every leaf, each of which has its box, and each node's box is the one around its
@@ -85,7 +85,7 @@ class BoxTreeTest : public ::testing::Test {
     tree.move(boxes[index]);
   }
 
-  Workers workers{2};
+  ThreadPool thread_pool{2};
   BoxTree tree;
   std::vector<BoxReference> boxes;
 };
@@ -117,7 +117,7 @@ TEST_F(BoxTreeTest, IsWornWhenBoxesHaveMovedFar) {
 
 TEST_F(BoxTreeTest, HoldsASingleBox) {
   boxes = {cube_at({1.0, 2.0, 3.0}, 5)};
-  tree.build(boxes, 6, workers);
+  tree.build(boxes, 6, thread_pool);
   boxes[0] = cube_at({-100.0, 2.0, 3.0}, 5);
   tree.move(boxes[0]);
   EXPECT_EQ(tree.index_in(0), 5U);

@@ -17,8 +17,8 @@ using glidar::testing::aimed;
 using glidar::testing::make_sphere;
 
 MeshTree tree_of(const TestMesh& mesh, const TreeOptions& options = {}, unsigned threads = 2) {
-  Workers workers(threads);
-  return build_mesh_tree(view_of(mesh), options, workers);
+  ThreadPool thread_pool(threads);
+  return build_mesh_tree(view_of(mesh), options, thread_pool);
 }
 
 Traced trace(const MeshTree& tree, std::span<const TestRay> rays, const Kernel& kernel,

@@ -3,8 +3,8 @@
 // Beams are recognised as grids of a scanner or a camera, and others are not.
 #include <glidar/render/scan_raster/beam_grid.hpp>
 
-#include <glidar/io/sensor_file.hpp>
-#include <glidar/io/sensor_presets.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
 #include <render/scan_raster/scanner.hpp>
 
 #include <limits>
@@ -18,9 +18,9 @@ using testing::Scanner;
 using testing::scanner_beams;
 
 BeamGrid grid_of(const Beams& beams) {
-  Workers workers(2);
+  ThreadPool thread_pool(2);
   BeamGrid grid;
-  grid.measure(beams, workers);
+  grid.measure(beams, thread_pool);
   return grid;
 }
 

@@ -3,9 +3,9 @@
 // The raster returns the same bits as rays for cameras with any lens.
 #include <glidar/render/rays/kernels.hpp>
 
-#include <glidar/io/sensor_file.hpp>
-#include <glidar/io/sensor_presets.hpp>
-#include <glidar/sensor/pinhole.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
 #include <render/scan_raster/scanner.hpp>
 #include <render/scan_raster/scenes.hpp>
 
@@ -215,7 +215,7 @@ TEST(CameraRaster, ReportsEveryBeamOnceAndAllProgress) {
   Hits hits;
   make_renderer(room, {.kind = "raster", .threads = 1})
       ->cast({.beams = beams,
-              .then = FunctionRef<void(BeamRange)>(count),
+              .on_tile_done = FunctionRef<void(BeamRange)>(count),
               .progress = [&](double part) { progress = part; }},
              hits);
   EXPECT_EQ(reported, std::vector<int>(beams.size(), 1));

@@ -156,7 +156,7 @@ TEST(ScanRenderer, LeavesOutInstancesThatAreNotThereAndMovesTheOthers) {
                       .world_from_sensor = at(0.0, 0.0, 0.2),
                       .world_from_instance = poses,
                       .fields = kAllHitFields,
-                      .present = present};
+                      .instance_enabled = present};
   EXPECT_GT(expect_same_as_rays(room, request), 0U);
   std::fill(present.begin(), present.end(), std::uint8_t{0});
   EXPECT_EQ(expect_same_as_rays(room, request), 0U);
@@ -227,7 +227,7 @@ TEST(ScanRenderer, ReportsEveryBeamOnceAndAllProgress) {
   make_renderer(room, {.kind = "raster", .threads = 1})
       ->cast({.beams = beams,
               .world_from_sensor = at(0.0, 0.0, 0.2),
-              .then = FunctionRef<void(BeamRange)>(count),
+              .on_tile_done = FunctionRef<void(BeamRange)>(count),
               .progress = [&](double part) { progress = part; }},
              hits);
   EXPECT_EQ(reported, std::vector<int>(beams.size(), 1));

@@ -35,7 +35,7 @@ std::size_t expect_same_hits(const Hits& found, const Hits& expected) {
   expect_same_bytes(found.depth_m, expected.depth_m, "depth");
   expect_same_bytes(found.reflectance, expected.reflectance, "reflectance");
   std::size_t hits = 0;
-  for (const std::uint32_t instance : expected.instance) hits += instance == kNoHit ? 0 : 1;
+  for (const std::uint32_t instance : expected.instance) hits += instance == kInvalidId ? 0 : 1;
   return hits;
 }
 

@@ -3,9 +3,9 @@
 // Needs a display: run under xvfb-run.
 #include <apps/viewer/screen.hpp>
 #include <glidar/core/error.hpp>
-#include <glidar/io/model.hpp>
+#include <glidar/io/model/model.hpp>
 #include <glidar/render/opengl/opengl_renderer.hpp>
-#include <glidar/simulate.hpp>
+#include <glidar/simulate/simulate.hpp>
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
@@ -68,7 +68,7 @@ class GlfwContext final : public opengl::Context {
     before_ = glfwGetCurrentContext();
     glfwMakeContextCurrent(window_);
   }
-  void give_back() override { glfwMakeContextCurrent(before_); }
+  void release() override { glfwMakeContextCurrent(before_); }
 
  private:
   GLFWwindow* window_ = nullptr;
@@ -103,7 +103,7 @@ TEST_F(WindowTest, TheSameCloudComesFromTheContextOfAWindowAndFromOneWithout) {
   sensor.optics = pinhole_from_fov(96, 64, 0.5);
   const Beams beams = make_beams(sensor);
   const Motion motion =
-      standing_still(scene, look_at({6.0, -4.0, 3.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()));
+      static_motion(scene, look_at({6.0, -4.0, 3.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ()));
   const auto measured = [&](std::unique_ptr<Renderer> renderer) {
     Frame frame;
     simulate(
@@ -114,7 +114,7 @@ TEST_F(WindowTest, TheSameCloudComesFromTheContextOfAWindowAndFromOneWithout) {
   const Frame with = measured(make_opengl_renderer(scene, {}, std::make_unique<GlfwContext>()));
   const Frame without = measured(make_opengl_renderer(scene, {}));
   EXPECT_EQ(with.status, without.status);
-  EXPECT_EQ(with.truth.primitive, without.truth.primitive);
+  EXPECT_EQ(with.ground_truth.primitive, without.ground_truth.primitive);
   EXPECT_EQ(0, std::memcmp(with.range_m.data(), without.range_m.data(),
                            with.range_m.size() * sizeof(double)));
   EXPECT_EQ(with.intensity, without.intensity);

@@ -1,0 +1,176 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/commands/commands.hpp>
+#include <apps/glidar/options/option_kinds.hpp>
+#include <apps/glidar/options/stream_options.hpp>
+#include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/recorded_command.hpp>
+#include <apps/glidar/run/session.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/explain/trace_text.hpp>
+#include <glidar/io/formats/sidecar.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <limits>
+#include <memory>
+
+namespace glidar::app {
+namespace {
+
+constexpr const char* kExplainExamples =
+    R"(Repeats the measurement that a cloud came from, as its sidecar (CLOUD.json) tells, and prints how
+one point came to be: the beam, what it met, the light, echoes, every step of noise with the
+random numbers that it drew, and what was reported.
+Examples:
+  glidar render builtin:asteroid --sensor VLP-16 --eye 4,0,0 -o scan.pcd
+  glidar explain scan.pcd --index 812
+  glidar explain scan.pcd --row 3 --col 200)";
+
+struct ExplainFlags {
+  std::string cloud;
+  std::optional<std::int64_t> index;
+  std::optional<std::int64_t> row;
+  std::optional<std::int64_t> col;
+  std::optional<std::int64_t> return_number;
+};
+
+[[noreturn]] void refuse_entry(const std::string& where, std::string found, std::string allowed,
+                               std::string remedy) {
+  throw Error({.where = where,
+               .found = std::move(found),
+               .allowed = std::move(allowed),
+               .remedy = std::move(remedy)});
+}
+
+/// The options of the `render` or `stream` that a sidecar tells.
+RenderFlags flags_of(const Sidecar& sidecar) {
+  const std::vector<std::string>& told = sidecar.command.arguments;
+  CLI::App command;
+  if (!told.empty() && told.front() == "stream") {
+    StreamFlags flags;
+    add_stream_flags(command, flags);
+    parse_recorded(told, "stream", sidecar.path.string(), command);
+    flags.render.duration_s.reset();
+    return flags.render;
+  }
+  RenderFlags flags;
+  add_render_flags(command, flags);
+  parse_recorded(told, "render", sidecar.path.string(), command);
+  return flags;
+}
+
+/// Throws Error when models are not those that the cloud was made of.
+void check_models(const Sidecar& sidecar, const Scene& scene) {
+  std::vector<std::string> hashes;
+  for (const Instance& instance : scene.instances) {
+    hashes.push_back(scene.sources.at(instance.mesh).hash);
+  }
+  if (hashes == sidecar.model_hashes) return;
+  refuse_entry(sidecar.path.string(), "the models have changed since", "the models as they were",
+               "render the cloud again");
+}
+
+/// Which entry of the frame the flags are about.
+std::size_t entry_of(const ExplainFlags& flags, const Sidecar& sidecar, const Frame& frame,
+                     const Beams& beams) {
+  if (flags.row) {
+    const auto pulses_rows = static_cast<std::int64_t>(beams.rows / beams.returns);
+    const std::int64_t return_number = flags.return_number.value_or(1);
+    if (*flags.row >= pulses_rows || *flags.col >= beams.cols || return_number > beams.returns) {
+      refuse_entry(
+          "--row, --col, --return",
+          fmt::format("{}, {}, {}", *flags.row, *flags.col, return_number),
+          fmt::format("{} rows, {} columns, {} returns", pulses_rows, beams.cols, beams.returns),
+          "");
+    }
+    const std::int64_t row = (return_number - 1) * pulses_rows + *flags.row;
+    return static_cast<std::size_t>(row * beams.cols + *flags.col);
+  }
+  const auto index = static_cast<std::size_t>(*flags.index);
+  if (index >= sidecar.points) {
+    refuse_entry("--index", std::to_string(index),
+                 fmt::format("below {}, the number of points in the cloud", sidecar.points), "");
+  }
+  if (sidecar.points == beams.size()) return index;
+  std::size_t hits = 0;  // the cloud holds hits alone
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    if (frame.status[i] == Status::hit && hits++ == index) return i;
+  }
+  refuse_entry(sidecar.path.string(),
+               fmt::format("a cloud of {} points from {} beams with {} hits", sidecar.points,
+                           beams.size(), hits),
+               "all beams, or all hits", "write the cloud again");
+}
+
+/// Throws Error when the frame that was measured again is not the one of the cloud.
+void check_frame(const Sidecar& sidecar, const Frame& frame) {
+  if (frame_hash(frame) == sidecar.frame_hash) return;
+  refuse_entry(
+      sidecar.path.string(), "the measurement comes out otherwise than when the cloud was written",
+      "the same models, scene and sensor files, and program as then", "write the cloud again");
+}
+
+void check(const ExplainFlags& flags) {
+  const bool by_pixel = flags.row || flags.col || flags.return_number;
+  const bool is_whole = flags.index ? !by_pixel : flags.row && flags.col;
+  if (is_whole) return;
+  refuse_entry("explain", flags.index ? "a point is named in two ways" : "no point is named",
+               "--index N, or --row R and --col C, with --return K if it is not the first", "");
+}
+
+int run_explain(const ExplainFlags& flags) {
+  check(flags);
+  Console console;
+  const Sidecar sidecar = read_sidecar(flags.cloud);
+  const RenderFlags render = flags_of(sidecar);
+  compare_version(sidecar.version, sidecar.path.string(), console);
+  enter(sidecar.command, sidecar.path.string());
+  Session session;
+  open(
+      render, [] {}, console, session);
+  check_models(sidecar, session.scene);
+  Frame frame;
+  Mount& mount = only_mount(session);
+  turn_to(render, sidecar.frame, mount, frame);
+  const Setup setup = setup_of(session, mount, console);
+  const auto pick = [&](const Frame& repeated) {
+    check_frame(sidecar, repeated);
+    return entry_of(flags, sidecar, repeated, mount.beams);
+  };
+  PointTrace story;
+  {
+    const Working working(console, "measuring again");
+    story = explain(setup, pick, frame);
+  }
+  fmt::print("{}", format_trace(story, setup, frame));
+  return kDone;
+}
+
+}  // namespace
+
+Command add_explain(CLI::App& program) {
+  CLI::App& command = *program.add_subcommand("explain", "Tell how a point of a cloud came to be");
+  const auto flags = std::make_shared<ExplainFlags>();
+  command.footer(kExplainExamples);
+  command
+      .add_option("CLOUD", flags->cloud, "A cloud by render or stream, with its sidecar beside it")
+      ->required()
+      ->type_name("");
+  const std::string group = "Point";
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  const auto whole = [&](const char* names, const char* form, const char* help,
+                         std::optional<std::int64_t>& value) {
+    add_whole(command, {names, form, help, group}, {0, kMost},
+              [&value](std::int64_t n) { value = n; });
+  };
+  whole("--index", "N", "Which point, from 0 in the order of the file", flags->index);
+  whole("--row", "R", "Which row of the sensor's beams, from 0; with --col", flags->row);
+  whole("--col", "C", "Which column, from 0", flags->col);
+  add_whole(command, {"--return", "K", "Which return of that beam, from 1 [1]", group}, {1, 16},
+            [&n = flags->return_number](std::int64_t k) { n = k; });
+  return [flags] { return run_explain(*flags); };
+}
+
+}  // namespace glidar::app

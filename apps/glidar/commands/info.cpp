@@ -1,0 +1,233 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/commands/commands.hpp>
+#include <apps/glidar/options/model_options.hpp>
+#include <apps/glidar/run/advice.hpp>
+#include <apps/glidar/run/console.hpp>
+#include <apps/glidar/run/exit_code.hpp>
+#include <glidar/io/model/model_report.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace glidar::app {
+namespace {
+
+constexpr const char* kInfoExamples = R"(Examples:
+  glidar info builtin:asteroid
+  glidar info builtin:torus --json
+With your own files:
+  glidar info part.stl --unit mm --up y
+
+Exit codes: 0 done (whatever the model is like), 2 the model cannot be read.)";
+
+struct InfoFlags {
+  std::string input;
+  ModelFlags model;
+  bool json = false;
+};
+
+void line(std::string_view name, const std::string& value) {
+  fmt::print("{:<14} {}\n", name, value);
+}
+
+std::string vector_text(const Eigen::Vector3d& v, std::string_view separator) {
+  return fmt::format("{1:.6g}{0}{2:.6g}{0}{3:.6g}", separator, v.x(), v.y(), v.z());
+}
+
+/// "a, b and c" of those faults that there are.
+std::string fault_text(const MeshCheck& check) {
+  const std::vector<std::pair<std::uint64_t, const char*>> faults = {
+      {check.open_edges, "open edges"},
+      {check.crowded_edges, "edges of more than two triangles"},
+      {check.inconsistent_edges, "edges with opposite windings"},
+      {check.degenerate_triangles, "degenerate triangles"},
+      {check.duplicate_triangles, "duplicate triangles"},
+      {check.duplicate_vertices, "duplicate vertices"},
+      {check.unused_vertices, "unused vertices"},
+  };
+  std::string text;
+  for (const auto& [count, name] : faults) {
+    if (count == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
+  }
+  return text.empty() ? "none" : text;
+}
+
+std::string texture_text(const MaterialSummary& material) {
+  std::string text;
+  const auto add = [&](const char* use, const std::string& name) {
+    if (!name.empty()) text += fmt::format(", {} {}", use, name);
+  };
+  add("diffuse", material.diffuse_texture);
+  add("specular", material.specular_texture);
+  add("normal", material.normal_texture);
+  add("alpha", material.alpha_texture);
+  return material.cut_out ? text + ", cut-out" : text;
+}
+
+void print_lists(const ModelReport& report) {
+  constexpr std::size_t kMost = 50;  // lines of one kind; --json has them all
+  const auto list = [&](std::string_view name, const auto& entries, const auto& text) {
+    for (std::size_t i = 0; i < entries.size() && i < kMost; ++i) line(name, text(entries[i]));
+    if (entries.size() > kMost) {
+      line(name, fmt::format("... and {} more (--json tells all)", entries.size() - kMost));
+    }
+  };
+  list("mesh", report.parts, [](const ModelPart& part) {
+    return fmt::format("{}: {} triangles", part.name.empty() ? "(no name)" : part.name,
+                       part.triangle_count);
+  });
+  list("material", report.materials, [](const MaterialSummary& material) {
+    return fmt::format("{}: {} triangles{}", material.name, material.triangles,
+                       texture_text(material));
+  });
+  list("texture", report.textures, [](const TextureSummary& texture) {
+    return fmt::format("{}: {} x {}, {} channels", texture.name, texture.width, texture.height,
+                       texture.channels);
+  });
+  list("MISSING", report.missing_textures, [](const MissingTexture& texture) {
+    return fmt::format("texture {}: {}", texture.name, texture.reason);
+  });
+  list("note", report.notes, [](const std::string& note) { return note; });
+}
+
+void print_table(const ModelReport& report, const std::string& up_hint) {
+  line("model", report.source + (report.from_cache ? " (from the cache)" : ""));
+  line("format", report.format);
+  if (!report.hash.empty()) line("hash", report.hash);
+  line("triangles", fmt::format("{}", report.triangles));
+  line("vertices", fmt::format("{}", report.vertices));
+  line("size", vector_text(report.size_m, " x ") + " m");
+  line("from", vector_text(report.min_m, ", ") + " m");
+  line("to", vector_text(report.max_m, ", ") + " m");
+  line("unit", report.unit_guess);
+  line("up", report.up + (up_hint.empty() ? "" : "; " + up_hint));
+  line("surface", fmt::format("{}, winding {}, area {:.6g} m2", report.closed ? "closed" : "open",
+                              to_string(report.winding), report.check.area_m2));
+  line("faults", fault_text(report.check));
+  print_lists(report);
+}
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Eigen::Vector3d& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+Json json_of(const MeshCheck& check) {
+  return {{"area_m2", check.area_m2},
+          {"signed_volume_m3", check.signed_volume_m3},
+          {"open_edges", check.open_edges},
+          {"crowded_edges", check.crowded_edges},
+          {"inconsistent_edges", check.inconsistent_edges},
+          {"degenerate_triangles", check.degenerate_triangles},
+          {"duplicate_triangles", check.duplicate_triangles},
+          {"duplicate_vertices", check.duplicate_vertices},
+          {"unused_vertices", check.unused_vertices}};
+}
+
+/// An array of one object for each entry.
+template <typename Entry, typename Function>
+Json json_list(const std::vector<Entry>& entries, const Function& object) {
+  Json list = Json::array();
+  for (const Entry& entry : entries) list.push_back(object(entry));
+  return list;
+}
+
+Json json_of(const ModelReport& report, const std::string& up_hint) {
+  Json json = {{"source", report.source},
+               {"format", report.format},
+               {"hash", report.hash},
+               {"from_cache", report.from_cache},
+               {"triangles", report.triangles},
+               {"vertices", report.vertices},
+               {"min_m", json_of(report.min_m)},
+               {"max_m", json_of(report.max_m)},
+               {"size_m", json_of(report.size_m)},
+               {"metres_per_unit", report.metres_per_unit},
+               {"unit_declared", report.unit_declared ? Json(*report.unit_declared) : Json()},
+               {"unit_guess", report.unit_guess},
+               {"up", report.up},
+               {"up_guess", up_hint},
+               {"closed", report.closed},
+               {"winding", to_string(report.winding)},
+               {"check", json_of(report.check)}};
+  json["meshes"] = json_list(report.parts, [](const ModelPart& part) -> Json {
+    return {{"name", part.name},
+            {"first_triangle", part.first_triangle},
+            {"triangles", part.triangle_count}};
+  });
+  json["materials"] = json_list(report.materials, [](const MaterialSummary& m) -> Json {
+    return {{"name", m.name},
+            {"triangles", m.triangles},
+            {"diffuse_texture", m.diffuse_texture},
+            {"specular_texture", m.specular_texture},
+            {"normal_texture", m.normal_texture},
+            {"alpha_texture", m.alpha_texture},
+            {"cut_out", m.cut_out}};
+  });
+  json["textures"] = json_list(report.textures, [](const TextureSummary& t) -> Json {
+    return {{"name", t.name}, {"width", t.width}, {"height", t.height}, {"channels", t.channels}};
+  });
+  json["missing_textures"] =
+      json_list(report.missing_textures, [](const MissingTexture& t) -> Json {
+        return {{"name", t.name}, {"reason", t.reason}};
+      });
+  json["notes"] = report.notes;
+  return json;
+}
+
+/// The model and what is found in it; up to here the console shows how far that is.
+ModelReport examine(const InfoFlags& flags) {
+  Console console;
+  const Working working(console, "reading " + flags.input);
+  Report report_to_console = console.report();
+  report_to_console.log = [&](Severity severity, std::string_view message) {
+    const bool is_in_table = message.starts_with(flags.input + ": ");
+    if (severity == Severity::warning && !is_in_table) console.warn(message);
+  };
+  const Model model = load_model(flags.input, model_options(flags.model), report_to_console);
+  console.tell("examining " + flags.input, -1.0);
+  return inspect(model);
+}
+
+int run_info(const InfoFlags& flags) {
+  const ModelReport report = examine(flags);
+  const std::string up_hint =
+      flags.model.up.empty()
+          ? up_advice(report.format, Eigen::AlignedBox3d(report.min_m, report.max_m))
+          : "";
+  if (flags.json) {
+    // names in files need not be UTF-8; what is not is replaced rather than refused
+    fmt::print("{}\n",
+               json_of(report, up_hint).dump(2, ' ', false, Json::error_handler_t::replace));
+  } else {
+    print_table(report, up_hint);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Command add_info(CLI::App& program) {
+  CLI::App& command = *program.add_subcommand("info", "Tell what a model file holds");
+  const auto flags = std::make_shared<InfoFlags>();
+  command.footer(kInfoExamples);
+  command.add_option("MODEL", flags->input, "Model file or builtin:NAME")
+      ->required()
+      ->type_name("");
+  add_model_flags(command, flags->model);
+  command.add_flag("--json", flags->json, "Print JSON instead of a table");
+  return [flags] { return run_info(*flags); };
+}
+
+}  // namespace glidar::app

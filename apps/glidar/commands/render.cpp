@@ -1,0 +1,183 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/commands/commands.hpp>
+#include <apps/glidar/run/advice.hpp>
+#include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/recorded_command.hpp>
+#include <apps/glidar/run/rig_outputs.hpp>
+#include <apps/glidar/run/session.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/simulate/simulate.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+namespace glidar::app {
+namespace {
+
+constexpr const char* kRenderExamples = R"(Examples:
+  glidar render builtin:asteroid -o asteroid.pcd -o asteroid.png
+  glidar render builtin:box --eye 4,-6,3 --target 0,0,0 --width 640 --height 480 --fov 40 -o box.ply
+  glidar render builtin:torus --fx 500 --cx 300 --cy 250 -w 640 --height 480 -o torus.depth.png
+  glidar render builtin:sphere --fields all -o sphere.npz
+  glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --fields all -o room.pcd -o room.png
+  glidar render builtin:box --sensor OS1-128 --eye 0,0,0 --colour-by range -o room.bev.png
+  glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --layout velodyne --drop-invalid -o scan.pcd
+  glidar render builtin:box --sensor OS1-32 --eye 0,0,0 --sensor-rate 0,1,0 --duration 1 -o scan.pcd
+  glidar render builtin:box -o - --format csv
+  glidar render builtin:asteroid --model-q 0.7,0,0.7,0 --camera-z 10 --pcd view
+With your own files:
+  glidar render part.stl --unit mm --up y -o part.pcd
+  glidar render scene.yaml --sensor camera.yaml --frame ros -o cloud.npz
+
+The pose as in the 2015 program: quaternions are attitudes, they take inertial vectors into the
+body. The object stands at the inertial zero, the sensor at (0, 0, -D), and
+  p_sensor = R(camera-q) (R(model-q)^T p_object + (0, 0, D))
+in the frame x left, y up, z forward. --model-q goes with any other pose option too.
+Exit codes: 0 done (also when nothing was hit), 2 bad input, 130 interrupted,
+141 nobody reads standard output any more.)";
+
+/// Measures the scene; the console shows how far that is.
+void measure(const Setup& setup, const HitFieldMask& fields, Console& console, Frame& frame) {
+  const Working working(console, fmt::format("casting {} beams", setup.beams.size()));
+  simulate(setup, fields, frame);
+}
+
+void print_summary(const View& view, const std::vector<Output>& outputs, std::FILE* to) {
+  const FrameSummary s = summarise(view.frame);
+  const double percent =
+      100.0 * static_cast<double>(s.hits) / static_cast<double>(view.beams.size());
+  fmt::print(to, "{} x {} beams, {} hits ({:.1f} %)", view.beams.cols, view.beams.rows, s.hits,
+             percent);
+  const double offset_m = view.beams.range_offset_m;
+  if (s.hits > 0) {
+    fmt::print(to, ", range {:.6g} to {:.6g} m", s.nearest_m + offset_m, s.farthest_m + offset_m);
+  }
+  fmt::print(to, "\nwrote");
+  for (const Output& output : outputs) fmt::print(to, " {}", output.path.string());
+  fmt::print(to, "\n");
+}
+
+HitFieldMask needed_fields(const RenderFlags& flags, const std::vector<Output>& outputs) {
+  HitFieldMask fields = fields_for_outputs(outputs);
+  fields.normal = fields.normal || flags.information.wanted;
+  return fields;
+}
+
+/// Writes a frame and says so.
+void write(const RenderFlags& flags, const View& view, const std::vector<Output>& outputs,
+           Console& console) {
+  {
+    const Working working(console, "writing");
+    write_outputs(outputs, view.frame, view.beams, view.scene, console.report());
+  }
+  std::FILE* to = writes_standard_output(flags.output) ? stderr : stdout;
+  if (flags.quiet) to = nullptr;
+  if (to != nullptr) print_summary(view, outputs, to);
+  std::optional<std::uint32_t> number;
+  if (flags.duration_s) number = view.frame.number;
+  tell_information(flags.information, view.frame, view.beams, outputs, number, to);
+}
+
+/// Of a run: what is measured and written.
+struct Job {
+  const RenderFlags& flags;
+  const CommandRecord& command;
+  const Session& session;
+  std::vector<std::filesystem::path> written = {};  ///< so far
+};
+
+/// An error that also says what was written before it.
+Error after_writing(const Error& error, const std::vector<std::filesystem::path>& written) {
+  ErrorParts parts = error.parts();
+  parts.remedy += parts.remedy.empty() ? "" : "; ";
+  parts.remedy += fmt::format("{} output{} written before that, from {} to {}", written.size(),
+                              written.size() == 1 ? " was" : "s were", written.front().string(),
+                              written.back().string());
+  return Error(parts);
+}
+
+/// The files of one sensor's frame: named after both on a rig.
+OutputFlags files_of(const RenderFlags& flags, const OutputFlags& outputs, const Mount& mount,
+                     std::uint32_t frame) {
+  const std::string label = label_of(flags, mount);
+  const OutputFlags files = label.empty() ? outputs : labelled(outputs, label);
+  return flags.duration_s ? numbered(files, frame) : files;
+}
+
+/// All frames of one sensor, each written to files of its own.
+void measure_all(Job& job, const OutputFlags& files, Mount& mount, Console& console) {
+  const RenderFlags& flags = job.flags;
+  const Session& session = job.session;
+  SidecarContext context{.scene = session.scene,
+                         .sensor = mount.sensor,
+                         .beams = mount.beams,
+                         .renderer = renderer_name(flags),
+                         .command = job.command,
+                         .inputs = session.files};
+  if (!label_of(flags, mount).empty()) {
+    context.command.arguments.insert(context.command.arguments.end(),
+                                     {"--sensor-name", mount.name});
+  }
+  const Setup setup = setup_of(session, mount, console);
+  Frame frame;
+  const View view{session.scene, mount.sensor, mount.beams, frame};
+  for (std::uint32_t k = 0; k < mount.frames; ++k) {
+    const std::vector<Output> outputs =
+        plan_outputs(files_of(flags, files, mount, k), flags.input, context, console.report(),
+                     [&console](double fraction) { console.tell(fraction); });
+    refuse_overwrite_of_inputs(session.files, outputs);
+    turn_to(flags, k, mount, frame);
+    measure(setup, needed_fields(flags, outputs), console, frame);
+    if (k == 0) tell(view_advice(view), console);
+    write(flags, view, outputs, console);
+    for (const Output& output : outputs) job.written.push_back(output.path);
+  }
+}
+
+int run_render(const RenderFlags& flags, const std::vector<std::string>& arguments) {
+  Console console(flags.quiet);
+  check(flags.information, flags.output);
+  if (flags.duration_s) numbered(flags.output, 0);  // only for its errors
+  const CommandRecord command = {.arguments = lasting(arguments),
+                                 .folder = std::filesystem::current_path()};
+  Session session;
+  const Mount unknown;
+  const std::vector<Output> outputs =  // only to find their faults before the work begins
+      plan_outputs(flags.output, flags.input,
+                   {.scene = session.scene,
+                    .sensor = unknown.sensor,
+                    .beams = unknown.beams,
+                    .renderer = renderer_name(flags)},
+                   console.report());
+  open(
+      flags, [&] { refuse_overwrite_of_inputs(session.files, outputs); }, console, session);
+  const std::vector<OutputFlags> files = outputs_by_sensor(flags, session, console);
+  Job job{flags, command, session};
+  try {
+    for (std::size_t i = 0; i < session.mounts.size(); ++i) {
+      if (has_outputs(files[i])) measure_all(job, files[i], session.mounts[i], console);
+    }
+  } catch (const Error& error) {
+    if (job.written.empty()) throw;
+    throw after_writing(error, job.written);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+Command add_render(CLI::App& program, const std::vector<std::string>& arguments) {
+  CLI::App& command =
+      *program.add_subcommand("render", "Measure a model or scene with a 3D sensor");
+  const auto flags = std::make_shared<RenderFlags>();
+  command.footer(output_names_text() + kRenderExamples);
+  add_render_flags(command, *flags);
+  return [flags, arguments] { return run_render(*flags, arguments); };
+}
+
+}  // namespace glidar::app

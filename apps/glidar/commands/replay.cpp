@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/commands/commands.hpp>
+#include <apps/glidar/options/stream_options.hpp>
+#include <apps/glidar/run/recorded_command.hpp>
+#include <apps/glidar/run/stream_run.hpp>
+#include <glidar/io/files/content_hash.hpp>
+#include <glidar/link/listener.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <filesystem>
+#include <memory>
+#include <utility>
+
+namespace glidar::app {
+namespace {
+
+constexpr const char* kReplayExamples =
+    R"(Measures every frame of a recording again and compares it with what was recorded: the first that
+comes out otherwise is an error. Writes files (-o) or publishes (--port) as `glidar stream` does.
+Examples:
+  glidar stream builtin:asteroid --object-rate 0,0.5,0 --frames 20 --record r.jsonl -o scan.pcd
+  glidar replay r.jsonl
+  glidar replay r.jsonl -o again.pcd
+  glidar replay r.jsonl --port 5555 --rate 10
+Models, scene and sensor files must lie as they did, seen from the recording.
+Exit codes: 0 every frame is the same, 2 bad input or a frame that differs, 130 after Ctrl-C.)";
+
+/// The options of the stream that was recorded.
+StreamFlags flags_of(const link::RecordingHead& head, const std::string& file) {
+  CLI::App command;
+  StreamFlags flags;
+  add_stream_flags(command, flags);
+  parse_recorded(head.command.arguments, "stream", file, command);
+  return flags;
+}
+
+/// Warns of input files that are not as they were: frames may come out otherwise.
+void compare_files(const link::RecordingHead& head, Console& console) {
+  for (const link::RecordedFile& file : head.files) {
+    const std::optional<Hash128> hash = hash_file(file.path);
+    if (file.hash == (hash ? hex(*hash) : "")) continue;
+    console.warn(fmt::format("{} has changed since it was recorded", file.path));
+  }
+}
+
+/// Paths given here count from here, those of the recorded command from its own folder.
+void make_absolute(StreamFlags& flags) {
+  const auto absolute = [](std::string& path) {
+    if (!path.empty()) path = std::filesystem::absolute(path).string();
+  };
+  absolute(flags.replay);
+  absolute(flags.stats);
+  absolute(flags.render.output.legacy_name);
+  for (std::string& path : flags.render.output.paths) {
+    if (path != kStandardOutput) absolute(path);
+  }
+}
+
+int run_replay(const StreamFlags& chosen) {
+  const std::string file = chosen.replay;
+  const link::RecordingReader recording(file);
+  StreamFlags flags = replayed(flags_of(recording.head(), file), chosen);
+  Console console(flags.render.quiet);
+  compare_version(recording.head().version, file, console);
+  make_absolute(flags);
+  enter(recording.head().command, file);
+  compare_files(recording.head(), console);
+  link::raise_descriptor_limit(2 * flags.limits.connections);
+  StreamRun stream(std::move(flags), console);
+  return stream.run();
+}
+
+}  // namespace
+
+Command add_replay(CLI::App& program) {
+  CLI::App& command = *program.add_subcommand("replay", "Measure a recorded stream again");
+  const auto flags = std::make_shared<StreamFlags>();
+  command.footer(kReplayExamples);
+  command.add_option("RECORDING", flags->replay, "A file by glidar stream --record")
+      ->required()
+      ->type_name("");
+  add_replay_flags(command, *flags);
+  return [flags] { return run_replay(*flags); };
+}
+
+}  // namespace glidar::app

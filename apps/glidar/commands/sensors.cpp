@@ -1,0 +1,341 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/commands/commands.hpp>
+#include <apps/glidar/options/option_kinds.hpp>
+#include <apps/glidar/run/exit_code.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/io/config/receiver_yaml.hpp>
+#include <glidar/io/config/sensor_presets.hpp>
+#include <glidar/io/config/surface_presets.hpp>
+#include <glidar/io/files/overwrite_guard.hpp>
+#include <glidar/io/pictures/pattern_picture.hpp>
+#include <glidar/math/constants.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <memory>
+#include <numbers>
+#include <vector>
+
+namespace glidar::app {
+namespace {
+
+constexpr const char* kSensorsExamples = R"(Examples:
+  glidar sensors
+  glidar sensors VLP-16
+  glidar sensors Livox-Mid-40 -o pattern.png
+  glidar sensors OS1-128 --json
+  glidar sensors --surfaces
+
+A name goes with 'glidar render MODEL --sensor NAME'. "backed" counts the values that the
+manufacturer's documents back (data sheets, manuals, drivers, factory calibrations); the others are
+marked *. Beams widen by so many mrad, across x up, between where their light falls to
+1/e^2. A surface's name goes with 'glidar render MODEL --surface NAME', and with 'surface:' in scene
+files.
+Exit codes: 0 done, 2 no such sensor.)";
+
+struct SensorsFlags {
+  std::string name;
+  std::string picture;
+  bool surfaces = false;
+  bool json = false;
+};
+
+/// What the list tells of a sensor.
+struct Summary {
+  std::string kind;
+  std::uint32_t rows = 0;
+  std::uint32_t cols = 0;
+  double across_deg = 0.0;
+  double upright_deg = 0.0;
+  double points_per_s = 0.0;
+  ValueCount values;
+};
+
+std::string kind_of(const Optics& optics) {
+  static const std::vector<std::string> kNames = {"camera", "spinning", "raster", "prism", "table"};
+  return kNames.at(optics.index());
+}
+
+/// Angle in degrees between the first and the last of `count` pixels, `step` apart, that have a
+/// beam.
+double span_deg(const Beams& beams, std::size_t first, std::size_t count, std::size_t step) {
+  std::vector<Eigen::Vector3d> seen;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d& direction = beams.directions[first + i * step];
+    if (!std::isnan(direction.x())) seen.push_back(direction);
+  }
+  if (seen.empty()) return 0.0;
+  const double cosine = std::clamp(seen.front().dot(seen.back()), -1.0, 1.0);
+  return 180.0 / std::numbers::pi * std::acos(cosine);
+}
+
+/// A camera with distortion: between the outermost pixels of its middle row and middle column.
+void measure_view(const Beams& beams, const PinholeIntrinsics& k, Summary& summary) {
+  const auto row = static_cast<std::size_t>(std::clamp(k.cy, 0.0, k.height - 1.0));
+  const auto col = static_cast<std::size_t>(std::clamp(k.cx, 0.0, k.width - 1.0));
+  summary.across_deg = span_deg(beams, row * beams.cols, beams.cols, 1);
+  summary.upright_deg = span_deg(beams, col, beams.rows, beams.cols);
+}
+
+/// Angles between the outermost beams about the boresight; of a camera between its image's edges.
+void measure_view(const Sensor& sensor, const Beams& beams, Summary& summary) {
+  if (beams.pinhole) {
+    summary.across_deg =
+        2.0 * kDegreesPerRadian * std::atan(0.5 * beams.pinhole->width / beams.pinhole->fx);
+    summary.upright_deg =
+        2.0 * kDegreesPerRadian * std::atan(0.5 * beams.pinhole->height / beams.pinhole->fy);
+    return;
+  }
+  if (const auto* pinhole = std::get_if<Pinhole>(&sensor.optics)) {
+    measure_view(beams, pinhole->intrinsics, summary);
+    return;
+  }
+  const SensorAxes axes = axes_of(beams);
+  Eigen::Array2d low(1e9, 1e9);
+  Eigen::Array2d high = -low;
+  for (const Eigen::Vector3d& d : beams.directions) {
+    if (std::isnan(d.x())) continue;
+    const Eigen::Array2d angles(azimuth_rad(axes, d), elevation_rad(axes, d));
+    low = low.min(angles);
+    high = high.max(angles);
+  }
+  const auto* spinning = std::get_if<Spinning>(&sensor.optics);
+  const bool whole_turn =
+      spinning != nullptr && spinning->sector_width_rad >= 2.0 * std::numbers::pi;
+  summary.across_deg = whole_turn ? 360.0 : kDegreesPerRadian * std::max(0.0, high.x() - low.x());
+  summary.upright_deg = kDegreesPerRadian * std::max(0.0, high.y() - low.y());
+}
+
+Summary summarise(const Datasheet& sheet, const Beams& beams) {
+  Summary summary;
+  summary.kind = kind_of(sheet.sensor.optics);
+  summary.rows = beams.rows;
+  summary.cols = beams.cols;
+  summary.points_per_s = static_cast<double>(beams.size()) * sheet.sensor.rate_hz;
+  measure_view(sheet.sensor, beams, summary);
+  summary.values = count_values(sheet);
+  return summary;
+}
+
+std::string range_text(const Limits& limits) {
+  if (std::isinf(limits.far_m)) return fmt::format("from {:g} m", limits.near_m);
+  return fmt::format("{:g}-{:g} m", limits.near_m, limits.far_m);
+}
+
+/// Divergence across and up, full widths at 1/e^2.
+std::string beam_text(const Sensor& sensor) {
+  if (!sensor.footprint) return "-";
+  return fmt::format("{:.1f} x {:.1f}", 1e3 * sensor.footprint->divergence_x_rad,
+                     1e3 * sensor.footprint->divergence_y_rad);
+}
+
+std::vector<std::string> returns_of(const Sensor& sensor) {
+  std::vector<std::string> names;
+  if (!sensor.pulse) return names;
+  for (const Return& one : sensor.receiver.returns) names.push_back(return_name(one));
+  return names;
+}
+
+void print_row(const Datasheet& sheet, const Summary& s) {
+  fmt::print(
+      "{:<22} {:<9} {:>5} x {:<6} {:>5.1f} x {:<6.1f} {:>4g} Hz {:>9.0f} {:>14} {:>11}  {}\n",
+      sheet.name, s.kind, s.rows, s.cols, s.across_deg, s.upright_deg, sheet.sensor.rate_hz,
+      s.points_per_s, range_text(sheet.sensor.limits), beam_text(sheet.sensor),
+      fmt::format("{} of {}", s.values.backed, s.values.total));
+}
+
+void print_heading() {
+  fmt::print("{:<22} {:<9} {:>5} x {:<6} {:>14} {:>7} {:>9} {:>14} {:>11}  {}\n", "name", "kind",
+             "rows", "cols", "view, degrees", "rate", "points/s", "range", "beam, mrad", "backed");
+}
+
+void print_sheet(const Datasheet& sheet, const Summary& s) {
+  fmt::print("{}\n\n", sheet.sensor.name);
+  print_heading();
+  print_row(sheet, s);
+  fmt::print("\n");
+  for (const DatasheetEntry& entry : sheet.entries) {
+    fmt::print("{}{} = {}\n", entry.verified ? "  " : "* ", entry.key, entry.value);
+    if (!entry.source.empty()) fmt::print("      {}\n", entry.source);
+  }
+  if (s.values.backed < s.values.total) {
+    fmt::print("\n* not backed by the manufacturer's documents\n");
+  }
+}
+
+using Json = nlohmann::ordered_json;
+
+/// Divergence in mrad across and up; a line has none.
+Json divergence_json(const Sensor& sensor) {
+  if (!sensor.footprint) return {};
+  return {1e3 * sensor.footprint->divergence_x_rad, 1e3 * sensor.footprint->divergence_y_rad};
+}
+
+/// Limits of no end become null.
+Json json_of(const Datasheet& sheet, const Summary& s) {
+  const Limits& limits = sheet.sensor.limits;
+  return {{"name", sheet.name},
+          {"sensor", sheet.sensor.name},
+          {"kind", s.kind},
+          {"rows", s.rows},
+          {"cols", s.cols},
+          {"view_deg", {s.across_deg, s.upright_deg}},
+          {"rate_hz", sheet.sensor.rate_hz},
+          {"points_per_s", s.points_per_s},
+          {"near_m", limits.near_m},
+          {"far_m", limits.far_m},
+          {"divergence_mrad", divergence_json(sheet.sensor)},
+          {"returns", returns_of(sheet.sensor)},
+          {"values", s.values.total},
+          {"backed", s.values.backed}};
+}
+
+Json json_of(const std::vector<DatasheetEntry>& entries) {
+  Json list = Json::array();
+  for (const DatasheetEntry& e : entries) {
+    list.push_back(
+        {{"key", e.key}, {"value", e.value}, {"source", e.source}, {"verified", e.verified}});
+  }
+  return list;
+}
+
+void print_json(const Json& json) {
+  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+constexpr std::array kSurfaceWavelengths_nm = {850, 905, 1064, 1550};
+
+std::array<double, kSurfaceWavelengths_nm.size()> reflectances(const SurfacePreset& surface) {
+  std::array<double, kSurfaceWavelengths_nm.size()> values{};
+  std::transform(kSurfaceWavelengths_nm.begin(), kSurfaceWavelengths_nm.end(), values.begin(),
+                 [&](int nm) { return interpolate(surface.spectrum, nm * 1e-9); });
+  return values;
+}
+
+Json json_of(const SurfacePreset& surface) {
+  Json reflectance = Json::object();
+  const auto values = reflectances(surface);
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    reflectance[std::to_string(kSurfaceWavelengths_nm[k])] = values[k];
+  }
+  return {{"name", surface.name},
+          {"about", surface.about},
+          {"reflectance_at_nm", reflectance},
+          {"matt", std::holds_alternative<Lambert>(surface.backscatter)},
+          {"source", surface.source},
+          {"verified", surface.verified}};
+}
+
+void print_surfaces(const std::vector<SurfacePreset>& surfaces) {
+  fmt::print("{:<16}", "name");
+  for (const int nm : kSurfaceWavelengths_nm) fmt::print("{:>6} nm", nm);
+  fmt::print("  {:<6}  {:<8}  {}\n", "form", "verified", "what it is");
+  for (const SurfacePreset& surface : surfaces) {
+    fmt::print("{:<16}", surface.name);
+    for (const double reflectance : reflectances(surface)) fmt::print("{:>9.3f}", reflectance);
+    const bool is_matt = std::holds_alternative<Lambert>(surface.backscatter);
+    fmt::print("  {:<6}  {:<8}  {}\n", is_matt ? "matt" : "glossy", surface.verified ? "yes" : "no",
+               surface.about);
+  }
+}
+
+int list_surfaces(const SensorsFlags& flags) {
+  if (!flags.name.empty() || !flags.picture.empty()) {
+    throw Error({.where = "--surfaces",
+                 .found = "a sensor or a picture is asked for too",
+                 .allowed = "--surfaces alone, or with --json",
+                 .remedy = ""});
+  }
+  const std::vector<SurfacePreset> surfaces = load_surfaces();
+  if (!flags.json) {
+    print_surfaces(surfaces);
+    return kDone;
+  }
+  Json json = Json::array();
+  for (const SurfacePreset& surface : surfaces) json.push_back(json_of(surface));
+  print_json(json);
+  return kDone;
+}
+
+/// The pattern's picture is a PNG whatever its name, so the name must say so.
+void require_png(std::string_view option, const std::string& path) {
+  std::string suffix = std::filesystem::path(path).extension().string();
+  for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (suffix == ".png") return;
+  throw Error({.where = std::string(option),
+               .found = "'" + path + "'",
+               .allowed = "a name that ends in .png",
+               .remedy = "clouds come from glidar render"});
+}
+
+int list_all(const SensorsFlags& flags) {
+  if (!flags.picture.empty()) {
+    throw Error({.where = "-o",
+                 .found = "no sensor is named",
+                 .allowed = "",
+                 .remedy = "for example: glidar sensors VLP-16 -o pattern.png"});
+  }
+  Json json = Json::array();
+  if (!flags.json) print_heading();
+  for (const auto& file : preset_files()) {
+    const Datasheet sheet = load_datasheet(file);
+    const Summary summary = summarise(sheet, make_beams(sheet.sensor));
+    if (flags.json) {
+      json.push_back(json_of(sheet, summary));
+    } else {
+      print_row(sheet, summary);
+    }
+  }
+  if (flags.json) print_json(json);
+  return kDone;
+}
+
+int run_sensors(const SensorsFlags& flags) {
+  if (flags.surfaces) return list_surfaces(flags);
+  if (flags.name.empty()) return list_all(flags);
+  const std::filesystem::path file = find_sensor_file(flags.name);
+  const Datasheet sheet = load_datasheet(file);
+  const Beams beams = make_beams(sheet.sensor);
+  const Summary summary = summarise(sheet, beams);
+  if (flags.json) {
+    Json json = json_of(sheet, summary);
+    json["numbers"] = json_of(sheet.entries);
+    print_json(json);
+  } else {
+    print_sheet(sheet, summary);
+  }
+  if (flags.picture.empty()) return kDone;
+  std::vector<std::string> inputs = sheet.sensor.files;
+  inputs.push_back(file.string());
+  refuse_overwrite_of_inputs(inputs, flags.picture);
+  write_pattern_picture(beams, flags.picture);
+  if (!flags.json) fmt::print("\nwrote {}\n", flags.picture);
+  return kDone;
+}
+
+}  // namespace
+
+Command add_sensors(CLI::App& program) {
+  CLI::App& command =
+      *program.add_subcommand("sensors", "List the sensors that come along, or tell about one");
+  const auto flags = std::make_shared<SensorsFlags>();
+  command.footer(kSensorsExamples);
+  command.add_option("name", flags->name, "Name of a sensor, or a sensor file")->type_name("NAME");
+  add_text(command, {"-o,--output", "OUT.png", "Picture of its beams' directions (PNG)", "Options"},
+           flags->picture, require_png);
+  command.add_flag("--surfaces", flags->surfaces,
+                   "List the surfaces that come along and what they send back");
+  command.add_flag("--json", flags->json, "Print JSON instead of a table");
+  return [flags] { return run_sensors(*flags); };
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,323 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/advice.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace glidar::app {
+namespace {
+
+constexpr double kLargeModel_m = 1000.0;
+constexpr double kSmallModel_m = 0.001;
+constexpr double kLargeRatio = 1000.0;  // between size and distance: a wrong unit
+constexpr double kMostlyInside = 0.9;   // of the hits are on back faces: seen from inside
+
+/// True when nobody specified the unit of some model: neither the user nor its file.
+bool has_assumed_unit(const Scene& scene) {
+  return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
+    return instance.mesh >= scene.sources.size() || !scene.sources[instance.mesh].unit_known;
+  });
+}
+
+/// The scene as the sensor sees it, without looking at single triangles.
+struct Sight {
+  double size_m = 0.0;        ///< diagonal of the scene's box
+  double depth_m = 0.0;       ///< of the box's middle
+  double deepest_m = 0.0;     ///< of the box's corners
+  double distance_m = 0.0;    ///< to the box's middle
+  double off_axis_rad = 0.0;  ///< angle between boresight and the box's middle
+  double view_rad = 0.0;      ///< greatest angle between boresight and a beam
+  double pixel_rad = 0.0;     ///< angle between two beams in the middle of the image
+};
+
+double angle_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+double pixel_angle_rad(const Beams& beams) {
+  const std::size_t middle = std::size_t{beams.rows / 2} * beams.cols + beams.cols / 2;
+  const std::size_t step = beams.cols > 1 ? 1 : beams.cols;
+  if (middle < step || beams.size() < 2) return 0.0;
+  return angle_rad(beams.directions[middle], beams.directions[middle - step]);
+}
+
+/// The box of the scene as it stands in this frame, in the sensor's frame.
+Eigen::AlignedBox3d seen_box(const View& view, const Pose& target_from_world) {
+  Eigen::AlignedBox3d all;
+  for (std::size_t i = 0; i < view.scene.instances.size(); ++i) {
+    const Instance& instance = view.scene.instances[i];
+    const Eigen::AlignedBox3d box = bounds(view.scene.meshes[instance.mesh]);
+    for (int corner = 0; corner < 8 && !box.isEmpty(); ++corner) {
+      const auto type = static_cast<Eigen::AlignedBox3d::CornerType>(corner);
+      all.extend(target_from_world *
+                 (view.frame.world_from_instance[i] * (instance.scale * box.corner(type))));
+    }
+  }
+  return all;
+}
+
+Sight look(const View& view) {
+  const Eigen::AlignedBox3d box = seen_box(view, view.frame.world_from_sensor.inverse());
+  const Eigen::Vector3d middle = box.center();
+  const Eigen::Vector3d& axis = view.beams.boresight;
+  Sight sight;
+  sight.size_m = seen_box(view, Pose::Identity()).diagonal().norm();
+  sight.depth_m = middle.dot(axis);
+  sight.deepest_m = -std::numeric_limits<double>::infinity();
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto type = static_cast<Eigen::AlignedBox3d::CornerType>(corner);
+    sight.deepest_m = std::max(sight.deepest_m, box.corner(type).dot(axis));
+  }
+  sight.distance_m = middle.norm();
+  sight.off_axis_rad = angle_rad(middle, axis);
+  for (const Eigen::Vector3d& beam : view.beams.directions) {
+    if (!std::isnan(beam.x())) sight.view_rad = std::max(sight.view_rad, angle_rad(beam, axis));
+  }
+  sight.pixel_rad = pixel_angle_rad(view.beams);
+  return sight;
+}
+
+double degrees(double angle) {
+  return angle * 180.0 / std::numbers::pi;
+}
+
+/// The nearest and farthest distance of what was hit, reported or not, as the limits count it.
+std::string true_distances(const View& view) {
+  double nearest = std::numeric_limits<double>::infinity();
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < view.beams.size(); ++i) {
+    if (view.frame.ground_truth.instance[i] == kInvalidId) continue;
+    const double range_m = view.frame.ground_truth.range_m[i];
+    const double distance = view.sensor.limits.along == Limits::Along::range
+                                ? range_m + view.beams.range_offset_m
+                                : depth_m(view.beams, i, range_m);
+    nearest = std::min(nearest, distance);
+    farthest = std::max(farthest, distance);
+  }
+  return fmt::format("{:.6g} to {:.6g} m", nearest, farthest);
+}
+
+/// How many beams meet something within the limits that is not reported.
+std::size_t lost_in_light(const View& view) {
+  std::size_t lost = 0;
+  for (std::size_t i = 0; i < view.frame.status.size(); ++i) {
+    const Status status = view.frame.status[i];
+    const bool is_there = view.frame.ground_truth.instance[i] != kInvalidId;
+    if (is_there && status != Status::hit && status != Status::miss) ++lost;
+  }
+  return lost;
+}
+
+/// Why nothing was hit, and what to do.
+std::string reason_for_no_hits(const View& view, const Sight& sight, const FrameSummary& summary) {
+  constexpr const char* kFrameIt = "leave the pose options out to have the scene framed";
+  if (summary.beams == 0) return "the optics have no beam for any pixel; check the distortion";
+  if (summary.too_near + summary.too_far > 0) {
+    return fmt::format(
+        "{} beams meet surfaces outside the sensor's {} limits: these lie at {}, the limits are "
+        "{} to {} m; change --near and --far",
+        summary.too_near + summary.too_far,
+        view.sensor.limits.along == Limits::Along::depth ? "depth" : "range", true_distances(view),
+        view.sensor.limits.near_m, view.sensor.limits.far_m);
+  }
+  if (const std::size_t lost = lost_in_light(view)) {
+    return fmt::format(
+        "{} beams meet surfaces, but what comes back is too weak or too strong, or lost: see the "
+        "column 'status', and `glidar explain`",
+        lost);
+  }
+  if (sight.deepest_m < 0.0 && sight.view_rad < 0.5 * std::numbers::pi) {
+    return fmt::format(
+        "the scene is behind the sensor: its middle is {:.6g} m away at depth {:.6g} m; "
+        "turn the sensor, or {}",
+        sight.distance_m, sight.depth_m, kFrameIt);
+  }
+  const bool around = sight.distance_m <= 0.5 * sight.size_m;  // it may be on every side
+  const double half_size_rad =
+      around ? std::numbers::pi : std::asin(0.5 * sight.size_m / sight.distance_m);
+  if (sight.off_axis_rad - half_size_rad > sight.view_rad) {
+    return fmt::format(
+        "the scene is outside the view: its middle is {:.1f} degrees off the "
+        "boresight, the view reaches {:.1f}; turn the sensor, or {}",
+        degrees(sight.off_axis_rad), degrees(sight.view_rad), kFrameIt);
+  }
+  if (2.0 * half_size_rad < 2.0 * sight.pixel_rad) {
+    return fmt::format(
+        "the scene is too small to be met by a beam: {:.6g} m across at {:.6g} m is "
+        "{:.2g} pixels; go nearer, narrow --fov, {}or {}",
+        sight.size_m, sight.distance_m, 2.0 * half_size_rad / sight.pixel_rad,
+        has_assumed_unit(view.scene) ? "check --unit, " : "", kFrameIt);
+  }
+  if (view.sensor.cull_back_faces) {
+    return "only back faces may be there, and --cull-back-faces lets beams through; leave it out";
+  }
+  return fmt::format(
+      "no beam meets a triangle, though the scene ({:.6g} m across, {:.6g} m away) "
+      "lies in front of the sensor; aim elsewhere, or {}",
+      sight.size_m, sight.distance_m, kFrameIt);
+}
+
+/// The part of this instance's hits that lie on the backs of its triangles, by a sample.
+double back_face_part(const View& view, std::size_t index) {
+  constexpr std::size_t kSample = 4096;
+  const Instance& instance = view.scene.instances[index];
+  const Mesh& mesh = view.scene.meshes[instance.mesh];
+  const Eigen::Matrix3d object_from_sensor =
+      view.frame.world_from_instance[index].linear().transpose() *
+      view.frame.world_from_sensor.linear();
+  const std::size_t stride = std::max<std::size_t>(1, view.beams.size() / kSample);
+  std::size_t hits = 0;
+  std::size_t backs = 0;
+  for (std::size_t i = 0; i < view.beams.size(); i += stride) {
+    if (view.frame.ground_truth.instance[i] != index) continue;
+    const Triangle& t = mesh.triangles[view.frame.ground_truth.primitive[i]];
+    const Eigen::Vector3d a = mesh.positions_m[t[0]].cast<double>();
+    const Eigen::Vector3d normal = (mesh.positions_m[t[1]].cast<double>() - a)
+                                       .cross(mesh.positions_m[t[2]].cast<double>() - a);
+    ++hits;
+    if (normal.dot(object_from_sensor * view.beams.directions[i]) > 0.0) ++backs;
+  }
+  return hits == 0 ? 0.0 : static_cast<double>(backs) / static_cast<double>(hits);
+}
+
+std::string label(const Instance& instance) {
+  return instance.name.empty() ? "the model" : "'" + instance.name + "'";
+}
+
+/// Instances in whose boxes the sensor stands.
+std::vector<std::size_t> boxes_around(const View& view) {
+  std::vector<std::size_t> around;
+  for (std::size_t i = 0; i < view.scene.instances.size(); ++i) {
+    const Instance& instance = view.scene.instances[i];
+    const Eigen::Vector3d position = view.frame.world_from_instance[i].inverse() *
+                                     view.frame.world_from_sensor.translation() / instance.scale;
+    const Eigen::AlignedBox3d box = bounds(view.scene.meshes[instance.mesh]);
+    if (!box.isEmpty() && box.contains(position)) around.push_back(i);
+  }
+  return around;
+}
+
+/// A sensor that looks all around is meant to stand amid the scene, and one that sees the fronts of
+/// surfaces is not within what they enclose.
+void add_inside_advice(const View& view, const Sight& sight, const std::vector<std::size_t>& around,
+                       std::vector<std::string>& advice) {
+  if (sight.view_rad > 0.5 * std::numbers::pi) return;
+  for (const std::size_t i : around) {
+    if (back_face_part(view, i) <= kMostlyInside) continue;
+    advice.push_back(
+        fmt::format("the sensor is inside {} and sees the backs of its surfaces; unless that is a "
+                    "room, move it out, or leave the pose options out to have the scene framed",
+                    label(view.scene.instances[i])));
+  }
+}
+
+/// A unit is only doubted where it was assumed.
+void add_ratio_advice(const Sight& sight, bool is_unit_assumed, std::vector<std::string>& advice) {
+  if (sight.size_m > kLargeRatio * sight.distance_m) {
+    advice.push_back(fmt::format(
+        "the scene is {:.6g} m across but its middle is only {:.6g} m from the sensor; {}",
+        sight.size_m, sight.distance_m,
+        is_unit_assumed ? "if the file is in millimetres, give --unit mm"
+                        : "if that is not meant, check the pose and --scale"));
+  } else if (sight.distance_m > kLargeRatio * sight.size_m) {
+    advice.push_back(
+        fmt::format("the scene is {:.6g} m across but {:.6g} m from the sensor; if that "
+                    "is not meant, check {}--scale and the pose",
+                    sight.size_m, sight.distance_m, is_unit_assumed ? "--unit, " : ""));
+  }
+}
+
+/// True when a box from `least` to `most` stands on zero or hovers above it.
+bool stands_on_zero(double least, double most) {
+  constexpr double kSunk = 0.02;  // part of its height that may be below
+  return most > least && least >= -kSunk * (most - least);
+}
+
+/// True when zero lies well within.
+bool straddles_zero(double least, double most) {
+  constexpr double kLeastPart = 0.1;
+  const double part = kLeastPart * (most - least);
+  return least < -part && most > part;
+}
+
+}  // namespace
+
+FrameSummary summarise(const Frame& frame) {
+  FrameSummary summary{.nearest_m = std::numeric_limits<double>::infinity(), .farthest_m = 0.0};
+  for (std::size_t i = 0; i < frame.status.size(); ++i) {
+    const Status status = frame.status[i];
+    if (status != Status::invalid_pixel) ++summary.beams;
+    if (status == Status::too_near) ++summary.too_near;
+    if (status == Status::too_far) ++summary.too_far;
+    if (status != Status::hit) continue;
+    ++summary.hits;
+    summary.nearest_m = std::min(summary.nearest_m, frame.range_m[i]);
+    summary.farthest_m = std::max(summary.farthest_m, frame.range_m[i]);
+  }
+  if (summary.hits == 0) summary.nearest_m = summary.farthest_m = std::nan("");
+  return summary;
+}
+
+std::vector<std::string> size_advice(const Scene& scene, bool sized) {
+  const Eigen::AlignedBox3d box = bounds(scene);
+  if (sized || box.isEmpty() || !has_assumed_unit(scene)) return {};
+  const double size_m = box.diagonal().norm();
+  if (size_m > kLargeModel_m) {
+    return {
+        fmt::format("the model is {:.6g} m across; if its file is in millimetres, give --unit mm "
+                    "({:.6g} m), otherwise --unit m says that it is right",
+                    size_m, size_m / 1000.0)};
+  }
+  if (size_m < kSmallModel_m) {
+    return {
+        fmt::format("the model is {:.6g} m across; if its file is in kilometres, give --scale "
+                    "1000, otherwise --unit m says that it is right",
+                    size_m)};
+  }
+  return {};
+}
+
+std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box) {
+  const bool says_nothing_of_up = format.find("PLY") != std::string::npos ||
+                                  format.find("STL") != std::string::npos ||
+                                  format.starts_with("Wavefront") || format == "OFF";
+  if (!says_nothing_of_up || box.isEmpty()) return "";
+  const Eigen::Vector3d& least = box.min();
+  const Eigen::Vector3d& most = box.max();
+  if (stands_on_zero(least.y(), most.y()) && straddles_zero(least.x(), most.x()) &&
+      straddles_zero(least.z(), most.z())) {
+    return "a guess: y is up in this file, since the model stands on or above y = 0 and around x = "
+           "z = 0; if so, --up y makes that +z, which is up here";
+  }
+  return "";
+}
+
+std::string beside_advice(const Scene& scene, const Pose& world_from_sensor) {
+  const Eigen::Vector3d at = world_from_sensor.translation();
+  return fmt::format(
+      "the sensor stands upright beside the scene, {:.4g} m from its middle, at "
+      "{:.4g},{:.4g},{:.4g};"
+      " --eye x,y,z puts it elsewhere, for example into a room",
+      (at - bounds(scene).center()).norm(), at.x(), at.y(), at.z());
+}
+
+std::vector<std::string> view_advice(const View& view) {
+  std::vector<std::string> advice;
+  const FrameSummary summary = summarise(view.frame);
+  const Sight sight = look(view);
+  const std::vector<std::size_t> around = boxes_around(view);
+  add_inside_advice(view, sight, around, advice);
+  if (summary.hits == 0) {
+    advice.push_back("nothing was measured: " + reason_for_no_hits(view, sight, summary));
+  } else if (around.empty()) {
+    add_ratio_advice(sight, has_assumed_unit(view.scene), advice);
+  }
+  return advice;
+}
+
+}  // namespace glidar::app

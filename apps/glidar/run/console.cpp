@@ -1,0 +1,149 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/console.hpp>
+
+#include <apps/glidar/run/progress_line.hpp>
+
+#include <fmt/format.h>
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <utility>
+
+namespace glidar::app {
+namespace {
+
+constexpr auto kProgressDelay = std::chrono::seconds(2);
+constexpr auto kRedraw = std::chrono::milliseconds(100);
+
+void print(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+/// Of the terminal; a longer line would wrap, and then it could not be taken away.
+std::size_t terminal_columns() {
+  constexpr std::size_t kUsual = 80;
+  winsize size{};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col < 2) return kUsual;
+  return size.ws_col;
+}
+
+}  // namespace
+
+Console::Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1 && !quiet) {}
+
+Console::~Console() {
+  end();
+}
+
+void Console::info(std::string_view message) {
+  const std::lock_guard lock(mutex_);
+  listener_.info(message);
+  if (quiet_) return;
+  erase();
+  print(fmt::format("glidar: {}\n", message));
+}
+
+void Console::warn(std::string_view message) {
+  const std::lock_guard lock(mutex_);
+  listener_.warn(message);
+  erase();
+  print(fmt::format("glidar: warning: {}\n", message));
+}
+
+void Console::error(std::string_view message) {
+  const std::lock_guard lock(mutex_);
+  erase();
+  print(fmt::format("glidar: error: {}\n", message));
+}
+
+void Console::tell(double fraction_done) {
+  const std::lock_guard lock(mutex_);
+  fraction_ = fraction_done;
+}
+
+void Console::tell(std::string_view task, double fraction_done) {
+  const std::lock_guard lock(mutex_);
+  if (task != task_) {
+    task_ = task;
+    task_started_ = Clock::now();
+  }
+  fraction_ = fraction_done;
+  if (listener_.progress) listener_.progress(task_, fraction_);
+}
+
+void Console::status(std::string_view line) {
+  const std::lock_guard lock(mutex_);
+  if (!terminal_) return;
+  erase();
+  if (line.empty()) return;
+  print(std::string(line.substr(0, terminal_columns() - 1)));
+  drawn_ = true;
+}
+
+void Console::listen(Report listener) {
+  const std::lock_guard lock(mutex_);
+  listener_ = std::move(listener);
+}
+
+Report Console::report() {
+  return {.log =
+              [this](Severity severity, std::string_view message) {
+                severity == Severity::warning ? warn(message) : info(message);
+              },
+          .progress = [this](std::string_view task,
+                             double fraction_done) { tell(task, fraction_done); }};
+}
+
+void Console::begin(std::string_view task) {
+  const std::lock_guard lock(mutex_);
+  task_ = task;
+  fraction_ = -1.0;
+  work_started_ = task_started_ = Clock::now();
+  if (listener_.progress) listener_.progress(task_, fraction_);
+}
+
+void Console::redraw() {
+  const std::lock_guard lock(mutex_);
+  const Clock::time_point now = Clock::now();
+  if (now - work_started_ < kProgressDelay) return;
+  const double elapsed_s = std::chrono::duration<double>(now - task_started_).count();
+  // back to the line's start, and empty it
+  print("\r\033[K" + progress_line(task_, fraction_, elapsed_s, terminal_columns() - 1));
+  drawn_ = true;
+}
+
+void Console::end() {
+  const std::lock_guard lock(mutex_);
+  erase();
+}
+
+void Console::erase() {
+  if (drawn_) print("\r\033[K");
+  drawn_ = false;
+}
+
+Working::Working(Console& console, std::string_view task) : console_(console) {
+  console_.begin(task);
+  if (!console_.terminal_) return;
+  ticker_ = std::thread([this] {
+    std::unique_lock lock(mutex_);
+    while (!changed_.wait_for(lock, kRedraw, [this] { return done_; })) console_.redraw();
+  });
+}
+
+Working::~Working() {
+  if (!ticker_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    done_ = true;
+  }
+  changed_.notify_one();
+  ticker_.join();
+  console_.end();
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,82 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/delivery.hpp>
+
+#include <utility>
+
+namespace glidar::app {
+namespace {
+
+/// How often an idle thread looks after its subscribers.
+constexpr std::chrono::milliseconds kIdle{20};
+
+}  // namespace
+
+Delivery::Delivery(std::function<void(const Shot&)> deliver, std::function<void()> idle,
+                   std::function<void()> failed)
+    : deliver_(std::move(deliver)),
+      idle_(std::move(idle)),
+      failed_(std::move(failed)),
+      thread_([this] { run(); }) {}
+
+Delivery::~Delivery() {
+  join();
+}
+
+Shot& Delivery::room() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, [this] { return filled_ - delivered_ < shots_.size() || failure_; });
+  rethrow();
+  return shots_[filled_ % shots_.size()];
+}
+
+void Delivery::hand_over() {
+  {
+    const std::lock_guard lock(mutex_);
+    ++filled_;
+  }
+  changed_.notify_all();
+}
+
+void Delivery::finish() {
+  join();
+  rethrow();
+}
+
+void Delivery::join() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+  }
+  changed_.notify_all();
+  if (thread_.joinable()) thread_.join();
+}
+
+void Delivery::rethrow() {
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+void Delivery::run() {
+  std::unique_lock lock(mutex_);
+  const auto is_due = [this] { return delivered_ < filled_ || is_ending_; };
+  try {
+    for (;;) {
+      changed_.wait_for(lock, kIdle, is_due);
+      const bool has_shot = delivered_ < filled_;
+      if (!has_shot && is_ending_) return;
+      lock.unlock();
+      if (has_shot) deliver_(shots_[delivered_ % shots_.size()]);
+      idle_();
+      lock.lock();
+      if (has_shot) ++delivered_;
+      changed_.notify_all();
+    }
+  } catch (...) {
+    if (!lock.owns_lock()) lock.lock();
+    failure_ = std::current_exception();
+    changed_.notify_all();
+    failed_();
+  }
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,313 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/lockstep_run.hpp>
+
+#include <apps/glidar/run/curve_keys.hpp>
+#include <apps/glidar/run/placed_motion.hpp>
+#include <apps/glidar/run/reply_size.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/simulate/simulate.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <new>
+#include <utility>
+#include <variant>
+
+namespace glidar::app {
+namespace {
+
+lockstep::ServerOptions server_options(const StreamFlags& flags, Console& console) {
+  lockstep::ServerOptions options{.endpoint = link::parse_endpoint(flags.lockstep),
+                                  .limits = flags.limits};
+  if (!flags.curve_keys.empty()) options.curve = curve_keys(flags.curve_keys, console);
+  return options;
+}
+
+std::vector<double> json_of(const Pose& pose) {
+  const PoseVector numbers = to_xyz_wxyz(pose);
+  return {numbers.begin(), numbers.end()};
+}
+
+[[noreturn]] void refuse_request(std::string where, std::string found, std::string allowed) {
+  throw Error({"request, " + std::move(where), std::move(found), std::move(allowed), ""});
+}
+
+}  // namespace
+
+LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
+    : flags_(flags),
+      console_(console),
+      faults_(console.report()),
+      server_(context_, server_options(flags, console), faults_) {
+  if (!flags_.stats.empty()) stats_file_ = std::make_unique<AtomicFile>(flags_.stats);
+  if (!flags_.record.empty()) {
+    recorder_ = std::make_unique<Recorder>(flags_.record, flags_.durability);
+  }
+  open(flags_.render, {}, console_, session_);
+  (void)taken_files(flags_, session_.files);
+  if (recorder_) recorder_->begin(session_, flags_.command);
+  for (const Mount& mount : session_.mounts) {
+    beams_.push_back(std::make_shared<const Beams>(mount.beams));
+  }
+  frame_s_.resize(beams_.size());
+}
+
+int LockstepRun::run() {
+  const StopRequest stop;
+  if (!flags_.render.quiet) fmt::print("listening at {}\n", server_.socket().bound_to());
+  std::fflush(stdout);  // who started it waits for this line
+  try {
+    while (!stop.is_requested()) serve(stop);
+  } catch (const std::exception& error) {
+    recorder_.reset();  // it is not whole
+    finish(error.what());
+    throw;
+  }
+  stop.disarm();
+  for (const Job& job : std::exchange(jobs_, {})) {
+    server_.reply_error(job.to, "request: GLIDAR was ended by a signal");
+  }
+  finish(fmt::format("signal {}", stop.signal()));
+  constexpr int kSignalled = 128;  // as shells have it
+  return kSignalled + stop.signal();
+}
+
+/// Receives the next request and works at one of those in work, in turn; or waits a while for one.
+void LockstepRun::serve(const StopRequest& stop) {
+  if (std::optional<lockstep::Received> received = server_.receive()) start(std::move(*received));
+  if (jobs_.empty()) {
+    return link::wait_for({&server_.socket()}, stop.descriptor(), server_.patience());
+  }
+  Job job = std::move(jobs_.front());
+  jobs_.pop_front();
+  const ProgressCallback progress = try_advance(job);
+  if (progress == ProgressCallback::answered) return record(job);
+  jobs_.push_back(std::move(job));
+  constexpr std::chrono::milliseconds kForMemory{5};
+  if (progress == ProgressCallback::waits_for_memory)
+    link::wait_for({}, stop.descriptor(), kForMemory);
+}
+
+void LockstepRun::start(lockstep::Received received) {
+  const lockstep::ReplyTo to = std::move(received.to);
+  try {
+    auto* const measure = std::get_if<lockstep::Measure>(&received.request);
+    if (measure == nullptr) return server_.reply_description(to, description().dump());
+    const std::int64_t bytes = check(*measure);
+    jobs_.push_back({.measure = std::move(*measure), .to = to, .bytes = bytes});
+  } catch (const std::exception& error) {
+    server_.reply_error(to, error.what());
+  }
+}
+
+/// Whatever goes wrong with one request is its client's to know.
+LockstepRun::ProgressCallback LockstepRun::try_advance(Job& job) {
+  try {
+    return advance(job);
+  } catch (const std::bad_alloc&) {
+    server_.reply_error(job.to, "request: needs more memory than there is; ask for fewer moments");
+  } catch (const std::exception& error) {
+    server_.reply_error(job.to, error.what());
+  }
+  job.frames.clear();
+  return ProgressCallback::answered;
+}
+
+LockstepRun::ProgressCallback LockstepRun::advance(Job& job) {
+  if (!server_.is_wanted(job.to)) {
+    server_.drop(job.to);
+    job.frames.clear();
+    return ProgressCallback::answered;
+  }
+  check_deadline(job);
+  if (!server_.reserve(job.to, job.bytes)) return ProgressCallback::waits_for_memory;
+  const std::span<const lockstep::Moment> all = job.measure.moments;
+  const std::size_t first = job.replies.size();
+  const std::size_t count = std::min(frames_at_once(job), all.size() - first);
+  const auto begin = std::chrono::steady_clock::now();
+  measure_some(job, all.subspan(first, count));
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  frame_s_[job.measure.sensor] = taken.count() / static_cast<double>(count);
+  if (first + count < all.size()) return ProgressCallback::goes_on;
+  server_.reply(job.to, job.replies);
+  return ProgressCallback::answered;
+}
+
+/// The frames that were replied. A recording that cannot go on ends the server: it would not be
+/// one.
+void LockstepRun::record(const Job& job) {
+  if (!recorder_) return;
+  for (const link::RecordedFrame& frame : job.frames) recorder_->write(frame);
+}
+
+void LockstepRun::check_deadline(const Job& job) const {
+  const link::Limits& limits = flags_.limits;
+  if (std::chrono::steady_clock::now() - job.to.since <= std::chrono::seconds(limits.request_s)) {
+    return;
+  }
+  throw Error({"request, time",
+               fmt::format("{} of {} moments are measured after {} s", job.replies.size(),
+                           job.measure.moments.size(), limits.request_s),
+               limit_text(limits, &link::Limits::request_s),
+               "ask for fewer moments at once, or start GLIDAR with a higher limit"});
+}
+
+/// Many small frames together take less time than one by one, but others wait for them, and so does
+/// a signal.
+std::size_t LockstepRun::frames_at_once(const Job& job) const {
+  constexpr double kMaxFrames = 32.0;
+  constexpr double kMaxBeams = 1 << 20;  // the memory of many large frames
+  constexpr double kMax_s = 0.1;
+  const double frame_s = frame_s_[job.measure.sensor];
+  if (frame_s == 0.0) return 1;
+  const auto beams = static_cast<double>(beams_[job.measure.sensor]->size());
+  const double frames = std::min({kMaxFrames, kMaxBeams / beams, kMax_s / frame_s});
+  return static_cast<std::size_t>(std::max(1.0, frames));
+}
+
+nlohmann::ordered_json LockstepRun::description() const {
+  nlohmann::ordered_json objects = nlohmann::ordered_json::array();
+  for (const Instance& instance : session_.scene.instances) {
+    objects.push_back({{"name", instance.name},
+                       {"id", instance.id},
+                       {"class", session_.scene.class_names.at(instance.class_id)},
+                       {"world_from_object", json_of(instance.world_from_object)}});
+  }
+  nlohmann::ordered_json sensors = nlohmann::ordered_json::array();
+  for (const Mount& mount : session_.mounts) {
+    sensors.push_back({{"name", mount.name.empty() ? mount.sensor.name : mount.name},
+                       {"rows", mount.beams.rows},
+                       {"cols", mount.beams.cols},
+                       {"returns", mount.beams.returns},
+                       {"rate_hz", mount.sensor.rate_hz},
+                       {"frame_id", mount.beams.frame_id},
+                       {"world_from_sensor", json_of(pose_at(mount.motion.world_from_sensor, 0))},
+                       {"rig_from_sensor", json_of(mount.rig_from_sensor)}});
+  }
+  return {{"sensors", sensors},
+          {"world_from_rig", json_of(pose_at(session_.motion.world_from_rig, 0))},
+          {"objects", objects},
+          {"columns",
+           std::vector<std::string>(cloud_column_names().begin(), cloud_column_names().end())}};
+}
+
+/// Returns the size of the reply.
+std::int64_t LockstepRun::check(const lockstep::Measure& measure) const {
+  const std::size_t sensors = session_.mounts.size();
+  if (measure.sensor >= sensors) {
+    refuse_request("sensor", std::to_string(measure.sensor),
+                   sensors == 1 ? "0: there is one"
+                                : fmt::format("0 to {}, a sensor on the rig", sensors - 1));
+  }
+  const std::size_t objects = measure.moments.front().objects.size();
+  const std::size_t instances = session_.scene.instances.size();
+  if (objects != 0 && objects != instances) {
+    refuse_request("number of objects", std::to_string(objects),
+                   fmt::format("{}, one for each object of the scene, or 0", instances));
+  }
+  const auto& columns = measure.columns;
+  if (measure.hits_only && std::find(columns.begin(), columns.end(), "xyz") == columns.end()) {
+    refuse_request("flags", "hits only, without the column xyz", "xyz among the columns");
+  }
+  const std::size_t points = beams_[measure.sensor]->size();
+  const std::int64_t bytes = reply_bytes(columns, points, measure.moments.size());
+  const link::Limits& limits = flags_.limits;
+  if (bytes > link::bytes_of_mib(std::min(limits.reply_mib, limits.memory_mib))) {
+    constexpr double kMib = 1 << 20;
+    throw Error(
+        {"request, size of the reply",
+         fmt::format("up to {:.1f} MiB: {} clouds of {} points", static_cast<double>(bytes) / kMib,
+                     measure.moments.size(), points),
+         limit_text(limits, limits.reply_mib <= limits.memory_mib ? &link::Limits::reply_mib
+                                                                  : &link::Limits::memory_mib),
+         "ask for fewer moments or columns at once, or start GLIDAR with a higher limit"});
+  }
+  return bytes;
+}
+
+std::shared_ptr<const Beams> LockstepRun::beams_of(std::uint32_t index,
+                                                   std::uint32_t number) const {
+  const Sensor& sensor = session_.mounts[index].sensor;
+  if (number == 0 || std::holds_alternative<Pinhole>(sensor.optics)) return beams_[index];
+  return std::make_shared<const Beams>(make_beams(sensor, frame_interval(sensor, number)));
+}
+
+void LockstepRun::measure_some(Job& job, std::span<const lockstep::Moment> moments) {
+  const lockstep::Measure& measure = job.measure;
+  const Mount& mount = session_.mounts[measure.sensor];
+  std::vector<std::shared_ptr<const Beams>> beams;
+  std::vector<Motion> motions;
+  std::vector<Setup> setups;
+  if (frames_.size() < moments.size()) frames_.resize(moments.size());
+  for (const lockstep::Moment& moment : moments) {
+    beams.push_back(beams_of(measure.sensor, moment.number));
+    motions.push_back(motion_of(motion_at(moment, session_), mount));
+    Frame& frame = frames_[beams.size() - 1];
+    frame.stamp_ns = moment.t_ns;
+    frame.seed = moment.seed;
+    frame.number = moment.number;
+    frame.sensor_id = mount.id;
+  }
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    setups.push_back({.scene = session_.scene,
+                      .sensor = mount.sensor,
+                      .beams = *beams[i],
+                      .motion = motions[i],
+                      .renderer = *session_.renderer});
+    if (session_.paper) setups.back().paper.emplace(Woods2016Target{.camera = *session_.paper});
+  }
+  simulate_batch(setups, glidar::fields_needed_by(measure.columns),
+                 std::span(frames_).first(moments.size()));
+  for (std::size_t i = 0; i < moments.size(); ++i) {
+    if (recorder_) job.frames.push_back(line_of(measure.sensor, frames_[i], &moments[i]));
+    job.replies.push_back(cloud_of(measure, frames_[i], *beams[i]));
+  }
+}
+
+lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, const Frame& frame,
+                                           const Beams& beams) {
+  const OutputFlags& output = flags_.render.output;
+  OutputFrame axes = output_frame(output.cloud_frame, beams, frame.world_from_sensor);
+  axes.deskew = output.deskew;
+  axes.thread_pool = &session_.renderer->thread_pool();
+  std::shared_ptr<PointCloud> cloud = clouds_.take();
+  make_point_cloud(frame, beams, session_.scene, axes, measure.columns, *cloud);
+  if (measure.hits_only) {
+    const std::shared_ptr<PointCloud> hits = clouds_.take();
+    remove_invalid_points(*cloud, *hits);
+    cloud = hits;
+  }
+  return {.head = {.stamp_ns = frame.stamp_ns,
+                   .seed = frame.seed,
+                   .number = frame.number,
+                   .rows = cloud->rows,
+                   .cols = cloud->cols,
+                   .frame_id = cloud->frame_id,
+                   .world_from_cloud = cloud->world_from_cloud},
+          .cloud = cloud};
+}
+
+void LockstepRun::finish(const std::string& ending) {
+  faults_.flush();
+  const lockstep::Server::Counts& counts = server_.counts();
+  if (recorder_) recorder_->commit();  // before statistics, which may have no room
+  if (stats_file_) {
+    const nlohmann::ordered_json text = {{"ended_by", ending},
+                                         {"requests", counts.received},
+                                         {"refused", counts.refused},
+                                         {"clouds", counts.clouds},
+                                         {"faults", faults_.counts()}};
+    stats_file_->write(text.dump(2) + "\n");
+    stats_file_->commit();
+  }
+  if (flags_.render.quiet) return;
+  fmt::print("{} requests, {} refused; {} clouds\n", counts.received, counts.refused,
+             counts.clouds);
+}
+
+}  // namespace glidar::app

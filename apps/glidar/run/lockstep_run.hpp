@@ -1,0 +1,78 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/glidar/options/stream_options.hpp>
+#include <apps/glidar/run/console.hpp>
+#include <apps/glidar/run/interrupt.hpp>
+#include <apps/glidar/run/recorder.hpp>
+#include <apps/glidar/run/session.hpp>
+#include <glidar/io/files/atomic_file.hpp>
+#include <glidar/link/cloud_pool.hpp>
+#include <glidar/link/fault_log.hpp>
+#include <glidar/link/lockstep/server.hpp>
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glidar::app {
+
+/// `glidar stream --lockstep`: measures what clients ask for, when they ask.
+class LockstepRun {
+ public:
+  /// Listens, then loads what the flags name. Throws Error.
+  LockstepRun(const StreamFlags& flags, Console& console);
+  /// Until a signal comes, to which requests in work are answered with an error; returns the exit
+  /// code.
+  int run();
+
+ private:
+  /// A request in work. Several clients' requests take turns, some frames each.
+  struct Job {
+    lockstep::Measure measure;
+    lockstep::ReplyTo to;
+    std::int64_t bytes = 0;  ///< of the reply, at most
+    std::vector<lockstep::CloudReply> replies = {};
+    std::vector<link::RecordedFrame> frames = {};  ///< to be recorded once it is answered
+  };
+  enum class ProgressCallback : std::uint8_t { waits_for_memory, goes_on, answered };
+
+  void serve(const StopRequest& stop);
+  void start(lockstep::Received received);
+  ProgressCallback advance(Job& job);
+  ProgressCallback try_advance(Job& job);
+  void record(const Job& job);
+  [[nodiscard]] nlohmann::ordered_json description() const;
+  [[nodiscard]] std::int64_t check(const lockstep::Measure& measure) const;
+  void check_deadline(const Job& job) const;
+  [[nodiscard]] std::size_t frames_at_once(const Job& job) const;
+  void measure_some(Job& job, std::span<const lockstep::Moment> moments);
+  [[nodiscard]] std::shared_ptr<const Beams> beams_of(std::uint32_t sensor,
+                                                      std::uint32_t number) const;
+  [[nodiscard]] lockstep::CloudReply cloud_of(const lockstep::Measure& measure, const Frame& frame,
+                                              const Beams& beams);
+  void finish(const std::string& ending);
+
+  const StreamFlags& flags_;
+  Console& console_;
+  link::FaultLog faults_;
+  std::unique_ptr<AtomicFile> stats_file_;
+  link::Context context_;
+  lockstep::Server server_;
+  std::unique_ptr<Recorder> recorder_;
+  Session session_;
+  std::vector<std::shared_ptr<const Beams>> beams_;  ///< of each sensor's frame 0
+  link::CloudPool clouds_;
+  std::vector<Frame> frames_;
+  std::vector<double> frame_s_;  ///< that a frame of each sensor took last; 0: not known
+  std::deque<Job> jobs_;         ///< at most one of each client
+};
+
+}  // namespace glidar::app

@@ -1,0 +1,139 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/pose_source.hpp>
+
+#include <apps/glidar/options/pose_options.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+namespace glidar::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+Clock::duration seconds(double s) {
+  return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
+}
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// How often who waits looks whether it waits for too long.
+constexpr std::chrono::milliseconds kPoseWait{100};
+
+}  // namespace
+
+MotionSource::MotionSource(const Pace& pace, std::vector<double> periods_s, const StopRequest& stop)
+    : pace_(pace), periods_s_(std::move(periods_s)), stop_(stop), numbers_(periods_s_.size()) {}
+
+double MotionSource::begins_s(std::size_t mount) const {
+  return static_cast<double>(numbers_[mount]) * periods_s_[mount];
+}
+
+bool MotionSource::is_done(std::size_t mount) const {
+  constexpr double kRounding = 1e-9;  // 0.3 s at 10 Hz are three frames
+  return numbers_[mount] >= pace_.frames || begins_s(mount) >= pace_.duration_s - kRounding;
+}
+
+std::optional<Moment> MotionSource::next() {
+  std::optional<std::size_t> first;
+  for (std::size_t mount = 0; mount < numbers_.size(); ++mount) {
+    if (is_done(mount)) continue;
+    if (!first || begins_s(mount) < begins_s(*first)) first = mount;
+  }
+  if (!first) {
+    ending_ = "all frames are done";
+    return std::nullopt;
+  }
+  wait_until_due(*first);
+  if (stop_.is_requested()) return std::nullopt;
+  const std::uint64_t number = numbers_[*first]++;
+  return Moment{
+      .mount = *first, .number = static_cast<std::uint32_t>(number), .place = number, .due = *due_};
+}
+
+void MotionSource::wait_until_due(std::size_t mount) {
+  const Clock::time_point now = Clock::now();
+  const double before_s = std::exchange(due_s_, begins_s(mount));
+  if (!due_ || pace_.rate_hz <= 0.0) {
+    due_ = now;
+    return;
+  }
+  const double speed = pace_.rate_hz * periods_s_.front();
+  *due_ += seconds((due_s_ - before_s) / speed);
+  if (now > *due_ + seconds(periods_s_[mount] / speed)) {
+    ++late_;
+    due_ = now;
+  }
+  while (Clock::now() < *due_ && !stop_.is_requested()) stop_.wait_until(*due_);
+}
+
+RigMotion motion_of(const legacy::Placement& placement, const MovedScene& scene) {
+  RigMotion motion;
+  motion.world_from_rig =
+      ConstantPose{legacy_world_from_optical(placement.sensor, placement.translation_m) *
+                   scene.optical_from_rig};
+  const Pose world_from_object = legacy_world_from_object(placement.object);
+  for (const Pose& object_from_instance : scene.object_from_instance) {
+    motion.world_from_instance.emplace_back(ConstantPose{world_from_object * object_from_instance});
+  }
+  return motion;
+}
+
+SimulatorSource::SimulatorSource(legacy::PoseReceiver& receiver, const MovedScene& scene,
+                                 const Options& options, const StopRequest& stop)
+    : receiver_(receiver), scene_(scene), options_(options), stop_(stop) {}
+
+std::optional<Moment> SimulatorSource::next() {
+  if (number_ > 0 && moment_.mount + 1 < options_.mounts && !stop_.is_requested()) {
+    moment_.motion.reset();
+    ++moment_.mount;
+    return moment_;
+  }
+  if (options_.pace.rate_hz > 0.0 && number_ > 0) {
+    const Clock::time_point due = last_ + seconds(1.0 / options_.pace.rate_hz);
+    while (Clock::now() < due && !stop_.is_requested()) stop_.wait_until(due);
+  }
+  const std::optional<legacy::Placement> placement = wait_for_pose();
+  if (!placement) return std::nullopt;
+  last_ = Clock::now();
+  if (!first_) first_ = last_;
+  moment_ = {.number = static_cast<std::uint32_t>(number_),
+             .place = number_++,
+             .due = last_,
+             .motion = motion_of(*placement, scene_),
+             .stamp_ns = static_cast<std::int64_t>(placement->timestamp)};
+  return moment_;
+}
+
+std::optional<legacy::Placement> SimulatorSource::wait_for_pose() {
+  const Clock::time_point begin = Clock::now();
+  while (!is_done()) {
+    if (std::optional<legacy::Placement> placement = receiver_.receive()) return placement;
+    if (receiver_.is_over()) {
+      ending_ = "the simulator ended";
+    } else if (options_.timeout_s && seconds_since(begin) > *options_.timeout_s) {
+      has_timed_out_ = true;
+      ending_ = fmt::format("no pose came for {} s", *options_.timeout_s);
+    } else {
+      link::wait_for({&receiver_.pose_socket()}, stop_.descriptor(), kPoseWait);
+    }
+  }
+  return std::nullopt;
+}
+
+bool SimulatorSource::is_done() {
+  if (stop_.is_requested()) return true;
+  if (number_ >= options_.pace.frames) {
+    ending_ = "all frames are done";
+  } else if (first_ && seconds_since(*first_) >= options_.pace.duration_s) {
+    ending_ = "the duration is over";
+  }
+  return !ending_.empty();
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/glidar/run/interrupt.hpp>
+#include <apps/glidar/run/session.hpp>
+#include <glidar/core/beams.hpp>
+#include <glidar/link/legacy/pose_receiver.hpp>
+#include <glidar/motion/motion.hpp>
+
+#include <chrono>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glidar::app {
+
+/// A frame that is to be measured now.
+struct Moment {
+  std::size_t mount = 0;  ///< which of the session's sensors takes it
+  std::uint32_t number = 0;
+  std::uint64_t place = 0;  ///< among this sensor's frames; differs from `number` in recordings
+  std::chrono::steady_clock::time_point due;  ///< when its pose was there
+  /// Where everything is from now on and when that is; empty: as it was, at the frame's own time.
+  std::optional<RigMotion> motion = {};
+  std::optional<std::int64_t> stamp_ns = {};
+  std::optional<std::uint64_t> seed = {};  ///< empty: the command's
+  std::string frame_hash = {};             ///< what frame_hash() must be; empty: not known
+};
+
+/// How long and how quickly frames follow each other.
+struct Pace {
+  double rate_hz = 0.0;                                              ///< at most; 0: no limit
+  std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();  ///< of each sensor
+  double duration_s = std::numeric_limits<double>::infinity();
+};
+
+/// Where the poses of a stream come from.
+class PoseSource {
+ public:
+  PoseSource() = default;
+  PoseSource(const PoseSource&) = delete;
+  PoseSource& operator=(const PoseSource&) = delete;
+  virtual ~PoseSource() = default;
+
+  /// Waits for the next frame. Empty: there is no more, or a signal came.
+  virtual std::optional<Moment> next() = 0;
+  /// Why there is no more; empty while there is.
+  [[nodiscard]] virtual std::string ending() const = 0;
+};
+
+/// Frames of the command line's or the scene file's motion, one for each period of each sensor, in
+/// the order of their times.
+class MotionSource final : public PoseSource {
+ public:
+  /// `periods_s`: from one frame to the next in each sensor's own time. The pace's rate is that of
+  /// the first sensor.
+  MotionSource(const Pace& pace, std::vector<double> periods_s, const StopRequest& stop);
+  std::optional<Moment> next() override;
+  [[nodiscard]] std::string ending() const override { return ending_; }
+  /// Frames that came after they were due by more than a period; the later ones are put off.
+  [[nodiscard]] std::uint64_t late() const { return late_; }
+
+ private:
+  [[nodiscard]] double begins_s(std::size_t mount) const;
+  [[nodiscard]] bool is_done(std::size_t mount) const;
+  void wait_until_due(std::size_t mount);
+
+  Pace pace_;
+  std::vector<double> periods_s_;
+  const StopRequest& stop_;
+  std::optional<std::chrono::steady_clock::time_point> due_;
+  double due_s_ = 0.0;                  ///< what is due at due_, in the sensors' time
+  std::vector<std::uint64_t> numbers_;  ///< of each sensor's next frame
+  std::uint64_t late_ = 0;
+  std::string ending_;
+};
+
+/// What stands still and what a simulator's message moves.
+struct MovedScene {
+  std::vector<Pose> object_from_instance;  ///< the scene as it is, which is the message's object
+  Pose optical_from_rig = Pose::Identity();
+};
+
+/// The rig and all instances where a message puts them.
+RigMotion motion_of(const legacy::Placement& placement, const MovedScene& scene);
+
+/// A frame of each sensor for each pose of a simulator; its timestamps become the frames' stamps,
+/// whatever their unit.
+class SimulatorSource final : public PoseSource {
+ public:
+  struct Options {
+    Pace pace;
+    std::optional<double> timeout_s;  ///< of waiting for a pose; empty: for ever
+    std::size_t mounts = 1;           ///< sensors that measure at each pose
+  };
+  /// All must outlive it.
+  SimulatorSource(legacy::PoseReceiver& receiver, const MovedScene& scene, const Options& options,
+                  const StopRequest& stop);
+  std::optional<Moment> next() override;
+  [[nodiscard]] std::string ending() const override { return ending_; }
+  [[nodiscard]] bool has_timed_out() const { return has_timed_out_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  std::optional<legacy::Placement> wait_for_pose();
+  [[nodiscard]] bool is_done();
+
+  legacy::PoseReceiver& receiver_;
+  const MovedScene& scene_;
+  Options options_;
+  const StopRequest& stop_;
+  std::optional<Clock::time_point> first_;  ///< pose
+  Clock::time_point last_;                  ///< pose
+  std::uint64_t number_ = 0;                ///< of the next pose
+  Moment moment_;                           ///< the last one
+  bool has_timed_out_ = false;
+  std::string ending_;
+};
+
+}  // namespace glidar::app

@@ -1,0 +1,69 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/recorded_command.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/version.hpp>
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <string_view>
+#include <system_error>
+
+namespace glidar::app {
+
+std::vector<std::string> lasting(const std::vector<std::string>& arguments) {
+  static constexpr std::array<std::string_view, 2> kFlags = {"--quiet", "--no-cache"};
+  static constexpr std::array<std::string_view, 2> kWithValue = {"--threads", "--cache-folder"};
+  const auto has = [](const auto& options, std::string_view name) {
+    return std::find(options.begin(), options.end(), name) != options.end();
+  };
+  std::vector<std::string> kept;
+  bool is_value = false;
+  for (const std::string& argument : arguments) {
+    const std::string_view name = std::string_view(argument).substr(0, argument.find('='));
+    const bool is_option = !is_value && (has(kFlags, name) || has(kWithValue, name));
+    if (!is_option && !is_value) kept.push_back(argument);
+    is_value = is_option && has(kWithValue, argument);
+  }
+  return kept;
+}
+
+void parse_recorded(const std::vector<std::string>& arguments, const std::string& subcommand,
+                    const std::string& file, CLI::App& command) {
+  const auto refuse = [&](const char* found) {
+    throw Error({file, found, "what `glidar " + subcommand + "` wrote", "write it again"});
+  };
+  const std::vector<std::string> kept = lasting(arguments);
+  if (kept.empty() || kept.front() != subcommand)
+    refuse(kept.empty() ? "it tells no command: a simulator or a recording gave the poses"
+                        : "it tells another command");
+  try {
+    command.parse(std::vector<std::string>(kept.rbegin(), kept.rend() - 1));
+  } catch (const CLI::ParseError&) {
+    refuse("its command is not understood");
+  }
+  const CLI::Option* folder = command.get_option_no_throw("--cache-folder");
+  if (folder != nullptr && folder->count() > 0) refuse("it names a folder for the model cache");
+}
+
+void compare_version(const std::string& written_by, const std::string& file, Console& console) {
+  if (written_by == version()) return;
+  console.warn(fmt::format("{} was written by glidar {}, this is {}", file, written_by, version()));
+}
+
+void enter(const CommandRecord& command, const std::string& file) {
+  std::error_code problem;
+  std::filesystem::current_path(command.folder, problem);
+  if (!problem) return;
+  throw Error({file,
+               fmt::format("its command ran in {}: {}", command.folder.lexically_normal().string(),
+                           problem.message()),
+               "the way from the file to that folder as it was then", "move the files back"});
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/recorded_source.hpp>
+
+#include <apps/glidar/run/placed_motion.hpp>
+#include <glidar/core/error.hpp>
+
+#include <algorithm>
+#include <utility>
+
+namespace glidar::app {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+void check(const link::RecordedFrame& frame, std::uint64_t number, const Session& session) {
+  const std::size_t objects = frame.moment.objects.size();
+  const std::size_t instances = session.scene.instances.size();
+  const bool fits = frame.sensor < session.mounts.size() &&
+                    (!frame.is_placed || objects == 0 || objects == instances);
+  if (fits) return;
+  throw Error(
+      {"recording, frame " + std::to_string(number),
+       "sensor " + std::to_string(frame.sensor) + " and " + std::to_string(objects) + " objects",
+       std::to_string(session.mounts.size()) + " sensors and " + std::to_string(instances) +
+           " objects, which the scene has now",
+       "replay it with the scene that it was recorded with"});
+}
+
+}  // namespace
+
+RecordedSource::RecordedSource(link::RecordingReader& recording, const Pace& pace,
+                               const Session& session, const StopRequest& stop)
+    : recording_(recording),
+      pace_(pace),
+      session_(session),
+      stop_(stop),
+      places_(session.mounts.size()) {}
+
+std::optional<Moment> RecordedSource::next() {
+  if (number_ >= pace_.frames) {
+    ending_ = "all frames are done";
+    return std::nullopt;
+  }
+  std::optional<link::RecordedFrame> frame = recording_.next();
+  if (!frame) {
+    ending_ = "the recording is at its end";
+    return std::nullopt;
+  }
+  check(*frame, number_, session_);
+  wait_until_due();
+  if (stop_.is_requested()) return std::nullopt;
+  ++number_;
+  Moment moment{.mount = frame->sensor,
+                .number = frame->moment.number,
+                .place = places_[frame->sensor]++,
+                .due = *due_,
+                .motion = {},
+                .stamp_ns = frame->moment.t_ns,
+                .seed = frame->moment.seed,
+                .frame_hash = std::move(frame->frame_hash)};
+  if (frame->is_placed) moment.motion = motion_at(frame->moment, session_);
+  return moment;
+}
+
+void RecordedSource::wait_until_due() {
+  const Clock::time_point now = Clock::now();
+  if (!due_ || pace_.rate_hz <= 0.0) {
+    due_ = now;
+    return;
+  }
+  const std::chrono::duration<double> period(1.0 / pace_.rate_hz);
+  due_ = std::max(now, *due_ + std::chrono::duration_cast<Clock::duration>(period));
+  while (Clock::now() < *due_ && !stop_.is_requested()) stop_.wait_until(*due_);
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/rig_outputs.hpp>
+
+#include <apps/glidar/options/picture_options.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <fmt/format.h>
+
+namespace glidar::app {
+namespace {
+
+[[noreturn]] void refuse_output(const std::string& path, const FileFormat& format,
+                                const std::string& reasons) {
+  throw Error(
+      {.where = "--output, " + path,
+       .found = "fits none of the sensors on the rig: " + reasons,
+       .allowed = "an output that fits at least one of them",
+       .remedy = format.suffix == ".depth.png"
+                     ? "write .npy or .depth.tiff, which hold any depth, or a cloud such as .pcd"
+                     : "choose another --colour-by"});
+}
+
+/// Adds a path to the outputs of the sensors that it fits.
+void distribute(const std::string& path, const OutputFlags& flags, const Session& session,
+                std::vector<OutputFlags>& outputs, Console& console) {
+  const FileFormat& format = format_of(flags, path);
+  std::string reasons;
+  std::size_t fitting = 0;
+  for (std::size_t i = 0; i < session.mounts.size(); ++i) {
+    const Mount& mount = session.mounts[i];
+    const std::string reason = misfit(format, picture_options(flags), mount.sensor, mount.beams);
+    if (reason.empty()) {
+      outputs[i].paths.push_back(path);
+      ++fitting;
+      continue;
+    }
+    reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", mount.name, reason);
+  }
+  if (fitting == 0) refuse_output(path, format, reasons);
+  if (!reasons.empty()) console.info(fmt::format("{} is not written for {}", path, reasons));
+}
+
+}  // namespace
+
+std::vector<OutputFlags> outputs_by_sensor(const RenderFlags& flags, const Session& session,
+                                           Console& console) {
+  std::vector<OutputFlags> outputs(session.mounts.size(), flags.output);
+  if (session.mounts.size() == 1) return outputs;
+  for (OutputFlags& output : outputs) output.paths.clear();
+  for (const std::string& path : flags.output.paths) {
+    distribute(path, flags.output, session, outputs, console);
+  }
+  return outputs;
+}
+
+bool has_outputs(const OutputFlags& flags) {
+  return !flags.paths.empty() || !flags.legacy_name.empty();
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/glidar/run/session.hpp>
+
+#include <vector>
+
+namespace glidar::app {
+
+/// The outputs of each of the session's sensors. On a rig a sensor is left without those that do
+/// not fit it, such as the depth image of a LiDAR that looks all around; a note says so.
+/// Throws Error when an output fits none of the sensors.
+std::vector<OutputFlags> outputs_by_sensor(const RenderFlags& flags, const Session& session,
+                                           Console& console);
+
+/// False when nothing is to be written.
+bool has_outputs(const OutputFlags& flags);
+
+}  // namespace glidar::app

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/stream_report.hpp>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace glidar::app {
+namespace {
+
+constexpr double kMilli = 1e3;
+
+nlohmann::ordered_json json_of(const legacy::CloudPublisher::Counts& counts) {
+  return {{"sent", counts.sent},     {"missed", counts.missed}, {"repeated", counts.repeated},
+          {"points", counts.points}, {"bytes", counts.bytes},   {"handshakes", counts.handshakes}};
+}
+
+nlohmann::ordered_json json_of(const legacy::PoseReceiver::Counts& counts) {
+  return {{"received", counts.received},
+          {"refused", counts.refused},
+          {"repeated", counts.repeated},
+          {"backwards", counts.backwards}};
+}
+
+std::string count_text(std::uint64_t count, const char* of) {
+  return fmt::format("{} {}{}", count, of, count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::string json_text(const StreamSummary& summary) {
+  const DurationHistogram& latency = summary.stats.latency;
+  const double seconds = summary.stats.seconds();
+  nlohmann::ordered_json all = {
+      {"ending", summary.ending},
+      {"seconds", seconds},
+      {"frames",
+       {{"measured", summary.measured}, {"delivered", latency.count()}, {"late", summary.late}}},
+      {"rate_hz", static_cast<double>(latency.count()) / seconds},
+      {"latency_ms",
+       {{"p50", kMilli * latency.quantile_s(0.5)},
+        {"p99", kMilli * latency.quantile_s(0.99)},
+        {"max", kMilli * latency.longest_s()}}}};
+  if (summary.clouds) all["clouds"] = json_of(*summary.clouds);
+  if (summary.poses) all["poses"] = json_of(*summary.poses);
+  all["faults"] = summary.faults;
+  constexpr int kIndent = 2;
+  return all.dump(kIndent, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+std::string summary_text(const StreamSummary& summary) {
+  const DurationHistogram& latency = summary.stats.latency;
+  std::string text =
+      fmt::format("{} in {:.2f} s", count_text(latency.count(), "frame"), summary.stats.seconds());
+  if (latency.count() > 0) {
+    text += fmt::format(", {:.1f} Hz, latency {:.1f} ms (99 %: {:.1f} ms)",
+                        static_cast<double>(latency.count()) / summary.stats.seconds(),
+                        kMilli * latency.quantile_s(0.5), kMilli * latency.quantile_s(0.99));
+  }
+  if (summary.late > 0) text += fmt::format(", {} late", summary.late);
+  if (summary.clouds) {
+    text += fmt::format("\npublished {}, {} missed by a slow subscriber",
+                        count_text(summary.clouds->sent, "cloud"), summary.clouds->missed);
+  }
+  if (summary.poses) {
+    text += fmt::format("\ntook {}, refused {}", count_text(summary.poses->received, "message"),
+                        summary.poses->refused);
+  }
+  return text + "\nended: " + summary.ending + "\n";
+}
+
+std::string waiting_text(const StreamFlags& flags) {
+  std::string text = "waiting for";
+  if (flags.port && flags.subscribers > 0) {
+    text += fmt::format(" {} (clouds at {}, handshakes at port {})",
+                        count_text(flags.subscribers, "subscriber"),
+                        text_of(link::Endpoint{flags.bind, *flags.port}), *flags.port + 1);
+  }
+  if (flags.physics_port) {
+    text += fmt::format("{} a simulator (poses at {}, handshake at port {})",
+                        flags.port && flags.subscribers > 0 ? " and" : "",
+                        text_of(link::Endpoint{flags.physics_host, *flags.physics_port}),
+                        *flags.physics_port + 1);
+  }
+  return text;
+}
+
+std::string ready_text(std::uint64_t ready, std::uint64_t wanted) {
+  return fmt::format("{} of {} ready", ready, count_text(wanted, "subscriber"));
+}
+
+std::string publishing_text(const legacy::CloudPublisher::Counts& counts) {
+  return fmt::format(", {}, {} missed", count_text(counts.subscribers, "subscriber"),
+                     counts.missed);
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/glidar/options/stream_options.hpp>
+#include <apps/glidar/run/stream_stats.hpp>
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace glidar::app {
+
+/// What became of a stream.
+struct StreamSummary {
+  const StreamStats& stats;
+  std::string ending;
+  std::uint64_t measured = 0;  ///< frames
+  std::uint64_t late = 0;      ///< frames that came after they were due
+  std::optional<legacy::CloudPublisher::Counts> clouds = {};
+  std::optional<legacy::PoseReceiver::Counts> poses = {};
+  std::map<std::string, std::uint64_t> faults = {};
+};
+
+/// As --stats writes it; docs/link.md tells every key.
+std::string json_text(const StreamSummary& summary);
+
+/// The same in a few lines for people.
+std::string summary_text(const StreamSummary& summary);
+
+/// What is waited for before the stream begins.
+std::string waiting_text(const StreamFlags& flags);
+
+/// How many of the subscribers that are waited for will receive the next cloud.
+std::string ready_text(std::uint64_t ready, std::uint64_t wanted);
+
+/// The part of the status line about subscribers.
+std::string publishing_text(const legacy::CloudPublisher::Counts& counts);
+
+}  // namespace glidar::app

@@ -1,0 +1,363 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/stream_run.hpp>
+
+#include <apps/glidar/options/naming.hpp>
+#include <apps/glidar/run/advice.hpp>
+#include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/placed_motion.hpp>
+#include <apps/glidar/run/recorded_source.hpp>
+#include <apps/glidar/run/rig_outputs.hpp>
+#include <apps/glidar/run/stream_report.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/io/formats/sidecar.hpp>
+#include <glidar/simulate/simulate.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <csignal>
+#include <exception>
+#include <limits>
+#include <utility>
+#include <variant>
+
+namespace glidar::app {
+namespace {
+
+const std::vector<std::string> kPublishedColumns = {"xyz", "intensity"};
+
+/// How often the status line changes.
+constexpr std::chrono::milliseconds kShow{200};
+
+/// How often partners are looked after that are waited for.
+constexpr std::chrono::milliseconds kStreamWait{20};
+
+/// Whether every frame has the same beams; those of scanners move on.
+bool has_fixed_beams(const Sensor& sensor) {
+  return std::holds_alternative<Pinhole>(sensor.optics);
+}
+
+/// Throws Error when a frame is not the one that was recorded.
+void compare(const Shot& shot, const std::string& recording, std::uint64_t number) {
+  if (frame_hash(shot.frame) == shot.frame_hash) return;
+  throw Error({fmt::format("{}, frame {}", recording, number),
+               "it comes out otherwise than when it was recorded",
+               "the same models, scene and sensor files, and program as then", ""});
+}
+
+}  // namespace
+
+StreamRun::StreamRun(StreamFlags flags, Console& console)
+    : flags_(std::move(flags)),
+      console_(console),
+      faults_(console.report()),
+      duration_s_(std::exchange(flags_.render.duration_s, std::nullopt)
+                      .value_or(std::numeric_limits<double>::infinity())) {
+  if (!flags_.stats.empty()) {
+    naming("--stats", [&] { stats_file_ = std::make_unique<AtomicFile>(flags_.stats); });
+  }
+  if (!flags_.record.empty()) {
+    naming("--record",
+           [&] { recorder_ = std::make_unique<Recorder>(flags_.record, flags_.durability); });
+  }
+  if (!flags_.replay.empty()) recording_ = std::make_unique<link::RecordingReader>(flags_.replay);
+  if (flags_.port) {
+    naming("--bind, --port", [&] {
+      publisher_ =
+          std::make_unique<legacy::CloudPublisher>(context_, publisher_options(flags_), faults_);
+    });
+  }
+  open_session();
+  if (recorder_) recorder_->begin(session_, flags_.command);
+  if (flags_.physics_port && !recording_) {
+    prepare_poses();
+    naming("--physics-host, --physics-port", [&] {
+      receiver_ =
+          std::make_unique<legacy::PoseReceiver>(context_, receiver_options(flags_), faults_);
+    });
+  }
+}
+
+void StreamRun::open_session() {
+  const Mount unknown{.sensor = {}};
+  std::vector<Output> outputs;
+  if (writes_files()) outputs = plan(numbered(flags_.render.output, 0), unknown, unknown.beams);
+  open(
+      flags_.render, [&] { refuse_overwrite_of_inputs(session_.files, outputs); }, console_,
+      session_);
+  files_ = outputs_by_sensor(flags_.render, session_, console_);
+  for (const Mount& mount : session_.mounts) {
+    aimed_.push_back({.beams = std::make_shared<const Beams>(mount.beams)});
+  }
+  taken_ = taken_files(flags_, session_.files);
+  std::vector<std::string> columns;
+  if (publisher_) {
+    columns = kPublishedColumns;
+    publisher_->set_topics(topics());
+  }
+  for (const Output& output : outputs) {
+    columns.insert(columns.end(), output.columns.begin(), output.columns.end());
+  }
+  fields_ = glidar::fields_needed_by(columns);
+}
+
+/// 2015's topic where there is one sensor, one for each on a rig.
+std::map<std::uint32_t, std::string> StreamRun::topics() const {
+  std::map<std::uint32_t, std::string> topics;
+  for (const Mount& mount : session_.mounts) {
+    const std::string label = label_of(flags_.render, mount);
+    if (!label.empty()) topics[mount.id] = legacy::rig_topic(label);
+  }
+  if (topics.size() > 1 && flags_.publishes_newest) {
+    throw Error({"--publish-latest", "given for a rig: the newest cloud is that of one sensor", "",
+                 "leave it out, or choose a sensor with --sensor-name"});
+  }
+  return topics;
+}
+
+/// The scene as it stands becomes the object that the simulator moves.
+void StreamRun::prepare_poses() {
+  moved_scene_.object_from_instance.clear();
+  for (const Trajectory& trajectory : session_.motion.world_from_instance) {
+    if (!std::holds_alternative<ConstantPose>(trajectory)) {
+      throw Error({.where = "--physics-port",
+                   .found = "the scene file moves its objects",
+                   .allowed = "",
+                   .remedy = "let either the simulator or the scene file move things"});
+    }
+    moved_scene_.object_from_instance.push_back(std::get<ConstantPose>(trajectory).pose);
+  }
+  if (!std::holds_alternative<ConstantPose>(session_.motion.world_from_rig)) {
+    console_.info(
+        "the simulator says where the sensor is; the scene file's motion of it does not count");
+  }
+  const Mount& first = session_.mounts.front();
+  if (!first.name.empty() || !looks_along_z(first.beams)) {
+    moved_scene_.optical_from_rig = optical_from_body();
+  }
+  if (!flags_.render.pose.model_q.empty() || !flags_.render.pose.model_r.empty()) {
+    // as in 2015, where the first message replaced it
+    for (Pose& pose : moved_scene_.object_from_instance) pose = Pose::Identity();
+  }
+  if (sensor_pose_given(flags_.render.pose)) {
+    console_.info("the simulator says where the sensor is; the options for that do not count");
+  }
+}
+
+std::unique_ptr<PoseSource> StreamRun::make_source(const StopRequest& stop) {
+  Pace pace = {.frames = flags_.frames.value_or(std::numeric_limits<std::uint64_t>::max()),
+               .duration_s = duration_s_};
+  if (recording_) {
+    pace.rate_hz = flags_.replay_rate_hz;
+    return std::make_unique<RecordedSource>(*recording_, pace, session_, stop);
+  }
+  if (receiver_) {
+    pace.rate_hz = flags_.render.sensor.rate_hz.value_or(0.0);
+    return std::make_unique<SimulatorSource>(
+        *receiver_, moved_scene_,
+        SimulatorSource::Options{
+            .pace = pace, .timeout_s = flags_.pose_timeout_s, .mounts = session_.mounts.size()},
+        stop);
+  }
+  std::vector<double> periods_s;
+  for (const Mount& mount : session_.mounts) periods_s.push_back(1.0 / mount.sensor.rate_hz);
+  if (!flags_.is_unpaced) pace.rate_hz = session_.mounts.front().sensor.rate_hz;
+  return std::make_unique<MotionSource>(pace, std::move(periods_s), stop);
+}
+
+int StreamRun::run() {
+  StopRequest stop;
+  try {
+    const std::unique_ptr<PoseSource> source = make_source(stop);
+    if (wait_for_partners(stop)) stream(*source, stop);
+    if (const auto* motion = dynamic_cast<const MotionSource*>(source.get())) {
+      late_ = motion->late();
+    }
+    const auto* simulator = dynamic_cast<const SimulatorSource*>(source.get());
+    exit_code_ = simulator != nullptr && simulator->has_timed_out() ? kNoPoses : kDone;
+    constexpr int kSignalled = 128;  // as shells have it
+    if (stop.is_requested()) exit_code_ = kSignalled + stop.signal();
+    stop.disarm();
+    finish(stop.is_requested() ? fmt::format("signal {}", stop.signal()) : source->ending(),
+           stop.signal() == SIGTERM);
+  } catch (const std::exception& error) {
+    try {
+      if (!is_finished_) finish(error.what());
+    } catch (const std::exception& another) {
+      console_.warn(another.what());
+    }
+    throw;
+  }
+  return exit_code_;
+}
+
+bool StreamRun::has_partners() {
+  if (publisher_) publisher_->serve();
+  const bool has_simulator = !receiver_ || receiver_->is_ready();
+  return has_simulator && (!publisher_ || publisher_->has(flags_.subscribers));
+}
+
+/// Says how many subscribers there are whenever that changes.
+void StreamRun::show_partners(std::uint64_t& shown) {
+  const std::uint64_t ready = publisher_ ? publisher_->ready() : 0;
+  if (flags_.subscribers == 0 || std::exchange(shown, ready) == ready) return;
+  console_.info(ready_text(ready, flags_.subscribers));
+}
+
+bool StreamRun::wait_for_partners(const StopRequest& stop) {
+  bool is_told = false;
+  std::uint64_t ready = 0;
+  while (!has_partners() && !stop.is_requested()) {
+    if (!std::exchange(is_told, true)) console_.info(waiting_text(flags_));
+    show_partners(ready);
+    link::wait_for({publisher_ ? &publisher_->handshake_socket() : nullptr,
+                    receiver_ ? &receiver_->handshake_socket() : nullptr},
+                   stop.descriptor(), kStreamWait);
+  }
+  return !stop.is_requested();
+}
+
+void StreamRun::stream(PoseSource& source, StopRequest& stop) {
+  stats_ = {};
+  Delivery delivery([this](const Shot& shot) { deliver(shot); }, [this] { look_after_peers(); },
+                    [&stop] { stop.ask(); });
+  while (!stop.is_requested()) {
+    const std::optional<Moment> moment = source.next();
+    if (!moment) break;
+    if (moment->motion) move(*moment->motion);
+    if (!is_wanted(moment->place)) continue;
+    measure(*moment, delivery.room());
+    delivery.hand_over();
+  }
+  delivery.finish();
+}
+
+void StreamRun::move(const RigMotion& motion) {
+  for (Mount& mount : session_.mounts) mount.motion = motion_of(motion, mount);
+  if (recorder_) placed_ = std::make_shared<const lockstep::Moment>(placed_by(motion));
+}
+
+void StreamRun::measure(const Moment& moment, Shot& shot) {
+  const Mount& mount = session_.mounts[moment.mount];
+  auto& [beams, number] = aimed_[moment.mount];
+  const FrameInterval window = frame_interval(mount.sensor, moment.number);
+  if (moment.number != number && !has_fixed_beams(mount.sensor)) {
+    beams = std::make_shared<const Beams>(make_beams(mount.sensor, window));
+    number = moment.number;
+  }
+  shot.beams = beams;
+  shot.place = moment.place;
+  shot.mount = moment.mount;
+  shot.placed = placed_;
+  shot.frame_hash = moment.frame_hash;
+  shot.due = moment.due;
+  shot.frame.number = moment.number;
+  shot.frame.sensor_id = mount.id;
+  shot.frame.stamp_ns = moment.stamp_ns.value_or(window.start_ns);
+  shot.frame.seed = moment.seed.value_or(flags_.render.seed);
+  Setup setup{.scene = session_.scene,
+              .sensor = mount.sensor,
+              .beams = *beams,
+              .motion = mount.motion,
+              .renderer = *session_.renderer};
+  if (session_.paper) setup.paper.emplace(Woods2016Target{.camera = *session_.paper});
+  simulate(setup, fields_, shot.frame);
+  if (measured_++ > 0) return;
+  tell(view_advice({session_.scene, mount.sensor, *beams, shot.frame}), console_);
+}
+
+bool StreamRun::is_wanted(std::uint64_t place) const {
+  return recording_ || recorder_ || writes_files() || (publisher_ && publisher_->wants(place));
+}
+
+bool StreamRun::writes_files() const {
+  return has_outputs(flags_.render.output);
+}
+
+std::vector<Output> StreamRun::plan(const OutputFlags& files, const Mount& mount,
+                                    const Beams& beams) {
+  SidecarContext context{.scene = session_.scene,
+                         .sensor = mount.sensor,
+                         .beams = beams,
+                         .renderer = renderer_name(flags_.render),
+                         .inputs = taken_};
+  if (!flags_.physics_port && !recording_) {  // else the command does not tell the poses
+    context.command = flags_.command;
+    const std::string label = label_of(flags_.render, mount);
+    if (!label.empty()) {
+      context.command.arguments.insert(context.command.arguments.end(), {"--sensor-name", label});
+    }
+  }
+  return plan_outputs(files, flags_.render.input, context, console_.report());
+}
+
+void StreamRun::deliver(const Shot& shot) {
+  if (recorder_) recorder_->write(line_of(shot.mount, shot.frame, shot.placed.get()));
+  if (!shot.frame_hash.empty()) compare(shot, flags_.replay, stats_.latency.count());
+  if (publisher_ && publisher_->wants(shot.place)) publish(shot);
+  if (writes_files()) write_files(shot);
+  stats_.note(shot.due);
+}
+
+void StreamRun::publish(const Shot& shot) {
+  make_point_cloud(shot.frame, *shot.beams, session_.scene,
+                   output_frame("legacy", *shot.beams, shot.frame.world_from_sensor),
+                   kPublishedColumns, cloud_);
+  publisher_->write(cloud_, shot.frame);
+}
+
+void StreamRun::write_files(const Shot& shot) {
+  const Mount& mount = session_.mounts[shot.mount];
+  OutputFlags files = files_[shot.mount];
+  if (!has_outputs(files)) return;
+  const std::string label = label_of(flags_.render, mount);
+  if (!label.empty()) files = labelled(files, label);
+  const std::vector<Output> outputs =
+      plan(numbered(files, static_cast<std::uint32_t>(shot.place)), mount, *shot.beams);
+  refuse_overwrite_of_inputs(taken_, outputs);
+  write_outputs(outputs, shot.frame, *shot.beams, session_.scene);
+}
+
+void StreamRun::look_after_peers() {
+  if (publisher_) publisher_->serve();
+  const auto now = StreamStats::Clock::now();
+  if (now - shown_ < kShow) return;
+  shown_ = now;
+  console_.status(status_text(stats_) + (publisher_ ? publishing_text(publisher_->counts()) : ""));
+}
+
+void StreamRun::finish(const std::string& ending, bool is_urgent) {
+  constexpr std::chrono::milliseconds kUnhurried{1000};
+  constexpr std::chrono::milliseconds kUrgent{400};  // of three waits that take so long at most
+  is_finished_ = true;
+  console_.status("");
+  std::exception_ptr failure;  // the first; the other steps are taken all the same
+  const auto attempt = [&failure](const auto& step) {
+    try {
+      step();
+    } catch (const std::exception&) {
+      if (!failure) failure = std::current_exception();
+    }
+  };
+  if (publisher_) attempt([&] { publisher_->shut_down(is_urgent ? kUrgent : kUnhurried); });
+  faults_.flush();
+  StreamSummary summary{.stats = stats_,
+                        .ending = ending,
+                        .measured = measured_,
+                        .late = late_,
+                        .faults = faults_.counts()};
+  if (publisher_) summary.clouds = publisher_->counts();
+  if (receiver_) summary.poses = receiver_->counts();
+  if (stats_file_) {
+    attempt([&] {
+      stats_file_->write(json_text(summary));
+      stats_file_->commit();
+    });
+  }
+  if (recorder_) attempt([&] { recorder_->commit(); });
+  if (!flags_.render.quiet) fmt::print("{}", summary_text(summary));
+  if (failure) std::rethrow_exception(failure);
+}
+
+}  // namespace glidar::app

@@ -1,0 +1,85 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <apps/glidar/options/stream_options.hpp>
+#include <apps/glidar/run/console.hpp>
+#include <apps/glidar/run/delivery.hpp>
+#include <apps/glidar/run/interrupt.hpp>
+#include <apps/glidar/run/pose_source.hpp>
+#include <apps/glidar/run/recorder.hpp>
+#include <apps/glidar/run/session.hpp>
+#include <apps/glidar/run/stream_stats.hpp>
+#include <glidar/core/point_cloud.hpp>
+#include <glidar/io/files/atomic_file.hpp>
+#include <glidar/link/fault_log.hpp>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace glidar::app {
+
+/// `glidar stream`: source of poses -> simulate -> sinks.
+class StreamRun {
+ public:
+  /// Listens at its ports, then loads what the flags name. Throws Error.
+  StreamRun(StreamFlags flags, Console& console);
+  /// Until it is over; returns the exit code. Subscribers are told and the statistics are written
+  /// in any case, also when it throws.
+  int run();
+
+ private:
+  void open_session();
+  [[nodiscard]] std::map<std::uint32_t, std::string> topics() const;
+  void prepare_poses();
+  [[nodiscard]] std::unique_ptr<PoseSource> make_source(const StopRequest& stop);
+  bool wait_for_partners(const StopRequest& stop);
+  [[nodiscard]] bool has_partners();
+  void show_partners(std::uint64_t& shown);
+  void stream(PoseSource& source, StopRequest& stop);
+  void measure(const Moment& moment, Shot& shot);
+  [[nodiscard]] bool is_wanted(std::uint64_t place) const;
+  [[nodiscard]] bool writes_files() const;
+  [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const Mount& mount,
+                                         const Beams& beams);
+  void move(const RigMotion& motion);
+  void deliver(const Shot& shot);
+  void write_files(const Shot& shot);
+  void publish(const Shot& shot);
+  void look_after_peers();
+  void finish(const std::string& ending, bool is_urgent = false);
+
+  StreamFlags flags_;
+  Console& console_;
+  link::FaultLog faults_;
+  std::unique_ptr<AtomicFile> stats_file_;
+  link::Context context_;
+  std::unique_ptr<legacy::CloudPublisher> publisher_;
+  std::unique_ptr<legacy::PoseReceiver> receiver_;
+  std::unique_ptr<Recorder> recorder_;
+  std::unique_ptr<link::RecordingReader> recording_;  ///< that is replayed
+  std::shared_ptr<const lockstep::Moment> placed_;    ///< by the simulator's last pose
+  double duration_s_ = 0.0;
+  Session session_;
+  struct Aimed {
+    std::shared_ptr<const Beams> beams;
+    std::uint32_t number = 0;  ///< of the frame that they are of
+  };
+  std::vector<Aimed> aimed_;        ///< of each sensor
+  std::vector<std::string> taken_;  ///< files that no output may replace
+  std::vector<OutputFlags> files_;  ///< of each sensor
+  MovedScene moved_scene_;
+  HitFieldMask fields_;
+  StreamStats stats_;
+  StreamStats::Clock::time_point shown_;
+  PointCloud cloud_;
+  std::uint64_t measured_ = 0;
+  std::uint64_t late_ = 0;
+  int exit_code_ = 0;
+  bool is_finished_ = false;
+};
+
+}  // namespace glidar::app

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <variant>
+
+namespace glidar {
+
+// How a surface sends light back to where it came from (monostatic: lamp and receiver are one), as
+// a function of the incidence angle. What is computed from them stands in
+// sensor/lidar_equation.hpp.
+
+/// A matt surface: reflectance x cos(incidence).
+struct Lambert {};
+
+/// HELIOS++'s form of Phong (model/ImprovedEnergyModel): reflectance x
+/// [(1 - specular_share) cos(incidence) + specular_share |cos(2 incidence)|^exponent].
+struct PhongLike {
+  double specular_share = 0.2;  ///< 0..1
+  double exponent = 20.0;       ///< from 0
+};
+
+/// Oren and Nayar, "Generalization of Lambert's reflectance model", SIGGRAPH 1994, with lamp and
+/// receiver in one place: reflectance x [A cos + B sin^2], A = 1 - 0.5 s^2 / (s^2 + 0.33),
+/// B = 0.45 s^2 / (s^2 + 0.09).
+struct OrenNayar {
+  double roughness_rad = 0.3;  ///< s, standard deviation of the facets' slopes, from 0
+};
+
+/// A retro-reflector: reflectance x gain x exp(-(incidence / width)^2).
+struct RetroReflector {
+  double gain = 300.0;       ///< over a white matt surface, above 0
+  double width_rad = 0.524;  ///< above 0
+};
+
+/// Glass, a solar panel, foil: a weak matt part and a narrow lobe, reflectance x
+/// [matt_share cos(incidence) + lobe_gain exp(-incidence^2 / (2 width^2))].
+struct Glossy {
+  double matt_share = 0.05;   ///< 0..1
+  double lobe_gain = 10.0;    ///< of the lobe's middle over a white matt surface, from 0
+  double width_rad = 0.0524;  ///< above 0
+};
+
+using Brdf = std::variant<Lambert, PhongLike, OrenNayar, RetroReflector, Glossy>;
+
+}  // namespace glidar

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/config/noise_text.hpp>
+
+#include <glidar/io/config/noise_yaml.hpp>
+
+namespace glidar {
+
+std::string noise_text(const NoiseStep& step) {
+  const nlohmann::ordered_json told = noise_json({step}).at(0);
+  std::string text;
+  for (const auto& [key, value] : told.items()) {
+    if (key == "type") {
+      text = value.get<std::string>();
+      continue;
+    }
+    text += (text.find(' ') == std::string::npos ? " " : ", ") + key + " ";
+    text += value.is_string() ? value.get<std::string>() : value.dump();
+  }
+  return text;
+}
+
+}  // namespace glidar

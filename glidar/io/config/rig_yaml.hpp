@@ -1,0 +1,16 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to glidar/io.
+
+#include <glidar/io/config/scene_builder.hpp>
+#include <glidar/io/config/yaml_reader.hpp>
+
+namespace glidar {
+
+/// Reads what a scene file says of sensors and where they are: `sensor`, `sensor_pose` and
+/// `sensor_motion`, or `sensors`, `rig_pose` and `rig_motion`.
+void read_rig(const YamlField& root, ScenePlan& plan);
+
+}  // namespace glidar

@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/config/sensor_presets.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
+#include <glidar/io/files/data_folder.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <string_view>
+
+namespace glidar {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+bool is_yaml(const fs::path& path) {
+  const std::string ending = lower(path.extension().string());
+  return ending == ".yaml" || ending == ".yml";
+}
+
+std::string all_names(const std::vector<fs::path>& files) {
+  std::string names;
+  for (const fs::path& file : files) names += (names.empty() ? "" : ", ") + file.stem().string();
+  return names;
+}
+
+}  // namespace
+
+ValueCount count_values(const Datasheet& sheet) {
+  ValueCount count;
+  for (const DatasheetEntry& entry : sheet.entries) {
+    const std::string_view key = entry.key;
+    const std::string_view last = key.substr(key.rfind('.') + 1);
+    // words and conventions that the sensor's documents do not know
+    constexpr std::array<std::string_view, 5> kNoValues = {"name", "type", "kind", "along",
+                                                           "pixel_centre"};
+    if (std::find(kNoValues.begin(), kNoValues.end(), last) != kNoValues.end()) continue;
+    ++count.total;
+    if (entry.verified && !entry.source.empty()) ++count.backed;
+  }
+  return count;
+}
+
+std::vector<fs::path> preset_files() {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (const auto& entry :
+       fs::directory_iterator(data_folder("sensors", "GLIDAR_SENSORS"), error)) {
+    if (is_yaml(entry.path())) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());  // the order of a folder is not the same everywhere
+  return files;
+}
+
+fs::path find_sensor_file(const std::string& name_or_path) {
+  const fs::path path = name_or_path;
+  if (path.has_parent_path() || is_yaml(path)) return path;
+  const std::vector<fs::path> files = preset_files();
+  std::vector<std::string> names;
+  for (const fs::path& file : files) {
+    names.push_back(lower(file.stem().string()));
+    if (names.back() == lower(name_or_path)) return file;
+  }
+  std::error_code error;
+  if (fs::is_regular_file(path, error)) return path;
+  const std::string nearest = closest_match(lower(name_or_path), names);
+  const auto at = std::find(names.begin(), names.end(), nearest);
+  throw Error(
+      {.where = "sensor",
+       .found = "'" + excerpt(name_or_path) + "' is neither a file nor the name of a sensor",
+       .allowed = "a sensor file (.yaml), or one of " + all_names(files),
+       .remedy = nearest.empty()
+                     ? "see 'glidar sensors'"
+                     : "did you mean " +
+                           files[static_cast<std::size_t>(at - names.begin())].stem().string() +
+                           "?"});
+}
+
+}  // namespace glidar

@@ -1,0 +1,302 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/config/yaml_reader.hpp>
+
+#include <glidar/core/excerpt.hpp>
+#include <glidar/io/config/yaml_budget.hpp>
+#include <glidar/io/files/text_file.hpp>
+
+#include <yaml-cpp/depthguard.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <set>
+#include <sstream>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uintmax_t kMaxYamlFile_mib =
+    8;  // a list of a million aliases; see check_yaml_budget
+
+std::string position(const std::string& file, const YAML::Mark& mark) {
+  if (mark.is_null()) return file;
+  return file + ":" + std::to_string(mark.line + 1) + ":" + std::to_string(mark.column + 1);
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+/// The advice for a syntax error: a tab in the indentation is the one most people cannot see.
+std::string advice(const std::string& content, int line) {
+  std::istringstream lines(content);
+  std::string text;
+  for (int i = 0; i <= line; ++i) std::getline(lines, text);
+  const std::string indentation = text.substr(0, text.find_first_not_of(" \t"));
+  return indentation.find('\t') != std::string::npos ? "indent with spaces, not with tabs" : "";
+}
+
+std::vector<YAML::Node> parse(const std::string& file, const std::string& content) {
+  try {
+    check_yaml_budget(file, content);
+    return YAML::LoadAll(content);
+  } catch (const YAML::DeepRecursion& error) {
+    throw Error({position(file, error.mark), "nested too deeply", "a sensor or scene file", ""});
+  } catch (const YAML::Exception& error) {
+    throw Error({position(file, error.mark), "not YAML: " + excerpt(error.msg), "",
+                 advice(content, error.mark.line)});
+  }
+}
+
+YamlField child(const YamlField& parent, std::string path, const YAML::Mark& before,
+                const YAML::Node& node) {
+  if (parent.mark.is_null()) return {parent.file, std::move(path), parent.mark, node};
+  // yaml-cpp marks an absent value at the next token, which may be far below its key.
+  return {parent.file, std::move(path), node.IsNull() ? before : node.Mark(), node};
+}
+
+std::string child_path(const YamlField& parent, const std::string& key) {
+  return parent.path.empty() ? shown(key) : parent.path + "." + shown(key);
+}
+
+struct Entry {
+  std::string key;
+  YAML::Mark key_mark;
+  YamlField value;
+};
+
+std::vector<Entry> checked_entries(const YamlField& field) {
+  if (!field.node.IsMap()) reject(field, describe(field), "a map (key: value)");
+  std::vector<Entry> result;
+  std::set<std::string> seen;
+  for (const auto& pair : field.node) {
+    const YamlField key_field = child(field, field.path, field.mark, pair.first);
+    if (!pair.first.IsScalar()) reject(key_field, "a key that is no word", "words as keys");
+    const std::string& key = pair.first.Scalar();
+    Entry entry{key, key_field.mark,
+                child(field, child_path(field, key), pair.first.Mark(), pair.second)};
+    if (!seen.insert(key).second) {
+      entry.value.mark = entry.key_mark;
+      reject(entry.value, "the key is given twice", "each key once", "remove one of them");
+    }
+    result.push_back(std::move(entry));
+  }
+  return result;
+}
+
+/// The number a plain scalar spells, if it does. Quoted scalars are texts.
+std::optional<double> spelled_number(const YAML::Node& node) {
+  if (!node.IsScalar() || node.Tag() == "!") return std::nullopt;
+  static const std::set<std::string> kInfinite = {".inf", ".Inf", ".INF", "+.inf", "-.inf"};
+  static const std::set<std::string> kNaN = {".nan", ".NaN", ".NAN"};
+  std::string_view word = node.Scalar();
+  if (kInfinite.contains(node.Scalar())) return std::numeric_limits<double>::infinity();
+  if (kNaN.contains(node.Scalar())) return std::numeric_limits<double>::quiet_NaN();
+  if (word.starts_with('+') && !word.starts_with("+-")) word.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (end != word.data() + word.size() || word.empty()) return std::nullopt;
+  if (problem == std::errc::result_out_of_range) return std::numeric_limits<double>::infinity();
+  return problem == std::errc{} ? std::optional(value) : std::nullopt;
+}
+
+bool keeps(const NumberRule& rule, double value) {
+  if (!std::isfinite(value)) return false;
+  if (rule.without_ends) return value > rule.least && value < rule.most;
+  return value >= rule.least && value <= rule.most;
+}
+
+/// The one map of a file; `name` is the file's.
+YamlField root_of(const std::string& name, const std::vector<YAML::Node>& documents) {
+  if (documents.empty() || documents[0].IsNull()) {
+    throw Error({name, "the file is empty", "a YAML map (key: value)", "see docs/files.md"});
+  }
+  const YamlField root{name, "", documents[0].Mark(), documents[0]};
+  if (documents.size() > 1) {
+    const YAML::Mark& second = documents[1].Mark();
+    throw Error({position(name, second), "a second document", "one document in a file",
+                 "remove the line '---' before it"});
+  }
+  if (!root.node.IsMap()) reject(root, describe(root), "a map (key: value)", "see docs/files.md");
+  return root;
+}
+
+}  // namespace
+
+YamlField read_yaml(const fs::path& file) {
+  const std::string content =
+      read_text_file(file, {"a YAML file", kMaxYamlFile_mib,
+                            "name models by their path, do not put them into the file"});
+  require_utf8(file, content);
+  return root_of(file.string(), parse(file.string(), content));
+}
+
+YamlField read_yaml_text(const std::string& name, const std::string& text) {
+  const YamlField root = root_of(name, parse(name, text));
+  return {name, "", YAML::Mark::null_mark(), root.node};
+}
+
+std::string where(const YamlField& field) {
+  const std::string place = position(field.file, field.mark);
+  return field.path.empty() ? place : place + ": " + field.path;
+}
+
+void reject(const YamlField& field, std::string found, std::string allowed, std::string remedy) {
+  throw Error({where(field), std::move(found), std::move(allowed), std::move(remedy)});
+}
+
+void reject_at(const std::string& where, const Error& error) {
+  const ErrorParts& parts = error.parts();
+  const std::string place = parts.where.empty() ? "" : parts.where + ": ";
+  throw Error({where, place + parts.found, parts.allowed, parts.remedy});
+}
+
+std::string describe(const YamlField& field) {
+  switch (field.node.Type()) {
+    case YAML::NodeType::Null:
+      return "no value";
+    case YAML::NodeType::Map:
+      return "a map";
+    case YAML::NodeType::Sequence:
+      return "a list of " + std::to_string(field.node.size());
+    default:
+      break;
+  }
+  const std::string word = shown(field.node.Scalar());
+  if (field.node.Tag() == "!") return "the text \"" + word + "\"";
+  return spelled_number(field.node) ? word : "'" + word + "'";
+}
+
+std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
+  const std::string nearest = closest_match(word, known);
+  return nearest.empty() ? "" : "did you mean '" + nearest + "'?";
+}
+
+void require_map(const YamlField& field, const std::vector<std::string>& known) {
+  for (const Entry& entry : checked_entries(field)) {
+    if (std::find(known.begin(), known.end(), entry.key) != known.end()) continue;
+    YamlField at_key = entry.value;
+    at_key.mark = entry.key_mark;
+    reject(at_key, "unknown key '" + shown(entry.key) + "'", joined(known),
+           suggestion(entry.key, known));
+  }
+}
+
+std::vector<std::pair<std::string, YamlField>> entries(const YamlField& field) {
+  std::vector<std::pair<std::string, YamlField>> result;
+  for (Entry& entry : checked_entries(field)) {
+    result.emplace_back(std::move(entry.key), std::move(entry.value));
+  }
+  return result;
+}
+
+std::vector<YamlField> items(const YamlField& field) {
+  if (!field.node.IsSequence()) reject(field, describe(field), "a list");
+  std::vector<YamlField> result;
+  for (const YAML::Node& item : field.node) {
+    const std::string path = field.path + "[" + std::to_string(result.size()) + "]";
+    result.push_back(child(field, path, field.mark, item));
+  }
+  return result;
+}
+
+std::optional<YamlField> find(const YamlField& map, std::string_view key) {
+  for (const auto& pair : map.node) {
+    if (!pair.first.IsScalar() || pair.first.Scalar() != key) continue;
+    return child(map, child_path(map, pair.first.Scalar()), pair.first.Mark(), pair.second);
+  }
+  return std::nullopt;
+}
+
+YamlField need(const YamlField& map, std::string_view key) {
+  if (auto field = find(map, key)) return *std::move(field);
+  const std::string word(key);
+  reject(map, "the key '" + word + "' is missing", "", "add '" + word + ": ...'");
+}
+
+double number(const YamlField& field, const NumberRule& rule) {
+  const std::optional<double> value = spelled_number(field.node);
+  if (value && keeps(rule, *value)) return *value;
+  const bool quoted = field.node.IsScalar() && field.node.Tag() == "!";
+  reject(field, describe(field), rule.allowed, quoted ? "remove the quotes" : "");
+}
+
+double number_or(const YamlField& map, std::string_view key, const NumberRule& rule,
+                 double otherwise) {
+  const auto field = find(map, key);
+  return field ? number(*field, rule) : otherwise;
+}
+
+std::uint32_t whole_number(const YamlField& field, std::uint32_t least, std::uint32_t most) {
+  const std::string allowed =
+      "a whole number from " + std::to_string(least) + " to " + std::to_string(most);
+  const double value = number(field, {least * 1.0, most * 1.0, false, allowed.c_str()});
+  if (value != std::floor(value)) reject(field, describe(field), allowed);
+  return static_cast<std::uint32_t>(value);
+}
+
+bool boolean(const YamlField& field) {
+  return one_of(field, {"false", "true"}) == 1;
+}
+
+std::string text(const YamlField& field) {
+  if (!field.node.IsScalar() || field.node.Scalar().empty()) {
+    reject(field, describe(field), "a text that is not empty");
+  }
+  return field.node.Scalar();
+}
+
+std::string path_beside(const YamlField& field) {
+  constexpr std::size_t kMaxPath_bytes = 4096;  // Linux' own limit
+  const std::string named = text(field);
+  if (named.size() > kMaxPath_bytes || named.find('\0') != std::string::npos)
+    reject(field, describe(field), "a path of at most 4096 bytes without zero bytes");
+  fs::path path = fs::path(field.file).parent_path() / named;
+  // Behind a link, "link/.." is the parent of what it points to: only the system knows.
+  const bool goes_up = std::find(path.begin(), path.end(), "..") != path.end();
+  return goes_up ? path.string() : path.lexically_normal().string();
+}
+
+std::size_t one_of(const YamlField& field, const std::vector<std::string>& words) {
+  const std::string word = field.node.IsScalar() ? field.node.Scalar() : "";
+  const auto at = std::find(words.begin(), words.end(), word);
+  if (at == words.end()) {
+    reject(field, describe(field), joined(words), word.empty() ? "" : suggestion(word, words));
+  }
+  return static_cast<std::size_t>(at - words.begin());
+}
+
+LookupTable table(const YamlField& field, const NumberRule& place, const NumberRule& value,
+                  double unit) {
+  constexpr std::size_t kMost = 4096;
+  LookupTable pairs;
+  for (const YamlField& entry : items(field)) {
+    const std::vector<YamlField> pair = items(entry);
+    if (pair.size() != 2) reject(entry, describe(entry), "a pair of numbers");
+    pairs.push_back({number(pair[0], place) * unit, number(pair[1], value)});
+    if (pairs.size() > 1 && pairs.back()[0] <= pairs[pairs.size() - 2][0]) {
+      reject(pair[0], describe(pair[0]) + ", not above the one before", "numbers that rise");
+    }
+  }
+  if (pairs.empty() || pairs.size() > kMost) {
+    reject(field, std::to_string(pairs.size()) + " entries", "1 to 4096 pairs");
+  }
+  return pairs;
+}
+
+Eigen::Vector3d triple(const YamlField& field, const NumberRule& rule) {
+  if (!field.node.IsSequence() || field.node.size() != 3) {
+    reject(field, describe(field), "a list of 3 numbers");
+  }
+  const std::vector<YamlField> parts = items(field);
+  return {number(parts[0], rule), number(parts[1], rule), number(parts[2], rule)};
+}
+
+}  // namespace glidar

@@ -1,0 +1,258 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/files/atomic_file.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/files/file_sync.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <chrono>
+#include <cstdio>
+#include <cstring>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+/// A piece stays in a core's own cache until the system has copied it.
+constexpr std::size_t kPieceBytes = std::size_t{1} << 18;
+constexpr std::size_t kSlots = 128;
+constexpr std::size_t kSlotPathBytes = 4096;
+
+// States of a slot; int, because only plain atomics are sure to work in a signal handler.
+constexpr int kFree = 0;
+constexpr int kFilling = 1;
+constexpr int kListed = 2;
+constexpr int kRemoving = 3;
+
+/// A temporary file's name where a signal handler can read it: no allocation, no lock.
+struct Slot {
+  std::atomic<int> state{kFree};
+  std::array<char, kSlotPathBytes> path{};
+};
+static_assert(std::atomic<int>::is_always_lock_free, "used in signal handlers");
+
+// A signal handler takes no arguments, so this list has to be the process's own.
+constinit std::array<Slot, kSlots> unfinished{};
+
+int list_unfinished(const std::string& path) {
+  if (path.size() >= kSlotPathBytes) return -1;
+  for (std::size_t i = 0; i < kSlots; ++i) {
+    int expected = kFree;
+    if (!unfinished[i].state.compare_exchange_strong(expected, kFilling)) continue;
+    std::memcpy(unfinished[i].path.data(), path.c_str(), path.size() + 1);
+    unfinished[i].state.store(kListed);
+    return static_cast<int>(i);
+  }
+  return -1;
+}
+
+/// A slot that a handler is reading is left alone: the process is ending.
+void unlist(int slot) {
+  if (slot < 0) return;
+  int expected = kListed;
+  unfinished[static_cast<std::size_t>(slot)].state.compare_exchange_strong(expected, kFree);
+}
+
+[[noreturn]] void fail(const std::filesystem::path& path, const char* what, int code) {
+  const std::string reason = std::generic_category().message(code);
+  std::string remedy;
+  if (code == ENOSPC || code == EDQUOT || code == EFBIG)
+    remedy = "make room or write to another folder; nothing of this file was left behind";
+  if (code == ENOENT) remedy = "make the folder first";
+  if (code == EACCES || code == EPERM || code == EROFS) remedy = "write to another folder";
+  throw Error({path.string(), fmt::format("cannot {}: {}", what, reason), "", remedy});
+}
+
+/// To a descriptor of others: what was sent cannot be taken back.
+[[noreturn]] void fail_sent(const std::filesystem::path& path, int code) {
+  throw Error({path.string(),
+               fmt::format("cannot write: {}", std::generic_category().message(code)), "",
+               "what was sent before is not whole; write to a file instead"});
+}
+
+/// A temporary file, listed as unfinished.
+struct Temporary {
+  std::filesystem::path name;
+  int descriptor = -1;
+  int slot = -1;  ///< in the list; -1: the list is full
+};
+
+/// A new file in `folder` that nobody else has open. It is listed before it exists, so that a
+/// signal at any moment leaves nothing behind.
+Temporary open_temporary(const std::filesystem::path& folder, const std::filesystem::path& wanted,
+                         mode_t mode) {
+  // Clients that use up all descriptors are cut off by another thread soon.
+  constexpr unsigned kMostWaits = 200;
+  constexpr std::chrono::milliseconds kWait{10};
+  unsigned waits = 0;
+  for (unsigned attempt = 0;; ++attempt) {
+    std::filesystem::path name = folder / fmt::format(".glidar-{}-{}.tmp", ::getpid(), attempt);
+    std::error_code ignored;
+    if (std::filesystem::exists(name, ignored)) continue;  // another file of this process
+    const int slot = list_unfinished(name.native());
+    const int descriptor = ::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, mode);
+    const int code = errno;
+    if (descriptor >= 0) return {std::move(name), descriptor, slot};
+    unlist(slot);
+    if ((code == EMFILE || code == ENFILE) && waits++ < kMostWaits) {
+      std::this_thread::sleep_for(kWait);
+      continue;
+    }
+    if (code != EEXIST && code != EINTR) fail(wanted, "create a file in this folder", code);
+  }
+}
+
+}  // namespace
+
+AtomicFile::AtomicFile(const std::filesystem::path& path, Readers readers) : path_(path) {
+  std::error_code ignored;  // a path that cannot be looked at fails below, with the reason
+  if (std::filesystem::is_directory(path, ignored))
+    throw Error({path.string(), "is a folder", "a file name", ""});
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
+    throw Error({path.string(), "is a device, pipe or socket", "a regular file, or none yet", ""});
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  buffer_.resize(kPieceBytes);
+  constexpr mode_t kUsual = 0666;
+  constexpr mode_t kOwner = 0600;
+  Temporary made = open_temporary(folder, path, readers == Readers::owner ? kOwner : kUsual);
+  temporary_ = std::move(made.name);
+  descriptor_ = made.descriptor;
+  slot_ = made.slot;
+}
+
+AtomicFile::AtomicFile(int target, const std::filesystem::path& name)
+    : path_(name), target_(target) {
+  buffer_.resize(kPieceBytes);
+  // unnamed, so that it is gone whenever the program ends; formats go back in it to fill gaps
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::tmpfile(), std::fclose);
+  if (!file) fail(path_, "create a temporary file", errno);
+  descriptor_ = ::fcntl(::fileno(file.get()), F_DUPFD_CLOEXEC, 0);
+  if (descriptor_ < 0) fail(path_, "create a temporary file", errno);
+}
+
+AtomicFile::~AtomicFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
+  unlist(slot_);
+}
+
+void AtomicFile::write(std::span<const std::byte> bytes) {
+  while (!bytes.empty()) {
+    const std::span<std::byte> to = room(1);
+    const std::size_t now = std::min(to.size(), bytes.size());
+    std::memcpy(to.data(), bytes.data(), now);
+    take(now);
+    bytes = bytes.subspan(now);
+  }
+}
+
+std::span<std::byte> AtomicFile::room(std::size_t least) {
+  write_whole_pieces();
+  if (buffer_.size() - filled_ < least) buffer_.resize(filled_ + least);
+  return std::span(buffer_).subspan(filled_);
+}
+
+void AtomicFile::take(std::size_t count) {
+  filled_ += count;
+  position_ += count;
+}
+
+void AtomicFile::write(std::string_view text) {
+  write(std::as_bytes(std::span(text)));
+}
+
+void AtomicFile::seek(std::uint64_t offset) {
+  flush();
+  if (::lseek(descriptor_, static_cast<off_t>(offset), SEEK_SET) < 0) fail(path_, "seek", errno);
+  position_ = offset;
+}
+
+void AtomicFile::finish() {
+  if (descriptor_ < 0) return;
+  if (failure_ != 0) fail(path_, "write", failure_);
+  flush();
+  if (target_ >= 0) return;  // to be read from
+  // Some file systems report a full disk or quota only on closing.
+  if (::close(std::exchange(descriptor_, -1)) != 0 && errno != EINTR) fail(path_, "close", errno);
+}
+
+void AtomicFile::commit() {
+  finish();
+  if (target_ >= 0) return send();
+  if (std::rename(temporary_.c_str(), path_.c_str()) != 0) fail(path_, "put in place", errno);
+  temporary_.clear();
+  unlist(std::exchange(slot_, -1));
+}
+
+void AtomicFile::commit_durably() {
+  if (target_ >= 0) return commit();
+  flush();
+  sync_file(descriptor_, path_);
+  commit();
+  sync_folder_of(path_);
+}
+
+void AtomicFile::send() const {
+  if (::lseek(descriptor_, 0, SEEK_SET) < 0) fail(path_, "read back", errno);
+  std::vector<std::byte> piece(kPieceBytes);
+  for (;;) {
+    const ssize_t count = ::read(descriptor_, piece.data(), piece.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) fail(path_, "read back", errno);
+    if (count == 0) return;
+    std::span<const std::byte> rest(piece.data(), static_cast<std::size_t>(count));
+    while (!rest.empty()) {
+      const ssize_t written = ::write(target_, rest.data(), rest.size());
+      if (written < 0 && errno == EINTR) continue;
+      if (written < 0 && errno == EPIPE)
+        throw ClosedPipe({path_.string(), "nobody reads it any more", "", ""});
+      if (written < 0) fail_sent(path_, errno);
+      rest = rest.subspan(static_cast<std::size_t>(written));
+    }
+  }
+}
+
+void AtomicFile::flush() {
+  write_through(std::span(buffer_).first(filled_));
+  filled_ = 0;
+}
+
+void AtomicFile::write_whole_pieces() {
+  const std::size_t whole = filled_ / kPieceBytes * kPieceBytes;
+  if (whole == 0) return;
+  write_through(std::span(buffer_).first(whole));
+  std::memmove(buffer_.data(), buffer_.data() + whole, filled_ - whole);
+  filled_ -= whole;
+}
+
+void AtomicFile::write_through(std::span<const std::byte> bytes) {
+  if (failure_ != 0) fail(path_, "write", failure_);
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) fail(path_, "write", failure_ = errno);
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+}
+
+void remove_unfinished_files() noexcept {
+  const int saved_errno = errno;
+  for (Slot& slot : unfinished) {
+    int expected = kListed;
+    if (slot.state.compare_exchange_strong(expected, kRemoving)) ::unlink(slot.path.data());
+  }
+  errno = saved_errno;
+}
+
+}  // namespace glidar

@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/scene.hpp>
+
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace glidar {
+
+/// The path without symbolic links in its folders; "..", also behind a link, as the system takes
+/// it.
+std::filesystem::path real_path(const std::filesystem::path& path);
+
+/// True for two names of one file, also of one that is not there yet.
+bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b);
+
+/// All files that the models of a scene were read from: with textures, materials, buffers.
+std::vector<std::string> files_of(const Scene& scene);
+
+/// Throws Error when `output` is a file that was read.
+void refuse_overwrite_of_inputs(std::span<const std::string> read,
+                                const std::filesystem::path& output);
+
+}  // namespace glidar

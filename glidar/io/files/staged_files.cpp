@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/files/staged_files.hpp>
+
+#include <glidar/io/files/folder_lock.hpp>
+#include <glidar/io/files/overwrite_guard.hpp>
+
+#include <optional>
+#include <system_error>
+
+namespace glidar {
+namespace {
+
+void remove_outdated(const std::filesystem::path& path) {
+  std::error_code failure;
+  if (!std::filesystem::is_regular_file(path, failure)) return;
+  std::filesystem::remove(path, failure);
+  if (!failure) return;
+  throw Error({path.string(),
+               "cannot remove this file, which belongs to an earlier output: " + failure.message(),
+               "", "write to another folder"});
+}
+
+}  // namespace
+
+AtomicFile& StagedFiles::add(const std::filesystem::path& path) {
+  refuse_overwrite_of_inputs(protected_, path);
+  return files_.emplace_back(path);
+}
+
+void StagedFiles::add_folder(const std::filesystem::path& path) {
+  std::error_code failure;
+  if (std::filesystem::create_directory(path, failure)) folders_.push_back(path);
+  if (!failure) return;
+  throw Error({path.string(), "cannot make this folder: " + failure.message(), "",
+               "write to another folder"});
+}
+
+void StagedFiles::commit() {
+  std::optional<FolderLock> lock;
+  if (files_.size() + removals_.size() > 1 && !files_.empty())
+    lock.emplace(std::filesystem::absolute(files_.front().path()).parent_path());
+  for (const std::filesystem::path& path : removals_) remove_outdated(path);
+  removals_.clear();
+  for (auto file = files_.rbegin(); file != files_.rend(); ++file) file->commit();
+  files_.clear();
+  folders_.clear();
+}
+
+void StagedFiles::clear() noexcept {
+  files_.clear();
+  removals_.clear();
+  std::error_code ignored;  // a folder that somebody else uses by now stays
+  for (auto folder = folders_.rbegin(); folder != folders_.rend(); ++folder)
+    std::filesystem::remove(*folder, ignored);
+  folders_.clear();
+}
+
+}  // namespace glidar

@@ -1,0 +1,325 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/cloud_layout.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace glidar {
+namespace {
+
+using F32 = std::vector<float>;
+using F64 = std::vector<double>;
+using U8 = std::vector<std::uint8_t>;
+using U16 = std::vector<std::uint16_t>;
+using U32 = std::vector<std::uint32_t>;
+using Values = std::variant<F32, F64, U8, U16, U32>;
+
+/// One field of a layout: component `component` of a cloud's column, converted.
+struct LayoutField {
+  std::string name;
+  Values type;         ///< an empty vector of it
+  std::string column;  ///< of the cloud, or kReflectivity; empty: the field is 0
+  std::size_t component = 0;
+  double (*convert)(double) = nullptr;
+};
+
+struct Layout {
+  std::string name;
+  std::string whose;
+  std::vector<LayoutField> fields;
+};
+
+/// What the surface seems to send back: 1 for a white matt one seen square on. See reflectivity().
+constexpr const char* kReflectivity = "reflectivity";
+
+double same(double value) {
+  return value;
+}
+
+double seconds(double value_ns) {
+  return value_ns * 1e-9;
+}
+
+double millimetres(double value_m) {
+  return value_m * 1e3;
+}
+
+/// From 0 to 2 pi.
+double whole_turn(double angle_rad) {
+  return angle_rad < 0.0 ? angle_rad + 2.0 * std::numbers::pi : angle_rad;
+}
+
+constexpr double kMaxByte = 255.0;
+
+/// A byte that is linear up to `white` for a reflectivity of 1 and logarithmic beyond, up to 255
+/// for a retro-reflector of 1000. The makers tell `white` and that more is retro-reflecting, not
+/// how much more.
+double reflectivity_byte(double reflectivity, double white) {
+  constexpr double kBrightest = 1000.0;
+  if (!(reflectivity > 1.0)) return std::round(white * reflectivity);
+  const double share = std::log(reflectivity) / std::log(kBrightest);
+  return std::min(255.0, white + 1.0 + std::round((254.0 - white) * share));
+}
+
+/// 0 to 100 is the per cent of diffuse surfaces: VLP-16 User Manual 63-9243, "Calibrated
+/// Reflectivity"; Ouster's firmware manual since 2.1 has the same scale.
+double percent_byte(double reflectivity) {
+  return reflectivity_byte(reflectivity, 100.0);
+}
+
+/// 0 to 150 is 0 to 100 % of Lambert's reflection: Livox Avia User Manual, "Output Data".
+double livox_byte(double reflectivity) {
+  return reflectivity_byte(reflectivity, 150.0);
+}
+
+/// Bits 4 and 5: number of the echo, from 0 (Livox Avia User Manual, "Tag Information").
+double livox_tag(double number) {
+  constexpr double kMostEchoes = 3.0;
+  return 16.0 * std::min(number, kMostEchoes);
+}
+
+/// A sensor's only echo is Autoware's SINGLE_STRONGEST and Nebula's LAST, both 1; 0 is "no return".
+double return_type(double status) {
+  return status == static_cast<double>(Status::hit) ? 1.0 : 0.0;
+}
+
+/// The sources of each layout are in docs/files.md.
+const std::vector<Layout>& layouts() {
+  static const std::vector<Layout> kLayouts = {
+      {"minimal",
+       "coordinates",
+       {{"x", F32{}, "xyz", 0, same},  //
+        {"y", F32{}, "xyz", 1, same},
+        {"z", F32{}, "xyz", 2, same}}},
+      {"velodyne",
+       "velodyne_pointcloud",
+       {{"x", F32{}, "xyz", 0, same},
+        {"y", F32{}, "xyz", 1, same},
+        {"z", F32{}, "xyz", 2, same},
+        {"intensity", F32{}, kReflectivity, 0, percent_byte},
+        {"ring", U16{}, "ring", 0, same},
+        {"time", F32{}, "time", 0, seconds}}},
+      {"ouster",
+       "ouster-ros",
+       {{"x", F32{}, "xyz", 0, same},
+        {"y", F32{}, "xyz", 1, same},
+        {"z", F32{}, "xyz", 2, same},
+        {"intensity", F32{}, "intensity", 0, same},
+        {"t", U32{}, "time", 0, same},
+        {"reflectivity", U16{}, kReflectivity, 0, percent_byte},
+        {"ring", U16{}, "ring", 0, same},
+        {"ambient", U16{}, "", 0, nullptr},
+        {"range", U32{}, "range", 0, millimetres}}},
+      {"livox",
+       "livox_ros_driver2",
+       {{"x", F32{}, "xyz", 0, same},
+        {"y", F32{}, "xyz", 1, same},
+        {"z", F32{}, "xyz", 2, same},
+        {"intensity", F32{}, kReflectivity, 0, livox_byte},
+        {"tag", U8{}, "return", 0, livox_tag},
+        {"line", U8{}, "ring", 0, same},
+        {"timestamp", F64{}, "stamp", 0, same}}},
+      {"autoware",
+       "Autoware",
+       {{"x", F32{}, "xyz", 0, same},
+        {"y", F32{}, "xyz", 1, same},
+        {"z", F32{}, "xyz", 2, same},
+        {"intensity", U8{}, kReflectivity, 0, percent_byte},
+        {"return_type", U8{}, "status", 0, return_type},
+        {"channel", U16{}, "ring", 0, same},
+        {"azimuth", F32{}, "azimuth", 0, whole_turn},
+        {"elevation", F32{}, "elevation", 0, same},
+        {"distance", F32{}, "range", 0, same},
+        {"time_stamp", U32{}, "time", 0, same}}},
+  };
+  return kLayouts;
+}
+
+/// The cloud columns that the fields are made of, each once.
+std::vector<std::string> columns_of(const Layout& layout) {
+  std::vector<std::string> columns;
+  const auto need = [&](const std::string& name) {
+    if (!name.empty() && std::find(columns.begin(), columns.end(), name) == columns.end())
+      columns.push_back(name);
+  };
+  for (const LayoutField& field : layout.fields) {
+    need(field.column == kReflectivity ? "intensity" : field.column);
+    if (field.column == kReflectivity) need("range");
+  }
+  return columns;
+}
+
+PointFieldLayout told(const Layout& layout) {
+  std::string text = layout.whose + ":";
+  for (const LayoutField& field : layout.fields) text += " " + field.name;
+  return {layout.name, text, columns_of(layout)};
+}
+
+/// Where among layouts() the one of this name is.
+std::size_t place_of(std::string_view name) {
+  std::vector<std::string> names;
+  for (const Layout& layout : layouts()) {
+    if (layout.name == name) return names.size();
+    names.push_back(layout.name);
+  }
+  const std::string near = closest_match(name, names);
+  throw Error({"cloud layout", fmt::format("'{}' is not known", excerpt(name)),
+               fmt::format("{}", fmt::join(names, " ")),
+               near.empty() ? "" : fmt::format("did you mean '{}'?", near)});
+}
+
+/// One component of a column; its numbers are exact in double but for times beyond 104 days.
+std::vector<double> to_xyz_wxyz(const PointCloud& cloud, const Layout& layout,
+                                const std::string& name, std::size_t component) {
+  const Column* column = find_column(cloud, name);
+  if (column == nullptr) {
+    throw Error({"cloud layout " + layout.name, fmt::format("the cloud has no column {}", name),
+                 fmt::format("a cloud with {}", fmt::join(columns_of(layout), " ")),
+                 "ask for these columns"});
+  }
+  const std::size_t step = column->components.size();
+  std::vector<double> numbers(cloud.size());
+  std::visit(
+      [&](const auto& values) {
+        for (std::size_t i = 0; i < numbers.size(); ++i)
+          numbers[i] = static_cast<double>(values[i * step + component]);
+      },
+      column->values);
+  return numbers;
+}
+
+/// How the sensor spells intensity.
+struct Spelling {
+  bool is_reflectance = false;             ///< the range's part is taken out already
+  const IntensityScale* vendor = nullptr;  ///< reflectance as a byte; nullptr: as a number
+};
+
+Spelling spelling_of(const Sensor& sensor) {
+  Spelling spelling{.is_reflectance = !sensor.pulse.has_value()};
+  for (const NoiseStep& step : sensor.noise) {
+    const auto* scale = std::get_if<IntensityScale>(&step);
+    if (scale == nullptr) continue;
+    spelling.is_reflectance = spelling.is_reflectance || scale->reference_m > 0.0;
+    if (scale->kind == IntensityScale::Kind::vendor) spelling = {true, scale};
+  }
+  return spelling;
+}
+
+/// The sensor's own estimate of what a surface sends back, as makers calibrate it: the range's part
+/// of the signal is taken out as it is in clear air, which is where they calibrate; the incidence's
+/// and the weather's stay. Sensors that tell reflectance have done so,
+/// and the paper's light hardly weakens over the range, so its intensity is that already.
+std::vector<double> reflectivity(const PointCloud& cloud, const Layout& layout,
+                                 const Sensor& sensor, const Beams& beams) {
+  std::vector<double> numbers = to_xyz_wxyz(cloud, layout, "intensity", 0);
+  const Spelling spelling = spelling_of(sensor);
+  if (spelling.vendor != nullptr) {
+    for (double& number : numbers) number = vendor_reflectance(number, spelling.vendor->largest);
+  }
+  if (spelling.is_reflectance) return numbers;
+  const std::vector<double> ranges_m = to_xyz_wxyz(cloud, layout, "range", 0);
+  for (std::size_t i = 0; i < numbers.size(); ++i)
+    numbers[i] /= received_signal(*sensor.pulse, 1.0, ranges_m[i] - beams.range_offset_m);
+  return numbers;
+}
+
+/// The nearest number of the type; NaN is 0 where there is no NaN.
+template <class T>
+T nearest(double value) {
+  if constexpr (std::is_floating_point_v<T>) {
+    return static_cast<T>(value);
+  } else {
+    constexpr double kMost = std::numeric_limits<T>::max();
+    return static_cast<T>(std::round(std::min(std::max(0.0, value), kMost)));  // max(0, NaN) is 0
+  }
+}
+
+Column made(const LayoutField& field, const std::vector<double>& numbers, std::size_t count) {
+  Column column{field.name, {field.name}, {}};
+  std::visit(
+      [&](auto values) {
+        using T = typename decltype(values)::value_type;
+        values.assign(count, T{0});
+        for (std::size_t i = 0; i < numbers.size(); ++i)
+          values[i] = nearest<T>(field.convert(numbers[i]));
+        column.values = std::move(values);
+      },
+      field.type);
+  return column;
+}
+
+/// Autoware's codes of two returns tell which is stronger and which is nearer, or that both are
+/// one; a row of them alone does not.
+void check_returns(const Layout& layout, const Beams& beams) {
+  if (layout.name != "autoware" || beams.returns == 1) return;
+  throw Error({"cloud layout autoware", fmt::format("the sensor tells {} returns", beams.returns),
+               "one return of each pulse", "give --returns strongest, or another layout"});
+}
+
+/// For its columns: what unit_intensities() is made of.
+const Layout& unit_layout() {
+  static const Layout kUnit = {"kitti", "KITTI", {{"intensity", F32{}, kReflectivity, 0, same}}};
+  return kUnit;
+}
+
+}  // namespace
+
+std::vector<float> unit_intensities(const PointCloud& cloud, const Sensor& sensor,
+                                    const Beams& beams) {
+  const bool has_bytes = spelling_of(sensor).vendor != nullptr;
+  const bool is_calibrated = sensor.pulse.has_value() && !has_bytes;
+  std::vector<double> numbers = is_calibrated ? reflectivity(cloud, unit_layout(), sensor, beams)
+                                              : to_xyz_wxyz(cloud, unit_layout(), "intensity", 0);
+  std::vector<float> shares(numbers.size());
+  std::transform(numbers.begin(), numbers.end(), shares.begin(), [&](double number) {
+    const double share = is_calibrated ? percent_byte(number) / kMaxByte
+                         : has_bytes   ? number / kMaxByte
+                                       : number;
+    return static_cast<float>(std::clamp(share, 0.0, 1.0));
+  });
+  return shares;
+}
+
+std::span<const PointFieldLayout> cloud_layouts() {
+  static const std::vector<PointFieldLayout> kTold = [] {
+    std::vector<PointFieldLayout> all;
+    for (const Layout& layout : layouts()) all.push_back(told(layout));
+    return all;
+  }();
+  return kTold;
+}
+
+const PointFieldLayout& find_layout(std::string_view name) {
+  return cloud_layouts()[place_of(name)];
+}
+
+PointCloud apply_layout(const PointCloud& cloud, std::string_view layout, const Sensor& sensor,
+                        const Beams& beams) {
+  const Layout& wanted = layouts()[place_of(layout)];
+  check_returns(wanted, beams);
+  PointCloud result{cloud.rows, cloud.cols, cloud.frame_id, cloud.world_from_cloud, {}};
+  for (const LayoutField& field : wanted.fields) {
+    std::vector<double> numbers;
+    if (field.column == kReflectivity) {
+      numbers = reflectivity(cloud, wanted, sensor, beams);
+    } else if (!field.column.empty()) {
+      numbers = to_xyz_wxyz(cloud, wanted, field.column, field.component);
+    }
+    result.columns.push_back(made(field, numbers, cloud.size()));
+  }
+  return result;
+}
+
+}  // namespace glidar

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/error.hpp>
+#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/pictures/png_image.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace glidar {
+namespace {
+
+constexpr double kLargestGrey = std::numeric_limits<std::uint16_t>::max();
+
+/// The largest scale that holds this depth, rounded down to two digits to be easy to remember.
+double fitting_scale(double depth_m) {
+  const double exact = kLargestGrey / depth_m;
+  const double unit = std::pow(10.0, std::floor(std::log10(exact)) - 1.0);
+  return std::floor(exact / unit) * unit;
+}
+
+void check_depths(const std::vector<double>& depths_m, double units_per_m, const AtomicFile& file) {
+  double largest_m = 0.0;
+  double smallest_m = 0.0;
+  for (const double depth_m : depths_m) {
+    if (depth_m > largest_m) largest_m = depth_m;
+    if (depth_m < smallest_m) smallest_m = depth_m;
+  }
+  if (smallest_m < 0.0) {
+    throw Error({file.path().string(),
+                 fmt::format("a depth of {:.9g} m, behind the sensor", smallest_m),
+                 "depths above 0", "write .npy or .depth.tiff, which hold any depth"});
+  }
+  if (std::round(largest_m * units_per_m) > kLargestGrey) {
+    throw Error(
+        {file.path().string(),
+         fmt::format("the largest depth, {:.9g} m, does not fit 16 bits at {:.9g} units per "
+                     "metre",
+                     largest_m, units_per_m),
+         fmt::format("up to {:.9g} m", kLargestGrey / units_per_m),
+         fmt::format("use {:.9g} units per metre (--depth-scale, depth_units_per_m in Python), or "
+                     "write .npy or .depth.tiff",
+                     fitting_scale(largest_m))});
+  }
+}
+
+}  // namespace
+
+void write_depth_png(const CloudFile& job, AtomicFile& file) {
+  const auto& depths_m = std::get<std::vector<double>>(find_column(job.cloud, "depth")->values);
+  const double units_per_m = job.options.depth_png_units_per_m;
+  check_depths(depths_m, units_per_m, file);
+  std::vector<std::uint16_t> grey(depths_m.size());
+  std::transform(depths_m.begin(), depths_m.end(), grey.begin(), [&](double depth_m) {
+    if (std::isnan(depth_m)) return std::uint16_t{0};
+    // 0 means no return, so a surface nearer than half a unit counts as one unit
+    return static_cast<std::uint16_t>(std::max(1.0, std::round(depth_m * units_per_m)));
+  });
+  write_png({PngKind::grey16, job.cloud.cols, job.cloud.rows, std::as_bytes(std::span(grey)),
+             fmt::format("depth, {:.17g} units per metre, 0: no return", units_per_m)},
+            file);
+}
+
+}  // namespace glidar

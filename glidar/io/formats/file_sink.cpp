@@ -1,0 +1,277 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/file_sink.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/formats/cloud_layout.hpp>
+#include <glidar/io/formats/format_table.hpp>
+#include <glidar/io/formats/kitti_files.hpp>
+#include <glidar/io/formats/stored_columns.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <system_error>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+void check_writable(const std::filesystem::path& path, const std::filesystem::path& folder) {
+  if (::faccessat(AT_FDCWD, folder.c_str(), W_OK | X_OK, AT_EACCESS) == 0) return;
+  throw Error({path.string(), fmt::format("the folder {} cannot be written to", folder.string()),
+               "", "write to another folder"});
+}
+
+void check_folder(const std::filesystem::path& path, const Format& format) {
+  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
+  std::error_code ignored;  // a folder that cannot be looked at is none for us
+  if (!path.has_filename()) {
+    throw Error({path.string(), "is the name of a folder", "a file name",
+                 "leave out the separator at its end"});
+  }
+  if (!std::filesystem::is_directory(folder, ignored)) {
+    throw Error({path.string(), fmt::format("there is no folder {}", folder.string()), "",
+                 "make it first, or correct the path"});
+  }
+  const bool wants_folder = format.told.is_folder;
+  const bool is_folder = std::filesystem::is_directory(path, ignored);
+  check_writable(path, wants_folder && is_folder ? path : folder);
+  if (std::filesystem::exists(path, ignored) && is_folder != wants_folder) {
+    throw Error({path.string(), wants_folder ? "is no folder" : "is a folder",
+                 wants_folder ? "a folder, or none yet" : "a file name", "choose another name"});
+  }
+  if (wants_folder) return;
+  // a pipe or device would be replaced, not written to
+  if (std::filesystem::exists(path, ignored) && !std::filesystem::is_regular_file(path, ignored))
+    throw Error({path.string(), "is a pipe, a device or a socket", "a file name",
+                 "choose another name, or -o - for standard output"});
+}
+
+void check_column_sizes(const PointCloud& cloud, const std::filesystem::path& path) {
+  for (const Column& column : cloud.columns) {
+    const std::size_t wanted = cloud.size() * column.components.size();
+    const std::size_t found =
+        std::visit([](const auto& values) { return values.size(); }, column.values);
+    if (found != wanted) {
+      throw Error({path.string(), fmt::format("column {} has {} numbers", column.name, found),
+                   fmt::format("{}", wanted), "fill every column for all rows x cols points"});
+    }
+  }
+}
+
+/// Columns that writers read as what make_point_cloud makes of them.
+void check_column_types(const PointCloud& cloud, const std::filesystem::path& path) {
+  const auto check = [&](std::string_view name, std::size_t components, Stored type,
+                         const char* told) {
+    const Column* column = find_column(cloud, name);
+    if (column == nullptr) return;
+    if (column->components.size() == components && native_type(*column) == type) return;
+    throw Error({path.string(), fmt::format("column {} is of another type", name), told,
+                 "make the cloud with make_point_cloud"});
+  };
+  check("xyz", 3, Stored::f64, "three doubles a point");
+  check("depth", 1, Stored::f64, "a double a point");
+  check("intensity", 1, Stored::f32, "a float a point");
+}
+
+void check_needed_columns(const FileFormat& format, const PointCloud& cloud,
+                          const std::filesystem::path& path) {
+  std::vector<std::string> there;
+  for (const Column& column : cloud.columns) there.push_back(column.name);
+  for (const std::string& needed : format.columns) {
+    if (find_column(cloud, needed) != nullptr) continue;
+    throw Error({path.string(), fmt::format("the cloud has no column {}", needed),
+                 fmt::format("{} needs {}", format.suffix, fmt::join(format.columns, " ")),
+                 fmt::format("it has: {}; ask for {} too", fmt::join(there, " "), needed)});
+  }
+}
+
+void check_picture_size(const CloudPictureOptions& options) {
+  for (const std::uint32_t side : {options.width, options.height}) {
+    if (side >= kMinPictureSide && side <= kMaxPictureSide) continue;
+    throw Error({"picture size", fmt::format("{} x {} pixels", options.width, options.height),
+                 fmt::format("sides from {} to {}", kMinPictureSide, kMaxPictureSide), ""});
+  }
+}
+
+/// Where a sink's bytes go.
+struct Target {
+  std::filesystem::path path;
+  int descriptor = -1;  ///< an open file to send them to; -1: they become the file `path`
+};
+
+class FormatSink : public FileSink {
+ public:
+  FormatSink(Target target, const Format& format, const FileSinkOptions& options,
+             SidecarContext context, Report report)
+      : target_(std::move(target)),
+        format_(format),
+        options_(options),
+        context_(std::move(context)),
+        report_(std::move(report)) {
+    staged_.protect(context_.inputs);
+  }
+
+  [[nodiscard]] std::vector<std::filesystem::path> files() const override {
+    std::vector<std::filesystem::path> all = {target_.path};
+    if (target_.descriptor >= 0) return all;
+    if (has_sidecar()) all.push_back(sidecar_path());
+    if (format_.beside != nullptr && !format_.told.is_folder)
+      all.push_back(labels_path(target_.path));
+    return all;
+  }
+
+  void stage(const PointCloud& cloud, const Frame& frame) override {
+    staged_.clear();
+    check_column_sizes(cloud, target_.path);
+    check_column_types(cloud, target_.path);
+    check_needed_columns(format_.told, cloud, target_.path);
+    try {
+      stage_points(cloud, frame);
+    } catch (...) {
+      staged_.clear();
+      throw;
+    }
+  }
+
+  void commit() override { staged_.commit(); }
+
+ private:
+  [[nodiscard]] bool has_sidecar() const {
+    return options_.sidecar && format_.content != Content::per_beam && !format_.told.is_folder;
+  }
+  [[nodiscard]] std::filesystem::path sidecar_path() const {
+    return target_.path.string() + ".json";
+  }
+
+  void stage_points(const PointCloud& cloud, const Frame& frame) {
+    const bool dense =
+        format_.content == Content::kitti || (format_.content == Content::points && options_.dense);
+    if (dense) remove_invalid_points(cloud, hits_);
+    const PointCloud& points = dense ? hits_ : cloud;
+    if (format_.content == Content::kitti) {
+      deliver(kitti_cloud(points, context_.sensor, context_.beams), frame);
+    } else {
+      deliver(points, frame);
+    }
+  }
+
+  void deliver(const PointCloud& cloud, const Frame& frame) {
+    if (options_.layout.empty() || !format_.told.takes_more) {
+      const std::vector<Field> fields = format_.fields(cloud);
+      store({cloud, frame, options_, context_, fields, {}, format_.pixels});
+      tell(rounding_told(fields, "write .npz, .csv or .ply, which keep far points"));
+      return;
+    }
+    const PointCloud laid = apply_layout(cloud, options_.layout, context_.sensor, context_.beams);
+    const std::vector<Field> fields = native_fields(laid);
+    store({laid, frame, options_, context_, fields, options_.layout, {}});
+    const std::array points = {Field{"x", find_column(cloud, "xyz"), 0, Stored::f32}};
+    tell(rounding_told(points, "without a layout .npz, .csv and .ply keep far points"));
+  }
+
+  /// All files are complete before the first gets its name; that of the cloud is named last, so
+  /// that whoever waits for it finds the others too.
+  void store(const CloudFile& job) {
+    const std::filesystem::path& path = target_.path;
+    const bool is_stream = target_.descriptor >= 0;
+    if (format_.write != nullptr) {
+      AtomicFile& file = is_stream ? staged_.add(target_.descriptor, path) : staged_.add(path);
+      format_.write(job, file);
+      file.finish();
+    }
+    if (is_stream) return;
+    if (format_.beside != nullptr) format_.beside(job, path, staged_);
+    if (!has_sidecar()) return;
+    AtomicFile& sidecar = staged_.add(sidecar_path());
+    sidecar.write(sidecar_text(job, path));
+    sidecar.finish();
+  }
+
+  void tell(const std::string& warning) const {
+    if (!warning.empty()) report_.warn(target_.path.string() + ": " + warning);
+  }
+
+  Target target_;
+  const Format& format_;
+  FileSinkOptions options_;
+  SidecarContext context_;
+  Report report_;
+  PointCloud hits_;  ///< of the last cloud, for its memory
+  StagedFiles staged_;
+};
+
+void check(const FileSinkOptions& options) {
+  if (!options.layout.empty()) find_layout(options.layout);
+  check_picture_size(options.picture);
+  if (options.depth_png_units_per_m > 0.0 && !std::isinf(options.depth_png_units_per_m)) return;
+  throw Error({"depth_png_units_per_m", fmt::format("{}", options.depth_png_units_per_m),
+               "a finite number above 0", "1000 for millimetres"});
+}
+
+bool looks_back(const Beams& beams) {
+  return std::any_of(beams.directions.begin(), beams.directions.end(),
+                     [&](const auto& direction) { return direction.dot(beams.boresight) < 0.0; });
+}
+
+}  // namespace
+
+std::span<const std::string> colour_by_names() {
+  static const std::vector<std::string> kSinkNames = {"height", "range", "intensity",
+                                                      "ring",   "class", "instance"};
+  return kSinkNames;
+}
+
+bool is_text(const FileFormat& format, const FileSinkOptions& options) {
+  if (format.suffix == ".pcd") return options.pcd == PcdEncoding::ascii;
+  if (format.suffix == ".ply") return options.ply_ascii;
+  return format.suffix == ".csv" || format.suffix == ".transform";
+}
+
+std::string misfit(const FileFormat& format, const CloudPictureOptions& picture,
+                   const Sensor& sensor, const Beams& beams) {
+  const bool is_camera = std::holds_alternative<Pinhole>(sensor.optics);
+  const bool shows_cloud = format.suffix == ".bev.png" || format.suffix == ".view.png";
+  if (shows_cloud && is_camera && picture.colour_by == ColourBy::ring) {
+    return "a camera has no rings to colour by";
+  }
+  if (format.suffix != ".depth.png" || is_camera) return "";
+  return looks_back(beams) ? "it has beams that point back, where depths are negative" : "";
+}
+
+void FileSink::write(const PointCloud& cloud, const Frame& frame) {
+  stage(cloud, frame);
+  commit();
+}
+
+std::unique_ptr<FileSink> make_file_sink(const std::filesystem::path& path,
+                                         const FileSinkOptions& options,
+                                         const SidecarContext& context, Report report) {
+  const Format& format = find_format(path);
+  const std::filesystem::path output = output_path(path);
+  check_folder(output, format);
+  check(options);
+  return std::make_unique<FormatSink>(Target{output}, format, options, context, std::move(report));
+}
+
+std::unique_ptr<FileSink> make_stream_sink(int descriptor, const std::filesystem::path& name,
+                                           const FileSinkOptions& options,
+                                           const SidecarContext& context, Report report) {
+  const Format& format = find_format(name);
+  check(options);
+  if (format.told.is_folder) {
+    throw Error({name.string(), "is a folder of several files", "a format of one file",
+                 "write it to a folder of its own"});
+  }
+  return std::make_unique<FormatSink>(Target{name, descriptor}, format, options, context,
+                                      std::move(report));
+}
+
+}  // namespace glidar

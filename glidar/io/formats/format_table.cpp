@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/format_table.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
+#include <glidar/io/formats/kitti_files.hpp>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+
+namespace glidar {
+namespace {
+
+/// Of formats that are no table of points.
+std::vector<Field> no_fields(const PointCloud& /*cloud*/) {
+  return {};
+}
+
+/// Images besides those of formats().
+std::vector<Format> image_formats() {
+  return {
+      {{".depth.tiff", "32-bit depth image, metres", {"depth"}, false},
+       Content::image,
+       depth_fields,
+       write_depth_tiff,
+       nullptr,
+       "depth in metres as 32-bit float; NaN: no return"},
+      {{".rgb.png", "surface colour, lit at the sensor", {"colour", "incidence"}, false},
+       Content::image,
+       no_fields,
+       write_rgb_png,
+       nullptr,
+       "surface colour times cosine of incidence times 255 as 8-bit RGB; black: nothing there"},
+      {{".normal.png", "16-bit normals", {"normal"}, false},
+       Content::image,
+       no_fields,
+       write_normal_png,
+       nullptr,
+       "unit normal n in frame_id as 16-bit RGB v: n = 2 v / 65535 - 1; 0 0 0: nothing there"},
+      {{".instance.png", "16-bit instance ids", {"instance"}, false},
+       Content::image,
+       no_fields,
+       write_instance_png,
+       nullptr,
+       "id of the instance as 16-bit grey; 0: nothing there"},
+      {{".class.png", "class ids", {"class"}, false},
+       Content::image,
+       no_fields,
+       write_class_png,
+       nullptr,
+       "id of the class as grey; 0: unlabelled, or nothing there"},
+  };
+}
+
+std::vector<Format> with_images(std::vector<Format> formats) {
+  for (const Format& format : image_formats()) formats.push_back(format);
+  return formats;
+}
+
+}  // namespace
+
+const std::vector<Format>& formats() {
+  static const std::vector<Format> kFormats = with_images({
+      {{".pcd", "Point Cloud Library", {"xyz"}, true}, Content::points, pcd_fields, write_pcd},
+      {{".ply", "Stanford polygon file", {"xyz"}, true}, Content::points, ply_fields, write_ply},
+      {{".npz", "NumPy archive of all columns", {"xyz"}, true},
+       Content::points,
+       native_fields,
+       write_npz},
+      {{".csv", "text table", {"xyz"}, true}, Content::points, native_fields, write_csv},
+      {{".bin", "KITTI Velodyne, with .label", {"xyz", "intensity"}, false},
+       Content::kitti,
+       kitti_fields,
+       write_kitti,
+       stage_labels_beside},
+      {{".kitti", "folder: velodyne calib label_2 labels", {"xyz", "intensity"}, false, true},
+       Content::kitti,
+       kitti_fields,
+       nullptr,
+       stage_kitti_folder},
+      {{".npy", "NumPy depth image, metres", {"depth"}, false},
+       Content::image,
+       depth_fields,
+       write_depth_npy,
+       nullptr,
+       "depth in metres as 32-bit float; NaN: no return"},
+      {{".depth.png", "16-bit depth image", {"depth"}, false},
+       Content::image,
+       no_fields,
+       write_depth_png,
+       nullptr,
+       "depth times units_per_m as 16-bit grey; 0: no return"},
+      {{".paper.png", "RGBA picture of --render-target paper", {}, false},
+       Content::per_beam,
+       no_fields,
+       write_paper_png},
+      {{".png", "preview picture", {"depth", "intensity"}, false},
+       Content::per_beam,
+       no_fields,
+       write_preview},
+      {{".transform", "4x4 pose of the first object", {}, false},
+       Content::per_beam,
+       no_fields,
+       write_transform},
+      {{".bev.png", "picture of the cloud from above", cloud_picture_columns(), false},
+       Content::per_beam,
+       no_fields,
+       write_bird_eye},
+      {{".view.png", "picture of the cloud in perspective", cloud_picture_columns(), false},
+       Content::per_beam,
+       no_fields,
+       write_perspective},
+  });
+  return kFormats;
+}
+
+namespace {
+
+std::vector<std::string> suffixes() {
+  std::vector<std::string> all;
+  for (const Format& format : formats()) all.push_back(format.told.suffix);
+  return all;
+}
+
+std::string lower_case(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+std::filesystem::path without_separators(const std::filesystem::path& path) {
+  return path.has_filename() ? path : path.parent_path();
+}
+
+}  // namespace
+
+std::filesystem::path output_path(const std::filesystem::path& path) {
+  return find_format(path).told.is_folder ? without_separators(path) : path;
+}
+
+const Format& find_format(const std::filesystem::path& given) {
+  const std::filesystem::path path = without_separators(given);
+  const std::string name = lower_case(path.filename().string());
+  const Format* best = nullptr;
+  for (const Format& format : formats()) {
+    const std::string& suffix = format.told.suffix;
+    if (name.size() <= suffix.size() || !name.ends_with(suffix)) continue;
+    if (best == nullptr || suffix.size() > best->told.suffix.size()) best = &format;
+  }
+  if (best != nullptr) return *best;
+  const std::string suffix = lower_case(path.extension().string());
+  const std::vector<std::string> all = suffixes();
+  const std::string nearest = suffix.empty() ? "" : closest_match(suffix, all);
+  throw Error({given.string(),
+               suffix.empty() ? "the name has no suffix that tells the format"
+                              : fmt::format("no format has the suffix {}", excerpt(suffix)),
+               fmt::format("{}", fmt::join(all, " ")),
+               nearest.empty() ? "" : fmt::format("did you mean {}?", nearest)});
+}
+
+std::span<const FileFormat> file_formats() {
+  static const std::vector<FileFormat> kTold = [] {
+    std::vector<FileFormat> told;
+    for (const Format& format : formats()) told.push_back(format.told);
+    return told;
+  }();
+  return kTold;
+}
+
+const FileFormat& format_for(const std::filesystem::path& path) {
+  return find_format(path).told;
+}
+
+}  // namespace glidar

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/frame_stream.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+namespace glidar {
+namespace {
+
+constexpr std::uint64_t kMark = 0x3142'5241'4449'4C47;  // "GLIDARB1" on a little-endian machine
+constexpr std::uint32_t kVersion = 3;                   // raised when the layout of a frame changes
+constexpr std::size_t kBuffer = std::size_t{1} << 16U;
+
+[[noreturn]] void damaged(const std::string& found) {
+  throw Error({.where = "imported data", .found = found, .allowed = "", .remedy = ""});
+}
+
+void write_all(int fd, const void* data, std::size_t size) {
+  const auto* at = static_cast<const char*>(data);
+  while (size > 0) {
+    const ssize_t put = ::write(fd, at, size);
+    if (put < 0 && errno == EINTR) continue;
+    if (put <= 0) damaged(std::string("writing failed: ") + std::strerror(errno));
+    at += put;
+    size -= static_cast<std::size_t>(put);
+  }
+}
+
+void read_all(int fd, void* data, std::size_t size) {
+  auto* at = static_cast<char*>(data);
+  while (size > 0) {
+    const ssize_t got = ::read(fd, at, size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) damaged("it ends too early");
+    at += got;
+    size -= static_cast<std::size_t>(got);
+  }
+}
+
+}  // namespace
+
+FrameWriter::FrameWriter(int fd, FrameKind kind)
+    : fd_(fd), kind_(kind), head_at_(::lseek(fd, 0, SEEK_CUR)) {
+  const FrameHead empty;
+  write_all(fd_, &empty, sizeof empty);
+  buffer_.reserve(kBuffer);
+}
+
+void FrameWriter::bytes(const void* data, std::size_t size) {
+  size_ += size;
+  if (buffer_.size() + size > kBuffer) flush();
+  if (size > kBuffer) {
+    hash_.add(data, size);
+    write_all(fd_, data, size);
+    return;
+  }
+  const auto* first = static_cast<const std::byte*>(data);
+  buffer_.insert(buffer_.end(), first, first + size);
+}
+
+void FrameWriter::flush() {
+  hash_.add(buffer_.data(), buffer_.size());
+  write_all(fd_, buffer_.data(), buffer_.size());
+  buffer_.clear();
+}
+
+void FrameWriter::finish() {
+  flush();
+  const FrameHead head{kMark, kVersion, static_cast<std::uint32_t>(kind_), size_, hash_.value()};
+  if (::pwrite(fd_, &head, sizeof head, head_at_) != static_cast<ssize_t>(sizeof head)) {
+    damaged(std::string("writing failed: ") + std::strerror(errno));
+  }
+}
+
+FrameReader::FrameReader(int fd) : fd_(fd) {
+  read_all(fd_, &head_, sizeof head_);
+  if (head_.mark != kMark || head_.version != kVersion) damaged("it has a foreign head");
+  struct stat info {};
+  const std::int64_t at = ::lseek(fd_, 0, SEEK_CUR);
+  if (::fstat(fd_, &info) != 0 || at < 0 || info.st_size < at ||
+      static_cast<std::uint64_t>(info.st_size - at) < head_.size) {
+    damaged("it ends too early");
+  }
+}
+
+void FrameReader::fill() {
+  buffer_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(kBuffer, head_.size - fetched_)));
+  read_all(fd_, buffer_.data(), buffer_.size());
+  hash_.add(buffer_.data(), buffer_.size());
+  fetched_ += buffer_.size();
+  next_ = 0;
+}
+
+void FrameReader::bytes(void* data, std::size_t size) {
+  if (size > remaining()) damaged("it tells more data than it has");
+  taken_ += size;
+  auto* to = static_cast<std::byte*>(data);
+  while (size > 0) {
+    const std::size_t ready = std::min(size, buffer_.size() - next_);
+    if (ready > 0) std::memcpy(to, buffer_.data() + next_, ready);
+    next_ += ready;
+    to += ready;
+    size -= ready;
+    if (size > kBuffer) {  // past the buffer, straight to its place
+      read_all(fd_, to, size);
+      hash_.add(to, size);
+      fetched_ += size;
+      return;
+    }
+    if (size > 0) fill();
+  }
+}
+
+void FrameReader::finish() {
+  if (remaining() != 0) damaged("it has bytes that nothing reads");
+  if (hash_.value() != head_.hash) damaged("its checksum does not fit");
+}
+
+}  // namespace glidar

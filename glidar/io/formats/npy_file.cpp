@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/formats/npy.hpp>
+#include <glidar/io/formats/point_rows.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <iterator>
+#include <vector>
+
+namespace glidar {
+
+std::string npy_header(std::string_view type, std::span<const std::size_t> shape) {
+  constexpr std::size_t kAlignment = 64;
+  std::string sizes;
+  for (const std::size_t size : shape) fmt::format_to(std::back_inserter(sizes), "{}, ", size);
+  std::string dictionary =
+      fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': ({}), }}", type, sizes);
+  std::string head = "\x93NUMPY";
+  head.append({'\x01', '\x00'});
+  const std::size_t before = head.size() + 2;
+  const std::size_t total = (before + dictionary.size() + kAlignment) / kAlignment * kAlignment;
+  dictionary.resize(total - before, ' ');
+  dictionary.back() = '\n';
+  head += static_cast<char>(dictionary.size() & 0xFFU);
+  head += static_cast<char>(dictionary.size() >> 8U);
+  return head + dictionary;
+}
+
+std::vector<Field> depth_fields(const PointCloud& cloud) {
+  return {{"depth", find_column(cloud, "depth"), 0, Stored::f32}};
+}
+
+void write_depth_npy(const CloudFile& job, AtomicFile& file) {
+  const std::array<std::size_t, 2> shape = {job.cloud.rows, job.cloud.cols};
+  file.write(npy_header("<f4", shape));
+  write_binary_rows(job.fields, job.cloud.size(), file);
+}
+
+}  // namespace glidar

@@ -1,0 +1,124 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/error.hpp>
+#include <glidar/core/version.hpp>
+#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/formats/point_rows.hpp>
+
+#include <fmt/format.h>
+#include <lzf.h>
+
+#include <algorithm>
+#include <array>
+#include <iterator>
+#include <limits>
+
+namespace glidar {
+namespace {
+
+constexpr std::size_t kLargestBlock = std::numeric_limits<std::uint32_t>::max();
+
+/// PCL declares packed colour a float in binary files; in text it has to be the integer, because
+/// most of these bit patterns are denormal floats, which text readers refuse.
+char pcd_type(Stored stored, PcdEncoding encoding) {
+  if (stored == Stored::packed_rgb) return encoding == PcdEncoding::ascii ? 'U' : 'F';
+  if (stored == Stored::i64) return 'I';
+  return stored == Stored::f32 || stored == Stored::f64 ? 'F' : 'U';
+}
+
+std::string viewpoint(const CloudFile& job) {
+  const Pose cloud_from_sensor = job.cloud.world_from_cloud.inverse() * job.frame.world_from_sensor;
+  const Eigen::Vector3d t = cloud_from_sensor.translation();
+  Eigen::Quaterniond q(cloud_from_sensor.linear());
+  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+  return fmt::format("{} {} {} {} {} {} {}", t.x(), t.y(), t.z(), q.w(), q.x(), q.y(), q.z());
+}
+
+std::string header(const CloudFile& job, std::span<const Field> fields) {
+  constexpr std::array kData = {"ascii", "binary", "binary_compressed"};
+  const PcdEncoding encoding = job.options.pcd;
+  std::string sizes;
+  std::string types;
+  std::string counts;
+  for (const Field& field : fields) {
+    fmt::format_to(std::back_inserter(sizes), " {}", size_of(field.stored));
+    fmt::format_to(std::back_inserter(types), " {}", pcd_type(field.stored, encoding));
+    counts += " 1";
+  }
+  return fmt::format(
+      "# .PCD v0.7 - Point Cloud Data file format\n"
+      "# glidar {}, metres in the frame {}\n"
+      "VERSION 0.7\nFIELDS {}\nSIZE{}\nTYPE{}\nCOUNT{}\nWIDTH {}\nHEIGHT {}\nVIEWPOINT {}\n"
+      "POINTS {}\nDATA {}\n",
+      version(), one_line(job.cloud.frame_id), joined_names(fields, ' '), sizes, types, counts,
+      job.cloud.cols, job.cloud.rows, viewpoint(job), job.cloud.size(),
+      kData[static_cast<std::size_t>(encoding)]);
+}
+
+[[noreturn]] void too_large(const AtomicFile& file) {
+  throw Error({file.path().string(), "the cloud is too large for binary_compressed PCD",
+               "less than 4 GiB of points", "write binary PCD instead"});
+}
+
+/// Field after field, as PCL compresses it.
+std::vector<std::byte> by_field(std::span<const Field> fields, std::size_t count) {
+  std::vector<std::byte> bytes(row_bytes(fields) * count);
+  std::size_t offset = 0;
+  for (const Field& field : fields) {
+    const std::size_t size = size_of(field.stored) * count;
+    pack_rows(std::span(&field, 1), 0, count, std::span(bytes).subspan(offset, size));
+    offset += size;
+  }
+  return bytes;
+}
+
+/// lzf's worst case adds one byte to 32 and a few at the end. Its hash table starts as whatever is
+/// in memory, yet the result does not depend on that: an entry counts only if three earlier bytes
+/// match, and every earlier triple has been entered (or is a copy of one that was).
+void write_compressed(std::span<const Field> fields, std::size_t count, AtomicFile& file) {
+  const std::size_t raw_size = row_bytes(fields) * count;
+  if (raw_size > kLargestBlock) too_large(file);
+  const std::vector<std::byte> raw = by_field(fields, count);
+  std::vector<std::byte> packed(std::min(raw_size + raw_size / 16 + 64, kLargestBlock));
+  const unsigned packed_size =
+      raw.empty() ? 0U
+                  : lzf_compress(raw.data(), static_cast<unsigned>(raw_size), packed.data(),
+                                 static_cast<unsigned>(packed.size()));
+  if (packed_size == 0 && !raw.empty()) too_large(file);
+  const std::array<std::uint32_t, 2> sizes = {packed_size, static_cast<std::uint32_t>(raw_size)};
+  file.write(std::as_bytes(std::span(sizes)));
+  file.write(std::span<const std::byte>(packed).first(packed_size));
+}
+
+}  // namespace
+
+std::vector<Field> pcd_fields(const PointCloud& cloud) {
+  std::vector<Field> fields;
+  for (const Column& column : cloud.columns) {
+    if (is_colour(column)) {
+      fields.push_back({"rgb", &column, 0, Stored::packed_rgb});
+      continue;
+    }
+    const std::size_t first = fields.size();
+    append_fields(column, fields);
+    // PCL's own points are float, and Open3D reads wider numbers as 0.
+    if (native_type(column) != Stored::f64) continue;
+    for (std::size_t f = first; f < fields.size(); ++f) fields[f].stored = Stored::f32;
+  }
+  return fields;
+}
+
+void write_pcd(const CloudFile& job, AtomicFile& file) {
+  const std::span<const Field> fields = job.fields;
+  file.write(header(job, fields));
+  switch (job.options.pcd) {
+    case PcdEncoding::ascii:
+      return write_text_rows(fields, job.cloud.size(), ' ', file, job.options.progress);
+    case PcdEncoding::binary:
+      return write_binary_rows(fields, job.cloud.size(), file, job.options.progress);
+    case PcdEncoding::binary_compressed:
+      return write_compressed(fields, job.cloud.size(), file);
+  }
+}
+
+}  // namespace glidar

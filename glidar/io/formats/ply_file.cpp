@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/version.hpp>
+#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/formats/point_rows.hpp>
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cmath>
+#include <iterator>
+#include <limits>
+
+namespace glidar {
+namespace {
+
+/// Readers know normals and colours by these names.
+void append_renamed(const Column& column, const std::array<const char*, 3>& names, Stored stored,
+                    std::vector<Field>& fields) {
+  for (std::size_t c = 0; c < names.size(); ++c) fields.push_back({names[c], &column, c, stored});
+}
+
+std::string_view ply_type(Stored stored) {
+  switch (stored) {
+    case Stored::f32:
+      return "float";
+    case Stored::f64:
+    case Stored::i64:  // stored as f64
+      return "double";
+    case Stored::u16:
+      return "ushort";
+    case Stored::u8:
+    case Stored::colour_byte:
+      return "uchar";
+    case Stored::u32:
+    case Stored::packed_rgb:
+      break;
+  }
+  return "uint";
+}
+
+std::string ply_header(const CloudFile& job, std::span<const Field> fields) {
+  std::string text = fmt::format("ply\nformat {} 1.0\ncomment glidar {}, metres in the frame {}\n",
+                                 job.options.ply_ascii ? "ascii" : "binary_little_endian",
+                                 version(), one_line(job.cloud.frame_id));
+  if (job.cloud.rows > 1) {
+    fmt::format_to(std::back_inserter(text), "obj_info num_cols {}\nobj_info num_rows {}\n",
+                   job.cloud.cols, job.cloud.rows);
+  }
+  fmt::format_to(std::back_inserter(text), "element vertex {}\n", job.cloud.size());
+  for (const Field& field : fields) {
+    fmt::format_to(std::back_inserter(text), "property {} {}\n", ply_type(field.stored),
+                   field.name);
+  }
+  return text + "end_header\n";
+}
+
+}  // namespace
+
+std::vector<Field> ply_fields(const PointCloud& cloud) {
+  std::vector<Field> fields;
+  for (const Column& column : cloud.columns) {
+    if (column.name == "xyz") {
+      const Stored stored = float_is_enough(column) ? Stored::f32 : Stored::f64;
+      append_renamed(column, {"x", "y", "z"}, stored, fields);
+    } else if (column.name == "normal") {
+      append_renamed(column, {"nx", "ny", "nz"}, native_type(column), fields);
+    } else if (is_colour(column)) {
+      append_renamed(column, {"red", "green", "blue"}, Stored::colour_byte, fields);
+    } else if (native_type(column) == Stored::i64) {
+      fields.push_back({column.components[0], &column, 0, Stored::f64});  // PLY has no such integer
+    } else {
+      append_fields(column, fields);
+    }
+  }
+  return fields;
+}
+
+void write_ply(const CloudFile& job, AtomicFile& file) {
+  const std::span<const Field> fields = job.fields;
+  file.write(ply_header(job, fields));
+  if (job.options.ply_ascii) {
+    write_text_rows(fields, job.cloud.size(), ' ', file, job.options.progress);
+  } else {
+    write_binary_rows(fields, job.cloud.size(), file, job.options.progress);
+  }
+}
+
+}  // namespace glidar

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/point_cloud.hpp>
+#include <glidar/core/report.hpp>
+#include <glidar/io/files/atomic_file.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace glidar {
+
+/// How a field's number stands in a file, little-endian.
+enum class Stored : std::uint8_t {
+  f32,
+  f64,
+  u8,
+  u16,
+  u32,
+  i64,
+  colour_byte,  ///< u8, 0..1 times 255
+  packed_rgb,   ///< u32 0x00RRGGBB made from three components
+};
+
+/// One number per point: a component of a column.
+struct Field {
+  std::string name;
+  const Column* column = nullptr;
+  std::size_t component = 0;
+  Stored stored = Stored::f32;
+};
+
+/// Bytes that a stored number takes.
+std::size_t size_of(Stored stored);
+
+/// The type in which a column's numbers are kept.
+Stored native_type(const Column& column);
+
+/// True for rgb as three floats.
+bool is_colour(const Column& column);
+
+/// Appends a field per component, in the column's own names and type.
+void append_fields(const Column& column, std::vector<Field>& fields);
+
+/// Appends a field per component of every column: the cloud as it is.
+std::vector<Field> native_fields(const PointCloud& cloud);
+
+/// How far a file may move a point without a word.
+inline constexpr double kFinePosition_m = 1e-4;
+
+/// False when rounding to float can move a number of this column by more than kFinePosition_m;
+/// columns that are not of doubles need no more than float.
+bool float_is_enough(const Column& column);
+
+/// Bytes of one point with these fields side by side.
+std::size_t row_bytes(std::span<const Field> fields);
+
+/// Points first .. first + count - 1, each as row_bytes(fields) bytes, into `rows`.
+void pack_rows(std::span<const Field> fields, std::size_t first, std::size_t count,
+               std::span<std::byte> rows);
+
+/// `count` points, point by point, to the file; `progress` is told of them.
+void write_binary_rows(std::span<const Field> fields, std::size_t count, AtomicFile& file,
+                       const ProgressCallback& progress = {});
+
+/// `count` points as text, a line each: the shortest digits that read back the same; "nan".
+void write_text_rows(std::span<const Field> fields, std::size_t count, char separator,
+                     AtomicFile& file, const ProgressCallback& progress = {});
+
+/// The fields' names with `separator` between.
+std::string joined_names(std::span<const Field> fields, char separator);
+
+/// Text that cannot break a header line: control characters become spaces.
+std::string one_line(std::string_view text);
+
+}  // namespace glidar

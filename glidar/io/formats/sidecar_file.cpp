@@ -1,0 +1,240 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/version.hpp>
+#include <glidar/io/config/json_numbers.hpp>
+#include <glidar/io/config/noise_yaml.hpp>
+#include <glidar/io/config/optics_json.hpp>
+#include <glidar/io/config/receiver_yaml.hpp>
+#include <glidar/io/config/weather_yaml.hpp>
+#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/formats/sidecar.hpp>
+#include <glidar/io/formats/stored_columns.hpp>
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+
+namespace glidar {
+namespace {
+
+// Keys stay in the order of writing. Numbers that JSON has no word for (NaN, infinity) become null.
+using Json = nlohmann::ordered_json;
+
+constexpr double kMilli = 1e-3;
+constexpr double kNano = 1e-9;
+
+Json vector_json(const Eigen::Vector3d& v) {
+  return Json::array({v.x(), v.y(), v.z()});
+}
+
+Json pose_json(const Pose& pose) {
+  Json matrix = Json::array();
+  for (Eigen::Index row = 0; row < 4; ++row) {
+    const Eigen::RowVector4d r = pose.matrix().row(row);
+    matrix.push_back({r[0], r[1], r[2], r[3]});
+  }
+  Eigen::Quaterniond q(pose.linear());
+  if (q.w() < 0.0) q.coeffs() = -q.coeffs();
+  return {{"matrix", matrix},
+          {"position_m", vector_json(pose.translation())},
+          {"orientation", {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}}}};
+}
+
+Json pulse_json(const LidarEquation& light) {
+  return {{"reference_reflectance", light.reference_reflectance},
+          {"reference_range_m", light.reference_range_m},
+          {"range_exponent", light.range_exponent},
+          {"overlap", light.overlap},
+          {"extinction_per_m", light.extinction_per_m},
+          {"noise_sigma", light.noise_sigma},
+          {"saturation", light.saturation}};
+}
+
+Json footprint_json(const Footprint& f) {
+  return {{"divergence_mrad",
+           {in_unit(f.divergence_x_rad, kMilli), in_unit(f.divergence_y_rad, kMilli)}},
+          {"exit_mm", {in_unit(f.exit_x_m, kMilli), in_unit(f.exit_y_m, kMilli)}},
+          {"width_definition", "1/e2"},
+          {"rings", f.rings}};
+}
+
+Json receiver_json(const Receiver& receiver) {
+  Json returns = Json::array();
+  for (const Return& one : receiver.returns) returns.push_back(return_name(one));
+  const bool is_centroid = receiver.timing == Receiver::Timing::centroid;
+  return {{"pulse_ns", in_unit(receiver.pulse_fwhm_s, kNano)},
+          {"timing", is_centroid ? "centroid" : "leading_edge"},
+          {"min_return_separation_m", receiver.separation_m},
+          {"returns", returns}};
+}
+
+/// All numbers of a sensor.
+Json sensor_json(const Sensor& sensor, const Beams& beams) {
+  const PhongHeadlight& light = sensor.light;
+  return {{"name", sensor.name},
+          {"frame_id", beams.frame_id},
+          {"rows", beams.rows},
+          {"cols", beams.cols},
+          {"boresight", vector_json(beams.boresight)},
+          {"optics", optics_json(sensor.optics)},
+          {"camera_info", camera_info_json(sensor.optics)},
+          {"rate_hz", sensor.rate_hz},
+          {"wavelength_nm", in_unit(sensor.wavelength_m, kNano)},
+          // the quotient has few digits where the product that sensor files are read by has not
+          {"range_offset_m", in_unit(beams.range_offset_m, kMilli) / 1000.0},
+          {"limits",
+           {{"near_m", sensor.limits.near_m},
+            {"far_m", sensor.limits.far_m},
+            {"along", sensor.limits.along == Limits::Along::depth ? "depth" : "range"}}},
+          {"light",
+           {{"attenuation_constant", light.attenuation_constant},
+            {"attenuation_linear_per_m", light.attenuation_linear_per_m},
+            {"attenuation_quadratic_per_m2", light.attenuation_quadratic_per_m2},
+            {"ambient", light.ambient}}},
+          {"lidar_equation", sensor.pulse ? pulse_json(*sensor.pulse) : Json()},
+          {"footprint", sensor.footprint ? footprint_json(*sensor.footprint) : Json()},
+          {"receiver", sensor.pulse ? receiver_json(sensor.receiver) : Json()},
+          {"weather", sensor.weather ? weather_json(*sensor.weather) : Json()},
+          {"projector_origin_m",
+           sensor.projector_origin_m ? vector_json(*sensor.projector_origin_m) : Json()},
+          {"noise", noise_json(sensor.noise)},
+          {"cull_back_faces", sensor.cull_back_faces}};
+}
+
+Json sensor_json(const CloudFile& job) {
+  Json json = sensor_json(job.context.sensor, job.context.beams);
+  json["world_from_sensor"] = pose_json(job.frame.world_from_sensor);
+  return json;
+}
+
+/// As the file holds them, which may be shorter, renamed or fewer than the cloud's.
+Json columns_json(std::span<const Field> fields) {
+  Json columns = Json::array();
+  for (const StoredColumn& stored : stored_columns(fields)) {
+    columns.push_back({{"name", stored.column->name},
+                       {"type", type_name(stored.stored)},
+                       {"components", stored.fields}});
+  }
+  return columns;
+}
+
+/// Null for clouds.
+Json image_json(const CloudFile& job) {
+  if (job.pixels.empty()) return {};
+  Json image = {{"pixels", job.pixels}};
+  if (job.pixels.find("units_per_m") != std::string::npos)
+    image["units_per_m"] = job.options.depth_png_units_per_m;
+  return image;
+}
+
+Json cloud_json(const CloudFile& job, const std::filesystem::path& path) {
+  return {{"file", path.filename().string()},
+          {"rows", job.cloud.rows},
+          {"cols", job.cloud.cols},
+          {"frame_id", job.cloud.frame_id},
+          {"world_from_cloud", pose_json(job.cloud.world_from_cloud)},
+          {"layout", job.layout.empty() ? Json() : Json(job.layout)},
+          {"columns", columns_json(job.fields)},
+          {"image", image_json(job)}};
+}
+
+/// A factor, or one for each of the model's own axes.
+Json scale_json(const Instance& instance, const MeshSource& source) {
+  if (source.stretch == Eigen::Vector3d::Ones()) return instance.scale;
+  return vector_json(instance.scale * source.stretch);
+}
+
+Json instances_json(const CloudFile& job) {
+  const Scene& scene = job.context.scene;
+  Json instances = Json::array();
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    const MeshSource& source = scene.sources.at(instance.mesh);
+    Json told = {{"name", instance.name},
+                 {"id", instance.id},
+                 {"class_id", instance.class_id},
+                 {"class", scene.class_names.at(instance.class_id)},
+                 {"model", source.path},
+                 {"model_hash", source.hash.empty() ? Json() : Json(source.hash)},
+                 {"metres_per_unit", source.metres_per_unit},
+                 {"up", source.up.empty() ? Json() : Json(source.up)},
+                 {"scale", scale_json(instance, source)}};
+    told["world_from_object"] = pose_json(job.frame.world_from_instance.at(i));
+    instances.push_back(told);
+  }
+  return instances;
+}
+
+Json status_json(const Frame& frame) {
+  // Neighbours mostly have the same status: counters of their own keep them from waiting for each
+  // other.
+  constexpr std::size_t kLanes = 4;
+  std::array<std::array<std::size_t, 256>, kLanes> counts{};
+  for (std::size_t i = 0; i < frame.status.size(); ++i)
+    ++counts[i % kLanes][static_cast<std::size_t>(frame.status[i])];
+  constexpr auto kLast = static_cast<std::size_t>(Status::no_return_of_rank);
+  Json told = Json::object();
+  for (std::size_t s = 0; s <= kLast; ++s) {
+    told[std::string(name(static_cast<Status>(s)))] =
+        counts[0][s] + counts[1][s] + counts[2][s] + counts[3][s];
+  }
+  return told;
+}
+
+Json command_json(const CommandRecord& command, const std::filesystem::path& path) {
+  if (command.arguments.empty()) return {};
+  return {{"arguments", command.arguments}, {"folder", relative_folder(path, command.folder)}};
+}
+
+// names and paths may hold bytes that are no UTF-8
+std::string on_one_line(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+/// Indented, but a list of plain values stays on one line, so that a matrix reads as one.
+void append_text(const Json& value, std::size_t indent, std::string& text) {
+  const auto nested = [](const Json& part) { return part.is_structured(); };
+  if (!value.is_object() && std::none_of(value.begin(), value.end(), nested)) {
+    text += on_one_line(value);
+    return;
+  }
+  const std::string margin(indent + 2, ' ');
+  std::string_view before = value.is_object() ? "{\n" : "[\n";
+  for (const auto& [key, part] : value.items()) {
+    text.append(before).append(margin);
+    if (value.is_object()) text += on_one_line(key) + ": ";
+    append_text(part, indent + 2, text);
+    before = ",\n";
+  }
+  text.append("\n").append(indent, ' ').append(value.is_object() ? "}" : "]");
+}
+
+}  // namespace
+
+std::string sensor_to_json(const Sensor& sensor, const Beams& beams) {
+  constexpr int kIndent = 2;
+  Json json = sensor_json(sensor, beams);
+  remove_negative_zeros(json);
+  return json.dump(kIndent, ' ', false, Json::error_handler_t::replace);
+}
+
+std::string sidecar_text(const CloudFile& job, const std::filesystem::path& path) {
+  Json all = {{"glidar", version()},
+              {"command", command_json(job.context.command, path)},
+              {"renderer", job.context.renderer},
+              {"seed", job.frame.seed},
+              {"frame", job.frame.number},
+              {"frame_hash", frame_hash(job.frame)},
+              {"stamp_ns", job.frame.stamp_ns},
+              {"cloud", cloud_json(job, path)},
+              {"sensor", sensor_json(job)},
+              {"instances", instances_json(job)},
+              {"beams_by_status", status_json(job.frame)}};
+  remove_negative_zeros(all);
+  std::string text;
+  append_text(all, 0, text);
+  return text + "\n";
+}
+
+}  // namespace glidar

@@ -1,0 +1,72 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/stored_columns.hpp>
+
+#include <glidar/math/single_precision.hpp>
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+/// The farthest that rounding to float moves a number of this column.
+double rounding(const Column& column) {
+  double farthest = 0.0;
+  for (const double value : std::get<std::vector<double>>(column.values)) {
+    const double moved = std::abs(value - rounded_to_float(value));
+    if (moved > farthest) farthest = moved;  // false for misses, which are NaN
+  }
+  return farthest;
+}
+
+}  // namespace
+
+std::vector<StoredColumn> stored_columns(std::span<const Field> fields) {
+  std::vector<StoredColumn> columns;
+  for (const Field& field : fields) {
+    const bool same = !columns.empty() && columns.back().column == field.column &&
+                      columns.back().stored == field.stored;
+    if (!same) columns.push_back({field.column, field.stored, {}});
+    columns.back().fields.push_back(field.name);
+  }
+  return columns;
+}
+
+std::string_view type_name(Stored stored) {
+  switch (stored) {
+    case Stored::f32:
+      return "f32";
+    case Stored::f64:
+      return "f64";
+    case Stored::u8:
+    case Stored::colour_byte:
+      return "u8";
+    case Stored::u16:
+      return "u16";
+    case Stored::u32:
+      return "u32";
+    case Stored::i64:
+      return "i64";
+    case Stored::packed_rgb:
+      break;
+  }
+  return "packed_rgb";
+}
+
+std::string rounding_told(std::span<const Field> fields, std::string_view remedy) {
+  std::string told;
+  for (const StoredColumn& stored : stored_columns(fields)) {
+    const Column& column = *stored.column;
+    if (stored.stored != Stored::f32 || float_is_enough(column)) continue;
+    const double moved_m = rounding(column);
+    if (!(moved_m > kFinePosition_m)) continue;
+    told += fmt::format("{}its {} by up to {:.2g} m", told.empty() ? "" : ", ",
+                        column.name == "xyz" ? "points" : column.name, moved_m);
+  }
+  if (told.empty()) return told;
+  return fmt::format("rounding to float32 moves {}; {}", told, remedy);
+}
+
+}  // namespace glidar

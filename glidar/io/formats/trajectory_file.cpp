@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/trajectory_file.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/files/text_file.hpp>
+#include <glidar/io/formats/text_rows.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace glidar {
+namespace {
+
+using Part = TimedPoseError::Part;
+
+// Five million poses of a hundred characters.
+constexpr std::uintmax_t kMaxTrajectoryFile_mib = 512;
+constexpr std::array<const char*, 8> kNames = {"t", "x", "y", "z", "qx", "qy", "qz", "qw"};
+constexpr std::size_t kTum = kNames.size();
+constexpr std::size_t kKitti = 12;
+
+/// Where in a row each of kNames stands.
+using Columns = std::array<std::size_t, kTum>;
+constexpr Columns kTumColumns = {0, 1, 2, 3, 4, 5, 6, 7};
+
+TextFileKind file_kind() {
+  return {"a trajectory file", kMaxTrajectoryFile_mib, "cut it, or thin it out"};
+}
+
+void require_count(const TextRows& rows, std::size_t count, const char* what) {
+  const std::vector<Word>& words = rows.words();
+  if (words.size() == count) return;
+  const Word& at = words.size() > count ? words[count] : words.back();
+  rows.reject(at, std::to_string(words.size()) + (words.size() == 1 ? " column" : " columns"),
+              std::to_string(count) + " in every row" + what);
+}
+
+/// Appends the pose, or tells its fault: at the word of that part.
+void append(const TextRows& rows, const TimedPose& pose, const std::array<Word, 3>& parts,
+            std::vector<TimedPose>& poses) {
+  const auto fault = find_error(poses.empty() ? nullptr : &poses.back(), pose);
+  if (fault)
+    rows.reject(parts[static_cast<std::size_t>(fault->part)], fault->found, fault->allowed);
+  poses.push_back(pose);
+}
+
+void read_quaternion_row(const TextRows& rows, const Columns& columns,
+                         std::vector<TimedPose>& poses) {
+  require_count(rows, kTum, "");
+  const auto word = [&](std::size_t name) { return rows.words()[columns[name]]; };
+  const auto number = [&](std::size_t name) { return rows.number(word(name)); };
+  TimedPose pose{.t_ns = rows.time_ns(word(0)), .position_m = {number(1), number(2), number(3)}};
+  pose.orientation = Eigen::Quaterniond(number(7), number(4), number(5), number(6));
+  append(rows, pose, {word(0), word(1), word(4)}, poses);
+}
+
+/// The header of a CSV file.
+Columns named_columns(const TextRows& rows) {
+  const std::string allowed = "t, x, y, z, qw, qx, qy, qz, each once, in any order";
+  const std::vector<std::string> known(kNames.begin(), kNames.end());
+  Columns columns{};
+  std::array<bool, kTum> seen{};
+  for (std::size_t i = 0; i < rows.words().size(); ++i) {
+    const Word& word = rows.words()[i];
+    const auto at =
+        static_cast<std::size_t>(std::find(known.begin(), known.end(), word.text) - known.begin());
+    if (at == kTum) {
+      rows.reject(word, "the column '" + shown(word.text) + "'", allowed,
+                  "the first row names the columns");
+    }
+    if (seen[at]) rows.reject(word, "the column '" + known[at] + "' again", allowed);
+    seen[at] = true;
+    columns[at] = i;
+  }
+  const auto missing = std::find(seen.begin(), seen.end(), false);
+  if (missing == seen.end()) return columns;
+  rows.reject(rows.words().back(),
+              "no column '" + known[static_cast<std::size_t>(missing - seen.begin())] + "'",
+              allowed);
+}
+
+/// The times of a KITTI sequence.
+std::vector<std::int64_t> read_times(const std::filesystem::path& path) {
+  const std::string content = read_text_file(path, file_kind());
+  TextRows rows(path.string(), content);
+  std::vector<std::int64_t> times;
+  while (rows.next()) {
+    require_count(rows, 1, ": a time in seconds");
+    const Word& word = rows.words()[0];
+    const std::int64_t t_ns = rows.time_ns(word);
+    if (!times.empty() && t_ns <= times.back()) {
+      rows.reject(word, "a time not after the one before", "times that increase");
+    }
+    times.push_back(t_ns);
+  }
+  return times;
+}
+
+/// When the poses of a KITTI file are, by the options.
+class KittiClock {
+ public:
+  KittiClock(const std::string& file, const TrajectoryFileOptions& options)
+      : rate_hz_(options.rate_hz.value_or(0.0)), times_file_(options.times_file.string()) {
+    if (options.rate_hz.has_value() == !options.times_file.empty()) {
+      throw Error({file,
+                   options.rate_hz ? "a KITTI file with a rate and a file of times"
+                                   : "a KITTI file, whose rows have no times",
+                   "a rate or a file of times", "give one of them"});
+    }
+    if (options.rate_hz) return;
+    times_ = read_times(options.times_file);
+  }
+
+  [[nodiscard]] std::int64_t time_ns(const TextRows& rows, std::size_t pose) const {
+    if (times_file_.empty()) {
+      return std::llround(static_cast<double>(pose) * 1e9 / rate_hz_);
+    }
+    if (pose < times_.size()) return times_[pose];
+    rows.reject(rows.words()[0], "pose " + std::to_string(pose + 1),
+                "one per time; " + times_file_ + " has " + std::to_string(times_.size()));
+  }
+
+  void require_end(const std::string& file, std::size_t poses) const {
+    if (times_file_.empty() || poses == times_.size()) return;
+    throw Error({file, std::to_string(poses) + " poses",
+                 "one per time; " + times_file_ + " has " + std::to_string(times_.size()), ""});
+  }
+
+ private:
+  double rate_hz_;
+  std::string times_file_;
+  std::vector<std::int64_t> times_;
+};
+
+void read_matrix_row(const TextRows& rows, std::int64_t t_ns, std::vector<TimedPose>& poses) {
+  require_count(rows, kKitti, "");
+  Eigen::Matrix<double, 3, 4> matrix;
+  for (Eigen::Index i = 0; i < 12; ++i) {
+    matrix(i / 4, i % 4) = rows.number(rows.words()[static_cast<std::size_t>(i)]);
+  }
+  Pose pose = Pose::Identity();
+  pose.linear() = matrix.leftCols<3>();
+  constexpr double kTolerance = 1e-3;  // files of four decimals pass
+  if (!is_rigid(pose, kTolerance)) {
+    rows.reject(rows.words()[0], "a matrix whose first three columns are no rotation",
+                "a rotation to within 0.001");
+  }
+  const TimedPose timed{.t_ns = t_ns,
+                        .position_m = matrix.col(3),
+                        .orientation = Eigen::Quaterniond(pose.linear()).normalized()};
+  append(rows, timed, {rows.words()[0], rows.words()[3], rows.words()[0]}, poses);
+}
+
+std::vector<TimedPose> read_kitti(TextRows& rows, const std::string& file,
+                                  const TrajectoryFileOptions& options) {
+  const KittiClock clock(file, options);
+  std::vector<TimedPose> poses;
+  do {
+    read_matrix_row(rows, clock.time_ns(rows, poses.size()), poses);
+  } while (rows.next());
+  clock.require_end(file, poses.size());
+  return poses;
+}
+
+std::vector<TimedPose> read_quaternions(TextRows& rows, const std::string& file,
+                                        const TrajectoryFileOptions& options) {
+  if (options.rate_hz || !options.times_file.empty()) {
+    throw Error({file, "a file that has times of its own", "a rate or times with KITTI files only",
+                 "leave them out"});
+  }
+  const bool csv = rows.has_commas();
+  const Columns columns = csv ? named_columns(rows) : kTumColumns;
+  std::vector<TimedPose> poses;
+  if (!csv) read_quaternion_row(rows, columns, poses);
+  while (rows.next()) read_quaternion_row(rows, columns, poses);
+  return poses;
+}
+
+void shift(std::int64_t start_ns, const std::string& file, std::vector<TimedPose>& poses) {
+  const std::int64_t by_first = poses.front().t_ns;
+  for (TimedPose& pose : poses) {
+    std::int64_t since = 0;
+    if (__builtin_sub_overflow(pose.t_ns, by_first, &since) ||
+        __builtin_add_overflow(since, start_ns, &pose.t_ns)) {
+      throw Error({file, "times that leave the range of nanoseconds when shifted",
+                   "times within 290 years", ""});
+    }
+  }
+}
+
+}  // namespace
+
+TimedPoses load_trajectory_file(const std::filesystem::path& path,
+                                const TrajectoryFileOptions& options) {
+  const std::string file = path.string();
+  if (options.rate_hz && !(*options.rate_hz >= 0.01 && *options.rate_hz <= 1e9)) {
+    throw Error(
+        {file, "a rate of " + std::to_string(*options.rate_hz) + " Hz", "from 0.01 to 1e9 Hz", ""});
+  }
+  const std::string content = read_text_file(path, file_kind());
+  TextRows rows(file, content);
+  if (!rows.next()) throw Error({file, "no pose", "at least one", "see docs/files.md"});
+  const std::size_t width = rows.words().size();
+  if (!rows.has_commas() && width != kTum && width != kKitti) {
+    rows.reject(rows.words()[0], std::to_string(width) + " columns",
+                "8 (TUM: t x y z qx qy qz qw), 12 (KITTI), or names with commas between (CSV)");
+  }
+  const bool kitti = !rows.has_commas() && width == kKitti;
+  std::vector<TimedPose> poses =
+      kitti ? read_kitti(rows, file, options) : read_quaternions(rows, file, options);
+  if (poses.empty()) throw Error({file, "no pose", "at least one", "see docs/files.md"});
+  if (options.start_ns) shift(*options.start_ns, file, poses);
+  return TimedPoses(std::move(poses));
+}
+
+}  // namespace glidar

@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/error.hpp>
+#include <glidar/io/formats/cloud_file.hpp>
+
+#include <fmt/format.h>
+
+namespace glidar {
+
+void write_transform(const CloudFile& job, AtomicFile& file) {
+  if (job.frame.world_from_instance.empty()) {
+    throw Error({file.path().string(), "the scene has no object whose pose could be written",
+                 "at least one instance", ""});
+  }
+  const Pose cloud_from_object =
+      job.cloud.world_from_cloud.inverse() * job.frame.world_from_instance.front();
+  const Eigen::Matrix4d& matrix = cloud_from_object.matrix();
+  for (Eigen::Index row = 0; row < 4; ++row) {
+    // + 0.0 turns -0 into 0
+    file.write(fmt::format("{:.17g} {:.17g} {:.17g} {:.17g}\n", matrix(row, 0) + 0.0,
+                           matrix(row, 1) + 0.0, matrix(row, 2) + 0.0, matrix(row, 3) + 0.0));
+  }
+}
+
+}  // namespace glidar

@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/core/error.hpp>
+#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/pictures/png_image.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace glidar {
+namespace {
+
+constexpr std::uint32_t kMaxGrey = std::numeric_limits<std::uint16_t>::max();
+
+template <class T>
+const std::vector<T>& to_xyz_wxyz(const CloudFile& job, const char* column) {
+  return std::get<std::vector<T>>(find_column(job.cloud, column)->values);
+}
+
+template <class T>
+void write_pixels(const CloudFile& job, PngKind kind, const std::vector<T>& pixels,
+                  AtomicFile& file) {
+  write_png({kind, job.cloud.cols, job.cloud.rows, std::as_bytes(std::span(pixels)), job.pixels},
+            file);
+}
+
+/// The nearest whole number to a share of `full`, 0 for NaN.
+template <class T>
+T scaled(double share, double full) {
+  return static_cast<T>(std::round(full * std::max(0.0, std::min(1.0, share))));
+}
+
+/// Ids as grey, 0 where there is none.
+template <class Grey>
+std::vector<Grey> greys_of(const std::vector<std::uint32_t>& ids) {
+  std::vector<Grey> greys(ids.size());
+  std::transform(ids.begin(), ids.end(), greys.begin(), [](std::uint32_t id) {
+    return id == kInvalidId ? Grey{0} : static_cast<Grey>(id);
+  });
+  return greys;
+}
+
+}  // namespace
+
+void write_rgb_png(const CloudFile& job, AtomicFile& file) {
+  const auto& colours = to_xyz_wxyz<float>(job, "colour");
+  const auto& incidences = to_xyz_wxyz<float>(job, "incidence");
+  std::vector<std::uint8_t> pixels(colours.size());
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    const double light = std::cos(double{incidences[i / 3]});  // NaN where there is nothing
+    pixels[i] = std::isnan(light) ? 0 : scaled<std::uint8_t>(colours[i] * light, 255.0);
+  }
+  write_pixels(job, PngKind::rgb8, pixels, file);
+}
+
+void write_normal_png(const CloudFile& job, AtomicFile& file) {
+  const auto& normals = to_xyz_wxyz<float>(job, "normal");
+  std::vector<std::uint16_t> pixels(normals.size());
+  std::transform(normals.begin(), normals.end(), pixels.begin(), [](float part) {
+    return std::isnan(part) ? std::uint16_t{0} : scaled<std::uint16_t>(0.5 + 0.5 * part, kMaxGrey);
+  });
+  write_pixels(job, PngKind::rgb16, pixels, file);
+}
+
+void write_instance_png(const CloudFile& job, AtomicFile& file) {
+  const auto& ids = to_xyz_wxyz<std::uint32_t>(job, "instance");
+  for (const std::uint32_t id : ids) {
+    if (id == kInvalidId || (id > 0 && id <= kMaxGrey)) continue;
+    throw Error({file.path().string(),
+                 id == 0 ? "an instance has the id 0, which is nothing in this file"
+                         : fmt::format("the instance id {} does not fit 16 bits", id),
+                 "ids from 1 to 65535",
+                 "set 'id' of the model in the scene file, or write a cloud with the column "
+                 "instance"});
+  }
+  write_pixels(job, PngKind::grey16, greys_of<std::uint16_t>(ids), file);
+}
+
+void write_class_png(const CloudFile& job, AtomicFile& file) {
+  constexpr std::size_t kMaxSmall = 256;
+  const auto& ids = to_xyz_wxyz<std::uint32_t>(job, "class");
+  const std::size_t classes = job.context.scene.class_names.size();
+  if (classes <= kMaxSmall) {
+    write_pixels(job, PngKind::grey8, greys_of<std::uint8_t>(ids), file);
+    return;
+  }
+  if (classes > std::size_t{kMaxGrey} + 1) {
+    throw Error({file.path().string(), fmt::format("a scene of {} classes", classes),
+                 "up to 65536 classes, which fit 16 bits", "write a cloud with the column class"});
+  }
+  write_pixels(job, PngKind::grey16, greys_of<std::uint16_t>(ids), file);
+}
+
+}  // namespace glidar

@@ -1,0 +1,285 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/model/builtin_models.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/excerpt.hpp>
+#include <glidar/io/model/mesh_making.hpp>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <set>
+#include <utility>
+#include <vector>
+
+namespace glidar {
+namespace {
+
+Material neutral_grey() {
+  Material material;
+  material.name = "neutral grey";
+  material.specular = Eigen::Vector3f::Constant(0.3F);
+  material.shininess = 24.0F;
+  return material;
+}
+
+/// Regolith: a warm grey that hardly shines.
+Material rock() {
+  Material material;
+  material.name = "rock";
+  material.diffuse = {0.50F, 0.46F, 0.41F};
+  material.ambient = material.diffuse;
+  material.specular = Eigen::Vector3f::Constant(0.03F);
+  material.shininess = 6.0F;
+  return material;
+}
+
+Mesh to_mesh(const PointMesh& points, const std::vector<Eigen::Vector3d>& normals) {
+  Mesh mesh;
+  mesh.triangles = points.triangles;
+  for (const Eigen::Vector3d& p : points.points_m) mesh.positions_m.push_back(p.cast<float>());
+  for (const Eigen::Vector3d& n : normals) mesh.normals.push_back(n.cast<float>());
+  return mesh;
+}
+
+/// Lengths that a built-in model may be given, m.
+struct Sizes {
+  Eigen::Vector3d size = Eigen::Vector3d::Constant(2.0);
+  double radius = 1.0;
+  double tube_radius = 0.4;
+};
+
+Mesh sphere(const Sizes& sizes) {
+  PointMesh ball = icosphere(4);
+  const std::vector<Eigen::Vector3d> normals = ball.points_m;  // those of the unit sphere
+  for (Eigen::Vector3d& p : ball.points_m) p *= sizes.radius;
+  return to_mesh(ball, normals);
+}
+
+Mesh asteroid(const Sizes&) {
+  const PointMesh body = make_asteroid();
+  return to_mesh(body, smooth_normals(body));
+}
+
+/// Appends the square `centre` +- `u` +- `v` of a side of 2 m, front to u x v, with uvs.
+void append_square(Mesh& mesh, const Eigen::Vector3f& centre, const Eigen::Vector3f& u,
+                   const Eigen::Vector3f& v) {
+  const auto first = static_cast<std::uint32_t>(mesh.positions_m.size());
+  constexpr std::array<std::array<float, 2>, 4> kCorners = {{{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}};
+  for (const auto& [s, t] : kCorners) {
+    mesh.positions_m.emplace_back(centre + s * u + t * v);
+    mesh.normals.emplace_back(u.cross(v));
+    mesh.uvs[0].emplace_back((s + 1.0F) / 2.0F, (t + 1.0F) / 2.0F);
+  }
+  mesh.triangles.push_back({first, first + 1, first + 2});
+  mesh.triangles.push_back({first, first + 2, first + 3});
+}
+
+/// From sides of 2 m to the given ones.
+void resize(const Eigen::Vector3d& size, Mesh& mesh) {
+  for (Eigen::Vector3f& p : mesh.positions_m) {
+    p = p.cast<double>().cwiseProduct(0.5 * size).cast<float>();
+  }
+}
+
+Mesh plane(const Sizes& sizes) {
+  Mesh mesh;
+  append_square(mesh, Eigen::Vector3f::Zero(), Eigen::Vector3f::UnitX(), Eigen::Vector3f::UnitY());
+  resize(sizes.size, mesh);
+  return mesh;
+}
+
+Mesh box(const Sizes& sizes) {
+  Mesh mesh;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3f out = Eigen::Vector3f::Unit(axis);
+    const Eigen::Vector3f u = Eigen::Vector3f::Unit((axis + 1) % 3);
+    const Eigen::Vector3f v = Eigen::Vector3f::Unit((axis + 2) % 3);
+    append_square(mesh, out, u, v);
+    append_square(mesh, -out, v, u);
+  }
+  resize(sizes.size, mesh);
+  return mesh;
+}
+
+/// `count` directions evenly around the circle, from +x towards +y; count = 4 * 2^n. Halving
+/// arcs needs only square roots: sines and cosines differ between maths libraries.
+std::vector<Eigen::Vector2d> circle(std::size_t count) {
+  std::vector<Eigen::Vector2d> points = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+  while (points.size() < count) {
+    std::vector<Eigen::Vector2d> finer;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const Eigen::Vector2d sum = points[i] + points[(i + 1) % points.size()];
+      finer.push_back(points[i]);
+      finer.emplace_back(sum / std::sqrt(sum.x() * sum.x() + sum.y() * sum.y()));
+    }
+    points = std::move(finer);
+  }
+  return points;
+}
+
+Mesh torus(const Sizes& sizes) {
+  constexpr std::uint32_t kAround = 128;
+  constexpr std::uint32_t kAcross = 64;
+  PointMesh points;
+  std::vector<Eigen::Vector3d> normals;
+  const std::vector<Eigen::Vector2d> tube = circle(kAcross);
+  for (const Eigen::Vector2d& ring : circle(kAround)) {
+    for (const Eigen::Vector2d& t : tube) {
+      const double radius = sizes.radius + sizes.tube_radius * t.x();
+      points.points_m.emplace_back(radius * ring.x(), radius * ring.y(), sizes.tube_radius * t.y());
+      normals.emplace_back(t.x() * ring.x(), t.x() * ring.y(), t.y());
+    }
+  }
+  for (std::uint32_t i = 0; i < kAround; ++i) {
+    for (std::uint32_t j = 0; j < kAcross; ++j) {
+      const std::uint32_t here = i * kAcross;
+      const std::uint32_t next = (i + 1) % kAround * kAcross;
+      const std::uint32_t up = (j + 1) % kAcross;
+      points.triangles.push_back({here + j, next + j, next + up});
+      points.triangles.push_back({here + j, next + up, here + up});
+    }
+  }
+  return to_mesh(points, normals);
+}
+
+struct Builtin {
+  Mesh (*make)(const Sizes&);
+  Material (*material)();
+  int lengths;      ///< how many `size` has; 0: it has no size
+  bool has_radius;  ///< and no size
+  bool has_tube;
+};
+// In the order of builtin_model_names().
+constexpr std::array<Builtin, 5> kBuiltins = {{{asteroid, rock, 0, false, false},
+                                               {sphere, neutral_grey, 0, true, false},
+                                               {box, neutral_grey, 3, false, false},
+                                               {torus, neutral_grey, 0, true, true},
+                                               {plane, neutral_grey, 2, false, false}}};
+
+std::vector<std::string> size_keys(const Builtin& builtin) {
+  std::vector<std::string> keys;
+  if (builtin.lengths > 0) keys.emplace_back("size");
+  if (builtin.has_radius) keys.emplace_back("radius");
+  if (builtin.has_tube) keys.emplace_back("tube_radius");
+  return keys;
+}
+
+[[noreturn]] void refuse(std::string_view name, std::string found, std::string allowed,
+                         std::string remedy) {
+  throw Error({.where = std::string(kBuiltinPrefix) + excerpt(name),
+               .found = std::move(found),
+               .allowed = std::move(allowed),
+               .remedy = std::move(remedy)});
+}
+
+std::string joined(std::span<const std::string> words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (;;) {
+    const std::size_t at = text.find(separator);
+    parts.push_back(text.substr(0, at));
+    if (at == std::string_view::npos) return parts;
+    text.remove_prefix(at + 1);
+  }
+}
+
+/// `count` lengths, or one for all.
+std::vector<double> lengths_of(std::string_view name, std::string_view text, std::size_t count) {
+  std::vector<double> lengths;
+  for (const std::string_view one : split(text, ',')) {
+    double length = 0.0;
+    const char* end = one.data() + one.size();
+    const auto [stop, problem] = std::from_chars(one.data(), end, length);
+    const bool is_number = problem == std::errc() && stop == end;
+    if (!is_number || !(length > 0.0) || length > kLargestCoordinate_m) {
+      refuse(name, "a size of '" + excerpt(one) + "'", "metres above 0, up to 1e15", "");
+    }
+    lengths.push_back(length);
+  }
+  if (lengths.size() != 1 && lengths.size() != count) {
+    refuse(name, std::to_string(lengths.size()) + " numbers",
+           count == 1 ? "one number" : "one number, or " + std::to_string(count), "");
+  }
+  lengths.resize(count, lengths.front());
+  return lengths;
+}
+
+void set_size(std::string_view name, const Builtin& builtin, std::string_view parameter,
+              Sizes& sizes) {
+  const std::size_t equals = parameter.find('=');
+  const std::string key(parameter.substr(0, equals));
+  const std::vector<std::string> keys = size_keys(builtin);
+  if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
+    const std::string nearest = closest_match(key, keys);
+    refuse(name, "'" + excerpt(key) + "' is no size of this model",
+           keys.empty() ? "no sizes; 'scale' changes that of any model" : joined(keys),
+           nearest.empty() ? "" : "did you mean '" + nearest + "'?");
+  }
+  if (equals == std::string_view::npos) {
+    refuse(name, "'" + key + "' without a number", key + "=NUMBER, in metres", "");
+  }
+  const std::string_view value = parameter.substr(equals + 1);
+  if (key == "radius") sizes.radius = lengths_of(name, value, 1).front();
+  if (key == "tube_radius") sizes.tube_radius = lengths_of(name, value, 1).front();
+  if (key != "size") return;
+  const auto count = static_cast<std::size_t>(builtin.lengths);
+  const std::vector<double> lengths = lengths_of(name, value, count);
+  for (std::size_t i = 0; i < count; ++i) sizes.size[static_cast<Eigen::Index>(i)] = lengths[i];
+}
+
+Sizes sizes_of(std::string_view name, const Builtin& builtin,
+               std::span<const std::string_view> parameters) {
+  Sizes sizes;
+  std::set<std::string_view> given;
+  for (const std::string_view parameter : parameters) {
+    const std::string_view key = parameter.substr(0, parameter.find('='));
+    set_size(name, builtin, parameter, sizes);
+    if (!given.insert(key).second)
+      refuse(name, "'" + std::string(key) + "' is given twice", "each size once", "");
+  }
+  if (builtin.has_tube && sizes.tube_radius >= sizes.radius) {
+    refuse(name, "a tube of radius " + number_text(sizes.tube_radius),
+           "a tube_radius below the radius, " + number_text(sizes.radius), "");
+  }
+  return sizes;
+}
+
+}  // namespace
+
+std::span<const std::string> builtin_model_names() {
+  static const std::array<std::string, kBuiltins.size()> kNames = {"asteroid", "sphere", "box",
+                                                                   "torus", "plane"};
+  return kNames;
+}
+
+Model make_builtin_model(std::string_view name) {
+  const std::vector<std::string_view> parts = split(name, ':');
+  const std::span<const std::string> names = builtin_model_names();
+  const auto known = std::find(names.begin(), names.end(), parts.front());
+  if (known == names.end()) {
+    const std::string nearest = closest_match(parts.front(), names);
+    refuse(name, "no built-in model of this name", joined(names),
+           nearest.empty() ? "" : "did you mean 'builtin:" + nearest + "'?");
+  }
+  const Builtin& builtin = kBuiltins.at(static_cast<std::size_t>(known - names.begin()));
+  Model model;
+  model.source = std::string(kBuiltinPrefix) + std::string(name);
+  model.format = "built-in";
+  model.declared.metres_per_unit = 1.0;
+  model.mesh = builtin.make(sizes_of(name, builtin, std::span(parts).subspan(1)));
+  model.mesh.name = *known;
+  model.materials = {builtin.material()};
+  model.parts = {{.name = *known,
+                  .first_triangle = 0,
+                  .triangle_count = static_cast<std::uint32_t>(model.mesh.triangles.size())}};
+  return model;
+}
+
+}  // namespace glidar

@@ -1,0 +1,279 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/model/import_process.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/model/mesh_blob.hpp>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <optional>
+#include <vector>
+
+namespace glidar {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint64_t kGiB = std::uint64_t{1} << 30U;
+constexpr double kQuietSeconds = 0.5;    // faster loads show no progress
+constexpr int kSliceMilliseconds = 100;  // between two looks at the clock
+constexpr int kAnswerFd = 3;
+constexpr int kProgressFd = 4;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+[[noreturn]] void cannot_start(const std::string& program, int error) {
+  throw Error({.where = program,
+               .found = std::string("cannot be started: ") + std::strerror(error),
+               .allowed = "",
+               .remedy = ""});
+}
+
+/// What the process gets of the environment: where the dynamic loader looks for libraries, and, if
+/// it is built with sanitizers, their options. A model that takes it over finds no secret there.
+std::vector<std::string> environment() {
+  std::vector<const char*> names = {"LD_LIBRARY_PATH"};
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  names.insert(names.end(), {"ASAN_OPTIONS", "LSAN_OPTIONS", "TSAN_OPTIONS", "UBSAN_OPTIONS"});
+#endif
+  std::vector<std::string> all;
+  for (const char* name : names) {
+    const char* value = std::getenv(name);
+    if (value != nullptr) all.push_back(std::string(name) + "=" + value);
+  }
+  return all;
+}
+
+/// As posix_spawn takes them; refers to the texts.
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+/// Its standard streams lead nowhere, descriptors 3 and 4 are ours, all others are closed.
+class SpawnPlan {
+ public:
+  SpawnPlan(int answer, int progress) {
+    posix_spawn_file_actions_init(&actions_);
+    for (const int standard : {0, 1, 2}) {
+      posix_spawn_file_actions_addopen(&actions_, standard, "/dev/null", O_RDWR, 0);
+    }
+    posix_spawn_file_actions_adddup2(&actions_, answer, kAnswerFd);
+    posix_spawn_file_actions_adddup2(&actions_, progress, kProgressFd);
+    posix_spawn_file_actions_addclosefrom_np(&actions_, kProgressFd + 1);
+  }
+  SpawnPlan(const SpawnPlan&) = delete;
+  SpawnPlan& operator=(const SpawnPlan&) = delete;
+  ~SpawnPlan() { posix_spawn_file_actions_destroy(&actions_); }
+
+  pid_t start(const std::string& program, std::vector<std::string> arguments) const {
+    std::vector<std::string> variables = environment();
+    pid_t child = 0;
+    const int error = ::posix_spawn(&child, program.c_str(), &actions_, nullptr,
+                                    pointers_to(arguments).data(), pointers_to(variables).data());
+    if (error != 0) cannot_start(program, error);
+    return child;
+  }
+
+ private:
+  posix_spawn_file_actions_t actions_{};
+};
+
+struct ProgressPipe {
+  UniqueFd read_end;
+  UniqueFd write_end;
+};
+
+/// Moved above the descriptors that the child gets, so that the moves there cannot collide.
+UniqueFd moved_up(int fd) {
+  const UniqueFd low(fd);
+  return UniqueFd(::fcntl(low.get(), F_DUPFD_CLOEXEC, kProgressFd + 1));
+}
+
+ProgressPipe make_pipe(const std::string& program) {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) cannot_start(program, errno);
+  ProgressPipe pipe{moved_up(ends[0]), moved_up(ends[1])};
+  if (!pipe.read_end || !pipe.write_end) cannot_start(program, errno);
+  return pipe;
+}
+
+UniqueFd make_answer(const std::string& program) {
+  UniqueFd answer = moved_up(::memfd_create("glidar-import", MFD_CLOEXEC));
+  if (!answer) cannot_start(program, errno);
+  return answer;
+}
+
+/// True when the child has ended; it is not reaped yet. An unknown child counts as ended.
+bool has_ended(pid_t child) {
+  siginfo_t info{};
+  if (::waitid(P_PID, static_cast<id_t>(child), &info, WEXITED | WNOHANG | WNOWAIT) != 0) {
+    return errno != EINTR;
+  }
+  return info.si_pid == child;
+}
+
+/// Reads percent bytes until the process closes its end, which it does by ending.
+/// False when the time ran out first.
+bool wait_for_end(pid_t child, const ProgressPipe& pipe, const ImportRequest& request,
+                  const Report& report) {
+  const Clock::time_point start = Clock::now();
+  const std::string task = "loading " + request.model.filename().string();
+  double fraction = -1.0;
+  for (;;) {
+    const double left_s = request.time_limit_s - seconds_since(start);
+    if (left_s <= 0.0) return false;
+    pollfd watched{pipe.read_end.get(), POLLIN, 0};
+    const int slice = std::min(kSliceMilliseconds, static_cast<int>(left_s * 1000.0) + 1);
+    const int ready = ::poll(&watched, 1, slice);
+    // Should a process forked elsewhere hold the pipe's other end, the end itself still tells.
+    if (ready == 0 && has_ended(child)) return true;
+    if (ready > 0) {
+      std::array<unsigned char, 256> percents{};
+      const ssize_t got = ::read(pipe.read_end.get(), percents.data(), percents.size());
+      if (got == 0 || (got < 0 && errno != EINTR)) return true;
+      if (got > 0) fraction = std::min(1.0, percents[static_cast<std::size_t>(got) - 1] / 100.0);
+    }
+    if (report.progress && seconds_since(start) > kQuietSeconds) report.progress(task, fraction);
+  }
+}
+
+std::string signal_name(int signal) {
+  const char* name = ::sigabbrev_np(signal);
+  const char* words = ::sigdescr_np(signal);
+  return fmt::format("signal SIG{}, {}", name != nullptr ? name : std::to_string(signal),
+                     words != nullptr ? words : "unknown");
+}
+
+[[noreturn]] void fail(const ImportRequest& request, std::string found, std::string remedy) {
+  throw Error({.where = request.model.string(),
+               .found = std::move(found),
+               .allowed = "",
+               .remedy = std::move(remedy)});
+}
+
+/// How a process ended, and what it took.
+struct Ending {
+  int status = 0;
+  rusage usage{};
+};
+
+/// Waits for the process, which is killed first if need be.
+Ending end(pid_t child, bool is_killed) {
+  if (is_killed) ::kill(child, SIGKILL);
+  Ending ending;
+  while (::wait4(child, &ending.status, 0, &ending.usage) < 0 && errno == EINTR) {
+  }
+  return ending;
+}
+
+/// Exit status of the import program when memory ran out before it could say so in a frame.
+constexpr int kExitNoMemory = 3;
+
+void classify(ImportRun& run, int status) {
+  if (WIFEXITED(status)) {
+    const int code = WEXITSTATUS(status);
+    run.end = code == 0               ? ImportEnd::answered
+              : code == kExitNoMemory ? ImportEnd::out_of_memory
+                                      : ImportEnd::crashed;
+    return;
+  }
+  run.signal = WTERMSIG(status);
+  run.end = run.signal == SIGXCPU ? ImportEnd::out_of_time : ImportEnd::crashed;
+}
+
+}  // namespace
+
+std::uint64_t default_memory_limit(std::uint64_t file_bytes) {
+  constexpr std::uint64_t kUnfolding = 40;
+  return std::max(kGiB, file_bytes > kGiB * kGiB / kUnfolding ? kGiB : file_bytes * kUnfolding);
+}
+
+double default_time_limit_s(std::uint64_t file_bytes) {
+  constexpr double kLeast = 20.0;
+  constexpr double kPerByte = 2e-6;  // fifty times what a slow format takes on a slow machine
+  return kLeast + kPerByte * static_cast<double>(file_bytes);
+}
+
+ImportRun run_import(const ImportRequest& request, const Report& report) {
+  const std::string program = import_program().string();
+  ImportRun run;
+  run.memory_limit_bytes = request.memory_limit_bytes != 0
+                               ? request.memory_limit_bytes
+                               : default_memory_limit(fs::file_size(request.model));
+  run.answer = make_answer(program);
+  ProgressPipe pipe = make_pipe(program);
+  const Clock::time_point start = Clock::now();
+  const pid_t child =
+      SpawnPlan(run.answer.get(), pipe.write_end.get())
+          .start(program,
+                 {program, request.model.string(), fmt::format("{:.17g}", request.crease_angle_rad),
+                  std::to_string(run.memory_limit_bytes),
+                  fmt::format("{:.3f}", request.time_limit_s), std::to_string(::getpid())});
+  pipe.write_end.reset();
+  bool in_time = false;
+  try {
+    in_time = wait_for_end(child, pipe, request, report);
+  } catch (...) {  // whoever is told of the progress gave up
+    end(child, true);
+    throw;
+  }
+  const auto [status, usage] = end(child, !in_time);
+  run.seconds = seconds_since(start);
+  run.peak_memory_bytes = static_cast<std::uint64_t>(usage.ru_maxrss) * 1024U;
+  classify(run, status);
+  if (!in_time) run.end = ImportEnd::out_of_time;
+  ::lseek(run.answer.get(), 0, SEEK_SET);
+  return run;
+}
+
+ImportedModel take_model(const ImportRun& run, const ImportRequest& request) {
+  switch (run.end) {
+    case ImportEnd::out_of_time:
+      fail(request, fmt::format("reading it took longer than {:g} s", request.time_limit_s),
+           "save the model in another format, or make it smaller");
+    case ImportEnd::out_of_memory:
+      fail(request,
+           fmt::format("reading it needs more memory than {} MiB", run.memory_limit_bytes >> 20U),
+           "the file may be broken; else save the model in another format, or make it smaller");
+    case ImportEnd::crashed:
+      fail(request,
+           run.signal != 0 ? "the import process crashed (" + signal_name(run.signal) + ")"
+                           : "the import process gave up without an answer",
+           "the file is damaged or uses what the importer cannot read; save it in another format "
+           "(PLY, OBJ or glTF)");
+    case ImportEnd::answered:
+      break;
+  }
+  std::optional<ImportFailure> failure;
+  try {
+    FrameReader frame(run.answer.get());
+    if (frame.kind() == FrameKind::model) return read_model(frame);
+    failure = read_failure(frame);
+  } catch (const Error& error) {
+    fail(request, "the import process gave a damaged answer (" + error.parts().found + ")",
+         "save the model in another format (PLY, OBJ or glTF)");
+  }
+  fail(request, failure->found, failure->remedy);
+}
+
+}  // namespace glidar

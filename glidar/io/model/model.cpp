@@ -1,0 +1,239 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/model/model.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/files/nearest_file.hpp>
+#include <glidar/io/model/builtin_models.hpp>
+#include <glidar/io/model/import_process.hpp>
+#include <glidar/io/model/model_cache.hpp>
+#include <glidar/io/model/model_place.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+namespace fs = std::filesystem;
+
+void require(bool holds, const char* option, double found, const char* allowed) {
+  if (holds) return;
+  throw Error({.where = option, .found = number_text(found), .allowed = allowed, .remedy = ""});
+}
+
+void check(const ModelOptions& options) {
+  const double unit = options.metres_per_unit.value_or(1.0);
+  require(std::isfinite(unit) && unit > 0.0, "metres_per_unit", unit, "a finite number above 0");
+  require(options.crease_angle_rad >= 0.0 && options.crease_angle_rad <= std::numbers::pi,
+          "crease_angle_rad", options.crease_angle_rad, "0 to pi");
+  require(options.time_limit_s >= 0.0 && options.time_limit_s <= 1e6, "time_limit_s",
+          options.time_limit_s, "0 (by the file's size) to 1e6");
+}
+
+[[noreturn]] void no_model(const std::string& source, std::string found, std::string remedy) {
+  throw Error(
+      {.where = source, .found = std::move(found), .allowed = "", .remedy = std::move(remedy)});
+}
+
+fs::path model_file(const std::string& source) {
+  if (source.empty() || source.find('\0') != std::string::npos) {
+    no_model("model", "an empty or impossible path", "name a model file or builtin:NAME");
+  }
+  std::error_code error;
+  fs::path real = fs::canonical(source, error);
+  if (error) {
+    const std::string nearest = nearest_file(source);
+    no_model(source, "cannot be opened: " + error.message(),
+             nearest.empty() ? "check the path" : "did you mean " + nearest + "?");
+  }
+  if (!fs::is_regular_file(real, error)) no_model(source, "not a file", "name a model file");
+  if (fs::file_size(real, error) == 0 || error) no_model(source, "the file is empty", "");
+  return real;
+}
+
+struct Loaded {
+  ImportedModel imported;
+  std::string hash;
+  bool from_cache = false;
+};
+
+Loaded import(const fs::path& file, const ModelOptions& options, const Report& report,
+              const std::optional<CacheEntry>& entry) {
+  const double time_limit_s =
+      options.time_limit_s > 0.0 ? options.time_limit_s : default_time_limit_s(fs::file_size(file));
+  const ImportRequest request{file, options.crease_angle_rad, time_limit_s,
+                              options.memory_limit_bytes};
+  Loaded loaded;
+  {
+    const ImportRun run = run_import(request, report);
+    loaded.imported = take_model(run, request);
+  }
+  loaded.hash = combined_hash(loaded.imported.hashes);
+  // They are about this run, not about the model.
+  std::vector<std::string> sandbox_notes = std::exchange(loaded.imported.sandbox_notes, {});
+  const std::string changed = changed_file(loaded.imported, file);
+  if (!changed.empty()) {
+    report.warn(changed +
+                " was changed while it was read; the model is that of its content before");
+  } else if (entry) {
+    const std::string unwritten = write_cache(*entry, loaded.imported, file);
+    if (!unwritten.empty()) report.warn(unwritten);
+  }
+  std::vector<std::string>& notes = loaded.imported.model.notes;
+  std::move(sandbox_notes.begin(), sandbox_notes.end(), std::back_inserter(notes));
+  return loaded;
+}
+
+Loaded load_file(const fs::path& file, const ModelOptions& options, const Report& report) {
+  const auto entry = options.use_cache ? cache_entry(file, options, report) : std::nullopt;
+  if (entry) {
+    if (auto cached = read_cache(*entry, file)) {
+      return {std::move(cached->imported), std::move(cached->hash), true};
+    }
+  }
+  return import(file, options, report, entry);
+}
+
+/// Options override what the file declares.
+void place(Model& model, const ModelOptions& options) {
+  model.applied = {
+      options.metres_per_unit ? options.metres_per_unit : model.declared.metres_per_unit,
+      options.up ? options.up : model.declared.up};
+  place_mesh(model.mesh, model.applied, options.centre);
+}
+
+std::string up_text(const std::optional<Axis>& up) {
+  constexpr std::array<const char*, 3> kUnitNames = {"x", "y", "z"};
+  return up ? kUnitNames.at(static_cast<std::size_t>(*up)) : "";
+}
+
+/// The mesh stretched by these factors: one that is there already, or a new one. Changes nothing
+/// when it throws.
+std::uint32_t stretched_mesh(Scene& scene, std::uint32_t mesh, const Eigen::Vector3d& factors) {
+  for (std::uint32_t i = 0; i < scene.meshes.size(); ++i) {
+    if (scene.sources[i].unstretched == mesh && scene.sources[i].stretch == factors) return i;
+  }
+  MeshSource source = scene.sources[mesh];
+  source.stretch = factors;
+  source.unstretched = mesh;
+  Mesh made = stretched(scene.meshes[mesh], factors);
+  validate(made);
+  scene.sources.reserve(scene.sources.size() + 1);
+  scene.meshes.push_back(std::move(made));
+  scene.sources.push_back(std::move(source));
+  return static_cast<std::uint32_t>(scene.meshes.size() - 1);
+}
+
+bool is_stretched(const MeshSource& source) {
+  return source.stretch != Eigen::Vector3d::Ones();
+}
+
+/// Removes a stretched mesh that no instance has any more.
+void drop_unused(Scene& scene, std::uint32_t mesh) {
+  const auto uses = [mesh](const Instance& instance) { return instance.mesh == mesh; };
+  if (!is_stretched(scene.sources[mesh]) ||
+      std::any_of(scene.instances.begin(), scene.instances.end(), uses)) {
+    return;
+  }
+  scene.meshes.erase(scene.meshes.begin() + mesh);
+  scene.sources.erase(scene.sources.begin() + mesh);
+  const auto move_up = [mesh](std::uint32_t& index) { index -= index > mesh ? 1U : 0U; };
+  for (Instance& instance : scene.instances) move_up(instance.mesh);
+  for (MeshSource& source : scene.sources) move_up(source.unstretched);
+}
+
+void tell(const Model& model, const Report& report) {
+  for (const std::string& note : model.notes) report.info(model.source + ": " + note);
+  if (model.missing_textures.empty()) return;
+  std::string text = model.source + ": textures missing:";
+  for (const MissingTexture& missing : model.missing_textures) {
+    constexpr std::size_t kShown = 80;
+    const bool longer = missing.name.size() > kShown;
+    text += " '" + missing.name.substr(0, kShown) + (longer ? "..." : "") + "' (" + missing.reason +
+            ")";
+  }
+  report.warn(text);
+}
+
+}  // namespace
+
+Model load_model(const std::string& source, const ModelOptions& options, const Report& report) {
+  check(options);
+  if (source.starts_with(kBuiltinPrefix)) {
+    Model model = make_builtin_model(std::string_view(source).substr(kBuiltinPrefix.size()));
+    place(model, options);
+    return model;
+  }
+  const fs::path file = model_file(source);
+  Loaded loaded = load_file(file, options, report);
+  Model model = std::move(loaded.imported.model);
+  model.source = source;
+  model.hash = std::move(loaded.hash);
+  model.files = std::move(loaded.imported.files);
+  model.from_cache = loaded.from_cache;
+  model.mesh.name = fs::path(source).stem().string();
+  place(model, options);
+  tell(model, report);
+  return model;
+}
+
+std::size_t add_model(Scene& scene, Model model) {
+  const auto first_material = static_cast<std::uint32_t>(scene.materials.size());
+  const auto first_texture = static_cast<std::int32_t>(scene.textures.size());
+  Instance instance;
+  instance.name = model.mesh.name;
+  instance.id = static_cast<std::uint32_t>(scene.instances.size() + 1);
+  instance.mesh = static_cast<std::uint32_t>(scene.meshes.size());
+  for (Material& material : model.materials) {
+    for (TextureUse* use :
+         {&material.diffuse_texture, &material.specular_texture, &material.alpha_texture,
+          &material.normal_texture, &material.noise_texture}) {
+      if (use->used()) use->texture += first_texture;
+    }
+    instance.materials.push_back(first_material +
+                                 static_cast<std::uint32_t>(instance.materials.size()));
+    scene.materials.push_back(std::move(material));
+  }
+  std::move(model.textures.begin(), model.textures.end(), std::back_inserter(scene.textures));
+  scene.meshes.push_back(std::move(model.mesh));
+  scene.sources.push_back({.path = std::move(model.source),
+                           .hash = std::move(model.hash),
+                           .files = std::move(model.files),
+                           .metres_per_unit = model.applied.metres_per_unit.value_or(1.0),
+                           .unit_known = model.applied.metres_per_unit.has_value(),
+                           .up = up_text(model.applied.up)});
+  scene.instances.push_back(std::move(instance));
+  return scene.instances.size() - 1;
+}
+
+void set_scale(Scene& scene, std::size_t instance, const Eigen::Vector3d& scale) {
+  const bool allowed =
+      (scale.array() >= kSmallestScale).all() && (scale.array() <= kLargestScale).all();
+  if (!allowed) {
+    throw Error({.where = "scale",
+                 .found = number_text(scale.x()) + ", " + number_text(scale.y()) + ", " +
+                          number_text(scale.z()),
+                 .allowed = "numbers from 1e-15 to 1e15",
+                 .remedy = "a mirrored model is another model: mirror it in its file"});
+  }
+  Instance& changed = scene.instances.at(instance);
+  const std::uint32_t former = changed.mesh;
+  const MeshSource& source = scene.sources.at(former);
+  const std::uint32_t mesh = is_stretched(source) ? source.unstretched : former;
+  const bool is_uniform = scale.x() == scale.y() && scale.y() == scale.z();
+  changed.mesh = is_uniform ? mesh : stretched_mesh(scene, mesh, scale);
+  changed.scale = is_uniform ? scale.x() : 1.0;
+  drop_unused(scene, former);
+}
+
+Eigen::Vector3d scale_of(const Scene& scene, const Instance& instance) {
+  return instance.scale * scene.sources.at(instance.mesh).stretch;
+}
+
+}  // namespace glidar

@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/model/model_cache.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/version.hpp>
+#include <glidar/io/files/content_hash.hpp>
+#include <glidar/io/model/import_process.hpp>
+#include <glidar/io/model/mesh_blob.hpp>
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Tells a new version of an installed program or library without reading it; empty: not there.
+std::string file_state(const fs::path& path) {
+  struct stat info {};
+  if (::stat(path.c_str(), &info) != 0) return "";
+  return fmt::format("{} {} {}.{}", info.st_ino, info.st_size, info.st_mtim.tv_sec,
+                     info.st_mtim.tv_nsec);
+}
+
+/// The import program as installed, and where it looks for libraries before all other places. The
+/// libraries themselves are known once it has run.
+std::string importer_version() {
+  const std::string state = file_state(import_program());
+  if (state.empty()) return "";
+  const char* libraries = std::getenv("LD_LIBRARY_PATH");
+  return fmt::format("{} {} {}", version(), state, libraries != nullptr ? libraries : "");
+}
+
+std::vector<std::string> file_states(const std::vector<std::string>& paths) {
+  std::vector<std::string> states;
+  for (const std::string& path : paths) states.push_back(file_state(path));
+  return states;
+}
+
+bool still_absent(const std::string& path, const ModelFolder& folder) {
+  return confine(path, folder).access != Access::granted;
+}
+
+/// True when importing now would read the very same bytes.
+bool holds(const CachedFile& cached, const CacheEntry& entry, const fs::path& canonical_model) {
+  const CacheIndex& index = cached.index;
+  const ImportedModel& imported = cached.imported;
+  ModelFolder folder = model_folder(canonical_model);
+  folder.also.assign(imported.texture_folders.begin(), imported.texture_folders.end());
+  if (index.importer != entry.importer || index.importer.empty() ||
+      imported.files.front() != canonical_model.string() || index.root != folder.root.string() ||
+      index.folder != folder.folder.string() ||
+      index.states_of_libraries != file_states(imported.libraries)) {
+    return false;
+  }
+  for (const std::string& path : imported.absent) {
+    if (!still_absent(path, folder)) return false;
+  }
+  for (const TextureLookup& lookup : imported.lookups) {
+    if (find_texture(lookup.name, folder) != lookup) return false;
+  }
+  return changed_file(imported, canonical_model).empty();
+}
+
+[[noreturn]] void refuse_answer(const fs::path& canonical_model, const std::string& found) {
+  throw Error({.where = canonical_model.string(),
+               .found = "the import process gave a damaged answer (" + found + ")",
+               .allowed = "",
+               .remedy = "save the model in another format (PLY, OBJ or glTF)"});
+}
+
+}  // namespace
+
+std::optional<CacheEntry> cache_entry(const fs::path& canonical_model, const ModelOptions& options,
+                                      const Report& report) {
+  const auto path = cache_folder_path(options);
+  if (!path) return std::nullopt;
+  const std::uint64_t limit_bytes = cache_limit_bytes();
+  CacheFolder folder = open_cache_folder(*path);
+  if (!folder.problem.empty()) {
+    report.warn(folder.problem);
+    return std::nullopt;
+  }
+  const std::string key =
+      fmt::format("{}\n{:.17g}", canonical_model.string(), options.crease_angle_rad);
+  ContentHash hash;
+  hash.add(key.data(), key.size());
+  return CacheEntry{std::move(folder), hex(hash.value()) + ".model", importer_version(),
+                    limit_bytes};
+}
+
+std::optional<CachedModel> read_cache(const CacheEntry& entry, const fs::path& canonical_model) {
+  const UniqueFd fd = open_entry(entry.folder, entry.name);
+  if (!fd) return std::nullopt;
+  try {
+    FrameReader frame(fd.get());
+    CachedFile cached = read_cached_file(frame);
+    if (!holds(cached, entry, canonical_model)) return std::nullopt;
+    touch_entry(fd);
+    std::string hash = combined_hash(cached.imported.hashes);
+    return CachedModel{std::move(cached.imported), std::move(hash)};
+  } catch (const Error&) {
+    return std::nullopt;  // damaged or of an older layout: it is made anew
+  }
+}
+
+std::string changed_file(const ImportedModel& imported, const fs::path& canonical_model) {
+  const ModelFolder folder = model_folder(canonical_model);
+  if (imported.files.front() != canonical_model.string()) {
+    refuse_answer(canonical_model, "it is about another model");
+  }
+  for (const std::string& place : imported.texture_folders) {
+    if (!is_inside(place, folder.root)) refuse_answer(canonical_model, "a folder outside");
+  }
+  std::string changed;
+  for (std::size_t i = 0; i < imported.files.size() && changed.empty(); ++i) {
+    const std::string& file = imported.files[i];
+    const ConfinedFile confined = confine(file, folder);
+    if (confined.access == Access::outside) refuse_answer(canonical_model, "a file outside");
+    const auto hash = confined.path == file ? hash_file(file) : std::nullopt;
+    if (!hash || hex(*hash) != imported.hashes[i]) changed = file;
+  }
+  return changed;
+}
+
+std::string combined_hash(std::vector<std::string> hashes) {
+  std::sort(hashes.begin() + 1, hashes.end());
+  ContentHash hash;
+  for (const std::string& one : hashes) hash.add(one.data(), one.size());
+  return hex(hash.value());
+}
+
+std::string write_cache(const CacheEntry& entry, const ImportedModel& imported,
+                        const fs::path& canonical_model) {
+  const ModelFolder folder = model_folder(canonical_model);
+  const CacheIndex index{entry.importer, folder.root.string(), folder.folder.string(),
+                         file_states(imported.libraries)};
+  return store_entry(entry.folder, entry.name, entry.limit_bytes,
+                     [&](int fd) { write_cached_file(fd, index, imported); });
+}
+
+}  // namespace glidar

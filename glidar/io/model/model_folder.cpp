@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/model/model_folder.hpp>
+
+#include <algorithm>
+#include <system_error>
+
+namespace glidar {
+namespace fs = std::filesystem;
+
+bool is_inside(const fs::path& path, const fs::path& root) {
+  const auto [in_root, in_path] = std::mismatch(root.begin(), root.end(), path.begin(), path.end());
+  return in_root == root.end();
+}
+
+ModelFolder model_folder(const fs::path& canonical_model) {
+  const fs::path folder = canonical_model.parent_path();
+  const fs::path parent = folder.parent_path();
+  std::error_code ignored;  // a folder that cannot be looked at is no package
+  const bool package =
+      fs::is_regular_file(parent / "model.config", ignored) ||
+      (folder.filename() == "meshes" && fs::is_directory(parent / "materials", ignored));
+  return {folder, package ? parent : folder, {}};
+}
+
+ConfinedFile confine(const fs::path& wanted, const ModelFolder& folder) {
+  if (wanted.native().find('\0') != std::string::npos) return {Access::absent, {}};
+  const fs::path path = folder.folder / wanted;
+  const fs::path lexical = path.lexically_normal();
+  std::error_code error;
+  // Behind a link, "link/.." is the parent of what it points to.
+  fs::path real = fs::canonical(path, error);
+  // Files name folders that are not there ("..\\source\\..\\wood.png"): without them it may be.
+  if (error && is_inside(lexical, folder.root)) real = fs::canonical(lexical, error);
+  if (error) return {is_inside(lexical, folder.root) ? Access::absent : Access::outside, {}};
+  if (!is_inside(real, folder.root)) return {Access::outside, {}};
+  if (!fs::is_regular_file(real, error) || error) return {Access::not_a_file, {}};
+  return {Access::granted, real};
+}
+
+std::string reason(Access access) {
+  switch (access) {
+    case Access::granted:
+      return "";
+    case Access::absent:
+      return "not found";
+    case Access::outside:
+      return "outside the model's folder, beyond which nothing is read; copy it in there";
+    case Access::not_a_file:
+      return "not a file";
+  }
+  return "";
+}
+
+}  // namespace glidar

@@ -1,0 +1,147 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/model/texture_search.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace glidar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 5> kPlaces = {"", "textures", "materials/textures",
+                                                     "../materials/textures", "../textures"};
+constexpr std::size_t kMaxTextureName = 4096;  // PATH_MAX of Linux
+
+bool is_space(char c) {
+  return std::isspace(static_cast<unsigned char>(c)) != 0;
+}
+
+std::string trimmed(std::string_view text) {
+  const auto dull = [](char c) { return is_space(c) || c == '"'; };
+  while (!text.empty() && dull(text.front())) text.remove_prefix(1);
+  while (!text.empty() && dull(text.back())) text.remove_suffix(1);
+  return std::string(text);
+}
+
+std::string lower_text(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  const char letter = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return letter >= 'a' && letter <= 'f' ? letter - 'a' + 10 : -1;
+}
+
+std::string base_name(const std::string& path) {
+  return path.substr(path.find_last_of('/') + 1);
+}
+
+bool is_absolute(const std::string& path) {
+  return path.front() == '/' || (path.size() > 1 && path[1] == ':');
+}
+
+/// The spellings to look for, the model's own first.
+std::vector<std::string> spellings(const std::string& name) {
+  std::string tidy = trimmed(name);
+  std::replace(tidy.begin(), tidy.end(), '\\', '/');
+  if (tidy.starts_with("file://")) tidy.erase(0, 7);
+  std::vector<std::string> all;
+  const auto add = [&all](std::string spelling) {
+    if (spelling.empty()) return;
+    if (is_absolute(spelling)) spelling = base_name(spelling);
+    if (!spelling.empty() && std::find(all.begin(), all.end(), spelling) == all.end()) {
+      all.push_back(std::move(spelling));
+    }
+  };
+  add(tidy);
+  add(percent_decoded(tidy));
+  for (std::size_t i = 0, count = all.size(); i < count; ++i) add(base_name(all[i]));
+  // Material files put options before the name, and importers leave those that they do not know.
+  const std::size_t option = tidy.find(" -");
+  if (option != std::string::npos) add(tidy.substr(tidy.find_last_of(' ') + 1));
+  return all;
+}
+
+/// A file of this base name in any letter case; the first in byte order of several.
+std::optional<fs::path> any_case(const fs::path& place, const std::string& base) {
+  std::error_code error;
+  std::optional<fs::path> best;
+  const std::string wanted = lower_text(base);
+  for (fs::directory_iterator entry(place, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const fs::path& path = entry->path();
+    if (lower_text(path.filename().string()) == wanted && (!best || path < *best)) best = path;
+  }
+  return best;
+}
+
+bool has_scheme(const std::string& name) {
+  return name.find("://") != std::string::npos && !name.starts_with("file://");
+}
+
+/// Folders to look in, in this order.
+std::vector<fs::path> places(const ModelFolder& folder) {
+  std::vector<fs::path> all;
+  for (const std::string_view place : kPlaces) {
+    if (!place.starts_with("..") || folder.root != folder.folder)
+      all.push_back(folder.folder / place);
+  }
+  all.insert(all.end(), folder.also.begin(), folder.also.end());
+  return all;
+}
+
+}  // namespace
+
+std::string percent_decoded(const std::string& text) {
+  std::string decoded;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const bool room = text[i] == '%' && i + 2 < text.size();
+    const int high = room ? hex_digit(text[i + 1]) : -1;
+    const int low = room ? hex_digit(text[i + 2]) : -1;
+    if (high < 0 || low < 0) {
+      decoded += text[i];
+      continue;
+    }
+    decoded += static_cast<char>(high * 16 + low);
+    i += 2;
+  }
+  return decoded;
+}
+
+TextureLookup find_texture(const std::string& name, const ModelFolder& folder) {
+  TextureLookup result{name, "", "not found"};
+  if (name.size() > kMaxTextureName) return {name, "", "the name is too long for a file"};
+  if (has_scheme(trimmed(name))) return {name, "", "network addresses are not followed"};
+  const std::vector<std::string> wanted = spellings(name);
+  const auto take = [&](const fs::path& path) {
+    const ConfinedFile file = confine(path, folder);
+    if (file.access == Access::granted) result = {name, file.path.string(), ""};
+    if (file.access == Access::outside || file.access == Access::not_a_file) {
+      result.reason = reason(file.access);
+    }
+    return file.access == Access::granted;
+  };
+  const std::vector<fs::path> look_in = places(folder);
+  for (const std::string& spelling : wanted) {
+    for (const fs::path& place : look_in) {
+      if (take(place / spelling)) return result;
+    }
+  }
+  for (const fs::path& place : look_in) {
+    const auto match = wanted.empty() ? std::nullopt : any_case(place, base_name(wanted.front()));
+    if (match && take(*match)) return result;
+  }
+  return result;
+}
+
+}  // namespace glidar

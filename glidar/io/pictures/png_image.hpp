@@ -1,0 +1,28 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/io/files/atomic_file.hpp>
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+namespace glidar {
+
+enum class PngKind : std::uint8_t { grey8, grey16, rgb8, rgb16, rgba8 };
+
+/// Pixels row by row from the top, without padding; numbers of 16 bits in memory order.
+struct PngImage {
+  PngKind kind = PngKind::rgb8;
+  std::uint32_t width = 0;
+  std::uint32_t height = 0;
+  std::span<const std::byte> pixels;
+  std::string description;  ///< text kept in the file; empty: none
+};
+
+/// Throws Error when it cannot be stored.
+void write_png(const PngImage& image, AtomicFile& file);
+
+}  // namespace glidar

@@ -1,0 +1,136 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/pictures/point_colours.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace glidar {
+namespace {
+
+constexpr Colour kNothing = {150, 150, 156};  // echoes of no object, and what has no class
+
+/// The darkest colours would not show on dark ground.
+Colour bright_ramp(double t) {
+  constexpr double kDarkest = 0.18;
+  return viridis(kDarkest + (1.0 - kDarkest) * t);
+}
+
+Colour near_bright_ramp(double t) {
+  return bright_ramp(1.0 - t);
+}
+
+/// A column's number of each shown point.
+std::vector<double> to_xyz_wxyz(const CloudFile& job, const ShownPoints& shown,
+                                std::string_view column) {
+  std::vector<double> numbers;
+  numbers.reserve(shown.entries.size());
+  std::visit(
+      [&](const auto& values) {
+        for (const std::size_t entry : shown.entries)
+          numbers.push_back(static_cast<double>(values[entry]));
+      },
+      find_column(job.cloud, column)->values);
+  return numbers;
+}
+
+PointColours colour_by_bar(const std::vector<double>& values, ColourBar bar) {
+  PointColours result;
+  for (const double value : values) {
+    result.colours.push_back(std::isfinite(value) ? bar.ramp(bar.scale.fraction(value)) : kNothing);
+  }
+  result.bar = std::move(bar);
+  return result;
+}
+
+PointColours colour_by_ring(const CloudFile& job, const ShownPoints& shown) {
+  if (looks_along_z(job.context.beams)) {
+    throw Error({"colour_by", "ring: a camera has no rings",
+                 "height, range, intensity, class or instance", "rings are channels of LiDARs"});
+  }
+  const std::vector<double> rings = to_xyz_wxyz(job, shown, "ring");
+  ColourScale scale{};  // every ring is shown: none is odd
+  if (!rings.empty()) {
+    const auto [low, high] = std::minmax_element(rings.begin(), rings.end());
+    scale = {.low = *low, .high = *high, .has_values = true};
+  }
+  return colour_by_bar(rings, {"ring", "", scale, bright_ramp});
+}
+
+std::string class_name(const Scene& scene, std::uint32_t id) {
+  return id < scene.class_names.size() ? scene.class_names[id] : fmt::format("class {}", id);
+}
+
+std::string instance_name(const Scene& scene, std::uint32_t id) {
+  const auto found = std::find_if(scene.instances.begin(), scene.instances.end(),
+                                  [id](const Instance& it) { return it.id == id; });
+  return found == scene.instances.end() || found->name.empty() ? fmt::format("instance {}", id)
+                                                               : found->name;
+}
+
+/// Numbers with their names, the commonest first.
+std::vector<LegendEntry> legend_of(const std::map<std::uint32_t, std::size_t>& counts,
+                                   const std::map<std::uint32_t, LegendEntry>& entries) {
+  std::vector<std::pair<std::uint32_t, std::size_t>> order(counts.begin(), counts.end());
+  std::stable_sort(order.begin(), order.end(),
+                   [](const auto& a, const auto& b) { return a.second > b.second; });
+  std::vector<LegendEntry> legend;
+  for (const auto& [number, count] : order) legend.push_back(entries.at(number));
+  return legend;
+}
+
+/// What a number of the column means.
+LegendEntry entry_of(const Scene& scene, std::uint32_t number, bool is_class) {
+  if (number == kInvalidId) return {kNothing, "no object"};
+  if (!is_class) return {category_colour(number), instance_name(scene, number)};
+  // number 0 is what has no class
+  return {number == 0 ? kNothing : category_colour(number - 1), class_name(scene, number)};
+}
+
+PointColours colour_by_number(const CloudFile& job, const ShownPoints& shown, bool is_class) {
+  std::map<std::uint32_t, std::size_t> counts;
+  std::map<std::uint32_t, LegendEntry> entries;
+  PointColours result;
+  for (const double value : to_xyz_wxyz(job, shown, is_class ? "class" : "instance")) {
+    const auto number = static_cast<std::uint32_t>(value);
+    if (counts[number]++ == 0) entries[number] = entry_of(job.context.scene, number, is_class);
+    result.colours.push_back(entries[number].colour);
+  }
+  result.legend = legend_of(counts, entries);
+  return result;
+}
+
+}  // namespace
+
+PointColours colour_points(const CloudFile& job, const ShownPoints& shown) {
+  switch (job.options.picture.colour_by) {
+    case ColourBy::range: {
+      const std::vector<double> values = to_xyz_wxyz(job, shown, "range");
+      return colour_by_bar(values, {"range", "m", make_colour_scale(values), near_bright_ramp});
+    }
+    case ColourBy::intensity: {
+      const std::vector<double> values = to_xyz_wxyz(job, shown, "intensity");
+      return colour_by_bar(
+          values,
+          {"intensity", "", make_colour_scale(values, ColourScale::Start::zero), light_grey});
+    }
+    case ColourBy::ring:
+      return colour_by_ring(job, shown);
+    case ColourBy::object_class:
+      return colour_by_number(job, shown, true);
+    case ColourBy::instance:
+      return colour_by_number(job, shown, false);
+    case ColourBy::height:
+      break;
+  }
+  std::vector<double> heights_m;
+  for (const Eigen::Vector3d& point : shown.points_m) heights_m.push_back(point.z());
+  return colour_by_bar(heights_m, {"height", "m", make_colour_scale(heights_m), bright_ramp});
+}
+
+}  // namespace glidar

@@ -1,0 +1,32 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+// Private to the project.
+
+#include <glidar/io/formats/cloud_file.hpp>
+#include <glidar/io/pictures/chart.hpp>
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+namespace glidar {
+
+/// The points of a cloud that a picture shows.
+struct ShownPoints {
+  std::vector<Eigen::Vector3d> points_m;  ///< in a frame with z up
+  std::vector<std::size_t> entries;       ///< of the cloud, one per point
+};
+
+/// Colours of points and what they mean: a bar, or a legend for classes and instances.
+struct PointColours {
+  std::vector<Colour> colours;  ///< one per point
+  std::optional<ColourBar> bar;
+  std::vector<LegendEntry> legend;  ///< the commonest first
+};
+
+/// Colours by what the options say. Throws Error when a camera is to be coloured by ring.
+PointColours colour_points(const CloudFile& job, const ShownPoints& shown);
+
+}  // namespace glidar

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/math/random.hpp>
+
+#include <glidar/math/philox.hpp>
+
+namespace glidar {
+
+RandomWords philox4x32(RandomWords counter, std::array<std::uint32_t, 2> key) {
+  PhiloxState state{counter[0], counter[1], counter[2], counter[3]};
+  philox_rounds(state, key[0], key[1]);
+  return {state.c0, state.c1, state.c2, state.c3};
+}
+
+RandomWords counter_of(const RngKey& draw) {
+  const auto purpose = static_cast<std::uint32_t>(draw.purpose) << 24U;
+  return {draw.beam, purpose, draw.frame, draw.block};
+}
+
+std::array<std::uint32_t, 2> key_of(const RngKey& draw) {
+  return {static_cast<std::uint32_t>(draw.seed),
+          static_cast<std::uint32_t>(draw.seed >> 32U) ^ draw.sensor};
+}
+
+RandomWords random_words(const RngKey& draw) {
+  return philox4x32(counter_of(draw), key_of(draw));
+}
+
+double uniform(std::uint32_t word) {
+  constexpr double kStep = 1.0 / 4294967296.0;
+  return (static_cast<double>(word) + 0.5) * kStep;
+}
+
+}  // namespace glidar

@@ -1,0 +1,273 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/motion/torque_free_rotation.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/math/elementary.hpp>
+#include <glidar/motion/elliptic.hpp>
+#include <glidar/motion/integral_table.hpp>
+#include <glidar/motion/times.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+[[noreturn]] void refuse(const std::string& field, std::string found, std::string allowed) {
+  throw Error({"tumbling, " + field, std::move(found), std::move(allowed), ""});
+}
+
+void check(const InitialRotation& start) {
+  const Vector3d& moments = start.moments_kg_m2;
+  if (!moments.allFinite() || !(moments.minCoeff() > 0.0)) {
+    refuse("moments of inertia", "one is not above 0", "three finite numbers above 0");
+  }
+  constexpr double kThinnest = 1e-9;
+  if (moments.minCoeff() < kThinnest * moments.maxCoeff()) {
+    refuse("moments of inertia", "one is more than 1e9 times another", "moments of like size");
+  }
+  constexpr double kRounding = 1e-6;  // of moments given in decimals: a thin plate is at the limit
+  if (moments.maxCoeff() > (1.0 + kRounding) * (moments.sum() - moments.maxCoeff())) {
+    refuse("moments of inertia", "one is larger than the two others together",
+           "moments of a body: none above the sum of the others");
+  }
+  if (!start.rate_rad_s.allFinite()) refuse("rates", "not finite", "three finite numbers");
+  if (!start.velocity_m_s.allFinite()) refuse("velocity", "not finite", "three finite numbers");
+  if (!is_rigid(start.world_from_body) || !is_rigid(start.body_from_principal)) {
+    refuse("pose", "not a rigid transform", "finite numbers and a rotation");
+  }
+}
+
+/// Euler's equations without torque: the moment times the change of rate, about each axis.
+Vector3d gyroscopic(const Vector3d& moments, const Vector3d& rate) {
+  const auto part = [&](int j, int k) { return (moments[j] - moments[k]) * rate[j] * rate[k]; };
+  return {part(1, 2), part(2, 0), part(0, 1)};
+}
+
+/// True when the rate is constant: the body turns about a principal axis. Off-axis rates whose
+/// squares have no double relative to the whole count as none.
+bool is_steady(const Vector3d& moments, const Vector3d& rate) {
+  constexpr double kNone = 1e-140;
+  return gyroscopic(moments, rate).norm() <= kNone * moments.maxCoeff() * rate.squaredNorm();
+}
+
+/// The sum of two doubles that is not rounded to one.
+struct Sum {
+  double high;
+  double low;
+};
+
+/// Knuth, "The Art of Computer Programming" 2, 4.2.2, theorem B.
+Sum exact_sum(double a, double b) {
+  const double sum = a + b;
+  const double part = sum - a;
+  return {sum, (a - (sum - part)) + (b - part)};
+}
+
+/// To some 1e-31 of the product: Dekker, Numer. Math. 18 (1971) 224.
+Sum product(const Sum& a, const Sum& b) {
+  const double high = a.high * b.high;
+  const double low = std::fma(a.high, b.high, -high) + (a.high * b.low + a.low * b.high);
+  return exact_sum(high, low);
+}
+
+/// L^2 - 2 E I_2 for ordered axes. Its sign decides about which axis the body turns, and near the
+/// separatrix, where it cancels, its value decides when it flips: so in twice the digits.
+double about_last(const Vector3d& moments, const Vector3d& rate) {
+  const auto term = [&](int axis) {
+    const Sum momentum = product({moments[axis], 0.0}, {rate[axis], 0.0});
+    return product(product(momentum, {rate[axis], 0.0}), exact_sum(moments[axis], -moments[1]));
+  };
+  const Sum first = term(0);
+  const Sum last = term(2);
+  const Sum high = exact_sum(first.high, last.high);
+  return high.high + (high.low + (first.low + last.low));
+}
+
+/// The rotation to axes of which the second has the middle moment and the third has a rate above 0
+/// for all time.
+Matrix3d ordered_axes(const Vector3d& moments, const Vector3d& rate) {
+  std::array<int, 3> order = {0, 1, 2};
+  std::stable_sort(order.begin(), order.end(),
+                   [&](int a, int b) { return moments[a] < moments[b]; });
+  Matrix3d axes = Matrix3d::Zero();
+  for (int row = 0; row < 3; ++row) axes(row, order[static_cast<std::size_t>(row)]) = 1.0;
+  if (about_last(axes * moments, axes * rate) < 0.0) axes.row(0).swap(axes.row(2));
+  if (axes.row(2).dot(rate) < 0.0) axes.row(2) = -axes.row(2);
+  if (axes.determinant() < 0.0) axes.row(0) = -axes.row(0);
+  return axes;
+}
+
+/// Rodrigues' formula.
+Matrix3d rotation_about(const Vector3d& axis, double turns) {
+  const SineCosine angle = of_turns(turns);
+  const Vector3d sine = angle.sine * axis;
+  Matrix3d cross;
+  cross << 0.0, -sine.z(), sine.y(), sine.z(), 0.0, -sine.x(), -sine.y(), sine.x(), 0.0;
+  return angle.cosine * Matrix3d::Identity() + cross +
+         (1.0 - angle.cosine) * axis * axis.transpose();
+}
+
+/// The shortest rotation that takes a unit vector to z; its z is not below 0.
+Matrix3d shortest_to_z(const Vector3d& v) {
+  const double scale = 1.0 / (1.0 + v.z());
+  const double xy = -scale * v.x() * v.y();
+  Matrix3d axes;
+  axes << 1.0 - scale * v.x() * v.x(), xy, -v.x(), xy, 1.0 - scale * v.y() * v.y(), -v.y(), v.x(),
+      v.y(), v.z();
+  return axes;
+}
+
+/// A power of two of the size of the largest number: exact to divide by.
+double size_of(const Vector3d& numbers) {
+  return std::ldexp(1.0, std::ilogb(numbers.cwiseAbs().maxCoeff()));
+}
+
+}  // namespace
+
+/// Everything in ordered axes, see ordered_axes(), and rates in units of `unit`. The rates are
+/// those of Landau & Lifshitz, section 37. The attitude is the shortest rotation that takes the
+/// angular momentum L, as the body sees it, to z, and then a turn about z; unlike Euler's angles it
+/// is regular wherever L is within 90 degrees of the third axis, as it always does here. The rate
+/// of that turn is (w . l + w3) / (1 + l3) with l = L / |L|: all terms are positive.
+struct TorqueFreeRotation::Solution {
+  Matrix3d ordered_from_principal;
+  Vector3d moments;
+  double unit = 1.0;   ///< 1/s
+  Vector3d amplitude;  ///< of the rates: those of cn, sn, dn, with their signs
+  EllipticModulus modulus;
+  double phase_rate = 0.0;  ///< of the elliptic functions' argument (37.9)
+  double phase0 = 0.0;      ///< at t0
+  double turn_rate = 0.0;   ///< about L, were dn 1
+  double wobble = 0.0;      ///< of what is missing, see turn()
+  IntegralTable integral;   ///< over a quarter period, see turn()
+  double integral0 = 0.0;   ///< at t0
+  Matrix3d world_from_momentum;
+
+  /// The rate is given in units of rate_unit.
+  Solution(const Vector3d& principal_moments, const Vector3d& principal_rate, double rate_unit,
+           const Matrix3d& world_from_principal);
+
+  [[nodiscard]] double phase(double seconds) const {
+    return phase0 + phase_rate * (unit * seconds);
+  }
+  [[nodiscard]] Vector3d rate(double phase) const;
+  [[nodiscard]] double integral_to(double phase) const;
+  [[nodiscard]] double turn(double seconds) const;
+  [[nodiscard]] Matrix3d momentum_from_ordered(double phase) const;
+  void find_turn(double below);
+};
+
+Vector3d TorqueFreeRotation::Solution::rate(double phase) const {
+  const JacobiValues j = jacobi(modulus, phase);  // (37.10)
+  return {amplitude[0] * j.cn, amplitude[1] * j.sn, amplitude[2] * j.dn};
+}
+
+/// The integral of sn^2 / ((1 + dn) (1 + l3)), with l3 = I3 w3 / L, from 0 to any phase.
+double TorqueFreeRotation::Solution::integral_to(double phase) const {
+  const double half = 2.0 * modulus.quarter_period;
+  const double halves = std::floor(phase / half + 0.5);
+  const double rest = phase - halves * half;
+  return 2.0 * halves * integral.total() + std::copysign(integral.at(std::abs(rest)), rest);
+}
+
+/// The angle about L since t0. With w3 = a3 dn, (2 E / L + w3) / (1 + l3) is its value at dn = 1
+/// and (2 E I3 - L^2) / L^2 a3 (1 - dn) / ((1 + l3) (1 + I3 a3 / L)), where 1 - dn = m sn^2 / (1 +
+/// dn): nothing cancels, not even when the phase hardly moves.
+double TorqueFreeRotation::Solution::turn(double seconds) const {
+  return turn_rate * (unit * seconds) + wobble * (integral_to(phase(seconds)) - integral0);
+}
+
+/// `below` is 2 E I3 - L^2.
+void TorqueFreeRotation::Solution::find_turn(double below) {
+  const Vector3d w = rate(phase0);
+  const double momentum = moments.cwiseProduct(w).norm();
+  const double lean = moments[2] * amplitude[2] / momentum;
+  const double energy2 = w.dot(moments.cwiseProduct(w));
+  turn_rate = (energy2 / momentum + amplitude[2]) / (1.0 + lean);
+  wobble = below / (momentum * momentum) * amplitude[2] * modulus.m / ((1.0 + lean) * phase_rate);
+  const auto rest = [&](double u) {
+    const JacobiValues j = jacobi(modulus, u);
+    return j.sn * j.sn / ((1.0 + j.dn) * (1.0 + lean * j.dn));
+  };
+  integral = IntegralTable(modulus.quarter_period, FunctionRef<double(double)>(rest));
+  integral0 = integral_to(phase0);
+}
+
+Matrix3d TorqueFreeRotation::Solution::momentum_from_ordered(double phase) const {
+  return shortest_to_z(moments.cwiseProduct(rate(phase)).normalized());
+}
+
+TorqueFreeRotation::Solution::Solution(const Vector3d& principal_moments,
+                                       const Vector3d& principal_rate, double rate_unit,
+                                       const Matrix3d& world_from_principal)
+    : ordered_from_principal(ordered_axes(principal_moments, principal_rate)), unit(rate_unit) {
+  moments = (ordered_from_principal * principal_moments).cwiseAbs();
+  const Vector3d w = ordered_from_principal * principal_rate;
+  const Vector3d& i = moments;
+  const Vector3d e = i.cwiseProduct(w).cwiseProduct(w);
+  const double below = e[0] * (i[2] - i[0]) + e[1] * (i[2] - i[1]);  // 2 E I3 - L^2
+  const double above = e[1] * (i[1] - i[0]) + e[2] * (i[2] - i[0]);  // L^2 - 2 E I1
+  const double scale = (i[2] - i[1]) * above;
+  modulus = make_modulus(std::clamp((i[1] - i[0]) * below / scale, 0.0, 1.0),
+                         std::clamp((i[2] - i[0]) * about_last(i, w) / scale, 0.0, 1.0));
+  // the signs make Euler's equations hold: that of w1 w2 w3 changes with the order of the moments
+  const double sign2 = i[2] > i[1] ? 1.0 : -1.0;
+  amplitude = {std::sqrt(below / (i[0] * (i[2] - i[0]))),
+               sign2 * std::sqrt(below / (i[1] * (i[2] - i[1]))),
+               std::sqrt(above / (i[2] * (i[2] - i[0])))};
+  phase_rate = std::sqrt(scale / (i[0] * i[1] * i[2]));
+  const double sn = w[1] / amplitude[1];
+  const double cn = w[0] / amplitude[0];
+  const double length = std::sqrt(sn * sn + cn * cn);  // 1 but for rounding
+  phase0 = elliptic_f(modulus, sn / length, cn / length);
+  find_turn(below);
+  world_from_momentum =
+      world_from_principal * (momentum_from_ordered(phase0) * ordered_from_principal).transpose();
+}
+
+TorqueFreeRotation::TorqueFreeRotation(const InitialRotation& start) : start_(start) {
+  check(start_);
+  if (start_.rate_rad_s.isZero(0.0)) return;
+  // powers of two, so that nothing is rounded and no square is beyond the reach of doubles
+  const double unit = size_of(start_.rate_rad_s);
+  const Vector3d rate = start_.rate_rad_s / unit;
+  const Vector3d moments = start_.moments_kg_m2 / size_of(start_.moments_kg_m2);
+  if (is_steady(moments, rate)) return;
+  const Pose world_from_principal = start_.world_from_body * start_.body_from_principal;
+  solution_ = std::make_shared<const Solution>(moments, rate, unit, world_from_principal.linear());
+}
+
+Vector3d TorqueFreeRotation::rate_at(std::int64_t t_ns) const {
+  if (!solution_) return start_.rate_rad_s;
+  const double phase = solution_->phase(seconds_between(start_.t0_ns, t_ns));
+  return solution_->unit * (solution_->ordered_from_principal.transpose() * solution_->rate(phase));
+}
+
+Pose TorqueFreeRotation::pose_at(std::int64_t t_ns) const {
+  const double seconds = seconds_between(start_.t0_ns, t_ns);
+  Pose world_from_principal = start_.world_from_body * start_.body_from_principal;
+  world_from_principal.translation() += start_.velocity_m_s * seconds;
+  constexpr double kTurns = 0.5 * std::numbers::inv_pi;
+  if (solution_) {
+    world_from_principal.linear() =
+        solution_->world_from_momentum *
+        rotation_about(Vector3d::UnitZ(), kTurns * solution_->turn(seconds)) *
+        solution_->momentum_from_ordered(solution_->phase(seconds)) *
+        solution_->ordered_from_principal;
+  } else if (const double rate = start_.rate_rad_s.stableNorm(); rate > 0.0) {
+    world_from_principal.linear() *=
+        rotation_about(start_.rate_rad_s / rate, kTurns * (rate * seconds));
+  }
+  return world_from_principal * start_.body_from_principal.inverse();
+}
+
+}  // namespace glidar

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/phong_headlight.hpp>
+#include <glidar/render/opengl/projection.hpp>
+#include <glidar/render/opengl/woods2016_buffers.hpp>
+#include <glidar/render/resolve.hpp>
+#include <glidar/render/woods2016_framebuffer.hpp>
+
+#include <string>
+
+namespace glidar::opengl {
+
+/// What of one picture is the same for all that is drawn.
+struct PaperScope {
+  const PinholeIntrinsics& pinhole;
+  const PhongHeadlight& light;
+  Woods2016DepthPlanes planes;  ///< of equation (8)
+  DepthRange depths;            ///< of the depth buffer
+};
+
+/// The paper's vertex and fragment shaders over a scene.
+class Woods2016Drawing {
+ public:
+  /// Needs a current context, as everything here does.
+  explicit Woods2016Drawing(const Scene& scene);
+
+  /// Draws what is there into the current target.
+  void draw(const CastRequest& request, const Resolver& resolver, const PaperScope& scope) const;
+
+ private:
+  /// One compiled program; what a surface does not need costs much time in software.
+  struct Shader {
+    Program program;
+
+    [[nodiscard]] GLint at(const std::string& uniform) const {
+      return glGetUniformLocation(program.name(), uniform.c_str());
+    }
+  };
+
+  [[nodiscard]] Shader make_shader(const char* surface_macro, const char* shine_macro) const;
+  [[nodiscard]] const Shader& shader_for(const Material& material, bool is_rich) const;
+  void set_scope(const Shader& shader, const PaperScope& scope) const;
+  void set_instance(const Shader& shader, const InstanceView& view, const PaperScope& scope) const;
+  static void set_shares(const Shader& shader, const Material& material,
+                         const PhongHeadlight& light);
+  static void set_colours(const Shader& shader, const Material& material,
+                          const PhongHeadlight& light);
+  void set_textures(const Shader& shader, const Material& material, const Mesh& mesh) const;
+  void set_texture(const Shader& shader, GLenum unit, const std::string& name,
+                   const TextureUse& use) const;
+  void draw_instance(std::uint32_t instance, const InstanceView& view,
+                     const PaperScope& scope) const;
+
+  const Scene& scene_;
+  bool has_clip_control_;
+  ShadedScene shaded_;
+  Shader matt_;   ///< without specular light, textures and such
+  Shader shiny_;  ///< with specular light
+  Shader rich_;   ///< with all
+};
+
+}  // namespace glidar::opengl

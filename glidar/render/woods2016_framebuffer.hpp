@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/frame.hpp>
+#include <glidar/core/phong_headlight.hpp>
+#include <glidar/render/opengl/context.hpp>
+#include <glidar/render/renderer.hpp>
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+namespace glidar {
+
+/// The planes of equation (8).
+struct Woods2016DepthPlanes {
+  double near_m;
+  double far_m;
+};
+
+/// Draws such pictures.
+class Woods2016Camera {
+ public:
+  Woods2016Camera() = default;
+  Woods2016Camera(const Woods2016Camera&) = delete;
+  Woods2016Camera& operator=(const Woods2016Camera&) = delete;
+  virtual ~Woods2016Camera() = default;
+
+  /// Draws a pinhole's picture; the hit fields, `then` and progress are not looked at. The planes
+  /// hug what of the surface is in view, unless others are given.
+  virtual void draw(const CastRequest& request, const PhongHeadlight& light,
+                    const std::optional<Woods2016DepthPlanes>& planes,
+                    Woods2016Framebuffer& picture) = 0;
+};
+
+/// Builds a camera over a valid scene, which must outlive it. Throws Error without OpenGL.
+std::unique_ptr<Woods2016Camera> make_paper_camera(const Scene& scene,
+                                                   const RendererOptions& options);
+
+/// The same over a context of the caller's, see make_opengl_renderer().
+std::unique_ptr<Woods2016Camera> make_paper_camera(const Scene& scene,
+                                                   const RendererOptions& options,
+                                                   std::unique_ptr<opengl::Context> context);
+
+/// What the picture tells of a run of a pinhole's beams: range in metres, NaN where nothing is
+/// seen, and intensity 0..1.
+void decode(const Woods2016Framebuffer& picture, const Beams& beams, BeamRange range,
+            std::vector<double>& range_m, std::vector<float>& intensity);
+
+}  // namespace glidar

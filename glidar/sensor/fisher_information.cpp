@@ -1,0 +1,229 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/fisher_information.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/math/constants.hpp>
+
+#include <Eigen/Eigenvalues>
+
+#include <cmath>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+using Eigen::Vector3d;
+
+// Normals are single precision: what is degenerate gets (1e-7)^2 of the best direction's
+// information for each of them, and more where points lie far from their middle.
+constexpr double kDegenerate = 1e-11;
+
+[[noreturn]] void fail(const char* where, std::string found, std::string allowed) {
+  throw Error({where, std::move(found), std::move(allowed), ""});
+}
+
+void check(const Frame& frame, const Beams& beams, const FisherOptions& options) {
+  if (frame.ground_truth.normal.size() != beams.size() || frame.status.size() != beams.size() ||
+      frame.ground_truth.range_m.size() != beams.size()) {
+    fail("pose information", "a frame without normals, or of other beams",
+         "a frame cast with the field 'normal'");
+  }
+  if (!(options.sigma_m > 0.0) || !std::isfinite(options.sigma_m)) {
+    fail("pose information, sigma", std::to_string(options.sigma_m), "metres above 0");
+  }
+  if (!(options.least_cosine > 0.0 && options.least_cosine < 1.0)) {
+    fail("pose information, least cosine", std::to_string(options.least_cosine),
+         "above 0 and below 1");
+  }
+  if (!is_rigid(options.sensor_from_reference)) {
+    fail("pose information, reference", "not a rigid transform", "a pose");
+  }
+}
+
+/// One return, in the reference frame.
+struct Sample {
+  Vector3d point;
+  Vector3d normal;
+  double weight = 0.0;  ///< 1 / (sigma n d)^2; 0: it does not count
+  bool grazes = false;
+};
+
+/// All that reading a return needs.
+class Returns {
+ public:
+  Returns(const Frame& frame, const Beams& beams, const FisherOptions& options)
+      : frame_(frame),
+        beams_(beams),
+        options_(options),
+        reference_from_sensor_(options.sensor_from_reference.inverse()) {}
+
+  [[nodiscard]] Sample at(std::size_t beam) const {
+    Sample sample;
+    if (frame_.status[beam] != Status::hit) return sample;
+    if (options_.instance && frame_.ground_truth.instance[beam] != *options_.instance)
+      return sample;
+    const Vector3d& direction = beams_.directions[beam];
+    const Vector3d normal = frame_.ground_truth.normal[beam].cast<double>();
+    const double cosine = normal.dot(direction);
+    if (std::isnan(cosine)) return sample;
+    sample.grazes = std::abs(cosine) < options_.least_cosine;
+    if (sample.grazes) return sample;
+    Vector3d point = frame_.ground_truth.range_m[beam] * direction;
+    if (!beams_.origins_m.empty()) point += beams_.origins_m[beam];
+    sample.point = reference_from_sensor_ * point;
+    sample.normal = reference_from_sensor_.linear() * normal;
+    const double sigma_m = sigma(beam);
+    sample.weight = 1.0 / (sigma_m * sigma_m * cosine * cosine);
+    return sample;
+  }
+
+ private:
+  [[nodiscard]] double sigma(std::size_t beam) const {
+    if (frame_.sigma_m.empty()) return options_.sigma_m;
+    const double told = frame_.sigma_m[beam];
+    if (told > 0.0 && std::isfinite(told)) return told;
+    fail("pose information, sigma", std::to_string(told) + " m at beam " + std::to_string(beam),
+         "a standard deviation above 0 for every return");
+  }
+
+  const Frame& frame_;
+  const Beams& beams_;
+  const FisherOptions& options_;
+  Pose reference_from_sensor_;
+};
+
+/// Counts returns and finds their middle and how far they reach from it.
+void survey(const Returns& returns, std::size_t beams, FisherInformation& result) {
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t i = 0; i < beams; ++i) {
+    const Sample sample = returns.at(i);
+    result.left_out += sample.grazes ? 1 : 0;
+    if (sample.weight <= 0.0) continue;
+    ++result.returns;
+    sum += sample.point;
+  }
+  if (result.returns == 0) return;
+  result.middle_m = sum / static_cast<double>(result.returns);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < beams; ++i) {
+    const Sample sample = returns.at(i);
+    if (sample.weight > 0.0) squares += (sample.point - result.middle_m).squaredNorm();
+  }
+  result.length_m = std::sqrt(squares / static_cast<double>(result.returns));
+}
+
+/// Fisher's information about displacements counted at the points' middle, where rotation and
+/// translation are told apart best however far the sensor is.
+Matrix6 information_at_middle(const Returns& returns, std::size_t beams, const Vector3d& middle) {
+  Matrix6 sum = Matrix6::Zero();
+  for (std::size_t i = 0; i < beams; ++i) {
+    const Sample sample = returns.at(i);
+    if (sample.weight <= 0.0) continue;
+    Vector6 j;
+    j << (sample.point - middle).cross(sample.normal), sample.normal;
+    sum.selfadjointView<Eigen::Lower>().rankUpdate(j, sample.weight);
+  }
+  return sum.selfadjointView<Eigen::Lower>();
+}
+
+/// Displacements counted at the origin from those counted at a point: rho = rho_point + point x
+/// theta.
+Matrix6 origin_from_point(const Vector3d& point) {
+  Matrix6 shift = Matrix6::Identity();
+  shift.bottomLeftCorner<3, 3>() << 0.0, -point.z(), point.y(), point.z(), 0.0, -point.x(),
+      -point.y(), point.x(), 0.0;
+  return shift;
+}
+
+/// Another basis of the space that the columns span, in which as many components as possible are
+/// zero (reduced echelon form with the largest pivots, rotations first): "about x" and "along y" in
+/// place of any mixture.
+Eigen::MatrixXd simplest_basis(Eigen::MatrixXd basis) {
+  constexpr double kSmallAngle = 1e-3;  // of unit vectors: what rotates less is a translation
+  for (Eigen::Index column = 0; column < basis.cols(); ++column) {
+    Eigen::Index row = 0;
+    Eigen::Index from = 0;
+    const Eigen::MatrixXd rest = basis.rightCols(basis.cols() - column).cwiseAbs();
+    if (rest.topRows<3>().maxCoeff(&row, &from) < kSmallAngle) rest.maxCoeff(&row, &from);
+    basis.col(column).swap(basis.col(column + from));
+    basis.col(column) /= basis(row, column);
+    for (Eigen::Index other = 0; other < basis.cols(); ++other) {
+      if (other != column) basis.col(other) -= basis(row, other) * basis.col(column).eval();
+    }
+  }
+  return basis.colwise().normalized();
+}
+
+/// Eigenvalues in falling order with their vectors, degenerate ones in their simplest basis.
+struct Spectrum {
+  Vector6 values;
+  Matrix6 vectors;
+  Eigen::Index degenerate = 0;  ///< how many, the last ones
+};
+
+Spectrum spectrum_of(const Matrix6& scaled) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled);
+  Spectrum spectrum{.values = solver.eigenvalues().reverse().cwiseMax(0.0),
+                    .vectors = solver.eigenvectors().rowwise().reverse()};
+  const double least = kDegenerate * spectrum.values[0];
+  for (Eigen::Index k = 5; k >= 0 && !(spectrum.values[k] > least); --k) ++spectrum.degenerate;
+  if (spectrum.degenerate > 0) {
+    spectrum.vectors.rightCols(spectrum.degenerate) =
+        simplest_basis(spectrum.vectors.rightCols(spectrum.degenerate));
+  }
+  return spectrum;
+}
+
+/// The bound in the reference frame; `vectors` are the spectrum's there.
+void bound_from(const Spectrum& spectrum, const Matrix6& vectors, FisherInformation& result) {
+  constexpr double kPart = 1e-6;  // of a unit displacement: less is rounding
+  for (Eigen::Index k = 0; k < 6 - spectrum.degenerate; ++k) {
+    result.covariance += vectors.col(k) * vectors.col(k).transpose() / spectrum.values[k];
+  }
+  for (Eigen::Index axis = 0; axis < 6; ++axis) {
+    const double part = vectors.rightCols(spectrum.degenerate).row(axis).norm();
+    const double scale = axis < 3 ? 1.0 / result.length_m : 1.0;
+    if (spectrum.degenerate > 0 && part > kPart * scale) {
+      result.covariance.row(axis).setZero();
+      result.covariance.col(axis).setZero();
+      result.covariance(axis, axis) = kInfinity;
+    }
+    result.bound[axis] = std::sqrt(result.covariance(axis, axis));
+  }
+}
+
+}  // namespace
+
+FisherInformation pose_information(const Frame& frame, const Beams& beams,
+                                   const FisherOptions& options) {
+  check(frame, beams, options);
+  FisherInformation result;
+  if (frame.sigma_m.empty()) result.assumed_sigma_m = options.sigma_m;
+  const Returns returns(frame, beams, options);
+  survey(returns, beams.size(), result);
+  if (!(result.length_m > 0.0)) result.length_m = 1.0;  // a single point, or none
+
+  const Matrix6 at_middle = information_at_middle(returns, beams.size(), result.middle_m);
+  const Matrix6 shift = origin_from_point(result.middle_m);
+  const Matrix6 back = origin_from_point(-result.middle_m);
+  result.matrix = back.transpose() * at_middle * back;
+
+  Vector6 unit;  // of displacements, so that a rotation moves the points as far as a translation
+  unit << Vector3d::Constant(1.0 / result.length_m), Vector3d::Ones();
+  const Spectrum spectrum = spectrum_of(unit.asDiagonal() * at_middle * unit.asDiagonal());
+  const Matrix6 vectors = shift * unit.asDiagonal() * spectrum.vectors;
+  bound_from(spectrum, vectors, result);
+  for (Eigen::Index k = 0; k < 6; ++k) {
+    const Vector6 displacement = vectors.col(k);
+    result.directions[static_cast<std::size_t>(k)] = {
+        .eigenvalue = spectrum.values[k],
+        .degenerate = k >= 6 - spectrum.degenerate,
+        .displacement = displacement,
+        .words = describe_displacement(displacement, result.length_m)};
+  }
+  result.condition = spectrum.degenerate > 0 ? kInfinity : spectrum.values[0] / spectrum.values[5];
+  return result;
+}
+
+}  // namespace glidar

@@ -1,0 +1,330 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/lidar/echo.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/math/elementary.hpp>
+#include <glidar/math/light_speed.hpp>
+#include <glidar/math/simd.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+constexpr double kFwhmPerSigma = 2.3548200450309493;  // sqrt(8 ln 2)
+constexpr double kReach = 6.0;   // standard deviations: beyond, a pulse is below 2e-8 of its peak
+constexpr double kStep = 0.125;  // of a standard deviation: the waveform's samples
+
+/// Paths [begin, end) of a beam, sorted by range unless all are near each other.
+struct Group {
+  std::size_t begin;
+  std::size_t end;
+};
+
+constexpr double kSmall = 1.0 / 64.0;
+
+/// exp(-y) from 0 to kSmall, by its series to y^4, whose next term is below 1e-11.
+inline double slight_fading(double y) {
+  return 1.0 - y * (1.0 - y * (1.0 / 2.0 - y * (1.0 / 6.0 - y * (1.0 / 24.0))));
+}
+
+/// exp(-y), nothing beyond a pulse's reach.
+inline double strong_fading(double y) {
+  return y < 0.5 * kReach * kReach ? natural_exp(-y) : 0.0;
+}
+
+/// exp(-y) from 0 on. Most paths of a footprint are near each other: then the series is quicker.
+double fading(double y) {
+  return y < kSmall ? slight_fading(y) : strong_fading(y);
+}
+
+/// The sum of the group's pulses, in samples at regular ranges.
+class Waveform {
+ public:
+  Waveform(const WaveformBuffer& work, const Group& group, double sigma_m)
+      : work_(work), group_(group), per_sigma_(1.0 / sigma_m), step_m_(kStep * sigma_m) {}
+
+  /// The range of sample k; 0 is at the nearest path.
+  [[nodiscard]] double place_m(std::ptrdiff_t k) const {
+    return work_.path[group_.begin].range_m + static_cast<double>(k) * step_m_;
+  }
+
+  /// Sample k; rising from -1 on.
+  double at(std::ptrdiff_t k) {
+    if (k >= first_ + kPathsAtOnce) sample_from(k);
+    return samples_[static_cast<std::size_t>(k - first_)];
+  }
+
+ private:
+  static constexpr std::ptrdiff_t kPathsAtOnce = 16;
+
+  void sample_from(std::ptrdiff_t k) {
+    first_ = k;
+    samples_.fill(0.0);
+    std::array<double, kPathsAtOnce> places_m;
+    for (std::size_t j = 0; j < places_m.size(); ++j) {
+      places_m[j] = place_m(first_ + static_cast<std::ptrdiff_t>(j));
+    }
+    for (std::size_t i = group_.begin; i < group_.end; ++i) {
+      const EchoContribution& path = work_.path[i];
+      add_pulse(path.range_m, path.signal, per_sigma_, places_m.data(), samples_.data());
+    }
+  }
+
+  GLIDAR_SIMD static void add_pulse(double range_m, double signal, double per_sigma,
+                                    const double* places_m, double* samples) {
+    for (std::ptrdiff_t j = 0; j < kPathsAtOnce; ++j) {
+      const double x = (range_m - places_m[j]) * per_sigma;
+      const double y = 0.5 * x * x;
+      const double slight = slight_fading(y);
+      const double strong = strong_fading(y);
+      samples[j] += signal * (y < kSmall ? slight : strong);
+    }
+  }
+
+  const WaveformBuffer& work_;
+  Group group_;
+  double per_sigma_;
+  double step_m_;
+  std::ptrdiff_t first_ = -1 - kPathsAtOnce;
+  std::array<double, kPathsAtOnce> samples_;
+};
+
+/// The stronger of two paths, at the same strength the nearer.
+bool is_stronger(const EchoContribution& a, const EchoContribution& b) {
+  return a.signal > b.signal || (a.signal == b.signal && a.range_m < b.range_m);
+}
+
+/// Surfaces that send back less than this part of an echo's light do not mix it: they move its
+/// range by less than this part of the gap, which in one echo is a few lengths of the pulse, so by
+/// about a millimetre.
+constexpr double kMinMixedShare = 1e-3;
+
+bool is_mixed(const WaveformBuffer& work, const Group& group) {
+  const EchoContribution* strongest = nullptr;  // that met something
+  double sum = 0.0;
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    const EchoContribution& path = work.path[i];
+    if (path.source == kInvalidId) continue;
+    sum += path.signal;
+    if (strongest == nullptr || is_stronger(path, *strongest)) strongest = &path;
+  }
+  double others = 0.0;
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    const EchoContribution& path = work.path[i];
+    if (path.source != kInvalidId && path.surface != strongest->surface) others += path.signal;
+  }
+  return others > kMinMixedShare * sum;
+}
+
+/// The echo of a group: centroid and the height of the waveform there, width and strongest path.
+PulseEcho echo_of(const WaveformBuffer& work, const Group& group, double sigma_m) {
+  PulseEcho echo{.range_m = 0.0,
+                 .signal = 0.0,
+                 .sigma_m = 0.0,
+                 .strongest = static_cast<std::uint32_t>(group.begin),
+                 .is_mixed = is_mixed(work, group)};
+  double sum = 0.0;
+  const double start_m = work.path[group.begin].range_m;
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    const EchoContribution& path = work.path[i];
+    sum += path.signal;
+    echo.range_m += path.signal * (path.range_m - start_m);
+    if (is_stronger(path, work.path[echo.strongest]))
+      echo.strongest = static_cast<std::uint32_t>(i);
+  }
+  echo.range_m = start_m + (sum > 0.0 ? echo.range_m / sum : 0.0);
+  const double fade = 0.5 / (sigma_m * sigma_m);
+  double variance = 0.0;
+  for (std::size_t i = group.begin; i < group.end; ++i) {
+    const double off_m = work.path[i].range_m - echo.range_m;
+    variance += work.path[i].signal * (off_m * off_m);
+    echo.signal += work.path[i].signal * fading(fade * (off_m * off_m));
+  }
+  echo.sigma_m = std::sqrt(sigma_m * sigma_m + (sum > 0.0 ? variance / sum : 0.0));
+  return echo;
+}
+
+/// A peak at the middle one of three samples: its height by the parabola through them.
+double peak_height(double before, double at, double after) {
+  const double bend = before - 2.0 * at + after;
+  const double slope = 0.5 * (after - before);
+  return bend < 0.0 ? at - 0.5 * slope * slope / bend : at;
+}
+
+/// Cuts a wide group at the valleys of its waveform. Paths beyond kReach of a valley are skipped by
+/// waveform().
+void split(const Group& group, double sigma_m, WaveformBuffer& work) {
+  const double extent_m = work.path[group.end - 1].range_m - work.path[group.begin].range_m;
+  const auto samples = static_cast<std::ptrdiff_t>(std::ceil(extent_m / (kStep * sigma_m))) + 1;
+  Waveform waveform(work, group, sigma_m);
+  double before = waveform.at(-1);
+  double at = waveform.at(0);
+  double height = 0.0;
+  bool rose = true;
+  std::size_t from = group.begin;
+  const auto close = [&](std::size_t to) {
+    if (to == from) return;
+    PulseEcho echo = echo_of(work, {from, to}, sigma_m);
+    echo.signal = height;
+    work.echo[work.echoes++] = echo;
+    from = to;
+    height = 0.0;
+  };
+  for (std::ptrdiff_t k = 0; k < samples; ++k) {
+    const double after = waveform.at(k + 1);
+    if (at >= before && at > after) {
+      height = std::max(height, peak_height(before, at, after));
+      rose = false;
+    } else if (!rose && at <= before && at < after) {
+      const double valley_m = waveform.place_m(k);
+      std::size_t to = from;
+      while (to < group.end && work.path[to].range_m < valley_m) ++to;
+      close(to);
+      rose = true;
+    }
+    before = at;
+    at = after;
+  }
+  close(group.end);
+}
+
+/// Pulses within one standard deviation of each other have one peak, at their mean but for the
+/// third order.
+void take_as_one(const Group& group, double sigma_m, WaveformBuffer& work) {
+  work.echo[work.echoes++] = echo_of(work, group, sigma_m);
+}
+
+/// Finds the echoes of paths that others are too far from to matter.
+void find_in_group(const Group& group, double sigma_m, WaveformBuffer& work) {
+  if (work.path[group.end - 1].range_m - work.path[group.begin].range_m > sigma_m) {
+    split(group, sigma_m, work);
+  } else {
+    take_as_one(group, sigma_m, work);
+  }
+}
+
+/// How far the nearest and the farthest path are from each other.
+double extent_m(const WaveformBuffer& work) {
+  double nearest_m = work.path[0].range_m;
+  double farthest_m = nearest_m;
+  for (std::size_t i = 1; i < work.paths; ++i) {
+    nearest_m = std::min(nearest_m, work.path[i].range_m);
+    farthest_m = std::max(farthest_m, work.path[i].range_m);
+  }
+  return farthest_m - nearest_m;
+}
+
+/// The index of the echo that a return asks for; -1: none.
+int find_return(const Return& wanted, std::span<const PulseEcho> echoes,
+                const std::array<std::uint16_t, WaveformBuffer::kMost>& by_strength) {
+  if (wanted.rank >= echoes.size()) return -1;
+  const auto last = static_cast<int>(echoes.size()) - 1;
+  const auto rank = static_cast<int>(wanted.rank);
+  switch (wanted.order) {
+    case Return::Order::nearest:
+      return rank;
+    case Return::Order::farthest:
+      return last - rank;
+    case Return::Order::strongest:
+      return by_strength[wanted.rank];
+  }
+  return -1;
+}
+
+}  // namespace
+
+void validate(const Receiver& receiver) {
+  require_number(receiver.pulse_fwhm_s > 0.0 && receiver.pulse_fwhm_s <= 1e-3,
+                 "receiver, pulse_fwhm_s", receiver.pulse_fwhm_s, "seconds above 0, up to 1e-3");
+  require_number(receiver.separation_m >= 0.0 && std::isfinite(receiver.separation_m),
+                 "receiver, separation_m", receiver.separation_m, "metres from 0");
+  require_number(!receiver.returns.empty() && receiver.returns.size() <= kMaxReturns,
+                 "receiver, returns", static_cast<double>(receiver.returns.size()),
+                 "1 to 16 of them");
+}
+
+double pulse_sigma_m(const Receiver& receiver) {
+  return kHalfLight_m_per_s * receiver.pulse_fwhm_s / kFwhmPerSigma;
+}
+
+void WaveformBuffer::replace_weakest(const EchoContribution& one) {
+  const auto weakest = std::min_element(
+      path.begin(), path.end(),
+      [](const EchoContribution& a, const EchoContribution& b) { return a.signal < b.signal; });
+  if (weakest->signal < one.signal) *weakest = one;
+}
+
+void detect_peaks(double sigma_m, double near_m, WaveformBuffer& work) {
+  work.echoes = 0;
+  if (work.paths == 0) return;
+  if (extent_m(work) <= std::min(sigma_m, near_m)) {  // as most beams: no need to sort
+    take_as_one({0, work.paths}, sigma_m, work);
+    return;
+  }
+  std::sort(work.path.begin(), work.path.begin() + static_cast<std::ptrdiff_t>(work.paths),
+            [](const EchoContribution& a, const EchoContribution& b) {
+              return a.range_m != b.range_m ? a.range_m < b.range_m : a.source < b.source;
+            });
+  for (std::size_t begin = 0, end = 0; begin < work.paths; begin = end) {
+    end = begin + 1;
+    while (end < work.paths &&
+           work.path[end].range_m - work.path[end - 1].range_m < kReach * sigma_m) {
+      ++end;
+    }
+    find_in_group({begin, end}, sigma_m, work);
+  }
+}
+
+void enforce_min_separation(double separation_m, WaveformBuffer& work) {
+  if (!(separation_m > 0.0) || work.echoes < 2) return;
+  std::array<bool, WaveformBuffer::kMost> hidden;
+  std::fill_n(hidden.begin(), work.echoes, false);
+  for (std::size_t i = 0; i < work.echoes; ++i) {
+    for (std::size_t j = 0; j < work.echoes; ++j) {
+      const bool is_near = std::abs(work.echo[i].range_m - work.echo[j].range_m) < separation_m;
+      if (is_near && work.echo[j].signal > work.echo[i].signal) hidden[i] = true;
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < work.echoes; ++i) {
+    if (!hidden[i]) work.echo[kept++] = work.echo[i];
+  }
+  work.echoes = kept;
+}
+
+double reported_range_m(const Receiver& receiver, const PulseEcho& echo) {
+  if (receiver.timing == Receiver::Timing::centroid || echo.signal <= 1.0) return echo.range_m;
+  return echo.range_m - echo.sigma_m * std::sqrt(2.0 * natural_log(echo.signal));
+}
+
+void select_returns(const Receiver& receiver, std::span<const PulseEcho> echoes,
+                    std::array<int, kMaxReturns>& chosen) {
+  const std::size_t count = receiver.returns.size();
+  std::array<std::uint16_t, WaveformBuffer::kMost> by_strength;
+  for (std::size_t i = 0; i < echoes.size(); ++i) by_strength[i] = static_cast<std::uint16_t>(i);
+  std::sort(by_strength.begin(), by_strength.begin() + static_cast<std::ptrdiff_t>(echoes.size()),
+            [&](auto a, auto b) {
+              return echoes[a].signal != echoes[b].signal ? echoes[a].signal > echoes[b].signal
+                                                          : a < b;
+            });
+  const auto is_told = [&](int index, std::size_t before) {
+    return std::find(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(before), index) !=
+           chosen.begin() + static_cast<std::ptrdiff_t>(before);
+  };
+  const auto strongest_untold = [&](std::size_t before) {
+    const auto end = by_strength.begin() + static_cast<std::ptrdiff_t>(echoes.size());
+    const auto found =
+        std::find_if(by_strength.begin(), end, [&](int echo) { return !is_told(echo, before); });
+    return found == end ? -1 : static_cast<int>(*found);
+  };
+  for (std::size_t r = 0; r < count; ++r) {
+    int index = find_return(receiver.returns[r], echoes, by_strength);
+    if (index >= 0 && is_told(index, r)) index = strongest_untold(r);
+    chosen[r] = index;
+  }
+}
+
+}  // namespace glidar

@@ -1,0 +1,191 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/lidar/fog_variation.hpp>
+
+#include <glidar/sensor/lidar/weather_signal.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace glidar {
+namespace {
+
+using Sums = FogProfile::Sums;
+
+/// From here on the signal of a layer only falls.
+double bend_m(const LidarEquation& light) {
+  return std::max(1.0, light.overlap.empty() ? 0.0 : light.overlap.back()[0]);
+}
+
+/// Where fog sends back so little that it hardly ever makes the largest echo.
+double farthest_m(const LidarEquation& light, double step_m) {
+  constexpr double kLeastShare = 1.0 / 200.0;
+  constexpr double kGrowth = 1.1;
+  constexpr double kFarthest = 64.0;  // of the bend, for light that hardly falls with the range
+  double brightest = 0.0;
+  for (double range_m = nearest_in_view_m(light); range_m < bend_m(light) + step_m;
+       range_m += step_m) {
+    brightest = std::max(brightest, air_signal(light, 1.0, range_m));
+  }
+  double range_m = bend_m(light);
+  while (range_m < kFarthest * bend_m(light) &&
+         air_signal(light, 1.0, range_m) > kLeastShare * brightest) {
+    range_m *= kGrowth;
+  }
+  return range_m;
+}
+
+/// Uniform numbers of a draw, one after the other.
+class Uniforms {
+ public:
+  explicit Uniforms(const RngKey& draw) : draw_(draw) { draw_.purpose = Purpose::fog; }
+
+  double next() {
+    const std::uint32_t word = count_ % 4U;
+    draw_.block = count_ / 4U;
+    if (word == 0) words_ = random_words(draw_);
+    ++count_;
+    return uniform(words_[word]);
+  }
+
+ private:
+  RngKey draw_;
+  std::uint32_t count_ = 0;
+  RandomWords words_{};
+};
+
+/// Erlang's distribution: the mean of exponential numbers.
+double gamma_factor(unsigned looks, Uniforms& uniforms) {
+  double sum = 0.0;
+  for (unsigned i = 0; i < looks; ++i) sum -= natural_log(uniforms.next());
+  return sum / looks;
+}
+
+Sums added(const Sums& to, double factor, const Sums& from, const Sums& up_to) {
+  return {to.plain + factor * (up_to.plain - from.plain),
+          to.cosine + factor * (up_to.cosine - from.cosine),
+          to.sine + factor * (up_to.sine - from.sine)};
+}
+
+/// The cells of a beam, one after the other.
+class FogCells {
+ public:
+  FogCells(const VaryingFog& fog, const RngKey& draw)
+      : fog_(fog),
+        uniforms_(draw),
+        from_m_(fog.profile.start_m + (uniforms_.next() - 1.0) * fog.cell_m) {}
+
+  [[nodiscard]] double next_from_m() const { return from_m_; }
+
+  FogCell next() {
+    const FogCell cell{std::max(from_m_, fog_.profile.start_m),
+                       gamma_factor(fog_.looks, uniforms_)};
+    from_m_ += fog_.cell_m;
+    return cell;
+  }
+
+ private:
+  const VaryingFog& fog_;
+  Uniforms uniforms_;
+  double from_m_;
+};
+
+/// The fog of a beam, integrated node by node.
+class Integral {
+ public:
+  Integral(const VaryingFog& fog, double end_m, const RngKey& draw)
+      : fog_(fog), cells_(fog, draw), end_m_(end_m), cell_(cells_.next()), next_(following()) {}
+
+  /// Up to a node not before the one of the last call.
+  Sums to(std::size_t node) {
+    const double range_m = fog_.profile.start_m + static_cast<double>(node) * step_m();
+    while (next_.from_m <= range_m) {
+      const Sums border = sums_to(fog_.profile, next_.from_m);
+      before_ = added(before_, cell_.factor, border_, border);
+      border_ = border;
+      cell_ = next_;
+      next_ = following();
+    }
+    const Sums& here = fog_.nodes[std::min(node, fog_.nodes.size() - 1)];
+    return added(before_, cell_.factor, border_, here);
+  }
+
+  [[nodiscard]] double step_m() const {
+    return 1.0 / (fog_.profile.turns_per_m * VaryingFog::kNodesPerPulse);
+  }
+
+ private:
+  /// What comes after cell_: from end_m on there is no fog.
+  FogCell following() {
+    if (cells_.next_from_m() < end_m_) return cells_.next();
+    const bool has_ended = cell_.from_m >= end_m_;
+    return {has_ended ? std::numeric_limits<double>::infinity() : end_m_, 0.0};
+  }
+
+  const VaryingFog& fog_;
+  FogCells cells_;
+  double end_m_;
+  FogCell cell_;
+  FogCell next_;
+  Sums before_{};  ///< the cell
+  Sums border_{};  ///< of the profile, where the cell begins
+};
+
+}  // namespace
+
+VaryingFog varying_fog(const LidarEquation& light, double backscatter_per_m_sr, double pulse_fwhm_s,
+                       unsigned looks) {
+  VaryingFog fog{.looks = looks};
+  if (!(backscatter_per_m_sr > 0.0)) return fog;
+  const double pulse_m = pulse_length_m(pulse_fwhm_s);
+  const double step_m = pulse_m / VaryingFog::kNodesPerPulse;
+  fog.cell_m = 0.5 * pulse_m;
+  fog.end_m = farthest_m(light, step_m);
+  fog.profile = fog_profile(light, backscatter_per_m_sr, pulse_fwhm_s, fog.end_m);
+  const double length_m = fog.end_m - fog.profile.start_m;
+  const auto count = static_cast<std::size_t>(std::ceil(length_m / step_m)) + 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    fog.nodes.push_back(
+        sums_to(fog.profile, fog.profile.start_m + static_cast<double>(i) * step_m));
+  }
+  for (std::size_t i = 0; i < VaryingFog::kNodesPerPulse; ++i) {
+    fog.angles[i] = of_turns(fog.profile.start_m * fog.profile.turns_per_m +
+                             static_cast<double>(i) / VaryingFog::kNodesPerPulse);
+  }
+  return fog;
+}
+
+void draw_fog_cells(const VaryingFog& fog, double end_m, RngKey draw, std::vector<FogCell>& cells) {
+  cells.clear();
+  FogCells source(fog, draw);
+  while (source.next_from_m() < std::min(end_m, fog.end_m)) cells.push_back(source.next());
+}
+
+SoftEcho echo_before(const VaryingFog& fog, double hard_range_m, const RngKey& draw) {
+  const double start_m = fog.profile.start_m;
+  const double end_m = std::min(hard_range_m, fog.end_m);
+  if (fog.nodes.empty() || !(end_m > start_m)) return {};
+  Integral integral(fog, end_m, draw);
+  constexpr std::size_t kPulse = VaryingFog::kNodesPerPulse;
+  std::array<Sums, kPulse> past{};  // a pulse's length ago
+  const auto last = static_cast<std::size_t>((end_m - start_m) / integral.step_m()) + kPulse + 2;
+  std::array<double, 3> signal{};  // at the last nodes
+  SoftEcho best;
+  for (std::size_t node = 0; node <= last; ++node) {
+    const Sums now = integral.to(node);
+    const Sums part = added(now, -1.0, {}, past[node % kPulse]);
+    past[node % kPulse] = now;
+    signal = {signal[1], signal[2], pulse_of(part, fog.angles[node % kPulse])};
+    const double bend = signal[0] - 2.0 * signal[1] + signal[2];
+    if (signal[1] <= best.signal || signal[1] < signal[2] || !(bend < 0.0)) continue;
+    const double slope = 0.5 * (signal[2] - signal[0]);
+    const double peak = static_cast<double>(node) - 1.0 - slope / bend;
+    best = {start_m + peak * integral.step_m(), signal[1] - 0.5 * slope * slope / bend};
+  }
+  // from the pulse's begin to its middle; all fog is between start and end
+  best.range_m = std::clamp(best.range_m - fog.cell_m, start_m, end_m);
+  return best;
+}
+
+}  // namespace glidar

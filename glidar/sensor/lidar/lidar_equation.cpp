@@ -1,0 +1,266 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/lidar/lidar_equation.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/math/elementary.hpp>
+#include <glidar/math/gaussian.hpp>
+#include <glidar/math/simd.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace glidar {
+namespace {
+
+/// exp(-2 alpha R).
+double two_way(double extinction_per_m, double range_m) {
+  const double depth = -2.0 * extinction_per_m * range_m;
+  return natural_exp(std::clamp(depth, -600.0, 600.0));  // beyond, it is 0 or endless anyway
+}
+
+double incidence_rad(double cosine) {
+  const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
+  return 2.0 * std::numbers::pi * turns_of(sine, cosine);
+}
+
+double relative(const Lambert& /*surface*/, double cosine) {
+  return cosine;
+}
+
+double relative(const PhongLike& s, double cosine) {
+  const double lobe = power(std::abs(2.0 * cosine * cosine - 1.0), s.exponent);  // cos 2 theta
+  return (1.0 - s.specular_share) * cosine + s.specular_share * lobe;
+}
+
+double relative(const OrenNayar& s, double cosine) {
+  const double s2 = s.roughness_rad * s.roughness_rad;
+  const double a = 1.0 - 0.5 * s2 / (s2 + 0.33);
+  const double b = 0.45 * s2 / (s2 + 0.09);
+  return a * cosine + b * (1.0 - cosine * cosine);
+}
+
+double relative(const RetroReflector& s, double cosine) {
+  const double x = incidence_rad(cosine) / s.width_rad;
+  return s.gain * natural_exp(-x * x);
+}
+
+double relative(const Glossy& s, double cosine) {
+  const double x = incidence_rad(cosine) / s.width_rad;
+  return s.matt_share * cosine + s.lobe_gain * natural_exp(-0.5 * x * x);
+}
+
+/// What sends light back: a material at one wavelength.
+class Surface {
+ public:
+  Surface() = default;
+  Surface(const Material& material, double wavelength_m)
+      : material_(&material),
+        plain_(luminance(material.diffuse)),
+        reflectance_(reflectance_at(material, wavelength_m)) {}
+
+  [[nodiscard]] double backscatter_at(const Hits& hits, std::size_t beam) const {
+    const double cosine = std::clamp<double>(hits.cos_shading[beam], 0.0, 1.0);
+    return backscatter(material_->backscatter, reflectance(hits.diffuse[beam]), cosine);
+  }
+
+ private:
+  /// The material's, times what its texture and the vertex colours make of the diffuse colour.
+  [[nodiscard]] double reflectance(float diffuse) const {
+    if (material_->spectrum.empty()) return diffuse;
+    return reflectance_ * (plain_ > 0.0F ? std::min(1.0F, diffuse / plain_) : 1.0);
+  }
+
+  const Material* material_ = nullptr;
+  float plain_ = 0.0F;  ///< luminance of the diffuse colour
+  double reflectance_ = 0.0;
+};
+
+const Material& material_at(const Scene& scene, const Hits& hits, std::size_t beam) {
+  return material_of(scene, scene.instances[hits.instance[beam]], hits.primitive[beam]);
+}
+
+/// What comes back from hits [range.begin, range.end), 0 where there is none. Neighbours mostly hit
+/// the same instance.
+void collect_sent(const Scene& scene, double wavelength_m, const Hits& hits, BeamRange range,
+                  std::span<double> sent) {
+  Surface surface;
+  std::uint32_t known = kInvalidId;  // the instance that is all of this surface
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    double& to = sent[i - range.begin];
+    to = 0.0;
+    if (hits.instance[i] == kInvalidId) continue;
+    if (hits.instance[i] != known) {
+      surface = Surface(material_at(scene, hits, i), wavelength_m);
+      const Instance& instance = scene.instances[hits.instance[i]];
+      known = scene.meshes[instance.mesh].material_slots.empty() ? hits.instance[i] : kInvalidId;
+    }
+    to = surface.backscatter_at(hits, i);
+  }
+}
+
+/// Spread over the range, see received_signal(), for the exponent 2 and nothing in the way.
+GLIDAR_SIMD void spread_by_square(const LidarEquation& light, const double* range_m,
+                                  std::size_t count, double* signals) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double ratio = light.reference_range_m / range_m[i];
+    const double signal = signals[i] / light.reference_reflectance * (ratio * ratio);
+    signals[i] = signals[i] > 0.0 ? signal : 0.0;  // a miss has no range
+  }
+}
+
+/// The same for any exponent.
+GLIDAR_SIMD void spread_by_power(const LidarEquation& light, const double* range_m,
+                                 std::size_t count, double* signals) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double range = signals[i] > 0.0 ? range_m[i] : 1.0;  // a miss has no range
+    const double spread = power(light.reference_range_m / range, light.range_exponent);
+    const double signal = signals[i] / light.reference_reflectance * spread;
+    signals[i] = signals[i] > 0.0 ? signal : 0.0;
+  }
+}
+
+/// True when the range alone weakens the signal.
+bool only_spreads(const LidarEquation& light) {
+  return light.overlap.empty() && light.extinction_per_m == 0.0 &&
+         light.weather_extinction_per_m == 0.0;
+}
+
+/// See kMinSignalToNoise; a signal over the threshold is never lost.
+bool is_lost_in_noise(const LidarEquation& light, double signal) {
+  return signal < std::min(kMinSignalToNoise * light.noise_sigma, 1.0);
+}
+
+void measure_hit(const LidarEquation& light, double received, std::size_t beam, Frame& frame) {
+  frame.intensity[beam] = static_cast<float>(received);
+  if (received < 1.0) {
+    invalidate_return(frame, beam,
+                      classify_weak_return(light, received, frame.ground_truth.range_m[beam]));
+  }
+  if (light.saturation > 0.0 && received >= light.saturation)
+    invalidate_return(frame, beam, Status::saturated);
+}
+
+}  // namespace
+
+void validate(const LidarEquation& light) {
+  const auto positive = [](double x) { return x > 0.0 && std::isfinite(x); };
+  const auto from_zero = [](double x) { return x >= 0.0 && std::isfinite(x); };
+  require_number(positive(light.reference_reflectance), "pulse light, reference_reflectance",
+                 light.reference_reflectance, "above 0");
+  require_number(positive(light.reference_range_m), "pulse light, reference_range_m",
+                 light.reference_range_m, "metres above 0");
+  require_number(from_zero(light.range_exponent), "pulse light, range_exponent",
+                 light.range_exponent, "0 or above");
+  require_number(from_zero(light.extinction_per_m), "pulse light, extinction_per_m",
+                 light.extinction_per_m, "0 or above");
+  require_number(from_zero(light.weather_extinction_per_m), "pulse light, weather_extinction_per_m",
+                 light.weather_extinction_per_m, "0 or above");
+  require_number(from_zero(light.noise_sigma), "pulse light, noise_sigma", light.noise_sigma,
+                 "0 or above");
+  require_number(from_zero(light.saturation), "pulse light, saturation", light.saturation,
+                 "0 or above");
+  for (std::size_t i = 0; i < light.overlap.size(); ++i) {
+    const auto [range_m, share] = light.overlap[i];
+    require_number(from_zero(range_m) && (i == 0 || range_m > light.overlap[i - 1][0]),
+                   "pulse light, overlap", range_m, "ranges that rise from 0 or above");
+    require_number(from_zero(share), "pulse light, overlap", share, "shares of 0 or above");
+  }
+  require_number(interpolate(light.overlap, light.reference_range_m, 1.0) > 0.0,
+                 "pulse light, overlap", 0.0, "a share above 0 at the reference range");
+}
+
+double backscatter(const Brdf& surface, double reflectance, double cosine) {
+  return reflectance * std::visit([&](const auto& s) { return relative(s, cosine); }, surface);
+}
+
+double reflectance_at(const Material& material, double wavelength_m) {
+  return interpolate(material.spectrum, wavelength_m, luminance(material.diffuse));
+}
+
+double relative_overlap(const LidarEquation& light, double range_m) {
+  return interpolate(light.overlap, range_m, 1.0) /
+         interpolate(light.overlap, light.reference_range_m, 1.0);
+}
+
+double received_signal(const LidarEquation& light, double backscatter, double range_m) {
+  const double ratio = light.reference_range_m / range_m;
+  const double spread =
+      light.range_exponent == 2.0 ? ratio * ratio : power(ratio, light.range_exponent);
+  double signal = backscatter / light.reference_reflectance * spread;
+  if (light.extinction_per_m > 0.0) {
+    signal *= two_way(light.extinction_per_m, range_m - light.reference_range_m);
+  }
+  if (light.weather_extinction_per_m > 0.0) {
+    signal *= two_way(light.weather_extinction_per_m, range_m);
+  }
+  return light.overlap.empty() ? signal : signal * relative_overlap(light, range_m);
+}
+
+double backscatter_at(const Scene& scene, double wavelength_m, const Hits& hits, std::size_t beam) {
+  return Surface(material_at(scene, hits, beam), wavelength_m).backscatter_at(hits, beam);
+}
+
+void received_signals(const LidarEquation& light, const Scene& scene, double wavelength_m,
+                      const Hits& hits, BeamRange range, std::span<double> signals) {
+  collect_sent(scene, wavelength_m, hits, range, signals);
+  const double* range_m = &hits.range_m[range.begin];
+  const std::size_t count = range.end - range.begin;
+  if (only_spreads(light)) {
+    const auto spread = light.range_exponent == 2.0 ? spread_by_square : spread_by_power;
+    spread(light, range_m, count, signals.data());
+    return;
+  }
+  for (std::size_t k = 0; k < count; ++k) {
+    if (signals[k] > 0.0) signals[k] = received_signal(light, signals[k], range_m[k]);
+  }
+}
+
+Status classify_weak_return(const LidarEquation& light, double signal, double range_m) {
+  if (!(light.weather_extinction_per_m > 0.0)) return Status::below_threshold;
+  const double clear = signal / two_way(light.weather_extinction_per_m, range_m);
+  return clear < 1.0 ? Status::below_threshold : Status::weather;
+}
+
+double with_noise(const LidarEquation& light, double signal, double normal) {
+  return is_lost_in_noise(light, signal) ? signal : signal + light.noise_sigma * normal;
+}
+
+double detection_probability(const LidarEquation& light, double signal) {
+  if (is_lost_in_noise(light, signal)) return 0.0;
+  if (light.noise_sigma == 0.0) return signal >= 1.0 ? 1.0 : 0.0;
+  return 0.5 * std::erfc((1.0 - signal) / (light.noise_sigma * std::numbers::sqrt2));
+}
+
+double noise_sigma_of(double range50_m, double range90_m, double exponent) {
+  constexpr double kNinety = 1.2815515655446004;  // Phi of it is 0.9
+  return (std::pow(range50_m / range90_m, exponent) - 1.0) / kNinety;
+}
+
+double range_exponent(double reflectance_a, double range_a_m, double reflectance_b,
+                      double range_b_m) {
+  return std::log(reflectance_a / reflectance_b) / std::log(range_a_m / range_b_m);
+}
+
+void shade_lidar(const LidarEquation& light, const Scene& scene, double wavelength_m,
+                 BeamRange range, Frame& frame) {
+  Batch<double> noise{};
+  Batch<double> signals;
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    const std::size_t k = (i - range.begin) % kDrawBatch;
+    if (k == 0) {
+      const BeamRange batch{i, std::min(i + kDrawBatch, range.end)};
+      received_signals(light, scene, wavelength_m, frame.ground_truth, batch, signals);
+      if (light.noise_sigma > 0.0) draw_normals(rng_key(frame, Purpose::detection, i), noise);
+    }
+    if (frame.status[i] == Status::hit) {
+      measure_hit(light, with_noise(light, signals[k], noise[k]), i, frame);
+    } else {
+      frame.intensity[i] = 0.0F;
+    }
+  }
+}
+
+}  // namespace glidar

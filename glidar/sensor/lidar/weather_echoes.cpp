@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/lidar/weather_echoes.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace glidar {
+namespace {
+
+constexpr std::uint32_t kSnowBlocks = 1U << 31U;  // snow's draws begin there, rain's at 0
+
+}  // namespace
+
+PreparedWeather prepare_weather(const Weather& weather, const LidarEquation& light,
+                                double wavelength_m, const BeamShape& beam, double pulse_fwhm_s) {
+  PreparedWeather prepared{.light = light, .min_signal = weather.min_signal};
+  prepared.light.weather_extinction_per_m = extinction_per_m(weather, wavelength_m);
+  const double optical_depth_per_m = fog_extinction_per_m(weather, wavelength_m);
+  const double backscatter_per_m_sr =
+      weather.fog_backscatter_per_sr * optical_depth_per_m / kOpticalRangeDepth;
+  if (weather.fog_looks > 0) {
+    prepared.varying_fog =
+        varying_fog(prepared.light, backscatter_per_m_sr, pulse_fwhm_s, weather.fog_looks);
+  } else {
+    prepared.fog = fog_return(prepared.light, backscatter_per_m_sr, pulse_fwhm_s);
+  }
+  if (weather.rain_mm_per_h > 0.0) {
+    prepared.rain =
+        drop_field(prepared.light, rain_sizes(weather.rain_mm_per_h), beam, weather.min_signal);
+  }
+  if (weather.snow_mm_per_h > 0.0) {
+    prepared.snow =
+        drop_field(prepared.light, snow_sizes(weather.snow_mm_per_h, weather.snow_model), beam,
+                   weather.min_signal);
+  }
+  return prepared;
+}
+
+void weather_echoes(const PreparedWeather& weather, double hard_range_m, const RngKey& draw,
+                    std::vector<WeatherEcho>& echoes) {
+  const double end_m =
+      std::isnan(hard_range_m) ? std::numeric_limits<double>::infinity() : hard_range_m;
+  const SoftEcho soft = weather.varying_fog.looks > 0
+                            ? echo_before(weather.varying_fog, end_m, draw)
+                            : echo_before(weather.fog, end_m);
+  if (soft.signal >= weather.min_signal) {
+    echoes.push_back({soft.range_m, soft.signal, ReturnSource::fog});
+  }
+  RngKey drops = draw;
+  drops.purpose = Purpose::weather;
+  const auto append = [&](const DropField& field, std::uint32_t block, ReturnSource cause) {
+    drops.block = block;
+    const auto take = [&](const DropEcho& drop) {
+      echoes.push_back({drop.range_m, drop.signal, cause});
+    };
+    draw_drops(weather.light, field, end_m, drops, FunctionRef<void(const DropEcho&)>(take));
+  };
+  append(weather.rain, 0, ReturnSource::rain);
+  append(weather.snow, kSnowBlocks, ReturnSource::snow);
+}
+
+}  // namespace glidar

@@ -1,0 +1,34 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/lidar/weather_signal.hpp>
+
+#include <algorithm>
+
+namespace glidar {
+namespace {
+
+constexpr double kBlindTo_m = 0.9;
+constexpr double kSeesAllFrom_m = 1.0;
+
+bool tells_the_near_end(const LidarEquation& light) {
+  if (light.overlap.empty()) return false;
+  const auto [range_m, share] = light.overlap.front();
+  return range_m > 0.0 && share == 0.0;
+}
+
+}  // namespace
+
+double nearest_in_view_m(const LidarEquation& light) {
+  return tells_the_near_end(light) ? light.overlap.front()[0] : kBlindTo_m;
+}
+
+double crossover(const LidarEquation& light, double range_m) {
+  if (tells_the_near_end(light)) return 1.0;
+  return std::clamp((range_m - kBlindTo_m) / (kSeesAllFrom_m - kBlindTo_m), 0.0, 1.0);
+}
+
+double air_signal(const LidarEquation& light, double backscatter, double range_m) {
+  return received_signal(light, backscatter, range_m) * crossover(light, range_m);
+}
+
+}  // namespace glidar

@@ -1,0 +1,178 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/noise/depth_noise.hpp>
+
+#include <glidar/math/elementary.hpp>
+#include <glidar/math/simd.hpp>
+#include <glidar/sensor/noise/lateral_noise.hpp>
+#include <glidar/sensor/noise/noise_batch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace glidar {
+namespace {
+
+/// A camera that measures disparity in steps: K / z, a normal error, and rounding to whole steps
+/// plus an offset.
+struct Disparity {
+  double k_m = 0.0;
+  double sigma_steps = 0.0;
+  double offset_steps = 0.0;
+  bool rounds = true;
+};
+
+/// Beams whose disparity is not above 0 see infinitely far: their range becomes infinite.
+GLIDAR_SIMD void measure(const Disparity& law, const Batch<double>& normal, NoiseBatch& b) {
+  const double rounding = law.rounds ? 1.0 / 12.0 : 0.0;
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double z = b.depth_at_zero[i] + b.depth_per_m[i] * b.range_m[i];
+    const double sigma = law.sigma_steps * b.scale[i];
+    const double steps = law.k_m / z + sigma * normal[i];
+    const double whole = std::floor(steps - law.offset_steps + 0.5) + law.offset_steps;
+    const double told = law.rounds ? whole : steps;
+    const double told_z = told > 0.0 ? law.k_m / told : std::numeric_limits<double>::infinity();
+    const double per_step = z * z / law.k_m / b.depth_per_m[i];
+    b.range_m[i] = z == z ? (told_z - b.depth_at_zero[i]) / b.depth_per_m[i] : z;
+    b.variance_m2[i] += (sigma * sigma + rounding) * per_step * per_step;
+  }
+}
+
+void lose_far(NoiseBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    if (is_hit(batch, i) && std::isinf(batch.range_m[i]))
+      invalidate_return(batch, i, Status::too_far);
+  }
+}
+
+inline double left_of_right_angle(double incidence_rad) {
+  const double left = 0.5 * std::numbers::pi - incidence_rad;
+  return left > kLeastGrazing_rad ? left : kLeastGrazing_rad;
+}
+
+inline double axial_sigma_m(const NguyenAxial& law, double z_m, double incidence_rad) {
+  const double beyond = z_m - law.c_m;
+  const double sigma = law.a_m + law.b_per_m * beyond * beyond;
+  const double share = incidence_rad / left_of_right_angle(incidence_rad);
+  const double grazing_coefficient = law.grazing_coefficient / std::sqrt(z_m) * share * share;
+  return incidence_rad <= std::numbers::pi / 3.0 ? sigma : sigma + grazing_coefficient;
+}
+
+inline double lateral_sigma_px(const NguyenLateral& law, double incidence_rad) {
+  return law.a_px + law.b_px * incidence_rad / left_of_right_angle(incidence_rad);
+}
+
+GLIDAR_SIMD void add_axial(const NguyenAxial& law, const Batch<double>& normal, NoiseBatch& b) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double z = b.depth_at_zero[i] + b.depth_per_m[i] * b.range_m[i];
+    const double sigma =
+        axial_sigma_m(law, z, angle_of(b.cosine[i])) * b.scale[i] / b.depth_per_m[i];
+    b.range_m[i] += sigma * normal[i];
+    b.variance_m2[i] += sigma * sigma;
+  }
+}
+
+GLIDAR_SIMD void scale_lateral(const NguyenLateral& law, const NoiseBatch& b, PairBatch& shift) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double sigma = lateral_sigma_px(law, angle_of(b.cosine[i])) * b.scale[i];
+    shift.first[i] *= sigma;
+    shift.second[i] *= sigma;
+  }
+}
+
+/// A normal error of depth: sigma = a + b (z - c)^2.
+GLIDAR_SIMD void add_parabola(const NguyenAxial& law, const Batch<double>& normal, NoiseBatch& b) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double beyond = b.depth_at_zero[i] + b.depth_per_m[i] * b.range_m[i] - law.c_m;
+    const double sigma = (law.a_m + law.b_per_m * beyond * beyond) * b.scale[i] / b.depth_per_m[i];
+    b.range_m[i] += sigma * normal[i];
+    b.variance_m2[i] += sigma * sigma;
+  }
+}
+
+}  // namespace
+
+double nguyen_axial_sigma_m(const NguyenAxial& law, double z_m, double incidence_rad) {
+  return axial_sigma_m(law, z_m, incidence_rad);
+}
+
+double nguyen_lateral_sigma_px(const NguyenLateral& law, double incidence_rad) {
+  return lateral_sigma_px(law, incidence_rad);
+}
+
+void apply(const DisparityQuantization& step, const NoiseView& /*view*/, NoiseBatch& batch) {
+  const Batch<double> none{};
+  measure({.k_m = step.k_m, .offset_steps = step.offset_steps}, none, batch);
+  lose_far(batch);
+}
+
+void apply(const Khoshelham& step, const NoiseView& /*view*/, NoiseBatch& batch) {
+  Batch<double> normal;
+  draw_shared_normals(batch.draw, normal);
+  add_parabola({.a_m = 0.0, .b_per_m = step.sigma_per_m, .c_m = 0.0, .grazing_coefficient = 0.0},
+               normal, batch);
+}
+
+void apply(const NguyenAxial& step, const NoiseView& /*view*/, NoiseBatch& batch) {
+  Batch<double> normal;
+  draw_shared_normals(batch.draw, normal);
+  add_axial(step, normal, batch);
+}
+
+void prepare(const NguyenLateral& /*step*/, const NoiseView& view, NoiseBatch& batch) {
+  keep_depth(view, batch);
+}
+
+void apply(const NguyenLateral& step, const NoiseView& view, NoiseBatch& batch) {
+  PairBatch shift;
+  draw_normals(batch.draw, shift);
+  scale_lateral(step, batch, shift);
+  look_aside(shift, view, batch);
+}
+
+void prepare(const IclKinect& /*step*/, const NoiseView& view, NoiseBatch& batch) {
+  keep_depth(view, batch);
+}
+
+void apply(const IclKinect& step, const NoiseView& view, NoiseBatch& batch) {
+  PairBatch shift;
+  draw_normals(batch.draw, shift);
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    shift.first[i] *= step.lateral_px * batch.scale[i];
+    shift.second[i] *= step.lateral_px * batch.scale[i];
+  }
+  look_aside(shift, view, batch);
+  Batch<double> normal;
+  draw_shared_normals(block(batch.draw, 1), normal);
+  measure({.k_m = step.k_m, .sigma_steps = step.sigma_steps}, normal, batch);
+  lose_far(batch);
+}
+
+void prepare(const KinectV1& /*step*/, const NoiseView& view, NoiseBatch& batch) {
+  Batch<double> normal;
+  draw_shared_normals(batch.draw, normal);
+  std::copy_n(normal.begin(), batch.count,
+              view.frame.workspace.before.begin() + static_cast<std::ptrdiff_t>(batch.first));
+}
+
+void apply(const KinectV1& step, const NoiseView& view, NoiseBatch& batch) {
+  Batch<double> normal{};
+  mean_over_window(step.window, view, batch, normal);
+  measure({.k_m = step.k_m, .sigma_steps = step.sigma_steps, .offset_steps = step.offset_steps},
+          normal, batch);
+  lose_far(batch);
+}
+
+void apply(const Stereo& step, const NoiseView& /*view*/, NoiseBatch& batch) {
+  Batch<double> normal;
+  draw_shared_normals(batch.draw, normal);
+  const double unit_px = step.step_px > 0.0 ? step.step_px : 1.0;
+  measure({.k_m = step.focal_px * step.baseline_m / unit_px,
+           .sigma_steps = step.sigma_px / unit_px,
+           .rounds = step.step_px > 0.0},
+          normal, batch);
+  lose_far(batch);
+}
+
+}  // namespace glidar

@@ -1,0 +1,88 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/noise/dropout.hpp>
+
+#include <glidar/math/elementary.hpp>
+#include <glidar/math/light_speed.hpp>
+#include <glidar/math/simd.hpp>
+#include <glidar/sensor/noise/lateral_noise.hpp>
+#include <glidar/sensor/noise/noise_batch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+/// The ranges of first arrivals, from their uniform numbers.
+GLIDAR_SIMD void first_arrivals(double near_m, double metres, Batch<double>& x) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) x[i] = near_m - natural_log(x[i]) * metres;
+}
+
+}  // namespace
+
+double drop_probability(const Dropout& step, double range_m, double cos_incidence) {
+  double kept = 1.0 - step.probability;
+  kept *= 1.0 - interpolate(step.by_range_m, range_m);
+  if (!step.by_incidence_rad.empty()) {
+    kept *= 1.0 - interpolate(step.by_incidence_rad, angle_of(cos_incidence));
+  }
+  return 1.0 - kept;
+}
+
+void apply(const Dropout& step, const NoiseView& /*view*/, NoiseBatch& batch) {
+  Batch<double> x;
+  draw_shared_uniforms(batch.draw, x);
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    if (!is_hit(batch, i)) continue;
+    const double probability = drop_probability(step, batch.range_m[i], batch.cosine[i]);
+    if (x[i] < probability) invalidate_return(batch, i, Status::dropped);
+  }
+}
+
+void prepare(const Crosstalk& /*step*/, const NoiseView& view, NoiseBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    view.frame.workspace.before[batch.first + i] = batch.range_m[i];
+  }
+}
+
+void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch) {
+  const std::uint32_t rows = view.beams.rows / view.beams.returns;  // channels
+  const std::uint32_t cols = view.beams.cols;
+  if (rows < 2) return;
+  WordBatch words;
+  draw_words(batch.draw, words);
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    if (!is_hit(batch, i) || uniform(words.word[0][i]) >= step.probability) continue;
+    const std::size_t beam = batch.first + i;
+    // one of the other rows; the bias of this way of choosing is below rows / 2^32
+    const std::uint64_t pick = std::uint64_t{words.word[1][i]} * (rows - 1U) >> 32U;
+    const std::size_t block = beam / (std::size_t{rows} * cols) * rows;  // of this return
+    const std::size_t row = block + (beam / cols % rows + 1U + pick) % rows;
+    const double other_m = view.frame.workspace.before[row * cols + beam % cols];
+    if (!(other_m > step.near_m)) continue;  // that channel has no echo
+    set_cause(view, batch, i, ReturnSource::crosstalk);
+    batch.range_m[i] = step.near_m + (other_m - step.near_m) * uniform(words.word[2][i]);
+  }
+}
+
+void apply(const FalseAlarms& step, const NoiseView& view, NoiseBatch& batch) {
+  if (!(step.rate_hz > 0.0)) return;
+  Batch<double> x;
+  draw_shared_uniforms(batch.draw, x);
+  first_arrivals(step.near_m - view.beams.range_offset_m, kHalfLight_m_per_s / step.rate_hz, x);
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    if (batch.first + i >= view.beams.firings()) break;  // of several returns the first
+    const Status status = batch.status[i];
+    const bool listens = status != Status::invalid_pixel && status != Status::dropped;
+    const double false_m = x[i];
+    if (!listens || !(false_m < step.far_m) || !(false_m > 0.0)) continue;
+    if (status == Status::hit && batch.range_m[i] <= false_m) continue;
+    batch.range_m[i] = false_m;
+    batch.intensity[i] = step.intensity;
+    batch.status[i] = Status::hit;
+    set_cause(view, batch, i, ReturnSource::false_alarm);
+  }
+}
+
+}  // namespace glidar

@@ -1,0 +1,64 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/noise/intensity_noise.hpp>
+
+#include <glidar/math/elementary.hpp>
+#include <glidar/math/simd.hpp>
+#include <glidar/sensor/noise/noise_batch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+GLIDAR_SIMD void disturb(const IntensityGaussian& step, const Batch<double>& normal,
+                         NoiseBatch& b) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double sigma = (step.sigma + step.relative * b.intensity[i]) * b.scale[i];
+    const double disturbed = b.intensity[i] + sigma * normal[i];
+    b.intensity[i] = disturbed > 0.0 ? disturbed : 0.0;
+  }
+}
+
+double spelt(const IntensityScale& step, double reflectance) {
+  switch (step.kind) {
+    case IntensityScale::Kind::vendor:
+      return vendor_intensity(reflectance, step.largest);
+    case IntensityScale::Kind::plain:
+      return reflectance;
+    default:
+      return std::clamp(reflectance, 0.0, 1.0);
+  }
+}
+
+}  // namespace
+
+double vendor_intensity(double reflectance, double largest) {
+  if (!(reflectance > 0.0)) return 0.0;
+  if (reflectance <= 1.0) return std::floor(100.0 * reflectance + 0.5);
+  const double share = natural_log(reflectance) / natural_log(largest);
+  return 101.0 + std::floor(154.0 * std::min(share, 1.0) + 0.5);
+}
+
+double vendor_reflectance(double intensity, double largest) {
+  if (!(intensity > 100.0)) return intensity / 100.0;
+  return natural_exp((intensity - 101.0) / 154.0 * natural_log(largest));
+}
+
+void apply(const IntensityGaussian& step, const NoiseView& /*view*/, NoiseBatch& batch) {
+  Batch<double> normal;
+  draw_shared_normals(batch.draw, normal);
+  disturb(step, normal, batch);
+}
+
+void apply(const IntensityScale& step, const NoiseView& /*view*/, NoiseBatch& batch) {
+  const bool compensates = step.reference_m > 0.0;
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    if (!is_hit(batch, i)) continue;
+    const double times = compensates ? batch.range_m[i] / step.reference_m : 1.0;
+    batch.intensity[i] = spelt(step, step.gain * batch.intensity[i] * times * times);
+  }
+}
+
+}  // namespace glidar

@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/noise/lateral_noise.hpp>
+
+namespace glidar {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+/// The kept depth of a pixel; NaN outside of the image.
+double kept_depth(const NoiseView& view, double row, double col) {
+  const bool inside = row >= 0.0 && col >= 0.0 && row < view.beams.rows && col < view.beams.cols;
+  if (!inside) return kNone;
+  const auto at = static_cast<std::size_t>(row) * view.beams.cols + static_cast<std::size_t>(col);
+  return view.frame.workspace.before[at];
+}
+
+double depth_between(const NoiseView& view, double row, double col) {
+  const double top = std::floor(row);
+  const double left = std::floor(col);
+  const double down = row - top;
+  const double right = col - left;
+  const auto along = [&](double in_row) {
+    const double first = kept_depth(view, in_row, left);
+    if (!(right > 0.0)) return first;
+    return (1.0 - right) * first + right * kept_depth(view, in_row, left + 1.0);
+  };
+  const double upper = along(top);
+  const double lower = along(top + 1.0);
+  // a neighbour without a share must not count, though it be outside
+  const double depth = down > 0.0 ? (1.0 - down) * upper + down * lower : upper;
+  if (!std::isnan(depth)) return depth;
+  return kept_depth(view, std::floor(row + 0.5), std::floor(col + 0.5));
+}
+
+/// Sums of `window` rows around a row, at the columns [first, first + sums).
+std::size_t sum_rows(const NoiseView& view, std::size_t row, std::size_t reach, std::size_t first,
+                     std::span<double> sums) {
+  const std::size_t top = row - std::min(row, reach);
+  const std::size_t end = std::min<std::size_t>(view.beams.rows, row + reach + 1);
+  std::fill(sums.begin(), sums.end(), 0.0);
+  for (std::size_t r = top; r < end; ++r) {
+    const double* line = view.frame.workspace.before.data() + r * view.beams.cols + first;
+    for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += line[k];
+  }
+  return end - top;
+}
+
+}  // namespace
+
+void keep_depth(const NoiseView& view, const NoiseBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    view.frame.workspace.before[batch.first + i] =
+        batch.depth_at_zero[i] + batch.depth_per_m[i] * batch.range_m[i];
+  }
+}
+
+void look_aside(const PairBatch& shift_px, const NoiseView& view, NoiseBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    if (!is_hit(batch, i)) continue;
+    const std::size_t beam = batch.first + i;
+    const std::size_t whole_row = beam / view.beams.cols;
+    const double col = static_cast<double>(beam % view.beams.cols) + shift_px.first[i];
+    const double row = static_cast<double>(whole_row) + shift_px.second[i];
+    const double depth = depth_between(view, std::clamp(row, 0.0, view.beams.rows - 1.0),
+                                       std::clamp(col, 0.0, view.beams.cols - 1.0));
+    if (std::isnan(depth)) {
+      invalidate_return(batch, i, Status::dropped);
+    } else {
+      batch.range_m[i] = (depth - batch.depth_at_zero[i]) / batch.depth_per_m[i];
+    }
+  }
+}
+
+void mean_over_window(unsigned window, const NoiseView& view, const NoiseBatch& batch,
+                      Batch<double>& means) {
+  const std::size_t reach = std::min<std::size_t>(window / 2, kLargestReach);
+  const std::size_t cols = view.beams.cols;
+  std::array<double, kDrawBatch + 2 * kLargestReach> sums;
+  for (std::size_t i = 0; i < batch.count;) {
+    // a stretch of the run that lies in one row
+    const std::size_t row = (batch.first + i) / cols;
+    const std::size_t begin = (batch.first + i) % cols;
+    const std::size_t end = std::min(cols, begin + (batch.count - i));
+    const std::size_t left = begin - std::min(begin, reach);
+    const std::size_t right = std::min(cols, end + reach);
+    const std::size_t height = sum_rows(view, row, reach, left, {sums.data(), right - left});
+    for (std::size_t col = begin; col < end; ++col, ++i) {
+      const std::size_t from = col - std::min(col, reach);
+      const std::size_t to = std::min(cols, col + reach + 1);
+      double sum = 0.0;
+      for (std::size_t c = from; c < to; ++c) sum += sums[c - left];
+      means[i] = sum / std::sqrt(static_cast<double>(height * (to - from)));
+    }
+  }
+}
+
+}  // namespace glidar

@@ -1,0 +1,288 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/noise/noise.hpp>
+
+#include <glidar/math/constants.hpp>
+#include <glidar/math/simd.hpp>
+#include <glidar/sensor/noise/noise_batch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <type_traits>
+
+namespace glidar {
+namespace {
+
+constexpr std::size_t kGrain = 8 * kDrawBatch;
+
+template <class Step>
+constexpr bool kTurnsBeams =
+    std::is_same_v<Step, PointingJitter> || std::is_same_v<Step, EncoderError>;
+
+template <class Step>
+constexpr bool kUsesDepth =
+    std::is_same_v<Step, DisparityQuantization> || std::is_same_v<Step, KinectV1> ||
+    std::is_same_v<Step, Khoshelham> || std::is_same_v<Step, NguyenAxial> ||
+    std::is_same_v<Step, NguyenLateral> || std::is_same_v<Step, IclKinect> ||
+    std::is_same_v<Step, Stereo>;
+
+template <class Step>
+constexpr bool kUsesIncidence =
+    std::is_same_v<Step, NguyenAxial> || std::is_same_v<Step, NguyenLateral> ||
+    std::is_same_v<Step, Dropout>;
+
+template <class Step>
+constexpr bool kMakesReturns = std::is_same_v<Step, Crosstalk> || std::is_same_v<Step, FalseAlarms>;
+
+/// Steps that look at other beams too: all of the frame is prepared before any of it changes.
+template <class Step>
+constexpr bool kLooksAround = requires(const Step& step, const NoiseView& view, NoiseBatch& batch) {
+  prepare(step, view, batch);
+};
+
+bool turns_beams(const NoiseStep& step) {
+  return std::visit([](const auto& s) { return kTurnsBeams<std::decay_t<decltype(s)>>; }, step);
+}
+
+bool uses_depth(const NoiseStep& step) {
+  return std::visit([](const auto& s) { return kUsesDepth<std::decay_t<decltype(s)>>; }, step);
+}
+
+bool looks_around(const NoiseStep& step) {
+  if (const auto* waves = std::get_if<ContinuousWave>(&step)) return mixes(*waves);
+  return std::visit([](const auto& s) { return kLooksAround<std::decay_t<decltype(s)>>; }, step);
+}
+
+bool makes_returns(const NoiseStep& step) {
+  return std::visit([](const auto& s) { return kMakesReturns<std::decay_t<decltype(s)>>; }, step);
+}
+
+GLIDAR_SIMD void widen(const float* from, std::size_t count, double* to) {
+  for (std::size_t i = 0; i < count; ++i) to[i] = double{from[i]};
+}
+
+GLIDAR_SIMD void square(Batch<double>& values) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) values[i] *= values[i];
+}
+
+void copy(const float* from, std::size_t count, double* to) {
+  widen(from, count, to);
+}
+template <class T>
+void copy(const T* from, std::size_t count, T* to) {
+  std::copy_n(from, count, to);
+}
+
+/// Copies a run of a column into a batch, and fills up the rest.
+template <class From, class To>
+void load_column(const std::vector<From>& column, const NoiseBatch& batch, To rest,
+                 Batch<To>& out) {
+  if (column.empty()) {
+    out.fill(rest);
+    return;
+  }
+  copy(column.data() + batch.first, batch.count, out.data());
+  std::fill(out.begin() + static_cast<std::ptrdiff_t>(batch.count), out.end(), rest);
+}
+
+void load_depth(const Beams& beams, NoiseBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const std::size_t beam = batch.first + i;
+    batch.depth_per_m[i] = beams.directions[beam].dot(beams.boresight);
+    batch.depth_at_zero[i] =
+        beams.origins_m.empty() ? 0.0 : beams.origins_m[beam].dot(beams.boresight);
+  }
+}
+
+/// Steps [begin, end) of a list; the first of them may look around, the others do not.
+struct NoiseRun {
+  const std::vector<NoiseStep>& noise;
+  std::size_t begin;
+  std::size_t end;
+  double frame_s;
+
+  [[nodiscard]] bool is_last() const { return end == noise.size(); }
+};
+
+void load(const NoiseRun& stretch, const NoiseView& view, NoiseBatch& batch) {
+  const Frame& frame = view.frame;
+  batch.frame_s = stretch.frame_s;
+  load_column(frame.range_m, batch, kNaN, batch.range_m);
+  load_column(frame.sigma_m, batch, 0.0, batch.variance_m2);
+  square(batch.variance_m2);
+  load_column(frame.intensity, batch, 0.0, batch.intensity);
+  load_column(frame.ground_truth.noise_scale, batch, 1.0, batch.scale);
+  load_column(frame.ground_truth.cos_incidence, batch, 1.0, batch.cosine);
+  load_column(frame.status, batch, Status::invalid_pixel, batch.status);
+  batch.depth_per_m.fill(1.0);
+  batch.depth_at_zero.fill(0.0);
+  const auto first = stretch.noise.begin() + static_cast<std::ptrdiff_t>(stretch.begin);
+  const auto last = stretch.noise.begin() + static_cast<std::ptrdiff_t>(stretch.end);
+  if (std::any_of(first, last, uses_depth)) load_depth(view.beams, batch);
+}
+
+/// Columns of a frame from the run's first beam on.
+struct Columns {
+  double* range_m;
+  float* intensity;
+  float* sigma_m;
+};
+
+GLIDAR_SIMD void write(const NoiseBatch& batch, const Columns& to) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const double range_m = batch.range_m[i];
+    const double sigma_m = std::sqrt(batch.variance_m2[i]);
+    to.range_m[i] = range_m;
+    to.intensity[i] = static_cast<float>(batch.intensity[i]);
+    to.sigma_m[i] = static_cast<float>(range_m == range_m ? sigma_m : 0.0);
+  }
+}
+
+/// What the sensor cannot report in the end.
+void lose_what_is_no_range(NoiseBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    if (is_hit(batch, i) && !(batch.range_m[i] > 0.0))
+      invalidate_return(batch, i, Status::too_near);
+  }
+}
+
+void store(const NoiseView& view, NoiseBatch& batch) {
+  Frame& frame = view.frame;
+  const std::size_t at = batch.first;
+  write(batch, {frame.range_m.data() + at, frame.intensity.data() + at, frame.sigma_m.data() + at});
+  std::copy_n(batch.status.begin(), batch.count, frame.status.data() + at);
+  if (frame.return_source.empty()) return;
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    if (!is_hit(batch, i)) frame.return_source[at + i] = ReturnSource::none;
+  }
+}
+
+/// Calls body(batch) for all runs of a frame, loaded.
+template <class Body>
+void for_batches(const NoiseRun& stretch, const NoiseView& view, ThreadPool& thread_pool,
+                 const Body& body) {
+  const std::size_t size = view.frame.range_m.size();
+  const std::size_t runs = (size + kDrawBatch - 1) / kDrawBatch;
+  thread_pool.parallel_for(runs, kGrain / kDrawBatch, [&](std::size_t begin, std::size_t end) {
+    NoiseBatch batch;
+    for (std::size_t run = begin; run < end; ++run) {
+      batch.first = run * kDrawBatch;
+      batch.count = std::min(kDrawBatch, size - batch.first);
+      load(stretch, view, batch);
+      body(batch);
+    }
+  });
+}
+
+void prepare_step(const NoiseRun& stretch, const NoiseView& view, NoiseBatch& batch) {
+  batch.draw = rng_key(view.frame, rng_purpose(stretch.begin), batch.first);
+  std::visit(
+      [&](const auto& step) {
+        if constexpr (kLooksAround<std::decay_t<decltype(step)>>) prepare(step, view, batch);
+      },
+      stretch.noise[stretch.begin]);
+}
+
+void apply_steps(const NoiseRun& stretch, const NoiseView& view, NoiseBatch& batch) {
+  for (std::size_t k = stretch.begin; k < stretch.end; ++k) {
+    batch.draw = rng_key(view.frame, rng_purpose(k), batch.first);
+    std::visit(
+        [&](const auto& step) {
+          if constexpr (!kTurnsBeams<std::decay_t<decltype(step)>>) apply(step, view, batch);
+        },
+        stretch.noise[k]);
+  }
+}
+
+template <class Step>
+void turn_if_it_turns(const Step& step, const RngKey& draw, BeamRange range, Beams& beams) {
+  if constexpr (kTurnsBeams<Step>) perturb(step, draw, range.begin, range.end - range.begin, beams);
+}
+
+void turn_beams(const std::vector<NoiseStep>& noise, const Frame& frame, BeamRange range,
+                Beams& beams) {
+  for (std::size_t k = 0; k < noise.size(); ++k) {
+    const RngKey draw = rng_key(frame, rng_purpose(k), 0);
+    std::visit([&](const auto& step) { turn_if_it_turns(step, draw, range, beams); }, noise[k]);
+  }
+}
+
+/// Applies steps of which at most the first looks around.
+void apply_stretch(const NoiseRun& stretch, const NoiseView& view, ThreadPool& thread_pool) {
+  if (looks_around(stretch.noise[stretch.begin])) {
+    for_batches(stretch, view, thread_pool,
+                [&](NoiseBatch& batch) { prepare_step(stretch, view, batch); });
+  }
+  for_batches(stretch, view, thread_pool, [&](NoiseBatch& batch) {
+    apply_steps(stretch, view, batch);
+    if (stretch.is_last()) lose_what_is_no_range(batch);
+    store(view, batch);
+  });
+}
+
+}  // namespace
+
+Purpose rng_purpose(std::size_t step) {
+  return static_cast<Purpose>(static_cast<std::size_t>(Purpose::first_noise_step) + step);
+}
+
+void add_required_fields(const std::vector<NoiseStep>& noise, HitFieldMask& fields) {
+  fields.noise_scale = fields.noise_scale || !noise.empty();
+  fields.incidence =
+      fields.incidence || std::any_of(noise.begin(), noise.end(), [](const NoiseStep& step) {
+        return std::visit([](const auto& s) { return kUsesIncidence<std::decay_t<decltype(s)>>; },
+                          step);
+      });
+}
+
+const Beams& perturbed_beams(const std::vector<NoiseStep>& noise, const Beams& beams,
+                             ThreadPool& thread_pool, Frame& frame) {
+  Beams& aimed = frame.workspace.aimed;
+  if (std::none_of(noise.begin(), noise.end(), turns_beams)) {
+    aimed.directions.clear();
+    return beams;
+  }
+  aimed = beams;
+  aimed.pinhole.reset();  // no longer a straight grid
+  const std::size_t runs = (beams.firings() + kDrawBatch - 1) / kDrawBatch;
+  thread_pool.parallel_for(runs, kGrain / kDrawBatch, [&](std::size_t begin, std::size_t end) {
+    turn_beams(noise, frame, {begin * kDrawBatch, std::min(end * kDrawBatch, aimed.firings())},
+               aimed);
+  });
+  for (std::size_t i = aimed.firings(); i < aimed.size(); ++i) {
+    aimed.directions[i] =
+        aimed.directions[i - aimed.firings()];  // all returns of a pulse are on it
+  }
+  return aimed;
+}
+
+void apply_noise_prefix(const std::vector<NoiseStep>& noise, std::size_t count, double frame_s,
+                        const Beams& beams, ThreadPool& thread_pool, Frame& frame) {
+  if (std::all_of(noise.begin(), noise.end(), turns_beams)) {
+    frame.sigma_m.clear();
+    return;
+  }
+  frame.sigma_m.assign(frame.range_m.size(), 0.0F);
+  if (std::any_of(noise.begin(), noise.end(), looks_around)) {
+    frame.workspace.before.resize(frame.range_m.size());
+    frame.workspace.amplitude.resize(frame.range_m.size());
+  }
+  if (frame.return_source.empty() && std::any_of(noise.begin(), noise.end(), makes_returns)) {
+    frame.return_source.assign(frame.range_m.size(), ReturnSource::surface);
+  }
+  const NoiseView view{beams, frame};
+  const auto last = noise.begin() + static_cast<std::ptrdiff_t>(count);
+  for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
+    const auto next =
+        std::find_if(noise.begin() + static_cast<std::ptrdiff_t>(begin) + 1, last, looks_around);
+    end = static_cast<std::size_t>(next - noise.begin());
+    apply_stretch({noise, begin, end, frame_s}, view, thread_pool);
+  }
+}
+
+void apply_noise(const std::vector<NoiseStep>& noise, double frame_s, const Beams& beams,
+                 ThreadPool& thread_pool, Frame& frame) {
+  apply_noise_prefix(noise, noise.size(), frame_s, beams, thread_pool, frame);
+}
+
+}  // namespace glidar

@@ -1,0 +1,142 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/noise/pointing_noise.hpp>
+
+#include <glidar/math/elementary.hpp>
+#include <glidar/math/gaussian.hpp>
+#include <glidar/math/simd.hpp>
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace glidar {
+namespace {
+
+constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+constexpr double kTurns_per_rad = 0.5 * std::numbers::inv_pi;
+
+/// Moves beams by angles so small that they are their own tangents: aside along the level unit
+/// vector across the beam (for a vertical beam any), upwards across both. xyz: beam after beam.
+GLIDAR_SIMD void jitter(const Eigen::Vector3d& up, const PointingJitter& step,
+                        const PairBatch& normal, std::size_t count, double* xyz) {
+  constexpr double kShortest = 1e-9;
+  const double ux = up.x();
+  const double uy = up.y();
+  const double uz = up.z();
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = xyz[3 * i];
+    const double y = xyz[3 * i + 1];
+    const double z = xyz[3 * i + 2];
+    const double cx = uy * z - uz * y;
+    const double cy = uz * x - ux * z;
+    const double cz = ux * y - uy * x;
+    const double length = std::sqrt(cx * cx + cy * cy + cz * cz);
+    const bool is_level = length > kShortest;
+    const double inverse = 1.0 / (is_level ? length : 1.0);
+    const double ax = is_level ? cx * inverse : 1.0;
+    const double ay = is_level ? cy * inverse : 0.0;
+    const double az = is_level ? cz * inverse : 0.0;
+    const double aside = step.sigma_azimuth_rad * normal.first[i];
+    const double upwards = step.sigma_elevation_rad * normal.second[i];
+    const double vx = x + aside * ax + upwards * (y * az - z * ay);
+    const double vy = y + aside * ay + upwards * (z * ax - x * az);
+    const double vz = z + aside * az + upwards * (x * ay - y * ax);
+    const double unit = 1.0 / std::sqrt(vx * vx + vy * vy + vz * vz);
+    xyz[3 * i] = vx * unit;
+    xyz[3 * i + 1] = vy * unit;
+    xyz[3 * i + 2] = vz * unit;
+  }
+}
+
+inline double rounding_error(double step_rad, double steps_per_rad, double azimuth_rad) {
+  return std::floor(azimuth_rad * steps_per_rad + 0.5) * step_rad - azimuth_rad;
+}
+
+inline double wave_error(const EncoderError& law, double azimuth_rad) {
+  return law.eccentricity_rad * of_turns((azimuth_rad + law.phase_rad) * kTurns_per_rad).sine;
+}
+
+GLIDAR_SIMD void find_azimuths(std::size_t count, const double* xyz, Batch<double>& azimuth_rad) {
+  for (std::size_t i = 0; i < count; ++i) {
+    azimuth_rad[i] = kTurn_rad * turns_of(xyz[3 * i + 1], xyz[3 * i]);
+  }
+}
+
+GLIDAR_SIMD void add_rounding(double step_rad, const Batch<double>& azimuth_rad,
+                              Batch<double>& error_rad) {
+  const double steps_per_rad = 1.0 / step_rad;
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    error_rad[i] += rounding_error(step_rad, steps_per_rad, azimuth_rad[i]);
+  }
+}
+
+GLIDAR_SIMD void add_wave(const EncoderError& law, const Batch<double>& azimuth_rad,
+                          Batch<double>& error_rad) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) error_rad[i] += wave_error(law, azimuth_rad[i]);
+}
+
+/// Cosines and sines of the way back: where beams are when they report where they seem to be.
+GLIDAR_SIMD void find_way_back(const Batch<double>& error_rad, PairBatch& back) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const SineCosine turn = of_turns(-error_rad[i] * kTurns_per_rad);
+    back.first[i] = turn.cosine;
+    back.second[i] = turn.sine;
+  }
+}
+
+GLIDAR_SIMD void turn_about_z(const PairBatch& angle, std::size_t count, double* xyz) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const double x = xyz[3 * i];
+    const double y = xyz[3 * i + 1];
+    const double z = xyz[3 * i + 2];
+    xyz[3 * i] = angle.first[i] * x - angle.second[i] * y;
+    xyz[3 * i + 1] = angle.second[i] * x + angle.first[i] * y;
+    xyz[3 * i + 2] = z;
+  }
+}
+
+}  // namespace
+
+double encoder_error_rad(const EncoderError& law, double azimuth_rad) {
+  const double rounding =
+      law.step_rad > 0.0 ? rounding_error(law.step_rad, 1.0 / law.step_rad, azimuth_rad) : 0.0;
+  return rounding + wave_error(law, azimuth_rad);
+}
+
+void perturb(const PointingJitter& step, const RngKey& draw, std::size_t first, std::size_t count,
+             Beams& beams) {
+  const Eigen::Vector3d up = axes_of(beams).up;
+  PairBatch normal;
+  for (std::size_t begin = first; begin < first + count; begin += kDrawBatch) {
+    RngKey run = draw;
+    run.beam = static_cast<std::uint32_t>(begin);
+    draw_normals(run, normal);
+    jitter(up, step, normal, std::min(kDrawBatch, first + count - begin),
+           beams.directions[begin].data());
+  }
+}
+
+void perturb(const EncoderError& step, const RngKey& draw, std::size_t first, std::size_t count,
+             Beams& beams) {
+  RngKey whole = draw;
+  whole.beam = 0;
+  const double of_turn = step.turn_sigma_rad * normals(random_words(whole))[0];
+  Batch<double> azimuth_rad{};
+  Batch<double> error_rad;
+  PairBatch back;
+  for (std::size_t begin = first; begin < first + count; begin += kDrawBatch) {
+    const std::size_t size = std::min(kDrawBatch, first + count - begin);
+    find_azimuths(size, beams.directions[begin].data(), azimuth_rad);
+    error_rad.fill(of_turn);
+    if (step.step_rad > 0.0) add_rounding(step.step_rad, azimuth_rad, error_rad);
+    if (step.eccentricity_rad != 0.0) add_wave(step, azimuth_rad, error_rad);
+    find_way_back(error_rad, back);
+    turn_about_z(back, size, beams.directions[begin].data());
+    if (!beams.origins_m.empty()) turn_about_z(back, size, beams.origins_m[begin].data());
+  }
+}
+
+}  // namespace glidar

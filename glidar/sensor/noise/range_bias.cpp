@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/noise/range_bias.hpp>
+
+#include <glidar/math/elementary.hpp>
+#include <glidar/sensor/noise/noise_batch.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+/// Adds to every range what `error_of` says of its ring, asking once for neighbours of one ring.
+template <class Function>
+void add_by_ring(const Beams& beams, const Function& error_of, NoiseBatch& batch) {
+  std::uint32_t ring = ring_of(beams, batch.first);
+  double error = error_of(ring);
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const std::uint32_t next = ring_of(beams, batch.first + i);
+    if (next != ring) error = error_of(next);
+    ring = next;
+    batch.range_m[i] += error;
+  }
+}
+
+double normal_of(const RngKey& draw) {
+  return normals(random_words(draw))[0];
+}
+
+}  // namespace
+
+double drift_at(std::uint32_t frame, double frames_per_tau, RngKey draw) {
+  constexpr double kForgotten = 13.8;  // exp(-13.8) = 1e-6
+  constexpr unsigned kLongest = 31;
+  unsigned level = 0;
+  while (level < kLongest && std::ldexp(1.0, static_cast<int>(level)) < kForgotten * frames_per_tau)
+    ++level;
+  const auto normal_at = [&](std::uint64_t at) {
+    // the end of the last stretch may lie one beyond the greatest number
+    draw.frame = static_cast<std::uint32_t>(at);
+    draw.block = static_cast<std::uint32_t>(at >> 32U);
+    return normal_of(draw);
+  };
+  std::uint64_t begin = std::uint64_t{frame} >> level << level;
+  double value_at_begin = normal_at(begin);
+  double value_at_end = normal_at(begin + (std::uint64_t{1} << level));
+  while (begin != frame) {
+    --level;
+    const std::uint64_t half = std::uint64_t{1} << level;
+    const double p = natural_exp(-static_cast<double>(half) / frames_per_tau);
+    const double middle = (value_at_begin + value_at_end) * p / (1.0 + p * p) +
+                          std::sqrt((1.0 - p * p) / (1.0 + p * p)) * normal_at(begin + half);
+    if (frame >= begin + half) {
+      begin += half;
+      value_at_begin = middle;
+    } else {
+      value_at_end = middle;
+    }
+  }
+  return value_at_begin;
+}
+
+void apply(const RangeBias& step, const NoiseView& view, NoiseBatch& batch) {
+  RngKey draw = batch.draw;
+  draw.frame = kAllFrames;
+  add_by_ring(
+      view.beams,
+      [&](std::uint32_t ring) {
+        draw.beam = ring;
+        return step.offset_m + step.sigma_m * normal_of(draw);
+      },
+      batch);
+}
+
+void apply(const RangeDrift& step, const NoiseView& view, NoiseBatch& batch) {
+  const double frames_per_tau = step.tau_s / batch.frame_s;
+  RngKey draw = batch.draw;
+  const auto error_of = [&](std::uint32_t ring) {
+    draw.beam = ring;
+    return step.sigma_m * drift_at(view.frame.number, frames_per_tau, draw);
+  };
+  if (step.per_ring) {
+    add_by_ring(view.beams, error_of, batch);
+    return;
+  }
+  const double error = error_of(0);
+  for (std::size_t i = 0; i < batch.count; ++i) batch.range_m[i] += error;
+}
+
+}  // namespace glidar

@@ -1,0 +1,68 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+
+namespace glidar {
+
+struct NoiseBatch;
+struct NoiseView;
+
+/// Normal error of the range with the standard deviation sigma + sigma_per_m R (RobotecGPULidar,
+/// docs/GaussianNoise.md).
+struct RangeGaussian {
+  double sigma_m = 0.0;
+  double sigma_per_m = 0.0;
+};
+
+/// Normal error of the range with sigma^2 = floor^2 + k^2 / SNR, SNR = snr_at_full_scale times
+/// intensity. k = 0.30 m fits the OS1 (gen 1 data sheet: 1.5, 3, 10 cm at SNR 250, 100, 12).
+struct RangeSnr {
+  double floor_m = 0.0;
+  double k_m = 0.0;
+  double snr_at_full_scale = 1.0;
+};
+
+/// Timing of a sampled Gaussian pulse in white noise at the Cramer-Rao bound:
+/// sigma_t = (noise / A) sqrt(2 sigma_p dt / sqrt(pi)), A being the intensity; sigma_R = c sigma_t
+/// / 2 (Kay, Fundamentals of Statistical Signal Processing I, 3.11, for a Gaussian pulse).
+struct RangeCrlb {
+  double pulse_fwhm_s = 0.0;
+  double sample_s = 0.0;
+  double noise = 0.0;  ///< standard deviation of a sample, in units of intensity
+};
+
+/// Timing limited by photons: sigma_R = (c / 2) sigma_p / sqrt(N) with N photo-electrons
+/// (the mean of N arrival times).
+struct RangeShotNoise {
+  double pulse_fwhm_s = 0.0;
+  double photons_at_full_scale = 0.0;
+};
+
+/// The noise of the 2015 program, whose distribution was unknown, with one that is stated:
+/// R' = R + additive x + multiplicative R y. x and y are uniform in -1..1, or standard normals.
+struct RangeUniform {
+  enum class Distribution : std::uint8_t { uniform, normal };
+  double additive_m = 0.0;
+  double multiplicative = 0.0;
+  Distribution distribution = Distribution::uniform;
+};
+
+/// The reported range is a whole multiple of a step. Adds step^2 / 12 to the variance.
+struct RangeQuantization {
+  double step_m = 0.0;
+};
+
+/// Standard deviations of the laws above, metres.
+double pulse_sigma_m(const RangeCrlb& law, double amplitude);
+double photon_sigma_m(const RangeShotNoise& law, double amplitude);
+
+void apply(const RangeGaussian& step, const NoiseView& view, NoiseBatch& batch);
+void apply(const RangeSnr& step, const NoiseView& view, NoiseBatch& batch);
+void apply(const RangeCrlb& step, const NoiseView& view, NoiseBatch& batch);
+void apply(const RangeShotNoise& step, const NoiseView& view, NoiseBatch& batch);
+void apply(const RangeUniform& step, const NoiseView& view, NoiseBatch& batch);
+void apply(const RangeQuantization& step, const NoiseView& view, NoiseBatch& batch);
+
+}  // namespace glidar

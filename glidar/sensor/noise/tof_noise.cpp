@@ -1,0 +1,237 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/noise/tof_noise.hpp>
+
+#include <glidar/math/light_speed.hpp>
+#include <glidar/math/simd.hpp>
+#include <glidar/sensor/noise/multipath.hpp>
+#include <glidar/sensor/noise/noise_batch.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <numeric>
+
+namespace glidar {
+namespace {
+
+constexpr double kMinAmplitude = 1e-9;
+
+/// The frequencies, the finest first, and what the search for the range needs of them.
+struct Waves {
+  std::size_t count = 0;
+  double finest_m = 0.0;                             ///< range of one wave of the finest
+  double limit_m = 0.0;                              ///< range without ambiguity
+  double number = 0.0;                               ///< of finest waves in it
+  double sigma_m_per_turn = 0.0;                     ///< of the range by that of the phases
+  std::array<double, kMostFrequencies> per_m{};      ///< waves
+  std::array<double, kMostFrequencies> to_finest{};  ///< frequency over the finest
+  std::array<double, kMostFrequencies> weight{};     ///< f^2 over the sum of all; 0: unused
+};
+
+Waves waves_of(const std::vector<double>& frequencies_hz) {
+  Waves waves;
+  waves.count = std::min(frequencies_hz.size(), kMostFrequencies);
+  std::array<double, kMostFrequencies> f{};
+  std::copy_n(frequencies_hz.begin(), waves.count, f.begin());
+  std::iter_swap(f.begin(), std::max_element(f.begin(), f.end()));
+  double squares = 0.0;
+  for (const double f_hz : f) squares += f_hz * f_hz;
+  for (std::size_t k = 0; k < waves.count; ++k) {
+    waves.per_m[k] = f[k] / kHalfLight_m_per_s;
+    waves.to_finest[k] = f[k] / f[0];
+    waves.weight[k] = f[k] * f[k] / squares;
+  }
+  waves.finest_m = kHalfLight_m_per_s / f[0];
+  waves.limit_m = unambiguous_m(frequencies_hz);
+  constexpr double kPhaseRounding = 1e-12;
+  waves.number = std::ceil(waves.limit_m / waves.finest_m * (1.0 - kPhaseRounding));
+  waves.sigma_m_per_turn = kHalfLight_m_per_s / std::sqrt(squares);
+  return waves;
+}
+
+/// The whole number of finest waves that fits best, and how well.
+struct alignas(64) Found {
+  Batch<double> whole;
+  Batch<double> misfit;  ///< mean square in turns^2, weighted as the range is
+};
+
+GLIDAR_SIMD void phase_of_range(double per_m, const Batch<double>& range_m, Batch<double>& turns) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double waves = range_m[i] * per_m;
+    turns[i] = waves - std::floor(waves);
+  }
+}
+
+/// Standard deviation of the phase in turns, for a run.
+GLIDAR_SIMD void spread(const ContinuousWave& law, const Batch<double>& amplitude,
+                        const Batch<double>& scale, Batch<double>& sigma_turns) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double light = amplitude[i] > kMinAmplitude ? amplitude[i] : kMinAmplitude;
+    const double signal = law.electrons_at_full_scale * light;
+    sigma_turns[i] = std::sqrt(0.5 * (law.background_electrons + signal)) /
+                     (law.contrast * signal) * scale[i] * (0.5 * std::numbers::inv_pi);
+  }
+}
+
+GLIDAR_SIMD void add_error(const Batch<double>& sigma_turns, const Batch<double>& normal,
+                           Batch<double>& turns) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double astray = turns[i] + sigma_turns[i] * normal[i];
+    turns[i] = astray - std::floor(astray);
+  }
+}
+
+/// A phase less the one that the finest wave's own lets expect, but for whole waves of it.
+GLIDAR_SIMD void compare(double to_finest, const Batch<double>& finest, Batch<double>& turns) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) turns[i] -= finest[i] * to_finest;
+}
+
+/// What is left of a phase after so many waves of the finest frequency, -1/2 to 1/2.
+inline double left_over(double apart_turns, double whole, double to_finest) {
+  const double error = apart_turns - whole * to_finest;
+  return error - std::floor(error + 0.5);
+}
+
+/// Mean square of what is left of the phases of kOthers frequencies after so many finest waves.
+template <std::size_t kOthers>
+[[gnu::always_inline]] inline double misfit_of(const Waves& waves, const WavePhases& phases,
+                                               std::size_t i, double whole) {
+  double misfit = 0.0;
+#pragma GCC unroll 8
+  for (std::size_t k = 1; k <= kOthers; ++k) {
+    const double error = left_over(phases.turns[k][i], whole, waves.to_finest[k]);
+    misfit += waves.weight[k] * error * error;
+  }
+  return misfit;
+}
+
+/// Tries all whole numbers of finest waves.
+template <std::size_t kOthers>
+[[gnu::always_inline]] inline void try_all(const Waves& waves, const WavePhases& phases,
+                                           Found& best) {
+  for (double whole = 0.0; whole < waves.number; whole += 1.0) {
+    for (std::size_t i = 0; i < kDrawBatch; ++i) {
+      const double misfit = misfit_of<kOthers>(waves, phases, i, whole);
+      const bool is_better = misfit < best.misfit[i];
+      best.misfit[i] = is_better ? misfit : best.misfit[i];
+      best.whole[i] = is_better ? whole : best.whole[i];
+    }
+  }
+}
+
+GLIDAR_SIMD void search_two(const Waves& waves, const WavePhases& phases, Found& best) {
+  try_all<1>(waves, phases, best);
+}
+GLIDAR_SIMD void search_three(const Waves& waves, const WavePhases& phases, Found& best) {
+  try_all<2>(waves, phases, best);
+}
+GLIDAR_SIMD void search_many(const Waves& waves, const WavePhases& phases, Found& best) {
+  try_all<kMostFrequencies - 1>(waves, phases, best);
+}
+
+/// The range of a whole number of waves and the finest phase ...
+GLIDAR_SIMD void begin_range(double finest_m, const Batch<double>& finest, const Found& found,
+                             Batch<double>& range_m) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) range_m[i] = (finest[i] + found.whole[i]) * finest_m;
+}
+
+/// ... and how far another phase pulls it.
+GLIDAR_SIMD void pull_range(double to_finest, double weight_m, const Batch<double>& turns,
+                            const Found& found, Batch<double>& range_m) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    range_m[i] += weight_m * left_over(turns[i], found.whole[i], to_finest);
+  }
+}
+
+GLIDAR_SIMD void finish_range(const Waves& waves, const Batch<double>& sigma_turns,
+                              NoiseBatch& batch) {
+  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+    const double range_m = batch.range_m[i];
+    const double sigma_m = sigma_turns[i] * waves.sigma_m_per_turn;
+    batch.range_m[i] = range_m < 0.0 ? range_m + waves.limit_m : range_m;
+    batch.variance_m2[i] += sigma_m * sigma_m;
+  }
+}
+
+/// The phases as they reach the sensor, and their coherence.
+void see(const ContinuousWave& step, const Waves& waves, const NoiseView& view,
+         const NoiseBatch& batch, WavePhases& phases) {
+  if (mixes(step)) {
+    mix(step.mixing, {waves.per_m.data(), waves.count}, view, batch, phases);
+    return;
+  }
+  phases.amplitude = batch.intensity;
+  phases.coherence.fill(1.0);
+  for (std::size_t k = 0; k < waves.count; ++k) {
+    phase_of_range(waves.per_m[k], batch.range_m, phases.turns[k]);
+  }
+}
+
+void add_errors(const RngKey& draw, std::size_t count, const Batch<double>& sigma_turns,
+                WavePhases& phases) {
+  WordBatch words;
+  PairBatch normal;
+  for (std::size_t k = 0; k < count; ++k) {
+    if (k % 4 == 0) draw_words(block(draw, static_cast<std::uint32_t>(k / 4)), words);
+    if (k % 2 == 0) make_normals(words, k % 4 / 2, normal);
+    add_error(sigma_turns, k % 2 == 0 ? normal.first : normal.second, phases.turns[k]);
+  }
+}
+
+/// The range that fits the phases best; these are used up.
+void unwrap(const Waves& waves, WavePhases& phases, Found& found, Batch<double>& range_m) {
+  for (std::size_t k = 1; k < waves.count; ++k) {
+    compare(waves.to_finest[k], phases.turns[0], phases.turns[k]);
+  }
+  for (std::size_t k = waves.count; k < kMostFrequencies; ++k) {
+    if (waves.count > 3) phases.turns[k].fill(0.0);  // all of them are searched
+  }
+  found.whole.fill(0.0);
+  found.misfit.fill(waves.count > 1 ? 1.0 : 0.0);  // worse than any, which is at most 1/4
+  if (waves.count == 2) search_two(waves, phases, found);
+  if (waves.count == 3) search_three(waves, phases, found);
+  if (waves.count > 3) search_many(waves, phases, found);
+  begin_range(waves.finest_m, phases.turns[0], found, range_m);
+  for (std::size_t k = 1; k < waves.count; ++k) {
+    pull_range(waves.to_finest[k], waves.weight[k] / waves.per_m[k], phases.turns[k], found,
+               range_m);
+  }
+}
+
+}  // namespace
+
+double unambiguous_m(const std::vector<double>& frequencies_hz) {
+  std::uint64_t common = 0;
+  for (const double f : frequencies_hz) {
+    common = std::gcd(common, static_cast<std::uint64_t>(std::llround(f)));
+  }
+  return kHalfLight_m_per_s / static_cast<double>(std::max<std::uint64_t>(common, 1));
+}
+
+void prepare(const ContinuousWave& /*step*/, const NoiseView& view, NoiseBatch& batch) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    view.frame.workspace.before[batch.first + i] = batch.range_m[i];
+    view.frame.workspace.amplitude[batch.first + i] = static_cast<float>(batch.intensity[i]);
+  }
+}
+
+void apply(const ContinuousWave& step, const NoiseView& view, NoiseBatch& batch) {
+  const Waves waves = waves_of(step.frequencies_hz);
+  WavePhases phases;
+  Batch<double> sigma_turns;
+  Found found;
+  see(step, waves, view, batch, phases);
+  spread(step, phases.amplitude, batch.scale, sigma_turns);
+  add_errors(batch.draw, waves.count, sigma_turns, phases);
+  unwrap(waves, phases, found, batch.range_m);
+  finish_range(waves, sigma_turns, batch);
+  const double most = step.max_phase_residual * step.max_phase_residual;
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    const bool is_clear = phases.coherence[i] >= step.min_coherence && found.misfit[i] <= most;
+    if (!is_clear && is_hit(batch, i)) invalidate_return(batch, i, Status::phase_ambiguous);
+  }
+}
+
+}  // namespace glidar

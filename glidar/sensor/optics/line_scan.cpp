@@ -1,0 +1,73 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/optics/line_scan.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/math/constants.hpp>
+#include <glidar/sensor/optics/ray_table.hpp>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+bool all_finite(const std::vector<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
+void validate(const LineScan& r) {
+  const std::size_t lines = r.elevations_rad.size();
+  const std::size_t points = r.azimuths_rad.size();
+  require_number(lines >= 1 && lines <= kMostBeams, "optics, number of lines",
+                 static_cast<double>(lines), "at least 1");
+  require_number(points >= 1 && points <= kMostBeams / lines, "optics, number of points in a line",
+                 static_cast<double>(points), "at least 1, 134217728 beams in all");
+  require_number(all_finite(r.elevations_rad) && all_finite(r.azimuths_rad), "optics, angles", 0.0,
+                 "finite angles");
+  require_number(r.scan_hz > 0.0 && std::isfinite(r.scan_hz), "optics, scans per second", r.scan_hz,
+                 "above 0");
+  const double line_lasts_ns = static_cast<double>(points - 1) * r.point_ns;
+  require_number(r.point_ns >= 0.0 && (lines == 1 || r.line_ns >= line_lasts_ns),
+                 "optics, time of a line", r.line_ns, "at least that of its points");
+}
+
+/// The pattern in the order of time.
+RayTable in_order(const LineScan& r) {
+  RayTable table;
+  table.rows = static_cast<std::uint32_t>(r.elevations_rad.size());
+  table.cols = static_cast<std::uint32_t>(r.azimuths_rad.size());
+  table.period_ns = kSecond_ns / r.scan_hz;
+  for (std::size_t line = 0; line < table.rows; ++line) {
+    const bool backwards = r.bidirectional && line % 2 == 1;
+    for (std::size_t point = 0; point < table.cols; ++point) {
+      const std::size_t col = backwards ? table.cols - 1 - point : point;
+      table.directions.push_back(direction_at(r.azimuths_rad[col], r.elevations_rad[line]));
+      table.times_ns.push_back(static_cast<double>(line) * r.line_ns +
+                               static_cast<double>(point) * r.point_ns);
+    }
+  }
+  return table;
+}
+
+/// Lines that were scanned from their end, put with column 0 first.
+void turn_back_lines(Beams& beams) {
+  for (std::size_t line = 1; line < beams.rows; line += 2) {
+    const auto first = static_cast<std::ptrdiff_t>(line * beams.cols);
+    const auto last = first + static_cast<std::ptrdiff_t>(beams.cols);
+    std::reverse(beams.directions.begin() + first, beams.directions.begin() + last);
+    std::reverse(beams.times_ns.begin() + first, beams.times_ns.begin() + last);
+  }
+}
+
+}  // namespace
+
+Beams make_beams(const LineScan& raster, const FrameInterval& window) {
+  validate(raster);
+  Beams beams = make_beams(in_order(raster), window);
+  const bool grid = beams.rows == raster.elevations_rad.size();
+  if (grid && raster.bidirectional) turn_back_lines(beams);
+  return beams;
+}
+
+}  // namespace glidar

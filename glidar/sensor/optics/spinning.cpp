@@ -1,0 +1,158 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/optics/spinning.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <glidar/core/error.hpp>
+#include <glidar/math/constants.hpp>
+#include <numeric>
+
+namespace glidar {
+namespace {
+
+constexpr std::size_t kMostChannels = 4096;
+constexpr double kMostTurns_hz = 1e4;
+
+void validate(const SpinningChannel& channel) {
+  require_number(std::abs(channel.elevation_rad) <= 0.5 * std::numbers::pi, "optics, elevation",
+                 channel.elevation_rad, "-pi/2 to pi/2");
+  require_number(std::isfinite(channel.azimuth_offset_rad), "optics, azimuth offset",
+                 channel.azimuth_offset_rad, "a finite angle");
+  require_number(std::abs(channel.fire_time_ns) <= kSecond_ns, "optics, fire time",
+                 channel.fire_time_ns, "-1e9 to 1e9 ns");
+  require_number(channel.origin_m.allFinite(), "optics, origin offset", channel.origin_m.norm(),
+                 "finite metres");
+}
+
+void validate(const Spinning& s) {
+  require_number(!s.channels.empty() && s.channels.size() <= kMostChannels,
+                 "optics, number of channels", static_cast<double>(s.channels.size()), "1 to 4096");
+  require_number(s.rotation_hz > 0.0 && s.rotation_hz <= kMostTurns_hz, "optics, rotation",
+                 s.rotation_hz, "above 0, up to 1e4 turns per second");
+  require_number(std::isfinite(s.start_azimuth_rad), "optics, start azimuth", s.start_azimuth_rad,
+                 "a finite angle");
+  require_number(std::abs(s.beam_origin_m) <= 1e3, "optics, beam origin", s.beam_origin_m,
+                 "-1000 to 1000 m");
+  require_number(std::isfinite(s.sector_start_rad) && s.sector_width_rad > 0.0, "optics, sector",
+                 s.sector_width_rad, "a finite start and a width above 0");
+  for (const SpinningChannel& channel : s.channels) validate(channel);
+}
+
+/// Channels by falling elevation; equal ones in the order of the table.
+std::vector<std::size_t> rows_of(const Spinning& s) {
+  std::vector<std::size_t> rows(s.channels.size());
+  std::iota(rows.begin(), rows.end(), std::size_t{0});
+  std::stable_sort(rows.begin(), rows.end(), [&](std::size_t a, std::size_t b) {
+    return s.channels[a].elevation_rad > s.channels[b].elevation_rad;
+  });
+  return rows;
+}
+
+/// Turns made since time 0 when sequence k starts, less whole ones: whole columns are exact however
+/// long the head has been turning.
+double turned(const Spinning& s, std::int64_t k) {
+  if (s.columns_per_turn > 0) {
+    const auto columns = std::int64_t{s.columns_per_turn};
+    return static_cast<double>(k % columns) / static_cast<double>(columns);
+  }
+  return std::fmod(static_cast<double>(k) * s.sequence_ns * s.rotation_hz / kSecond_ns, 1.0);
+}
+
+double sense(const Spinning& s) {
+  return s.turn == Spinning::Turn::clockwise ? -1.0 : 1.0;
+}
+
+/// Where the head points when sequence k starts.
+double head_azimuth_rad(const Spinning& s, std::int64_t k) {
+  return s.start_azimuth_rad + sense(s) * kTwoPi * turned(s, k);
+}
+
+bool fires(const Spinning& s, double azimuth_rad) {
+  if (s.sector_width_rad >= kTwoPi) return true;
+  const double into = std::fmod(azimuth_rad - s.sector_start_rad, kTwoPi);
+  return (into < 0.0 ? into + kTwoPi : into) <= s.sector_width_rad;
+}
+
+double first_fire_ns(const Spinning& s) {
+  double first = s.channels.front().fire_time_ns;
+  for (const SpinningChannel& channel : s.channels) first = std::min(first, channel.fire_time_ns);
+  return first;
+}
+
+std::vector<std::int64_t> sequences_in(const Spinning& s, const FrameInterval& window) {
+  const FiringRange range =
+      firings_in({first_fire_ns(s), sequence_period_ns(s)}, window, kMostBeams / s.channels.size());
+  std::vector<std::int64_t> sequences;
+  sequences.reserve(range.size());
+  for (std::int64_t k = range.begin; k < range.end; ++k) {
+    if (fires(s, head_azimuth_rad(s, k))) sequences.push_back(k);
+  }
+  return sequences;
+}
+
+bool has_origins(const Spinning& s) {
+  return s.beam_origin_m != 0.0 ||
+         std::any_of(s.channels.begin(), s.channels.end(),
+                     [](const SpinningChannel& channel) { return !channel.origin_m.isZero(0.0); });
+}
+
+/// Sizes every array and fills what does not depend on the sequence.
+Beams make_grid(const Spinning& s, std::size_t sequences) {
+  Beams beams;
+  beams.rows = static_cast<std::uint32_t>(s.channels.size());
+  beams.cols = static_cast<std::uint32_t>(sequences);
+  beams.frame_id = "lidar_frame";
+  beams.boresight = Eigen::Vector3d::UnitX();
+  beams.range_offset_m = s.beam_origin_m;
+  const std::size_t size = s.channels.size() * sequences;
+  beams.directions.resize(size);
+  beams.times_ns.resize(size);
+  beams.rings.resize(size);
+  if (has_origins(s)) beams.origins_m.resize(size);
+  return beams;
+}
+
+/// One shot of a channel; `head_rad` is where the head points at that moment.
+void put_shot(const Spinning& s, const SpinningChannel& channel, double head_rad, std::size_t i,
+              Beams& beams) {
+  const double azimuth_rad = head_rad + channel.azimuth_offset_rad;
+  beams.directions[i] = direction_at(azimuth_rad, channel.elevation_rad).normalized();
+  beams.rings[i] = channel.ring;
+  if (beams.origins_m.empty()) return;
+  const Eigen::Vector3d out = direction_at(azimuth_rad, 0.0);
+  const Eigen::Vector3d left(-out.y(), out.x(), 0.0);
+  const Eigen::Vector3d& offset = channel.origin_m;
+  beams.origins_m[i] = s.beam_origin_m * direction_at(head_rad, 0.0) + offset.x() * out +
+                       offset.y() * left + offset.z() * Eigen::Vector3d::UnitZ();
+}
+
+}  // namespace
+
+double sequence_period_ns(const Spinning& s) {
+  return s.columns_per_turn > 0 ? kSecond_ns / (s.rotation_hz * s.columns_per_turn) : s.sequence_ns;
+}
+
+Beams make_beams(const Spinning& s, const FrameInterval& window) {
+  validate(s);
+  const std::vector<std::size_t> rows = rows_of(s);
+  const std::vector<std::int64_t> sequences = sequences_in(s, window);
+  const double period_ns = sequence_period_ns(s);
+  const double turn_rad_per_ns = sense(s) * kTwoPi * s.rotation_hz / kSecond_ns;
+  Beams beams = make_grid(s, sequences.size());
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const SpinningChannel& channel = s.channels[rows[row]];
+    const FiringSchedule shots = {channel.fire_time_ns, period_ns};
+    for (std::size_t col = 0; col < sequences.size(); ++col) {
+      const std::size_t i = row * sequences.size() + col;
+      const double head_rad =
+          head_azimuth_rad(s, sequences[col]) + turn_rad_per_ns * channel.fire_time_ns;
+      put_shot(s, channel, head_rad, i, beams);
+      beams.times_ns[i] =
+          static_cast<std::uint32_t>(firing_time_ns(shots, sequences[col]) - window.start_ns);
+    }
+  }
+  return beams;
+}
+
+}  // namespace glidar

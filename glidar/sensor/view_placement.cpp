@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/sensor/view_placement.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/math/constants.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+namespace glidar {
+namespace {
+
+/// A wider cone is treated as this one: from nearer the perspective would be grotesque.
+constexpr double kWidestHalfAngle_rad = std::numbers::pi / 3.0;
+
+/// Fraction of the scene's half diagonal that always lies between the camera and the nearest
+/// vertex, and around the scene's box. Matters for shapes that are lines or points when seen along
+/// the boresight, and for wide views.
+constexpr double kLeastGap = 0.02;
+
+[[noreturn]] void refuse_framing(std::string found, std::string remedy) {
+  throw Error({.where = "framing the scene",
+               .found = std::move(found),
+               .allowed = "",
+               .remedy = std::move(remedy)});
+}
+
+/// A rectangle in the plane z = 1 of the camera: all of it is in the image.
+struct Window {
+  Eigen::Vector2d low;
+  Eigen::Vector2d high;
+};
+
+/// Calls visit(vertex in the world) for every corner of the instance's triangles.
+template <typename Visit>
+void visit_corners(const Instance& instance, const Mesh& mesh, const Visit& visit) {
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) {
+      visit(instance.world_from_object * (instance.scale * vertex_m(mesh, corner)));
+    }
+  }
+}
+
+template <typename Visit>
+void for_each_corner(const Scene& scene, const Visit& visit) {
+  for (const Instance& instance : scene.instances) {
+    visit_corners(instance, scene.meshes[instance.mesh], visit);
+  }
+}
+
+/// The edges of the outermost pixels, not their centres.
+Window window_of(const PinholeIntrinsics& k) {
+  const double edge = k.pixel_centre - 0.5;
+  return {{(edge - k.cx) / k.fx, (edge - k.cy) / k.fy},
+          {(k.width + edge - k.cx) / k.fx, (k.height + edge - k.cy) / k.fy}};
+}
+
+/// The rectangle enclosed by the beams of the image's border; nothing when one is missing or looks
+/// too far sideways for a plane to hold it.
+std::optional<Window> window_of_border(const Beams& beams) {
+  constexpr double kLeastForward = 0.17;  // cosine of 80 degrees
+  Window window{{-kInfinity, -kInfinity}, {kInfinity, kInfinity}};
+  const std::uint32_t last_row = beams.rows - 1;
+  const std::uint32_t last_col = beams.cols - 1;
+  for (std::uint32_t row = 0; row < beams.rows; ++row) {
+    const bool whole_row = row == 0 || row == last_row;
+    for (std::uint32_t col = 0; col < beams.cols; col += whole_row ? 1 : std::max(1U, last_col)) {
+      const Eigen::Vector3d& d = beams.directions[std::size_t{row} * beams.cols + col];
+      if (!(d.z() > kLeastForward)) return std::nullopt;
+      const Eigen::Vector2d p = d.hnormalized();
+      if (col == 0) window.low.x() = std::max(window.low.x(), p.x());
+      if (col == last_col) window.high.x() = std::min(window.high.x(), p.x());
+      if (row == 0) window.low.y() = std::max(window.low.y(), p.y());
+      if (row == last_row) window.high.y() = std::min(window.high.y(), p.y());
+    }
+  }
+  if (!(window.low.array() < window.high.array()).all()) return std::nullopt;
+  return window;
+}
+
+std::optional<Window> find_window(const Beams& beams) {
+  return beams.pinhole ? window_of(*beams.pinhole) : window_of_border(beams);
+}
+
+/// Where a camera may stand (camera axes, relative to the pose that these belong to): at
+/// start + distance * way, from this distance on.
+struct Retreat {
+  Eigen::Vector3d start;
+  Eigen::Vector3d way;
+  double distance;
+};
+
+/// The retreat for an image that is a rectangle. With the camera at (s, t, -d), a vertex (X, Y, Z)
+/// is inside when low (Z + d) <= (X - s, Y - t) <= high (Z + d). Both sides of each axis are linear
+/// in d, so the least d follows directly from the extremes over all vertices.
+Retreat fit_window(const Window& window, const Scene& scene, const Pose& world_from_camera) {
+  const Eigen::Vector2d middle = 0.5 * (window.low + window.high);
+  const Eigen::Vector2d half = (1.0 - kFramingMargin) * 0.5 * (window.high - window.low);
+  const Eigen::Vector2d low = middle - half;
+  const Eigen::Vector2d high = middle + half;
+  const Pose camera_from_world = world_from_camera.inverse();
+  Eigen::Array2d above_low = Eigen::Array2d::Constant(kInfinity);    // min of X - low Z
+  Eigen::Array2d above_high = Eigen::Array2d::Constant(-kInfinity);  // max of X - high Z
+  double nearest = kInfinity;
+  for_each_corner(scene, [&](const Eigen::Vector3d& world) {
+    const Eigen::Vector3d p = camera_from_world * world;
+    above_low = above_low.min(p.head<2>().array() - low.array() * p.z());
+    above_high = above_high.max(p.head<2>().array() - high.array() * p.z());
+    nearest = std::min(nearest, p.z());
+  });
+  const Eigen::Array2d needed = (above_high - above_low) / (high - low).array();
+  const double gap = kLeastGap * 0.5 * bounds(scene).diagonal().norm();
+  const double distance = std::max(needed.maxCoeff(), gap - nearest);
+  const Eigen::Array2d shift = 0.5 * (above_low + above_high);
+  return {{shift.x(), shift.y(), 0.0}, {-middle.x(), -middle.y(), -1.0}, distance};
+}
+
+/// The same for an image that is a cone about `axis` (camera axes): no sideways shift.
+Retreat fit_cone(const Eigen::Vector3d& axis, double half_angle_rad, const Scene& scene,
+                 const Pose& world_from_camera) {
+  const double slope =
+      (1.0 - kFramingMargin) * std::tan(std::min(half_angle_rad, kWidestHalfAngle_rad));
+  const Pose camera_from_world = world_from_camera.inverse();
+  double distance = -kInfinity;
+  double nearest = kInfinity;
+  for_each_corner(scene, [&](const Eigen::Vector3d& world) {
+    const Eigen::Vector3d p = camera_from_world * world;
+    const double along = p.dot(axis);
+    distance = std::max(distance, (p - along * axis).norm() / slope - along);
+    nearest = std::min(nearest, along);
+  });
+  const double gap = kLeastGap * 0.5 * bounds(scene).diagonal().norm();
+  return {Eigen::Vector3d::Zero(), -axis, std::max(distance, gap - nearest)};
+}
+
+/// The first position of the retreat that lies outside the scene's box, with some room between.
+Eigen::Vector3d clear_of_box(const Retreat& retreat, const Scene& scene,
+                             const Pose& world_from_camera) {
+  Eigen::AlignedBox3d box = bounds(scene);
+  const Eigen::Vector3d gap = Eigen::Vector3d::Constant(kLeastGap * 0.5 * box.diagonal().norm());
+  box = Eigen::AlignedBox3d(box.min() - gap, box.max() + gap);
+  const Eigen::Vector3d start = world_from_camera * retreat.start;
+  const Eigen::Vector3d way = world_from_camera.linear() * retreat.way;
+  double distance = retreat.distance;
+  if (box.contains(start + distance * way)) {
+    // all slabs hold it, so it leaves the box where it leaves the first of them
+    double leaving = kInfinity;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (way[axis] == 0.0) continue;
+      const double side = way[axis] > 0.0 ? box.max()[axis] : box.min()[axis];
+      leaving = std::min(leaving, (side - start[axis]) / way[axis]);
+    }
+    distance = std::max(distance, leaving);
+  }
+  return retreat.start + distance * retreat.way;
+}
+
+bool is_beam(const Beams& beams, std::int64_t row, std::int64_t col) {
+  if (row < 0 || col < 0 || row >= beams.rows || col >= beams.cols) return false;
+  const auto index = static_cast<std::size_t>(row) * beams.cols + static_cast<std::size_t>(col);
+  return !std::isnan(beams.directions[index].x());
+}
+
+/// The angle between `axis` and the nearest beam that has no beam on one of its sides.
+double enclosed_angle_rad(const Beams& beams, const Eigen::Vector3d& axis) {
+  double smallest = std::numbers::pi;
+  for (std::int64_t row = 0; row < beams.rows; ++row) {
+    for (std::int64_t col = 0; col < beams.cols; ++col) {
+      if (!is_beam(beams, row, col)) continue;
+      const bool inner = is_beam(beams, row - 1, col) && is_beam(beams, row + 1, col) &&
+                         is_beam(beams, row, col - 1) && is_beam(beams, row, col + 1);
+      if (inner) continue;
+      const Eigen::Vector3d& d = beams.directions[static_cast<std::size_t>(row) * beams.cols +
+                                                  static_cast<std::size_t>(col)];
+      smallest = std::min(smallest, std::atan2(axis.cross(d).norm(), axis.dot(d)));
+    }
+  }
+  return smallest;
+}
+
+void require_camera(const Beams& beams) {
+  if (beams.size() == 0 || !looks_along_z(beams)) {
+    refuse_framing("the sensor is not a camera that looks along +z", "give the sensor's pose");
+  }
+}
+
+}  // namespace
+
+Pose fit_camera_to_scene(const Beams& beams, const Scene& scene,
+                         const Eigen::Vector3d& from_direction, const Eigen::Vector3d& up) {
+  require_camera(beams);
+  Eigen::AlignedBox3d box;
+  for_each_corner(scene, [&](const Eigen::Vector3d& world) { box.extend(world); });
+  if (box.isEmpty()) refuse_framing("there are no triangles", "load a model that has some");
+  if (!(box.diagonal().norm() > 0.0))
+    refuse_framing("all vertices are one point", "give the sensor's pose");
+
+  // Axes first, about the scene's centre; then the position in these axes.
+  Pose pose = look_at(box.center() + from_direction, box.center(), up);
+  pose.translation() = box.center();
+  if (const std::optional<Window> window = find_window(beams)) {
+    return pose * Eigen::Translation3d(clear_of_box(fit_window(*window, scene, pose), scene, pose));
+  }
+  const Eigen::Vector3d axis =
+      beams.directions[std::size_t{beams.rows / 2} * beams.cols + beams.cols / 2];
+  const double half_angle_rad = std::isnan(axis.x()) ? 0.0 : enclosed_angle_rad(beams, axis);
+  if (!(half_angle_rad > 0.0)) {
+    refuse_framing("the image has no area around its middle", "give the sensor's pose");
+  }
+  const Retreat retreat = fit_cone(axis, half_angle_rad, scene, pose);
+  return pose * Eigen::Translation3d(clear_of_box(retreat, scene, pose));
+}
+
+}  // namespace glidar

@@ -1,0 +1,19 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+#include <glidar/core/hits.hpp>
+#include <glidar/core/scene.hpp>
+
+namespace glidar {
+
+/// True if a material of the scene reflects beams.
+bool has_mirrors(const Scene& scene);
+
+/// Appends to `beams` the reflection of a beam at the surface that it hit: direction d - 2 (d . n)
+/// n with the shading normal n (law of reflection). It starts just before the surface, so that it
+/// does not hit the same surface again.
+void add_reflected_beam(const Beams& from, const Hits& hits, std::size_t ray, Beams& beams);
+
+}  // namespace glidar

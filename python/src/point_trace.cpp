@@ -1,0 +1,95 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "frame.hpp"
+#include "report.hpp"
+
+#include <glidar/core/error.hpp>
+#include <glidar/explain/trace_text.hpp>
+#include <glidar/simulate/explain.hpp>
+
+#include <nanobind/eigen/dense.h>
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+namespace glidar::python {
+namespace {
+
+/// A story in words, and what it is told from.
+struct Told {
+  PointTrace story;
+  std::string text;
+};
+
+Setup setup_of(const Measured& measured, const ProgressCallback& progress) {
+  return {.scene = *measured.rendered().scene,
+          .sensor = measured.sensor->sensor(),
+          .beams = *measured.beams,
+          .motion = *measured.motion,
+          .renderer = *measured.rendered().renderer,
+          .progress = progress};
+}
+
+Told explained(const Measured& measured, std::size_t entry) {
+  return unlocked([&](Watch& watch) {
+    Frame frame;
+    frame.stamp_ns = measured.frame.stamp_ns;
+    frame.seed = measured.frame.seed;
+    frame.sensor_id = measured.frame.sensor_id;
+    frame.number = measured.frame.number;
+    const Setup setup = setup_of(measured, watch.progress());
+    const std::lock_guard turn(measured.rendered().turn);
+    Told told{explain(setup, entry, frame), ""};
+    told.text = format_trace(told.story, setup, frame);
+    return told;
+  });
+}
+
+std::vector<Measurement> readings(const Told& told) {
+  std::vector<Measurement> all = {told.story.measured};
+  for (const PointTrace::Step& step : told.story.noise) all.push_back(step.after);
+  return all;
+}
+
+std::vector<RandomSample> draws(const Told& told, std::size_t step) {
+  return told.story.noise.at(step).draws;
+}
+
+void bind_parts(nb::module_& module) {
+  nb::class_<Measurement>(module, "Measurement")
+      .def_prop_ro("status", [](const Measurement& self) { return static_cast<int>(self.status); })
+      .def_prop_ro("return_source",
+                   [](const Measurement& self) { return static_cast<int>(self.return_source); })
+      .def_ro("range_m", &Measurement::range_m)
+      .def_ro("intensity", &Measurement::intensity)
+      .def_ro("sigma_m", &Measurement::sigma_m);
+  nb::class_<RandomSample>(module, "RandomSample")
+      .def_prop_ro("is_normal",
+                   [](const RandomSample& self) { return self.law == RandomSample::Law::normal; })
+      .def_ro("value", &RandomSample::value)
+      .def_ro("use", &RandomSample::use)
+      .def_ro("against", &RandomSample::against);
+  nb::class_<PulseEcho>(module, "Echo")
+      .def_ro("range_m", &PulseEcho::range_m)
+      .def_ro("signal", &PulseEcho::signal)
+      .def_ro("sigma_m", &PulseEcho::sigma_m)
+      .def_ro("is_mixed", &PulseEcho::is_mixed);
+}
+
+}  // namespace
+
+void bind_story(nb::module_& module) {
+  bind_parts(module);
+  nb::class_<Told>(module, "PointTrace")
+      .def_ro("text", &Told::text)
+      .def_prop_ro("entry", [](const Told& self) { return self.story.entry; })
+      .def_prop_ro("direction", [](const Told& self) { return self.story.direction; })
+      .def_prop_ro("readings", readings)
+      .def("draws", draws, nb::arg("step"))
+      .def_prop_ro("echoes", [](const Told& self) {
+        return self.story.pulse ? self.story.pulse->received : std::vector<PulseEcho>{};
+      });
+  module.def("explain", explained, nb::arg("frame"), nb::arg("entry"));
+}
+
+}  // namespace glidar::python

@@ -1,0 +1,290 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/options/output_options.hpp>
+#include <apps/glidar/options/pose_options.hpp>
+#include <glidar/core/error.hpp>
+#include <glidar/sensor/optics/pinhole.hpp>
+#include <glidar/sensor/optics/spinning.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+namespace glidar::app {
+namespace {
+
+constexpr double kExact = 1e-12;
+
+Scene one_triangle() {
+  Scene scene;
+  Mesh mesh;
+  mesh.positions_m = {{0.0F, 0.0F, 0.0F}, {1.0F, 0.0F, 0.0F}, {0.0F, 1.0F, 0.0F}};
+  mesh.triangles = {{0, 1, 2}};
+  scene.meshes.push_back(mesh);
+  scene.sources.emplace_back();
+  scene.materials.emplace_back();
+  scene.instances.push_back({.name = "triangle", .materials = {0}});
+  return scene;
+}
+
+Beams camera() {
+  return make_beams(pinhole_from_fov(8, 8, 0.35));
+}
+
+/// Where a point of the object appears in the 2015 program's sensor frame.
+Eigen::Vector3d legacy_point(const PoseFlags& flags, const Eigen::Vector3d& object_point) {
+  Scene scene = one_triangle();
+  pose_model(flags, scene);
+  const Pose world_from_sensor = pose_sensor(flags, {}, camera(), scene);
+  return woods2016_from_optical() * world_from_sensor.inverse() *
+         scene.instances[0].world_from_object * object_point;
+}
+
+TEST(LegacyPose, IdentityPutsTheObjectAtDOnTheBoresight) {
+  const Eigen::Vector3d p = legacy_point({.camera_z = 7.0}, {0.1, 0.2, 0.3});
+  EXPECT_LT((p - Eigen::Vector3d(0.1, 0.2, 7.3)).norm(), kExact);
+}
+
+TEST(LegacyPose, CameraAttitudeAloneKeepsTheDistanceOf2015) {
+  const Eigen::Vector3d p = legacy_point({.camera_q = "1,0,0,0"}, {0.0, 0.0, 0.0});
+  EXPECT_LT((p - Eigen::Vector3d(0.0, 0.0, 1000.0)).norm(), kExact);
+}
+
+TEST(LegacyPose, ModelQuaternionTakesInertialVectorsIntoTheBody) {
+  // a quarter turn about z: R(q) x = y, so that the body's y axis is seen along the inertial x
+  const double h = std::sqrt(0.5);
+  PoseFlags flags{.camera_z = 5.0};
+  flags.model_q = std::to_string(h) + ",0,0," + std::to_string(h);
+  const Eigen::Vector3d p = legacy_point(flags, {0.0, 1.0, 0.0});
+  EXPECT_LT((p - Eigen::Vector3d(1.0, 0.0, 5.0)).norm(), kExact);
+}
+
+TEST(LegacyPose, SensorQuaternionTakesInertialVectorsIntoTheSensor) {
+  // R(q) z = x: the object, straight ahead of an identity sensor, appears on the sensor's x (left)
+  PoseFlags flags{.camera_z = 5.0};
+  flags.camera_r = std::to_string(std::numbers::pi / 2.0) + ",0,1,0";
+  const Eigen::Vector3d p = legacy_point(flags, {0.0, 0.0, 0.0});
+  EXPECT_LT((p - Eigen::Vector3d(5.0, 0.0, 0.0)).norm(), 1e-5);  // to_string keeps 6 digits
+}
+
+TEST(LegacyPose, GeneralAttitudesFollowTheFormula) {
+  const Eigen::Quaterniond model_q = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized();
+  const Eigen::Quaterniond camera_q = Eigen::Quaterniond(0.9, 0.1, -0.2, 0.3).normalized();
+  const PoseFlags flags{
+      .model_q = "0.3,-0.5,0.7,0.2", .camera_q = "0.9,0.1,-0.2,0.3", .camera_z = 12.0};
+  const Eigen::Vector3d object_point(0.4, -0.6, 1.1);
+  const Eigen::Vector3d expected =
+      camera_q * (model_q.conjugate() * object_point + Eigen::Vector3d(0.0, 0.0, 12.0));
+  EXPECT_LT((legacy_point(flags, object_point) - expected).norm(), kExact);
+}
+
+TEST(LegacyPose, LegacyFrameIsTheOpticalFrameTurnedAboutTheBoresight) {
+  const Eigen::Vector3d legacy = woods2016_from_optical() * Eigen::Vector3d(1.0, 2.0, 3.0);
+  EXPECT_EQ(legacy, Eigen::Vector3d(-1.0, -2.0, 3.0));
+  EXPECT_TRUE(is_rigid(woods2016_from_optical()));
+}
+
+TEST(PoseOptions, EyeLooksAtTheTarget) {
+  const Scene scene = one_triangle();
+  const Pose pose =
+      pose_sensor({.eye = "1,2,3", .target = "1,2,9", .up_vector = "0,1,0"}, {}, camera(), scene);
+  EXPECT_LT(
+      (pose.inverse() * Eigen::Vector3d(1.0, 3.0, 5.0) - Eigen::Vector3d(0.0, -1.0, 2.0)).norm(),
+      kExact);
+}
+
+TEST(PoseOptions, EyeAloneLooksAtTheMiddleOfTheScene) {
+  const Pose pose = pose_sensor({.eye = "3,-4,2"}, {}, camera(), one_triangle());
+  const Eigen::Vector3d middle = pose.inverse() * Eigen::Vector3d(0.5, 0.5, 0.0);
+  EXPECT_NEAR(middle.x(), 0.0, kExact);
+  EXPECT_NEAR(middle.y(), 0.0, kExact);
+  EXPECT_GT(middle.z(), 0.0);
+}
+
+TEST(PoseOptions, SensorPoseIsTakenAsGiven) {
+  const Pose pose = pose_sensor({.sensor_pose = "1,2,3,0,0,0,2"}, {}, camera(), one_triangle());
+  const Eigen::Vector3d world = pose * Eigen::Vector3d(1.0, 0.0, 0.0);
+  EXPECT_LT((world - Eigen::Vector3d(0.0, 2.0, 3.0)).norm(), kExact);
+}
+
+TEST(PoseOptions, FlagsComeBeforeTheSceneFileAndThatBeforeFraming) {
+  const Scene scene = one_triangle();
+  const Pose from_file = make_pose({7.0, 8.0, 9.0}, Eigen::Quaterniond::Identity());
+  EXPECT_EQ(pose_sensor({}, {from_file}, camera(), scene).translation(), from_file.translation());
+  EXPECT_EQ(pose_sensor({.eye = "1,2,3"}, {from_file}, camera(), scene).translation(),
+            Eigen::Vector3d(1.0, 2.0, 3.0));
+  const Pose framed = pose_sensor({}, {}, camera(), scene);
+  EXPECT_GT((framed.inverse() * Eigen::Vector3d(0.5, 0.5, 0.0)).z(), 1.0);
+}
+
+TEST(PoseOptions, ScaleIsThatOfTheInstance) {
+  Scene scene = one_triangle();
+  pose_model({.scale = 2.5}, scene);
+  EXPECT_EQ(scene.instances[0].scale, 2.5);
+}
+
+void expect_sensor_error(const PoseFlags& flags, const std::string& text) {
+  try {
+    pose_sensor(flags, {}, camera(), one_triangle());
+    FAIL() << "no error, expected: " << text;
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), ::testing::HasSubstr(text));
+  }
+}
+
+TEST(PoseOptions, SayWhatIsWrong) {
+  expect_sensor_error({.eye = "1,2,3", .camera_z = 5.0}, "several ways");
+  expect_sensor_error({.target = "1,2,3"}, "no --eye");
+  expect_sensor_error({.eye = "1,2"}, "--eye: '1,2' (2 numbers)");
+  expect_sensor_error({.eye = "1,,2"}, "empty part");
+  expect_sensor_error({.eye = "1,2,x"}, "'x'");
+  expect_sensor_error({.eye = "1,2,inf"}, "finite");
+  expect_sensor_error({.eye = "1,2,3 "}, "'3 '");
+  expect_sensor_error({.sensor_pose = "0,0,0,0,0,0,0"}, "--sensor-pose: a quaternion of length 0");
+  expect_sensor_error({.camera_r = "1,0,0,0"}, "axis of length 0");
+  expect_sensor_error({.camera_q = "1,0,0,0", .camera_r = "1,0,0,1"}, "both are given");
+  expect_sensor_error({.up_vector = "0,1,0", .camera_z = 5.0}, "--up-vector");
+  expect_sensor_error({.sensor_pose = "1e300,0,0,1,0,0,0"}, "--sensor-pose: 1e+300; allowed");
+  expect_sensor_error({.eye = "1e16,0,0"}, "--eye: 1e+16; allowed");
+  expect_sensor_error({.eye = "1,2,3", .target = "1,2,3"}, "--eye: '1,2,3' is the point looked at");
+  expect_sensor_error({.eye = "0,0,5", .target = "0,0,0", .up_vector = "0,0,1"},
+                      "for example --up-vector 1,0,0");
+  expect_sensor_error({.eye = "5,0,0", .up_vector = "0,0,0"}, "--up-vector: the sensor looks");
+  expect_sensor_error({.up_vector = "2,-3,2"}, "parallel to its up vector 2,-3,2");
+  expect_sensor_error({.camera_z = 1e300}, "--camera-z: 1e+300; allowed");
+}
+
+TEST(PoseOptions, QuaternionsOfAnyLengthButZeroAreTaken) {
+  for (const char* text : {"1e300,0,0,1e300", "1e-300,0,0,1e-300"}) {
+    const Pose pose = pose_sensor({.sensor_pose = std::string("0,0,0,") + text}, {}, camera(), {});
+    EXPECT_TRUE(is_rigid(pose)) << text;
+  }
+}
+
+TEST(PoseOptions, ModelOptionsAreRefusedForScenesOfSeveralObjects) {
+  Scene scene = one_triangle();
+  scene.instances.push_back(scene.instances[0]);
+  EXPECT_THROW(pose_model({.model_q = "1,0,0,0"}, scene), Error);
+  EXPECT_THROW(pose_model({.scale = 2.0}, scene), Error);
+  EXPECT_NO_THROW(pose_model({}, scene));
+  scene.instances.pop_back();
+  EXPECT_THROW(pose_model({.scale = 0.0}, scene), Error);
+}
+
+TEST(CloudFrames, AxesAreThoseTheirNamesSay) {
+  const Beams beams = camera();
+  const Eigen::Vector3d right_down_forward(1.0, 2.0, 3.0);
+  const Pose pose = make_pose({10.0, 0.0, 0.0}, Eigen::Quaterniond::Identity());
+  const auto in = [&](const std::string& name) -> Eigen::Vector3d {
+    const OutputFrame frame = output_frame(name, beams, pose);
+    EXPECT_TRUE(is_rigid(frame.cloud_from_sensor));
+    return frame.cloud_from_sensor * right_down_forward;
+  };
+  EXPECT_EQ(in("optical"), right_down_forward);
+  EXPECT_EQ(in("ros"), Eigen::Vector3d(3.0, -1.0, -2.0));
+  EXPECT_EQ(in("gl"), Eigen::Vector3d(1.0, -2.0, -3.0));
+  EXPECT_EQ(in("legacy"), Eigen::Vector3d(-1.0, -2.0, 3.0));
+  EXPECT_EQ(in("world"), Eigen::Vector3d(11.0, 2.0, 3.0));
+}
+
+/// Beams of a LiDAR between these elevations, all round.
+Beams lidar(double low_rad, double high_rad) {
+  Spinning spinning;
+  spinning.channels.resize(2);
+  spinning.channels[0].elevation_rad = low_rad;
+  spinning.channels[1].elevation_rad = high_rad;
+  spinning.columns_per_turn = 36;
+  return make_beams(spinning, {0, 100'000'000});
+}
+
+TEST(CloudFrames, OfALidarHaveTheSameAxes) {
+  const Beams beams = lidar(-0.2, 0.2);
+  const Eigen::Vector3d forward_left_up(3.0, -1.0, -2.0);
+  const auto in = [&](const std::string& name) -> Eigen::Vector3d {
+    return output_frame(name, beams, Pose::Identity()).cloud_from_sensor * forward_left_up;
+  };
+  EXPECT_EQ(in("sensor"), forward_left_up);
+  EXPECT_EQ(in("ros"), forward_left_up);
+  EXPECT_EQ(in("optical"), Eigen::Vector3d(1.0, 2.0, 3.0));
+  EXPECT_EQ(in("gl"), Eigen::Vector3d(1.0, -2.0, -3.0));
+  EXPECT_EQ(in("legacy"), Eigen::Vector3d(-1.0, -2.0, 3.0));
+  EXPECT_EQ(output_frame("sensor", beams, Pose::Identity()).frame_id, "lidar_frame");
+}
+
+TEST(LidarPose, EyeAndTargetAimTheXAxis) {
+  const Scene scene = one_triangle();
+  const Pose pose = pose_sensor({.eye = "1,2,3", .target = "5,2,6"}, {}, lidar(-0.2, 0.2), scene);
+  EXPECT_LT((pose * Eigen::Vector3d(5.0, 0.0, 0.0) - Eigen::Vector3d(5.0, 2.0, 6.0)).norm(),
+            kExact);
+  EXPECT_NEAR((pose.linear() * Eigen::Vector3d::UnitY()).z(), 0.0, kExact);  // no roll
+}
+
+TEST(LidarPose, EyeAloneKeepsTheAxesOfTheWorldWhateverTheScene) {
+  Scene scene = one_triangle();
+  const Pose alone = pose_sensor({.eye = "4,0.5,7"}, {}, lidar(-0.2, 0.2), scene);
+  EXPECT_EQ(alone.linear(), Eigen::Matrix3d::Identity());
+  EXPECT_EQ(alone.translation(), Eigen::Vector3d(4.0, 0.5, 7.0));
+  scene.instances.push_back(scene.instances[0]);
+  scene.instances[1].world_from_object.translation() = Eigen::Vector3d(50.0, 80.0, 0.0);
+  const Pose among = pose_sensor({.eye = "4,0.5,7"}, {}, lidar(-0.2, 0.2), scene);
+  EXPECT_EQ(among.matrix(), alone.matrix());
+}
+
+TEST(LidarPose, EyeWithUpVectorTiltsItAndHeadsForXAsFarAsThatGoes) {
+  const Pose pose = pose_sensor({.eye = "0,0,1", .up_vector = "0,-1,1"}, {}, lidar(-0.2, 0.2), {});
+  EXPECT_LT((pose.linear().col(0) - Eigen::Vector3d::UnitX()).norm(), kExact);
+  EXPECT_LT((pose.linear().col(2) - Eigen::Vector3d(0.0, -1.0, 1.0).normalized()).norm(), kExact);
+  const Pose leaning =
+      pose_sensor({.eye = "0,0,1", .up_vector = "1,0,1"}, {}, lidar(-0.2, 0.2), {});
+  EXPECT_TRUE(is_rigid(leaning));
+  EXPECT_LT((leaning.linear().col(0) - Eigen::Vector3d(1.0, 0.0, -1.0).normalized()).norm(),
+            kExact);
+  EXPECT_THROW(pose_sensor({.eye = "0,0,1", .up_vector = "1,0,0"}, {}, lidar(-0.2, 0.2), {}),
+               Error);
+}
+
+TEST(LidarPose, TargetStraightBelowTakesTheWorldsXAsUp) {
+  const Pose pose =
+      pose_sensor({.eye = "1,2,9", .target = "1,2,0"}, {}, lidar(-0.2, 0.2), one_triangle());
+  EXPECT_EQ(pose.linear().col(0), Eigen::Vector3d(0.0, 0.0, -1.0));
+  EXPECT_EQ(pose.linear().col(2), Eigen::Vector3d(1.0, 0.0, 0.0));
+}
+
+TEST(PoseOptions, CameraStraightAboveLooksDownWithTheWorldsXUpwards) {
+  const Pose pose = pose_sensor({.eye = "0.5,0.5,6"}, {}, camera(), one_triangle());
+  EXPECT_EQ(pose.linear().col(2), Eigen::Vector3d(0.0, 0.0, -1.0));
+  EXPECT_EQ(pose.linear().col(1), Eigen::Vector3d(-1.0, 0.0, 0.0));
+}
+
+TEST(LidarPose, LookAtOfASceneFileAimsTheXAxis) {
+  const Pose optical = look_at({0, 0, 0}, {0, 3, 0}, Eigen::Vector3d::UnitZ());
+  const Scene scene = one_triangle();
+  const Pose aimed = pose_sensor({}, {optical, true}, lidar(-0.2, 0.2), scene);
+  EXPECT_LT((aimed * Eigen::Vector3d(3, 0, 0) - Eigen::Vector3d(0, 3, 0)).norm(), kExact);
+  const Pose given = pose_sensor({}, {optical, false}, lidar(-0.2, 0.2), scene);
+  EXPECT_TRUE(given.isApprox(optical));
+}
+
+TEST(LidarPose, WithoutPoseItStandsBesideTheSceneWithinItsElevations) {
+  const Scene scene = one_triangle();
+  for (const auto& [low_rad, high_rad] :
+       {std::pair{-0.26, 0.26}, std::pair{-0.53, 0.19}, std::pair{0.0, 0.0}}) {
+    const Pose pose = pose_sensor({}, {}, lidar(low_rad, high_rad), scene);
+    EXPECT_LT((pose.linear() * Eigen::Vector3d::UnitZ() - Eigen::Vector3d::UnitZ()).norm(), kExact);
+    const Eigen::AlignedBox3d box = bounds(scene);
+    const Eigen::Vector3d middle = pose.inverse() * box.center();
+    EXPECT_GT(middle.x(), 0.0);
+    EXPECT_NEAR(middle.y(), 0.0, kExact);
+    const double elevation_rad = std::asin(middle.z() / middle.norm());
+    EXPECT_NEAR(elevation_rad, 0.5 * (low_rad + high_rad), kExact);
+    const double half_rad = std::asin(0.5 * box.diagonal().norm() / middle.norm());
+    EXPECT_NEAR(half_rad, low_rad < high_rad ? 0.5 * (high_rad - low_rad) : std::numbers::pi / 6.0,
+                kExact);
+  }
+}
+
+}  // namespace
+}  // namespace glidar::app

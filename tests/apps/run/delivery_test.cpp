@@ -1,0 +1,91 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/delivery.hpp>
+#include <apps/glidar/run/stream_stats.hpp>
+
+#include "support/waiting.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <stdexcept>
+#include <vector>
+
+namespace glidar::app {
+namespace {
+
+TEST(Delivery, DeliversEveryFrameInOrder) {
+  std::vector<std::uint32_t> delivered;
+  Delivery delivery([&](const Shot& shot) { delivered.push_back(shot.frame.number); }, [] {},
+                    [] {});
+  for (std::uint32_t k = 0; k < 100; ++k) {
+    delivery.room().frame.number = k;
+    delivery.hand_over();
+  }
+  delivery.finish();
+  ASSERT_EQ(delivered.size(), 100U);
+  for (std::uint32_t k = 0; k < 100; ++k) EXPECT_EQ(delivered[k], k);
+}
+
+/// Every frame but the last is being delivered while the next one is filled.
+TEST(Delivery, NeverTouchesAFrameThatIsBeingDelivered) {
+  constexpr int kFrames = 50;
+  std::atomic<const Shot*> busy{nullptr};
+  std::atomic<int> begun{0};
+  std::atomic<int> filled{0};
+  Delivery delivery(
+      [&](const Shot& shot) {
+        busy = &shot;
+        const int next = ++begun;
+        EXPECT_TRUE(testing::soon([&] { return next == kFrames || filled > next; }));
+        busy = nullptr;
+      },
+      [] {}, [] {});
+  for (int k = 0; k < kFrames; ++k) {
+    ASSERT_TRUE(testing::soon([&] { return begun == k; }));
+    const Shot& shot = delivery.room();
+    EXPECT_EQ(busy.load() != nullptr, k > 0);
+    EXPECT_NE(&shot, busy.load());
+    ++filled;
+    delivery.hand_over();
+  }
+  delivery.finish();
+  EXPECT_EQ(begun, kFrames);
+}
+
+TEST(Delivery, TellsThatSomethingWentWrongAtOnceAndHandsItOn) {
+  std::atomic<int> failures{0};
+  Delivery delivery([](const Shot&) { throw std::runtime_error("disk full"); }, [] {},
+                    [&] { ++failures; });
+  delivery.room();
+  delivery.hand_over();
+  ASSERT_TRUE(testing::soon([&] { return failures > 0; }));
+  EXPECT_EQ(failures, 1);
+  EXPECT_THROW(delivery.finish(), std::runtime_error);
+}
+
+TEST(Delivery, IsIdleWhileNothingComes) {
+  std::atomic<int> idle{0};
+  Delivery delivery([](const Shot&) {}, [&] { ++idle; }, [] {});
+  EXPECT_TRUE(testing::soon([&] { return idle >= 3; }));
+}
+
+TEST(DurationHistogram, TellsQuantilesToTwoPercent) {
+  DurationHistogram histogram;
+  EXPECT_EQ(histogram.quantile_s(0.5), 0.0);
+  for (int k = 1; k <= 1000; ++k) histogram.add(1e-3 * k);
+  EXPECT_NEAR(histogram.quantile_s(0.5), 0.5, 0.02 * 0.5);
+  EXPECT_NEAR(histogram.quantile_s(0.99), 0.99, 0.02 * 0.99);
+  EXPECT_EQ(histogram.quantile_s(1.0), 1.0);
+  EXPECT_EQ(histogram.longest_s(), 1.0);
+}
+
+TEST(DurationHistogram, TakesAnyDuration) {
+  DurationHistogram histogram;
+  for (const double s : {-1.0, 0.0, 1e-12, 1e9}) histogram.add(s);
+  EXPECT_EQ(histogram.count(), 4U);
+  EXPECT_EQ(histogram.longest_s(), 1e9);
+}
+
+}  // namespace
+}  // namespace glidar::app

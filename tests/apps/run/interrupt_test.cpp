@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <apps/glidar/run/interrupt.hpp>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdlib>
+
+namespace glidar::app {
+namespace {
+
+constexpr int kAfterSigterm = 128 + SIGTERM;
+
+/// Work that never looks for a request to stop.
+[[noreturn]] void work_on() {
+  for (;;) pause();
+}
+
+TEST(StopRequestDeathTest, SigtermEndsWorkThatDoesNotHeedIt) {
+  EXPECT_EXIT(
+      {
+        const StopRequest stop;
+        raise(SIGTERM);
+        work_on();
+      },
+      ::testing::ExitedWithCode(kAfterSigterm), "interrupted");
+}
+
+TEST(StopRequestDeathTest, WorkThatHeedsItEndsInGoodOrder) {
+  EXPECT_EXIT(
+      {
+        const StopRequest stop;
+        raise(SIGTERM);
+        stop.disarm();
+        std::_Exit(stop.signal() == SIGTERM ? 7 : 1);
+      },
+      ::testing::ExitedWithCode(7), "^$");
+}
+
+TEST(StopRequestDeathTest, ASecondSignalEndsItAtOnce) {
+  EXPECT_EXIT(
+      {
+        const StopRequest stop;
+        raise(SIGINT);
+        raise(SIGINT);
+        work_on();
+      },
+      ::testing::ExitedWithCode(128 + SIGINT), "interrupted");
+}
+
+}  // namespace
+}  // namespace glidar::app

@@ -1,0 +1,46 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/config/scene_builder.hpp>
+
+#include "io/yaml_files.hpp"
+
+#include <string>
+
+namespace glidar {
+namespace {
+
+TEST(RigYaml, ARigHasItsSensorsWithNamesAndPosesInTheOrderOfTheList) {
+  const TestFolder folder;
+  const ScenePlan scene = read_scene_plan(
+      folder.write(
+          "scene.yaml",
+          "models: [{model: a}]\n"
+          "sensors:\n"
+          "  - {name: lidar, sensor: VLP-16, pose: {position: [0, 0, 2]}}\n"
+          "  - {name: cam-2, sensor: {optics: {type: pinhole, width: 8, height: 6, fov_deg: 20}}}\n"
+          "rig_pose: {position: [1, 0, 0]}\n"
+          "rig_motion: {twist: {velocity_m_s: [0, 3, 0]}}\n"),
+      {});
+  ASSERT_EQ(scene.sensors.size(), 2U);
+  EXPECT_EQ(scene.sensors[0].name, "lidar");
+  EXPECT_EQ(scene.sensors[0].rig_from_sensor.translation(), Eigen::Vector3d(0, 0, 2));
+  EXPECT_EQ(scene.sensors[1].name, "cam-2");
+  EXPECT_EQ(scene.sensors[1].rig_from_sensor.matrix(), Pose::Identity().matrix());
+  EXPECT_TRUE(std::holds_alternative<Pinhole>(scene.sensors[1].sensor.optics));
+  ASSERT_TRUE(scene.rig_motion && scene.world_from_rig);
+  EXPECT_EQ(pose_at(*scene.rig_motion, 1'000'000'000).translation(), Eigen::Vector3d(1, 3, 0));
+}
+
+TEST(RigYaml, ASingleSensorIsARigWithoutAName) {
+  const TestFolder folder;
+  const ScenePlan scene = read_scene_plan(
+      folder.write("scene.yaml",
+                   "models: [{model: a}]\nsensor: VLP-16\nsensor_pose: {position: [1, 2, 3]}\n"),
+      {});
+  ASSERT_EQ(scene.sensors.size(), 1U);
+  EXPECT_EQ(scene.sensors[0].name, "");
+  EXPECT_EQ(scene.world_from_rig->translation(), Eigen::Vector3d(1, 2, 3));
+}
+
+}  // namespace
+}  // namespace glidar

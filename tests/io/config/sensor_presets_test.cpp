@@ -1,0 +1,317 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/config/sensor_presets.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/io/config/sensor_file.hpp>
+#include <support/preset.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+
+namespace glidar {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+/// What a data sheet says of a sensor; fields of view in degrees, edge to edge.
+struct Sheet {
+  const char* name;
+  std::uint32_t rows;
+  std::uint32_t cols;
+  double points_per_s;
+  double across_deg;
+  double upright_deg;
+};
+
+// Written down from the makers' sheets apart from the sensor files.
+constexpr std::array kSheets = std::to_array<Sheet>({
+    {"VLP-16", 16, 1809, 289'352, 360, 30},
+    {"Puck-Hi-Res", 16, 1809, 289'352, 360, 20},
+    {"HDL-32E", 32, 2171, 694'444, 360, 41.34},
+    {"HDL-64E-S3", 64, 2084, 1'333'333, 360, 26.8},
+    {"VLP-32C", 32, 1809, 578'704, 360, 40},
+    {"VLS-128", 128, 1877, 2'401'501, 360, 40},
+    {"OS0-32", 32, 1024, 327'680, 360, 90},
+    {"OS0-64", 64, 1024, 655'360, 360, 90},
+    {"OS0-128", 128, 1024, 1'310'720, 360, 90},
+    {"OS1-32", 32, 1024, 327'680, 360, 28.1},  // the gradient spacing of this unit
+    {"OS1-64", 64, 1024, 655'360, 360, 42.4},
+    {"OS1-128", 128, 1024, 1'310'720, 360, 42.4},
+    {"OS2-32", 32, 1024, 327'680, 360, 22.5},
+    {"OS2-64", 64, 1024, 655'360, 360, 22.5},
+    {"OS2-128", 128, 1024, 1'310'720, 360, 22.5},
+    {"XT32", 32, 2000, 640'000, 360, 31},
+    {"QT64", 64, 600, 384'000, 360, 104.2},
+    {"Pandar64", 64, 1800, 1'152'000, 360, 40},
+    {"Livox-Mid-40", 1, 10'000, 100'000, 38.4, 38.4},
+    {"Livox-Mid-70", 1, 10'000, 100'000, 70.4, 70.4},
+    {"Livox-Avia", 6, 4000, 240'000, 77.2, 70.4},
+    {"TiM781", 1, 811, 12'165, 270, 0},
+    {"UTM-30LX", 1, 1081, 43'240, 270, 0},
+    {"Kinect-v1", 480, 640, 9'216'000, 57, 43},
+    {"Kinect-v2", 424, 512, 6'512'640, 70, 60},
+    {"Azure-Kinect-NFOV", 576, 640, 11'059'200, 75, 65},
+    {"Azure-Kinect-NFOV-2x2", 288, 320, 2'764'800, 75, 65},
+    {"Azure-Kinect-WFOV", 1024, 1024, 15'728'640, 120, 120},
+    {"Azure-Kinect-WFOV-2x2", 512, 512, 7'864'320, 120, 120},
+    {"D415", 360, 640, 6'912'000, 72, 44},  // the calibration's; the sheet's 65 x 40 is part of it
+    {"D435", 480, 848, 12'211'200, 87, 58},
+    {"ZED", 720, 1280, 27'648'000, 84.9, 54.4},
+    {"flash-128", 128, 128, 327'680, 15, 15},
+    {"flash-256", 256, 256, 1'966'080, 20, 20},
+    {"paper-256", 256, 256, 1'966'080, 20, 20},
+});
+
+using testing::preset;
+
+/// Angle in degrees between the first and the last beam of a row or column of pixels.
+double span_deg(const Beams& beams, std::size_t first, std::size_t count, std::size_t step) {
+  std::vector<Eigen::Vector3d> seen;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d& d = beams.directions[first + i * step];
+    if (!std::isnan(d.x())) seen.push_back(d);
+  }
+  return std::acos(seen.front().dot(seen.back())) / kDegree;
+}
+
+/// Angles of a field of view in degrees: of a camera between the outermost pixels of its middle row
+/// and column, else between the outermost beams; a full turn is 360.
+Eigen::Vector2d field_of_view_deg(const Sensor& sensor, const FrameInterval& window) {
+  if (const auto* pinhole = std::get_if<Pinhole>(&sensor.optics)) {
+    const Beams beams = make_beams(sensor, window);
+    const std::size_t row = static_cast<std::size_t>(pinhole->intrinsics.cy) * beams.cols;
+    const auto col = static_cast<std::size_t>(pinhole->intrinsics.cx);
+    return {span_deg(beams, row, beams.cols, 1), span_deg(beams, col, beams.rows, beams.cols)};
+  }
+  Eigen::Vector2d low(1e9, 1e9);
+  Eigen::Vector2d high(-1e9, -1e9);
+  for (const Eigen::Vector3d& d : make_beams(sensor, window).directions) {
+    const Eigen::Vector2d angles(std::atan2(d.y(), d.x()), std::asin(d.z()));
+    low = low.cwiseMin(angles);
+    high = high.cwiseMax(angles);
+  }
+  return (high - low) / kDegree;
+}
+
+TEST(Presets, AreAllTested) {
+  std::set<std::string> tested;
+  for (const Sheet& sheet : kSheets) tested.insert(sheet.name);
+  for (const auto& file : preset_files())
+    EXPECT_TRUE(tested.contains(file.stem().string())) << file;
+  EXPECT_EQ(preset_files().size(), tested.size());
+}
+
+class Preset : public ::testing::TestWithParam<Sheet> {};
+
+TEST_P(Preset, HasThePointsOfItsSheet) {
+  const Sheet& sheet = GetParam();
+  const Sensor sensor = preset(sheet.name);
+  const Beams beams = make_beams(sensor);
+  validate(beams);
+  EXPECT_EQ(beams.rows, sheet.rows);
+  EXPECT_EQ(beams.cols, sheet.cols);
+  const double points_per_s = static_cast<double>(beams.size()) * sensor.rate_hz;
+  // a clock that does not divide a turn gives one column more or less
+  EXPECT_NEAR(points_per_s, sheet.points_per_s, 1.01 * sheet.rows * sensor.rate_hz);
+}
+
+TEST_P(Preset, HasTheFieldOfViewOfItsSheet) {
+  const Sheet& sheet = GetParam();
+  const Sensor sensor = preset(sheet.name);
+  const bool livox = std::holds_alternative<Prism>(sensor.optics);
+  const FrameInterval window = livox ? FrameInterval{0, 1'000'000'000} : frame_interval(sensor, 0);
+  const Eigen::Vector2d found_deg = field_of_view_deg(sensor, window);
+  // Sheets are rounded, as-built units deviate by 2 degrees (Ouster's); the cameras' numbers are
+  // calibrations of single units: the D435's gives 89.1 x 58.2, the narrow Azure Kinect's 73.1
+  // x 65.7.
+  EXPECT_NEAR(found_deg.x(), sheet.across_deg, sensor.optics.index() == 0 ? 2.3 : 1.2);
+  EXPECT_NEAR(found_deg.y(), sheet.upright_deg, 2.3);
+}
+
+TEST_P(Preset, TellsOneReturnOfABeamUnlessMoreAreChosen) {
+  Sensor sensor = preset(GetParam().name);
+  EXPECT_EQ(sensor.receiver.returns.size(), 1U);
+  const Beams one = make_beams(sensor);
+  sensor.receiver.returns.push_back({Return::Order::farthest, 0});
+  const Beams two = make_beams(sensor);
+  EXPECT_EQ(two.rows, 2 * one.rows);
+  EXPECT_EQ(two.cols, one.cols);
+  EXPECT_EQ(two.firings(), one.size());
+}
+
+TEST_P(Preset, TellsTheSourceOfEveryNumber) {
+  const Datasheet sheet = load_datasheet(find_sensor_file(GetParam().name));
+  EXPECT_GT(sheet.entries.size(), 4U);
+  for (const DatasheetEntry& entry : sheet.entries) {
+    const bool is_number = entry.value.find_first_of("0123456789") != std::string::npos;
+    EXPECT_TRUE(entry.key == "name" || !is_number || !entry.source.empty()) << entry.key;
+  }
+}
+
+std::string sheet_name(const ::testing::TestParamInfo<Sheet>& sheet) {
+  std::string name = sheet.param.name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Preset, ::testing::ValuesIn(kSheets), sheet_name);
+
+/// Beams as their sheets tell them: full widths at half maximum, across and up; TiM781: in all.
+struct Beam {
+  const char* name;
+  double divergence_mrad[2];
+  double exit_mm[2];
+};
+
+TEST(Presets, HaveTheBeamsOfTheirSheets) {
+  constexpr double kPerFwhm = 1.699;  // a Gaussian's width at 1/e^2 over that at half maximum
+  std::map<std::string, Beam> sheets;
+  for (const Beam& beam : std::to_array<Beam>({{"VLP-16", {3.0, 1.5}, {9.5, 12.7}},
+                                               {"Puck-Hi-Res", {3.0, 1.5}, {9.5, 12.7}},
+                                               {"HDL-32E", {2.79, 2.79}, {12.7, 6.35}},
+                                               {"HDL-64E-S3", {2.0, 2.0}, {0.0, 0.0}},
+                                               {"VLS-128", {3.0, 1.5}, {0.0, 0.0}},
+                                               {"OS0-32", {6.109, 6.109}, {0.0, 0.0}},
+                                               {"OS0-64", {6.109, 6.109}, {0.0, 0.0}},
+                                               {"OS0-128", {6.109, 6.109}, {0.0, 0.0}},
+                                               {"OS1-32", {3.142, 3.142}, {10.0, 10.0}},
+                                               {"OS1-64", {3.142, 3.142}, {10.0, 10.0}},
+                                               {"OS1-128", {3.142, 3.142}, {10.0, 10.0}},
+                                               {"Livox-Mid-40", {0.5236, 4.887}, {0.0, 0.0}},
+                                               {"Livox-Mid-70", {0.5236, 4.887}, {0.0, 0.0}},
+                                               {"Livox-Avia", {0.5236, 4.887}, {0.0, 0.0}},
+                                               {"TiM781", {14.4, 8.6}, {7.0, 7.0}}})) {
+    sheets[beam.name] = beam;
+  }
+  for (const auto& file : preset_files()) {
+    const std::string name = file.stem().string();
+    SCOPED_TRACE(name);
+    const Sensor sensor = load_sensor_file(file);
+    ASSERT_EQ(sensor.footprint.has_value(), sheets.contains(name));
+    if (!sensor.footprint) continue;
+    const Beam& beam = sheets[name];
+    const double unit = 1e-3 * (name == "TiM781" ? 1.0 : kPerFwhm);
+    EXPECT_NEAR(sensor.footprint->divergence_x_rad, beam.divergence_mrad[0] * unit, 5e-6);
+    EXPECT_NEAR(sensor.footprint->divergence_y_rad, beam.divergence_mrad[1] * unit, 5e-6);
+    EXPECT_NEAR(sensor.footprint->exit_x_m, beam.exit_mm[0] * unit, 1e-5);
+    EXPECT_NEAR(sensor.footprint->exit_y_m, beam.exit_mm[1] * unit, 1e-5);
+    EXPECT_EQ(sample_footprint(*sensor.footprint).size(), 7U);
+  }
+}
+
+TEST(Presets, AreFoundInCapitalsOrNot) {
+  EXPECT_EQ(preset("vlp-16").name, "Velodyne VLP-16");
+  EXPECT_EQ(preset("LIVOX-AVIA").name, "Livox Avia");
+}
+
+TEST(Presets, UnknownNamesAreToldTheNearest) {
+  try {
+    preset("VLP-61");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean VLP-"), std::string::npos)
+        << error.what();
+  }
+}
+
+TEST(Presets, NumbersFromMemoryAreMarked) {
+  const Datasheet sheet = load_datasheet(find_sensor_file("D435"));
+  std::map<std::string, bool> verified;
+  for (const DatasheetEntry& entry : sheet.entries) verified[entry.key] = entry.verified;
+  EXPECT_FALSE(verified.at("limits.near_m"));  // by "limits"
+  EXPECT_TRUE(verified.at("optics.fx"));
+  EXPECT_TRUE(verified.at("name"));
+}
+
+TEST(Presets, SourcesStandBesideTheirNumbers) {
+  const Datasheet sheet = load_datasheet(find_sensor_file("OS1-64"));
+  std::map<std::string, std::string> source;
+  for (const DatasheetEntry& entry : sheet.entries) source[entry.key] = entry.source;
+  EXPECT_TRUE(source.at("rate_hz").starts_with("10 with 512"));
+  EXPECT_EQ(source.at("wavelength_nm"), "data sheet, revision 6");
+  EXPECT_TRUE(source.at("lidar_equation.reference_range_m").ends_with("every second time"));
+  EXPECT_TRUE(source.at("lidar_equation.range90_m").ends_with("nine times of ten"));
+  EXPECT_TRUE(source.at("noise[1].k_m").starts_with("OS1 data sheet, first generation: 1.5"));
+  EXPECT_TRUE(source.at("noise[1].floor_m").starts_with("ouster-sdk"));
+  EXPECT_EQ(source.at("noise[3].step_m"), "data sheet, revision 6: 1 mm");
+}
+
+TEST(Presets, CountTheValuesThatTheManufacturerBacks) {
+  const Datasheet sheet{.name = "a",
+                        .sensor = {},
+                        .entries = {{"name", "A 1", "", true},
+                                    {"optics.type", "pinhole", "data sheet", true},
+                                    {"optics.fx", "400", "factory calibration", true},
+                                    {"rate_hz", "30", "data sheet", true},
+                                    {"limits.far_m", "9", "a survey", false}}};
+  EXPECT_EQ(count_values(sheet).backed, 2U);
+  EXPECT_EQ(count_values(sheet).total, 3U);  // a name and a type are no values
+}
+
+TEST(Presets, DoNotCallAThirdPartysNumberTheManufacturers) {
+  for (const auto& file : preset_files()) {
+    for (const DatasheetEntry& entry : load_datasheet(file).entries) {
+      if (!entry.verified || entry.key.ends_with("type") || entry.key.ends_with("kind")) continue;
+      for (const char* third_party :
+           {"HELIOS", "LISA", "elevation_mapping", "IsaacSim", "recording (", "recording of"}) {
+        EXPECT_FALSE(entry.source.starts_with(third_party)) << file << " " << entry.key;
+      }
+    }
+  }
+}
+
+TEST(Presets, OfRealDepthCamerasHaveSquarePixels) {
+  constexpr double kCalibrationSpread = 3e-4;  // fx and fy of one unit, both estimated
+  for (const auto& file : preset_files()) {
+    const Sensor sensor = load_sensor_file(file);
+    const auto* pinhole = std::get_if<Pinhole>(&sensor.optics);
+    if (pinhole == nullptr) continue;
+    const PinholeIntrinsics& k = pinhole->intrinsics;
+    EXPECT_NEAR(k.fx / k.fy, 1.0, kCalibrationSpread) << file;
+  }
+}
+
+TEST(Presets, HaveThePublishedCalibrationsOfStereoCameras) {
+  const auto stereo = [](const char* name) { return std::get<Stereo>(preset(name).noise.at(0)); };
+  EXPECT_NEAR(stereo("D435").focal_px, 430.14, 0.005);
+  EXPECT_NEAR(stereo("D435").baseline_m, 0.05015, 5e-6);
+  EXPECT_NEAR(stereo("D415").focal_px, 443.9, 0.05);
+  EXPECT_NEAR(stereo("D415").baseline_m, 0.0548, 5e-5);
+  for (const char* name : {"D435", "D415"}) {
+    const Sensor sensor = preset(name);
+    EXPECT_EQ(std::get<Pinhole>(sensor.optics).intrinsics.fx, stereo(name).focal_px);
+  }
+}
+
+TEST(Presets, OfTheWideAzureKinectSeeNothingBeyondItsMetricRadius) {
+  const Sensor sensor = preset("Azure-Kinect-WFOV-2x2");
+  const Beams beams = make_beams(sensor);
+  double widest_rad = 0.0;
+  std::size_t without = 0;
+  for (const Eigen::Vector3d& d : beams.directions) {
+    if (std::isnan(d.x())) {
+      ++without;
+    } else {
+      widest_rad = std::max(widest_rad, std::acos(d.z()));
+    }
+  }
+  EXPECT_NEAR(widest_rad, std::atan(1.74), 2e-3);  // half a pixel
+  // a disc in its square: the corners are 1 - pi / 4 of it
+  EXPECT_NEAR(static_cast<double>(without), 0.2146 * static_cast<double>(beams.size()), 1500.0);
+  EXPECT_TRUE(std::isnan(beams.directions.front().x()));
+}
+
+TEST(Presets, LimitsOfScannersAreAlongTheBeam) {
+  EXPECT_EQ(preset("VLP-16").limits.along, Limits::Along::range);
+  EXPECT_EQ(preset("D435").limits.along, Limits::Along::depth);
+  EXPECT_DOUBLE_EQ(preset("OS1-128").wavelength_m, 865e-9);
+}
+
+}  // namespace
+}  // namespace glidar

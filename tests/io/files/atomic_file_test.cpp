@@ -1,0 +1,207 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/files/atomic_file.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <io/cloud_fixture.hpp>
+#include <support/error_text.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+#include <thread>
+
+namespace glidar {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+/// No file may grow beyond this many bytes while it lives: a disk that is full.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    ::getrlimit(RLIMIT_FSIZE, &before_);
+    rlimit limit = before_;
+    limit.rlim_cur = bytes;
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+TEST(AtomicFile, AppearsOnlyWhenCommitted) {
+  const testing::TestFolder folder;
+  AtomicFile file(folder / "a.txt");
+  file.write("whole");
+  file.finish();
+  EXPECT_FALSE(std::filesystem::exists(folder / "a.txt"));
+  file.commit();
+  EXPECT_EQ(file_bytes(folder / "a.txt"), "whole");
+  EXPECT_THAT(folder.names(), ElementsAre("a.txt"));
+}
+
+TEST(AtomicFile, LeavesTheOldFileWhenNotCommitted) {
+  const testing::TestFolder folder;
+  {
+    AtomicFile file(folder / "a.txt");
+    file.write("old");
+    file.commit();
+  }
+  {
+    AtomicFile file(folder / "a.txt");
+    file.write("new");
+  }
+  EXPECT_EQ(file_bytes(folder / "a.txt"), "old");
+  EXPECT_THAT(folder.names(), ElementsAre("a.txt"));
+}
+
+TEST(AtomicFile, KeepsTheOrderOfSmallAndLargeWrites) {
+  const testing::TestFolder folder;
+  const std::string large(1'000'000, 'b');
+  AtomicFile file(folder / "a.txt");
+  file.write("a");
+  file.write(large);
+  file.write("c");
+  EXPECT_EQ(file.position(), large.size() + 2);
+  file.seek(1);
+  file.write("X");
+  EXPECT_EQ(file.position(), 2U);
+  file.commit();
+  const std::string found = file_bytes(folder / "a.txt");
+  EXPECT_EQ(found, "aX" + large.substr(1) + "c");
+}
+
+TEST(AtomicFile, ADurableCommitReplacesTheOldFileAndLeavesNothingElse) {
+  const testing::TestFolder folder;
+  for (const char* text : {"old", "new"}) {
+    AtomicFile file(folder / "a.txt");
+    file.write(text);
+    file.commit_durably();
+    EXPECT_EQ(file_bytes(folder / "a.txt"), text);
+  }
+  EXPECT_THAT(folder.names(), ElementsAre("a.txt"));
+}
+
+TEST(AtomicFile, ADurableCommitOnAFullDiskLeavesTheOldFile) {
+  const testing::TestFolder folder;
+  {
+    AtomicFile file(folder / "a.txt");
+    file.write("old");
+    file.commit();
+  }
+  const FullDisk full(4096);
+  EXPECT_THAT(error_text([&] {
+                AtomicFile file(folder / "a.txt");
+                file.write(std::string(100'000, 'x'));
+                file.commit_durably();
+              }),
+              HasSubstr("File too large"));
+  EXPECT_EQ(file_bytes(folder / "a.txt"), "old");
+  EXPECT_THAT(folder.names(), ElementsAre("a.txt"));
+}
+
+TEST(AtomicFile, TellsAFullDiskAndLeavesNothing) {
+  const testing::TestFolder folder;
+  const FullDisk full(4096);
+  const std::string text = error_text([&] {
+    AtomicFile file(folder / "a.txt");
+    file.write(std::string(100'000, 'x'));
+    file.commit();
+  });
+  EXPECT_THAT(text, HasSubstr((folder / "a.txt").string()));
+  EXPECT_THAT(text, HasSubstr("File too large"));
+  EXPECT_THAT(text, HasSubstr("nothing of this file was left behind"));
+  EXPECT_THAT(folder.names(), IsEmpty());
+}
+
+TEST(AtomicFile, TellsAMissingOrUnwritableFolder) {
+  const testing::TestFolder folder;
+  EXPECT_THAT(error_text([&] { AtomicFile file(folder / "none/a.txt"); }),
+              HasSubstr("No such file or directory; make the folder first"));
+  EXPECT_THAT(error_text([&] { AtomicFile file("/proc/a.txt"); }),
+              HasSubstr("/proc/a.txt: cannot create a file in this folder"));
+  EXPECT_THAT(error_text([&] { AtomicFile file(folder.path()); }), HasSubstr("is a folder"));
+}
+
+TEST(AtomicFile, TakesNoPipesPlaceOrADevices) {
+  const testing::TestFolder folder;
+  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
+  EXPECT_THAT(error_text([&] { AtomicFile file(folder / "pipe"); }),
+              HasSubstr("is a device, pipe or socket"));
+  EXPECT_THAT(error_text([] { AtomicFile file("/dev/null"); }),
+              HasSubstr("is a device, pipe or socket"));
+}
+
+TEST(AtomicFile, MayBeItsOwnersAlone) {
+  const testing::TestFolder folder;
+  AtomicFile file(folder / "key", AtomicFile::Readers::owner);
+  file.commit();
+  struct stat about {};
+  ASSERT_EQ(::stat((folder / "key").c_str(), &about), 0);
+  EXPECT_EQ(about.st_mode & 0777U, 0600U);
+}
+
+TEST(AtomicFile, ObeysTheUsersMask) {
+  const testing::TestFolder folder;
+  const mode_t before = ::umask(0027);
+  {
+    AtomicFile file(folder / "a.txt");
+    file.commit();
+  }
+  ::umask(before);
+  EXPECT_EQ(std::filesystem::status(folder / "a.txt").permissions(), std::filesystem::perms(0640));
+}
+
+TEST(AtomicFile, TwoWritersOfOneNameLeaveOneWholeFile) {
+  const testing::TestFolder folder;
+  const auto write_often = [&](char letter) {
+    for (int i = 0; i < 50; ++i) {
+      AtomicFile file(folder / "a.txt");
+      for (int part = 0; part < 10; ++part) file.write(std::string(10'000, letter));
+      file.commit();
+    }
+  };
+  std::thread other(write_often, 'b');
+  write_often('a');
+  other.join();
+  const std::string found = file_bytes(folder / "a.txt");
+  EXPECT_EQ(found, std::string(100'000, found.at(0)));
+  EXPECT_THAT(folder.names(), ElementsAre("a.txt"));
+}
+
+TEST(AtomicFile, RemovesUnfinishedFilesForASignalHandler) {
+  const testing::TestFolder folder;
+  AtomicFile done(folder / "done.txt");
+  done.commit();
+  AtomicFile first(folder / "first.txt");
+  AtomicFile second(folder / "second.txt");
+  EXPECT_EQ(folder.names().size(), 3U);
+  remove_unfinished_files();
+  EXPECT_THAT(folder.names(), ElementsAre("done.txt"));
+  EXPECT_THROW(first.commit(), Error);
+}
+
+TEST(AtomicFile, ListsMoreFilesOneAfterTheOtherThanItHasPlacesFor) {
+  const testing::TestFolder folder;
+  for (int i = 0; i < 100; ++i) AtomicFile(folder / "a.txt").commit();
+  AtomicFile file(folder / "b.txt");
+  remove_unfinished_files();
+  EXPECT_THAT(folder.names(), ElementsAre("a.txt"));
+}
+
+}  // namespace
+}  // namespace glidar

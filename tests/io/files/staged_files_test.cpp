@@ -1,0 +1,98 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/files/staged_files.hpp>
+
+#include <glidar/io/files/folder_lock.hpp>
+#include <tests/support/error_text.hpp>
+#include <tests/support/test_folder.hpp>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <barrier>
+#include <fstream>
+#include <sstream>
+#include <thread>
+
+namespace glidar {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+namespace fs = std::filesystem;
+
+std::string content(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+void write_pair(const fs::path& cloud, const std::string& text) {
+  StagedFiles files;
+  for (const fs::path& path : {cloud, fs::path(cloud.string() + ".json")}) {
+    AtomicFile& file = files.add(path);
+    file.write(text);
+    file.finish();
+  }
+  files.commit();
+}
+
+TEST(StagedFiles, FilesOfWritersAtOnceAreAllOfOneOfThem) {
+  const testing::TestFolder folder;
+  const fs::path cloud = folder / "a.pcd";
+  constexpr int kRounds = 500;
+  constexpr int kWriters = 3;
+  int mixed = 0;
+  std::barrier start(kWriters);
+  std::barrier end(kWriters, [&]() noexcept {
+    if (content(cloud) != content(cloud.string() + ".json")) ++mixed;
+  });
+  std::vector<std::jthread> writers;
+  for (int writer = 0; writer < kWriters; ++writer) {
+    writers.emplace_back([&, text = std::to_string(writer)] {
+      for (int round = 0; round < kRounds; ++round) {
+        start.arrive_and_wait();
+        write_pair(cloud, text);
+        end.arrive_and_wait();
+      }
+    });
+  }
+  writers.clear();
+  EXPECT_EQ(mixed, 0);
+  EXPECT_THAT(folder.names(), ElementsAre("a.pcd", "a.pcd.json"));
+}
+
+TEST(StagedFiles, NoneReplacesAProtectedFile) {
+  const testing::TestFolder folder;
+  const std::vector<std::string> read = {folder.write("q.pcd.json", "mine")};
+  StagedFiles files;
+  files.protect(read);
+  files.add(folder / "q.pcd").finish();
+  EXPECT_THAT(error_text([&] { files.add(folder / "q.pcd.json"); }), HasSubstr("is an input file"));
+  files.clear();
+  EXPECT_THAT(folder.names(), ElementsAre("q.pcd.json"));
+  EXPECT_EQ(content(folder / "q.pcd.json"), "mine");
+}
+
+TEST(FolderLock, ExcludesOthersUntilItEndsAndLeavesNothing) {
+  const testing::TestFolder folder;
+  std::optional<FolderLock> first(std::in_place, folder.path());
+  EXPECT_TRUE(first->is_held());
+  std::atomic<bool> is_free = false;
+  std::jthread other([&] {
+    const FolderLock second(folder.path());
+    EXPECT_TRUE(second.is_held());
+    EXPECT_TRUE(is_free);
+  });
+  is_free = true;
+  first.reset();
+  other.join();
+  EXPECT_THAT(folder.names(), ElementsAre());
+}
+
+TEST(FolderLock, AFolderThatCannotBeOpenedGivesNone) {
+  EXPECT_FALSE(FolderLock("/nonexistent/folder").is_held());
+}
+
+}  // namespace
+}  // namespace glidar

@@ -1,0 +1,89 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/formats/sidecar.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/core/version.hpp>
+#include <io/cloud_fixture.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+using testing::TestFolder;
+
+TEST(ReadSidecar, TellsHowTheCloudWasMade) {
+  const TestFolder folder;
+  CloudFixture made = make_fixture();
+  made.frame.number = 7;
+  SidecarContext context = made.context();
+  context.command = {.arguments = {"render", "a b.obj", "-o", "x.pcd"},
+                     .folder = folder.path() / "elsewhere"};
+  make_file_sink(folder.path() / "x.pcd", {}, context)->write(made.cloud, made.frame);
+  const Sidecar sidecar = read_sidecar(folder.path() / "x.pcd");
+  EXPECT_EQ(sidecar.path, folder.path() / "x.pcd.json");
+  EXPECT_EQ(sidecar.version, version());
+  EXPECT_EQ(sidecar.command.arguments, context.command.arguments);
+  EXPECT_EQ(sidecar.command.folder.lexically_normal(), folder.path() / "elsewhere");
+  EXPECT_EQ(sidecar.frame, 7U);
+  EXPECT_EQ(sidecar.frame_hash, frame_hash(made.frame));
+  EXPECT_EQ(sidecar.points, made.cloud.size());
+  EXPECT_EQ(sidecar.hits, static_cast<std::size_t>(std::count(
+                              made.frame.status.begin(), made.frame.status.end(), Status::hit)));
+  EXPECT_EQ(sidecar.model_hashes.size(), made.scene.instances.size());
+}
+
+TEST(ReadSidecar, TellsNoCommandOfCloudsThatNoneMade) {
+  const TestFolder folder;
+  const CloudFixture made = make_fixture();
+  const SidecarContext context = made.context();
+  make_file_sink(folder.path() / "x.pcd", {}, context)->write(made.cloud, made.frame);
+  EXPECT_TRUE(read_sidecar(folder.path() / "x.pcd").command.arguments.empty());
+}
+
+TEST(FrameHash, ChangesWithWhatIsReportedAlone) {
+  Frame frame;
+  frame.status = {Status::hit, Status::miss};
+  frame.range_m = {2.0, std::nan("")};
+  frame.intensity = {0.5F, 0.0F};
+  const std::string before = frame_hash(frame);
+  EXPECT_EQ(before.size(), 32U);
+  frame.ground_truth.range_m.push_back(1.0);
+  EXPECT_EQ(frame_hash(frame), before);
+  frame.range_m[0] = std::nextafter(frame.range_m[0], 1e9);
+  const std::string other_range = frame_hash(frame);
+  EXPECT_NE(other_range, before);
+  frame.intensity[0] += 1.0F;
+  EXPECT_NE(frame_hash(frame), other_range);
+}
+
+std::string sidecar_error(const TestFolder& folder, const std::string& sidecar) {
+  (void)folder.write("x.pcd.json", sidecar);
+  try {
+    read_sidecar(folder.path() / "x.pcd");
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(ReadSidecar, RefusesWhatIsNone) {
+  const TestFolder folder;
+  try {
+    read_sidecar(folder.path() / "x.pcd");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.parts().remedy, "write the cloud again, with -o and without --no-sidecar");
+  }
+  for (const char* text : {"", "{", "[]", "{}", "{\"glidar\": 3}", "null"}) {
+    EXPECT_NE(sidecar_error(folder, text).find("not a sidecar of this version"), std::string::npos)
+        << text;
+  }
+}
+
+}  // namespace
+}  // namespace glidar

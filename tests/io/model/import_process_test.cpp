@@ -1,0 +1,148 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/model/import_process.hpp>
+
+#include <io/model_test_support.hpp>
+
+#include <gmock/gmock.h>
+
+#include <sys/stat.h>
+
+#include <csignal>
+#include <thread>
+#include <utility>
+
+namespace glidar {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kTimeLimit_s = 600.0;  // no script takes so long, however busy the machine is
+using ::testing::HasSubstr;
+using testing::TestFolder;
+
+/// Puts a shell script in the place of the import program.
+class ImportProcess : public ::testing::Test {
+ protected:
+  ~ImportProcess() override { ::unsetenv("GLIDAR_IMPORT_HELPER"); }
+
+  ImportRequest with_script(const std::string& body) {
+    const fs::path script = temp_.write("import", "#!/bin/sh\n" + body + "\n");
+    fs::permissions(script, fs::perms::owner_all);
+    ::setenv("GLIDAR_IMPORT_HELPER", script.c_str(), 1);
+    return {temp_.write("a.obj", "v 0 0 0\n"), 0.785, kTimeLimit_s, 0};
+  }
+
+  std::string error(const ImportRequest& request) {
+    try {
+      take_model(run_import(request, {}), request);
+    } catch (const Error& caught) {
+      return caught.what();
+    }
+    return "";
+  }
+
+  TestFolder temp_;
+};
+
+TEST_F(ImportProcess, ASignalIsNamed) {
+  const std::string text = error(with_script("kill -ABRT $$"));
+  EXPECT_THAT(text, HasSubstr("a.obj: the import process crashed (signal SIGABRT, Aborted)"));
+}
+
+TEST_F(ImportProcess, AHangIsEnded) {
+  ImportRequest request = with_script("exec sleep 3600");
+  request.time_limit_s = 0.3;
+  const ImportRun run = run_import(request, {});
+  EXPECT_EQ(run.end, ImportEnd::out_of_time);
+  EXPECT_LT(run.seconds, kTimeLimit_s);
+  EXPECT_THAT(error(request), HasSubstr("took longer than 0.3 s"));
+}
+
+TEST_F(ImportProcess, SilenceAndGarbageAreErrors) {
+  EXPECT_THAT(error(with_script("exit 0")), HasSubstr("damaged answer"));
+  EXPECT_THAT(error(with_script("head -c 500 /dev/zero >&3")), HasSubstr("damaged answer"));
+  EXPECT_THAT(error(with_script("exit 2")), HasSubstr("without an answer"));
+  EXPECT_THAT(error(with_script("exit 3")), HasSubstr("more memory than 1024 MiB"));
+}
+
+TEST_F(ImportProcess, ItsWordsGoNowhere) {
+  ::testing::internal::CaptureStdout();
+  ::testing::internal::CaptureStderr();
+  const std::string text = error(with_script("echo noise; echo noise >&2"));
+  EXPECT_EQ(::testing::internal::GetCapturedStdout(), "");
+  EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
+  EXPECT_THAT(text, HasSubstr("damaged answer"));
+}
+
+TEST_F(ImportProcess, NoOtherDescriptorIsHandedOn) {
+  const fs::path list = temp_.path() / "fds";
+  const int leaky = ::dup(0);  // without close-on-exec
+  error(with_script("ls /proc/$$/fd > " + list.string()));
+  ::close(leaky);
+  // 0 to 4; a shell keeps its script open on another, which it opened itself (from 10 on)
+  std::istringstream fds(testing::read_file(list));
+  for (int fd = 0; fds >> fd;) EXPECT_TRUE(fd <= 4 || fd >= 10) << fd;
+}
+
+TEST_F(ImportProcess, ProgressIsToldWhenItTakesLong) {
+  const std::string pipe = (temp_.path() / "pipe").string();
+  ASSERT_EQ(::mkfifo(pipe.c_str(), S_IRWXU), 0);
+  // '2' is 50; the script ends once somebody writes to the pipe
+  const ImportRequest request = with_script("printf '\\062' >&4; read line < " + pipe + "; exit 2");
+  std::vector<double> fractions;
+  std::string task;
+  bool is_ended = false;
+  const Report report{{}, [&](std::string_view name, double fraction) {
+                        task = name;
+                        fractions.push_back(fraction);
+                        if (fraction > 0.0 && !std::exchange(is_ended, true)) {
+                          std::ofstream(pipe) << "\n";
+                        }
+                      }};
+  run_import(request, report);
+  EXPECT_EQ(task, "loading a.obj");
+  ASSERT_FALSE(fractions.empty());
+  EXPECT_EQ(fractions.back(), 0.5);
+}
+
+TEST_F(ImportProcess, FastLoadsShowNoProgress) {
+  int calls = 0;
+  const Report report{{}, [&](std::string_view, double) { ++calls; }};
+  const ImportRun run = run_import(with_script("exit 2"), report);
+  constexpr double kFast_s = 0.4;  // of a busy machine no load is fast
+  EXPECT_TRUE(calls == 0 || run.seconds > kFast_s);
+}
+
+TEST_F(ImportProcess, TheEndIsSeenThoughAChildOfItKeepsThePipe) {
+  const std::string child = (temp_.path() / "child").string();
+  const ImportRun run = run_import(with_script("sleep 3600 & echo $! > " + child + "; exit 2"), {});
+  ::kill(static_cast<pid_t>(std::stol(testing::read_file(child))), SIGKILL);
+  EXPECT_EQ(run.end, ImportEnd::crashed);
+  EXPECT_LT(run.seconds, kTimeLimit_s);
+}
+
+TEST(ImportLimits, GrowWithTheFile) {
+  constexpr std::uint64_t kMiB = std::uint64_t{1} << 20U;
+  EXPECT_EQ(default_memory_limit(0), 1024 * kMiB);
+  EXPECT_EQ(default_memory_limit(16 * kMiB), 1024 * kMiB);
+  EXPECT_EQ(default_memory_limit(100 * kMiB), 4000 * kMiB);
+}
+
+TEST(ImportLimits, ManyAtOnceDoNotMix) {
+  const TestFolder temp;
+  std::vector<std::thread> threads;
+  std::vector<std::size_t> counts(8);
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    threads.emplace_back([&, i] {
+      std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+      for (std::size_t f = 0; f <= i; ++f) obj += "f 1 2 3\n";
+      counts[i] = testing::load(temp.write(std::to_string(i) + ".obj", obj)).mesh.triangles.size();
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  for (std::size_t i = 0; i < counts.size(); ++i) EXPECT_EQ(counts[i], i + 1);
+}
+
+}  // namespace
+}  // namespace glidar

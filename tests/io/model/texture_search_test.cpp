@@ -1,0 +1,138 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/io/model/texture_search.hpp>
+
+#include <io/model_test_support.hpp>
+
+#include <gmock/gmock.h>
+
+namespace glidar {
+namespace {
+
+using testing::TestFolder;
+namespace fs = std::filesystem;
+
+struct Spelling {
+  const char* what;
+  const char* file;  ///< that exists in the model's folder
+  const char* name;  ///< as the model spells it
+};
+
+class TextureSpelling : public ::testing::TestWithParam<Spelling> {};
+
+TEST_P(TextureSpelling, IsFound) {
+  const TestFolder temp;
+  const fs::path file = temp.write(GetParam().file, "x");
+  const TextureLookup lookup = find_texture(GetParam().name, {temp.path(), temp.path(), {}});
+  EXPECT_EQ(lookup.found, file.string());
+  EXPECT_EQ(lookup.reason, "");
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    TextureSearch, TextureSpelling,
+    ::testing::Values(Spelling{"AsGiven", "a.png", "a.png"},
+                      Spelling{"InASubfolder", "images/a.png", "images/a.png"},
+                      Spelling{"DotBackslash", "a.png", ".\\a.png"},
+                      Spelling{"BackslashFolder", "images/a.png", ".\\images\\a.png"},
+                      Spelling{"TrailingSpace", "a.png", "a.png "},
+                      Spelling{"SpaceInside", "a b.png", "a b.png"},
+                      Spelling{"PercentSpace", "a b.png", "a%20b.png"},
+                      Spelling{"PercentInTheFilesName", "a%20b.png", "a%20b.png"},
+                      Spelling{"AbsolutePath", "a.png", "/home/somebody/a.png"},
+                      Spelling{"DriveLetter", "a.png", "C:\\art\\a.png"},
+                      Spelling{"DriveLetterInTextures", "textures/a.png", "D:\\art\\a.png"},
+                      Spelling{"FileUri", "a.png", "file:///home/a.png"},
+                      Spelling{"FolderThatIsGone", "a.png", "images/a.png"},
+                      Spelling{"ParentThatIsOutside", "a.png", "../other/a.png"},
+                      Spelling{"TexturesFolder", "textures/a.png", "a.png"},
+                      Spelling{"MaterialsTexturesFolder", "materials/textures/a.png", "a.png"},
+                      Spelling{"OtherCase", "Wall.PNG", "wall.png"},
+                      Spelling{"OtherCaseInTextures", "textures/Wall.PNG", "wall.png"},
+                      Spelling{"UnknownMtlOption", "a.jpg", "sRGB -o 0.1 a.jpg"}),
+    [](const auto& tested) { return std::string(tested.param.what); });
+
+TEST(TextureSearch, TheExactCaseWinsOverAnother) {
+  const TestFolder temp;
+  temp.write("A.png", "x");
+  const fs::path exact = temp.write("textures/a.png", "x");
+  EXPECT_EQ(find_texture("a.png", {temp.path(), temp.path(), {}}).found, exact.string());
+}
+
+TEST(TextureSearch, AModelPackageSharesItsMaterials) {
+  const TestFolder temp;
+  const fs::path file = temp.write("materials/textures/wood.png", "x");
+  const fs::path model = temp.write("meshes/chair.dae", "x");
+  const ModelFolder folder = model_folder(model);
+  EXPECT_EQ(folder.root, temp.path());
+  EXPECT_EQ(find_texture("wood.png", folder).found, file.string());
+}
+
+TEST(TextureSearch, ModelConfigMarksAPackage) {
+  const TestFolder temp;
+  temp.write("model.config", "x");
+  const fs::path file = temp.write("textures/wood.png", "x");
+  EXPECT_EQ(find_texture("../textures/wood.png", model_folder(temp.write("dae/a.dae", "x"))).found,
+            file.string());
+}
+
+TEST(TextureSearch, GoesUpBehindALinkAsTheSystemDoes) {
+  const TestFolder temp;
+  temp.write("deep/inner/x", "x");
+  temp.write("wood.png", "wrong");
+  const fs::path file = temp.write("deep/wood.png", "right");
+  fs::create_directory_symlink(temp.path() / "deep/inner", temp.path() / "link");
+  const ModelFolder folder{temp.path(), temp.path(), {}};
+  EXPECT_EQ(confine("link/../wood.png", folder).path, file);
+  EXPECT_EQ(confine("gone/../wood.png", folder).path, temp.path() / "wood.png");
+  EXPECT_EQ(confine("link/../../../secret.png", folder).access, Access::outside);
+}
+
+TEST(TextureSearch, ALinkThatLeadsOutIsRefusedOnTheWayUpToo) {
+  const TestFolder temp;
+  temp.write("elsewhere/inner/x", "x");
+  temp.write("elsewhere/secret.png", "x");
+  const fs::path model = temp.write("model/a.obj", "x");
+  fs::create_directory_symlink(temp.path() / "elsewhere/inner", temp.path() / "model/link");
+  EXPECT_EQ(confine("link/../secret.png", model_folder(model)).access, Access::outside);
+}
+
+TEST(TextureSearch, NothingOutsideTheRootIsFound) {
+  const TestFolder temp;
+  temp.write("secret.png", "x");
+  const fs::path model = temp.write("inner/a.obj", "x");
+  const TextureLookup lookup = find_texture("../secret.png", model_folder(model));
+  EXPECT_EQ(lookup.found, "");
+  EXPECT_THAT(lookup.reason, ::testing::StartsWith("outside the model's folder"));
+}
+
+TEST(TextureSearch, ALinkOutOfTheRootIsRefused) {
+  const TestFolder temp;
+  temp.write("secret.png", "x");
+  const fs::path model = temp.write("inner/a.obj", "x");
+  fs::create_symlink("../secret.png", temp.path() / "inner" / "link.png");
+  EXPECT_EQ(find_texture("link.png", model_folder(model)).found, "");
+  EXPECT_THAT(find_texture("link.png", model_folder(model)).reason,
+              ::testing::StartsWith("outside the model's folder"));
+}
+
+TEST(TextureSearch, FoldersAndDevicesAreNoTextures) {
+  const TestFolder temp;
+  fs::create_directory(temp.path() / "a.png");
+  EXPECT_EQ(find_texture("a.png", {temp.path(), temp.path(), {}}).reason, "not a file");
+  EXPECT_EQ(find_texture("/dev/zero", {temp.path(), temp.path(), {}}).found, "");
+}
+
+TEST(TextureSearch, OddNamesAreMissingWithAReason) {
+  const TestFolder temp;
+  const ModelFolder folder{temp.path(), temp.path(), {}};
+  for (const std::string& name :
+       {std::string(), std::string("   "), std::string("http://host/a.png"), std::string(5000, 'a'),
+        std::string("a\0b.png", 7), std::string(300, 'b') + ".png"}) {
+    const TextureLookup lookup = find_texture(name, folder);
+    EXPECT_EQ(lookup.found, "") << name.substr(0, 20);
+    EXPECT_NE(lookup.reason, "") << name.substr(0, 20);
+  }
+}
+
+}  // namespace
+}  // namespace glidar

@@ -1,0 +1,189 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/math/elementary.hpp>
+#include <glidar/math/gaussian.hpp>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace glidar {
+namespace {
+
+constexpr double kNearLibm = 1e-12;  // far above both libraries' roundings, far below any noise
+
+TEST(Elementary, LogarithmAgreesWithTheLibrary) {
+  for (int i = 0; i < 100000; ++i) {
+    const double x = uniform(random_words({.beam = static_cast<std::uint32_t>(i)})[0]);
+    EXPECT_NEAR(natural_log(x), std::log(x), kNearLibm);
+  }
+  for (const double x : {0x1p-33, 1.0 - 0x1p-33, 0.5, 1.0, std::sqrt(0.5), 3.0, 1e9}) {
+    EXPECT_NEAR(natural_log(x), std::log(x), kNearLibm) << x;
+  }
+}
+
+TEST(Elementary, SineAndCosineAgreeWithTheLibrary) {
+  for (int i = -40000; i <= 80000; ++i) {
+    const double turns = i / 40000.0;
+    const double angle = 2.0 * std::numbers::pi * turns;
+    EXPECT_NEAR(of_turns(turns).sine, std::sin(angle), kNearLibm) << turns;
+    EXPECT_NEAR(of_turns(turns).cosine, std::cos(angle), kNearLibm) << turns;
+  }
+}
+
+TEST(Elementary, AngleOfAVectorIsTheInverseOfItsSineAndCosine) {
+  for (int i = 0; i < 40000; ++i) {
+    const double turns = i / 40000.0;
+    const SineCosine v = of_turns(turns);
+    const double found = turns_of(3.0 * v.sine, 3.0 * v.cosine);
+    const double apart = std::abs(found - turns);
+    EXPECT_LT(std::min(apart, 1.0 - apart), kNearLibm) << turns;
+    EXPECT_LT(found, 1.0);
+    EXPECT_GE(found, 0.0);
+  }
+  EXPECT_EQ(turns_of(0.0, 0.0), 0.0);
+}
+
+TEST(Elementary, ExponentialAgreesWithTheLibrary) {
+  for (double x = -40.0; x < 3.0; x += 0.0137) {
+    EXPECT_NEAR(natural_exp(x), std::exp(x), kNearLibm * std::max(1.0, std::exp(x))) << x;
+  }
+}
+
+TEST(Elementary, ExponentialEndsInZeroAndInfinity) {
+  for (double x = -699.9; x < 699.9; x += 3.7) {
+    EXPECT_NEAR(natural_exp(x) / std::exp(x), 1.0, 2e-15) << x;
+  }
+  constexpr double kEndless = std::numeric_limits<double>::infinity();
+  for (const double x : {-700.1, -745.2, -1e4, -1e300, -kEndless}) EXPECT_EQ(natural_exp(x), 0.0);
+  for (const double x : {700.1, 710.0, 1e4, 1e300, kEndless}) EXPECT_EQ(natural_exp(x), kEndless);
+}
+
+TEST(Elementary, PowersAreWithinTheStatedErrorOfLongDoubles) {
+  for (std::uint32_t i = 0; i < 300000; ++i) {
+    const RandomWords words = random_words({.beam = i});
+    const double base = uniform(words[0]);
+    const double exponent = 200.0 * uniform(words[1]) * uniform(words[2]);
+    const long double exact = std::pow(static_cast<long double>(base), exponent);
+    const double bound = 3e-16 * (1.0 + std::abs(exponent * std::log(base)));
+    if (exact < 1e-300L) continue;
+    ASSERT_LT(std::abs(static_cast<double>(power(base, exponent) / exact - 1.0L)), bound)
+        << base << " ^ " << exponent;
+  }
+}
+
+TEST(Elementary, PowersOfZeroOneAndDenormalFloatsAreExact) {
+  EXPECT_EQ(power(0.0, 0.0), 1.0);
+  EXPECT_EQ(power(0.0, 12.5), 0.0);
+  EXPECT_EQ(power(1.0, 1000.0), 1.0);
+  EXPECT_EQ(power(0.3, 0.0), 1.0);
+  EXPECT_EQ(power(1e-3, 1000.0), 0.0);
+  EXPECT_NEAR(power(0x1p-149, 1.0), 0x1p-149, 0x1p-149 * 1e-13);
+}
+
+TEST(Gaussian, GivesTheGoldenNormals) {
+  const RandomWords words = random_words({.seed = 12345, .frame = 7});
+  const std::array<double, 4> n = normals(words);
+  EXPECT_NEAR(n[0], -0.421419785220268, 1e-14);  // as many digits as are recorded
+  EXPECT_NEAR(n[1], -0.167788665100006, 1e-14);
+  EXPECT_NEAR(n[2], -0.915809005690777, 1e-14);
+  EXPECT_NEAR(n[3], 0.980779498188674, 1e-14);
+}
+
+TEST(Gaussian, IsBoxAndMullersFormula) {
+  for (std::uint32_t beam = 0; beam < 10000; ++beam) {
+    const RandomWords words = random_words({.seed = 3, .beam = beam});
+    const double r = std::sqrt(-2.0 * std::log(uniform(words[0])));
+    const double angle = 2.0 * std::numbers::pi * uniform(words[1]);
+    EXPECT_NEAR(normals(words)[0], r * std::cos(angle), kNearLibm);
+    EXPECT_NEAR(normals(words)[1], r * std::sin(angle), kNearLibm);
+  }
+}
+
+TEST(Gaussian, BatchesAreTheSameAsOneByOne) {
+  // the second start makes the beam's number overflow within the batch
+  for (const std::uint32_t start : {0U, 768U, 0xFFFFFF80U}) {
+    const RngKey draw{.seed = 0x123456789abcU, .sensor = 5, .frame = 9, .beam = start, .block = 2};
+    WordBatch words;
+    Batch<double> single;
+    PairBatch pairs;
+    PairBatch uniforms;
+    draw_words(draw, words);
+    draw_normals(draw, single);
+    draw_normals(draw, pairs);
+    draw_uniforms(draw, uniforms);
+    for (std::uint32_t i = 0; i < kDrawBatch; ++i) {
+      RngKey one = draw;
+      one.beam += i;
+      const RandomWords expected = random_words(one);
+      for (std::size_t k = 0; k < 4; ++k) EXPECT_EQ(words.word[k][i], expected[k]);
+      EXPECT_EQ(single[i], normals(expected)[0]);
+      EXPECT_EQ(pairs.first[i], normals(expected)[0]);
+      EXPECT_EQ(pairs.second[i], normals(expected)[1]);
+      EXPECT_EQ(uniforms.first[i], uniform(expected[0]));
+      EXPECT_EQ(uniforms.second[i], uniform(expected[1]));
+    }
+  }
+}
+
+TEST(Gaussian, SharedBatchesHaveAllNumbersOfAQuarterOfTheDraws) {
+  for (const std::uint32_t start : {0U, 768U, 0xFFFFFF00U}) {
+    const RngKey draw{.seed = 0x123456789abcU, .sensor = 5, .frame = 9, .beam = start, .block = 2};
+    Batch<double> shared;
+    Batch<double> uniforms;
+    draw_shared_normals(draw, shared);
+    draw_shared_uniforms(draw, uniforms);
+    for (std::uint32_t i = 0; i < kDrawBatch; ++i) {
+      RngKey one = draw;
+      one.beam = start / 4 + i % 64;
+      const RandomWords words = random_words(one);
+      EXPECT_EQ(shared[i], normals(words).at(i / 64));
+      EXPECT_EQ(uniforms[i], uniform(words.at(i / 64)));
+    }
+  }
+}
+
+/// Normals of a million beams.
+std::vector<double> million() {
+  std::vector<double> sample;
+  Batch<double> batch;
+  for (std::uint32_t beam = 0; beam < 4000 * kDrawBatch; beam += kDrawBatch) {
+    draw_shared_normals({.seed = 77, .beam = beam}, batch);
+    sample.insert(sample.end(), batch.begin(), batch.end());
+  }
+  return sample;
+}
+
+TEST(Gaussian, MillionSamplesHaveMeanZeroAndVarianceOne) {
+  const std::vector<double> sample = million();
+  const auto n = static_cast<double>(sample.size());
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const double x : sample) {
+    sum += x;
+    squares += x * x;
+  }
+  constexpr double kSigmas = 4.0;
+  EXPECT_LT(std::abs(sum / n), kSigmas / std::sqrt(n));
+  EXPECT_LT(std::abs(squares / n - 1.0), kSigmas * std::sqrt(2.0 / n));  // variance of x^2 is 2
+}
+
+TEST(Gaussian, MillionSamplesPassTheTestOfKolmogorovAndSmirnov) {
+  std::vector<double> sample = million();
+  std::sort(sample.begin(), sample.end());
+  const auto n = static_cast<double>(sample.size());
+  double farthest = 0.0;
+  for (std::size_t i = 0; i < sample.size(); ++i) {
+    const double theory = 0.5 * std::erfc(-sample[i] / std::numbers::sqrt2);
+    const auto below = static_cast<double>(i) / n;
+    farthest = std::max({farthest, std::abs(theory - below), std::abs(theory - below - 1.0 / n)});
+  }
+  constexpr double kOneInTenThousand = 2.23;  // quantile of Kolmogorov's distribution
+  EXPECT_LT(farthest, kOneInTenThousand / std::sqrt(n));
+}
+
+}  // namespace
+}  // namespace glidar

@@ -1,0 +1,47 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/math/random.hpp>
+
+#include <gtest/gtest.h>
+
+namespace glidar {
+namespace {
+
+TEST(Philox, GivesTheKnownAnswersOfRandom123) {
+  EXPECT_EQ(philox4x32({0, 0, 0, 0}, {0, 0}),
+            (RandomWords{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
+  constexpr std::uint32_t kOnes = 0xffffffff;
+  EXPECT_EQ(philox4x32({kOnes, kOnes, kOnes, kOnes}, {kOnes, kOnes}),
+            (RandomWords{0x408f276d, 0x41c83b0e, 0xa20bc7c6, 0x6d5451fd}));
+  EXPECT_EQ(philox4x32({0x243f6a88, 0x85a308d3, 0x13198a2e, 0x03707344}, {0xa4093822, 0x299f31d0}),
+            (RandomWords{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
+}
+
+TEST(RandomWords, CountTheBeamTheFrameAndTheBlock) {
+  const auto at = [](std::uint32_t beam) {
+    return random_words({.seed = 12345, .sensor = 0, .frame = 7, .beam = beam});
+  };
+  EXPECT_EQ(at(0), (RandomWords{0xe6f940bb, 0x8f703033, 0x680c7f25, 0x5e9ad4d4}));
+  EXPECT_EQ(at(1), (RandomWords{0xa1b975c9, 0xae052b7e, 0xef9fd9d3, 0x35f25bb1}));
+  EXPECT_EQ(at(1000), (RandomWords{0xe985ae61, 0x83621db8, 0x229a865d, 0xeb52ccdb}));
+}
+
+TEST(RandomWords, DifferForEveryPartOfTheDraw) {
+  const RngKey draw{.seed = 1, .sensor = 2, .frame = 3, .beam = 4, .block = 5};
+  for (const auto part : {&RngKey::sensor, &RngKey::frame, &RngKey::beam, &RngKey::block}) {
+    RngKey other = draw;
+    other.*part += 1;
+    EXPECT_NE(random_words(draw), random_words(other));
+  }
+  RngKey other = draw;
+  other.seed += std::uint64_t{1} << 32U;
+  EXPECT_NE(random_words(draw), random_words(other));
+}
+
+TEST(Uniform, IsStrictlyBetweenZeroAndOneAndExact) {
+  EXPECT_EQ(uniform(0), 0.5 / 4294967296.0);
+  EXPECT_EQ(uniform(0xffffffff), 1.0 - 0.5 / 4294967296.0);
+}
+
+}  // namespace
+}  // namespace glidar

@@ -1,0 +1,126 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include "sensor/windows.hpp"
+
+#include <glidar/core/error.hpp>
+#include <glidar/sensor/optics/prism.hpp>
+
+namespace glidar {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr std::int64_t kSecond_ns = 1'000'000'000;
+constexpr auto kEntry = RisleyPrism::Slope::entry;
+constexpr auto kExit = RisleyPrism::Slope::exit;
+
+// Numbers of HELIOS++ (scanner catalogue), which fitted them to the sensors.
+Prism mid40() {
+  return {.prisms = {{-121.5657, 18.7481 * kDegree, 0.0, 1.51, kEntry},
+                     {77.7430, 17.9634 * kDegree, 0.0, 1.51, kEntry}},
+          .incidence_tangent = {0.0},
+          .pulse_hz = 100e3};
+}
+
+Prism mid70() {
+  return {.prisms = {{-77.7333, 29.7 * kDegree, 0.0, 1.5095, kExit},
+                     {121.5667, 29.7 * kDegree, 0.0, 1.5095, kEntry}},
+          .incidence_tangent = {0.0},
+          .pulse_hz = 100e3};
+}
+
+Prism avia() {
+  return {.prisms = {{-131.5463, 30.8856 * kDegree, 0.0, 1.51, kEntry},
+                     {40.8032, 29.7735 * kDegree, 0.0, 1.51, kEntry},
+                     {213.1611, 3.1351 * kDegree, 0.0, 1.51, kEntry}},
+          .incidence_tangent = {-0.05216070, -0.03237635, -0.01079672, 0.01079672, 0.03237635,
+                                0.05300785},
+          .pulse_hz = 40e3};
+}
+
+double widest_deg(const Beams& beams) {
+  double widest = 0.0;
+  for (const Eigen::Vector3d& d : beams.directions) {
+    widest = std::max(widest, std::atan2(d.tail<2>().norm(), d.x()) / kDegree);
+  }
+  return widest;
+}
+
+TEST(Prism, Mid40LooksWhereTheGoldenDirectionsSay) {
+  const Beams beams = make_beams(mid40(), {0, kSecond_ns / 10});
+  validate(beams);
+  ASSERT_EQ(beams.size(), 10'000U);
+  // Published axes: x right, y forward, z up; computed independently at t = 0, 1, 2.5, 10 ms.
+  const std::vector<std::pair<std::size_t, Eigen::Vector3d>> golden = {
+      {0, {0.0, 0.944606, -0.328206}},
+      {100, {0.041355, 0.963109, -0.265916}},
+      {250, {0.000426, 0.999998, -0.001808}},
+      {1000, {0.321926, 0.944631, -0.063525}}};
+  for (const auto& [shot, d] : golden) {
+    const Eigen::Vector3d expected(d.y(), -d.x(), d.z());
+    EXPECT_LT((beams.directions[shot] - expected).cwiseAbs().maxCoeff(), 1e-6) << shot;
+    EXPECT_EQ(beams.times_ns[shot], shot * 10'000);
+  }
+}
+
+TEST(Prism, FieldsOfViewAreThoseOfTheDataSheets) {
+  const FrameInterval second = {0, kSecond_ns};
+  EXPECT_NEAR(widest_deg(make_beams(mid40(), second)), 19.160, 2e-3);  // sheet: 38.4 / 2
+  EXPECT_NEAR(widest_deg(make_beams(mid70(), second)), 35.19, 1e-2);   // sheet: 70.4 / 2
+  const Beams beams = make_beams(avia(), second);
+  Eigen::Vector2d low = Eigen::Vector2d::Zero();
+  Eigen::Vector2d high = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector3d& d : beams.directions) {
+    const Eigen::Vector2d angles(std::atan2(d.y(), d.x()), std::asin(d.z()));
+    low = low.cwiseMin(angles);
+    high = high.cwiseMax(angles);
+  }
+  const Eigen::Vector2d size_deg = (high - low) / kDegree;
+  EXPECT_NEAR(size_deg.x(), 77.2, 0.2);  // the sheet's own numbers; the model is a fit
+  EXPECT_NEAR(size_deg.y(), 70.4, 0.2);
+}
+
+TEST(Prism, ThinPrismsDeflectByIndexLessOneTimesApex) {
+  const double apex_rad = 0.01;
+  for (const auto slope : {kEntry, kExit}) {
+    const Prism thin = {.prisms = {{1.0, apex_rad, 0.0, 1.5, slope}}};
+    const Beams beams = make_beams(thin, {0, kSecond_ns / 1000});
+    // the next term of the series is of third order in the apex angle
+    EXPECT_NEAR(widest_deg(beams) * kDegree, 0.5 * apex_rad, apex_rad * apex_rad * apex_rad);
+  }
+}
+
+TEST(Prism, SeveralBeamsAreRowsAndRings) {
+  const Beams beams = make_beams(avia(), {0, kSecond_ns / 10});
+  EXPECT_EQ(beams.rows, 6U);
+  EXPECT_EQ(beams.cols, 4000U);  // 240 000 points per second
+  EXPECT_EQ(beams.rings[5 * std::size_t{beams.cols}], 5U);
+}
+
+TEST(Prism, GoesOnOverWindows) {
+  testing::expect_windows_join(mid40(), 0, kSecond_ns / 5);
+  testing::expect_windows_join(avia(), 977 * kSecond_ns + 3, 977 * kSecond_ns + kSecond_ns / 9);
+  const Beams first = make_beams(mid40(), {0, kSecond_ns / 10});
+  const Beams second = make_beams(mid40(), {kSecond_ns / 10, kSecond_ns / 5});
+  EXPECT_GT((first.directions[0] - second.directions[0]).norm(), 0.01);  // it does not repeat
+}
+
+TEST(Prism, TotalReflectionIsNoBeam) {
+  const Prism steep = {.prisms = {{1.0, 60.0 * kDegree, 0.0, 1.9, kExit}}};
+  for (const Eigen::Vector3d& d : make_beams(steep, {0, kSecond_ns / 1000}).directions) {
+    EXPECT_TRUE(std::isnan(d.x()));
+  }
+}
+
+TEST(Prism, RefusesNumbersOutOfRange) {
+  const FrameInterval window = {0, kSecond_ns / 10};
+  EXPECT_THROW(make_beams(Prism{}, window), Error);  // no prism
+  Prism prism = mid40();
+  prism.incidence_tangent = {1.0};
+  EXPECT_THROW(make_beams(prism, window), Error);
+  prism = mid40();
+  prism.prisms[0].refractive_index = 0.5;
+  EXPECT_THROW(make_beams(prism, window), Error);
+}
+
+}  // namespace
+}  // namespace glidar
