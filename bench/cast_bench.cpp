@@ -147,14 +147,12 @@ void register_renderer(const Stage& stage, const std::string& kind, unsigned thr
   benchmark::RegisterBenchmark((name + "cast").c_str(), [&stage, kind,
                                                          threads](benchmark::State& state) {
     const auto renderer = make_renderer(stage.scene, {.kind = kind, .threads = threads});
+    const CastRequest request{.beams = stage.beams,
+                              .world_from_sensor = stage.world_from_sensor,
+                              .fields = {.normal = true}};
     Hits hits;
-    for (auto _ : state) {
-      renderer->cast({.beams = stage.beams,
-                      .world_from_sensor = stage.world_from_sensor,
-                      .world_from_instance = {},
-                      .fields = {.normal = true}},
-                     hits);
-    }
+    renderer->cast(request, hits);  // builds trees and allocates memory
+    for (auto _ : state) renderer->cast(request, hits);
     count_rays(state);
   })->UseRealTime();
   benchmark::RegisterBenchmark((name + "simulate").c_str(), [&stage, kind,
@@ -163,6 +161,7 @@ void register_renderer(const Stage& stage, const std::string& kind, unsigned thr
     const Motion motion = static_motion(stage.scene, stage.world_from_sensor);
     const Setup setup{stage.scene, stage.sensor, stage.beams, motion, *renderer};
     Frame frame;
+    simulate(setup, {}, frame);  // builds trees and allocates memory
     for (auto _ : state) simulate(setup, {}, frame);
     count_rays(state);
   })->UseRealTime();
