@@ -29,7 +29,7 @@ Json parse_tree(std::string_view text) {
 }
 
 /// `count` numbers, or none.
-std::vector<double> to_xyz_wxyz(const Json& node, const char* key, std::size_t count) {
+std::vector<double> read_numbers(const Json& node, const char* key, std::size_t count) {
   const auto found = node.find(key);
   if (found == node.end() || !found->is_array() || found->size() != count) return {};
   std::vector<double> numbers;
@@ -41,18 +41,18 @@ std::vector<double> to_xyz_wxyz(const Json& node, const char* key, std::size_t c
 }
 
 Eigen::Matrix4d transform_of(const Json& node) {
-  if (const std::vector<double> m = to_xyz_wxyz(node, "matrix", 16); !m.empty()) {
+  if (const std::vector<double> m = read_numbers(node, "matrix", 16); !m.empty()) {
     return Eigen::Map<const Eigen::Matrix4d>(m.data());  // column by column, as Eigen
   }
   Eigen::Affine3d transform = Eigen::Affine3d::Identity();
-  if (const auto t = to_xyz_wxyz(node, "translation", 3); !t.empty()) {
+  if (const auto t = read_numbers(node, "translation", 3); !t.empty()) {
     transform.translate(Eigen::Vector3d(t[0], t[1], t[2]));
   }
-  if (const auto q = to_xyz_wxyz(node, "rotation", 4); !q.empty()) {
+  if (const auto q = read_numbers(node, "rotation", 4); !q.empty()) {
     const Eigen::Quaterniond rotation(q[3], q[0], q[1], q[2]);
     if (rotation.norm() > 0.0) transform.rotate(rotation.normalized());
   }
-  if (const auto s = to_xyz_wxyz(node, "scale", 3); !s.empty()) {
+  if (const auto s = read_numbers(node, "scale", 3); !s.empty()) {
     transform.scale(Eigen::Vector3d(s[0], s[1], s[2]));
   }
   return transform.matrix();

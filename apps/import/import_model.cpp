@@ -29,16 +29,16 @@ namespace {
 constexpr unsigned kSteps = aiProcess_ValidateDataStructure | aiProcess_Triangulate |
                             aiProcess_SortByPType | aiProcess_GenUVCoords;
 
-class ProgressCallback : public Assimp::ProgressHandler {
+class AssimpProgress : public Assimp::ProgressHandler {
  public:
-  explicit ProgressCallback(std::function<void(double)> tell) : tell_(std::move(tell)) {}
+  explicit AssimpProgress(std::function<void(double)> report) : report_(std::move(report)) {}
   bool Update(float fraction) override {
-    if (fraction >= 0.0F) tell_(fraction);
+    if (fraction >= 0.0F) report_(fraction);
     return true;
   }
 
  private:
-  std::function<void(double)> tell_;
+  std::function<void(double)> report_;
 };
 
 std::string importer_name(const Assimp::Importer& importer) {
@@ -110,7 +110,7 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   // Never destroyed: taking a deep tree apart recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
   importer.SetIOHandler(new ConfinedIo(folder, files, log));
-  importer.SetProgressHandler(new ProgressCallback(progress));
+  importer.SetProgressHandler(new AssimpProgress(progress));
   if (importer.ReadFile(canonical_model.string(), kSteps) == nullptr) {
     refuse(importer.GetErrorString(), log);
   }

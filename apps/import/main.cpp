@@ -32,7 +32,7 @@ constexpr int kExitNoMemory = 3;
 
 void tell_progress(double fraction) {
   const auto percent = static_cast<unsigned char>(fraction <= 1.0 ? fraction * 100.0 : 100.0);
-  // ProgressCallback is a courtesy: a full or closed pipe must not stop the work.
+  // Progress is optional: a full or closed pipe must not stop the work.
   [[maybe_unused]] const ssize_t written = ::write(kProgressFd, &percent, 1);
 }
 

@@ -214,7 +214,7 @@ void fill_return(const Source& s, Column& column) {
       s, column, [&](std::size_t i) { return static_cast<std::uint8_t>(i / s.beams.firings()); });
 }
 
-void fill_cause(const Source& s, Column& column) {
+void fill_return_source(const Source& s, Column& column) {
   const std::vector<ReturnSource>& causes = s.frame.return_source;
   fill_each<std::uint8_t>(s, column, [&](std::size_t i) {
     const ReturnSource told = causes.empty() ? ReturnSource::surface : causes[i];
@@ -294,7 +294,7 @@ const std::vector<ColumnKind>& column_kinds() {
       {"ring", {"ring"}, {}, fill_ring},
       {"time", {"time"}, {}, fill_time},
       {"return", {"return"}, {}, fill_return},
-      {"return_source", {"return_source"}, {}, fill_cause},
+      {"return_source", {"return_source"}, {}, fill_return_source},
       {"azimuth", {"azimuth"}, {}, fill_azimuth},
       {"elevation", {"elevation"}, {}, fill_elevation},
       {"stamp", {"stamp"}, {}, fill_stamp},

@@ -9,7 +9,7 @@
 
 namespace glidar {
 
-/// Counts the pieces of a loop that many threads share, and tells a ProgressCallback of them: at
+/// Counts the pieces of a loop that many threads share, and reports them to a ProgressCallback: at
 /// most kSteps times, never two at once, never backwards. Where nobody asks it costs a branch.
 class ProgressCounter {
  public:

@@ -29,7 +29,7 @@ struct FisherOptions {
 };
 
 /// One of six independent displacements, from best to worst determined.
-struct InformationDirection {
+struct EigenDirection {
   /// Of the dimensionless information: displacements in units of sigma, rotations times length_m.
   double eigenvalue = 0.0;                 ///< 1/m^2
   bool degenerate = false;                 ///< the scan does not determine it
@@ -54,7 +54,7 @@ struct FisherInformation {
   /// beside it, for axes that take part in a degenerate direction.
   Matrix6 covariance = Matrix6::Zero();
   Vector6 bound = Vector6::Zero();  ///< its standard deviations: rad x3, m x3
-  std::array<InformationDirection, 6> directions;
+  std::array<EigenDirection, 6> directions;
   double condition = 0.0;  ///< best over worst eigenvalue; infinite when degenerate
   double length_m = 0.0;   ///< root mean square distance of the points from their middle
   Eigen::Vector3d middle_m = Eigen::Vector3d::Zero();  ///< of the points, in the reference frame

@@ -91,7 +91,7 @@ EchoContribution ghost_path(const Block& block, std::size_t mirrored, double ene
           kGhostSurface};
 }
 
-/// All light_paths by which light of a beam comes back from surfaces.
+/// All contributions of surfaces to the echo of a beam.
 void collect_paths(const Block& block, std::size_t beam, BeamSurfaces& surfaces,
                    WaveformBuffer& work) {
   const Workspace& memory = block.frame.workspace;

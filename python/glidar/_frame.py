@@ -21,7 +21,7 @@ from ._origin import Origin
 from ._pictures import IMAGE, Picture, html_picture, html_table, picture_of, plot_points, show_images
 from ._state import Immutable, key_of, part, restoring, stated
 from ._status import ReturnSource, Status
-from ._point_trace import PointTrace, story_of
+from ._point_trace import PointTrace, trace_of
 from ._ground_truth import GroundTruth
 
 _PCD = ("ascii", "binary", "binary_compressed")
@@ -359,7 +359,7 @@ class Frame(Immutable):
         Raises:
             Error: there is no such entry.
         """
-        return story_of(_core.explain(self._with_renderer(), self._entry(index, row, col, hits_only)))
+        return trace_of(_core.explain(self._with_renderer(), self._entry(index, row, col, hits_only)))
 
     def _entry(self, index: int | None, row: int | None, col: int | None, hits_only: bool) -> int:
         if index is None and row is not None and col is not None:

@@ -75,17 +75,17 @@ class PointTrace(SameContent):
         return self.text
 
 
-def _reading(core: _core.Measurement) -> Measurement:
+def _measurement(core: _core.Measurement) -> Measurement:
     return Measurement(Status(core.status), ReturnSource(core.return_source), core.range_m, core.intensity, core.sigma_m)
 
 
-def _drawn(core: _core.RandomSample) -> RandomSample:
+def _sample(core: _core.RandomSample) -> RandomSample:
     return RandomSample("normal" if core.is_normal else "uniform", core.value, core.use, core.against)
 
 
-def story_of(core: _core.PointTrace) -> PointTrace:
+def trace_of(core: _core.PointTrace) -> PointTrace:
     """The story that the library tells."""
-    measured, *after = (_reading(reading) for reading in core.readings)
-    steps = (NoiseStep(tuple(_drawn(drawn) for drawn in core.draws(k)), reading) for k, reading in enumerate(after))
+    measured, *after = (_measurement(reading) for reading in core.readings)
+    steps = (NoiseStep(tuple(_sample(drawn) for drawn in core.draws(k)), reading) for k, reading in enumerate(after))
     echoes = (Echo(echo.range_m, echo.signal, echo.sigma_m, echo.is_mixed) for echo in core.echoes)
     return PointTrace(core.entry, core.direction, measured, tuple(steps), tuple(echoes), core.text)

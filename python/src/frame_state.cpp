@@ -135,7 +135,7 @@ void check_columns(const Frame& frame, std::size_t size) {
   if (std::any_of(frame.status.begin(), frame.status.end(), too_large(Status::no_return_of_rank)) ||
       std::any_of(frame.return_source.begin(), frame.return_source.end(),
                   too_large(ReturnSource::crosstalk))) {
-    refuse("frame", "a status or cause that is not known",
+    refuse("frame", "a status or return source that is not known",
            "those of glidar.Status, glidar.ReturnSource");
   }
 }

@@ -21,7 +21,7 @@ inline nb::object text_of(std::string_view bytes) {
 struct Interrupted {};
 
 /// While GLIDAR works without Python's lock: looks now and then whether Ctrl-C was pressed.
-/// ProgressCallback may come from any thread; only the one that called runs Python's handlers.
+/// Progress may be reported by any thread; only the one that called runs Python's handlers.
 class Watch {
  public:
   Watch() : caller_(std::this_thread::get_id()), next_(Clock::now() + kPause) {}

@@ -185,7 +185,7 @@ HitFieldMask fields(const std::vector<std::string>& columns) {
 }  // namespace
 
 void bind_simulator(nb::module_& module) {
-  nb::class_<HitFieldMask>(module, "HitFieldMask", "What truth a frame keeps.");
+  nb::class_<HitFieldMask>(module, "HitFieldMask", "The ground truth that a frame keeps.");
   module.def("fields_needed_by", fields, nb::arg("columns"));
   nb::class_<Simulator>(module, "Simulator")
       .def(

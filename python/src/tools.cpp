@@ -45,7 +45,7 @@ std::vector<std::string> surface_names() {
 
 nb::dict state_of(const FisherInformation& information) {
   nb::list directions;
-  for (const InformationDirection& one : information.directions) {
+  for (const EigenDirection& one : information.directions) {
     directions.append(nb::make_tuple(one.eigenvalue, one.degenerate, one.displacement, one.words));
   }
   nb::dict state;
@@ -90,11 +90,11 @@ void write_file(const std::filesystem::path& path, const nb::bytes& data) {
 }
 
 void bind_information(nb::module_& module) {
-  nb::class_<InformationDirection>(module, "EigenDirection")
-      .def_ro("eigenvalue", &InformationDirection::eigenvalue)
-      .def_ro("degenerate", &InformationDirection::degenerate)
-      .def_ro("displacement", &InformationDirection::displacement)
-      .def_ro("words", &InformationDirection::words);
+  nb::class_<EigenDirection>(module, "EigenDirection")
+      .def_ro("eigenvalue", &EigenDirection::eigenvalue)
+      .def_ro("degenerate", &EigenDirection::degenerate)
+      .def_ro("displacement", &EigenDirection::displacement)
+      .def_ro("words", &EigenDirection::words);
   nb::class_<FisherInformation>(module, "FisherInformation")
       .def_ro("matrix", &FisherInformation::matrix)
       .def_ro("covariance", &FisherInformation::covariance)

@@ -26,7 +26,7 @@ Shape square(const CanvasRect& rect, float nearness, std::uint32_t number) {
   return shape;
 }
 
-std::vector<std::uint32_t> to_xyz_wxyz(const Canvas& canvas) {
+std::vector<std::uint32_t> drawn_numbers(const Canvas& canvas) {
   std::vector<std::uint32_t> numbers;
   canvas.copy_numbers(numbers);
   return numbers;
@@ -34,7 +34,7 @@ std::vector<std::uint32_t> to_xyz_wxyz(const Canvas& canvas) {
 
 /// The numbers without what is marked.
 std::vector<std::uint32_t> triangles_of(const Canvas& canvas) {
-  std::vector<std::uint32_t> numbers = to_xyz_wxyz(canvas);
+  std::vector<std::uint32_t> numbers = drawn_numbers(canvas);
   for (std::uint32_t& number : numbers) number &= kNumberBits | kCertain;
   return numbers;
 }
@@ -64,11 +64,11 @@ std::vector<Shape> many_shapes(int cols, int rows) {
 
 TEST(RasterCanvas, IsEmptyAtFirstAndAfterItIsCleared) {
   const auto canvas = empty_canvas(10, 6);
-  EXPECT_EQ(to_xyz_wxyz(*canvas), std::vector<std::uint32_t>(60, kNoNumber));
+  EXPECT_EQ(drawn_numbers(*canvas), std::vector<std::uint32_t>(60, kNoNumber));
   canvas->offer(3, 2, 0.5F, 0.0F, 7);
-  EXPECT_EQ(to_xyz_wxyz(*canvas)[2 * 10 + 3], 7U);
+  EXPECT_EQ(drawn_numbers(*canvas)[2 * 10 + 3], 7U);
   canvas->clear(9, 5, 1.0F);
-  EXPECT_EQ(to_xyz_wxyz(*canvas), std::vector<std::uint32_t>(45, kNoNumber));
+  EXPECT_EQ(drawn_numbers(*canvas), std::vector<std::uint32_t>(45, kNoNumber));
 }
 
 TEST(RasterCanvas, TheNearestStaysInWhateverOrderItComes) {
@@ -90,7 +90,7 @@ TEST(RasterCanvas, OfEquallyNearTheLowerNumberStays) {
   canvas->draw(square({0, 7, 0, 7}, 0.5F, 4));
   canvas->offer(1, 1, 0.5F, 0.0F, 9 | kCertain);
   canvas->offer(2, 1, 0.5F, 0.0F, 1 | kCertain);
-  const std::vector<std::uint32_t> numbers = to_xyz_wxyz(*canvas);
+  const std::vector<std::uint32_t> numbers = drawn_numbers(*canvas);
   EXPECT_EQ(numbers[8 + 1], 3U | kCertain | kContested);
   EXPECT_EQ(numbers[8 + 2], 1U | kCertain | kContested);
 }
@@ -103,7 +103,7 @@ TEST(RasterCanvas, MarksSurfacesTooCloseToTellInEitherOrder) {
       const auto canvas = empty_canvas(8, 8);
       canvas->draw(is_swapped ? far : near);
       canvas->draw(is_swapped ? near : far);
-      const std::uint32_t number = to_xyz_wxyz(*canvas)[3 * 8 + 3];
+      const std::uint32_t number = drawn_numbers(*canvas)[3 * 8 + 3];
       EXPECT_EQ(number, (apart > 0.0F ? 5U : 3U) | kCertain | kContested) << apart;
     }
   }
@@ -114,8 +114,8 @@ TEST(RasterCanvas, MarksNoneOfSurfacesThatAreClearlyApart) {
   canvas->draw(square({0, 7, 0, 7}, 0.5F, 5));
   canvas->draw(square({0, 7, 0, 7}, 0.5F - 0x1p-16F, 3));
   canvas->offer(1, 1, 0.5F - 0x1p-16F, 0.0F, 4);
-  EXPECT_EQ(to_xyz_wxyz(*canvas)[3 * 8 + 3], 5U | kCertain);
-  EXPECT_EQ(to_xyz_wxyz(*canvas)[8 + 1], 5U | kCertain);
+  EXPECT_EQ(drawn_numbers(*canvas)[3 * 8 + 3], 5U | kCertain);
+  EXPECT_EQ(drawn_numbers(*canvas)[8 + 1], 5U | kCertain);
 }
 
 TEST(RasterCanvas, MarksASurfaceWhoseNearnessIsRough) {
@@ -124,13 +124,13 @@ TEST(RasterCanvas, MarksASurfaceWhoseNearnessIsRough) {
   const auto canvas = empty_canvas(8, 8);
   canvas->draw(rough);
   canvas->draw(square({0, 7, 0, 7}, 0.6F, 3));
-  EXPECT_EQ(to_xyz_wxyz(*canvas)[3 * 8 + 3], 3U | kCertain | kContested);
+  EXPECT_EQ(drawn_numbers(*canvas)[3 * 8 + 3], 3U | kCertain | kContested);
 }
 
 TEST(RasterCanvas, TellsWhatIsCertainByTheDistanceFromBorders) {
   const auto canvas = empty_canvas(8, 8);
   canvas->draw(square({1, 6, 1, 6}, 0.5F, 2));
-  const std::vector<std::uint32_t> numbers = to_xyz_wxyz(*canvas);
+  const std::vector<std::uint32_t> numbers = drawn_numbers(*canvas);
   EXPECT_EQ(numbers[3 * 8 + 1], 2U);             // on the left border
   EXPECT_EQ(numbers[3 * 8 + 6], 2U);             // on the right one
   EXPECT_EQ(numbers[3 * 8 + 3], 2U | kCertain);  // in the middle

@@ -81,7 +81,7 @@ Frame scan(const Beams& beams, const std::vector<Plane>& planes) {
 
 std::vector<std::string> degenerate_words(const FisherInformation& information) {
   std::vector<std::string> words;
-  for (const InformationDirection& direction : information.directions) {
+  for (const EigenDirection& direction : information.directions) {
     if (direction.degenerate) words.push_back(direction.words);
   }
   std::sort(words.begin(), words.end());
@@ -140,7 +140,7 @@ TEST(FisherInformation, SphereLeavesRotationsAboutItsCentreFree) {
   }
   const FisherInformation found = pose_information(frame, beams);
   ASSERT_EQ(degenerate_words(found).size(), 3U);
-  for (const InformationDirection& direction : found.directions) {
+  for (const EigenDirection& direction : found.directions) {
     if (!direction.degenerate) continue;
     // a turn about the centre leaves the centre where it is
     const Vector3d moved =

@@ -90,7 +90,7 @@ void keep_absolute_folders() {
     if (kept.empty()) ::unsetenv(name);
     if (!kept.empty()) ::setenv(name, kept.c_str(), 1);
   }
-  ::setenv("PYTHONSAFEPATH", "1", 1);  // as -P, for glidar-campaign and its thread_pool too
+  ::setenv("PYTHONSAFEPATH", "1", 1);  // as -P, for glidar-campaign and its workers too
 }
 
 std::vector<std::string> joined(std::vector<std::string> first,

@@ -182,7 +182,7 @@ Spinning read_spinning(const YamlField& field) {
   return s;
 }
 
-LineScan read_raster(const YamlField& field) {
+LineScan read_line_scan(const YamlField& field) {
   require_map(field,
               {"type", "azimuth_deg", "elevation_deg", "point_us", "line_us", "bidirectional"});
   LineScan r;

@@ -48,7 +48,7 @@ inline constexpr NumberRule kSmallAngle = {0.0, 5.0, false, "degrees from 0 to 5
 
 // One list for each struct.
 
-inline auto to_xyz_wxyz(const RangeGaussian& /*step*/) {
+inline auto number_fields(const RangeGaussian& /*step*/) {
   using Step = RangeGaussian;
   return std::array{
       NoiseNumber<Step>{.key = "sigma_m", .number = &Step::sigma_m},
@@ -56,7 +56,7 @@ inline auto to_xyz_wxyz(const RangeGaussian& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const RangeSnr& /*step*/) {
+inline auto number_fields(const RangeSnr& /*step*/) {
   using Step = RangeSnr;
   return std::array{
       NoiseNumber<Step>{.key = "floor_m", .number = &Step::floor_m},
@@ -68,7 +68,7 @@ inline auto to_xyz_wxyz(const RangeSnr& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const RangeCrlb& /*step*/) {
+inline auto number_fields(const RangeCrlb& /*step*/) {
   using Step = RangeCrlb;
   return std::array{
       NoiseNumber<Step>{.key = "pulse_fwhm_ns",
@@ -85,7 +85,7 @@ inline auto to_xyz_wxyz(const RangeCrlb& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const RangeShotNoise& /*step*/) {
+inline auto number_fields(const RangeShotNoise& /*step*/) {
   using Step = RangeShotNoise;
   return std::array{
       NoiseNumber<Step>{.key = "pulse_fwhm_ns",
@@ -100,7 +100,7 @@ inline auto to_xyz_wxyz(const RangeShotNoise& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const RangeUniform& /*step*/) {
+inline auto number_fields(const RangeUniform& /*step*/) {
   using Step = RangeUniform;
   return std::array{
       NoiseNumber<Step>{.key = "additive_m", .number = &Step::additive_m},
@@ -108,7 +108,7 @@ inline auto to_xyz_wxyz(const RangeUniform& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const RangeQuantization& /*step*/) {
+inline auto number_fields(const RangeQuantization& /*step*/) {
   using Step = RangeQuantization;
   return std::array{
       NoiseNumber<Step>{
@@ -116,7 +116,7 @@ inline auto to_xyz_wxyz(const RangeQuantization& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const RangeBias& /*step*/) {
+inline auto number_fields(const RangeBias& /*step*/) {
   using Step = RangeBias;
   return std::array{
       NoiseNumber<Step>{.key = "offset_m", .number = &Step::offset_m, .rule = kFinite},
@@ -124,7 +124,7 @@ inline auto to_xyz_wxyz(const RangeBias& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const RangeDrift& /*step*/) {
+inline auto number_fields(const RangeDrift& /*step*/) {
   using Step = RangeDrift;
   return std::array{
       NoiseNumber<Step>{.key = "sigma_m", .number = &Step::sigma_m, .is_needed = true},
@@ -133,14 +133,14 @@ inline auto to_xyz_wxyz(const RangeDrift& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const Dropout& /*step*/) {
+inline auto number_fields(const Dropout& /*step*/) {
   using Step = Dropout;
   return std::array{
       NoiseNumber<Step>{.key = "probability", .number = &Step::probability, .rule = kZeroToOne},
   };
 }
 
-inline auto to_xyz_wxyz(const Crosstalk& /*step*/) {
+inline auto number_fields(const Crosstalk& /*step*/) {
   using Step = Crosstalk;
   return std::array{
       NoiseNumber<Step>{.key = "probability",
@@ -151,7 +151,7 @@ inline auto to_xyz_wxyz(const Crosstalk& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const FalseAlarms& /*step*/) {
+inline auto number_fields(const FalseAlarms& /*step*/) {
   using Step = FalseAlarms;
   return std::array{
       NoiseNumber<Step>{.key = "rate_hz", .number = &Step::rate_hz, .is_needed = true},
@@ -162,7 +162,7 @@ inline auto to_xyz_wxyz(const FalseAlarms& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const DisparityQuantization& /*step*/) {
+inline auto number_fields(const DisparityQuantization& /*step*/) {
   using Step = DisparityQuantization;
   return std::array{
       NoiseNumber<Step>{.key = "k_m", .number = &Step::k_m, .rule = kAboveZero, .is_needed = true},
@@ -170,7 +170,7 @@ inline auto to_xyz_wxyz(const DisparityQuantization& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const KinectV1& /*step*/) {
+inline auto number_fields(const KinectV1& /*step*/) {
   using Step = KinectV1;
   return std::array{
       NoiseNumber<Step>{.key = "k_m", .number = &Step::k_m, .rule = kAboveZero},
@@ -179,14 +179,14 @@ inline auto to_xyz_wxyz(const KinectV1& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const Khoshelham& /*step*/) {
+inline auto number_fields(const Khoshelham& /*step*/) {
   using Step = Khoshelham;
   return std::array{
       NoiseNumber<Step>{.key = "sigma_per_m", .number = &Step::sigma_per_m},
   };
 }
 
-inline auto to_xyz_wxyz(const NguyenAxial& /*step*/) {
+inline auto number_fields(const NguyenAxial& /*step*/) {
   using Step = NguyenAxial;
   return std::array{
       NoiseNumber<Step>{.key = "a_m", .number = &Step::a_m},
@@ -196,7 +196,7 @@ inline auto to_xyz_wxyz(const NguyenAxial& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const NguyenLateral& /*step*/) {
+inline auto number_fields(const NguyenLateral& /*step*/) {
   using Step = NguyenLateral;
   return std::array{
       NoiseNumber<Step>{.key = "a_px", .number = &Step::a_px},
@@ -204,7 +204,7 @@ inline auto to_xyz_wxyz(const NguyenLateral& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const IclKinect& /*step*/) {
+inline auto number_fields(const IclKinect& /*step*/) {
   using Step = IclKinect;
   return std::array{
       NoiseNumber<Step>{.key = "k_m", .number = &Step::k_m, .rule = kAboveZero},
@@ -213,7 +213,7 @@ inline auto to_xyz_wxyz(const IclKinect& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const Stereo& /*step*/) {
+inline auto number_fields(const Stereo& /*step*/) {
   using Step = Stereo;
   return std::array{
       NoiseNumber<Step>{
@@ -225,7 +225,7 @@ inline auto to_xyz_wxyz(const Stereo& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const ContinuousWave& /*step*/) {
+inline auto number_fields(const ContinuousWave& /*step*/) {
   using Step = ContinuousWave;
   return std::array{
       NoiseNumber<Step>{.key = "electrons_at_full_scale",
@@ -240,7 +240,7 @@ inline auto to_xyz_wxyz(const ContinuousWave& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const IntensityGaussian& /*step*/) {
+inline auto number_fields(const IntensityGaussian& /*step*/) {
   using Step = IntensityGaussian;
   return std::array{
       NoiseNumber<Step>{.key = "sigma", .number = &Step::sigma},
@@ -248,7 +248,7 @@ inline auto to_xyz_wxyz(const IntensityGaussian& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const IntensityScale& /*step*/) {
+inline auto number_fields(const IntensityScale& /*step*/) {
   using Step = IntensityScale;
   return std::array{
       NoiseNumber<Step>{.key = "gain", .number = &Step::gain, .rule = kAboveZero},
@@ -257,7 +257,7 @@ inline auto to_xyz_wxyz(const IntensityScale& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const PointingJitter& /*step*/) {
+inline auto number_fields(const PointingJitter& /*step*/) {
   using Step = PointingJitter;
   return std::array{
       NoiseNumber<Step>{.key = "sigma_azimuth_deg",
@@ -271,7 +271,7 @@ inline auto to_xyz_wxyz(const PointingJitter& /*step*/) {
   };
 }
 
-inline auto to_xyz_wxyz(const EncoderError& /*step*/) {
+inline auto number_fields(const EncoderError& /*step*/) {
   using Step = EncoderError;
   return std::array{
       NoiseNumber<Step>{

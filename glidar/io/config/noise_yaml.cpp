@@ -100,10 +100,10 @@ template <class Step>
 NoiseStep read_step_of(const YamlField& field) {
   Step step;
   std::vector<std::string> known = {"type"};
-  for (const auto& n : to_xyz_wxyz(step)) known.emplace_back(n.key);
+  for (const auto& n : number_fields(step)) known.emplace_back(n.key);
   for (std::string& key : other_keys(step)) known.push_back(std::move(key));
   require_map(field, known);
-  for (const auto& n : to_xyz_wxyz(step)) {
+  for (const auto& n : number_fields(step)) {
     const auto value = n.is_needed ? need(field, n.key) : find(field, n.key);
     if (value) step.*n.number = number(*value, n.rule) * n.unit;
   }
@@ -182,7 +182,7 @@ nlohmann::ordered_json noise_json(const std::vector<NoiseStep>& noise, InUnit co
     Json told = {{"type", kNoiseTypes.at(step.index())}};
     std::visit(
         [&](const auto& s) {
-          for (const auto& n : to_xyz_wxyz(s)) told[n.key] = convert(s.*n.number, n.unit);
+          for (const auto& n : number_fields(s)) told[n.key] = convert(s.*n.number, n.unit);
           tell_others(s, convert, told);
         },
         step);

@@ -12,7 +12,7 @@ namespace glidar {
 
 Pinhole read_pinhole(const YamlField& field);
 Spinning read_spinning(const YamlField& field);
-LineScan read_raster(const YamlField& field);
+LineScan read_line_scan(const YamlField& field);
 Prism read_prism(const YamlField& field);
 /// Beams from a file of rays or directions.
 RayTable read_beam_table(const YamlField& field);

@@ -30,7 +30,7 @@ Optics read_optics(const YamlField& field) {
     case 1:
       return read_spinning(field);
     case 2:
-      return read_raster(field);
+      return read_line_scan(field);
     case 3:
       return read_prism(field);
     case 4:

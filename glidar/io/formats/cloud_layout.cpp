@@ -181,8 +181,8 @@ std::size_t place_of(std::string_view name) {
 }
 
 /// One component of a column; its numbers are exact in double but for times beyond 104 days.
-std::vector<double> to_xyz_wxyz(const PointCloud& cloud, const Layout& layout,
-                                const std::string& name, std::size_t component) {
+std::vector<double> field_values(const PointCloud& cloud, const Layout& layout,
+                                 const std::string& name, std::size_t component) {
   const Column* column = find_column(cloud, name);
   if (column == nullptr) {
     throw Error({"cloud layout " + layout.name, fmt::format("the cloud has no column {}", name),
@@ -223,13 +223,13 @@ Spelling spelling_of(const Sensor& sensor) {
 /// and the paper's light hardly weakens over the range, so its intensity is that already.
 std::vector<double> reflectivity(const PointCloud& cloud, const Layout& layout,
                                  const Sensor& sensor, const Beams& beams) {
-  std::vector<double> numbers = to_xyz_wxyz(cloud, layout, "intensity", 0);
+  std::vector<double> numbers = field_values(cloud, layout, "intensity", 0);
   const Spelling spelling = spelling_of(sensor);
   if (spelling.vendor != nullptr) {
     for (double& number : numbers) number = vendor_reflectance(number, spelling.vendor->largest);
   }
   if (spelling.is_reflectance) return numbers;
-  const std::vector<double> ranges_m = to_xyz_wxyz(cloud, layout, "range", 0);
+  const std::vector<double> ranges_m = field_values(cloud, layout, "range", 0);
   for (std::size_t i = 0; i < numbers.size(); ++i)
     numbers[i] /= received_signal(*sensor.pulse, 1.0, ranges_m[i] - beams.range_offset_m);
   return numbers;
@@ -281,7 +281,7 @@ std::vector<float> unit_intensities(const PointCloud& cloud, const Sensor& senso
   const bool has_bytes = spelling_of(sensor).vendor != nullptr;
   const bool is_calibrated = sensor.pulse.has_value() && !has_bytes;
   std::vector<double> numbers = is_calibrated ? reflectivity(cloud, unit_layout(), sensor, beams)
-                                              : to_xyz_wxyz(cloud, unit_layout(), "intensity", 0);
+                                              : field_values(cloud, unit_layout(), "intensity", 0);
   std::vector<float> shares(numbers.size());
   std::transform(numbers.begin(), numbers.end(), shares.begin(), [&](double number) {
     const double share = is_calibrated ? percent_byte(number) / kMaxByte
@@ -315,7 +315,7 @@ PointCloud apply_layout(const PointCloud& cloud, std::string_view layout, const 
     if (field.column == kReflectivity) {
       numbers = reflectivity(cloud, wanted, sensor, beams);
     } else if (!field.column.empty()) {
-      numbers = to_xyz_wxyz(cloud, wanted, field.column, field.component);
+      numbers = field_values(cloud, wanted, field.column, field.component);
     }
     result.columns.push_back(made(field, numbers, cloud.size()));
   }

@@ -63,7 +63,7 @@ std::string information_text(const FisherInformation& information) {
   }
   text += fmt::format("directions, best known first (rotations times {:.4g} m):\n",
                       information.length_m);
-  for (const InformationDirection& direction : information.directions) {
+  for (const EigenDirection& direction : information.directions) {
     const std::string deviation =
         direction.degenerate ? "DEGENERATE"
                              : fmt::format("{:.4g} m", 1.0 / std::sqrt(direction.eigenvalue));
@@ -74,7 +74,7 @@ std::string information_text(const FisherInformation& information) {
 
 std::string information_json(const FisherInformation& information) {
   Json directions = Json::array();
-  for (const InformationDirection& direction : information.directions) {
+  for (const EigenDirection& direction : information.directions) {
     directions.push_back({{"words", direction.words},
                           {"degenerate", direction.degenerate},
                           {"eigenvalue_per_m2", direction.eigenvalue},

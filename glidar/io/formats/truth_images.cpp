@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint32_t kMaxGrey = std::numeric_limits<std::uint16_t>::max();
 
 template <class T>
-const std::vector<T>& to_xyz_wxyz(const CloudFile& job, const char* column) {
+const std::vector<T>& field_values(const CloudFile& job, const char* column) {
   return std::get<std::vector<T>>(find_column(job.cloud, column)->values);
 }
 
@@ -48,8 +48,8 @@ std::vector<Grey> greys_of(const std::vector<std::uint32_t>& ids) {
 }  // namespace
 
 void write_rgb_png(const CloudFile& job, AtomicFile& file) {
-  const auto& colours = to_xyz_wxyz<float>(job, "colour");
-  const auto& incidences = to_xyz_wxyz<float>(job, "incidence");
+  const auto& colours = field_values<float>(job, "colour");
+  const auto& incidences = field_values<float>(job, "incidence");
   std::vector<std::uint8_t> pixels(colours.size());
   for (std::size_t i = 0; i < pixels.size(); ++i) {
     const double light = std::cos(double{incidences[i / 3]});  // NaN where there is nothing
@@ -59,7 +59,7 @@ void write_rgb_png(const CloudFile& job, AtomicFile& file) {
 }
 
 void write_normal_png(const CloudFile& job, AtomicFile& file) {
-  const auto& normals = to_xyz_wxyz<float>(job, "normal");
+  const auto& normals = field_values<float>(job, "normal");
   std::vector<std::uint16_t> pixels(normals.size());
   std::transform(normals.begin(), normals.end(), pixels.begin(), [](float part) {
     return std::isnan(part) ? std::uint16_t{0} : scaled<std::uint16_t>(0.5 + 0.5 * part, kMaxGrey);
@@ -68,7 +68,7 @@ void write_normal_png(const CloudFile& job, AtomicFile& file) {
 }
 
 void write_instance_png(const CloudFile& job, AtomicFile& file) {
-  const auto& ids = to_xyz_wxyz<std::uint32_t>(job, "instance");
+  const auto& ids = field_values<std::uint32_t>(job, "instance");
   for (const std::uint32_t id : ids) {
     if (id == kInvalidId || (id > 0 && id <= kMaxGrey)) continue;
     throw Error({file.path().string(),
@@ -83,7 +83,7 @@ void write_instance_png(const CloudFile& job, AtomicFile& file) {
 
 void write_class_png(const CloudFile& job, AtomicFile& file) {
   constexpr std::size_t kMaxSmall = 256;
-  const auto& ids = to_xyz_wxyz<std::uint32_t>(job, "class");
+  const auto& ids = field_values<std::uint32_t>(job, "class");
   const std::size_t classes = job.context.scene.class_names.size();
   if (classes <= kMaxSmall) {
     write_pixels(job, PngKind::grey8, greys_of<std::uint8_t>(ids), file);

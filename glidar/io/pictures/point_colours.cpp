@@ -26,8 +26,8 @@ Colour near_bright_ramp(double t) {
 }
 
 /// A column's number of each shown point.
-std::vector<double> to_xyz_wxyz(const CloudFile& job, const ShownPoints& shown,
-                                std::string_view column) {
+std::vector<double> field_values(const CloudFile& job, const ShownPoints& shown,
+                                 std::string_view column) {
   std::vector<double> numbers;
   numbers.reserve(shown.entries.size());
   std::visit(
@@ -53,7 +53,7 @@ PointColours colour_by_ring(const CloudFile& job, const ShownPoints& shown) {
     throw Error({"colour_by", "ring: a camera has no rings",
                  "height, range, intensity, class or instance", "rings are channels of LiDARs"});
   }
-  const std::vector<double> rings = to_xyz_wxyz(job, shown, "ring");
+  const std::vector<double> rings = field_values(job, shown, "ring");
   ColourScale scale{};  // every ring is shown: none is odd
   if (!rings.empty()) {
     const auto [low, high] = std::minmax_element(rings.begin(), rings.end());
@@ -96,7 +96,7 @@ PointColours colour_by_number(const CloudFile& job, const ShownPoints& shown, bo
   std::map<std::uint32_t, std::size_t> counts;
   std::map<std::uint32_t, LegendEntry> entries;
   PointColours result;
-  for (const double value : to_xyz_wxyz(job, shown, is_class ? "class" : "instance")) {
+  for (const double value : field_values(job, shown, is_class ? "class" : "instance")) {
     const auto number = static_cast<std::uint32_t>(value);
     if (counts[number]++ == 0) entries[number] = entry_of(job.context.scene, number, is_class);
     result.colours.push_back(entries[number].colour);
@@ -110,11 +110,11 @@ PointColours colour_by_number(const CloudFile& job, const ShownPoints& shown, bo
 PointColours colour_points(const CloudFile& job, const ShownPoints& shown) {
   switch (job.options.picture.colour_by) {
     case ColourBy::range: {
-      const std::vector<double> values = to_xyz_wxyz(job, shown, "range");
+      const std::vector<double> values = field_values(job, shown, "range");
       return colour_by_bar(values, {"range", "m", make_colour_scale(values), near_bright_ramp});
     }
     case ColourBy::intensity: {
-      const std::vector<double> values = to_xyz_wxyz(job, shown, "intensity");
+      const std::vector<double> values = field_values(job, shown, "intensity");
       return colour_by_bar(
           values,
           {"intensity", "", make_colour_scale(values, ColourScale::Start::zero), light_grey});

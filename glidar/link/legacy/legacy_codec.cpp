@@ -81,8 +81,8 @@ Eigen::Quaterniond unit_quaternion(const Numbers& numbers, std::size_t first, co
 
 /// The numbers of a column of this name and this many numbers a point.
 template <class T>
-const std::vector<T>& to_xyz_wxyz(const PointCloud& cloud, const char* name,
-                                  std::size_t components) {
+const std::vector<T>& field_values(const PointCloud& cloud, const char* name,
+                                   std::size_t components) {
   const Column* column = find_column(cloud, name);
   const auto* numbers = column == nullptr ? nullptr : std::get_if<std::vector<T>>(&column->values);
   if (numbers != nullptr && numbers->size() == components * cloud.size()) return *numbers;
@@ -139,8 +139,8 @@ Cloud decode_cloud(Bytes message) {
 
 std::size_t encode_cloud(const PointCloud& cloud, std::uint64_t timestamp,
                          std::span<std::byte> to) {
-  const auto& xyz = to_xyz_wxyz<double>(cloud, "xyz", 3);
-  const auto& intensity = to_xyz_wxyz<float>(cloud, "intensity", 1);
+  const auto& xyz = field_values<double>(cloud, "xyz", 3);
+  const auto& intensity = field_values<float>(cloud, "intensity", 1);
   if (to.size() < cloud_bytes(cloud.size())) {
     fail(kCloudMessage, "there is room for " + std::to_string(to.size()) + " bytes",
          std::to_string(cloud_bytes(cloud.size())) + " or more");

@@ -47,7 +47,7 @@ void expect_same_noise(const Sensor& one, const Sensor& other) {
     std::visit(
         [&](const auto& step) {
           const auto& same = std::get<std::decay_t<decltype(step)>>(other.noise[k]);
-          for (const auto& n : to_xyz_wxyz(step)) {
+          for (const auto& n : number_fields(step)) {
             EXPECT_EQ(std::bit_cast<std::uint64_t>(step.*n.number),
                       std::bit_cast<std::uint64_t>(same.*n.number))
                 << n.key;
