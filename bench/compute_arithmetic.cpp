@@ -80,10 +80,10 @@ std::vector<double> ranges_on_device(const std::vector<Case>& cases) {
 }  // namespace
 
 std::string ComputeCaster::missing() {
-  constexpr int kLeast = 44;
+  constexpr int kMin = 44;
   opengl::EglContext context(chosen_device());
   const opengl::ScopedContext use(context);
-  if (epoxy_gl_version() < kLeast) return "no OpenGL 4.4";
+  if (epoxy_gl_version() < kMin) return "no OpenGL 4.4";
   const std::vector<Case> cases = random_cases();
   const std::vector<double> ranges = ranges_on_device(cases);
   std::size_t others = 0;

@@ -24,7 +24,7 @@
 namespace glidar::bench {
 namespace {
 
-constexpr double kMostRatio = 1.5;
+constexpr double kMaxRatio = 1.5;
 
 /// All in bytes.
 struct Memory {
@@ -140,7 +140,7 @@ void report(const std::string& name, const std::string& model) {
       memory.renderer / kMiB, memory.peak / kMiB);
   const double needed = memory.mesh + memory.embree;
   print_at_most(name + " scene and renderer / mesh and Embree's own",
-                (memory.scene + memory.renderer) / needed, kMostRatio);
+                (memory.scene + memory.renderer) / needed, kMaxRatio);
 }
 
 }  // namespace

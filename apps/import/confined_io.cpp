@@ -17,7 +17,7 @@ namespace {
 
 /// Some importers ask for the next line of a file that has ended until one comes. Honest ones
 /// notice the end after a few attempts.
-constexpr unsigned kMostReadsOfNothing = 10'000;
+constexpr unsigned kMaxReadsOfNothing = 10'000;
 
 /// Ends such an importer: Assimp takes its words for the reason of failure.
 class EndlessReading : public std::runtime_error {
@@ -40,7 +40,7 @@ class ReadStream : public Assimp::IOStream {
     std::memcpy(buffer, got.data(), got.size());
     at_ += got.size();
     reads_of_nothing_ = got.size() >= size ? 0 : reads_of_nothing_ + 1;
-    if (reads_of_nothing_ > kMostReadsOfNothing) throw EndlessReading();
+    if (reads_of_nothing_ > kMaxReadsOfNothing) throw EndlessReading();
     return got.size() / size;
   }
   std::size_t Write(const void*, std::size_t, std::size_t) override { return 0; }

@@ -24,11 +24,11 @@ namespace {
 constexpr double kCentimetre_m = 0.01;
 constexpr double kMillimetre_m = 0.001;
 /// Units beyond are mistakes, and take numbers out of single precision.
-constexpr double kSmallestUnit_m = 1e-18;
-constexpr double kLargestUnit_m = 1e18;
+constexpr double kMinUnit_m = 1e-18;
+constexpr double kMaxUnit_m = 1e18;
 
 bool is_usable(double metres) {
-  return metres >= kSmallestUnit_m && metres <= kLargestUnit_m;
+  return metres >= kMinUnit_m && metres <= kMaxUnit_m;
 }
 
 void note_useless_unit(const std::string& metres, std::vector<std::string>& notes) {

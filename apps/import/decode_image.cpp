@@ -14,18 +14,18 @@
 namespace glidar::import {
 namespace {
 
-constexpr std::uint64_t kMostSide = 16384;
-constexpr std::uint64_t kMostBytes = std::uint64_t{256} << 20U;
+constexpr std::uint64_t kMaxSide = 16384;
+constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20U;
 
 /// Why an image of this size is not decoded; empty if it may be.
 std::string too_large(std::uint64_t width, std::uint64_t height, std::uint64_t channels,
                       std::uint64_t budget) {
   if (width == 0 || height == 0) return "it has no pixels";
-  if (width > kMostSide || height > kMostSide) {
-    return fmt::format("too large: {} x {}, allowed {} per side", width, height, kMostSide);
+  if (width > kMaxSide || height > kMaxSide) {
+    return fmt::format("too large: {} x {}, allowed {} per side", width, height, kMaxSide);
   }
   const std::uint64_t bytes = width * height * channels;
-  if (bytes > kMostBytes) return "too large: more than 256 MiB when decoded";
+  if (bytes > kMaxBytes) return "too large: more than 256 MiB when decoded";
   if (bytes > budget) return "the model's textures together are too large: more than 512 MiB";
   return "";
 }

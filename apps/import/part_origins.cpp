@@ -113,18 +113,18 @@ void gather_in_cells(const std::vector<Group>& parts, std::vector<std::uint32_t>
   for (;; size *= 2.0) {
     cells.clear();
     for (std::uint32_t i = 0; i < groups.size(); ++i) {
-      if (groups[i].rounding > kLargestRounding) cells.try_emplace(cell_of(groups[i], size), i);
+      if (groups[i].rounding > kMaxRounding) cells.try_emplace(cell_of(groups[i], size), i);
     }
-    if (cells.size() <= kMostOrigins) break;
+    if (cells.size() <= kMaxOrigins) break;
   }
   for (std::uint32_t& group : group_of) {
-    if (groups[group].rounding > kLargestRounding) group = cells.at(cell_of(groups[group], size));
+    if (groups[group].rounding > kMaxRounding) group = cells.at(cell_of(groups[group], size));
   }
 }
 
 /// Its own origin where that is much nearer than the common one.
 Eigen::Vector3d origin_of_group(const Group& group, const Eigen::Vector3d& common) {
-  if (group.rounding <= kLargestRounding) return common;
+  if (group.rounding <= kMaxRounding) return common;
   constexpr double kNearer = 0.25;
   const double from_common = (group.box.min() - common)
                                  .cwiseAbs()
@@ -149,9 +149,8 @@ std::vector<Eigen::Vector3d> part_origins(const Walk& walk) {
   const Eigen::Vector3d common = origin_for(box_of(walk));
   std::vector<Eigen::Vector3d> origins(walk.placed.size(), common);
   const std::vector<Group> parts = measure(walk, common);
-  const bool is_rounded = std::any_of(parts.begin(), parts.end(), [](const Group& part) {
-    return part.rounding > kLargestRounding;
-  });
+  const bool is_rounded = std::any_of(
+      parts.begin(), parts.end(), [](const Group& part) { return part.rounding > kMaxRounding; });
   if (parts.size() < 2 || !is_rounded) return origins;
   DisjointSets sets(parts.size());
   join_neighbours(walk, common, sets);

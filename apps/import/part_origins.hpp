@@ -14,13 +14,13 @@ namespace glidar::import {
 /// Along an axis on which the whole model is farther from zero than its own size, that is the
 /// middle of its box, else zero: either way single precision takes the file's coordinates without
 /// rounding (Sterbenz 1974). Nodes may place parts between the numbers of single precision. Where
-/// that rounds by more than kLargestRounding units, parts far from the common origin get origins
-/// nearby, at most kMostOrigins in all. Parts that share a vertex position share their origin, so
+/// that rounds by more than kMaxRounding units, parts far from the common origin get origins
+/// nearby, at most kMaxOrigins in all. Parts that share a vertex position share their origin, so
 /// that no gap opens between them.
 std::vector<Eigen::Vector3d> part_origins(const Walk& walk);
 
-inline constexpr double kLargestRounding = 1e-6;
-inline constexpr std::size_t kMostOrigins = 64;
+inline constexpr double kMaxRounding = 1e-6;
+inline constexpr std::size_t kMaxOrigins = 64;
 
 /// The box of all vertices that triangles use.
 Eigen::AlignedBox3d box_of(const Walk& walk);

@@ -18,7 +18,7 @@
 namespace glidar::import {
 namespace {
 
-constexpr float kMostShininess = 128.0F;
+constexpr float kMaxShininess = 128.0F;
 constexpr float kCutoff = 0.5F;
 
 float within(float value, float low, float high) {
@@ -56,7 +56,7 @@ void read_metallic(const aiMaterial& source, float metallic_factor, float roughn
   m.diffuse = colour(source, key_of(AI_MATKEY_BASE_COLOR)).value_or(m.diffuse);
   m.specular = (1.0F - r) * (dielectric + metallic * (m.diffuse - dielectric));
   const float r4 = std::max(r * r * r * r, 1e-6F);
-  m.shininess = within(2.0F / r4 - 2.0F, 0.0F, kMostShininess);
+  m.shininess = within(2.0F / r4 - 2.0F, 0.0F, kMaxShininess);
 }
 
 void read_phong(const aiMaterial& source, Material& m) {
@@ -65,7 +65,7 @@ void read_phong(const aiMaterial& source, Material& m) {
   m.specular = colour(source, key_of(AI_MATKEY_COLOR_SPECULAR)).value_or(Eigen::Vector3f::Zero());
   m.specular *= without_highlights(source) ? 0.0F : strength;
   m.shininess =
-      within(number(source, key_of(AI_MATKEY_SHININESS)).value_or(0.0F), 0.0F, kMostShininess);
+      within(number(source, key_of(AI_MATKEY_SHININESS)).value_or(0.0F), 0.0F, kMaxShininess);
 }
 
 void read_colours(const aiMaterial& source, Material& m) {

@@ -11,8 +11,8 @@
 namespace glidar::import {
 namespace {
 
-constexpr std::uint64_t kMostTriangles = 100'000'000;
-constexpr std::uint64_t kMostNodes = 10'000'000;
+constexpr std::uint64_t kMaxTriangles = 100'000'000;
+constexpr std::uint64_t kMaxNodes = 10'000'000;
 
 struct Visit {
   const aiNode* node;
@@ -37,10 +37,10 @@ void place_meshes(const aiScene& scene, const aiNode& node, const Eigen::Matrix4
     }
     walk.triangles += mesh.mNumFaces;
     walk.skinned += mesh.mNumBones > 0 ? 1 : 0;
-    if (walk.triangles > kMostTriangles || walk.placed.size() >= kMostRecords) {
+    if (walk.triangles > kMaxTriangles || walk.placed.size() >= kMaxRecords) {
       throw Refusal{fmt::format("its parts, repeated as its tree says, come to more than {} "
                                 "triangles or {} parts",
-                                kMostTriangles, kMostRecords),
+                                kMaxTriangles, kMaxRecords),
                     "make the model smaller, or place its parts by a scene file"};
     }
     const aiString& name = mesh.mName.length > 0 ? mesh.mName : node.mName;
@@ -63,8 +63,8 @@ Walk walk(const aiScene& scene, const NodeTransforms& transforms) {
   std::vector<Visit> stack;
   if (scene.mRootNode != nullptr) stack.push_back({scene.mRootNode, Eigen::Matrix4d::Identity()});
   for (std::uint64_t visited = 0; !stack.empty(); ++visited) {
-    if (visited > kMostNodes) {
-      throw Refusal{fmt::format("its tree has more than {} nodes", kMostNodes),
+    if (visited > kMaxNodes) {
+      throw Refusal{fmt::format("its tree has more than {} nodes", kMaxNodes),
                     "make the model smaller"};
     }
     const Visit visit = stack.back();

@@ -22,8 +22,8 @@ void add(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, Colour colo
 
 /// Entries along one row or column of the beams' grid, at most so many, both ends among them.
 std::vector<std::size_t> along(std::size_t first, std::size_t step, std::size_t count) {
-  constexpr std::size_t kMost = 96;
-  const std::size_t parts = std::min(count - 1, kMost);
+  constexpr std::size_t kMax = 96;
+  const std::size_t parts = std::min(count - 1, kMax);
   std::vector<std::size_t> entries = {first};
   for (std::size_t i = 1; i <= parts; ++i) {
     entries.push_back(first + step * (i * (count - 1) / parts));

@@ -139,8 +139,8 @@ void show_look(Viewer& viewer) {
     look.map = static_cast<ColourMap>(chosen);
     viewer.look_changed();
   }
-  constexpr float kLargest = 8.0F;
-  if (ImGui::SliderFloat("points", &look.point_size, 1.0F, kLargest, "%.0f px")) {
+  constexpr float kMax = 8.0F;
+  if (ImGui::SliderFloat("points", &look.point_size, 1.0F, kMax, "%.0f px")) {
     viewer.look_changed();
   }
 }

@@ -93,10 +93,10 @@ void Screen::upload(const Viewer& viewer) {
 }
 
 void Screen::upload_picture(const SensorPicture& picture) {
-  constexpr std::size_t kMost = 4096;  // pixels to a side that every device takes
+  constexpr std::size_t kMax = 4096;  // pixels to a side that every device takes
   const BeamPicture& layout = picture.layout;
-  const std::size_t step_x = std::max<std::size_t>(1, (layout.cols + kMost - 1) / kMost);
-  const std::size_t step_y = std::max<std::size_t>(1, (layout.rows + kMost - 1) / kMost);
+  const std::size_t step_x = std::max<std::size_t>(1, (layout.cols + kMax - 1) / kMax);
+  const std::size_t step_y = std::max<std::size_t>(1, (layout.rows + kMax - 1) / kMax);
   std::vector<Colour> thinned;
   for (std::size_t row = 0; row < layout.rows; row += step_y) {
     for (std::size_t col = 0; col < layout.cols; col += step_x) {
@@ -115,9 +115,9 @@ void Screen::upload_picture(const SensorPicture& picture) {
 }
 
 void Screen::upload_points(const Viewer& viewer) {
-  constexpr std::size_t kMost = 2'000'000;  // what software draws while one waits
+  constexpr std::size_t kMax = 2'000'000;  // what software draws while one waits
   const std::vector<Eigen::Vector3f>& all = viewer.points();
-  shown_one_of_ = std::max<std::size_t>(1, (viewer.summary().hits + kMost - 1) / kMost);
+  shown_one_of_ = std::max<std::size_t>(1, (viewer.summary().hits + kMax - 1) / kMax);
   std::vector<ColouredVertex> points;
   points.reserve(viewer.summary().hits / shown_one_of_ + 1);
   std::size_t hits = 0;

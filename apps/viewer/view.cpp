@@ -281,9 +281,9 @@ void parse_size(const std::string& text, WindowSize& size) {
   int used = 0;
   const bool is_read =
       std::sscanf(text.c_str(), "%5dx%5d%n", &size.width, &size.height, &used) == 2;
-  constexpr int kLeast = 320;
-  constexpr int kMost = 16384;
-  const auto is_fit = [](int n) { return n >= kLeast && n <= kMost; };
+  constexpr int kMin = 320;
+  constexpr int kMax = 16384;
+  const auto is_fit = [](int n) { return n >= kMin && n <= kMax; };
   if (is_read && static_cast<std::size_t>(used) == text.size() && is_fit(size.width) &&
       is_fit(size.height))
     return;
@@ -307,9 +307,9 @@ Command add_view(CLI::App& program) {
       [&size = flags->size](std::string_view, const std::string& text) { parse_size(text, size); });
   add_text(command, {"--screenshot", "FILE", "Write the window as a PNG, then quit", group},
            flags->screenshot);
-  constexpr std::int64_t kMost = 1'000'000;
+  constexpr std::int64_t kMax = 1'000'000;
   add_whole(command, {"--frames", "N", "Quit after N frames of the sensor [screenshot: 1]", group},
-            {1, kMost},
+            {1, kMax},
             [&frames = flags->frames](std::int64_t n) { frames = static_cast<std::uint32_t>(n); });
   command
       .add_flag("--print-state", flags->prints_state,

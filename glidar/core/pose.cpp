@@ -10,7 +10,7 @@ namespace glidar {
 namespace {
 
 bool is_within_reach(const Eigen::Vector3d& position_m) {
-  return position_m.cwiseAbs().maxCoeff() <= kLargestCoordinate_m && position_m.allFinite();
+  return position_m.cwiseAbs().maxCoeff() <= kMaxCoordinate_m && position_m.allFinite();
 }
 
 }  // namespace
@@ -30,8 +30,8 @@ Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Ei
                  .allowed = "two distinct points",
                  .remedy = ""});
   }
-  constexpr double kSmallestSine = 1e-9;  // below it the roll angle is not defined
-  if (!(right.norm() > kSmallestSine * forward.norm() * up.norm())) {
+  constexpr double kMinSine = 1e-9;  // below it the roll angle is not defined
+  if (!(right.norm() > kMinSine * forward.norm() * up.norm())) {
     throw Error({.where = "look_at",
                  .found = "the up vector is parallel to the line of sight",
                  .allowed = "an up vector that is not",

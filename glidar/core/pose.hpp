@@ -12,7 +12,7 @@ using Pose = Eigen::Isometry3d;
 
 /// The largest coordinate and scale that poses may have; beyond, squares no longer fit single
 /// precision.
-inline constexpr double kLargestCoordinate_m = 1e15;
+inline constexpr double kMaxCoordinate_m = 1e15;
 
 /// The pose of a camera at `eye` whose boresight (+z) points at `target` and whose image shows
 /// `up` upwards (optical frame, REP-103: x right, y down, z forward).
@@ -39,7 +39,7 @@ Pose optical_from_body();
 Pose woods2016_from_optical();
 
 /// The pose with this attitude and position; the quaternion is normalised.
-/// Throws Error when it is zero or anything is not finite or beyond kLargestCoordinate_m.
+/// Throws Error when it is zero or anything is not finite or beyond kMaxCoordinate_m.
 Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orientation);
 
 /// The exponential of a twist, in SE(3): the motion of a screw that turns by `rotation_rad` (axis

@@ -28,19 +28,19 @@ double reach_of(const Mesh& mesh) {
 
 void validate_reach(const Instance& instance, double mesh_reach) {
   const double reach_m = instance.scale * mesh_reach;
-  require(mesh_reach == 0.0 || (reach_m >= kSmallestReach_m && reach_m <= kLargestCoordinate_m),
-          instance, "its vertices reach " + number_text(reach_m) + " m from its origin",
-          "1e-30 m to 1e15 m", "choose another unit or scale, or an origin nearer to the vertices");
+  require(mesh_reach == 0.0 || (reach_m >= kMinReach_m && reach_m <= kMaxCoordinate_m), instance,
+          "its vertices reach " + number_text(reach_m) + " m from its origin", "1e-30 m to 1e15 m",
+          "choose another unit or scale, or an origin nearer to the vertices");
 }
 
 void validate(const Instance& instance, const Scene& scene) {
   require(instance.mesh < scene.meshes.size(), instance, "mesh " + std::to_string(instance.mesh),
           "an index of the scene's meshes");
-  require(instance.scale >= kSmallestScale && instance.scale <= kLargestScale, instance,
+  require(instance.scale >= kMinScale && instance.scale <= kMaxScale, instance,
           "scale " + number_text(instance.scale), "1e-15 to 1e15", "choose another unit or scale");
   require(is_rigid(instance.world_from_object), instance, "a pose that is not a rigid transform",
           "finite numbers and a rotation");
-  require(instance.world_from_object.translation().cwiseAbs().maxCoeff() <= kLargestCoordinate_m,
+  require(instance.world_from_object.translation().cwiseAbs().maxCoeff() <= kMaxCoordinate_m,
           instance, "a position beyond reach", "up to 1e15 m from the world's origin",
           "move the world's origin nearer to it");
   require(instance.class_id < scene.class_names.size(), instance,
@@ -54,10 +54,10 @@ void validate(const Instance& instance, const Scene& scene) {
 }
 
 void validate(const Texture& texture) {
-  constexpr std::size_t kMostTexels = std::size_t{1} << 30U;
+  constexpr std::size_t kMaxTexels = std::size_t{1} << 30U;
   const std::size_t texels = std::size_t{texture.width} * texture.height;
   const std::size_t size = texels * texture.channels;
-  if (size > 0 && texture.channels <= 4 && texture.texels.size() == size && texels <= kMostTexels) {
+  if (size > 0 && texture.channels <= 4 && texture.texels.size() == size && texels <= kMaxTexels) {
     return;
   }
   throw Error({.where = "texture '" + texture.name + "'",

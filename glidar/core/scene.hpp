@@ -40,9 +40,9 @@ struct MeshSource {
 
 /// The scale of an instance and the reach of its vertices, in metres from its origin, where it has
 /// any: single precision holds products of both with room to spare.
-inline constexpr double kSmallestScale = 1e-15;
-inline constexpr double kLargestScale = 1e15;
-inline constexpr double kSmallestReach_m = 1e-30;
+inline constexpr double kMinScale = 1e-15;
+inline constexpr double kMaxScale = 1e15;
+inline constexpr double kMinReach_m = 1e-30;
 
 /// All there is to see, as plain arrays and indices.
 struct Scene {

@@ -166,9 +166,9 @@ std::string met_on(const Teller& to, const WaveformTrace::LightPath& way) {
 }
 
 void tell_ways(Teller& to, const WaveformTrace& pulse) {
-  constexpr std::size_t kMost = 40;
+  constexpr std::size_t kMax = 40;
   to.line("paths", "{}, by {} sub-rays and the air", pulse.light_paths.size(), pulse.sub_rays);
-  for (std::size_t k = 0; k < std::min(kMost, pulse.light_paths.size()); ++k) {
+  for (std::size_t k = 0; k < std::min(kMax, pulse.light_paths.size()); ++k) {
     const WaveformTrace::LightPath& way = pulse.light_paths[k];
     const std::string ray = way.path.source == kInvalidId
                                 ? std::string("-")
@@ -176,8 +176,8 @@ void tell_ways(Teller& to, const WaveformTrace& pulse) {
     to.line("", "{:>12}  {:>12.6f} m  signal {:<10.4g} {} of {}", ray, way.path.range_m,
             way.path.signal, name(way.path.return_source), met_on(to, way));
   }
-  if (pulse.light_paths.size() > kMost)
-    to.line("", "... and {} more", pulse.light_paths.size() - kMost);
+  if (pulse.light_paths.size() > kMax)
+    to.line("", "... and {} more", pulse.light_paths.size() - kMax);
 }
 
 /// The returns of the receiver that report an echo: " -> return 1".

@@ -7,7 +7,7 @@
 namespace glidar::link {
 
 std::shared_ptr<PointCloud> CloudPool::take() {
-  constexpr std::size_t kMostKept = 256;
+  constexpr std::size_t kMaxKept = 256;
   std::unique_ptr<PointCloud> cloud;
   {
     const std::lock_guard lock(kept_->mutex);
@@ -20,7 +20,7 @@ std::shared_ptr<PointCloud> CloudPool::take() {
   const auto give_back = [kept = kept_](PointCloud* done) {
     std::unique_ptr<PointCloud> owned(done);
     const std::lock_guard lock(kept->mutex);
-    if (kept->clouds.size() < kMostKept) kept->clouds.push_back(std::move(owned));
+    if (kept->clouds.size() < kMaxKept) kept->clouds.push_back(std::move(owned));
   };
   return {cloud.release(), give_back};
 }

@@ -25,7 +25,7 @@ PayloadPool::Memory PayloadPool::take(std::size_t bytes) {
 
 void PayloadPool::give_back(Memory memory) {
   const std::lock_guard lock(mutex_);
-  if (kept_.size() < kMostKept) kept_.push_back(std::move(memory));
+  if (kept_.size() < kMaxKept) kept_.push_back(std::move(memory));
 }
 
 Payload::Payload(std::shared_ptr<PayloadPool> pool, std::size_t bytes)

@@ -23,7 +23,7 @@ class PayloadPool {
   void give_back(Memory memory);
 
  private:
-  static constexpr std::size_t kMostKept = 8;
+  static constexpr std::size_t kMaxKept = 8;
 
   std::mutex mutex_;
   std::vector<Memory> kept_;

@@ -127,8 +127,8 @@ inline double turns_of(double y, double x) {
 /// e^x: 2^k e^r with |r| <= ln 2 / 2, and the series of e^r to r^14. 0 below -700, infinite above
 /// 700.
 inline double natural_exp(double x) {
-  constexpr double kMost = 700.0;
-  const double held = x > -kMost ? (x < kMost ? x : kMost) : -kMost;
+  constexpr double kMax = 700.0;
+  const double held = x > -kMax ? (x < kMax ? x : kMax) : -kMax;
   const double whole = std::floor(held * std::numbers::log2e + 0.5);
   constexpr double kHigh = 0x1.62e42feep-1;
   constexpr double kLow = 0x1.a39ef35793c76p-33;
@@ -150,8 +150,8 @@ inline double natural_exp(double x) {
   // the whole number's bits by an addition: conversions of 64 bit integers are not everywhere
   const std::uint64_t exponent = std::bit_cast<std::uint64_t>(whole + 0x1.8p52) + 1023U;
   const double result = sum * std::bit_cast<double>(exponent << 52U);
-  const double bounded = x > kMost ? std::numeric_limits<double>::infinity() : result;
-  return x < -kMost ? 0.0 : bounded;
+  const double bounded = x > kMax ? std::numeric_limits<double>::infinity() : result;
+  return x < -kMax ? 0.0 : bounded;
 }
 
 /// base^exponent of a normal base, or of 0 with an exponent from 0 on; the relative error is below

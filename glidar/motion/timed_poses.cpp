@@ -41,8 +41,7 @@ std::optional<TimedPoseError> find_error(const TimedPose* before, const TimedPos
     return TimedPoseError{Part::time, "a time before that of the pose before",
                           "times that increase"};
   }
-  if (!next.position_m.allFinite() ||
-      next.position_m.cwiseAbs().maxCoeff() > kLargestCoordinate_m) {
+  if (!next.position_m.allFinite() || next.position_m.cwiseAbs().maxCoeff() > kMaxCoordinate_m) {
     return TimedPoseError{Part::position, "a position that is not finite or too large",
                           "coordinates up to 1e15 m"};
   }

@@ -20,14 +20,14 @@ namespace {
 
 /// The raster works through all triangles in view, a ray through few of them: where there are more
 /// of them per beam, rays are quicker (by bench/renderers_bench.py from 30 to 60 on).
-constexpr std::uint64_t kMostPerBeam = 40;
+constexpr std::uint64_t kMaxPerBeam = 40;
 /// The same for scanners: by bench/scan_bench the raster takes half the time at 2 triangles per
 /// beam, the same time at 25.
-constexpr double kMostPerScannerBeam = 12.0;
+constexpr double kMaxPerScannerBeam = 12.0;
 /// The same for cameras with lenses, by bench/lens_bench and pictures of other sizes: for each beam
 /// that may hit something, and for any beam, since rays are slower to find nothing.
-constexpr double kMostPerLensBeam = 4.0;
-constexpr double kMostPerAnyLensBeam = 0.6;
+constexpr double kMaxPerLensBeam = 4.0;
+constexpr double kMaxPerAnyLensBeam = 0.6;
 
 class AutoRenderer final : public Renderer {
  public:
@@ -75,16 +75,16 @@ class AutoRenderer final : public Renderer {
     base_->search.prepare(request);
     const auto seen = scan_raster::count_seen(grid, request.beams, *base_);
     const double most = grid.is_camera()
-                            ? kMostPerLensBeam * seen.beams +
-                                  kMostPerAnyLensBeam * static_cast<double>(request.beams.size())
-                            : kMostPerScannerBeam * seen.beams;
+                            ? kMaxPerLensBeam * seen.beams +
+                                  kMaxPerAnyLensBeam * static_cast<double>(request.beams.size())
+                            : kMaxPerScannerBeam * seen.beams;
     return seen.triangles <= most;
   }
 
   bool is_for_raster(const CastRequest& request) {
     if (!can_draw_ || why_not_drawn(request.beams) != nullptr) return false;
     const std::uint64_t beams = beams_in_view(request);
-    return beams == 0 || triangles(request) <= kMostPerBeam * beams;
+    return beams == 0 || triangles(request) <= kMaxPerBeam * beams;
   }
 
   [[nodiscard]] std::uint64_t triangles(const CastRequest& request) const {

@@ -16,9 +16,9 @@ namespace {
 using rays::MeshTree;
 using rays::TreeNode;
 
-constexpr double kLargestGapPart = 0x1p-10;  // of the mesh's reach: gaps up to it are found
-constexpr double kTouchPart = 0x1p-20;       // of it: triangles that overlap less only touch
-constexpr double kLeastCosine = 0.9;         // of sheets: others meet in a line
+constexpr double kMaxGapPart = 0x1p-10;  // of the mesh's reach: gaps up to it are found
+constexpr double kTouchPart = 0x1p-20;   // of it: triangles that overlap less only touch
+constexpr double kMinSheetCosine = 0.9;  // of sheets: others meet in a line
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
@@ -74,7 +74,7 @@ struct ClosePair {
 class GapSearch {
  public:
   GapSearch(const MeshTree& tree, double reach)
-      : tree_(tree), touch_(kTouchPart * reach), largest_(kLargestGapPart * reach) {}
+      : tree_(tree), touch_(kTouchPart * reach), largest_(kMaxGapPart * reach) {}
 
   /// Adds the pairs of a triangle with those behind it in the tree's order.
   void add_pairs(std::uint32_t slot, std::vector<ClosePair>& pairs) const {
@@ -143,7 +143,7 @@ class GapSearch {
     const double c = sheet.normal.dot(other[2]) - plane;
     const double gap = std::max({std::min({a, b, c}), -std::max({a, b, c}), 0.0});
     if (gap > largest_ || sheet.is_parted_from(other, touch_)) return kInfinity;
-    const bool is_parallel = std::abs(normal_of(other).dot(sheet.normal)) > kLeastCosine;
+    const bool is_parallel = std::abs(normal_of(other).dot(sheet.normal)) > kMinSheetCosine;
     if (!is_parallel || Sheet(other, sheet.normal).is_parted_from(sheet.corners, touch_)) {
       return kInfinity;
     }
@@ -223,7 +223,7 @@ void CloseSheets::prepare(const CastRequest& request, double band_px) {
     const double reach = trees_.reach(i);
     const double far = farthest_m / view.scale;
     const double limit = 2.0 * band_px * pixel * far + kSingleRoundingPart * (far + reach);
-    closeness_[i].has_all = limit > kLargestGapPart * reach;
+    closeness_[i].has_all = limit > kMaxGapPart * reach;
     double& of_mesh = limits_[instances[i].mesh];
     if (!closeness_[i].has_all) of_mesh = std::max(of_mesh, limit);
   }

@@ -13,13 +13,13 @@ namespace {
 /// not all of it is clearly in front.
 bool extend(Eigen::AlignedBox2d& covered, const InstanceView& view,
             const Eigen::AlignedBox3d& box) {
-  constexpr double kLeastDepth = 1e-3;  // of the distance: up to 89.9 degrees from the boresight
+  constexpr double kMinDepth = 1e-3;  // of the distance: up to 89.9 degrees from the boresight
   constexpr int kCorners = 8;
   for (int i = 0; i < kCorners; ++i) {
     const auto which = static_cast<Eigen::AlignedBox3d::CornerType>(i);
     const Eigen::Vector3d seen =
         view.object_from_sensor.transpose() * (box.corner(which) - view.sensor_in_object);
-    if (!(seen.z() > kLeastDepth * seen.norm())) return false;
+    if (!(seen.z() > kMinDepth * seen.norm())) return false;
     covered.extend(Eigen::Vector2d(seen.x() / seen.z(), seen.y() / seen.z()));
   }
   return true;

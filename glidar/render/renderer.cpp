@@ -42,7 +42,7 @@ namespace {
 
 bool is_in_reach(const Pose& world_from_source) {
   const Eigen::Vector3d position = world_from_source.translation();
-  return position.cwiseAbs().maxCoeff() <= kLargestCoordinate_m && position.allFinite();
+  return position.cwiseAbs().maxCoeff() <= kMaxCoordinate_m && position.allFinite();
 }
 
 /// Of instances that are where the cast says.

@@ -86,8 +86,8 @@ struct PixelLine {
 };
 
 PixelLine project(Eigen::Vector3d from, Eigen::Vector3d to, const PinholeIntrinsics& k) {
-  constexpr double kLeastPart = 1e-6;  // of the farther end's depth
-  const double least = kLeastPart * std::max(from.z(), to.z());
+  constexpr double kMinPart = 1e-6;  // of the farther end's depth
+  const double least = kMinPart * std::max(from.z(), to.z());
   if (!(least > 0.0)) return {};
   const auto clip = [&](const Eigen::Vector3d& inner, Eigen::Vector3d& outer) {
     if (outer.z() >= least) return;

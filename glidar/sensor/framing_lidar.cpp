@@ -13,7 +13,7 @@ namespace {
 /// A wider fan is treated as this one: from nearer little of the scene would be before the sensor.
 constexpr double kWidestFan_rad = std::numbers::pi / 3.0;
 constexpr double kHalfAngleOfALine_rad = std::numbers::pi / 6.0;  // at twice the radius
-constexpr double kLeastHalfAngle_rad = 1e-3;
+constexpr double kMinHalfAngle_rad = 1e-3;
 
 struct Elevations {
   double middle_rad = 0.0;
@@ -41,9 +41,9 @@ Elevations elevations_of(const Beams& beams) {
   }
   if (low_rad > high_rad) refuse_placing("the sensor has no beams", "");
   const double half_rad = 0.5 * (high_rad - low_rad);
-  const double fan_rad = half_rad > kLeastHalfAngle_rad ? half_rad : kHalfAngleOfALine_rad;
+  const double fan_rad = half_rad > kMinHalfAngle_rad ? half_rad : kHalfAngleOfALine_rad;
   return {0.5 * (low_rad + high_rad),
-          std::min({fan_rad, std::max(side_rad, kLeastHalfAngle_rad), kWidestFan_rad})};
+          std::min({fan_rad, std::max(side_rad, kMinHalfAngle_rad), kWidestFan_rad})};
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ constexpr double kWidestHalfAngle_rad = std::numbers::pi / 3.0;
 /// Fraction of the scene's half diagonal that always lies between the camera and the nearest
 /// vertex, and around the scene's box. Matters for shapes that are lines or points when seen along
 /// the boresight, and for wide views.
-constexpr double kLeastGap = 0.02;
+constexpr double kMinGap = 0.02;
 
 [[noreturn]] void refuse_framing(std::string found, std::string remedy) {
   throw Error({.where = "framing the scene",
@@ -61,7 +61,7 @@ Window window_of(const PinholeIntrinsics& k) {
 /// The rectangle enclosed by the beams of the image's border; nothing when one is missing or looks
 /// too far sideways for a plane to hold it.
 std::optional<Window> window_of_border(const Beams& beams) {
-  constexpr double kLeastForward = 0.17;  // cosine of 80 degrees
+  constexpr double kMinForward = 0.17;  // cosine of 80 degrees
   Window window{{-kInfinity, -kInfinity}, {kInfinity, kInfinity}};
   const std::uint32_t last_row = beams.rows - 1;
   const std::uint32_t last_col = beams.cols - 1;
@@ -69,7 +69,7 @@ std::optional<Window> window_of_border(const Beams& beams) {
     const bool whole_row = row == 0 || row == last_row;
     for (std::uint32_t col = 0; col < beams.cols; col += whole_row ? 1 : std::max(1U, last_col)) {
       const Eigen::Vector3d& d = beams.directions[std::size_t{row} * beams.cols + col];
-      if (!(d.z() > kLeastForward)) return std::nullopt;
+      if (!(d.z() > kMinForward)) return std::nullopt;
       const Eigen::Vector2d p = d.hnormalized();
       if (col == 0) window.low.x() = std::max(window.low.x(), p.x());
       if (col == last_col) window.high.x() = std::min(window.high.x(), p.x());
@@ -112,7 +112,7 @@ Retreat fit_window(const Window& window, const Scene& scene, const Pose& world_f
     nearest = std::min(nearest, p.z());
   });
   const Eigen::Array2d needed = (above_high - above_low) / (high - low).array();
-  const double gap = kLeastGap * 0.5 * bounds(scene).diagonal().norm();
+  const double gap = kMinGap * 0.5 * bounds(scene).diagonal().norm();
   const double distance = std::max(needed.maxCoeff(), gap - nearest);
   const Eigen::Array2d shift = 0.5 * (above_low + above_high);
   return {{shift.x(), shift.y(), 0.0}, {-middle.x(), -middle.y(), -1.0}, distance};
@@ -132,7 +132,7 @@ Retreat fit_cone(const Eigen::Vector3d& axis, double half_angle_rad, const Scene
     distance = std::max(distance, (p - along * axis).norm() / slope - along);
     nearest = std::min(nearest, along);
   });
-  const double gap = kLeastGap * 0.5 * bounds(scene).diagonal().norm();
+  const double gap = kMinGap * 0.5 * bounds(scene).diagonal().norm();
   return {Eigen::Vector3d::Zero(), -axis, std::max(distance, gap - nearest)};
 }
 
@@ -140,7 +140,7 @@ Retreat fit_cone(const Eigen::Vector3d& axis, double half_angle_rad, const Scene
 Eigen::Vector3d clear_of_box(const Retreat& retreat, const Scene& scene,
                              const Pose& world_from_camera) {
   Eigen::AlignedBox3d box = bounds(scene);
-  const Eigen::Vector3d gap = Eigen::Vector3d::Constant(kLeastGap * 0.5 * box.diagonal().norm());
+  const Eigen::Vector3d gap = Eigen::Vector3d::Constant(kMinGap * 0.5 * box.diagonal().norm());
   box = Eigen::AlignedBox3d(box.min() - gap, box.max() + gap);
   const Eigen::Vector3d start = world_from_camera * retreat.start;
   const Eigen::Vector3d way = world_from_camera.linear() * retreat.way;

@@ -13,7 +13,7 @@
 namespace glidar {
 namespace {
 
-constexpr Real kLeastCosine = 0.01L;  // between a face and a beam that clearly see each other
+constexpr Real kMinCosine = 0.01L;  // between a face and a beam that clearly see each other
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
@@ -41,13 +41,13 @@ class View {
   }
   [[nodiscard]] bool are_seen(const std::vector<std::uint32_t>& triangles) const {
     return std::all_of(triangles.begin(), triangles.end(),
-                       [&](std::uint32_t t) { return cosine_[t] > kLeastCosine; });
+                       [&](std::uint32_t t) { return cosine_[t] > kMinCosine; });
   }
   /// True when an edge of two triangles is part of the outline.
   [[nodiscard]] bool is_outline(const std::vector<std::uint32_t>& triangles) const {
     const Real a = cosine_[triangles[0]];
     const Real b = cosine_[triangles[1]];
-    return std::max(a, b) > kLeastCosine && std::min(a, b) < -kLeastCosine;
+    return std::max(a, b) > kMinCosine && std::min(a, b) < -kMinCosine;
   }
   [[nodiscard]] RealVector outwards(const std::vector<std::uint32_t>& triangles) const {
     return (normal_[triangles[0]] + normal_[triangles[1]]).normalized();

@@ -162,12 +162,12 @@ VerifyResult above_a_planet(const VerifySubject& subject, const Shape& shape, do
 /// All poses and sizes are such that the sensor is on the vertices exactly.
 VerifyResult sensor_on_vertices(const VerifySubject& subject, const Shape& shape) {
   constexpr double kScale = 2.0;
-  constexpr std::size_t kMostVertices = 8;
+  constexpr std::size_t kMaxVertices = 8;
   const std::vector<Stand> stands = {{shape, kScale, Pose::Identity()}};
   const Scene scene = make_scene(stands);
   const std::unique_ptr<Renderer> renderer = subject.make(scene);
   VerifyResult result;
-  const std::size_t count = std::min(kMostVertices, shape.mesh.positions_m.size());
+  const std::size_t count = std::min(kMaxVertices, shape.mesh.positions_m.size());
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3d eye = kScale * shape.mesh.positions_m[i].cast<double>();
     const Pose into = look_at(eye, {0.01, 0.02, 0.03}, {0.1, 0.2, 1.0});

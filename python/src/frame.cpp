@@ -26,7 +26,7 @@
 namespace glidar::python {
 namespace {
 
-constexpr std::size_t kMostSpareBeams = std::size_t{1} << 24U;  // some 2 GiB with all truth
+constexpr std::size_t kMaxSpareBeams = std::size_t{1} << 24U;  // some 2 GiB with all truth
 
 /// One column of a frame as an array of rows x cols, or rows x cols x components; None when the
 /// frame did not keep it.
@@ -282,8 +282,8 @@ BeamPicture beam_picture(const Measured& measured, std::uint32_t number_of_retur
 }  // namespace
 
 FramePool::FramePool() {
-  constexpr std::size_t kMostSpareFrames = 1024;
-  spare_.reserve(kMostSpareFrames);  // so that giving one back cannot fail
+  constexpr std::size_t kMaxSpareFrames = 1024;
+  spare_.reserve(kMaxSpareFrames);  // so that giving one back cannot fail
 }
 
 Frame FramePool::take() {
@@ -299,7 +299,7 @@ void FramePool::give_back(Frame frame) noexcept {
   const std::size_t beams = frame.range_m.capacity();
   if (beams == 0) return;
   const std::lock_guard lock(mutex_);
-  if (spare_beams_ + beams > kMostSpareBeams || spare_.size() == spare_.capacity()) return;
+  if (spare_beams_ + beams > kMaxSpareBeams || spare_.size() == spare_.capacity()) return;
   spare_beams_ += beams;
   spare_.push_back(std::move(frame));
 }

@@ -133,8 +133,7 @@ Pose pose_of(const PoseArray& poses, std::size_t k, const std::string& name) {
   pose.matrix() = given;
   const bool has_last_row = given.row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0);
   const Eigen::Vector3d position = pose.translation();
-  const bool is_near =
-      position.allFinite() && position.cwiseAbs().maxCoeff() <= kLargestCoordinate_m;
+  const bool is_near = position.allFinite() && position.cwiseAbs().maxCoeff() <= kMaxCoordinate_m;
   if (has_last_row && is_near && is_rigid(pose, kExact)) return pose;
   if (has_last_row && is_near && is_rigid(pose, kAsFloat)) {
     return make_pose(position, Eigen::Quaterniond(pose.linear()));

@@ -71,9 +71,9 @@ std::string error_of_reach(float reach, double scale) {
 
 TEST(SceneValidate, VerticesReachAsFarAsAllRenderersMeasureTheSame) {
   EXPECT_EQ(error_of_reach(0.0F, 1.0), "");
-  for (const double scale : {kSmallestScale, 1.0, 1e6}) {
-    const auto most = static_cast<float>(0.9 * kLargestCoordinate_m / scale);
-    const auto least = static_cast<float>(1.1 * kSmallestReach_m / scale);
+  for (const double scale : {kMinScale, 1.0, 1e6}) {
+    const auto most = static_cast<float>(0.9 * kMaxCoordinate_m / scale);
+    const auto least = static_cast<float>(1.1 * kMinReach_m / scale);
     for (const float reach : {most, least}) EXPECT_EQ(error_of_reach(reach, scale), "");
     for (const float reach : {2.0F * most, 0.5F * least}) {
       EXPECT_NE(error_of_reach(reach, scale), "") << reach << " at scale " << scale;

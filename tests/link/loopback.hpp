@@ -24,12 +24,12 @@ auto at_free_port(const Make& make) {
   for (int attempt = 0;; ++attempt) {
     constexpr unsigned kLowest = 20000;  // below those that systems give to clients
     constexpr unsigned kCount = 6000;
-    constexpr int kMost = 100;
+    constexpr int kMax = 100;
     const auto port = static_cast<std::uint16_t>(kLowest + 2 * (chance() % kCount));
     try {
       return make(link::Endpoint{"127.0.0.1", port});
     } catch (const Error&) {
-      if (attempt == kMost) throw;
+      if (attempt == kMax) throw;
     }
   }
 }

@@ -61,7 +61,7 @@ class SceneLimits : public RendererSuite {
 };
 
 TEST_P(SceneLimits, ScalesUpToTheLimitsAreMeasuredAsRaysDo) {
-  for (const double scale : {kSmallestScale, 1e-6, 1.0, 1e6, 0.1 * kLargestScale}) {
+  for (const double scale : {kMinScale, 1e-6, 1.0, 1e6, 0.1 * kMaxScale}) {
     SCOPED_TRACE(scale);
     expect_ranges_of_rays(scale, 3.0);  // from outside
     expect_ranges_of_rays(scale, 0.1);  // from inside
@@ -71,7 +71,7 @@ TEST_P(SceneLimits, ScalesUpToTheLimitsAreMeasuredAsRaysDo) {
 TEST_P(SceneLimits, VerticesOfTheSmallestReachAreMeasuredAsRaysDo) {
   Scene scene = builtin_scene("box");
   for (Eigen::Vector3f& position : scene.meshes[0].positions_m) position *= 1e-15F;
-  scene.instances[0].scale = kSmallestScale;
+  scene.instances[0].scale = kMinScale;
   const Hits hits =
       cast(scene, camera_beams(8, 8, 8.0),
            look_at({0.0, 0.0, 3e-30}, Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitX()));
@@ -80,7 +80,7 @@ TEST_P(SceneLimits, VerticesOfTheSmallestReachAreMeasuredAsRaysDo) {
 }
 
 TEST_P(SceneLimits, ScalesAndVerticesBeyondThemAreRefusedBeforeAnythingIsCast) {
-  for (const double scale : {1e-300, 0.9 * kSmallestScale, 1.1 * kLargestScale, 1e300}) {
+  for (const double scale : {1e-300, 0.9 * kMinScale, 1.1 * kMaxScale, 1e300}) {
     Scene scene = builtin_scene("box");
     scene.instances[0].scale = scale;
     EXPECT_THROW(renderer(scene), Error) << scale;

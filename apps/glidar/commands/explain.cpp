@@ -159,10 +159,10 @@ Command add_explain(CLI::App& program) {
       ->required()
       ->type_name("");
   const std::string group = "Point";
-  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
   const auto whole = [&](const char* names, const char* form, const char* help,
                          std::optional<std::int64_t>& value) {
-    add_whole(command, {names, form, help, group}, {0, kMost},
+    add_whole(command, {names, form, help, group}, {0, kMax},
               [&value](std::int64_t n) { value = n; });
   };
   whole("--index", "N", "Which point, from 0 in the order of the file", flags->index);

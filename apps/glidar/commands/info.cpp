@@ -75,11 +75,11 @@ std::string texture_text(const MaterialSummary& material) {
 }
 
 void print_lists(const ModelReport& report) {
-  constexpr std::size_t kMost = 50;  // lines of one kind; --json has them all
+  constexpr std::size_t kMax = 50;  // lines of one kind; --json has them all
   const auto list = [&](std::string_view name, const auto& entries, const auto& text) {
-    for (std::size_t i = 0; i < entries.size() && i < kMost; ++i) line(name, text(entries[i]));
-    if (entries.size() > kMost) {
-      line(name, fmt::format("... and {} more (--json tells all)", entries.size() - kMost));
+    for (std::size_t i = 0; i < entries.size() && i < kMax; ++i) line(name, text(entries[i]));
+    if (entries.size() > kMax) {
+      line(name, fmt::format("... and {} more (--json tells all)", entries.size() - kMax));
     }
   };
   list("mesh", report.parts, [](const ModelPart& part) {

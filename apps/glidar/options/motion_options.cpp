@@ -15,18 +15,18 @@ namespace glidar::app {
 namespace {
 
 Eigen::Vector3d parse_rate(std::string_view option, const std::string& text) {
-  constexpr double kMost_rad_s = 1e9;
+  constexpr double kMax_rad_s = 1e9;
   const Eigen::Vector3d rate = parse_vector(option, text);
-  if (rate.cwiseAbs().maxCoeff() <= kMost_rad_s) return rate;
+  if (rate.cwiseAbs().maxCoeff() <= kMax_rad_s) return rate;
   throw Error({std::string(option), "'" + text + "'", "rad/s from -1e9 to 1e9", ""});
 }
 
 TimedPoses load_sensor_poses(const MotionFlags& flags) {
-  constexpr double kMost_s = 9.2e9;
+  constexpr double kMax_s = 9.2e9;
   TrajectoryFileOptions options{.rate_hz = flags.trajectory_rate_hz,
                                 .times_file = flags.trajectory_times};
   if (const auto& start_s = flags.trajectory_start_s) {
-    if (!(std::abs(*start_s) <= kMost_s)) {
+    if (!(std::abs(*start_s) <= kMax_s)) {
       throw Error({"--trajectory-start", number_text(*start_s), "seconds up to 9.2e9", ""});
     }
     options.start_ns = std::llround(*start_s * 1e9);

@@ -78,7 +78,7 @@ Eigen::Vector3d parse_vector(std::string_view option, std::string_view text) {
 
 void check_reach(std::string_view option, const Eigen::Vector3d& position_m) {
   for (const double coordinate : position_m) {
-    require(std::abs(coordinate) <= kLargestCoordinate_m, option, coordinate,
+    require(std::abs(coordinate) <= kMaxCoordinate_m, option, coordinate,
             "coordinates from -1e15 to 1e15 m");
   }
 }

@@ -33,7 +33,7 @@ Eigen::Quaterniond parse_angle_axis(std::string_view option, std::string_view te
 /// The parts of a list between commas; none of them may be empty. Throws Error naming the option.
 std::vector<std::string> parse_list(std::string_view option, std::string_view text);
 
-/// Throws Error naming the option when a coordinate is beyond kLargestCoordinate_m.
+/// Throws Error naming the option when a coordinate is beyond kMaxCoordinate_m.
 void check_reach(std::string_view option, const Eigen::Vector3d& position_m);
 
 /// "x,y,z" in metres, within that.

@@ -51,9 +51,9 @@ std::string text_of(const Eigen::Vector3d& v) {
 
 /// Throws Error naming the options unless an image that looks this way has a definite upright.
 void check_upright(const char* options, const Eigen::Vector3d& forward, const Eigen::Vector3d& up) {
-  constexpr double kSmallestSine = 1e-9;  // as look_at has it
+  constexpr double kMinSine = 1e-9;  // as look_at has it
   const Eigen::Vector3d z = forward.stableNormalized();
-  if (z.cross(up.stableNormalized()).norm() > kSmallestSine) return;
+  if (z.cross(up.stableNormalized()).norm() > kMinSine) return;
   Eigen::Index flattest = 0;
   z.cwiseAbs().minCoeff(&flattest);
   throw Error({.where = options,
@@ -116,7 +116,7 @@ Pose parse_pose(std::string_view option, const std::string& text) {
 
 Pose legacy_pose(const PoseFlags& flags) {
   const double distance_m = flags.camera_z.value_or(kLegacyDistance_m);
-  require(std::abs(distance_m) <= kLargestCoordinate_m, "--camera-z", distance_m,
+  require(std::abs(distance_m) <= kMaxCoordinate_m, "--camera-z", distance_m,
           "metres from -1e15 to 1e15");
   const auto camera_q = attitude("--camera", flags.camera_q, flags.camera_r);
   return legacy_world_from_optical(camera_q.value_or(Eigen::Quaterniond::Identity()), distance_m);
@@ -185,8 +185,8 @@ void pose_model(const PoseFlags& flags, Scene& scene) {
              "these options move a single model; write poses and scales into the scene file"});
   }
   if (flags.scale) {
-    require(*flags.scale >= kSmallestScale && *flags.scale <= kLargestScale, "--scale",
-            *flags.scale, "a number above 0, from 1e-15 to 1e15");
+    require(*flags.scale >= kMinScale && *flags.scale <= kMaxScale, "--scale", *flags.scale,
+            "a number above 0, from 1e-15 to 1e15");
     scene.instances[0].scale *= *flags.scale;
   }
   if (!model_q) return;

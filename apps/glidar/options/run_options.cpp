@@ -10,7 +10,7 @@
 namespace glidar::app {
 
 void add_run_flags(CLI::App& command, RendererOptions& options, const std::string& group) {
-  constexpr std::int64_t kMostThreads = 1024;
+  constexpr std::int64_t kMaxThreads = 1024;
   add_choice(
       command,
       {"--renderer", "NAME",
@@ -18,12 +18,12 @@ void add_run_flags(CLI::App& command, RendererOptions& options, const std::strin
        group},
       renderer_kinds(), options.kind);
   add_whole(command, {"--threads", "N", "Number of threads, 0: one per processor [0]", group},
-            {0, kMostThreads},
+            {0, kMaxThreads},
             [&options](std::int64_t n) { options.threads = static_cast<unsigned>(n); });
-  constexpr std::int64_t kMostDevices = 63;
+  constexpr std::int64_t kMaxDevices = 63;
   add_whole(command,
             {"--graphics-device", "N", "Device that opengl draws on [first that can]", group},
-            {0, kMostDevices},
+            {0, kMaxDevices},
             [&options](std::int64_t n) { options.graphics_device = static_cast<unsigned>(n); });
 }
 

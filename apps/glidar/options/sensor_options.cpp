@@ -24,8 +24,8 @@ namespace {
 
 constexpr std::int64_t kDefaultSide = 256;  // of the 2015 program, like the field of view
 constexpr double kDefaultFov_deg = 20.0;
-constexpr double kLargestPixels = 1e9;   // pixels
-constexpr double kLargestAmbient = 1e6;  // keeps intensities far from float's end
+constexpr double kMaxPixels = 1e9;       // pixels
+constexpr double kMaxAmbient = 1e6;      // keeps intensities far from float's end
 constexpr double kBytesPerBeam = 250.0;  // beam, truth, measurement and cloud together
 constexpr double kGibibyte = 1024.0 * 1024.0 * 1024.0;
 
@@ -53,7 +53,7 @@ double field_of_view_rad(const SensorFlags& flags, std::int64_t height) {
   require(fov_deg > 0.0 && fov_deg < 180.0, "--fov", fov_deg, "degrees above 0 and below 180");
   const double fov_rad = fov_deg * std::numbers::pi / 180.0;
   const double focal_px = 0.5 * static_cast<double>(height) / std::tan(0.5 * fov_rad);
-  require(focal_px <= kLargestPixels, "--fov", fov_deg,
+  require(focal_px <= kMaxPixels, "--fov", fov_deg,
           "a view so wide that the focal length is at most 1e9 pixels");
   return fov_rad;
 }
@@ -67,8 +67,7 @@ void check_focal_lengths(const SensorFlags& flags) {
   }
   const auto require_focal = [](const char* option, const std::optional<double>& value) {
     if (value) {
-      require(*value > 0.0 && *value <= kLargestPixels, option, *value,
-              "pixels above 0, up to 1e9");
+      require(*value > 0.0 && *value <= kMaxPixels, option, *value, "pixels above 0, up to 1e9");
     }
   };
   require_focal("--fx", flags.fx);
@@ -77,7 +76,7 @@ void check_focal_lengths(const SensorFlags& flags) {
 
 void require_centre(const char* option, const std::optional<double>& value) {
   if (value) {
-    require(std::abs(*value) <= kLargestPixels, option, *value, "pixels from -1e9 to 1e9");
+    require(std::abs(*value) <= kMaxPixels, option, *value, "pixels from -1e9 to 1e9");
   }
 }
 
@@ -147,7 +146,7 @@ void apply_light(const SensorFlags& flags, Sensor& sensor) {
                  .remedy = "leave it out, or add --ground-truth"});
   }
   if (flags.ambient) {
-    require(*flags.ambient >= 0.0 && *flags.ambient <= kLargestAmbient, "--ambient", *flags.ambient,
+    require(*flags.ambient >= 0.0 && *flags.ambient <= kMaxAmbient, "--ambient", *flags.ambient,
             "a number from 0 to 1e6");
     sensor.light.ambient = *flags.ambient;
   }
@@ -179,7 +178,7 @@ void add_sensor_flags(CLI::App& command, SensorFlags& flags) {
   };
   const auto side = [&](const std::string& names, const std::string& help,
                         std::optional<std::int64_t>& value) {
-    add_whole(command, {names, "PX", help, group}, {1, kLargestImageSide},
+    add_whole(command, {names, "PX", help, group}, {1, kMaxImageSide},
               [&value](std::int64_t pixels) { value = pixels; });
   };
   add_text(

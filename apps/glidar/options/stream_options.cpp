@@ -17,7 +17,7 @@ namespace glidar::app {
 namespace {
 
 constexpr WholeRange kPorts = {1, 65534};  // and the next one for handshakes
-constexpr std::int64_t kMostQueued = 1'000'000;
+constexpr std::int64_t kMaxQueued = 1'000'000;
 constexpr double kLongest_s = 3.2e9;  // a century
 
 [[noreturn]] void refuse_stream(std::string where, std::string found, std::string remedy) {
@@ -65,7 +65,7 @@ void add_publishing_flags(CLI::App& command, StreamFlags& flags) {
            flags.bind);
   add_whole(command,
             {"--subscribers", "N", "Waits for N that shake hands and subscribe [1]", group},
-            {0, kMostQueued},
+            {0, kMaxQueued},
             [&flags](std::int64_t n) { flags.subscribers = static_cast<std::uint64_t>(n); });
   add_option(
       command,
@@ -76,7 +76,7 @@ void add_publishing_flags(CLI::App& command, StreamFlags& flags) {
                 option, flags.subscription_timeout_s, "seconds from 0 up to 3.2e9");
       });
   add_whole(command, {"--publish-every", "K", "Publishes every K-th frame [1; in 2015: 15]", group},
-            {1, kMostQueued},
+            {1, kMaxQueued},
             [&flags](std::int64_t n) { flags.publish_every = static_cast<std::uint32_t>(n); });
   add_whole(command,
             {"--publish-latest", "0|1", "1: who is slow gets the newest cloud only [0]", group},
@@ -84,7 +84,7 @@ void add_publishing_flags(CLI::App& command, StreamFlags& flags) {
   add_whole(
       command,
       {"--publish-queue", "N", "Clouds that wait for each subscriber, 0: any number [32]", group},
-      {0, kMostQueued}, [&flags](std::int64_t n) { flags.publish_queue = static_cast<int>(n); });
+      {0, kMaxQueued}, [&flags](std::int64_t n) { flags.publish_queue = static_cast<int>(n); });
 }
 
 void add_pose_source_flags(CLI::App& command, StreamFlags& flags) {
@@ -97,7 +97,7 @@ void add_pose_source_flags(CLI::App& command, StreamFlags& flags) {
   add_whole(
       command,
       {"--pose-queue", "N", "Poses that wait, each gives a frame; 0: the newest only [0]", group},
-      {0, kMostQueued}, [&flags](std::int64_t n) { flags.pose_queue = static_cast<int>(n); });
+      {0, kMaxQueued}, [&flags](std::int64_t n) { flags.pose_queue = static_cast<int>(n); });
   add_number(command,
              {"--pose-timeout", "S", "Ends when no pose comes for S seconds [none]", group},
              flags.pose_timeout_s);
@@ -188,9 +188,9 @@ void add_replay_flags(CLI::App& command, StreamFlags& flags) {
   add_option(command,
              {"--rate", "HZ", "Frames per second at most; 0 or max: no limit [max]", group},
              [&flags](std::string_view option, const std::string& text) {
-               constexpr double kMost_hz = 1e9;
+               constexpr double kMax_hz = 1e9;
                const double rate_hz = text == "max" ? 0.0 : parse_number(option, text);
-               require(rate_hz >= 0.0 && rate_hz <= kMost_hz, option, rate_hz, "0 to 1e9, or max");
+               require(rate_hz >= 0.0 && rate_hz <= kMax_hz, option, rate_hz, "0 to 1e9, or max");
                flags.replay_rate_hz = rate_hz;
              });
   add_whole(command, {"--frames", "N", "Ends after N frames, of all sensors together [all]", group},
@@ -200,9 +200,9 @@ void add_replay_flags(CLI::App& command, StreamFlags& flags) {
            flags.stats);
   add_publishing_flags(command, flags);
   add_limit_flag(command, flags);
-  constexpr std::int64_t kMostThreads = 1024;
+  constexpr std::int64_t kMaxThreads = 1024;
   add_whole(command, {"--threads", "N", "Number of threads, 0: one per processor [0]", "Run"},
-            {0, kMostThreads},
+            {0, kMaxThreads},
             [&flags](std::int64_t n) { flags.render.renderer.threads = static_cast<unsigned>(n); });
   command.add_flag("--quiet", flags.render.quiet, "No summary and no progress; warnings stay")
       ->group("Run");

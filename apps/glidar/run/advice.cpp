@@ -240,8 +240,8 @@ bool stands_on_zero(double least, double most) {
 
 /// True when zero lies well within.
 bool straddles_zero(double least, double most) {
-  constexpr double kLeastPart = 0.1;
-  const double part = kLeastPart * (most - least);
+  constexpr double kMinPart = 0.1;
+  const double part = kMinPart * (most - least);
   return least < -part && most > part;
 }
 

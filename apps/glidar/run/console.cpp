@@ -25,9 +25,9 @@ void print(const std::string& text) {
 
 /// Of the terminal; a longer line would wrap, and then it could not be taken away.
 std::size_t terminal_columns() {
-  constexpr std::size_t kUsual = 80;
+  constexpr std::size_t kDefault = 80;
   winsize size{};
-  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col < 2) return kUsual;
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col < 2) return kDefault;
   return size.ws_col;
 }
 

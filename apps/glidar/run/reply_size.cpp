@@ -48,7 +48,7 @@ constexpr std::array kSizes = {
     ColumnSize{"object_pose", 56},
 };
 
-constexpr std::int64_t kLargest_bytes = 56;
+constexpr std::int64_t kMax_bytes = 56;
 constexpr std::int64_t kHead_bytes = 120;
 
 }  // namespace
@@ -59,7 +59,7 @@ std::int64_t point_bytes(std::span<const std::string> columns) {
   for (const std::string& name : columns) {
     const auto* const found = std::find_if(
         kSizes.begin(), kSizes.end(), [&](const ColumnSize& size) { return size.name == name; });
-    bytes += found == kSizes.end() ? kLargest_bytes : found->bytes;
+    bytes += found == kSizes.end() ? kMax_bytes : found->bytes;
   }
   return bytes;
 }

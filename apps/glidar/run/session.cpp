@@ -73,10 +73,10 @@ std::vector<std::string> files_read(const RenderFlags& flags, const SceneFile& l
 /// How many frames there are in the duration asked for; one without.
 std::uint32_t frame_count(const RenderFlags& flags, const Sensor& sensor) {
   if (!flags.duration_s) return 1;
-  constexpr double kMostFrames = 1e6;
+  constexpr double kMaxFrames = 1e6;
   constexpr double kRounding = 1e-9;  // 0.3 s at 10 Hz are three frames
   const double frames = std::ceil(*flags.duration_s * sensor.rate_hz - kRounding);
-  require(*flags.duration_s > 0.0 && frames <= kMostFrames, "--duration", *flags.duration_s,
+  require(*flags.duration_s > 0.0 && frames <= kMaxFrames, "--duration", *flags.duration_s,
           "seconds above 0, up to a million frames");
   return static_cast<std::uint32_t>(std::max(1.0, frames));
 }

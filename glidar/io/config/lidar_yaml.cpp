@@ -8,9 +8,9 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kMostChannels = 4096;
-constexpr std::size_t kMostAngles = 65536;
-constexpr std::uint32_t kMostColumns = 1U << 20U;
+constexpr std::size_t kMaxChannels = 4096;
+constexpr std::size_t kMaxAngles = 65536;
+constexpr std::uint32_t kMaxColumns = 1U << 20U;
 constexpr NumberRule kElevation = {-90.0, 90.0, false, "degrees from -90 to 90"};
 constexpr NumberRule kTurn = {-360.0, 360.0, false, "degrees from -360 to 360"};
 constexpr NumberRule kSector_rad = {-20.0, 20.0, false, "radians from -20 to 20"};
@@ -31,7 +31,7 @@ std::vector<double> per_channel(const YamlField& optics, const char* key, const 
   const auto field = find(optics, key);
   if (!field) return std::vector<double>(channels, 0.0);
   if (field->node.IsScalar()) return std::vector<double>(channels, number(*field, rule));
-  std::vector<double> values = numbers(*field, rule, kMostChannels);
+  std::vector<double> values = numbers(*field, rule, kMaxChannels);
   if (values.size() == channels) return values;
   reject(*field, describe(*field),
          "one number, or " + std::to_string(channels) + ": one for each of elevation_deg");
@@ -64,7 +64,7 @@ void number_rings(const YamlField& optics, std::vector<SpinningChannel>& channel
 
 std::vector<SpinningChannel> read_channels(const YamlField& optics) {
   const std::vector<double> elevations =
-      numbers(need(optics, "elevation_deg"), kElevation, kMostChannels);
+      numbers(need(optics, "elevation_deg"), kElevation, kMaxChannels);
   const std::size_t count = elevations.size();
   const std::vector<double> azimuths = azimuth_offsets_deg(optics, count);
   const std::vector<double> times = per_channel(optics, "fire_time_us", kFireTime_us, count);
@@ -92,7 +92,7 @@ void read_column_timing(const YamlField& optics, Spinning& s) {
            "one of columns_per_turn and firing_period_us",
            sequence ? "remove one of them" : "add 'columns_per_turn: ...'");
   }
-  if (columns) s.columns_per_turn = whole_number(*columns, 1, kMostColumns);
+  if (columns) s.columns_per_turn = whole_number(*columns, 1, kMaxColumns);
   if (sequence) s.sequence_ns = number(*sequence, kSequence_us) * kMicrosecond_ns;
 }
 
@@ -126,14 +126,14 @@ std::vector<double> read_angles_rad(const YamlField& field, const NumberRule& ru
     require_map(field, {"from", "to", "count"});
     const double from = number(need(field, "from"), rule);
     const double to = number(need(field, "to"), rule);
-    const std::uint32_t count = whole_number(need(field, "count"), 2, kMostAngles);
+    const std::uint32_t count = whole_number(need(field, "count"), 2, kMaxAngles);
     for (std::uint32_t i = 0; i < count; ++i) {
       angles.push_back(from + (to - from) * i / (count - 1.0));
     }
   } else if (field.node.IsScalar()) {
     angles = {number(field, rule)};
   } else {
-    angles = numbers(field, rule, kMostAngles);
+    angles = numbers(field, rule, kMaxAngles);
   }
   for (double& angle : angles) angle *= kDegree;
   return angles;
@@ -200,16 +200,16 @@ LineScan read_line_scan(const YamlField& field) {
 
 Prism read_prism(const YamlField& field) {
   require_map(field, {"type", "prisms", "pulse_hz", "incidence_tangent"});
-  constexpr std::size_t kMostParts = 64;
+  constexpr std::size_t kMaxParts = 64;
   Prism prism;
   const YamlField prisms = need(field, "prisms");
-  if (!prisms.node.IsSequence() || prisms.node.size() < 1 || prisms.node.size() > kMostParts) {
+  if (!prisms.node.IsSequence() || prisms.node.size() < 1 || prisms.node.size() > kMaxParts) {
     reject(prisms, describe(prisms), "a list of 1 to 64 prisms");
   }
   for (const YamlField& item : items(prisms)) prism.prisms.push_back(read_risley(item));
   prism.pulse_hz = number(need(field, "pulse_hz"), kPulses);
   if (const auto incident = find(field, "incidence_tangent")) {
-    prism.incidence_tangent = numbers(*incident, kSine, kMostParts);
+    prism.incidence_tangent = numbers(*incident, kSine, kMaxParts);
   }
   return prism;
 }

@@ -18,7 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr NumberRule kRate = {-1e9, 1e9, false, "a number from -1e9 to 1e9"};
-constexpr NumberRule kSpeed = {-kLargestCoordinate_m, kLargestCoordinate_m, false,
+constexpr NumberRule kSpeed = {-kMaxCoordinate_m, kMaxCoordinate_m, false,
                                "a number from -1e15 to 1e15"};
 constexpr NumberRule kTime_s = {-9.2e9, 9.2e9, false, "seconds from -9.2e9 to 9.2e9"};
 constexpr NumberRule kRate_hz = {0.01, 1e9, false, "a number from 0.01 to 1e9"};

@@ -78,10 +78,10 @@ void read_others(const YamlField& field, ContinuousWave& step) {
     step.frequencies_hz.push_back(number(item, kFrequency));
   }
   const std::size_t count = step.frequencies_hz.size();
-  if (count == 0 || count > kMostFrequencies) reject(list, describe(list), "1 to 8 frequencies");
+  if (count == 0 || count > kMaxFrequencies) reject(list, describe(list), "1 to 8 frequencies");
   const double finest = *std::max_element(step.frequencies_hz.begin(), step.frequencies_hz.end());
-  constexpr double kMostWaves = 1000.0;  // tried one by one for every pixel
-  if (finest * unambiguous_m(step.frequencies_hz) > kMostWaves * kHalfLight_m_per_s) {
+  constexpr double kMaxWaves = 1000.0;  // tried one by one for every pixel
+  if (finest * unambiguous_m(step.frequencies_hz) > kMaxWaves * kHalfLight_m_per_s) {
     reject(list, "their greatest common divisor is below a thousandth of the greatest",
            "frequencies in simple ratios", "round them to whole MHz");
   }

@@ -93,8 +93,8 @@ void reject_beside_fov(const YamlField& optics, const std::string& fov_key) {
 
 PinholeIntrinsics read_intrinsics(const YamlField& optics) {
   PinholeIntrinsics k;
-  k.width = whole_number(need(optics, "width"), 1, kLargestImageSide);
-  k.height = whole_number(need(optics, "height"), 1, kLargestImageSide);
+  k.width = whole_number(need(optics, "width"), 1, kMaxImageSide);
+  k.height = whole_number(need(optics, "height"), 1, kMaxImageSide);
   k.pixel_centre = number_or(optics, "pixel_centre", kPixelCentre, k.pixel_centre);
   const std::string key = focal_key(optics);
   if (key == "fx") {

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostSensors = 256;
+constexpr std::size_t kMaxSensors = 256;
 constexpr std::size_t kLongestName = 31;
 
 /// Loads a sensor file that this field names; errors in it are reported with both places.
@@ -81,7 +81,7 @@ std::string read_name(const YamlField& field, const std::vector<RigSensor>& othe
 
 std::vector<RigSensor> read_sensors(const YamlField& field, std::vector<std::string>& files) {
   const std::vector<YamlField> all = items(field);
-  if (all.empty() || all.size() > kMostSensors) {
+  if (all.empty() || all.size() > kMaxSensors) {
     reject(field, std::to_string(all.size()) + " sensors", "1 to 256 sensors");
   }
   std::vector<RigSensor> sensors;

@@ -22,8 +22,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr NumberRule kScale = {kSmallestScale, kLargestScale, false, "a number from 1e-15 to 1e15"};
-constexpr NumberRule kSize_m = {0.0, kLargestCoordinate_m, true, "metres above 0 and below 1e15"};
+constexpr NumberRule kScale = {kMinScale, kMaxScale, false, "a number from 1e-15 to 1e15"};
+constexpr NumberRule kSize_m = {0.0, kMaxCoordinate_m, true, "metres above 0 and below 1e15"};
 constexpr NumberRule kShininess = {0.0, 128.0, false, "a number from 0 to 128"};
 
 std::string resolved(const YamlField& field) {

@@ -17,7 +17,7 @@
 namespace glidar {
 namespace {
 
-constexpr double kUsualLidarRate_hz = 10.0;
+constexpr double kDefaultLidarRate_hz = 10.0;
 constexpr NumberRule kWavelength = {100.0, 20000.0, false, "nanometres from 100 to 20000"};
 constexpr NumberRule kPlace_m = {-1e3, 1e3, false, "metres from -1000 to 1000"};
 
@@ -49,7 +49,7 @@ bool is_camera(const Sensor& sensor) {
 /// The rate that the optics bring along, or what is usual for their kind.
 double usual_rate_hz(const Sensor& sensor) {
   if (const auto* spinning = std::get_if<Spinning>(&sensor.optics)) return spinning->rotation_hz;
-  return is_camera(sensor) ? sensor.rate_hz : kUsualLidarRate_hz;
+  return is_camera(sensor) ? sensor.rate_hz : kDefaultLidarRate_hz;
 }
 
 void read_ends(const YamlField& field, Limits& limits) {

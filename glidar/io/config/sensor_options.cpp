@@ -101,9 +101,9 @@ void apply_weather(const SensorOptions& options, const SensorOptionNames& names,
             fmt::format("a number from 0 to {}", max));
     value = *given;
   };
-  take(names.visibility, options.visibility_m, kLargestVisibility_m, weather.visibility_m);
-  take(names.rain, options.rain_mm_per_h, kLargestFall_mm_per_h, weather.rain_mm_per_h);
-  take(names.snow, options.snow_mm_per_h, kLargestFall_mm_per_h, weather.snow_mm_per_h);
+  take(names.visibility, options.visibility_m, kMaxVisibility_m, weather.visibility_m);
+  take(names.rain, options.rain_mm_per_h, kMaxFall_mm_per_h, weather.rain_mm_per_h);
+  take(names.snow, options.snow_mm_per_h, kMaxFall_mm_per_h, weather.snow_mm_per_h);
   validate(weather);
   sensor.weather = weather;
   check_weather(sensor);

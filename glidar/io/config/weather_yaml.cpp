@@ -14,11 +14,10 @@ const std::vector<std::string> kFogModels = {"kim", "kruse"};
 const std::vector<std::string> kRainModels = {"geometric", "goodin"};
 const std::vector<std::string> kSnowModels = {"gunn_marshall", "sekhon_srivastava"};
 
-constexpr NumberRule kVisibility = {0.0, kLargestVisibility_m, false,
+constexpr NumberRule kVisibility = {0.0, kMaxVisibility_m, false,
                                     "metres from 1 to 1e6, or 0 for clear air"};
-constexpr NumberRule kPrecipitationRate = {0.0, kLargestFall_mm_per_h, false,
-                                           "mm/h from 0 to 1000"};
-constexpr NumberRule kLeastSignal = {1e-6, 1e6, false, "a number from 1e-6 to 1e6"};
+constexpr NumberRule kPrecipitationRate = {0.0, kMaxFall_mm_per_h, false, "mm/h from 0 to 1000"};
+constexpr NumberRule kMinSignal = {1e-6, 1e6, false, "a number from 1e-6 to 1e6"};
 
 template <class Choice>
 void read_choice(const YamlField& weather, const char* key, const std::vector<std::string>& words,
@@ -59,7 +58,7 @@ Weather read_weather(const YamlField& field) {
   weather.snow_mm_per_h =
       number_or(field, "snow_mm_per_h", kPrecipitationRate, weather.snow_mm_per_h);
   read_choice(field, "snow_model", kSnowModels, weather.snow_model);
-  weather.min_signal = number_or(field, "min_signal", kLeastSignal, weather.min_signal);
+  weather.min_signal = number_or(field, "min_signal", kMinSignal, weather.min_signal);
   validate(weather);
   return weather;
 }

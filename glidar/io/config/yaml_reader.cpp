@@ -275,7 +275,7 @@ std::size_t one_of(const YamlField& field, const std::vector<std::string>& words
 
 LookupTable table(const YamlField& field, const NumberRule& place, const NumberRule& value,
                   double unit) {
-  constexpr std::size_t kMost = 4096;
+  constexpr std::size_t kMax = 4096;
   LookupTable pairs;
   for (const YamlField& entry : items(field)) {
     const std::vector<YamlField> pair = items(entry);
@@ -285,7 +285,7 @@ LookupTable table(const YamlField& field, const NumberRule& place, const NumberR
       reject(pair[0], describe(pair[0]) + ", not above the one before", "numbers that rise");
     }
   }
-  if (pairs.empty() || pairs.size() > kMost) {
+  if (pairs.empty() || pairs.size() > kMax) {
     reject(field, std::to_string(pairs.size()) + " entries", "1 to 4096 pairs");
   }
   return pairs;

@@ -43,7 +43,7 @@ inline constexpr NumberRule kAboveZero = {0.0, std::numeric_limits<double>::max(
                                           "a finite number above 0"};
 inline constexpr NumberRule kFromZero = {0.0, std::numeric_limits<double>::max(), false,
                                          "a finite number from 0"};
-inline constexpr NumberRule kCoordinate = {-kLargestCoordinate_m, kLargestCoordinate_m, false,
+inline constexpr NumberRule kCoordinate = {-kMaxCoordinate_m, kMaxCoordinate_m, false,
                                            "a number from -1e15 to 1e15"};
 inline constexpr NumberRule kZeroToOne = {0.0, 1.0, false, "a number from 0 to 1"};
 

@@ -93,7 +93,7 @@ struct Temporary {
 Temporary open_temporary(const std::filesystem::path& folder, const std::filesystem::path& wanted,
                          mode_t mode) {
   // Clients that use up all descriptors are cut off by another thread soon.
-  constexpr unsigned kMostWaits = 200;
+  constexpr unsigned kMaxWaits = 200;
   constexpr std::chrono::milliseconds kWait{10};
   unsigned waits = 0;
   for (unsigned attempt = 0;; ++attempt) {
@@ -105,7 +105,7 @@ Temporary open_temporary(const std::filesystem::path& folder, const std::filesys
     const int code = errno;
     if (descriptor >= 0) return {std::move(name), descriptor, slot};
     unlist(slot);
-    if ((code == EMFILE || code == ENFILE) && waits++ < kMostWaits) {
+    if ((code == EMFILE || code == ENFILE) && waits++ < kMaxWaits) {
       std::this_thread::sleep_for(kWait);
       continue;
     }
@@ -123,9 +123,9 @@ AtomicFile::AtomicFile(const std::filesystem::path& path, Readers readers) : pat
     throw Error({path.string(), "is a device, pipe or socket", "a regular file, or none yet", ""});
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   buffer_.resize(kPieceBytes);
-  constexpr mode_t kUsual = 0666;
+  constexpr mode_t kDefault = 0666;
   constexpr mode_t kOwner = 0600;
-  Temporary made = open_temporary(folder, path, readers == Readers::owner ? kOwner : kUsual);
+  Temporary made = open_temporary(folder, path, readers == Readers::owner ? kOwner : kDefault);
   temporary_ = std::move(made.name);
   descriptor_ = made.descriptor;
   slot_ = made.slot;

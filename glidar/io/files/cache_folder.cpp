@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kLimitVariable = "GLIDAR_CACHE_LIMIT_MIB";
 constexpr std::uint64_t kDefaultLimitMib = 2048;
-constexpr std::uint64_t kMostMib = std::uint64_t{1} << 40U;
+constexpr std::uint64_t kMaxMib = std::uint64_t{1} << 40U;
 constexpr std::string_view kEnding = ".model";
 constexpr std::size_t kKeyDigits = 32;
 constexpr mode_t kOwnerOnly = S_IRWXU;
@@ -224,7 +224,7 @@ std::uint64_t cache_limit_bytes() {
   if (text != nullptr && *text != '\0') {
     const char* end = text + std::strlen(text);
     const auto [rest, error] = std::from_chars(text, end, mib);
-    if (error != std::errc() || rest != end || mib > kMostMib) {
+    if (error != std::errc() || rest != end || mib > kMaxMib) {
       throw Error({.where = kLimitVariable,
                    .found = std::string(text).substr(0, 60),
                    .allowed = "a whole number of MiB, from 0 to 2^40",

@@ -48,8 +48,8 @@ std::optional<Hash128> hash_file(const std::filesystem::path& path) {
   const UniqueFd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   struct stat info {};
   if (!fd || ::fstat(fd.get(), &info) != 0 || !S_ISREG(info.st_mode)) return std::nullopt;
-  constexpr off_t kMost_bytes = off_t{1} << 36U;  // 64 GiB: a file without content may claim more
-  if (info.st_size > kMost_bytes) return std::nullopt;
+  constexpr off_t kMax_bytes = off_t{1} << 36U;  // 64 GiB: a file without content may claim more
+  if (info.st_size > kMax_bytes) return std::nullopt;
   ContentHash hash;
   std::vector<char> buffer(std::size_t{1} << 18U);
   for (;;) {

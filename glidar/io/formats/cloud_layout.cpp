@@ -86,8 +86,8 @@ double livox_byte(double reflectivity) {
 
 /// Bits 4 and 5: number of the echo, from 0 (Livox Avia User Manual, "Tag Information").
 double livox_tag(double number) {
-  constexpr double kMostEchoes = 3.0;
-  return 16.0 * std::min(number, kMostEchoes);
+  constexpr double kMaxEchoes = 3.0;
+  return 16.0 * std::min(number, kMaxEchoes);
 }
 
 /// A sensor's only echo is Autoware's SINGLE_STRONGEST and Nebula's LAST, both 1; 0 is "no return".
@@ -241,8 +241,8 @@ T nearest(double value) {
   if constexpr (std::is_floating_point_v<T>) {
     return static_cast<T>(value);
   } else {
-    constexpr double kMost = std::numeric_limits<T>::max();
-    return static_cast<T>(std::round(std::min(std::max(0.0, value), kMost)));  // max(0, NaN) is 0
+    constexpr double kMax = std::numeric_limits<T>::max();
+    return static_cast<T>(std::round(std::min(std::max(0.0, value), kMax)));  // max(0, NaN) is 0
   }
 }
 

@@ -74,9 +74,9 @@ PictureLayout make_layout(const CloudPictureOptions& options, const PointColours
   const double top = has_axes ? 2.2 * layout.letters : gap;
   const double axis = has_axes ? across_axis_height(layout.letters) : 0.0;
   const double key_width = width - left - gap;
-  constexpr double kMostLegend = 0.3;  // of the height
+  constexpr double kMaxLegend = 0.3;  // of the height
   layout.legend =
-      fitted_legend(colours.legend, key_width, kMostLegend * options.height, layout.letters);
+      fitted_legend(colours.legend, key_width, kMaxLegend * options.height, layout.letters);
   const double key = colours.bar ? colour_bar_height(layout.letters)
                                  : legend_height(layout.legend, key_width, layout.letters);
   const double plot = std::max(16.0, options.height - top - axis - key - 2.0 * gap);

@@ -14,11 +14,11 @@
 namespace glidar {
 namespace {
 
-constexpr double kLargestGrey = std::numeric_limits<std::uint16_t>::max();
+constexpr double kMaxDepthGrey = std::numeric_limits<std::uint16_t>::max();
 
 /// The largest scale that holds this depth, rounded down to two digits to be easy to remember.
 double fitting_scale(double depth_m) {
-  const double exact = kLargestGrey / depth_m;
+  const double exact = kMaxDepthGrey / depth_m;
   const double unit = std::pow(10.0, std::floor(std::log10(exact)) - 1.0);
   return std::floor(exact / unit) * unit;
 }
@@ -35,13 +35,13 @@ void check_depths(const std::vector<double>& depths_m, double units_per_m, const
                  fmt::format("a depth of {:.9g} m, behind the sensor", smallest_m),
                  "depths above 0", "write .npy or .depth.tiff, which hold any depth"});
   }
-  if (std::round(largest_m * units_per_m) > kLargestGrey) {
+  if (std::round(largest_m * units_per_m) > kMaxDepthGrey) {
     throw Error(
         {file.path().string(),
          fmt::format("the largest depth, {:.9g} m, does not fit 16 bits at {:.9g} units per "
                      "metre",
                      largest_m, units_per_m),
-         fmt::format("up to {:.9g} m", kLargestGrey / units_per_m),
+         fmt::format("up to {:.9g} m", kMaxDepthGrey / units_per_m),
          fmt::format("use {:.9g} units per metre (--depth-scale, depth_units_per_m in Python), or "
                      "write .npy or .depth.tiff",
                      fitting_scale(largest_m))});

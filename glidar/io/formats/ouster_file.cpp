@@ -13,7 +13,7 @@ namespace glidar {
 namespace {
 
 const TextFileKind kMetadata = {"a JSON file of an Ouster sensor", 1, ""};
-constexpr std::size_t kMostRows = 4096;
+constexpr std::size_t kMaxRows = 4096;
 constexpr std::uint32_t kMaxOusterColumns = 65536;
 
 [[noreturn]] void fail(const std::string& where, std::string found, std::string allowed) {
@@ -53,7 +53,7 @@ double finite(const nlohmann::json& value, const std::string& where) {
 std::vector<double> angles(const nlohmann::json& all, const char* key, const std::string& file) {
   const std::string where = file + ": " + key;
   const nlohmann::json& list = need(all, "beam_intrinsics", key, file);
-  if (!list.is_array() || list.empty() || list.size() > kMostRows) {
+  if (!list.is_array() || list.empty() || list.size() > kMaxRows) {
     fail(where, "no list of angles", "1 to 4096 numbers");
   }
   std::vector<double> values;

@@ -16,7 +16,7 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kLargestBlock = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kMaxBlock = std::numeric_limits<std::uint32_t>::max();
 
 /// PCL declares packed colour a float in binary files; in text it has to be the integer, because
 /// most of these bit patterns are denormal floats, which text readers refuse.
@@ -77,9 +77,9 @@ std::vector<std::byte> by_field(std::span<const Field> fields, std::size_t count
 /// match, and every earlier triple has been entered (or is a copy of one that was).
 void write_compressed(std::span<const Field> fields, std::size_t count, AtomicFile& file) {
   const std::size_t raw_size = row_bytes(fields) * count;
-  if (raw_size > kLargestBlock) too_large(file);
+  if (raw_size > kMaxBlock) too_large(file);
   const std::vector<std::byte> raw = by_field(fields, count);
-  std::vector<std::byte> packed(std::min(raw_size + raw_size / 16 + 64, kLargestBlock));
+  std::vector<std::byte> packed(std::min(raw_size + raw_size / 16 + 64, kMaxBlock));
   const unsigned packed_size =
       raw.empty() ? 0U
                   : lzf_compress(raw.data(), static_cast<unsigned>(raw_size), packed.data(),

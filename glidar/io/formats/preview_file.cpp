@@ -43,22 +43,22 @@ bool has_axes(const BeamPicture& beams) {
 }
 
 PreviewLayout make_layout(const BeamPicture& beams) {
-  constexpr std::size_t kUsual = 512;
-  constexpr std::size_t kLeastShape = 8;  // a picture is at most so many times as wide as high
+  constexpr std::size_t kDefault = 512;
+  constexpr std::size_t kMinShape = 8;  // a picture is at most so many times as wide as high
   constexpr std::size_t kTallest = 64;
   const std::size_t cols = std::max(1U, beams.cols);
   const std::size_t rows = std::max(1U, beams.rows);
   PreviewLayout layout{};
-  layout.zoom = std::max<std::size_t>(1, kUsual / std::max(cols, rows));
+  layout.zoom = std::max<std::size_t>(1, kDefault / std::max(cols, rows));
   const std::size_t width = cols * layout.zoom;
-  constexpr std::size_t kMostPixels = std::size_t{1} << 26U;  // that rows are stretched to
-  const std::size_t tallest = std::min(kTallest, kMostPixels / (width * rows));
-  layout.tall = std::clamp<std::size_t>(width / (kLeastShape * rows), layout.zoom,
+  constexpr std::size_t kMaxPixels = std::size_t{1} << 26U;  // that rows are stretched to
+  const std::size_t tallest = std::min(kTallest, kMaxPixels / (width * rows));
+  layout.tall = std::clamp<std::size_t>(width / (kMinShape * rows), layout.zoom,
                                         std::max(layout.zoom, tallest));
   const std::size_t height = rows * layout.tall;
-  constexpr double kLargestLetters = 48.0;
+  constexpr double kMaxLetters = 48.0;
   layout.letters =
-      std::min(kLargestLetters, 12.0 + static_cast<double>(std::max(width, height)) / 128.0);
+      std::min(kMaxLetters, 12.0 + static_cast<double>(std::max(width, height)) / 128.0);
   layout.gap = static_cast<std::size_t>(layout.letters);
   const auto pixels = [](double length) { return static_cast<std::size_t>(std::ceil(length)); };
   const std::size_t left = has_axes(beams) ? pixels(upright_axis_width(layout.letters)) : 0;

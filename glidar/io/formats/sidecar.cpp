@@ -19,8 +19,8 @@ const TextFileKind kSidecar = {"the JSON file that glidar writes beside a cloud"
 
 /// A count of 32 bits.
 std::uint64_t whole(const nlohmann::json& json) {
-  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
-  if (json.is_number_unsigned() && json.get<std::uint64_t>() <= kMost) {
+  constexpr std::uint64_t kMax = std::numeric_limits<std::uint32_t>::max();
+  if (json.is_number_unsigned() && json.get<std::uint64_t>() <= kMax) {
     return json.get<std::uint64_t>();
   }
   throw nlohmann::json::type_error::create(302, shown_json(json) + " is no count", &json);

@@ -16,18 +16,18 @@ namespace glidar {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r";
-constexpr std::size_t kMostWords = 64;
+constexpr std::size_t kMaxWords = 64;
 
 /// Digits as nanoseconds: "12.5" is 12500000000. Nothing for any other spelling.
 std::optional<std::int64_t> decimal_ns(std::string_view text) {
   constexpr int kRowPlaces = 9;
-  constexpr std::size_t kMostDigits = 18;  // nine before the point fit with the nine behind
+  constexpr std::size_t kMaxDigits = 18;  // nine before the point fit with the nine behind
   const bool negative = text.starts_with('-');
   if (negative) text.remove_prefix(1);
   const std::size_t point = text.find('.');
   const std::string_view whole = text.substr(0, point);
   std::string_view fraction = point == std::string_view::npos ? "" : text.substr(point + 1);
-  if (whole.size() + fraction.size() == 0 || whole.size() > kMostDigits - kRowPlaces + 1) return {};
+  if (whole.size() + fraction.size() == 0 || whole.size() > kMaxDigits - kRowPlaces + 1) return {};
   if ((std::string(whole) + std::string(fraction)).find_first_not_of("0123456789") !=
       std::string::npos) {
     return {};
@@ -68,7 +68,7 @@ void TextRows::split(std::string_view row) {
   words_.clear();
   has_commas_ = row.find(',') != std::string_view::npos;
   std::size_t at = 0;
-  while (at <= row.size() && words_.size() <= kMostWords) {
+  while (at <= row.size() && words_.size() <= kMaxWords) {
     at = std::min(row.find_first_not_of(kBlanks, at), row.size());
     if (!has_commas_ && at == row.size()) return;
     const std::size_t end =
@@ -97,9 +97,9 @@ double TextRows::number(const Word& word) const {
 }
 
 std::int64_t TextRows::time_ns(const Word& word) const {
-  constexpr double kMost_s = 9.2e9;
+  constexpr double kMax_s = 9.2e9;
   const double seconds = number(word);
-  if (std::abs(seconds) > kMost_s) {
+  if (std::abs(seconds) > kMax_s) {
     reject(word, "'" + shown(word.text) + "'", "seconds from -9.2e9 to 9.2e9",
            "a file in nanoseconds must be divided by 1e9");
   }

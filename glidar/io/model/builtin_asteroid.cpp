@@ -103,13 +103,12 @@ Eigen::Vector3d random_direction(std::uint32_t index) {
 /// deep, old ones shallower.
 std::vector<Crater> make_craters() {
   constexpr std::uint32_t kCount = 420;
-  constexpr double kSmallest = 0.030;
-  constexpr double kLargest = 0.34;
+  constexpr double kMin = 0.030;
+  constexpr double kMax = 0.34;
   std::vector<Crater> craters(kCount);
   for (std::uint32_t i = 0; i < kCount; ++i) {
     const RandomWords words = draw(Stream::craters, i, 1, 0, 0);
-    const double radius =
-        std::min(kLargest, kSmallest * std::sqrt(kCount / (i + uniform(words[0]))));
+    const double radius = std::min(kMax, kMin * std::sqrt(kCount / (i + uniform(words[0]))));
     const double freshness = uniform(words[1]);
     craters[i] = {.centre = on_ellipsoid(random_direction(i)),
                   .radius = radius * (0.75 + 0.25 * uniform(words[2])),

@@ -198,7 +198,7 @@ std::vector<double> lengths_of(std::string_view name, std::string_view text, std
     const char* end = one.data() + one.size();
     const auto [stop, problem] = std::from_chars(one.data(), end, length);
     const bool is_number = problem == std::errc() && stop == end;
-    if (!is_number || !(length > 0.0) || length > kLargestCoordinate_m) {
+    if (!is_number || !(length > 0.0) || length > kMaxCoordinate_m) {
       refuse(name, "a size of '" + excerpt(one) + "'", "metres above 0, up to 1e15", "");
     }
     lengths.push_back(length);

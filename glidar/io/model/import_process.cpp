@@ -209,9 +209,9 @@ std::uint64_t default_memory_limit(std::uint64_t file_bytes) {
 }
 
 double default_time_limit_s(std::uint64_t file_bytes) {
-  constexpr double kLeast = 20.0;
+  constexpr double kMin = 20.0;
   constexpr double kPerByte = 2e-6;  // fifty times what a slow format takes on a slow machine
-  return kLeast + kPerByte * static_cast<double>(file_bytes);
+  return kMin + kPerByte * static_cast<double>(file_bytes);
 }
 
 ImportRun run_import(const ImportRequest& request, const Report& report) {

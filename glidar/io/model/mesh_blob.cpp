@@ -98,7 +98,7 @@ void visit(A& archive, V& values) {
     // A record starts with a text's length, and takes more memory than bytes: a small limit for
     // them.
     const std::uint64_t each = kPlain<T> ? sizeof(T) : sizeof(std::uint64_t);
-    if (size > archive.frame.remaining() / each || (!kPlain<T> && size > kMostRecords)) {
+    if (size > archive.frame.remaining() / each || (!kPlain<T> && size > kMaxRecords)) {
       refuse("an array longer than the data");
     }
     values.resize(size);

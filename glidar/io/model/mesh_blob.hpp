@@ -12,7 +12,7 @@
 namespace glidar {
 
 /// Most parts, materials, textures or files of one model.
-inline constexpr std::uint64_t kMostRecords = std::uint64_t{1} << 20U;
+inline constexpr std::uint64_t kMaxRecords = std::uint64_t{1} << 20U;
 
 /// The two halves of one binary layout: every field of an ImportedModel in the order of its
 /// declaration; counts as uint64, then the raw elements.

@@ -213,8 +213,7 @@ std::size_t add_model(Scene& scene, Model model) {
 }
 
 void set_scale(Scene& scene, std::size_t instance, const Eigen::Vector3d& scale) {
-  const bool allowed =
-      (scale.array() >= kSmallestScale).all() && (scale.array() <= kLargestScale).all();
+  const bool allowed = (scale.array() >= kMinScale).all() && (scale.array() <= kMaxScale).all();
   if (!allowed) {
     throw Error({.where = "scale",
                  .found = number_text(scale.x()) + ", " + number_text(scale.y()) + ", " +

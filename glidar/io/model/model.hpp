@@ -94,7 +94,7 @@ std::size_t add_model(Scene& scene, Model model);
 /// the mesh, with the normals of the stretched surface, which instances of equal factors share, and
 /// Instance::scale is 1. A stretched mesh that no instance has any more is removed, which changes
 /// the indices of meshes after it.
-/// Throws Error, and changes nothing, unless all are from kSmallestScale to kLargestScale, and the
+/// Throws Error, and changes nothing, unless all are from kMinScale to kMaxScale, and the
 /// stretched mesh is within reach.
 void set_scale(Scene& scene, std::size_t instance, const Eigen::Vector3d& scale);
 

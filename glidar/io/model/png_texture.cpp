@@ -13,9 +13,9 @@
 namespace glidar {
 namespace {
 
-constexpr std::uint32_t kMostSide = 16384;
+constexpr std::uint32_t kMaxSide = 16384;
 const InputFileKind kPng = {"a PNG file", 512, ""};
-constexpr std::size_t kMostBytes = std::size_t{256} << 20U;
+constexpr std::size_t kMaxBytes = std::size_t{256} << 20U;
 
 [[noreturn]] void refuse(const std::filesystem::path& file, std::string found) {
   throw Error({.where = file.string(),
@@ -41,7 +41,7 @@ Texture read_png_texture(const std::filesystem::path& file) {
                   .channels = PNG_IMAGE_SAMPLE_CHANNELS(image.format),
                   .texels = {}};
   const std::size_t texels = std::size_t{image.width} * image.height * texture.channels;
-  if (image.width > kMostSide || image.height > kMostSide || texels > kMostBytes) {
+  if (image.width > kMaxSide || image.height > kMaxSide || texels > kMaxBytes) {
     refuse(file, std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels");
   }
   texture.texels.resize(texels);

@@ -43,10 +43,10 @@ void size_picture(BeamPicture& picture) {
 
 /// A dot that leaves no gaps between evenly spread beams, as far as it stays small.
 std::int64_t dot_pixels(const BeamPicture& picture, std::size_t beams) {
-  constexpr double kSmallest = 3.0;
-  constexpr double kLargest = 15.0;
+  constexpr double kMin = 3.0;
+  constexpr double kMax = 15.0;
   const double share = static_cast<double>(picture.beams.size()) / static_cast<double>(beams);
-  return std::lround(std::clamp(1.2 * std::sqrt(share), kSmallest, kLargest));
+  return std::lround(std::clamp(1.2 * std::sqrt(share), kMin, kMax));
 }
 
 /// A square of pixels from its left and top, as far as it is inside.
@@ -97,9 +97,9 @@ BeamPicture make_angle_picture(const Beams& beams, std::span<const double> range
   Eigen::AlignedBox2d box;
   for (const Mark& mark : marks) box.extend(Eigen::Vector2d(mark.across, mark.up));
   if (box.isEmpty()) box.extend(Eigen::Vector2d::Zero());
-  constexpr double kLeast_deg = 1.0;
-  std::tie(picture.right, picture.left) = edges_of(box.min().x(), box.max().x(), kLeast_deg);
-  std::tie(picture.bottom, picture.top) = edges_of(box.min().y(), box.max().y(), kLeast_deg);
+  constexpr double kMin_deg = 1.0;
+  std::tie(picture.right, picture.left) = edges_of(box.min().x(), box.max().x(), kMin_deg);
+  std::tie(picture.bottom, picture.top) = edges_of(box.min().y(), box.max().y(), kMin_deg);
   size_picture(picture);
   draw_marks(picture, marks, dot_pixels(picture, std::max<std::size_t>(marks.size(), 1)));
   return picture;

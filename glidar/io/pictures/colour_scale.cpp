@@ -56,10 +56,10 @@ std::string scale_number(double value, double span) {
   if (value == 0.0) return "0";
   const double needed = span > 0.0 ? 2.0 - std::floor(std::log10(span)) : 3.0;
   const int decimals = static_cast<int>(std::clamp(needed, 0.0, 9.0));
-  constexpr double kLargest = 1e5;
+  constexpr double kMax = 1e5;
   constexpr std::size_t kLongest = 12;
   std::string text = fmt::format("{:.{}f}", std::abs(value), decimals);
-  if (std::max(std::abs(value), span) >= kLargest || text.size() > kLongest)
+  if (std::max(std::abs(value), span) >= kMax || text.size() > kLongest)
     return (value < 0.0 ? "\u2212" : "") + fmt::format("{:.3g}", std::abs(value));
   if (text.find_first_not_of("0.") == std::string::npos) return "0";  // rounded to nothing
   if (text.find('.') != std::string::npos && text.find('e') == std::string::npos) {

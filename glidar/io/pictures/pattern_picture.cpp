@@ -44,9 +44,9 @@ struct PatternSide {
 
 /// Every so many rows and columns of an image, so that dots stay apart.
 std::size_t stride_of(const Beams& beams) {
-  constexpr std::size_t kMostAcross = 64;
+  constexpr std::size_t kMaxAcross = 64;
   const bool image = beams.times_ns.empty() && beams.rows > 1;
-  return image ? std::max<std::size_t>(1, std::max(beams.rows, beams.cols) / kMostAcross) : 1;
+  return image ? std::max<std::size_t>(1, std::max(beams.rows, beams.cols) / kMaxAcross) : 1;
 }
 
 /// The darkest colours would be lost before the ground.
@@ -90,11 +90,11 @@ PatternSide side_of(const std::vector<PatternMark>& marks, double PatternMark::*
 
 /// Degrees are as wide as high unless one side is much longer.
 void size_sides(PatternSide& across, PatternSide& upright) {
-  constexpr double kMostStretch = 4.0;
+  constexpr double kMaxStretch = 4.0;
   const double width_deg = across.high_deg - across.low_deg;
   const double height_deg = upright.high_deg - upright.low_deg;
   const double scale = std::min(kWide / width_deg, kTall / height_deg);
-  const double stretch = std::clamp(0.3 * kWide / (scale * height_deg), 1.0, kMostStretch);
+  const double stretch = std::clamp(0.3 * kWide / (scale * height_deg), 1.0, kMaxStretch);
   across.pixels = static_cast<std::size_t>(std::max(scale * width_deg, 200.0));
   upright.pixels = static_cast<std::size_t>(std::max(scale * stretch * height_deg, 60.0));
 }
@@ -138,8 +138,8 @@ void write_pattern_picture(const Beams& beams, const std::filesystem::path& path
   const std::vector<PatternMark> marks = marks_of(beams);
   std::array sides = {side_of(marks, &PatternMark::left_deg), side_of(marks, &PatternMark::up_deg)};
   size_sides(sides[0], sides[1]);
-  constexpr std::size_t kLeastWidth = 360;  // that holds the colour bar
-  const std::size_t width = std::max(sides[0].pixels, kLeastWidth);
+  constexpr std::size_t kMinWidth = 360;  // that holds the colour bar
+  const std::size_t width = std::max(sides[0].pixels, kMinWidth);
   const Box plot{kLeft + (width - sides[0].pixels) / 2, kTop, sides[0].pixels, sides[1].pixels};
   Picture picture = make_picture(kLeft + width + kRight, kTop + plot.height + kBottom, kCanvas);
   draw_axes(picture, plot, sides[0], sides[1]);

@@ -166,14 +166,14 @@ PointImage draw_perspective(std::span<const Eigen::Vector3d> points_m, const Per
   const double even = dot_side(image, points_m.size(), 0.3);
   const double side = std::clamp(even, 1.5, 4.0);
   const double smallest = even < 1.0 ? 1.0 : 2.0;  // dense clouds need no dots to be seen
-  constexpr double kLargest = 7.0;
+  constexpr double kMax = 7.0;
   for (std::size_t i = 0; i < points_m.size(); ++i) {
     const Eigen::Vector3d place = view.project(points_m[i]);
     if (!(place.z() > 0.0) || !is_within(image, place.x(), place.y())) {
       ++image.outside;
       continue;
     }
-    const double size = std::clamp(side * typical_m / place.z(), smallest, kLargest);
+    const double size = std::clamp(side * typical_m / place.z(), smallest, kMax);
     draw_dot(image, {place.x(), place.y(), place.z(), std::lround(size)},
              static_cast<std::uint32_t>(i));
   }

@@ -21,14 +21,14 @@ constexpr auto kSettling = 1000ms;
 constexpr auto kLook = 10ms;
 /// Time for ZeroMQ's thread to take the last message of a conflating pipe.
 constexpr auto kLastMessageTaken = 250ms;
-constexpr std::int64_t kLargestHandshakeBytes = 1024;
+constexpr std::int64_t kMaxHandshakeBytes = 1024;
 /// So that a flood of handshakes does not stop the clouds.
 constexpr int kMaxHandshakesAtOnce = 64;
 
 const std::array<link::Part, 1> kEmpty;
 
 /// Of ZeroMQ's handshake too.
-constexpr std::int64_t kLargestSubscription_bytes = 1024;
+constexpr std::int64_t kMaxSubscription_bytes = 1024;
 
 /// Subscriptions that ZeroMQ reads of a peer before others have their turn.
 constexpr int kSubscriptionsAtOnce = 32;
@@ -63,7 +63,7 @@ link::SocketOptions cloud_socket(const CloudPublisherOptions& options, link::Fau
           .send_queue = options.queue,
           .receive_queue = kSubscriptionsAtOnce,
           .keeps_newest = options.keeps_newest,
-          .largest_message_bytes = kLargestSubscription_bytes,
+          .largest_message_bytes = kMaxSubscription_bytes,
           .is_watched = true,
           .protection = subscriber_protection(options, faults),
           .subscriptions = {.subscriptions = static_cast<std::size_t>(limits.subscriptions),
@@ -74,7 +74,7 @@ link::SocketOptions handshakes_socket(const CloudPublisherOptions& options,
                                       link::FaultLog& faults) {
   return {.send_queue = kMaxHandshakesAtOnce,
           .receive_queue = kMaxHandshakesAtOnce,
-          .largest_message_bytes = kLargestHandshakeBytes,
+          .largest_message_bytes = kMaxHandshakeBytes,
           .is_watched = true,
           .protection = hand_protection(options, faults)};
 }

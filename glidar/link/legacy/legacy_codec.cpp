@@ -62,7 +62,7 @@ using Numbers = std::array<double, kNumberNames.size()>;
 void check_numbers(const Numbers& numbers) {
   for (std::size_t i = 0; i < numbers.size(); ++i) {
     const bool is_position = i >= 4 && i < 7;
-    if (std::isfinite(numbers[i]) && (!is_position || std::abs(numbers[i]) <= kLargestCoordinate_m))
+    if (std::isfinite(numbers[i]) && (!is_position || std::abs(numbers[i]) <= kMaxCoordinate_m))
       continue;
     fail(kPoseMessage, std::string(kNumberNames[i]) + " is " + number_text(numbers[i]),
          is_position ? "metres from -1e15 to 1e15" : "a finite number");

@@ -39,7 +39,7 @@ struct Placement {
 inline constexpr std::size_t kPlacementBytes = 1 + 8 + 11 * 8;
 
 /// Quaternions come normalised. Throws Error unless the message has its size and topic, every
-/// number is finite, positions are within kLargestCoordinate_m and quaternions of length 1.
+/// number is finite, positions are within kMaxCoordinate_m and quaternions of length 1.
 Placement decode_placement(Bytes message);
 
 std::array<std::byte, kPlacementBytes> encode_placement(const Placement& placement);

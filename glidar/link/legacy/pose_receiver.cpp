@@ -12,13 +12,13 @@ namespace glidar::legacy {
 namespace {
 
 /// Poses are small; beyond, a peer is cut off. What is below is read and refused by its size.
-constexpr std::int64_t kLargestMessageBytes = std::int64_t{16} << 20;
+constexpr std::int64_t kMaxMessageBytes = std::int64_t{16} << 20;
 
 link::SocketOptions pose_socket_options(const PoseReceiverOptions& options) {
   return {.kind = link::SocketKind::subscribe,
           .receive_queue = std::max(options.queue, 1),
           .keeps_newest = options.queue == 0,
-          .largest_message_bytes = kLargestMessageBytes,
+          .largest_message_bytes = kMaxMessageBytes,
           .is_watched = true};
 }
 
@@ -35,7 +35,7 @@ constexpr std::chrono::seconds kPosesDelay{5};
 constexpr std::chrono::seconds kReconnectDelay{1};
 
 /// So that a flood of messages that are no poses does not keep the caller from anything else.
-constexpr int kMostAtOnce = 256;
+constexpr int kMaxMessagesAtOnce = 256;
 
 constexpr link::SocketOptions kHandshakeSocket = {.kind = link::SocketKind::request,
                                                   .is_watched = true};
@@ -66,7 +66,7 @@ bool PoseReceiver::is_ready() {
 std::optional<Placement> PoseReceiver::receive() {
   notice_simulator();
   ask_when_connected();
-  for (int i = 0; i < kMostAtOnce && !is_over_; ++i) {
+  for (int i = 0; i < kMaxMessagesAtOnce && !is_over_; ++i) {
     const std::optional<link::Message> message = poses_.receive();
     if (!message) {
       tell_of_loss();

@@ -124,9 +124,9 @@ void check_count(const char* what, std::uint32_t found, std::uint32_t least, std
 }
 
 void check(const Counts& counts, std::size_t size) {
-  check_count("number of columns", counts.columns, 1, kMostColumns);
-  check_count("number of moments", counts.moments, 1, kMostMoments);
-  check_count("number of objects", counts.objects, 0, kMostObjects);
+  check_count("number of columns", counts.columns, 1, kMaxColumns);
+  check_count("number of moments", counts.moments, 1, kMaxMoments);
+  check_count("number of objects", counts.objects, 0, kMaxObjects);
   if ((counts.flags & ~kHitsOnly) != 0) {
     refuse("flags", std::to_string(counts.flags), "0, or 1 for hits only");
   }
@@ -154,7 +154,7 @@ Body read_body(Reader& from, const std::string& where) {
   const auto w = from.take<double>();
   const Eigen::Vector3d xyz = from.take_vector();
   Body body{.rate_rad_s = from.take_vector(), .velocity_m_s = from.take_vector()};
-  if (!position_m.allFinite() || position_m.cwiseAbs().maxCoeff() > kLargestCoordinate_m) {
+  if (!position_m.allFinite() || position_m.cwiseAbs().maxCoeff() > kMaxCoordinate_m) {
     refuse(where + ", position", "a number that is not finite or too large", "metres up to 1e15");
   }
   const Eigen::Quaterniond attitude(w, xyz.x(), xyz.y(), xyz.z());

@@ -22,10 +22,10 @@ using Bytes = std::span<const std::byte>;
 
 inline constexpr std::uint16_t kVersion = 1;
 inline constexpr std::size_t kNameBytes = 24;  ///< of a column's name, filled up with zeros
-inline constexpr std::uint32_t kMostColumns = 64;
-inline constexpr std::uint32_t kMostMoments = 65536;
-inline constexpr std::uint32_t kMostObjects = 1'000'000;
-inline constexpr std::size_t kLargestRequest_bytes = std::size_t{256} << 20;
+inline constexpr std::uint32_t kMaxColumns = 64;
+inline constexpr std::uint32_t kMaxMoments = 65536;
+inline constexpr std::uint32_t kMaxObjects = 1'000'000;
+inline constexpr std::size_t kMaxRequest_bytes = std::size_t{256} << 20;
 
 /// A body at a moment and how it goes on while the frame is taken: its origin straight on at a
 /// constant velocity, turning at a constant rate about an axis fixed in the world.

@@ -10,7 +10,7 @@
 namespace glidar::opengl {
 namespace {
 
-constexpr int kLeastVersion = 33;
+constexpr int kMinVersion = 33;
 constexpr GLuint kTextureUnits = 5;  // those that shaders here use
 
 void set_pixel_store() {
@@ -18,9 +18,9 @@ void set_pixel_store() {
                               GL_UNPACK_ROW_LENGTH, GL_UNPACK_SKIP_ROWS, GL_UNPACK_SKIP_PIXELS}) {
     glPixelStorei(length, 0);
   }
-  constexpr GLint kUsual = 4;
-  glPixelStorei(GL_PACK_ALIGNMENT, kUsual);
-  glPixelStorei(GL_UNPACK_ALIGNMENT, kUsual);
+  constexpr GLint kDefault = 4;
+  glPixelStorei(GL_PACK_ALIGNMENT, kDefault);
+  glPixelStorei(GL_UNPACK_ALIGNMENT, kDefault);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   glBindBuffer(GL_PIXEL_UNPACK_BUFFER, 0);
 }
@@ -43,7 +43,7 @@ void forget_others() {
 }  // namespace
 
 FreshState::FreshState(Context& context) : use_(context) {
-  if (epoxy_gl_version() < kLeastVersion) {
+  if (epoxy_gl_version() < kMinVersion) {
     throw Error({.where = "OpenGL",
                  .found = "a context of version " + std::to_string(epoxy_gl_version() / 10) + "." +
                           std::to_string(epoxy_gl_version() % 10),

@@ -59,14 +59,14 @@ bool names(const char* extensions, std::string_view wanted) {
 }
 
 std::vector<EGLDeviceEXT> devices() {
-  constexpr EGLint kMost = 64;
-  std::vector<EGLDeviceEXT> found(kMost);
+  constexpr EGLint kMax = 64;
+  std::vector<EGLDeviceEXT> found(kMax);
   EGLint count = 0;
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
   const bool can_list =
       names(extensions, "EGL_EXT_platform_device") &&
       (names(extensions, "EGL_EXT_device_enumeration") || names(extensions, "EGL_EXT_device_base"));
-  if (!can_list || eglQueryDevicesEXT(kMost, found.data(), &count) == EGL_FALSE) count = 0;
+  if (!can_list || eglQueryDevicesEXT(kMax, found.data(), &count) == EGL_FALSE) count = 0;
   found.resize(static_cast<std::size_t>(count));
   return found;
 }

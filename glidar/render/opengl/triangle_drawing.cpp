@@ -17,10 +17,10 @@ namespace {
 
 /// The scene, if each mesh can be drawn at once.
 const Scene& checked(const Scene& scene) {
-  constexpr std::size_t kMostAtOnce = std::numeric_limits<GLsizei>::max() / 3;  // in one draw
+  constexpr std::size_t kMaxAtOnce = std::numeric_limits<GLsizei>::max() / 3;  // in one draw
   for (const Mesh& mesh : scene.meshes) {
     const std::size_t own = mesh.triangles.size();
-    if (own <= kMostAtOnce) continue;
+    if (own <= kMaxAtOnce) continue;
     throw Error({.where = "opengl renderer",
                  .found = "too many triangles in one mesh: " + std::to_string(own),
                  .allowed = "up to 715827882",

@@ -74,8 +74,8 @@ class OpenglPaperCamera final : public Woods2016Camera {
                                      thread_pool_));
     }
     // A surface across the boresight has one depth; planes need some room between them.
-    constexpr double kLeastRoom = 1e-6;
-    const double room = kLeastRoom * span.farthest_m - (span.farthest_m - span.nearest_m);
+    constexpr double kMinRoom = 1e-6;
+    const double room = kMinRoom * span.farthest_m - (span.farthest_m - span.nearest_m);
     if (room > 0.0) return {span.nearest_m - 0.5 * room, span.farthest_m + 0.5 * room};
     return {span.nearest_m, span.farthest_m};
   }

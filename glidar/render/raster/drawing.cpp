@@ -28,13 +28,13 @@ struct Placed {
 /// Corners nearer than this are not for single precision.
 float least_depth(const Aim& aim, const Eigen::Vector3f& half) {
   // Nearer than this part of the farthest corner, rounding of its depth would move a corner.
-  constexpr float kLeastPart = 1.0F / 16.0F;
+  constexpr float kMinPart = 1.0F / 16.0F;
   // A column is a sum of three products: where their sizes add up to more than this many pixels,
   // its rounding comes near kBorderRoom_px.
   constexpr float kMaxDrawing_px = 128.0F;
   const Eigen::Map<const Eigen::Matrix3f> turn(aim.turn.data());
   const Eigen::Vector3f reach = turn.cwiseAbs() * half;
-  return std::max(kLeastPart * (aim.depth + reach.z()),
+  return std::max(kMinPart * (aim.depth + reach.z()),
                   std::max(reach.x(), reach.y()) / kMaxDrawing_px);
 }
 

@@ -13,8 +13,8 @@ namespace glidar::raster {
 namespace {
 
 // Columns and rows of corners from this to that are known well enough in single precision.
-constexpr float kLeast_px = -64.0F;
-constexpr float kMost_px = 192.0F;
+constexpr float kMin_px = -64.0F;
+constexpr float kMax_px = 192.0F;
 
 // Eight roundings, of each term of an interpolation.
 constexpr float kInterpolation = 0x1p-21F;
@@ -88,8 +88,8 @@ struct Spot {
     f.top[i] = rounded_up(held(top - kBorderRoom_px, 0.0F, aim.last_row + 1.0F));
     f.bottom[i] = rounded_down(held(bottom + kBorderRoom_px, -1.0F, aim.last_row));
     const int is_clear = static_cast<int>(depth > aim.least_depth);
-    const int is_near = static_cast<int>(left > kLeast_px) & static_cast<int>(right < kMost_px) &
-                        static_cast<int>(top > kLeast_px) & static_cast<int>(bottom < kMost_px);
+    const int is_near = static_cast<int>(left > kMin_px) & static_cast<int>(right < kMax_px) &
+                        static_cast<int>(top > kMin_px) & static_cast<int>(bottom < kMax_px);
     const int is_empty =
         static_cast<int>(f.left[i] > f.right[i]) | static_cast<int>(f.top[i] > f.bottom[i]);
     const int is_small = static_cast<int>(f.right[i] - f.left[i] < kSmall) &

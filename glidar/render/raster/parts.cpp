@@ -11,8 +11,8 @@ namespace {
 
 // Enough parts that threads end together; where they are small, many clusters lie in several.
 constexpr double kAimedParts = 24.0;
-constexpr double kLeastSide = 24.0;
-constexpr double kMostSide = Canvas::kSide - 2.0;
+constexpr double kMinSide = 24.0;
+constexpr double kMaxSide = Canvas::kSide - 2.0;
 
 std::uint32_t pieces(std::uint32_t length, double side) {
   return static_cast<std::uint32_t>(std::ceil(length / side));
@@ -35,7 +35,7 @@ void Parts::cut(const GridWindow& window, std::uint32_t rows, std::uint32_t cols
   const std::uint32_t height = window_.end_row - window_.first_row;
   const std::uint32_t width = window_.end_col - window_.first_col;
   const double side =
-      std::clamp(std::sqrt(double{1.0} * height * width / kAimedParts), kLeastSide, kMostSide);
+      std::clamp(std::sqrt(double{1.0} * height * width / kAimedParts), kMinSide, kMaxSide);
   down_ = pieces(height, side);
   across_ = pieces(width, side);
   height_ = (height + down_ - 1) / down_;

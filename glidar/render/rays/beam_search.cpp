@@ -31,7 +31,7 @@ std::uint32_t usable_lanes(const BeamBlock& beams) {
     bool is_usable = sum - sum == 0.0;
     if (beams.has_origins) {
       const double size = std::abs(o.x[i]) + std::abs(o.y[i]) + std::abs(o.z[i]);
-      is_usable = is_usable && size <= 3.0 * kLargestCoordinate_m;
+      is_usable = is_usable && size <= 3.0 * kMaxCoordinate_m;
     }
     lanes |= static_cast<std::uint32_t>(is_usable) << i;
   }

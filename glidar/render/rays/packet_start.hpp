@@ -7,7 +7,7 @@
 // Completes a packet of which the exact rays are set.
 namespace glidar::rays::GLIDAR_KERNEL {
 
-inline constexpr float kLargest = __builtin_huge_valf();
+inline constexpr float kFloatInfinity = __builtin_huge_valf();
 
 GLIDAR_INLINE double larger(double a, double b) {
   return a > b ? a : b;
@@ -115,8 +115,8 @@ GLIDAR_INLINE void find_offsets(RayPacket& p) {
     p.middle_origin[axis] = p.exact_origin[axis][0];
     if (p.has_common_origin) continue;
     alignas(64) double moved[kPacketSize];
-    double low = kLargest;
-    double high = -kLargest;
+    double low = kFloatInfinity;
+    double high = -kFloatInfinity;
     for (unsigned i = 0; i < kPacketSize; ++i) {
       moved[i] = p.exact_origin[axis][i] + p.shift[i] * p.exact_direction[axis][i];
       low = moved[i] < low ? moved[i] : low;
@@ -146,7 +146,7 @@ GLIDAR_INLINE void repeat_ray(RayPacket& p, std::uint32_t active) {
   const auto first = static_cast<unsigned>(__builtin_ctz(active));
   for (unsigned i = 0; i < kPacketSize; ++i) {
     if ((active >> i & 1U) != 0) continue;
-    p.high[i] = p.low[i] = -kLargest;
+    p.high[i] = p.low[i] = -kFloatInfinity;
     for (unsigned axis = 0; axis < 3; ++axis) {
       p.exact_direction[axis][i] = p.exact_direction[axis][first];
       p.exact_origin[axis][i] = p.exact_origin[axis][first];
@@ -156,8 +156,8 @@ GLIDAR_INLINE void repeat_ray(RayPacket& p, std::uint32_t active) {
 
 inline void start(RayPacket& p, const MeshSphere& sphere, std::uint32_t active) {
   for (unsigned i = 0; i < kPacketSize; ++i) {
-    p.low[i] = kLargest;
-    p.high[i] = kLargest;
+    p.low[i] = kFloatInfinity;
+    p.high[i] = kFloatInfinity;
     p.slot[i] = kNoTriangle;
   }
   if (active != (1U << kPacketSize) - 1U) repeat_ray(p, active);

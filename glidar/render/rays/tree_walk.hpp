@@ -14,7 +14,7 @@ inline constexpr float kSlabRoom = 1.0F + 6.0F * 0x1p-23F;
 /// An entry distance is at most this part of the computed one closer.
 inline constexpr float kEntryRoom = 1.0F - 0x1p-20F;
 /// Components below it are replaced: that moves a ray by less than its padding.
-inline constexpr float kLeastComponent = 1e-18F;
+inline constexpr float kMinComponent = 1e-18F;
 inline constexpr unsigned kStackSize = 7 * kMaxTreeDepth + 8;
 
 /// A child that is still to be visited: its index, and its box as 8 * index of its parent + its
@@ -77,7 +77,7 @@ struct Stack {
 
 GLIDAR_INLINE float reciprocal(float component) {
   const float size = component < 0.0F ? -component : component;
-  return 1.0F / (size < kLeastComponent ? kLeastComponent : component);
+  return 1.0F / (size < kMinComponent ? kMinComponent : component);
 }
 
 /// One ray and the boxes of eight children.
@@ -211,7 +211,7 @@ struct PacketSlabs {
     for (unsigned axis = 0; axis < 3; ++axis) {
       for (unsigned i = 0; i < kPacketSize; i += LaneFloat::kWidth) {
         const LaneFloat d = LaneFloat::load(p.direction[axis] + i);
-        const LaneFloat tiny = LaneFloat::all(kLeastComponent);
+        const LaneFloat tiny = LaneFloat::all(kMinComponent);
         const LaneFloat replaced = select(magnitude(d) < tiny, tiny, d);
         store(inverse[axis] + i, LaneFloat::all(1.0F) / replaced);
       }
@@ -265,7 +265,7 @@ void walk(const TreeView& tree, RayPacket& p, const Leaves& leaves) {
   const Beam beam(p);
   const PacketSlabs slabs(p);
   Stack stack(0);
-  float end = kLargest;
+  float end = kFloatInfinity;
   alignas(32) float near[8];
   while (stack.size > 0) {
     --stack.size;

@@ -121,8 +121,8 @@ double step_at(const Beams& beams, const SensorAxes& axes, std::size_t beam) {
 
 bool may_form_scan(const Beams& beams) {
   constexpr std::size_t kAngleSamples = 64;
-  constexpr std::size_t kLeastColumns = 16;
-  if (beams.cols < kLeastColumns) return false;
+  constexpr std::size_t kMinColumns = 16;
+  if (beams.cols < kMinColumns) return false;
   const SensorAxes axes = axes_of(beams);
   std::array<double, kAngleSamples> steps;
   std::size_t count = 0;

@@ -14,7 +14,7 @@ namespace {
 
 /// Coordinates and scales for which the kernels' products neither overflow nor underflow.
 constexpr double kMaxReach = 0x1p34;
-constexpr double kMaxScale = 0x1p20;
+constexpr double kMaxSlotScale = 0x1p20;
 /// What a rotation may lack, far below the kernels' rounding.
 constexpr double kRotationTolerance = 0x1p-30;
 /// Boxes in single precision: some 20 roundings of 2^-24.
@@ -35,8 +35,8 @@ bool is_rotation(const Eigen::Matrix3d& m) {
 }
 
 bool is_within_bounds(const InstanceView& view, const rays::MeshSphere& sphere) {
-  return is_rotation(view.object_from_sensor) && view.scale <= kMaxScale &&
-         view.scale >= 1.0 / kMaxScale && size_of(sphere, view.sensor_in_object) <= kMaxReach;
+  return is_rotation(view.object_from_sensor) && view.scale <= kMaxSlotScale &&
+         view.scale >= 1.0 / kMaxSlotScale && size_of(sphere, view.sensor_in_object) <= kMaxReach;
 }
 
 /// From the sensor to the instance's sphere, metres; below zero inside of it.

@@ -12,7 +12,7 @@ namespace {
 
 /// Clusters that are looked at, at most, and of each instance at least.
 constexpr std::size_t kSamples = 2048;
-constexpr std::size_t kLeastSamples = 8;
+constexpr std::size_t kMinSamples = 8;
 /// An instance costs a sector about as much as this many triangles.
 constexpr double kTrianglesPerInstance = 15.0;
 
@@ -118,7 +118,7 @@ SeenTriangles count_in(const View& view, const BeamGrid& grid, std::size_t beams
                      static_cast<double>(grid.sectors().size());
   for (const std::uint32_t i : instances) {
     triangles += count_triangles(trees.of_instance(i), base.resolver.view(i),
-                                 std::max(samples, kLeastSamples), view, parts);
+                                 std::max(samples, kMinSamples), view, parts);
   }
   return {triangles, parts.share() * static_cast<double>(beams)};
 }

@@ -20,7 +20,7 @@ constexpr double kSectorRoom = 1.0 + 0x1p-20;
 /// Others hit nothing, see rays::BeamSearch.
 bool is_beam(const Beams& beams, std::size_t i) {
   return beams.directions[i].allFinite() &&
-         (beams.origins_m.empty() || beams.origins_m[i].lpNorm<1>() <= 3.0 * kLargestCoordinate_m);
+         (beams.origins_m.empty() || beams.origins_m[i].lpNorm<1>() <= 3.0 * kMaxCoordinate_m);
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ struct DropSizes {
 };
 
 /// Smaller ones are mist: too many to be counted and too faint to be seen one by one.
-inline constexpr double kLeastDrop_m = 5e-5;
+inline constexpr double kMinDrop_m = 5e-5;
 
 /// Marshall and Palmer, J. Meteor. 5 (1948) 165: 8000 / m^3 / mm, slope 4.1 / mm (mm/h)^-0.21; of
 /// water, n = 1.328.

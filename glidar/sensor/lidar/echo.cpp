@@ -219,7 +219,7 @@ double extent_m(const WaveformBuffer& work) {
 
 /// The index of the echo that a return asks for; -1: none.
 int find_return(const Return& wanted, std::span<const PulseEcho> echoes,
-                const std::array<std::uint16_t, WaveformBuffer::kMost>& by_strength) {
+                const std::array<std::uint16_t, WaveformBuffer::kMax>& by_strength) {
   if (wanted.rank >= echoes.size()) return -1;
   const auto last = static_cast<int>(echoes.size()) - 1;
   const auto rank = static_cast<int>(wanted.rank);
@@ -280,7 +280,7 @@ void detect_peaks(double sigma_m, double near_m, WaveformBuffer& work) {
 
 void enforce_min_separation(double separation_m, WaveformBuffer& work) {
   if (!(separation_m > 0.0) || work.echoes < 2) return;
-  std::array<bool, WaveformBuffer::kMost> hidden;
+  std::array<bool, WaveformBuffer::kMax> hidden;
   std::fill_n(hidden.begin(), work.echoes, false);
   for (std::size_t i = 0; i < work.echoes; ++i) {
     for (std::size_t j = 0; j < work.echoes; ++j) {
@@ -303,7 +303,7 @@ double reported_range_m(const Receiver& receiver, const PulseEcho& echo) {
 void select_returns(const Receiver& receiver, std::span<const PulseEcho> echoes,
                     std::array<int, kMaxReturns>& chosen) {
   const std::size_t count = receiver.returns.size();
-  std::array<std::uint16_t, WaveformBuffer::kMost> by_strength;
+  std::array<std::uint16_t, WaveformBuffer::kMax> by_strength;
   for (std::size_t i = 0; i < echoes.size(); ++i) by_strength[i] = static_cast<std::uint16_t>(i);
   std::sort(by_strength.begin(), by_strength.begin() + static_cast<std::ptrdiff_t>(echoes.size()),
             [&](auto a, auto b) {

@@ -61,15 +61,15 @@ struct PulseEcho {
 
 /// The paths and echoes of one beam, on the stack.
 struct WaveformBuffer {
-  static constexpr std::size_t kMost = 512;
-  std::array<EchoContribution, kMost> path;
-  std::array<PulseEcho, kMost> echo;
+  static constexpr std::size_t kMax = 512;
+  std::array<EchoContribution, kMax> path;
+  std::array<PulseEcho, kMax> echo;
   std::size_t paths = 0;
   std::size_t echoes = 0;
 
   /// The weakest of too many paths are left out.
   void add(const EchoContribution& one) {
-    if (paths == kMost) return replace_weakest(one);
+    if (paths == kMax) return replace_weakest(one);
     // Member by member: copied as a whole it would wait for its own parts to be stored.
     EchoContribution& to = path[paths++];
     to.range_m = one.range_m;

@@ -20,7 +20,7 @@ double bend_m(const LidarEquation& light) {
 
 /// Where fog sends back so little that it hardly ever makes the largest echo.
 double farthest_m(const LidarEquation& light, double step_m) {
-  constexpr double kLeastShare = 1.0 / 200.0;
+  constexpr double kMinShare = 1.0 / 200.0;
   constexpr double kGrowth = 1.1;
   constexpr double kFarthest = 64.0;  // of the bend, for light that hardly falls with the range
   double brightest = 0.0;
@@ -30,7 +30,7 @@ double farthest_m(const LidarEquation& light, double step_m) {
   }
   double range_m = bend_m(light);
   while (range_m < kFarthest * bend_m(light) &&
-         air_signal(light, 1.0, range_m) > kLeastShare * brightest) {
+         air_signal(light, 1.0, range_m) > kMinShare * brightest) {
     range_m *= kGrowth;
   }
   return range_m;

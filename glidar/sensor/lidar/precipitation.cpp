@@ -41,7 +41,7 @@ double brightest(const LidarEquation& light, const LidarEquation& without_overla
 double least_diameter_m(const DropField& field, double brightest, double range_m) {
   const double share = field.min_signal / (field.sizes.reflectance * brightest);
   if (!(share <= 1.0)) return std::numeric_limits<double>::infinity();
-  return std::max(kLeastDrop_m, beam_diameter_m(field.beam, range_m) * std::sqrt(share));
+  return std::max(kMinDrop_m, beam_diameter_m(field.beam, range_m) * std::sqrt(share));
 }
 
 const DropShell& shell_of(const DropField& field, double mean) {

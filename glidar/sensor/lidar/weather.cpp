@@ -34,18 +34,18 @@ double rain_extinction_per_m(const Weather& weather) {
 
 void validate(const Weather& weather) {
   const auto within = [](double x, double least, double most) { return x >= least && x <= most; };
-  require_number(
-      weather.visibility_m == 0.0 || within(weather.visibility_m, 1.0, kLargestVisibility_m),
-      "weather, visibility_m", weather.visibility_m, "metres from 1 to 1e6, or 0 for clear air");
+  require_number(weather.visibility_m == 0.0 || within(weather.visibility_m, 1.0, kMaxVisibility_m),
+                 "weather, visibility_m", weather.visibility_m,
+                 "metres from 1 to 1e6, or 0 for clear air");
   require_number(within(weather.fog_backscatter_per_sr, 0.0, 1.0),
                  "weather, fog_backscatter_per_sr", weather.fog_backscatter_per_sr,
                  "a number from 0 to 1");
   require_number(weather.fog_looks <= kMaxFogLooks, "weather, fog_looks", weather.fog_looks,
                  "a whole number from 1 to 64, or 0 for echoes that do not vary");
-  require_number(within(weather.rain_mm_per_h, 0.0, kLargestFall_mm_per_h),
-                 "weather, rain_mm_per_h", weather.rain_mm_per_h, "mm/h from 0 to 1000");
-  require_number(within(weather.snow_mm_per_h, 0.0, kLargestFall_mm_per_h),
-                 "weather, snow_mm_per_h", weather.snow_mm_per_h, "mm/h from 0 to 1000");
+  require_number(within(weather.rain_mm_per_h, 0.0, kMaxFall_mm_per_h), "weather, rain_mm_per_h",
+                 weather.rain_mm_per_h, "mm/h from 0 to 1000");
+  require_number(within(weather.snow_mm_per_h, 0.0, kMaxFall_mm_per_h), "weather, snow_mm_per_h",
+                 weather.snow_mm_per_h, "mm/h from 0 to 1000");
   require_number(within(weather.min_signal, 1e-6, 1e6), "weather, min_signal", weather.min_signal,
                  "a number from 1e-6 to 1e6");
 }

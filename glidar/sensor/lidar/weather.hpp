@@ -9,9 +9,9 @@ namespace glidar {
 inline constexpr double kContrastDepth = 3.912;  ///< -ln 0.02, to the digits in use
 inline constexpr double kOpticalRangeDepth = 2.9957322735539909;  ///< ln 20
 
-inline constexpr double kLargestVisibility_m = 1e6;  ///< of a Weather; from there on it is clear
+inline constexpr double kMaxVisibility_m = 1e6;  ///< of a Weather; from there on it is clear
 inline constexpr unsigned kMaxFogLooks = 64;
-inline constexpr double kLargestFall_mm_per_h = 1000.0;  ///< of its rain and snow
+inline constexpr double kMaxFall_mm_per_h = 1000.0;  ///< of its rain and snow
 
 /// What hangs in the air and falls through it. It acts on pulsed light.
 struct Weather {

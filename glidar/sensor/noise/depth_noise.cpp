@@ -48,7 +48,7 @@ void lose_far(NoiseBatch& batch) {
 
 inline double left_of_right_angle(double incidence_rad) {
   const double left = 0.5 * std::numbers::pi - incidence_rad;
-  return left > kLeastGrazing_rad ? left : kLeastGrazing_rad;
+  return left > kMinGrazing_rad ? left : kMinGrazing_rad;
 }
 
 inline double axial_sigma_m(const NguyenAxial& law, double z_m, double incidence_rad) {

@@ -74,9 +74,9 @@ void look_aside(const PairBatch& shift_px, const NoiseView& view, NoiseBatch& ba
 
 void mean_over_window(unsigned window, const NoiseView& view, const NoiseBatch& batch,
                       Batch<double>& means) {
-  const std::size_t reach = std::min<std::size_t>(window / 2, kLargestReach);
+  const std::size_t reach = std::min<std::size_t>(window / 2, kMaxWindowReach);
   const std::size_t cols = view.beams.cols;
-  std::array<double, kDrawBatch + 2 * kLargestReach> sums;
+  std::array<double, kDrawBatch + 2 * kMaxWindowReach> sums;
   for (std::size_t i = 0; i < batch.count;) {
     // a stretch of the run that lies in one row
     const std::size_t row = (batch.first + i) / cols;

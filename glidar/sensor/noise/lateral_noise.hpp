@@ -14,10 +14,10 @@ namespace glidar {
 
 /// Laws that grow without bound towards grazing_coefficient incidence are cut off so far from it: 1
 /// degree.
-inline constexpr double kLeastGrazing_rad = std::numbers::pi / 180.0;
+inline constexpr double kMinGrazing_rad = std::numbers::pi / 180.0;
 
 /// The farthest that a pixel's window reaches to each side.
-inline constexpr std::size_t kLargestReach = 16;
+inline constexpr std::size_t kMaxWindowReach = 16;
 
 /// The angle of a cosine from 0 to 1.
 inline double angle_of(double cosine) {

@@ -12,7 +12,7 @@ namespace glidar {
 
 /// The light's waves in the pixels of a run.
 struct alignas(64) WavePhases {
-  std::array<Batch<double>, kMostFrequencies> turns;
+  std::array<Batch<double>, kMaxFrequencies> turns;
   Batch<double> coherence;  ///< the least |sum| / sum of amplitudes of all frequencies
   Batch<double> amplitude;
 };

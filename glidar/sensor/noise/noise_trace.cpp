@@ -120,7 +120,7 @@ Draws draws(const DisparityQuantization& /*step*/, const Asked& /*asked*/) {
 }
 /// What mean_over_window makes of the draws around a pixel.
 double window_mean(const KinectV1& step, const Asked& asked) {
-  const std::size_t reach = std::min<std::size_t>(step.window / 2, kLargestReach);
+  const std::size_t reach = std::min<std::size_t>(step.window / 2, kMaxWindowReach);
   const std::size_t cols = asked.beams.cols;
   const std::size_t row = asked.entry / cols;
   const std::size_t col = asked.entry % cols;
@@ -164,7 +164,7 @@ Draws draws(const Stereo& /*step*/, const Asked& asked) {
 Draws draws(const ContinuousWave& step, const Asked& asked) {
   Draws all;
   RngKey draw = asked.draw;
-  const std::size_t count = std::min(step.frequencies_hz.size(), kMostFrequencies);
+  const std::size_t count = std::min(step.frequencies_hz.size(), kMaxFrequencies);
   for (std::size_t k = 0; k < count; ++k) {
     draw.block = static_cast<std::uint32_t>(k / 4);
     const char* use = k == 0 ? "error of the highest frequency's phase" : "error of a phase";

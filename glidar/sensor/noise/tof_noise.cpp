@@ -21,19 +21,19 @@ constexpr double kMinAmplitude = 1e-9;
 /// The frequencies, the finest first, and what the search for the range needs of them.
 struct Waves {
   std::size_t count = 0;
-  double finest_m = 0.0;                             ///< range of one wave of the finest
-  double limit_m = 0.0;                              ///< range without ambiguity
-  double number = 0.0;                               ///< of finest waves in it
-  double sigma_m_per_turn = 0.0;                     ///< of the range by that of the phases
-  std::array<double, kMostFrequencies> per_m{};      ///< waves
-  std::array<double, kMostFrequencies> to_finest{};  ///< frequency over the finest
-  std::array<double, kMostFrequencies> weight{};     ///< f^2 over the sum of all; 0: unused
+  double finest_m = 0.0;                            ///< range of one wave of the finest
+  double limit_m = 0.0;                             ///< range without ambiguity
+  double number = 0.0;                              ///< of finest waves in it
+  double sigma_m_per_turn = 0.0;                    ///< of the range by that of the phases
+  std::array<double, kMaxFrequencies> per_m{};      ///< waves
+  std::array<double, kMaxFrequencies> to_finest{};  ///< frequency over the finest
+  std::array<double, kMaxFrequencies> weight{};     ///< f^2 over the sum of all; 0: unused
 };
 
 Waves waves_of(const std::vector<double>& frequencies_hz) {
   Waves waves;
-  waves.count = std::min(frequencies_hz.size(), kMostFrequencies);
-  std::array<double, kMostFrequencies> f{};
+  waves.count = std::min(frequencies_hz.size(), kMaxFrequencies);
+  std::array<double, kMaxFrequencies> f{};
   std::copy_n(frequencies_hz.begin(), waves.count, f.begin());
   std::iter_swap(f.begin(), std::max_element(f.begin(), f.end()));
   double squares = 0.0;
@@ -128,7 +128,7 @@ GLIDAR_SIMD void search_three(const Waves& waves, const WavePhases& phases, Foun
   try_all<2>(waves, phases, best);
 }
 GLIDAR_SIMD void search_many(const Waves& waves, const WavePhases& phases, Found& best) {
-  try_all<kMostFrequencies - 1>(waves, phases, best);
+  try_all<kMaxFrequencies - 1>(waves, phases, best);
 }
 
 /// The range of a whole number of waves and the finest phase ...
@@ -185,7 +185,7 @@ void unwrap(const Waves& waves, WavePhases& phases, Found& found, Batch<double>&
   for (std::size_t k = 1; k < waves.count; ++k) {
     compare(waves.to_finest[k], phases.turns[0], phases.turns[k]);
   }
-  for (std::size_t k = waves.count; k < kMostFrequencies; ++k) {
+  for (std::size_t k = waves.count; k < kMaxFrequencies; ++k) {
     if (waves.count > 3) phases.turns[k].fill(0.0);  // all of them are searched
   }
   found.whole.fill(0.0);

@@ -11,7 +11,7 @@ struct NoiseBatch;
 struct NoiseView;
 
 /// The most frequencies that are used.
-inline constexpr std::size_t kMostFrequencies = 8;
+inline constexpr std::size_t kMaxFrequencies = 8;
 
 /// Time of flight by continuous waves. At each frequency f the pixel measures the phase of
 /// sum a exp(j 4 pi f R / c) over itself and, with the share `multipath_fraction`, over the pixels

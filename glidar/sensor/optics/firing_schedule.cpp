@@ -43,11 +43,11 @@ std::int64_t firing_time_ns(const FiringSchedule& ticks, std::int64_t k) {
 
 FiringRange firings_in(const FiringSchedule& ticks, const FrameInterval& window, std::size_t most) {
   check(window);
-  constexpr double kLeastPeriod_ns = 1.0;
-  constexpr double kMost_ns = static_cast<double>(kFarthest_ns);
-  require_number(ticks.period_ns >= kLeastPeriod_ns && ticks.period_ns <= kMost_ns,
-                 "optics, period", ticks.period_ns, "ns from 1 to 8.64e15, 100 days");
-  require_number(std::abs(ticks.first_ns) <= kMost_ns, "optics, first time", ticks.first_ns,
+  constexpr double kMinPeriod_ns = 1.0;
+  constexpr double kMax_ns = static_cast<double>(kFarthest_ns);
+  require_number(ticks.period_ns >= kMinPeriod_ns && ticks.period_ns <= kMax_ns, "optics, period",
+                 ticks.period_ns, "ns from 1 to 8.64e15, 100 days");
+  require_number(std::abs(ticks.first_ns) <= kMax_ns, "optics, first time", ticks.first_ns,
                  "ns within 8.64e15, 100 days, of zero");
   const FiringRange range = {first_from(ticks, window.start_ns), first_from(ticks, window.end_ns)};
   require_number(range.size() <= most, "optics, shots in a frame",

@@ -43,6 +43,6 @@ FiringRange firings_in(const FiringSchedule& ticks, const FrameInterval& window,
 Eigen::Vector3d direction_at(double azimuth_rad, double elevation_rad);
 
 /// The most beams that one window may have.
-inline constexpr std::size_t kMostBeams = std::size_t{1} << 27U;
+inline constexpr std::size_t kMaxBeams = std::size_t{1} << 27U;
 
 }  // namespace glidar

@@ -19,9 +19,9 @@ bool all_finite(const std::vector<double>& values) {
 void validate(const LineScan& r) {
   const std::size_t lines = r.elevations_rad.size();
   const std::size_t points = r.azimuths_rad.size();
-  require_number(lines >= 1 && lines <= kMostBeams, "optics, number of lines",
+  require_number(lines >= 1 && lines <= kMaxBeams, "optics, number of lines",
                  static_cast<double>(lines), "at least 1");
-  require_number(points >= 1 && points <= kMostBeams / lines, "optics, number of points in a line",
+  require_number(points >= 1 && points <= kMaxBeams / lines, "optics, number of points in a line",
                  static_cast<double>(points), "at least 1, 134217728 beams in all");
   require_number(all_finite(r.elevations_rad) && all_finite(r.azimuths_rad), "optics, angles", 0.0,
                  "finite angles");

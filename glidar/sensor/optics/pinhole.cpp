@@ -13,9 +13,9 @@ namespace glidar {
 namespace {
 
 void validate(const PinholeIntrinsics& k) {
-  require_number(k.width >= 1 && k.width <= kLargestImageSide, "pinhole, width", k.width,
+  require_number(k.width >= 1 && k.width <= kMaxImageSide, "pinhole, width", k.width,
                  "1 to 65536 pixels");
-  require_number(k.height >= 1 && k.height <= kLargestImageSide, "pinhole, height", k.height,
+  require_number(k.height >= 1 && k.height <= kMaxImageSide, "pinhole, height", k.height,
                  "1 to 65536 pixels");
   require_number(k.fx > 0.0 && k.fx <= kFarthestPixel, "pinhole, fx", k.fx,
                  "above 0, up to 1e9 pixels");
@@ -57,7 +57,7 @@ Eigen::Matrix2d distortion_jacobian(const RadialTangential& k, const Eigen::Vect
   return j;
 }
 
-constexpr int kMostNewtonSteps = 50;
+constexpr int kMaxNewtonSteps = 50;
 constexpr double kConverged =
     1e-14;  // residual on the normalised plane: below any pixel's rounding
 
@@ -72,7 +72,7 @@ Eigen::Vector3d ray(const NoDistortion& /*none*/, const Eigen::Vector2d& plane) 
 Eigen::Vector3d ray(const RadialTangential& k, const Eigen::Vector2d& plane) {
   Eigen::Vector2d p = plane;
   const double tolerance = kConverged * (1.0 + plane.norm());
-  for (int step = 0; step < kMostNewtonSteps; ++step) {
+  for (int step = 0; step < kMaxNewtonSteps; ++step) {
     const Eigen::Vector2d residual = distorted(k, p) - plane;
     const Eigen::Matrix2d jacobian = distortion_jacobian(k, p);
     if (!(jacobian.determinant() > 0.0)) break;
@@ -90,7 +90,7 @@ Eigen::Vector3d ray(const Fisheye& k, const Eigen::Vector2d& plane) {
   const double radius = plane.norm();
   if (radius == 0.0) return Eigen::Vector3d::UnitZ();
   double theta = std::min(radius, std::numbers::pi);
-  for (int step = 0; step < kMostNewtonSteps; ++step) {
+  for (int step = 0; step < kMaxNewtonSteps; ++step) {
     const double t2 = theta * theta;
     const double value = theta * (1.0 + t2 * (k.k1 + t2 * (k.k2 + t2 * (k.k3 + t2 * k.k4))));
     const double slope =

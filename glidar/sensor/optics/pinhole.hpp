@@ -48,7 +48,7 @@ struct Pinhole {
 };
 
 /// Most pixels along one side of an image.
-inline constexpr std::uint32_t kLargestImageSide = 65536;
+inline constexpr std::uint32_t kMaxImageSide = 65536;
 /// Farthest that focal lengths and principal points go, in pixels.
 inline constexpr double kFarthestPixel = 1e9;
 

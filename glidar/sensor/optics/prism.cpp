@@ -11,7 +11,7 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kMostParts = 64;
+constexpr std::size_t kMaxParts = 64;
 
 void validate(const RisleyPrism& p) {
   require_number(std::isfinite(p.rotation_hz), "optics, prism, rotation", p.rotation_hz,
@@ -24,10 +24,10 @@ void validate(const RisleyPrism& p) {
 }
 
 void validate(const Prism& prism) {
-  require_number(!prism.prisms.empty() && prism.prisms.size() <= kMostParts,
+  require_number(!prism.prisms.empty() && prism.prisms.size() <= kMaxParts,
                  "optics, number of prisms", static_cast<double>(prism.prisms.size()), "1 to 64");
   const std::size_t beams = prism.incidence_tangent.size();
-  require_number(beams >= 1 && beams <= kMostParts, "optics, number of incident beams",
+  require_number(beams >= 1 && beams <= kMaxParts, "optics, number of incident beams",
                  static_cast<double>(beams), "1 to 64");
   for (const double right : prism.incidence_tangent) {
     require_number(std::abs(right) < 1.0, "optics, incident beam", right, "above -1 and below 1");
@@ -86,7 +86,7 @@ Beams make_beams(const Prism& prism, const FrameInterval& window) {
   validate(prism);
   const std::size_t rows = prism.incidence_tangent.size();
   const FiringSchedule pulses = {0.0, kSecond_ns / prism.pulse_hz};
-  const FiringRange range = firings_in(pulses, window, kMostBeams / rows);
+  const FiringRange range = firings_in(pulses, window, kMaxBeams / rows);
   Beams beams;
   beams.rows = static_cast<std::uint32_t>(rows);
   beams.cols = static_cast<std::uint32_t>(range.size());

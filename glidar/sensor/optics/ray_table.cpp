@@ -32,7 +32,7 @@ void check_times(const RayTable& table) {
 
 void validate(const RayTable& table) {
   const std::size_t size = std::size_t{table.rows} * table.cols;
-  require_number(size >= 1 && size <= kMostBeams, "optics, number of beams",
+  require_number(size >= 1 && size <= kMaxBeams, "optics, number of beams",
                  static_cast<double>(size), "1 to 134217728");
   require_size(table.directions.size(), size, false, "optics, directions");
   require_size(table.origins_m.size(), size, true, "optics, origins");
@@ -48,7 +48,7 @@ void validate(const RayTable& table) {
 /// The shots of the plays that touch the window, less those outside it.
 std::vector<Shot> shots_in(const RayTable& table, const FrameInterval& window) {
   const FiringSchedule last = {table.times_ns.back(), table.period_ns};
-  const FiringRange plays = firings_in(last, window, kMostBeams / table.times_ns.size());
+  const FiringRange plays = firings_in(last, window, kMaxBeams / table.times_ns.size());
   std::vector<Shot> shots;
   shots.reserve((plays.size() + 1) * table.times_ns.size());
   for (std::int64_t play = plays.begin; play <= plays.end; ++play) {

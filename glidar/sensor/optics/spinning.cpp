@@ -11,8 +11,8 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kMostChannels = 4096;
-constexpr double kMostTurns_hz = 1e4;
+constexpr std::size_t kMaxChannels = 4096;
+constexpr double kMaxTurns_hz = 1e4;
 
 void validate(const SpinningChannel& channel) {
   require_number(std::abs(channel.elevation_rad) <= 0.5 * std::numbers::pi, "optics, elevation",
@@ -26,9 +26,9 @@ void validate(const SpinningChannel& channel) {
 }
 
 void validate(const Spinning& s) {
-  require_number(!s.channels.empty() && s.channels.size() <= kMostChannels,
+  require_number(!s.channels.empty() && s.channels.size() <= kMaxChannels,
                  "optics, number of channels", static_cast<double>(s.channels.size()), "1 to 4096");
-  require_number(s.rotation_hz > 0.0 && s.rotation_hz <= kMostTurns_hz, "optics, rotation",
+  require_number(s.rotation_hz > 0.0 && s.rotation_hz <= kMaxTurns_hz, "optics, rotation",
                  s.rotation_hz, "above 0, up to 1e4 turns per second");
   require_number(std::isfinite(s.start_azimuth_rad), "optics, start azimuth", s.start_azimuth_rad,
                  "a finite angle");
@@ -82,7 +82,7 @@ double first_fire_ns(const Spinning& s) {
 
 std::vector<std::int64_t> sequences_in(const Spinning& s, const FrameInterval& window) {
   const FiringRange range =
-      firings_in({first_fire_ns(s), sequence_period_ns(s)}, window, kMostBeams / s.channels.size());
+      firings_in({first_fire_ns(s), sequence_period_ns(s)}, window, kMaxBeams / s.channels.size());
   std::vector<std::int64_t> sequences;
   sequences.reserve(range.size());
   for (std::int64_t k = range.begin; k < range.end; ++k) {

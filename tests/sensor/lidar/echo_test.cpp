@@ -130,10 +130,10 @@ TEST(FindEchoes, MakesTheSameEchoOfNearPathsInAnyOrder) {
 
 TEST(WaveformBuffer, LeavesOutTheWeakestOfTooManyPaths) {
   WaveformBuffer work;
-  for (std::size_t i = 0; i <= WaveformBuffer::kMost; ++i) {
+  for (std::size_t i = 0; i <= WaveformBuffer::kMax; ++i) {
     work.add({10.0, i == 7 ? 0.5 : 1.0, static_cast<std::uint32_t>(i), ReturnSource::surface});
   }
-  EXPECT_EQ(work.paths, WaveformBuffer::kMost);
+  EXPECT_EQ(work.paths, WaveformBuffer::kMax);
   for (std::size_t i = 0; i < work.paths; ++i) EXPECT_NE(work.path[i].source, 7U);
 }
 

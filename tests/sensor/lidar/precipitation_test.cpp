@@ -73,7 +73,7 @@ TEST(Drops, LieByTheCubeOfTheRangeAndAreExponentiallyLarge) {
   for (std::uint32_t beam = 0; beam < 1000; ++beam) {
     for (const DropEcho& drop : drops_of(strong_light(), field, kRange_m, beam)) {
       by_range.push_back(std::pow(drop.range_m / kRange_m, 3.0));
-      by_size.push_back(1.0 - std::exp(-sizes.slope_per_m * (drop.diameter_m - kLeastDrop_m)));
+      by_size.push_back(1.0 - std::exp(-sizes.slope_per_m * (drop.diameter_m - kMinDrop_m)));
     }
   }
   EXPECT_GT(by_range.size(), 40000U);
@@ -156,21 +156,21 @@ struct Harvest {
 };
 
 TEST(ThinnedDrops, AreDistributedAsTheStrongOfAllDrops) {
-  constexpr double kLeast = 0.02;
+  constexpr double kMin = 0.02;
   constexpr double kRange_m = 15.0;
   constexpr std::uint32_t kBeams = 60000;
   const LidarEquation light{.reference_range_m = 100.0,
                             .weather_extinction_per_m = EveryDrop::kExtinction_per_m};
   const BeamShape beam{.divergence_rad = EveryDrop::kDivergence_rad,
                        .exit_diameter_m = EveryDrop::kExit_m};
-  const DropField field = drop_field(light, rain_sizes(50.0), beam, kLeast);
+  const DropField field = drop_field(light, rain_sizes(50.0), beam, kMin);
   Harvest thinned;
   Harvest all;
   EveryDrop every(kRange_m);
   for (std::uint32_t k = 0; k < kBeams; ++k) {
     thinned.add(drops_of(light, field, kRange_m, k));
     std::vector<DropEcho> strong = every.draw();
-    std::erase_if(strong, [&](const DropEcho& drop) { return drop.signal < kLeast; });
+    std::erase_if(strong, [&](const DropEcho& drop) { return drop.signal < kMin; });
     all.add(strong);
   }
   EXPECT_GT(all.signals.size(), 20000U);
@@ -207,7 +207,7 @@ TEST(ThinnedDrops, CostLittleWhereThousandsAreInTheBeam) {
   const BeamShape beam{.divergence_rad = 0.003, .exit_diameter_m = 0.0095};
   const DropSizes sizes = rain_sizes(100.0);
   const DropField field = drop_field(light, sizes, beam, 0.1);
-  EXPECT_GT(drops_per_m3(sizes, kLeastDrop_m) * beam_volume_m3(beam, 100.0), 10000.0);
+  EXPECT_GT(drops_per_m3(sizes, kMinDrop_m) * beam_volume_m3(beam, 100.0), 10000.0);
   // the exact mean, by the midpoint rule
   double mean = 0.0;
   constexpr double kStep_m = 1e-3;
