@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/model/crease_normals.hpp>
 
+#include <glidar/io/model/corner_angle.hpp>
 #include <glidar/io/model/vertex_weld.hpp>
 
 #include <algorithm>
@@ -22,10 +23,6 @@ struct Faces {
   std::vector<float> angles;             ///< of corner 3 * face + k
 };
 
-float angle_between(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
-  return std::atan2(a.cross(b).norm(), a.dot(b));
-}
-
 Faces faces_of(const Mesh& mesh) {
   Faces faces;
   faces.normals.resize(mesh.triangles.size());
@@ -44,8 +41,8 @@ Faces faces_of(const Mesh& mesh) {
     const Eigen::Vector3f cross = ab.cross(ac);
     const float area = cross.norm();
     faces.normals[f] = area > 0.0F ? Eigen::Vector3f(cross / area) : Eigen::Vector3f::Zero();
-    const float at_a = std::atan2(area, ab.dot(ac));
-    const float at_b = angle_between(-ab, ac - ab);
+    const float at_a = angle_between_rad(ab, ac);
+    const float at_b = angle_between_rad(-ab, ac - ab);
     faces.angles[3 * f] = at_a;
     faces.angles[3 * f + 1] = at_b;
     faces.angles[3 * f + 2] = std::max(0.0F, std::numbers::pi_v<float> - at_a - at_b);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/io/model/tangents.hpp>
 
+#include <glidar/io/model/corner_angle.hpp>
+
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -36,10 +38,8 @@ FaceTangent face_tangent(const Mesh& mesh, const Triangle& t, std::size_t uv_set
 
 float corner_angle(const Mesh& mesh, const Triangle& t, std::size_t k) {
   const Eigen::Vector3f& at = mesh.positions_m[t[k]];
-  const Eigen::Vector3f a = mesh.positions_m[t[(k + 1) % 3]] - at;
-  const Eigen::Vector3f b = mesh.positions_m[t[(k + 2) % 3]] - at;
-  const float angle = std::atan2(a.cross(b).norm(), a.dot(b));
-  return std::isfinite(angle) ? angle : 0.0F;
+  return angle_between_rad(mesh.positions_m[t[(k + 1) % 3]] - at,
+                           mesh.positions_m[t[(k + 2) % 3]] - at);
 }
 
 Eigen::Vector3f in_plane(const Eigen::Vector3f& v, const Eigen::Vector3f& normal) {
