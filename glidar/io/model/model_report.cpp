@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace glidar {
@@ -25,6 +26,18 @@ std::vector<MaterialSummary> summaries(const Model& model) {
   for (std::uint32_t t = 0; t < model.mesh.triangles.size(); ++t) {
     const std::uint16_t slot = material_slot(model.mesh, t);
     if (slot < all.size()) ++all[slot].triangles;
+  }
+  return all;
+}
+
+/// Each image once: a height map is followed by the normal map made from it, with the same name.
+std::vector<TextureSummary> texture_summaries(const Model& model) {
+  std::vector<TextureSummary> all;
+  for (const Texture& t : model.textures) {
+    const bool is_listed = std::any_of(all.begin(), all.end(), [&](const TextureSummary& other) {
+      return other.name == t.name && other.width == t.width && other.height == t.height;
+    });
+    if (!is_listed) all.push_back({t.name, t.width, t.height, t.channels});
   }
   return all;
 }
@@ -111,9 +124,7 @@ ModelReport inspect(const Model& model) {
   report.closed = report.triangles > 0 && report.check.open_edges == 0;
   report.winding = winding_of(report.check, report.closed);
   report.materials = summaries(model);
-  for (const Texture& t : model.textures) {
-    report.textures.push_back({t.name, t.width, t.height, t.channels});
-  }
+  report.textures = texture_summaries(model);
   report.missing_textures = model.missing_textures;
   report.notes = model.notes;
   report.metres_per_unit = model.applied.metres_per_unit.value_or(1.0);

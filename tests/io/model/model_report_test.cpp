@@ -83,6 +83,18 @@ TEST(ModelReport, NamesTexturesOfMaterials) {
   EXPECT_EQ(report.textures.at(0).width, 2U);
 }
 
+TEST(ModelReport, ListsAHeightMapAndItsNormalMapAsOneImage) {
+  Model model = make_builtin_model("plane");
+  model.textures = {{"weave.png", 2, 1, 1, std::vector<std::uint8_t>(2)},
+                    {"weave.png", 2, 1, 3, std::vector<std::uint8_t>(6)},
+                    {"other.png", 2, 1, 3, std::vector<std::uint8_t>(6)}};
+  const ModelReport report = inspect(model);
+  ASSERT_EQ(report.textures.size(), 2U);
+  EXPECT_EQ(report.textures[0].name, "weave.png");
+  EXPECT_EQ(report.textures[0].channels, 1U);
+  EXPECT_EQ(report.textures[1].name, "other.png");
+}
+
 TEST(ModelReport, AnEmptyMeshIsToldNotCrashed) {
   const ModelReport report = inspect(Model{});
   EXPECT_EQ(report.triangles, 0U);
