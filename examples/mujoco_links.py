@@ -129,7 +129,7 @@ class Protocol2015(Glidar):
         poses_at = clouds_at = two_ports()
         while abs(clouds_at - poses_at) < 2:
             clouds_at = two_ports()
-        super().__init__(model, "--physics-port", str(poses_at), "--pose-queue", "100", "--port", str(clouds_at), "--quiet",
+        super().__init__(model, "--pose-source", f"tcp://127.0.0.1:{poses_at}", "--pose-queue", "100", "--port", str(clouds_at), "--quiet",
                          *arguments)
         try:
             self.poses, self.clouds = self.context.socket(zmq.PUB), self.context.socket(zmq.SUB)

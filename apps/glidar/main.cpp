@@ -17,6 +17,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -79,6 +80,19 @@ std::string explain_mismatch(const std::string& text) {
   return fmt::format("{}: there is no value after it; see --help for what it takes", option);
 }
 
+/// CLI11's "--fov excludes --fx" and "--durable requires --record" in words.
+std::string explain_conflict(const std::string& text) {
+  constexpr std::string_view kExcludes = " excludes ";
+  constexpr std::string_view kRequires = " requires ";
+  if (const std::size_t found = text.find(kExcludes); found != std::string::npos) {
+    return fmt::format("{} and {}: both are given; give one of them", text.substr(0, found),
+                       text.substr(found + kExcludes.size()));
+  }
+  const std::size_t found = text.find(kRequires);
+  return fmt::format("{0}: there is no {1}; give {1} too", text.substr(0, found),
+                     text.substr(found + kRequires.size()));
+}
+
 int fail(const std::string& message) {
   std::fputs(fmt::format("glidar: error: {}\n", message).c_str(), stderr);
   return kBadInput;
@@ -103,6 +117,10 @@ int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** 
     return program.exit(help_or_version);
   } catch (const CLI::ArgumentMismatch& error) {
     return fail(explain_mismatch(error.what()));
+  } catch (const CLI::ExcludesError& error) {
+    return fail(explain_conflict(error.what()));
+  } catch (const CLI::RequiresError& error) {
+    return fail(explain_conflict(error.what()));
   } catch (const CLI::ConversionError& error) {
     return fail(std::string(error.what()) + "; see --help for what it takes");
   } catch (const CLI::ParseError& error) {

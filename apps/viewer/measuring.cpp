@@ -3,6 +3,7 @@
 #include <apps/viewer/measuring.hpp>
 
 #include <apps/glidar/run/advice.hpp>
+#include <apps/glidar/run/outputs.hpp>
 #include <glidar/explain/trace_text.hpp>
 #include <glidar/simulate/explain.hpp>
 #include <glidar/simulate/simulate.hpp>

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/view.hpp>
 
-#include <apps/glidar/options/option_kinds.hpp>
+#include <apps/glidar/options/option_group.hpp>
+#include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/viewer/screen.hpp>
 #include <glidar/core/error.hpp>
@@ -28,7 +29,7 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kExamples =
     R"(Left: what the sensor sees. Right: its point cloud, with the sensor's frustum, axes and a grid.
-Keys: s saves cloud and transform (buffer.pcd, buffer.transform, or what -o and --pcd say), + and -
+Keys: s saves cloud and transform (buffer.pcd, buffer.transform, or what -o and --legacy-output give), + and -
 move the sensor, space pauses, r resets, Esc quits. Keys and mouse act on the selected object: the
 first one, until another is selected in the list or by a click on one of its points. f frames it in
 both views. Drag on the left to turn it, on the right to orbit the cloud; a click on a point also
@@ -277,20 +278,11 @@ int run(ViewFlags& flags) {
   return kDone;
 }
 
-void parse_size(const std::string& text, WindowSize& size) {
-  int used = 0;
-  const bool is_read =
-      std::sscanf(text.c_str(), "%5dx%5d%n", &size.width, &size.height, &used) == 2;
-  constexpr int kMin = 320;
-  constexpr int kMax = 16384;
-  const auto is_fit = [](int n) { return n >= kMin && n <= kMax; };
-  if (is_read && static_cast<std::size_t>(used) == text.size() && is_fit(size.width) &&
-      is_fit(size.height))
-    return;
-  throw Error({.where = "--window",
-               .found = "'" + text + "'",
-               .allowed = "WIDTHxHEIGHT in pixels, each from 320 to 16384",
-               .remedy = "for example --window 1280x720"});
+WindowSize parse_size(const std::string& text) {
+  constexpr std::uint32_t kMin = 320;
+  constexpr std::uint32_t kMax = 16384;
+  const auto size = image_size(kMin, kMax)(text);
+  return {static_cast<int>(size[0]), static_cast<int>(size[1])};
 }
 
 }  // namespace
@@ -300,21 +292,15 @@ Command add_view(CLI::App& program) {
       *program.add_subcommand("view", "Look at a model or scene through a sensor, in a window");
   const auto flags = std::make_shared<ViewFlags>();
   command.footer(output_names_text() + kExamples);
-  add_render_flags(command, flags->render);
-  const std::string group = "Window";
-  add_option(
-      command, {"--window", "WxH", "Size, pixels [1280x720]", group},
-      [&size = flags->size](std::string_view, const std::string& text) { parse_size(text, size); });
-  add_text(command, {"--screenshot", "FILE", "Write the window as a PNG, then quit", group},
-           flags->screenshot);
-  constexpr std::int64_t kMax = 1'000'000;
-  add_whole(command, {"--frames", "N", "Quit after N frames of the sensor [screenshot: 1]", group},
-            {1, kMax},
-            [&frames = flags->frames](std::int64_t n) { frames = static_cast<std::uint32_t>(n); });
-  command
-      .add_flag("--print-state", flags->prints_state,
-                "Print a line whenever all is drawn, for scripts")
-      ->group(group);
+  add_render_options(command, flags->render);
+  const OptionGroup group(command, "Window");
+  constexpr std::uint32_t kMaxFrames = 1'000'000;
+  group.add("--window", "WxH", "Size, pixels [1280x720]", flags->size, parse_size);
+  group.add("--screenshot", "FILE", "Write the window as a PNG, then quit", flags->screenshot);
+  group.add("--frames", "N", "Quit after N frames of the sensor [screenshot: 1]", flags->frames,
+            whole(1U, kMaxFrames));
+  group.add_flag("--print-state", "Print a line whenever all is drawn, for scripts",
+                 flags->prints_state);
   return [flags] { return run(*flags); };
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/viewer/viewer.hpp>
 
+#include <apps/glidar/run/outputs.hpp>
 #include <apps/viewer/cloud_points.hpp>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ RenderFlags for_file(const RenderFlags& before, const std::string& path) {
   flags.input = path;
   flags.sensor = before.sensor;
   flags.renderer = before.renderer;
-  flags.target = before.target;
+  flags.quantized_framebuffer = before.quantized_framebuffer;
   flags.seed = before.seed;
   flags.output = before.output;
   return flags;
@@ -183,7 +184,7 @@ void Viewer::use_sensor(const std::string& preset) {
   RenderFlags flags = *ask_.flags;
   flags.sensor = {};
   flags.sensor.file = preset;
-  flags.pose.sensor_pose.clear();
+  flags.pose.world_from_sensor.reset();
   ask_.sensor_moved = Pose::Identity();
   pick({});
   ask_for(flags);
@@ -192,7 +193,7 @@ void Viewer::use_sensor(const std::string& preset) {
 void Viewer::use_renderer(const std::string& kind) {
   RenderFlags flags = *ask_.flags;
   flags.renderer.kind = kind;
-  if (kind != "opengl") flags.target = "float";
+  if (kind != "opengl") flags.quantized_framebuffer = false;
   ask_for(flags);
 }
 

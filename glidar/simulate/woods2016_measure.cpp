@@ -19,7 +19,7 @@ void check(const Setup& setup, const Frame& frame) {
     throw Error({.where = "paper target",
                  .found = found,
                  .allowed = "the paper's light, and beams that fire together where they are aimed",
-                 .remedy = "use --render-target float"});
+                 .remedy = "leave --quantized-framebuffer out"});
   };
   refuse_if(setup.sensor.pulse.has_value(), "pulsed light");
   refuse_if(!setup.beams.times_ns.empty(), "beams that fire one by one");

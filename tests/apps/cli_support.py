@@ -57,6 +57,11 @@ def free_ports():
         return port
 
 
+def tcp(port):
+    """The endpoint at a port of this machine."""
+    return f"tcp://127.0.0.1:{port}"
+
+
 def box_of(size):
     """The text of a cube with this side."""
     return re.sub(r"(?m)^v (.*)$", lambda m: "v " + " ".join(

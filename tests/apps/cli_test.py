@@ -159,7 +159,7 @@ class Render(CliTest):
 
     def test_pcd_of_2015(self):
         self.succeed("render", "builtin:box", "--model-r", "0.4,1,2,3", "--camera-r",
-                     "0.1,-0.2,0.5,0.7", "--camera-z", "9", "--fov", "60", "--pcd", "view")
+                     "0.1,-0.2,0.5,0.7", "--camera-z", "9", "--fov", "60", "--legacy-output", "view")
         self.assertEqual(self.files(), ["view.pcd", "view.transform"])
         head, points, rows = self.read_legacy("view")
         self.assertIn("FIELDS x y z intensity\n", head)
@@ -175,7 +175,7 @@ class Render(CliTest):
     def test_pcd_of_2015_knows_left_from_right(self):
         # the object's +x is at the left, +y up, +z away: a corner cut off by moving the model
         self.write("three.obj", "v 1 0 0\nv 1 0.2 0\nv 1 0 0.2\nv 1.2 0.1 0\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 1 3 2\n")
-        self.succeed("render", "three.obj", "--camera-z", "10", "--fov", "30", "--pcd", "view")
+        self.succeed("render", "three.obj", "--camera-z", "10", "--fov", "30", "--legacy-output", "view")
         _, points, rows = self.read_legacy("view")
         self.assertTrue(points)
         for x, y, z, _ in points:
@@ -242,7 +242,7 @@ class Motion(CliTest):
         self.assertEqual(pose["position_m"], [0, 0, -7])
         late = self.write("late.tum", "5 0 0 -7 0 0 0 1\n")
         self.assertIn("the pose at its end holds", self.warned("builtin:box", "--trajectory", late))
-        self.assertIn("where the sensor is", self.refused(
+        self.assertIn("both are given; give one of them", self.refused(
             "render", "builtin:box", "--trajectory", "path.tum", "--camera-z", "5", "-o", "y.pcd"))
 
 
@@ -277,7 +277,7 @@ sensor_pose:
     def test_sensor_file_wins_over_the_scene_file(self):
         self.write("sensor.yaml", "optics: {type: pinhole, width: 33, height: 11, fov_deg: 30}\n")
         self.assertIn("33 x 11 beams", self.ids("--sensor", "sensor.yaml")[1])
-        self.assertIn("write them into sensor.yaml",
+        self.assertIn("both are given; give one of them",
                       self.refused("render", "scene.yaml", "--sensor", "sensor.yaml", "--fov", "9",
                                    "-o", "x.pcd"))
 

@@ -42,7 +42,7 @@ class OpenglRenderer(CliTest):
 
     def test_the_paper_target_is_coarser_and_told_beside_the_cloud(self):
         exact = self.render("exact.csv").splitlines()
-        paper = self.render("paper.csv", "--renderer", "opengl", "--render-target", "paper").splitlines()
+        paper = self.render("paper.csv", "--renderer", "opengl", "--quantized-framebuffer").splitlines()
         self.assertAlmostEqual(len(paper), len(exact), delta=5)
         self.assertNotEqual(paper, exact)
         with open(os.path.join(self.folder, "paper.csv.json"), encoding="utf-8") as file:
@@ -50,7 +50,7 @@ class OpenglRenderer(CliTest):
 
     @unittest.skipIf(np is None, "NumPy is not installed")
     def test_the_paper_s_picture_is_what_the_cloud_was_read_from(self):
-        paper = ("--renderer", "opengl", "--render-target", "paper")
+        paper = ("--renderer", "opengl", "--quantized-framebuffer")
         self.succeed("render", *VIEW, *paper, "--fields", "xyz,depth,intensity,status", "-o", "a.npz",
                      "-o", "a.paper.png")
         self.succeed("render", *VIEW, "--fields", "xyz,depth", "-o", "exact.npz")
@@ -71,13 +71,13 @@ class OpenglRenderer(CliTest):
         self.assertLess(np.nanquantile(off, 0.99), 0.52 * (far - near) / 65536)
 
     def test_the_float_target_has_no_picture(self):
-        told = "x.paper.png: the float target, which draws no such picture; allowed: this output with --render-target paper"
+        told = "x.paper.png: the float target, which draws no such picture; allowed: this output with --quantized-framebuffer"
         for renderer in ((), ("--renderer", "opengl")):
             self.assertIn(told, self.refused("render", *VIEW, *renderer, "-o", "x.paper.png"))
 
     def test_what_it_cannot_draw_is_refused(self):
         self.assertIn("add --renderer opengl",
-                      self.refused("render", *VIEW, "--render-target", "paper", "-o", "x.pcd"))
+                      self.refused("render", *VIEW, "--quantized-framebuffer", "-o", "x.pcd"))
         self.assertIn("not applicable: it has other beams than this renderer casts",
                       self.succeed("verify", "--renderer", "opengl").stdout)
         self.assertIn("graphics device: 63; allowed: 0: ", self.refused(

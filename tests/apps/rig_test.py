@@ -11,6 +11,7 @@ import unittest
 from stream_support import StreamTest
 
 import numpy as np
+from cli_support import tcp
 from lockstep_test import CLIENT, Server, body
 from stream_client import pose_message
 
@@ -174,7 +175,7 @@ class Topics(RigTest):
         rock = "    pose: {position: [6, 0, 0]}\n    motion: {spin: {rate_deg_s: [0, 40, 0]}}\n"
         self.write("rig.yaml", RIG.replace(rock, ""))
         simulator = self.simulator()
-        program = self.stream("--physics-port", str(self.physics), "--pose-queue", "10", "--subscribers", "2")
+        program = self.stream("--pose-source", tcp(self.physics), "--pose-queue", "10", "--subscribers", "2")
         subscribers = {name: self.subscriber(topic=topic(name)) for name in ("lidar", "twin")}
         for subscriber in subscribers.values():
             subscriber.shake()

@@ -102,7 +102,7 @@ class Sensors(CliTest):
 
     def test_the_paper_s_light_is_refused_where_lidar_equation_is(self):
         box = ("render", "builtin:box", "--eye", "0,0,0", "--sensor", "VLP-16", "-o", "a.pcd")
-        self.assertIn("--ambient: the sensor has pulse light; leave it out, or add --ground-truth",
+        self.assertIn("--ambient: the sensor has pulsed light; leave it out, or add --ground-truth",
                       self.refused(*box, "--ambient", "0"))
         self.assertIn("--attenuation: the sensor has", self.refused(*box, "--attenuation", "1,0,0"))
         self.succeed(*box, "--ambient", "0", "--ground-truth")
@@ -148,7 +148,7 @@ class Sensors(CliTest):
                             ("strongst", "did you mean strongest?"), ("first,", "an empty part"),
                             ("0", "how many of the nearest, 1 to 16"), (",".join(["last"] * 17), "17 returns")):
             self.assertIn(told, self.refused(*room, wrong, "-o", "a.pcd"))
-        self.assertIn("--returns: --ground-truth leaves", self.refused(*room, "last", "--ground-truth", "-o", "a.pcd"))
+        self.assertIn("--returns: --ground-truth removes", self.refused(*room, "last", "--ground-truth", "-o", "a.pcd"))
         self.assertIn("--returns: the sensor has no pulse light", self.refused(
             "render", "builtin:box", "--returns", "last", "-o", "a.pcd"))
 

@@ -13,7 +13,7 @@ import unittest
 from stream_support import SMALL, StreamTest
 
 import zmq
-from cli_support import MAX_WAIT_S
+from cli_support import MAX_WAIT_S, tcp
 from stream_client import SHUTDOWN, cloud, pose_message
 from waiting import wait_for_line
 
@@ -51,7 +51,7 @@ class Ends(StreamTest):
         self.ends_by(program, signal.SIGINT)
 
     def test_by_a_signal_while_it_waits_for_a_simulator(self):
-        program = self.publish("--subscribers", "0", "--physics-port", str(self.physics))
+        program = self.publish("--subscribers", "0", "--pose-source", tcp(self.physics))
         self.waiting(program)
         self.ends_by(program, signal.SIGINT)
 
@@ -92,7 +92,7 @@ class Ends(StreamTest):
 
     def test_at_once_when_the_disk_is_full_and_no_pose_comes(self):
         simulator = self.simulator()
-        program, subscriber = self.full_disk("--physics-port", str(self.physics), "--pose-queue", "10")
+        program, subscriber = self.full_disk("--pose-source", tcp(self.physics), "--pose-queue", "10")
         simulator.shake()
         simulator.send(pose_message(1))
         self.assertEqual(len(subscriber.clouds_until_shutdown()), 1)
@@ -117,7 +117,7 @@ class Ends(StreamTest):
         """The timeout is about waiting for a pose, not about frames that take long. Poses are sent before the
         handshake is answered, as a busy machine may need long between the two."""
         simulator = self.simulator()
-        program = self.publish("--physics-port", str(self.physics), "--pose-queue", "10", "--subscribers", "0",
+        program = self.publish("--pose-source", tcp(self.physics), "--pose-queue", "10", "--subscribers", "0",
                                "--rate", "0.15", "--pose-timeout", "5", "--frames", "2")
         simulator.shake(before_answer=[pose_message(stamp) for stamp in range(2)])
         self.finished(program, 0)
@@ -144,7 +144,7 @@ class Documentation(StreamTest):
             simulator = simulator.replace(shown, str(used))
         self.write("client.py", client)
         self.write("simulator.py", "import struct\nimport zmq\ncontext = zmq.Context()\n" + simulator)
-        program = self.publish("--physics-port", str(self.physics), "--pose-queue", "1000", "--publish-queue", "1000")
+        program = self.publish("--pose-source", tcp(self.physics), "--pose-queue", "1000", "--publish-queue", "1000")
         programs = [subprocess.Popen([sys.executable, name], cwd=self.folder, stdout=subprocess.PIPE, text=True)
                     for name in ("simulator.py", "client.py")]
         for process in programs:
@@ -176,10 +176,12 @@ class Refusals(StreamTest):
             self.assertIn("--output: not given", self.refused("stream", self.box, "--port", str(self.port), *option))
 
     def test_contradictions(self):
-        physics = ("stream", self.box, "--port", str(self.port), "--physics-port")
-        self.assertIn("overlap", self.refused(*physics, str(self.port + 1)))
-        self.assertIn("--object-rate", self.refused(*physics, str(self.physics), "--object-rate", "0,1,0"))
-        self.assertIn("--physics-port", self.refused("stream", self.box, "-p", "5555", "--pose-timeout", "1"))
+        physics = ("stream", self.box, "--port", str(self.port), "--pose-source")
+        self.assertIn("overlap", self.refused(*physics, tcp(self.port + 1)))
+        self.assertIn("--object-rate", self.refused(*physics, tcp(self.physics), "--object-rate", "0,1,0"))
+        for endpoint in ("127.0.0.1:5557", "tcp://127.0.0.1:*", "tcp://127.0.0.1:65535", "ipc://poses"):
+            self.assertIn("allowed: tcp://HOST:PORT", self.refused(*physics, endpoint))
+        self.assertIn("--pose-source", self.refused("stream", self.box, "-p", "5555", "--pose-timeout", "1"))
 
     def test_values_out_of_range(self):
         for option, value in (("--port", "0"), ("--port", "65535"), ("--subscribers", "-1"),

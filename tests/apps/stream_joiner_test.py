@@ -10,7 +10,7 @@ import unittest
 from stream_support import StreamTest
 
 import zmq
-from cli_support import MAX_WAIT_S, free_ports
+from cli_support import MAX_WAIT_S, free_ports, tcp
 from stream_client import SHUTDOWN, cloud, pose_message
 from waiting import wait_for_line, wait_until
 
@@ -50,7 +50,7 @@ class Simulator(threading.Thread):
 class SlowJoiner(StreamTest):
     def program(self, name, physics, port):
         return self.start(self.box, "--width", "4", "--height", "4", "--port", str(port), "--subscribers", "0",
-                          "--physics-port", str(physics), "--pose-queue", "100", "--stats", name)
+                          "--pose-source", tcp(physics), "--pose-queue", "100", "--stats", name)
 
     def test_loses_no_pose_of_a_simulator_that_sends_at_once(self):
         for around in range(ROUNDS):
@@ -87,7 +87,7 @@ class SlowJoiner(StreamTest):
         self.finished(program, 0)
 
     def test_asks_one_that_opens_the_poses_port_after_the_handshake(self):
-        program = self.publish("--subscribers", "0", "--physics-port", str(self.physics), "--pose-queue", "100")
+        program = self.publish("--subscribers", "0", "--pose-source", tcp(self.physics), "--pose-queue", "100")
         with self.context.socket(zmq.REP) as hand, self.context.socket(zmq.PUB) as poses:
             hand.bind(f"tcp://127.0.0.1:{self.physics + 1}")
             self.assertTrue(hand.poll(1000 * MAX_WAIT_S))
@@ -129,7 +129,7 @@ class LateSubscriber(StreamTest):
 
     def test_loses_no_cloud_of_a_simulators_poses(self):
         simulator = self.simulator()
-        program = self.publish("--physics-port", str(self.physics), "--pose-queue", "10", "--subscription-timeout", "1e9")
+        program = self.publish("--pose-source", tcp(self.physics), "--pose-queue", "10", "--subscription-timeout", "1e9")
 
         def send_all():
             simulator.shake(before_answer=[pose_message(stamp) for stamp in (7, 8, 11)])

@@ -12,7 +12,7 @@ except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
 
-from cli_support import MAX_WAIT_S, CliTest, box_of, free_ports
+from cli_support import MAX_WAIT_S, CliTest, box_of, free_ports, tcp
 from stream_client import Simulator, Subscriber
 from waiting import wait_until
 
@@ -56,7 +56,7 @@ class StreamTest(CliTest):
     def in_the_loop(self, *arguments):
         """The program between a simulator and a subscriber, hands shaken."""
         simulator = self.simulator()
-        program = self.publish("--physics-port", str(self.physics), *arguments)
+        program = self.publish("--pose-source", tcp(self.physics), *arguments)
         subscriber = self.subscriber()
         subscriber.shake()
         simulator.shake()

@@ -10,7 +10,7 @@ import unittest
 from stream_support import SMALL, StreamTest
 
 import numpy as np
-from cli_support import MAX_WAIT_S
+from cli_support import MAX_WAIT_S, tcp
 from stream_client import cloud, pose_message
 
 FLOAT32 = 2e-6  # of 10 m
@@ -245,7 +245,7 @@ class Poses(StreamTest):
 
     def test_missing_for_too_long_end_it(self):
         simulator = self.simulator()
-        program = self.publish("--physics-port", str(self.physics), "--pose-timeout", "3")
+        program = self.publish("--pose-source", tcp(self.physics), "--pose-timeout", "3")
         subscriber = self.subscriber()
         subscriber.shake()
         simulator.shake(before_answer=[pose_message(1)])
@@ -255,7 +255,7 @@ class Poses(StreamTest):
 
     def test_of_a_simulator_that_dies_in_the_handshake_are_waited_for(self):
         simulator = self.simulator()
-        program = self.publish("--subscribers", "0", "--physics-port", str(self.physics))
+        program = self.publish("--subscribers", "0", "--pose-source", tcp(self.physics))
         self.assertTrue(simulator.hand.poll(1000 * MAX_WAIT_S))  # asked, and gone without an answer
         simulator.close()
         again = self.simulator()

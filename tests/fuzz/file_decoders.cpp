@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "file_decoders.hpp"
 
-#include <apps/glidar/options/numbers.hpp>
+#include <apps/glidar/options/option_values.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/config/ray_file.hpp>
 #include <glidar/io/config/scene_file.hpp>
@@ -84,10 +84,10 @@ void read_pose_text(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   const std::string text((std::istreambuf_iterator<char>(in)), {});
   if (std::count(text.begin(), text.end(), ',') == 2) {
-    app::parse_position("--eye", text);
+    app::parse_position(text);
   } else {
-    app::parse_quaternion("--pose", text);
-    app::parse_angle_axis("--pose", text);
+    app::parse_quaternion(text);
+    app::parse_angle_axis(text);
   }
 }
 

@@ -175,7 +175,7 @@ TEST_F(PaperTargetTest, RefusesPulsedLightAndErrorsOfPointing) {
   sensor.pulse = LidarEquation{};
   const std::string allowed =
       "; allowed: the paper's light, and beams that fire together where they are aimed; "
-      "use --render-target float";
+      "leave --quantized-framebuffer out";
   EXPECT_EQ(error_text([&] { measure(scene, sensor, Pose::Identity()); }),
             "paper target: pulsed light" + allowed);
   sensor.pulse.reset();

@@ -218,7 +218,7 @@ TEST_F(SelectionTest, AMeasurementOfARigSensorIsThatOfTheSensorAlone) {
   viewer.use_mount(1);
   const std::vector<float> in_rig = shot_of(viewer).frame.intensity;
   RenderFlags alone = flags_;
-  alone.mount = "camera";
+  alone.sensor_name = "camera";
   Viewer other(alone, measuring_);
   EXPECT_EQ(shot_of(other).frame.intensity, in_rig);
   EXPECT_EQ(shot_of(other).session->mounts.size(), 1U);

@@ -78,7 +78,7 @@ TEST_F(ViewerTest, PutsSensorAndObjectWhereTheyAreTyped) {
 }
 
 TEST_F(ViewerTest, SpacePausesAndFramesFollowTheSensorsRate) {
-  flags_.motion.model_dr = "0,0,1";
+  flags_.motion.object_rate_rad_s = Eigen::Vector3d::UnitZ();
   Viewer viewer(flags_, measuring_);
   shot_of(viewer);
   EXPECT_TRUE(viewer.is_moving());
@@ -148,7 +148,7 @@ TEST_F(ViewerTest, TellsWhyItRefusesAndGoesOnWithWhatItHad) {
 }
 
 TEST_F(ViewerTest, OpensADroppedFileAndForgetsWhereTheLastOneWas) {
-  flags_.pose.eye = "100,0,0";
+  flags_.pose.eye_m = Eigen::Vector3d(100.0, 0.0, 0.0);
   Viewer viewer(flags_, measuring_);
   EXPECT_NEAR(distance_m(shot_of(viewer)), 100.0, 1e-9);
   viewer.open("builtin:torus");
@@ -186,7 +186,7 @@ TEST_F(ViewerTest, TellsWhyAFileCannotBeSaved) {
 }
 
 TEST_F(ViewerTest, TellsTheStoryOfAPickedPointAndTellsItAnewWhenItMoves) {
-  flags_.motion.model_dr = "0,0,1";
+  flags_.motion.object_rate_rad_s = Eigen::Vector3d::UnitZ();
   Viewer viewer(flags_, measuring_);
   shot_of(viewer);
   const std::size_t middle = 16 * 32 + 16;
@@ -230,7 +230,7 @@ TEST_F(ViewerTest, IsCurrentOnceWhatIsRequestedIsMeasured) {
 }
 
 TEST_F(ViewerTest, IsCurrentWhileTimeGoesOnHoweverSlowlyItMeasures) {
-  flags_.motion.model_dr = "0,0,1";
+  flags_.motion.object_rate_rad_s = Eigen::Vector3d::UnitZ();
   Viewer viewer(flags_, measuring_);
   ASSERT_TRUE(wait_until(viewer, [&] { return viewer.is_current(); }));
   viewer.turn_to(1000);

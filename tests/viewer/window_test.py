@@ -53,7 +53,7 @@ class ViewerWindowTest(DisplayTest):
         with Window(self, "builtin:asteroid") as window:
             window.save("buffer")
             window.quit()
-        self.succeed("render", "builtin:asteroid", "--pcd", "expected")
+        self.succeed("render", "builtin:asteroid", "--legacy-output", "expected")
         self.assertEqual(self.read("buffer.pcd"), self.read("expected.pcd"))
         self.assertEqual(self.read("buffer.transform"), self.read("expected.transform"))
 
@@ -144,7 +144,7 @@ class ViewerWindowTest(DisplayTest):
             window.save("buffer")
             window.quit()
         self.write("scene.yaml", TWO_BOXES.replace("[0, 1.5, 0]", "[5, 1.5, 0]") + CAMERA)
-        self.succeed("render", "scene.yaml", "--pcd", "expected")
+        self.succeed("render", "scene.yaml", "--legacy-output", "expected")
         self.assertEqual(self.read("buffer.pcd"), self.read("expected.pcd"))
 
     def test_the_list_of_sensors_shows_another_sensor_of_a_rig(self):
@@ -158,7 +158,7 @@ class ViewerWindowTest(DisplayTest):
             window.shows(lambda picture: difference(before, picture.crop(SENSOR_BOX)) > 2.0, "its picture")
             window.save("buffer")
             window.quit()
-        self.succeed("render", "rig.yaml", "--sensor-name", "camera", "--pcd", "expected")
+        self.succeed("render", "rig.yaml", "--sensor-name", "camera", "--legacy-output", "expected")
         self.assertEqual(self.read("buffer.pcd"), self.read("expected.pcd"))
 
     def test_nothing_is_drawn_while_nothing_changes(self):
@@ -207,7 +207,7 @@ class ViewerWindowTest(DisplayTest):
                          "another picture")
             window.save("buffer")
             window.quit()
-        self.succeed("render", path, "--pcd", "expected")
+        self.succeed("render", path, "--legacy-output", "expected")
         self.assertEqual(self.read("buffer.pcd"), self.read("expected.pcd"))
 
     def test_errors_stand_in_the_window_and_in_the_terminal_and_it_goes_on(self):

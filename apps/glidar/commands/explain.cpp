@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
-#include <apps/glidar/options/option_kinds.hpp>
+#include <apps/glidar/options/option_group.hpp>
+#include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/options/stream_options.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
@@ -50,13 +51,13 @@ RenderFlags flags_of(const Sidecar& sidecar) {
   CLI::App command;
   if (!told.empty() && told.front() == "stream") {
     StreamFlags flags;
-    add_stream_flags(command, flags);
+    add_stream_options(command, flags);
     parse_recorded(told, "stream", sidecar.path.string(), command);
     flags.render.duration_s.reset();
     return flags.render;
   }
   RenderFlags flags;
-  add_render_flags(command, flags);
+  add_render_options(command, flags);
   parse_recorded(told, "render", sidecar.path.string(), command);
   return flags;
 }
@@ -158,18 +159,13 @@ Command add_explain(CLI::App& program) {
       .add_option("CLOUD", flags->cloud, "A cloud by render or stream, with its sidecar beside it")
       ->required()
       ->type_name("");
-  const std::string group = "Point";
-  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
-  const auto whole = [&](const char* names, const char* form, const char* help,
-                         std::optional<std::int64_t>& value) {
-    add_whole(command, {names, form, help, group}, {0, kMax},
-              [&value](std::int64_t n) { value = n; });
-  };
-  whole("--index", "N", "Which point, from 0 in the order of the file", flags->index);
-  whole("--row", "R", "Which row of the sensor's beams, from 0; with --col", flags->row);
-  whole("--col", "C", "Which column, from 0", flags->col);
-  add_whole(command, {"--return", "K", "Which return of that beam, from 1 [1]", group}, {1, 16},
-            [&n = flags->return_number](std::int64_t k) { n = k; });
+  const OptionGroup group(command, "Point");
+  const auto index = whole<std::int64_t>(0, std::numeric_limits<std::int64_t>::max());
+  group.add("--index", "N", "Which point, from 0 in the order of the file", flags->index, index);
+  group.add("--row", "R", "Which row of the sensor's beams, from 0; with --col", flags->row, index);
+  group.add("--col", "C", "Which column, from 0; with --row", flags->col, index);
+  group.add("--return", "K", "Which return of that beam, from 1 [1]", flags->return_number,
+            whole<std::int64_t>(1, 16));
   return [flags] { return run_explain(*flags); };
 }
 

@@ -31,7 +31,7 @@ Exit codes: 0 done (whatever the model is like), 2 the model cannot be read.)";
 
 struct InfoFlags {
   std::string input;
-  ModelFlags model;
+  ModelOptions model;
   bool json = false;
 };
 
@@ -195,7 +195,7 @@ ModelReport examine(const InfoFlags& flags) {
     const bool is_in_table = message.starts_with(flags.input + ": ");
     if (severity == Severity::warning && !is_in_table) console.warn(message);
   };
-  const Model model = load_model(flags.input, model_options(flags.model), report_to_console);
+  const Model model = load_model(flags.input, flags.model, report_to_console);
   console.tell("examining " + flags.input, -1.0);
   return inspect(model);
 }
@@ -203,9 +203,8 @@ ModelReport examine(const InfoFlags& flags) {
 int run_info(const InfoFlags& flags) {
   const ModelReport report = examine(flags);
   const std::string up_hint =
-      flags.model.up.empty()
-          ? up_advice(report.format, Eigen::AlignedBox3d(report.min_m, report.max_m))
-          : "";
+      flags.model.up ? ""
+                     : up_advice(report.format, Eigen::AlignedBox3d(report.min_m, report.max_m));
   if (flags.json) {
     // names in files need not be UTF-8; what is not is replaced rather than refused
     fmt::print("{}\n",
@@ -225,7 +224,7 @@ Command add_info(CLI::App& program) {
   command.add_option("MODEL", flags->input, "Model file or builtin:NAME")
       ->required()
       ->type_name("");
-  add_model_flags(command, flags->model);
+  add_model_options(command, flags->model);
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
   return [flags] { return run_info(*flags); };
 }

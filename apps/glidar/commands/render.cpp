@@ -3,6 +3,8 @@
 #include <apps/glidar/commands/commands.hpp>
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/exit_code.hpp>
+#include <apps/glidar/run/fisher_output.hpp>
+#include <apps/glidar/run/outputs.hpp>
 #include <apps/glidar/run/recorded_command.hpp>
 #include <apps/glidar/run/rig_outputs.hpp>
 #include <apps/glidar/run/session.hpp>
@@ -29,7 +31,7 @@ constexpr const char* kRenderExamples = R"(Examples:
   glidar render builtin:box --sensor VLP-16 --eye 0,0,0 --layout velodyne --drop-invalid -o scan.pcd
   glidar render builtin:box --sensor OS1-32 --eye 0,0,0 --sensor-rate 0,1,0 --duration 1 -o scan.pcd
   glidar render builtin:box -o - --format csv
-  glidar render builtin:asteroid --model-q 0.7,0,0.7,0 --camera-z 10 --pcd view
+  glidar render builtin:asteroid --model-q 0.7,0,0.7,0 --camera-z 10 --legacy-output view
 With your own files:
   glidar render part.stl --unit mm --up y -o part.pcd
   glidar render scene.yaml --sensor camera.yaml --frame ros -o cloud.npz
@@ -64,7 +66,7 @@ void print_summary(const View& view, const std::vector<Output>& outputs, std::FI
 
 HitFieldMask needed_fields(const RenderFlags& flags, const std::vector<Output>& outputs) {
   HitFieldMask fields = fields_for_outputs(outputs);
-  fields.normal = fields.normal || flags.information.wanted;
+  fields.normal = fields.normal || flags.fisher.is_requested;
   return fields;
 }
 
@@ -80,7 +82,7 @@ void write(const RenderFlags& flags, const View& view, const std::vector<Output>
   if (to != nullptr) print_summary(view, outputs, to);
   std::optional<std::uint32_t> number;
   if (flags.duration_s) number = view.frame.number;
-  tell_information(flags.information, view.frame, view.beams, outputs, number, to);
+  write_fisher(flags.fisher, view.frame, view.beams, outputs, number, to);
 }
 
 /// Of a run: what is measured and written.
@@ -141,7 +143,7 @@ void measure_all(Job& job, const OutputFlags& files, Mount& mount, Console& cons
 
 int run_render(const RenderFlags& flags, const std::vector<std::string>& arguments) {
   Console console(flags.quiet);
-  check(flags.information, flags.output);
+  check_fisher(flags);
   if (flags.duration_s) numbered(flags.output, 0);  // only for its errors
   const CommandRecord command = {.arguments = lasting(arguments),
                                  .folder = std::filesystem::current_path()};
@@ -176,7 +178,7 @@ Command add_render(CLI::App& program, const std::vector<std::string>& arguments)
       *program.add_subcommand("render", "Measure a model or scene with a 3D sensor");
   const auto flags = std::make_shared<RenderFlags>();
   command.footer(output_names_text() + kRenderExamples);
-  add_render_flags(command, *flags);
+  add_render_options(command, *flags);
   return [flags, arguments] { return run_render(*flags, arguments); };
 }
 

@@ -32,8 +32,20 @@ Exit codes: 0 every frame is the same, 2 bad input or a frame that differs, 130 
 StreamFlags flags_of(const link::RecordingHead& head, const std::string& file) {
   CLI::App command;
   StreamFlags flags;
-  add_stream_flags(command, flags);
+  add_stream_options(command, flags);
   parse_recorded(head.command.arguments, "stream", file, command);
+  return flags;
+}
+
+/// The stream that was recorded, with the options of `replay`.
+StreamFlags replayed(StreamFlags recorded, const StreamFlags& chosen) {
+  StreamFlags flags = chosen;
+  flags.pose_source = recorded.pose_source;
+  flags.render = std::move(recorded.render);
+  flags.render.output = chosen.render.output;
+  flags.render.renderer.threads = chosen.render.renderer.threads;
+  flags.render.quiet = chosen.render.quiet;
+  flags.render.duration_s.reset();
   return flags;
 }
 
@@ -82,7 +94,7 @@ Command add_replay(CLI::App& program) {
   command.add_option("RECORDING", flags->replay, "A file by glidar stream --record")
       ->required()
       ->type_name("");
-  add_replay_flags(command, *flags);
+  add_replay_options(command, *flags);
   return [flags] { return run_replay(*flags); };
 }
 

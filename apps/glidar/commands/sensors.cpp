@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/commands/commands.hpp>
-#include <apps/glidar/options/option_kinds.hpp>
+#include <apps/glidar/options/option_group.hpp>
+#include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/config/receiver_yaml.hpp>
@@ -266,15 +267,12 @@ int list_surfaces(const SensorsFlags& flags) {
   return kDone;
 }
 
-/// The pattern's picture is a PNG whatever its name, so the name must say so.
-void require_png(std::string_view option, const std::string& path) {
+/// The image of the pattern is always a PNG.
+std::string png_name(const std::string& path) {
   std::string suffix = std::filesystem::path(path).extension().string();
   for (char& c : suffix) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  if (suffix == ".png") return;
-  throw Error({.where = std::string(option),
-               .found = "'" + path + "'",
-               .allowed = "a name that ends in .png",
-               .remedy = "clouds come from glidar render"});
+  if (suffix != ".png") refuse_value(path, "a name that ends in .png", "clouds: glidar render");
+  return path;
 }
 
 int list_all(const SensorsFlags& flags) {
@@ -330,8 +328,8 @@ Command add_sensors(CLI::App& program) {
   const auto flags = std::make_shared<SensorsFlags>();
   command.footer(kSensorsExamples);
   command.add_option("name", flags->name, "Name of a sensor, or a sensor file")->type_name("NAME");
-  add_text(command, {"-o,--output", "OUT.png", "Picture of its beams' directions (PNG)", "Options"},
-           flags->picture, require_png);
+  OptionGroup(command, "Options")
+      .add("-o,--output", "OUT.png", "Image of its beam pattern (PNG)", flags->picture, png_name);
   command.add_flag("--surfaces", flags->surfaces,
                    "List the surfaces that come along and what they send back");
   command.add_flag("--json", flags->json, "Print JSON instead of a table");

@@ -27,7 +27,7 @@ constexpr const char* kStreamExamples = R"(Examples:
 With your own files:
   glidar stream scene.yaml --trajectory poses.txt --duration 10 -o scan.pcd
 In the loop with a simulator that publishes poses at 5557 and shakes hands at 5558:
-  glidar stream satellite.obj --physics-port 5557 --pose-queue 100 --port 5555
+  glidar stream satellite.obj --pose-source tcp://127.0.0.1:5557 --pose-queue 100 --port 5555
 A client that places everything and asks for every frame (docs/link.md):
   glidar stream scene.yaml --lockstep tcp://127.0.0.1:5600
 Again, the same bytes, here or elsewhere:
@@ -45,7 +45,6 @@ Exit codes: 0 done, or the simulator ended; 2 bad input; 3 no pose for --pose-ti
 130 after Ctrl-C, 143 after SIGTERM; subscribers are told that it ends in any case.)";
 
 int run_stream(const StreamFlags& given) {
-  check(given);
   StreamFlags flags = given;
   link::raise_descriptor_limit(2 * flags.limits.connections);
   Console console(flags.render.quiet);
@@ -61,8 +60,9 @@ Command add_stream(CLI::App& program, const std::vector<std::string>& arguments)
       *program.add_subcommand("stream", "Measure again and again: poses in, clouds out");
   const auto flags = std::make_shared<StreamFlags>();
   command.footer(output_names_text() + kStreamExamples);
-  add_stream_flags(command, *flags);
-  return [flags, arguments] {
+  add_stream_options(command, *flags);
+  return [flags, arguments, &command] {
+    check(command, *flags);
     flags->command = {.arguments = lasting(arguments), .folder = std::filesystem::current_path()};
     return run_stream(*flags);
   };

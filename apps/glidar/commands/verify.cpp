@@ -159,7 +159,7 @@ Command add_verify(CLI::App& program) {
       "verify", "Prove the accuracy of hits, ids, ranges and normals on this machine");
   const auto flags = std::make_shared<VerifyFlags>();
   command.footer(kVerifyExamples);
-  add_run_flags(command, flags->renderer, "Options");
+  add_run_options(command, flags->renderer, "Options");
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
   return [flags] { return run_verify(*flags); };
 }

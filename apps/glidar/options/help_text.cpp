@@ -10,7 +10,7 @@
 namespace glidar::app {
 namespace {
 
-/// CLI11's layout, without its remarks on types and with one empty line between groups.
+/// CLI11's layout without types, and with one empty line between groups.
 class HelpLayout final : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name,
@@ -51,7 +51,7 @@ void use_help_layout(CLI::App& program) {
   layout->column_width(kNameColumn);
   layout->label("Positionals", "Input");
   program.formatter(layout);
-  program.set_help_flag("-h,--help", "Print this text");
+  program.set_help_flag("-h,--help", "Print this help");
 }
 
 }  // namespace glidar::app

@@ -9,10 +9,13 @@
 
 namespace glidar::app {
 
-/// The words with two spaces before each line, in lines of at most 100 columns.
+/// The heading of options that the original GLIDAR of 2015 has.
+inline constexpr const char* kCompatibilityHeading = "Woods 2016 compatibility";
+
+/// The words in lines of at most 100 columns, each after two spaces.
 std::string indented(std::string_view words);
 
-/// Lays --help of the program and of all its subcommands out; to be called before these are added.
+/// Sets the layout of --help for the program and the subcommands that are added later.
 void use_help_layout(CLI::App& program);
 
 }  // namespace glidar::app

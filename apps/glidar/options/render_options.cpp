@@ -2,67 +2,60 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/options/render_options.hpp>
 
-#include <apps/glidar/options/option_kinds.hpp>
+#include <apps/glidar/options/help_text.hpp>
+#include <apps/glidar/options/option_group.hpp>
+#include <apps/glidar/options/option_values.hpp>
 #include <apps/glidar/options/run_options.hpp>
-#include <glidar/core/error.hpp>
 
 #include <CLI/CLI.hpp>
 
-#include <charconv>
-#include <string_view>
+#include <limits>
 
 namespace glidar::app {
 namespace {
 
-/// The seed as a whole number; the command line library would take -1 for a large one.
-std::uint64_t parse_seed(std::string_view option, const std::string& text) {
-  std::uint64_t seed = 0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, seed);
-  if (error == std::errc() && stop == end) return seed;
-  throw Error({.where = std::string(option),
-               .found = "'" + text + "'",
-               .allowed = "a whole number from 0 to 18446744073709551615",
-               .remedy = ""});
+void add_fisher_options(CLI::App& command, FisherFlags& flags) {
+  const OptionGroup group(command, "Fisher information");
+  group.add_flag("--fisher", "Cramer-Rao bounds of the sensor's pose, to NAME.information.json",
+                 flags.is_requested);
+  group.add("--range-sigma", "M", "Sigma of ranges if the sensor has no noise, m [0.01]",
+            flags.sigma_m, number(kAboveZero, kFinite, "a finite number above 0"));
+  require_option(command, {"--range-sigma"}, "--fisher");
 }
 
 }  // namespace
 
 std::string renderer_name(const RenderFlags& flags) {
-  return flags.renderer.kind + (has_paper_target(flags) ? ", paper target" : "");
+  return flags.renderer.kind + (flags.quantized_framebuffer ? ", paper target" : "");
 }
 
-void add_render_flags(CLI::App& command, RenderFlags& flags) {
+void add_render_options(CLI::App& command, RenderFlags& flags) {
   command.add_option("MODEL", flags.input, "Model file, builtin:NAME or scene file (.yaml)")
       ->required()
       ->type_name("");
-  add_output_flags(command, flags.output);
-  add_information_flags(command, flags.information);
-  add_sensor_flags(command, flags.sensor);
-  add_pose_flags(command, flags.pose);
-  add_motion_flags(command, flags.motion);
-  add_model_flags(command, flags.model);
-  add_text(command,
-           {"--surface", "NAME", "Surface of the model (glidar sensors --surfaces)", "Model"},
+  add_output_options(command, flags.output);
+  add_fisher_options(command, flags.fisher);
+  add_sensor_options(command, flags.sensor);
+  OptionGroup(command, "Sensor")
+      .add("--sensor-name", "NAME", "Measure with this sensor of the scene file's rig [all]",
+           flags.sensor_name);
+  add_pose_options(command, flags.pose);
+  add_motion_options(command, flags.motion);
+  add_model_options(command, flags.model);
+  OptionGroup(command, "Model")
+      .add("--surface", "NAME", "Surface preset of the model (see glidar sensors --surfaces)",
            flags.surface);
-  add_text(
-      command,
-      {"--sensor-name", "NAME", "Only this one of the sensors on the scene file's rig", "Sensor"},
-      flags.mount);
-  const std::string group = "Run";
-  add_run_flags(command, flags.renderer, group);
-  add_choice(
-      command,
-      {"--render-target", "NAME", "What opengl draws: float, paper (8 and 16 bits) [float]", group},
-      {"float", "paper"}, flags.target);
-  add_option(command, {"--seed", "N", "Seed of random numbers, kept in the sidecar [1]", group},
-             [&seed = flags.seed](std::string_view option, const std::string& text) {
-               seed = parse_seed(option, text);
-             });
-  add_number(command, {"--duration", "S", "Numbered frames, NAME_000000 ..., for so long", group},
-             flags.duration_s);
-  command.add_flag("--quiet", flags.quiet, "No summary and no progress; warnings stay")
-      ->group(group);
+  add_run_options(command, flags.renderer, "Run");
+  OptionGroup(command, kCompatibilityHeading)
+      .add_flag("--quantized-framebuffer",
+                "Measure with the 8-bit framebuffer of the paper, with opengl",
+                flags.quantized_framebuffer);
+  const OptionGroup run(command, "Run");
+  run.add("--seed", "N", "Seed of random numbers, kept in the sidecar [1]", flags.seed,
+          whole<std::uint64_t>(0, std::numeric_limits<std::uint64_t>::max()));
+  run.add("--duration", "S", "Write numbered frames, NAME_000000 ..., for S seconds",
+          flags.duration_s, parse_number);
+  run.add_flag("--quiet", "No summary and no progress, only warnings", flags.quiet);
 }
 
 }  // namespace glidar::app

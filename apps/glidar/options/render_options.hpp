@@ -3,7 +3,6 @@
 #pragma once
 
 #include <apps/glidar/options/cli_fwd.hpp>
-#include <apps/glidar/options/information_options.hpp>
 #include <apps/glidar/options/model_options.hpp>
 #include <apps/glidar/options/motion_options.hpp>
 #include <apps/glidar/options/output_options.hpp>
@@ -17,32 +16,34 @@
 
 namespace glidar::app {
 
+/// --fisher: the Fisher information of the sensor's pose.
+struct FisherFlags {
+  bool is_requested = false;
+  std::optional<double> sigma_m = {};  ///< of ranges if the sensor has no noise
+};
+
 /// A measurement as given on the command line.
 struct RenderFlags {
   std::string input;
-  ModelFlags model;
+  ModelOptions model;
   SensorFlags sensor;
   PoseFlags pose;
   MotionFlags motion;
-  std::string surface;  ///< of the whole model; empty: its own
-  std::string mount;    ///< the only sensor of the rig that measures; empty: all
+  std::string surface;      ///< of the whole model; empty: its own
+  std::string sensor_name;  ///< the only sensor of the rig that measures; empty: all
   OutputFlags output;
-  InformationFlags information;
+  FisherFlags fisher;
   RendererOptions renderer;
-  std::string target = "float";  ///< what the renderer draws: float or paper
+  bool quantized_framebuffer = false;
   std::uint64_t seed = 1;
   std::optional<double> duration_s;  ///< of a sequence of frames; empty: a single one
   bool quiet = false;
 };
 
-inline bool has_paper_target(const RenderFlags& flags) {
-  return flags.target == "paper";
-}
-
-/// How the beams are cast, as the sidecar tells it.
+/// The renderer as sidecars name it.
 std::string renderer_name(const RenderFlags& flags);
 
 /// Adds MODEL and all options of `render`.
-void add_render_flags(CLI::App& command, RenderFlags& flags);
+void add_render_options(CLI::App& command, RenderFlags& flags);
 
 }  // namespace glidar::app

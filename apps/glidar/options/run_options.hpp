@@ -9,7 +9,11 @@
 
 namespace glidar::app {
 
+class OptionGroup;
+
 /// --renderer --threads --graphics-device.
-void add_run_flags(CLI::App& command, RendererOptions& options, const std::string& group);
+void add_run_options(CLI::App& command, RendererOptions& options, const std::string& heading);
+
+void add_threads_option(const OptionGroup& group, RendererOptions& options);
 
 }  // namespace glidar::app

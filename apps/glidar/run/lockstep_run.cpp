@@ -46,10 +46,10 @@ LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
       server_(context_, server_options(flags, console), faults_) {
   if (!flags_.stats.empty()) stats_file_ = std::make_unique<AtomicFile>(flags_.stats);
   if (!flags_.record.empty()) {
-    recorder_ = std::make_unique<Recorder>(flags_.record, flags_.durability);
+    recorder_ = std::make_unique<Recorder>(flags_.record, flags_.is_durable);
   }
   open(flags_.render, {}, console_, session_);
-  (void)taken_files(flags_, session_.files);
+  (void)reserved_files(flags_, session_.files);
   if (recorder_) recorder_->begin(session_, flags_.command);
   for (const Mount& mount : session_.mounts) {
     beams_.push_back(std::make_shared<const Beams>(mount.beams));
@@ -272,7 +272,7 @@ void LockstepRun::measure_some(Job& job, std::span<const lockstep::Moment> momen
 lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, const Frame& frame,
                                            const Beams& beams) {
   const OutputFlags& output = flags_.render.output;
-  OutputFrame axes = output_frame(output.cloud_frame, beams, frame.world_from_sensor);
+  OutputFrame axes = output_frame(output.frame, beams, frame.world_from_sensor);
   axes.deskew = output.deskew;
   axes.thread_pool = &session_.renderer->thread_pool();
   std::shared_ptr<PointCloud> cloud = clouds_.take();

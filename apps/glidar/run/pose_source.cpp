@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/pose_source.hpp>
 
-#include <apps/glidar/options/pose_options.hpp>
+#include <apps/glidar/run/placement.hpp>
 
 #include <fmt/format.h>
 

@@ -13,8 +13,9 @@ namespace glidar::app {
 class Recorder {
  public:
   /// Throws Error when no file can be made there.
-  Recorder(const std::string& path, link::Durability durability)
-      : writer_(path), durability_(durability) {}
+  Recorder(const std::string& path, bool is_durable)
+      : writer_(path),
+        durability_(is_durable ? link::Durability::synced : link::Durability::none) {}
   /// Once the session is open.
   void begin(const Session& session, const CommandRecord& command);
   void write(const link::RecordedFrame& frame) { writer_.write(frame); }

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/rig_outputs.hpp>
 
-#include <apps/glidar/options/picture_options.hpp>
-
 #include <glidar/core/error.hpp>
 
 #include <fmt/format.h>
@@ -30,7 +28,7 @@ void distribute(const std::string& path, const OutputFlags& flags, const Session
   std::size_t fitting = 0;
   for (std::size_t i = 0; i < session.mounts.size(); ++i) {
     const Mount& mount = session.mounts[i];
-    const std::string reason = misfit(format, picture_options(flags), mount.sensor, mount.beams);
+    const std::string reason = misfit(format, flags.sink.picture, mount.sensor, mount.beams);
     if (reason.empty()) {
       outputs[i].paths.push_back(path);
       ++fitting;
@@ -53,10 +51,6 @@ std::vector<OutputFlags> outputs_by_sensor(const RenderFlags& flags, const Sessi
     distribute(path, flags.output, session, outputs, console);
   }
   return outputs;
-}
-
-bool has_outputs(const OutputFlags& flags) {
-  return !flags.paths.empty() || !flags.legacy_name.empty();
 }
 
 }  // namespace glidar::app

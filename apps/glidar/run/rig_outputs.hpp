@@ -14,7 +14,4 @@ namespace glidar::app {
 std::vector<OutputFlags> outputs_by_sensor(const RenderFlags& flags, const Session& session,
                                            Console& console);
 
-/// False when nothing is to be written.
-bool has_outputs(const OutputFlags& flags);
-
 }  // namespace glidar::app

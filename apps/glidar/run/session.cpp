@@ -2,8 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/session.hpp>
 
-#include <apps/glidar/options/numbers.hpp>
 #include <apps/glidar/run/advice.hpp>
+#include <apps/glidar/run/placement.hpp>
+#include <apps/glidar/run/sensor_setup.hpp>
 #include <glidar/core/error.hpp>
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/io/config/surface_presets.hpp>
@@ -39,16 +40,16 @@ void cover(const RenderFlags& flags, const Sensor& sensor, Scene& scene) {
 
 /// Whether the view is chosen by us: then it matters what is up.
 bool is_framed(const RenderFlags& flags) {
-  return flags.model.up.empty() && flags.pose.model_q.empty() && flags.pose.model_r.empty() &&
-         flags.pose.up_vector.empty() && !sensor_pose_given(flags.pose);
+  return !flags.model.up && !flags.pose.model_q && !flags.pose.up && !sensor_pose_given(flags.pose);
 }
 
 SceneFile load(const RenderFlags& flags, Console& console) {
   const Working working(console, "loading " + flags.input);
-  const ModelOptions options = model_options(flags.model);
-  if (is_scene_file(flags.input)) return load_scene_file(flags.input, options, console.report());
+  if (is_scene_file(flags.input)) {
+    return load_scene_file(flags.input, flags.model, console.report());
+  }
   SceneFile loaded;
-  Model model = load_model(flags.input, options, console.report());
+  Model model = load_model(flags.input, flags.model, console.report());
   const std::string up_hint =
       is_framed(flags) ? up_advice(model.format, bounds(model.mesh)) : std::string();
   if (!up_hint.empty()) console.info(up_hint);
@@ -76,8 +77,8 @@ std::uint32_t frame_count(const RenderFlags& flags, const Sensor& sensor) {
   constexpr double kMaxFrames = 1e6;
   constexpr double kRounding = 1e-9;  // 0.3 s at 10 Hz are three frames
   const double frames = std::ceil(*flags.duration_s * sensor.rate_hz - kRounding);
-  require(*flags.duration_s > 0.0 && frames <= kMaxFrames, "--duration", *flags.duration_s,
-          "seconds above 0, up to a million frames");
+  require_number(*flags.duration_s > 0.0 && frames <= kMaxFrames, "--duration", *flags.duration_s,
+                 "seconds above 0, up to a million frames");
   return static_cast<std::uint32_t>(std::max(1.0, frames));
 }
 
@@ -92,9 +93,9 @@ std::string names_of(const std::vector<Named>& all) {
 /// The sensors of the rig, as the flags set them up.
 std::vector<Mount> make_mounts(const RenderFlags& flags, const std::vector<RigSensor>& sensors) {
   if (sensors.empty() || sensors.front().name.empty()) {
-    if (!flags.mount.empty()) {
-      throw Error(
-          {"--sensor-name", flags.mount, "a scene file with a rig of sensors", "leave it out"});
+    if (!flags.sensor_name.empty()) {
+      throw Error({"--sensor-name", flags.sensor_name, "a scene file with a rig of sensors",
+                   "leave it out"});
     }
     const Sensor* in_file = sensors.empty() ? nullptr : &sensors.front().sensor;
     return {{.sensor = make_sensor(flags.sensor, in_file)}};
@@ -110,9 +111,9 @@ std::vector<Mount> make_mounts(const RenderFlags& flags, const std::vector<RigSe
                       .sensor = make_sensor(flags.sensor, &sensors[i].sensor),
                       .rig_from_sensor = sensors[i].rig_from_sensor});
   }
-  const auto is_chosen = [&](const Mount& mount) { return mount.name == flags.mount; };
-  if (!flags.mount.empty() && std::none_of(mounts.begin(), mounts.end(), is_chosen)) {
-    throw Error({"--sensor-name", flags.mount, names_of(sensors), ""});
+  const auto is_chosen = [&](const Mount& mount) { return mount.name == flags.sensor_name; };
+  if (!flags.sensor_name.empty() && std::none_of(mounts.begin(), mounts.end(), is_chosen)) {
+    throw Error({"--sensor-name", flags.sensor_name, names_of(sensors), ""});
   }
   return mounts;
 }
@@ -141,7 +142,7 @@ RigMotion make_motion(const RenderFlags& flags, const SceneFile& loaded, const S
   const bool is_given = sensor_pose_given(flags.pose);
   const Mount& first = session.mounts.front();
   const bool is_in_file = loaded.rig_motion || (loaded.world_from_rig && !loaded.looks_at &&
-                                                flags.motion.camera_dr.empty());
+                                                !flags.motion.sensor_rate_rad_s);
   const bool is_rigs = !flags.motion.trajectory.empty() || (is_in_file && !is_given);
   const Pose start = is_rigs ? loaded.world_from_rig.value_or(Pose::Identity()) : world_from_first;
   const Pose optical_from_first =
@@ -178,14 +179,15 @@ void warn_extrapolation(const Session& session, const Report& report) {
 
 void check_target(const RenderFlags& flags) {
   for (const std::string& path : flags.output.paths) {
-    if (has_paper_target(flags) || format_of(flags.output, path).suffix != ".paper.png") continue;
+    if (flags.quantized_framebuffer || format_of(flags.output, path).suffix != ".paper.png")
+      continue;
     throw Error({.where = "--output, " + path,
                  .found = "the float target, which draws no such picture",
-                 .allowed = "this output with --render-target paper",
-                 .remedy = "add --renderer opengl --render-target paper"});
+                 .allowed = "this output with --quantized-framebuffer",
+                 .remedy = "add --renderer opengl --quantized-framebuffer"});
   }
-  if (!has_paper_target(flags) || flags.renderer.kind == "opengl") return;
-  throw Error({.where = "--render-target paper",
+  if (!flags.quantized_framebuffer || flags.renderer.kind == "opengl") return;
+  throw Error({.where = "--quantized-framebuffer",
                .found = "the renderer " + flags.renderer.kind,
                .allowed = "opengl",
                .remedy = "add --renderer opengl"});
@@ -202,8 +204,9 @@ void place_all(const RenderFlags& flags, const SceneFile& loaded, Console& conso
   const Pose world_from_first = place_first(flags, loaded, session, console);
   session.motion = make_motion(flags, loaded, session, world_from_first);
   warn_extrapolation(session, console.report());
-  if (!flags.mount.empty()) {  // only now: the poses must not depend on who measures
-    std::erase_if(session.mounts, [&](const Mount& mount) { return mount.name != flags.mount; });
+  if (!flags.sensor_name.empty()) {  // only now: the poses must not depend on who measures
+    std::erase_if(session.mounts,
+                  [&](const Mount& mount) { return mount.name != flags.sensor_name; });
   }
   for (Mount& mount : session.mounts) mount.motion = motion_of(session.motion, mount);
 }
@@ -226,17 +229,17 @@ void open(const RenderFlags& flags, const std::function<void()>& on_loaded, Cons
   session.scene = std::move(loaded.scene);
   cover(flags, session.mounts.front().sensor, session.scene);
   pose_model(flags.pose, session.scene);
-  tell(size_advice(session.scene, !flags.model.unit.empty() || flags.pose.scale), console);
+  tell(size_advice(session.scene, flags.model.metres_per_unit || flags.pose.scale), console);
   place_all(flags, loaded, console, session);
   const Working working(console, "preparing the scene");
   session.renderer = make_renderer(session.scene, flags.renderer);
-  if (has_paper_target(flags)) {
+  if (flags.quantized_framebuffer) {
     session.paper = make_paper_camera(session.scene, flags.renderer);
   }
 }
 
 std::string label_of(const RenderFlags& flags, const Mount& mount) {
-  return flags.mount.empty() ? mount.name : std::string();
+  return flags.sensor_name.empty() ? mount.name : std::string();
 }
 
 Mount& only_mount(Session& session) {

@@ -36,8 +36,9 @@ struct Session {
   std::vector<Mount> mounts;  ///< one, or those of the scene file's rig
   RigMotion motion;
   std::unique_ptr<Renderer> renderer;
-  std::unique_ptr<Woods2016Camera> paper;  ///< what --render-target paper measures with; else none
-  std::vector<std::string> files;          ///< all that were read
+  std::unique_ptr<Woods2016Camera>
+      paper;                       ///< what --quantized-framebuffer measures with; else none
+  std::vector<std::string> files;  ///< all that were read
 };
 
 /// Loads what the options name; `on_loaded` is called before the long work of preparing it to be

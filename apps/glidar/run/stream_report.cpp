@@ -76,11 +76,10 @@ std::string waiting_text(const StreamFlags& flags) {
                         count_text(flags.subscribers, "subscriber"),
                         text_of(link::Endpoint{flags.bind, *flags.port}), *flags.port + 1);
   }
-  if (flags.physics_port) {
+  if (flags.pose_source) {
     text += fmt::format("{} a simulator (poses at {}, handshake at port {})",
                         flags.port && flags.subscribers > 0 ? " and" : "",
-                        text_of(link::Endpoint{flags.physics_host, *flags.physics_port}),
-                        *flags.physics_port + 1);
+                        text_of(*flags.pose_source), flags.pose_source->port + 1);
   }
   return text;
 }

@@ -2,10 +2,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <apps/glidar/run/stream_run.hpp>
 
-#include <apps/glidar/options/naming.hpp>
+#include <apps/glidar/options/option_error.hpp>
 #include <apps/glidar/run/advice.hpp>
 #include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/placed_motion.hpp>
+#include <apps/glidar/run/placement.hpp>
 #include <apps/glidar/run/recorded_source.hpp>
 #include <apps/glidar/run/rig_outputs.hpp>
 #include <apps/glidar/run/stream_report.hpp>
@@ -38,6 +39,22 @@ bool has_fixed_beams(const Sensor& sensor) {
   return std::holds_alternative<Pinhole>(sensor.optics);
 }
 
+legacy::CloudPublisherOptions publisher_options(const StreamFlags& flags) {
+  return {
+      .endpoint = {flags.bind, *flags.port},
+      .keeps_newest = flags.publishes_latest,
+      .queue = flags.publish_queue,
+      .every = flags.publish_every,
+      .limits = flags.limits,
+      .timestamps = flags.pose_source ? legacy::Timestamps::of_poses : legacy::Timestamps::counted,
+      .subscription_timeout = std::chrono::round<std::chrono::milliseconds>(
+          std::chrono::duration<double>(flags.subscription_timeout_s))};
+}
+
+legacy::PoseReceiverOptions receiver_options(const StreamFlags& flags) {
+  return {.endpoint = *flags.pose_source, .queue = flags.pose_queue};
+}
+
 /// Throws Error when a frame is not the one that was recorded.
 void compare(const Shot& shot, const std::string& recording, std::uint64_t number) {
   if (frame_hash(shot.frame) == shot.frame_hash) return;
@@ -55,24 +72,25 @@ StreamRun::StreamRun(StreamFlags flags, Console& console)
       duration_s_(std::exchange(flags_.render.duration_s, std::nullopt)
                       .value_or(std::numeric_limits<double>::infinity())) {
   if (!flags_.stats.empty()) {
-    naming("--stats", [&] { stats_file_ = std::make_unique<AtomicFile>(flags_.stats); });
+    with_option_name("--stats", [&] { stats_file_ = std::make_unique<AtomicFile>(flags_.stats); });
   }
   if (!flags_.record.empty()) {
-    naming("--record",
-           [&] { recorder_ = std::make_unique<Recorder>(flags_.record, flags_.durability); });
+    with_option_name("--record", [&] {
+      recorder_ = std::make_unique<Recorder>(flags_.record, flags_.is_durable);
+    });
   }
   if (!flags_.replay.empty()) recording_ = std::make_unique<link::RecordingReader>(flags_.replay);
   if (flags_.port) {
-    naming("--bind, --port", [&] {
+    with_option_name("--bind, --port", [&] {
       publisher_ =
           std::make_unique<legacy::CloudPublisher>(context_, publisher_options(flags_), faults_);
     });
   }
   open_session();
   if (recorder_) recorder_->begin(session_, flags_.command);
-  if (flags_.physics_port && !recording_) {
+  if (flags_.pose_source && !recording_) {
     prepare_poses();
-    naming("--physics-host, --physics-port", [&] {
+    with_option_name("--pose-source", [&] {
       receiver_ =
           std::make_unique<legacy::PoseReceiver>(context_, receiver_options(flags_), faults_);
     });
@@ -90,7 +108,7 @@ void StreamRun::open_session() {
   for (const Mount& mount : session_.mounts) {
     aimed_.push_back({.beams = std::make_shared<const Beams>(mount.beams)});
   }
-  taken_ = taken_files(flags_, session_.files);
+  taken_ = reserved_files(flags_, session_.files);
   std::vector<std::string> columns;
   if (publisher_) {
     columns = kPublishedColumns;
@@ -109,7 +127,7 @@ std::map<std::uint32_t, std::string> StreamRun::topics() const {
     const std::string label = label_of(flags_.render, mount);
     if (!label.empty()) topics[mount.id] = legacy::rig_topic(label);
   }
-  if (topics.size() > 1 && flags_.publishes_newest) {
+  if (topics.size() > 1 && flags_.publishes_latest) {
     throw Error({"--publish-latest", "given for a rig: the newest cloud is that of one sensor", "",
                  "leave it out, or choose a sensor with --sensor-name"});
   }
@@ -121,7 +139,7 @@ void StreamRun::prepare_poses() {
   moved_scene_.object_from_instance.clear();
   for (const Trajectory& trajectory : session_.motion.world_from_instance) {
     if (!std::holds_alternative<ConstantPose>(trajectory)) {
-      throw Error({.where = "--physics-port",
+      throw Error({.where = "--pose-source",
                    .found = "the scene file moves its objects",
                    .allowed = "",
                    .remedy = "let either the simulator or the scene file move things"});
@@ -136,7 +154,7 @@ void StreamRun::prepare_poses() {
   if (!first.name.empty() || !looks_along_z(first.beams)) {
     moved_scene_.optical_from_rig = optical_from_body();
   }
-  if (!flags_.render.pose.model_q.empty() || !flags_.render.pose.model_r.empty()) {
+  if (flags_.render.pose.model_q) {
     // as in 2015, where the first message replaced it
     for (Pose& pose : moved_scene_.object_from_instance) pose = Pose::Identity();
   }
@@ -282,7 +300,7 @@ std::vector<Output> StreamRun::plan(const OutputFlags& files, const Mount& mount
                          .beams = beams,
                          .renderer = renderer_name(flags_.render),
                          .inputs = taken_};
-  if (!flags_.physics_port && !recording_) {  // else the command does not tell the poses
+  if (!flags_.pose_source && !recording_) {  // else the command does not tell the poses
     context.command = flags_.command;
     const std::string label = label_of(flags_.render, mount);
     if (!label.empty()) {

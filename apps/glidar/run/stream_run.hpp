@@ -6,6 +6,7 @@
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/delivery.hpp>
 #include <apps/glidar/run/interrupt.hpp>
+#include <apps/glidar/run/outputs.hpp>
 #include <apps/glidar/run/pose_source.hpp>
 #include <apps/glidar/run/recorder.hpp>
 #include <apps/glidar/run/session.hpp>
@@ -13,6 +14,8 @@
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/link/fault_log.hpp>
+#include <glidar/link/legacy/cloud_publisher.hpp>
+#include <glidar/link/recording.hpp>
 
 #include <map>
 #include <memory>

@@ -95,7 +95,7 @@ const std::vector<Format>& formats() {
        write_depth_png,
        nullptr,
        "depth times units_per_m as 16-bit grey; 0: no return"},
-      {{".paper.png", "RGBA picture of --render-target paper", {}, false},
+      {{".paper.png", "RGBA picture of --quantized-framebuffer", {}, false},
        Content::per_beam,
        no_fields,
        write_paper_png},

@@ -15,7 +15,7 @@ void write_paper_png(const CloudFile& job, AtomicFile& file) {
   if (picture.rgba.empty()) {
     throw Error({file.path().string(), "a frame that was not read from the paper's picture",
                  "a frame of the paper's target",
-                 "render with --renderer opengl --render-target paper"});
+                 "render with --renderer opengl --quantized-framebuffer"});
   }
   write_png({PngKind::rgba8, picture.cols, picture.rows, std::as_bytes(std::span(picture.rgba)),
              fmt::format("alpha 0: nothing seen; intensity R / 255; depth n + (256 G + B + 1/2) "

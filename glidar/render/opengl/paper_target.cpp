@@ -17,7 +17,7 @@ void Woods2016Target::begin(std::uint32_t rows, std::uint32_t cols) {
     throw Error({.where = "paper target",
                  .found = std::to_string(cols) + " x " + std::to_string(rows) + " pixels",
                  .allowed = "up to " + std::to_string(most) + " on a side with this driver",
-                 .remedy = "use --render-target float"});
+                 .remedy = "leave --quantized-framebuffer out"});
   }
   if (rows_ != static_cast<GLsizei>(rows) || cols_ != static_cast<GLsizei>(cols)) {
     rows_ = static_cast<GLsizei>(rows);

@@ -30,7 +30,7 @@ void upload_flat_normals(const Mesh& mesh, const std::vector<std::uint32_t>& dra
     throw Error({.where = "opengl renderer",
                  .found = "a mesh of " + std::to_string(drawn.size()) + " triangles",
                  .allowed = "up to " + std::to_string(most) + " with this driver's paper target",
-                 .remedy = "use --render-target float"});
+                 .remedy = "leave --quantized-framebuffer out"});
   }
   const std::vector<TrianglePlane> planes = triangle_planes(mesh);
   std::vector<Eigen::Vector4f> normals;

@@ -158,7 +158,7 @@ TEST_F(WindowTest, NothingIsLostByTenThousandPictures) {
   RenderFlags flags;
   flags.input = "builtin:asteroid";
   flags.sensor.width = flags.sensor.height = 16;
-  flags.motion.model_dr = "0,0,1";
+  flags.motion.object_rate_rad_s = Eigen::Vector3d::UnitZ();
   Viewer viewer(flags, measuring);
   Screen screen;
   const auto draw = [&](std::uint32_t k) {

@@ -8,14 +8,15 @@
 
 namespace glidar::app {
 
-/// Lets an error of `work` name the option too.
+/// Runs `work` and adds the option's name to its errors.
 template <class Work>
-void naming(const char* option, const Work& work) {
+void with_option_name(const std::string& option, const Work& work) {
   try {
     work();
   } catch (const Error& error) {
     ErrorParts parts = error.parts();
-    parts.where = std::string(option) + (parts.where.empty() ? " ''" : ", " + parts.where);
+    if (parts.where.starts_with(option)) throw;
+    parts.where = parts.where.empty() ? option : option + ", " + parts.where;
     throw Error(parts);
   }
 }
