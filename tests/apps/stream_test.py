@@ -253,6 +253,12 @@ class Poses(StreamTest):
         self.finished(program, 3)
         self.assertEqual(self.stats()["ending"], "no pose came for 3 s")
 
+    def test_of_a_simulator_that_never_answers_are_missing_too(self):
+        for subscribers in ("0", "1"):
+            program = self.publish("--subscribers", subscribers, "--pose-source", tcp(self.physics), "--pose-timeout", "0.1")
+            self.finished(program, 3)
+            self.assertEqual(self.stats()["ending"], "no simulator answered for 0.1 s")
+
     def test_of_a_simulator_that_dies_in_the_handshake_are_waited_for(self):
         simulator = self.simulator()
         program = self.publish("--subscribers", "0", "--pose-source", tcp(self.physics))

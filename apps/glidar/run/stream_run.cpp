@@ -193,12 +193,15 @@ int StreamRun::run() {
       late_ = motion->late();
     }
     const auto* simulator = dynamic_cast<const SimulatorSource*>(source.get());
-    exit_code_ = simulator != nullptr && simulator->has_timed_out() ? kNoPoses : kDone;
-    constexpr int kSignalled = 128;  // as shells have it
-    if (stop.is_requested()) exit_code_ = kSignalled + stop.signal();
+    if (simulator != nullptr && simulator->has_timed_out()) exit_code_ = kNoPoses;
+    constexpr int kSignalled = 128;  // as in shells
+    if (stop.is_requested()) {
+      exit_code_ = kSignalled + stop.signal();
+      ending_ = fmt::format("signal {}", stop.signal());
+    }
     stop.disarm();
-    finish(stop.is_requested() ? fmt::format("signal {}", stop.signal()) : source->ending(),
-           stop.signal() == SIGTERM);
+    if (ending_.empty()) ending_ = source->ending();
+    finish(ending_, stop.signal() == SIGTERM);
   } catch (const std::exception& error) {
     try {
       if (!is_finished_) finish(error.what());
@@ -223,11 +226,24 @@ void StreamRun::show_partners(std::uint64_t& shown) {
   console_.info(ready_text(ready, flags_.subscribers));
 }
 
+/// Whether the simulator has not shaken hands within --pose-timeout.
+bool StreamRun::lacks_simulator(StreamStats::Clock::time_point begin) {
+  if (!receiver_ || !flags_.pose_timeout_s || receiver_->is_ready()) return false;
+  const std::chrono::duration<double> waited = StreamStats::Clock::now() - begin;
+  return waited.count() > *flags_.pose_timeout_s;
+}
+
 bool StreamRun::wait_for_partners(const StopRequest& stop) {
-  bool is_told = false;
+  const auto begin = StreamStats::Clock::now();
+  bool is_announced = false;
   std::uint64_t ready = 0;
   while (!has_partners() && !stop.is_requested()) {
-    if (!std::exchange(is_told, true)) console_.info(waiting_text(flags_));
+    if (lacks_simulator(begin)) {
+      ending_ = fmt::format("no simulator answered for {} s", *flags_.pose_timeout_s);
+      exit_code_ = kNoPoses;
+      return false;
+    }
+    if (!std::exchange(is_announced, true)) console_.info(waiting_text(flags_));
     show_partners(ready);
     link::wait_for({publisher_ ? &publisher_->handshake_socket() : nullptr,
                     receiver_ ? &receiver_->handshake_socket() : nullptr},

@@ -5,6 +5,7 @@
 #include <apps/glidar/options/stream_options.hpp>
 #include <apps/glidar/run/console.hpp>
 #include <apps/glidar/run/delivery.hpp>
+#include <apps/glidar/run/exit_code.hpp>
 #include <apps/glidar/run/interrupt.hpp>
 #include <apps/glidar/run/outputs.hpp>
 #include <apps/glidar/run/pose_source.hpp>
@@ -41,6 +42,7 @@ class StreamRun {
   [[nodiscard]] std::unique_ptr<PoseSource> make_source(const StopRequest& stop);
   bool wait_for_partners(const StopRequest& stop);
   [[nodiscard]] bool has_partners();
+  [[nodiscard]] bool lacks_simulator(StreamStats::Clock::time_point begin);
   void show_partners(std::uint64_t& shown);
   void stream(PoseSource& source, StopRequest& stop);
   void measure(const Moment& moment, Shot& shot);
@@ -81,7 +83,8 @@ class StreamRun {
   PointCloud cloud_;
   std::uint64_t measured_ = 0;
   std::uint64_t late_ = 0;
-  int exit_code_ = 0;
+  int exit_code_ = kDone;
+  std::string ending_;  ///< of the wait for partners; empty: the source of poses gives it
   bool is_finished_ = false;
 };
 
