@@ -32,8 +32,8 @@ constexpr const char* kExamples = R"(Examples:
   glidar info builtin:torus
   glidar sensors
   glidar verify
-More: glidar render --help, and the same for view, stream, replay, explain, info, campaign,
-sensors and verify)";
+More: glidar render --help; also for view, stream, replay, explain, info, campaign, sensors and
+verify)";
 
 using Commands = std::vector<std::pair<std::string, Command>>;
 
@@ -51,7 +51,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-/// A word that is no option, no subcommand and not expected: what might have been meant.
+/// The error for a word that is neither an option nor a subcommand, with a suggestion.
 std::string explain_extra(const CLI::App& program, const Commands& commands, std::string word) {
   const CLI::App& command = chosen(program);
   word = word.substr(0, word.find('='));
@@ -98,8 +98,8 @@ int fail(const std::string& message) {
   return kBadInput;
 }
 
-/// The word that explains best what CLI11 could not place: within a subcommand an option, before
-/// one the word that stands in its place.
+/// The most helpful word that CLI11 did not parse: within a subcommand an option, else the word in
+/// the place of a subcommand.
 std::string first_extra(const CLI::App& program) {
   const std::vector<std::string> extras = program.remaining(true);
   const bool options_first = &chosen(program) != &program;
@@ -134,11 +134,11 @@ int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** 
   for (const auto& [name, run] : commands) {
     if (program.got_subcommand(name)) return run();
   }
-  return kBadInput;  // cannot be: parse() requires one
+  return kBadInput;  // unreachable: parse() requires a subcommand
 }
 
 int run(int argc, char** argv) {
-  CLI::App program("Simulator of 3D sensors: from a model file to a true point cloud", "glidar");
+  CLI::App program("Simulator of 3D sensors: point clouds with ground truth from any 3D model", "glidar");
   use_help_layout(program);
   program.set_version_flag("--version", std::string("glidar ") + version(), "Print the version");
   program.require_subcommand(1);
@@ -168,7 +168,7 @@ int main(int argc, char** argv) {
     }
     return status;
   } catch (const glidar::ClosedPipe&) {
-    return glidar::app::kClosedPipe;  // not worth a word: `| head` has what it wanted
+    return glidar::app::kClosedPipe;  // no message: readers such as `| head` close the pipe on purpose
   } catch (const std::bad_alloc&) {
     return glidar::app::fail("out of memory; use a smaller image or a smaller model");
   } catch (const std::exception& error) {

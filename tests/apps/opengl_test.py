@@ -78,7 +78,7 @@ class OpenglRenderer(CliTest):
     def test_what_it_cannot_draw_is_refused(self):
         self.assertIn("add --renderer opengl",
                       self.refused("render", *VIEW, "--quantized-framebuffer", "-o", "x.pcd"))
-        self.assertIn("not applicable: it has other beams than this renderer casts",
+        self.assertIn("not applicable: this renderer does not cast such beams",
                       self.succeed("verify", "--renderer", "opengl").stdout)
         self.assertIn("graphics device: 63; allowed: 0: ", self.refused(
             "render", *VIEW, "--renderer", "opengl", "--graphics-device", "63", "-o", "x.pcd"))

@@ -65,7 +65,7 @@ class Sensors(CliTest):
         with open(os.path.join(self.folder, "pattern.png"), "rb") as file:
             self.assertEqual(file.read(8), b"\x89PNG\r\n\x1a\n")
         self.assertIn("did you mean VLP-16?", self.refused("sensors", "VLP-17"))
-        self.assertIn("no sensor is named", self.refused("sensors", "-o", "x.png"))
+        self.assertIn("no sensor is given", self.refused("sensors", "-o", "x.png"))
 
     def test_a_pattern_has_the_name_of_a_png(self):
         self.succeed("sensors", "vlp-16", "-o", "UPPER.PNG")

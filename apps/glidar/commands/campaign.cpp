@@ -26,9 +26,9 @@ constexpr const char* kName = "glidar-campaign";
 constexpr const char* kRemedy =
     "install GLIDAR's Python package: pip install '.[campaign]' in its source";
 
-constexpr const char* kHelp = R"(Commands; 'glidar campaign COMMAND --help' tells the options:
-  run CAMPAIGN.yaml -o DIR   measure all trials, or go on where an earlier run stopped
-  merge DIR... [-o DIR]      finish a campaign that ran in parts, on one machine or many
+constexpr const char* kHelp = R"(Commands ('glidar campaign COMMAND --help' lists the options):
+  run CAMPAIGN.yaml -o DIR   measure all trials, or resume an earlier run
+  merge DIR... [-o DIR]      merge the parts of a campaign, from one machine or many
   report DIR                 write DIR/report.html: distributions, coverage, views, failures, speed
   check DIR                  compare every file with the hashes in DIR/manifest.json
 
@@ -36,16 +36,16 @@ Examples:
   glidar campaign run views.yaml -o views
   glidar campaign run views.yaml -o part0 --shard 0/2
   glidar campaign merge part0 part1 -o views
-  glidar campaign run views.yaml -o views --no-durable   # does not wait for the disk
+  glidar campaign run views.yaml -o views --no-durable   # does not sync files to the disk
   glidar campaign run views.yaml -o views --executor slurm --tasks 16
   glidar campaign report views
 
-They run in the program glidar-campaign of GLIDAR's Python package, beside this program or in PATH,
-else as 'python3 -P -m glidar.campaign'. Only absolute folders of PATH and PYTHONPATH count, so that
-nothing in the current folder is run. docs/campaigns.md tells what a campaign file may hold.
+They run the program glidar-campaign of GLIDAR's Python package, beside this program or in PATH,
+else 'python3 -P -m glidar.campaign'. Only absolute folders of PATH and PYTHONPATH are used, so that
+nothing in the current folder is run. docs/campaigns.md describes campaign files.
 Exit codes: 0 done, 1 done but trials failed or files differ, 2 bad input, 130 interrupted.)";
 
-/// Runs the module where it is installed, and tells like us where it is not.
+/// Runs the module if it is installed, else prints the same error as this program.
 constexpr const char* kPythonCode = R"(import importlib.util, runpy, sys
 try:
     found = importlib.util.find_spec('glidar.campaign')
@@ -72,7 +72,7 @@ fs::path beside_this_program() {
   return !error && ::access(program.c_str(), X_OK) == 0 ? program : fs::path();
 }
 
-/// Puts another program into the place of this one; returns only when it cannot be run.
+/// Replaces this process by another program; returns only when it cannot be run.
 void become(const fs::path& program, std::vector<std::string> arguments) {
   std::vector<char*> pointers;
   for (std::string& argument : arguments) pointers.push_back(argument.data());
@@ -80,8 +80,8 @@ void become(const fs::path& program, std::vector<std::string> arguments) {
   ::execv(program.c_str(), pointers.data());
 }
 
-/// What the program and its own children look for by PATH and PYTHONPATH comes from absolute
-/// folders alone: an empty entry is the current folder, which may hold a stranger's files.
+/// Keeps only absolute folders in PATH and PYTHONPATH, for the program and its children: an empty
+/// entry means the current folder, which may contain untrusted files.
 void keep_absolute_folders() {
   for (const char* name : {"PATH", "PYTHONPATH"}) {
     const char* const value = std::getenv(name);
@@ -119,8 +119,8 @@ int run_campaign(const std::vector<std::string>& arguments) {
 
 Command add_campaign(CLI::App& program) {
   CLI::App& command = *program.add_subcommand(
-      "campaign", "Measure many trials, drawn from distributions, into a data set (Monte Carlo)");
-  command.prefix_command();  // what follows is read by the program that runs it
+      "campaign", "Measure many random trials into a data set (Monte Carlo)");
+  command.prefix_command();  // the other program parses the following arguments
   command.footer(kHelp);
   return [&command] {
     const std::vector<std::string> arguments = command.remaining();

@@ -21,9 +21,9 @@ namespace glidar::app {
 namespace {
 
 constexpr const char* kExplainExamples =
-    R"(Repeats the measurement that a cloud came from, as its sidecar (CLOUD.json) tells, and prints how
-one point came to be: the beam, what it met, the light, echoes, every step of noise with the
-random numbers that it drew, and what was reported.
+    R"(Repeats the measurement of a cloud by its sidecar (CLOUD.json) and prints the trace of one point:
+the beam, the surface, the received signal, echoes, every noise step with its random numbers, and
+the reported values.
 Examples:
   glidar render builtin:asteroid --sensor VLP-16 --eye 4,0,0 -o scan.pcd
   glidar explain scan.pcd --index 812
@@ -45,7 +45,7 @@ struct ExplainFlags {
                .remedy = std::move(remedy)});
 }
 
-/// The options of the `render` or `stream` that a sidecar tells.
+/// The options of the `render` or `stream` command in a sidecar.
 RenderFlags flags_of(const Sidecar& sidecar) {
   const std::vector<std::string>& told = sidecar.command.arguments;
   CLI::App command;
@@ -62,18 +62,18 @@ RenderFlags flags_of(const Sidecar& sidecar) {
   return flags;
 }
 
-/// Throws Error when models are not those that the cloud was made of.
+/// Throws Error when the models are not those of the cloud.
 void check_models(const Sidecar& sidecar, const Scene& scene) {
   std::vector<std::string> hashes;
   for (const Instance& instance : scene.instances) {
     hashes.push_back(scene.sources.at(instance.mesh).hash);
   }
   if (hashes == sidecar.model_hashes) return;
-  refuse_entry(sidecar.path.string(), "the models have changed since", "the models as they were",
+  refuse_entry(sidecar.path.string(), "the models have changed", "the models at the time of writing",
                "render the cloud again");
 }
 
-/// Which entry of the frame the flags are about.
+/// The entry of the frame that the flags select.
 std::size_t entry_of(const ExplainFlags& flags, const Sidecar& sidecar, const Frame& frame,
                      const Beams& beams) {
   if (flags.row) {
@@ -95,7 +95,7 @@ std::size_t entry_of(const ExplainFlags& flags, const Sidecar& sidecar, const Fr
                  fmt::format("below {}, the number of points in the cloud", sidecar.points), "");
   }
   if (sidecar.points == beams.size()) return index;
-  std::size_t hits = 0;  // the cloud holds hits alone
+  std::size_t hits = 0;  // the cloud has only hits
   for (std::size_t i = 0; i < beams.size(); ++i) {
     if (frame.status[i] == Status::hit && hits++ == index) return i;
   }
@@ -105,19 +105,19 @@ std::size_t entry_of(const ExplainFlags& flags, const Sidecar& sidecar, const Fr
                "all beams, or all hits", "write the cloud again");
 }
 
-/// Throws Error when the frame that was measured again is not the one of the cloud.
+/// Throws Error when the repeated frame is not that of the cloud.
 void check_frame(const Sidecar& sidecar, const Frame& frame) {
   if (frame_hash(frame) == sidecar.frame_hash) return;
   refuse_entry(
-      sidecar.path.string(), "the measurement comes out otherwise than when the cloud was written",
-      "the same models, scene and sensor files, and program as then", "write the cloud again");
+      sidecar.path.string(), "the repeated measurement differs from the recorded one",
+      "the same models, scene and sensor files, and the same program", "write the cloud again");
 }
 
 void check(const ExplainFlags& flags) {
   const bool by_pixel = flags.row || flags.col || flags.return_number;
   const bool is_whole = flags.index ? !by_pixel : flags.row && flags.col;
   if (is_whole) return;
-  refuse_entry("explain", flags.index ? "a point is named in two ways" : "no point is named",
+  refuse_entry("explain", flags.index ? "a point is selected in two ways" : "no point is selected",
                "--index N, or --row R and --col C, with --return K if it is not the first", "");
 }
 
@@ -142,7 +142,7 @@ int run_explain(const ExplainFlags& flags) {
   };
   PointTrace story;
   {
-    const Working working(console, "measuring again");
+    const Working working(console, "repeating the measurement");
     story = explain(setup, pick, frame);
   }
   fmt::print("{}", format_trace(story, setup, frame));
@@ -152,11 +152,11 @@ int run_explain(const ExplainFlags& flags) {
 }  // namespace
 
 Command add_explain(CLI::App& program) {
-  CLI::App& command = *program.add_subcommand("explain", "Tell how a point of a cloud came to be");
+  CLI::App& command = *program.add_subcommand("explain", "Trace the measurement of a point of a cloud");
   const auto flags = std::make_shared<ExplainFlags>();
   command.footer(kExplainExamples);
   command
-      .add_option("CLOUD", flags->cloud, "A cloud by render or stream, with its sidecar beside it")
+      .add_option("CLOUD", flags->cloud, "Cloud written by render or stream, with its sidecar")
       ->required()
       ->type_name("");
   const OptionGroup group(command, "Point");

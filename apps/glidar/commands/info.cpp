@@ -27,7 +27,7 @@ constexpr const char* kInfoExamples = R"(Examples:
 With your own files:
   glidar info part.stl --unit mm --up y
 
-Exit codes: 0 done (whatever the model is like), 2 the model cannot be read.)";
+Exit codes: 0 done (also for models with defects), 2 the model cannot be read.)";
 
 struct InfoFlags {
   std::string input;
@@ -43,7 +43,7 @@ std::string vector_text(const Eigen::Vector3d& v, std::string_view separator) {
   return fmt::format("{1:.6g}{0}{2:.6g}{0}{3:.6g}", separator, v.x(), v.y(), v.z());
 }
 
-/// "a, b and c" of those faults that there are.
+/// "1 open edges, 2 degenerate triangles": the defects with their counts.
 std::string fault_text(const MeshCheck& check) {
   const std::vector<std::pair<std::uint64_t, const char*>> faults = {
       {check.open_edges, "open edges"},
@@ -75,11 +75,11 @@ std::string texture_text(const MaterialSummary& material) {
 }
 
 void print_lists(const ModelReport& report) {
-  constexpr std::size_t kMax = 50;  // lines of one kind; --json has them all
+  constexpr std::size_t kMax = 50;  // lines of one kind; --json lists all
   const auto list = [&](std::string_view name, const auto& entries, const auto& text) {
     for (std::size_t i = 0; i < entries.size() && i < kMax; ++i) line(name, text(entries[i]));
     if (entries.size() > kMax) {
-      line(name, fmt::format("... and {} more (--json tells all)", entries.size() - kMax));
+      line(name, fmt::format("... and {} more (--json lists all)", entries.size() - kMax));
     }
   };
   list("mesh", report.parts, [](const ModelPart& part) {
@@ -135,7 +135,7 @@ Json json_of(const MeshCheck& check) {
           {"unused_vertices", check.unused_vertices}};
 }
 
-/// An array of one object for each entry.
+/// An array with an object for each entry.
 template <typename Entry, typename Function>
 Json json_list(const std::vector<Entry>& entries, const Function& object) {
   Json list = Json::array();
@@ -186,7 +186,7 @@ Json json_of(const ModelReport& report, const std::string& up_hint) {
   return json;
 }
 
-/// The model and what is found in it; up to here the console shows how far that is.
+/// Loads and examines the model; the console shows the progress.
 ModelReport examine(const InfoFlags& flags) {
   Console console;
   const Working working(console, "reading " + flags.input);
@@ -206,7 +206,7 @@ int run_info(const InfoFlags& flags) {
       flags.model.up ? ""
                      : up_advice(report.format, Eigen::AlignedBox3d(report.min_m, report.max_m));
   if (flags.json) {
-    // names in files need not be UTF-8; what is not is replaced rather than refused
+    // names in files may be invalid UTF-8; invalid bytes are replaced
     fmt::print("{}\n",
                json_of(report, up_hint).dump(2, ' ', false, Json::error_handler_t::replace));
   } else {
@@ -218,7 +218,7 @@ int run_info(const InfoFlags& flags) {
 }  // namespace
 
 Command add_info(CLI::App& program) {
-  CLI::App& command = *program.add_subcommand("info", "Tell what a model file holds");
+  CLI::App& command = *program.add_subcommand("info", "Report the contents of a model file");
   const auto flags = std::make_shared<InfoFlags>();
   command.footer(kInfoExamples);
   command.add_option("MODEL", flags->input, "Model file or builtin:NAME")

@@ -36,14 +36,14 @@ With your own files:
   glidar render part.stl --unit mm --up y -o part.pcd
   glidar render scene.yaml --sensor camera.yaml --frame ros -o cloud.npz
 
-The pose as in the 2015 program: quaternions are attitudes, they take inertial vectors into the
-body. The object stands at the inertial zero, the sensor at (0, 0, -D), and
+Woods 2016 compatibility: quaternions are attitudes, which rotate inertial vectors into the body.
+The object is at the inertial origin, the sensor at (0, 0, -D), and
   p_sensor = R(camera-q) (R(model-q)^T p_object + (0, 0, D))
-in the frame x left, y up, z forward. --model-q goes with any other pose option too.
+in the frame x left, y up, z forward. --model-q works with any other pose option.
 Exit codes: 0 done (also when nothing was hit), 2 bad input, 130 interrupted,
-141 nobody reads standard output any more.)";
+141 standard output was closed.)";
 
-/// Measures the scene; the console shows how far that is.
+/// Measures the scene and shows the progress.
 void measure(const Setup& setup, const HitFieldMask& fields, Console& console, Frame& frame) {
   const Working working(console, fmt::format("casting {} beams", setup.beams.size()));
   simulate(setup, fields, frame);
@@ -70,7 +70,7 @@ HitFieldMask needed_fields(const RenderFlags& flags, const std::vector<Output>& 
   return fields;
 }
 
-/// Writes a frame and says so.
+/// Writes a frame and prints the summary.
 void write(const RenderFlags& flags, const View& view, const std::vector<Output>& outputs,
            Console& console) {
   {
@@ -85,7 +85,7 @@ void write(const RenderFlags& flags, const View& view, const std::vector<Output>
   write_fisher(flags.fisher, view.frame, view.beams, outputs, number, to);
 }
 
-/// Of a run: what is measured and written.
+/// A run of `render`.
 struct Job {
   const RenderFlags& flags;
   const CommandRecord& command;
@@ -93,7 +93,7 @@ struct Job {
   std::vector<std::filesystem::path> written = {};  ///< so far
 };
 
-/// An error that also says what was written before it.
+/// The error, with the outputs that were written before it.
 Error after_writing(const Error& error, const std::vector<std::filesystem::path>& written) {
   ErrorParts parts = error.parts();
   parts.remedy += parts.remedy.empty() ? "" : "; ";
@@ -144,12 +144,12 @@ void measure_all(Job& job, const OutputFlags& files, Mount& mount, Console& cons
 int run_render(const RenderFlags& flags, const std::vector<std::string>& arguments) {
   Console console(flags.quiet);
   check_fisher(flags);
-  if (flags.duration_s) numbered(flags.output, 0);  // only for its errors
+  if (flags.duration_s) numbered(flags.output, 0);  // for its errors only
   const CommandRecord command = {.arguments = lasting(arguments),
                                  .folder = std::filesystem::current_path()};
   Session session;
   const Mount unknown;
-  const std::vector<Output> outputs =  // only to find their faults before the work begins
+  const std::vector<Output> outputs =  // to report errors before the work begins
       plan_outputs(flags.output, flags.input,
                    {.scene = session.scene,
                     .sensor = unknown.sensor,

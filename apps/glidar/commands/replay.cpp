@@ -18,14 +18,14 @@ namespace glidar::app {
 namespace {
 
 constexpr const char* kReplayExamples =
-    R"(Measures every frame of a recording again and compares it with what was recorded: the first that
-comes out otherwise is an error. Writes files (-o) or publishes (--port) as `glidar stream` does.
+    R"(Repeats every frame of a recording and compares it with the recorded frame; the first difference is
+an error. Writes files (-o) or publishes (--port) like `glidar stream`.
 Examples:
   glidar stream builtin:asteroid --object-rate 0,0.5,0 --frames 20 --record r.jsonl -o scan.pcd
   glidar replay r.jsonl
   glidar replay r.jsonl -o again.pcd
   glidar replay r.jsonl --port 5555 --rate 10
-Models, scene and sensor files must lie as they did, seen from the recording.
+Models, scene and sensor files must have the same paths relative to the recording.
 Exit codes: 0 every frame is the same, 2 bad input or a frame that differs, 130 after Ctrl-C.)";
 
 /// The options of the stream that was recorded.
@@ -49,7 +49,7 @@ StreamFlags replayed(StreamFlags recorded, const StreamFlags& chosen) {
   return flags;
 }
 
-/// Warns of input files that are not as they were: frames may come out otherwise.
+/// Warns of input files that have changed: frames may differ.
 void compare_files(const link::RecordingHead& head, Console& console) {
   for (const link::RecordedFile& file : head.files) {
     const std::optional<Hash128> hash = hash_file(file.path);
@@ -58,7 +58,7 @@ void compare_files(const link::RecordingHead& head, Console& console) {
   }
 }
 
-/// Paths given here count from here, those of the recorded command from its own folder.
+/// Paths of this command are relative to this folder, those of the recorded one to its own.
 void make_absolute(StreamFlags& flags) {
   const auto absolute = [](std::string& path) {
     if (!path.empty()) path = std::filesystem::absolute(path).string();
@@ -88,10 +88,10 @@ int run_replay(const StreamFlags& chosen) {
 }  // namespace
 
 Command add_replay(CLI::App& program) {
-  CLI::App& command = *program.add_subcommand("replay", "Measure a recorded stream again");
+  CLI::App& command = *program.add_subcommand("replay", "Repeat a recorded stream");
   const auto flags = std::make_shared<StreamFlags>();
   command.footer(kReplayExamples);
-  command.add_option("RECORDING", flags->replay, "A file by glidar stream --record")
+  command.add_option("RECORDING", flags->replay, "File written by glidar stream --record")
       ->required()
       ->type_name("");
   add_replay_options(command, *flags);

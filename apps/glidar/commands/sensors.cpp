@@ -36,11 +36,10 @@ constexpr const char* kSensorsExamples = R"(Examples:
   glidar sensors OS1-128 --json
   glidar sensors --surfaces
 
-A name goes with 'glidar render MODEL --sensor NAME'. "backed" counts the values that the
-manufacturer's documents back (data sheets, manuals, drivers, factory calibrations); the others are
-marked *. Beams widen by so many mrad, across x up, between where their light falls to
-1/e^2. A surface's name goes with 'glidar render MODEL --surface NAME', and with 'surface:' in scene
-files.
+Use a name with 'glidar render MODEL --sensor NAME'. "backed" counts the values with a source in the
+manufacturer's documents (data sheets, manuals, drivers, factory calibrations); the others are
+marked *. "beam" is the beam divergence, horizontal x vertical, full width at 1/e^2. Use the name of
+a surface with 'glidar render MODEL --surface NAME', and with 'surface:' in scene files.
 Exit codes: 0 done, 2 no such sensor.)";
 
 struct SensorsFlags {
@@ -50,7 +49,7 @@ struct SensorsFlags {
   bool json = false;
 };
 
-/// What the list tells of a sensor.
+/// A row of the list of sensors.
 struct Summary {
   std::string kind;
   std::uint32_t rows = 0;
@@ -79,7 +78,7 @@ double span_deg(const Beams& beams, std::size_t first, std::size_t count, std::s
   return 180.0 / std::numbers::pi * std::acos(cosine);
 }
 
-/// A camera with distortion: between the outermost pixels of its middle row and middle column.
+/// For a camera with distortion: between the outermost pixels of its middle row and column.
 void measure_view(const Beams& beams, const PinholeIntrinsics& k, Summary& summary) {
   const auto row = static_cast<std::size_t>(std::clamp(k.cy, 0.0, k.height - 1.0));
   const auto col = static_cast<std::size_t>(std::clamp(k.cx, 0.0, k.width - 1.0));
@@ -87,7 +86,7 @@ void measure_view(const Beams& beams, const PinholeIntrinsics& k, Summary& summa
   summary.upright_deg = span_deg(beams, col, beams.rows, beams.cols);
 }
 
-/// Angles between the outermost beams about the boresight; of a camera between its image's edges.
+/// Angles between the outermost beams about the boresight; for a camera between the image edges.
 void measure_view(const Sensor& sensor, const Beams& beams, Summary& summary) {
   if (beams.pinhole) {
     summary.across_deg =
@@ -132,7 +131,7 @@ std::string range_text(const Limits& limits) {
   return fmt::format("{:g}-{:g} m", limits.near_m, limits.far_m);
 }
 
-/// Divergence across and up, full widths at 1/e^2.
+/// Horizontal and vertical divergence, full widths at 1/e^2.
 std::string beam_text(const Sensor& sensor) {
   if (!sensor.footprint) return "-";
   return fmt::format("{:.1f} x {:.1f}", 1e3 * sensor.footprint->divergence_x_rad,
@@ -169,19 +168,19 @@ void print_sheet(const Datasheet& sheet, const Summary& s) {
     if (!entry.source.empty()) fmt::print("      {}\n", entry.source);
   }
   if (s.values.backed < s.values.total) {
-    fmt::print("\n* not backed by the manufacturer's documents\n");
+    fmt::print("\n* without a source in the manufacturer's documents\n");
   }
 }
 
 using Json = nlohmann::ordered_json;
 
-/// Divergence in mrad across and up; a line has none.
+/// Horizontal and vertical divergence in mrad; empty without a footprint.
 Json divergence_json(const Sensor& sensor) {
   if (!sensor.footprint) return {};
   return {1e3 * sensor.footprint->divergence_x_rad, 1e3 * sensor.footprint->divergence_y_rad};
 }
 
-/// Limits of no end become null.
+/// Infinite limits become null.
 Json json_of(const Datasheet& sheet, const Summary& s) {
   const Limits& limits = sheet.sensor.limits;
   return {{"name", sheet.name},
@@ -278,7 +277,7 @@ std::string png_name(const std::string& path) {
 int list_all(const SensorsFlags& flags) {
   if (!flags.picture.empty()) {
     throw Error({.where = "-o",
-                 .found = "no sensor is named",
+                 .found = "no sensor is given",
                  .allowed = "",
                  .remedy = "for example: glidar sensors VLP-16 -o pattern.png"});
   }
@@ -324,14 +323,14 @@ int run_sensors(const SensorsFlags& flags) {
 
 Command add_sensors(CLI::App& program) {
   CLI::App& command =
-      *program.add_subcommand("sensors", "List the sensors that come along, or tell about one");
+      *program.add_subcommand("sensors", "List the sensor presets, or print one with its sources");
   const auto flags = std::make_shared<SensorsFlags>();
   command.footer(kSensorsExamples);
-  command.add_option("name", flags->name, "Name of a sensor, or a sensor file")->type_name("NAME");
+  command.add_option("name", flags->name, "Sensor preset or sensor file")->type_name("NAME");
   OptionGroup(command, "Options")
       .add("-o,--output", "OUT.png", "Image of its beam pattern (PNG)", flags->picture, png_name);
   command.add_flag("--surfaces", flags->surfaces,
-                   "List the surfaces that come along and what they send back");
+                   "List the surface presets and their reflectances");
   command.add_flag("--json", flags->json, "Print JSON instead of a table");
   return [flags] { return run_sensors(*flags); };
 }

@@ -26,23 +26,23 @@ constexpr const char* kStreamExamples = R"(Examples:
   glidar stream builtin:box --sensor VLP-16 --eye 0,0,0 --duration 0.2 -o scan.pcd
 With your own files:
   glidar stream scene.yaml --trajectory poses.txt --duration 10 -o scan.pcd
-In the loop with a simulator that publishes poses at 5557 and shakes hands at 5558:
+Closed loop with a simulator that publishes poses at port 5557 and shakes hands at port 5558:
   glidar stream satellite.obj --pose-source tcp://127.0.0.1:5557 --pose-queue 100 --port 5555
-A client that places everything and asks for every frame (docs/link.md):
+A client that sends all poses and requests every frame (docs/link.md):
   glidar stream scene.yaml --lockstep tcp://127.0.0.1:5600
-Again, the same bytes, here or elsewhere:
+Record, then repeat with the same bytes on any machine:
   glidar stream builtin:asteroid --object-rate 0,0.5,0 --frames 20 --record r.jsonl -o scan.pcd
   glidar replay r.jsonl
   glidar stream builtin:asteroid --frames 20 --record r.jsonl --durable   # survives a loss of power
-Watch from Python (python3-zmq); docs/link.md has the bytes of all messages:
+Receive in Python (python3-zmq); docs/link.md describes all messages:
   s = zmq.Context().socket(zmq.SUB); s.connect("tcp://127.0.0.1:5555"); s.subscribe("c")
 
 Clouds are 'c', uint64 timestamp, then x y z intensity as float32 for every hit, x left, y up,
-z forward. Numbered files (-o) hold what `glidar render --duration` would write.
-A pose message places the scene and the sensor:
+z forward. Numbered files (-o) are those of `glidar render --duration`.
+A pose message gives the poses of the scene and the sensor:
   p_sensor = R(q_sensor) (R(q_object)^T p_object + t)
 Exit codes: 0 done, or the simulator ended; 2 bad input; 3 no pose for --pose-timeout;
-130 after Ctrl-C, 143 after SIGTERM; subscribers are told that it ends in any case.)";
+130 after Ctrl-C, 143 after SIGTERM. Subscribers always receive a message at the end.)";
 
 int run_stream(const StreamFlags& given) {
   StreamFlags flags = given;
@@ -57,7 +57,7 @@ int run_stream(const StreamFlags& given) {
 
 Command add_stream(CLI::App& program, const std::vector<std::string>& arguments) {
   CLI::App& command =
-      *program.add_subcommand("stream", "Measure again and again: poses in, clouds out");
+      *program.add_subcommand("stream", "Measure continuously: poses in, point clouds out");
   const auto flags = std::make_shared<StreamFlags>();
   command.footer(output_names_text() + kStreamExamples);
   add_stream_options(command, *flags);

@@ -24,14 +24,14 @@ constexpr const char* kVerifyExamples = R"(Examples:
   glidar verify --threads 1 --json
   glidar verify --renderer raster
 
-Each row is one case with one shape at one distance from the sensor. "One shape at rest" looks at a
-shape that grows with the distance and at one of 1 m, at the world's origin and 1 km and 1000 km
-from it (by its pose, and by its vertices). The other cases are hard ones: docs/accuracy.md.
+Each row is one case with one shape at one distance from the sensor. "One shape at rest" measures a
+shape that grows with the distance and one of 1 m, at the world's origin and 1 km and 1000 km from
+it (by its pose, and by its vertices). The other cases are hard ones: docs/accuracy.md.
 Every ray is compared with closed forms in extended precision, independent of all rendering code:
 hit or miss, instance and triangle, range and normal. With "one shape at rest" rays that pass an
-edge nearer than 2e-6 of the shape's radius are not judged.
-Bounds: range within 0.001 steps (ulp) of float32, normals within 1e-6 rad, nothing wrong.
-opengl casts pinhole cameras only, raster also scanners: cases with other beams do not apply.
+edge at less than 2e-6 of the shape's radius are not compared.
+Bounds: range within 0.001 ulp of float32, normals within 1e-6 rad, no wrong hit, miss or id.
+opengl supports pinhole cameras only, raster also scanners: cases with other beams do not apply.
 A known failure is a documented limit of a renderer, up to a known number of wrong rays and a known
 range error; anything worse is a failure. FIXED: a known failure passes on this machine.
 Exit codes: 0 all passed or known, 1 a failure, 2 bad input.)";
@@ -44,7 +44,7 @@ struct VerifyFlags {
 void print_row(const AccuracyCase& row) {
   const VerifyResult& r = row.result;
   if (!row.applies) {
-    fmt::print("{:<25} {:<15} {:>8}  not applicable: it has other beams than this renderer casts\n",
+    fmt::print("{:<25} {:<15} {:>8}  not applicable: this renderer does not cast such beams\n",
                row.name, row.shape, row.distance_m);
     return;
   }
@@ -54,13 +54,13 @@ void print_row(const AccuracyCase& row) {
              verdict_name(row.verdict()));
 }
 
-/// The rows that are known to fail, with their reasons.
+/// The known failures with their reasons.
 void print_known(const std::vector<AccuracyCase>& rows) {
   for (const AccuracyCase& row : rows) {
     if (row.known.reason.empty() || !row.applies) continue;
     const VerifyResult& r = row.result;
     if (row.verdict() == Verdict::fixed) {
-      fmt::print("FIXED: {}, {}, {} m passes here, though it is listed as a known failure\n",
+      fmt::print("FIXED: {}, {}, {} m passes here but is listed as a known failure\n",
                  row.name, row.shape, row.distance_m);
       continue;
     }

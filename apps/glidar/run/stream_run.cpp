@@ -60,7 +60,7 @@ void compare(const Shot& shot, const std::string& recording, std::uint64_t numbe
   if (frame_hash(shot.frame) == shot.frame_hash) return;
   throw Error({fmt::format("{}, frame {}", recording, number),
                "it comes out otherwise than when it was recorded",
-               "the same models, scene and sensor files, and program as then", ""});
+               "the same models, scene and sensor files, and the same program", ""});
 }
 
 }  // namespace
