@@ -128,7 +128,7 @@ class StandardOutput(CliTest):
             self.assertIn("--output", told)
             self.assertNotIn("stdout", told)
             self.assertNotIn("--format", told)
-        self.assertIn("-: stdout", self.succeed("render", "--help").stdout)
+        self.assertIn("-: standard output", self.succeed("render", "--help").stdout)
 
     def test_files_are_written_beside_it(self):
         done = self.succeed("render", "builtin:box", "-o", "-", "--format", "csv", "-o", "a.pcd", "--quiet")

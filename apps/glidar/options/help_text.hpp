@@ -10,7 +10,7 @@
 namespace glidar::app {
 
 /// The heading of options that the original GLIDAR of 2015 has.
-inline constexpr const char* kCompatibilityHeading = "Woods 2016 compatibility";
+inline constexpr const char* kWoods2016Heading = "Woods 2016 compatibility";
 
 /// The words in lines of at most 100 columns, each after two spaces.
 std::string indented(std::string_view words);

@@ -41,8 +41,7 @@ void add_motion_options(CLI::App& command, MotionFlags& flags) {
   motion.add("--sensor-rate", "X,Y,Z", "Angular rate of the sensor about left, up, forward, rad/s",
              flags.sensor_rate_rad_s, parse_angular_rate);
   forbid_together(command, {"--trajectory"},
-                  {"--sensor-rate", "--eye", "--target", "--sensor-pose", "--camera-z",
-                   "--camera-q", "--camera-r"});
+                  {"--sensor-rate", "--eye", "--target", "--sensor-pose"});
 }
 
 std::vector<std::string> files_of(const MotionFlags& flags) {

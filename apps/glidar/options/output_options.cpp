@@ -110,9 +110,12 @@ void add_output_options(CLI::App& command, OutputFlags& flags) {
   add_cloud_options(group, flags);
   add_picture_options(group, flags.sink.picture);
   group.add_flag("--no-sidecar", "Write no FILE.json beside clouds", flags.sink.sidecar, false);
-  OptionGroup(command, kCompatibilityHeading)
-      .add("--legacy-output", "NAME", "Write NAME.pcd and NAME.transform", flags.legacy_name);
   forbid_together(command, {"--layout"}, {"--fields"});
+}
+
+void add_legacy_output_option(CLI::App& command, OutputFlags& flags) {
+  OptionGroup(command, kWoods2016Heading)
+      .add("--legacy-output", "NAME", "Write NAME.pcd and NAME.transform", flags.legacy_name);
 }
 
 void hide_standard_output(CLI::App& command) {

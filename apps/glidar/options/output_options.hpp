@@ -23,8 +23,10 @@ struct OutputFlags {
 
 inline constexpr const char* kOutputHeading = "Output (names are explained below)";
 
-/// Also adds --legacy-output, under the heading of the original program's options.
 void add_output_options(CLI::App& command, OutputFlags& flags);
+
+/// --legacy-output, under the heading of the original GLIDAR's options.
+void add_legacy_output_option(CLI::App& command, OutputFlags& flags);
 
 /// Removes standard output from the help of a command that writes sequences.
 void hide_standard_output(CLI::App& command);

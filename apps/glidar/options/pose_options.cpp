@@ -8,25 +8,6 @@
 #include <glidar/core/scene.hpp>
 
 namespace glidar::app {
-namespace {
-
-void add_compatibility_options(CLI::App& command, PoseFlags& flags) {
-  const OptionGroup group(command, kCompatibilityHeading);
-  const char* const angle_axis = "ANGLE,X,Y,Z";
-  group.add("--model-q", "W,X,Y,Z", "Model attitude, quaternion", flags.model_q, parse_quaternion);
-  group.add("--model-r", angle_axis, "Model attitude, radians and axis", flags.model_q,
-            parse_angle_axis);
-  group.add("--camera-q", "W,X,Y,Z", "Sensor attitude, quaternion", flags.camera_q,
-            parse_quaternion);
-  group.add("--camera-r", angle_axis, "Sensor attitude, radians and axis", flags.camera_q,
-            parse_angle_axis);
-  group.add("--camera-z", "D", "Distance from sensor to object, m [1000]", flags.camera_z_m,
-            number(-kMaxCoordinate_m, kMaxCoordinate_m, "metres from -1e15 to 1e15"));
-  forbid_together(command, {"--model-q"}, {"--model-r"});
-  forbid_together(command, {"--camera-q"}, {"--camera-r"});
-}
-
-}  // namespace
 
 void add_pose_options(CLI::App& command, PoseFlags& flags) {
   const OptionGroup group(command, "Pose (default: the scene fills the view, seen from 2,-3,2)");
@@ -42,11 +23,27 @@ void add_pose_options(CLI::App& command, PoseFlags& flags) {
   OptionGroup(command, "Model")
       .add("--scale", "S", "Scale of the model, after --unit [1]", flags.scale,
            number(kMinScale, kMaxScale, "a number above 0, from 1e-15 to 1e15"));
-  add_compatibility_options(command, flags);
   require_option(command, {"--target"}, "--eye");
-  forbid_together(command, {"--eye", "--target"},
-                  {"--sensor-pose", "--camera-z", "--camera-q", "--camera-r"});
-  forbid_together(command, {"--sensor-pose"}, {"--camera-z", "--camera-q", "--camera-r"});
+  forbid_together(command, {"--sensor-pose"}, {"--eye", "--target"});
+}
+
+void add_woods2016_pose_options(CLI::App& command, PoseFlags& flags) {
+  const OptionGroup group(command, kWoods2016Heading);
+  const char* const quaternion = "W,X,Y,Z";
+  const char* const angle_axis = "ANGLE,X,Y,Z";
+  group.add("--model-q", quaternion, "Model attitude, quaternion", flags.model_q, parse_quaternion);
+  group.add("--model-r", angle_axis, "Model attitude, radians and axis", flags.model_q,
+            parse_angle_axis);
+  group.add("--camera-q", quaternion, "Sensor attitude, quaternion", flags.camera_q,
+            parse_quaternion);
+  group.add("--camera-r", angle_axis, "Sensor attitude, radians and axis", flags.camera_q,
+            parse_angle_axis);
+  group.add("--camera-z", "D", "Distance from sensor to object, m [1000]", flags.camera_z_m,
+            number(-kMaxCoordinate_m, kMaxCoordinate_m, "metres from -1e15 to 1e15"));
+  forbid_together(command, {"--model-q"}, {"--model-r"});
+  forbid_together(command, {"--camera-q"}, {"--camera-r"});
+  forbid_together(command, {"--camera-z", "--camera-q", "--camera-r"},
+                  {"--eye", "--target", "--sensor-pose", "--trajectory"});
 }
 
 }  // namespace glidar::app

@@ -23,4 +23,8 @@ struct PoseFlags {
 
 void add_pose_options(CLI::App& command, PoseFlags& flags);
 
+/// The pose options of the original GLIDAR. The other options of poses and motion come first: these
+/// exclude some of them.
+void add_woods2016_pose_options(CLI::App& command, PoseFlags& flags);
+
 }  // namespace glidar::app

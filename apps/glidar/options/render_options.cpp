@@ -46,16 +46,17 @@ void add_render_options(CLI::App& command, RenderFlags& flags) {
       .add("--surface", "NAME", "Surface preset of the model (see glidar sensors --surfaces)",
            flags.surface);
   add_run_options(command, flags.renderer, "Run");
-  OptionGroup(command, kCompatibilityHeading)
-      .add_flag("--quantized-framebuffer",
-                "Measure with the 8-bit framebuffer of the paper, with opengl",
-                flags.quantized_framebuffer);
   const OptionGroup run(command, "Run");
   run.add("--seed", "N", "Seed of random numbers, kept in the sidecar [1]", flags.seed,
           whole<std::uint64_t>(0, std::numeric_limits<std::uint64_t>::max()));
   run.add("--duration", "S", "Write numbered frames, NAME_000000 ..., for S seconds",
           flags.duration_s, parse_number);
   run.add_flag("--quiet", "No summary and no progress, only warnings", flags.quiet);
+  add_legacy_output_option(command, flags.output);
+  add_woods2016_pose_options(command, flags.pose);
+  OptionGroup(command, kWoods2016Heading)
+      .add_flag("--quantized-framebuffer", "Measure by the paper's 8-bit framebuffer, with opengl",
+                flags.quantized_framebuffer);
 }
 
 }  // namespace glidar::app

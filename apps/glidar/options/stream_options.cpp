@@ -145,6 +145,7 @@ void add_stream_options(CLI::App& command, StreamFlags& flags) {
 
 void add_replay_options(CLI::App& command, StreamFlags& flags) {
   add_output_options(command, flags.render.output);
+  add_legacy_output_option(command, flags.render.output);
   hide_standard_output(command);
   const OptionGroup pace(command, kPaceHeading);
   pace.add("--rate", "HZ", "Frames per second at most; 0 or max: no limit [max]",
