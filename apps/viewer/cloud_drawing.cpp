@@ -54,12 +54,12 @@ void CloudDrawing::resize(int width, int height) {
   glFramebufferRenderbuffer(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER, depths_.name());
 }
 
-void CloudDrawing::draw(const CloudLook& look) {
+void CloudDrawing::draw(const CloudView& style) {
   constexpr std::array<GLfloat, 4> kBackground = {0.09F, 0.09F, 0.11F, 1.0F};
   constexpr GLfloat kFarthest = 1.0F;
-  resize(look.width, look.height);
+  resize(style.width, style.height);
   glBindFramebuffer(GL_FRAMEBUFFER, frame_.name());
-  glViewport(0, 0, look.width, look.height);
+  glViewport(0, 0, style.width, style.height);
   glDisable(GL_SCISSOR_TEST);
   glDepthMask(GL_TRUE);
   glClearBufferfv(GL_COLOR, 0, kBackground.data());
@@ -71,8 +71,8 @@ void CloudDrawing::draw(const CloudLook& look) {
   glEnable(GL_PROGRAM_POINT_SIZE);
   glUseProgram(program_.name());
   glUniformMatrix4fv(glGetUniformLocation(program_.name(), "clip_from_anchor"), 1, GL_FALSE,
-                     look.clip_from_anchor.data());
-  glUniform1f(glGetUniformLocation(program_.name(), "point_size"), look.point_size);
+                     style.clip_from_anchor.data());
+  glUniform1f(glGetUniformLocation(program_.name(), "point_size"), style.point_size);
   glBindVertexArray(points_.arrays.name());
   glDrawArrays(GL_POINTS, 0, points_.count);
   glBindVertexArray(lines_.arrays.name());

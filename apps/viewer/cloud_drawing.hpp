@@ -10,8 +10,8 @@
 
 namespace glidar::app {
 
-/// How points and lines are drawn.
-struct CloudLook {
+/// Parameters for drawing points and lines.
+struct CloudView {
   int width = 1;  ///< pixels
   int height = 1;
   Eigen::Matrix4f clip_from_anchor = Eigen::Matrix4f::Identity();
@@ -25,12 +25,12 @@ class CloudDrawing {
 
   void set_points(std::span<const ColouredVertex> points);
   void set_lines(std::span<const ColouredVertex> lines);
-  /// Draws into the texture, whose first row is the lowest.
-  void draw(const CloudLook& look);
+  /// Draws into the texture, whose first row is the bottom one.
+  void draw(const CloudView& style);
   [[nodiscard]] GLuint texture() const { return picture_.name(); }
 
  private:
-  /// Corners in the device's memory.
+  /// Vertices in the device's memory.
   struct Corners {
     opengl::VertexArray arrays;
     opengl::Buffer buffer;

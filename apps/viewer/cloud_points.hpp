@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <apps/viewer/measuring.hpp>
+#include <apps/viewer/measurement_thread.hpp>
 
 #include <Eigen/Core>
 #include <vector>
@@ -10,7 +10,7 @@
 namespace glidar::app {
 
 /// The measured point of each beam in the world, relative to the anchor; NaN without a return.
-void make_cloud_points(const Snapshot& shot, const Eigen::Vector3d& anchor_m,
+void make_cloud_points(const Snapshot& snapshot, const Eigen::Vector3d& anchor_m,
                        std::vector<Eigen::Vector3f>& points);
 
 }  // namespace glidar::app

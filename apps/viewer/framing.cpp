@@ -11,9 +11,9 @@
 namespace glidar::app {
 namespace {
 
-constexpr double kMargin = 1.1;  // free space around what is framed
+constexpr double kMargin = 1.1;  // free space around framed objects
 
-/// How far an eye must be from a sphere to see it within this half angle.
+/// The distance at which a sphere fits into this half angle.
 double distance_to_see(double radius_m, double half_angle_rad) {
   return kMargin * radius_m / std::sin(half_angle_rad);
 }
@@ -69,8 +69,8 @@ Orbit view_of_all(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& sensor_
 }
 
 std::optional<FieldOfView> field_of_view(const Beams& beams) {
-  constexpr double kMinAhead = 0.1;     // cosine; wider pictures need no aiming
-  constexpr double kMinTangent = 1e-3;  // narrower ones cannot contain an object
+  constexpr double kMinAhead = 0.1;     // cosine; wider images need no aiming
+  constexpr double kMinTangent = 1e-3;  // narrower images cannot contain an object
   FieldOfView field{.axes = axes_of(beams)};
   for (const Eigen::Vector3d& direction : beams.directions) {
     if (std::isnan(direction.x())) continue;
@@ -107,8 +107,8 @@ Visibility visibility(const FieldOfView& field, const Pose& world_from_sensor,
   return most == corners_m.size() ? Visibility::outside : Visibility::partly;
 }
 
-std::optional<Pose> turned_towards(const FieldOfView& field, const Pose& world_from_sensor,
-                                   const Eigen::Vector3d& point_m) {
+std::optional<Pose> aimed_at(const FieldOfView& field, const Pose& world_from_sensor,
+                             const Eigen::Vector3d& point_m) {
   const Eigen::Vector3d way_m = point_m - world_from_sensor.translation();
   if (way_m.norm() == 0.0) return std::nullopt;
   const Eigen::Vector3d ahead = world_from_sensor.linear() * field.axes.ahead;
@@ -117,14 +117,14 @@ std::optional<Pose> turned_towards(const FieldOfView& field, const Pose& world_f
                    turn * Eigen::Quaterniond(world_from_sensor.linear()));
 }
 
-std::optional<Pose> pose_that_shows(const FieldOfView& field, const Pose& world_from_sensor,
-                                    std::span<const Eigen::Vector3d> corners_m) {
+std::optional<Pose> pose_to_show(const FieldOfView& field, const Pose& world_from_sensor,
+                                 std::span<const Eigen::Vector3d> corners_m) {
   const Visibility now = visibility(field, world_from_sensor, corners_m);
   const Sphere sphere = sphere_around(corners_m);
   const Eigen::Vector3d way_m = sphere.middle_m - world_from_sensor.translation();
   const bool is_among = way_m.norm() <= sphere.radius_m;
   if (now == Visibility::inside || (is_among && now == Visibility::partly)) return std::nullopt;
-  std::optional<Pose> pose = turned_towards(field, world_from_sensor, sphere.middle_m);
+  std::optional<Pose> pose = aimed_at(field, world_from_sensor, sphere.middle_m);
   if (!pose || is_among || visibility(field, *pose, corners_m) == Visibility::inside) return pose;
   const double tangent = std::min({field.left, field.right, field.up, field.down});
   const double distance_m = distance_to_see(sphere.radius_m, std::atan(tangent));

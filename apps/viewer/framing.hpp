@@ -22,18 +22,18 @@ struct Sphere {
 /// The sphere about the mean of the corners that contains them all; zero without corners.
 Sphere sphere_around(std::span<const Eigen::Vector3d> corners_m);
 
-/// Places the eye so that the whole sphere is seen; the direction of view stays. `aspect` is
+/// Moves the eye so that the whole sphere is visible; the view direction stays. `aspect` is
 /// width / height.
 void frame_sphere(Orbit& orbit, const Sphere& anchored, double aspect);
 
-/// Moves the eye away from its pivot until all points, relative to the anchor, are in view.
+/// Moves the eye away from its pivot until all points, relative to the anchor, are visible.
 void zoom_out_to(Orbit& orbit, std::span<const Eigen::Vector3d> points, double aspect);
 
 /// A view with the box, which may be empty, and the sensor in it. Both are relative to the anchor,
 /// which is the middle of the box.
 Orbit view_of_all(const Eigen::AlignedBox3d& box, const Eigen::Vector3d& sensor_m, double aspect);
 
-/// What the picture of a sensor contains: tangents of the angles from straight ahead to its edges.
+/// The field of view of a sensor: tangents of the angles from the boresight to its edges.
 struct FieldOfView {
   SensorAxes axes;
   double left = 0.0;  ///< > 0
@@ -42,25 +42,25 @@ struct FieldOfView {
   double down = 0.0;
 };
 
-/// Empty where aiming makes no sense: sensors that look all around, lines, single beams.
+/// Empty for sensors that cannot be aimed: 360 degree scanners, lines, single beams.
 std::optional<FieldOfView> field_of_view(const Beams& beams);
 
-/// How much of something is in the picture, regardless of what hides it.
+/// How much of an object is in the image, regardless of occlusion.
 enum class Visibility : std::uint8_t { inside, partly, outside };
 
 /// For the convex hull of the corners (world). `outside` is certain: all corners are behind
-/// the sensor or beyond one edge of the picture.
+/// the sensor or beyond one edge of the image.
 Visibility visibility(const FieldOfView& field, const Pose& world_from_sensor,
                       std::span<const Eigen::Vector3d> corners_m);
 
-/// The sensor's pose after the smallest rotation that makes it look straight at the point. Empty:
-/// the sensor is at the point.
-std::optional<Pose> turned_towards(const FieldOfView& field, const Pose& world_from_sensor,
-                                   const Eigen::Vector3d& point_m);
+/// The sensor's pose after the smallest rotation that points the boresight at the point. Empty: the
+/// sensor is at the point.
+std::optional<Pose> aimed_at(const FieldOfView& field, const Pose& world_from_sensor,
+                             const Eigen::Vector3d& point_m);
 
-/// A pose of the sensor with all corners in its picture: turned towards their middle, then moved
-/// back if they do not fit. Empty: nothing to do, or the sensor is among them.
-std::optional<Pose> pose_that_shows(const FieldOfView& field, const Pose& world_from_sensor,
-                                    std::span<const Eigen::Vector3d> corners_m);
+/// A pose of the sensor with all corners in its image: aimed at their centre, then moved back if
+/// they do not fit. Empty: no change needed, or the sensor is between them.
+std::optional<Pose> pose_to_show(const FieldOfView& field, const Pose& world_from_sensor,
+                                 std::span<const Eigen::Vector3d> corners_m);
 
 }  // namespace glidar::app

@@ -12,22 +12,22 @@
 
 namespace glidar::app {
 
-/// A corner of a line or a point, relative to the anchor, as the graphics device takes it.
+/// A vertex of a line, or a point, relative to the anchor, in the layout of the vertex buffer.
 struct ColouredVertex {
   Eigen::Vector3f position_m;
   Colour colour;
   std::uint8_t opacity = 255;
 };
-static_assert(sizeof(ColouredVertex) == 16, "given to OpenGL as it is");
+static_assert(sizeof(ColouredVertex) == 16, "the layout of the vertex buffer");
 
-/// Lines, two corners each.
+/// Lines, two vertices each.
 using Lines = std::vector<ColouredVertex>;
 
-/// 1, 2 or 5 times a power of ten metres, so that about ten of them make `extent_m`.
+/// 1, 2 or 5 times a power of ten metres, about a tenth of `extent_m`.
 double grid_spacing_m(double extent_m);
 
-/// A level grid of squares about a point, `extent_m` to every side; its lines lie at multiples of
-/// the spacing from the anchor.
+/// A horizontal grid around a point, `extent_m` to every side; its lines are at multiples of the
+/// spacing from the anchor.
 void add_grid(const Eigen::Vector3d& about_m, double extent_m, double spacing_m, Lines& lines);
 
 /// Axes of this pose: x red, y green, z blue.
@@ -37,8 +37,8 @@ void add_axes(const Pose& anchor_from_frame, double length_m, Lines& lines);
 /// i.
 void add_boxes(std::span<const Eigen::Vector3d> corners_m, Lines& lines);
 
-/// The edges of what the beams reach, up to a range: the border of the beams' grid, and lines to it
-/// from where they start.
+/// The edges of the beams' frustum up to a range: the border of the beams' grid, and lines to it
+/// from their origins.
 void add_frustum(const Beams& beams, const Pose& anchor_from_sensor, double range_m, Lines& lines);
 
 }  // namespace glidar::app

@@ -14,7 +14,7 @@
 namespace glidar::app {
 namespace {
 
-/// A row of the list; empty: all objects. `scrolled_to`: the row that was last scrolled to.
+/// A row of the list; empty: all objects. `scrolled_to`: the last row that was scrolled to.
 void show_row(Viewer& viewer, const std::string& name, std::optional<std::size_t> object,
               int& scrolled_to) {
   ImGui::TableNextRow();
@@ -31,7 +31,7 @@ void show_row(Viewer& viewer, const std::string& name, std::optional<std::size_t
 }
 
 void show_rows(Viewer& viewer) {
-  const Scene& scene = viewer.shot()->session->scene;
+  const Scene& scene = viewer.snapshot()->session->scene;
   int& scrolled_to = *ImGui::GetStateStorage()->GetIntRef(ImGui::GetID("scrolled to"), 0);
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
@@ -47,8 +47,8 @@ void show_rows(Viewer& viewer) {
 }
 
 void show_list(Viewer& viewer) {
-  constexpr std::size_t kMaxRows = 7;  // the others are scrolled to
-  const std::size_t count = viewer.shot()->session->scene.instances.size();
+  constexpr std::size_t kMaxRows = 7;  // more rows scroll
+  const std::size_t count = viewer.snapshot()->session->scene.instances.size();
   const std::size_t rows = std::min(kMaxRows, count > 1 ? count + 2 : count + 1);
   constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg |
                                      ImGuiTableFlags_BordersOuter | ImGuiTableFlags_Resizable;
@@ -66,8 +66,8 @@ void show_list(Viewer& viewer) {
 }  // namespace
 
 void show_objects(Viewer& viewer) {
-  const Snapshot* shot = viewer.shot();
-  if (shot == nullptr) return;
+  const Snapshot* snapshot = viewer.snapshot();
+  if (snapshot == nullptr) return;
   show_list(viewer);
   if (ImGui::Button("Frame object (f)")) viewer.frame_selected();
   ImGui::SameLine();
@@ -75,8 +75,8 @@ void show_objects(Viewer& viewer) {
   if (ImGui::Checkbox("keep in view", &keeps_in_view)) viewer.set_keeps_in_view(keeps_in_view);
   const std::optional<std::size_t> object = viewer.selection().object();
   if (!object) return;
-  const Instance& instance = shot->session->scene.instances[*object];
-  Pose pose = shot->frame.world_from_instance[*object];
+  const Instance& instance = snapshot->session->scene.instances[*object];
+  Pose pose = snapshot->frame.world_from_instance[*object];
   const std::string name = instance.name + " in the world";
   ImGui::PushID(static_cast<int>(*object));
   if (edit_pose(name.c_str(), pose)) viewer.set_object_pose(*object, pose);

@@ -22,7 +22,8 @@ double half_height() {
 }  // namespace
 
 void turn(Orbit& orbit, const Eigen::Vector2d& drag) {
-  constexpr double kSteepest = std::numbers::pi / 2.0 - 1e-3;  // +z must not point at the eye
+  constexpr double kSteepest =
+      std::numbers::pi / 2.0 - 1e-3;  // the view direction must not be vertical
   orbit.yaw_rad =
       std::remainder(orbit.yaw_rad - std::numbers::pi * drag.x(), 2.0 * std::numbers::pi);
   orbit.pitch_rad =

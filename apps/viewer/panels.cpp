@@ -24,7 +24,7 @@ ImU32 packed(Colour colour) {
   return IM_COL32(colour.r, colour.g, colour.b, 255);
 }
 
-/// A list to choose from; true when another was chosen, which `chosen` then is.
+/// A list; true if another item was selected, whose index is then `chosen`.
 template <class Names>
 bool choose(const char* label, const std::string& shown, const Names& names, std::size_t& chosen) {
   bool is_changed = false;
@@ -42,7 +42,7 @@ bool choose(const char* label, const std::string& shown, const Names& names, std
   return is_changed;
 }
 
-/// The names of the sensors that come along, read once.
+/// The names of the sensor presets, read once.
 const std::vector<std::string>& preset_names() {
   static const std::vector<std::string> kNames = [] {
     std::vector<std::string> names;
@@ -60,9 +60,9 @@ std::string limit_text(const Limits& limits) {
   return fmt::format("{} {:g} to {:g} m", along, limits.near_m, limits.far_m);
 }
 
-void show_sensor_numbers(const Snapshot& shot) {
-  const Sensor& sensor = *shot.sensor;
-  const Beams& beams = *shot.beams;
+void show_sensor_numbers(const Snapshot& snapshot) {
+  const Sensor& sensor = *snapshot.sensor;
+  const Beams& beams = *snapshot.beams;
   text(fmt::format("{} x {} beams{}, {:g} Hz", beams.cols, beams.rows / beams.returns,
                    beams.returns > 1 ? fmt::format(", {} returns", beams.returns) : "",
                    sensor.rate_hz));
@@ -86,68 +86,69 @@ void show_sensor_numbers(const Snapshot& shot) {
   ImGui::TreePop();
 }
 
-/// The sensors of the scene; a click shows another one.
+/// The sensors of the scene; a click selects one.
 void show_mounts(Viewer& viewer) {
-  const std::vector<Mount>& mounts = viewer.shot()->session->mounts;
+  const std::vector<Mount>& mounts = viewer.snapshot()->session->mounts;
   for (std::size_t i = 0; i < mounts.size(); ++i) {
     const Mount& mount = mounts[i];
     const std::string line = mount.name.empty()
                                  ? mount.sensor.name
                                  : fmt::format("{}: {}", mount.name, mount.sensor.name);
     ImGui::PushID(static_cast<int>(i));
-    if (ImGui::Selectable(line.c_str(), i == viewer.ask().mount)) viewer.use_mount(i);
+    if (ImGui::Selectable(line.c_str(), i == viewer.request().mount)) viewer.use_mount(i);
     ImGui::PopID();
   }
 }
 
 void show_sensor(Viewer& viewer) {
-  const SensorFlags& flags = viewer.ask().flags->sensor;
+  const SensorFlags& flags = viewer.request().flags->sensor;
   std::size_t chosen = 0;
   const std::string shown = flags.file.empty() ? "as given" : flags.file;
-  if (viewer.shot() != nullptr) show_mounts(viewer);
-  const bool has_rig = viewer.shot() != nullptr && viewer.shot()->session->mounts.size() > 1;
+  if (viewer.snapshot() != nullptr) show_mounts(viewer);
+  const bool has_rig =
+      viewer.snapshot() != nullptr && viewer.snapshot()->session->mounts.size() > 1;
   if (!has_rig && choose("preset", shown, preset_names(), chosen)) {
     viewer.use_sensor(preset_names()[chosen]);
   }
-  if (viewer.shot() != nullptr) show_sensor_numbers(*viewer.shot());
-  bool has_noise = viewer.ask().has_noise;
+  if (viewer.snapshot() != nullptr) show_sensor_numbers(*viewer.snapshot());
+  bool has_noise = viewer.request().has_noise;
   if (ImGui::Checkbox("noise", &has_noise)) viewer.set_noise(has_noise);
   ImGui::SameLine();
-  std::uint64_t seed = viewer.ask().seed;
+  std::uint64_t seed = viewer.request().seed;
   ImGui::SetNextItemWidth(ImGui::GetFontSize() * 7.0F);
   constexpr std::uint64_t kStep = 1;
   if (ImGui::InputScalar("seed", ImGuiDataType_U64, &seed, &kStep)) viewer.set_seed(seed);
-  if (choose("renderer", viewer.ask().flags->renderer.kind, renderer_kinds(), chosen)) {
+  if (choose("renderer", viewer.request().flags->renderer.kind, renderer_kinds(), chosen)) {
     viewer.use_renderer(renderer_kinds()[chosen]);
   }
-  if (viewer.shot() == nullptr) return;
-  Pose pose = viewer.shot()->frame.world_from_sensor;
+  if (viewer.snapshot() == nullptr) return;
+  Pose pose = viewer.snapshot()->frame.world_from_sensor;
   if (edit_pose("sensor in the world", pose)) viewer.set_sensor_pose(pose);
 }
 
-void show_look(Viewer& viewer) {
+void show_view_style(Viewer& viewer) {
   std::size_t chosen = 0;
-  Look& look = viewer.look;
-  const auto quantity = static_cast<std::size_t>(look.quantity);
+  ViewStyle& style = viewer.style;
+  const auto quantity = static_cast<std::size_t>(style.quantity);
   if (choose("show", std::string(kQuantities.at(quantity)), kQuantities, chosen)) {
-    look.quantity = static_cast<Quantity>(chosen);
-    viewer.look_changed();
+    style.quantity = static_cast<Quantity>(chosen);
+    viewer.update_view();
   }
-  const auto map = static_cast<std::size_t>(look.map);
-  if (has_scale(look.quantity) &&
+  const auto map = static_cast<std::size_t>(style.map);
+  if (has_scale(style.quantity) &&
       choose("colours", std::string(kColourMaps.at(map)), kColourMaps, chosen)) {
-    look.map = static_cast<ColourMap>(chosen);
-    viewer.look_changed();
+    style.map = static_cast<ColourMap>(chosen);
+    viewer.update_view();
   }
   constexpr float kMax = 8.0F;
-  if (ImGui::SliderFloat("points", &look.point_size, 1.0F, kMax, "%.0f px")) {
-    viewer.look_changed();
+  if (ImGui::SliderFloat("points", &style.point_size, 1.0F, kMax, "%.0f px")) {
+    viewer.update_view();
   }
 }
 
 void show_time(Viewer& viewer) {
-  if (viewer.shot() == nullptr) return;
-  const Frame& frame = viewer.shot()->frame;
+  if (viewer.snapshot() == nullptr) return;
+  const Frame& frame = viewer.snapshot()->frame;
   text(fmt::format("frame {}, {:.3f} s", frame.number, static_cast<double>(frame.stamp_ns) / 1e9));
   if (viewer.is_moving()) {
     if (ImGui::Button(viewer.is_playing() ? "pause (space)" : "play (space)")) viewer.toggle_play();
@@ -165,14 +166,13 @@ void show_help() {
       "+ - move the sensor nearer, farther\n"
       "space pause, r reset, Esc quit\n"
       "f frame the selected object in both views\n"
-      "left view: drag turns the selected object, wheel moves the sensor, click explains a beam's "
-      "story\n"
-      "right view: drag goes round, right drag shifts, wheel zooms, click tells a point's story\n"
+      "left view: drag rotates the selected object, wheel moves the sensor, click traces a beam\n"
+      "right view: drag orbits, right drag pans, wheel zooms, click traces a point\n"
       "a click on a point selects its object\n"
       "drop a model or scene file to open it");
 }
 
-/// A patch of colour and what it means; the next one stands beside it where there is room.
+/// A colour and its meaning; the next entry is in the same line if it fits.
 void show_entry(const LegendEntry& entry, bool is_last) {
   const float height = ImGui::GetTextLineHeight();
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -185,9 +185,9 @@ void show_entry(const LegendEntry& entry, bool is_last) {
   if (!is_last && ImGui::GetItemRectMax().x < full) ImGui::SameLine();
 }
 
-/// The colour map between the ends of the scale.
-void show_scale(const Look& look, const SensorPicture& picture) {
-  const auto [low, high] = scale_ends(picture.scale, unit_of(look.quantity));
+/// The colour map with the ends of the scale.
+void show_scale(const ViewStyle& style, const SensorPicture& picture) {
+  const auto [low, high] = scale_ends(picture.scale, unit_of(style.quantity));
   text(low);
   ImGui::SameLine();
   constexpr int kSteps = 64;
@@ -196,11 +196,11 @@ void show_scale(const Look& look, const SensorPicture& picture) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   for (int i = 0; i < kSteps; ++i) {
     const double t = (i + 0.5) / kSteps;
-    const double shade = look.quantity == Quantity::intensity ? t : 1.0 - t;
+    const double shade = style.quantity == Quantity::intensity ? t : 1.0 - t;
     const float left = at.x + width * static_cast<float>(i);
     ImGui::GetWindowDrawList()->AddRectFilled(ImVec2(left, at.y),
                                               ImVec2(left + width, at.y + height),
-                                              packed(colour_of(look.map, shade)));
+                                              packed(colour_of(style.map, shade)));
   }
   ImGui::Dummy(ImVec2(width * kSteps, height));
   ImGui::SameLine();
@@ -210,22 +210,23 @@ void show_scale(const Look& look, const SensorPicture& picture) {
 }  // namespace
 
 void show_controls(Viewer& viewer) {
-  wrapped(viewer.ask().flags->input);
+  wrapped(viewer.request().flags->input);
   constexpr ImGuiTreeNodeFlags kOpen = ImGuiTreeNodeFlags_DefaultOpen;
   ImGui::PushItemWidth(ImGui::GetFontSize() * 12.0F);
   if (ImGui::CollapsingHeader("Sensor", kOpen)) show_sensor(viewer);
   if (ImGui::CollapsingHeader("Objects", kOpen)) show_objects(viewer);
-  if (ImGui::CollapsingHeader("View", kOpen)) show_look(viewer);
+  if (ImGui::CollapsingHeader("View", kOpen)) show_view_style(viewer);
   if (ImGui::CollapsingHeader("Time", kOpen)) show_time(viewer);
   show_help();
   ImGui::PopItemWidth();
 }
 
-void show_status(const Viewer& viewer, const Pace& pace) {
-  std::string line = fmt::format("{:.0f} frames/s", pace.frames_per_s);
-  if (viewer.shot() != nullptr) {
+void show_status(const Viewer& viewer, const FrameRate& rate) {
+  std::string line = fmt::format("{:.0f} frames/s", rate.frames_per_s);
+  if (viewer.snapshot() != nullptr) {
     const FrameSummary& s = viewer.summary();
-    line += fmt::format(" | measured in {:.1f} ms | {} hits", 1e3 * viewer.shot()->seconds, s.hits);
+    line +=
+        fmt::format(" | measured in {:.1f} ms | {} hits", 1e3 * viewer.snapshot()->seconds, s.hits);
     if (s.hits > 0) line += fmt::format(", {:.6g} to {:.6g} m", s.nearest_m, s.farthest_m);
   }
   text(line);
@@ -237,27 +238,27 @@ void show_errors(Viewer& viewer) {
   if (ImGui::Button("close")) viewer.errors.clear();
 }
 
-void show_story(Viewer& viewer) {
-  if (ImGui::SmallButton("copy")) ImGui::SetClipboardText(viewer.story.c_str());
+void show_trace(Viewer& viewer) {
+  if (ImGui::SmallButton("copy")) ImGui::SetClipboardText(viewer.trace.c_str());
   ImGui::SameLine();
   if (ImGui::SmallButton("close")) {
     viewer.pick({});
     return;
   }
   ImGui::BeginChild("words", ImVec2(0.0F, 0.0F), false, ImGuiWindowFlags_HorizontalScrollbar);
-  text(viewer.story);
+  text(viewer.trace);
   ImGui::EndChild();
 }
 
 void show_legend(const Viewer& viewer) {
   const SensorPicture& picture = viewer.picture();
-  if (!has_scale(viewer.look.quantity)) {
+  if (!has_scale(viewer.style.quantity)) {
     for (const LegendEntry& entry : picture.legend)
       show_entry(entry, &entry == &picture.legend.back());
   } else if (!picture.scale.has_values) {
     text("no returns");
   } else {
-    show_scale(viewer.look, picture);
+    show_scale(viewer.style, picture);
   }
 }
 

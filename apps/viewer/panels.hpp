@@ -7,16 +7,16 @@
 namespace glidar::app {
 
 /// Numbers about the window itself.
-struct Pace {
+struct FrameRate {
   double frames_per_s = 0.0;  ///< drawn, while there was something to draw
 };
 
 /// The widgets beside the views; called between Window::begin() and end(), within an open window of
 /// Dear ImGui. Each does at once what the user asks for.
 void show_controls(Viewer& viewer);
-void show_status(const Viewer& viewer, const Pace& pace);
+void show_status(const Viewer& viewer, const FrameRate& rate);
 void show_errors(Viewer& viewer);
-void show_story(Viewer& viewer);
+void show_trace(Viewer& viewer);
 
 /// The scale or legend below the sensor's picture.
 void show_legend(const Viewer& viewer);

@@ -13,7 +13,7 @@
 namespace glidar::app {
 namespace {
 
-constexpr ImU32 kMark = IM_COL32(255, 60, 200, 255);
+constexpr ImU32 kMarkColour = IM_COL32(255, 60, 200, 255);
 
 constexpr ImGuiWindowFlags kFixed =
     ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
@@ -26,7 +26,7 @@ struct Area {
   float height;
 };
 
-/// A panel at a fixed place while it lives.
+/// RAII: a panel at a fixed position.
 class Panel {
  public:
   Panel(const char* title, const Area& area, ImGuiWindowFlags more = 0) {
@@ -39,15 +39,15 @@ class Panel {
   Panel& operator=(const Panel&) = delete;
 };
 
-/// A click of the left button that was no drag, on the item made last.
+/// Whether the last item was clicked with the left button, without a drag.
 bool is_clicked() {
-  constexpr float kStill = 4.0F;  // pixels that a hand moves while it clicks
+  constexpr float kStill = 4.0F;  // pixels of motion within a click
   const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0.0F);
   return ImGui::IsItemDeactivated() && ImGui::IsMouseReleased(ImGuiMouseButton_Left) &&
          std::abs(moved.x) <= kStill && std::abs(moved.y) <= kStill;
 }
 
-/// The mouse's way since the last picture, in heights of the item made last, while this button
+/// The motion of the mouse since the last frame in heights of the last item, while this button
 /// drags it.
 Eigen::Vector2d dragged(ImGuiMouseButton button) {
   if (!ImGui::IsItemActive() || !ImGui::IsMouseDragging(button)) return Eigen::Vector2d::Zero();
@@ -56,12 +56,12 @@ Eigen::Vector2d dragged(ImGuiMouseButton button) {
   return {by.x / height, by.y / height};
 }
 
-/// Where the sensor's picture is: as large as fits; a scanner's rows are as high as they must be
-/// for its picture to be seen, other pixels are square.
-Area fitted(const BeamPicture& layout, const ImVec2& corner, const ImVec2& room) {
+/// The area of the sensor's image, as large as fits. Pixels are square, except that the rows of
+/// wide scanner images are stretched.
+Area fit_picture(const BeamPicture& layout, const ImVec2& corner, const ImVec2& room) {
   const float cols = std::max<float>(1.0F, static_cast<float>(layout.cols));
   const float rows = std::max<float>(1.0F, static_cast<float>(layout.rows));
-  constexpr float kWidest = 2.5F;  // times as wide as high
+  constexpr float kWidest = 2.5F;  // width / height
   const bool is_grid = layout.kind == BeamPicture::Kind::grid;
   const float shape = is_grid ? std::clamp(cols / rows, 0.5F, kWidest) : cols / rows;
   const float width = std::max(1.0F, std::min(room.x, room.y * shape));
@@ -69,7 +69,7 @@ Area fitted(const BeamPicture& layout, const ImVec2& corner, const ImVec2& room)
   return {corner.x + 0.5F * (room.x - width), corner.y + 0.5F * (room.y - height), width, height};
 }
 
-/// A pixel that shows the beam; empty: none does.
+/// A pixel that shows the beam; empty: none.
 std::optional<std::size_t> pixel_of(const BeamPicture& layout, std::size_t beam) {
   if (layout.beams.empty()) return beam - layout.first;
   const auto found = std::find(layout.beams.begin(), layout.beams.end(), beam);
@@ -85,7 +85,7 @@ ImTextureID texture_id(GLuint name) {
 }  // namespace
 
 void Screen::upload(const Viewer& viewer) {
-  if (uploaded_ == viewer.version() || viewer.shot() == nullptr) return;
+  if (uploaded_ == viewer.version() || viewer.snapshot() == nullptr) return;
   uploaded_ = viewer.version();
   upload_picture(viewer.picture());
   upload_points(viewer);
@@ -93,7 +93,7 @@ void Screen::upload(const Viewer& viewer) {
 }
 
 void Screen::upload_picture(const SensorPicture& picture) {
-  constexpr std::size_t kMax = 4096;  // pixels to a side that every device takes
+  constexpr std::size_t kMax = 4096;  // pixels; every device supports such textures
   const BeamPicture& layout = picture.layout;
   const std::size_t step_x = std::max<std::size_t>(1, (layout.cols + kMax - 1) / kMax);
   const std::size_t step_y = std::max<std::size_t>(1, (layout.rows + kMax - 1) / kMax);
@@ -115,7 +115,7 @@ void Screen::upload_picture(const SensorPicture& picture) {
 }
 
 void Screen::upload_points(const Viewer& viewer) {
-  constexpr std::size_t kMax = 2'000'000;  // what software draws while one waits
+  constexpr std::size_t kMax = 2'000'000;  // software rendering stays interactive
   const std::vector<Eigen::Vector3f>& all = viewer.points();
   shown_one_of_ = std::max<std::size_t>(1, (viewer.summary().hits + kMax - 1) / kMax);
   std::vector<ColouredVertex> points;
@@ -129,27 +129,27 @@ void Screen::upload_points(const Viewer& viewer) {
 }
 
 void Screen::draw_cloud(const Viewer& viewer, int width, int height) {
-  const CloudLook look{
+  const CloudView style{
       .width = width,
       .height = height,
-      .clip_from_anchor = clip_from_anchor(viewer.look.orbit, static_cast<double>(width) / height),
-      .point_size = viewer.look.point_size};
-  const bool is_same = drawn_version_ == viewer.version() && look.width == drawn_.width &&
-                       look.height == drawn_.height && look.point_size == drawn_.point_size &&
-                       look.clip_from_anchor == drawn_.clip_from_anchor;
+      .clip_from_anchor = clip_from_anchor(viewer.style.orbit, static_cast<double>(width) / height),
+      .point_size = viewer.style.point_size};
+  const bool is_same = drawn_version_ == viewer.version() && style.width == drawn_.width &&
+                       style.height == drawn_.height && style.point_size == drawn_.point_size &&
+                       style.clip_from_anchor == drawn_.clip_from_anchor;
   if (is_same) return;
-  cloud_.draw(look);
-  drawn_ = look;
+  cloud_.draw(style);
+  drawn_ = style;
   drawn_version_ = viewer.version();
 }
 
 void Screen::show_sensor_view(Viewer& viewer) {
-  if (viewer.shot() == nullptr) return;
+  if (viewer.snapshot() == nullptr) return;
   const BeamPicture& layout = viewer.picture().layout;
   ImVec2 room = ImGui::GetContentRegionAvail();
   room.y = std::max(1.0F, room.y - 2.0F * ImGui::GetTextLineHeightWithSpacing());
   const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const Area area = fitted(layout, corner, room);
+  const Area area = fit_picture(layout, corner, room);
   const ImVec2 first(area.x, area.y);
   const ImVec2 last(area.x + area.width, area.y + area.height);
   ImGui::SetCursorScreenPos(first);
@@ -163,11 +163,11 @@ void Screen::show_sensor_view(Viewer& viewer) {
     const auto row = static_cast<float>(whole_row);
     const float x = area.x + (col + 0.5F) * area.width / static_cast<float>(layout.cols);
     const float y = area.y + (row + 0.5F) * area.height / static_cast<float>(layout.rows);
-    draw.AddCircle(ImVec2(x, y), 7.0F, kMark, 0, 2.0F);
+    draw.AddCircle(ImVec2(x, y), 7.0F, kMarkColour, 0, 2.0F);
   }
   if (viewer.selection_visibility() == Visibility::outside) {
-    const std::string hint = viewer.selected_name() + " is outside this picture: f brings it back";
-    draw.AddText(ImVec2(area.x + 6.0F, area.y + 4.0F), kMark, hint.c_str());
+    const std::string hint = viewer.selected_name() + " is outside this image: press f to frame it";
+    draw.AddText(ImVec2(area.x + 6.0F, area.y + 4.0F), kMarkColour, hint.c_str());
   }
   ImGui::SetCursorScreenPos(ImVec2(corner.x, corner.y + room.y));
   show_legend(viewer);
@@ -193,7 +193,7 @@ void Screen::use_mouse_on_sensor(Viewer& viewer) {
 }
 
 void Screen::show_cloud_view(Viewer& viewer) {
-  if (viewer.shot() == nullptr) return;
+  if (viewer.snapshot() == nullptr) return;
   ImVec2 room = ImGui::GetContentRegionAvail();
   room.x = std::max(1.0F, room.x);
   room.y = std::max(1.0F, room.y - 2.0F * ImGui::GetTextLineHeightWithSpacing());
@@ -202,7 +202,7 @@ void Screen::show_cloud_view(Viewer& viewer) {
   ImGui::InvisibleButton("cloud", room,
                          ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight |
                              ImGuiButtonFlags_MouseButtonMiddle);
-  viewer.look.aspect = static_cast<double>(room.x) / static_cast<double>(room.y);
+  viewer.style.aspect = static_cast<double>(room.x) / static_cast<double>(room.y);
   use_mouse_on_cloud(viewer);
   draw_cloud(viewer, static_cast<int>(room.x), static_cast<int>(room.y));
   ImDrawList& draw = *ImGui::GetWindowDrawList();
@@ -211,23 +211,23 @@ void Screen::show_cloud_view(Viewer& viewer) {
   if (is_marked) {
     const Eigen::Vector3f at = viewer.points()[*viewer.picked()];
     const Eigen::Vector4f clip =
-        clip_from_anchor(viewer.look.orbit, static_cast<double>(room.x) / room.y) *
+        clip_from_anchor(viewer.style.orbit, static_cast<double>(room.x) / room.y) *
         at.homogeneous();
     const ImVec2 place(first.x + 0.5F * room.x * (1.0F + clip.x() / clip.w()),
                        first.y + 0.5F * room.y * (1.0F - clip.y() / clip.w()));
-    if (clip.w() > 0.0F) draw.AddCircle(place, 7.0F, kMark, 0, 2.0F);
+    if (clip.w() > 0.0F) draw.AddCircle(place, 7.0F, kMarkColour, 0, 2.0F);
   }
-  ImGui::Text("grid %g m; axes x red, y green, z blue", viewer.look.grid_m);
+  ImGui::Text("grid %g m; axes x red, y green, z blue", viewer.style.grid_m);
   if (shown_one_of_ > 1) ImGui::Text("1 of %zu points is drawn", shown_one_of_);
 }
 
 void Screen::use_mouse_on_cloud(Viewer& viewer) {
-  Orbit& orbit = viewer.look.orbit;
+  Orbit& orbit = viewer.style.orbit;
   const double distance_before_m = orbit.distance_m;
   turn(orbit, dragged(ImGuiMouseButton_Left));
   pan(orbit, dragged(ImGuiMouseButton_Right) + dragged(ImGuiMouseButton_Middle));
   if (ImGui::IsItemHovered()) zoom(orbit, static_cast<double>(ImGui::GetIO().MouseWheel));
-  if (orbit.distance_m != distance_before_m) viewer.look_changed();  // the grid follows
+  if (orbit.distance_m != distance_before_m) viewer.update_view();  // the grid changes
   if (!is_clicked()) return;
   constexpr double kReach = 0.01;  // heights
   const ImVec2 first = ImGui::GetItemRectMin();
@@ -239,15 +239,15 @@ void Screen::use_mouse_on_cloud(Viewer& viewer) {
   if (point) viewer.pick(point);
 }
 
-void Screen::show(Viewer& viewer, const WindowSize& size, const Pace& pace) {
+void Screen::show(Viewer& viewer, const WindowSize& size, const FrameRate& rate) {
   upload(viewer);
   const auto width = static_cast<float>(size.width);
   const auto height = static_cast<float>(size.height);
   const float line = 2.0F * ImGui::GetFrameHeightWithSpacing();
   const float controls = std::min(23.0F * ImGui::GetFontSize(), 0.5F * width);
   const float errors = viewer.errors.empty() ? 0.0F : std::min(0.25F * height, 4.0F * line);
-  const float story = viewer.story.empty() ? 0.0F : 0.4F * height;
-  const float views = std::max(1.0F, height - line - errors - story);
+  const float trace = viewer.trace.empty() ? 0.0F : 0.4F * height;
+  const float views = std::max(1.0F, height - line - errors - trace);
   const float half = std::max(1.0F, 0.5F * (width - controls));
   {
     const Panel panel("GLIDAR", {0.0F, 0.0F, controls, height - line});
@@ -267,14 +267,13 @@ void Screen::show(Viewer& viewer, const WindowSize& size, const Pace& pace) {
     ImGui::PopStyleColor();
     show_errors(viewer);
   }
-  if (story > 0.0F) {
-    const Panel panel("The story of this point",
-                      {controls, errors + views, width - controls, story});
-    show_story(viewer);
+  if (trace > 0.0F) {
+    const Panel panel("Point trace", {controls, errors + views, width - controls, trace});
+    show_trace(viewer);
   }
   const Panel panel("status", {0.0F, height - line, width, line},
                     ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoScrollbar);
-  show_status(viewer, pace);
+  show_status(viewer, rate);
 }
 
 }  // namespace glidar::app

@@ -10,12 +10,12 @@
 
 namespace glidar::app {
 
-/// What fills the window: controls, the sensor's view, the cloud, messages. Lives no longer than
-/// the window's context.
+/// The content of the window: controls, the sensor's image, the cloud, messages. The window's
+/// context must outlive it.
 class Screen {
  public:
-  /// Makes all panels of one picture of the window, between Window::begin() and end().
-  void show(Viewer& viewer, const WindowSize& size, const Pace& pace);
+  /// Draws all panels of the window, between Window::begin() and end().
+  void show(Viewer& viewer, const WindowSize& size, const FrameRate& rate);
 
  private:
   void show_sensor_view(Viewer& viewer);
@@ -29,9 +29,9 @@ class Screen {
 
   CloudDrawing cloud_;
   opengl::GlTexture sensor_;
-  std::uint64_t uploaded_ = 0;    ///< version of the viewer that is in the device's memory
-  std::size_t shown_one_of_ = 1;  ///< points of the cloud
-  CloudLook drawn_;               ///< how the cloud's texture was drawn
+  std::uint64_t uploaded_ = 0;    ///< version of the viewer on the device
+  std::size_t shown_one_of_ = 1;  ///< one of so many points is drawn
+  CloudView drawn_;               ///< how the cloud's texture is drawn
   std::uint64_t drawn_version_ = 0;
 };
 

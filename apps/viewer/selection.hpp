@@ -12,10 +12,10 @@
 
 namespace glidar::app {
 
-/// Which objects of a scene keys, mouse and panels act on: one, or all.
+/// The objects of a scene that keys, mouse and panels act on: one or all.
 class Selection {
  public:
-  /// Takes a scene. Its first object is selected, unless the selection is kept and still exists.
+  /// Sets the scene. Selects its first object, unless the selection is kept and still exists.
   void begin(const Scene& scene, bool is_kept);
   /// Empty: all objects. An object that does not exist is ignored.
   void select(std::optional<std::size_t> object);
@@ -24,8 +24,8 @@ class Selection {
   [[nodiscard]] std::optional<std::size_t> object() const { return object_; }
   [[nodiscard]] bool includes(std::size_t object) const { return !object_ || *object_ == object; }
 
-  /// Corners of the boxes around the selected objects where the frame has them: 8 for each that has
-  /// vertices, in the world.
+  /// Corners of the bounding boxes of the selected objects at the frame's time, in the world: 8 for
+  /// each object with vertices.
   [[nodiscard]] std::vector<Eigen::Vector3d> corners_m(const Frame& frame) const;
 
  private:

@@ -34,7 +34,7 @@ void colour_by_scale(const Frame& frame, const Beams& beams, Quantity quantity, 
   }
 }
 
-/// All returns, one below the other where they have one width; else the first.
+/// All returns, one below the other if they have the same width; else the first.
 BeamPicture layout_of(const Frame& frame, const Beams& beams) {
   BeamPicture all = make_beam_picture(beams, frame.range_m);
   if (all.kind == BeamPicture::Kind::image) {

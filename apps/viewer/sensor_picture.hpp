@@ -17,12 +17,12 @@
 
 namespace glidar::app {
 
-/// What of a measurement is shown.
+/// The displayed quantity of a measurement.
 enum class Quantity : std::uint8_t { depth, range, intensity, normals, instance, status };
 inline constexpr std::array<std::string_view, 6> kQuantities = {"depth",   "range",    "intensity",
                                                                 "normals", "instance", "status"};
 
-/// A measurement in colours, one for each beam, and what they mean.
+/// A measurement as colours, one per beam, with their meaning.
 struct SensorPicture {
   std::vector<Colour> colours;      ///< rows x cols, row by row
   BeamPicture layout;               ///< where each beam is shown; all returns, one below the other
@@ -30,18 +30,18 @@ struct SensorPicture {
   std::vector<LegendEntry> legend;  ///< of the others
 };
 
-/// Beams without a return are grey. Near is bright. Normals are seen from the sensor: red to the
-/// right, green up, blue towards it. Needs frame.ground_truth.normal for normals.
+/// Beams without a return are grey, near ones bright. Normals are in the sensor's view: red right,
+/// green up, blue towards the sensor; they need frame.ground_truth.normal.
 void make_sensor_picture(const Frame& frame, const Beams& beams, const Scene& scene,
                          Quantity quantity, ColourMap map, SensorPicture& picture);
 
-/// True for quantities that a colour map and a scale belong to.
+/// True for quantities with a colour map and a scale.
 bool has_scale(Quantity quantity);
 
-/// Of the scale: "m", or empty.
+/// The unit of the scale: "m", or empty.
 std::string_view unit_of(Quantity quantity);
 
-/// The colour that a status is shown in.
+/// The colour of a status.
 Colour colour_of(Status status);
 
 }  // namespace glidar::app

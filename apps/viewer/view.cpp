@@ -28,20 +28,21 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kExamples =
-    R"(Left: what the sensor sees. Right: its point cloud, with the sensor's frustum, axes and a grid.
-Keys: s saves cloud and transform (buffer.pcd, buffer.transform, or what -o and --legacy-output give), + and -
-move the sensor, space pauses, r resets, Esc quits. Keys and mouse act on the selected object: the
-first one, until another is selected in the list or by a click on one of its points. f frames it in
-both views. Drag on the left to turn it, on the right to orbit the cloud; a click on a point also
-explains its measurement. Scene files with a rig of sensors: select the sensor in the list, or show
-one alone with --sensor-name. Drop a model or scene file to open it.
+    R"(Left: the sensor's image. Right: its point cloud, with the sensor's frustum, axes and a grid.
+Keys: s saves the cloud (buffer.pcd and buffer.transform, or the files of -o and --legacy-output),
++ and - move the sensor, space pauses, r resets, f frames the selected object in both views, Esc
+quits. Keys and mouse act on the selected object: the first one, until another is selected in the
+list or by a click on one of its points. Drag on the left to rotate it, on the right to orbit the
+cloud. A click on a point also explains its measurement. In scene files with a rig of sensors,
+select the sensor in the list, or show one alone with --sensor-name. Drop a model or scene file to
+open it.
 Examples:
   glidar view builtin:asteroid
   glidar view builtin:torus --object-rate 0,0.5,0.2
   glidar view builtin:box --sensor VLP-16 --eye 0,0,0
 With your own files:
   glidar view rig.yaml
-Without hands, for scripts:
+Without a display, for scripts:
   xvfb-run -a glidar view builtin:torus --screenshot view.png)";
 
 struct ViewFlags {
@@ -56,8 +57,8 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// How many pictures a second, over those of the last second or so in which there was work.
-class PaceMeter {
+/// Frames per second, averaged over about the last second of activity.
+class FrameRateMeter {
  public:
   void tick() {
     const Clock::time_point now = Clock::now();
@@ -65,10 +66,10 @@ class PaceMeter {
     last_ = now;
     constexpr double kIdle_s = 0.5;
     constexpr double kWeight = 0.1;
-    if (step_s > kIdle_s) return;  // it waited for something to do
+    if (step_s > kIdle_s) return;  // it was idle
     mean_s_ = mean_s_ == 0.0 ? step_s : (1.0 - kWeight) * mean_s_ + kWeight * step_s;
   }
-  [[nodiscard]] Pace pace() const { return {mean_s_ > 0.0 ? 1.0 / mean_s_ : 0.0}; }
+  [[nodiscard]] FrameRate rate() const { return {mean_s_ > 0.0 ? 1.0 / mean_s_ : 0.0}; }
 
  private:
   Clock::time_point last_;
@@ -76,17 +77,17 @@ class PaceMeter {
 };
 
 /// The viewer in its window.
-class Show {
+class ViewerWindow {
  public:
-  Show(const ViewFlags& flags, Viewer& viewer, Console& console)
+  ViewerWindow(const ViewFlags& flags, Viewer& viewer, Console& console)
       : flags_(flags), viewer_(viewer), console_(console) {
     open_window();
   }
 
-  /// Draws and shows; with the picture of the window if asked for.
+  /// Draws and displays; stores the image of the window if `picture` is given.
   void draw(Picture* picture = nullptr);
   void run();
-  /// Measures and draws so many frames, one after the other.
+  /// Measures and draws frames, one after the other.
   void run_frames(std::uint32_t count);
   [[nodiscard]] std::uint64_t drawn() const { return drawn_; }
 
@@ -94,36 +95,36 @@ class Show {
   void open_window();
   [[nodiscard]] WindowEvents events();
   void wait();
-  bool take_news();
+  bool take_results();
   void wait_for(std::uint32_t number);
   void print_state(bool is_hidden);
 
   const ViewFlags& flags_;
   Viewer& viewer_;
   Console& console_;
-  PaceMeter pace_;
+  FrameRateMeter frame_rate_;
   std::unique_ptr<Window> window_;
-  std::unique_ptr<Screen> screen_;  ///< after the window, whose context it needs to the end
+  std::unique_ptr<Screen> screen_;  ///< destroyed before the window, whose context it needs
   bool is_quitting_ = false;
-  int unsettled_ = 0;  ///< pictures to draw until panels show what happened
+  int redraws_left_ = 0;  ///< frames to draw until panels are up to date
   std::uint64_t drawn_ = 0;
   std::uint64_t keys_ = 0;  ///< letters typed
   bool was_hidden_ = false;
-  bool is_moving_ = false;  ///< when last looked at
+  bool is_moving_ = false;  ///< at the last wait
 };
 
-/// What an event changes may show two pictures later: panels take their places one after another.
-constexpr int kSettling = 3;
+/// Panels may need two more frames after an event to be laid out.
+constexpr int kSettleFrames = 3;
 
-void Show::open_window() {
+void ViewerWindow::open_window() {
   screen_.reset();
   window_.reset();
   window_ = std::make_unique<Window>("GLIDAR: " + flags_.render.input, flags_.size, events());
   screen_ = std::make_unique<Screen>();
-  unsettled_ = kSettling;
+  redraws_left_ = kSettleFrames;
 }
 
-WindowEvents Show::events() {
+WindowEvents ViewerWindow::events() {
   return {.on_letter =
               [this](unsigned letter) {
                 ++keys_;
@@ -135,46 +136,45 @@ WindowEvents Show::events() {
                 if (!paths.empty()) viewer_.open(paths.front());
                 if (paths.size() > 1) viewer_.message = "opened the first of several files";
               },
-          .on_damage = [this] { unsettled_ = kSettling; }};
+          .on_redraw = [this] { redraws_left_ = kSettleFrames; }};
 }
 
-void Show::draw(Picture* picture) {
+void ViewerWindow::draw(Picture* picture) {
   if (window_->is_lost()) {
-    viewer_.errors.emplace_back(
-        "the graphics device was reset and all that was drawn is lost; the window was made anew");
+    viewer_.errors.emplace_back("the graphics device was reset; the window was opened again");
     open_window();
   }
   window_->begin();
-  screen_->show(viewer_, window_->size(), pace_.pace());
+  screen_->show(viewer_, window_->size(), frame_rate_.rate());
   window_->end();
   if (picture != nullptr) *picture = window_->picture();
   window_->show();
-  pace_.tick();
+  frame_rate_.tick();
   ++drawn_;
 }
 
-/// Until something happens, or the next frame of a motion is due.
-void Show::wait() {
+/// Waits for an event, or until the next frame of a motion is due.
+void ViewerWindow::wait() {
   const std::optional<double> due_s = viewer_.next_frame_s();
-  if (std::exchange(is_moving_, due_s.has_value()) && !due_s) unsettled_ = kSettling;
-  if (unsettled_ > 0) {
+  if (std::exchange(is_moving_, due_s.has_value()) && !due_s) redraws_left_ = kSettleFrames;
+  if (redraws_left_ > 0) {
     WindowSystem::poll();
     return;
   }
   WindowSystem::wait(due_s);
-  if (!due_s) unsettled_ = kSettling;
+  if (!due_s) redraws_left_ = kSettleFrames;
 }
 
-/// Errors stand in the terminal too.
-bool Show::take_news() {
+/// Prints errors in the terminal too.
+bool ViewerWindow::take_results() {
   const std::size_t known = viewer_.errors.size();
-  const bool is_new = viewer_.take_news();
+  const bool is_new = viewer_.take_results();
   for (std::size_t i = known; i < viewer_.errors.size(); ++i) console_.error(viewer_.errors[i]);
   return is_new;
 }
 
-/// For scripts that have to know when the window shows the effect of what they did.
-void Show::print_state(bool is_hidden) {
+/// Lets scripts wait until the window shows the effect of their actions.
+void ViewerWindow::print_state(bool is_hidden) {
   const bool is_known = is_hidden && was_hidden_;
   if (!flags_.prints_state || is_known || !viewer_.is_current()) return;
   was_hidden_ = is_hidden;
@@ -185,44 +185,45 @@ void Show::print_state(bool is_hidden) {
   fmt::print(
       "state: picture={} frame={} size={}x{} hidden={} x={} y={} buttons={} wheel={} keys={} "
       "object={} sensor={}\n",
-      drawn_, viewer_.shot()->ask.number, size.width, size.height, is_hidden ? 1 : 0, mouse.x,
-      mouse.y, mouse.buttons, mouse.wheel_steps, keys_, object, viewer_.shot()->ask.mount);
+      drawn_, viewer_.snapshot()->request.number, size.width, size.height, is_hidden ? 1 : 0,
+      mouse.x, mouse.y, mouse.buttons, mouse.wheel_steps, keys_, object,
+      viewer_.snapshot()->request.mount);
   std::fflush(stdout);
 }
 
-void Show::run() {
+void ViewerWindow::run() {
   Clock::time_point before = Clock::now();
   while (!is_quitting_ && !window_->is_closing()) {
     wait();
     viewer_.advance(seconds_since(std::exchange(before, Clock::now())));
-    if (take_news()) unsettled_ = std::max(unsettled_, 1);
+    if (take_results()) redraws_left_ = std::max(redraws_left_, 1);
     if (window_->is_hidden()) {
-      unsettled_ = 0;
+      redraws_left_ = 0;
       print_state(true);
       continue;
     }
-    if (unsettled_ == 0) continue;
+    if (redraws_left_ == 0) continue;
     draw();
-    if (--unsettled_ == 0) print_state(false);
+    if (--redraws_left_ == 0) print_state(false);
   }
 }
 
-void Show::wait_for(std::uint32_t number) {
+void ViewerWindow::wait_for(std::uint32_t number) {
   const auto is_there = [&] {
-    return viewer_.shot() != nullptr && viewer_.shot()->ask.number == number;
+    return viewer_.snapshot() != nullptr && viewer_.snapshot()->request.number == number;
   };
   while (!is_there() && viewer_.errors.empty()) {
     WindowSystem::wait(std::nullopt);
-    viewer_.take_news();
+    viewer_.take_results();
   }
   if (!viewer_.errors.empty()) throw std::runtime_error(viewer_.errors.front());
 }
 
-void Show::run_frames(std::uint32_t count) {
+void ViewerWindow::run_frames(std::uint32_t count) {
   wait_for(0);
   for (std::uint32_t k = 0; k < count; ++k) {
     if (viewer_.is_moving()) {
-      viewer_.turn_to(k);
+      viewer_.show_frame(k);
       wait_for(k);
     }
     WindowSystem::poll();
@@ -231,7 +232,7 @@ void Show::run_frames(std::uint32_t count) {
   }
 }
 
-/// The file of the screenshot, so that a wrong name is told before any work is done.
+/// Opens the file of the screenshot early, so that a wrong name is reported before any work.
 std::unique_ptr<AtomicFile> screenshot_file(const std::string& path) {
   if (path.empty()) return nullptr;
   if (path.ends_with(".png")) return std::make_unique<AtomicFile>(path);
@@ -254,14 +255,14 @@ int run(ViewFlags& flags) {
   const std::unique_ptr<AtomicFile> screenshot = screenshot_file(flags.screenshot);
   Console console(flags.render.quiet);
   const WindowSystem windows;
-  Measuring measuring(console, WindowSystem::wake);
-  Viewer viewer(flags.render, measuring);
-  Show show(flags, viewer, console);
+  MeasurementThread measurements(console, WindowSystem::wake);
+  Viewer viewer(flags.render, measurements);
+  ViewerWindow window(flags, viewer, console);
   if (!flags.frames) {
-    show.run();
+    window.run();
   } else {
     const Clock::time_point start = Clock::now();
-    show.run_frames(*flags.frames);
+    window.run_frames(*flags.frames);
     const double seconds = seconds_since(start);
     if (!flags.render.quiet) {
       fmt::print("{} frames in {:.2f} s: {:.1f} frames/s\n", *flags.frames, seconds,
@@ -270,11 +271,11 @@ int run(ViewFlags& flags) {
   }
   if (screenshot) {
     Picture picture;
-    for (int i = 0; i < kSettling; ++i) show.draw(&picture);
-    refuse_overwrite_of_inputs(viewer.shot()->session->files, flags.screenshot);
+    for (int i = 0; i < kSettleFrames; ++i) window.draw(&picture);
+    refuse_overwrite_of_inputs(viewer.snapshot()->session->files, flags.screenshot);
     write_screenshot(picture, *screenshot);
   }
-  if (!flags.render.quiet) fmt::print("drew {} pictures of the window\n", show.drawn());
+  if (!flags.render.quiet) fmt::print("drew {} frames of the window\n", window.drawn());
   return kDone;
 }
 
@@ -289,7 +290,7 @@ WindowSize parse_size(const std::string& text) {
 
 Command add_view(CLI::App& program) {
   CLI::App& command =
-      *program.add_subcommand("view", "Look at a model or scene through a sensor, in a window");
+      *program.add_subcommand("view", "Show a model or scene as a sensor sees it, in a window");
   const auto flags = std::make_shared<ViewFlags>();
   command.footer(output_names_text() + kExamples);
   add_render_options(command, flags->render);
@@ -299,7 +300,7 @@ Command add_view(CLI::App& program) {
   group.add("--screenshot", "FILE", "Write the window as a PNG, then quit", flags->screenshot);
   group.add("--frames", "N", "Quit after N frames of the sensor [screenshot: 1]", flags->frames,
             whole(1U, kMaxFrames));
-  group.add_flag("--print-state", "Print a line whenever all is drawn, for scripts",
+  group.add_flag("--print-state", "Print a line whenever the window is up to date, for scripts",
                  flags->prints_state);
   return [flags] { return run(*flags); };
 }

@@ -5,7 +5,7 @@
 #include <glidar/core/error.hpp>
 
 #include <epoxy/gl.h>
-// after epoxy, which brings the functions of OpenGL itself
+// after epoxy, which declares the functions of OpenGL
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <imgui.h>
@@ -21,32 +21,32 @@
 namespace glidar::app {
 namespace {
 
-/// What GLFW complained of last.
-std::string complaint() {
+/// The last error of GLFW.
+std::string glfw_error() {
   const char* text = nullptr;
   const int code = glfwGetError(&text);
   return code == GLFW_NO_ERROR || text == nullptr ? "no reason given" : text;
 }
 
-/// The window whose callback is called.
+/// The callbacks of a window.
 WindowEvents& events_of(GLFWwindow* window) {
   return *static_cast<WindowEvents*>(glfwGetWindowUserPointer(window));
 }
 
-void take_key(GLFWwindow* window, int key, int /*scancode*/, int action, int /*mods*/) {
+void on_key(GLFWwindow* window, int key, int /*scancode*/, int action, int /*mods*/) {
   if (key == GLFW_KEY_ESCAPE && action == GLFW_PRESS) events_of(window).on_escape();
 }
 
-void take_letter(GLFWwindow* window, unsigned letter) {
+void on_character(GLFWwindow* window, unsigned letter) {
   if (!ImGui::GetIO().WantTextInput) events_of(window).on_letter(letter);
 }
 
-void take_drop(GLFWwindow* window, int count, const char** paths) {
+void on_drop_files(GLFWwindow* window, int count, const char** paths) {
   events_of(window).on_drop({paths, paths + count});
 }
 
-void take_damage(GLFWwindow* window) {
-  events_of(window).on_damage();
+void on_refresh(GLFWwindow* window) {
+  events_of(window).on_redraw();
 }
 
 GLFWwindow* open_window(const std::string& title, const WindowSize& size, int api, int robustness) {
@@ -60,8 +60,8 @@ GLFWwindow* open_window(const std::string& title, const WindowSize& size, int ap
   return glfwCreateWindow(size.width, size.height, title.c_str(), nullptr, nullptr);
 }
 
-/// By EGL, as the renderer's contexts; else as the display has it. One that tells of its loss
-/// first.
+/// With EGL, like the renderer's contexts, else with the display's API. Contexts that report their
+/// loss are preferred.
 GLFWwindow* open_any_window(const std::string& title, const WindowSize& size) {
   for (const int api : {GLFW_EGL_CONTEXT_API, GLFW_NATIVE_CONTEXT_API}) {
     for (const int robustness : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {
@@ -70,10 +70,10 @@ GLFWwindow* open_any_window(const std::string& title, const WindowSize& size) {
     }
   }
   throw Error({.where = "glidar view",
-               .found = "the display gives no context of OpenGL 3.3: " + complaint(),
+               .found = "the display gives no context of OpenGL 3.3: " + glfw_error(),
                .allowed = "",
                .remedy =
-                   "install libgl1-mesa-dri and libegl1, which draw in software too; or write "
+                   "install libgl1-mesa-dri and libegl1, which also render in software; or write "
                    "a picture without a window: glidar render MODEL -o picture.png"});
 }
 
@@ -82,10 +82,10 @@ GLFWwindow* open_any_window(const std::string& title, const WindowSize& size) {
 WindowSystem::WindowSystem() {
   if (glfwInit() == GLFW_TRUE) return;
   throw Error({.where = "glidar view",
-               .found = "there is no display to open a window on: " + complaint(),
+               .found = "there is no display to open a window on: " + glfw_error(),
                .allowed = "",
                .remedy =
-                   "run it in a desktop session or by 'xvfb-run -a glidar view ...', or write "
+                   "run it in a desktop session or with 'xvfb-run -a glidar view ...', or write "
                    "a picture without a window: glidar render MODEL -o picture.png"});
 }
 
@@ -107,7 +107,7 @@ void WindowSystem::wait(std::optional<double> seconds) {
   glfwPollEvents();
 }
 
-void Window::Closing::operator()(GLFWwindow* window) const {
+void Window::WindowDeleter::operator()(GLFWwindow* window) const {
   glfwDestroyWindow(window);
 }
 
@@ -117,19 +117,19 @@ Window::Window(const std::string& title, const WindowSize& size, WindowEvents ev
   glfwMakeContextCurrent(window);
   glfwSwapInterval(1);
   glfwSetWindowUserPointer(window, &events_);
-  glfwSetKeyCallback(window, take_key);
-  glfwSetCharCallback(window, take_letter);
-  glfwSetDropCallback(window, take_drop);
-  glfwSetWindowRefreshCallback(window, take_damage);
+  glfwSetKeyCallback(window, on_key);
+  glfwSetCharCallback(window, on_character);
+  glfwSetDropCallback(window, on_drop_files);
+  glfwSetWindowRefreshCallback(window, on_refresh);
   ImGui::CreateContext();
-  ImGui::GetIO().IniFilename = nullptr;  // leaves no file behind
+  ImGui::GetIO().IniFilename = nullptr;  // writes no file
   ImGui::GetIO().ConfigWindowsMoveFromTitleBarOnly = true;
   ImGui::StyleColorsDark();
   float scale = 1.0F;
   glfwGetWindowContentScale(window, &scale, nullptr);
   ImGui::GetIO().FontGlobalScale = scale;
   ImGui::GetStyle().ScaleAllSizes(scale);
-  ImGui_ImplGlfw_InitForOpenGL(window, true);  // calls those set above, too
+  ImGui_ImplGlfw_InitForOpenGL(window, true);  // also calls the callbacks set above
   ImGui_ImplOpenGL3_Init("#version 330 core");
 }
 

@@ -15,19 +15,19 @@ struct GLFWwindow;
 
 namespace glidar::app {
 
-/// What the window hands on of the keyboard and of files dropped on it.
+/// Callbacks for keys and for files dropped on the window.
 struct WindowEvents {
-  std::function<void(unsigned)> on_letter;  ///< a character typed, Unicode; not into a text field
+  std::function<void(unsigned)> on_letter;  ///< a Unicode character typed outside text fields
   std::function<void()> on_escape;
   std::function<void(const std::vector<std::string>&)> on_drop;
-  std::function<void()> on_damage;  ///< the system asks for the window to be drawn again
+  std::function<void()> on_redraw;  ///< the window must be drawn again
 };
 
-/// Mouse input that the last picture takes into account.
+/// Mouse input that the last frame takes into account.
 struct MouseInput {
-  int x = -1;  ///< pixels from the window's upper left corner; -1: the pointer was never there
+  int x = -1;  ///< pixels from the window's upper left corner; -1: the pointer was never inside
   int y = -1;
-  unsigned buttons = 0;           ///< pressed ones: 1 left, 2 right, 4 middle
+  unsigned buttons = 0;           ///< pressed buttons: 1 left, 2 right, 4 middle
   std::uint64_t wheel_steps = 0;  ///< since the window was opened
 };
 
@@ -36,10 +36,10 @@ struct WindowSize {
   int height = 720;
 };
 
-/// The library of windows, ready for use; one at a time, in the main thread.
+/// RAII: the window library; one at a time, in the main thread.
 class WindowSystem {
  public:
-  /// Throws Error that says what to do when there is no display.
+  /// Throws Error if there is no display.
   WindowSystem();
   ~WindowSystem();
   WindowSystem(const WindowSystem&) = delete;
@@ -47,9 +47,9 @@ class WindowSystem {
 
   /// Ends a wait() in the main thread; from any thread.
   static void wake();
-  /// Takes what has happened, without waiting.
+  /// Handles pending events without waiting.
   static void poll();
-  /// Waits until something happens, at most so many seconds; empty: for ever.
+  /// Waits for an event, at most so many seconds; empty: without limit.
   static void wait(std::optional<double> seconds);
 };
 
@@ -57,36 +57,36 @@ class WindowSystem {
 /// Dear ImGui in it.
 class Window {
  public:
-  /// Throws Error that says what to install when there is no context.
+  /// Throws Error if there is no context.
   Window(const std::string& title, const WindowSize& size, WindowEvents events);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
   [[nodiscard]] bool is_closing() const;
-  /// Minimised or of no size: nothing is to be drawn.
+  /// Whether the window is minimised or has no size.
   [[nodiscard]] bool is_hidden() const;
-  /// The graphics device lost the context: nothing that was made in it is left.
+  /// Whether the graphics device lost the context and all its objects.
   [[nodiscard]] bool is_lost() const;
   [[nodiscard]] WindowSize size() const;
   [[nodiscard]] const MouseInput& mouse() const { return mouse_; }
   void set_title(const std::string& title);
 
-  /// Panels are made between these two; end() draws them.
+  /// Panels are added between these two; end() draws them.
   void begin();
   void end();
-  /// What was drawn, before it is shown.
+  /// The drawn image, before show().
   [[nodiscard]] Picture picture() const;
-  /// Shows what was drawn.
+  /// Displays the drawn image.
   void show();
 
  private:
-  struct Closing {
+  struct WindowDeleter {
     void operator()(GLFWwindow* window) const;
   };
   WindowEvents events_;
   MouseInput mouse_;
-  std::unique_ptr<GLFWwindow, Closing> window_;
+  std::unique_ptr<GLFWwindow, WindowDeleter> window_;
 };
 
 }  // namespace glidar::app

@@ -142,18 +142,18 @@ TEST(Framing, TellsInsideFromPartlyAndOutside) {
 TEST(Framing, AimsACameraAtWhatIsOutsideItsPicture) {
   const FieldOfView field = wide_picture();
   const Corners corners = cube({0.0, 0.0, -10.0}, 0.5);  // behind it, and small enough
-  const auto pose = pose_that_shows(field, Pose::Identity(), corners);
+  const auto pose = pose_to_show(field, Pose::Identity(), corners);
   ASSERT_TRUE(pose);
   EXPECT_TRUE(is_rigid(*pose));
   EXPECT_TRUE(pose->translation().isZero(0.0)) << "it only turns";
   EXPECT_EQ(visibility(field, *pose, corners), Visibility::inside);
-  EXPECT_FALSE(pose_that_shows(field, *pose, corners)) << "nothing is left to do";
+  EXPECT_FALSE(pose_to_show(field, *pose, corners)) << "nothing is left to do";
 }
 
 TEST(Framing, MovesACameraBackWhereTurningIsNotEnough) {
   const FieldOfView field = wide_picture();
   const Corners corners = cube({6.0, 0.0, 0.0}, 2.0);
-  const auto pose = pose_that_shows(field, Pose::Identity(), corners);
+  const auto pose = pose_to_show(field, Pose::Identity(), corners);
   ASSERT_TRUE(pose);
   EXPECT_LT(pose->translation().x(), 0.0);
   EXPECT_EQ(visibility(field, *pose, corners), Visibility::inside);
@@ -161,19 +161,19 @@ TEST(Framing, MovesACameraBackWhereTurningIsNotEnough) {
 
 TEST(Framing, LeavesACameraThatIsAmongTheObjects) {
   const FieldOfView field = wide_picture();
-  EXPECT_FALSE(pose_that_shows(field, Pose::Identity(), cube({0.0, 0.0, 0.0}, 5.0)));
-  EXPECT_FALSE(pose_that_shows(field, Pose::Identity(), cube({1.0, 0.0, 0.0}, 5.0)));
+  EXPECT_FALSE(pose_to_show(field, Pose::Identity(), cube({0.0, 0.0, 0.0}, 5.0)));
+  EXPECT_FALSE(pose_to_show(field, Pose::Identity(), cube({1.0, 0.0, 0.0}, 5.0)));
 }
 
 TEST(Framing, TurnsByTheShortestArc) {
   const FieldOfView field = wide_picture();
-  const auto pose = turned_towards(field, Pose::Identity(), {3.0, 0.0, 3.0});
+  const auto pose = aimed_at(field, Pose::Identity(), {3.0, 0.0, 3.0});
   ASSERT_TRUE(pose);
   const Eigen::AngleAxisd turn(pose->linear());
   EXPECT_NEAR(turn.angle(), std::atan(1.0), kRounding);
   EXPECT_TRUE((pose->linear() * Eigen::Vector3d::UnitZ())
                   .isApprox(Eigen::Vector3d(1.0, 0.0, 1.0).normalized(), kRounding));
-  EXPECT_FALSE(turned_towards(field, Pose::Identity(), Eigen::Vector3d::Zero()));
+  EXPECT_FALSE(aimed_at(field, Pose::Identity(), Eigen::Vector3d::Zero()));
 }
 
 }  // namespace

@@ -44,12 +44,12 @@ class SelectionTest : public ViewerTest {
   void write_scene(const char* sensors) { std::ofstream(flags_.input) << kTwoBoxes << sensors; }
 
   Eigen::Vector3d middle_m(Viewer& viewer, std::size_t object) {
-    return shot_of(viewer).frame.world_from_instance.at(object).translation();
+    return snapshot_of(viewer).frame.world_from_instance.at(object).translation();
   }
 
   /// A beam that hits the object.
   std::size_t beam_on(Viewer& viewer, std::uint32_t object) {
-    const std::vector<std::uint32_t>& hits = shot_of(viewer).frame.ground_truth.instance;
+    const std::vector<std::uint32_t>& hits = snapshot_of(viewer).frame.ground_truth.instance;
     const auto found = std::find(hits.begin(), hits.end(), object);
     EXPECT_NE(found, hits.end());
     return static_cast<std::size_t>(found - hits.begin());
@@ -57,19 +57,19 @@ class SelectionTest : public ViewerTest {
 };
 
 TEST_F(SelectionTest, TheFirstObjectIsSelectedAtFirst) {
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   EXPECT_EQ(viewer.selection().object(), 0U);
   EXPECT_EQ(viewer.selected_name(), "left");
 }
 
 TEST_F(SelectionTest, KeysAndDragsActOnTheSelectedObjectAlone) {
-  Viewer viewer(flags_, measuring_);
-  const Frame before = shot_of(viewer).frame;
+  Viewer viewer(flags_, measurements_);
+  const Frame before = snapshot_of(viewer).frame;
   viewer.select(1);
   EXPECT_EQ(viewer.selected_name(), "right");
   viewer.turn_objects({0.25, 0.0});
-  const Frame& turned = shot_of(viewer).frame;
+  const Frame& turned = snapshot_of(viewer).frame;
   EXPECT_TRUE(turned.world_from_instance[0].isApprox(before.world_from_instance[0], 0.0));
   EXPECT_FALSE(turned.world_from_instance[1].isApprox(before.world_from_instance[1], 0.1));
   EXPECT_TRUE(middle_m(viewer, 1).isApprox(before.world_from_instance[1].translation(), kRounding))
@@ -78,28 +78,31 @@ TEST_F(SelectionTest, KeysAndDragsActOnTheSelectedObjectAlone) {
   const Eigen::Vector3d expected =
       before.world_from_sensor.translation() +
       0.05 * (middle_m(viewer, 1) - before.world_from_sensor.translation());
-  EXPECT_TRUE(shot_of(viewer).frame.world_from_sensor.translation().isApprox(expected, kRounding));
+  EXPECT_TRUE(
+      snapshot_of(viewer).frame.world_from_sensor.translation().isApprox(expected, kRounding));
 }
 
 TEST_F(SelectionTest, EachObjectKeepsItsPoseWhenAnotherIsSelectedAndResetRestoresAll) {
-  Viewer viewer(flags_, measuring_);
-  const Frame before = shot_of(viewer).frame;
+  Viewer viewer(flags_, measurements_);
+  const Frame before = snapshot_of(viewer).frame;
   const Pose left = make_pose({0.0, 2.0, 1.0}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5));
   const Pose right = make_pose({0.0, -2.0, 1.0}, Eigen::Quaterniond::Identity());
   viewer.set_object_pose(0, left);
-  shot_of(viewer);
+  snapshot_of(viewer);
   viewer.select(1);
   viewer.set_object_pose(1, right);
-  EXPECT_TRUE(shot_of(viewer).frame.world_from_instance[0].isApprox(left, kRounding));
-  EXPECT_TRUE(shot_of(viewer).frame.world_from_instance[1].isApprox(right, kRounding));
+  EXPECT_TRUE(snapshot_of(viewer).frame.world_from_instance[0].isApprox(left, kRounding));
+  EXPECT_TRUE(snapshot_of(viewer).frame.world_from_instance[1].isApprox(right, kRounding));
   viewer.type('r');
-  EXPECT_TRUE(shot_of(viewer).frame.world_from_instance[0].isApprox(before.world_from_instance[0]));
-  EXPECT_TRUE(shot_of(viewer).frame.world_from_instance[1].isApprox(before.world_from_instance[1]));
+  EXPECT_TRUE(
+      snapshot_of(viewer).frame.world_from_instance[0].isApprox(before.world_from_instance[0]));
+  EXPECT_TRUE(
+      snapshot_of(viewer).frame.world_from_instance[1].isApprox(before.world_from_instance[1]));
 }
 
 TEST_F(SelectionTest, AllObjectsTurnTogetherAboutTheirMiddle) {
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   viewer.select({});
   EXPECT_EQ(viewer.selected_name(), "all objects");
   const Eigen::Vector3d before = middle_m(viewer, 0) - middle_m(viewer, 1);
@@ -111,7 +114,7 @@ TEST_F(SelectionTest, AllObjectsTurnTogetherAboutTheirMiddle) {
 }
 
 TEST_F(SelectionTest, AClickOnAPointSelectsItsObject) {
-  Viewer viewer(flags_, measuring_);
+  Viewer viewer(flags_, measurements_);
   viewer.pick(beam_on(viewer, 1));
   EXPECT_EQ(viewer.selection().object(), 1U);
   viewer.pick(0);  // a beam of the corner, which hits nothing
@@ -121,107 +124,107 @@ TEST_F(SelectionTest, AClickOnAPointSelectsItsObject) {
 }
 
 TEST_F(SelectionTest, AnObjectThatDoesNotExistIsNotSelected) {
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   viewer.select(1);
   viewer.select(2);
   EXPECT_EQ(viewer.selection().object(), 1U);
 }
 
 TEST_F(SelectionTest, AnotherFileSelectsItsFirstObjectAndAnotherSensorKeepsTheSelection) {
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   viewer.select(1);
   viewer.use_sensor("VLP-16");
-  shot_of(viewer);
+  snapshot_of(viewer);
   EXPECT_EQ(viewer.selection().object(), 1U);
   viewer.open("builtin:torus");
-  shot_of(viewer);
+  snapshot_of(viewer);
   EXPECT_EQ(viewer.selection().object(), 0U);
   EXPECT_EQ(viewer.selected_name(), "torus");
 }
 
 TEST_F(SelectionTest, FramingBringsAnObjectBackIntoThePicture) {
-  Viewer viewer(flags_, measuring_);
-  EXPECT_EQ(shot_of(viewer).frame.status.size(), 32U * 32U);
+  Viewer viewer(flags_, measurements_);
+  EXPECT_EQ(snapshot_of(viewer).frame.status.size(), 32U * 32U);
   EXPECT_EQ(viewer.selection_visibility(), Visibility::inside);
   viewer.set_object_pose(0, make_pose({-20.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()));
-  shot_of(viewer);
+  snapshot_of(viewer);
   EXPECT_EQ(viewer.selection_visibility(), Visibility::outside) << "it is behind the camera";
   viewer.type('f');
-  shot_of(viewer);
+  snapshot_of(viewer);
   EXPECT_EQ(viewer.selection_visibility(), Visibility::inside);
   EXPECT_THAT(viewer.message, HasSubstr("framed left; aimed the sensor"));
   beam_on(viewer, 0);
 }
 
 TEST_F(SelectionTest, FramingMovesNoSensorThatSeesTheObjectAlready) {
-  Viewer viewer(flags_, measuring_);
-  const Pose before = shot_of(viewer).frame.world_from_sensor;
-  const double distance_m = viewer.look.orbit.distance_m;
+  Viewer viewer(flags_, measurements_);
+  const Pose before = snapshot_of(viewer).frame.world_from_sensor;
+  const double distance_m = viewer.style.orbit.distance_m;
   viewer.type('F');
-  EXPECT_TRUE(shot_of(viewer).frame.world_from_sensor.isApprox(before, 0.0));
-  EXPECT_LT(viewer.look.orbit.distance_m, distance_m) << "the view of the cloud goes near";
+  EXPECT_TRUE(snapshot_of(viewer).frame.world_from_sensor.isApprox(before, 0.0));
+  EXPECT_LT(viewer.style.orbit.distance_m, distance_m) << "the view of the cloud goes near";
 }
 
 TEST_F(SelectionTest, KeepInViewTurnsTheSensorAfterTheObject) {
-  Viewer viewer(flags_, measuring_);
-  const Eigen::Vector3d eye_m = shot_of(viewer).frame.world_from_sensor.translation();
+  Viewer viewer(flags_, measurements_);
+  const Eigen::Vector3d eye_m = snapshot_of(viewer).frame.world_from_sensor.translation();
   viewer.set_keeps_in_view(true);
-  EXPECT_TRUE(shot_of(viewer).ask.sensor_moved.isApprox(Pose::Identity(), 0.0))
+  EXPECT_TRUE(snapshot_of(viewer).request.sensor_moved.isApprox(Pose::Identity(), 0.0))
       << "nothing to do while it is in view";
   viewer.set_object_pose(0, make_pose({-10.0, 9.0, 1.0}, Eigen::Quaterniond::Identity()));
   ASSERT_TRUE(wait_until(viewer, [&] {
     return viewer.is_current() && viewer.selection_visibility() == Visibility::inside;
   }));
-  EXPECT_TRUE(viewer.shot()->frame.world_from_sensor.translation().isApprox(eye_m, kRounding));
+  EXPECT_TRUE(viewer.snapshot()->frame.world_from_sensor.translation().isApprox(eye_m, kRounding));
   viewer.set_keeps_in_view(false);
   viewer.set_object_pose(0, make_pose({-10.0, -9.0, 1.0}, Eigen::Quaterniond::Identity()));
-  shot_of(viewer);
+  snapshot_of(viewer);
   EXPECT_EQ(viewer.selection_visibility(), Visibility::outside);
 }
 
 TEST_F(SelectionTest, AllSensorsOfARigAreShownOneAtATime) {
   write_scene(kRig);
-  Viewer viewer(flags_, measuring_);
-  EXPECT_EQ(shot_of(viewer).beams->rows, 16U) << "the first of the file";
-  EXPECT_EQ(viewer.look.quantity, Quantity::range);
+  Viewer viewer(flags_, measurements_);
+  EXPECT_EQ(snapshot_of(viewer).beams->rows, 16U) << "the first of the file";
+  EXPECT_EQ(viewer.style.quantity, Quantity::range);
   viewer.use_mount(1);
-  const Snapshot& camera = shot_of(viewer);
+  const Snapshot& camera = snapshot_of(viewer);
   EXPECT_EQ(camera.beams->cols, 32U);
   EXPECT_EQ(camera.frame.sensor_id, 1U);
   EXPECT_NEAR(camera.frame.world_from_sensor.translation().x(), -9.9, kRounding);
-  EXPECT_EQ(viewer.look.quantity, Quantity::depth);
+  EXPECT_EQ(viewer.style.quantity, Quantity::depth);
   EXPECT_EQ(viewer.points().size(), camera.beams->size());
   viewer.use_mount(2);
-  EXPECT_EQ(viewer.ask().mount, 1U) << "there is none";
+  EXPECT_EQ(viewer.request().mount, 1U) << "there is none";
 }
 
 TEST_F(SelectionTest, TheSensorsOfARigMoveTogether) {
   write_scene(kRig);
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   viewer.use_mount(1);
-  Pose pose = shot_of(viewer).frame.world_from_sensor;
+  Pose pose = snapshot_of(viewer).frame.world_from_sensor;
   pose.translation() += Eigen::Vector3d(1.0, 2.0, 3.0);
   viewer.set_sensor_pose(pose);
-  shot_of(viewer);
+  snapshot_of(viewer);
   viewer.use_mount(0);
-  const Eigen::Vector3d lidar = shot_of(viewer).frame.world_from_sensor.translation();
+  const Eigen::Vector3d lidar = snapshot_of(viewer).frame.world_from_sensor.translation();
   EXPECT_TRUE(lidar.isApprox(Eigen::Vector3d(-9.0, 2.0, 3.0), kRounding));
 }
 
 TEST_F(SelectionTest, AMeasurementOfARigSensorIsThatOfTheSensorAlone) {
   write_scene(kRig);
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   viewer.use_mount(1);
-  const std::vector<float> in_rig = shot_of(viewer).frame.intensity;
+  const std::vector<float> in_rig = snapshot_of(viewer).frame.intensity;
   RenderFlags alone = flags_;
   alone.sensor_name = "camera";
-  Viewer other(alone, measuring_);
-  EXPECT_EQ(shot_of(other).frame.intensity, in_rig);
-  EXPECT_EQ(shot_of(other).session->mounts.size(), 1U);
+  Viewer other(alone, measurements_);
+  EXPECT_EQ(snapshot_of(other).frame.intensity, in_rig);
+  EXPECT_EQ(snapshot_of(other).session->mounts.size(), 1U);
 }
 
 }  // namespace

@@ -27,8 +27,8 @@ class ViewerTest : public testing::Test {
   }
   void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  /// Lets the viewer take news until the condition holds; false after ten minutes, as machines may
-  /// be very busy.
+  /// Takes results until the condition holds; false after ten minutes, because machines may be
+  /// busy.
   template <class Condition>
   bool wait_until(Viewer& viewer, const Condition& holds) {
     for (int i = 0; i < 6000 && !holds(); ++i) {
@@ -36,16 +36,17 @@ class ViewerTest : public testing::Test {
       woken_.wait_for(lock, std::chrono::milliseconds(100), [this] { return is_woken_; });
       is_woken_ = false;
       lock.unlock();
-      viewer.take_news();
+      viewer.take_results();
     }
     return holds();
   }
 
-  /// The shot of what is asked for last.
-  const Snapshot& shot_of(Viewer& viewer) {
-    EXPECT_TRUE(wait_until(
-        viewer, [&] { return viewer.shot() != nullptr && viewer.shot()->ask == viewer.ask(); }));
-    return *viewer.shot();
+  /// The snapshot of the latest request.
+  const Snapshot& snapshot_of(Viewer& viewer) {
+    EXPECT_TRUE(wait_until(viewer, [&] {
+      return viewer.snapshot() != nullptr && viewer.snapshot()->request == viewer.request();
+    }));
+    return *viewer.snapshot();
   }
 
   std::filesystem::path folder_;
@@ -54,11 +55,11 @@ class ViewerTest : public testing::Test {
   std::mutex mutex_;
   std::condition_variable woken_;
   bool is_woken_ = false;
-  Measuring measuring_{console_, [this] {
-                         const std::lock_guard lock(mutex_);
-                         is_woken_ = true;
-                         woken_.notify_one();
-                       }};
+  MeasurementThread measurements_{console_, [this] {
+                                    const std::lock_guard lock(mutex_);
+                                    is_woken_ = true;
+                                    woken_.notify_one();
+                                  }};
 };
 
 }  // namespace glidar::app

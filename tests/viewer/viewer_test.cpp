@@ -15,15 +15,15 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-double distance_m(const Snapshot& shot) {
-  return shot.frame.world_from_sensor.translation().norm();
+double distance_m(const Snapshot& snapshot) {
+  return snapshot.frame.world_from_sensor.translation().norm();
 }
 
 TEST_F(ViewerTest, ShowsWhatTheSensorMeasures) {
-  Viewer viewer(flags_, measuring_);
-  const Snapshot& shot = shot_of(viewer);
-  EXPECT_EQ(shot.beams->size(), 32U * 32U);
-  EXPECT_EQ(viewer.picture().colours.size(), shot.beams->size());
+  Viewer viewer(flags_, measurements_);
+  const Snapshot& snapshot = snapshot_of(viewer);
+  EXPECT_EQ(snapshot.beams->size(), 32U * 32U);
+  EXPECT_EQ(viewer.picture().colours.size(), snapshot.beams->size());
   EXPECT_GT(viewer.summary().hits, 100U);
   EXPECT_FALSE(viewer.guides().empty());
   std::size_t points = 0;
@@ -32,10 +32,10 @@ TEST_F(ViewerTest, ShowsWhatTheSensorMeasures) {
 }
 
 TEST_F(ViewerTest, PlusAndMinusMoveTheSensorATwentiethOfTheWay) {
-  Viewer viewer(flags_, measuring_);
-  const Eigen::Vector3d middle = bounds(shot_of(viewer).session->scene).center();
+  Viewer viewer(flags_, measurements_);
+  const Eigen::Vector3d middle = bounds(snapshot_of(viewer).session->scene).center();
   const auto away_m = [&] {
-    return (shot_of(viewer).frame.world_from_sensor.translation() - middle).norm();
+    return (snapshot_of(viewer).frame.world_from_sensor.translation() - middle).norm();
   };
   const double before_m = away_m();
   viewer.type('+');
@@ -45,49 +45,49 @@ TEST_F(ViewerTest, PlusAndMinusMoveTheSensorATwentiethOfTheWay) {
 }
 
 TEST_F(ViewerTest, ADragTurnsTheObjectAboutItsMiddleAndResetUndoesIt) {
-  Viewer viewer(flags_, measuring_);
-  const Pose before = shot_of(viewer).frame.world_from_instance[0];
-  const Eigen::Vector3d middle = bounds(viewer.shot()->session->scene).center();
+  Viewer viewer(flags_, measurements_);
+  const Pose before = snapshot_of(viewer).frame.world_from_instance[0];
+  const Eigen::Vector3d middle = bounds(viewer.snapshot()->session->scene).center();
   viewer.turn_objects({0.25, 0.0});
-  const Pose turned = shot_of(viewer).frame.world_from_instance[0];
+  const Pose turned = snapshot_of(viewer).frame.world_from_instance[0];
   EXPECT_TRUE((turned * (before.inverse() * middle)).isApprox(middle, 1e-9));
   const Eigen::AngleAxisd by((turned * before.inverse()).linear());
   EXPECT_NEAR(by.angle(), 0.25 * std::numbers::pi, 1e-9);
-  const Eigen::Vector3d up = -viewer.shot()->frame.world_from_sensor.linear().col(1);
+  const Eigen::Vector3d up = -viewer.snapshot()->frame.world_from_sensor.linear().col(1);
   EXPECT_TRUE(by.axis().isApprox(up, 1e-9)) << "the near side follows the pointer to the right";
   viewer.type('r');
-  EXPECT_TRUE(shot_of(viewer).frame.world_from_instance[0].isApprox(before, 0.0));
+  EXPECT_TRUE(snapshot_of(viewer).frame.world_from_instance[0].isApprox(before, 0.0));
 }
 
 TEST_F(ViewerTest, KeepsARotationThroughTenThousandSmallDrags) {
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   for (int i = 0; i < 10'000; ++i) viewer.turn_objects({0.001, 0.0007});
-  EXPECT_TRUE(is_rigid(shot_of(viewer).frame.world_from_instance[0]));
+  EXPECT_TRUE(is_rigid(snapshot_of(viewer).frame.world_from_instance[0]));
 }
 
 TEST_F(ViewerTest, PutsSensorAndObjectWhereTheyAreTyped) {
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   const Pose sensor = look_at({9.0, 1.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   viewer.set_sensor_pose(sensor);
-  EXPECT_TRUE(shot_of(viewer).frame.world_from_sensor.isApprox(sensor, 1e-12));
+  EXPECT_TRUE(snapshot_of(viewer).frame.world_from_sensor.isApprox(sensor, 1e-12));
   const Pose object = make_pose({0.1, 0.2, 0.3}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5));
   viewer.set_object_pose(0, object);
-  EXPECT_TRUE(shot_of(viewer).frame.world_from_instance[0].isApprox(object, 1e-12));
+  EXPECT_TRUE(snapshot_of(viewer).frame.world_from_instance[0].isApprox(object, 1e-12));
 }
 
 TEST_F(ViewerTest, SpacePausesAndFramesFollowTheSensorsRate) {
   flags_.motion.object_rate_rad_s = Eigen::Vector3d::UnitZ();
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   EXPECT_TRUE(viewer.is_moving());
   viewer.advance(0.5);
-  EXPECT_EQ(shot_of(viewer).frame.number, 15U) << "at 30 Hz";
+  EXPECT_EQ(snapshot_of(viewer).frame.number, 15U) << "at 30 Hz";
   viewer.type(' ');
   EXPECT_FALSE(viewer.is_playing());
   viewer.advance(10.0);
-  EXPECT_EQ(viewer.ask().number, 15U);
+  EXPECT_EQ(viewer.request().number, 15U);
   EXPECT_EQ(viewer.next_frame_s(), std::nullopt);
   viewer.type(' ');
   viewer.advance(0.01);
@@ -95,8 +95,8 @@ TEST_F(ViewerTest, SpacePausesAndFramesFollowTheSensorsRate) {
 }
 
 TEST_F(ViewerTest, SpaceSaysWhenNothingMoves) {
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   viewer.type(' ');
   EXPECT_THAT(viewer.message, HasSubstr("nothing moves"));
 }
@@ -104,8 +104,8 @@ TEST_F(ViewerTest, SpaceSaysWhenNothingMoves) {
 TEST_F(ViewerTest, NoiseGoesOffAndOnAndTheSeedChangesIt) {
   flags_.sensor = {};
   flags_.sensor.file = "Kinect-v1";
-  Viewer viewer(flags_, measuring_);
-  const auto ranges = [&] { return shot_of(viewer).frame.range_m; };
+  Viewer viewer(flags_, measurements_);
+  const auto ranges = [&] { return snapshot_of(viewer).frame.range_m; };
   const auto equal = [](const std::vector<double>& a, const std::vector<double>& b) {
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](double x, double y) {
       return x == y || (std::isnan(x) && std::isnan(y));
@@ -118,25 +118,25 @@ TEST_F(ViewerTest, NoiseGoesOffAndOnAndTheSeedChangesIt) {
   EXPECT_TRUE(equal(ranges(), noisy)) << "the same seed, the same bytes";
   viewer.set_noise(false);
   EXPECT_FALSE(equal(ranges(), noisy));
-  EXPECT_TRUE(viewer.shot()->sensor->noise.empty());
+  EXPECT_TRUE(viewer.snapshot()->sensor->noise.empty());
 }
 
 TEST_F(ViewerTest, ChangesSensorAndRenderer) {
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   viewer.use_renderer("opengl");
-  EXPECT_EQ(shot_of(viewer).session->renderer->name(), "opengl");
+  EXPECT_EQ(snapshot_of(viewer).session->renderer->name(), "opengl");
   viewer.use_renderer("rays");
   viewer.use_sensor("VLP-16");
-  EXPECT_EQ(shot_of(viewer).beams->rows, 16U);
-  EXPECT_EQ(viewer.look.quantity, Quantity::range) << "depth means nothing to a scanner";
+  EXPECT_EQ(snapshot_of(viewer).beams->rows, 16U);
+  EXPECT_EQ(viewer.style.quantity, Quantity::range) << "depth means nothing to a scanner";
 }
 
 TEST_F(ViewerTest, TellsWhyItRefusesAndGoesOnWithWhatItHad) {
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   viewer.use_sensor("VLP-16");
-  shot_of(viewer);
+  snapshot_of(viewer);
   viewer.use_renderer("opengl");  // scanners are no central projection
   ASSERT_TRUE(wait_until(viewer, [&] { return !viewer.errors.empty(); }));
   EXPECT_THAT(viewer.errors.front(), HasSubstr("--renderer rays"));
@@ -144,23 +144,23 @@ TEST_F(ViewerTest, TellsWhyItRefusesAndGoesOnWithWhatItHad) {
   ASSERT_TRUE(wait_until(viewer, [&] { return viewer.errors.size() > 1; }));
   EXPECT_THAT(viewer.errors.back(), HasSubstr("missing.obj"));
   viewer.use_renderer("rays");
-  EXPECT_GT(shot_of(viewer).beams->size(), 0U);
+  EXPECT_GT(snapshot_of(viewer).beams->size(), 0U);
 }
 
 TEST_F(ViewerTest, OpensADroppedFileAndForgetsWhereTheLastOneWas) {
   flags_.pose.eye_m = Eigen::Vector3d(100.0, 0.0, 0.0);
-  Viewer viewer(flags_, measuring_);
-  EXPECT_NEAR(distance_m(shot_of(viewer)), 100.0, 1e-9);
+  Viewer viewer(flags_, measurements_);
+  EXPECT_NEAR(distance_m(snapshot_of(viewer)), 100.0, 1e-9);
   viewer.open("builtin:torus");
-  EXPECT_LT(distance_m(shot_of(viewer)), 50.0);
-  EXPECT_EQ(viewer.shot()->session->scene.instances[0].name, "torus");
-  EXPECT_EQ(viewer.shot()->beams->cols, 32U) << "the sensor stays";
+  EXPECT_LT(distance_m(snapshot_of(viewer)), 50.0);
+  EXPECT_EQ(viewer.snapshot()->session->scene.instances[0].name, "torus");
+  EXPECT_EQ(viewer.snapshot()->beams->cols, 32U) << "the sensor stays";
 }
 
 TEST_F(ViewerTest, SavesWhatIsSeenUnderANewNameEachTime) {
   flags_.output.legacy_name = (folder_ / "view").string();
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   viewer.type('s');
   viewer.type('+');
   viewer.type('s');
@@ -178,8 +178,8 @@ TEST_F(ViewerTest, SavesWhatIsSeenUnderANewNameEachTime) {
 
 TEST_F(ViewerTest, TellsWhyAFileCannotBeSaved) {
   flags_.output.paths = {(folder_ / "no_such_folder" / "x.pcd").string()};
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   viewer.type('s');
   ASSERT_TRUE(wait_until(viewer, [&] { return !viewer.errors.empty(); }));
   EXPECT_THAT(viewer.errors.front(), HasSubstr("no_such_folder"));
@@ -187,53 +187,53 @@ TEST_F(ViewerTest, TellsWhyAFileCannotBeSaved) {
 
 TEST_F(ViewerTest, TellsTheStoryOfAPickedPointAndTellsItAnewWhenItMoves) {
   flags_.motion.object_rate_rad_s = Eigen::Vector3d::UnitZ();
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
   const std::size_t middle = 16 * 32 + 16;
   viewer.pick(middle);
   EXPECT_FALSE(viewer.is_playing()) << "time stops";
-  ASSERT_TRUE(wait_until(viewer, [&] { return !viewer.story.empty(); }));
-  EXPECT_THAT(viewer.story, HasSubstr("row 16, col 16"));
-  EXPECT_THAT(viewer.story, HasSubstr("object 'asteroid'"));
-  const std::string before = viewer.story;
+  ASSERT_TRUE(wait_until(viewer, [&] { return !viewer.trace.empty(); }));
+  EXPECT_THAT(viewer.trace, HasSubstr("row 16, col 16"));
+  EXPECT_THAT(viewer.trace, HasSubstr("object 'asteroid'"));
+  const std::string before = viewer.trace;
   viewer.type('+');
-  EXPECT_TRUE(wait_until(viewer, [&] { return viewer.story != before; }));
+  EXPECT_TRUE(wait_until(viewer, [&] { return viewer.trace != before; }));
   viewer.pick({});
-  EXPECT_THAT(viewer.story, IsEmpty());
+  EXPECT_THAT(viewer.trace, IsEmpty());
 }
 
 TEST_F(ViewerTest, KeysThatMeanNothingDoNothing) {
-  Viewer viewer(flags_, measuring_);
-  shot_of(viewer);
-  const Ask before = viewer.ask();
+  Viewer viewer(flags_, measurements_);
+  snapshot_of(viewer);
+  const MeasureRequest before = viewer.request();
   for (const unsigned letter : {'x', '1', ';'}) viewer.type(letter);
   viewer.type(0x1F600);
-  EXPECT_TRUE(viewer.ask() == before);
+  EXPECT_TRUE(viewer.request() == before);
 }
 
 TEST_F(ViewerTest, EndsInTheMidstOfWork) {
   for (int i = 0; i < 20; ++i) {
-    Measuring measuring(console_, [] {});
-    Viewer viewer(flags_, measuring);
-    viewer.turn_to(static_cast<std::uint32_t>(i));
+    MeasurementThread measurements(console_, [] {});
+    Viewer viewer(flags_, measurements);
+    viewer.show_frame(static_cast<std::uint32_t>(i));
   }
 }
 
 TEST_F(ViewerTest, IsCurrentOnceWhatIsRequestedIsMeasured) {
-  Viewer viewer(flags_, measuring_);
+  Viewer viewer(flags_, measurements_);
   EXPECT_FALSE(viewer.is_current());
   ASSERT_TRUE(wait_until(viewer, [&] { return viewer.is_current(); }));
   viewer.set_seed(7);
   EXPECT_FALSE(viewer.is_current());
   ASSERT_TRUE(wait_until(viewer, [&] { return viewer.is_current(); }));
-  EXPECT_EQ(viewer.shot()->ask.seed, 7U);
+  EXPECT_EQ(viewer.snapshot()->request.seed, 7U);
 }
 
 TEST_F(ViewerTest, IsCurrentWhileTimeGoesOnHoweverSlowlyItMeasures) {
   flags_.motion.object_rate_rad_s = Eigen::Vector3d::UnitZ();
-  Viewer viewer(flags_, measuring_);
+  Viewer viewer(flags_, measurements_);
   ASSERT_TRUE(wait_until(viewer, [&] { return viewer.is_current(); }));
-  viewer.turn_to(1000);
+  viewer.show_frame(1000);
   EXPECT_TRUE(viewer.is_current());
   viewer.toggle_play();
   EXPECT_FALSE(viewer.is_current());

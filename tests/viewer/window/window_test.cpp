@@ -79,7 +79,7 @@ WindowEvents no_events() {
   return {.on_letter = [](unsigned) {},
           .on_escape = [] {},
           .on_drop = [](const std::vector<std::string>&) {},
-          .on_damage = [] {}};
+          .on_redraw = [] {}};
 }
 
 void draw_text(Window& window, const std::string& text) {
@@ -154,23 +154,23 @@ TEST_F(WindowTest, NothingIsLostByAHundredWindows) {
 TEST_F(WindowTest, NothingIsLostByTenThousandPictures) {
   Window window("a long run", {.width = 320, .height = 240}, no_events());
   Console console(true);
-  Measuring measuring(console, WindowSystem::wake);
+  MeasurementThread measurements(console, WindowSystem::wake);
   RenderFlags flags;
   flags.input = "builtin:asteroid";
   flags.sensor.width = flags.sensor.height = 16;
   flags.motion.object_rate_rad_s = Eigen::Vector3d::UnitZ();
-  Viewer viewer(flags, measuring);
+  Viewer viewer(flags, measurements);
   Screen screen;
   const auto draw = [&](std::uint32_t k) {
-    viewer.turn_to(k);
-    viewer.take_news();
+    viewer.show_frame(k);
+    viewer.take_results();
     window.begin();
     screen.show(viewer, window.size(), {});
     window.end();
     window.show();
     WindowSystem::poll();
   };
-  while (viewer.shot() == nullptr) viewer.take_news();
+  while (viewer.snapshot() == nullptr) viewer.take_results();
   for (std::uint32_t k = 0; k < 500; ++k) draw(k);
   const Held before = held();
   for (std::uint32_t k = 500; k < 500 + kPictures; ++k) draw(k);
@@ -178,7 +178,7 @@ TEST_F(WindowTest, NothingIsLostByTenThousandPictures) {
   EXPECT_EQ(after.files, before.files);
   constexpr double kNoise_mb = 8.0 + kUnfreed_mb;  // less than a kilobyte a picture
   EXPECT_LT(after.megabytes - before.megabytes, kNoise_mb);
-  EXPECT_GT(viewer.shot()->ask.number, 500U) << "measured all the while";
+  EXPECT_GT(viewer.snapshot()->request.number, 500U) << "measured all the while";
 }
 
 TEST(WindowSystem, NamesTheDisplayThatIsNotThere) {
