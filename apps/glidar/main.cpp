@@ -138,7 +138,8 @@ int parse_and_run(CLI::App& program, const Commands& commands, int argc, char** 
 }
 
 int run(int argc, char** argv) {
-  CLI::App program("Simulator of 3D sensors: point clouds with ground truth from any 3D model", "glidar");
+  CLI::App program("Simulator of 3D sensors: point clouds with ground truth from any 3D model",
+                   "glidar");
   use_help_layout(program);
   program.set_version_flag("--version", std::string("glidar ") + version(), "Print the version");
   program.require_subcommand(1);
@@ -168,7 +169,8 @@ int main(int argc, char** argv) {
     }
     return status;
   } catch (const glidar::ClosedPipe&) {
-    return glidar::app::kClosedPipe;  // no message: readers such as `| head` close the pipe on purpose
+    return glidar::app::kClosedPipe;  // no message: readers such as `| head` close the pipe on
+                                      // purpose
   } catch (const std::bad_alloc&) {
     return glidar::app::fail("out of memory; use a smaller image or a smaller model");
   } catch (const std::exception& error) {

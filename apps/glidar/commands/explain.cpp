@@ -69,8 +69,8 @@ void check_models(const Sidecar& sidecar, const Scene& scene) {
     hashes.push_back(scene.sources.at(instance.mesh).hash);
   }
   if (hashes == sidecar.model_hashes) return;
-  refuse_entry(sidecar.path.string(), "the models have changed", "the models at the time of writing",
-               "render the cloud again");
+  refuse_entry(sidecar.path.string(), "the models have changed",
+               "the models at the time of writing", "render the cloud again");
 }
 
 /// The entry of the frame that the flags select.
@@ -108,9 +108,9 @@ std::size_t entry_of(const ExplainFlags& flags, const Sidecar& sidecar, const Fr
 /// Throws Error when the repeated frame is not that of the cloud.
 void check_frame(const Sidecar& sidecar, const Frame& frame) {
   if (frame_hash(frame) == sidecar.frame_hash) return;
-  refuse_entry(
-      sidecar.path.string(), "the repeated measurement differs from the recorded one",
-      "the same models, scene and sensor files, and the same program", "write the cloud again");
+  refuse_entry(sidecar.path.string(), "the repeated measurement differs from the recorded one",
+               "the same models, scene and sensor files, and the same program",
+               "write the cloud again");
 }
 
 void check(const ExplainFlags& flags) {
@@ -127,14 +127,14 @@ int run_explain(const ExplainFlags& flags) {
   const Sidecar sidecar = read_sidecar(flags.cloud);
   const RenderFlags render = flags_of(sidecar);
   compare_version(sidecar.version, sidecar.path.string(), console);
-  enter(sidecar.command, sidecar.path.string());
+  enter_folder(sidecar.command, sidecar.path.string());
   Session session;
   open(
       render, [] {}, console, session);
   check_models(sidecar, session.scene);
   Frame frame;
   Mount& mount = only_mount(session);
-  turn_to(render, sidecar.frame, mount, frame);
+  start_frame(render, sidecar.frame, mount, frame);
   const Setup setup = setup_of(session, mount, console);
   const auto pick = [&](const Frame& repeated) {
     check_frame(sidecar, repeated);
@@ -142,7 +142,7 @@ int run_explain(const ExplainFlags& flags) {
   };
   PointTrace story;
   {
-    const Working working(console, "repeating the measurement");
+    const ProgressScope progress(console, "repeating the measurement");
     story = explain(setup, pick, frame);
   }
   fmt::print("{}", format_trace(story, setup, frame));
@@ -152,11 +152,11 @@ int run_explain(const ExplainFlags& flags) {
 }  // namespace
 
 Command add_explain(CLI::App& program) {
-  CLI::App& command = *program.add_subcommand("explain", "Trace the measurement of a point of a cloud");
+  CLI::App& command =
+      *program.add_subcommand("explain", "Trace the measurement of a point of a cloud");
   const auto flags = std::make_shared<ExplainFlags>();
   command.footer(kExplainExamples);
-  command
-      .add_option("CLOUD", flags->cloud, "Cloud written by render or stream, with its sidecar")
+  command.add_option("CLOUD", flags->cloud, "Cloud written by render or stream, with its sidecar")
       ->required()
       ->type_name("");
   const OptionGroup group(command, "Point");

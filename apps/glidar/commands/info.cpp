@@ -189,14 +189,14 @@ Json json_of(const ModelReport& report, const std::string& up_hint) {
 /// Loads and examines the model; the console shows the progress.
 ModelReport examine(const InfoFlags& flags) {
   Console console;
-  const Working working(console, "reading " + flags.input);
+  const ProgressScope progress(console, "reading " + flags.input);
   Report report_to_console = console.report();
   report_to_console.log = [&](Severity severity, std::string_view message) {
     const bool is_in_table = message.starts_with(flags.input + ": ");
     if (severity == Severity::warning && !is_in_table) console.warn(message);
   };
   const Model model = load_model(flags.input, flags.model, report_to_console);
-  console.tell("examining " + flags.input, -1.0);
+  console.set_progress("examining " + flags.input, -1.0);
   return inspect(model);
 }
 

@@ -45,7 +45,7 @@ Exit codes: 0 done (also when nothing was hit), 2 bad input, 130 interrupted,
 
 /// Measures the scene and shows the progress.
 void measure(const Setup& setup, const HitFieldMask& fields, Console& console, Frame& frame) {
-  const Working working(console, fmt::format("casting {} beams", setup.beams.size()));
+  const ProgressScope progress(console, fmt::format("casting {} beams", setup.beams.size()));
   simulate(setup, fields, frame);
 }
 
@@ -74,7 +74,7 @@ HitFieldMask needed_fields(const RenderFlags& flags, const std::vector<Output>& 
 void write(const RenderFlags& flags, const View& view, const std::vector<Output>& outputs,
            Console& console) {
   {
-    const Working working(console, "writing");
+    const ProgressScope progress(console, "writing");
     write_outputs(outputs, view.frame, view.beams, view.scene, console.report());
   }
   std::FILE* to = writes_standard_output(flags.output) ? stderr : stdout;
@@ -131,11 +131,11 @@ void measure_all(Job& job, const OutputFlags& files, Mount& mount, Console& cons
   for (std::uint32_t k = 0; k < mount.frames; ++k) {
     const std::vector<Output> outputs =
         plan_outputs(files_of(flags, files, mount, k), flags.input, context, console.report(),
-                     [&console](double fraction) { console.tell(fraction); });
+                     [&console](double fraction) { console.set_progress(fraction); });
     refuse_overwrite_of_inputs(session.files, outputs);
-    turn_to(flags, k, mount, frame);
+    start_frame(flags, k, mount, frame);
     measure(setup, needed_fields(flags, outputs), console, frame);
-    if (k == 0) tell(view_advice(view), console);
+    if (k == 0) print_advice(view_advice(view), console);
     write(flags, view, outputs, console);
     for (const Output& output : outputs) job.written.push_back(output.path);
   }
@@ -145,7 +145,7 @@ int run_render(const RenderFlags& flags, const std::vector<std::string>& argumen
   Console console(flags.quiet);
   check_fisher(flags);
   if (flags.duration_s) numbered(flags.output, 0);  // for its errors only
-  const CommandRecord command = {.arguments = lasting(arguments),
+  const CommandRecord command = {.arguments = reproducible_arguments(arguments),
                                  .folder = std::filesystem::current_path()};
   Session session;
   const Mount unknown;

@@ -78,7 +78,7 @@ int run_replay(const StreamFlags& chosen) {
   Console console(flags.render.quiet);
   compare_version(recording.head().version, file, console);
   make_absolute(flags);
-  enter(recording.head().command, file);
+  enter_folder(recording.head().command, file);
   compare_files(recording.head(), console);
   link::raise_descriptor_limit(2 * flags.limits.connections);
   StreamRun stream(std::move(flags), console);

@@ -63,7 +63,8 @@ Command add_stream(CLI::App& program, const std::vector<std::string>& arguments)
   add_stream_options(command, *flags);
   return [flags, arguments, &command] {
     check(command, *flags);
-    flags->command = {.arguments = lasting(arguments), .folder = std::filesystem::current_path()};
+    flags->command = {.arguments = reproducible_arguments(arguments),
+                      .folder = std::filesystem::current_path()};
     return run_stream(*flags);
   };
 }

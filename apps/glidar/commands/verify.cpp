@@ -60,8 +60,8 @@ void print_known(const std::vector<AccuracyCase>& rows) {
     if (row.known.reason.empty() || !row.applies) continue;
     const VerifyResult& r = row.result;
     if (row.verdict() == Verdict::fixed) {
-      fmt::print("FIXED: {}, {}, {} m passes here but is listed as a known failure\n",
-                 row.name, row.shape, row.distance_m);
+      fmt::print("FIXED: {}, {}, {} m passes here but is listed as a known failure\n", row.name,
+                 row.shape, row.distance_m);
       continue;
     }
     fmt::print(
@@ -141,8 +141,8 @@ int run_verify(const VerifyFlags& flags) {
   Console console;
   std::vector<AccuracyCase> rows;
   {
-    const Working working(console, "verifying");
-    rows = verify(flags.renderer, [&console](double fraction) { console.tell(fraction); });
+    const ProgressScope progress(console, "verifying");
+    rows = verify(flags.renderer, [&console](double fraction) { console.set_progress(fraction); });
   }
   if (flags.json) {
     print_json(rows, flags.renderer.kind);

@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kLargeModel_m = 1000.0;
 constexpr double kSmallModel_m = 0.001;
-constexpr double kLargeRatio = 1000.0;  // between size and distance: a wrong unit
-constexpr double kMostlyInside = 0.9;   // of the hits are on back faces: seen from inside
+constexpr double kLargeRatio = 1000.0;        // between size and distance: a wrong unit
+constexpr double kMinBackFaceFraction = 0.9;  // of the hits are on back faces: seen from inside
 
 /// True when nobody specified the unit of some model: neither the user nor its file.
 bool has_assumed_unit(const Scene& scene) {
@@ -25,7 +25,7 @@ bool has_assumed_unit(const Scene& scene) {
 }
 
 /// The scene as the sensor sees it, without looking at single triangles.
-struct Sight {
+struct ViewGeometry {
   double size_m = 0.0;        ///< diagonal of the scene's box
   double depth_m = 0.0;       ///< of the box's middle
   double deepest_m = 0.0;     ///< of the box's corners
@@ -47,7 +47,7 @@ double pixel_angle_rad(const Beams& beams) {
 }
 
 /// The box of the scene as it stands in this frame, in the sensor's frame.
-Eigen::AlignedBox3d seen_box(const View& view, const Pose& target_from_world) {
+Eigen::AlignedBox3d scene_box(const View& view, const Pose& target_from_world) {
   Eigen::AlignedBox3d all;
   for (std::size_t i = 0; i < view.scene.instances.size(); ++i) {
     const Instance& instance = view.scene.instances[i];
@@ -61,25 +61,26 @@ Eigen::AlignedBox3d seen_box(const View& view, const Pose& target_from_world) {
   return all;
 }
 
-Sight look(const View& view) {
-  const Eigen::AlignedBox3d box = seen_box(view, view.frame.world_from_sensor.inverse());
+ViewGeometry view_geometry(const View& view) {
+  const Eigen::AlignedBox3d box = scene_box(view, view.frame.world_from_sensor.inverse());
   const Eigen::Vector3d middle = box.center();
   const Eigen::Vector3d& axis = view.beams.boresight;
-  Sight sight;
-  sight.size_m = seen_box(view, Pose::Identity()).diagonal().norm();
-  sight.depth_m = middle.dot(axis);
-  sight.deepest_m = -std::numeric_limits<double>::infinity();
+  ViewGeometry geometry;
+  geometry.size_m = scene_box(view, Pose::Identity()).diagonal().norm();
+  geometry.depth_m = middle.dot(axis);
+  geometry.deepest_m = -std::numeric_limits<double>::infinity();
   for (int corner = 0; corner < 8; ++corner) {
     const auto type = static_cast<Eigen::AlignedBox3d::CornerType>(corner);
-    sight.deepest_m = std::max(sight.deepest_m, box.corner(type).dot(axis));
+    geometry.deepest_m = std::max(geometry.deepest_m, box.corner(type).dot(axis));
   }
-  sight.distance_m = middle.norm();
-  sight.off_axis_rad = angle_rad(middle, axis);
+  geometry.distance_m = middle.norm();
+  geometry.off_axis_rad = angle_rad(middle, axis);
   for (const Eigen::Vector3d& beam : view.beams.directions) {
-    if (!std::isnan(beam.x())) sight.view_rad = std::max(sight.view_rad, angle_rad(beam, axis));
+    if (!std::isnan(beam.x()))
+      geometry.view_rad = std::max(geometry.view_rad, angle_rad(beam, axis));
   }
-  sight.pixel_rad = pixel_angle_rad(view.beams);
-  return sight;
+  geometry.pixel_rad = pixel_angle_rad(view.beams);
+  return geometry;
 }
 
 double degrees(double angle) {
@@ -103,7 +104,7 @@ std::string true_distances(const View& view) {
 }
 
 /// How many beams meet something within the limits that is not reported.
-std::size_t lost_in_light(const View& view) {
+std::size_t undetected_surfaces(const View& view) {
   std::size_t lost = 0;
   for (std::size_t i = 0; i < view.frame.status.size(); ++i) {
     const Status status = view.frame.status[i];
@@ -114,7 +115,8 @@ std::size_t lost_in_light(const View& view) {
 }
 
 /// Why nothing was hit, and what to do.
-std::string reason_for_no_hits(const View& view, const Sight& sight, const FrameSummary& summary) {
+std::string reason_for_no_hits(const View& view, const ViewGeometry& geometry,
+                               const FrameSummary& summary) {
   constexpr const char* kFrameIt = "leave the pose options out to have the scene framed";
   if (summary.beams == 0) return "the optics have no beam for any pixel; check the distortion";
   if (summary.too_near + summary.too_far > 0) {
@@ -125,32 +127,32 @@ std::string reason_for_no_hits(const View& view, const Sight& sight, const Frame
         view.sensor.limits.along == Limits::Along::depth ? "depth" : "range", true_distances(view),
         view.sensor.limits.near_m, view.sensor.limits.far_m);
   }
-  if (const std::size_t lost = lost_in_light(view)) {
+  if (const std::size_t lost = undetected_surfaces(view)) {
     return fmt::format(
         "{} beams meet surfaces, but what comes back is too weak or too strong, or lost: see the "
         "column 'status', and `glidar explain`",
         lost);
   }
-  if (sight.deepest_m < 0.0 && sight.view_rad < 0.5 * std::numbers::pi) {
+  if (geometry.deepest_m < 0.0 && geometry.view_rad < 0.5 * std::numbers::pi) {
     return fmt::format(
         "the scene is behind the sensor: its middle is {:.6g} m away at depth {:.6g} m; "
         "turn the sensor, or {}",
-        sight.distance_m, sight.depth_m, kFrameIt);
+        geometry.distance_m, geometry.depth_m, kFrameIt);
   }
-  const bool around = sight.distance_m <= 0.5 * sight.size_m;  // it may be on every side
+  const bool around = geometry.distance_m <= 0.5 * geometry.size_m;  // it may be on every side
   const double half_size_rad =
-      around ? std::numbers::pi : std::asin(0.5 * sight.size_m / sight.distance_m);
-  if (sight.off_axis_rad - half_size_rad > sight.view_rad) {
+      around ? std::numbers::pi : std::asin(0.5 * geometry.size_m / geometry.distance_m);
+  if (geometry.off_axis_rad - half_size_rad > geometry.view_rad) {
     return fmt::format(
         "the scene is outside the view: its middle is {:.1f} degrees off the "
         "boresight, the view reaches {:.1f}; turn the sensor, or {}",
-        degrees(sight.off_axis_rad), degrees(sight.view_rad), kFrameIt);
+        degrees(geometry.off_axis_rad), degrees(geometry.view_rad), kFrameIt);
   }
-  if (2.0 * half_size_rad < 2.0 * sight.pixel_rad) {
+  if (2.0 * half_size_rad < 2.0 * geometry.pixel_rad) {
     return fmt::format(
         "the scene is too small to be met by a beam: {:.6g} m across at {:.6g} m is "
         "{:.2g} pixels; go nearer, narrow --fov, {}or {}",
-        sight.size_m, sight.distance_m, 2.0 * half_size_rad / sight.pixel_rad,
+        geometry.size_m, geometry.distance_m, 2.0 * half_size_rad / geometry.pixel_rad,
         has_assumed_unit(view.scene) ? "check --unit, " : "", kFrameIt);
   }
   if (view.sensor.cull_back_faces) {
@@ -159,11 +161,11 @@ std::string reason_for_no_hits(const View& view, const Sight& sight, const Frame
   return fmt::format(
       "no beam meets a triangle, though the scene ({:.6g} m across, {:.6g} m away) "
       "lies in front of the sensor; aim elsewhere, or {}",
-      sight.size_m, sight.distance_m, kFrameIt);
+      geometry.size_m, geometry.distance_m, kFrameIt);
 }
 
 /// The part of this instance's hits that lie on the backs of its triangles, by a sample.
-double back_face_part(const View& view, std::size_t index) {
+double back_face_fraction(const View& view, std::size_t index) {
   constexpr std::size_t kSample = 4096;
   const Instance& instance = view.scene.instances[index];
   const Mesh& mesh = view.scene.meshes[instance.mesh];
@@ -190,7 +192,7 @@ std::string label(const Instance& instance) {
 }
 
 /// Instances in whose boxes the sensor stands.
-std::vector<std::size_t> boxes_around(const View& view) {
+std::vector<std::size_t> boxes_with_sensor(const View& view) {
   std::vector<std::size_t> around;
   for (std::size_t i = 0; i < view.scene.instances.size(); ++i) {
     const Instance& instance = view.scene.instances[i];
@@ -204,11 +206,11 @@ std::vector<std::size_t> boxes_around(const View& view) {
 
 /// A sensor that looks all around is meant to stand amid the scene, and one that sees the fronts of
 /// surfaces is not within what they enclose.
-void add_inside_advice(const View& view, const Sight& sight, const std::vector<std::size_t>& around,
-                       std::vector<std::string>& advice) {
-  if (sight.view_rad > 0.5 * std::numbers::pi) return;
+void add_inside_advice(const View& view, const ViewGeometry& geometry,
+                       const std::vector<std::size_t>& around, std::vector<std::string>& advice) {
+  if (geometry.view_rad > 0.5 * std::numbers::pi) return;
   for (const std::size_t i : around) {
-    if (back_face_part(view, i) <= kMostlyInside) continue;
+    if (back_face_fraction(view, i) <= kMinBackFaceFraction) continue;
     advice.push_back(
         fmt::format("the sensor is inside {} and sees the backs of its surfaces; unless that is a "
                     "room, move it out, or leave the pose options out to have the scene framed",
@@ -217,23 +219,24 @@ void add_inside_advice(const View& view, const Sight& sight, const std::vector<s
 }
 
 /// A unit is only doubted where it was assumed.
-void add_ratio_advice(const Sight& sight, bool is_unit_assumed, std::vector<std::string>& advice) {
-  if (sight.size_m > kLargeRatio * sight.distance_m) {
+void add_ratio_advice(const ViewGeometry& geometry, bool is_unit_assumed,
+                      std::vector<std::string>& advice) {
+  if (geometry.size_m > kLargeRatio * geometry.distance_m) {
     advice.push_back(fmt::format(
         "the scene is {:.6g} m across but its middle is only {:.6g} m from the sensor; {}",
-        sight.size_m, sight.distance_m,
+        geometry.size_m, geometry.distance_m,
         is_unit_assumed ? "if the file is in millimetres, give --unit mm"
                         : "if that is not meant, check the pose and --scale"));
-  } else if (sight.distance_m > kLargeRatio * sight.size_m) {
+  } else if (geometry.distance_m > kLargeRatio * geometry.size_m) {
     advice.push_back(
         fmt::format("the scene is {:.6g} m across but {:.6g} m from the sensor; if that "
                     "is not meant, check {}--scale and the pose",
-                    sight.size_m, sight.distance_m, is_unit_assumed ? "--unit, " : ""));
+                    geometry.size_m, geometry.distance_m, is_unit_assumed ? "--unit, " : ""));
   }
 }
 
 /// True when a box from `least` to `most` stands on zero or hovers above it.
-bool stands_on_zero(double least, double most) {
+bool is_on_zero(double least, double most) {
   constexpr double kSunk = 0.02;  // part of its height that may be below
   return most > least && least >= -kSunk * (most - least);
 }
@@ -289,7 +292,7 @@ std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box)
   if (!says_nothing_of_up || box.isEmpty()) return "";
   const Eigen::Vector3d& least = box.min();
   const Eigen::Vector3d& most = box.max();
-  if (stands_on_zero(least.y(), most.y()) && straddles_zero(least.x(), most.x()) &&
+  if (is_on_zero(least.y(), most.y()) && straddles_zero(least.x(), most.x()) &&
       straddles_zero(least.z(), most.z())) {
     return "a guess: y is up in this file, since the model stands on or above y = 0 and around x = "
            "z = 0; if so, --up y makes that +z, which is up here";
@@ -297,7 +300,7 @@ std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box)
   return "";
 }
 
-std::string beside_advice(const Scene& scene, const Pose& world_from_sensor) {
+std::string placement_advice(const Scene& scene, const Pose& world_from_sensor) {
   const Eigen::Vector3d at = world_from_sensor.translation();
   return fmt::format(
       "the sensor stands upright beside the scene, {:.4g} m from its middle, at "
@@ -309,13 +312,13 @@ std::string beside_advice(const Scene& scene, const Pose& world_from_sensor) {
 std::vector<std::string> view_advice(const View& view) {
   std::vector<std::string> advice;
   const FrameSummary summary = summarise(view.frame);
-  const Sight sight = look(view);
-  const std::vector<std::size_t> around = boxes_around(view);
-  add_inside_advice(view, sight, around, advice);
+  const ViewGeometry geometry = view_geometry(view);
+  const std::vector<std::size_t> around = boxes_with_sensor(view);
+  add_inside_advice(view, geometry, around, advice);
   if (summary.hits == 0) {
-    advice.push_back("nothing was measured: " + reason_for_no_hits(view, sight, summary));
+    advice.push_back("nothing was measured: " + reason_for_no_hits(view, geometry, summary));
   } else if (around.empty()) {
-    add_ratio_advice(sight, has_assumed_unit(view.scene), advice);
+    add_ratio_advice(geometry, has_assumed_unit(view.scene), advice);
   }
   return advice;
 }

@@ -41,7 +41,7 @@ std::vector<std::string> size_advice(const Scene& scene, bool sized);
 /// above zero along y and across zero along the others. Empty: none.
 std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box);
 /// Where a LiDAR was put that no option placed.
-std::string beside_advice(const Scene& scene, const Pose& world_from_sensor);
+std::string placement_advice(const Scene& scene, const Pose& world_from_sensor);
 
 /// What the user should know about where the sensor stands: inside a model of which it sees the
 /// backs alone while it looks one way, too near or too far for its size, or nothing hit and why.

@@ -60,12 +60,12 @@ void Console::error(std::string_view message) {
   print(fmt::format("glidar: error: {}\n", message));
 }
 
-void Console::tell(double fraction_done) {
+void Console::set_progress(double fraction_done) {
   const std::lock_guard lock(mutex_);
   fraction_ = fraction_done;
 }
 
-void Console::tell(std::string_view task, double fraction_done) {
+void Console::set_progress(std::string_view task, double fraction_done) {
   const std::lock_guard lock(mutex_);
   if (task != task_) {
     task_ = task;
@@ -95,7 +95,7 @@ Report Console::report() {
                 severity == Severity::warning ? warn(message) : info(message);
               },
           .progress = [this](std::string_view task,
-                             double fraction_done) { tell(task, fraction_done); }};
+                             double fraction_done) { set_progress(task, fraction_done); }};
 }
 
 void Console::begin(std::string_view task) {
@@ -126,7 +126,7 @@ void Console::erase() {
   drawn_ = false;
 }
 
-Working::Working(Console& console, std::string_view task) : console_(console) {
+ProgressScope::ProgressScope(Console& console, std::string_view task) : console_(console) {
   console_.begin(task);
   if (!console_.terminal_) return;
   ticker_ = std::thread([this] {
@@ -135,7 +135,7 @@ Working::Working(Console& console, std::string_view task) : console_(console) {
   });
 }
 
-Working::~Working() {
+ProgressScope::~ProgressScope() {
   if (!ticker_.joinable()) return;
   {
     const std::lock_guard lock(mutex_);

@@ -29,10 +29,10 @@ class Console {
   void warn(std::string_view message);
   /// Says what went wrong, for programs that go on; nobody else is told.
   void error(std::string_view message);
-  /// How far the work is that is under way (see Working), negative: unknown. Costs little.
-  void tell(double fraction_done);
+  /// How far the work is that is under way (see ProgressScope), negative: unknown. Costs little.
+  void set_progress(double fraction_done);
   /// The same of a part of that work that has a name of its own.
-  void tell(std::string_view task, double fraction_done);
+  void set_progress(std::string_view task, double fraction_done);
 
   /// A line that stands on a terminal until the next one, or anything else, takes its place; empty:
   /// none.
@@ -44,7 +44,7 @@ class Console {
   void listen(Report listener);
 
  private:
-  friend class Working;
+  friend class ProgressScope;
   using Clock = std::chrono::steady_clock;
 
   void begin(std::string_view task);
@@ -65,12 +65,12 @@ class Console {
 
 /// While it lives, the console shows how far this work is: on a terminal only, and only once it has
 /// taken two seconds. One at a time.
-class Working {
+class ProgressScope {
  public:
-  Working(Console& console, std::string_view task);
-  Working(const Working&) = delete;
-  Working& operator=(const Working&) = delete;
-  ~Working();
+  ProgressScope(Console& console, std::string_view task);
+  ProgressScope(const ProgressScope&) = delete;
+  ProgressScope& operator=(const ProgressScope&) = delete;
+  ~ProgressScope();
 
  private:
   Console& console_;

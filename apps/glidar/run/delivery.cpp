@@ -12,7 +12,7 @@ constexpr std::chrono::milliseconds kIdle{20};
 
 }  // namespace
 
-Delivery::Delivery(std::function<void(const Shot&)> deliver, std::function<void()> idle,
+Delivery::Delivery(std::function<void(const MeasuredFrame&)> deliver, std::function<void()> idle,
                    std::function<void()> failed)
     : deliver_(std::move(deliver)),
       idle_(std::move(idle)),
@@ -23,14 +23,14 @@ Delivery::~Delivery() {
   join();
 }
 
-Shot& Delivery::room() {
+MeasuredFrame& Delivery::next_slot() {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [this] { return filled_ - delivered_ < shots_.size() || failure_; });
+  changed_.wait(lock, [this] { return filled_ - delivered_ < slots_.size() || failure_; });
   rethrow();
-  return shots_[filled_ % shots_.size()];
+  return slots_[filled_ % slots_.size()];
 }
 
-void Delivery::hand_over() {
+void Delivery::submit() {
   {
     const std::lock_guard lock(mutex_);
     ++filled_;
@@ -62,13 +62,13 @@ void Delivery::run() {
   try {
     for (;;) {
       changed_.wait_for(lock, kIdle, is_due);
-      const bool has_shot = delivered_ < filled_;
-      if (!has_shot && is_ending_) return;
+      const bool has_frame = delivered_ < filled_;
+      if (!has_frame && is_ending_) return;
       lock.unlock();
-      if (has_shot) deliver_(shots_[delivered_ % shots_.size()]);
+      if (has_frame) deliver_(slots_[delivered_ % slots_.size()]);
       idle_();
       lock.lock();
-      if (has_shot) ++delivered_;
+      if (has_frame) ++delivered_;
       changed_.notify_all();
     }
   } catch (...) {

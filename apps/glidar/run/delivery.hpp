@@ -20,7 +20,7 @@
 namespace glidar::app {
 
 /// A frame to be delivered.
-struct Shot {
+struct MeasuredFrame {
   Frame frame;
   std::shared_ptr<const Beams> beams;
   std::uint64_t place = 0;                         ///< among its sensor's frames
@@ -36,17 +36,17 @@ class Delivery {
  public:
   /// `deliver` and, often while there is nothing to deliver, `idle` are called by that thread; so
   /// is `failed`, once, after one of them threw.
-  Delivery(std::function<void(const Shot&)> deliver, std::function<void()> idle,
+  Delivery(std::function<void(const MeasuredFrame&)> deliver, std::function<void()> idle,
            std::function<void()> failed);
   /// Delivers what was handed over.
   ~Delivery();
   Delivery(const Delivery&) = delete;
   Delivery& operator=(const Delivery&) = delete;
 
-  /// The shot to fill next; waits until it was delivered. Throws what `deliver` threw.
-  Shot& room();
-  /// The shot that room() gave is filled.
-  void hand_over();
+  /// The measured to fill next; waits until it was delivered. Throws what `deliver` threw.
+  MeasuredFrame& next_slot();
+  /// The measured that next_slot() gave is filled.
+  void submit();
   /// Waits until all is delivered and ends the thread. Throws what `deliver` threw.
   void finish();
 
@@ -55,12 +55,12 @@ class Delivery {
   void join();
   void rethrow();
 
-  std::function<void(const Shot&)> deliver_;
+  std::function<void(const MeasuredFrame&)> deliver_;
   std::function<void()> idle_;
   std::function<void()> failed_;
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::array<Shot, 2> shots_;
+  std::array<MeasuredFrame, 2> slots_;
   std::uint64_t filled_ = 0;
   std::uint64_t delivered_ = 0;
   bool is_ending_ = false;

@@ -20,16 +20,16 @@ namespace {
 
 // Only async-signal-safe calls here.
 extern "C" void end_now(int number) {
-  constexpr int kSignalled = 128;  // as shells have it
+  constexpr int kSignalExitBase = 128;  // as shells have it
   constexpr std::string_view kMessage = "\nglidar: interrupted; unfinished files are removed\n";
   remove_unfinished_files();
   [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, kMessage.data(), kMessage.size());
-  _exit(kSignalled + number);
+  _exit(kSignalExitBase + number);
 }
 
 // A signal handler takes no arguments, so these have to be the process's own.
 constinit std::atomic<int> noted{0};
-constinit std::atomic<int> noting_pipe{-1};
+constinit std::atomic<int> wake_pipe{-1};
 constinit std::atomic<timer_t> deadline{};
 constinit std::atomic<bool> has_deadline{false};
 static_assert(std::atomic<int>::is_always_lock_free, "used in signal handlers");
@@ -48,10 +48,10 @@ extern "C" void end_late(int /*number*/) {
 }
 
 extern "C" void note(int number) {
-  constexpr std::chrono::milliseconds kPatience{1500};
+  constexpr std::chrono::milliseconds kStopTimeout{1500};
   if (noted.exchange(number) != 0) end_now(number);
-  if (number == SIGTERM) end_after(kPatience);
-  [[maybe_unused]] const ssize_t told = write(noting_pipe.load(), "!", 1);
+  if (number == SIGTERM) end_after(kStopTimeout);
+  [[maybe_unused]] const ssize_t told = write(wake_pipe.load(), "!", 1);
 }
 
 void handle_by(void (*handler)(int)) {
@@ -79,7 +79,7 @@ StopRequest::StopRequest() {
   reading_ = ends[0];
   writing_ = ends[1];
   noted = 0;
-  noting_pipe = writing_;
+  wake_pipe = writing_;
   struct sigaction late {};
   late.sa_handler = end_late;
   sigaction(SIGALRM, &late, nullptr);
@@ -104,8 +104,8 @@ void StopRequest::disarm() const {
   end_after({});
 }
 
-void StopRequest::ask() {
-  is_asked_ = true;
+void StopRequest::request() {
+  is_requested_ = true;
   [[maybe_unused]] const ssize_t told = write(writing_, "!", 1);
 }
 

@@ -24,9 +24,9 @@ class StopRequest {
 
   /// The signal that came; 0: none.
   [[nodiscard]] int signal() const;
-  [[nodiscard]] bool is_requested() const { return signal() != 0 || is_asked_; }
+  [[nodiscard]] bool is_requested() const { return signal() != 0 || is_requested_; }
   /// The same without a signal, from any thread.
-  void ask();
+  void request();
   /// The work has begun to end in good order, which takes a limited time.
   void disarm() const;
   /// A file descriptor that can be read once one came.
@@ -37,7 +37,7 @@ class StopRequest {
  private:
   int reading_ = -1;
   int writing_ = -1;
-  std::atomic<bool> is_asked_{false};
+  std::atomic<bool> is_requested_{false};
 };
 
 }  // namespace glidar::app

@@ -73,8 +73,8 @@ int LockstepRun::run() {
     server_.reply_error(job.to, "request: GLIDAR was ended by a signal");
   }
   finish(fmt::format("signal {}", stop.signal()));
-  constexpr int kSignalled = 128;  // as shells have it
-  return kSignalled + stop.signal();
+  constexpr int kSignalExitBase = 128;  // as shells have it
+  return kSignalExitBase + stop.signal();
 }
 
 /// Receives the next request and works at one of those in work, in turn; or waits a while for one.
@@ -85,12 +85,11 @@ void LockstepRun::serve(const StopRequest& stop) {
   }
   Job job = std::move(jobs_.front());
   jobs_.pop_front();
-  const ProgressCallback progress = try_advance(job);
-  if (progress == ProgressCallback::answered) return record(job);
+  const Step progress = try_advance(job);
+  if (progress == Step::answered) return record(job);
   jobs_.push_back(std::move(job));
   constexpr std::chrono::milliseconds kForMemory{5};
-  if (progress == ProgressCallback::waits_for_memory)
-    link::wait_for({}, stop.descriptor(), kForMemory);
+  if (progress == Step::waits_for_memory) link::wait_for({}, stop.descriptor(), kForMemory);
 }
 
 void LockstepRun::start(lockstep::Received received) {
@@ -106,7 +105,7 @@ void LockstepRun::start(lockstep::Received received) {
 }
 
 /// Whatever goes wrong with one request is its client's to know.
-LockstepRun::ProgressCallback LockstepRun::try_advance(Job& job) {
+LockstepRun::Step LockstepRun::try_advance(Job& job) {
   try {
     return advance(job);
   } catch (const std::bad_alloc&) {
@@ -115,17 +114,17 @@ LockstepRun::ProgressCallback LockstepRun::try_advance(Job& job) {
     server_.reply_error(job.to, error.what());
   }
   job.frames.clear();
-  return ProgressCallback::answered;
+  return Step::answered;
 }
 
-LockstepRun::ProgressCallback LockstepRun::advance(Job& job) {
+LockstepRun::Step LockstepRun::advance(Job& job) {
   if (!server_.is_wanted(job.to)) {
     server_.drop(job.to);
     job.frames.clear();
-    return ProgressCallback::answered;
+    return Step::answered;
   }
   check_deadline(job);
-  if (!server_.reserve(job.to, job.bytes)) return ProgressCallback::waits_for_memory;
+  if (!server_.reserve(job.to, job.bytes)) return Step::waits_for_memory;
   const std::span<const lockstep::Moment> all = job.measure.moments;
   const std::size_t first = job.replies.size();
   const std::size_t count = std::min(frames_at_once(job), all.size() - first);
@@ -133,9 +132,9 @@ LockstepRun::ProgressCallback LockstepRun::advance(Job& job) {
   measure_some(job, all.subspan(first, count));
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   frame_s_[job.measure.sensor] = taken.count() / static_cast<double>(count);
-  if (first + count < all.size()) return ProgressCallback::goes_on;
+  if (first + count < all.size()) return Step::goes_on;
   server_.reply(job.to, job.replies);
-  return ProgressCallback::answered;
+  return Step::answered;
 }
 
 /// The frames that were replied. A recording that cannot go on ends the server: it would not be

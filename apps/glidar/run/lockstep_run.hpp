@@ -42,12 +42,12 @@ class LockstepRun {
     std::vector<lockstep::CloudReply> replies = {};
     std::vector<link::RecordedFrame> frames = {};  ///< to be recorded once it is answered
   };
-  enum class ProgressCallback : std::uint8_t { waits_for_memory, goes_on, answered };
+  enum class Step : std::uint8_t { waits_for_memory, goes_on, answered };
 
   void serve(const StopRequest& stop);
   void start(lockstep::Received received);
-  ProgressCallback advance(Job& job);
-  ProgressCallback try_advance(Job& job);
+  Step advance(Job& job);
+  Step try_advance(Job& job);
   void record(const Job& job);
   [[nodiscard]] nlohmann::ordered_json description() const;
   [[nodiscard]] std::int64_t check(const lockstep::Measure& measure) const;

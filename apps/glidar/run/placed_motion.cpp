@@ -35,7 +35,7 @@ RigMotion motion_at(const lockstep::Moment& moment, const Session& session) {
   return motion;
 }
 
-lockstep::Moment placed_by(const RigMotion& motion) {
+lockstep::Moment static_moment(const RigMotion& motion) {
   lockstep::Moment moment;
   moment.sensor = body_of(motion.world_from_rig);
   for (const Trajectory& instance : motion.world_from_instance) {

@@ -12,6 +12,6 @@ namespace glidar::app {
 RigMotion motion_at(const lockstep::Moment& moment, const Session& session);
 
 /// The bodies of a motion in which all stands still.
-lockstep::Moment placed_by(const RigMotion& motion);
+lockstep::Moment static_moment(const RigMotion& motion);
 
 }  // namespace glidar::app

@@ -37,7 +37,7 @@ void check_upright(const char* options, const Eigen::Vector3d& forward, const Ei
   throw Error({.where = options,
                .found = "the sensor looks along " + text_of(z) + ", parallel to its up vector " +
                         text_of(up),
-               .allowed = "an up vector that is neither 0 nor parallel to the line of sight",
+               .allowed = "an up vector that is neither 0 nor parallel to the line of geometry",
                .remedy = "for example --up-vector " +
                          text_of(Eigen::Vector3d(Eigen::Vector3d::Unit(most_perpendicular)))});
 }

@@ -23,27 +23,28 @@ double seconds_since(Clock::time_point start) {
 }
 
 /// How often who waits looks whether it waits for too long.
-constexpr std::chrono::milliseconds kPoseWait{100};
+constexpr std::chrono::milliseconds kPosePollInterval{100};
 
 }  // namespace
 
-MotionSource::MotionSource(const Pace& pace, std::vector<double> periods_s, const StopRequest& stop)
-    : pace_(pace), periods_s_(std::move(periods_s)), stop_(stop), numbers_(periods_s_.size()) {}
+MotionSource::MotionSource(const FrameSchedule& pace, std::vector<double> periods_s,
+                           const StopRequest& stop)
+    : schedule_(pace), periods_s_(std::move(periods_s)), stop_(stop), numbers_(periods_s_.size()) {}
 
-double MotionSource::begins_s(std::size_t mount) const {
+double MotionSource::start_s(std::size_t mount) const {
   return static_cast<double>(numbers_[mount]) * periods_s_[mount];
 }
 
 bool MotionSource::is_done(std::size_t mount) const {
   constexpr double kRounding = 1e-9;  // 0.3 s at 10 Hz are three frames
-  return numbers_[mount] >= pace_.frames || begins_s(mount) >= pace_.duration_s - kRounding;
+  return numbers_[mount] >= schedule_.frames || start_s(mount) >= schedule_.duration_s - kRounding;
 }
 
-std::optional<Moment> MotionSource::next() {
+std::optional<FrameRequest> MotionSource::next() {
   std::optional<std::size_t> first;
   for (std::size_t mount = 0; mount < numbers_.size(); ++mount) {
     if (is_done(mount)) continue;
-    if (!first || begins_s(mount) < begins_s(*first)) first = mount;
+    if (!first || start_s(mount) < start_s(*first)) first = mount;
   }
   if (!first) {
     ending_ = "all frames are done";
@@ -52,18 +53,18 @@ std::optional<Moment> MotionSource::next() {
   wait_until_due(*first);
   if (stop_.is_requested()) return std::nullopt;
   const std::uint64_t number = numbers_[*first]++;
-  return Moment{
+  return FrameRequest{
       .mount = *first, .number = static_cast<std::uint32_t>(number), .place = number, .due = *due_};
 }
 
 void MotionSource::wait_until_due(std::size_t mount) {
   const Clock::time_point now = Clock::now();
-  const double before_s = std::exchange(due_s_, begins_s(mount));
-  if (!due_ || pace_.rate_hz <= 0.0) {
+  const double before_s = std::exchange(due_s_, start_s(mount));
+  if (!due_ || schedule_.rate_hz <= 0.0) {
     due_ = now;
     return;
   }
-  const double speed = pace_.rate_hz * periods_s_.front();
+  const double speed = schedule_.rate_hz * periods_s_.front();
   *due_ += seconds((due_s_ - before_s) / speed);
   if (now > *due_ + seconds(periods_s_[mount] / speed)) {
     ++late_;
@@ -88,11 +89,11 @@ SimulatorSource::SimulatorSource(legacy::PoseReceiver& receiver, const MovedScen
                                  const Options& options, const StopRequest& stop)
     : receiver_(receiver), scene_(scene), options_(options), stop_(stop) {}
 
-std::optional<Moment> SimulatorSource::next() {
-  if (number_ > 0 && moment_.mount + 1 < options_.mounts && !stop_.is_requested()) {
-    moment_.motion.reset();
-    ++moment_.mount;
-    return moment_;
+std::optional<FrameRequest> SimulatorSource::next() {
+  if (number_ > 0 && request_.mount + 1 < options_.mounts && !stop_.is_requested()) {
+    request_.motion.reset();
+    ++request_.mount;
+    return request_;
   }
   if (options_.pace.rate_hz > 0.0 && number_ > 0) {
     const Clock::time_point due = last_ + seconds(1.0 / options_.pace.rate_hz);
@@ -102,12 +103,12 @@ std::optional<Moment> SimulatorSource::next() {
   if (!placement) return std::nullopt;
   last_ = Clock::now();
   if (!first_) first_ = last_;
-  moment_ = {.number = static_cast<std::uint32_t>(number_),
-             .place = number_++,
-             .due = last_,
-             .motion = motion_of(*placement, scene_),
-             .stamp_ns = static_cast<std::int64_t>(placement->timestamp)};
-  return moment_;
+  request_ = {.number = static_cast<std::uint32_t>(number_),
+              .place = number_++,
+              .due = last_,
+              .motion = motion_of(*placement, scene_),
+              .stamp_ns = static_cast<std::int64_t>(placement->timestamp)};
+  return request_;
 }
 
 std::optional<legacy::Placement> SimulatorSource::wait_for_pose() {
@@ -120,7 +121,7 @@ std::optional<legacy::Placement> SimulatorSource::wait_for_pose() {
       has_timed_out_ = true;
       ending_ = fmt::format("no pose came for {} s", *options_.timeout_s);
     } else {
-      link::wait_for({&receiver_.pose_socket()}, stop_.descriptor(), kPoseWait);
+      link::wait_for({&receiver_.pose_socket()}, stop_.descriptor(), kPosePollInterval);
     }
   }
   return std::nullopt;

@@ -18,7 +18,7 @@
 namespace glidar::app {
 
 /// A frame that is to be measured now.
-struct Moment {
+struct FrameRequest {
   std::size_t mount = 0;  ///< which of the session's sensors takes it
   std::uint32_t number = 0;
   std::uint64_t place = 0;  ///< among this sensor's frames; differs from `number` in recordings
@@ -31,7 +31,7 @@ struct Moment {
 };
 
 /// How long and how quickly frames follow each other.
-struct Pace {
+struct FrameSchedule {
   double rate_hz = 0.0;                                              ///< at most; 0: no limit
   std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();  ///< of each sensor
   double duration_s = std::numeric_limits<double>::infinity();
@@ -46,7 +46,7 @@ class PoseSource {
   virtual ~PoseSource() = default;
 
   /// Waits for the next frame. Empty: there is no more, or a signal came.
-  virtual std::optional<Moment> next() = 0;
+  virtual std::optional<FrameRequest> next() = 0;
   /// Why there is no more; empty while there is.
   [[nodiscard]] virtual std::string ending() const = 0;
 };
@@ -57,18 +57,18 @@ class MotionSource final : public PoseSource {
  public:
   /// `periods_s`: from one frame to the next in each sensor's own time. The pace's rate is that of
   /// the first sensor.
-  MotionSource(const Pace& pace, std::vector<double> periods_s, const StopRequest& stop);
-  std::optional<Moment> next() override;
+  MotionSource(const FrameSchedule& pace, std::vector<double> periods_s, const StopRequest& stop);
+  std::optional<FrameRequest> next() override;
   [[nodiscard]] std::string ending() const override { return ending_; }
   /// Frames that came after they were due by more than a period; the later ones are put off.
   [[nodiscard]] std::uint64_t late() const { return late_; }
 
  private:
-  [[nodiscard]] double begins_s(std::size_t mount) const;
+  [[nodiscard]] double start_s(std::size_t mount) const;
   [[nodiscard]] bool is_done(std::size_t mount) const;
   void wait_until_due(std::size_t mount);
 
-  Pace pace_;
+  FrameSchedule schedule_;
   std::vector<double> periods_s_;
   const StopRequest& stop_;
   std::optional<std::chrono::steady_clock::time_point> due_;
@@ -92,14 +92,14 @@ RigMotion motion_of(const legacy::Placement& placement, const MovedScene& scene)
 class SimulatorSource final : public PoseSource {
  public:
   struct Options {
-    Pace pace;
+    FrameSchedule pace;
     std::optional<double> timeout_s;  ///< of waiting for a pose; empty: for ever
     std::size_t mounts = 1;           ///< sensors that measure at each pose
   };
   /// All must outlive it.
   SimulatorSource(legacy::PoseReceiver& receiver, const MovedScene& scene, const Options& options,
                   const StopRequest& stop);
-  std::optional<Moment> next() override;
+  std::optional<FrameRequest> next() override;
   [[nodiscard]] std::string ending() const override { return ending_; }
   [[nodiscard]] bool has_timed_out() const { return has_timed_out_; }
 
@@ -116,7 +116,7 @@ class SimulatorSource final : public PoseSource {
   std::optional<Clock::time_point> first_;  ///< pose
   Clock::time_point last_;                  ///< pose
   std::uint64_t number_ = 0;                ///< of the next pose
-  Moment moment_;                           ///< the last one
+  FrameRequest request_;                    ///< the last one
   bool has_timed_out_ = false;
   std::string ending_;
 };

@@ -16,7 +16,7 @@
 
 namespace glidar::app {
 
-std::vector<std::string> lasting(const std::vector<std::string>& arguments) {
+std::vector<std::string> reproducible_arguments(const std::vector<std::string>& arguments) {
   static constexpr std::array<std::string_view, 2> kFlags = {"--quiet", "--no-cache"};
   static constexpr std::array<std::string_view, 2> kWithValue = {"--threads", "--cache-folder"};
   const auto has = [](const auto& options, std::string_view name) {
@@ -38,7 +38,7 @@ void parse_recorded(const std::vector<std::string>& arguments, const std::string
   const auto refuse = [&](const char* found) {
     throw Error({file, found, "what `glidar " + subcommand + "` wrote", "write it again"});
   };
-  const std::vector<std::string> kept = lasting(arguments);
+  const std::vector<std::string> kept = reproducible_arguments(arguments);
   if (kept.empty() || kept.front() != subcommand)
     refuse(kept.empty() ? "it tells no command: a simulator or a recording gave the poses"
                         : "it tells another command");
@@ -56,7 +56,7 @@ void compare_version(const std::string& written_by, const std::string& file, Con
   console.warn(fmt::format("{} was written by glidar {}, this is {}", file, written_by, version()));
 }
 
-void enter(const CommandRecord& command, const std::string& file) {
+void enter_folder(const CommandRecord& command, const std::string& file) {
   std::error_code problem;
   std::filesystem::current_path(command.folder, problem);
   if (!problem) return;

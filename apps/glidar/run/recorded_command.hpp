@@ -13,10 +13,10 @@ namespace glidar::app {
 
 /// The arguments without those that change nothing in a cloud: --threads, --quiet, and the options
 /// of the model cache, which belong to the user who runs the command.
-std::vector<std::string> lasting(const std::vector<std::string>& arguments);
+std::vector<std::string> reproducible_arguments(const std::vector<std::string>& arguments);
 
-/// Sets a subcommand's options from the lasting() arguments of a file: a file names no cache
-/// folder. Throws Error, naming the file, when they are those of another subcommand or not
+/// Sets a subcommand's options from the reproducible_arguments() arguments of a file: a file names
+/// no cache folder. Throws Error, naming the file, when they are those of another subcommand or not
 /// understood.
 void parse_recorded(const std::vector<std::string>& arguments, const std::string& subcommand,
                     const std::string& file, CLI::App& command);
@@ -25,6 +25,6 @@ void parse_recorded(const std::vector<std::string>& arguments, const std::string
 void compare_version(const std::string& written_by, const std::string& file, Console& console);
 
 /// Goes to the folder where the command ran, from which its paths count. Throws Error.
-void enter(const CommandRecord& command, const std::string& file);
+void enter_folder(const CommandRecord& command, const std::string& file);
 
 }  // namespace glidar::app

@@ -29,16 +29,16 @@ void check(const link::RecordedFrame& frame, std::uint64_t number, const Session
 
 }  // namespace
 
-RecordedSource::RecordedSource(link::RecordingReader& recording, const Pace& pace,
+RecordedSource::RecordedSource(link::RecordingReader& recording, const FrameSchedule& pace,
                                const Session& session, const StopRequest& stop)
     : recording_(recording),
-      pace_(pace),
+      schedule_(pace),
       session_(session),
       stop_(stop),
       places_(session.mounts.size()) {}
 
-std::optional<Moment> RecordedSource::next() {
-  if (number_ >= pace_.frames) {
+std::optional<FrameRequest> RecordedSource::next() {
+  if (number_ >= schedule_.frames) {
     ending_ = "all frames are done";
     return std::nullopt;
   }
@@ -51,25 +51,25 @@ std::optional<Moment> RecordedSource::next() {
   wait_until_due();
   if (stop_.is_requested()) return std::nullopt;
   ++number_;
-  Moment moment{.mount = frame->sensor,
-                .number = frame->moment.number,
-                .place = places_[frame->sensor]++,
-                .due = *due_,
-                .motion = {},
-                .stamp_ns = frame->moment.t_ns,
-                .seed = frame->moment.seed,
-                .frame_hash = std::move(frame->frame_hash)};
+  FrameRequest moment{.mount = frame->sensor,
+                      .number = frame->moment.number,
+                      .place = places_[frame->sensor]++,
+                      .due = *due_,
+                      .motion = {},
+                      .stamp_ns = frame->moment.t_ns,
+                      .seed = frame->moment.seed,
+                      .frame_hash = std::move(frame->frame_hash)};
   if (frame->is_placed) moment.motion = motion_at(frame->moment, session_);
   return moment;
 }
 
 void RecordedSource::wait_until_due() {
   const Clock::time_point now = Clock::now();
-  if (!due_ || pace_.rate_hz <= 0.0) {
+  if (!due_ || schedule_.rate_hz <= 0.0) {
     due_ = now;
     return;
   }
-  const std::chrono::duration<double> period(1.0 / pace_.rate_hz);
+  const std::chrono::duration<double> period(1.0 / schedule_.rate_hz);
   due_ = std::max(now, *due_ + std::chrono::duration_cast<Clock::duration>(period));
   while (Clock::now() < *due_ && !stop_.is_requested()) stop_.wait_until(*due_);
 }

@@ -11,16 +11,16 @@ namespace glidar::app {
 class RecordedSource final : public PoseSource {
  public:
   /// All must outlive it.
-  RecordedSource(link::RecordingReader& recording, const Pace& pace, const Session& session,
-                 const StopRequest& stop);
-  std::optional<Moment> next() override;
+  RecordedSource(link::RecordingReader& recording, const FrameSchedule& pace,
+                 const Session& session, const StopRequest& stop);
+  std::optional<FrameRequest> next() override;
   [[nodiscard]] std::string ending() const override { return ending_; }
 
  private:
   void wait_until_due();
 
   link::RecordingReader& recording_;
-  Pace pace_;
+  FrameSchedule schedule_;
   const Session& session_;
   const StopRequest& stop_;
   std::optional<std::chrono::steady_clock::time_point> due_;

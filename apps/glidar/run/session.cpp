@@ -23,7 +23,7 @@ bool is_scene_file(const std::string& input) {
 }
 
 /// Gives the model of a single file the surface asked for.
-void cover(const RenderFlags& flags, const Sensor& sensor, Scene& scene) {
+void apply_surface_option(const RenderFlags& flags, const Sensor& sensor, Scene& scene) {
   if (flags.surface.empty()) return;
   const auto refuse = [](const char* found, const char* remedy) {
     throw Error({.where = "--surface", .found = found, .allowed = "", .remedy = remedy});
@@ -39,19 +39,19 @@ void cover(const RenderFlags& flags, const Sensor& sensor, Scene& scene) {
 }
 
 /// Whether the view is chosen by us: then it matters what is up.
-bool is_framed(const RenderFlags& flags) {
+bool is_auto_framed(const RenderFlags& flags) {
   return !flags.model.up && !flags.pose.model_q && !flags.pose.up && !sensor_pose_given(flags.pose);
 }
 
 SceneFile load(const RenderFlags& flags, Console& console) {
-  const Working working(console, "loading " + flags.input);
+  const ProgressScope progress(console, "loading " + flags.input);
   if (is_scene_file(flags.input)) {
     return load_scene_file(flags.input, flags.model, console.report());
   }
   SceneFile loaded;
   Model model = load_model(flags.input, flags.model, console.report());
   const std::string up_hint =
-      is_framed(flags) ? up_advice(model.format, bounds(model.mesh)) : std::string();
+      is_auto_framed(flags) ? up_advice(model.format, bounds(model.mesh)) : std::string();
   if (!up_hint.empty()) console.info(up_hint);
   add_model(loaded.scene, std::move(model));
   return loaded;
@@ -119,8 +119,8 @@ std::vector<Mount> make_mounts(const RenderFlags& flags, const std::vector<RigSe
 }
 
 /// Where the first sensor is: the rig goes with it.
-Pose place_first(const RenderFlags& flags, const SceneFile& loaded, const Session& session,
-                 Console& console) {
+Pose first_sensor_pose(const RenderFlags& flags, const SceneFile& loaded, const Session& session,
+                       Console& console) {
   const Mount& first = session.mounts.front();
   ScenePose in_file{loaded.world_from_rig, loaded.looks_at};
   if (in_file.world_from_sensor) {
@@ -130,7 +130,7 @@ Pose place_first(const RenderFlags& flags, const SceneFile& loaded, const Sessio
   const bool is_placed = in_file.world_from_sensor || loaded.rig_motion ||
                          sensor_pose_given(flags.pose) || !flags.motion.trajectory.empty();
   if (!looks_along_z(first.beams) && !is_placed) {
-    console.info(beside_advice(session.scene, world_from_sensor));
+    console.info(placement_advice(session.scene, world_from_sensor));
   }
   return world_from_sensor;
 }
@@ -194,14 +194,14 @@ void check_target(const RenderFlags& flags) {
 }
 
 /// Where sensors and objects are and how they move; the console shows how long that takes.
-void place_all(const RenderFlags& flags, const SceneFile& loaded, Console& console,
-               Session& session) {
-  const Working working(console, "aiming the sensor");
+void place_sensors(const RenderFlags& flags, const SceneFile& loaded, Console& console,
+                   Session& session) {
+  const ProgressScope progress(console, "aiming the sensor");
   for (Mount& mount : session.mounts) {
     mount.beams = make_beams(mount.sensor);
     mount.frames = frame_count(flags, mount.sensor);
   }
-  const Pose world_from_first = place_first(flags, loaded, session, console);
+  const Pose world_from_first = first_sensor_pose(flags, loaded, session, console);
   session.motion = make_motion(flags, loaded, session, world_from_first);
   warn_extrapolation(session, console.report());
   if (!flags.sensor_name.empty()) {  // only now: the poses must not depend on who measures
@@ -213,7 +213,7 @@ void place_all(const RenderFlags& flags, const SceneFile& loaded, Console& conso
 
 }  // namespace
 
-void tell(const std::vector<std::string>& advice, Console& console) {
+void print_advice(const std::vector<std::string>& advice, Console& console) {
   for (const std::string& sentence : advice) console.warn(sentence);
 }
 
@@ -227,11 +227,12 @@ void open(const RenderFlags& flags, const std::function<void()>& on_loaded, Cons
   session.files = files_read(flags, loaded, session.mounts);
   if (on_loaded) on_loaded();
   session.scene = std::move(loaded.scene);
-  cover(flags, session.mounts.front().sensor, session.scene);
+  apply_surface_option(flags, session.mounts.front().sensor, session.scene);
   pose_model(flags.pose, session.scene);
-  tell(size_advice(session.scene, flags.model.metres_per_unit || flags.pose.scale), console);
-  place_all(flags, loaded, console, session);
-  const Working working(console, "preparing the scene");
+  print_advice(size_advice(session.scene, flags.model.metres_per_unit || flags.pose.scale),
+               console);
+  place_sensors(flags, loaded, console, session);
+  const ProgressScope progress(console, "preparing the scene");
   session.renderer = make_renderer(session.scene, flags.renderer);
   if (flags.quantized_framebuffer) {
     session.paper = make_paper_camera(session.scene, flags.renderer);
@@ -253,7 +254,7 @@ Motion motion_of(RigMotion motion, const Mount& mount) {
           .world_from_instance = std::move(motion.world_from_instance)};
 }
 
-void turn_to(const RenderFlags& flags, std::uint32_t number, Mount& mount, Frame& frame) {
+void start_frame(const RenderFlags& flags, std::uint32_t number, Mount& mount, Frame& frame) {
   const FrameInterval window = frame_interval(mount.sensor, number);
   if (number > 0) mount.beams = make_beams(mount.sensor, window);
   frame.number = number;
@@ -268,7 +269,7 @@ Setup setup_of(const Session& session, const Mount& mount, Console& console) {
               .beams = mount.beams,
               .motion = mount.motion,
               .renderer = *session.renderer,
-              .progress = [&console](double fraction) { console.tell(fraction); }};
+              .progress = [&console](double fraction) { console.set_progress(fraction); }};
   if (session.paper) setup.paper.emplace(Woods2016Target{.camera = *session.paper});
   return setup;
 }

@@ -57,12 +57,12 @@ Mount& only_mount(Session& session);
 Motion motion_of(RigMotion motion, const Mount& mount);
 
 /// Turns to a frame of the sequence: its beams, number, stamp and seed.
-void turn_to(const RenderFlags& flags, std::uint32_t number, Mount& mount, Frame& frame);
+void start_frame(const RenderFlags& flags, std::uint32_t number, Mount& mount, Frame& frame);
 
 /// A sensor of the session as simulate() wants it; all must outlive it.
 Setup setup_of(const Session& session, const Mount& mount, Console& console);
 
 /// Tells advice as warnings.
-void tell(const std::vector<std::string>& advice, Console& console);
+void print_advice(const std::vector<std::string>& advice, Console& console);
 
 }  // namespace glidar::app

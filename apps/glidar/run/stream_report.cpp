@@ -40,7 +40,7 @@ std::string json_text(const StreamSummary& summary) {
       {"latency_ms",
        {{"p50", kMilli * latency.quantile_s(0.5)},
         {"p99", kMilli * latency.quantile_s(0.99)},
-        {"max", kMilli * latency.longest_s()}}}};
+        {"max", kMilli * latency.max_s()}}}};
   if (summary.clouds) all["clouds"] = json_of(*summary.clouds);
   if (summary.poses) all["poses"] = json_of(*summary.poses);
   all["faults"] = summary.faults;

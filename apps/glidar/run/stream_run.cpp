@@ -29,10 +29,10 @@ namespace {
 const std::vector<std::string> kPublishedColumns = {"xyz", "intensity"};
 
 /// How often the status line changes.
-constexpr std::chrono::milliseconds kShow{200};
+constexpr std::chrono::milliseconds kStatusInterval{200};
 
 /// How often partners are looked after that are waited for.
-constexpr std::chrono::milliseconds kStreamWait{20};
+constexpr std::chrono::milliseconds kPeerPollInterval{20};
 
 /// Whether every frame has the same beams; those of scanners move on.
 bool has_fixed_beams(const Sensor& sensor) {
@@ -56,8 +56,8 @@ legacy::PoseReceiverOptions receiver_options(const StreamFlags& flags) {
 }
 
 /// Throws Error when a frame is not the one that was recorded.
-void compare(const Shot& shot, const std::string& recording, std::uint64_t number) {
-  if (frame_hash(shot.frame) == shot.frame_hash) return;
+void compare(const MeasuredFrame& measured, const std::string& recording, std::uint64_t number) {
+  if (frame_hash(measured.frame) == measured.frame_hash) return;
   throw Error({fmt::format("{}, frame {}", recording, number),
                "it comes out otherwise than when it was recorded",
                "the same models, scene and sensor files, and the same program", ""});
@@ -106,9 +106,9 @@ void StreamRun::open_session() {
       session_);
   files_ = outputs_by_sensor(flags_.render, session_, console_);
   for (const Mount& mount : session_.mounts) {
-    aimed_.push_back({.beams = std::make_shared<const Beams>(mount.beams)});
+    frame_beams_.push_back({.beams = std::make_shared<const Beams>(mount.beams)});
   }
-  taken_ = reserved_files(flags_, session_.files);
+  reserved_files_ = reserved_files(flags_, session_.files);
   std::vector<std::string> columns;
   if (publisher_) {
     columns = kPublishedColumns;
@@ -164,8 +164,8 @@ void StreamRun::prepare_poses() {
 }
 
 std::unique_ptr<PoseSource> StreamRun::make_source(const StopRequest& stop) {
-  Pace pace = {.frames = flags_.frames.value_or(std::numeric_limits<std::uint64_t>::max()),
-               .duration_s = duration_s_};
+  FrameSchedule pace = {.frames = flags_.frames.value_or(std::numeric_limits<std::uint64_t>::max()),
+                        .duration_s = duration_s_};
   if (recording_) {
     pace.rate_hz = flags_.replay_rate_hz;
     return std::make_unique<RecordedSource>(*recording_, pace, session_, stop);
@@ -188,15 +188,15 @@ int StreamRun::run() {
   StopRequest stop;
   try {
     const std::unique_ptr<PoseSource> source = make_source(stop);
-    if (wait_for_partners(stop)) stream(*source, stop);
+    if (wait_for_peers(stop)) stream(*source, stop);
     if (const auto* motion = dynamic_cast<const MotionSource*>(source.get())) {
       late_ = motion->late();
     }
     const auto* simulator = dynamic_cast<const SimulatorSource*>(source.get());
     if (simulator != nullptr && simulator->has_timed_out()) exit_code_ = kNoPoses;
-    constexpr int kSignalled = 128;  // as in shells
+    constexpr int kSignalExitBase = 128;  // as in shells
     if (stop.is_requested()) {
-      exit_code_ = kSignalled + stop.signal();
+      exit_code_ = kSignalExitBase + stop.signal();
       ending_ = fmt::format("signal {}", stop.signal());
     }
     stop.disarm();
@@ -213,14 +213,14 @@ int StreamRun::run() {
   return exit_code_;
 }
 
-bool StreamRun::has_partners() {
+bool StreamRun::has_peers() {
   if (publisher_) publisher_->serve();
   const bool has_simulator = !receiver_ || receiver_->is_ready();
   return has_simulator && (!publisher_ || publisher_->has(flags_.subscribers));
 }
 
 /// Says how many subscribers there are whenever that changes.
-void StreamRun::show_partners(std::uint64_t& shown) {
+void StreamRun::show_peers(std::uint64_t& shown) {
   const std::uint64_t ready = publisher_ ? publisher_->ready() : 0;
   if (flags_.subscribers == 0 || std::exchange(shown, ready) == ready) return;
   console_.info(ready_text(ready, flags_.subscribers));
@@ -233,72 +233,72 @@ bool StreamRun::lacks_simulator(StreamStats::Clock::time_point begin) {
   return waited.count() > *flags_.pose_timeout_s;
 }
 
-bool StreamRun::wait_for_partners(const StopRequest& stop) {
+bool StreamRun::wait_for_peers(const StopRequest& stop) {
   const auto begin = StreamStats::Clock::now();
   bool is_announced = false;
   std::uint64_t ready = 0;
-  while (!has_partners() && !stop.is_requested()) {
+  while (!has_peers() && !stop.is_requested()) {
     if (lacks_simulator(begin)) {
       ending_ = fmt::format("no simulator answered for {} s", *flags_.pose_timeout_s);
       exit_code_ = kNoPoses;
       return false;
     }
     if (!std::exchange(is_announced, true)) console_.info(waiting_text(flags_));
-    show_partners(ready);
+    show_peers(ready);
     link::wait_for({publisher_ ? &publisher_->handshake_socket() : nullptr,
                     receiver_ ? &receiver_->handshake_socket() : nullptr},
-                   stop.descriptor(), kStreamWait);
+                   stop.descriptor(), kPeerPollInterval);
   }
   return !stop.is_requested();
 }
 
 void StreamRun::stream(PoseSource& source, StopRequest& stop) {
   stats_ = {};
-  Delivery delivery([this](const Shot& shot) { deliver(shot); }, [this] { look_after_peers(); },
-                    [&stop] { stop.ask(); });
+  Delivery delivery([this](const MeasuredFrame& measured) { deliver(measured); },
+                    [this] { serve_peers(); }, [&stop] { stop.request(); });
   while (!stop.is_requested()) {
-    const std::optional<Moment> moment = source.next();
-    if (!moment) break;
-    if (moment->motion) move(*moment->motion);
-    if (!is_wanted(moment->place)) continue;
-    measure(*moment, delivery.room());
-    delivery.hand_over();
+    const std::optional<FrameRequest> request = source.next();
+    if (!request) break;
+    if (request->motion) move(*request->motion);
+    if (!is_wanted(request->place)) continue;
+    measure(*request, delivery.next_slot());
+    delivery.submit();
   }
   delivery.finish();
 }
 
 void StreamRun::move(const RigMotion& motion) {
   for (Mount& mount : session_.mounts) mount.motion = motion_of(motion, mount);
-  if (recorder_) placed_ = std::make_shared<const lockstep::Moment>(placed_by(motion));
+  if (recorder_) placed_ = std::make_shared<const lockstep::Moment>(static_moment(motion));
 }
 
-void StreamRun::measure(const Moment& moment, Shot& shot) {
-  const Mount& mount = session_.mounts[moment.mount];
-  auto& [beams, number] = aimed_[moment.mount];
-  const FrameInterval window = frame_interval(mount.sensor, moment.number);
-  if (moment.number != number && !has_fixed_beams(mount.sensor)) {
+void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {
+  const Mount& mount = session_.mounts[request.mount];
+  auto& [beams, number] = frame_beams_[request.mount];
+  const FrameInterval window = frame_interval(mount.sensor, request.number);
+  if (request.number != number && !has_fixed_beams(mount.sensor)) {
     beams = std::make_shared<const Beams>(make_beams(mount.sensor, window));
-    number = moment.number;
+    number = request.number;
   }
-  shot.beams = beams;
-  shot.place = moment.place;
-  shot.mount = moment.mount;
-  shot.placed = placed_;
-  shot.frame_hash = moment.frame_hash;
-  shot.due = moment.due;
-  shot.frame.number = moment.number;
-  shot.frame.sensor_id = mount.id;
-  shot.frame.stamp_ns = moment.stamp_ns.value_or(window.start_ns);
-  shot.frame.seed = moment.seed.value_or(flags_.render.seed);
+  measured.beams = beams;
+  measured.place = request.place;
+  measured.mount = request.mount;
+  measured.placed = placed_;
+  measured.frame_hash = request.frame_hash;
+  measured.due = request.due;
+  measured.frame.number = request.number;
+  measured.frame.sensor_id = mount.id;
+  measured.frame.stamp_ns = request.stamp_ns.value_or(window.start_ns);
+  measured.frame.seed = request.seed.value_or(flags_.render.seed);
   Setup setup{.scene = session_.scene,
               .sensor = mount.sensor,
               .beams = *beams,
               .motion = mount.motion,
               .renderer = *session_.renderer};
   if (session_.paper) setup.paper.emplace(Woods2016Target{.camera = *session_.paper});
-  simulate(setup, fields_, shot.frame);
+  simulate(setup, fields_, measured.frame);
   if (measured_++ > 0) return;
-  tell(view_advice({session_.scene, mount.sensor, *beams, shot.frame}), console_);
+  print_advice(view_advice({session_.scene, mount.sensor, *beams, measured.frame}), console_);
 }
 
 bool StreamRun::is_wanted(std::uint64_t place) const {
@@ -315,7 +315,7 @@ std::vector<Output> StreamRun::plan(const OutputFlags& files, const Mount& mount
                          .sensor = mount.sensor,
                          .beams = beams,
                          .renderer = renderer_name(flags_.render),
-                         .inputs = taken_};
+                         .inputs = reserved_files_};
   if (!flags_.pose_source && !recording_) {  // else the command does not tell the poses
     context.command = flags_.command;
     const std::string label = label_of(flags_.render, mount);
@@ -326,38 +326,38 @@ std::vector<Output> StreamRun::plan(const OutputFlags& files, const Mount& mount
   return plan_outputs(files, flags_.render.input, context, console_.report());
 }
 
-void StreamRun::deliver(const Shot& shot) {
-  if (recorder_) recorder_->write(line_of(shot.mount, shot.frame, shot.placed.get()));
-  if (!shot.frame_hash.empty()) compare(shot, flags_.replay, stats_.latency.count());
-  if (publisher_ && publisher_->wants(shot.place)) publish(shot);
-  if (writes_files()) write_files(shot);
-  stats_.note(shot.due);
+void StreamRun::deliver(const MeasuredFrame& measured) {
+  if (recorder_) recorder_->write(line_of(measured.mount, measured.frame, measured.placed.get()));
+  if (!measured.frame_hash.empty()) compare(measured, flags_.replay, stats_.latency.count());
+  if (publisher_ && publisher_->wants(measured.place)) publish(measured);
+  if (writes_files()) write_files(measured);
+  stats_.add_frame(measured.due);
 }
 
-void StreamRun::publish(const Shot& shot) {
-  make_point_cloud(shot.frame, *shot.beams, session_.scene,
-                   output_frame("legacy", *shot.beams, shot.frame.world_from_sensor),
+void StreamRun::publish(const MeasuredFrame& measured) {
+  make_point_cloud(measured.frame, *measured.beams, session_.scene,
+                   output_frame("legacy", *measured.beams, measured.frame.world_from_sensor),
                    kPublishedColumns, cloud_);
-  publisher_->write(cloud_, shot.frame);
+  publisher_->write(cloud_, measured.frame);
 }
 
-void StreamRun::write_files(const Shot& shot) {
-  const Mount& mount = session_.mounts[shot.mount];
-  OutputFlags files = files_[shot.mount];
+void StreamRun::write_files(const MeasuredFrame& measured) {
+  const Mount& mount = session_.mounts[measured.mount];
+  OutputFlags files = files_[measured.mount];
   if (!has_outputs(files)) return;
   const std::string label = label_of(flags_.render, mount);
   if (!label.empty()) files = labelled(files, label);
   const std::vector<Output> outputs =
-      plan(numbered(files, static_cast<std::uint32_t>(shot.place)), mount, *shot.beams);
-  refuse_overwrite_of_inputs(taken_, outputs);
-  write_outputs(outputs, shot.frame, *shot.beams, session_.scene);
+      plan(numbered(files, static_cast<std::uint32_t>(measured.place)), mount, *measured.beams);
+  refuse_overwrite_of_inputs(reserved_files_, outputs);
+  write_outputs(outputs, measured.frame, *measured.beams, session_.scene);
 }
 
-void StreamRun::look_after_peers() {
+void StreamRun::serve_peers() {
   if (publisher_) publisher_->serve();
   const auto now = StreamStats::Clock::now();
-  if (now - shown_ < kShow) return;
-  shown_ = now;
+  if (now - status_time_ < kStatusInterval) return;
+  status_time_ = now;
   console_.status(status_text(stats_) + (publisher_ ? publishing_text(publisher_->counts()) : ""));
 }
 

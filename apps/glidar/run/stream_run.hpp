@@ -40,21 +40,21 @@ class StreamRun {
   [[nodiscard]] std::map<std::uint32_t, std::string> topics() const;
   void prepare_poses();
   [[nodiscard]] std::unique_ptr<PoseSource> make_source(const StopRequest& stop);
-  bool wait_for_partners(const StopRequest& stop);
-  [[nodiscard]] bool has_partners();
+  bool wait_for_peers(const StopRequest& stop);
+  [[nodiscard]] bool has_peers();
   [[nodiscard]] bool lacks_simulator(StreamStats::Clock::time_point begin);
-  void show_partners(std::uint64_t& shown);
+  void show_peers(std::uint64_t& shown);
   void stream(PoseSource& source, StopRequest& stop);
-  void measure(const Moment& moment, Shot& shot);
+  void measure(const FrameRequest& request, MeasuredFrame& measured);
   [[nodiscard]] bool is_wanted(std::uint64_t place) const;
   [[nodiscard]] bool writes_files() const;
   [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const Mount& mount,
                                          const Beams& beams);
   void move(const RigMotion& motion);
-  void deliver(const Shot& shot);
-  void write_files(const Shot& shot);
-  void publish(const Shot& shot);
-  void look_after_peers();
+  void deliver(const MeasuredFrame& measured);
+  void write_files(const MeasuredFrame& measured);
+  void publish(const MeasuredFrame& measured);
+  void serve_peers();
   void finish(const std::string& ending, bool is_urgent = false);
 
   StreamFlags flags_;
@@ -69,17 +69,17 @@ class StreamRun {
   std::shared_ptr<const lockstep::Moment> placed_;    ///< by the simulator's last pose
   double duration_s_ = 0.0;
   Session session_;
-  struct Aimed {
+  struct FrameBeams {
     std::shared_ptr<const Beams> beams;
     std::uint32_t number = 0;  ///< of the frame that they are of
   };
-  std::vector<Aimed> aimed_;        ///< of each sensor
-  std::vector<std::string> taken_;  ///< files that no output may replace
-  std::vector<OutputFlags> files_;  ///< of each sensor
+  std::vector<FrameBeams> frame_beams_;      ///< of each sensor
+  std::vector<std::string> reserved_files_;  ///< files that no output may replace
+  std::vector<OutputFlags> files_;           ///< of each sensor
   MovedScene moved_scene_;
   HitFieldMask fields_;
   StreamStats stats_;
-  StreamStats::Clock::time_point shown_;
+  StreamStats::Clock::time_point status_time_;
   PointCloud cloud_;
   std::uint64_t measured_ = 0;
   std::uint64_t late_ = 0;

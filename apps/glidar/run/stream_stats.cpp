@@ -19,10 +19,10 @@ constexpr double kWindow_s = 1.0;
 }  // namespace
 
 void DurationHistogram::add(double seconds) {
-  const double place = kBinsPerFactorE * std::log(std::max(seconds, kShortest_s) / kShortest_s);
+  const double place = kBinsPerFactorE * std::log(std::max(seconds, kMin_s) / kMin_s);
   ++bins_.at(std::min(static_cast<std::size_t>(place), kBins - 1));
   ++count_;
-  longest_s_ = std::max(longest_s_, seconds);
+  max_s_ = std::max(max_s_, seconds);
 }
 
 double DurationHistogram::quantile_s(double part) const {
@@ -31,13 +31,13 @@ double DurationHistogram::quantile_s(double part) const {
   for (std::size_t i = 0; i < kBins && count_ > 0; ++i) {
     seen += static_cast<double>(bins_.at(i));
     if (seen < wanted || seen == 0.0) continue;
-    const double end_s = kShortest_s * std::exp(static_cast<double>(i + 1) / kBinsPerFactorE);
-    return std::min(end_s, longest_s_);
+    const double end_s = kMin_s * std::exp(static_cast<double>(i + 1) / kBinsPerFactorE);
+    return std::min(end_s, max_s_);
   }
-  return longest_s_;
+  return max_s_;
 }
 
-void StreamStats::note(Clock::time_point due) {
+void StreamStats::add_frame(Clock::time_point due) {
   const Clock::time_point now = Clock::now();
   latency.add(seconds_between(due, now));
   last_ = now;

@@ -17,16 +17,16 @@ class DurationHistogram {
   [[nodiscard]] std::uint64_t count() const { return count_; }
   /// What the given part of them did not exceed, to 2 %; 0 without any.
   [[nodiscard]] double quantile_s(double part) const;
-  [[nodiscard]] double longest_s() const { return longest_s_; }
+  [[nodiscard]] double max_s() const { return max_s_; }
 
  private:
-  static constexpr double kShortest_s = 1e-6;
+  static constexpr double kMin_s = 1e-6;
   static constexpr double kBinsPerFactorE = 50.0;
   static constexpr std::size_t kBins = 1100;  // to an hour
 
   std::array<std::uint64_t, kBins> bins_{};
   std::uint64_t count_ = 0;
-  double longest_s_ = 0.0;
+  double max_s_ = 0.0;
 };
 
 /// What a stream has delivered; used by the thread that delivers.
@@ -37,7 +37,7 @@ struct StreamStats {
   DurationHistogram latency;  ///< from a frame's pose until its cloud was handed on
 
   /// Notes a frame that was delivered.
-  void note(Clock::time_point due);
+  void add_frame(Clock::time_point due);
   /// From the start to the last frame; to now while there is none.
   [[nodiscard]] double seconds() const;
   /// Frames a second over the last second or so, else over all.

@@ -16,11 +16,12 @@ namespace {
 
 TEST(Delivery, DeliversEveryFrameInOrder) {
   std::vector<std::uint32_t> delivered;
-  Delivery delivery([&](const Shot& shot) { delivered.push_back(shot.frame.number); }, [] {},
-                    [] {});
+  Delivery delivery(
+      [&](const MeasuredFrame& measured) { delivered.push_back(measured.frame.number); }, [] {},
+      [] {});
   for (std::uint32_t k = 0; k < 100; ++k) {
-    delivery.room().frame.number = k;
-    delivery.hand_over();
+    delivery.next_slot().frame.number = k;
+    delivery.submit();
   }
   delivery.finish();
   ASSERT_EQ(delivered.size(), 100U);
@@ -30,12 +31,12 @@ TEST(Delivery, DeliversEveryFrameInOrder) {
 /// Every frame but the last is being delivered while the next one is filled.
 TEST(Delivery, NeverTouchesAFrameThatIsBeingDelivered) {
   constexpr int kFrames = 50;
-  std::atomic<const Shot*> busy{nullptr};
+  std::atomic<const MeasuredFrame*> busy{nullptr};
   std::atomic<int> begun{0};
   std::atomic<int> filled{0};
   Delivery delivery(
-      [&](const Shot& shot) {
-        busy = &shot;
+      [&](const MeasuredFrame& measured) {
+        busy = &measured;
         const int next = ++begun;
         EXPECT_TRUE(testing::soon([&] { return next == kFrames || filled > next; }));
         busy = nullptr;
@@ -43,11 +44,11 @@ TEST(Delivery, NeverTouchesAFrameThatIsBeingDelivered) {
       [] {}, [] {});
   for (int k = 0; k < kFrames; ++k) {
     ASSERT_TRUE(testing::soon([&] { return begun == k; }));
-    const Shot& shot = delivery.room();
+    const MeasuredFrame& measured = delivery.next_slot();
     EXPECT_EQ(busy.load() != nullptr, k > 0);
-    EXPECT_NE(&shot, busy.load());
+    EXPECT_NE(&measured, busy.load());
     ++filled;
-    delivery.hand_over();
+    delivery.submit();
   }
   delivery.finish();
   EXPECT_EQ(begun, kFrames);
@@ -55,10 +56,10 @@ TEST(Delivery, NeverTouchesAFrameThatIsBeingDelivered) {
 
 TEST(Delivery, TellsThatSomethingWentWrongAtOnceAndHandsItOn) {
   std::atomic<int> failures{0};
-  Delivery delivery([](const Shot&) { throw std::runtime_error("disk full"); }, [] {},
+  Delivery delivery([](const MeasuredFrame&) { throw std::runtime_error("disk full"); }, [] {},
                     [&] { ++failures; });
-  delivery.room();
-  delivery.hand_over();
+  delivery.next_slot();
+  delivery.submit();
   ASSERT_TRUE(testing::soon([&] { return failures > 0; }));
   EXPECT_EQ(failures, 1);
   EXPECT_THROW(delivery.finish(), std::runtime_error);
@@ -66,7 +67,7 @@ TEST(Delivery, TellsThatSomethingWentWrongAtOnceAndHandsItOn) {
 
 TEST(Delivery, IsIdleWhileNothingComes) {
   std::atomic<int> idle{0};
-  Delivery delivery([](const Shot&) {}, [&] { ++idle; }, [] {});
+  Delivery delivery([](const MeasuredFrame&) {}, [&] { ++idle; }, [] {});
   EXPECT_TRUE(testing::soon([&] { return idle >= 3; }));
 }
 
@@ -77,14 +78,14 @@ TEST(DurationHistogram, TellsQuantilesToTwoPercent) {
   EXPECT_NEAR(histogram.quantile_s(0.5), 0.5, 0.02 * 0.5);
   EXPECT_NEAR(histogram.quantile_s(0.99), 0.99, 0.02 * 0.99);
   EXPECT_EQ(histogram.quantile_s(1.0), 1.0);
-  EXPECT_EQ(histogram.longest_s(), 1.0);
+  EXPECT_EQ(histogram.max_s(), 1.0);
 }
 
 TEST(DurationHistogram, TakesAnyDuration) {
   DurationHistogram histogram;
   for (const double s : {-1.0, 0.0, 1e-12, 1e9}) histogram.add(s);
   EXPECT_EQ(histogram.count(), 4U);
-  EXPECT_EQ(histogram.longest_s(), 1e9);
+  EXPECT_EQ(histogram.max_s(), 1e9);
 }
 
 }  // namespace
