@@ -19,9 +19,11 @@ from ._mesh import Mesh, from_open3d, from_trimesh
 from ._object import SceneObject
 from ._pictures import Picture
 from ._poses import look_at, pose, quaternion
-from ._scene import RigSensor, Scene, load_scene, surface_names
+from ._scene import Scene, load_scene, surface_names
+from ._scene_data import RigSensor
 from ._sensor import Sensor, DatasheetEntry, camera, load_sensor, sensor, sensor_file, sensor_names, datasheet
-from ._simulator import Simulator, simulate, simulate_batch, simulate_iter, simulate_rig
+from ._simulate import simulate, simulate_batch, simulate_iter, simulate_rig
+from ._simulator import Simulator
 from ._status import ReturnSource, Status
 from ._point_trace import RandomSample, Echo, Measurement, NoiseStep, PointTrace
 from ._trajectory import Trajectory

@@ -4,16 +4,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
 
+from . import _core
 from ._errors import Error
 from ._inputs import FloatArray
 
-if TYPE_CHECKING:
-    from ._frame import Frame
+CoreFrame: TypeAlias = _core.Frame
+
+
+class MeasuredFrame(Protocol):
+    """A frame whose memory holds the ground truth."""
+
+    _core: CoreFrame
 
 
 class GroundTruth:
@@ -23,7 +29,7 @@ class GroundTruth:
 
     __slots__ = ("_frame",)
 
-    def __init__(self, frame: Frame) -> None:
+    def __init__(self, frame: MeasuredFrame) -> None:
         self._frame = frame
 
     def _kept(self, name: str) -> npt.NDArray[Any]:

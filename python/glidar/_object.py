@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -14,10 +14,8 @@ import numpy.typing as npt
 from ._errors import Error
 from ._inputs import FloatArray, floats, numbers, text_of, whole
 from ._mesh import Mesh
+from ._scene_data import SceneData
 from ._sensor import plain
-
-if TYPE_CHECKING:
-    from ._scene import Scene
 
 
 class SceneObject:
@@ -27,7 +25,7 @@ class SceneObject:
 
     __slots__ = ("_index", "_scene")
 
-    def __init__(self, scene: Scene, index: int) -> None:
+    def __init__(self, scene: SceneData, index: int) -> None:
         self._scene = scene
         self._index = index
 
@@ -42,8 +40,12 @@ class SceneObject:
     def _info(self) -> dict[str, Any]:
         return self._scene._core.object(self._index)
 
+    def _others(self, attribute: str) -> set[Any]:
+        """An attribute's values of all other objects."""
+        core = self._scene._core
+        return {core.object(index)[attribute] for index in range(len(core)) if index != self._index}
+
     def _set(self, **changes: Any) -> None:
-        self._scene._simulators.clear()
         self._scene._recipe.set_object(self._index, changes)
 
     @property
@@ -58,7 +60,7 @@ class SceneObject:
 
     @name.setter
     def name(self, name: str) -> None:
-        if text_of(name, "name") in {other.name for other in self._scene if other.index != self._index}:
+        if text_of(name, "name") in self._others("name"):
             raise Error("name", f"{name!r}, which another object has", "each name once")
         self._set(name=name)
 
@@ -69,7 +71,7 @@ class SceneObject:
 
     @id.setter
     def id(self, number: int) -> None:
-        if whole(number, "id", 2**32 - 2) in {other.id for other in self._scene if other.index != self._index}:
+        if whole(number, "id", 2**32 - 2) in self._others("id"):
             raise Error("id", f"{number}, which another object has", "each id once")
         self._set(id=number)
 
@@ -121,7 +123,6 @@ class SceneObject:
         Raises:
             Error: names the field, what is allowed and the nearest known key.
         """
-        self._scene._simulators.clear()
         self._scene._recipe.set_materials(self._index, json.dumps(plain(changes, "materials"), ensure_ascii=False))
 
     @property

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +15,7 @@ import numpy as np
 from . import _core
 from ._errors import Error
 from ._inputs import log, one_of
-from ._state import key_of, part
+from ._state import key_of, part, restoring, stated
 
 _BUILTIN = "builtin:"
 
@@ -34,6 +34,7 @@ class Recipe:
         self._steps = steps
         self._latest: dict[int, dict[str, Any]] = {}  # of each object the changes that later ones may join
         self._files: dict[str, str] = {}  # what was read, and where it is
+        self.before_change: Callable[[], object] | None = None  # releases what depends on the scene as it is
         self._note_files()
 
     def _note_files(self) -> None:
@@ -68,37 +69,43 @@ class Recipe:
         copied._files = dict(self._files)
         return copied
 
+    def _editable(self) -> _core.Scene:
+        """The scene, about to be changed."""
+        if self.before_change is not None:
+            self.before_change()
+        return self.core
+
     def _add(self, name: str, **arguments: Any) -> None:
         self._steps.append((name, arguments))
         self._latest.clear()
 
     def add_model(self, path: str, options: dict[str, Any]) -> int:
         """Adds a model file, or a built-in model, read with these options."""
-        index = self.core.add_model(path, options, log)
+        index = self._editable().add_model(path, options, log)
         self._add("model", path=path, folder=_working_folder(), options=options)
         self._note_files()
         return index
 
     def add_mesh(self, name: str, arrays: dict[str, Any]) -> int:
         """Adds a mesh from arrays. The step refers to the mesh: its arrays lie in the scene."""
-        index = self.core.add_mesh(name, arrays)
+        index = self._editable().add_mesh(name, arrays)
         self._add("mesh", mesh=_core.loaded_mesh_count(self.core) - 1)
         return index
 
     def add_instance(self, of: int) -> int:
         """Adds another object with the mesh of one."""
-        index = self.core.add_instance(of)
+        index = self._editable().add_instance(of)
         self._add("copy", of=of)
         return index
 
     def drop_last(self) -> None:
         """Takes the last object away."""
-        self.core.drop_last()
+        self._editable().drop_last()
         self._add("drop")
 
     def set_object(self, index: int, changes: dict[str, Any]) -> None:
         """Sets attributes of an object."""
-        self.core.set_object(index, changes)
+        self._editable().set_object(index, changes)
         kept = {name: np.array(value) if isinstance(value, np.ndarray) else value for name, value in changes.items()}
         if index in self._latest:
             self._latest[index].update(kept)
@@ -108,7 +115,7 @@ class Recipe:
 
     def set_materials(self, index: int, text: str, folder: str = "") -> None:
         """Changes materials of an object; paths count from the folder, or from the working folder."""
-        self.core.set_materials(index, text, folder)
+        self._editable().set_materials(index, text, folder)
         arguments = {"index": index, "text": text, "folder": folder or _working_folder()}
         self._steps.append(("materials", arguments))
 
@@ -129,15 +136,20 @@ class Recipe:
                 arguments = {"state": _core.mesh_state(self.core, arguments["mesh"])}
             steps.append((name, arguments))
         files = {name: _hash_of(name) for name in self._files.values() if not _is_preset(name)}
-        return {"steps": steps, "files": files, "classes": self.core.class_names, "digest": self.digest()}
+        return stated("Scene", steps=steps, files=files, classes=self.core.class_names, digest=self.digest())
 
     @staticmethod
-    def restored(state: Mapping[str, Any]) -> Recipe:
-        """The scene of a state.
+    def restored(state: dict[str, Any]) -> Recipe:
+        """The recipe of a pickled scene.
 
         Raises:
-            Error: a file is not there or has changed, or the scene has become another one.
+            Error: a file is missing or has changed, or the steps create another scene.
         """
+        with restoring("Scene", state):
+            return Recipe._replayed(state)
+
+    @staticmethod
+    def _replayed(state: dict[str, Any]) -> Recipe:
         for name, known in part(state, "files", dict).items():
             _require_unchanged(name, known)
         recipe = Recipe.empty()

@@ -8,7 +8,6 @@ import itertools
 import json
 import os
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
@@ -16,15 +15,13 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error, shown
-from ._inputs import FloatArray, floats, numbers, one_of, path_of, text_of, whole
+from ._inputs import floats, numbers, one_of, path_of, text_of, whole
 from ._mesh import Mesh, mesh_of
 from ._object import SceneObject
 from ._recipe import Recipe
+from ._scene_data import SceneData
 from ._sensor import Sensor, load_sensor, plain
 from ._simulator import Simulator
-from ._state import restoring, same_parts, stated
-
-CoreScene: TypeAlias = _core.Scene
 
 _UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254}
 _AXES = ("x", "y", "z")
@@ -32,24 +29,7 @@ _MOST_SIMULATORS = 8
 _UNIT_TOLERANCE = 1e-3  # of what was rounded to three digits in a file
 
 
-@dataclass(frozen=True, eq=False)
-class RigSensor:
-    """A sensor on the rig of a scene file. Mounts are equal when all their parts are."""
-
-    name: str
-    number: int
-    """Its place in the file, which its random numbers depend on: the sensor_id of its frames."""
-    sensor: Sensor
-    rig_from_sensor: FloatArray
-    """4x4."""
-
-    def __eq__(self, other: object) -> bool:
-        return same_parts(self, other)
-
-    __hash__ = None  # type: ignore[assignment]  # the array can be changed
-
-
-class Scene:
+class Scene(SceneData):
     """All there is to see: models, each placed as an object.
 
     Two scenes are equal when they have the same objects, meshes, materials, motion and sensors, to the
@@ -79,19 +59,13 @@ class Scene:
         up: str | None = None,
         centre: bool = False,
     ) -> None:
-        self._simulators: dict[tuple[int, str, int], Simulator] = {}
-        self._recipe = Recipe.empty()
-        if source is None:
-            return
-        path = path_of(source, "scene")
-        if path.endswith((".yaml", ".yml")):
-            self._recipe = Recipe.of_file(path, _options(unit, up, centre))
-        else:
-            self._recipe.add_model(path, _options(unit, up, centre))
+        self._set_recipe(Recipe.empty() if source is None else _loaded(source, _options(unit, up, centre)))
 
-    @property
-    def _core(self) -> CoreScene:
-        return self._recipe.core
+    def _set_recipe(self, recipe: Recipe) -> None:
+        """Every change of the recipe's scene releases the simulators, which measure the scene before it."""
+        self._recipe = recipe
+        self._simulators: dict[tuple[int, str, int], Simulator] = {}
+        recipe.before_change = self._simulators.clear
 
     @staticmethod
     def from_dict(description: Mapping[str, Any]) -> Scene:
@@ -101,16 +75,16 @@ class Scene:
         Raises:
             Error: names the field, what is allowed and the nearest known key.
         """
-        return Scene._made(Recipe.of_text(json.dumps(plain(description, "scene"), ensure_ascii=False)))
+        return Scene._from_recipe(Recipe.of_text(json.dumps(plain(description, "scene"), ensure_ascii=False)))
 
     @staticmethod
-    def _made(recipe: Recipe) -> Scene:
-        scene = Scene()
-        scene._recipe = recipe
+    def _from_recipe(recipe: Recipe) -> Scene:
+        scene = Scene.__new__(Scene)
+        scene._set_recipe(recipe)
         return scene
 
     def __copy__(self) -> Scene:
-        return Scene._made(self._recipe.copy())
+        return Scene._from_recipe(self._recipe.copy())
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Scene:
         return self.__copy__()
@@ -123,12 +97,10 @@ class Scene:
     __hash__ = None  # type: ignore[assignment]  # it can be changed
 
     def __getstate__(self) -> dict[str, Any]:
-        return stated("Scene", **self._recipe.state())
+        return self._recipe.state()
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self._simulators = {}
-        with restoring("Scene", state):
-            self._recipe = Recipe.restored(state)
+        self._set_recipe(Recipe.restored(state))
 
     def add_model(
         self,
@@ -146,7 +118,6 @@ class Scene:
             placing: pose (4x4), scale (one factor, or three along the object's own axes), name, id,
                 class_name, materials of the object.
         """
-        self._simulators.clear()
         index = self._recipe.add_model(path_of(source, "model"), _options(unit, up, centre))
         return self._placed(index, placing)
 
@@ -190,7 +161,6 @@ class Scene:
             "colours": _fractions(_per_vertex(mesh.colours, "colours", count, 3)),
         }
         index = self._recipe.add_mesh(text_of(placing.get("name") or "mesh", "name"), arrays)
-        self._simulators.clear()
         return self._placed(index, placing)
 
     def add_instance(self, of: SceneObject, **placing: Any) -> SceneObject:
@@ -204,7 +174,6 @@ class Scene:
         if of._scene is not self:
             remedy = "scene.add_mesh(of.mesh) takes the mesh of another scene's"
             raise Error("copy", f"{of!r} is of another scene", "an object of this scene", remedy)
-        self._simulators.clear()
         return self._placed(self._recipe.add_instance(of.index), placing)
 
     def _placed(self, index: int, placing: dict[str, Any]) -> SceneObject:
@@ -255,30 +224,6 @@ class Scene:
     def __iter__(self) -> Iterator[SceneObject]:
         return iter(self.objects)
 
-    @property
-    def bounds(self) -> tuple[FloatArray, FloatArray] | None:
-        """Least and greatest corner of the box around all objects, world, m; None when empty."""
-        return self._core.bounds()
-
-    @property
-    def class_names(self) -> list[str]:
-        """Names of classes; their places are what clouds tell in the column `class`."""
-        return self._core.class_names
-
-    @property
-    def sensor(self) -> Sensor | None:
-        """The sensor of the scene file; None when it has none, or a rig of several."""
-        rig = self._core.rig()
-        return Sensor(rig[0][1]) if len(rig) == 1 else None
-
-    @property
-    def rig(self) -> dict[str, RigSensor]:
-        """The sensors of the scene file by name; a single one has the name ""."""
-        return {
-            name: RigSensor(name, number, Sensor(core), pose)
-            for number, (name, core, pose) in enumerate(self._core.rig())
-        }
-
     def simulator(
         self, sensor: Sensor | str | os.PathLike[str] | None = None, *, renderer: str = "auto", threads: int = 0
     ) -> Simulator:
@@ -315,6 +260,16 @@ def load_scene(
 ) -> Scene:
     """The scene of a scene file, a model file, or "builtin:NAME"; as ``Scene(path)``."""
     return Scene(path, unit=unit, up=up, centre=centre)
+
+
+def _loaded(source: str | os.PathLike[str], options: dict[str, Any]) -> Recipe:
+    """The recipe of a scene file, or of a scene of one model."""
+    path = path_of(source, "scene")
+    if path.endswith((".yaml", ".yml")):
+        return Recipe.of_file(path, options)
+    recipe = Recipe.empty()
+    recipe.add_model(path, options)
+    return recipe
 
 
 def _options(unit: str | float | None, up: str | None, centre: bool) -> dict[str, Any]:

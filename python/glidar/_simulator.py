@@ -4,10 +4,7 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable, Iterator, Sequence
-from copy import copy
-from typing import TYPE_CHECKING
 
 import numpy as np
 import numpy.typing as npt
@@ -18,12 +15,10 @@ from ._inputs import MOST_32, MOST_64, column_list, one_of, whole, whole_numbers
 from ._frame import Frame
 from ._lazily import DEFAULT_SEED, Inputs, Piece
 from ._origin import Origin, SceneSource
+from ._scene_data import SceneData, not_a_scene
 from ._sensor import Sensor
 from ._state import Immutable, refuse_pickle
-from ._trajectory import PoseLike, Trajectory, object_trajectories, trajectories
-
-if TYPE_CHECKING:
-    from ._scene import Scene
+from ._trajectory import PoseLike, object_trajectories, trajectories
 
 _RENDERERS = ("auto", "rays", "raster", "opengl")
 
@@ -38,7 +33,7 @@ class Simulator(Immutable):
     thread; measurements of one scene take turns, each on all threads, without Python's lock.
 
     Args:
-        scene: what is measured.
+        scene: the ``Scene`` to measure.
         sensor: what measures; None: that of the scene file.
         renderer: "auto": "raster" for cameras and scanners where that is quicker, else "rays";
             both on the processor. "opengl" draws on a graphics device (cameras without distortion).
@@ -46,16 +41,18 @@ class Simulator(Immutable):
     """
 
     def __init__(
-        self, scene: Scene, sensor: Sensor | None = None, *, renderer: str = "auto", threads: int = 0
+        self, scene: SceneData, sensor: Sensor | None = None, *, renderer: str = "auto", threads: int = 0
     ) -> None:
-        chosen = _checked(scene).sensor if sensor is None else sensor
+        if not isinstance(scene, SceneData):
+            raise not_a_scene(scene)
+        chosen = scene.sensor if sensor is None else sensor
         if chosen is not None and not isinstance(chosen, Sensor):
             raise Error("sensor", shown(chosen), "a Sensor", "glidar.load_sensor() reads one")
         if chosen is None:
             raise Error("sensor", "the scene has none", "a sensor", "glidar.camera() makes one")
         one_of(renderer, "renderer", _RENDERERS)
         self.sensor = chosen
-        self._origin = Origin(SceneSource(copy(_checked(scene))), chosen, renderer, threads)
+        self._origin = Origin(SceneSource(scene._recipe.copy()), chosen, renderer, threads)
         self._usual_fields = _core.fields_needed_by(column_list(None))
         self._core = _core.make_simulator(scene._core, chosen._core, renderer, whole(threads, "threads", 4096))
 
@@ -179,159 +176,3 @@ class Simulator(Immutable):
             self._fields(columns),
         )
         return [Frame(core, self._origin) for core in measured]
-
-
-def _checked(scene: Scene) -> Scene:
-    if not hasattr(scene, "simulator"):
-        raise Error("scene", f"a {type(scene).__name__}", "a Scene", "glidar.load_scene() reads one")
-    return scene
-
-
-def simulate(
-    scene: Scene,
-    sensor: Sensor | str | os.PathLike[str] | None = None,
-    pose: PoseLike | None = None,
-    *,
-    seed: int = 1,
-    frame: int = 0,
-    objects: PoseLike | Sequence[PoseLike] | None = None,
-    columns: str | Iterable[str] | None = None,
-    sensor_id: int = 0,
-    renderer: str = "auto",
-    threads: int = 0,
-) -> Frame:
-    """Measures a scene once.
-
-    What was made ready is kept in the scene: the next call with the same sensor costs the measurement
-    alone.
-
-    Args:
-        scene: what is measured.
-        sensor: a Sensor, the name of a preset or a sensor file; None: that of the scene file.
-        pose: of the sensor: world_from_sensor (4x4), or a Trajectory; None: as the scene file says,
-            else where the sensor sees all of the scene.
-        seed: of all random numbers, 0 to 2**64 - 1.
-        frame: number of the frame: it starts at frame / rate_hz, and frames draw different numbers.
-        objects: poses of all objects of the scene (k, 4, 4), or a list of k poses and trajectories;
-            None: as the scene says.
-        columns: what clouds of the frame will hold: names, "all", or None for xyz, intensity, range,
-            normal, instance, class. Truth that no column needs is not computed.
-        sensor_id: sensors of one rig draw different random numbers.
-        renderer, threads: as for ``Simulator``.
-
-    Raises:
-        Error: a wrong shape, a number that is not finite, an unknown column.
-    """
-    simulator = _checked(scene).simulator(sensor, renderer=renderer, threads=threads)
-    return simulator.simulate(
-        pose, seed=seed, frame=frame, objects=objects, columns=columns, sensor_id=sensor_id
-    )
-
-
-def simulate_batch(
-    scene: Scene,
-    sensor: Sensor | str | os.PathLike[str] | None,
-    poses: PoseLike | Sequence[PoseLike],
-    seeds: int | npt.ArrayLike | None = None,
-    *,
-    frames: int | npt.ArrayLike = 0,
-    objects: PoseLike | Sequence[PoseLike] | None = None,
-    columns: str | Iterable[str] | None = None,
-    sensor_id: int = 0,
-    renderer: str = "auto",
-    threads: int = 0,
-) -> list[Frame]:
-    """Measures a scene at many poses in one call, without Python's lock; frame k is, to the bit, what
-    ``simulate`` makes of poses[k], seeds[k], frames[k].
-
-    Args:
-        poses: world_from_sensor, (N, 4, 4), or a list of N poses and trajectories.
-        seeds: N seeds, or one for all; None: 1 + k for frame k, so that every frame has noise of its own.
-        frames: N frame numbers, or one for all.
-        objects: poses of the scene's k objects: (N, k, 4, 4), or (k, 4, 4) or a list of k poses and
-            trajectories for all frames; None: as the scene says.
-
-    The other arguments and errors are those of ``simulate``.
-    """
-    simulator = _checked(scene).simulator(sensor, renderer=renderer, threads=threads)
-    return simulator.simulate_batch(
-        poses, seeds, frames=frames, objects=objects, columns=columns, sensor_id=sensor_id
-    )
-
-
-def simulate_iter(
-    scene: Scene,
-    sensor: Sensor | str | os.PathLike[str] | None,
-    poses: Iterable[PoseLike],
-    seeds: int | Iterable[int] | None = None,
-    *,
-    frames: int | Iterable[int] = 0,
-    objects: PoseLike | Sequence[PoseLike] | Iterator[Sequence[PoseLike]] | None = None,
-    columns: str | Iterable[str] | None = None,
-    sensor_id: int = 0,
-    renderer: str = "auto",
-    threads: int = 0,
-    batch: int = 8,
-) -> Iterator[Frame]:
-    """Measures a scene at many poses and hands out one frame after the other, the same to the bit as those
-    of ``simulate_batch``. Neither poses nor frames are kept: a generator of millions of poses takes no more
-    memory than one of ten. The loop may be left at any frame.
-
-    Args:
-        poses: world_from_sensor: an array (N, 4, 4), any iterable of poses and trajectories, or one alone.
-        seeds: one for each pose from any iterable, or one for all; None: 1 + k for frame k.
-        frames: frame numbers; one for each pose from any iterable, or one for all.
-        objects: poses of the scene's k objects for all frames: (k, 4, 4), or a list of k poses and
-            trajectories. Or for each frame: (N, k, 4, 4), as an array or nested lists, or an iterator over
-            such for one frame. None: as the scene says.
-        batch: so many poses are read and measured before the first of their frames is handed out, from
-            1; 1 where a pose depends on the frame before it.
-
-    Raises:
-        Error: names the frame by its index, such as poses[7]; frames before it were handed out.
-
-    The other arguments and errors are those of ``simulate``.
-    """
-    simulator = _checked(scene).simulator(sensor, renderer=renderer, threads=threads)
-    return simulator.simulate_iter(
-        poses, seeds, frames=frames, objects=objects, columns=columns, sensor_id=sensor_id, batch=batch
-    )
-
-
-def simulate_rig(
-    scene: Scene,
-    pose: PoseLike | None = None,
-    *,
-    seed: int = 1,
-    frame: int = 0,
-    objects: PoseLike | Sequence[PoseLike] | None = None,
-    columns: str | Iterable[str] | None = None,
-    renderer: str = "auto",
-    threads: int = 0,
-) -> dict[str, Frame]:
-    """Measures a scene once with each sensor of its scene file's rig; gives frames by their names.
-
-    Args:
-        pose: of the rig: world_from_rig (4x4), or a Trajectory; None: as the scene file says, else
-            where its first sensor sees all of the scene.
-
-    The other arguments and errors are those of ``simulate``.
-    """
-    if not _checked(scene).rig:
-        raise Error("scene", "it has no sensors", "a scene file with sensors")
-    mounts = [(m, scene.simulator(m.sensor, renderer=renderer, threads=threads)) for m in scene.rig.values()]
-    rig = scene._core.rig_motion() if pose is None else trajectories(pose, "pose")
-    if rig is None:
-        first, simulator = mounts[0]
-        rig = _core.mounted(simulator._core.usual_motion(), np.asarray(np.linalg.inv(first.rig_from_sensor)[None], np.float64))
-    return {
-        mount.name: simulator.simulate(
-            Trajectory(_core.mounted(rig, mount.rig_from_sensor[None])),
-            seed=seed,
-            frame=frame,
-            objects=objects,
-            columns=columns,
-            sensor_id=mount.number,
-        )
-        for mount, simulator in mounts
-    }

@@ -11,6 +11,7 @@ import pytest
 from conftest import ROOT, TRAJECTORIES, again, same
 
 import glidar
+from glidar._recipe import Recipe
 
 PROTOCOLS = range(2, pickle.HIGHEST_PROTOCOL + 1)
 
@@ -232,17 +233,17 @@ def test_a_frame_from_a_pickle_needs_its_renderer_only_to_be_explained(asteroid,
     assert str(again(frame).explain(1000)) == expected[1]
 
 
-def test_frames_that_are_used_one_by_one_make_their_scene_once(camera, monkeypatch):
+def test_unpickled_frames_of_one_scene_restore_it_once(camera, monkeypatch):
     scene = glidar.Scene()
     scene.add_model("builtin:box", name="a box of this test alone")
-    stored = [pickle.dumps(glidar.simulate(scene, camera, seed=seed)) for seed in (1, 2, 3)]
-    made = []
-    restored = glidar.Scene.__setstate__
-    monkeypatch.setattr(glidar.Scene, "__setstate__", lambda self, state: (made.append(1), restored(self, state)))
-    for text in stored:
-        pickle.loads(text).cloud()
+    pickles = [pickle.dumps(glidar.simulate(scene, camera, seed=seed)) for seed in (1, 2, 3)]
+    calls = []
+    restored = Recipe.restored
+    monkeypatch.setattr(Recipe, "restored", lambda state: (calls.append(state), restored(state))[1])
+    for pickled in pickles:
+        pickle.loads(pickled).cloud()
         gc.collect()
-    assert len(made) == 1
+    assert len(calls) == 1
 
 
 def test_a_frame_takes_the_scene_that_it_saw_with_it(built, camera):
