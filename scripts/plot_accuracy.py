@@ -82,7 +82,7 @@ def measure(distance):
     fov_deg = np.degrees(2.0 * np.arctan(1.1 / np.sqrt(distance**2 - 1.0)))
     camera = glidar.camera(SIDE, SIDE, fov_deg=fov_deg)
     pose = glidar.look_at(origin, (0.0, 0.0, 0.0))
-    directions = np.asarray(camera.directions).reshape(-1, 3) @ np.asarray(pose)[:3, :3].T
+    directions = np.asarray(camera.ray_directions).reshape(-1, 3) @ np.asarray(pose)[:3, :3].T
     exact = exact_hits(origin, directions.astype(np.longdouble), vertices, triangles)
     return (errors(glidar_hits(scene, camera, pose), exact),
             errors(open3d_hits(origin, directions, vertices, triangles), exact))

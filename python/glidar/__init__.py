@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
 """GLIDAR simulates 3D sensors: what a depth camera or LiDAR would measure of a 3D model, with the
-exact truth beside every number.
+ground truth of every beam.
 
     import glidar
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The accuracy of hits, ids, ranges and normals on this machine."""
+"""Accuracy of a renderer's hits, instance ids, ranges and normals on this machine."""
 
 from __future__ import annotations
 
@@ -12,49 +12,49 @@ from ._inputs import one_of, whole
 
 @dataclass(frozen=True)
 class AccuracyCase:
-    """One case with one shape at one distance (docs/accuracy.md)."""
+    """The result of one test case with one shape at one distance (docs/accuracy.md)."""
 
     name: str
-    """Of the case, such as "one shape at rest"."""
+    """Name of the case, such as "one shape at rest"."""
     shape: str
     distance_m: float
     rays: int
     judged_hits: int
     judged_misses: int
     near_edges: int
-    """Not judged."""
+    """Rays too close to an edge to be tested."""
     wrong_hits: int
     wrong_misses: int
     wrong_ids: int
-    """Hits with another instance, or a triangle that does not hold the true point."""
+    """Hits with another instance, or a triangle that does not contain the true point."""
     range_error_m: float
-    """Largest."""
+    """Maximum, m."""
     range_error_ulp: float
-    """Largest, in steps of float32 at the true range."""
+    """Maximum, in units in the last place (ulp) of float32 at the true range."""
     normal_error_rad: float
-    """Largest."""
+    """Maximum, rad."""
     known_failure: str
-    """Why this renderer is known to fail here; empty: it has to pass."""
+    """The reason for a known failure of this renderer; empty when the case must pass."""
     verdict: str
-    """"passed", "FAILED" (also by more than is known), "known failure", "FIXED" (it passes, though it
-    is listed as a known failure), or "not applicable" (the renderer does not cast such beams)."""
+    """"passed", "FAILED" (also when a known failure exceeds its bounds), "known failure", "FIXED" (a known
+    failure that passes), or "not applicable" (the renderer does not cast such beams)."""
 
     @property
     def passed(self) -> bool:
-        """Within all bounds."""
+        """Whether all errors are within their bounds."""
         return self.verdict == "passed"
 
 
 @dataclass(frozen=True)
 class AccuracyReport:
-    """What ``glidar.verify()`` found; true when every row passed, failed as known, or does not apply."""
+    """The result of ``glidar.verify()``. It is true when no row has the verdict "FAILED"."""
 
     rows: tuple[AccuracyCase, ...]
 
     @property
     def passed(self) -> bool:
-        """Ranges within 0.001 steps of float32, normals within 1e-6 rad, no wrong hit, miss or id, but
-        for known failures, which are bounded too."""
+        """Whether ranges are within 0.001 ulp of float32, normals within 1e-6 rad, and hits, misses and ids
+        correct, except for known failures, which have bounds too."""
         return all(row.verdict != "FAILED" for row in self.rows)
 
     def __bool__(self) -> bool:
@@ -73,10 +73,16 @@ class AccuracyReport:
 
 def verify(*, renderer: str = "auto", threads: int = 0) -> AccuracyReport:
     """Measures the accuracy of a renderer on this machine, as ``glidar verify`` does: every shape at
-    every distance from 0.1 m to 10 km, and the hard cases, compared with closed forms.
+    every distance from 0.1 m to 10 km, and difficult cases, compared with closed forms.
 
-    renderer: "auto", "rays", "raster" or "opengl"; the last two cast pinhole cameras only, and rows
-    without such beams do not apply to them. threads: 0: one per processor."""
+    Args:
+        renderer: "auto", "rays", "raster" or "opengl". "raster" and "opengl" cast pinhole cameras only; rows
+            without such beams are not applicable to them.
+        threads: number of threads; 0: one per processor.
+
+    Raises:
+        Error: an unknown renderer or an invalid number of threads.
+    """
     one_of(renderer, "renderer", ("auto", "rays", "raster", "opengl"))
     names = AccuracyCase.__dataclass_fields__
     rows = _core.verify(renderer, whole(threads, "threads", 4096))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Optics whose beams are arrays."""
+"""Optics whose beams are given as arrays."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ._errors import Error, shown
-from ._inputs import MOST_32, floats, numbers, shape_text, whole
+from ._inputs import MAX_UINT32, floats, numbers, shape_text, whole
 from ._state import part
 
 _TABLE_ARRAYS = {"directions": 3, "origins_m": 3, "times_ns": 1, "rings": 1}  # numbers per beam
@@ -23,7 +23,7 @@ def _shape(name: str, rows: int, cols: int) -> tuple[int, ...]:
 
 
 def _per_beam(value: object, name: str, shape: tuple[int, ...]) -> npt.NDArray[Any]:
-    """An array of a beam table as rows of beams."""
+    """An array of a beam table, flattened to one row per beam."""
     given = numbers(value, f"optics.{name}", shape)
     if given.shape != shape or given.dtype.kind not in "fiu":
         found = f"an array {shape_text(given.shape)} of {given.dtype}"
@@ -37,12 +37,12 @@ def _per_beam(value: object, name: str, shape: tuple[int, ...]) -> npt.NDArray[A
 
 
 def table_of_optics(optics: Mapping[str, Any]) -> dict[str, Any]:
-    """Optics of beams given as arrays, as the library takes them."""
+    """Checks optics whose beams are given as arrays and converts them for the extension."""
     unknown = [key for key in optics if key not in _TABLE_KEYS]
     if unknown:
         raise Error("optics", f"the unknown key {unknown[0]!r}", ", ".join(sorted(_TABLE_KEYS)))
     if optics.get("type") != "table":
-        raise Error("optics.type", shown(optics.get("type")), "'table', since directions are given")
+        raise Error("optics.type", shown(optics.get("type")), "'table' for optics with directions")
     shape = numbers(optics["directions"], "optics.directions", (None, None, 3)).shape
     if len(shape) != 3 or shape[2] != 3 or min(shape) == 0:
         raise Error("optics.directions", f"an array {shape_text(shape)}", "an array rows x cols x 3")
@@ -55,8 +55,8 @@ def table_of_optics(optics: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def stored_table(table: dict[str, Any]) -> dict[str, Any]:
-    """The table of a pickled sensor, checked like one that users give."""
-    rows, cols = (whole(size, "shape", MOST_32) for size in part(table, "shape", tuple))
+    """The table of a pickled sensor, checked like user input."""
+    rows, cols = (whole(size, "shape", MAX_UINT32) for size in part(table, "shape", tuple))
     optics: dict[str, Any] = {"type": "table", "period_ns": table["period_ns"]}
     for name in _TABLE_ARRAYS:
         if table[name] is not None:
@@ -65,7 +65,7 @@ def stored_table(table: dict[str, Any]) -> dict[str, Any]:
 
 
 def optics_of_table(table: Mapping[str, Any]) -> dict[str, Any]:
-    """The optics of a sensor file for a table as the library has it; the arrays are copies."""
+    """Optics in the format of sensor files from the extension's table; the arrays are copies."""
     rows, cols = table["shape"]
     optics: dict[str, Any] = {"type": "table", "period_ns": table["period_ns"]}
     for name in _TABLE_ARRAYS:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Clouds: columns of a frame."""
+"""Point clouds: columns of a frame."""
 
 from __future__ import annotations
 
@@ -13,15 +13,15 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error
-from ._inputs import MOST_32, FloatArray, floats, shape_text, text_of, whole
-from ._state import key_of, part, restoring, stated
+from ._inputs import MAX_UINT32, FloatArray, floats, shape_text, text_of, whole
+from ._state import key_of, part, restoring, make_state
 
 Array = npt.NDArray[Any]
 
 
 @dataclass(frozen=True)
 class _StoredCloud:
-    """A cloud that comes from a pickle: what ``Cloud`` asks of the library's."""
+    """An unpickled cloud with the interface of the extension's clouds."""
 
     rows: int
     cols: int
@@ -31,26 +31,30 @@ class _StoredCloud:
     arrays: list[Array]
 
     def column(self, index: int) -> Array:
-        """(rows, cols) or (rows, cols, k)."""
+        """The values of a column, (rows, cols) or (rows, cols, k)."""
         return self.arrays[index]
 
 
 class Cloud(Mapping[str, Array]):
-    """Columns of a frame in a coordinate frame, by name. An organised cloud's arrays are (rows, cols)
-    or (rows, cols, k), one of hits alone (n,) or (n, k). They are the caller's own, may be written
-    to, and export __dlpack__. Two clouds are equal when their columns, frame and pose are, to the last
-    bit. A cloud cannot be hashed, because it can be changed. copy.copy shares the arrays, copy.deepcopy
-    does not."""
+    """Columns of a frame in a coordinate frame, by name.
+
+    Arrays of an organised cloud are (rows, cols) or (rows, cols, k); those of a cloud of hits only are (n,) or
+    (n, k). The caller owns them and may write to them; they export __dlpack__. Lengths are metres, angles
+    radians.
+
+    Clouds are equal when their columns, coordinate frame and pose are bit-identical. They are mutable and thus
+    not hashable. copy.copy shares the arrays, copy.deepcopy copies them.
+    """
 
     def __init__(self, core: _core.Cloud | _StoredCloud, flat: bool) -> None:
         self._core = core
-        self._places = {name: index for index, name in enumerate(core.columns)}
+        self._indices = {name: index for index, name in enumerate(core.columns)}
         self._flat = flat
 
     def __getitem__(self, name: str) -> Array:
-        if name not in self._places:
-            raise Error("cloud", f"no column {name!r}", ", ".join(self._places), "ask for it: cloud(columns=[...])")
-        column = self._core.column(self._places[name])
+        if name not in self._indices:
+            raise Error("cloud", f"no column {name!r}", ", ".join(self._indices), "request it: cloud(columns=[...])")
+        column = self._core.column(self._indices[name])
         return column[0] if self._flat else column
 
     def __eq__(self, other: object) -> bool:
@@ -65,54 +69,54 @@ class Cloud(Mapping[str, Array]):
 
     def __getstate__(self) -> dict[str, Any]:
         core = self._core
-        return stated(
+        return make_state(
             "Cloud",
             shape=(core.rows, core.cols),
             flat=self._flat,
             frame_id=core.frame_id,
             world_from_cloud=core.world_from_cloud,
-            columns={name: core.column(index) for name, index in self._places.items()},
+            columns={name: core.column(index) for name, index in self._indices.items()},
         )
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         with restoring("Cloud", state):
-            rows, cols = (whole(size, "shape", MOST_32) for size in part(state, "shape", tuple))
+            rows, cols = (whole(size, "shape", MAX_UINT32) for size in part(state, "shape", tuple))
             columns = {text_of(name, "columns"): array for name, array in part(state, "columns", dict).items()}
             for name, array in columns.items():
                 if not isinstance(array, np.ndarray) or array.shape[:2] != (rows, cols):
                     raise ValueError(f"column {name!r} is not an array {rows} x {cols}")
-            # buffers beside a pickle may be read-only
+            # out-of-band buffers of a pickle may be read-only
             columns = {name: a if a.flags.writeable else a.copy() for name, a in columns.items()}
             pose = floats(state["world_from_cloud"], "world_from_cloud", (4, 4))
             stored = _StoredCloud(rows, cols, part(state, "frame_id", str), pose, list(columns), list(columns.values()))
             Cloud.__init__(self, stored, part(state, "flat", bool))
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._places)
+        return iter(self._indices)
 
     def __len__(self) -> int:
-        return len(self._places)
+        return len(self._indices)
 
     def __contains__(self, name: object) -> bool:
-        return name in self._places
+        return name in self._indices
 
     @property
     def points(self) -> int:
-        """Points, with those that are misses."""
+        """Number of points, including misses."""
         return self._core.rows * self._core.cols
 
     @property
     def frame_id(self) -> str:
-        """Name of the coordinate frame."""
+        """Name of the cloud's coordinate frame."""
         return self._core.frame_id
 
     @property
     def world_from_cloud(self) -> FloatArray:
-        """Pose of that frame in the world, 4x4."""
+        """Pose of the cloud's coordinate frame in the world, (4, 4), m."""
         return self._core.world_from_cloud
 
     def to_open3d(self) -> Any:
-        """The hits as open3d.geometry.PointCloud, with normals if the cloud has them."""
+        """The hits as an open3d.geometry.PointCloud, with normals if the cloud has them."""
         import open3d
 
         xyz = self["xyz"].reshape(-1, 3)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a frame can tell about the pose from which it was taken."""
+"""Fisher information of a frame about the sensor's pose."""
 
 from __future__ import annotations
 
@@ -11,28 +11,28 @@ from typing import Any
 
 from . import _core
 from ._inputs import FloatArray, path_of
-from ._state import Immutable, SameContent, key_of, part, restoring, stated
+from ._state import Immutable, SameContent, key_of, part, restoring, make_state
 
 
 @dataclass(frozen=True, eq=False)
 class EigenDirection(SameContent):
-    """One of six independent displacements."""
+    """One of six independent displacements: an eigenvector of the information matrix."""
 
     eigenvalue: float
-    """Of the dimensionless information, 1/m^2."""
+    """Eigenvalue of the dimensionless information matrix, 1/m^2."""
     degenerate: bool
-    """The frame does not determine it."""
+    """Whether the frame does not constrain this displacement."""
     displacement: FloatArray
-    """Rotation (rad) about x, y, z, then translation (m) along them, in the reference frame (6)."""
-    words: str
+    """(6,): rotation (rad) about x, y, z, then translation (m) along x, y, z, in the reference frame."""
+    description: str
+    """The displacement in words, such as "translation along x"."""
 
 
 class FisherInformation(Immutable):
-    """Fisher's information about a pose by point-to-plane ranging, and the bounds that follow.
+    """Fisher information about a pose from point-to-plane ranging, and the Cramer-Rao bounds.
 
-    Displacements are six numbers, in the reference frame: rotation (rad) about x, y, z, then
-    translation (m) along x, y, z. ``str`` is a table for people. Can be compared, hashed, copied and
-    pickled.
+    Displacements are six numbers in the reference frame: rotation (rad) about x, y, z, then translation (m)
+    along x, y, z. ``str`` is a readable table. Can be compared, hashed, copied and pickled.
     """
 
     __slots__ = ("_core",)
@@ -49,7 +49,7 @@ class FisherInformation(Immutable):
         return hash(key_of(_core.information_state(self._core)))
 
     def __getstate__(self) -> dict[str, Any]:
-        return stated("FisherInformation", parts=_core.information_state(self._core))
+        return make_state("FisherInformation", parts=_core.information_state(self._core))
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         with restoring("FisherInformation", state):
@@ -57,44 +57,44 @@ class FisherInformation(Immutable):
 
     @property
     def matrix(self) -> FloatArray:
-        """Fisher's information, (6, 6)."""
+        """Fisher information matrix, (6, 6)."""
         return self._core.matrix
 
     @property
     def covariance(self) -> FloatArray:
-        """Cramer-Rao: no unbiased estimate has a smaller one, (6, 6). Infinite on the diagonal for
+        """Cramer-Rao bound, (6, 6): no unbiased estimate has a smaller covariance. Infinite on the diagonal for
         axes that take part in a degenerate direction."""
         return self._core.covariance
 
     @property
     def bound(self) -> FloatArray:
-        """Its standard deviations: rad x3, m x3."""
+        """Standard deviations of the covariance, (6,): 3 in rad, 3 in m."""
         return self._core.bound
 
     @property
     def directions(self) -> tuple[EigenDirection, ...]:
-        """Six independent displacements, from best to worst determined."""
+        """Six independent displacements, from the best to the worst constrained."""
         return tuple(
             EigenDirection(d.eigenvalue, d.degenerate, d.displacement, d.words) for d in self._core.directions
         )
 
     @property
     def condition(self) -> float:
-        """Best over worst eigenvalue; infinite when degenerate."""
+        """Ratio of the largest to the smallest eigenvalue; infinite when degenerate."""
         return self._core.condition
 
     @property
     def returns(self) -> int:
-        """Returns that counted."""
+        """Number of returns that contributed."""
         return self._core.returns
 
     def to_dict(self) -> dict[str, Any]:
-        """All of it as plain numbers, with the convention; what is infinite is None."""
-        told: dict[str, Any] = json.loads(self._core.json())
-        return told
+        """All values as plain numbers, with the convention; infinite values are None."""
+        document: dict[str, Any] = json.loads(self._core.json())
+        return document
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes it as JSON, as ``glidar render --fisher`` does."""
+        """Writes it as JSON, like ``glidar render --fisher``."""
         self._core.save(path_of(path, "path"))
 
     def __str__(self) -> str:

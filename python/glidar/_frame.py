@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Frames: what a sensor reports, and what can be asked of it."""
+"""Frames: measurements of a sensor, with ground truth."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from . import _core
 from ._cloud import Cloud
 from ._errors import Error, shown
 from ._fisher_information import FisherInformation
-from ._inputs import MOST_32, FloatArray, column_list, floats, log, one_of, path_of, whole, whole_numbers
+from ._inputs import MAX_UINT32, FloatArray, column_list, floats, log, one_of, path_of, whole, whole_numbers
 from ._origin import Origin
 from ._pictures import IMAGE, Picture, html_picture, html_table, picture_of, plot_points, show_images
-from ._state import Immutable, key_of, part, restoring, stated
+from ._state import Immutable, key_of, part, restoring, make_state
 from ._status import ReturnSource, Status
 from ._point_trace import PointTrace, trace_of
 from ._ground_truth import GroundTruth
@@ -34,7 +34,7 @@ def _set_picture(
     eye: npt.ArrayLike | None,
     target: npt.ArrayLike | None,
 ) -> None:
-    """Options of pictures of clouds."""
+    """Sets the options of pictures of clouds."""
     one_of(colour_by, "colour_by", _core.colour_by_names())
     width, height = (int(side) for side in whole_numbers(size, "picture_size", 2, 32))
     options.set_picture(colour_by, width, height)
@@ -45,12 +45,12 @@ def _set_picture(
 
 
 class Frame(Immutable):
-    """One measurement: what the sensor reports per beam, with the truth attached. Arrays are
+    """One measurement: what the sensor reports per beam, with the ground truth. Arrays are
     (rows, cols), read-only views of the frame's memory, which they keep alive.
 
-    Two frames are equal when their poses, numbers and all kept columns are, to the last bit. Frames can be
-    hashed, copied and pickled. A pickled frame takes its columns, its sensor and its scene with it; the
-    scene, which names files, is read when ``cloud``, ``save`` or ``explain`` need it.
+    Two frames are equal when their poses, numbers and all kept columns are bit-identical. Frames can be hashed,
+    copied and pickled. A pickle contains the columns, the sensor and the scene. The unpickled scene reads its
+    files when ``cloud``, ``save`` or ``explain`` first need them.
     """
 
     __slots__ = ("_core", "_has_renderer", "_has_scene", "_origin")
@@ -61,14 +61,14 @@ class Frame(Immutable):
         self._has_scene = self._has_renderer = True
 
     def _with_scene(self) -> _core.Frame:
-        """The frame with the scene that it was measured of."""
+        """The frame with the scene that it measured."""
         if not self._has_scene:
             self._origin.attach_scene(self._core)
             self._has_scene = True
         return self._core
 
     def _with_renderer(self) -> _core.Frame:
-        """The frame with scene and renderer, to be measured again."""
+        """The frame with its scene and renderer, so that it can be measured again."""
         if not self._has_renderer:
             self._origin.attach_renderer(self._core)
             self._has_renderer = True
@@ -76,7 +76,7 @@ class Frame(Immutable):
 
     def __getstate__(self) -> dict[str, Any]:
         core = self._core
-        return stated("Frame", numbers=_core.frame_state(core), arrays=_core.frame_arrays(core), origin=self._origin)
+        return make_state("Frame", numbers=_core.frame_state(core), arrays=_core.frame_arrays(core), origin=self._origin)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         with restoring("Frame", state):
@@ -100,12 +100,12 @@ class Frame(Immutable):
 
     @property
     def rows(self) -> int:
-        """Rows; with several returns the rows of each, one below the other."""
+        """Number of rows. With several returns, each return has so many rows, one block below the other."""
         return self._core.rows
 
     @property
     def cols(self) -> int:
-        """Columns."""
+        """Number of columns."""
         return self._core.cols
 
     @property
@@ -115,17 +115,17 @@ class Frame(Immutable):
 
     @property
     def intensity(self) -> npt.NDArray[np.float32]:
-        """Received signal; 0 unless hit."""
+        """Received signal; 0 unless status is hit. Its scale depends on the sensor (docs/sensors.md)."""
         return self._measured("intensity")
 
     @property
     def status(self) -> npt.NDArray[np.uint8]:
-        """Why a beam has a return, or has none: see ``Status``."""
+        """Why a beam has a return or none: values of ``Status``."""
         return self._measured("status")
 
     @property
     def return_source(self) -> npt.NDArray[np.uint8]:
-        """What made a return: see ``ReturnSource``."""
+        """The origin of each return: values of ``ReturnSource``."""
         found = self._core.measured("return_source")
         if found is not None:
             return found
@@ -133,7 +133,7 @@ class Frame(Immutable):
 
     @property
     def sigma_m(self) -> npt.NDArray[np.float32]:
-        """Standard deviation of the random error of range_m."""
+        """Standard deviation of the random error of range_m, m."""
         found = self._core.measured("sigma_m")
         return np.broadcast_to(np.float32(0.0), (self.rows, self.cols)) if found is None else found
 
@@ -144,32 +144,32 @@ class Frame(Immutable):
 
     @property
     def hits(self) -> int:
-        """Beams with a return."""
+        """Number of beams with a return."""
         return int(np.count_nonzero(self.status == Status.hit))
 
     @property
     def ground_truth(self) -> GroundTruth:
-        """What is there."""
+        """The geometric ground truth of every beam."""
         return GroundTruth(self)
 
     @property
     def stamp_ns(self) -> int:
-        """When the frame started."""
+        """Time when the frame starts, ns."""
         return self._core.stamp_ns
 
     @property
     def seed(self) -> int:
-        """Of its random numbers."""
+        """Seed of its random numbers."""
         return self._core.seed
 
     @property
     def number(self) -> int:
-        """Of the frame in its sequence."""
+        """Number of the frame in its sequence."""
         return self._core.number
 
     @property
     def sensor_id(self) -> int:
-        """Which sensor of a rig."""
+        """Number of the sensor in its rig, from 0."""
         return self._core.sensor_id
 
     @property
@@ -179,12 +179,12 @@ class Frame(Immutable):
 
     @property
     def world_from_sensor(self) -> FloatArray:
-        """The sensor's pose at stamp_ns, 4x4."""
+        """The sensor's pose at stamp_ns, (4, 4), m."""
         return self._core.world_from_sensor
 
     @property
     def world_from_objects(self) -> FloatArray:
-        """The objects' poses at stamp_ns, (k, 4, 4), without scale."""
+        """The objects' poses at stamp_ns, (k, 4, 4), m, without scale."""
         return np.array(self._core.world_from_objects).reshape(-1, 4, 4)
 
     def cloud(
@@ -195,17 +195,17 @@ class Frame(Immutable):
         hits_only: bool = False,
         deskew: bool = False,
     ) -> Cloud:
-        """The measurement as a cloud.
+        """The measurement as a point cloud.
 
         Args:
             columns: names (docs/python.md), "all", or None for xyz, intensity, range, normal,
                 instance, class.
-            frame: axes: "sensor", "optical", "ros", "gl", "legacy" or "world".
-            hits_only: leave misses out.
-            deskew: points where a moving sensor met them.
+            frame: coordinate frame: "sensor", "optical", "ros", "gl", "legacy" or "world".
+            hits_only: whether to omit misses.
+            deskew: whether points are computed with the sensor's pose at the firing time of their beam.
 
         Raises:
-            Error: an unknown column or frame, or one that the frame was measured without.
+            Error: an unknown column or coordinate frame, or a column that the frame was measured without.
         """
         names = column_list(columns)
         if hits_only and "xyz" not in names:
@@ -230,26 +230,26 @@ class Frame(Immutable):
         view_eye: npt.ArrayLike | None = None,
         view_target: npt.ArrayLike | None = None,
     ) -> None:
-        """Writes a file as ``glidar render -o PATH`` does; the suffix says what: .pcd .ply .npz .csv
+        """Writes a file like ``glidar render -o PATH``. The suffix selects the format: .pcd .ply .npz .csv
         .bin .kitti .npy .depth.png .depth.tiff .rgb.png .normal.png .instance.png .class.png .png .bev.png
         .view.png .transform.
 
         Args:
             columns, frame, hits_only, deskew: as for ``cloud``.
-            layout: fields of another sensor's driver in the place of columns, such as "velodyne".
+            layout: point format of a sensor's driver instead of columns, such as "velodyne".
             pcd: "ascii", "binary" or "binary_compressed".
-            ply_ascii: PLY as text.
-            depth_units_per_m: of 16-bit depth images.
-            sidecar: write PATH.json beside a cloud or image.
+            ply_ascii: whether PLY files are text.
+            depth_units_per_m: scale of 16-bit depth images; 1000 stores millimetres.
+            sidecar: whether to write PATH.json beside a cloud or image.
             colour_by: of .bev.png and .view.png: "height", "range", "intensity", "ring", "class" or
                 "instance".
-            picture_size: width and height of these, pixels.
-            view_eye, view_target: where .view.png is seen from, and what it looks at, (3,), m, in the
-                axes of the cloud; None: so that most points are seen.
+            picture_size: width and height of .bev.png and .view.png, pixels.
+            view_eye, view_target: eye and target of .view.png, (3,), m, in the cloud's coordinate frame;
+                None: a view of most points.
 
         Raises:
-            Error: an unknown suffix or layout, no such folder, a column that was not kept, a file that
-            scene or sensor were read from; what stood under the name stays.
+            Error: an unknown suffix or layout, a missing folder, a column that was not kept, or an input file
+            of the scene or sensor as the output. An existing file stays unchanged.
         """
         scale = float(floats(depth_units_per_m, "depth_units_per_m", ()))
         if scale <= 0.0:
@@ -274,14 +274,14 @@ class Frame(Immutable):
     def bird_eye(
         self, *, colour_by: str = "height", size: tuple[int, int] = (1400, 1000), frame: str = "sensor"
     ) -> Picture:
-        """The hits from above, x to the right and y up, with axes in metres: as ``save`` writes .bev.png.
+        """The hits from above, x to the right and y up, with axes in metres, like .bev.png of ``save``.
 
         Args:
             colour_by, size: as colour_by and picture_size of ``save``.
-            frame: axes, as for ``cloud``.
+            frame: coordinate frame, as for ``cloud``.
 
         Raises:
-            Error: rings of a camera, or an unknown name.
+            Error: colours by ring for a camera, or an unknown name.
         """
         return picture_of(
             lambda path: self.save(path, colour_by=colour_by, picture_size=size, frame=frame), "picture.bev.png"
@@ -296,15 +296,15 @@ class Frame(Immutable):
         eye: npt.ArrayLike | None = None,
         target: npt.ArrayLike | None = None,
     ) -> Picture:
-        """The hits in perspective, with a grid on the ground: as ``save`` writes .view.png.
+        """The hits in perspective, with a grid on the ground, like .view.png of ``save``.
 
         Args:
             colour_by, size, eye, target: as colour_by, picture_size, view_eye and view_target of
                 ``save``.
-            frame: axes, as for ``cloud``.
+            frame: coordinate frame, as for ``cloud``.
 
         Raises:
-            Error: rings of a camera, an unknown name, or an eye at the target.
+            Error: colours by ring for a camera, an unknown name, or an eye at the target.
         """
 
         def write(path: Path) -> None:
@@ -315,9 +315,9 @@ class Frame(Immutable):
         return picture_of(write, "picture.view.png")
 
     def show(self) -> Any:
-        """A matplotlib figure: depth (of LiDARs: range) and intensity, as images; of LiDARs upright, by
-        azimuth and elevation, or from above. Jupyter draws it; elsewhere ``matplotlib.pyplot.show()``
-        opens it."""
+        """A matplotlib figure of depth (for LiDARs: range) and intensity as images. Images of LiDARs have axes of
+        azimuth and elevation, or x and y from above. Jupyter displays it; elsewhere call
+        ``matplotlib.pyplot.show()``."""
         layouts = [self._core.picture(number) for number in range(self._core.returns)]
         is_camera = layouts[0].kind == IMAGE
         name, distance = ("depth, m", self.cloud(["depth"])["depth"]) if is_camera else (
@@ -325,36 +325,39 @@ class Frame(Immutable):
         intensity = np.where(np.isfinite(distance), self.intensity, np.nan)
         return show_images({name: distance, "intensity": intensity}, layouts)
 
-    def plot(self, *, colour: str = "intensity", frame: str = "world", most: int = 20000) -> Any:
-        """A matplotlib figure: the hits in space.
+    def plot(self, *, colour: str = "intensity", frame: str = "world", max_points: int = 20000) -> Any:
+        """A matplotlib figure of the hits in 3D.
 
         Args:
-            colour: a column of one number per point, such as range, incidence or status.
-            frame: axes, as for ``cloud``.
-            most: at most so many points are drawn, evenly picked.
+            colour: a column with one number per point, such as range, incidence or status.
+            frame: coordinate frame, as for ``cloud``.
+            max_points: maximum number of points in the figure; an even selection of the hits.
+
+        Raises:
+            Error: an unknown column, or one that has several numbers per point.
         """
         cloud = self.cloud(["xyz", colour], frame=frame, hits_only=True)
         if cloud[colour].ndim != 1:
-            raise Error("colour", shown(colour), "a column of one number per point, such as range")
-        if whole(most, "most", MOST_32) == 0:
-            raise Error("most", "0", "a whole number from 1")
-        step = max(1, -(-cloud.points // most))
+            raise Error("colour", shown(colour), "a column with one number per point, such as range")
+        if whole(max_points, "max_points", MAX_UINT32) == 0:
+            raise Error("max_points", "0", "a whole number from 1")
+        step = max(1, -(-cloud.points // max_points))
         return plot_points(cloud["xyz"][::step], cloud[colour][::step], colour, cloud.frame_id)
 
     def _repr_html_(self) -> str:
-        told = {"beams": f"{self.rows} x {self.cols}", "hits": self.hits, "seed": self.seed, "frame": self.number}
-        return html_table(told) + html_picture(self.save)
+        rows = {"beams": f"{self.rows} x {self.cols}", "hits": self.hits, "seed": self.seed, "frame": self.number}
+        return html_table(rows) + html_picture(self.save)
 
     def explain(
         self, index: int | None = None, *, row: int | None = None, col: int | None = None, hits_only: bool = False
     ) -> PointTrace:
-        """How an entry came to be: the beam, what it met, the light, echoes, every step of noise with
-        the random numbers that it drew. The frame is measured once more for it.
+        """Traces how the measurement of an entry arose: beam, hit, received signal, echoes, and every noise step with
+        its random numbers. For this the frame is measured again.
 
         Args:
-            index: which point of a cloud of the frame, from 0; of one of hits alone with
-                ``hits_only``. Or:
-            row, col: which row and column of the frame's arrays.
+            index: index of a point of a cloud of the frame, from 0; with ``hits_only``, of a cloud of hits
+                only. Or:
+            row, col: row and column of the frame's arrays.
 
         Raises:
             Error: there is no such entry.
@@ -365,7 +368,7 @@ class Frame(Immutable):
         if index is None and row is not None and col is not None:
             return whole(row, "row", self.rows - 1) * self.cols + whole(col, "col", self.cols - 1)
         if index is None or row is not None or col is not None:
-            raise Error("explain", "a point is named in two ways, or in none", "index, or row and col")
+            raise Error("explain", "a point is given twice or not at all", "index, or row and col")
         if not hits_only:
             return whole(index, "index", self.rows * self.cols - 1)
         entries = np.flatnonzero(self.status == Status.hit)
@@ -376,13 +379,13 @@ class Frame(Immutable):
     def information(
         self, *, sigma_m: float = 0.01, reference: npt.ArrayLike | None = None, instance: int | None = None
     ) -> FisherInformation:
-        """What the frame can tell about the sensor's pose: Fisher's matrix and the bounds of any
-        estimate. Needs normals (the usual columns have them).
+        """Fisher information of the frame about the sensor's pose, and the bounds of any estimate. Requires
+        normals, which the default columns include.
 
         Args:
-            sigma_m: of every range when the sensor has no noise.
-            reference: sensor_from_reference, 4x4: where displacements count; None: the sensor's frame.
-            instance: only returns of this object, by its place in the scene; None: of all.
+            sigma_m: standard deviation of every range, m, when the sensor has no noise.
+            reference: sensor_from_reference, (4, 4), m: frame of the displacements; None: the sensor's frame.
+            instance: index of the object whose returns contribute; None: all objects.
 
         Raises:
             Error: normals were not kept, or a number is out of range.

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The truth beside a frame."""
+"""Geometric ground truth of frames."""
 
 from __future__ import annotations
 
@@ -17,15 +17,18 @@ CoreFrame: TypeAlias = _core.Frame
 
 
 class MeasuredFrame(Protocol):
-    """A frame whose memory holds the ground truth."""
+    """A frame that stores ground truth."""
 
     _core: CoreFrame
 
 
 class GroundTruth:
-    """What is there, whether the sensor reports it or not. Arrays are (rows, cols) or
-    (rows, cols, k), read-only views of the frame's memory. NaN, and 2**32 - 1 for indices, where the
-    beam hits nothing. What the frame's columns do not need is not kept: asking for it is an Error."""
+    """The geometric ground truth of every beam, whether the sensor reports it or not.
+
+    Arrays are (rows, cols) or (rows, cols, k), read-only views of the frame's memory. Where a beam hits nothing
+    they are NaN, and indices are 2**32 - 1. Access to a value that the frame's columns do not need raises Error,
+    because it is not kept.
+    """
 
     __slots__ = ("_frame",)
 
@@ -35,7 +38,7 @@ class GroundTruth:
     def _kept(self, name: str) -> npt.NDArray[Any]:
         found = self._frame._core.ground_truth(name)
         if found is None:
-            raise Error(f"truth.{name}", "not kept", "", "simulate(..., columns='all') keeps all truth")
+            raise Error(f"ground_truth.{name}", "not kept", "", "simulate(..., columns='all') keeps all ground truth")
         return found
 
     @property
@@ -45,45 +48,45 @@ class GroundTruth:
 
     @property
     def instance(self) -> npt.NDArray[np.uint32]:
-        """Which object of the scene: ``scene.objects[instance]``."""
+        """Index of the object in ``scene.objects``."""
         return self._kept("instance")
 
     @property
     def primitive(self) -> npt.NDArray[np.uint32]:
-        """Which triangle of the object's mesh."""
+        """Index of the triangle in the object's mesh."""
         return self._kept("primitive")
 
     @property
     def normal(self) -> npt.NDArray[np.float32]:
-        """Unit normal of the triangle towards the sensor, in the sensor's frame, (rows, cols, 3)."""
+        """Unit normal of the triangle, facing the sensor, in the sensor's coordinate frame, (rows, cols, 3)."""
         return self._kept("normal")
 
     @property
     def shading_normal(self) -> npt.NDArray[np.float32]:
-        """Interpolated normal, bent by the normal map; likewise."""
+        """Interpolated unit normal with the normal map, in the sensor's coordinate frame, (rows, cols, 3)."""
         return self._kept("shading_normal")
 
     @property
     def cos_incidence(self) -> npt.NDArray[np.float32]:
-        """Cosine between the beam, turned round, and `normal`."""
+        """Cosine between the reversed beam and `normal`."""
         return self._kept("cos_incidence")
 
     @property
     def cos_shading(self) -> npt.NDArray[np.float32]:
-        """The same with `shading_normal`."""
+        """Cosine between the reversed beam and `shading_normal`."""
         return self._kept("cos_shading")
 
     @property
     def barycentrics(self) -> npt.NDArray[np.float32]:
-        """Weights of the triangle's corners 1 and 2, (rows, cols, 2)."""
+        """Barycentric weights of the triangle's vertices 1 and 2, (rows, cols, 2)."""
         return self._kept("barycentrics")
 
     @property
     def colour(self) -> npt.NDArray[np.float32]:
-        """Diffuse rgb, (rows, cols, 3)."""
+        """Diffuse RGB colour, (rows, cols, 3)."""
         return self._kept("colour")
 
     @property
     def object_point_m(self) -> FloatArray:
-        """The point hit, in the object's own frame before scale, m, (rows, cols, 3)."""
+        """The hit point in the object's coordinate frame before scale, m, (rows, cols, 3)."""
         return self._kept("object_point_m")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What users hand in, checked and made into arrays that the library takes."""
+"""Checks of arguments, and their conversion to arrays that the extension accepts."""
 
 from __future__ import annotations
 
@@ -18,22 +18,22 @@ from . import _core
 from ._errors import Error, excerpt, shown
 
 FloatArray: TypeAlias = npt.NDArray[np.float64]
-MOST_32 = 2**32 - 1  # of what C++ counts in 32 bits
-MOST_64 = 2**64 - 1
-MOST_PATH = 4096
-_ODD = re.compile("[\0\ud800-\udfff]")
+MAX_UINT32 = 2**32 - 1
+MAX_UINT64 = 2**64 - 1
+MAX_PATH_LENGTH = 4096
+_NOT_ENCODABLE = re.compile("[\0\ud800-\udfff]")
 
 _LOGGER = logging.getLogger("glidar")
 _DEFAULT_COLUMNS = ("xyz", "intensity", "range", "normal", "instance", "class")
 
 
 def log(severity: str, message: str) -> None:
-    """What the library tells goes to the logger "glidar"."""
+    """Forwards a message of the library to the logger "glidar"."""
     _LOGGER.log(logging.WARNING if severity == "warning" else logging.INFO, message)
 
 
 def shape_text(shape: Iterable[int | None]) -> str:
-    """(3, 4) as "3 x 4", with n where any size will do."""
+    """(3, 4) as "3 x 4", with n for any size."""
     return " x ".join("n" if size is None else str(size) for size in shape)
 
 
@@ -42,15 +42,15 @@ def _fits(size: int, wanted: int | None) -> bool:
 
 
 def numbers(value: object, where: str, shape: Sequence[int | None], allowed: str = "") -> npt.NDArray[Any]:
-    """An array of anything that NumPy makes one of; errors name the shape, or what is allowed instead."""
+    """Converts to an array whatever NumPy can convert; errors list the shape, or `allowed`."""
     try:
         return np.asarray(value)
-    except (TypeError, ValueError, RuntimeError) as problem:  # ragged, or on another device
-        raise Error(where, f"no array: {excerpt(problem)}", allowed or f"an array {shape_text(shape)}") from problem
+    except (TypeError, ValueError, RuntimeError) as problem:  # ragged, or in the memory of another device
+        raise Error(where, f"not an array: {excerpt(problem)}", allowed or f"an array {shape_text(shape)}") from problem
 
 
 def floats(value: object, where: str, shape: Sequence[int | None]) -> FloatArray:
-    """An array of finite float64 of this shape, in C order; None is any size from 1."""
+    """Converts to an array of finite float64 of this shape, in C order; None matches any size from 1."""
     given = np.asarray(value) if type(value) is np.ndarray else numbers(value, where, shape)
     if given.dtype.kind not in "fiu":
         allowed = f"an array {shape_text(shape)} of real numbers" if shape else "a real number"
@@ -66,19 +66,19 @@ def floats(value: object, where: str, shape: Sequence[int | None]) -> FloatArray
     return result
 
 
-def whole(value: object, where: str, most: int) -> int:
-    """A whole number from 0 to `most`."""
+def whole(value: object, where: str, maximum: int) -> int:
+    """A whole number from 0 to `maximum`."""
     try:
         number = -1 if isinstance(value, bool) else operator.index(value)  # type: ignore[arg-type]
     except TypeError:
         number = -1
-    if not 0 <= number <= most:
-        raise Error(where, shown(value), f"a whole number from 0 to {most}")
+    if not 0 <= number <= maximum:
+        raise Error(where, shown(value), f"a whole number from 0 to {maximum}")
     return number
 
 
 def whole_numbers(value: object, where: str, count: int, bits: int) -> npt.NDArray[Any]:
-    """`count` whole numbers from 0 below 2**bits: given as such, or one for all."""
+    """`count` whole numbers from 0 to 2**bits - 1, given as an array, or as one for all."""
     dtype = np.dtype(f"uint{bits}")
     allowed = f"{count} whole numbers from 0 to {2**bits - 1}, or one for all"
     given = numbers(value, where, (count,), allowed)
@@ -92,31 +92,31 @@ def whole_numbers(value: object, where: str, count: int, bits: int) -> npt.NDArr
 
 
 def text_of(value: object, where: str) -> str:
-    """A text, which has no zero byte and no half of a letter."""
-    if isinstance(value, str) and not _ODD.search(value):
+    """A string without zero bytes and unpaired surrogates."""
+    if isinstance(value, str) and not _NOT_ENCODABLE.search(value):
         return value
-    raise Error(where, shown(value), "a text")
+    raise Error(where, shown(value), "a string")
 
 
 def path_of(value: object, where: str) -> str:
-    """A name or a path."""
+    """A name or a path, as a string."""
     if not isinstance(value, (str, bytes, os.PathLike)):
         raise Error(where, f"a {type(value).__name__}", "a name or a path")
     path = os.fsdecode(value)
-    if len(path) > MOST_PATH or _ODD.search(path):
-        raise Error(where, shown(value), f"at most {MOST_PATH} letters in UTF-8 without zero bytes", "rename the file")
+    if len(path) > MAX_PATH_LENGTH or _NOT_ENCODABLE.search(path):
+        raise Error(where, shown(value), f"at most {MAX_PATH_LENGTH} characters in UTF-8 without zero bytes", "rename the file")
     return path
 
 
 def one_of(value: str, where: str, words: Sequence[str]) -> str:
-    """A word of a list."""
+    """A string that is in the list of allowed ones."""
     if isinstance(value, str) and value in words:
         return value
     raise Error(where, shown(value), ", ".join(words))
 
 
 def column_list(columns: str | Iterable[str] | None) -> list[str]:
-    """Names of cloud columns: a list, "a,b", "all", or None or "default" for those of files."""
+    """Names of cloud columns: a list, "a,b", "all", or None or "default" for the default columns of files."""
     if columns is None or columns == "default":
         return list(_DEFAULT_COLUMNS)
     if columns == "all":

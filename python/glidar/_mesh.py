@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Triangle meshes as arrays, and from and to other libraries, none of which is needed."""
+"""Triangle meshes as arrays, with conversions from and to other libraries, none of which is required."""
 
 from __future__ import annotations
 
@@ -11,32 +11,32 @@ import numpy as np
 import numpy.typing as npt
 
 from ._errors import Error
-from ._state import same_parts
+from ._state import has_same_fields
 
 
-@dataclass(frozen=True, eq=False)  # == of arrays has no single answer
+@dataclass(frozen=True, eq=False)  # == of arrays is elementwise
 class Mesh:
-    """A triangle mesh: arrays with one row per vertex, or per triangle. Meshes are equal when their
-    arrays have the same types, shapes and bits; they cannot be hashed, because arrays can be changed."""
+    """A triangle mesh: arrays with one row per vertex or triangle, right-handed. Meshes are equal when their
+    arrays have the same types, shapes and bits. They are not hashable, because arrays are mutable."""
 
     vertices: npt.ArrayLike
-    """(V, 3), m, in the object's own frame."""
+    """(V, 3), m, in the object's coordinate frame."""
     triangles: npt.ArrayLike
-    """(T, 3), indices of vertices, counter-clockwise seen from the front."""
+    """(T, 3), vertex indices, counter-clockwise when seen from the front."""
     normals: npt.ArrayLike | None = None
-    """(V, 3), unit vectors, or zeros where there is none; None: flat shading."""
+    """(V, 3), unit vectors, or zeros for vertices without a normal; None: flat shading."""
     uvs: npt.ArrayLike | None = None
-    """(V, 2), v upwards."""
+    """(V, 2), texture coordinates, v upwards."""
     colours: npt.ArrayLike | None = None
-    """(V, 3), rgb 0..1."""
+    """(V, 3), RGB from 0 to 1."""
 
     def __eq__(self, other: object) -> bool:
-        return same_parts(self, other)
+        return has_same_fields(self, other)
 
     __hash__ = None  # type: ignore[assignment]
 
     def to_trimesh(self) -> Any:
-        """The same as trimesh.Trimesh, vertices and triangles in the same order."""
+        """The mesh as a trimesh.Trimesh, with vertices and triangles in the same order."""
         import trimesh
 
         return trimesh.Trimesh(
@@ -44,7 +44,7 @@ class Mesh:
         )
 
     def to_open3d(self) -> Any:
-        """The same as open3d.geometry.TriangleMesh."""
+        """The mesh as an open3d.geometry.TriangleMesh."""
         import open3d
 
         utility = open3d.utility
@@ -66,7 +66,11 @@ def _require_parts(mesh: object, *names: str) -> None:
 
 
 def from_trimesh(mesh: Any) -> Mesh:
-    """The vertices, faces and vertex colours of a trimesh.Trimesh."""
+    """Converts vertices, faces and vertex colours of a trimesh.Trimesh.
+
+    Raises:
+        Error: the object has no vertices or faces.
+    """
     _require_parts(mesh, "vertices", "faces")
     visual = getattr(mesh, "visual", None)
     colours = None
@@ -76,7 +80,11 @@ def from_trimesh(mesh: Any) -> Mesh:
 
 
 def from_open3d(mesh: Any) -> Mesh:
-    """The mesh of an open3d.geometry.TriangleMesh, with its vertex normals and colours."""
+    """Converts an open3d.geometry.TriangleMesh with its vertex normals and colours.
+
+    Raises:
+        Error: the object has no vertices or triangles.
+    """
     _require_parts(mesh, "vertices", "triangles", "vertex_normals", "vertex_colors")
     normals, colours = np.asarray(mesh.vertex_normals), np.asarray(mesh.vertex_colors)
     return Mesh(
@@ -88,14 +96,14 @@ def from_open3d(mesh: Any) -> Mesh:
 
 
 def mesh_of(mesh: object) -> Mesh:
-    """A Mesh, or what another library calls one."""
+    """Converts a mesh of trimesh or Open3D; returns a Mesh as it is."""
     if isinstance(mesh, Mesh):
         return mesh
     if hasattr(mesh, "vertices") and hasattr(mesh, "faces"):
         return from_trimesh(mesh)
     if hasattr(mesh, "vertices") and hasattr(mesh, "triangles"):
         return from_open3d(mesh)
-    if hasattr(mesh, "vertex") and hasattr(mesh, "to_legacy"):  # of Open3D's tensors
+    if hasattr(mesh, "vertex") and hasattr(mesh, "to_legacy"):  # a mesh of Open3D's tensor API
         return from_open3d(mesh.to_legacy())
     found = f"a {type(mesh).__name__}"
     raise Error("mesh", found, "vertices and triangles, or a mesh of glidar, trimesh or Open3D")

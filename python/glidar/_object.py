@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Objects: what a scene is made of."""
+"""Objects of a scene."""
 
 from __future__ import annotations
 
@@ -19,9 +19,9 @@ from ._sensor import plain
 
 
 class SceneObject:
-    """One placed model of a scene. Setting an attribute changes the scene: what was measured before
-    stays as it was. Objects are equal when they are the same place of the same scene. Pickled or copied
-    deeply, an object takes its scene with it."""
+    """One instance of a model in a scene. Setting an attribute changes the scene, but no earlier measurement.
+    Objects are equal when they have the same index in the same scene. A pickle or deep copy of an object
+    includes its scene."""
 
     __slots__ = ("_index", "_scene")
 
@@ -41,7 +41,7 @@ class SceneObject:
         return self._scene._core.object(self._index)
 
     def _others(self, attribute: str) -> set[Any]:
-        """An attribute's values of all other objects."""
+        """The values of an attribute of all other objects."""
         core = self._scene._core
         return {core.object(index)[attribute] for index in range(len(core)) if index != self._index}
 
@@ -50,34 +50,34 @@ class SceneObject:
 
     @property
     def index(self) -> int:
-        """Its place in the scene, as ``Truth.instance`` has it."""
+        """Its index in ``scene.objects``, and in ``GroundTruth.instance``."""
         return self._index
 
     @property
     def name(self) -> str:
-        """Its name."""
+        """Its name, unique in the scene."""
         return str(self._info()["name"])
 
     @name.setter
     def name(self, name: str) -> None:
         if text_of(name, "name") in self._others("name"):
-            raise Error("name", f"{name!r}, which another object has", "each name once")
+            raise Error("name", f"{name!r}, which another object has", "a name that is unique in the scene")
         self._set(name=name)
 
     @property
     def id(self) -> int:
-        """The user's number for it, which clouds tell in the column `instance`."""
+        """Its id, unique in the scene; the value of the clouds' column `instance`."""
         return int(self._info()["id"])
 
     @id.setter
     def id(self, number: int) -> None:
         if whole(number, "id", 2**32 - 2) in self._others("id"):
-            raise Error("id", f"{number}, which another object has", "each id once")
+            raise Error("id", f"{number}, which another object has", "an id that is unique in the scene")
         self._set(id=number)
 
     @property
     def class_name(self) -> str:
-        """Its class."""
+        """Name of its semantic class."""
         return str(self._info()["class_name"])
 
     @class_name.setter
@@ -86,7 +86,7 @@ class SceneObject:
 
     @property
     def pose(self) -> FloatArray:
-        """world_from_object, 4x4, without scale."""
+        """world_from_object, (4, 4), m, without scale."""
         pose: FloatArray = self._info()["pose"]
         return pose
 
@@ -96,9 +96,9 @@ class SceneObject:
 
     @property
     def scale(self) -> float | tuple[float, float, float]:
-        """p_world = pose (scale p_object): one factor, or (x, y, z) along the object's own axes.
+        """p_world = pose (scale p_object): one factor, or (x, y, z) along the object's axes.
 
-        Different factors cost a stretched copy of the mesh."""
+        Different factors need a scaled copy of the mesh in memory."""
         x, y, z = self._info()["scale"]
         return float(x) if x == y == z else (float(x), float(y), float(z))
 
@@ -114,10 +114,10 @@ class SceneObject:
         return self._scene._core.materials(self._index)
 
     def set_materials(self, changes: Mapping[str, Any]) -> None:
-        """Changes its materials, and not those of copies.
+        """Changes its materials, but not those of its instances.
 
         Args:
-            changes: as ``materials`` in scene files (docs/files.md): by the material's name, or "*" for
+            changes: as ``materials`` in scene files (docs/files.md): keys are names of materials, or "*" for
                 all, e.g. ``{"*": {"surface": "asphalt"}}`` or ``{"*": {"diffuse": [0.9, 0.1, 0.1]}}``.
 
         Raises:
@@ -127,18 +127,18 @@ class SceneObject:
 
     @property
     def source(self) -> str:
-        """Where its mesh came from."""
+        """The file or built-in model of its mesh."""
         return str(self._info()["source"])
 
     @property
     def mesh(self) -> Mesh:
-        """Its mesh: copies of the arrays, in the object's own frame before scale."""
+        """Its mesh: copies of the arrays, in the object's coordinate frame before scale."""
         arrays: dict[str, Any] = self._scene._core.mesh(self._index)
         return Mesh(**arrays)
 
     @property
     def triangles(self) -> int:
-        """Triangles of its mesh."""
+        """Number of triangles of its mesh."""
         return int(self._info()["triangles"])
 
     def __repr__(self) -> str:

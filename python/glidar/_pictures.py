@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Pictures of frames, for people."""
+"""Figures and previews of frames."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ from . import _core
 from ._errors import Error
 from ._inputs import path_of
 
-IMAGE, GRID, _ANGLES, TOP = range(4)  # kinds of _core.BeamPicture
+IMAGE, GRID, _ANGLES, TOP = range(4)  # values of _core.BeamPicture.kind
 NO_BEAM = 0xFFFFFFFF
 
 
 def pyplot() -> Any:
-    """Matplotlib, which GLIDAR does without otherwise."""
+    """Matplotlib, an optional dependency."""
     try:
         import matplotlib.pyplot
     except ImportError as missing:
@@ -33,29 +33,29 @@ def pyplot() -> Any:
 
 
 def scale_of(values: npt.NDArray[Any], from_zero: bool = False) -> _core.ColourScale:
-    """The scale that all pictures of GLIDAR have: without the odd value far from all others."""
+    """The colour scale of all pictures of GLIDAR: percentiles, so that outliers do not determine it."""
     return _core.colour_scale(np.ascontiguousarray(values, dtype=np.float64).ravel(), from_zero)
 
 
 def _limits(scale: _core.ColourScale) -> dict[str, Any]:
-    """Of matplotlib: the ends of the colours."""
+    """Limits of the scale as keyword arguments of Matplotlib."""
     return {"vmin": scale.low, "vmax": scale.high} if scale.has_values else {}
 
 
 def _extend(scale: _core.ColourScale) -> str:
-    """Of matplotlib: which ends of the bar are arrows, because values lie beyond."""
+    """Matplotlib's ``extend`` of a colour bar: which of its ends are arrows, because values are beyond the scale."""
     return {(0, 0): "neither", (1, 0): "min", (0, 1): "max", (1, 1): "both"}[scale.clips_low, scale.clips_high]
 
 
 def _arranged(values: npt.NDArray[Any], layout: _core.BeamPicture) -> npt.NDArray[np.float64]:
-    """Values of beams as the picture's rows and columns, NaN where it shows none."""
+    """Values of beams arranged in the rows and columns of the picture; NaN for pixels without a beam."""
     beams = layout.beams
     is_shown = beams != NO_BEAM
     return np.where(is_shown, values.ravel()[np.where(is_shown, beams, 0)], np.nan)
 
 
 def _draw_image(axis: Any, image: npt.NDArray[Any], layout: _core.BeamPicture, options: dict[str, Any]) -> Any:
-    """One image on its axes: pixels of a camera, angles, or metres from above."""
+    """Draws one image on its axes: pixels of a camera, angles, or metres from above."""
     if layout.kind == IMAGE:
         drawn = axis.imshow(image, interpolation="nearest", **options)
         axis.set(xlabel="column", ylabel="row")
@@ -68,14 +68,14 @@ def _draw_image(axis: Any, image: npt.NDArray[Any], layout: _core.BeamPicture, o
         axis.plot(0.0, 0.0, marker=">", color="black")
         return drawn
     axis.set(xlabel="azimuth, \N{DEGREE SIGN}", ylabel="elevation, \N{DEGREE SIGN}")
-    if layout.kind == GRID:  # rows have angles of their own
+    if layout.kind == GRID:  # every row has its own elevation
         rows = np.unique(np.linspace(0, len(image) - 1, 5).astype(int))
         axis.set_yticks(rows, [f"{layout.row_elevations_deg[row]:.3g}" for row in rows])
     return drawn
 
 
 def show_images(images: dict[str, npt.NDArray[Any]], layouts: list[_core.BeamPicture]) -> Any:
-    """A figure with an image for each name and each return, with its scale."""
+    """A figure with an image and its colour bar for each name and return."""
     rows, cols = layouts[0].beams.shape
     is_wide = cols > 2 * rows
     count = len(images) * len(layouts)
@@ -95,7 +95,7 @@ def show_images(images: dict[str, npt.NDArray[Any]], layouts: list[_core.BeamPic
 
 
 def plot_points(xyz: npt.NDArray[Any], values: npt.NDArray[Any], label: str, title: str) -> Any:
-    """A figure of points in space, coloured, with equal scales along all axes."""
+    """A 3D scatter plot with equal scales along all axes."""
     figure = pyplot().figure(figsize=(7.0, 6.0), layout="constrained")
     axis = figure.add_subplot(projection="3d")
     scale = scale_of(values, label == "intensity")
@@ -108,7 +108,7 @@ def plot_points(xyz: npt.NDArray[Any], values: npt.NDArray[Any], label: str, tit
 
 
 class Picture:
-    """A PNG picture. Jupyter shows it."""
+    """A PNG picture, which Jupyter displays."""
 
     __slots__ = ("data",)
 
@@ -116,10 +116,10 @@ class Picture:
         self.data = data  # the bytes of the PNG file
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the PNG file, whole or not at all.
+        """Writes the PNG file atomically.
 
         Raises:
-            Error: no such folder, a full disk ...; what stood under the name stays.
+            Error: the folder does not exist, the disk is full ...; an existing file stays unchanged.
         """
         _core.write_file(path_of(path, "path"), self.data)
 
@@ -132,7 +132,7 @@ class Picture:
 
 
 def picture_of(write: Callable[[Path], None], name: str) -> Picture:
-    """The PNG file that `write` makes under a name."""
+    """The PNG file that `write` writes under a name."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / name
         write(path)
@@ -140,12 +140,12 @@ def picture_of(write: Callable[[Path], None], name: str) -> Picture:
 
 
 def html_table(rows: dict[str, object]) -> str:
-    """Names and values as a small table."""
+    """Names and values as a small HTML table."""
     cells = "".join(f"<tr><th style='text-align:left'>{name}</th><td>{value}</td></tr>" for name, value in rows.items())
     return f"<table>{cells}</table>"
 
 
 def html_picture(write: Callable[[Path], None]) -> str:
-    """The PNG file that `write` makes, as a part of a page."""
+    """The PNG file that `write` writes, as an HTML image."""
     text = base64.b64encode(picture_of(write, "preview.png").data).decode()
     return f"<img src='data:image/png;base64,{text}' style='max-width:100%'>"

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""How an entry of a frame came to be."""
+"""The trace of one entry of a frame through the measurement."""
 
 from __future__ import annotations
 
@@ -14,62 +14,70 @@ from ._status import ReturnSource, Status
 
 @dataclass(frozen=True, eq=False)
 class Measurement(SameContent):
-    """What the sensor would report at some point of its measurement."""
+    """The values of an entry at one stage of the measurement."""
 
     status: Status
     return_source: ReturnSource
     range_m: float
-    """NaN unless status is hit."""
+    """Measured distance along the beam, m; NaN unless status is hit."""
     intensity: float
     sigma_m: float
+    """Standard deviation of the range, m."""
 
 
 @dataclass(frozen=True, eq=False)
 class RandomSample(SameContent):
-    """A random number that a step of noise took."""
+    """A random number that a noise step used."""
 
-    law: str
+    distribution: str
     """"normal" (mean 0, deviation 1) or "uniform" (0 to 1)."""
     value: float
     use: str
-    """What the step did with it."""
-    against: float | None
-    """Of a chance: the probability that it is held against."""
+    """What the noise step used it for."""
+    probability: float | None
+    """The probability that a uniform number is compared with; None when there is no such comparison."""
 
 
 @dataclass(frozen=True, eq=False)
 class NoiseStep(SameContent):
-    """One step of noise."""
+    """The effect of one noise step."""
 
-    drawn: tuple[RandomSample, ...]
+    samples: tuple[RandomSample, ...]
+    """The random numbers that it used."""
     after: Measurement
+    """The values after this step."""
 
 
 @dataclass(frozen=True, eq=False)
 class Echo(SameContent):
-    """A peak of the light of a pulse that came back and was told from noise."""
+    """A peak of the received waveform that was detected above the noise."""
 
     range_m: float
+    """Distance along the beam, m."""
     signal: float
-    """In units of the detection threshold."""
+    """Received signal in units of the detection threshold."""
     sigma_m: float
+    """Standard deviation of the range, m."""
     is_mixed: bool
+    """Whether it merges the light of several surfaces."""
 
 
 @dataclass(frozen=True, eq=False)
 class PointTrace(SameContent):
-    """How an entry of a frame came to be; ``str`` tells it in words, as ``glidar explain`` does."""
+    """How the measurement of an entry arose. ``str`` is the text that ``glidar explain`` prints."""
 
     entry: int
+    """Index of the entry: row * cols + col."""
     direction: FloatArray
-    """Of the beam with its errors of pointing, in the sensor's frame (3)."""
+    """(3,): direction of the beam with its pointing error, unit vector in the sensor's coordinate frame."""
     measured: Measurement
-    """Before noise."""
+    """The values before noise."""
     steps: tuple[NoiseStep, ...]
-    """One for each step of the sensor's noise."""
+    """One for each noise step of the sensor."""
     echoes: tuple[Echo, ...]
-    """Of pulsed light whose beams are more than a ray; else none."""
+    """Echoes of pulsed sensors with footprints, mirrors or several returns; else empty."""
     text: str
+    """The trace as text."""
 
     def __str__(self) -> str:
         return self.text
@@ -84,8 +92,8 @@ def _sample(core: _core.RandomSample) -> RandomSample:
 
 
 def trace_of(core: _core.PointTrace) -> PointTrace:
-    """The story that the library tells."""
+    """Converts the trace of the extension."""
     measured, *after = (_measurement(reading) for reading in core.readings)
-    steps = (NoiseStep(tuple(_sample(drawn) for drawn in core.draws(k)), reading) for k, reading in enumerate(after))
+    steps = (NoiseStep(tuple(_sample(sample) for sample in core.draws(k)), reading) for k, reading in enumerate(after))
     echoes = (Echo(echo.range_m, echo.signal, echo.sigma_m, echo.is_mixed) for echo in core.echoes)
     return PointTrace(core.entry, core.direction, measured, tuple(steps), tuple(echoes), core.text)

@@ -19,20 +19,20 @@ def pose(
     xyzw: npt.ArrayLike | None = None,
     matrix: npt.ArrayLike | None = None,
 ) -> FloatArray:
-    """A pose as a 4x4 array, from a position and an attitude.
+    """A pose as a (4, 4) array from a position and a rotation.
 
     Args:
-        xyz: position of the source's origin in the target frame, m.
-        wxyz: quaternion with w first (Blender, MuJoCo); normalised. Or:
-        xyzw: quaternion with w last (ROS, TUM, SciPy); normalised. Or:
-        matrix: rotation, 3x3. None of the three: no rotation.
+        xyz: position of the source's origin in the target frame, (3,), m.
+        wxyz: quaternion (4,) with w first (Blender, MuJoCo); normalised. Or:
+        xyzw: quaternion (4,) with w last (ROS, TUM, SciPy); normalised. Or:
+        matrix: rotation matrix (3, 3). None of the three: no rotation.
 
     Raises:
-        Error: several attitudes, a wrong shape, a number that is not finite, a quaternion of zeros.
+        Error: several rotations, a wrong shape, a number that is not finite, or a quaternion of zeros.
     """
     given = [name for name, value in (("wxyz", wxyz), ("xyzw", xyzw), ("matrix", matrix)) if value is not None]
     if len(given) > 1:
-        raise Error("pose", f"{' and '.join(given)} are given", "one attitude")
+        raise Error("pose", f"{' and '.join(given)} are given", "one rotation")
     position = floats(xyz, "xyz", (3,))
     if matrix is not None:
         return _rigid(floats(matrix, "matrix", (3, 3)), position, "pose")
@@ -45,7 +45,7 @@ def pose(
 
 
 def _rigid(rotation: FloatArray, position: FloatArray, name: str) -> FloatArray:
-    """The pose of a rotation, which is checked."""
+    """The pose with a rotation matrix, after checking that it is a rotation."""
     result = np.eye(4)
     result[:3, :3] = rotation
     result[:3, 3] = position
@@ -56,14 +56,14 @@ def _rigid(rotation: FloatArray, position: FloatArray, name: str) -> FloatArray:
 def look_at(
     eye: npt.ArrayLike, target: npt.ArrayLike, up: npt.ArrayLike | None = None, *, boresight: str = "z"
 ) -> FloatArray:
-    """The pose (world_from_sensor, 4x4) of a sensor at `eye` that looks at `target`.
+    """The pose (world_from_sensor, (4, 4), m) of a sensor at `eye` that looks at `target`.
 
     Args:
-        eye, target: positions in the world, m.
-        up: the world's direction that is up for the sensor; None: +z, and +x where the line of sight
+        eye, target: positions in the world, (3,), m.
+        up: world direction that is up in the image, (3,); None: +z, or +x when the line of sight
             is vertical (the sine of its angle to z is at most 1e-6).
-        boresight: "z" for cameras (x right, y down, z forward), "x" for LiDARs (x forward, y left,
-            z up); ``Sensor.boresight`` tells.
+        boresight: the axis that points at the target: "z" for cameras (x right, y down, z forward), "x" for
+            LiDARs (x forward, y left, z up); see ``Sensor.boresight``.
 
     Raises:
         Error: eye and target coincide, or `up` is parallel to the line of sight.
@@ -75,15 +75,15 @@ def look_at(
     if boresight == "z":
         return optical
     optical_from_body = np.array([[0.0, -1.0, 0.0, 0.0], [0.0, 0.0, -1.0, 0.0], [1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
-    aimed: FloatArray = optical @ optical_from_body
-    return aimed
+    body: FloatArray = optical @ optical_from_body
+    return body
 
 
 def quaternion(matrix: npt.ArrayLike, order: str) -> FloatArray:
-    """The unit quaternion of a pose (4x4) or rotation (3x3), with w not negative, in the `order` "wxyz" or "xyzw".
+    """The unit quaternion (4,), w >= 0, of a pose (4, 4) or a rotation (3, 3), in the `order` "wxyz" or "xyzw".
 
     Raises:
-        Error: a wrong shape or order, or a matrix that is no rotation.
+        Error: a wrong shape or order, or a matrix that is not a rotation.
     """
     if order not in ("wxyz", "xyzw"):
         raise Error("order", shown(order), "'wxyz' or 'xyzw'")

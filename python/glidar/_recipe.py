@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""How a scene was made, step by step, so that another process can make it again."""
+"""The steps that create a scene, so that another process can repeat them."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ import numpy as np
 from . import _core
 from ._errors import Error
 from ._inputs import log, one_of
-from ._state import key_of, part, restoring, stated
+from ._state import key_of, part, restoring, make_state
 
 _BUILTIN = "builtin:"
 
-#: A step: what was done, and with what.
+#: A step: its name and its arguments.
 Step = tuple[str, dict[str, Any]]
 
 
 class Recipe:
-    """A scene and the steps that made it. Every change goes through here.
+    """A scene and the steps that created it. Every change of the scene is made through its recipe.
 
     Changes of one object's attributes are merged, so that moving an object a million times is one step.
     """
@@ -32,35 +32,35 @@ class Recipe:
     def __init__(self, core: _core.Scene, steps: list[Step]) -> None:
         self.core = core
         self._steps = steps
-        self._latest: dict[int, dict[str, Any]] = {}  # of each object the changes that later ones may join
-        self._files: dict[str, str] = {}  # what was read, and where it is
+        self._latest: dict[int, dict[str, Any]] = {}  # the last changes of each object, which later ones may join
+        self._files: dict[str, str] = {}  # names of the files that were read, and their absolute paths
         self.before_change: Callable[[], object] | None = None  # releases what depends on the scene as it is
         self._note_files()
 
     def _note_files(self) -> None:
-        """Relative names count from the working folder of this moment."""
+        """Relative names refer to the current working folder, which may change later."""
         for name in self.core.files:
             self._files.setdefault(name, os.path.abspath(name))
 
     @staticmethod
     def empty() -> Recipe:
-        """Of a scene without objects."""
+        """The recipe of a scene without objects."""
         return Recipe(_core.Scene(), [])
 
     @staticmethod
     def of_file(path: str, options: dict[str, Any]) -> Recipe:
-        """Of a scene file, whose models are read with these options."""
+        """The recipe of a scene file; the options apply to its models."""
         core = _core.load_scene(path, options, log)
         return Recipe(core, [("scene_file", {"path": path, "folder": _working_folder(), "options": options})])
 
     @staticmethod
     def of_text(text: str, folder: str = "") -> Recipe:
-        """Of the keys of a scene file; paths count from the folder, or from the working folder."""
+        """The recipe of the keys of a scene file; paths are relative to the folder, or to the working folder."""
         core = _core.parse_scene(text, log, folder)
         return Recipe(core, [("scene", {"text": text, "folder": folder or _working_folder()})])
 
     def copy(self) -> Recipe:
-        """The same, to be changed apart from this. Costs no memory until then."""
+        """An independent copy, which shares memory until one of the two is changed."""
         steps = [
             (name, {**given, "changes": dict(given["changes"])} if name == "set" else given)
             for name, given in self._steps
@@ -70,7 +70,7 @@ class Recipe:
         return copied
 
     def _editable(self) -> _core.Scene:
-        """The scene, about to be changed."""
+        """The scene, after releasing what depends on its present state."""
         if self.before_change is not None:
             self.before_change()
         return self.core
@@ -80,26 +80,26 @@ class Recipe:
         self._latest.clear()
 
     def add_model(self, path: str, options: dict[str, Any]) -> int:
-        """Adds a model file, or a built-in model, read with these options."""
+        """Adds a model file or a built-in model; returns its index."""
         index = self._editable().add_model(path, options, log)
         self._add("model", path=path, folder=_working_folder(), options=options)
         self._note_files()
         return index
 
     def add_mesh(self, name: str, arrays: dict[str, Any]) -> int:
-        """Adds a mesh from arrays. The step refers to the mesh: its arrays lie in the scene."""
+        """Adds a mesh from arrays; returns its index. The step refers to the arrays in the scene."""
         index = self._editable().add_mesh(name, arrays)
         self._add("mesh", mesh=_core.loaded_mesh_count(self.core) - 1)
         return index
 
     def add_instance(self, of: int) -> int:
-        """Adds another object with the mesh of one."""
+        """Adds another instance of an object's mesh; returns its index."""
         index = self._editable().add_instance(of)
         self._add("copy", of=of)
         return index
 
     def drop_last(self) -> None:
-        """Takes the last object away."""
+        """Removes the last object."""
         self._editable().drop_last()
         self._add("drop")
 
@@ -114,29 +114,29 @@ class Recipe:
         self._latest[index] = kept
 
     def set_materials(self, index: int, text: str, folder: str = "") -> None:
-        """Changes materials of an object; paths count from the folder, or from the working folder."""
+        """Changes materials of an object; paths are relative to the folder, or to the working folder."""
         self._editable().set_materials(index, text, folder)
         arguments = {"index": index, "text": text, "folder": folder or _working_folder()}
         self._steps.append(("materials", arguments))
 
     def key(self) -> object:
-        """A hashable value that two scenes share only if all that can be measured of them is the same."""
+        """A hashable value that is equal for scenes with bit-identical measurements."""
         sensors = [(name, core.document(), core.beam_table(), pose) for name, core, pose in self.core.rig()]
         return key_of([_core.scene_digest(self.core), _core.placing_state(self.core), sensors])
 
     def digest(self) -> str:
-        """A hash of that."""
+        """A hash of the key."""
         return hashlib.sha256(repr(self.key()).encode()).hexdigest()
 
     def state(self) -> dict[str, Any]:
-        """All that makes the scene again: steps, arrays of meshes, hashes of files."""
+        """The state to pickle: steps, arrays of meshes, hashes of files."""
         steps: list[Step] = []
         for name, arguments in self._steps:
             if name == "mesh":
                 arguments = {"state": _core.mesh_state(self.core, arguments["mesh"])}
             steps.append((name, arguments))
         files = {name: _hash_of(name) for name in self._files.values() if not _is_preset(name)}
-        return stated("Scene", steps=steps, files=files, classes=self.core.class_names, digest=self.digest())
+        return make_state("Scene", steps=steps, files=files, classes=self.core.class_names, digest=self.digest())
 
     @staticmethod
     def restored(state: dict[str, Any]) -> Recipe:
@@ -159,7 +159,7 @@ class Recipe:
             steps = steps[1:]
         _core.add_classes(recipe.core, part(state, "classes", list))
         for name, arguments in steps:
-            recipe._redo(name, arguments)
+            recipe._replay(name, arguments)
         if recipe.digest() != state["digest"]:
             raise Error(
                 "pickled Scene",
@@ -169,23 +169,23 @@ class Recipe:
             )
         return recipe
 
-    def _redo(self, name: str, arguments: dict[str, Any]) -> None:
+    def _replay(self, name: str, arguments: dict[str, Any]) -> None:
         one_of(name, "pickled Scene, step", ("model", "mesh", "copy", "drop", "set", "materials"))
         if name == "model":
-            self.add_model(_reached(arguments), part(arguments, "options", dict))
+            self.add_model(_resolved_path(arguments), part(arguments, "options", dict))
         elif name == "mesh":
             self.core.restore_mesh(_plain_arrays(part(arguments, "state", dict)))
             self._add("mesh", mesh=_core.loaded_mesh_count(self.core) - 1)
         elif name == "copy":
-            self.add_instance(self._known(arguments["of"]))
+            self.add_instance(self._checked_index(arguments["of"]))
         elif name == "drop":
             self.drop_last()
         elif name == "set":
-            self.set_object(self._known(arguments["index"]), part(arguments, "changes", dict))
+            self.set_object(self._checked_index(arguments["index"]), part(arguments, "changes", dict))
         else:
-            self.set_materials(self._known(arguments["index"]), part(arguments, "text", str), _folder(arguments))
+            self.set_materials(self._checked_index(arguments["index"]), part(arguments, "text", str), _folder(arguments))
 
-    def _known(self, index: int) -> int:
+    def _checked_index(self, index: int) -> int:
         if not 0 <= index < len(self.core):
             raise IndexError(f"object {index} of {len(self.core)}")
         return index
@@ -194,11 +194,11 @@ class Recipe:
 def _restored_base(name: str, arguments: dict[str, Any]) -> Recipe:
     if name == "scene":
         return Recipe.of_text(part(arguments, "text", str), _folder(arguments))
-    return Recipe.of_file(_reached(arguments), part(arguments, "options", dict))
+    return Recipe.of_file(_resolved_path(arguments), part(arguments, "options", dict))
 
 
 def _working_folder() -> str:
-    """Where relative paths count from; empty where it was deleted, so that none leads anywhere."""
+    """The folder of relative paths; empty when it was deleted, so that no relative path is valid."""
     try:
         return os.getcwd()
     except FileNotFoundError:
@@ -206,41 +206,41 @@ def _working_folder() -> str:
 
 
 def _folder(arguments: dict[str, Any]) -> str:
-    """The folder from which paths count; empty where it is the working folder."""
+    """The folder of a step's relative paths; empty when it is the working folder."""
     folder = part(arguments, "folder", str)
     return "" if folder == _working_folder() else folder
 
 
-def _reached(arguments: dict[str, Any]) -> str:
-    """A path as it was given, or from its folder where the working folder is another."""
+def _resolved_path(arguments: dict[str, Any]) -> str:
+    """The path of a step, relative to its folder unless that is the working folder."""
     path = part(arguments, "path", str)
     return path if path.startswith(_BUILTIN) else str(Path(_folder(arguments), path))
 
 
 def _plain_arrays(mesh: dict[str, Any]) -> dict[str, Any]:
-    """The arrays of a mesh, which the library reads as they lie in memory."""
+    """The arrays of a mesh, contiguous, because the library reads their memory directly."""
     return {
         name: np.ascontiguousarray(value) if isinstance(value, np.ndarray) else value for name, value in mesh.items()
     }
 
 
 def _is_preset(name: str) -> bool:
-    """Presets are installed elsewhere on another machine; the digest of the scene shows whether they differ."""
+    """Presets have other paths on another machine; the digest of the scene shows whether they differ."""
     return os.path.dirname(name) == os.path.dirname(_core.sensor_file(_core.preset_names()[0]))
 
 
 def _hash_of(name: str) -> str:
     found = _core.hash_file(name)
     if found is None:
-        raise Error(name, "the scene was read from this file, which is not there any more", "", "put it back to pickle")
+        raise Error(name, "the scene was read from this file, which is missing now", "", "restore the file to pickle the scene")
     return found
 
 
 def _require_unchanged(name: str, known: str | None) -> None:
     found = _core.hash_file(name)
     if found is None:
-        remedy = "a scene is pickled by the names of its files: put the file there, on this machine too"
-        raise Error(name, "the pickled scene was read from this file, which is not there", "", remedy)
+        remedy = "a pickled scene contains the paths of its files: provide the file there, on this machine too"
+        raise Error(name, "the pickled scene was read from this file, which is missing", "", remedy)
     if found != known:
-        remedy = "pickle the scene again, or put the former file back"
+        remedy = "pickle the scene again, or restore the earlier file"
         raise Error(name, f"the file has changed since the scene was pickled (hash {found})", f"hash {known}", remedy)

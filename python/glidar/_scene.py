@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scenes: models and meshes, placed."""
+"""Scenes: models and meshes with poses."""
 
 from __future__ import annotations
 
@@ -25,30 +25,30 @@ from ._simulator import Simulator
 
 _UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0, "in": 0.0254}
 _AXES = ("x", "y", "z")
-_MOST_SIMULATORS = 8
-_UNIT_TOLERANCE = 1e-3  # of what was rounded to three digits in a file
+_MAX_SIMULATORS = 8
+_UNIT_TOLERANCE = 1e-3  # for normals that a file rounds to three digits
 
 
 class Scene(SceneData):
-    """All there is to see: models, each placed as an object.
+    """A scene: objects, each an instance of a model with a pose.
 
-    Two scenes are equal when they have the same objects, meshes, materials, motion and sensors, to the
-    last bit, wherever they come from. A scene cannot be hashed, because it can be changed. A copy can be
-    changed apart from the original and shares its memory until then. A pickled scene names the files it
-    was read from, with hashes of their contents, and holds the arrays of meshes made in code.
+    Two scenes are equal when their objects, meshes, materials, motion and sensors are bit-identical, regardless of
+    where they come from. Scenes are mutable and thus not hashable. A copy is independent, and shares memory with
+    the original until one of them is changed. A pickled scene contains the paths of the files that it was read
+    from, with hashes of their contents, and the arrays of meshes defined in code.
 
     Args:
         source: a scene file (.yaml, .yml), a model file, or "builtin:asteroid", "builtin:sphere",
-            "builtin:box", "builtin:torus", "builtin:plane", with sizes if wanted:
+            "builtin:box", "builtin:torus", "builtin:plane", optionally with sizes:
             "builtin:box:size=2,1,0.5", "builtin:sphere:radius=3"; None: an empty scene.
-        unit: of a model file's numbers: "m", "cm", "mm", "in", or metres per unit; None: what the file
+        unit: unit of a model file: "m", "cm", "mm", "in", or metres per unit; None: the unit that the file
             declares, else "m".
-        up: the axis of a model file that becomes z: "x", "y", "z"; None: what the file declares, else
-            axes as in the file.
-        centre: move the middle of a model's box to its origin.
+        up: the axis of a model file that becomes z: "x", "y", "z"; None: the axis that the file declares,
+            else unchanged axes.
+        centre: whether to move the centre of a model's bounding box to its origin.
 
     Raises:
-        Error: the file cannot be read, with line, column and field where it has them.
+        Error: the file cannot be read, with line, column and field where known.
     """
 
     def __init__(
@@ -62,15 +62,15 @@ class Scene(SceneData):
         self._set_recipe(Recipe.empty() if source is None else _loaded(source, _options(unit, up, centre)))
 
     def _set_recipe(self, recipe: Recipe) -> None:
-        """Every change of the recipe's scene releases the simulators, which measure the scene before it."""
+        """Makes every change of the scene release the simulators, which measure its earlier state."""
         self._recipe = recipe
         self._simulators: dict[tuple[int, str, int], Simulator] = {}
         recipe.before_change = self._simulators.clear
 
     @staticmethod
     def from_dict(description: Mapping[str, Any]) -> Scene:
-        """A scene of the keys of a scene file (docs/files.md): models, sensor, sensor_pose ... Paths count
-        from the working folder.
+        """A scene from the keys of a scene file (docs/files.md): models, sensor, sensor_pose ... Paths are relative
+        to the working folder.
 
         Raises:
             Error: names the field, what is allowed and the nearest known key.
@@ -94,7 +94,7 @@ class Scene(SceneData):
             return NotImplemented
         return self is other or self._recipe.key() == other._recipe.key()
 
-    __hash__ = None  # type: ignore[assignment]  # it can be changed
+    __hash__ = None  # type: ignore[assignment]  # mutable
 
     def __getstate__(self) -> dict[str, Any]:
         return self._recipe.state()
@@ -111,15 +111,18 @@ class Scene(SceneData):
         centre: bool = False,
         **placing: Any,
     ) -> SceneObject:
-        """Adds a model file or "builtin:NAME".
+        """Adds a model file or "builtin:NAME"; returns its object.
 
         Args:
             unit, up, centre: as for ``Scene``.
-            placing: pose (4x4), scale (one factor, or three along the object's own axes), name, id,
+            placing: pose (4, 4), scale (one factor, or three along the object's axes), name, id,
                 class_name, materials of the object.
+
+        Raises:
+            Error: the file cannot be read, or an argument is invalid; the scene is unchanged then.
         """
         index = self._recipe.add_model(path_of(source, "model"), _options(unit, up, centre))
-        return self._placed(index, placing)
+        return self._initialised(index, placing)
 
     def add_mesh(
         self,
@@ -131,26 +134,26 @@ class Scene(SceneData):
         colours: npt.ArrayLike | None = None,
         **placing: Any,
     ) -> SceneObject:
-        """Adds a mesh from arrays, or from what this and other libraries call a mesh.
+        """Adds a mesh from arrays, or a mesh of this or another library; returns its object.
 
         Args:
-            vertices: (V, 3), m, in the object's own frame; or a ``Mesh``, or a mesh of trimesh or
-                Open3D, without the rest.
-            triangles: (T, 3), indices of vertices, counter-clockwise seen from the front.
-            normals: (V, 3), unit vectors, or zeros where there is none; None: flat shading.
-            uvs: (V, 2), v upwards.
-            colours: (V, 3), rgb 0..1.
-            placing: pose (4x4), scale, name, id, class_name, materials of the object.
+            vertices: (V, 3), m, in the object's coordinate frame; or a ``Mesh``, or a mesh of trimesh or
+                Open3D, without the other arrays.
+            triangles: (T, 3), vertex indices, counter-clockwise when seen from the front.
+            normals: (V, 3), unit vectors, or zeros for vertices without a normal; None: flat shading.
+            uvs: (V, 2), texture coordinates, v upwards.
+            colours: (V, 3), RGB from 0 to 1.
+            placing: pose (4, 4), scale, name, id, class_name, materials of the object.
 
         Raises:
-            Error: a wrong shape, a number that is not finite, an index of no vertex.
+            Error: a wrong shape, a number that is not finite, or a vertex index out of range.
         """
         if triangles is not None:
             mesh = Mesh(vertices, triangles, normals, uvs, colours)
         elif normals is None and uvs is None and colours is None:
             mesh = mesh_of(vertices)
         else:
-            raise Error("mesh", "normals, uvs or colours are given beside it", "arrays, or a mesh alone")
+            raise Error("mesh", "normals, uvs or colours are given with a mesh", "arrays, or only a mesh")
         corners = floats(mesh.vertices, "vertices", (None, 3))
         count = len(corners)
         arrays = {
@@ -161,31 +164,35 @@ class Scene(SceneData):
             "colours": _fractions(_per_vertex(mesh.colours, "colours", count, 3)),
         }
         index = self._recipe.add_mesh(text_of(placing.get("name") or "mesh", "name"), arrays)
-        return self._placed(index, placing)
+        return self._initialised(index, placing)
 
     def add_instance(self, of: SceneObject, **placing: Any) -> SceneObject:
-        """Adds another object with the mesh and materials of one that is there; costs no memory.
+        """Adds another instance of an object's mesh and materials, which needs no additional memory; returns it.
 
         Args:
-            placing: pose (4x4), scale, name, id, class_name, materials; as those of the first when not given.
+            of: an object of this scene.
+            placing: pose (4, 4), scale, name, id, class_name, materials; default: those of the object.
+
+        Raises:
+            Error: `of` is not an object of this scene, or an argument is invalid; the scene is unchanged then.
         """
         if not isinstance(of, SceneObject):
-            raise Error("copy", shown(of), "an object of this scene")
+            raise Error("add_instance", shown(of), "an object of this scene")
         if of._scene is not self:
-            remedy = "scene.add_mesh(of.mesh) takes the mesh of another scene's"
-            raise Error("copy", f"{of!r} is of another scene", "an object of this scene", remedy)
-        return self._placed(self._recipe.add_instance(of.index), placing)
+            remedy = "scene.add_mesh(of.mesh) adds the mesh of another scene's object"
+            raise Error("add_instance", f"{of!r} belongs to another scene", "an object of this scene", remedy)
+        return self._initialised(self._recipe.add_instance(of.index), placing)
 
-    def _placed(self, index: int, placing: dict[str, Any]) -> SceneObject:
-        """The object just added, with what is given of it, a name of its own and a number."""
-        made = SceneObject(self, index)
+    def _initialised(self, index: int, placing: dict[str, Any]) -> SceneObject:
+        """The object that was just added, with a unique name and id and the given attributes."""
+        added = SceneObject(self, index)
         try:
-            self._recipe.set_object(index, {"name": self._free_name(made.name), "id": self._free_id(index)})
-            self._place(made, placing)
+            self._recipe.set_object(index, {"name": self._free_name(added.name), "id": self._free_id(index)})
+            self._set_attributes(added, placing)
         except BaseException:
             self._recipe.drop_last()
             raise
-        return made
+        return added
 
     def _free_name(self, base: str) -> str:
         taken = {other.name for other in self.objects[:-1]}
@@ -197,19 +204,19 @@ class Scene(SceneData):
         return next(number for number in itertools.count(index + 1) if number not in taken)
 
     @staticmethod
-    def _place(made: SceneObject, placing: dict[str, Any]) -> None:
+    def _set_attributes(added: SceneObject, placing: dict[str, Any]) -> None:
         for name, value in placing.items():
             one_of(name, "argument", ("pose", "scale", "name", "id", "class_name", "materials"))
             if value is None:
                 continue
             if name == "materials":
-                made.set_materials(value)
+                added.set_materials(value)
             else:
-                setattr(made, name, value)
+                setattr(added, name, value)
 
     @property
     def objects(self) -> tuple[SceneObject, ...]:
-        """All objects, in order."""
+        """All objects, by index."""
         return tuple(SceneObject(self, index) for index in range(len(self._core)))
 
     def __getitem__(self, name: str) -> SceneObject:
@@ -227,13 +234,13 @@ class Scene(SceneData):
     def simulator(
         self, sensor: Sensor | str | os.PathLike[str] | None = None, *, renderer: str = "auto", threads: int = 0
     ) -> Simulator:
-        """What measures this scene with a sensor: the same one again when it was asked for before."""
+        """A simulator of this scene with a sensor; returns the cached one for the same arguments."""
         chosen = self._chosen(sensor)
         key = (id(chosen._core), text_of(renderer, "renderer"), whole(threads, "threads", 4096))
         found = self._simulators.get(key)
         if found is None:
             found = Simulator(self, chosen, renderer=renderer, threads=threads)
-            while len(self._simulators) >= _MOST_SIMULATORS:
+            while len(self._simulators) >= _MAX_SIMULATORS:
                 self._simulators.pop(next(iter(self._simulators)))
             self._simulators[key] = found
         return found
@@ -248,8 +255,8 @@ class Scene(SceneData):
             return own
         if self.rig:
             allowed = "one of scene.rig: " + ", ".join(self.rig)
-            raise Error("sensor", f"the scene file has a rig of {len(self.rig)}", allowed, "simulate_rig takes all")
-        raise Error("sensor", "the scene file has none", "a sensor", "glidar.camera() makes one")
+            raise Error("sensor", f"the scene file has a rig of {len(self.rig)}", allowed, "simulate_rig measures with all of them")
+        raise Error("sensor", "the scene file has no sensor", "a sensor", "glidar.camera() returns one")
 
     def __repr__(self) -> str:
         return f"<glidar.Scene of {len(self)} objects: {', '.join(o.name for o in self.objects[:4])}>"
@@ -258,7 +265,7 @@ class Scene(SceneData):
 def load_scene(
     path: str | os.PathLike[str], *, unit: str | float | None = None, up: str | None = None, centre: bool = False
 ) -> Scene:
-    """The scene of a scene file, a model file, or "builtin:NAME"; as ``Scene(path)``."""
+    """The scene of a scene file, a model file, or "builtin:NAME"; the same as ``Scene(path)``."""
     return Scene(path, unit=unit, up=up, centre=centre)
 
 
@@ -273,7 +280,7 @@ def _loaded(source: str | os.PathLike[str], options: dict[str, Any]) -> Recipe:
 
 
 def _options(unit: str | float | None, up: str | None, centre: bool) -> dict[str, Any]:
-    """How a model file is read, as the extension takes it."""
+    """Options for reading a model file, as the extension accepts them."""
     if not isinstance(centre, bool):
         raise Error("centre", shown(centre), "True or False")
     metres = None if unit is None else _metres(unit)
@@ -310,7 +317,7 @@ _VertexArray: TypeAlias = npt.NDArray[np.float32] | None
 
 
 def _unit(normals: _VertexArray) -> _VertexArray:
-    """Unit vectors, or zeros."""
+    """Checks that normals are unit vectors or zeros."""
     if normals is None:
         return None
     lengths = np.linalg.norm(normals, axis=1)
@@ -321,13 +328,13 @@ def _unit(normals: _VertexArray) -> _VertexArray:
 
 
 def _fractions(colours: _VertexArray) -> _VertexArray:
-    """Numbers from 0 to 1."""
+    """Checks that colours are from 0 to 1."""
     if colours is not None and (colours.min() < 0.0 or colours.max() > 1.0):
-        remedy = "divide by 255 what counts to there"
+        remedy = "divide 8-bit colours by 255"
         raise Error("colours", f"numbers from {colours.min():g} to {colours.max():g}", "0 to 1", remedy)
     return colours
 
 
 def surface_names() -> list[str]:
-    """Names of the surfaces that come along, for `surface` of materials."""
+    """Names of the surface presets for `surface` of materials."""
     return _core.surface_names()

@@ -12,7 +12,7 @@ from ._errors import Error
 from ._inputs import FloatArray
 from ._recipe import Recipe
 from ._sensor import Sensor
-from ._state import same_parts
+from ._state import has_same_fields
 
 CoreScene: TypeAlias = _core.Scene
 
@@ -29,7 +29,7 @@ class RigSensor:
     """(4, 4), m: the sensor's pose in the rig's coordinate frame."""
 
     def __eq__(self, other: object) -> bool:
-        return same_parts(self, other)
+        return has_same_fields(self, other)
 
     __hash__ = None  # type: ignore[assignment]  # the array can be changed
 
@@ -70,4 +70,4 @@ class SceneData:
 
 def not_a_scene(value: object) -> Error:
     """The error for a value of another type where a scene is required."""
-    return Error("scene", f"a {type(value).__name__}", "a Scene", "glidar.load_scene() reads one")
+    return Error("scene", f"a {type(value).__name__}", "a Scene", "glidar.load_scene() returns one")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sensors: by name, from files, and built of numbers."""
+"""Sensors: presets, sensor files and sensors defined in code."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ import numpy as np
 from . import _core
 from ._beam_table import optics_of_table, stored_table, table_of_optics
 from ._errors import Error, excerpt, shown
-from ._inputs import MOST_32, FloatArray, numbers, path_of, text_of, whole
-from ._state import Immutable, key_of, part, restoring, stated
+from ._inputs import MAX_UINT32, FloatArray, numbers, path_of, text_of, whole
+from ._state import Immutable, key_of, part, restoring, make_state
 
-_DEEPEST = 32
-_MOST_WHOLE = 10**300
-_KINDS = ("camera", "spinning", "raster", "prism", "table")
+_MAX_DEPTH = 32
+_MAX_INTEGER = 10**300
+_OPTICS_TYPES = ("camera", "spinning", "raster", "prism", "table")
 
 
 def _key_text(key: object) -> str:
@@ -28,9 +28,9 @@ def _key_text(key: object) -> str:
 
 
 def plain(value: object, where: str, depth: int = 0) -> object:
-    """NumPy's numbers and arrays as Python's own."""
-    if depth > _DEEPEST:
-        raise Error(where[:80] + "...", f"more than {_DEEPEST} levels deep, or within itself", "lists and dicts")
+    """Converts NumPy's numbers and arrays to Python's."""
+    if depth > _MAX_DEPTH:
+        raise Error(where[:80] + "...", f"more than {_MAX_DEPTH} levels deep, or recursive", "lists and dicts")
     if isinstance(value, Mapping):
         return {text_of(_key_text(key), where): plain(part, f"{where}.{excerpt(_key_text(key))}", depth + 1)
                 for key, part in value.items()}
@@ -42,19 +42,20 @@ def plain(value: object, where: str, depth: int = 0) -> object:
         return path_of(value, where)
     if isinstance(value, str):
         return text_of(value, where)
-    if isinstance(value, int) and abs(value) > _MOST_WHOLE:
+    if isinstance(value, int) and abs(value) > _MAX_INTEGER:
         raise Error(where, shown(value), "whole numbers within 1e300")
     if value is None or isinstance(value, (bool, int, float)):
         return value
-    raise Error(where, f"a {type(value).__name__}", "numbers, texts, lists and dicts")
+    raise Error(where, f"a {type(value).__name__}", "numbers, strings, lists and dicts")
 
 
 class Sensor(Immutable):
-    """A 3D sensor: optics, light, noise, weather, limits. It never changes; ``replace`` makes another.
+    """A 3D sensor: optics, lidar equation, receiver, noise, weather and limits. It is immutable; ``replace``
+    returns a changed copy.
 
-    Sensors come from ``load_sensor``, ``camera`` and ``Sensor.from_dict``. Two sensors are equal when
-    all their numbers and their names are, to the last bit, wherever they come from. Sensors can be
-    hashed, copied and pickled; a pickled sensor needs no file.
+    Sensors come from ``load_sensor``, ``camera`` and ``Sensor.from_dict``. Two sensors are equal when all their
+    values and names are bit-identical, regardless of where they come from. Sensors can be hashed, copied and
+    pickled; a pickled sensor needs no file.
     """
 
     __slots__ = ("_core",)
@@ -67,10 +68,10 @@ class Sensor(Immutable):
         """A sensor from the keys of a sensor file (docs/files.md): optics, noise, limits ...
 
         Args:
-            description: as ``to_dict`` returns it. Beams of your own are optics of type "table" with
-                arrays in the place of a file: ``directions`` (rows, cols, 3), of any length but 0, NaN
-                where there is no beam; ``origins_m`` (rows, cols, 3); ``times_ns`` (rows, cols), rising,
-                from 0 to below ``period_ns``; ``rings`` (rows, cols). All but the first may be left out.
+            description: as ``to_dict`` returns it. Optics of type "table" may have arrays instead of a file:
+                ``directions`` (rows, cols, 3), sensor frame, any length but 0, NaN for no beam; ``origins_m``
+                (rows, cols, 3); ``times_ns`` (rows, cols), increasing, from 0 to below ``period_ns``;
+                ``rings`` (rows, cols). Only the first is required.
 
         Raises:
             Error: names the field, what is allowed and the nearest known key.
@@ -82,14 +83,15 @@ class Sensor(Immutable):
         return Sensor(_core.parse_sensor(_json(others) if others else "{name: lidar}", table_of_optics(optics)))
 
     def to_dict(self) -> dict[str, Any]:
-        """All its numbers with the keys of a sensor file: ``Sensor.from_dict(sensor.to_dict()) == sensor``.
-        Without sources of numbers. Beams from a file are arrays (see ``from_dict``), copies that may be
-        written to; all else is plain numbers, texts, lists and dicts, which YAML and JSON can hold."""
-        told: dict[str, Any] = json.loads(self._core.document())
+        """All values with the keys of a sensor file: ``Sensor.from_dict(sensor.to_dict()) == sensor``.
+
+        Sources of values are omitted. Beams from a file are arrays (see ``from_dict``), copies that may be
+        modified; all else is plain numbers, strings, lists and dicts, which YAML and JSON can represent."""
+        document: dict[str, Any] = json.loads(self._core.document())
         table = self._core.beam_table()
         if table is None:
-            return told
-        return {"name": told.pop("name"), "optics": optics_of_table(table), **told}
+            return document
+        return {"name": document.pop("name"), "optics": optics_of_table(table), **document}
 
     def replace(
         self,
@@ -101,21 +103,21 @@ class Sensor(Immutable):
         rain_mm_h: float | None = None,
         snow_mm_h: float | None = None,
     ) -> Sensor:
-        """The same sensor with other settings, as the command line's options of these names make it.
+        """The same sensor with other settings, as with the command line's options of the same names.
 
         Args:
-            returns: of a pulse: names such as ["strongest", "last"], or how many of the nearest, 1 to
-                16. For sensors with pulsed light.
-            rate_hz: frames per second; of a spinning sensor: turns.
-            columns_per_turn: of a spinning sensor, 1 to 1048576.
-            visibility_m: in fog, 1 to 1e6 m; 0: no fog. For sensors with pulsed light.
-            rain_mm_h: rain, 0 to 1000 mm/h; for pulsed light only.
-            snow_mm_h: snow as melted water, 0 to 1000 mm/h; for pulsed light only.
+            returns: returns of a pulse: names such as ["strongest", "last"], or the number of nearest ones, 1 to
+                16. For pulsed sensors only.
+            rate_hz: frames per second; of a spinning sensor: rotations per second.
+            columns_per_turn: columns per rotation of a spinning sensor, 1 to 1048576.
+            visibility_m: visibility in fog, 1 to 1e6 m; 0: no fog. For pulsed sensors only.
+            rain_mm_h: rain rate, 0 to 1000 mm/h. For pulsed sensors only.
+            snow_mm_h: snowfall rate as melted water, 0 to 1000 mm/h. For pulsed sensors only.
 
-        None keeps what the sensor has.
+        None keeps the sensor's setting.
 
         Raises:
-            Error: a number out of range, or the sensor has no such property.
+            Error: a number is out of range, or the sensor has no such property.
         """
         settings = (returns, rate_hz, columns_per_turn, visibility_m, rain_mm_h, snow_mm_h)
         if all(setting is None for setting in settings):
@@ -144,7 +146,7 @@ class Sensor(Immutable):
 
     def __getstate__(self) -> dict[str, Any]:
         core = self._core
-        return stated("Sensor", document=core.document(), table=core.beam_table(), files=core.files)
+        return make_state("Sensor", document=core.document(), table=core.beam_table(), files=core.files)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         with restoring("Sensor", state):
@@ -154,17 +156,17 @@ class Sensor(Immutable):
 
     @property
     def name(self) -> str:
-        """Its name."""
+        """Name of the sensor."""
         return self._core.name
 
     @property
     def kind(self) -> str:
-        """Of its optics: camera, spinning, raster, prism or table."""
-        return _KINDS[self._core.kind]
+        """Type of its optics: "camera", "spinning", "raster", "prism" or "table"."""
+        return _OPTICS_TYPES[self._core.kind]
 
     @property
     def rows(self) -> int:
-        """Rows of a frame; with several returns the rows of each, one below the other."""
+        """Rows of a frame. With several returns, each return has so many rows, one block below the other."""
         return self._core.rows
 
     @property
@@ -174,74 +176,74 @@ class Sensor(Immutable):
 
     @property
     def returns(self) -> int:
-        """How many returns of a pulse it reports."""
+        """Number of returns of a pulse that it reports."""
         return self._core.returns
 
     @property
     def rate_hz(self) -> float:
-        """Frames per second."""
+        """Frames per second, Hz."""
         return self._core.rate_hz
 
     @property
     def frame_id(self) -> str:
-        """Name of its coordinate frame."""
+        """Name of the sensor's coordinate frame."""
         return self._core.frame_id
 
     @property
     def boresight(self) -> str:
-        """The axis along which it looks: "z" for cameras, "x" for LiDARs."""
+        """The axis of its coordinate frame along which it looks: "z" for cameras, "x" for LiDARs."""
         return "z" if self.kind == "camera" else "x"
 
     @property
-    def directions(self) -> FloatArray:
-        """Unit vectors of the beams of frame 0, (rows, cols, 3), in the sensor's frame; read-only.
-        NaN where there is no beam."""
+    def ray_directions(self) -> FloatArray:
+        """Unit vectors of the beams of frame 0, (rows, cols, 3), in the sensor's coordinate frame; read-only.
+        NaN for pixels without a beam."""
         return self._core.directions
 
     def _camera_info(self, what: str) -> dict[str, Any]:
         info: dict[str, Any] | None = self.describe()["camera_info"]
         if info is None:
-            raise Error(what, f"the sensor is no camera but has optics of the kind {self.kind!r}", "a camera")
+            raise Error(what, f"the sensor is not a camera; its optics have the type {self.kind!r}", "a camera")
         return info
 
     @property
-    def K(self) -> FloatArray:  # noqa: N802 (the field's name for it)
-        """The camera matrix, 3x3, pixels: [[fx, 0, cx], [0, fy, cy], [0, 0, 1]] with the convention of
+    def K(self) -> FloatArray:  # noqa: N802 (the established symbol)
+        """The camera matrix, (3, 3), pixels: [[fx, 0, cx], [0, fy, cy], [0, 0, 1]], in the convention of
         OpenCV, ROS and Open3D, in which the first pixel's centre is (0, 0).
 
         Raises:
-            Error: the sensor is no camera.
+            Error: the sensor is not a camera.
         """
         return np.array(self._camera_info("K")["k"]).reshape(3, 3)
 
     @property
     def distortion(self) -> FloatArray:
-        """Distortion coefficients in OpenCV's order: k1 k2 p1 p2 k3, or with k4 k5 k6; of the model
-        "equidistant", which is that of cv2.fisheye, k1 k2 k3 k4. Zeros without distortion.
+        """Distortion coefficients in OpenCV's order: k1 k2 p1 p2 k3, with k4 k5 k6 for the model
+        "rational_polynomial"; k1 k2 k3 k4 for "equidistant", the model of cv2.fisheye. Zeros without distortion.
 
         Raises:
-            Error: the sensor is no camera.
+            Error: the sensor is not a camera.
         """
         return np.array(self._camera_info("distortion")["d"])
 
     @property
     def distortion_model(self) -> str:
-        """What ``distortion`` is of, by ROS' names: "plumb_bob", "rational_polynomial" or "equidistant".
+        """The model of ``distortion`` by its ROS name: "plumb_bob", "rational_polynomial" or "equidistant".
 
         Raises:
-            Error: the sensor is no camera.
+            Error: the sensor is not a camera.
         """
         return str(self._camera_info("distortion_model")["distortion_model"])
 
     def describe(self) -> dict[str, Any]:
-        """All its numbers as the sidecar files of clouds list them; what is infinite is None. ``to_dict``
-        is what ``from_dict`` takes."""
-        told: dict[str, Any] = json.loads(self._core.description())
-        return told
+        """All values as in the sidecar files of clouds; infinite values are None. ``to_dict`` returns what
+        ``from_dict`` reads."""
+        document: dict[str, Any] = json.loads(self._core.description())
+        return document
 
     def ground_truth(self) -> Sensor:
-        """The same without noise, pulsed light, weather, footprint and further returns: it reports
-        the geometric truth."""
+        """The same sensor without noise, lidar equation, weather, footprint and additional returns. It reports
+        the geometric ground truth."""
         return Sensor(self._core.ground_truth())
 
     def __repr__(self) -> str:
@@ -249,11 +251,11 @@ class Sensor(Immutable):
 
 
 def _json(description: object) -> str:
-    return json.dumps(plain(description, "sensor"), ensure_ascii=False)  # YAML knows no surrogate pairs
+    return json.dumps(plain(description, "sensor"), ensure_ascii=False)  # YAML has no surrogate pairs
 
 
 def _number(value: object, where: str) -> float:
-    """A number, which the library checks; also one that is not finite."""
+    """A real number; the library checks its value, which may be infinite or NaN."""
     given = numbers(value, where, ())
     if given.shape != () or given.dtype.kind not in "fiu":
         raise Error(where, shown(value), "a number")
@@ -262,18 +264,18 @@ def _number(value: object, where: str) -> float:
 
 def _columns(value: object) -> int:
     if isinstance(value, (int, np.integer)) and not isinstance(value, bool):
-        if abs(int(value)) < 2**63:  # the library looks closer
+        if abs(int(value)) < 2**63:  # the library checks the exact range
             return int(value)
     raise Error("columns_per_turn", shown(value), "a whole number from 1 to 1048576")
 
 
 def _return_words(returns: object) -> list[str]:
-    """Names of returns, or a number as the one word."""
+    """Names of returns, or a number as a single string."""
     if isinstance(returns, str):
         return text_of(returns, "returns").split(",")
     if isinstance(returns, Iterable):
         return [text_of(name, "returns") for name in returns]
-    return [str(whole(returns, "returns", MOST_32))]
+    return [str(whole(returns, "returns", MAX_UINT32))]
 
 
 def load_sensor(
@@ -286,15 +288,16 @@ def load_sensor(
     rain_mm_h: float | None = None,
     snow_mm_h: float | None = None,
 ) -> Sensor:
-    """A sensor by the name of a preset (``sensor_names()``) or from a sensor file (YAML).
+    """A sensor by the name of a preset (``sensor_names()``), or from a sensor file (YAML).
 
     Args:
-        returns, rate_hz, columns_per_turn, visibility_m, rain_mm_h, snow_mm_h: settings that differ
-            from the preset's or file's, as for ``Sensor.replace``.
+        name_or_path: name of a preset, or path of a sensor file.
+        returns, rate_hz, columns_per_turn, visibility_m, rain_mm_h, snow_mm_h: settings that replace those
+            of the preset or file, as for ``Sensor.replace``.
 
     Raises:
-        Error: there is no such sensor, with the nearest names; the file's line, column and field; a
-            setting out of range, or one that the sensor does not have.
+        Error: there is no such sensor (with the nearest names), the file is malformed (with line, column and
+            field), a setting is out of range, or the sensor does not have it.
     """
     loaded = Sensor(_core.load_sensor(path_of(name_or_path, "sensor")))
     return loaded.replace(
@@ -307,15 +310,15 @@ def load_sensor(
     )
 
 
-#: The same function, as short as ``camera``: ``glidar.sensor("VLP-16", returns=["strongest", "last"])``.
+#: Alias of ``load_sensor``: ``glidar.sensor("VLP-16", returns=["strongest", "last"])``.
 sensor = load_sensor
 
 
 def sensor_file(name: str) -> str:
-    """The path of the file of a preset.
+    """The path of a preset's sensor file.
 
     Raises:
-        Error: there is no preset of this name, with the nearest names.
+        Error: there is no preset of this name; with the nearest names.
     """
     return os.fspath(_core.sensor_file(path_of(name, "sensor")))
 
@@ -327,18 +330,18 @@ def sensor_names() -> list[str]:
 
 @dataclass(frozen=True)
 class DatasheetEntry:
-    """One number of a sensor file and where it comes from."""
+    """One value of a sensor file and its source."""
 
     key: str
     value: str
     source: str
-    """Empty: the file does not tell."""
+    """Where the value comes from; empty when the file does not state it."""
     verified: bool
-    """Against the maker's documents."""
+    """Whether the value was checked against the manufacturer's documents."""
 
 
 def datasheet(name_or_path: str | os.PathLike[str]) -> list[DatasheetEntry]:
-    """Every number of a preset or sensor file with its source, in the order of the file."""
+    """Every value of a preset or sensor file with its source, in the order of the file."""
     return [DatasheetEntry(*entry) for entry in _core.datasheet(path_of(name_or_path, "sensor"))]
 
 
@@ -354,17 +357,17 @@ def camera(
     distortion: Mapping[str, Any] | None = None,
     **others: Any,
 ) -> Sensor:
-    """A depth camera: a pinhole of width x height pixels.
+    """A depth camera: a pinhole camera of width x height pixels.
 
     Args:
-        fov_deg: vertical field of view; 20 when no focal length is given. Or:
-        fx, fy: focal lengths in pixels; one of them: square pixels.
-        cx, cy: principal point in pixels; the middle when not given.
-        distortion: as in sensor files.
+        fov_deg: vertical field of view, degrees; default 20 without a focal length. Or:
+        fx, fy: focal lengths, pixels; if one is given, it applies to both.
+        cx, cy: principal point, pixels; default: the image centre.
+        distortion: distortion as in sensor files.
         others: further keys of a sensor file: noise, limits, name, rate_hz, projector_origin_m ...
 
     Raises:
-        Error: names the field.
+        Error: a value is invalid; names the field.
     """
     optics: dict[str, Any] = {"type": "pinhole", "width": width, "height": height}
     if fx is None and fy is None and fov_deg is None:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measuring a scene with one call."""
+"""Functions that measure a scene with one call."""
 
 from __future__ import annotations
 
@@ -40,25 +40,25 @@ def simulate(
 ) -> Frame:
     """Measures a scene once.
 
-    What was made ready is kept in the scene: the next call with the same sensor costs the measurement
-    alone.
+    The scene keeps the renderer and the beams, so that a second call with the same sensor costs only the
+    measurement.
 
     Args:
-        scene: what is measured.
-        sensor: a Sensor, the name of a preset or a sensor file; None: that of the scene file.
-        pose: of the sensor: world_from_sensor (4x4), or a Trajectory; None: as the scene file says,
-            else where the sensor sees all of the scene.
-        seed: of all random numbers, 0 to 2**64 - 1.
-        frame: number of the frame: it starts at frame / rate_hz, and frames draw different numbers.
+        scene: the scene to measure.
+        sensor: a Sensor, the name of a preset or a sensor file; None: the sensor of the scene file.
+        pose: the sensor's pose: world_from_sensor (4, 4), m, or a Trajectory; None: that of the scene file,
+            else a pose from which the whole scene is visible.
+        seed: seed of all random numbers, 0 to 2**64 - 1.
+        frame: number of the frame. It starts at frame / rate_hz and selects the random numbers.
         objects: poses of all objects of the scene (k, 4, 4), or a list of k poses and trajectories;
-            None: as the scene says.
-        columns: what clouds of the frame will hold: names, "all", or None for xyz, intensity, range,
-            normal, instance, class. Truth that no column needs is not computed.
-        sensor_id: sensors of one rig draw different random numbers.
+            None: as the scene specifies.
+        columns: columns that clouds of the frame can have: names, "all", or None for xyz, intensity, range,
+            normal, instance, class. Ground truth that no column needs is not computed.
+        sensor_id: number of the sensor in its rig; it selects the random numbers.
         renderer, threads: as for ``Simulator``.
 
     Raises:
-        Error: a wrong shape, a number that is not finite, an unknown column.
+        Error: a wrong shape, a number that is not finite, or an unknown column.
     """
     simulator = _checked(scene).simulator(sensor, renderer=renderer, threads=threads)
     return simulator.simulate(
@@ -79,17 +79,17 @@ def simulate_batch(
     renderer: str = "auto",
     threads: int = 0,
 ) -> list[Frame]:
-    """Measures a scene at many poses in one call, without Python's lock; frame k is, to the bit, what
-    ``simulate`` makes of poses[k], seeds[k], frames[k].
+    """Measures a scene at many poses in one call, without Python's lock. Frame k is bit-identical to the result of
+    ``simulate`` for poses[k], seeds[k], frames[k].
 
     Args:
-        poses: world_from_sensor, (N, 4, 4), or a list of N poses and trajectories.
-        seeds: N seeds, or one for all; None: 1 + k for frame k, so that every frame has noise of its own.
+        poses: world_from_sensor, (N, 4, 4), m, or a list of N poses and trajectories.
+        seeds: N seeds, or one for all; None: 1 + k for frame k, so that noise differs between frames.
         frames: N frame numbers, or one for all.
         objects: poses of the scene's k objects: (N, k, 4, 4), or (k, 4, 4) or a list of k poses and
-            trajectories for all frames; None: as the scene says.
+            trajectories for all frames; None: as the scene specifies.
 
-    The other arguments and errors are those of ``simulate``.
+    The other arguments and the errors are those of ``simulate``.
     """
     simulator = _checked(scene).simulator(sensor, renderer=renderer, threads=threads)
     return simulator.simulate_batch(
@@ -111,24 +111,24 @@ def simulate_iter(
     threads: int = 0,
     batch: int = 8,
 ) -> Iterator[Frame]:
-    """Measures a scene at many poses and hands out one frame after the other, the same to the bit as those
-    of ``simulate_batch``. Neither poses nor frames are kept: a generator of millions of poses takes no more
-    memory than one of ten. The loop may be left at any frame.
+    """Measures a scene at many poses and yields one frame after the other, bit-identical to those of
+    ``simulate_batch``. Neither poses nor frames are stored: memory does not grow with the number of poses. The
+    loop may end at any frame.
 
     Args:
-        poses: world_from_sensor: an array (N, 4, 4), any iterable of poses and trajectories, or one alone.
-        seeds: one for each pose from any iterable, or one for all; None: 1 + k for frame k.
-        frames: frame numbers; one for each pose from any iterable, or one for all.
+        poses: world_from_sensor: an array (N, 4, 4), m, any iterable of poses and trajectories, or one pose.
+        seeds: an iterable with one for each pose, or one for all; None: 1 + k for frame k.
+        frames: an iterable with one frame number for each pose, or one for all.
         objects: poses of the scene's k objects for all frames: (k, 4, 4), or a list of k poses and
-            trajectories. Or for each frame: (N, k, 4, 4), as an array or nested lists, or an iterator over
-            such for one frame. None: as the scene says.
-        batch: so many poses are read and measured before the first of their frames is handed out, from
-            1; 1 where a pose depends on the frame before it.
+            trajectories. Or for each frame: (N, k, 4, 4), as an array or nested lists, or an iterator with
+            the poses of one frame at a time. None: as the scene specifies.
+        batch: number of poses that are read and measured before the first of their frames is yielded, at
+            least 1; use 1 when a pose depends on the previous frame.
 
     Raises:
-        Error: names the frame by its index, such as poses[7]; frames before it were handed out.
+        Error: names the frame by its index, such as poses[7], after the frames before it are yielded.
 
-    The other arguments and errors are those of ``simulate``.
+    The other arguments and the errors are those of ``simulate``.
     """
     simulator = _checked(scene).simulator(sensor, renderer=renderer, threads=threads)
     return simulator.simulate_iter(
@@ -147,29 +147,29 @@ def simulate_rig(
     renderer: str = "auto",
     threads: int = 0,
 ) -> dict[str, Frame]:
-    """Measures a scene once with each sensor of its scene file's rig; gives frames by their names.
+    """Measures a scene once with each sensor of its scene file's rig; returns frames by sensor name.
 
     Args:
-        pose: of the rig: world_from_rig (4x4), or a Trajectory; None: as the scene file says, else
-            where its first sensor sees all of the scene.
+        pose: the rig's pose: world_from_rig (4, 4), m, or a Trajectory; None: that of the scene file, else
+            a pose from which the first sensor sees the whole scene.
 
-    The other arguments and errors are those of ``simulate``.
+    The other arguments and the errors are those of ``simulate``.
     """
     if not _checked(scene).rig:
-        raise Error("scene", "it has no sensors", "a scene file with sensors")
-    mounts = [(m, scene.simulator(m.sensor, renderer=renderer, threads=threads)) for m in scene.rig.values()]
+        raise Error("scene", "the scene has no sensors", "a scene file with sensors")
+    simulators = [(m, scene.simulator(m.sensor, renderer=renderer, threads=threads)) for m in scene.rig.values()]
     rig = scene._core.rig_motion() if pose is None else trajectories(pose, "pose")
     if rig is None:
-        first, simulator = mounts[0]
+        first, simulator = simulators[0]
         rig = _core.mounted(simulator._core.usual_motion(), np.asarray(np.linalg.inv(first.rig_from_sensor)[None], np.float64))
     return {
-        mount.name: simulator.simulate(
-            Trajectory(_core.mounted(rig, mount.rig_from_sensor[None])),
+        sensor.name: simulator.simulate(
+            Trajectory(_core.mounted(rig, sensor.rig_from_sensor[None])),
             seed=seed,
             frame=frame,
             objects=objects,
             columns=columns,
-            sensor_id=mount.number,
+            sensor_id=sensor.number,
         )
-        for mount, simulator in mounts
+        for sensor, simulator in simulators
     }

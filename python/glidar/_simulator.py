@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measuring scenes with sensors."""
+"""Simulators: a scene, a sensor and a renderer, prepared for many measurements."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ import numpy.typing as npt
 
 from . import _core
 from ._errors import Error, shown
-from ._inputs import MOST_32, MOST_64, column_list, one_of, whole, whole_numbers
+from ._inputs import MAX_UINT32, MAX_UINT64, column_list, one_of, whole, whole_numbers
 from ._frame import Frame
-from ._lazily import DEFAULT_SEED, Inputs, Piece
+from ._frame_inputs import DEFAULT_SEED, FrameInputs, FrameBatch
 from ._origin import Origin, SceneSource
 from ._scene_data import SceneData, not_a_scene
 from ._sensor import Sensor
@@ -24,20 +24,23 @@ _RENDERERS = ("auto", "rays", "raster", "opengl")
 
 
 class Simulator(Immutable):
-    """A scene and a sensor made ready, so that measuring costs nothing but the measurement.
+    """A scene and a sensor with a prepared renderer, so that each call costs only the measurement.
 
-    It is its own copy, and it cannot be pickled: pickle scene and sensor, and make a simulator of them
-    where they arrive.
+    It keeps the present state of the scene; later changes of the scene have no effect on it. It may be used from
+    any thread: measurements of one scene run one at a time, each on all threads, without Python's lock.
 
-    It keeps the scene as it is now: later changes of the scene are not seen. May be used from any
-    thread; measurements of one scene take turns, each on all threads, without Python's lock.
+    A simulator is immutable, so a copy is the same object. It cannot be pickled: pickle its scene and sensor, and
+    create a simulator from them in the other process.
 
     Args:
         scene: the ``Scene`` to measure.
-        sensor: what measures; None: that of the scene file.
-        renderer: "auto": "raster" for cameras and scanners where that is quicker, else "rays";
-            both on the processor. "opengl" draws on a graphics device (cameras without distortion).
-        threads: of the renderer; 0: one per processor.
+        sensor: the sensor; None: that of the scene file.
+        renderer: "auto": "raster" for cameras and scanners where it is faster, else "rays"; both run on the
+            processor. "opengl" renders on a graphics device (cameras without distortion only).
+        threads: number of threads of the renderer; 0: one per processor.
+
+    Raises:
+        Error: an argument of another type, a scene without a sensor, or a renderer that cannot be created.
     """
 
     def __init__(
@@ -47,9 +50,9 @@ class Simulator(Immutable):
             raise not_a_scene(scene)
         chosen = scene.sensor if sensor is None else sensor
         if chosen is not None and not isinstance(chosen, Sensor):
-            raise Error("sensor", shown(chosen), "a Sensor", "glidar.load_sensor() reads one")
+            raise Error("sensor", shown(chosen), "a Sensor", "glidar.load_sensor() returns one")
         if chosen is None:
-            raise Error("sensor", "the scene has none", "a sensor", "glidar.camera() makes one")
+            raise Error("sensor", "the scene has no sensor", "a sensor", "glidar.camera() returns one")
         one_of(renderer, "renderer", _RENDERERS)
         self.sensor = chosen
         self._origin = Origin(SceneSource(scene._recipe.copy()), chosen, renderer, threads)
@@ -75,12 +78,12 @@ class Simulator(Immutable):
         """Measures once; see ``glidar.simulate``."""
         sensor = self._sensors(pose)
         if len(sensor) != 1:
-            raise Error("pose", f"{len(sensor)} poses", "one pose, 4x4", "simulate_batch takes many")
+            raise Error("pose", f"{len(sensor)} poses", "one pose, 4x4", "simulate_batch measures many")
         return Frame(
             self._core.simulate_one(
                 sensor,
                 object_trajectories(objects, 1, self._core.objects),
-                (whole(seed, "seed", MOST_64), whole(frame, "frame", MOST_32), whole(sensor_id, "sensor_id", MOST_32)),
+                (whole(seed, "seed", MAX_UINT64), whole(frame, "frame", MAX_UINT32), whole(sensor_id, "sensor_id", MAX_UINT32)),
                 self._fields(columns),
             ),
             self._origin,
@@ -96,7 +99,7 @@ class Simulator(Immutable):
         columns: str | Iterable[str] | None = None,
         sensor_id: int = 0,
     ) -> list[Frame]:
-        """Measures many times in one call; see ``glidar.simulate_batch``."""
+        """Measures at many poses in one call; see ``glidar.simulate_batch``."""
         return self._measure(self._sensors(poses), objects, seeds, frames, columns, sensor_id)
 
     def simulate_iter(
@@ -110,42 +113,42 @@ class Simulator(Immutable):
         sensor_id: int = 0,
         batch: int = 8,
     ) -> Iterator[Frame]:
-        """Measures one frame after the other; see ``glidar.simulate_iter``."""
-        inputs = Inputs(poses, seeds, frames, objects, self._core.objects)
-        together = whole(batch, "batch", MOST_32)
+        """Measures and yields one frame after the other; see ``glidar.simulate_iter``."""
+        inputs = FrameInputs(poses, seeds, frames, objects, self._core.objects)
+        together = whole(batch, "batch", MAX_UINT32)
         if together == 0:
             raise Error("batch", "0", "a whole number from 1")
-        return self._iterate(inputs, self._fields(columns), whole(sensor_id, "sensor_id", MOST_32), together)
+        return self._iterate(inputs, self._fields(columns), whole(sensor_id, "sensor_id", MAX_UINT32), together)
 
-    def _iterate(self, inputs: Inputs, fields: _core.HitFieldMask, sensor_id: int, batch: int) -> Iterator[Frame]:
+    def _iterate(self, inputs: FrameInputs, fields: _core.HitFieldMask, sensor_id: int, batch: int) -> Iterator[Frame]:
         while True:
-            piece, fault = inputs.take(batch)
-            yield from self._frames_of(piece, fields, sensor_id)
-            if fault is not None:
-                raise fault
-            if len(piece.sensors) < batch:
+            batch_inputs, error = inputs.take(batch)
+            yield from self._frames_of(batch_inputs, fields, sensor_id)
+            if error is not None:
+                raise error
+            if len(batch_inputs.sensors) < batch:
                 return
 
-    def _frames_of(self, piece: Piece, fields: _core.HitFieldMask, sensor_id: int) -> Iterator[Frame]:
-        """The frames of a piece; none is kept here once it was handed out."""
-        if not piece.sensors:
+    def _frames_of(self, batch_inputs: FrameBatch, fields: _core.HitFieldMask, sensor_id: int) -> Iterator[Frame]:
+        """The frames of a batch. Each is released here when it is yielded."""
+        if not batch_inputs.sensors:
             return
         try:
-            measured = self._measured(piece, fields, sensor_id)
+            measured = self._measured(batch_inputs, fields, sensor_id)
         except Error as error:
-            if len(piece.sensors) == 1:
-                raise Error(f"frame {piece.first}, {error.where}", error.found, error.allowed, error.remedy) from error
-            for k in range(len(piece.sensors)):  # which of them is it?
-                yield from self._frames_of(piece.sliced(k), fields, sensor_id)
+            if len(batch_inputs.sensors) == 1:
+                raise Error(f"frame {batch_inputs.first}, {error.where}", error.found, error.allowed, error.remedy) from error
+            for k in range(len(batch_inputs.sensors)):  # find the frame that fails
+                yield from self._frames_of(batch_inputs.sliced(k), fields, sensor_id)
             return
         measured.reverse()
         while measured:
             yield Frame(measured.pop(), self._origin)
 
-    def _measured(self, piece: Piece, fields: _core.HitFieldMask, sensor_id: int) -> list[_core.Frame]:
-        objects = None if piece.objects is None else _core.joined(piece.objects)
-        keys = (np.array(piece.seeds, np.uint64), np.array(piece.numbers, np.uint32), sensor_id)
-        return self._core.simulate(_core.joined(piece.sensors), objects, keys, fields)
+    def _measured(self, batch_inputs: FrameBatch, fields: _core.HitFieldMask, sensor_id: int) -> list[_core.Frame]:
+        objects = None if batch_inputs.objects is None else _core.joined(batch_inputs.objects)
+        keys = (np.array(batch_inputs.seeds, np.uint64), np.array(batch_inputs.numbers, np.uint32), sensor_id)
+        return self._core.simulate(_core.joined(batch_inputs.sensors), objects, keys, fields)
 
     def _sensors(self, poses: PoseLike | Sequence[PoseLike] | None) -> _core.Trajectories:
         if poses is None:
@@ -171,7 +174,7 @@ class Simulator(Immutable):
             (
                 whole_numbers(DEFAULT_SEED + np.arange(count) if seeds is None else seeds, "seed", count, 64),
                 whole_numbers(numbers, "frame", count, 32),
-                whole(sensor_id, "sensor_id", MOST_32),
+                whole(sensor_id, "sensor_id", MAX_UINT32),
             ),
             self._fields(columns),
         )

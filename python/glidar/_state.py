@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What pickle, copy and == of several types share."""
+"""Pickling, copying and comparison, shared by several types."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _Part = TypeVar("_Part")
 
 
 class Immutable:
-    """What never changes is its own copy."""
+    """Base of immutable types, whose copies are the object itself."""
 
     __slots__ = ()
 
@@ -30,13 +30,13 @@ class Immutable:
         return self
 
 
-def stated(kind: str, **parts: Any) -> dict[str, Any]:
-    """The state of a pickled object: what it is, which version wrote it, and its parts."""
+def make_state(kind: str, **parts: Any) -> dict[str, Any]:
+    """The state of a pickled object: its type, the version that wrote it, and its parts."""
     return {"glidar": _core.version(), "kind": kind, **parts}
 
 
 def part(state: Mapping[str, Any], name: str, kind: type[_Part]) -> _Part:
-    """A part of a state, of the type that it must have."""
+    """A part of a state, after checking its type."""
     value = state[name]
     if not isinstance(value, kind):
         raise TypeError(f"'{name}' is a {type(value).__name__} instead of a {kind.__name__}")
@@ -45,11 +45,11 @@ def part(state: Mapping[str, Any], name: str, kind: type[_Part]) -> _Part:
 
 @contextmanager
 def restoring(kind: str, state: object) -> Iterator[None]:
-    """Makes a glidar.Error of whatever a malformed state leads to."""
+    """Converts any exception caused by a malformed state to a glidar.Error."""
     where = f"pickled {kind}"
     remedy = "pickle it again with this version of glidar"
     if not isinstance(state, dict) or state.get("kind") != kind:
-        raise Error(where, "a state of something else", f"the state of a {kind}", remedy)
+        raise Error(where, "the state of another type", f"the state of a {kind}", remedy)
     try:
         yield
     except Error:
@@ -62,7 +62,7 @@ def restoring(kind: str, state: object) -> Iterator[None]:
 
 
 def key_of(value: object) -> object:
-    """A hashable value that two states share only if they hold the same, to the bit."""
+    """A hashable value that is equal for bit-identical states."""
     if isinstance(value, Mapping):
         return tuple((name, key_of(inner)) for name, inner in value.items())
     if isinstance(value, (list, tuple)):
@@ -77,7 +77,7 @@ def key_of(value: object) -> object:
 
 
 class SameContent:
-    """What dataclasses with arrays or NaN inherit: equal when of one type and the same to the bit."""
+    """Base of dataclasses with arrays or NaN: equal when they have the same type and bit-identical fields."""
 
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and key_of(self) == key_of(other)
@@ -86,8 +86,8 @@ class SameContent:
         return hash(key_of(self))
 
 
-def same_parts(one: Any, other: object) -> bool:
-    """Whether two dataclasses with arrays are of one type and the same to the bit; for their ``__eq__``."""
+def has_same_fields(one: Any, other: object) -> bool:
+    """Whether two dataclasses with arrays have the same type and bit-identical fields; for their ``__eq__``."""
     names = [field.name for field in fields(one)]
     return type(one) is type(other) and all(_same(getattr(one, name), getattr(other, name)) for name in names)
 
@@ -101,7 +101,7 @@ def _same(one: object, other: object) -> bool:
 
 
 def refuse_pickle(kind: str, found: str, remedy: str) -> Callable[..., Any]:
-    """A ``__reduce_ex__`` that says why something cannot be pickled, and what to do."""
+    """A ``__reduce_ex__`` that raises an error with a remedy, for types that cannot be pickled."""
 
     def __reduce_ex__(self: object, protocol: object) -> Any:
         raise Error(kind, found, "", remedy)

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Why beams have returns, or none, and what made them."""
+"""Status and source of returns."""
 
 import enum
 
 
 class Status(enum.IntEnum):
-    """Why a beam has a return, or has none."""
+    """Why a beam has a return or none."""
 
     hit = 0
     miss = 1
@@ -23,7 +23,7 @@ class Status(enum.IntEnum):
 
 
 class ReturnSource(enum.IntEnum):
-    """What made a return."""
+    """The origin of a return."""
 
     none = 0
     surface = 1

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Motion: poses as functions of time."""
+"""Trajectories: poses as functions of time."""
 
 from __future__ import annotations
 
@@ -14,29 +14,32 @@ import numpy.typing as npt
 from . import _core
 from ._errors import Error
 from ._inputs import FloatArray, floats, numbers, path_of, shape_text
-from ._state import Immutable, key_of, part, restoring, stated
+from ._state import Immutable, key_of, part, restoring, make_state
 
-_MOST_S = 9.2e9
+_MAX_TIME_S = 9.2e9
 
 
 def _ns(value_s: float, where: str) -> int:
     seconds = float(floats(value_s, where, ()))
-    if abs(seconds) > _MOST_S:
+    if abs(seconds) > _MAX_TIME_S:
         raise Error(where, f"{seconds}", "seconds up to 9.2e9")
     return round(seconds * 1e9)
 
 
 def _times_ns(value_s: npt.ArrayLike, where: str) -> npt.NDArray[np.int64]:
     seconds = floats(value_s, where, (None,))
-    if np.abs(seconds).max() > _MOST_S:
+    if np.abs(seconds).max() > _MAX_TIME_S:
         raise Error(where, f"{seconds[np.abs(seconds).argmax()]}", "seconds up to 9.2e9")
     return np.rint(seconds * 1e9).astype(np.int64)
 
 
 class Trajectory(Immutable):
-    """A pose as a pure function of time: of a sensor (world_from_sensor) or an object
-    (world_from_object). Times are seconds; nanoseconds inside. Immutable. Two are equal when they are of
-    one kind with the same numbers, to the last bit; they can be hashed, copied and pickled."""
+    """A pose as a pure function of time: of a sensor (world_from_sensor) or an object (world_from_object).
+
+    Poses are (4, 4), m. Times are seconds from -9.2e9 to 9.2e9, rounded to nanoseconds. Trajectories are
+    immutable. Two are equal when they have the same type and bit-identical numbers; they can be hashed, copied
+    and pickled. Every constructor raises Error for a wrong shape or a number that is not finite.
+    """
 
     __slots__ = ("_core",)
 
@@ -55,7 +58,7 @@ class Trajectory(Immutable):
         return key_of(_core.trajectory_states(self._core))
 
     def __getstate__(self) -> dict[str, Any]:
-        return stated("Trajectory", motion=_core.trajectory_states(self._core))
+        return make_state("Trajectory", motion=_core.trajectory_states(self._core))
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         with restoring("Trajectory", state):
@@ -66,12 +69,12 @@ class Trajectory(Immutable):
 
     @staticmethod
     def constant(pose: npt.ArrayLike) -> Trajectory:
-        """Standing still at a pose, 4x4."""
+        """A constant pose, (4, 4)."""
         return Trajectory(_core.constant(floats(pose, "pose", (4, 4))[None], "pose"))
 
     @staticmethod
     def spin(pose: npt.ArrayLike, rate_rad_s: npt.ArrayLike, *, t0_s: float = 0.0) -> Trajectory:
-        """Turning on the spot from `pose` at t0 at a constant rate (3) about the body's own axes."""
+        """Rotation about the body's origin from `pose` at t0, at a constant rate (3,), rad/s, about the body's axes."""
         start = floats(pose, "pose", (4, 4))[None]
         return Trajectory(_core.spin(start, floats(rate_rad_s, "rate_rad_s", (3,)), _ns(t0_s, "t0_s")))
 
@@ -84,8 +87,8 @@ class Trajectory(Immutable):
         in_world: bool = False,
         t0_s: float = 0.0,
     ) -> Trajectory:
-        """A steady screw motion from `pose` at t0. The twist is given along the body's axes, or
-        those of the world."""
+        """Constant screw motion from `pose` at t0. Angular (3,), rad/s, and linear velocity (3,), m/s, are along
+        the body's axes, or with ``in_world`` along those of the world."""
         start = floats(pose, "pose", (4, 4))[None]
         angular = floats(angular_rad_s, "angular_rad_s", (3,))
         linear = floats(linear_m_s, "linear_m_s", (3,))
@@ -93,8 +96,8 @@ class Trajectory(Immutable):
 
     @staticmethod
     def timed(times_s: npt.ArrayLike, poses: npt.ArrayLike) -> Trajectory:
-        """Poses (N, 4, 4) at increasing times (N): straight lines and slerp between them, held
-        before the first and after the last."""
+        """Poses (N, 4, 4) at increasing times (N,), s: positions are interpolated linearly, rotations by slerp.
+        The first and last pose are held outside the interval."""
         times = _times_ns(times_s, "times_s")
         return Trajectory(_core.timed(times, floats(poses, "poses", (len(times), 4, 4))))
 
@@ -108,14 +111,14 @@ class Trajectory(Immutable):
         velocity_m_s: npt.ArrayLike = (0.0, 0.0, 0.0),
         t0_s: float = 0.0,
     ) -> Trajectory:
-        """A rigid body on which no torque acts, in closed form.
+        """Torque-free motion of a rigid body, in closed form.
 
         Args:
-            pose: world_from_body at t0, 4x4.
-            moments_kg_m2: principal moments of inertia (3); only their ratios matter.
-            rate_rad_s: angular velocity about the principal axes (3) at t0.
-            body_from_principal: centre of mass and principal axes in the body, 4x4; None: the body's.
-            velocity_m_s: of the centre of mass in the world (3).
+            pose: world_from_body at t0, (4, 4).
+            moments_kg_m2: principal moments of inertia (3,); only their ratios matter.
+            rate_rad_s: angular velocity about the principal axes (3,) at t0.
+            body_from_principal: centre of mass and principal axes in the body frame, (4, 4); None: the body frame.
+            velocity_m_s: velocity of the centre of mass in the world (3,).
         """
         principal = np.eye(4) if body_from_principal is None else body_from_principal
         poses = np.stack(
@@ -134,12 +137,15 @@ class Trajectory(Immutable):
         times_file: str | os.PathLike[str] | None = None,
         start_s: float | None = None,
     ) -> Trajectory:
-        """Timed poses from a TUM, KITTI or CSV file; its first row tells which.
+        """Timed poses from a TUM, KITTI or CSV file. The first row determines the format.
 
         Args:
-            rate_hz: of a KITTI file: poses per second, the first at 0. Or:
-            times_file: of a KITTI file: a file of one time a line, s.
-            start_s: shifts all times so that the first is this.
+            rate_hz: poses per second of a KITTI file, the first at 0. Or:
+            times_file: file with the times of a KITTI file, one per line, s.
+            start_s: shifts all times so that the first is this, s.
+
+        Raises:
+            Error: the file cannot be read or is malformed, with its line and column.
         """
         start = None if start_s is None else _ns(start_s, "start_s")
         rate = None if rate_hz is None else float(floats(rate_hz, "rate_hz", ()))
@@ -147,41 +153,41 @@ class Trajectory(Immutable):
         return Trajectory(_core.load_trajectory(path_of(path, "path"), rate, times, start))
 
     def pose_at(self, time_s: float) -> FloatArray:
-        """The pose at a time, 4x4."""
+        """The pose at a time (s), (4, 4)."""
         result: FloatArray = self._core.poses_at(np.array([_ns(time_s, "time_s")]))[0]
         return result
 
     def poses_at(self, times_s: npt.ArrayLike) -> FloatArray:
-        """The poses (N, 4, 4) at times (N)."""
+        """The poses (N, 4, 4) at times (N,), s."""
         return self._core.poses_at(_times_ns(times_s, "times_s"))
 
     @property
     def known_s(self) -> tuple[float, float]:
-        """First and last time for which it is known; about -9.2e9 and 9.2e9 when it is for all."""
+        """First and last time, s, for which the pose is known; about -9.2e9 and 9.2e9 when it is known always."""
         first, last = self._core.valid_interval()
         return first / 1e9, last / 1e9
 
 
-#: What says where something is: a pose, 4x4, or a trajectory.
+#: A pose, (4, 4), or a trajectory.
 PoseLike: TypeAlias = Union[npt.ArrayLike, Trajectory]
 
 
 def _has_trajectory(value: object) -> bool:
-    """Whether it is a Trajectory or a list with one, which NumPy makes no array of."""
+    """Whether it is a Trajectory or a list that contains one, which NumPy cannot convert."""
     if isinstance(value, (list, tuple)):
         return any(isinstance(part, Trajectory) for part in value)
     return isinstance(value, Trajectory)
 
 
 def trajectories(value: PoseLike | Sequence[PoseLike], where: str) -> _core.Trajectories:
-    """One trajectory, or many: of arrays (N, 4, 4) or a list of poses and trajectories."""
+    """One or several trajectories from an array (N, 4, 4), or a list of poses and trajectories."""
     if isinstance(value, Trajectory):
         return value._core
     if _has_trajectory(value):
         parts: Sequence[PoseLike] = value  # type: ignore[assignment]
         return _core.joined([trajectories(part, f"{where}[{k}]") for k, part in enumerate(parts)])
     if type(value) is np.ndarray and value.shape == (4, 4) and value.dtype == np.float64:
-        return _core.constant(np.ascontiguousarray(value)[None], where)  # which looks at the numbers too
+        return _core.constant(np.ascontiguousarray(value)[None], where)  # checks the numbers too
     given = numbers(value, where, (None, 4, 4))
     if given.ndim == 2:
         return _core.constant(floats(given, where, (4, 4))[None], where)
@@ -189,14 +195,14 @@ def trajectories(value: PoseLike | Sequence[PoseLike], where: str) -> _core.Traj
 
 
 def is_per_frame(value: object, where: str) -> bool:
-    """Whether these are poses of objects for each frame: N x k x 4 x 4."""
+    """Whether the array has poses of objects for each frame: N x k x 4 x 4."""
     return not _has_trajectory(value) and numbers(value, where, (None, None, 4, 4)).ndim == 4
 
 
 def object_trajectories(
     value: PoseLike | Sequence[PoseLike] | None, count: int, objects: int, where: str = "objects"
 ) -> _core.Trajectories | None:
-    """Of `objects` objects for `count` frames: for each frame or the same for all."""
+    """Trajectories of `objects` objects for `count` frames: for each frame, or the same for all."""
     if value is None:
         return None
     if is_per_frame(value, where):

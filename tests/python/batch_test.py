@@ -13,7 +13,7 @@ from waiting import wait_until
 import glidar
 
 
-def test_frame_of_a_batch_is_what_one_measurement_makes_to_the_bit(asteroid, noisy):
+def test_frames_of_a_batch_are_bit_identical_to_single_measurements(asteroid, noisy):
     poses, seeds = poses_around(20), np.arange(7, 27)
     batch = glidar.simulate_batch(asteroid, noisy, poses, seeds)
     assert len(batch) == 20
@@ -22,7 +22,7 @@ def test_frame_of_a_batch_is_what_one_measurement_makes_to_the_bit(asteroid, noi
         assert np.array_equal(batch[k].world_from_sensor, poses[k])
 
 
-def test_seeds_and_frame_numbers_draw_different_noise(asteroid, noisy):
+def test_noise_depends_on_seed_and_frame_number(asteroid, noisy):
     pose = poses_around(1)
     a, b, c, d = glidar.simulate_batch(asteroid, noisy, np.repeat(pose, 4, 0), [1, 1, 2, 1], frames=[0, 0, 0, 1])
     assert same(a, b)
@@ -34,13 +34,13 @@ def test_seeds_and_frame_numbers_draw_different_noise(asteroid, noisy):
     assert not same(a, other)
 
 
-def test_number_of_threads_does_not_change_a_bit(asteroid, noisy):
+def test_results_do_not_depend_on_the_number_of_threads(asteroid, noisy):
     pose = poses_around(1)[0]
     one = glidar.simulate(asteroid, noisy, pose, threads=1)
     assert same(one, glidar.simulate(asteroid, noisy, pose, threads=2))
 
 
-def test_objects_have_poses_of_their_own_in_every_frame(camera):
+def test_objects_can_have_different_poses_in_every_frame(camera):
     scene = glidar.Scene()
     scene.add_model("builtin:sphere", name="a")
     scene.add_instance(scene["a"], name="b")
@@ -58,7 +58,7 @@ def test_objects_have_poses_of_their_own_in_every_frame(camera):
     assert same(glidar.simulate(scene, camera, poses[0], objects=objects[0]), frames[0])
 
 
-def test_frames_that_move_differ_from_those_that_stand(asteroid):
+def test_frames_of_a_moving_sensor_differ_from_those_of_a_stationary_one(asteroid):
     lidar = glidar.load_sensor("VLP-16").ground_truth()
     pose = glidar.look_at([3, 0, 0], [0, 0, 0], boresight="x")
     still = glidar.simulate(asteroid, lidar, pose)
@@ -69,7 +69,7 @@ def test_frames_that_move_differ_from_those_that_stand(asteroid):
     assert same(glidar.simulate_batch(asteroid, lidar, [pose, glidar.Trajectory.constant(pose)], objects=[spin])[1], moving)
 
 
-def test_memory_of_frames_that_live_is_not_used_again(asteroid, camera):
+def test_memory_of_existing_frames_is_not_reused(asteroid, camera):
     poses = poses_around(30)
     kept = glidar.simulate(asteroid, camera, poses[0]).range_m  # the frame itself is gone
     before = kept.copy()
@@ -78,7 +78,7 @@ def test_memory_of_frames_that_live_is_not_used_again(asteroid, camera):
     assert kept.tobytes() == before.tobytes()
 
 
-def test_python_goes_on_while_a_batch_is_measured(asteroid):
+def test_other_python_threads_run_during_a_batch(asteroid):
     sensor = glidar.camera(256, 256)
     spans, ticks = [], []
 
@@ -101,7 +101,7 @@ def test_python_goes_on_while_a_batch_is_measured(asteroid):
     wait_until(python_ran_in_the_middle, "Python to run while a batch is measured")
 
 
-def test_many_threads_measure_one_scene_and_each_gets_its_own(asteroid, noisy):
+def test_threads_can_measure_one_scene_concurrently(asteroid, noisy):
     poses = poses_around(16)
     expected = glidar.simulate_batch(asteroid, noisy, poses, np.arange(16))
     found = [None] * 16
@@ -117,7 +117,7 @@ def test_many_threads_measure_one_scene_and_each_gets_its_own(asteroid, noisy):
     assert all(same(a, b) for a, b in zip(expected, found, strict=True))
 
 
-def test_opengl_measures_from_any_thread(asteroid, camera):
+def test_opengl_renders_from_any_thread(asteroid, camera):
     try:
         first = glidar.simulate(asteroid, camera, renderer="opengl")
     except glidar.Error as error:
@@ -137,7 +137,7 @@ def test_opengl_measures_from_any_thread(asteroid, camera):
     assert all(same(first, other) for other in found)
 
 
-def test_simulator_keeps_the_scene_as_it_was(camera):
+def test_simulator_ignores_later_changes_of_the_scene(camera):
     scene = glidar.Scene("builtin:sphere")
     simulator = glidar.Simulator(scene, camera)
     pose = glidar.look_at([5, 0, 0], [0, 0, 0])
@@ -147,7 +147,7 @@ def test_simulator_keeps_the_scene_as_it_was(camera):
     assert glidar.simulate(scene, camera, pose).hits == 0
 
 
-def test_a_batch_of_nothing_and_wrong_sizes_are_refused(asteroid, camera):
+def test_empty_batches_and_wrong_sizes_are_rejected(asteroid, camera):
     poses = poses_around(3)
     for arguments, where in [
         ({"poses": np.empty((0, 4, 4))}, "pose"),

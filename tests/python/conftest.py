@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What tests of the Python package share. Run by ctest with PYTHONPATH and PATH set; alone:
+"""Fixtures for tests of the Python package. Run by ctest with PYTHONPATH and PATH set; alone:
 PYTHONPATH=build/dev/python PATH=build/dev/apps/glidar:$PATH build/venv/bin/python -m pytest tests/python"""
 
 import pickle
@@ -35,16 +35,16 @@ def noisy():
 
 @pytest.fixture(scope="session")
 def built():
-    """A scene with a model, meshes made in code, a copy, changed attributes and materials."""
+    """A scene with a model, meshes defined in code, a copy, changed attributes and materials."""
     scene = glidar.Scene(ROOT / "models/satellite/satellite.obj")
-    corners = np.array([[0.1, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) + 1e7  # has an origin of its own
+    corners = np.array([[0.1, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]) + 1e7  # far from the origin
     faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
     colours = np.linspace(0, 1, 12).reshape(4, 3)
     first = scene.add_mesh(corners, faces, colours=colours, name="first", pose=glidar.pose([-1e7, -1e7, -1e7]))
     first.set_materials({"*": {"diffuse": [0.1, 0.7, 0.3]}})
     scene.add_instance(first, name="second", class_name="part", scale=0.7)
     with pytest.raises(glidar.Error):
-        scene.add_model("builtin:box", name="second")  # is taken away again
+        scene.add_model("builtin:box", name="second")  # removed, because the name is not unique
     scene.add_model("builtin:sphere", pose=glidar.pose([3, 0, 0]), class_name="ball")
     for k in range(50):
         scene["second"].pose = glidar.pose([0.1 * k - 1e7, -1e7, -1e7])
@@ -54,7 +54,7 @@ def built():
 
 @pytest.fixture
 def program():
-    """Runs the command line; gives what it prints, or its error."""
+    """Runs the command line; returns its output, or its error message."""
 
     def run(*arguments, folder=ROOT, code=0):
         done = subprocess.run(
@@ -67,23 +67,23 @@ def program():
 
 
 def poses_around(count, distance=6.0):
-    """Sensors on a circle about the origin."""
+    """Poses of sensors on a circle around the origin."""
     angles = np.linspace(0.0, 2.0 * np.pi, count, endpoint=False)
     return np.stack([glidar.look_at([distance * np.cos(a), distance * np.sin(a), 1.0], [0, 0, 0]) for a in angles])
 
 
 def same(one, other):
-    """Whether two frames are the same to the bit."""
+    """Whether two frames are bit-identical."""
     names = ("range_m", "intensity", "status", "sigma_m")
     return all(getattr(one, n).tobytes() == getattr(other, n).tobytes() for n in names)
 
 
 def again(value, protocol=pickle.HIGHEST_PROTOCOL):
-    """What comes back from a pickle."""
+    """A value after pickling and unpickling."""
     return pickle.loads(pickle.dumps(value, protocol))
 
 
-#: A trajectory of every kind.
+#: A trajectory of every type.
 TRAJECTORIES = {
     "constant": lambda: glidar.Trajectory.constant(glidar.look_at([1, 2, 3], [0, 0.1, 0])),
     "spin": lambda: glidar.Trajectory.spin(glidar.look_at([1, 2, 3], [0, 0.1, 0]), [0.1, 0.2, 0.3], t0_s=0.1),

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What README.md, the pages about Python and the notebook show works."""
+"""The Python code of README.md, of the pages about Python and of the notebook works."""
 
 import inspect
 import json
@@ -29,7 +29,7 @@ def folder(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("name", ["README.md", "docs/python.md", "docs/python/pickle.md"])
-def test_python_of_a_document_runs(name, folder):
+def test_python_code_of_a_page_runs(name, folder):
     found = blocks(name)
     assert found
     names = {}
@@ -37,7 +37,7 @@ def test_python_of_a_document_runs(name, folder):
         exec(compile(block, name, "exec"), names)
 
 
-def test_every_name_has_a_docstring_and_the_document_tells_of_it():
+def test_every_public_name_has_a_docstring_and_is_documented():
     text = (ROOT / "docs/python/reference.md").read_text(encoding="utf-8")
     for name in glidar.__all__:
         assert getattr(glidar, name).__doc__, name
@@ -56,7 +56,7 @@ def named(name):
     return getattr(getattr(glidar, owner[0].upper() + owner[1:]), method) if owner else getattr(glidar, name)
 
 
-def test_the_tables_of_all_names_have_the_arguments_of_the_functions():
+def test_the_reference_tables_list_the_arguments_of_the_functions():
     found = list(calls((ROOT / "docs/python/reference.md").read_text(encoding="utf-8")))
     assert len(found) > 20
     for name, text in found:
@@ -80,7 +80,7 @@ def test_the_tables_of_all_names_have_the_arguments_of_the_functions():
 NOTEBOOK = ROOT / "examples/notebooks/first_steps.ipynb"
 
 
-def test_the_notebook_is_kept_without_outputs():
+def test_the_notebook_is_stored_without_outputs():
     nbformat = pytest.importorskip("nbformat")
     for cell in nbformat.read(NOTEBOOK, as_version=4).cells:
         if cell.cell_type == "code":
@@ -88,7 +88,7 @@ def test_the_notebook_is_kept_without_outputs():
             assert cell.execution_count is None
 
 
-def test_the_notebook_says_where_to_start_it(tmp_path, monkeypatch):
+def test_the_notebook_reports_where_to_start_it(tmp_path, monkeypatch):
     cells = json.loads(NOTEBOOK.read_text(encoding="utf-8"))["cells"]
     first = next(cell for cell in cells if cell["cell_type"] == "code")
     monkeypatch.chdir(tmp_path)
@@ -97,7 +97,7 @@ def test_the_notebook_says_where_to_start_it(tmp_path, monkeypatch):
 
 
 @pytest.mark.parametrize("started_from", [NOTEBOOK.parent, ROOT], ids=["its own folder", "the clone"])
-def test_the_notebook_runs_from(started_from):
+def test_the_notebook_runs_from_folder(started_from):
     nbclient = pytest.importorskip("nbclient")
     nbformat = pytest.importorskip("nbformat")
     notebook = nbformat.read(NOTEBOOK, as_version=4)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Errors, and what ends long work."""
+"""Errors, and interruption of long computations."""
 
 import _thread
 import logging
@@ -17,7 +17,7 @@ from waiting import MAX_WAIT_S, let_time_pass, wait_until
 import glidar
 
 
-def test_error_has_its_four_parts_and_can_be_sent_on():
+def test_error_has_four_parts_and_can_be_pickled():
     with pytest.raises(glidar.Error) as caught:
         glidar.camera(fov_deg=200)
     error = caught.value
@@ -59,7 +59,7 @@ def keys(count):
     return np.arange(count, dtype=np.uint64), np.zeros(count, np.uint32), 0
 
 
-def test_ctrl_c_ends_a_batch_and_all_goes_on(asteroid):
+def test_ctrl_c_stops_a_batch_and_leaves_the_simulator_usable(asteroid):
     sensor = glidar.camera(256, 256)
     poses = poses_around(3000)
     core = glidar.Simulator(asteroid, sensor)._core
@@ -68,14 +68,14 @@ def test_ctrl_c_ends_a_batch_and_all_goes_on(asteroid):
     assert glidar.simulate(asteroid, sensor, poses[0]).hits > 0
 
 
-def test_ctrl_c_ends_one_long_measurement(asteroid):
+def test_ctrl_c_stops_one_long_measurement(asteroid):
     simulator = glidar.Simulator(asteroid, glidar.camera(4000, 4000))
     fields = glidar._core.fields_needed_by(["xyz"])
     assert completed(simulator._core.simulate, simulator._core.usual_motion(), None, keys(1), fields) == []
     glidar.simulate(asteroid, glidar.camera(), poses_around(1)[0])
 
 
-def test_ctrl_c_ends_the_loading_of_a_model_and_its_process(tmp_path, monkeypatch):
+def test_ctrl_c_stops_the_import_of_a_model_and_its_process(tmp_path, monkeypatch):
     helper = tmp_path / "helper"
     helper.write_text(f"#!/bin/sh\necho $$ > {tmp_path}/new\nmv {tmp_path}/new {tmp_path}/pid\nexec sleep 3600\n")
     helper.chmod(0o755)
@@ -87,11 +87,11 @@ def test_ctrl_c_ends_the_loading_of_a_model_and_its_process(tmp_path, monkeypatc
     assert not process.exists()
 
 
-def test_ctrl_c_ends_verify():
+def test_ctrl_c_stops_verify():
     assert completed(glidar._core.verify, "rays", 1) == []
 
 
-def test_what_the_library_tells_goes_to_the_log(caplog, tmp_path):
+def test_messages_of_the_library_are_logged(caplog, tmp_path):
     (tmp_path / "a.obj").write_text("mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n")
     (tmp_path / "a.mtl").write_text("newmtl m\nmap_Kd nowhere.png\n")
     with caplog.at_level(logging.INFO, "glidar"):
@@ -99,10 +99,10 @@ def test_what_the_library_tells_goes_to_the_log(caplog, tmp_path):
     assert any("nowhere.png" in record.message and record.levelname == "WARNING" for record in caplog.records)
 
 
-def test_models_are_found_whatever_the_folder(tmp_path, monkeypatch):
+def test_models_are_found_from_any_working_folder(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     assert glidar.Scene(ROOT / "models/satellite/satellite.obj").objects[0].triangles > 0
-    assert np.isfinite(glidar.load_sensor("OS1-32").directions).all()
+    assert np.isfinite(glidar.load_sensor("OS1-32").ray_directions).all()
 
 
 ODD = [10**30, -1, 2**64, float("nan"), float("inf"), -0.5, "x", "\ud800", "a\0b", b"\xff", [], {}, [[1, 2], [3]], object(), 1e308,
@@ -131,7 +131,7 @@ USES = {
 
 
 @pytest.mark.parametrize("use", USES)
-def test_every_odd_value_is_an_error_that_quotes_little(use):
+def test_every_invalid_value_raises_an_error_with_a_short_excerpt(use):
     for value in ODD:
         try:
             USES[use](value)
@@ -139,7 +139,7 @@ def test_every_odd_value_is_an_error_that_quotes_little(use):
             assert len(str(error)) < 1200 and "\0" not in str(error)
 
 
-def test_names_that_are_not_utf8_are_errors_with_a_text(tmp_path):
+def test_names_that_are_not_utf8_raise_a_printable_error(tmp_path):
     name = str(tmp_path).encode() + b"/\xff.yaml"
     Path(name.decode("utf-8", "surrogateescape")).write_text("optics: 3\n")
     for use in (glidar.load_sensor, glidar.load_scene):
@@ -148,7 +148,7 @@ def test_names_that_are_not_utf8_are_errors_with_a_text(tmp_path):
         assert "UTF-8" in str(caught.value)
 
 
-def test_files_that_are_not_utf8_are_errors(tmp_path):
+def test_files_that_are_not_utf8_raise_an_error(tmp_path):
     (tmp_path / "s.yaml").write_bytes(b"name: caf\xe9\n")
     (tmp_path / "t.csv").write_bytes(b"\xff\xfe 1 2\n")
     (tmp_path / "c.yaml").write_bytes(b"optics: {type: table, file: t.csv}\n")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Frames, truth and clouds as NumPy arrays."""
+"""Frames, ground truth and clouds as NumPy arrays."""
 
 import gc
 
@@ -15,7 +15,7 @@ def frame(asteroid, noisy):
     return glidar.simulate(asteroid, noisy, columns="all")
 
 
-def test_arrays_are_read_only_views_of_one_memory(frame):
+def test_arrays_are_read_only_views_of_the_frames_memory(frame):
     for name in ("range_m", "intensity", "status"):
         one, other = getattr(frame, name), getattr(frame, name)
         assert one.shape == (48, 64)
@@ -36,7 +36,7 @@ def test_arrays_outlive_their_frame(asteroid, camera):
     assert kept.tobytes() == copy.tobytes()
 
 
-def test_status_says_why_a_return_is_missing(frame):
+def test_status_states_why_a_return_is_missing(frame):
     assert frame.hits == np.isfinite(frame.range_m).sum() == (frame.status == glidar.Status.hit).sum()
     assert (frame.status == glidar.Status.dropped).any()
     assert np.isfinite(frame.ground_truth.range_m[frame.status == glidar.Status.dropped]).all()
@@ -51,7 +51,7 @@ def test_sigma_of_a_sensor_without_noise_is_zero(asteroid, camera):
     assert (sigma == 0).all()
 
 
-def test_truth_is_that_of_a_sphere():
+def test_ground_truth_of_a_sphere_is_exact():
     scene = glidar.Scene()
     ball = scene.add_model("builtin:sphere", scale=2.0, id=17, class_name="ball")
     frame = glidar.simulate(scene, glidar.camera(33, 33, fov_deg=5.0), glidar.look_at([10, 0, 0], [0, 0, 0]), columns="all")
@@ -65,15 +65,15 @@ def test_truth_is_that_of_a_sphere():
     assert ball.triangles == 5120
 
 
-def test_truth_that_was_not_kept_says_what_to_do(asteroid, camera):
+def test_missing_ground_truth_raises_an_error_with_a_remedy(asteroid, camera):
     frame = glidar.simulate(asteroid, camera)
-    with pytest.raises(glidar.Error, match=r"truth.colour: not kept; simulate\(..., columns='all'\)"):
+    with pytest.raises(glidar.Error, match=r"ground_truth.colour: not kept; simulate\(..., columns='all'\)"):
         _ = frame.ground_truth.colour
     with pytest.raises(glidar.Error):
         frame.cloud(["colour"])
 
 
-def test_clouds_are_the_callers_own(frame):
+def test_arrays_of_clouds_belong_to_the_caller(frame):
     cloud = frame.cloud()
     assert list(cloud) == ["xyz", "intensity", "range", "normal", "instance", "class"]
     assert cloud["xyz"].shape == (48, 64, 3)
@@ -82,14 +82,14 @@ def test_clouds_are_the_callers_own(frame):
     assert not (frame.cloud()["xyz"] == 0.0).any()
 
 
-def test_cloud_of_hits_alone_is_flat(frame):
+def test_cloud_of_hits_only_is_flat(frame):
     cloud = frame.cloud(["range"], hits_only=True)
     assert cloud.points == frame.hits
     assert cloud["range"].shape == (frame.hits,)
     assert np.array_equal(cloud["range"], frame.range_m[frame.status == 0])
 
 
-def test_frames_of_clouds_are_rigid_motions_of_each_other(frame):
+def test_clouds_in_different_coordinate_frames_differ_by_rigid_transforms(frame):
     sensor = frame.cloud(["xyz"], hits_only=True)
     world = frame.cloud(["xyz"], frame="world", hits_only=True)
     pose = frame.world_from_sensor
@@ -100,7 +100,7 @@ def test_frames_of_clouds_are_rigid_motions_of_each_other(frame):
     assert ros == pytest.approx(sensor["xyz"][:, [2, 0, 1]] * [1, -1, -1], abs=1e-12)
 
 
-def test_unknown_columns_and_frames_are_told_with_the_nearest(frame):
+def test_errors_for_unknown_columns_and_frames_suggest_the_nearest_name(frame):
     with pytest.raises(glidar.Error, match="did you mean 'range'"):
         frame.cloud(["rnage"])
     with pytest.raises(glidar.Error, match="did you mean world"):
@@ -109,7 +109,7 @@ def test_unknown_columns_and_frames_are_told_with_the_nearest(frame):
         frame.cloud(["xyz"])["time"]
 
 
-def test_columns_go_to_whoever_speaks_dlpack(frame):
+def test_columns_export_dlpack(frame):
     cloud = frame.cloud()
     for name, column in cloud.items():
         taken = np.from_dlpack(column)
@@ -123,7 +123,7 @@ def test_columns_become_tensors_without_a_copy(frame):
     assert torch.from_dlpack(xyz).data_ptr() == xyz.ctypes.data
 
 
-def test_returns_of_a_lidar_lie_one_below_the_other():
+def test_returns_of_a_lidar_are_stacked_in_rows():
     lidar = glidar.load_sensor("VLP-16")
     assert lidar.kind == "spinning"
     assert lidar.boresight == "x"
@@ -134,24 +134,24 @@ def test_returns_of_a_lidar_lie_one_below_the_other():
     assert set(np.unique(cloud["ring"])) == set(range(16))
 
 
-def test_story_of_an_entry_tells_every_draw(frame):
+def test_trace_of_an_entry_lists_every_random_number(frame):
     index = int(np.flatnonzero(frame.status.ravel() == glidar.Status.hit)[5])
-    story = frame.explain(index)
-    assert story.entry == index
-    assert len(story.steps) == 2
-    gaussian, dropout = story.steps
+    trace = frame.explain(index)
+    assert trace.entry == index
+    assert len(trace.steps) == 2
+    gaussian, dropout = trace.steps
     truth = frame.ground_truth.range_m.flat[index]
-    drawn = gaussian.drawn[0]
-    assert drawn.law == "normal"
+    drawn = gaussian.samples[0]
+    assert drawn.distribution == "normal"
     assert gaussian.after.range_m == pytest.approx(truth + 0.01 * drawn.value, abs=1e-9)
-    assert dropout.drawn[0].against == pytest.approx(0.1)
+    assert dropout.samples[0].probability == pytest.approx(0.1)
     assert dropout.after.range_m == frame.range_m.flat[index]
-    assert "noise 1" in str(story)
-    assert frame.explain(row=index // 64, col=index % 64).text == story.text
-    assert frame.explain(5, hits_only=True).text == story.text
+    assert "noise 1" in str(trace)
+    assert frame.explain(row=index // 64, col=index % 64).text == trace.text
+    assert frame.explain(5, hits_only=True).text == trace.text
 
 
-def test_entries_that_are_not_there_have_no_story(frame):
+def test_explain_rejects_entries_out_of_range(frame):
     for arguments in ({}, {"index": 1, "row": 1}, {"row": 1}, {"index": 48 * 64}, {"row": 48, "col": 0}):
         with pytest.raises(glidar.Error):
             frame.explain(**arguments)
@@ -159,21 +159,21 @@ def test_entries_that_are_not_there_have_no_story(frame):
         frame.explain(frame.hits, hits_only=True)
 
 
-def test_information_of_a_plane_knows_what_it_does_not_determine():
+def test_fisher_information_of_a_plane_has_three_degenerate_directions():
     plane = glidar.Scene("builtin:plane")
     frame = glidar.simulate(plane, glidar.camera(32, 32), glidar.look_at([0, 0, 2], [0, 0, 0], [0, 1, 0]), columns="all")
-    told = frame.information(sigma_m=0.02)
+    information = frame.information(sigma_m=0.02)
     with pytest.raises(glidar.Error, match="instance: 99"):
         frame.information(instance=99)
-    assert told.matrix.shape == (6, 6)
-    assert np.allclose(told.matrix, told.matrix.T)
-    assert [d.degenerate for d in told.directions] == [False] * 3 + [True] * 3
-    # along the boresight, which is the plane's normal, every range tells 1 / (sigma cos)^2
+    assert information.matrix.shape == (6, 6)
+    assert np.allclose(information.matrix, information.matrix.T)
+    assert [d.degenerate for d in information.directions] == [False] * 3 + [True] * 3
+    # along the boresight, which is the plane's normal, every range contributes 1 / (sigma cos)^2
     cosines = frame.ground_truth.cos_incidence[frame.status == glidar.Status.hit]
-    assert told.matrix[5, 5] == pytest.approx((1.0 / (0.02 * cosines.astype(float)) ** 2).sum(), rel=1e-6)
-    assert np.isinf(told.bound).sum() == 3
-    assert told.to_dict()["returns"] == told.returns
-    assert "translation" in str(told)
+    assert information.matrix[5, 5] == pytest.approx((1.0 / (0.02 * cosines.astype(float)) ** 2).sum(), rel=1e-6)
+    assert np.isinf(information.bound).sum() == 3
+    assert information.to_dict()["returns"] == information.returns
+    assert "translation" in str(information)
 
 
 def test_verify_passes_on_this_machine():
@@ -188,7 +188,7 @@ def test_verify_passes_on_this_machine():
     assert all(row.known_failure for row in found.rows if row.verdict == "known failure")
 
 
-def test_verify_tells_which_rows_do_not_apply_to_a_camera_only_renderer():
+def test_verify_marks_rows_that_are_not_applicable_to_a_camera_only_renderer():
     found = glidar.verify(renderer="raster")
     assert found.passed, str(found)
     left_out = {row.name for row in found.rows if row.verdict == "not applicable"}

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Depth images by their sidecars alone, with Open3D and OpenCV, and the images of what is there."""
+"""Depth images reconstructed from their sidecars with Open3D and OpenCV, and ground truth images."""
 
 import json
 import re
@@ -14,17 +14,17 @@ from PIL import Image
 
 import glidar
 
-TOLERANCE_M = 5e-4  # what is promised; half a step of the depth image of 1 mm
+TOLERANCE_M = 5e-4  # documented accuracy: half a step of the depth image of 1 mm
 WIDE = {"model": "radial_tangential", "k1": -0.2, "k2": 0.05, "p1": 0.001, "p2": -0.002, "k3": 0.01}
 RATIONAL = dict(WIDE, k4=0.1, k5=-0.05, k6=0.02)
 FISHEYE = {"model": "fisheye", "k1": 0.02, "k2": -0.01, "k3": 0.004, "k4": -0.001}
 
 
 def scene():
-    made = glidar.Scene()
-    made.add_model("builtin:asteroid", name="rock", id=300, class_name="rock", pose=glidar.pose([0, 0, 4]))
-    made.add_model("builtin:box", name="wall", id=2, class_name="wall", scale=2.0, pose=glidar.pose([0.5, 0, 8]))
-    return made
+    result = glidar.Scene()
+    result.add_model("builtin:asteroid", name="rock", id=300, class_name="rock", pose=glidar.pose([0, 0, 4]))
+    result.add_model("builtin:box", name="wall", id=2, class_name="wall", scale=2.0, pose=glidar.pose([0.5, 0, 8]))
+    return result
 
 
 def frame_of(camera):
@@ -37,20 +37,20 @@ def saved(frame, path, **options):
 
 
 @pytest.mark.parametrize("centre", [0.0, 0.5])
-def test_open3d_finds_the_points_of_a_depth_image(tmp_path, centre):
+def test_open3d_reconstructs_the_points_of_a_depth_image(tmp_path, centre):
     sensor = glidar.Sensor.from_dict(
         {"optics": {"type": "pinhole", "width": 64, "height": 48, "fx": 60, "fy": 61, "cx": 31.25, "cy": 22.5,
                     "pixel_centre": centre}}  # fmt: skip
     )
     frame = frame_of(sensor)
-    told = saved(frame, tmp_path / "a.depth.png", depth_units_per_m=2000.0)
-    info = told["sensor"]["camera_info"]
+    sidecar = saved(frame, tmp_path / "a.depth.png", depth_units_per_m=2000.0)
+    info = sidecar["sensor"]["camera_info"]
     k = np.reshape(info["k"], (3, 3))
     assert np.array_equal(k, sensor.K) and k[0, 2] == 31.25 - centre
     intrinsics = o3d.camera.PinholeCameraIntrinsic(info["width"], info["height"], k)
     image = o3d.io.read_image(str(tmp_path / "a.depth.png"))
     cloud = o3d.geometry.PointCloud.create_from_depth_image(
-        image, intrinsics, depth_scale=told["cloud"]["image"]["units_per_m"], depth_trunc=1e3
+        image, intrinsics, depth_scale=sidecar["cloud"]["image"]["units_per_m"], depth_trunc=1e3
     )
     wanted = frame.cloud(["xyz"], hits_only=True)["xyz"].reshape(-1, 3)
     found = np.asarray(cloud.points)
@@ -59,11 +59,11 @@ def test_open3d_finds_the_points_of_a_depth_image(tmp_path, centre):
 
 
 @pytest.mark.parametrize("distortion", [None, WIDE, RATIONAL, FISHEYE])
-def test_opencv_finds_the_points_of_a_depth_image_of_a_distorted_camera(tmp_path, distortion):
+def test_opencv_reconstructs_the_points_of_a_distorted_depth_image(tmp_path, distortion):
     sensor = glidar.camera(64, 48, fx=55.0, fy=56.0, cx=33.0, cy=23.5, distortion=distortion)
     frame = frame_of(sensor)
-    told = saved(frame, tmp_path / "a.depth.tiff")
-    info = told["sensor"]["camera_info"]
+    sidecar = saved(frame, tmp_path / "a.depth.tiff")
+    info = sidecar["sensor"]["camera_info"]
     k, d = np.reshape(info["k"], (3, 3)), np.array(info["d"])
     assert np.array_equal(d, sensor.distortion) and info["distortion_model"] == sensor.distortion_model
     depth = cv2.imread(str(tmp_path / "a.depth.tiff"), cv2.IMREAD_UNCHANGED)
@@ -85,9 +85,9 @@ def test_opencv_finds_the_points_of_a_depth_image_of_a_distorted_camera(tmp_path
 
 def room():
     """Something in front of every pixel of a wide lens."""
-    made = scene()
-    made.add_model("builtin:plane", name="floor", scale=50.0, pose=glidar.look_at([0, 0, 1.2], [0, 0.1, 0], [0, 1, 0]))
-    return made
+    result = scene()
+    result.add_model("builtin:plane", name="floor", scale=50.0, pose=glidar.look_at([0, 0, 1.2], [0, 0.1, 0], [0, 1, 0]))
+    return result
 
 
 def documented():
@@ -107,7 +107,7 @@ CAMERAS = {
 
 
 @pytest.mark.parametrize("name", CAMERAS)
-def test_the_example_of_the_documentation_finds_the_points_of_a_depth_image(tmp_path, monkeypatch, name):
+def test_the_documented_example_reconstructs_the_points_of_a_depth_image(tmp_path, monkeypatch, name):
     frame = glidar.simulate(room(), CAMERAS[name](), pose=np.eye(4))
     frame.save(tmp_path / "a.depth.tiff")
     monkeypatch.chdir(tmp_path)
@@ -117,7 +117,7 @@ def test_the_example_of_the_documentation_finds_the_points_of_a_depth_image(tmp_
     np.testing.assert_allclose(found, wanted, atol=TOLERANCE_M)
 
 
-def test_a_depth_tiff_holds_the_floats_of_the_npy(tmp_path):
+def test_a_depth_tiff_contains_the_floats_of_the_npy(tmp_path):
     frame = frame_of(glidar.camera(32, 24, fov_deg=100.0))
     frame.save(tmp_path / "a.depth.tiff")
     frame.save(tmp_path / "a.npy")
@@ -127,7 +127,7 @@ def test_a_depth_tiff_holds_the_floats_of_the_npy(tmp_path):
     np.testing.assert_array_equal(cv2.imread(str(tmp_path / "a.depth.tiff"), cv2.IMREAD_UNCHANGED), wanted)
 
 
-def test_images_of_what_is_there_hold_the_columns_of_the_cloud(tmp_path):
+def test_ground_truth_images_contain_the_columns_of_the_cloud(tmp_path):
     frame = frame_of(glidar.camera(40, 30, fov_deg=100.0))
     cloud = frame.cloud("all")
     read = {}
@@ -140,7 +140,7 @@ def test_images_of_what_is_there_hold_the_columns_of_the_cloud(tmp_path):
     np.testing.assert_array_equal(read["instance"], np.where(none, 0, cloud["instance"]))
     np.testing.assert_array_equal(read["class"], np.where(none, 0, cloud["class"]))
     assert set(np.unique(read["instance"])) == {0, 2, 300}
-    normal = read["normal"][:, :, ::-1]  # OpenCV has blue first
+    normal = read["normal"][:, :, ::-1]  # OpenCV's channel order is blue, green, red
     assert normal.dtype == np.uint16 and not normal[none].any()
     half_step = 1.0 / 65535
     np.testing.assert_allclose(normal[~none] * (2 / 65535) - 1, cloud["normal"][~none], atol=1.01 * half_step)
@@ -151,5 +151,5 @@ def test_images_of_what_is_there_hold_the_columns_of_the_cloud(tmp_path):
 
 
 def test_only_cameras_have_intrinsics():
-    with pytest.raises(glidar.Error, match="no camera"):
+    with pytest.raises(glidar.Error, match="not a camera"):
         _ = glidar.load_sensor("VLP-16").K

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Modules of the package import only lower modules: no circle, also not by imports in functions or for types."""
+"""Modules of the package import only lower modules: no circular imports, also not in functions or for type checks."""
 
 import ast
 from pathlib import Path
@@ -63,7 +63,7 @@ def find_cycle(graph):
     return next((found for found in map(visit, sorted(graph)) if found), [])
 
 
-def test_modules_import_each_other_in_no_circle():
+def test_modules_have_no_circular_imports():
     graph = imports_of(PACKAGE)
     assert {"_scene", "_frame"} <= graph["_simulate"]
     assert " -> ".join(find_cycle(graph)) == ""
@@ -80,7 +80,7 @@ def test_modules_import_each_other_in_no_circle():
         "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    from .low import x",
     ],
 )
-def test_every_kind_of_import_is_found_in_a_circle(tmp_path, statement):
+def test_circles_by_every_kind_of_import_are_found(tmp_path, statement):
     (tmp_path / "__init__.py").write_text("from .high import x\n")
     (tmp_path / "high.py").write_text(statement + "\n")
     (tmp_path / "low.py").write_text("from .high import y\n")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measurements one after the other, as many as there are poses."""
+"""simulate_iter: one frame after the other for any number of poses."""
 
 import gc
 import tracemalloc
@@ -21,7 +21,7 @@ def poses_without_end():
 
 
 @pytest.mark.parametrize("batch", [1, 3, 8, 100])
-def test_frames_are_those_of_a_batch_to_the_bit(asteroid, noisy, batch):
+def test_frames_are_bit_identical_to_those_of_a_batch(asteroid, noisy, batch):
     poses, seeds, numbers = poses_around(20), np.arange(7, 27), np.arange(100, 120)
     expected = glidar.simulate_batch(asteroid, noisy, poses, seeds, frames=numbers, sensor_id=3)
     frames = glidar.simulate_iter(
@@ -32,7 +32,7 @@ def test_frames_are_those_of_a_batch_to_the_bit(asteroid, noisy, batch):
     assert list(glidar.simulate_iter(asteroid, noisy, poses, 5)) == glidar.simulate_batch(asteroid, noisy, poses, 5)
 
 
-def test_without_seeds_every_frame_has_noise_of_its_own(asteroid, noisy):
+def test_noise_differs_between_frames_without_seeds(asteroid, noisy):
     poses = np.repeat(poses_around(1), 10, 0)
     frames = glidar.simulate_batch(asteroid, noisy, poses)
     assert [frame.seed for frame in frames] == list(range(1, 11))
@@ -42,7 +42,7 @@ def test_without_seeds_every_frame_has_noise_of_its_own(asteroid, noisy):
     assert len({frame.range_m.tobytes() for frame in one_for_all}) == 1
 
 
-def test_objects_are_the_same_for_all_frames_or_each_frame_has_its_own(camera):
+def test_poses_of_objects_are_common_or_per_frame(camera):
     scene = glidar.Scene()
     scene.add_model("builtin:sphere", name="a")
     scene.add_instance(scene["a"], name="b")
@@ -58,7 +58,7 @@ def test_objects_are_the_same_for_all_frames_or_each_frame_has_its_own(camera):
     )
 
 
-def test_poses_are_taken_when_they_are_needed(asteroid):
+def test_poses_are_read_lazily(asteroid):
     taken = 0
 
     def poses():
@@ -73,7 +73,7 @@ def test_poses_are_taken_when_they_are_needed(asteroid):
         assert index < taken <= index + 4
 
 
-def test_thousands_of_frames_take_no_more_memory_than_tens(asteroid):
+def test_memory_does_not_grow_with_the_number_of_frames(asteroid):
     frames = glidar.simulate_iter(asteroid, PIXEL, poses_without_end())
     for _ in islice(frames, 200):
         pass
@@ -87,7 +87,7 @@ def test_thousands_of_frames_take_no_more_memory_than_tens(asteroid):
         grown = tracemalloc.get_traced_memory()[0] - start
     finally:
         tracemalloc.stop()
-    # 5000 frames would be 5000 objects of Python at the least, of 48 bytes and more each
+    # 5000 stored frames would be at least 5000 Python objects of at least 48 bytes
     assert grown < 50_000
 
 
@@ -96,7 +96,7 @@ def resident_kib():
         return int(next(line for line in status if line.startswith("VmRSS")).split()[1])
 
 
-def test_the_memory_of_the_process_does_not_grow_with_the_frames(asteroid):
+def test_memory_of_the_process_does_not_grow_with_the_number_of_frames(asteroid):
     sensor = glidar.camera(64, 64, fov_deg=20.0)
     frames = glidar.simulate_iter(asteroid, sensor, poses_without_end())
     for _ in islice(frames, 100):
@@ -104,11 +104,11 @@ def test_the_memory_of_the_process_does_not_grow_with_the_frames(asteroid):
     before = resident_kib()
     for _ in islice(frames, 2000):
         pass
-    # kept frames would take 2000 x 4096 beams x 60 bytes and more, which is 480 MB
+    # stored frames would need at least 2000 x 4096 beams x 60 bytes, or 480 MB
     assert resident_kib() - before < 48_000
 
 
-def test_it_may_be_left_midway_and_gone_on_with(asteroid, noisy):
+def test_iteration_can_be_interrupted_and_resumed(asteroid, noisy):
     poses = poses_around(20)
     expected = glidar.simulate_batch(asteroid, noisy, poses)
     frames = glidar.simulate_iter(asteroid, noisy, poses)
@@ -120,7 +120,7 @@ def test_it_may_be_left_midway_and_gone_on_with(asteroid, noisy):
     assert glidar.simulate(asteroid, noisy, poses[7], seed=8) == expected[7]
 
 
-def test_a_pose_may_depend_on_the_frame_before_it():
+def test_a_pose_can_depend_on_the_previous_frame():
     sphere = glidar.Scene("builtin:sphere")
     seen = []
 
@@ -144,7 +144,7 @@ def first_frames_and_error(frames):
 
 
 @pytest.mark.parametrize("batch", [1, 4, 100])
-def test_an_error_names_the_frame_and_comes_after_those_before_it(asteroid, noisy, batch):
+def test_an_error_names_its_frame_and_is_raised_after_the_frames_before_it(asteroid, noisy, batch):
     poses = list(poses_around(9))
     expected = glidar.simulate_batch(asteroid, noisy, np.stack(poses))
     wrong = [*poses[:6], np.zeros((4, 4)), *poses[7:]]
@@ -164,7 +164,7 @@ def test_an_error_names_the_frame_and_comes_after_those_before_it(asteroid, nois
         assert all(same(one, other) for one, other in zip(found, expected[:6], strict=True))
 
 
-def test_an_error_of_the_callers_generator_is_that_error(asteroid):
+def test_an_exception_of_the_callers_generator_is_passed_on(asteroid):
     def poses():
         yield from islice(poses_without_end(), 5)
         raise RuntimeError("no more")
@@ -175,7 +175,7 @@ def test_an_error_of_the_callers_generator_is_that_error(asteroid):
         next(frames)
 
 
-def test_wrong_arguments_are_told_before_the_first_frame(asteroid, camera):
+def test_invalid_arguments_raise_before_the_first_frame(asteroid, camera):
     poses = poses_around(3)
     for arguments, options, message in [
         ((7,), {}, "poses: a int; allowed: an array N x 4 x 4, a list or a generator"),

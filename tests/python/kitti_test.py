@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""KITTI's folder, read as the readme of the object development kit says, by nothing of ours."""
+"""KITTI folders, read by an independent reader that follows the readme of the object development kit."""
 
 from pathlib import Path
 
@@ -11,7 +11,7 @@ from PIL import Image
 import glidar
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-ROUNDING_M = 1e-5  # six decimals of labels, and points of 32 bits at some metres
+ROUNDING_M = 1e-5  # labels have six decimals, points are float32
 
 SCENE = """models:
   - {model: 'builtin:box', name: a, id: 7, class: parked car, scale: 1.5, pose: {position: [8, 2, 0], euler_deg: {yaw: 30}}}
@@ -61,7 +61,7 @@ def folder(request, tmp_path_factory):
     return folder / "out.kitti"
 
 
-def test_every_box_holds_the_points_of_its_instance_tightly(folder):
+def test_every_box_fits_the_points_of_its_instance(folder):
     points = np.fromfile(folder / "velodyne" / "000000.bin", "<f4").reshape(-1, 4)
     labels = np.fromfile(folder / "labels" / "000000.label", "<u4")
     assert len(points) == len(labels) > 500
@@ -78,7 +78,7 @@ def test_every_box_holds_the_points_of_its_instance_tightly(folder):
         h, w, l = box["hwl"]
         low, high = np.array([-l / 2, -h, -w / 2]), np.array([l / 2, 0, w / 2])
         assert (own >= low - ROUNDING_M).all() and (own <= high + ROUNDING_M).all(), instance
-        # of a cube seen at an angle points are on a face across its length or its width
+        # the visible points of a rotated cube are on faces across its length or its width
         if instance == 7:
             gap = np.minimum(np.abs(own.min(0) - low), np.abs(high - own.max(0)))
             assert min(gap[0], gap[2]) < ROUNDING_M
@@ -86,7 +86,7 @@ def test_every_box_holds_the_points_of_its_instance_tightly(folder):
         assert box["occluded"] == 3
 
 
-def test_boxes_are_tight_around_the_meshes_and_in_the_image(folder):
+def test_boxes_fit_the_meshes_and_their_images(folder):
     calibration = read_calibration(folder / "calib" / "000000.txt")
     boxes = read_labels(folder / "label_2" / "000000.txt")
     p2 = calibration["P2"]
@@ -103,7 +103,7 @@ def test_boxes_are_tight_around_the_meshes_and_in_the_image(folder):
         np.testing.assert_allclose(car["bbox"], wanted, atol=0.01)  # pixels; rounding by 1e-6 m at 8 m
     else:
         assert (car["bbox"][:2] >= wanted[:2] - 0.01).all() and (car["bbox"][2:] <= wanted[2:] + 0.01).all()
-    # 30 degrees to the left of straight ahead: KITTI's rotation is from the camera's x, clockwise from above
+    # 30 degrees to the left: KITTI's rotation_y starts at the camera's x axis and is clockwise when seen from above
     np.testing.assert_allclose(car["rotation_y"], -np.deg2rad(30 + 90), atol=1e-6)
     x, _, z = car["location"]
     alpha = car["rotation_y"] - np.arctan2(x, z)
@@ -136,7 +136,7 @@ PARTLY_BEHIND = {
 
 
 @pytest.mark.parametrize("name", PARTLY_BEHIND)
-def test_bbox_is_that_of_the_pixels_of_an_object_alone(tmp_path, name):
+def test_bbox_covers_the_pixels_of_an_object_rendered_alone(tmp_path, name):
     about = PARTLY_BEHIND[name]
     scene = glidar.Scene()
     yaw = np.deg2rad(about.get("yaw", 0))
@@ -145,14 +145,14 @@ def test_bbox_is_that_of_the_pixels_of_an_object_alone(tmp_path, name):
                     pose=glidar.pose(about["position"], matrix=turned))  # fmt: skip
     (box,), pixels = saved_camera_frame(scene, glidar.camera(240, 160, fov_deg=80.0), tmp_path)
     wanted = pixel_box(pixels == 5)
-    # pixels are met at their centres, so that less than one is missing at each side
+    # beams go through pixel centres, so less than one pixel is missing at each side
     assert (box["bbox"][:2] <= wanted[:2] + 0.001).all() and (box["bbox"][2:] >= wanted[2:] - 0.001).all()
     np.testing.assert_allclose(box["bbox"], wanted, atol=1.01)
     assert (box["truncated"] == 0) == (name == "in front")
     assert (box["truncated"] > 0.99) == (name not in ("in front", "cut off"))
 
 
-def test_boxes_of_the_street_hold_their_pixels_and_the_pavement_is_plausible(tmp_path):
+def test_boxes_of_the_street_contain_their_pixels_and_the_pavement_is_plausible(tmp_path):
     scene = glidar.Scene(EXAMPLES / "street.yaml")
     boxes, pixels = saved_camera_frame(scene, glidar.camera(320, 200, fov_deg=80.0), tmp_path, (0.0, -0.9, 1.9))
     instances = np.unique(pixels[pixels > 0])
@@ -168,7 +168,7 @@ def test_boxes_of_the_street_hold_their_pixels_and_the_pavement_is_plausible(tmp
     np.testing.assert_allclose(pavement["bbox"][[0, 2, 3]], [0, 319, 199], atol=1e-6)
 
 
-def test_objects_without_a_class_are_not_cared_for(folder):
+def test_objects_without_a_class_are_labelled_dont_care(folder):
     unknown = [box for box in read_labels(folder / "label_2" / "000000.txt") if box["type"] == "DontCare"]
     assert unknown, "the sphere is in the image of both sensors"
     for box in unknown:
@@ -177,7 +177,7 @@ def test_objects_without_a_class_are_not_cared_for(folder):
         assert (box["bbox"][2:] > box["bbox"][:2]).all()
 
 
-def test_a_bin_has_labels_beside_it_where_there_are_classes(tmp_path):
+def test_a_bin_file_has_a_label_file_when_the_scene_has_classes(tmp_path):
     (tmp_path / "scene.yaml").write_text(SCENE)
     frame = glidar.simulate(glidar.Scene(tmp_path / "scene.yaml"), glidar.load_sensor("VLP-16"),
                             pose=np.eye(4), seed=3, columns="all")  # fmt: skip

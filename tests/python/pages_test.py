@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the pages that need packages from PyPI show works; the other pages: tests/docs_test.py."""
+"""The code of pages that need packages from PyPI works. For the other pages see tests/docs_test.py."""
 
 import re
 import sys
@@ -16,7 +16,7 @@ NAME = "tests/python/pages_test.py"
 
 
 @pytest.mark.parametrize("page", ["docs/tutorial/3-data-set.md", "docs/cookbook.md"])
-def test_the_blocks_of_a_page_run(page, tmp_path):
+def test_the_code_blocks_of_a_page_run(page, tmp_path):
     link_inputs(tmp_path)
     run_page(page, NAME, tmp_path)
 
@@ -24,10 +24,10 @@ def test_the_blocks_of_a_page_run(page, tmp_path):
 class StandIn(types.SimpleNamespace):
     """A ROS message: its fields are set by name."""
 
-    FLOAT32, FLOAT64, UINT8, UINT16, UINT32 = 7, 8, 2, 4, 6  # of sensor_msgs/PointField
+    FLOAT32, FLOAT64, UINT8, UINT16, UINT32 = 7, 8, 2, 4, 6  # datatypes of sensor_msgs/PointField
 
 
-def test_the_message_of_the_cookbook_has_the_points_of_the_file(tmp_path, monkeypatch):
+def test_the_ros_message_of_the_cookbook_has_the_points_of_the_file(tmp_path, monkeypatch):
     for name in ("sensor_msgs", "sensor_msgs.msg", "std_msgs", "std_msgs.msg"):
         module = types.ModuleType(name)
         module.PointCloud2 = module.PointField = module.Header = StandIn

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Malformed pickles are errors; sensors with beams of their own come back the same."""
+"""Malformed pickles raise errors; sensors with custom beams survive pickling."""
 
 import numpy as np
 import pytest
@@ -11,9 +11,9 @@ import glidar
 
 def restored(kind, state):
     """What unpickling makes of a state."""
-    made = kind.__new__(kind)
-    made.__setstate__(state)
-    return made
+    restored = kind.__new__(kind)
+    restored.__setstate__(state)
+    return restored
 
 
 def malformed(state):
@@ -37,7 +37,7 @@ def malformed(state):
 
 
 def use(value):
-    """Looks at what was made of a state, as a user would."""
+    """Uses a restored object like a user."""
     if isinstance(value, glidar.Frame):
         value.cloud()
         value.explain(0)
@@ -69,7 +69,7 @@ def samples():
 
 
 @pytest.mark.parametrize("index", range(9))
-def test_a_malformed_state_is_an_error_and_no_crash(index):
+def test_a_malformed_state_raises_an_error(index):
     value = list(samples())[index]
     tried = refused = 0
     for state in malformed(value.__getstate__()):
@@ -77,28 +77,28 @@ def test_a_malformed_state_is_an_error_and_no_crash(index):
         try:
             use(restored(type(value), state))
         except glidar.Error:
-            refused += 1  # anything else is a failure
+            refused += 1  # any other exception fails the test
     assert tried > 20
     assert refused > tried // 2
 
 
-def test_a_state_of_something_else_is_an_error():
+def test_a_state_of_another_type_raises_an_error():
     for kind in (glidar.Sensor, glidar.Scene, glidar.Frame, glidar.Cloud, glidar.Trajectory):
         for state in (None, {}, {"kind": "Simulator"}, [1, 2]):
-            with pytest.raises(glidar.Error, match=f"pickled {kind.__name__}: a state of something else"):
+            with pytest.raises(glidar.Error, match=f"pickled {kind.__name__}: the state of another type"):
                 restored(kind, state)
     with pytest.raises(glidar.Error, match="malformed state .* of version 0.0.1"):
         restored(glidar.Sensor, {"kind": "Sensor", "glidar": "0.0.1"})
 
 
-def test_beams_of_ones_own_come_back_the_same():
+def test_custom_beams_survive_a_round_trip():
     sensor = table_sensor()
     optics = sensor.to_dict()["optics"]
     assert np.array_equal(optics["rings"], [[2, 1, 0]])
     optics["directions"][0, 0] = 7  # a copy
     for back in (again(sensor), glidar.Sensor.from_dict(sensor.to_dict())):
         assert back == sensor
-        assert back.directions.tobytes() == sensor.directions.tobytes()
+        assert back.ray_directions.tobytes() == sensor.ray_directions.tobytes()
     other = sensor.to_dict()
     other["optics"]["directions"][0, 1, 1] = 0.2
     assert glidar.Sensor.from_dict(other) != sensor
@@ -116,7 +116,7 @@ def test_beams_of_ones_own_come_back_the_same():
         ({"file": "rays.npy"}, "the unknown key 'file'"),
     ],
 )
-def test_wrong_beams_of_ones_own_are_refused(change, message):
+def test_invalid_custom_beams_are_rejected(change, message):
     optics = {"type": "table", "directions": np.ones((1, 3, 3)), **change}
     with pytest.raises(glidar.Error, match=message):
         glidar.Sensor.from_dict({"optics": optics})

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Objects can be pickled, copied and compared, and lose nothing by it."""
+"""Objects can be pickled, copied and compared without loss."""
 
 import copy
 import gc
@@ -17,25 +17,25 @@ PROTOCOLS = range(2, pickle.HIGHEST_PROTOCOL + 1)
 
 
 @pytest.mark.parametrize("protocol", PROTOCOLS)
-def test_a_sensor_comes_back_the_same(protocol):
+def test_a_sensor_survives_pickling(protocol):
     for sensor in (glidar.load_sensor("VLP-16"), glidar.load_sensor("Kinect-v2"), glidar.camera(64, 48)):
         back = again(sensor, protocol)
         assert back == sensor
         assert hash(back) == hash(sensor)
         assert back.describe() == sensor.describe()
-        assert back.directions.tobytes() == sensor.directions.tobytes()
+        assert back.ray_directions.tobytes() == sensor.ray_directions.tobytes()
 
 
-def test_every_preset_comes_back_the_same_from_pickle_and_dict():
+def test_every_preset_survives_pickling_and_conversion_to_a_dict():
     for name in glidar.sensor_names():
         sensor = glidar.load_sensor(name)
         for back in (again(sensor), glidar.Sensor.from_dict(sensor.to_dict())):
             assert back == sensor, name
             assert back.describe() == sensor.describe(), name
-            assert back.directions.tobytes() == sensor.directions.tobytes(), name
+            assert back.ray_directions.tobytes() == sensor.ray_directions.tobytes(), name
 
 
-def test_sensors_with_one_number_apart_are_not_equal():
+def test_sensors_that_differ_in_one_number_are_not_equal():
     near = glidar.camera(8, 8, fov_deg=20.0)
     assert near == glidar.camera(8, 8, fov_deg=20.0)
     assert near != glidar.camera(8, 8, fov_deg=np.nextafter(20.0, 21.0))
@@ -45,7 +45,7 @@ def test_sensors_with_one_number_apart_are_not_equal():
 
 
 @pytest.mark.parametrize("protocol", PROTOCOLS)
-def test_a_scene_comes_back_the_same(built, protocol):
+def test_a_scene_survives_pickling(built, protocol):
     back = again(built, protocol)
     assert back == built
     assert [o.name for o in back] == [o.name for o in built]
@@ -57,7 +57,7 @@ def test_a_scene_comes_back_the_same(built, protocol):
         assert one.materials == other.materials
 
 
-def test_what_comes_back_measures_the_same_bytes(built, noisy):
+def test_unpickled_scenes_and_sensors_give_bit_identical_frames(built, noisy):
     scene, sensor = again((built, noisy))
     pose = glidar.look_at([6, 3, 2], [0, 0, 0])
     one = glidar.simulate(built, noisy, pose, seed=5, columns="all")
@@ -67,7 +67,7 @@ def test_what_comes_back_measures_the_same_bytes(built, noisy):
     assert one == other
 
 
-def test_a_scene_file_with_a_rig_and_motion_comes_back_the_same(tmp_path):
+def test_a_scene_with_a_rig_and_motion_survives_pickling(tmp_path):
     path = tmp_path / "scene.yaml"
     path.write_text(
         """models:
@@ -89,7 +89,7 @@ rig_motion: {twist: {velocity_m_s: [0.5, 0, 0]}}
         assert frame == glidar.simulate_rig(back, seed=3)[name]
 
 
-def test_a_scene_from_a_dict_comes_back_in_another_folder(tmp_path, monkeypatch):
+def test_a_scene_from_a_dict_can_be_unpickled_in_another_folder(tmp_path, monkeypatch):
     (tmp_path / "models").symlink_to(ROOT / "models")
     monkeypatch.chdir(tmp_path)
     scene = glidar.Scene.from_dict({"models": [{"model": "models/satellite/satellite.obj"}]})
@@ -100,7 +100,7 @@ def test_a_scene_from_a_dict_comes_back_in_another_folder(tmp_path, monkeypatch)
     assert pickle.loads(relative).mesh == scene.objects[0].mesh
 
 
-def test_a_file_that_changed_is_told(tmp_path):
+def test_unpickling_reports_a_changed_file(tmp_path):
     model = tmp_path / "one.obj"
     model.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     stored = pickle.dumps(glidar.Scene(model))
@@ -109,11 +109,11 @@ def test_a_file_that_changed_is_told(tmp_path):
     with pytest.raises(glidar.Error, match="one.obj: the file has changed since the scene was pickled"):
         pickle.loads(stored)
     model.unlink()
-    with pytest.raises(glidar.Error, match="one.obj: the pickled scene was read from this file, which is not there"):
+    with pytest.raises(glidar.Error, match="one.obj: the pickled scene was read from this file, which is missing"):
         pickle.loads(stored)
 
 
-def test_a_file_that_changed_before_pickling_is_told(tmp_path):
+def test_pickling_reports_a_file_that_changed_before(tmp_path):
     model = tmp_path / "one.obj"
     model.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     scene = glidar.Scene(model)
@@ -121,11 +121,11 @@ def test_a_file_that_changed_before_pickling_is_told(tmp_path):
     with pytest.raises(glidar.Error, match="another scene than the one that was pickled"):
         again(scene)
     model.unlink()
-    with pytest.raises(glidar.Error, match="is not there any more"):
+    with pytest.raises(glidar.Error, match="which is missing now"):
         pickle.dumps(scene)
 
 
-def test_moving_an_object_often_does_not_make_the_pickle_larger(built):
+def test_the_pickle_does_not_grow_when_an_object_moves_often(built):
     scene = copy.copy(built)
     scene["first"].pose = glidar.pose([0, 0, 1])
     before = len(pickle.dumps(scene))
@@ -134,19 +134,19 @@ def test_moving_an_object_often_does_not_make_the_pickle_larger(built):
     assert abs(len(pickle.dumps(scene)) - before) < 100
 
 
-def test_a_copy_of_a_scene_is_changed_apart_from_it(built):
-    for made in (copy.copy(built), copy.deepcopy(built)):
-        assert made == built
-        made["first"].pose = glidar.pose([0, 0, 9])
-        assert made != built
+def test_a_copy_of_a_scene_is_independent(built):
+    for copied in (copy.copy(built), copy.deepcopy(built)):
+        assert copied == built
+        copied["first"].pose = glidar.pose([0, 0, 9])
+        assert copied != built
         assert built["first"].pose[2, 3] == -1e7
-        made["first"].pose = built["first"].pose
-        assert made == built
+        copied["first"].pose = built["first"].pose
+        assert copied == built
     with pytest.raises(TypeError):
         hash(built)
 
 
-def test_scenes_are_equal_by_what_they_hold_and_not_by_how_it_was_made():
+def test_equality_of_scenes_depends_on_their_contents_only():
     one, other = glidar.Scene(), glidar.Scene()
     one.add_model("builtin:box", name="a", pose=glidar.pose([1, 2, 3]))
     box = other.add_model("builtin:box", name="b")
@@ -160,7 +160,7 @@ def test_scenes_are_equal_by_what_they_hold_and_not_by_how_it_was_made():
 
 @pytest.mark.parametrize("protocol", PROTOCOLS)
 @pytest.mark.parametrize("kind", TRAJECTORIES)
-def test_a_trajectory_comes_back_the_same(kind, protocol):
+def test_a_trajectory_survives_pickling(kind, protocol):
     one = TRAJECTORIES[kind]()
     back = again(one, protocol)
     times = np.linspace(-5, 50, 333)
@@ -173,7 +173,7 @@ def test_a_trajectory_comes_back_the_same(kind, protocol):
 
 
 @pytest.mark.parametrize("protocol", PROTOCOLS)
-def test_a_frame_comes_back_the_same_and_does_all_that_it_did(built, noisy, tmp_path, protocol):
+def test_a_frame_survives_pickling_with_all_its_functions(built, noisy, tmp_path, protocol):
     frame = glidar.simulate(built, noisy, seed=9, frame=4, columns="all", sensor_id=2)
     back = again(frame, protocol)
     assert back == frame
@@ -188,7 +188,7 @@ def test_a_frame_comes_back_the_same_and_does_all_that_it_did(built, noisy, tmp_
     assert (tmp_path / "one.npz").read_bytes() == (tmp_path / "two.npz").read_bytes()
 
 
-def test_a_frame_of_moving_things_comes_back_the_same(asteroid):
+def test_a_frame_with_motion_survives_pickling(asteroid):
     drive = glidar.Trajectory.timed([0, 1], np.stack([glidar.pose([-4, 0, 0]), glidar.pose([-3, 0, 0])]))
     spin = glidar.Trajectory.spin(np.eye(4), [0, 0, 2])
     frame = glidar.simulate(asteroid, "VLP-16", drive, objects=[spin], columns="all")
@@ -198,7 +198,7 @@ def test_a_frame_of_moving_things_comes_back_the_same(asteroid):
     assert str(back.explain(0, hits_only=True)) == str(frame.explain(0, hits_only=True))
 
 
-def test_a_frame_from_a_pickle_reads_its_scene_when_it_needs_it(tmp_path, camera):
+def test_an_unpickled_frame_reads_its_scene_on_first_use(tmp_path, camera):
     model = tmp_path / "one.obj"
     model.write_text("v -9 -9 0\nv 9 -9 0\nv 0 9 0\nf 1 2 3\n")
     frame = glidar.simulate(glidar.Scene(model), camera, glidar.look_at([0, 0, 5], [0, 0, 0], [0, 1, 0]))
@@ -206,11 +206,11 @@ def test_a_frame_from_a_pickle_reads_its_scene_when_it_needs_it(tmp_path, camera
     model.unlink()
     back = pickle.loads(stored)
     assert np.array_equal(back.range_m, frame.range_m, equal_nan=True)
-    with pytest.raises(glidar.Error, match="which is not there"):
+    with pytest.raises(glidar.Error, match="which is missing"):
         back.cloud()
 
 
-def test_a_frame_from_a_pickle_needs_its_renderer_only_to_be_explained(asteroid, camera, tmp_path, monkeypatch):
+def test_an_unpickled_frame_needs_its_renderer_only_for_explain(asteroid, camera, tmp_path, monkeypatch):
     frame = glidar.simulate(asteroid, camera, columns="all")
     expected = frame.cloud("all"), str(frame.explain(1000))
     frame.save(tmp_path / "one.pcd")
@@ -226,8 +226,8 @@ def test_a_frame_from_a_pickle_needs_its_renderer_only_to_be_explained(asteroid,
         with pytest.raises(glidar.Error, match="no graphics device"):
             back.explain(1000)
     assert (tmp_path / "one.pcd").read_bytes() == (tmp_path / "two.pcd").read_bytes()
-    told = [(tmp_path / f"{name}.pcd.json").read_text().replace(f"{name}.pcd", "") for name in ("one", "two")]
-    assert told[0] == told[1]
+    sidecars = [(tmp_path / f"{name}.pcd.json").read_text().replace(f"{name}.pcd", "") for name in ("one", "two")]
+    assert sidecars[0] == sidecars[1]
     assert str(back.explain(1000)) == expected[1]
     assert back.cloud("all") == expected[0]
     assert str(again(frame).explain(1000)) == expected[1]
@@ -246,7 +246,7 @@ def test_unpickled_frames_of_one_scene_restore_it_once(camera, monkeypatch):
     assert len(calls) == 1
 
 
-def test_a_frame_takes_the_scene_that_it_saw_with_it(built, camera):
+def test_a_pickled_frame_contains_the_scene_as_it_was_measured(built, camera):
     scene = copy.copy(built)
     frames = []
     for k in range(3):
@@ -260,7 +260,7 @@ def test_a_frame_takes_the_scene_that_it_saw_with_it(built, camera):
         assert str(back.explain(1000)) == str(frame.explain(1000))
 
 
-def test_frames_with_one_number_apart_are_not_equal(asteroid, noisy):
+def test_frames_that_differ_in_one_number_are_not_equal(asteroid, noisy):
     pose = glidar.look_at([5, 0, 0], [0, 0, 0])
     frame = glidar.simulate(asteroid, noisy, pose, seed=1)
     assert frame == glidar.simulate(asteroid, noisy, pose, seed=1)
@@ -271,7 +271,7 @@ def test_frames_with_one_number_apart_are_not_equal(asteroid, noisy):
 
 
 @pytest.mark.parametrize("hits_only", [False, True])
-def test_a_cloud_comes_back_the_same(asteroid, camera, hits_only):
+def test_a_cloud_survives_pickling(asteroid, camera, hits_only):
     cloud = glidar.simulate(asteroid, camera).cloud(["xyz", "intensity", "status"], hits_only=hits_only, frame="world")
     for protocol in PROTOCOLS:
         back = again(cloud, protocol)
@@ -285,7 +285,7 @@ def test_a_cloud_comes_back_the_same(asteroid, camera, hits_only):
     assert back == cloud
 
 
-def test_large_arrays_go_out_of_band(asteroid, noisy):
+def test_large_arrays_are_pickled_out_of_band(asteroid, noisy):
     frame = glidar.simulate(asteroid, noisy, columns="all")
     for value in (frame, frame.cloud("all")):
         buffers = []
@@ -295,10 +295,10 @@ def test_large_arrays_go_out_of_band(asteroid, noisy):
         back = pickle.loads(stored, buffers=[bytes(b.raw()) for b in buffers])
         assert back == value
         if isinstance(back, glidar.Cloud):
-            back["intensity"][0] = 7  # the caller's own, also where the buffers are not
+            back["intensity"][0] = 7  # writable, even when the pickle's buffers are not
 
 
-def test_small_values_come_back_the_same(built, camera):
+def test_small_types_survive_pickling(built, camera):
     frame = glidar.simulate(built, camera)
     mesh = built["first"].mesh
     assert again(mesh) == mesh
@@ -324,7 +324,7 @@ def test_small_values_come_back_the_same(built, camera):
     assert moved != first
 
 
-def test_a_simulator_says_that_it_cannot_be_pickled_and_what_to_do(asteroid, camera):
+def test_pickling_a_simulator_raises_an_error_with_a_remedy(asteroid, camera):
     simulator = glidar.Simulator(asteroid, camera)
     for protocol in range(pickle.HIGHEST_PROTOCOL + 1):
         with pytest.raises(glidar.Error, match="cannot be pickled; pickle its scene and its sensor"):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Workers of other libraries take scenes and sensors, and return frames."""
+"""Workers of other libraries receive scenes and sensors, and return frames."""
 
 import multiprocessing
 
@@ -14,7 +14,7 @@ def measured_elsewhere(scene, sensor, pose, seed):
     return glidar.simulate(scene, sensor, pose, seed=seed)
 
 
-def test_workers_of_multiprocessing_take_scenes_and_sensors_and_return_frames(built, noisy):
+def test_multiprocessing_workers_accept_scenes_and_return_frames(built, noisy):
     pose = glidar.look_at([6, 3, 2], [0, 0, 0])
     with multiprocessing.get_context("spawn").Pool(1) as pool:
         frames = pool.starmap(measured_elsewhere, [(built, noisy, pose, seed) for seed in (1, 2)])
@@ -24,7 +24,7 @@ def test_workers_of_multiprocessing_take_scenes_and_sensors_and_return_frames(bu
         assert frame.cloud() == expected.cloud()
 
 
-def test_workers_of_joblib_take_scenes_and_sensors_and_return_frames(built, noisy):
+def test_joblib_workers_accept_scenes_and_return_frames(built, noisy):
     joblib = pytest.importorskip("joblib")
     pose = glidar.look_at([6, 3, 2], [0, 0, 0])
     job = joblib.delayed(measured_elsewhere)
@@ -32,7 +32,7 @@ def test_workers_of_joblib_take_scenes_and_sensors_and_return_frames(built, nois
     assert frames == [glidar.simulate(built, noisy, pose, seed=seed) for seed in (1, 2)]
 
 
-def test_workers_of_dask_take_scenes_and_sensors_and_return_frames(built, noisy):
+def test_dask_workers_accept_scenes_and_return_frames(built, noisy):
     distributed = pytest.importorskip("distributed")
     pose = glidar.look_at([6, 3, 2], [0, 0, 0])
     options = {"n_workers": 1, "threads_per_worker": 1, "processes": True, "dashboard_address": None}
@@ -60,7 +60,7 @@ def item_of(views, index):
     return views[index]
 
 
-def test_a_data_set_is_pickled_to_a_spawned_worker_as_dataloader_does(built, noisy):
+def test_a_data_set_can_be_sent_to_a_spawned_data_loader_worker(built, noisy):
     views = Views(built, noisy, np.stack([glidar.look_at([6, k, 2], [0, 0, 0]) for k in range(3)]))
     with multiprocessing.get_context("spawn").Pool(1) as pool:
         items = pool.starmap(item_of, [(views, index) for index in range(len(views))])

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files are those of the command line, byte for byte."""
+"""Files are byte-identical to those of the command line."""
 
 import json
 
@@ -46,7 +46,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_file_is_that_of_the_command_line(name, scene_file, tmp_path, program):
+def test_file_is_byte_identical_to_that_of_the_command_line(name, scene_file, tmp_path, program):
     arguments, options = CASES[name]
     theirs, ours = tmp_path / "theirs", tmp_path / "ours"
     theirs.mkdir()
@@ -58,32 +58,32 @@ def test_file_is_that_of_the_command_line(name, scene_file, tmp_path, program):
     sidecars = [folder / f"{name}.json" for folder in (ours, theirs)]
     assert sidecars[0].exists() == sidecars[1].exists()
     if sidecars[0].exists():
-        mine, told = (json.loads(path.read_text()) for path in sidecars)
-        assert told.pop("command")
+        mine, theirs = (json.loads(path.read_text()) for path in sidecars)
+        assert theirs.pop("command")
         mine.pop("command")
-        assert mine == told
+        assert mine == theirs
 
 
-def test_lidar_by_name_is_that_of_the_command_line(tmp_path, program):
+def test_file_of_a_preset_is_byte_identical_to_that_of_the_command_line(tmp_path, program):
     program("render", "builtin:asteroid", "--sensor", "VLP-16", "--seed", 3, "-o", tmp_path / "theirs.npz")
     glidar.simulate(glidar.Scene("builtin:asteroid"), "VLP-16", seed=3).save(tmp_path / "ours.npz")
     assert (tmp_path / "ours.npz").read_bytes() == (tmp_path / "theirs.npz").read_bytes()
 
 
-def test_information_is_that_of_the_command_line(scene_file, tmp_path, program):
+def test_fisher_information_is_byte_identical_to_that_of_the_command_line(scene_file, tmp_path, program):
     program("render", scene_file, "--fisher", "-o", tmp_path / "a.pcd")
-    told = glidar.simulate(glidar.Scene(scene_file)).information()
-    told.save(tmp_path / "ours.json")
+    information = glidar.simulate(glidar.Scene(scene_file)).information()
+    information.save(tmp_path / "ours.json")
     assert (tmp_path / "ours.json").read_bytes() == (tmp_path / "a.information.json").read_bytes()
 
 
-def test_story_is_that_of_the_command_line(scene_file, tmp_path, program):
+def test_trace_text_is_identical_to_that_of_the_command_line(scene_file, tmp_path, program):
     program("render", scene_file, "--seed", 4, "-o", tmp_path / "a.pcd")
-    told = program("explain", tmp_path / "a.pcd", "--index", 1234)
-    assert str(glidar.simulate(glidar.Scene(scene_file), seed=4).explain(1234)) == told
+    printed = program("explain", tmp_path / "a.pcd", "--index", 1234)
+    assert str(glidar.simulate(glidar.Scene(scene_file), seed=4).explain(1234)) == printed
 
 
-def test_npz_reads_as_the_cloud(scene_file, tmp_path):
+def test_npz_contains_the_columns_of_the_cloud(scene_file, tmp_path):
     frame = glidar.simulate(glidar.Scene(scene_file))
     frame.save(tmp_path / "a.npz")
     cloud = frame.cloud()
@@ -92,7 +92,7 @@ def test_npz_reads_as_the_cloud(scene_file, tmp_path):
             assert np.array_equal(read[name], cloud[name], equal_nan=True), name
 
 
-def test_wrong_files_leave_nothing_behind(scene_file, tmp_path):
+def test_failed_saves_leave_no_files(scene_file, tmp_path):
     frame = glidar.simulate(glidar.Scene(scene_file))
     for arguments, words in [
         ({"path": tmp_path / "a.pdc"}, "did you mean .pcd?"),
@@ -110,7 +110,7 @@ def test_wrong_files_leave_nothing_behind(scene_file, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
-def test_what_was_read_is_not_replaced(tmp_path):
+def test_input_files_are_not_overwritten(tmp_path):
     model = tmp_path / "m.ply"
     trimesh = pytest.importorskip("trimesh")
     trimesh.creation.box().export(model)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A scene is what its objects are, not how they came to be so; refused changes leave no trace."""
+"""Equality of scenes depends on their present contents only; rejected changes have no effect."""
 
 import copy
 import pickle
@@ -67,7 +67,7 @@ STRETCHED = [stretched_twice, stretched_and_back, stretched_when_added, stretche
 
 
 @pytest.mark.parametrize("make", STRETCHED)
-def test_a_scene_whose_objects_were_scaled_comes_back_the_same(make):
+def test_a_scene_with_rescaled_objects_survives_pickling(make):
     scene = make()
     back = again(scene)
     assert back == scene == again(back) == copy.deepcopy(scene)
@@ -82,7 +82,7 @@ def test_a_scene_whose_objects_were_scaled_comes_back_the_same(make):
     assert str(again(frame).explain(2000)) == str(frame.explain(2000))
 
 
-def test_scales_that_objects_had_before_do_not_count():
+def test_earlier_scales_do_not_affect_equality():
     scene = box()
     scene.objects[0].scale = (1, 2, 3)
     assert scene != box()
@@ -91,7 +91,7 @@ def test_scales_that_objects_had_before_do_not_count():
     assert box(scale=(1, 2, 3)) != box(scale=(1, 3, 2))
 
 
-def test_classes_that_objects_had_before_do_not_count():
+def test_earlier_classes_do_not_affect_equality():
     scene = box()
     scene.objects[0].class_name = "x"
     assert scene != box()
@@ -101,14 +101,14 @@ def test_classes_that_objects_had_before_do_not_count():
     assert again(scene).class_names == ["unlabelled", "x"]
 
 
-def test_numbers_of_classes_count_because_clouds_hold_them():
+def test_class_numbers_affect_equality():
     one, other = box(class_name="a"), box(class_name="b")
     other.objects[0].class_name = "a"
     assert other != one
     assert again(other) == other
 
 
-def test_materials_that_objects_had_before_do_not_count():
+def test_earlier_materials_do_not_affect_equality():
     red, green = ({"*": {"diffuse": colour}} for colour in ([0.9, 0, 0], [0, 0.9, 0]))
     scene = box(materials=red)
     assert scene != box(materials=green)
@@ -117,7 +117,7 @@ def test_materials_that_objects_had_before_do_not_count():
     assert again(scene) == scene
 
 
-def test_a_model_that_could_not_be_added_does_not_count():
+def test_a_model_that_could_not_be_added_does_not_affect_equality():
     scene = box(name="box")
     for wrong in ({"name": "box"}, {"scale": (1, 2, 0)}, {"scale": (1, 2, 3), "id": 1}, {"class_name": "x", "id": -1}):
         with pytest.raises(glidar.Error):
@@ -126,7 +126,7 @@ def test_a_model_that_could_not_be_added_does_not_count():
         assert again(scene) == scene
 
 
-def test_meshes_count_by_their_content_and_not_by_their_places():
+def test_equality_depends_on_the_contents_of_meshes_only():
     one, other = glidar.Scene(), glidar.Scene()
     for scene in (one, other):
         scene.add_mesh(*TRIANGLE, name="a")
@@ -145,7 +145,7 @@ def textures(tmp_path):
     return tmp_path
 
 
-def test_refused_materials_change_nothing_and_the_scene_can_be_pickled(textures):
+def test_rejected_materials_leave_the_scene_unchanged(textures):
     scene = glidar.Scene(ROOT / "models/satellite/satellite.obj")
     object_, before = scene.objects[0], copy.copy(scene)
     assert len(object_.materials) > 1
@@ -159,7 +159,7 @@ def test_refused_materials_change_nothing_and_the_scene_can_be_pickled(textures)
     assert again(scene) == scene != before
 
 
-def test_a_refused_scale_changes_nothing_and_the_scene_can_be_pickled():
+def test_a_rejected_scale_leaves_the_scene_unchanged():
     scene = box(scale=(1, 2, 3))
     for wrong in ((1, 2, 0), (1, 2, np.nan), (1e15, 1e-300, 1)):
         try:
@@ -175,7 +175,7 @@ def resident_mib():
         return int(next(line for line in status if line.startswith("VmRSS")).split()[1]) / 1024
 
 
-def test_scaling_an_object_often_takes_no_more_memory_than_once():
+def test_memory_does_not_grow_when_an_object_is_scaled_often():
     scene = glidar.Scene("builtin:asteroid")
     rock = scene.objects[0]
     for k in range(10):
@@ -183,12 +183,12 @@ def test_scaling_an_object_often_takes_no_more_memory_than_once():
     before, length = resident_mib(), len(pickle.dumps(scene))
     for k in range(200):
         rock.scale = (1, 1.5, 2 + 0.01 * k)
-    assert resident_mib() - before < 50  # 200 stretched asteroids take 360 MiB
+    assert resident_mib() - before < 50  # 200 scaled copies of the asteroid would need 360 MiB
     assert abs(len(pickle.dumps(scene)) - length) < 100
     assert again(scene) == scene
 
 
-def test_a_deleted_working_folder_hinders_no_scene_that_needs_none(tmp_path, monkeypatch):
+def test_scenes_without_relative_paths_work_in_a_deleted_folder(tmp_path, monkeypatch):
     model = tmp_path / "one.obj"
     model.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
     gone = tmp_path / "gone"

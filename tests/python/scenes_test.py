@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scenes of files, models and arrays."""
+"""Scenes from files, models and arrays."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,7 @@ FACES = np.array(
 POSE = glidar.look_at([4, -6, 3], [0, 0, 0])
 
 
-def test_mesh_of_arrays_is_measured_like_the_same_model(camera):
+def test_mesh_from_arrays_is_measured_like_the_same_model_file(camera):
     scene = glidar.Scene()
     scene.add_mesh(BOX, FACES)
     ours = glidar.simulate(scene, camera, POSE)
@@ -25,7 +25,7 @@ def test_mesh_of_arrays_is_measured_like_the_same_model(camera):
     assert np.allclose(ours.ground_truth.normal, theirs.ground_truth.normal, atol=1e-6, equal_nan=True)
 
 
-def test_mesh_far_from_its_zero_keeps_its_detail(camera):
+def test_mesh_far_from_its_origin_keeps_its_precision(camera):
     far = np.array([1e6, -2e6, 3e5])
     scene = glidar.Scene()
     scene.add_mesh(BOX + far + 0.123456789, FACES)
@@ -37,7 +37,7 @@ def test_mesh_far_from_its_zero_keeps_its_detail(camera):
     assert np.allclose(a.range_m, b.range_m, atol=1e-6, equal_nan=True)
 
 
-def test_meshes_of_trimesh_come_and_go(camera):
+def test_meshes_convert_from_and_to_trimesh(camera):
     trimesh = pytest.importorskip("trimesh")
     ball = trimesh.creation.icosphere(subdivisions=3, radius=0.7)
     scene = glidar.Scene()
@@ -51,7 +51,7 @@ def test_meshes_of_trimesh_come_and_go(camera):
     assert back.volume == pytest.approx(ball.volume, rel=1e-6)
 
 
-def test_meshes_and_clouds_go_to_open3d_and_back(camera):
+def test_meshes_and_clouds_convert_from_and_to_open3d(camera):
     open3d = pytest.importorskip("open3d")
     box = open3d.geometry.TriangleMesh.create_box()
     scene = glidar.Scene()
@@ -75,7 +75,7 @@ def test_normals_uvs_and_colours_are_kept():
     assert not np.allclose(frame.ground_truth.normal, frame.ground_truth.shading_normal, equal_nan=True)
 
 
-def test_objects_are_placed_named_and_changed(camera):
+def test_objects_have_poses_names_and_editable_attributes(camera):
     scene = glidar.Scene()
     first = scene.add_model("builtin:sphere", name="sun", pose=glidar.pose([0, 0, 5]), scale=2.0, id=9, class_name="star")
     second = scene.add_instance(first, name="moon", pose=np.eye(4))
@@ -94,7 +94,7 @@ def test_objects_are_placed_named_and_changed(camera):
     assert np.array_equal(before.world_from_objects[1], np.eye(4))
 
 
-def test_scales_per_axis_stretch_an_object_and_go_back(camera):
+def test_scales_per_axis_can_be_set_and_reset(camera):
     scene = glidar.Scene()
     ball = scene.add_model("builtin:sphere", scale=(2.0, 0.5, 1.25))
     assert ball.scale == (2.0, 0.5, 1.25)
@@ -104,7 +104,7 @@ def test_scales_per_axis_stretch_an_object_and_go_back(camera):
     frame = glidar.simulate(scene, camera, POSE, columns="all")
     hit = frame.status == glidar.Status.hit
     point = frame.ground_truth.object_point_m[hit] * np.array(ball.scale)
-    # on the ellipsoid but for the facets of the mesh
+    # on the ellipsoid except for the facets of the mesh
     assert np.allclose(np.sum((point / np.array(ball.scale)) ** 2, axis=1), 1.0, atol=0.01)
     ball.scale = 3
     assert ball.scale == 3.0
@@ -123,7 +123,7 @@ def test_built_in_models_have_sizes():
         glidar.Scene("builtin:box:sise=4")
 
 
-def test_units_and_up_axes_are_those_the_file_declares_unless_given(tmp_path):
+def test_declared_units_and_up_axes_apply_unless_overridden(tmp_path):
     (tmp_path / "a.amf").write_text(
         '<?xml version="1.0"?><amf unit="inch"><object id="1"><mesh><vertices>'
         + "".join(f"<vertex><coordinates><x>{x}</x><y>{y}</y><z>{z}</z></coordinates></vertex>" for x, y, z in np.eye(3))
@@ -138,7 +138,7 @@ def test_units_and_up_axes_are_those_the_file_declares_unless_given(tmp_path):
         glidar.Scene(path, centre=1)
 
 
-def test_frames_keep_the_scene_that_they_saw(camera):
+def test_frames_keep_the_scene_as_it_was_measured(camera):
     scene = glidar.Scene("builtin:sphere")
     scene.objects[0].id = 3
     frame = glidar.simulate(scene, camera, POSE)
@@ -147,7 +147,7 @@ def test_frames_keep_the_scene_that_they_saw(camera):
     assert set(seen) == {3}
 
 
-def test_materials_are_those_of_scene_files():
+def test_materials_have_the_keys_of_scene_files():
     sensor = glidar.load_sensor("VLP-16")
     pose = np.eye(4)
     scene = glidar.Scene("builtin:box")
@@ -161,7 +161,7 @@ def test_materials_are_those_of_scene_files():
         scene.objects[0].set_materials({"paint": {}})
 
 
-def test_scene_file_brings_sensor_pose_and_motion(tmp_path):
+def test_scene_file_provides_sensor_pose_and_motion(tmp_path):
     (tmp_path / "scene.yaml").write_text(
         "models:\n  - {model: 'builtin:torus', name: ring, motion: {spin: {rate_deg_s: [0, 0, 90]}}}\n"
         "sensor: {optics: {type: pinhole, width: 40, height: 30, fov_deg: 40}}\n"
@@ -187,7 +187,7 @@ def test_a_dict_is_the_same_as_the_file_with_its_keys(tmp_path):
         glidar.Scene.from_dict({"models": [{"modle": "builtin:box"}]})
 
 
-def test_a_rig_is_measured_as_by_the_command_line(tmp_path, program):
+def test_a_rig_is_measured_like_on_the_command_line(tmp_path, program):
     path = ROOT / "examples/rig.yaml"
     program("render", path, "--seed", 5, "--fields", "all", "-o", tmp_path / "a.npz")
     scene = glidar.Scene(path)
@@ -201,11 +201,11 @@ def test_a_rig_is_measured_as_by_the_command_line(tmp_path, program):
         glidar.simulate(scene)
     moved = glidar.simulate_rig(scene, glidar.pose([0, 0, 1]))
     assert moved["lidar"].world_from_sensor[:3, 3] == pytest.approx([0, 0, 1.2])
-    with pytest.raises(glidar.Error, match="it has no sensors"):
+    with pytest.raises(glidar.Error, match="the scene has no sensors"):
         glidar.simulate_rig(glidar.Scene("builtin:box"))
 
 
-def test_models_of_files_have_units_and_axes():
+def test_models_accept_units_and_up_axes():
     path = ROOT / "models/satellite/satellite.obj"
     metres, inches = glidar.Scene(path), glidar.Scene(path, unit="in", up="y")
     size, small = (np.subtract(*reversed(s.bounds)) for s in (metres, inches))
@@ -226,7 +226,7 @@ def test_models_of_files_have_units_and_axes():
         ("box", None, "mesh: a str"),
     ],
 )
-def test_wrong_arrays_are_told(vertices, triangles, words):
+def test_invalid_arrays_raise_an_error(vertices, triangles, words):
     scene = glidar.Scene()
     with pytest.raises(glidar.Error) as caught:
         scene.add_mesh(vertices, triangles)
@@ -234,21 +234,21 @@ def test_wrong_arrays_are_told(vertices, triangles, words):
     assert len(scene) == 0
 
 
-def test_errors_of_files_are_those_of_the_command_line(tmp_path, program):
+def test_errors_in_files_are_identical_to_those_of_the_command_line(tmp_path, program):
     (tmp_path / "scene.yaml").write_text("models:\n  - modl: builtin:box\n")
-    told = program("render", "scene.yaml", "-o", "x.pcd", folder=tmp_path, code=2)
+    printed = program("render", "scene.yaml", "-o", "x.pcd", folder=tmp_path, code=2)
     with pytest.raises(glidar.Error) as caught:
         glidar.Scene(tmp_path / "scene.yaml")
-    assert str(caught.value).replace(f"{tmp_path}/", "") in told
+    assert str(caught.value).replace(f"{tmp_path}/", "") in printed
     assert caught.value.where.endswith("scene.yaml:2:5: models[0].modl")
     for name in ("builtin:boxx", "nowhere.obj"):
-        told = program("render", name, "-o", "x.pcd", folder=tmp_path, code=2)
+        printed = program("render", name, "-o", "x.pcd", folder=tmp_path, code=2)
         with pytest.raises(glidar.Error) as caught:
             glidar.Scene(name)
-        assert str(caught.value) in told
+        assert str(caught.value) in printed
 
 
-def test_objects_that_are_not_there_and_wrong_settings_are_told():
+def test_unknown_objects_and_invalid_settings_raise_an_error():
     scene = glidar.Scene("builtin:box")
     with pytest.raises(glidar.Error, match="'ball'"):
         scene["ball"]
@@ -260,22 +260,22 @@ def test_objects_that_are_not_there_and_wrong_settings_are_told():
         scene.add_model("builtin:box", colour="red")
     with pytest.raises(glidar.Error, match="unit: 'ft'"):
         glidar.Scene("builtin:box", unit="ft")
-    with pytest.raises(glidar.Error, match="sensor: the scene file has none"):
+    with pytest.raises(glidar.Error, match="sensor: the scene file has no sensor"):
         glidar.simulate(scene)
 
 
-def test_tensor_meshes_of_open3d_are_taken(camera):
+def test_tensor_meshes_of_open3d_are_accepted(camera):
     open3d = pytest.importorskip("open3d")
     added = glidar.Scene().add_mesh(open3d.t.geometry.TriangleMesh.create_box())
     assert added.triangles == 12
 
 
-def test_normals_and_colours_out_of_range_are_refused():
+def test_normals_and_colours_out_of_range_are_rejected():
     scene = glidar.Scene()
     for arguments, words in (
         ({"normals": 2 * BOX}, "unit vectors"),
         ({"colours": BOX}, "-1 to 1"),
-        ({"colours": 255 * (BOX + 1) / 2}, "divide by 255"),
+        ({"colours": 255 * (BOX + 1) / 2}, "divide 8-bit colours by 255"),
     ):
         with pytest.raises(glidar.Error, match=words):
             scene.add_mesh(BOX, FACES, **arguments)
@@ -283,22 +283,22 @@ def test_normals_and_colours_out_of_range_are_refused():
     scene.add_mesh(BOX, FACES, normals=np.zeros((8, 3)), colours=(BOX + 1) / 2)
 
 
-def test_what_a_mesh_brings_itself_is_not_given_beside_it():
+def test_arrays_cannot_be_combined_with_a_mesh():
     mesh = glidar.Mesh(BOX, FACES)
     for more in ("normals", "uvs", "colours"):
-        with pytest.raises(glidar.Error, match="beside it"):
+        with pytest.raises(glidar.Error, match="given with a mesh"):
             glidar.Scene().add_mesh(mesh, **{more: BOX})
 
 
-def test_copies_are_of_objects_of_the_same_scene():
+def test_instances_require_an_object_of_the_same_scene():
     ball = glidar.Scene("builtin:sphere")
     for scene in (glidar.Scene("builtin:asteroid"), glidar.Scene()):
-        with pytest.raises(glidar.Error, match="of another scene"):
+        with pytest.raises(glidar.Error, match="belongs to another scene"):
             scene.add_instance(ball.objects[0])
         assert "sphere" not in repr(scene)
 
 
-def test_meshes_are_equal_when_their_arrays_are():
+def test_meshes_are_equal_when_their_arrays_are_identical():
     mesh = glidar.Mesh(np.array(BOX), FACES)
     assert mesh == glidar.Mesh(np.array(BOX), FACES)
     assert mesh != glidar.Mesh(np.array(BOX) + 1, FACES)
@@ -308,7 +308,7 @@ def test_meshes_are_equal_when_their_arrays_are():
         hash(mesh)
 
 
-def test_placing_may_be_left_open():
+def test_attributes_of_new_objects_are_optional():
     added = glidar.Scene().add_model("builtin:box", pose=None, materials=None, name=None)
     assert np.array_equal(added.pose, np.eye(4))
 
@@ -316,8 +316,8 @@ def test_placing_may_be_left_open():
 @pytest.mark.parametrize(
     "call, words",
     [
-        (lambda s: s.add_mesh([[0, 0, 0], [1, 0]], FACES), "vertices: no array"),
-        (lambda s: s.add_mesh(BOX, [[0, 1, 2], [0]]), "triangles: no array"),
+        (lambda s: s.add_mesh([[0, 0, 0], [1, 0]], FACES), "vertices: not an array"),
+        (lambda s: s.add_mesh(BOX, [[0, 1, 2], [0]]), "triangles: not an array"),
         (lambda s: s.add_mesh(BOX, FACES, name=5), "name: 5"),
         (lambda s: setattr(s.objects[0], "name", 5), "name: 5"),
         (lambda s: setattr(s.objects[0], "class_name", 5), "class_name: 5"),
@@ -333,12 +333,12 @@ def test_placing_may_be_left_open():
         (lambda s: glidar.simulate(s, glidar.camera(8, 8), columns=[5]), "columns: 5"),
     ],
 )
-def test_values_of_another_kind_are_told(call, words):
+def test_values_of_another_type_raise_an_error(call, words):
     with pytest.raises(glidar.Error, match=words):
         call(glidar.Scene("builtin:box"))
 
 
-def test_descriptions_within_themselves_are_told():
+def test_recursive_descriptions_raise_an_error():
     endless = {}
     endless["models"] = endless
     with pytest.raises(glidar.Error, match="levels deep"):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Settings of presets are those of the command line: the same bytes, the same errors."""
+"""Settings of presets are identical to those of the command line: same bytes, same errors."""
 
 import numpy as np
 import pytest
@@ -25,7 +25,7 @@ CASES = {
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_a_setting_gives_the_bytes_of_the_command_line(case, tmp_path, program):
+def test_a_setting_is_byte_identical_to_the_command_lines_option(case, tmp_path, program):
     name, settings, options = CASES[case]
     program("render", "builtin:asteroid", "--sensor", name, "--seed", 3, "-o", tmp_path / "theirs.npz", *options)
     scene = glidar.Scene("builtin:asteroid")
@@ -66,14 +66,14 @@ NAMES = {
 
 
 @pytest.mark.parametrize("case", ERRORS)
-def test_an_error_is_that_of_the_command_line_with_the_name_of_the_argument(case, tmp_path, program):
+def test_errors_match_the_command_line_except_for_the_arguments_name(case, tmp_path, program):
     name, settings, options = ERRORS[case]
-    told = program("render", "builtin:box", "--sensor", name, "-o", tmp_path / "x.npz", *options, code=2)
+    printed = program("render", "builtin:box", "--sensor", name, "-o", tmp_path / "x.npz", *options, code=2)
     for option, argument in NAMES.items():
-        told = told.replace(f"{option}:", f"{argument}:")
+        printed = printed.replace(f"{option}:", f"{argument}:")
     with pytest.raises(glidar.Error) as error:
         glidar.sensor(name, **settings)
-    assert str(error.value) in told
+    assert str(error.value) in printed
 
 
 @pytest.mark.parametrize(
@@ -83,18 +83,18 @@ def test_an_error_is_that_of_the_command_line_with_the_name_of_the_argument(case
         ({"rain_mm_h": [1, 2]}, r"rain_mm_h: \[1, 2\]; allowed: a number"),
         ({"columns_per_turn": 7.5}, "columns_per_turn: 7.5; allowed: a whole number from 1 to 1048576"),
         ({"columns_per_turn": 2**80}, "columns_per_turn: 12.*; allowed: a whole number from 1 to 1048576"),
-        ({"returns": [1, 2]}, "returns: 1; allowed: a text"),
+        ({"returns": [1, 2]}, "returns: 1; allowed: a string"),
         ({"returns": 2.5}, "returns: 2.5; allowed: a whole number"),
         ({"returns": []}, "returns: 0 returns; allowed: 1 to 16 of first"),
         ({"returns": "strongest,,last"}, "returns: ''; allowed: 1 to 16 of first"),
     ],
 )
-def test_a_value_of_the_wrong_type_is_an_error(settings, message):
+def test_a_value_of_the_wrong_type_raises_an_error(settings, message):
     with pytest.raises(glidar.Error, match=message):
         glidar.sensor("VLP-16", **settings)
 
 
-def test_numpy_numbers_are_numbers():
+def test_numpy_numbers_are_accepted():
     settings = {"rate_hz": np.float32(20), "columns_per_turn": np.int64(90), "returns": np.uint8(2)}
     sensor = glidar.sensor("OS1-32", **settings)
     assert (sensor.rate_hz, sensor.returns) == (20.0, 2)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sensors by name, from files and of numbers."""
+"""Sensors from presets, files and code."""
 
 import json
 from pathlib import Path
@@ -18,13 +18,13 @@ def test_every_preset_loads_and_describes_itself():
     assert len(names) >= 34
     for name in names:
         sensor = glidar.load_sensor(name)
-        told = sensor.describe()
-        assert (told["rows"], told["cols"]) == (sensor.rows, sensor.cols)
-        assert told["name"] == sensor.name
-        assert sensor.directions.shape == (sensor.rows, sensor.cols, 3)
+        described = sensor.describe()
+        assert (described["rows"], described["cols"]) == (sensor.rows, sensor.cols)
+        assert described["name"] == sensor.name
+        assert sensor.ray_directions.shape == (sensor.rows, sensor.cols, 3)
 
 
-def test_numbers_of_a_preset_have_sources():
+def test_values_of_a_preset_have_sources():
     sheet = glidar.datasheet("VLP-16")
     assert any(entry.key.startswith("optics.") and entry.source for entry in sheet)
 
@@ -45,13 +45,13 @@ def test_the_dict_of_a_sensor_is_a_sensor_file(tmp_path):
             assert glidar.load_sensor(tmp_path / "sensor.yaml") == sensor
 
 
-def test_a_name_in_any_letters_comes_back(tmp_path):
+def test_names_in_any_script_survive_a_round_trip(tmp_path):
     sensor = glidar.camera(4, 4, name='a "camera": \u00e4 \U0001f600')
     assert sensor.name == 'a "camera": \u00e4 \U0001f600'
     assert glidar.Sensor.from_dict(sensor.to_dict()) == sensor
 
 
-def test_a_dict_may_hold_numpy_numbers():
+def test_a_dict_can_contain_numpy_numbers():
     sensor = glidar.Sensor.from_dict(
         {
             "optics": {
@@ -65,21 +65,21 @@ def test_a_dict_may_hold_numpy_numbers():
     assert (sensor.rows, sensor.cols, sensor.kind) == (5, 9, "raster")
 
 
-def test_camera_is_that_of_the_command_line(tmp_path, program):
+def test_camera_is_identical_to_that_of_the_command_line(tmp_path, program):
     program(
         "render", "builtin:box", "--width", 40, "--height", 30, "--fx", 50, "--cx", 18, "--cy", 14, "-o", tmp_path / "a.pcd"
     )
-    told = json.loads((tmp_path / "a.pcd.json").read_text())["sensor"]
+    described = json.loads((tmp_path / "a.pcd.json").read_text())["sensor"]
     ours = glidar.camera(40, 30, fx=50, cx=18, cy=14).describe()
-    assert {key: value for key, value in told.items() if key != "world_from_sensor"} == ours
+    assert {key: value for key, value in described.items() if key != "world_from_sensor"} == ours
 
 
-def test_ideal_sensor_has_no_noise():
+def test_ground_truth_sensor_has_no_noise():
     assert glidar.load_sensor("VLP-16").ground_truth().describe()["noise"] == []
 
 
-def test_directions_are_those_of_the_pinhole():
-    directions = glidar.camera(5, 3, fx=4.0).directions
+def test_ray_directions_follow_the_pinhole_model():
+    directions = glidar.camera(5, 3, fx=4.0).ray_directions
     assert not directions.flags.writeable
     expected = np.array([(4 + 0.5 - 2.5) / 4.0, (2 + 0.5 - 1.5) / 4.0, 1.0])
     assert directions[2, 4] == pytest.approx(expected / np.linalg.norm(expected), abs=1e-15)
@@ -93,47 +93,47 @@ def test_directions_are_those_of_the_pinhole():
         (lambda: glidar.camera(fov_deg=20, fx=3.0), "sensor: optics", "given beside"),
         (lambda: glidar.camera(nosie=[]), "sensor: nosie", "did you mean 'noise'"),
         (lambda: glidar.camera(noise=[{"type": "range_gausian"}]), "sensor: noise[0].type", "range_gaussian"),
-        (lambda: glidar.camera(name=object()), "sensor.name", "a object; allowed: numbers, texts"),
+        (lambda: glidar.camera(name=object()), "sensor.name", "a object; allowed: numbers, strings"),
         (lambda: glidar.load_sensor("VLP16"), "sensor", "did you mean VLP-16"),
         (lambda: glidar.Sensor.from_dict({}), "sensor", "optics"),
     ],
 )
-def test_wrong_keys_and_numbers_are_told(make, where, words):
+def test_invalid_keys_and_values_raise_an_error(make, where, words):
     with pytest.raises(glidar.Error) as caught:
         make()
     assert caught.value.where.startswith(where), str(caught.value)
     assert words in str(caught.value)
 
 
-def test_an_image_that_does_not_fit_into_memory_is_refused():
+def test_an_image_that_does_not_fit_into_memory_is_rejected():
     with pytest.raises(glidar.Error, match="this machine's memory"):
         glidar.camera(65536, 65536)
 
 
-def test_an_unknown_sensor_is_told_as_the_command_line_does(tmp_path, program):
-    told = program("render", "builtin:box", "--sensor", "VLP-61", "-o", tmp_path / "x.pcd", code=2)
+def test_the_error_for_an_unknown_sensor_is_that_of_the_command_line(tmp_path, program):
+    described = program("render", "builtin:box", "--sensor", "VLP-61", "-o", tmp_path / "x.pcd", code=2)
     with pytest.raises(glidar.Error) as caught:
         glidar.load_sensor("VLP-61")
-    assert str(caught.value) in told
+    assert str(caught.value) in described
 
 
-def _compare(given, told, counted):
+def _compare(given, described, counted):
     """Numbers of a file against those of the description under the same keys, digit by digit."""
-    if isinstance(given, dict) and isinstance(told, dict):
-        for key in given.keys() & told.keys():
-            _compare(given[key], told[key], counted)
-    elif isinstance(given, list) and isinstance(told, list) and len(given) == len(told):
-        for one, other in zip(given, told):
+    if isinstance(given, dict) and isinstance(described, dict):
+        for key in given.keys() & described.keys():
+            _compare(given[key], described[key], counted)
+    elif isinstance(given, list) and isinstance(described, list) and len(given) == len(described):
+        for one, other in zip(given, described):
             _compare(one, other, counted)
-    elif isinstance(told, list) and type(given) in (int, float):
-        for other in told:  # one number for all channels
+    elif isinstance(described, list) and type(given) in (int, float):
+        for other in described:  # one number for all channels
             _compare(given, other, counted)
-    elif type(given) in (int, float) and type(told) in (int, float):
-        assert repr(float(told)) == repr(float(given))
+    elif type(given) in (int, float) and type(described) in (int, float):
+        assert repr(float(described)) == repr(float(given))
         counted.append(given)
 
 
-def test_descriptions_have_the_numbers_of_the_files_of_presets_digit_by_digit():
+def test_descriptions_contain_the_exact_numbers_of_preset_files():
     counted = []
     for name in glidar.sensor_names():
         given = yaml.safe_load(Path(glidar.sensor_file(name)).read_text(encoding="utf-8"))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""An installed package by itself: what it brings along is found, nothing of a source tree is used. Run by
+"""An installed package alone: what it brings along is found, nothing of a source tree is used. Run by
 scripts/make_wheel.sh with the Python of an environment that holds the wheel."""
 
 import subprocess
@@ -18,7 +18,7 @@ assert frame.hits > 0
 assert glidar.surface_names()
 frame.save("scan.pcd")
 
-# files that the process has open: libraries, all from the package or the system
+# open files of the process: all libraries are from the package or the system
 mapped = {line.split()[-1] for line in Path("/proc/self/maps").read_text().splitlines() if ".so" in line}
 foreign = [m for m in mapped if any(word in m for word in ("rays", "tbb", "yaml-cpp", "libzip")) and sys.prefix not in m]
 assert not foreign, foreign
@@ -34,7 +34,7 @@ def run(*arguments):
 
 assert run("--version").strip().endswith(glidar.__version__)
 assert "VLP-16" in run("sensors")
-assert "--executor" in run("campaign", "run", "--help")  # by glidar-campaign, beside the program
+assert "--executor" in run("campaign", "run", "--help")  # by glidar-campaign, next to the program
 run("render", str(package / "share/glidar/models/satellite/satellite.obj"), "-o", "cloud.pcd")
 maps = subprocess.run(["ldd", package / "bin/glidar"], capture_output=True, text=True, check=True).stdout
 assert "not found" not in maps, maps

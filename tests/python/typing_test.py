@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Types are those that mypy is told."""
+"""The package's type annotations pass mypy --strict."""
 
 import subprocess
 import sys
@@ -44,7 +44,7 @@ def check(path, *arguments):
     )
 
 
-def test_a_program_of_a_user_is_accepted_and_runs(tmp_path):
+def test_mypy_accepts_a_typed_program(tmp_path):
     path = tmp_path / "program.py"
     path.write_text(PROGRAM)
     done = check(path)
@@ -65,7 +65,7 @@ if __name__ == "__main__":
 '''
 
 
-def test_a_program_of_campaigns_is_accepted(tmp_path):
+def test_mypy_accepts_a_program_that_runs_campaigns(tmp_path):
     path = tmp_path / "program.py"
     path.write_text(CAMPAIGN)
     done = check(path, "--follow-imports=silent")
@@ -75,7 +75,7 @@ def test_a_program_of_campaigns_is_accepted(tmp_path):
     assert done.stdout.count("error:") == 2, done.stdout
 
 
-def test_a_wrong_program_is_not_accepted(tmp_path):
+def test_mypy_rejects_a_program_with_type_errors(tmp_path):
     path = tmp_path / "program.py"
     path.write_text("import glidar\n\nglidar.camera(width='wide')\nglidar.Scene().nothing\n")
     done = check(path)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Several processes that write the same cloud at once."""
+"""Several processes that write the same cloud concurrently."""
 
 import json
 import subprocess
@@ -20,7 +20,7 @@ for line in sys.stdin:
 ROUNDS = 150
 
 
-def test_cloud_and_sidecar_are_of_the_same_writer(tmp_path):
+def test_concurrent_writers_leave_a_matching_cloud_and_sidecar(tmp_path):
     writers = [subprocess.Popen([sys.executable, "-c", WRITER, str(seed)], cwd=tmp_path, text=True,
                                 stdin=subprocess.PIPE, stdout=subprocess.PIPE) for seed in (1, 2)]
     by_seed = {}
@@ -47,7 +47,7 @@ def test_cloud_and_sidecar_are_of_the_same_writer(tmp_path):
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.csv.json"]
 
 
-def test_frames_do_not_replace_inputs_by_their_sidecars(tmp_path):
+def test_sidecars_do_not_overwrite_inputs(tmp_path):
     import pytest
 
     sensor = tmp_path / "q.pcd.json"

@@ -50,8 +50,8 @@ def intrinsics_of(sensor, name):
                   "a camera with distortion", "for BOP a pinhole camera without distortion", "")
     if sensor.kind != "camera" or sensor.returns != 1 or min(sensor.rows, sensor.cols) < 2:
         raise wrong
-    x, y = sensor.directions[..., 0] / sensor.directions[..., 2], (
-        sensor.directions[..., 1] / sensor.directions[..., 2])
+    x, y = sensor.ray_directions[..., 0] / sensor.ray_directions[..., 2], (
+        sensor.ray_directions[..., 1] / sensor.ray_directions[..., 2])
     fx = (sensor.cols - 1) / (x[0, -1] - x[0, 0])
     fy = (sensor.rows - 1) / (y[-1, 0] - y[0, 0])
     k = np.array([[fx, 0.0, -fx * x[0, 0]], [0.0, fy, -fy * y[0, 0]], [0.0, 0.0, 1.0]])

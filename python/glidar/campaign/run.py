@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from glidar import Error
-from glidar._inputs import MOST_32, path_of, whole
+from glidar._inputs import MAX_UINT32, path_of, whole
 from glidar.campaign import bop_models, files, finish as finishing, folder as folders, index, names, records
 from glidar.campaign.folder import Folder
 from glidar.campaign.local import require_guard, run_local
@@ -30,7 +30,7 @@ class Part:
     count: int = 1
 
     def __post_init__(self) -> None:
-        if whole(self.index, "part, index", MOST_32) >= whole(self.count, "part, count", MOST_32):
+        if whole(self.index, "part, index", MAX_UINT32) >= whole(self.count, "part, count", MAX_UINT32):
             raise Error("part", f"{self.index} of {self.count}", "an index from 0 to below the count")
 
     def shards(self, total: int) -> list[int]:
@@ -106,7 +106,7 @@ def run(spec_path: StrPath, root: StrPath, part: Part = Part(), workers: int = 0
         Error: bad input, no room, or a disk that fails; trials that fail are counted in the outcome.
     """
     require_guard()
-    whole(workers, "workers", MOST_32)
+    whole(workers, "workers", MAX_UINT32)
     with claimed(spec_path, root, part.count > 1, durable) as (plan, folder):
         wanted = part.shards(plan.shards)
         todo = folders.missing(folder, wanted)
