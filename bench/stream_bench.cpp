@@ -5,9 +5,9 @@
 
 #include <apps/glidar/run/delivery.hpp>
 #include <glidar/io/model/model.hpp>
-#include <glidar/link/legacy/cloud_publisher.hpp>
 #include <glidar/sensor/view_placement.hpp>
 #include <glidar/simulate/simulate.hpp>
+#include <glidar/woods2016/cloud_publisher.hpp>
 
 #include <atomic>
 #include <chrono>

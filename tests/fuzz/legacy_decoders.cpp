@@ -3,7 +3,7 @@
 #include "legacy_decoders.hpp"
 
 #include <glidar/core/error.hpp>
-#include <glidar/link/legacy/legacy_codec.hpp>
+#include <glidar/woods2016/message_codec.hpp>
 
 #include <cmath>
 #include <cstdio>

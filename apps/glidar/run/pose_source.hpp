@@ -5,8 +5,8 @@
 #include <apps/glidar/run/interrupt.hpp>
 #include <apps/glidar/run/session.hpp>
 #include <glidar/core/beams.hpp>
-#include <glidar/link/legacy/pose_receiver.hpp>
 #include <glidar/motion/motion.hpp>
+#include <glidar/woods2016/pose_receiver.hpp>
 
 #include <chrono>
 #include <cstdint>

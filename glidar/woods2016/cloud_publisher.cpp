@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/legacy/cloud_publisher.hpp>
+#include <glidar/woods2016/cloud_publisher.hpp>
 
 #include <algorithm>
 #include <array>

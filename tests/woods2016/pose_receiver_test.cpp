@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/legacy/pose_receiver.hpp>
+#include <glidar/woods2016/pose_receiver.hpp>
 
-#include "loopback.hpp"
-#include "message_bytes.hpp"
+#include "link/loopback.hpp"
+#include "link/message_bytes.hpp"
 
 #include <gmock/gmock.h>
 

@@ -4,9 +4,9 @@
 
 #include <glidar/core/cloud_sink.hpp>
 #include <glidar/link/fault_log.hpp>
-#include <glidar/link/legacy/handshake_match.hpp>
-#include <glidar/link/legacy/legacy_codec.hpp>
 #include <glidar/link/router.hpp>
+#include <glidar/woods2016/handshake_match.hpp>
+#include <glidar/woods2016/message_codec.hpp>
 
 #include <chrono>
 #include <cstdint>

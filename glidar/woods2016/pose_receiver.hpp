@@ -3,8 +3,8 @@
 #pragma once
 
 #include <glidar/link/fault_log.hpp>
-#include <glidar/link/legacy/legacy_codec.hpp>
 #include <glidar/link/socket.hpp>
+#include <glidar/woods2016/message_codec.hpp>
 
 #include <chrono>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/legacy/pose_receiver.hpp>
+#include <glidar/woods2016/pose_receiver.hpp>
 
 #include <glidar/core/error.hpp>
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/legacy/legacy_codec.hpp>
+#include <glidar/woods2016/message_codec.hpp>
 
 #include <glidar/core/error.hpp>
 

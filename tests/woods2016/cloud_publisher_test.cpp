@@ -1,12 +1,12 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/legacy/cloud_publisher.hpp>
+#include <glidar/woods2016/cloud_publisher.hpp>
 
-#include <glidar/link/legacy/legacy_codec.hpp>
+#include <glidar/woods2016/message_codec.hpp>
 
-#include "loopback.hpp"
-#include "message_bytes.hpp"
-#include "raw_peer.hpp"
+#include "link/loopback.hpp"
+#include "link/message_bytes.hpp"
+#include "link/raw_peer.hpp"
 #include "support/error_text.hpp"
 
 #include <gmock/gmock.h>

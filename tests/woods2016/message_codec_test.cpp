@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/legacy/legacy_codec.hpp>
+#include <glidar/woods2016/message_codec.hpp>
 
-#include "message_bytes.hpp"
+#include "link/message_bytes.hpp"
 #include "support/error_text.hpp"
 
 #include <gmock/gmock.h>
