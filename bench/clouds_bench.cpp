@@ -7,6 +7,7 @@
 
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/simulate/simulate.hpp>
+#include <glidar/woods2016/framebuffer.hpp>
 
 #include <array>
 #include <string>
@@ -28,7 +29,7 @@ class Clouds {
 
   void measure() {
     Setup setup{model_.scene, sensor_, beams_, motion_, *renderer_};
-    if (camera_) setup.paper.emplace(Woods2016Target{*camera_});
+    if (camera_) setup.replace_returns = woods2016_measurement(*camera_);
     simulate(setup, {}, frame_);
     make_point_cloud(frame_, beams_, model_.scene,
                      {.frame_id = "camera", .thread_pool = &renderer_->thread_pool()}, kColumns,

@@ -7,6 +7,7 @@
 #include "ratio_reporter.hpp"
 
 #include <glidar/simulate/simulate.hpp>
+#include <glidar/woods2016/framebuffer.hpp>
 
 #include <memory>
 
@@ -50,7 +51,7 @@ void register_paper(const std::string& name, const Model& model, std::uint32_t s
     std::vector<double> range_m(beams.size());
     std::vector<float> intensity(beams.size());
     const auto read = [&](std::size_t begin, std::size_t end) {
-      decode(picture, beams, {begin, end}, range_m, intensity);
+      decode_framebuffer(picture, beams, {begin, end}, range_m, intensity);
     };
     for (auto _ : state) {
       camera->draw({.beams = beams, .world_from_sensor = model.world_from_sensor}, {}, {}, picture);

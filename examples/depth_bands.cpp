@@ -9,6 +9,7 @@
 #include <glidar/io/pictures/picture.hpp>
 #include <glidar/io/pictures/png_image.hpp>
 #include <glidar/simulate/simulate.hpp>
+#include <glidar/woods2016/framebuffer.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -54,7 +55,7 @@ Depths two_channels(const Woods2016Framebuffer& picture, const glidar::Beams& be
                 .step_m = (picture.far_m - picture.near_m) / 65536.0,
                 .depth_m = std::vector<double>(beams.size())};
   std::vector<float> intensity(beams.size());
-  glidar::decode(picture, beams, {0, beams.size()}, depths.depth_m, intensity);
+  glidar::decode_framebuffer(picture, beams, {0, beams.size()}, depths.depth_m, intensity);
   for (std::size_t i = 0; i < beams.size(); ++i) {
     depths.depth_m[i] = glidar::depth_m(beams, i, depths.depth_m[i]);
   }

@@ -23,7 +23,7 @@ ALLOWED = {
     "explain": {"math", "core", "sensor", "motion", "render", "simulate", "io", "explain"},
     "io": {"math", "core", "sensor", "motion", "io"},
     "link": {"math", "core", "io", "link"},
-    "woods2016": {"math", "core", "link", "woods2016"},
+    "woods2016": {"math", "core", "sensor", "motion", "render", "simulate", "link", "woods2016"},
 }
 PUBLIC_LIST = "glidar/public_headers.txt"
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

@@ -59,7 +59,7 @@ Setup setup_of(const Snapshot& snapshot) {
               .beams = *snapshot.beams,
               .motion = snapshot.motion,
               .renderer = *session.renderer};
-  if (session.paper) setup.paper.emplace(Woods2016Target{.camera = *session.paper});
+  if (session.paper) setup.replace_returns = woods2016_measurement(*session.paper);
   return setup;
 }
 

@@ -9,7 +9,6 @@
 
 #include <memory>
 #include <optional>
-#include <vector>
 
 namespace glidar {
 
@@ -42,10 +41,5 @@ std::unique_ptr<Woods2016Camera> make_paper_camera(const Scene& scene,
 std::unique_ptr<Woods2016Camera> make_paper_camera(const Scene& scene,
                                                    const RendererOptions& options,
                                                    std::unique_ptr<opengl::Context> context);
-
-/// What the picture tells of a run of a pinhole's beams: range in metres, NaN where nothing is
-/// seen, and intensity 0..1.
-void decode(const Woods2016Framebuffer& picture, const Beams& beams, BeamRange range,
-            std::vector<double>& range_m, std::vector<float>& intensity);
 
 }  // namespace glidar

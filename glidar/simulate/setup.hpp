@@ -2,21 +2,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/render/woods2016_framebuffer.hpp>
 #include <glidar/sensor/sensor.hpp>
 #include <glidar/simulate/moving_cast.hpp>
 
-#include <optional>
+#include <functional>
 
 namespace glidar {
-
-/// The way of the 2016 paper: range and intensity are read from a picture of bytes, which stays in
-/// the frame.
-struct Woods2016Target {
-  Woods2016Camera& camera;  ///< over the same scene
-  std::optional<Woods2016DepthPlanes> planes =
-      {};  ///< of its depths; empty: they hug what is in view
-};
 
 /// What a simulation needs; everything here must outlive it.
 struct Setup {
@@ -26,8 +17,11 @@ struct Setup {
   const Motion& motion;
   Renderer& renderer;
   ProgressCallback progress = {};  ///< of a measurement
-  /// Empty: range and intensity come from the renderer's hits, which stay the truth in any case.
-  std::optional<Woods2016Target> paper = {};
+  /// Called after the cast with the beams as fired (pointing noise included): replaces range,
+  /// intensity and status of every beam, e.g. woods2016_measurement(). The ground truth stays that
+  /// of the renderer. Empty: range and intensity come from the renderer's hits.
+  std::function<void(const Setup& setup, const Beams& perturbed, Frame& frame)> replace_returns =
+      {};
 };
 
 /// The world at the frame's start.

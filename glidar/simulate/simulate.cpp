@@ -7,7 +7,6 @@
 #include <glidar/motion/beam_poses.hpp>
 #include <glidar/simulate/projector_occlusion.hpp>
 #include <glidar/simulate/simulate_waveforms.hpp>
-#include <glidar/simulate/woods2016_measure.hpp>
 
 #include <algorithm>
 #include <cmath>
@@ -91,7 +90,7 @@ CastRequest request_of(const Started& started) {
 void finish(const Started& started, const HitFieldMask& fields) {
   const auto& [setup, frame, beams, needed] = started;
   frame.picture.rgba.clear();
-  if (setup.paper) measure_woods2016(setup, *setup.paper, frame);
+  if (setup.replace_returns) setup.replace_returns(setup, beams, frame);
   if (setup.sensor.projector_origin_m)
     occlude_from_projector(setup, *setup.sensor.projector_origin_m, beams, frame);
   deskew(timed_scene(setup, frame), setup.beams, beams, frame.deskewed);

@@ -1,7 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/visible_depths.hpp>
-#include <glidar/render/woods2016_framebuffer.hpp>
 #include <render/renderer_suite.hpp>
 
 namespace glidar {
@@ -69,21 +68,6 @@ TEST(VisibleDepths, HugWhatBeamsMeetOnAnAsteroidThatFillsTheView) {
     EXPECT_GE(span.farthest_m, depth);
   }
   EXPECT_LT(nearest - span.nearest_m, 0.02);  // pixels do not hit the nearest point itself
-}
-
-TEST(Woods2016Framebuffer, DecodesToTheMiddleOfAStepAndDividesByTheBeamsSlope) {
-  Woods2016Framebuffer picture{.rows = 1, .cols = 3, .near_m = 10.0, .far_m = 75.536, .rgba = {}};
-  picture.rgba = {0, 0, 0, 0, 51, 1, 2, 255, 255, 255, 255, 255};
-  const Beams beams = camera_beams(3, 1, 1.0);
-  std::vector<double> range_m(3);
-  std::vector<float> intensity(3);
-  decode(picture, beams, {0, 3}, range_m, intensity);
-  EXPECT_TRUE(std::isnan(range_m[0]));
-  EXPECT_EQ(intensity[0], 0.0F);
-  EXPECT_DOUBLE_EQ(range_m[1], 10.2585);  // step 256 + 2 of 1 mm
-  EXPECT_FLOAT_EQ(intensity[1], 0.2F);
-  EXPECT_DOUBLE_EQ(range_m[2], 75.5355 * std::sqrt(2.0));
-  EXPECT_EQ(intensity[2], 1.0F);
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // The fuzzer's corpus of the Woods 2016 protocol, in every build.
-#include "fuzz/legacy_decoders.hpp"
 #include "support/corpus.hpp"
+#include "fuzz/legacy_decoders.hpp"
 
 #include <gmock/gmock.h>
 

@@ -258,7 +258,7 @@ void LockstepRun::measure_some(Job& job, std::span<const lockstep::Moment> momen
                       .beams = *beams[i],
                       .motion = motions[i],
                       .renderer = *session_.renderer});
-    if (session_.paper) setups.back().paper.emplace(Woods2016Target{.camera = *session_.paper});
+    if (session_.paper) setups.back().replace_returns = woods2016_measurement(*session_.paper);
   }
   simulate_batch(setups, glidar::fields_needed_by(measure.columns),
                  std::span(frames_).first(moments.size()));

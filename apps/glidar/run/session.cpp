@@ -270,7 +270,7 @@ Setup setup_of(const Session& session, const Mount& mount, Console& console) {
               .motion = mount.motion,
               .renderer = *session.renderer,
               .progress = [&console](double fraction) { console.set_progress(fraction); }};
-  if (session.paper) setup.paper.emplace(Woods2016Target{.camera = *session.paper});
+  if (session.paper) setup.replace_returns = woods2016_measurement(*session.paper);
   return setup;
 }
 

@@ -5,6 +5,7 @@
 #include <apps/glidar/options/render_options.hpp>
 #include <apps/glidar/run/console.hpp>
 #include <glidar/simulate/setup.hpp>
+#include <glidar/woods2016/framebuffer.hpp>
 
 #include <cstdint>
 #include <memory>

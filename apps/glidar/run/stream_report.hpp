@@ -4,8 +4,8 @@
 
 #include <apps/glidar/options/stream_options.hpp>
 #include <apps/glidar/run/stream_stats.hpp>
-#include <glidar/link/legacy/cloud_publisher.hpp>
-#include <glidar/link/legacy/pose_receiver.hpp>
+#include <glidar/woods2016/cloud_publisher.hpp>
+#include <glidar/woods2016/pose_receiver.hpp>
 
 #include <cstdint>
 #include <map>

@@ -295,7 +295,7 @@ void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {
               .beams = *beams,
               .motion = mount.motion,
               .renderer = *session_.renderer};
-  if (session_.paper) setup.paper.emplace(Woods2016Target{.camera = *session_.paper});
+  if (session_.paper) setup.replace_returns = woods2016_measurement(*session_.paper);
   simulate(setup, fields_, measured.frame);
   if (measured_++ > 0) return;
   print_advice(view_advice({session_.scene, mount.sensor, *beams, measured.frame}), console_);

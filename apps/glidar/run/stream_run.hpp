@@ -15,8 +15,8 @@
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/link/fault_log.hpp>
-#include <glidar/link/legacy/cloud_publisher.hpp>
 #include <glidar/link/recording.hpp>
+#include <glidar/woods2016/cloud_publisher.hpp>
 
 #include <map>
 #include <memory>

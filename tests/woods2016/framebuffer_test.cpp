@@ -1,10 +1,11 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// The picture of the 2016 paper against the truth that is attached to it.
+// The quantised framebuffer of the 2016 paper against the measurement from ray casting.
 #include <glidar/core/error.hpp>
 #include <glidar/io/model/builtin_models.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
 #include <glidar/simulate/simulate.hpp>
+#include <glidar/woods2016/framebuffer.hpp>
 #include <support/data.hpp>
 #include <support/error_text.hpp>
 #include <support/source_folder.hpp>
@@ -23,17 +24,17 @@ Scene builtin(const char* name) {
   return scene;
 }
 
-/// A measurement through the paper's picture, and how far it is from the truth.
+/// One scene, measured with the framebuffer and without.
 struct Measured {
-  Frame frame;
-  Frame exact;  ///< the same without the picture
+  Frame frame;  ///< decoded from the framebuffer
+  Frame exact;  ///< from the renderer's hits
 
   [[nodiscard]] double step_m() const {
     return (frame.picture.far_m - frame.picture.near_m) / 65536.0;
   }
 };
 
-class PaperTargetTest : public ::testing::Test {
+class Woods2016Measurement : public ::testing::Test {
  protected:
   void SetUp() override {
     try {
@@ -60,7 +61,7 @@ class PaperTargetTest : public ::testing::Test {
               .motion = motion,
               .renderer = *renderer,
               .progress = {},
-              .paper = Woods2016Target{*camera, planes}},
+              .replace_returns = woods2016_measurement(*camera, planes)},
              fields, measured.frame);
     return measured;
   }
@@ -72,17 +73,17 @@ Sensor camera(std::uint32_t width, std::uint32_t height, double fov_y_rad) {
   return sensor;
 }
 
-/// Depth within half a step, intensity within one of 255, away from outlines: where a pixel's
-/// neighbours see the same surface.
-void expect_near_truth(const Measured& m, double most_other) {
+/// Expects depths within half a step and intensities within 1/255. At most the share
+/// `max_outliers` of the pixels may differ, because silhouettes are rasterized differently.
+void expect_near_exact(const Measured& m, double max_outliers) {
   std::size_t compared = 0;
-  std::size_t other = 0;
+  std::size_t outliers = 0;
   const Frame& frame = m.frame;
-  // The device interpolates depths in single precision: a little more than half a step.
+  // Half a step, and the rounding of depths that the GPU interpolates in single precision.
   const double depth_tolerance = 0.52 * m.step_m();
   for (std::size_t i = 0; i < frame.range_m.size(); ++i) {
     if (frame.status[i] != m.exact.status[i]) {
-      ++other;
+      ++outliers;
       continue;
     }
     if (frame.status[i] != Status::hit) continue;
@@ -90,45 +91,45 @@ void expect_near_truth(const Measured& m, double most_other) {
     const double slope = frame.ground_truth.depth_m[i] / frame.ground_truth.range_m[i];
     const double depth_error = std::abs(frame.range_m[i] - m.exact.range_m[i]) * slope;
     const double light_error = std::abs(frame.intensity[i] - std::min(1.0F, m.exact.intensity[i]));
-    if (depth_error > depth_tolerance || light_error > 1.0 / 255.0) ++other;
+    if (depth_error > depth_tolerance || light_error > 1.0 / 255.0) ++outliers;
   }
   EXPECT_GT(compared, 5000U);
-  EXPECT_LE(static_cast<double>(other), most_other * static_cast<double>(compared));
+  EXPECT_LE(static_cast<double>(outliers), max_outliers * static_cast<double>(compared));
 }
 
-TEST_F(PaperTargetTest, DepthIsWithinHalfAStepAndLightWithinAByteOnASphere) {
+TEST_F(Woods2016Measurement, IsWithinHalfADepthStepAndOneIntensityStepOnASphere) {
   const Scene scene = builtin("sphere");
   const Pose pose = look_at({6.0, 1.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Measured m = measure(scene, camera(300, 200, 0.4), pose);
-  expect_near_truth(m, 0.0005);
-  EXPECT_LT(m.frame.picture.far_m - m.frame.picture.near_m, 2.0 + 1e-6);  // hugs it
+  expect_near_exact(m, 0.0005);
+  EXPECT_LT(m.frame.picture.far_m - m.frame.picture.near_m, 2.0 + 1e-6);  // tight around the sphere
 }
 
-TEST_F(PaperTargetTest, AndOnABumpyAsteroidWithColours) {
+TEST_F(Woods2016Measurement, IsAsExactOnAColouredAsteroid) {
   const Scene scene = builtin("asteroid");
   const Pose pose = look_at({3.0, 1.0, 1.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
-  expect_near_truth(measure(scene, camera(300, 300, 0.7), pose), 0.001);
+  expect_near_exact(measure(scene, camera(300, 300, 0.7), pose), 0.001);
 }
 
-TEST_F(PaperTargetTest, AndFromTenKilometresWithAttenuation) {
+TEST_F(Woods2016Measurement, IsAsExactAtTenKilometresWithAttenuation) {
   Scene scene = builtin("torus");
   scene.instances[0].world_from_object.translation() = Eigen::Vector3d(1e6, 2e6, -3e5);
   const Eigen::Vector3d middle = scene.instances[0].world_from_object.translation();
   const Pose pose = look_at(middle + Eigen::Vector3d(6e3, 0.0, 8e3), middle, {0.0, 1.0, 0.0});
-  expect_near_truth(measure(scene, camera(200, 200, 3e-4), pose), 0.001);
+  expect_near_exact(measure(scene, camera(200, 200, 3e-4), pose), 0.001);
 }
 
-TEST_F(PaperTargetTest, AndWithEveryTextureOfTheSatellite) {
+TEST_F(Woods2016Measurement, IsAsExactWithTheTexturesOfTheSatellite) {
   const Scene scene = testing::scene_of(
       load_model(std::string(kSourceFolder) + "/models/satellite/satellite.obj", {}, {}));
   const Eigen::AlignedBox3d box = bounds(scene);
   const double distance = 2.0 * box.diagonal().norm();
   const Eigen::Vector3d eye = box.center() + distance * Eigen::Vector3d(0.5, -0.7, 0.51);
   const Pose pose = look_at(eye, box.center(), Eigen::Vector3d::UnitZ());
-  expect_near_truth(measure(scene, camera(400, 400, 0.4), pose), 0.01);
+  expect_near_exact(measure(scene, camera(400, 400, 0.4), pose), 0.01);
 }
 
-TEST_F(PaperTargetTest, ShowsShininessMasksNormalMapsAndFlatMeshes) {
+TEST_F(Woods2016Measurement, IsAsExactWithShininessMasksNormalMapsAndFlatMeshes) {
   Scene scene = builtin("plane");
   Material& material = scene.materials[scene.instances[0].materials[0]];
   scene.textures.push_back(
@@ -148,40 +149,56 @@ TEST_F(PaperTargetTest, ShowsShininessMasksNormalMapsAndFlatMeshes) {
   Mesh& mesh = scene.meshes[0];
   mesh.tangents.assign(mesh.positions_m.size(), Eigen::Vector4f(1.0F, 0.0F, 0.0F, -1.0F));
   const Pose pose = look_at({0.6, -0.8, 2.5}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitY());
-  expect_near_truth(measure(scene, camera(200, 200, 0.7), pose), 0.01);
+  expect_near_exact(measure(scene, camera(200, 200, 0.7), pose), 0.01);
   mesh.normals.clear();
-  expect_near_truth(measure(scene, camera(200, 200, 0.7), pose), 0.01);
+  expect_near_exact(measure(scene, camera(200, 200, 0.7), pose), 0.01);
 }
 
-TEST_F(PaperTargetTest, PlanesThatDoNotHugCostTheirStep) {
+TEST_F(Woods2016Measurement, GivenPlanesSetTheDepthStep) {
   const Scene scene = builtin("sphere");
   const Pose pose = look_at({6.0, 1.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Measured m = measure(scene, camera(300, 200, 0.4), pose, Woods2016DepthPlanes{1.0, 1001.0});
   EXPECT_EQ(m.frame.picture.far_m, 1001.0);
   EXPECT_TRUE(m.exact.picture.rgba.empty());
-  expect_near_truth(m, 0.0005);  // of steps 500 times as large
+  expect_near_exact(m, 0.0005);  // the step is 500 times as large
 }
 
-TEST_F(PaperTargetTest, NothingInViewIsAllMisses) {
+TEST_F(Woods2016Measurement, AnEmptyViewGivesOnlyMisses) {
   const Scene scene = builtin("sphere");
   const Pose pose = look_at({6.0, 1.0, 2.0}, {9.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
   const Measured m = measure(scene, camera(20, 20, 0.4), pose);
   for (const Status status : m.frame.status) EXPECT_EQ(status, Status::miss);
 }
 
-TEST_F(PaperTargetTest, RefusesPulsedLightAndErrorsOfPointing) {
+TEST_F(Woods2016Measurement, RejectsPulsedSensorsAndPointingNoise) {
   const Scene scene = builtin("sphere");
   Sensor sensor = camera(20, 20, 0.4);
   sensor.pulse = LidarEquation{};
   const std::string allowed =
-      "; allowed: the paper's light, and beams that fire together where they are aimed; "
+      "; allowed: sensors without lidar_equation, firing times and pointing noise; "
       "leave --quantized-framebuffer out";
   EXPECT_EQ(error_text([&] { measure(scene, sensor, Pose::Identity()); }),
-            "paper target: pulsed light" + allowed);
+            "--quantized-framebuffer: a pulsed sensor" + allowed);
   sensor.pulse.reset();
   sensor.noise = {PointingJitter{1e-4, 1e-4}};
   EXPECT_EQ(error_text([&] { measure(scene, sensor, Pose::Identity()); }),
-            "paper target: errors of pointing" + allowed);
+            "--quantized-framebuffer: pointing noise" + allowed);
+}
+
+TEST(Woods2016Framebuffer, DecodesToTheMiddleOfAStepAndDividesByTheCosine) {
+  Woods2016Framebuffer picture{.rows = 1, .cols = 3, .near_m = 10.0, .far_m = 75.536, .rgba = {}};
+  picture.rgba = {0, 0, 0, 0, 51, 1, 2, 255, 255, 255, 255, 255};
+  const Beams beams = make_beams(
+      Pinhole{{.width = 3, .height = 1, .fx = 1.0, .fy = 1.0, .cx = 1.5, .cy = 0.5}, {}});
+  std::vector<double> range_m(3);
+  std::vector<float> intensity(3);
+  decode_framebuffer(picture, beams, {0, 3}, range_m, intensity);
+  EXPECT_TRUE(std::isnan(range_m[0]));
+  EXPECT_EQ(intensity[0], 0.0F);
+  EXPECT_DOUBLE_EQ(range_m[1], 10.2585);  // step 256 + 2 of 1 mm
+  EXPECT_FLOAT_EQ(intensity[1], 0.2F);
+  EXPECT_DOUBLE_EQ(range_m[2], 75.5355 * std::sqrt(2.0));
+  EXPECT_EQ(intensity[2], 1.0F);
 }
 
 }  // namespace

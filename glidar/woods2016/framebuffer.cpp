@@ -1,0 +1,77 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/woods2016/framebuffer.hpp>
+
+#include <glidar/core/error.hpp>
+#include <glidar/math/constants.hpp>
+
+#include <cmath>
+#include <limits>
+
+namespace glidar {
+namespace {
+
+constexpr std::size_t kPixelsPerTask = 4096;
+
+/// Throws Error for sensors whose measurement the framebuffer cannot represent.
+void check_representable(const Setup& setup, const Beams& perturbed) {
+  const auto refuse_if = [](bool is_so, const char* found) {
+    if (!is_so) return;
+    throw Error({.where = "--quantized-framebuffer",
+                 .found = found,
+                 .allowed = "sensors without lidar_equation, firing times and pointing noise",
+                 .remedy = "leave --quantized-framebuffer out"});
+  };
+  refuse_if(setup.sensor.pulse.has_value(), "a pulsed sensor");
+  refuse_if(!setup.beams.times_ns.empty(), "beams with firing times");
+  refuse_if(&perturbed != &setup.beams, "pointing noise");
+}
+
+}  // namespace
+
+void decode_framebuffer(const Woods2016Framebuffer& picture, const Beams& beams, BeamRange range,
+                        std::vector<double>& range_m, std::vector<float>& intensity) {
+  constexpr double kByteSteps = 65536.0;
+  const double step_m = (picture.far_m - picture.near_m) / kByteSteps;
+  for (std::size_t i = range.begin; i < range.end; ++i) {
+    const std::uint8_t* rgba = &picture.rgba[4 * i];
+    if (rgba[3] == 0) {
+      range_m[i] = std::numeric_limits<double>::quiet_NaN();
+      intensity[i] = 0.0F;
+      continue;
+    }
+    // The inverse of equations (6) to (8). They round D down, so the middle of its step is the best
+    // estimate.
+    const double steps = 256.0 * rgba[1] + rgba[2] + 0.5;
+    const double depth = picture.near_m + steps * step_m;
+    range_m[i] = depth / beams.directions[i].z();
+    intensity[i] = static_cast<float>(rgba[0]) / 255.0F;
+  }
+}
+
+std::function<void(const Setup&, const Beams&, Frame&)> woods2016_measurement(
+    Woods2016Camera& camera, std::optional<Woods2016DepthPlanes> planes) {
+  return [&camera, planes](const Setup& setup, const Beams& perturbed, Frame& frame) {
+    check_representable(setup, perturbed);
+    camera.draw({.beams = setup.beams,
+                 .world_from_sensor = frame.world_from_sensor,
+                 .world_from_instance = frame.world_from_instance,
+                 .cull_back_faces = setup.sensor.cull_back_faces},
+                setup.sensor.light, planes, frame.picture);
+    const auto decode = [&](std::size_t begin, std::size_t end) {
+      decode_framebuffer(frame.picture, setup.beams, {begin, end}, frame.range_m, frame.intensity);
+      for (std::size_t i = begin; i < end; ++i) {
+        const bool is_visible = !std::isnan(frame.range_m[i]);
+        frame.status[i] = is_visible
+                              ? check_limits(setup.sensor.limits, setup.beams, i, frame.range_m[i])
+                              : Status::miss;
+        if (frame.status[i] == Status::hit) continue;
+        frame.range_m[i] = kNaN;
+        frame.intensity[i] = 0.0F;
+      }
+    };
+    setup.renderer.thread_pool().parallel_for(setup.beams.size(), kPixelsPerTask, decode);
+  };
+}
+
+}  // namespace glidar
