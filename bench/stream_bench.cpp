@@ -92,18 +92,18 @@ void publish(benchmark::State& state, const View& view, bool is_read) {
   const auto beams = std::make_shared<const Beams>(view.beams);
   PointCloud cloud;
   app::Delivery delivery(
-      [&](const app::Shot& shot) {
-        make_point_cloud(shot.frame, *shot.beams, view.scene, {}, kColumns, cloud);
-        publisher.write(cloud, shot.frame);
+      [&](const app::MeasuredFrame& slot) {
+        make_point_cloud(slot.frame, *slot.beams, view.scene, {}, kColumns, cloud);
+        publisher.write(cloud, slot.frame);
       },
       [&] { publisher.serve(); }, [] {});
   std::uint32_t number = 0;
   for (auto _ : state) {
-    app::Shot& shot = delivery.room();
-    shot.beams = beams;
-    shot.frame.number = number++;
-    view.measure(shot.frame);
-    delivery.hand_over();
+    app::MeasuredFrame& slot = delivery.next_slot();
+    slot.beams = beams;
+    slot.frame.number = number++;
+    view.measure(slot.frame);
+    delivery.submit();
   }
   delivery.finish();
   state.counters["missed"] = static_cast<double>(publisher.counts().missed);

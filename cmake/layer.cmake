@@ -14,7 +14,9 @@ target_compile_options(
             -fno-math-errno -fno-trapping-math
             # GCC 12 leaves out the rounding of double to float and back in two of three neighbouring lanes
             $<$<CXX_COMPILER_ID:GNU>:-fno-tree-slp-vectorize>
-            $<$<BOOL:${GLIDAR_WARNINGS_AS_ERRORS}>:-Werror>)
+            $<$<BOOL:${GLIDAR_WARNINGS_AS_ERRORS}>:-Werror>
+            # GCC 14 takes the content of empty std::optionals for uninitialised
+            $<$<CXX_COMPILER_ID:GNU>:-Wno-error=maybe-uninitialized>)
 glidar_harden(glidar_settings INTERFACE)
 
 # glidar_layer(NAME SOURCES files... PUBLIC layers... PRIVATE libraries...): one library per layer,
