@@ -63,7 +63,7 @@ class Campaign:
     def findings(self, name):
         """What a killed run left: the phase, how many shards have receipts, and files that differ from them."""
         root = self.folder / name
-        folder = folders.Folder(root)
+        folder = folders.CampaignFolder(root)
         if not folder.plan_file().is_file():
             return "starting", 0, []
         described = records.read_campaign(folder.plan_file())

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command `glidar`: runs the program that the package brings along. A package of its own, so that the
-program does not wait for NumPy."""
+"""The command `glidar`: runs the program of the package. It is a package of its own, because importing `glidar` loads
+NumPy."""
 
 import os
 import sys
@@ -10,6 +10,6 @@ from pathlib import Path
 
 def main() -> None:
     program = Path(__file__).resolve().parent.parent / "glidar" / "bin" / "glidar"
-    # where `glidar campaign` finds glidar-campaign, also in an environment that is not activated
+    # lets `glidar campaign` find glidar-campaign, also when the environment is not activated
     path = os.pathsep.join([str(Path(sys.argv[0]).resolve().parent), os.environ.get("PATH", os.defpath)])
     os.execve(program, ["glidar", *sys.argv[1:]], {**os.environ, "PATH": path})

@@ -55,10 +55,10 @@ def test_mypy_accepts_a_typed_program(tmp_path):
 CAMPAIGN = '''
 from pathlib import Path
 
-from glidar.campaign.run import Outcome, Part, check, merge, run
+from glidar.campaign.run import Outcome, ShardSubset, check, merge, run
 
 if __name__ == "__main__":
-    outcome: Outcome = run("campaign.yaml", Path("part0"), Part(0, 2), workers=2, quiet=True)
+    outcome: Outcome = run("campaign.yaml", Path("part0"), ShardSubset(0, 2), workers=2, quiet=True)
     print(outcome.trials, outcome.failed, outcome.error.upper())
     count, wrong = check("part0") if merge(["part0", "part1"], "out").whole else (0, [])
     print(count + 1, [name.upper() for name in wrong])
@@ -70,7 +70,7 @@ def test_mypy_accepts_a_program_that_runs_campaigns(tmp_path):
     path.write_text(CAMPAIGN)
     done = check(path, "--follow-imports=silent")
     assert done.returncode == 0, done.stdout + done.stderr
-    path.write_text(CAMPAIGN.replace('Part(0, 2)', '"0/2"').replace("outcome.error", "outcome.errors"))
+    path.write_text(CAMPAIGN.replace('ShardSubset(0, 2)', '"0/2"').replace("outcome.error", "outcome.errors"))
     done = check(path, "--follow-imports=silent")
     assert done.stdout.count("error:") == 2, done.stdout
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Monte Carlo campaigns: many trials, drawn from distributions, measured into a data set.
+"""Monte Carlo campaigns: many trials, sampled from distributions and measured into a data set.
 
     glidar campaign run campaign.yaml -o folder
 
@@ -11,6 +11,5 @@ or, from Python:
     if __name__ == "__main__":  # worker processes import this file
         run("campaign.yaml", "folder")
 
-docs/campaigns.md tells the rest.
-Needs the package's extra: pip install '.[campaign]' in GLIDAR's source.
+See docs/campaigns.md. Requires the package's optional dependencies: pip install '.[campaign]' in GLIDAR's source.
 """

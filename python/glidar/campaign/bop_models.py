@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The models of a BOP data set: which objects there are, their meshes in millimetres, their sizes."""
+"""The object models of a BOP data set: ids, meshes in millimetres and sizes."""
 
 import json
 import os
@@ -11,20 +11,20 @@ from glidar import Error
 from glidar.campaign import files, loading, yaml_file as yf
 
 FOLDER = "bop"
-# What makes a model of a scene file an object of BOP, with what the scene file may leave out.
+# The keys of a scene file's model that identify an object of BOP, with their defaults.
 SHAPE = {"model": "", "unit": "", "up": "", "centre": "false", "size": "", "radius": "", "tube_radius": "",
          "scale": "1"}
-# Formats that declare unit and up axis themselves; in files of others, left out means metres.
+# Formats that declare unit and up axis. Files of other formats are in metres by default.
 DECLARING = (".dae", ".fbx", ".3mf", ".amf", ".gltf", ".glb")
 NUMBERS = ("size", "radius", "tube_radius", "scale")
 MM_PER_M = 1000.0
-DISTANCES = 1 << 22  # that are in memory together
+DISTANCES = 1 << 22  # maximum number of distances in memory
 
 
 def _shape(field):
-    """The values of SHAPE; two spellings of a path or of numbers are the same."""
+    """The values of the keys in SHAPE, normalised: different notations of a path or number are equal."""
     found = yf.entries(field)
-    shape = {key: _texts(found[key].node) if key in found else (usual,) for key, usual in SHAPE.items()}
+    shape = {key: _texts(found[key].node) if key in found else (default,) for key, default in SHAPE.items()}
     (model,) = shape.pop("model")
     if not model.lower().endswith(DECLARING) and shape["unit"] == ("",):
         shape["unit"] = ("m",)
@@ -38,24 +38,24 @@ def _shape(field):
 
 
 def _texts(node):
-    """The text of a plain value, or those of a list."""
+    """The text of a scalar, or the texts of a list."""
     values = node.value if isinstance(node.value, list) else [node]
     return tuple(str(one.value) for one in values)
 
 
 def _shapes(source):
-    """Of every model of a scene; of a scene that cannot be read none."""
-    if source.fault:
+    """The shapes of all models of a scene; empty when the scene cannot be read."""
+    if source.error:
         return []
     try:
         models = yf.entries(yf.parse(source.text, source.path)).get("models")
         return [_shape(item) for item in yf.items(models, 0)] if models else []
     except (Error, ValueError):
-        return []  # its trials fail and say why
+        return []  # its trials fail and report the error
 
 
 def object_ids(plan):
-    """{shape: id from 1}, in the order in which the scenes name them."""
+    """{shape: id from 1}, in the order in which the scenes list them."""
     ids = {}
     for source in plan.scenes:
         for shape in _shapes(source):
@@ -72,30 +72,29 @@ def ids_by_scene(plan):
 def _require_fixed_models(plan):
     for variation in plan.spec.vary:
         if variation.target.of == "scene" and variation.target.steps[-1] in SHAPE:
-            raise Error(f"{plan.spec.file}: vary.{variation.path}", "it changes the model, and the "
-                        "models of a BOP data set are fixed", "other keys", "leave out outputs.bop")
+            raise Error(f"{plan.spec.file}: vary.{variation.path}", "it changes the model, but the "
+                        "models of a BOP data set are fixed", "other keys", "remove the key or outputs.bop")
 
 
 def _camera(plan):
-    """camera.json: the first sensor that can be read. All that can be must be pinholes without
-    distortion."""
-    cameras, faults = [], []
-    for source in (s for s in plan.sensors if not s.fault):
+    """camera.json: the first readable sensor. All readable sensors must be pinhole cameras without distortion."""
+    cameras, errors = [], []
+    for source in (s for s in plan.sensors if not s.error):
         try:
             sensor = loading.load_sensor(source.text, source.path)
         except Error as error:
-            faults.append(error)  # its trials fail and say why
+            errors.append(error)  # its trials fail and report the error
             continue
         cameras.append((sensor, loading.intrinsics_of(sensor, source.name)))
     if not cameras:
-        raise faults[0]
+        raise errors[0]
     sensor, k = cameras[0]
     return {"cx": k[0, 2], "cy": k[1, 2], "fx": k[0, 0], "fy": k[1, 1], "height": sensor.rows,
             "width": sensor.cols, "depth_scale": plan.spec.outputs.bop.depth_scale_mm}
 
 
 def normals_of(vertices, triangles):
-    """Of each vertex, the sum of its triangles' normals, weighted by their angles (Thuermer and
+    """Vertex normals: sums of the triangles' normals, weighted by their angles (Thuermer and
     Wuethrich, "Computing vertex normals from polygonal facets", J. Graphics Tools 3, 1998)."""
     corners = vertices[triangles]
     face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
@@ -110,7 +109,7 @@ def normals_of(vertices, triangles):
 
 
 def diameter(points):
-    """The largest distance between two points: between two corners of their convex hull."""
+    """The maximum distance between two points, computed from the vertices of their convex hull."""
     from scipy.spatial import ConvexHull, QhullError
 
     if not np.ptp(points, axis=0).any():
@@ -118,17 +117,17 @@ def diameter(points):
     centred = points - points.mean(axis=0)
     axes = np.linalg.svd(np.cov(centred.T))[0]
     extent = np.ptp(centred @ axes, axis=0)
-    flat = centred @ axes[:, extent > 1e-9 * extent.max()]  # planes and lines have hulls of their own
+    flat = centred @ axes[:, extent > 1e-9 * extent.max()]  # points in a plane or line have a hull of lower dimension
     if flat.shape[1] < 2:
         return float(extent.max())
     try:
         return _farthest(flat[ConvexHull(flat).vertices])
-    except QhullError:  # the hull only saves time
+    except QhullError:  # the hull is only an optimisation
         return _farthest(flat)
 
 
 def _farthest(points):
-    """The largest distance between two of the points, with memory for some rows of distances."""
+    """The maximum distance between two of the points, in blocks of rows to limit memory."""
     from scipy.spatial.distance import cdist
 
     step = max(1, DISTANCES // len(points))
@@ -136,7 +135,7 @@ def _farthest(points):
 
 
 def ply_text(vertices_mm, normals, triangles):
-    """ASCII PLY as BOP has it."""
+    """ASCII PLY in BOP's format."""
     head = ["ply", "format ascii 1.0", f"element vertex {len(vertices_mm)}"]
     head += [f"property float {name}" for name in ("x", "y", "z", "nx", "ny", "nz")]
     head += [f"element face {len(triangles)}", "property list uchar int vertex_indices", "end_header"]
@@ -146,10 +145,10 @@ def ply_text(vertices_mm, normals, triangles):
 
 
 def info_of(vertices_mm):
-    least, most = vertices_mm.min(axis=0), vertices_mm.max(axis=0)
+    minimum, maximum = vertices_mm.min(axis=0), vertices_mm.max(axis=0)
     names = [f"{kind}_{axis}" for kind in ("min", "size") for axis in "xyz"]
     return {"diameter": diameter(vertices_mm),
-            **dict(zip(names, [float(a) for a in (*least, *(most - least))]))}
+            **dict(zip(names, [float(a) for a in (*minimum, *(maximum - minimum))]))}
 
 
 def _meshes(plan):
@@ -161,16 +160,16 @@ def _meshes(plan):
         try:
             scene = loading.load_scene(source.text, source.path)
         except Error:
-            continue  # its trials fail and say why
-        for place, object_id in enumerate(ids):
+            continue  # its trials fail and report the error
+        for index, object_id in enumerate(ids):
             if object_id not in done:
                 done.add(object_id)
-                placed = scene.objects[place]
-                yield object_id, placed.mesh.vertices * np.asarray(placed.scale) * MM_PER_M, placed.mesh.triangles
+                instance = scene.objects[index]
+                yield object_id, instance.mesh.vertices * np.asarray(instance.scale) * MM_PER_M, instance.mesh.triangles
 
 
 def _contents(plan):
-    """(name, bytes) of models, models_info.json and camera.json."""
+    """(name, bytes) of the models, models_info.json and camera.json."""
     _require_fixed_models(plan)
     camera, info = _camera(plan), {}
     for object_id, vertices_mm, triangles in _meshes(plan):
@@ -182,11 +181,11 @@ def _contents(plan):
 
 
 def write(plan, folder):
-    """Writes models, models_info.json and camera.json, and their receipt."""
+    """Writes the models, models_info.json and camera.json, and their receipt."""
     listed, written = {}, []
-    with folder.scratch() as scratch:
+    with folder.temp_folder() as temp:
         for name, data in _contents(plan):
-            written.append(files.prepare_bytes(scratch, folder.root / name, data))
+            written.append(files.prepare_bytes(temp, folder.root / name, data))
             listed[name] = [files.hash_bytes(data), len(data)]
-        files.publish_all(scratch, written)
-        files.write_json(scratch, folder.once("bop"), {"trials": 0, "failed": 0, "files": listed})
+        files.publish_all(temp, written)
+        files.write_json(temp, folder.once("bop"), {"trials": 0, "failed": 0, "files": listed})

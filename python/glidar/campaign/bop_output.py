@@ -3,9 +3,9 @@
 """BOP data sets, scene-wise (thodan/bop_toolkit, docs/bop_datasets_format.md): each shard is a BOP
 scene, each trial an image.
 
-What the toolkit's scripts estimate by rendering is known here: an object's visible pixels are those
-whose beam meets it first, its silhouette those that meet it when it is alone. As there, silhouettes are
-counted on a canvas of three times the width and height, so that truncated objects are told whole.
+Masks are exact, unlike those that the toolkit estimates by rendering: the visible pixels of an object are those
+whose beam hits it first, its silhouette those that hit it when it is rendered alone. As in the toolkit, silhouettes are
+counted on a canvas of three times the width and height, so that truncated objects are counted completely.
 """
 
 import json
@@ -17,14 +17,14 @@ from glidar import Error
 from glidar.campaign import bop_models
 
 FOLDER = "bop"
-MOST_STEPS = 65535  # of a depth image of 16 bits
+MAX_STEPS = 65535  # maximum value of a 16-bit depth image
 MM_PER_M = 1000.0
 NO_BOX = [-1, -1, -1, -1]
 
 
 def box_of(mask):
-    """x, y, width, height of the pixels that are set, as misc.calc_2d_bbox of the toolkit: width and
-    height are from the first to the last pixel."""
+    """x, y, width, height of the pixels that are set, like misc.calc_2d_bbox of the toolkit: width and
+    height are measured from the first to the last pixel."""
     ys, xs = np.nonzero(mask)
     if len(xs) == 0:
         return NO_BOX
@@ -32,7 +32,7 @@ def box_of(mask):
 
 
 def object_info(silhouette, visible, valid):
-    """An entry of scene_gt_info of the masks silhouette (3h x 3w), visible and valid depth (h x w)."""
+    """An entry of scene_gt_info from the masks silhouette (3h x 3w), visible and valid depth (h x w)."""
     rows, cols = visible.shape
     inside = silhouette[rows : 2 * rows, cols : 2 * cols]
     everywhere, seen = int(silhouette.sum()), int(visible.sum())
@@ -45,45 +45,45 @@ def object_info(silhouette, visible, valid):
             "bbox_obj": box, "bbox_visib": box_of(visible)}
 
 
-class Unfit(Error):
-    """A frame that BOP cannot hold: its trial fails."""
+class TrialError(Error):
+    """A frame that BOP cannot represent. Its trial fails."""
 
 
 def depth_steps(depth_m, scale_mm):
-    """The depth image: steps of scale_mm, 0 where there is no return."""
+    """The depth image in steps of scale_mm; 0 for no return."""
     steps = np.rint(np.nan_to_num(depth_m * (MM_PER_M / scale_mm)))
-    most = steps.max(initial=0.0)
-    if most > MOST_STEPS:
-        raise Error("outputs.bop.depth_scale_mm", f"a depth of {most * scale_mm / MM_PER_M:.6g} m does "
+    maximum = steps.max(initial=0.0)
+    if maximum > MAX_STEPS:
+        raise Error("outputs.bop.depth_scale_mm", f"a depth of {maximum * scale_mm / MM_PER_M:.6g} m does "
                     f"not fit in 16 bits in steps of {scale_mm:g} mm",
-                    f"at least {most * scale_mm / MOST_STEPS:.4g} mm",
-                    "where such trials matter, run the campaign anew with larger steps")
+                    f"at least {maximum * scale_mm / MAX_STEPS:.4g} mm",
+                    "if these trials matter, run a new campaign with larger steps")
     return steps.astype(np.uint16)
 
 
 def save_json(path, content):
-    """As the toolkit lays it out: one image a line."""
+    """Writes JSON in the toolkit's format: one image per line."""
     lines = ",\n".join(f'  "{key}": {json.dumps(content[key], sort_keys=True)}'
                        for key in sorted(content))
     path.write_text(f"{{\n{lines}\n}}\n", encoding="utf-8")
 
 
 class BopOutput:
-    def __init__(self, plan, scratch, shard):
+    def __init__(self, plan, temp, shard):
         self._options = plan.spec.outputs.bop
-        self._scratch = scratch
+        self._temp = temp
         self._folder = f"{FOLDER}/{self._options.split}/{shard:06}"
         self._first = plan.trials_of(shard)[0]
         self._ids = bop_models.ids_by_scene(plan)
         self._camera, self._truth, self._info, self._files = {}, {}, {}, []
 
     def add(self, row, trial, frame):
-        """Raises Unfit before anything of the frame is kept."""
+        """Raises TrialError before it stores anything of the frame."""
         try:
             depth = depth_steps(frame.depth_m, self._options.depth_scale_mm)
             intrinsics, silhouettes = frame.intrinsics, frame.silhouettes()
         except Error as error:
-            raise Unfit(*error.args) from None
+            raise TrialError(*error.args) from None
         image = trial - self._first
         camera_from_world = np.linalg.inv(frame.world_from_sensor)
         self._camera[image] = {"cam_K": intrinsics.ravel().tolist(),
@@ -112,14 +112,14 @@ class BopOutput:
     def _image(self, kind, name, pixels):
         if kind not in self._options.images:
             return
-        path = self._scratch.path(f"{name}.png")
+        path = self._temp.path(f"{name}.png")
         Image.fromarray(pixels).save(path, compress_level=1)
         self._files.append((f"{self._folder}/{kind}/{name}.png", path))
 
     def finish(self):
         for name, content in (("scene_camera", self._camera), ("scene_gt", self._truth),
                               ("scene_gt_info", self._info)):
-            path = self._scratch.path(f"{name}.json")
+            path = self._temp.path(f"{name}.json")
             save_json(path, content)
             self._files.append((f"{self._folder}/{name}.json", path))
         return self._files

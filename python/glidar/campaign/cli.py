@@ -9,15 +9,15 @@ import sys
 
 from glidar import Error
 from glidar._errors import excerpt
-from glidar.campaign.progress import tell_warnings
+from glidar.campaign.progress import print_warnings
 
 DONE, TRIALS_FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 CODES = ("Exit codes: 0 done, 1 done but trials failed or files differ, 2 bad input, "
-         "130 interrupted; run the same command again to go on.")
+         "130 interrupted; run the same command again to resume.")
 
 
 class Parser(argparse.ArgumentParser):
-    """Errors as glidar has them: one line, exit code 2."""
+    """Reports errors like glidar: one line, exit code 2."""
 
     def error(self, message):
         raise Error(self.prog, message, "", "see --help")
@@ -38,8 +38,8 @@ def _count(text):
 
 def _add_durable(command):
     command.add_argument("--durable", action=argparse.BooleanOptionalAction, default=True,
-                         help="sync files to the disk before a receipt lists them, so that a loss of power undoes "
-                              "nothing that is done")
+                         help="sync files to the disk before a receipt lists them, so that power loss does not "
+                              "damage completed shards (default: on)")
 
 
 def make_parser():
@@ -47,43 +47,43 @@ def make_parser():
                     allow_abbrev=False)
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND",
                                      parser_class=Parser)
-    run = commands.add_parser("run", help="measure all trials, or go on where a run stopped",
+    run = commands.add_parser("run", help="measure all missing trials",
                               epilog=CODES, allow_abbrev=False)
-    run.add_argument("campaign", metavar="CAMPAIGN.yaml", help="what to measure, see docs/campaigns.md")
+    run.add_argument("campaign", metavar="CAMPAIGN.yaml", help="the campaign file, see docs/campaigns.md")
     run.add_argument("-o", "--output", metavar="DIR", required=True, help="folder of the data set")
     run.add_argument("--workers", metavar="N", type=_count, default=0,
-                     help="processes on this machine (default: 1, and where scenes or sensors differ "
-                          "from trial to trial one per core)")
+                     help="processes on this machine (default: 1; one per core when scenes or sensors differ "
+                          "between trials)")
     run.add_argument("--shard", metavar="i/N", type=_part, default=(0, 1),
-                     help="measure only part i of N, counted from 0; merge them later")
+                     help="measure only part i of N, from 0; merge the parts later (default: 0/1)")
     run.add_argument("--executor", choices=["local", "dask", "slurm"], default="local",
-                     help="who measures: this machine, Dask's workers, or Slurm's job array")
-    run.add_argument("--scheduler", metavar="ADDR", help="of Dask, e.g. tcp://127.0.0.1:8786")
+                     help="where trials run: this machine, Dask workers, or a Slurm job array (default: local)")
+    run.add_argument("--scheduler", metavar="ADDR", help="address of the Dask scheduler, e.g. tcp://127.0.0.1:8786")
     run.add_argument("--tasks", metavar="N", type=_count, default=None,
                      help="tasks of the Slurm job array (default: 8)")
     run.add_argument("--sbatch", metavar="OPTION", action="append", default=[],
-                     help="a line for sbatch, e.g. --sbatch=--time=10:00; may be given again")
+                     help="an option for sbatch, e.g. --sbatch=--time=10:00; repeatable")
     run.add_argument("--wait", action="store_true", help="wait until Slurm has finished the campaign")
     _add_durable(run)
     run.add_argument("--quiet", action="store_true", help="no progress display")
-    merge = commands.add_parser("merge", help="finish a campaign that ran in parts", epilog=CODES,
+    merge = commands.add_parser("merge", help="combine and finish a campaign that ran in parts", epilog=CODES,
                                 allow_abbrev=False)
     merge.add_argument("parts", metavar="DIR", nargs="+", help="folders of the parts")
-    merge.add_argument("-o", "--output", metavar="DIR", help="folder of the whole (default: the first)")
+    merge.add_argument("-o", "--output", metavar="DIR", help="folder of the merged campaign (default: the first DIR)")
     _add_durable(merge)
     report = commands.add_parser("report", help="write report.html", epilog=CODES, allow_abbrev=False)
     report.add_argument("folder", metavar="DIR")
-    report.add_argument("-o", "--output", metavar="FILE", help="default: DIR/report.html")
+    report.add_argument("-o", "--output", metavar="FILE", help="the file to write (default: DIR/report.html)")
     check = commands.add_parser("check", help="compare every file with its hash in the manifest",
                                 epilog=CODES, allow_abbrev=False)
     check.add_argument("folder", metavar="DIR")
     return parser
 
 
-def _tell(outcome, root):
-    """The last line, and the exit code."""
+def _print_outcome(outcome, root):
+    """Prints the last line; returns the exit code."""
     if outcome.missing:
-        print(f"{root}: {outcome.missing} shards are still missing; run the other parts, then merge")
+        print(f"{root}: {outcome.missing} shards are missing; run the other parts, then merge")
         return BAD_INPUT
     rate = f", {outcome.rate:.4g} trials/s" if outcome.rate else ""
     kind = "" if outcome.whole else " of this part"
@@ -91,13 +91,13 @@ def _tell(outcome, root):
     if outcome.failed:
         print(f"glidar: warning: trials failed, {outcome.error}", file=sys.stderr)
         if outcome.whole:
-            print(f"glidar: warning: 'error' in index.parquet has the rest, and so has glidar campaign report {root}",
+            print(f"glidar: warning: 'error' in index.parquet of all failed trials is listed there, and by glidar campaign report {root}",
                   file=sys.stderr)
     return TRIALS_FAILED if outcome.failed else DONE
 
 
 def _executor(flags):
-    """What runs the shards; None: this machine."""
+    """The function that runs the shards; None: this machine."""
     if flags.scheduler and flags.executor != "dask":
         raise Error("--scheduler", "given without --executor dask", "", "")
     if (flags.tasks or flags.sbatch or flags.wait) and flags.executor != "slurm":
@@ -116,17 +116,17 @@ def _run(flags):
         from glidar.campaign import slurm_executor
 
         outcome = slurm_executor.submit(flags)
-        return DONE if outcome is None else _tell(outcome, flags.output)
-    outcome = running.run(flags.campaign, flags.output, running.Part(*flags.shard), flags.workers,
+        return DONE if outcome is None else _print_outcome(outcome, flags.output)
+    outcome = running.run(flags.campaign, flags.output, running.ShardSubset(*flags.shard), flags.workers,
                           _executor(flags), flags.quiet, durable=flags.durable)
-    return _tell(outcome, flags.output)
+    return _print_outcome(outcome, flags.output)
 
 
 def _merge(flags):
     from glidar.campaign import run as running
 
     root = flags.output or flags.parts[0]
-    return _tell(running.merge(flags.parts, root, flags.durable), root)
+    return _print_outcome(running.merge(flags.parts, root, flags.durable), root)
 
 
 def _report(flags):
@@ -141,8 +141,8 @@ def _check(flags):
 
     count, wrong = running.check(flags.folder)
     for name in wrong:
-        print(f"{flags.folder}/{name}: missing, or not what the manifest says")
-    print(f"{flags.folder}: {count - len(wrong)} of {count} files as the manifest says")
+        print(f"{flags.folder}/{name}: missing or different from the manifest")
+    print(f"{flags.folder}: {count - len(wrong)} of {count} files match the manifest")
     return TRIALS_FAILED if wrong else DONE
 
 
@@ -153,15 +153,15 @@ def _fail(text):
 
 def main(arguments=None):
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    tell_warnings()
+    print_warnings()
     try:
         flags = make_parser().parse_args(arguments)
         return {"run": _run, "merge": _merge, "report": _report, "check": _check}[flags.command](flags)
     except Error as error:
         return _fail(error)
     except ModuleNotFoundError as error:
-        return _fail(f"Python package '{error.name}' is missing; install the extra of campaigns: "
+        return _fail(f"Python package '{error.name}' is missing; install the dependencies of campaigns: "
                      "pip install '.[campaign]' in GLIDAR's source")
     except KeyboardInterrupt:
-        print("\nglidar: interrupted; the same command goes on where it stopped", file=sys.stderr)
+        print("\nglidar: interrupted; run the same command again to resume", file=sys.stderr)
         return INTERRUPTED

@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""One file a trial: PCD and PLY clouds, and KITTI's folder of scans, labels and calibrations."""
+"""One file per trial: PCD and PLY clouds, and KITTI folders of scans, labels and calibrations."""
 
 KITTI_FOLDER = "kitti"
 
 
 class CloudOutput:
-    """Clouds as `glidar render` writes them, without sidecars: the index tells what they say."""
+    """Clouds like those of `glidar render`, without sidecars, because the index has their contents."""
 
-    def __init__(self, folder, suffix, options, scratch):
-        self._folder, self._suffix, self._scratch = folder, suffix, scratch
+    def __init__(self, folder, suffix, options, temp):
+        self._folder, self._suffix, self._temp = folder, suffix, temp
         self._every = options.every
         self._columns = options.columns
         self._files = []
@@ -18,7 +18,7 @@ class CloudOutput:
         if trial % self._every:
             return
         name = f"{trial:09}{self._suffix}"
-        path = self._scratch.path(name)
+        path = self._temp.path(name)
         frame.save(path, self._columns)
         self._files.append((f"{self._folder}/{name}", path))
 
@@ -27,14 +27,14 @@ class CloudOutput:
 
 
 class KittiOutput:
-    """KITTI's folder as `glidar render -o OUT.kitti` writes it, a file of each kind for each trial."""
+    """A KITTI folder like `glidar render -o OUT.kitti` writes, with a file of each type for each trial."""
 
-    def __init__(self, scratch):
-        self._scratch = scratch
+    def __init__(self, temp):
+        self._temp = temp
         self._files = []
 
     def add(self, row, trial, frame):
-        folder = self._scratch.path(f"{trial:09}.kitti")
+        folder = self._temp.path(f"{trial:09}.kitti")
         frame.save(folder, None)
         for path in sorted(folder.glob("*/*")):
             name = f"{KITTI_FOLDER}/{path.parent.name}/{trial:09}{path.suffix}"

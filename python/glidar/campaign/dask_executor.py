@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Shards on Dask's workers, which see the campaign's folder under the same path.
+"""Runs shards on Dask workers, which access the campaign's folder by the same path.
 
-A worker may die: Dask gives its task to another, and shards with a receipt are passed over.
+When a worker dies, Dask passes its task to another one, which skips shards that have a receipt.
 """
 
 import dataclasses
@@ -10,30 +10,30 @@ import dataclasses
 from glidar import Error
 from glidar.campaign import folder as folders, work as works
 
-TASKS_PER_WORKER = 4  # so that the last ones end together
+TASKS_PER_WORKER = 4  # so that all workers finish at about the same time
 CONNECT_S = 10
 
 
 def run_shards(plan, folder, shards):
-    """The task of one thread of a worker: what each of the shards came to."""
+    """The task of one thread of a worker; returns the results of its shards."""
     done = []
     works.work(plan, folder, folders.missing(folder, shards), 1, done.append)
     known = {d.shard: d for d in done}
-    return [known.get(shard) or works.recall(folder, shard) for shard in shards]
+    return [known.get(shard) or works.result_of(folder, shard) for shard in shards]
 
 
 def _tasks(shards, count):
-    """Runs of shards of much the same length."""
+    """Consecutive shards, divided into tasks of similar length."""
     length = max(1, len(shards) // max(1, count))
     return [shards[i : i + length] for i in range(0, len(shards), length)]
 
 
 def dask_executor(address):
-    """Runs shards on the workers of the scheduler at this address."""
+    """An executor for the workers of the scheduler at this address."""
     from distributed import CancelledError, Client, KilledWorker, as_completed
 
     if not address:
-        raise Error("--executor dask", "no scheduler is named", "", "give --scheduler tcp://HOST:8786")
+        raise Error("--executor dask", "no scheduler is given", "", "add --scheduler tcp://HOST:8786")
 
     def execute(plan, folder, shards, report):
         try:
@@ -51,7 +51,7 @@ def dask_executor(address):
                     for done in future.result():
                         report(done)
             except (KilledWorker, CancelledError) as error:
-                raise Error("--executor dask", f"workers or scheduler were lost ({error})", "",
-                            "run the same command again: it goes on where it stopped") from None
+                raise Error("--executor dask", f"the connection to workers or scheduler was lost ({error})", "",
+                            "run the same command again to resume") from None
 
     return execute

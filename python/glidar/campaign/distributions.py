@@ -2,9 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Distributions of single numbers and choices.
 
-A distribution takes `dims` numbers that are uniform between 0 and 1, or counts through `cells` values,
-and makes its own of them by its inverse distribution function. So random numbers, Sobol's sequence and
-Latin hypercubes serve all of them alike.
+A distribution transforms `dims` numbers that are uniform between 0 and 1 by its inverse distribution function, or
+enumerates `cells` values. Hence random numbers, Sobol sequences and Latin hypercubes all work with every distribution.
 """
 
 from dataclasses import dataclass
@@ -48,7 +47,7 @@ class LogUniform:
 
 @dataclass(frozen=True)
 class Normal:
-    """A normal distribution, cut off at least and most: its inverse between the ends' probabilities."""
+    """A normal distribution, truncated to [least, most]: its inverse between the probabilities of the bounds."""
 
     mean: float
     sigma: float
@@ -58,34 +57,34 @@ class Normal:
     cells = 1
 
     def sample(self, u, cell):
-        from scipy.special import ndtr, ndtri  # not at the top: it takes a while to load
-        # Probabilities near 1 have few digits: above the mean it is drawn as the mirrored lower tail.
+        from scipy.special import ndtr, ndtri  # imported here because it loads slowly
+        # Probabilities near 1 have low resolution: above the mean, sample the mirrored lower tail.
         sigma = -self.sigma if self.least > self.mean else self.sigma
         begin, end = (ndtr((x - self.mean) / sigma) for x in (self.least, self.most))
-        drawn = self.mean + sigma * ndtri(begin + (end - begin) * u[:, 0])
-        return np.clip(drawn, self.least, self.most)
+        sample = self.mean + sigma * ndtri(begin + (end - begin) * u[:, 0])
+        return np.clip(sample, self.least, self.most)
 
 
 @dataclass(frozen=True)
 class Choice:
-    """One of the values, by weights that add up to 1."""
+    """One of the values, with weights that add up to 1."""
 
     values: tuple
     weights: tuple
     dims = 1
     cells = 1
 
-    def places(self, u, cell):
+    def indices(self, u, cell):
         edges = np.cumsum(self.weights)[:-1]
         return np.searchsorted(edges, u[:, 0], side="right")
 
     def sample(self, u, cell):
-        return np.asarray(self.values)[self.places(u, cell)]
+        return np.asarray(self.values)[self.indices(u, cell)]
 
 
 @dataclass(frozen=True)
 class Grid:
-    """One value after the other."""
+    """The values one after the other."""
 
     values: tuple
     dims = 0
@@ -94,11 +93,11 @@ class Grid:
     def cells(self):
         return len(self.values)
 
-    def places(self, u, cell):
+    def indices(self, u, cell):
         return np.asarray(cell, np.int64)
 
     def sample(self, u, cell):
-        return np.asarray(self.values)[self.places(u, cell)]
+        return np.asarray(self.values)[self.indices(u, cell)]
 
 
 KINDS = ["uniform", "log_uniform", "normal", "choice", "grid"]
@@ -126,7 +125,7 @@ def read_choice(field, read):
     if "weights" in found:
         weights = np.array(yf.numbers(found["weights"], len(values), yf.FROM_ZERO))
         if not weights.sum() > 0:
-            yf.reject(found["weights"], "no weight is above 0", "weights of which one is above 0")
+            yf.reject(found["weights"], "all weights are 0", "at least one weight above 0")
     return Choice(values, tuple(weights / weights.sum()))
 
 
@@ -141,7 +140,7 @@ def read_grid(field, rule):
 
 
 def read_distribution(field, rule=yf.ANY):
-    """A number, or a map that says how numbers are spread; all must obey the rule."""
+    """A number, or a map that describes a distribution; all its values must satisfy the rule."""
     if yf.is_number(field.node):
         return Constant(yf.number(field, rule))
     if not isinstance(field.node, yf.yaml.MappingNode):

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Files that a loss of power does not undo: their data is on the disk before they get their names, and the names are
-on it before anything else lists them."""
+"""Files that survive power loss: their data is synced before they get their names, and the names are synced before
+another file lists them."""
 
 import errno
 import os
@@ -10,16 +10,16 @@ from pathlib import Path
 
 from glidar import Error
 
-THREADS = 8  # journals commit in one step what several threads wait for
-FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
-#: POSIX lets a file system refuse to sync a folder (EINVAL); FUSE and network file systems do (ENOTSUP). Their names
-#: last as far as they promise it themselves.
-NO_FOLDERS = {errno.EINVAL, errno.ENOTSUP}
+THREADS = 8  # a journal commits the syncs of several threads together
+NO_SPACE = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
+#: POSIX lets a file system reject the sync of a folder (EINVAL); FUSE and network file systems do (ENOTSUP). The
+#: durability of their names depends on the file system.
+FOLDER_SYNC_UNSUPPORTED = {errno.EINVAL, errno.ENOTSUP}
 
 
 def _failure(path, error):
-    remedy = ("make room and run the same command again: it goes on where it stopped" if error.errno in FULL else
-              "check the disk and run the same command again: it goes on where it stopped; --no-durable does not sync")
+    remedy = ("make room and run the same command again to resume" if error.errno in NO_SPACE else
+              "check the disk and run the same command again to resume; --no-durable does not sync")
     return Error(str(path), f"it cannot be synced to the disk: {error.strerror}", "", remedy)
 
 
@@ -38,63 +38,63 @@ def _sync(path, flags, accepted):
 
 
 def sync_file(path):
-    """Waits until a file's data is on the disk. Linux reports writes that failed before it was opened here too."""
+    """Waits until a file's data is on the disk. On Linux it also reports writes that failed before the file was opened."""
     _sync(path, 0, ())
 
 
 def sync_folder(path):
     """Waits until the names in a folder are on the disk."""
-    _sync(path, os.O_DIRECTORY, NO_FOLDERS)
+    _sync(path, os.O_DIRECTORY, FOLDER_SYNC_UNSUPPORTED)
 
 
-def _each(function, paths):
+def _for_each(function, paths):
     if len(paths) < 2:
         for path in paths:
             function(path)
         return
     with ThreadPoolExecutor(min(THREADS, len(paths))) as threads:
-        list(threads.map(function, paths))  # raises what they raise
+        list(threads.map(function, paths))  # raises their exceptions
 
 
 def sync_files(paths):
-    _each(sync_file, list(paths))
+    _for_each(sync_file, list(paths))
 
 
 class Folders:
-    """Folders within a root, which may be new: makes them, and syncs the names in them and their own."""
+    """Syncs the names in folders below a root, and the names of the folders themselves, which may be new."""
 
     def __init__(self, root):
         self._root = Path(os.path.abspath(root))
-        self._made = []  # the root and folders above it that are new
-        self._named = set()  # folders whose own names are on the disk
+        self._new_folders = []  # the root and its parents that are new
+        self._synced = set()  # folders whose own names are on the disk
 
-    def note_new(self):
-        """Before the root is made: notes which folders above it are made with it."""
-        if not self._made:
-            self._made = [path for path in (self._root, *self._root.parents) if not path.exists()]
+    def record_new_folders(self):
+        """Records, before the root is created, which of its parents will be created with it."""
+        if not self._new_folders:
+            self._new_folders = [path for path in (self._root, *self._root.parents) if not path.exists()]
 
     def sync(self, folders):
-        """Syncs the names in folders; once for each folder that this process writes to also its own, which another
-        process may have made and not synced."""
+        """Syncs the names in folders. The first sync of a folder by this process also syncs the folder's own name,
+        because another process may have created it without a sync."""
         folders = {Path(os.path.abspath(folder)) for folder in folders}
-        above = {path for folder in folders for path in self._unnamed(folder)}
-        if self._root not in self._named:
+        above = {path for folder in folders for path in self._unsynced(folder)}
+        if self._root not in self._synced:
             self._sync_root()
-        _each(sync_folder, sorted(folders | {path.parent for path in above}))
-        self._named |= above
+        _for_each(sync_folder, sorted(folders | {path.parent for path in above}))
+        self._synced |= above
 
-    def _unnamed(self, folder):
-        """A folder and those above it up to the root whose names are not known to be on the disk."""
+    def _unsynced(self, folder):
+        """A folder and its parents up to the root whose names are not known to be on the disk."""
         while folder != self._root and folder != folder.parent:
-            if folder not in self._named:
+            if folder not in self._synced:
                 yield folder
             folder = folder.parent
 
     def _sync_root(self):
-        for path in self._made:
+        for path in self._new_folders:
             sync_folder(path.parent)
-        # a root that was there may be new all the same, of a run that was killed; a folder above it that this user
-        # must not read is of others, and so was there for longer
-        if not self._made and os.access(self._root.parent, os.R_OK):
+        # An existing root may still be unsynced, from a run that was killed. A parent that this user cannot read
+        # belongs to others and so has existed for longer.
+        if not self._new_folders and os.access(self._root.parent, os.R_OK):
             sync_folder(self._root.parent)
-        self._named.add(self._root)
+        self._synced.add(self._root)

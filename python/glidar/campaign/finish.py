@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What is made once all shards are done: the index, trajectories, and the manifest."""
+"""Writes the files of a complete campaign: index, trajectories and manifest."""
 
 import importlib.metadata
 import json
@@ -30,7 +30,7 @@ def _poses(table):
 
 
 def _tum_lines(table):
-    """t x y z qx qy qz qw; the time is the trial's number in seconds."""
+    """Lines of t x y z qx qy qz qw; the time is the trial's number in seconds."""
     position, q = _poses(table)
     for trial, p, (w, x, y, z) in zip(table["trial"].to_pylist(), position, q):
         yield f"{trial} " + " ".join(repr(float(a)) for a in (*p, x, y, z, w)) + "\n"
@@ -44,39 +44,39 @@ def _kitti_lines(table):
         yield " ".join(repr(float(a)) for a in row) + "\n"
 
 
-def _write_lines(folder, scratch, name, lines_of):
-    path = scratch.path(name.replace("/", "-"))
+def _write_lines(folder, temp, name, lines_of):
+    path = temp.path(name.replace("/", "-"))
     try:
         with open(path, "w", encoding="utf-8") as file:
             for table in index.batches(folder.root / index.INDEX_FILE, ["trial", *index.POSE]):
                 file.writelines(lines_of(table))
     except OSError as error:
         raise files.write_error(folder.root / name, error) from None
-    files.publish(scratch, path, folder.root / name)
+    files.publish(temp, path, folder.root / name)
     return name
 
 
-def _write_index(folder, scratch, shards):
-    path = scratch.path(index.INDEX_FILE)
+def _write_index(folder, temp, shards):
+    path = temp.path(index.INDEX_FILE)
     try:
         index.join((folder.part(shard) for shard in range(shards)), path)
     except OSError as error:
         raise files.write_error(folder.root / index.INDEX_FILE, error) from None
-    files.publish(scratch, path, folder.root / index.INDEX_FILE)
+    files.publish(temp, path, folder.root / index.INDEX_FILE)
     return index.INDEX_FILE
 
 
 def _receipts(folder, described):
-    """Every receipt: the shards' in order, then those of what is there once."""
+    """All receipts: those of the shards in order, then those of files that are written once."""
     for shard in range(described["shards"]):
         yield records.read_receipt(folder.receipt(shard), described)
     for path in folder.extras():
         yield records.read_receipt(path, described)
 
 
-def _write_manifest(folder, scratch, described, once):
-    """Written line by line, since it has one for every file of the campaign."""
-    path = scratch.path(MANIFEST_FILE)
+def _write_manifest(folder, temp, described, once):
+    """Writes the manifest line by line, because it lists every file of the campaign."""
+    path = temp.path(MANIFEST_FILE)
     trials = failed = 0
     head = {"campaign": described["hash"], "plan": described["plan"], "versions": versions()}
     try:
@@ -99,19 +99,19 @@ def _write_manifest(folder, scratch, described, once):
             file.write(rest.lstrip("{\n"))
     except OSError as error:
         raise files.write_error(folder.root / MANIFEST_FILE, error) from None
-    files.publish(scratch, path, folder.root / MANIFEST_FILE)
+    files.publish(temp, path, folder.root / MANIFEST_FILE)
     return trials, failed
 
 
 def finish(folder, described):
-    """Index, trajectories and manifest of a campaign whose shards are all done; returns (trials,
+    """Writes index, trajectories and manifest of a campaign whose shards are all complete; returns (trials,
     failed)."""
-    with folder.scratch() as scratch:
-        scratch.sync_folders([folder.receipt(0).parent])  # a run may have been killed between a receipt and that
-        once = [_write_index(folder, scratch, described["shards"])]
+    with folder.temp_folder() as temp:
+        temp.sync_folders([folder.receipt(0).parent])  # a killed run may have written a receipt without this sync
+        once = [_write_index(folder, temp, described["shards"])]
         outputs = described["plan"]["campaign"]["outputs"]
         if outputs["tum"]:
-            once.append(_write_lines(folder, scratch, "trajectory.tum", _tum_lines))
+            once.append(_write_lines(folder, temp, "trajectory.tum", _tum_lines))
         if outputs["kitti"]:
-            once.append(_write_lines(folder, scratch, "kitti/poses.txt", _kitti_lines))
-        return _write_manifest(folder, scratch, described, once)
+            once.append(_write_lines(folder, temp, "kitti/poses.txt", _kitti_lines))
+        return _write_manifest(folder, temp, described, once)

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The campaign folder: where everything lies, and which shards are done.
+"""The campaign folder: its files, and which shards are complete.
 
-    campaign.json        what the campaign is; the folder belongs to it
-    receipts/000003.json a shard that is done: its files with their hashes; written last
-    parts/000003.parquet its rows of the index
+    campaign.json        the plan of the campaign that the folder belongs to
+    receipts/000003.json a completed shard: its files with their hashes; written last
+    parts/000003.parquet the shard's rows of the index
     log/*.jsonl          speeds and machines: the only files that differ from run to run
 """
 
@@ -22,13 +22,13 @@ from glidar.campaign.plan import PLAN_FILE, identity
 
 
 @dataclass(frozen=True)
-class Folder:
+class CampaignFolder:
     root: Path
-    durable: bool = False  # what is written survives a loss of power
+    durable: bool = False  # files survive power loss
 
-    def scratch(self):
-        """A folder for what is being written; a context."""
-        return files.scratch(self.root, self.durable)
+    def temp_folder(self):
+        """A temporary folder for files that are being written; a context manager."""
+        return files.temp_folder(self.root, self.durable)
 
     def plan_file(self):
         return self.root / PLAN_FILE
@@ -40,7 +40,7 @@ class Folder:
         return self.root / "parts" / f"{shard:06}.parquet"
 
     def extras(self):
-        """Receipts of what is written once for the whole campaign."""
+        """Receipts of files that are written once for the whole campaign."""
         return sorted((self.root / "receipts").glob("once-*.json"))
 
     def once(self, name):
@@ -51,32 +51,32 @@ class Folder:
 
 
 def describe(plan):
-    """What campaign.json holds: enough to finish, merge and report without the campaign's inputs."""
+    """The content of campaign.json: enough to finish, merge and report without the campaign's inputs."""
     return {"hash": plan.hash(), "trials": plan.spec.trials, "shards": plan.shards,
             "shard_trials": plan.shard_trials, "one_shape": plan.one_shape, "plan": plan.record()}
 
 
-def claim(folder, plan):
-    """Makes the folder the campaign's own, or checks that it is; returns whether it was not before."""
+def create_or_check(folder, plan):
+    """Creates the folder of a campaign, or checks that it belongs to it; returns whether it is new."""
     wanted = describe(plan)
     if folder.plan_file().exists():
         require_same(folder.root, records.read_campaign(folder.plan_file()), wanted)
         return False
     require_empty(folder.root)
-    with folder.scratch() as scratch:
-        files.write_json(scratch, folder.plan_file(), wanted)
+    with folder.temp_folder() as temp:
+        files.write_json(temp, folder.plan_file(), wanted)
     return True
 
 
 def require_empty(root):
-    """Throws Error where a folder holds anything but what is half written."""
+    """Raises Error when a folder contains anything but temporary files."""
     if root.is_dir() and any(path.name != "tmp" for path in root.iterdir()):
-        raise Error(str(root), "the folder is not empty and holds no campaign",
+        raise Error(str(root), "the folder is not empty and contains no campaign",
                     "a new folder, or that of this campaign", "choose another with -o")
 
 
-def release(folder):
-    """Gives a folder up in which nothing was measured."""
+def remove_unused(folder):
+    """Removes a folder in which nothing was measured."""
     try:
         names = {path.name for path in folder.root.iterdir()}
         if not names <= {PLAN_FILE, "log"} or (folder.root / "log").is_dir() and any(
@@ -87,36 +87,36 @@ def release(folder):
             if path.is_dir():
                 path.rmdir()
     except OSError:
-        pass  # another writes there, whose folder it then is
+        pass  # another process has started to write there
 
 
 def require_same(root, held, wanted, allowed="a new folder, or that of this campaign",
                  remedy="choose another with -o"):
-    """Throws Error where two campaign.json are of different campaigns, with what differs."""
+    """Raises Error with the first difference when two campaign.json describe different campaigns."""
     if held["hash"] != wanted["hash"]:
-        told = difference(identity(held["plan"]), identity(wanted["plan"]))
-        raise Error(str(root), f"it holds another campaign: {told}", allowed, remedy)
+        found = difference(identity(held["plan"]), identity(wanted["plan"]))
+        raise Error(str(root), f"it contains another campaign: {found}", allowed, remedy)
 
 
-def _words(value):
-    return "not there" if value is None else json.dumps(value)[:80]
+def _json_text(value):
+    return "missing" if value is None else json.dumps(value)[:80]
 
 
-def _element_name(path, place, old, new):
-    """Scenes and sensors go by their names."""
+def _element_name(path, index, old, new):
+    """Scenes and sensors are identified by their names."""
     named = isinstance(old, dict) and isinstance(new, dict) and "name" in old and old["name"] == new.get("name")
-    return f"{path}[{old['name'] if named else place}]"
+    return f"{path}[{old['name'] if named else index}]"
 
 
 def difference(old, new, path=""):
-    """The first thing in which two plans differ, in words."""
+    """The first difference between two plans, in values."""
     if isinstance(old, dict) and isinstance(new, dict):
         pairs = [(f"{path}.{key}".strip("."), old.get(key), new.get(key))
                  for key in sorted(old.keys() | new.keys())]
     elif isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
         pairs = [(_element_name(path, i, a, b), a, b) for i, (a, b) in enumerate(zip(old, new))]
     else:
-        return f"{path} was {_words(old)}, is {_words(new)}"
+        return f"{path} was {_json_text(old)}, is {_json_text(new)}"
     for name, a, b in pairs:
         if a != b:
             return difference(a, b, name)
@@ -124,15 +124,15 @@ def difference(old, new, path=""):
 
 
 def opened(root):
-    """A campaign's folder and its campaign.json."""
-    folder = Folder(Path(path_of(root, "folder")))
+    """A campaign's folder and the content of its campaign.json."""
+    folder = CampaignFolder(Path(path_of(root, "folder")))
     if not folder.plan_file().is_file():
-        raise Error(str(root), "it holds no campaign", "a folder that glidar campaign run wrote", "")
+        raise Error(str(root), "it contains no campaign", "a folder that glidar campaign run wrote", "")
     return folder, records.read_campaign(folder.plan_file())
 
 
 def is_done(folder, shard, described):
-    """Whether a shard has its receipt, and its files as long as the receipt says; `described`: campaign.json."""
+    """Whether a shard has its receipt, and its files have the sizes in it; `described`: campaign.json."""
     path = folder.receipt(shard)
     if not path.is_file():
         return False
@@ -146,30 +146,30 @@ def is_done(folder, shard, described):
 
 
 def missing(folder, shards):
-    """Those of the shards that are not done."""
+    """The shards that are not complete."""
     described = records.read_campaign(folder.plan_file())
     return [shard for shard in shards if not is_done(folder, shard, described)]
 
 
 def count_missing(folder, described):
-    """How many shards are not done: found by the receipts that are there, however many shards there should be."""
+    """The number of incomplete shards. It depends on the existing receipts only, not on the number of shards."""
     shards = {names.receipt_shard(path) for path in records.receipts_in(folder.root)} - {None}
     return described["shards"] - sum(shard < described["shards"] and is_done(folder, shard, described)
                                      for shard in shards)
 
 
-def note(folder, **words):
-    """A line for the log; a full disk there does no harm."""
+def append_log(folder, **values):
+    """Appends a line to the log; a full disk is ignored there."""
     try:
         folder.log().parent.mkdir(parents=True, exist_ok=True)
         with open(folder.log(), "a", encoding="utf-8") as file:
-            file.write(json.dumps({"time_s": round(time.time(), 3), **words}) + "\n")
+            file.write(json.dumps({"time_s": round(time.time(), 3), **values}) + "\n")
     except OSError:
         pass
 
 
 def wrong_files(root, listed):
-    """The names of files that are missing or not what a receipt or manifest says: {name: (hash, size)}."""
+    """Names of files that are missing or differ from a receipt or manifest: {name: (hash, size)}."""
     for name, (digest, size) in listed.items():
         path = Path(root) / name
         if not path.is_file() or path.stat().st_size != size or files.hash_file(path) != digest:

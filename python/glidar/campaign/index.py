@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The index: one row a trial, as Parquet."""
+"""The index: one row per trial, as Parquet."""
 
 from collections import Counter
 
@@ -13,18 +13,18 @@ from glidar.campaign import files, rotations
 INDEX_FILE = "index.parquet"
 FACTS = ["beams", "hits", "range_min_m", "range_max_m", "intensity_mean"]
 POSE = ["x_m", "y_m", "z_m", "qw", "qx", "qy", "qz"]
-HIT = 0  # of the column status
+HIT = 0  # value in the column status
 NO_BEAM = 4
 
 
 def facts_of(frame):
-    """The frame in a few numbers, in the order of FACTS; NaN where nothing was hit."""
+    """Summary values of a frame, in the order of FACTS; NaN without hits."""
     status, range_m, intensity = frame.status, frame.range_m, frame.intensity
     hits = int(np.count_nonzero(status == HIT))
     beams = status.size - int(np.count_nonzero(status == NO_BEAM))
     if hits == 0:
         return beams, 0, np.nan, np.nan, np.nan
-    # fmin and fmax pass over NaN, which range has where there is no hit
+    # fmin and fmax skip NaN, the range of beams without a return
     return (beams, hits, np.fmin.reduce(range_m, axis=None), np.fmax.reduce(range_m, axis=None),
             float(intensity.sum(dtype=np.float64)) / hits)
 
@@ -47,7 +47,7 @@ def _pose_columns(poses, prefix=""):
 
 
 def rows(plan, shard, trials, errors, facts):
-    """The shard's part of the index as a table."""
+    """The shard's rows of the index as a table."""
     import pyarrow as pa
 
     count = len(trials)
@@ -77,7 +77,7 @@ def write_part(path, table):
 
 
 def join(parts, path):
-    """One file of all parts, in their order, with the memory of one."""
+    """Concatenates all parts in order, with only one part in memory."""
     import pyarrow.parquet as pq
 
     writer = None
@@ -85,8 +85,8 @@ def join(parts, path):
         for part in parts:
             table = read(part)
             if writer and table.schema != writer.schema:
-                raise Error(str(part), "its columns are not those of the other parts", "parts of one campaign",
-                            "remove its receipt and run that part again")
+                raise Error(str(part), "its columns differ from those of the other parts", "parts of one campaign",
+                            "remove its receipt and run the part again")
             writer = writer or pq.ParquetWriter(path, table.schema, compression="zstd")
             writer.write_table(table)
     finally:
@@ -95,7 +95,7 @@ def join(parts, path):
 
 
 def count_errors(parts):
-    """How often each error text stands in parts of the index."""
+    """How often each error text occurs in parts of the index."""
     counts = Counter()
     for part in parts:
         counts.update(text for text in read(part)["error"].to_pylist() if text)
@@ -103,7 +103,7 @@ def count_errors(parts):
 
 
 def batches(path, columns=None):
-    """The index piece by piece, each a table."""
+    """The index in batches, each a table."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -113,20 +113,20 @@ def batches(path, columns=None):
 
 
 def _native(opened):
-    """The same file for Arrow alone. Its threads hold what they read from a little longer; were it a file of Python,
-    a thread that lets go of it while Python ends would abort the program (apache/arrow issue 34314)."""
+    """The same file for Arrow alone. Arrow's threads keep their source a little longer. With a Python file object, a
+    thread that releases it while Python exits would abort the program (apache/arrow issue 34314)."""
     import pyarrow as pa
 
     return pa.OSFile(f"/proc/self/fd/{opened.fileno()}")
 
 
 def _no_index(path, what):
-    return Error(str(path), f"it is no index of trials: {excerpt(what)}", "a file that glidar campaign wrote",
+    return Error(str(path), f"it is not an index of trials: {excerpt(what)}", "a file that glidar campaign wrote",
                  "glidar campaign check lists the files that differ")
 
 
 def read(path):
-    """An index or a part of one, with the columns that all have."""
+    """An index or a part of one, after checking the columns that all of them have."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scene and sensor files with all that is read with them: what it held when the campaign was planned, and
-whether it still does when trials measure it."""
+"""Scene and sensor files with all files that they read: their contents when the campaign was planned, and whether these
+are unchanged when trials measure."""
 
 import functools
 import os
@@ -14,38 +14,38 @@ from glidar import Error
 from glidar.campaign import files, loading, variants, yaml_file as yf
 
 
-class Changed(Error):
-    """A file is not what the campaign was planned with; this ends the run, and does not only fail a trial."""
+class InputChanged(Error):
+    """A file differs from the planned one. This ends the run, instead of failing one trial."""
 
 
 @dataclass(frozen=True)
-class Read:
+class InputFile:
     """A file that is read with a scene or sensor file."""
 
-    name: str  # from that file's folder; if that file names it, as it does
+    name: str  # relative to that file's folder; as written there if it is named there
     path: Path
-    hash: str | None  # SHA-256; None: it is not there
-    is_part: bool  # of a model that is named
+    hash: str | None  # SHA-256; None: it does not exist
+    is_part: bool  # read by a model that is named, such as a texture
 
 
 @dataclass(frozen=True)
 class Input:
-    """A scene or sensor file: its text once read, or the fault that it has."""
+    """A scene or sensor file: its text, or the error when it was read."""
 
-    name: str  # as the campaign file spells it
+    name: str  # as in the campaign file
     path: Path
     text: str = ""
-    fault: str = ""  # why its trials fail; empty: nothing is known to be wrong
-    files: tuple = ()  # of Read
-    all_known: bool = False  # what it reads is in `files`, and nothing else
+    error: str = ""  # why its trials fail; empty: no error is known
+    files: tuple = ()  # of InputFile
+    all_known: bool = False  # whether `files` lists everything that it reads
 
     def record(self):
-        """What makes it what it is, as JSON."""
+        """What identifies it, as JSON."""
         def hashes(are_parts):
             return {f.name: f.hash for f in self.files if f.hash and f.is_part == are_parts}
 
         return {"name": self.name, "sha256": files.hash_bytes(self.text.encode()),
-                "fault": bool(self.fault), "files": hashes(False), "parts": hashes(True)}
+                "unreadable": bool(self.error), "files": hashes(False), "parts": hashes(True)}
 
 
 @functools.lru_cache(maxsize=1 << 12)
@@ -54,7 +54,7 @@ def _hash_of(path, state):
 
 
 def _hash(path):
-    """Of a file, which is read again only where it is not as it was; None: there is no such file."""
+    """The hash of a file, computed again only when the file changed; None: the file does not exist."""
     try:
         now = os.stat(path)
     except OSError:
@@ -64,8 +64,8 @@ def _hash(path):
 
 
 def _read_with(spelled, path, known):
-    """What the loader reads of a model beside its file, as {name: path}; None where it cannot be loaded, whose
-    trials fail and say why. `known` keeps the loader's lists by path."""
+    """The other files that the loader reads with a model, as {name: path}; None when it cannot be loaded and its
+    trials fail. `known` caches the loader's lists by path."""
     if path not in known:
         try:
             known[path] = glidar.Scene(path)._core.files
@@ -79,7 +79,7 @@ def _read_with(spelled, path, known):
 
 
 def read(name, path, known):
-    """Reads a scene or sensor file; a fault is kept, so that only its trials fail. `known` as for _read_with."""
+    """Reads a scene or sensor file. An error is stored, so that only its trials fail. `known` as for _read_with."""
     try:
         text = yf.read_text(path)
         named, parts, all_known = {}, {}, True
@@ -88,29 +88,29 @@ def read(name, path, known):
             more = _read_with(spelled, found, known) if key == "model" else {}
             named[spelled] = found
             parts.update(more or {})
-            all_known &= more is not None and key != "sensor"  # which may name files of its own
-        found = tuple(Read(one, where, _hash(where), paths is parts)
+            all_known &= more is not None and key != "sensor"  # because a sensor file may name further files
+        found = tuple(InputFile(one, where, _hash(where), paths is parts)
                       for paths in (named, parts) for one, where in paths.items())
         return Input(name, path, text, "", found, all_known)
     except Error as error:
-        return Input(name, path, fault=str(error))
+        return Input(name, path, error=str(error))
 
 
 def _require_unchanged(source, loaded):
-    """Throws Changed where a file is not what it was, or one was read that was not there."""
+    """Raises InputChanged when a file has changed, or a file was read that did not exist before."""
     wrong = [file.path for file in source.files if _hash(file.path) != file.hash]
     if source.all_known:
         known = {str(file.path) for file in source.files}
         wrong += [name for name in loaded if name not in known and not loading.is_copy(name)]
     if wrong:
-        raise Changed(str(wrong[0]), "it was changed while the campaign ran", "",
-                      "put it back and run the same command again, or begin a new folder")
+        raise InputChanged(str(wrong[0]), "it was changed while the campaign ran", "",
+                      "restore it and run the same command again, or start in a new folder")
 
 
 def load(source, how, changes):
-    """Loads a scene or sensor by loading.load_scene or load_sensor."""
-    if source.fault:
-        raise Error("", source.fault, "", "")
+    """Loads a scene or sensor with `how`, loading.load_scene or load_sensor."""
+    if source.error:
+        raise Error("", source.error, "", "")
     try:
         found = how(source.text, source.path, changes)
     except Error:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scenes and sensors from the texts of their files, which may have values replaced."""
+"""Loads scenes and sensors from the texts of their files, in which values may be replaced."""
 
 import tempfile
 from pathlib import Path
@@ -11,13 +11,13 @@ import glidar
 from glidar import Error
 from glidar.campaign import variants, yaml_file as yf
 
-COPY = "glidar-campaign-"  # begins the names of folders with changed files
-SMALLEST_FIT = 1e-9  # of a pinhole's directions, in pixels' tangents
+COPY = "glidar-campaign-"  # prefix of folders with changed files
+MAX_FIT_ERROR = 1e-9  # of a pinhole's directions, as tangents
 
 
 def _loaded(text, path, changes, load):
-    """Loads a text as if it were the file at `path`: names of files are its own, and so are the
-    places in error texts."""
+    """Loads a text as if it were the file at `path`: relative paths and locations in errors are those of that
+    file."""
     whole = variants.replaced(text, yf.parse(text, path), changes)
     with tempfile.TemporaryDirectory(prefix=COPY) as folder:
         copy = Path(folder) / Path(path).with_suffix(".yaml").name
@@ -31,7 +31,7 @@ def _loaded(text, path, changes, load):
 
 
 def is_copy(path):
-    """Whether a file that was read is the changed one, which stands for the user's."""
+    """Whether a file that was read is the changed copy of the user's file."""
     return Path(path).parent.name.startswith(COPY)
 
 
@@ -44,8 +44,8 @@ def load_sensor(text, path, changes=()):
 
 
 def intrinsics_of(sensor, name):
-    """The 3 x 3 camera matrix, with pixel centres at whole numbers (OpenCV's and BOP's), from the
-    directions of the beams; throws Error for what is no pinhole without distortion."""
+    """The 3 x 3 camera matrix from the ray directions, with pixel centres at integers (as in OpenCV and BOP);
+    raises Error for anything but a pinhole camera without distortion."""
     wrong = Error(f"sensor {name}", f"a {sensor.kind}" if sensor.kind != "camera" else
                   "a camera with distortion", "for BOP a pinhole camera without distortion", "")
     if sensor.kind != "camera" or sensor.returns != 1 or min(sensor.rows, sensor.cols) < 2:
@@ -57,13 +57,13 @@ def intrinsics_of(sensor, name):
     k = np.array([[fx, 0.0, -fx * x[0, 0]], [0.0, fy, -fy * y[0, 0]], [0.0, 0.0, 1.0]])
     fit_x = (np.arange(sensor.cols) - k[0, 2]) / fx
     fit_y = (np.arange(sensor.rows) - k[1, 2]) / fy
-    if not (np.abs(x - fit_x).max() < SMALLEST_FIT and np.abs(y - fit_y[:, None]).max() < SMALLEST_FIT):
+    if not (np.abs(x - fit_x).max() < MAX_FIT_ERROR and np.abs(y - fit_y[:, None]).max() < MAX_FIT_ERROR):
         raise wrong
     return k
 
 
 def canvas_camera(sensor, k):
-    """A pinhole of three times the width and height, with the sensor's own image in the middle."""
+    """A pinhole camera of three times the width and height, with the sensor's image in its centre."""
     return glidar.Sensor.from_dict({
         "optics": {"type": "pinhole", "width": 3 * sensor.cols, "height": 3 * sensor.rows,
                    "fx": k[0, 0], "fy": k[1, 1], "cx": k[0, 2] + sensor.cols,

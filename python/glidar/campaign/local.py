@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Shards on the cores of this machine, in worker processes that may die without harm."""
+"""Runs shards on the cores of this machine, in worker processes that may die."""
 
 import multiprocessing
 import os
@@ -10,33 +10,33 @@ from multiprocessing import connection
 
 from glidar import Error
 from glidar.campaign import work as works
-from glidar.campaign.progress import tell_warnings
+from glidar.campaign.progress import print_warnings
 
-AHEAD = 2  # shards a worker holds: one is measured, one is written
-MOST_DEATHS = 3  # of workers that held the same shard
-WAIT_S = 0.2  # for a shard, before a worker looks whether its writing goes well
-NO_GUARD = 87  # exit code of a worker whose script calls run() when it is imported
+SHARDS_PER_WORKER = 2  # one is measured while another is written
+MAX_DEATHS = 3  # of workers that ran the same shard
+WAIT_S = 0.2  # for a shard, before a worker checks its writer thread for errors
+MISSING_GUARD = 87  # exit code of a worker whose script calls run() when it is imported
 
 
 def require_guard():
-    """Ends a worker process whose script, which it imports when it starts, runs the campaign again."""
+    """Ends a worker process whose main script, which it imports at start, runs the campaign again."""
     if getattr(multiprocessing.current_process(), "_inheriting", False):
-        sys.exit(NO_GUARD)
+        sys.exit(MISSING_GUARD)
 
 
 def cores():
     return len(os.sched_getaffinity(0))
 
 
-def usual_workers(plan):
-    """One process, which measures with all cores, where trials share their scene and sensor; else one
-    a core, since scenes are made ready by one core each."""
+def default_workers(plan):
+    """One process, which measures with all cores, when trials share their scene and sensor; else one per core,
+    because one core prepares each scene."""
     texts = [v for v in plan.spec.vary if not v.is_pose]
     return cores() if texts or len(plan.scenes) * len(plan.sensors) > 1 else 1
 
 
 def _serve(plan, folder, threads, pipe):
-    """A worker process: shards come through the pipe, what is done goes back, None ends."""
+    """A worker process: receives shards through the pipe and sends results back; None ends it."""
     def shards():
         while True:
             if not pipe.poll(WAIT_S):
@@ -46,34 +46,34 @@ def _serve(plan, folder, threads, pipe):
             else:
                 return
 
-    tell_warnings()
+    print_warnings()
     try:
         works.work(plan, folder, shards(), threads, lambda done: pipe.send(("done", done)))
         pipe.send(("end", None))
     except Error as error:
         pipe.send(("error", (error.where, error.found, error.allowed, error.remedy)))
     except (EOFError, BrokenPipeError, KeyboardInterrupt):
-        pass  # the run itself ended
-    except Exception as fault:  # raised again by the run
-        pipe.send(("fault", fault))
+        pass  # the main process ended
+    except Exception as error:  # raised again by the main process
+        pipe.send(("exception", error))
 
 
 class _Worker:
     def __init__(self, context, plan, folder, threads):
         self.pipe, theirs = context.Pipe()
-        self.held = []
-        self.asked_to_end = False
+        self.shards = []
+        self.is_ending = False
         self.process = context.Process(target=_serve, args=(plan, folder, threads, theirs), daemon=True)
         self.process.start()
         theirs.close()
 
     def feed(self, waiting):
-        """Keeps it busy; without shards left it is asked to end."""
-        while waiting and len(self.held) < AHEAD:
-            self.held.append(waiting.popleft())
-            self.pipe.send(self.held[-1])
-        if not waiting and not self.held and not self.asked_to_end:
-            self.asked_to_end = True
+        """Keeps the worker busy; without further shards, requests its end."""
+        while waiting and len(self.shards) < SHARDS_PER_WORKER:
+            self.shards.append(waiting.popleft())
+            self.pipe.send(self.shards[-1])
+        if not waiting and not self.shards and not self.is_ending:
+            self.is_ending = True
             self.pipe.send(None)
 
 
@@ -96,51 +96,51 @@ class _Pool:
         while self.workers:
             ready = connection.wait([worker.pipe for worker in self.workers])
             for worker in [w for w in self.workers if w.pipe in ready]:
-                self._hear(worker, waiting)
+                self._receive(worker, waiting)
 
     def _feed(self, worker, waiting):
         try:
             worker.feed(waiting)
         except (BrokenPipeError, ConnectionResetError):
-            pass  # its end is heard of next
+            pass  # its death is reported next
 
-    def _hear(self, worker, waiting):
+    def _receive(self, worker, waiting):
         try:
             kind, content = worker.pipe.recv()
         except (EOFError, ConnectionResetError):
             kind, content = "death", None
         if kind == "death":
-            self._bury(worker, waiting)
+            self._replace_dead(worker, waiting)
             return
         if kind == "error":
             raise Error(*content)
-        if kind == "fault":
+        if kind == "exception":
             raise content
         if kind == "end":
             self.workers.remove(worker)
             worker.process.join()
             return
-        worker.held.remove(content.shard)
+        worker.shards.remove(content.shard)
         self._report(content)
         self._feed(worker, waiting)
 
-    def _bury(self, worker, waiting):
-        """A worker died: its shards go to others."""
+    def _replace_dead(self, worker, waiting):
+        """Handles the death of a worker: its shards go to others."""
         worker.process.join()
         self.workers.remove(worker)
-        if worker.process.exitcode == NO_GUARD:
+        if worker.process.exitcode == MISSING_GUARD:
             raise Error(str(getattr(sys.modules["__main__"], "__file__", "run()")),
                         "it runs the campaign when it is imported, and every worker process imports it",
-                        "the call below: if __name__ == \"__main__\":", "workers=1 needs no other process")
-        for shard in worker.held:
+                        "the call within: if __name__ == \"__main__\":", "workers=1 needs no other process")
+        for shard in worker.shards:
             self._deaths[shard] = self._deaths.get(shard, 0) + 1
-            if self._deaths[shard] == MOST_DEATHS:
+            if self._deaths[shard] == MAX_DEATHS:
                 first, trials = self._plan.trials_of(shard)
                 raise Error(f"trials {first} to {first + trials - 1}",
-                            f"the worker that measured them died {MOST_DEATHS} times "
+                            f"the worker that measured them died {MAX_DEATHS} times "
                             f"(exit code {worker.process.exitcode})", "",
-                            "is there enough memory? fewer --workers need less")
-        waiting.extendleft(reversed(worker.held))
+                            "check the available memory; fewer --workers need less")
+        waiting.extendleft(reversed(worker.shards))
         if waiting:
             self.start()
             self._feed(self.workers[-1], waiting)
@@ -152,8 +152,8 @@ class _Pool:
 
 
 def run_local(plan, folder, shards, report, workers):
-    """Runs the shards by so many processes, which share the cores; one: this process; 0: as usual."""
-    workers = workers or usual_workers(plan)
+    """Runs the shards with `workers` processes, which share the cores; 1: this process; 0: the default."""
+    workers = workers or default_workers(plan)
     if workers == 1 or len(shards) == 1:
         works.work(plan, folder, shards, 0, report)
         return

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Names of a campaign's files, as receipts and manifests list them.
 
-Such a list may come from somebody else. A name in it is joined to a folder only where it has the form of the
-names that a campaign writes; then it cannot lead out of the folder, nor replace another shard's files.
+Such a list may come from an untrusted source. A name is joined to a folder only if it has the form of the names that a
+campaign writes. Then it cannot refer to a file outside the folder, nor replace files of another shard.
 """
 
 import re
@@ -28,13 +28,13 @@ LOG = re.compile(r"[A-Za-z0-9_-][A-Za-z0-9_.-]{0,254}\.jsonl", re.ASCII)
 
 
 def _number(match):
-    """The number in a name; None where the name does not have this form."""
+    """The number in a name; None when the name does not have this form."""
     found = [text for text in match.groupdict().values() if text] if match else []
     return int(found[0]) if found and len(found[0]) <= 18 else None
 
 
 def _fits_shard(name, shard, trials):
-    """Whether a shard writes such a file; `trials`: a range of its trials."""
+    """Whether a shard writes such a file; `trials`: the range of its trials."""
     if _number(OF_SHARDS.fullmatch(name)) == shard:
         return True
     number = _number(OF_TRIALS.fullmatch(name))
@@ -43,18 +43,18 @@ def _fits_shard(name, shard, trials):
 
 def _reject(path, name, allowed):
     raise Error(str(path), f"it lists the file '{excerpt(name)}'", allowed,
-                "take the part from whoever measured it again; this one may be damaged or forged")
+                "copy the part again from its source; this one may be corrupt or forged")
 
 
 def require_shard_files(path, listed, shard, trials):
-    """Throws Error where the receipt of a shard lists a file that this shard does not write."""
+    """Raises Error when the receipt of a shard lists a file that the shard does not write."""
     for name in listed:
         if not _fits_shard(name, shard, trials):
             _reject(path, name, f"files that shard {shard} writes, such as npz/shard-{shard:06}-HASH.npz")
 
 
 def require_once_files(path, listed):
-    """The same for the receipt of what is written once for all shards."""
+    """The same for the receipt of files that are written once for all shards."""
     for name in listed:
         if not ONCE.fullmatch(name):
             _reject(path, name, "files of bop/models, and bop/camera.json")
@@ -69,10 +69,10 @@ def require_manifest_files(path, listed):
 
 
 def receipt_shard(path):
-    """Which shard a receipt is of; None: of what is written once. Throws Error where it has another name."""
+    """The shard of a receipt; None for files that are written once. Raises Error for another file name."""
     match = RECEIPT.fullmatch(Path(path).name)
     if not match:
-        raise Error(str(path), "a file among the receipts that is none", "000003.json, once-bop.json", "remove it")
+        raise Error(str(path), "it is not a receipt, but it is in their folder", "000003.json, once-bop.json", "remove it")
     return _number(match)
 
 
@@ -81,7 +81,7 @@ def is_log(path):
 
 
 def require_inside(root, path):
-    """Throws Error where links lead from a campaign's folder to a place outside it."""
+    """Raises Error when a link leads from a campaign's folder to a path outside."""
     if not Path(path).resolve().is_relative_to(Path(root).resolve()):
         raise Error(str(path), "a link leads out of the campaign's folder", "a folder without such links",
                     "copy the files into the folder")

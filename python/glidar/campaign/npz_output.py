@@ -14,17 +14,17 @@ from glidar.campaign import files
 
 FOLDER = "npz"
 MEMBER = re.compile(r"(?:\d{1,10}x\d{1,10}/)?[a-z_]{1,64}\.npy", re.ASCII)
-MOST_BYTES = 1 << 34  # of an array, unpacked
+MAX_BYTES = 1 << 34  # of an uncompressed array
 REAL = {"f32": np.dtype(np.float32), "f64": np.dtype(np.float64)}
 
 
 def stored_type(dtype, real):
-    """Reals of 64 bits are stored as the campaign file says; all else as it is."""
+    """The type that a column is stored with: the campaign file selects it for float64; others are unchanged."""
     return REAL[real] if dtype == np.float64 else dtype
 
 
 def write_npz(path, arrays, compress):
-    """As numpy.savez, without copies of the arrays; equal arrays give equal bytes."""
+    """Like numpy.savez, without copies of the arrays; equal arrays give equal bytes."""
     method = zipfile.ZIP_DEFLATED if compress else zipfile.ZIP_STORED
     with zipfile.ZipFile(path, "w", method, compresslevel=1 if compress else None) as archive:
         for name, array in arrays.items():
@@ -38,25 +38,25 @@ def write_npz(path, arrays, compress):
 
 @contextlib.contextmanager
 def opened(path):
-    """An NPZ shard, whose members have the names and sizes that shards have."""
+    """Opens an NPZ shard and checks the names and sizes of its members."""
     with files.open_input(path) as file, np.load(file, allow_pickle=False) as arrays:
         if not isinstance(arrays, np.lib.npyio.NpzFile):
-            raise Error(str(path), "it is no NPZ file", "a file that glidar campaign wrote", "")
+            raise Error(str(path), "it is not an NPZ file", "a file that glidar campaign wrote", "")
         for member in arrays.zip.infolist():
-            if not MEMBER.fullmatch(member.filename) or member.file_size > MOST_BYTES:
+            if not MEMBER.fullmatch(member.filename) or member.file_size > MAX_BYTES:
                 raise Error(f"{path}: {excerpt(member.filename)}", f"a member of {member.file_size} bytes",
-                            f"names of columns, and at most {MOST_BYTES} bytes", "")
+                            f"names of columns, and at most {MAX_BYTES} bytes", "")
         yield arrays
 
 
 class NpzOutput:
-    """Gathers a shard. Frames of one shape make arrays `range`, `intensity` ...; where shapes differ
-    from trial to trial (several sensors), each shape has its own: `16x1808/range` ..."""
+    """Collects the trials of a shard. Frames of one shape give arrays `range`, `intensity` ...; when shapes differ
+    between trials (several sensors), each shape has arrays of its own: `16x1808/range` ..."""
 
-    def __init__(self, plan, scratch, shard):
+    def __init__(self, plan, temp, shard):
         self._options = plan.spec.outputs.npz
         self._one_shape = plan.one_shape
-        self._scratch = scratch
+        self._temp = temp
         self._name = f"shard-{shard:06}.npz"
         self._count = plan.trials_of(shard)[1]
         self._groups = {}  # shape -> {column: array of all trials}
@@ -89,8 +89,8 @@ class NpzOutput:
         return result
 
     def finish(self):
-        """The files to publish: (name with {hash} for that of the content, path)."""
-        path = self._scratch.path(self._name)
+        """The files to publish: (name with {hash} as a placeholder for the content's hash, path)."""
+        path = self._temp.path(self._name)
         write_npz(path, self.arrays(), self._options.compress)
         self._groups = {}
         return [(f"{FOLDER}/{self._name[:-4]}-{{hash}}.npz", path)]

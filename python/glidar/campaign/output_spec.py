@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The part of a campaign file that says what is written."""
+"""The outputs in a campaign file."""
 
 from dataclasses import dataclass
 
@@ -17,15 +17,15 @@ class Npz:
     """Shards of many trials: arrays trial x row x column of the frame."""
 
     columns: tuple = DEFAULT_COLUMNS
-    real: str = "f32"  # how measured numbers of 64 bits are stored
+    real: str = "f32"  # type in which float64 columns are stored
     compress: bool = False
 
 
 @dataclass(frozen=True)
 class Cloud:
-    """One file a trial, of every so-many-th trial."""
+    """One file per trial, for every n-th trial."""
 
-    columns: tuple | None = None  # None: glidar's usual ones
+    columns: tuple | None = None  # None: glidar's defaults
     every: int = 1
 
 
@@ -57,7 +57,7 @@ def _columns(field):
 
 
 def _is_off(field):
-    """`npz: false` is the same as leaving it out, `npz: true` takes the usual."""
+    """`npz: false` is the same as omitting it; `npz: true` selects the defaults."""
     return isinstance(field.node, yf.yaml.ScalarNode) and not yf.boolean(field)
 
 
@@ -102,5 +102,5 @@ def read_outputs(field):
                       yf.optional(found, "tum", yf.boolean, False),
                       yf.optional(found, "bop", _bop, None))
     if outputs == Outputs():
-        yf.reject(field, "nothing is written", "at least one of npz, pcd, ply, kitti, tum, bop")
+        yf.reject(field, "no output is selected", "at least one of npz, pcd, ply, kitti, tum, bop")
     return outputs

@@ -3,8 +3,8 @@
 """Random numbers that are a pure function of (campaign seed, trial, purpose).
 
 Philox4x32-10 of Salmon, Moraes, Dror, Shaw: "Parallel random numbers: as easy as 1, 2, 3", SC'11, as
-in glidar/math/random.cpp, over many counters at once. So any trial can be drawn by itself, in any
-order, on any machine.
+in glidar/math/random.cpp, vectorised over counters. Hence any trial can be sampled independently, in any order, on any
+machine.
 """
 
 import hashlib
@@ -31,7 +31,7 @@ def philox4x32(counter, key):
 
 
 def purpose_word(purpose):
-    """32 bits of the purpose's name, so that purposes do not share numbers."""
+    """32 bits of a hash of the purpose's name, so that purposes have different random numbers."""
     return int.from_bytes(hashlib.blake2s(purpose.encode(), digest_size=4).digest(), "little")
 
 
@@ -47,7 +47,7 @@ def words(seed, trials, purpose, block=0):
 
 
 def uniforms(seed, trials, purpose, count):
-    """N x count doubles strictly between 0 and 1, of 52 bits each: two words a number."""
+    """N x count doubles strictly between 0 and 1, of 52 bits each: two words per number."""
     columns = []
     for block in range((count + 1) // 2):
         w = words(seed, trials, purpose, block).astype(np.uint64)
@@ -60,6 +60,6 @@ def uniforms(seed, trials, purpose, count):
 
 
 def seeds(seed, trials):
-    """The seed of each trial's frame: 64 bits."""
+    """The 64-bit seed of each trial's frame."""
     w = words(seed, trials, "frame seed").astype(np.uint64)
     return w[:, 0] | (w[:, 1] << _SHIFT)

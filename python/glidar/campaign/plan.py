@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a campaign is, apart from where it runs: the spec, the files it reads, the cut into shards.
+"""The plan of a campaign, independent of where it runs: the spec, the hashes of the files that it reads, and the shards.
 
-Its hash is the campaign's identity: two plans with the same hash give the same bytes.
+Its hash identifies the campaign: two plans with the same hash give the same bytes.
 """
 
 import dataclasses
@@ -14,10 +14,10 @@ from glidar import Error
 from glidar.campaign import files, inputs, records, sensor_files, variants, yaml_file as yf
 from glidar.campaign.spec import Spec
 
-FORMAT = 2  # of the campaign folder
-SHARD_BEAMS = 1 << 22  # in a shard, where the campaign file does not say how many trials
-LEAST_SHARD_TRIALS, LARGEST_SHARD_TRIALS = 16, 1024
-MOST_SHARDS = records.MOST_SHARDS
+FORMAT = 3  # of the campaign folder
+SHARD_BEAMS = 1 << 22  # per shard, when the campaign file does not specify shard_trials
+MIN_SHARD_TRIALS, MAX_SHARD_TRIALS = 16, 1024
+MAX_SHARDS = records.MAX_SHARDS
 PLAN_FILE = "campaign.json"
 
 
@@ -46,8 +46,8 @@ class Plan:
         return len(self.sensors) == 1 and not varies
 
     def record(self):
-        """All that makes it what it is, as JSON."""
-        return {"format": FORMAT, "glidar": glidar.__version__, "campaign": meaning(self.spec),
+        """Everything that determines the data, as JSON."""
+        return {"format": FORMAT, "glidar": glidar.__version__, "campaign": spec_record(self.spec),
                 "shard_trials": self.shard_trials,
                 "scenes": [i.record() for i in self.scenes],
                 "sensors": [i.record() for i in self.sensors]}
@@ -57,31 +57,31 @@ class Plan:
 
 
 def identity(record):
-    """What of a plan's record tells campaigns apart: all but the name."""
+    """The part of a plan's record that identifies the campaign: everything but the name."""
     campaign = {key: value for key, value in record["campaign"].items() if key != "name"}
     return {**record, "campaign": campaign}
 
 
-def meaning(value):
-    """A spec as JSON, with the kinds of its distributions and without places of files."""
+def spec_record(value):
+    """A spec as JSON, with the types of its distributions and without paths."""
     if dataclasses.is_dataclass(value):
-        fields = {f.name: meaning(getattr(value, f.name)) for f in dataclasses.fields(value)
+        fields = {f.name: spec_record(getattr(value, f.name)) for f in dataclasses.fields(value)
                   if not isinstance(getattr(value, f.name), Path)}
         return {"kind": type(value).__name__, **fields}
     if isinstance(value, (list, tuple)):
-        return [meaning(item) for item in value]
+        return [spec_record(item) for item in value]
     return value if value is None or isinstance(value, (str, bool, int)) else float(value)
 
 
 def _require_some(sources, what):
-    if all(source.fault for source in sources):
-        raise Error(what, f"none can be read: {sources[0].fault}", "at least one that can", "")
+    if all(source.error for source in sources):
+        raise Error(what, f"none can be read: {sources[0].error}", "at least one that can", "")
 
 
 def _check_variations(spec, sources, of):
-    """Every value that varies stands in every file that can be read, and is no other's or part of it."""
+    """Checks that every varied value exists in every readable file, and that no two of them overlap."""
     for source in sources:
-        if source.fault:
+        if source.error:
             continue
         field = yf.parse(source.text, source.path)
         places = {}
@@ -91,43 +91,43 @@ def _check_variations(spec, sources, of):
 
 
 def _require_apart(spec, path, place, places):
-    """`places`: of those that are known, where each stands: "models[0].scale"."""
+    """Raises Error when a value overlaps one of `places`: {path: location such as "models[0].scale"}."""
     place = place.replace("[", ".[")
     for other, known in places.items():
         if f"{place}.".startswith(f"{known}.") or f"{known}.".startswith(f"{place}."):
-            raise Error(f"{spec.file}: vary.{path}", f"it is the same value as vary.{other}, or one is part of "
+            raise Error(f"{spec.file}: vary.{path}", f"it is the same value as vary.{other}, or one contains "
                         "the other", "each value once", f"remove vary.{path} or vary.{other}")
     places[path] = place
 
 
 def _check_value(field, variation):
-    """Where it stands."""
+    """The location of a varied value."""
     return variants.find(field, variation.target).path
 
 
 def _check_pose(field, variation):
-    """Poses are set from outside: of a model that is there, in a scene that stands still. Where it would stand."""
+    """Checks that the pose of an existing model without motion is varied; returns the pose's location."""
     steps = variation.target.steps
     if len(steps) != 3 or steps[0] != "models" or steps[2] != "pose":
-        raise Error(f"vary.{variation.path}", "no pose of a model", "scene.models[NAME].pose", "")
+        raise Error(f"vary.{variation.path}", "not the pose of a model", "scene.models[NAME].pose", "")
     model = variants.find(field, variants.Target("scene", steps[:2]), is_replaced=False)
     for other in yf.items(yf.need(field, yf.entries(field), "models")):
         moving = {"motion", "trajectory"} & yf.entries(other).keys()
         if moving:
             yf.reject(other, f"it has the key '{moving.pop()}', and vary.{variation.path} sets poses",
-                      "models that stand still", "")
+                      "models without motion", "")
     return model.path + ".pose"
 
 
 def _auto_shard_trials(beams):
-    """So many trials that a shard takes tens of megabytes, in powers of two."""
+    """A power of two, such that a shard has tens of megabytes."""
     wanted = max(1, SHARD_BEAMS // max(1, beams))
     trials = 1 << (wanted.bit_length() - 1)
-    return min(LARGEST_SHARD_TRIALS, max(LEAST_SHARD_TRIALS, trials))
+    return min(MAX_SHARD_TRIALS, max(MIN_SHARD_TRIALS, trials))
 
 
 def make_plan(spec):
-    """Reads what the campaign file names and cuts the trials into shards."""
+    """Reads the files that the campaign file names, and divides the trials into shards."""
     folder = spec.file.resolve().parent
     loaded = {}
     scenes = tuple(inputs.read(name, folder / name, loaded) for name in spec.scenes.names)
@@ -136,9 +136,9 @@ def make_plan(spec):
     _require_some(sensors, f"{spec.file}: sensor")
     _check_variations(spec, scenes, "scene")
     _check_variations(spec, sensors, "sensor")
-    known = [sensor_files.look(s) for s in sensors]
+    known = [sensor_files.properties_of(s) for s in sensors]
     shard_trials = spec.shard_trials or _auto_shard_trials(max(k.beams for k in known))
-    if spec.trials > MOST_SHARDS * shard_trials:
+    if spec.trials > MAX_SHARDS * shard_trials:
         raise Error(f"{spec.file}: shard_trials", f"{spec.trials} trials in shards of {shard_trials}",
-                    f"at most {MOST_SHARDS} shards", f"set shard_trials to {-(-spec.trials // MOST_SHARDS)} or more")
+                    f"at most {MAX_SHARDS} shards", f"set shard_trials to {-(-spec.trials // MAX_SHARDS)} or more")
     return Plan(spec, scenes, sensors, tuple(k.boresight for k in known), shard_trials)

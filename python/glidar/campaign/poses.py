@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Distributions of poses: where something is, and how it is turned.
+"""Distributions of poses: positions and orientations.
 
-Positions are metres in the world; rotations are matrices N x 3 x 3 that turn the sensor's (or object's)
-axes into the world's. Like the distributions of numbers they are made of uniform numbers and counts.
+Positions are metres in the world; rotations are matrices N x 3 x 3 from the axes of the sensor (or object) to those of
+the world. Like distributions of numbers, they are functions of uniform numbers and grid indices.
 """
 
 from dataclasses import dataclass
@@ -43,7 +43,7 @@ class Box:
 
 @dataclass(frozen=True)
 class Shell:
-    """Uniform in volume between two radii, within an angle of an axis (pi: all around)."""
+    """Uniform in volume between two radii, within an angle around an axis (pi: the full sphere)."""
 
     centre: tuple
     axis: tuple
@@ -54,7 +54,7 @@ class Shell:
     cells = 1
 
     def sample(self, u, cell):
-        # The volume within a radius grows with its cube, a cap with 1 - cos of its angle.
+        # The volume grows with the cube of the radius, a cap with 1 - cos of its angle.
         cube = self.least_m**3 + (self.most_m**3 - self.least_m**3) * u[:, 2]
         directions = rotations.directions_in_cone(self.axis, self.half_angle_rad, u[:, :2])
         return np.array(self.centre) + np.cbrt(cube)[:, None] * directions
@@ -62,7 +62,7 @@ class Shell:
 
 @dataclass(frozen=True)
 class BoxGrid:
-    """Points of a grid, x running first."""
+    """Points of a grid; x varies fastest."""
 
     least: tuple
     most: tuple
@@ -84,7 +84,7 @@ class BoxGrid:
 
 @dataclass(frozen=True)
 class SphereGrid:
-    """Points spread evenly over a sphere: a Fibonacci lattice with half-steps at the poles (Swinbank
+    """Evenly distributed points on a sphere: a Fibonacci lattice with half-steps at the poles (Swinbank
     and Purser, "Fibonacci grids", Q. J. R. Meteorol. Soc. 132, 2006)."""
 
     centre: tuple
@@ -106,8 +106,8 @@ class SphereGrid:
 
 
 @dataclass(frozen=True)
-class Turned:
-    """One orientation for all."""
+class FixedRotation:
+    """The same orientation for all trials."""
 
     quaternion: tuple  # w x y z
     dims = 0
@@ -118,7 +118,7 @@ class Turned:
 
 
 @dataclass(frozen=True)
-class AnyWay:
+class UniformRotation:
     """Uniform over all rotations (the Haar measure of SO(3))."""
 
     dims = 3
@@ -129,19 +129,19 @@ class AnyWay:
 
 
 @dataclass(frozen=True)
-class Aimed:
-    """The boresight points at a target, or along an axis, up to an error within a cone; `roll_deg`
-    turns about it, from the way in which `up` is up."""
+class LookAt:
+    """The boresight points at a target, or along an axis, with an error within a cone. `roll_deg` rotates around the
+    boresight; at 0, `up` is up in the image."""
 
     target: tuple | None
     axis: tuple | None
     up: tuple
-    off_rad: float
+    max_offset_rad: float
     roll_deg: object
 
     @property
     def dims(self):
-        return 2 * (self.off_rad > 0) + self.roll_deg.dims
+        return 2 * (self.max_offset_rad > 0) + self.roll_deg.dims
 
     @property
     def cells(self):
@@ -152,12 +152,12 @@ class Aimed:
             forward = np.tile(np.array(self.axis, float), (len(u), 1))
         else:
             forward = np.array(self.target) - position
-            forward[np.linalg.norm(forward, axis=1) == 0] = np.nan  # no way to look, see require_whole
-        if self.off_rad > 0:
-            forward = rotations.bent(forward, self.off_rad, u[:, :2])
+            forward[np.linalg.norm(forward, axis=1) == 0] = np.nan  # no direction, see require_finite
+        if self.max_offset_rad > 0:
+            forward = rotations.perturbed_directions(forward, self.max_offset_rad, u[:, :2])
             u = u[:, 2:]
         roll = np.radians(self.roll_deg.sample(u, cell))
-        return rotations.looking(forward, self.up, roll, boresight)
+        return rotations.look_rotations(forward, self.up, roll, boresight)
 
 
 @dataclass(frozen=True)
@@ -184,8 +184,8 @@ class PoseDistribution:
         return poses
 
 
-def require_whole(world_from_body, what):
-    """Poses without NaN: where the position is look_at's target, no direction leads to the target."""
+def require_finite(world_from_body, what):
+    """Raises Error for poses with NaN: the position equals look_at's target, so there is no direction."""
     if np.isnan(world_from_body).any():
         raise Error(what, "the position is the target of look_at", "positions apart from the target",
                     "move the target or the positions")
@@ -247,24 +247,24 @@ def _roll(found):
     return yf.optional(found, "roll_deg", lambda f: read_distribution(f, yf.ANGLE_DEG), Constant(0.0))
 
 
-def _aimed(field, at_target):
+def _look_at(field, at_target):
     keys = ["target", "off_deg"] if at_target else ["axis", "half_angle_deg"]
     found = yf.require_keys(field, keys + ["up", "roll_deg"])
     up = tuple(yf.optional(found, "up", yf.direction, UP))
     if at_target:
         target = tuple(yf.optional(found, "target", lambda f: yf.numbers(f, 3), [0.0, 0.0, 0.0]))
         off_deg = yf.optional(found, "off_deg", lambda f: yf.number(f, yf.CONE_DEG), 0.0)
-        return Aimed(target, None, up, np.radians(off_deg), _roll(found))
+        return LookAt(target, None, up, np.radians(off_deg), _roll(found))
     axis = tuple(yf.direction(yf.need(field, found, "axis")))
     half_angle_deg = yf.number(yf.need(field, found, "half_angle_deg"), yf.CONE_DEG)
-    return Aimed(None, axis, up, np.radians(half_angle_deg), _roll(found))
+    return LookAt(None, axis, up, np.radians(half_angle_deg), _roll(found))
 
 
 def _quaternion(field):
     found = yf.require_keys(field, ["w", "x", "y", "z"])
     q = np.array([yf.number(yf.need(field, found, key)) for key in "wxyz"])
     if not q.any():
-        yf.reject(field, "a quaternion of length 0", "a quaternion of any other length")
+        yf.reject(field, "a quaternion of length 0", "a quaternion other than 0")
     return tuple(q / np.linalg.norm(q))
 
 
@@ -276,17 +276,17 @@ def _euler(field):
 
 def read_orientation(field):
     if isinstance(field.node, yf.yaml.ScalarNode) and field.node.value == "uniform":
-        return AnyWay()
+        return UniformRotation()
     kind, value = yf.only_key(field, ORIENTATIONS)
     if kind == "uniform":
-        yf.reject(value, "a value", "the word alone: orientation: uniform")
+        yf.reject(value, "a value", "only the word: orientation: uniform")
     if kind in ("look_at", "cone"):
-        return _aimed(value, kind == "look_at")
+        return _look_at(value, kind == "look_at")
     if kind == "quaternion":
-        return Turned(_quaternion(value))
+        return FixedRotation(_quaternion(value))
     if kind == "rotation_vector":
-        return Turned(rotations.quaternion_of_vector(yf.numbers(value, 3)))
-    return Turned(_euler(value))
+        return FixedRotation(rotations.quaternion_of_vector(yf.numbers(value, 3)))
+    return FixedRotation(_euler(value))
 
 
 def read_pose(field):

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The progress display: a bar with rate and time left on a terminal, a line now and then elsewhere."""
+"""The progress display: a bar with rate and remaining time on a terminal, else a line every 30 seconds."""
 
 import logging
 import sys
@@ -9,7 +9,7 @@ import time
 BAR = 24
 LINE_EVERY_S = 30.0
 DRAW_EVERY_S = 0.2
-MOST_WARNINGS = 5
+MAX_WARNINGS = 5
 
 
 def duration(seconds):
@@ -20,7 +20,7 @@ def duration(seconds):
 
 
 def line(done, total, failed, rate, columns=100):
-    """What the display says; `rate` in trials a second, 0 when not known."""
+    """The text of the display; `rate` in trials per second, 0 when unknown."""
     fraction = done / total if total else 1.0
     filled = int(BAR * fraction)
     text = f"[{'#' * filled}{'.' * (BAR - filled)}] {100 * fraction:5.1f} % {done}/{total} trials"
@@ -32,12 +32,12 @@ def line(done, total, failed, rate, columns=100):
 
 
 class Progress:
-    """Counts trials; `done` of them were there before and do not count for the rate."""
+    """Counts trials; the first `done` of them were complete before and do not count for the rate."""
 
     def __init__(self, total, done, quiet=False, stream=None):
         self.total, self.done, self.failed = total, done, 0
         self._before, self._start, self._drawn = done, time.monotonic(), -1e9
-        self._told = -1
+        self._reported = -1
         self._stream = stream or sys.stderr
         self._terminal = self._stream.isatty()
         self._quiet = quiet
@@ -56,38 +56,38 @@ class Progress:
         every = DRAW_EVERY_S if self._terminal else LINE_EVERY_S
         if self._quiet or (now - self._drawn < every and not at_once):
             return
-        self._drawn, self._told = now, self.done
+        self._drawn, self._reported = now, self.done
         text = line(self.done, self.total, self.failed, self.rate())
         self._stream.write(f"\r\x1b[K{text}" if self._terminal else f"{text}\n")
         self._stream.flush()
 
     def finish(self):
         if self.total and not self._quiet:
-            if self._told != self.done:
+            if self._reported != self.done:
                 self._draw(at_once=True)
             if self._terminal:
                 self._stream.write("\n")
 
 
 class Warnings(logging.Handler):
-    """Tells what the library warns of, the first few that differ: each of many files may say the same."""
+    """Prints the first few different warnings of the library; many files may cause the same one."""
 
     def __init__(self):
         super().__init__(logging.WARNING)
-        self._told = set()
+        self._reported = set()
 
     def emit(self, record):
         text = record.getMessage()
-        if text in self._told or len(self._told) == MOST_WARNINGS:
+        if text in self._reported or len(self._reported) == MAX_WARNINGS:
             return
-        self._told.add(text)
+        self._reported.add(text)
         sys.stderr.write(f"glidar: warning: {text}\n")
-        if len(self._told) == MOST_WARNINGS:
+        if len(self._reported) == MAX_WARNINGS:
             sys.stderr.write("glidar: further warnings of this process are not shown\n")
 
 
-def tell_warnings():
-    """For programs: warnings of the library go to standard error, a few of them."""
+def print_warnings():
+    """Prints warnings of the library to standard error, when no other handler exists."""
     logger = logging.getLogger("glidar")
     if not logger.handlers:
         logger.addHandler(Warnings())

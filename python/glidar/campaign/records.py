@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""campaign.json, receipts and the manifest, read and checked.
+"""Reads and checks campaign.json, receipts and manifests.
 
-Parts of a campaign come from other machines and people, so nothing in these files is taken for granted: what
-these functions return has the keys, types and bounds that the rest relies on.
+Parts of a campaign come from other machines and people, so these files are not trusted: the values that these functions
+return have the keys, types and bounds that the other modules rely on.
 """
 
 import re
@@ -14,26 +14,26 @@ from glidar import Error
 from glidar._errors import excerpt
 from glidar.campaign import files, names
 
-MOST_TRIALS = 1 << 32
-MOST_SHARD_TRIALS = 1 << 16
+MAX_TRIALS = 1 << 32
+MAX_SHARD_TRIALS = 1 << 16
 SHA256 = re.compile("[0-9a-f]{64}", re.ASCII)
-MOST_SHARDS = 1 << 22
-MOST_BYTES = 1 << 62  # of a file
+MAX_SHARDS = 1 << 22
+MAX_BYTES = 1 << 62  # of a file
 
 
 class _Record:
-    """A value of a JSON file, with its place for errors."""
+    """A value of a JSON file, with its location for errors."""
 
-    def __init__(self, file, place, value):
-        self.file, self.place, self.value = file, place, value
+    def __init__(self, file, location, value):
+        self.file, self.location, self.value = file, location, value
 
     def reject(self, allowed):
-        where = f"{self.file}: {self.place}" if self.place else str(self.file)
+        where = f"{self.file}: {self.location}" if self.location else str(self.file)
         raise Error(where, f"it is {excerpt(reprlib.repr(self.value))}", allowed,
                     "the file was not written by this version of glidar campaign, or was changed")
 
     def of(self, kind, allowed):
-        # a bool is an int for Python, and is none here
+        # bool is a subclass of int, but not accepted as one
         if not isinstance(self.value, kind) or isinstance(self.value, bool) and kind is not bool:
             self.reject(allowed)
         return self.value
@@ -43,22 +43,22 @@ class _Record:
 
     def at(self, key):
         if key not in self.map():
-            raise Error(str(self.file), f"the key '{f'{self.place}.{key}'.strip('.')}' is missing",
+            raise Error(str(self.file), f"the key '{f'{self.location}.{key}'.strip('.')}' is missing",
                         "a file that glidar campaign wrote", "")
-        return _Record(self.file, f"{self.place}.{key}".strip("."), self.value[key])
+        return _Record(self.file, f"{self.location}.{key}".strip("."), self.value[key])
 
     def items(self):
         self.of(list, "a list")
-        return [_Record(self.file, f"{self.place}[{i}]", value) for i, value in enumerate(self.value)]
+        return [_Record(self.file, f"{self.location}[{i}]", value) for i, value in enumerate(self.value)]
 
-    def whole(self, least, most):
-        allowed = f"a whole number from {least} to {most}"
-        if not least <= self.of(int, allowed) <= most:
+    def whole(self, minimum, maximum):
+        allowed = f"a whole number from {minimum} to {maximum}"
+        if not minimum <= self.of(int, allowed) <= maximum:
             self.reject(allowed)
         return self.value
 
     def text(self):
-        return self.of(str, "a text")
+        return self.of(str, "a string")
 
     def flag(self):
         return self.of(bool, "true or false")
@@ -81,12 +81,12 @@ def _check_listed(listed):
             entry.reject("[SHA-256, size in bytes]")
         hashed, size = entry.items()
         hashed.sha256()
-        size.whole(0, MOST_BYTES)
+        size.whole(0, MAX_BYTES)
     return listed.value
 
 
 def _check_counts(record):
-    trials = record.at("trials").whole(0, MOST_TRIALS)
+    trials = record.at("trials").whole(0, MAX_TRIALS)
     record.at("failed").whole(0, trials)
 
 
@@ -97,8 +97,8 @@ def _check_vector(record):
         one.of((int, float), "a number")
 
 
-def _check_meaning(campaign):
-    """What finishing and reporting read of the campaign's spec."""
+def _check_spec(campaign):
+    """Checks the parts of the campaign's spec that finishing and reporting read."""
     campaign.at("name").text()
     campaign.at("method").text()
     campaign.at("seed").whole(0, (1 << 64) - 1)
@@ -113,21 +113,21 @@ def _check_meaning(campaign):
 
 def _check_plan(plan):
     plan.at("glidar").text()
-    _check_meaning(plan.at("campaign"))
+    _check_spec(plan.at("campaign"))
     for key in ("scenes", "sensors"):
         for source in plan.at(key).items():
             source.at("name").text()
-            source.at("fault").flag()
+            source.at("unreadable").flag()
 
 
 def read_campaign(path):
-    """campaign.json of a campaign's folder."""
+    """The content of campaign.json of a campaign's folder."""
     record = _read(path)
     record.at("hash").sha256()
-    trials = record.at("trials").whole(1, MOST_TRIALS)
-    shard_trials = record.at("shard_trials").whole(1, MOST_SHARD_TRIALS)
+    trials = record.at("trials").whole(1, MAX_TRIALS)
+    shard_trials = record.at("shard_trials").whole(1, MAX_SHARD_TRIALS)
     shards = -(-trials // shard_trials)
-    record.at("shards").whole(shards, min(shards, MOST_SHARDS))
+    record.at("shards").whole(shards, min(shards, MAX_SHARDS))
     record.at("one_shape").flag()
     _check_plan(record.at("plan"))
     return record.value
@@ -140,7 +140,7 @@ def _shard_trials(described, shard):
 
 
 def read_receipt(path, described):
-    """A receipt of this campaign, whose campaign.json is `described`."""
+    """The content of a receipt of this campaign, whose campaign.json is `described`."""
     shard = names.receipt_shard(path)
     record = _read(path)
     _check_counts(record)
@@ -171,5 +171,5 @@ def read_manifest(path):
 
 
 def receipts_in(root):
-    """The files of a folder's receipts."""
+    """The paths of a folder's receipts."""
     return sorted((Path(root) / "receipts").glob("*.json"))

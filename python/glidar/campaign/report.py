@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The report: one HTML page that needs no network."""
+"""The report: one HTML page that works offline."""
 
 import base64
 import io
@@ -22,9 +22,9 @@ from glidar.campaign.finish import MANIFEST_FILE
 
 REPORT_FILE = "report.html"
 EXAMPLES = 12
-MOST_FAULTS = 20
-NO_RETURN = 44, 44, 52  # as in PNG files
-PICTURE = 160  # pixels, of the longer side
+MAX_ERRORS = 20
+NO_RETURN = 44, 44, 52  # the same as in PNG files
+PICTURE = 160  # pixels along the longer side
 KNOWN = {"trial", "shard", "ok", "error", "seed", "scene", "sensor"}
 STYLE = """
 body { font: 15px/1.45 system-ui, sans-serif; margin: 2rem auto; max-width: 70rem; padding: 0 1rem;
@@ -51,9 +51,9 @@ def _code(text):
 
 
 def _names(inputs):
-    faults = [f' <span class="bad">{escape("cannot be read")}</span>' if i["fault"] else ""
+    errors = [f' <span class="bad">{escape("cannot be read")}</span>' if i["unreadable"] else ""
               for i in inputs]
-    return ", ".join(_code(i["name"]) + fault for i, fault in zip(inputs, faults))
+    return ", ".join(_code(i["name"]) + error for i, error in zip(inputs, errors))
 
 
 def _summary(manifest):
@@ -73,18 +73,18 @@ def _summary(manifest):
 def _log_lines(folder):
     lines = []
     for path in sorted((folder.root / "log").glob("*.jsonl")):
-        for text in files.read_bytes(path, files.MOST_JSON_BYTES).decode("utf-8", "replace").splitlines():
+        for text in files.read_bytes(path, files.MAX_JSON_BYTES).decode("utf-8", "replace").splitlines():
             try:
                 entry = json.loads(text)
             except (ValueError, RecursionError):
-                continue  # the last line of a killed process
+                continue  # an incomplete line of a killed process
             if _is_log_entry(entry):
                 lines.append({**entry, "by": path.stem})
     return sorted(lines, key=lambda entry: entry["time_s"])
 
 
 def _is_log_entry(entry):
-    """Whether it has the numbers that are reported; logs say nothing about results, so others are passed over."""
+    """Whether it has the reported numbers. Logs do not affect results, so invalid entries are skipped."""
     if not isinstance(entry, dict):
         return False
     keys = ("time_s", "seconds", "trials") if "shard" in entry else ("time_s",)
@@ -93,24 +93,24 @@ def _is_log_entry(entry):
 
 
 def _time_at_work(end_s, seconds):
-    """When each shard was done, by a clock that stands while none is under way; ends are in order."""
-    start_s = np.minimum.accumulate((end_s - seconds)[::-1])[::-1]  # the first start of it and all later ones
+    """The completion time of each shard by a clock that stops while no shard is in progress; ends are sorted."""
+    start_s = np.minimum.accumulate((end_s - seconds)[::-1])[::-1]  # the earliest start of this and all later shards
     pause_s = np.maximum(start_s[1:] - end_s[:-1], 0.0)
     return end_s - start_s[0] - np.insert(np.cumsum(pause_s), 0, 0.0)
 
 
 def _speed(folder):
-    """Of all runs together, whoever measured: by the time in which some shard was under way."""
+    """The speed of all runs together, relative to the time in which a shard was in progress."""
     lines = [entry for entry in _log_lines(folder) if "shard" in entry]
     if len(lines) < 2:
-        return "<p>Too few shards to tell.</p>"
+        return "<p>Too few shards for a speed.</p>"
     time_s = _time_at_work(np.array([entry["time_s"] for entry in lines]),
                            np.array([entry["seconds"] for entry in lines]))
     done = np.cumsum([entry["trials"] for entry in lines])
     rate = done[-1] / max(time_s[-1], 1e-9)
     by = sorted({entry["by"] for entry in lines})
     per_trial = np.array([1e3 * entry["seconds"] / max(entry["trials"], 1) for entry in lines])
-    text = (f"<p>{done[-1]} trials in {time_s[-1]:.1f} s, pauses between runs left out: {rate:.4g} trials/s "
+    text = (f"<p>{done[-1]} trials in {time_s[-1]:.1f} s, without pauses between runs: {rate:.4g} trials/s "
             f"by {len(by)} processes ({escape(', '.join(by[:8]))}{' ...' if len(by) > 8 else ''}).</p>")
     return (text + charts.line("trials done over time, s", np.insert(time_s, 0, 0.0),
                                np.insert(done, 0, 0))
@@ -118,18 +118,18 @@ def _speed(folder):
 
 
 def _failures(table):
-    faults = {}
+    errors = {}
     for trial, text in zip(table["trial"].to_pylist(), table["error"].to_pylist()):
         if text:
-            faults.setdefault(text, []).append(trial)
-    if not faults:
+            errors.setdefault(text, []).append(trial)
+    if not errors:
         return "<p>None.</p>"
     rows = []
-    for text, trials in sorted(faults.items(), key=lambda pair: -len(pair[1]))[:MOST_FAULTS]:
+    for text, trials in sorted(errors.items(), key=lambda pair: -len(pair[1]))[:MAX_ERRORS]:
         which = ", ".join(str(trial) for trial in trials[:8]) + (" ..." if len(trials) > 8 else "")
         rows.append(f"<tr><td>{len(trials)}</td><td>{which}</td><td>{_code(text)}</td></tr>")
-    more = len(faults) - MOST_FAULTS
-    note = f"<p>and {more} other texts, see index.parquet</p>" if more > 0 else ""
+    more = len(errors) - MAX_ERRORS
+    note = f"<p>and {more} other errors, see index.parquet</p>" if more > 0 else ""
     return f"<table><tr><th>trials</th><th>which</th><th>why</th></tr>{''.join(rows)}</table>{note}"
 
 
@@ -138,20 +138,20 @@ def _position(table):
 
 
 def _target(campaign):
-    """What the sensor looks at, or what it is placed about; else the world's origin."""
+    """The target of look_at, or the centre of the sensor's positions; else the world's origin."""
     pose = campaign["pose"]
     return np.array(pose["orientation"].get("target") or pose["position"].get("centre") or [0, 0, 0],
                     float)
 
 
 def _single_value(values):
-    """The one number that all finite values are; None where they differ or there are none."""
+    """The value of all finite numbers; None when they differ or there are none."""
     finite = values[np.isfinite(values)]
     return float(finite[0]) if len(finite) and (finite == finite[0]).all() else None
 
 
 def _columns(table, campaign):
-    """(name, numbers) of all that has a distribution."""
+    """(name, numbers) of everything that has a distribution."""
     ok = table["ok"].to_numpy(zero_copy_only=False)
     yield "distance from the target, m", np.linalg.norm(_position(table) - _target(campaign), axis=1)
     facts = set(index.FACTS)
@@ -163,7 +163,7 @@ def _columns(table, campaign):
 
 
 def _distributions(table, campaign):
-    """Charts of what differs between trials; what is the same in all is listed."""
+    """Charts of values that differ between trials, and a list of the others."""
     parts, constants = [], []
     for name, values in _columns(table, campaign):
         value = _single_value(values)
@@ -190,15 +190,15 @@ def _coverage(table, campaign):
     seen_from = _unit(_position(table) - target)
     q = np.stack([table[name].to_numpy() for name in index.POSE[3:]], axis=1)
     forward = rotations.matrices(q)[:, :, 2]
-    around = f"about [{', '.join(f'{a:g}' for a in target)}]; the middle of the map is +x, the top +z"
-    parts = [charts.sphere("where the sensor stands", seen_from, around)] if len(seen_from) else []
-    parts.append(charts.sphere("where the sensor's z axis points", forward, "in the world"))
+    around = f"around [{', '.join(f'{a:g}' for a in target)}]; the centre of the map is +x, the top +z"
+    parts = [charts.sphere("positions of the sensor", seen_from, around)] if len(seen_from) else []
+    parts.append(charts.sphere("directions of the sensor's z axis", forward, "in the world"))
     return "".join(parts)
 
 
 def _colour_picture(values, column):
-    """The picture and its scale in words. Near is bright, as in all pictures of GLIDAR; dark grey where
-    there is nothing; a few odd values do not spoil the scale."""
+    """The image and its scale in words. As in all pictures of GLIDAR, near is bright and pixels without a return are
+    dark grey; outliers do not determine the scale."""
     values = np.asarray(values, float)
     seen = np.isfinite(values) & (values > 0)
     is_distance = column != "intensity"
@@ -210,23 +210,23 @@ def _colour_picture(values, column):
     return Image.fromarray(pixels), " to ".join(scale.ends("m" if is_distance else ""))
 
 
-def _shown(picture):
-    """An <img> of much the same size whatever the sensor."""
-    scale = PICTURE / max(picture.size)
-    size = tuple(max(1, round(side * scale)) for side in picture.size)
+def _shown(image):
+    """An <img> of similar size for any sensor."""
+    scale = PICTURE / max(image.size)
+    size = tuple(max(1, round(side * scale)) for side in image.size)
     buffer = io.BytesIO()
-    picture.resize(size, Image.Resampling.NEAREST).save(buffer, "png", optimize=True)
+    image.resize(size, Image.Resampling.NEAREST).save(buffer, "png", optimize=True)
     data = base64.b64encode(buffer.getvalue()).decode()
     return f'<img src="data:image/png;base64,{data}" width="{size[0]}" height="{size[1]}" alt="">'
 
 
 def _pick(path, trial):
-    """(title, picture, its scale) of a trial of an NPZ shard."""
+    """(title, image, its scale) of a trial of an NPZ shard."""
     try:
         with npz_output.opened(path) as file:
             return _picked(file, trial)
     except (ValueError, OSError, IndexError, EOFError, zipfile.BadZipFile, zlib.error) as error:
-        raise Error(str(path), f"it is no NPZ shard: {excerpt(error)}", "a file that glidar campaign wrote",
+        raise Error(str(path), f"it is not an NPZ shard: {excerpt(error)}", "a file that glidar campaign wrote",
                     "glidar campaign check lists the files that differ") from None
 
 
@@ -253,15 +253,15 @@ def _examples(folder, table, described):
         receipt = records.read_receipt(folder.receipt(by_trial[trial]), described)
         names = [n for n in receipt["files"] if n.startswith("npz/")]
         if not names:
-            return "<p>Pictures are made of NPZ shards, and this campaign writes none.</p>"
+            return "<p>Example views require NPZ shards, which this campaign does not write.</p>"
         found = _pick(folder.root / names[0], trial)
         if found:
             parts.append(charts.figure(f"trial {trial}: {found[0]}", _shown(found[1]), found[2]))
-    return "".join(parts) or "<p>The NPZ shards hold neither depth, range nor intensity.</p>"
+    return "".join(parts) or "<p>The NPZ shards contain neither depth, range nor intensity.</p>"
 
 
 def page(root: str | os.PathLike[str]) -> str:
-    """The text of the report."""
+    """The HTML of the report."""
     folder, described = folders.opened(root)
     if not (folder.root / MANIFEST_FILE).is_file():
         raise Error(str(root), "the campaign is not finished", "a folder with manifest.json",
@@ -281,7 +281,7 @@ def page(root: str | os.PathLike[str]) -> str:
 
 
 def _require_foreign(root, path):
-    """A report replaces no file of the campaign."""
+    """Raises Error when the report would replace a file of the campaign."""
     root, path = Path(root).resolve(), path.resolve()
     if not path.is_relative_to(root):
         return
@@ -293,7 +293,7 @@ def _require_foreign(root, path):
 
 
 def _write_whole(path, text):
-    """Under another name beside it first; what is no file, such as a pipe, is written as it is."""
+    """Writes a regular file atomically, and others, such as a pipe, directly."""
     if path.exists() and not path.is_file():
         path.write_text(text, encoding="utf-8")
         return
@@ -306,7 +306,7 @@ def _write_whole(path, text):
 
 
 def write(root: str | os.PathLike[str], path: str | os.PathLike[str] | None = None) -> Path:
-    """Writes the report; returns where it is."""
+    """Writes the report; returns its path."""
     text = page(root)
     path = Path(path) if path else Path(root) / REPORT_FILE
     _require_foreign(root, path)

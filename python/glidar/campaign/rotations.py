@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rotations and directions, many at a time; quaternions are w x y z, matrices world_from_body."""
+"""Rotations and directions, vectorised; quaternions are w x y z, matrices world_from_body."""
 
 import numpy as np
 
-SMALLEST_SINE = 1e-9  # below it the roll about a line of sight is not defined
+MIN_SINE = 1e-9  # below it the roll around a line of sight is undefined
 
 
 def uniform_quaternions(u):
-    """N x 4 unit quaternions, uniform over SO(3), of N x 3 uniform numbers (Shoemake, "Uniform random
+    """N x 4 unit quaternions, uniform over SO(3), from N x 3 uniform numbers (Shoemake, "Uniform random
     rotations", Graphics Gems III, 1992)."""
     a, b = np.sqrt(1.0 - u[:, 0]), np.sqrt(u[:, 0])
     first, second = 2.0 * np.pi * u[:, 1], 2.0 * np.pi * u[:, 2]
@@ -17,7 +17,7 @@ def uniform_quaternions(u):
 
 
 def matrices(q):
-    """N x 3 x 3 of N x 4 unit quaternions."""
+    """N x 3 x 3 rotation matrices from N x 4 unit quaternions."""
     w, x, y, z = q.T
     rows = [1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y),
             2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x),
@@ -26,7 +26,7 @@ def matrices(q):
 
 
 def quaternions(m):
-    """N x 4 unit quaternions with w >= 0 of N x 3 x 3 matrices, by the greatest of the four (Shepperd,
+    """N x 4 unit quaternions with w >= 0 from N x 3 x 3 matrices, using the largest component (Shepperd,
     "Quaternion from rotation matrix", J. Guidance and Control 1, 1978)."""
     m = np.asarray(m, float)
     trace = np.trace(m, axis1=1, axis2=2)
@@ -43,7 +43,7 @@ def quaternions(m):
 
 
 def quaternion_of_vector(vector):
-    """Of a rotation vector: axis times angle in radians."""
+    """The quaternion of a rotation vector: axis times angle in radians."""
     angle = float(np.linalg.norm(vector))
     if angle == 0.0:
         return 1.0, 0.0, 0.0, 0.0
@@ -52,7 +52,7 @@ def quaternion_of_vector(vector):
 
 
 def quaternion_of_euler(roll_rad, pitch_rad, yaw_rad):
-    """About the fixed axes x, then y, then z (REP-103)."""
+    """The quaternion of rotations about the fixed axes x, then y, then z (REP-103)."""
     q = np.array([1.0, 0.0, 0.0, 0.0])
     for axis, angle in enumerate((roll_rad, pitch_rad, yaw_rad)):
         vector = np.zeros(3)
@@ -62,47 +62,47 @@ def quaternion_of_euler(roll_rad, pitch_rad, yaw_rad):
 
 
 def product(p, q):
-    """The rotation q, then p."""
+    """The product p q: rotates by q, then by p."""
     pw, pv, qw, qv = p[0], np.asarray(p[1:]), q[0], np.asarray(q[1:])
     return np.array([pw * qw - pv @ qv, *(pw * qv + qw * pv + np.cross(pv, qv))])
 
 
-def _beside(forward):
-    """Two unit vectors that are square to each of N unit vectors and to each other."""
+def _perpendicular_pair(forward):
+    """Two unit vectors perpendicular to each of N unit vectors and to each other."""
     helper = np.where(np.abs(forward[:, 2:]) < 0.9, [0.0, 0.0, 1.0], [1.0, 0.0, 0.0])
     first = np.cross(helper, forward)
     first /= np.linalg.norm(first, axis=1, keepdims=True)
     return first, np.cross(forward, first)
 
 
-def bent(forward, half_angle_rad, u):
-    """N directions, each uniform over the cap of that half-angle about its own axis: 1 - cos of the
-    angle is uniform (Archimedes' hat box)."""
+def perturbed_directions(forward, half_angle_rad, u):
+    """N directions, each uniform over the cap of that half-angle around one of the N axes: 1 - cos of the
+    angle is uniform (Archimedes)."""
     forward = forward / np.linalg.norm(forward, axis=1, keepdims=True)
-    # 1 - cos a = 2 sin^2(a / 2): so that narrow cones lose no digits
+    # 1 - cos a = 2 sin^2(a / 2), which is precise for narrow cones
     half_sine = np.sin(half_angle_rad / 2.0) * np.sqrt(u[:, 0])
     angle = 2.0 * np.arcsin(half_sine)
     azimuth = 2.0 * np.pi * u[:, 1]
-    first, second = _beside(forward)
+    first, second = _perpendicular_pair(forward)
     sideways = np.cos(azimuth)[:, None] * first + np.sin(azimuth)[:, None] * second
     return np.cos(angle)[:, None] * forward + np.sin(angle)[:, None] * sideways
 
 
 def directions_in_cone(axis, half_angle_rad, u):
-    """N unit vectors, uniform over the cap of that half-angle about one axis."""
-    return bent(np.tile(np.asarray(axis, float), (len(u), 1)), half_angle_rad, u)
+    """N unit vectors, uniform over the cap of that half-angle around one axis."""
+    return perturbed_directions(np.tile(np.asarray(axis, float), (len(u), 1)), half_angle_rad, u)
 
 
-def looking(forward, up, roll_rad, boresight):
-    """N x 3 x 3: the boresight along `forward`, `up` upwards in the image, then turned by the roll
-    about the boresight, right-handed. Boresight "z": x right, y down, z forward; "x": x forward, y
-    left, z up (REP-103). Where up lies along forward, another axis takes its place."""
+def look_rotations(forward, up, roll_rad, boresight):
+    """N x 3 x 3: the boresight along `forward`, `up` upwards in the image, then rotated by the roll around the
+    boresight, right-handed. Boresight "z": x right, y down, z forward; "x": x forward, y left, z up (REP-103). Where
+    up is parallel to forward, another axis is used."""
     forward = forward / np.linalg.norm(forward, axis=1, keepdims=True)
     up = np.asarray(up, float) / np.linalg.norm(up)
     right = np.cross(forward, up)
     length = np.linalg.norm(right, axis=1, keepdims=True)
-    right = np.where(length > SMALLEST_SINE, right / np.maximum(length, SMALLEST_SINE),
-                     _beside(forward)[0])
+    right = np.where(length > MIN_SINE, right / np.maximum(length, MIN_SINE),
+                     _perpendicular_pair(forward)[0])
     down = np.cross(forward, right)
     c, s = np.cos(roll_rad)[:, None], np.sin(roll_rad)[:, None]
     right, down = c * right + s * down, c * down - s * right

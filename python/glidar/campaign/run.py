@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A campaign from its file to its folder, by any executor; and parts of it merged."""
+"""Runs a campaign from its file to its folder with any executor, and merges parts of campaigns."""
 
 import contextlib
 import os
@@ -11,20 +11,20 @@ from pathlib import Path
 from glidar import Error
 from glidar._inputs import MAX_UINT32, path_of, whole
 from glidar.campaign import bop_models, files, finish as finishing, folder as folders, index, names, records
-from glidar.campaign.folder import Folder
+from glidar.campaign.folder import CampaignFolder
 from glidar.campaign.local import require_guard, run_local
 from glidar.campaign.plan import Plan, make_plan
 from glidar.campaign.progress import Progress
 from glidar.campaign.spec import read_spec
-from glidar.campaign.work import Done
+from glidar.campaign.work import ShardResult
 
 StrPath = str | os.PathLike[str]
-Execute = Callable[[Plan, Folder, list[int], Callable[[Done], None]], None]
+Execute = Callable[[Plan, CampaignFolder, list[int], Callable[[ShardResult], None]], None]
 
 
 @dataclass(frozen=True)
-class Part:
-    """Of the shards, those whose number leaves this remainder: part `index` of `count`."""
+class ShardSubset:
+    """Part `index` of `count` parts of the shards: those whose number modulo `count` is `index`."""
 
     index: int = 0
     count: int = 1
@@ -39,75 +39,76 @@ class Part:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a run left behind."""
+    """The result of a run."""
 
     trials: int
     failed: int
-    whole: bool  # the campaign is complete, with index and manifest
-    missing: int = 0  # shards that are not there yet
-    rate: float = 0.0  # trials a second of this run
-    error: str = ""  # of failed trials the commonest, with their number
+    whole: bool  # whether the campaign is complete, with index and manifest
+    missing: int = 0  # number of missing shards
+    rate: float = 0.0  # trials per second of this run
+    error: str = ""  # the most frequent error of failed trials, with its count
 
 
-def _prepare(plan: Plan, folder: Folder) -> bool:
-    """Claims the folder, which it gives up again where it has nothing to begin with; returns whether it is new."""
-    is_new: bool = folders.claim(folder, plan)
-    files.remove_leftovers(folder.root)
+def _prepare(plan: Plan, folder: CampaignFolder) -> bool:
+    """Creates or checks the folder. If the models cannot be written, a new folder is removed. Returns whether it is new."""
+    is_new: bool = folders.create_or_check(folder, plan)
+    files.remove_stale_files(folder.root)
     try:
         if plan.spec.outputs.bop and not folder.once("bop").is_file():
             bop_models.write(plan, folder)
     except Error:
         if is_new:
-            folders.release(folder)
+            folders.remove_unused(folder)
         raise
     return is_new
 
 
 @contextlib.contextmanager
-def claimed(spec_path: StrPath, root: StrPath, is_part: bool = False,
-            durable: bool = False) -> Iterator[tuple[Plan, Folder]]:
-    """Reads the campaign and claims its folder; where an error comes before anything is measured, for nothing.
-    Parts may share the folder, and leave it."""
+def opened_for_run(spec_path: StrPath, root: StrPath, is_part: bool = False,
+            durable: bool = False) -> Iterator[tuple[Plan, CampaignFolder]]:
+    """Reads the campaign and opens its folder. If an error occurs before anything is measured, a new folder is removed,
+    except for parts, which may share it."""
     plan = make_plan(read_spec(path_of(spec_path, "campaign")))
-    folder = Folder(Path(path_of(root, "folder")), durable)
+    folder = CampaignFolder(Path(path_of(root, "folder")), durable)
     is_new = _prepare(plan, folder)
     try:
         yield plan, folder
     except Error:
         if is_new and not is_part:
-            folders.release(folder)
+            folders.remove_unused(folder)
         raise
 
 
 def _counts(folder, shards):
-    """(trials, failed) of shards that are done."""
+    """(trials, failed) of completed shards."""
     described = records.read_campaign(folder.plan_file())
     receipts = [records.read_receipt(folder.receipt(shard), described) for shard in shards]
     return sum(r["trials"] for r in receipts), sum(r["failed"] for r in receipts)
 
 
-def run(spec_path: StrPath, root: StrPath, part: Part = Part(), workers: int = 0,
+def run(spec_path: StrPath, root: StrPath, part: ShardSubset = ShardSubset(), workers: int = 0,
         execute: Execute | None = None, quiet: bool = False, *, durable: bool = True) -> Outcome:
-    """Measures what is missing of a part of the campaign, and finishes the campaign when nothing is.
+    """Measures the missing shards of a part of the campaign. When no shard is missing, it finishes the campaign.
 
-    Worker processes import the script that calls this: the call stands below `if __name__ == "__main__":`, unless
-    there is one worker.
+    Worker processes import the script that calls this function. Therefore, with several workers, the call must be within
+    `if __name__ == "__main__":`.
 
     Args:
         spec_path: the campaign file.
-        root: the folder of the data set; one that holds a part of the same campaign goes on.
-        workers: processes; 0: one, and where scenes or sensors differ from trial to trial one per core.
-        execute: runs shards: `execute(plan, folder, shards, report)`; None: this machine does.
-        quiet: shows no progress.
-        durable: syncs every file to the disk before a receipt lists it (fsync), so that a loss of power undoes
-            nothing that is done.
+        root: the folder of the data set; a run in the folder of the same campaign resumes it.
+        part: the part of the shards to measure; default: all.
+        workers: processes; 0: one, or one per core when scenes or sensors differ between trials.
+        execute: the executor, called as `execute(plan, folder, shards, report)`; None: this machine.
+        quiet: whether to show no progress.
+        durable: whether to sync every file to the disk before a receipt lists it (fsync), so that power loss does not
+            damage completed shards.
 
     Raises:
-        Error: bad input, no room, or a disk that fails; trials that fail are counted in the outcome.
+        Error: bad input, a full disk or a disk error. Failed trials are only counted in the outcome.
     """
     require_guard()
     whole(workers, "workers", MAX_UINT32)
-    with claimed(spec_path, root, part.count > 1, durable) as (plan, folder):
+    with opened_for_run(spec_path, root, part.count > 1, durable) as (plan, folder):
         wanted = part.shards(plan.shards)
         todo = folders.missing(folder, wanted)
         done, failed = _counts(folder, sorted(set(wanted) - set(todo)))
@@ -118,23 +119,23 @@ def run(spec_path: StrPath, root: StrPath, part: Part = Part(), workers: int = 0
         progress.finish()
         if part.count > 1:
             return Outcome(progress.done, progress.failed, False, 0, progress.rate(),
-                           _commonest(folder, wanted))
+                           _most_frequent_error(folder, wanted))
         return _finished(folder, progress.rate())
 
 
-def _measure(plan: Plan, folder: Folder, todo: list[int], execute: Execute | None, workers: int,
-             report: Callable[[Done], None]) -> None:
+def _measure(plan: Plan, folder: CampaignFolder, todo: list[int], execute: Execute | None, workers: int,
+             report: Callable[[ShardResult], None]) -> None:
     try:
         if todo and execute:
             execute(plan, folder, todo, report)
         elif todo:
             run_local(plan, folder, todo, report, workers)
     finally:
-        files.remove_leftovers(folder.root)
+        files.remove_stale_files(folder.root)
 
 
-def _commonest(folder: Folder, shards: Sequence[int]) -> str:
-    """Of the errors of failed trials the commonest, in words."""
+def _most_frequent_error(folder: CampaignFolder, shards: Sequence[int]) -> str:
+    """The most frequent error of failed trials, with its count."""
     described = records.read_campaign(folder.plan_file())
     failing = (folder.part(s) for s in shards if records.read_receipt(folder.receipt(s), described)["failed"])
     counts = index.count_errors(failing)
@@ -144,29 +145,29 @@ def _commonest(folder: Folder, shards: Sequence[int]) -> str:
     return f"{count} of {counts.total()}: {text}"
 
 
-def _finished(folder: Folder, rate: float = 0.0) -> Outcome:
+def _finished(folder: CampaignFolder, rate: float = 0.0) -> Outcome:
     described = records.read_campaign(folder.plan_file())
     shards = range(described["shards"])
     missing = folders.count_missing(folder, described)
     if missing:
         return Outcome(0, 0, False, missing, rate)
     trials, failed = finishing.finish(folder, described)
-    return Outcome(trials, failed, True, 0, rate, _commonest(folder, shards) if failed else "")
+    return Outcome(trials, failed, True, 0, rate, _most_frequent_error(folder, shards) if failed else "")
 
 
 def _bad_content(path: Path) -> Error:
-    return Error(str(path), "its content is not what its receipt says", "files as they were written",
-                 "remove its receipt and run that part again")
+    return Error(str(path), "its content differs from its receipt", "files as they were written",
+                 "remove its receipt and run the part again")
 
 
-def _adopt(name, entry, source, target, scratch):
-    """Copies a file of another folder, if it is what its receipt says; None: it has its place already."""
+def _import_file(name, entry, source, target, temp):
+    """Copies a file of another folder and checks its hash; returns the copy, or None when the target has the file."""
     digest, _ = entry
     for root in (source, target):
         names.require_inside(root, root / name)
     if (target / name).is_file() and files.hash_file(target / name) == digest:
         return None
-    path = scratch.path(Path(name).name)
+    path = temp.path(Path(name).name)
     try:
         files.copy(source / name, path)
     except OSError as error:
@@ -176,8 +177,8 @@ def _adopt(name, entry, source, target, scratch):
     return path
 
 
-def _adopt_receipt(receipt, source, target, scratch, described):
-    """Takes over all files of a receipt, and then the receipt."""
+def _import_receipt(receipt, source, target, temp, described):
+    """Copies all files of a receipt, and then the receipt."""
     relative = receipt.relative_to(source)
     content = records.read_receipt(receipt, described)
     known = target / relative
@@ -186,57 +187,57 @@ def _adopt_receipt(receipt, source, target, scratch, described):
     if known.is_file():
         if records.read_receipt(known, described) != content:
             raise Error(str(receipt), f"it differs from {known}", "parts of one campaign give the "
-                        "same shard the same content", "were they run by the same versions?")
+                        "same shard the same content", "check that all parts were run with the same versions")
         return
-    copied = {name: _adopt(name, entry, source, target, scratch) for name, entry in sorted(content["files"].items())}
-    files.publish_all(scratch, [(path, target / name) for name, path in copied.items() if path],
+    copied = {name: _import_file(name, entry, source, target, temp) for name, entry in sorted(content["files"].items())}
+    files.publish_all(temp, [(path, target / name) for name, path in copied.items() if path],
                       [target / name for name, path in copied.items() if not path])
-    files.write_bytes(scratch, known, files.json_bytes(content))
+    files.write_bytes(temp, known, files.json_bytes(content))
 
 
-def _open_target(target, described, scratch):
-    """The folder of the whole: a new one, or one of the campaign whose files are what their receipts say."""
+def _open_target(target, described, temp):
+    """Prepares the target folder: creates it, or checks the files of all receipts that it has."""
     if target.plan_file().is_file():
         folders.require_same(target.root, records.read_campaign(target.plan_file()), described)
     else:
         folders.require_empty(target.root)
-        files.write_json(scratch, target.plan_file(), described)
+        files.write_json(temp, target.plan_file(), described)
     for receipt in records.receipts_in(target.root):
         for name in folders.wrong_files(target.root, records.read_receipt(receipt, described)["files"]):
             raise _bad_content(target.root / name)
 
 
 def merge(sources: Sequence[StrPath], root: StrPath, durable: bool = True) -> Outcome:
-    """Brings the parts of a campaign together and finishes it.
+    """Merges the parts of a campaign and finishes it.
 
     Args:
         sources: folders of the parts.
-        root: folder of the whole: one of the parts, or another.
-        durable: as in run().
+        root: the target folder: one of the parts, or another one.
+        durable: as for run().
 
     Raises:
-        Error: parts of different campaigns, and files that are not what their receipts say.
+        Error: parts of different campaigns, or files that differ from their receipts.
     """
     sources, root = [path_of(source, "part") for source in sources], path_of(root, "folder")
     if not sources:
-        raise Error("parts", "there are none", "folders of parts of a campaign")
+        raise Error("parts", "none are given", "folders of parts of a campaign")
     described = folders.opened(sources[0])[1]
     for source in sources[1:]:
         folders.require_same(source, folders.opened(source)[1], described,
                              f"parts of one campaign, here that of {sources[0]}", "")
-    target = Folder(Path(root), durable)
-    with target.scratch() as scratch:
-        _open_target(target, described, scratch)
+    target = CampaignFolder(Path(root), durable)
+    with target.temp_folder() as temp:
+        _open_target(target, described, temp)
         for source in map(Path, sources):
             if source.resolve() != target.root.resolve():
                 for receipt in records.receipts_in(source):
-                    _adopt_receipt(receipt, source, target.root, scratch, described)
-                _adopt_logs(source, target.root)
-    files.remove_leftovers(root)
+                    _import_receipt(receipt, source, target.root, temp, described)
+                _import_logs(source, target.root)
+    files.remove_stale_files(root)
     return _finished(target)
 
 
-def _adopt_logs(source, target):
+def _import_logs(source, target):
     for log in filter(names.is_log, (source / "log").glob("*.jsonl")):
         copied = target / "log" / log.name
         names.require_inside(source, log)
@@ -249,7 +250,7 @@ def _adopt_logs(source, target):
 
 
 def check(root: StrPath) -> tuple[int, list[str]]:
-    """Compares every file with the manifest: (how many there are, names of those that differ or are missing)."""
+    """Compares every file with the manifest; returns (number of files, names of those that differ or are missing)."""
     folder, _ = folders.opened(root)
     listed = records.read_manifest(folder.root / finishing.MANIFEST_FILE)["files"]
     return len(listed), list(folders.wrong_files(folder.root, listed))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A campaign as a Slurm job array: task i of N measures part i, a last job merges."""
+"""Runs a campaign as a Slurm job array: task i of N measures part i, a last job merges."""
 
 import os
 import re
@@ -14,7 +14,7 @@ from glidar._errors import excerpt
 from glidar.campaign import files, run as running
 
 TASKS = 8
-# -P: no module comes from the folder that the job happens to run in
+# -P: no module is imported from the job's working folder
 PROGRAM = f"{shlex.quote(sys.executable)} -P -m glidar.campaign"
 
 ARRAY = """#!/bin/sh
@@ -46,7 +46,7 @@ def scripts(flags, count):
 
 
 def _find_program(name):
-    """A program of an absolute folder in PATH; None where there is none. Others would run what a folder holds."""
+    """A program in an absolute folder of PATH; None if there is none. Relative folders are unsafe."""
     for folder in os.environ.get("PATH", os.defpath).split(os.pathsep):
         path = os.path.join(folder, name)
         if os.path.isabs(folder) and os.path.isfile(path) and os.access(path, os.X_OK):
@@ -55,7 +55,7 @@ def _find_program(name):
 
 
 def _sbatch(script, *options):
-    """The number of the job."""
+    """Submits a script; returns the job's id."""
     done = subprocess.run([_find_program("sbatch"), "--parsable", *options, str(script)], capture_output=True,
                           text=True, check=False)
     if done.returncode != 0 and "--wait" not in options:
@@ -75,7 +75,7 @@ def _write_scripts(folder, texts):
 
 
 def _submit_array(paths):
-    """The number of the job; where there is none, the scripts are gone."""
+    """Submits the job array; returns its id. Removes the scripts when that fails."""
     try:
         return _sbatch(paths[0])
     except Error:
@@ -85,19 +85,18 @@ def _submit_array(paths):
 
 
 def submit(flags):
-    """Writes and submits the scripts; waits for the end where that is asked for. Returns the Outcome
-    when it is known."""
+    """Writes and submits the scripts. Waits for the end when requested, and then returns the Outcome."""
     if not _find_program("sbatch"):
-        raise Error("--executor slurm", "there is no program sbatch", "a machine that submits to Slurm",
+        raise Error("--executor slurm", "the program sbatch is missing", "a machine that submits to Slurm",
                     "install slurm-client, or run the parts by hand: --shard i/N")
     if flags.shard != (0, 1):
         raise Error("--shard", "given with --executor slurm, whose tasks are the parts", "", "")
-    with running.claimed(flags.campaign, flags.output, durable=flags.durable) as (plan, folder):
+    with running.opened_for_run(flags.campaign, flags.output, durable=flags.durable) as (plan, folder):
         count = min(flags.tasks or TASKS, plan.shards)
         paths = _write_scripts(folder, scripts(flags, count))
         array = _submit_array(paths)
     print(f"submitted job {array}: {count} tasks", flush=True)
     wait = ["--wait"] if flags.wait else []
     merge = _sbatch(paths[1], f"--dependency=afterany:{array}", *wait)
-    print(f"submitted job {merge}: merge, when they have ended", flush=True)
+    print(f"submitted job {merge}: merge, after all tasks", flush=True)
     return running.merge([flags.output], flags.output, flags.durable) if flags.wait else None

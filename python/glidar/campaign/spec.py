@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The campaign file: what is measured, what varies, what is written. docs/campaigns.md tells every key."""
+"""The campaign file: trials, varied values and outputs. docs/campaigns/campaign-file.md lists every key."""
 
 import dataclasses
 from dataclasses import dataclass
@@ -14,29 +14,29 @@ from glidar.campaign.poses import PoseDistribution, read_pose
 
 KEYS = ["name", "seed", "trials", "sampling", "shard_trials", "scene", "sensor", "pose", "vary",
         "outputs"]
-MOST_TRIALS = 1 << 32
-MOST_SHARD_TRIALS = 1 << 16
+MAX_TRIALS = 1 << 32
+MAX_SHARD_TRIALS = 1 << 16
 
 
 @dataclass(frozen=True)
 class Source:
-    """The scenes, or the sensors, that trials choose from."""
+    """The scenes, or the sensors, of the trials."""
 
-    names: tuple  # as the campaign file spells them
-    spread: object  # Constant, Choice or Grid over their places
+    names: tuple  # as in the campaign file
+    distribution: object  # Constant, Choice or Grid of their indices
 
 
 @dataclass(frozen=True)
 class Variation:
-    """A value of scene or sensor file that trials draw."""
+    """A value of a scene or sensor file that differs between trials."""
 
     path: str
     target: variants.Target
-    spread: object
+    distribution: object
 
     @property
     def is_pose(self):
-        return isinstance(self.spread, PoseDistribution)
+        return isinstance(self.distribution, PoseDistribution)
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Spec:
     seed: int
     trials: int
     method: str
-    shard_trials: int | None  # None: as many as make some 32 MB
+    shard_trials: int | None  # None: shards of about 32 MB
     scenes: Source
     sensors: Source
     pose: PoseDistribution
@@ -54,9 +54,9 @@ class Spec:
     file: Path
 
     def quantities(self):
-        """All that trials draw, as (purpose, distribution)."""
-        fixed = [("scene", self.scenes.spread), ("sensor", self.sensors.spread), ("pose", self.pose)]
-        return fixed + [(v.path, v.spread) for v in self.vary]
+        """All random quantities, as (purpose, distribution)."""
+        fixed = [("scene", self.scenes.distribution), ("sensor", self.sensors.distribution), ("pose", self.pose)]
+        return fixed + [(v.path, v.distribution) for v in self.vary]
 
 
 def _read_source(field):
@@ -68,9 +68,9 @@ def _read_source(field):
         yf.require_keys(field, ["grid"])
         names = tuple(yf.text(item) for item in yf.items(found["grid"]))
         return Source(names, Grid(tuple(range(len(names)))))
-    spread = read_choice(field, yf.text)
-    places = tuple(range(len(spread.values)))
-    return Source(spread.values, Choice(places, spread.weights))
+    distribution = read_choice(field, yf.text)
+    indices = tuple(range(len(distribution.values)))
+    return Source(distribution.values, Choice(indices, distribution.weights))
 
 
 def _read_vary(field):
@@ -85,20 +85,20 @@ def _read_vary(field):
 
 
 def _read_trials(field, found, spec):
-    """As many as are asked for; where something is a grid, one round of it when left out."""
+    """The number of trials; default for grids: one pass over all cells."""
     cells = sampling.cells_of(spec.quantities())
     if "trials" in found:
-        return yf.whole(found["trials"], 1, MOST_TRIALS)
+        return yf.whole(found["trials"], 1, MAX_TRIALS)
     if cells == 1:
-        yf.reject(field, "the key 'trials' is missing", "a whole number; it may be left out only where "
-                  "something is a grid")
-    if cells > MOST_TRIALS:
-        yf.reject(field, f"the grids have {cells} cells", f"at most {MOST_TRIALS}")
+        yf.reject(field, "the key 'trials' is missing", "a whole number; optional only when the campaign has "
+                  "a grid")
+    if cells > MAX_TRIALS:
+        yf.reject(field, f"the grids have {cells} cells", f"at most {MAX_TRIALS}")
     return cells
 
 
 def read_spec(path):
-    """Reads a campaign file. Every error names file:line:column, the field and what is allowed."""
+    """Reads a campaign file. Every error states file:line:column, the field and what is allowed."""
     field = yf.read_yaml(path)
     found = yf.require_keys(field, KEYS)
     spec = Spec(
@@ -107,7 +107,7 @@ def read_spec(path):
         trials=0,
         method=yf.optional(found, "sampling", lambda f: yf.one_of(f, sampling.METHODS), "random"),
         shard_trials=yf.optional(found, "shard_trials",
-                                 lambda f: yf.whole(f, 1, MOST_SHARD_TRIALS), None),
+                                 lambda f: yf.whole(f, 1, MAX_SHARD_TRIALS), None),
         scenes=_read_source(yf.need(field, found, "scene")),
         sensors=_read_source(yf.need(field, found, "sensor")),
         pose=read_pose(yf.need(field, found, "pose")),
@@ -116,7 +116,7 @@ def read_spec(path):
         file=Path(path),
     )
     trials = _read_trials(field, found, spec)
-    if spec.method == "latin_hypercube" and trials > sampling.MOST_STRATA:
+    if spec.method == "latin_hypercube" and trials > sampling.MAX_STRATA:
         yf.reject(found["sampling"], f"latin_hypercube with {trials} trials",
-                  f"at most {sampling.MOST_STRATA} trials", "sobol and random take more")
+                  f"at most {sampling.MAX_STRATA} trials", "sobol and random allow more")
     return dataclasses.replace(spec, trials=trials)

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scene and sensor files with some of their values replaced.
+"""Scene and sensor files with some values replaced.
 
-Values are replaced in the text, where they stand, so that line numbers, comments and all else of the
-file stay, and an error about the changed file points at the right line of the user's.
+Values are replaced in the text, so that line numbers, comments and everything else stay the same, and an error in the
+changed file refers to the right line of the user's file.
 """
 
 import os
@@ -19,8 +19,8 @@ from glidar.campaign import yaml_file as yf
 PATH = re.compile(r"(scene|sensor)((?:\.[A-Za-z_]\w*|\[[^\[\]]+\])+)")
 STEP = re.compile(r"\.([A-Za-z_]\w*)|\[([^\[\]]+)\]")
 ANCHOR = re.compile(r"(?:[&!]\S*\s+)*")
-MOST_DIGITS = 9  # of an element's place
-FILE_KEYS = {"model", "file", "sensor", "trajectory", "times", "noise_texture"}  # whose texts may be paths
+MAX_DIGITS = 9  # of an element's index
+FILE_KEYS = {"model", "file", "sensor", "trajectory", "times", "noise_texture"}  # keys whose values may be paths
 
 
 @dataclass(frozen=True)
@@ -32,7 +32,7 @@ class Target:
 
 
 def read_target(field, path):
-    """Takes a dotted path apart; `field` is what it is given for."""
+    """Parses a dotted path; `field` is its location for errors."""
     match = PATH.fullmatch(path)
     if not match:
         yf.reject(field, f"'{excerpt(path)}'", "scene.KEY or sensor.KEY, e.g. sensor.noise[0].sigma_m, "
@@ -42,10 +42,10 @@ def read_target(field, path):
 
 
 def _element(field, word):
-    """The element of a list by its place from 0, or by its name."""
+    """The element of a list with an index from 0, or a name."""
     elements = yf.items(field, 0)
     if word.isdecimal():
-        if len(word) > MOST_DIGITS or int(word) >= len(elements):
+        if len(word) > MAX_DIGITS or int(word) >= len(elements):
             yf.reject(field, f"there is no element [{excerpt(word)}]", f"[0] to [{len(elements) - 1}]")
         return elements[int(word)]
     names = []
@@ -60,14 +60,14 @@ def _element(field, word):
 
 
 def _require_unanchored(field):
-    """A value with an anchor may stand at several places, and would change at all of them."""
-    mark = field.node.start_mark
-    if mark.buffer[mark.pointer] in "&*!":
+    """Rejects values with an anchor, which may occur at several places and would change at all of them."""
+    position = field.node.start_mark
+    if position.buffer[position.pointer] in "&*!":
         yf.reject(field, "an anchor, an alias or a tag", "a plain value", "write it out")
 
 
 def find(field, target, is_replaced=True):
-    """The value that a target names; throws Error where the file does not hold it, or where its text cannot be
+    """The value that a target refers to; raises Error when the file does not contain it, or its text cannot be
     replaced."""
     for step in target.steps:
         if step.startswith("["):
@@ -84,18 +84,18 @@ def _entry(field, key):
     if key not in found:
         yf.reject(field, f"there is no key '{excerpt(key)}'", ", ".join(found) or "no key",
                   yf.did_you_mean(key, list(found))
-                  or "write it into the file with its usual value, so that it can be varied")
+                  or "add it to the file with its default value, so that it can be varied")
     return found[key]
 
 
 def files_of(field):
-    """The files that a scene or sensor file may name, as (field, key, path), each place of the text once; whether
-    they are there is not asked."""
+    """The files that a scene or sensor file may name, as (field, key, path), each place of the text once; they need
+    not exist."""
     folder = Path(field.file).parent
     stack, found, seen = [field], [], set()
     while stack:
         here = stack.pop()
-        if id(here.node) in seen:  # reached by an alias before, or within itself
+        if id(here.node) in seen:  # visited before through an alias
             continue
         seen.add(id(here.node))
         if isinstance(here.node, yaml.MappingNode):
@@ -118,14 +118,14 @@ def _quoted(path):
 
 
 def _place(text, field):
-    """Where the value itself stands, after its anchor and tag: (first, last)."""
+    """The range of the value's text, without its anchor and tag: (first, last)."""
     first, last = field.node.start_mark.index, field.node.end_mark.index
     return ANCHOR.match(text, first).end(), last
 
 
 def replaced(text, field, values):
-    """The text with values replaced: pairs (Target, text); paths of files become absolute, so that
-    it can be read from any folder."""
+    """The text with values replaced, given as pairs (Target, text). Paths of files become absolute, so that the text
+    can be read from any folder."""
     edits = [(value, _quoted(path)) for value, _, path in files_of(field) if os.path.isfile(path)]
     edits += [(find(field, target), value) for target, value in values]
     edits.sort(key=lambda edit: edit[0].node.start_mark.index, reverse=True)
@@ -136,5 +136,5 @@ def replaced(text, field, values):
 
 
 def number_text(value):
-    """The shortest digits that read back the same."""
+    """The shortest digits that represent the value exactly."""
     return repr(float(value)) if float(value) != int(value) else str(int(value))

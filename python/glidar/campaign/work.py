@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Measures shards in this thread and writes them in another, so that neither waits for the other."""
+"""Measures shards in this thread and writes them in another one, concurrently."""
 
 import queue
 import threading
@@ -12,13 +12,13 @@ from glidar.campaign.measure import Measurer
 from glidar.campaign.shard_writer import ShardWriter
 from glidar.campaign.trials import draw_trials
 
-PIECES_WAITING = 2  # batches of frames that may wait to be written
+MAX_QUEUED_BATCHES = 2
 ABANDONED = "abandoned"
 
 
 @dataclass(frozen=True)
-class Done:
-    """A shard that lies in the folder, receipt and all."""
+class ShardResult:
+    """The result of a completed shard."""
 
     shard: int
     trials: int
@@ -26,67 +26,67 @@ class Done:
     seconds: float
 
 
-class Stopped(Exception):
-    """The writer failed; its fault is raised in its place."""
+class WriterStopped(Exception):
+    """The writer thread failed; its exception is raised instead."""
 
 
 class Writer:
-    """The thread that writes. What it raises comes out of the next call."""
+    """The writer thread. Its exceptions are raised by the next call."""
 
     def __init__(self, plan, folder, report):
         self._plan, self._folder, self._report = plan, folder, report
-        self._pieces = queue.Queue(PIECES_WAITING)
-        self._fault = None
+        self._batches = queue.Queue(MAX_QUEUED_BATCHES)
+        self._error = None
         self._thread = threading.Thread(target=self._run, name="campaign writer", daemon=True)
         self._thread.start()
 
-    def put(self, piece):
-        while self._fault is None:
+    def put(self, batch):
+        while self._error is None:
             try:
-                self._pieces.put(piece, timeout=0.1)
+                self._batches.put(batch, timeout=0.1)
                 return
             except queue.Full:
                 continue
-        raise Stopped
+        raise WriterStopped
 
     def check(self):
-        if self._fault is not None:
-            raise Stopped
+        if self._error is not None:
+            raise WriterStopped
 
     def abandon(self):
-        """Ends without the shard under way."""
+        """Ends without completing the current shard."""
         try:
             self.put(ABANDONED)
-        except Stopped:
+        except WriterStopped:
             pass
         self._thread.join()
 
     def close(self):
-        """Waits until all is written; raises what went wrong."""
+        """Waits until everything is written; raises the exception of the thread."""
         try:
             self.put(None)
-        except Stopped:
+        except WriterStopped:
             pass
         self._thread.join()
-        if self._fault is not None:
-            raise self._fault
+        if self._error is not None:
+            raise self._error
 
     def _run(self):
         try:
-            with self._folder.scratch() as scratch:
-                while (piece := self._next()) is not None:
-                    self._write_shard(scratch, *piece)
-        except BaseException as fault:  # it is raised again where the shards come from
-            self._fault = fault
+            with self._folder.temp_folder() as temp:
+                while (batch := self._next()) is not None:
+                    self._write_shard(temp, *batch)
+        except BaseException as error:  # raised again by the caller's thread
+            self._error = error
 
     def _next(self):
-        piece = self._pieces.get()
-        if piece is ABANDONED:
-            raise Stopped
-        return piece
+        batch = self._batches.get()
+        if batch is ABANDONED:
+            raise WriterStopped
+        return batch
 
-    def _write_shard(self, scratch, shard, trials, start):
-        writer = ShardWriter(self._plan, self._folder, scratch, shard, trials)
+    def _write_shard(self, temp, shard, trials, start):
+        writer = ShardWriter(self._plan, self._folder, temp, shard, trials)
         left = len(trials)
         while left:
             rows, frames, error = self._next()
@@ -97,15 +97,15 @@ class Writer:
                     writer.add(row, frames[i])
             left -= len(rows)
         count, failed = writer.commit()
-        done = Done(shard, count, failed, time.monotonic() - start)
-        folders.note(self._folder, shard=shard, trials=count, failed=failed,
+        done = ShardResult(shard, count, failed, time.monotonic() - start)
+        folders.append_log(self._folder, shard=shard, trials=count, failed=failed,
                      seconds=round(done.seconds, 6))
         self._report(done)
 
 
 def work(plan, folder, shards, threads, report):
-    """Measures and writes the shards, an iterable, one after the other; it gives None now and then where it waits
-    for the next. `report` hears of each Done, in the writer's thread. `threads` 0: as many as there are cores."""
+    """Measures and writes the shards of an iterable one after the other. The iterable yields None while it waits for
+    the next shard. `report` is called with each ShardResult, in the writer's thread. `threads` 0: one per core."""
     measurer = Measurer(plan, threads)
     writer = Writer(plan, folder, report)
     try:
@@ -115,9 +115,9 @@ def work(plan, folder, shards, threads, report):
                 continue
             trials = draw_trials(plan, *plan.trials_of(shard))
             writer.put((shard, trials, time.monotonic()))
-            for piece in measurer.measure(trials):
-                writer.put(piece)
-    except Stopped:
+            for batch in measurer.measure(trials):
+                writer.put(batch)
+    except WriterStopped:
         pass
     except BaseException:
         writer.abandon()
@@ -125,7 +125,7 @@ def work(plan, folder, shards, threads, report):
     writer.close()
 
 
-def recall(folder, shard):
-    """The Done of a shard that was done before."""
+def result_of(folder, shard):
+    """The result of a shard that was completed before."""
     receipt = records.read_receipt(folder.receipt(shard), records.read_campaign(folder.plan_file()))
-    return Done(shard, receipt["trials"], receipt["failed"], 0.0)
+    return ShardResult(shard, receipt["trials"], receipt["failed"], 0.0)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Reading YAML so that every error tells file:line:column and the field, as glidar's own files do."""
+"""Reads YAML with errors that state file:line:column and the field, like glidar's own files."""
 
 import difflib
 import math
@@ -13,16 +13,16 @@ from glidar import Error
 from glidar._errors import excerpt
 from glidar.campaign import files
 
-LARGEST_BYTES = 2 << 20
-MOST_NODES = 1_000_000  # of a file with its aliases written out, and NODES_PER_BYTE more for each byte
+MAX_BYTES = 2 << 20
+MAX_NODES = 1_000_000  # of a file with expanded aliases, plus NODES_PER_BYTE for each byte
 NODES_PER_BYTE = 2
-LONGEST_WORD = 200  # that a known one is looked for
+MAX_WORD_LENGTH = 200  # for which a similar key is suggested
 NUMBER = re.compile(r"[+-]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?")
 
 
 @dataclass(frozen=True)
 class Field:
-    """A value of a YAML file, with what an error needs to point at it."""
+    """A value of a YAML file, with its location for errors."""
 
     file: str
     path: str  # "vary.sensor.rate_hz"; empty for the whole file
@@ -31,7 +31,7 @@ class Field:
 
 @dataclass(frozen=True)
 class Rule:
-    """The numbers a field takes, in words for the error."""
+    """The allowed range of a number, with its description for errors."""
 
     least: float = -1.0e15
     most: float = 1.0e15
@@ -47,7 +47,7 @@ CONE_DEG = Rule(0.0, 180.0, False, "a number from 0 to 180")
 
 
 def where(field):
-    """"file:line:column: path", both counted from 1."""
+    """"file:line:column: path", line and column from 1."""
     mark = field.node.start_mark
     place = f"{field.file}:{mark.line + 1}:{mark.column + 1}"
     return f"{place}: {field.path}" if field.path else place
@@ -58,14 +58,14 @@ def reject(field, found, allowed="", remedy=""):
 
 
 def did_you_mean(word, known):
-    if len(word) > LONGEST_WORD:
+    if len(word) > MAX_WORD_LENGTH:
         return ""
     near = difflib.get_close_matches(word, known, 1)
     return f"did you mean '{near[0]}'?" if near else ""
 
 
 def describe(field):
-    """What a field holds, for error texts."""
+    """The value of a field, for errors."""
     node = field.node
     if isinstance(node, yaml.MappingNode):
         return "a map"
@@ -78,7 +78,7 @@ def describe(field):
 
 
 def is_number(node):
-    """Numbers are plain scalars; a quoted one is a text. YAML 1.2's, so that 1e-3 is one too."""
+    """Whether a node is a number: a plain scalar in YAML 1.2's syntax, such as 1e-3; a quoted one is a string."""
     return isinstance(node, yaml.ScalarNode) and node.style is None and bool(
         NUMBER.fullmatch(node.value))
 
@@ -91,8 +91,8 @@ def syntax_error(path, error):
 
 
 def read_text(path):
-    """The text of a YAML file; every fault of reading is an Error."""
-    data = files.read_bytes(path, LARGEST_BYTES)
+    """The text of a YAML file; raises Error when it cannot be read."""
+    data = files.read_bytes(path, MAX_BYTES)
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:
@@ -100,7 +100,7 @@ def read_text(path):
 
 
 class Loader(yaml.SafeLoader):
-    """Where a text or number is an alias, it stands at the alias and not at its anchor."""
+    """Gives scalars of aliases the location of the alias, not of the anchor."""
 
     def compose_node(self, parent, index):
         alias = self.peek_event()
@@ -111,17 +111,17 @@ class Loader(yaml.SafeLoader):
 
 
 def parse(text, path):
-    """The map that a YAML text holds, as a Field."""
+    """The map of a YAML text, as a Field."""
     try:
         documents = list(yaml.compose_all(text, Loader=Loader))
     except RecursionError:
-        raise Error(str(path), "nested too deeply", "YAML of some hundred levels", "") from None
-    except (yaml.YAMLError, ValueError, OverflowError) as error:  # ValueError: a letter by a number that there is not
+        raise Error(str(path), "nested too deeply", "YAML with at most some hundred levels", "") from None
+    except (yaml.YAMLError, ValueError, OverflowError) as error:  # ValueError: an invalid escaped character
         raise syntax_error(path, error) from None
     if len(documents) != 1 or not isinstance(documents[0], yaml.MappingNode):
-        raise Error(str(path), "it is empty, no map, or several documents", "YAML with one map", "")
+        raise Error(str(path), "it is empty, not a map, or several documents", "YAML with one map", "")
     field = Field(str(path), "", documents[0])
-    _require_few_nodes(field, MOST_NODES + NODES_PER_BYTE * len(text))
+    _require_few_nodes(field, MAX_NODES + NODES_PER_BYTE * len(text))
     return field
 
 
@@ -132,14 +132,14 @@ def _children(node):
 
 
 def _require_text(file, node):
-    """Escapes may spell half a letter, or a zero byte, which ends a name for the system."""
+    """Rejects strings with surrogates or zero bytes, which escapes may contain and which end a name for the system."""
     if "\0" in node.value or any("\ud800" <= letter <= "\udfff" for letter in node.value):
-        reject(Field(file, "", node), "a text with a zero byte or half a letter", "text in UTF-8")
+        reject(Field(file, "", node), "a string with a zero byte or an unpaired surrogate", "text in UTF-8")
 
 
 def _require_few_nodes(field, most):
-    """Throws Error where aliases, written out, make a small file a large one, or one without an end."""
-    sizes = {}  # by identity; 0: of a node that holds this one
+    """Raises Error when expanded aliases make a small file large or infinite."""
+    sizes = {}  # by identity; 0: of a node that contains this one
     stack = [field.node]
     while stack:
         node = stack[-1]
@@ -152,13 +152,13 @@ def _require_few_nodes(field, most):
             sizes[id(node)] = 0
             inner = [child for child in _children(node) if not sizes.get(id(child))]
             if any(id(child) in sizes for child in inner):
-                reject(Field(field.file, "", node), "an alias of what holds it", "aliases of other values")
+                reject(Field(field.file, "", node), "an alias of a value that contains it", "aliases of other values")
             stack += inner
         else:
             sizes[id(node)] = 1 + sum(sizes[id(child)] for child in _children(node))
             if sizes[id(node)] > most:
-                reject(Field(field.file, "", node), f"more than {most} values once its aliases are written out",
-                       f"{MOST_NODES} values, and {NODES_PER_BYTE} more for each byte of the file",
+                reject(Field(field.file, "", node), f"more than {most} values with its aliases expanded",
+                       f"{MAX_NODES} values, and {NODES_PER_BYTE} more for each byte of the file",
                        "use fewer aliases, or smaller ones")
 
 
@@ -172,21 +172,21 @@ def child(field, key, node):
 
 
 def entries(field):
-    """Every key with its value, in the order of the file; no key twice."""
+    """All entries of a map, in the order of the file; rejects duplicate keys."""
     if not isinstance(field.node, yaml.MappingNode):
         reject(field, describe(field), "a map")
     found = {}
     for key, value in field.node.value:
         name = key.value if isinstance(key, yaml.ScalarNode) else "?"
         if not isinstance(key, yaml.ScalarNode) or name in found:
-            fault = "given twice" if name in found else "a key that is no text"
-            reject(Field(field.file, f"{field.path}.{name}".strip("."), key), fault, "each key once")
+            problem = "given twice" if name in found else "a key that is not a string"
+            reject(Field(field.file, f"{field.path}.{name}".strip("."), key), problem, "each key once")
         found[name] = child(field, name, value)
     return found
 
 
 def require_keys(field, known):
-    """The entries of a map whose keys are all known."""
+    """The entries of a map; rejects unknown keys."""
     found = entries(field)
     for name, value in found.items():
         if name not in known:
@@ -203,7 +203,7 @@ def need(field, found, key):
 
 
 def items(field, least=1, most=1 << 20):
-    """Every element of a list."""
+    """All elements of a list."""
     if not isinstance(field.node, yaml.SequenceNode):
         reject(field, describe(field), "a list")
     if not least <= len(field.node.value) <= most:
@@ -256,7 +256,7 @@ def numbers(field, count, rule=ANY):
 
 
 def span(field, rule=ANY):
-    """A pair [least, most], the second above the first."""
+    """A pair [least, most] with least < most."""
     least, most = numbers(field, 2, rule)
     if not least < most:
         reject(field, f"[{least:g}, {most:g}]", "two numbers, the second above the first")
@@ -272,7 +272,7 @@ def direction(field):
 
 
 def only_key(field, known):
-    """The one entry of a map that says of which kind something is."""
+    """The single entry of a map that selects a type."""
     found = require_keys(field, known)
     if len(found) != 1:
         reject(field, f"{len(found)} keys", f"one of {', '.join(known)}")
@@ -280,5 +280,5 @@ def only_key(field, known):
 
 
 def optional(found, key, read, otherwise):
-    """What `read` makes of a key's value, or the default where the key is left out."""
+    """The value of a key, read by `read`, or a default when the key is missing."""
     return read(found[key]) if key in found else otherwise

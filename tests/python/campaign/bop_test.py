@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""BOP data sets, read by the format's documentation alone (thodan/bop_toolkit,
+"""BOP data sets, read by an independent reader that follows the format's documentation (thodan/bop_toolkit,
 docs/bop_datasets_format.md), and by the official toolkit where it is installed."""
 
 import json
@@ -21,11 +21,11 @@ from glidar.campaign.plan import make_plan
 from glidar.campaign.spec import read_spec
 from glidar.campaign.trials import draw_trials
 
-# A box in front of a larger one, off the middle; a noiseless camera.
+# A box in front of a larger one, off-centre; a camera without noise.
 SCENE = """models:
   - {name: near, model: builtin:box, scale: 0.5, pose: {position: [0.3, 0, 0]}}
   - {name: far, model: builtin:box, scale: 1.5, pose: {position: [-3, 0.2, 0.1], euler_deg: {yaw: 30}}}
-  - {name: twin, model: builtin:box, scale: 0.5, pose: {position: [0, 4, 0]}}
+  - {name: copy, model: builtin:box, scale: 0.5, pose: {position: [0, 4, 0]}}
 """
 CAMERA = """optics: {type: pinhole, width: 64, height: 48, fx: 80, fy: 90, cx: 30, cy: 25, pixel_centre: 0.5}
 """
@@ -52,7 +52,7 @@ def dataset(tmp_path_factory):
 
 
 def read_ply(path):
-    """An independent reader of the ASCII PLY that BOP asks for."""
+    """An independent reader of the ASCII PLY that BOP requires."""
     lines = path.read_text().splitlines()
     vertices = int(next(line for line in lines if line.startswith("element vertex")).split()[-1])
     start = lines.index("end_header") + 1
@@ -85,9 +85,9 @@ def mask(scene, kind, image, place):
     return pixels > 0
 
 
-def test_models_are_in_millimetres_with_outward_normals_and_true_sizes(dataset):
+def test_models_are_in_millimetres_with_outward_normals_and_correct_sizes(dataset):
     info = json.loads((dataset / "models" / "models_info.json").read_text())
-    assert sorted(info) == ["1", "2"]  # the twin is the near box again
+    assert sorted(info) == ["1", "2"]  # the second model is identical to the near box
     for key, side in (("1", 1000.0), ("2", 3000.0)):
         vertices, normals, _ = read_ply(dataset / "models" / f"obj_{int(key):06}.ply")
         assert np.ptp(vertices, axis=0) == pytest.approx([side] * 3)
@@ -99,7 +99,7 @@ def test_models_are_in_millimetres_with_outward_normals_and_true_sizes(dataset):
         assert ((normals * vertices).sum(axis=1) > 0).all()
 
 
-def test_camera_matrices_have_pixel_centres_at_whole_numbers(dataset):
+def test_camera_matrices_have_pixel_centres_at_integers(dataset):
     camera = json.loads((dataset / "camera.json").read_text())
     assert (camera["width"], camera["height"]) == (64, 48)
     assert [camera[name] for name in ("fx", "fy", "cx", "cy")] == pytest.approx([80, 90, 29.5, 24.5])
@@ -107,7 +107,7 @@ def test_camera_matrices_have_pixel_centres_at_whole_numbers(dataset):
         assert np.array(entry["cam_K"]) == pytest.approx([80, 0, 29.5, 0, 90, 24.5, 0, 0, 1])
 
 
-def test_depth_through_camera_and_pose_lies_on_the_models(dataset):
+def test_reprojected_depth_is_on_the_models(dataset):
     halves = {1: 500.0, 2: 1500.0}
     tested = 0
     for scene, image, camera, objects, _, depth in images(dataset):
@@ -118,7 +118,7 @@ def test_depth_through_camera_and_pose_lies_on_the_models(dataset):
             pixel = np.stack([u, v, np.ones(len(u))])
             point = np.linalg.inv(k) @ pixel * depth[v, u]
             in_model = rotation.T @ (point - translation[:, None])
-            # On the box's surface, but for half a step of depth along the ray.
+            # On the box's surface, except for half a step of depth along the ray.
             error = np.abs(np.abs(in_model).max(axis=0) - halves[entry["obj_id"]])
             assert (error <= STEP_MM).all()
             tested += len(u)
@@ -128,7 +128,7 @@ def test_depth_through_camera_and_pose_lies_on_the_models(dataset):
 def test_world_poses_agree_with_object_poses(dataset):
     for _, _, camera, objects, _, _ in images(dataset):
         rotation, translation = matrix(camera, "cam_R_w2c", "cam_t_w2c")
-        near = objects[0]  # in the world at (0.3, 0, 0) m, not turned
+        near = objects[0]  # in the world at (0.3, 0, 0) m, not rotated
         model_rotation, model_translation = matrix(near, "cam_R_m2c", "cam_t_m2c")
         assert np.abs(model_rotation - rotation).max() < 1e-12
         assert np.abs(rotation @ [300, 0, 0] + translation - model_translation).max() < 1e-6
@@ -147,7 +147,7 @@ def silhouette_area(vertices, k, rotation, translation):
     return inside.reshape(144, 192)
 
 
-def test_masks_and_their_counts_are_those_of_the_projected_boxes(dataset):
+def test_masks_and_pixel_counts_match_the_projected_boxes(dataset):
     truncated = occluded = 0
     for scene, image, camera, objects, infos, depth in images(dataset):
         k = np.array(camera["cam_K"]).reshape(3, 3)
@@ -158,7 +158,7 @@ def test_masks_and_their_counts_are_those_of_the_projected_boxes(dataset):
                 continue
             full, seen = mask(scene, "mask", image, place), mask(scene, "mask_visib", image, place)
             assert not (seen & ~full).any()
-            edge = 0.02 * whole.sum() + 4  # pixels on the very border
+            edge = 0.02 * whole.sum() + 4  # pixels on the border
             assert np.abs(whole[48:96, 64:128].astype(int) - full).sum() <= edge
             assert abs(info["px_count_all"] - whole.sum()) <= edge
             assert info["px_count_visib"] == seen.sum()
@@ -176,7 +176,7 @@ def test_masks_and_their_counts_are_those_of_the_projected_boxes(dataset):
     assert truncated > 0 and occluded > 0
 
 
-def test_the_official_toolkit_reads_it(dataset):
+def test_the_bop_toolkit_reads_the_data_set(dataset):
     inout = pytest.importorskip("bop_toolkit_lib.inout", reason="bop_toolkit is not installed")
     scene = dataset / "val" / "000000"
     camera = inout.load_scene_camera(str(scene / "scene_camera.json"))
@@ -187,7 +187,7 @@ def test_the_official_toolkit_reads_it(dataset):
 
 
 def test_vertex_normals_are_weighted_by_angle():
-    # A corner of three unit squares, one of them cut into two triangles: the cut changes nothing.
+    # A corner of three unit squares, one of them cut into two triangles: this does not change the result.
     vertices = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0]])
     triangles = np.array([[0, 1, 4], [0, 4, 2], [0, 2, 3], [0, 3, 1]])
     assert bop_models.normals_of(vertices, triangles)[0] == pytest.approx(np.ones(3) / np.sqrt(3))
@@ -198,11 +198,11 @@ def test_vertex_normals_are_weighted_by_angle():
     (np.random.default_rng(2).normal(size=(500, 3)) * [1, 1, 0], None),
     (np.linspace(0, 1, 9)[:, None] * [1.0, 2.0, 2.0], 3.0),
     (np.array([[1e7, 2.0, 3.0]]), 0.0), (np.full((5, 3), 0.1), 0.0)])
-def test_diameters_are_the_largest_distance_also_of_planes_lines_and_points(points, expected):
+def test_diameters_are_exact_also_for_planes_lines_and_points(points, expected):
     assert bop_models.diameter(points) == pytest.approx(pdist(points).max() if expected is None else expected)
 
 
-def test_diameters_do_without_a_hull_and_without_memory_for_all_distances(monkeypatch):
+def test_diameters_are_computed_in_blocks_without_a_hull(monkeypatch):
     points = np.random.default_rng(3).normal(size=(300, 3))
     exact = pdist(points).max()
     monkeypatch.setattr(bop_models, "DISTANCES", 1000)
@@ -215,7 +215,7 @@ def test_diameters_do_without_a_hull_and_without_memory_for_all_distances(monkey
     assert bop_models.diameter(points) == pytest.approx(exact, rel=1e-12)
 
 
-def test_a_model_of_one_point_is_written_and_its_trials_go_on(campaign):
+def test_a_model_of_one_point_is_written_and_measured(campaign):
     point = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
     point += "element face 1\nproperty list uchar int vertex_indices\nend_header\n"
     campaign.write("point.ply", point + 3 * "1e7 1e7 1e7\n" + "3 0 1 2\n")
@@ -231,7 +231,7 @@ def test_a_model_of_one_point_is_written_and_its_trials_go_on(campaign):
     (lambda c: c.write("camera.yaml", "optics: {type: pinhole, width: 64, height: 48, fov_deg: 40, "
                        "distortion: {model: radial_tangential, k1: 0.1}}\n"), "distortion"),
     (lambda c: c.write("campaign.yaml", CAMPAIGN.replace("camera.yaml", "VLP-16")), "a spinning")])
-def test_what_bop_cannot_hold_is_refused(campaign, change, words):
+def test_scenes_that_bop_cannot_represent_are_rejected(campaign, change, words):
     campaign.write("scene.yaml", SCENE)
     campaign.write("camera.yaml", CAMERA)
     campaign.write("campaign.yaml", CAMPAIGN)
@@ -246,7 +246,7 @@ def bop_campaign(campaign, text):
     return campaign.folder / "out"
 
 
-def test_trials_too_deep_for_the_images_fail_and_the_rest_goes_on(campaign):
+def test_trials_with_too_large_depths_fail_alone(campaign):
     # From 3, 26.5 and 50 m along +x, where 16 bits hold 32.8 m.
     deep = CAMPAIGN.replace("{cone: {axis: [1, 0, 0], half_angle_deg: 25, radius_m: [3, 4]}}",
                             "{grid: {least: [3, 0, 0], most: [50, 0, 0], counts: [3, 1, 1]}}")
@@ -263,7 +263,7 @@ def test_trials_too_deep_for_the_images_fail_and_the_rest_goes_on(campaign):
     assert len(list((out / "ply").iterdir())) == 4
 
 
-def test_a_camera_that_cannot_be_read_or_bends_in_some_trials_fails_those(campaign):
+def test_trials_with_an_unreadable_or_distorted_camera_fail_alone(campaign):
     out = bop_campaign(campaign, CAMPAIGN.replace("sensor: camera.yaml", "sensor: {grid: [bad.yaml, camera.yaml]}")
                        + "vary: {sensor.optics.distortion.k1: {grid: [0, 0.1]}}\n")
     bends = CAMERA.replace("}", ", distortion: {model: radial_tangential, k1: 0}}")
@@ -277,7 +277,7 @@ def test_a_camera_that_cannot_be_read_or_bends_in_some_trials_fails_those(campai
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root may mount a small disk")
 @pytest.mark.parametrize("model, models_fit", [("builtin:box", True), ("builtin:asteroid", False)])
-def test_a_disk_that_is_full_of_images_or_models_is_told(campaign, model, models_fit):
+def test_a_full_disk_is_reported_for_images_and_models(campaign, model, models_fit):
     out = campaign.folder / "disk" / "out"
     out.parent.mkdir()
     bop_campaign(campaign, CAMPAIGN.replace("trials: 6", "trials: 60"))
@@ -287,8 +287,8 @@ def test_a_disk_that_is_full_of_images_or_models_is_told(campaign, model, models
     if mounted.returncode != 0:
         pytest.skip("mount is not allowed here")
     try:
-        told = campaign.run("disk/out", "--workers", "1", code=2)
-        assert "No space left on device" in told and "make room" in told and "Traceback" not in told
+        printed = campaign.run("disk/out", "--workers", "1", code=2)
+        assert "No space left on device" in printed and "make room" in printed and "Traceback" not in printed
         assert not (out / "tmp").exists()
         assert (out / "receipts" / "once-bop.json").exists() == models_fit
         subprocess.run(["mount", "-o", "remount,size=32m", out.parent], check=True)
@@ -299,7 +299,7 @@ def test_a_disk_that_is_full_of_images_or_models_is_told(campaign, model, models
         subprocess.run(["umount", out.parent], check=True)
 
 
-def test_objects_are_the_same_by_value_and_not_by_spelling(campaign):
+def test_object_ids_depend_on_values_and_not_on_notation(campaign):
     out = bop_campaign(campaign, CAMPAIGN.replace(
         "scene: scene.yaml", "scene: {grid: [scene.yaml, sub/scene.yaml, bad.yaml]}"))
     (campaign.folder / "sub").mkdir()
@@ -326,7 +326,7 @@ def test_objects_are_the_same_by_value_and_not_by_spelling(campaign):
 
 
 @pytest.mark.parametrize("threads", [1, 2])
-def test_silhouettes_take_the_threads_of_their_worker(campaign, monkeypatch, threads):
+def test_silhouettes_use_the_threads_of_their_worker(campaign, monkeypatch, threads):
     bop_campaign(campaign, CAMPAIGN)
     made, simulator = [], glidar.Simulator
 

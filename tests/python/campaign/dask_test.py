@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A campaign on Dask's workers, one of which is killed, is that of a single process."""
+"""A campaign on Dask workers, one of which is killed, has the same bytes as that of a single process."""
 
 import json
 import os
@@ -44,7 +44,7 @@ def cluster(tmp_path):
             process.wait()
 
 
-def test_a_killed_worker_changes_nothing(campaign, cluster):
+def test_a_killed_worker_does_not_change_the_data(campaign, cluster):
     address, processes = cluster
     campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text()
                    .replace("trials: 40", "trials: 2000"))
@@ -61,6 +61,6 @@ def test_a_killed_worker_changes_nothing(campaign, cluster):
     assert campaign.contents("out") == campaign.contents("whole")
 
 
-def test_no_scheduler_is_told(campaign):
-    told = campaign.run("out", "--executor", "dask", "--scheduler", "tcp://127.0.0.1:9", code=2)
-    assert "no Dask scheduler answers at tcp://127.0.0.1:9" in told
+def test_a_missing_scheduler_is_reported(campaign):
+    printed = campaign.run("out", "--executor", "dask", "--scheduler", "tcp://127.0.0.1:9", code=2)
+    assert "no Dask scheduler answers at tcp://127.0.0.1:9" in printed

@@ -10,15 +10,15 @@ from scipy.spatial.transform import Rotation
 from glidar.campaign import distributions as d, philox, poses, rotations
 
 N = 50_000
-P = 1e-4  # a test of a true law fails once in so many seeds; the seeds are fixed
+P = 1e-4  # significance level of the tests; the seeds are fixed
 
 
 def uniforms(dims, name="test"):
     return philox.uniforms(11, np.arange(N), name, dims)
 
 
-def sampled(spread):
-    return spread.sample(uniforms(spread.dims), np.arange(N) % spread.cells)
+def sampled(distribution):
+    return distribution.sample(uniforms(distribution.dims), np.arange(N) % distribution.cells)
 
 
 def cone_law(half_angle_rad):
@@ -26,7 +26,7 @@ def cone_law(half_angle_rad):
     return stats.uniform(np.cos(half_angle_rad), 1 - np.cos(half_angle_rad)).cdf
 
 
-def test_uniform_and_log_uniform_and_truncated_normal_follow_their_laws():
+def test_uniform_log_uniform_and_truncated_normal_samples_follow_their_distributions():
     assert stats.kstest(sampled(d.Uniform(-2, 5)), stats.uniform(-2, 7).cdf).pvalue > P
     assert stats.kstest(np.log(sampled(d.LogUniform(1e-3, 10))),
                         stats.uniform(np.log(1e-3), np.log(1e4)).cdf).pvalue > P
@@ -38,22 +38,22 @@ def test_uniform_and_log_uniform_and_truncated_normal_follow_their_laws():
 @pytest.mark.parametrize("least, most", [
     (0.5, np.inf), (5.0, np.inf), (7.5, np.inf), (7.5, 300.0), (7.99, np.inf), (6.0, 6.001), (-0.5, 7.5),
     (-np.inf, -7.5), (-300.0, -7.9)])
-def test_normals_that_are_cut_off_far_out_follow_their_law(least, most):
+def test_normals_truncated_in_the_tails_follow_their_distribution(least, most):
     u = np.sort(uniforms(1), axis=0)
-    drawn = d.Normal(3.0, 2.0, 3.0 + 2.0 * least, 3.0 + 2.0 * most).sample(u, np.zeros(N))
-    assert (np.diff(drawn) >= 0).all()  # the inverse distribution function
-    x, (low, high) = (drawn - 3.0) / 2.0, (least, most)
-    if least > 0:  # the law of the mirrored numbers: below the mean logarithms keep all digits
+    samples = d.Normal(3.0, 2.0, 3.0 + 2.0 * least, 3.0 + 2.0 * most).sample(u, np.zeros(N))
+    assert (np.diff(samples) >= 0).all()  # the inverse distribution function
+    x, (low, high) = (samples - 3.0) / 2.0, (least, most)
+    if least > 0:  # mirrored, because logarithms are precise below the mean
         x, low, high, u = -x, -most, -least, 1.0 - u
     # (Phi(x) - Phi(low)) / (Phi(high) - Phi(low)) from logarithms, since Phi is as small as 1e-15
     log = stats.norm.logcdf
     law = (np.exp(log(x) - log(high)) - np.exp(log(low) - log(high))) / -np.expm1(log(low) - log(high))
     assert np.abs(law - u[:, 0]).max() < 1e-9
     assert stats.kstest(law, "uniform").pvalue > P
-    assert drawn.min() >= 3.0 + 2.0 * least and drawn.max() <= 3.0 + 2.0 * most
+    assert samples.min() >= 3.0 + 2.0 * least and samples.max() <= 3.0 + 2.0 * most
 
 
-def test_choices_come_as_often_as_their_weights_say():
+def test_frequencies_of_choices_follow_their_weights():
     counts = np.bincount(sampled(d.Choice((0, 1, 2), (0.2, 0.5, 0.3))))
     assert stats.chisquare(counts, N * np.array([0.2, 0.5, 0.3])).pvalue > P
 
@@ -63,7 +63,7 @@ def test_shells_are_uniform_in_volume_and_direction():
     offset = sampled(shell) - [1, 2, 3]
     radius = np.linalg.norm(offset, axis=1)
     assert stats.kstest(radius**3, stats.uniform(8, 117).cdf).pvalue > P
-    for axis in range(3):  # Archimedes: each coordinate of a uniform direction is uniform
+    for axis in range(3):  # by Archimedes, each coordinate of a uniform direction is uniform
         assert stats.kstest(offset[:, axis] / radius, stats.uniform(-1, 2).cdf).pvalue > P
     assert abs(stats.spearmanr(radius, offset[:, 2] / radius).statistic) < 0.02
 
@@ -87,9 +87,9 @@ def test_boxes_are_uniform():
     assert (box[:, 2] == 2).all()
 
 
-def test_orientations_are_uniform_over_all_rotations():
+def test_uniform_rotations_follow_the_haar_measure():
     u = uniforms(3)
-    m = poses.AnyWay().sample(np.zeros((N, 3)), u, np.zeros(N), "z")
+    m = poses.UniformRotation().sample(np.zeros((N, 3)), u, np.zeros(N), "z")
     assert np.abs(m @ m.transpose(0, 2, 1) - np.eye(3)).max() < 1e-12
     assert np.abs(np.linalg.det(m) - 1).max() < 1e-12
     # Every column is a uniform direction, and the angle of rotation has density (1 - cos a) / pi.
@@ -98,7 +98,7 @@ def test_orientations_are_uniform_over_all_rotations():
             assert stats.kstest(m[:, row, column], stats.uniform(-1, 2).cdf).pvalue > P
     angle = np.arccos(np.clip((np.trace(m, axis1=1, axis2=2) - 1) / 2, -1, 1))
     assert stats.kstest(angle, lambda a: (a - np.sin(a)) / np.pi).pvalue > P
-    # Haar's measure does not change when all are turned by one rotation.
+    # The Haar measure is invariant under rotations.
     turned = Rotation.from_rotvec([0.3, 1.0, -0.7]).as_matrix() @ m
     angle = Rotation.from_matrix(turned).magnitude()
     assert stats.kstest(angle, lambda a: (a - np.sin(a)) / np.pi).pvalue > P
@@ -119,8 +119,8 @@ def test_matrices_and_quaternions_agree_with_scipy():
 
 
 @pytest.mark.parametrize("boresight, forward_axis, up_axis", [("z", 2, -1), ("x", 0, 2)])
-def test_aimed_sensors_look_at_their_target_with_up_upwards(boresight, forward_axis, up_axis):
-    aimed = poses.Aimed((1.0, 0.0, 0.0), None, (0, 0, 1), 0.0, d.Constant(0.0))
+def test_look_at_points_the_boresight_at_the_target_with_up_upwards(boresight, forward_axis, up_axis):
+    aimed = poses.LookAt((1.0, 0.0, 0.0), None, (0, 0, 1), 0.0, d.Constant(0.0))
     position = np.array([[6.0, 0.0, 0.0], [1.0, 4.0, 3.0], [1.0, 0.0, 9.0]])
     m = aimed.sample(position, np.empty((3, 0)), np.zeros(3), np.full(3, boresight))
     forward = np.array([1.0, 0, 0]) - position
@@ -129,22 +129,22 @@ def test_aimed_sensors_look_at_their_target_with_up_upwards(boresight, forward_a
     assert np.abs(np.linalg.det(m) - 1).max() < 1e-12
     up = m[:, :, 2] if up_axis == 2 else -m[:, :, 1]
     assert up[0, 2] == pytest.approx(1) and up[1, 2] > 0.7
-    assert np.isfinite(m[2]).all()  # straight from above: some roll is chosen
+    assert np.isfinite(m[2]).all()  # vertical line of sight: any roll is valid
 
 
-def test_roll_turns_the_image_about_the_boresight_and_off_deg_bends_it():
-    rolled = poses.Aimed((0, 0, 0), None, (0, 0, 1), 0.0, d.Constant(90.0))
+def test_roll_rotates_about_the_boresight_and_off_deg_perturbs_it():
+    rolled = poses.LookAt((0, 0, 0), None, (0, 0, 1), 0.0, d.Constant(90.0))
     m = rolled.sample(np.array([[-5.0, 0, 0]]), np.empty((1, 0)), np.zeros(1), np.array(["z"]))[0]
     # Unrolled, x is right (world -y) and y down (world -z); a right-handed quarter turn about z
-    # takes x to where y was.
+    # maps x to the former y.
     assert np.allclose(m, np.array([[0, 0, 1], [0, 1, 0], [-1, 0, 0]]))
-    off = poses.Aimed((0, 0, 0), None, (0, 0, 1), np.radians(20), d.Uniform(-180, 180))
+    off = poses.LookAt((0, 0, 0), None, (0, 0, 1), np.radians(20), d.Uniform(-180, 180))
     position = np.tile([0.0, -3.0, 0.0], (N, 1))
     m = off.sample(position, uniforms(off.dims), np.zeros(N), np.full(N, "x"))
     assert stats.kstest(m[:, 1, 0], cone_law(np.radians(20))).pvalue > P
 
 
-def test_sphere_grids_are_even_and_box_grids_count_x_first():
+def test_sphere_grids_are_even_and_box_grids_vary_x_fastest():
     grid = poses.SphereGrid((0, 0, 0), 2.0, 1000)
     unit = grid.sample(np.empty((1000, 0)), np.arange(1000)) / 2.0
     assert np.abs(np.linalg.norm(unit, axis=1) - 1).max() < 1e-12

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What a durable campaign syncs to the disk, in every process that writes."""
+"""Files and folders that a durable campaign syncs to the disk, in every process that writes."""
 
 import argparse
 import errno
@@ -39,7 +39,7 @@ def failing_sync(monkeypatch, is_failing, code):
     monkeypatch.setattr(os, "fsync", sync)
 
 
-def test_a_run_syncs_by_default_and_not_where_that_is_not_wanted(campaign, synced):
+def test_runs_sync_by_default_and_not_with_no_durable(campaign, synced):
     measure(campaign, "plain", durable=False)
     assert synced == []
     measure(campaign, "out")
@@ -48,18 +48,18 @@ def test_a_run_syncs_by_default_and_not_where_that_is_not_wanted(campaign, synce
     assert campaign.contents("out") == campaign.contents("plain")
 
 
-def test_new_folders_are_synced_in_those_above_them(campaign, synced):
+def test_names_of_new_folders_are_synced(campaign, synced):
     measure(campaign, "a/b/out")
     root = str(campaign.folder)
     for name in ("", "/a", "/a/b", "/a/b/out", "/a/b/out/npz", "/a/b/out/parts", "/a/b/out/receipts"):
         assert root + name in synced
 
 
-def test_a_merge_syncs_also_what_it_found_in_its_place(campaign, synced):
+def test_a_merge_syncs_files_that_exist_already(campaign, synced):
     for i in (0, 1):
-        measure(campaign, f"p{i}", part=run.Part(i, 2), durable=False)
+        measure(campaign, f"p{i}", part=run.ShardSubset(i, 2), durable=False)
     first = sorted((campaign.folder / "p0" / "npz").iterdir())[0]
-    (campaign.folder / "p1" / "npz" / first.name).write_bytes(first.read_bytes())  # left by a killed merge
+    (campaign.folder / "p1" / "npz" / first.name).write_bytes(first.read_bytes())  # as after a killed merge
     assert synced == []
     run.merge([campaign.folder / "p1", campaign.folder / "p0"], campaign.folder / "p1")
     assert str(campaign.folder / "p1" / "npz" / first.name) in synced
@@ -87,8 +87,8 @@ def test_a_folder_that_cannot_be_opened_is_reported(tmp_path):
 
 
 @pytest.mark.skipif(not library(), reason=NO_LIBRARY)
-def test_worker_processes_sync_too(campaign):
-    faults = Faults(campaign.folder / "faults", campaign.folder)
+def test_worker_processes_sync(campaign):
+    faults = Faults(campaign.folder / "fault_injection", campaign.folder)
     campaign.environment |= faults.environment
     counts = {}
     for workers in ("1", "2"):
@@ -98,21 +98,21 @@ def test_worker_processes_sync_too(campaign):
         faults.arm("sync")
         campaign.run(f"plain{workers}", "--workers", workers, "--shard", "0/2", "--no-durable")
         assert faults.calls == 0
-    assert counts["2"] >= counts["1"] >= 5 * 3  # shards, and files and receipt of each
+    assert counts["2"] >= counts["1"] >= 5 * 3  # 5 shards, each with files and a receipt
 
 
-def test_dask_workers_sync_too(campaign, synced):
+def test_dask_workers_sync(campaign, synced):
     planned = plan.make_plan(spec.read_spec(campaign.folder / "campaign.yaml"))
     for is_durable in (False, True):
-        own = folder.Folder(campaign.folder / f"out{is_durable}", is_durable)
-        folder.claim(own, planned)
+        own = folder.CampaignFolder(campaign.folder / f"out{is_durable}", is_durable)
+        folder.create_or_check(own, planned)
         before = len(synced)
         dask_executor.run_shards(planned, own, [0])
         assert (len(synced) > before) == is_durable
 
 
 @pytest.mark.parametrize("is_durable, option", [(True, "--durable"), (False, "--no-durable")])
-def test_slurm_tasks_and_merge_get_the_option(is_durable, option):
+def test_slurm_tasks_and_merge_receive_the_durable_option(is_durable, option):
     flags = argparse.Namespace(output="out", campaign="c.yaml", sbatch=[], durable=is_durable)
     for script in slurm_executor.scripts(flags, 3):
         assert script.rstrip().endswith(f" {option}")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Runs `glidar campaign` again and again in one process, with one call after the other that fails; faults_test.py starts
+"""Runs `glidar campaign` repeatedly in one process, with a different failing call in each run; faults_test.py starts
 it with the library of tests/support/faults.py. Prints a line of JSON for every run.
 
 usage: fault_runs.py FAULT_STATE OUTPUT CALL ERROR COMMAND...
@@ -22,7 +22,7 @@ from glidar.campaign.cli import main  # noqa: E402
 
 
 def run(arguments):
-    """The exit code, and what was printed."""
+    """The exit code and the output."""
     text = io.StringIO()
     with contextlib.redirect_stdout(text), contextlib.redirect_stderr(text):
         code = main(arguments)
@@ -30,7 +30,7 @@ def run(arguments):
 
 
 def runs(faults, output, call, error, arguments):
-    """One run for each call, until a run makes fewer."""
+    """One run for each call, until a run has fewer calls."""
     at = 0
     while True:
         at += 1
@@ -42,8 +42,8 @@ def runs(faults, output, call, error, arguments):
         if not hits:
             return
         left = contents_of(output)
-        again, told = run(arguments)
-        yield {"at": at, "path": path, "code": code, "text": text, "left": left, "again": again, "told": told,
+        again, again_text = run(arguments)
+        yield {"at": at, "path": path, "code": code, "text": text, "left": left, "again": again, "again_text": again_text,
                "contents": contents_of(output)}
 
 
@@ -52,7 +52,7 @@ def start():
     output = Path(output)
     faults = Faults(state, output)
     faults.disarm()
-    durable.THREADS = 1  # the calls come in the same order in every run
+    durable.THREADS = 1  # calls have the same order in every run
     for record in runs(faults, output, call, error, arguments):
         print(json.dumps(record), flush=True)
 

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Disks that fail under a campaign: every error is reported, what is done stays done, and the same command then gives the
-same bytes."""
+"""Disk errors during a campaign: every error is reported, completed shards stay valid, and the same command then gives
+the same bytes."""
 
 import functools
 import json
@@ -31,8 +31,8 @@ FAULTS = [(RUN, "open", "ENOSPC"), (RUN, "write", "EIO"), (RUN, "write", "ENOSPC
 
 @pytest.fixture(scope="module")
 def made(tmp_path_factory):
-    """A campaign with all outputs, its parts, and the bytes of the whole."""
-    campaign = Campaign(tmp_path_factory.mktemp("faults"))
+    """A campaign with all outputs, its parts, and the files of the complete campaign."""
+    campaign = Campaign(tmp_path_factory.mktemp("fault_injection"))
     text = (campaign.folder / "campaign.yaml").read_text()
     campaign.write("campaign.yaml", text.replace("trials: 40", "trials: 2").replace("shard_trials: 4", "shard_trials: 1")
                    + "outputs: {npz: true, pcd: true, kitti: true, tum: true, bop: {images: [depth]}}\n")
@@ -46,8 +46,8 @@ def made(tmp_path_factory):
 
 @functools.cache
 def with_faults(campaign, call, error, command):
-    """A record of fault_runs.py for each fault."""
-    state = campaign.folder / "faults"
+    """A record of fault_runs.py for each failing call."""
+    state = campaign.folder / "fault_injection"
     shutil.rmtree(campaign.folder / "out", ignore_errors=True)
     faults = Faults(state, campaign.folder / "out")
     done = subprocess.run([sys.executable, str(RUNS), str(state), "out", call, error, *command], cwd=campaign.folder,
@@ -58,17 +58,17 @@ def with_faults(campaign, call, error, command):
 
 
 def check(record, whole, error):
-    """What a run left that met a fault, and what the next one made of it."""
+    """Checks the state after a failed run and the result of the next run."""
     reason = re.compile(f"{ERRORS[error]}|error closing file")  # the latter is Arrow's
     described = f"call {record['at']}, on {record['path']}: {record['text']}"
-    if record["code"] == 0:  # logs may miss lines
+    if record["code"] == 0:  # logs may lack lines
         assert "/out/log/" in record["path"], described
     else:
         assert record["code"] == 2, described
         assert record["text"].startswith("glidar: error: ") and reason.search(record["text"]), described
         assert re.search(r"\bout\b", record["text"].split(": ")[2]), described
-    assert record["left"].items() <= whole.items(), described  # whole files alone, and none in tmp
-    assert record["again"] == 0, record["told"]
+    assert record["left"].items() <= whole.items(), described  # complete files only, and none in tmp
+    assert record["again"] == 0, record["again_text"]
     assert record["contents"] == whole, described
 
 
@@ -81,32 +81,32 @@ def test_every_failed_call_is_reported_and_the_next_run_gives_the_same_bytes(mad
         check(record, whole, error)
 
 
-def test_nothing_is_synced_where_that_is_not_wanted(made):
+def test_nothing_is_synced_with_no_durable(made):
     assert with_faults(made, "sync", "EIO", (*RUN, "--no-durable")) == []
     assert with_faults(made, "sync", "EIO", (*MERGE, "--no-durable")) == []
 
 
 def test_every_file_and_folder_is_synced(made):
-    """Each call of sync fails once, so all that are synced are found."""
+    """Each sync call fails once, which lists all paths that are synced."""
     root = str((made.folder / "out").resolve())
     paths = {record["path"].replace(root, "out") for record in with_faults(made, "sync", "EIO", RUN)}
     folders = {str(Path("out", name).parent) for name in made.contents("whole")}
     above = {str(path) for folder in folders for path in Path(folder).parents} - {"."}
     assert folders | above <= paths
-    scratch = [path for path in paths if path.startswith("out/tmp/")]
-    assert {Path(path).suffix for path in scratch} == {".npz", ".pcd", ".bin", ".txt", ".png", ".json", ".parquet",
+    temp = [path for path in paths if path.startswith("out/tmp/")]
+    assert {Path(path).suffix for path in temp} == {".npz", ".pcd", ".bin", ".txt", ".png", ".json", ".parquet",
                                                        ".ply", ".tum"}
 
 
-def test_the_data_of_a_shard_is_synced_before_its_names_and_both_before_its_receipt(made):
-    """A run that stops at any sync leaves receipts of what was synced before alone."""
+def test_shards_are_synced_in_the_order_data_names_receipt(made):
+    """A run that stops at any sync leaves only receipts whose files were synced before."""
     seen = []
     for record in with_faults(made, "sync", "EIO", RUN):
         receipts = {name for name in record["left"] if name.startswith("receipts/0")}
         if "/tmp/" in record["path"] and record["path"].endswith((".npz", ".pcd", ".png", ".bin", ".parquet")):
             seen.append((record["path"], receipts))
             names = {name for name in record["left"] if name.startswith("npz/")}
-            assert len(names) == len(receipts), record  # no data of this shard has a name yet
+            assert len(names) == len(receipts), record  # no file of this shard has its final name yet
         if record["path"].endswith("/out/npz"):
             assert len([name for name in record["left"] if name.startswith("npz/")]) == len(receipts) + 1
     assert seen

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What scene and sensor files name belongs to the campaign: to the last file that is read."""
+"""All files that scene and sensor files read, directly or indirectly, belong to the campaign."""
 
 import json
 import re
@@ -57,7 +57,7 @@ def write_models(campaign):
 
 
 def change(path):
-    """Another content of the same length."""
+    """Other content of the same length."""
     if path.suffix == ".png":
         path.write_bytes(png(50))
     elif path.suffix == ".bin":
@@ -70,26 +70,26 @@ NAMES = ["t.gltf", "t.bin", "t.obj", "t.mtl", "t.png", "noise.png", "path.tum"]
 
 
 @pytest.mark.parametrize("name", NAMES[1:2] + NAMES[3:])
-def test_a_change_of_any_file_that_is_read_is_another_campaign_and_is_named(campaign, name):
+def test_a_changed_input_file_makes_another_campaign_and_is_named(campaign, name):
     folder = write_models(campaign)
     campaign.run("out", "--shard", "0/2")
     campaign.run("out", "--shard", "0/2")
     change(folder / name)
-    told = campaign.run("out", "--shard", "1/2", code=2)
+    printed = campaign.run("out", "--shard", "1/2", code=2)
     kind = "files" if name in ("noise.png", "path.tum") else "parts"
-    assert f"it holds another campaign: scenes[scene.yaml].{kind}.shapes/{name} was " in told
+    assert f"it contains another campaign: scenes[scene.yaml].{kind}.shapes/{name} was " in printed
 
 
-def test_a_model_that_is_gone_is_told_as_such(campaign):
+def test_a_missing_model_is_reported_as_missing(campaign):
     folder = write_models(campaign)
     campaign.run("out", "--shard", "0/2")
     (folder / "t.obj").unlink()
-    told = campaign.run("out", code=2)
-    assert re.search(r"scenes\[scene.yaml\]\.files\.shapes/t\.obj was \"\w+\", is not there", told)
+    printed = campaign.run("out", code=2)
+    assert re.search(r"scenes\[scene.yaml\]\.files\.shapes/t\.obj was \"\w+\", is missing", printed)
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_a_change_while_the_campaign_runs_ends_it_and_no_trial_fails_by_it(campaign, name):
+def test_a_changed_file_stops_the_run_and_fails_no_trial(campaign, name):
     folder = write_models(campaign)
 
     def execute(a_plan, a_folder, shards, report):
@@ -99,22 +99,22 @@ def test_a_change_while_the_campaign_runs_ends_it_and_no_trial_fails_by_it(campa
             change(folder / name)
         work.work(a_plan, a_folder, shards, 1, report)
 
-    with pytest.raises(Error, match=f"shapes/{name}: it was changed while the campaign ran; put it back"):
+    with pytest.raises(Error, match=f"shapes/{name}: it was changed while the campaign ran; restore it"):
         run.run(campaign.folder / "campaign.yaml", campaign.folder / "out", execute=execute, quiet=True)
     assert not (campaign.folder / "out" / "receipts").exists()
 
 
 @pytest.mark.parametrize("name", ["noise.png", "t.png"])
-def test_files_that_come_to_be_while_the_campaign_runs_end_it(campaign, name):
+def test_a_new_input_file_stops_the_run(campaign, name):
     folder = write_models(campaign)
     (folder / name).rename(folder / "away.png")
     planned = plan.make_plan(spec.read_spec(campaign.folder / "campaign.yaml"))
     (folder / "away.png").rename(folder / name)
-    with pytest.raises(inputs.Changed, match=name):
+    with pytest.raises(inputs.InputChanged, match=name):
         inputs.load(planned.scenes[0], loading.load_scene, ())
 
 
-def test_parts_of_models_have_names_that_are_the_same_on_every_machine(campaign):
+def test_names_of_model_files_do_not_depend_on_the_machine(campaign):
     folder = write_models(campaign)
     (campaign.folder / "there").mkdir()
     folder.rename(campaign.folder / "there" / "deep")
@@ -125,7 +125,7 @@ def test_parts_of_models_have_names_that_are_the_same_on_every_machine(campaign)
     assert scene["parts"].keys() == {f"shapes/t.{suffix}" for suffix in ("bin", "mtl", "png")}
 
 
-def test_a_model_of_one_scene_is_that_of_another(campaign):
+def test_models_can_be_shared_by_scenes(campaign):
     folder = write_models(campaign)
     campaign.write("other.yaml", "models: [{model: ./shapes/../shapes/t.obj}]\n")
     campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text().replace(
@@ -135,7 +135,7 @@ def test_a_model_of_one_scene_is_that_of_another(campaign):
     assert "t.mtl was" in campaign.run("out", code=2)
 
 
-def test_models_that_stay_are_measured_by_all_workers(campaign):
+def test_unchanged_models_are_measured_by_all_workers(campaign):
     write_models(campaign)
     campaign.run("one", "--workers", "1")
     campaign.run("two", "--workers", "2")
@@ -147,8 +147,8 @@ PATHS = {"model": "a model", "noise_texture": "materials", "trajectory": "motion
          "times": "trajectory", "sensor": "scene"}
 
 
-def test_every_key_whose_text_the_readers_take_as_a_path_is_known():
-    """Where the library's readers seek files beside their own: a new place needs its key in FILE_KEYS."""
+def test_all_keys_with_paths_are_known():
+    """The library's readers that read further files: the key of a new one must be in FILE_KEYS."""
     assert variants.FILE_KEYS == PATHS.keys()
     found = {}
     for source in sorted((ROOT / "glidar" / "io").rglob("*.cpp")):
@@ -159,7 +159,7 @@ def test_every_key_whose_text_the_readers_take_as_a_path_is_known():
                      "table_yaml.cpp": 2}
 
 
-def test_a_trajectory_with_a_file_of_times_is_found(campaign):
+def test_trajectories_and_their_times_files_are_inputs(campaign):
     row = "1 0 0 {} 0 1 0 0 0 0 1 0\n"
     campaign.write("poses.txt", row.format(0) + row.format(1))
     campaign.write("times.txt", "0\n1\n")
@@ -170,8 +170,8 @@ def test_a_trajectory_with_a_file_of_times_is_found(campaign):
   - {model: builtin:box, motion: {trajectory: {file: poses.txt, times: times.txt}}}
 sensor: camera.yaml
 """)
-    told = campaign.run("out")
-    assert "0 failed" in told
+    printed = campaign.run("out")
+    assert "0 failed" in printed
     listed = json.loads((campaign.folder / "out" / "campaign.json").read_text())["plan"]
     assert listed["scenes"][0]["files"].keys() == {"poses.txt", "times.txt", "camera.yaml"}
     assert listed["sensors"][0]["files"].keys() == {"rays.npy"}
@@ -182,7 +182,7 @@ def replaced(folder, text, values=()):
     return variants.replaced(text, field, [(variants.read_target(field, path), new) for path, new in values])
 
 
-def test_aliases_stand_for_the_same_and_each_place_is_replaced_once(tmp_path):
+def test_aliases_are_replaced_once_per_place(tmp_path):
     for name in ("rock.obj", "t.png"):
         (tmp_path / name).write_text("")
     text = """models:
@@ -193,16 +193,16 @@ def test_aliases_stand_for_the_same_and_each_place_is_replaced_once(tmp_path):
     assert replaced(tmp_path, text) == text.replace("rock.obj", rock).replace("*m", rock).replace("t.png", texture)
 
 
-def test_a_value_that_stands_at_several_places_by_an_alias_does_not_vary(tmp_path):
+def test_values_with_aliases_cannot_be_varied(tmp_path):
     text = "noise:\n  - &n {type: range_gaussian, sigma_m: 0.1}\n  - *n\n"
     for place in (0, 1):
         with pytest.raises(Error, match="an anchor"):
             replaced(tmp_path, text, [(f"sensor.noise[{place}].sigma_m", "1")])
 
 
-def test_a_file_within_itself_ends_and_is_refused(campaign):
+def test_recursive_yaml_is_rejected(campaign):
     campaign.write("scene.yaml", "a: &a\n  b: *a\nmodels: []\n")
-    assert "scene.yaml:1:4: an alias of what holds it" in campaign.run("out", code=2)
+    assert "scene.yaml:1:4: an alias of a value that contains it" in campaign.run("out", code=2)
 
 
 TWICE = [
@@ -216,18 +216,18 @@ TWICE = [
 
 
 @pytest.mark.parametrize("first, second", TWICE)
-def test_a_value_that_varies_twice_is_refused_with_both_names(campaign, first, second):
+def test_overlapping_varied_values_are_rejected_with_both_names(campaign, first, second):
     campaign.add(f"vary:\n  {first}\n  {second}\n")
-    told = campaign.run("out", code=2)
+    printed = campaign.run("out", code=2)
     for path in (first.split(":")[0], second.split(":")[0]):
-        assert f"vary.{path}" in told, told
+        assert f"vary.{path}" in printed, printed
 
 
-def test_values_beside_each_other_vary(campaign):
+def test_neighbouring_values_can_be_varied(campaign):
     campaign.add("vary:\n  scene.models[rock].scale: 2\n  scene.models[1].scale: 3\n  sensor.noise[0].sigma_m: 0\n")
     campaign.run("out")
 
 
-def test_an_element_of_too_many_digits_is_refused(campaign):
+def test_an_index_with_too_many_digits_is_rejected(campaign):
     campaign.add(f"vary:\n  ? scene.models[{'9' * 5000}].scale\n  : 2\n")
     assert "there is no element" in campaign.run("out", code=2)

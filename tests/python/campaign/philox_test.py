@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Random numbers of campaigns: known answers, and functions of (seed, trial, purpose) alone."""
+"""Random numbers of campaigns: published test vectors, and dependence on (seed, trial, purpose) only."""
 
 import numpy as np
 import pytest
@@ -18,16 +18,16 @@ KNOWN = [
 
 
 @pytest.mark.parametrize("counter, key, answer", KNOWN)
-def test_philox_gives_the_published_answers(counter, key, answer):
+def test_philox_gives_the_published_test_vectors(counter, key, answer):
     assert philox.philox4x32(np.array([counter]), key)[0].tolist() == answer
 
 
-def test_a_trials_numbers_do_not_depend_on_the_run_it_is_drawn_in():
+def test_random_numbers_of_a_trial_do_not_depend_on_the_run():
     all_trials = philox.uniforms(7, np.arange(1000), "pose 0", 3)
     assert np.array_equal(all_trials[400:500], philox.uniforms(7, np.arange(400, 500), "pose 0", 3))
 
 
-def test_seeds_trials_purposes_and_blocks_draw_different_numbers():
+def test_random_numbers_differ_between_seeds_trials_purposes_and_blocks():
     base = philox.words(7, [5], "a")
     for other in (philox.words(8, [5], "a"), philox.words(7, [6], "a"), philox.words(7, [5], "b"),
                   philox.words(7, [5], "a", 1), philox.words(7 + (1 << 32), [5], "a"),
@@ -35,7 +35,7 @@ def test_seeds_trials_purposes_and_blocks_draw_different_numbers():
         assert not np.array_equal(base, other)
 
 
-def test_uniforms_are_uniform_and_never_touch_the_ends():
+def test_uniforms_are_uniform_and_strictly_between_0_and_1():
     u = philox.uniforms(1, np.arange(200_000), "x", 3)
     assert 0.0 < u.min() and u.max() < 1.0
     for column in u.T:

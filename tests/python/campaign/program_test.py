@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""`glidar campaign`, and the example that the documentation shows."""
+"""The program `glidar campaign`, and the example in the documentation."""
 
 import os
 import shutil
@@ -26,7 +26,7 @@ def glidar_program(folder, *arguments, path=None):
                           capture_output=True, text=True, timeout=MAX_WAIT_S, check=False)
 
 
-def test_the_example_runs_through_the_program_and_its_files_agree(tmp_path):
+def test_the_example_campaign_runs_and_its_files_agree(tmp_path):
     for folder in ("examples", "sensors"):
         shutil.copytree(ROOT / folder, tmp_path / folder)
     done = glidar_program(tmp_path, "campaign", "run", "examples/campaign.yaml", "-o", "rocks")
@@ -53,18 +53,18 @@ def test_the_documentation_shows_the_example():
     assert shown == "".join(line for line in example.splitlines(True) if not line.startswith("#"))
 
 
-def test_help_is_there_without_python(tmp_path):
+def test_help_works_without_python(tmp_path):
     done = glidar_program(tmp_path, "campaign", "--help", path="/nonexistent")
     assert done.returncode == 0 and "merge DIR" in done.stdout
     assert max(len(line) for line in done.stdout.split("\n")) <= 100
 
 
-def test_options_of_commands_are_told_by_the_package(tmp_path):
+def test_help_of_commands_comes_from_the_package(tmp_path):
     done = glidar_program(tmp_path, "campaign", "run", "--help")
     assert done.returncode == 0 and "--executor" in done.stdout
 
 
-def test_a_missing_package_is_told_with_what_to_do(tmp_path):
+def test_a_missing_glidar_package_is_reported_with_a_remedy(tmp_path):
     for name in ("python3",):
         (tmp_path / name).write_text(f"#!/bin/sh\nexec {sys.executable} -S -E \"$@\"\n")
         (tmp_path / name).chmod(0o755)
@@ -75,12 +75,12 @@ def test_a_missing_package_is_told_with_what_to_do(tmp_path):
         assert "pip install" in done.stderr and done.stderr.count("\n") == 1
 
 
-def test_no_command_is_refused(tmp_path):
+def test_a_missing_command_is_rejected(tmp_path):
     done = glidar_program(tmp_path, "campaign")
     assert done.returncode == 2 and "run, merge, report, check" in done.stderr
 
 
-def test_packages_that_are_not_installed_are_told_with_what_to_do(tmp_path):
+def test_missing_dependencies_are_reported_with_a_remedy(tmp_path):
     code = ("import sys; sys.modules['yaml'] = None; from glidar.campaign.cli import main; "
             "sys.exit(main(['run', 'c.yaml', '-o', 'x']))")
     done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True,
@@ -89,8 +89,8 @@ def test_packages_that_are_not_installed_are_told_with_what_to_do(tmp_path):
     assert "'yaml' is missing" in done.stderr and "pip install" in done.stderr
 
 
-def test_nothing_in_the_current_folder_is_run(tmp_path):
-    """Neither programs by empty and relative folders of PATH nor modules by those of PYTHONPATH."""
+def test_nothing_in_the_current_folder_is_executed(tmp_path):
+    """Neither programs in empty and relative folders of PATH nor modules in those of PYTHONPATH are used."""
     attack = "open('ATTACKED', 'w').write('x')\n"
     package = tmp_path / "glidar" / "campaign"
     package.mkdir(parents=True)
@@ -113,7 +113,7 @@ def test_nothing_in_the_current_folder_is_run(tmp_path):
     assert "none" in done.stderr
 
 
-def test_a_path_of_relative_folders_alone_finds_no_program(tmp_path):
+def test_relative_folders_in_path_are_ignored(tmp_path):
     (tmp_path / "glidar-campaign").write_text("#!/bin/sh\ntouch ATTACKED\n")
     (tmp_path / "glidar-campaign").chmod(0o755)
     for path in (".", "", ":", "bin:.."):

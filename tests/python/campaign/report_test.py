@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The report: one page by itself, with what it promises."""
+"""The HTML report and its charts."""
 
 import base64
 import io
@@ -16,13 +16,13 @@ from PIL import Image
 from scipy import stats
 
 from glidar.campaign import charts, philox, report as campaign_report, rotations
-from glidar.campaign.folder import Folder
+from glidar.campaign.folder import CampaignFolder
 
 VOID = {"meta", "img", "br"}
 
 
 class Page(HTMLParser):
-    """Checks that every element is closed, and gathers what is looked for."""
+    """Checks that every element is closed, and collects texts and images."""
 
     def __init__(self, text):
         super().__init__()
@@ -53,7 +53,7 @@ def report(campaign):
     return Page(text)
 
 
-def test_a_report_stands_by_itself_and_shows_failures_views_and_coverage(campaign):
+def test_a_report_is_one_file_with_failures_views_and_coverage(campaign):
     campaign.write("broken.yaml", "models:\n  - {model: '<none>.obj'}\n")
     campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text().replace(
         "scene: scene.yaml", "name: a & <b>\nscene: {grid: [scene.yaml, broken.yaml]}"))
@@ -62,16 +62,16 @@ def test_a_report_stands_by_itself_and_shows_failures_views_and_coverage(campaig
     assert page.titles == ["Summary", "Failures", "Distributions", "Coverage", "Example views", "Speed"]
     words = "".join(page.text)
     assert "Campaign a & <b>" in words and "20 of 40" in words
-    assert "<none>.obj" in words and "cells of equal area hold a trial" in words
+    assert "<none>.obj" in words and "cells of equal area contain a trial" in words
     assert "distance from the target, m" in words and "range_min_m" in words
     pictures = [source for source in page.sources if source.startswith("data:image/png;base64,")]
     assert len(pictures) == len(page.sources) == 12
     for source in pictures:
         image = Image.open(io.BytesIO(base64.b64decode(source.split(",")[1])))
-        assert max(image.size) == 160 and len(np.unique(np.asarray(image))) > 5  # the rock is seen
+        assert max(image.size) == 160 and len(np.unique(np.asarray(image))) > 5  # the rock is visible
 
 
-def test_trials_without_a_direction_fail_by_that_name_and_are_counted_in_the_charts(campaign):
+def test_trials_without_a_look_at_direction_fail_and_are_counted_in_the_charts(campaign):
     campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text().replace(
         "{shell: {radius_m: [3, 5]}}", "{grid: {least: [-4, 0, 0], most: [4, 0, 0], counts: [5, 1, 1]}}"))
     campaign.environment["PYTHONWARNINGS"] = "error"
@@ -84,7 +84,7 @@ def test_trials_without_a_direction_fail_by_that_name_and_are_counted_in_the_cha
     assert "in the world. 8 without a value" in words and "8 of 40" in words
 
 
-def test_models_without_a_direction_fail_their_trials(campaign):
+def test_trials_with_a_model_without_a_look_at_direction_fail(campaign):
     campaign.add("vary:\n  scene.models[moon].pose:\n    position: {point: [1, 2, 0]}\n"
                  "    orientation: {look_at: {target: [1, 2, 0]}}\n")
     assert "40 trials, 40 failed" in campaign.run("out", "--workers", "1", code=1)
@@ -93,15 +93,15 @@ def test_models_without_a_direction_fail_their_trials(campaign):
 
 
 @pytest.mark.parametrize("directions", [np.full((3, 3), np.nan), np.array([[np.nan] * 3, [0, 0, 1.0]])])
-def test_maps_leave_out_what_has_no_direction(directions):
+def test_maps_omit_undefined_directions(directions):
     assert f"{np.isnan(directions[:, 0]).sum()} without a value" in charts.sphere("title", directions)
 
 
-def test_campaigns_without_npz_or_failures_have_a_report(campaign):
+def test_reports_work_without_npz_and_failures(campaign):
     campaign.add("outputs: {tum: true}\n")
     campaign.run("out")
     words = "".join(report(campaign).text)
-    assert "this campaign writes none" in words and "None." in words
+    assert "this campaign does not write" in words and "None." in words
 
 
 def test_an_unfinished_campaign_has_no_report(campaign):
@@ -110,7 +110,7 @@ def test_an_unfinished_campaign_has_no_report(campaign):
 
 
 @pytest.mark.parametrize("name", ["manifest.json", "index.parquet", "campaign.json", "receipts/000003.json"])
-def test_a_report_replaces_no_file_of_its_campaign(campaign, name):
+def test_a_report_does_not_overwrite_files_of_its_campaign(campaign, name):
     campaign.run("out")
     before = campaign.contents("out")
     assert "it is a file of the campaign" in campaign.call("report", "out", "-o", f"out/{name}", code=2)
@@ -120,7 +120,7 @@ def test_a_report_replaces_no_file_of_its_campaign(campaign, name):
     assert (campaign.folder / "out" / "mine.html").read_text().startswith("<!doctype html>")
 
 
-def test_a_report_is_there_whole_or_not_at_all(campaign):
+def test_a_report_is_written_atomically(campaign):
     campaign.run("out")
 
     def limit():
@@ -134,7 +134,7 @@ def test_a_report_is_there_whole_or_not_at_all(campaign):
     assert "<!doctype html>" in campaign.call("report", "out", "-o", "/dev/stdout")
 
 
-def test_speed_is_that_of_all_runs_without_the_pauses_between_them(campaign):
+def test_speed_excludes_pauses_between_runs(campaign):
     # Two runs, a day apart: two workers for 3 s, one for 2 s; shards of 10 trials.
     log = campaign.folder / "log"
     log.mkdir()
@@ -142,7 +142,7 @@ def test_speed_is_that_of_all_runs_without_the_pauses_between_them(campaign):
     for name, shards in runs.items():
         (log / f"{name}.jsonl").write_text("".join(
             json.dumps({"time_s": end, "shard": 0, "trials": 10, "seconds": took}) + "\n" for end, took in shards))
-    text = campaign_report._speed(Folder(campaign.folder))
+    text = campaign_report._speed(CampaignFolder(campaign.folder))
     assert "50 trials in 5.0 s" in text and "10 trials/s by 3 processes" in text
 
 
@@ -162,7 +162,7 @@ def area(x, y):
 
 
 @pytest.mark.parametrize("sine", [(-1.0, -0.9), (-0.1, 0.1), (0.6, 0.8), (0.97, 1.0)])
-def test_the_map_keeps_areas(sine):
+def test_the_map_projection_preserves_areas(sine):
     edge = np.linspace(*sine, 400)
     x, y = charts._mollweide(np.repeat([0.3, 0.5], 400), np.concatenate([edge, edge[::-1]]), 1.0)
     # Of the whole map, pi R^2 sqrt 2 ... here an ellipse with half-axes 2 and 1, area 2 pi, the part
@@ -170,7 +170,7 @@ def test_the_map_keeps_areas(sine):
     assert area(x, y) / (2 * np.pi) == pytest.approx(0.2 / (2 * np.pi) * (sine[1] - sine[0]) / 2, rel=1e-3)
 
 
-def test_near_is_bright_and_one_far_echo_does_not_spoil_the_scale():
+def test_near_is_bright_and_outliers_do_not_determine_the_scale():
     depth = np.linspace(2.0, 4.0, 400).reshape(20, 20)
     depth[10, 10], depth[0, 1] = 100.0, np.nan
     picture, scale = campaign_report._colour_picture(depth, "depth")
@@ -180,23 +180,23 @@ def test_near_is_bright_and_one_far_echo_does_not_spoil_the_scale():
     assert scale.startswith("2 to \N{GREATER-THAN OR EQUAL TO} 3.9") and scale.endswith("m")
 
 
-def test_intensity_is_grey_from_zero():
+def test_intensity_is_grey_with_a_scale_from_zero():
     picture, scale = campaign_report._colour_picture(np.array([[1.0, 2.0], [0.5, np.nan]]), "intensity")
     assert np.asarray(picture)[:, :, 0].tolist() == [[128, 255], [64, 44]] and scale == "0 to 2"
 
 
-def test_what_is_the_same_in_all_trials_has_no_chart(campaign):
+def test_constant_values_have_no_chart(campaign):
     campaign.run("out")
     text = (campaign.call("report", "out"), (campaign.folder / "out" / "report.html").read_text("utf-8"))[1]
     assert "all are" not in text.split("<h2>Speed")[0]
 
 
-def test_constants_are_listed():
+def test_constant_values_are_listed():
     assert campaign_report._single_value(np.array([2.0, np.nan, 2.0])) == 2.0
     assert campaign_report._single_value(np.array([2.0, 3.0])) is None
     assert campaign_report._single_value(np.array([np.nan])) is None
 
 
-def test_colours_run_from_dark_to_bright():
+def test_the_colour_scale_increases_in_brightness():
     brightness = charts.colours(np.linspace(0, 1, 20)).astype(int).sum(axis=1)
     assert brightness[-1] > brightness[0] and (np.diff(brightness) >= -8).all()

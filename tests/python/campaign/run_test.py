@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Campaigns run, are killed and go on; their data is the same however they ran."""
+"""Campaigns run and resume after a kill; their data does not depend on how they ran."""
 
 import json
 import os
@@ -23,7 +23,7 @@ def receipts(campaign, output):
     return len(list((campaign.folder / output / "receipts").glob("*.json")))
 
 
-def test_every_trial_is_what_glidar_measures_alone(campaign):
+def test_every_trial_is_identical_to_a_single_measurement(campaign):
     campaign.run("out")
     table = pq.read_table(campaign.folder / "out" / "index.parquet").to_pydict()
     assert table["trial"] == list(range(40)) and all(table["ok"])
@@ -46,7 +46,7 @@ def test_every_trial_is_what_glidar_measures_alone(campaign):
     assert sum(table["hits"]) > 1000
 
 
-def test_data_is_the_same_for_any_number_of_workers_and_shards_named_by_content(campaign):
+def test_data_does_not_depend_on_the_number_of_workers(campaign):
     campaign.run("one", "--workers", "1")
     campaign.run("three", "--workers", "3")
     contents = campaign.contents("one")
@@ -57,7 +57,7 @@ def test_data_is_the_same_for_any_number_of_workers_and_shards_named_by_content(
 
 
 @pytest.mark.parametrize("workers", ["1", "2"])
-def test_a_killed_run_goes_on_with_nothing_lost_and_nothing_twice(campaign, workers):
+def test_a_killed_run_resumes_without_loss_or_duplicates(campaign, workers):
     campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text()
                    .replace("trials: 40", "trials: 200"))
     campaign.run("whole")
@@ -75,11 +75,11 @@ def test_a_killed_run_goes_on_with_nothing_lost_and_nothing_twice(campaign, work
               for path in (campaign.folder / "out" / "receipts").iterdir()}
     campaign.run("out", "--workers", workers)
     assert campaign.contents("out") == campaign.contents("whole")
-    assert all(path.stat().st_mtime_ns == when for path, when in before.items())  # not done again
+    assert all(path.stat().st_mtime_ns == when for path, when in before.items())  # not measured again
     assert not (campaign.folder / "out" / "tmp").exists()
 
 
-def test_a_worker_that_dies_is_replaced(campaign):
+def test_a_dead_worker_is_replaced(campaign):
     campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text()
                    .replace("trials: 40", "trials: 1600"))
     campaign.run("whole")
@@ -93,7 +93,7 @@ def test_a_worker_that_dies_is_replaced(campaign):
     assert campaign.contents("out") == campaign.contents("whole")
 
 
-def test_an_interrupt_ends_with_130_and_the_same_command_goes_on(campaign):
+def test_an_interrupted_run_exits_with_130_and_resumes(campaign):
     campaign.run("whole")
     process = campaign.start("run", "campaign.yaml", "-o", "out")
     wait_until(lambda: receipts(campaign, "out") >= 1, "a receipt", process, pause_s=0.002)
@@ -104,7 +104,7 @@ def test_an_interrupt_ends_with_130_and_the_same_command_goes_on(campaign):
     assert campaign.contents("out") == campaign.contents("whole")
 
 
-def test_a_damaged_shard_is_made_again_and_check_finds_what_differs(campaign):
+def test_a_corrupt_shard_is_measured_again_and_check_reports_differences(campaign):
     campaign.run("whole")
     campaign.run("out")
     victim = sorted((campaign.folder / "out" / "npz").iterdir())[3]
@@ -115,15 +115,15 @@ def test_a_damaged_shard_is_made_again_and_check_finds_what_differs(campaign):
     victim.write_bytes(data[:-1])
     campaign.run("out")
     assert campaign.contents("out") == campaign.contents("whole")
-    assert "files as the manifest says" in campaign.call("check", "out")
+    assert "files match the manifest" in campaign.call("check", "out")
 
 
-def test_a_bad_scene_among_many_fails_its_trials_and_the_rest_goes_on(campaign):
+def test_trials_with_an_invalid_scene_fail_alone(campaign):
     campaign.write("broken.yaml", "models:\n  - {model: none.obj}\n")
     campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text().replace(
         "scene: scene.yaml", "scene: {grid: [scene.yaml, broken.yaml, missing.yaml, scene.yaml]}"))
-    told = campaign.run("out", code=1)
-    assert "40 trials, 20 failed" in told and "warning" in told
+    printed = campaign.run("out", code=1)
+    assert "40 trials, 20 failed" in printed and "warning" in printed
     table = pq.read_table(campaign.folder / "out" / "index.parquet").to_pydict()
     assert [i % 4 in (0, 3) for i in range(40)] == table["ok"]
     assert "none.obj" in table["error"][1] and "missing.yaml" in table["error"][2]
@@ -134,7 +134,7 @@ def test_a_bad_scene_among_many_fails_its_trials_and_the_rest_goes_on(campaign):
     assert shard["trial"].tolist() == [0, 3] and len(shard["range"]) == 2
 
 
-def test_numbers_of_sensor_and_scene_and_poses_of_models_vary(campaign):
+def test_values_of_scene_and_sensor_and_poses_of_models_can_vary(campaign):
     campaign.add("""vary:
   sensor.noise[1].probability: {grid: [0, 1]}
   sensor.optics.fov_deg: {uniform: [30, 60]}
@@ -149,14 +149,14 @@ outputs: {npz: {columns: [range, status, object_pose]}}
     assert table["sensor.noise[1].probability"] == [0.0, 1.0] * 20
     assert set(table["scene.models[moon].scale"]) == {0.1, 0.2}
     hits = np.array(table["hits"])
-    assert (hits[0::2] > 0).all() and (hits[1::2] == 0).all()  # all are dropped
+    assert (hits[0::2] > 0).all() and (hits[1::2] == 0).all()  # all returns are dropped
     shard = np.load(sorted((campaign.folder / "out" / "npz").iterdir())[0])
     pose = shard["24x32/object_pose"][0][shard["24x32/status"][0] == 0]
     q = np.array([table[f"scene.models[rock].pose.{name}"][0] for name in ("qw", "qx", "qy", "qz")])
     assert (np.abs(pose[:, 3:] - q).max(axis=1) < 1e-6).any()
 
 
-def test_sensors_of_different_shapes_have_arrays_of_their_own(campaign):
+def test_sensors_of_different_shapes_have_separate_arrays(campaign):
     campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text().replace(
         "sensor: camera.yaml", "sensor: {grid: [camera.yaml, VLP-16]}"))
     campaign.run("out")
@@ -165,10 +165,10 @@ def test_sensors_of_different_shapes_have_arrays_of_their_own(campaign):
     shapes = {key.split("/")[0] for key in shard.files}
     assert len(shapes) == 2
     table = pq.read_table(campaign.folder / "out" / "index.parquet").to_pydict()
-    assert min(table["hits"]) > 0  # the LiDAR's boresight is x, and it too looks at the scene
+    assert min(table["hits"]) > 0  # the LiDAR's boresight is x, which also points at the scene
 
 
-def test_parts_merge_to_the_whole_byte_for_byte(campaign):
+def test_merged_parts_are_byte_identical_to_a_single_run(campaign):
     campaign.add("outputs: {npz: true, tum: true, kitti: true, bop: {images: [depth]}}\n")
     campaign.run("whole")
     for i in (2, 0, 1):
@@ -182,16 +182,16 @@ def test_parts_merge_to_the_whole_byte_for_byte(campaign):
     assert campaign.contents("shared") == campaign.contents("whole")
 
 
-def test_parts_of_other_campaigns_and_damaged_parts_are_refused(campaign):
+def test_parts_of_other_campaigns_and_corrupt_parts_are_rejected(campaign):
     campaign.run("part0", "--shard", "0/2")
     campaign.run("part1", "--shard", "1/2")
     victim = sorted((campaign.folder / "part1" / "npz").iterdir())[0]
     victim.write_bytes(victim.read_bytes()[:-1] + b"x")
-    assert "not what its receipt says" in campaign.call("merge", "part0", "part1", "-o", "m", code=2)
+    assert "differs from its receipt" in campaign.call("merge", "part0", "part1", "-o", "m", code=2)
     campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text()
                    .replace("seed: 5", "seed: 6"))
-    told = campaign.run("part0", code=2)
-    assert "another campaign" in told and "campaign.seed was 5, is 6" in told
+    printed = campaign.run("part0", code=2)
+    assert "another campaign" in printed and "campaign.seed was 5, is 6" in printed
     campaign.run("other", "--shard", "1/2")
     assert "another campaign" in campaign.call("merge", "part0", "other", "-o", "m2", code=2)
 
@@ -204,20 +204,20 @@ def test_a_changed_scene_is_another_campaign_and_a_comment_is_not(campaign):
     assert "another campaign" in campaign.run("out", code=2)
 
 
-def test_a_full_disk_is_told_and_the_campaign_goes_on_when_there_is_room(campaign):
+def test_a_full_disk_is_reported_and_the_campaign_can_resume(campaign):
     def limit():
         resource.setrlimit(resource.RLIMIT_FSIZE, (8000, 8000))
 
-    told = campaign.run("out", code=2, preexec_fn=limit)
-    assert "cannot be written" in told and "it goes on where it stopped" in told
-    assert "Traceback" not in told
+    printed = campaign.run("out", code=2, preexec_fn=limit)
+    assert "cannot be written" in printed and "again to resume" in printed
+    assert "Traceback" not in printed
     campaign.run("out")
     campaign.run("whole")
     assert campaign.contents("out") == campaign.contents("whole")
 
 
 @pytest.mark.skipif(os.geteuid() != 0, reason="only root may mount a small disk")
-def test_a_small_disk_that_is_full_is_told(campaign):
+def test_a_full_file_system_is_reported(campaign):
     disk = campaign.folder / "disk"
     disk.mkdir()
     mounted = subprocess.run(["mount", "-t", "tmpfs", "-o", "size=128k", "tmpfs", disk],
@@ -225,8 +225,8 @@ def test_a_small_disk_that_is_full_is_told(campaign):
     if mounted.returncode != 0:
         pytest.skip("mount is not allowed here")
     try:
-        told = campaign.run("disk/out", code=2)
-        assert "No space left on device" in told and "make room" in told
+        printed = campaign.run("disk/out", code=2)
+        assert "No space left on device" in printed and "make room" in printed
         subprocess.run(["mount", "-o", "remount,size=16m", disk], check=True)
         campaign.run("disk/out")
         campaign.run("whole")
@@ -236,7 +236,7 @@ def test_a_small_disk_that_is_full_is_told(campaign):
 
 
 def peak_mib(campaign, trials):
-    """The most memory that a run of so many small trials took."""
+    """The peak memory of a run with `trials` small trials."""
     campaign.write("camera.yaml", "optics: {type: pinhole, width: 8, height: 8, fov_deg: 40}\n")
     campaign.write("campaign.yaml", (campaign.folder / "campaign.yaml").read_text()
                    .replace("trials: 40", f"trials: {trials}").replace("shard_trials: 4\n", ""))
@@ -247,7 +247,7 @@ def peak_mib(campaign, trials):
     return used.ru_maxrss / 1024
 
 
-def test_ten_times_the_trials_take_no_more_memory(campaign, tmp_path_factory):
+def test_memory_does_not_grow_with_the_number_of_trials(campaign, tmp_path_factory):
     few = peak_mib(campaign, 4000)
     many = peak_mib(Campaign(tmp_path_factory.mktemp("many")), 40000)
     assert many < 1.1 * few
@@ -259,20 +259,20 @@ def test_ten_times_the_trials_take_no_more_memory(campaign, tmp_path_factory):
     (["run", "campaign.yaml", "-o", "x", "--workers", "0"], "a whole number from 1"),
     (["run", "campaign.yaml", "-o", "x", "--tasks", "2"], "--executor slurm"),
     (["run", "campaign.yaml", "-o", "x", "--scheduler", "a"], "--executor dask"),
-    (["run", "campaign.yaml", "-o", "x", "--executor", "dask"], "give --scheduler"),
-    (["run", "campaign.yaml", "-o", "."], "holds no campaign"), (["merge", "."], "holds no campaign"),
-    (["report", "."], "holds no campaign"), (["walk"], "invalid choice"), ([], "COMMAND")])
-def test_bad_commands_are_refused_with_one_line(campaign, arguments, words):
-    told = campaign.call(*arguments, code=2)
-    assert told.startswith("glidar: error: ") and words in told and told.count("\n") == 1
+    (["run", "campaign.yaml", "-o", "x", "--executor", "dask"], "add --scheduler"),
+    (["run", "campaign.yaml", "-o", "."], "contains no campaign"), (["merge", "."], "contains no campaign"),
+    (["report", "."], "contains no campaign"), (["walk"], "invalid choice"), ([], "COMMAND")])
+def test_invalid_commands_are_rejected_with_one_line(campaign, arguments, words):
+    printed = campaign.call(*arguments, code=2)
+    assert printed.startswith("glidar: error: ") and words in printed and printed.count("\n") == 1
 
 
-def test_a_value_that_varies_must_stand_in_the_file(campaign):
+def test_varied_values_must_exist_in_the_file(campaign):
     campaign.add("vary: {sensor.limits.far_m: {uniform: [1, 2]}}\n")
-    told = campaign.run("out", code=2)
-    assert "camera.yaml:1:1" in told and "no key 'limits'" in told
+    printed = campaign.run("out", code=2)
+    assert "camera.yaml:1:1" in printed and "no key 'limits'" in printed
 
 
-def test_all_scenes_or_sensors_bad_is_an_error_and_not_a_campaign(campaign):
+def test_a_campaign_without_a_valid_scene_or_sensor_is_rejected(campaign):
     campaign.write("scene.yaml", "models: [\n")
     assert "none can be read" in campaign.run("out", code=2)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Ways of sampling: any shard alone draws what the whole draws; strata and grids are kept."""
+"""Sampling methods: samples do not depend on shards; strata and grids are complete."""
 
 import numpy as np
 import pytest
@@ -19,14 +19,14 @@ def points(method, first, count, total=1024, seed=5):
 
 
 @pytest.mark.parametrize("method", sampling.METHODS)
-def test_a_shard_alone_draws_what_the_whole_draws(method):
+def test_samples_of_a_shard_do_not_depend_on_other_shards(method):
     whole = points(method, 0, 1024)
     for first, count in ((0, 1), (1, 100), (700, 324), (1023, 1)):
         assert np.array_equal(points(method, first, count), whole[first : first + count])
 
 
 @pytest.mark.parametrize("method", sampling.METHODS)
-def test_points_are_inside_and_depend_on_the_seed(method):
+def test_samples_are_within_0_and_1_and_depend_on_the_seed(method):
     whole = points(method, 0, 1024)
     assert whole.min() > 0.0 and whole.max() < 1.0
     assert not np.array_equal(whole, points(method, 0, 1024, seed=6))
@@ -37,11 +37,11 @@ def test_a_latin_hypercube_has_one_trial_in_every_stratum():
     assert np.array_equal(strata, np.tile(np.arange(1000.0)[:, None], (1, 3)))
 
 
-def test_a_latin_hypercube_draws_its_order_once_for_all_shards(monkeypatch):
+def test_a_latin_hypercube_computes_its_permutation_once(monkeypatch):
     whole = points("latin_hypercube", 0, 1000, 1000, seed=9)
     order = np.argsort(np.argsort(philox.uniforms(9, np.arange(1000), "stratum a 0", 1)[:, 0]))
     assert np.array_equal(np.floor(1000 * whole[:, 0]), order)
-    monkeypatch.setattr(sampling, "PIECE", 300)
+    monkeypatch.setattr(sampling, "TRIALS_PER_CHUNK", 300)
     drawn = sampling._strata.cache_info().misses
     points("latin_hypercube", 0, 1000, 1000, seed=8)
     shards = [points("latin_hypercube", first, 250, 1000, seed=9) for first in range(0, 1000, 250)]
@@ -49,7 +49,7 @@ def test_a_latin_hypercube_draws_its_order_once_for_all_shards(monkeypatch):
     assert sampling._strata.cache_info().misses == drawn + 2
 
 
-def test_sobol_fills_every_elementary_interval_and_spreads_better_than_chance():
+def test_sobol_points_fill_every_elementary_interval():
     sobol = points("sobol", 0, 1024)
     for column in sobol.T:
         assert np.array_equal(np.bincount((column * 1024).astype(int)), np.ones(1024))
@@ -58,7 +58,7 @@ def test_sobol_fills_every_elementary_interval_and_spreads_better_than_chance():
     assert qmc.discrepancy(sobol) < 0.1 * qmc.discrepancy(points("random", 0, 1024))
 
 
-def test_grids_run_through_all_cells_and_then_again():
+def test_grids_enumerate_all_cells_repeatedly():
     quantities = [("x", Grid((1.0, 2.0))), ("u", Uniform(0, 1)), ("y", Grid((10.0, 20.0, 30.0)))]
     draws = sampling.draw(0, 0, 8, 8, "random", quantities)
     x = quantities[0][1].sample(draws["x"].u, draws["x"].cell)

