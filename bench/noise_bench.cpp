@@ -75,11 +75,11 @@ void bench_standard_library() {
 void draw_frame() {
   WordBatch words;
   PairBatch normals;
-  for (std::uint32_t beam = 0; beam < kSide * kSide; beam += kDrawBatch) {
-    draw_words({.seed = 1, .beam = beam}, words);
-    make_normals(words, 0, normals);
+  for (std::uint32_t beam = 0; beam < kSide * kSide; beam += kSampleBatch) {
+    sample_words({.seed = 1, .beam = beam}, words);
+    box_muller(words, 0, normals);
     benchmark::DoNotOptimize(normals);
-    make_normals(words, 1, normals);
+    box_muller(words, 1, normals);
     benchmark::DoNotOptimize(normals);
   }
 }

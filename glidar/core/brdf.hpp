@@ -6,38 +6,38 @@
 
 namespace glidar {
 
-// How a surface sends light back to where it came from (monostatic: lamp and receiver are one), as
-// a function of the incidence angle. What is computed from them stands in
-// sensor/lidar_equation.hpp.
+// Monostatic reflection (transmitter and receiver coincide) as a function of the incidence angle,
+// relative to a white Lambertian surface at normal incidence. sensor/lidar/lidar_equation.hpp
+// evaluates it.
 
-/// A matt surface: reflectance x cos(incidence).
+/// A diffuse (Lambertian) surface: reflectance x cos(incidence).
 struct Lambert {};
 
-/// HELIOS++'s form of Phong (model/ImprovedEnergyModel): reflectance x
+/// Phong's model in the form of HELIOS++ (model/ImprovedEnergyModel): reflectance x
 /// [(1 - specular_share) cos(incidence) + specular_share |cos(2 incidence)|^exponent].
 struct PhongLike {
   double specular_share = 0.2;  ///< 0..1
-  double exponent = 20.0;       ///< from 0
+  double exponent = 20.0;       ///< at least 0
 };
 
-/// Oren and Nayar, "Generalization of Lambert's reflectance model", SIGGRAPH 1994, with lamp and
-/// receiver in one place: reflectance x [A cos + B sin^2], A = 1 - 0.5 s^2 / (s^2 + 0.33),
-/// B = 0.45 s^2 / (s^2 + 0.09).
+/// Oren and Nayar, "Generalization of Lambert's reflectance model", SIGGRAPH 1994, with transmitter
+/// and receiver at the same point: reflectance x [A cos + B sin^2],
+/// A = 1 - 0.5 s^2 / (s^2 + 0.33), B = 0.45 s^2 / (s^2 + 0.09).
 struct OrenNayar {
-  double roughness_rad = 0.3;  ///< s, standard deviation of the facets' slopes, from 0
+  double roughness_rad = 0.3;  ///< s, standard deviation of the facets' slopes, at least 0
 };
 
 /// A retro-reflector: reflectance x gain x exp(-(incidence / width)^2).
 struct RetroReflector {
-  double gain = 300.0;       ///< over a white matt surface, above 0
+  double gain = 300.0;       ///< relative to a white diffuse surface, above 0
   double width_rad = 0.524;  ///< above 0
 };
 
-/// Glass, a solar panel, foil: a weak matt part and a narrow lobe, reflectance x
+/// Glass, solar panels, foil: a weak diffuse part and a narrow lobe, reflectance x
 /// [matt_share cos(incidence) + lobe_gain exp(-incidence^2 / (2 width^2))].
 struct Glossy {
-  double matt_share = 0.05;   ///< 0..1
-  double lobe_gain = 10.0;    ///< of the lobe's middle over a white matt surface, from 0
+  double matt_share = 0.05;   ///< diffuse share, 0..1
+  double lobe_gain = 10.0;    ///< peak of the lobe relative to a white diffuse surface, at least 0
   double width_rad = 0.0524;  ///< above 0
 };
 

@@ -9,7 +9,7 @@
 
 namespace glidar {
 
-/// Where clouds go: a file, a socket.
+/// A destination of point clouds: a file or a socket.
 class CloudSink {
  public:
   CloudSink() = default;
@@ -17,8 +17,8 @@ class CloudSink {
   CloudSink& operator=(const CloudSink&) = delete;
   virtual ~CloudSink() = default;
 
-  /// Takes one organised cloud and the frame it was made of. Throws Error when it cannot be
-  /// delivered; then nothing of it is left behind.
+  /// Writes an organised cloud, made from `frame`. Throws Error when it cannot be delivered; then
+  /// no part of it remains.
   virtual void write(const PointCloud& cloud, const Frame& frame) = 0;
 };
 

@@ -27,8 +27,8 @@ std::string lower(std::string_view text) {
   return result;
 }
 
-/// Optimal string alignment: insertions, deletions, substitutions and exchanged neighbours
-/// (Damerau 1964), with three rows.
+/// Optimal string alignment distance: insertions, deletions, substitutions and transpositions of
+/// neighbours (Damerau 1964), with three rows.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_previous(b.size() + 1);
   std::vector<std::size_t> previous(b.size() + 1);
@@ -48,8 +48,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return previous[b.size()];
 }
 
-/// True when one is the other with more words ("range", "range_m") or a longer last word ("inch",
-/// "in"). Fewer letters than that begin too many words.
+/// True when one is the other with more words ("range", "range_m"), or when the candidate begins
+/// with the word and the word has at least kPrefix letters: shorter prefixes match too much.
 bool is_extension(std::string_view word, std::string_view candidate) {
   constexpr std::size_t kPrefix = 3;
   const bool is_longer = candidate.size() > word.size();
@@ -67,16 +67,17 @@ bool is_word_of(std::string_view word, std::string_view candidate) {
          candidate[candidate.size() - word.size() - 1] == '_';
 }
 
-/// How unlike two words are: 2 for each wrong letter, 3 where one continues or ends with the other;
-/// nothing where one is not meant by the other.
-std::optional<std::size_t> unlikeness(std::string_view word, std::string_view candidate) {
+/// The dissimilarity of two words: 2 per edit, 3 where one begins or ends with the other; empty if
+/// they are not similar.
+std::optional<std::size_t> dissimilarity(std::string_view word, std::string_view candidate) {
   constexpr std::size_t kExtension = 3;
-  // one wrong letter of one, or two of three, make another word; so do two of five with the first
+  // One edit of one letter, or two of three, give an unrelated word. So do two edits of up to five
+  // letters if they change the first.
   const std::size_t few = word.size() <= 1 ? 0 : 1;
-  const std::size_t most = word.size() <= 3 ? few : std::max<std::size_t>(2, word.size() / 3);
+  const std::size_t max = word.size() <= 3 ? few : std::max<std::size_t>(2, word.size() / 3);
   const std::size_t distance = edit_distance(word, candidate);
   const bool is_short = word.size() <= 5 && distance > 1;
-  const bool is_near = distance <= most && !(is_short && !candidate.starts_with(word.front()));
+  const bool is_near = distance <= max && !(is_short && !candidate.starts_with(word.front()));
   if (is_near && distance <= 1) return 2 * distance;
   if (is_extension(word, candidate) || is_word_of(word, candidate)) return kExtension;
   return is_near ? std::optional(2 * distance) : std::nullopt;
@@ -87,7 +88,7 @@ std::optional<std::size_t> unlikeness(std::string_view word, std::string_view ca
 Error::Error(ErrorParts parts) : std::runtime_error(sentence(parts)), parts_(std::move(parts)) {}
 
 std::string number_text(double value) {
-  std::array<char, 32> text{};  // the longest double takes 24
+  std::array<char, 32> text{};  // the longest double has 24 characters
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
   return {text.data(), end};
 }
@@ -99,16 +100,16 @@ void require_number(bool holds, const char* where, double found, const char* all
 }
 
 std::string closest_match(std::string_view word, std::span<const std::string> candidates) {
-  constexpr std::size_t kMaxWord_bytes = 100;  // comparing takes the product of both lengths
+  constexpr std::size_t kMaxWord_bytes = 100;  // the time is the product of both lengths
   if (word.size() > kMaxWord_bytes) return "";
   const std::string wanted = lower(word);
   std::string best;
-  std::size_t least = std::numeric_limits<std::size_t>::max();
+  std::size_t min = std::numeric_limits<std::size_t>::max();
   for (const std::string& candidate : candidates) {
     if (wanted.empty()) break;
-    const std::optional<std::size_t> unlike = unlikeness(wanted, lower(candidate));
-    if (!unlike || *unlike >= least) continue;
-    least = *unlike;
+    const std::optional<std::size_t> difference = dissimilarity(wanted, lower(candidate));
+    if (!difference || *difference >= min) continue;
+    min = *difference;
     best = candidate;
   }
   return best;

@@ -9,16 +9,16 @@
 
 namespace glidar {
 
-/// The four things a user needs to mend bad input.
+/// The four parts of an error message.
 struct ErrorParts {
   std::string where;    ///< file:line:column, field, option or file name
   std::string found;    ///< what is wrong, with the value found
-  std::string allowed;  ///< what would be right; empty if it says itself
-  std::string remedy;   ///< what to do; empty if it says itself
+  std::string allowed;  ///< the allowed values; empty if obvious
+  std::string remedy;   ///< what to do; empty if obvious
 };
 
-/// The one exception type of GLIDAR. Thrown where the cause is known, caught once at the border
-/// (`main`, a language binding, a socket). `what()` reads "where: found; allowed: ...; remedy".
+/// The only exception type of GLIDAR. It is thrown where the cause is known and caught once, in
+/// `main`, a language binding or a socket. what() is "where: found; allowed: ...; remedy".
 class Error : public std::runtime_error {
  public:
   explicit Error(ErrorParts parts);
@@ -28,14 +28,14 @@ class Error : public std::runtime_error {
   ErrorParts parts_;
 };
 
-/// The shortest digits that read back the same, for numbers in error texts: 0.1, 1e+300.
+/// The shortest decimal text that parses to the same double, for error messages: 0.1, 1e+300.
 std::string number_text(double value);
 
-/// Throws Error naming a number that is not allowed: `where` is what it belongs to, "pinhole, fx".
+/// Throws Error unless `holds`. `where` names the number's place, e.g. "pinhole, fx".
 void require_number(bool holds, const char* where, double found, const char* allowed);
 
-/// The candidate probably meant by `word`: by its letters (up to a third wrong, in capitals or
-/// not), or as one continues or ends with the other ("range_m", "range"); "" for none.
+/// The candidate that is most similar to `word`: up to a third of its letters differ (ignoring
+/// case), or one begins or ends with the other ("range_m", "range"). Empty if there is none.
 std::string closest_match(std::string_view word, std::span<const std::string> candidates);
 
 }  // namespace glidar

@@ -7,7 +7,7 @@
 namespace glidar {
 namespace {
 
-/// The first bytes of a character in UTF-8 have other two upper bits than the further ones.
+/// True for the second and later bytes of a UTF-8 character.
 bool continues_character(char byte) {
   return (static_cast<unsigned char>(byte) & 0xC0U) == 0x80U;
 }

@@ -10,8 +10,8 @@ namespace glidar {
 
 inline constexpr std::size_t kMaxExcerpt_bytes = 200;
 
-/// What an error quotes of a file, a message or an option: one line of at most `max_bytes`, without
-/// control characters. A longer text is cut between two characters and ends with "...".
+/// The text as error messages quote it: one line of at most `max_bytes`, control characters
+/// replaced by '?'. A longer text is cut between two UTF-8 characters and ends with "...".
 std::string excerpt(std::string_view text, std::size_t max_bytes = kMaxExcerpt_bytes);
 
 }  // namespace glidar

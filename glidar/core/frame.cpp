@@ -36,8 +36,8 @@ std::string_view name(Status status) {
   return "unknown";
 }
 
-std::string_view name(ReturnSource cause) {
-  switch (cause) {
+std::string_view name(ReturnSource source) {
+  switch (source) {
     case ReturnSource::none:
       return "none";
     case ReturnSource::surface:

@@ -8,8 +8,9 @@
 #include <type_traits>
 
 namespace glidar {
+
 void resize(Hits& hits, std::size_t size, const HitFieldMask& fields) {
-  const auto size_if = [size](bool asked) { return asked ? size : std::size_t{0}; };
+  const auto size_if = [size](bool requested) { return requested ? size : std::size_t{0}; };
   hits.range_m.resize(size);
   hits.instance.resize(size);
   hits.primitive.resize(size);
@@ -45,14 +46,14 @@ void copy_hit(const Hits& from, std::size_t source, const HitFieldMask& fields, 
 }
 
 void write_misses(const HitFieldMask& fields, std::size_t first, std::size_t count, Hits& hits) {
-  const auto fill = [first, count](bool asked, auto& column, const auto& value) {
-    if (asked) std::fill_n(column.begin() + static_cast<std::ptrdiff_t>(first), count, value);
+  const auto fill = [first, count](bool requested, auto& column, const auto& value) {
+    if (requested) std::fill_n(column.begin() + static_cast<std::ptrdiff_t>(first), count, value);
   };
-  // Number by number, which compilers turn into vectors.
-  const auto fill_vectors = [first, count](bool asked, auto& column, auto value) {
+  // Number by number, which compilers vectorise.
+  const auto fill_vectors = [first, count](bool requested, auto& column, auto value) {
     constexpr auto kSize =
         static_cast<std::size_t>(std::decay_t<decltype(column)>::value_type::SizeAtCompileTime);
-    if (asked && count > 0) std::fill_n(column[first].data(), kSize * count, value);
+    if (requested && count > 0) std::fill_n(column[first].data(), kSize * count, value);
   };
   fill(true, hits.range_m, kNaN);
   fill(true, hits.instance, kInvalidId);

@@ -9,10 +9,10 @@
 
 namespace glidar {
 
-/// "No such instance / primitive": the beam hit nothing.
+/// Instance or primitive of a miss.
 inline constexpr std::uint32_t kInvalidId = std::numeric_limits<std::uint32_t>::max();
 
-/// Which optional columns of Hits a cast fills. Only what is asked for is computed.
+/// The optional columns of Hits that a cast fills. Only these are computed.
 struct HitFieldMask {
   bool depth = false;
   bool normal = false;
@@ -25,7 +25,7 @@ struct HitFieldMask {
   bool reflectance = false;
   bool object_point = false;
   bool noise_scale = false;
-  bool poses = false;  ///< no column of Hits, but Frame::beam_poses
+  bool poses = false;  ///< Frame::beam_poses, which is not a column of Hits
 };
 
 inline constexpr HitFieldMask kAllHitFields = {.depth = true,
@@ -41,8 +41,8 @@ inline constexpr HitFieldMask kAllHitFields = {.depth = true,
                                                .noise_scale = true,
                                                .poses = true};
 
-/// What a surface does with the paper's light (equation 5): luminances after textures, and the
-/// exponent. All zero where nothing was hit.
+/// Phong coefficients of a surface (2016 paper, equation 5): luminances after textures, and the
+/// exponent. All zero for a miss.
 struct Reflectance {
   float diffuse = 0.0F;
   float ambient = 0.0F;
@@ -50,11 +50,11 @@ struct Reflectance {
   float shininess = 0.0F;
 };
 
-/// Geometric truth per beam: no noise, no radiometry. N = number of beams. Range, instance and
-/// primitive are always there; the other columns are empty unless asked for.
-/// A miss has range NaN, ids kInvalidId and NaN (colour, diffuse and reflectance: 0, noise scale:
-/// 1) in every other column. Normals are unit vectors in the sensor's frame, turned towards the
-/// sensor.
+/// Geometric ground truth per beam: no noise, no radiometry. N = number of beams. Range, instance
+/// and primitive are always present; the other columns are empty unless requested.
+/// A miss has range NaN, ids kInvalidId and NaN in every other column (colour, diffuse and
+/// reflectance: 0; noise scale: 1). Normals are unit vectors in the sensor frame, oriented towards
+/// the sensor.
 struct Hits {
   std::vector<double> range_m;           ///< N, along the beam from its origin
   std::vector<std::uint32_t> instance;   ///< N, index into Scene::instances
@@ -62,27 +62,27 @@ struct Hits {
   std::vector<double> depth_m;           ///< N, range along the boresight from the sensor's origin
   std::vector<Eigen::Vector3f> normal;   ///< N, of the triangle
   std::vector<Eigen::Vector3f>
-      shading_normal;                ///< N, interpolated vertex normals bent by the normal map
+      shading_normal;                ///< N, interpolated vertex normals with the normal map applied
   std::vector<float> cos_incidence;  ///< N, cosine between -beam and `normal`, 0..1
-  std::vector<float> cos_shading;  ///< N, the same with `shading_normal`; below 0 where the smooth
-                                   ///< surface turns away though its triangle does not
+  std::vector<float> cos_shading;  ///< N, the same with `shading_normal`; below 0 where the shading
+                                   ///< normal faces away although the triangle does not
   std::vector<Eigen::Vector2f> barycentrics;  ///< N, weights of corners 1 and 2
   std::vector<Eigen::Vector3f> colour;   ///< N, diffuse rgb: material x texture x vertex colour
-  std::vector<float> diffuse;            ///< N, Reflectance::diffuse alone, which pulses see
+  std::vector<float> diffuse;            ///< N, Reflectance::diffuse alone, for pulsed sensors
   std::vector<Reflectance> reflectance;  ///< N
   std::vector<Eigen::Vector3d>
       object_point_m;              ///< N, the hit in the object's own frame, before scale
-  std::vector<float> noise_scale;  ///< N, what the surface multiplies a sensor's random errors by
+  std::vector<float> noise_scale;  ///< N, factor of the surface on the sensor's random errors
 };
 
-/// Gives every asked-for column `size` entries (contents unspecified) and empties the others'.
+/// Resizes every requested column to `size` entries (contents unspecified) and clears the others.
 /// Keeps capacity, so a second call of the same size allocates nothing.
 void resize(Hits& hits, std::size_t size, const HitFieldMask& fields);
 
-/// Writes misses at beams [first, first + count).
+/// Writes misses to the beams [first, first + count).
 void write_misses(const HitFieldMask& fields, std::size_t first, std::size_t count, Hits& hits);
 
-/// Copies all asked-for columns of one hit.
+/// Copies all requested columns of one hit.
 void copy_hit(const Hits& from, std::size_t source, const HitFieldMask& fields, Hits& to,
               std::size_t target);
 

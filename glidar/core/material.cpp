@@ -8,7 +8,7 @@
 namespace glidar {
 namespace {
 
-/// The largest integer that is not above x; |x| below 2^63.
+/// The largest integer <= x, for |x| < 2^63.
 std::int64_t floor_of(double x) {
   const auto towards_zero = static_cast<std::int64_t>(x);
   return towards_zero - static_cast<std::int64_t>(static_cast<double>(towards_zero) > x);
@@ -24,14 +24,14 @@ std::uint32_t wrap_beyond(std::int64_t index, std::int64_t size, Wrap wrap) {
   return static_cast<std::uint32_t>(i);
 }
 
-/// Texel index for any integer coordinate under a wrap mode. Most lie inside, where no division is
-/// needed.
+/// Texel index for any integer coordinate under a wrap mode. Most coordinates are inside, where no
+/// division is needed.
 std::uint32_t wrapped(std::int64_t index, std::uint32_t size, Wrap wrap) {
   const bool is_inside = static_cast<std::uint64_t>(index) < size;
   return is_inside ? static_cast<std::uint32_t>(index) : wrap_beyond(index, size, wrap);
 }
 
-/// byte / 255 for every byte: a look-up takes less time than a division.
+/// byte / 255 for every byte: a lookup is faster than a division.
 constexpr std::array<float, 256> kPartOf255 = [] {
   std::array<float, 256> parts{};
   for (std::size_t byte = 0; byte < parts.size(); ++byte) {
@@ -56,7 +56,7 @@ Eigen::Vector4f texel(const Texture& texture, std::uint32_t row, std::uint32_t c
   }
 }
 
-/// Alpha where the texture has it, else grey or red; 1 when it is not used.
+/// Alpha if the texture has it, else grey or red; 1 if the texture is not used.
 float last_channel(const TextureUse& use, const std::vector<Texture>& textures,
                    const Eigen::Vector2f& uv) {
   if (!use.used()) return 1.0F;
@@ -73,7 +73,7 @@ Eigen::Vector4f sample(const TextureUse& use, const std::vector<Texture>& textur
   const Texture& texture = textures[static_cast<std::size_t>(use.texture)];
   const Eigen::Vector2f at = use.uv_scale_rotate * uv + use.uv_offset;
   if (!at.allFinite()) return Eigen::Vector4f::Ones();
-  // Doubles hold any float uv times any image size; texel centres lie at half-integers.
+  // A double represents any float uv times any image size; texel centres are at half-integers.
   constexpr double kFar = 1e15;  // uvs beyond it have no fractional part left
   const double x = std::clamp(double{at.x()} * texture.width, -kFar, kFar);
   const double y = std::clamp((1.0 - double{at.y()}) * texture.height, -kFar, kFar);

@@ -12,7 +12,7 @@
 
 namespace glidar {
 
-/// A decoded image. Row 0 is the top row; `texels` holds height x width x channels bytes.
+/// A decoded image. Row 0 is the top row; `texels` has height x width x channels bytes.
 struct Texture {
   std::string name;  ///< the file it came from, as the model names it
   std::uint32_t width = 0;
@@ -24,8 +24,8 @@ struct Texture {
 enum class Wrap : std::uint8_t { repeat, mirror, clamp };
 enum class Filter : std::uint8_t { linear, nearest };
 
-/// How a material uses a texture. The texel at uv is looked up at `uv_scale_rotate * uv +
-/// uv_offset`, with v upwards (row = (1 - v) * height).
+/// How a material uses a texture. The texture is sampled at `uv_scale_rotate * uv + uv_offset`,
+/// with v upwards (row = (1 - v) * height).
 struct TextureUse {
   static constexpr std::int32_t kNone = -1;
   std::int32_t texture = kNone;  ///< index into Scene::textures, kNone: not used
@@ -39,8 +39,8 @@ struct TextureUse {
   [[nodiscard]] bool used() const { return texture != kNone; }
 };
 
-/// Surface properties of the paper's light model (equation 5). Colours are rgb 0..1 as stored in
-/// the file (no gamma is applied, as in fixed-function OpenGL). A texture multiplies its colour.
+/// Surface properties of the Phong model (2016 paper, equation 5). Colours are rgb 0..1 as stored
+/// in the file (no gamma is applied, as in fixed-function OpenGL). A texture multiplies its colour.
 struct Material {
   std::string name = "default";
   Eigen::Vector3f ambient =
@@ -49,9 +49,9 @@ struct Material {
   Eigen::Vector3f specular = Eigen::Vector3f::Zero();
   float shininess = 0.0F;     ///< exponent s of equation 5, 0..128
   float opacity = 1.0F;       ///< multiplied by the alpha texture
-  float alpha_cutoff = 0.0F;  ///< a texel whose opacity is below lets the ray through; 0: solid
-  Brdf backscatter;           ///< what pulses see of it; its reflectance is that of `spectrum`
-  float mirror = 0.0F;        ///< share of a pulse's light that goes on as from a mirror, 0..1
+  float alpha_cutoff = 0.0F;  ///< rays pass where the opacity is below it; 0: solid
+  Brdf backscatter;           ///< for pulsed sensors, with the reflectance of `spectrum`
+  float mirror = 0.0F;        ///< share of a pulse that is reflected specularly, 0..1
   LookupTable spectrum;       ///< wavelength in m, reflectance 0..1; empty: the luminance of
                               ///< `diffuse`
   float noise_scale = 1.0F;   ///< multiplies random errors of sensors; times the noise texture
@@ -64,13 +64,13 @@ struct Material {
   TextureUse noise_texture;   ///< last channel of the texture (alpha, or grey), 0..1
 };
 
-/// Brightness of a colour as a monochrome sensor sees it: the weights of Rec. ITU-R BT.709.
+/// Luminance of an rgb colour, with the weights of Rec. ITU-R BT.709.
 inline float luminance(const Eigen::Vector3f& rgb) {
   return 0.2126F * rgb.x() + 0.7152F * rgb.y() + 0.0722F * rgb.z();
 }
 
-/// The texel values at a uv, 0..1: grey is spread to rgb, a missing alpha is 1.
-/// An unused TextureUse gives white.
+/// The texture's rgba at a uv, 0..1: grey is copied to rgb, a missing alpha is 1. White if the
+/// texture is not used.
 Eigen::Vector4f sample(const TextureUse& use, const std::vector<Texture>& textures,
                        const Eigen::Vector2f& uv);
 

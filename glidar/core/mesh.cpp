@@ -21,9 +21,9 @@ void require_size(const Mesh& mesh, const std::vector<T>& values, std::size_t si
                .remedy = ""});
 }
 
-/// The box of the vertices from `first` up to `end`, which share an origin.
-Eigen::AlignedBox3d box_of_run(const Mesh& mesh, const Eigen::Vector3d& origin_m, std::size_t first,
-                               std::size_t end) {
+/// The bounding box of the vertices [first, end), which share an origin.
+Eigen::AlignedBox3d box_of_range(const Mesh& mesh, const Eigen::Vector3d& origin_m,
+                                 std::size_t first, std::size_t end) {
   Eigen::AlignedBox3f box;
   for (std::size_t v = first; v < end; ++v) {
     if (mesh.positions_m[v].allFinite()) box.extend(mesh.positions_m[v]);
@@ -32,40 +32,42 @@ Eigen::AlignedBox3d box_of_run(const Mesh& mesh, const Eigen::Vector3d& origin_m
   return {origin_m + box.min().cast<double>(), origin_m + box.max().cast<double>()};
 }
 
-[[noreturn]] void refuse_runs(const Mesh& mesh, std::string found) {
+[[noreturn]] void reject_origins(const Mesh& mesh, std::string found) {
   throw Error({.where = "mesh '" + mesh.name + "', origins",
                .found = std::move(found),
-               .allowed = "runs in rising order, the first from 0, each with triangles of its own "
-                          "vertices",
+               .allowed =
+                   "origins in increasing order, the first from 0, each with triangles of its "
+                   "own vertices",
                .remedy = ""});
 }
 
-void validate_run(const Mesh& mesh, std::size_t run) {
-  const MeshOrigin& origin = mesh.origins[run];
-  const bool is_last = run + 1 == mesh.origins.size();
+void validate_origin(const Mesh& mesh, std::size_t index) {
+  const MeshOrigin& origin = mesh.origins[index];
+  const bool is_last = index + 1 == mesh.origins.size();
   const std::size_t end_vertex =
-      is_last ? mesh.positions_m.size() : mesh.origins[run + 1].first_vertex;
+      is_last ? mesh.positions_m.size() : mesh.origins[index + 1].first_vertex;
   const std::size_t end_triangle =
-      is_last ? mesh.triangles.size() : mesh.origins[run + 1].first_triangle;
+      is_last ? mesh.triangles.size() : mesh.origins[index + 1].first_triangle;
   if (origin.first_vertex > end_vertex || origin.first_triangle > end_triangle ||
       end_vertex > mesh.positions_m.size() || end_triangle > mesh.triangles.size()) {
-    refuse_runs(mesh, "run " + std::to_string(run) + " ends before it begins or beyond the mesh");
+    reject_origins(mesh,
+                   "origin " + std::to_string(index) + " ends before it begins or beyond the mesh");
   }
-  if (!origin.origin_m.allFinite()) refuse_runs(mesh, "an origin that is not finite");
+  if (!origin.origin_m.allFinite()) reject_origins(mesh, "an origin that is not finite");
   for (std::size_t t = origin.first_triangle; t < end_triangle; ++t) {
     for (const std::uint32_t corner : mesh.triangles[t]) {
       if (corner >= origin.first_vertex && corner < end_vertex) continue;
-      refuse_runs(mesh, "triangle " + std::to_string(t) + " uses a vertex of another run");
+      reject_origins(mesh, "triangle " + std::to_string(t) + " uses a vertex of another origin");
     }
   }
 }
 
-void validate_runs(const Mesh& mesh) {
+void validate_origins(const Mesh& mesh) {
   if (mesh.origins.empty()) return;
   if (mesh.origins[0].first_vertex != 0 || mesh.origins[0].first_triangle != 0) {
-    refuse_runs(mesh, "the first run does not begin at 0");
+    reject_origins(mesh, "the first origin does not begin at 0");
   }
-  for (std::size_t run = 0; run < mesh.origins.size(); ++run) validate_run(mesh, run);
+  for (std::size_t i = 0; i < mesh.origins.size(); ++i) validate_origin(mesh, i);
 }
 
 }  // namespace
@@ -75,20 +77,20 @@ const Eigen::Vector3d& origin_of(const Mesh& mesh, std::uint32_t vertex) {
   const auto is_before = [](std::uint32_t v, const MeshOrigin& run) {
     return v < run.first_vertex;
   };
-  // the first run begins at 0, so there is always one before
+  // The first range begins at 0, so there is always one before.
   return std::prev(std::upper_bound(mesh.origins.begin(), mesh.origins.end(), vertex, is_before))
       ->origin_m;
 }
 
 Eigen::AlignedBox3d bounds(const Mesh& mesh) {
   const std::size_t vertices = mesh.positions_m.size();
-  if (mesh.origins.empty()) return box_of_run(mesh, mesh.origin_m, 0, vertices);
+  if (mesh.origins.empty()) return box_of_range(mesh, mesh.origin_m, 0, vertices);
   Eigen::AlignedBox3d box;
   for (std::size_t i = 0; i < mesh.origins.size(); ++i) {
     const std::size_t end =
         i + 1 < mesh.origins.size() ? mesh.origins[i + 1].first_vertex : vertices;
     const Eigen::AlignedBox3d of_run =
-        box_of_run(mesh, mesh.origins[i].origin_m, mesh.origins[i].first_vertex, end);
+        box_of_range(mesh, mesh.origins[i].origin_m, mesh.origins[i].first_vertex, end);
     if (!of_run.isEmpty()) box.extend(of_run);
   }
   return box;
@@ -116,7 +118,7 @@ void validate(const Mesh& mesh) {
                    .remedy = ""});
     }
   }
-  validate_runs(mesh);
+  validate_origins(mesh);
   for (const Eigen::Vector3f& position : mesh.positions_m) {
     if (position.allFinite()) continue;
     throw Error({.where = "mesh '" + mesh.name + "', positions_m",

@@ -13,7 +13,7 @@ namespace glidar {
 
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// The origin of a run of vertices and triangles, up to the next run.
+/// The origin of a range of vertices and triangles, which ends where the next one begins.
 struct MeshOrigin {
   std::uint32_t first_vertex = 0;
   std::uint32_t first_triangle = 0;
@@ -21,10 +21,10 @@ struct MeshOrigin {
 };
 
 /// A triangle mesh in its own object frame (metres, right-handed).
-/// The position of a vertex is `origin_m + positions_m[i]`, or, where `origins` is not empty, the
-/// origin of its run + positions_m[i] (vertex_m() does both): single precision is relative to a
-/// nearby origin, so that parts far from the frame's zero and from each other lose no detail.
-/// V vertices, T triangles. The front of a triangle is where its corners run counter-clockwise.
+/// The position of a vertex is `origin_m + positions_m[i]`, or, if `origins` is not empty, the
+/// origin of its range + positions_m[i] (vertex_m() handles both): single precision is relative to
+/// a nearby origin, so that parts far from the frame's zero and from each other keep their detail.
+/// V vertices, T triangles. From its front, the corners of a triangle are counter-clockwise.
 struct Mesh {
   std::string name;
   Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
@@ -37,12 +37,13 @@ struct Mesh {
       colours;                      ///< V, rgb 0..1, multiplies the diffuse colour; empty: white
   std::vector<Triangle> triangles;  ///< T, each corner < V
   std::vector<std::uint16_t> material_slots;  ///< T, index into Instance::materials; empty: all 0
-  /// Runs in rising order, the first from vertex 0 and triangle 0; the triangles of a run use its
-  /// vertices alone. Empty: origin_m holds for all. Otherwise origin_m is not used.
+  /// Ranges in increasing order, the first from vertex 0 and triangle 0; the triangles of a range
+  /// use its own vertices only. Empty: origin_m applies to all vertices; otherwise origin_m is not
+  /// used.
   std::vector<MeshOrigin> origins = {};
 };
 
-/// The origin that the position of a vertex is relative to.
+/// The origin of a vertex's position, in the object frame.
 const Eigen::Vector3d& origin_of(const Mesh& mesh, std::uint32_t vertex);
 
 /// The position of a vertex in the object frame, m.
@@ -61,8 +62,8 @@ inline std::uint16_t material_slot(const Mesh& mesh, std::uint32_t triangle) {
 /// One past the largest slot that a triangle uses (at least 1).
 std::uint32_t slot_count(const Mesh& mesh);
 
-/// Throws Error unless every array has its stated size, every corner is a vertex (of the triangle's
-/// own run), runs rise and every position is finite.
+/// Throws Error unless every array has its stated size, every corner is a vertex of the triangle's
+/// own range, ranges increase and every position is finite.
 void validate(const Mesh& mesh);
 
 }  // namespace glidar

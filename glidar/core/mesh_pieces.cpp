@@ -16,7 +16,7 @@ struct Run {
   std::size_t end_triangle;
 };
 
-Run run_of(const Mesh& mesh, std::size_t i) {
+Run range_of(const Mesh& mesh, std::size_t i) {
   const bool is_last = i + 1 == mesh.origins.size();
   return {.first_vertex = mesh.origins[i].first_vertex,
           .end_vertex = is_last ? mesh.positions_m.size() : mesh.origins[i + 1].first_vertex,
@@ -66,7 +66,7 @@ std::vector<MeshPiece> cut_at_origins(const Mesh& mesh) {
       piece->mesh.name = mesh.name;
       piece->mesh.origin_m = origin_m;
     }
-    append(mesh, run_of(mesh, i), *piece);
+    append(mesh, range_of(mesh, i), *piece);
   }
   return pieces;
 }

@@ -9,7 +9,7 @@
 
 namespace glidar {
 
-/// The runs of a mesh that have the same origin, as a mesh with that one origin.
+/// The ranges of a mesh that have the same origin, as a mesh with one origin.
 struct MeshPiece {
   Mesh mesh;
   std::vector<std::uint32_t> triangles;  ///< of the whole mesh, one per triangle of the piece

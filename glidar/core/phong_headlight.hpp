@@ -4,13 +4,13 @@
 
 namespace glidar {
 
-/// The paper's light: a lamp at the sensor. Equation (3): a = 1 / (constant + linear d + quadratic
-/// d^2). The defaults are those of the 2015 program.
+/// The point light at the sensor of the 2016 paper. Its equation (3), the attenuation at distance
+/// d: a = 1 / (constant + linear d + quadratic d^2). The defaults are those of the original GLIDAR.
 struct PhongHeadlight {
   double attenuation_constant = 1.0;
   double attenuation_linear_per_m = 1e-4;
   double attenuation_quadratic_per_m2 = 1e-8;
-  double ambient = 0.2;  ///< of the whole scene, multiplies the materials' ambient colour
+  double ambient = 0.2;  ///< factor of all materials' ambient colours
 };
 
 }  // namespace glidar

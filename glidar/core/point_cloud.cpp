@@ -11,7 +11,7 @@
 namespace glidar {
 namespace {
 
-/// All that columns are made of.
+/// The inputs of all columns.
 struct Source {
   const Frame& frame;
   const Beams& beams;
@@ -23,7 +23,7 @@ struct Source {
 
 using Fill = void (*)(const Source&, Column&);
 
-/// A column of the closed set: its fields, what the cast must have kept, and how it is filled.
+/// A known column: its fields, the hit columns that it requires, and the function that fills it.
 struct ColumnKind {
   std::string name;
   std::vector<std::string> components;
@@ -41,16 +41,16 @@ std::vector<T>& sized(Column& column, std::size_t count) {
   return values;
 }
 
-/// Calls body(begin, end) on pieces that together are all points.
+/// Calls body(begin, end) for ranges that cover all points.
 template <class Body>
 void for_pieces(const Source& source, const Body& body) {
-  constexpr std::size_t kPoints = 16384;  // a piece is worth waking a thread for
+  constexpr std::size_t kPoints = 16384;  // fewer are not worth a thread
   const std::size_t size = source.beams.size();
   if (source.thread_pool == nullptr) return body(0, size);
   source.thread_pool->parallel_for(size, kPoints, body);
 }
 
-/// One number a point, from a function of the beam's index.
+/// One number per point, from a function of the beam's index.
 template <class T, class Function>
 void fill_each(const Source& source, Column& column, Function value_of) {
   T* const values = sized<T>(column, source.beams.size()).data();
@@ -59,7 +59,7 @@ void fill_each(const Source& source, Column& column, Function value_of) {
   });
 }
 
-/// Components of a fixed-size vector a point, from a function of the beam's index.
+/// The components of a fixed-size vector per point, from a function of the beam's index.
 template <class T, int kSize, class Function>
 void fill_vectors(const Source& source, Column& column, Function vector_of) {
   T* const values = sized<T>(column, source.beams.size() * kSize).data();
@@ -73,7 +73,7 @@ void fill_vectors(const Source& source, Column& column, Function vector_of) {
 
 using Vectors = std::vector<Eigen::Vector3d>;
 
-/// Points at these ranges on beams.
+/// The points at these ranges on the beams.
 void fill_points(const Source& s, const std::vector<double>& ranges_m, const Vectors& directions,
                  const Vectors& origins_m, Column& column) {
   const Eigen::Matrix3d rotation = s.cloud_from_sensor.linear();
@@ -120,7 +120,7 @@ void fill_intensity(const Source& s, Column& column) {
 }
 
 void fill_range(const Source& s, Column& column) {
-  const double offset_m = s.beams.range_offset_m;  // ranges are reported from where it says
+  const double offset_m = s.beams.range_offset_m;
   fill_each<double>(s, column, [&](std::size_t i) { return s.frame.range_m[i] + offset_m; });
 }
 
@@ -153,7 +153,7 @@ void fill_incidence(const Source& s, Column& column) {
   });
 }
 
-/// A number of the instance that each beam hit.
+/// A member of the instance that each beam hits.
 template <class Function>
 void fill_of_instance(const Source& s, Column& column, Function number_of) {
   fill_each<std::uint32_t>(s, column, [&](std::size_t i) {
@@ -318,7 +318,7 @@ const ColumnKind& kind_named(std::string_view name) {
                .remedy = nearest.empty() ? "" : "did you mean '" + nearest + "'?"});
 }
 
-/// True when the frame kept what the column needs.
+/// True if the frame has the hit columns that the cloud column requires.
 bool has(const Frame& frame, const HitFieldMask& needs) {
   const Hits& truth = frame.ground_truth;
   const std::size_t size = frame.range_m.size();

@@ -15,7 +15,7 @@
 
 namespace glidar {
 
-/// One named quantity of every point: `components.size()` numbers a point, point by point.
+/// One named quantity of every point: components.size() numbers per point, point by point.
 struct Column {
   std::string name;                     ///< e.g. "normal"
   std::vector<std::string> components;  ///< field names, e.g. normal_x normal_y normal_z
@@ -24,8 +24,8 @@ struct Column {
       values;
 };
 
-/// Columns of a frame in a named coordinate frame. Organised (rows x cols, a miss has NaN
-/// coordinates) unless compacted, which leaves one row.
+/// Columns of a frame in a named coordinate frame. Organised (rows x cols, row-major; a miss has
+/// NaN coordinates) unless remove_invalid_points() has left one row.
 struct PointCloud {
   std::uint32_t rows = 0;
   std::uint32_t cols = 0;
@@ -36,41 +36,39 @@ struct PointCloud {
   [[nodiscard]] std::size_t size() const { return std::size_t{rows} * cols; }
 };
 
-/// Names make_point_cloud knows, in the order files list them:
+/// Names that make_point_cloud() accepts, in the order in which files list them:
 /// xyz true_xyz intensity range true_range sigma depth normal shading_normal incidence instance
 /// class primitive barycentrics colour object_point status row col ring time return return_source
 /// azimuth elevation stamp sensor_pose object_pose
 std::span<const std::string> cloud_column_names();
 
-/// The optional hit columns that these cloud columns need. Throws Error on an unknown name.
+/// The optional hit columns that these cloud columns require. Throws Error for an unknown name.
 HitFieldMask fields_needed_by(std::span<const std::string> column_names);
 
 /// Fills `cloud` with the named columns of a frame, reusing its memory.
 ///  xyz           f64 x3, metres in `cloud_frame`, from the measured range; NaN unless a hit
-///  true_xyz      f64 x3, the same of what is truly there, whether reported or not, as fired from
-///                where the sensor was
+///  true_xyz      f64 x3, the same from the ground truth range, whether reported or not, along the
+///                beam as fired
 ///  intensity     f32
-///  range, depth  f64, metres, measured; NaN unless a hit. Ranges count from where the sensor's do
-///                (Beams::range_offset_m); coordinates do not care
-///  true_range    f64, metres, of what is there, counted likewise; NaN for a miss
+///  range, depth  f64, metres, measured; NaN unless a hit. Ranges include Beams::range_offset_m,
+///                which does not affect coordinates
+///  true_range    f64, metres, ground truth, also with range_offset_m; NaN for a miss
 ///  sigma         f32, metres, standard deviation of the range's random error
 ///  normal, shading_normal  f32 x3, unit, in `cloud_frame`
 ///  incidence     f32, radians
-///  instance, class  u32, the instance's id and class_id; kInvalidId where there is none
-///  primitive     u32, triangle of the mesh; kInvalidId where there is none
+///  instance, class  u32, the instance's id and class_id; kInvalidId for a miss
+///  primitive     u32, triangle of the mesh; kInvalidId for a miss
 ///  barycentrics  f32 x2; colour f32 x3; object_point f64 x3 in the object's own frame
 ///  status        u8, see Status; row, col u32
 ///  ring          u16, channel number; time u32, ns since the frame's start
-///  return        u8, from 0: which of the sensor's returns; return_source u8, see ReturnSource
-///  azimuth, elevation  f64, radians, where the beam was aimed in the sensor's frame: to the left
-///  of
-///                the boresight (-pi to pi), and up; of LiDARs that is from +x towards +y, and
-///                towards +z
-///  stamp         i64, ns, when the beam left: the frame's stamp_ns and `time`
-///  sensor_pose   f64 x7, world_from_sensor when the beam left: metres, quaternion w x y z
-///  object_pose   f64 x7, likewise world_from_object, without scale, of the instance that was hit;
-///                NaN where there is none
-/// Throws Error when a column is unknown or the frame was cast without what it needs.
+///  return        u8, rank of the return, from 0; return_source u8, see ReturnSource
+///  azimuth, elevation  f64, radians, of the beam without pointing noise in the sensor frame, see
+///                azimuth_rad() and elevation_rad()
+///  stamp         i64, ns, firing time of the beam: the frame's stamp_ns plus `time`
+///  sensor_pose   f64 x7, world_from_sensor at the firing time: metres, quaternion w x y z
+///  object_pose   f64 x7, world_from_object of the instance hit, at the firing time, without scale;
+///                NaN for a miss
+/// Throws Error for an unknown column, and when the frame was cast without a column that it needs.
 void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene,
                       const OutputFrame& cloud_frame, std::span<const std::string> column_names,
                       PointCloud& cloud);
@@ -78,8 +76,8 @@ void make_point_cloud(const Frame& frame, const Beams& beams, const Scene& scene
 /// The column of this name, or nullptr.
 const Column* find_column(const PointCloud& cloud, std::string_view name);
 
-/// The points whose x is a number, as one row (needs the column xyz); the memory of `hits`, another
-/// cloud, is reused. Throws Error when there are no coordinates.
+/// Copies the points with a valid xyz to `hits`, as one row, and reuses its memory; `hits` must be
+/// another cloud. Throws Error if there is no column xyz.
 void remove_invalid_points(const PointCloud& cloud, PointCloud& hits);
 
 }  // namespace glidar

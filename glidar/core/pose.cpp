@@ -34,7 +34,7 @@ Pose look_at(const Eigen::Vector3d& eye, const Eigen::Vector3d& target, const Ei
   if (!(right.norm() > kMinSine * forward.norm() * up.norm())) {
     throw Error({.where = "look_at",
                  .found = "the up vector is parallel to the line of sight",
-                 .allowed = "an up vector that is not",
+                 .allowed = "an up vector in another direction",
                  .remedy = "choose another up vector"});
   }
   Pose world_from_camera = Pose::Identity();
@@ -68,10 +68,10 @@ Pose make_pose(const Eigen::Vector3d& position_m, const Eigen::Quaterniond& orie
       orientation.coeffs().isZero(0.0)) {
     throw Error({.where = "pose",
                  .found = "a number is not finite or too large, or the quaternion is zero",
-                 .allowed = "metres up to 1e15 and a quaternion of any length but zero",
+                 .allowed = "up to 1e15 m, and a quaternion of any length except zero",
                  .remedy = ""});
   }
-  // Squares of the largest numbers are infinite, and those of the smallest have no digits.
+  // Squares of larger numbers overflow, and those of smaller ones underflow.
   constexpr double kSquareSafe = 1e100;
   Eigen::Quaterniond scaled = orientation;
   const double largest = scaled.coeffs().cwiseAbs().maxCoeff();
@@ -88,9 +88,9 @@ Pose se3_exp(const Eigen::Vector3d& rotation_rad, const Eigen::Vector3d& transla
   pose.translation() = translation_m;
   if (angle == 0.0) return pose;
   pose.linear() = Eigen::AngleAxisd(angle, rotation_rad / angle).toRotationMatrix();
-  // of the axis times the angle: a = (1 - cos) / angle^2, b = (angle - sin) / angle^3, without
-  // cancellation
-  constexpr double kSmall = 0.1;  // there the first term left out is 3e-16
+  // Coefficients for axis times angle: a = (1 - cos) / angle^2, b = (angle - sin) / angle^3,
+  // without cancellation.
+  constexpr double kSmall = 0.1;  // up to it the first omitted term is at most 3e-16
   const double x = angle * angle;
   const double half = std::sin(0.5 * angle) / angle;
   const double b = angle < kSmall ? 1.0 / 6.0 - x / 120.0 + x * x / 5040.0 - x * x * x / 362880.0

@@ -9,24 +9,25 @@
 
 namespace glidar {
 
-/// Counts the pieces of a loop that many threads share, and reports them to a ProgressCallback: at
-/// most kSteps times, never two at once, never backwards. Where nobody asks it costs a branch.
+/// Counts the finished pieces of a parallel loop and reports them to a ProgressCallback: at most
+/// kSteps times, one call at a time, with increasing fractions. Without a callback it costs a
+/// branch.
 class ProgressCounter {
  public:
   ProgressCounter(const ProgressCallback& progress, std::size_t pieces)
       : progress_(progress), all_(pieces) {}
 
-  /// These many more are done.
+  /// Adds finished pieces.
   void add(std::size_t pieces) {
     if (!progress_) return;
     const std::size_t before = done_.fetch_add(pieces, std::memory_order_relaxed);
     if (step(before) == step(before + pieces)) return;
-    if (telling_.test_and_set(std::memory_order_acquire)) return;  // the next step will tell
+    if (reporting_.test_and_set(std::memory_order_acquire)) return;  // a later step reports it
     progress_(part(done_.load(std::memory_order_relaxed)));
-    telling_.clear(std::memory_order_release);
+    reporting_.clear(std::memory_order_release);
   }
 
-  /// Tells that all is done; a step that came while another was told may have been left out.
+  /// Reports 1; add() may have skipped the last step while another thread reported.
   void finish() const {
     if (progress_) progress_(1.0);
   }
@@ -44,7 +45,7 @@ class ProgressCounter {
   const ProgressCallback& progress_;
   std::size_t all_;
   std::atomic<std::size_t> done_{0};
-  std::atomic_flag telling_;
+  std::atomic_flag reporting_;
 };
 
 }  // namespace glidar

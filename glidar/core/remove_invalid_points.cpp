@@ -10,13 +10,13 @@
 namespace glidar {
 namespace {
 
-/// So many numbers of each point.
+/// Copies kWidth numbers of each kept point.
 template <std::size_t kWidth, class Number>
 void gather(const Number* from, const std::vector<std::uint32_t>& kept, Number* to) {
   for (const std::uint32_t point : kept) to = std::copy_n(from + kWidth * point, kWidth, to);
 }
 
-/// The points of one column whose index is in `kept`, into a column of the same kind.
+/// Copies the points with the indices `kept` to a column of the same type.
 void select(const Column& from, const std::vector<std::uint32_t>& kept, Column& to) {
   to.name = from.name;
   to.components = from.components;
@@ -27,7 +27,7 @@ void select(const Column& from, const std::vector<std::uint32_t>& kept, Column& 
         if (!std::holds_alternative<Values>(to.values)) to.values.template emplace<Values>();
         auto& chosen = std::get<Values>(to.values);
         chosen.resize(kept.size() * width);
-        // the usual widths, known to the compiler
+        // The common widths as constants, for speed.
         if (width == 1) return gather<1>(values.data(), kept, chosen.data());
         if (width == 3) return gather<3>(values.data(), kept, chosen.data());
         auto* next = chosen.data();

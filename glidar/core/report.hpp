@@ -7,18 +7,18 @@
 
 namespace glidar {
 
-/// Told how much of a work is done, from 0 to 1; empty: nobody asks. Called from the threads that
-/// do the work, one call at a time.
+/// Progress callback, fraction in [0, 1]; empty: no reporting. Called from worker threads, one call
+/// at a time.
 using ProgressCallback = std::function<void(double fraction_done)>;
 
-/// The progress of one part of a work, from `begin` to `end` of it. Refers to `whole`.
+/// Maps the progress of a part to [begin, end] of `whole`, which must outlive the result.
 ProgressCallback subrange(const ProgressCallback& whole, double begin, double end);
 
 enum class Severity { info, warning };
 
-/// How the library talks: it prints nothing, it calls these. Empty functions mean silence.
-/// `progress` may be called from worker threads, one call at a time; a negative fraction means that
-/// it is not known.
+/// Callbacks for messages and progress, because the library prints nothing. Empty functions report
+/// nothing. `progress` may be called from worker threads, one call at a time; a negative fraction
+/// means unknown.
 struct Report {
   std::function<void(Severity, std::string_view message)> log;
   std::function<void(std::string_view task, double fraction_done)> progress;

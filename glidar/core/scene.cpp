@@ -41,7 +41,7 @@ void validate(const Instance& instance, const Scene& scene) {
   require(is_rigid(instance.world_from_object), instance, "a pose that is not a rigid transform",
           "finite numbers and a rotation");
   require(instance.world_from_object.translation().cwiseAbs().maxCoeff() <= kMaxCoordinate_m,
-          instance, "a position beyond reach", "up to 1e15 m from the world's origin",
+          instance, "a position too far away", "up to 1e15 m from the world's origin",
           "move the world's origin nearer to it");
   require(instance.class_id < scene.class_names.size(), instance,
           "class " + std::to_string(instance.class_id), "an index of the scene's class names");
@@ -126,8 +126,8 @@ void validate(const Scene& scene) {
     validate(material.noise_texture, scene, material);
     if (material.noise_scale >= 0.0F) continue;
     throw Error({.where = "material '" + material.name + "'",
-                 .found = "a noise scale of " + std::to_string(material.noise_scale),
-                 .allowed = "a number from 0",
+                 .found = "noise scale " + std::to_string(material.noise_scale),
+                 .allowed = "0 or more",
                  .remedy = ""});
   }
 }

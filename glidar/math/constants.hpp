@@ -13,7 +13,7 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr float kInfinityf = std::numeric_limits<float>::infinity();
 
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< radians
-/// Not 1 / kDegree to the bit.
+/// Rounded separately, so not bit-identical to 1 / kDegree.
 inline constexpr double kDegreesPerRadian = 180.0 / std::numbers::pi;
 inline constexpr double kTwoPi = 2.0 * std::numbers::pi;
 inline constexpr double kMillimetre_m = 1e-3;

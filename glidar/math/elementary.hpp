@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Elementary functions from + - * / and bit operations only, so that their bytes are the same on
-// any machine (the C library's differ from version to version). Without branches, for loops that
-// become vectors. Absolute errors are below 1e-14 where the result is below 10.
+// Elementary functions from + - * / and bit operations only, so that results are bit-identical on
+// any machine (those of the C library differ between versions). They have no branches, so loops
+// over them vectorise. Absolute errors are below 1e-14 where the result is below 10.
 
 #include <bit>
 #include <cmath>
@@ -14,22 +14,21 @@
 
 namespace glidar {
 
-/// The double of a whole number below 2^52, by its bits: conversions of 64 bit integers do not
-/// exist in every instruction set.
-inline double double_of(std::uint64_t whole) {
+/// Converts an integer below 2^52 by its bits: not every instruction set converts 64-bit integers.
+inline double whole_to_double(std::uint64_t whole) {
   constexpr std::uint64_t kBits = 0x4330000000000000U;  // of 2^52
   return std::bit_cast<double>(whole | kBits) - 0x1p52;
 }
 
-/// ln x for normal numbers above 0. With x = m 2^e, m in [1/sqrt 2, sqrt 2), it is
+/// ln x for normal numbers x > 0. With x = m 2^e, m in [1/sqrt 2, sqrt 2), it is
 /// e ln 2 + 2 artanh s, s = (m - 1) / (m + 1), and the series of artanh to s^21
 /// (Abramowitz and Stegun 4.6.22), whose next term is below 1e-18.
-inline double natural_log(double x) {
+inline double portable_log(double x) {
   constexpr std::uint64_t kOne = 0x3FF0000000000000U;
   constexpr std::uint64_t kRootHalf = 0x3FE6A09E667F3BCDU;  // of 1 / sqrt 2
   constexpr std::uint64_t kFraction = 0x000FFFFFFFFFFFFFU;
   const std::uint64_t shifted = std::bit_cast<std::uint64_t>(x) + (kOne - kRootHalf);
-  const double exponent = double_of(shifted >> 52U) - 1023.0;
+  const double exponent = whole_to_double(shifted >> 52U) - 1023.0;
   const auto mantissa = std::bit_cast<double>((shifted & kFraction) + kRootHalf);
   const double s = (mantissa - 1.0) / (mantissa + 1.0);
   const double q = s * s;
@@ -54,8 +53,8 @@ struct SineCosine {
   double cosine;
 };
 
-/// Sine and cosine of an angle of at most pi/4, by their Taylor series to x^17 and x^16.
-inline SineCosine small_angle(double x) {
+/// Sine and cosine for |x| <= pi/4 (radians), by their Taylor series to x^17 and x^16.
+inline SineCosine sincos_taylor(double x) {
   const double q = x * x;
   double sine = 1.0 / 355687428096000.0;  // 1 / 17!
   sine = sine * q - 1.0 / 1307674368000.0;
@@ -76,11 +75,11 @@ inline SineCosine small_angle(double x) {
   return {x + x * q * sine, 1.0 + q * cosine};
 }
 
-/// Sine and cosine of an angle given in turns, of less than 2^50 quarters.
-inline SineCosine of_turns(double turns) {
+/// Sine and cosine of an angle in turns (1 = 2 pi), for |turns| < 2^48.
+inline SineCosine sincos_turns(double turns) {
   const double quarters = turns * 4.0;
   const double whole = std::floor(quarters + 0.5);
-  const SineCosine part = small_angle((quarters - whole) * (std::numbers::pi / 2.0));
+  const SineCosine part = sincos_taylor((quarters - whole) * (std::numbers::pi / 2.0));
   const double quadrant = whole - 4.0 * std::floor(whole * 0.25);
   const bool swapped = quadrant == 1.0 || quadrant == 3.0;
   const double sine = swapped ? part.cosine : part.sine;
@@ -88,10 +87,11 @@ inline SineCosine of_turns(double turns) {
   return {quadrant >= 2.0 ? -sine : sine, quadrant == 1.0 || quadrant == 2.0 ? -cosine : cosine};
 }
 
-/// The angle of a vector in turns, 0 to below 1; 0 for the zero vector. The smaller over the larger
-/// coordinate is reduced twice by tan(a - b) = (tan a - tan b) / (1 + tan a tan b), with b = pi/8
-/// and then pi/16, before one division, and the arctangent's series goes to t^21.
-inline double turns_of(double y, double x) {
+/// The angle of the vector (x, y) in turns, in [0, 1); 0 for the zero vector. The ratio of the
+/// smaller to the larger coordinate is reduced twice by tan(a - b) = (tan a - tan b) /
+/// (1 + tan a tan b), with b = pi/8 and then pi/16, before one division. The series of the
+/// arctangent goes to t^21.
+inline double atan2_turns(double y, double x) {
   const double ax = std::abs(x);
   const double ay = std::abs(y);
   const double larger = ax > ay ? ax : ay;
@@ -124,9 +124,9 @@ inline double turns_of(double y, double x) {
   return turns < 1.0 ? turns : 0.0;
 }
 
-/// e^x: 2^k e^r with |r| <= ln 2 / 2, and the series of e^r to r^14. 0 below -700, infinite above
-/// 700.
-inline double natural_exp(double x) {
+/// e^x = 2^k e^r with |r| <= ln 2 / 2, and the series of e^r to r^14. 0 for x < -700, infinity for
+/// x > 700.
+inline double portable_exp(double x) {
   constexpr double kMax = 700.0;
   const double held = x > -kMax ? (x < kMax ? x : kMax) : -kMax;
   const double whole = std::floor(held * std::numbers::log2e + 0.5);
@@ -147,17 +147,17 @@ inline double natural_exp(double x) {
   sum = sum * r + 1.0 / 6.0;
   sum = sum * r + 1.0 / 2.0;
   sum = 1.0 + (r + r * r * sum);
-  // the whole number's bits by an addition: conversions of 64 bit integers are not everywhere
+  // The integer's bits by an addition: not every instruction set converts 64-bit integers.
   const std::uint64_t exponent = std::bit_cast<std::uint64_t>(whole + 0x1.8p52) + 1023U;
   const double result = sum * std::bit_cast<double>(exponent << 52U);
   const double bounded = x > kMax ? std::numeric_limits<double>::infinity() : result;
   return x < -kMax ? 0.0 : bounded;
 }
 
-/// base^exponent of a normal base, or of 0 with an exponent from 0 on; the relative error is below
+/// base^exponent for a normal base > 0, or base 0 with exponent >= 0. The relative error is below
 /// 3e-16 (1 + |exponent ln base|).
-inline double power(double base, double exponent) {
-  const double raised = natural_exp(exponent * natural_log(base));
+inline double portable_pow(double base, double exponent) {
+  const double raised = portable_exp(exponent * portable_log(base));
   const double from_zero = base > 0.0 ? raised : 0.0;
   return exponent == 0.0 ? 1.0 : from_zero;
 }

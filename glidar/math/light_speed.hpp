@@ -4,10 +4,10 @@
 
 namespace glidar {
 
-/// Of light in vacuum, exact by the metre's definition.
+/// Speed of light in vacuum, exact by the definition of the metre.
 inline constexpr double kLight_m_per_s = 299792458.0;
 
-/// Range per time of flight: light goes there and back.
+/// Range per round-trip time of flight.
 inline constexpr double kHalfLight_m_per_s = 0.5 * kLight_m_per_s;
 
 }  // namespace glidar

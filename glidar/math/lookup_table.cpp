@@ -8,8 +8,8 @@ namespace glidar {
 
 double interpolate(const LookupTable& table, double x, double if_empty) {
   if (table.empty()) return if_empty;
-  const auto is_before = [](double place, const LookupTable::value_type& pair) {
-    return place < pair[0];
+  const auto is_before = [](double key, const LookupTable::value_type& pair) {
+    return key < pair[0];
   };
   const auto above = std::upper_bound(table.begin(), table.end(), x, is_before);
   if (above == table.begin()) return table.front()[1];

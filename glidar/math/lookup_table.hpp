@@ -7,11 +7,10 @@
 
 namespace glidar {
 
-/// A function by its values at rising places: pairs (place, value), straight between them and
-/// constant outside.
+/// A piecewise linear function: pairs (x, value) with increasing x; constant outside them.
 using LookupTable = std::vector<std::array<double, 2>>;
 
-/// The table's value at x; `if_empty` for an empty table.
+/// The value at x, interpolated linearly; `if_empty` for an empty table.
 double interpolate(const LookupTable& table, double x, double if_empty = 0.0);
 
 }  // namespace glidar

@@ -6,7 +6,7 @@
 
 namespace glidar {
 
-/// Counter and then result of Philox4x32.
+/// Counter of Philox4x32, and its result after the rounds.
 struct PhiloxState {
   std::uint32_t c0;
   std::uint32_t c1;
@@ -14,8 +14,8 @@ struct PhiloxState {
   std::uint32_t c3;
 };
 
-/// The ten rounds, unrolled, so that a loop over counters becomes vectors. Multipliers and Weyl
-/// increments: SC'11 paper, table 2; Random123 philox.h.
+/// The ten rounds, unrolled, so that loops over counters vectorise. Multipliers and Weyl
+/// increments: SC'11 paper (see random.hpp), table 2; Random123 philox.h.
 [[gnu::always_inline]] inline void philox_rounds(PhiloxState& s, std::uint32_t k0,
                                                  std::uint32_t k1) {
   constexpr std::uint64_t kMultiplier0 = 0xD2511F53U;

@@ -12,18 +12,18 @@ RandomWords philox4x32(RandomWords counter, std::array<std::uint32_t, 2> key) {
   return {state.c0, state.c1, state.c2, state.c3};
 }
 
-RandomWords counter_of(const RngKey& draw) {
-  const auto purpose = static_cast<std::uint32_t>(draw.purpose) << 24U;
-  return {draw.beam, purpose, draw.frame, draw.block};
+RandomWords counter_of(const RngKey& key) {
+  const auto purpose = static_cast<std::uint32_t>(key.purpose) << 24U;
+  return {key.beam, purpose, key.frame, key.block};
 }
 
-std::array<std::uint32_t, 2> key_of(const RngKey& draw) {
-  return {static_cast<std::uint32_t>(draw.seed),
-          static_cast<std::uint32_t>(draw.seed >> 32U) ^ draw.sensor};
+std::array<std::uint32_t, 2> key_of(const RngKey& key) {
+  return {static_cast<std::uint32_t>(key.seed),
+          static_cast<std::uint32_t>(key.seed >> 32U) ^ key.sensor};
 }
 
-RandomWords random_words(const RngKey& draw) {
-  return philox4x32(counter_of(draw), key_of(draw));
+RandomWords random_words(const RngKey& key) {
+  return philox4x32(counter_of(key), key_of(key));
 }
 
 double uniform(std::uint32_t word) {

@@ -4,8 +4,8 @@
 
 namespace glidar {
 
-/// The nearest number of single precision, as a double. For every conversion to float and back: the
-/// optimiser of GCC 12 leaves the rounding out where it vectorises neighbouring ones
+/// The value rounded to single precision, as a double. Use it for every conversion to float and
+/// back: the optimiser of GCC 12 omits the rounding where it vectorises neighbouring conversions
 /// (-ftree-slp-vectorize, part of -O2 and -O3), unless the float passes through memory.
 inline double rounded_to_float(double value) {
   auto rounded = static_cast<float>(value);

@@ -18,8 +18,8 @@
 namespace glidar {
 namespace {
 
-// oneTBB hands work over in code that the thread sanitizer cannot see. These tell it that what
-// comes before a loop happens before its pieces, and they before what follows the loop.
+// The thread sanitizer cannot see how oneTBB synchronises. These annotations state that code before
+// a loop happens before its pieces, and the pieces before the code after the loop.
 #if defined(__SANITIZE_THREAD__)
 constexpr char kStart = 0;
 constexpr char kEnd = 0;
@@ -50,9 +50,9 @@ struct ThreadPool::Arena {
 };
 
 /// oneTBB starts at most one thread per processor and writes a warning to standard error when an
-/// arena requests more, unless the process allows more. The smallest of several limits counts, so
-/// all are equal, and one that the calling program has set is kept to. oneTBB itself stops at 256,
-/// or four per processor.
+/// arena requests more, unless a global_control allows more. The smallest global_control applies,
+/// so all of GLIDAR's are equal, and a limit that the calling program sets is respected. oneTBB's
+/// own limit is 256, or four per processor.
 ThreadPool::ThreadPool(unsigned threads) : arena_(std::make_unique<Arena>()) {
   constexpr std::size_t kMaxThreads = 1024;
   constexpr auto kAllowed = tbb::global_control::max_allowed_parallelism;

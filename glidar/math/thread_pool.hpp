@@ -7,11 +7,11 @@
 
 namespace glidar {
 
-/// A fixed number of threads that share loops out among them. Results must not depend on how a loop
-/// is cut, so every output belongs to one index.
+/// A fixed number of threads that execute loops in parallel. Results must not depend on how a loop
+/// is divided, so every output belongs to one index.
 class ThreadPool {
  public:
-  /// 0 threads: one per processor that may be used. At most what oneTBB allows (256 or more).
+  /// 0: one thread per processor that the process may use. oneTBB limits the number to 256 or more.
   explicit ThreadPool(unsigned threads = 0);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -19,7 +19,8 @@ class ThreadPool {
 
   [[nodiscard]] unsigned threads() const;
 
-  /// Calls body(begin, end) on pieces of [0, count), at least `grain` long, that together cover it.
+  /// Calls body(begin, end) for disjoint ranges that cover [0, count), each of about `grain` or
+  /// more indices.
   template <class Body>
   void parallel_for(std::size_t count, std::size_t grain, const Body& body) {
     run(count, grain, &body, [](const void* erased, std::size_t begin, std::size_t end) {
@@ -27,8 +28,7 @@ class ThreadPool {
     });
   }
 
-  /// Calls body() inside this group of threads, so that libraries that share loops out use them
-  /// too.
+  /// Calls body() inside this arena, so that parallel loops of other libraries use its threads too.
   template <class Body>
   void execute(const Body& body) {
     run_once(&body, [](const void* erased) { (*static_cast<const Body*>(erased))(); });

@@ -7,8 +7,8 @@
 
 namespace glidar {
 
-/// When `wanted`, writes into frame.beam_poses where the sensor and the instance that
-/// frame.ground_truth.instance names were when each beam left; else empties it.
+/// If `wanted`, fills frame.beam_poses with the poses of the sensor and of the instance hit
+/// (frame.ground_truth.instance) at each beam's firing time; else clears it.
 void place_beams(const Motion& motion, const Beams& beams, bool wanted, ThreadPool& thread_pool,
                  Frame& frame);
 

@@ -8,15 +8,16 @@
 
 namespace glidar {
 
-/// Whose axes and origin a twist is given in.
+/// The coordinate frame of a twist.
 enum class TwistFrame : std::uint8_t {
-  body,   ///< the moving body's: linear is the velocity of its origin, along its own axes
-  world,  ///< the world's: linear is the velocity of that point of the body (imagined to reach so
-          ///< far) which passes the world's origin ("spatial twist")
+  body,   ///< the moving body: linear is the velocity of its origin, in its own axes
+  world,  ///< the world ("spatial twist"): linear is the velocity of the point of the body,
+          ///< extended if necessary, at the world's origin
 };
 
-/// A steady screw motion: pose exp(twist s) for a twist in the body's frame, exp(twist s) pose for
-/// one in the world's, s seconds after t0 (Lynch & Park, "Modern Robotics" (2017), section 3.3.2).
+/// A constant screw motion: pose exp(twist s) for a twist in the body frame, exp(twist s) pose for
+/// one in the world frame, s seconds after t0 (Lynch and Park, "Modern Robotics" (2017), section
+/// 3.3.2).
 struct ConstantTwist {
   Pose pose = Pose::Identity();  ///< at t0_ns
   Eigen::Vector3d angular_rad_s = Eigen::Vector3d::Zero();

@@ -11,7 +11,7 @@
 namespace glidar {
 namespace {
 
-/// Gauss's mean of 1 and a number from 0 to 1; 0 of 0.
+/// The arithmetic-geometric mean of 1 and a number in [0, 1]; 0 for 0.
 double mean_with_one(double b) {
   constexpr double kRelative = 1e-9;  // each step squares the difference
   double a = 1.0;
@@ -32,11 +32,11 @@ struct Thetas {
   double four = 1.0;
 };
 
-/// Of each series: with a nome of at most exp(-pi) and an argument of at most a quarter of the
-/// period the terms left out are below 1e-19.
+/// Number of terms of each series: for a nome of at most exp(-pi) and an argument of at most a
+/// quarter of the period, the omitted terms are below 1e-19.
 constexpr int kTerms = 4;
 
-/// At z with 2 pi z the angle given: DLMF 20.2(i), the first two divided by 2 q^(1/4).
+/// At z, where 2 pi z is the angle: DLMF 20.2(i), the first two divided by 2 q^(1/4).
 Thetas circular_thetas(double q, double turns) {
   Thetas sums;
   double power = 1.0;   // q^(n (n + 1))
@@ -44,8 +44,8 @@ Thetas circular_thetas(double q, double turns) {
   double single = 1.0;  // q^n
   for (int n = 0; n < kTerms; ++n) {
     const double sign = n % 2 == 0 ? 1.0 : -1.0;
-    const SineCosine odd = of_turns((2 * n + 1) * turns);
-    const double even = 2.0 * of_turns(2 * (n + 1) * turns).cosine;
+    const SineCosine odd = sincos_turns((2 * n + 1) * turns);
+    const double even = 2.0 * sincos_turns(2 * (n + 1) * turns).cosine;
     sums.one += sign * power * odd.sine;
     sums.two += power * odd.cosine;
     sums.three += square * even;
@@ -60,7 +60,7 @@ Thetas circular_thetas(double q, double turns) {
 /// At i v: the first two divided by q^(1/4) e^|v|, the first by i too. With p = e^(-2 |v|) and
 /// w = q / p the terms are w^n q^(n^2) (1 -+ p^(2n + 1)) and w^n q^(n^2 - n) (1 + p^(2n)).
 Thetas hyperbolic_thetas(double q, double v) {
-  const double p = natural_exp(-2.0 * std::abs(v));
+  const double p = portable_exp(-2.0 * std::abs(v));
   const double w = q / p;
   Thetas sums;
   double power = 1.0;   // w^n q^(n^2)
@@ -94,7 +94,7 @@ JacobiValues jacobi_near_zero(const EllipticModulus& modulus, double u) {
   }
   // sn = -i sc, cn = nc, dn = dc at i u of the complement: DLMF 22.6.1
   const Thetas at = hyperbolic_thetas(modulus.nome, v);
-  const double decay = natural_exp(-std::abs(v)) / at.two;
+  const double decay = portable_exp(-std::abs(v)) / at.two;
   return {scale.sn * at.one / at.two, scale.cn * decay * at.four, scale.dn * decay * at.three};
 }
 
@@ -107,10 +107,10 @@ EllipticModulus make_modulus(double m, double complement) {
   constexpr double kPi = std::numbers::pi;
   modulus.quarter_period = 0.5 * kPi / mean;
   modulus.is_hyperbolic = m > 0.5;
-  // pi K' / K, of means whose quotient is the other way round
+  // pi K' / K; the ratio of the means is its inverse
   const double ratio =
       modulus.is_hyperbolic ? mean_of_complement / mean : mean / mean_of_complement;
-  modulus.nome = natural_exp(-kPi * ratio);
+  modulus.nome = portable_exp(-kPi * ratio);
   modulus.argument_scale = modulus.is_hyperbolic ? mean_of_complement : mean;
   const Thetas zero = circular_thetas(modulus.nome, 0.0);
   if (modulus.is_hyperbolic) {
@@ -166,7 +166,7 @@ double carlson_rf(double x, double y, double z) {
 double elliptic_f(const EllipticModulus& modulus, double sine, double cosine) {
   const double cosine2 = cosine * cosine;
   const double first = sine * carlson_rf(cosine2, modulus.complement + modulus.m * cosine2, 1.0);
-  // beyond a quarter turn by reflection
+  // by reflection beyond a quarter turn
   return cosine >= 0.0 ? first : std::copysign(2.0 * modulus.quarter_period, sine) - first;
 }
 

@@ -3,8 +3,8 @@
 #pragma once
 
 // Private to glidar/motion: Jacobi's elliptic functions and integrals in double precision, from
-// + - * / and square roots only, so that their bytes are the same on any machine. The parameter is
-// m = k^2; its complement 1 - m is a number of its own, so that m near 1 stays exact.
+// + - * / and square roots only, so that results are bit-identical on any machine. The parameter is
+// m = k^2; its complement 1 - m is stored separately, so that m near 1 stays exact.
 
 namespace glidar {
 
@@ -14,7 +14,7 @@ struct JacobiValues {
   double dn = 1.0;
 };
 
-/// All that depends on the parameter alone.
+/// Constants that depend on the parameter only.
 struct EllipticModulus {
   double m = 0.0;
   double complement = 1.0;      ///< 1 - m, at least kMinComplement
@@ -25,23 +25,24 @@ struct EllipticModulus {
   JacobiValues scale = {};      ///< factors of quotients of theta functions
 };
 
-/// K = 343 there; below it the nome of 1 - m has no double.
+/// K = 343 there; for smaller complements the nome of 1 - m underflows.
 inline constexpr double kMinComplement = 1e-296;
 
 /// Periods by the arithmetic-geometric mean (DLMF 19.8.5), nome by DLMF 22.2.1.
 EllipticModulus make_modulus(double m, double complement);
 
-/// The theta series of DLMF 20.2 and 22.2 within half a quarter period of 0, for m above 1/2 after
-/// Jacobi's imaginary transformation (DLMF 22.6(iv)); elsewhere by shifts of quarter periods (DLMF
-/// 22.4(iii)). cn and dn keep their relative precision where they are small.
+/// The functions at an argument, by the theta series of DLMF 20.2 and 22.2 within half a quarter
+/// period of 0, for m > 1/2 after Jacobi's imaginary transformation (DLMF 22.6(iv)); elsewhere by
+/// shifts of quarter periods (DLMF 22.4(iii)). cn and dn keep their relative precision where they
+/// are small.
 JacobiValues jacobi(const EllipticModulus& modulus, double u);
 
-/// Carlson's symmetric integral, for arguments from 0 of which at most one is 0: DLMF 19.16.1, by
+/// Carlson's symmetric integral for arguments >= 0, at most one of which is 0: DLMF 19.16.1, by
 /// duplication (DLMF 19.36(i)).
 double carlson_rf(double x, double y, double z);
 
 /// F(angle | m) = integral of 1 / sqrt(1 - m sin^2) for the angle in [-pi, pi] with this sine and
-/// cosine, each given because either may be small (DLMF 19.25.5).
+/// cosine; both are arguments because either may be small (DLMF 19.25.5).
 double elliptic_f(const EllipticModulus& modulus, double sine, double cosine);
 
 }  // namespace glidar

@@ -32,7 +32,7 @@ std::array<double, N + 2> chebyshev_series(const std::array<double, N>& values) 
   for (std::size_t k = 0; k < N; ++k) {
     for (std::size_t j = 0; j < N; ++j) {
       const double turns = static_cast<double>(k * (2 * j + 1)) / (4.0 * N);
-      series[k] += 2.0 / N * values[j] * of_turns(turns).cosine;
+      series[k] += 2.0 / N * values[j] * sincos_turns(turns).cosine;
     }
   }
   return series;
@@ -47,7 +47,7 @@ IntegralTable::IntegralTable(double end, FunctionRef<double(double)> function) {
   for (double start = 0.0; start < count; start += 1.0) {
     std::array<double, kNodes> values{};
     for (std::size_t j = 0; j < kNodes; ++j) {
-      const double place = of_turns((static_cast<double>(j) + 0.5) / (2.0 * kNodes)).cosine;
+      const double place = sincos_turns((static_cast<double>(j) + 0.5) / (2.0 * kNodes)).cosine;
       values[j] = function(length * (start + 0.5 * (1.0 + place)));
     }
     add_segment(length, chebyshev_series(values));

@@ -43,7 +43,7 @@ void check(const Spin& spin) {
   require(spin.rate_rad_s.allFinite(), "spin, rate", "not finite");
 }
 
-/// The same rigid motion, moved; parts that point along the world's axes turn along.
+/// The motion in another world frame; vectors in world axes are rotated.
 Trajectory moved_by(const Pose& moved, const ConstantPose& constant) {
   return ConstantPose{moved * constant.pose};
 }
@@ -53,8 +53,8 @@ Trajectory moved_by(const Pose& moved, Spin spin) {
   return spin;
 }
 
-/// A twist in the world's frame changes by the adjoint map (Lynch & Park, "Modern Robotics" (2017),
-/// definition 3.20).
+/// A twist in the world frame is transformed by the adjoint map (Lynch and Park, "Modern Robotics"
+/// (2017), definition 3.20).
 Trajectory moved_by(const Pose& moved, ConstantTwist twist) {
   twist.pose = moved * twist.pose;
   if (twist.frame == TwistFrame::body) return twist;
@@ -93,8 +93,9 @@ Trajectory mounted_on(const ConstantPose& body, const Pose& part) {
   return ConstantPose{body.pose * part};
 }
 
-/// A twist in the part's frame is that in the body's changed by the adjoint map of part_from_body
-/// (Lynch & Park, "Modern Robotics" (2017), definition 3.20); one in the world's frame stays.
+/// A twist in the body frame is transformed to the part frame by the adjoint map of part_from_body
+/// (Lynch and Park, "Modern Robotics" (2017), definition 3.20); one in the world frame is
+/// unchanged.
 Trajectory mounted_on(ConstantTwist body, const Pose& part) {
   body.pose = body.pose * part;
   if (body.frame == TwistFrame::world) return body;
@@ -132,7 +133,7 @@ void check(const Mounted& mounted) {
   require(is_rigid(mounted.carrier_from_body), "mounted, pose", "not a rigid transform");
 }
 
-/// The timed poses that a trajectory follows; none: nullptr.
+/// The timed poses of a trajectory; nullptr if it has none.
 const TimedPoses* timed_poses(const Trajectory& trajectory) {
   const auto* mounted = std::get_if<Mounted>(&trajectory);
   if (mounted != nullptr) return std::get_if<TimedPoses>(&mounted->carrier);
@@ -179,13 +180,13 @@ TimeInterval valid_interval(const Trajectory& trajectory) {
 }
 
 void warn_extrapolation(const Trajectory& trajectory, std::string_view name,
-                        const TimeInterval& asked, const Report& report) {
+                        const TimeInterval& requested, const Report& report) {
   const TimeInterval known = valid_interval(trajectory);
-  if (asked.first_ns >= known.first_ns && asked.last_ns <= known.last_ns) return;
-  report.warn(std::string(name) + ": the trajectory is known from " + seconds_text(known.first_ns) +
-              " to " + seconds_text(known.last_ns) + ", asked for is " +
-              seconds_text(asked.first_ns) + " to " + seconds_text(asked.last_ns) +
-              "; outside, the pose at its end holds");
+  if (requested.first_ns >= known.first_ns && requested.last_ns <= known.last_ns) return;
+  report.warn(std::string(name) + ": the trajectory is defined from " +
+              seconds_text(known.first_ns) + " to " + seconds_text(known.last_ns) +
+              ", requested is " + seconds_text(requested.first_ns) + " to " +
+              seconds_text(requested.last_ns) + "; outside, its first or last pose is used");
 }
 
 Motion static_motion(const Scene& scene, const Pose& world_from_sensor) {

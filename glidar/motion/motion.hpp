@@ -20,7 +20,7 @@
 
 namespace glidar {
 
-/// Standing still.
+/// A stationary body.
 struct ConstantPose {
   Pose pose = Pose::Identity();
 };
@@ -29,51 +29,52 @@ struct ConstantPose {
 using Trajectory =
     std::variant<ConstantPose, ConstantTwist, Spin, TimedPoses, TorqueFreeRotation, Mounted>;
 
-/// A pure function: the same time gives the same bits, in any order of asking.
+/// The pose at a time. A pure function: the same time always gives the same bits.
 Pose pose_at(const Trajectory& trajectory, std::int64_t t_ns);
 
-/// The poses at many times, the same as one by one; quickest when the times increase.
-/// Throws Error when the two are not of one size.
+/// The poses at many times, identical to pose_at() for each; fastest if the times increase.
+/// Throws Error if `t_ns` and `out` differ in size.
 void poses_at(const Trajectory& trajectory, std::span<const std::int64_t> t_ns,
               std::span<Pose> out);
 
-/// Throws Error, naming the field, unless every number is finite and poses are rigid.
+/// Throws Error with the invalid field unless every number is finite and poses are rigid.
 void validate(const Trajectory& trajectory);
 
-/// From the first to the last time, both included.
+/// The closed interval [first, last].
 struct TimeInterval {
   std::int64_t first_ns = std::numeric_limits<std::int64_t>::min();
   std::int64_t last_ns = std::numeric_limits<std::int64_t>::max();
 };
 
-/// The times for which the trajectory is known; all, except for timed poses.
+/// The times for which the trajectory is defined: all times, except for timed poses.
 TimeInterval valid_interval(const Trajectory& trajectory);
 
-/// Warns when some of the times asked for lie outside those known, where the end pose holds.
+/// Warns if some of the requested times are outside the valid interval, where the first or last
+/// pose is used.
 void warn_extrapolation(const Trajectory& trajectory, std::string_view name,
-                        const TimeInterval& asked, const Report& report);
+                        const TimeInterval& requested, const Report& report);
 
-/// Where everything is at any time.
+/// The poses of the sensor and of all instances as functions of time.
 struct Motion {
   Trajectory world_from_sensor;
   std::vector<Trajectory> world_from_instance;  ///< one per instance of the scene
 };
 
-/// The sensor at this pose, every instance where the scene puts it.
+/// The sensor at this pose, and every instance at its pose in the scene.
 Motion static_motion(const Scene& scene, const Pose& world_from_sensor);
 
-/// The scene's instances on these trajectories, the sensor on its own; none: every instance stands
-/// still. Throws Error unless there are none or one per instance.
+/// The sensor and the scene's instances on these trajectories; without trajectories of instances,
+/// all of them are stationary. Throws Error unless there are none or one per instance.
 Motion make_motion(const Scene& scene, const Trajectory& world_from_sensor,
                    const std::vector<Trajectory>& world_from_instance);
 
-/// The same motion after all of it was moved: moved_from_world * pose_at(trajectory, t).
+/// The trajectory in another world frame: moved_from_world * pose_at(trajectory, t).
 Trajectory transformed(const Pose& moved_from_world, const Trajectory& trajectory);
 
-/// The motion of what is fixed to a body: pose_at(world_from_body, t) * body_from_part.
+/// The trajectory of a part that is fixed to a body: pose_at(world_from_body, t) * body_from_part.
 Trajectory compose_extrinsic(const Trajectory& world_from_body, const Pose& body_from_part);
 
-/// Writes the poses of all at frame.stamp_ns into the frame.
+/// Writes the poses of the sensor and all instances at frame.stamp_ns to the frame.
 void sample_poses(const Motion& motion, Frame& frame);
 
 }  // namespace glidar

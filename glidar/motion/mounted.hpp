@@ -10,7 +10,7 @@
 
 namespace glidar {
 
-/// Fixed to a body whose way has no closed form for any other of its points.
+/// A part fixed to a body whose motion has a closed form for one of its points only.
 struct Mounted {
   std::variant<TimedPoses, TorqueFreeRotation> carrier;
   Pose carrier_from_body = Pose::Identity();

@@ -8,13 +8,13 @@
 
 namespace glidar {
 
-/// Turning on the spot at a constant rate: the rates of the 2015 program's --object-rate and
-/// --sensor-rate. The rate is an angular velocity along the body's own axes (right-handed, axis
-/// times rad/s), as in the kinematics which that program cites: Markley, "Attitude error
+/// Rotation in place at a constant rate: the rates of --object-rate and --sensor-rate, as in the
+/// original GLIDAR. The rate is an angular velocity in the body's own axes (right-handed, axis
+/// times rad/s), as in the kinematics that the original cites: Markley, "Attitude error
 /// representations for Kalman filtering", J. Guidance, Control, and Dynamics 26(2) (2003),
-/// equation 10. The rate being constant, the axis is fixed in the world too.
+/// equation 10. Because the rate is constant, the axis is fixed in the world too.
 struct Spin {
-  Pose pose = Pose::Identity();  ///< at t0_ns; its position stays
+  Pose pose = Pose::Identity();  ///< at t0_ns; the position is constant
   Eigen::Vector3d rate_rad_s = Eigen::Vector3d::Zero();
   std::int64_t t0_ns = 0;
 };

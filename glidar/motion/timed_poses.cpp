@@ -35,11 +35,11 @@ void check(const std::vector<TimedPose>& poses) {
 std::optional<TimedPoseError> find_error(const TimedPose* before, const TimedPose& next) {
   using Part = TimedPoseError::Part;
   if (before != nullptr && next.t_ns == before->t_ns) {
-    return TimedPoseError{Part::time, "the time of the pose before again", "times that increase"};
+    return TimedPoseError{Part::time, "the same time as the previous pose", "increasing times"};
   }
   if (before != nullptr && next.t_ns < before->t_ns) {
-    return TimedPoseError{Part::time, "a time before that of the pose before",
-                          "times that increase"};
+    return TimedPoseError{Part::time, "a time before that of the previous pose",
+                          "increasing times"};
   }
   if (!next.position_m.allFinite() || next.position_m.cwiseAbs().maxCoeff() > kMaxCoordinate_m) {
     return TimedPoseError{Part::position, "a position that is not finite or too large",
@@ -98,7 +98,7 @@ Pose TimedPoses::pose_at(std::int64_t t_ns) const {
 }
 
 void TimedPoses::poses_at(std::span<const std::int64_t> t_ns, std::span<Pose> out) const {
-  constexpr std::size_t kSteps = 8;  // farther ahead, halving finds it sooner than walking
+  constexpr std::size_t kSteps = 8;  // farther ahead, a binary search is faster
   std::size_t next = 0;
   for (std::size_t i = 0; i < t_ns.size(); ++i) {
     const std::int64_t t = t_ns[i];

@@ -13,14 +13,14 @@
 
 namespace glidar {
 
-/// A pose at a time, as files hold it.
+/// A pose at a time, as files store it.
 struct TimedPose {
   std::int64_t t_ns = 0;
   Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
 };
 
-/// What keeps a pose from following another, and which part of it.
+/// Why a pose cannot follow another, and its invalid part.
 struct TimedPoseError {
   enum class Part : std::uint8_t { time, position, orientation };
   Part part = Part::time;
@@ -28,30 +28,30 @@ struct TimedPoseError {
   std::string allowed;
 };
 
-/// How far from 1 the length of a quaternion may be: files of four decimals pass, a forgotten or
-/// misplaced component does not.
+/// Maximum deviation of a quaternion's length from 1: files with four decimals are valid, a missing
+/// or misplaced component is not.
 inline constexpr double kQuaternionTolerance = 1e-3;
 
-/// The first fault of `next`, if it has any; `before` is the pose before it, nullptr for the first.
+/// The first error of `next`, if any; `before` is the previous pose, nullptr for the first.
 std::optional<TimedPoseError> find_error(const TimedPose* before, const TimedPose& next);
 
-/// Poses at increasing times. Between them the position goes straight and the orientation turns
-/// about one axis at one rate, the short way (slerp: Shoemake, SIGGRAPH 1985). Before the first and
-/// after the last time their poses hold.
+/// Poses at increasing times. Between them the position is interpolated linearly and the
+/// orientation along the shorter arc at a constant rate (slerp: Shoemake, SIGGRAPH 1985). Before
+/// the first and after the last time, the pose is constant.
 class TimedPoses {
  public:
-  /// Quaternions are normalised. Throws Error naming the entry (counted from 1) when there is none,
-  /// times do not increase, a number is not finite or too large, or a quaternion is not of
-  /// length 1.
+  /// Normalises the quaternions. Throws Error with the entry (counted from 1) if there is no pose,
+  /// times do not increase, a number is not finite or too large, or the length of a quaternion is
+  /// not 1.
   explicit TimedPoses(std::vector<TimedPose> poses);
 
-  /// The same of poses() of another, whose quaternions are kept to the bit. Throws Error also when
+  /// The same from poses() of another object; quaternions stay bit-identical. Throws Error also if
   /// one is not normalised.
   static TimedPoses restored(std::vector<TimedPose> poses);
 
   [[nodiscard]] Pose pose_at(std::int64_t t_ns) const;
 
-  /// The same for many times; quick when they increase.
+  /// The same for many times; fast if they increase.
   void poses_at(std::span<const std::int64_t> t_ns, std::span<Pose> out) const;
 
   [[nodiscard]] std::int64_t first_ns() const { return poses_.front().t_ns; }
@@ -62,7 +62,7 @@ class TimedPoses {
   TimedPoses() = default;
 
   [[nodiscard]] std::size_t next_after(std::int64_t t_ns) const;
-  /// The pose between entry next - 1 and entry next, which are those around t_ns.
+  /// The pose between the entries next - 1 and next, which enclose t_ns.
   void between(std::size_t next, std::int64_t t_ns, Pose& pose) const;
 
   std::vector<TimedPose> poses_;  ///< at least one

@@ -8,7 +8,7 @@
 
 namespace glidar {
 
-/// The seconds from one time to another, without overflow and to the nanosecond.
+/// The seconds from one time to another, without overflow and exact to the nanosecond.
 inline double seconds_between(std::int64_t from_ns, std::int64_t to_ns) {
   const auto from = static_cast<std::uint64_t>(from_ns);
   const auto to = static_cast<std::uint64_t>(to_ns);

@@ -32,12 +32,12 @@ void check(const InitialRotation& start) {
   }
   constexpr double kThinnest = 1e-9;
   if (moments.minCoeff() < kThinnest * moments.maxCoeff()) {
-    refuse("moments of inertia", "one is more than 1e9 times another", "moments of like size");
+    refuse("moments of inertia", "one is more than 1e9 times another", "ratios up to 1e9");
   }
-  constexpr double kRounding = 1e-6;  // of moments given in decimals: a thin plate is at the limit
+  constexpr double kRounding = 1e-6;  // for moments in decimals: a thin plate is at the limit
   if (moments.maxCoeff() > (1.0 + kRounding) * (moments.sum() - moments.maxCoeff())) {
-    refuse("moments of inertia", "one is larger than the two others together",
-           "moments of a body: none above the sum of the others");
+    refuse("moments of inertia", "one exceeds the sum of the other two",
+           "moments of a rigid body: none above the sum of the other two");
   }
   if (!start.rate_rad_s.allFinite()) refuse("rates", "not finite", "three finite numbers");
   if (!start.velocity_m_s.allFinite()) refuse("velocity", "not finite", "three finite numbers");
@@ -46,20 +46,20 @@ void check(const InitialRotation& start) {
   }
 }
 
-/// Euler's equations without torque: the moment times the change of rate, about each axis.
+/// Euler's equations without torque: moment of inertia times angular acceleration, for each axis.
 Vector3d gyroscopic(const Vector3d& moments, const Vector3d& rate) {
   const auto part = [&](int j, int k) { return (moments[j] - moments[k]) * rate[j] * rate[k]; };
   return {part(1, 2), part(2, 0), part(0, 1)};
 }
 
-/// True when the rate is constant: the body turns about a principal axis. Off-axis rates whose
-/// squares have no double relative to the whole count as none.
+/// True if the rate is constant, i.e. the body rotates about a principal axis. Off-axis rates whose
+/// squares underflow relative to the total are ignored.
 bool is_steady(const Vector3d& moments, const Vector3d& rate) {
   constexpr double kNone = 1e-140;
   return gyroscopic(moments, rate).norm() <= kNone * moments.maxCoeff() * rate.squaredNorm();
 }
 
-/// The sum of two doubles that is not rounded to one.
+/// An unevaluated sum of two doubles.
 struct Sum {
   double high;
   double low;
@@ -72,15 +72,16 @@ Sum exact_sum(double a, double b) {
   return {sum, (a - (sum - part)) + (b - part)};
 }
 
-/// To some 1e-31 of the product: Dekker, Numer. Math. 18 (1971) 224.
+/// With a relative error of about 1e-31: Dekker, Numer. Math. 18 (1971) 224.
 Sum product(const Sum& a, const Sum& b) {
   const double high = a.high * b.high;
   const double low = std::fma(a.high, b.high, -high) + (a.high * b.low + a.low * b.high);
   return exact_sum(high, low);
 }
 
-/// L^2 - 2 E I_2 for ordered axes. Its sign decides about which axis the body turns, and near the
-/// separatrix, where it cancels, its value decides when it flips: so in twice the digits.
+/// L^2 - 2 E I_2 for ordered axes. Its sign decides about which axis the body rotates. Near the
+/// separatrix, where it cancels, its value decides when the body flips; therefore it is computed in
+/// double-double precision.
 double about_last(const Vector3d& moments, const Vector3d& rate) {
   const auto term = [&](int axis) {
     const Sum momentum = product({moments[axis], 0.0}, {rate[axis], 0.0});
@@ -92,8 +93,8 @@ double about_last(const Vector3d& moments, const Vector3d& rate) {
   return high.high + (high.low + (first.low + last.low));
 }
 
-/// The rotation to axes of which the second has the middle moment and the third has a rate above 0
-/// for all time.
+/// The rotation to axes of which the second has the intermediate moment and the third always has a
+/// positive rate.
 Matrix3d ordered_axes(const Vector3d& moments, const Vector3d& rate) {
   std::array<int, 3> order = {0, 1, 2};
   std::stable_sort(order.begin(), order.end(),
@@ -108,7 +109,7 @@ Matrix3d ordered_axes(const Vector3d& moments, const Vector3d& rate) {
 
 /// Rodrigues' formula.
 Matrix3d rotation_about(const Vector3d& axis, double turns) {
-  const SineCosine angle = of_turns(turns);
+  const SineCosine angle = sincos_turns(turns);
   const Vector3d sine = angle.sine * axis;
   Matrix3d cross;
   cross << 0.0, -sine.z(), sine.y(), sine.z(), 0.0, -sine.x(), -sine.y(), sine.x(), 0.0;
@@ -116,7 +117,7 @@ Matrix3d rotation_about(const Vector3d& axis, double turns) {
          (1.0 - angle.cosine) * axis * axis.transpose();
 }
 
-/// The shortest rotation that takes a unit vector to z; its z is not below 0.
+/// The shortest rotation that maps a unit vector with z >= 0 to the z axis.
 Matrix3d shortest_to_z(const Vector3d& v) {
   const double scale = 1.0 / (1.0 + v.z());
   const double xy = -scale * v.x() * v.y();
@@ -126,33 +127,33 @@ Matrix3d shortest_to_z(const Vector3d& v) {
   return axes;
 }
 
-/// A power of two of the size of the largest number: exact to divide by.
+/// A power of two of the magnitude of the largest number: division by it is exact.
 double size_of(const Vector3d& numbers) {
   return std::ldexp(1.0, std::ilogb(numbers.cwiseAbs().maxCoeff()));
 }
 
 }  // namespace
 
-/// Everything in ordered axes, see ordered_axes(), and rates in units of `unit`. The rates are
-/// those of Landau & Lifshitz, section 37. The attitude is the shortest rotation that takes the
-/// angular momentum L, as the body sees it, to z, and then a turn about z; unlike Euler's angles it
-/// is regular wherever L is within 90 degrees of the third axis, as it always does here. The rate
-/// of that turn is (w . l + w3) / (1 + l3) with l = L / |L|: all terms are positive.
+/// The solution in ordered axes, see ordered_axes(), with rates in units of `unit`. The rates are
+/// those of Landau and Lifshitz, section 37. The attitude is the shortest rotation that maps the
+/// angular momentum L in the body to z, followed by a rotation about z. Unlike Euler angles it is
+/// regular wherever L is within 90 degrees of the third axis, as it always is here. The rate of the
+/// rotation about z is (w . l + w3) / (1 + l3) with l = L / |L|: all terms are positive.
 struct TorqueFreeRotation::Solution {
   Matrix3d ordered_from_principal;
   Vector3d moments;
   double unit = 1.0;   ///< 1/s
-  Vector3d amplitude;  ///< of the rates: those of cn, sn, dn, with their signs
+  Vector3d amplitude;  ///< amplitudes of cn, sn, dn in the rates, with their signs
   EllipticModulus modulus;
   double phase_rate = 0.0;  ///< of the elliptic functions' argument (37.9)
   double phase0 = 0.0;      ///< at t0
-  double turn_rate = 0.0;   ///< about L, were dn 1
-  double wobble = 0.0;      ///< of what is missing, see turn()
+  double turn_rate = 0.0;   ///< about L, for dn = 1
+  double wobble = 0.0;      ///< amplitude of the correction, see turn()
   IntegralTable integral;   ///< over a quarter period, see turn()
   double integral0 = 0.0;   ///< at t0
   Matrix3d world_from_momentum;
 
-  /// The rate is given in units of rate_unit.
+  /// `rate` is in units of rate_unit.
   Solution(const Vector3d& principal_moments, const Vector3d& principal_rate, double rate_unit,
            const Matrix3d& world_from_principal);
 
@@ -171,7 +172,7 @@ Vector3d TorqueFreeRotation::Solution::rate(double phase) const {
   return {amplitude[0] * j.cn, amplitude[1] * j.sn, amplitude[2] * j.dn};
 }
 
-/// The integral of sn^2 / ((1 + dn) (1 + l3)), with l3 = I3 w3 / L, from 0 to any phase.
+/// The integral of sn^2 / ((1 + dn) (1 + l3)) from 0 to any phase, with l3 = I3 w3 / L.
 double TorqueFreeRotation::Solution::integral_to(double phase) const {
   const double half = 2.0 * modulus.quarter_period;
   const double halves = std::floor(phase / half + 0.5);
@@ -181,7 +182,7 @@ double TorqueFreeRotation::Solution::integral_to(double phase) const {
 
 /// The angle about L since t0. With w3 = a3 dn, (2 E / L + w3) / (1 + l3) is its value at dn = 1
 /// and (2 E I3 - L^2) / L^2 a3 (1 - dn) / ((1 + l3) (1 + I3 a3 / L)), where 1 - dn = m sn^2 / (1 +
-/// dn): nothing cancels, not even when the phase hardly moves.
+/// dn): nothing cancels, even if the phase hardly changes.
 double TorqueFreeRotation::Solution::turn(double seconds) const {
   return turn_rate * (unit * seconds) + wobble * (integral_to(phase(seconds)) - integral0);
 }
@@ -219,7 +220,7 @@ TorqueFreeRotation::Solution::Solution(const Vector3d& principal_moments,
   const double scale = (i[2] - i[1]) * above;
   modulus = make_modulus(std::clamp((i[1] - i[0]) * below / scale, 0.0, 1.0),
                          std::clamp((i[2] - i[0]) * about_last(i, w) / scale, 0.0, 1.0));
-  // the signs make Euler's equations hold: that of w1 w2 w3 changes with the order of the moments
+  // The signs satisfy Euler's equations: that of w1 w2 w3 changes with the order of the moments.
   const double sign2 = i[2] > i[1] ? 1.0 : -1.0;
   amplitude = {std::sqrt(below / (i[0] * (i[2] - i[0]))),
                sign2 * std::sqrt(below / (i[1] * (i[2] - i[1]))),
@@ -227,7 +228,7 @@ TorqueFreeRotation::Solution::Solution(const Vector3d& principal_moments,
   phase_rate = std::sqrt(scale / (i[0] * i[1] * i[2]));
   const double sn = w[1] / amplitude[1];
   const double cn = w[0] / amplitude[0];
-  const double length = std::sqrt(sn * sn + cn * cn);  // 1 but for rounding
+  const double length = std::sqrt(sn * sn + cn * cn);  // 1 up to rounding
   phase0 = elliptic_f(modulus, sn / length, cn / length);
   find_turn(below);
   world_from_momentum =
@@ -237,7 +238,7 @@ TorqueFreeRotation::Solution::Solution(const Vector3d& principal_moments,
 TorqueFreeRotation::TorqueFreeRotation(const InitialRotation& start) : start_(start) {
   check(start_);
   if (start_.rate_rad_s.isZero(0.0)) return;
-  // powers of two, so that nothing is rounded and no square is beyond the reach of doubles
+  // Powers of two, so that nothing is rounded and no square overflows or underflows.
   const double unit = size_of(start_.rate_rad_s);
   const Vector3d rate = start_.rate_rad_s / unit;
   const Vector3d moments = start_.moments_kg_m2 / size_of(start_.moments_kg_m2);

@@ -26,7 +26,7 @@ std::string triple_text(const Eigen::Vector3d& v, double negligible) {
   return text + ")";
 }
 
-/// "x" for a direction along x either way, else its components.
+/// "x" for the directions +x and -x, and so on, else the components.
 std::string axis_text(const Eigen::Vector3d& direction) {
   Eigen::Index largest = 0;
   const double most = direction.cwiseAbs().maxCoeff(&largest);

@@ -15,8 +15,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Normals are single precision: what is degenerate gets (1e-7)^2 of the best direction's
-// information for each of them, and more where points lie far from their middle.
+// Normals have single precision: a degenerate direction gets (1e-7)^2 of the best direction's
+// information from each of them, and more if the points are far from their centroid.
 constexpr double kDegenerate = 1e-11;
 
 [[noreturn]] void fail(const char* where, std::string found, std::string allowed) {
@@ -33,7 +33,7 @@ void check(const Frame& frame, const Beams& beams, const FisherOptions& options)
     fail("pose information, sigma", std::to_string(options.sigma_m), "metres above 0");
   }
   if (!(options.least_cosine > 0.0 && options.least_cosine < 1.0)) {
-    fail("pose information, least cosine", std::to_string(options.least_cosine),
+    fail("pose information, minimum cosine", std::to_string(options.least_cosine),
          "above 0 and below 1");
   }
   if (!is_rigid(options.sensor_from_reference)) {
@@ -45,11 +45,11 @@ void check(const Frame& frame, const Beams& beams, const FisherOptions& options)
 struct Sample {
   Vector3d point;
   Vector3d normal;
-  double weight = 0.0;  ///< 1 / (sigma n d)^2; 0: it does not count
+  double weight = 0.0;  ///< 1 / (sigma n d)^2; 0: ignored
   bool grazes = false;
 };
 
-/// All that reading a return needs.
+/// The inputs for reading a return.
 class Returns {
  public:
   Returns(const Frame& frame, const Beams& beams, const FisherOptions& options)
@@ -93,7 +93,7 @@ class Returns {
   Pose reference_from_sensor_;
 };
 
-/// Counts returns and finds their middle and how far they reach from it.
+/// Counts returns and computes their centroid and their root mean square distance from it.
 void survey(const Returns& returns, std::size_t beams, FisherInformation& result) {
   Vector3d sum = Vector3d::Zero();
   for (std::size_t i = 0; i < beams; ++i) {
@@ -113,8 +113,8 @@ void survey(const Returns& returns, std::size_t beams, FisherInformation& result
   result.length_m = std::sqrt(squares / static_cast<double>(result.returns));
 }
 
-/// Fisher's information about displacements counted at the points' middle, where rotation and
-/// translation are told apart best however far the sensor is.
+/// Fisher information of displacements about the points' centroid, where rotation and translation
+/// are best separated at any distance from the sensor.
 Matrix6 information_at_middle(const Returns& returns, std::size_t beams, const Vector3d& middle) {
   Matrix6 sum = Matrix6::Zero();
   for (std::size_t i = 0; i < beams; ++i) {
@@ -127,8 +127,8 @@ Matrix6 information_at_middle(const Returns& returns, std::size_t beams, const V
   return sum.selfadjointView<Eigen::Lower>();
 }
 
-/// Displacements counted at the origin from those counted at a point: rho = rho_point + point x
-/// theta.
+/// Transforms displacements about a point to displacements about the origin: rho = rho_point +
+/// point x theta.
 Matrix6 origin_from_point(const Vector3d& point) {
   Matrix6 shift = Matrix6::Identity();
   shift.bottomLeftCorner<3, 3>() << 0.0, -point.z(), point.y(), point.z(), 0.0, -point.x(),
@@ -136,11 +136,11 @@ Matrix6 origin_from_point(const Vector3d& point) {
   return shift;
 }
 
-/// Another basis of the space that the columns span, in which as many components as possible are
-/// zero (reduced echelon form with the largest pivots, rotations first): "about x" and "along y" in
-/// place of any mixture.
+/// A basis of the space spanned by the columns in which as many components as possible are zero
+/// (reduced echelon form with the largest pivots, rotations first): "about x" and "along y" instead
+/// of a mixture of both.
 Eigen::MatrixXd simplest_basis(Eigen::MatrixXd basis) {
-  constexpr double kSmallAngle = 1e-3;  // of unit vectors: what rotates less is a translation
+  constexpr double kSmallAngle = 1e-3;  // unit vectors with less rotation are translations
   for (Eigen::Index column = 0; column < basis.cols(); ++column) {
     Eigen::Index row = 0;
     Eigen::Index from = 0;
@@ -155,11 +155,11 @@ Eigen::MatrixXd simplest_basis(Eigen::MatrixXd basis) {
   return basis.colwise().normalized();
 }
 
-/// Eigenvalues in falling order with their vectors, degenerate ones in their simplest basis.
+/// Eigenvalues in decreasing order with their vectors, degenerate ones in their simplest basis.
 struct Spectrum {
   Vector6 values;
   Matrix6 vectors;
-  Eigen::Index degenerate = 0;  ///< how many, the last ones
+  Eigen::Index degenerate = 0;  ///< number of degenerate ones, which are the last
 };
 
 Spectrum spectrum_of(const Matrix6& scaled) {
@@ -175,9 +175,9 @@ Spectrum spectrum_of(const Matrix6& scaled) {
   return spectrum;
 }
 
-/// The bound in the reference frame; `vectors` are the spectrum's there.
+/// The bound in the reference frame; `vectors` are the eigenvectors in it.
 void bound_from(const Spectrum& spectrum, const Matrix6& vectors, FisherInformation& result) {
-  constexpr double kPart = 1e-6;  // of a unit displacement: less is rounding
+  constexpr double kPart = 1e-6;  // smaller components of a unit displacement are rounding
   for (Eigen::Index k = 0; k < 6 - spectrum.degenerate; ++k) {
     result.covariance += vectors.col(k) * vectors.col(k).transpose() / spectrum.values[k];
   }
@@ -209,7 +209,7 @@ FisherInformation pose_information(const Frame& frame, const Beams& beams,
   const Matrix6 back = origin_from_point(-result.middle_m);
   result.matrix = back.transpose() * at_middle * back;
 
-  Vector6 unit;  // of displacements, so that a rotation moves the points as far as a translation
+  Vector6 unit;  // scales rotations so that they move the points as far as translations
   unit << Vector3d::Constant(1.0 / result.length_m), Vector3d::Ones();
   const Spectrum spectrum = spectrum_of(unit.asDiagonal() * at_middle * unit.asDiagonal());
   const Matrix6 vectors = shift * unit.asDiagonal() * spectrum.vectors;

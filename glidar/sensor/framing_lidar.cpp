@@ -10,9 +10,10 @@
 namespace glidar {
 namespace {
 
-/// A wider fan is treated as this one: from nearer little of the scene would be before the sensor.
-constexpr double kWidestFan_rad = std::numbers::pi / 3.0;
-constexpr double kHalfAngleOfALine_rad = std::numbers::pi / 6.0;  // at twice the radius
+/// Wider fans are limited to this one: from nearer, little of the scene would be in front of the
+/// sensor.
+constexpr double kMaxFan_rad = std::numbers::pi / 3.0;
+constexpr double kLineHalfAngle_rad = std::numbers::pi / 6.0;  // distance: twice the radius
 constexpr double kMinHalfAngle_rad = 1e-3;
 
 struct Elevations {
@@ -27,7 +28,7 @@ struct Elevations {
                .remedy = std::move(remedy)});
 }
 
-/// Elevations between the lowest and the highest beam, and no more than its sides are wide.
+/// The elevations of the lowest and the highest beam, limited to the horizontal width.
 Elevations elevations_of(const Beams& beams) {
   double low_rad = std::numbers::pi;
   double high_rad = -std::numbers::pi;
@@ -41,9 +42,9 @@ Elevations elevations_of(const Beams& beams) {
   }
   if (low_rad > high_rad) refuse_placing("the sensor has no beams", "");
   const double half_rad = 0.5 * (high_rad - low_rad);
-  const double fan_rad = half_rad > kMinHalfAngle_rad ? half_rad : kHalfAngleOfALine_rad;
+  const double fan_rad = half_rad > kMinHalfAngle_rad ? half_rad : kLineHalfAngle_rad;
   return {0.5 * (low_rad + high_rad),
-          std::min({fan_rad, std::max(side_rad, kMinHalfAngle_rad), kWidestFan_rad})};
+          std::min({fan_rad, std::max(side_rad, kMinHalfAngle_rad), kMaxFan_rad})};
 }
 
 }  // namespace
@@ -51,11 +52,11 @@ Elevations elevations_of(const Beams& beams) {
 Pose place_lidar_beside(const Beams& beams, const Scene& scene,
                         const Eigen::Vector3d& from_direction, const Eigen::Vector3d& up) {
   if (beams.size() == 0 || !beams.boresight.isApprox(Eigen::Vector3d::UnitX())) {
-    refuse_placing("the sensor is no LiDAR that heads for +x", "give the sensor's pose");
+    refuse_placing("the sensor is not a LiDAR with boresight +x", "give the sensor's pose");
   }
   const Eigen::AlignedBox3d box = bounds(scene);
   if (box.isEmpty() || !(box.diagonal().norm() > 0.0)) {
-    refuse_placing("the scene has no triangles or no size", "give the sensor's pose");
+    refuse_placing("the scene has no triangles or no extent", "give the sensor's pose");
   }
   const Elevations fan = elevations_of(beams);
   const Eigen::Vector3d z = up.normalized();

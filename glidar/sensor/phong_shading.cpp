@@ -13,7 +13,7 @@
 namespace glidar {
 namespace {
 
-/// Equation (3): attenuation over the distance d between surface and sensor.
+/// Equation (3): attenuation at the distance d between surface and sensor.
 inline double attenuation(const PhongHeadlight& light, double d) {
   return 1.0 / (light.attenuation_constant + light.attenuation_linear_per_m * d +
                 light.attenuation_quadratic_per_m2 * d * d);
@@ -24,12 +24,12 @@ inline float lit(float cos_shading) {
   return cos_shading > 0.0F ? cos_shading : 0.0F;
 }
 
-/// Ambient and diffuse part of equation (5).
+/// The ambient and diffuse terms of equation (5).
 inline float matte_colour(const Reflectance& surface, float ambient, float n_dot_h) {
   return ambient * surface.ambient + surface.diffuse * n_dot_h;
 }
 
-/// Equations (3) to (5) without the specular part. True when a surface has one.
+/// Equations (3) to (5) without the specular term. Returns true if a surface has one.
 GLIDAR_SIMD bool shade_diffuse(const PhongHeadlight& light, BeamRange range, Frame& frame) {
   const Hits& truth = frame.ground_truth;
   const auto ambient = static_cast<float>(light.ambient);
@@ -46,10 +46,10 @@ GLIDAR_SIMD bool shade_diffuse(const PhongHeadlight& light, BeamRange range, Fra
 }
 
 GLIDAR_SIMD void raise(Batch<double>& base, const Batch<double>& exponent) {
-  for (std::size_t k = 0; k < kDrawBatch; ++k) base[k] = power(base[k], exponent[k]);
+  for (std::size_t k = 0; k < kSampleBatch; ++k) base[k] = portable_pow(base[k], exponent[k]);
 }
 
-/// Equations (3) to (5) for the surfaces of a run that have a specular part.
+/// Equations (3) to (5) for the surfaces of a batch that have a specular term.
 void measure_specular(const PhongHeadlight& light, BeamRange range, Frame& frame) {
   const Hits& truth = frame.ground_truth;
   const auto ambient = static_cast<float>(light.ambient);
@@ -80,14 +80,14 @@ void validate(const PhongHeadlight& light) {
     return;
   }
   throw Error({.where = "light",
-               .found = "a number is negative or not finite, or all attenuation is 0",
-               .allowed = "finite numbers from 0, with at least one attenuation above 0",
+               .found = "a number is negative or not finite, or all attenuation coefficients are 0",
+               .allowed = "finite numbers of at least 0, and one attenuation coefficient above 0",
                .remedy = ""});
 }
 
 void shade_phong(const PhongHeadlight& light, BeamRange range, Frame& frame) {
-  for (std::size_t begin = range.begin; begin < range.end; begin += kDrawBatch) {
-    const BeamRange run{begin, std::min(begin + kDrawBatch, range.end)};
+  for (std::size_t begin = range.begin; begin < range.end; begin += kSampleBatch) {
+    const BeamRange run{begin, std::min(begin + kSampleBatch, range.end)};
     if (shade_diffuse(light, run, frame)) measure_specular(light, run, frame);
   }
 }

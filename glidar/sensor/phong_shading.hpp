@@ -7,12 +7,12 @@
 
 namespace glidar {
 
-/// Throws Error unless the attenuation is finite, not negative and not all zero.
+/// Throws Error unless the attenuation coefficients are finite, non-negative and not all zero.
 void validate(const PhongHeadlight& light);
 
-/// Fills a range of frame.intensity from frame.ground_truth by the paper's equations (3) to (5)
-/// with h of (2), for the beams whose status is hit; 0 elsewhere. Needs cos_shading and reflectance
-/// in frame.ground_truth.
+/// Fills a range of frame.intensity from frame.ground_truth by equations (3) to (5) of the 2016
+/// paper with h of (2), for beams whose status is hit; 0 elsewhere. Requires cos_shading and
+/// reflectance in frame.ground_truth.
 void shade_phong(const PhongHeadlight& light, BeamRange range, Frame& frame);
 
 }  // namespace glidar

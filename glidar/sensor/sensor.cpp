@@ -19,7 +19,7 @@ void repeat(std::vector<T>& column, std::size_t times) {
   }
 }
 
-/// Every beam once for each return.
+/// Repeats every beam once for each return.
 void repeat_for_returns(std::size_t returns, Beams& beams) {
   if (returns == 1) return;
   if (beams.rings.empty()) {
@@ -67,11 +67,10 @@ void set_rate(Sensor& sensor, double rate_hz) {
 void check_weather(const Sensor& sensor) {
   if (!sensor.weather) return;
   if (!sensor.pulse) {
-    throw Error(
-        {.where = "weather",
-         .found = "the light of the sensor '" + sensor.name + "' is not pulsed",
-         .allowed = "weather for a sensor with 'lidar_equation'",
-         .remedy = "describe its light by 'lidar_equation' in a sensor file (docs/files.md)"});
+    throw Error({.where = "weather",
+                 .found = "the sensor '" + sensor.name + "' has no lidar_equation",
+                 .allowed = "weather for a sensor with 'lidar_equation'",
+                 .remedy = "add 'lidar_equation' to a sensor file (docs/files.md)"});
   }
   extinction_per_m(*sensor.weather, sensor.wavelength_m);
 }
@@ -83,9 +82,9 @@ FrameInterval frame_interval(const Sensor& sensor, std::uint32_t frame) {
   return {start_of(frame), start_of(frame + 1.0)};
 }
 
-Beams make_beams(const Sensor& sensor, const FrameInterval& window) {
+Beams make_beams(const Sensor& sensor, const FrameInterval& interval) {
   Beams beams =
-      std::visit([&](const auto& optics) { return make_beams(optics, window); }, sensor.optics);
+      std::visit([&](const auto& optics) { return make_beams(optics, interval); }, sensor.optics);
   repeat_for_returns(sensor.receiver.returns.size(), beams);
   return beams;
 }

@@ -24,12 +24,12 @@ namespace glidar {
 
 using Optics = std::variant<Pinhole, Spinning, LineScan, Prism, RayTable>;
 
-/// What the sensor can report. A surface outside still blocks the beam.
+/// The distances that the sensor reports. A surface outside them still blocks the beam.
 struct Limits {
   enum class Along : std::uint8_t { depth, range };
-  double near_m = 0.0;  ///< 0: none, so that what lies behind a camera of wide view counts too
+  double near_m = 0.0;  ///< 0: no limit, so depths below 0 (views wider than 180 degrees) count too
   double far_m = std::numeric_limits<double>::infinity();
-  Along along = Along::depth;  ///< what the limits are about: along the boresight or the beam
+  Along along = Along::depth;  ///< the limits apply to depth (boresight) or range (beam)
 };
 
 /// A 3D sensor, as plain numbers.
@@ -37,45 +37,43 @@ struct Sensor {
   std::string name = "depth camera";
   Optics optics = Pinhole{};
   double rate_hz = 30.0;      ///< frames per second; see set_rate
-  double wavelength_m = 0.0;  ///< of the light; 0: not known
+  double wavelength_m = 0.0;  ///< of the light; 0: unknown
   Limits limits;
-  PhongHeadlight light;                ///< the paper's
-  std::optional<LidarEquation> pulse;  ///< the range equation in its place
-  std::optional<Footprint> footprint;  ///< of pulses; empty: a line
-  std::optional<Weather> weather;      ///< empty: clear air; acts on `pulse`
+  PhongHeadlight light;                ///< Phong model of the 2016 paper
+  std::optional<LidarEquation> pulse;  ///< set: a pulsed sensor; replaces `light`
+  std::optional<Footprint> footprint;  ///< of pulses; empty: the beam is a line
+  std::optional<Weather> weather;      ///< empty: clear air; affects `pulse`
   Receiver receiver;                   ///< of pulses
-  /// Where its light comes from, in its frame: what that place does not see is occluded. Empty:
-  /// from where it looks.
+  /// Position of the light source in the sensor frame: surfaces that it does not see are occluded.
+  /// Empty: the sensor's origin.
   std::optional<Eigen::Vector3d> projector_origin_m;
-  std::vector<NoiseStep> noise;         ///< in the order in which the sensor makes its errors
-  bool cull_back_faces = false;         ///< true: triangles seen from behind let the beam through
-  std::vector<std::string> files = {};  ///< that it was read from
+  std::vector<NoiseStep> noise;         ///< applied in this order
+  bool cull_back_faces = false;         ///< true: beams pass through the backs of triangles
+  std::vector<std::string> files = {};  ///< the files that define it
 };
 
-/// What the sensor says of something at this true range on a beam: hit, too_near or too_far.
+/// The status of a surface at this true range on a beam: hit, too_near or too_far.
 Status check_limits(const Limits& limits, const Beams& beams, std::size_t beam, double range_m);
 
-/// The sensor without noise, pulse light, weather, footprint, further returns and a projector apart
-/// from it: it reports the geometric truth, lit by the paper's lamp. Its limits stay.
+/// The sensor without noise, lidar equation, weather, footprint, further returns and projector: it
+/// reports the geometric ground truth with the intensity of the Phong model. Its limits stay.
 Sensor ground_truth_sensor(Sensor sensor);
 
-/// Sets the frame rate, and with it what follows from it: the turns per second of a spinning sensor
-/// and the scans per second of a raster. Throws Error unless it is within 1e-6
-/// to 1e9.
+/// Sets the frame rate, and with it the rotation rate of a spinning sensor and the scan rate of a
+/// line scanner. Throws Error unless it is in [1e-6, 1e9].
 void set_rate(Sensor& sensor, double rate_hz);
 
-/// Throws Error when there is weather but no pulsed light for it to act on, or fog and no
-/// wavelength.
+/// Throws Error for weather without a lidar equation, and for fog without a wavelength.
 void check_weather(const Sensor& sensor);
 
-/// The window of a frame, by the sensor's own rate. Frames join.
+/// The interval of a frame at the sensor's rate. Frames join without gap or overlap.
 FrameInterval frame_interval(const Sensor& sensor, std::uint32_t frame);
 
-/// What the sensor emits in a window, in its own frame; times count from the window's start. Every
-/// beam stands there once for each return of the receiver.
-Beams make_beams(const Sensor& sensor, const FrameInterval& window);
+/// The beams that the sensor emits in an interval, in the sensor frame; times count from the start
+/// of the interval. Every beam is repeated for each return of the receiver.
+Beams make_beams(const Sensor& sensor, const FrameInterval& interval);
 
-/// The same for the first window.
+/// The same for frame 0.
 Beams make_beams(const Sensor& sensor);
 
 }  // namespace glidar

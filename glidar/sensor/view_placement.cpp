@@ -13,12 +13,12 @@
 namespace glidar {
 namespace {
 
-/// A wider cone is treated as this one: from nearer the perspective would be grotesque.
-constexpr double kWidestHalfAngle_rad = std::numbers::pi / 3.0;
+/// Wider cones are limited to this one: from nearer, the perspective distortion is extreme.
+constexpr double kMaxHalfAngle_rad = std::numbers::pi / 3.0;
 
-/// Fraction of the scene's half diagonal that always lies between the camera and the nearest
-/// vertex, and around the scene's box. Matters for shapes that are lines or points when seen along
-/// the boresight, and for wide views.
+/// Minimum distance of the camera from the nearest vertex and from the scene's box, as a fraction
+/// of the scene's half diagonal. It matters for shapes that are lines or points along the
+/// boresight, and for wide views.
 constexpr double kMinGap = 0.02;
 
 [[noreturn]] void refuse_framing(std::string found, std::string remedy) {
@@ -28,13 +28,13 @@ constexpr double kMinGap = 0.02;
                .remedy = std::move(remedy)});
 }
 
-/// A rectangle in the plane z = 1 of the camera: all of it is in the image.
+/// A rectangle in the plane z = 1 of the camera that is completely in the image.
 struct Window {
   Eigen::Vector2d low;
   Eigen::Vector2d high;
 };
 
-/// Calls visit(vertex in the world) for every corner of the instance's triangles.
+/// Calls visit(vertex, world frame) for every corner of the instance's triangles.
 template <typename Visit>
 void visit_corners(const Instance& instance, const Mesh& mesh, const Visit& visit) {
   for (const Triangle& triangle : mesh.triangles) {
@@ -58,8 +58,8 @@ Window window_of(const PinholeIntrinsics& k) {
           {(k.width + edge - k.cx) / k.fx, (k.height + edge - k.cy) / k.fy}};
 }
 
-/// The rectangle enclosed by the beams of the image's border; nothing when one is missing or looks
-/// too far sideways for a plane to hold it.
+/// The rectangle inside the beams at the image's border; empty if one is missing or is more than 80
+/// degrees from the boresight.
 std::optional<Window> window_of_border(const Beams& beams) {
   constexpr double kMinForward = 0.17;  // cosine of 80 degrees
   Window window{{-kInfinity, -kInfinity}, {kInfinity, kInfinity}};
@@ -85,18 +85,18 @@ std::optional<Window> find_window(const Beams& beams) {
   return beams.pinhole ? window_of(*beams.pinhole) : window_of_border(beams);
 }
 
-/// Where a camera may stand (camera axes, relative to the pose that these belong to): at
-/// start + distance * way, from this distance on.
-struct Retreat {
+/// The positions from which the camera sees the scene: start + d * direction for d >= distance, in
+/// the axes of the camera's initial pose.
+struct CameraPath {
   Eigen::Vector3d start;
-  Eigen::Vector3d way;
+  Eigen::Vector3d direction;
   double distance;
 };
 
-/// The retreat for an image that is a rectangle. With the camera at (s, t, -d), a vertex (X, Y, Z)
-/// is inside when low (Z + d) <= (X - s, Y - t) <= high (Z + d). Both sides of each axis are linear
-/// in d, so the least d follows directly from the extremes over all vertices.
-Retreat fit_window(const Window& window, const Scene& scene, const Pose& world_from_camera) {
+/// The positions for an image that is a rectangle. With the camera at (s, t, -d), a vertex (X, Y,
+/// Z) is inside if low (Z + d) <= (X - s, Y - t) <= high (Z + d). Both sides of each axis are
+/// linear in d, so the minimum d follows directly from the extremes over all vertices.
+CameraPath fit_window(const Window& window, const Scene& scene, const Pose& world_from_camera) {
   const Eigen::Vector2d middle = 0.5 * (window.low + window.high);
   const Eigen::Vector2d half = (1.0 - kFramingMargin) * 0.5 * (window.high - window.low);
   const Eigen::Vector2d low = middle - half;
@@ -119,10 +119,10 @@ Retreat fit_window(const Window& window, const Scene& scene, const Pose& world_f
 }
 
 /// The same for an image that is a cone about `axis` (camera axes): no sideways shift.
-Retreat fit_cone(const Eigen::Vector3d& axis, double half_angle_rad, const Scene& scene,
-                 const Pose& world_from_camera) {
+CameraPath fit_cone(const Eigen::Vector3d& axis, double half_angle_rad, const Scene& scene,
+                    const Pose& world_from_camera) {
   const double slope =
-      (1.0 - kFramingMargin) * std::tan(std::min(half_angle_rad, kWidestHalfAngle_rad));
+      (1.0 - kFramingMargin) * std::tan(std::min(half_angle_rad, kMaxHalfAngle_rad));
   const Pose camera_from_world = world_from_camera.inverse();
   double distance = -kInfinity;
   double nearest = kInfinity;
@@ -136,26 +136,26 @@ Retreat fit_cone(const Eigen::Vector3d& axis, double half_angle_rad, const Scene
   return {Eigen::Vector3d::Zero(), -axis, std::max(distance, gap - nearest)};
 }
 
-/// The first position of the retreat that lies outside the scene's box, with some room between.
-Eigen::Vector3d clear_of_box(const Retreat& retreat, const Scene& scene,
-                             const Pose& world_from_camera) {
+/// The first position of the path outside the scene's box, at the minimum distance from it.
+Eigen::Vector3d outside_box(const CameraPath& path, const Scene& scene,
+                            const Pose& world_from_camera) {
   Eigen::AlignedBox3d box = bounds(scene);
   const Eigen::Vector3d gap = Eigen::Vector3d::Constant(kMinGap * 0.5 * box.diagonal().norm());
   box = Eigen::AlignedBox3d(box.min() - gap, box.max() + gap);
-  const Eigen::Vector3d start = world_from_camera * retreat.start;
-  const Eigen::Vector3d way = world_from_camera.linear() * retreat.way;
-  double distance = retreat.distance;
-  if (box.contains(start + distance * way)) {
-    // all slabs hold it, so it leaves the box where it leaves the first of them
+  const Eigen::Vector3d start = world_from_camera * path.start;
+  const Eigen::Vector3d direction = world_from_camera.linear() * path.direction;
+  double distance = path.distance;
+  if (box.contains(start + distance * direction)) {
+    // The point is inside all slabs, so it leaves the box where it leaves the first of them.
     double leaving = kInfinity;
     for (int axis = 0; axis < 3; ++axis) {
-      if (way[axis] == 0.0) continue;
-      const double side = way[axis] > 0.0 ? box.max()[axis] : box.min()[axis];
-      leaving = std::min(leaving, (side - start[axis]) / way[axis]);
+      if (direction[axis] == 0.0) continue;
+      const double side = direction[axis] > 0.0 ? box.max()[axis] : box.min()[axis];
+      leaving = std::min(leaving, (side - start[axis]) / direction[axis]);
     }
     distance = std::max(distance, leaving);
   }
-  return retreat.start + distance * retreat.way;
+  return path.start + distance * path.direction;
 }
 
 bool is_beam(const Beams& beams, std::int64_t row, std::int64_t col) {
@@ -183,7 +183,7 @@ double enclosed_angle_rad(const Beams& beams, const Eigen::Vector3d& axis) {
 
 void require_camera(const Beams& beams) {
   if (beams.size() == 0 || !looks_along_z(beams)) {
-    refuse_framing("the sensor is not a camera that looks along +z", "give the sensor's pose");
+    refuse_framing("the sensor is not a camera with boresight +z", "give the sensor's pose");
   }
 }
 
@@ -194,7 +194,7 @@ Pose fit_camera_to_scene(const Beams& beams, const Scene& scene,
   require_camera(beams);
   Eigen::AlignedBox3d box;
   for_each_corner(scene, [&](const Eigen::Vector3d& world) { box.extend(world); });
-  if (box.isEmpty()) refuse_framing("there are no triangles", "load a model that has some");
+  if (box.isEmpty()) refuse_framing("the scene has no triangles", "load a model with triangles");
   if (!(box.diagonal().norm() > 0.0))
     refuse_framing("all vertices are one point", "give the sensor's pose");
 
@@ -202,16 +202,16 @@ Pose fit_camera_to_scene(const Beams& beams, const Scene& scene,
   Pose pose = look_at(box.center() + from_direction, box.center(), up);
   pose.translation() = box.center();
   if (const std::optional<Window> window = find_window(beams)) {
-    return pose * Eigen::Translation3d(clear_of_box(fit_window(*window, scene, pose), scene, pose));
+    return pose * Eigen::Translation3d(outside_box(fit_window(*window, scene, pose), scene, pose));
   }
   const Eigen::Vector3d axis =
       beams.directions[std::size_t{beams.rows / 2} * beams.cols + beams.cols / 2];
   const double half_angle_rad = std::isnan(axis.x()) ? 0.0 : enclosed_angle_rad(beams, axis);
   if (!(half_angle_rad > 0.0)) {
-    refuse_framing("the image has no area around its middle", "give the sensor's pose");
+    refuse_framing("the image has no area around its centre", "give the sensor's pose");
   }
-  const Retreat retreat = fit_cone(axis, half_angle_rad, scene, pose);
-  return pose * Eigen::Translation3d(clear_of_box(retreat, scene, pose));
+  const CameraPath path = fit_cone(axis, half_angle_rad, scene, pose);
+  return pose * Eigen::Translation3d(outside_box(path, scene, pose));
 }
 
 }  // namespace glidar

@@ -17,7 +17,7 @@ namespace {
 
 // For every thread: with their hits, some 90 bytes each, they fit into a core's own cache.
 constexpr std::size_t kSubBeamsPerBlock = std::size_t{1} << 14U;
-constexpr std::size_t kPulsesPerTask = kDrawBatch;
+constexpr std::size_t kPulsesPerTask = kSampleBatch;
 
 /// One block of beams that is being measured.
 struct Block {
@@ -194,7 +194,7 @@ struct Draws {
 
 void draw(const LidarEquation& light, const Frame& frame, std::size_t first, Draws& draws) {
   draws.detection = rng_key(frame, Purpose::detection, first);
-  if (light.noise_sigma > 0.0) draw_normals(draws.detection, draws.noise);
+  if (light.noise_sigma > 0.0) sample_normals(draws.detection, draws.noise);
 }
 
 /// What a thread needs for one beam after the other.

@@ -241,7 +241,7 @@ class Motion(CliTest):
             pose = json.load(file)["sensor"]["world_from_sensor"]
         self.assertEqual(pose["position_m"], [0, 0, -7])
         late = self.write("late.tum", "5 0 0 -7 0 0 0 1\n")
-        self.assertIn("the pose at its end holds", self.warned("builtin:box", "--trajectory", late))
+        self.assertIn("its first or last pose is used", self.warned("builtin:box", "--trajectory", late))
         self.assertIn("both are given; give one of them", self.refused(
             "render", "builtin:box", "--trajectory", "path.tum", "--camera-z", "5", "-o", "y.pcd"))
 

@@ -105,7 +105,7 @@ class Refusals(CliTest):
                 (("--scale", "1e300"), "--scale: 1e+300"),
                 (("--ambient", "1e300"), "--ambient: 1e+300"),
                 (("--attenuation", "-1,0,1"), "--attenuation: '-1,0,1'"),
-                (("--rain", "5"), "weather: the light of the sensor 'depth camera' is not pulsed"),
+                (("--rain", "5"), "weather: the sensor 'depth camera' has no lidar_equation"),
                 (("--rain", "-5"), "--rain: -5; allowed: a number from 0 to 1000"),
                 (("--snow", "nan"), "--snow: nan; allowed: a number from 0 to 1000"),
                 (("--target", "1,1,1"), "--target: there is no --eye; give --eye too"),

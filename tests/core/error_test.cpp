@@ -10,7 +10,7 @@
 namespace glidar {
 namespace {
 
-TEST(Error, SaysWhereWhatAllowedAndWhatToDo) {
+TEST(Error, MessageContainsAllFourParts) {
   const Error error({.where = "camera.yaml:3:8: width",
                      .found = "-5",
                      .allowed = "1 to 65536",
@@ -20,12 +20,12 @@ TEST(Error, SaysWhereWhatAllowedAndWhatToDo) {
   EXPECT_EQ(error.parts().found, "-5");
 }
 
-TEST(Error, LeavesOutWhatIsEmpty) {
+TEST(Error, MessageOmitsEmptyParts) {
   EXPECT_STREQ(Error({.where = "", .found = "broken", .allowed = "", .remedy = ""}).what(),
                "broken");
 }
 
-TEST(NumberText, IsTheShortestThatReadsBackTheSame) {
+TEST(NumberText, IsTheShortestTextThatParsesToTheSameNumber) {
   EXPECT_EQ(number_text(0.1), "0.1");
   EXPECT_EQ(number_text(1e300), "1e+300");
   EXPECT_EQ(number_text(-2.0), "-2");
@@ -33,13 +33,13 @@ TEST(NumberText, IsTheShortestThatReadsBackTheSame) {
   EXPECT_EQ(number_text(-2.2250738585072014e-308), "-2.2250738585072014e-308");
 }
 
-TEST(NearestWord, FindsTheTypo) {
+TEST(ClosestMatch, FindsTheMisspelledWord) {
   const std::vector<std::string> known = {"width", "height", "fov_deg"};
   EXPECT_EQ(closest_match("widht", known), "width");
   EXPECT_EQ(closest_match("fov_dge", known), "fov_deg");
 }
 
-TEST(NearestWord, FindsLongerAndShorterKeys) {
+TEST(ClosestMatch, FindsLongerAndShorterKeys) {
   const std::vector<std::string> pose = {"position", "orientation", "rotation_vector", "euler_deg"};
   EXPECT_EQ(closest_match("euler", pose), "euler_deg");
   EXPECT_EQ(closest_match("rotation", pose), "rotation_vector");
@@ -51,18 +51,18 @@ TEST(NearestWord, FindsLongerAndShorterKeys) {
   EXPECT_EQ(closest_match("deg", sensor), "fov_deg");
 }
 
-TEST(NearestWord, PrefersOneWrongLetterToALongerKey) {
+TEST(ClosestMatch, PrefersOneWrongLetterToALongerKey) {
   const std::vector<std::string> known = {"range_max_m", "ranges"};
   EXPECT_EQ(closest_match("range", known), "ranges");
 }
 
-TEST(NearestWord, CountsExchangedLettersOnceAndNoCapitals) {
+TEST(ClosestMatch, CountsTranspositionsOnceAndIgnoresCase) {
   EXPECT_EQ(closest_match("rso", std::vector<std::string>{"gl", "ros"}), "ros");
   EXPECT_EQ(closest_match("EULER", std::vector<std::string>{"euler_deg"}), "euler_deg");
   EXPECT_EQ(closest_match("vlp-17", std::vector<std::string>{"VLP-16"}), "VLP-16");
 }
 
-TEST(NearestWord, SuggestsNoNonsense) {
+TEST(ClosestMatch, DoesNotSuggestUnrelatedWords) {
   EXPECT_EQ(closest_match("w", std::vector<std::string>{"x", "y", "z"}), "");
   EXPECT_EQ(closest_match("up", std::vector<std::string>{"id", "optics"}), "");
   EXPECT_EQ(closest_match("fov", std::vector<std::string>{"fx", "fy", "far_m"}), "");
@@ -71,7 +71,7 @@ TEST(NearestWord, SuggestsNoNonsense) {
   EXPECT_EQ(closest_match("colour", std::vector<std::string>{"mirror", "unit"}), "");
 }
 
-TEST(NearestWord, SaysNothingWhenNothingIsNear) {
+TEST(ClosestMatch, IsEmptyWhenNothingIsSimilar) {
   const std::vector<std::string> known = {"width", "height"};
   EXPECT_EQ(closest_match("temperature", known), "");
   EXPECT_EQ(closest_match("x", std::vector<std::string>{}), "");

@@ -50,7 +50,7 @@ TEST(Sample, AppliesTheUvTransform) {
   EXPECT_FLOAT_EQ(grey_at(use, 0.125F, 0.375F), 51.0F);  // looked up at 0.75, 0.75
 }
 
-TEST(Sample, SpreadsGreyAndKeepsAlpha) {
+TEST(Sample, CopiesGreyToRgbAndKeepsAlpha) {
   const std::vector<Texture> textures = {
       {.name = "ga", .width = 1, .height = 1, .channels = 2, .texels = {51, 102}}};
   const Eigen::Vector4f found = sample({.texture = 0}, textures, {0.5F, 0.5F});
@@ -64,7 +64,7 @@ TEST(Sample, SurvivesHugeAndUndefinedCoordinates) {
   EXPECT_EQ(sample(use, grey(), {nan, 0.0F}), Eigen::Vector4f::Ones());
 }
 
-TEST(OpacityAt, TakesAlphaOrElseGrey) {
+TEST(OpacityAt, IsAlphaOrElseGrey) {
   Material material;
   material.opacity = 0.5F;
   EXPECT_FLOAT_EQ(opacity_at(material, grey(), {0.75F, 0.25F}), 0.5F);

@@ -13,7 +13,7 @@
 namespace glidar {
 namespace {
 
-/// Three triangles in three runs, the first and the last with the same origin.
+/// Three triangles in three ranges, the first and the last with the same origin.
 Mesh three_runs() {
   Mesh mesh;
   mesh.name = "runs";
@@ -30,7 +30,7 @@ Mesh three_runs() {
   return mesh;
 }
 
-TEST(MeshOrigins, EveryVertexIsRelativeToTheOriginOfItsRun) {
+TEST(MeshOrigins, EveryVertexIsRelativeToTheOriginOfItsRange) {
   const Mesh mesh = three_runs();
   EXPECT_NO_THROW(validate(mesh));
   EXPECT_EQ(vertex_m(mesh, 1), Eigen::Vector3d(2.0, 2.0, 3.0));
@@ -40,14 +40,14 @@ TEST(MeshOrigins, EveryVertexIsRelativeToTheOriginOfItsRun) {
   EXPECT_EQ(bounds(mesh).max(), Eigen::Vector3d(10002.0, 3.0, 3.0));
 }
 
-TEST(MeshOrigins, WithoutRunsTheOneOriginHolds) {
+TEST(MeshOrigins, WithoutRangesOneOriginApplies) {
   Mesh mesh = three_runs();
   mesh.origins.clear();
   mesh.origin_m = {5.0, 0.0, 0.0};
   EXPECT_EQ(vertex_m(mesh, 8), Eigen::Vector3d(7.0, 1.0, 0.0));
 }
 
-TEST(MeshOrigins, UnsoundRunsAreErrors) {
+TEST(MeshOrigins, InvalidRangesAreErrors) {
   const std::vector<void (*)(Mesh&)> harms = {[](Mesh& m) { m.origins[0].first_vertex = 1; },
                                               [](Mesh& m) { m.origins[0].first_triangle = 1; },
                                               [](Mesh& m) { m.origins[1].first_vertex = 4; },
@@ -62,7 +62,7 @@ TEST(MeshOrigins, UnsoundRunsAreErrors) {
   }
 }
 
-TEST(MeshPieces, HoldTheRunsOfOneOriginWithTheirTrianglesInOrder) {
+TEST(MeshPieces, ContainTheRangesOfOneOriginWithTrianglesInOrder) {
   const Mesh mesh = three_runs();
   const std::vector<MeshPiece> pieces = cut_at_origins(mesh);
   ASSERT_EQ(pieces.size(), 2U);

@@ -22,14 +22,14 @@ Beams lidar() {
   return beams;
 }
 
-/// Where a point 3 m ahead, 2 m to the left and 1 m up lies in the frame of this name.
+/// A point 3 m ahead, 2 m to the left and 1 m up, in the coordinate frame of this name.
 Eigen::Vector3d seen(const std::string& name, const Beams& beams) {
   const Eigen::Vector3d in_sensor =
       looks_along_z(beams) ? Eigen::Vector3d(-2.0, -1.0, 3.0) : Eigen::Vector3d(3.0, 2.0, 1.0);
   return output_frame(name, beams, Pose::Identity()).cloud_from_sensor * in_sensor;
 }
 
-TEST(OutputFrame, HasTheAxesOfItsNameForEverySensor) {
+TEST(OutputFrame, HasTheNamedAxesForEverySensor) {
   for (const Beams& beams : {camera(), lidar()}) {
     EXPECT_EQ(seen("optical", beams), Eigen::Vector3d(-2.0, -1.0, 3.0));
     EXPECT_EQ(seen("ros", beams), Eigen::Vector3d(3.0, 2.0, 1.0));
@@ -38,7 +38,7 @@ TEST(OutputFrame, HasTheAxesOfItsNameForEverySensor) {
   }
 }
 
-TEST(OutputFrame, OfTheSensorIsItsOwnAndThatOfTheWorldIsItsPose) {
+TEST(OutputFrame, SensorFrameIsIdentityAndWorldFrameIsTheSensorPose) {
   const Pose pose = make_pose({1.0, 2.0, 3.0}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5));
   const OutputFrame own = output_frame("sensor", lidar(), pose);
   EXPECT_EQ(own.frame_id, "lidar_frame");
@@ -53,7 +53,7 @@ TEST(OutputFrame, EveryNameIsKnown) {
     EXPECT_TRUE(is_rigid(output_frame(name, camera(), Pose::Identity()).cloud_from_sensor)) << name;
 }
 
-TEST(OutputFrame, UnknownNameIsToldWithTheNearest) {
+TEST(OutputFrame, UnknownNameIsAnErrorWithTheClosestMatch) {
   try {
     output_frame("optcal", camera(), Pose::Identity());
     FAIL();

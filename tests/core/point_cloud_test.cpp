@@ -51,7 +51,7 @@ const std::vector<T>& values(const PointCloud& cloud, std::string_view name) {
   return std::get<std::vector<T>>(find_column(cloud, name)->values);
 }
 
-TEST(PointCloud, PutsPointsAlongTheirBeams) {
+TEST(PointCloud, PointsAreOnTheirBeams) {
   const PointCloud cloud = Fixture().cloud({"xyz", "depth", "range"});
   const auto& xyz = values<double>(cloud, "xyz");
   EXPECT_DOUBLE_EQ(xyz[0], 1.2);
@@ -61,7 +61,7 @@ TEST(PointCloud, PutsPointsAlongTheirBeams) {
   EXPECT_DOUBLE_EQ(values<double>(cloud, "range")[0], 2.0);
 }
 
-TEST(PointCloud, CountsTheBeamsOrigin) {
+TEST(PointCloud, IncludesTheBeamOrigins) {
   Fixture f;
   f.beams.origins_m = {Eigen::Vector3d(0.0, 1.0, 0.5), Eigen::Vector3d::Zero()};
   const PointCloud cloud = f.cloud({"xyz", "depth"});
@@ -69,7 +69,7 @@ TEST(PointCloud, CountsTheBeamsOrigin) {
   EXPECT_DOUBLE_EQ(values<double>(cloud, "depth")[0], 2.1);
 }
 
-TEST(PointCloud, StandsInTheNamedFrame) {
+TEST(PointCloud, IsInTheNamedCoordinateFrame) {
   Fixture f;
   f.frame.world_from_sensor.translation() = Eigen::Vector3d(0.0, 0.0, 10.0);
   const OutputFrame world{"world", f.frame.world_from_sensor};
@@ -79,7 +79,7 @@ TEST(PointCloud, StandsInTheNamedFrame) {
   EXPECT_TRUE(cloud.world_from_cloud.isApprox(Pose::Identity()));
 }
 
-TEST(PointCloud, TellsIdsOfHitsAndOfMisses) {
+TEST(PointCloud, HasIdsForHitsAndInvalidIdsForMisses) {
   const PointCloud cloud =
       Fixture().cloud({"instance", "class", "primitive", "status", "row", "col"});
   EXPECT_THAT(values<std::uint32_t>(cloud, "instance"), ::testing::ElementsAre(7, kInvalidId));
@@ -89,7 +89,7 @@ TEST(PointCloud, TellsIdsOfHitsAndOfMisses) {
   EXPECT_THAT(values<std::uint32_t>(cloud, "col"), ::testing::ElementsAre(0, 1));
 }
 
-TEST(PointCloud, TellsWhenEachBeamLeft) {
+TEST(PointCloud, HasFiringTimes) {
   Fixture f;
   f.frame.stamp_ns = -5;
   EXPECT_THAT(values<std::int64_t>(f.cloud({"stamp"}), "stamp"), ::testing::ElementsAre(-5, -5));
@@ -99,7 +99,7 @@ TEST(PointCloud, TellsWhenEachBeamLeft) {
               ::testing::ElementsAre(1700000000123456789, 1700000004418424084));
 }
 
-TEST(PointCloud, TellsWhereACamerasBeamsWereAimed) {
+TEST(PointCloud, HasAzimuthAndElevationOfACamera) {
   Fixture f;  // 0.6 to the right, 0.8 ahead
   f.beams.directions[1] = Eigen::Vector3d(0.0, -0.6, 0.8);
   const PointCloud cloud = f.cloud({"azimuth", "elevation"});
@@ -109,7 +109,7 @@ TEST(PointCloud, TellsWhereACamerasBeamsWereAimed) {
   EXPECT_DOUBLE_EQ(values<double>(cloud, "elevation")[1], std::asin(0.6));
 }
 
-TEST(PointCloud, TellsWhereALidarsBeamsWereAimedWhateverTheCloudsFrame) {
+TEST(PointCloud, HasAzimuthAndElevationOfALidarInAnyOutputFrame) {
   Fixture f;
   f.beams.boresight = Eigen::Vector3d::UnitX();
   f.beams.directions = {Eigen::Vector3d(-0.6, -0.8, 0.0), Eigen::Vector3d::Constant(kNaN)};
@@ -120,8 +120,8 @@ TEST(PointCloud, TellsWhereALidarsBeamsWereAimedWhateverTheCloudsFrame) {
   EXPECT_TRUE(std::isnan(values<double>(cloud, "elevation")[1]));
 }
 
-TEST(PointCloud, ComesOutTheSameWhoeverMakesIt) {
-  constexpr std::uint32_t kSide = 300;  // more than one piece of work
+TEST(PointCloud, IsIdenticalForAnyNumberOfThreads) {
+  constexpr std::uint32_t kSide = 300;  // more than one parallel task
   Fixture fixture;
   fixture.beams.rows = fixture.beams.cols = fixture.frame.rows = fixture.frame.cols = kSide;
   const std::size_t size = std::size_t{kSide} * kSide;
@@ -139,7 +139,7 @@ TEST(PointCloud, ComesOutTheSameWhoeverMakesIt) {
   }
 }
 
-TEST(PointCloud, RefusesUnknownAndUncastColumns) {
+TEST(PointCloud, RejectsUnknownAndUncastColumns) {
   Fixture f;
   try {
     f.cloud({"intensty"});
@@ -155,7 +155,7 @@ TEST(PointCloud, RefusesUnknownAndUncastColumns) {
   }
 }
 
-TEST(PointCloud, AsksForTheFieldsOfItsColumns) {
+TEST(PointCloud, RequiresTheHitFieldsOfItsColumns) {
   const std::vector<std::string> names = {"xyz", "normal", "colour"};
   const HitFieldMask fields = fields_needed_by(names);
   EXPECT_TRUE(fields.normal);
@@ -164,9 +164,9 @@ TEST(PointCloud, AsksForTheFieldsOfItsColumns) {
   EXPECT_FALSE(fields.object_point);
 }
 
-TEST(Compact, KeepsTheHitsOnly) {
+TEST(RemoveInvalidPoints, KeepsTheHitsOnly) {
   PointCloud cloud;
-  cloud.columns = {{"other", {"a"}, std::vector<double>(9)}};  // whose memory is used again
+  cloud.columns = {{"other", {"a"}, std::vector<double>(9)}};  // its memory is reused
   remove_invalid_points(Fixture().cloud({"xyz", "instance", "stamp"}), cloud);
   EXPECT_EQ(cloud.rows, 1U);
   EXPECT_EQ(cloud.cols, 1U);
@@ -175,7 +175,7 @@ TEST(Compact, KeepsTheHitsOnly) {
   EXPECT_EQ(values<std::int64_t>(cloud, "stamp").size(), 1U);
 }
 
-TEST(Compact, NeedsCoordinates) {
+TEST(RemoveInvalidPoints, RequiresCoordinates) {
   PointCloud cloud;
   EXPECT_THROW(remove_invalid_points(Fixture().cloud({"range"}), cloud), Error);
 }

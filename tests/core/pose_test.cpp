@@ -10,7 +10,7 @@
 namespace glidar {
 namespace {
 
-TEST(LookAt, PutsTheTargetAheadAndUpUpwards) {
+TEST(LookAt, PutsTheTargetOnTheBoresightAndUpUpwards) {
   const Pose pose = look_at({1.0, 2.0, 3.0}, {1.0, 7.0, 3.0}, Eigen::Vector3d::UnitZ());
   EXPECT_TRUE(is_rigid(pose));
   EXPECT_LT(
@@ -21,7 +21,7 @@ TEST(LookAt, PutsTheTargetAheadAndUpUpwards) {
       1e-12);  // the world's up is the image's -y
 }
 
-TEST(LookAt, RefusesWhatHasNoDirection) {
+TEST(LookAt, RejectsUndefinedDirections) {
   const Eigen::Vector3d here = Eigen::Vector3d::Zero();
   EXPECT_THROW(look_at(here, here, Eigen::Vector3d::UnitZ()), Error);
   EXPECT_THROW(look_at(here, Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitZ()), Error);
@@ -45,7 +45,7 @@ TEST(LookAt, StraightUpOrDownShowsTheWorldsXUpwards) {
   EXPECT_EQ(down.linear().col(0), Eigen::Vector3d(0.0, -1.0, 0.0));  // right in the image is -y
 }
 
-TEST(LookAt, CountsAsVerticalUpToTheNamedSine) {
+TEST(LookAt, IsVerticalUpToTheDocumentedSine) {
   const double inside = 0.5 * kVerticalSine;
   const double outside = 2.0 * kVerticalSine;
   // beside the vertical along y: within the threshold x is up, beyond it z, which is -y here
@@ -57,11 +57,11 @@ TEST(LookAt, CountsAsVerticalUpToTheNamedSine) {
   EXPECT_TRUE(is_rigid(slanted));
 }
 
-TEST(LookAt, WithoutUpVectorRefusesTheSamePoint) {
+TEST(LookAt, WithoutUpVectorRejectsCoincidentPoints) {
   EXPECT_THROW(look_at({1.0, 2.0, 3.0}, {1.0, 2.0, 3.0}), Error);
 }
 
-TEST(NumbersOf, ListsPositionAndQuaternionWithPositiveW) {
+TEST(ToXyzWxyz, ListsPositionAndQuaternionWithPositiveW) {
   const Pose pose = make_pose({1.0, 2.0, 3.0}, Eigen::Quaterniond(-0.5, 0.5, 0.5, -0.5));
   PoseVector wanted;
   wanted << 1.0, 2.0, 3.0, 0.5, -0.5, -0.5, 0.5;
@@ -73,7 +73,7 @@ TEST(MakePose, NormalisesTheQuaternion) {
   EXPECT_LT((pose * Eigen::Vector3d::UnitX() - Eigen::Vector3d::UnitY()).norm(), 1e-15);
 }
 
-TEST(MakePose, TakesTheLargestAndTheSmallestQuaternion) {
+TEST(MakePose, AcceptsVeryLargeAndVerySmallQuaternions) {
   const double largest = std::numeric_limits<double>::max();
   const double smallest = std::numeric_limits<double>::denorm_min();
   for (const double length : {largest, 1e200, 1e-155, smallest}) {
@@ -82,7 +82,7 @@ TEST(MakePose, TakesTheLargestAndTheSmallestQuaternion) {
   }
 }
 
-TEST(MakePose, RefusesZeroAndNotANumber) {
+TEST(MakePose, RejectsZeroAndNaN) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(make_pose({0.0, 0.0, 0.0}, Eigen::Quaterniond(0.0, 0.0, 0.0, 0.0)), Error);
   EXPECT_THROW(make_pose({1e30, 0.0, 0.0}, Eigen::Quaterniond::Identity()), Error);
@@ -91,7 +91,7 @@ TEST(MakePose, RefusesZeroAndNotANumber) {
   EXPECT_THROW(make_pose({0.0, 0.0, 0.0}, Eigen::Quaterniond(nan, 0.0, 0.0, 1.0)), Error);
 }
 
-TEST(IsRigid, TellsMirrorsScalesAndNotANumber) {
+TEST(IsRigid, RejectsMirrorsScalesAndNaN) {
   Pose pose = Pose::Identity();
   EXPECT_TRUE(is_rigid(pose));
   pose.linear()(0, 0) = -1.0;

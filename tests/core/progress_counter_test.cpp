@@ -11,9 +11,9 @@
 namespace glidar {
 namespace {
 
-TEST(ProgressCounter, TellsManyThreadsAsOneRisingFraction) {
-  std::vector<double> told;  // unguarded: the promise is that no two calls meet
-  const ProgressCallback progress = [&](double fraction) { told.push_back(fraction); };
+TEST(ProgressCounter, ReportsIncreasingFractionsFromManyThreads) {
+  std::vector<double> fractions;  // not guarded, because calls must not overlap
+  const ProgressCallback progress = [&](double fraction) { fractions.push_back(fraction); };
   constexpr std::size_t kPieces = 1'000'000;
   std::vector<unsigned char> visits(kPieces, 0);
   ProgressCounter count(progress, kPieces);
@@ -27,13 +27,13 @@ TEST(ProgressCounter, TellsManyThreadsAsOneRisingFraction) {
   });
   count.finish();
   EXPECT_EQ(std::count(visits.begin(), visits.end(), 1), std::ptrdiff_t{kPieces});
-  EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
-  EXPECT_GT(told.size(), 10U);
-  EXPECT_LE(told.size(), 1001U);  // however small the blocks are
-  EXPECT_EQ(told.back(), 1.0);
+  EXPECT_TRUE(std::is_sorted(fractions.begin(), fractions.end()));
+  EXPECT_GT(fractions.size(), 10U);
+  EXPECT_LE(fractions.size(), 1001U);  // for blocks of any size
+  EXPECT_EQ(fractions.back(), 1.0);
 }
 
-TEST(ProgressCounter, IsSilentWhenNobodyAsks) {
+TEST(ProgressCounter, ReportsNothingWithoutACallback) {
   const ProgressCallback nobody;
   ProgressCounter count(nobody, 100);
   EXPECT_NO_THROW(count.add(100));  // an empty function throws when it is called

@@ -40,14 +40,14 @@ std::string error_of(const std::function<void(Scene&)>& spoil) {
   return "";
 }
 
-TEST(MeshBounds, CountTheOrigin) {
+TEST(MeshBounds, IncludeTheOrigin) {
   const Eigen::AlignedBox3d box = bounds(triangle());
   EXPECT_EQ(box.min(), Eigen::Vector3d(10.0, 0.0, 0.0));
   EXPECT_EQ(box.max(), Eigen::Vector3d(11.0, 2.0, 0.0));
   EXPECT_TRUE(bounds(Mesh{}).isEmpty());
 }
 
-TEST(SceneBounds, CountPoseAndScale) {
+TEST(SceneBounds, IncludePoseAndScale) {
   Scene scene = one_triangle();
   scene.instances[0].scale = 2.0;
   scene.instances[0].world_from_object.translation() = Eigen::Vector3d(0.0, 0.0, 5.0);
@@ -56,11 +56,11 @@ TEST(SceneBounds, CountPoseAndScale) {
   EXPECT_TRUE(bounds(Scene{}).isEmpty());
 }
 
-TEST(SceneValidate, AcceptsAGoodScene) {
+TEST(SceneValidate, AcceptsAValidScene) {
   EXPECT_EQ(error_of([](Scene&) {}), "");
 }
 
-/// The triangle with this corner in place of the one farthest from its origin.
+/// The triangle with this corner instead of the one farthest from its origin.
 std::string error_of_reach(float reach, double scale) {
   return error_of([=](Scene& s) {
     s.meshes[0].origin_m.setZero();
@@ -69,7 +69,7 @@ std::string error_of_reach(float reach, double scale) {
   });
 }
 
-TEST(SceneValidate, VerticesReachAsFarAsAllRenderersMeasureTheSame) {
+TEST(SceneValidate, LimitsTheDistanceOfVerticesFromTheOrigin) {
   EXPECT_EQ(error_of_reach(0.0F, 1.0), "");
   for (const double scale : {kMinScale, 1.0, 1e6}) {
     const auto most = static_cast<float>(0.9 * kMaxCoordinate_m / scale);
@@ -84,7 +84,7 @@ TEST(SceneValidate, VerticesReachAsFarAsAllRenderersMeasureTheSame) {
             "1e-30 m to 1e15 m; choose another unit or scale, or an origin nearer to the vertices");
 }
 
-TEST(SceneValidate, NamesWhatIsWrong) {
+TEST(SceneValidate, ReportsTheInvalidField) {
   EXPECT_EQ(error_of([](Scene& s) { s.instances[0].scale = 0.0; }),
             "instance 'i': scale 0; allowed: 1e-15 to 1e15; choose another unit or scale");
   EXPECT_EQ(error_of([](Scene& s) { s.instances[0].mesh = 1; }),
@@ -107,7 +107,7 @@ TEST(SceneValidate, NamesWhatIsWrong) {
   EXPECT_EQ(error_of([](Scene& s) { s.sources.clear(); }),
             "scene, sources: 0 entries; allowed: 1 (one per mesh)");
   EXPECT_EQ(error_of([](Scene& s) { s.instances[0].world_from_object.translation().x() = 1e30; }),
-            "instance 'i': a position beyond reach; allowed: up to 1e15 m from the world's origin; "
+            "instance 'i': a position too far away; allowed: up to 1e15 m from the world's origin; "
             "move the world's origin nearer to it");
   EXPECT_EQ(error_of([](Scene& s) { s.meshes[0].triangles[0][1] = 3; }),
             "mesh 't', triangles: a corner is vertex 3; allowed: below 3");

@@ -160,8 +160,8 @@ const BadFile kBadScenes[] = {
      "'world'?"},
     {"TumblingLikeNoBody",
      model("motion: {tumbling: {moments_kg_m2: [1, 1, 3], rate_rad_s: [0, 0, 1]}}"),
-     "s.yaml:3:40: models[0].motion.tumbling.moments_kg_m2: one is larger than the two others "
-     "together; allowed: moments of a body: none above the sum of the others"},
+     "s.yaml:3:40: models[0].motion.tumbling.moments_kg_m2: one exceeds the sum of the other "
+     "two; allowed: moments of a rigid body: none above the sum of the other two"},
     {"TrajectoryBesidePose", model("pose: {}\n    motion: {trajectory: t.tum}"),
      "s.yaml:4:26: models[0].motion.trajectory: given beside a pose; allowed: a pose, or a "
      "trajectory, which gives the poses itself; remove one of them"},

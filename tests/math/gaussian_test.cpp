@@ -18,10 +18,10 @@ constexpr double kNearLibm = 1e-12;  // far above both libraries' roundings, far
 TEST(Elementary, LogarithmAgreesWithTheLibrary) {
   for (int i = 0; i < 100000; ++i) {
     const double x = uniform(random_words({.beam = static_cast<std::uint32_t>(i)})[0]);
-    EXPECT_NEAR(natural_log(x), std::log(x), kNearLibm);
+    EXPECT_NEAR(portable_log(x), std::log(x), kNearLibm);
   }
   for (const double x : {0x1p-33, 1.0 - 0x1p-33, 0.5, 1.0, std::sqrt(0.5), 3.0, 1e9}) {
-    EXPECT_NEAR(natural_log(x), std::log(x), kNearLibm) << x;
+    EXPECT_NEAR(portable_log(x), std::log(x), kNearLibm) << x;
   }
 }
 
@@ -29,37 +29,37 @@ TEST(Elementary, SineAndCosineAgreeWithTheLibrary) {
   for (int i = -40000; i <= 80000; ++i) {
     const double turns = i / 40000.0;
     const double angle = 2.0 * std::numbers::pi * turns;
-    EXPECT_NEAR(of_turns(turns).sine, std::sin(angle), kNearLibm) << turns;
-    EXPECT_NEAR(of_turns(turns).cosine, std::cos(angle), kNearLibm) << turns;
+    EXPECT_NEAR(sincos_turns(turns).sine, std::sin(angle), kNearLibm) << turns;
+    EXPECT_NEAR(sincos_turns(turns).cosine, std::cos(angle), kNearLibm) << turns;
   }
 }
 
 TEST(Elementary, AngleOfAVectorIsTheInverseOfItsSineAndCosine) {
   for (int i = 0; i < 40000; ++i) {
     const double turns = i / 40000.0;
-    const SineCosine v = of_turns(turns);
-    const double found = turns_of(3.0 * v.sine, 3.0 * v.cosine);
+    const SineCosine v = sincos_turns(turns);
+    const double found = atan2_turns(3.0 * v.sine, 3.0 * v.cosine);
     const double apart = std::abs(found - turns);
     EXPECT_LT(std::min(apart, 1.0 - apart), kNearLibm) << turns;
     EXPECT_LT(found, 1.0);
     EXPECT_GE(found, 0.0);
   }
-  EXPECT_EQ(turns_of(0.0, 0.0), 0.0);
+  EXPECT_EQ(atan2_turns(0.0, 0.0), 0.0);
 }
 
 TEST(Elementary, ExponentialAgreesWithTheLibrary) {
   for (double x = -40.0; x < 3.0; x += 0.0137) {
-    EXPECT_NEAR(natural_exp(x), std::exp(x), kNearLibm * std::max(1.0, std::exp(x))) << x;
+    EXPECT_NEAR(portable_exp(x), std::exp(x), kNearLibm * std::max(1.0, std::exp(x))) << x;
   }
 }
 
-TEST(Elementary, ExponentialEndsInZeroAndInfinity) {
+TEST(Elementary, ExponentialSaturatesAtZeroAndInfinity) {
   for (double x = -699.9; x < 699.9; x += 3.7) {
-    EXPECT_NEAR(natural_exp(x) / std::exp(x), 1.0, 2e-15) << x;
+    EXPECT_NEAR(portable_exp(x) / std::exp(x), 1.0, 2e-15) << x;
   }
   constexpr double kEndless = std::numeric_limits<double>::infinity();
-  for (const double x : {-700.1, -745.2, -1e4, -1e300, -kEndless}) EXPECT_EQ(natural_exp(x), 0.0);
-  for (const double x : {700.1, 710.0, 1e4, 1e300, kEndless}) EXPECT_EQ(natural_exp(x), kEndless);
+  for (const double x : {-700.1, -745.2, -1e4, -1e300, -kEndless}) EXPECT_EQ(portable_exp(x), 0.0);
+  for (const double x : {700.1, 710.0, 1e4, 1e300, kEndless}) EXPECT_EQ(portable_exp(x), kEndless);
 }
 
 TEST(Elementary, PowersAreWithinTheStatedErrorOfLongDoubles) {
@@ -70,24 +70,24 @@ TEST(Elementary, PowersAreWithinTheStatedErrorOfLongDoubles) {
     const long double exact = std::pow(static_cast<long double>(base), exponent);
     const double bound = 3e-16 * (1.0 + std::abs(exponent * std::log(base)));
     if (exact < 1e-300L) continue;
-    ASSERT_LT(std::abs(static_cast<double>(power(base, exponent) / exact - 1.0L)), bound)
+    ASSERT_LT(std::abs(static_cast<double>(portable_pow(base, exponent) / exact - 1.0L)), bound)
         << base << " ^ " << exponent;
   }
 }
 
 TEST(Elementary, PowersOfZeroOneAndDenormalFloatsAreExact) {
-  EXPECT_EQ(power(0.0, 0.0), 1.0);
-  EXPECT_EQ(power(0.0, 12.5), 0.0);
-  EXPECT_EQ(power(1.0, 1000.0), 1.0);
-  EXPECT_EQ(power(0.3, 0.0), 1.0);
-  EXPECT_EQ(power(1e-3, 1000.0), 0.0);
-  EXPECT_NEAR(power(0x1p-149, 1.0), 0x1p-149, 0x1p-149 * 1e-13);
+  EXPECT_EQ(portable_pow(0.0, 0.0), 1.0);
+  EXPECT_EQ(portable_pow(0.0, 12.5), 0.0);
+  EXPECT_EQ(portable_pow(1.0, 1000.0), 1.0);
+  EXPECT_EQ(portable_pow(0.3, 0.0), 1.0);
+  EXPECT_EQ(portable_pow(1e-3, 1000.0), 0.0);
+  EXPECT_NEAR(portable_pow(0x1p-149, 1.0), 0x1p-149, 0x1p-149 * 1e-13);
 }
 
-TEST(Gaussian, GivesTheGoldenNormals) {
+TEST(Gaussian, ReproducesTheGoldenNormals) {
   const RandomWords words = random_words({.seed = 12345, .frame = 7});
   const std::array<double, 4> n = normals(words);
-  EXPECT_NEAR(n[0], -0.421419785220268, 1e-14);  // as many digits as are recorded
+  EXPECT_NEAR(n[0], -0.421419785220268, 1e-14);  // the recorded digits
   EXPECT_NEAR(n[1], -0.167788665100006, 1e-14);
   EXPECT_NEAR(n[2], -0.915809005690777, 1e-14);
   EXPECT_NEAR(n[3], 0.980779498188674, 1e-14);
@@ -103,7 +103,7 @@ TEST(Gaussian, IsBoxAndMullersFormula) {
   }
 }
 
-TEST(Gaussian, BatchesAreTheSameAsOneByOne) {
+TEST(Gaussian, BatchesAreIdenticalToSingleNumbers) {
   // the second start makes the beam's number overflow within the batch
   for (const std::uint32_t start : {0U, 768U, 0xFFFFFF80U}) {
     const RngKey draw{.seed = 0x123456789abcU, .sensor = 5, .frame = 9, .beam = start, .block = 2};
@@ -111,11 +111,11 @@ TEST(Gaussian, BatchesAreTheSameAsOneByOne) {
     Batch<double> single;
     PairBatch pairs;
     PairBatch uniforms;
-    draw_words(draw, words);
-    draw_normals(draw, single);
-    draw_normals(draw, pairs);
-    draw_uniforms(draw, uniforms);
-    for (std::uint32_t i = 0; i < kDrawBatch; ++i) {
+    sample_words(draw, words);
+    sample_normals(draw, single);
+    sample_normals(draw, pairs);
+    sample_uniforms(draw, uniforms);
+    for (std::uint32_t i = 0; i < kSampleBatch; ++i) {
       RngKey one = draw;
       one.beam += i;
       const RandomWords expected = random_words(one);
@@ -129,14 +129,14 @@ TEST(Gaussian, BatchesAreTheSameAsOneByOne) {
   }
 }
 
-TEST(Gaussian, SharedBatchesHaveAllNumbersOfAQuarterOfTheDraws) {
+TEST(Gaussian, SharedBatchesUseAllWordsOfAQuarterOfTheCounters) {
   for (const std::uint32_t start : {0U, 768U, 0xFFFFFF00U}) {
     const RngKey draw{.seed = 0x123456789abcU, .sensor = 5, .frame = 9, .beam = start, .block = 2};
     Batch<double> shared;
     Batch<double> uniforms;
-    draw_shared_normals(draw, shared);
-    draw_shared_uniforms(draw, uniforms);
-    for (std::uint32_t i = 0; i < kDrawBatch; ++i) {
+    sample_shared_normals(draw, shared);
+    sample_shared_uniforms(draw, uniforms);
+    for (std::uint32_t i = 0; i < kSampleBatch; ++i) {
       RngKey one = draw;
       one.beam = start / 4 + i % 64;
       const RandomWords words = random_words(one);
@@ -150,8 +150,8 @@ TEST(Gaussian, SharedBatchesHaveAllNumbersOfAQuarterOfTheDraws) {
 std::vector<double> million() {
   std::vector<double> sample;
   Batch<double> batch;
-  for (std::uint32_t beam = 0; beam < 4000 * kDrawBatch; beam += kDrawBatch) {
-    draw_shared_normals({.seed = 77, .beam = beam}, batch);
+  for (std::uint32_t beam = 0; beam < 4000 * kSampleBatch; beam += kSampleBatch) {
+    sample_shared_normals({.seed = 77, .beam = beam}, batch);
     sample.insert(sample.end(), batch.begin(), batch.end());
   }
   return sample;
@@ -171,7 +171,7 @@ TEST(Gaussian, MillionSamplesHaveMeanZeroAndVarianceOne) {
   EXPECT_LT(std::abs(squares / n - 1.0), kSigmas * std::sqrt(2.0 / n));  // variance of x^2 is 2
 }
 
-TEST(Gaussian, MillionSamplesPassTheTestOfKolmogorovAndSmirnov) {
+TEST(Gaussian, MillionSamplesPassTheKolmogorovSmirnovTest) {
   std::vector<double> sample = million();
   std::sort(sample.begin(), sample.end());
   const auto n = static_cast<double>(sample.size());

@@ -7,7 +7,7 @@
 namespace glidar {
 namespace {
 
-TEST(LookupTable, IsStraightBetweenAndConstantOutside) {
+TEST(LookupTable, IsLinearBetweenEntriesAndConstantOutside) {
   const LookupTable table = {{1.0, 0.2}, {3.0, 0.6}, {4.0, 0.0}};
   EXPECT_EQ(interpolate(table, 0.0), 0.2);
   EXPECT_EQ(interpolate(table, 1.0), 0.2);
@@ -17,12 +17,12 @@ TEST(LookupTable, IsStraightBetweenAndConstantOutside) {
   EXPECT_EQ(interpolate(table, 9.0), 0.0);
 }
 
-TEST(LookupTable, OfOnePairIsConstant) {
+TEST(LookupTable, WithOneEntryIsConstant) {
   EXPECT_EQ(interpolate({{5.0, 0.7}}, -1.0), 0.7);
   EXPECT_EQ(interpolate({{5.0, 0.7}}, 9.0), 0.7);
 }
 
-TEST(LookupTable, WithoutPairsGivesWhatTheCallerSays) {
+TEST(LookupTable, WithoutEntriesReturnsTheDefault) {
   EXPECT_EQ(interpolate({}, 9.0), 0.0);
   EXPECT_EQ(interpolate({}, 9.0, 1.5), 1.5);
 }

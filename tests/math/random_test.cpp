@@ -7,7 +7,7 @@
 namespace glidar {
 namespace {
 
-TEST(Philox, GivesTheKnownAnswersOfRandom123) {
+TEST(Philox, ReproducesTheKnownAnswersOfRandom123) {
   EXPECT_EQ(philox4x32({0, 0, 0, 0}, {0, 0}),
             (RandomWords{0x6627e8d5, 0xe169c58d, 0xbc57ac4c, 0x9b00dbd8}));
   constexpr std::uint32_t kOnes = 0xffffffff;
@@ -17,7 +17,7 @@ TEST(Philox, GivesTheKnownAnswersOfRandom123) {
             (RandomWords{0xd16cfe09, 0x94fdcceb, 0x5001e420, 0x24126ea1}));
 }
 
-TEST(RandomWords, CountTheBeamTheFrameAndTheBlock) {
+TEST(RandomWords, DependOnBeamFrameAndBlock) {
   const auto at = [](std::uint32_t beam) {
     return random_words({.seed = 12345, .sensor = 0, .frame = 7, .beam = beam});
   };
@@ -26,7 +26,7 @@ TEST(RandomWords, CountTheBeamTheFrameAndTheBlock) {
   EXPECT_EQ(at(1000), (RandomWords{0xe985ae61, 0x83621db8, 0x229a865d, 0xeb52ccdb}));
 }
 
-TEST(RandomWords, DifferForEveryPartOfTheDraw) {
+TEST(RandomWords, DifferForEveryPartOfTheKey) {
   const RngKey draw{.seed = 1, .sensor = 2, .frame = 3, .beam = 4, .block = 5};
   for (const auto part : {&RngKey::sensor, &RngKey::frame, &RngKey::beam, &RngKey::block}) {
     RngKey other = draw;

@@ -8,7 +8,7 @@
 namespace glidar {
 namespace {
 
-/// Not inlined, so that the compiler knows nothing of the numbers.
+/// Not inlined, so that the compiler cannot see the numbers.
 [[gnu::noinline]] Eigen::Vector3d rounded(const Eigen::Vector3d& v) {
   return {rounded_to_float(v[0]), rounded_to_float(v[1]), rounded_to_float(v[2])};
 }
@@ -19,7 +19,7 @@ namespace {
 
 // This file is compiled with -O3, where GCC 12 leaves two of the three roundings out of plain
 // conversions in the first of these functions.
-TEST(SinglePrecision, NeighboursAreRoundedLikeNumbersOnTheirOwn) {
+TEST(SinglePrecision, AdjacentNumbersAreRoundedLikeSingleNumbers) {
   const Eigen::Vector3d v(0.1, 1.0e10 / 3.0, -0.3);
   EXPECT_EQ(rounded(v), Eigen::Vector3d(double{0.1F}, double{3333333248.0F}, double{-0.3F}));
   EXPECT_EQ(rounded_by_expression(v), rounded(v));

@@ -15,7 +15,7 @@
 namespace glidar {
 namespace {
 
-/// Whether so many threads work on one loop at the same time: each waits until all have come.
+/// True if this number of threads work on one loop concurrently: each waits for all others.
 bool meet(ThreadPool& thread_pool, std::size_t threads) {
   std::mutex mutex;
   std::set<std::thread::id> arrived;
@@ -31,7 +31,7 @@ bool meet(ThreadPool& thread_pool, std::size_t threads) {
   return is_complete && arrived.size() == threads;
 }
 
-TEST(ThreadPool, AreAsManyAsRequestedWhateverOthersRequestBefore) {
+TEST(ThreadPool, HasTheRequestedThreadsAfterOtherPools) {
   ThreadPool default_workers;
   default_workers.parallel_for(100, 1, [](std::size_t, std::size_t) {});
   ::testing::internal::CaptureStderr();
@@ -42,13 +42,13 @@ TEST(ThreadPool, AreAsManyAsRequestedWhateverOthersRequestBefore) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(ThreadPool, RunAtTheSameTimeEvenWhenThereAreMoreThanProcessors) {
+TEST(ThreadPool, RunsMoreThreadsThanProcessorsConcurrently) {
   const unsigned threads = std::thread::hardware_concurrency() + 3;
   ThreadPool thread_pool(threads);
   EXPECT_TRUE(meet(thread_pool, threads));
 }
 
-TEST(ThreadPool, AreAsManyAsPossibleWhenMoreAreRequested) {
+TEST(ThreadPool, LimitsTheThreadsToThoseThatAreAllowed) {
   ::testing::internal::CaptureStderr();
   const ThreadPool thread_pool(100'000);
   EXPECT_GE(thread_pool.threads(), 256U);
@@ -56,7 +56,7 @@ TEST(ThreadPool, AreAsManyAsPossibleWhenMoreAreRequested) {
   EXPECT_EQ(::testing::internal::GetCapturedStderr(), "");
 }
 
-TEST(ThreadPool, CoverEveryIndexOnce) {
+TEST(ThreadPool, CoversEveryIndexOnce) {
   constexpr std::size_t kCount = 10'000;
   for (const unsigned threads : {1U, 2U, 5U, 64U}) {
     ThreadPool thread_pool(threads);

@@ -38,7 +38,7 @@ Eigen::Matrix4d series(const Eigen::Vector3d& rotation, const Eigen::Vector3d& t
   return sum;
 }
 
-TEST(Exponential, IsItsPowerSeries) {
+TEST(Se3Exp, IsItsPowerSeries) {
   const Eigen::Vector3d translation(0.3, -1.2, 2.0);
   for (const double angle : {0.0, 1e-9, 1e-4, 0.0999, 0.1001, 1.0, 3.0, 6.0}) {
     const Eigen::Vector3d rotation = angle * Eigen::Vector3d(2.0, -1.0, 2.0) / 3.0;
@@ -48,7 +48,7 @@ TEST(Exponential, IsItsPowerSeries) {
   }
 }
 
-TEST(ConstantTwist, CircleComesBackAfterAFullTurn) {
+TEST(ConstantTwist, CircleClosesAfterAFullTurn) {
   const ConstantTwist circle{.pose = somewhere(),
                              .angular_rad_s = {0.0, 0.0, 2.0 * std::numbers::pi},
                              .linear_m_s = {3.0, 0.0, 0.0}};
@@ -71,7 +71,7 @@ TEST(ConstantTwist, BodyTwistIsTheVelocityInTheBody) {
   EXPECT_LT((now.linear().transpose() * moved / (2.0 * h) - twist.linear_m_s).norm(), 1e-8);
 }
 
-TEST(ConstantTwist, WorldTwistTurnsAboutTheWorldsOrigin) {
+TEST(ConstantTwist, WorldTwistRotatesAboutTheWorldsOrigin) {
   const ConstantTwist twist{.pose = somewhere(),
                             .angular_rad_s = {0.0, 0.0, std::numbers::pi / 2.0},
                             .frame = TwistFrame::world};
@@ -79,7 +79,7 @@ TEST(ConstantTwist, WorldTwistTurnsAboutTheWorldsOrigin) {
   EXPECT_LT((turned.translation() - Eigen::Vector3d(2.0, 1.0, 3.0)).norm(), kExact);
 }
 
-TEST(ConstantTwist, BodyAndWorldTwistsAreJoinedByTheAdjoint) {
+TEST(ConstantTwist, BodyAndWorldTwistsAreRelatedByTheAdjoint) {
   const Eigen::Vector3d w(0.4, -0.3, 0.9);
   const Eigen::Vector3d v(1.0, 0.5, -2.0);
   const Pose pose = somewhere();
@@ -101,14 +101,14 @@ TEST(ConstantTwist, FarTimesKeepTheirNanoseconds) {
   const ConstantTwist twist{.linear_m_s = {1.0, 0.0, 0.0}, .t0_ns = epoch_ns};
   EXPECT_DOUBLE_EQ(pose_at(twist, epoch_ns + 1).translation().x(), 1e-9);
   EXPECT_DOUBLE_EQ(pose_at(twist, epoch_ns - 1).translation().x(), -1e-9);
-  // no overflow between the ends of time
+  // no overflow between the extreme times
   const ConstantTwist early{.linear_m_s = {1.0, 0.0, 0.0},
                             .t0_ns = std::numeric_limits<std::int64_t>::min()};
   EXPECT_DOUBLE_EQ(pose_at(early, std::numeric_limits<std::int64_t>::max()).translation().x(),
                    18446744073.709551615);
 }
 
-TEST(Spin, TurnsOnTheSpotAboutItsOwnAxes) {
+TEST(Spin, RotatesInPlaceAboutItsOwnAxes) {
   const Spin spin{.pose = somewhere(), .rate_rad_s = {0.0, std::numbers::pi / 4.0, 0.0}};
   const Pose pose = pose_at(spin, 2 * kSecond_ns);
   EXPECT_EQ(pose.translation(), somewhere().translation());

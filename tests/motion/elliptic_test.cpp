@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kRounding = 4e-15;  // relative; a dozen roundings
 
-TEST(Elliptic, CarlsonsIntegralHasHisPublishedValues) {
+TEST(Elliptic, CarlsonsIntegralHasThePublishedValues) {
   // Carlson, "Numerical computation of real or complex elliptic integrals" (1995), section 3
   EXPECT_NEAR(carlson_rf(1.0, 2.0, 0.0), 1.3110287771461, 5e-14);
   EXPECT_NEAR(carlson_rf(2.0, 3.0, 4.0), 0.58408284167715, 5e-15);
@@ -81,7 +81,7 @@ TEST(Elliptic, SmallValuesKeepTheirRelativePrecision) {
   }
 }
 
-TEST(Elliptic, PeriodsFollowEachOther) {
+TEST(Elliptic, FunctionsArePeriodic) {
   for (const double m : {0.0, 0.3, 0.500001, 0.97}) {
     const EllipticModulus modulus = make_modulus(m, 1.0 - m);
     const double period = 4.0 * modulus.quarter_period;

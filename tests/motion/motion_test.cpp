@@ -8,7 +8,7 @@
 namespace glidar {
 namespace {
 
-TEST(StandingStill, PutsEverythingWhereTheSceneHasIt) {
+TEST(StaticMotion, PosesAreThoseOfTheScene) {
   Scene scene;
   scene.instances.push_back({.name = "a", .materials = {}});
   scene.instances[0].world_from_object.translation() = Eigen::Vector3d(1.0, 2.0, 3.0);
@@ -22,7 +22,7 @@ TEST(StandingStill, PutsEverythingWhereTheSceneHasIt) {
   EXPECT_TRUE(frame.world_from_instance[0].isApprox(scene.instances[0].world_from_object));
 }
 
-/// A move that turns about no axis in particular.
+/// A transform with a general rotation axis.
 Pose some_move() {
   return make_pose({0.5, -2.0, 1.0}, Eigen::Quaterniond(0.9, 0.1, -0.3, 0.2));
 }
@@ -59,7 +59,7 @@ TEST(Mounted, IsThePartOnTheBodyAtAnyTimeForEveryKind) {
   }
 }
 
-TEST(Mounted, AtTheBodysOriginIsTheBodyToTheBit) {
+TEST(Mounted, AtTheBodysOriginIsBitIdenticalToTheBody) {
   for (const Trajectory& body : all_kinds()) {
     const Trajectory same = compose_extrinsic(body, Pose::Identity());
     EXPECT_EQ(same.index(), body.index());
@@ -67,7 +67,7 @@ TEST(Mounted, AtTheBodysOriginIsTheBodyToTheBit) {
   }
 }
 
-TEST(Mounted, ManyPosesAreThoseOneByOneAndKnownTimesAreTheCarriers) {
+TEST(Mounted, ManyPosesAreIdenticalToSingleOnesAndTheIntervalIsTheCarriers) {
   const Trajectory carrier =
       TimedPoses({{0, {0.0, 0.0, 0.0}, Eigen::Quaterniond::Identity()},
                   {1'000'000'000, {1.0, 0.0, 2.0}, Eigen::Quaterniond(0.6, 0.8, 0.0, 0.0)}});
@@ -81,13 +81,13 @@ TEST(Mounted, ManyPosesAreThoseOneByOneAndKnownTimesAreTheCarriers) {
   }
 }
 
-TEST(Mounted, WithAPoseThatIsNotRigidIsRefused) {
+TEST(Mounted, RejectsAPoseThatIsNotRigid) {
   Pose scaled = Pose::Identity();
   scaled.linear() *= 2.0;
   EXPECT_THROW(validate(Mounted{TorqueFreeRotation(InitialRotation{}), scaled}), Error);
 }
 
-TEST(Moved, IsTheMoveAfterThePoseAtAnyTimeForEveryKind) {
+TEST(Transformed, IsTheTransformTimesThePoseForEveryKind) {
   constexpr double kRounding = 1e-12;
   const Pose move = some_move();
   const std::vector<Trajectory> kinds = all_kinds();

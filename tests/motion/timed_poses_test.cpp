@@ -25,18 +25,18 @@ TimedPoses two() {
                      {.t_ns = 2000, .position_m = {2.0, 4.0, -6.0}, .orientation = about_z(1.2)}});
 }
 
-TEST(TimedPoses, GoStraightAndTurnEvenlyBetween) {
+TEST(TimedPoses, InterpolateLinearlyAndBySlerp) {
   const Pose quarter = two().pose_at(1250);
   EXPECT_LT((quarter.translation() - Eigen::Vector3d(0.5, 1.0, -1.5)).norm(), kExact);
   EXPECT_LT((quarter.linear() - about_z(0.45).toRotationMatrix()).norm(), kExact);
 }
 
-TEST(TimedPoses, HoldTheEndPosesOutside) {
+TEST(TimedPoses, AreConstantOutsideTheInterval) {
   EXPECT_EQ(two().pose_at(-5).matrix(), two().pose_at(1000).matrix());
   EXPECT_EQ(two().pose_at(999'999).matrix(), two().pose_at(2000).matrix());
 }
 
-TEST(TimedPoses, TurnTheShortWayWhateverTheSign) {
+TEST(TimedPoses, RotateTheShortWayForEitherSign) {
   Eigen::Quaterniond minus = about_z(1.0);
   minus.coeffs() = -minus.coeffs();
   const TimedPoses poses(
@@ -59,10 +59,10 @@ std::string error_of(std::vector<TimedPose> poses) {
   return "";
 }
 
-TEST(TimedPoses, NameTheEntryAndItsFault) {
+TEST(TimedPoses, ReportTheInvalidEntry) {
   EXPECT_THAT(error_of({}), HasSubstr("there is none"));
   EXPECT_THAT(error_of({{.t_ns = 5}, {.t_ns = 5}}),
-              HasSubstr("entry 2: the time of the pose before"));
+              HasSubstr("entry 2: the same time as the previous pose"));
   EXPECT_THAT(error_of({{.t_ns = 5}, {.t_ns = 4}}), HasSubstr("entry 2: a time before"));
   EXPECT_THAT(error_of({{.t_ns = 5, .position_m = {0.0, std::nan(""), 0.0}}}),
               HasSubstr("entry 1"));
@@ -74,7 +74,7 @@ TEST(TimedPoses, NameTheEntryAndItsFault) {
 }
 
 /// Dividing a quaternion by its length again may change its last bit, so a copy must not.
-TEST(TimedPoses, RestoredOnesKeepEveryBit) {
+TEST(TimedPoses, RestoredPosesAreBitIdentical) {
   std::vector<TimedPose> poses;
   for (int k = 0; k < 1000; ++k) {
     const Eigen::Quaterniond q(0.1 + k, 0.7 - 3.0 * k, 0.3 * k, 1.1);
@@ -87,7 +87,7 @@ TEST(TimedPoses, RestoredOnesKeepEveryBit) {
   }
 }
 
-TEST(TimedPoses, RestoredOnesAreChecked) {
+TEST(TimedPoses, RestoredPosesAreChecked) {
   EXPECT_THROW(TimedPoses::restored({}), Error);
   EXPECT_THROW(TimedPoses::restored({{.t_ns = 1}, {.t_ns = 1}}), Error);
   const Eigen::Quaterniond nearly(1.0001, 0.0, 0.0, 0.0);  // files may hold it, restored poses not
@@ -95,7 +95,7 @@ TEST(TimedPoses, RestoredOnesAreChecked) {
   EXPECT_THROW(TimedPoses::restored({{.t_ns = 1, .orientation = nearly}}), Error);
 }
 
-TEST(Trajectory, ManyTimesAtOnceAreTheSameAsOneByOne) {
+TEST(Trajectory, ManyTimesAreIdenticalToSingleOnes) {
   std::vector<TimedPose> poses;
   for (int i = 0; i < 200; ++i) {
     poses.push_back({.t_ns = 1000 * i + 13 * (i % 7),
@@ -122,18 +122,18 @@ TEST(Trajectory, ManyTimesAtOnceAreTheSameAsOneByOne) {
   EXPECT_THROW(poses_at(kinds[0], times, short_by_one), Error);
 }
 
-TEST(Trajectory, HeldPosesAreTold) {
+TEST(Trajectory, ExtrapolationIsReported) {
   std::string said;
   const Report report{.log = [&](Severity, std::string_view text) { said = text; }, .progress = {}};
   warn_extrapolation(two(), "rock", {.first_ns = 1000, .last_ns = 2000}, report);
   warn_extrapolation(Spin{}, "rock", {.first_ns = -1000, .last_ns = 2000}, report);
   EXPECT_EQ(said, "");
   warn_extrapolation(two(), "rock", {.first_ns = 1000, .last_ns = 2001}, report);
-  EXPECT_THAT(said, HasSubstr("rock: the trajectory is known from 0.000001 s to 0.000002 s"));
-  EXPECT_THAT(said, HasSubstr("the pose at its end holds"));
+  EXPECT_THAT(said, HasSubstr("rock: the trajectory is defined from 0.000001 s to 0.000002 s"));
+  EXPECT_THAT(said, HasSubstr("its first or last pose is used"));
 }
 
-TEST(Trajectory, NumbersThatAreNoneAreRefused) {
+TEST(Trajectory, NumbersThatAreNotFiniteAreErrors) {
   const Eigen::Vector3d bad(0.0, std::nan(""), 0.0);
   EXPECT_THROW(validate(Spin{.rate_rad_s = bad}), Error);
   EXPECT_THROW(validate(ConstantTwist{.angular_rad_s = bad}), Error);
@@ -144,7 +144,7 @@ TEST(Trajectory, NumbersThatAreNoneAreRefused) {
   EXPECT_NO_THROW(validate(Spin{}));
 }
 
-TEST(Moving, TakesOneTrajectoryPerInstanceOrNone) {
+TEST(MakeMotion, RequiresOneTrajectoryPerInstanceOrNone) {
   Scene scene;
   scene.instances.push_back({.name = "a", .materials = {}});
   scene.instances[0].world_from_object.translation().x() = 4.0;

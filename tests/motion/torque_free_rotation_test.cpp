@@ -68,7 +68,7 @@ TEST_P(TumblingBody, KeepsAngularMomentumAndEnergyForADay) {
   const Vector3d l = momentum(body, 0);
   const double e = energy(body, 0);
   for (std::int64_t t = 0; t < 86400 * kSecond_ns; t += 61 * kSecond_ns + 987654321) {
-    // closed form: 1e-9 is asked for, rounding is what there is
+    // closed form: the requirement is 1e-9, the error is rounding
     ASSERT_LT((momentum(body, t) - l).norm(), 1e-12 * l.norm()) << t;
     ASSERT_NEAR(energy(body, t), e, 1e-12 * e) << t;
     ASSERT_TRUE(is_rigid(body.pose_at(t), 1e-13));
@@ -128,7 +128,7 @@ TEST_P(TumblingBody, FollowsEulersEquationsIntegratedStepByStep) {
   }
 }
 
-TEST_P(TumblingBody, ForgetsNothingWhenAskedInAnyOrder) {
+TEST_P(TumblingBody, IsIndependentOfTheOrderOfQueries) {
   const TorqueFreeRotation body(start());
   const Pose before = body.pose_at(12345678901);
   (void)body.pose_at(99);
@@ -160,7 +160,7 @@ TEST(TorqueFreeRotation, SymmetricBodyNutatesAndPrecessesAtItsTextbookRates) {
   }
 }
 
-TEST(TorqueFreeRotation, FlipsAboutTheMiddleAxisAgainAndAgain) {
+TEST(TorqueFreeRotation, FlipsPeriodicallyAboutTheIntermediateAxis) {
   const double small = 1e-3;
   const TorqueFreeRotation body(
       {.moments_kg_m2 = {1.0, 2.0, 2.5}, .rate_rad_s = {0.0, 1.0, small}});
@@ -184,7 +184,7 @@ TEST(TorqueFreeRotation, FlipsAboutTheMiddleAxisAgainAndAgain) {
   }
 }
 
-TEST(TorqueFreeRotation, TurnsSteadilyAboutEachPrincipalAxis) {
+TEST(TorqueFreeRotation, RotatesSteadilyAboutEachPrincipalAxis) {
   for (int axis = 0; axis < 3; ++axis) {
     const Vector3d rate = 0.7 * Vector3d::Unit(axis);
     const TorqueFreeRotation body({.moments_kg_m2 = {1.0, 2.0, 2.5}, .rate_rad_s = rate});
@@ -194,7 +194,7 @@ TEST(TorqueFreeRotation, TurnsSteadilyAboutEachPrincipalAxis) {
   }
 }
 
-TEST(TorqueFreeRotation, TurnsAboutItsCentreOfMassWhichGoesStraight) {
+TEST(TorqueFreeRotation, CentreOfMassMovesStraight) {
   InitialRotation start{.moments_kg_m2 = {1.0, 2.0, 2.5}, .rate_rad_s = {0.1, 0.2, 1.0}};
   start.world_from_body = make_pose({5.0, 6.0, 7.0}, Eigen::Quaterniond(0.6, 0.0, 0.8, 0.0));
   start.body_from_principal = make_pose({0.5, 0.1, -0.2}, Eigen::Quaterniond(0.8, 0.6, 0.0, 0.0));
@@ -242,7 +242,7 @@ double relative_error(const Vector3d& found, const Vector3d& expected) {
 }
 
 // 1e-13, and of the angle turned a few roundings: rates and times are doubles.
-TEST(TorqueFreeRotation, IsExactNearEveryAxisAndInAllDirections) {
+TEST(TorqueFreeRotation, IsExactNearEveryAxis) {
   std::ifstream file(std::string(kSourceFolder) + "/tests/motion/tumbling_reference.csv");
   std::size_t rows = 0;
   for (std::string line; std::getline(file, line);) {
@@ -280,7 +280,7 @@ Vector3d direction(int k, int count) {
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
-TEST(TorqueFreeRotation, KeepsMomentumAndEnergyInAllDirectionsAtAllRates) {
+TEST(TorqueFreeRotation, ConservesMomentumAndEnergyForAllAxesAndRates) {
   constexpr int kDirections = 300;
   for (const Case& shape : kBodies) {
     for (int k = 0; k < kDirections; ++k) {
@@ -299,7 +299,7 @@ TEST(TorqueFreeRotation, KeepsMomentumAndEnergyInAllDirectionsAtAllRates) {
 }
 
 // The angular velocity is the derivative of the attitude: what momentum and energy do not see.
-TEST(TorqueFreeRotation, AttitudeTurnsAtTheRate) {
+TEST(TorqueFreeRotation, AttitudeChangesAtTheRate) {
   constexpr std::int64_t kStep_ns = 1'000'000;
   for (const Case& shape : kBodies) {
     for (int k = 0; k < 60; ++k) {
@@ -316,7 +316,7 @@ TEST(TorqueFreeRotation, AttitudeTurnsAtTheRate) {
   }
 }
 
-TEST(TorqueFreeRotation, RefusesWhatNoBodyHas) {
+TEST(TorqueFreeRotation, RejectsImpossibleMomentsOfInertia) {
   EXPECT_THROW(TorqueFreeRotation({.moments_kg_m2 = {1.0, 1.0, 2.1}}), Error);
   EXPECT_THROW(TorqueFreeRotation({.moments_kg_m2 = {1.0, 0.0, 1.0}}), Error);
   EXPECT_THROW(TorqueFreeRotation({.moments_kg_m2 = {1.0, 1.0, std::nan("")}}), Error);

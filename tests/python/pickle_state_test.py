@@ -110,7 +110,7 @@ def test_custom_beams_survive_a_round_trip():
         ({"directions": [[1, 0, 0]]}, "an array rows x cols x 3"),
         ({"directions": [[[0, 0, 0]]]}, "directions"),
         ({"origins_m": [[[0, 0, 0]]]}, "optics.origins_m: an array 1 x 1 x 3"),
-        ({"times_ns": [[0, 20, 10]]}, "times that do not fall"),
+        ({"times_ns": [[0, 20, 10]]}, "times in increasing order"),
         ({"rings": [[0, 1, 70000]]}, "0 to 65535"),
         ({"type": "prism"}, "optics.type: 'prism'"),
         ({"file": "rays.npy"}, "the unknown key 'file'"),

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-// Tests of distributions. With fixed seeds they pass or fail for good; the limits are those that a
-// right sample exceeds once in 10000.
+// Tests of distributions. With fixed seeds the result is deterministic; a correct sample exceeds
+// the limits once in 10000.
 
 #include <algorithm>
 #include <cmath>

@@ -105,7 +105,7 @@ std::vector<Plane> room() {
   return planes;
 }
 
-TEST(FisherInformation, PlaneLeavesThreeDirectionsFree) {
+TEST(FisherInformation, PlaneHasThreeDegenerateDirections) {
   const FisherInformation found =
       pose_information(scan(all_around(4000), {{-Vector3d::UnitZ(), -2.0}}), all_around(4000));
   const auto words = degenerate_words(found);
@@ -120,14 +120,14 @@ TEST(FisherInformation, PlaneLeavesThreeDirectionsFree) {
   EXPECT_TRUE(std::isinf(found.condition));
 }
 
-TEST(FisherInformation, CorridorLeavesItsOwnDirectionFree) {
+TEST(FisherInformation, CorridorIsDegenerateAlongItsAxis) {
   const Beams beams = all_around(4000);
   const FisherInformation found = pose_information(scan(beams, corridor()), beams);
   EXPECT_EQ(degenerate_words(found), std::vector<std::string>{"translation along x"});
   for (int axis = 0; axis < 6; ++axis) EXPECT_EQ(std::isinf(found.bound[axis]), axis == 3) << axis;
 }
 
-TEST(FisherInformation, SphereLeavesRotationsAboutItsCentreFree) {
+TEST(FisherInformation, SphereIsDegenerateForRotationsAboutItsCentre) {
   const Vector3d centre(1.0, 2.0, 5.0);
   const Beams beams = all_around(20000);
   Frame frame = empty_frame(beams);
@@ -158,7 +158,7 @@ TEST(FisherInformation, SphereLeavesRotationsAboutItsCentreFree) {
             (std::vector<std::string>{"rotation about x", "rotation about y", "rotation about z"}));
 }
 
-TEST(FisherInformation, OneRangeIsItsRowByHand) {
+TEST(FisherInformation, OneRangeMatchesTheRowComputedByHand) {
   // d = z, p = (0, 0, 2), n = (0, -0.6, -0.8): n d = -0.8, p x n = (1.2, 0, 0)
   Beams beams;
   beams.directions = {Vector3d::UnitZ()};
@@ -250,7 +250,7 @@ Eigen::VectorXd noise(std::size_t size, std::uint32_t trial) {
   return out;
 }
 
-TEST(FisherInformation, LeastSquaresOfNoisyRangesScatterAsTheBoundSays) {
+TEST(FisherInformation, LeastSquaresOfNoisyRangesScatterAsTheBound) {
   const Beams beams = all_around(300);
   const std::vector<Plane> planes = room();
   std::vector<std::size_t> plane_of;
@@ -319,7 +319,7 @@ TEST(FisherInformation, WithoutReturnsNothingIsKnown) {
   for (int axis = 0; axis < 6; ++axis) EXPECT_TRUE(std::isinf(found.bound[axis]));
 }
 
-TEST(FisherInformation, GrazingReturnsAreLeftOutAndCounted) {
+TEST(FisherInformation, GrazingReturnsAreIgnoredAndCounted) {
   Beams beams = all_around(2);
   Frame frame = empty_frame(beams);
   hit(frame, 0, 1.0, beams.directions[0].unitOrthogonal());
@@ -329,14 +329,14 @@ TEST(FisherInformation, GrazingReturnsAreLeftOutAndCounted) {
   EXPECT_EQ(found.returns, 1U);
 }
 
-TEST(FisherInformation, FrameWithoutNormalsIsRefused) {
+TEST(FisherInformation, FrameWithoutNormalsIsAnError) {
   const Beams beams = all_around(10);
   Frame frame = empty_frame(beams);
   frame.ground_truth.normal.clear();
   EXPECT_THROW(pose_information(frame, beams), Error);
 }
 
-TEST(DisplacementWords, TellTheScrew) {
+TEST(DescribeDisplacement, DescribesTheScrewMotion) {
   const auto words = [](std::initializer_list<double> six) {
     Vector6 v;
     std::copy(six.begin(), six.end(), v.data());

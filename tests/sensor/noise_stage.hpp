@@ -12,7 +12,8 @@
 
 namespace glidar::testing {
 
-/// A frame of a made-up sensor whose beams all look along the boresight, so that range is depth.
+/// A frame of a synthetic sensor whose beams are all parallel to the boresight, so that range is
+/// depth.
 struct NoiseStage {
   Beams beams;
   Frame frame;

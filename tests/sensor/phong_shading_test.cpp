@@ -24,7 +24,7 @@ float intensity(const PhongHeadlight& light, const Reflectance& reflectance, dou
   return frame.intensity[0];
 }
 
-TEST(PhongHeadlight, IsThePapersEquationsThreeToFive) {
+TEST(PhongHeadlight, MatchesEquationsThreeToFive) {
   const PhongHeadlight light{.attenuation_constant = 1.5,
                              .attenuation_linear_per_m = 0.2,
                              .attenuation_quadratic_per_m2 = 0.03,
@@ -37,7 +37,7 @@ TEST(PhongHeadlight, IsThePapersEquationsThreeToFive) {
   EXPECT_NEAR(intensity(light, surface, d, 0.8F), a * colour, 1e-6);    // (4)
 }
 
-TEST(PhongHeadlight, FromBehindOnlyTheAmbientIsLeft) {
+TEST(PhongHeadlight, BackFacesHaveTheAmbientTermOnly) {
   const PhongHeadlight light{.attenuation_linear_per_m = 0.0, .attenuation_quadratic_per_m2 = 0.0};
   const Reflectance surface{.diffuse = 1.0F, .ambient = 0.5F, .specular = 1.0F, .shininess = 2.0F};
   EXPECT_FLOAT_EQ(intensity(light, surface, 3.0, -0.5F), 0.2F * 0.5F);
@@ -60,7 +60,7 @@ TEST(PhongHeadlight, IsZeroWhereNothingIsReported) {
   EXPECT_EQ(frame.intensity[0], 0.0F);
 }
 
-TEST(PhongHeadlight, RefusesNegativeAndUndefinedNumbers) {
+TEST(PhongHeadlight, RejectsNegativeAndUndefinedNumbers) {
   EXPECT_NO_THROW(validate(PhongHeadlight{}));
   EXPECT_THROW(validate(PhongHeadlight{.attenuation_linear_per_m = -1.0}), Error);
   EXPECT_THROW(validate(PhongHeadlight{.ambient = std::numeric_limits<double>::quiet_NaN()}),

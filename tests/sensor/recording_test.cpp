@@ -48,7 +48,7 @@ std::vector<Packet> read_capture(const std::filesystem::path& path) {
   std::vector<Packet> packets;
   for (std::size_t at = 24; at + 16 <= bytes.size();) {
     const std::size_t length = number(bytes, at + 8, 4);
-    const std::size_t data = at + 16 + 42;  // behind the Ethernet, IP and UDP heads
+    const std::size_t data = at + 16 + 42;  // after the Ethernet, IP and UDP headers
     at += 16 + length;
     if (length != 1248 || at > bytes.size()) continue;
     Packet packet;
@@ -92,7 +92,7 @@ TEST(Recording, OfAVlp16HasTheSimulatedTimesAndAzimuths) {
     const Eigen::Vector3d& d = beams.directions[first];
     const double expected_deg = std::atan2(-d.y(), d.x()) * 180.0 / std::numbers::pi;
     const double found_deg = turned_deg(packets[0].azimuths_deg[0], packets[i].azimuths_deg[0]);
-    // the motor's speed wavers by some tenths of a degree in a turn
+    // the motor's angle deviates by some tenths of a degree per turn
     ASSERT_NEAR(std::remainder(found_deg - expected_deg, 360.0), 0.0, 1.0) << i;
   }
 }
@@ -131,7 +131,7 @@ std::map<std::uint32_t, std::vector<OusterColumn>> read_ouster(const std::filesy
   std::map<std::uint32_t, std::vector<OusterColumn>> frames;
   std::string datagram;
   for (std::size_t at = 24; at + 16 <= bytes.size();) {
-    const std::size_t ip = at + 16 + 14;  // behind the heads of the record and of Ethernet
+    const std::size_t ip = at + 16 + 14;  // after the headers of the record and of Ethernet
     at += 16 + number(bytes, at + 8, 4);
     const auto big = [&](std::size_t from) {
       return static_cast<unsigned char>(bytes[from]) * 256U +
@@ -204,7 +204,8 @@ TEST_P(OusterRecording, HasTheSimulatedTimesOfColumns) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       ASSERT_EQ(columns[c].number, c);
       times_ns.push_back(columns[c].time_ns);
-      // the encoder starts columns, so that the motor's wavering shows; over a turn it evens out
+      // the encoder starts columns, so that speed variations are visible; they average out over a
+      // turn
       const double since_us = 1e-3 * static_cast<double>(times_ns[c] - times_ns[0]);
       ASSERT_NEAR(since_us, 1e-3 * static_cast<double>(simulated_ns[c]), 200.0) << c;
     }

@@ -18,7 +18,7 @@ namespace {
 const Eigen::Vector3d kFrom(2.0, -3.0, 2.0);
 const Eigen::Vector3d kUp = Eigen::Vector3d::UnitZ();
 
-/// A tetrahedron that is not symmetric, and far from the world's zero.
+/// A tetrahedron that is not symmetric, and far from the world's origin.
 Scene tetrahedron(const Eigen::Vector3d& stretch = {1.0, 1.0, 1.0}) {
   Scene scene;
   Mesh mesh;
@@ -52,7 +52,7 @@ std::vector<Eigen::Vector3d> seen(const Scene& scene, const Pose& world_from_sen
   return points;
 }
 
-/// Where the vertices lie in the image: the box around them, -1..1 from edge to edge.
+/// The bounding box of the vertices in the image, -1..1 from edge to edge.
 Eigen::AlignedBox2d filled(const PinholeIntrinsics& k, const std::vector<Eigen::Vector3d>& points) {
   Eigen::AlignedBox2d box;
   for (const Eigen::Vector3d& p : points) {
@@ -91,7 +91,8 @@ TEST(Framing, NarrowAndWideFieldsAreFilledToTheMargin) {
   expect_fills(pinhole_from_fov(64, 48, 1.2), tetrahedron());
 }
 
-// A view so wide could be filled only from within the box, where one sees parts of the model.
+// A view so wide could be filled only from within the box, where only parts of the model are
+// visible.
 TEST(Framing, VeryWideFieldsStayOutsideTheBoxAndContainEverything) {
   for (const double fov_rad : {2.0, 2.8, 3.12, 3.1415}) {
     const Pinhole camera = pinhole_from_fov(64, 48, fov_rad);
@@ -123,11 +124,11 @@ TEST(Framing, PrincipalPointOffTheCentreIsFilledToTheMargin) {
   expect_fills(camera, tetrahedron());
 }
 
-TEST(Framing, OnePixelSeesEverything) {
+TEST(Framing, OnePixelContainsEverything) {
   expect_fills(pinhole_from_fov(1, 1, 0.2), tetrahedron());
 }
 
-TEST(Framing, LooksFromTheAskedSideWithUpUp) {
+TEST(Framing, HasTheRequestedDirectionAndUpVector) {
   const Scene scene = tetrahedron();
   const Pose pose =
       fit_camera_to_scene(make_beams(pinhole_from_fov(64, 64, 0.35)), scene, kFrom, kUp);
@@ -198,13 +199,13 @@ void expect_error(const Beams& beams, const Scene& scene, const std::string& tex
   }
 }
 
-TEST(Framing, SaysWhyItCannotFrame) {
+TEST(Framing, ReportsWhyItCannotFrame) {
   const Beams beams = make_beams(pinhole_from_fov(8, 8, 0.35));
   expect_error(beams, Scene{}, "no triangles");
   expect_error(beams, tetrahedron({0.0, 0.0, 0.0}), "one point");
   Beams sideways = beams;
   sideways.boresight = Eigen::Vector3d::UnitX();
-  expect_error(sideways, tetrahedron(), "looks along +z");
+  expect_error(sideways, tetrahedron(), "boresight +z");
   Beams single = beams;
   single.pinhole.reset();
   single.rows = single.cols = 1;

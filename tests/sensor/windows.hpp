@@ -14,7 +14,7 @@
 
 namespace glidar::testing {
 
-/// One shot in absolute time; directions to the last bit.
+/// One firing in absolute time, with bit-identical directions.
 using Shot = std::tuple<std::int64_t, std::uint16_t, double, double, double>;
 
 inline void add_shots(const Beams& beams, const FrameInterval& window, std::vector<Shot>& shots) {
@@ -24,8 +24,8 @@ inline void add_shots(const Beams& beams, const FrameInterval& window, std::vect
   }
 }
 
-/// Cuts the same stretch of time into windows of very different lengths and into one; both must
-/// give the same shots.
+/// Divides a time interval into parts of very different lengths; they must have the same firings as
+/// the whole interval.
 inline void expect_windows_join(const Optics& optics, std::int64_t from_ns, std::int64_t to_ns) {
   const auto beams_in = [&](const FrameInterval& window) {
     return std::visit([&](const auto& o) { return make_beams(o, window); }, optics);

@@ -10,7 +10,7 @@
 namespace glidar {
 namespace {
 
-constexpr double kBend = 0.25;                   // of the distance of two points
+constexpr double kBend = 0.25;                   // of the distance between two points
 constexpr double kRounding = 1e-6;               // of the range
 constexpr double kSmooth = 0.70710678118654752;  // cosine of 45 degrees
 
@@ -18,13 +18,13 @@ double tolerance_m(const SurfacePoint& a, const SurfacePoint& b, double distance
   return kBend * distance_m + kRounding * std::max(a.range_m, b.range_m);
 }
 
-/// How far b is in front of a's plane, along a's ray, m; below 0: behind.
+/// Distance of b in front of a's plane, along a's ray, m; negative: behind.
 double in_front_m(const SurfacePoint& a, const Eigen::Vector3d& from_a_to_b) {
   constexpr double kGrazing = 1e-9;
   return a.normal.dot(from_a_to_b) / std::max(a.cos_incidence, kGrazing);
 }
 
-/// True when all rays hit, and the same triangle.
+/// True if all rays hit the same triangle.
 bool is_one_triangle(const Hits& hits, std::size_t first, std::size_t count) {
   unsigned others = 0;
   for (std::size_t i = first; i < first + count; ++i) {
@@ -36,7 +36,7 @@ bool is_one_triangle(const Hits& hits, std::size_t first, std::size_t count) {
 
 using Labels = std::vector<std::uint16_t>;
 
-/// Joins the sets of two members; a set's number is its first member.
+/// Union of the sets of two members; the representative of a set is its first member.
 void join(Labels& sets, std::size_t a, std::size_t b) {
   const auto first_of = [&](std::size_t member) {
     while (sets[member] != member) member = sets[member];
@@ -47,7 +47,7 @@ void join(Labels& sets, std::size_t a, std::size_t b) {
   sets[std::max(one, other)] = static_cast<std::uint16_t>(std::min(one, other));
 }
 
-/// Every member gets the number of its set. A member's parent comes before it.
+/// Replaces every member's parent by the representative of its set. Parents precede members.
 void flatten(Labels& sets) {
   for (std::uint16_t& set : sets) set = sets[set];
 }
@@ -93,7 +93,7 @@ void BeamSurfaces::label() {
   for (std::size_t i = 0; i < points_.size(); ++i) of_ray_[points_[i].ray] = surface_[i];
 }
 
-/// Quick, and right for most beams: all points are near the first one's plane.
+/// A fast test that succeeds for most beams: all points are near the plane of the first.
 bool BeamSurfaces::is_one_face() const {
   const SurfacePoint& a = points_.front();
   return std::all_of(points_.begin() + 1, points_.end(), [&](const SurfacePoint& b) {

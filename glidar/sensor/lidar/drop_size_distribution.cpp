@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPerMillimetre = 1e3;  // in 1/m
 
-/// Fresnel's at normal incidence.
+/// Fresnel reflectance at normal incidence.
 constexpr double reflectance(double index) {
   return (index - 1.0) / (index + 1.0) * (index - 1.0) / (index + 1.0);
 }
@@ -23,25 +23,25 @@ constexpr double kIce = reflectance(1.3031);
 
 DropSizes rain_sizes(double mm_per_h) {
   return {.number_per_m4 = 8000.0 * kPerMillimetre,
-          .slope_per_m = 4.1 * kPerMillimetre * power(mm_per_h, -0.21),
+          .slope_per_m = 4.1 * kPerMillimetre * portable_pow(mm_per_h, -0.21),
           .reflectance = kWater};
 }
 
 DropSizes snow_sizes(double mm_per_h, Weather::SnowModel model) {
   if (model == Weather::SnowModel::gunn_marshall) {
-    return {.number_per_m4 = 7600.0 * kPerMillimetre * power(mm_per_h, -0.87),
-            .slope_per_m = 2.55 * kPerMillimetre * power(mm_per_h, -0.48),
+    return {.number_per_m4 = 7600.0 * kPerMillimetre * portable_pow(mm_per_h, -0.87),
+            .slope_per_m = 2.55 * kPerMillimetre * portable_pow(mm_per_h, -0.48),
             .reflectance = kIce};
   }
-  return {.number_per_m4 = 2500.0 * kPerMillimetre * power(mm_per_h, -0.94),
-          .slope_per_m = 2.29 * kPerMillimetre * power(mm_per_h, -0.45),
+  return {.number_per_m4 = 2500.0 * kPerMillimetre * portable_pow(mm_per_h, -0.94),
+          .slope_per_m = 2.29 * kPerMillimetre * portable_pow(mm_per_h, -0.45),
           .reflectance = kIce};
 }
 
 double drops_per_m3(const DropSizes& sizes, double least_diameter_m) {
   const double depth = sizes.slope_per_m * least_diameter_m;
   constexpr double kNoDrops = 600.0;  // e^-600
-  return depth < kNoDrops ? sizes.number_per_m4 / sizes.slope_per_m * natural_exp(-depth) : 0.0;
+  return depth < kNoDrops ? sizes.number_per_m4 / sizes.slope_per_m * portable_exp(-depth) : 0.0;
 }
 
 double geometric_extinction_per_m(const DropSizes& sizes) {

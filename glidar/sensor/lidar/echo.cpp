@@ -14,10 +14,11 @@ namespace glidar {
 namespace {
 
 constexpr double kFwhmPerSigma = 2.3548200450309493;  // sqrt(8 ln 2)
-constexpr double kReach = 6.0;   // standard deviations: beyond, a pulse is below 2e-8 of its peak
-constexpr double kStep = 0.125;  // of a standard deviation: the waveform's samples
+constexpr double kReach =
+    6.0;  // standard deviations; farther out a pulse is below 2e-8 of its peak
+constexpr double kStep = 0.125;  // distance of the waveform's samples in standard deviations
 
-/// Paths [begin, end) of a beam, sorted by range unless all are near each other.
+/// Contributions [begin, end) of a beam, sorted by range unless all are near each other.
 struct Group {
   std::size_t begin;
   std::size_t end;
@@ -30,12 +31,13 @@ inline double slight_fading(double y) {
   return 1.0 - y * (1.0 - y * (1.0 / 2.0 - y * (1.0 / 6.0 - y * (1.0 / 24.0))));
 }
 
-/// exp(-y), nothing beyond a pulse's reach.
+/// exp(-y); 0 beyond kReach.
 inline double strong_fading(double y) {
-  return y < 0.5 * kReach * kReach ? natural_exp(-y) : 0.0;
+  return y < 0.5 * kReach * kReach ? portable_exp(-y) : 0.0;
 }
 
-/// exp(-y) from 0 on. Most paths of a footprint are near each other: then the series is quicker.
+/// exp(-y) for y >= 0. Most contributions of a footprint are near each other, where the series is
+/// faster.
 double fading(double y) {
   return y < kSmall ? slight_fading(y) : strong_fading(y);
 }
@@ -46,12 +48,12 @@ class Waveform {
   Waveform(const WaveformBuffer& work, const Group& group, double sigma_m)
       : work_(work), group_(group), per_sigma_(1.0 / sigma_m), step_m_(kStep * sigma_m) {}
 
-  /// The range of sample k; 0 is at the nearest path.
+  /// The range of sample k; sample 0 is at the nearest contribution.
   [[nodiscard]] double place_m(std::ptrdiff_t k) const {
     return work_.path[group_.begin].range_m + static_cast<double>(k) * step_m_;
   }
 
-  /// Sample k; rising from -1 on.
+  /// The value of sample k, for increasing k from -1.
   double at(std::ptrdiff_t k) {
     if (k >= first_ + kPathsAtOnce) sample_from(k);
     return samples_[static_cast<std::size_t>(k - first_)];
@@ -92,18 +94,18 @@ class Waveform {
   std::array<double, kPathsAtOnce> samples_;
 };
 
-/// The stronger of two paths, at the same strength the nearer.
+/// True if `a` is the stronger contribution, or equally strong and nearer.
 bool is_stronger(const EchoContribution& a, const EchoContribution& b) {
   return a.signal > b.signal || (a.signal == b.signal && a.range_m < b.range_m);
 }
 
-/// Surfaces that send back less than this part of an echo's light do not mix it: they move its
-/// range by less than this part of the gap, which in one echo is a few lengths of the pulse, so by
+/// Surfaces with less than this share of an echo's signal do not make it mixed: they move its range
+/// by less than this share of the gap, which within one echo is at most a few pulse lengths, so by
 /// about a millimetre.
 constexpr double kMinMixedShare = 1e-3;
 
 bool is_mixed(const WaveformBuffer& work, const Group& group) {
-  const EchoContribution* strongest = nullptr;  // that met something
+  const EchoContribution* strongest = nullptr;  // of a surface
   double sum = 0.0;
   for (std::size_t i = group.begin; i < group.end; ++i) {
     const EchoContribution& path = work.path[i];
@@ -119,7 +121,7 @@ bool is_mixed(const WaveformBuffer& work, const Group& group) {
   return others > kMinMixedShare * sum;
 }
 
-/// The echo of a group: centroid and the height of the waveform there, width and strongest path.
+/// The echo of a group: centroid, height of the waveform there, width and strongest contribution.
 PulseEcho echo_of(const WaveformBuffer& work, const Group& group, double sigma_m) {
   PulseEcho echo{.range_m = 0.0,
                  .signal = 0.0,
@@ -147,15 +149,14 @@ PulseEcho echo_of(const WaveformBuffer& work, const Group& group, double sigma_m
   return echo;
 }
 
-/// A peak at the middle one of three samples: its height by the parabola through them.
+/// The height of a peak at the middle one of three samples, by the parabola through them.
 double peak_height(double before, double at, double after) {
   const double bend = before - 2.0 * at + after;
   const double slope = 0.5 * (after - before);
   return bend < 0.0 ? at - 0.5 * slope * slope / bend : at;
 }
 
-/// Cuts a wide group at the valleys of its waveform. Paths beyond kReach of a valley are skipped by
-/// waveform().
+/// Splits a wide group at the minima of its waveform.
 void split(const Group& group, double sigma_m, WaveformBuffer& work) {
   const double extent_m = work.path[group.end - 1].range_m - work.path[group.begin].range_m;
   const auto samples = static_cast<std::ptrdiff_t>(std::ceil(extent_m / (kStep * sigma_m))) + 1;
@@ -191,22 +192,22 @@ void split(const Group& group, double sigma_m, WaveformBuffer& work) {
   close(group.end);
 }
 
-/// Pulses within one standard deviation of each other have one peak, at their mean but for the
-/// third order.
-void take_as_one(const Group& group, double sigma_m, WaveformBuffer& work) {
+/// Pulses within one standard deviation of each other have one peak, at their mean up to the third
+/// order.
+void merge_all(const Group& group, double sigma_m, WaveformBuffer& work) {
   work.echo[work.echoes++] = echo_of(work, group, sigma_m);
 }
 
-/// Finds the echoes of paths that others are too far from to matter.
+/// Splits the contributions where the next one is beyond reach, and finds the echoes of each group.
 void find_in_group(const Group& group, double sigma_m, WaveformBuffer& work) {
   if (work.path[group.end - 1].range_m - work.path[group.begin].range_m > sigma_m) {
     split(group, sigma_m, work);
   } else {
-    take_as_one(group, sigma_m, work);
+    merge_all(group, sigma_m, work);
   }
 }
 
-/// How far the nearest and the farthest path are from each other.
+/// The distance between the nearest and the farthest contribution, metres.
 double extent_m(const WaveformBuffer& work) {
   double nearest_m = work.path[0].range_m;
   double farthest_m = nearest_m;
@@ -217,7 +218,7 @@ double extent_m(const WaveformBuffer& work) {
   return farthest_m - nearest_m;
 }
 
-/// The index of the echo that a return asks for; -1: none.
+/// The index of the echo that a return selects; -1: none.
 int find_return(const Return& wanted, std::span<const PulseEcho> echoes,
                 const std::array<std::uint16_t, WaveformBuffer::kMax>& by_strength) {
   if (wanted.rank >= echoes.size()) return -1;
@@ -260,8 +261,8 @@ void WaveformBuffer::replace_weakest(const EchoContribution& one) {
 void detect_peaks(double sigma_m, double near_m, WaveformBuffer& work) {
   work.echoes = 0;
   if (work.paths == 0) return;
-  if (extent_m(work) <= std::min(sigma_m, near_m)) {  // as most beams: no need to sort
-    take_as_one({0, work.paths}, sigma_m, work);
+  if (extent_m(work) <= std::min(sigma_m, near_m)) {  // most beams; no sorting needed
+    merge_all({0, work.paths}, sigma_m, work);
     return;
   }
   std::sort(work.path.begin(), work.path.begin() + static_cast<std::ptrdiff_t>(work.paths),
@@ -297,7 +298,7 @@ void enforce_min_separation(double separation_m, WaveformBuffer& work) {
 
 double reported_range_m(const Receiver& receiver, const PulseEcho& echo) {
   if (receiver.timing == Receiver::Timing::centroid || echo.signal <= 1.0) return echo.range_m;
-  return echo.range_m - echo.sigma_m * std::sqrt(2.0 * natural_log(echo.signal));
+  return echo.range_m - echo.sigma_m * std::sqrt(2.0 * portable_log(echo.signal));
 }
 
 void select_returns(const Receiver& receiver, std::span<const PulseEcho> echoes,

@@ -40,7 +40,7 @@ double peak_between(double low, double high, const Function& of) {
   return 0.5 * (low + high);
 }
 
-/// The largest signal, its range counted from the pulse's begin.
+/// The maximum signal; its range refers to the start of the pulse.
 SoftEcho peak_before(const FogProfile& profile, double hard_range_m) {
   constexpr double kPlacesPerPulse = 16.0;
   const double pulse_m = 1.0 / profile.turns_per_m;
@@ -81,7 +81,7 @@ double pulse_of(const Sums& part, const SineCosine& angle) {
 
 FogProfile fog_profile(const LidarEquation& light, double backscatter_per_m_sr,
                        double pulse_fwhm_s) {
-  // from here on the signal of a layer only falls, so that the pulse's peak lies before its end
+  // Beyond, the signal of a layer decreases, so the maximum is before the end of the pulse.
   const double bend_m = std::max(1.0, light.overlap.empty() ? 0.0 : light.overlap.back()[0]);
   return fog_profile(light, backscatter_per_m_sr, pulse_fwhm_s,
                      bend_m + pulse_length_m(pulse_fwhm_s));
@@ -90,7 +90,7 @@ FogProfile fog_profile(const LidarEquation& light, double backscatter_per_m_sr,
 FogProfile fog_profile(const LidarEquation& light, double backscatter_per_m_sr, double pulse_fwhm_s,
                        double end_m) {
   const double pulse_m = pulse_length_m(pulse_fwhm_s);
-  const double start_m = nearest_in_view_m(light);
+  const double start_m = min_visible_range_m(light);
   FogProfile profile{.start_m = start_m,
                      .step_m = (end_m - start_m) / static_cast<double>(kLayers),
                      .turns_per_m = 1.0 / pulse_m,
@@ -99,7 +99,7 @@ FogProfile fog_profile(const LidarEquation& light, double backscatter_per_m_sr, 
   const auto at = [&](double place) {
     const double range_m = start_m + place * profile.step_m;
     const double w = air_signal(light, backscatter, range_m);
-    const SineCosine angle = of_turns(range_m * profile.turns_per_m);
+    const SineCosine angle = sincos_turns(range_m * profile.turns_per_m);
     return Sums{w, w * angle.cosine, w * angle.sine};
   };
   Sums before = at(0.0);
@@ -119,14 +119,14 @@ double fog_signal(const FogProfile& profile, double range_m, double hard_range_m
   const double to_m = std::min(range_m, hard_range_m);
   if (!(to_m > std::max(from_m, profile.start_m))) return 0.0;
   const Sums part = weighted(sums_to(profile, to_m), 1.0, sums_to(profile, from_m), -1.0);
-  return pulse_of(part, of_turns(range_m * profile.turns_per_m));
+  return pulse_of(part, sincos_turns(range_m * profile.turns_per_m));
 }
 
 FogReturn fog_return(const LidarEquation& light, double backscatter_per_m_sr, double pulse_fwhm_s) {
   if (!(backscatter_per_m_sr > 0.0)) return {};
   const FogProfile profile = fog_profile(light, backscatter_per_m_sr, pulse_fwhm_s);
   const double half_pulse_m = 0.5 / profile.turns_per_m;
-  // a target beyond the peak of endless fog takes nothing from it
+  // A target beyond the maximum of unbounded fog does not change it.
   const SoftEcho endless = peak_before(profile, std::numeric_limits<double>::infinity());
   FogReturn fog{.start_m = profile.start_m,
                 .step_m = (endless.range_m - profile.start_m) / static_cast<double>(kHardRanges),

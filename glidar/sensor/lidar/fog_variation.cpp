@@ -13,18 +13,18 @@ namespace {
 
 using Sums = FogProfile::Sums;
 
-/// From here on the signal of a layer only falls.
+/// The range beyond which the signal of a layer decreases.
 double bend_m(const LidarEquation& light) {
   return std::max(1.0, light.overlap.empty() ? 0.0 : light.overlap.back()[0]);
 }
 
-/// Where fog sends back so little that it hardly ever makes the largest echo.
+/// The range beyond which fog is so faint that it almost never has the largest echo.
 double farthest_m(const LidarEquation& light, double step_m) {
   constexpr double kMinShare = 1.0 / 200.0;
   constexpr double kGrowth = 1.1;
-  constexpr double kFarthest = 64.0;  // of the bend, for light that hardly falls with the range
+  constexpr double kFarthest = 64.0;  // times the bend, for signals that hardly decrease with range
   double brightest = 0.0;
-  for (double range_m = nearest_in_view_m(light); range_m < bend_m(light) + step_m;
+  for (double range_m = min_visible_range_m(light); range_m < bend_m(light) + step_m;
        range_m += step_m) {
     brightest = std::max(brightest, air_signal(light, 1.0, range_m));
   }
@@ -36,29 +36,29 @@ double farthest_m(const LidarEquation& light, double step_m) {
   return range_m;
 }
 
-/// Uniform numbers of a draw, one after the other.
+/// The sequence of uniform numbers of a key.
 class Uniforms {
  public:
-  explicit Uniforms(const RngKey& draw) : draw_(draw) { draw_.purpose = Purpose::fog; }
+  explicit Uniforms(const RngKey& key) : key_(key) { key_.purpose = Purpose::fog; }
 
   double next() {
     const std::uint32_t word = count_ % 4U;
-    draw_.block = count_ / 4U;
-    if (word == 0) words_ = random_words(draw_);
+    key_.block = count_ / 4U;
+    if (word == 0) words_ = random_words(key_);
     ++count_;
     return uniform(words_[word]);
   }
 
  private:
-  RngKey draw_;
+  RngKey key_;
   std::uint32_t count_ = 0;
   RandomWords words_{};
 };
 
-/// Erlang's distribution: the mean of exponential numbers.
+/// Erlang distribution: the mean of exponential numbers.
 double gamma_factor(unsigned looks, Uniforms& uniforms) {
   double sum = 0.0;
-  for (unsigned i = 0; i < looks; ++i) sum -= natural_log(uniforms.next());
+  for (unsigned i = 0; i < looks; ++i) sum -= portable_log(uniforms.next());
   return sum / looks;
 }
 
@@ -68,12 +68,12 @@ Sums added(const Sums& to, double factor, const Sums& from, const Sums& up_to) {
           to.sine + factor * (up_to.sine - from.sine)};
 }
 
-/// The cells of a beam, one after the other.
+/// Iterates over the cells of a beam.
 class FogCells {
  public:
-  FogCells(const VaryingFog& fog, const RngKey& draw)
+  FogCells(const VaryingFog& fog, const RngKey& key)
       : fog_(fog),
-        uniforms_(draw),
+        uniforms_(key),
         from_m_(fog.profile.start_m + (uniforms_.next() - 1.0) * fog.cell_m) {}
 
   [[nodiscard]] double next_from_m() const { return from_m_; }
@@ -91,13 +91,13 @@ class FogCells {
   double from_m_;
 };
 
-/// The fog of a beam, integrated node by node.
+/// Integrates the fog of a beam node by node.
 class Integral {
  public:
-  Integral(const VaryingFog& fog, double end_m, const RngKey& draw)
-      : fog_(fog), cells_(fog, draw), end_m_(end_m), cell_(cells_.next()), next_(following()) {}
+  Integral(const VaryingFog& fog, double end_m, const RngKey& key)
+      : fog_(fog), cells_(fog, key), end_m_(end_m), cell_(cells_.next()), next_(following()) {}
 
-  /// Up to a node not before the one of the last call.
+  /// The integral up to a node, which must not decrease between calls.
   Sums to(std::size_t node) {
     const double range_m = fog_.profile.start_m + static_cast<double>(node) * step_m();
     while (next_.from_m <= range_m) {
@@ -116,7 +116,7 @@ class Integral {
   }
 
  private:
-  /// What comes after cell_: from end_m on there is no fog.
+  /// The cell after cell_; there is no fog beyond end_m.
   FogCell following() {
     if (cells_.next_from_m() < end_m_) return cells_.next();
     const bool has_ended = cell_.from_m >= end_m_;
@@ -128,8 +128,8 @@ class Integral {
   double end_m_;
   FogCell cell_;
   FogCell next_;
-  Sums before_{};  ///< the cell
-  Sums border_{};  ///< of the profile, where the cell begins
+  Sums before_{};  ///< integrals before the cell
+  Sums border_{};  ///< integrals of the profile at the start of the cell
 };
 
 }  // namespace
@@ -150,25 +150,26 @@ VaryingFog varying_fog(const LidarEquation& light, double backscatter_per_m_sr, 
         sums_to(fog.profile, fog.profile.start_m + static_cast<double>(i) * step_m));
   }
   for (std::size_t i = 0; i < VaryingFog::kNodesPerPulse; ++i) {
-    fog.angles[i] = of_turns(fog.profile.start_m * fog.profile.turns_per_m +
-                             static_cast<double>(i) / VaryingFog::kNodesPerPulse);
+    fog.angles[i] = sincos_turns(fog.profile.start_m * fog.profile.turns_per_m +
+                                 static_cast<double>(i) / VaryingFog::kNodesPerPulse);
   }
   return fog;
 }
 
-void draw_fog_cells(const VaryingFog& fog, double end_m, RngKey draw, std::vector<FogCell>& cells) {
+void sample_fog_cells(const VaryingFog& fog, double end_m, RngKey key,
+                      std::vector<FogCell>& cells) {
   cells.clear();
-  FogCells source(fog, draw);
+  FogCells source(fog, key);
   while (source.next_from_m() < std::min(end_m, fog.end_m)) cells.push_back(source.next());
 }
 
-SoftEcho echo_before(const VaryingFog& fog, double hard_range_m, const RngKey& draw) {
+SoftEcho echo_before(const VaryingFog& fog, double hard_range_m, const RngKey& key) {
   const double start_m = fog.profile.start_m;
   const double end_m = std::min(hard_range_m, fog.end_m);
   if (fog.nodes.empty() || !(end_m > start_m)) return {};
-  Integral integral(fog, end_m, draw);
+  Integral integral(fog, end_m, key);
   constexpr std::size_t kPulse = VaryingFog::kNodesPerPulse;
-  std::array<Sums, kPulse> past{};  // a pulse's length ago
+  std::array<Sums, kPulse> past{};  // integrals one pulse length earlier
   const auto last = static_cast<std::size_t>((end_m - start_m) / integral.step_m()) + kPulse + 2;
   std::array<double, 3> signal{};  // at the last nodes
   SoftEcho best;
@@ -183,7 +184,7 @@ SoftEcho echo_before(const VaryingFog& fog, double hard_range_m, const RngKey& d
     const double peak = static_cast<double>(node) - 1.0 - slope / bend;
     best = {start_m + peak * integral.step_m(), signal[1] - 0.5 * slope * slope / bend};
   }
-  // from the pulse's begin to its middle; all fog is between start and end
+  // From the start of the pulse to its middle; all fog is between start and end.
   best.range_m = std::clamp(best.range_m - fog.cell_m, start_m, end_m);
   return best;
 }

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kBeamsPerSpread = 128;
 
-/// What lies between two radii, as u = 2 r^2 / w^2: the share of a Gaussian's energy, and its mean
+/// A ring between two radii, with u = 2 r^2 / w^2: its share of a Gaussian's energy, and its mean
 /// of u. The share beyond u is exp(-u), the integral of u exp(-u) is -(u + 1) exp(-u).
 struct Ring {
   double share;
@@ -30,11 +30,11 @@ Ring ring_between(double from_u, double to_u) {
   return {share, (first_moment(from_u) - first_moment(to_u)) / share};
 }
 
-/// Turns each ring against the one inside by this part of its rays' spacing, the golden ratio's, so
-/// that no straight edge meets many rays at once.
+/// Rotation of each ring relative to the previous one, in units of the spacing of its rays: the
+/// golden ratio, so that no straight edge meets many rays at once.
 constexpr double kTwist = 0.61803398874989485;
 
-/// Ring 0 is the disc in the middle.
+/// Ring 0 is the central disc.
 std::vector<Ring> rings_of(unsigned count) {
   const double step = count == 1 ? 0.5 : 1.0 / count;  // of w
   const auto u_of = [](double radius) { return 2.0 * radius * radius; };
@@ -46,7 +46,7 @@ std::vector<Ring> rings_of(unsigned count) {
   return rings;
 }
 
-/// Vectors of beams that are spread together, component by component.
+/// Vectors of beams that are expanded together, component by component.
 constexpr std::size_t kAtOnce = 16;
 struct alignas(64) Vectors {
   std::array<double, kAtOnce> x;
@@ -61,7 +61,7 @@ struct alignas(64) Vectors {
   [[nodiscard]] Eigen::Vector3d get(std::size_t i) const { return {x[i], y[i], z[i]}; }
 };
 
-/// Beams with two directions across each: to its side and up.
+/// Beams with two perpendicular directions each: sideways and up.
 struct Crosses {
   Vectors beam;
   Vectors side;
@@ -80,7 +80,7 @@ GLIDAR_SIMD void lean(const Vectors& from, const Crosses& c, const Eigen::Vector
   }
 }
 
-/// side = beam x up, above = side x beam. A beam along `up` gets a side that is no number.
+/// side = beam x up, above = side x beam. The side of a beam along `up` is NaN.
 GLIDAR_SIMD void find_crosses(const Eigen::Vector3d& up, Crosses& c) {
   constexpr double kParallel = 1e-9;
   for (std::size_t i = 0; i < kAtOnce; ++i) {
@@ -112,7 +112,7 @@ void find_crosses(const Beams& beams, BeamRange range, Crosses& crosses) {
   }
 }
 
-/// Spreads up to kAtOnce beams; their sub-rays stand from `first` on.
+/// Expands up to kAtOnce beams; their sub-rays begin at index `first`.
 void spread_some(const std::vector<SubRay>& rays, const Beams& beams, BeamRange range,
                  std::size_t first, Beams& out) {
   Crosses crosses;
@@ -159,7 +159,7 @@ double diameter_m(const Footprint& f, double range_m) {
 std::vector<SubRay> sample_footprint(const Footprint& f) {
   validate(f);
   const std::vector<Ring> rings = rings_of(f.rings);
-  double outer_u = 0.0;  // second moment of all but the middle ray, which has none
+  double outer_u = 0.0;  // second moment of all rays; that of the central one is 0
   for (unsigned k = 1; k <= f.rings; ++k) outer_u += rings[k].share * rings[k].mean_u;
   const double scale = 1.0 / outer_u;  // the whole beam's is 1
 

@@ -18,12 +18,12 @@ namespace {
 /// exp(-2 alpha R).
 double two_way(double extinction_per_m, double range_m) {
   const double depth = -2.0 * extinction_per_m * range_m;
-  return natural_exp(std::clamp(depth, -600.0, 600.0));  // beyond, it is 0 or endless anyway
+  return portable_exp(std::clamp(depth, -600.0, 600.0));  // 0 or infinite beyond
 }
 
 double incidence_rad(double cosine) {
   const double sine = std::sqrt(std::max(0.0, 1.0 - cosine * cosine));
-  return 2.0 * std::numbers::pi * turns_of(sine, cosine);
+  return 2.0 * std::numbers::pi * atan2_turns(sine, cosine);
 }
 
 double relative(const Lambert& /*surface*/, double cosine) {
@@ -31,7 +31,8 @@ double relative(const Lambert& /*surface*/, double cosine) {
 }
 
 double relative(const PhongLike& s, double cosine) {
-  const double lobe = power(std::abs(2.0 * cosine * cosine - 1.0), s.exponent);  // cos 2 theta
+  const double lobe =
+      portable_pow(std::abs(2.0 * cosine * cosine - 1.0), s.exponent);  // cos 2 theta
   return (1.0 - s.specular_share) * cosine + s.specular_share * lobe;
 }
 
@@ -44,15 +45,15 @@ double relative(const OrenNayar& s, double cosine) {
 
 double relative(const RetroReflector& s, double cosine) {
   const double x = incidence_rad(cosine) / s.width_rad;
-  return s.gain * natural_exp(-x * x);
+  return s.gain * portable_exp(-x * x);
 }
 
 double relative(const Glossy& s, double cosine) {
   const double x = incidence_rad(cosine) / s.width_rad;
-  return s.matt_share * cosine + s.lobe_gain * natural_exp(-0.5 * x * x);
+  return s.matt_share * cosine + s.lobe_gain * portable_exp(-0.5 * x * x);
 }
 
-/// What sends light back: a material at one wavelength.
+/// The backscatter of a material at one wavelength.
 class Surface {
  public:
   Surface() = default;
@@ -67,7 +68,8 @@ class Surface {
   }
 
  private:
-  /// The material's, times what its texture and the vertex colours make of the diffuse colour.
+  /// The material's reflectance, scaled as the texture and the vertex colours scale the diffuse
+  /// colour.
   [[nodiscard]] double reflectance(float diffuse) const {
     if (material_->spectrum.empty()) return diffuse;
     return reflectance_ * (plain_ > 0.0F ? std::min(1.0F, diffuse / plain_) : 1.0);
@@ -82,12 +84,12 @@ const Material& material_at(const Scene& scene, const Hits& hits, std::size_t be
   return material_of(scene, scene.instances[hits.instance[beam]], hits.primitive[beam]);
 }
 
-/// What comes back from hits [range.begin, range.end), 0 where there is none. Neighbours mostly hit
-/// the same instance.
+/// Backscatter of the hits [range.begin, range.end), 0 for a miss. Neighbours mostly hit the same
+/// instance, whose material is looked up once.
 void collect_sent(const Scene& scene, double wavelength_m, const Hits& hits, BeamRange range,
                   std::span<double> sent) {
   Surface surface;
-  std::uint32_t known = kInvalidId;  // the instance that is all of this surface
+  std::uint32_t known = kInvalidId;  // the instance of `surface`, if it has one material
   for (std::size_t i = range.begin; i < range.end; ++i) {
     double& to = sent[i - range.begin];
     to = 0.0;
@@ -101,7 +103,7 @@ void collect_sent(const Scene& scene, double wavelength_m, const Hits& hits, Bea
   }
 }
 
-/// Spread over the range, see received_signal(), for the exponent 2 and nothing in the way.
+/// received_signal() for the exponent 2 in clear air without overlap.
 GLIDAR_SIMD void spread_by_square(const LidarEquation& light, const double* range_m,
                                   std::size_t count, double* signals) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -111,24 +113,24 @@ GLIDAR_SIMD void spread_by_square(const LidarEquation& light, const double* rang
   }
 }
 
-/// The same for any exponent.
+/// received_signal() for any exponent in clear air without overlap.
 GLIDAR_SIMD void spread_by_power(const LidarEquation& light, const double* range_m,
                                  std::size_t count, double* signals) {
   for (std::size_t i = 0; i < count; ++i) {
     const double range = signals[i] > 0.0 ? range_m[i] : 1.0;  // a miss has no range
-    const double spread = power(light.reference_range_m / range, light.range_exponent);
+    const double spread = portable_pow(light.reference_range_m / range, light.range_exponent);
     const double signal = signals[i] / light.reference_reflectance * spread;
     signals[i] = signals[i] > 0.0 ? signal : 0.0;
   }
 }
 
-/// True when the range alone weakens the signal.
+/// True if the signal depends on the range only by its power law.
 bool only_spreads(const LidarEquation& light) {
   return light.overlap.empty() && light.extinction_per_m == 0.0 &&
          light.weather_extinction_per_m == 0.0;
 }
 
-/// See kMinSignalToNoise; a signal over the threshold is never lost.
+/// See kMinSignalToNoise; signals above the threshold are always detected.
 bool is_lost_in_noise(const LidarEquation& light, double signal) {
   return signal < std::min(kMinSignalToNoise * light.noise_sigma, 1.0);
 }
@@ -148,28 +150,29 @@ void measure_hit(const LidarEquation& light, double received, std::size_t beam, 
 void validate(const LidarEquation& light) {
   const auto positive = [](double x) { return x > 0.0 && std::isfinite(x); };
   const auto from_zero = [](double x) { return x >= 0.0 && std::isfinite(x); };
-  require_number(positive(light.reference_reflectance), "pulse light, reference_reflectance",
+  require_number(positive(light.reference_reflectance), "lidar_equation, reference_reflectance",
                  light.reference_reflectance, "above 0");
-  require_number(positive(light.reference_range_m), "pulse light, reference_range_m",
+  require_number(positive(light.reference_range_m), "lidar_equation, reference_range_m",
                  light.reference_range_m, "metres above 0");
-  require_number(from_zero(light.range_exponent), "pulse light, range_exponent",
+  require_number(from_zero(light.range_exponent), "lidar_equation, range_exponent",
                  light.range_exponent, "0 or above");
-  require_number(from_zero(light.extinction_per_m), "pulse light, extinction_per_m",
+  require_number(from_zero(light.extinction_per_m), "lidar_equation, extinction_per_m",
                  light.extinction_per_m, "0 or above");
-  require_number(from_zero(light.weather_extinction_per_m), "pulse light, weather_extinction_per_m",
-                 light.weather_extinction_per_m, "0 or above");
-  require_number(from_zero(light.noise_sigma), "pulse light, noise_sigma", light.noise_sigma,
+  require_number(from_zero(light.weather_extinction_per_m),
+                 "lidar_equation, weather_extinction_per_m", light.weather_extinction_per_m,
                  "0 or above");
-  require_number(from_zero(light.saturation), "pulse light, saturation", light.saturation,
+  require_number(from_zero(light.noise_sigma), "lidar_equation, noise_sigma", light.noise_sigma,
+                 "0 or above");
+  require_number(from_zero(light.saturation), "lidar_equation, saturation", light.saturation,
                  "0 or above");
   for (std::size_t i = 0; i < light.overlap.size(); ++i) {
     const auto [range_m, share] = light.overlap[i];
     require_number(from_zero(range_m) && (i == 0 || range_m > light.overlap[i - 1][0]),
-                   "pulse light, overlap", range_m, "ranges that rise from 0 or above");
-    require_number(from_zero(share), "pulse light, overlap", share, "shares of 0 or above");
+                   "lidar_equation, overlap", range_m, "ranges that rise from 0 or above");
+    require_number(from_zero(share), "lidar_equation, overlap", share, "shares of 0 or above");
   }
   require_number(interpolate(light.overlap, light.reference_range_m, 1.0) > 0.0,
-                 "pulse light, overlap", 0.0, "a share above 0 at the reference range");
+                 "lidar_equation, overlap", 0.0, "a share above 0 at the reference range");
 }
 
 double backscatter(const Brdf& surface, double reflectance, double cosine) {
@@ -188,7 +191,7 @@ double relative_overlap(const LidarEquation& light, double range_m) {
 double received_signal(const LidarEquation& light, double backscatter, double range_m) {
   const double ratio = light.reference_range_m / range_m;
   const double spread =
-      light.range_exponent == 2.0 ? ratio * ratio : power(ratio, light.range_exponent);
+      light.range_exponent == 2.0 ? ratio * ratio : portable_pow(ratio, light.range_exponent);
   double signal = backscatter / light.reference_reflectance * spread;
   if (light.extinction_per_m > 0.0) {
     signal *= two_way(light.extinction_per_m, range_m - light.reference_range_m);
@@ -235,8 +238,8 @@ double detection_probability(const LidarEquation& light, double signal) {
 }
 
 double noise_sigma_of(double range50_m, double range90_m, double exponent) {
-  constexpr double kNinety = 1.2815515655446004;  // Phi of it is 0.9
-  return (std::pow(range50_m / range90_m, exponent) - 1.0) / kNinety;
+  constexpr double kNormalQuantile90 = 1.2815515655446004;  // Phi of it is 0.9
+  return (std::pow(range50_m / range90_m, exponent) - 1.0) / kNormalQuantile90;
 }
 
 double range_exponent(double reflectance_a, double range_a_m, double reflectance_b,
@@ -249,11 +252,11 @@ void shade_lidar(const LidarEquation& light, const Scene& scene, double waveleng
   Batch<double> noise{};
   Batch<double> signals;
   for (std::size_t i = range.begin; i < range.end; ++i) {
-    const std::size_t k = (i - range.begin) % kDrawBatch;
+    const std::size_t k = (i - range.begin) % kSampleBatch;
     if (k == 0) {
-      const BeamRange batch{i, std::min(i + kDrawBatch, range.end)};
+      const BeamRange batch{i, std::min(i + kSampleBatch, range.end)};
       received_signals(light, scene, wavelength_m, frame.ground_truth, batch, signals);
-      if (light.noise_sigma > 0.0) draw_normals(rng_key(frame, Purpose::detection, i), noise);
+      if (light.noise_sigma > 0.0) sample_normals(rng_key(frame, Purpose::detection, i), noise);
     }
     if (frame.status[i] == Status::hit) {
       measure_hit(light, with_noise(light, signals[k], noise[k]), i, frame);

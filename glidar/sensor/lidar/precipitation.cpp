@@ -15,10 +15,10 @@ namespace {
 
 constexpr double kFarthest_m = 1e4;
 
-/// Where shells begin: 5 % apart, and wherever the overlap bends.
+/// The starts of the shells: 5 % apart, and at every node of the overlap table.
 std::vector<double> shell_edges_m(const LidarEquation& light) {
   constexpr double kGrowth = 1.05;
-  const double nearest_m = nearest_in_view_m(light);
+  const double nearest_m = min_visible_range_m(light);
   std::vector<double> edges = {1.0};  // Hahner's crossover ends there
   for (const auto& [range_m, share] : light.overlap) edges.push_back(range_m);
   for (double edge = nearest_m; edge < kFarthest_m; edge *= kGrowth) edges.push_back(edge);
@@ -29,15 +29,16 @@ std::vector<double> shell_edges_m(const LidarEquation& light) {
   return edges;
 }
 
-/// At least the signal of a white surface anywhere in a shell: without overlap it falls with the
-/// range, and the overlap and Hahner's crossover are straight within a shell, the latter rising.
+/// An upper bound of the signal of a white surface in a shell: without overlap it decreases with
+/// the range, and the overlap and Hahner's crossover are linear within a shell, the latter
+/// increasing.
 double brightest(const LidarEquation& light, const LidarEquation& without_overlap, double from_m,
                  double to_m) {
   const double overlap = std::max(relative_overlap(light, from_m), relative_overlap(light, to_m));
   return overlap * crossover(light, to_m) * received_signal(without_overlap, 1.0, from_m);
 }
 
-/// The smallest drop that could reach the least signal; infinite where none can.
+/// The diameter of the smallest drop that can reach the minimum signal; infinite if none can.
 double least_diameter_m(const DropField& field, double brightest, double range_m) {
   const double share = field.min_signal / (field.sizes.reflectance * brightest);
   if (!(share <= 1.0)) return std::numeric_limits<double>::infinity();
@@ -51,7 +52,7 @@ const DropShell& shell_of(const DropField& field, double mean) {
   return *(after - 1);
 }
 
-/// How many drops are to be expected up to a range.
+/// The expected number of drops up to a range.
 double mean_to(const DropField& field, double range_m) {
   if (!(range_m > field.shells.front().from_m)) return 0.0;
   const auto after =
@@ -63,8 +64,8 @@ double mean_to(const DropField& field, double range_m) {
   return shell.mean_before + shell.drops_per_m3 * volume_m3;
 }
 
-/// The inverse of beam_volume_m3, by Newton's method from a range less than 6 % away: the fourth
-/// step is exact, as each squares the error.
+/// The inverse of beam_volume_m3(), by Newton's method from a range less than 6 % away: the fourth
+/// step is exact, because each squares the error.
 double range_of_volume_m(const BeamShape& beam, double volume_m3, double range_m) {
   for (int i = 0; i < 4; ++i) {
     const double diameter_m = beam_diameter_m(beam, range_m);
@@ -118,22 +119,22 @@ DropField drop_field(const LidarEquation& light, const DropSizes& sizes, const B
   return field;
 }
 
-void draw_drops(const LidarEquation& light, const DropField& field, double hard_range_m,
-                RngKey draw, FunctionRef<void(const DropEcho&)> take) {
+void sample_drops(const LidarEquation& light, const DropField& field, double hard_range_m,
+                  RngKey key, FunctionRef<void(const DropEcho&)> take) {
   if (field.shells.empty()) return;
   const double end = mean_to(field, hard_range_m);
   if (!(end > 0.0)) return;
-  // Counted in expected drops, distances from drop to drop are exponential.
+  // In units of expected drops, the distances between drops are exponential.
   double mean = 0.0;
-  for (;; ++draw.block) {
-    const RandomWords words = random_words(draw);
-    mean -= natural_log(uniform(words[0]));
+  for (;; ++key.block) {
+    const RandomWords words = random_words(key);
+    mean -= portable_log(uniform(words[0]));
     if (!(mean < end)) return;
     const DropShell& shell = shell_of(field, mean);
     const double volume_m3 =
         shell.volume_before_m3 + (mean - shell.mean_before) / shell.drops_per_m3;
     const double range_m = range_of_volume_m(field.beam, volume_m3, shell.from_m);
-    const double beyond_m = -natural_log(uniform(words[1])) / field.sizes.slope_per_m;
+    const double beyond_m = -portable_log(uniform(words[1])) / field.sizes.slope_per_m;
     const double diameter_m = shell.least_diameter_m + beyond_m;
     const double signal = drop_signal(light, field, range_m, diameter_m);
     if (signal >= field.min_signal) take({range_m, signal, diameter_m});

@@ -14,7 +14,7 @@ namespace {
 double kruse_exponent(double visibility_km) {
   if (visibility_km > 50.0) return 1.6;
   if (visibility_km > 6.0) return 1.3;
-  return 0.585 * natural_exp(natural_log(visibility_km) / 3.0);
+  return 0.585 * portable_exp(portable_log(visibility_km) / 3.0);
 }
 
 double kim_exponent(double visibility_km) {
@@ -27,7 +27,7 @@ double rain_extinction_per_m(const Weather& weather) {
   if (weather.rain_model == Weather::RainModel::geometric) {
     return geometric_extinction_per_m(rain_sizes(weather.rain_mm_per_h));
   }
-  return 0.01 * natural_exp(0.6 * natural_log(weather.rain_mm_per_h));
+  return 0.01 * portable_exp(0.6 * portable_log(weather.rain_mm_per_h));
 }
 
 }  // namespace
@@ -63,7 +63,7 @@ double fog_extinction_per_m(const Weather& weather, double wavelength_m) {
   const double lost = weather.visibility_kind == Weather::Visibility::contrast ? kContrastDepth
                                                                                : kOpticalRangeDepth;
   return lost / weather.visibility_m *
-         natural_exp(-exponent * natural_log(wavelength_m / kGreen_m));
+         portable_exp(-exponent * portable_log(wavelength_m / kGreen_m));
 }
 
 double extinction_per_m(const Weather& weather, double wavelength_m) {

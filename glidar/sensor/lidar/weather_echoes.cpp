@@ -8,7 +8,7 @@
 namespace glidar {
 namespace {
 
-constexpr std::uint32_t kSnowBlocks = 1U << 31U;  // snow's draws begin there, rain's at 0
+constexpr std::uint32_t kSnowBlocks = 1U << 31U;  // first block of snow; rain begins at 0
 
 }  // namespace
 
@@ -37,24 +37,23 @@ PreparedWeather prepare_weather(const Weather& weather, const LidarEquation& lig
   return prepared;
 }
 
-void weather_echoes(const PreparedWeather& weather, double hard_range_m, const RngKey& draw,
+void weather_echoes(const PreparedWeather& weather, double hard_range_m, const RngKey& key,
                     std::vector<WeatherEcho>& echoes) {
   const double end_m =
       std::isnan(hard_range_m) ? std::numeric_limits<double>::infinity() : hard_range_m;
-  const SoftEcho soft = weather.varying_fog.looks > 0
-                            ? echo_before(weather.varying_fog, end_m, draw)
-                            : echo_before(weather.fog, end_m);
+  const SoftEcho soft = weather.varying_fog.looks > 0 ? echo_before(weather.varying_fog, end_m, key)
+                                                      : echo_before(weather.fog, end_m);
   if (soft.signal >= weather.min_signal) {
     echoes.push_back({soft.range_m, soft.signal, ReturnSource::fog});
   }
-  RngKey drops = draw;
+  RngKey drops = key;
   drops.purpose = Purpose::weather;
   const auto append = [&](const DropField& field, std::uint32_t block, ReturnSource cause) {
     drops.block = block;
     const auto take = [&](const DropEcho& drop) {
       echoes.push_back({drop.range_m, drop.signal, cause});
     };
-    draw_drops(weather.light, field, end_m, drops, FunctionRef<void(const DropEcho&)>(take));
+    sample_drops(weather.light, field, end_m, drops, FunctionRef<void(const DropEcho&)>(take));
   };
   append(weather.rain, 0, ReturnSource::rain);
   append(weather.snow, kSnowBlocks, ReturnSource::snow);

@@ -12,31 +12,31 @@
 
 namespace glidar {
 
-/// What the air itself sends back to a beam.
+/// One echo of fog, rain or snow.
 struct WeatherEcho {
   double range_m = 0.0;
-  double signal = 0.0;                              ///< S as of LidarEquation
+  double signal = 0.0;                              ///< S, see LidarEquation
   ReturnSource return_source = ReturnSource::none;  ///< fog, rain or snow
 };
 
-/// Weather as a light meets it: all that is the same for beams of one shape.
+/// Precomputed values that all beams of one shape share.
 struct PreparedWeather {
   LidarEquation light;       ///< with the weather's extinction
-  FogReturn fog{};           ///< when it does not vary
-  VaryingFog varying_fog{};  ///< when it does
+  FogReturn fog{};           ///< for uniform fog
+  VaryingFog varying_fog{};  ///< for varying fog
   DropField rain{};
   DropField snow{};
   double min_signal = 0.0;
 };
 
-/// Throws Error when there is fog and the wavelength is 0.
+/// Throws Error for fog with the wavelength 0.
 PreparedWeather prepare_weather(const Weather& weather, const LidarEquation& light,
                                 double wavelength_m, const BeamShape& beam, double pulse_fwhm_s);
 
-/// Appends the echoes before a hard target, or to where they are too faint for a range that is
-/// infinite or NaN. A function of seed, sensor, frame and beam alone; the draw's purpose and block
-/// do not matter.
-void weather_echoes(const PreparedWeather& weather, double hard_range_m, const RngKey& draw,
+/// Appends the echoes in front of a hard target, or all that are strong enough if the range is
+/// infinite or NaN. They depend on seed, sensor, frame and beam of `key` only, not on its purpose
+/// and block.
+void weather_echoes(const PreparedWeather& weather, double hard_range_m, const RngKey& key,
                     std::vector<WeatherEcho>& echoes);
 
 }  // namespace glidar

@@ -7,10 +7,10 @@
 namespace glidar {
 namespace {
 
-constexpr double kBlindTo_m = 0.9;
-constexpr double kSeesAllFrom_m = 1.0;
+constexpr double kBlindRange_m = 0.9;
+constexpr double kFullOverlap_m = 1.0;
 
-bool tells_the_near_end(const LidarEquation& light) {
+bool defines_near_range(const LidarEquation& light) {
   if (light.overlap.empty()) return false;
   const auto [range_m, share] = light.overlap.front();
   return range_m > 0.0 && share == 0.0;
@@ -18,13 +18,13 @@ bool tells_the_near_end(const LidarEquation& light) {
 
 }  // namespace
 
-double nearest_in_view_m(const LidarEquation& light) {
-  return tells_the_near_end(light) ? light.overlap.front()[0] : kBlindTo_m;
+double min_visible_range_m(const LidarEquation& light) {
+  return defines_near_range(light) ? light.overlap.front()[0] : kBlindRange_m;
 }
 
 double crossover(const LidarEquation& light, double range_m) {
-  if (tells_the_near_end(light)) return 1.0;
-  return std::clamp((range_m - kBlindTo_m) / (kSeesAllFrom_m - kBlindTo_m), 0.0, 1.0);
+  if (defines_near_range(light)) return 1.0;
+  return std::clamp((range_m - kBlindRange_m) / (kFullOverlap_m - kBlindRange_m), 0.0, 1.0);
 }
 
 double air_signal(const LidarEquation& light, double backscatter, double range_m) {

@@ -14,8 +14,7 @@
 namespace glidar {
 namespace {
 
-/// A camera that measures disparity in steps: K / z, a normal error, and rounding to whole steps
-/// plus an offset.
+/// Disparity in steps: K / z with a normal error, rounded to whole steps plus an offset.
 struct Disparity {
   double k_m = 0.0;
   double sigma_steps = 0.0;
@@ -23,10 +22,10 @@ struct Disparity {
   bool rounds = true;
 };
 
-/// Beams whose disparity is not above 0 see infinitely far: their range becomes infinite.
+/// Beams with a disparity <= 0 get an infinite range.
 GLIDAR_SIMD void measure(const Disparity& law, const Batch<double>& normal, NoiseBatch& b) {
   const double rounding = law.rounds ? 1.0 / 12.0 : 0.0;
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     const double z = b.depth_at_zero[i] + b.depth_per_m[i] * b.range_m[i];
     const double sigma = law.sigma_steps * b.scale[i];
     const double steps = law.k_m / z + sigma * normal[i];
@@ -64,7 +63,7 @@ inline double lateral_sigma_px(const NguyenLateral& law, double incidence_rad) {
 }
 
 GLIDAR_SIMD void add_axial(const NguyenAxial& law, const Batch<double>& normal, NoiseBatch& b) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     const double z = b.depth_at_zero[i] + b.depth_per_m[i] * b.range_m[i];
     const double sigma =
         axial_sigma_m(law, z, angle_of(b.cosine[i])) * b.scale[i] / b.depth_per_m[i];
@@ -74,7 +73,7 @@ GLIDAR_SIMD void add_axial(const NguyenAxial& law, const Batch<double>& normal, 
 }
 
 GLIDAR_SIMD void scale_lateral(const NguyenLateral& law, const NoiseBatch& b, PairBatch& shift) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     const double sigma = lateral_sigma_px(law, angle_of(b.cosine[i])) * b.scale[i];
     shift.first[i] *= sigma;
     shift.second[i] *= sigma;
@@ -83,7 +82,7 @@ GLIDAR_SIMD void scale_lateral(const NguyenLateral& law, const NoiseBatch& b, Pa
 
 /// A normal error of depth: sigma = a + b (z - c)^2.
 GLIDAR_SIMD void add_parabola(const NguyenAxial& law, const Batch<double>& normal, NoiseBatch& b) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     const double beyond = b.depth_at_zero[i] + b.depth_per_m[i] * b.range_m[i] - law.c_m;
     const double sigma = (law.a_m + law.b_per_m * beyond * beyond) * b.scale[i] / b.depth_per_m[i];
     b.range_m[i] += sigma * normal[i];
@@ -109,14 +108,14 @@ void apply(const DisparityQuantization& step, const NoiseView& /*view*/, NoiseBa
 
 void apply(const Khoshelham& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_shared_normals(batch.draw, normal);
+  sample_shared_normals(batch.key, normal);
   add_parabola({.a_m = 0.0, .b_per_m = step.sigma_per_m, .c_m = 0.0, .grazing_coefficient = 0.0},
                normal, batch);
 }
 
 void apply(const NguyenAxial& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_shared_normals(batch.draw, normal);
+  sample_shared_normals(batch.key, normal);
   add_axial(step, normal, batch);
 }
 
@@ -126,7 +125,7 @@ void prepare(const NguyenLateral& /*step*/, const NoiseView& view, NoiseBatch& b
 
 void apply(const NguyenLateral& step, const NoiseView& view, NoiseBatch& batch) {
   PairBatch shift;
-  draw_normals(batch.draw, shift);
+  sample_normals(batch.key, shift);
   scale_lateral(step, batch, shift);
   look_aside(shift, view, batch);
 }
@@ -137,21 +136,21 @@ void prepare(const IclKinect& /*step*/, const NoiseView& view, NoiseBatch& batch
 
 void apply(const IclKinect& step, const NoiseView& view, NoiseBatch& batch) {
   PairBatch shift;
-  draw_normals(batch.draw, shift);
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+  sample_normals(batch.key, shift);
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     shift.first[i] *= step.lateral_px * batch.scale[i];
     shift.second[i] *= step.lateral_px * batch.scale[i];
   }
   look_aside(shift, view, batch);
   Batch<double> normal;
-  draw_shared_normals(block(batch.draw, 1), normal);
+  sample_shared_normals(block(batch.key, 1), normal);
   measure({.k_m = step.k_m, .sigma_steps = step.sigma_steps}, normal, batch);
   lose_far(batch);
 }
 
 void prepare(const KinectV1& /*step*/, const NoiseView& view, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_shared_normals(batch.draw, normal);
+  sample_shared_normals(batch.key, normal);
   std::copy_n(normal.begin(), batch.count,
               view.frame.workspace.before.begin() + static_cast<std::ptrdiff_t>(batch.first));
 }
@@ -166,7 +165,7 @@ void apply(const KinectV1& step, const NoiseView& view, NoiseBatch& batch) {
 
 void apply(const Stereo& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_shared_normals(batch.draw, normal);
+  sample_shared_normals(batch.key, normal);
   const double unit_px = step.step_px > 0.0 ? step.step_px : 1.0;
   measure({.k_m = step.focal_px * step.baseline_m / unit_px,
            .sigma_steps = step.sigma_px / unit_px,

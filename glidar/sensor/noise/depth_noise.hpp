@@ -7,20 +7,20 @@ namespace glidar {
 struct NoiseBatch;
 struct NoiseView;
 
-// Laws of depth cameras. z is depth, along the boresight; a change of depth moves the point along
-// its beam, so that lateral errors of the kind sigma_x = sigma_z x / z come by themselves.
+// Noise models of depth cameras. z is the depth along the boresight. A depth error moves the point
+// along its beam, which implies lateral errors of sigma_x = sigma_z x / z.
 
-/// Disparity in whole steps: z' = K / (n + offset), n whole; K = f b / step, z^2 / K is the
-/// distance between levels.
+/// Disparity quantisation: z' = K / (n + offset) with an integer n; K = f b / step, and z^2 / K is
+/// the distance between levels.
 struct DisparityQuantization {
   double k_m = 0.0;
   double offset_steps = 0.0;
 };
 
-/// Kinect v1 and its kin: disparity K / z with a normal error before it is rounded to whole steps.
-/// Neighbours share errors: the error is the mean of white noise over a window x window square,
-/// brought to sigma. 0.44 steps over 9 x 9 pixels fit real frames (in all 0.53 steps). K and offset
-/// are those of OpenNI's table (pcl, openni_shift_to_depth_conversion.h):
+/// Kinect v1 and similar cameras: disparity K / z with a normal error, rounded to whole steps.
+/// Errors of neighbours are correlated: the error is the mean of white noise over a window x window
+/// square, scaled to sigma. 0.44 steps over 9 x 9 pixels fit real frames (0.53 steps in total). K
+/// and offset are those of OpenNI's table (PCL, openni_shift_to_depth_conversion.h):
 /// 1/z = (1089.4079 - shift) / K.
 struct KinectV1 {
   double k_m = 9.0 / 0.02605;
@@ -37,7 +37,7 @@ struct Khoshelham {
 
 /// Nguyen, Izadi, Lovell, "Modeling Kinect sensor noise", 3DIMPVT 2012, axial:
 /// sigma_z = 0.0012 + 0.0019 (z - 0.4)^2, and beyond an incidence of 60 degrees also
-/// 0.0001 / sqrt(z) theta^2 / (pi/2 - theta)^2. By other numbers for other cameras.
+/// 0.0001 / sqrt(z) theta^2 / (pi/2 - theta)^2. The coefficients differ between cameras.
 struct NguyenAxial {
   double a_m = 0.0012;
   double b_per_m = 0.0019;
@@ -45,22 +45,22 @@ struct NguyenAxial {
   double grazing_coefficient = 0.0001;
 };
 
-/// The same, lateral: the depth is that of a place sigma_L x pixels away along rows and columns,
-/// sigma_L = 0.8 + 0.035 theta / (pi/2 - theta).
+/// The same paper, lateral: the depth is that at a normal offset of sigma_L pixels along rows and
+/// columns, sigma_L = 0.8 + 0.035 theta / (pi/2 - theta).
 struct NguyenLateral {
   double a_px = 0.8;
   double b_px = 0.035;
 };
 
-/// The pipeline of Barron and Malik (CVPR 2013) and Handa et al. (ICL-NUIM, ICRA 2014): depth from
-/// a place N(0, lateral) pixels away, disparity K / z plus N(0, sigma), rounded to whole steps.
+/// The method of Barron and Malik (CVPR 2013) and Handa et al. (ICL-NUIM, ICRA 2014): the depth at
+/// an offset of N(0, lateral) pixels, disparity K / z plus N(0, sigma), rounded to whole steps.
 struct IclKinect {
   double k_m = 351.30;
   double lateral_px = 0.5;
   double sigma_steps = 1.0 / 6.0;
 };
 
-/// Two cameras: disparity f b / z with a normal error, rounded to whole steps if there is one.
+/// A stereo camera: disparity f b / z with a normal error, optionally rounded to whole steps.
 /// sigma_z = z^2 sigma / (f b).
 struct Stereo {
   double focal_px = 0.0;
@@ -69,7 +69,7 @@ struct Stereo {
   double step_px = 0.0;  ///< 0: not rounded
 };
 
-/// The laws themselves.
+/// The standard deviations of the models above.
 double nguyen_axial_sigma_m(const NguyenAxial& law, double z_m, double incidence_rad);
 double nguyen_lateral_sigma_px(const NguyenLateral& law, double incidence_rad);
 

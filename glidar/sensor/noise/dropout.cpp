@@ -14,9 +14,9 @@
 namespace glidar {
 namespace {
 
-/// The ranges of first arrivals, from their uniform numbers.
+/// The ranges of the first arrivals, from uniform numbers.
 GLIDAR_SIMD void first_arrivals(double near_m, double metres, Batch<double>& x) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) x[i] = near_m - natural_log(x[i]) * metres;
+  for (std::size_t i = 0; i < kSampleBatch; ++i) x[i] = near_m - portable_log(x[i]) * metres;
 }
 
 }  // namespace
@@ -32,7 +32,7 @@ double drop_probability(const Dropout& step, double range_m, double cos_incidenc
 
 void apply(const Dropout& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> x;
-  draw_shared_uniforms(batch.draw, x);
+  sample_shared_uniforms(batch.key, x);
   for (std::size_t i = 0; i < batch.count; ++i) {
     if (!is_hit(batch, i)) continue;
     const double probability = drop_probability(step, batch.range_m[i], batch.cosine[i]);
@@ -51,17 +51,17 @@ void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch) {
   const std::uint32_t cols = view.beams.cols;
   if (rows < 2) return;
   WordBatch words;
-  draw_words(batch.draw, words);
+  sample_words(batch.key, words);
   for (std::size_t i = 0; i < batch.count; ++i) {
     if (!is_hit(batch, i) || uniform(words.word[0][i]) >= step.probability) continue;
     const std::size_t beam = batch.first + i;
-    // one of the other rows; the bias of this way of choosing is below rows / 2^32
+    // One of the other rows; the bias of this selection is below rows / 2^32.
     const std::uint64_t pick = std::uint64_t{words.word[1][i]} * (rows - 1U) >> 32U;
     const std::size_t block = beam / (std::size_t{rows} * cols) * rows;  // of this return
     const std::size_t row = block + (beam / cols % rows + 1U + pick) % rows;
     const double other_m = view.frame.workspace.before[row * cols + beam % cols];
     if (!(other_m > step.near_m)) continue;  // that channel has no echo
-    set_cause(view, batch, i, ReturnSource::crosstalk);
+    set_return_source(view, batch, i, ReturnSource::crosstalk);
     batch.range_m[i] = step.near_m + (other_m - step.near_m) * uniform(words.word[2][i]);
   }
 }
@@ -69,10 +69,10 @@ void apply(const Crosstalk& step, const NoiseView& view, NoiseBatch& batch) {
 void apply(const FalseAlarms& step, const NoiseView& view, NoiseBatch& batch) {
   if (!(step.rate_hz > 0.0)) return;
   Batch<double> x;
-  draw_shared_uniforms(batch.draw, x);
+  sample_shared_uniforms(batch.key, x);
   first_arrivals(step.near_m - view.beams.range_offset_m, kHalfLight_m_per_s / step.rate_hz, x);
   for (std::size_t i = 0; i < batch.count; ++i) {
-    if (batch.first + i >= view.beams.firings()) break;  // of several returns the first
+    if (batch.first + i >= view.beams.firings()) break;  // the first return only
     const Status status = batch.status[i];
     const bool listens = status != Status::invalid_pixel && status != Status::dropped;
     const double false_m = x[i];
@@ -81,7 +81,7 @@ void apply(const FalseAlarms& step, const NoiseView& view, NoiseBatch& batch) {
     batch.range_m[i] = false_m;
     batch.intensity[i] = step.intensity;
     batch.status[i] = Status::hit;
-    set_cause(view, batch, i, ReturnSource::false_alarm);
+    set_return_source(view, batch, i, ReturnSource::false_alarm);
   }
 }
 

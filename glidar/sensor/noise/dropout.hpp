@@ -9,24 +9,24 @@ namespace glidar {
 struct NoiseBatch;
 struct NoiseView;
 
-/// Returns lost at random, with the probability 1 - (1 - p) (1 - p(R)) (1 - p(incidence)).
+/// Random loss of returns, with the probability 1 - (1 - p) (1 - p(R)) (1 - p(incidence)).
 struct Dropout {
   double probability = 0.0;
   LookupTable by_range_m{};
   LookupTable by_incidence_rad{};
 };
 
-/// With this probability a beam reports, in the place of its range, one that is uniform from near
-/// to the range of another beam of its column (of another channel, which fires close in time).
+/// With this probability a beam reports a range that is uniform between near and the range of
+/// another beam of its column (another channel, which fires close in time).
 struct Crosstalk {
   double probability = 0.0;
   double near_m = 0.0;
 };
 
-/// Foreign pulses and false alarms arrive at a constant rate while the gate, from near to far, is
-/// open. One that arrives before the beam's own echo is reported in its place, or where there is
-/// no echo at all. The first arrival is exponentially distributed. Of several returns it concerns
-/// the first. Its Frame::cause is false_alarm.
+/// Foreign pulses and false alarms arrive at a constant rate while the range gate, from near to
+/// far, is open. One that arrives before the beam's own echo, or where there is no echo, is
+/// reported instead. The first arrival is exponentially distributed. Of several returns it affects
+/// the first. Its Frame::return_source is false_alarm.
 struct FalseAlarms {
   double rate_hz = 0.0;
   double near_m = 0.0;
@@ -34,7 +34,7 @@ struct FalseAlarms {
   double intensity = 0.0;
 };
 
-/// The probability that a return is lost.
+/// The probability of losing a return.
 double drop_probability(const Dropout& step, double range_m, double cos_incidence);
 
 void apply(const Dropout& step, const NoiseView& view, NoiseBatch& batch);

@@ -14,7 +14,7 @@ namespace {
 
 GLIDAR_SIMD void disturb(const IntensityGaussian& step, const Batch<double>& normal,
                          NoiseBatch& b) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     const double sigma = (step.sigma + step.relative * b.intensity[i]) * b.scale[i];
     const double disturbed = b.intensity[i] + sigma * normal[i];
     b.intensity[i] = disturbed > 0.0 ? disturbed : 0.0;
@@ -37,18 +37,18 @@ double spelt(const IntensityScale& step, double reflectance) {
 double vendor_intensity(double reflectance, double largest) {
   if (!(reflectance > 0.0)) return 0.0;
   if (reflectance <= 1.0) return std::floor(100.0 * reflectance + 0.5);
-  const double share = natural_log(reflectance) / natural_log(largest);
+  const double share = portable_log(reflectance) / portable_log(largest);
   return 101.0 + std::floor(154.0 * std::min(share, 1.0) + 0.5);
 }
 
 double vendor_reflectance(double intensity, double largest) {
   if (!(intensity > 100.0)) return intensity / 100.0;
-  return natural_exp((intensity - 101.0) / 154.0 * natural_log(largest));
+  return portable_exp((intensity - 101.0) / 154.0 * portable_log(largest));
 }
 
 void apply(const IntensityGaussian& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_shared_normals(batch.draw, normal);
+  sample_shared_normals(batch.key, normal);
   disturb(step, normal, batch);
 }
 

@@ -7,7 +7,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-/// The kept depth of a pixel; NaN outside of the image.
+/// The stored depth of a pixel; NaN outside the image.
 double kept_depth(const NoiseView& view, double row, double col) {
   const bool inside = row >= 0.0 && col >= 0.0 && row < view.beams.rows && col < view.beams.cols;
   if (!inside) return kNone;
@@ -27,7 +27,7 @@ double depth_between(const NoiseView& view, double row, double col) {
   };
   const double upper = along(top);
   const double lower = along(top + 1.0);
-  // a neighbour without a share must not count, though it be outside
+  // A neighbour of weight 0 must not contribute, even if it is outside.
   const double depth = down > 0.0 ? (1.0 - down) * upper + down * lower : upper;
   if (!std::isnan(depth)) return depth;
   return kept_depth(view, std::floor(row + 0.5), std::floor(col + 0.5));
@@ -76,9 +76,9 @@ void mean_over_window(unsigned window, const NoiseView& view, const NoiseBatch& 
                       Batch<double>& means) {
   const std::size_t reach = std::min<std::size_t>(window / 2, kMaxWindowReach);
   const std::size_t cols = view.beams.cols;
-  std::array<double, kDrawBatch + 2 * kMaxWindowReach> sums;
+  std::array<double, kSampleBatch + 2 * kMaxWindowReach> sums;
   for (std::size_t i = 0; i < batch.count;) {
-    // a stretch of the run that lies in one row
+    // the pixels of the batch that are in one row
     const std::size_t row = (batch.first + i) / cols;
     const std::size_t begin = (batch.first + i) % cols;
     const std::size_t end = std::min(cols, begin + (batch.count - i));

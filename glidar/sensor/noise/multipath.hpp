@@ -10,17 +10,17 @@
 
 namespace glidar {
 
-/// The light's waves in the pixels of a run.
+/// The modulation of the light in the pixels of a batch.
 struct alignas(64) WavePhases {
   std::array<Batch<double>, kMaxFrequencies> turns;
-  Batch<double> coherence;  ///< the least |sum| / sum of amplitudes of all frequencies
+  Batch<double> coherence;  ///< minimum of |sum| / sum of amplitudes over all frequencies
   Batch<double> amplitude;
 };
 
-/// Waves of a pixel and, with the share `multipath_fraction`, of the eight around it that see
-/// something, from the ranges and amplitudes that the scratch keeps; per_m: waves per metre of
+/// Sums the modulation of a pixel and, with the share `multipath_fraction`, of its eight neighbours
+/// that have a return, from the ranges and amplitudes in the workspace; per_m: waves per metre of
 /// range.
-void mix(double mixing, std::span<const double> per_m, const NoiseView& view,
+void mix(double fraction, std::span<const double> per_m, const NoiseView& view,
          const NoiseBatch& batch, WavePhases& phases);
 
 }  // namespace glidar

@@ -13,10 +13,10 @@
 namespace glidar {
 namespace {
 
-constexpr std::size_t kGrain = 8 * kDrawBatch;
+constexpr std::size_t kGrain = 8 * kSampleBatch;
 
 template <class Step>
-constexpr bool kTurnsBeams =
+constexpr bool kPerturbsBeams =
     std::is_same_v<Step, PointingJitter> || std::is_same_v<Step, EncoderError>;
 
 template <class Step>
@@ -34,23 +34,25 @@ constexpr bool kUsesIncidence =
 template <class Step>
 constexpr bool kMakesReturns = std::is_same_v<Step, Crosstalk> || std::is_same_v<Step, FalseAlarms>;
 
-/// Steps that look at other beams too: all of the frame is prepared before any of it changes.
+/// Steps that read other beams too: the whole frame is prepared before any of it changes.
 template <class Step>
-constexpr bool kLooksAround = requires(const Step& step, const NoiseView& view, NoiseBatch& batch) {
+constexpr bool kReadsNeighbours = requires(const Step& step, const NoiseView& view,
+                                           NoiseBatch& batch) {
   prepare(step, view, batch);
 };
 
-bool turns_beams(const NoiseStep& step) {
-  return std::visit([](const auto& s) { return kTurnsBeams<std::decay_t<decltype(s)>>; }, step);
+bool perturbs_beams(const NoiseStep& step) {
+  return std::visit([](const auto& s) { return kPerturbsBeams<std::decay_t<decltype(s)>>; }, step);
 }
 
 bool uses_depth(const NoiseStep& step) {
   return std::visit([](const auto& s) { return kUsesDepth<std::decay_t<decltype(s)>>; }, step);
 }
 
-bool looks_around(const NoiseStep& step) {
-  if (const auto* waves = std::get_if<ContinuousWave>(&step)) return mixes(*waves);
-  return std::visit([](const auto& s) { return kLooksAround<std::decay_t<decltype(s)>>; }, step);
+bool reads_neighbours(const NoiseStep& step) {
+  if (const auto* waves = std::get_if<ContinuousWave>(&step)) return has_multipath(*waves);
+  return std::visit([](const auto& s) { return kReadsNeighbours<std::decay_t<decltype(s)>>; },
+                    step);
 }
 
 bool makes_returns(const NoiseStep& step) {
@@ -62,7 +64,7 @@ GLIDAR_SIMD void widen(const float* from, std::size_t count, double* to) {
 }
 
 GLIDAR_SIMD void square(Batch<double>& values) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) values[i] *= values[i];
+  for (std::size_t i = 0; i < kSampleBatch; ++i) values[i] *= values[i];
 }
 
 void copy(const float* from, std::size_t count, double* to) {
@@ -73,7 +75,7 @@ void copy(const T* from, std::size_t count, T* to) {
   std::copy_n(from, count, to);
 }
 
-/// Copies a run of a column into a batch, and fills up the rest.
+/// Copies a part of a column to a batch and fills the remaining entries.
 template <class From, class To>
 void load_column(const std::vector<From>& column, const NoiseBatch& batch, To rest,
                  Batch<To>& out) {
@@ -94,8 +96,8 @@ void load_depth(const Beams& beams, NoiseBatch& batch) {
   }
 }
 
-/// Steps [begin, end) of a list; the first of them may look around, the others do not.
-struct NoiseRun {
+/// Steps [begin, end) of a list; only the first may read neighbours.
+struct StepRange {
   const std::vector<NoiseStep>& noise;
   std::size_t begin;
   std::size_t end;
@@ -104,9 +106,9 @@ struct NoiseRun {
   [[nodiscard]] bool is_last() const { return end == noise.size(); }
 };
 
-void load(const NoiseRun& stretch, const NoiseView& view, NoiseBatch& batch) {
+void load(const StepRange& steps, const NoiseView& view, NoiseBatch& batch) {
   const Frame& frame = view.frame;
-  batch.frame_s = stretch.frame_s;
+  batch.frame_s = steps.frame_s;
   load_column(frame.range_m, batch, kNaN, batch.range_m);
   load_column(frame.sigma_m, batch, 0.0, batch.variance_m2);
   square(batch.variance_m2);
@@ -116,12 +118,12 @@ void load(const NoiseRun& stretch, const NoiseView& view, NoiseBatch& batch) {
   load_column(frame.status, batch, Status::invalid_pixel, batch.status);
   batch.depth_per_m.fill(1.0);
   batch.depth_at_zero.fill(0.0);
-  const auto first = stretch.noise.begin() + static_cast<std::ptrdiff_t>(stretch.begin);
-  const auto last = stretch.noise.begin() + static_cast<std::ptrdiff_t>(stretch.end);
+  const auto first = steps.noise.begin() + static_cast<std::ptrdiff_t>(steps.begin);
+  const auto last = steps.noise.begin() + static_cast<std::ptrdiff_t>(steps.end);
   if (std::any_of(first, last, uses_depth)) load_depth(view.beams, batch);
 }
 
-/// Columns of a frame from the run's first beam on.
+/// Columns of a frame from the first beam of a batch.
 struct Columns {
   double* range_m;
   float* intensity;
@@ -138,8 +140,8 @@ GLIDAR_SIMD void write(const NoiseBatch& batch, const Columns& to) {
   }
 }
 
-/// What the sensor cannot report in the end.
-void lose_what_is_no_range(NoiseBatch& batch) {
+/// Removes returns with a final range <= 0.
+void invalidate_nonpositive_ranges(NoiseBatch& batch) {
   for (std::size_t i = 0; i < batch.count; ++i) {
     if (is_hit(batch, i) && !(batch.range_m[i] > 0.0))
       invalidate_return(batch, i, Status::too_near);
@@ -157,65 +159,66 @@ void store(const NoiseView& view, NoiseBatch& batch) {
   }
 }
 
-/// Calls body(batch) for all runs of a frame, loaded.
+/// Calls body(batch) for all batches of a frame, loaded.
 template <class Body>
-void for_batches(const NoiseRun& stretch, const NoiseView& view, ThreadPool& thread_pool,
+void for_batches(const StepRange& steps, const NoiseView& view, ThreadPool& thread_pool,
                  const Body& body) {
   const std::size_t size = view.frame.range_m.size();
-  const std::size_t runs = (size + kDrawBatch - 1) / kDrawBatch;
-  thread_pool.parallel_for(runs, kGrain / kDrawBatch, [&](std::size_t begin, std::size_t end) {
+  const std::size_t batches = (size + kSampleBatch - 1) / kSampleBatch;
+  thread_pool.parallel_for(batches, kGrain / kSampleBatch, [&](std::size_t begin, std::size_t end) {
     NoiseBatch batch;
-    for (std::size_t run = begin; run < end; ++run) {
-      batch.first = run * kDrawBatch;
-      batch.count = std::min(kDrawBatch, size - batch.first);
-      load(stretch, view, batch);
+    for (std::size_t number = begin; number < end; ++number) {
+      batch.first = number * kSampleBatch;
+      batch.count = std::min(kSampleBatch, size - batch.first);
+      load(steps, view, batch);
       body(batch);
     }
   });
 }
 
-void prepare_step(const NoiseRun& stretch, const NoiseView& view, NoiseBatch& batch) {
-  batch.draw = rng_key(view.frame, rng_purpose(stretch.begin), batch.first);
+void prepare_step(const StepRange& steps, const NoiseView& view, NoiseBatch& batch) {
+  batch.key = rng_key(view.frame, rng_purpose(steps.begin), batch.first);
   std::visit(
       [&](const auto& step) {
-        if constexpr (kLooksAround<std::decay_t<decltype(step)>>) prepare(step, view, batch);
+        if constexpr (kReadsNeighbours<std::decay_t<decltype(step)>>) prepare(step, view, batch);
       },
-      stretch.noise[stretch.begin]);
+      steps.noise[steps.begin]);
 }
 
-void apply_steps(const NoiseRun& stretch, const NoiseView& view, NoiseBatch& batch) {
-  for (std::size_t k = stretch.begin; k < stretch.end; ++k) {
-    batch.draw = rng_key(view.frame, rng_purpose(k), batch.first);
+void apply_steps(const StepRange& steps, const NoiseView& view, NoiseBatch& batch) {
+  for (std::size_t k = steps.begin; k < steps.end; ++k) {
+    batch.key = rng_key(view.frame, rng_purpose(k), batch.first);
     std::visit(
         [&](const auto& step) {
-          if constexpr (!kTurnsBeams<std::decay_t<decltype(step)>>) apply(step, view, batch);
+          if constexpr (!kPerturbsBeams<std::decay_t<decltype(step)>>) apply(step, view, batch);
         },
-        stretch.noise[k]);
+        steps.noise[k]);
   }
 }
 
 template <class Step>
-void turn_if_it_turns(const Step& step, const RngKey& draw, BeamRange range, Beams& beams) {
-  if constexpr (kTurnsBeams<Step>) perturb(step, draw, range.begin, range.end - range.begin, beams);
+void perturb_if_pointing(const Step& step, const RngKey& key, BeamRange range, Beams& beams) {
+  if constexpr (kPerturbsBeams<Step>)
+    perturb(step, key, range.begin, range.end - range.begin, beams);
 }
 
-void turn_beams(const std::vector<NoiseStep>& noise, const Frame& frame, BeamRange range,
-                Beams& beams) {
+void perturb_beams(const std::vector<NoiseStep>& noise, const Frame& frame, BeamRange range,
+                   Beams& beams) {
   for (std::size_t k = 0; k < noise.size(); ++k) {
-    const RngKey draw = rng_key(frame, rng_purpose(k), 0);
-    std::visit([&](const auto& step) { turn_if_it_turns(step, draw, range, beams); }, noise[k]);
+    const RngKey key = rng_key(frame, rng_purpose(k), 0);
+    std::visit([&](const auto& step) { perturb_if_pointing(step, key, range, beams); }, noise[k]);
   }
 }
 
-/// Applies steps of which at most the first looks around.
-void apply_stretch(const NoiseRun& stretch, const NoiseView& view, ThreadPool& thread_pool) {
-  if (looks_around(stretch.noise[stretch.begin])) {
-    for_batches(stretch, view, thread_pool,
-                [&](NoiseBatch& batch) { prepare_step(stretch, view, batch); });
+/// Applies steps of which at most the first reads neighbours.
+void apply_range(const StepRange& steps, const NoiseView& view, ThreadPool& thread_pool) {
+  if (reads_neighbours(steps.noise[steps.begin])) {
+    for_batches(steps, view, thread_pool,
+                [&](NoiseBatch& batch) { prepare_step(steps, view, batch); });
   }
-  for_batches(stretch, view, thread_pool, [&](NoiseBatch& batch) {
-    apply_steps(stretch, view, batch);
-    if (stretch.is_last()) lose_what_is_no_range(batch);
+  for_batches(steps, view, thread_pool, [&](NoiseBatch& batch) {
+    apply_steps(steps, view, batch);
+    if (steps.is_last()) invalidate_nonpositive_ranges(batch);
     store(view, batch);
   });
 }
@@ -238,32 +241,32 @@ void add_required_fields(const std::vector<NoiseStep>& noise, HitFieldMask& fiel
 const Beams& perturbed_beams(const std::vector<NoiseStep>& noise, const Beams& beams,
                              ThreadPool& thread_pool, Frame& frame) {
   Beams& aimed = frame.workspace.aimed;
-  if (std::none_of(noise.begin(), noise.end(), turns_beams)) {
+  if (std::none_of(noise.begin(), noise.end(), perturbs_beams)) {
     aimed.directions.clear();
     return beams;
   }
   aimed = beams;
-  aimed.pinhole.reset();  // no longer a straight grid
-  const std::size_t runs = (beams.firings() + kDrawBatch - 1) / kDrawBatch;
-  thread_pool.parallel_for(runs, kGrain / kDrawBatch, [&](std::size_t begin, std::size_t end) {
-    turn_beams(noise, frame, {begin * kDrawBatch, std::min(end * kDrawBatch, aimed.firings())},
-               aimed);
+  aimed.pinhole.reset();  // no longer a regular grid
+  const std::size_t batches = (beams.firings() + kSampleBatch - 1) / kSampleBatch;
+  thread_pool.parallel_for(batches, kGrain / kSampleBatch, [&](std::size_t begin, std::size_t end) {
+    perturb_beams(noise, frame,
+                  {begin * kSampleBatch, std::min(end * kSampleBatch, aimed.firings())}, aimed);
   });
   for (std::size_t i = aimed.firings(); i < aimed.size(); ++i) {
     aimed.directions[i] =
-        aimed.directions[i - aimed.firings()];  // all returns of a pulse are on it
+        aimed.directions[i - aimed.firings()];  // all returns of a pulse have its direction
   }
   return aimed;
 }
 
 void apply_noise_prefix(const std::vector<NoiseStep>& noise, std::size_t count, double frame_s,
                         const Beams& beams, ThreadPool& thread_pool, Frame& frame) {
-  if (std::all_of(noise.begin(), noise.end(), turns_beams)) {
+  if (std::all_of(noise.begin(), noise.end(), perturbs_beams)) {
     frame.sigma_m.clear();
     return;
   }
   frame.sigma_m.assign(frame.range_m.size(), 0.0F);
-  if (std::any_of(noise.begin(), noise.end(), looks_around)) {
+  if (std::any_of(noise.begin(), noise.end(), reads_neighbours)) {
     frame.workspace.before.resize(frame.range_m.size());
     frame.workspace.amplitude.resize(frame.range_m.size());
   }
@@ -273,10 +276,10 @@ void apply_noise_prefix(const std::vector<NoiseStep>& noise, std::size_t count, 
   const NoiseView view{beams, frame};
   const auto last = noise.begin() + static_cast<std::ptrdiff_t>(count);
   for (std::size_t begin = 0, end = 0; begin < count; begin = end) {
-    const auto next =
-        std::find_if(noise.begin() + static_cast<std::ptrdiff_t>(begin) + 1, last, looks_around);
+    const auto next = std::find_if(noise.begin() + static_cast<std::ptrdiff_t>(begin) + 1, last,
+                                   reads_neighbours);
     end = static_cast<std::size_t>(next - noise.begin());
-    apply_stretch({noise, begin, end, frame_s}, view, thread_pool);
+    apply_range({noise, begin, end, frame_s}, view, thread_pool);
   }
 }
 

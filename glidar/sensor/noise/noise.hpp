@@ -17,35 +17,35 @@
 
 namespace glidar {
 
-/// One imperfection of a sensor. A sensor has an ordered list of them; step k of the list draws its
-/// random numbers with the purpose first_noise_step + k, so that steps do not share any.
+/// One step of a sensor's noise. A sensor has an ordered list of steps; step k, from 0, uses random
+/// numbers of the purpose first_noise_step + k, so that steps share none.
 using NoiseStep = std::variant<RangeGaussian, RangeSnr, RangeCrlb, RangeShotNoise, RangeUniform,
                                RangeQuantization, RangeBias, RangeDrift, Dropout, Crosstalk,
                                FalseAlarms, DisparityQuantization, KinectV1, Khoshelham,
                                NguyenAxial, NguyenLateral, IclKinect, Stereo, ContinuousWave,
                                IntensityGaussian, IntensityScale, PointingJitter, EncoderError>;
 
-/// The most steps that a list may have: purposes are numbers of 8 bits.
+/// Maximum number of steps in a list, because purposes have 8 bits.
 inline constexpr std::size_t kMaxNoiseSteps = 224;
 
-/// What step k of a list draws for.
+/// The purpose of the random numbers of step k.
 Purpose rng_purpose(std::size_t step);
 
-/// Adds to `fields` the truth that the steps look at.
+/// Adds the ground truth columns that the steps read to `fields`.
 void add_required_fields(const std::vector<NoiseStep>& noise, HitFieldMask& fields);
 
-/// The beams as they really go: `beams` itself when no step turns them, else a copy in the frame's
-/// scratch with the errors of this frame. The frame tells seed, sensor_id and number.
+/// The beams as fired: `beams` itself if no step has pointing noise, else a copy in the frame's
+/// workspace with the pointing noise of this frame, given by its seed, sensor_id and number.
 const Beams& perturbed_beams(const std::vector<NoiseStep>& noise, const Beams& beams,
                              ThreadPool& thread_pool, Frame& frame);
 
-/// Applies all other steps in their order to a measured frame, of which one starts every frame_s
-/// seconds. `beams` are those that the sensor reports. The result does not depend on the number of
-/// threads. A return whose range is not above 0 in the end becomes too_near.
+/// Applies all other steps in order to a measured frame; frame_s is the frame period in seconds.
+/// `beams` are the nominal beams, without pointing noise. The result does not depend on the number
+/// of threads. Returns whose final range is not positive get the status too_near.
 void apply_noise(const std::vector<NoiseStep>& noise, double frame_s, const Beams& beams,
                  ThreadPool& thread_pool, Frame& frame);
 
-/// What a frame is like after the first `count` of the steps.
+/// Applies only the first `count` steps of the list.
 void apply_noise_prefix(const std::vector<NoiseStep>& noise, std::size_t count, double frame_s,
                         const Beams& beams, ThreadPool& thread_pool, Frame& frame);
 

@@ -7,40 +7,40 @@
 
 namespace glidar {
 
-/// A run of kDrawBatch beams of a frame, in the processor's cache: one step of noise after the
-/// other works on it. Beams after the last, and beams without a hit, have a range of NaN, so that
-/// arithmetic needs no conditions.
+/// kSampleBatch consecutive beams of a frame, small enough for the processor's cache, to which the
+/// noise steps are applied one after the other. Beams beyond the last, and beams without a return,
+/// have the range NaN, so that arithmetic needs no conditions.
 struct alignas(64) NoiseBatch {
   Batch<double> range_m;
-  Batch<double> variance_m2;  ///< of the range's random error, the sum of the steps so far
+  Batch<double> variance_m2;  ///< variance of the range error, summed over the steps so far
   Batch<double> intensity;
-  Batch<double> scale;          ///< what the surface multiplies standard deviations by
-  Batch<double> cosine;         ///< of the incidence; 1 unless a step asked for it
+  Batch<double> scale;          ///< factor of the surface on standard deviations
+  Batch<double> cosine;         ///< of the incidence angle; 1 unless a step requires it
   Batch<double> depth_per_m;    ///< depth = depth_at_zero_m + depth_per_m * range; these two are
-  Batch<double> depth_at_zero;  ///< 1 and 0 unless a step asked for depth
+  Batch<double> depth_at_zero;  ///< 1 and 0 unless a step requires depth
   Batch<Status> status;
-  std::size_t first = 0;  ///< index of the run's first beam
-  std::size_t count = 0;  ///< beams in the run
-  RngKey draw;            ///< identity of the step's random numbers for the run's first beam
-  double frame_s = 0.0;   ///< from one frame to the next
+  std::size_t first = 0;  ///< index of the first beam
+  std::size_t count = 0;  ///< number of beams
+  RngKey key;             ///< key of the step's random numbers for the first beam
+  double frame_s = 0.0;   ///< frame period
 };
 
-/// A frame and its beams as a step of noise sees them from outside its run.
+/// The frame and the beams of a batch, as a noise step sees them.
 struct NoiseView {
   const Beams& beams;
-  Frame& frame;  ///< columns of other beams must be neither read nor written, but for the scratch
+  Frame& frame;  ///< columns of other batches must not be accessed, except for the workspace
 };
 
-/// The sensor loses the return of a beam of the run.
+/// Removes the return of a beam of the batch.
 inline void invalidate_return(NoiseBatch& batch, std::size_t i, Status why) {
   batch.range_m[i] = std::numeric_limits<double>::quiet_NaN();
   batch.intensity[i] = 0.0;
   batch.status[i] = why;
 }
 
-/// A return of the run is not what the beam's own light brought back.
-inline void set_cause(const NoiseView& view, const NoiseBatch& batch, std::size_t i,
-                      ReturnSource cause) {
+/// Sets the source of a return of the batch that is not an echo of the beam's own light.
+inline void set_return_source(const NoiseView& view, const NoiseBatch& batch, std::size_t i,
+                              ReturnSource cause) {
   view.frame.return_source[batch.first + i] = cause;
 }
 
@@ -48,10 +48,10 @@ inline bool is_hit(const NoiseBatch& batch, std::size_t i) {
   return batch.status[i] == Status::hit;
 }
 
-/// The same draw for another block of words.
-inline RngKey block(RngKey draw, std::uint32_t number) {
-  draw.block = number;
-  return draw;
+/// The same key with another block of words.
+inline RngKey block(RngKey key, std::uint32_t number) {
+  key.block = number;
+  return key;
 }
 
 }  // namespace glidar

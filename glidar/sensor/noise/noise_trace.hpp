@@ -11,18 +11,18 @@
 
 namespace glidar {
 
-/// A random number that a step of noise takes for an entry of a frame.
+/// A random number that a noise step uses for an entry of a frame.
 struct RandomSample {
-  enum class Law : std::uint8_t { normal, uniform };  ///< of mean 0 and deviation 1; from 0 to 1
+  enum class Law : std::uint8_t { normal, uniform };  ///< standard normal; uniform in (0, 1)
   Law law = Law::normal;
   double value = 0.0;
-  std::string use;                     ///< what the step does with it
-  std::optional<double> against = {};  ///< of a chance: the probability that it is held against
+  std::string use;                     ///< its use in the step
+  std::optional<double> against = {};  ///< the probability that it is compared with, if any
 };
 
-/// The random numbers that step `place` of a list takes for an entry, by the same draws as the step
-/// itself. `beams` are those that the sensor reports, the frame is as the step finds it, frame_s is
-/// the time between frames.
+/// The random numbers that step `place` of a list uses for an entry, with the same keys as the step
+/// itself. `beams` are the nominal beams, the frame is as before the step, frame_s is the frame
+/// period in seconds.
 std::vector<RandomSample> trace_samples(const std::vector<NoiseStep>& noise, std::size_t place,
                                         const Beams& beams, const Frame& frame, double frame_s,
                                         std::size_t entry);

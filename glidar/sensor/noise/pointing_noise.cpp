@@ -18,8 +18,9 @@ namespace {
 constexpr double kTurn_rad = 2.0 * std::numbers::pi;
 constexpr double kTurns_per_rad = 0.5 * std::numbers::inv_pi;
 
-/// Moves beams by angles so small that they are their own tangents: aside along the level unit
-/// vector across the beam (for a vertical beam any), upwards across both. xyz: beam after beam.
+/// Tilts beams by small angles (angle = tangent): sideways along the horizontal unit vector
+/// perpendicular to the beam (any for a vertical beam), upwards perpendicular to both. xyz: beam
+/// after beam.
 GLIDAR_SIMD void jitter(const Eigen::Vector3d& up, const PointingJitter& step,
                         const PairBatch& normal, std::size_t count, double* xyz) {
   constexpr double kShortest = 1e-9;
@@ -55,39 +56,41 @@ inline double rounding_error(double step_rad, double steps_per_rad, double azimu
   return std::floor(azimuth_rad * steps_per_rad + 0.5) * step_rad - azimuth_rad;
 }
 
-inline double wave_error(const EncoderError& law, double azimuth_rad) {
-  return law.eccentricity_rad * of_turns((azimuth_rad + law.phase_rad) * kTurns_per_rad).sine;
+inline double eccentricity_error(const EncoderError& model, double azimuth_rad) {
+  return model.eccentricity_rad *
+         sincos_turns((azimuth_rad + model.phase_rad) * kTurns_per_rad).sine;
 }
 
 GLIDAR_SIMD void find_azimuths(std::size_t count, const double* xyz, Batch<double>& azimuth_rad) {
   for (std::size_t i = 0; i < count; ++i) {
-    azimuth_rad[i] = kTurn_rad * turns_of(xyz[3 * i + 1], xyz[3 * i]);
+    azimuth_rad[i] = kTurn_rad * atan2_turns(xyz[3 * i + 1], xyz[3 * i]);
   }
 }
 
-GLIDAR_SIMD void add_rounding(double step_rad, const Batch<double>& azimuth_rad,
-                              Batch<double>& error_rad) {
+GLIDAR_SIMD void add_encoder_rounding(double step_rad, const Batch<double>& azimuth_rad,
+                                      Batch<double>& error_rad) {
   const double steps_per_rad = 1.0 / step_rad;
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     error_rad[i] += rounding_error(step_rad, steps_per_rad, azimuth_rad[i]);
   }
 }
 
-GLIDAR_SIMD void add_wave(const EncoderError& law, const Batch<double>& azimuth_rad,
-                          Batch<double>& error_rad) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) error_rad[i] += wave_error(law, azimuth_rad[i]);
+GLIDAR_SIMD void add_eccentricity(const EncoderError& model, const Batch<double>& azimuth_rad,
+                                  Batch<double>& error_rad) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i)
+    error_rad[i] += eccentricity_error(model, azimuth_rad[i]);
 }
 
-/// Cosines and sines of the way back: where beams are when they report where they seem to be.
-GLIDAR_SIMD void find_way_back(const Batch<double>& error_rad, PairBatch& back) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
-    const SineCosine turn = of_turns(-error_rad[i] * kTurns_per_rad);
+/// Cosines and sines of the rotation from the reported to the true azimuth.
+GLIDAR_SIMD void find_inverse_rotation(const Batch<double>& error_rad, PairBatch& back) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
+    const SineCosine turn = sincos_turns(-error_rad[i] * kTurns_per_rad);
     back.first[i] = turn.cosine;
     back.second[i] = turn.sine;
   }
 }
 
-GLIDAR_SIMD void turn_about_z(const PairBatch& angle, std::size_t count, double* xyz) {
+GLIDAR_SIMD void rotate_about_z(const PairBatch& angle, std::size_t count, double* xyz) {
   for (std::size_t i = 0; i < count; ++i) {
     const double x = xyz[3 * i];
     const double y = xyz[3 * i + 1];
@@ -100,42 +103,43 @@ GLIDAR_SIMD void turn_about_z(const PairBatch& angle, std::size_t count, double*
 
 }  // namespace
 
-double encoder_error_rad(const EncoderError& law, double azimuth_rad) {
-  const double rounding =
-      law.step_rad > 0.0 ? rounding_error(law.step_rad, 1.0 / law.step_rad, azimuth_rad) : 0.0;
-  return rounding + wave_error(law, azimuth_rad);
+double encoder_error_rad(const EncoderError& model, double azimuth_rad) {
+  const double rounding = model.step_rad > 0.0
+                              ? rounding_error(model.step_rad, 1.0 / model.step_rad, azimuth_rad)
+                              : 0.0;
+  return rounding + eccentricity_error(model, azimuth_rad);
 }
 
-void perturb(const PointingJitter& step, const RngKey& draw, std::size_t first, std::size_t count,
+void perturb(const PointingJitter& step, const RngKey& key, std::size_t first, std::size_t count,
              Beams& beams) {
   const Eigen::Vector3d up = axes_of(beams).up;
   PairBatch normal;
-  for (std::size_t begin = first; begin < first + count; begin += kDrawBatch) {
-    RngKey run = draw;
+  for (std::size_t begin = first; begin < first + count; begin += kSampleBatch) {
+    RngKey run = key;
     run.beam = static_cast<std::uint32_t>(begin);
-    draw_normals(run, normal);
-    jitter(up, step, normal, std::min(kDrawBatch, first + count - begin),
+    sample_normals(run, normal);
+    jitter(up, step, normal, std::min(kSampleBatch, first + count - begin),
            beams.directions[begin].data());
   }
 }
 
-void perturb(const EncoderError& step, const RngKey& draw, std::size_t first, std::size_t count,
+void perturb(const EncoderError& step, const RngKey& key, std::size_t first, std::size_t count,
              Beams& beams) {
-  RngKey whole = draw;
+  RngKey whole = key;
   whole.beam = 0;
   const double of_turn = step.turn_sigma_rad * normals(random_words(whole))[0];
   Batch<double> azimuth_rad{};
   Batch<double> error_rad;
   PairBatch back;
-  for (std::size_t begin = first; begin < first + count; begin += kDrawBatch) {
-    const std::size_t size = std::min(kDrawBatch, first + count - begin);
+  for (std::size_t begin = first; begin < first + count; begin += kSampleBatch) {
+    const std::size_t size = std::min(kSampleBatch, first + count - begin);
     find_azimuths(size, beams.directions[begin].data(), azimuth_rad);
     error_rad.fill(of_turn);
-    if (step.step_rad > 0.0) add_rounding(step.step_rad, azimuth_rad, error_rad);
-    if (step.eccentricity_rad != 0.0) add_wave(step, azimuth_rad, error_rad);
-    find_way_back(error_rad, back);
-    turn_about_z(back, size, beams.directions[begin].data());
-    if (!beams.origins_m.empty()) turn_about_z(back, size, beams.origins_m[begin].data());
+    if (step.step_rad > 0.0) add_encoder_rounding(step.step_rad, azimuth_rad, error_rad);
+    if (step.eccentricity_rad != 0.0) add_eccentricity(step, azimuth_rad, error_rad);
+    find_inverse_rotation(error_rad, back);
+    rotate_about_z(back, size, beams.directions[begin].data());
+    if (!beams.origins_m.empty()) rotate_about_z(back, size, beams.origins_m[begin].data());
   }
 }
 

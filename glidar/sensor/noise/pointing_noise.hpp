@@ -7,19 +7,19 @@
 
 namespace glidar {
 
-// Errors of where a beam goes. The sensor does not know them: the beams are cast astray, and the
-// points are reported where the beams should have gone.
+// Errors of a beam's direction. They are unknown to the sensor: beams are cast in the erroneous
+// direction, and points are reported in the nominal one.
 
-/// Each beam goes astray by normal angles, sideways (about the sensor's vertical, on the sphere)
-/// and upwards.
+/// Normal errors of each beam's angles, sideways (about the sensor's vertical, on the sphere) and
+/// upwards.
 struct PointingJitter {
   double sigma_azimuth_rad = 0.0;
   double sigma_elevation_rad = 0.0;
 };
 
-/// A turning sensor's angle encoder, about the sensor's z axis. Reported minus true azimuth is
-/// Q(phi) - phi, Q rounding to whole steps, plus eccentricity sin(phi + phase), plus a normal error
-/// that is the same for a whole frame.
+/// The angle encoder of a rotating sensor, about the sensor's z axis. Reported minus true azimuth
+/// is Q(phi) - phi, where Q rounds to whole steps, plus eccentricity sin(phi + phase), plus a
+/// normal error that is the same for a whole frame.
 struct EncoderError {
   double step_rad = 0.0;  ///< 0: not rounded
   double eccentricity_rad = 0.0;
@@ -27,13 +27,13 @@ struct EncoderError {
   double turn_sigma_rad = 0.0;
 };
 
-/// Error of the reported azimuth without the frame's own part.
+/// Error of the reported azimuth without the random error of the frame.
 double encoder_error_rad(const EncoderError& law, double azimuth_rad);
 
-/// Turns beams [first, first + count) of `beams` as the step says; `draw` is that of beam 0.
-void perturb(const PointingJitter& step, const RngKey& draw, std::size_t first, std::size_t count,
+/// Applies the step to the beams [first, first + count); `key` is that of beam 0.
+void perturb(const PointingJitter& step, const RngKey& key, std::size_t first, std::size_t count,
              Beams& beams);
-void perturb(const EncoderError& step, const RngKey& draw, std::size_t first, std::size_t count,
+void perturb(const EncoderError& step, const RngKey& key, std::size_t first, std::size_t count,
              Beams& beams);
 
 }  // namespace glidar

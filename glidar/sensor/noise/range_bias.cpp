@@ -11,7 +11,7 @@
 namespace glidar {
 namespace {
 
-/// Adds to every range what `error_of` says of its ring, asking once for neighbours of one ring.
+/// Adds error_of(ring) to every range; calls it once for consecutive beams of one ring.
 template <class Function>
 void add_by_ring(const Beams& beams, const Function& error_of, NoiseBatch& batch) {
   std::uint32_t ring = ring_of(beams, batch.first);
@@ -24,23 +24,24 @@ void add_by_ring(const Beams& beams, const Function& error_of, NoiseBatch& batch
   }
 }
 
-double normal_of(const RngKey& draw) {
-  return normals(random_words(draw))[0];
+double normal_of(const RngKey& key) {
+  return normals(random_words(key))[0];
 }
 
 }  // namespace
 
-double drift_at(std::uint32_t frame, double frames_per_tau, RngKey draw) {
-  constexpr double kForgotten = 13.8;  // exp(-13.8) = 1e-6
+double drift_at(std::uint32_t frame, double frames_per_tau, RngKey key) {
+  constexpr double kDecorrelated = 13.8;  // exp(-13.8) = 1e-6
   constexpr unsigned kLongest = 31;
   unsigned level = 0;
-  while (level < kLongest && std::ldexp(1.0, static_cast<int>(level)) < kForgotten * frames_per_tau)
+  while (level < kLongest &&
+         std::ldexp(1.0, static_cast<int>(level)) < kDecorrelated * frames_per_tau)
     ++level;
   const auto normal_at = [&](std::uint64_t at) {
-    // the end of the last stretch may lie one beyond the greatest number
-    draw.frame = static_cast<std::uint32_t>(at);
-    draw.block = static_cast<std::uint32_t>(at >> 32U);
-    return normal_of(draw);
+    // The end of the last interval may be one beyond the largest frame number.
+    key.frame = static_cast<std::uint32_t>(at);
+    key.block = static_cast<std::uint32_t>(at >> 32U);
+    return normal_of(key);
   };
   std::uint64_t begin = std::uint64_t{frame} >> level << level;
   double value_at_begin = normal_at(begin);
@@ -48,7 +49,7 @@ double drift_at(std::uint32_t frame, double frames_per_tau, RngKey draw) {
   while (begin != frame) {
     --level;
     const std::uint64_t half = std::uint64_t{1} << level;
-    const double p = natural_exp(-static_cast<double>(half) / frames_per_tau);
+    const double p = portable_exp(-static_cast<double>(half) / frames_per_tau);
     const double middle = (value_at_begin + value_at_end) * p / (1.0 + p * p) +
                           std::sqrt((1.0 - p * p) / (1.0 + p * p)) * normal_at(begin + half);
     if (frame >= begin + half) {
@@ -62,23 +63,23 @@ double drift_at(std::uint32_t frame, double frames_per_tau, RngKey draw) {
 }
 
 void apply(const RangeBias& step, const NoiseView& view, NoiseBatch& batch) {
-  RngKey draw = batch.draw;
-  draw.frame = kAllFrames;
+  RngKey key = batch.key;
+  key.frame = kAllFrames;
   add_by_ring(
       view.beams,
       [&](std::uint32_t ring) {
-        draw.beam = ring;
-        return step.offset_m + step.sigma_m * normal_of(draw);
+        key.beam = ring;
+        return step.offset_m + step.sigma_m * normal_of(key);
       },
       batch);
 }
 
 void apply(const RangeDrift& step, const NoiseView& view, NoiseBatch& batch) {
   const double frames_per_tau = step.tau_s / batch.frame_s;
-  RngKey draw = batch.draw;
+  RngKey key = batch.key;
   const auto error_of = [&](std::uint32_t ring) {
-    draw.beam = ring;
-    return step.sigma_m * drift_at(view.frame.number, frames_per_tau, draw);
+    key.beam = ring;
+    return step.sigma_m * drift_at(view.frame.number, frames_per_tau, key);
   };
   if (step.per_ring) {
     add_by_ring(view.beams, error_of, batch);

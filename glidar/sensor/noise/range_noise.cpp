@@ -29,7 +29,7 @@ struct Spread {
 
 GLIDAR_SIMD void add_linear(double sigma_m, double sigma_per_m, const Batch<double>& normal,
                             NoiseBatch& b) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     const double sigma = (sigma_m + sigma_per_m * b.range_m[i]) * b.scale[i];
     b.range_m[i] += sigma * normal[i];
     b.variance_m2[i] += sigma * sigma;
@@ -37,7 +37,7 @@ GLIDAR_SIMD void add_linear(double sigma_m, double sigma_per_m, const Batch<doub
 }
 
 GLIDAR_SIMD void add_by_signal(const Spread& spread, const Batch<double>& normal, NoiseBatch& b) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     const double inverse = 1.0 / not_dark(b.intensity[i]);
     const double sigma = std::sqrt(spread.constant_m2 + spread.per_intensity_m2 * inverse +
                                    spread.per_intensity_squared_m2 * inverse * inverse) *
@@ -47,9 +47,9 @@ GLIDAR_SIMD void add_by_signal(const Spread& spread, const Batch<double>& normal
   }
 }
 
-GLIDAR_SIMD void add_2015(const RangeUniform& step, const PairBatch& x, double variance,
-                          NoiseBatch& b) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+GLIDAR_SIMD void add_uniform_model(const RangeUniform& step, const PairBatch& x, double variance,
+                                   NoiseBatch& b) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     const double additive = step.additive_m * b.scale[i];
     const double multiplicative = step.multiplicative * b.range_m[i] * b.scale[i];
     b.range_m[i] += additive * x.first[i] + multiplicative * x.second[i];
@@ -59,7 +59,7 @@ GLIDAR_SIMD void add_2015(const RangeUniform& step, const PairBatch& x, double v
 
 GLIDAR_SIMD void quantise(double step_m, double offset_m, NoiseBatch& b) {
   const double variance = step_m * step_m / 12.0;
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     const double steps = std::floor((b.range_m[i] + offset_m) / step_m + 0.5);
     b.range_m[i] = steps * step_m - offset_m;
     b.variance_m2[i] += variance;
@@ -67,7 +67,7 @@ GLIDAR_SIMD void quantise(double step_m, double offset_m, NoiseBatch& b) {
 }
 
 GLIDAR_SIMD void spread_out(PairBatch& uniforms) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     uniforms.first[i] = 2.0 * uniforms.first[i] - 1.0;
     uniforms.second[i] = 2.0 * uniforms.second[i] - 1.0;
   }
@@ -89,13 +89,13 @@ double photon_sigma_m(const RangeShotNoise& law, double amplitude) {
 
 void apply(const RangeGaussian& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_shared_normals(batch.draw, normal);
+  sample_shared_normals(batch.key, normal);
   add_linear(step.sigma_m, step.sigma_per_m, normal, batch);
 }
 
 void apply(const RangeSnr& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_shared_normals(batch.draw, normal);
+  sample_shared_normals(batch.key, normal);
   add_by_signal({.constant_m2 = step.floor_m * step.floor_m,
                  .per_intensity_m2 = step.k_m * step.k_m / step.snr_at_full_scale},
                 normal, batch);
@@ -103,14 +103,14 @@ void apply(const RangeSnr& step, const NoiseView& /*view*/, NoiseBatch& batch) {
 
 void apply(const RangeCrlb& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_shared_normals(batch.draw, normal);
+  sample_shared_normals(batch.key, normal);
   const double sigma_m = pulse_sigma_m(step, 1.0);
   add_by_signal({.per_intensity_squared_m2 = sigma_m * sigma_m}, normal, batch);
 }
 
 void apply(const RangeShotNoise& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   Batch<double> normal;
-  draw_shared_normals(batch.draw, normal);
+  sample_shared_normals(batch.key, normal);
   const double sigma_m = photon_sigma_m(step, 1.0);
   add_by_signal({.per_intensity_m2 = sigma_m * sigma_m}, normal, batch);
 }
@@ -118,13 +118,13 @@ void apply(const RangeShotNoise& step, const NoiseView& /*view*/, NoiseBatch& ba
 void apply(const RangeUniform& step, const NoiseView& /*view*/, NoiseBatch& batch) {
   PairBatch x;
   if (step.distribution == RangeUniform::Distribution::normal) {
-    draw_normals(batch.draw, x);
-    add_2015(step, x, 1.0, batch);
+    sample_normals(batch.key, x);
+    add_uniform_model(step, x, 1.0, batch);
     return;
   }
-  draw_uniforms(batch.draw, x);
+  sample_uniforms(batch.key, x);
   spread_out(x);
-  add_2015(step, x, 1.0 / 3.0, batch);  // variance of a uniform number in -1..1
+  add_uniform_model(step, x, 1.0 / 3.0, batch);  // variance of a uniform number in -1..1
 }
 
 void apply(const RangeQuantization& step, const NoiseView& view, NoiseBatch& batch) {

@@ -9,14 +9,14 @@ namespace glidar {
 struct NoiseBatch;
 struct NoiseView;
 
-/// Normal error of the range with the standard deviation sigma + sigma_per_m R (RobotecGPULidar,
+/// Normal range error with the standard deviation sigma + sigma_per_m R (RobotecGPULidar,
 /// docs/GaussianNoise.md).
 struct RangeGaussian {
   double sigma_m = 0.0;
   double sigma_per_m = 0.0;
 };
 
-/// Normal error of the range with sigma^2 = floor^2 + k^2 / SNR, SNR = snr_at_full_scale times
+/// Normal range error with sigma^2 = floor^2 + k^2 / SNR, SNR = snr_at_full_scale times
 /// intensity. k = 0.30 m fits the OS1 (gen 1 data sheet: 1.5, 3, 10 cm at SNR 250, 100, 12).
 struct RangeSnr {
   double floor_m = 0.0;
@@ -25,23 +25,23 @@ struct RangeSnr {
 };
 
 /// Timing of a sampled Gaussian pulse in white noise at the Cramer-Rao bound:
-/// sigma_t = (noise / A) sqrt(2 sigma_p dt / sqrt(pi)), A being the intensity; sigma_R = c sigma_t
-/// / 2 (Kay, Fundamentals of Statistical Signal Processing I, 3.11, for a Gaussian pulse).
+/// sigma_t = (noise / A) sqrt(2 sigma_p dt / sqrt(pi)), where A is the intensity; sigma_R = c
+/// sigma_t / 2 (Kay, Fundamentals of Statistical Signal Processing I, 3.11, for a Gaussian pulse).
 struct RangeCrlb {
   double pulse_fwhm_s = 0.0;
   double sample_s = 0.0;
-  double noise = 0.0;  ///< standard deviation of a sample, in units of intensity
+  double noise = 0.0;  ///< standard deviation per sample, in units of intensity
 };
 
-/// Timing limited by photons: sigma_R = (c / 2) sigma_p / sqrt(N) with N photo-electrons
-/// (the mean of N arrival times).
+/// Shot-noise-limited timing: sigma_R = (c / 2) sigma_p / sqrt(N) with N photo-electrons (the mean
+/// of N arrival times).
 struct RangeShotNoise {
   double pulse_fwhm_s = 0.0;
   double photons_at_full_scale = 0.0;
 };
 
-/// The noise of the 2015 program, whose distribution was unknown, with one that is stated:
-/// R' = R + additive x + multiplicative R y. x and y are uniform in -1..1, or standard normals.
+/// The noise of the original GLIDAR, which did not state its distribution:
+/// R' = R + additive x + multiplicative R y. x and y are uniform in -1..1, or standard normal.
 struct RangeUniform {
   enum class Distribution : std::uint8_t { uniform, normal };
   double additive_m = 0.0;
@@ -49,12 +49,12 @@ struct RangeUniform {
   Distribution distribution = Distribution::uniform;
 };
 
-/// The reported range is a whole multiple of a step. Adds step^2 / 12 to the variance.
+/// Rounds the range to a multiple of a step. Adds step^2 / 12 to the variance.
 struct RangeQuantization {
   double step_m = 0.0;
 };
 
-/// Standard deviations of the laws above, metres.
+/// Standard deviations of the models above, metres.
 double pulse_sigma_m(const RangeCrlb& law, double amplitude);
 double photon_sigma_m(const RangeShotNoise& law, double amplitude);
 

@@ -18,15 +18,15 @@ namespace {
 
 constexpr double kMinAmplitude = 1e-9;
 
-/// The frequencies, the finest first, and what the search for the range needs of them.
+/// The frequencies, the highest first, and derived constants of the search for the range.
 struct Waves {
   std::size_t count = 0;
-  double finest_m = 0.0;                            ///< range of one wave of the finest
-  double limit_m = 0.0;                             ///< range without ambiguity
-  double number = 0.0;                              ///< of finest waves in it
-  double sigma_m_per_turn = 0.0;                    ///< of the range by that of the phases
-  std::array<double, kMaxFrequencies> per_m{};      ///< waves
-  std::array<double, kMaxFrequencies> to_finest{};  ///< frequency over the finest
+  double finest_m = 0.0;                            ///< range of one wave of the highest frequency
+  double limit_m = 0.0;                             ///< unambiguous range
+  double number = 0.0;                              ///< waves of the highest frequency in limit_m
+  double sigma_m_per_turn = 0.0;                    ///< sigma of the range over that of the phases
+  std::array<double, kMaxFrequencies> per_m{};      ///< waves per metre of range
+  std::array<double, kMaxFrequencies> to_finest{};  ///< frequency over the highest
   std::array<double, kMaxFrequencies> weight{};     ///< f^2 over the sum of all; 0: unused
 };
 
@@ -51,103 +51,105 @@ Waves waves_of(const std::vector<double>& frequencies_hz) {
   return waves;
 }
 
-/// The whole number of finest waves that fits best, and how well.
-struct alignas(64) Found {
+/// The integer number of waves of the highest frequency that fits best, and its residual.
+struct alignas(64) BestFit {
   Batch<double> whole;
-  Batch<double> misfit;  ///< mean square in turns^2, weighted as the range is
+  Batch<double> residual;  ///< mean square in turns^2, with Waves::weight
 };
 
 GLIDAR_SIMD void phase_of_range(double per_m, const Batch<double>& range_m, Batch<double>& turns) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     const double waves = range_m[i] * per_m;
     turns[i] = waves - std::floor(waves);
   }
 }
 
-/// Standard deviation of the phase in turns, for a run.
-GLIDAR_SIMD void spread(const ContinuousWave& law, const Batch<double>& amplitude,
-                        const Batch<double>& scale, Batch<double>& sigma_turns) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+/// Standard deviation of the phase in turns, for a batch.
+GLIDAR_SIMD void phase_sigma(const ContinuousWave& model, const Batch<double>& amplitude,
+                             const Batch<double>& scale, Batch<double>& sigma_turns) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     const double light = amplitude[i] > kMinAmplitude ? amplitude[i] : kMinAmplitude;
-    const double signal = law.electrons_at_full_scale * light;
-    sigma_turns[i] = std::sqrt(0.5 * (law.background_electrons + signal)) /
-                     (law.contrast * signal) * scale[i] * (0.5 * std::numbers::inv_pi);
+    const double signal = model.electrons_at_full_scale * light;
+    sigma_turns[i] = std::sqrt(0.5 * (model.background_electrons + signal)) /
+                     (model.contrast * signal) * scale[i] * (0.5 * std::numbers::inv_pi);
   }
 }
 
 GLIDAR_SIMD void add_error(const Batch<double>& sigma_turns, const Batch<double>& normal,
                            Batch<double>& turns) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
-    const double astray = turns[i] + sigma_turns[i] * normal[i];
-    turns[i] = astray - std::floor(astray);
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
+    const double perturbed = turns[i] + sigma_turns[i] * normal[i];
+    turns[i] = perturbed - std::floor(perturbed);
   }
 }
 
-/// A phase less the one that the finest wave's own lets expect, but for whole waves of it.
-GLIDAR_SIMD void compare(double to_finest, const Batch<double>& finest, Batch<double>& turns) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) turns[i] -= finest[i] * to_finest;
+/// Subtracts the phase that the phase of the highest frequency implies, up to whole waves of it.
+GLIDAR_SIMD void subtract_finest(double to_finest, const Batch<double>& finest,
+                                 Batch<double>& turns) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) turns[i] -= finest[i] * to_finest;
 }
 
-/// What is left of a phase after so many waves of the finest frequency, -1/2 to 1/2.
-inline double left_over(double apart_turns, double whole, double to_finest) {
-  const double error = apart_turns - whole * to_finest;
+/// The residual of a phase for `whole` waves of the highest frequency, in [-1/2, 1/2).
+inline double phase_residual(double difference_turns, double whole, double to_finest) {
+  const double error = difference_turns - whole * to_finest;
   return error - std::floor(error + 0.5);
 }
 
-/// Mean square of what is left of the phases of kOthers frequencies after so many finest waves.
+/// Weighted mean square of the phase residuals of kOthers frequencies for `whole` waves.
 template <std::size_t kOthers>
-[[gnu::always_inline]] inline double misfit_of(const Waves& waves, const WavePhases& phases,
-                                               std::size_t i, double whole) {
-  double misfit = 0.0;
+[[gnu::always_inline]] inline double residual_of(const Waves& waves, const WavePhases& phases,
+                                                 std::size_t i, double whole) {
+  double residual = 0.0;
 #pragma GCC unroll 8
   for (std::size_t k = 1; k <= kOthers; ++k) {
-    const double error = left_over(phases.turns[k][i], whole, waves.to_finest[k]);
-    misfit += waves.weight[k] * error * error;
+    const double error = phase_residual(phases.turns[k][i], whole, waves.to_finest[k]);
+    residual += waves.weight[k] * error * error;
   }
-  return misfit;
+  return residual;
 }
 
-/// Tries all whole numbers of finest waves.
+/// Tries all integer numbers of waves of the highest frequency.
 template <std::size_t kOthers>
 [[gnu::always_inline]] inline void try_all(const Waves& waves, const WavePhases& phases,
-                                           Found& best) {
+                                           BestFit& best) {
   for (double whole = 0.0; whole < waves.number; whole += 1.0) {
-    for (std::size_t i = 0; i < kDrawBatch; ++i) {
-      const double misfit = misfit_of<kOthers>(waves, phases, i, whole);
-      const bool is_better = misfit < best.misfit[i];
-      best.misfit[i] = is_better ? misfit : best.misfit[i];
+    for (std::size_t i = 0; i < kSampleBatch; ++i) {
+      const double residual = residual_of<kOthers>(waves, phases, i, whole);
+      const bool is_better = residual < best.residual[i];
+      best.residual[i] = is_better ? residual : best.residual[i];
       best.whole[i] = is_better ? whole : best.whole[i];
     }
   }
 }
 
-GLIDAR_SIMD void search_two(const Waves& waves, const WavePhases& phases, Found& best) {
+GLIDAR_SIMD void search_two(const Waves& waves, const WavePhases& phases, BestFit& best) {
   try_all<1>(waves, phases, best);
 }
-GLIDAR_SIMD void search_three(const Waves& waves, const WavePhases& phases, Found& best) {
+GLIDAR_SIMD void search_three(const Waves& waves, const WavePhases& phases, BestFit& best) {
   try_all<2>(waves, phases, best);
 }
-GLIDAR_SIMD void search_many(const Waves& waves, const WavePhases& phases, Found& best) {
+GLIDAR_SIMD void search_many(const Waves& waves, const WavePhases& phases, BestFit& best) {
   try_all<kMaxFrequencies - 1>(waves, phases, best);
 }
 
-/// The range of a whole number of waves and the finest phase ...
-GLIDAR_SIMD void begin_range(double finest_m, const Batch<double>& finest, const Found& found,
+/// The range from the integer number of waves and the phase of the highest frequency.
+GLIDAR_SIMD void start_range(double finest_m, const Batch<double>& finest, const BestFit& found,
                              Batch<double>& range_m) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) range_m[i] = (finest[i] + found.whole[i]) * finest_m;
+  for (std::size_t i = 0; i < kSampleBatch; ++i)
+    range_m[i] = (finest[i] + found.whole[i]) * finest_m;
 }
 
-/// ... and how far another phase pulls it.
-GLIDAR_SIMD void pull_range(double to_finest, double weight_m, const Batch<double>& turns,
-                            const Found& found, Batch<double>& range_m) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
-    range_m[i] += weight_m * left_over(turns[i], found.whole[i], to_finest);
+/// Adds the correction by the phase of another frequency.
+GLIDAR_SIMD void refine_range(double to_finest, double weight_m, const Batch<double>& turns,
+                              const BestFit& found, Batch<double>& range_m) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
+    range_m[i] += weight_m * phase_residual(turns[i], found.whole[i], to_finest);
   }
 }
 
 GLIDAR_SIMD void finish_range(const Waves& waves, const Batch<double>& sigma_turns,
                               NoiseBatch& batch) {
-  for (std::size_t i = 0; i < kDrawBatch; ++i) {
+  for (std::size_t i = 0; i < kSampleBatch; ++i) {
     const double range_m = batch.range_m[i];
     const double sigma_m = sigma_turns[i] * waves.sigma_m_per_turn;
     batch.range_m[i] = range_m < 0.0 ? range_m + waves.limit_m : range_m;
@@ -155,10 +157,10 @@ GLIDAR_SIMD void finish_range(const Waves& waves, const Batch<double>& sigma_tur
   }
 }
 
-/// The phases as they reach the sensor, and their coherence.
-void see(const ContinuousWave& step, const Waves& waves, const NoiseView& view,
-         const NoiseBatch& batch, WavePhases& phases) {
-  if (mixes(step)) {
+/// The phases without noise, and their coherence.
+void measure_phases(const ContinuousWave& step, const Waves& waves, const NoiseView& view,
+                    const NoiseBatch& batch, WavePhases& phases) {
+  if (has_multipath(step)) {
     mix(step.mixing, {waves.per_m.data(), waves.count}, view, batch, phases);
     return;
   }
@@ -169,34 +171,34 @@ void see(const ContinuousWave& step, const Waves& waves, const NoiseView& view,
   }
 }
 
-void add_errors(const RngKey& draw, std::size_t count, const Batch<double>& sigma_turns,
+void add_errors(const RngKey& key, std::size_t count, const Batch<double>& sigma_turns,
                 WavePhases& phases) {
   WordBatch words;
   PairBatch normal;
   for (std::size_t k = 0; k < count; ++k) {
-    if (k % 4 == 0) draw_words(block(draw, static_cast<std::uint32_t>(k / 4)), words);
-    if (k % 2 == 0) make_normals(words, k % 4 / 2, normal);
+    if (k % 4 == 0) sample_words(block(key, static_cast<std::uint32_t>(k / 4)), words);
+    if (k % 2 == 0) box_muller(words, k % 4 / 2, normal);
     add_error(sigma_turns, k % 2 == 0 ? normal.first : normal.second, phases.turns[k]);
   }
 }
 
-/// The range that fits the phases best; these are used up.
-void unwrap(const Waves& waves, WavePhases& phases, Found& found, Batch<double>& range_m) {
+/// The range that fits the phases best; overwrites the phases.
+void unwrap(const Waves& waves, WavePhases& phases, BestFit& found, Batch<double>& range_m) {
   for (std::size_t k = 1; k < waves.count; ++k) {
-    compare(waves.to_finest[k], phases.turns[0], phases.turns[k]);
+    subtract_finest(waves.to_finest[k], phases.turns[0], phases.turns[k]);
   }
   for (std::size_t k = waves.count; k < kMaxFrequencies; ++k) {
-    if (waves.count > 3) phases.turns[k].fill(0.0);  // all of them are searched
+    if (waves.count > 3) phases.turns[k].fill(0.0);  // search_many() uses all of them
   }
   found.whole.fill(0.0);
-  found.misfit.fill(waves.count > 1 ? 1.0 : 0.0);  // worse than any, which is at most 1/4
+  found.residual.fill(waves.count > 1 ? 1.0 : 0.0);  // above the maximum of 1/4
   if (waves.count == 2) search_two(waves, phases, found);
   if (waves.count == 3) search_three(waves, phases, found);
   if (waves.count > 3) search_many(waves, phases, found);
-  begin_range(waves.finest_m, phases.turns[0], found, range_m);
+  start_range(waves.finest_m, phases.turns[0], found, range_m);
   for (std::size_t k = 1; k < waves.count; ++k) {
-    pull_range(waves.to_finest[k], waves.weight[k] / waves.per_m[k], phases.turns[k], found,
-               range_m);
+    refine_range(waves.to_finest[k], waves.weight[k] / waves.per_m[k], phases.turns[k], found,
+                 range_m);
   }
 }
 
@@ -221,15 +223,15 @@ void apply(const ContinuousWave& step, const NoiseView& view, NoiseBatch& batch)
   const Waves waves = waves_of(step.frequencies_hz);
   WavePhases phases;
   Batch<double> sigma_turns;
-  Found found;
-  see(step, waves, view, batch, phases);
-  spread(step, phases.amplitude, batch.scale, sigma_turns);
-  add_errors(batch.draw, waves.count, sigma_turns, phases);
+  BestFit found;
+  measure_phases(step, waves, view, batch, phases);
+  phase_sigma(step, phases.amplitude, batch.scale, sigma_turns);
+  add_errors(batch.key, waves.count, sigma_turns, phases);
   unwrap(waves, phases, found, batch.range_m);
   finish_range(waves, sigma_turns, batch);
   const double most = step.max_phase_residual * step.max_phase_residual;
   for (std::size_t i = 0; i < batch.count; ++i) {
-    const bool is_clear = phases.coherence[i] >= step.min_coherence && found.misfit[i] <= most;
+    const bool is_clear = phases.coherence[i] >= step.min_coherence && found.residual[i] <= most;
     if (!is_clear && is_hit(batch, i)) invalidate_return(batch, i, Status::phase_ambiguous);
   }
 }

@@ -10,22 +10,22 @@ namespace glidar {
 struct NoiseBatch;
 struct NoiseView;
 
-/// The most frequencies that are used.
+/// Maximum number of modulation frequencies.
 inline constexpr std::size_t kMaxFrequencies = 8;
 
-/// Time of flight by continuous waves. At each frequency f the pixel measures the phase of
-/// sum a exp(j 4 pi f R / c) over itself and, with the share `multipath_fraction`, over the pixels
-/// around it, a being the intensity. Its error is normal, sigma = sqrt(B + A) / (sqrt 2 C A), A and
-/// B the electrons of signal and background, C the contrast (Lange and Seitz, IEEE J. Quantum
-/// Electronics 37 (2001), whose sigma_z is c / (4 pi f) times this). The distance is the one, up to
-/// c / (2 gcd of the frequencies), that the phases fit best; greater ones wrap around. Phases count
-/// with f^2, which makes it the mean of least variance, since every phase has the same error.
-/// Where light of several distances cancels, |sum a exp| / sum a < min_coherence at some
-/// frequency, or where the phases fit no distance (rms above max_phase_residual turns), the status
-/// is wrapped.
+/// Continuous-wave time of flight. At each frequency f the pixel measures the phase of
+/// sum a exp(j 4 pi f R / c) over itself and, with the share `multipath_fraction`, over its
+/// neighbours, where a is the intensity. The phase error is normal with
+/// sigma = sqrt(B + A) / (sqrt 2 C A), A and B the electrons of signal and background, C the
+/// contrast (Lange and Seitz, IEEE J. Quantum Electronics 37 (2001), whose sigma_z is c / (4 pi f)
+/// times this). The range is the best fit to the phases up to c / (2 gcd of the frequencies);
+/// larger ranges wrap around. Phases have the weight f^2, which gives the mean of minimum variance
+/// because all phases have the same error. The status is phase_ambiguous where light of several
+/// ranges cancels (|sum a exp| / sum a < min_coherence at some frequency), or where no range fits
+/// the phases (rms above max_phase_residual turns).
 struct ContinuousWave {
   std::vector<double> frequencies_hz{};
-  double electrons_at_full_scale = 0.0;  ///< of an intensity of 1
+  double electrons_at_full_scale = 0.0;  ///< at intensity 1
   double background_electrons = 0.0;
   double contrast = 1.0;
   double mixing = 0.0;
@@ -33,11 +33,11 @@ struct ContinuousWave {
   double max_phase_residual = 0.1;
 };
 
-/// The greatest range without ambiguity: c / (2 gcd), the frequencies rounded to whole hertz.
+/// The unambiguous range: c / (2 gcd), with the frequencies rounded to whole hertz.
 double unambiguous_m(const std::vector<double>& frequencies_hz);
 
-/// Whether pixels mix their light with that of those around them.
-inline bool mixes(const ContinuousWave& step) {
+/// True if pixels mix their light with that of their neighbours.
+inline bool has_multipath(const ContinuousWave& step) {
   return step.mixing > 0.0;
 }
 

@@ -32,8 +32,8 @@ void validate(const LineScan& r) {
                  "optics, time of a line", r.line_ns, "at least that of its points");
 }
 
-/// The pattern in the order of time.
-RayTable in_order(const LineScan& r) {
+/// The pattern in time order.
+RayTable in_time_order(const LineScan& r) {
   RayTable table;
   table.rows = static_cast<std::uint32_t>(r.elevations_rad.size());
   table.cols = static_cast<std::uint32_t>(r.azimuths_rad.size());
@@ -50,8 +50,8 @@ RayTable in_order(const LineScan& r) {
   return table;
 }
 
-/// Lines that were scanned from their end, put with column 0 first.
-void turn_back_lines(Beams& beams) {
+/// Reverses the lines that are scanned backwards, so that column 0 is first.
+void reverse_lines(Beams& beams) {
   for (std::size_t line = 1; line < beams.rows; line += 2) {
     const auto first = static_cast<std::ptrdiff_t>(line * beams.cols);
     const auto last = first + static_cast<std::ptrdiff_t>(beams.cols);
@@ -62,11 +62,11 @@ void turn_back_lines(Beams& beams) {
 
 }  // namespace
 
-Beams make_beams(const LineScan& raster, const FrameInterval& window) {
+Beams make_beams(const LineScan& raster, const FrameInterval& interval) {
   validate(raster);
-  Beams beams = make_beams(in_order(raster), window);
+  Beams beams = make_beams(in_time_order(raster), interval);
   const bool grid = beams.rows == raster.elevations_rad.size();
-  if (grid && raster.bidirectional) turn_back_lines(beams);
+  if (grid && raster.bidirectional) reverse_lines(beams);
   return beams;
 }
 

@@ -7,20 +7,20 @@
 
 namespace glidar {
 
-/// A beam that mirrors lead along lines, scan after scan: elevations x azimuths. One line is a 2D
-/// scanner. Azimuths count from +x to the left, elevations from the horizon upwards.
+/// A beam that mirrors steer along lines, scan after scan: elevations x azimuths. A 2D scanner has
+/// one line. Azimuths are from +x towards +y, elevations towards +z.
 struct LineScan {
-  std::vector<double> elevations_rad;  ///< of the lines, in the order of time; they are the rows
-  std::vector<double> azimuths_rad;    ///< of the points of a line, in the order of time
-  double point_ns = 0.0;               ///< from point to point
-  double line_ns = 0.0;                ///< from line to line
-  bool bidirectional = false;          ///< every second line is scanned from its end
+  std::vector<double> elevations_rad;  ///< of the lines in time order; one row each
+  std::vector<double> azimuths_rad;    ///< of the points of a line in time order
+  double point_ns = 0.0;               ///< time between points
+  double line_ns = 0.0;                ///< time between lines
+  bool bidirectional = false;          ///< every second line is scanned backwards
   double scan_hz = 10.0;               ///< scans per second; a scan begins at time 0
 };
 
-/// rows x cols when the window is exactly one scan; else the shots in the window in the order of
-/// time, as one row. Frame lidar_frame, boresight +x.
-/// Throws Error when a number is out of range or a scan lasts longer than its period.
-Beams make_beams(const LineScan& raster, const FrameInterval& window);
+/// rows x cols if the interval is exactly one scan; else the firings in the interval in time order,
+/// as one row. Frame lidar_frame (x forward, y left, z up), boresight +x.
+/// Throws Error if a number is out of range or a scan is longer than its period.
+Beams make_beams(const LineScan& raster, const FrameInterval& interval);
 
 }  // namespace glidar

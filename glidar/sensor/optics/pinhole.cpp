@@ -61,14 +61,14 @@ constexpr int kMaxNewtonSteps = 50;
 constexpr double kConverged =
     1e-14;  // residual on the normalised plane: below any pixel's rounding
 
-/// The unit ray through a point of the normalised image plane; NaN when there is none.
+/// The unit ray through a point of the normalised image plane; NaN if there is none.
 Eigen::Vector3d ray(const NoDistortion& /*none*/, const Eigen::Vector2d& plane) {
   return direction_through(plane.x(), plane.y());
 }
 
-/// Newton's method from the distorted point. The solution must lie on the branch that contains the
-/// image centre: where the Jacobian stays positive, beyond it the model folds over and means
-/// nothing. Nothing is imaged beyond the largest radius either.
+/// Newton's method from the distorted point. The solution must be on the branch of the image
+/// centre, where the Jacobian is positive: beyond it the model folds over and is invalid. Nothing
+/// is imaged beyond max_radius either.
 Eigen::Vector3d ray(const RadialTangential& k, const Eigen::Vector2d& plane) {
   Eigen::Vector2d p = plane;
   const double tolerance = kConverged * (1.0 + plane.norm());
@@ -105,7 +105,7 @@ Eigen::Vector3d ray(const Fisheye& k, const Eigen::Vector2d& plane) {
   return {kNaN, kNaN, kNaN};
 }
 
-/// The unit direction of every pixel, row by row.
+/// The unit direction of every pixel, row-major.
 template <class Model>
 void fill_directions(const PinholeIntrinsics& k, const Model& distortion,
                      std::vector<Eigen::Vector3d>& directions) {
@@ -140,7 +140,7 @@ Pinhole pinhole_from_fov(std::uint32_t width, std::uint32_t height, double fov_y
   return pinhole;
 }
 
-Beams make_beams(const Pinhole& pinhole, const FrameInterval& /*window*/) {
+Beams make_beams(const Pinhole& pinhole, const FrameInterval& /*interval*/) {
   const PinholeIntrinsics& k = pinhole.intrinsics;
   validate(k);
   Beams beams;

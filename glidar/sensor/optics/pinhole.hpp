@@ -14,8 +14,8 @@ namespace glidar {
 struct NoDistortion {};
 
 /// OpenCV's rational radial-tangential model (calib3d documentation, "Detailed Description"):
-/// x'' = x' (1+k1 r2+k2 r4+k3 r6)/(1+k4 r2+k5 r4+k6 r6) + 2 p1 x'y' + p2 (r2 + 2 x'2), y''
-/// likewise.
+/// x'' = x' (1+k1 r2+k2 r4+k3 r6)/(1+k4 r2+k5 r4+k6 r6) + 2 p1 x'y' + p2 (r2 + 2 x'2), and
+/// y'' = y' (...)/(...) + p1 (r2 + 2 y'2) + 2 p2 x'y'.
 struct RadialTangential {
   double k1 = 0.0;
   double k2 = 0.0;
@@ -25,8 +25,8 @@ struct RadialTangential {
   double k4 = 0.0;
   double k5 = 0.0;
   double k6 = 0.0;
-  /// Largest distance from the axis, on the plane z = 1, that the lens images ("metric radius" in
-  /// calibrations of the Azure Kinect). Pixels that would look farther out have no beam.
+  /// Maximum distance from the axis, on the plane z = 1, that the lens images ("metric radius" in
+  /// calibrations of the Azure Kinect). Pixels farther out have no beam.
   double max_radius = std::numeric_limits<double>::infinity();
 };
 
@@ -47,20 +47,20 @@ struct Pinhole {
   Distortion distortion;
 };
 
-/// Most pixels along one side of an image.
+/// Maximum width and height of an image, in pixels.
 inline constexpr std::uint32_t kMaxImageSide = 65536;
-/// Farthest that focal lengths and principal points go, in pixels.
+/// Maximum magnitude of focal lengths and principal points, in pixels.
 inline constexpr double kFarthestPixel = 1e9;
 
-/// The focal length in pixels of an image that spans this angle over this many pixels.
+/// The focal length in pixels at which `pixels` span the angle `fov_rad`.
 double focal_length_px(std::uint32_t pixels, double fov_rad);
 
-/// Square pixels, principal point in the middle: fy = height / (2 tan(fov_y / 2)).
+/// A camera with square pixels and a centred principal point: fy = height / (2 tan(fov_y / 2)).
 /// Throws Error unless 0 < fov_y_rad < pi and both sizes are at least 1.
 Pinhole pinhole_from_fov(std::uint32_t width, std::uint32_t height, double fov_y_rad);
 
-/// One beam per pixel, all at the start of the window. A pixel that the distortion model cannot
-/// invert has no beam. Throws Error when a number is out of range.
-Beams make_beams(const Pinhole& pinhole, const FrameInterval& window = {});
+/// One beam per pixel, all at the start of the interval. Pixels at which the distortion model is
+/// not invertible have no beam. Throws Error if a number is out of range.
+Beams make_beams(const Pinhole& pinhole, const FrameInterval& interval = {});
 
 }  // namespace glidar

@@ -37,8 +37,8 @@ void validate(const Prism& prism) {
   for (const RisleyPrism& p : prism.prisms) validate(p);
 }
 
-/// Snell's law for vectors: the unit direction behind a face whose unit normal points against the
-/// light; `ratio` is the index before over the index behind. NaN at total reflection.
+/// Snell's law for vectors: the unit direction behind a face whose unit normal is opposed to the
+/// light; `ratio` is the refractive index before over that behind. NaN for total reflection.
 Eigen::Vector3d refract(const Eigen::Vector3d& b, const Eigen::Vector3d& normal, double ratio) {
   const double cosine = -b.dot(normal);
   const double root = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
@@ -46,8 +46,8 @@ Eigen::Vector3d refract(const Eigen::Vector3d& b, const Eigen::Vector3d& normal,
   return (ratio * b + (ratio * cosine - std::sqrt(root)) * normal).normalized();
 }
 
-/// The sloping face's normal at this phase, against the light. Axes: x along the boresight, y left,
-/// z up; at phase 0 the prism deflects downwards, then it turns to the right, up, left.
+/// The normal of the oblique face at this phase, opposed to the light. Axes: x along the boresight,
+/// y left, z up; the prism deflects downwards at phase 0, then to the right, up and left.
 Eigen::Vector3d slope_normal(const RisleyPrism& p, double phase_rad) {
   const double side = p.slope == RisleyPrism::Slope::entry ? 1.0 : -1.0;
   const double s = side * std::sin(p.apex_rad);
@@ -63,7 +63,7 @@ Eigen::Vector3d pass(const RisleyPrism& p, double phase_rad, const Eigen::Vector
   return refract(inside, slope_first ? square : slope, p.refractive_index);
 }
 
-/// Phases of all prisms at shot k; whole turns are left out, so that they stay exact for long.
+/// Phases of all prisms at firing k; whole turns are left out, so that they stay exact for long.
 void set_phases(const Prism& prism, std::int64_t k, std::vector<double>& phases_rad) {
   for (std::size_t i = 0; i < prism.prisms.size(); ++i) {
     const RisleyPrism& p = prism.prisms[i];
@@ -82,11 +82,11 @@ Eigen::Vector3d pass_all(const Prism& prism, const std::vector<double>& phases_r
 
 }  // namespace
 
-Beams make_beams(const Prism& prism, const FrameInterval& window) {
+Beams make_beams(const Prism& prism, const FrameInterval& interval) {
   validate(prism);
   const std::size_t rows = prism.incidence_tangent.size();
   const FiringSchedule pulses = {0.0, kSecond_ns / prism.pulse_hz};
-  const FiringRange range = firings_in(pulses, window, kMaxBeams / rows);
+  const FiringRange range = firings_in(pulses, interval, kMaxBeams / rows);
   Beams beams;
   beams.rows = static_cast<std::uint32_t>(rows);
   beams.cols = static_cast<std::uint32_t>(range.size());
@@ -99,7 +99,7 @@ Beams make_beams(const Prism& prism, const FrameInterval& window) {
   for (std::size_t col = 0; col < range.size(); ++col) {
     const std::int64_t k = range.begin + static_cast<std::int64_t>(col);
     set_phases(prism, k, phases_rad);
-    const auto time_ns = static_cast<std::uint32_t>(firing_time_ns(pulses, k) - window.start_ns);
+    const auto time_ns = static_cast<std::uint32_t>(firing_time_ns(pulses, k) - interval.start_ns);
     for (std::size_t row = 0; row < rows; ++row) {
       const std::size_t i = row * range.size() + col;
       beams.directions[i] = pass_all(prism, phases_rad, prism.incidence_tangent[row]);

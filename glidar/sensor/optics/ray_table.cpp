@@ -9,8 +9,8 @@
 namespace glidar {
 namespace {
 
-/// Entry `index` of the table, fired `time_ns` after the window's start.
-struct Shot {
+/// Entry `index` of the table, fired `time_ns` after the start of the interval.
+struct Firing {
   std::size_t index;
   std::uint32_t time_ns;
 };
@@ -24,8 +24,8 @@ void check_times(const RayTable& table) {
   const std::vector<double>& times = table.times_ns;
   if (times.empty()) return;
   require_number(std::is_sorted(times.begin(), times.end()), "optics, times", times.front(),
-                 "times that do not fall");
-  // half a nanosecond less: a shot is rounded to a nanosecond and must stay in its own play
+                 "times in increasing order");
+  // Half a nanosecond less: times are rounded to nanoseconds and must stay in their own period.
   require_number(times.front() >= 0.0 && times.back() <= table.period_ns - 0.5, "optics, times",
                  times.back(), "from 0 to half a nanosecond before the period's end");
 }
@@ -45,51 +45,52 @@ void validate(const RayTable& table) {
   check_times(table);
 }
 
-/// The shots of the plays that touch the window, less those outside it.
-std::vector<Shot> shots_in(const RayTable& table, const FrameInterval& window) {
+/// The firings of the periods that touch the interval, less those outside it.
+std::vector<Firing> table_firings(const RayTable& table, const FrameInterval& interval) {
   const FiringSchedule last = {table.times_ns.back(), table.period_ns};
-  const FiringRange plays = firings_in(last, window, kMaxBeams / table.times_ns.size());
-  std::vector<Shot> shots;
-  shots.reserve((plays.size() + 1) * table.times_ns.size());
-  for (std::int64_t play = plays.begin; play <= plays.end; ++play) {
+  const FiringRange periods = firings_in(last, interval, kMaxBeams / table.times_ns.size());
+  std::vector<Firing> firings;
+  firings.reserve((periods.size() + 1) * table.times_ns.size());
+  for (std::int64_t period = periods.begin; period <= periods.end; ++period) {
     for (std::size_t i = 0; i < table.times_ns.size(); ++i) {
-      const std::int64_t time_ns = firing_time_ns({table.times_ns[i], table.period_ns}, play);
-      if (time_ns < window.start_ns || time_ns >= window.end_ns) continue;
-      shots.push_back({i, static_cast<std::uint32_t>(time_ns - window.start_ns)});
+      const std::int64_t time_ns = firing_time_ns({table.times_ns[i], table.period_ns}, period);
+      if (time_ns < interval.start_ns || time_ns >= interval.end_ns) continue;
+      firings.push_back({i, static_cast<std::uint32_t>(time_ns - interval.start_ns)});
     }
   }
-  return shots;
+  return firings;
 }
 
-bool is_one_play(const RayTable& table, const std::vector<Shot>& shots) {
-  return shots.size() == table.times_ns.size() && !shots.empty() && shots.front().index == 0;
+bool is_one_period(const RayTable& table, const std::vector<Firing>& firings) {
+  return firings.size() == table.times_ns.size() && !firings.empty() && firings.front().index == 0;
 }
 
-std::vector<Shot> all_at_once(std::size_t size) {
-  std::vector<Shot> shots(size);
-  for (std::size_t i = 0; i < size; ++i) shots[i] = {i, 0};
-  return shots;
+std::vector<Firing> all_at_once(std::size_t size) {
+  std::vector<Firing> firings(size);
+  for (std::size_t i = 0; i < size; ++i) firings[i] = {i, 0};
+  return firings;
 }
 
 }  // namespace
 
-Beams make_beams(const RayTable& table, const FrameInterval& window) {
+Beams make_beams(const RayTable& table, const FrameInterval& interval) {
   validate(table);
   const bool timed = !table.times_ns.empty();
-  const std::vector<Shot> shots =
-      timed ? shots_in(table, window) : all_at_once(table.directions.size());
-  const bool grid = !timed || is_one_play(table, shots);
+  const std::vector<Firing> firings =
+      timed ? table_firings(table, interval) : all_at_once(table.directions.size());
+  const bool grid = !timed || is_one_period(table, firings);
   Beams beams;
   beams.rows = grid ? table.rows : 1;
-  beams.cols = grid ? table.cols : static_cast<std::uint32_t>(shots.size());
+  beams.cols = grid ? table.cols : static_cast<std::uint32_t>(firings.size());
   beams.frame_id = "lidar_frame";
   beams.boresight = Eigen::Vector3d::UnitX();
-  for (const Shot& shot : shots) {
-    beams.directions.push_back(table.directions[shot.index].normalized());
-    if (timed) beams.times_ns.push_back(shot.time_ns);
-    if (!table.origins_m.empty()) beams.origins_m.push_back(table.origins_m[shot.index]);
-    beams.rings.push_back(table.rings.empty() ? static_cast<std::uint16_t>(shot.index / table.cols)
-                                              : table.rings[shot.index]);
+  for (const Firing& firing : firings) {
+    beams.directions.push_back(table.directions[firing.index].normalized());
+    if (timed) beams.times_ns.push_back(firing.time_ns);
+    if (!table.origins_m.empty()) beams.origins_m.push_back(table.origins_m[firing.index]);
+    beams.rings.push_back(table.rings.empty()
+                              ? static_cast<std::uint16_t>(firing.index / table.cols)
+                              : table.rings[firing.index]);
   }
   return beams;
 }

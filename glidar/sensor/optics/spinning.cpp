@@ -39,7 +39,7 @@ void validate(const Spinning& s) {
   for (const SpinningChannel& channel : s.channels) validate(channel);
 }
 
-/// Channels by falling elevation; equal ones in the order of the table.
+/// Channels by decreasing elevation; equal ones in the order of the table.
 std::vector<std::size_t> rows_of(const Spinning& s) {
   std::vector<std::size_t> rows(s.channels.size());
   std::iota(rows.begin(), rows.end(), std::size_t{0});
@@ -49,9 +49,9 @@ std::vector<std::size_t> rows_of(const Spinning& s) {
   return rows;
 }
 
-/// Turns made since time 0 when sequence k starts, less whole ones: whole columns are exact however
-/// long the head has been turning.
-double turned(const Spinning& s, std::int64_t k) {
+/// Fraction of a turn from time 0 to the start of sequence k, without whole turns, so that columns
+/// stay exact at any time.
+double turn_fraction(const Spinning& s, std::int64_t k) {
   if (s.columns_per_turn > 0) {
     const auto columns = std::int64_t{s.columns_per_turn};
     return static_cast<double>(k % columns) / static_cast<double>(columns);
@@ -59,34 +59,34 @@ double turned(const Spinning& s, std::int64_t k) {
   return std::fmod(static_cast<double>(k) * s.sequence_ns * s.rotation_hz / kSecond_ns, 1.0);
 }
 
-double sense(const Spinning& s) {
+double rotation_sign(const Spinning& s) {
   return s.turn == Spinning::Turn::clockwise ? -1.0 : 1.0;
 }
 
-/// Where the head points when sequence k starts.
+/// Azimuth of the head at the start of sequence k.
 double head_azimuth_rad(const Spinning& s, std::int64_t k) {
-  return s.start_azimuth_rad + sense(s) * kTwoPi * turned(s, k);
+  return s.start_azimuth_rad + rotation_sign(s) * kTwoPi * turn_fraction(s, k);
 }
 
-bool fires(const Spinning& s, double azimuth_rad) {
+bool is_in_sector(const Spinning& s, double azimuth_rad) {
   if (s.sector_width_rad >= kTwoPi) return true;
   const double into = std::fmod(azimuth_rad - s.sector_start_rad, kTwoPi);
   return (into < 0.0 ? into + kTwoPi : into) <= s.sector_width_rad;
 }
 
-double first_fire_ns(const Spinning& s) {
+double first_firing_ns(const Spinning& s) {
   double first = s.channels.front().fire_time_ns;
   for (const SpinningChannel& channel : s.channels) first = std::min(first, channel.fire_time_ns);
   return first;
 }
 
-std::vector<std::int64_t> sequences_in(const Spinning& s, const FrameInterval& window) {
-  const FiringRange range =
-      firings_in({first_fire_ns(s), sequence_period_ns(s)}, window, kMaxBeams / s.channels.size());
+std::vector<std::int64_t> sequences_in(const Spinning& s, const FrameInterval& interval) {
+  const FiringRange range = firings_in({first_firing_ns(s), sequence_period_ns(s)}, interval,
+                                       kMaxBeams / s.channels.size());
   std::vector<std::int64_t> sequences;
   sequences.reserve(range.size());
   for (std::int64_t k = range.begin; k < range.end; ++k) {
-    if (fires(s, head_azimuth_rad(s, k))) sequences.push_back(k);
+    if (is_in_sector(s, head_azimuth_rad(s, k))) sequences.push_back(k);
   }
   return sequences;
 }
@@ -97,7 +97,7 @@ bool has_origins(const Spinning& s) {
                      [](const SpinningChannel& channel) { return !channel.origin_m.isZero(0.0); });
 }
 
-/// Sizes every array and fills what does not depend on the sequence.
+/// Beams with all arrays allocated.
 Beams make_grid(const Spinning& s, std::size_t sequences) {
   Beams beams;
   beams.rows = static_cast<std::uint32_t>(s.channels.size());
@@ -113,8 +113,8 @@ Beams make_grid(const Spinning& s, std::size_t sequences) {
   return beams;
 }
 
-/// One shot of a channel; `head_rad` is where the head points at that moment.
-void put_shot(const Spinning& s, const SpinningChannel& channel, double head_rad, std::size_t i,
+/// One firing of a channel; `head_rad` is where the head points at that moment.
+void set_beam(const Spinning& s, const SpinningChannel& channel, double head_rad, std::size_t i,
               Beams& beams) {
   const double azimuth_rad = head_rad + channel.azimuth_offset_rad;
   beams.directions[i] = direction_at(azimuth_rad, channel.elevation_rad).normalized();
@@ -133,23 +133,23 @@ double sequence_period_ns(const Spinning& s) {
   return s.columns_per_turn > 0 ? kSecond_ns / (s.rotation_hz * s.columns_per_turn) : s.sequence_ns;
 }
 
-Beams make_beams(const Spinning& s, const FrameInterval& window) {
+Beams make_beams(const Spinning& s, const FrameInterval& interval) {
   validate(s);
   const std::vector<std::size_t> rows = rows_of(s);
-  const std::vector<std::int64_t> sequences = sequences_in(s, window);
+  const std::vector<std::int64_t> sequences = sequences_in(s, interval);
   const double period_ns = sequence_period_ns(s);
-  const double turn_rad_per_ns = sense(s) * kTwoPi * s.rotation_hz / kSecond_ns;
+  const double turn_rad_per_ns = rotation_sign(s) * kTwoPi * s.rotation_hz / kSecond_ns;
   Beams beams = make_grid(s, sequences.size());
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const SpinningChannel& channel = s.channels[rows[row]];
-    const FiringSchedule shots = {channel.fire_time_ns, period_ns};
+    const FiringSchedule firings = {channel.fire_time_ns, period_ns};
     for (std::size_t col = 0; col < sequences.size(); ++col) {
       const std::size_t i = row * sequences.size() + col;
       const double head_rad =
           head_azimuth_rad(s, sequences[col]) + turn_rad_per_ns * channel.fire_time_ns;
-      put_shot(s, channel, head_rad, i, beams);
+      set_beam(s, channel, head_rad, i, beams);
       beams.times_ns[i] =
-          static_cast<std::uint32_t>(firing_time_ns(shots, sequences[col]) - window.start_ns);
+          static_cast<std::uint32_t>(firing_time_ns(firings, sequences[col]) - interval.start_ns);
     }
   }
   return beams;

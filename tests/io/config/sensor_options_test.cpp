@@ -73,8 +73,9 @@ TEST(SensorOptions, RefuseWhatTheSensorDoesNotHave) {
   EXPECT_EQ(error_with("Kinect-v2", &SensorOptions::returns, parse_returns("", {"2"})),
             "returns: the sensor has no pulse light; allowed: a sensor with pulse light; leave it "
             "out, or choose a sensor such as VLP-16");
-  EXPECT_NE(error_with("Kinect-v2", &SensorOptions::rain_mm_per_h, 1.0).find("is not pulsed"),
-            std::string::npos);
+  EXPECT_NE(
+      error_with("Kinect-v2", &SensorOptions::rain_mm_per_h, 1.0).find("has no lidar_equation"),
+      std::string::npos);
 }
 
 TEST(SensorOptions, RefuseNumbersOutOfRange) {

@@ -118,9 +118,9 @@ const BadFile kBadTrajectories[] = {
     {"Overflow", kGood + "1 1e999 0 0 0 0 0 1\n", "t:2:3: '1e999'; allowed: a finite number"},
     {"DecimalComma", kGood + "1 0.5x 0 0 0 0 0 1\n", "t:2:3: '0.5x'; allowed: a finite number"},
     {"TimeGoesBack", "5 0 0 0 0 0 0 1\n# c\n 4 0 0 0 0 0 0 1\n",
-     "t:3:2: a time before that of the pose before; allowed: times that increase"},
+     "t:3:2: a time before that of the previous pose; allowed: increasing times"},
     {"TimeTwice", kGood + kGood,
-     "t:2:1: the time of the pose before again; allowed: times that increase"},
+     "t:2:1: the same time as the previous pose; allowed: increasing times"},
     {"TimeInNanoseconds", "1403636580838555574 0 0 0 0 0 0 1\n",
      "t:1:1: '1403636580838555574'; allowed: seconds from -9.2e9 to 9.2e9; a file in nanoseconds "
      "must be divided by 1e9"},

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Where a ray from the origin meets a plane through a point.
+/// The intersection of a ray from the origin with a plane through a point.
 SurfacePoint on_plane(const Vector3d& ray, const Vector3d& point, const Vector3d& normal,
                       std::uint32_t index = 0) {
   const Vector3d direction = ray.normalized();
@@ -21,19 +21,19 @@ SurfacePoint on_plane(const Vector3d& ray, const Vector3d& point, const Vector3d
   return {range_m * direction, towards, -towards.dot(direction), range_m, index};
 }
 
-/// A ray that leans to the side, of a beam along z.
+/// A ray tilted sideways, of a beam along z.
 Vector3d ray(double lean) {
   return {lean, 0.0, 1.0};
 }
 
-constexpr double kLean = 1e-3;  // from sub-ray to sub-ray: 10 mm at 10 m
+constexpr double kTilt = 1e-3;  // from sub-ray to sub-ray: 10 mm at 10 m
 
 TEST(HasGap, IsFalseWithinAPlaneAtAnyIncidence) {
   for (double tilt = -1.57; tilt < 1.57; tilt += 0.0301) {
     const Vector3d normal(std::sin(tilt), 0.0, std::cos(tilt));
     for (const double range_m : {0.5, 10.0, 200.0}) {
       const SurfacePoint a = on_plane(ray(0.0), {0.0, 0.0, range_m}, normal);
-      const SurfacePoint b = on_plane(ray(kLean), {0.0, 0.0, range_m}, normal);
+      const SurfacePoint b = on_plane(ray(kTilt), {0.0, 0.0, range_m}, normal);
       if (!(b.range_m > 0.0)) continue;  // the plane ends in the distance between the two
       EXPECT_FALSE(has_gap(a, b)) << tilt;
       EXPECT_FALSE(has_gap(b, a)) << tilt;
@@ -44,30 +44,30 @@ TEST(HasGap, IsFalseWithinAPlaneAtAnyIncidence) {
 // Of parallel planes the tolerance is a quarter of the distance: a gap g at a spacing s with
 // g > sqrt(s^2 + g^2) / 4.
 TEST(HasGap, IsTrueBetweenParallelPlanesBeyondTheTolerance) {
-  const double spacing_m = 10.0 * kLean;
+  const double spacing_m = 10.0 * kTilt;
   const double limit_m = spacing_m / std::sqrt(15.0);
   for (const double part : {0.5, 0.9, 1.1, 2.0, 30.0}) {
     const SurfacePoint a = on_plane(ray(0.0), {0.0, 0.0, 10.0}, Vector3d::UnitZ());
     const SurfacePoint b =
-        on_plane(ray(kLean), {0.0, 0.0, 10.0 + part * limit_m}, Vector3d::UnitZ());
+        on_plane(ray(kTilt), {0.0, 0.0, 10.0 + part * limit_m}, Vector3d::UnitZ());
     EXPECT_EQ(has_gap(a, b), part > 1.0) << part;
     EXPECT_EQ(has_gap(b, a), part > 1.0) << part;
   }
 }
 
-TEST(HasGap, IsFalseAcrossAnEdgeThatBothSidesReach) {
-  // two planes that meet in x = 0.5 kLean z at z = 10, a roof or a corner
-  const Vector3d edge = 10.0 * ray(0.5 * kLean);
+TEST(HasGap, IsFalseAcrossAnEdgeSharedByBothSides) {
+  // two planes that meet in x = 0.5 kTilt z at z = 10, a roof or a corner
+  const Vector3d edge = 10.0 * ray(0.5 * kTilt);
   for (const double left : {-1.4, -0.7, 0.2, 1.2}) {
     for (const double right : {-1.3, -0.2, 0.6, 1.4}) {
       const SurfacePoint a = on_plane(ray(0.0), edge, {std::sin(left), 0.0, std::cos(left)});
-      const SurfacePoint b = on_plane(ray(kLean), edge, {std::sin(right), 0.0, std::cos(right)});
+      const SurfacePoint b = on_plane(ray(kTilt), edge, {std::sin(right), 0.0, std::cos(right)});
       EXPECT_FALSE(has_gap(a, b)) << left << " " << right;
     }
   }
 }
 
-TEST(HasGap, IsFalseForTheRoundingOfMeshesThatJoin) {
+TEST(HasGap, IsFalseForTheRoundingOfAdjacentMeshes) {
   const SurfacePoint a = on_plane(ray(0.0), {0.0, 0.0, 100.0}, Vector3d::UnitZ());
   const SurfacePoint b = on_plane(ray(1e-7), {0.0, 0.0, 100.00005}, Vector3d::UnitZ());
   EXPECT_FALSE(has_gap(a, b));
@@ -82,7 +82,7 @@ BeamSurfaces surfaces_of(std::vector<SurfacePoint> points) {
   return surfaces;
 }
 
-TEST(BeamSurfaces, JoinFacesByTheFacesBetweenThem) {
+TEST(BeamSurfaces, JoinFacesThroughIntermediateFaces) {
   // stairs from the front: tread, riser, tread; the two treads alone have a gap between them
   const Vector3d up = Vector3d::UnitX();
   const SurfacePoint lower = on_plane({-0.05, 0.0, 1.0}, {-0.5, 0.0, 0.0}, up);
@@ -97,7 +97,7 @@ TEST(BeamSurfaces, JoinFacesByTheFacesBetweenThem) {
   EXPECT_NE(two.of_ray(0), two.of_ray(1));
 }
 
-TEST(BeamSurfaces, AreOneForASphereUpToItsRimAndTwoWithWhatIsBehind) {
+TEST(BeamSurfaces, AreOneForASphereAndTwoWithABackground) {
   const double radius_m = 0.5;
   const Vector3d middle(0.0, 0.0, 10.0);
   std::vector<SurfacePoint> points;

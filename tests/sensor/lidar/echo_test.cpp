@@ -23,7 +23,7 @@ WaveformBuffer echoes_of(const std::vector<std::pair<double, double>>& paths) {
 }
 
 // Two echoes if and only if they are more than c FWHM / 2.355 apart (5 %).
-TEST(FindEchoes, TellsTwoPlanesApartBeyondTwoSigmas) {
+TEST(DetectPeaks, SeparatesTwoPlanesBeyondTwoSigmas) {
   constexpr double kTolerance = 0.05;
   const double limit_m = 2.0 * kSigma_m;
   for (double apart_m = 0.05; apart_m < 3.0; apart_m += 0.01) {
@@ -39,7 +39,7 @@ TEST(FindEchoes, TellsTwoPlanesApartBeyondTwoSigmas) {
   }
 }
 
-TEST(FindEchoes, PutsAnUnresolvedEchoAtTheWeightedMean) {
+TEST(DetectPeaks, PutsAnUnresolvedEchoAtTheWeightedMean) {
   for (const double share : {0.1, 0.3, 0.5, 0.8}) {
     const double apart_m = 1.7 * kSigma_m;
     const WaveformBuffer work = echoes_of({{20.0, 1.0 - share}, {20.0 + apart_m, share}});
@@ -48,7 +48,7 @@ TEST(FindEchoes, PutsAnUnresolvedEchoAtTheWeightedMean) {
   }
 }
 
-TEST(FindEchoes, GivesTheHeightOfTheSum) {
+TEST(DetectPeaks, HasTheHeightOfTheSum) {
   const WaveformBuffer one = echoes_of({{20.0, 2.0}, {20.0, 3.0}});
   EXPECT_NEAR(one.echo[0].signal, 5.0, 1e-12);
   EXPECT_NEAR(one.echo[0].sigma_m, kSigma_m, 1e-12);
@@ -63,7 +63,7 @@ TEST(FindEchoes, GivesTheHeightOfTheSum) {
   EXPECT_NEAR(flat.echo[0].signal, 2.0 * std::exp(-0.5 * 0.8 * 0.8), 1e-5);
 }
 
-TEST(FindEchoes, MatchesAFineSamplingOfTheWaveform) {
+TEST(DetectPeaks, MatchesAFineSamplingOfTheWaveform) {
   const std::vector<std::pair<double, double>> paths = {
       {10.0, 1.0}, {10.5, 0.4}, {11.1, 2.0}, {11.3, 0.5}, {13.0, 0.7}, {30.0, 1.0}, {30.9, 1.1}};
   const auto waveform = [&](double at) {
@@ -84,7 +84,7 @@ TEST(FindEchoes, MatchesAFineSamplingOfTheWaveform) {
   for (std::size_t i = 0; i < peaks.size(); ++i) EXPECT_NEAR(work.echo[i].signal, peaks[i], 1e-4);
 }
 
-TEST(FindEchoes, AreMixedWhenTheyMergeMoreThanOneSurface) {
+TEST(DetectPeaks, MarksEchoesOfSeveralSurfacesAsMixed) {
   const auto is_mixed = [](const std::vector<EchoContribution>& paths) {
     WaveformBuffer work;
     for (const EchoContribution& path : paths) work.add(path);
@@ -108,14 +108,14 @@ TEST(FindEchoes, AreMixedWhenTheyMergeMoreThanOneSurface) {
   EXPECT_TRUE(is_mixed({first, faint, faint})) << "two sub-rays on one surface";
 }
 
-TEST(FindEchoes, NamesTheStrongestPath) {
+TEST(DetectPeaks, ReportsTheStrongestContribution) {
   const WaveformBuffer work = echoes_of({{20.1, 1.0}, {20.0, 3.0}, {25.0, 1.0}});
   ASSERT_EQ(work.echoes, 2U);
   EXPECT_EQ(work.path[work.echo[0].strongest].source, 1U);
   EXPECT_EQ(work.path[work.echo[1].strongest].source, 2U);
 }
 
-TEST(FindEchoes, MakesTheSameEchoOfNearPathsInAnyOrder) {
+TEST(DetectPeaks, IsIndependentOfTheOrderOfNearContributions) {
   const WaveformBuffer up = echoes_of({{20.0, 1.0}, {20.05, 3.0}, {20.1, 3.0}, {20.2, 2.0}});
   const WaveformBuffer mixed = echoes_of({{20.2, 2.0}, {20.1, 3.0}, {20.0, 1.0}, {20.05, 3.0}});
   ASSERT_EQ(up.echoes, 1U);
@@ -123,12 +123,12 @@ TEST(FindEchoes, MakesTheSameEchoOfNearPathsInAnyOrder) {
   EXPECT_NEAR(mixed.echo[0].range_m, up.echo[0].range_m, 1e-14);
   EXPECT_NEAR(mixed.echo[0].signal, up.echo[0].signal, 1e-14);
   EXPECT_NEAR(mixed.echo[0].sigma_m, up.echo[0].sigma_m, 1e-14);
-  // of two that are as strong as each other the nearer
+  // of two equally strong ones the nearer
   EXPECT_EQ(mixed.path[mixed.echo[0].strongest].range_m, 20.05);
   EXPECT_EQ(up.path[up.echo[0].strongest].range_m, 20.05);
 }
 
-TEST(WaveformBuffer, LeavesOutTheWeakestOfTooManyPaths) {
+TEST(WaveformBuffer, DropsTheWeakestContributionsWhenFull) {
   WaveformBuffer work;
   for (std::size_t i = 0; i <= WaveformBuffer::kMax; ++i) {
     work.add({10.0, i == 7 ? 0.5 : 1.0, static_cast<std::uint32_t>(i), ReturnSource::surface});
@@ -138,7 +138,7 @@ TEST(WaveformBuffer, LeavesOutTheWeakestOfTooManyPaths) {
 }
 
 // The walk of a fixed threshold is -(c / 2) sigma_p sqrt(2 ln(A / T)).
-TEST(ToldRange, WalksWithTheSignalWhenALeadingEdgeIsTimed) {
+TEST(ReportedRange, HasRangeWalkForLeadingEdgeTiming) {
   Receiver receiver{.pulse_fwhm_s = 5e-9, .timing = Receiver::Timing::leading_edge};
   const double sigma_m = pulse_sigma_m(receiver);
   EXPECT_NEAR(sigma_m, 0.318, 5e-4);  // c FWHM / 4.71
@@ -153,7 +153,7 @@ TEST(ToldRange, WalksWithTheSignalWhenALeadingEdgeIsTimed) {
   }
 }
 
-TEST(KeepSeparate, HidesEchoesCloseToAStrongerOne) {
+TEST(EnforceMinSeparation, RemovesEchoesCloseToAStrongerOne) {
   WaveformBuffer work = echoes_of({{10.0, 1.0}, {11.0, 3.0}, {15.0, 2.0}});
   ASSERT_EQ(work.echoes, 3U);
   enforce_min_separation(0.5, work);
@@ -164,7 +164,7 @@ TEST(KeepSeparate, HidesEchoesCloseToAStrongerOne) {
   EXPECT_NEAR(work.echo[1].range_m, 15.0, 1e-9);
 }
 
-/// Three echoes: weak, strong, middling.
+/// Three echoes: weak, strong, medium.
 std::vector<int> chosen_of(const std::vector<Return>& returns, std::size_t count = 3) {
   const WaveformBuffer work = echoes_of({{10.0, 1.0}, {20.0, 3.0}, {30.0, 2.0}});
   std::array<int, kMaxReturns> chosen{};
@@ -172,7 +172,7 @@ std::vector<int> chosen_of(const std::vector<Return>& returns, std::size_t count
   return {chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(returns.size())};
 }
 
-TEST(Choose, FindsFirstStrongestSecondAndLast) {
+TEST(SelectReturns, FindsFirstStrongestSecondAndLast) {
   using Order = Return::Order;
   EXPECT_EQ(chosen_of({{Order::nearest, 0}}), std::vector<int>({0}));
   EXPECT_EQ(chosen_of({{Order::strongest, 0}}), std::vector<int>({1}));
@@ -182,8 +182,8 @@ TEST(Choose, FindsFirstStrongestSecondAndLast) {
             std::vector<int>({0, 1, 2}));
 }
 
-// A dual return tells strongest and last; when they are the same, the second strongest.
-TEST(Choose, TellsNoEchoTwice) {
+// A dual return reports strongest and last; if they are the same, the second strongest.
+TEST(SelectReturns, ReportsNoEchoTwice) {
   using Order = Return::Order;
   const std::vector<Return> dual = {{Order::strongest, 0}, {Order::farthest, 0}};
   EXPECT_EQ(chosen_of(dual), std::vector<int>({1, 2}));
@@ -192,7 +192,7 @@ TEST(Choose, TellsNoEchoTwice) {
   EXPECT_EQ(chosen_of(dual, 0), std::vector<int>({-1, -1}));
 }
 
-TEST(ValidateReceiver, NamesWhatIsOutOfRange) {
+TEST(ValidateReceiver, ReportsTheNumberOutOfRange) {
   EXPECT_NO_THROW(validate(Receiver{}));
   EXPECT_THROW(validate(Receiver{.pulse_fwhm_s = 0.0}), Error);
   EXPECT_THROW(validate(Receiver{.separation_m = -1.0}), Error);

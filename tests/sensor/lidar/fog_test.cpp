@@ -19,7 +19,7 @@ constexpr double kEndless = std::numeric_limits<double>::infinity();
 /// S is then the integral I_s of Hahner et al., which is one over time and lacks c / 2.
 constexpr double kUnitBackscatter = 2.0 / (std::numbers::pi * kLight_m_per_s);
 
-/// A light whose S is what a surface sends back, over R^2, times the transmission.
+/// A lidar equation whose S is the backscatter over R^2 times the transmission.
 LidarEquation unit_light(double extinction_per_m) {
   return {.reference_reflectance = 1.0,
           .reference_range_m = 1.0,
@@ -38,7 +38,7 @@ double part_of_integral(double alpha, double range_m, double from_m, double to_m
   return sum * std::max(0.0, to_m - from_m) / kSteps * 2.0 / kLight_m_per_s;
 }
 
-/// I_s, in one part up to where lamp and receiver see all of each other's air, and one beyond.
+/// I_s, in one part up to the range of full overlap, and one beyond.
 double soft_integral(double alpha, double range_m, double hard_range_m) {
   const double from_m = std::max(0.9, range_m - 2.0 * kHalfPulse_m);
   const double to_m = std::min(range_m, hard_range_m);
@@ -58,7 +58,7 @@ class SoftReturn : public ::testing::TestWithParam<Golden> {};
 TEST_P(SoftReturn, HasThePublishedPeak) {
   const auto& [alpha, peak, peak_range_m, exact_peak] = GetParam();
   const FogProfile profile = fog_profile(unit_light(alpha), kUnitBackscatter, kFwhm_s);
-  // the publication looks every 0.1 m
+  // the publication samples every 0.1 m
   double best = 0.0;
   double best_range_m = 0.0;
   for (int i = 10; i <= 100; ++i) {
@@ -76,7 +76,7 @@ TEST_P(SoftReturn, HasThePublishedPeak) {
   EXPECT_NEAR(echo.range_m, peak_range_m - 2.998, 0.05);
 }
 
-TEST_P(SoftReturn, IsTheIntegralAtAnyTimeAndBeforeAnyTarget) {
+TEST_P(SoftReturn, IsTheIntegralAtAnyTimeAndInFrontOfAnyTarget) {
   const double alpha = GetParam().alpha;
   const FogProfile profile = fog_profile(unit_light(alpha), kUnitBackscatter, kFwhm_s);
   const double scale = 1e-9 * GetParam().peak;
@@ -120,7 +120,7 @@ TEST(FogReturn, DependsOnNearTargetsAndNotOnFarOnes) {
   EXPECT_EQ(echo_before(fog, 0.1).signal, 0.0);
 }
 
-TEST(FogReturn, TakesTheNearEndFromTheOverlapThatTellsIt) {
+TEST(FogReturn, UsesTheNearRangeOfTheOverlapTable) {
   LidarEquation light = unit_light(0.06);
   const SoftEcho expected = echo_before(fog_return(light, 1e-3, kFwhm_s), kEndless);
   light.overlap = {{0.9, 0.0}, {1.0, 1.0}};
@@ -132,16 +132,16 @@ TEST(FogReturn, TakesTheNearEndFromTheOverlapThatTellsIt) {
   EXPECT_GT(echo_before(fog_return(light, 1e-3, kFwhm_s), kEndless).range_m, 3.0);
 }
 
-TEST(FogReturn, FindsAPeakFarOutWhereTheOverlapGrowsWithTheRange) {
+TEST(FogReturn, FindsAFarPeakWhereTheOverlapIncreasesWithRange) {
   LidarEquation light{.reference_range_m = 100.0, .weather_extinction_per_m = 0.002};
   light.overlap = {{1.0, 0.0}, {99.0, 1.0}, {100.0, 1000.0}, {101.0, 1000.0}};
   const SoftEcho echo = echo_before(fog_return(light, 1e-3, 5e-9), kEndless);
   EXPECT_NEAR(echo.range_m, 101.0, 1.0);
 }
 
-TEST(FogReturn, OfAShortPulseIsThatOfItsLayer) {
+TEST(FogReturn, OfAShortPulseIsThatOfALayer) {
   // A pulse of 0.01 ns: the integral of sin^2 is half its length of c FWHM, and the fog just beyond
-  // 1 m, where the receiver sees all of the beam, is the brightest.
+  // 1 m, where the overlap is complete, is the brightest.
   constexpr double kShort_s = 1e-11;
   const double alpha = 0.05;
   const SoftEcho echo = echo_before(fog_return(unit_light(alpha), 2e-3, kShort_s), kEndless);
@@ -151,7 +151,7 @@ TEST(FogReturn, OfAShortPulseIsThatOfItsLayer) {
   EXPECT_NEAR(echo.range_m, 1.0, 2e-3);
 }
 
-TEST(FogReturn, IsNoneWithoutBackscatter) {
+TEST(FogReturn, IsZeroWithoutBackscatter) {
   EXPECT_EQ(echo_before(fog_return(unit_light(0.06), 0.0, kFwhm_s), kEndless).signal, 0.0);
 }
 

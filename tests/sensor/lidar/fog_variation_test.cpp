@@ -42,7 +42,7 @@ TEST_P(FogVariation, CellsHaveGammaDistributedFactorsOfMeanOne) {
   std::vector<double> places;
   double sum = 0.0;
   for (std::uint32_t beam = 0; beam < 3000; ++beam) {
-    draw_fog_cells(fog, 5.0, {.seed = 7, .beam = beam}, cells);
+    sample_fog_cells(fog, 5.0, {.seed = 7, .beam = beam}, cells);
     ASSERT_GE(cells.size(), 5U);
     EXPECT_EQ(cells[0].from_m, 0.9);
     places.push_back((cells[1].from_m - 0.9) / kCell_m);
@@ -62,7 +62,7 @@ TEST_P(FogVariation, CellsHaveGammaDistributedFactorsOfMeanOne) {
 
 // A layer much thinner than a cell: its echo is the cell's factor times that of even fog, so that
 // the mean power is kept.
-TEST_P(FogVariation, EchoOfAThinLayerIsGammaDistributedAroundThatOfEvenFog) {
+TEST_P(FogVariation, EchoOfAThinLayerIsGammaDistributedAroundThatOfUniformFog) {
   const unsigned looks = GetParam();
   LidarEquation light = kLight;
   light.overlap = {{1.0, 0.0}, {1.0001, 1.0}, {1.0002, 1.0}};
@@ -110,7 +110,7 @@ TEST(VaryingFog, EchoIsTheLargestValueOfTheSumOverItsCells) {
   for (std::uint32_t beam = 0; beam < 12; ++beam) {
     const double end_m = beam % 3 == 0 ? 1.6 : 9.0;
     const RngKey draw{.seed = 11, .beam = beam};
-    draw_fog_cells(fog, end_m, draw, cells);
+    sample_fog_cells(fog, end_m, draw, cells);
     SoftEcho best;
     for (double range_m = 0.9; range_m < end_m + 2.0 * kCell_m; range_m += 0.01) {
       const double signal = signal_of_cells(cells, range_m, end_m);
@@ -124,7 +124,7 @@ TEST(VaryingFog, EchoIsTheLargestValueOfTheSumOverItsCells) {
 
 // The program of Hahner et al. (LiDAR_fog_sim, noise variant v4) shifts fog's echoes by 10 m times
 // a beta distributed number of 2 and 20, which makes them look like recorded ones: 0.60 m rms.
-TEST(VaryingFog, EchoesSpreadInRangeAsMuchAsRecordedOnesDo) {
+TEST(VaryingFog, EchoRangesSpreadLikeRecordedOnes) {
   const VaryingFog fog = varying_fog(kLight, kBackscatter, kFwhm_s, 1);
   const double even_m = echo_before(fog_return(kLight, kBackscatter, kFwhm_s), kEndless).range_m;
   double sum = 0.0;
@@ -140,14 +140,14 @@ TEST(VaryingFog, EchoesSpreadInRangeAsMuchAsRecordedOnesDo) {
   EXPECT_GT(mean, 0.1);
 }
 
-TEST(VaryingFog, StaysWhereItIsWhateverIsBehindIt) {
+TEST(VaryingFog, DoesNotDependOnTheTargetBehindIt) {
   const VaryingFog fog = varying_fog(kLight, kBackscatter, kFwhm_s, 2);
   std::vector<FogCell> near;
   std::vector<FogCell> far;
   for (std::uint32_t beam = 0; beam < 200; ++beam) {
     const RngKey draw{.seed = 2, .beam = beam};
-    draw_fog_cells(fog, 2.0, draw, near);
-    draw_fog_cells(fog, 8.0, draw, far);
+    sample_fog_cells(fog, 2.0, draw, near);
+    sample_fog_cells(fog, 8.0, draw, far);
     ASSERT_LT(near.size(), far.size());
     for (std::size_t i = 0; i < near.size(); ++i) {
       EXPECT_EQ(near[i].from_m, far[i].from_m);
@@ -159,7 +159,7 @@ TEST(VaryingFog, StaysWhereItIsWhateverIsBehindIt) {
   EXPECT_EQ(echo_before(fog, 0.5, {}).signal, 0.0);
 }
 
-TEST(VaryingFog, IsNoneWithoutBackscatter) {
+TEST(VaryingFog, IsZeroWithoutBackscatter) {
   EXPECT_EQ(echo_before(varying_fog(kLight, 0.0, kFwhm_s, 1), kEndless, {}).signal, 0.0);
 }
 

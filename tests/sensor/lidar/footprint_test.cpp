@@ -23,9 +23,9 @@ double share_of_first(const std::vector<SubRay>& rays, std::size_t count) {
                          [](double sum, const SubRay& ray) { return sum + ray.share; });
 }
 
-// 0.3935 of a Gaussian's energy lies within half its 1/e^2 radius, 0.8647
+// 0.3935 of a Gaussian's energy is within half its 1/e^2 radius, 0.8647
 // within it; two rings are cut there.
-TEST(SubRays, CarryWhatAGaussianHasInTheirRings) {
+TEST(SubRays, HaveTheEnergyOfAGaussianInTheirRings) {
   const std::vector<SubRay> rays = sample_footprint(kOval);
   ASSERT_EQ(rays.size(), 1U + 6U + 12U);
   EXPECT_NEAR(share_of_first(rays, 1), 0.3935, 5e-5);
@@ -62,7 +62,7 @@ TEST(SubRays, HaveTheSecondMomentOfTheBeamAtEveryRange) {
 }
 
 /// Rms error of the lit part of a beam that a straight edge cuts, over all directions of the edge
-/// and its places to 1.2 w from the middle; of a Gaussian it is (1 + erf(sqrt(2) place)) / 2.
+/// and its positions up to 1.2 w from the centre; of a Gaussian it is (1 + erf(sqrt(2) place)) / 2.
 double cut_error(unsigned rings) {
   const Footprint round{.exit_x_m = 2.0, .exit_y_m = 2.0, .rings = rings};  // w = 1
   const std::vector<SubRay> rays = sample_footprint(round);
@@ -82,20 +82,21 @@ double cut_error(unsigned rings) {
   return std::sqrt(squares / (kDirections * kPlaces));
 }
 
-// Why the sensors that come along have one ring.
-TEST(SubRays, OfOneRingTellTheLitPartOfACutBeamNearlyAsWellAsOfTwo) {
+// The reason for one ring in the sensor presets.
+TEST(SubRays, OneRingEstimatesACutBeamNearlyAsWellAsTwo) {
   EXPECT_NEAR(cut_error(1), 0.076, 0.001);
   EXPECT_NEAR(cut_error(2), 0.069, 0.001);
   EXPECT_NEAR(cut_error(3), 0.034, 0.001);
 }
 
-// A Gaussian beam's exit and divergence add in squares, where sheets often add them as they are.
+// A Gaussian beam's exit and divergence add in quadrature, although data sheets often add them
+// linearly.
 TEST(DiameterM, IsThatOfAGaussianBeam) {
   EXPECT_DOUBLE_EQ(diameter_m(kOval, 0.0), 0.0127);
   EXPECT_NEAR(diameter_m(kOval, 100.0), std::hypot(0.0095, 0.3), 1e-15);
 }
 
-TEST(Spread, LaysSubRaysAcrossTheBeamWithItsTimeAndOrigin) {
+TEST(ExpandBeams, SubRaysCrossTheBeamWithItsTimeAndOrigin) {
   Beams beams;
   beams.rows = 1;
   beams.cols = 2;
@@ -124,7 +125,7 @@ TEST(Spread, LaysSubRaysAcrossTheBeamWithItsTimeAndOrigin) {
   }
 }
 
-TEST(Spread, MakesTheSameOfABeamWhicheverOthersAreSpread) {
+TEST(ExpandBeams, IsIndependentOfTheOtherBeams) {
   Beams beams;
   beams.rows = 1;
   beams.cols = 300;
@@ -133,7 +134,8 @@ TEST(Spread, MakesTheSameOfABeamWhicheverOthersAreSpread) {
     const double angle = 0.01 * i;
     beams.directions.emplace_back(std::cos(angle), 0.6 * std::sin(angle), 0.8 * std::sin(angle));
   }
-  beams.directions[37] = Eigen::Vector3d::UnitZ();  // straight up, where no side is told
+  beams.directions[37] =
+      Eigen::Vector3d::UnitZ();  // straight up, where the sideways direction is undefined
   const std::vector<SubRay> rays = sample_footprint(kOval);
   ThreadPool thread_pool(2);
   Beams all;
@@ -149,7 +151,7 @@ TEST(Spread, MakesTheSameOfABeamWhicheverOthersAreSpread) {
   }
 }
 
-TEST(Spread, KeepsALineAsItIs) {
+TEST(ExpandBeams, KeepsABeamWithoutWidth) {
   Beams beams;
   beams.rows = beams.cols = 1;
   beams.directions = {Eigen::Vector3d(0.1, -0.2, 0.97).normalized()};
@@ -160,7 +162,7 @@ TEST(Spread, KeepsALineAsItIs) {
   EXPECT_TRUE(out.origins_m.empty());
 }
 
-TEST(ValidateFootprint, NamesWhatIsOutOfRange) {
+TEST(ValidateFootprint, ReportsTheNumberOutOfRange) {
   Footprint bad = kOval;
   bad.rings = 0;
   EXPECT_THROW(validate(bad), Error);

@@ -13,19 +13,19 @@
 namespace glidar {
 namespace {
 
-constexpr double kSame = 1e-12;  // relative; a few roundings and the elementary functions' own
+constexpr double kSame = 1e-12;  // relative; a few roundings and those of the elementary functions
 
 double cos_deg(double angle) {
   return std::cos(angle * std::numbers::pi / 180.0);
 }
 
-TEST(SentBack, OfAMattSurfaceFallsAsTheCosine) {
+TEST(Backscatter, OfADiffuseSurfaceIsProportionalToTheCosine) {
   EXPECT_EQ(backscatter(Lambert{}, 0.4, 1.0), 0.4);
   EXPECT_NEAR(backscatter(Lambert{}, 0.4, cos_deg(60.0)), 0.2, kSame);
   EXPECT_EQ(backscatter(Lambert{}, 0.4, 0.0), 0.0);
 }
 
-TEST(SentBack, FollowsThePublishedFormsAtAnyAngle) {
+TEST(Backscatter, MatchesThePublishedFormulasAtAnyAngle) {
   for (const double theta : {0.0, 0.2, 0.7, 1.2, 1.57}) {
     const double c = std::cos(theta);
     const double s = std::sin(theta);
@@ -43,7 +43,7 @@ TEST(SentBack, FollowsThePublishedFormsAtAnyAngle) {
   }
 }
 
-TEST(SentBack, OfNarrowLobesEndsInTheMattPartAtGrazingIncidence) {
+TEST(Backscatter, OfNarrowLobesIsTheDiffusePartAtGrazingIncidence) {
   constexpr double kDegree = std::numbers::pi / 180.0;
   for (int tenth = 0; tenth <= 900; ++tenth) {
     const double c = std::max(0.0, std::cos(0.1 * kDegree * tenth));
@@ -66,11 +66,11 @@ TEST(SentBack, OfNarrowLobesEndsInTheMattPartAtGrazingIncidence) {
   }
 }
 
-TEST(SentBack, OfASmoothOrenNayarSurfaceIsLamberts) {
+TEST(Backscatter, OfASmoothOrenNayarSurfaceIsLambertian) {
   EXPECT_NEAR(backscatter(OrenNayar{0.0}, 0.7, 0.6), backscatter(Lambert{}, 0.7, 0.6), kSame);
 }
 
-TEST(Signal, IsOneForTheReferencePair) {
+TEST(ReceivedSignal, IsOneForTheReferencePair) {
   const LidarEquation light{.reference_reflectance = 0.1,
                             .reference_range_m = 45.0,
                             .range_exponent = 2.6,
@@ -79,7 +79,7 @@ TEST(Signal, IsOneForTheReferencePair) {
   EXPECT_NEAR(received_signal(light, 0.1, 45.0), 1.0, kSame);
 }
 
-TEST(Signal, TimesTheSquareOfTheRangeIsConstant) {
+TEST(ReceivedSignal, TimesTheSquareOfTheRangeIsConstant) {
   const LidarEquation light;
   const double expected = received_signal(light, 0.5, 10.0) * 100.0;
   for (const double range_m : {0.5, 3.0, 47.0, 1234.5}) {
@@ -88,14 +88,14 @@ TEST(Signal, TimesTheSquareOfTheRangeIsConstant) {
   }
 }
 
-TEST(Signal, ReachesTheThresholdAtARangeThatGrowsAsTheRootOfReflectance) {
+TEST(ReceivedSignal, ReachesTheThresholdAtARangeProportionalToTheRootOfReflectance) {
   const LidarEquation light{.reference_reflectance = 0.8, .reference_range_m = 120.0};
   for (const double rho : {0.05, 0.1, 0.8, 1.0}) {
     EXPECT_NEAR(received_signal(light, rho, 120.0 * std::sqrt(rho / 0.8)), 1.0, kSame);
   }
 }
 
-TEST(Signal, FallsByTheTwoWayTransmissionOfTheAir) {
+TEST(ReceivedSignal, IncludesTheTwoWayTransmissionOfTheAir) {
   // Kim's extinction at 905 nm: two-way transmission over 100 m 0.5434 at a visibility of 1 km.
   const double alpha = 3.050e-3;
   const LidarEquation clear;
@@ -107,7 +107,7 @@ TEST(Signal, FallsByTheTwoWayTransmissionOfTheAir) {
   EXPECT_NEAR(kept, 0.5434, 5e-5);
 }
 
-TEST(Signal, LosesToTheWeatherFromTheSensorOnAndToTheAirFromTheReferenceRangeOn) {
+TEST(ReceivedSignal, WeatherAppliesFromTheSensorAndExtinctionFromTheReferenceRange) {
   const LidarEquation clear{.reference_range_m = 50.0, .extinction_per_m = 0.001};
   LidarEquation foggy = clear;
   foggy.weather_extinction_per_m = 0.01956;  // Kim's at 905 nm and a visibility of 0.2 km
@@ -119,7 +119,7 @@ TEST(Signal, LosesToTheWeatherFromTheSensorOnAndToTheAirFromTheReferenceRangeOn)
               5e-5);
 }
 
-TEST(Signal, FollowsTheOverlapTableAndHoldsItsEnds) {
+TEST(ReceivedSignal, FollowsTheOverlapTableAndIsConstantOutside) {
   const LidarEquation light{.reference_range_m = 10.0,
                             .overlap = {{0.9, 0.0}, {1.0, 1.0}}};  // Hahner et al., ICCV 2021
   EXPECT_EQ(received_signal(light, 0.8, 0.5), 0.0);
@@ -133,12 +133,12 @@ struct SheetPair {
   double reflectance;
   double range50_m;
   double range90_m;
-  double noise_to_signal;  ///< threshold over noise, as the sheets' pairs give it
+  double noise_to_signal;  ///< threshold over noise, from the data sheet's pairs
 };
 
 class DetectionOfSheets : public ::testing::TestWithParam<SheetPair> {};
 
-TEST_P(DetectionOfSheets, ReproducesBothRanges) {
+TEST_P(DetectionOfSheets, ReproducesBothRangesOfTheDataSheet) {
   const SheetPair& sheet = GetParam();
   const LidarEquation light{.reference_reflectance = sheet.reflectance,
                             .reference_range_m = sheet.range50_m,
@@ -159,13 +159,13 @@ INSTANTIATE_TEST_SUITE_P(Ouster, DetectionOfSheets,
                                            SheetPair{"OS2", 0.1, 100.0, 80.0, 2.3},
                                            SheetPair{"OS2", 0.8, 240.0, 210.0, 4.2}));
 
-TEST(Signal, TakesItsExponentFromTwoReflectances) {
+TEST(ReceivedSignal, HasTheExponentOfTwoReflectances) {
   EXPECT_NEAR(range_exponent(0.8, 120.0, 0.1, 40.0), 1.89, 0.005);   // OS1, first generation
   EXPECT_NEAR(range_exponent(0.8, 100.0, 0.1, 45.0), 2.60, 0.005);   // OS1, revision 6
   EXPECT_NEAR(range_exponent(0.8, 350.0, 0.1, 200.0), 3.72, 0.005);  // OS2, revision 7
 }
 
-/// Beams straight at a matt plane: reflectance 0.8, a signal per beam by its range.
+/// Beams at normal incidence on a diffuse plane: reflectance 0.8, a signal per beam by its range.
 struct Stage {
   Scene scene;
   Beams beams;
@@ -199,7 +199,7 @@ struct Stage {
   }
 };
 
-TEST(MeasureSignal, ReportsWithTheProbabilityOfTheSheet) {
+TEST(ShadeLidar, DetectsWithTheProbabilityOfTheDataSheet) {
   constexpr std::size_t kBeams = 100000;
   const LidarEquation light{.reference_reflectance = 0.8,
                             .reference_range_m = 120.0,
@@ -213,7 +213,7 @@ TEST(MeasureSignal, ReportsWithTheProbabilityOfTheSheet) {
   }
 }
 
-TEST(MeasureSignal, NoiseAloneIsNoReturnOfASurface) {
+TEST(ShadeLidar, NoiseAloneIsNotAReturnOfASurface) {
   const LidarEquation light{
       .reference_reflectance = 0.8, .reference_range_m = 100.0, .noise_sigma = 0.4};
   Stage faint(100000, 1000.0);  // a signal of 0.01: noise passes the threshold once in 150 beams
@@ -227,7 +227,7 @@ TEST(MeasureSignal, NoiseAloneIsNoReturnOfASurface) {
   EXPECT_GT(weak.share_of(Status::hit), 0.005);
 }
 
-TEST(MeasureSignal, DependsOnTheBeamAndNotOnHowBeamsAreShared) {
+TEST(ShadeLidar, IsIndependentOfHowBeamsAreDivided) {
   const LidarEquation light{.reference_range_m = 100.0, .noise_sigma = 0.3};
   Stage whole(1000, 95.0);
   Stage parts(1000, 95.0);
@@ -240,7 +240,7 @@ TEST(MeasureSignal, DependsOnTheBeamAndNotOnHowBeamsAreShared) {
   EXPECT_EQ(whole.frame.intensity, parts.frame.intensity);
 }
 
-TEST(MeasureSignal, TellsWhatIsTooStrongAndKeepsItsTruth) {
+TEST(ShadeLidar, ReportsSaturationAndKeepsTheGroundTruth) {
   Stage stage(1, 1.0);
   stage.measure({.reference_range_m = 100.0, .saturation = 50.0});
   EXPECT_EQ(stage.frame.status[0], Status::saturated);
@@ -248,7 +248,7 @@ TEST(MeasureSignal, TellsWhatIsTooStrongAndKeepsItsTruth) {
   EXPECT_EQ(stage.frame.ground_truth.range_m[0], 1.0);
 }
 
-TEST(MeasureSignal, BlamesTheWeatherForWhatClearAirHadShown) {
+TEST(ShadeLidar, ReportsWeatherForSurfacesDetectableInClearAir) {
   const LidarEquation light{
       .reference_reflectance = 0.8, .reference_range_m = 100.0, .weather_extinction_per_m = 0.002};
   for (const auto& [range_m, status] :
@@ -260,7 +260,7 @@ TEST(MeasureSignal, BlamesTheWeatherForWhatClearAirHadShown) {
   }
 }
 
-TEST(MeasureSignal, TakesTheReflectanceAtTheSensorsWavelength) {
+TEST(ShadeLidar, UsesTheReflectanceAtTheSensorsWavelength) {
   Stage stage(1, 100.0);
   Material& material = stage.scene.materials[0];
   material.spectrum = {{850e-9, 0.2}, {950e-9, 0.4}};
@@ -274,7 +274,7 @@ TEST(MeasureSignal, TakesTheReflectanceAtTheSensorsWavelength) {
   EXPECT_NEAR(stage.frame.intensity[0], 1.55F, 1e-6F);
 }
 
-TEST(SignalsOfHits, AreThoseOfEveryHitAloneAndNothingForMisses) {
+TEST(ReceivedSignals, AreThoseOfSingleHitsAndZeroForMisses) {
   Stage stage(40, 50.0);
   stage.scene.materials.emplace_back().spectrum = {{850e-9, 0.2}, {950e-9, 0.4}};
   stage.scene.instances.push_back(stage.scene.instances[0]);
@@ -291,7 +291,7 @@ TEST(SignalsOfHits, AreThoseOfEveryHitAloneAndNothingForMisses) {
   }
   hits.instance[20] = kInvalidId;
   hits.range_m[20] = std::nan("");
-  for (const double extinction_per_m : {0.0, 0.01}) {  // by vectors, and one by one
+  for (const double extinction_per_m : {0.0, 0.01}) {  // vectorised, and one by one
     const LidarEquation light{.extinction_per_m = extinction_per_m};
     std::vector<double> signals(30);
     received_signals(light, stage.scene, 905e-9, hits, {10, 40}, signals);
@@ -305,7 +305,7 @@ TEST(SignalsOfHits, AreThoseOfEveryHitAloneAndNothingForMisses) {
   }
 }
 
-TEST(LidarEquation, RefusesNumbersThatMeanNothing) {
+TEST(LidarEquation, RejectsInvalidNumbers) {
   EXPECT_NO_THROW(validate(LidarEquation{}));
   EXPECT_THROW(validate(LidarEquation{.reference_reflectance = 0.0}), Error);
   EXPECT_THROW(validate(LidarEquation{.reference_range_m = -1.0}), Error);

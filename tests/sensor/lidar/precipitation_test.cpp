@@ -27,17 +27,17 @@ std::vector<DropEcho> drops_of(const LidarEquation& light, const DropField& fiel
                                double hard_range_m, std::uint32_t beam) {
   std::vector<DropEcho> drops;
   const auto take = [&](const DropEcho& drop) { drops.push_back(drop); };
-  draw_drops(light, field, hard_range_m, {.seed = 5, .beam = beam, .purpose = Purpose::weather},
-             FunctionRef<void(const DropEcho&)>(take));
+  sample_drops(light, field, hard_range_m, {.seed = 5, .beam = beam, .purpose = Purpose::weather},
+               FunctionRef<void(const DropEcho&)>(take));
   return drops;
 }
 
-/// So strong and so near that every drop counts.
+/// So strong and so near that every drop is detected.
 LidarEquation strong_light() {
   return {.reference_range_m = 1e6, .overlap = {{1e-3, 0.0}, {2e-3, 1.0}}};
 }
 
-TEST(Drops, AreAsManyAsAPoissonLawOfTheConesVolumeSays) {
+TEST(Drops, NumberIsPoissonDistributedWithTheConesVolume) {
   constexpr std::uint32_t kBeams = 40000;
   constexpr double kRange_m = 7.5;
   const DropField field =
@@ -64,7 +64,7 @@ TEST(Drops, AreAsManyAsAPoissonLawOfTheConesVolumeSays) {
   EXPECT_LT(chi_square(found, expected), chi_square_limit(13));
 }
 
-TEST(Drops, LieByTheCubeOfTheRangeAndAreExponentiallyLarge) {
+TEST(Drops, RangesFollowTheVolumeAndDiametersAreExponential) {
   constexpr double kRange_m = 20.0;
   const DropSizes sizes = rain_sizes(10.0);
   const DropField field = drop_field(strong_light(), sizes, {.divergence_rad = 0.003}, 0.1);
@@ -81,7 +81,7 @@ TEST(Drops, LieByTheCubeOfTheRangeAndAreExponentiallyLarge) {
   EXPECT_LT(kolmogorov(by_size), kKolmogorovLimit);
 }
 
-TEST(Drops, FillABeamThatDoesNotSpreadEvenly) {
+TEST(Drops, FillACylindricalBeamUniformly) {
   const DropField field = drop_field(strong_light(), rain_sizes(10.0),
                                      {.divergence_rad = 0.0, .exit_diameter_m = 0.02}, 0.1);
   std::vector<double> by_range;
@@ -138,7 +138,7 @@ class EveryDrop {
   std::uniform_real_distribution<double> uniform_;
 };
 
-/// What a receiver makes of the drops of many beams.
+/// Statistics of the detected drops of many beams.
 struct Harvest {
   std::vector<double> ranges_m;
   std::vector<double> signals;
@@ -155,7 +155,7 @@ struct Harvest {
   }
 };
 
-TEST(ThinnedDrops, AreDistributedAsTheStrongOfAllDrops) {
+TEST(ThinnedDrops, HaveTheDistributionOfTheStrongestDrops) {
   constexpr double kMin = 0.02;
   constexpr double kRange_m = 15.0;
   constexpr std::uint32_t kBeams = 60000;
@@ -187,7 +187,7 @@ TEST(ThinnedDrops, AreDistributedAsTheStrongOfAllDrops) {
   EXPECT_LT(distance, chi_square_limit(4));
 }
 
-TEST(ThinnedDrops, CarryTheSignalOfTheirShareOfTheBeam) {
+TEST(ThinnedDrops, HaveTheSignalOfTheirShareOfTheBeam) {
   const LidarEquation light{.reference_range_m = 100.0,
                             .weather_extinction_per_m = EveryDrop::kExtinction_per_m};
   const DropField field =
@@ -202,7 +202,7 @@ TEST(ThinnedDrops, CarryTheSignalOfTheirShareOfTheBeam) {
   }
 }
 
-TEST(ThinnedDrops, CostLittleWhereThousandsAreInTheBeam) {
+TEST(ThinnedDrops, AreFewWhereThousandsAreInTheBeam) {
   const LidarEquation light{.reference_range_m = 100.0};
   const BeamShape beam{.divergence_rad = 0.003, .exit_diameter_m = 0.0095};
   const DropSizes sizes = rain_sizes(100.0);
@@ -231,7 +231,7 @@ TEST(ThinnedDrops, CostLittleWhereThousandsAreInTheBeam) {
   EXPECT_NEAR(found / kBeams, mean, 4.0 * std::sqrt(mean / kBeams));
 }
 
-TEST(ThinnedDrops, FollowAnOverlapThatBends) {
+TEST(ThinnedDrops, FollowANonlinearOverlap) {
   // as many are found as the exact bound allows, with an overlap that rises and falls
   LidarEquation light{.reference_range_m = 20.0};
   light.overlap = {{0.0, 0.3}, {2.0, 0.1}, {3.3, 2.0}, {8.0, 0.05}, {20.0, 1.0}};
@@ -257,7 +257,7 @@ TEST(ThinnedDrops, FollowAnOverlapThatBends) {
   EXPECT_NEAR(found, mean * kBeams, 4.0 * std::sqrt(mean * kBeams));
 }
 
-TEST(Drops, AreTheSameWhateverStandsBehindThem) {
+TEST(Drops, DoNotDependOnTheTargetBehindThem) {
   const LidarEquation light{.reference_range_m = 100.0};
   const DropField field = drop_field(light, rain_sizes(80.0), {}, 0.01);
   std::size_t compared = 0;
@@ -277,7 +277,7 @@ TEST(Drops, AreTheSameWhateverStandsBehindThem) {
   EXPECT_GT(compared, 100U);
 }
 
-TEST(Drops, AreNoneInABeamWithoutWidth) {
+TEST(Drops, DoNotExistInABeamWithoutWidth) {
   const DropField field =
       drop_field({}, rain_sizes(80.0), {.divergence_rad = 0.0, .exit_diameter_m = 0.0}, 0.01);
   EXPECT_TRUE(drops_of({}, field, kNoTarget, 0).empty());

@@ -52,7 +52,7 @@ std::map<ReturnSource, std::size_t> count(const PreparedWeather& weather, std::u
   return counts;
 }
 
-TEST(WeatherEchoes, AreOfTheKindsThatAreInTheAir) {
+TEST(WeatherEchoes, HaveTheSourcesOfTheWeather) {
   auto all = count(prepare(kSleet), 500);
   EXPECT_EQ(all[ReturnSource::fog], 500U);
   EXPECT_GT(all[ReturnSource::rain], 20U);
@@ -67,7 +67,7 @@ TEST(WeatherEchoes, AreOfTheKindsThatAreInTheAir) {
   EXPECT_TRUE(echoes_of(prepare({}), kNoTarget, {}).empty());
 }
 
-TEST(WeatherEchoes, DependOnSeedSensorFrameAndBeamAlone) {
+TEST(WeatherEchoes, DependOnSeedSensorFrameAndBeamOnly) {
   const PreparedWeather weather = prepare(kSleet);
   const RngKey draw{.seed = 9, .sensor = 2, .frame = 7, .beam = 40};
   const auto expected = echoes_of(weather, 80.0, draw);
@@ -76,7 +76,7 @@ TEST(WeatherEchoes, DependOnSeedSensorFrameAndBeamAlone) {
   other.block = 17;
   EXPECT_TRUE(equal(echoes_of(weather, 80.0, other), expected));
   const auto differs = [&](auto RngKey::*member) {
-    // one beam may be without drops: twenty are not
+    // one beam may have no drops, but not twenty
     bool is_other = false;
     for (std::uint32_t beam = 0; beam < 20; ++beam) {
       RngKey one = draw;
@@ -93,7 +93,7 @@ TEST(WeatherEchoes, DependOnSeedSensorFrameAndBeamAlone) {
   EXPECT_TRUE(differs(&RngKey::beam));
 }
 
-TEST(WeatherEchoes, OfFogCompareWithTargetsAsTheTheorySays) {
+TEST(WeatherEchoes, OfFogRelativeToTargetsMatchTheTheory) {
   // Rasshofer et al.: soft over hard = R0^2 exp(2 alpha R0) pi beta / rho (c / 2) I_s
   const double alpha = 0.06;
   const Weather fog{.visibility_m = std::log(20.0) / alpha,
@@ -108,11 +108,11 @@ TEST(WeatherEchoes, OfFogCompareWithTargetsAsTheTheorySays) {
   const double ratio = 30.0 * 30.0 * std::exp(2.0 * alpha * 30.0) * std::numbers::pi * beta / 0.5 *
                        0.5 * 299792458.0 * 3.815421e-9;
   const double hard = received_signal(weather.light, 0.5, 30.0);
-  EXPECT_NEAR(echoes[0].signal / hard, ratio, 1e-3 * ratio);  // the sum looked every 0.1 m
+  EXPECT_NEAR(echoes[0].signal / hard, ratio, 1e-3 * ratio);  // the sum samples every 0.1 m
   EXPECT_NEAR(echoes[0].range_m, 4.6 - 2.998, 0.05);
 }
 
-TEST(WeatherEchoes, OfFogVaryFromBeamToBeamUnlessToldNotTo) {
+TEST(WeatherEchoes, OfFogVaryBetweenBeamsUnlessLooksIsZero) {
   for (const unsigned looks : {0U, 1U, 16U}) {
     const PreparedWeather weather = prepare({.visibility_m = 100.0, .fog_looks = looks});
     const auto one = echoes_of(weather, 50.0, {.beam = 1});
@@ -124,7 +124,7 @@ TEST(WeatherEchoes, OfFogVaryFromBeamToBeamUnlessToldNotTo) {
   }
 }
 
-TEST(WeatherEchoes, StayBeforeTheTarget) {
+TEST(WeatherEchoes, AreNearerThanTheTarget) {
   const PreparedWeather weather = prepare(kSleet);
   for (std::uint32_t beam = 0; beam < 300; ++beam) {
     for (const WeatherEcho& echo : echoes_of(weather, 2.0, {.beam = beam})) {
@@ -141,13 +141,13 @@ TEST(WeatherEchoes, AreAppended) {
   EXPECT_EQ(echoes.size(), 4U);
 }
 
-TEST(WeatherEchoes, NeedAWavelengthInFog) {
+TEST(WeatherEchoes, RequireAWavelengthInFog) {
   EXPECT_THROW(prepare_weather({.visibility_m = 50.0}, {}, 0.0, {}, 5e-9), Error);
   EXPECT_NO_THROW(prepare_weather({.rain_mm_per_h = 5.0}, {}, 0.0, {}, 5e-9));
 }
 
-TEST(WeatherEchoes, KeepTheirValues) {
-  // as first computed: they must never change for a seed
+TEST(WeatherEchoes, HaveTheGoldenValues) {
+  // Golden values: they must never change for a seed.
   const auto echoes =
       echoes_of(prepare(kSleet), kNoTarget, {.seed = 12345, .sensor = 1, .frame = 2, .beam = 0});
   const std::vector<WeatherEcho> expected = {

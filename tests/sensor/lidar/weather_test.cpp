@@ -34,7 +34,7 @@ struct FogRow {
 
 class FogTable : public ::testing::TestWithParam<FogRow> {};
 
-TEST_P(FogTable, GivesThePublishedExtinction) {
+TEST_P(FogTable, ReproducesThePublishedExtinction) {
   const FogRow& row = GetParam();
   const double half = 0.51 * row.last_digit;
   EXPECT_NEAR(fog_per_km(row.visibility_km, 905.0, row.model), row.at_905_per_km, half);
@@ -52,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(Fog, FogTable,
                                            FogRow{10.0, FogModel::kruse, 0.205, 0.102, 0.001},
                                            FogRow{23.0, FogModel::kim, 0.089, 0.044, 0.001}));
 
-TEST(Fog, LeavesThePublishedTransmissionOver100MetresAndBack) {
+TEST(Fog, HasThePublishedTwoWayTransmissionOver100Metres) {
   const std::vector<std::array<double, 2>> table = {
       {0.2, 0.0200}, {0.5, 0.2091}, {1.0, 0.5434}, {2.0, 0.7546}, {10.0, 0.9599}};
   for (const auto& [visibility_km, left] : table) {
@@ -61,7 +61,7 @@ TEST(Fog, LeavesThePublishedTransmissionOver100MetresAndBack) {
   }
 }
 
-TEST(Fog, ChangesItsLawWhereTheModelsSaySo) {
+TEST(Fog, ChangesItsExponentAtTheLimitsOfTheModels) {
   const double above = std::pow(905.0 / 550.0, -1.6);
   const double below = std::pow(905.0 / 550.0, -1.3);
   for (const FogModel model : {FogModel::kim, FogModel::kruse}) {
@@ -77,21 +77,21 @@ TEST(Fog, ChangesItsLawWhereTheModelsSaySo) {
               1e-6);
 }
 
-TEST(Fog, LeavesAFiftiethOfContrastOrATwentiethOfLightOverItsVisibility) {
+TEST(Fog, HasTwoPercentContrastOrFivePercentTransmissionAtTheVisibility) {
   const Weather contrast{.visibility_m = 300.0};
   const Weather range{.visibility_m = 300.0, .visibility_kind = Weather::Visibility::mor};
   EXPECT_NEAR(std::exp(-300.0 * fog_extinction_per_m(contrast, 550e-9)), 0.02, 1e-6);
   EXPECT_NEAR(std::exp(-300.0 * fog_extinction_per_m(range, 550e-9)), 0.05, 1e-12);
 }
 
-TEST(Fog, NeedsAWavelength) {
+TEST(Fog, RequiresAWavelength) {
   EXPECT_EQ(fog_extinction_per_m({}, 0.0), 0.0);
   EXPECT_EQ(error_text([] { fog_extinction_per_m({.visibility_m = 100.0}, 0.0); }),
             "weather, wavelength_m: 0; allowed: a wavelength above 0 (wavelength_nm in a sensor "
             "file): fog's extinction depends on it");
 }
 
-TEST(Rain, HasThePublishedNumbersAndExtinctions) {
+TEST(Rain, HasThePublishedDropNumbersAndExtinctions) {
   struct Row {
     double mm_per_h, drops_per_m3, geometric_per_m, goodin_per_m;
   };
@@ -115,7 +115,7 @@ double summed_extinction_per_m(double number, double slope_per_mm) {
   return 2.0 * area_mm2 * 1e-6;
 }
 
-TEST(Snow, ExtinguishesByTwiceItsCrossSections) {
+TEST(Snow, HasTwiceItsCrossSectionsAsExtinction) {
   Weather snow{.snow_mm_per_h = 2.0};
   EXPECT_NEAR(extinction_per_m(snow, 0.0) / summed_extinction_per_m(7600.0 * std::pow(2.0, -0.87),
                                                                     2.55 * std::pow(2.0, -0.48)),
@@ -137,7 +137,7 @@ TEST(Weather, AddsTheExtinctionsOfFogRainAndSnow) {
   EXPECT_EQ(extinction_per_m({}, 905e-9), 0.0);
 }
 
-TEST(Weather, IsForPulsedLightOfAKnownWavelength) {
+TEST(Weather, RequiresALidarEquationAndAWavelength) {
   Sensor sensor;
   EXPECT_NO_THROW(check_weather(sensor));
   sensor.pulse = LidarEquation{};
@@ -149,16 +149,15 @@ TEST(Weather, IsForPulsedLightOfAKnownWavelength) {
   EXPECT_NO_THROW(check_weather(sensor));
 }
 
-TEST(Weather, IsRefusedForOtherLight) {
+TEST(Weather, IsAnErrorWithoutALidarEquation) {
   Sensor sensor;
   sensor.weather = Weather{};
   EXPECT_EQ(error_text([&] { check_weather(sensor); }),
-            "weather: the light of the sensor 'depth camera' is not pulsed; allowed: weather for a "
-            "sensor with 'lidar_equation'; describe its light by 'lidar_equation' in a sensor file "
-            "(docs/files.md)");
+            "weather: the sensor 'depth camera' has no lidar_equation; allowed: weather for a "
+            "sensor with 'lidar_equation'; add 'lidar_equation' to a sensor file (docs/files.md)");
 }
 
-TEST(Weather, RefusesNumbersThatMeanNothing) {
+TEST(Weather, RejectsInvalidNumbers) {
   EXPECT_NO_THROW(validate(Weather{}));
   EXPECT_THROW(validate(Weather{.visibility_m = -1.0}), Error);
   EXPECT_THROW(validate(Weather{.visibility_m = 0.5}), Error);

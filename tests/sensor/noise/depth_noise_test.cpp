@@ -40,7 +40,7 @@ TEST(DisparityQuantization, LevelsAreZSquaredOverKApart) {
   }
 }
 
-TEST(DisparityQuantization, WhatIsTooFarForOneStepIsLost) {
+TEST(DisparityQuantization, DepthsBeyondOneStepAreLost) {
   NoiseStage stage(1, 1, 1000.0);
   stage.apply({DisparityQuantization{.k_m = 351.3}});
   EXPECT_EQ(stage.frame.status[0], Status::too_far);
@@ -136,7 +136,7 @@ constexpr std::array<TableRow, 8> kTable = {{{0.5, 1.22, 2.95, 10.27, 0.36, 0.24
                                              {5.0, 41.40, 41.95, 44.27, 35.62, 23.72}}};
 constexpr double kDigits_mm = 0.0051;  // the table has two decimals
 
-TEST(Nguyen, LawsAreThoseOfTheTable) {
+TEST(Nguyen, SigmasMatchTheTable) {
   for (const TableRow& row : kTable) {
     const auto axial_mm = [&](double deg) {
       return 1e3 * nguyen_axial_sigma_m({}, row.z_m, deg * kDegree);
@@ -216,7 +216,7 @@ TEST(IclKinect, ReportsWholeStepsAsTheRecordedFramesDo) {
   EXPECT_LT(farthest, 1e-9);
 }
 
-TEST(Lateral, AnEdgeIsSmearedByTheStatedPixels) {
+TEST(Lateral, AnEdgeIsBlurredByTheStatedPixels) {
   NoiseStage stage(400, 200, 1.0);
   for (std::size_t i = 0; i < stage.frame.range_m.size(); ++i) {
     if (i % 200 >= 100) stage.frame.range_m[i] = 2.0;
@@ -240,7 +240,7 @@ TEST(Lateral, AnEdgeIsSmearedByTheStatedPixels) {
   EXPECT_NEAR(found.mean, 1.0 + clamped, 4.0 * found.sigma / 20.0);
 }
 
-TEST(Lateral, PlacesWithoutDepthLoseTheReturn) {
+TEST(Lateral, OffsetsToPixelsWithoutDepthLoseTheReturn) {
   NoiseStage stage(200, 200, 1.0);
   for (std::size_t i = 0; i < stage.frame.range_m.size(); ++i) {
     if (i % 200 >= 100) stage.lose_beam(i);

@@ -44,7 +44,7 @@ TEST(Dropout, ProbabilitiesByRangeAndIncidenceAreIndependent) {
   EXPECT_NEAR(share(stage, Status::dropped), expected, tolerance(expected));
 }
 
-TEST(Crosstalk, PutsTheRangeUniformlyBeforeAnotherChannelsEcho) {
+TEST(Crosstalk, RangeIsUniformBeforeAnotherChannelsEcho) {
   NoiseStage stage(3, 100000, 10.0);
   for (std::size_t i = 100000; i < 200000; ++i) stage.frame.range_m[i] = 50.0;
   for (std::size_t i = 200000; i < 300000; ++i) stage.lose_beam(i);
@@ -95,7 +95,7 @@ TEST(FalseAlarms, ArriveAsAPoissonProcess) {
   EXPECT_NEAR(before / 150000.0, probability(30.0), four_sigmas(probability(30.0)));
 }
 
-TEST(FalseAlarms, ConcernTheFirstOfSeveralReturns) {
+TEST(FalseAlarms, AffectTheFirstOfSeveralReturns) {
   NoiseStage stage(2, 1000, 30.0);
   stage.beams.returns = 2;
   for (std::size_t i = 0; i < 2000; ++i) stage.lose_beam(i);
@@ -106,7 +106,7 @@ TEST(FalseAlarms, ConcernTheFirstOfSeveralReturns) {
             1000);
 }
 
-TEST(Dropout, LeavesNoCause) {
+TEST(Dropout, LeavesNoReturnSource) {
   NoiseStage stage(1, 10, 30.0);
   stage.frame.return_source.assign(10, ReturnSource::surface);
   stage.apply({Dropout{.probability = 1.0}});
@@ -122,7 +122,7 @@ TEST(IntensityGaussian, HasTheStatedSpreadAndIsNeverNegative) {
   for (const float intensity : stage.frame.intensity) EXPECT_GE(intensity, 0.0F);
 }
 
-TEST(IntensityScale, SpellsDiffuseAndRetroReflectorsAsVendorsDo) {
+TEST(IntensityScale, ReportsDiffuseAndRetroReflectorsOnTheVendorScale) {
   EXPECT_EQ(vendor_intensity(0.0, 100.0), 0.0);
   EXPECT_EQ(vendor_intensity(0.104, 100.0), 10.0);
   EXPECT_EQ(vendor_intensity(1.0, 100.0), 100.0);

@@ -8,7 +8,7 @@ namespace {
 
 using testing::NoiseStage;
 
-TEST(ApplyNoise, JudgesRangesInTheEndOnly) {
+TEST(ApplyNoise, RemovesNonPositiveRangesAfterTheLastStepOnly) {
   NoiseStage stage(4, 4, 3.0);
   const RangeBias away{.offset_m = -5.0};
   const RangeBias back{.offset_m = 5.0};
@@ -25,7 +25,7 @@ TEST(ApplyNoise, JudgesRangesInTheEndOnly) {
   EXPECT_EQ(stage.frame.status[0], Status::too_near);
 }
 
-TEST(ApplyFirstSteps, JudgesNothingBeforeTheLast) {
+TEST(ApplyNoisePrefix, KeepsNonPositiveRangesBeforeTheLastStep) {
   NoiseStage stage(1, 4, 3.0);
   const std::vector<NoiseStep> noise = {RangeBias{.offset_m = -5.0}, RangeBias{.offset_m = 5.0}};
   apply_noise_prefix(noise, 1, 0.1, stage.beams, stage.thread_pool, stage.frame);

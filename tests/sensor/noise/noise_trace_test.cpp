@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Every step's draws, held against what the step does to a frame.
+// The random numbers of every step, compared with its effect on a frame.
 #include <glidar/sensor/noise/noise_trace.hpp>
 #include <sensor/noise_stage.hpp>
 
@@ -18,7 +18,7 @@ constexpr double kRange_m = 10.0;
 constexpr std::uint32_t kRows = 8;
 constexpr std::uint32_t kCols = 100;
 
-/// Steps that do nothing, so that the step in question is not the first of its list.
+/// Steps without effect, so that the tested step is not the first of its list.
 std::vector<NoiseStep> after_two(const NoiseStep& step) {
   return {RangeGaussian{}, RangeQuantization{.step_m = 1e-12}, step};
 }
@@ -51,7 +51,7 @@ void expect_none(const NoiseStep& step) {
   EXPECT_TRUE(trace_samples({step}, 0, stage.beams, stage.frame, kFrame_s, 0).empty());
 }
 
-// One hold() for every kind of step: what it draws is what the frame comes to.
+// One hold() for every kind of step: its random numbers explain the frame.
 
 void hold(const RangeGaussian& /*kind*/) {
   expect_adds(RangeGaussian{.sigma_m = 0.02}, 0.02);
@@ -105,7 +105,7 @@ void hold(const RangeUniform& /*kind*/) {
 }
 
 void hold(const Dropout& /*kind*/) {
-  // half of them anyhow, of the others 1 / 5 at 10 m and 1 / 4 square on
+  // half of them anyhow, of the others 1 / 5 at 10 m and 1 / 4 at normal incidence
   const Dropout step{.probability = 0.5,
                      .by_range_m = {{0.0, 0.0}, {20.0, 0.4}},
                      .by_incidence_rad = {{0.0, 0.25}, {1.0, 1.0}}};
@@ -157,7 +157,7 @@ void hold(const Stereo& /*kind*/) {
               });
 }
 
-constexpr double kFineK_m = 1e9;  // so many steps of disparity that rounding to them is nothing
+constexpr double kFineK_m = 1e9;  // so fine that rounding is negligible
 
 /// The range of a disparity that is off by so many of these fine steps.
 double range_off_by_m(double steps) {
@@ -194,7 +194,7 @@ void hold(const KinectV1& /*kind*/) {
 }
 
 void hold(const NguyenAxial& /*kind*/) {
-  // for_entries has no incidences, so beams meet surfaces square on
+  // for_entries has no incidences, so beams hit surfaces at normal incidence
   expect_adds(NguyenAxial{}, nguyen_axial_sigma_m({}, kRange_m, 0.0));
 }
 

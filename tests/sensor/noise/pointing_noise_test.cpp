@@ -58,7 +58,7 @@ TEST(PointingJitter, OfACameraIsAcrossAndAlongItsImage) {
   expect_normal(moments(y), 0.0, 2e-3);
 }
 
-TEST(PointingJitter, PixelsWithoutABeamStayWithoutAndVerticalBeamsAreTurnedToo) {
+TEST(PointingJitter, KeepsPixelsWithoutABeamAndPerturbsVerticalBeams) {
   NoiseStage stage(1, 10, 10.0);
   look(0.0, 0.5 * std::numbers::pi, stage);
   stage.beams.directions[0] = Eigen::Vector3d::UnitZ();
@@ -69,7 +69,7 @@ TEST(PointingJitter, PixelsWithoutABeamStayWithoutAndVerticalBeamsAreTurnedToo) 
   EXPECT_NEAR(beams.directions[0].norm(), 1.0, 1e-15);
 }
 
-TEST(PointingJitter, LeavesTheSensorsOwnBeamsAlone) {
+TEST(PointingJitter, DoesNotChangeTheNominalBeams) {
   NoiseStage stage(1, 10, 1.0);
   const Beams& beams = aimed(stage, PointingJitter{.sigma_azimuth_rad = 1e-3});
   EXPECT_NE(&beams, &stage.beams);
@@ -77,7 +77,7 @@ TEST(PointingJitter, LeavesTheSensorsOwnBeamsAlone) {
   EXPECT_EQ(&aimed(stage, RangeGaussian{}), &stage.beams);
 }
 
-TEST(EncoderError, ReportedMinusTrueAzimuthIsTheLaw) {
+TEST(EncoderError, ReportedMinusTrueAzimuthMatchesTheModel) {
   const EncoderError law{
       .step_rad = 0.01 * kDegree, .eccentricity_rad = 0.05 * kDegree, .phase_rad = 0.3};
   NoiseStage stage(1, 1000, 10.0);

@@ -23,7 +23,7 @@ TEST(RangeBias, IsTheSameForAllBeamsOfARingInAllFrames) {
   EXPECT_NE(first[0], first[1000]);
 }
 
-TEST(RangeBias, OfManyRingsIsNormalAndDrawnWithTheFrameOfConstants) {
+TEST(RangeBias, OfManyRingsIsNormalAndUsesTheKeyOfAllFrames) {
   NoiseStage stage(1, 60000, 10.0);
   for (std::uint32_t i = 0; i < 60000; ++i) {
     stage.beams.rings.push_back(static_cast<std::uint16_t>(i));
@@ -61,7 +61,8 @@ TEST(RangeDrift, IsAGaussMarkovProcess) {
 }
 
 TEST(RangeDrift, HasTheSlopeOfTheProcessOverAMillionFrames) {
-  // x_n+1 - p x_n is white with variance 1 - p^2: the mark of the recursion, never walked here
+  // x_n+1 - p x_n is white with variance 1 - p^2: the property of the recursion, which is not used
+  // here
   constexpr double kFramesPerTau = 50.0;
   const double p = std::exp(-1.0 / kFramesPerTau);
   std::vector<double> steps;
@@ -77,7 +78,7 @@ TEST(RangeDrift, HasTheSlopeOfTheProcessOverAMillionFrames) {
   EXPECT_LT(std::abs(product / 1e6), 4.0 / 1e3);
 }
 
-TEST(RangeDrift, IsTheSameWhoeverAsksFirst) {
+TEST(RangeDrift, IsIndependentOfTheOrderOfQueries) {
   const double later = drift_at(123456789, 1e5, {.seed = 3});
   drift_at(123456780, 1e5, {.seed = 3});
   EXPECT_EQ(drift_at(123456789, 1e5, {.seed = 3}), later);

@@ -22,7 +22,7 @@ TEST(RangeGaussian, MillionBeamsHaveTheStatedMeanAndSpread) {
   EXPECT_EQ(stage.frame.sigma_m[77], 0.05F);
 }
 
-TEST(RangeGaussian, PassesTheTestOfKolmogorovAndSmirnov) {
+TEST(RangeGaussian, PassesTheKolmogorovSmirnovTest) {
   NoiseStage stage(1000, 1000, 10.0);
   stage.apply({RangeGaussian{.sigma_m = 0.02}});
   std::vector<double>& sample = stage.frame.range_m;
@@ -37,7 +37,7 @@ TEST(RangeGaussian, PassesTheTestOfKolmogorovAndSmirnov) {
   EXPECT_LT(farthest, kOneInTenThousand / std::sqrt(n));
 }
 
-TEST(RangeGaussian, EveryChannelIsNormalByItself) {
+TEST(RangeGaussian, EveryChannelIsNormal) {
   NoiseStage stage(64, 4096, 10.0);
   stage.apply({RangeGaussian{.sigma_m = 0.02}});
   constexpr int kBins = 8;  // octiles of the standard normal
@@ -56,7 +56,7 @@ TEST(RangeGaussian, EveryChannelIsNormalByItself) {
   }
 }
 
-TEST(RangeGaussian, DrawsByBoxAndMullerFromTheStatedCounter) {
+TEST(RangeGaussian, UsesBoxMullerWithTheDocumentedCounter) {
   NoiseStage stage(1, 1001, 10.0);
   stage.frame.seed = 12345;
   stage.frame.number = 7;
@@ -68,7 +68,7 @@ TEST(RangeGaussian, DrawsByBoxAndMullerFromTheStatedCounter) {
   EXPECT_NEAR(stage.frame.range_m[1000], 10.0 + 0.5 * normal, 1e-12);
 }
 
-TEST(RangeGaussian, TheSurfaceScalesTheErrorAndNothingElse) {
+TEST(RangeGaussian, TheSurfaceScalesOnlyTheError) {
   NoiseStage plain(1, 300, 10.0);
   NoiseStage scaled(1, 300, 10.0);
   scaled.frame.ground_truth.noise_scale.assign(300, 3.0F);
@@ -108,7 +108,7 @@ TEST(RangeCrlb, AgreesWithTheSpreadOfTheBestEstimatorOfASampledPulse) {
   std::normal_distribution<double> noise(0.0, kNoise);
   std::vector<double> ranges_m;
   for (int trial = 0; trial < 4000; ++trial) {
-    // one step of Newton's method from the truth: the maximum likelihood at high signal
+    // one step of Newton's method from the true value: the maximum likelihood at high signal
     double up = 0.0;
     double down = 0.0;
     for (int k = -40; k <= 40; ++k) {
@@ -127,7 +127,7 @@ TEST(RangeCrlb, AgreesWithTheSpreadOfTheBestEstimatorOfASampledPulse) {
   expect_normal(moments(stage.frame.range_m), 10.0, pulse_sigma_m(law, 0.5));
 }
 
-TEST(RangeShotNoise, FallsWithTheRootOfTheirNumber) {
+TEST(RangeShotNoise, DecreasesWithTheRootOfThePhotonNumber) {
   const RangeShotNoise law{.pulse_fwhm_s = 5e-9, .photons_at_full_scale = 1000.0};
   std::vector<double> logs;
   for (const double intensity : {0.01, 0.1, 1.0}) {
@@ -157,7 +157,7 @@ TEST(RangeUniform, HasTheStatedDistributions) {
   expect_normal(moments(stage.frame.range_m), 10.0, 0.1);
 }
 
-TEST(RangeQuantization, ReportsWholeStepsOfWhatTheSensorCounts) {
+TEST(RangeQuantization, RoundsToMultiplesOfTheStep) {
   NoiseStage stage(100, 1000, 10.0);
   stage.beams.range_offset_m = 0.015;
   stage.apply({RangeGaussian{.sigma_m = 0.05}, RangeQuantization{.step_m = 0.002}});
@@ -185,7 +185,7 @@ TEST(Noise, MissingReturnsStayMissing) {
   EXPECT_EQ(stage.frame.intensity[4], 0.0F);
 }
 
-TEST(Noise, ARangeOfZeroOrLessIsTooNear) {
+TEST(Noise, NonPositiveRangesAreTooNear) {
   NoiseStage stage(1, 10, 0.5);
   stage.apply({RangeBias{.offset_m = -0.6}});
   EXPECT_EQ(stage.frame.status[0], Status::too_near);
@@ -193,7 +193,7 @@ TEST(Noise, ARangeOfZeroOrLessIsTooNear) {
   EXPECT_EQ(stage.frame.intensity[0], 0.0F);
 }
 
-TEST(Noise, WithoutStepsThereIsNoErrorToTell) {
+TEST(Noise, WithoutStepsThereIsNoSigma) {
   NoiseStage stage(1, 10, 0.5);
   stage.apply({});
   EXPECT_TRUE(stage.frame.sigma_m.empty());

@@ -43,7 +43,7 @@ TEST(ContinuousWave, HasTheSpreadOfLangeAndSeitz) {
   EXPECT_NEAR(stage.frame.sigma_m[0], sigma_m, 1e-6);
 }
 
-TEST(ContinuousWave, SeveralFrequenciesGiveTheMeanOfLeastVariance) {
+TEST(ContinuousWave, SeveralFrequenciesGiveTheMinimumVarianceMean) {
   NoiseStage stage(100, 1000, 11.7, 0.5);
   stage.apply({kinect_v2()});
   double inverse = 0.0;
@@ -57,7 +57,7 @@ TEST(ContinuousWave, SeveralFrequenciesGiveTheMeanOfLeastVariance) {
 
 TEST(ContinuousWave, AnyNumberOfFrequenciesFindsTheRangeThatFitsThemAll) {
   ContinuousWave law = kinect_v2();
-  law.electrons_at_full_scale = 1e12;  // hardly any error
+  law.electrons_at_full_scale = 1e12;  // negligible error
   const std::vector<std::vector<double>> choices = {
       {16e6},
       {80e6, 60e6},
@@ -80,9 +80,9 @@ TEST(ContinuousWave, AnyNumberOfFrequenciesFindsTheRangeThatFitsThemAll) {
   }
 }
 
-TEST(ContinuousWave, RangesBeyondTheUnambiguousWrapAround) {
+TEST(ContinuousWave, RangesBeyondTheUnambiguousRangeWrapAround) {
   ContinuousWave law = kinect_v2();
-  law.electrons_at_full_scale = 1e12;  // hardly any error
+  law.electrons_at_full_scale = 1e12;  // negligible error
   NoiseStage stage(1, 4, 20.0);
   stage.apply({law});
   EXPECT_NEAR(stage.frame.range_m[0], 20.0 - 18.737028625, 1e-5);
@@ -92,7 +92,7 @@ TEST(ContinuousWave, RangesBeyondTheUnambiguousWrapAround) {
   EXPECT_NEAR(stage.frame.range_m[0], 20.0 - 10.0 * 1.8737028625, 1e-5);
 }
 
-TEST(ContinuousWave, WeakLightTakesTheWrongWrapOrNone) {
+TEST(ContinuousWave, WeakLightGivesTheWrongWrapOrNone) {
   ContinuousWave law = kinect_v2();
   law.electrons_at_full_scale = 300.0;
   law.background_electrons = 20000.0;
@@ -109,7 +109,7 @@ TEST(ContinuousWave, WeakLightTakesTheWrongWrapOrNone) {
   EXPECT_GT(wrapped, 100.0);
 }
 
-TEST(ContinuousWave, AnEdgeMixesToThePhasorMeanOrIsInvalid) {
+TEST(ContinuousWave, AnEdgeHasThePhasorMeanOrIsInvalid) {
   // one frequency, two distances: the phase of the sum of the waves, and a test of its length
   ContinuousWave law = kinect_v2();
   law.frequencies_hz = {16e6};

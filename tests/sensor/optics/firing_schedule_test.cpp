@@ -23,7 +23,7 @@ std::string error_of(const FiringSchedule& ticks) {
 
 /// At the largest of these times a step of one tick is lost in rounding, and a search for the first
 /// tick would not end.
-TEST(FiringSchedule, PeriodsBeyondAHundredDaysAreRefused) {
+TEST(FiringSchedule, PeriodsBeyondAHundredDaysAreErrors) {
   for (const double period_ns :
        {8.65e15, 9.3e18, 1e21, 1e300, std::numeric_limits<double>::infinity(),
         std::numeric_limits<double>::quiet_NaN(), 0.5, -1.0}) {
@@ -33,7 +33,7 @@ TEST(FiringSchedule, PeriodsBeyondAHundredDaysAreRefused) {
     EXPECT_THAT(error_of({first_ns, 100.0}), HasSubstr("optics, first time")) << first_ns;
 }
 
-TEST(FiringSchedule, TheLongestPeriodIsCountedExactly) {
+TEST(FiringSchedule, TheLongestPeriodIsExact) {
   const FiringSchedule ticks{50.0, kHundredDays_ns};
   EXPECT_EQ(firings_in(ticks, {0, 100}, kMany).size(), 1U);
   EXPECT_EQ(firings_in(ticks, {51, 100}, kMany).size(), 0U);

@@ -41,7 +41,7 @@ TEST(LineScan, EachFrameIsOneScanInItsGrid) {
   }
 }
 
-TEST(LineScan, ToAndFroTurnsEverySecondLine) {
+TEST(LineScan, BidirectionalReversesEverySecondLine) {
   LineScan r = small_raster();
   r.bidirectional = true;
   const Sensor sensor = sensor_of(r);
@@ -51,7 +51,7 @@ TEST(LineScan, ToAndFroTurnsEverySecondLine) {
   EXPECT_EQ(beams.times_ns[9], 20'000U);
 }
 
-TEST(LineScan, WindowsJoinWithoutGapOrOverlap) {
+TEST(LineScan, IntervalsJoinWithoutGapOrOverlap) {
   testing::expect_windows_join(small_raster(), 0, 300'000'000);
   testing::expect_windows_join(small_raster(), -66'666'667, 100'000'001);
 }
@@ -68,7 +68,7 @@ TEST(LineScan, OneLineIsATwoDimensionalScanner) {
   EXPECT_EQ(beams.directions[540], Eigen::Vector3d::UnitX());
 }
 
-TEST(LineScan, RefusesAScanLongerThanItsPeriod) {
+TEST(LineScan, RejectsAScanLongerThanItsPeriod) {
   LineScan r = small_raster();
   r.line_ns = 1e8;
   EXPECT_THROW(make_beams(sensor_of(r)), Error);

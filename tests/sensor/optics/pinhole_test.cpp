@@ -24,7 +24,7 @@ TEST(Pinhole, FillsItsFieldOfView) {
   EXPECT_NEAR(top_left.x() / top_left.z(), -1.5 * std::tan(10.0 * kDegree), 1e-15);
 }
 
-TEST(Pinhole, PutsPixelCentresWhereTold) {
+TEST(Pinhole, PutsPixelCentresAtTheGivenOffset) {
   Pinhole pinhole;
   pinhole.intrinsics = {.width = 3, .height = 1, .fx = 100.0, .fy = 100.0, .cx = 1.0, .cy = 0.0};
   pinhole.intrinsics.pixel_centre = 0.0;
@@ -127,7 +127,7 @@ TEST(FisheyeOptics, HaveNoBeamBeyondTheWholeSphere) {
   EXPECT_TRUE(std::isnan(make_beams(pinhole).directions[0].x()));  // theta 3.5 > pi
 }
 
-TEST(Pinhole, RefusesNumbersThatAreNoCamera) {
+TEST(Pinhole, RejectsInvalidIntrinsics) {
   EXPECT_THROW(pinhole_from_fov(0, 8, 1.0), Error);
   EXPECT_THROW(pinhole_from_fov(70000, 8, 1.0), Error);
   EXPECT_THROW(pinhole_from_fov(8, 8, 0.0), Error);

@@ -45,7 +45,7 @@ double widest_deg(const Beams& beams) {
   return widest;
 }
 
-TEST(Prism, Mid40LooksWhereTheGoldenDirectionsSay) {
+TEST(Prism, Mid40HasTheGoldenDirections) {
   const Beams beams = make_beams(mid40(), {0, kSecond_ns / 10});
   validate(beams);
   ASSERT_EQ(beams.size(), 10'000U);
@@ -64,8 +64,8 @@ TEST(Prism, Mid40LooksWhereTheGoldenDirectionsSay) {
 
 TEST(Prism, FieldsOfViewAreThoseOfTheDataSheets) {
   const FrameInterval second = {0, kSecond_ns};
-  EXPECT_NEAR(widest_deg(make_beams(mid40(), second)), 19.160, 2e-3);  // sheet: 38.4 / 2
-  EXPECT_NEAR(widest_deg(make_beams(mid70(), second)), 35.19, 1e-2);   // sheet: 70.4 / 2
+  EXPECT_NEAR(widest_deg(make_beams(mid40(), second)), 19.160, 2e-3);  // data sheet: 38.4 / 2
+  EXPECT_NEAR(widest_deg(make_beams(mid70(), second)), 35.19, 1e-2);   // data sheet: 70.4 / 2
   const Beams beams = make_beams(avia(), second);
   Eigen::Vector2d low = Eigen::Vector2d::Zero();
   Eigen::Vector2d high = Eigen::Vector2d::Zero();
@@ -75,7 +75,7 @@ TEST(Prism, FieldsOfViewAreThoseOfTheDataSheets) {
     high = high.cwiseMax(angles);
   }
   const Eigen::Vector2d size_deg = (high - low) / kDegree;
-  EXPECT_NEAR(size_deg.x(), 77.2, 0.2);  // the sheet's own numbers; the model is a fit
+  EXPECT_NEAR(size_deg.x(), 77.2, 0.2);  // of the data sheet; the model is a fit
   EXPECT_NEAR(size_deg.y(), 70.4, 0.2);
 }
 
@@ -96,7 +96,7 @@ TEST(Prism, SeveralBeamsAreRowsAndRings) {
   EXPECT_EQ(beams.rings[5 * std::size_t{beams.cols}], 5U);
 }
 
-TEST(Prism, GoesOnOverWindows) {
+TEST(Prism, ContinuesAcrossIntervals) {
   testing::expect_windows_join(mid40(), 0, kSecond_ns / 5);
   testing::expect_windows_join(avia(), 977 * kSecond_ns + 3, 977 * kSecond_ns + kSecond_ns / 9);
   const Beams first = make_beams(mid40(), {0, kSecond_ns / 10});
@@ -111,7 +111,7 @@ TEST(Prism, TotalReflectionIsNoBeam) {
   }
 }
 
-TEST(Prism, RefusesNumbersOutOfRange) {
+TEST(Prism, RejectsNumbersOutOfRange) {
   const FrameInterval window = {0, kSecond_ns / 10};
   EXPECT_THROW(make_beams(Prism{}, window), Error);  // no prism
   Prism prism = mid40();

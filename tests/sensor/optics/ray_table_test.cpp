@@ -20,7 +20,7 @@ RayTable spiral(std::uint32_t size) {
   return table;
 }
 
-TEST(RayTable, IsPlayedAgainAndAgain) {
+TEST(RayTable, RepeatsPeriodically) {
   const RayTable table = spiral(1000);
   const Beams beams = make_beams(table, {2'500'000, 7'500'000});  // second half and a half more
   validate(beams);
@@ -30,11 +30,11 @@ TEST(RayTable, IsPlayedAgainAndAgain) {
   EXPECT_EQ(beams.times_ns[500], 2'500'000U);
 }
 
-TEST(RayTable, WindowsJoinWithoutGapOrOverlap) {
+TEST(RayTable, IntervalsJoinWithoutGapOrOverlap) {
   testing::expect_windows_join(spiral(777), 0, 30'000'000);
 }
 
-TEST(RayTable, WithoutTimesIsFiredWholeAtTheFramesStart) {
+TEST(RayTable, WithoutTimesIsFiredAtTheStartOfTheFrame) {
   RayTable table = spiral(6);
   table.times_ns.clear();
   table.rows = 2;
@@ -48,7 +48,7 @@ TEST(RayTable, WithoutTimesIsFiredWholeAtTheFramesStart) {
   EXPECT_EQ(beams.rings[3], 1U);
 }
 
-TEST(RayTable, RefusesArraysThatDoNotFit) {
+TEST(RayTable, RejectsArraysOfWrongSize) {
   RayTable table = spiral(6);
   table.directions.pop_back();
   EXPECT_THROW(make_beams(table, {0, 1}), Error);

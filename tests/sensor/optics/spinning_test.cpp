@@ -27,7 +27,7 @@ Spinning puck() {
   return s;
 }
 
-TEST(Spinning, GivesChannelsTimesColumns) {
+TEST(Spinning, HasOneRowPerChannelAndOneColumnPerSequence) {
   for (const double rate_hz : {5.0, 10.0, 20.0}) {
     Spinning s = puck();
     s.rotation_hz = rate_hz;
@@ -66,7 +66,7 @@ TEST(Spinning, StepsInAzimuthByRateTimesSequence) {
   EXPECT_NEAR(step_rad / kDegree, 360.0 * 10.0 * 55.296e-6, 1e-9);  // 0.199 degrees
 }
 
-TEST(Spinning, RowsFallInElevation) {
+TEST(Spinning, RowsHaveDecreasingElevation) {
   const Beams beams = make_beams(puck(), {0, kSecond_ns / 10});
   for (std::uint32_t row = 0; row < beams.rows; ++row) {
     const double elevation_rad = std::asin(beams.directions[std::size_t{row} * beams.cols].z());
@@ -74,7 +74,7 @@ TEST(Spinning, RowsFallInElevation) {
   }
 }
 
-TEST(Spinning, TurnsTheOtherWayWhenTold) {
+TEST(Spinning, RotatesCounterclockwiseWhenConfigured) {
   Spinning s = puck();
   const Beams right = make_beams(s, {0, kSecond_ns / 10});
   s.turn = Spinning::Turn::counterclockwise;
@@ -85,7 +85,7 @@ TEST(Spinning, TurnsTheOtherWayWhenTold) {
   }
 }
 
-TEST(Spinning, WindowsJoinWithoutGapOrOverlap) {
+TEST(Spinning, IntervalsJoinWithoutGapOrOverlap) {
   testing::expect_windows_join(puck(), 0, kSecond_ns / 5);
   testing::expect_windows_join(puck(), 3'600 * kSecond_ns + 17,
                                3'600 * kSecond_ns + kSecond_ns / 7);
@@ -96,7 +96,7 @@ TEST(Spinning, WindowsJoinWithoutGapOrOverlap) {
   testing::expect_windows_join(encoder, -kSecond_ns / 10, kSecond_ns / 10);
 }
 
-TEST(Spinning, ColumnsOfATurnStandAtEqualAnglesForEver) {
+TEST(Spinning, ColumnsOfATurnStayAtEqualAngles) {
   Spinning s = puck();
   s.columns_per_turn = 1024;
   for (SpinningChannel& channel : s.channels) channel.fire_time_ns = 0.0;
@@ -166,7 +166,7 @@ Eigen::Vector3d ouster_point(const Spinning& s, std::size_t channel, double colu
   return {-p.x(), -p.y(), p.z()};
 }
 
-TEST(Ouster, SphereAboutTheSensorHasTheClosedFormsRanges) {
+TEST(Ouster, RangesOfACentredSphereMatchTheClosedForm) {
   constexpr double kRadius_m = 3.0;
   const Spinning s = ouster();
   const Beams beams = make_beams(s, {0, kSecond_ns / 10});
@@ -191,7 +191,7 @@ TEST(Ouster, SphereAboutTheSensorHasTheClosedFormsRanges) {
   }
 }
 
-TEST(Spinning, RefusesNumbersOutOfRange) {
+TEST(Spinning, RejectsNumbersOutOfRange) {
   const FrameInterval turn = {0, kSecond_ns / 10};
   EXPECT_THROW(make_beams(Spinning{}, turn), Error);  // no channels
   Spinning s = puck();
