@@ -13,14 +13,14 @@
 namespace glidar {
 namespace {
 
-constexpr Real kMinCosine = 0.01L;  // between a face and a beam that clearly see each other
+constexpr Real kMinCosine = 0.01L;  // of faces that are clearly front or back faces
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
-/// A placed shape's points and faces.
-class View {
+/// The vertices, edges and faces of a placed shape, as seen from the sensor.
+class ShapeView {
  public:
-  explicit View(const PlacedShape& placed) : placed_(placed) {
+  explicit ShapeView(const PlacedShape& placed) : placed_(placed) {
     const std::vector<Triangle>& triangles = placed.shape.mesh.triangles;
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
       const RealVector a = vertex(triangles[t][0]);
@@ -37,13 +37,13 @@ class View {
   }
 
   [[nodiscard]] RealVector vertex(std::uint32_t i) const {
-    return place_vertex(placed_.shape.mesh, i, placed_.scale, placed_.place);
+    return exact_vertex(placed_.shape.mesh, i, placed_.scale, placed_.pose);
   }
-  [[nodiscard]] bool are_seen(const std::vector<std::uint32_t>& triangles) const {
+  [[nodiscard]] bool are_visible(const std::vector<std::uint32_t>& triangles) const {
     return std::all_of(triangles.begin(), triangles.end(),
                        [&](std::uint32_t t) { return cosine_[t] > kMinCosine; });
   }
-  /// True when an edge of two triangles is part of the outline.
+  /// True if the edge of two triangles is part of the silhouette.
   [[nodiscard]] bool is_outline(const std::vector<std::uint32_t>& triangles) const {
     const Real a = cosine_[triangles[0]];
     const Real b = cosine_[triangles[1]];
@@ -53,10 +53,11 @@ class View {
     return (normal_[triangles[0]] + normal_[triangles[1]]).normalized();
   }
   [[nodiscard]] const std::map<Edge, std::vector<std::uint32_t>>& edges() const { return edges_; }
-  [[nodiscard]] const std::map<std::uint32_t, std::vector<std::uint32_t>>& around() const {
+  [[nodiscard]] const std::map<std::uint32_t, std::vector<std::uint32_t>>& triangles_at_vertices()
+      const {
     return around_;
   }
-  [[nodiscard]] RealVector middle() const { return placed_.place.shift; }
+  [[nodiscard]] RealVector centre() const { return placed_.pose.shift; }
 
  private:
   const PlacedShape& placed_;
@@ -66,42 +67,42 @@ class View {
   std::map<std::uint32_t, std::vector<std::uint32_t>> around_;  ///< per vertex
 };
 
-Eigen::Vector3d direction_to(const AimedAt& at, const RealVector& point) {
+Eigen::Vector3d direction_to(const AimTarget& at, const RealVector& point) {
   return (at.sensor_from_axes * point.normalized().cast<double>()).normalized();
 }
 
 }  // namespace
 
-Beams beams_at_vertices_and_edges(const AimedAt& at) {
-  constexpr Real kBeyond = 1.3L;  // of a vertex, as seen from the shape's middle
-  const View view(at.placed);
+Beams beams_at_vertices_and_edges(const AimTarget& at) {
+  constexpr Real kScale = 1.3L;  // of a vertex, relative to the shape's centre
+  const ShapeView view(at.placed);
   std::vector<Eigen::Vector3d> directions;
-  for (const auto& [vertex, triangles] : view.around()) {
+  for (const auto& [vertex, triangles] : view.triangles_at_vertices()) {
     const RealVector point = view.vertex(vertex);
-    if (view.are_seen(triangles)) directions.push_back(direction_to(at, point));
-    directions.push_back(direction_to(at, view.middle() + kBeyond * (point - view.middle())));
+    if (view.are_visible(triangles)) directions.push_back(direction_to(at, point));
+    directions.push_back(direction_to(at, view.centre() + kScale * (point - view.centre())));
   }
   std::uint32_t index = 0;
   for (const auto& [edge, triangles] : view.edges()) {
-    if (!view.are_seen(triangles)) continue;
-    const std::array<double, 4> u = probe_draw(at.number, index++);
+    if (!view.are_visible(triangles)) continue;
+    const std::array<double, 4> u = probe_uniforms(at.number, index++);
     for (const double part : {0.5, u[0], u[1], u[2], u[3]}) {
       const RealVector from = view.vertex(edge.first);
       directions.push_back(
           direction_to(at, from + static_cast<Real>(part) * (view.vertex(edge.second) - from)));
     }
   }
-  return loose_probes(std::move(directions));
+  return unstructured_probes(std::move(directions));
 }
 
-Beams beams_beside_outline(const AimedAt& at) {
-  const View view(at.placed);
+Beams beams_beside_outline(const AimTarget& at) {
+  const ShapeView view(at.placed);
   std::vector<Eigen::Vector3d> directions;
   std::uint32_t index = 0;
   for (const auto& [edge, triangles] : view.edges()) {
     if (!view.is_outline(triangles)) continue;
     for (int i = 0; i < 16; ++i) {
-      const std::array<double, 4> u = probe_draw(at.number, index++);
+      const std::array<double, 4> u = probe_uniforms(at.number, index++);
       const RealVector from = view.vertex(edge.first);
       const RealVector point = from + static_cast<Real>(u[0]) * (view.vertex(edge.second) - from);
       const double beside = (u[1] < 0.5 ? -1.0 : 1.0) * std::pow(10.0, -9.0 + 3.0 * u[2]);
@@ -109,7 +110,7 @@ Beams beams_beside_outline(const AimedAt& at) {
           at, point + static_cast<Real>(beside * at.placed.scale) * view.outwards(triangles)));
     }
   }
-  return loose_probes(std::move(directions));
+  return unstructured_probes(std::move(directions));
 }
 
 }  // namespace glidar

@@ -3,25 +3,25 @@
 #pragma once
 
 #include <glidar/core/beams.hpp>
-#include <glidar/verify/judge.hpp>
+#include <glidar/verify/comparison.hpp>
 
 #include <cstdint>
 
 namespace glidar {
 
-/// A shape that beams are aimed at, relative to the sensor in axes of any kind.
-struct AimedAt {
+/// A shape that beams are aimed at, relative to the sensor's position.
+struct AimTarget {
   const PlacedShape& placed;
   Eigen::Matrix3d sensor_from_axes;
-  std::uint32_t number;  ///< of the random numbers
+  std::uint32_t number;  ///< key of the random numbers
 };
 
-/// Beams at all vertices and at points on all edges of triangles around which every face is seen
-/// from the front, and as many that may pass the shape.
-Beams beams_at_vertices_and_edges(const AimedAt& at);
+/// Beams at all vertices and edges whose faces are all front-facing, and beams through the scaled
+/// vertices, most of which miss the shape.
+Beams beams_at_vertices_and_edges(const AimTarget& at);
 
-/// Beams that pass edges between a face seen from the front and one seen from behind by 1e-9 to
-/// 1e-6 of the shape's radius, on either side.
-Beams beams_beside_outline(const AimedAt& at);
+/// Beams that pass the silhouette edges (between a front face and a back face) at a distance of
+/// 1e-9 to 1e-6 of the shape's radius, on either side.
+Beams beams_beside_outline(const AimTarget& at);
 
 }  // namespace glidar

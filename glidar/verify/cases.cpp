@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/verify/cases.hpp>
 
-#include <glidar/verify/judge.hpp>
+#include <glidar/verify/comparison.hpp>
 #include <glidar/verify/probes.hpp>
 
 #include <algorithm>
@@ -13,35 +13,35 @@
 namespace glidar {
 namespace {
 
-constexpr double kViewOverShape = 1.15;  // of the angle that the sphere around the shape fills
+constexpr double kViewOverShape = 1.15;  // field of view over the angle of the bounding sphere
 
-/// Half the angle the sphere around the shape fills, and some more.
+/// Half the field of view: that of the sphere around the shape, and a margin.
 double half_view_rad(const VerifyCase& c) {
   return kViewOverShape * std::asin(c.radius_m / (c.distance_m + c.radius_m));
 }
 
-/// A scene of one shape and where it is seen from.
+/// A scene of one shape, and the sensor's pose.
 struct Stage {
   Scene scene;
   Pose world_from_sensor = Pose::Identity();
 };
 
 Stage make_stage(const VerifyCase& c, const Shape& shape) {
-  const Eigen::Vector3d place = c.offset_m * Eigen::Vector3d(0.6, -0.64, 0.48);
-  const Eigen::Quaterniond attitude = random_rotation(probe_draw(c.number, 0));
-  constexpr std::uint32_t kViewDraw = 4097;  // after those of random_probes()
-  const Eigen::Quaterniond view = random_rotation(probe_draw(c.number, kViewDraw));
+  const Eigen::Vector3d position = c.offset_m * Eigen::Vector3d(0.6, -0.64, 0.48);
+  const Eigen::Quaterniond attitude = random_rotation(probe_uniforms(c.number, 0));
+  constexpr std::uint32_t kViewIndex = 4097;  // after those of random_probes()
+  const Eigen::Quaterniond view = random_rotation(probe_uniforms(c.number, kViewIndex));
   Stage stage;
   Mesh mesh = shape.mesh;
-  Pose world_from_object = make_pose(place, attitude);
+  Pose world_from_object = make_pose(position, attitude);
   if (c.offset_in_mesh) {
-    mesh.origin_m = place / c.radius_m;
+    mesh.origin_m = position / c.radius_m;
     world_from_object.translation() =
-        place - world_from_object.linear() * (c.radius_m * mesh.origin_m);
+        position - world_from_object.linear() * (c.radius_m * mesh.origin_m);
   }
   add_shape(stage.scene, std::move(mesh), c.radius_m, world_from_object);
   const Eigen::Vector3d back = view * Eigen::Vector3d(0.0, 0.0, -(c.distance_m + c.radius_m));
-  stage.world_from_sensor = make_pose(place + back, view);
+  stage.world_from_sensor = make_pose(position + back, view);
   return stage;
 }
 
@@ -53,7 +53,7 @@ const std::vector<double>& verify_distances() {
 }
 
 std::vector<VerifyCase> make_cases(std::size_t shape, double distance_m) {
-  constexpr double kScaledRadius = 0.2;  // of the distance: seen 20 degrees wide
+  constexpr double kScaledRadius = 0.2;  // times the distance: 20 degrees wide
   constexpr double kFixedRadius_m = 0.5;
   struct Offset {
     double offset_m;
@@ -86,10 +86,11 @@ VerifyResult run_case(const VerifyCase& c, const Shape& shape, const VerifySubje
                      .mesh = stage.scene.meshes[0],
                      .faces = shape.faces,
                      .solid = shape.solid};
-  const TrueScene truth{.shapes = {place_shape(placed, instance.scale,
-                                               place_from(instance.world_from_object,
-                                                          stage.world_from_sensor.translation()))},
-                        .edge_tolerance_m = kEdgeTolerance * c.radius_m};
+  const ExactScene exact{
+      .shapes = {place_shape(
+          placed, instance.scale,
+          relative_pose(instance.world_from_object, stage.world_from_sensor.translation()))},
+      .edge_tolerance_m = kEdgeTolerance * c.radius_m};
   std::vector<Beams> casts = {camera_probes(half_view_rad(c))};
   if (subject.casts == BeamKind::any) {
     const double spread_m = 0.05 * std::min(c.radius_m, c.distance_m);
@@ -104,7 +105,7 @@ VerifyResult run_case(const VerifyCase& c, const Shape& shape, const VerifySubje
                     .fields = {.normal = true},
                     .cull_back_faces = false},
                    hits);
-    result.add(judge_cast(truth, stage.world_from_sensor, beams, hits));
+    result.add(compare_cast(exact, stage.world_from_sensor, beams, hits));
   }
   return result;
 }

@@ -13,28 +13,29 @@
 
 namespace glidar {
 
-/// A ray that passes an edge nearer than this part of the shape's radius is not judged: renderers
-/// search in float32 relative to a point near the shape, so that a vertex and a ray are each off by
-/// a few of its roundings (2^-24 = 6e-8 of the radius); this is 32 of them.
+/// Rays that pass an edge nearer than this fraction of the shape's radius are not compared.
+/// Renderers may search in float32 relative to a point near the shape, so that vertices and rays
+/// are off by a few roundings (2^-24 = 6e-8 of the radius); the tolerance is 32 roundings.
 inline constexpr double kEdgeTolerance = 2e-6;
 
-/// One shape in one place, seen once.
+/// One shape at one position, measured from one pose.
 struct VerifyCase {
   std::size_t shape = 0;        ///< index into make_shapes()
   double distance_m = 1.0;      ///< between the sensor and the sphere around the shape
   double radius_m = 0.5;        ///< of that sphere
-  double offset_m = 0.0;        ///< of the shape from the world's zero
-  bool offset_in_mesh = false;  ///< the offset is the mesh's origin, not the pose of the world
-  std::uint32_t number = 0;     ///< of the case; decides attitudes and random rays
+  double offset_m = 0.0;        ///< of the shape from the world's origin
+  bool offset_in_mesh = false;  ///< the offset is in the mesh's origin, not in the pose
+  std::uint32_t number = 0;     ///< of the case; key of the attitudes and random rays
 };
 
-/// Every distance from 0.1 m to 10 km, offset and size at which one shape is looked at.
+/// All offsets and sizes of one shape at this distance.
 std::vector<VerifyCase> make_cases(std::size_t shape, double distance_m);
 
-/// The distances, in metres.
+/// The distances of make_cases(), 0.1 m to 10 km.
 const std::vector<double>& verify_distances();
 
-/// Places the shape, casts a camera's rays and random ones, and judges them by the closed form.
+/// Casts the rays of a camera and random rays at the shape, and compares the hits with the closed
+/// form.
 VerifyResult run_case(const VerifyCase& verify_case, const Shape& shape,
                       const VerifySubject& subject);
 

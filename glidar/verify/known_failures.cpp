@@ -16,13 +16,14 @@ struct Entry {
   std::string_view shape;  ///< empty: any
   double distance_m;       ///< kAny: any
   std::string_view reason;
-  double max_wrong_share;  ///< above what is measured, since processors differ
+  double max_wrong_share;  ///< above the measured share, because processors differ
   double max_range_error_ulp;
 };
 
 constexpr std::array<Entry, 1> kKnown = {{
     {"above a planet", "", kAny,
-     "in double, the sensor's place in units of the planet's radius is known to 1e-9 m", 0.0, 0.1},
+     "in double, the sensor's position in units of the planet's radius is exact to 1e-9 m", 0.0,
+     0.1},
 }};
 
 }  // namespace

@@ -8,7 +8,7 @@
 
 namespace glidar {
 
-/// Why, and by how much, a renderer is known to fail a row's case; no reason: it has to pass.
+/// The known failure of a renderer in a row's case; without a reason, the row must pass.
 KnownFailure known_failure(const AccuracyCase& row);
 
 }  // namespace glidar

@@ -3,7 +3,7 @@
 #include <glidar/verify/moving_case.hpp>
 
 #include <glidar/simulate/moving_cast.hpp>
-#include <glidar/verify/judge.hpp>
+#include <glidar/verify/comparison.hpp>
 #include <glidar/verify/probes.hpp>
 
 #include <cmath>
@@ -15,7 +15,7 @@ using RealMatrix = Eigen::Matrix<Real, 3, 3>;
 
 constexpr std::int64_t kStamp_ns = 500'000'000;
 constexpr std::uint32_t kStep_ns = 25'000;  // between beams: a frame takes 0.1 s
-// Some hundred roundings of double: rays that pass an outline nearer are not judged.
+// A few hundred roundings of double: rays nearer to a silhouette are not compared.
 constexpr double kEdgeTolerance_m = 1e-12;
 
 RealMatrix cross_matrix(const RealVector& w) {
@@ -26,7 +26,7 @@ RealMatrix cross_matrix(const RealVector& w) {
 
 /// A screw motion after a time (K. M. Lynch and F. C. Park, "Modern Robotics" (2017), equation
 /// 3.88), in extended precision.
-RealPlace moved(const ConstantTwist& twist, Real seconds) {
+ExactPose moved(const ConstantTwist& twist, Real seconds) {
   const RealVector angle = twist.angular_rad_s.cast<Real>() * seconds;
   const Real theta = angle.norm();
   const RealMatrix w = cross_matrix(angle / theta);
@@ -40,14 +40,14 @@ RealPlace moved(const ConstantTwist& twist, Real seconds) {
                    start * (path * (twist.linear_m_s.cast<Real>() * seconds))};
 }
 
-/// An object as seen from a sensor, in the sensor's axes.
-RealPlace seen_from(const RealPlace& sensor, const RealPlace& object) {
+/// The pose of an object relative to a sensor.
+ExactPose relative_to_sensor(const ExactPose& sensor, const ExactPose& object) {
   return {.rotation = sensor.rotation.transpose() * object.rotation,
           .shift = sensor.rotation.transpose() * (object.shift - sensor.shift)};
 }
 
-/// A world in motion.
-struct Setting {
+/// A moving sensor, a moving target and a static object.
+struct MovingScene {
   ConstantTwist sensor;
   ConstantTwist target;
   Pose world_from_rest;
@@ -55,29 +55,29 @@ struct Setting {
   double rest_scale = 1.5;
 };
 
-Setting make_setting() {
+MovingScene make_moving_scene() {
   constexpr std::uint32_t kNumber = 90050;
-  Setting setting;
-  setting.sensor = {.pose = make_pose({0.5, -0.25, 0.0}, Eigen::Quaterniond::Identity()),
-                    .angular_rad_s = {0.3, -0.2, 0.5},
-                    .linear_m_s = {1.0, -0.5, 2.0}};
-  setting.target = {.pose = make_pose({0.0, 0.5, 12.0}, random_rotation(probe_draw(kNumber, 0))),
-                    .angular_rad_s = {-0.4, 0.7, 0.2},
-                    .linear_m_s = {3.0, -1.0, 0.5}};
-  setting.world_from_rest = make_pose({3.0, 1.5, 9.0}, random_rotation(probe_draw(kNumber, 1)));
-  return setting;
+  MovingScene moving;
+  moving.sensor = {.pose = make_pose({0.5, -0.25, 0.0}, Eigen::Quaterniond::Identity()),
+                   .angular_rad_s = {0.3, -0.2, 0.5},
+                   .linear_m_s = {1.0, -0.5, 2.0}};
+  moving.target = {.pose = make_pose({0.0, 0.5, 12.0}, random_rotation(probe_uniforms(kNumber, 0))),
+                   .angular_rad_s = {-0.4, 0.7, 0.2},
+                   .linear_m_s = {3.0, -1.0, 0.5}};
+  moving.world_from_rest = make_pose({3.0, 1.5, 9.0}, random_rotation(probe_uniforms(kNumber, 1)));
+  return moving;
 }
 
-/// The shapes as a beam sees them that leaves some time after the frame's start.
-TrueScene scene_at(const Setting& setting, const std::vector<Shape>& shapes,
-                   std::uint32_t time_ns) {
+/// The shapes relative to the sensor at a beam's firing time.
+ExactScene scene_at(const MovingScene& moving, const std::vector<Shape>& shapes,
+                    std::uint32_t time_ns) {
   const Real seconds = (static_cast<Real>(kStamp_ns) + static_cast<Real>(time_ns)) * 1e-9L;
-  const RealPlace sensor = moved(setting.sensor, seconds);
-  const RealPlace rest = {.rotation = setting.world_from_rest.linear().cast<Real>(),
-                          .shift = setting.world_from_rest.translation().cast<Real>()};
-  return {.shapes = {place_shape(shapes[0], setting.target_scale,
-                                 seen_from(sensor, moved(setting.target, seconds))),
-                     place_shape(shapes[2], setting.rest_scale, seen_from(sensor, rest))},
+  const ExactPose sensor = moved(moving.sensor, seconds);
+  const ExactPose rest = {.rotation = moving.world_from_rest.linear().cast<Real>(),
+                          .shift = moving.world_from_rest.translation().cast<Real>()};
+  return {.shapes = {place_shape(shapes[0], moving.target_scale,
+                                 relative_to_sensor(sensor, moved(moving.target, seconds))),
+                     place_shape(shapes[2], moving.rest_scale, relative_to_sensor(sensor, rest))},
           .edge_tolerance_m = kEdgeTolerance_m};
 }
 
@@ -85,34 +85,34 @@ TrueScene scene_at(const Setting& setting, const std::vector<Shape>& shapes,
 
 VerifyResult moving_sensor_and_target(const VerifySubject& subject,
                                       const std::vector<Shape>& shapes) {
-  const Setting setting = make_setting();
+  const MovingScene moving = make_moving_scene();
   Scene scene;
-  add_shape(scene, shapes[0].mesh, setting.target_scale, setting.target.pose);
-  add_shape(scene, shapes[2].mesh, setting.rest_scale, setting.world_from_rest);
+  add_shape(scene, shapes[0].mesh, moving.target_scale, moving.target.pose);
+  add_shape(scene, shapes[2].mesh, moving.rest_scale, moving.world_from_rest);
   const Motion motion = {
-      .world_from_sensor = setting.sensor,
-      .world_from_instance = {setting.target, ConstantPose{setting.world_from_rest}}};
+      .world_from_sensor = moving.sensor,
+      .world_from_instance = {moving.target, ConstantPose{moving.world_from_rest}}};
   Beams beams = random_probes(90051, 0.4, 0.2);
   for (std::uint32_t i = 0; i < beams.cols; ++i) beams.times_ns.push_back(i * kStep_ns);
-  const std::vector<Pose> poses = {pose_at(setting.target, kStamp_ns), setting.world_from_rest};
+  const std::vector<Pose> poses = {pose_at(moving.target, kStamp_ns), moving.world_from_rest};
   const std::unique_ptr<Renderer> renderer = subject.make(scene);
   Workspace memory;
   Hits hits;
   cast_moving({*renderer, scene, motion, kStamp_ns},
               {.beams = beams,
-               .world_from_sensor = pose_at(setting.sensor, kStamp_ns),
+               .world_from_sensor = pose_at(moving.sensor, kStamp_ns),
                .world_from_instance = poses,
                .fields = {.normal = true}},
               memory, hits);
   VerifyResult result;
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    judge_beam(scene_at(setting, shapes, beams.times_ns[i]), beams.origins_m[i].cast<Real>(),
-               beams.directions[i].cast<Real>(),
-               {.instance = hits.instance[i],
-                .primitive = hits.primitive[i],
-                .range_m = hits.range_m[i],
-                .normal = hits.normal[i].cast<Real>()},
-               result);
+    compare_beam(scene_at(moving, shapes, beams.times_ns[i]), beams.origins_m[i].cast<Real>(),
+                 beams.directions[i].cast<Real>(),
+                 {.instance = hits.instance[i],
+                  .primitive = hits.primitive[i],
+                  .range_m = hits.range_m[i],
+                  .normal = hits.normal[i].cast<Real>()},
+                 result);
   }
   return result;
 }

@@ -9,8 +9,8 @@
 
 namespace glidar {
 
-/// Beams that leave one after the other from a sensor that turns and moves, at a target that does
-/// too and at one at rest. The truth follows the motion in extended precision.
+/// Beams with different firing times from a moving and rotating sensor, at a moving and a static
+/// target. The exact hits follow the motion in extended precision.
 VerifyResult moving_sensor_and_target(const VerifySubject& subject,
                                       const std::vector<Shape>& shapes);
 

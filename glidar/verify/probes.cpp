@@ -11,7 +11,7 @@
 
 namespace glidar {
 
-std::array<double, 4> probe_draw(std::uint32_t number, std::uint32_t index) {
+std::array<double, 4> probe_uniforms(std::uint32_t number, std::uint32_t index) {
   const RandomWords words =
       random_words({.seed = 1, .frame = number, .beam = index, .purpose = Purpose::verification});
   return {uniform(words[0]), uniform(words[1]), uniform(words[2]), uniform(words[3])};
@@ -61,8 +61,8 @@ Beams scanner_probes() {
   return beams;
 }
 
-Beams loose_probes(std::vector<Eigen::Vector3d> directions,
-                   std::vector<Eigen::Vector3d> origins_m) {
+Beams unstructured_probes(std::vector<Eigen::Vector3d> directions,
+                          std::vector<Eigen::Vector3d> origins_m) {
   Beams beams;
   beams.rows = 1;
   beams.cols = static_cast<std::uint32_t>(directions.size());
@@ -77,11 +77,11 @@ Beams random_probes(std::uint32_t number, double half_view_rad, double spread_m)
   std::vector<Eigen::Vector3d> directions;
   std::vector<Eigen::Vector3d> origins_m;
   for (std::uint32_t i = 0; i < kRandomRays; ++i) {
-    const std::array<double, 4> u = probe_draw(number, 1 + i);
+    const std::array<double, 4> u = probe_uniforms(number, 1 + i);
     directions.push_back(random_direction(u[0], u[1], half_view_rad));
     origins_m.emplace_back(spread_m * (u[2] - 0.5), spread_m * (u[3] - 0.5), 0.0);
   }
-  return loose_probes(std::move(directions), std::move(origins_m));
+  return unstructured_probes(std::move(directions), std::move(origins_m));
 }
 
 }  // namespace glidar

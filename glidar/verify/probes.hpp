@@ -10,28 +10,28 @@
 
 namespace glidar {
 
-/// Four uniform random numbers from 0 to 1, a function of a case's number and an index.
-std::array<double, 4> probe_draw(std::uint32_t number, std::uint32_t index);
+/// Four uniform random numbers in (0, 1), a function of a case's number and an index.
+std::array<double, 4> probe_uniforms(std::uint32_t number, std::uint32_t index);
 
 /// A uniformly distributed rotation (Shoemake, "Uniform random rotations", Graphics Gems III).
 Eigen::Quaterniond random_rotation(const std::array<double, 4>& u);
 
-/// Unit directions uniformly distributed within an angle of +z.
+/// A unit direction, uniformly distributed within an angle of +z, from two uniform numbers.
 Eigen::Vector3d random_direction(double u0, double u1, double half_angle_rad);
 
-/// The beams of a small camera.
+/// The beams of a small camera with this half field of view.
 Beams camera_probes(double half_view_rad);
 
-/// The beams of a spinning scanner: 32 rows of uneven elevations, staggered by up to a column, 1024
-/// columns.
+/// The beams of a spinning scanner: 32 rows with uneven elevations, staggered by up to a column,
+/// and 1024 columns.
 Beams scanner_probes();
 
-/// Beams of one row without structure; no origins: all zero.
-Beams loose_probes(std::vector<Eigen::Vector3d> directions,
-                   std::vector<Eigen::Vector3d> origins_m = {});
+/// Beams of one row without structure; empty origins: all zero.
+Beams unstructured_probes(std::vector<Eigen::Vector3d> directions,
+                          std::vector<Eigen::Vector3d> origins_m = {});
 
-/// 4096 beams in random directions within an angle of +z, from origins in a square of this width
-/// beside the sensor's. Draws 1 to 4096 of the case.
+/// 4096 beams in random directions within an angle of +z, with origins in a square of width
+/// spread_m around the sensor's. Uses probe_uniforms() 1 to 4096 of the case.
 Beams random_probes(std::uint32_t number, double half_view_rad, double spread_m);
 
 }  // namespace glidar

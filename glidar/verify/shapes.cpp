@@ -15,7 +15,7 @@ namespace {
 
 using Face = std::vector<std::uint32_t>;
 
-/// The mesh of the faces, as fans.
+/// The mesh of the faces, as triangle fans.
 Shape make_shape(std::string name, const std::vector<Eigen::Vector3d>& vertices,
                  std::vector<Face> faces, bool solid) {
   Shape shape{.name = std::move(name), .mesh = {}, .faces = std::move(faces), .solid = solid};
@@ -84,7 +84,7 @@ std::vector<Eigen::Vector3d> icosahedron_vertices() {
   return v;
 }
 
-/// An icosahedron, each face cut into four.
+/// An icosahedron with each face divided into four.
 Shape make_sphere() {
   constexpr std::array<std::array<std::uint32_t, 3>, 20> kFaces = {
       {{0, 11, 5},  {0, 5, 1},  {0, 1, 7},  {0, 7, 10}, {0, 10, 11}, {1, 5, 9}, {5, 11, 4},
@@ -113,21 +113,22 @@ HalfSpace through(const RealVector& normal, const RealVector& point) {
   return {unit, unit.dot(point)};
 }
 
-/// How near the ray comes to the line where two sides meet; `point` lies on the first side and is
-/// `slack` inside the second.
+/// The distance of the ray from the intersection line of two sides; `point` is on the first side
+/// and `slack` inside the second.
 Real distance_to_edge(const HalfSpace& on, const HalfSpace& other, Real slack,
                       const RealVector& direction) {
   const RealVector edge = on.normal.cross(other.normal);
   const Real sine = edge.norm();
-  if (sine == 0.0L) return std::numeric_limits<Real>::infinity();  // parallel: they never meet
-  const RealVector away = on.normal.cross(edge / sine);  // in the first side, across the edge
+  if (sine == 0.0L) return std::numeric_limits<Real>::infinity();  // parallel
+  const RealVector away =
+      on.normal.cross(edge / sine);  // in the first side, perpendicular to the edge
   const RealVector common = direction.cross(edge / sine);
   const Real length = common.norm();
   const Real along_side = slack / sine;
   return length == 0.0L ? std::abs(along_side) : std::abs(along_side * away.dot(common)) / length;
 }
 
-/// True when the ray that enters by side `entry` at `point` keeps away from all edges of that side.
+/// True if a ray that enters through side `entry` at `point` is not near an edge of that side.
 bool clear_of_edges(const ClosedForm& form, std::size_t entry, const RealVector& point,
                     const RealVector& direction, Real tolerance) {
   const HalfSpace& on = form.sides[entry];
@@ -137,20 +138,20 @@ bool clear_of_edges(const ClosedForm& form, std::size_t entry, const RealVector&
     if (i == entry) continue;
     const HalfSpace& other = form.sides[i];
     const Real slack = other.offset - other.normal.dot(point);
-    // the distance to the edge is at least slack x cosine, which spares most of the work
+    // The distance to the edge is at least slack x cosine, which avoids most of the work.
     if (slack * cosine > tolerance) continue;
     if (distance_to_edge(on, other, slack, direction) < tolerance) return false;
   }
   return true;
 }
 
-/// Where a ray is inside all half spaces, and by which sides it comes and goes.
+/// The interval of a ray inside all half spaces, and the sides through which it enters and leaves.
 struct Clip {
   Real enter = -std::numeric_limits<Real>::infinity();
   Real leave = std::numeric_limits<Real>::infinity();
   std::size_t entry = 0;
   std::size_t exit = 0;
-  Real outside = -1.0L;  ///< how far the whole ray is outside a side parallel to it
+  Real outside = -1.0L;  ///< distance of the whole ray outside a side parallel to it
 };
 
 Clip clip(const ClosedForm& form, const RealVector& origin, const RealVector& direction) {
@@ -174,14 +175,14 @@ Clip clip(const ClosedForm& form, const RealVector& origin, const RealVector& di
   return c;
 }
 
-TrueHit intersect_solid(const ClosedForm& form, const RealVector& origin,
-                        const RealVector& direction, Real tolerance) {
+ExactHit intersect_solid(const ClosedForm& form, const RealVector& origin,
+                         const RealVector& direction, Real tolerance) {
   const Clip c = clip(form, origin, direction);
-  TrueHit result;
+  ExactHit result;
   const Real in = std::abs(form.sides[c.entry].normal.dot(direction));
   const Real out = std::abs(form.sides[c.exit].normal.dot(direction));
-  // Between the two sides' parameters the ray is outside (miss) or inside (hit) both by at most
-  // this much: for a miss no point of the body is nearer to the ray.
+  // Between the two parameters the ray is outside (miss) or inside (hit) both sides by at most this
+  // distance: for a miss, no point of the body is nearer to the ray.
   const Real margin = std::abs(c.leave - c.enter) * in * out / (in + out);
   result.hit = c.outside <= 0.0L && c.enter <= c.leave && c.enter > 0.0L;
   if (!result.hit) {
@@ -197,11 +198,11 @@ TrueHit intersect_solid(const ClosedForm& form, const RealVector& origin,
   return result;
 }
 
-TrueHit intersect_face(const ClosedForm& form, const RealVector& origin,
-                       const RealVector& direction, Real tolerance) {
+ExactHit intersect_face(const ClosedForm& form, const RealVector& origin,
+                        const RealVector& direction, Real tolerance) {
   const HalfSpace& face = form.sides[0];
   const Real slope = face.normal.dot(direction);
-  TrueHit result;
+  ExactHit result;
   if (std::abs(slope) < kGrazingCosine) {
     result.clear = false;
     return result;
@@ -211,7 +212,7 @@ TrueHit intersect_face(const ClosedForm& form, const RealVector& origin,
   result.hit = result.range_m > 0.0L;
   if (!result.hit) return result;
   const RealVector point = origin + result.range_m * direction;
-  Real beyond = 0.0L;  // distance of the ray from the most distant edge that it is beyond
+  Real beyond = 0.0L;  // distance of the ray from the most distant edge that it misses
   for (std::size_t i = 1; i < form.sides.size(); ++i) {
     const Real slack = form.sides[i].offset - form.sides[i].normal.dot(point);
     if (slack >= 0.0L) continue;
@@ -242,56 +243,54 @@ void add_shape(Scene& scene, Mesh mesh, double scale, const Pose& world_from_obj
   scene.instances.push_back(std::move(instance));
 }
 
-RealPlace place_from(const Pose& world_from_object, const Eigen::Vector3d& viewpoint) {
+ExactPose relative_pose(const Pose& world_from_object, const Eigen::Vector3d& viewpoint) {
   return {.rotation = world_from_object.linear().cast<Real>(),
           .shift = world_from_object.translation().cast<Real>() - viewpoint.cast<Real>()};
 }
 
-RealVector place_vertex(const Mesh& mesh, std::uint32_t vertex, double scale,
-                        const RealPlace& place) {
+RealVector exact_vertex(const Mesh& mesh, std::uint32_t vertex, double scale,
+                        const ExactPose& pose) {
   const RealVector in_object = mesh.origin_m.cast<Real>() + mesh.positions_m[vertex].cast<Real>();
-  return place.rotation * (static_cast<Real>(scale) * in_object) + place.shift;
+  return pose.rotation * (static_cast<Real>(scale) * in_object) + pose.shift;
 }
 
 ClosedForm make_closed_form(const Shape& shape, double scale, const Pose& world_from_object,
                             const Eigen::Vector3d& viewpoint) {
-  return make_closed_form(shape, scale, place_from(world_from_object, viewpoint));
+  return make_closed_form(shape, scale, relative_pose(world_from_object, viewpoint));
 }
 
-ClosedForm make_closed_form(const Shape& shape, double scale, const RealPlace& at) {
-  const auto place = [&](std::uint32_t vertex) {
-    return place_vertex(shape.mesh, vertex, scale, at);
-  };
+ClosedForm make_closed_form(const Shape& shape, double scale, const ExactPose& at) {
+  const auto vertex = [&](std::uint32_t i) { return exact_vertex(shape.mesh, i, scale, at); };
   ClosedForm form{.sides = {}, .solid = shape.solid};
   for (const Face& face : shape.faces) {
-    const RealVector a = place(face[0]);
-    form.sides.push_back(through((place(face[1]) - a).cross(place(face[2]) - a), a));
+    const RealVector a = vertex(face[0]);
+    form.sides.push_back(through((vertex(face[1]) - a).cross(vertex(face[2]) - a), a));
   }
   if (shape.solid) return form;
   const Face& face = shape.faces.front();
   for (std::size_t i = 0; i < face.size(); ++i) {
-    const RealVector a = place(face[i]);
-    const RealVector along = place(face[(i + 1) % face.size()]) - a;
+    const RealVector a = vertex(face[i]);
+    const RealVector along = vertex(face[(i + 1) % face.size()]) - a;
     form.sides.push_back(through(along.cross(form.sides.front().normal), a));
   }
   return form;
 }
 
-TrueHit intersect(const ClosedForm& form, const RealVector& origin, const RealVector& direction,
-                  Real edge_tolerance_m) {
+ExactHit intersect(const ClosedForm& form, const RealVector& origin, const RealVector& direction,
+                   Real edge_tolerance_m) {
   return form.solid ? intersect_solid(form, origin, direction, edge_tolerance_m)
                     : intersect_face(form, origin, direction, edge_tolerance_m);
 }
 
-TrueHit leave(const ClosedForm& form, const RealVector& origin, const RealVector& direction,
-              Real edge_tolerance_m) {
+ExactHit intersect_from_inside(const ClosedForm& form, const RealVector& origin,
+                               const RealVector& direction, Real edge_tolerance_m) {
   const Clip c = clip(form, origin, direction);
-  TrueHit result;
+  ExactHit result;
   const HalfSpace& exit = form.sides[c.exit];
   const Real slope = exit.normal.dot(direction);
   result.hit = c.leave * slope > edge_tolerance_m;
   if (!result.hit) {
-    // The ray starts on the side by which it leaves: it must clearly go away from it.
+    // The ray starts on the side through which it leaves, and must clearly point away from it.
     result.clear = slope > kGrazingCosine;
     return result;
   }

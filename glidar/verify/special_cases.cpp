@@ -3,7 +3,7 @@
 #include <glidar/verify/special_cases.hpp>
 
 #include <glidar/verify/aimed_probes.hpp>
-#include <glidar/verify/judge.hpp>
+#include <glidar/verify/comparison.hpp>
 #include <glidar/verify/moving_case.hpp>
 #include <glidar/verify/probes.hpp>
 
@@ -15,77 +15,79 @@
 namespace glidar {
 namespace {
 
-/// Of distance and size: some hundred roundings of double. Rays that pass an outline nearer are not
-/// judged.
+/// Relative to distance and size: a few hundred roundings of double. Rays nearer to a silhouette
+/// are not compared.
 constexpr double kExactTolerance = 1e-13;
 
-/// Of the sensor above a planet. Not local to the function that makes its case, which it outlives.
+/// Height of the sensor above a planet. Its case is called after the function that makes it.
 constexpr double kHeight_m = 1.5;
 
 /// A shape in the world.
-struct Stand {
+struct ShapeInstance {
   const Shape& shape;
   double scale;
   Pose world_from_object;
 };
 
-Scene make_scene(const std::vector<Stand>& stands) {
+Scene make_scene(const std::vector<ShapeInstance>& instances) {
   Scene scene;
-  for (const Stand& stand : stands) {
-    add_shape(scene, stand.shape.mesh, stand.scale, stand.world_from_object);
+  for (const ShapeInstance& instance : instances) {
+    add_shape(scene, instance.shape.mesh, instance.scale, instance.world_from_object);
   }
   return scene;
 }
 
-TrueScene truth_of(const std::vector<Stand>& stands, const Eigen::Vector3d& viewpoint) {
-  TrueScene truth;
-  for (const Stand& stand : stands) {
-    truth.shapes.push_back(
-        place_shape(stand.shape, stand.scale, place_from(stand.world_from_object, viewpoint)));
+ExactScene exact_scene(const std::vector<ShapeInstance>& instances,
+                       const Eigen::Vector3d& viewpoint) {
+  ExactScene exact;
+  for (const ShapeInstance& instance : instances) {
+    exact.shapes.push_back(place_shape(instance.shape, instance.scale,
+                                       relative_pose(instance.world_from_object, viewpoint)));
   }
-  return truth;
+  return exact;
 }
 
-VerifyResult cast_and_judge(Renderer& renderer, const TrueScene& truth,
-                            const Pose& world_from_sensor, const Beams& beams) {
+VerifyResult cast_and_compare(Renderer& renderer, const ExactScene& exact,
+                              const Pose& world_from_sensor, const Beams& beams) {
   Hits hits;
   renderer.cast(
       {.beams = beams, .world_from_sensor = world_from_sensor, .fields = {.normal = true}}, hits);
-  return judge_cast(truth, world_from_sensor, beams, hits);
+  return compare_cast(exact, world_from_sensor, beams, hits);
 }
 
-/// A camera's beams and, for renderers that cast them, random ones.
-VerifyResult cast_view(const VerifySubject& subject, Renderer& renderer, const TrueScene& truth,
+/// Casts the beams of a camera and, if the renderer supports them, random beams.
+VerifyResult cast_view(const VerifySubject& subject, Renderer& renderer, const ExactScene& exact,
                        const Pose& world_from_sensor, double half_view_rad) {
   constexpr std::uint32_t kNumber = 90001;
   constexpr double kSpread_m = 0.1;
   VerifyResult result =
-      cast_and_judge(renderer, truth, world_from_sensor, camera_probes(half_view_rad));
+      cast_and_compare(renderer, exact, world_from_sensor, camera_probes(half_view_rad));
   if (subject.casts == BeamKind::any) {
-    result.add(cast_and_judge(renderer, truth, world_from_sensor,
-                              random_probes(kNumber, half_view_rad, kSpread_m)));
+    result.add(cast_and_compare(renderer, exact, world_from_sensor,
+                                random_probes(kNumber, half_view_rad, kSpread_m)));
   }
   return result;
 }
 
-/// Two of each shape in a cloud of 40 m, and one shape 10 m from the sensor.
-std::vector<Stand> cloud_of_shapes(const std::vector<Shape>& shapes, const Pose& world_from_sensor,
-                                   double distance_m) {
+/// Two of each shape in a cube of 40 m, and one shape 10 m from the sensor.
+std::vector<ShapeInstance> cloud_of_shapes(const std::vector<Shape>& shapes,
+                                           const Pose& world_from_sensor, double distance_m) {
   constexpr std::uint32_t kNumber = 90010;
   constexpr double kHalfSize_m = 20.0;
-  std::vector<Stand> stands;
+  std::vector<ShapeInstance> instances;
   for (std::uint32_t i = 0; i < 2 * shapes.size(); ++i) {
-    const std::array<double, 4> u = probe_draw(kNumber, 2 * i);
+    const std::array<double, 4> u = probe_uniforms(kNumber, 2 * i);
     const Eigen::Vector3d in_sensor =
         kHalfSize_m * (2.0 * Eigen::Vector3d(u[0], u[1], u[2]) - Eigen::Vector3d::Ones()) +
         Eigen::Vector3d(0.0, 0.0, distance_m);
-    const Eigen::Quaterniond attitude = random_rotation(probe_draw(kNumber, 2 * i + 1));
-    stands.push_back({shapes[i % shapes.size()], 2.0 + 4.0 * u[3],
-                      make_pose(world_from_sensor * in_sensor, attitude)});
+    const Eigen::Quaterniond attitude = random_rotation(probe_uniforms(kNumber, 2 * i + 1));
+    instances.push_back({shapes[i % shapes.size()], 2.0 + 4.0 * u[3],
+                         make_pose(world_from_sensor * in_sensor, attitude)});
   }
   const Eigen::Vector3d near = world_from_sensor * Eigen::Vector3d(3.0, 0.0, 10.0);
-  stands.push_back({shapes[0], 1.5, make_pose(near, random_rotation(probe_draw(kNumber, 1000)))});
-  return stands;
+  instances.push_back(
+      {shapes[0], 1.5, make_pose(near, random_rotation(probe_uniforms(kNumber, 1000)))});
+  return instances;
 }
 
 VerifyResult several_instances(const VerifySubject& subject, const std::vector<Shape>& shapes,
@@ -93,48 +95,49 @@ VerifyResult several_instances(const VerifySubject& subject, const std::vector<S
   constexpr double kHalfView_m = 25.0;
   constexpr double kWide_rad = 0.5;
   const Pose world_from_sensor =
-      make_pose({12.0, -7.0, 3.0}, random_rotation(probe_draw(90011, 0)));
-  const std::vector<Stand> stands = cloud_of_shapes(shapes, world_from_sensor, distance_m);
-  const Scene scene = make_scene(stands);
+      make_pose({12.0, -7.0, 3.0}, random_rotation(probe_uniforms(90011, 0)));
+  const std::vector<ShapeInstance> instances =
+      cloud_of_shapes(shapes, world_from_sensor, distance_m);
+  const Scene scene = make_scene(instances);
   const std::unique_ptr<Renderer> renderer = subject.make(scene);
-  TrueScene truth = truth_of(stands, world_from_sensor.translation());
-  truth.edge_tolerance_m = kExactTolerance * distance_m;
+  ExactScene exact = exact_scene(instances, world_from_sensor.translation());
+  exact.edge_tolerance_m = kExactTolerance * distance_m;
   VerifyResult result =
-      cast_view(subject, *renderer, truth, world_from_sensor, std::atan(kHalfView_m / distance_m));
-  result.add(cast_view(subject, *renderer, truth, world_from_sensor, kWide_rad));
+      cast_view(subject, *renderer, exact, world_from_sensor, std::atan(kHalfView_m / distance_m));
+  result.add(cast_view(subject, *renderer, exact, world_from_sensor, kWide_rad));
   if (subject.casts != BeamKind::any) return result;
-  // Single precision is wrong for a beam in some thousand here, and for fewer the nearer it is: as
-  // many more that several are, on any processor.
+  // Single precision is wrong for about one beam in a thousand here, and for fewer at short range:
+  // cast so many that several are wrong on any processor.
   constexpr double kBeamsTimesDistance = 1.28e6;
   constexpr std::uint32_t kNumber = 90100;
   const auto casts = static_cast<std::uint32_t>(kBeamsTimesDistance / distance_m);
   for (std::uint32_t i = 0; i < casts; ++i) {
     result.add(
-        cast_and_judge(*renderer, truth, world_from_sensor,
-                       random_probes(kNumber + i, std::atan(kHalfView_m / distance_m), 0.1)));
+        cast_and_compare(*renderer, exact, world_from_sensor,
+                         random_probes(kNumber + i, std::atan(kHalfView_m / distance_m), 0.1)));
   }
   return result;
 }
 
-/// Bodies all around a scanner, and some of its beams between them.
+/// Bodies all around a scanner; some beams pass between them.
 VerifyResult scanner_among_bodies(const VerifySubject& subject, const std::vector<Shape>& shapes) {
   constexpr std::uint32_t kNumber = 90060;
   constexpr std::uint32_t kBodies = 40;
   const Pose world_from_sensor =
-      make_pose({-3.0, 8.0, 1.0}, random_rotation(probe_draw(kNumber, 0)));
-  std::vector<Stand> stands;
+      make_pose({-3.0, 8.0, 1.0}, random_rotation(probe_uniforms(kNumber, 0)));
+  std::vector<ShapeInstance> instances;
   for (std::uint32_t i = 0; i < kBodies; ++i) {
-    const std::array<double, 4> u = probe_draw(kNumber, 2 * i + 1);
+    const std::array<double, 4> u = probe_uniforms(kNumber, 2 * i + 1);
     const double distance_m = 5.0 + 5.0 * i;
-    const Eigen::Vector3d way = random_direction(u[0], u[1], std::numbers::pi);
-    stands.push_back({shapes[i % shapes.size()], 0.4 * distance_m * (0.2 + u[2]),
-                      make_pose(world_from_sensor * (distance_m * way),
-                                random_rotation(probe_draw(kNumber, 2 * i + 2)))});
+    const Eigen::Vector3d direction = random_direction(u[0], u[1], std::numbers::pi);
+    instances.push_back({shapes[i % shapes.size()], 0.4 * distance_m * (0.2 + u[2]),
+                         make_pose(world_from_sensor * (distance_m * direction),
+                                   random_rotation(probe_uniforms(kNumber, 2 * i + 2)))});
   }
-  const Scene scene = make_scene(stands);
-  TrueScene truth = truth_of(stands, world_from_sensor.translation());
-  truth.edge_tolerance_m = kExactTolerance * 5.0 * kBodies;
-  return cast_and_judge(*subject.make(scene), truth, world_from_sensor, scanner_probes());
+  const Scene scene = make_scene(instances);
+  ExactScene exact = exact_scene(instances, world_from_sensor.translation());
+  exact.edge_tolerance_m = kExactTolerance * 5.0 * kBodies;
+  return cast_and_compare(*subject.make(scene), exact, world_from_sensor, scanner_probes());
 }
 
 VerifyResult above_a_planet(const VerifySubject& subject, const Shape& shape, double height_m) {
@@ -142,7 +145,7 @@ VerifyResult above_a_planet(const VerifySubject& subject, const Shape& shape, do
   constexpr double kHalfView_rad = 0.8;
   constexpr std::size_t kFace = 17;
   const Pose world_from_object =
-      make_pose(Eigen::Vector3d::Zero(), random_rotation(probe_draw(90020, 0)));
+      make_pose(Eigen::Vector3d::Zero(), random_rotation(probe_uniforms(90020, 0)));
   std::array<Eigen::Vector3d, 3> corner;
   for (std::size_t k = 0; k < 3; ++k) {
     corner[k] = world_from_object *
@@ -152,75 +155,75 @@ VerifyResult above_a_planet(const VerifySubject& subject, const Shape& shape, do
   const Eigen::Vector3d eye = (corner[0] + corner[1] + corner[2]) / 3.0 + height_m * up;
   const Eigen::Vector3d ahead = (corner[0] - corner[1]).normalized() - 0.5 * up;
   const Pose world_from_sensor = look_at(eye, eye + ahead, up);
-  const std::vector<Stand> stands = {{shape, kRadius_m, world_from_object}};
-  const Scene scene = make_scene(stands);
-  TrueScene truth = truth_of(stands, eye);
-  truth.edge_tolerance_m = kExactTolerance * kRadius_m;
-  return cast_view(subject, *subject.make(scene), truth, world_from_sensor, kHalfView_rad);
+  const std::vector<ShapeInstance> instances = {{shape, kRadius_m, world_from_object}};
+  const Scene scene = make_scene(instances);
+  ExactScene exact = exact_scene(instances, eye);
+  exact.edge_tolerance_m = kExactTolerance * kRadius_m;
+  return cast_view(subject, *subject.make(scene), exact, world_from_sensor, kHalfView_rad);
 }
 
-/// All poses and sizes are such that the sensor is on the vertices exactly.
+/// With these poses and sizes the sensor is exactly on the vertices.
 VerifyResult sensor_on_vertices(const VerifySubject& subject, const Shape& shape) {
   constexpr double kScale = 2.0;
   constexpr std::size_t kMaxVertices = 8;
-  const std::vector<Stand> stands = {{shape, kScale, Pose::Identity()}};
-  const Scene scene = make_scene(stands);
+  const std::vector<ShapeInstance> instances = {{shape, kScale, Pose::Identity()}};
+  const Scene scene = make_scene(instances);
   const std::unique_ptr<Renderer> renderer = subject.make(scene);
   VerifyResult result;
   const std::size_t count = std::min(kMaxVertices, shape.mesh.positions_m.size());
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3d eye = kScale * shape.mesh.positions_m[i].cast<double>();
     const Pose into = look_at(eye, {0.01, 0.02, 0.03}, {0.1, 0.2, 1.0});
-    TrueScene truth = truth_of(stands, eye);
-    truth.edge_tolerance_m = kExactTolerance * kScale;
-    truth.is_from_inside = true;
-    result.add(cast_and_judge(*renderer, truth, into, camera_probes(0.25 * std::numbers::pi)));
-    result.add(cast_and_judge(*renderer, truth, into, camera_probes(0.45 * std::numbers::pi)));
+    ExactScene exact = exact_scene(instances, eye);
+    exact.edge_tolerance_m = kExactTolerance * kScale;
+    exact.is_from_inside = true;
+    result.add(cast_and_compare(*renderer, exact, into, camera_probes(0.25 * std::numbers::pi)));
+    result.add(cast_and_compare(*renderer, exact, into, camera_probes(0.45 * std::numbers::pi)));
     if (subject.casts != BeamKind::any) continue;
     Beams all_around = random_probes(90030, std::numbers::pi, 0.0);
     all_around.origins_m.clear();
-    result.add(cast_and_judge(*renderer, truth, into, all_around));
+    result.add(cast_and_compare(*renderer, exact, into, all_around));
   }
   return result;
 }
 
-/// Which beams are aimed at a shape.
-using Aim = Beams (*)(const AimedAt&);
+/// A function that aims beams at a shape.
+using AimFunction = Beams (*)(const AimTarget&);
 
-VerifyResult perturbed_beams(const VerifySubject& subject, const Shape& shape, double distance_m,
-                             Aim aim) {
+VerifyResult cast_aimed_beams(const VerifySubject& subject, const Shape& shape, double distance_m,
+                              AimFunction aim) {
   constexpr std::uint32_t kNumber = 90040;
   constexpr std::uint32_t kEyes = 24;
   const Pose world_from_object =
-      make_pose({4.0, -1.0, 2.0}, random_rotation(probe_draw(kNumber, 0)));
-  const std::vector<Stand> stands = {{shape, 1.5, world_from_object}};
-  const Scene scene = make_scene(stands);
+      make_pose({4.0, -1.0, 2.0}, random_rotation(probe_uniforms(kNumber, 0)));
+  const std::vector<ShapeInstance> instances = {{shape, 1.5, world_from_object}};
+  const Scene scene = make_scene(instances);
   const std::unique_ptr<Renderer> renderer = subject.make(scene);
   VerifyResult result;
   for (std::uint32_t i = 1; i <= kEyes; ++i) {
-    const Eigen::Quaterniond view = random_rotation(probe_draw(kNumber, i));
+    const Eigen::Quaterniond view = random_rotation(probe_uniforms(kNumber, i));
     const Eigen::Vector3d eye =
         world_from_object.translation() - view * Eigen::Vector3d(0.0, 0.0, distance_m + 1.5);
     const Pose world_from_sensor = make_pose(eye, view);
-    const TrueScene truth = truth_of(stands, eye);
-    const Beams beams = aim({.placed = truth.shapes[0],
+    const ExactScene exact = exact_scene(instances, eye);
+    const Beams beams = aim({.placed = exact.shapes[0],
                              .sensor_from_axes = world_from_sensor.linear().transpose(),
                              .number = kNumber + i});
-    result.add(cast_and_judge(*renderer, truth, world_from_sensor, beams));
+    result.add(cast_and_compare(*renderer, exact, world_from_sensor, beams));
   }
   return result;
 }
 
-/// Beams that are aimed at vertices, edges and outlines.
+/// Beams that are aimed at vertices, edges and silhouettes.
 void add_aimed_cases(const Shape& shape, std::vector<SpecialCase>& cases) {
   for (const double distance_m : {1.0, 1000.0}) {
     cases.push_back({"at vertices and edges", shape.name, distance_m, BeamKind::any,
                      [&shape, distance_m](const auto& s) {
-                       return perturbed_beams(s, shape, distance_m, beams_at_vertices_and_edges);
+                       return cast_aimed_beams(s, shape, distance_m, beams_at_vertices_and_edges);
                      }});
   }
   cases.push_back({"beside the outline", shape.name, 1.0, BeamKind::any, [&shape](const auto& s) {
-                     return perturbed_beams(s, shape, 1.0, beams_beside_outline);
+                     return cast_aimed_beams(s, shape, 1.0, beams_beside_outline);
                    }});
 }
 

@@ -11,18 +11,18 @@
 
 namespace glidar {
 
-/// A scene that is hard for renderers, with beams of its own.
+/// A scene that is difficult for renderers, with its own beams.
 struct SpecialCase {
   std::string name;
   std::string shape;
   double distance_m = 0.0;
-  BeamKind needs = BeamKind::pinhole;  ///< of its beams, at least some
+  BeamKind needs = BeamKind::pinhole;  ///< the renderer must cast at least these beams
   std::function<VerifyResult(const VerifySubject&)> run;
 };
 
-/// Several instances 10 km and 100 km away and one nearby, a sensor 1.5 m above a planet, a a
-/// scanner among bodies, a moving sensor and a moving target, sensors on vertices, beams at
-/// vertices and edges, and beams beside outlines. The shapes must outlive the cases.
+/// Several instances 10 km and 100 km away and one nearby, a sensor 1.5 m above a planet, a scanner
+/// among bodies, a moving sensor and a moving target, sensors on vertices, beams at vertices and
+/// edges, and beams beside silhouettes. The shapes must outlive the cases.
 std::vector<SpecialCase> special_cases(const std::vector<Shape>& shapes);
 
 }  // namespace glidar

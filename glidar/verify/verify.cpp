@@ -49,10 +49,10 @@ bool VerifyResult::passed() const {
 }
 
 bool KnownFailure::covers(const VerifyResult& result) const {
-  constexpr std::size_t kMaxUnjudged = 50;  // one in so many rays
+  constexpr std::size_t kMinRaysPerSkipped = 50;
   const double max_wrong = max_wrong_share * static_cast<double>(result.rays);
   return result.judged_hits > 0 && result.judged_misses > 0 &&
-         result.near_edges * kMaxUnjudged < result.rays &&
+         result.near_edges * kMinRaysPerSkipped < result.rays &&
          static_cast<double>(result.wrong()) <= max_wrong &&
          result.range_error_ulp <= max_range_error_ulp &&
          (result.wrong_ids > 0 || result.normal_error_rad <= kNormalBound_rad);

@@ -70,11 +70,11 @@ TEST(VerifyShapes, SolidsAreConvexClosedAndFaceOutwards) {
   }
 }
 
-TEST(VerifyShapes, BoxIsMetWhereItsSidesAre) {
+TEST(VerifyShapes, BoxIsHitAtItsSides) {
   const std::vector<Shape> shapes = make_shapes();
   const ClosedForm form =
       make_closed_form(shape_named(shapes, "box"), 2.0, Pose::Identity(), {-10.0, 0.25, 0.1});
-  const TrueHit hit = intersect(form, {0.0L, 0.0L, 0.0L}, {1.0L, 0.0L, 0.0L}, 1e-6L);
+  const ExactHit hit = intersect(form, {0.0L, 0.0L, 0.0L}, {1.0L, 0.0L, 0.0L}, 1e-6L);
   EXPECT_TRUE(hit.hit);
   EXPECT_TRUE(hit.clear);
   EXPECT_EQ(hit.range_m, 9.0L);
@@ -82,28 +82,28 @@ TEST(VerifyShapes, BoxIsMetWhereItsSidesAre) {
   EXPECT_FALSE(intersect(form, {0.0L, 0.0L, 0.0L}, {-1.0L, 0.0L, 0.0L}, 1e-6L).hit);
 }
 
-TEST(VerifyShapes, RaysNearEdgesAreNotJudgedAndOthersAre) {
+TEST(VerifyShapes, RaysNearEdgesAreNotCompared) {
   const std::vector<Shape> shapes = make_shapes();
   const ClosedForm form =
       make_closed_form(shape_named(shapes, "box"), 1.0, Pose::Identity(), {-10.0, 0.0, 0.0});
   const RealVector ahead(1.0L, 0.0L, 0.0L);
   for (const Real beside : {-2e-6L, -0.5e-6L, 0.5e-6L, 2e-6L}) {
-    const TrueHit result = intersect(form, {0.0L, 0.625L + beside, 0.0L}, ahead, 1e-6L);
+    const ExactHit result = intersect(form, {0.0L, 0.625L + beside, 0.0L}, ahead, 1e-6L);
     EXPECT_EQ(result.hit, beside < 0.0L);
     EXPECT_EQ(result.clear, std::abs(beside) > 1e-6L) << static_cast<double>(beside);
   }
 }
 
-TEST(VerifyShapes, PlaneIsSeenFromBothSidesAndEndsAtItsEdges) {
+TEST(VerifyShapes, PlaneIsTwoSidedAndEndsAtItsEdges) {
   const std::vector<Shape> shapes = make_shapes();
   const ClosedForm form =
       make_closed_form(shape_named(shapes, "tilted plane"), 1.0, Pose::Identity(), {0.0, 0.0, 5.0});
   const RealVector down(0.0L, 0.0L, -1.0L);
-  const TrueHit front = intersect(form, {0.0L, 0.0L, 0.0L}, down, 1e-6L);
+  const ExactHit front = intersect(form, {0.0L, 0.0L, 0.0L}, down, 1e-6L);
   EXPECT_TRUE(front.hit);
   EXPECT_EQ(front.range_m, 5.0L);
   EXPECT_EQ(front.normal, RealVector(0.0L, 0.0L, 1.0L));
-  const TrueHit back = intersect(form, {0.0L, 0.0L, -10.0L}, -down, 1e-6L);
+  const ExactHit back = intersect(form, {0.0L, 0.0L, -10.0L}, -down, 1e-6L);
   EXPECT_TRUE(back.hit);
   EXPECT_EQ(back.normal, RealVector(0.0L, 0.0L, -1.0L));
   EXPECT_FALSE(intersect(form, {0.76L, 0.0L, 0.0L}, down, 1e-6L).hit);
@@ -123,7 +123,7 @@ TEST(VerifyShapes, AgreeWithBruteForceOverTheirTriangles) {
           2.0 * Eigen::Vector3d(uniform(words[0]), uniform(words[1]), uniform(words[2])) -
           Eigen::Vector3d::Ones();
       const Eigen::Vector3d direction = (aim - viewpoint).normalized();
-      const TrueHit truth = intersect(form, RealVector::Zero(), direction.cast<Real>(), 1e-9L);
+      const ExactHit truth = intersect(form, RealVector::Zero(), direction.cast<Real>(), 1e-9L);
       if (!truth.clear) continue;
       const std::optional<double> range = brute_force(shape.mesh, viewpoint, direction);
       ASSERT_EQ(truth.hit, range.has_value()) << shape.name << " ray " << i;
@@ -136,25 +136,29 @@ TEST(VerifyShapes, AgreeWithBruteForceOverTheirTriangles) {
   }
 }
 
-TEST(VerifyShapes, RaysFromInsideAndFromAVertexLeaveByTheRightSide) {
+TEST(VerifyShapes, RaysFromInsideAndFromAVertexLeaveThroughTheCorrectSide) {
   const std::vector<Shape> shapes = make_shapes();
   const Shape& box = shape_named(shapes, "box");
   const ClosedForm inside = make_closed_form(box, 2.0, Pose::Identity(), {0.25, 0.0, 0.0});
-  const TrueHit hit = leave(inside, RealVector::Zero(), {1.0L, 0.0L, 0.0L}, 1e-12L);
+  const ExactHit hit =
+      intersect_from_inside(inside, RealVector::Zero(), {1.0L, 0.0L, 0.0L}, 1e-12L);
   EXPECT_TRUE(hit.hit && hit.clear);
   EXPECT_EQ(hit.range_m, 0.75L);
   EXPECT_EQ(hit.normal, RealVector(-1.0L, 0.0L, 0.0L));
   const ClosedForm corner = make_closed_form(box, 2.0, Pose::Identity(), {1.0, 1.25, 0.75});
-  const TrueHit out = leave(corner, RealVector::Zero(), {0.6L, 0.8L, 0.0L}, 1e-12L);
+  const ExactHit out =
+      intersect_from_inside(corner, RealVector::Zero(), {0.6L, 0.8L, 0.0L}, 1e-12L);
   EXPECT_FALSE(out.hit);
   EXPECT_TRUE(out.clear);
-  const TrueHit through = leave(corner, RealVector::Zero(), {-1.0L, 0.0L, 0.0L}, 1e-12L);
+  const ExactHit through =
+      intersect_from_inside(corner, RealVector::Zero(), {-1.0L, 0.0L, 0.0L}, 1e-12L);
   EXPECT_FALSE(through.clear);  // along two sides
   const RealVector across = RealVector(-2.0L, -2.5L, -1.5L).normalized();
-  const TrueHit far =
-      leave(corner, RealVector::Zero(), RealVector(-0.6L, -0.6L, -0.52L).normalized(), 1e-12L);
+  const ExactHit far = intersect_from_inside(corner, RealVector::Zero(),
+                                             RealVector(-0.6L, -0.6L, -0.52L).normalized(), 1e-12L);
   EXPECT_TRUE(far.hit && far.clear);
-  EXPECT_FALSE(leave(corner, RealVector::Zero(), across, 1e-12L).clear);  // to the far corner
+  EXPECT_FALSE(intersect_from_inside(corner, RealVector::Zero(), across, 1e-12L)
+                   .clear);  // to the far corner
 }
 
 }  // namespace

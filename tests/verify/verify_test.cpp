@@ -15,7 +15,7 @@
 namespace glidar {
 namespace {
 
-/// A renderer that spoils the hits of another.
+/// A renderer that corrupts the hits of another one.
 class Spoiled final : public Renderer {
  public:
   using Spoil = std::function<void(Hits&)>;
@@ -111,29 +111,29 @@ TEST(VerifyCases, RaysAreWithinBoundsAtBothEndsOfTheDistances) {
   }
 }
 
-TEST_F(SpecialCases, EveryRayRendererPassesEachOrFailsAsKnown) {
+TEST_F(SpecialCases, EveryRayRendererPassesOrHasAKnownFailure) {
   for (const SpecialCase& c : all()) {
     const AccuracyCase row = row_of(c, subject("rays"));
     EXPECT_TRUE(all_passed({row})) << c.name << ", " << c.shape << ", " << c.distance_m;
-    EXPECT_NE(row.verdict(), Verdict::fixed) << "take it off the list: " << c.name;
+    EXPECT_NE(row.verdict(), Verdict::fixed) << "remove it from the list: " << c.name;
     EXPECT_GT(row.result.judged_hits, 100U) << c.name << ", " << c.shape;
     EXPECT_GT(row.result.judged_misses, 20U) << c.name << ", " << c.shape;
   }
 }
 
-TEST_F(SpecialCases, TheRasterPassesTheOnesWithItsBeamsOrFailsAsKnown) {
+TEST_F(SpecialCases, TheRasterPassesCasesWithItsBeamsOrHasAKnownFailure) {
   std::size_t applied = 0;
   for (const SpecialCase& c : all()) {
     if (beams_of_renderer("raster") < c.needs) continue;
     ++applied;
     const AccuracyCase row = row_of(c, subject("raster"));
     EXPECT_TRUE(all_passed({row})) << c.name << ", " << c.shape;
-    EXPECT_NE(row.verdict(), Verdict::fixed) << "take it off the list: " << c.name;
+    EXPECT_NE(row.verdict(), Verdict::fixed) << "remove it from the list: " << c.name;
   }
   EXPECT_EQ(applied, 8U);
 }
 
-TEST_F(SpecialCases, ShiftedRangesAreCaughtInEach) {
+TEST_F(SpecialCases, ShiftedRangesAreDetectedInEach) {
   for (const char* name : {"several instances", "scanner among bodies", "moving sensor and target",
                            "at vertices and edges"}) {
     const VerifyResult result = named(name).run(subject("rays", shift_ranges));
@@ -142,7 +142,7 @@ TEST_F(SpecialCases, ShiftedRangesAreCaughtInEach) {
   }
 }
 
-TEST_F(SpecialCases, SwappedIdsAreCaughtInEach) {
+TEST_F(SpecialCases, SwappedIdsAreDetectedInEach) {
   for (const char* name : {"several instances", "moving sensor and target", "sensor on a vertex"}) {
     EXPECT_GT(named(name).run(subject("rays", swap_triangles)).wrong_ids, 100U) << name;
   }
@@ -150,14 +150,14 @@ TEST_F(SpecialCases, SwappedIdsAreCaughtInEach) {
   EXPECT_GT(swapped.wrong_ids, 100U);
 }
 
-TEST_F(SpecialCases, ALostHitIsCaughtInEach) {
+TEST_F(SpecialCases, ALostHitIsDetectedInEach) {
   for (const char* name : {"several instances", "scanner among bodies", "moving sensor and target",
                            "at vertices and edges"}) {
     EXPECT_GT(named(name).run(subject("rays", lose_one_hit)).wrong_misses, 0U) << name;
   }
 }
 
-TEST_F(SpecialCases, ShiftedRangesAndSwappedIdsAreCaughtOfOneShapeAtRest) {
+TEST_F(SpecialCases, ShiftedRangesAndSwappedIdsAreDetectedForOneStaticShape) {
   const VerifyCase c = make_cases(0, 10.0)[0];
   EXPECT_TRUE(run_case(c, shapes()[0], subject("raster")).passed());
   EXPECT_FALSE(run_case(c, shapes()[0], subject("raster", shift_ranges)).passed());
@@ -182,7 +182,7 @@ TEST(VerifyResult, AnyErrorOverItsBoundFails) {
   EXPECT_FALSE(spoiled(&VerifyResult::near_edges, std::size_t{100}));
 }
 
-TEST_F(SpecialCases, AKnownFailureThatGetsWorseFails) {
+TEST_F(SpecialCases, AKnownFailureBeyondItsBoundFails) {
   const auto verdict = [&](const char* name, const std::string& kind, const Spoiled::Spoil& spoil) {
     return row_of(named(name), subject(kind, spoil)).verdict();
   };
@@ -202,7 +202,7 @@ TEST_F(SpecialCases, AKnownFailureThatGetsWorseFails) {
             Verdict::failed);
 }
 
-TEST(AccuracyCase, AKnownFailureIsNoErrorUnlessItIsWorseThanKnown) {
+TEST(AccuracyCase, AKnownFailureIsAnErrorOnlyBeyondItsBound) {
   const VerifyResult good{.rays = 1000, .judged_hits = 500, .judged_misses = 490, .near_edges = 10};
   VerifyResult bad = good;
   bad.wrong_hits = 2;
@@ -230,7 +230,7 @@ TEST(AccuracyCase, AKnownFailureIsNoErrorUnlessItIsWorseThanKnown) {
   worse.range_error_ulp = 3.1;
   EXPECT_EQ(row(worse, "why", true).verdict(), Verdict::failed);
   worse = bad;
-  worse.wrong_ids = 0;  // then the normals are of true triangles
+  worse.wrong_ids = 0;  // then the normals are those of correct triangles
   EXPECT_EQ(row(worse, "why", true).verdict(), Verdict::failed);
   EXPECT_TRUE(all_passed({row(good, "", true), row(bad, "why", true), row({}, "", false)}));
   EXPECT_TRUE(all_passed({row(good, "why", true)}));

@@ -1,0 +1,53 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/core/beams.hpp>
+#include <glidar/core/hits.hpp>
+#include <glidar/verify/shapes.hpp>
+#include <glidar/verify/verify.hpp>
+
+#include <cstdint>
+#include <vector>
+
+namespace glidar {
+
+/// A reported triangle must contain the exact point within this fraction of range and size: 2^12
+/// roundings of double, for the point and for the beam's direction.
+inline constexpr double kIdTolerance = 0x1p-40;
+
+/// A shape as an instance of a scene, relative to a viewpoint.
+struct PlacedShape {
+  const Shape& shape;
+  double scale;
+  ExactPose pose;
+  ClosedForm form;
+};
+
+PlacedShape place_shape(const Shape& shape, double scale, const ExactPose& pose);
+
+/// The exact description of a scene: one shape per instance.
+struct ExactScene {
+  std::vector<PlacedShape> shapes;
+  double edge_tolerance_m = 0.0;  ///< rays nearer to an edge or silhouette are not compared
+  bool is_from_inside = false;    ///< the viewpoint is inside or on the only shape
+};
+
+/// The hit that a renderer reports for a beam, in world axes.
+struct ReportedHit {
+  std::uint32_t instance;
+  std::uint32_t primitive;
+  double range_m;
+  RealVector normal;
+};
+
+/// Compares a beam's hit with the exact one and adds the errors to `result`. The origin is relative
+/// to the viewpoint.
+void compare_beam(const ExactScene& scene, const RealVector& origin, const RealVector& direction,
+                  const ReportedHit& reported, VerifyResult& result);
+
+/// Compares a cast of a static scene. The viewpoint is the sensor's origin.
+VerifyResult compare_cast(const ExactScene& scene, const Pose& world_from_sensor,
+                          const Beams& beams, const Hits& hits);
+
+}  // namespace glidar
