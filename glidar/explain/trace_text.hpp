@@ -8,7 +8,8 @@
 
 namespace glidar {
 
-/// The story of an entry in words and numbers, for people. `frame` is the one that was explained.
-std::string format_trace(const PointTrace& story, const Setup& setup, const Frame& frame);
+/// The trace of an entry as readable text, in lines "head      content". `frame` is the frame that
+/// explain() filled.
+std::string format_trace(const PointTrace& trace, const Setup& setup, const Frame& frame);
 
 }  // namespace glidar

@@ -29,23 +29,23 @@ class Explain(CliTest):
             columns = next(file).strip().split(",")
             return [dict(zip(columns, line.strip().split(","))) for line in file]
 
-    def story_of(self, *arguments):
-        """The story's lines by their heads; those without one belong to the head before."""
-        story = {}
+    def trace_of(self, *arguments):
+        """The trace's lines by their heads; those without a head belong to the previous one."""
+        trace = {}
         for line in self.succeed("explain", *arguments).stdout.splitlines():
             head = line[:10].strip() or head
-            story.setdefault(head, []).append(line[10:])
-        return story
+            trace.setdefault(head, []).append(line[10:])
+        return trace
 
-    def assert_is_story_of(self, story, point):
-        told = re.match(r"([-0-9.]+) m, intensity ([-+0-9.e]+)", story["reported"][0])
+    def assert_is_trace_of(self, trace, point):
+        told = re.match(r"([-0-9.]+) m, intensity ([-+0-9.e]+)", trace["reported"][0])
         if told is None:
             self.assertEqual(float(point["status"]) == 0, False)
             return
         self.assertAlmostEqual(float(told[1]), float(point["range"]), delta=1e-6)
         self.assertAlmostEqual(float(told[2]), float(point["intensity"]), delta=1e-5 * float(told[2]))
 
-    def test_every_point_has_a_story_that_ends_at_it(self):
+    def test_the_trace_of_every_point_ends_at_its_reported_values(self):
         self.write("s.yaml", SENSOR)
         columns = ("--fields", "xyz,range,intensity,status,row,col,return")
         self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "--seed", "5", *columns, "-o", "all.csv")
@@ -54,41 +54,41 @@ class Explain(CliTest):
         everything, dense = self.points_of("all.csv"), self.points_of("dense.csv")
         self.assertGreater(len(everything), len(dense))
         for index in (0, 200, 252, 253, 700, len(everything) - 1):
-            self.assert_is_story_of(self.story_of("all.csv", "--index", str(index)), everything[index])
+            self.assert_is_trace_of(self.trace_of("all.csv", "--index", str(index)), everything[index])
         for index in (0, len(dense) // 2, len(dense) - 1):
             point = dense[index]
-            story = self.story_of("dense.csv", "--index", str(index))
-            self.assert_is_story_of(story, point)
-            by_pixel = self.story_of("dense.csv", "--row", point["row"], "--col", point["col"], "--return",
+            trace = self.trace_of("dense.csv", "--index", str(index))
+            self.assert_is_trace_of(trace, point)
+            by_pixel = self.trace_of("dense.csv", "--row", point["row"], "--col", point["col"], "--return",
                                      str(int(point["return"]) + 1))
-            self.assertEqual(by_pixel, story)
+            self.assertEqual(by_pixel, trace)
 
-    def test_it_tells_beam_hit_light_echoes_and_draws(self):
+    def test_the_trace_lists_beam_hit_light_echoes_and_random_numbers(self):
         self.write("s.yaml", SENSOR)
         self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "-o", "a.npz")
-        story = self.story_of("a.npz", "--row", "10", "--col", "12")
-        self.assertEqual(list(story), ["beam", "fired", "aimed", "ray", "met", "light", "paths", "echoes",
-                                       "received", "measured", "noise 1", "noise 2", "reported", "error"][:len(story)])
-        self.assertIn("asteroid", story["met"][0])
-        self.assertIn("sub-rays", story["paths"][0])
-        self.assertIn("drew normal", story["echoes"][1])
-        self.assertIn("range_gaussian sigma_m 0.02", story["noise 1"][0])
+        trace = self.trace_of("a.npz", "--row", "10", "--col", "12")
+        self.assertEqual(list(trace), ["beam", "fired", "nominal", "ray", "hit", "light", "paths", "echoes",
+                                       "received", "measured", "noise 1", "noise 2", "reported", "error"][:len(trace)])
+        self.assertIn("asteroid", trace["hit"][0])
+        self.assertIn("sub-rays", trace["paths"][0])
+        self.assertIn("; normal", trace["echoes"][1])
+        self.assertIn("range_gaussian sigma_m 0.02", trace["noise 1"][0])
 
-    def test_it_tells_what_a_chance_and_a_window_came_to(self):
+    def test_the_trace_lists_thresholds_and_window_means(self):
         self.write("s.yaml", """
 optics: {type: pinhole, width: 24, height: 20, fov_deg: 30}
 noise: [{type: kinect_v1, window: 5}, {type: dropout, probability: 0.1, by_range_m: [[0, 0.5], [1000, 0.5]]}]
 """)
         self.succeed("render", "builtin:asteroid", "--sensor", "s.yaml", "-o", "a.csv",
                      "--fields", "xyz,range,intensity,status")
-        story = self.story_of("a.csv", "--row", "10", "--col", "12")
-        kinect, chance = story["noise 1"], story["noise 2"]
-        self.assertRegex(kinect[2], r"drew normal \S+: error of the disparity: the mean of 5 x 5 pixels' numbers")
-        drawn = re.match(r"drew uniform (\S+): lost if below 0.55$", chance[1])
+        trace = self.trace_of("a.csv", "--row", "10", "--col", "12")
+        kinect, chance = trace["noise 1"], trace["noise 2"]
+        self.assertRegex(kinect[2], r"normal \S+: error of the disparity: the mean of 5 x 5 pixels' numbers")
+        drawn = re.match(r"uniform (\S+): lost if below 0.55$", chance[1])
         self.assertIsNotNone(drawn, chance)
-        self.assertEqual(chance[-1].startswith("now dropped"), float(drawn[1]) < 0.55)
+        self.assertEqual(chance[-1].startswith("result dropped"), float(drawn[1]) < 0.55)
 
-    def test_the_documented_example_comes_out_as_shown(self):
+    def test_the_documented_example_prints_the_output_shown(self):
         with open(os.path.join(ROOT, "docs", "explain.md"), encoding="utf-8") as file:
             shown = file.read()
         commands = re.search(r"```sh\n(.*?)```", shown, re.DOTALL)[1].splitlines()
@@ -115,11 +115,11 @@ noise: [{type: kinect_v1, window: 5}, {type: dropout, probability: 0.1, by_range
         for name in ("box.obj", "out"):
             shutil.move(os.path.join(self.folder, name), moved)
         points = self.points_of("moved/out/b_000002.csv")
-        story = self.story_of("moved/out/b_000002.csv", "--index", "30000")
-        self.assertIn("frame 2", story["fired"][0])
-        self.assert_is_story_of(story, points[30000])
+        trace = self.trace_of("moved/out/b_000002.csv", "--index", "30000")
+        self.assertIn("frame 2", trace["fired"][0])
+        self.assert_is_trace_of(trace, points[30000])
 
-    def test_what_cannot_be_explained_is_refused(self):
+    def test_clouds_that_cannot_be_explained_are_errors(self):
         self.write("box.obj", box_of(2))
         self.succeed("render", "box.obj", "-w", "8", "--height", "8", "-o", "b.pcd", "--drop-invalid")
         self.succeed("render", "box.obj", "-w", "8", "--height", "8", "-o", "none.pcd", "--no-sidecar")
