@@ -80,7 +80,7 @@ void serve_frame(const std::string& path, std::uint32_t side, const std::string&
   simulate({model.scene, sensor, beams, motion, *renderer}, {}, frame);
   link::Context context;
   const Report silent;
-  link::FaultLog faults(silent);
+  link::ErrorLog faults(silent);
   lockstep::Server server(context, {.endpoint = link::parse_endpoint(endpoint)}, faults);
   link::CloudPool clouds;
   for (;;) {

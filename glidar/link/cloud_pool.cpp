@@ -17,12 +17,12 @@ std::shared_ptr<PointCloud> CloudPool::take() {
     }
   }
   if (!cloud) cloud = std::make_unique<PointCloud>();
-  const auto give_back = [kept = kept_](PointCloud* done) {
+  const auto recycle = [kept = kept_](PointCloud* done) {
     std::unique_ptr<PointCloud> owned(done);
     const std::lock_guard lock(kept->mutex);
     if (kept->clouds.size() < kMaxKept) kept->clouds.push_back(std::move(owned));
   };
-  return {cloud.release(), give_back};
+  return {cloud.release(), recycle};
 }
 
 }  // namespace glidar::link

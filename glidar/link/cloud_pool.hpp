@@ -10,19 +10,19 @@
 
 namespace glidar::link {
 
-/// Clouds whose memory is used again once nobody holds them. Clouds may be let go of in any thread,
-/// also after the pool is gone.
+/// Clouds whose memory is reused after their last reference is released, in any thread, also after
+/// the pool is destroyed.
 class CloudPool {
  public:
-  /// A cloud with whatever was in it before.
+  /// A cloud with unspecified content.
   [[nodiscard]] std::shared_ptr<PointCloud> take();
 
  private:
-  struct Kept {
+  struct FreeList {
     std::mutex mutex;
     std::vector<std::unique_ptr<PointCloud>> clouds;
   };
-  std::shared_ptr<Kept> kept_ = std::make_shared<Kept>();
+  std::shared_ptr<FreeList> kept_ = std::make_shared<FreeList>();
 };
 
 }  // namespace glidar::link

@@ -15,16 +15,16 @@
 namespace glidar::link {
 namespace {
 
-/// For ZeroMQ's handshake.
+/// Allowance for ZeroMQ's handshake.
 constexpr std::uint64_t kFreeBytes = 4096;
 
-/// Connections that have asked for nothing for so long make room for new ones.
+/// Connections that have requested nothing for this time may be closed for new ones.
 constexpr std::chrono::seconds kGrace{1};
 
-/// Connections that may have been accepted before new ones could be held back.
+/// Connections that may have been accepted before new ones were blocked.
 constexpr std::size_t kBacklog = 64;
 
-/// Those below are needed to write a file.
+/// Descriptors reserved for writing files.
 constexpr int kLastDescriptors = 8;
 
 /// Identifies a socket as long as the system runs; 0: the descriptor is no socket.
@@ -34,7 +34,7 @@ std::uint64_t cookie_of(int descriptor) {
   return ::getsockopt(descriptor, SOL_SOCKET, SO_COOKIE, &cookie, &size) == 0 ? cookie : 0;
 }
 
-/// The kernel's counts of a TCP connection; zeros of others.
+/// The kernel's counters of a TCP connection; zeros for others.
 tcp_info info_of(int descriptor) {
   tcp_info info{};
   socklen_t size = sizeof(info);
@@ -42,26 +42,25 @@ tcp_info info_of(int descriptor) {
   return info;
 }
 
-/// What the kernel has received, read or not.
+/// Bytes that the kernel has received, read or not.
 std::uint64_t received_bytes(int descriptor) {
   return info_of(descriptor).tcpi_bytes_received;
 }
 
-/// Ends a connection, whoever has its descriptor. Another socket that got its number meanwhile is
-/// left alone.
+/// Closes a connection. Another socket that has got its descriptor meanwhile is not affected.
 void shut_down(int descriptor, std::uint64_t cookie) {
-  const int held = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);  // is not given to another meanwhile
+  const int held = ::fcntl(descriptor, F_DUPFD_CLOEXEC, 0);  // keeps the number from being reused
   const int used = held >= 0 ? held : descriptor;
   if (cookie_of(used) == cookie) {
-    // Linux resets a TCP connection that is connected to nothing, and drops what was not read yet
-    // (tcp_disconnect); connections of other kinds refuse that.
+    // Connecting to AF_UNSPEC resets a TCP connection and drops unread data (Linux,
+    // tcp_disconnect); other kinds of connections reject it.
     const sockaddr nobody = {.sa_family = AF_UNSPEC, .sa_data = {}};
     if (::connect(used, &nobody, sizeof(nobody)) != 0) ::shutdown(used, SHUT_RDWR);
   }
   if (held >= 0) ::close(held);
 }
 
-/// Descriptors that are left to files and other sockets.
+/// Descriptors left for files and other sockets.
 int reserved_descriptors() {
   return std::clamp(descriptor_limit() / 4, 16, 256);
 }
@@ -83,10 +82,10 @@ ConnectionLimits connection_limits(const Limits& limits, std::uint64_t unread_by
           .all_unread_bytes = all_unread_bytes};
 }
 
-ConnectionGuard::ConnectionGuard(const ConnectionLimits& limits, FaultLog& faults,
+ConnectionGuard::ConnectionGuard(const ConnectionLimits& limits, ErrorLog& errors,
                                  bool keeps_events)
     : limits_(limits),
-      faults_(faults),
+      errors_(errors),
       keeps_events_(keeps_events),
       allowance_(burst()),
       refilled_(Clock::now()) {}
@@ -96,7 +95,7 @@ void ConnectionGuard::on_listening(int descriptor) {
   listener_.emplace(descriptor);
 }
 
-ConnectionGuard::Connection& ConnectionGuard::take_note(int descriptor) {
+ConnectionGuard::Connection& ConnectionGuard::find_or_add(int descriptor) {
   Connection& connection = connections_[descriptor];
   const std::uint64_t cookie = cookie_of(descriptor);
   if (connection.cookie != cookie || cookie == 0) {
@@ -107,7 +106,7 @@ ConnectionGuard::Connection& ConnectionGuard::take_note(int descriptor) {
 
 void ConnectionGuard::on_accepted(int descriptor) {
   const std::lock_guard lock(mutex_);
-  take_note(descriptor);
+  find_or_add(descriptor);
   allowance_ -= 1.0;
   const int last = descriptor_limit() - kLastDescriptors;
   if (descriptor >= descriptor_limit() - reserved_descriptors()) hold_back_for_lack();
@@ -117,9 +116,9 @@ void ConnectionGuard::on_accepted(int descriptor) {
   }
   if (allowance_ >= 1.0 || is_held_back()) return;
   hold_back();
-  faults_.tell("connection rate",
-               "more than " + std::to_string(static_cast<int>(limits_.connections_per_s)) +
-                   " new connections per second (--limit connections-per-s); new ones wait");
+  errors_.report("connection rate",
+                 "more than " + std::to_string(static_cast<int>(limits_.connections_per_s)) +
+                     " new connections per second (--limit connections-per-s); further ones wait");
 }
 
 void ConnectionGuard::on_accept_failed(int error) {
@@ -136,24 +135,24 @@ void ConnectionGuard::on_joined() {
 void ConnectionGuard::on_left(int descriptor) {
   const std::lock_guard lock(mutex_);
   const auto found = connections_.find(descriptor);
-  // Another connection may have the descriptor by now; one that is just ending goes at the next
-  // look.
+  // Another connection may have the descriptor by now; a connection that is just ending is removed
+  // by the next check.
   if (found != connections_.end() && cookie_of(descriptor) != found->second.cookie) {
     connections_.erase(found);
   }
   if (!std::exchange(is_refused_, false)) note(PeerEvent::left);
 }
 
-/// ZeroMQ reports next that it left.
+/// The next event of ZeroMQ is that the connection ended.
 void ConnectionGuard::on_refused() {
   const std::lock_guard lock(mutex_);
   is_refused_ = true;
-  if (events_.empty() || events_.back() != PeerEvent::refused) {  // one of many will do
+  if (events_.empty() || events_.back() != PeerEvent::refused) {  // one event is enough
     note(PeerEvent::refused);
   }
 }
 
-void ConnectionGuard::look() {
+void ConnectionGuard::check_limits() {
   const std::lock_guard lock(mutex_);
   std::erase_if(connections_, [](const auto& entry) {
     return cookie_of(entry.first) != entry.second.cookie;  // it has ended
@@ -166,17 +165,16 @@ void ConnectionGuard::look() {
   if (is_held_back() && !is_full() && allowance_ >= needed) listener_->resume();
 }
 
-bool ConnectionGuard::needs_look() const {
+bool ConnectionGuard::needs_check() const {
   const std::lock_guard lock(mutex_);
   return !connections_.empty() || (listener_ && listener_->is_paused());
 }
 
 std::uint64_t ConnectionGuard::delivered(int descriptor) {
   const std::lock_guard lock(mutex_);
-  // A message may be here before ZeroMQ's report that its connection was accepted, and after its
-  // end.
+  // A message may arrive before the event that its connection was accepted, and after its end.
   if (cookie_of(descriptor) == 0) return 0;
-  Connection& connection = take_note(descriptor);
+  Connection& connection = find_or_add(descriptor);
   if (!limits_.counts_delivered) connection.read_bytes = received_bytes(descriptor);
   connection.has_delivered = true;
   return connection.cookie;
@@ -216,7 +214,7 @@ void ConnectionGuard::refill(Clock::time_point now) {
   allowance_ = std::min(allowance_ + passed.count() * limits_.connections_per_s, burst());
 }
 
-/// Connections that may come at once.
+/// Connections that may be accepted at once.
 double ConnectionGuard::burst() const {
   return std::max(static_cast<double>(limits_.connections), limits_.connections_per_s);
 }
@@ -225,7 +223,7 @@ bool ConnectionGuard::is_full() const {
   return lacks_descriptors_ || open_connections() >= limits_.connections;
 }
 
-/// The oldest connection that never asked for anything gives way to a new one.
+/// Closes the oldest connection that has requested nothing, to make room for a new one.
 void ConnectionGuard::make_room() {
   const Clock::time_point latest = Clock::now() - kGrace;
   for (std::size_t open = open_connections(); is_full() && open > 0; --open) {
@@ -238,8 +236,8 @@ void ConnectionGuard::make_room() {
     if (victim == connections_.end()) return;
     cut(victim, "connection limit",
         "at most " + std::to_string(limits_.connections) +
-            " connections at a port (--limit connections): one that asked for nothing was closed");
-    if (lacks_descriptors_) return;  // one each time: its descriptor is not free yet
+            " connections at a port (--limit connections): one without a request was closed");
+    if (lacks_descriptors_) return;  // one per call: its descriptor is not free yet
   }
 }
 
@@ -251,14 +249,14 @@ void ConnectionGuard::hold_back() {
   if (listener_ && !listener_->is_paused()) listener_->pause();
 }
 
-/// None comes until there is room again.
+/// Blocks new connections until there is room.
 void ConnectionGuard::hold_back_for_lack() {
   report_descriptors();
   lacks_descriptors_ = true;
   hold_back();
 }
 
-/// So that files can still be written: the newest connections go.
+/// Closes the newest connections, so that files can still be written.
 void ConnectionGuard::free_descriptors() {
   hold_back_for_lack();
   const int first = descriptor_limit() - reserved_descriptors();
@@ -270,14 +268,15 @@ void ConnectionGuard::free_descriptors() {
 
 void ConnectionGuard::report_descriptors() {
   const char* const kind = "file descriptors used up";
-  if (faults_.counts().count(kind) > 0) return;  // once, of all ports
-  faults_.tell(kind,
-               "of " + std::to_string(descriptor_limit()) +
-                   ", the last ones are kept for files; new connections are closed. Raise the "
-                   "limit (ulimit -n) or lower --limit connections");
+  if (errors_.counts().count(kind) > 0) return;  // once for all ports
+  errors_.report(
+      kind, "of " + std::to_string(descriptor_limit()) +
+                ", the last ones are reserved for files; new connections are closed. Raise the "
+                "limit (ulimit -n) or lower --limit connections");
 }
 
-/// A message that never ends, many that nobody has read yet, or more than such peers have to say.
+/// Closes connections with an endless message, too many unread messages, or more bytes than such
+/// peers need.
 void ConnectionGuard::check_unread() {
   const Clock::time_point now = Clock::now();
   std::uint64_t all = 0;
@@ -294,7 +293,7 @@ void ConnectionGuard::check_unread() {
     if (unread > limits_.unread_bytes) {
       cut(one, "peer cut off",
           "it sent " + std::to_string(unread) +
-              (limits_.counts_delivered ? " bytes" : " bytes that make no whole message") +
+              (limits_.counts_delivered ? " bytes" : " bytes without a complete message") +
               "; allowed are " + std::to_string(limits_.unread_bytes));
       continue;
     }
@@ -311,7 +310,7 @@ void ConnectionGuard::cut(Connections::iterator connection, const std::string& f
                           const std::string& why) {
   connection->second.is_cut = true;
   shut_down(connection->first, connection->second.cookie);
-  if (!fault.empty()) faults_.tell(fault, why);
+  if (!fault.empty()) errors_.report(fault, why);
 }
 
 std::size_t ConnectionGuard::open_connections() const {

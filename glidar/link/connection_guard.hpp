@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/link/fault_log.hpp>
+#include <glidar/link/error_log.hpp>
 #include <glidar/link/limits.hpp>
 #include <glidar/link/listener.hpp>
 
@@ -17,13 +17,13 @@
 
 namespace glidar::link {
 
-/// What happened to a socket's connections.
+/// Events of a socket's connections.
 enum class PeerEvent : std::uint8_t { joined, left, refused };
 
-/// A connection: a descriptor may be used again for another one, the cookie of the kernel is not.
+/// Identifies a connection: descriptors are reused, the kernel's cookies are not.
 struct ConnectionId {
-  int descriptor = -1;       ///< -1: not known
-  std::uint64_t cookie = 0;  ///< 0: not known
+  int descriptor = -1;       ///< -1: unknown
+  std::uint64_t cookie = 0;  ///< 0: unknown
 
   bool operator==(const ConnectionId&) const = default;
   bool operator<(const ConnectionId& other) const {
@@ -31,35 +31,37 @@ struct ConnectionId {
   }
 };
 
-/// What connections to one listening socket may use.
+/// Limits of the connections to one listening socket.
 struct ConnectionLimits {
   std::size_t connections = 256;
   double connections_per_s = 100.0;
   std::chrono::seconds handshake{5};
-  std::uint64_t unread_bytes = std::uint64_t{64} << 10;     ///< of one: received, not yet delivered
-  std::uint64_t all_unread_bytes = std::uint64_t{1} << 20;  ///< of all
-  /// Of one, free at any time: handshakes and heartbeats are bytes without a message.
+  std::uint64_t unread_bytes = std::uint64_t{64}
+                               << 10;  ///< of one connection: received but not delivered
+  std::uint64_t all_unread_bytes = std::uint64_t{1} << 20;  ///< of all connections
+  /// Allowance of one connection for handshakes and heartbeats, which are bytes without a message.
   double free_bytes_per_s = 32.0;
-  bool counts_delivered = false;  ///< what was delivered counts as well: peers have little to say
+  bool counts_delivered = false;  ///< delivered bytes count too, for peers that send little
 };
 
-/// Of a port whose peers send at most so much before it is delivered, one or all of them.
+/// Limits of a port whose peers send at most these bytes before they are delivered, one peer or
+/// all.
 ConnectionLimits connection_limits(const Limits& limits, std::uint64_t unread_bytes,
                                    std::uint64_t all_unread_bytes);
 
-/// Watches the connections of a listening socket and closes those that exceed the limits. ZeroMQ
-/// itself accepts any number, and gathers any number of parts of a message in memory before it
-/// delivers the first one. This class counts, from the reports of ZeroMQ's monitor and the kernel's
-/// counters, and ends connections from outside, together with what ZeroMQ has not yet read of them;
-/// ZeroMQ then frees what it holds.
-/// Functions may be called from any thread; those that begin with "on" report what the monitor
-/// reported.
+/// Monitors the connections of a listening socket and closes those that exceed the limits. ZeroMQ
+/// itself accepts any number of connections, and collects all parts of a message in memory before
+/// it delivers the first one. This class counts by means of ZeroMQ's monitor and the kernel's
+/// counters, and closes connections from outside, together with data that ZeroMQ has not read;
+/// ZeroMQ then frees its memory.
+/// Functions may be called from any thread. Those that begin with "on" are called for events of the
+/// monitor.
 class ConnectionGuard {
  public:
   using Clock = std::chrono::steady_clock;
 
   /// The log must outlive it.
-  ConnectionGuard(const ConnectionLimits& limits, FaultLog& faults, bool keeps_events = true);
+  ConnectionGuard(const ConnectionLimits& limits, ErrorLog& errors, bool keeps_events = true);
 
   void on_listening(int descriptor);
   void on_accepted(int descriptor);
@@ -68,36 +70,36 @@ class ConnectionGuard {
   void on_left(int descriptor);
   void on_refused();
 
-  /// To be called every kLook while needs_look(): finds connections that exceed limits, and those
-  /// that ended.
-  void look();
-  [[nodiscard]] bool needs_look() const;
-  static constexpr std::chrono::milliseconds kLook{20};
+  /// To be called every kCheckInterval while needs_check(): finds connections that exceed limits
+  /// or have ended.
+  void check_limits();
+  [[nodiscard]] bool needs_check() const;
+  static constexpr std::chrono::milliseconds kCheckInterval{20};
 
-  /// A whole message of the connection was delivered: what it has sent so far is read. Returns its
-  /// cookie.
+  /// To be called when a whole message of the connection is delivered: its bytes so far are read.
+  /// Returns the cookie.
   std::uint64_t delivered(int descriptor);
-  /// Closes the connection, and reports it as a fault of this kind.
+  /// Closes the connection and logs an error of this kind.
   void cut_off(const ConnectionId& connection, const std::string& fault, const std::string& why);
-  /// False: it has ended.
+  /// False if the connection has ended.
   [[nodiscard]] bool is_open(const ConnectionId& connection) const;
-  /// What the other side has received of what was sent to it; 0: not known.
+  /// Bytes that the peer has received; 0: unknown.
   [[nodiscard]] std::uint64_t taken_bytes(const ConnectionId& connection) const;
-  /// What happened since the last call, in order, if events are kept.
+  /// Events since the last call, in order, if events are kept.
   std::vector<PeerEvent> events();
 
  private:
   struct Connection {
-    std::uint64_t cookie = 0;  ///< of the kernel, never used again for another one
+    std::uint64_t cookie = 0;  ///< of the kernel, unique
     Clock::time_point since;
-    std::uint64_t read_bytes = 0;  ///< that the kernel had received at the last delivery
+    std::uint64_t read_bytes = 0;  ///< received by the kernel at the last delivery
     bool has_delivered = false;
     bool is_cut = false;
   };
   using Connections = std::map<int, Connection>;
 
-  /// The entry of an open connection; a new one unless it is known.
-  Connection& take_note(int descriptor);
+  /// The entry of an open connection, which is added if necessary.
+  Connection& find_or_add(int descriptor);
   void note(PeerEvent event);
   [[nodiscard]] double burst() const;
   void refill(Clock::time_point now);
@@ -114,14 +116,14 @@ class ConnectionGuard {
 
   mutable std::mutex mutex_;
   ConnectionLimits limits_;
-  FaultLog& faults_;
+  ErrorLog& errors_;
   bool keeps_events_;
   Connections connections_;
   std::optional<Listener> listener_;
   std::vector<PeerEvent> events_;
-  double allowance_;  ///< connections that may come now
+  double allowance_;  ///< connections that may be accepted now
   Clock::time_point refilled_;
-  bool is_refused_ = false;  ///< the connection that leaves next
+  bool is_refused_ = false;  ///< the next connection that ends was refused
   bool lacks_descriptors_ = false;
 };
 

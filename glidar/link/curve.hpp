@@ -6,7 +6,7 @@
 
 namespace glidar::link {
 
-/// Keys of CURVE (https://rfc.zeromq.org/spec/26), 40 letters of Z85 each.
+/// Keys of CURVE (https://rfc.zeromq.org/spec/26), 40 characters of Z85 each.
 struct CurveKeys {
   std::string public_key;
   std::string secret_key;

@@ -21,7 +21,7 @@ std::string text_of(const Endpoint& endpoint) {
 void fail_at(const Endpoint& endpoint, int error, const char* doing) {
   std::string remedy;
   if (error == EADDRINUSE) {
-    remedy = "another program has this port: end it, or choose another port";
+    remedy = "another program uses this port: end it, or choose another port";
   } else if (error == EADDRNOTAVAIL || error == ENODEV) {
     remedy = "give an address of this machine, such as 127.0.0.1, or * for all";
   } else if (error == EINVAL) {
@@ -45,9 +45,9 @@ Endpoint parse_endpoint(const std::string& text) {
                  .remedy = remedy});
   };
   if (text.starts_with(kIpc)) {
-    constexpr std::size_t kLongest = 107;  // sun_path of unix(7)
+    constexpr std::size_t kMaxPath_bytes = 107;  // sun_path of unix(7)
     const std::string path = text.substr(kIpc.size());
-    if (path.empty() || path.size() > kLongest) refuse("give a path of 1 to 107 letters");
+    if (path.empty() || path.size() > kMaxPath_bytes) refuse("give a path of 1 to 107 bytes");
     return {.host = {}, .port = 0, .path = path};
   }
   const std::size_t colon = text.rfind(':');

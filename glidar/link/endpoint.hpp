@@ -7,17 +7,18 @@
 
 namespace glidar::link {
 
-/// A place in the network: an IPv4 address, a name, or "*" for all of this machine. Or, within this
-/// machine, a file that sockets of its file system meet at.
+/// A network address: an IPv4 address, a host name, or "*" for all addresses of this machine, with
+/// a port; or the path of a socket file on this machine.
 struct Endpoint {
   std::string host;
-  std::uint16_t port = 0;  ///< 0: any that is free
-  std::string path = {};   ///< of the file; empty: host and port
+  std::uint16_t port = 0;  ///< 0: any free port
+  std::string path = {};   ///< of the socket file; empty: host and port
 };
 std::string text_of(const Endpoint& endpoint);
-/// Throws the Error of a socket that cannot be used there; `error`: errno, or one of ZeroMQ.
+/// Throws Error for a socket that cannot be used at an endpoint; `error` is errno or an error of
+/// ZeroMQ.
 [[noreturn]] void fail_at(const Endpoint& endpoint, int error, const char* doing);
-/// Of "tcp://HOST:PORT" or "ipc://PATH"; throws Error on anything else.
+/// Parses "tcp://HOST:PORT" or "ipc://PATH"; throws Error for anything else.
 Endpoint parse_endpoint(const std::string& text);
 
 }  // namespace glidar::link

@@ -9,7 +9,7 @@
 
 namespace glidar::link {
 
-/// What peers may use, one of them or all together. `limits()` describes each.
+/// Limits of peers, for each or for all together. limit_kinds() describes each.
 struct Limits {
   std::int64_t connections = 256;
   std::int64_t connections_per_s = 500;
@@ -25,7 +25,7 @@ struct Limits {
   bool operator==(const Limits&) const = default;
 };
 
-/// One limit: how it is named and what it may be.
+/// One limit: its name, range and description.
 struct LimitKind {
   std::string_view name;
   std::int64_t Limits::*value;
@@ -34,11 +34,11 @@ struct LimitKind {
   std::string_view meaning;
 };
 
-/// All of them, in the order of the members.
+/// All limits, in the order of the members.
 std::span<const LimitKind> limit_kinds();
 
-/// Sets one by "NAME=VALUE", for example "reply-mib=4096". Throws Error on an unknown name and on a
-/// value that is not a whole number in its range.
+/// Sets a limit by "NAME=VALUE", for example "reply-mib=4096". Throws Error for an unknown name and
+/// for a value that is not an integer in its range.
 void set_limit(Limits& limits, std::string_view text);
 
 /// "at most 16 (--limit requests=16)", for errors.

@@ -24,7 +24,7 @@ int open_spare() {
 
 Listener::Listener(int descriptor)
     : descriptor_(::fcntl(descriptor, F_DUPFD_CLOEXEC, 0)), spare_(open_spare()) {
-  // ZeroMQ accepts what its poll reports, and would wait where discard_waiting() was quicker
+  // ZeroMQ accepts after poll() and would block if discard_waiting() was faster.
   if (descriptor_ >= 0) {
     ::fcntl(descriptor_, F_SETFL, ::fcntl(descriptor_, F_GETFL) | O_NONBLOCK);
   }
@@ -40,7 +40,7 @@ Listener::~Listener() {
   if (spare_ >= 0) ::close(spare_);
 }
 
-/// A filter of packets that keeps none of any (socket(7), SO_ATTACH_FILTER).
+/// A packet filter that drops all packets (socket(7), SO_ATTACH_FILTER).
 void Listener::pause() {
   sock_filter none = {.code = BPF_RET | BPF_K, .jt = 0, .jf = 0, .k = 0};
   const sock_fprog program = {.len = 1, .filter = &none};
@@ -68,7 +68,7 @@ bool Listener::discard_waiting() {
 }
 
 void raise_descriptor_limit(std::int64_t connections) {
-  constexpr std::int64_t kForFiles = 512;  // and whatever else
+  constexpr std::int64_t kForFiles = 512;  // and other descriptors
   rlimit limit{};
   if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
   const auto wanted = static_cast<rlim_t>(connections + kForFiles);

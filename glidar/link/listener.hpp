@@ -6,35 +6,35 @@
 
 namespace glidar::link {
 
-/// A listening socket of ZeroMQ's, which accepts whatever comes, held back from outside. Used by
+/// Blocks and drains a listening socket of ZeroMQ, which itself accepts every connection. Used by
 /// one thread.
 class Listener {
  public:
-  /// Of this descriptor, which stays ZeroMQ's.
+  /// For this descriptor, which ZeroMQ owns.
   explicit Listener(int descriptor);
   ~Listener();
   Listener(Listener&& other) noexcept;
   Listener& operator=(Listener&&) = delete;
 
-  /// From now on the kernel discards attempts to connect, which clients repeat for a minute or
-  /// more; connections that exist are not affected. Over TCP only: others are not held back.
+  /// Makes the kernel discard attempts to connect, which clients repeat for a minute or more;
+  /// existing connections are not affected. TCP only.
   void pause();
   void resume();
   [[nodiscard]] bool is_paused() const { return is_paused_; }
-  /// Closes the connections that wait to be accepted; true: none is left. Works without a free
-  /// descriptor.
+  /// Closes the connections that wait to be accepted; returns true if none is left. Works without a
+  /// free descriptor.
   bool discard_waiting();
 
  private:
   int descriptor_;
-  int spare_;  ///< given up for a moment where there is no other
+  int spare_;  ///< closed temporarily if there is no free descriptor
   bool is_paused_ = false;
 };
 
-/// Allows this process as many open files as it needs for these connections, if the system does.
+/// Raises the process's limit of open files for these connections, as far as the system allows.
 void raise_descriptor_limit(std::int64_t connections);
 
-/// The number of descriptors that this process may have.
+/// The maximum number of descriptors of this process.
 int descriptor_limit();
 
 }  // namespace glidar::link

@@ -18,12 +18,12 @@ PayloadPool::Memory PayloadPool::take(std::size_t bytes) {
       kept_.erase(found);
       return memory;
     }
-    kept_.clear();  // too small for what is sent now
+    kept_.clear();  // too small for the current messages
   }
-  return {std::unique_ptr<std::byte[]>(new std::byte[bytes]), bytes};  // NOLINT: left unfilled
+  return {std::unique_ptr<std::byte[]>(new std::byte[bytes]), bytes};  // NOLINT: uninitialised
 }
 
-void PayloadPool::give_back(Memory memory) {
+void PayloadPool::recycle(Memory memory) {
   const std::lock_guard lock(mutex_);
   if (kept_.size() < kMaxKept) kept_.push_back(std::move(memory));
 }
@@ -44,7 +44,7 @@ Payload& Payload::operator=(Payload&& other) noexcept {
 }
 
 Payload::~Payload() {
-  if (pool_ && memory_.bytes) pool_->give_back(std::move(memory_));
+  if (pool_ && memory_.bytes) pool_->recycle(std::move(memory_));
 }
 
 void Payload::shrink(std::size_t bytes) {

@@ -10,17 +10,17 @@
 
 namespace glidar::link {
 
-/// Memory for messages, used again once they are sent: a message of a megabyte costs more to
-/// allocate than to fill. Payloads may be given back from any thread, also after the pool is gone.
+/// Memory for messages, reused after they are sent: a message of a megabyte takes longer to
+/// allocate than to fill. Payloads may be released in any thread, also after the pool is destroyed.
 class PayloadPool {
  public:
   struct Memory {
-    std::unique_ptr<std::byte[]> bytes;  // NOLINT(modernize-avoid-c-arrays): left unfilled
+    std::unique_ptr<std::byte[]> bytes;  // NOLINT(modernize-avoid-c-arrays): uninitialised
     std::size_t capacity = 0;
   };
 
   [[nodiscard]] Memory take(std::size_t bytes);
-  void give_back(Memory memory);
+  void recycle(Memory memory);
 
  private:
   static constexpr std::size_t kMaxKept = 8;
@@ -29,11 +29,11 @@ class PayloadPool {
   std::vector<Memory> kept_;
 };
 
-/// The bytes of one message on their way from who writes them to the socket, without a copy.
+/// The bytes of one message, which are passed to the socket without a copy.
 class Payload {
  public:
   Payload() = default;
-  /// At least so many bytes, of unspecified content.
+  /// At least this number of bytes, of unspecified content.
   Payload(std::shared_ptr<PayloadPool> pool, std::size_t bytes);
   Payload(Payload&& other) noexcept;
   Payload& operator=(Payload&& other) noexcept;
@@ -42,7 +42,7 @@ class Payload {
   ~Payload();
 
   [[nodiscard]] std::span<std::byte> bytes() { return {memory_.bytes.get(), size_}; }
-  /// Keeps the first so many bytes.
+  /// Keeps the first `bytes` bytes.
   void shrink(std::size_t bytes);
 
  private:

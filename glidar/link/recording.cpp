@@ -9,7 +9,7 @@
 
 #include <array>
 #include <limits>
-#define JSON_DIAGNOSTICS 1  // its errors name the key
+#define JSON_DIAGNOSTICS 1  // error messages contain the key
 #include <glidar/io/config/json_text.hpp>
 #include <utility>
 
@@ -34,7 +34,7 @@ std::string line_of(const Json& json) {
   return json.dump() + "\n";
 }
 
-/// Three rows of four numbers; rate and velocity only of what moves.
+/// Three rows of four numbers; rate and velocity only for moving bodies.
 Json json_of(const lockstep::Body& body) {
   Json numbers = Json::array();
   for (Eigen::Index row = 0; row < 3; ++row) {
@@ -50,7 +50,8 @@ lockstep::Body body_of(const Json& json) {
   const auto numbers = json.get<std::vector<double>>();
   if (numbers.size() != kPoseNumbers && numbers.size() != kBodyNumbers) {
     throw Json::other_error::create(
-        502, "a body of " + std::to_string(numbers.size()) + " numbers, not 12 or 18", &json);
+        502, "a body of " + std::to_string(numbers.size()) + " numbers, instead of 12 or 18",
+        &json);
   }
   lockstep::Body body;
   for (std::size_t i = 0; i < kPoseNumbers; ++i) {
@@ -58,7 +59,7 @@ lockstep::Body body_of(const Json& json) {
         numbers[i];
   }
   if (!is_rigid(body.world_from_body)) {
-    throw Json::other_error::create(502, "a body whose matrix is no rigid transform", &json);
+    throw Json::other_error::create(502, "a body whose matrix is not a rigid transform", &json);
   }
   if (numbers.size() == kBodyNumbers) {
     body.rate_rad_s = Eigen::Map<const Eigen::Vector3d>(numbers.data() + kPoseNumbers);
@@ -67,22 +68,23 @@ lockstep::Body body_of(const Json& json) {
   return body;
 }
 
-/// A count that fits its type, as it was written.
+/// A count that is an integer and fits its type.
 template <class Count>
 Count count_of(const Json& json, const char* key) {
-  const Json& told = json.at(key);
+  const Json& value = json.at(key);
   const bool fits =
-      told.is_number_unsigned() && told.get<std::uint64_t>() <= std::numeric_limits<Count>::max();
-  if (fits) return told.get<Count>();
-  throw Json::other_error::create(502, std::string(key) + ": " + shown_json(told) + " is no count",
-                                  &json);
+      value.is_number_unsigned() && value.get<std::uint64_t>() <= std::numeric_limits<Count>::max();
+  if (fits) return value.get<Count>();
+  throw Json::other_error::create(
+      502, std::string(key) + ": " + shown_json(value) + " is not a count", &json);
 }
 
 RecordingHead head_of(const Json& json, const std::filesystem::path& path) {
   if (count_of<std::uint64_t>(json, "recording") != kFormat) {
-    throw Json::other_error::create(
-        502, "a recording of format " + shown_json(json.at("recording")) + ", this program knows 1",
-        &json);
+    throw Json::other_error::create(502,
+                                    "a recording of format " + shown_json(json.at("recording")) +
+                                        ", this program reads format 1",
+                                    &json);
   }
   RecordingHead head;
   head.version = json.at("glidar").get<std::string>();
@@ -138,8 +140,8 @@ void RecordingWriter::begin(const RecordingHead& head) {
     file_.write(line_of(json));
   } catch (const Json::type_error&) {
     throw Error({.where = file_.path().string(),
-                 .found = "an option or a file's name that is not UTF-8",
-                 .allowed = "UTF-8, which is all that a recording can hold",
+                 .found = "an option or a file name that is not UTF-8",
+                 .allowed = "UTF-8, the encoding of recordings",
                  .remedy = "rename the file or its folder"});
   }
 }
@@ -169,7 +171,7 @@ void RecordingWriter::commit(Durability durability) {
 RecordingReader::RecordingReader(const std::filesystem::path& path)
     : path_(path), file_(path, kRecording, kMaxLine_bytes) {
   std::string line;
-  if (!take_line(line)) refuse(path.string(), "it is empty or cannot be read");
+  if (!read_line(line)) refuse(path.string(), "it is empty or cannot be read");
   try {
     head_ = head_of(parse_json<Json>(where(), line), path);
   } catch (const Json::exception& error) {
@@ -181,10 +183,10 @@ std::string RecordingReader::where() const {
   return path_.string() + ":" + std::to_string(line_);
 }
 
-bool RecordingReader::take_line(std::string& line) {
+bool RecordingReader::read_line(std::string& line) {
   while (file_.next(line)) {
     ++line_;
-    // who edits one may leave blank lines
+    // ignores blank lines of edited files
     if (line.find_first_not_of(" \t\r") != std::string::npos) return true;
   }
   return false;
@@ -192,7 +194,7 @@ bool RecordingReader::take_line(std::string& line) {
 
 std::optional<RecordedFrame> RecordingReader::next() {
   std::string line;
-  if (!take_line(line)) refuse(where(), "it ends before its last line, which tells \"frames\"");
+  if (!read_line(line)) refuse(where(), "it ends before its last line, which contains \"frames\"");
   try {
     const Json json = parse_json<Json>(where(), line);
     if (!json.contains("frames")) {
@@ -200,8 +202,8 @@ std::optional<RecordedFrame> RecordingReader::next() {
       return frame_of(json);
     }
     if (count_of<std::uint64_t>(json, "frames") == frames_) return std::nullopt;
-    refuse(where(),
-           std::to_string(frames_) + " frames, where it tells " + shown_json(json["frames"]));
+    refuse(where(), std::to_string(frames_) + " frames, but its last line states " +
+                        shown_json(json["frames"]));
   } catch (const Json::exception& error) {
     refuse(where(), excerpt(error.what()));
   }

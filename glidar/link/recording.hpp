@@ -13,44 +13,44 @@
 #include <string>
 #include <vector>
 
-/// A recording keeps all that the frames of a stream depend on, one line of JSON each; docs/link.md
-/// tells every key.
+/// A recording contains everything that the frames of a stream depend on, one line of JSON per
+/// frame; docs/link/recording.md lists the keys.
 namespace glidar::link {
 
-/// A file that the stream was made from.
+/// An input file of the stream.
 struct RecordedFile {
-  std::string path;  ///< as seen from the command's folder
-  std::string hash;  ///< of its content; empty: it could not be read
+  std::string path;  ///< relative to the command's folder
+  std::string hash;  ///< of its content; empty: not readable
 };
 
-/// The first line.
+/// The first line of a recording.
 struct RecordingHead {
   std::string version;    ///< of the program
   CommandRecord command;  ///< with an absolute folder
   std::vector<RecordedFile> files = {};
 };
 
-/// A line for each frame. Poses are kept as matrices, whose every bit counts.
+/// The line of a frame. Poses are stored as matrices, so that they stay bit-identical.
 struct RecordedFrame {
-  std::uint32_t sensor = 0;      ///< place among those that measured
-  lockstep::Moment moment = {};  ///< its bodies count where the frame was placed
-  bool is_placed = false;  ///< by bodies; else by the command's motion at the time of its number
-  std::string frame_hash;  ///< of what the frame reports
+  std::uint32_t sensor = 0;      ///< index among the sensors that measure
+  lockstep::Moment moment = {};  ///< its bodies are used if is_placed
+  bool is_placed = false;        ///< poses from the bodies; else from the command's motion
+  std::string frame_hash;        ///< hash of the frame's reported values
 };
 
-/// Whether a finished recording is synced to the disk.
+/// Whether a finished recording is synchronised to the disk.
 enum class Durability : std::uint8_t { none, synced };
 
-/// Writes a recording; it appears under its name when it is whole.
+/// Writes a recording, which gets its name when it is complete.
 class RecordingWriter {
  public:
-  /// Throws Error when no file can be made there.
+  /// Throws Error if the file cannot be created.
   explicit RecordingWriter(const std::filesystem::path& path) : file_(path) {}
   /// Once, before the first frame.
   void begin(const RecordingHead& head);
   void write(const RecordedFrame& frame);
-  /// Once, after the last frame. Durably: the file survives a loss of power from then on, and an
-  /// Error is thrown also when the disk does not confirm that.
+  /// Once, after the last frame. If durable, the file survives a power failure from then on, and
+  /// Error is thrown also if the disk does not confirm it.
   void commit(Durability durability = Durability::none);
 
  private:
@@ -58,17 +58,17 @@ class RecordingWriter {
   std::uint64_t frames_ = 0;
 };
 
-/// Reads a recording line by line. Throws Error naming the line when it is not what it should be.
+/// Reads a recording line by line. Throws Error with the number of an invalid line.
 class RecordingReader {
  public:
   explicit RecordingReader(const std::filesystem::path& path);
   [[nodiscard]] const RecordingHead& head() const { return head_; }
-  /// The next frame; nothing: there is no more.
+  /// The next frame; empty at the end.
   std::optional<RecordedFrame> next();
 
  private:
   [[nodiscard]] std::string where() const;
-  bool take_line(std::string& line);
+  bool read_line(std::string& line);
 
   std::filesystem::path path_;
   LineFile file_;

@@ -10,9 +10,9 @@ namespace glidar::link {
 namespace {
 
 constexpr std::size_t kMaxEnvelopeParts = 8;
-constexpr std::size_t kMaxEnvelopePart_bytes = 255;  // as identities
+constexpr std::size_t kMaxEnvelopePart_bytes = 255;  // the maximum size of identities
 
-/// Malformed messages that are discarded before the caller gets its turn.
+/// Maximum number of malformed messages that one call discards.
 constexpr int kMaxDiscarded = 64;
 
 SocketOptions as_router(SocketOptions options) {
@@ -31,22 +31,23 @@ Part part_of(std::string bytes) {
   return {.bytes = std::as_bytes(std::span(*owner)), .owner = owner};
 }
 
-Router::Router(Context& context, SocketOptions options, FaultLog& faults)
-    : faults_(faults), socket_(context, as_router(std::move(options))) {}
+Router::Router(Context& context, SocketOptions options, ErrorLog& errors)
+    : errors_(errors), socket_(context, as_router(std::move(options))) {}
 
 std::optional<Delivered> Router::receive() {
   for (int i = 0; i < kMaxDiscarded; ++i) {
     const std::optional<Message> identity = socket_.receive();
     if (!identity) return std::nullopt;
     if (std::optional<Delivered> delivered = read(*identity)) return delivered;
-    faults_.tell("message discarded",
-                 "a peer sent a message without the empty part that precedes a request; use a REQ "
-                 "socket, or a DEALER that sends an empty part first");
+    errors_.report(
+        "message discarded",
+        "a peer sent a message without the empty part that precedes a request; use a REQ "
+        "socket, or a DEALER that sends an empty part first");
   }
   return std::nullopt;
 }
 
-/// The parts of a message are here together. Reads all of them.
+/// Reads all parts of a message, which arrive together.
 std::optional<Delivered> Router::read(const Message& identity) {
   Delivered delivered{.from = {.client = text_of(identity)}, .body = {}};
   bool has_delimiter = false;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/link/socket.hpp>
 
-#include <glidar/link/ipc_place.hpp>
+#include <glidar/link/ipc_path.hpp>
 #include <glidar/link/socket_monitor.hpp>
 #include <glidar/link/subscription_table.hpp>
 
@@ -16,7 +16,7 @@
 namespace glidar::link {
 namespace {
 
-/// XPUB speaks as PUB does and tells of subscriptions besides, but cannot keep the newest only.
+/// XPUB is a PUB that also reports subscriptions, but it cannot keep the newest message only.
 zmq::socket_type type_of(const SocketOptions& options) {
   switch (options.kind) {
     case SocketKind::subscribe:
@@ -37,26 +37,26 @@ std::chrono::milliseconds::rep millis(std::chrono::milliseconds time) {
   return time.count();
 }
 
-/// A payload that ZeroMQ has, and the count of these.
-struct Flying {
+/// A payload owned by ZeroMQ, and the counter of these.
+struct InFlight {
   Payload payload;
   std::shared_ptr<std::atomic<int>> count;
 };
 
-/// Gives a payload back to its pool once ZeroMQ has no more use for it, in ZeroMQ's own thread.
-void release(void* /*bytes*/, void* flying) {
-  --*static_cast<Flying*>(flying)->count;
-  delete static_cast<Flying*>(flying);
+/// Returns a payload to its pool when ZeroMQ releases it, in ZeroMQ's thread.
+void release(void* /*bytes*/, void* in_flight) {
+  --*static_cast<InFlight*>(in_flight)->count;
+  delete static_cast<InFlight*>(in_flight);
 }
 
-/// Lets go of who keeps the bytes of a part.
-void let_go(void* /*bytes*/, void* owner) {
+/// Releases the owner of the bytes of a part.
+void release_owner(void* /*bytes*/, void* owner) {
   delete static_cast<std::shared_ptr<const void>*>(owner);
 }
 
-/// The result of an action that a signal may break off; it is then done again.
+/// The result of an action, which is repeated if a signal interrupts it.
 template <class Action>
-auto unbroken(const Action& action) {
+auto retry_if_interrupted(const Action& action) {
   for (;;) {
     try {
       return action();
@@ -66,23 +66,23 @@ auto unbroken(const Action& action) {
   }
 }
 
-/// The descriptor of the connection that a message came by. The end of a subscription has none when
-/// the connection ended first.
+/// The descriptor of a message's connection. The end of a subscription has none if the connection
+/// ended before.
 int connection_of(const zmq::message_t& message) {
   const int descriptor = zmq_msg_get(message.handle(), ZMQ_SRCFD);
   return descriptor < 0 ? SubscriptionTable::kUnknownConnection.descriptor : descriptor;
 }
 
-/// A socket does what is due only when it is used; this uses it.
-void notice_news(zmq::socket_t& socket) {
-  (void)unbroken([&socket] { return socket.get(zmq::sockopt::events); });
+/// Makes ZeroMQ process pending events, which it does only when the socket is used.
+void process_events(zmq::socket_t& socket) {
+  (void)retry_if_interrupted([&socket] { return socket.get(zmq::sockopt::events); });
 }
 
 }  // namespace
 
 struct Context::Impl {
   zmq::context_t context{1};
-  std::atomic<std::uint64_t> sockets{0};  ///< made so far
+  std::atomic<std::uint64_t> sockets{0};  ///< created so far
 };
 
 Context::Context() : impl_(std::make_unique<Impl>()) {}
@@ -118,12 +118,12 @@ ConnectionId Message::connection() const {
 
 struct Socket::Impl {
   zmq::socket_t socket;
-  std::unique_ptr<SocketMonitor> monitor;  ///< ends before the socket
+  std::unique_ptr<SocketMonitor> monitor;  ///< destroyed before the socket
   bool follows_part = false;
   SubscriptionTable subscriptions;
   SubscriptionLimits subscription_limits;
   int send_queue;
-  std::shared_ptr<std::atomic<int>> flying = std::make_shared<std::atomic<int>>(0);
+  std::shared_ptr<std::atomic<int>> in_flight = std::make_shared<std::atomic<int>>(0);
   bool is_behind = false;  ///< a subscriber's queue was full
 
   Impl(zmq::context_t& context, const SocketOptions& options)
@@ -132,9 +132,9 @@ struct Socket::Impl {
         send_queue(options.send_queue) {}
 
   [[nodiscard]] ConnectionGuard* guard() const { return monitor ? monitor->guard() : nullptr; }
-  /// Before ZeroMQ takes in what has arrived, which it does whenever the socket is used.
+  /// To be called before ZeroMQ reads received data, which it does whenever the socket is used.
   void refuse_who_sent_too_much() const {
-    if (guard() != nullptr) guard()->look();
+    if (guard() != nullptr) guard()->check_limits();
   }
   void forget_ended() {
     if (guard() == nullptr) return;
@@ -145,7 +145,7 @@ struct Socket::Impl {
 
 namespace {
 
-/// Connections that ended without a word are noticed by the kernel, after some minutes.
+/// The kernel detects connections that ended without notice, after some minutes.
 void protect(zmq::socket_t& socket, const ConnectionLimits& limits) {
   constexpr int kSocketBacklog = 64;
   constexpr int kIdle_s = 60;
@@ -158,12 +158,12 @@ void protect(zmq::socket_t& socket, const ConnectionLimits& limits) {
 
 std::unique_ptr<SocketMonitor> make_monitor(zmq::context_t& context, zmq::socket_t& socket,
                                             const SocketOptions& options, std::uint64_t number) {
-  if (!options.is_watched && !options.protection) return nullptr;
+  if (!options.reports_events && !options.protection) return nullptr;
   std::unique_ptr<ConnectionGuard> guard;
   if (options.protection) {
     protect(socket, options.protection->limits);
     guard = std::make_unique<ConnectionGuard>(options.protection->limits,
-                                              options.protection->faults, options.is_watched);
+                                              options.protection->errors, options.reports_events);
   }
   return std::make_unique<SocketMonitor>(context.handle(), socket.handle(), std::to_string(number),
                                          std::move(guard));
@@ -193,7 +193,7 @@ Socket::Socket(Socket&&) noexcept = default;
 Socket& Socket::operator=(Socket&&) noexcept = default;
 
 void Socket::bind(const Endpoint& endpoint) {
-  if (!endpoint.path.empty()) require_free_place(endpoint.path);
+  if (!endpoint.path.empty()) require_free_ipc_path(endpoint.path);
   try {
     impl_->socket.bind(text_of(endpoint));
   } catch (const zmq::error_t& error) {
@@ -220,7 +220,7 @@ void Socket::set_linger(std::chrono::milliseconds linger) {
 std::optional<Message> Socket::receive() {
   zmq::message_t received;
   const auto take = [&] { return impl_->socket.recv(received, zmq::recv_flags::dontwait); };
-  if (!unbroken(take)) return std::nullopt;
+  if (!retry_if_interrupted(take)) return std::nullopt;
   Message message;
   const bool follows = std::exchange(impl_->follows_part, received.more());
   message.impl_->is_part = follows || received.more();
@@ -235,17 +235,17 @@ std::optional<Message> Socket::receive() {
 bool Socket::send(std::span<const std::byte> bytes) {
   zmq::message_t message(bytes.data(), bytes.size());
   const auto give = [&] { return impl_->socket.send(message, zmq::send_flags::dontwait); };
-  return unbroken(give).has_value();
+  return retry_if_interrupted(give).has_value();
 }
 
 namespace {
 
-/// Without waiting. A router refuses the first part when its peer has left or reads too slowly; the
-/// parts after it are accepted.
+/// Does not block. A router refuses the first part if its peer has left or reads too slowly;
+/// further parts are accepted.
 Sending send_now(zmq::socket_t& socket, zmq::message_t& message, zmq::send_flags flags) {
   try {
     const auto give = [&] { return socket.send(message, flags | zmq::send_flags::dontwait); };
-    return unbroken(give) ? Sending::sent : Sending::queue_full;
+    return retry_if_interrupted(give) ? Sending::sent : Sending::queue_full;
   } catch (const zmq::error_t& error) {
     if (error.num() != EHOSTUNREACH) throw;
     return Sending::peer_gone;
@@ -257,9 +257,9 @@ Sending send_now(zmq::socket_t& socket, zmq::message_t& message, zmq::send_flags
 Sending Socket::send_parts(std::span<const Part> parts) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     auto owner = std::make_unique<std::shared_ptr<const void>>(parts[i].owner);
-    // ZeroMQ only reads what is sent
+    // ZeroMQ only reads these bytes.
     auto* bytes = const_cast<std::byte*>(parts[i].bytes.data());
-    zmq::message_t message(bytes, parts[i].bytes.size(), let_go, owner.get());
+    zmq::message_t message(bytes, parts[i].bytes.size(), release_owner, owner.get());
     owner.release();  // NOLINT(bugprone-unused-return-value): the message has it
     const auto flags = i + 1 < parts.size() ? zmq::send_flags::sndmore : zmq::send_flags::none;
     const Sending sending = send_now(impl_->socket, message, flags);
@@ -274,54 +274,54 @@ std::string Socket::bound_to() const {
 
 namespace {
 
-/// First only if all queues have room, so that a full one is noticed; then to those that have.
+/// Sends first only if all queues have room, so that a full one is detected; then to those that
+/// have.
 bool publish_now(zmq::socket_t& socket, zmq::message_t& message, zmq::send_flags flags) {
-  notice_news(socket);  // such as that a queue has room again
+  process_events(socket);  // e.g. that a queue has room again
   socket.set(zmq::sockopt::xpub_nodrop, true);
-  if (unbroken([&] { return socket.send(message, flags); })) return true;
+  if (retry_if_interrupted([&] { return socket.send(message, flags); })) return true;
   socket.set(zmq::sockopt::xpub_nodrop, false);
-  (void)unbroken([&] { return socket.send(message, zmq::send_flags::dontwait); });
+  (void)retry_if_interrupted([&] { return socket.send(message, zmq::send_flags::dontwait); });
   return false;
 }
 
 }  // namespace
 
-/// ZeroMQ tells of a full queue once and then leaves it out until half of it was read. What is
-/// half on its way counts too, so that this may be late to see it, but not early.
+/// ZeroMQ reports a full queue once and then omits it until half of it is read. Messages in transit
+/// count too, so that this may detect it late, but not early.
 bool Socket::has_full_queue() const {
-  impl_->is_behind = impl_->is_behind && *impl_->flying > impl_->send_queue / 2;
+  impl_->is_behind = impl_->is_behind && *impl_->in_flight > impl_->send_queue / 2;
   return impl_->is_behind;
 }
 
 bool Socket::publish(Payload payload) {
   impl_->refuse_who_sent_too_much();
   const bool was_full = has_full_queue();
-  auto owned = std::make_unique<Flying>(Flying{std::move(payload), impl_->flying});
+  auto owned = std::make_unique<InFlight>(InFlight{std::move(payload), impl_->in_flight});
   const std::span<std::byte> bytes = owned->payload.bytes();
   zmq::message_t message(bytes.data(), bytes.size(), release, owned.get());
   owned.release();  // NOLINT(bugprone-unused-return-value): the message has it
-  ++*impl_->flying;
+  ++*impl_->in_flight;
   if (publish_now(impl_->socket, message, zmq::send_flags::dontwait)) return !was_full;
   impl_->is_behind = true;
   return false;
 }
 
-bool Socket::publish(std::span<const std::byte> bytes, std::chrono::milliseconds patience) {
+bool Socket::publish(std::span<const std::byte> bytes, std::chrono::milliseconds timeout) {
   constexpr std::chrono::milliseconds kSocketWait{5};
-  const auto until = std::chrono::steady_clock::now() + patience;
+  const auto until = std::chrono::steady_clock::now() + timeout;
   while (has_full_queue() && std::chrono::steady_clock::now() < until)
     wait_for({}, -1, kSocketWait);
-  if (std::exchange(impl_->is_behind, false))
-    patience = kSocketWait;  // in vain, which is enough once
+  if (std::exchange(impl_->is_behind, false)) timeout = kSocketWait;  // one full wait is enough
   zmq::message_t message(bytes.data(), bytes.size());
-  impl_->socket.set(zmq::sockopt::sndtimeo, static_cast<int>(millis(patience)));
+  impl_->socket.set(zmq::sockopt::sndtimeo, static_cast<int>(millis(timeout)));
   return publish_now(impl_->socket, message, zmq::send_flags::none);
 }
 
 SubscriptionCount Socket::subscriptions(std::span<const std::string> topics) {
   if (impl_->socket.get(zmq::sockopt::type) != ZMQ_XPUB) return {};
   impl_->refuse_who_sent_too_much();
-  constexpr int kMaxAtOnce = 1000;  // others wait until the caller has done something else
+  constexpr int kMaxAtOnce = 1000;  // so that the caller is not blocked
   for (int i = 0; i < kMaxAtOnce; ++i) {
     const std::optional<Message> message = receive();
     if (!message) {
@@ -333,14 +333,14 @@ SubscriptionCount Socket::subscriptions(std::span<const std::string> topics) {
   return {.is_known = true, .subscribers = impl_->subscriptions.subscribers(topics)};
 }
 
-/// The message is a byte, 1 for a subscription and 0 for its end, and the topic.
+/// The message is one byte, 1 for a subscription or 0 for its end, followed by the topic.
 void Socket::note_subscription(const Message& message) {
   const SubscriptionLimits& limits = impl_->subscription_limits;
   const std::span<const std::byte> bytes = message.bytes();
   const ConnectionId connection = message.connection();
   if (bytes.empty() || std::to_integer<int>(bytes[0]) > 1) {
-    return cut_off(connection, "stranger refused",
-                   "a peer sent a message to the port of the clouds, which takes none");
+    return cut_off(connection, "peer refused",
+                   "a peer sent a message to the cloud port, which accepts subscriptions only");
   }
   if (bytes.size() > 1 + limits.topic_bytes) {
     return cut_off(connection, "subscription limit",
@@ -359,7 +359,8 @@ std::vector<PeerEvent> Socket::events() {
   if (!impl_->monitor) return {};
   std::vector<PeerEvent> found = impl_->monitor->events();
   impl_->refuse_who_sent_too_much();
-  notice_news(impl_->socket);  // who joined again is subscribed to anew before it is told
+  process_events(impl_->socket);  // ZeroMQ subscribes again to a peer that returned, before the
+                                  // event is reported
   return found;
 }
 

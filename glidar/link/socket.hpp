@@ -19,11 +19,11 @@
 #include <string_view>
 #include <vector>
 
-/// A thin layer over ZeroMQ that all protocols share: what they need of it, with errors as Error.
+/// A thin layer over ZeroMQ for all protocols, which reports errors as Error.
 namespace glidar::link {
 
-/// ZeroMQ's thread for input and output; must outlive its sockets. Destroying it waits until what
-/// was sent is gone, at most the sockets' `linger`.
+/// ZeroMQ's I/O thread; must outlive its sockets. The destructor waits until all messages are sent,
+/// at most for the sockets' `linger`.
 class Context {
  public:
   Context();
@@ -45,19 +45,19 @@ enum class SocketKind : std::uint8_t {
   router  ///< answers many requests at once; see Router
 };
 
-/// What ZeroMQ reports of subscribers: how many connections have subscribed to a topic.
+/// The number of connections that have subscribed to a topic.
 struct SubscriptionCount {
-  bool is_known = false;  ///< not of sockets that keep the newest message only
+  bool is_known = false;  ///< false for sockets that keep the newest message only
   std::uint64_t subscribers = 0;
 };
 
-/// Limits of a socket that listens, and who is told of what exceeds them; must outlive it.
+/// Limits of a listening socket, and the log of violations, which must outlive it.
 struct Protection {
   ConnectionLimits limits;
-  FaultLog& faults;
+  ErrorLog& errors;
 };
 
-/// What one subscriber may subscribe to.
+/// Limits of one subscriber.
 struct SubscriptionLimits {
   std::size_t subscriptions = 64;
   std::size_t topic_bytes = 64;
@@ -65,29 +65,30 @@ struct SubscriptionLimits {
 
 struct SocketOptions {
   SocketKind kind = SocketKind::publish;
-  int send_queue = 1000;      ///< messages that wait for each peer; 0: any number
-  int receive_queue = 1000;   ///< likewise
-  bool keeps_newest = false;  ///< only the last message waits, whatever the queues
-  /// A peer that sends more is cut off before the memory is taken.
+  int send_queue = 1000;      ///< messages queued for each peer; 0: unlimited
+  int receive_queue = 1000;   ///< messages queued from each peer; 0: unlimited
+  bool keeps_newest = false;  ///< only the last message is queued
+  /// A peer that sends a larger message is cut off before memory is allocated.
   std::int64_t largest_message_bytes = std::int64_t{1} << 20;
-  std::chrono::milliseconds linger{0};  ///< for what is unsent when it is closed
-  bool is_watched = false;              ///< events() tells of its connections
-  /// Of who listens: peers must know the public key, and all is encrypted. Empty: anybody may.
+  std::chrono::milliseconds linger{0};  ///< time for unsent messages after it is closed
+  bool reports_events = false;          ///< events() returns the events of its connections
+  /// For listening sockets: peers need the public key, and all messages are encrypted. Empty: no
+  /// encryption, any peer.
   std::optional<CurveKeys> curve = {};
-  std::optional<Protection> protection = {};  ///< empty: any number of connections
+  std::optional<Protection> protection = {};  ///< empty: no limits
   SubscriptionLimits subscriptions = {};
 };
 
-/// What became of a message. No other peer is affected in any case.
+/// The result of sending a message. Other peers are never affected.
 enum class Sending : std::uint8_t { sent, queue_full, peer_gone };
 
-/// One part of a message, and who keeps its bytes until they are sent.
+/// One part of a message, and the owner of its bytes, which is released when they are sent.
 struct Part {
   std::span<const std::byte> bytes;
   std::shared_ptr<const void> owner;
 };
 
-/// Bytes of a message that was received; valid until it is destroyed.
+/// A received message; its bytes are valid until it is destroyed.
 class Message {
  public:
   Message();
@@ -95,11 +96,11 @@ class Message {
   Message& operator=(Message&&) noexcept;
   ~Message();
   [[nodiscard]] std::span<const std::byte> bytes() const;
-  /// False when it was only one of several parts; the parts after it come as the next ones.
+  /// False if it is one of several parts; the other parts are received as the next messages.
   [[nodiscard]] bool is_whole() const;
-  /// False when another part follows, which is here too.
+  /// False if another part follows, which has arrived too.
   [[nodiscard]] bool is_last() const;
-  /// That it came by. The cookie is known of the last part, where the socket has protection.
+  /// Its connection. The cookie is known for the last part if the socket has protection.
   [[nodiscard]] ConnectionId connection() const;
 
  private:
@@ -108,7 +109,7 @@ class Message {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Used by one thread at a time. No function waits unless it says so.
+/// Used by one thread at a time. Functions do not block unless documented.
 class Socket {
  public:
   Socket(Context& context, const SocketOptions& options);
@@ -116,40 +117,41 @@ class Socket {
   Socket(Socket&&) noexcept;
   Socket& operator=(Socket&&) noexcept;
 
-  /// Throws Error when the port is in use or the address is not this machine's.
+  /// Throws Error if the port is in use or the address is not one of this machine.
   void bind(const Endpoint& endpoint);
-  /// The peer may come later and come back. Throws Error when the host makes no address.
+  /// The peer may start later and restart. Throws Error if the host name has no address.
   void connect(const Endpoint& endpoint);
   void subscribe(std::string_view topic);
-  /// Where it listens, with the port that was free.
+  /// The endpoint at which it listens, with the actual port.
   [[nodiscard]] std::string bound_to() const;
 
-  /// Replaces the option, for what is unsent when it is closed.
+  /// Replaces SocketOptions::linger.
   void set_linger(std::chrono::milliseconds linger);
 
   std::optional<Message> receive();
-  /// To the one peer; false: there is none or its queue is full.
+  /// Sends to the only peer; false: there is none or its queue is full.
   bool send(std::span<const std::byte> bytes);
-  /// The same of several parts, none of which is copied; their owners are released in another
-  /// thread. A router sends to the peer whose identity is the first part.
+  /// Sends several parts without copying them; their owners are released in another thread. A
+  /// router sends to the peer whose identity is the first part.
   Sending send_parts(std::span<const Part> parts);
 
-  /// To all subscribers, without a copy. False: the queue of one or more was full, and these miss
-  /// it, if they want its topic.
+  /// Sends to all subscribers without a copy. False: one or more queues were full, and these
+  /// subscribers miss it, if they are subscribed to its topic.
   bool publish(Payload payload);
-  /// The same, waiting so long for full queues.
-  bool publish(std::span<const std::byte> bytes, std::chrono::milliseconds patience);
+  /// The same, blocking up to `timeout` for full queues.
+  bool publish(std::span<const std::byte> bytes, std::chrono::milliseconds timeout);
 
-  /// How many connections have subscribed to any of these topics. The next message reaches them.
+  /// Number of connections that have subscribed to any of these topics; the next message reaches
+  /// them.
   SubscriptionCount subscriptions(std::span<const std::string> topics);
-  /// What happened since the last call, if it is watched; to be called now and then, as what is not
-  /// taken is kept.
+  /// Connection events since the last call, if reports_events; to be called regularly, because
+  /// events are stored until then.
   std::vector<PeerEvent> events();
-  /// Closes a connection, if the socket has protection, and reports it as a fault of this kind.
+  /// Closes a connection, if the socket has protection, and logs an error of this kind.
   void cut_off(const ConnectionId& connection, const std::string& fault, const std::string& why);
-  /// What the peer has received of what was sent to it; 0: not known, or without protection.
+  /// Bytes that the peer has received; 0: unknown, or no protection.
   [[nodiscard]] std::uint64_t taken_bytes(const ConnectionId& connection) const;
-  /// False: it has ended; true without protection.
+  /// False if the connection has ended; true without protection.
   [[nodiscard]] bool is_open(const ConnectionId& connection) const;
 
  private:
@@ -161,8 +163,8 @@ class Socket {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Waits until one of the sockets has something to receive, the file descriptor (-1: none) can be
-/// read, or the time is over; signals end it too.
+/// Blocks until one of the sockets has a message, the file descriptor (-1: none) is readable, the
+/// time is over, or a signal arrives.
 void wait_for(std::initializer_list<const Socket*> sockets, int descriptor,
               std::chrono::milliseconds at_most);
 

@@ -28,7 +28,7 @@ struct Notice {
   std::int32_t value = 0;  ///< a descriptor or an error number
 };
 
-/// The next one: two parts, of which the second one is an address.
+/// The next event: two parts, of which the second is an address.
 std::optional<Notice> receive(void* reports) {
   std::array<std::byte, 6> bytes{};
   if (zmq_recv(reports, bytes.data(), bytes.size(), ZMQ_DONTWAIT) < 0) return std::nullopt;
@@ -77,7 +77,7 @@ SocketMonitor::SocketMonitor(void* context, void* socket, const std::string& nam
   const int none = 0;
   if (reports_ == nullptr) fail("there are too many sockets");
   zmq_setsockopt(reports_, ZMQ_LINGER, &none, sizeof(none));
-  zmq_setsockopt(reports_, ZMQ_RCVHWM, &none, sizeof(none));  // a full queue would hold up ZeroMQ
+  zmq_setsockopt(reports_, ZMQ_RCVHWM, &none, sizeof(none));  // a full queue would block ZeroMQ
   if (zmq_socket_monitor(socket, address.c_str(), guard_ ? kGuardEvents : kPeerEvents) != 0 ||
       zmq_connect(reports_, address.c_str()) != 0) {
     zmq_close(reports_);
@@ -88,7 +88,7 @@ SocketMonitor::SocketMonitor(void* context, void* socket, const std::string& nam
   thread_ = std::thread([this] { run(); });
 }
 
-/// ZeroMQ's end is closed first: it would wait for one that is gone.
+/// ZeroMQ's end is closed first, because it would wait for a closed peer.
 SocketMonitor::~SocketMonitor() {
   zmq_socket_monitor(socket_, nullptr, 0);
   if (thread_.joinable()) {
@@ -110,13 +110,13 @@ std::vector<PeerEvent> SocketMonitor::events() {
 }
 
 void SocketMonitor::run() {
-  constexpr int kMaxAtOnce = 1000;  // while it cannot accept, ZeroMQ reports that without end
+  constexpr int kMaxAtOnce = 1000;  // ZeroMQ reports endlessly while it cannot accept
   std::array<zmq_pollitem_t, 2> items = {
       zmq_pollitem_t{.socket = reports_, .fd = 0, .events = ZMQ_POLLIN, .revents = 0},
       zmq_pollitem_t{.socket = nullptr, .fd = ending_, .events = ZMQ_POLLIN, .revents = 0}};
   auto looked = ConnectionGuard::Clock::now();
   while (items[1].revents == 0) {
-    const long at_most_ms = guard_->needs_look() ? ConnectionGuard::kLook.count() : -1;
+    const long at_most_ms = guard_->needs_check() ? ConnectionGuard::kCheckInterval.count() : -1;
     zmq_poll(items.data(), static_cast<int>(items.size()), at_most_ms);
     for (int i = 0; i < kMaxAtOnce; ++i) {
       const std::optional<Notice> notice = receive(reports_);
@@ -124,9 +124,9 @@ void SocketMonitor::run() {
       pass_on(*notice, *guard_);
     }
     const auto now = ConnectionGuard::Clock::now();
-    if (now - looked < ConnectionGuard::kLook) continue;
+    if (now - looked < ConnectionGuard::kCheckInterval) continue;
     looked = now;
-    guard_->look();
+    guard_->check_limits();
   }
 }
 

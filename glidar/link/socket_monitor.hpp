@@ -11,29 +11,29 @@
 
 namespace glidar::link {
 
-/// Receives what ZeroMQ reports of a socket's connections. With a guard it does so in a thread of
-/// its own, so that limits hold whatever the socket's thread does.
+/// Receives ZeroMQ's events of a socket's connections. With a guard it uses its own thread, so that
+/// limits apply even if the socket's thread is busy.
 class SocketMonitor {
  public:
-  /// Of ZeroMQ's context and socket, which must outlive it; `name` is unique in the context.
+  /// `context` and `socket` are ZeroMQ's and must outlive it; `name` is unique in the context.
   SocketMonitor(void* context, void* socket, const std::string& name,
                 std::unique_ptr<ConnectionGuard> guard);
   ~SocketMonitor();
   SocketMonitor(const SocketMonitor&) = delete;
   SocketMonitor& operator=(const SocketMonitor&) = delete;
 
-  /// What happened since the last call. By the socket's thread.
+  /// Events since the last call; to be called in the socket's thread.
   std::vector<PeerEvent> events();
-  /// nullptr: there is none.
+  /// The guard, or nullptr.
   [[nodiscard]] ConnectionGuard* guard() { return guard_.get(); }
 
  private:
   void run();
 
   void* socket_;
-  void* reports_;  ///< ZeroMQ's, of the thread if there is one
+  void* reports_;  ///< ZeroMQ's socket of events, used by the thread if there is one
   std::unique_ptr<ConnectionGuard> guard_;
-  int ending_ = -1;  ///< can be read once the thread has to end
+  int ending_ = -1;  ///< readable when the thread is to end
   std::thread thread_;
 };
 

@@ -61,7 +61,7 @@ void SubscriptionTable::forget_ended(const std::function<bool(const ConnectionId
                                      Clock::time_point now) {
   for (auto one = connections_.begin(); one != connections_.end();) {
     const bool is_known = one->first != kUnknownConnection;
-    // one without a cookie had ended when its subscription was read
+    // a connection without a cookie had ended when its subscription was read
     if (!is_known || (one->first.cookie != 0 && is_open(one->first))) {
       ++one;
       continue;

@@ -15,20 +15,20 @@
 
 namespace glidar::link {
 
-/// Which connections have subscribed to which topics, from the reports of ZeroMQ's XPUB socket. A
-/// connection with several subscriptions is one subscriber. Its second subscription to the same
-/// topic changes nothing, because ZeroMQ reports only one end of both.
+/// The topics of every connection, from the reports of ZeroMQ's XPUB socket. A connection with
+/// several subscriptions is one subscriber. A second subscription to the same topic changes
+/// nothing, because ZeroMQ reports only one end of both.
 class SubscriptionTable {
  public:
   using Clock = std::chrono::steady_clock;
 
-  /// For reports that do not name their connection: those of connections that ended.
+  /// For reports without a connection, i.e. those of connections that have ended.
   static constexpr ConnectionId kUnknownConnection = {};
 
-  /// Returns how many subscriptions the connection has now. Without a connection each subscription
-  /// counts as a subscriber of its own.
+  /// Returns the number of the connection's subscriptions. Without a connection, each subscription
+  /// counts as a subscriber.
   std::size_t add(const ConnectionId& connection, const std::string& topic);
-  /// Without a connection any one that has this topic loses it: the one with the fewest topics.
+  /// Without a connection, the topic is removed from the connection with the fewest topics.
   void remove(const ConnectionId& connection, const std::string& topic);
 
   /// Connections that receive messages of at least one of these topics. A subscription receives all
@@ -37,14 +37,15 @@ class SubscriptionTable {
   /// Subscriptions of all connections.
   [[nodiscard]] std::size_t size() const;
 
-  /// To be called when there are no more reports. What is left of a connection that ended kEnd ago
-  /// was reported twice: once under its number, and once after the end, under no or another one.
+  /// To be called when there are no more reports. Remaining topics of a connection that ended kEnd
+  /// ago were reported twice: with its number, and after the end with none or another one.
   void forget_ended(const std::function<bool(const ConnectionId&)>& is_open, Clock::time_point now);
-  /// By then ZeroMQ has reported the end of all its subscriptions.
+  /// Time after which ZeroMQ has reported the end of all subscriptions of a connection.
   static constexpr std::chrono::seconds kEnd{10};
 
  private:
-  using Topics = std::map<std::string, std::uint64_t>;  ///< subscriptions; 1 of a known connection
+  using Topics =
+      std::map<std::string, std::uint64_t>;  ///< number of subscriptions; 1 for a known connection
 
   struct Connection {
     Topics topics;

@@ -16,9 +16,9 @@ namespace {
 
 using std::chrono_literals::operator""ms;
 
-/// With keeps_newest ZeroMQ reports connections but no subscriptions, which come right after.
-constexpr auto kSettling = 1000ms;
-constexpr auto kLook = 10ms;
+/// With keeps_newest ZeroMQ reports connections but not subscriptions, which follow immediately.
+constexpr auto kSubscriptionDelay = 1000ms;
+constexpr auto kPollInterval = 10ms;
 /// Time for ZeroMQ's thread to take the last message of a conflating pipe.
 constexpr auto kLastMessageTaken = 250ms;
 constexpr std::int64_t kMaxHandshakeBytes = 1024;
@@ -27,25 +27,26 @@ constexpr int kMaxHandshakesAtOnce = 64;
 
 const std::array<link::Part, 1> kEmpty;
 
-/// Of ZeroMQ's handshake too.
+/// Maximum size of a message from a subscriber, ZeroMQ's handshake included.
 constexpr std::int64_t kMaxSubscription_bytes = 1024;
 
-/// Subscriptions that ZeroMQ reads of a peer before others have their turn.
+/// Subscriptions that ZeroMQ reads from a peer before it serves others.
 constexpr int kSubscriptionsAtOnce = 32;
 
-/// Of who shakes hands: peers send empty messages only.
-link::Protection hand_protection(const CloudPublisherOptions& options, link::FaultLog& faults) {
+/// For handshakes, which are empty messages.
+link::Protection handshake_protection(const CloudPublisherOptions& options,
+                                      link::ErrorLog& errors) {
   constexpr std::uint64_t kUnread_bytes = std::uint64_t{64} << 10;
   constexpr std::uint64_t kAllUnread_bytes = std::uint64_t{1} << 20;
   return {.limits = link::connection_limits(options.limits, kUnread_bytes, kAllUnread_bytes),
-          .faults = faults};
+          .errors = errors};
 }
 
-/// Of subscribers, who send subscriptions only. ZeroMQ keeps each letter of each topic in a tree of
-/// its own before anything can be refused, and goes through the tree whenever a subscriber leaves.
+/// For subscribers, which send subscriptions only. ZeroMQ stores each letter of each topic in a
+/// tree before a message can be refused, and traverses the tree whenever a subscriber leaves.
 link::Protection subscriber_protection(const CloudPublisherOptions& options,
-                                       link::FaultLog& faults) {
-  constexpr std::int64_t kHead_bytes = 16;     // of a subscription's message, and to spare
+                                       link::ErrorLog& errors) {
+  constexpr std::int64_t kHead_bytes = 16;     // header of a subscription message, rounded up
   constexpr double kFreeBytes_per_s = 1024.0;  // ten changes and a hundred heartbeats
   const link::Limits& limits = options.limits;
   const auto bytes =
@@ -54,29 +55,29 @@ link::Protection subscriber_protection(const CloudPublisherOptions& options,
   link::ConnectionLimits of_connections = link::connection_limits(limits, bytes, all_bytes);
   of_connections.free_bytes_per_s = kFreeBytes_per_s;
   of_connections.counts_delivered = true;
-  return {.limits = of_connections, .faults = faults};
+  return {.limits = of_connections, .errors = errors};
 }
 
-link::SocketOptions cloud_socket(const CloudPublisherOptions& options, link::FaultLog& faults) {
+link::SocketOptions cloud_socket(const CloudPublisherOptions& options, link::ErrorLog& errors) {
   const link::Limits& limits = options.limits;
   return {.kind = link::SocketKind::publish,
           .send_queue = options.queue,
           .receive_queue = kSubscriptionsAtOnce,
           .keeps_newest = options.keeps_newest,
           .largest_message_bytes = kMaxSubscription_bytes,
-          .is_watched = true,
-          .protection = subscriber_protection(options, faults),
+          .reports_events = true,
+          .protection = subscriber_protection(options, errors),
           .subscriptions = {.subscriptions = static_cast<std::size_t>(limits.subscriptions),
                             .topic_bytes = static_cast<std::size_t>(limits.topic_bytes)}};
 }
 
 link::SocketOptions handshakes_socket(const CloudPublisherOptions& options,
-                                      link::FaultLog& faults) {
+                                      link::ErrorLog& errors) {
   return {.send_queue = kMaxHandshakesAtOnce,
           .receive_queue = kMaxHandshakesAtOnce,
           .largest_message_bytes = kMaxHandshakeBytes,
-          .is_watched = true,
-          .protection = hand_protection(options, faults)};
+          .reports_events = true,
+          .protection = handshake_protection(options, errors)};
 }
 
 }  // namespace
@@ -86,11 +87,11 @@ std::string rig_topic(std::string_view name) {
 }
 
 CloudPublisher::CloudPublisher(link::Context& context, const CloudPublisherOptions& options,
-                               link::FaultLog& faults)
+                               link::ErrorLog& errors)
     : options_(options),
-      faults_(faults),
-      clouds_(context, cloud_socket(options, faults)),
-      handshakes_(context, handshakes_socket(options, faults), faults) {
+      errors_(errors),
+      clouds_(context, cloud_socket(options, errors)),
+      handshakes_(context, handshakes_socket(options, errors), errors) {
   clouds_.bind(options.endpoint);
   handshakes_.bind({options.endpoint.host, static_cast<std::uint16_t>(options.endpoint.port + 1)});
 }
@@ -103,7 +104,7 @@ void CloudPublisher::write(const PointCloud& cloud, const Frame& frame) {
   }
   const auto found = topics_.find(frame.sensor_id);
   const std::string topic = found == topics_.end() ? std::string(1, kCloudTopic) : found->second;
-  const std::size_t ahead = topic.size() - 1;  // of the codec's topic of one letter
+  const std::size_t ahead = topic.size() - 1;  // the codec writes a topic of one byte
   link::Payload payload(pool_, ahead + cloud_bytes(cloud.size()));
   const std::size_t size = encode_cloud(cloud, timestamp, payload.bytes().subspan(ahead));
   std::memcpy(payload.bytes().data(), topic.data(), topic.size());
@@ -113,22 +114,23 @@ void CloudPublisher::write(const PointCloud& cloud, const Frame& frame) {
   counts_.points += (size - cloud_bytes(0)) / sizeof(CloudPoint);
   if (clouds_.publish(std::move(payload))) return;
   ++counts_.missed;
-  faults_.tell("clouds missed", "a subscriber reads more slowly than clouds come");
+  errors_.report("clouds missed", "a subscriber reads more slowly than clouds are published");
 }
 
 bool CloudPublisher::has(std::uint64_t subscribers) {
   if (counts_.handshakes < subscribers) return false;
-  if (subscribers == 0 || is_settled()) return true;
+  if (subscribers == 0 || all_subscribed()) return true;
   const auto waited = std::chrono::steady_clock::now() - last_handshake_;
   if (waited < options_.subscription_timeout || match_.pending() == 0) return false;
   give_up_subscriptions(options_.subscription_timeout);
-  return is_settled();
+  return all_subscribed();
 }
 
-/// Whether everybody who shook hands is subscribed.
-bool CloudPublisher::is_settled() const {
+/// True if all peers that have shaken hands are subscribed.
+bool CloudPublisher::all_subscribed() const {
   if (match_.pending() > 0) return false;
-  return knows_subscribers_ || std::chrono::steady_clock::now() - last_change_ >= kSettling;
+  return knows_subscribers_ ||
+         std::chrono::steady_clock::now() - last_change_ >= kSubscriptionDelay;
 }
 
 void CloudPublisher::give_up_subscriptions(std::chrono::milliseconds waited) {
@@ -139,43 +141,43 @@ void CloudPublisher::give_up_subscriptions(std::chrono::milliseconds waited) {
        << " shaken hands but not subscribed to clouds within "
        << std::chrono::duration<double>(waited).count()
        << " s; not waiting any longer. Clients subscribe to "
-       << (topics_.empty() ? "'c'" : "'/NAME' and a zero byte, NAME being that of a sensor")
-       << ", best before they shake hands";
-  faults_.tell("subscription missing", text.str());
+       << (topics_.empty() ? "'c'" : "'/NAME' and a zero byte, where NAME is that of a sensor")
+       << ", preferably before they shake hands";
+  errors_.report("subscription missing", text.str());
 }
 
 void CloudPublisher::serve() {
   answer_handshakes();
-  notice_peers();
+  process_peer_events();
 }
 
-void CloudPublisher::shut_down(std::chrono::milliseconds patience) {
+void CloudPublisher::shut_down(std::chrono::milliseconds timeout) {
   serve();
-  clouds_.set_linger(patience);
-  handshakes_.socket().set_linger(patience);
-  const auto until = std::chrono::steady_clock::now() + patience;
-  while (!is_settled() && std::chrono::steady_clock::now() < until) {
-    link::wait_for({&clouds_}, -1, kLook);
+  clouds_.set_linger(timeout);
+  handshakes_.socket().set_linger(timeout);
+  const auto until = std::chrono::steady_clock::now() + timeout;
+  while (!all_subscribed() && std::chrono::steady_clock::now() < until) {
+    link::wait_for({&clouds_}, -1, kPollInterval);
     serve();
   }
-  if (match_.pending() > 0) give_up_subscriptions(patience);
-  // the clouds' topics last: with keeps_newest only the last message is sure to arrive
+  if (match_.pending() > 0) give_up_subscriptions(timeout);
+  // Cloud topics last: with keeps_newest only the last message is certain to arrive.
   std::vector<std::string> ending = {"p", "P"};
   for (const auto& [sensor, topic] : topics_) ending.push_back(topic);
   ending.emplace_back(1, kCloudTopic);
-  const auto queues_until = std::chrono::steady_clock::now() + patience;
+  const auto queues_until = std::chrono::steady_clock::now() + timeout;
   for (const std::string& topic : ending) {
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(
         queues_until - std::chrono::steady_clock::now());
     if (clouds_.publish(encode_shutdown(topic), std::max(left, 0ms))) continue;
-    faults_.tell("shutdown missed", "a subscriber does not read; it may wait for more clouds");
+    errors_.report("shutdown missed", "a subscriber does not read; it may wait for more clouds");
   }
   // The end of a conflating pipe replaces a message that libzmq has not yet taken from it.
   if (options_.keeps_newest)
-    std::this_thread::sleep_for(std::min<std::chrono::milliseconds>(patience, kLastMessageTaken));
+    std::this_thread::sleep_for(std::min<std::chrono::milliseconds>(timeout, kLastMessageTaken));
 }
 
-/// Of clouds and of their end, which is 2015's on a rig too.
+/// All topics of clouds, and 'c', which also ends the stream of a rig.
 std::vector<std::string> CloudPublisher::topics() const {
   std::vector<std::string> all = {std::string(1, kCloudTopic)};
   for (const auto& [sensor, topic] : topics_) all.push_back(topic);
@@ -198,12 +200,12 @@ void CloudPublisher::answer_handshakes() {
     const std::optional<link::Delivered> request = handshakes_.receive();
     if (!request) return;
     if (!request->body.bytes().empty() || !request->is_single) {
-      faults_.tell("odd handshake",
-                   "a subscriber sent more than the empty message that 2015's protocol has; "
-                   "answered all the same");
+      errors_.report(
+          "unexpected handshake",
+          "a subscriber sent more than the empty message of the protocol; it is answered");
     }
     if (handshakes_.reply(request->from, kEmpty) != link::Sending::sent) {
-      faults_.tell("handshake not answered", "the peer has left, or reads no replies");
+      errors_.report("handshake not answered", "the peer has left, or reads no replies");
     }
     ++counts_.handshakes;
     match_.add_handshake();
@@ -211,14 +213,14 @@ void CloudPublisher::answer_handshakes() {
   }
 }
 
-/// A subscription follows its connection, where it is not reported itself.
+/// Where subscriptions are not reported, every connection counts as a subscriber.
 void CloudPublisher::set_subscribers(std::uint64_t count) {
   if (count > counts_.subscribers) last_change_ = std::chrono::steady_clock::now();
   counts_.subscribers = count;
   match_.set_subscribers(count);
 }
 
-void CloudPublisher::notice_peers() {
+void CloudPublisher::process_peer_events() {
   const link::SubscriptionCount known = clouds_.subscriptions(topics());
   knows_subscribers_ = known.is_known;
   if (known.is_known) set_subscribers(known.subscribers);
@@ -229,13 +231,13 @@ void CloudPublisher::notice_peers() {
       set_subscribers(connected - 1);
     }
     if (event == link::PeerEvent::refused) {
-      faults_.tell("stranger refused", "something that is no subscriber came to the clouds' port");
+      errors_.report("peer refused", "a peer that is not a subscriber connected to the cloud port");
     }
   }
   for (const link::PeerEvent event : handshakes_.socket().events()) {
     if (event != link::PeerEvent::refused) continue;
-    faults_.tell("stranger refused",
-                 "something else than a subscriber came to the handshakes' port");
+    errors_.report("peer refused",
+                   "a peer of an incompatible socket type connected to the handshake port");
   }
 }
 

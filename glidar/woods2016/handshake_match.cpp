@@ -19,13 +19,13 @@ void HandshakeMatch::set_subscribers(std::uint64_t count) {
       --pending_;
       ++matched_;
     } else if (absent_ > 0) {
-      --absent_;  // one that comes back does not shake hands again
+      --absent_;  // a returning peer does not shake hands again
     } else {
       ++early_;
     }
   }
-  // Which one left is not known. It is taken for one without a handshake, which may lead to waiting
-  // in vain.
+  // It is unknown which one left. It is assumed to be one without a handshake, which may cause an
+  // unnecessary wait.
   for (; subscribers_ > count; --subscribers_) {
     if (early_ > 0) {
       --early_;

@@ -6,22 +6,22 @@
 
 namespace glidar::legacy {
 
-/// Which handshakes have no subscription yet. A peer's handshake and its subscription come over
-/// different connections, in any order, and do not say that they belong together: each handshake is
-/// matched with one subscriber, the first that is not matched yet. Exact when all subscribers shake
-/// hands; a subscriber that does not may be taken for that of a later handshake.
+/// Matches handshakes with subscriptions. The handshake and the subscription of a peer use
+/// different connections, arrive in any order, and cannot be associated: each handshake is matched
+/// with the first unmatched subscriber. This is exact if all subscribers shake hands; a subscriber
+/// that does not may be matched with a later handshake.
 class HandshakeMatch {
  public:
   void add_handshake();
-  /// The number of connections that are subscribed now.
+  /// Sets the number of connections that are subscribed now.
   void set_subscribers(std::uint64_t count);
-  /// Stops waiting for the subscriptions that are missing. Those that come later belong to these
+  /// Stops waiting for missing subscriptions. Later subscriptions are matched with these
   /// handshakes.
   void give_up();
 
   /// Handshakes whose subscription is missing.
   [[nodiscard]] std::uint64_t pending() const { return pending_; }
-  /// Handshakes whose subscription came.
+  /// Handshakes whose subscription has arrived.
   [[nodiscard]] std::uint64_t matched() const { return matched_; }
 
  private:
@@ -29,7 +29,7 @@ class HandshakeMatch {
   std::uint64_t matched_ = 0;
   std::uint64_t subscribers_ = 0;
   std::uint64_t early_ = 0;   ///< subscribers without a handshake
-  std::uint64_t absent_ = 0;  ///< handshakes whose subscriber left or was given up; it may come
+  std::uint64_t absent_ = 0;  ///< handshakes whose subscriber left or timed out; it may still come
 };
 
 }  // namespace glidar::legacy

@@ -13,10 +13,10 @@
 namespace glidar::legacy {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "messages are in memory order");
-static_assert(sizeof(CloudPoint) == 16, "sent as it is");
+static_assert(std::endian::native == std::endian::little, "messages are little-endian");
+static_assert(sizeof(CloudPoint) == 16, "points are copied without padding");
 
-constexpr std::string_view kGoodbye = "KTHXBAI";
+constexpr std::string_view kShutdown = "KTHXBAI";
 constexpr std::size_t kHeadBytes = 1 + 8;
 constexpr const char* kPoseMessage = "pose message ('v')";
 constexpr const char* kCloudMessage = "cloud message ('c')";
@@ -26,7 +26,7 @@ constexpr const char* kCloudMessage = "cloud message ('c')";
       {.where = where, .found = std::move(found), .allowed = std::move(allowed), .remedy = ""});
 }
 
-/// A byte as a person may read it: 'v', or 0x07.
+/// A byte in readable form: 'v', or 0x07.
 std::string byte_text(std::byte byte) {
   const auto value = std::to_integer<unsigned>(byte);
   if (value > 0x20 && value < 0x7f) return std::string("'") + static_cast<char>(value) + "'";
@@ -35,12 +35,12 @@ std::string byte_text(std::byte byte) {
 }
 
 void check_topic(const char* where, Bytes message, char topic) {
-  if (message.empty()) fail(where, "it is empty", std::string("'") + topic + "' and what follows");
+  if (message.empty()) fail(where, "it is empty", std::string("'") + topic + "' and its content");
   if (message[0] == static_cast<std::byte>(topic)) return;
   fail(where, "its first byte is " + byte_text(message[0]), std::string("'") + topic + "'");
 }
 
-/// The number at an offset that is known to be inside.
+/// The number at a valid offset.
 template <class T>
 T read(Bytes message, std::size_t offset) {
   T value;
@@ -79,7 +79,7 @@ Eigen::Quaterniond unit_quaternion(const Numbers& numbers, std::size_t first, co
        "1 to within 0.001, in the order w x y z");
 }
 
-/// The numbers of a column of this name and this many numbers a point.
+/// The numbers of the column with this name and this many numbers per point.
 template <class T>
 const std::vector<T>& field_values(const PointCloud& cloud, const char* name,
                                    std::size_t components) {
@@ -151,7 +151,7 @@ std::size_t encode_cloud(const PointCloud& cloud, std::uint64_t timestamp,
   for (std::size_t i = 0; i < cloud.size(); ++i) {
     const CloudPoint point = {static_cast<float>(xyz[3 * i]), static_cast<float>(xyz[3 * i + 1]),
                               static_cast<float>(xyz[3 * i + 2]), intensity[i]};
-    // written in any case, kept if it is a hit: quicker than to jump over every miss
+    // Every point is written, but kept only if it is a hit: faster than a branch per miss.
     std::memcpy(place, &point, sizeof(point));
     if (!std::isnan(point.x_m)) place += sizeof(point);
   }
@@ -159,15 +159,15 @@ std::size_t encode_cloud(const PointCloud& cloud, std::uint64_t timestamp,
 }
 
 std::vector<std::byte> encode_shutdown(std::string_view topic) {
-  std::vector<std::byte> message(topic.size() + kGoodbye.size());
+  std::vector<std::byte> message(topic.size() + kShutdown.size());
   std::memcpy(message.data(), topic.data(), topic.size());
-  std::memcpy(message.data() + topic.size(), kGoodbye.data(), kGoodbye.size());
+  std::memcpy(message.data() + topic.size(), kShutdown.data(), kShutdown.size());
   return message;
 }
 
 bool is_shutdown(Bytes message) {
-  return message.size() == 1 + kGoodbye.size() &&
-         std::memcmp(message.data() + 1, kGoodbye.data(), kGoodbye.size()) == 0;
+  return message.size() == 1 + kShutdown.size() &&
+         std::memcmp(message.data() + 1, kShutdown.data(), kShutdown.size()) == 0;
 }
 
 }  // namespace glidar::legacy

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
-/// The protocol of the 2015 program: bytes and what they mean. docs/link.md has the tables. All
-/// numbers are little-endian, without padding; the first byte is the type and the topic.
+/// Messages of the Woods 2016 protocol; docs/link/woods2016-protocol.md has the tables. All numbers
+/// are little-endian, without padding; the first byte is both the type and the topic.
 namespace glidar::legacy {
 
 using Bytes = std::span<const std::byte>;
@@ -21,12 +21,12 @@ using Bytes = std::span<const std::byte>;
 inline constexpr char kCloudTopic = 'c';
 inline constexpr char kPlacementTopic = 'v';
 
-/// How far from 1 the length of a quaternion may be: attitudes in single precision pass, a
-/// forgotten or misplaced component does not.
+/// Maximum deviation of a quaternion's length from 1: attitudes in single precision are valid, a
+/// missing or misplaced component is not.
 inline constexpr double kQuaternionTolerance = 1e-3;
 
-/// 'v', from a simulator: where object and sensor are. The quaternions are attitudes, they take
-/// inertial vectors into the body:
+/// 'v', from a simulator: the poses of object and sensor. The quaternions are attitudes, which
+/// rotate inertial vectors into the body:
 ///   p_sensor = R(sensor) (R(object)^T p_object + translation)
 /// in the frame x left, y up, z forward.
 struct Placement {
@@ -38,8 +38,8 @@ struct Placement {
 
 inline constexpr std::size_t kPlacementBytes = 1 + 8 + 11 * 8;
 
-/// Quaternions come normalised. Throws Error unless the message has its size and topic, every
-/// number is finite, positions are within kMaxCoordinate_m and quaternions of length 1.
+/// Quaternions are returned normalised. Throws Error unless size and topic are correct, every
+/// number is finite, positions are within kMaxCoordinate_m and quaternions have length 1.
 Placement decode_placement(Bytes message);
 
 std::array<std::byte, kPlacementBytes> encode_placement(const Placement& placement);
@@ -57,24 +57,24 @@ struct Cloud {
   std::vector<CloudPoint> points;
 };
 
-/// Throws Error unless the message has the topic and a size of whole points, and every number of
-/// them is finite.
+/// Throws Error unless the topic is correct, the size is that of whole points, and every number is
+/// finite.
 Cloud decode_cloud(Bytes message);
 
-/// Bytes of a cloud of so many points.
+/// Size in bytes of a cloud message with this number of points.
 constexpr std::size_t cloud_bytes(std::size_t points) {
   return 1 + 8 + points * sizeof(CloudPoint);
 }
 
-/// Writes the cloud's points that are hits and returns how many bytes they take; `to` must have
-/// cloud_bytes(cloud.size()). The cloud's axes must be the protocol's. Throws Error when it lacks
-/// the column xyz or intensity, and when `to` is too small.
+/// Writes the points that are hits and returns the size of the message; `to` must have
+/// cloud_bytes(cloud.size()) bytes. The cloud must have the protocol's axes. Throws Error if the
+/// column xyz or intensity is missing, or if `to` is too small.
 std::size_t encode_cloud(const PointCloud& cloud, std::uint64_t timestamp, std::span<std::byte> to);
 
-/// The bytes that tell subscribers of a topic that it ends: "cKTHXBAI".
+/// The message that ends a topic: for example "cKTHXBAI".
 std::vector<std::byte> encode_shutdown(std::string_view topic);
 
-/// True for these bytes, of any topic.
+/// True for the end message of any topic.
 bool is_shutdown(Bytes message);
 
 }  // namespace glidar::legacy

@@ -11,7 +11,7 @@
 namespace glidar::legacy {
 namespace {
 
-/// Poses are small; beyond, a peer is cut off. What is below is read and refused by its size.
+/// Poses are small; a peer that sends more is cut off. Smaller messages are read and refused.
 constexpr std::int64_t kMaxMessageBytes = std::int64_t{16} << 20;
 
 link::SocketOptions pose_socket_options(const PoseReceiverOptions& options) {
@@ -19,7 +19,7 @@ link::SocketOptions pose_socket_options(const PoseReceiverOptions& options) {
           .receive_queue = std::max(options.queue, 1),
           .keeps_newest = options.queue == 0,
           .largest_message_bytes = kMaxMessageBytes,
-          .is_watched = true};
+          .reports_events = true};
 }
 
 link::Endpoint next_port(link::Endpoint endpoint) {
@@ -27,26 +27,26 @@ link::Endpoint next_port(link::Endpoint endpoint) {
   return endpoint;
 }
 
-/// How long a simulator whose handshakes' port is open may take to open its poses' port. Then the
-/// handshake is requested without it.
+/// Maximum delay between the opening of a simulator's handshake port and its pose port. After it,
+/// the handshake is sent without a connection to the pose port.
 constexpr std::chrono::seconds kPosesDelay{5};
 
-/// Before a simulator that was cut off is connected to again.
+/// Delay before reconnecting to a simulator that was cut off.
 constexpr std::chrono::seconds kReconnectDelay{1};
 
-/// So that a flood of messages that are no poses does not keep the caller from anything else.
+/// So that a flood of invalid messages does not block the caller.
 constexpr int kMaxMessagesAtOnce = 256;
 
 constexpr link::SocketOptions kHandshakeSocket = {.kind = link::SocketKind::request,
-                                                  .is_watched = true};
+                                                  .reports_events = true};
 
 }  // namespace
 
 PoseReceiver::PoseReceiver(link::Context& context, const PoseReceiverOptions& options,
-                           link::FaultLog& faults)
+                           link::ErrorLog& errors)
     : context_(context),
       options_(options),
-      faults_(faults),
+      errors_(errors),
       poses_(context, pose_socket_options(options)),
       handshake_(context, kHandshakeSocket) {
   open_poses();
@@ -54,23 +54,23 @@ PoseReceiver::PoseReceiver(link::Context& context, const PoseReceiverOptions& op
 }
 
 bool PoseReceiver::is_ready() {
-  if (awaits_reply_ && handshake_.receive()) {  // also of one that has sent all and gone since
+  if (awaits_reply_ && handshake_.receive()) {  // also from a simulator that has ended since
     awaits_reply_ = false;
     is_ready_ = true;
   }
-  notice_simulator();
-  ask_when_connected();
+  process_connection_events();
+  send_handshake_when_connected();
   return is_ready_;
 }
 
 std::optional<Placement> PoseReceiver::receive() {
-  notice_simulator();
-  ask_when_connected();
+  process_connection_events();
+  send_handshake_when_connected();
   for (int i = 0; i < kMaxMessagesAtOnce && !is_over_; ++i) {
     const std::optional<link::Message> message = poses_.receive();
     if (!message) {
-      tell_of_loss();
-      connect_anew_if_cut_off();
+      report_loss();
+      reconnect_if_cut_off();
       return std::nullopt;
     }
     ++counts_.received;
@@ -81,7 +81,7 @@ std::optional<Placement> PoseReceiver::receive() {
 
 std::optional<Placement> PoseReceiver::read(const link::Message& message) {
   if (!message.is_whole()) {
-    refuse("it is one of several parts; a pose is a single one");
+    refuse("it has several parts; a pose has one");
     return std::nullopt;
   }
   if (is_shutdown(message.bytes())) {
@@ -99,10 +99,10 @@ std::optional<Placement> PoseReceiver::read(const link::Message& message) {
 
 void PoseReceiver::refuse(const std::string& why) {
   ++counts_.refused;
-  faults_.tell("pose refused", why);
+  errors_.report("pose refused", why);
 }
 
-/// A simulator may start its clock anew, so that an earlier time is a fault but no reason to stop.
+/// A simulator may restart its clock, so a smaller timestamp is reported but accepted.
 bool PoseReceiver::is_new(std::uint64_t timestamp) {
   const std::optional<std::uint64_t> before = std::exchange(last_timestamp_, timestamp);
   if (before == timestamp) {
@@ -111,9 +111,9 @@ bool PoseReceiver::is_new(std::uint64_t timestamp) {
   }
   if (before && timestamp < *before) {
     ++counts_.backwards;
-    faults_.tell("time went back", "from timestamp " + std::to_string(*before) + " to " +
-                                       std::to_string(timestamp) +
-                                       "; the cloud is made as for any other");
+    errors_.report("timestamp decreased", "from timestamp " + std::to_string(*before) + " to " +
+                                              std::to_string(timestamp) +
+                                              "; the cloud is made as for any other");
   }
   return true;
 }
@@ -123,15 +123,15 @@ void PoseReceiver::open_poses() {
   poses_.connect(options_.endpoint);
 }
 
-/// Once all that it sent is read: one that said that it ends is not lost.
-void PoseReceiver::tell_of_loss() {
-  if (!std::exchange(is_loss_news_, false)) return;
-  faults_.tell("simulator lost",
-               "its connection ended, or it sent more than 16 MiB at once; waiting for it");
+/// After all messages are read: a simulator that sent its end message is not lost.
+void PoseReceiver::report_loss() {
+  if (!std::exchange(loss_unreported_, false)) return;
+  errors_.report("simulator lost",
+                 "its connection ended, or it sent more than 16 MiB at once; waiting for it");
 }
 
-/// ZeroMQ finds a peer again that went away, but not one that it cut off.
-void PoseReceiver::connect_anew_if_cut_off() {
+/// ZeroMQ reconnects to a peer that went away, but not to one that it cut off.
+void PoseReceiver::reconnect_if_cut_off() {
   if (!lost_ || std::chrono::steady_clock::now() - *lost_ < kReconnectDelay) return;
   lost_.reset();
   poses_ = link::Socket(context_, pose_socket_options(options_));
@@ -142,25 +142,25 @@ void PoseReceiver::open_handshake() {
   handshake_ = link::Socket(context_, kHandshakeSocket);
   handshake_.connect(next_port(options_.endpoint));
   reachable_.reset();
-  has_asked_ = awaits_reply_ = false;
+  handshake_sent_ = awaits_reply_ = false;
 }
 
-/// A simulator may send as soon as it has answered, so the subscription has to be there before the
-/// question. It is written once the poses' connection stands; the handshake's is made anew after
-/// that, and the simulator, which has one thread for both, reads it some round trips later. One
-/// that waits for the handshake before it opens the poses' port is asked a little later all the
-/// same.
-void PoseReceiver::ask_when_connected() {
-  if (has_asked_) return;
+/// A simulator may send poses as soon as it has answered, so the subscription must arrive before
+/// the handshake. The subscription is sent when the pose connection is established; then the
+/// handshake connection is made again, and the simulator, which serves both in one thread, reads
+/// the handshake some round trips later. A simulator that opens its pose port only after the
+/// handshake gets the handshake after kPosesDelay.
+void PoseReceiver::send_handshake_when_connected() {
+  if (handshake_sent_) return;
   const bool is_late = reachable_ && std::chrono::steady_clock::now() - *reachable_ >= kPosesDelay;
   if (!is_connected_ && !is_late) return;
   if (is_connected_) open_handshake();
-  has_asked_ = true;
+  handshake_sent_ = true;
   awaits_reply_ = handshake_.send({});
 }
 
-/// One that comes back waits for a handshake as it did at first.
-void PoseReceiver::notice_simulator() {
+/// A simulator that restarts waits for a new handshake.
+void PoseReceiver::process_connection_events() {
   for (const link::PeerEvent event : handshake_.events()) {
     if (event == link::PeerEvent::joined) reachable_ = std::chrono::steady_clock::now();
     if (event == link::PeerEvent::left) reachable_.reset();
@@ -172,7 +172,7 @@ void PoseReceiver::notice_simulator() {
       lost_.reset();
     }
     if (event != link::PeerEvent::left) continue;
-    is_loss_news_ = true;
+    loss_unreported_ = true;
     is_connected_ = false;
     open_handshake();
     lost_ = std::chrono::steady_clock::now();

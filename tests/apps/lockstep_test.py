@@ -179,7 +179,7 @@ class Lockstep(CliTest):
     def test_it_takes_no_place_that_is_taken(self):
         self.write("precious", "kept")
         refused = self.refused("stream", "builtin:asteroid", "--lockstep", f"ipc://{self.folder}/precious")
-        self.assertIn("a file that is no socket has this name", refused)
+        self.assertIn("a file that is not a socket has this name", refused)
         self.assertEqual(self.bytes_of("precious"), b"kept")
         endpoint = f"ipc://{self.folder}/link"
         with Server(self, "builtin:asteroid", *self.SIZE, endpoint=endpoint) as server:

@@ -236,11 +236,11 @@ class Refusals(ReplayTest):
         below = dict(json.loads(first), number=-1)
         unproven = dict(json.loads(first), frame_hash="")
         for line, words in ((first[:40], "bad.jsonl:3: "), (json.dumps(wrong), "sensor 7 and 0 objects"),
-                            (json.dumps(scaled), "no rigid transform"), (json.dumps(short), "3 numbers, not 12 or 18"),
-                            (json.dumps(large), "sensor: 4294967296 is no count"),
-                            (json.dumps(below), "number: -1 is no count"),
+                            (json.dumps(scaled), "not a rigid transform"), (json.dumps(short), "3 numbers, instead of 12 or 18"),
+                            (json.dumps(large), "sensor: 4294967296 is not a count"),
+                            (json.dumps(below), "number: -1 is not a count"),
                             (json.dumps(unproven), "frame_hash: not 32 digits"),
-                            ('{"frames": 7}', "1 frames, where it tells 7")):
+                            ('{"frames": 7}', "1 frames, but its last line states 7")):
             with self.subTest(words):
                 self.write("bad.jsonl", "\n".join([head, first, line, *rest]) + "\n")
                 done = self.run_program("replay", "bad.jsonl")

@@ -111,7 +111,7 @@ class Ends(StreamTest):
                 self.assertEqual(stranger.recv(), b"")
         program.send_signal(signal.SIGTERM)
         subscriber.clouds_until_shutdown()
-        self.assertIn("odd handshake", self.finished(program, 143))
+        self.assertIn("unexpected handshake", self.finished(program, 143))
 
     def test_not_by_a_pose_that_waited_longer_than_the_timeout_until_it_was_taken(self):
         """The timeout is about waiting for a pose, not about frames that take long. Poses are sent before the
@@ -163,7 +163,7 @@ class Refusals(StreamTest):
         taken.bind(f"tcp://127.0.0.1:{self.port + 1}")
         error = self.refused("stream", self.box, "--port", str(self.port))
         self.assertIn(f"tcp://127.0.0.1:{self.port + 1}", error)
-        self.assertIn("another program has this port", error)
+        self.assertIn("another program uses this port", error)
 
     def test_addresses_of_other_machines(self):
         self.assertIn("--bind", self.refused("stream", self.box, "-p", str(self.port), "--bind", "192.0.2.1"))

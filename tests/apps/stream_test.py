@@ -228,8 +228,8 @@ class Poses(StreamTest):
             simulator.send(pose_message(stamp))
         simulator.shut_down()
         self.assertEqual([t for t, _ in subscriber.clouds_until_shutdown()], [7, 3, 4])
-        self.assertIn("time went back: from timestamp 7 to 3", self.finished(program, 0))
-        self.assertEqual(self.stats()["faults"], {"time went back": 1})
+        self.assertIn("timestamp decreased: from timestamp 7 to 3", self.finished(program, 0))
+        self.assertEqual(self.stats()["faults"], {"timestamp decreased": 1})
 
     def test_of_a_simulator_that_comes_back_count_again(self):
         program, simulator, subscriber = self.in_the_loop("--pose-queue", "10")

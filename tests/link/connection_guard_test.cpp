@@ -35,7 +35,7 @@ class ConnectionGuardTest : public ::testing::Test {
     router = testing::at_free_port([&](const Endpoint& at) {
       endpoint = at;
       auto made = std::make_unique<Router>(
-          context, SocketOptions{.protection = Protection{limits, faults}}, faults);
+          context, SocketOptions{.protection = Protection{limits, errors}}, errors);
       made->bind(at);
       return made;
     });
@@ -54,7 +54,7 @@ class ConnectionGuardTest : public ::testing::Test {
     });
   }
   bool becomes_fault(const std::string& kind) {
-    return soon([&] { return faults.counts().count(kind) > 0; });
+    return soon([&] { return errors.counts().count(kind) > 0; });
   }
   std::string said(const std::string& kind) {
     const std::lock_guard lock(mutex);
@@ -64,9 +64,9 @@ class ConnectionGuardTest : public ::testing::Test {
     return "";
   }
 
-  std::mutex mutex;  // faults are reported by another thread
+  std::mutex mutex;  // errors are reported by another thread
   std::vector<std::string> texts;
-  FaultLog faults{{.log =
+  ErrorLog errors{{.log =
                        [this](Severity, std::string_view t) {
                          const std::lock_guard lock(mutex);
                          texts.emplace_back(t);
@@ -88,7 +88,7 @@ void connect_at(int descriptor) {
 
 TEST_F(ConnectionGuardTest, KeepsAConnectionWhoseDescriptorIsReportedClosedLate) {
   const UniqueFd place(::open("/dev/null", O_RDONLY | O_CLOEXEC));
-  ConnectionGuard guard({}, faults);
+  ConnectionGuard guard({}, errors);
   connect_at(place.get());
   guard.on_accepted(place.get());
   const ConnectionId first{place.get(), guard.delivered(place.get())};
@@ -98,7 +98,7 @@ TEST_F(ConnectionGuardTest, KeepsAConnectionWhoseDescriptorIsReportedClosedLate)
   guard.on_left(place.get());  // the first one
   EXPECT_FALSE(guard.is_open(first));
   EXPECT_TRUE(guard.is_open(second));
-  EXPECT_TRUE(guard.needs_look());
+  EXPECT_TRUE(guard.needs_check());
 }
 
 TEST_F(ConnectionGuardTest, CutsOffAMessageThatNeverEndsAndServesOthers) {
@@ -115,7 +115,7 @@ TEST_F(ConnectionGuardTest, CutsOffAMessageThatNeverEndsAndServesOthers) {
   EXPECT_TRUE(serves_a_new_client());
 }
 
-TEST_F(ConnectionGuardTest, CutsOffWhoSentTheMostWhenAllTogetherSendTooMuch) {
+TEST_F(ConnectionGuardTest, CutsOffTheLargestSenderWhenAllExceedTheLimit) {
   listen({.unread_bytes = 1 << 20, .all_unread_bytes = 1 << 20});
   std::vector<RawPeer> peers;
   for (int k = 0; k < 8; ++k) {
@@ -130,7 +130,7 @@ TEST_F(ConnectionGuardTest, CutsOffWhoSentTheMostWhenAllTogetherSendTooMuch) {
   EXPECT_TRUE(serves_a_new_client());
 }
 
-TEST_F(ConnectionGuardTest, DoesNotCountWhatWasDelivered) {
+TEST_F(ConnectionGuardTest, DoesNotCountDeliveredBytes) {
   listen({.unread_bytes = 10'000, .all_unread_bytes = 10'000});
   const RawPeer steady(endpoint);
   ASSERT_TRUE(steady.shake("DEALER"));
@@ -141,10 +141,10 @@ TEST_F(ConnectionGuardTest, DoesNotCountWhatWasDelivered) {
     ASSERT_TRUE(soon([&] { return router->receive().has_value(); }));
   }
   EXPECT_FALSE(steady.is_closed());
-  EXPECT_TRUE(faults.counts().empty());
+  EXPECT_TRUE(errors.counts().empty());
 }
 
-TEST_F(ConnectionGuardTest, CountsWhatWasDeliveredOfPeersThatHaveLittleToSay) {
+TEST_F(ConnectionGuardTest, CountsDeliveredBytesIfConfigured) {
   listen({.unread_bytes = 10'000, .free_bytes_per_s = 0.0, .counts_delivered = true});
   const RawPeer talker(endpoint);
   ASSERT_TRUE(talker.shake("DEALER"));
@@ -160,7 +160,7 @@ TEST_F(ConnectionGuardTest, CountsWhatWasDeliveredOfPeersThatHaveLittleToSay) {
   EXPECT_TRUE(serves_a_new_client());
 }
 
-TEST_F(ConnectionGuardTest, WhoIsCutOffIsNotReadToTheEnd) {
+TEST_F(ConnectionGuardTest, DropsUnreadBytesOfAPeerThatIsCutOff) {
   const UniqueFd listener(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
   sockaddr_in address = {};
   address.sin_family = AF_INET;
@@ -172,32 +172,32 @@ TEST_F(ConnectionGuardTest, WhoIsCutOffIsNotReadToTheEnd) {
   ASSERT_EQ(::getsockname(listener.get(), any, &size), 0);
   const RawPeer peer({"127.0.0.1", ntohs(address.sin_port)});
   const UniqueFd accepted(::accept4(listener.get(), nullptr, nullptr, SOCK_CLOEXEC));
-  ConnectionGuard guard({}, faults);
+  ConnectionGuard guard({}, errors);
   guard.on_accepted(accepted.get());
   ASSERT_TRUE(peer.send(std::string(1000, 'x')));
   char byte = 0;
   ASSERT_EQ(::recv(accepted.get(), &byte, 1, 0), 1);  // the others are here too
-  guard.cut_off({accepted.get(), 0}, "a fault", "because");
+  guard.cut_off({accepted.get(), 0}, "test error", "because");
   EXPECT_LE(::recv(accepted.get(), &byte, 1, MSG_DONTWAIT), 0);
   EXPECT_TRUE(soon([&] { return peer.is_closed(); }));
 }
 
-TEST_F(ConnectionGuardTest, WhatIsReadOfAConnectionAfterItsEndDoesNotReviveIt) {
+TEST_F(ConnectionGuardTest, MessagesAfterTheEndDoNotRestoreAConnection) {
   int ends[2];
   ASSERT_EQ(::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
   const UniqueFd other(ends[1]);
-  ConnectionGuard guard({}, faults);
+  ConnectionGuard guard({}, errors);
   guard.on_accepted(ends[0]);
-  guard.cut_off({ends[0], 0}, "a fault", "because");
+  guard.cut_off({ends[0], 0}, "test error", "because");
   ::close(ends[0]);
   for (int k = 0; k < 10; ++k) {
     EXPECT_EQ(guard.delivered(ends[0]), 0U);
-    guard.cut_off({ends[0], 0}, "a fault", "because");
+    guard.cut_off({ends[0], 0}, "test error", "because");
   }
-  EXPECT_EQ(faults.counts().at("a fault"), 1U);
+  EXPECT_EQ(errors.counts().at("test error"), 1U);
 }
 
-TEST_F(ConnectionGuardTest, ManyIdleConnectionsDoNotKeepANewClientOut) {
+TEST_F(ConnectionGuardTest, IdleConnectionsDoNotBlockANewClient) {
   listen({.connections = 8, .connections_per_s = 1000.0});
   std::vector<RawPeer> idle;
   for (int k = 0; k < 40; ++k) idle.emplace_back(endpoint);
@@ -222,7 +222,7 @@ TEST_F(ConnectionGuardTest, AClientThatWasServedKeepsItsConnection) {
   EXPECT_FALSE(client.is_closed());
 }
 
-TEST_F(ConnectionGuardTest, HoldsBackConnectionsThatComeTooFastAndServesThemLater) {
+TEST_F(ConnectionGuardTest, DelaysConnectionsAboveTheRateLimit) {
   listen({.connections = 20, .connections_per_s = 10.0});
   for (int k = 0; k < 30; ++k) {
     ASSERT_TRUE(serves_a_new_client()) << k;

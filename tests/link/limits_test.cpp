@@ -36,13 +36,13 @@ TEST(Limits, EachIsSetByItsNameWithinItsRange) {
   }
 }
 
-TEST(Limits, AnUnknownNameIsRefusedWithTheNearestOne) {
+TEST(Limits, AnUnknownNameIsAnErrorWithTheClosestMatch) {
   EXPECT_THAT(refusal("reply-mb=4"), AllOf(HasSubstr("--limit"), HasSubstr("'reply-mb=4'"),
                                            HasSubstr("did you mean reply-mib?")));
   EXPECT_THAT(refusal(""), HasSubstr("connections, connections-per-s"));
 }
 
-TEST(Limits, AValueThatIsNoneIsRefusedWithTheRangeAndAnExample) {
+TEST(Limits, AnInvalidValueIsAnErrorWithRangeAndExample) {
   for (const char* value : {"=0", "=-1", "=1.5", "=many", "=", "", "=1000001", "=4 "}) {
     EXPECT_THAT(refusal("requests" + std::string(value)),
                 AllOf(HasSubstr("--limit requests"), HasSubstr("from 1 to 1000000"),

@@ -106,7 +106,7 @@ TEST(Encode, WritesTheSameBytesAsByHand) {
   EXPECT_EQ(std::get<Describe>(decode_request(describe.bytes, id)).id, 5U);
 }
 
-TEST(DecodeRequest, RefusesEveryLengthButTheRightOne) {
+TEST(DecodeRequest, RejectsAnyWrongLength) {
   const std::vector<std::byte> whole = good().bytes;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     EXPECT_THAT(error_of({whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size)}),
@@ -118,7 +118,7 @@ TEST(DecodeRequest, RefusesEveryLengthButTheRightOne) {
   EXPECT_THAT(error_of(longer), HasSubstr("size"));
 }
 
-TEST(DecodeRequest, KnowsTheIdOfWhatItRefuses) {
+TEST(DecodeRequest, ReadsTheIdOfInvalidRequests) {
   Hand hand = good();
   hand.bytes.pop_back();
   std::uint64_t id = 0;
@@ -126,7 +126,7 @@ TEST(DecodeRequest, KnowsTheIdOfWhatItRefuses) {
   EXPECT_EQ(id, 77U);
 }
 
-TEST(DecodeRequest, NamesTheFieldThatIsWrong) {
+TEST(DecodeRequest, ReportsTheInvalidField) {
   EXPECT_THAT(error_with(0, 'X'), HasSubstr("GLDR"));
   EXPECT_THAT(error_with(4, std::uint16_t{2}), HasSubstr("version: 2; allowed: 1"));
   EXPECT_THAT(error_with(6, std::uint16_t{9}), HasSubstr("kind: 9"));
@@ -142,7 +142,7 @@ TEST(DecodeRequest, NamesTheFieldThatIsWrong) {
   EXPECT_THAT(error_with(kMoment + 20, 1U), HasSubstr("moment 0, reserved"));
 }
 
-TEST(DecodeRequest, RefusesNumbersThatAreNone) {
+TEST(DecodeRequest, RejectsNumbersThatAreNotFinite) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, infinity, -infinity, 1e300}) {
@@ -154,7 +154,7 @@ TEST(DecodeRequest, RefusesNumbersThatAreNone) {
   }
 }
 
-TEST(DecodeRequest, RefusesQuaternionsThatAreNotOfLengthOne) {
+TEST(DecodeRequest, RejectsQuaternionsThatAreNotOfLengthOne) {
   EXPECT_THAT(error_with(kSensor + 24, 0.0), HasSubstr("length 0"));
   EXPECT_THAT(error_with(kSensor + 24, 1.1), HasSubstr("length 1.1"));
   EXPECT_EQ(error_with(kSensor + 24, 1.0005), "") << "written with few digits";
@@ -185,7 +185,7 @@ TEST(EncodeHead, HasTheLayoutOfTheTables) {
   EXPECT_EQ(bytes_of(cloud.columns[0]).size(), 48U);
 }
 
-TEST(EncodeTextHead, TellsErrorsFromDescriptions) {
+TEST(EncodeTextHead, DistinguishesErrorsFromDescriptions) {
   Hand hand;
   hand.letters("GLDR", 4).put(std::uint16_t{1}).put(std::uint16_t{3}).put(std::uint64_t{1});
   EXPECT_EQ(encode_text_head(1, TextKind::error), hand.bytes);

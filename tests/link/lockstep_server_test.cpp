@@ -21,7 +21,7 @@ class LockstepServerTest : public ::testing::Test {
   LockstepServerTest() {
     server = testing::at_free_port([&](const link::Endpoint& at) {
       endpoint = at;
-      return std::make_unique<Server>(context, options(at), faults);
+      return std::make_unique<Server>(context, options(at), errors);
     });
   }
   /// Connections come as fast as they can here.
@@ -63,7 +63,7 @@ class LockstepServerTest : public ::testing::Test {
   }
 
   std::vector<std::string> said;
-  link::FaultLog faults{
+  link::ErrorLog errors{
       {.log = [this](Severity, std::string_view t) { said.emplace_back(t); }, .progress = {}}};
   link::Context context;
   link::Endpoint endpoint;
@@ -108,7 +108,7 @@ class Flooder {
   RawPeer peer_;
 };
 
-TEST_F(LockstepServerTest, AnswersOthersWhileOneClientFloodsItAndReadsNothing) {
+TEST_F(LockstepServerTest, ServesOthersWhileOneClientFloodsItAndReadsNothing) {
   Flooder flooder(endpoint);
   link::Socket asking = client();
   for (std::uint64_t id = 100; id < 300; ++id) {
@@ -116,7 +116,7 @@ TEST_F(LockstepServerTest, AnswersOthersWhileOneClientFloodsItAndReadsNothing) {
     ASSERT_TRUE(is_answered(asking, id));
   }
   EXPECT_GT(server->counts().refused, 0U);
-  EXPECT_GT(faults.counts().at("requests refused"), 0U);
+  EXPECT_GT(errors.counts().at("requests refused"), 0U);
 }
 
 TEST_F(LockstepServerTest, DropsTheRequestsOfAClientThatHasLeft) {

@@ -17,12 +17,12 @@
 
 namespace glidar::testing {
 
-/// Makes something that listens at a port of this machine and at the next one, both free.
+/// Makes an object that listens at a free port of this machine and at the next one.
 template <class Make>
 auto at_free_port(const Make& make) {
   std::random_device chance;
   for (int attempt = 0;; ++attempt) {
-    constexpr unsigned kLowest = 20000;  // below those that systems give to clients
+    constexpr unsigned kLowest = 20000;  // below the ephemeral ports
     constexpr unsigned kCount = 6000;
     constexpr int kMax = 100;
     const auto port = static_cast<std::uint16_t>(kLowest + 2 * (chance() % kCount));
@@ -40,7 +40,7 @@ auto at_free_port(const Make& make) {
 inline bool has_connections(std::uint16_t port) {
   std::ifstream table("/proc/net/tcp");
   std::string line;
-  std::getline(table, line);  // the head
+  std::getline(table, line);  // the header
   while (std::getline(table, line)) {
     std::istringstream words(line);
     std::string number;

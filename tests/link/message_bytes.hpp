@@ -10,7 +10,7 @@
 
 namespace glidar::testing {
 
-/// A message put together by hand.
+/// A message written byte by byte.
 struct MessageBytes {
   std::vector<std::byte> bytes = {};
 

@@ -33,7 +33,8 @@ inline std::string zmtp_ready(const std::string& socket_type) {
   return std::string("\4", 1) + static_cast<char>(body.size()) + body;
 }
 
-/// A TCP connection to a port of this machine that is no ZeroMQ socket and sends any bytes.
+/// A TCP connection to a port of this machine that is not a ZeroMQ socket and sends arbitrary
+/// bytes.
 class RawPeer {
  public:
   explicit RawPeer(const link::Endpoint& at)
@@ -53,7 +54,7 @@ class RawPeer {
   }
 
   [[nodiscard]] bool is_connected() const { return is_connected_; }
-  /// False once the other side has closed the connection. Never waits.
+  /// False once the other side has closed the connection. Never blocks.
   bool send(const std::string& bytes) const {
     return ::send(descriptor_, bytes.data(), bytes.size(), MSG_NOSIGNAL | MSG_DONTWAIT) > 0;
   }
@@ -69,7 +70,7 @@ class RawPeer {
     return send(zmtp_ready(socket_type)) && has(kSizeAt + 1) &&
            has(kSizeAt + 1 + static_cast<unsigned char>(received[kSizeAt]));
   }
-  /// Whether the other side has closed the connection. What it sent is discarded. Never waits.
+  /// Whether the other side has closed the connection. What it sent is discarded. Never blocks.
   [[nodiscard]] bool is_closed() const {
     char bytes[4096];
     for (;;) {
@@ -105,8 +106,8 @@ inline std::string zmtp_part(const std::string& body, bool has_more) {
   return std::string(1, has_more ? '\1' : '\0') + static_cast<char>(body.size()) + body;
 }
 
-/// What strangers and attackers send: nothing, pieces of handshakes and messages, other protocols,
-/// random bytes.
+/// Input of unknown peers and attackers: nothing, parts of handshakes and messages, other
+/// protocols, random bytes.
 struct Garbage {
   std::string socket_type;  ///< of the handshake; empty: none
   std::string bytes;

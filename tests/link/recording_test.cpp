@@ -14,7 +14,7 @@
 namespace glidar::link {
 namespace {
 
-/// A folder that is gone after the test.
+/// A folder that is removed after the test.
 class Folder {
  public:
   Folder() {
@@ -71,7 +71,7 @@ TEST(Recording, ReadsBackEveryBitThatWasWritten) {
   EXPECT_FALSE(reader.next());
 }
 
-TEST(Recording, OfAFrameThatTheCommandPlacedHasNoBodies) {
+TEST(Recording, HasNoBodiesForPosesFromTheCommand) {
   const Folder folder;
   RecordingWriter writer(folder / "r.jsonl");
   writer.begin({.version = "1", .command = {.arguments = {"stream"}, .folder = folder / "."}});
@@ -81,7 +81,7 @@ TEST(Recording, OfAFrameThatTheCommandPlacedHasNoBodies) {
   EXPECT_FALSE(reader.next().value().is_placed);
 }
 
-TEST(Recording, IsNotThereUntilItIsWhole) {
+TEST(Recording, AppearsWhenItIsComplete) {
   const Folder folder;
   {
     RecordingWriter writer(folder / "r.jsonl");
@@ -92,7 +92,7 @@ TEST(Recording, IsNotThereUntilItIsWhole) {
   EXPECT_THROW(RecordingReader(folder / "."), Error);
 }
 
-TEST(Recording, NamesTheKeyThatIsWrong) {
+TEST(Recording, ReportsTheInvalidKey) {
   const Folder folder;
   std::ofstream(folder / "r.jsonl")
       << R"({"recording": 1, "glidar": "1", "command": {"arguments": ["stream"], "folder": 5}})";
@@ -104,7 +104,7 @@ TEST(Recording, NamesTheKeyThatIsWrong) {
   }
 }
 
-TEST(Recording, RefusesNamesThatAreNotUtf8) {
+TEST(Recording, RejectsNamesThatAreNotUtf8) {
   const Folder folder;
   RecordingWriter writer(folder / "r.jsonl");
   EXPECT_THROW(

@@ -33,7 +33,7 @@ std::vector<std::string> turns(RequestQueue& queue) {
   return clients;
 }
 
-TEST(RequestQueue, ClientsTakeTurnsHoweverManyRequestsEachHas) {
+TEST(RequestQueue, ServesClientsInTurn) {
   RequestQueue queue({});
   for (int k = 0; k < 4; ++k) EXPECT_THAT(add(queue, "flood"), IsEmpty());
   EXPECT_THAT(add(queue, "b"), IsEmpty());
@@ -42,7 +42,7 @@ TEST(RequestQueue, ClientsTakeTurnsHoweverManyRequestsEachHas) {
   EXPECT_THAT(turns(queue), ElementsAre("flood", "b", "c", "flood", "b", "flood", "flood"));
 }
 
-TEST(RequestQueue, AClientHasOneRequestInWork) {
+TEST(RequestQueue, AClientHasOneRequestInProgress) {
   RequestQueue queue({});
   add(queue, "a");
   add(queue, "a");
@@ -54,7 +54,7 @@ TEST(RequestQueue, AClientHasOneRequestInWork) {
   EXPECT_EQ(queue.next()->message.from.client, "a");
 }
 
-TEST(RequestQueue, RefusesMoreThanTheLimitOfOneClientAndNoOther) {
+TEST(RequestQueue, RejectsRequestsBeyondTheLimitOfOneClientOnly) {
   RequestQueue queue({.requests = 2});
   add(queue, "a");
   EXPECT_TRUE(queue.next());
@@ -70,30 +70,30 @@ TEST(RequestQueue, RefusesMoreThanTheLimitOfOneClientAndNoOther) {
   EXPECT_THAT(add(queue, "a"), IsEmpty());
 }
 
-TEST(RequestQueue, RefusesRequestsWhileRepliesThatNobodyReadsFillTheMemory) {
+TEST(RequestQueue, RejectsRequestsWhileUnreadRepliesFillTheMemory) {
   RequestQueue queue({.memory_mib = 1});
   queue.all_unread()->bytes = (1 << 20) + 1;
   EXPECT_THAT(add(queue, "a"), HasSubstr("--limit memory-mib"));
 }
 
-TEST(RequestQueue, ForgetsClientsThatHaveNothingUnderWay) {
+TEST(RequestQueue, RemovesClientsWithoutRequests) {
   RequestQueue queue({});
-  const auto look = [&] {
-    queue.look(
+  const auto check = [&] {
+    queue.check_clients(
         {}, std::chrono::seconds(1), [](const auto&) { return 0; }, [](const auto&) {});
   };
   add(queue, "a");
-  look();
+  check();
   EXPECT_TRUE(queue.has_clients());
   EXPECT_TRUE(queue.next());
-  look();
+  check();
   EXPECT_TRUE(queue.has_clients());
   queue.done("a");
-  look();
+  check();
   EXPECT_FALSE(queue.has_clients());
 }
 
-TEST(RequestQueue, FindsClientsThatTakeNothingOfTheirReplies) {
+TEST(RequestQueue, FindsClientsThatDoNotReadTheirReplies) {
   RequestQueue queue({});
   const auto reads = queue.unread_of(from("reads", 1).from);
   const auto stalls = queue.unread_of(from("stalls", 2).from);
@@ -102,7 +102,7 @@ TEST(RequestQueue, FindsClientsThatTakeNothingOfTheirReplies) {
   std::vector<int> stalled;
   const Clock::time_point start = Clock::now();
   for (int second = 0; second < 4; ++second) {
-    queue.look(
+    queue.check_clients(
         start + std::chrono::seconds(second), std::chrono::seconds(3),
         [&](const link::ConnectionId& client) { return client.descriptor == 1 ? ++taken : 0; },
         [&](const link::ConnectionId& client) { stalled.push_back(client.descriptor); });

@@ -24,7 +24,7 @@ class RouterTest : public ::testing::Test {
   RouterTest() {
     router = testing::at_free_port([&](const Endpoint& at) {
       endpoint = at;
-      auto made = std::make_unique<Router>(context, SocketOptions{}, faults);
+      auto made = std::make_unique<Router>(context, SocketOptions{}, errors);
       made->bind(at);
       return made;
     });
@@ -55,14 +55,14 @@ class RouterTest : public ::testing::Test {
   }
 
   std::vector<std::string> said;
-  FaultLog faults{
+  ErrorLog errors{
       {.log = [this](Severity, std::string_view t) { said.emplace_back(t); }, .progress = {}}};
   Context context;
   Endpoint endpoint;
   std::unique_ptr<Router> router;
 };
 
-TEST_F(RouterTest, RepliesInAnyOrderReachTheClientsThatAsked) {
+TEST_F(RouterTest, RepliesInAnyOrderReachTheirClients) {
   Socket first = client();
   Socket second = client();
   first.send(MessageBytes().text("first").bytes);
@@ -107,11 +107,11 @@ TEST_F(RouterTest, DiscardsAndReportsAMessageWithoutADelimiterOrBody) {
              zmtp_part("y", false) + many + zmtp_part("", true) + zmtp_part("body", false) +
              zmtp_part(longest, true) + zmtp_part("", true) + zmtp_part("good", false));
   EXPECT_EQ(text_of(delivered().body.bytes()), "good");
-  EXPECT_EQ(faults.counts().at("message discarded"), 4U);
+  EXPECT_EQ(errors.counts().at("message discarded"), 4U);
   EXPECT_THAT(said.at(0), HasSubstr("use a REQ socket"));
 }
 
-TEST_F(RouterTest, AReplyToAClientThatLeftIsNotSentAndNothingElseHappens) {
+TEST_F(RouterTest, AReplyToAClientThatLeftIsNotSent) {
   Socket stays = client();
   Delivered request;
   {
@@ -125,7 +125,7 @@ TEST_F(RouterTest, AReplyToAClientThatLeftIsNotSentAndNothingElseHappens) {
   EXPECT_EQ(text_of(testing::received(stays)), "in time");
 }
 
-TEST_F(RouterTest, AClientThatReadsNoRepliesHasAFullQueueAndOthersGetTheirs) {
+TEST_F(RouterTest, AClientThatReadsNoRepliesDoesNotBlockOthers) {
   const std::string request = testing::zmtp_part("", true) + testing::zmtp_part("x", false);
   const RawPeer deaf = dealer(request);
   const Delivered asked = delivered();

@@ -22,11 +22,11 @@ bool visit(Context& context, const Endpoint& at, Socket& server) {
   Socket visitor(context, {.kind = SocketKind::request});
   visitor.connect(at);
   if (!visitor.send(kWord)) return false;
-  constexpr std::chrono::milliseconds kLook{2};
+  constexpr std::chrono::milliseconds kPollInterval{2};
   return testing::soon([&] {
-    wait_for({&server}, -1, kLook);
+    wait_for({&server}, -1, kPollInterval);
     if (server.receive()) server.send(kWord);
-    wait_for({&visitor}, -1, kLook);
+    wait_for({&visitor}, -1, kPollInterval);
     return visitor.receive().has_value();
   });
 }
@@ -39,7 +39,7 @@ TEST_P(Visits, MayBeManyWhetherOrNotAnybodyAsksForEvents) {
   const auto server = testing::at_free_port([&](const Endpoint& endpoint) {
     at = endpoint;
     auto socket = std::make_unique<Socket>(
-        context, SocketOptions{.kind = SocketKind::reply, .is_watched = GetParam()});
+        context, SocketOptions{.kind = SocketKind::reply, .reports_events = GetParam()});
     socket->bind(endpoint);
     return socket;
   });
@@ -52,8 +52,8 @@ TEST_P(Visits, MayBeManyWhetherOrNotAnybodyAsksForEvents) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Sockets, Visits, ::testing::Bool(), [](const auto& is_watched) {
-  return is_watched.param ? "watched" : "unwatched";
+INSTANTIATE_TEST_SUITE_P(Sockets, Visits, ::testing::Bool(), [](const auto& reports_events) {
+  return reports_events.param ? "watched" : "unwatched";
 });
 
 }  // namespace

@@ -32,7 +32,7 @@ TEST(SubscriptionTable, ASubscriptionCountsForTopicsThatBeginWithIt) {
   EXPECT_EQ(table.subscribers(kTopics), 2U);
 }
 
-TEST(SubscriptionTable, AConnectionLeavesWithItsLastSubscription) {
+TEST(SubscriptionTable, AConnectionIsRemovedWithItsLastSubscription) {
   SubscriptionTable table;
   table.add({1, 100 + 1}, "/a");
   table.add({1, 100 + 1}, "/b");
@@ -42,7 +42,7 @@ TEST(SubscriptionTable, AConnectionLeavesWithItsLastSubscription) {
   EXPECT_EQ(table.subscribers(kTopics), 0U);
 }
 
-TEST(SubscriptionTable, AConnectionThatEndedIsOneThatHadItsTopics) {
+TEST(SubscriptionTable, AnUnknownEndIsMatchedByTopics) {
   SubscriptionTable table;
   table.add({1, 100 + 1}, "/a");
   table.add({1, 100 + 1}, "c");
@@ -56,7 +56,7 @@ TEST(SubscriptionTable, AConnectionThatEndedIsOneThatHadItsTopics) {
 }
 
 /// The system may give the number to a new connection before the end of the old one is reported.
-TEST(SubscriptionTable, AnOldConnectionOfTheSameNumberCountsUntilItsEndIsReported) {
+TEST(SubscriptionTable, AReusedDescriptorCountsTwiceUntilTheEndIsReported) {
   SubscriptionTable table;
   table.add({1, 100}, "c");
   table.add({1, 101}, "c");
@@ -65,7 +65,7 @@ TEST(SubscriptionTable, AnOldConnectionOfTheSameNumberCountsUntilItsEndIsReporte
   EXPECT_EQ(table.subscribers(kTopics), 1U);
 }
 
-TEST(SubscriptionTable, RepeatedSubscriptionsAreGoneWithTheOneEndThatIsReported) {
+TEST(SubscriptionTable, OneReportedEndRemovesRepeatedSubscriptions) {
   SubscriptionTable table;
   for (int k = 0; k < 100; ++k) EXPECT_EQ(table.add({1, 100}, "c"), 1U);
   EXPECT_EQ(table.size(), 1U);
@@ -73,7 +73,7 @@ TEST(SubscriptionTable, RepeatedSubscriptionsAreGoneWithTheOneEndThatIsReported)
   EXPECT_EQ(table.size(), 0U);
 }
 
-TEST(SubscriptionTable, WhatIsLeftOfAnEndedConnectionIsForgottenLater) {
+TEST(SubscriptionTable, RemainingTopicsOfAnEndedConnectionAreRemovedLater) {
   SubscriptionTable table;
   table.add({1, 100}, "c");
   table.add({1, 100}, "/a");
@@ -99,7 +99,7 @@ TEST(SubscriptionTable, SubscriptionsOfUnknownConnectionsCountOneByOne) {
   EXPECT_EQ(table.subscribers(kTopics), 1U);
 }
 
-TEST(SubscriptionTable, TheEndOfWhatNeverBeganChangesNothing) {
+TEST(SubscriptionTable, AnUnmatchedEndChangesNothing) {
   SubscriptionTable table;
   table.remove(kUnknown, "c");
   table.remove({3, 100 + 3}, "c");

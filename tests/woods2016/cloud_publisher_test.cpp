@@ -33,7 +33,7 @@ class CloudPublisherTest : public ::testing::Test {
   void publish(CloudPublisherOptions options = {}) {
     publisher = testing::at_free_port([&](const link::Endpoint& at) {
       endpoint = options.endpoint = at;
-      return std::make_unique<CloudPublisher>(context, options, faults);
+      return std::make_unique<CloudPublisher>(context, options, errors);
     });
   }
   link::Socket subscriber(int queue = 1000, const std::string& topic = "c") {
@@ -61,7 +61,7 @@ class CloudPublisherTest : public ::testing::Test {
       return publisher->has(subscribers);
     });
   }
-  /// Whether it stays unready however often it looks.
+  /// True if it stays unready in repeated checks.
   bool stays_unready(std::uint64_t subscribers) {
     for (int k = 0; k < 100; ++k) {
       publisher->serve();
@@ -83,7 +83,7 @@ class CloudPublisherTest : public ::testing::Test {
   }
 
   std::vector<std::string> said;
-  link::FaultLog faults{
+  link::ErrorLog errors{
       {.log = [this](Severity, std::string_view t) { said.emplace_back(t); }, .progress = {}}};
   link::Context context;
   link::Endpoint endpoint;
@@ -175,7 +175,7 @@ TEST_F(CloudPublisherTest, CountsAPeerWithTheTopicsOfSeveralSensorsOnce) {
   EXPECT_EQ(publisher->counts().subscribers, 1U);
 }
 
-TEST_F(CloudPublisherTest, DoesNotTakeAPeerThatComesBackForAnother) {
+TEST_F(CloudPublisherTest, DoesNotCountAReturningPeerTwice) {
   publish({.subscription_timeout = kForever});
   const link::Socket hand = shaken_hand();
   auto socket = std::make_unique<link::Socket>(subscriber());
@@ -190,7 +190,7 @@ TEST_F(CloudPublisherTest, DoesNotTakeAPeerThatComesBackForAnother) {
   EXPECT_TRUE(becomes_ready(2));
 }
 
-TEST_F(CloudPublisherTest, GivesUpOnAPeerThatNeverSubscribesAndReportsItOnce) {
+TEST_F(CloudPublisherTest, StopsWaitingForAPeerThatNeverSubscribesAndReportsItOnce) {
   publish({.subscription_timeout = 50ms});
   const link::Socket hand = shaken_hand();
   ASSERT_TRUE(becomes_ready(1));
@@ -198,10 +198,10 @@ TEST_F(CloudPublisherTest, GivesUpOnAPeerThatNeverSubscribesAndReportsItOnce) {
   publisher->shut_down();
   EXPECT_THAT(said, ::testing::ElementsAre(HasSubstr(
                         "1 peer has shaken hands but not subscribed to clouds within 0.05 s")));
-  EXPECT_EQ(faults.counts().at("subscription missing"), 1U);
+  EXPECT_EQ(errors.counts().at("subscription missing"), 1U);
 }
 
-TEST_F(CloudPublisherTest, NamesTheTopicsOfARigToAPeerThatSubscribesToNone) {
+TEST_F(CloudPublisherTest, ReportsTheTopicsOfARigForAMissingSubscription) {
   publish({.subscription_timeout = 0ms});
   publisher->set_topics({{1, rig_topic("lidar")}});
   const link::Socket hand = shaken_hand();
@@ -209,7 +209,7 @@ TEST_F(CloudPublisherTest, NamesTheTopicsOfARigToAPeerThatSubscribesToNone) {
   EXPECT_THAT(said, ::testing::ElementsAre(HasSubstr("'/NAME' and a zero byte")));
 }
 
-TEST_F(CloudPublisherTest, WaitsForNobodyWhenNoSubscribersAreRequested) {
+TEST_F(CloudPublisherTest, DoesNotWaitIfNoSubscribersAreRequested) {
   publish({.subscription_timeout = kForever});
   EXPECT_TRUE(publisher->has(0));
   const link::Socket hand = shaken_hand();
@@ -226,7 +226,7 @@ TEST_F(CloudPublisherTest, KeepingTheNewestWaitsForTheConnectionOfAPeer) {
   EXPECT_EQ(decode_cloud(received(socket)).timestamp, 1U);
 }
 
-TEST_F(CloudPublisherTest, AnswersAHandshakeWithContentsAndSaysSo) {
+TEST_F(CloudPublisherTest, AnswersAndReportsAHandshakeWithContent) {
   publish();
   link::Socket hand(context, {.kind = link::SocketKind::request});
   hand.connect({endpoint.host, static_cast<std::uint16_t>(endpoint.port + 1)});
@@ -250,7 +250,7 @@ TEST_F(CloudPublisherTest, AnswersEveryHandshakeAmongPeersThatSendGarbage) {
   EXPECT_GE(publisher->counts().handshakes, 4 * garbage.size());
 }
 
-TEST_F(CloudPublisherTest, CutsOffWhoSubscribesWithoutEndHoweverFastThatIsTaken) {
+TEST_F(CloudPublisherTest, CutsOffAPeerThatSubscribesEndlessly) {
   publish();
   const testing::RawPeer flood(endpoint);
   ASSERT_TRUE(flood.shake("SUB"));
@@ -262,7 +262,7 @@ TEST_F(CloudPublisherTest, CutsOffWhoSubscribesWithoutEndHoweverFastThatIsTaken)
     publisher->serve();
     return flood.is_closed();
   }));
-  EXPECT_EQ(faults.counts().count("peer cut off"), 1U);
+  EXPECT_EQ(errors.counts().count("peer cut off"), 1U);
   link::Socket steady = subscriber();
   EXPECT_TRUE(has_subscribers(1));
 }
@@ -290,7 +290,7 @@ TEST_F(CloudPublisherTest, SendsEveryKthFrameFromTheFirst) {
   for (std::uint64_t k = 1; k <= 3; ++k) EXPECT_EQ(decode_cloud(received(socket)).timestamp, k);
 }
 
-TEST_F(CloudPublisherTest, NeverWaitsForASubscriberThatDoesNotReadAndCountsWhatItMisses) {
+TEST_F(CloudPublisherTest, DoesNotBlockOnASlowSubscriberAndCountsMissedClouds) {
   publish({.queue = 2});
   link::Socket deaf = subscriber(1);
   link::Socket reader = subscriber();
@@ -309,7 +309,7 @@ TEST_F(CloudPublisherTest, NeverWaitsForASubscriberThatDoesNotReadAndCountsWhatI
   EXPECT_THAT(said[0], HasSubstr("clouds missed"));
 }
 
-TEST_F(CloudPublisherTest, CountsNoMoreMissesOnceWhoWasSlowHasReadAll) {
+TEST_F(CloudPublisherTest, CountsNoMissesAfterASlowSubscriberHasRecovered) {
   publish({.queue = 2});
   link::Socket slow = subscriber(1);
   ASSERT_TRUE(has_subscribers(1));
@@ -319,7 +319,7 @@ TEST_F(CloudPublisherTest, CountsNoMoreMissesOnceWhoWasSlowHasReadAll) {
   for (std::uint64_t k = 0; k < 64 - missed; ++k) {
     ASSERT_EQ(received(slow).size(), cloud_bytes(kPoints)) << k << " of those not missed";
   }
-  do {  // one that was half on its way may have been counted too
+  do {  // a message in transit may have been counted too
     link::wait_for({&slow}, -1, 200ms);
   } while (slow.receive());
   for (std::uint32_t number = 64; number < 80; ++number) {
@@ -329,7 +329,7 @@ TEST_F(CloudPublisherTest, CountsNoMoreMissesOnceWhoWasSlowHasReadAll) {
   EXPECT_EQ(publisher->counts().missed, missed);
 }
 
-TEST_F(CloudPublisherTest, NoticesWhoVanishes) {
+TEST_F(CloudPublisherTest, DetectsASubscriberThatVanishes) {
   publish();
   {
     const link::Socket socket = subscriber();
@@ -346,11 +346,11 @@ TEST_F(CloudPublisherTest, ConflatedKeepsTheNewestForASlowSubscriber) {
   EXPECT_EQ(publisher->counts().missed, 0U);
 }
 
-TEST_F(CloudPublisherTest, SaysWhoseFaultAPortInUseIs) {
+TEST_F(CloudPublisherTest, ExplainsAPortInUse) {
   publish();
-  EXPECT_THAT(error_text([&] { CloudPublisher(context, {.endpoint = endpoint}, faults); }),
+  EXPECT_THAT(error_text([&] { CloudPublisher(context, {.endpoint = endpoint}, errors); }),
               ::testing::AllOf(HasSubstr("tcp://127.0.0.1:" + std::to_string(endpoint.port)),
-                               HasSubstr("another program has this port")));
+                               HasSubstr("another program uses this port")));
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ TEST(HandshakeMatch, NothingIsPendingAtFirst) {
   EXPECT_EQ(match.matched(), 0U);
 }
 
-TEST(HandshakeMatch, ASubscriptionMayComeBeforeOrAfterTheHandshake) {
+TEST(HandshakeMatch, ASubscriptionMayArriveBeforeOrAfterTheHandshake) {
   HandshakeMatch match;
   match.set_subscribers(1);
   match.add_handshake();
@@ -25,7 +25,7 @@ TEST(HandshakeMatch, ASubscriptionMayComeBeforeOrAfterTheHandshake) {
   EXPECT_EQ(match.matched(), 2U);
 }
 
-TEST(HandshakeMatch, EachSubscriberCountsForOneHandshake) {
+TEST(HandshakeMatch, EachSubscriberMatchesOneHandshake) {
   HandshakeMatch match;
   match.set_subscribers(1);
   match.add_handshake();
@@ -43,7 +43,7 @@ TEST(HandshakeMatch, ASubscriberThatLeftStaysMatched) {
   EXPECT_EQ(match.matched(), 1U);
 }
 
-TEST(HandshakeMatch, ASubscriberThatComesBackIsNotTakenForTheNextPeer) {
+TEST(HandshakeMatch, AReturningSubscriberIsNotMatchedWithTheNextPeer) {
   HandshakeMatch match;
   match.add_handshake();
   match.set_subscribers(1);
@@ -53,7 +53,7 @@ TEST(HandshakeMatch, ASubscriberThatComesBackIsNotTakenForTheNextPeer) {
   EXPECT_EQ(match.pending(), 1U);
 }
 
-TEST(HandshakeMatch, OneThatLeftBeforeItsHandshakeIsWaitedFor) {
+TEST(HandshakeMatch, ASubscriberThatLeftBeforeItsHandshakeIsExpectedAgain) {
   HandshakeMatch match;
   match.set_subscribers(1);
   match.set_subscribers(0);
@@ -61,7 +61,7 @@ TEST(HandshakeMatch, OneThatLeftBeforeItsHandshakeIsWaitedFor) {
   EXPECT_EQ(match.pending(), 1U);
 }
 
-TEST(HandshakeMatch, WhatComesAfterGivingUpBelongsToTheOldHandshakes) {
+TEST(HandshakeMatch, LateSubscriptionsMatchTheOldHandshakes) {
   HandshakeMatch match;
   match.add_handshake();
   match.give_up();

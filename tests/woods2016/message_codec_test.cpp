@@ -28,7 +28,7 @@ MessageBytes placement_bytes(std::array<double, 11> numbers) {
 constexpr std::array<double, 11> kNumbers = {0.6,  0.0, 0.8, 0.0, 1.0, -2.0,
                                              30.0, 1.0, 0.0, 0.0, 0.0};
 
-TEST(LegacyPlacement, IsReadFromBytesWrittenByHand) {
+TEST(PlacementMessage, IsReadFromBytesWrittenByHand) {
   const MessageBytes message = placement_bytes(kNumbers);
   ASSERT_EQ(message.bytes.size(), 97U);
   const Placement placement = decode_placement(message.bytes);
@@ -39,14 +39,14 @@ TEST(LegacyPlacement, IsReadFromBytesWrittenByHand) {
   EXPECT_EQ(placement.sensor.w(), 1.0);
 }
 
-TEST(LegacyPlacement, WritesTheBytesItReads) {
+TEST(PlacementMessage, WritesTheBytesItReads) {
   const MessageBytes message = placement_bytes(kNumbers);
   const auto written = encode_placement(decode_placement(message.bytes));
   EXPECT_TRUE(
       std::equal(written.begin(), written.end(), message.bytes.begin(), message.bytes.end()));
 }
 
-TEST(LegacyPlacement, OfAnyOtherSizeIsRefusedWithBothSizes) {
+TEST(PlacementMessage, WrongSizeIsAnErrorWithBothSizes) {
   MessageBytes message = placement_bytes(kNumbers);
   message.bytes.pop_back();
   EXPECT_THAT(error_text([&] { decode_placement(message.bytes); }),
@@ -62,7 +62,7 @@ TEST(LegacyPlacement, OfAnyOtherSizeIsRefusedWithBothSizes) {
   EXPECT_THAT(error_text([] { decode_placement({}); }), HasSubstr("it is empty"));
 }
 
-TEST(LegacyPlacement, OfAnotherTypeIsRefusedWithItsFirstByte) {
+TEST(PlacementMessage, WrongTypeIsAnErrorWithTheFirstByte) {
   MessageBytes message = placement_bytes(kNumbers);
   message.bytes[0] = std::byte{'c'};
   EXPECT_THAT(error_text([&] { decode_placement(message.bytes); }), HasSubstr("'c'; allowed: 'v'"));
@@ -70,7 +70,7 @@ TEST(LegacyPlacement, OfAnotherTypeIsRefusedWithItsFirstByte) {
   EXPECT_THAT(error_text([&] { decode_placement(message.bytes); }), HasSubstr("0x07"));
 }
 
-TEST(LegacyPlacement, WithANumberThatIsNoneIsRefusedByName) {
+TEST(PlacementMessage, NumbersThatAreNotFiniteAreErrorsWithTheirName) {
   const std::array<const char*, 11> names = {
       "object w",      "object x", "object y", "object z", "translation x", "translation y",
       "translation z", "sensor w", "sensor x", "sensor y", "sensor z"};
@@ -84,7 +84,7 @@ TEST(LegacyPlacement, WithANumberThatIsNoneIsRefusedByName) {
   }
 }
 
-TEST(LegacyPlacement, TooFarAwayIsRefused) {
+TEST(PlacementMessage, PositionsTooFarAwayAreErrors) {
   auto numbers = kNumbers;
   numbers[5] = -1e15;
   EXPECT_NO_THROW(decode_placement(placement_bytes(numbers).bytes));
@@ -93,7 +93,7 @@ TEST(LegacyPlacement, TooFarAwayIsRefused) {
               HasSubstr("translation y is -1.1e+15"));
 }
 
-TEST(LegacyPlacement, WithAQuaternionOfAnotherLengthIsRefused) {
+TEST(PlacementMessage, QuaternionsOfWrongLengthAreErrors) {
   for (const double length : {0.0, 0.998, 1.002, 2.0, 1e-300, 1e300}) {
     auto numbers = kNumbers;
     numbers[7] = length;
@@ -103,7 +103,7 @@ TEST(LegacyPlacement, WithAQuaternionOfAnotherLengthIsRefused) {
   }
 }
 
-TEST(LegacyPlacement, OfSinglePrecisionIsNormalised) {
+TEST(PlacementMessage, SinglePrecisionQuaternionsAreNormalised) {
   auto numbers = kNumbers;
   numbers[0] = 0.6F;
   numbers[2] = 0.8F;
@@ -124,7 +124,7 @@ std::vector<std::byte> encoded(const PointCloud& cloud, std::uint64_t timestamp)
   return bytes;
 }
 
-TEST(LegacyCloud, IsWrittenAsTheBytesOf2015WithoutMisses) {
+TEST(CloudMessage, HasTheDocumentedBytesWithoutMisses) {
   const PointCloud cloud =
       cloud_of({1.0, 2.0, -0.5, kNan, kNan, kNan, 0.25, 0.0, 8.0}, {0.5F, 0.0F, 1.0F});
   const MessageBytes expected = MessageBytes()
@@ -137,13 +137,13 @@ TEST(LegacyCloud, IsWrittenAsTheBytesOf2015WithoutMisses) {
   EXPECT_EQ(encoded(cloud, 261), expected.bytes);
 }
 
-TEST(LegacyCloud, WithoutHitsIsItsHeadAlone) {
+TEST(CloudMessage, WithoutHitsIsTheHeaderOnly) {
   const PointCloud cloud = cloud_of({kNan, kNan, kNan}, {0.0F});
   EXPECT_EQ(encoded(cloud, 0).size(), 9U);
   EXPECT_TRUE(decode_cloud(encoded(cloud, 0)).points.empty());
 }
 
-TEST(LegacyCloud, ReadsBackTheSame) {
+TEST(CloudMessage, RoundTripsLosslessly) {
   const Cloud cloud = decode_cloud(encoded(cloud_of({1.0, 2.0, 3.0}, {0.5F}), ~std::uint64_t{0}));
   EXPECT_EQ(cloud.timestamp, ~std::uint64_t{0});
   ASSERT_EQ(cloud.points.size(), 1U);
@@ -151,7 +151,7 @@ TEST(LegacyCloud, ReadsBackTheSame) {
   EXPECT_EQ(cloud.points[0].intensity, 0.5F);
 }
 
-TEST(LegacyCloud, OfBrokenPointsIsRefused) {
+TEST(CloudMessage, IncompletePointsAreErrors) {
   std::vector<std::byte> bytes = encoded(cloud_of({1.0, 2.0, 3.0}, {0.5F}), 1);
   bytes.pop_back();
   EXPECT_THAT(error_text([&] { decode_cloud(bytes); }), HasSubstr("24 bytes"));
@@ -167,7 +167,7 @@ TEST(LegacyCloud, OfBrokenPointsIsRefused) {
   EXPECT_THAT(error_text([&] { decode_cloud(with_nan.bytes); }), HasSubstr("point 0"));
 }
 
-TEST(LegacyCloud, NeedsItsColumnsAndItsRoom) {
+TEST(CloudMessage, RequiresItsColumnsAndABufferOfItsSize) {
   PointCloud cloud = cloud_of({1.0, 2.0, 3.0}, {0.5F});
   std::vector<std::byte> small(cloud_bytes(1) - 1);
   EXPECT_THAT(error_text([&] { encode_cloud(cloud, 1, small); }), HasSubstr("24 bytes"));
@@ -175,7 +175,7 @@ TEST(LegacyCloud, NeedsItsColumnsAndItsRoom) {
   EXPECT_THAT(error_text([&] { encoded(cloud, 1); }), HasSubstr("no column intensity"));
 }
 
-TEST(LegacyShutdown, IsEightBytesOfAnyTopic) {
+TEST(ShutdownMessage, HasEightBytesForAnyTopic) {
   const auto bytes = encode_shutdown("c");
   EXPECT_EQ(MessageBytes().text("cKTHXBAI").bytes, std::vector(bytes.begin(), bytes.end()));
   EXPECT_TRUE(is_shutdown(MessageBytes().text("vKTHXBAI").bytes));

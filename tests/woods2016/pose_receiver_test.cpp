@@ -47,7 +47,7 @@ class PoseReceiverTest : public ::testing::Test {
       return std::make_unique<Simulator>(context, at);
     });
     receiver = std::make_unique<PoseReceiver>(
-        context, PoseReceiverOptions{.endpoint = endpoint, .queue = queue}, faults);
+        context, PoseReceiverOptions{.endpoint = endpoint, .queue = queue}, errors);
   }
   bool shake() {
     bool is_answered = false;
@@ -63,7 +63,7 @@ class PoseReceiverTest : public ::testing::Test {
   }
 
   std::vector<std::string> said;
-  link::FaultLog faults{
+  link::ErrorLog errors{
       {.log = [this](Severity, std::string_view t) { said.emplace_back(t); }, .progress = {}}};
   link::Context context;
   link::Endpoint endpoint;
@@ -79,7 +79,7 @@ TEST_F(PoseReceiverTest, MissesNoPoseSentAfterTheHandshake) {
   EXPECT_TRUE(said.empty());
 }
 
-TEST_F(PoseReceiverTest, IsOverWhenTheSimulatorSaysSo) {
+TEST_F(PoseReceiverTest, EndsWithTheEndMessage) {
   start();
   ASSERT_TRUE(shake());
   simulator->send(pose(1));
@@ -89,7 +89,7 @@ TEST_F(PoseReceiverTest, IsOverWhenTheSimulatorSaysSo) {
   EXPECT_TRUE(receiver->is_over());
 }
 
-TEST_F(PoseReceiverTest, RefusesWhatIsNoPoseAndGoesOn) {
+TEST_F(PoseReceiverTest, SkipsInvalidMessages) {
   start();
   ASSERT_TRUE(shake());
   std::vector<std::byte> huge(std::size_t{1} << 20U, std::byte{'v'});
@@ -102,7 +102,7 @@ TEST_F(PoseReceiverTest, RefusesWhatIsNoPoseAndGoesOn) {
       said, ::testing::ElementsAre(HasSubstr("pose refused: pose message ('v'): it has 1 bytes")));
 }
 
-TEST_F(PoseReceiverTest, CutsOffWhoSendsTooMuchAndTakesItBack) {
+TEST_F(PoseReceiverTest, CutsOffALargeSenderAndReconnects) {
   start();
   ASSERT_TRUE(shake());
   simulator->send(std::vector<std::byte>((std::size_t{16} << 20U) + 1, std::byte{'v'}));
@@ -117,7 +117,7 @@ TEST_F(PoseReceiverTest, CutsOffWhoSendsTooMuchAndTakesItBack) {
   }));
 }
 
-TEST_F(PoseReceiverTest, PassesOverRepeatedTimesAndTellsOfEarlierOnes) {
+TEST_F(PoseReceiverTest, SkipsRepeatedTimestampsAndReportsEarlierOnes) {
   start();
   ASSERT_TRUE(shake());
   for (const std::uint64_t stamp : {4, 4, 4, 2, 3}) simulator->send(pose(stamp));
@@ -128,7 +128,7 @@ TEST_F(PoseReceiverTest, PassesOverRepeatedTimesAndTellsOfEarlierOnes) {
   EXPECT_EQ(receiver->counts().backwards, 1U);
 }
 
-TEST_F(PoseReceiverTest, TakesASimulatorThatSaysThatItEndsForNoneThatIsLost) {
+TEST_F(PoseReceiverTest, DoesNotReportASimulatorThatEndedAsLost) {
   start();
   ASSERT_TRUE(shake());
   constexpr std::uint64_t kPoses = 10;
@@ -142,7 +142,7 @@ TEST_F(PoseReceiverTest, TakesASimulatorThatSaysThatItEndsForNoneThatIsLost) {
   EXPECT_TRUE(said.empty());
 }
 
-TEST_F(PoseReceiverTest, FindsASimulatorThatComesBackAndShakesHandsAgain) {
+TEST_F(PoseReceiverTest, ReconnectsToARestartedSimulator) {
   start();
   ASSERT_TRUE(shake());
   simulator.reset();

@@ -9,7 +9,7 @@
 #include <apps/glidar/run/session.hpp>
 #include <glidar/io/files/atomic_file.hpp>
 #include <glidar/link/cloud_pool.hpp>
-#include <glidar/link/fault_log.hpp>
+#include <glidar/link/error_log.hpp>
 #include <glidar/link/lockstep/server.hpp>
 
 #include <nlohmann/json_fwd.hpp>
@@ -62,7 +62,7 @@ class LockstepRun {
 
   const StreamFlags& flags_;
   Console& console_;
-  link::FaultLog faults_;
+  link::ErrorLog faults_;
   std::unique_ptr<AtomicFile> stats_file_;
   link::Context context_;
   lockstep::Server server_;

@@ -14,7 +14,7 @@
 #include <apps/glidar/run/stream_stats.hpp>
 #include <glidar/core/point_cloud.hpp>
 #include <glidar/io/files/atomic_file.hpp>
-#include <glidar/link/fault_log.hpp>
+#include <glidar/link/error_log.hpp>
 #include <glidar/link/recording.hpp>
 #include <glidar/woods2016/cloud_publisher.hpp>
 
@@ -59,7 +59,7 @@ class StreamRun {
 
   StreamFlags flags_;
   Console& console_;
-  link::FaultLog faults_;
+  link::ErrorLog faults_;
   std::unique_ptr<AtomicFile> stats_file_;
   link::Context context_;
   std::unique_ptr<legacy::CloudPublisher> publisher_;

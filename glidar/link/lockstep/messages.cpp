@@ -15,8 +15,7 @@
 namespace glidar::lockstep {
 namespace {
 
-static_assert(std::endian::native == std::endian::little,
-              "numbers are stored as they lie in memory");
+static_assert(std::endian::native == std::endian::little, "messages are little-endian");
 
 constexpr std::array<char, 4> kMagic = {'G', 'L', 'D', 'R'};
 constexpr std::uint16_t kDescribe = 0;
@@ -29,13 +28,13 @@ constexpr std::size_t kBody_bytes = 13 * sizeof(double);
 constexpr std::size_t kMomentStart_bytes = 24;
 constexpr std::size_t kFrameId_bytes = 32;
 constexpr double kQuaternionTolerance = 1e-3;
-constexpr double kFastest = 1e9;  // rad/s and m/s
+constexpr double kMaxRate = 1e9;  // rad/s and m/s
 
 [[noreturn]] void refuse(std::string where, std::string found, std::string allowed) {
   throw Error({"request, " + std::move(where), std::move(found), std::move(allowed), ""});
 }
 
-/// Takes numbers from bytes whose size was checked.
+/// Reads numbers from bytes whose size was checked.
 class Reader {
  public:
   explicit Reader(Bytes bytes) : rest_(bytes) {}
@@ -75,7 +74,7 @@ class Writer {
   void put_vector(const Eigen::Vector3d& v) {
     for (const double x : {v.x(), v.y(), v.z()}) put(x);
   }
-  /// Cut to the size or filled up with zeros.
+  /// Truncated to the size or padded with zeros.
   void put_text(std::string_view text, std::size_t size) {
     for (std::size_t i = 0; i < size; ++i) put(i < text.size() ? text[i] : '\0');
   }
@@ -91,7 +90,7 @@ class Writer {
   std::vector<std::byte> bytes_;
 };
 
-/// The kind of the message; its version is ours.
+/// Returns the kind of the message after a check of its version.
 std::uint16_t read_start(Bytes message, std::uint64_t& id) {
   if (message.size() < kStart_bytes) {
     refuse("size", std::to_string(message.size()) + " bytes", "at least 16");
@@ -146,7 +145,7 @@ std::string read_name(Reader& from) {
   name.resize(name.find_last_not_of('\0') + 1);
   const auto is_letter = [](char c) { return (c >= 'a' && c <= 'z') || c == '_'; };
   if (!name.empty() && std::all_of(name.begin(), name.end(), is_letter)) return name;
-  refuse("name of a column", "a name that is empty or has other letters", "a to z and _");
+  refuse("name of a column", "a name that is empty or has other characters", "a to z and _");
 }
 
 Body read_body(Reader& from, const std::string& where) {
@@ -164,7 +163,7 @@ Body read_body(Reader& from, const std::string& where) {
   }
   for (const auto& [name, value] :
        {std::pair{"rate", body.rate_rad_s}, std::pair{"velocity", body.velocity_m_s}}) {
-    if (value.allFinite() && value.cwiseAbs().maxCoeff() <= kFastest) continue;
+    if (value.allFinite() && value.cwiseAbs().maxCoeff() <= kMaxRate) continue;
     refuse(where + ", " + name, "a number that is not finite or too large", "up to 1e9");
   }
   body.world_from_body = make_pose(position_m, attitude);
@@ -174,9 +173,10 @@ Body read_body(Reader& from, const std::string& where) {
 Moment read_moment(Reader& from, std::uint32_t index, std::uint32_t objects) {
   const std::string where = "moment " + std::to_string(index);
   Moment moment;
-  constexpr std::int64_t kLatest_ns = 9'000'000'000'000'000'000;  // beams fire after it
+  constexpr std::int64_t kMaxTime_ns =
+      9'000'000'000'000'000'000;  // leaves room for the firing times
   moment.t_ns = from.take<std::int64_t>();
-  if (moment.t_ns > kLatest_ns || moment.t_ns < -kLatest_ns) {
+  if (moment.t_ns > kMaxTime_ns || moment.t_ns < -kMaxTime_ns) {
     refuse(where + ", time", std::to_string(moment.t_ns) + " ns", "from -9e18 to 9e18");
   }
   moment.seed = from.take<std::uint64_t>();
@@ -237,15 +237,15 @@ Request decode_request(Bytes message, std::uint64_t& id) {
   const std::uint16_t kind = read_start(message, id);
   if (kind == kDescribe) {
     if (message.size() != kStart_bytes) {
-      refuse("size", std::to_string(message.size()) + " bytes", "16 to ask what there is");
+      refuse("size", std::to_string(message.size()) + " bytes", "16 for a description");
     }
     return Describe{id};
   }
   if (kind != kMeasure) {
-    refuse("kind", std::to_string(kind), "0 to ask what there is, 1 to measure");
+    refuse("kind", std::to_string(kind), "0 for a description, 1 for a measurement");
   }
   if (message.size() < kMeasureStart_bytes) {
-    refuse("size", std::to_string(message.size()) + " bytes", "at least 40 to measure");
+    refuse("size", std::to_string(message.size()) + " bytes", "at least 40 for a measurement");
   }
   Reader from(message.subspan(kStart_bytes));
   Counts counts;

@@ -11,30 +11,30 @@
 namespace glidar::lockstep {
 namespace {
 
-/// Bytes that keep themselves.
+/// A part that owns its bytes.
 link::Part part_of(std::vector<std::byte> bytes) {
   const auto owner = std::make_shared<const std::vector<std::byte>>(std::move(bytes));
   return {.bytes = *owner, .owner = owner};
 }
 
-link::SocketOptions socket_options(const ServerOptions& options, link::FaultLog& faults) {
-  constexpr std::chrono::milliseconds kLinger{500};  // for the last reply
-  constexpr std::uint64_t kTogether = 4;  // clients that send requests of the maximum size at once
+link::SocketOptions socket_options(const ServerOptions& options, link::ErrorLog& errors) {
+  constexpr std::chrono::milliseconds kLinger{500};  // time for the last reply
+  constexpr std::uint64_t kTogether =
+      4;  // clients that may send requests of the maximum size at once
   const link::Limits& limits = options.limits;
   const auto request_bytes = static_cast<std::uint64_t>(link::bytes_of_mib(limits.request_mib));
   const auto queue = static_cast<int>(limits.requests);
-  return {.send_queue = 2 * queue,  // and errors that refuse what exceeds it
+  return {.send_queue = 2 * queue,  // replies, and errors for requests beyond the limit
           .receive_queue = queue,
           .largest_message_bytes = static_cast<std::int64_t>(request_bytes),
           .linger = kLinger,
           .curve = options.curve,
           .protection = link::Protection{
               .limits = link::connection_limits(limits, request_bytes, kTogether * request_bytes),
-              .faults = faults}};
+              .errors = errors}};
 }
 
-/// A reply on its way; ends in ZeroMQ's thread, once it was handed to the system or its client has
-/// left.
+/// A reply in transit; destroyed in ZeroMQ's thread when it is sent or its client has left.
 struct Sent {
   std::vector<link::Part> parts;
   std::shared_ptr<Unread> client;
@@ -60,18 +60,18 @@ struct Sent {
 
 }  // namespace
 
-Server::Server(link::Context& context, const ServerOptions& options, link::FaultLog& faults)
+Server::Server(link::Context& context, const ServerOptions& options, link::ErrorLog& errors)
     : limits_(options.limits),
-      faults_(faults),
-      router_(context, socket_options(options, faults), faults),
+      errors_(errors),
+      router_(context, socket_options(options, errors), errors),
       queue_(options.limits) {
   router_.bind(options.endpoint);
 }
 
 std::optional<Received> Server::receive() {
-  constexpr int kMaxRefused = 16;  // before the caller gets its turn
+  constexpr int kMaxRefused = 16;  // per call
   collect();
-  look_after_clients(std::chrono::seconds(limits_.request_s));
+  cut_off_stalled_clients(std::chrono::seconds(limits_.request_s));
   for (int i = 0; i < kMaxRefused; ++i) {
     std::optional<Waiting> waiting = queue_.next();
     if (!waiting) return std::nullopt;
@@ -85,8 +85,8 @@ std::optional<Received> Server::receive() {
   return std::nullopt;
 }
 
-/// Takes what has arrived. What one client sends too much is refused here, so that it neither fills
-/// the memory nor delays others.
+/// Queues received requests. Requests beyond a client's limits are refused here, so that they
+/// neither fill the memory nor delay other clients.
 void Server::collect() {
   constexpr int kMaxAtOnce = 256;
   const Clock::time_point now = Clock::now();
@@ -99,19 +99,19 @@ void Server::collect() {
   }
 }
 
-/// The one in work goes on.
+/// The request in progress continues.
 void Server::refuse(const link::Delivered& message, std::string_view why) {
   constexpr std::size_t kIdAt = 8;
   const Bytes bytes = message.body.bytes();
   std::uint64_t id = 0;
   if (bytes.size() >= kIdAt + sizeof(id)) std::memcpy(&id, bytes.data() + kIdAt, sizeof(id));
   ++counts_.refused;
-  faults_.tell("requests refused", why);
+  errors_.report("requests refused", why);
   const link::ReturnAddress& to = message.from;
   const auto text = std::as_bytes(std::span(why));
   const std::vector<link::Part> parts = {part_of(encode_text_head(id, TextKind::error)),
                                          part_of({text.begin(), text.end()})};
-  (void)router_.reply(to, parts);  // of one that does not read
+  (void)router_.reply(to, parts);  // fails for a client that does not read
 }
 
 std::optional<Request> Server::read(const Waiting& waiting, ReplyTo& to) {
@@ -126,13 +126,13 @@ std::optional<Request> Server::read(const Waiting& waiting, ReplyTo& to) {
   }
 }
 
-void Server::look_after_clients(std::chrono::seconds patience) {
+void Server::cut_off_stalled_clients(std::chrono::seconds timeout) {
   constexpr std::chrono::milliseconds kServerPause{100};
   const Clock::time_point now = Clock::now();
-  if (now - looked_ < kServerPause) return;
-  looked_ = now;
-  queue_.look(
-      now, patience,
+  if (now - last_check_ < kServerPause) return;
+  last_check_ = now;
+  queue_.check_clients(
+      now, timeout,
       [this](const link::ConnectionId& client) { return router_.socket().taken_bytes(client); },
       [this](const link::ConnectionId& client) {
         router_.socket().cut_off(client, "client cut off", "it does not read its replies");
@@ -152,7 +152,7 @@ bool Server::reserve(ReplyTo& to, std::int64_t bytes) {
   if (to.reserved_bytes > 0) return true;
   const std::int64_t used = queue_.waiting_bytes() + queue_.all_unread()->bytes + reserved_bytes_;
   if (used > 0 && used + bytes > link::bytes_of_mib(limits_.memory_mib)) {
-    look_after_clients(std::chrono::seconds(1));
+    cut_off_stalled_clients(std::chrono::seconds(1));
     return false;
   }
   to.reserved_bytes = bytes;
@@ -186,12 +186,12 @@ void Server::send(const ReplyTo& to, std::vector<link::Part> parts) {
   std::vector<link::Part> shared = sent->parts;
   for (link::Part& part : shared) part.owner = sent;
   if (router_.reply(to.from, shared) != link::Sending::queue_full) return;
-  faults_.tell("replies not sent", "the client does not read them");
+  errors_.report("replies not sent", "the client does not read them");
 }
 
 void Server::reply_error(const ReplyTo& to, std::string_view text) {
   ++counts_.refused;
-  faults_.tell("requests refused", text);
+  errors_.report("requests refused", text);
   reply_text(to, TextKind::error, text);
 }
 

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/link/fault_log.hpp>
+#include <glidar/link/error_log.hpp>
 #include <glidar/link/lockstep/messages.hpp>
 #include <glidar/link/lockstep/request_queue.hpp>
 #include <glidar/link/router.hpp>
@@ -24,17 +24,17 @@ struct ServerOptions {
   link::Limits limits = {};
 };
 
-/// A measured cloud on its way to the client.
+/// A measured cloud of a reply.
 struct CloudReply {
   CloudHead head;
-  std::shared_ptr<const PointCloud> cloud;  ///< kept until it is sent
+  std::shared_ptr<const PointCloud> cloud;  ///< released when it is sent
 };
 
-/// What a reply belongs to.
+/// The request that a reply belongs to.
 struct ReplyTo {
   link::ReturnAddress from;
   std::uint64_t id = 0;
-  Clock::time_point since;          ///< the request waits
+  Clock::time_point since;          ///< arrival of the request
   std::int64_t reserved_bytes = 0;  ///< for the reply
 };
 
@@ -43,26 +43,25 @@ struct Received {
   ReplyTo to;
 };
 
-/// Receives requests from any number of clients, in turn, and replies in any order. Every request
-/// that is received is to be replied to or dropped, once; a client gets its next turn after that.
-/// Used by one thread.
+/// Receives requests from any number of clients, in turn, and replies in any order. Every received
+/// request must be replied to or dropped once; then the client's next request is served. Used by
+/// one thread.
 class Server {
  public:
-  /// Listens. Throws Error. The context and the log must outlive it.
-  Server(link::Context& context, const ServerOptions& options, link::FaultLog& faults);
+  /// Listens at the endpoint; throws Error if it cannot. The context and the log must outlive it.
+  Server(link::Context& context, const ServerOptions& options, link::ErrorLog& errors);
 
-  /// The next request; nothing: there is none now. Never waits. A message that is no request, or
-  /// exceeds a limit, is replied to with an error. To be called often: it also takes care of
-  /// clients that do not read.
+  /// The next request; empty if there is none now. Never blocks. Invalid messages and those that
+  /// exceed a limit get an error reply. To be called often, because it also cuts off clients that
+  /// do not read.
   std::optional<Received> receive();
-  /// Reserves memory for a reply of so many bytes, once for each request. False: there is none
-  /// until other clients have read theirs; under this pressure, those that read nothing for a
-  /// second are cut off.
+  /// Reserves memory for a reply, once per request. False: there is none until other clients have
+  /// read their replies; then clients that read nothing for a second are cut off.
   bool reserve(ReplyTo& to, std::int64_t bytes);
 
-  /// False: the client has left, so that its request is to be dropped.
+  /// False if the client has left; its request is to be dropped.
   [[nodiscard]] bool is_wanted(const ReplyTo& to) const;
-  /// Instead of a reply.
+  /// Drops the request without a reply.
   void drop(const ReplyTo& to);
 
   void reply(const ReplyTo& to, std::span<const CloudReply> clouds);
@@ -70,13 +69,13 @@ class Server {
   void reply_description(const ReplyTo& to, std::string_view json);
 
   [[nodiscard]] const link::Socket& socket() const { return router_.socket(); }
-  /// How long to wait for the socket at most before receive() is called again.
+  /// Maximum time to wait for the socket before receive() is called again.
   [[nodiscard]] std::chrono::milliseconds patience() const;
 
   struct Counts {
     std::uint64_t received = 0;
-    std::uint64_t refused = 0;  ///< of these, with an error
-    std::uint64_t clouds = 0;   ///< sent
+    std::uint64_t refused = 0;  ///< requests answered with an error
+    std::uint64_t clouds = 0;   ///< clouds sent
   };
   [[nodiscard]] const Counts& counts() const { return counts_; }
 
@@ -84,16 +83,16 @@ class Server {
   void collect();
   void refuse(const link::Delivered& message, std::string_view why);
   std::optional<Request> read(const Waiting& waiting, ReplyTo& to);
-  void look_after_clients(std::chrono::seconds patience);
+  void cut_off_stalled_clients(std::chrono::seconds timeout);
   void reply_text(const ReplyTo& to, TextKind kind, std::string_view text);
   void send(const ReplyTo& to, std::vector<link::Part> parts);
 
   link::Limits limits_;
-  link::FaultLog& faults_;
+  link::ErrorLog& errors_;
   link::Router router_;
   RequestQueue queue_;
   std::int64_t reserved_bytes_ = 0;
-  Clock::time_point looked_;
+  Clock::time_point last_check_;
   Counts counts_;
 };
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/fault_log.hpp>
+#include <glidar/link/error_log.hpp>
 
 #include <gmock/gmock.h>
 
@@ -13,33 +13,33 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::Pair;
 
-class FaultLogTest : public ::testing::Test {
+class ErrorLogTest : public ::testing::Test {
  protected:
   std::vector<std::string> said;
-  FaultLog::Clock::time_point now;
-  FaultLog log{
+  ErrorLog::Clock::time_point now;
+  ErrorLog log{
       {.log = [this](Severity, std::string_view text) { said.emplace_back(text); }, .progress = {}},
       [this] { return now; }};
 };
 
-TEST_F(FaultLogTest, SaysTheFirstOfEachKindAtOnce) {
-  log.tell("short", "3 bytes");
-  log.tell("long", "300 bytes");
+TEST_F(ErrorLogTest, LogsTheFirstErrorOfEachKindAtOnce) {
+  log.report("short", "3 bytes");
+  log.report("long", "300 bytes");
   EXPECT_THAT(said, ElementsAre("short: 3 bytes", "long: 300 bytes"));
 }
 
-TEST_F(FaultLogTest, SaysAtMostOneLineASecondWithTheCount) {
-  for (int i = 0; i < 1000; ++i) log.tell("short", std::to_string(i));
+TEST_F(ErrorLogTest, LogsAtMostOneLinePerSecondWithTheCount) {
+  for (int i = 0; i < 1000; ++i) log.report("short", std::to_string(i));
   EXPECT_THAT(said, ElementsAre("short: 0"));
   now += std::chrono::seconds(1);
-  log.tell("short", "again");
+  log.report("short", "again");
   EXPECT_THAT(said, ElementsAre("short: 0", "short (1001 times): again"));
 }
 
-TEST_F(FaultLogTest, SaysAtTheEndWhatItHeldBack) {
-  log.tell("short", "a");
-  log.tell("short", "b");
-  log.tell("long", "c");
+TEST_F(ErrorLogTest, FlushLogsDelayedErrors) {
+  log.report("short", "a");
+  log.report("short", "b");
+  log.report("long", "c");
   log.flush();
   log.flush();
   EXPECT_THAT(said, ElementsAre("short: a", "long: c", "short (2 times): b"));

@@ -14,28 +14,28 @@
 
 namespace glidar::link {
 
-/// Tells of faults that others may make in thousands: of each kind the first at once, then at most
-/// one a second with how many there have been. May be used from any thread.
-class FaultLog {
+/// Logs errors that peers may cause in large numbers: the first of each kind at once, later ones at
+/// most once per second with their count. Thread-safe.
+class ErrorLog {
  public:
   using Clock = std::chrono::steady_clock;
 
-  explicit FaultLog(Report report, std::function<Clock::time_point()> now = Clock::now);
+  explicit ErrorLog(Report report, std::function<Clock::time_point()> now = Clock::now);
 
-  /// `kind` is counted, `what` is said: the latest of its kind.
-  void tell(const std::string& kind, std::string_view what);
-  /// Says what was held back; for the end.
+  /// Counts an error of this kind; `what` is its message, of which only the latest is logged.
+  void report(const std::string& kind, std::string_view what);
+  /// Logs the errors that report() has delayed.
   void flush();
   [[nodiscard]] std::map<std::string, std::uint64_t> counts() const;
 
  private:
   struct Kind {
     std::uint64_t count = 0;
-    std::uint64_t told = 0;
+    std::uint64_t reported = 0;
     Clock::time_point last;
     std::string what;
   };
-  void say(const std::string& name, Kind& kind) const;
+  void print(const std::string& name, Kind& kind) const;
 
   mutable std::mutex mutex_;
   Report report_;

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/ipc_place.hpp>
+#include <glidar/link/ipc_path.hpp>
 
 #include <glidar/core/error.hpp>
 
@@ -12,11 +12,11 @@
 
 namespace glidar::link {
 
-void require_free_place(const std::string& path) {
+void require_free_ipc_path(const std::string& path) {
   const std::filesystem::file_status status = std::filesystem::status(path);
   if (!std::filesystem::exists(status)) return;
   if (!std::filesystem::is_socket(status)) {
-    throw Error({"ipc://" + path, "a file that is no socket has this name", "a name that is free",
+    throw Error({"ipc://" + path, "a file that is not a socket has this name", "an unused name",
                  "choose another name"});
   }
   sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};
@@ -25,8 +25,8 @@ void require_free_place(const std::string& path) {
   const bool answers =
       ::connect(descriptor, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
   ::close(descriptor);
-  if (!answers) return;  // of one that has ended without a word
-  throw Error({"ipc://" + path, "another program listens there", "a name that is free",
+  if (!answers) return;  // left by a program that was killed
+  throw Error({"ipc://" + path, "another program listens there", "an unused name",
                "end it, or choose another name"});
 }
 

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-#include <glidar/link/fault_log.hpp>
+#include <glidar/link/error_log.hpp>
 
 #include <utility>
 
@@ -11,10 +11,10 @@ constexpr std::chrono::seconds kPause{1};
 
 }  // namespace
 
-FaultLog::FaultLog(Report report, std::function<Clock::time_point()> now)
+ErrorLog::ErrorLog(Report report, std::function<Clock::time_point()> now)
     : report_(std::move(report)), now_(std::move(now)) {}
 
-void FaultLog::tell(const std::string& kind, std::string_view what) {
+void ErrorLog::report(const std::string& kind, std::string_view what) {
   const std::lock_guard lock(mutex_);
   Kind& known = kinds_[kind];
   ++known.count;
@@ -22,25 +22,25 @@ void FaultLog::tell(const std::string& kind, std::string_view what) {
   const Clock::time_point now = now_();
   if (known.count > 1 && now - known.last < kPause) return;
   known.last = now;
-  say(kind, known);
+  print(kind, known);
 }
 
-void FaultLog::flush() {
+void ErrorLog::flush() {
   const std::lock_guard lock(mutex_);
   for (auto& [name, kind] : kinds_) {
-    if (kind.told < kind.count) say(name, kind);
+    if (kind.reported < kind.count) print(name, kind);
   }
 }
 
-std::map<std::string, std::uint64_t> FaultLog::counts() const {
+std::map<std::string, std::uint64_t> ErrorLog::counts() const {
   const std::lock_guard lock(mutex_);
   std::map<std::string, std::uint64_t> counts;
   for (const auto& [name, kind] : kinds_) counts[name] = kind.count;
   return counts;
 }
 
-void FaultLog::say(const std::string& name, Kind& kind) const {
-  kind.told = kind.count;
+void ErrorLog::print(const std::string& name, Kind& kind) const {
+  kind.reported = kind.count;
   std::string text = name;
   if (kind.count > 1) text += " (" + std::to_string(kind.count) + " times)";
   report_.warn(text + ": " + kind.what);
