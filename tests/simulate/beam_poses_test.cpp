@@ -77,7 +77,7 @@ Pose pose_of(const double* numbers) {
   return make_pose({numbers[0], numbers[1], numbers[2]}, q);
 }
 
-TEST(BeamPoses, AreThoseOfPosesAtWhenEachBeamLeaves) {
+TEST(BeamPoses, AreThoseAtTheFiringTimes) {
   Stage stage;
   const PointCloud cloud = stage.shoot({"stamp", "sensor_pose", "object_pose"});
   const auto& stamps = std::get<std::vector<std::int64_t>>(find_column(cloud, "stamp")->values);
@@ -100,7 +100,7 @@ TEST(BeamPoses, AreThoseOfPosesAtWhenEachBeamLeaves) {
   EXPECT_THAT(seen, ::testing::Each(::testing::Gt(20)));
 }
 
-TEST(BeamPoses, BringTheBeamAndTheObjectsPointTogether) {
+TEST(BeamPoses, MapTheBeamToTheObjectPoint) {
   Stage stage;
   const PointCloud cloud = stage.shoot({"sensor_pose", "object_pose", "object_point", "range"});
   int hits = 0;
@@ -118,7 +118,7 @@ TEST(BeamPoses, BringTheBeamAndTheObjectsPointTogether) {
   EXPECT_GT(hits, 40);
 }
 
-TEST(BeamPoses, OfAWorldAtRestAreTheFrames) {
+TEST(BeamPoses, OfAStaticSceneAreThoseOfTheFrame) {
   Stage stage;
   stage.motion =
       static_motion(stage.scene, look_at({0.4, -0.3, 8.0}, {0, 0, 0}, Eigen::Vector3d::UnitY()));
@@ -136,7 +136,7 @@ TEST(BeamPoses, OfAWorldAtRestAreTheFrames) {
   }
 }
 
-TEST(BeamPoses, AreKeptOnlyWhenAskedFor) {
+TEST(BeamPoses, AreStoredOnlyWhenRequested) {
   Stage stage;
   stage.shoot({"sensor_pose"});
   EXPECT_EQ(stage.frame.beam_poses.world_from_sensor.size(), stage.beams.size());

@@ -39,7 +39,7 @@ Pinhole camera(std::uint32_t size, double fov_rad) {
   return pinhole_from_fov(size, size, fov_rad);
 }
 
-TEST(ClosedForm, ALevelPlaneHasOneDepthAndALidarsRangesToTheFloor) {
+TEST(ClosedForm, ALevelPlaneHasConstantDepthAndTheRangesOfAFloor) {
   Pose far = Pose::Identity();
   far.translation().z() = 7.0;
   const Scene wall = plane(far, 64.0);
@@ -111,7 +111,7 @@ Beams beams_at_vertices(const Scene& scene, double least_cosine) {
   return beams;
 }
 
-TEST(ClosedForm, ASphereHasItsRangesAtTheVerticesOfItsMesh) {
+TEST(ClosedForm, ASphereHasTheExactRangesAtItsVertices) {
   Scene scene = testing::scene_of(make_builtin_model("sphere"));
   const Eigen::Vector3d centre(1.0, -0.5, 6.0);
   scene.instances[0].scale = 1.5;
@@ -126,7 +126,7 @@ TEST(ClosedForm, ASphereHasItsRangesAtTheVerticesOfItsMesh) {
   }
 }
 
-TEST(ClosedForm, ASphereHasItsOutlineAndItsShareOfBeams) {
+TEST(ClosedForm, ASphereHasItsSilhouetteAndShareOfBeams) {
   Scene scene = testing::scene_of(make_builtin_model("sphere"));
   const Eigen::Vector3d centre(0.0, 0.0, 5.0);
   scene.instances[0].world_from_object.translation() = centre;
@@ -144,7 +144,7 @@ TEST(ClosedForm, ASphereHasItsOutlineAndItsShareOfBeams) {
     solid_angle += cosine * cosine * cosine;  // of a pixel, times the focal length squared
     widest = std::max(widest, std::acos(cosine));
     const double range_m = range_of_sphere(beams.directions[i], centre, 1.0);
-    // the mesh lies inside the sphere, by 0.0012 of its radius at most
+    // the mesh is inside the sphere, by 0.0012 of its radius at most
     if (frame.ground_truth.cos_incidence[i] > 0.2F) {
       ASSERT_GT(frame.range_m[i], range_m * (1.0 - kSingle));
       ASSERT_LT(frame.range_m[i], range_m + 0.0012 / 0.15);
@@ -179,7 +179,7 @@ Scene cylinder(double radius_m, std::uint32_t sides) {
   return scene;
 }
 
-TEST(ClosedForm, ACylinderHasItsRangesFromInside) {
+TEST(ClosedForm, ACylinderHasTheExactRangesFromInside) {
   constexpr double kRadius_m = 3.0;
   constexpr std::uint32_t kSides = 8192;
   Scene scene = cylinder(kRadius_m, kSides);
@@ -188,7 +188,7 @@ TEST(ClosedForm, ACylinderHasItsRangesFromInside) {
   pose.translation() = eye;
   const Beams beams = make_beams(load_sensor_file(find_sensor_file("VLP-16")));
   const Frame frame = shoot(scene, beams, static_motion(scene, pose));
-  // a chord of angle a lies up to r (1 - cos(a / 2)) inside the cylinder
+  // a chord of angle a is up to r (1 - cos(a / 2)) inside the cylinder
   const double inside_m = kRadius_m * (1.0 - std::cos(std::numbers::pi / kSides));
   for (std::size_t i = 0; i < beams.size(); ++i) {
     // |(o + R d)_xy| = radius
@@ -202,7 +202,7 @@ TEST(ClosedForm, ACylinderHasItsRangesFromInside) {
   }
 }
 
-TEST(ClosedForm, AMovingLidarsPointsLieOnTheWallOnceDeskewedAndAreOffByItsWayBefore) {
+TEST(ClosedForm, PointsOfAMovingLidarAreOnTheWallAfterDeskewingOnly) {
   constexpr double kSpeed_m_s = 10.0;
   Pose pose = Pose::Identity();
   pose.linear() =

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Levels and noise of disparity against recordings of cameras of the Kinect's kind: the same
-// estimators look at both.
+// Levels and noise of disparity against recordings of Kinect-like cameras, with the same
+// estimators for both.
 #include <glidar/sensor/noise/noise.hpp>
 #include <glidar/sensor/optics/pinhole.hpp>
 #include <support/data.hpp>
@@ -87,7 +87,7 @@ double residual_steps(const std::vector<double>& depth_m, double k_m, std::size_
   return std::sqrt(squares / 78.0);
 }
 
-/// The median over the image, from 1.6 m on: before it stand things that are not flat.
+/// The median over the image, from 1.6 m on: nearer objects are not flat.
 double median_residual(const std::vector<double>& depth_m, double k_m) {
   std::vector<double> found;
   for (std::size_t row = 4; row + 4 < kHeight; row += 9) {
@@ -103,7 +103,7 @@ double median_residual(const std::vector<double>& depth_m, double k_m) {
   return found[found.size() / 2];
 }
 
-/// What the model says of a wall that leans away to the right, in whole counts.
+/// The simulated depths of a wall tilted away to the right, in counts.
 std::vector<double> modelled(double k_m, double counts_per_m) {
   const Beams beams = make_beams(pinhole_from_fov(kWidth, kHeight, 0.75));
   Frame frame;

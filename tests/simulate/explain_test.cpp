@@ -23,7 +23,7 @@ struct Stage : testing::PanelScene {
     add_wall(5.0, -50.0, 0.0);
     add_wall(8.0);
   }
-  /// As simulated, or as explained when a story is asked for.
+  /// Simulates, or explains if a trace is requested.
   Frame shoot(std::size_t entry, PointTrace* story) const {
     const auto renderer = make_renderer(scene, {.threads = 2});
     const Beams beams = make_beams(sensor);
@@ -75,7 +75,7 @@ TEST(Explain, MakesTheSameFrameAsSimulate) {
   }
 }
 
-TEST(Explain, FollowsAnEntryThroughAllStepsOfNoise) {
+TEST(Explain, TracesAnEntryThroughAllNoiseSteps) {
   const Stage stage = noisy_stage();
   std::size_t dropped = 0;
   for (const std::size_t entry : {0U, 21U, 600U, 1111U, 1199U}) {
@@ -97,7 +97,7 @@ TEST(Explain, FollowsAnEntryThroughAllStepsOfNoise) {
   EXPECT_GT(dropped, 0U);
 }
 
-TEST(Explain, TellsHowABeamReallyWent) {
+TEST(Explain, ReportsTheActualDirectionOfABeam) {
   Stage stage;
   PointTrace story;
   stage.shoot(17, &story);
@@ -139,7 +139,7 @@ TEST(Explain, TracesTheEchoesOfAPulse) {
   EXPECT_EQ(story.measured.range_m, frame.range_m[1]);
 }
 
-TEST(Explain, MarksAMixedEchoAndTheSurfacesOfItsWays) {
+TEST(Explain, MarksAMixedEchoAndTheSurfacesOfItsPaths) {
   Stage stage;
   stage.sensor.pulse = LidarEquation{};
   stage.sensor.footprint = Footprint{.divergence_x_rad = 0.1, .divergence_y_rad = 0.1};
@@ -161,7 +161,7 @@ TEST(Explain, MarksAMixedEchoAndTheSurfacesOfItsWays) {
   EXPECT_LT(mixed, 20U);
 }
 
-TEST(Explain, ShowsTheReceiversNoise) {
+TEST(Explain, ReportsTheReceiversNoise) {
   Stage stage;
   stage.sensor.pulse = LidarEquation{.noise_sigma = 0.2};
   stage.sensor.receiver.returns = {{Return::Order::nearest, 0}};
@@ -175,7 +175,7 @@ TEST(Explain, ShowsTheReceiversNoise) {
               story.pulse->echoes[0].signal + 0.2 * normals(random_words(draw))[0], 1e-9);
 }
 
-TEST(Explain, TracesThePulseOfAnEntryThatIsPickedFromTheFrame) {
+TEST(Explain, TracesThePulseOfASelectedEntry) {
   Stage stage = noisy_stage();
   stage.sensor.pulse = LidarEquation{.noise_sigma = 0.2};
   stage.sensor.footprint = Footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3};
@@ -201,7 +201,7 @@ TEST(Explain, TracesThePulseOfAnEntryThatIsPickedFromTheFrame) {
   expect_same(frame, simulated);
 }
 
-TEST(Explain, RefusesAnEntryThatIsNotThere) {
+TEST(Explain, RejectsAnInvalidEntry) {
   PointTrace story;
   try {
     Stage().shoot(1200, &story);

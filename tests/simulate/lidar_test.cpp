@@ -34,7 +34,7 @@ struct Room {
     check(beams);
   }
 
-  /// Every beam meets a wall, its point lies on it, and its range counts from where it should.
+  /// Every beam hits a wall, its point is on the wall, and its range has the correct offset.
   void check(const Beams& beams) const {
     const auto& xyz = std::get<std::vector<double>>(find_column(cloud, "xyz")->values);
     const auto& range = std::get<std::vector<double>>(find_column(cloud, "range")->values);
@@ -58,7 +58,7 @@ TEST(Lidar, EveryPresetCastsInARoom) {
     SCOPED_TRACE(file.string());
     Sensor sensor = ground_truth_sensor(load_sensor_file(file));
     EXPECT_LT(sensor.limits.near_m, kHalfSide_m);
-    sensor.limits.far_m = 100.0;  // rooms corners may lie beyond a short sensor's end
+    sensor.limits.far_m = 100.0;  // the room's corners may be beyond a sensor's far limit
     const Room room(sensor);
     const auto& status = room.frame.status;
     EXPECT_EQ(std::count(status.begin(), status.end(), Status::hit) +
@@ -67,7 +67,7 @@ TEST(Lidar, EveryPresetCastsInARoom) {
   }
 }
 
-TEST(Lidar, CloudsTellRingAndTime) {
+TEST(Lidar, CloudsHaveRingAndTime) {
   const Room room(ground_truth_sensor(load_sensor_file(find_sensor_file("VLP-16"))));
   const auto& ring = std::get<std::vector<std::uint16_t>>(find_column(room.cloud, "ring")->values);
   const auto& time = std::get<std::vector<std::uint32_t>>(find_column(room.cloud, "time")->values);
@@ -78,7 +78,7 @@ TEST(Lidar, CloudsTellRingAndTime) {
   EXPECT_EQ(time[1], 34'560U + 55'296U);
 }
 
-TEST(Lidar, LimitsAreAboutTheReportedRange) {
+TEST(Lidar, LimitsApplyToTheReportedRange) {
   Sensor sensor = ground_truth_sensor(load_sensor_file(find_sensor_file("OS0-128")));
   sensor.limits = {.near_m = 0.0, .far_m = 2.5, .along = Limits::Along::range};
   const Beams beams = make_beams(sensor);
@@ -94,7 +94,7 @@ TEST(Lidar, LimitsAreAboutTheReportedRange) {
   }
 }
 
-TEST(Ouster, RangesInsideASphereHaveTheClosedForm) {
+TEST(Ouster, RangesInsideASphereMatchTheClosedForm) {
   const Sensor sensor = load_sensor_file(find_sensor_file("OS1-64"));
   const auto& spinning = std::get<Spinning>(sensor.optics);
   const Beams beams = make_beams(sensor);
@@ -109,7 +109,7 @@ TEST(Ouster, RangesInsideASphereHaveTheClosedForm) {
     const SpinningChannel& channel = spinning.channels[beams.rings[i]];
     const double n = spinning.beam_origin_m;
     const double k = std::cos(channel.azimuth_offset_rad) * std::cos(channel.elevation_rad);
-    // r = n (1 - k) + sqrt(R^2 - n^2 (1 - k^2)); the mesh lies up to its sagitta inside
+    // r = n (1 - k) + sqrt(R^2 - n^2 (1 - k^2)); the mesh is inside by up to its sagitta
     const double closed_m = n * (1 - k) + std::sqrt(radius_m * radius_m - n * n * (1 - k * k));
     const double found_m = frame.ground_truth.range_m[i] + beams.range_offset_m;
     ASSERT_LT(found_m, closed_m + 1e-7);

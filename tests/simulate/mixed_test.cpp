@@ -102,7 +102,7 @@ Scene scene_of(const std::vector<Mesh>& meshes) {
   return scene;
 }
 
-TEST(Mixed, IsNoReturnOfAGentlyCurvedRoadOfManyTriangles) {
+TEST(Mixed, IsNoReturnOfACurvedRoadOfManyTriangles) {
   // hills of 0.4 m over 80 m: slopes of 1.8 degrees, met under 3 degrees and more
   const Mesh road = terrain(200, 60.0, [](double x, double y) {
     return 0.2 * std::cos(x * 0.0785) * std::cos(y * 0.0785);
@@ -114,7 +114,7 @@ TEST(Mixed, IsNoReturnOfAGentlyCurvedRoadOfManyTriangles) {
   EXPECT_EQ(count(frame, ReturnSource::mixed_pixel), 0);
 }
 
-TEST(Mixed, IsNoReturnOfAWallOfTwoMeshesThatJoin) {
+TEST(Mixed, IsNoReturnOfAWallOfTwoAdjacentMeshes) {
   testing::PanelScene stage;
   const Vector3d along(0.6, 0.0, 0.8);  // a slope of 53 degrees
   stage.add_panel(Vector3d(0.1, -3.0, 20.0) - 6.0 * along, 6.0 * along, {0.0, 6.0, 0.0});
@@ -189,7 +189,7 @@ TEST(Mixed, IsEveryReturnThatMergesAnEdgeAndItsBackgroundAndNoOther) {
   }
 }
 
-TEST(Mixed, IsNoneOfTwoSurfacesThatTheReceiverTellsApart) {
+TEST(Mixed, IsNoneOfTwoSurfacesThatTheReceiverResolves) {
   testing::PanelScene stage;
   stage.add_wall(20.0, -50.0, 0.0123);
   stage.add_wall(22.0);
@@ -197,7 +197,7 @@ TEST(Mixed, IsNoneOfTwoSurfacesThatTheReceiverTellsApart) {
   EXPECT_EQ(count(frame, ReturnSource::mixed_pixel), 0);
 }
 
-TEST(Mixed, IsTheRimOfAThinWallBeforeTheFarSideOfItsOwnMesh) {
+TEST(Mixed, IsTheRimOfAThinWallInFrontOfItsOwnMesh) {
   // one mesh: a front plate that ends at x = 0.0123, and a back plate 0.2 m behind it
   Mesh mesh;
   for (const auto& [end, z] : {std::pair{0.0123F, 20.0F}, std::pair{5.0F, 20.2F}}) {

@@ -57,7 +57,7 @@ std::int64_t time_of(const Frame& frame, const Beams& beams, std::size_t beam) {
   return frame.stamp_ns + beams.times_ns[beam];
 }
 
-/// Every beam cast alone, with everything standing where it is at the beam's time.
+/// Every beam cast alone, with everything at its pose at the beam's time.
 void expect_as_if_cast_alone(Stage& stage, const Frame& frame) {
   constexpr double kRounding_m = 1e-13;  // poses are composed in another order
   for (std::size_t i = 0; i < stage.beams.size(); ++i) {
@@ -88,7 +88,7 @@ void expect_as_if_cast_alone(Stage& stage, const Frame& frame) {
   }
 }
 
-TEST(MovingCast, PutsADeskewedScanOfAPlaneOnThePlane) {
+TEST(MovingCast, DeskewedPointsOfAPlaneAreOnThePlane) {
   Stage stage(plane());
   stage.motion.world_from_sensor = ConstantTwist{.pose = pose_at(stage.motion.world_from_sensor, 0),
                                                  .angular_rad_s = {0.3, -0.4, 0.8},
@@ -112,10 +112,10 @@ TEST(MovingCast, PutsADeskewedScanOfAPlaneOnThePlane) {
     furthest_raw = std::max(
         furthest_raw, std::abs(std::get<std::vector<double>>(raw.columns[0].values)[3 * i + 2]));
   }
-  EXPECT_GT(furthest_raw, 0.1);  // what deskewing has put right
+  EXPECT_GT(furthest_raw, 0.1);  // the error that deskewing corrects
 }
 
-TEST(MovingCast, MeetsAnApproachingPlaneWhereItIsWhenTheBeamLeaves) {
+TEST(MovingCast, HitsAnApproachingPlaneAtTheFiringTime) {
   Stage stage(plane());
   constexpr double kSpeed_m_s = 2.0;
   stage.motion.world_from_instance[0] =
@@ -127,10 +127,10 @@ TEST(MovingCast, MeetsAnApproachingPlaneWhereItIsWhenTheBeamLeaves) {
     const double t_s = static_cast<double>(time_of(frame, stage.beams, i)) * 1e-9;
     EXPECT_NEAR(frame.ground_truth.depth_m[i], 5.0 - kSpeed_m_s * t_s, 1e-13);
   }
-  EXPECT_TRUE(frame.deskewed.directions.empty()) << "the sensor stands still";
+  EXPECT_TRUE(frame.deskewed.directions.empty()) << "the sensor is stationary";
 }
 
-TEST(MovingCast, SeesEveryBodyAtTheBeamsOwnTime) {
+TEST(MovingCast, HitsEveryBodyAtTheFiringTime) {
   Stage stage(plane_and_asteroids());
   stage.motion.world_from_sensor = ConstantTwist{.pose = pose_at(stage.motion.world_from_sensor, 0),
                                                  .angular_rad_s = {0.05, -0.04, 0.1},
@@ -152,7 +152,7 @@ TEST(MovingCast, SeesEveryBodyAtTheBeamsOwnTime) {
   EXPECT_GT(seen[2], 20U);
 }
 
-TEST(MovingCast, SeesALoneMovingBody) {
+TEST(MovingCast, HitsASingleMovingBody) {
   Stage stage(testing::scene_of(make_builtin_model("asteroid")));
   stage.motion.world_from_instance[0] =
       ConstantTwist{.angular_rad_s = {2.0, -1.0, 3.0}, .linear_m_s = {0.3, 0.1, 0.0}};
@@ -160,7 +160,7 @@ TEST(MovingCast, SeesALoneMovingBody) {
   expect_as_if_cast_alone(stage, frame);
 }
 
-TEST(MovingCast, LosesNothingFarFromTheWorldsZero) {
+TEST(MovingCast, IsExactFarFromTheWorldsOrigin) {
   Stage stage(plane());
   const Eigen::Vector3d far(1e6, -2e6, 5e5);
   Pose pose = pose_at(stage.motion.world_from_sensor, 0);
@@ -178,7 +178,7 @@ TEST(MovingCast, LosesNothingFarFromTheWorldsZero) {
   }
 }
 
-TEST(MovingCast, TellsItsProgressOverAllBodiesFromBeginningToEnd) {
+TEST(MovingCast, ReportsProgressOverAllBodies) {
   Stage stage(plane_and_asteroids());
   for (const std::size_t i : {std::size_t{1}, std::size_t{2}}) {
     stage.motion.world_from_instance[i] = ConstantTwist{
@@ -189,14 +189,14 @@ TEST(MovingCast, TellsItsProgressOverAllBodiesFromBeginningToEnd) {
   setup.progress = [&](double fraction) { told.push_back(fraction); };
   Frame frame;
   simulate(setup, kAllHitFields, frame);
-  ASSERT_GE(told.size(), 3U);  // three bodies, each told of at its end at least
+  ASSERT_GE(told.size(), 3U);  // three bodies, each reported at least at its end
   EXPECT_TRUE(std::is_sorted(told.begin(), told.end()));
   EXPECT_GE(told.front(), 0.0);
   EXPECT_LE(told.front(), 1.0 / 3.0 + 1e-12);
   EXPECT_DOUBLE_EQ(told.back(), 1.0);
 }
 
-TEST(MovingCast, AllocatesNoSecondTime) {
+TEST(MovingCast, AllocatesNothingInTheSteadyState) {
   Stage stage(plane());
   stage.motion.world_from_sensor =
       ConstantTwist{.pose = pose_at(stage.motion.world_from_sensor, 0), .linear_m_s = {1, 0, 0}};

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Noise from the scene to the frame: the same bytes whatever the threads, and no more than asked.
+// Noise from the scene to the frame: the same bytes for any number of threads, and no other effect.
 #include <glidar/io/model/builtin_models.hpp>
 #include <glidar/simulate/simulate.hpp>
 #include <support/data.hpp>
@@ -67,7 +67,7 @@ struct Stage {
   }
 };
 
-/// Lets there be eight threads on machines of fewer processors too.
+/// Allows eight threads on machines with fewer processors.
 const tbb::global_control kEightThreads(tbb::global_control::max_allowed_parallelism, 8);
 
 /// Bytes, so that NaN equals NaN.
@@ -92,7 +92,7 @@ TEST(Noise, GivesTheSameBytesForAnyNumberOfThreads) {
   EXPECT_TRUE(same(one, stage.shoot(8)));
 }
 
-TEST(Noise, EveryStepByItselfGivesTheSameBytesForAnyNumberOfThreads) {
+TEST(Noise, EverySingleStepGivesTheSameBytesForAnyNumberOfThreads) {
   Stage stage;
   for (const NoiseStep& step : every_step()) {
     stage.sensor.noise = {step};
@@ -109,7 +109,7 @@ TEST(Noise, EveryStepChangesTheFrame) {
   }
 }
 
-TEST(Noise, SeedAndFrameChangeIt) {
+TEST(Noise, DependsOnSeedAndFrame) {
   Stage stage;
   stage.sensor.noise = {RangeGaussian{.sigma_m = 0.01}};
   const Frame frame = stage.shoot(2);
@@ -118,7 +118,7 @@ TEST(Noise, SeedAndFrameChangeIt) {
   EXPECT_TRUE(same(frame.range_m, stage.shoot(2).range_m));
 }
 
-TEST(Noise, LeavesTheTruthAlone) {
+TEST(Noise, DoesNotChangeTheGroundTruth) {
   Stage stage;
   const Frame plain = stage.shoot(2);
   stage.sensor.noise = {RangeGaussian{.sigma_m = 0.01}, Dropout{.probability = 0.5}};
@@ -169,7 +169,7 @@ TEST(Noise, ATextureScalesIt) {
   EXPECT_NEAR(none / all, 1.0, 0.05);
 }
 
-TEST(Noise, JitteredBeamsAreReportedWhereTheyShouldHaveGone) {
+TEST(Noise, BeamsWithJitterAreReportedInTheNominalDirection) {
   Stage stage;
   stage.sensor.noise = {PointingJitter{.sigma_azimuth_rad = 0.01, .sigma_elevation_rad = 0.01}};
   stage.scene = testing::scene_of(make_builtin_model("plane"));

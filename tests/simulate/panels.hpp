@@ -6,11 +6,11 @@
 
 namespace glidar::testing {
 
-/// Panels before a camera at the origin that looks along z.
+/// Panels in front of a camera at the origin with boresight z.
 struct PanelScene {
   Scene scene;
 
-  /// A parallelogram, seen from both sides; returns its material.
+  /// Adds a two-sided parallelogram; returns its material.
   Material& add_panel(const Eigen::Vector3d& corner, const Eigen::Vector3d& u,
                       const Eigen::Vector3d& v) {
     Mesh mesh;
@@ -28,7 +28,7 @@ struct PanelScene {
     return scene.materials.back();
   }
 
-  /// Square to z at a range, from x0 to x1.
+  /// Adds a wall perpendicular to z at a range, from x0 to x1.
   Material& add_wall(double range_m, double x0 = -50.0, double x1 = 50.0) {
     return add_panel({x0, -50.0, range_m}, {x1 - x0, 0.0, 0.0}, {0.0, 100.0, 0.0});
   }

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// The sensors that come along, with their light and noise, against their sheets and recordings.
+// The sensor presets, with signal and noise, against data sheets and recordings.
 #include <glidar/io/config/scene_file.hpp>
 #include <glidar/io/config/sensor_file.hpp>
 #include <glidar/io/config/sensor_presets.hpp>
@@ -19,7 +19,7 @@ namespace {
 
 using testing::preset;
 
-/// What a sensor sees inside a matt ball: every beam meets it square on, but for its small facets.
+/// A sensor inside a diffuse sphere: beams are at normal incidence, except for its small facets.
 struct Ball {
   Scene scene = testing::scene_of(make_builtin_model("sphere"));
   Beams beams;
@@ -46,7 +46,7 @@ struct Ball {
     return count(Status::hit) / beams_there;
   }
 
-  /// Rms over the hits of error(beam); false echoes, far off, are left out.
+  /// Rms over the hits of error(beam); false alarms, far away, are ignored.
   template <class Error>
   [[nodiscard]] double rms(const Error& error) const {
     constexpr double kFalse_m = 1.0;
@@ -74,7 +74,7 @@ struct Ball {
   }
 };
 
-TEST(Presets, MeasureARoomWithLightAndNoise) {
+TEST(Presets, MeasureARoomWithIntensityAndNoise) {
   for (const auto& file : preset_files()) {
     SCOPED_TRACE(file.stem().string());
     Sensor sensor = load_sensor_file(file);
@@ -89,7 +89,7 @@ TEST(Presets, MeasureARoomWithLightAndNoise) {
   }
 }
 
-/// The range at which a sheet promises to see every second surface of a reflectance.
+/// The range of the data sheet at which a reflectance is detected with probability 1/2.
 struct SheetPair {
   const char* sensor;
   double reflectance;
@@ -98,7 +98,7 @@ struct SheetPair {
 
 class PresetRange : public ::testing::TestWithParam<SheetPair> {};
 
-TEST_P(PresetRange, IsThatOfTheSheetWithinOneMetre) {
+TEST_P(PresetRange, IsThatOfTheDataSheetWithinOneMetre) {
   const SheetPair& pair = GetParam();
   Sensor sensor = preset(pair.sensor);
   sensor.limits = {.along = Limits::Along::range};
@@ -124,7 +124,7 @@ INSTANTIATE_TEST_SUITE_P(
                       SheetPair{"Livox-Mid-70", 0.8, 260.0}, SheetPair{"Livox-Avia", 0.8, 450.0},
                       SheetPair{"TiM781", 0.05, 5.0}));
 
-TEST(Presets, OfOusterSeeNineOfTenWhereTheSheetSaysSo) {
+TEST(Presets, OfOusterDetectNinetyPercentAtTheRangeOfTheDataSheet) {
   for (const SheetPair& pair : {SheetPair{"OS0-64", 0.8, 45.0}, SheetPair{"OS1-64", 0.8, 100.0},
                                 SheetPair{"OS2-64", 0.8, 210.0}}) {
     EXPECT_NEAR(Ball(preset(pair.sensor), pair.range50_m, pair.reflectance).share_of_hits(), 0.9,
@@ -132,7 +132,7 @@ TEST(Presets, OfOusterSeeNineOfTenWhereTheSheetSaysSo) {
   }
 }
 
-/// Spread of ranges found in recordings or told by sheets.
+/// Standard deviation of ranges in recordings or data sheets.
 struct Spread {
   const char* sensor;
   double range_m;
@@ -143,7 +143,7 @@ struct Spread {
 
 class PresetSpread : public ::testing::TestWithParam<Spread> {};
 
-TEST_P(PresetSpread, IsThatOfRecordingsAndSheets) {
+TEST_P(PresetSpread, IsThatOfRecordingsAndDataSheets) {
   const Spread& spread = GetParam();
   const double found_m =
       Ball(preset(spread.sensor), spread.range_m, spread.reflectance).range_error_m();
@@ -177,19 +177,19 @@ TEST(Presets, OfDepthCamerasSpreadAsMeasured) {
   EXPECT_LT(azure_m, 0.003);
 }
 
-TEST(Presets, OfVelodyneTellReflectanceInPercent) {
+TEST(Presets, OfVelodyneReportReflectanceInPercent) {
   const Ball ball(preset("VLP-16"), 10.0, 0.5);
   for (const float intensity : ball.frame.intensity) EXPECT_NEAR(intensity, 50.0F, 1.0F);
 }
 
-TEST(Presets, OfOusterHearOneFalseEchoInTenThousand) {
+TEST(Presets, OfOusterHaveOneFalseAlarmInTenThousand) {
   const Ball empty(preset("OS1-128"), 1e5, 0.5);
   const double expected = 1e-4 * static_cast<double>(empty.beams.size());
   const double found = empty.share_of_hits() * static_cast<double>(empty.beams.size());
   EXPECT_NEAR(found, expected, 4.0 * std::sqrt(expected));
 }
 
-TEST(Surfaces, SendBackTheSignalOfTheRangeEquation) {
+TEST(Surfaces, ReturnTheSignalOfTheLidarEquation) {
   const TestFolder folder;
   const auto file = folder.write(
       "s.yaml",
@@ -202,7 +202,7 @@ TEST(Surfaces, SendBackTheSignalOfTheRangeEquation) {
   const Motion motion = static_motion(loaded.scene, Pose::Identity());
   Frame frame;
   simulate({loaded.scene, loaded.sensors.at(0).sensor, beams, motion, *renderer}, {}, frame);
-  EXPECT_NEAR(frame.range_m[0], 10.0, 1e-9);  // a wall of the box, square on
+  EXPECT_NEAR(frame.range_m[0], 10.0, 1e-9);  // a wall of the box, at normal incidence
   EXPECT_NEAR(frame.intensity[0], 0.278 / 0.8 * 100.0, 1e-4);
 }
 
@@ -221,7 +221,7 @@ Frame look_past_a_box(const Sensor& sensor, double front_m) {
   return frame;
 }
 
-TEST(Presets, OfVelodyneTellBothSurfacesOfACutBeamWhenAskedForTwoReturns) {
+TEST(Presets, OfVelodyneReportBothSurfacesOfACutBeamWithTwoReturns) {
   Sensor sensor = preset("VLP-16");
   sensor.noise.clear();
   sensor.receiver.returns.push_back({Return::Order::farthest, 0});
@@ -238,8 +238,8 @@ TEST(Presets, OfVelodyneTellBothSurfacesOfACutBeamWhenAskedForTwoReturns) {
   EXPECT_LT(cut, beams / 50);
 }
 
-// A pulse of 5 ns cannot tell surfaces 0.5 m apart.
-TEST(Presets, TellMixedEchoesUnlessTheyAreToBeIdeal) {
+// A pulse of 5 ns cannot resolve surfaces 0.5 m apart.
+TEST(Presets, ReportMixedPixelsUnlessSetToGroundTruth) {
   const Frame wide = look_past_a_box(preset("OS1-128"), 3.5);
   EXPECT_GT(
       std::count(wide.return_source.begin(), wide.return_source.end(), ReturnSource::mixed_pixel),
@@ -250,7 +250,7 @@ TEST(Presets, TellMixedEchoesUnlessTheyAreToBeIdeal) {
       0);
 }
 
-TEST(Ideal, LeavesTheGeometryAlone) {
+TEST(GroundTruthSensor, DoesNotChangeTheGeometry) {
   Sensor noisy = preset("VLP-16");
   noisy.weather = Weather{.rain_mm_per_h = 10.0};
   noisy.projector_origin_m = Eigen::Vector3d::UnitY();

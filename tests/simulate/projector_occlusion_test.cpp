@@ -47,7 +47,7 @@ std::size_t count(const Frame& frame, Status status) {
 }
 
 // The shadow is f b (1/z1 - 1/z2) pixels wide.
-TEST(CastShadows, AreAsWideAsTheDisparityStep) {
+TEST(ProjectorOcclusion, HasTheWidthOfTheDisparityStep) {
   for (const auto& [front_m, back_m] : {std::pair{0.8, 1.6}, std::pair{1.0, 3.0}}) {
     Stage stage;
     stage.panels.add_wall(front_m, 0.0, 5.0);
@@ -58,13 +58,13 @@ TEST(CastShadows, AreAsWideAsTheDisparityStep) {
     for (std::size_t i = 0; i < frame.range_m.size(); ++i) {
       if (frame.status[i] != Status::occluded) continue;
       EXPECT_TRUE(std::isnan(frame.range_m[i]));
-      EXPECT_EQ(frame.ground_truth.instance[i], 1U) << "the truth stays: the wall";
+      EXPECT_EQ(frame.ground_truth.instance[i], 1U) << "the ground truth is the wall";
       EXPECT_LT(i, 320U) << "on the side away from the projector";
     }
   }
 }
 
-TEST(CastShadows, FallToTheOtherSideOfAProjectorOnTheOther) {
+TEST(ProjectorOcclusion, IsOnTheOppositeSideOfTheProjector) {
   Stage stage(-kBaseline_m);
   stage.panels.add_wall(1.0, -5.0, 0.0);
   stage.panels.add_wall(2.0);
@@ -73,7 +73,7 @@ TEST(CastShadows, FallToTheOtherSideOfAProjectorOnTheOther) {
               1.0);
 }
 
-TEST(CastShadows, AreNoneOnASingleWallAndWithoutAProjector) {
+TEST(ProjectorOcclusion, IsNoneOnASingleWallAndWithoutAProjector) {
   Stage stage;
   stage.panels.add_wall(1.0);
   EXPECT_EQ(count(stage.shoot(), Status::hit), 640U);
@@ -82,7 +82,7 @@ TEST(CastShadows, AreNoneOnASingleWallAndWithoutAProjector) {
   EXPECT_EQ(count(stage.shoot(), Status::occluded), 0U);
 }
 
-TEST(CastShadows, LieOnSurfacesWhoseOtherSideIsLit) {
+TEST(ProjectorOcclusion, IncludesSurfacesWhoseOtherSideIsLit) {
   // a panel almost along the view, seen from the left, with the projector to its right
   Stage stage(0.2);
   stage.panels.add_panel({0.05, -1.0, 0.5}, {0.05, 0.0, 1.0}, {0.0, 2.0, 0.0});
@@ -96,7 +96,7 @@ void turn_over(Mesh& mesh) {
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }
 
-TEST(CastShadows, AreNotMadeByBackFacesThatLetLightThrough) {
+TEST(ProjectorOcclusion, IsNotCausedByCulledBackFaces) {
   Stage stage;
   stage.panels.add_wall(1.0, 0.0, 5.0);
   stage.panels.add_wall(2.0);

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// Range noise against a recording of a VLP-16: the same estimator looks at both.
+// Range noise against a recording of a VLP-16: with the same estimator for both.
 #include <glidar/sensor/noise/noise.hpp>
 #include <support/data.hpp>
 
@@ -31,8 +31,7 @@ std::vector<Firing> read_firings(const std::filesystem::path& path) {
   std::vector<Firing> firings;
   for (std::size_t at = 24; at + 16 <= bytes.size();) {
     const std::size_t length = word(at + 8);
-    const std::size_t payload =
-        at + 16 + 42;  // after the record's, Ethernet's, IP's and UDP's head
+    const std::size_t payload = at + 16 + 42;  // after the headers of record, Ethernet, IP and UDP
     at += 16 + length;
     if (length != 1248) continue;
     for (std::size_t firing = 0; firing < 24; ++firing) {
@@ -95,8 +94,8 @@ std::map<int, double> noise_by_intensity(const std::vector<Firing>& firings) {
   return medians;
 }
 
-/// The recording's own ranges, smoothed over each window, with the noise of a model in the place
-/// of theirs.
+/// The recording's own ranges, smoothed over each window, with the noise of a model instead of
+/// their own.
 std::vector<Firing> with_noise(std::vector<Firing> firings, const std::vector<NoiseStep>& noise) {
   Beams beams;
   beams.rows = static_cast<std::uint32_t>(firings.size());
@@ -136,7 +135,7 @@ double odd_share(const std::vector<Firing>& firings) {
   return odd / all;
 }
 
-TEST(Vlp16, RecordingAndModelHaveTheSameQuantumAndNoise) {
+TEST(Vlp16, RecordingAndModelHaveTheSameQuantizationAndNoise) {
   GLIDAR_NEEDS_DATA();
   const auto recorded =
       read_firings(testing::data_folder() / "recordings/velodyne/sample_velodyne_vlp16_gps.pcap");

@@ -76,7 +76,7 @@ class SimulateBatch : public ::testing::TestWithParam<std::string> {
   std::unique_ptr<Renderer> renderer_;
 };
 
-TEST_P(SimulateBatch, FramesOfManyPosesAndSeedsAreThoseOfSimulate) {
+TEST_P(SimulateBatch, FramesAreIdenticalToSimulate) {
   std::vector<glidar::Setup> setups;
   for (int i = 0; i < kFrames; ++i) setups.push_back(setup(i));
   expect_as_one_by_one(setups);
@@ -100,7 +100,7 @@ TEST_P(SimulateBatch, SensorsMayDiffer) {
   expect_as_one_by_one(setups);
 }
 
-TEST_P(SimulateBatch, RefusesOtherFramesThanSetupsAndSeveralRenderers) {
+TEST_P(SimulateBatch, RejectsWrongNumbersOfFramesAndSeveralRenderers) {
   std::vector<glidar::Setup> setups = {setup(0), setup(1)};
   std::vector<Frame> frames(1);
   EXPECT_EQ(error_text([&] { simulate_batch(setups, {}, frames); }),
@@ -115,7 +115,7 @@ TEST_P(SimulateBatch, RefusesOtherFramesThanSetupsAndSeveralRenderers) {
 INSTANTIATE_TEST_SUITE_P(All, SimulateBatch, ::testing::ValuesIn(renderer_kinds()),
                          [](const auto& test) { return test.param; });
 
-TEST(SimulateBatchOfEchoes, FramesThatTakeSeveralCastsAreThoseOfSimulateToo) {
+TEST(SimulateBatchOfEchoes, FramesWithSeveralCastsAreIdenticalToSimulate) {
   const Scene scene = testing::scene_of(make_builtin_model("box"));
   Sensor moving;
   moving.optics = pinhole_from_fov(32, 24, 0.6);

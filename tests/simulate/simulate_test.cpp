@@ -92,7 +92,7 @@ TEST(Simulate, MeasuresAPlaneExactly) {
   EXPECT_LT(hits, 256U);  // the field of view is wider than the plane
 }
 
-TEST(Simulate, LightsAPlaneByThePapersEquations) {
+TEST(Simulate, HasTheIntensityOfThePhongModelOnAPlane) {
   Stage stage;
   const Frame frame = stage.shoot();
   const Material& material = stage.scene.materials[stage.scene.instances[0].materials[0]];
@@ -107,7 +107,7 @@ TEST(Simulate, LightsAPlaneByThePapersEquations) {
   }
 }
 
-TEST(Simulate, TellsWhatLiesOutsideTheDepthLimitsAndKeepsItsTruth) {
+TEST(Simulate, ReportsSurfacesOutsideTheDepthLimitsAndKeepsTheGroundTruth) {
   Stage stage;
   stage.sensor.limits = {.near_m = 6.0};
   Frame frame = stage.shoot();
@@ -120,7 +120,7 @@ TEST(Simulate, TellsWhatLiesOutsideTheDepthLimitsAndKeepsItsTruth) {
   EXPECT_EQ(frame.status[middle], Status::too_far);
 }
 
-TEST(Simulate, TellsPixelsWithoutABeam) {
+TEST(Simulate, ReportsInvalidPixels) {
   Stage stage;
   stage.beams.directions[3].setConstant(std::nan(""));
   stage.beams.pinhole.reset();  // no longer its directions
@@ -208,7 +208,7 @@ TEST(Simulate, AllocatesNothingInTheSteadyStateForOverlappingPartsOfMeshes) {
   }
 }
 
-TEST(Simulate, TellsItsProgressFromBeginningToEndAndMeasuresTheSame) {
+TEST(Simulate, ReportsProgressAndMeasuresTheSame) {
   Stage stage(512);
   std::vector<double> told;
   Frame frame;

@@ -13,7 +13,7 @@
 namespace glidar {
 namespace {
 
-/// A camera of pulses at the origin that looks along z, and panels before it.
+/// A pulsed camera at the origin with boresight z, and panels in front of it.
 struct Stage : testing::PanelScene {
   Sensor sensor;
   unsigned threads = 2;
@@ -44,7 +44,7 @@ constexpr Return kSecond{Return::Order::nearest, 1};
 constexpr Return kStrongest{Return::Order::strongest, 0};
 constexpr Return kLast{Return::Order::farthest, 0};
 
-TEST(HasEchoes, OnlyWhenABeamIsMoreThanARay) {
+TEST(NeedsWaveform, IsFalseForBeamsOfASingleRay) {
   Stage stage;
   stage.add_wall(10.0);
   EXPECT_FALSE(needs_waveform(stage.sensor, stage.scene));
@@ -57,7 +57,7 @@ TEST(HasEchoes, OnlyWhenABeamIsMoreThanARay) {
   EXPECT_FALSE(needs_waveform(stage.sensor, stage.scene));
 }
 
-TEST(MeasurePulses, SayOfALineWhatASingleRaySays) {
+TEST(SimulateWaveforms, FootprintWithoutWidthEqualsASingleRay) {
   Stage stage;
   stage.sensor.optics = pinhole_from_fov(40, 30, 0.8);
   stage.sensor.pulse->noise_sigma = 0.5;
@@ -77,7 +77,7 @@ TEST(MeasurePulses, SayOfALineWhatASingleRaySays) {
             0);
 }
 
-TEST(MeasurePulses, SeeWhatIsBehindThemWithoutANearLimit) {
+TEST(SimulateWaveforms, PointsBehindTheSensorAreReportedWithoutANearLimit) {
   Stage stage;
   RayTable behind;
   behind.rows = 1;
@@ -91,9 +91,9 @@ TEST(MeasurePulses, SeeWhatIsBehindThemWithoutANearLimit) {
   EXPECT_NEAR(frame.range_m[0], 10.0, 1e-9);
 }
 
-// Of a footprint that lies on the surface: the same signal as a ray's, falling
+// A footprint that is completely on the surface has the signal of a ray, which decreases
 // with the square of the range.
-TEST(MeasurePulses, OfAnExtendedTargetFallWithTheSquareOfTheRange) {
+TEST(SimulateWaveforms, SignalOfAnExtendedTargetDecreasesWithTheSquareOfTheRange) {
   for (const double range_m : {5.0, 20.0, 90.0}) {
     Stage stage;
     stage.spread(1e-3);
@@ -105,9 +105,9 @@ TEST(MeasurePulses, OfAnExtendedTargetFallWithTheSquareOfTheRange) {
   }
 }
 
-// Half the signal, 3 dB, from half a footprint. The edge lies between rays; six
+// Half the signal, 3 dB, from half a footprint. The edge is between rays; six
 // rings leave 5 % of the energy to the ray in the middle, which an edge at zero would cut.
-TEST(MeasurePulses, HalfCoveredHaveHalfTheSignal) {
+TEST(SimulateWaveforms, HalfCoveredBeamsHaveHalfTheSignal) {
   Stage stage;
   stage.spread(4e-3, 6);
   stage.add_wall(50.0, 1e-4, 50.0);
@@ -120,7 +120,7 @@ TEST(MeasurePulses, HalfCoveredHaveHalfTheSignal) {
 }
 
 // A target smaller than the beam at every range falls with the fourth power.
-TEST(MeasurePulses, OfAPointTargetFallWithTheFourthPowerOfTheRange) {
+TEST(SimulateWaveforms, SignalOfAPointTargetDecreasesWithTheFourthPowerOfTheRange) {
   // A Gaussian beam 10 m wide at 100 m, a square of 1 m; the mean over places of the square near
   // the middle, the same parts of the beam at both ranges, evens out that rays are few.
   constexpr double kSide = 1.0;
@@ -144,7 +144,7 @@ TEST(MeasurePulses, OfAPointTargetFallWithTheFourthPowerOfTheRange) {
 }
 
 // Through the whole simulation: two half-covering walls.
-TEST(MeasurePulses, TellTwoWallsBeyondThePulseAndTheirMeanBelow) {
+TEST(SimulateWaveforms, TwoWallsAreResolvedBeyondThePulseLengthAndMergedBelow) {
   const auto ranges_of = [](double apart_m) {
     Stage stage;
     stage.spread(2e-3, 4);
@@ -173,7 +173,7 @@ TEST(MeasurePulses, TellTwoWallsBeyondThePulseAndTheirMeanBelow) {
 
 // sigma_t^2 = sigma_p^2 + (2 R sigma_theta tan(theta) / c)^2, seen in the peak,
 // which is lower by sigma_p / sigma of an echo that is a Gaussian.
-TEST(MeasurePulses, OfATiltedPlaneAreWiderByItsTilt) {
+TEST(SimulateWaveforms, EchoesOfATiltedPlaneAreWider) {
   constexpr double kTilt = 1.2;
   constexpr double kRange = 40.0;
   constexpr double kDivergence = 8e-3;
@@ -191,7 +191,7 @@ TEST(MeasurePulses, OfATiltedPlaneAreWiderByItsTilt) {
   EXPECT_NEAR(stage.shoot().intensity[0] / ray.shoot().intensity[0], lower, 0.02 * lower);
 }
 
-TEST(MeasurePulses, TellFirstStrongestAndLast) {
+TEST(SimulateWaveforms, FirstStrongestAndLastAreReported) {
   Stage stage;
   stage.spread(4e-3, 4);
   stage.add_wall(20.0, 0.025, 50.0);  // a little of the beam
@@ -204,7 +204,7 @@ TEST(MeasurePulses, TellFirstStrongestAndLast) {
   EXPECT_EQ(frame.rows, 3U);
 }
 
-TEST(MeasurePulses, NoiseAloneIsNoEchoOfASurface) {
+TEST(SimulateWaveforms, NoiseAloneIsNotAnEchoOfASurface) {
   Stage stage;
   stage.sensor.pulse->noise_sigma = 0.4;  // passes the threshold once in 150 beams
   stage.sensor.receiver.returns = {kLast};
@@ -214,7 +214,7 @@ TEST(MeasurePulses, NoiseAloneIsNoEchoOfASurface) {
   EXPECT_EQ(std::count(frame.status.begin(), frame.status.end(), Status::below_threshold), 10000);
 }
 
-TEST(MeasurePulses, HideAnEchoTooCloseToAStrongerOne) {
+TEST(SimulateWaveforms, AnEchoTooCloseToAStrongerOneIsHidden) {
   Stage stage;
   stage.spread(2e-3, 4);
   stage.add_wall(20.0, 5e-3, 50.0);  // a little less than half of the beam
@@ -227,16 +227,16 @@ TEST(MeasurePulses, HideAnEchoTooCloseToAStrongerOne) {
   EXPECT_EQ(frame.status[1], Status::no_return_of_rank);
 }
 
-TEST(MeasurePulses, HaveNoSecondEchoWhereThereIsButOne) {
+TEST(SimulateWaveforms, ASingleEchoHasNoSecondReturn) {
   Stage stage;
   stage.add_wall(20.0);
   stage.sensor.receiver.returns = {kSecond};
   const Frame frame = stage.shoot();
   EXPECT_EQ(frame.status[0], Status::no_return_of_rank);
-  EXPECT_EQ(frame.ground_truth.instance[0], 0U) << "the truth is that of the beam";
+  EXPECT_EQ(frame.ground_truth.instance[0], 0U) << "the ground truth is that of the beam";
 }
 
-TEST(MeasurePulses, AreTooNearBeforeTheyAreTooStrong) {
+TEST(SimulateWaveforms, TooNearTakesPrecedenceOverSaturated) {
   Stage stage;
   stage.add_wall(5.0);
   stage.sensor.limits.near_m = 8.0;
@@ -258,20 +258,21 @@ Stage mirror_stage() {
   return stage;
 }
 
-TEST(MeasurePulses, SeeTheGhostOfAMirrorAtTheWholeWay) {
+TEST(SimulateWaveforms, GhostOfAMirrorHasTheRangeOfTheWholePath) {
   const Frame frame = mirror_stage().shoot();
   ASSERT_EQ(frame.status[0], Status::hit);
   EXPECT_NEAR(frame.range_m[0], 15.0, 1e-5);
   EXPECT_EQ(frame.return_source[0], ReturnSource::ghost);
-  EXPECT_EQ(frame.ground_truth.instance[0], 0U) << "the truth names the mirror";
+  EXPECT_EQ(frame.ground_truth.instance[0], 0U) << "the ground truth is the mirror";
   EXPECT_NEAR(frame.ground_truth.range_m[0], 10.0, 1e-9);
-  // the mirror is passed twice; the wall is met square on, with the reflectance of the reference
+  // the path includes the mirror twice; the incidence on the wall is normal, with the reflectance
+  // of the reference
   const double expected = 0.8 * 0.8 * std::pow(100.0 / 15.0, 2.0);
   EXPECT_NEAR(frame.intensity[0], expected, 1e-5 * expected);
 }
 
-// The receiver does not see what is near, but what is near a mirror far away it does.
-TEST(MeasurePulses, SeeAGhostFromBehindAMirrorByTheOverlapAtItsWholeWay) {
+// The receiver does not see near surfaces, but it sees them through a distant mirror.
+TEST(SimulateWaveforms, GhostUsesTheOverlapAtTheRangeOfTheWholePath) {
   Stage stage = mirror_stage();
   stage.sensor.pulse->overlap = {{0.0, 0.0}, {8.0, 0.0}, {9.0, 1.0}};
   const Frame frame = stage.shoot();
@@ -279,7 +280,7 @@ TEST(MeasurePulses, SeeAGhostFromBehindAMirrorByTheOverlapAtItsWholeWay) {
   EXPECT_EQ(frame.intensity[0], mirror_stage().shoot().intensity[0]);
 }
 
-TEST(MeasurePulses, TellTheMirrorAndItsGhostAsTwoReturns) {
+TEST(SimulateWaveforms, MirrorAndGhostAreTwoReturns) {
   Stage stage = mirror_stage();
   stage.scene.materials[0].diffuse.setConstant(0.1F);
   stage.sensor.receiver.returns = {kFirst, kLast};
@@ -290,7 +291,7 @@ TEST(MeasurePulses, TellTheMirrorAndItsGhostAsTwoReturns) {
   EXPECT_EQ(frame.return_source[1], ReturnSource::ghost);
 }
 
-TEST(MeasurePulses, LoseAMirrorThatShowsNothing) {
+TEST(SimulateWaveforms, MirrorWithoutAReflectionIsLost) {
   Stage stage = mirror_stage();
   stage.scene.instances.pop_back();
   const Frame frame = stage.shoot();
@@ -298,7 +299,7 @@ TEST(MeasurePulses, LoseAMirrorThatShowsNothing) {
   EXPECT_EQ(frame.ground_truth.instance[0], 0U);
 }
 
-TEST(MeasurePulses, DoNotDependOnTheNumberOfThreads) {
+TEST(SimulateWaveforms, IsIndependentOfTheNumberOfThreads) {
   Stage stage = mirror_stage();
   stage.sensor.optics = pinhole_from_fov(64, 48, 0.5);
   stage.spread(5e-3, 1);
@@ -318,7 +319,7 @@ TEST(MeasurePulses, DoNotDependOnTheNumberOfThreads) {
   }
 }
 
-TEST(MeasurePulses, KeepTheirTruthInAMovingWorld) {
+TEST(SimulateWaveforms, GroundTruthIsCorrectInAMovingScene) {
   // a wall that comes nearer while the pixels fire one after another
   Stage stage;
   stage.sensor.optics = LineScan{};
@@ -355,7 +356,7 @@ TEST(MakeBeams, RepeatsEveryBeamForEachReturn) {
   }
 }
 
-TEST(Simulate, TurnsAllReturnsOfAPulseByTheSameErrorOfPointing) {
+TEST(Simulate, AllReturnsOfAPulseHaveTheSamePointingError) {
   Stage stage;
   stage.sensor.optics = pinhole_from_fov(20, 10, 0.5);
   stage.sensor.noise = {PointingJitter{.sigma_azimuth_rad = 1e-3, .sigma_elevation_rad = 1e-3}};

@@ -14,12 +14,12 @@
 namespace glidar {
 namespace {
 
-/// Fog of this visibility that sends nothing back itself.
+/// Fog of this visibility without backscatter.
 Weather dark_fog(double visibility_m) {
   return {.visibility_m = visibility_m, .fog_backscatter_per_sr = 0.0};
 }
 
-/// A pulsed camera so far before a plane.
+/// A pulsed camera at this distance from a plane.
 Frame shoot(const std::optional<LidarEquation>& pulse, const std::optional<Weather>& weather,
             double distance_m, const std::optional<Footprint>& footprint = {}) {
   const Scene scene = testing::scene_of(make_builtin_model("plane"));
@@ -38,11 +38,11 @@ Frame shoot(const std::optional<LidarEquation>& pulse, const std::optional<Weath
   return frame;
 }
 
-TEST(WeatherInAFrame, DimsEveryBeamByTheWayThereAndBack) {
+TEST(WeatherInAFrame, AttenuatesEveryBeamByTheTwoWayTransmission) {
   const LidarEquation light{.reference_range_m = 1000.0};
   Weather fog = dark_fog(1000.0);
   fog.rain_mm_per_h = 10.0;
-  fog.min_signal = 1e6;                            // drops that are seen have tests of their own
+  fog.min_signal = 1e6;                            // echoes of drops have their own tests
   const double alpha_per_m = 3.050e-3 + 1.556e-3;  // Kim's, and Marshall and Palmer's drops
   const Frame clear = shoot(light, {}, 100.0);
   const Frame foggy = shoot(light, fog, 100.0);
@@ -55,7 +55,7 @@ TEST(WeatherInAFrame, DimsEveryBeamByTheWayThereAndBack) {
   }
 }
 
-TEST(WeatherInAFrame, DimsPulsesWithAFootprintToo) {
+TEST(WeatherInAFrame, AttenuatesPulsesWithAFootprint) {
   const LidarEquation light{.reference_range_m = 1000.0};
   const Footprint footprint{.divergence_x_rad = 1e-4, .divergence_y_rad = 1e-4};
   const Frame clear = shoot(light, {}, 100.0, footprint);
@@ -68,7 +68,7 @@ TEST(WeatherInAFrame, DimsPulsesWithAFootprintToo) {
   }
 }
 
-TEST(WeatherInAFrame, TakesReturnsAndSaysSo) {
+TEST(WeatherInAFrame, RemovesReturnsWithTheStatusWeather) {
   const LidarEquation light{.reference_reflectance = 0.01, .reference_range_m = 200.0};
   const Frame clear = shoot(light, {}, 100.0);
   const Frame foggy = shoot(light, dark_fog(60.0), 100.0);
@@ -81,7 +81,7 @@ TEST(WeatherInAFrame, TakesReturnsAndSaysSo) {
   EXPECT_NEAR(foggy.ground_truth.range_m[31], 100.0, 1e-9);
 }
 
-TEST(WeatherInAFrame, FogBeforeAFaintTargetIsReportedInItsPlace) {
+TEST(WeatherInAFrame, FogInFrontOfAFaintTargetIsReportedInstead) {
   const LidarEquation light{.reference_range_m = 1000.0, .overlap = {{0.9, 0.0}, {1.0, 1.0}}};
   const Weather fog{.visibility_m = 100.0};
   const Frame frame = shoot(light, fog, 100.0);
@@ -89,11 +89,11 @@ TEST(WeatherInAFrame, FogBeforeAFaintTargetIsReportedInItsPlace) {
     ASSERT_EQ(frame.status[i], Status::hit);
     EXPECT_EQ(frame.return_source[i], ReturnSource::fog);
     EXPECT_LT(frame.range_m[i], 5.0);
-    EXPECT_NEAR(frame.ground_truth.range_m[i], 100.0, 0.01) << "the truth stays: the plane";
+    EXPECT_NEAR(frame.ground_truth.range_m[i], 100.0, 0.01) << "the ground truth is the plane";
   }
 }
 
-TEST(WeatherInAFrame, DropsAreReportedWhereNothingElseIs) {
+TEST(WeatherInAFrame, DropsAreReportedWithoutASurface) {
   const LidarEquation light{.reference_range_m = 1000.0};
   const Footprint footprint{.divergence_x_rad = 3e-3, .divergence_y_rad = 3e-3};
   // the plane is 2 m wide and 3 km away: the beams' edges see past it
@@ -111,7 +111,7 @@ TEST(WeatherInAFrame, DropsAreReportedWhereNothingElseIs) {
             0);
 }
 
-TEST(WeatherInAFrame, IsRefusedForLightThatIsNotPulsed) {
+TEST(WeatherInAFrame, IsAnErrorWithoutALidarEquation) {
   EXPECT_THROW(shoot({}, Weather{.rain_mm_per_h = 5.0}, 10.0), Error);
 }
 

@@ -127,7 +127,7 @@ class Shares(unittest.TestCase):
 
 class PlaneIcp(unittest.TestCase):
     def test_of_small_gicp_takes_residuals_by_components(self):
-        """What docs/studies/icp.md says of it: along an oblique normal n it sums (n_k r_k)^2, not (n r)^2."""
+        """What docs/studies/icp.md states: along an oblique normal n it sums (n_k r_k)^2, not (n r)^2."""
         normal = np.ones(3) / np.sqrt(3)
         along = np.array([1, -1, 0]) / np.sqrt(2)
         u, v = np.random.default_rng(0).random((2, 5000, 1)) - 0.5

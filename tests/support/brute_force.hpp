@@ -12,14 +12,15 @@
 
 namespace glidar::testing {
 
-/// What a beam meets, judged on every triangle in double. Shares no code with the renderers.
+/// The hit of a beam, from a test of every triangle in double. It shares no code with the
+/// renderers.
 struct Judged {
   std::uint32_t instance = kInvalidId;
   std::uint32_t primitive = kInvalidId;
   double range_m = std::numeric_limits<double>::quiet_NaN();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< world, front side
   /// Distance in metres, over all triangles in front of the beam's hit, from the beam to the
-  /// nearest border: where it is tiny, single precision may tell another triangle, or none.
+  /// nearest border: if it is tiny, single precision may report another triangle, or none.
   double border_m = std::numeric_limits<double>::infinity();
 };
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Runs the marked blocks of a page in the order of the page, in one folder.
 
-A comment above a fenced block says what becomes of it, NAME being the test that runs the page:
+A comment above a fenced block specifies its use; NAME is the test that runs the page:
   <!-- run by NAME -->                a block `sh` or `python` that succeeds without warnings
   <!-- run by NAME, exit code 2 -->   the same, but it ends with this code; 0: it succeeds, with warnings
   <!-- written by NAME: FILE -->      the block is written to FILE

@@ -14,7 +14,7 @@ inline Sensor preset(const std::string& name) {
   return load_sensor_file(find_sensor_file(name));
 }
 
-/// The same without noise.
+/// The preset without noise.
 inline Sensor noise_free_preset(const std::string& name) {
   Sensor sensor = preset(name);
   sensor.noise.clear();

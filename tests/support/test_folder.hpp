@@ -13,7 +13,7 @@
 
 namespace glidar::testing {
 
-/// An empty folder of its own for one test, gone with its owner.
+/// An empty temporary folder for one test, removed by the destructor.
 class TestFolder {
  public:
   TestFolder() {
@@ -43,7 +43,7 @@ class TestFolder {
     return file;
   }
 
-  /// Of what lies in it, sorted.
+  /// The names of its entries, sorted.
   [[nodiscard]] std::vector<std::string> names() const {
     std::vector<std::string> all;
     for (const auto& entry : std::filesystem::directory_iterator(path_))

@@ -5,10 +5,10 @@
 #include <chrono>
 #include <thread>
 
-/// Waiting for what a test needs: the only place of the C++ tests that sleeps.
+/// Waiting for conditions; the only place in the C++ tests that sleeps.
 namespace glidar::testing {
 
-/// Machines may be very busy; a test that goes well never waits so long.
+/// Long, because machines may be very busy; a passing test never waits this long.
 constexpr std::chrono::minutes kMaxWait{10};
 
 /// Repeats an action until it returns true; false when that takes longer than kMaxWait.
