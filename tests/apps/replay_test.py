@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""glidar stream --record and glidar replay: the same bytes again, here and elsewhere."""
+"""glidar stream --record and glidar replay: the same bytes on any machine."""
 
 import json
 import os
@@ -61,7 +61,7 @@ class Replay(ReplayTest):
             self.succeed("replay", "evil.jsonl")
             self.assertNotIn("evil", self.files())
 
-    def test_of_a_rig_tells_its_sensors_apart(self):
+    def test_of_a_rig_keeps_its_sensors_apart(self):
         self.write("rig.yaml", "models: [{model: box.obj, pose: {position: [6, 0, 0]}}]\n"
                                "sensors: [{name: a, sensor: VLP-16}, {name: b, sensor: VLP-16}]\n"
                                "rig_pose: {position: [0, 0, 0]}\n")
@@ -70,7 +70,7 @@ class Replay(ReplayTest):
         self.assertEqual(len(self.files_of("first")), 4)
         self.assertEqual(self.files_of("again"), self.files_of("first"))
 
-    def test_elsewhere_needs_the_files_as_they_lay(self):
+    def test_in_another_folder_needs_the_same_relative_paths(self):
         self.record_scene()
         with tempfile.TemporaryDirectory() as elsewhere:
             for name in ("r.jsonl", "scene.yaml", "box.obj"):
@@ -80,7 +80,7 @@ class Replay(ReplayTest):
             os.remove(os.path.join(elsewhere, "box.obj"))
             self.assertIn("box.obj", self.refused("replay", os.path.join(elsewhere, "r.jsonl"), "--quiet").split("\n")[-2])
 
-    def test_of_a_simulators_poses_gives_the_clouds_it_got(self):
+    def test_of_a_simulators_poses_gives_the_same_clouds(self):
         program, simulator, subscriber = self.in_the_loop("--pose-queue", "100", "--record", "r.jsonl")
         for k in range(5):
             attitude = (0.9, 0.1 * k, 0.2, -0.3)
@@ -90,7 +90,7 @@ class Replay(ReplayTest):
         clouds = subscriber.clouds_until_shutdown()
         self.finished(program, 0)
         self.assertEqual([line["stamp_ns"] for line in self.lines()[1:-1]], [100, 101, 102, 103, 104])
-        self.port = free_ports()  # the first subscriber would come back to the old one, without a handshake
+        self.port = free_ports()  # the first subscriber would reconnect to the old one, without a handshake
         program = self.start("r.jsonl", "--port", str(self.port), command="replay")
         again = self.subscriber()
         again.shake()
@@ -99,7 +99,7 @@ class Replay(ReplayTest):
         self.assertEqual([(stamp, points.tobytes()) for stamp, points in replayed],
                          [(stamp, points.tobytes()) for stamp, points in clouds])
 
-    def test_of_lock_step_measures_every_request_again(self):
+    def test_of_lock_step_repeats_every_request(self):
         sensor = body((6, 0, 0), (0.5, -0.5, -0.5, 0.5))
         spun = body((0.1, 0, 0), (0.8, 0, 0.6, 0), rate=(0.3, 2, 0.1), velocity=(0.5, 0, 0))
         with Server(self, "builtin:asteroid", *SMALL, "--record", "r.jsonl") as server:
@@ -113,8 +113,8 @@ class Replay(ReplayTest):
         self.assertEqual([line["seed"] for line in self.lines()[1:-1]], [0, 1, 2, 2**63, 1])
         self.assertIn("5 frames", self.succeed("replay", "r.jsonl").stdout)
 
-    def test_of_a_scanner_asked_in_any_order_is_the_same(self):
-        """Beams of a frame that is asked for again are those of its number, not of the last one."""
+    def test_of_a_scanner_is_the_same_for_requests_in_any_order(self):
+        """The beams of a repeated frame are those of its number, not of the previous frame."""
         sensor = body((3, 0, 0), (0, 0, 0, 1))
         with Server(self, "builtin:asteroid", "--sensor", "Livox-Avia", "--record", "r.jsonl") as server:
             socket = server.connect()
@@ -157,7 +157,7 @@ class Replay(ReplayTest):
         self.assertNotIn("--threads", self.lines()[0]["command"]["arguments"])
         self.succeed("replay", "r.jsonl", "--threads", "1")
 
-    def test_ends_after_so_many_frames_and_keeps_its_pace(self):
+    def test_ends_after_the_given_frames_and_keeps_its_rate(self):
         self.record_scene()
         begin = time.monotonic()
         done = self.succeed("replay", "r.jsonl", "--rate", "10", "--frames", "4")
@@ -166,7 +166,7 @@ class Replay(ReplayTest):
 
 
 class Recording(ReplayTest):
-    def test_is_whole_after_a_signal(self):
+    def test_is_complete_after_a_signal(self):
         program = self.start(self.box, *SMALL, "--camera-z", "10", "--object-rate", "0,1,0", "--rate", "50", "--record",
                              "r.jsonl", "-o", "s.pcd")
         wait_until(lambda: "s_000004.pcd" in self.files(), "five frames", program)
@@ -175,15 +175,15 @@ class Recording(ReplayTest):
         self.assertGreaterEqual(len(self.lines()), 7)
         self.succeed("replay", "r.jsonl")
 
-    def test_does_not_replace_what_the_scene_is_read_from(self):
+    def test_does_not_replace_files_of_the_scene(self):
         self.write("scene.yaml", SCENE)
         self.assertIn("is an input file", self.refused("stream", "scene.yaml", "--record", "box.obj", "-o", "s.pcd"))
 
-    def test_alone_is_enough(self):
+    def test_is_a_sufficient_output(self):
         self.succeed("stream", self.box, *SMALL, "--camera-z", "10", "--rate", "max", "--frames", "2", "--record", "r.jsonl")
         self.assertEqual(len(self.lines()), 4)
 
-    def test_and_statistics_do_not_replace_each_other_or_what_is_read(self):
+    def test_and_statistics_do_not_replace_each_other_or_inputs(self):
         self.write("scene.yaml", SCENE)
         out = ("--frames", "1", "--rate", "max")
         for arguments in (("--stats", "scene.yaml", "-o", "s.pcd"), ("--stats", "x", "--record", "x"),
@@ -198,25 +198,25 @@ class Recording(ReplayTest):
         self.assertEqual(self.run_program("replay", "r.jsonl", "--stats", "r.jsonl").returncode, 2)
         self.assertEqual(self.bytes_of("r.jsonl"), before)
 
-    def test_to_nowhere_is_refused(self):
+    def test_in_a_missing_folder_is_refused(self):
         self.assertIn("--record", self.refused("stream", self.box, "--record", "no/r.jsonl", "-o", "s.pcd"))
 
 
 class Refusals(ReplayTest):
-    def test_a_frame_that_comes_out_otherwise_is_an_error(self):
+    def test_a_frame_that_differs_is_an_error(self):
         self.record_scene()
         changed = self.bytes_of("box.obj").decode().replace("v 1.0 1.0 1.0", "v 1.1 1.0 1.0")
         self.write("box.obj", changed)
         done = self.run_program("replay", "r.jsonl")
         self.assertEqual(done.returncode, 2, done.stdout)
         self.assertIn("box.obj has changed since it was recorded", done.stderr)
-        self.assertRegex(done.stderr, "frame [0-5]: it comes out otherwise than when it was recorded")
+        self.assertRegex(done.stderr, "frame [0-5]: the repeated frame differs from the recorded one")
 
-    def test_what_is_no_recording_is_refused(self):
+    def test_other_files_are_refused(self):
         self.record_scene()
         good = self.bytes_of("r.jsonl").decode().splitlines()
         cases = {"": "it is empty", "{}": ":1: ", "no json": ":1: ", '{"recording": 2}': "format 2",
-                 good[0].replace('"stream"', '"render"'): "it tells another command"}
+                 good[0].replace('"stream"', '"render"'): "it has another command"}
         for text, words in cases.items():
             with self.subTest(text):
                 self.write("bad.jsonl", text)
@@ -225,7 +225,7 @@ class Refusals(ReplayTest):
         os.mkfifo(os.path.join(self.folder, "pipe"))
         self.assertIn("not a regular file", self.refused("replay", "pipe"))
 
-    def test_a_line_that_is_cut_or_wrong_is_named(self):
+    def test_a_truncated_or_invalid_line_is_named(self):
         self.record_scene()
         head, first, *rest = self.bytes_of("r.jsonl").decode().splitlines()
         wrong = json.loads(first)
@@ -247,12 +247,12 @@ class Refusals(ReplayTest):
                 self.assertEqual(done.returncode, 2, done.stdout)
                 self.assertIn(words, done.stderr)
 
-    def test_blank_lines_are_passed_over(self):
+    def test_blank_lines_are_skipped(self):
         self.record_scene()
         self.write("r.jsonl", self.bytes_of("r.jsonl").decode().replace("\n", "\n\n"))
         self.assertIn("6 frames", self.succeed("replay", "r.jsonl").stdout)
 
-    def test_names_that_are_no_text_cannot_be_recorded(self):
+    def test_names_that_are_not_utf8_cannot_be_recorded(self):
         name = b"b\xff.yaml"
         with open(os.path.join(os.fsencode(self.folder), name), "w", encoding="utf-8") as scene:
             scene.write("models: [{model: 'builtin:box'}]")
@@ -260,7 +260,7 @@ class Refusals(ReplayTest):
         self.assertIn("not UTF-8", error)
         self.assertNotIn("r.jsonl", self.files())
 
-    def test_a_recording_that_ends_early_is_not_taken_for_a_whole_one(self):
+    def test_a_truncated_recording_is_an_error(self):
         self.record_scene()
         for kept in (1, 3):
             self.write("bad.jsonl", "\n".join(self.bytes_of("r.jsonl").decode().splitlines()[:kept]) + "\n")
@@ -268,7 +268,7 @@ class Refusals(ReplayTest):
             self.assertEqual(done.returncode, 2, done.stdout)
             self.assertIn("it ends before its last line", done.stderr)
 
-    def test_a_pace_that_is_none_is_refused(self):
+    def test_an_invalid_rate_is_refused(self):
         self.record_scene()
         for rate in ("-5", "nan", "inf", "fast"):
             self.assertIn("--rate", self.refused("replay", "r.jsonl", "--rate", rate))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Sensors and surfaces that come along, from the command line. The built program is found in PATH."""
+"""Sensor and surface presets on the command line. The built program is found in PATH."""
 
 import json
 import os
@@ -10,7 +10,7 @@ from cli_support import CliTest
 
 
 class Sensors(CliTest):
-    def test_list_tells_every_preset(self):
+    def test_the_list_has_every_preset(self):
         lines = self.succeed("sensors").stdout.splitlines()
         names = {line.split()[0] for line in lines[1:]}
         self.assertLessEqual({"VLP-16", "OS1-128", "Livox-Avia", "D435", "TiM781"}, names)
@@ -19,7 +19,7 @@ class Sensors(CliTest):
         self.assertEqual(told["VLP-16"]["rows"], 16)
         self.assertEqual(told["VLP-16"]["view_deg"][0], 360)
 
-    def test_the_list_and_the_docs_count_the_values_that_are_backed(self):
+    def test_the_list_and_the_docs_count_the_values_with_sources(self):
         root = os.path.join(os.path.dirname(__file__), "..", "..")
         with open(os.path.join(root, "docs", "sensors.md"), encoding="utf-8") as file:
             rows = [[cell.strip() for cell in line.strip("|\n ").split("|")] for line in file if line.startswith("| ")]
@@ -36,14 +36,14 @@ class Sensors(CliTest):
         typed = [line for line in stars if line.split(" = ")[0].endswith(("type", "kind"))]
         self.assertEqual(len(stars) - len(typed), values - backed)
 
-    def test_surfaces_are_listed_and_cover_a_model(self):
+    def test_surfaces_are_listed_and_applied_to_a_model(self):
         lines = self.succeed("sensors", "--surfaces").stdout.splitlines()
         asphalt = next(line for line in lines if line.startswith("asphalt "))
         self.assertEqual(asphalt.split()[1:5], ["0.269", "0.278", "0.302", "0.362"])
         told = {entry["name"]: entry
                 for entry in json.loads(self.succeed("sensors", "--surfaces", "--json").stdout)}
         self.assertEqual(told["grass"]["reflectance_at_nm"]["1550"], 0.243)
-        self.assertFalse(told["mli"]["matt"])
+        self.assertFalse(told["mli"]["diffuse"])
         self.assertIn("--surfaces alone", self.refused("sensors", "VLP-16", "--surfaces"))
 
         box = ("render", "builtin:box", "--eye", "0,0,0", "-o", "a.csv", "--surface")
@@ -52,13 +52,13 @@ class Sensors(CliTest):
         with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
             next(file)
             counts = {float(line.split(",")[3]) for line in file}
-        self.assertEqual(max(counts), 5)  # percent, square on
+        self.assertEqual(max(counts), 5)  # percent, at normal incidence
         self.assertIn("did you mean 'black_paint'?", self.refused(*box, "blak_paint", *lidar))
-        self.assertIn("no pulse light", self.refused(*box, "grass"))
+        self.assertIn("no pulsed light", self.refused(*box, "grass"))
         self.write("s.yaml", "models: [{model: builtin:box}]\nsensor: VLP-16\n")
         self.assertIn("scene file", self.refused("render", "s.yaml", "--surface", "grass", "-o", "a.csv"))
 
-    def test_one_sensor_tells_its_sources_and_draws_its_pattern(self):
+    def test_a_sensor_prints_its_sources_and_draws_its_pattern(self):
         text = self.succeed("sensors", "vlp-16", "-o", "pattern.png").stdout
         self.assertIn("optics.firing_period_us = 55.296", text)
         self.assertIn("VLP-16 manual", text)
@@ -67,7 +67,7 @@ class Sensors(CliTest):
         self.assertIn("did you mean VLP-16?", self.refused("sensors", "VLP-17"))
         self.assertIn("no sensor is given", self.refused("sensors", "-o", "x.png"))
 
-    def test_a_pattern_has_the_name_of_a_png(self):
+    def test_a_pattern_needs_the_suffix_png(self):
         self.succeed("sensors", "vlp-16", "-o", "UPPER.PNG")
         for name in ("x.pcd", "x", "png", "x.png.pcd"):
             self.assertIn(f"--output: '{name}'; allowed: a name that ends in .png",
@@ -84,7 +84,7 @@ class Sensors(CliTest):
         self.assertEqual(sensor["frame_id"], "lidar_frame")
         self.assertEqual(len(sensor["optics"]["elevation_deg"]), 16)
 
-    def test_a_preset_is_noisy_unless_it_is_to_be_ideal(self):
+    def test_ground_truth_removes_the_noise_of_a_preset(self):
         self.write("room.yaml", "models: [{model: builtin:box, scale: 4}]\nsensor: VLP-16\n"
                                 "sensor_pose: {position: [0, 0, 0]}\n")
         walls = []
@@ -100,19 +100,19 @@ class Sensors(CliTest):
         self.assertGreater(max(abs(wall - 4) for wall in walls[0]), 0.01)
         self.assertLess(max(abs(wall - 4) for wall in walls[1]), 1e-9)
 
-    def test_the_paper_s_light_is_refused_where_lidar_equation_is(self):
+    def test_options_of_the_paper_s_light_are_refused_for_pulsed_light(self):
         box = ("render", "builtin:box", "--eye", "0,0,0", "--sensor", "VLP-16", "-o", "a.pcd")
         self.assertIn("--ambient: the sensor has pulsed light; leave it out, or add --ground-truth",
                       self.refused(*box, "--ambient", "0"))
         self.assertIn("--attenuation: the sensor has", self.refused(*box, "--attenuation", "1,0,0"))
         self.succeed(*box, "--ambient", "0", "--ground-truth")
 
-    def test_without_a_pose_it_stands_beside_the_scene_and_says_so(self):
+    def test_without_a_pose_a_lidar_is_beside_the_scene_with_a_note(self):
         done = self.succeed("render", "builtin:asteroid", "--sensor", "OS1-32", "-o", "a.pcd")
         self.assertIn("beside the scene", done.stderr)
         self.assertNotIn(" 0 hits", done.stdout)
 
-    def test_a_layout_gives_the_drivers_fields(self):
+    def test_a_layout_has_the_driver_s_fields(self):
         self.succeed("render", "builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "--layout", "velodyne",
                      "-o", "v.pcd", "-o", "v.csv", "-o", "v.png", "--quiet")
         head = self.bytes_of("v.pcd").split(b"DATA")[0].decode()
@@ -125,7 +125,7 @@ class Sensors(CliTest):
         self.assertIn("  velodyne     velodyne_pointcloud: x y z intensity ring time\n",
                       self.succeed("render", "--help").stdout)
 
-    def test_beams_and_returns_are_told_with_their_sources(self):
+    def test_beams_and_returns_are_printed_with_their_sources(self):
         text = self.succeed("sensors", "VLS-128").stdout
         self.assertIn("\n  footprint.divergence_mrad = 3, 1.5\n      VLS-128 User Manual, table F-1", text)
         self.assertIn("\n* receiver.pulse_ns = 6\n", text)
@@ -137,10 +137,10 @@ class Sensors(CliTest):
         self.assertIsNone(told["UTM-30LX"]["divergence_mrad"])
         self.assertEqual(told["D435"]["returns"], [])
 
-    def test_returns_can_be_chosen(self):
+    def test_returns_can_be_selected(self):
         room = ("render", "builtin:box", "--eye", "0,0,0", "--sensor", "VLP-16", "--returns")
         done = self.succeed(*room, "strongest,last", "-o", "a.pcd")
-        self.assertIn("1809 x 32 beams, 28944 hits (50.0 %)", done.stdout)  # a wall sends back one echo
+        self.assertIn("1809 x 32 beams, 28944 hits (50.0 %)", done.stdout)  # a wall returns one echo
         with open(os.path.join(self.folder, "a.pcd.json"), encoding="utf-8") as file:
             self.assertEqual(json.load(file)["sensor"]["receiver"]["returns"], ["strongest", "last"])
         self.assertIn("1809 x 48 beams", self.succeed(*room, "3", "-o", "a.pcd").stdout)
@@ -152,7 +152,7 @@ class Sensors(CliTest):
         self.assertIn("--returns: the sensor has no pulse light", self.refused(
             "render", "builtin:box", "--returns", "last", "-o", "a.pcd"))
 
-    def test_columns_and_rate_can_be_chosen(self):
+    def test_columns_and_rate_can_be_selected(self):
         done = self.succeed("render", "builtin:box", "--eye", "0,0,0", "--sensor", "OS1-32",
                             "--columns-per-turn", "512", "--rate", "20", "-o", "a.pcd")
         self.assertIn("512 x 32 beams", done.stdout)

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""glidar stream among peers that ask for too much, send too much, read nothing, or send garbage."""
+"""glidar stream with peers that request too much, send too much, never read, or send garbage."""
 
 import contextlib
 import signal
@@ -58,14 +58,14 @@ class Lockstep(LimitsTest):
         program.send_signal(signal.SIGTERM)
         return self.finished(program, 143)
 
-    def test_a_reply_that_exceeds_the_limit_is_refused_with_words_before_it_is_measured(self):
+    def test_a_reply_beyond_the_limit_is_refused_before_it_is_measured(self):
         program = self.listen(size=("--width", "256", "--height", "256"))
         asking, other = self.client(), self.client()
         asking.send(request(65536, [b"xyz", b"true_xyz", b"normal", b"intensity", b"range"]))
         kind, text = self.kind_and_text(asking)
         self.assertEqual(kind, 3)
         for word in ("size of the reply", "294919.5 MiB", "65536 clouds of 65536 points", "at most 1024 (--limit reply-mib)",
-                     "ask for fewer moments or columns"):
+                     "request fewer moments or columns"):
             self.assertIn(word, text)
         self.assertTrue(self.is_answered(other))
         self.stop(program)
@@ -79,7 +79,7 @@ class Lockstep(LimitsTest):
         self.assertEqual(self.kind_and_text(asking)[0], 2)
         self.stop(program)
 
-    def test_a_long_request_does_not_make_others_wait_for_its_end(self):
+    def test_a_long_request_does_not_block_others(self):
         program = self.listen()
         long, short = self.client(), self.client()
         long.send(request(60_000))
@@ -88,7 +88,7 @@ class Lockstep(LimitsTest):
         self.assertFalse(long.poll(0), "the long one was not answered meanwhile")
         self.stop(program)
 
-    def test_a_request_ends_at_its_deadline_with_words(self):
+    def test_a_request_ends_at_its_deadline_with_an_error(self):
         program = self.listen("--limit", "request-s=1", "--limit", "reply-mib=100000", "--limit", "memory-mib=100000",
                               size=("--width", "512", "--height", "512"))
         asking = self.client()
@@ -98,15 +98,15 @@ class Lockstep(LimitsTest):
         self.assertRegex(text, r"time: \d+ of 10000 moments are measured after 1 s; allowed: at most 1 .*request-s")
         self.stop(program)
 
-    def test_sigterm_ends_a_request_in_work_with_words(self):
+    def test_sigterm_ends_an_open_request_with_an_error(self):
         program = self.listen("--limit", "reply-mib=100000", "--limit", "memory-mib=100000",
                               size=("--width", "512", "--height", "512"))
         asking = self.client()
         self.assertTrue(self.is_answered(asking))
-        asking.send(request(10_000))  # over a connection that is there, and so before that of another
-        self.assertTrue(self.is_answered(self.client()))  # it is in work
+        asking.send(request(10_000))  # over an existing connection, and therefore before the next client's request
+        self.assertTrue(self.is_answered(self.client()))  # the request is open
         self.stop(program)
-        self.assertEqual(self.kind_and_text(asking), (3, "request: GLIDAR was ended by a signal"))
+        self.assertEqual(self.kind_and_text(asking), (3, "request: GLIDAR was stopped by a signal"))
 
     def test_a_message_that_never_ends_is_cut_off(self):
         program = self.listen("--limit", "request-mib=1")
@@ -117,7 +117,7 @@ class Lockstep(LimitsTest):
         self.assertIn("no whole message", self.stop(program))
         self.assertGreaterEqual(self.stats()["faults"]["peer cut off"], 1)
 
-    def test_garbage_costs_nobody_a_reply(self):
+    def test_garbage_does_not_affect_replies_to_others(self):
         program = self.listen()
         asking = self.client()
         for k in range(200):
@@ -182,7 +182,7 @@ class Streaming(LimitsTest):
         self.subscriber().shake()
         self.stop(program)
 
-    def test_goes_on_when_file_descriptors_run_out_and_reports_it_once(self):
+    def test_continues_without_file_descriptors_and_reports_it_once(self):
         program = self.start_by(
             "bash", "-c", 'ulimit -n 64; exec glidar "$@"', "-", "stream", self.box, *SIZE, "--port", str(self.port),
             "--subscribers", "0", "--rate", "20", "--object-rate", "0,0.5,0", "--stats", "stats.json", "-o", "a.csv",
@@ -191,7 +191,7 @@ class Streaming(LimitsTest):
         cloud(self.reading.receive())
         idle = []
         for _ in range(100):
-            with contextlib.suppress(ConnectionResetError):  # closed by the server while it was being opened
+            with contextlib.suppress(ConnectionResetError):  # closed by the server during connect
                 idle.append(Peer(self.port, timeout_s=MAX_WAIT_S))
         self.goes_on()
         late = self.subscriber()
@@ -204,7 +204,7 @@ class Streaming(LimitsTest):
         self.assertEqual(self.stop(program).count("file descriptors used up"), 1)
         self.assertIn("file descriptors used up", self.stats()["faults"])
 
-    def test_sigterm_ends_it_though_nobody_reads(self):
+    def test_sigterm_ends_it_although_nobody_reads(self):
         program = self.publish_box("--width", "512", "--height", "512", "--fov", "20", "--subscribers", "0", "--rate",
                                    "max", "--object-rate", "0,0.5,0")
         reading = self.subscriber()

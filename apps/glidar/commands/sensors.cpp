@@ -230,7 +230,7 @@ Json json_of(const SurfacePreset& surface) {
   return {{"name", surface.name},
           {"about", surface.about},
           {"reflectance_at_nm", reflectance},
-          {"matt", std::holds_alternative<Lambert>(surface.backscatter)},
+          {"diffuse", std::holds_alternative<Lambert>(surface.backscatter)},
           {"source", surface.source},
           {"verified", surface.verified}};
 }
@@ -238,13 +238,13 @@ Json json_of(const SurfacePreset& surface) {
 void print_surfaces(const std::vector<SurfacePreset>& surfaces) {
   fmt::print("{:<16}", "name");
   for (const int nm : kSurfaceWavelengths_nm) fmt::print("{:>6} nm", nm);
-  fmt::print("  {:<6}  {:<8}  {}\n", "form", "verified", "what it is");
+  fmt::print("  {:<7}  {:<8}  {}\n", "form", "verified", "what it is");
   for (const SurfacePreset& surface : surfaces) {
     fmt::print("{:<16}", surface.name);
     for (const double reflectance : reflectances(surface)) fmt::print("{:>9.3f}", reflectance);
-    const bool is_matt = std::holds_alternative<Lambert>(surface.backscatter);
-    fmt::print("  {:<6}  {:<8}  {}\n", is_matt ? "matt" : "glossy", surface.verified ? "yes" : "no",
-               surface.about);
+    const bool is_diffuse = std::holds_alternative<Lambert>(surface.backscatter);
+    fmt::print("  {:<7}  {:<8}  {}\n", is_diffuse ? "diffuse" : "glossy",
+               surface.verified ? "yes" : "no", surface.about);
   }
 }
 

@@ -89,7 +89,7 @@ void add_publishing_options(CLI::App& command, StreamFlags& flags) {
 void add_pose_source_options(CLI::App& command, StreamFlags& flags) {
   const OptionGroup group(command,
                           "Poses over ZeroMQ, protocol of Woods 2016 (handshake at the next port)");
-  group.add("--pose-source", "ENDPOINT", "Simulator that publishes poses, tcp://HOST:PORT [none]",
+  group.add("--pose-source", "ADDRESS", "Simulator that publishes poses, tcp://HOST:PORT [none]",
             flags.pose_source, parse_pose_source);
   group.add("--pose-queue", "N", "Queued poses, each gives a frame; 0: the newest only [0]",
             flags.pose_queue, whole(0, kMaxQueue));
@@ -102,7 +102,7 @@ void add_pose_source_options(CLI::App& command, StreamFlags& flags) {
 /// Requests give times and poses, so that no other option may.
 void add_lockstep_options(CLI::App& command, StreamFlags& flags) {
   const OptionGroup group(command, "Lock-step over ZeroMQ: clients request every frame");
-  group.add("--lockstep", "ENDPOINT", "Answer at tcp://HOST:PORT (* any port) or ipc://PATH",
+  group.add("--lockstep", "ADDRESS", "Answer at tcp://HOST:PORT (* any port) or ipc://PATH",
             [&flags](const std::string& text) {
               (void)link::parse_endpoint(text);
               flags.lockstep = text;

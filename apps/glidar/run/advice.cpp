@@ -17,20 +17,20 @@ constexpr double kSmallModel_m = 0.001;
 constexpr double kLargeRatio = 1000.0;        // between size and distance: a wrong unit
 constexpr double kMinBackFaceFraction = 0.9;  // of the hits are on back faces: seen from inside
 
-/// True when nobody specified the unit of some model: neither the user nor its file.
+/// True if neither the user nor the file specifies the unit of a model.
 bool has_assumed_unit(const Scene& scene) {
   return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
     return instance.mesh >= scene.sources.size() || !scene.sources[instance.mesh].unit_known;
   });
 }
 
-/// The scene as the sensor sees it, without looking at single triangles.
+/// The scene's bounding box relative to the sensor.
 struct ViewGeometry {
   double size_m = 0.0;        ///< diagonal of the scene's box
-  double depth_m = 0.0;       ///< of the box's middle
-  double deepest_m = 0.0;     ///< of the box's corners
-  double distance_m = 0.0;    ///< to the box's middle
-  double off_axis_rad = 0.0;  ///< angle between boresight and the box's middle
+  double depth_m = 0.0;       ///< of the box's centre
+  double deepest_m = 0.0;     ///< maximum of the box's corners
+  double distance_m = 0.0;    ///< to the box's centre
+  double off_axis_rad = 0.0;  ///< angle between the boresight and the box's centre
   double view_rad = 0.0;      ///< greatest angle between boresight and a beam
   double pixel_rad = 0.0;     ///< angle between two beams in the middle of the image
 };
@@ -46,7 +46,7 @@ double pixel_angle_rad(const Beams& beams) {
   return angle_rad(beams.directions[middle], beams.directions[middle - step]);
 }
 
-/// The box of the scene as it stands in this frame, in the sensor's frame.
+/// The bounding box of the scene in this frame, in target coordinates.
 Eigen::AlignedBox3d scene_box(const View& view, const Pose& target_from_world) {
   Eigen::AlignedBox3d all;
   for (std::size_t i = 0; i < view.scene.instances.size(); ++i) {
@@ -87,7 +87,7 @@ double degrees(double angle) {
   return angle * 180.0 / std::numbers::pi;
 }
 
-/// The nearest and farthest distance of what was hit, reported or not, as the limits count it.
+/// The nearest and farthest distance of all surfaces met, reported or not, along the limits' axis.
 std::string true_distances(const View& view) {
   double nearest = std::numeric_limits<double>::infinity();
   double farthest = 0.0;
@@ -103,7 +103,7 @@ std::string true_distances(const View& view) {
   return fmt::format("{:.6g} to {:.6g} m", nearest, farthest);
 }
 
-/// How many beams meet something within the limits that is not reported.
+/// How many beams meet a surface that is not reported.
 std::size_t undetected_surfaces(const View& view) {
   std::size_t lost = 0;
   for (std::size_t i = 0; i < view.frame.status.size(); ++i) {
@@ -114,14 +114,14 @@ std::size_t undetected_surfaces(const View& view) {
   return lost;
 }
 
-/// Why nothing was hit, and what to do.
+/// Why there are no hits, and the remedy.
 std::string reason_for_no_hits(const View& view, const ViewGeometry& geometry,
                                const FrameSummary& summary) {
-  constexpr const char* kFrameIt = "leave the pose options out to have the scene framed";
+  constexpr const char* kFrameIt = "leave the pose options out to frame the scene";
   if (summary.beams == 0) return "the optics have no beam for any pixel; check the distortion";
   if (summary.too_near + summary.too_far > 0) {
     return fmt::format(
-        "{} beams meet surfaces outside the sensor's {} limits: these lie at {}, the limits are "
+        "{} beams hit surfaces outside the sensor's {} limits: they are at {}, the limits are "
         "{} to {} m; change --near and --far",
         summary.too_near + summary.too_far,
         view.sensor.limits.along == Limits::Along::depth ? "depth" : "range", true_distances(view),
@@ -129,42 +129,43 @@ std::string reason_for_no_hits(const View& view, const ViewGeometry& geometry,
   }
   if (const std::size_t lost = undetected_surfaces(view)) {
     return fmt::format(
-        "{} beams meet surfaces, but what comes back is too weak or too strong, or lost: see the "
-        "column 'status', and `glidar explain`",
+        "{} beams meet surfaces, but the received signal is too weak, too strong or dropped: see "
+        "the "
+        "field 'status', and `glidar explain`",
         lost);
   }
   if (geometry.deepest_m < 0.0 && geometry.view_rad < 0.5 * std::numbers::pi) {
     return fmt::format(
-        "the scene is behind the sensor: its middle is {:.6g} m away at depth {:.6g} m; "
+        "the scene is behind the sensor: its centre is {:.6g} m away at depth {:.6g} m; "
         "turn the sensor, or {}",
         geometry.distance_m, geometry.depth_m, kFrameIt);
   }
-  const bool around = geometry.distance_m <= 0.5 * geometry.size_m;  // it may be on every side
+  const bool around = geometry.distance_m <= 0.5 * geometry.size_m;  // it may surround the sensor
   const double half_size_rad =
       around ? std::numbers::pi : std::asin(0.5 * geometry.size_m / geometry.distance_m);
   if (geometry.off_axis_rad - half_size_rad > geometry.view_rad) {
     return fmt::format(
-        "the scene is outside the view: its middle is {:.1f} degrees off the "
-        "boresight, the view reaches {:.1f}; turn the sensor, or {}",
+        "the scene is outside the view: its centre is {:.1f} degrees off the "
+        "boresight, the view extends to {:.1f}; turn the sensor, or {}",
         degrees(geometry.off_axis_rad), degrees(geometry.view_rad), kFrameIt);
   }
   if (2.0 * half_size_rad < 2.0 * geometry.pixel_rad) {
     return fmt::format(
-        "the scene is too small to be met by a beam: {:.6g} m across at {:.6g} m is "
-        "{:.2g} pixels; go nearer, narrow --fov, {}or {}",
+        "the scene is too small for a beam to hit: {:.6g} m across at {:.6g} m is "
+        "{:.2g} pixels; move closer, narrow --fov, {}or {}",
         geometry.size_m, geometry.distance_m, 2.0 * half_size_rad / geometry.pixel_rad,
         has_assumed_unit(view.scene) ? "check --unit, " : "", kFrameIt);
   }
   if (view.sensor.cull_back_faces) {
-    return "only back faces may be there, and --cull-back-faces lets beams through; leave it out";
+    return "only back faces are visible, and beams pass them with --cull-back-faces; leave it out";
   }
   return fmt::format(
       "no beam meets a triangle, though the scene ({:.6g} m across, {:.6g} m away) "
-      "lies in front of the sensor; aim elsewhere, or {}",
+      "is in front of the sensor; aim elsewhere, or {}",
       geometry.size_m, geometry.distance_m, kFrameIt);
 }
 
-/// The part of this instance's hits that lie on the backs of its triangles, by a sample.
+/// The fraction of this instance's hits on back faces, from a sample.
 double back_face_fraction(const View& view, std::size_t index) {
   constexpr std::size_t kSample = 4096;
   const Instance& instance = view.scene.instances[index];
@@ -191,7 +192,7 @@ std::string label(const Instance& instance) {
   return instance.name.empty() ? "the model" : "'" + instance.name + "'";
 }
 
-/// Instances in whose boxes the sensor stands.
+/// Instances whose boxes contain the sensor.
 std::vector<std::size_t> boxes_with_sensor(const View& view) {
   std::vector<std::size_t> around;
   for (std::size_t i = 0; i < view.scene.instances.size(); ++i) {
@@ -204,44 +205,44 @@ std::vector<std::size_t> boxes_with_sensor(const View& view) {
   return around;
 }
 
-/// A sensor that looks all around is meant to stand amid the scene, and one that sees the fronts of
-/// surfaces is not within what they enclose.
+/// Not for 360 degree sensors, which are meant to be inside scenes, nor for sensors that see front
+/// faces.
 void add_inside_advice(const View& view, const ViewGeometry& geometry,
                        const std::vector<std::size_t>& around, std::vector<std::string>& advice) {
   if (geometry.view_rad > 0.5 * std::numbers::pi) return;
   for (const std::size_t i : around) {
     if (back_face_fraction(view, i) <= kMinBackFaceFraction) continue;
     advice.push_back(
-        fmt::format("the sensor is inside {} and sees the backs of its surfaces; unless that is a "
-                    "room, move it out, or leave the pose options out to have the scene framed",
+        fmt::format("the sensor is inside {} and sees the backs of its surfaces; unless it is a "
+                    "room, move it out, or leave the pose options out to frame the scene",
                     label(view.scene.instances[i])));
   }
 }
 
-/// A unit is only doubted where it was assumed.
+/// Suggests a unit only if it is assumed.
 void add_ratio_advice(const ViewGeometry& geometry, bool is_unit_assumed,
                       std::vector<std::string>& advice) {
   if (geometry.size_m > kLargeRatio * geometry.distance_m) {
     advice.push_back(fmt::format(
-        "the scene is {:.6g} m across but its middle is only {:.6g} m from the sensor; {}",
+        "the scene is {:.6g} m across but its centre is only {:.6g} m from the sensor; {}",
         geometry.size_m, geometry.distance_m,
         is_unit_assumed ? "if the file is in millimetres, give --unit mm"
-                        : "if that is not meant, check the pose and --scale"));
+                        : "if this is not intended, check the pose and --scale"));
   } else if (geometry.distance_m > kLargeRatio * geometry.size_m) {
     advice.push_back(
-        fmt::format("the scene is {:.6g} m across but {:.6g} m from the sensor; if that "
-                    "is not meant, check {}--scale and the pose",
+        fmt::format("the scene is {:.6g} m across but {:.6g} m from the sensor; if this "
+                    "is not intended, check {}--scale and the pose",
                     geometry.size_m, geometry.distance_m, is_unit_assumed ? "--unit, " : ""));
   }
 }
 
-/// True when a box from `least` to `most` stands on zero or hovers above it.
+/// True if a box from `least` to `most` is on zero or above it.
 bool is_on_zero(double least, double most) {
   constexpr double kSunk = 0.02;  // part of its height that may be below
   return most > least && least >= -kSunk * (most - least);
 }
 
-/// True when zero lies well within.
+/// True if zero is well inside.
 bool straddles_zero(double least, double most) {
   constexpr double kMinPart = 0.1;
   const double part = kMinPart * (most - least);
@@ -273,13 +274,13 @@ std::vector<std::string> size_advice(const Scene& scene, bool sized) {
   if (size_m > kLargeModel_m) {
     return {
         fmt::format("the model is {:.6g} m across; if its file is in millimetres, give --unit mm "
-                    "({:.6g} m), otherwise --unit m says that it is right",
+                    "({:.6g} m), otherwise --unit m confirms the size",
                     size_m, size_m / 1000.0)};
   }
   if (size_m < kSmallModel_m) {
     return {
         fmt::format("the model is {:.6g} m across; if its file is in kilometres, give --scale "
-                    "1000, otherwise --unit m says that it is right",
+                    "1000, otherwise --unit m confirms the size",
                     size_m)};
   }
   return {};
@@ -294,8 +295,8 @@ std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box)
   const Eigen::Vector3d& most = box.max();
   if (is_on_zero(least.y(), most.y()) && straddles_zero(least.x(), most.x()) &&
       straddles_zero(least.z(), most.z())) {
-    return "a guess: y is up in this file, since the model stands on or above y = 0 and around x = "
-           "z = 0; if so, --up y makes that +z, which is up here";
+    return "a guess: y is up in this file, because the model is on or above y = 0 and around x = "
+           "z = 0; if so, --up y converts it to +z";
   }
   return "";
 }
@@ -303,9 +304,9 @@ std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box)
 std::string placement_advice(const Scene& scene, const Pose& world_from_sensor) {
   const Eigen::Vector3d at = world_from_sensor.translation();
   return fmt::format(
-      "the sensor stands upright beside the scene, {:.4g} m from its middle, at "
+      "the sensor is upright beside the scene, {:.4g} m from its centre, at "
       "{:.4g},{:.4g},{:.4g};"
-      " --eye x,y,z puts it elsewhere, for example into a room",
+      " --eye x,y,z places it elsewhere, for example in a room",
       (at - bounds(scene).center()).norm(), at.x(), at.y(), at.z());
 }
 

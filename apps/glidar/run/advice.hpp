@@ -13,7 +13,7 @@
 
 namespace glidar::app {
 
-/// A measurement and what it was made of.
+/// A measurement and its inputs.
 struct View {
   const Scene& scene;
   const Sensor& sensor;
@@ -23,7 +23,7 @@ struct View {
 
 /// Counts and extremes of a measurement.
 struct FrameSummary {
-  std::size_t beams = 0;  ///< pixels that have one
+  std::size_t beams = 0;  ///< pixels with a beam
   std::size_t hits = 0;
   std::size_t too_near = 0;
   std::size_t too_far = 0;
@@ -33,18 +33,18 @@ struct FrameSummary {
 
 FrameSummary summarise(const Frame& frame);
 
-/// What the user should know about a model of doubtful size. Nothing where the unit or the scale
-/// was given (`sized`), or every model file declares its unit.
+/// Advice about models of implausible size. None if the unit or the scale is given (`sized`), or
+/// every model file declares its unit.
 std::vector<std::string> size_advice(const Scene& scene, bool sized);
 
-/// A hint at --up, for formats that declare no up axis: a guess from how the model is placed, on or
-/// above zero along y and across zero along the others. Empty: none.
+/// A hint at --up for formats that declare no up axis: the model is on or above zero along y and
+/// across zero along the other axes. Empty: none.
 std::string up_advice(const std::string& format, const Eigen::AlignedBox3d& box);
-/// Where a LiDAR was put that no option placed.
+/// The default position of a LiDAR.
 std::string placement_advice(const Scene& scene, const Pose& world_from_sensor);
 
-/// What the user should know about where the sensor stands: inside a model of which it sees the
-/// backs alone while it looks one way, too near or too far for its size, or nothing hit and why.
+/// Advice about the sensor's pose: inside a model whose back faces it sees, too near or too far for
+/// the model's size, or why there are no hits.
 std::vector<std::string> view_advice(const View& view);
 
 }  // namespace glidar::app

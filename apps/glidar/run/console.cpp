@@ -23,7 +23,7 @@ void print(const std::string& text) {
   std::fflush(stderr);
 }
 
-/// Of the terminal; a longer line would wrap, and then it could not be taken away.
+/// Width of the terminal; a longer line would wrap and could not be erased.
 std::size_t terminal_columns() {
   constexpr std::size_t kDefault = 80;
   winsize size{};
@@ -111,7 +111,7 @@ void Console::redraw() {
   const Clock::time_point now = Clock::now();
   if (now - work_started_ < kProgressDelay) return;
   const double elapsed_s = std::chrono::duration<double>(now - task_started_).count();
-  // back to the line's start, and empty it
+  // returns to the line's start and erases it
   print("\r\033[K" + progress_line(task_, fraction_, elapsed_s, terminal_columns() - 1));
   drawn_ = true;
 }

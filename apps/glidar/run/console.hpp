@@ -14,8 +14,7 @@
 namespace glidar::app {
 
 /// The terminal: results go to standard output, everything else to standard error. Keeps messages
-/// and the progress display from running into each other; every function may be called from any
-/// thread.
+/// and the progress display apart. Thread-safe.
 class Console {
  public:
   explicit Console(bool quiet = false);
@@ -23,24 +22,23 @@ class Console {
   Console& operator=(const Console&) = delete;
   ~Console();
 
-  /// Says something useful that may be left out (--quiet).
+  /// Prints a note unless --quiet is given.
   void info(std::string_view message);
-  /// Says what the user should know; never left out.
+  /// Prints a warning, also with --quiet.
   void warn(std::string_view message);
-  /// Says what went wrong, for programs that go on; nobody else is told.
+  /// Prints an error after which the program continues; the listener does not get it.
   void error(std::string_view message);
-  /// How far the work is that is under way (see ProgressScope), negative: unknown. Costs little.
+  /// Progress of the current work (see ProgressScope); negative: unknown. Cheap.
   void set_progress(double fraction_done);
-  /// The same of a part of that work that has a name of its own.
+  /// The same for a named part of that work.
   void set_progress(std::string_view task, double fraction_done);
 
-  /// A line that stands on a terminal until the next one, or anything else, takes its place; empty:
-  /// none.
+  /// A status line on a terminal, until the next output; empty: none.
   void status(std::string_view line);
 
-  /// The library's way to all of the above; must not outlive the console.
+  /// Callbacks for the library to all of the above; must not outlive the console.
   Report report();
-  /// Who else is told all that; called from the threads that tell it. Empty: nobody.
+  /// Also sends notes, warnings and progress to this listener, from any thread. Empty: none.
   void listen(Report listener);
 
  private:
@@ -63,8 +61,7 @@ class Console {
   Clock::time_point task_started_;
 };
 
-/// While it lives, the console shows how far this work is: on a terminal only, and only once it has
-/// taken two seconds. One at a time.
+/// RAII: shows the progress of this work on a terminal after two seconds. One at a time.
 class ProgressScope {
  public:
   ProgressScope(Console& console, std::string_view task);

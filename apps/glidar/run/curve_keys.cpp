@@ -17,7 +17,7 @@ link::CurveKeys make_file(const std::string& path, Console& console) {
   AtomicFile file(path, AtomicFile::Readers::owner);
   file.write("public " + keys.public_key + "\nsecret " + keys.secret_key + "\n");
   file.commit();
-  console.info("made new keys in " + path + "; clients need the public one: " + keys.public_key);
+  console.info("created new keys in " + path + "; clients need the public one: " + keys.public_key);
   return keys;
 }
 
@@ -38,7 +38,7 @@ link::CurveKeys curve_keys(const std::string& path, Console& console) {
   throw Error({.where = "--curve-keys, " + path,
                .found = "no keys",
                .allowed = "two lines, 'public KEY' and 'secret KEY', with 40 letters of Z85 each",
-               .remedy = "name a file that is not there: new keys are written to it"});
+               .remedy = "name a file that does not exist: it is created with new keys"});
 }
 
 }  // namespace glidar::app

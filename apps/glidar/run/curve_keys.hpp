@@ -9,8 +9,9 @@
 
 namespace glidar::app {
 
-/// The keys of a file of two lines, "public KEY" and "secret KEY". Without such a file they are
-/// made, written to it, for its owner only, and the public one is told. Throws Error.
+/// The keys in a file of two lines, "public KEY" and "secret KEY". If the file does not exist, it
+/// is created with new keys, readable by its owner only, and the public key is printed. Throws
+/// Error.
 link::CurveKeys curve_keys(const std::string& path, Console& console);
 
 }  // namespace glidar::app

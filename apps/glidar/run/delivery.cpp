@@ -7,7 +7,7 @@
 namespace glidar::app {
 namespace {
 
-/// How often an idle thread looks after its subscribers.
+/// How often an idle thread serves its subscribers.
 constexpr std::chrono::milliseconds kIdle{20};
 
 }  // namespace

@@ -24,30 +24,30 @@ struct MeasuredFrame {
   Frame frame;
   std::shared_ptr<const Beams> beams;
   std::uint64_t place = 0;                         ///< among its sensor's frames
-  std::size_t mount = 0;                           ///< which of the session's sensors took it
-  std::shared_ptr<const lockstep::Moment> placed;  ///< who placed it; nullptr: the command did
-  std::string frame_hash;                          ///< what frame_hash() must be; empty: not known
-  std::chrono::steady_clock::time_point due;       ///< when its pose was there
+  std::size_t mount = 0;                           ///< index of its sensor in the session
+  std::shared_ptr<const lockstep::Moment> placed;  ///< poses by a client; nullptr: by the command
+  std::string frame_hash;                          ///< expected frame_hash(); empty: unknown
+  std::chrono::steady_clock::time_point due;       ///< when its pose was known
 };
 
-/// Hands frames to what delivers them in a thread of its own, so that the next one is measured
-/// meanwhile. Never more than two frames are under way: who measures waits for who delivers.
+/// Delivers frames in its own thread, while the next frame is measured. At most two frames are in
+/// progress: measuring waits for delivery.
 class Delivery {
  public:
-  /// `deliver` and, often while there is nothing to deliver, `idle` are called by that thread; so
-  /// is `failed`, once, after one of them threw.
+  /// The thread calls `deliver`, `idle` (often, while there is nothing to deliver), and `failed`
+  /// (once, after one of them threw).
   Delivery(std::function<void(const MeasuredFrame&)> deliver, std::function<void()> idle,
            std::function<void()> failed);
-  /// Delivers what was handed over.
+  /// Delivers the submitted frames.
   ~Delivery();
   Delivery(const Delivery&) = delete;
   Delivery& operator=(const Delivery&) = delete;
 
-  /// The measured to fill next; waits until it was delivered. Throws what `deliver` threw.
+  /// The next free frame; waits for one. Throws what `deliver` threw.
   MeasuredFrame& next_slot();
-  /// The measured that next_slot() gave is filled.
+  /// Submits the frame of next_slot() for delivery.
   void submit();
-  /// Waits until all is delivered and ends the thread. Throws what `deliver` threw.
+  /// Waits for all deliveries and ends the thread. Throws what `deliver` threw.
   void finish();
 
  private:

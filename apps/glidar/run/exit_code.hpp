@@ -4,11 +4,11 @@
 
 namespace glidar::app {
 
-// What the program returns; an interrupt returns 130, of `stream` 128 and the signal's number.
+// Exit codes. An interrupt returns 130; `stream` returns 128 plus the signal's number.
 inline constexpr int kDone = 0;
-inline constexpr int kCheckFailed = 1;   ///< `verify` found errors over its bounds
+inline constexpr int kCheckFailed = 1;   ///< `verify` found errors beyond its bounds
 inline constexpr int kBadInput = 2;      ///< options, files, values
-inline constexpr int kClosedPipe = 141;  ///< nobody reads standard output, as shells report it
-inline constexpr int kNoPoses = 3;       ///< `stream`: none came for --pose-timeout
+inline constexpr int kClosedPipe = 141;  ///< standard output was closed, as shells report it
+inline constexpr int kNoPoses = 3;       ///< `stream`: no pose within --pose-timeout
 
 }  // namespace glidar::app

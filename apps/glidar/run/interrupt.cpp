@@ -18,23 +18,23 @@
 namespace glidar::app {
 namespace {
 
-// Only async-signal-safe calls here.
+// Only async-signal-safe calls are allowed here.
 extern "C" void end_now(int number) {
-  constexpr int kSignalExitBase = 128;  // as shells have it
+  constexpr int kSignalExitBase = 128;  // as in shells
   constexpr std::string_view kMessage = "\nglidar: interrupted; unfinished files are removed\n";
   remove_unfinished_files();
   [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, kMessage.data(), kMessage.size());
   _exit(kSignalExitBase + number);
 }
 
-// A signal handler takes no arguments, so these have to be the process's own.
+// A signal handler takes no arguments, so these are global.
 constinit std::atomic<int> noted{0};
 constinit std::atomic<int> wake_pipe{-1};
 constinit std::atomic<timer_t> deadline{};
 constinit std::atomic<bool> has_deadline{false};
 static_assert(std::atomic<int>::is_always_lock_free, "used in signal handlers");
 
-/// Also async-signal-safe. 0: never.
+/// Ends the process after this time, 0: never. Async-signal-safe.
 void end_after(std::chrono::nanoseconds time) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(time);
   const itimerspec once = {
@@ -61,20 +61,20 @@ void handle_by(void (*handler)(int)) {
   sigaction(SIGTERM, &action, nullptr);
   struct sigaction before {};
   sigaction(SIGHUP, nullptr, &before);
-  if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup ignores it
+  if (before.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // ignored under nohup
 }
 
 }  // namespace
 
 void end_cleanly_on_interrupt() {
   handle_by(end_now);
-  signal(SIGXFSZ, SIG_IGN);  // write() then fails, and says why
+  signal(SIGXFSZ, SIG_IGN);  // write() then returns an error
 }
 
 StopRequest::StopRequest() {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0) {
-    throw Error({.where = "signals", .found = "no pipe can be made", .allowed = "", .remedy = ""});
+    throw Error({.where = "signals", .found = "cannot create a pipe", .allowed = "", .remedy = ""});
   }
   reading_ = ends[0];
   writing_ = ends[1];
@@ -84,7 +84,7 @@ StopRequest::StopRequest() {
   late.sa_handler = end_late;
   sigaction(SIGALRM, &late, nullptr);
   timer_t timer{};
-  has_deadline = timer_create(CLOCK_MONOTONIC, nullptr, &timer) == 0;  // it sends SIGALRM
+  has_deadline = timer_create(CLOCK_MONOTONIC, nullptr, &timer) == 0;  // sends SIGALRM
   deadline = timer;
   handle_by(note);
 }

@@ -8,13 +8,13 @@
 namespace glidar::app {
 
 /// From now on Ctrl-C (SIGINT), SIGTERM and a closed terminal (SIGHUP) remove unfinished output
-/// files and end the program at once with exit code 130 (128 + SIGINT, as shells have it); a limit
-/// on the size of files is told as an error.
+/// files and end the program at once with exit code 130 (128 + SIGINT, as in shells). A limit on
+/// the size of files becomes an error.
 void end_cleanly_on_interrupt();
 
-/// While it lives, the first of these signals is only noted, for work that has to be ended in good
-/// order; the second ends the program at once as above, and so does SIGTERM itself unless its work
-/// calls disarm() within 1.5 s. One at a time.
+/// RAII: the first of these signals is only recorded, so that the program can shut down in order.
+/// The second ends the program at once as above; so does SIGTERM unless disarm() is called within
+/// 1.5 s. One at a time.
 class StopRequest {
  public:
   StopRequest();
@@ -22,16 +22,16 @@ class StopRequest {
   StopRequest(const StopRequest&) = delete;
   StopRequest& operator=(const StopRequest&) = delete;
 
-  /// The signal that came; 0: none.
+  /// The received signal; 0: none.
   [[nodiscard]] int signal() const;
   [[nodiscard]] bool is_requested() const { return signal() != 0 || is_requested_; }
-  /// The same without a signal, from any thread.
+  /// Requests a stop without a signal, from any thread.
   void request();
-  /// The work has begun to end in good order, which takes a limited time.
+  /// Call when the shutdown has begun; it takes a limited time.
   void disarm() const;
-  /// A file descriptor that can be read once one came.
+  /// A file descriptor that is readable after a signal.
   [[nodiscard]] int descriptor() const { return reading_; }
-  /// Waits until one comes, at most until then.
+  /// Waits for a signal, at most until then.
   void wait_until(std::chrono::steady_clock::time_point time) const;
 
  private:

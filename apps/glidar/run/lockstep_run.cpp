@@ -60,24 +60,24 @@ LockstepRun::LockstepRun(const StreamFlags& flags, Console& console)
 int LockstepRun::run() {
   const StopRequest stop;
   if (!flags_.render.quiet) fmt::print("listening at {}\n", server_.socket().bound_to());
-  std::fflush(stdout);  // who started it waits for this line
+  std::fflush(stdout);  // scripts wait for this line
   try {
     while (!stop.is_requested()) serve(stop);
   } catch (const std::exception& error) {
-    recorder_.reset();  // it is not whole
+    recorder_.reset();  // incomplete
     finish(error.what());
     throw;
   }
   stop.disarm();
   for (const Job& job : std::exchange(jobs_, {})) {
-    server_.reply_error(job.to, "request: GLIDAR was ended by a signal");
+    server_.reply_error(job.to, "request: GLIDAR was stopped by a signal");
   }
   finish(fmt::format("signal {}", stop.signal()));
-  constexpr int kSignalExitBase = 128;  // as shells have it
+  constexpr int kSignalExitBase = 128;  // as in shells
   return kSignalExitBase + stop.signal();
 }
 
-/// Receives the next request and works at one of those in work, in turn; or waits a while for one.
+/// Receives the next request and continues an open one, in turn; waits if there is none.
 void LockstepRun::serve(const StopRequest& stop) {
   if (std::optional<lockstep::Received> received = server_.receive()) start(std::move(*received));
   if (jobs_.empty()) {
@@ -104,12 +104,12 @@ void LockstepRun::start(lockstep::Received received) {
   }
 }
 
-/// Whatever goes wrong with one request is its client's to know.
+/// An error in a request goes to its client.
 LockstepRun::Step LockstepRun::try_advance(Job& job) {
   try {
     return advance(job);
   } catch (const std::bad_alloc&) {
-    server_.reply_error(job.to, "request: needs more memory than there is; ask for fewer moments");
+    server_.reply_error(job.to, "request: needs more memory than available; request fewer moments");
   } catch (const std::exception& error) {
     server_.reply_error(job.to, error.what());
   }
@@ -137,8 +137,8 @@ LockstepRun::Step LockstepRun::advance(Job& job) {
   return Step::answered;
 }
 
-/// The frames that were replied. A recording that cannot go on ends the server: it would not be
-/// one.
+/// Records the frames of a reply. An error ends the server, because the recording would be
+/// incomplete.
 void LockstepRun::record(const Job& job) {
   if (!recorder_) return;
   for (const link::RecordedFrame& frame : job.frames) recorder_->write(frame);
@@ -153,14 +153,14 @@ void LockstepRun::check_deadline(const Job& job) const {
                fmt::format("{} of {} moments are measured after {} s", job.replies.size(),
                            job.measure.moments.size(), limits.request_s),
                limit_text(limits, &link::Limits::request_s),
-               "ask for fewer moments at once, or start GLIDAR with a higher limit"});
+               "request fewer moments at once, or start GLIDAR with a higher limit"});
 }
 
-/// Many small frames together take less time than one by one, but others wait for them, and so does
-/// a signal.
+/// A batch of small frames takes less time than single frames, but delays other requests and
+/// signals.
 std::size_t LockstepRun::frames_at_once(const Job& job) const {
   constexpr double kMaxFrames = 32.0;
-  constexpr double kMaxBeams = 1 << 20;  // the memory of many large frames
+  constexpr double kMaxBeams = 1 << 20;  // limits the memory of large frames
   constexpr double kMax_s = 0.1;
   const double frame_s = frame_s_[job.measure.sensor];
   if (frame_s == 0.0) return 1;
@@ -224,7 +224,7 @@ std::int64_t LockstepRun::check(const lockstep::Measure& measure) const {
                      measure.moments.size(), points),
          limit_text(limits, limits.reply_mib <= limits.memory_mib ? &link::Limits::reply_mib
                                                                   : &link::Limits::memory_mib),
-         "ask for fewer moments or columns at once, or start GLIDAR with a higher limit"});
+         "request fewer moments or columns at once, or start GLIDAR with a higher limit"});
   }
   return bytes;
 }
@@ -294,7 +294,7 @@ lockstep::CloudReply LockstepRun::cloud_of(const lockstep::Measure& measure, con
 void LockstepRun::finish(const std::string& ending) {
   faults_.flush();
   const lockstep::Server::Counts& counts = server_.counts();
-  if (recorder_) recorder_->commit();  // before statistics, which may have no room
+  if (recorder_) recorder_->commit();  // before the statistics, for which the disk may be full
   if (stats_file_) {
     const nlohmann::ordered_json text = {{"ended_by", ending},
                                          {"requests", counts.received},

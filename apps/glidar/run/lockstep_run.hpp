@@ -24,23 +24,22 @@
 
 namespace glidar::app {
 
-/// `glidar stream --lockstep`: measures what clients ask for, when they ask.
+/// `glidar stream --lockstep`: measures the frames that clients request.
 class LockstepRun {
  public:
-  /// Listens, then loads what the flags name. Throws Error.
+  /// Listens, then loads the inputs of the flags. Throws Error.
   LockstepRun(const StreamFlags& flags, Console& console);
-  /// Until a signal comes, to which requests in work are answered with an error; returns the exit
-  /// code.
+  /// Runs until a signal arrives, then answers open requests with an error; returns the exit code.
   int run();
 
  private:
-  /// A request in work. Several clients' requests take turns, some frames each.
+  /// An open request. The requests of several clients take turns, with some frames each.
   struct Job {
     lockstep::Measure measure;
     lockstep::ReplyTo to;
-    std::int64_t bytes = 0;  ///< of the reply, at most
+    std::int64_t bytes = 0;  ///< upper bound of the reply's size
     std::vector<lockstep::CloudReply> replies = {};
-    std::vector<link::RecordedFrame> frames = {};  ///< to be recorded once it is answered
+    std::vector<link::RecordedFrame> frames = {};  ///< to be recorded after the reply
   };
   enum class Step : std::uint8_t { waits_for_memory, goes_on, answered };
 
@@ -71,8 +70,8 @@ class LockstepRun {
   std::vector<std::shared_ptr<const Beams>> beams_;  ///< of each sensor's frame 0
   link::CloudPool clouds_;
   std::vector<Frame> frames_;
-  std::vector<double> frame_s_;  ///< that a frame of each sensor took last; 0: not known
-  std::deque<Job> jobs_;         ///< at most one of each client
+  std::vector<double> frame_s_;  ///< duration of each sensor's last frame; 0: unknown
+  std::deque<Job> jobs_;         ///< at most one per client
 };
 
 }  // namespace glidar::app

@@ -7,7 +7,7 @@
 namespace glidar::app {
 namespace {
 
-/// A body that is pushed by nothing and whose rate stays: one with equal moments of inertia.
+/// A free body with a constant angular rate, as with equal moments of inertia.
 Trajectory trajectory_of(const lockstep::Body& body, std::int64_t t_ns) {
   if (body.rate_rad_s.isZero(0.0) && body.velocity_m_s.isZero(0.0)) {
     return ConstantPose{body.world_from_body};

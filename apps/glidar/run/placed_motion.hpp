@@ -7,11 +7,11 @@
 
 namespace glidar::app {
 
-/// How the rig and all instances go on from where a moment places them; without objects these move
-/// as in the session.
+/// The motion of the rig and all instances from the state of a moment on. Without objects in it,
+/// they move as in the session.
 RigMotion motion_at(const lockstep::Moment& moment, const Session& session);
 
-/// The bodies of a motion in which all stands still.
+/// The bodies of a motion of constant poses.
 lockstep::Moment static_moment(const RigMotion& motion);
 
 }  // namespace glidar::app

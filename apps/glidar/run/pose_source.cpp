@@ -22,7 +22,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// How often who waits looks whether it waits for too long.
+/// How often the wait for a pose checks its time limit.
 constexpr std::chrono::milliseconds kPosePollInterval{100};
 
 }  // namespace

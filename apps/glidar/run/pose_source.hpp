@@ -17,27 +17,28 @@
 
 namespace glidar::app {
 
-/// A frame that is to be measured now.
+/// A frame to be measured now.
 struct FrameRequest {
-  std::size_t mount = 0;  ///< which of the session's sensors takes it
+  std::size_t mount = 0;  ///< index of its sensor in the session
   std::uint32_t number = 0;
-  std::uint64_t place = 0;  ///< among this sensor's frames; differs from `number` in recordings
-  std::chrono::steady_clock::time_point due;  ///< when its pose was there
-  /// Where everything is from now on and when that is; empty: as it was, at the frame's own time.
+  std::uint64_t place =
+      0;  ///< index among this sensor's frames; differs from `number` in recordings
+  std::chrono::steady_clock::time_point due;  ///< when its pose was known
+  /// New poses and their time; empty: unchanged poses, at the frame's own time.
   std::optional<RigMotion> motion = {};
   std::optional<std::int64_t> stamp_ns = {};
   std::optional<std::uint64_t> seed = {};  ///< empty: the command's
-  std::string frame_hash = {};             ///< what frame_hash() must be; empty: not known
+  std::string frame_hash = {};             ///< expected frame_hash(); empty: unknown
 };
 
-/// How long and how quickly frames follow each other.
+/// The rate of frames and when they end.
 struct FrameSchedule {
   double rate_hz = 0.0;                                              ///< at most; 0: no limit
   std::uint64_t frames = std::numeric_limits<std::uint64_t>::max();  ///< of each sensor
   double duration_s = std::numeric_limits<double>::infinity();
 };
 
-/// Where the poses of a stream come from.
+/// The source of the poses of a stream.
 class PoseSource {
  public:
   PoseSource() = default;
@@ -45,13 +46,13 @@ class PoseSource {
   PoseSource& operator=(const PoseSource&) = delete;
   virtual ~PoseSource() = default;
 
-  /// Waits for the next frame. Empty: there is no more, or a signal came.
+  /// Waits for the next frame. Empty: there are no more frames, or a signal arrived.
   virtual std::optional<FrameRequest> next() = 0;
-  /// Why there is no more; empty while there is.
+  /// Why there are no more frames; empty before.
   [[nodiscard]] virtual std::string ending() const = 0;
 };
 
-/// Frames of the command line's or the scene file's motion, one for each period of each sensor, in
+/// Frames of the motion by the command line or the scene file, one per period of each sensor, in
 /// the order of their times.
 class MotionSource final : public PoseSource {
  public:
@@ -60,7 +61,7 @@ class MotionSource final : public PoseSource {
   MotionSource(const FrameSchedule& pace, std::vector<double> periods_s, const StopRequest& stop);
   std::optional<FrameRequest> next() override;
   [[nodiscard]] std::string ending() const override { return ending_; }
-  /// Frames that came after they were due by more than a period; the later ones are put off.
+  /// Frames that were late by more than a period; later frames are postponed.
   [[nodiscard]] std::uint64_t late() const { return late_; }
 
  private:
@@ -72,29 +73,29 @@ class MotionSource final : public PoseSource {
   std::vector<double> periods_s_;
   const StopRequest& stop_;
   std::optional<std::chrono::steady_clock::time_point> due_;
-  double due_s_ = 0.0;                  ///< what is due at due_, in the sensors' time
+  double due_s_ = 0.0;                  ///< the sensors' time at due_
   std::vector<std::uint64_t> numbers_;  ///< of each sensor's next frame
   std::uint64_t late_ = 0;
   std::string ending_;
 };
 
-/// What stands still and what a simulator's message moves.
+/// The parts of the scene that a simulator's message moves.
 struct MovedScene {
-  std::vector<Pose> object_from_instance;  ///< the scene as it is, which is the message's object
+  std::vector<Pose> object_from_instance;  ///< the scene, which is the message's object
   Pose optical_from_rig = Pose::Identity();
 };
 
-/// The rig and all instances where a message puts them.
+/// The poses of the rig and all instances by a message.
 RigMotion motion_of(const legacy::Placement& placement, const MovedScene& scene);
 
-/// A frame of each sensor for each pose of a simulator; its timestamps become the frames' stamps,
-/// whatever their unit.
+/// A frame of each sensor for each pose of a simulator. Its timestamps become the frames' stamps,
+/// in any unit.
 class SimulatorSource final : public PoseSource {
  public:
   struct Options {
     FrameSchedule pace;
-    std::optional<double> timeout_s;  ///< of waiting for a pose; empty: for ever
-    std::size_t mounts = 1;           ///< sensors that measure at each pose
+    std::optional<double> timeout_s;  ///< for a pose; empty: no limit
+    std::size_t mounts = 1;           ///< sensors measured at each pose
   };
   /// All must outlive it.
   SimulatorSource(legacy::PoseReceiver& receiver, const MovedScene& scene, const Options& options,

@@ -18,7 +18,7 @@ std::string duration_text(double seconds) {
   return fmt::format("{} h {:02} min", s / 3600, s / 60 % 60);
 }
 
-/// The bar and what follows it.
+/// The bar, percent and remaining time.
 std::string bar_text(double fraction, double elapsed_s) {
   constexpr int kBarWidth = 30;
   const auto filled = static_cast<int>(fraction * kBarWidth);

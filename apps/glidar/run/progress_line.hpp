@@ -8,8 +8,8 @@
 
 namespace glidar::app {
 
-/// What the progress display says of a task: a bar with percent and the time left, or how long it
-/// has taken where the fraction is unknown (negative). At most `columns` bytes.
+/// The progress display of a task: a bar with percent and the remaining time, or the elapsed time
+/// if the fraction is unknown (negative). At most `columns` bytes.
 std::string progress_line(std::string_view task, double fraction_done, double elapsed_s,
                           std::size_t columns);
 

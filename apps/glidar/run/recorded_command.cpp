@@ -40,15 +40,16 @@ void parse_recorded(const std::vector<std::string>& arguments, const std::string
   };
   const std::vector<std::string> kept = reproducible_arguments(arguments);
   if (kept.empty() || kept.front() != subcommand)
-    refuse(kept.empty() ? "it tells no command: a simulator or a recording gave the poses"
-                        : "it tells another command");
+    refuse(kept.empty() ? "it has no command, because a simulator or a recording gave the poses"
+                        : "it has another command");
   try {
     command.parse(std::vector<std::string>(kept.rbegin(), kept.rend() - 1));
   } catch (const CLI::ParseError&) {
-    refuse("its command is not understood");
+    refuse("its command is not valid");
   }
   const CLI::Option* folder = command.get_option_no_throw("--cache-folder");
-  if (folder != nullptr && folder->count() > 0) refuse("it names a folder for the model cache");
+  if (folder != nullptr && folder->count() > 0)
+    refuse("its command has a folder for the model cache");
 }
 
 void compare_version(const std::string& written_by, const std::string& file, Console& console) {
@@ -63,7 +64,7 @@ void enter_folder(const CommandRecord& command, const std::string& file) {
   throw Error({file,
                fmt::format("its command ran in {}: {}", command.folder.lexically_normal().string(),
                            problem.message()),
-               "the way from the file to that folder as it was then", "move the files back"});
+               "the same path from the file to that folder as before", "move the files back"});
 }
 
 }  // namespace glidar::app

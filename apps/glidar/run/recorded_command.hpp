@@ -11,20 +11,19 @@
 
 namespace glidar::app {
 
-/// The arguments without those that change nothing in a cloud: --threads, --quiet, and the options
-/// of the model cache, which belong to the user who runs the command.
+/// The arguments that affect a cloud: without --threads, --quiet, and the options of the model
+/// cache, which belong to the user who runs the command.
 std::vector<std::string> reproducible_arguments(const std::vector<std::string>& arguments);
 
-/// Sets a subcommand's options from the reproducible_arguments() arguments of a file: a file names
-/// no cache folder. Throws Error, naming the file, when they are those of another subcommand or not
-/// understood.
+/// Sets a subcommand's options from the recorded arguments of a file, which must not contain a
+/// cache folder. Throws Error with the file's name if they are invalid or of another subcommand.
 void parse_recorded(const std::vector<std::string>& arguments, const std::string& subcommand,
                     const std::string& file, CLI::App& command);
 
-/// Warns when the file was written by another version of the program.
+/// Warns if another version of the program wrote the file.
 void compare_version(const std::string& written_by, const std::string& file, Console& console);
 
-/// Goes to the folder where the command ran, from which its paths count. Throws Error.
+/// Changes to the folder where the command ran, to which its paths are relative. Throws Error.
 void enter_folder(const CommandRecord& command, const std::string& file);
 
 }  // namespace glidar::app

@@ -23,7 +23,7 @@ void check(const link::RecordedFrame& frame, std::uint64_t number, const Session
       {"recording, frame " + std::to_string(number),
        "sensor " + std::to_string(frame.sensor) + " and " + std::to_string(objects) + " objects",
        std::to_string(session.mounts.size()) + " sensors and " + std::to_string(instances) +
-           " objects, which the scene has now",
+           " objects, which the scene has",
        "replay it with the scene that it was recorded with"});
 }
 
@@ -44,7 +44,7 @@ std::optional<FrameRequest> RecordedSource::next() {
   }
   std::optional<link::RecordedFrame> frame = recording_.next();
   if (!frame) {
-    ending_ = "the recording is at its end";
+    ending_ = "the recording is complete";
     return std::nullopt;
   }
   check(*frame, number_, session_);

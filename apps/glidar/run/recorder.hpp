@@ -9,14 +9,14 @@
 
 namespace glidar::app {
 
-/// `--record`: keeps what every frame of a stream depends on, and a hash of what came of it.
+/// `--record`: keeps the inputs of every frame of a stream and a hash of its result.
 class Recorder {
  public:
-  /// Throws Error when no file can be made there.
+  /// Throws Error if the file cannot be created.
   Recorder(const std::string& path, bool is_durable)
       : writer_(path),
         durability_(is_durable ? link::Durability::synced : link::Durability::none) {}
-  /// Once the session is open.
+  /// Call when the session is open.
   void begin(const Session& session, const CommandRecord& command);
   void write(const link::RecordedFrame& frame) { writer_.write(frame); }
   void commit() { writer_.commit(durability_); }
@@ -26,8 +26,8 @@ class Recorder {
   link::Durability durability_;
 };
 
-/// The line of a frame by one of the session's sensors; `placed`: where a client or simulator put
-/// everything, nullptr where the command did.
+/// The record of a frame of one of the session's sensors. `placed`: poses by a client or simulator;
+/// nullptr: by the command.
 link::RecordedFrame line_of(std::size_t mount, const Frame& frame, const lockstep::Moment* placed);
 
 }  // namespace glidar::app

@@ -8,9 +8,9 @@
 
 namespace glidar::app {
 
-/// The outputs of each of the session's sensors. On a rig a sensor is left without those that do
-/// not fit it, such as the depth image of a LiDAR that looks all around; a note says so.
-/// Throws Error when an output fits none of the sensors.
+/// The outputs of each of the session's sensors. On a rig, outputs that do not fit a sensor, such
+/// as the depth image of a 360 degree LiDAR, are left out with a note. Throws Error if an output
+/// fits none of the sensors.
 std::vector<OutputFlags> outputs_by_sensor(const RenderFlags& flags, const Session& session,
                                            Console& console);
 

@@ -22,7 +22,7 @@ bool is_scene_file(const std::string& input) {
   return input.ends_with(".yaml") || input.ends_with(".yml");
 }
 
-/// Gives the model of a single file the surface asked for.
+/// Applies --surface to the model of a single file.
 void apply_surface_option(const RenderFlags& flags, const Sensor& sensor, Scene& scene) {
   if (flags.surface.empty()) return;
   const auto refuse = [](const char* found, const char* remedy) {
@@ -32,13 +32,13 @@ void apply_surface_option(const RenderFlags& flags, const Sensor& sensor, Scene&
     refuse("the input is a scene file", "write 'surface: ...' into its materials");
   }
   if (!sensor.pulse) {
-    refuse("the sensor has no pulse light", "choose one that has, such as VLP-16");
+    refuse("the sensor has no pulsed light", "choose one that has, such as VLP-16");
   }
   const SurfacePreset surface = find_surface(flags.surface, "--surface");
   for (Material& material : scene.materials) apply_surface(surface, material);
 }
 
-/// Whether the view is chosen by us: then it matters what is up.
+/// Whether the view is framed automatically, so that the up axis matters.
 bool is_auto_framed(const RenderFlags& flags) {
   return !flags.model.up && !flags.pose.model_q && !flags.pose.up && !sensor_pose_given(flags.pose);
 }
@@ -57,7 +57,7 @@ SceneFile load(const RenderFlags& flags, Console& console) {
   return loaded;
 }
 
-/// Scene and sensor files, models and what belongs to these: textures, materials, buffers.
+/// Scene and sensor files, models and their textures, materials and buffers.
 std::vector<std::string> files_read(const RenderFlags& flags, const SceneFile& loaded,
                                     const std::vector<Mount>& mounts) {
   std::vector<std::string> files = loaded.files;
@@ -71,7 +71,7 @@ std::vector<std::string> files_read(const RenderFlags& flags, const SceneFile& l
   return files;
 }
 
-/// How many frames there are in the duration asked for; one without.
+/// The number of frames in the requested duration; 1 without.
 std::uint32_t frame_count(const RenderFlags& flags, const Sensor& sensor) {
   if (!flags.duration_s) return 1;
   constexpr double kMaxFrames = 1e6;
@@ -82,7 +82,7 @@ std::uint32_t frame_count(const RenderFlags& flags, const Sensor& sensor) {
   return static_cast<std::uint32_t>(std::max(1.0, frames));
 }
 
-/// Of sensors or mounts.
+/// The names of sensors or mounts.
 template <class Named>
 std::string names_of(const std::vector<Named>& all) {
   std::string names;
@@ -90,7 +90,7 @@ std::string names_of(const std::vector<Named>& all) {
   return names;
 }
 
-/// The sensors of the rig, as the flags set them up.
+/// The sensors of the rig, configured by the flags.
 std::vector<Mount> make_mounts(const RenderFlags& flags, const std::vector<RigSensor>& sensors) {
   if (sensors.empty() || sensors.front().name.empty()) {
     if (!flags.sensor_name.empty()) {
@@ -118,7 +118,7 @@ std::vector<Mount> make_mounts(const RenderFlags& flags, const std::vector<RigSe
   return mounts;
 }
 
-/// Where the first sensor is: the rig goes with it.
+/// The pose of the first sensor, which gives that of the rig.
 Pose first_sensor_pose(const RenderFlags& flags, const SceneFile& loaded, const Session& session,
                        Console& console) {
   const Mount& first = session.mounts.front();
@@ -135,8 +135,9 @@ Pose first_sensor_pose(const RenderFlags& flags, const SceneFile& loaded, const 
   return world_from_sensor;
 }
 
-/// How all moves. Options place and turn the first sensor; the scene file and trajectories have the
-/// poses of the rig, which are those of the sensor where there is one alone.
+/// The motion of the rig and the objects. Options give the pose and rotation of the first sensor;
+/// the scene file and trajectories give those of the rig, which are the sensor's if there is only
+/// one.
 RigMotion make_motion(const RenderFlags& flags, const SceneFile& loaded, const Session& session,
                       const Pose& world_from_first) {
   const bool is_given = sensor_pose_given(flags.pose);
@@ -157,14 +158,14 @@ RigMotion make_motion(const RenderFlags& flags, const SceneFile& loaded, const S
                                      .world_from_instance};
 }
 
-/// When the last beam of the last frame leaves.
+/// The firing time of the last beam of the last frame.
 std::int64_t last_firing_ns(const Mount& mount) {
   const std::int64_t start_ns = frame_interval(mount.sensor, mount.frames - 1).start_ns;
   if (mount.beams.times_ns.empty()) return start_ns;
   return start_ns + *std::max_element(mount.beams.times_ns.begin(), mount.beams.times_ns.end());
 }
 
-/// Tells which poses at time 0 are only the end of a trajectory.
+/// Warns of times outside a trajectory.
 void warn_extrapolation(const Session& session, const Report& report) {
   TimeInterval asked{.first_ns = 0, .last_ns = 0};
   for (const Mount& mount : session.mounts) {
@@ -182,7 +183,7 @@ void check_target(const RenderFlags& flags) {
     if (flags.quantized_framebuffer || format_of(flags.output, path).suffix != ".paper.png")
       continue;
     throw Error({.where = "--output, " + path,
-                 .found = "the float target, which draws no such picture",
+                 .found = "the float framebuffer, which has no such image",
                  .allowed = "this output with --quantized-framebuffer",
                  .remedy = "add --renderer opengl --quantized-framebuffer"});
   }
@@ -193,7 +194,7 @@ void check_target(const RenderFlags& flags) {
                .remedy = "add --renderer opengl"});
 }
 
-/// Where sensors and objects are and how they move; the console shows how long that takes.
+/// Computes the poses and motion of sensors and objects; shows the progress.
 void place_sensors(const RenderFlags& flags, const SceneFile& loaded, Console& console,
                    Session& session) {
   const ProgressScope progress(console, "aiming the sensor");
@@ -204,7 +205,7 @@ void place_sensors(const RenderFlags& flags, const SceneFile& loaded, Console& c
   const Pose world_from_first = first_sensor_pose(flags, loaded, session, console);
   session.motion = make_motion(flags, loaded, session, world_from_first);
   warn_extrapolation(session, console.report());
-  if (!flags.sensor_name.empty()) {  // only now: the poses must not depend on who measures
+  if (!flags.sensor_name.empty()) {  // last: the poses must not depend on the selected sensor
     std::erase_if(session.mounts,
                   [&](const Mount& mount) { return mount.name != flags.sensor_name; });
   }

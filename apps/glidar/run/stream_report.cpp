@@ -63,7 +63,7 @@ std::string summary_text(const StreamSummary& summary) {
                         count_text(summary.clouds->sent, "cloud"), summary.clouds->missed);
   }
   if (summary.poses) {
-    text += fmt::format("\ntook {}, refused {}", count_text(summary.poses->received, "message"),
+    text += fmt::format("\nreceived {}, refused {}", count_text(summary.poses->received, "message"),
                         summary.poses->refused);
   }
   return text + "\nended: " + summary.ending + "\n";

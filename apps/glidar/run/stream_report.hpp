@@ -14,27 +14,27 @@
 
 namespace glidar::app {
 
-/// What became of a stream.
+/// The result of a stream.
 struct StreamSummary {
   const StreamStats& stats;
   std::string ending;
   std::uint64_t measured = 0;  ///< frames
-  std::uint64_t late = 0;      ///< frames that came after they were due
+  std::uint64_t late = 0;      ///< frames after their due time
   std::optional<legacy::CloudPublisher::Counts> clouds = {};
   std::optional<legacy::PoseReceiver::Counts> poses = {};
   std::map<std::string, std::uint64_t> faults = {};
 };
 
-/// As --stats writes it; docs/link.md tells every key.
+/// The JSON of --stats; docs/link.md describes every key.
 std::string json_text(const StreamSummary& summary);
 
-/// The same in a few lines for people.
+/// The summary that is printed at the end.
 std::string summary_text(const StreamSummary& summary);
 
-/// What is waited for before the stream begins.
+/// The message while the stream waits for peers.
 std::string waiting_text(const StreamFlags& flags);
 
-/// How many of the subscribers that are waited for will receive the next cloud.
+/// How many of the awaited subscribers will receive the next cloud.
 std::string ready_text(std::uint64_t ready, std::uint64_t wanted);
 
 /// The part of the status line about subscribers.

@@ -31,10 +31,10 @@ const std::vector<std::string> kPublishedColumns = {"xyz", "intensity"};
 /// How often the status line changes.
 constexpr std::chrono::milliseconds kStatusInterval{200};
 
-/// How often partners are looked after that are waited for.
+/// How often the handshakes of peers are polled.
 constexpr std::chrono::milliseconds kPeerPollInterval{20};
 
-/// Whether every frame has the same beams; those of scanners move on.
+/// Whether every frame has the same beams; those of scanners depend on the frame.
 bool has_fixed_beams(const Sensor& sensor) {
   return std::holds_alternative<Pinhole>(sensor.optics);
 }
@@ -59,7 +59,7 @@ legacy::PoseReceiverOptions receiver_options(const StreamFlags& flags) {
 void compare(const MeasuredFrame& measured, const std::string& recording, std::uint64_t number) {
   if (frame_hash(measured.frame) == measured.frame_hash) return;
   throw Error({fmt::format("{}, frame {}", recording, number),
-               "it comes out otherwise than when it was recorded",
+               "the repeated frame differs from the recorded one",
                "the same models, scene and sensor files, and the same program", ""});
 }
 
@@ -120,7 +120,7 @@ void StreamRun::open_session() {
   fields_ = glidar::fields_needed_by(columns);
 }
 
-/// 2015's topic where there is one sensor, one for each on a rig.
+/// The original topic for one sensor, one topic per sensor for a rig.
 std::map<std::uint32_t, std::string> StreamRun::topics() const {
   std::map<std::uint32_t, std::string> topics;
   for (const Mount& mount : session_.mounts) {
@@ -128,13 +128,14 @@ std::map<std::uint32_t, std::string> StreamRun::topics() const {
     if (!label.empty()) topics[mount.id] = legacy::rig_topic(label);
   }
   if (topics.size() > 1 && flags_.publishes_latest) {
-    throw Error({"--publish-latest", "given for a rig: the newest cloud is that of one sensor", "",
+    throw Error({"--publish-latest",
+                 "given for a rig, but only the newest cloud of one sensor would be kept", "",
                  "leave it out, or choose a sensor with --sensor-name"});
   }
   return topics;
 }
 
-/// The scene as it stands becomes the object that the simulator moves.
+/// The whole scene becomes the object that the simulator moves.
 void StreamRun::prepare_poses() {
   moved_scene_.object_from_instance.clear();
   for (const Trajectory& trajectory : session_.motion.world_from_instance) {
@@ -142,24 +143,24 @@ void StreamRun::prepare_poses() {
       throw Error({.where = "--pose-source",
                    .found = "the scene file moves its objects",
                    .allowed = "",
-                   .remedy = "let either the simulator or the scene file move things"});
+                   .remedy = "let either the simulator or the scene file move the objects"});
     }
     moved_scene_.object_from_instance.push_back(std::get<ConstantPose>(trajectory).pose);
   }
   if (!std::holds_alternative<ConstantPose>(session_.motion.world_from_rig)) {
     console_.info(
-        "the simulator says where the sensor is; the scene file's motion of it does not count");
+        "the simulator gives the sensor's pose; the scene file's motion of it is ignored");
   }
   const Mount& first = session_.mounts.front();
   if (!first.name.empty() || !looks_along_z(first.beams)) {
     moved_scene_.optical_from_rig = optical_from_body();
   }
   if (flags_.render.pose.model_q) {
-    // as in 2015, where the first message replaced it
+    // as in the original GLIDAR, where the first message replaces it
     for (Pose& pose : moved_scene_.object_from_instance) pose = Pose::Identity();
   }
   if (sensor_pose_given(flags_.render.pose)) {
-    console_.info("the simulator says where the sensor is; the options for that do not count");
+    console_.info("the simulator gives the sensor's pose; the options for it are ignored");
   }
 }
 
@@ -219,7 +220,7 @@ bool StreamRun::has_peers() {
   return has_simulator && (!publisher_ || publisher_->has(flags_.subscribers));
 }
 
-/// Says how many subscribers there are whenever that changes.
+/// Prints the number of subscribers when it changes.
 void StreamRun::show_peers(std::uint64_t& shown) {
   const std::uint64_t ready = publisher_ ? publisher_->ready() : 0;
   if (flags_.subscribers == 0 || std::exchange(shown, ready) == ready) return;
@@ -316,7 +317,7 @@ std::vector<Output> StreamRun::plan(const OutputFlags& files, const Mount& mount
                          .beams = beams,
                          .renderer = renderer_name(flags_.render),
                          .inputs = reserved_files_};
-  if (!flags_.pose_source && !recording_) {  // else the command does not tell the poses
+  if (!flags_.pose_source && !recording_) {  // otherwise the command does not contain the poses
     context.command = flags_.command;
     const std::string label = label_of(flags_.render, mount);
     if (!label.empty()) {
@@ -363,10 +364,10 @@ void StreamRun::serve_peers() {
 
 void StreamRun::finish(const std::string& ending, bool is_urgent) {
   constexpr std::chrono::milliseconds kUnhurried{1000};
-  constexpr std::chrono::milliseconds kUrgent{400};  // of three waits that take so long at most
+  constexpr std::chrono::milliseconds kUrgent{400};  // for each of three waits
   is_finished_ = true;
   console_.status("");
-  std::exception_ptr failure;  // the first; the other steps are taken all the same
+  std::exception_ptr failure;  // the first one; the other steps run in any case
   const auto attempt = [&failure](const auto& step) {
     try {
       step();

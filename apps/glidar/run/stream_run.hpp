@@ -29,10 +29,10 @@ namespace glidar::app {
 /// `glidar stream`: source of poses -> simulate -> sinks.
 class StreamRun {
  public:
-  /// Listens at its ports, then loads what the flags name. Throws Error.
+  /// Listens at its ports, then loads the inputs of the flags. Throws Error.
   StreamRun(StreamFlags flags, Console& console);
-  /// Until it is over; returns the exit code. Subscribers are told and the statistics are written
-  /// in any case, also when it throws.
+  /// Runs the stream and returns the exit code. Notifies subscribers and writes the statistics in
+  /// any case, also when it throws.
   int run();
 
  private:
@@ -65,13 +65,13 @@ class StreamRun {
   std::unique_ptr<legacy::CloudPublisher> publisher_;
   std::unique_ptr<legacy::PoseReceiver> receiver_;
   std::unique_ptr<Recorder> recorder_;
-  std::unique_ptr<link::RecordingReader> recording_;  ///< that is replayed
-  std::shared_ptr<const lockstep::Moment> placed_;    ///< by the simulator's last pose
+  std::unique_ptr<link::RecordingReader> recording_;  ///< recording to repeat
+  std::shared_ptr<const lockstep::Moment> placed_;    ///< poses of the simulator's last message
   double duration_s_ = 0.0;
   Session session_;
   struct FrameBeams {
     std::shared_ptr<const Beams> beams;
-    std::uint32_t number = 0;  ///< of the frame that they are of
+    std::uint32_t number = 0;  ///< of their frame
   };
   std::vector<FrameBeams> frame_beams_;      ///< of each sensor
   std::vector<std::string> reserved_files_;  ///< files that no output may replace

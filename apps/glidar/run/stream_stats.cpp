@@ -56,7 +56,7 @@ double StreamStats::seconds() const {
 double StreamStats::recent_rate_hz() const {
   const double window_s = seconds_between(window_start_, Clock::now());
   if (window_s < kWindow_s && recent_rate_hz_ > 0.0) return recent_rate_hz_;
-  return static_cast<double>(window_count_) / window_s;  // at first, and when nothing comes
+  return static_cast<double>(window_count_) / window_s;  // at the start, and when frames stop
 }
 
 std::string status_text(const StreamStats& stats) {

@@ -10,12 +10,12 @@
 
 namespace glidar::app {
 
-/// How long things took, in bins of 2 %: little memory, however many there are.
+/// A histogram of durations in bins of 2 %, with constant memory.
 class DurationHistogram {
  public:
   void add(double seconds);
   [[nodiscard]] std::uint64_t count() const { return count_; }
-  /// What the given part of them did not exceed, to 2 %; 0 without any.
+  /// A quantile, to 2 %; 0 without durations.
   [[nodiscard]] double quantile_s(double part) const;
   [[nodiscard]] double max_s() const { return max_s_; }
 
@@ -29,18 +29,18 @@ class DurationHistogram {
   double max_s_ = 0.0;
 };
 
-/// What a stream has delivered; used by the thread that delivers.
+/// Statistics of delivered frames; used by the delivering thread.
 struct StreamStats {
   using Clock = std::chrono::steady_clock;
 
   Clock::time_point start = Clock::now();
-  DurationHistogram latency;  ///< from a frame's pose until its cloud was handed on
+  DurationHistogram latency;  ///< from a frame's pose to its delivery
 
-  /// Notes a frame that was delivered.
+  /// Counts a delivered frame.
   void add_frame(Clock::time_point due);
-  /// From the start to the last frame; to now while there is none.
+  /// From the start to the last frame; without frames, to now.
   [[nodiscard]] double seconds() const;
-  /// Frames a second over the last second or so, else over all.
+  /// Frames per second, over about the last second, else over all.
   [[nodiscard]] double recent_rate_hz() const;
 
  private:
