@@ -29,7 +29,6 @@ Pose translation_by(const Eigen::Vector3d& by_m) {
   return Pose(Eigen::Translation3d(by_m));
 }
 
-/// A rotation of the world about a point.
 Pose rotation_about(const Eigen::Vector3d& point_m, const Eigen::AngleAxisd& by) {
   return translation_by(point_m) * Pose(by) * translation_by(-point_m);
 }
@@ -45,8 +44,7 @@ Pose orthonormalized(const Pose& pose) {
 
 }  // namespace
 
-Viewer::Viewer(const RenderFlags& flags, MeasurementThread& measurements)
-    : measurements_(measurements) {
+Viewer::Viewer(const RenderFlags& flags, MeasurementThread& thread) : measurements_(thread) {
   request_.seed = flags.seed;
   request_measurement(flags);
 }
@@ -271,7 +269,6 @@ void Viewer::update_visibility() {
   visibility_ = visibility(*field_, snapshot()->frame.world_from_sensor, corners_m);
 }
 
-/// Marks the selected one of several objects.
 void Viewer::add_selection_box() {
   if (!selection_.object() || snapshot()->session->scene.instances.size() < 2) return;
   std::vector<Eigen::Vector3d> corners_m = selection_.corners_m(snapshot()->frame);

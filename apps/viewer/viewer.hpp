@@ -32,7 +32,7 @@ struct ViewStyle {
 class Viewer {
  public:
   /// Starts to open the input of the flags.
-  Viewer(const RenderFlags& flags, MeasurementThread& measurements);
+  Viewer(const RenderFlags& flags, MeasurementThread& thread);
 
   // What is displayed.
   [[nodiscard]] const Snapshot* snapshot() const { return results_.snapshot.get(); }

@@ -25,7 +25,7 @@ Corners cube(const Eigen::Vector3d& middle_m, double half_m) {
   return corners;
 }
 
-/// A camera whose picture reaches 0.5 to the sides and 0.25 up and down, at depth 1.
+/// A camera whose image extends 0.5 to the sides and 0.25 up and down, at depth 1.
 FieldOfView wide_picture() {
   return {.axes = {.ahead = Eigen::Vector3d::UnitZ(),
                    .left = -Eigen::Vector3d::UnitX(),
@@ -36,7 +36,7 @@ FieldOfView wide_picture() {
           .down = 0.25};
 }
 
-/// Beams of a camera through these places of the plane at depth 1.
+/// Beams of a camera through these points of the plane at depth 1.
 Beams camera(const std::vector<Eigen::Vector2d>& places) {
   Beams beams;
   beams.rows = 1;
@@ -54,14 +54,14 @@ TEST(Framing, TheSphereContainsAllCorners) {
   EXPECT_EQ(sphere_around({}).radius_m, 0.0);
 }
 
-/// Whether a point, relative to the anchor, is in the picture of the eye.
+/// Whether a point, relative to the anchor, is in the view of the eye.
 bool is_seen(const Orbit& orbit, const Eigen::Vector3d& point_m, double aspect) {
   const Eigen::Vector4f clip =
       clip_from_anchor(orbit, aspect) * point_m.cast<float>().homogeneous();
   return clip.w() > 0.0F && std::abs(clip.x()) <= clip.w() && std::abs(clip.y()) <= clip.w();
 }
 
-TEST(Framing, AFramedSphereFillsMostOfTheViewAndNoneOfItIsCut) {
+TEST(Framing, AFramedSphereFillsMostOfTheViewAndIsNotCutOff) {
   for (const double aspect : {0.4, 0.8, 1.0, 3.0}) {
     for (const double radius_m : {1e-3, 1.0, 1e6}) {
       Orbit orbit{.yaw_rad = 0.7, .pitch_rad = 0.3};
@@ -119,7 +119,7 @@ TEST(Framing, TheFieldOfViewIsThatOfTheOutermostBeams) {
   EXPECT_NEAR(field->up, 0.2, kRounding);
 }
 
-TEST(Framing, SensorsThatLookAllAroundAndLinesHaveNoFieldToAim) {
+TEST(Framing, PanoramicSensorsAndLinesHaveNoFieldToAim) {
   Beams all_around = camera({{0.5, 0.5}, {-0.5, -0.5}});
   all_around.directions.emplace_back(-Eigen::Vector3d::UnitZ());
   EXPECT_FALSE(field_of_view(all_around));
@@ -128,7 +128,7 @@ TEST(Framing, SensorsThatLookAllAroundAndLinesHaveNoFieldToAim) {
   EXPECT_FALSE(field_of_view(camera({})));
 }
 
-TEST(Framing, TellsInsideFromPartlyAndOutside) {
+TEST(Framing, DistinguishesInsidePartlyAndOutside) {
   const FieldOfView field = wide_picture();
   const Pose pose = Pose::Identity();
   EXPECT_EQ(visibility(field, pose, cube({0.0, 0.0, 10.0}, 1.0)), Visibility::inside);
@@ -139,7 +139,7 @@ TEST(Framing, TellsInsideFromPartlyAndOutside) {
   EXPECT_EQ(visibility(field, pose, cube({0.0, 0.0, 0.0}, 1.0)), Visibility::partly) << "around it";
 }
 
-TEST(Framing, AimsACameraAtWhatIsOutsideItsPicture) {
+TEST(Framing, AimsACameraAtObjectsOutsideItsImage) {
   const FieldOfView field = wide_picture();
   const Corners corners = cube({0.0, 0.0, -10.0}, 0.5);  // behind it, and small enough
   const auto pose = pose_to_show(field, Pose::Identity(), corners);
@@ -150,7 +150,7 @@ TEST(Framing, AimsACameraAtWhatIsOutsideItsPicture) {
   EXPECT_FALSE(pose_to_show(field, *pose, corners)) << "nothing is left to do";
 }
 
-TEST(Framing, MovesACameraBackWhereTurningIsNotEnough) {
+TEST(Framing, MovesACameraBackIfAimingIsNotEnough) {
   const FieldOfView field = wide_picture();
   const Corners corners = cube({6.0, 0.0, 0.0}, 2.0);
   const auto pose = pose_to_show(field, Pose::Identity(), corners);
@@ -159,13 +159,13 @@ TEST(Framing, MovesACameraBackWhereTurningIsNotEnough) {
   EXPECT_EQ(visibility(field, *pose, corners), Visibility::inside);
 }
 
-TEST(Framing, LeavesACameraThatIsAmongTheObjects) {
+TEST(Framing, KeepsACameraThatIsBetweenTheObjects) {
   const FieldOfView field = wide_picture();
   EXPECT_FALSE(pose_to_show(field, Pose::Identity(), cube({0.0, 0.0, 0.0}, 5.0)));
   EXPECT_FALSE(pose_to_show(field, Pose::Identity(), cube({1.0, 0.0, 0.0}, 5.0)));
 }
 
-TEST(Framing, TurnsByTheShortestArc) {
+TEST(Framing, RotatesByTheShortestArc) {
   const FieldOfView field = wide_picture();
   const auto pose = aimed_at(field, Pose::Identity(), {3.0, 0.0, 3.0});
   ASSERT_TRUE(pose);

@@ -27,7 +27,7 @@ TEST(GridSpacing, IsOneTwoOrFiveTimesAPowerOfTen) {
   EXPECT_DOUBLE_EQ(grid_spacing_m(3e6), 2e5);
 }
 
-TEST(AddGrid, LiesLevelAtMultiplesOfItsSpacing) {
+TEST(AddGrid, IsHorizontalAtMultiplesOfItsSpacing) {
   Lines lines;
   add_grid({0.4, -0.3, 2.0}, 3.0, 1.0, lines);
   ASSERT_EQ(lines.size(), 2U * 2U * 7U);
@@ -38,7 +38,7 @@ TEST(AddGrid, LiesLevelAtMultiplesOfItsSpacing) {
   }
 }
 
-TEST(AddAxes, PointWhereThePoseTakesThem) {
+TEST(AddAxes, PointAlongTheAxesOfThePose) {
   Lines lines;
   Pose pose = optical_from_body();
   pose.translation() = Eigen::Vector3d(1.0, 2.0, 3.0);
@@ -52,7 +52,7 @@ TEST(AddAxes, PointWhereThePoseTakesThem) {
   }
 }
 
-TEST(AddFrustum, BordersACamerasViewAndStartsAtTheSensor) {
+TEST(AddFrustum, OutlinesACamerasViewFromTheSensor) {
   const Beams beams = camera_beams();
   Lines lines;
   Pose pose = Pose::Identity();
@@ -73,7 +73,7 @@ TEST(AddFrustum, BordersACamerasViewAndStartsAtTheSensor) {
   }));
 }
 
-TEST(AddFrustum, LeavesOutWhereThereIsNoBeam) {
+TEST(AddFrustum, SkipsPixelsWithoutABeam) {
   Beams beams = camera_beams();
   std::fill(beams.directions.begin(), beams.directions.end(), Eigen::Vector3d::Constant(NAN));
   Lines lines;

@@ -24,7 +24,7 @@ Eigen::Vector2f seen_at(const Orbit& orbit, const Eigen::Vector3d& point_m) {
   return clip.head<2>() / clip.w();
 }
 
-TEST(Orbit, LooksAtItsPivotFromItsDistanceWithZUpwards) {
+TEST(Orbit, LooksAtItsPivotFromItsDistanceWithZUp) {
   const Orbit orbit = some_orbit();
   const Pose eye = anchor_from_eye(orbit);
   EXPECT_NEAR((eye.translation() - orbit.pivot_m).norm(), orbit.distance_m, kRounding);
@@ -34,7 +34,7 @@ TEST(Orbit, LooksAtItsPivotFromItsDistanceWithZUpwards) {
   EXPECT_NEAR(eye.linear().col(0).z(), 0.0, kRounding) << "the horizon is level";
 }
 
-TEST(Orbit, ShowsThePivotInTheMiddleAndHigherPointsHigher) {
+TEST(Orbit, ShowsThePivotInTheCentreAndHigherPointsHigher) {
   const Orbit orbit = some_orbit();
   EXPECT_NEAR(seen_at(orbit, orbit.pivot_m).norm(), 0.0F, kSingle);
   EXPECT_GT(seen_at(orbit, orbit.pivot_m + Eigen::Vector3d::UnitZ()).y(), 0.1F);
@@ -65,7 +65,7 @@ TEST(Turn, StopsBeforeThePoles) {
   EXPECT_NO_THROW(anchor_from_eye(orbit));
 }
 
-TEST(Zoom, GoesATenthNearerAStepWithinLimits) {
+TEST(Zoom, MovesTenPercentCloserPerStepWithinLimits) {
   Orbit orbit = {.distance_m = 10.0};
   zoom(orbit, 1.0);
   EXPECT_NEAR(orbit.distance_m, 9.0, kRounding);
@@ -77,7 +77,7 @@ TEST(Zoom, GoesATenthNearerAStepWithinLimits) {
   EXPECT_TRUE(std::isfinite(orbit.distance_m));
 }
 
-TEST(PointAt, FindsTheNearestToTheEyeThatLiesUnderThePointer) {
+TEST(PointAt, FindsThePointUnderThePointerClosestToTheEye) {
   const Orbit orbit = {.pitch_rad = 0.0, .distance_m = 10.0};  // the eye at x = 10
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const std::vector<Eigen::Vector3f> points = {{-2.0F, 0.0F, 0.0F},

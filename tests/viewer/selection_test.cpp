@@ -63,7 +63,7 @@ TEST_F(SelectionTest, TheFirstObjectIsSelectedAtFirst) {
   EXPECT_EQ(viewer.selected_name(), "left");
 }
 
-TEST_F(SelectionTest, KeysAndDragsActOnTheSelectedObjectAlone) {
+TEST_F(SelectionTest, KeysAndDragsActOnTheSelectedObjectOnly) {
   Viewer viewer(flags_, measurements_);
   const Frame before = snapshot_of(viewer).frame;
   viewer.select(1);
@@ -100,7 +100,7 @@ TEST_F(SelectionTest, EachObjectKeepsItsPoseWhenAnotherIsSelectedAndResetRestore
       snapshot_of(viewer).frame.world_from_instance[1].isApprox(before.world_from_instance[1]));
 }
 
-TEST_F(SelectionTest, AllObjectsTurnTogetherAboutTheirMiddle) {
+TEST_F(SelectionTest, AllObjectsRotateTogetherAboutTheirCentre) {
   Viewer viewer(flags_, measurements_);
   snapshot_of(viewer);
   viewer.select({});
@@ -144,7 +144,7 @@ TEST_F(SelectionTest, AnotherFileSelectsItsFirstObjectAndAnotherSensorKeepsTheSe
   EXPECT_EQ(viewer.selected_name(), "torus");
 }
 
-TEST_F(SelectionTest, FramingBringsAnObjectBackIntoThePicture) {
+TEST_F(SelectionTest, FramingBringsAnObjectBackIntoTheImage) {
   Viewer viewer(flags_, measurements_);
   EXPECT_EQ(snapshot_of(viewer).frame.status.size(), 32U * 32U);
   EXPECT_EQ(viewer.selection_visibility(), Visibility::inside);
@@ -158,7 +158,7 @@ TEST_F(SelectionTest, FramingBringsAnObjectBackIntoThePicture) {
   beam_on(viewer, 0);
 }
 
-TEST_F(SelectionTest, FramingMovesNoSensorThatSeesTheObjectAlready) {
+TEST_F(SelectionTest, FramingKeepsASensorThatSeesTheObject) {
   Viewer viewer(flags_, measurements_);
   const Pose before = snapshot_of(viewer).frame.world_from_sensor;
   const double distance_m = viewer.style.orbit.distance_m;
@@ -167,7 +167,7 @@ TEST_F(SelectionTest, FramingMovesNoSensorThatSeesTheObjectAlready) {
   EXPECT_LT(viewer.style.orbit.distance_m, distance_m) << "the view of the cloud goes near";
 }
 
-TEST_F(SelectionTest, KeepInViewTurnsTheSensorAfterTheObject) {
+TEST_F(SelectionTest, KeepInViewAimsTheSensorAtTheMovingObject) {
   Viewer viewer(flags_, measurements_);
   const Eigen::Vector3d eye_m = snapshot_of(viewer).frame.world_from_sensor.translation();
   viewer.set_keeps_in_view(true);

@@ -50,7 +50,7 @@ TEST_F(SensorPictureTest, ScalesDepthAlongTheBoresightAndRangeAlongTheBeam) {
   EXPECT_EQ(range.colours[1].r, 0);
 }
 
-TEST_F(SensorPictureTest, CountsRangesFromWhereTheSensorDoes) {
+TEST_F(SensorPictureTest, CountsRangesFromTheSensorsOrigin) {
   beams_.range_offset_m = 0.5;
   EXPECT_DOUBLE_EQ(picture_of(Quantity::range).scale.low, 1.5);
 }
@@ -63,14 +63,14 @@ TEST_F(SensorPictureTest, ScalesIntensityFromZero) {
   EXPECT_EQ(picture.colours[1].g, 128);
 }
 
-TEST_F(SensorPictureTest, ShowsNormalsAsSeenFromTheSensor) {
+TEST_F(SensorPictureTest, ShowsNormalsInTheSensorsView) {
   const SensorPicture picture = picture_of(Quantity::normals);
   EXPECT_EQ(picture.colours[0].b, 255) << "towards the sensor";
   EXPECT_EQ(picture.colours[1].r, 0) << "to the left";
   EXPECT_EQ(picture.legend.size(), 3U);
 }
 
-TEST_F(SensorPictureTest, NamesTheInstancesThatAreSeen) {
+TEST_F(SensorPictureTest, NamesTheVisibleInstances) {
   const SensorPicture picture = picture_of(Quantity::instance);
   ASSERT_EQ(picture.legend.size(), 2U);
   EXPECT_EQ(picture.legend[0].text, "rock (id 7)");
@@ -117,7 +117,7 @@ TEST_F(SensorPictureTest, ShowsACamerasPixelsInTheirOrder) {
   EXPECT_EQ(picture.layout.beam_at(2), 2U);
 }
 
-TEST_F(SensorPictureTest, ShowsAWallSquareOnInOneColour) {
+TEST_F(SensorPictureTest, ShowsAWallAtNormalIncidenceInOneColour) {
   frame_.range_m = {2.0, 2.0, NAN};
   const SensorPicture picture = picture_of(Quantity::range);
   EXPECT_EQ(picture.colours[0].r, picture.colours[1].r);

@@ -11,7 +11,7 @@
 namespace glidar::app {
 namespace {
 
-TEST(ShownNumbers, WhatRoundsToZeroHasNoSign) {
+TEST(ShownNumbers, NumbersThatRoundToZeroHaveNoSign) {
   for (const double value : {-0.0, 0.0, -0.001, -1e-9, -0.0049, -5e-324}) {
     EXPECT_FALSE(std::signbit(rounded(value, 2))) << value;
     EXPECT_EQ(fmt::format("{:.2f}", rounded(value, 2)), "0.00") << value;
@@ -26,7 +26,7 @@ TEST(ShownNumbers, OtherNumbersAreRoundedHalfAwayFromZero) {
   EXPECT_EQ(rounded(-179.996, 2), -180.0);
 }
 
-TEST(ShownNumbers, NumbersWithoutFractionAndThoseThatAreNotFiniteStay) {
+TEST(ShownNumbers, IntegersAndNonFiniteNumbersAreUnchanged) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   for (const double value : {1e15, -1e15, 1e300, kInfinity, -kInfinity}) {
     EXPECT_EQ(rounded(value, 6), value);
@@ -41,7 +41,7 @@ TEST(ShownNumbers, ZerosInTextLoseTheirMinusSign) {
   EXPECT_EQ(without_negative_zeros("moved by -0.000."), "moved by 0.000.");
 }
 
-TEST(ShownNumbers, OtherMinusSignsAndHyphensStay) {
+TEST(ShownNumbers, OtherMinusSignsAndHyphensAreUnchanged) {
   for (const char* text : {"-0.01", "-1", "(-10, -0.5)", "1e-09", "1-0", "moon-0", "-0x1F", "-0m",
                            "a - b", "-", "", "2026-01-00", "--sensor-name"}) {
     EXPECT_EQ(without_negative_zeros(text), text);

@@ -15,7 +15,7 @@
 
 namespace glidar::app {
 
-/// A viewer without a window, and a folder that it works in.
+/// A viewer without a window, with a temporary folder.
 class ViewerTest : public testing::Test {
  protected:
   void SetUp() override {

@@ -31,7 +31,7 @@ TEST_F(ViewerTest, ShowsWhatTheSensorMeasures) {
   EXPECT_EQ(points, viewer.summary().hits);
 }
 
-TEST_F(ViewerTest, PlusAndMinusMoveTheSensorATwentiethOfTheWay) {
+TEST_F(ViewerTest, PlusAndMinusMoveTheSensorByATwentiethOfTheDistance) {
   Viewer viewer(flags_, measurements_);
   const Eigen::Vector3d middle = bounds(snapshot_of(viewer).session->scene).center();
   const auto away_m = [&] {
@@ -44,7 +44,7 @@ TEST_F(ViewerTest, PlusAndMinusMoveTheSensorATwentiethOfTheWay) {
   EXPECT_NEAR(away_m() / before_m, 1.0, 1e-9);
 }
 
-TEST_F(ViewerTest, ADragTurnsTheObjectAboutItsMiddleAndResetUndoesIt) {
+TEST_F(ViewerTest, ADragRotatesTheObjectAboutItsCentreAndResetUndoesIt) {
   Viewer viewer(flags_, measurements_);
   const Pose before = snapshot_of(viewer).frame.world_from_instance[0];
   const Eigen::Vector3d middle = bounds(viewer.snapshot()->session->scene).center();
@@ -66,7 +66,7 @@ TEST_F(ViewerTest, KeepsARotationThroughTenThousandSmallDrags) {
   EXPECT_TRUE(is_rigid(snapshot_of(viewer).frame.world_from_instance[0]));
 }
 
-TEST_F(ViewerTest, PutsSensorAndObjectWhereTheyAreTyped) {
+TEST_F(ViewerTest, SetsTypedPosesOfSensorAndObject) {
   Viewer viewer(flags_, measurements_);
   snapshot_of(viewer);
   const Pose sensor = look_at({9.0, 1.0, 2.0}, {0.0, 0.0, 0.0}, Eigen::Vector3d::UnitZ());
@@ -101,7 +101,7 @@ TEST_F(ViewerTest, SpaceSaysWhenNothingMoves) {
   EXPECT_THAT(viewer.message, HasSubstr("nothing moves"));
 }
 
-TEST_F(ViewerTest, NoiseGoesOffAndOnAndTheSeedChangesIt) {
+TEST_F(ViewerTest, NoiseCanBeSwitchedAndTheSeedChangesIt) {
   flags_.sensor = {};
   flags_.sensor.file = "Kinect-v1";
   Viewer viewer(flags_, measurements_);
@@ -132,12 +132,12 @@ TEST_F(ViewerTest, ChangesSensorAndRenderer) {
   EXPECT_EQ(viewer.style.quantity, Quantity::range) << "depth means nothing to a scanner";
 }
 
-TEST_F(ViewerTest, TellsWhyItRefusesAndGoesOnWithWhatItHad) {
+TEST_F(ViewerTest, ReportsErrorsAndKeepsThePreviousSession) {
   Viewer viewer(flags_, measurements_);
   snapshot_of(viewer);
   viewer.use_sensor("VLP-16");
   snapshot_of(viewer);
-  viewer.use_renderer("opengl");  // scanners are no central projection
+  viewer.use_renderer("opengl");  // scanners are not a central projection
   ASSERT_TRUE(wait_until(viewer, [&] { return !viewer.errors.empty(); }));
   EXPECT_THAT(viewer.errors.front(), HasSubstr("--renderer rays"));
   viewer.open((folder_ / "missing.obj").string());
@@ -147,7 +147,7 @@ TEST_F(ViewerTest, TellsWhyItRefusesAndGoesOnWithWhatItHad) {
   EXPECT_GT(snapshot_of(viewer).beams->size(), 0U);
 }
 
-TEST_F(ViewerTest, OpensADroppedFileAndForgetsWhereTheLastOneWas) {
+TEST_F(ViewerTest, OpensADroppedFileWithInitialPoses) {
   flags_.pose.eye_m = Eigen::Vector3d(100.0, 0.0, 0.0);
   Viewer viewer(flags_, measurements_);
   EXPECT_NEAR(distance_m(snapshot_of(viewer)), 100.0, 1e-9);
@@ -157,7 +157,7 @@ TEST_F(ViewerTest, OpensADroppedFileAndForgetsWhereTheLastOneWas) {
   EXPECT_EQ(viewer.snapshot()->beams->cols, 32U) << "the sensor stays";
 }
 
-TEST_F(ViewerTest, SavesWhatIsSeenUnderANewNameEachTime) {
+TEST_F(ViewerTest, SavesTheCloudUnderANewNameEachTime) {
   flags_.output.legacy_name = (folder_ / "view").string();
   Viewer viewer(flags_, measurements_);
   snapshot_of(viewer);
@@ -176,7 +176,7 @@ TEST_F(ViewerTest, SavesWhatIsSeenUnderANewNameEachTime) {
   EXPECT_LT(depth_in("view_000001.transform"), depth_in("view.transform"));
 }
 
-TEST_F(ViewerTest, TellsWhyAFileCannotBeSaved) {
+TEST_F(ViewerTest, ReportsWhyAFileCannotBeSaved) {
   flags_.output.paths = {(folder_ / "no_such_folder" / "x.pcd").string()};
   Viewer viewer(flags_, measurements_);
   snapshot_of(viewer);
@@ -185,7 +185,7 @@ TEST_F(ViewerTest, TellsWhyAFileCannotBeSaved) {
   EXPECT_THAT(viewer.errors.front(), HasSubstr("no_such_folder"));
 }
 
-TEST_F(ViewerTest, TellsTheStoryOfAPickedPointAndTellsItAnewWhenItMoves) {
+TEST_F(ViewerTest, TracesAPickedPointAgainAfterItMoves) {
   flags_.motion.object_rate_rad_s = Eigen::Vector3d::UnitZ();
   Viewer viewer(flags_, measurements_);
   snapshot_of(viewer);
@@ -202,7 +202,7 @@ TEST_F(ViewerTest, TellsTheStoryOfAPickedPointAndTellsItAnewWhenItMoves) {
   EXPECT_THAT(viewer.trace, IsEmpty());
 }
 
-TEST_F(ViewerTest, KeysThatMeanNothingDoNothing) {
+TEST_F(ViewerTest, UnknownKeysDoNothing) {
   Viewer viewer(flags_, measurements_);
   snapshot_of(viewer);
   const MeasureRequest before = viewer.request();
@@ -211,7 +211,7 @@ TEST_F(ViewerTest, KeysThatMeanNothingDoNothing) {
   EXPECT_TRUE(viewer.request() == before);
 }
 
-TEST_F(ViewerTest, EndsInTheMidstOfWork) {
+TEST_F(ViewerTest, EndsDuringAMeasurement) {
   for (int i = 0; i < 20; ++i) {
     MeasurementThread measurements(console_, [] {});
     Viewer viewer(flags_, measurements);
@@ -219,7 +219,7 @@ TEST_F(ViewerTest, EndsInTheMidstOfWork) {
   }
 }
 
-TEST_F(ViewerTest, IsCurrentOnceWhatIsRequestedIsMeasured) {
+TEST_F(ViewerTest, IsCurrentOnceTheRequestIsMeasured) {
   Viewer viewer(flags_, measurements_);
   EXPECT_FALSE(viewer.is_current());
   ASSERT_TRUE(wait_until(viewer, [&] { return viewer.is_current(); }));
@@ -229,7 +229,7 @@ TEST_F(ViewerTest, IsCurrentOnceWhatIsRequestedIsMeasured) {
   EXPECT_EQ(viewer.snapshot()->request.seed, 7U);
 }
 
-TEST_F(ViewerTest, IsCurrentWhileTimeGoesOnHoweverSlowlyItMeasures) {
+TEST_F(ViewerTest, IsCurrentWhilePlayingEvenIfMeasuringIsSlow) {
   flags_.motion.object_rate_rad_s = Eigen::Vector3d::UnitZ();
   Viewer viewer(flags_, measurements_);
   ASSERT_TRUE(wait_until(viewer, [&] { return viewer.is_current(); }));
