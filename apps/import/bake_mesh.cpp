@@ -41,7 +41,7 @@ void append(Mesh& mesh, const Mesh& part, std::uint16_t slot) {
   mesh.material_slots.resize(mesh.triangles.size(), slot);
 }
 
-/// What is appended next is relative to this origin.
+/// The origin of the vertices that are appended next.
 void begin_run(Mesh& mesh, const Eigen::Vector3d& origin_m) {
   if (mesh.origins.empty()) mesh.origin_m = origin_m;
   if (!mesh.origins.empty() && mesh.origins.back().origin_m == origin_m) return;
@@ -56,15 +56,15 @@ void note(Model& model, std::uint64_t count, const char* text) {
 void note_repairs(const Walk& walk, const Repairs& repairs, Model& model) {
   note(model, walk.lines_and_points, "{} points and lines are left out");
   note(model, repairs.not_finite, "{} triangles touch coordinates that are not finite: left out");
-  note(model, repairs.bad_normals, "{} normals are zero or not finite: made anew");
+  note(model, repairs.bad_normals, "{} normals are zero or not finite: recomputed");
   note(model, repairs.unused_vertices, "{} vertices belong to no triangle: left out");
   note(model, walk.skinned, "{} meshes have a skeleton: shown in their rest pose");
 }
 
-/// Formats keep single precision: far from zero it is coarse, and the file's detail may be lost.
+/// Formats store single precision, which is coarse far from zero and may lose detail.
 void note_precision(const Eigen::AlignedBox3d& box, Model& model) {
   if (box.sizes().maxCoeff() == 0.0) {
-    model.notes.emplace_back("the model has no extent: all its triangles lie in one point");
+    model.notes.emplace_back("the model has no extent: all its triangles are at one point");
     return;
   }
   const double far = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();

@@ -12,7 +12,7 @@
 
 namespace glidar::import {
 
-/// What a mesh needs to know of its material.
+/// The properties of a material that its meshes need.
 struct SlotNeeds {
   bool tangents = false;      ///< it has a normal map
   std::size_t normal_uv = 0;  ///< in this uv set
@@ -20,13 +20,13 @@ struct SlotNeeds {
 
 struct BakeOptions {
   double crease_angle_rad = 0.0;
-  bool facet_normals = false;  ///< the file's normals are its facets' (STL): as good as none
+  bool facet_normals = false;  ///< the file has facet normals only (STL), which are not used
   std::vector<std::uint16_t> slot_of_material;  ///< the file's material -> slot
   std::vector<SlotNeeds> needs;                 ///< of each slot
 };
 
 /// Fills the model's mesh, parts and notes from the placed meshes: node transforms applied in
-/// double, triangles that touch NaN or infinity left out, the fronts of mirrored parts turned back.
+/// double, triangles with NaN or infinity left out, the winding of mirrored parts reversed.
 /// Origins are those of part_origins(). Throws Refusal when no triangle is left.
 void bake(const Walk& walk, const BakeOptions& options, Model& model);
 

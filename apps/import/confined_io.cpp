@@ -15,17 +15,17 @@
 namespace glidar::import {
 namespace {
 
-/// Some importers ask for the next line of a file that has ended until one comes. Honest ones
-/// notice the end after a few attempts.
+/// Some importers request lines after the end of a file forever. Others notice the end after a few
+/// attempts.
 constexpr unsigned kMaxReadsOfNothing = 10'000;
 
-/// Ends such an importer: Assimp takes its words for the reason of failure.
+/// Ends such an importer; Assimp reports its text as the reason of the failure.
 class EndlessReading : public std::runtime_error {
  public:
   EndlessReading() : std::runtime_error("the file ends too early, its data is cut off") {}
 };
 
-/// Reads a file's private copy, or a text in its place, with the semantics of std::fread and fseek.
+/// Reads a file's private copy, or a replacement text, with the semantics of std::fread and fseek.
 class ReadStream : public Assimp::IOStream {
  public:
   explicit ReadStream(std::shared_ptr<FileContent> file)
@@ -66,10 +66,10 @@ class ReadStream : public Assimp::IOStream {
   std::string_view text_;
   std::size_t size_;
   std::size_t at_ = 0;
-  unsigned reads_of_nothing_ = 0;  ///< one after another, whatever was sought in between
+  unsigned reads_of_nothing_ = 0;  ///< consecutive, regardless of seeks in between
 };
 
-/// For messages: without the model's folder, and not too long.
+/// The path for messages: relative to the model's folder, and limited in length.
 std::string shown(std::string name, const ModelFolder& folder) {
   const std::string prefix = folder.folder.string() + "/";
   if (name.starts_with(prefix)) name.erase(0, prefix.size());

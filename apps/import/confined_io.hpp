@@ -15,17 +15,17 @@ namespace glidar::import {
 
 /// Files that were requested and not read, each once, in the order of requests.
 struct FileLog {
-  std::vector<std::string> absent;  ///< not there, or not to be read
-  std::vector<std::string> notes;   ///< what the user should know of them
+  std::vector<std::string> absent;  ///< missing, or not allowed to be read
+  std::vector<std::string> notes;   ///< messages for the user about them
 };
 
 void add_once(std::vector<std::string>& list, std::string item);
 
-/// Assimp's view of the files: reading only, regular files inside the model's root only, from their
-/// private copies.
+/// Assimp's access to files: read-only, regular files inside the model's root only, from private
+/// copies.
 class ConfinedIo : public Assimp::IOSystem {
  public:
-  /// Assimp owns this object, and uses it as long as it reads; files and log last as long.
+  /// Assimp owns this object; files and log must outlive it.
   ConfinedIo(ModelFolder folder, ModelFiles& files, FileLog& log);
   bool Exists(const char* path) const override;
   char getOsSeparator() const override { return '/'; }

@@ -23,7 +23,7 @@ namespace {
 
 constexpr double kCentimetre_m = 0.01;
 constexpr double kMillimetre_m = 0.001;
-/// Units beyond are mistakes, and take numbers out of single precision.
+/// Units beyond these limits are errors, and would exceed single precision.
 constexpr double kMinUnit_m = 1e-18;
 constexpr double kMaxUnit_m = 1e18;
 
@@ -32,7 +32,7 @@ bool is_usable(double metres) {
 }
 
 void note_useless_unit(const std::string& metres, std::vector<std::string>& notes) {
-  notes.push_back("the file declares a unit of " + metres + " m, which cannot be: 1 m is assumed");
+  notes.push_back("the file declares an invalid unit of " + metres + " m: 1 m is assumed");
 }
 
 void note_no_element(const char* name, const char* assumed, std::vector<std::string>& notes) {
@@ -51,13 +51,13 @@ double number_of(std::string_view text) {
   return is_number ? number : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// What the asset of a COLLADA document declares, with the defaults of the standard.
+/// The declarations in the asset of a COLLADA document, with the standard's defaults.
 struct ColladaAsset {
   std::string meter = "1";
   std::string up_axis = "Y_UP";
 };
 
-/// The first asset of the document itself; empty: it is no such document.
+/// The first asset of the document; empty: not a COLLADA document.
 std::optional<ColladaAsset> collada_asset(TextSource text) {
   using Kind = XmlEvent::Kind;
   const std::vector<std::string> asset = {"COLLADA", "asset"};
@@ -93,9 +93,9 @@ std::optional<Axis> axis_named(std::string_view name) {
   return static_cast<Axis>(known - kNames.begin());
 }
 
-/// Assimp multiplies the unit and a rotation that makes y up into the root node, in single
-/// precision. They are taken away, since whoever loads the model may choose others.
-ModelFrame take_collada(aiScene& scene, TextSource text, std::vector<std::string>& notes) {
+/// Assimp multiplies the unit and a rotation to y up into the root node, in single precision. This
+/// removes both, because the user may select others.
+ModelFrame extract_collada_frame(aiScene& scene, TextSource text, std::vector<std::string>& notes) {
   scene.mRootNode->mTransformation = aiMatrix4x4();
   const std::optional<ColladaAsset> asset = collada_asset(std::move(text));
   if (!asset) {
@@ -117,7 +117,7 @@ ModelFrame take_collada(aiScene& scene, TextSource text, std::vector<std::string
   return frame;
 }
 
-/// The document of a COLLADA file, which a .zae archive contains and its manifest names.
+/// The document of a COLLADA file; in a .zae archive, the one named by the manifest.
 TextSource collada_text(std::string_view file) {
   const std::vector<std::string> names = zip_names(file);
   if (names.empty()) return plain_text(file);
@@ -161,8 +161,8 @@ ModelFrame read_fbx(const aiScene& scene, std::vector<std::string>& notes) {
   return frame;
 }
 
-/// An attribute of the document's element `name`, "" where it has none; empty: the document has
-/// another element, or none.
+/// An attribute of the document's element `name`, "" if it is missing; empty: the document has
+/// another element or none.
 std::optional<std::string> root_attribute(TextSource text, std::string_view name,
                                           const std::string& attribute) {
   XmlReader reader(std::move(text));
@@ -212,10 +212,10 @@ TextSource model_of_3mf(std::string_view file) {
 
 }  // namespace
 
-ModelFrame take_declared_frame(aiScene& scene, const std::string& format, FileContent& file,
-                               std::vector<std::string>& notes) {
+ModelFrame extract_declared_frame(aiScene& scene, const std::string& format, FileContent& file,
+                                  std::vector<std::string>& notes) {
   if (format.find("Collada") != std::string::npos) {
-    return take_collada(scene, collada_text(file.whole()), notes);
+    return extract_collada_frame(scene, collada_text(file.whole()), notes);
   }
   if (format.find("FBX") != std::string::npos) return read_fbx(scene, notes);
   if (format.starts_with("glTF")) return {1.0, Axis::y};

@@ -17,7 +17,7 @@ namespace {
 constexpr std::uint64_t kMaxSide = 16384;
 constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20U;
 
-/// Why an image of this size is not decoded; empty if it may be.
+/// The reason for not decoding an image of this size; empty: none.
 std::string too_large(std::uint64_t width, std::uint64_t height, std::uint64_t channels,
                       std::uint64_t budget) {
   if (width == 0 || height == 0) return "it has no pixels";
@@ -30,7 +30,7 @@ std::string too_large(std::uint64_t width, std::uint64_t height, std::uint64_t c
   return "";
 }
 
-/// Drops an alpha channel that says nothing.
+/// Drops an alpha channel that is opaque everywhere.
 void drop_opaque_alpha(Texture& t) {
   if (t.channels != 2 && t.channels != 4) return;
   const std::size_t texels = std::size_t{t.width} * t.height;
@@ -99,7 +99,7 @@ Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget) 
     return no_image("not an image that can be read (PNG, JPEG, BMP, TGA, GIF, PSD, HDR, PNM)");
   }
   if (width < 0 || height < 0 || channels < 1 || channels > 4) return no_image("broken");
-  // Palettes may unfold to more channels than the head tells.
+  // Palettes may expand to more channels than in the header.
   std::string refused =
       too_large(static_cast<std::uint64_t>(width), static_cast<std::uint64_t>(height), 4, budget);
   if (!refused.empty()) return no_image(std::move(refused));

@@ -14,21 +14,21 @@ struct aiTexture;
 
 namespace glidar::import {
 
-/// A decoded image, or why there is none.
+/// A decoded image, or the reason why there is none.
 struct Decoded {
   Texture texture;
   std::string reason;  ///< empty: decoded
 };
 
-/// Decodes PNG, JPEG, BMP, TGA, GIF, PSD, HDR or PNM to 8 bits; the size is judged before any
-/// memory is taken: no side above 16384, no more than 256 MiB decoded and no more than `budget`
-/// bytes. An alpha channel that is opaque everywhere is dropped.
+/// Decodes PNG, JPEG, BMP, TGA, GIF, PSD, HDR or PNM to 8 bits. Checks the size before allocating
+/// memory: at most 16384 pixels per side, 256 MiB decoded, and `budget` bytes. Drops an alpha
+/// channel that is opaque everywhere.
 Decoded decode_image(std::span<const std::uint8_t> bytes, std::uint64_t budget);
 
 /// An image inside the model file: compressed bytes, or raw texels.
 Decoded decode_embedded(const aiTexture& texture, std::uint64_t budget);
 
-/// The content of "data:...;base64,..."; empty when it has none.
+/// The content of "data:...;base64,..."; may be empty.
 std::vector<std::uint8_t> data_uri_bytes(const std::string& uri);
 
 /// "data:image/png;base64,...".

@@ -46,7 +46,7 @@ std::uint8_t component_count(const std::string& type) {
   refuse("an accessor of the unknown type '" + type.substr(0, 20) + "'");
 }
 
-/// Values of one attribute, one row for each point, as bytes.
+/// The values of an attribute, one row per point, as bytes.
 template <class T>
 std::string rows_of(const draco::PointCloud& mesh, const draco::PointAttribute& attribute,
                     std::uint8_t components) {
@@ -89,7 +89,7 @@ std::string corners_of(const draco::Mesh& mesh) {
   return {reinterpret_cast<const char*>(corners.data()), corners.size() * sizeof(std::uint32_t)};
 }
 
-/// Appends what is decoded to one buffer, with bufferViews and accessors.
+/// Appends decoded data to one buffer, with bufferViews and accessors.
 class DecodedBuffer {
  public:
   explicit DecodedBuffer(Json& gltf) : gltf_(gltf), index_(gltf.at("buffers").size()) {}

@@ -24,7 +24,7 @@ using Json = nlohmann::json;
 
 constexpr const char* kMeshoptExtension = "EXT_meshopt_compression";
 constexpr const char* kKtxExtension = "KHR_texture_basisu";
-constexpr const char* kDecodedName = ".glidar-decoded-draco";  // of a file that is not there
+constexpr const char* kDecodedName = ".glidar-decoded-draco";  // name of a virtual file
 
 bool is_gltf(const std::filesystem::path& model, FileContent& file) {
   std::string extension = model.extension().string();
@@ -73,7 +73,7 @@ void refuse_meshopt(const Json& gltf) {
                     std::string(kDracoExtension)};
 }
 
-/// True when a texture was changed.
+/// Returns whether a texture was changed.
 bool show_ktx_images(Json& gltf) {
   if (!gltf.contains("textures")) return false;
   bool is_changed = false;
@@ -125,7 +125,7 @@ class Buffers {
                   "put it into the model's folder"};
   }
 
-  Json list_;  // as it was before buffers were added
+  Json list_;  // before buffers were added
   std::string_view chunk_;
   const ModelFolder& folder_;
   ModelFiles& files_;
@@ -159,7 +159,7 @@ void replace_gltf_extensions(const std::filesystem::path& canonical_model,
     }
     if (is_changed) files.replace(canonical_model.string(), with_json(file, gltf));
   } catch (const Json::exception&) {
-    // Not as the standard says: the importer finds its own words for it.
+    // Invalid: the importer reports the error.
   }
 }
 

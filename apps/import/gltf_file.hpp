@@ -12,13 +12,13 @@ namespace glidar::import {
 /// The JSON of a .gltf file, or of the first chunk of a .glb file (glTF 2.0, section 4.4).
 std::string_view gltf_json(std::string_view file);
 
-/// The chunks of a .glb file after its JSON, as they are; empty for a .gltf file.
+/// The raw chunks of a .glb file after its JSON; empty for a .gltf file.
 std::string_view gltf_chunks_after_json(std::string_view file);
 
-/// The data of the binary chunk of a .glb file; empty when there is none.
+/// The data of the binary chunk of a .glb file; empty without one.
 std::string_view gltf_binary_chunk(std::string_view file);
 
-/// The file with another JSON, and its other chunks.
+/// The file with its JSON replaced.
 std::string with_json(std::string_view file, const nlohmann::json& json);
 
 }  // namespace glidar::import

@@ -18,7 +18,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// Without the parts that may be large: data in texts, tables of accessors.
+/// Skips the parts that may be large: data in texts, tables of accessors.
 Json parse_tree(std::string_view text) {
   static const std::set<std::string> kWanted = {"scene", "scenes", "nodes"};
   const auto keep = [](int depth, Json::parse_event_t event, const Json& parsed) {
@@ -42,7 +42,7 @@ std::vector<double> read_numbers(const Json& node, const char* key, std::size_t 
 
 Eigen::Matrix4d transform_of(const Json& node) {
   if (const std::vector<double> m = read_numbers(node, "matrix", 16); !m.empty()) {
-    return Eigen::Map<const Eigen::Matrix4d>(m.data());  // column by column, as Eigen
+    return Eigen::Map<const Eigen::Matrix4d>(m.data());  // column-major, as in Eigen
   }
   Eigen::Affine3d transform = Eigen::Affine3d::Identity();
   if (const auto t = read_numbers(node, "translation", 3); !t.empty()) {
@@ -58,7 +58,7 @@ Eigen::Matrix4d transform_of(const Json& node) {
   return transform.matrix();
 }
 
-/// True when the importer has the same transform, in single precision.
+/// Whether the importer has the same transform in single precision.
 bool agrees(const Eigen::Matrix4d& exact, const aiMatrix4x4& single) {
   constexpr double kSingle = 1e-5;
   const Eigen::Matrix<float, 4, 4, Eigen::RowMajor> theirs =
@@ -74,7 +74,7 @@ struct Pair {
   const aiNode* node;
 };
 
-/// Pairs the file's nodes of a list with the importer's; false unless they are as many.
+/// Pairs the file's nodes of a list with the importer's; false if their numbers differ.
 bool add_pairs(const Json& list, const aiNode* const* nodes, std::size_t count,
                std::vector<Pair>& pairs) {
   if (!list.is_array() || list.size() != count) return false;
@@ -128,7 +128,7 @@ NodeTransforms gltf_transforms(std::string_view file, const aiScene& scene) {
     const Json tree = parse_tree(gltf_json(file));
     return tree.is_object() ? matched(tree, *scene.mRootNode) : NodeTransforms{};
   } catch (const Json::exception&) {
-    return {};  // a value of another type than the standard's: the importer knows better
+    return {};  // a value of an invalid type: keeps the importer's transforms
   }
 }
 

@@ -25,7 +25,7 @@
 namespace glidar::import {
 namespace {
 
-// Identical vertices are merged later, exactly: Assimp's own step merges what is nearly equal.
+// Identical vertices are merged later, exactly: Assimp's own step merges nearly equal ones.
 constexpr unsigned kSteps = aiProcess_ValidateDataStructure | aiProcess_Triangulate |
                             aiProcess_SortByPType | aiProcess_GenUVCoords;
 
@@ -68,7 +68,7 @@ std::string importer_name(const Assimp::Importer& importer) {
                 "the file is damaged or of a kind that the importer does not know"};
 }
 
-/// Reads the used materials, in the file's order, and gives them slots.
+/// Reads the used materials, in the file's order, and assigns slots.
 void read_materials(const aiScene& scene, const Walk& walk, const MaterialContext& context,
                     Model& model, BakeOptions& bake_options) {
   std::vector<bool> used(scene.mNumMaterials, false);
@@ -86,7 +86,7 @@ void read_materials(const aiScene& scene, const Walk& walk, const MaterialContex
   }
 }
 
-/// Material files name textures from where they stand.
+/// Texture paths in material files are relative to the material file.
 std::vector<std::string> texture_folders(const std::vector<std::string>& read,
                                          const ModelFolder& folder) {
   std::vector<std::string> folders;
@@ -105,21 +105,21 @@ ImportedModel import_model(const std::filesystem::path& canonical_model, double 
   ModelFiles files(folder);
   FileLog log;
   const auto own = files.content(canonical_model.string());  // the first of the files
-  if (own == nullptr) throw Refusal{"cannot be opened", "check who may read it"};
+  if (own == nullptr) throw Refusal{"cannot be opened", "check its read permission"};
   replace_gltf_extensions(canonical_model, folder, files, log);
-  // Never destroyed: taking a deep tree apart recurses, and the process ends anyway.
+  // Never destroyed: the destructor of a deep tree recurses, and the process ends anyway.
   auto& importer = *new Assimp::Importer;
   importer.SetIOHandler(new ConfinedIo(folder, files, log));
   importer.SetProgressHandler(new AssimpProgress(progress));
   if (importer.ReadFile(canonical_model.string(), kSteps) == nullptr) {
     refuse(importer.GetErrorString(), log);
   }
-  // Taken from the importer, which lives on for its files: its own scene cannot be changed.
+  // Owned here, because the importer's own scene is const; the importer keeps its files open.
   aiScene* scene = importer.GetOrphanedScene();
   ImportedModel imported;
   Model& model = imported.model;
   model.format = importer_name(importer);
-  model.declared = take_declared_frame(*scene, model.format, *own, model.notes);
+  model.declared = extract_declared_frame(*scene, model.format, *own, model.notes);
   const bool gltf = model.format.find("glTF") != std::string::npos;
   const Walk walked = walk(*scene, gltf ? gltf_transforms(own->whole(), *scene) : NodeTransforms{});
   const MtlOptions mtl = read_mtl_options(files);

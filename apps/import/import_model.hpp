@@ -11,8 +11,8 @@
 
 namespace glidar::import {
 
-/// Reads a model file by Assimp. Throws Refusal with the importer's words; whatever else goes wrong
-/// (damage, memory) is the caller's to tell.
+/// Reads a model file with Assimp. Throws Refusal with the importer's text; the caller reports
+/// other errors (memory, invalid data).
 ImportedModel import_model(const std::filesystem::path& canonical_model, double crease_angle_rad,
                            const std::function<void(double)>& progress);
 

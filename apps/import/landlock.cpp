@@ -15,8 +15,8 @@
 namespace glidar::import {
 namespace {
 
-// The headers of Debian 12 know version 2 of the interface, kernels of today version 7: what came
-// since is written out (https://docs.kernel.org/userspace-api/landlock.html).
+// The headers of Debian 12 have version 2 of the interface, current kernels version 7: newer
+// constants are defined here (https://docs.kernel.org/userspace-api/landlock.html).
 
 struct RulesetAttributes {
   std::uint64_t files = 0;
@@ -28,7 +28,7 @@ constexpr std::uint64_t bits(unsigned count) {
   return (std::uint64_t{1} << count) - 1;
 }
 
-/// Everything that this version of the interface can forbid.
+/// All access rights that this version of the interface can restrict.
 RulesetAttributes everything(long version) {
   RulesetAttributes all;
   all.files = bits(version >= 5 ? 16 : version >= 3 ? 15 : version >= 2 ? 14 : 13);
@@ -37,7 +37,7 @@ RulesetAttributes everything(long version) {
   return all;
 }
 
-/// An older kernel takes the attributes that it knows only.
+/// An older kernel accepts only the attributes that it knows.
 std::size_t size_for(long version) {
   const std::size_t fields = version >= 6 ? 3 : version >= 4 ? 2 : 1;
   return fields * sizeof(std::uint64_t);
@@ -54,7 +54,7 @@ std::string why(const char* what) {
 std::string restrict_files(const std::filesystem::path& root) {
   const long version =
       ::syscall(SYS_landlock_create_ruleset, nullptr, 0, LANDLOCK_CREATE_RULESET_VERSION);
-  if (version < 1) return why("asking for its version");
+  if (version < 1) return why("querying its version");
   const RulesetAttributes all = everything(version);
   const UniqueFd ruleset(
       static_cast<int>(::syscall(SYS_landlock_create_ruleset, &all, size_for(version), 0)));

@@ -7,9 +7,9 @@
 
 namespace glidar::import {
 
-/// Leaves this process no access to files but reading below `root`, and, as far as the kernel
-/// knows, no TCP, no abstract UNIX sockets and no signals to other processes.
-/// Returns why not, in words, or "". Needs PR_SET_NO_NEW_PRIVS.
+/// Restricts this process to reading files below `root`. If the kernel supports it, also forbids
+/// TCP, abstract UNIX sockets and signals to other processes. Returns the reason for a failure, or
+/// "". Needs PR_SET_NO_NEW_PRIVS.
 std::string restrict_files(const std::filesystem::path& root);
 
 }  // namespace glidar::import

@@ -11,7 +11,7 @@ namespace {
 
 extern "C" int glidar_list_library(dl_phdr_info* info, std::size_t /*size*/, void* list) {
   const std::string_view path = info->dlpi_name;
-  // Neither the program itself, which has no name here, nor what the kernel puts in.
+  // Excludes the program itself, which has no name here, and the kernel's vDSO.
   if (path.starts_with('/')) static_cast<std::vector<std::string>*>(list)->emplace_back(path);
   return 0;
 }

@@ -7,7 +7,7 @@
 
 namespace glidar::import {
 
-/// Paths of the shared libraries that this process runs with, Assimp's among them.
+/// Paths of the shared libraries of this process, including Assimp's.
 std::vector<std::string> loaded_libraries();
 
 }  // namespace glidar::import

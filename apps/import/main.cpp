@@ -3,8 +3,8 @@
 
 // glidar-import MODEL CREASE_ANGLE_RAD MEMORY_BYTES TIME_S PARENT
 // Reads one model and writes one frame (glidar/io/model/mesh_blob.hpp) to descriptor 3: the model,
-// or why there is none. It reads the model in a sandbox (sandbox.hpp). Percents of progress go to
-// descriptor 4, one byte each. The GLIDAR library starts it; it is of no use by hand.
+// or the error. It reads the model in a sandbox (sandbox.hpp). Progress in percent goes to
+// descriptor 4, one byte each. The GLIDAR library starts it; it is not for direct use.
 
 #include <import/import_model.hpp>
 #include <import/process_limits.hpp>
@@ -30,7 +30,7 @@ constexpr int kExitAnswered = 0;
 constexpr int kExitFailed = 2;
 constexpr int kExitNoMemory = 3;
 
-void tell_progress(double fraction) {
+void report_progress(double fraction) {
   const auto percent = static_cast<unsigned char>(fraction <= 1.0 ? fraction * 100.0 : 100.0);
   // Progress is optional: a full or closed pipe must not stop the work.
   [[maybe_unused]] const ssize_t written = ::write(kProgressFd, &percent, 1);
@@ -41,7 +41,7 @@ int answer(const char* const* arguments) {
       enter_sandbox(model_folder(arguments[1]).root, kProgressFd);
   try {
     ImportedModel imported =
-        import_model(arguments[1], std::strtod(arguments[2], nullptr), tell_progress);
+        import_model(arguments[1], std::strtod(arguments[2], nullptr), report_progress);
     imported.sandbox_notes = notes;
     write_model(kAnswerFd, imported);
   } catch (const Refusal& refusal) {
@@ -61,7 +61,7 @@ int run(int argc, const char* const* argv) {
   } catch (const std::bad_alloc&) {
     return kExitNoMemory;
   } catch (const std::exception&) {
-    return kExitFailed;  // the parent tells that there is no answer
+    return kExitFailed;  // the parent reports the missing answer
   }
 }
 
@@ -69,7 +69,7 @@ int run(int argc, const char* const* argv) {
 }  // namespace glidar::import
 
 int main(int argc, char** argv) {
-  // Without destructors: the answer is written, and what hostile data left behind may not fall
-  // apart well.
+  // Skips destructors: the answer is written, and data from hostile files may not destruct
+  // safely.
   ::_exit(glidar::import::run(argc, argv));
 }

@@ -23,18 +23,18 @@ Eigen::Vector3d moved(const Placed& placed, const aiVector3D& v) {
          placed.model_from_mesh.topRightCorner<3, 1>();
 }
 
-/// In the range of single precision, which also origins are rounded to.
+/// Whether a position is in the range of single precision, also for rounded origins.
 bool is_representable(const Eigen::Vector3d& p) {
   return p.cast<float>().allFinite();
 }
 
-/// A triangle of valid corners; anything else is left by the steps before, or by damage.
+/// Whether a face is a triangle with valid vertices.
 bool is_triangle(const aiFace& face, unsigned vertices) {
   return face.mNumIndices == 3 && face.mIndices[0] < vertices && face.mIndices[1] < vertices &&
          face.mIndices[2] < vertices;
 }
 
-/// -0 and +0 are the same place; comparing bits later must see that.
+/// Replaces -0 by +0, because positions are compared by their bits later.
 Eigen::Vector3f plain(const Eigen::Vector3d& v) {
   return (v.cast<float>().array() + 0.0F).matrix();
 }
@@ -64,7 +64,7 @@ Linear linear_part(const Placed& placed) {
   Linear linear;
   linear.directions = m;
   linear.handedness = m.determinant() < 0.0 ? -1.0 : 1.0;
-  // The cofactor matrix is det(m) times the inverse transpose, and exists for flat parts too.
+  // The cofactor matrix is det(m) times the inverse transpose; it also exists for flat parts.
   linear.normals.col(0) = m.col(1).cross(m.col(2));
   linear.normals.col(1) = m.col(2).cross(m.col(0));
   linear.normals.col(2) = m.col(0).cross(m.col(1));
@@ -72,8 +72,9 @@ Linear linear_part(const Placed& placed) {
   return linear;
 }
 
-/// Positions relative to the origin. False where one is not finite, in any of the three frames.
-std::vector<bool> take_positions(const Placed& placed, const Eigen::Vector3d& origin, Mesh& part) {
+/// Computes positions relative to the origin. False for vertices that are not finite in any of the
+/// three frames.
+std::vector<bool> copy_positions(const Placed& placed, const Eigen::Vector3d& origin, Mesh& part) {
   const aiMesh& mesh = *placed.mesh;
   std::vector<bool> finite(mesh.mNumVertices);
   part.positions_m.resize(mesh.mNumVertices);
@@ -86,7 +87,7 @@ std::vector<bool> take_positions(const Placed& placed, const Eigen::Vector3d& or
   return finite;
 }
 
-void take_triangles(const aiMesh& mesh, const std::vector<bool>& finite, bool mirrored, Mesh& part,
+void copy_triangles(const aiMesh& mesh, const std::vector<bool>& finite, bool mirrored, Mesh& part,
                     Repairs& repairs) {
   part.triangles.reserve(mesh.mNumFaces);
   for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
@@ -103,15 +104,15 @@ void take_triangles(const aiMesh& mesh, const std::vector<bool>& finite, bool mi
   }
 }
 
-void take_normals(const aiMesh& mesh, const Linear& linear, Mesh& part) {
+void copy_normals(const aiMesh& mesh, const Linear& linear, Mesh& part) {
   part.normals.resize(mesh.mNumVertices);
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
     part.normals[v] = unit_or_zero(linear.normals * vector(mesh.mNormals[v]));
   }
 }
 
-/// The file's tangents; w tells on which side of (normal, tangent) its bitangents lie.
-void take_tangents(const aiMesh& mesh, const Linear& linear, Mesh& part) {
+/// The file's tangents; w is the handedness of their bitangents.
+void copy_tangents(const aiMesh& mesh, const Linear& linear, Mesh& part) {
   part.tangents.resize(mesh.mNumVertices);
   for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
     const Eigen::Vector3d t = vector(mesh.mTangents[v]);
@@ -123,7 +124,7 @@ void take_tangents(const aiMesh& mesh, const Linear& linear, Mesh& part) {
   }
 }
 
-void take_uvs_and_colours(const aiMesh& mesh, Mesh& part) {
+void copy_uvs_and_colours(const aiMesh& mesh, Mesh& part) {
   for (unsigned set = 0; set < part.uvs.size(); ++set) {
     if (!mesh.HasTextureCoords(set)) continue;
     part.uvs[set].resize(mesh.mNumVertices);
@@ -139,7 +140,7 @@ void take_uvs_and_colours(const aiMesh& mesh, Mesh& part) {
   }
 }
 
-/// Replaces unusable normals by those of the faces around them.
+/// Replaces unusable normals by those of the adjacent faces.
 void mend_normals(Mesh& part, Repairs& repairs) {
   std::vector<bool> bad(part.normals.size());
   std::uint64_t count = 0;
@@ -198,12 +199,12 @@ Mesh make_part(const Placed& placed, const Eigen::Vector3d& origin, const BakeOp
   const Linear linear = linear_part(placed);
   const bool file_normals = mesh.HasNormals() && !options.facet_normals;
   Mesh part;
-  const std::vector<bool> finite = take_positions(placed, origin, part);
-  take_triangles(mesh, finite, linear.handedness < 0.0, part, repairs);
+  const std::vector<bool> finite = copy_positions(placed, origin, part);
+  copy_triangles(mesh, finite, linear.handedness < 0.0, part, repairs);
   repairs.unused_vertices += unused(mesh, part);
-  take_uvs_and_colours(mesh, part);
-  if (file_normals) take_normals(mesh, linear, part);
-  if (file_normals && mesh.HasTangentsAndBitangents()) take_tangents(mesh, linear, part);
+  copy_uvs_and_colours(mesh, part);
+  if (file_normals) copy_normals(mesh, linear, part);
+  if (file_normals && mesh.HasTangentsAndBitangents()) copy_tangents(mesh, linear, part);
   weld_vertices(part);
   if (file_normals) {
     mend_normals(part, repairs);

@@ -12,7 +12,7 @@
 
 namespace glidar::import {
 
-/// What had to be left out or made anew, over all parts.
+/// Counts of vertices, triangles and normals that were left out or recomputed, over all parts.
 struct Repairs {
   std::uint64_t not_finite = 0;  ///< triangles
   std::uint64_t bad_normals = 0;
@@ -22,8 +22,8 @@ struct Repairs {
 /// The file's material of a placed mesh.
 std::size_t material_of(const Placed& placed);
 
-/// Visits the vertices that triangles use, in the model's frame, that are in the range of single
-/// precision. Triangles of others are left out.
+/// Visits the vertices of triangles, in the model's frame. Skips triangles with vertices outside
+/// the range of single precision.
 void for_used_vertices(const Placed& placed,
                        const std::function<void(const Eigen::Vector3d&)>& visit);
 

@@ -15,13 +15,13 @@
 namespace glidar::import {
 namespace {
 
-/// Importers look at the first bytes of a file to find out whose format it is. A file that turns
-/// out to be of no format is not read any further.
+/// Importers detect formats by the first bytes of a file. Files of unknown formats are read no
+/// further.
 constexpr std::size_t kFirstPiece = std::size_t{1} << 20U;
 
 }  // namespace
 
-/// Bytes read, fewer than `size` only where the file ends.
+/// Returns the number of bytes read, less than `size` only at the end of the file.
 std::size_t FileContent::read_some(char* to, std::size_t size) {
   std::size_t have = 0;
   while (have < size) {
@@ -48,7 +48,7 @@ std::string_view FileContent::head(std::size_t end) {
 std::string FileContent::hash() {
   ContentHash hash;
   hash.add(bytes_.data(), bytes_.size());
-  // No further than importers could read, although the file may have grown since.
+  // Not beyond the size that importers saw, although the file may have grown.
   std::size_t left = is_at_end_ ? 0 : size_ - bytes_.size();
   std::string piece(std::min(left, kFirstPiece), '\0');
   while (left > 0) {

@@ -14,18 +14,17 @@
 
 namespace glidar::import {
 
-/// A private copy of one file, read as far as it was needed. Every byte is read from the file once,
-/// so that whoever parses the content and whoever hashes it see the same bytes, whatever happens to
-/// the file meanwhile.
+/// A private copy of a file, read as far as needed. Every byte is read from the file once, so that
+/// the parser and the hash see the same bytes even if the file changes.
 class FileContent {
  public:
   FileContent(UniqueFd file, std::size_t size) : file_(std::move(file)), size_(size) {}
   [[nodiscard]] std::size_t size() const { return size_; }  ///< when the file was opened
-  /// The first `end` bytes, fewer where the file ends.
+  /// The first `end` bytes, fewer if the file is shorter.
   std::string_view head(std::size_t end);
   std::string_view whole() { return head(size_); }
-  /// Hexadecimal, of the whole file; what was not read is hashed without keeping it, and cannot be
-  /// read afterwards.
+  /// Hexadecimal hash of the whole file. Bytes that were not read before are hashed but not kept,
+  /// and cannot be read afterwards.
   std::string hash();
 
  private:
@@ -37,21 +36,21 @@ class FileContent {
   bool is_at_end_ = false;
 };
 
-/// The files that a model is read from, each opened once.
+/// The files of a model, each opened once.
 class ModelFiles {
  public:
   explicit ModelFiles(ModelFolder folder);
 
-  /// The content of a regular file below the model's root; `path` is canonical. Null when it cannot
+  /// The content of a regular file below the model's root; `path` is canonical. Null if it cannot
   /// be opened.
   std::shared_ptr<FileContent> content(const std::string& path);
-  /// Frees the content of a file that nothing needs again; its hash is kept.
+  /// Frees the content of a file that is no longer needed; keeps its hash.
   void release(const std::string& path);
 
-  /// Makes importers read `content` in the place of a file. The file's own content is still the one
-  /// that is hashed. A path that is no file becomes one that importers can read.
+  /// Makes importers read `content` instead of a file. The hash is still that of the file. The path
+  /// need not exist.
   void replace(const std::string& path, std::string content);
-  /// What importers read in the place of this file; null: the file itself.
+  /// The replacement of this file for importers; null: the file itself.
   [[nodiscard]] const std::string* replacement(const std::string& path) const;
 
   /// Canonical paths of all files that were opened, in the order of opening.

@@ -31,8 +31,8 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-/// Takes the first word off the text.
-std::string take_word(std::string_view& text) {
+/// Removes and returns the first word of the text.
+std::string next_word(std::string_view& text) {
   text = trimmed(text);
   const auto end = std::find_if(text.begin(), text.end(), is_space);
   std::string word(text.begin(), end);
@@ -40,10 +40,10 @@ std::string take_word(std::string_view& text) {
   return word;
 }
 
-/// Takes a number off the text if one stands there.
-std::optional<float> take_number(std::string_view& text) {
+/// Removes and returns a number at the start of the text.
+std::optional<float> next_number(std::string_view& text) {
   std::string_view rest = text;
-  const std::string word = take_word(rest);
+  const std::string word = next_word(rest);
   char* end = nullptr;
   const float value = std::strtof(word.c_str(), &end);
   if (word.empty() || *end != '\0') return std::nullopt;
@@ -52,43 +52,43 @@ std::optional<float> take_number(std::string_view& text) {
 }
 
 /// One to three numbers; the third is for 3D textures.
-void take_pair(std::string_view& text, Eigen::Vector2f& pair) {
+void next_pair(std::string_view& text, Eigen::Vector2f& pair) {
   for (int i = 0; i < 3; ++i) {
-    const auto value = take_number(text);
+    const auto value = next_number(text);
     if (!value) return;
     if (i < 2) pair[i] = *value;
   }
 }
 
-/// Takes the values of an option off the text. False for what is no option.
-bool take_option(const std::string& option, std::string_view& text, MtlTexture& texture) {
+/// Removes the values of an option from the text. False if it is not an option.
+bool parse_option(const std::string& option, std::string_view& text, MtlTexture& texture) {
   constexpr std::array<std::string_view, 8> kOneWord = {
       "-blendu", "-blendv", "-cc", "-texres", "-boost", "-imfchan", "-type", "-colorspace"};
   Eigen::Vector2f unused;
   if (option == "-s") {
-    take_pair(text, texture.scale);
+    next_pair(text, texture.scale);
   } else if (option == "-o") {
-    take_pair(text, texture.offset);
+    next_pair(text, texture.offset);
   } else if (option == "-t" || option == "-mm") {
-    take_pair(text, unused);
+    next_pair(text, unused);
   } else if (option == "-bm") {
-    texture.bump = take_number(text);
+    texture.bump = next_number(text);
   } else if (option == "-clamp") {
-    texture.clamp = take_word(text) == "on";
+    texture.clamp = next_word(text) == "on";
   } else if (std::find(kOneWord.begin(), kOneWord.end(), option) != kOneWord.end()) {
-    take_word(text);
+    next_word(text);
   } else {
     return false;
   }
   return true;
 }
 
-/// Options stand before the name; some writers put them after it.
-bool take_options(std::string_view& text, MtlTexture& texture) {
+/// Options are before the name, in some files after it.
+bool parse_options(std::string_view& text, MtlTexture& texture) {
   bool any = false;
   for (;;) {
     std::string_view rest = text;
-    if (!take_option(take_word(rest), rest, texture)) return any;
+    if (!parse_option(next_word(rest), rest, texture)) return any;
     text = rest;
     any = true;
   }
@@ -116,11 +116,11 @@ std::vector<std::string_view> keywords_of(unsigned type) {
 }
 
 void read_texture(std::string_view text, MtlTexture texture, MtlOptions& options) {
-  bool any = take_options(text, texture);
+  bool any = parse_options(text, texture);
   text = trimmed(text);
   if (const std::size_t after = text.find(" -"); after != std::string_view::npos) {
     std::string_view tail = text.substr(after);
-    if (take_options(tail, texture)) {
+    if (parse_options(tail, texture)) {
       text = trimmed(text.substr(0, after));
       any = true;
     }
@@ -158,7 +158,7 @@ MtlOptions read_mtl_options(ModelFiles& files) {
     std::string material;
     for (std::string line; std::getline(file, line);) {
       std::string_view text = line;
-      const std::string keyword = lower(take_word(text));
+      const std::string keyword = lower(next_word(text));
       if (keyword == "newmtl") material = trimmed(text);
       if (!names_map(keyword)) continue;
       MtlTexture texture;

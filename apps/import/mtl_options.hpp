@@ -28,12 +28,12 @@ struct MtlTexture {
 struct MtlOptions {
   std::vector<MtlTexture> textures;
 
-  /// Corrects what Assimp read of this texture of this material: its name, u' = s u + o, clamping.
+  /// Corrects Assimp's values for this texture of this material: name, u' = s u + o, clamping.
   void refine(const std::string& material, unsigned type,
               std::optional<NamedTexture>& texture) const;
 };
 
-/// Reads the material files among those that were read for a model.
+/// Reads the material files of a model.
 MtlOptions read_mtl_options(ModelFiles& files);
 
 }  // namespace glidar::import

@@ -30,7 +30,7 @@ UniqueFd open_beneath(int root_fd, const std::filesystem::path& root,
                       const std::filesystem::path& path) {
   const std::filesystem::path below = path.lexically_relative(root);
   UniqueFd file(openat2(root_fd, below.c_str(), RESOLVE_BENEATH | RESOLVE_NO_SYMLINKS));
-  // The sandbox refuses openat2 by EPERM where it could not tell reading from writing.
+  // The sandbox refuses openat2 with EPERM if it cannot distinguish reading from writing.
   const bool is_known = file || (errno != ENOSYS && errno != EPERM);
   return is_known ? std::move(file) : UniqueFd(::open(path.c_str(), kFlags | O_NOFOLLOW));
 }

@@ -18,7 +18,7 @@
 namespace glidar::import {
 namespace {
 
-/// Parts of one origin.
+/// Parts with a common origin.
 struct Group {
   Eigen::AlignedBox3d box;
   double rounding = 0.0;  ///< largest, of a coordinate relative to the common origin
@@ -40,7 +40,7 @@ double rounding_of(const Eigen::Vector3d& relative) {
   return (relative.unaryExpr(&rounded_to_float) - relative).cwiseAbs().maxCoeff();
 }
 
-/// What each part covers, and how it is rounded.
+/// The box of each part and its rounding.
 std::vector<Group> measure(const Walk& walk, const Eigen::Vector3d& common) {
   std::vector<Group> parts(walk.placed.size());
   for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -68,7 +68,7 @@ class DisjointSets {
   std::vector<std::uint32_t> parent_;
 };
 
-/// Joins parts that would have a vertex in common if all had the common origin.
+/// Joins parts that would share a vertex if all had the common origin.
 void join_neighbours(const Walk& walk, const Eigen::Vector3d& common, DisjointSets& sets) {
   using Place = std::tuple<float, float, float, std::uint32_t>;
   std::vector<Place> places;
@@ -104,7 +104,7 @@ Cell cell_of(const Group& group, double size) {
   return {std::floor(middle.x()), std::floor(middle.y()), std::floor(middle.z())};
 }
 
-/// Gathers groups in the cells of a grid, which is as fine as the number of origins allows.
+/// Merges groups by the cells of a grid, as fine as the number of origins allows.
 void gather_in_cells(const std::vector<Group>& parts, std::vector<std::uint32_t>& group_of) {
   const std::vector<Group> groups = merged(parts, group_of);
   constexpr double kFinest = 2.0;  // half of it is rounded by at most 2^-25 = 3e-8
@@ -122,7 +122,7 @@ void gather_in_cells(const std::vector<Group>& parts, std::vector<std::uint32_t>
   }
 }
 
-/// Its own origin where that is much nearer than the common one.
+/// Uses a separate origin if it is much closer than the common one.
 Eigen::Vector3d origin_of_group(const Group& group, const Eigen::Vector3d& common) {
   if (group.rounding <= kMaxRounding) return common;
   constexpr double kNearer = 0.25;

@@ -12,17 +12,16 @@ namespace glidar::import {
 
 /// The origin of each placed mesh, to which its single-precision coordinates are relative.
 /// Along an axis on which the whole model is farther from zero than its own size, that is the
-/// middle of its box, else zero: either way single precision takes the file's coordinates without
-/// rounding (Sterbenz 1974). Nodes may place parts between the numbers of single precision. Where
-/// that rounds by more than kMaxRounding units, parts far from the common origin get origins
-/// nearby, at most kMaxOrigins in all. Parts that share a vertex position share their origin, so
-/// that no gap opens between them.
+/// centre of its box, else zero; in both cases single precision represents the file's coordinates
+/// without rounding (Sterbenz 1974). Transforms of nodes may require rounding. If it exceeds
+/// kMaxRounding units, parts far from the common origin get their own origins, at most kMaxOrigins
+/// in all. Parts that share a vertex position share their origin, so that no gaps open.
 std::vector<Eigen::Vector3d> part_origins(const Walk& walk);
 
 inline constexpr double kMaxRounding = 1e-6;
 inline constexpr std::size_t kMaxOrigins = 64;
 
-/// The box of all vertices that triangles use.
+/// The bounding box of all vertices of triangles.
 Eigen::AlignedBox3d box_of(const Walk& walk);
 
 }  // namespace glidar::import

@@ -15,7 +15,7 @@ namespace {
 bool limit(__rlimit_resource resource, std::uint64_t value) {
   rlimit current{};
   if (::getrlimit(resource, &current) != 0) return false;
-  // A stricter limit from outside stays.
+  // Keeps a stricter existing limit.
   const rlim_t most = value < current.rlim_max ? value : current.rlim_max;
   const rlimit wanted{most, most};
   return ::setrlimit(resource, &wanted) == 0;
@@ -24,8 +24,8 @@ bool limit(__rlimit_resource resource, std::uint64_t value) {
 // Importers recurse over the file's tree; the kernel keeps 128 MiB of addresses free for the stack.
 constexpr std::uint64_t kStackBytes = std::uint64_t{100} << 20U;
 
-// The sanitizers reserve terabytes of addresses; they watch the resident memory themselves.
-// Importers mix allocation functions and come from a library that is not instrumented.
+// Sanitizers reserve terabytes of addresses and limit the resident memory themselves. Importers mix
+// allocation functions and are in a library that is not instrumented.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 constexpr bool kLimitAddresses = false;
 constexpr const char* kSanitizerOptions =
@@ -51,7 +51,7 @@ bool apply(const ProcessLimits& limits) {
                        (!kLimitAddresses || limit(RLIMIT_NPROC, 0));
   const bool bound =
       ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 && ::prctl(PR_SET_PDEATHSIG, SIGKILL) == 0;
-  // The parent may have died before the request to be told.
+  // The parent may have died before the request for a signal.
   return limited && bound && ::getppid() == limits.parent;
 }
 

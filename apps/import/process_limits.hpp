@@ -9,11 +9,11 @@ namespace glidar::import {
 struct ProcessLimits {
   std::uint64_t memory_bytes = 0;  ///< address space, and size of any file written
   double time_s = 0.0;             ///< of the processor; the parent watches the wall clock
-  std::int64_t parent = 0;         ///< process id; without it this process has nothing to do
+  std::int64_t parent = 0;         ///< process id; this process ends with it
 };
 
-/// Puts this process under the limits, for good: no core dumps, no new privileges, killed when the
-/// parent dies. False when one of them cannot be had.
+/// Applies the limits to this process permanently: no core dumps, no new privileges, killed when
+/// the parent dies. False if one of them fails.
 bool apply(const ProcessLimits& limits);
 
 }  // namespace glidar::import

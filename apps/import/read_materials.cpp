@@ -37,7 +37,7 @@ std::optional<Eigen::Vector3f> colour(const aiMaterial& material, const char* ke
   return Eigen::Vector3f(within(c.r, 0.0F, 1.0F), within(c.g, 0.0F, 1.0F), within(c.b, 0.0F, 1.0F));
 }
 
-/// Assimp's macros name a key, a type and an index; here the key alone is wanted.
+/// Assimp's macros expand to a key, a type and an index; only the key is used here.
 constexpr const char* key_of(const char* key, unsigned, unsigned) {
   return key;
 }
@@ -106,13 +106,13 @@ bool has_alpha(const TextureUse& use, const Model& model) {
   return channels == 2 || channels == 4;
 }
 
-/// Beams pass a surface or they do not; what lets some of the light through is solid to them.
+/// Partially transparent surfaces are solid, because beams either pass a surface or hit it.
 void note_solid(Model& model) {
   add_once(model.notes,
            "blended transparency is shown solid (`opacity` in a scene file lets beams through)");
 }
 
-/// What of a glTF material's alpha counts: the cutoff of MASK.
+/// The alpha cutoff of a glTF material of mode MASK.
 std::optional<float> gltf_cutoff(const aiMaterial& source, const Material& m, Model& model) {
   aiString mode;
   if (source.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) != aiReturn_SUCCESS) return std::nullopt;
@@ -139,14 +139,14 @@ void read_cutout(const aiMaterial& source, int diffuse_flags, const MaterialCont
   }
   if (m.alpha_texture.used()) {
     m.alpha_cutoff = kCutoff;
-    // The image says where it is cut; a factor beside it (often 0 by mistake) must not cut it all.
+    // The image defines the cut-out; an additional factor (often 0 by mistake) is ignored.
     m.opacity = 1.0F;
   } else if (m.opacity < 1.0F && !context.gltf) {
     note_solid(model);
   }
 }
 
-/// Strength of bumps: OBJ's -bm, or the key of other formats, or glTF's normal scale.
+/// Bump strength: OBJ's -bm, the key of other formats, or glTF's normal scale.
 float bump_strength(const aiMaterial& source, const NamedTexture& texture) {
   if (texture.bump) return *texture.bump;
   for (const aiTextureType type : {aiTextureType_HEIGHT, aiTextureType_NORMALS}) {

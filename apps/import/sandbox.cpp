@@ -22,7 +22,7 @@ std::vector<std::string> enter_sandbox(const std::filesystem::path&, int last_fd
 
 std::vector<std::string> enter_sandbox(const std::filesystem::path& root, int last_fd) {
   std::vector<std::string> notes;
-  // An old kernel without it: posix_spawn has closed them already.
+  // An old kernel without it: posix_spawn already closed them.
   ::close_range(static_cast<unsigned>(last_fd) + 1, UINT_MAX, 0);
   const std::string no_landlock = restrict_files(root);
   if (!no_landlock.empty()) {

@@ -38,7 +38,7 @@ void place_meshes(const aiScene& scene, const aiNode& node, const Eigen::Matrix4
     walk.triangles += mesh.mNumFaces;
     walk.skinned += mesh.mNumBones > 0 ? 1 : 0;
     if (walk.triangles > kMaxTriangles || walk.placed.size() >= kMaxRecords) {
-      throw Refusal{fmt::format("its parts, repeated as its tree says, come to more than {} "
+      throw Refusal{fmt::format("the instances in its tree have more than {} "
                                 "triangles or {} parts",
                                 kMaxTriangles, kMaxRecords),
                     "make the model smaller, or place its parts by a scene file"};
@@ -59,7 +59,7 @@ Refusal no_triangles(const std::string& instead) {
 
 Walk walk(const aiScene& scene, const NodeTransforms& transforms) {
   Walk result;
-  // A stack of our own: hostile trees are deep.
+  // An explicit stack, because hostile trees are deep.
   std::vector<Visit> stack;
   if (scene.mRootNode != nullptr) stack.push_back({scene.mRootNode, Eigen::Matrix4d::Identity()});
   for (std::uint64_t visited = 0; !stack.empty(); ++visited) {

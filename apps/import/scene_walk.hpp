@@ -14,16 +14,16 @@ struct aiScene;
 
 namespace glidar::import {
 
-/// Raised when a file cannot become a model; the texts go into the user's error.
+/// Thrown if a file cannot become a model; the texts become part of the user's error.
 struct Refusal {
   std::string found;
   std::string remedy;
 };
 
-/// The file has no surface; `instead`: what it has, "" or ", only ...".
+/// The error for a file without surfaces; `instead`: its content, "" or ", only ...".
 Refusal no_triangles(const std::string& instead);
 
-/// One mesh of the file at one place in its tree.
+/// An instance of a mesh of the file in its tree.
 struct Placed {
   const aiMesh* mesh = nullptr;
   Eigen::Matrix4d model_from_mesh = Eigen::Matrix4d::Identity();
@@ -37,10 +37,10 @@ struct Walk {
   std::uint64_t skinned = 0;           ///< meshes with a skeleton
 };
 
-/// parent_from_node of nodes whose transform is known better than the importer's single precision.
+/// parent_from_node of nodes with transforms in more than the importer's single precision.
 using NodeTransforms = std::unordered_map<const aiNode*, Eigen::Matrix4d>;
 
-/// Walks the file's tree. Throws Refusal when it holds no triangles, or more than can be had.
+/// Walks the file's tree. Throws Refusal if it has no triangles, or too many.
 Walk walk(const aiScene& scene, const NodeTransforms& transforms);
 
 }  // namespace glidar::import

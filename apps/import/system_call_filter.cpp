@@ -15,13 +15,13 @@
 namespace glidar::import {
 namespace {
 
-/// Calls that are harmless with any arguments: they read what is open, name files without opening
-/// them, or concern this process alone.
+/// Calls that are harmless with any arguments: they read open files, query paths, or affect only
+/// this process.
 constexpr std::array kHarmless = {
-    // files that are open
+    // open files
     SCMP_SYS(read), SCMP_SYS(pread64), SCMP_SYS(readv), SCMP_SYS(lseek), SCMP_SYS(close),
     SCMP_SYS(fstat), SCMP_SYS(getdents64), SCMP_SYS(fadvise64),
-    // names
+    // paths
     SCMP_SYS(newfstatat), SCMP_SYS(statx), SCMP_SYS(stat), SCMP_SYS(lstat), SCMP_SYS(readlink),
     SCMP_SYS(readlinkat), SCMP_SYS(getcwd), SCMP_SYS(access), SCMP_SYS(faccessat),
     SCMP_SYS(faccessat2),
@@ -33,25 +33,25 @@ constexpr std::array kHarmless = {
     SCMP_SYS(getgid), SCMP_SYS(getegid), SCMP_SYS(getrlimit), SCMP_SYS(sched_yield),
     SCMP_SYS(sched_getaffinity), SCMP_SYS(restart_syscall), SCMP_SYS(rseq),
     SCMP_SYS(set_robust_list), SCMP_SYS(exit), SCMP_SYS(exit_group),
-    // time, chance, the machine's size
+    // time, random numbers, the number of processors
     SCMP_SYS(clock_gettime), SCMP_SYS(clock_getres), SCMP_SYS(gettimeofday), SCMP_SYS(time),
     SCMP_SYS(getrandom), SCMP_SYS(sysinfo), SCMP_SYS(uname)};
 
-/// The answer, the progress, and the standard streams, which lead nowhere.
+/// The answer, the progress, and the standard streams, which are /dev/null.
 constexpr int kLastWritable = 4;
 
 class Filter {
  public:
   Filter() : context_(seccomp_init(SCMP_ACT_ERRNO(EPERM)), seccomp_release) {}
 
-  /// Allows a call whose arguments fulfil all conditions.
+  /// Allows a call if its arguments fulfil all conditions.
   template <class... Condition>
   void allow(int call, Condition... conditions) {
     const std::array<scmp_arg_cmp, sizeof...(Condition)> all{conditions...};
     if (context_ == nullptr || error_ != 0) return;
     const int error = seccomp_rule_add_array(context_.get(), SCMP_ACT_ALLOW, call,
                                              static_cast<unsigned>(all.size()), all.data());
-    // a call that this machine does not have
+    // a call that this architecture does not have
     if (error != -EDOM) error_ = error;
   }
 

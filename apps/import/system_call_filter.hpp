@@ -7,12 +7,12 @@
 
 namespace glidar::import {
 
-/// openat2 passes its flags in memory, where a filter cannot see whether it opens for writing: it
-/// is safe only where Landlock forbids that.
+/// openat2 passes its flags in memory, where a filter cannot check them for writing: it is safe
+/// only if Landlock forbids writing.
 enum class Openat2 : std::uint8_t { allowed, refused };
 
-/// Leaves this process only the system calls that reading files and computing need (libseccomp).
-/// All others fail with EPERM. Returns why not, in words, or "". Needs PR_SET_NO_NEW_PRIVS.
+/// Allows this process only the system calls for reading files and computing (libseccomp). All
+/// others fail with EPERM. Returns the reason for a failure, or "". Needs PR_SET_NO_NEW_PRIVS.
 std::string filter_system_calls(Openat2 openat2);
 
 }  // namespace glidar::import

@@ -22,7 +22,7 @@ std::shared_ptr<zip_t> open_zip(std::string_view archive) {
           }};
 }
 
-/// A character that is written as %20 and the like.
+/// Decodes a percent-encoded character such as %20.
 bool decode(std::string_view digits, char& decoded) {
   unsigned code = 0;
   const auto [stop, problem] =

@@ -12,13 +12,13 @@ namespace glidar::import {
 /// The next bytes of a text; empty at its end.
 using TextSource = std::function<std::string()>;
 
-/// A text in memory, which must last as long as it is read.
+/// A text in memory, which must outlive the source.
 TextSource plain_text(std::string_view text);
 
-/// A file in a ZIP archive in memory, capital letters or not; one that cannot be read has no bytes.
+/// A file in a ZIP archive in memory, ignoring case; an unreadable file has no bytes.
 TextSource zip_text(std::string_view archive, const std::string& name);
 
-/// The names in a ZIP archive, in its order; none when it cannot be read.
+/// The names in a ZIP archive, in its order; none if it is unreadable.
 std::vector<std::string> zip_names(std::string_view archive);
 
 /// The name of a file in an archive from a reference to it: "./a%20b.dae" or "/a%20b.dae" is

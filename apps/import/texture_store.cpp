@@ -19,7 +19,7 @@
 namespace glidar::import {
 namespace {
 
-/// Larger files cannot become a texture, and are not read.
+/// Larger files cannot become a texture and are not read.
 bool is_too_large(const std::string& path) {
   constexpr std::uintmax_t kMaxBytes = std::uintmax_t{256} << 20U;
   std::error_code error;
@@ -33,7 +33,7 @@ Decoded decode_file(ModelFiles& files, const std::string& path, std::uint64_t bu
   return decode_image({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}, budget);
 }
 
-constexpr std::size_t kLongestName = 1024;  // of a missing texture, for the user's eyes
+constexpr std::size_t kMaxNameLength = 1024;  // for messages and lists
 
 }  // namespace
 
@@ -69,10 +69,10 @@ std::int32_t TextureStore::decode(const std::string& name) {
     }
   }
   if (!decoded.reason.empty()) {
-    imported_.model.missing_textures.push_back({name.substr(0, kLongestName), decoded.reason});
+    imported_.model.missing_textures.push_back({name.substr(0, kMaxNameLength), decoded.reason});
     return TextureUse::kNone;
   }
-  decoded.texture.name = name.substr(0, kLongestName);
+  decoded.texture.name = name.substr(0, kMaxNameLength);
   const std::int32_t index = keep(std::move(decoded.texture));
   if (!file.empty()) by_file_.emplace(file, index);
   return index;

@@ -15,20 +15,20 @@ struct aiScene;
 
 namespace glidar::import {
 
-/// Finds and decodes the textures that materials name, each once, into the model.
+/// Finds and decodes the textures of materials, each once, into the model.
 class TextureStore {
  public:
   TextureStore(const aiScene& scene, ModelFolder folder, ModelFiles& files,
                ImportedModel& imported);
 
-  /// Index of the texture, TextureUse::kNone when it cannot be had (and is listed as missing).
+  /// Index of the texture; TextureUse::kNone if it is missing, which is then listed.
   std::int32_t colours(const std::string& name);
 
   struct NormalMap {
     std::int32_t texture = TextureUse::kNone;
     float scale = 1.0F;  ///< for Material::normal_scale
   };
-  /// The same as tangent-space normals; an image that shows heights is converted.
+  /// The same as tangent-space normals; height maps are converted.
   NormalMap normals(const std::string& name);
 
  private:

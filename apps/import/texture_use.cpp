@@ -12,7 +12,7 @@
 namespace glidar::import {
 namespace {
 
-constexpr int kGlNearest = 9728;  // GL_NEAREST, as glTF samplers say it
+constexpr int kGlNearest = 9728;  // GL_NEAREST in glTF samplers
 
 Wrap wrap_mode(const aiMaterial& material, const char* key, aiTextureType type) {
   int mode = aiTextureMapMode_Wrap;
@@ -29,8 +29,8 @@ Wrap wrap_mode(const aiMaterial& material, const char* key, aiTextureType type) 
 }
 
 /// glTF: u' = offset + R S u in coordinates with v down, R turning counter-clockwise in the image
-/// (KHR_texture_transform). Assimp hands over its own translation, from which the offset is taken
-/// back; then the whole is written for v up.
+/// (KHR_texture_transform). Assimp returns a modified translation, from which the offset is
+/// recovered; the result is for v up.
 void set_gltf_transform(const aiUVTransform& t, TextureUse& use) {
   const float c = std::cos(-t.mRotation);
   const float s = std::sin(-t.mRotation);
@@ -42,7 +42,8 @@ void set_gltf_transform(const aiUVTransform& t, TextureUse& use) {
   use.uv_offset << ox + s * sy, 1.0F - oy - c * sy;
 }
 
-/// Assimp's meaning for all other formats: scale, move, then turn about the image's middle.
+/// Assimp's convention for all other formats: scale, translate, then rotate about the image's
+/// centre.
 void set_transform(const aiUVTransform& t, TextureUse& use) {
   const Eigen::Matrix2f turn = Eigen::Rotation2Df(t.mRotation).toRotationMatrix();
   const Eigen::Vector2f scale(t.mScaling.x, t.mScaling.y);

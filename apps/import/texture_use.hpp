@@ -11,15 +11,15 @@ struct aiMaterial;
 
 namespace glidar::import {
 
-/// A texture as a material of the file names it.
+/// A reference to a texture in a material of the file.
 struct NamedTexture {
   std::string name;
   TextureUse use;             ///< all but the texture's index
   int flags = 0;              ///< aiTextureFlags
-  std::optional<float> bump;  ///< strength, where the texture's own line tells it
+  std::optional<float> bump;  ///< strength, if given in the texture's own line
 };
 
-/// The first texture of an aiTextureType of a material; none when it has none.
+/// The first texture of an aiTextureType of a material; none without one.
 /// `gltf`: its transform of uvs is glTF's (KHR_texture_transform), which Assimp rewrites.
 std::optional<NamedTexture> texture_of(const aiMaterial& material, unsigned type, bool gltf);
 

@@ -7,7 +7,7 @@
 namespace glidar::import {
 namespace {
 
-constexpr std::size_t kKept = 65536;  ///< bytes that were read, before they are dropped
+constexpr std::size_t kKept = 65536;  ///< consumed bytes to keep before they are dropped
 constexpr std::string_view kSpace = " \t\r\n";
 
 std::string without_prefix(std::string_view name) {
@@ -20,7 +20,7 @@ void skip_space(std::string_view& text) {
   text.remove_prefix(std::min(text.find_first_not_of(kSpace), text.size()));
 }
 
-/// Takes what is before any of the characters.
+/// Removes and returns the text before any of the characters.
 std::string_view take_until(std::string_view& text, std::string_view characters) {
   const std::string_view taken = text.substr(0, text.find_first_of(characters));
   text.remove_prefix(taken.size());
@@ -61,7 +61,7 @@ bool XmlReader::starts_with(std::string_view prefix) {
   return std::string_view(text_).substr(at_).starts_with(prefix);
 }
 
-/// Where the text is next, from a place on; the end when it is nowhere.
+/// The next position of the text from a position on; the end if there is none.
 std::size_t XmlReader::find(std::string_view text, std::size_t from) {
   for (;;) {
     const std::size_t found = text_.find(text, from);
@@ -71,7 +71,7 @@ std::size_t XmlReader::find(std::string_view text, std::size_t from) {
   }
 }
 
-/// The '>' of the tag here: one between quotes belongs to a value.
+/// The '>' of this tag; one between quotes belongs to a value.
 std::size_t XmlReader::find_tag_end() {
   char quote = '\0';
   for (std::size_t i = at_;; ++i) {
@@ -114,7 +114,7 @@ void XmlReader::skip_doctype() {
   at_ = std::min(at_ + 1, text_.size());
 }
 
-/// Skips what is here unless it is a tag or text.
+/// Skips markup other than tags and text.
 bool XmlReader::skip_markup() {
   if (starts_with("<!--")) {
     at_ += 4;

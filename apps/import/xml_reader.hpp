@@ -22,9 +22,9 @@ struct XmlEvent {
   std::string text;                               ///< as written
 };
 
-/// Reads the elements of an XML text (W3C XML 1.0) from front to back and no further than asked.
-/// Comments, declarations and instructions are skipped. Entities stay as written. It is for texts
-/// that the importer accepts: of any other it makes elements somehow, or none.
+/// A pull parser for the elements of an XML text (W3C XML 1.0). Skips comments, declarations and
+/// instructions, and keeps entities as written. It is for texts that the importer accepts; for
+/// others the elements are unspecified.
 class XmlReader {
  public:
   explicit XmlReader(TextSource source) : source_(std::move(source)) {}
@@ -45,12 +45,12 @@ class XmlReader {
   XmlEvent tag_event();
 
   TextSource source_;
-  std::string text_;  ///< what is loaded
+  std::string text_;  ///< the loaded text
   std::size_t at_ = 0;
-  std::string empty_element_;  ///< its end comes next
+  std::string empty_element_;  ///< its end event is next
 };
 
-/// Leading and trailing white space of XML does not count in numbers and names.
+/// The text without leading and trailing XML white space.
 std::string trimmed(const std::string& text);
 
 }  // namespace glidar::import

@@ -164,8 +164,8 @@ TEST(DeclaredFrame, AUselessUnitOfColladaIsNotedAsWrittenAndTheUpAxisIsKept) {
                                                          "\"/><up_axis>X_UP</up_axis>")),
                              as_declared());
     EXPECT_FALSE(model.applied.metres_per_unit.has_value()) << meter;
-    EXPECT_THAT(model.notes, Contains("the file declares a unit of '" + std::string(meter) +
-                                      "' m, which cannot be: 1 m is assumed"));
+    EXPECT_THAT(model.notes, Contains("the file declares an invalid unit of '" +
+                                      std::string(meter) + "' m: 1 m is assumed"));
     EXPECT_EQ(model.applied.up, Axis::x) << meter;
     EXPECT_EQ(corner(model, 0), Eigen::Vector3d(2.0, 3.0, 1.0)) << meter;
   }
