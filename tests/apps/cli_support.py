@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Running the built program, found in PATH, in a folder of its own."""
+"""Runs the built program, found in PATH, in a temporary folder."""
 
 import fcntl
 import os
@@ -38,8 +38,8 @@ RESERVED = []  # files whose locks keep ports from other tests
 
 
 def free_ports():
-    """A port of this machine that is free together with the next one, and that no other test gets while this process
-    lives. Below those that systems give to clients, and beside those of the tests in C++ (loopback.hpp)."""
+    """A free port whose next port is also free, and that no other test gets while this process runs. The range is
+    below the ephemeral ports and apart from that of the C++ tests (loopback.hpp)."""
     folder = Path(tempfile.gettempdir(), f"glidar-test-ports-{os.getuid()}")
     folder.mkdir(exist_ok=True)
     while True:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The command line as its users meet it. The built program is found in PATH."""
+"""The command line from the user's view. The built program is found in PATH."""
 
 import json
 import math
@@ -22,7 +22,7 @@ class Help(CliTest):
     def test_version(self):
         self.assertRegex(self.succeed("--version").stdout, r"^glidar \d+\.\d+\.\d+\n$")
 
-    def test_examples_of_every_help_run_literally(self):
+    def test_examples_of_every_help_run(self):
         count = 0
         for level in ([], ["render"], ["explain"], ["view"], ["stream"], ["info"], ["sensors"],
                       ["verify"]):
@@ -35,7 +35,7 @@ class Help(CliTest):
         self.assertGreaterEqual(count, 10)
 
     def run_example(self, arguments):
-        """A window opens on a display without a screen, a stream waits for nobody; for one frame."""
+        """Runs for one frame: windows on a virtual display, streams without waiting for subscribers."""
         if arguments[0] == "stream":
             self.run_stream(arguments)
         elif arguments[0] != "view":
@@ -53,7 +53,7 @@ class Help(CliTest):
             arguments += ["--subscribers", "0"]
         self.succeed(*arguments, "--frames", "1")
 
-    def test_help_takes_one_plain_line_per_option(self):
+    def test_help_has_one_line_of_at_most_100_characters_per_option(self):
         for level in (["render"], ["view"], ["stream"], ["info"], ["verify"]):
             text = self.succeed(*level, "--help").stdout
             self.assertNotRegex(text, r"[{}]|INT|FLOAT|TEXT|REQUIRED")
@@ -84,7 +84,7 @@ class Render(CliTest):
         self.assertEqual((done.stdout, done.stderr), ("", ""))
         self.assertEqual(self.files(), ["a.pcd"])
 
-    def test_framed_view_is_filled_but_not_cut(self):
+    def test_auto_framed_model_fills_the_view_and_is_not_cut_off(self):
         for size in (("64", "64"), ("200", "20"), ("20", "200")):
             self.succeed("render", "builtin:box", "-w", size[0], "--height", size[1],
                          "-o", "a.csv", "--fields", "xyz,row,col,status")
@@ -118,7 +118,7 @@ class Render(CliTest):
             self.assertEqual(contents[name], contents["1 thread"], name)
         self.assertIn("(from the cache)", self.succeed("info", "box.obj").stdout)
 
-    def test_npz_holds_no_times_of_day(self):
+    def test_npz_has_no_timestamps(self):
         self.succeed("render", "builtin:box", "-o", "a.npz")
         with zipfile.ZipFile(os.path.join(self.folder, "a.npz")) as archive:
             self.assertGreater(len(archive.infolist()), 5)
@@ -126,7 +126,7 @@ class Render(CliTest):
                 self.assertEqual(entry.date_time, (1980, 1, 1, 0, 0, 0), entry.filename)
                 self.assertEqual(entry.extra, b"", entry.filename)
 
-    def test_two_runs_that_write_the_same_file_leave_a_whole_one(self):
+    def test_concurrent_runs_with_the_same_output_leave_a_complete_file(self):
         command = ["glidar", "render", "builtin:box", "--quiet", "-o", "same.pcd"]
         runs = [subprocess.Popen(command, cwd=self.folder, env=self.environment) for _ in range(4)]
         self.assertEqual([run.wait(timeout=MAX_WAIT_S) for run in runs], [0] * len(runs))
@@ -157,7 +157,7 @@ class Render(CliTest):
         points = [struct.unpack_from("<4f", body, i) for i in range(0, len(body), 16)]
         return head.decode(), points, rows
 
-    def test_pcd_of_2015(self):
+    def test_legacy_output_matches_the_model(self):
         self.succeed("render", "builtin:box", "--model-r", "0.4,1,2,3", "--camera-r",
                      "0.1,-0.2,0.5,0.7", "--camera-z", "9", "--fov", "60", "--legacy-output", "view")
         self.assertEqual(self.files(), ["view.pcd", "view.transform"])
@@ -166,13 +166,13 @@ class Render(CliTest):
         self.assertIn("HEIGHT 1\n", head)
         self.assertGreater(len(points), 1000)
         self.assertEqual(len(rows), 4)
-        # with the saved transform every point comes back to the surface of the box of 2 m
+        # the saved transform moves every point to the surface of the 2 m box
         for x, y, z, _ in points:
             p = [x - rows[0][3], y - rows[1][3], z - rows[2][3]]
             back = [abs(sum(rows[k][i] * p[k] for k in range(3))) for i in range(3)]
             self.assertAlmostEqual(max(back), 1.0, delta=1e-5)
 
-    def test_pcd_of_2015_knows_left_from_right(self):
+    def test_legacy_output_has_x_left(self):
         # the object's +x is at the left, +y up, +z away: a corner cut off by moving the model
         self.write("three.obj", "v 1 0 0\nv 1 0.2 0\nv 1 0 0.2\nv 1.2 0.1 0\nf 1 2 4\nf 1 4 3\nf 2 3 4\nf 1 3 2\n")
         self.succeed("render", "three.obj", "--camera-z", "10", "--fov", "30", "--legacy-output", "view")
@@ -189,7 +189,7 @@ class Render(CliTest):
             with open(os.path.join(self.folder, "a.pcd.json"), encoding="utf-8") as file:
                 self.assertIn(name, json.dumps(json.load(file)))
 
-    def test_world_cloud_lies_on_the_model(self):
+    def test_world_cloud_is_on_the_model(self):
         self.succeed("render", "builtin:box", "--frame", "world", "--drop-invalid", "-o", "a.csv",
                      "--fields", "xyz")
         with open(os.path.join(self.folder, "a.csv"), encoding="utf-8") as file:
@@ -202,7 +202,7 @@ class Render(CliTest):
             done = self.succeed("render", "builtin:box", "--fov", fov, "-o", "x.pcd")
             self.assertEqual(done.stderr, "", fov)
 
-    def test_a_hint_at_up_for_models_that_stand_on_y(self):
+    def test_models_on_the_plane_y_0_get_a_hint_at_up(self):
         standing = re.sub(r"(?m)^v (\S+) -1 ", r"v \1 0 ", BOX)  # y from 0 to 1
         self.write("y.obj", standing)
         self.assertIn("a guess", self.succeed("info", "y.obj").stdout)
@@ -223,7 +223,7 @@ class Render(CliTest):
 
 
 class Motion(CliTest):
-    def test_information_stands_beside_the_output(self):
+    def test_fisher_information_is_written_beside_the_output(self):
         told = self.succeed("render", "builtin:plane", "--eye", "0,0,5", "--target", "0,0,0",
                             "--up-vector", "0,1,0", "--fisher", "-o", "view.pcd").stdout
         self.assertIn("sigma of ranges assumed: 0.01 m", told)
@@ -234,7 +234,7 @@ class Motion(CliTest):
         self.assertIn("give --fisher too", self.refused(
             "render", "builtin:box", "--range-sigma", "0.1", "-o", "x.pcd"))
 
-    def test_trajectory_places_the_sensor_at_time_zero(self):
+    def test_trajectory_gives_the_pose_at_time_zero(self):
         self.write("path.tum", "0 0 0 -7 0 0 0 1\n1 0 0 -6 0 0 0 1\n")
         self.succeed("render", "builtin:box", "--trajectory", "path.tum", "-o", "x.pcd")
         with open(os.path.join(self.folder, "x.pcd.json"), encoding="utf-8") as file:
@@ -269,12 +269,12 @@ sensor_pose:
         self.assertEqual(ids, {"7", "9"})
         self.assertIn("60 x 20 beams", summary)
 
-    def test_options_win_over_the_file(self):
+    def test_options_override_the_file(self):
         ids, summary = self.ids("-w", "30", "--height", "40", "--eye", "-3,-8,0", "--target", "-3,0,0")
         self.assertEqual(ids, {"7"})
         self.assertIn("30 x 40 beams", summary)
 
-    def test_sensor_file_wins_over_the_scene_file(self):
+    def test_sensor_file_overrides_the_scene_file(self):
         self.write("sensor.yaml", "optics: {type: pinhole, width: 33, height: 11, fov_deg: 30}\n")
         self.assertIn("33 x 11 beams", self.ids("--sensor", "sensor.yaml")[1])
         self.assertIn("both are given; give one of them",
@@ -287,7 +287,7 @@ sensor_pose:
 
 
 class Advice(CliTest):
-    def test_nothing_hit_and_why(self):
+    def test_no_hits_are_explained(self):
         for arguments, text in (
                 (("--sensor-pose", "0,0,5,1,0,0,0"), "behind the sensor"),
                 (("--eye", "5,0,0", "--target", "5,9,0"), "outside the view"),
@@ -304,31 +304,31 @@ class Advice(CliTest):
         self.assertIn("inside 'box' and sees the backs",
                       self.warned("builtin:box", "--eye", "0.1,0,0", "--target", "1,0,0"))
 
-    def test_a_sensor_amid_the_scene_is_not_told_to_leave(self):
+    def test_a_sensor_inside_a_room_gets_no_advice(self):
         def told(*arguments):
             return self.succeed("render", *arguments, "-o", "x.pcd").stderr
         ahead = ("--target", "1,0,0")
-        self.assertEqual(told("builtin:torus", "--eye", "0,0,0", *ahead), "")  # sees fronts
-        for place in ("0,0,0", "0.2,0.1,0"):  # of a room whose triangles look outwards, all around
+        self.assertEqual(told("builtin:torus", "--eye", "0,0,0", *ahead), "")  # sees front faces
+        for place in ("0,0,0", "0.2,0.1,0"):  # a room with outward triangles, seen by a 360 degree sensor
             self.assertEqual(told("builtin:box", "--sensor", "VLP-16", "--eye", place), "")
         room = self.write("room.obj", re.sub(r"(?m)^f (\d) (\d) (\d) (\d)$", r"f \4 \3 \2 \1", box_of(4)))
         self.assertEqual(told(room, "--eye", "0.1,0,0", *ahead), "")
 
-    def test_model_a_thousand_times_too_big_or_small(self):
+    def test_models_a_thousand_times_too_large_or_small_get_advice(self):
         big = self.write("big.obj", box_of(2000))
         self.assertIn("--unit mm", self.warned(big))
         self.assertNotIn("warning", self.succeed("render", big, "--unit", "m", "-o", "x.npz").stderr)
         small = self.write("small.obj", box_of(0.0004))
         self.assertIn("--scale 1000", self.warned(small))
 
-    def test_model_far_too_big_for_its_distance(self):
+    def test_models_far_too_large_for_their_distance_get_advice(self):
         ground = self.write("ground.obj", "v -400 -400 0\nv 400 -400 0\nv 400 400 0\nv -400 400 0\n"
                             "f 1 2 3\nf 1 3 4\n")
         self.assertIn("--unit mm", self.warned(ground, "--eye", "0,0,0.3", "--up-vector", "0,1,0"))
 
 
 class Info(CliTest):
-    def test_table_and_json_tell_the_same(self):
+    def test_table_and_json_agree(self):
         table = self.succeed("info", "builtin:torus").stdout
         report = json.loads(self.succeed("info", "builtin:torus", "--json").stdout)
         self.assertIn(f"triangles      {report['triangles']}\n", table)
@@ -336,7 +336,7 @@ class Info(CliTest):
         self.assertTrue(report["closed"])
         self.assertEqual(report["winding"], "outward")
 
-    def test_faults_and_missing_textures_are_told(self):
+    def test_defects_and_missing_textures_are_reported(self):
         self.write("a.mtl", "newmtl red\nKd 1 0 0\nmap_Kd gone.png\n")
         self.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\n"
                    "usemtl red\nf 1/1 2/2 3/3\n")
@@ -359,7 +359,7 @@ class Verify(CliTest):
         self.assertTrue(all(row["max_range_error_ulp"] <= 0.001 for row in rows))
         self.assertTrue(all(row["judged_hits"] > 1000 and row["wrong_ids"] == 0 for row in rows))
 
-    def test_known_failures_are_named_with_reasons_and_are_no_error(self):
+    def test_known_failures_are_listed_with_reasons_and_are_not_errors(self):
         done = self.succeed("verify")
         known = re.findall(r"(?m)^known failure: (.*)$", done.stdout)
         self.assertGreater(len(known), 0)
@@ -368,7 +368,7 @@ class Verify(CliTest):
                                    r"range error \S+ ulp; \w+")
         self.assertRegex(done.stdout, rf"{len(known)} known failures, 0 fixed")
 
-    def test_a_camera_only_renderer_names_the_cases_that_do_not_apply(self):
+    def test_a_camera_only_renderer_lists_the_cases_that_do_not_apply(self):
         done = self.succeed("verify", "--renderer", "raster")
         self.assertRegex(done.stdout, r"moving sensor and target +box +10 +not applicable: ")
         self.assertRegex(done.stdout, r"several instances +all +100000 .* passed")

@@ -1,6 +1,6 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
-// The files that the fuzzers keep, in every build.
+// Runs the fuzzers' corpora, in every build.
 #include "fuzz/file_decoders.hpp"
 
 #include <support/source_folder.hpp>
@@ -17,7 +17,7 @@
 namespace glidar {
 namespace {
 
-/// The files of a reader's corpus that it takes.
+/// The valid files of a reader's corpus.
 std::set<std::string> taken(const testing::FileDecoder& decoder, std::size_t& files) {
   std::set<std::string> names;
   const auto folder =
@@ -33,7 +33,7 @@ std::set<std::string> taken(const testing::FileDecoder& decoder, std::size_t& fi
   return names;
 }
 
-TEST(FileCorpus, IsTakenWhereItIsAFileOfItsKindAndRefusedWithAnErrorElsewhere) {
+TEST(FileCorpus, EveryFileIsReadOrRefusedWithAnError) {
   const std::map<std::string_view, std::set<std::string>> expected = {
       {"sensor", {"pinhole", "fisheye", "spinning", "raster", "prism", "alias"}},
       {"scene", {"models", "rig"}},

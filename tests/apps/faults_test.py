@@ -46,14 +46,14 @@ class FaultTest(CliTest):
                               capture_output=True, text=True, timeout=MAX_WAIT_S, check=False, start_new_session=True)
 
     def count(self, command, call):
-        """How many such calls the command makes when nothing fails."""
+        """The number of such calls of the command without failures."""
         self.empty()
         done = self.with_fault(command, call)
         self.assertEqual(done.returncode, 0, done.stderr)
         return self.faults.calls
 
     def each_fault(self, command, check, calls=CALLS):
-        """Runs the command with one fault after the other, and check(call, error, the run) after each."""
+        """Runs the command with each fault in turn, and check(call, error, the run) after each."""
         for call in calls:
             for error, at in itertools.product(ERRORS, range(1, self.count(command, call) + 1)):
                 self.empty()
@@ -68,12 +68,12 @@ class FaultTest(CliTest):
         self.assertRegex(done.stderr, f"glidar: error: .*out/[a-z_.0-9]*: cannot .*{ERRORS[error]}")
 
     def leaves_whole_files(self, whole):
-        """Whatever is there is as of an undisturbed run, and nothing else is."""
+        """All files are equal to those of an undisturbed run."""
         for name, content in self.contents().items():
             self.assertEqual(content, whole.get(name), name)
 
     def each_kill(self, command, prepare, check):
-        """Kills the command at each of its calls, of many at some that are drawn at random; each time after prepare(),
+        """Kills the command at each of its calls, or at a random sample of them; each time after prepare(),
         and calls check()."""
         count = self.count(command, "any")
         drawn = sorted({1 + random_below(SEED, kill, count) for kill in range(KILLS)})
@@ -87,7 +87,7 @@ class FaultTest(CliTest):
 
 @unittest.skipUnless(library(), NO_LIBRARY)
 class Render(FaultTest):
-    def test_every_failed_call_is_reported_and_leaves_no_part_of_a_file(self):
+    def test_every_failed_call_is_reported_and_leaves_no_partial_file(self):
         self.succeed(*RENDER)
         whole = self.contents()
         self.assertEqual(len(whole), 6)  # with sidecars
@@ -103,7 +103,7 @@ class Render(FaultTest):
     def test_nothing_is_synced(self):
         self.assertEqual(self.count(RENDER, "sync"), 0)
 
-    def test_a_kill_at_any_call_leaves_no_part_of_a_file_under_its_name(self):
+    def test_a_kill_at_any_call_leaves_no_partial_file_under_its_name(self):
         self.succeed(*RENDER)
         whole = self.contents()
 
@@ -119,7 +119,7 @@ class Render(FaultTest):
 @unittest.skipUnless(library(), NO_LIBRARY)
 class Recording(FaultTest):
     def recorded(self):
-        """The frames of a recording, which says at its end how many there are; None: there is none."""
+        """The frames of a recording, whose last line has their number; None: no recording."""
         path = self.out / "r.jsonl"
         if not path.exists():
             return None
@@ -161,11 +161,11 @@ class Recording(FaultTest):
 
         self.each_fault(command, check, ["rename"])
 
-    def test_file_and_folder_are_synced_where_that_is_promised(self):
+    def test_durable_recordings_sync_file_and_folder(self):
         self.assertEqual(self.count(DURABLE, "sync"), 2)
         self.assertEqual(self.count(RECORD, "sync"), 0)
 
-    def test_a_recording_is_the_same_with_and_without_sync_but_for_the_command(self):
+    def test_a_recording_is_the_same_with_and_without_sync_except_for_the_command(self):
         self.succeed(*RECORD)
         plain = self.recorded()
         self.succeed(*DURABLE)
@@ -177,7 +177,7 @@ class Recording(FaultTest):
         error = self.refused(*STREAM, "-o", "x.pcd", "--durable")
         self.assertIn("--durable: given without --record", error)
 
-    def test_a_kill_at_any_call_leaves_the_old_recording_or_the_whole_new_one(self):
+    def test_a_kill_at_any_call_leaves_the_old_recording_or_the_complete_new_one(self):
         self.succeed(*RECORD)
         old = self.contents()["r.jsonl"]
         self.succeed(*DURABLE)
@@ -191,7 +191,7 @@ class Recording(FaultTest):
         def check():
             found = self.contents()
             self.assertIn(found.pop("r.jsonl"), (old, new))
-            self.assertLessEqual(len(found), 1)  # the hidden file that was being written
+            self.assertLessEqual(len(found), 1)  # the temporary file
             self.assertTrue(all(name.startswith(".glidar-") for name in found), found.keys())
             self.succeed(*DURABLE)
             self.assertEqual(self.contents()["r.jsonl"], new)
@@ -201,7 +201,7 @@ class Recording(FaultTest):
 
 @unittest.skipUnless(library(), NO_LIBRARY)
 class Cache(FaultTest):
-    """The folder of outputs is the cache's here."""
+    """Here the folder of outputs is the cache."""
 
     def setUp(self):
         super().setUp()
@@ -233,7 +233,7 @@ class Cache(FaultTest):
         self.assertEqual(self.bytes_of("x.pcd"), self.whole)
         self.assertEqual(self.contents(), {})
 
-    def test_a_kill_at_any_call_leaves_nothing_that_is_taken_for_an_entry(self):
+    def test_a_kill_at_any_call_leaves_no_invalid_entry(self):
         def check():
             self.succeed(*self.command)
             self.assertEqual(self.bytes_of("x.pcd"), self.whole)

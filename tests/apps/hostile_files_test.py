@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Input files of strangers: none makes the program wait, crash, or replace another file."""
+"""Untrusted input files: none makes the program block, crash, or replace another file."""
 
 import json
 import os
@@ -20,7 +20,7 @@ class Pipes(CliTest):
         for suffix in ("yaml", "csv", "npy", "json", "obj", "ply"):
             os.symlink("pipe", os.path.join(self.folder, f"pipe.{suffix}"))
 
-    def test_no_option_waits_for_a_pipe(self):
+    def test_no_option_blocks_on_a_pipe(self):
         box = ("render", "builtin:box")
         cases = {
             "model": ("render", "pipe.obj"), "scene": ("render", "pipe.yaml"), "sensor": (*box, "--sensor", "pipe.yaml"),
@@ -34,7 +34,7 @@ class Pipes(CliTest):
         self.assertIn("not a regular file",
                       self.refused("stream", "builtin:box", "--lockstep", "ipc://x.socket", "--curve-keys", "pipe"))
 
-    def test_no_file_that_another_names_is_waited_for(self):
+    def test_no_referenced_file_blocks_on_a_pipe(self):
         self.write("noise.yaml", "models:\n- {model: builtin:box, materials: {'*': {noise_texture: pipe}}}\n")
         self.write("sensor.yaml", "models: [{model: builtin:box}]\nsensor: pipe.yaml\n")
         self.write("model.yaml", "models: [{model: pipe.ply}]\n")
@@ -43,7 +43,7 @@ class Pipes(CliTest):
             with self.subTest(name):
                 self.refused("render", f"{name}.yaml", "-o", "x.pcd")
 
-    def test_files_of_a_recording_that_are_none_count_as_changed(self):
+    def test_pipes_among_the_files_of_a_recording_count_as_changed(self):
         for path in ("pipe", "/dev/zero", "."):
             self.write("r.jsonl", json.dumps({**HEAD, "files": [{"path": path, "hash": "x"}]}) + '\n{"frames": 0}\n')
             self.assertIn(f"{path} has changed", self.succeed("replay", "r.jsonl").stderr)
@@ -78,7 +78,7 @@ class Text(CliTest):
             self.write("r.jsonl", json.dumps({**HEAD, **change}) + '\n{"frames": 0}\n')
             self.assertIn("without control characters", self.refused("replay", "r.jsonl"))
 
-    def test_times_beyond_what_counts_nanoseconds_are_refused(self):
+    def test_times_beyond_64_bit_nanoseconds_are_refused(self):
         self.write("s.yaml", "optics: {type: table, file: t.csv}\n")
         for time in ("1e12", "9223372036854775807", "-1e12", "8640001"):
             rows = "".join(f"0.0000{i},{i},90\n" for i in range(10, 20))
@@ -89,7 +89,7 @@ class Text(CliTest):
 
 
 class Guard(CliTest):
-    """No file that was read is replaced, whatever output would have its name."""
+    """No output replaces an input file."""
 
     def setUp(self):
         super().setUp()

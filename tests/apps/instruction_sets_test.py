@@ -43,7 +43,7 @@ class InstructionSets(CliTest):
             for name, other in zip(usable[1:], others):
                 self.assertEqual(other, first, f"{arguments[0]}, {name}")
 
-    def test_that_is_not_known_is_an_error_that_names_those_there_are(self):
+    def test_unknown_ones_are_errors_that_list_the_known_ones(self):
         done = self.render("sse9", "builtin:box", "--renderer", "rays")
         self.assertEqual(done.returncode, 2)
         self.assertIn("environment variable GLIDAR_ISA: this processor has no kernel 'sse9'; allowed: baseline",

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""The client in C++ that docs/link/lockstep.md shows, against glidar stream --lockstep."""
+"""The C++ client of docs/link/lockstep.md with glidar stream --lockstep."""
 
 import os
 import subprocess
@@ -21,11 +21,11 @@ class Client(CliTest):
     def run_client(self, endpoint):
         return subprocess.run([PROGRAM, endpoint], capture_output=True, text=True, timeout=MAX_WAIT_S, check=False)
 
-    def test_is_the_one_of_the_docs(self):
+    def test_is_the_one_in_the_docs(self):
         shown = SOURCE.read_text(encoding="utf-8").split("// [docs]\n")[1]
         self.assertIn(f"```cpp\n{shown}```\n", lockstep.DOCS)
 
-    def test_gets_what_the_client_in_python_gets(self):
+    def test_gets_the_same_clouds_as_the_python_client(self):
         with lockstep.Server(self, "builtin:asteroid") as server:
             done = self.run_client(server.endpoint)
             turning = lockstep.body((0, 0, 0), rate=(0, 0, 0.1))
@@ -36,7 +36,7 @@ class Client(CliTest):
         self.assertEqual(done.stdout, f"{len(hits)} points, the nearest {hits[:, 2].min():.3f} m ahead\n")
         self.assertGreater(len(hits), 1000)
 
-    def test_tells_the_error_in_words(self):
+    def test_reports_errors_as_text(self):
         with open(os.path.join(self.folder, "two.yaml"), "w", encoding="utf-8") as scene:
             scene.write("models: [{model: builtin:box}, {model: builtin:box}]\n")
         with lockstep.Server(self, "two.yaml") as server:

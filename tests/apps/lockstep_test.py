@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""glidar stream --lockstep, asked by a client that is written from docs/link/lockstep.md alone: its own example."""
+"""glidar stream --lockstep with the client of docs/link/lockstep.md."""
 
 import json
 import os
@@ -36,7 +36,7 @@ def body(position, quaternion=(1, 0, 0, 0), rate=(0, 0, 0), velocity=(0, 0, 0)):
 
 
 class Server:
-    """A running glidar stream --lockstep; a context that ends it."""
+    """A context manager for a running glidar stream --lockstep."""
 
     def __init__(self, test, *arguments, endpoint="tcp://127.0.0.1:*"):
         self.program = subprocess.Popen(
@@ -81,7 +81,7 @@ def ask(socket, columns, moments):
 class Lockstep(CliTest):
     SIZE = ("--width", "48", "--height", "40", "--fov", "30")
 
-    def test_the_documented_client_works_as_it_stands(self):
+    def test_the_documented_client_works(self):
         with Server(self, "builtin:asteroid") as server:
             example = EXAMPLE.replace("tcp://127.0.0.1:5600", server.endpoint)
             done = subprocess.run([sys.executable, "-c", example], capture_output=True, text=True,
@@ -89,7 +89,7 @@ class Lockstep(CliTest):
             self.assertEqual(done.returncode, 0, done.stderr)
             self.assertRegex(done.stdout, r"^\d{3,} points\n$")
 
-    def test_a_cloud_is_the_one_that_render_writes(self):
+    def test_a_cloud_is_equal_to_that_of_render(self):
         with Server(self, "builtin:asteroid", *self.SIZE, "--sensor-pose", "9,0,0,1,0,0,0") as server:
             socket = server.connect()
             columns = ["xyz", "intensity", "normal", "status", "instance"]
@@ -101,7 +101,7 @@ class Lockstep(CliTest):
                 expected = written[name]
                 np.testing.assert_array_equal(cloud[name].reshape(expected.shape), expected, name)
 
-    def test_a_batch_is_its_moments_one_by_one(self):
+    def test_a_batch_is_equal_to_single_requests(self):
         moments = [(k * 1000, k, k, [SENSOR, body((0, 0.1 * k, 0))]) for k in range(70)]
         with Server(self, "builtin:asteroid", *self.SIZE) as server:
             socket = server.connect()
@@ -112,8 +112,8 @@ class Lockstep(CliTest):
                 np.testing.assert_array_equal(cloud["xyz"], alone["xyz"])
         self.assertEqual([stamp for stamp, _ in together], [k * 1000 for k in range(70)])
 
-    def test_beams_that_fire_later_see_a_moving_body_later(self):
-        """A wall that comes nearer at 10 m/s: a turn of 0.1 s sees it up to 1 m nearer."""
+    def test_beams_see_a_moving_body_at_their_firing_time(self):
+        """A wall approaches at 10 m/s: a revolution of 0.1 s measures it up to 1 m closer."""
         with Server(self, "builtin:plane", "--scale", "1000", "--sensor", "VLP-16", "--ground-truth") as server:
             socket = server.connect()
             level = body((0, 0, 0))
@@ -151,7 +151,7 @@ class Lockstep(CliTest):
         self.assertEqual(told["objects"][0]["name"], "asteroid")
         self.assertIn("xyz", told["columns"])
 
-    def test_bad_requests_get_an_error_in_words_and_the_next_one_is_answered(self):
+    def test_bad_requests_get_a_text_error_and_the_next_one_is_answered(self):
         good = CLIENT["request"](["xyz"], [(0, 1, 0, [SENSOR, ROCK])])
         nan = bytearray(good)
         struct.pack_into("<d", nan, 40 + 24 + 24, float("nan"))
@@ -176,7 +176,7 @@ class Lockstep(CliTest):
         self.assertIn("10 refused", out)
         self.assertIn("requests refused", err)
 
-    def test_it_takes_no_place_that_is_taken(self):
+    def test_an_endpoint_in_use_is_refused(self):
         self.write("precious", "kept")
         refused = self.refused("stream", "builtin:asteroid", "--lockstep", f"ipc://{self.folder}/precious")
         self.assertIn("a file that is not a socket has this name", refused)
@@ -188,7 +188,7 @@ class Lockstep(CliTest):
             self.assertIn("another program listens there", done.stderr)
             self.assertEqual(len(ask(server.connect(), ["xyz"], [(0, 1, 0, [SENSOR])])), 1)
 
-    def test_several_clients_and_one_that_vanishes(self):
+    def test_several_clients_and_one_that_disappears(self):
         with Server(self, "builtin:asteroid", *self.SIZE) as server:
             for _ in range(20):
                 gone = server.connect()
@@ -200,7 +200,7 @@ class Lockstep(CliTest):
             for k, socket in enumerate(sockets):
                 self.assertEqual(CLIENT["clouds"](socket.recv_multipart())[0][0], k)
 
-    def test_a_client_recovers_when_glidar_is_killed_and_started_again(self):
+    def test_a_client_recovers_after_a_restart_of_glidar(self):
         endpoint = "ipc://" + os.path.join(self.folder, "link")
         moment = [(0, 1, 0, [SENSOR, ROCK])]
         with Server(self, "builtin:asteroid", *self.SIZE, endpoint=endpoint) as server:
@@ -217,7 +217,7 @@ class Lockstep(CliTest):
                 after = ask(socket, ["xyz"], moment)[0][1]["xyz"]
         np.testing.assert_array_equal(before, after)
 
-    def test_keys_are_made_kept_and_needed(self):
+    def test_keys_are_created_kept_and_required(self):
         with Server(self, "builtin:asteroid", *self.SIZE, "--curve-keys", "keys") as server:
             path = os.path.join(self.folder, "keys")
             self.assertEqual(os.stat(path).st_mode & 0o777, 0o600)
@@ -258,7 +258,7 @@ class Lockstep(CliTest):
         self.assertIn("--curve-keys", self.refused("stream", "builtin:box", "--port", "5555",
                                                    "--curve-keys", "k"))
 
-    def test_a_port_in_use_is_told(self):
+    def test_a_port_in_use_is_reported(self):
         with Server(self, "builtin:asteroid", *self.SIZE) as server:
             error = self.refused("stream", "builtin:box", "--lockstep", server.endpoint)
         self.assertIn("in use", error)

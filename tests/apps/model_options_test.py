@@ -20,7 +20,7 @@ class ModelOptions(CliTest):
         self.assertAlmostEqual(report["size_m"][1], 5.08, places=5)
         self.assertIn("0.0254 m, declared by the file", self.succeed("info", "a.amf").stdout)
         done = self.succeed("render", "a.amf", "-o", "x.pcd")
-        self.assertNotIn("--u", done.stderr)  # nothing to hint at: the file says both
+        self.assertNotIn("--u", done.stderr)  # no hint: the file declares both
         with open(os.path.join(self.folder, "x.pcd.json"), encoding="utf-8") as file:
             instance = json.load(file)["instances"][0]
         self.assertEqual((instance["metres_per_unit"], instance["up"]), (0.0254, "z"))
@@ -35,11 +35,11 @@ class ModelOptions(CliTest):
         self.assertEqual(report["size_m"], [4.0, 2.0, 1.0])
         self.assertIn("allowed: size", self.refused("info", "builtin:box:radius=4"))
 
-    def test_a_size_in_the_name_and_beside_it_is_refused(self):
+    def test_a_size_given_twice_is_refused(self):
         self.write("twice.yaml", "models: [{model: 'builtin:box:size=3', size: [1, 2, 3]}]\nsensor: VLP-16\n")
         self.assertIn("'size' is given twice", self.refused("render", "twice.yaml", "-o", "x.pcd"))
 
-    def test_no_number_of_a_turned_model_is_minus_zero(self):
+    def test_no_number_of_a_rotated_model_is_minus_zero(self):
         self.write("flat.obj", "v 0 0 0\nv 4 0 0\nv 0 2 0\nf 1 2 3\n")
         for up in "xyz":
             text = self.succeed("info", "flat.obj", "--up", up).stdout

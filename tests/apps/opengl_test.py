@@ -15,7 +15,7 @@ try:
     import numpy as np
 
     sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "io/readers"))
-    import formats  # shares nothing with the writers
+    import formats  # independent of the writers
 except ImportError:
     np = None
 
@@ -36,11 +36,11 @@ class OpenglRenderer(CliTest):
         self.succeed("render", *VIEW, *arguments, "-o", name)
         return self.bytes_of(name)
 
-    def test_clouds_are_those_of_rays_to_the_byte(self):
+    def test_clouds_have_the_same_bytes_as_with_rays(self):
         self.assertEqual(self.render("drawn.csv", "--renderer", "opengl"),
                          self.render("cast.csv"))
 
-    def test_the_paper_target_is_coarser_and_told_beside_the_cloud(self):
+    def test_the_quantized_framebuffer_is_coarser_and_named_in_the_sidecar(self):
         exact = self.render("exact.csv").splitlines()
         paper = self.render("paper.csv", "--renderer", "opengl", "--quantized-framebuffer").splitlines()
         self.assertAlmostEqual(len(paper), len(exact), delta=5)
@@ -49,7 +49,7 @@ class OpenglRenderer(CliTest):
             self.assertIn("opengl, paper target", json.dumps(json.load(file)))
 
     @unittest.skipIf(np is None, "NumPy is not installed")
-    def test_the_paper_s_picture_is_what_the_cloud_was_read_from(self):
+    def test_the_paper_png_is_the_framebuffer_of_the_cloud(self):
         paper = ("--renderer", "opengl", "--quantized-framebuffer")
         self.succeed("render", *VIEW, *paper, "--fields", "xyz,depth,intensity,status", "-o", "a.npz",
                      "-o", "a.paper.png")
@@ -58,7 +58,7 @@ class OpenglRenderer(CliTest):
         self.assertEqual((pixels.shape, pixels.dtype), ((60, 80, 4), np.uint8))
         near, far = (float(x) for x in re.search(r"n = (\S+) m, f = (\S+) m", texts["Description"]).groups())
         red, green, blue, alpha = (pixels[:, :, k].astype(float) for k in range(4))
-        # equations (6) to (9): D = 256 G + B of 65536 steps between the planes, of which the middle is meant
+        # equations (6) to (9): D = 256 G + B of 65536 steps between the planes, taken at their centres
         depth = near + (256 * green + blue + 0.5) * (far - near) / 65536
         with np.load(os.path.join(self.folder, "a.npz")) as cloud:
             hit = cloud["status"] == 0
@@ -70,12 +70,12 @@ class OpenglRenderer(CliTest):
             off = np.abs(cloud["depth"] - depth)[hit]
         self.assertLess(np.nanquantile(off, 0.99), 0.52 * (far - near) / 65536)
 
-    def test_the_float_target_has_no_picture(self):
-        told = "x.paper.png: the float target, which draws no such picture; allowed: this output with --quantized-framebuffer"
+    def test_the_float_framebuffer_has_no_paper_png(self):
+        told = "x.paper.png: the float framebuffer, which has no such image; allowed: this output with --quantized-framebuffer"
         for renderer in ((), ("--renderer", "opengl")):
             self.assertIn(told, self.refused("render", *VIEW, *renderer, "-o", "x.paper.png"))
 
-    def test_what_it_cannot_draw_is_refused(self):
+    def test_unsupported_sensors_are_refused(self):
         self.assertIn("add --renderer opengl",
                       self.refused("render", *VIEW, "--quantized-framebuffer", "-o", "x.pcd"))
         self.assertIn("not applicable: this renderer does not cast such beams",
@@ -83,7 +83,7 @@ class OpenglRenderer(CliTest):
         self.assertIn("graphics device: 63; allowed: 0: ", self.refused(
             "render", *VIEW, "--renderer", "opengl", "--graphics-device", "63", "-o", "x.pcd"))
 
-    def test_a_machine_without_opengl_is_told_what_to_install(self):
+    def test_without_opengl_the_error_lists_what_to_install(self):
         self.environment["__EGL_VENDOR_LIBRARY_FILENAMES"] = "/nowhere"
         error = self.refused("render", *VIEW, "--renderer", "opengl", "-o", "x.pcd")
         self.assertIn("libgl1-mesa-dri", error)

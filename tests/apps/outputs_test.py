@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Which files a command leaves behind, and standard output as one of them. The built program is found in
+"""The output files of a command, including standard output. The built program is found in
 PATH."""
 
 import json
@@ -47,7 +47,7 @@ class Rigs(CliTest):
         self.assertTrue([name for name in self.files() if name.startswith("r_camera_")], self.files())
         self.assertFalse([name for name in self.files() if name.startswith("r_lidar_")], self.files())
 
-    def test_a_rig_does_not_fit_on_standard_output(self):
+    def test_a_rig_cannot_write_to_standard_output(self):
         told = self.refused("render", "rig.yaml", "-o", "-", "--format", "csv")
         self.assertIn("--sensor-name", told)
         done = self.succeed("render", "rig.yaml", "--sensor-name", "camera", "-o", "-", "--format", "csv")
@@ -64,14 +64,14 @@ class Folders(CliTest):
 
 
 class Failures(CliTest):
-    def test_when_one_output_fails_none_of_the_frame_is_there(self):
+    def test_when_one_output_fails_no_file_of_the_frame_exists(self):
         # the box is 7 m and more away: 20000 units per metre do not fit 16 bits
         told = self.refused("render", "builtin:box", "-o", "a.pcd", "-o", "a.depth.png", "-o", "a.csv",
                             "--depth-scale", "20000")
         self.assertIn("--depth-scale", told)
 
     def test_an_error_lists_what_was_written_before_it(self):
-        # the box is farther than 65535 / 6200 m from the second frame on
+        # from the second frame on, the box is farther than 65535 / 6200 m
         self.write("scene.yaml", "models: [{model: builtin:box, pose: {position: [0, 0, 10]},"
                                  " motion: {twist: {velocity_m_s: [0, 0, 2]}}}]\n"
                                  "sensor: {optics: {type: pinhole, width: 8, height: 6, fov_deg: 20}, rate_hz: 1}\n"
@@ -102,7 +102,7 @@ class Images(CliTest):
 
 
 class StandardOutput(CliTest):
-    def test_it_holds_the_bytes_of_the_file_and_nothing_else(self):
+    def test_it_has_the_bytes_of_the_file_and_nothing_else(self):
         for name in ("pcd", "ply", "csv", "bin", "npz", "depth.png", "depth.tiff"):
             self.succeed("render", "builtin:box", "-o", "a." + name, "--no-sidecar", "--quiet")
             done = subprocess.run(["glidar", "render", "builtin:box", "-o", "-", "--format", name], cwd=self.folder,
@@ -112,7 +112,7 @@ class StandardOutput(CliTest):
             os.remove(os.path.join(self.folder, "a." + name))
         self.assertEqual(self.files(), [])
 
-    def test_a_full_disk_is_told_without_claims_about_what_was_sent(self):
+    def test_a_full_disk_is_reported_without_claims_about_sent_data(self):
         with open("/dev/full", "wb") as full:
             done = subprocess.run(["glidar", "render", "builtin:box", "-o", "-", "--format", "csv"], cwd=self.folder,
                                   env=self.environment, stdout=full, stderr=subprocess.PIPE, text=True, timeout=MAX_WAIT_S,
@@ -130,7 +130,7 @@ class StandardOutput(CliTest):
             self.assertNotIn("--format", told)
         self.assertIn("-: standard output", self.succeed("render", "--help").stdout)
 
-    def test_files_are_written_beside_it(self):
+    def test_files_are_written_together_with_it(self):
         done = self.succeed("render", "builtin:box", "-o", "-", "--format", "csv", "-o", "a.pcd", "--quiet")
         self.assertEqual(self.files(), ["a.pcd", "a.pcd.json"])
         self.assertEqual(done.stderr, "")
@@ -143,7 +143,7 @@ class StandardOutput(CliTest):
         for more in (["render", "builtin:box", "--duration", "1"], ["stream", "builtin:box", "--frames", "2"]):
             self.assertIn("one frame of one sensor", self.refused(*more, "-o", "-", "--format", "csv"))
 
-    def test_a_reader_that_goes_away_ends_the_program_quietly(self):
+    def test_a_closed_pipe_ends_the_program_quietly(self):
         for ignored in (False, True):  # SIGPIPE, as some parents leave it
             program = subprocess.Popen(
                 ["glidar", "render", "builtin:box", "-o", "-", "--format", "csv", "-o", "a.csv", "--quiet"],

@@ -24,15 +24,15 @@ class Pictures(CliTest):
         with Image.open(os.path.join(self.folder, name)) as image:
             return np.asarray(image.convert("RGB")).astype(int)
 
-    def test_an_upright_edge_is_upright_in_the_picture_of_an_ouster(self):
+    def test_a_vertical_edge_is_vertical_in_the_image_of_an_ouster(self):
         # The near face of a box 5 m ahead spans 2 atan(1 / 4) degrees: its left edge is in one column.
         self.write("s.yaml", "models: [{model: builtin:box, pose: {position: [5, 0, 0]}}]\nsensor: OS1-128\n"
                              "sensor_pose: {position: [0, 0, 0]}\n")
         self.succeed("render", "s.yaml", "--ground-truth", "-o", "a.png")
-        plot = self.pixels("a.png")[56:56 + 128, 100:100 + 1024]  # its place follows from the letters' size
+        plot = self.pixels("a.png")[56:56 + 128, 100:100 + 1024]  # its position follows from the size of the letters
         self.assertEqual(tuple(plot[0, 0]), NO_RETURN)
         is_hit = (plot != NO_RETURN).any(axis=2)
-        # Up to 10 degrees; higher beams pass over the corners of the face.
+        # Up to 10 degrees; higher beams miss the corners of the face.
         edges = [int(row.argmax()) for row in is_hit[32:92]]
         self.assertTrue(is_hit[32:92].any(axis=1).all())
         self.assertLessEqual(max(edges) - min(edges), 1)
@@ -64,8 +64,8 @@ class Pictures(CliTest):
                     found.append(file.read())
             self.assertEqual(found[0], found[1], name)
 
-    def test_a_few_odd_echoes_do_not_change_the_colours_of_a_room(self):
-        # A box of 8 mm just before the sensor, which some twenty of 131072 beams meet.
+    def test_outliers_do_not_change_the_colours_of_a_room(self):
+        # A box of 8 mm just before the sensor, which about twenty of 131072 beams hit.
         room = "models:\n  - {model: builtin:box, scale: 2}\n"
         tiny = "  - {model: builtin:box, scale: 0.004, pose: {position: [0.3, 0.006, 0]}}\n"
         pictures = []
@@ -75,19 +75,19 @@ class Pictures(CliTest):
             pictures.append(self.pixels("a.png")[56:56 + 128, 100:100 + 400])
         self.assertLess(np.abs(pictures[0] - pictures[1]).max(), 12)
 
-    def test_sizes_and_colours_are_as_asked_for(self):
+    def test_sizes_and_colours_are_as_requested(self):
         self.succeed(*LIDAR, "--colour-by", "ring", "--picture-size", "300x200", "-o", "a.bev.png",
                      "--view-eye", "-3,0,2", "--view-target", "0,0,0", "-o", "a.view.png")
         self.assertEqual(self.pixels("a.bev.png").shape, (200, 300, 3))
         self.assertEqual(self.pixels("a.view.png").shape, (200, 300, 3))
 
-    def test_what_cannot_be_is_refused_and_leaves_no_file(self):
+    def test_invalid_combinations_are_refused_and_leave_no_file(self):
         for options, words in (
                 (("--colour-by", "heat"), "--colour-by"),
                 (("--picture-size", "300"), "--picture-size: '300'; allowed: WIDTHxHEIGHT in pixels"),
                 (("--picture-size", "300x9999"), "each from 200 to 8192"),
                 (("--view-eye", "1,2"), "--view-eye"),
-                (("--view-eye", "1,2,3", "--view-target", "1,2,3"), "it is where the view looks at")):
+                (("--view-eye", "1,2,3", "--view-target", "1,2,3"), "it is the point that the camera looks at")):
             self.assertIn(words, self.refused(*LIDAR, *options, "-o", "a.view.png"))
         self.assertIn("a camera has no rings",
                       self.refused("render", "builtin:box", "--colour-by", "ring", "-o", "a.view.png"))

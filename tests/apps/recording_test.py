@@ -73,7 +73,7 @@ class RealSense(CliTest):
         self.succeed("render", "scene.yaml", "-o", "depth.npy", "--quiet")
         return np.load(os.path.join(self.folder, "depth.npy")).astype(float)
 
-    def test_recording_shows_the_model_where_the_program_does(self):
+    def test_the_recording_shows_the_model_at_the_simulated_pixels(self):
         position, (w, x, y, z) = bottle_pose()
         model = RECORDING / "_body/schauma.obj"
         depth_m = self.render(f"{{model: '{model}', pose: {{position: {position.tolist()}, "
@@ -87,7 +87,7 @@ class RealSense(CliTest):
             self.assertAlmostEqual(float(np.median(error_mm)), median_mm, 1)
             self.assertAlmostEqual(float((abs(error_mm) < 10).mean()), within, 3)
 
-    def test_the_preset_spreads_like_the_recording_or_more(self):
+    def test_the_preset_has_at_least_the_noise_of_the_recording(self):
         # Much of an error that neighbouring pixels share, as a stereo camera's do, goes into the plane. The preset's
         # pixels have errors of their own: by this estimator it may be up to 2.5 times as noisy.
         recorded = spread_by_depth(recorded_depth_m(200))

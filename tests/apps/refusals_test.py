@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the command line says of bad input. The built program is found in PATH."""
+"""Errors of the command line for bad input. The built program is found in PATH."""
 
 import os
 import resource
@@ -11,7 +11,7 @@ from cli_support import BOX, CliTest
 
 
 class Refusals(CliTest):
-    def test_unknown_words_name_the_nearest(self):
+    def test_unknown_words_suggest_the_closest(self):
         self.assertIn("did you mean --camera-z?",
                       self.refused("render", "builtin:box", "--camra-z", "5", "-o", "x.pcd"))
         self.assertIn("unknown option --port",

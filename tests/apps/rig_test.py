@@ -56,17 +56,17 @@ class Files(RigTest):
             self.succeed("render", "rig.yaml", "--sensor-name", name, "-o", "one.pcd", "--no-sidecar")
             self.assertEqual(self.bytes_of("one.pcd"), self.bytes_of(f"all_{name}.pcd"))
 
-    def test_sensors_of_one_kind_at_one_place_draw_different_noise(self):
+    def test_sensors_of_the_same_kind_and_pose_have_different_noise(self):
         self.succeed("render", "rig.yaml", "-o", "all.npz", "--fields", "range,true_range")
         camera, twin = (np.load(os.path.join(self.folder, f"all_{name}.npz")) for name in ("camera", "twin"))
         np.testing.assert_array_equal(camera["true_range"], twin["true_range"])
         hit = np.isfinite(camera["range"])
         self.assertGreater((camera["range"][hit] != twin["range"][hit]).mean(), 0.99)
 
-    def test_a_sensor_is_where_the_rig_carries_it(self):
+    def test_a_sensor_moves_with_the_rig(self):
         self.succeed("render", "rig.yaml", "--duration", "0.1", "-o", "s.npz")
         told = json.loads(self.bytes_of("s_camera_000001.npz.json"))["sensor"]
-        turned = np.deg2rad(2) * 0.05  # a screw of 0.5 m/s along x, which turns: an arc
+        turned = np.deg2rad(2) * 0.05  # a screw motion of 0.5 m/s along x: an arc
         radius = 0.5 / np.deg2rad(2)
         rig = np.array([radius * np.sin(turned), radius * (1 - np.cos(turned)), 0])
         expected = rig + 0.1 * np.array([np.cos(turned), np.sin(turned), 0])
@@ -79,7 +79,7 @@ class Files(RigTest):
         self.assertIn("1200", told)
         self.assertIn("range_gaussian", told)
 
-    def test_a_picture_by_ring_is_left_out_for_the_cameras(self):
+    def test_images_by_ring_are_left_out_for_cameras(self):
         for name in ("b.bev.png", "b.view.png"):
             done = self.succeed("render", "rig.yaml", "--colour-by", "ring", "-o", name)
             self.assertIn(name.replace("b.", "b_lidar."), self.files())
@@ -88,7 +88,7 @@ class Files(RigTest):
         error = self.refused("render", "rig.yaml", "--sensor-name", "camera", "--colour-by", "ring", "-o", "c.bev.png")
         self.assertIn("a camera has no rings", error)
 
-    def test_what_cannot_be_is_refused(self):
+    def test_invalid_combinations_are_refused(self):
         for arguments, words in ((("--sensor-name", "radar"), "allowed: lidar, camera, twin"),
                                  (("--sensor", "VLP-16"), "--sensor-name NAME chooses one of lidar, camera, twin")):
             self.assertIn(words, self.refused("render", "rig.yaml", *arguments, "-o", "x.pcd"))
@@ -102,8 +102,8 @@ class Alone(RigTest):
         self.succeed("render", "one.yaml", "-o", "x.pcd", "--no-sidecar")
         self.assertIn("x_a.pcd", self.files())
 
-    def test_a_lidar_turns_about_up_by_the_second_of_three_rates(self):
-        """--sensor-rate counts along left, up, forward, whatever the sensor's own axes are."""
+    def test_the_second_sensor_rate_rotates_a_lidar_about_up(self):
+        """--sensor-rate is about left, up, forward, for any axes of the sensor."""
         self.succeed("render", "box.obj", "--sensor", "VLP-16", "--ground-truth", "--sensor-pose", "0,0,0,1,0,0,0",
                      "--sensor-rate", "0,2,0", "--fields", "sensor_pose", "-o", "x.npz")
         with np.load(os.path.join(self.folder, "x.npz")) as written:
@@ -144,7 +144,7 @@ class Topics(RigTest):
             with np.load(os.path.join(self.folder, f"c_{k:06}.npz")) as written:
                 np.testing.assert_array_equal(points[:, :3], written["xyz"].reshape(-1, 3).astype("<f4"))
 
-    def test_serve_who_comes_late_and_who_comes_again(self):
+    def test_serve_late_and_returning_subscribers(self):
         program = self.stream("--subscribers", "0", "--rate", "20")
         for _ in range(3):
             subscriber = self.subscriber(topic=topic("twin"))
@@ -154,24 +154,24 @@ class Topics(RigTest):
         program.terminate()
         self.finished(program, 143)
 
-    def test_end_for_who_waits_for_the_topic_of_2015_too(self):
+    def test_send_the_end_to_subscribers_of_the_original_topic_too(self):
         program = self.stream("--subscribers", "1", "--frames", "1", "--rate", "max")
         subscriber = self.subscriber()
         subscriber.shake()
         self.assertEqual(subscriber.receive(), b"cKTHXBAI")
         self.finished(program, 0)
 
-    def test_that_keep_the_newest_alone_are_refused(self):
+    def test_publish_latest_is_refused(self):
         self.assertIn("--publish-latest", self.refused("stream", "rig.yaml", "--port", str(self.port), "--publish-latest", "1"))
 
-    def test_of_a_chosen_sensor_is_that_of_2015(self):
+    def test_of_a_selected_sensor_is_the_original_one(self):
         program = self.stream("--sensor-name", "camera", "--frames", "2")
         subscriber = self.subscriber()
         subscriber.shake()
         self.assertEqual(len(subscriber.clouds_until_shutdown()), 2)
         self.finished(program, 0)
 
-    def test_come_for_every_pose_of_a_simulator(self):
+    def test_have_a_cloud_for_every_pose_of_a_simulator(self):
         rock = "    pose: {position: [6, 0, 0]}\n    motion: {spin: {rate_deg_s: [0, 40, 0]}}\n"
         self.write("rig.yaml", RIG.replace(rock, ""))
         simulator = self.simulator()
@@ -196,7 +196,7 @@ class Requests(RigTest):
         struct.pack_into("<I", message, 16, sensor)
         return bytes(message)
 
-    def test_name_the_sensor_and_place_the_rig(self):
+    def test_select_the_sensor_and_give_the_pose_of_the_rig(self):
         with Server(self, "rig.yaml") as server:
             socket = server.connect()
             socket.send(struct.pack("<4s2HQ", b"GLDR", 1, 0, 3))
@@ -215,8 +215,8 @@ class Requests(RigTest):
             socket.send(self.request(3, [(0, 1, 0, [body((0, 0, 0)), rock])]))
             self.assertIn("sensor: 3; allowed: 0 to 2", socket.recv_multipart()[1].decode())
 
-    def test_a_turning_rig_carries_its_sensors_round(self):
-        """A wall 20 m ahead of a rig that turns: the sensor's origin moves by rate times arm."""
+    def test_sensors_rotate_with_the_rig(self):
+        """A wall 20 m ahead of a rotating rig: the sensor's origin moves by rate times lever arm."""
         self.write("wall.yaml", "models: [{model: builtin:plane, scale: 1000}]\n"
                                 "sensors: [{name: arm, sensor: VLP-16, pose: {position: [2, 0, 0]}}]\n")
         attitude = (0.7071067811865476, 0, 0.7071067811865476, 0)

@@ -22,7 +22,7 @@ class Sequences(CliTest):
             with open(os.path.join(self.folder, f"a_00000{k}.csv"), encoding="utf-8") as file:
                 next(file)
                 rows = [[float(number) for number in line.split(",")] for line in file]
-            # Deskewed, every point lies on a wall of the room; CSV keeps all digits.
+            # Deskewed, every point is on a wall of the room; CSV keeps all digits.
             self.assertLess(max(abs(max(map(abs, row[:3])) - 8.0) for row in rows), 1e-9)
             times += [round(k * 1e8) + row[3] for row in rows if row[4] == rows[0][4]]
         steps = [later - earlier for earlier, later in zip(sorted(times), sorted(times)[1:])]

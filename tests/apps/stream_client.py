@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A client and a simulator that speak the protocol of 2015, written from its description alone."""
+"""A client and a simulator for the original protocol, written from its description only."""
 
 import struct
 
@@ -33,7 +33,7 @@ class Subscriber:
         assert self.hand.recv() == b""
 
     def receive(self, timeout_s=MAX_WAIT_S):
-        """The next message as it is."""
+        """The next raw message."""
         if not self.clouds.poll(timeout_s * 1000):
             raise TimeoutError("no message")
         message = self.clouds.recv()
@@ -81,7 +81,7 @@ class Simulator:
             raise
 
     def shake(self, timeout_s=MAX_WAIT_S, before_answer=()):
-        """GLIDAR asks once it has subscribed, so that it gets what is sent before the answer too."""
+        """GLIDAR sends its request after subscribing, so it also gets poses sent before the answer."""
         if not self.hand.poll(timeout_s * 1000):
             raise TimeoutError("no handshake")
         assert self.hand.recv() == b""

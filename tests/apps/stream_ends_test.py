@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""glidar stream: how it ends, what it refuses, and whether its documentation works."""
+"""glidar stream: its end, its errors, and its documented examples."""
 
 import os
 import re
@@ -18,7 +18,7 @@ from stream_client import SHUTDOWN, cloud, pose_message
 from waiting import wait_for_line
 
 
-RARELY = str(0.1 / MAX_WAIT_S)  # frames a second: no test waits for the second one
+RARELY = str(0.1 / MAX_WAIT_S)  # frames per second: no test waits for the second frame
 
 
 class Ends(StreamTest):
@@ -30,7 +30,7 @@ class Ends(StreamTest):
         self.assertEqual(self.stats()["ending"], f"signal {int(number)}")
 
     def waiting(self, program):
-        """Reads the line that says so, which comes once signals are looked after."""
+        """Reads the line about waiting, which is printed when signals are handled."""
         wait_for_line(program.stderr, "waiting for")
 
     def test_by_a_signal_while_it_waits_for_subscribers(self):
@@ -62,7 +62,7 @@ class Ends(StreamTest):
             simulator.close()
             subscriber.close()
 
-    def test_by_a_signal_in_mid_run(self):
+    def test_by_a_signal_while_streaming(self):
         program = self.publish("--rate", "max")
         subscriber = self.subscriber()
         subscriber.shake()
@@ -78,14 +78,14 @@ class Ends(StreamTest):
         self.assertEqual(self.stats()["frames"]["measured"], 1)
 
     def full_disk(self, *arguments):
-        """The program where files may have 1 KiB, as on a disk that is nearly full."""
+        """The program with a limit of 1 KiB per file, as on a nearly full disk."""
         program = self.start_by("bash", "-c", 'ulimit -f 1; exec glidar "$@"', "-", "stream", "builtin:box", *SMALL,
                                 "--port", str(self.port), "-o", "a.csv", *arguments)
         subscriber = self.subscriber()
         subscriber.shake()
         return program, subscriber
 
-    def test_at_once_when_the_disk_is_full_and_the_next_frame_is_far_off(self):
+    def test_at_once_when_the_disk_is_full_long_before_the_next_frame(self):
         program, subscriber = self.full_disk("--rate", RARELY)
         self.assertEqual(len(subscriber.clouds_until_shutdown()), 1)
         self.assertRegex(self.finished(program, 2), "a_000000.csv.*File too large")
@@ -98,7 +98,7 @@ class Ends(StreamTest):
         self.assertEqual(len(subscriber.clouds_until_shutdown()), 1)
         self.assertIn("a_000000.csv", self.finished(program, 2))
 
-    def test_not_by_what_a_stranger_sends_to_the_port_of_handshakes(self):
+    def test_not_by_garbage_at_the_handshake_port(self):
         program = self.publish("--camera-z", "10", "--subscribers", "0", "--rate", "20")
         subscriber = self.subscriber()
         cloud(subscriber.receive())
@@ -113,7 +113,7 @@ class Ends(StreamTest):
         subscriber.clouds_until_shutdown()
         self.assertIn("unexpected handshake", self.finished(program, 143))
 
-    def test_not_by_a_pose_that_waited_longer_than_the_timeout_until_it_was_taken(self):
+    def test_not_by_a_pose_that_was_queued_longer_than_the_timeout(self):
         """The timeout is about waiting for a pose, not about frames that take long. Poses are sent before the
         handshake is answered, as a busy machine may need long between the two."""
         simulator = self.simulator()
@@ -123,7 +123,7 @@ class Ends(StreamTest):
         self.finished(program, 0)
         self.assertEqual(self.stats()["ending"], "all frames are done")
 
-    def test_with_all_three_shutdown_messages_of_2015(self):
+    def test_with_all_three_shutdown_messages_of_the_original(self):
         program = self.publish("--rate", "max", "--frames", "1")
         everything = self.subscriber(topic=b"")
         everything.shake()
@@ -134,7 +134,7 @@ class Ends(StreamTest):
 
 
 class Documentation(StreamTest):
-    def test_has_a_client_and_a_simulator_that_work(self):
+    def test_has_a_working_client_and_simulator(self):
         root = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
         with open(os.path.join(root, "docs", "link", "woods2016-protocol.md"), encoding="utf-8") as file:
             client, simulator = re.findall(r"```python\n(.*?)```", file.read(), re.DOTALL)[:2]
@@ -168,14 +168,14 @@ class Refusals(StreamTest):
     def test_addresses_of_other_machines(self):
         self.assertIn("--bind", self.refused("stream", self.box, "-p", str(self.port), "--bind", "192.0.2.1"))
 
-    def test_streams_that_go_nowhere(self):
+    def test_streams_without_output(self):
         self.assertIn("--port", self.refused("stream", self.box))
 
     def test_options_of_files_that_are_not_written(self):
         for option in (["--drop-invalid"], ["--layout", "velodyne"], ["--no-sidecar"]):
             self.assertIn("--output: not given", self.refused("stream", self.box, "--port", str(self.port), *option))
 
-    def test_contradictions(self):
+    def test_options_that_exclude_each_other(self):
         physics = ("stream", self.box, "--port", str(self.port), "--pose-source")
         self.assertIn("overlap", self.refused(*physics, tcp(self.port + 1)))
         self.assertIn("--object-rate", self.refused(*physics, tcp(self.physics), "--object-rate", "0,1,0"))
@@ -190,7 +190,7 @@ class Refusals(StreamTest):
             arguments = ["stream", self.box, "-o", "a.pcd", option, value]
             self.assertIn(option, self.refused(*arguments))
 
-    def test_statistics_in_a_folder_that_is_not_there(self):
+    def test_statistics_in_a_missing_folder(self):
         self.assertIn("--stats", self.refused("stream", self.box, "-o", "a.pcd", "--stats", "no/s.json"))
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""glidar stream and simulators that send as soon as the handshake is answered: subscriptions travel apart from hands."""
+"""glidar stream and simulators that send right after the handshake, before the subscription may have arrived."""
 
 import json
 import threading
@@ -71,7 +71,7 @@ class SlowJoiner(StreamTest):
                 self.assertEqual(stats["poses"]["received"], POSES + 1, f"simulator {k} of round {around}")
                 self.assertEqual(stats["clouds"]["sent"], POSES)
 
-    def test_loses_none_of_one_that_comes_again(self):
+    def test_loses_no_pose_of_a_restarted_simulator(self):
         program, simulator, subscriber = self.in_the_loop("--pose-queue", "100", "--publish-queue", "100")
         simulator.close()
         for around in range(5):
@@ -86,7 +86,7 @@ class SlowJoiner(StreamTest):
         again.shut_down()
         self.finished(program, 0)
 
-    def test_asks_one_that_opens_the_poses_port_after_the_handshake(self):
+    def test_handshakes_again_when_the_poses_port_opens_late(self):
         program = self.publish("--subscribers", "0", "--pose-source", tcp(self.physics), "--pose-queue", "100")
         with self.context.socket(zmq.REP) as hand, self.context.socket(zmq.PUB) as poses:
             hand.bind(f"tcp://127.0.0.1:{self.physics + 1}")
@@ -106,7 +106,7 @@ class LateSubscriber(StreamTest):
     """Shakes hands first and subscribes afterwards."""
 
     def late(self, before, topic=b"c"):
-        """One that subscribes after its handshake and what before() waits for."""
+        """A subscriber that subscribes after its handshake and before()."""
         subscriber = self.subscriber(topic=None)
         subscriber.shake()
         before()
@@ -138,7 +138,7 @@ class LateSubscriber(StreamTest):
         self.assertEqual([stamp for stamp, _ in late.clouds_until_shutdown()], [7, 8, 11])
         self.finished(program, 0)
 
-    def test_is_waited_for_though_another_one_is_ready(self):
+    def test_is_waited_for_although_another_one_is_ready(self):
         program = self.publish("--rate", "max", "--frames", "3", "--subscribers", "2", "--subscription-timeout", "1e9")
         early = self.subscriber()
         early.shake()
@@ -160,7 +160,7 @@ class LateSubscriber(StreamTest):
         self.assertEqual(received[2][3:], SHUTDOWN)
         self.finished(program, 0)
 
-    def test_that_never_subscribes_is_reported_once_and_the_stream_goes_on(self):
+    def test_that_never_subscribes_is_reported_once_and_the_stream_continues(self):
         program = self.publish("--rate", "max", "--frames", "3", "--subscription-timeout", "0.2")
         self.subscriber(topic=None).shake()
         err = self.finished(program, 0)
@@ -168,7 +168,7 @@ class LateSubscriber(StreamTest):
         self.assertEqual(self.stats()["clouds"]["sent"], 3)
         self.assertEqual(self.stats()["faults"], {"subscription missing": 1})
 
-    def test_a_timeout_that_is_none_is_refused(self):
+    def test_an_invalid_timeout_is_refused(self):
         for text in ("-1", "nan", "soon"):
             self.assertIn("--subscription-timeout", self.refused("stream", self.box, "--port", str(self.port),
                                                                  "--subscription-timeout", text))

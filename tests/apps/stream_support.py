@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""Running glidar stream between a client and a simulator that know the protocol of 2015 alone."""
+"""Runs glidar stream between a client and a simulator of the original protocol."""
 
 import json
 import subprocess
@@ -29,7 +29,7 @@ class StreamTest(CliTest):
         self.physics = free_ports()
 
     def start(self, *arguments, command="stream"):
-        """The running program; whatever happens, it ends with the test."""
+        """The running program, which ends with the test."""
         return self.start_by("glidar", command, *arguments)
 
     def start_by(self, *command):
@@ -54,7 +54,7 @@ class StreamTest(CliTest):
         return self.start(self.box, "--port", str(self.port), "--stats", "stats.json", *arguments)
 
     def in_the_loop(self, *arguments):
-        """The program between a simulator and a subscriber, hands shaken."""
+        """The program between a simulator and a subscriber, after their handshakes."""
         simulator = self.simulator()
         program = self.publish("--pose-source", tcp(self.physics), *arguments)
         subscriber = self.subscriber()
@@ -66,7 +66,7 @@ class StreamTest(CliTest):
         def bound():
             try:
                 return Simulator(self.context, self.physics)
-            except zmq.ZMQError:  # the port of the one before is not free yet
+            except zmq.ZMQError:  # the previous port is not free yet
                 return None
         simulator = wait_until(bound, "the simulator's ports")
         self.addCleanup(simulator.close)

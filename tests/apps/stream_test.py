@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""glidar stream: clouds out and poses in, against a client and a simulator of 2015."""
+"""glidar stream: clouds out and poses in, with a client and a simulator of the original protocol."""
 
 import os
 import signal
@@ -25,7 +25,7 @@ def rotation(quaternion):
 
 
 class Clouds(StreamTest):
-    def test_come_once_hands_are_shaken_and_end_with_the_shutdown(self):
+    def test_start_after_the_handshake_and_end_with_the_shutdown(self):
         program = self.publish("--camera-z", "10", "--rate", "max", "--frames", "4")
         subscriber = self.subscriber()
         subscriber.shake()
@@ -43,7 +43,7 @@ class Clouds(StreamTest):
         self.assertEqual(stats["ending"], "all frames are done")
         self.assertLessEqual(stats["latency_ms"]["p50"], stats["latency_ms"]["p99"])
 
-    def test_go_to_every_subscriber_the_same(self):
+    def test_are_the_same_for_every_subscriber(self):
         program = self.publish("--subscribers", "3", "--rate", "20", "--frames", "5", "--object-rate", "0,1,0")
         subscribers = [self.subscriber() for _ in range(3)]
         for subscriber in subscribers:
@@ -57,7 +57,7 @@ class Clouds(StreamTest):
                 self.assertEqual(stamp, first_stamp)
                 self.assertEqual(points.tobytes(), first.tobytes())
 
-    def test_go_to_who_comes_late_or_does_not_shake_hands(self):
+    def test_go_to_late_subscribers_and_to_those_without_handshake(self):
         program = self.publish("--subscribers", "0", "--rate", "20")
         silent = self.subscriber()
         silent.hand.close()
@@ -91,11 +91,11 @@ class Clouds(StreamTest):
         self.assertGreater(self.stats()["clouds"]["missed"], 0)
         self.assertGreater(len(clouds), 2)
         self.assertIn("clouds missed", err)
-        self.assertLess(err.count("\n"), self.stats()["seconds"] + 10)  # one line a second, not one a cloud
+        self.assertLess(err.count("\n"), self.stats()["seconds"] + 10)  # one line per second, not one per cloud
 
     @staticmethod
     def newest_of(subscriber, program):
-        """The next message; None when the program has ended and none came within seconds: on a machine that is very busy
+        """The next message; None if the program has ended and no message came within seconds: on a very busy machine
         ZeroMQ may replace the last one by the end of the connection."""
         while True:
             has_ended = program.poll() is not None
@@ -105,7 +105,7 @@ class Clouds(StreamTest):
                 if has_ended:
                     return None
 
-    def test_conflated_leave_the_newest_for_a_slow_subscriber(self):
+    def test_publish_latest_keeps_the_newest_for_a_slow_subscriber(self):
         program = self.publish_box("--camera-z", "4", "--publish-latest", "1",
                                "--rate", "max", "--frames", "60")
         subscriber = self.subscriber()
@@ -116,9 +116,9 @@ class Clouds(StreamTest):
         self.finished(program, 0)
         self.assertEqual(self.stats()["clouds"]["sent"], 60)
         self.assertTrue(received)
-        self.assertEqual(received, sorted(set(received)))  # some may be left out, none comes late or twice
+        self.assertEqual(received, sorted(set(received)))  # some may be missing, none is late or repeated
 
-    def test_go_on_when_a_subscriber_vanishes(self):
+    def test_continue_when_a_subscriber_disappears(self):
         program = self.publish("--subscribers", "2", "--rate", "30")
         gone = self.subscriber()
         gone.shake()
@@ -134,14 +134,14 @@ class Clouds(StreamTest):
         stays.clouds_until_shutdown()
         self.finished(program, 143)
 
-    def test_are_kept_as_numbered_files_like_those_of_render(self):
+    def test_are_written_as_numbered_files_like_those_of_render(self):
         arguments = (self.box, *SMALL, "--object-rate", "0,1,0", "--fields", "xyz,intensity")
         self.succeed("stream", *arguments, "--rate", "max", "--frames", "3", "-o", "a.csv")
         self.succeed("render", *arguments, "--rate", "30", "--duration", "0.1", "-o", "b.csv")
         for k in range(3):
             self.assertEqual(self.bytes_of(f"a_00000{k}.csv"), self.bytes_of(f"b_00000{k}.csv"))
 
-    def test_of_scanners_join_as_those_of_render(self):
+    def test_of_scanners_join_like_those_of_render(self):
         arguments = ("builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0", "--fields", "xyz,time,ring")
         self.succeed("stream", *arguments, "--rate", "max", "--duration", "0.3", "-o", "a.csv")
         self.succeed("render", *arguments, "--duration", "0.3", "-o", "b.csv")
@@ -151,7 +151,7 @@ class Clouds(StreamTest):
 
 
 class Poses(StreamTest):
-    def test_place_object_and_sensor_by_attitudes(self):
+    def test_give_the_attitudes_of_object_and_sensor(self):
         program, simulator, subscriber = self.in_the_loop("--pose-queue", "100")
         random = np.random.default_rng(1)
         for stamp in (5, 2**63 + 3, 2**64 - 1):
@@ -190,7 +190,7 @@ class Poses(StreamTest):
         self.finished(program, 0)
         self.assertEqual(self.stats()["poses"]["repeated"], 3)
 
-    def test_that_are_none_are_refused_and_counted(self):
+    def test_that_are_invalid_are_refused_and_counted(self):
         program, simulator, subscriber = self.in_the_loop("--pose-queue", "1000")
         good = pose_message(1)
         bad = [b"v", good[:-1], good + b"\0", b"v" + bytes(2**20), b"v" + os.urandom(50),
@@ -210,7 +210,7 @@ class Poses(StreamTest):
         self.assertIn("182 times", err)
         self.assertLess(err.count("pose refused"), self.stats()["seconds"] + 10)
 
-    def test_the_newest_counts_without_a_queue(self):
+    def test_only_the_newest_is_used_without_a_queue(self):
         program, simulator, subscriber = self.in_the_loop()
         for stamp in range(1, 901):
             simulator.send(pose_message(stamp))
@@ -222,7 +222,7 @@ class Poses(StreamTest):
         simulator.shut_down()
         self.finished(program, 0)
 
-    def test_going_back_in_time_is_told(self):
+    def test_that_go_back_in_time_are_reported(self):
         program, simulator, subscriber = self.in_the_loop("--pose-queue", "100")
         for stamp in (7, 3, 4):
             simulator.send(pose_message(stamp))
@@ -231,7 +231,7 @@ class Poses(StreamTest):
         self.assertIn("timestamp decreased: from timestamp 7 to 3", self.finished(program, 0))
         self.assertEqual(self.stats()["faults"], {"timestamp decreased": 1})
 
-    def test_of_a_simulator_that_comes_back_count_again(self):
+    def test_of_a_restarted_simulator_are_used(self):
         program, simulator, subscriber = self.in_the_loop("--pose-queue", "10")
         simulator.send(pose_message(1))
         cloud(subscriber.receive())
@@ -243,7 +243,7 @@ class Poses(StreamTest):
         again.shut_down()
         self.assertIn("simulator lost", self.finished(program, 0))
 
-    def test_missing_for_too_long_end_it(self):
+    def test_that_are_missing_for_too_long_end_the_stream(self):
         simulator = self.simulator()
         program = self.publish("--pose-source", tcp(self.physics), "--pose-timeout", "3")
         subscriber = self.subscriber()
@@ -253,7 +253,7 @@ class Poses(StreamTest):
         self.finished(program, 3)
         self.assertEqual(self.stats()["ending"], "no pose came for 3 s")
 
-    def test_of_a_simulator_that_never_answers_are_missing_too(self):
+    def test_of_a_simulator_that_never_answers_end_the_stream_too(self):
         for subscribers in ("0", "1"):
             program = self.publish("--subscribers", subscribers, "--pose-source", tcp(self.physics), "--pose-timeout", "0.1")
             self.finished(program, 3)
@@ -262,7 +262,7 @@ class Poses(StreamTest):
     def test_of_a_simulator_that_dies_in_the_handshake_are_waited_for(self):
         simulator = self.simulator()
         program = self.publish("--subscribers", "0", "--pose-source", tcp(self.physics))
-        self.assertTrue(simulator.hand.poll(1000 * MAX_WAIT_S))  # asked, and gone without an answer
+        self.assertTrue(simulator.hand.poll(1000 * MAX_WAIT_S))  # GLIDAR's request has no answer
         simulator.close()
         again = self.simulator()
         again.shake()

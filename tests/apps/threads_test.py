@@ -24,7 +24,7 @@ class Threads(CliTest):
             for threads, other in zip(THREADS[1:], others):
                 self.assertEqual(other, first, f"{renderer}, {threads} threads")
 
-    def test_give_the_same_bytes_of_pulses_and_no_warning(self):
+    def test_give_the_same_bytes_with_pulsed_light_and_no_warning(self):
         first, *others = (self.rendered(threads, "--sensor", "VLP-16", "--eye", "3,0,0") for threads in THREADS)
         for threads, other in zip(THREADS[1:], others):
             self.assertEqual(other, first, f"{threads} threads")

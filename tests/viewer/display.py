@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A display without a screen, and hands on its keyboard and mouse."""
+"""A virtual display, with its keyboard and mouse."""
 
 import os
 import shutil
@@ -21,13 +21,13 @@ def missing_programs():
 
 
 class Display:
-    """Xvfb; a context."""
+    """A context manager for Xvfb."""
 
     def __enter__(self):
         read, write = os.pipe()
         self._server = subprocess.Popen(
             ["Xvfb", "-displayfd", str(write), "-screen", "0", "1400x900x24", "-nolisten", "tcp",
-             "-noreset"],  # stays as it is when its last window is closed
+             "-noreset"],  # no reset when its last window is closed
             pass_fds=[write], stderr=subprocess.DEVNULL)
         os.close(write)
         with os.fdopen(read) as number:
@@ -45,7 +45,7 @@ class Display:
         return done.stdout.split()
 
     def window(self, title):
-        """The number of the window whose title holds this, once it is there."""
+        """The id of the window whose title contains this, once it exists."""
         return wait_until(lambda: self.xdotool("search", "--onlyvisible", "--name", title),
                           f"a window '{title}'")[0]
 
@@ -53,7 +53,7 @@ class Display:
         return ImageGrab.grab(xdisplay=self.name).convert("RGB")
 
     def set_minimised(self, window, is_minimised):
-        """Does what a window manager does (ICCCM 4.1.3.1): sets WM_STATE, hides or shows."""
+        """Acts as a window manager (ICCCM 4.1.3.1): sets WM_STATE, hides or shows."""
         display = Xlib.display.Display(self.name)
         it = display.create_resource_object("window", int(window))
         state = display.intern_atom("WM_STATE")

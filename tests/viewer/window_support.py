@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""A running window of glidar view and what tests do to it: keys, mouse, saving, looking at pictures."""
+"""A running window of glidar view with actions for tests: keys, mouse, saving, screenshots."""
 
 import os
 import subprocess
@@ -11,20 +11,20 @@ from display import Display
 from PIL import ImageChops, ImageStat
 from waiting import wait_until
 
-# Places in the window of 1280 x 720.
-SENSOR = (540, 330)  # the middle of the left view
+# Positions in the window of 1280 x 720.
+SENSOR = (540, 330)  # the centre of the left view
 CLOUD = (1030, 330)
 SENSOR_BOX = (300, 30, 770, 600)
 CLOUD_BOX = (780, 30, 1270, 600)
 
 
 def difference(a, b):
-    """Mean of the differences of two pictures, of 255."""
+    """Mean absolute difference of two images, of 255."""
     return sum(ImageStat.Stat(ImageChops.difference(a, b)).mean) / 3.0
 
 
 class Window:
-    """A running glidar view; a context that ends it. What it does is known from the lines of --print-state."""
+    """A context manager for a running glidar view, whose state is read from the lines of --print-state."""
 
     def __init__(self, test, *arguments):
         self._test = test
@@ -58,7 +58,7 @@ class Window:
             stream.close()
 
     def state(self):
-        """The last one that it printed, as numbers and text by name; empty if there is none."""
+        """The last printed state, as numbers and text by name; empty without one."""
         lines = [line for line in self._out if line.startswith("state: ")]
         pairs = (word.split("=") for word in lines[-1].split()[1:]) if lines else ()
         return {name: int(value) if value.lstrip("-").isdigit() else value for name, value in pairs}
@@ -73,7 +73,7 @@ class Window:
         return wait_until(is_there, what, self.program)
 
     def key(self, *keys):
-        """Types characters; what they do is seen in the window afterwards."""
+        """Types characters and waits for their effect in the window."""
         for key in keys:
             self._display.xdotool("key", key)
         self._keys += len(keys)
@@ -89,7 +89,7 @@ class Window:
         self.wait_for("the wheel", wheel=before + 1)
 
     def drag(self, start, way):
-        """In steps, each of which is seen before the next one, as by a hand."""
+        """Drags in steps, and waits for the effect of each."""
         self.point(*start)
         self._display.xdotool("mousedown", 1)
         self.wait_for("the button", buttons=1)
@@ -99,21 +99,21 @@ class Window:
         self.wait_for("the button's release", buttons=0)
 
     def minimise(self):
-        """The number of pictures until then."""
+        """The number of frames until then."""
         self._display.set_minimised(self.number, True)
         return self.wait_for("it to be hidden", hidden=1)["picture"]
 
     def restore(self):
-        """The number of pictures until it is there again."""
+        """The number of frames until it is visible again."""
         self._display.set_minimised(self.number, False)
         return self.wait_for("it to be shown", hidden=0)["picture"]
 
     def shows(self, condition, what):
-        """Waits until a picture of the display fulfils the condition."""
+        """Waits until a screenshot fulfils the condition."""
         wait_until(lambda: condition(self._display.grab()), what, self.program)
 
     def quit(self):
-        """By Esc, again where a window just shown was not ready for it; what it printed."""
+        """Closes it by Esc, repeated if the window was not ready for it; returns its output."""
         for _ in range(MAX_WAIT_S // 5):
             self._display.xdotool("key", "Escape")
             try:
@@ -127,7 +127,7 @@ class Window:
         return "".join(self._out + self._err)
 
     def save(self, name):
-        """Presses s; the 4x4 transform that is written."""
+        """Presses s; returns the 4x4 transform that is written."""
         self._display.xdotool("key", "s")
         self._keys += 1
         path = os.path.join(self._test.folder, name + ".transform")
@@ -137,13 +137,13 @@ class Window:
 
 
 def is_red(picture):
-    """Whether the panel of errors is there."""
+    """Whether the panel of errors is visible."""
     red = picture.getpixel((900, 40))
     return red[0] > 2 * red[1]
 
 
 class DisplayTest(CliTest):
-    """Has a display of its own."""
+    """A test with its own display."""
 
     @classmethod
     def setUpClass(cls):

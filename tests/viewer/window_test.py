@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The GLIDAR developers
 # SPDX-License-Identifier: BSD-3-Clause
-"""glidar view in a window on a display without a screen: keys, mouse, files, faults."""
+"""glidar view in a window on a virtual display: keys, mouse, files, errors."""
 
 import os
 import re
@@ -21,7 +21,7 @@ except ImportError as missing:
     print(f"skipped: {missing}")
     sys.exit(77)
 
-# Places in the window of 1280 x 720.
+# Positions in the window of 1280 x 720.
 RIGHT_BOX = (638, 330)  # of TWO_BOXES in the left view
 SECOND_SENSOR = (100, 91)  # in the list
 POSITION_X = (40, 437)  # of the selected object of TWO_BOXES
@@ -70,7 +70,7 @@ class ViewerWindowTest(DisplayTest):
         self.assertGreater(far[2][3], 1.04 * start[2][3])
         self.assertEqual(again, start)
 
-    def test_a_drag_turns_the_object_and_leaves_the_cloud_view_to_its_own(self):
+    def test_a_drag_rotates_the_object_and_not_the_cloud_view(self):
         with Window(self, "builtin:asteroid") as window:
             start = window.save("buffer")
             window.drag(SENSOR, (100, 0))
@@ -95,7 +95,7 @@ class ViewerWindowTest(DisplayTest):
         self.assertLess(near[2][3], start[2][3])
         self.assertEqual(zoomed, near)
 
-    def test_space_pauses_a_turning_model(self):
+    def test_space_pauses_a_rotating_model(self):
         with Window(self, "builtin:asteroid", "--object-rate", "0,0,1") as window:
             first = window.save("buffer")
             frame = window.state()["frame"]
@@ -109,7 +109,7 @@ class ViewerWindowTest(DisplayTest):
         self.assertNotEqual(first, second)
         self.assertEqual(third, fourth)
 
-    def test_a_click_tells_the_story_of_a_point(self):
+    def test_a_click_traces_a_point(self):
         with Window(self, "builtin:asteroid") as window:
             before = self.display.grab()
             window.point(*SENSOR)
@@ -126,13 +126,13 @@ class ViewerWindowTest(DisplayTest):
             window.point(*RIGHT_BOX)
             self.display.xdotool("click", 1)
             window.wait_for("the selection", object=1)
-            upper = (*CLOUD_BOX[:3], 350)  # above the story
+            upper = (*CLOUD_BOX[:3], 350)  # above the trace
             before = self.display.grab().crop(upper)
             window.key("f")
             window.shows(lambda picture: difference(before, picture.crop(upper)) > 1.0, "the object from near")
             window.quit()
 
-    def test_a_position_typed_over_moves_the_object(self):
+    def test_a_typed_position_moves_the_object(self):
         self.write("scene.yaml", TWO_BOXES + CAMERA)
         with Window(self, "scene.yaml") as window:
             before = self.display.grab().crop(SENSOR_BOX)
@@ -147,7 +147,7 @@ class ViewerWindowTest(DisplayTest):
         self.succeed("render", "scene.yaml", "--legacy-output", "expected")
         self.assertEqual(self.read("buffer.pcd"), self.read("expected.pcd"))
 
-    def test_the_list_of_sensors_shows_another_sensor_of_a_rig(self):
+    def test_the_list_of_sensors_selects_a_sensor_of_a_rig(self):
         self.write("rig.yaml", TWO_BOXES + RIG)
         with Window(self, "rig.yaml") as window:
             self.assertEqual(window.state()["sensor"], 0)
@@ -168,7 +168,7 @@ class ViewerWindowTest(DisplayTest):
             drawn = int(re.search(r"drew (\d+) pictures", window.quit())[1])
         self.assertLess(drawn - before, 15, "three seconds at 20 a second would be 60")
 
-    def test_the_window_may_change_its_size(self):
+    def test_the_window_can_be_resized(self):
         with Window(self, "builtin:asteroid") as window:
             self.display.xdotool("windowsize", "--sync", window.number, 900, 600)
             window.wait_for("its size", size="900x600")
@@ -178,7 +178,7 @@ class ViewerWindowTest(DisplayTest):
                          "the views in the smaller window")
             window.quit()
 
-    def test_a_minimised_window_draws_nothing_and_comes_back(self):
+    def test_a_minimised_window_draws_nothing_and_can_be_restored(self):
         with Window(self, "builtin:asteroid") as window:
             before = self.display.grab()
             hidden = window.minimise()
@@ -188,7 +188,7 @@ class ViewerWindowTest(DisplayTest):
             window.shows(lambda picture: difference(before, picture) < 1.0, "the same as before")
             window.quit()
 
-    def test_a_minimised_window_of_what_moves_draws_nothing(self):
+    def test_a_minimised_window_of_a_moving_scene_draws_nothing(self):
         with Window(self, "builtin:asteroid", "--object-rate", "0,0,1") as window:
             window.wait_for("time to go on", frame=lambda now: now > 3)
             hidden = window.minimise()
@@ -210,14 +210,14 @@ class ViewerWindowTest(DisplayTest):
         self.succeed("render", path, "--legacy-output", "expected")
         self.assertEqual(self.read("buffer.pcd"), self.read("expected.pcd"))
 
-    def test_errors_stand_in_the_window_and_in_the_terminal_and_it_goes_on(self):
+    def test_errors_are_shown_in_window_and_terminal_and_it_continues(self):
         with Window(self, "builtin:asteroid", "-o", "no_folder/x.pcd") as window:
             self.assertFalse(is_red(self.display.grab()))
             window.key("s")
             window.shows(is_red, "a red panel")
             self.assertIn("no_folder", window.quit())
 
-    def test_a_lost_context_is_made_anew(self):
+    def test_a_lost_context_is_created_again(self):
         library = self.build_shim()
         self.environment["LD_PRELOAD"] = library
         with Window(self, "builtin:asteroid") as window:
@@ -229,7 +229,7 @@ class ViewerWindowTest(DisplayTest):
             window.quit()
 
     def build_shim(self):
-        """A library that makes OpenGL report a reset, once, at the tenth time of asking."""
+        """A library that makes OpenGL report a reset once, at the tenth query."""
         source = os.path.join(self.folder, "reset.c")
         with open(source, "w", encoding="utf-8") as file:
             file.write("""
@@ -248,7 +248,7 @@ __attribute__((constructor)) static void replace(void) {
 
 
 class ScreenshotTest(DisplayTest):
-    """Without hands."""
+    """Screenshots without user input."""
 
     def shoot(self, *arguments):
         path = os.path.join(self.folder, "shot.png")
@@ -256,8 +256,8 @@ class ScreenshotTest(DisplayTest):
         with Image.open(path) as image:
             return image.convert("RGB"), done.stdout
 
-    def test_looks_as_it_did(self):
-        """The views alone: fonts and numbers of milliseconds may differ."""
+    def test_looks_like_the_reference(self):
+        """Only the views: fonts and milliseconds may differ."""
         image, _ = self.shoot("builtin:asteroid", "--model-r", "1,0,0,1", "--frames", "3")
         self.assertEqual(image.size, (1280, 720))
         views = image.crop((290, 20, 1280, 600)).resize((330, 193), Image.Resampling.BOX)
@@ -269,7 +269,7 @@ class ScreenshotTest(DisplayTest):
         opengl, _ = self.shoot("builtin:torus", "--renderer", "opengl")
         self.assertLess(difference(cast.crop(SENSOR_BOX), opengl.crop(SENSOR_BOX)), 0.5)
 
-    def test_frames_count_the_sensors_frames_and_are_the_same_again(self):
+    def test_frames_are_the_sensors_frames_and_repeatable(self):
         arguments = ("builtin:asteroid", "--object-rate", "0,2,0", "--frames", "7")
         first, told = self.shoot(*arguments)
         self.assertIn("7 frames in", told)
@@ -281,11 +281,11 @@ class ScreenshotTest(DisplayTest):
         image, _ = self.shoot("builtin:asteroid", "--window", "640x480")
         self.assertEqual(image.size, (640, 480))
 
-    def test_a_scanner_shows_its_turn(self):
+    def test_a_scanner_shows_its_revolution(self):
         image, _ = self.shoot("builtin:box", "--sensor", "VLP-16", "--eye", "0,0,0")
         self.assertGreater(max(ImageStat.Stat(image.crop(SENSOR_BOX)).stddev), 30.0)
 
-    def test_bad_input_ends_it_with_an_error_and_no_file(self):
+    def test_bad_input_is_an_error_and_leaves_no_file(self):
         error = self.refused("view", "missing.obj", "--screenshot", "shot.png")
         self.assertIn("missing.obj", error)
         for size in ("100x100", "1280", "1280x720x3", "axb", "1280x99999"):
@@ -293,23 +293,23 @@ class ScreenshotTest(DisplayTest):
         for path, why in (("no_folder/a.png", "no_folder"), ("a.jpg", ".png")):
             self.assertIn(why, self.refused("view", "builtin:box", "--screenshot", path))
 
-    def test_without_a_display_it_says_what_to_do(self):
+    def test_without_a_display_the_error_has_a_remedy(self):
         del self.environment["DISPLAY"]
         error = self.refused("view", "builtin:box")
         self.assertIn("no display", error)
         self.assertIn("xvfb-run", error)
         self.assertIn("glidar render", error)
 
-    def test_a_display_that_is_not_there_is_named(self):
+    def test_a_missing_display_is_named(self):
         self.environment["DISPLAY"] = ":9999"
         self.assertIn(":9999", self.refused("view", "builtin:box"))
 
-    def test_without_a_driver_it_says_what_to_install(self):
+    def test_without_a_driver_the_error_lists_what_to_install(self):
         self.environment["LIBGL_DRIVERS_PATH"] = self.folder
         self.environment["GBM_BACKENDS_PATH"] = self.folder
         done = self.run_program("view", "builtin:box")
         self.assertEqual(done.returncode, 2)
-        error = done.stderr.splitlines()[-1]  # after those of the system's own libraries
+        error = done.stderr.splitlines()[-1]  # after the messages of system libraries
         self.assertTrue(error.startswith("glidar: error: "), done.stderr)
         self.assertIn("libgl1-mesa-dri", error)
 

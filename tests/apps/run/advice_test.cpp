@@ -13,7 +13,7 @@ Eigen::AlignedBox3d box(const Eigen::Vector3d& least, const Eigen::Vector3d& mos
   return {least, most};
 }
 
-TEST(UpAdvice, SaysNothingOfFormatsThatDeclareTheirUpAxis) {
+TEST(UpAdvice, IsEmptyForFormatsThatDeclareTheirUpAxis) {
   for (const char* format : {"glTF2", "Collada", "Autodesk FBX", "3mf"}) {
     EXPECT_EQ(up_advice(format, box({-1, 0, -1}, {1, 2, 1})), "") << format;
   }
@@ -32,7 +32,7 @@ Scene square_of(double side_m, bool unit_known) {
   return scene;
 }
 
-TEST(SizeAdvice, DoubtsAssumedUnitsOnly) {
+TEST(SizeAdvice, IsGivenForAssumedUnitsOnly) {
   EXPECT_EQ(size_advice(square_of(5000.0, false), false).size(), 1U);
   EXPECT_TRUE(size_advice(square_of(5000.0, false), true).empty());
   EXPECT_TRUE(size_advice(square_of(5000.0, true), false).empty());
@@ -40,7 +40,7 @@ TEST(SizeAdvice, DoubtsAssumedUnitsOnly) {
   EXPECT_TRUE(size_advice(square_of(1e-4, true), false).empty());
 }
 
-TEST(UpAdvice, GuessesYForWhatStandsOnOrAboveZeroAlongYAlone) {
+TEST(UpAdvice, SuggestsYForModelsOnOrAboveZeroAlongYOnly) {
   const Eigen::AlignedBox3d bunny = box({-0.095, 0.033, -0.062}, {0.061, 0.187, 0.059});
   for (const char* format : {kPly, "Stereolithography (STL)", "Wavefront Object", "OFF"}) {
     EXPECT_NE(up_advice(format, bunny).find("a guess"), std::string::npos) << format;
@@ -48,14 +48,14 @@ TEST(UpAdvice, GuessesYForWhatStandsOnOrAboveZeroAlongYAlone) {
   EXPECT_NE(up_advice(kPly, box({-1, -0.01, -1}, {1, 2, 1})), "");
 }
 
-TEST(UpAdvice, SaysNothingWhereNothingPointsToY) {
-  EXPECT_EQ(up_advice(kPly, box({-1, -1, 0}, {1, 1, 2})), "");   // stands on z
+TEST(UpAdvice, IsEmptyWithoutASignOfY) {
+  EXPECT_EQ(up_advice(kPly, box({-1, -1, 0}, {1, 1, 2})), "");   // on the plane z = 0
   EXPECT_EQ(up_advice(kPly, box({-1, -1, -1}, {1, 1, 1})), "");  // around zero
   EXPECT_EQ(up_advice(kPly, box({0, 0, 0}, {1, 1, 1})), "");     // in a corner
   EXPECT_EQ(up_advice(kPly, box({-1, 0, -1}, {1, 0, 1})), "");   // flat
   EXPECT_EQ(up_advice(kPly, Eigen::AlignedBox3d()), "");
   EXPECT_EQ(up_advice("built-in", box({-1, 0, -1}, {1, 2, 1})), "");  // up is +z
-  EXPECT_EQ(up_advice("Collada", box({-1, 0, -1}, {1, 2, 1})), "");   // the file says
+  EXPECT_EQ(up_advice("Collada", box({-1, 0, -1}, {1, 2, 1})), "");   // declared by the file
 }
 
 }  // namespace

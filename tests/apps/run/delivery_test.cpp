@@ -28,7 +28,7 @@ TEST(Delivery, DeliversEveryFrameInOrder) {
   for (std::uint32_t k = 0; k < 100; ++k) EXPECT_EQ(delivered[k], k);
 }
 
-/// Every frame but the last is being delivered while the next one is filled.
+/// Every frame except the last is delivered while the next one is filled.
 TEST(Delivery, NeverTouchesAFrameThatIsBeingDelivered) {
   constexpr int kFrames = 50;
   std::atomic<const MeasuredFrame*> busy{nullptr};
@@ -54,7 +54,7 @@ TEST(Delivery, NeverTouchesAFrameThatIsBeingDelivered) {
   EXPECT_EQ(begun, kFrames);
 }
 
-TEST(Delivery, TellsThatSomethingWentWrongAtOnceAndHandsItOn) {
+TEST(Delivery, ReportsErrorsAtOnceAndRethrowsThem) {
   std::atomic<int> failures{0};
   Delivery delivery([](const MeasuredFrame&) { throw std::runtime_error("disk full"); }, [] {},
                     [&] { ++failures; });
@@ -65,13 +65,13 @@ TEST(Delivery, TellsThatSomethingWentWrongAtOnceAndHandsItOn) {
   EXPECT_THROW(delivery.finish(), std::runtime_error);
 }
 
-TEST(Delivery, IsIdleWhileNothingComes) {
+TEST(Delivery, CallsIdleWithoutFrames) {
   std::atomic<int> idle{0};
   Delivery delivery([](const MeasuredFrame&) {}, [&] { ++idle; }, [] {});
   EXPECT_TRUE(testing::soon([&] { return idle >= 3; }));
 }
 
-TEST(DurationHistogram, TellsQuantilesToTwoPercent) {
+TEST(DurationHistogram, HasQuantilesToTwoPercent) {
   DurationHistogram histogram;
   EXPECT_EQ(histogram.quantile_s(0.5), 0.0);
   for (int k = 1; k <= 1000; ++k) histogram.add(1e-3 * k);
@@ -81,7 +81,7 @@ TEST(DurationHistogram, TellsQuantilesToTwoPercent) {
   EXPECT_EQ(histogram.max_s(), 1.0);
 }
 
-TEST(DurationHistogram, TakesAnyDuration) {
+TEST(DurationHistogram, AcceptsAnyDuration) {
   DurationHistogram histogram;
   for (const double s : {-1.0, 0.0, 1e-12, 1e9}) histogram.add(s);
   EXPECT_EQ(histogram.count(), 4U);

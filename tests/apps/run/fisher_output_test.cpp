@@ -13,7 +13,7 @@ TEST(FisherOptions, FileIsBesideTheOutput) {
   EXPECT_EQ(fisher_path("view.depth.png"), "view.information.json");
 }
 
-TEST(FisherOptions, EveryFrameHasAFileAlsoWhereFramesShareAFolder) {
+TEST(FisherOptions, EveryFrameHasAFileAlsoInASharedFolder) {
   EXPECT_EQ(fisher_path("x/out.kitti"), "x/out.information.json");
   EXPECT_EQ(fisher_path("x/out.kitti", 3), "x/out_000003.information.json");
   EXPECT_EQ(fisher_path("x/cloud_000003.pcd", 3), "x/cloud_000003.information.json");

@@ -13,12 +13,12 @@ namespace {
 
 constexpr int kAfterSigterm = 128 + SIGTERM;
 
-/// Work that never looks for a request to stop.
+/// Work that ignores requests to stop.
 [[noreturn]] void work_on() {
   for (;;) pause();
 }
 
-TEST(StopRequestDeathTest, SigtermEndsWorkThatDoesNotHeedIt) {
+TEST(StopRequestDeathTest, SigtermEndsWorkThatIgnoresIt) {
   EXPECT_EXIT(
       {
         const StopRequest stop;
@@ -28,7 +28,7 @@ TEST(StopRequestDeathTest, SigtermEndsWorkThatDoesNotHeedIt) {
       ::testing::ExitedWithCode(kAfterSigterm), "interrupted");
 }
 
-TEST(StopRequestDeathTest, WorkThatHeedsItEndsInGoodOrder) {
+TEST(StopRequestDeathTest, WorkThatStopsExitsInOrder) {
   EXPECT_EXIT(
       {
         const StopRequest stop;

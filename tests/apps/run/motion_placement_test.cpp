@@ -20,14 +20,14 @@ Scene one_object() {
   return scene;
 }
 
-TEST(MotionOptions, ModelRateTurnsTheModelAboutItsOwnAxes) {
+TEST(MotionOptions, ObjectRateRotatesTheModelAboutItsOwnAxes) {
   Scene scene = one_object();
   const Eigen::Quaterniond q = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized();
   scene.instances[0].world_from_object = legacy_world_from_object(q);
   const auto moving =
       instance_trajectories({.object_rate_rad_s = Eigen::Vector3d(0.1, -0.2, 0.3)}, scene, {});
   ASSERT_EQ(moving.size(), 1U);
-  // R(q) takes inertial vectors into the body; its rate of change for a body rate w is -w x R(q)
+  // R(q) rotates inertial vectors into the body; its derivative for a body rate w is -w x R(q)
   const double h = 1e-3;
   const Eigen::Matrix3d body_from_inertial = q.toRotationMatrix();
   const Eigen::Matrix3d later =
@@ -36,17 +36,17 @@ TEST(MotionOptions, ModelRateTurnsTheModelAboutItsOwnAxes) {
   const Eigen::Vector3d w(0.1, -0.2, 0.3);
   for (int i = 0; i < 3; ++i)
     expected.col(i) = -w.cross(Eigen::Vector3d(body_from_inertial.col(i)));
-  // the first order of h: its error is h w^2 / 2
+  // first order in h: the error is h w^2 / 2
   EXPECT_LT(((later - body_from_inertial) / h - expected).norm(), h);
 }
 
-TEST(MotionOptions, CameraRateTurnsTheSensorAboutLeftUpForward) {
+TEST(MotionOptions, SensorRateRotatesTheSensorAboutLeftUpForward) {
   const Pose start = legacy_world_from_optical(Eigen::Quaterniond::Identity(), 5.0);
   const MotionFlags flags{.sensor_rate_rad_s = Eigen::Vector3d(std::numbers::pi / 2.0, 0.0, 0.0)};
   const Trajectory turning = sensor_trajectory(flags, start, Pose::Identity(), true, {});
   const Pose after = pose_at(turning, kSecond_ns);
   EXPECT_LT((after.translation() - start.translation()).norm(), kExact);
-  // a quarter turn about x (left), right-handed: forward goes to where down was
+  // 90 degrees about x (left), right-handed: forward becomes down
   const Eigen::Vector3d forward = after.linear() * Eigen::Vector3d::UnitZ();
   EXPECT_LT((forward + Eigen::Vector3d::UnitY()).norm(), kExact);
 }
@@ -63,7 +63,7 @@ TEST(MotionOptions, WithoutOptionsTheSceneFileDecides) {
   EXPECT_TRUE(instance_trajectories({}, one_object(), {}).empty());
 }
 
-TEST(MotionOptions, AreRefusedWhereTheSceneFileMovesThings) {
+TEST(MotionOptions, AreRefusedIfTheSceneFileHasMotion) {
   const MotionFlags flags{.object_rate_rad_s = Eigen::Vector3d(1.0, 2.0, 3.0),
                           .sensor_rate_rad_s = Eigen::Vector3d(1.0, 2.0, 3.0)};
   const Trajectory own = Spin{};

@@ -35,7 +35,7 @@ Beams camera() {
   return make_beams(pinhole_from_fov(8, 8, 0.35));
 }
 
-/// Where a point of the object appears in the 2015 program's sensor frame.
+/// A point of the object in the sensor frame of the original GLIDAR.
 Eigen::Vector3d legacy_point(const PoseFlags& flags, const Eigen::Vector3d& object_point) {
   Scene scene = one_triangle();
   pose_model(flags, scene);
@@ -44,26 +44,26 @@ Eigen::Vector3d legacy_point(const PoseFlags& flags, const Eigen::Vector3d& obje
          scene.instances[0].world_from_object * object_point;
 }
 
-TEST(LegacyPose, IdentityPutsTheObjectAtDOnTheBoresight) {
+TEST(LegacyPose, IdentityPlacesTheObjectOnTheBoresightAtDistanceD) {
   const Eigen::Vector3d p = legacy_point({.camera_z_m = 7.0}, {0.1, 0.2, 0.3});
   EXPECT_LT((p - Eigen::Vector3d(0.1, 0.2, 7.3)).norm(), kExact);
 }
 
-TEST(LegacyPose, CameraAttitudeAloneKeepsTheDistanceOf2015) {
+TEST(LegacyPose, CameraAttitudeAloneKeepsTheDefaultDistance) {
   const Eigen::Vector3d p =
       legacy_point({.camera_q = Eigen::Quaterniond::Identity()}, {0.0, 0.0, 0.0});
   EXPECT_LT((p - Eigen::Vector3d(0.0, 0.0, 1000.0)).norm(), kExact);
 }
 
-TEST(LegacyPose, ModelQuaternionTakesInertialVectorsIntoTheBody) {
-  // a quarter turn about z: R(q) x = y, so that the body's y axis is seen along the inertial x
+TEST(LegacyPose, ModelQuaternionRotatesInertialVectorsIntoTheBody) {
+  // 90 degrees about z: R(q) x = y, so that the body's y axis is along the inertial x
   const double h = std::sqrt(0.5);
   const PoseFlags flags{.model_q = Eigen::Quaterniond(h, 0.0, 0.0, h), .camera_z_m = 5.0};
   const Eigen::Vector3d p = legacy_point(flags, {0.0, 1.0, 0.0});
   EXPECT_LT((p - Eigen::Vector3d(1.0, 0.0, 5.0)).norm(), kExact);
 }
 
-TEST(LegacyPose, SensorQuaternionTakesInertialVectorsIntoTheSensor) {
+TEST(LegacyPose, SensorQuaternionRotatesInertialVectorsIntoTheSensor) {
   // R(q) z = x: the object, straight ahead of an identity sensor, appears on the sensor's x (left)
   const double h = std::sqrt(0.5);
   const PoseFlags flags{.camera_q = Eigen::Quaterniond(h, 0.0, h, 0.0), .camera_z_m = 5.0};
@@ -81,7 +81,7 @@ TEST(LegacyPose, GeneralAttitudesFollowTheFormula) {
   EXPECT_LT((legacy_point(flags, object_point) - expected).norm(), kExact);
 }
 
-TEST(LegacyPose, LegacyFrameIsTheOpticalFrameTurnedAboutTheBoresight) {
+TEST(LegacyPose, LegacyFrameIsTheOpticalFrameRotatedAboutTheBoresight) {
   const Eigen::Vector3d legacy = woods2016_from_optical() * Eigen::Vector3d(1.0, 2.0, 3.0);
   EXPECT_EQ(legacy, Eigen::Vector3d(-1.0, -2.0, 3.0));
   EXPECT_TRUE(is_rigid(woods2016_from_optical()));
@@ -98,7 +98,7 @@ TEST(PoseOptions, EyeLooksAtTheTarget) {
       kExact);
 }
 
-TEST(PoseOptions, EyeAloneLooksAtTheMiddleOfTheScene) {
+TEST(PoseOptions, EyeAloneLooksAtTheCentreOfTheScene) {
   const Pose pose =
       pose_sensor({.eye_m = Eigen::Vector3d(3.0, -4.0, 2.0)}, {}, camera(), one_triangle());
   const Eigen::Vector3d middle = pose.inverse() * Eigen::Vector3d(0.5, 0.5, 0.0);
@@ -107,14 +107,14 @@ TEST(PoseOptions, EyeAloneLooksAtTheMiddleOfTheScene) {
   EXPECT_GT(middle.z(), 0.0);
 }
 
-TEST(PoseOptions, SensorPoseIsTakenAsGiven) {
+TEST(PoseOptions, SensorPoseIsUnchanged) {
   const Pose given = make_pose({1.0, 2.0, 3.0}, Eigen::Quaterniond(0.0, 0.0, 0.0, 1.0));
   const Pose pose = pose_sensor({.world_from_sensor = given}, {}, camera(), one_triangle());
   const Eigen::Vector3d world = pose * Eigen::Vector3d(1.0, 0.0, 0.0);
   EXPECT_LT((world - Eigen::Vector3d(0.0, 2.0, 3.0)).norm(), kExact);
 }
 
-TEST(PoseOptions, FlagsComeBeforeTheSceneFileAndThatBeforeFraming) {
+TEST(PoseOptions, FlagsOverrideTheSceneFileWhichOverridesFraming) {
   const Scene scene = one_triangle();
   const Pose from_file = make_pose({7.0, 8.0, 9.0}, Eigen::Quaterniond::Identity());
   EXPECT_EQ(pose_sensor({}, {from_file}, camera(), scene).translation(), from_file.translation());
@@ -160,7 +160,7 @@ TEST(PoseOptions, ModelOptionsAreRefusedForScenesOfSeveralObjects) {
   EXPECT_NO_THROW(pose_model({}, scene));
 }
 
-TEST(CloudFrames, AxesAreThoseTheirNamesSay) {
+TEST(CloudFrames, HaveTheAxesOfTheirNames) {
   const Beams beams = camera();
   const Eigen::Vector3d right_down_forward(1.0, 2.0, 3.0);
   const Pose pose = make_pose({10.0, 0.0, 0.0}, Eigen::Quaterniond::Identity());
@@ -176,7 +176,7 @@ TEST(CloudFrames, AxesAreThoseTheirNamesSay) {
   EXPECT_EQ(in("world"), Eigen::Vector3d(11.0, 2.0, 3.0));
 }
 
-/// Beams of a LiDAR between these elevations, all round.
+/// Beams of a 360 degree LiDAR between these elevations.
 Beams lidar(double low_rad, double high_rad) {
   Spinning spinning;
   spinning.channels.resize(2);
@@ -210,7 +210,7 @@ TEST(LidarPose, EyeAndTargetAimTheXAxis) {
   EXPECT_NEAR((pose.linear() * Eigen::Vector3d::UnitY()).z(), 0.0, kExact);  // no roll
 }
 
-TEST(LidarPose, EyeAloneKeepsTheAxesOfTheWorldWhateverTheScene) {
+TEST(LidarPose, EyeAloneKeepsTheAxesOfTheWorldForAnyScene) {
   Scene scene = one_triangle();
   const Pose alone =
       pose_sensor({.eye_m = Eigen::Vector3d(4.0, 0.5, 7.0)}, {}, lidar(-0.2, 0.2), scene);
@@ -223,7 +223,7 @@ TEST(LidarPose, EyeAloneKeepsTheAxesOfTheWorldWhateverTheScene) {
   EXPECT_EQ(among.matrix(), alone.matrix());
 }
 
-TEST(LidarPose, EyeWithUpVectorTiltsItAndHeadsForXAsFarAsThatGoes) {
+TEST(LidarPose, EyeWithUpVectorTiltsItWithTheHeadingClosestToX) {
   const Pose pose =
       pose_sensor({.eye_m = Eigen::Vector3d(0.0, 0.0, 1.0), .up = Eigen::Vector3d(0.0, -1.0, 1.0)},
                   {}, lidar(-0.2, 0.2), {});
@@ -241,7 +241,7 @@ TEST(LidarPose, EyeWithUpVectorTiltsItAndHeadsForXAsFarAsThatGoes) {
       Error);
 }
 
-TEST(LidarPose, TargetStraightBelowTakesTheWorldsXAsUp) {
+TEST(LidarPose, TargetStraightBelowUsesTheWorldsXAsUp) {
   const Pose pose = pose_sensor(
       {.eye_m = Eigen::Vector3d(1.0, 2.0, 9.0), .target_m = Eigen::Vector3d(1.0, 2.0, 0.0)}, {},
       lidar(-0.2, 0.2), one_triangle());
@@ -249,7 +249,7 @@ TEST(LidarPose, TargetStraightBelowTakesTheWorldsXAsUp) {
   EXPECT_EQ(pose.linear().col(2), Eigen::Vector3d(1.0, 0.0, 0.0));
 }
 
-TEST(PoseOptions, CameraStraightAboveLooksDownWithTheWorldsXUpwards) {
+TEST(PoseOptions, CameraStraightAboveLooksDownWithTheWorldsXUp) {
   const Pose pose =
       pose_sensor({.eye_m = Eigen::Vector3d(0.5, 0.5, 6.0)}, {}, camera(), one_triangle());
   EXPECT_EQ(pose.linear().col(2), Eigen::Vector3d(0.0, 0.0, -1.0));
@@ -265,7 +265,7 @@ TEST(LidarPose, LookAtOfASceneFileAimsTheXAxis) {
   EXPECT_TRUE(given.isApprox(optical));
 }
 
-TEST(LidarPose, WithoutPoseItStandsBesideTheSceneWithinItsElevations) {
+TEST(LidarPose, WithoutPoseItIsBesideTheSceneWithinItsElevations) {
   const Scene scene = one_triangle();
   for (const auto& [low_rad, high_rad] :
        {std::pair{-0.26, 0.26}, std::pair{-0.53, 0.19}, std::pair{0.0, 0.0}}) {

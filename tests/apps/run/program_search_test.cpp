@@ -24,7 +24,7 @@ TEST(ProgramSearch, EmptyAndRelativeFoldersAreLeftOut) {
   EXPECT_EQ(joined_folders({}), "");
 }
 
-TEST(ProgramSearch, OnlyFilesThatMayBeRunAreFoundInTheOrderOfFolders) {
+TEST(ProgramSearch, OnlyExecutableFilesAreFoundInTheOrderOfFolders) {
   const testing::TestFolder folder;
   const fs::path& root = folder.path();
   for (const char* name : {"a", "b", "c", "d"}) fs::create_directory(root / name);

@@ -16,12 +16,12 @@ TEST(ProgressLine, ShowsABarWithPercentAndTimeLeft) {
             "casting [###...........................]  10 %, 2 h 15 min left");
 }
 
-TEST(ProgressLine, SaysNoTimeLeftBeforeAnythingIsDoneAndNever100PercentTooEarly) {
+TEST(ProgressLine, HasNoRemainingTimeAtTheStartAndNo100PercentTooEarly) {
   EXPECT_EQ(progress_line("a", 0.0, 3.0, 80), "a [..............................]   0 %");
   EXPECT_NE(progress_line("a", 0.9999, 3.0, 80).find(" 99 %"), std::string::npos);
 }
 
-TEST(ProgressLine, CountsSecondsWhereTheFractionIsUnknown) {
+TEST(ProgressLine, CountsSecondsIfTheFractionIsUnknown) {
   EXPECT_EQ(progress_line("loading x.ply", -1.0, 7.9, 80), "loading x.ply ... 7 s");
 }
 

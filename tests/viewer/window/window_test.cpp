@@ -23,7 +23,7 @@ namespace glidar::app {
 namespace {
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr double kUnfreed_mb = 1e9;  // what was freed is kept
+constexpr double kUnfreed_mb = 1e9;  // freed memory is not returned
 constexpr std::uint32_t kPictures = 1'000;
 #else
 constexpr double kUnfreed_mb = 0.0;
@@ -32,7 +32,7 @@ constexpr std::uint32_t kPictures = 10'000;
 
 constexpr double kMegabyte = 1048576.0;
 
-/// Memory of this process that is in use, and open files.
+/// Used memory and open files of this process.
 struct Held {
   double megabytes = 0.0;
   std::ptrdiff_t files = 0;
@@ -48,7 +48,7 @@ Held held() {
           .files = std::distance(begin(files), end(files))};
 }
 
-/// The context of a window of GLFW, as another program would hand it on.
+/// The context of a GLFW window, as from another program.
 class GlfwContext final : public opengl::Context {
  public:
   GlfwContext() {
@@ -96,7 +96,7 @@ class WindowTest : public testing::Test {
   WindowSystem windows_;
 };
 
-TEST_F(WindowTest, TheSameCloudComesFromTheContextOfAWindowAndFromOneWithout) {
+TEST_F(WindowTest, CloudsAreTheSameWithTheContextOfAWindowAndWithout) {
   Scene scene;
   add_model(scene, load_model("builtin:asteroid", {}, {}));
   Sensor sensor;
@@ -120,7 +120,7 @@ TEST_F(WindowTest, TheSameCloudComesFromTheContextOfAWindowAndFromOneWithout) {
   EXPECT_EQ(with.intensity, without.intensity);
 }
 
-TEST_F(WindowTest, ShowsWhatIsDrawn) {
+TEST_F(WindowTest, ImageHasTheDrawnPixels) {
   Window window("a window", {.width = 400, .height = 300}, no_events());
   for (int i = 0; i < 3; ++i) draw_text(window, "words");
   window.begin();
@@ -135,23 +135,23 @@ TEST_F(WindowTest, ShowsWhatIsDrawn) {
   EXPECT_EQ(at(150, 160).g, at(399, 299).g);
 }
 
-TEST_F(WindowTest, NothingIsLostByAHundredWindows) {
+TEST_F(WindowTest, AHundredWindowsLeakNothing) {
   const auto open_and_close = [] {
     Window window("one of many", {.width = 320, .height = 240}, no_events());
     Screen screen;
     draw_text(window, "words");
   };
-  for (int i = 0; i < 10; ++i) open_and_close();  // what drivers keep for ever
+  for (int i = 0; i < 10; ++i) open_and_close();  // memory that drivers keep
   const Held before = held();
   for (int i = 0; i < 100; ++i) open_and_close();
   const Held after = held();
   EXPECT_EQ(after.files, before.files);
   constexpr double kNoise_mb =
-      8.0 + kUnfreed_mb;  // of a driver; a lost window costs 0.3 MB by its pixels alone
+      8.0 + kUnfreed_mb;  // of a driver; the pixels of a leaked window need 0.3 MB
   EXPECT_LT(after.megabytes - before.megabytes, kNoise_mb);
 }
 
-TEST_F(WindowTest, NothingIsLostByTenThousandPictures) {
+TEST_F(WindowTest, TenThousandFramesLeakNothing) {
   Window window("a long run", {.width = 320, .height = 240}, no_events());
   Console console(true);
   MeasurementThread measurements(console, WindowSystem::wake);
@@ -176,12 +176,12 @@ TEST_F(WindowTest, NothingIsLostByTenThousandPictures) {
   for (std::uint32_t k = 500; k < 500 + kPictures; ++k) draw(k);
   const Held after = held();
   EXPECT_EQ(after.files, before.files);
-  constexpr double kNoise_mb = 8.0 + kUnfreed_mb;  // less than a kilobyte a picture
+  constexpr double kNoise_mb = 8.0 + kUnfreed_mb;  // less than a kilobyte per frame
   EXPECT_LT(after.megabytes - before.megabytes, kNoise_mb);
   EXPECT_GT(viewer.snapshot()->request.number, 500U) << "measured all the while";
 }
 
-TEST(WindowSystem, NamesTheDisplayThatIsNotThere) {
+TEST(WindowSystem, ErrorNamesTheMissingDisplay) {
   ASSERT_EQ(setenv("DISPLAY", ":9999", 1), 0);
   try {
     const WindowSystem windows;
