@@ -101,7 +101,7 @@ void bake(const Walk& walk, const BakeOptions& options, Model& model) {
     throw Refusal{fmt::format("all {} triangles touch coordinates that are not finite (NaN or "
                               "infinity)",
                               repairs.not_finite),
-                  "mend the file"};
+                  "repair the file"};
   }
   if (mesh.origins.size() == 1) mesh.origins.clear();
   note_precision(box_of(walk), model);

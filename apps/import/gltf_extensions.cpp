@@ -122,7 +122,7 @@ class Buffers {
     }
     throw Refusal{"its buffer '" + uri.substr(0, 120) +
                       "' cannot be read: " + reason(confine(uri, folder_).access),
-                  "put it into the model's folder"};
+                  "copy it into the model's folder"};
   }
 
   Json list_;  // before buffers were added

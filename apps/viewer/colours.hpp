@@ -10,11 +10,11 @@
 
 namespace glidar::app {
 
-/// How a number becomes a colour.
+/// The mapping of numbers to colours.
 enum class ColourMap : std::uint8_t { viridis, rainbow, grey };
 inline constexpr std::array<std::string_view, 3> kColourMaps = {"viridis", "rainbow", "grey"};
 
-/// Of a number from 0 (dark, or blue) to 1 (bright, or red); what lies outside counts as the end.
+/// The colour of a number from 0 (dark, or blue) to 1 (bright, or red), clamped.
 Colour colour_of(ColourMap map, double t);
 
 }  // namespace glidar::app

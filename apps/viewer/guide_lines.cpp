@@ -20,7 +20,7 @@ void add(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, Colour colo
   lines.push_back({to_m.cast<float>(), colour, opacity});
 }
 
-/// Entries along one row or column of the beams' grid, at most so many, both ends among them.
+/// Entries along a row or column of the beams' grid, at most so many, including both ends.
 std::vector<std::size_t> along(std::size_t first, std::size_t step, std::size_t count) {
   constexpr std::size_t kMax = 96;
   const std::size_t parts = std::min(count - 1, kMax);
@@ -31,17 +31,17 @@ std::vector<std::size_t> along(std::size_t first, std::size_t step, std::size_t 
   return entries;
 }
 
-/// Where a beam is at a range; empty where there is no beam.
+/// The point of a beam at a range; empty without a beam.
 std::optional<Eigen::Vector3d> tip(const Beams& beams, std::size_t beam, double range_m) {
   if (std::isnan(beams.directions[beam].x())) return std::nullopt;
   const Eigen::Vector3d reach = range_m * beams.directions[beam];
   return beams.origins_m.empty() ? reach : Eigen::Vector3d(beams.origins_m[beam] + reach);
 }
 
-/// A polyline through the tips of these beams, and lines to some of them from where they start.
+/// A polyline through the ends of these beams, and lines to some of them from their origins.
 struct Edge {
   std::vector<std::size_t> entries;
-  std::size_t ray_every;  ///< so many entries a line; the ends always have one
+  std::size_t ray_every;  ///< entries per line; the ends always have one
 };
 
 void add_edge(const Beams& beams, const Pose& anchor_from_sensor, double range_m, const Edge& edge,
@@ -109,7 +109,7 @@ void add_frustum(const Beams& beams, const Pose& anchor_from_sensor, double rang
   const std::size_t cols = beams.cols;
   const std::size_t rows = beams.returns > 0 ? beams.rows / beams.returns : 0;
   if (rows == 0 || cols == 0) return;
-  const bool is_wide = cols > 8 * rows;  // as those that look all around
+  const bool is_wide = cols > 8 * rows;  // such as panoramic scanners
   const std::size_t ray_every = is_wide ? 24 : std::max(rows, cols);
   for (const Edge& edge :
        {Edge{along(0, 1, cols), ray_every}, Edge{along((rows - 1) * cols, 1, cols), ray_every},

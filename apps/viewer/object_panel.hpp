@@ -6,7 +6,7 @@
 
 namespace glidar::app {
 
-/// The scene's objects in a list to select from, and the pose of the selected one.
+/// A list of the scene's objects for selection, and the pose of the selected one.
 void show_objects(Viewer& viewer);
 
 }  // namespace glidar::app

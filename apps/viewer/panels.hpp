@@ -6,19 +6,19 @@
 
 namespace glidar::app {
 
-/// Numbers about the window itself.
+/// The rate of drawing.
 struct FrameRate {
-  double frames_per_s = 0.0;  ///< drawn, while there was something to draw
+  double frames_per_s = 0.0;  ///< frames drawn, without idle time
 };
 
 /// The widgets beside the views; called between Window::begin() and end(), within an open window of
-/// Dear ImGui. Each does at once what the user asks for.
+/// Dear ImGui. Each applies the user's input at once.
 void show_controls(Viewer& viewer);
 void show_status(const Viewer& viewer, const FrameRate& rate);
 void show_errors(Viewer& viewer);
 void show_trace(Viewer& viewer);
 
-/// The scale or legend below the sensor's picture.
+/// The scale or legend below the sensor's image.
 void show_legend(const Viewer& viewer);
 
 }  // namespace glidar::app

@@ -6,7 +6,7 @@
 
 namespace glidar::app {
 
-/// The text of a file of shaders/, built into the program; throws std::out_of_range for another.
+/// The embedded text of a file of shaders/; throws std::out_of_range for an unknown name.
 std::string_view shader_text(std::string_view file);
 
 }  // namespace glidar::app

@@ -16,7 +16,7 @@ bool is_one_of(char c, std::string_view characters) {
   return characters.find(c) != std::string_view::npos;
 }
 
-/// Whether the text begins with a number that is zero and is no part of a longer word.
+/// Whether the text begins with a zero number that is not part of a longer word.
 bool begins_with_zero(std::string_view text) {
   const std::size_t end = std::min(text.find_first_not_of("0."), text.size());
   if (end == 0 || text.front() != '0') return false;
@@ -28,7 +28,7 @@ bool begins_with_zero(std::string_view text) {
 double rounded(double value, int decimals) {
   const double unit = std::pow(10.0, decimals);
   const double scaled = value * unit;
-  constexpr double kAllWhole = 9007199254740992.0;  // 2^53: no fraction is left from here on
+  constexpr double kAllWhole = 9007199254740992.0;  // 2^53: larger numbers have no fraction
   if (!(std::abs(scaled) < kAllWhole)) return value;
   return std::round(scaled) / unit + 0.0;  // -0 + 0 is +0
 }

@@ -7,11 +7,11 @@
 
 namespace glidar::app {
 
-/// The value rounded to so many decimals, half away from zero; never -0. Not finite: unchanged.
+/// Rounds to so many decimals, half away from zero; never returns -0. Keeps non-finite values.
 double rounded(double value, int decimals);
 
-/// The text with every number that is zero written without a minus sign: "-0.00" becomes "0.00".
-/// All numbers of the window pass through this or rounded().
+/// Removes the minus sign of every zero number: "-0.00" becomes "0.00". All numbers in the window
+/// use this or rounded().
 std::string without_negative_zeros(std::string_view text);
 
 }  // namespace glidar::app

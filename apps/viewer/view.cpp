@@ -113,7 +113,7 @@ class ViewerWindow {
   bool is_moving_ = false;  ///< at the last wait
 };
 
-/// Panels may need two more frames after an event to be laid out.
+/// Panels may need two more frames after an event to update their layout.
 constexpr int kSettleFrames = 3;
 
 void ViewerWindow::open_window() {

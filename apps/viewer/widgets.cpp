@@ -14,7 +14,7 @@
 namespace glidar::app {
 namespace {
 
-/// Signs that the window's font lacks.
+/// Replaces characters that the window's font lacks.
 void replace_all(const std::string& what, const std::string& with, std::string& line) {
   for (std::size_t at = line.find(what); at != std::string::npos; at = line.find(what, at)) {
     line.replace(at, what.size(), with);
@@ -26,7 +26,7 @@ struct NumberFormat {
   const char* printf_format;
 };
 
-/// Three numbers in a row; true when one was typed over.
+/// Three numbers in a row; true if one was edited.
 bool edit_numbers(const char* label, const NumberFormat& format, Eigen::Vector3d& numbers) {
   const Eigen::Vector3d shown =
       numbers.unaryExpr([&](double value) { return rounded(value, format.decimals); });

@@ -8,13 +8,13 @@
 
 namespace glidar::app {
 
-/// A line of text; numbers in it that are zero have no minus sign.
+/// A line of text; zero numbers have no minus sign.
 void text(const std::string& line);
-/// The same, broken where the panel ends.
+/// The same, wrapped at the panel's width.
 void wrapped(const std::string& line);
 
-/// Position (m) and roll, pitch, yaw (degrees, about the fixed axes x, y, z in this order) to read
-/// and to type over; true when they were. What is not typed over keeps all its digits.
+/// Editable position (m) and roll, pitch, yaw (degrees, about the fixed axes x, y, z in this
+/// order); true if edited. Values that are not edited keep all digits.
 bool edit_pose(const char* name, Pose& pose);
 
 }  // namespace glidar::app

@@ -99,7 +99,7 @@ class ViewerWindowTest(DisplayTest):
         with Window(self, "builtin:asteroid", "--object-rate", "0,0,1") as window:
             first = window.save("buffer")
             frame = window.state()["frame"]
-            window.wait_for("time to go on", frame=lambda now: now > frame + 1)
+            window.wait_for("the next frame", frame=lambda now: now > frame + 1)
             second = window.save("buffer_000001")
             window.key("space")
             third = window.save("buffer_000002")
@@ -116,7 +116,7 @@ class ViewerWindowTest(DisplayTest):
             self.display.xdotool("click", 1)
             window.shows(lambda picture: difference(before.crop((300, 470, 1270, 650)),
                                                     picture.crop((300, 470, 1270, 650))) > 2.0,
-                         "the story below the views")
+                         "the trace below the views")
             window.quit()
 
     def test_a_click_on_a_point_selects_its_object_and_f_frames_it(self):
@@ -190,7 +190,7 @@ class ViewerWindowTest(DisplayTest):
 
     def test_a_minimised_window_of_a_moving_scene_draws_nothing(self):
         with Window(self, "builtin:asteroid", "--object-rate", "0,0,1") as window:
-            window.wait_for("time to go on", frame=lambda now: now > 3)
+            window.wait_for("the next frame", frame=lambda now: now > 3)
             hidden = window.minimise()
             let_time_pass(2.0)
             self.assertLess(window.restore() - hidden, 15, "two seconds at 30 Hz would be 60")

@@ -47,18 +47,18 @@ struct ExplainFlags {
 
 /// The options of the `render` or `stream` command in a sidecar.
 RenderFlags flags_of(const Sidecar& sidecar) {
-  const std::vector<std::string>& told = sidecar.command.arguments;
+  const std::vector<std::string>& arguments = sidecar.command.arguments;
   CLI::App command;
-  if (!told.empty() && told.front() == "stream") {
+  if (!arguments.empty() && arguments.front() == "stream") {
     StreamFlags flags;
     add_stream_options(command, flags);
-    parse_recorded(told, "stream", sidecar.path.string(), command);
+    parse_recorded(arguments, "stream", sidecar.path.string(), command);
     flags.render.duration_s.reset();
     return flags.render;
   }
   RenderFlags flags;
   add_render_options(command, flags);
-  parse_recorded(told, "render", sidecar.path.string(), command);
+  parse_recorded(arguments, "render", sidecar.path.string(), command);
   return flags;
 }
 

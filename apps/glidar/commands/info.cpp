@@ -44,8 +44,8 @@ std::string vector_text(const Eigen::Vector3d& v, std::string_view separator) {
 }
 
 /// "1 open edges, 2 degenerate triangles": the defects with their counts.
-std::string fault_text(const MeshCheck& check) {
-  const std::vector<std::pair<std::uint64_t, const char*>> faults = {
+std::string defect_text(const MeshCheck& check) {
+  const std::vector<std::pair<std::uint64_t, const char*>> defects = {
       {check.open_edges, "open edges"},
       {check.crowded_edges, "edges of more than two triangles"},
       {check.inconsistent_edges, "edges with opposite windings"},
@@ -55,7 +55,7 @@ std::string fault_text(const MeshCheck& check) {
       {check.unused_vertices, "unused vertices"},
   };
   std::string text;
-  for (const auto& [count, name] : faults) {
+  for (const auto& [count, name] : defects) {
     if (count == 0) continue;
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, name);
   }
@@ -113,7 +113,7 @@ void print_table(const ModelReport& report, const std::string& up_hint) {
   line("up", report.up + (up_hint.empty() ? "" : "; " + up_hint));
   line("surface", fmt::format("{}, winding {}, area {:.6g} m2", report.closed ? "closed" : "open",
                               to_string(report.winding), report.check.area_m2));
-  line("faults", fault_text(report.check));
+  line("defects", defect_text(report.check));
   print_lists(report);
 }
 

@@ -251,7 +251,7 @@ void print_surfaces(const std::vector<SurfacePreset>& surfaces) {
 int list_surfaces(const SensorsFlags& flags) {
   if (!flags.name.empty() || !flags.picture.empty()) {
     throw Error({.where = "--surfaces",
-                 .found = "a sensor or a picture is asked for too",
+                 .found = "a sensor or an output is given too",
                  .allowed = "--surfaces alone, or with --json",
                  .remedy = ""});
   }

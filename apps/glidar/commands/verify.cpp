@@ -87,7 +87,7 @@ void print_table(const std::vector<AccuracyCase>& rows, const std::string& rende
   fmt::print("glidar {}, renderer {}\n", version(), renderer);
   fmt::print(kHead, "case", "shape", "distance", "hits", "misses", "edge", "range err", "range err",
              "normal", "wrong");
-  fmt::print(kHead, "", "", "m", "judged", "judged", "no", "m", "ulp (f32)", "rad", "");
+  fmt::print(kHead, "", "", "m", "tested", "tested", "skip", "m", "ulp (f32)", "rad", "");
   VerifyResult all;
   for (const AccuracyCase& row : rows) {
     print_row(row);

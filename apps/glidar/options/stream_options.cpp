@@ -93,7 +93,7 @@ void add_pose_source_options(CLI::App& command, StreamFlags& flags) {
             flags.pose_source, parse_pose_source);
   group.add("--pose-queue", "N", "Queued poses, each gives a frame; 0: the newest only [0]",
             flags.pose_queue, whole(0, kMaxQueue));
-  group.add("--pose-timeout", "S", "End when no pose comes for S seconds [none]",
+  group.add("--pose-timeout", "S", "End when no pose arrives for S seconds [none]",
             flags.pose_timeout_s, positive_seconds());
   require_option(command, {"--pose-timeout"}, "--pose-source");
   forbid_together(command, {"--pose-source"}, {"--trajectory", "--object-rate", "--sensor-rate"});

@@ -23,7 +23,7 @@ extern "C" void end_now(int number) {
   constexpr int kSignalExitBase = 128;  // as in shells
   constexpr std::string_view kMessage = "\nglidar: interrupted; unfinished files are removed\n";
   remove_unfinished_files();
-  [[maybe_unused]] const ssize_t told = write(STDERR_FILENO, kMessage.data(), kMessage.size());
+  [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, kMessage.data(), kMessage.size());
   _exit(kSignalExitBase + number);
 }
 
@@ -51,7 +51,7 @@ extern "C" void note(int number) {
   constexpr std::chrono::milliseconds kStopTimeout{1500};
   if (noted.exchange(number) != 0) end_now(number);
   if (number == SIGTERM) end_after(kStopTimeout);
-  [[maybe_unused]] const ssize_t told = write(wake_pipe.load(), "!", 1);
+  [[maybe_unused]] const ssize_t written = write(wake_pipe.load(), "!", 1);
 }
 
 void handle_by(void (*handler)(int)) {
@@ -106,7 +106,7 @@ void StopRequest::disarm() const {
 
 void StopRequest::request() {
   is_requested_ = true;
-  [[maybe_unused]] const ssize_t told = write(writing_, "!", 1);
+  [[maybe_unused]] const ssize_t written = write(writing_, "!", 1);
 }
 
 void StopRequest::wait_until(std::chrono::steady_clock::time_point time) const {

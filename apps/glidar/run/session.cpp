@@ -167,14 +167,14 @@ std::int64_t last_firing_ns(const Mount& mount) {
 
 /// Warns of times outside a trajectory.
 void warn_extrapolation(const Session& session, const Report& report) {
-  TimeInterval asked{.first_ns = 0, .last_ns = 0};
+  TimeInterval requested{.first_ns = 0, .last_ns = 0};
   for (const Mount& mount : session.mounts) {
-    asked.last_ns = std::max(asked.last_ns, last_firing_ns(mount));
+    requested.last_ns = std::max(requested.last_ns, last_firing_ns(mount));
   }
-  glidar::warn_extrapolation(session.motion.world_from_rig, "sensor", asked, report);
+  glidar::warn_extrapolation(session.motion.world_from_rig, "sensor", requested, report);
   for (std::size_t i = 0; i < session.motion.world_from_instance.size(); ++i) {
     glidar::warn_extrapolation(session.motion.world_from_instance[i],
-                               session.scene.instances[i].name, asked, report);
+                               session.scene.instances[i].name, requested, report);
   }
 }
 

@@ -84,8 +84,8 @@ std::string waiting_text(const StreamFlags& flags) {
   return text;
 }
 
-std::string ready_text(std::uint64_t ready, std::uint64_t wanted) {
-  return fmt::format("{} of {} ready", ready, count_text(wanted, "subscriber"));
+std::string ready_text(std::uint64_t ready, std::uint64_t expected) {
+  return fmt::format("{} of {} ready", ready, count_text(expected, "subscriber"));
 }
 
 std::string publishing_text(const legacy::CloudPublisher::Counts& counts) {

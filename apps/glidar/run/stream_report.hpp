@@ -35,7 +35,7 @@ std::string summary_text(const StreamSummary& summary);
 std::string waiting_text(const StreamFlags& flags);
 
 /// How many of the awaited subscribers will receive the next cloud.
-std::string ready_text(std::uint64_t ready, std::uint64_t wanted);
+std::string ready_text(std::uint64_t ready, std::uint64_t expected);
 
 /// The part of the status line about subscribers.
 std::string publishing_text(const legacy::CloudPublisher::Counts& counts);

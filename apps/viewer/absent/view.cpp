@@ -8,7 +8,7 @@
 
 namespace glidar::app {
 
-/// In place of the window where the program is built without it.
+/// The command in builds without the viewer.
 Command add_view(CLI::App& program) {
   CLI::App& command = *program.add_subcommand("view", "Not there: built without the window");
   command.allow_extras();
