@@ -23,7 +23,7 @@ namespace glidar::app {
 struct MeasuredFrame {
   Frame frame;
   std::shared_ptr<const Beams> beams;
-  std::uint64_t place = 0;                         ///< among its sensor's frames
+  std::uint64_t index = 0;                         ///< among its sensor's frames
   std::size_t mount = 0;                           ///< index of its sensor in the session
   std::shared_ptr<const lockstep::Moment> placed;  ///< poses by a client; nullptr: by the command
   std::string frame_hash;                          ///< expected frame_hash(); empty: unknown

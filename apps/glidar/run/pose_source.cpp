@@ -27,9 +27,12 @@ constexpr std::chrono::milliseconds kPosePollInterval{100};
 
 }  // namespace
 
-MotionSource::MotionSource(const FrameSchedule& pace, std::vector<double> periods_s,
+MotionSource::MotionSource(const FrameSchedule& schedule, std::vector<double> periods_s,
                            const StopRequest& stop)
-    : schedule_(pace), periods_s_(std::move(periods_s)), stop_(stop), numbers_(periods_s_.size()) {}
+    : schedule_(schedule),
+      periods_s_(std::move(periods_s)),
+      stop_(stop),
+      numbers_(periods_s_.size()) {}
 
 double MotionSource::start_s(std::size_t mount) const {
   return static_cast<double>(numbers_[mount]) * periods_s_[mount];
@@ -54,7 +57,7 @@ std::optional<FrameRequest> MotionSource::next() {
   if (stop_.is_requested()) return std::nullopt;
   const std::uint64_t number = numbers_[*first]++;
   return FrameRequest{
-      .mount = *first, .number = static_cast<std::uint32_t>(number), .place = number, .due = *due_};
+      .mount = *first, .number = static_cast<std::uint32_t>(number), .index = number, .due = *due_};
 }
 
 void MotionSource::wait_until_due(std::size_t mount) {
@@ -95,8 +98,8 @@ std::optional<FrameRequest> SimulatorSource::next() {
     ++request_.mount;
     return request_;
   }
-  if (options_.pace.rate_hz > 0.0 && number_ > 0) {
-    const Clock::time_point due = last_ + seconds(1.0 / options_.pace.rate_hz);
+  if (options_.schedule.rate_hz > 0.0 && number_ > 0) {
+    const Clock::time_point due = last_ + seconds(1.0 / options_.schedule.rate_hz);
     while (Clock::now() < due && !stop_.is_requested()) stop_.wait_until(due);
   }
   const std::optional<legacy::Placement> placement = wait_for_pose();
@@ -104,7 +107,7 @@ std::optional<FrameRequest> SimulatorSource::next() {
   last_ = Clock::now();
   if (!first_) first_ = last_;
   request_ = {.number = static_cast<std::uint32_t>(number_),
-              .place = number_++,
+              .index = number_++,
               .due = last_,
               .motion = motion_of(*placement, scene_),
               .stamp_ns = static_cast<std::int64_t>(placement->timestamp)};
@@ -129,9 +132,9 @@ std::optional<legacy::Placement> SimulatorSource::wait_for_pose() {
 
 bool SimulatorSource::is_done() {
   if (stop_.is_requested()) return true;
-  if (number_ >= options_.pace.frames) {
+  if (number_ >= options_.schedule.frames) {
     ending_ = "all frames are done";
-  } else if (first_ && seconds_since(*first_) >= options_.pace.duration_s) {
+  } else if (first_ && seconds_since(*first_) >= options_.schedule.duration_s) {
     ending_ = "the duration is over";
   }
   return !ending_.empty();

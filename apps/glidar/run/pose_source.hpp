@@ -21,7 +21,7 @@ namespace glidar::app {
 struct FrameRequest {
   std::size_t mount = 0;  ///< index of its sensor in the session
   std::uint32_t number = 0;
-  std::uint64_t place =
+  std::uint64_t index =
       0;  ///< index among this sensor's frames; differs from `number` in recordings
   std::chrono::steady_clock::time_point due;  ///< when its pose was known
   /// New poses and their time; empty: unchanged poses, at the frame's own time.
@@ -56,9 +56,10 @@ class PoseSource {
 /// the order of their times.
 class MotionSource final : public PoseSource {
  public:
-  /// `periods_s`: from one frame to the next in each sensor's own time. The pace's rate is that of
-  /// the first sensor.
-  MotionSource(const FrameSchedule& pace, std::vector<double> periods_s, const StopRequest& stop);
+  /// `periods_s`: from one frame to the next in each sensor's own time. The rate of the schedule is
+  /// that of the first sensor.
+  MotionSource(const FrameSchedule& schedule, std::vector<double> periods_s,
+               const StopRequest& stop);
   std::optional<FrameRequest> next() override;
   [[nodiscard]] std::string ending() const override { return ending_; }
   /// Frames that were late by more than a period; later frames are postponed.
@@ -93,7 +94,7 @@ RigMotion motion_of(const legacy::Placement& placement, const MovedScene& scene)
 class SimulatorSource final : public PoseSource {
  public:
   struct Options {
-    FrameSchedule pace;
+    FrameSchedule schedule;
     std::optional<double> timeout_s;  ///< for a pose; empty: no limit
     std::size_t mounts = 1;           ///< sensors measured at each pose
   };

@@ -29,13 +29,13 @@ void check(const link::RecordedFrame& frame, std::uint64_t number, const Session
 
 }  // namespace
 
-RecordedSource::RecordedSource(link::RecordingReader& recording, const FrameSchedule& pace,
+RecordedSource::RecordedSource(link::RecordingReader& recording, const FrameSchedule& schedule,
                                const Session& session, const StopRequest& stop)
     : recording_(recording),
-      schedule_(pace),
+      schedule_(schedule),
       session_(session),
       stop_(stop),
-      places_(session.mounts.size()) {}
+      next_indices_(session.mounts.size()) {}
 
 std::optional<FrameRequest> RecordedSource::next() {
   if (number_ >= schedule_.frames) {
@@ -53,7 +53,7 @@ std::optional<FrameRequest> RecordedSource::next() {
   ++number_;
   FrameRequest moment{.mount = frame->sensor,
                       .number = frame->moment.number,
-                      .place = places_[frame->sensor]++,
+                      .index = next_indices_[frame->sensor]++,
                       .due = *due_,
                       .motion = {},
                       .stamp_ns = frame->moment.t_ns,

@@ -11,7 +11,7 @@ namespace glidar::app {
 class RecordedSource final : public PoseSource {
  public:
   /// All must outlive it.
-  RecordedSource(link::RecordingReader& recording, const FrameSchedule& pace,
+  RecordedSource(link::RecordingReader& recording, const FrameSchedule& schedule,
                  const Session& session, const StopRequest& stop);
   std::optional<FrameRequest> next() override;
   [[nodiscard]] std::string ending() const override { return ending_; }
@@ -24,8 +24,8 @@ class RecordedSource final : public PoseSource {
   const Session& session_;
   const StopRequest& stop_;
   std::optional<std::chrono::steady_clock::time_point> due_;
-  std::uint64_t number_ = 0;           ///< of the next frame
-  std::vector<std::uint64_t> places_;  ///< of each sensor's next frame
+  std::uint64_t number_ = 0;                 ///< of the next frame
+  std::vector<std::uint64_t> next_indices_;  ///< of each sensor's next frame
   std::string ending_;
 };
 

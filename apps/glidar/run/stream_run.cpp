@@ -165,24 +165,26 @@ void StreamRun::prepare_poses() {
 }
 
 std::unique_ptr<PoseSource> StreamRun::make_source(const StopRequest& stop) {
-  FrameSchedule pace = {.frames = flags_.frames.value_or(std::numeric_limits<std::uint64_t>::max()),
-                        .duration_s = duration_s_};
+  FrameSchedule schedule = {
+      .frames = flags_.frames.value_or(std::numeric_limits<std::uint64_t>::max()),
+      .duration_s = duration_s_};
   if (recording_) {
-    pace.rate_hz = flags_.replay_rate_hz;
-    return std::make_unique<RecordedSource>(*recording_, pace, session_, stop);
+    schedule.rate_hz = flags_.replay_rate_hz;
+    return std::make_unique<RecordedSource>(*recording_, schedule, session_, stop);
   }
   if (receiver_) {
-    pace.rate_hz = flags_.render.sensor.rate_hz.value_or(0.0);
+    schedule.rate_hz = flags_.render.sensor.rate_hz.value_or(0.0);
     return std::make_unique<SimulatorSource>(
         *receiver_, moved_scene_,
-        SimulatorSource::Options{
-            .pace = pace, .timeout_s = flags_.pose_timeout_s, .mounts = session_.mounts.size()},
+        SimulatorSource::Options{.schedule = schedule,
+                                 .timeout_s = flags_.pose_timeout_s,
+                                 .mounts = session_.mounts.size()},
         stop);
   }
   std::vector<double> periods_s;
   for (const Mount& mount : session_.mounts) periods_s.push_back(1.0 / mount.sensor.rate_hz);
-  if (!flags_.is_unpaced) pace.rate_hz = session_.mounts.front().sensor.rate_hz;
-  return std::make_unique<MotionSource>(pace, std::move(periods_s), stop);
+  if (!flags_.is_unpaced) schedule.rate_hz = session_.mounts.front().sensor.rate_hz;
+  return std::make_unique<MotionSource>(schedule, std::move(periods_s), stop);
 }
 
 int StreamRun::run() {
@@ -261,7 +263,7 @@ void StreamRun::stream(PoseSource& source, StopRequest& stop) {
     const std::optional<FrameRequest> request = source.next();
     if (!request) break;
     if (request->motion) move(*request->motion);
-    if (!is_wanted(request->place)) continue;
+    if (!is_wanted(request->index)) continue;
     measure(*request, delivery.next_slot());
     delivery.submit();
   }
@@ -282,7 +284,7 @@ void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {
     number = request.number;
   }
   measured.beams = beams;
-  measured.place = request.place;
+  measured.index = request.index;
   measured.mount = request.mount;
   measured.placed = placed_;
   measured.frame_hash = request.frame_hash;
@@ -302,8 +304,8 @@ void StreamRun::measure(const FrameRequest& request, MeasuredFrame& measured) {
   print_advice(view_advice({session_.scene, mount.sensor, *beams, measured.frame}), console_);
 }
 
-bool StreamRun::is_wanted(std::uint64_t place) const {
-  return recording_ || recorder_ || writes_files() || (publisher_ && publisher_->wants(place));
+bool StreamRun::is_wanted(std::uint64_t index) const {
+  return recording_ || recorder_ || writes_files() || (publisher_ && publisher_->wants(index));
 }
 
 bool StreamRun::writes_files() const {
@@ -330,7 +332,7 @@ std::vector<Output> StreamRun::plan(const OutputFlags& files, const Mount& mount
 void StreamRun::deliver(const MeasuredFrame& measured) {
   if (recorder_) recorder_->write(line_of(measured.mount, measured.frame, measured.placed.get()));
   if (!measured.frame_hash.empty()) compare(measured, flags_.replay, stats_.latency.count());
-  if (publisher_ && publisher_->wants(measured.place)) publish(measured);
+  if (publisher_ && publisher_->wants(measured.index)) publish(measured);
   if (writes_files()) write_files(measured);
   stats_.add_frame(measured.due);
 }
@@ -349,7 +351,7 @@ void StreamRun::write_files(const MeasuredFrame& measured) {
   const std::string label = label_of(flags_.render, mount);
   if (!label.empty()) files = labelled(files, label);
   const std::vector<Output> outputs =
-      plan(numbered(files, static_cast<std::uint32_t>(measured.place)), mount, *measured.beams);
+      plan(numbered(files, static_cast<std::uint32_t>(measured.index)), mount, *measured.beams);
   refuse_overwrite_of_inputs(reserved_files_, outputs);
   write_outputs(outputs, measured.frame, *measured.beams, session_.scene);
 }

@@ -46,7 +46,7 @@ class StreamRun {
   void show_peers(std::uint64_t& shown);
   void stream(PoseSource& source, StopRequest& stop);
   void measure(const FrameRequest& request, MeasuredFrame& measured);
-  [[nodiscard]] bool is_wanted(std::uint64_t place) const;
+  [[nodiscard]] bool is_wanted(std::uint64_t index) const;
   [[nodiscard]] bool writes_files() const;
   [[nodiscard]] std::vector<Output> plan(const OutputFlags& files, const Mount& mount,
                                          const Beams& beams);

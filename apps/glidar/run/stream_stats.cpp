@@ -19,8 +19,8 @@ constexpr double kWindow_s = 1.0;
 }  // namespace
 
 void DurationHistogram::add(double seconds) {
-  const double place = kBinsPerFactorE * std::log(std::max(seconds, kMin_s) / kMin_s);
-  ++bins_.at(std::min(static_cast<std::size_t>(place), kBins - 1));
+  const double position = kBinsPerFactorE * std::log(std::max(seconds, kMin_s) / kMin_s);
+  ++bins_.at(std::min(static_cast<std::size_t>(position), kBins - 1));
   ++count_;
   max_s_ = std::max(max_s_, seconds);
 }
