@@ -5,7 +5,7 @@
 #include <glidar/core/beams.hpp>
 #include <glidar/math/thread_pool.hpp>
 #include <glidar/render/opengl/gl_object.hpp>
-#include <glidar/render/resolve.hpp>
+#include <glidar/render/resolver.hpp>
 
 #include <array>
 

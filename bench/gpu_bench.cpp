@@ -8,9 +8,9 @@
 #include "many_views.hpp"
 
 #include <glidar/math/thread_pool.hpp>
-#include <glidar/render/opengl/number_target.hpp>
 #include <glidar/render/opengl/projection.hpp>
-#include <glidar/render/opengl/triangle_drawing.hpp>
+#include <glidar/render/opengl/triangle_id_drawing.hpp>
+#include <glidar/render/opengl/triangle_id_target.hpp>
 
 #include <algorithm>
 #include <bit>

@@ -8,7 +8,7 @@
 
 #include <glidar/io/model/model.hpp>
 #include <glidar/math/simd.hpp>
-#include <glidar/render/rays/exact_decision.hpp>
+#include <glidar/render/rays/exact_test.hpp>
 #include <glidar/render/rays/kernels.hpp>
 #include <glidar/render/rays/mesh_tree.hpp>
 

@@ -9,7 +9,7 @@
 #include <glidar/render/rays/rays_renderer.hpp>
 #include <glidar/render/scan_raster/scan_cost.hpp>
 #include <glidar/render/scan_raster/scan_renderer.hpp>
-#include <glidar/render/triangle_picture.hpp>
+#include <glidar/render/triangle_ids.hpp>
 
 #include <algorithm>
 #include <cstdint>

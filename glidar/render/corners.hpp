@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/render/resolve.hpp>
+#include <glidar/render/resolver.hpp>
 
 namespace glidar {
 

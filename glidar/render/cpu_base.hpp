@@ -5,7 +5,7 @@
 #include <glidar/core/scene.hpp>
 #include <glidar/math/thread_pool.hpp>
 #include <glidar/render/rays/scene_search.hpp>
-#include <glidar/render/resolve.hpp>
+#include <glidar/render/resolver.hpp>
 
 namespace glidar {
 

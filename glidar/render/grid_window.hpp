@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/render/plane_points.hpp>
-#include <glidar/render/resolve.hpp>
+#include <glidar/render/resolver.hpp>
 
 #include <Eigen/Geometry>
 #include <cstdint>

@@ -4,9 +4,9 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/render/auto_renderer.hpp>
+#include <glidar/render/cpu_raster_renderer.hpp>
 #include <glidar/render/opengl/opengl_renderer.hpp>
 #include <glidar/render/pieces_renderer.hpp>
-#include <glidar/render/rasters.hpp>
 #include <glidar/render/rays/rays_renderer.hpp>
 
 #include <algorithm>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include <glidar/render/renderer.hpp>
-#include <glidar/render/resolve.hpp>
-#include <glidar/render/triangle_picture.hpp>
+#include <glidar/render/resolver.hpp>
+#include <glidar/render/triangle_ids.hpp>
 
 #include <cstdint>
 #include <vector>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include <glidar/math/thread_pool.hpp>
-#include <glidar/render/resolve.hpp>
+#include <glidar/render/resolver.hpp>
 
 #include <cstdint>
 #include <limits>

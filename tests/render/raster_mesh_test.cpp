@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // How a mesh is cut into clusters, where they are looked for, and how a picture is cut into parts.
 #include <glidar/render/raster/packed_mesh.hpp>
-#include <glidar/render/raster/parts.hpp>
-#include <glidar/render/raster/sight.hpp>
+#include <glidar/render/raster/tile_grid.hpp>
+#include <glidar/render/raster/visible_clusters.hpp>
 #include <render/renderer_suite.hpp>
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 The GLIDAR developers
 // SPDX-License-Identifier: BSD-3-Clause
 // Closed meshes do not leak, in any renderer. A new renderer joins by its name at the end.
-#include <glidar/render/resolve.hpp>
+#include <glidar/render/resolver.hpp>
 #include <render/renderer_suite.hpp>
 
 #include <algorithm>

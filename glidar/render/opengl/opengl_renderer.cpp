@@ -3,13 +3,13 @@
 #include <glidar/render/opengl/opengl_renderer.hpp>
 
 #include <glidar/core/progress_counter.hpp>
-#include <glidar/render/close_sheets.hpp>
+#include <glidar/render/close_triangles.hpp>
+#include <glidar/render/hit_writer.hpp>
 #include <glidar/render/opengl/draw_state.hpp>
 #include <glidar/render/opengl/egl_context.hpp>
-#include <glidar/render/opengl/number_target.hpp>
-#include <glidar/render/opengl/picture_plan.hpp>
-#include <glidar/render/opengl/triangle_drawing.hpp>
-#include <glidar/render/picture_writing.hpp>
+#include <glidar/render/opengl/tile_plan.hpp>
+#include <glidar/render/opengl/triangle_id_drawing.hpp>
+#include <glidar/render/opengl/triangle_id_target.hpp>
 #include <glidar/render/pieces_renderer.hpp>
 #include <glidar/render/pinhole_only.hpp>
 #include <glidar/render/rays/scene_search.hpp>

@@ -4,8 +4,8 @@
 
 #include <glidar/core/beams.hpp>
 #include <glidar/render/depth_range.hpp>
-#include <glidar/render/resolve.hpp>
-#include <glidar/render/triangle_picture.hpp>
+#include <glidar/render/resolver.hpp>
+#include <glidar/render/triangle_ids.hpp>
 
 #include <Eigen/Core>
 

@@ -51,8 +51,8 @@ Woods2016Drawing::Woods2016Drawing(const Scene& scene)
 
 Woods2016Drawing::Shader Woods2016Drawing::make_shader(const char* surface_macro,
                                                        const char* shine_macro) const {
-  return {make_program({.vertex = {shader_text("paper.vert.glsl")},
-                        .fragment = {shader_text("texel.glsl"), shader_text("paper.frag.glsl")},
+  return {make_program({.vertex = {shader_text("woods2016.vert.glsl")},
+                        .fragment = {shader_text("texel.glsl"), shader_text("woods2016.frag.glsl")},
                         .macros = {surface_macro, shine_macro,
                                    has_clip_control_ ? "HAS_CLIP_CONTROL" : "WRITES_DEPTH"}})};
 }

@@ -5,7 +5,7 @@
 #include <glidar/core/phong_headlight.hpp>
 #include <glidar/render/opengl/projection.hpp>
 #include <glidar/render/opengl/woods2016_buffers.hpp>
-#include <glidar/render/resolve.hpp>
+#include <glidar/render/resolver.hpp>
 #include <glidar/render/woods2016_framebuffer.hpp>
 
 #include <string>

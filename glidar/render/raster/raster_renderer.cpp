@@ -4,14 +4,14 @@
 
 #include <glidar/core/progress_counter.hpp>
 #include <glidar/render/grid_window.hpp>
-#include <glidar/render/picture_writing.hpp>
+#include <glidar/render/hit_writer.hpp>
 #include <glidar/render/pinhole_only.hpp>
 #include <glidar/render/plane_points.hpp>
-#include <glidar/render/pool.hpp>
-#include <glidar/render/raster/drawing.hpp>
+#include <glidar/render/raster/cluster_drawing.hpp>
 #include <glidar/render/raster/packed_mesh.hpp>
-#include <glidar/render/raster/parts.hpp>
-#include <glidar/render/raster/sight.hpp>
+#include <glidar/render/raster/tile_grid.hpp>
+#include <glidar/render/raster/visible_clusters.hpp>
+#include <glidar/render/workspace_pool.hpp>
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 
 #include <glidar/math/constants.hpp>
 #include <glidar/render/common/rounding.hpp>
-#include <glidar/render/rays/exact_decision.hpp>
+#include <glidar/render/rays/exact_test.hpp>
 
 #include <algorithm>
 #include <cmath>

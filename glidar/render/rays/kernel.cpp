@@ -15,7 +15,7 @@
 #else
 #include <glidar/render/rays/simd_portable.hpp>
 #endif
-#include <glidar/render/rays/tree_walk.hpp>
+#include <glidar/render/rays/tree_traversal.hpp>
 
 #define GLIDAR_NAME_OF(word) #word
 #define GLIDAR_NAME(word) GLIDAR_NAME_OF(word)

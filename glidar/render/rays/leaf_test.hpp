@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/render/rays/exact_decision.hpp>
+#include <glidar/render/rays/exact_test.hpp>
 #include <glidar/render/rays/packet_start.hpp>
 #include <glidar/render/rays/ray_tree.hpp>
 #include <glidar/render/rays/triangle_filter.hpp>

@@ -6,7 +6,7 @@
 #include <glidar/render/grid_window.hpp>
 #include <glidar/render/plane_points.hpp>
 #include <glidar/render/rays/tiles.hpp>
-#include <glidar/render/resolve.hpp>
+#include <glidar/render/resolver.hpp>
 
 #include <array>
 #include <memory>

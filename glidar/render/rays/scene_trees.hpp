@@ -5,7 +5,7 @@
 #include <glidar/render/rays/box_tree.hpp>
 #include <glidar/render/rays/mesh_tree.hpp>
 #include <glidar/render/renderer.hpp>
-#include <glidar/render/resolve.hpp>
+#include <glidar/render/resolver.hpp>
 
 #include <cstdint>
 #include <vector>

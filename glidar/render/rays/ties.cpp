@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/rays/ties.hpp>
 
-#include <glidar/render/rays/exact_decision.hpp>
+#include <glidar/render/rays/exact_test.hpp>
 
 #include <algorithm>
 #include <array>

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <glidar/render/found.hpp>
+#include <glidar/render/primitive_ref.hpp>
 #include <glidar/render/rays/scene_trees.hpp>
 
 #include <cstddef>

@@ -13,7 +13,7 @@
 #else
 #include <glidar/render/rays/simd_portable.hpp>
 #endif
-#include <glidar/render/scan_raster/sector_walk.hpp>
+#include <glidar/render/scan_raster/sector_traversal.hpp>
 
 #define GLIDAR_NAME_OF(word) #word
 #define GLIDAR_NAME(word) GLIDAR_NAME_OF(word)

@@ -4,9 +4,9 @@
 
 #include <glidar/core/error.hpp>
 #include <glidar/core/progress_counter.hpp>
-#include <glidar/render/pool.hpp>
-#include <glidar/render/scan_raster/sector_decision.hpp>
+#include <glidar/render/scan_raster/sector_exact_test.hpp>
 #include <glidar/render/scan_raster/sector_writer.hpp>
+#include <glidar/render/workspace_pool.hpp>
 
 #include <algorithm>
 #include <bit>

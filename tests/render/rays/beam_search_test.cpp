@@ -4,7 +4,7 @@
 // triangles of all instances.
 #include <glidar/render/rays/scene_search.hpp>
 
-#include <glidar/render/rays/exact_decision.hpp>
+#include <glidar/render/rays/exact_test.hpp>
 #include <render/renderer_suite.hpp>
 
 #include <algorithm>

@@ -1,0 +1,59 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <glidar/render/opengl/projection.hpp>
+#include <glidar/render/opengl/scene_buffers.hpp>
+#include <glidar/render/opengl/triangle_id_target.hpp>
+#include <glidar/render/renderer.hpp>
+#include <glidar/render/resolver.hpp>
+#include <glidar/render/triangle_ids.hpp>
+
+#include <cstdint>
+
+namespace glidar::opengl {
+
+/// Draws the number of each triangle of a scene where it is seen.
+class TriangleDrawing {
+ public:
+  /// Needs a current context, as everything here does. Throws Error when the scene has more
+  /// triangles than numbers.
+  explicit TriangleDrawing(const Scene& scene);
+
+  /// Draws one part of a pinhole's picture into the current target.
+  void draw(const CastRequest& request, const Resolver& resolver, const PixelRect& rect,
+            const DepthRange& depths) const;
+
+  [[nodiscard]] const TriangleNumbers& numbers() const { return numbers_; }
+
+ private:
+  /// A program and where its uniforms are.
+  struct Drawer {
+    Program program;
+    GLint clip_from_object;
+    GLint first_number;
+  };
+  struct MaskDrawer {
+    Drawer base;
+    GLint uv_scale_rotate;
+    GLint uv_offset;
+    GLint wrap;
+    GLint is_linear;
+    GLint opacity;
+    GLint cutoff;
+  };
+
+  static Drawer make_drawer(const char* mask_macro, const char* depth_macro);
+  static MaskDrawer make_mask_drawer(const char* depth_macro);
+  void draw_instance(std::uint32_t instance, const Eigen::Matrix4f& clip_from_object) const;
+  void use_mask(std::uint32_t material, const MeshBuffers& mesh) const;
+
+  const Scene& scene_;
+  bool has_clip_control_;
+  SceneBuffers buffers_;
+  Drawer solid_;
+  MaskDrawer masked_;
+  TriangleNumbers numbers_;  ///< in the order of MeshBuffers::drawn
+};
+
+}  // namespace glidar::opengl

@@ -1,0 +1,338 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/resolver.hpp>
+
+#include <glidar/math/constants.hpp>
+#include <glidar/math/simd.hpp>
+#include <glidar/render/grazing.hpp>
+#include <glidar/render/shading.hpp>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace glidar {
+namespace {
+
+/// The lanes that hit another instance than this.
+std::uint32_t others_than(const HitBlock& block, std::uint32_t instance) {
+  std::uint32_t others = 0;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    others |= static_cast<std::uint32_t>(block.instance[i] != instance) << i;
+  }
+  return others;
+}
+
+bool is_one_instance(const HitBlock& block) {
+  return others_than(block, block.instance[0]) == 0;
+}
+
+/// Takes the rays of the lanes that hit the instance.
+GLIDAR_SIMD void take_rays(const HitBlock& block, std::uint32_t instance, const ExactBlock& seen,
+                           ExactBlock& exact) {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const bool is_its = block.instance[i] == instance;
+    exact.origin.x[i] = is_its ? seen.origin.x[i] : exact.origin.x[i];
+    exact.origin.y[i] = is_its ? seen.origin.y[i] : exact.origin.y[i];
+    exact.origin.z[i] = is_its ? seen.origin.z[i] : exact.origin.z[i];
+    exact.direction.x[i] = is_its ? seen.direction.x[i] : exact.direction.x[i];
+    exact.direction.y[i] = is_its ? seen.direction.y[i] : exact.direction.y[i];
+    exact.direction.z[i] = is_its ? seen.direction.z[i] : exact.direction.z[i];
+  }
+}
+
+/// The same plane for all lanes.
+void repeat_plane(const TrianglePlane& plane, ExactBlock& exact) {
+  exact.normal.x.at.fill(plane.normal.x());
+  exact.normal.y.at.fill(plane.normal.y());
+  exact.normal.z.at.fill(plane.normal.z());
+  exact.offset.at.fill(plane.offset);
+}
+
+/// cosine = n.d, distance = (offset - n.o) / (n.d), as distance_to().
+GLIDAR_SIMD void intersect_planes(ExactBlock& e) {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const double above =
+        e.offset[i] - (e.normal.x[i] * e.origin.x[i] + e.normal.y[i] * e.origin.y[i] +
+                       e.normal.z[i] * e.origin.z[i]);
+    const double cosine = e.normal.x[i] * e.direction.x[i] + e.normal.y[i] * e.direction.y[i] +
+                          e.normal.z[i] * e.direction.z[i];
+    e.cosine[i] = cosine;
+    e.distance[i] = above / cosine;
+  }
+}
+
+/// Front normals of one instance into the sensor's frame, turned towards the sensor.
+GLIDAR_SIMD void turn_to_sensor(const Eigen::Matrix3d& sensor_from_object, const Lanes3<double>& in,
+                                const Lanes<double>& cosine, Lanes3<float>& out) {
+  Lanes3<double> turned;
+  rotate(sensor_from_object, in, turned);
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const double sign = cosine[i] > 0.0 ? -1.0 : 1.0;
+    out.x[i] = static_cast<float>(sign * turned.x[i]);
+    out.y[i] = static_cast<float>(sign * turned.y[i]);
+    out.z[i] = static_cast<float>(sign * turned.z[i]);
+  }
+}
+
+bool needs_normals(const HitFieldMask& fields) {
+  return fields.shading_normal || fields.shading;
+}
+
+}  // namespace
+
+bool has_mask(const Scene& scene, const Instance& instance) {
+  return std::any_of(instance.materials.begin(), instance.materials.end(),
+                     [&](std::uint32_t m) { return scene.materials[m].alpha_cutoff > 0.0F; });
+}
+
+bool needs_corners(const HitFieldMask& fields) {
+  return fields.barycentrics || fields.shading_normal || fields.shading ||
+         SurfaceColours::needed(fields);
+}
+
+InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& world_from_object,
+                     const Pose& world_from_sensor) {
+  using Wide = Eigen::Matrix<long double, 3, 1>;
+  const Eigen::Matrix3d object_from_world = world_from_object.linear().transpose();
+  // The differences of far-away positions first, and in extended precision: a mesh whose vertices
+  // lie 1000 km from its zero would lose 1e-10 m when that offset is rotated in double.
+  const Wide offset = world_from_sensor.translation().cast<long double>() -
+                      world_from_object.translation().cast<long double>();
+  const Wide origin =
+      world_from_object.linear().cast<long double>() *
+      (static_cast<long double>(instance.scale) * mesh.origin_m.cast<long double>());
+  return {.object_from_sensor = object_from_world * world_from_sensor.linear(),
+          .sensor_in_object = object_from_world * (offset - origin).cast<double>() / instance.scale,
+          .scale = instance.scale};
+}
+
+Eigen::Matrix<double, 3, 4> sensor_from_object(const InstanceView& view) {
+  const Eigen::Matrix3d turn = view.scale * view.object_from_sensor.transpose();
+  Eigen::Matrix<double, 3, 4> matrix;
+  matrix << turn, -(turn * view.sensor_in_object);
+  return matrix;
+}
+
+ObjectRay ray_in(const InstanceView& view, const Beams& beams, std::size_t beam) {
+  ObjectRay ray{view.sensor_in_object, view.object_from_sensor * beams.directions[beam]};
+  if (!beams.origins_m.empty()) {
+    ray.origin += view.object_from_sensor * beams.origins_m[beam] / view.scale;
+  }
+  return ray;
+}
+
+GLIDAR_SIMD void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes3<double>& origin,
+                         Lanes3<double>& direction) {
+  rotate(view.object_from_sensor, beams.direction, direction);
+  const Eigen::Vector3d& sensor = view.sensor_in_object;
+  for (unsigned i = 0; i < kLanes; ++i) origin.x[i] = sensor.x();
+  for (unsigned i = 0; i < kLanes; ++i) origin.y[i] = sensor.y();
+  for (unsigned i = 0; i < kLanes; ++i) origin.z[i] = sensor.z();
+  if (!beams.has_origins) return;
+  Lanes3<double> offset_m;
+  rotate(view.object_from_sensor, beams.origin_m, offset_m);
+  if (view.scale != 1.0) {  // divisions take as long as all the rest
+    for (unsigned i = 0; i < kLanes; ++i) offset_m.x[i] /= view.scale;
+    for (unsigned i = 0; i < kLanes; ++i) offset_m.y[i] /= view.scale;
+    for (unsigned i = 0; i < kLanes; ++i) offset_m.z[i] /= view.scale;
+  }
+  for (unsigned i = 0; i < kLanes; ++i) origin.x[i] += offset_m.x[i];
+  for (unsigned i = 0; i < kLanes; ++i) origin.y[i] += offset_m.y[i];
+  for (unsigned i = 0; i < kLanes; ++i) origin.z[i] += offset_m.z[i];
+}
+
+Resolver::Resolver(const Scene& scene) : scene_(scene), colours_(scene) {
+  planes_.reserve(scene.meshes.size());
+  for (const Mesh& mesh : scene.meshes) {
+    planes_.push_back(triangle_planes(mesh));
+    twins_.push_back(first_twins(mesh));
+    distinct_.push_back(without_copies(mesh, twins_.back()));
+  }
+  for (const Instance& instance : scene.instances) {
+    if (has_mask(scene, instance)) distinct_[instance.mesh].clear();  // holes of copies may differ
+  }
+  known_.reserve(scene.instances.size());
+  for (std::size_t i = 0; i < scene.instances.size(); ++i) {
+    const Instance& instance = scene.instances[i];
+    const Mesh& mesh = scene.meshes[instance.mesh];
+    const std::vector<std::uint32_t>& twins = twins_[instance.mesh];
+    // With a mask, twins may differ in their holes.
+    const bool may_swap = !twins.empty() && !has_mask(scene, instance);
+    known_.push_back(
+        {.mesh = &mesh,
+         .triangles = mesh.triangles.data(),
+         .positions_m = mesh.positions_m.data(),
+         .normals = mesh.normals.empty() ? nullptr : mesh.normals.data(),
+         .planes = planes_[instance.mesh].data(),
+         .twins = may_swap ? twins.data() : nullptr,
+         .has_normal_map = std::any_of(instance.materials.begin(), instance.materials.end(),
+                                       [&](std::uint32_t material) {
+                                         return has_normal_map(scene.materials[material], mesh);
+                                       }),
+         .is_masked = has_mask(scene, instance)});
+  }
+}
+
+void Resolver::set_poses(const Pose& world_from_sensor, std::span<const Pose> world_from_instance) {
+  views_.resize(scene_.instances.size());
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    const Instance& instance = scene_.instances[i];
+    const Pose& pose =
+        world_from_instance.empty() ? instance.world_from_object : world_from_instance[i];
+    views_[i] = view_of(instance, scene_.meshes[instance.mesh], pose, world_from_sensor);
+  }
+}
+
+void Resolver::prefetch_corners(const HitBlock& block, const HitFieldMask& fields) const {
+  if (!needs_corners(fields)) return;
+  const bool with_normals = needs_normals(fields);
+  for_lanes(block.mask, [&](unsigned i) {
+    const Known& of = known_[block.instance[i]];
+    for (const std::uint32_t vertex : of.triangles[block.primitive[i]]) {
+      __builtin_prefetch(of.positions_m + vertex);
+      if (with_normals && of.normals != nullptr) __builtin_prefetch(of.normals + vertex);
+    }
+  });
+}
+
+void Resolver::measure(const BeamBlock& beams, HitBlock& block, ExactBlock& exact) const {
+  const auto first = static_cast<unsigned>(std::countr_zero(block.mask));
+  for (unsigned i = 0; i < kLanes; ++i) {
+    if ((block.mask >> i & 1U) != 0) continue;
+    block.instance[i] = block.instance[first];
+    block.primitive[i] = block.primitive[first];
+  }
+  if (block.is_one_triangle) {
+    repeat_plane(plane(block.instance[0], block.primitive[0]), exact);
+  } else {
+    for (unsigned i = 0; i < kLanes; ++i) {
+      const TrianglePlane& triangle = plane(block.instance[i], block.primitive[i]);
+      exact.normal.set(i, triangle.normal);
+      exact.offset[i] = triangle.offset;
+    }
+  }
+  rays_in(views_[block.instance[0]], beams, exact.origin, exact.direction);
+  ExactBlock seen;
+  for (std::uint32_t rest = others_than(block, block.instance[0]); rest != 0;) {
+    const std::uint32_t instance = block.instance[static_cast<unsigned>(std::countr_zero(rest))];
+    rays_in(views_[instance], beams, seen.origin, seen.direction);
+    take_rays(block, instance, seen, exact);
+    rest &= others_than(block, instance);
+  }
+  intersect_planes(exact);
+  measure_grazing(*this, block, exact);
+}
+
+void Resolver::write_ranges(const HitBlock& block, const ExactBlock& exact, Hits& hits) const {
+  if (block.is_run && is_one_instance(block)) {
+    const auto first = static_cast<std::ptrdiff_t>(block.beam[0]);
+    const double scale = views_[block.instance[0]].scale;
+    std::transform(exact.distance.at.begin(), exact.distance.at.end(), hits.range_m.begin() + first,
+                   [&](double distance) { return distance * scale; });
+    std::copy(block.instance.begin(), block.instance.end(), hits.instance.begin() + first);
+    std::copy(block.primitive.begin(), block.primitive.end(), hits.primitive.begin() + first);
+    return;
+  }
+  for_lanes(block.mask, [&](unsigned i) {
+    const std::size_t beam = block.beam[i];
+    hits.range_m[beam] = exact.distance[i] * views_[block.instance[i]].scale;
+    hits.instance[beam] = block.instance[i];
+    hits.primitive[beam] = block.primitive[i];
+  });
+}
+
+void Resolver::write(const Beams& beams, const HitFieldMask& fields, const HitBlock& block,
+                     const ExactBlock& exact, Hits& hits) const {
+  write_ranges(block, exact, hits);
+  const bool has_more = fields.incidence || fields.depth || fields.object_point;
+  for_lanes(has_more ? block.mask : 0, [&](unsigned i) {
+    const std::size_t beam = block.beam[i];
+    if (fields.incidence) hits.cos_incidence[beam] = static_cast<float>(std::abs(exact.cosine[i]));
+    if (fields.depth) hits.depth_m[beam] = depth_m(beams, beam, hits.range_m[beam]);
+    if (!fields.object_point) return;
+    const Eigen::Vector3d point =
+        mesh(block.instance[i]).origin_m +
+        (exact.origin.get(i) + exact.distance[i] * exact.direction.get(i));
+    hits.object_point_m[beam] =
+        point.cwiseQuotient(scene_.sources[scene_.instances[block.instance[i]].mesh].stretch);
+  });
+  if (fields.normal) write_directions(block, exact.normal, exact.cosine, hits.normal);
+  if (needs_corners(fields)) write_surface(fields, block, exact, hits);
+}
+
+void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& front,
+                                const Lanes<double>& cosine,
+                                std::vector<Eigen::Vector3f>& column) const {
+  if (is_one_instance(block)) {
+    Lanes3<float> turned;
+    turn_to_sensor(views_[block.instance[0]].object_from_sensor.transpose(), front, cosine, turned);
+    for_lanes(block.mask, [&](unsigned i) { column[block.beam[i]] = turned.get(i); });
+    return;
+  }
+  for_lanes(block.mask, [&](unsigned i) {
+    const Eigen::Vector3d turned =
+        views_[block.instance[i]].object_from_sensor.transpose() * front.get(i);
+    column[block.beam[i]] = (cosine[i] > 0.0 ? -turned : turned).cast<float>();
+  });
+}
+
+void Resolver::gather(const HitBlock& block, bool with_normals, Corners& corners) const {
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const Known& of = known_[block.instance[i]];
+    const Triangle& triangle = of.triangles[block.primitive[i]];
+    corners.position_m.set(i, of.positions_m, triangle);
+    if (!with_normals) continue;
+    // Without normals there is no length either: then the flat normal is taken.
+    static const Eigen::Vector3f kNone = Eigen::Vector3f::Zero();
+    corners.normal.set(i, of.normals == nullptr ? &kNone : of.normals,
+                       of.normals == nullptr ? Triangle{} : triangle);
+  }
+}
+
+void Resolver::write_shading(const HitFieldMask& fields, const HitBlock& block,
+                             const ExactBlock& exact, const Weights& weights, Hits& hits) const {
+  Lanes3<double> smooth;
+  blend_normals(weights.normals, weights.w1, weights.w2, exact.normal, smooth);
+  bend_normals(block, weights.w1, weights.w2, smooth);
+  if (fields.shading) {
+    Lanes<float> cosine;
+    cosines(exact, smooth, cosine);
+    for_lanes(block.mask, [&](unsigned i) { hits.cos_shading[block.beam[i]] = cosine[i]; });
+  }
+  if (fields.shading_normal) write_directions(block, smooth, exact.cosine, hits.shading_normal);
+}
+
+void Resolver::write_surface(const HitFieldMask& fields, const HitBlock& block,
+                             const ExactBlock& exact, Hits& hits) const {
+  const bool with_normals = needs_normals(fields);
+  Corners corners;
+  Lanes<float> w1;
+  Lanes<float> w2;
+  gather(block, with_normals, corners);
+  weigh(exact, corners.position_m, w1, w2);
+  if (fields.barycentrics) {
+    for_lanes(block.mask, [&](unsigned i) { hits.barycentrics[block.beam[i]] = {w1[i], w2[i]}; });
+  }
+  if (with_normals) write_shading(fields, block, exact, {w1, w2, corners.normal}, hits);
+  if (SurfaceColours::needed(fields)) colours_.write(fields, block, w1, w2, hits);
+}
+
+SurfacePlace Resolver::place_of(const HitBlock& block, unsigned lane, const Lanes<float>& w1,
+                                const Lanes<float>& w2) const {
+  return {mesh(block.instance[lane]), scene_.instances[block.instance[lane]], block.primitive[lane],
+          Eigen::Vector2f(w1[lane], w2[lane])};
+}
+
+void Resolver::bend_normals(const HitBlock& block, const Lanes<float>& w1, const Lanes<float>& w2,
+                            Lanes3<double>& normals) const {
+  for_lanes(block.mask, [&](unsigned i) {
+    if (!known_[block.instance[i]].has_normal_map) return;
+    const SurfacePlace place = place_of(block, i, w1, w2);
+    if (!has_normal_map(material_at(scene_, place), place.mesh)) return;
+    const Eigen::Vector3f smooth = normals.get(i).cast<float>();
+    normals.set(i, bent_normal(scene_, place, smooth).cast<double>());
+  });
+}
+
+}  // namespace glidar

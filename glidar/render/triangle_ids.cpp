@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/triangle_ids.hpp>
+
+#include <glidar/core/error.hpp>
+
+#include <string>
+
+namespace glidar {
+
+TriangleNumbers::TriangleNumbers(const Scene& scene, const char* renderer)
+    : drawn_(scene.instances.size(), nullptr) {
+  std::uint64_t next = 0;
+  for (const Instance& instance : scene.instances) {
+    first_.push_back(static_cast<std::uint32_t>(next));
+    next += scene.meshes[instance.mesh].triangles.size();
+    if (next < kNoNumber) continue;
+    throw Error({.where = std::string(renderer) + " renderer",
+                 .found = "too many triangles: " + std::to_string(next),
+                 .allowed = "up to 2147483647, those of every instance counted",
+                 .remedy = "use --renderer rays"});
+  }
+}
+
+}  // namespace glidar

@@ -1,0 +1,41 @@
+// SPDX-FileCopyrightText: 2026 The GLIDAR developers
+// SPDX-License-Identifier: BSD-3-Clause
+#include <glidar/render/uncertain_hits.hpp>
+
+#include <glidar/math/simd.hpp>
+#include <glidar/render/corners.hpp>
+
+namespace glidar {
+namespace {
+
+// An area is a sum of six products of single precision: wrong by less than this part of the square
+// of the farthest corner's distance.
+constexpr float kAreaRounding = 0x1p-20F;
+
+GLIDAR_SIMD std::uint32_t outside(const ExactBlock& e, const CornerBlock& c) {
+  Lanes<std::uint32_t> bits;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const CornerAreas areas = areas_around(e, c, i);
+    const float ab = areas.at_0 < areas.at_1 ? areas.at_0 : areas.at_1;
+    const float smallest = ab < areas.at_2 ? ab : areas.at_2;
+    const int inside = static_cast<int>(smallest >= kAreaRounding * areas.reach_squared);
+    const int ahead = static_cast<int>(e.distance[i] > 0.0);
+    bits[i] = static_cast<std::uint32_t>((inside & ahead) ^ 1) << i;
+  }
+  std::uint32_t mask = 0;
+  for (unsigned i = 0; i < kLanes; ++i) mask |= bits[i];
+  return mask;
+}
+
+}  // namespace
+
+std::uint32_t doubtful(const Resolver& resolver, const HitBlock& block, const ExactBlock& exact) {
+  CornerBlock corners;
+  for (unsigned i = 0; i < kLanes; ++i) {
+    const Mesh& mesh = resolver.mesh(block.instance[i]);
+    corners.set(i, mesh.positions_m.data(), mesh.triangles[block.primitive[i]]);
+  }
+  return outside(exact, corners) & block.mask;
+}
+
+}  // namespace glidar
