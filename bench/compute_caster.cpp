@@ -46,7 +46,7 @@ ComputeCaster::ComputeCaster(const Scene& scene, const Beams& beams, std::size_t
       search_(resolver_, thread_pool_),
       context_(chosen_device()),
       use_(context_),
-      gpu_(std::make_unique<OnDevice>()) {
+      gpu_(std::make_unique<GpuResources>()) {
   compile(gpu_->program, {{GL_COMPUTE_SHADER, caster_shader().c_str()}});
   glUseProgram(gpu_->program.name());
   gpu_->scene.emplace(resolver_, beams, thread_pool_);
@@ -173,18 +173,18 @@ void ComputeCaster::decide_view(const Batch& batch, std::size_t view,
 
 void ComputeCaster::decide_beam(const CastRequest& request, std::size_t beam,
                                 std::uint32_t& primitive, double& range_m) const {
-  const Found found = search_.beams().find(beam);
+  const PrimitiveRef found = search_.beams().find(beam);
   primitive = found.instance == kInvalidId ? kMissed : found.primitive;
   if (found.instance == kInvalidId) return;
   HitBlock block;
   BeamBlock lanes;
-  ExactBlock exact;
+  ExactHits exact;
   block.mask = 1;
   block.beam.fill(beam);
   block.instance[0] = found.instance;
   block.primitive[0] = found.primitive;
   for (unsigned i = 0; i < kLanes; ++i) lanes.direction.set(i, request.beams.directions[beam]);
-  resolver_.measure(lanes, block, exact);
+  resolver_.intersect(lanes, block, exact);
   range_m = exact.distance[0] * resolver_.view(0).scale;
 }
 

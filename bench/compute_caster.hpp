@@ -68,7 +68,7 @@ class ComputeCaster {
     BatchHits hits;
   };
   /// What lives on the device.
-  struct OnDevice {
+  struct GpuResources {
     opengl::Program program;
     std::optional<ComputeScene> scene;
     std::array<Batch, kUnderWay> batches;
@@ -91,7 +91,7 @@ class ComputeCaster {
   rays::SceneSearch search_;
   opengl::EglContext context_;
   opengl::ScopedContext use_;
-  std::unique_ptr<OnDevice> gpu_;
+  std::unique_ptr<GpuResources> gpu_;
   std::size_t started_ = 0;
   std::size_t finished_ = 0;
 };

@@ -73,13 +73,13 @@ void print_transfer() {
   const double transfer_s = median_seconds([&] {
     glGetBufferSubData(GL_COPY_READ_BUFFER, 0, static_cast<GLsizeiptr>(kBytes), host.data());
   });
-  opengl::NumberTarget target;
+  opengl::TriangleIdTarget target;
   target.begin({kSide, kSide, 1});
   const double readback_s = median_seconds([&] {
     target.draw_into(0);
     glFinish();
     target.start_reading();
-    const auto numbers = target.numbers();
+    const auto numbers = target.triangle_ids();
     std::copy(numbers.begin(), numbers.end(), host.begin());
     target.end_reading();
   });
@@ -106,8 +106,8 @@ void print_breakdown(const Model& model, std::uint32_t side) {
   const opengl::ScopedContext use(context);
   Resolver resolver(model.scene);
   resolver.set_poses(model.world_from_sensor, {});
-  const opengl::TriangleDrawing drawing(model.scene);
-  opengl::NumberTarget target;
+  const opengl::TriangleIdDrawing drawing(model.scene);
+  opengl::TriangleIdTarget target;
   target.begin({side, side, 1});
   const auto [near_m, far_m] = planes_around(model);
   const auto draw = [&, depths = DepthRange{near_m, far_m}] {
@@ -129,7 +129,7 @@ void print_breakdown(const Model& model, std::uint32_t side) {
   const double transfer_s = median_device_seconds([&] { target.start_reading(); });
   const double read_wall_s = median_seconds([&] {
     target.start_reading();
-    target.numbers();
+    target.triangle_ids();
     target.end_reading();
   });
   std::printf("%s %u: %.1f frames/s\n", model.name.c_str(), side, 1.0 / cast_s);

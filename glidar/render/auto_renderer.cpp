@@ -38,7 +38,7 @@ class AutoRenderer final : public Renderer {
     for (const Instance& instance : scene.instances) {
       all += scene.meshes[instance.mesh].triangles.size();
     }
-    can_draw_ = all < kNoNumber;
+    can_draw_ = all < kNoTriangleId;
   }
 
   [[nodiscard]] std::string_view name() const override { return "auto"; }
@@ -63,7 +63,8 @@ class AutoRenderer final : public Renderer {
   /// Prepares the cast where it returns true.
   bool is_for_scan_raster(const CastRequest& request) {
     if (!any_instance_enabled(request, base_->resolver.scene()) ||
-        why_not_drawn(request.beams) == nullptr || !scan_raster::may_form_grid(request.beams)) {
+        rasterizer_limitation(request.beams) == nullptr ||
+        !scan_raster::may_form_grid(request.beams)) {
       return false;
     }
     if (scan_raster_ == nullptr) {
@@ -73,7 +74,7 @@ class AutoRenderer final : public Renderer {
     if (!grid.misfit().empty()) return false;
     base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
     base_->search.prepare(request);
-    const auto seen = scan_raster::count_seen(grid, request.beams, *base_);
+    const auto seen = scan_raster::estimate_visible(grid, request.beams, *base_);
     const double most = grid.is_camera()
                             ? kMaxPerLensBeam * seen.beams +
                                   kMaxPerAnyLensBeam * static_cast<double>(request.beams.size())
@@ -82,7 +83,7 @@ class AutoRenderer final : public Renderer {
   }
 
   bool is_for_raster(const CastRequest& request) {
-    if (!can_draw_ || why_not_drawn(request.beams) != nullptr) return false;
+    if (!can_draw_ || rasterizer_limitation(request.beams) != nullptr) return false;
     const std::uint64_t beams = beams_in_view(request);
     return beams == 0 || triangles(request) <= kMaxPerBeam * beams;
   }
@@ -100,7 +101,8 @@ class AutoRenderer final : public Renderer {
   std::uint64_t beams_in_view(const CastRequest& request) {
     base_->resolver.set_poses(request.world_from_sensor, request.world_from_instance);
     find_plane_points(request.beams, points_);
-    const GridWindow window = window_on(base_->resolver, boxes_, request.instance_enabled, points_);
+    const GridWindow window =
+        visible_window(base_->resolver, boxes_, request.instance_enabled, points_);
     const std::uint64_t rows = std::min(window.end_row, request.beams.rows) - window.first_row;
     const std::uint64_t cols = std::min(window.end_col, request.beams.cols) - window.first_col;
     return rows * cols;

@@ -16,9 +16,9 @@ namespace {
 using rays::MeshTree;
 using rays::TreeNode;
 
-constexpr double kMaxGapPart = 0x1p-10;  // of the mesh's reach: gaps up to it are found
-constexpr double kTouchPart = 0x1p-20;   // of it: triangles that overlap less only touch
-constexpr double kMinSheetCosine = 0.9;  // of sheets: others meet in a line
+constexpr double kMaxGapPart = 0x1p-10;     // of the mesh's reach: gaps up to it are found
+constexpr double kTouchFraction = 0x1p-20;  // of it: triangles that overlap less only touch
+constexpr double kMinParallelCosine = 0.9;  // of sheets: others meet in a line
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
@@ -37,12 +37,13 @@ Eigen::Vector3d normal_of(const Corners& corners) {
 }
 
 /// A triangle with what it is compared by.
-struct Sheet {
+struct ComparedTriangle {
   Corners corners;
   Eigen::Vector3d normal;
   std::array<Eigen::Vector3d, 3> outward;  ///< unit vectors in the plane, across the edges
 
-  Sheet(const Corners& at, const Eigen::Vector3d& seen_along) : corners(at), normal(seen_along) {
+  ComparedTriangle(const Corners& at, const Eigen::Vector3d& seen_along)
+      : corners(at), normal(seen_along) {
     for (std::size_t k = 0; k < 3; ++k) {
       outward[k] = normal.cross(at[(k + 1) % 3] - at[k]).normalized();
       if (outward[k].dot(at[(k + 2) % 3] - at[k]) > 0.0) outward[k] = -outward[k];
@@ -51,7 +52,7 @@ struct Sheet {
 
   /// True when a line along an edge has this triangle on one side and the other one on the other,
   /// but for an overlap by `touch`.
-  [[nodiscard]] bool is_parted_from(const Corners& other, double touch) const {
+  [[nodiscard]] bool is_separated_from(const Corners& other, double touch) const {
     for (std::size_t k = 0; k < 3; ++k) {
       const double edge = outward[k].dot(corners[k]) - touch;
       if (outward[k].dot(other[0]) >= edge && outward[k].dot(other[1]) >= edge &&
@@ -74,18 +75,18 @@ struct ClosePair {
 class GapSearch {
  public:
   GapSearch(const MeshTree& tree, double reach)
-      : tree_(tree), touch_(kTouchPart * reach), largest_(kMaxGapPart * reach) {}
+      : tree_(tree), touch_(kTouchFraction * reach), max_gap_(kMaxGapPart * reach) {}
 
   /// Adds the pairs of a triangle with those behind it in the tree's order.
   void add_pairs(std::uint32_t slot, std::vector<ClosePair>& pairs) const {
     const Corners corners = corners_at(tree_, slot);
-    const Sheet sheet(corners, normal_of(corners));
-    if (sheet.normal.hasNaN()) return;
+    const ComparedTriangle triangle(corners, normal_of(corners));
+    if (triangle.normal.hasNaN()) return;
     Eigen::AlignedBox3d box;
     for (const Eigen::Vector3d& corner : corners) box.extend(corner);
-    box.min().array() -= largest_;
-    box.max().array() += largest_;
-    visit(0, {sheet, slot, box, pairs});
+    box.min().array() -= max_gap_;
+    box.max().array() += max_gap_;
+    visit(0, {triangle, slot, box, pairs});
   }
 
   /// The same for all triangles of a cluster.
@@ -96,7 +97,7 @@ class GapSearch {
 
  private:
   struct Query {
-    const Sheet& sheet;
+    const ComparedTriangle& triangle;
     std::uint32_t slot;
     const Eigen::AlignedBox3d& box;
     std::vector<ClosePair>& pairs;
@@ -127,24 +128,25 @@ class GapSearch {
     const std::uint32_t first = cluster.first_block * kBlockSize;
     for (std::uint32_t slot = std::max(first, query.slot + 1); slot < first + cluster.count;
          ++slot) {
-      const double gap = gap_between(query.sheet, corners_at(tree_, slot));
+      const double gap = gap_between(query.triangle, corners_at(tree_, slot));
       // Copies count as one triangle, whatever their sense of rotation.
-      if (gap > largest_ || rays::have_same_corners(tree_.blocks.data(), query.slot, slot))
+      if (gap > max_gap_ || rays::have_same_corners(tree_.blocks.data(), query.slot, slot))
         continue;
       query.pairs.push_back({primitive(query.slot), primitive(slot), static_cast<float>(gap)});
     }
   }
 
   /// How far `other` is from the plane of the sheet where one covers the other, or infinite.
-  [[nodiscard]] double gap_between(const Sheet& sheet, const Corners& other) const {
-    const double plane = sheet.normal.dot(sheet.corners[0]);
-    const double a = sheet.normal.dot(other[0]) - plane;
-    const double b = sheet.normal.dot(other[1]) - plane;
-    const double c = sheet.normal.dot(other[2]) - plane;
+  [[nodiscard]] double gap_between(const ComparedTriangle& triangle, const Corners& other) const {
+    const double plane = triangle.normal.dot(triangle.corners[0]);
+    const double a = triangle.normal.dot(other[0]) - plane;
+    const double b = triangle.normal.dot(other[1]) - plane;
+    const double c = triangle.normal.dot(other[2]) - plane;
     const double gap = std::max({std::min({a, b, c}), -std::max({a, b, c}), 0.0});
-    if (gap > largest_ || sheet.is_parted_from(other, touch_)) return kInfinity;
-    const bool is_parallel = std::abs(normal_of(other).dot(sheet.normal)) > kMinSheetCosine;
-    if (!is_parallel || Sheet(other, sheet.normal).is_parted_from(sheet.corners, touch_)) {
+    if (gap > max_gap_ || triangle.is_separated_from(other, touch_)) return kInfinity;
+    const bool is_parallel = std::abs(normal_of(other).dot(triangle.normal)) > kMinParallelCosine;
+    if (!is_parallel ||
+        ComparedTriangle(other, triangle.normal).is_separated_from(triangle.corners, touch_)) {
       return kInfinity;
     }
     return gap;
@@ -156,7 +158,7 @@ class GapSearch {
 
   const MeshTree& tree_;
   double touch_;
-  double largest_;
+  double max_gap_;
 };
 
 std::vector<ClosePair> find_pairs(const MeshTree& tree, double reach, ThreadPool& thread_pool) {
@@ -179,8 +181,8 @@ std::vector<ClosePair> find_pairs(const MeshTree& tree, double reach, ThreadPool
 
 }  // namespace
 
-CloseSheets::CloseSheets(const Resolver& resolver, const rays::SceneTrees& trees,
-                         std::span<const Eigen::AlignedBox3d> boxes, ThreadPool& thread_pool)
+CloseTriangles::CloseTriangles(const Resolver& resolver, const rays::SceneTrees& trees,
+                               std::span<const Eigen::AlignedBox3d> boxes, ThreadPool& thread_pool)
     : resolver_(resolver), trees_(trees), boxes_(boxes) {
   const Scene& scene = resolver.scene();
   gaps_.resize(scene.meshes.size());
@@ -197,7 +199,7 @@ CloseSheets::CloseSheets(const Resolver& resolver, const rays::SceneTrees& trees
   }
 }
 
-void CloseSheets::set_bits(std::uint32_t mesh) {
+void CloseTriangles::set_bits(std::uint32_t mesh) {
   std::vector<std::uint64_t>& bits = bits_[mesh];
   std::fill(bits.begin(), bits.end(), 0);
   for (const Gap& gap : gaps_[mesh]) {
@@ -207,7 +209,7 @@ void CloseSheets::set_bits(std::uint32_t mesh) {
   }
 }
 
-void CloseSheets::prepare(const CastRequest& request, double band_px) {
+void CloseTriangles::prepare(const CastRequest& request, double band_px) {
   constexpr double kSingleRoundingPart = 0x1p-20;  // of depths and sizes: 16 roundings
   const PinholeIntrinsics& pinhole = *request.beams.pinhole;
   const double pixel = 1.0 / std::min(std::abs(pinhole.fx), std::abs(pinhole.fy));

@@ -14,19 +14,19 @@ namespace glidar {
 
 /// Finds triangles of one mesh that lie on each other or nearly so: a drawn picture does not show
 /// which of two sheets is nearer when they are closer together than it resolves.
-class CloseSheets {
+class CloseTriangles {
  public:
   /// Compares each triangle with those around it; both must outlive this. Boxes: one per mesh,
   /// relative to its origin.
-  CloseSheets(const Resolver& resolver, const rays::SceneTrees& trees,
-              std::span<const Eigen::AlignedBox3d> boxes, ThreadPool& thread_pool);
+  CloseTriangles(const Resolver& resolver, const rays::SceneTrees& trees,
+                 std::span<const Eigen::AlignedBox3d> boxes, ThreadPool& thread_pool);
 
   /// Takes the poses of the next cast, which the resolver has. The driver moves what it draws by
   /// up to band_px.
   void prepare(const CastRequest& request, double band_px);
 
-  /// For a triangle as Resolver::told() names it: true where another sheet of the mesh may be so
-  /// close to the triangle that the picture may show either.
+  /// For a triangle as Resolver::canonical_primitive() names it: true where another sheet of the
+  /// mesh may be so close to the triangle that the picture may show either.
   [[nodiscard]] bool is_close(std::uint32_t instance, std::uint32_t primitive) const {
     const Closeness& closeness = closeness_[instance];
     if (closeness.bits == nullptr) return closeness.has_all;

@@ -53,7 +53,8 @@ std::vector<CornerKey> sorted_keys(const Mesh& mesh) {
 }
 
 /// The nearest earlier key of the same triangle, or i where there is none.
-std::size_t earlier_twin(const Mesh& mesh, const std::vector<CornerKey>& keys, std::size_t i) {
+std::size_t earlier_coincident(const Mesh& mesh, const std::vector<CornerKey>& keys,
+                               std::size_t i) {
   const auto corners = sorted_corners(mesh, keys[i].triangle);
   // Back through those of the same hash, which are few unless they are true twins.
   for (std::size_t j = i; j-- > 0 && keys[j].hash == keys[i].hash;) {
@@ -63,7 +64,7 @@ std::size_t earlier_twin(const Mesh& mesh, const std::vector<CornerKey>& keys, s
 }
 
 /// True where two triangles of the same corners list them in the same sense of rotation.
-bool turn_alike(const Mesh& mesh, std::uint32_t a, std::uint32_t b) {
+bool have_same_winding(const Mesh& mesh, std::uint32_t a, std::uint32_t b) {
   const auto position = [&](std::uint32_t triangle, std::size_t k) -> const Eigen::Vector3f& {
     return mesh.positions_m[mesh.triangles[triangle][k % 3]];
   };
@@ -78,15 +79,15 @@ bool turn_alike(const Mesh& mesh, std::uint32_t a, std::uint32_t b) {
 
 }  // namespace
 
-std::vector<std::uint32_t> without_copies(const Mesh& mesh,
-                                          const std::vector<std::uint32_t>& firsts) {
+std::vector<std::uint32_t> distinct_triangles(const Mesh& mesh,
+                                              const std::vector<std::uint32_t>& firsts) {
   std::vector<std::uint32_t> distinct;
   if (firsts.empty()) return distinct;
   distinct.reserve(firsts.size());
   std::vector<std::uint8_t> has_opposite(firsts.size(), 0);  // per first one: one is kept
   for (std::uint32_t i = 0; i < firsts.size(); ++i) {
     const std::uint32_t first = firsts[i];
-    const bool is_copy = first != i && turn_alike(mesh, first, i);
+    const bool is_copy = first != i && have_same_winding(mesh, first, i);
     if (is_copy || has_opposite[first] != 0) continue;
     has_opposite[first] = static_cast<std::uint8_t>(first != i);
     distinct.push_back(i);
@@ -94,11 +95,11 @@ std::vector<std::uint32_t> without_copies(const Mesh& mesh,
   return distinct;
 }
 
-std::vector<std::uint32_t> first_twins(const Mesh& mesh) {
+std::vector<std::uint32_t> find_first_coincident(const Mesh& mesh) {
   const std::vector<CornerKey> keys = sorted_keys(mesh);
   std::vector<std::uint32_t> first;
   for (std::size_t i = 1; i < keys.size(); ++i) {
-    const std::size_t j = earlier_twin(mesh, keys, i);
+    const std::size_t j = earlier_coincident(mesh, keys, i);
     if (j == i) continue;
     if (first.empty()) {
       first.resize(mesh.triangles.size());

@@ -17,7 +17,7 @@ struct CornerAreas {
 
 /// The areas around the hit point of a lane. The corners are first taken relative to the point, in
 /// double, so that single precision suits the rest. Inlined, to be compiled for what its loop is.
-[[gnu::always_inline]] inline CornerAreas areas_around(const ExactBlock& e, const CornerBlock& c,
+[[gnu::always_inline]] inline CornerAreas areas_around(const ExactHits& e, const CornerBlock& c,
                                                        unsigned i) {
   const double x = e.origin.x[i] + e.distance[i] * e.direction.x[i];
   const double y = e.origin.y[i] + e.distance[i] * e.direction.y[i];

@@ -10,9 +10,9 @@
 namespace glidar {
 namespace {
 
-class Rasters final : public Renderer {
+class CpuRasterRenderer final : public Renderer {
  public:
-  Rasters(const Scene& scene, unsigned threads)
+  CpuRasterRenderer(const Scene& scene, unsigned threads)
       : base_(std::make_shared<CpuBase>(scene, threads)) {}
 
   [[nodiscard]] std::string_view name() const override { return "raster"; }
@@ -24,7 +24,7 @@ class Rasters final : public Renderer {
 
  private:
   Renderer& renderer_for(const Beams& beams) {
-    if (why_not_drawn(beams) == nullptr) {
+    if (rasterizer_limitation(beams) == nullptr) {
       if (pinhole_ == nullptr) pinhole_ = make_raster_renderer(base_);
       return *pinhole_;
     }
@@ -39,8 +39,9 @@ class Rasters final : public Renderer {
 
 }  // namespace
 
-std::unique_ptr<Renderer> make_rasters(const Scene& scene, const RendererOptions& options) {
-  return std::make_unique<Rasters>(scene, options.threads);
+std::unique_ptr<Renderer> make_cpu_raster_renderer(const Scene& scene,
+                                                   const RendererOptions& options) {
+  return std::make_unique<CpuRasterRenderer>(scene, options.threads);
 }
 
 }  // namespace glidar

@@ -23,7 +23,7 @@ void extend_depths(const InstanceView& view, const Eigen::AlignedBox3d& box, dou
   farthest_m = std::max(farthest_m, middle + half);
 }
 
-DepthRange hugging(double nearest_m, double farthest_m) {
+DepthRange tight_depth_range(double nearest_m, double farthest_m) {
   // Single precision rounds a depth by 6e-8 of it, and places by as much of the farthest.
   constexpr double kRounding = 0x1p-22;
   constexpr double kNearestPart = 1e-7;  // of the farthest depth; what is nearer is rounding

@@ -27,6 +27,6 @@ void extend_depths(const InstanceView& view, const Eigen::AlignedBox3d& box, dou
 
 /// The planes that hug what lies between two depths: a hair outside of them, and in front of the
 /// sensor.
-DepthRange hugging(double nearest_m, double farthest_m);
+DepthRange tight_depth_range(double nearest_m, double farthest_m);
 
 }  // namespace glidar

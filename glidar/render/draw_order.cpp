@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/draw_order.hpp>
 
+#include <glidar/render/morton.hpp>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <limits>
@@ -10,21 +12,13 @@
 namespace glidar {
 namespace {
 
-constexpr int kBits = 16;  // of a place, along each axis
-constexpr float kOrderSteps = (1U << kBits) - 1;
-constexpr std::uint32_t kNowhere = std::numeric_limits<std::uint32_t>::max();
+constexpr float kOrderSteps = (1U << kMortonBits) - 1;
+constexpr std::uint32_t kUnassigned = std::numeric_limits<std::uint32_t>::max();
 
-/// Two zeros before every bit.
-std::uint64_t spread(std::uint64_t bits) {
-  std::uint64_t result = 0;
-  for (int i = 0; i < kBits; ++i) result |= (bits >> i & 1U) << (3 * i);
-  return result;
-}
-
-/// Places in a box along G. M. Morton's curve ("A computer oriented geodetic data base", 1966).
-class Curve {
+/// Morton codes of positions in the box around a mesh.
+class MortonCurve {
  public:
-  explicit Curve(const Mesh& mesh) {
+  explicit MortonCurve(const Mesh& mesh) {
     for (const Eigen::Vector3f& p : mesh.positions_m) box_.extend(p);
     const float size = box_.isEmpty() ? 0.0F : box_.sizes().maxCoeff();
     steps_per_metre_ = size > 0.0F ? kOrderSteps / size : 0.0F;
@@ -32,12 +26,13 @@ class Curve {
 
   [[nodiscard]] std::uint64_t at(const Eigen::Vector3f& position) const {
     const Eigen::Vector3f step = steps_per_metre_ * (position - box_.min());
-    std::uint64_t place = 0;
+    std::uint64_t code = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      place |= spread(static_cast<std::uint64_t>(std::min(std::max(0.0F, step[axis]), kOrderSteps)))
-               << axis;
+      code |=
+          spread_bits(static_cast<std::uint64_t>(std::min(std::max(0.0F, step[axis]), kOrderSteps)))
+          << axis;
     }
-    return place;
+    return code;
   }
 
  private:
@@ -47,16 +42,16 @@ class Curve {
 
 struct Key {
   std::uint32_t kind;
-  std::uint64_t place;
+  std::uint64_t code;
   std::uint32_t triangle;
 
   [[nodiscard]] bool operator<(const Key& other) const {
-    return std::tie(kind, place, triangle) < std::tie(other.kind, other.place, other.triangle);
+    return std::tie(kind, code, triangle) < std::tie(other.kind, other.code, other.triangle);
   }
 };
 
 std::vector<Key> sorted_keys(const Mesh& mesh, const std::vector<std::uint32_t>& kinds) {
-  const Curve curve(mesh);
+  const MortonCurve curve(mesh);
   std::vector<Key> keys;
   keys.reserve(mesh.triangles.size());
   for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -74,7 +69,8 @@ std::vector<Key> sorted_keys(const Mesh& mesh, const std::vector<std::uint32_t>&
 
 /// Adds a triangle and those of its corners that are not there yet; `place_of` tells where each
 /// vertex of the mesh stands.
-void add(const Mesh& mesh, const Key& key, std::vector<std::uint32_t>& place_of, DrawOrder& order) {
+void add(const Mesh& mesh, const Key& key, std::vector<std::uint32_t>& new_index,
+         DrawOrder& order) {
   const auto next = static_cast<std::uint32_t>(order.drawn.size());
   if (next == 0 || key.kind != order.ranges.back().kind)
     order.ranges.push_back({next, 0, key.kind});
@@ -82,11 +78,11 @@ void add(const Mesh& mesh, const Key& key, std::vector<std::uint32_t>& place_of,
   order.drawn.push_back(key.triangle);
   Triangle corners = mesh.triangles[key.triangle];
   for (std::uint32_t& corner : corners) {
-    if (place_of[corner] == kNowhere) {
-      place_of[corner] = static_cast<std::uint32_t>(order.vertices.size());
+    if (new_index[corner] == kUnassigned) {
+      new_index[corner] = static_cast<std::uint32_t>(order.vertices.size());
       order.vertices.push_back(corner);
     }
-    corner = place_of[corner];
+    corner = new_index[corner];
   }
   order.triangles.push_back(corners);
 }
@@ -97,8 +93,8 @@ DrawOrder draw_order(const Mesh& mesh, const std::vector<std::uint32_t>& kinds) 
   DrawOrder order;
   order.drawn.reserve(mesh.triangles.size());
   order.triangles.reserve(mesh.triangles.size());
-  std::vector<std::uint32_t> place_of(mesh.positions_m.size(), kNowhere);
-  for (const Key& key : sorted_keys(mesh, kinds)) add(mesh, key, place_of, order);
+  std::vector<std::uint32_t> new_index(mesh.positions_m.size(), kUnassigned);
+  for (const Key& key : sorted_keys(mesh, kinds)) add(mesh, key, new_index, order);
   return order;
 }
 

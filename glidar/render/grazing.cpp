@@ -12,7 +12,7 @@ namespace {
 
 /// The plane of a triangle without area, which a beam meets where rounding gives it some: through
 /// its longest edge, across the beam as far as that allows.
-void face_beam(unsigned lane, const HitTriangle& triangle, ExactBlock& exact) {
+void set_facing_plane(unsigned lane, const HitTriangle& triangle, ExactHits& exact) {
   const auto vector = [](const std::array<float, 3>& p) {
     return Eigen::Vector3d(double{p[0]}, double{p[1]}, double{p[2]});
   };
@@ -31,29 +31,29 @@ void face_beam(unsigned lane, const HitTriangle& triangle, ExactBlock& exact) {
 constexpr double kGrazing = 0x1p-20;  // below it, the plane has lost 20 of its 52 bits
 
 /// 0 where the plane is good enough for a lane, else 1. A number, so that loops become vectors.
-[[gnu::always_inline]] inline unsigned is_unsure(const ExactBlock& exact, unsigned lane) {
+[[gnu::always_inline]] inline unsigned is_uncertain(const ExactHits& exact, unsigned lane) {
   const auto is_steep = static_cast<unsigned>(std::abs(exact.cosine[lane]) > kGrazing);
   const auto is_ahead = static_cast<unsigned>(exact.distance[lane] > 0.0);
   return (is_steep & is_ahead) ^ 1U;
 }
 
 /// True when the planes are good enough for all lanes.
-GLIDAR_SIMD bool are_all_sure(const ExactBlock& exact) {
+GLIDAR_SIMD bool are_all_certain(const ExactHits& exact) {
   unsigned unsure = 0;
-  for (unsigned i = 0; i < kLanes; ++i) unsure |= is_unsure(exact, i);
+  for (unsigned i = 0; i < kLanes; ++i) unsure |= is_uncertain(exact, i);
   return unsure == 0;
 }
 
 }  // namespace
 
-void measure_grazing(const Resolver& resolver, const HitBlock& block, ExactBlock& exact) {
-  if (are_all_sure(exact)) return;
+void intersect_grazing(const Resolver& resolver, const HitBlock& block, ExactHits& exact) {
+  if (are_all_certain(exact)) return;
   std::uint32_t unsure = 0;
-  for (unsigned i = 0; i < kLanes; ++i) unsure |= is_unsure(exact, i) << i;
+  for (unsigned i = 0; i < kLanes; ++i) unsure |= is_uncertain(exact, i) << i;
   for_lanes(unsure & block.mask, [&](unsigned i) {
     const HitRay ray = make_hit_ray(exact.origin.get(i), exact.direction.get(i));
     const HitTriangle corners = corners_of(resolver.mesh(block.instance[i]), block.primitive[i]);
-    if (std::isnan(exact.offset[i])) face_beam(i, corners, exact);
+    if (std::isnan(exact.offset[i])) set_facing_plane(i, corners, exact);
     const double distance = hit_distance(ray, corners);
     if (distance > 0.0) exact.distance[i] = distance;
   });

@@ -10,6 +10,6 @@ namespace glidar {
 /// it is met almost edge-on, or right before the beam's start, rounding decides where it is met.
 /// The rule's distance is always between those of the triangle's corners. A triangle without area,
 /// which a beam meets where rounding gives it some, gets a plane across the beam.
-void measure_grazing(const Resolver& resolver, const HitBlock& block, ExactBlock& exact);
+void intersect_grazing(const Resolver& resolver, const HitBlock& block, ExactHits& exact);
 
 }  // namespace glidar

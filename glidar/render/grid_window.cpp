@@ -37,8 +37,8 @@ std::pair<std::uint32_t, std::uint32_t> places(const std::vector<double>& row, d
 
 }  // namespace
 
-GridWindow window_on(const Resolver& resolver, std::span<const Eigen::AlignedBox3d> mesh_boxes,
-                     std::span<const std::uint8_t> present, const PlanePoints& points) {
+GridWindow visible_window(const Resolver& resolver, std::span<const Eigen::AlignedBox3d> mesh_boxes,
+                          std::span<const std::uint8_t> present, const PlanePoints& points) {
   if (points.x.empty()) return {};
   const std::vector<Instance>& instances = resolver.scene().instances;
   Eigen::AlignedBox2d covered;

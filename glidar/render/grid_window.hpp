@@ -28,7 +28,7 @@ struct GridWindow {
 /// The part of a pinhole's grid outside of which nothing is hit: around the corners of each
 /// present instance's box (one per mesh, see bounds()), as the sensor sees them, and a beam more on
 /// each side. All of it when a corner does not lie in front of the sensor, and for other beams.
-GridWindow window_on(const Resolver& resolver, std::span<const Eigen::AlignedBox3d> mesh_boxes,
-                     std::span<const std::uint8_t> present, const PlanePoints& points);
+GridWindow visible_window(const Resolver& resolver, std::span<const Eigen::AlignedBox3d> mesh_boxes,
+                          std::span<const std::uint8_t> present, const PlanePoints& points);
 
 }  // namespace glidar

@@ -13,45 +13,46 @@
 namespace glidar {
 namespace {
 
-constexpr std::uint32_t kColumnsAtOnce = 128;  // columns that are looked through at once
+constexpr std::uint32_t kColumnsPerStep = 128;  // columns that are looked through at once
 
 /// Up to kLanes hits on their way.
-struct Work {
+struct PixelBatch {
   HitBlock block;
   BeamBlock beams;
-  ExactBlock exact;
+  ExactHits exact;
   Lanes<double> x;  ///< where the beams cross the plane at depth 1
   Lanes<double> y;
-  std::array<std::uint32_t, kLanes> number;  ///< drawn there
-  std::uint32_t certain = 0;                 ///< bit i: lane i meets its triangle
-  std::uint32_t contested = 0;               ///< bit i: lane i may meet another one before
+  std::array<std::uint32_t, kLanes> triangle_id;  ///< drawn there
+  std::uint32_t certain = 0;                      ///< bit i: lane i meets its triangle
+  std::uint32_t contested = 0;                    ///< bit i: lane i may meet another one before
   unsigned used = 0;
 };
 
 /// Three are under way at a time, so that what the later steps of one read from memory (planes and
 /// corners of its triangles) comes while the next are collected.
-struct Works {
-  std::array<Work, 3> ring;
+struct PixelBatchRing {
+  std::array<PixelBatch, 3> batches;
   std::size_t started = 0;  ///< the last one is being filled
 
-  Work& filling() { return ring[started % ring.size()]; }
-  Work& before() { return ring[(started + ring.size() - 1) % ring.size()]; }
+  PixelBatch& filling() { return batches[started % batches.size()]; }
+  PixelBatch& before() { return batches[(started + batches.size() - 1) % batches.size()]; }
 };
 
-/// The triangle to tell for one found, see Resolver::told.
-std::uint32_t told(const PictureWriting& w, const Found& found) {
-  return w.request.cull_back_faces ? found.primitive
-                                   : w.resolver.told(found.instance, found.primitive);
+/// The triangle to tell for one found, see Resolver::canonical_primitive.
+std::uint32_t reported_primitive(const HitWriter& w, const PrimitiveRef& ref) {
+  return w.request.cull_back_faces ? ref.primitive
+                                   : w.resolver.canonical_primitive(ref.instance, ref.primitive);
 }
 
-bool is_close(const PictureWriting& w, const Found& found) {
-  return w.sheets != nullptr &&
-         w.sheets->is_close(found.instance, w.resolver.told(found.instance, found.primitive));
+bool is_close(const HitWriter& w, const PrimitiveRef& ref) {
+  return w.close_triangles != nullptr &&
+         w.close_triangles->is_close(ref.instance,
+                                     w.resolver.canonical_primitive(ref.instance, ref.primitive));
 }
 
 /// Puts these lanes right by the hit rule; true when that changed the block.
-bool correct(const PictureWriting& w, std::uint32_t lanes, const BeamBlock& beams,
-             HitBlock& block) {
+bool recast_lanes(const HitWriter& w, std::uint32_t lanes, const BeamBlock& beams,
+                  HitBlock& block) {
   HitBlock exact = block;
   exact.mask = lanes;
   w.search.find(beams, exact);
@@ -73,7 +74,7 @@ bool correct(const PictureWriting& w, std::uint32_t lanes, const BeamBlock& beam
 }
 
 /// A bit for every lane whose hit lies in front of the beam's start.
-std::uint32_t ahead(const ExactBlock& exact) {
+std::uint32_t ahead(const ExactHits& exact) {
   std::uint32_t mask = 0;
   for (unsigned i = 0; i < kLanes; ++i) {
     mask |= static_cast<std::uint32_t>(exact.distance[i] > 0.0) << i;
@@ -82,145 +83,146 @@ std::uint32_t ahead(const ExactBlock& exact) {
 }
 
 /// Decides between surfaces of several instances that lie closer together than the picture shows.
-void choose_among_instances(const PictureWriting& w, Work& work) {
-  const std::uint32_t lanes = w.overlaps.lanes_near(work.block, work.beams, work.exact);
-  if (lanes != 0 && correct(w, lanes, work.beams, work.block) && work.block.mask != 0) {
-    w.resolver.measure(work.beams, work.block, work.exact);
+void resolve_overlaps(const HitWriter& w, PixelBatch& batch) {
+  const std::uint32_t lanes = w.overlaps.lanes_near(batch.block, batch.beams, batch.exact);
+  if (lanes != 0 && recast_lanes(w, lanes, batch.beams, batch.block) && batch.block.mask != 0) {
+    w.resolver.intersect(batch.beams, batch.block, batch.exact);
   }
 }
 
 /// Writes the collected hits.
-void finish(const PictureWriting& w, Work& work) {
-  if (work.used == 0) return;
-  HitBlock& block = work.block;
-  for (unsigned lane = work.used; lane < kLanes; ++lane) {
+void finish(const HitWriter& w, PixelBatch& batch) {
+  if (batch.used == 0) return;
+  HitBlock& block = batch.block;
+  for (unsigned lane = batch.used; lane < kLanes; ++lane) {
     block.beam[lane] = block.beam[0];
-    work.x[lane] = work.x[0];
-    work.y[lane] = work.y[0];
+    batch.x[lane] = batch.x[0];
+    batch.y[lane] = batch.y[0];
   }
-  work.used = 0;
-  directions_through(work.x, work.y, work.beams.direction);
-  w.resolver.measure(work.beams, block, work.exact);
-  const std::uint32_t uncertain = block.mask & ~(work.certain & ahead(work.exact));
+  batch.used = 0;
+  directions_through(batch.x, batch.y, batch.beams.direction);
+  w.resolver.intersect(batch.beams, block, batch.exact);
+  const std::uint32_t uncertain = block.mask & ~(batch.certain & ahead(batch.exact));
   const std::uint32_t beside =
-      uncertain == 0 ? 0 : doubtful(w.resolver, block, work.exact) & uncertain;
-  const std::uint32_t in_doubt = beside | (work.contested & block.mask);
-  if (in_doubt != 0 && correct(w, in_doubt, work.beams, block) && block.mask != 0) {
-    w.resolver.measure(work.beams, block, work.exact);
+      uncertain == 0 ? 0 : uncertain_lanes(w.resolver, block, batch.exact) & uncertain;
+  const std::uint32_t recast = beside | (batch.contested & block.mask);
+  if (recast != 0 && recast_lanes(w, recast, batch.beams, block) && block.mask != 0) {
+    w.resolver.intersect(batch.beams, block, batch.exact);
   }
   if (block.mask == 0) return;
-  if (w.overlaps.has_any()) choose_among_instances(w, work);
+  if (w.overlaps.has_any()) resolve_overlaps(w, batch);
   if (block.mask == 0) return;
-  w.resolver.write(w.request.beams, w.request.fields, block, work.exact, w.hits);
+  w.resolver.write(w.request.beams, w.request.fields, block, batch.exact, w.hits);
 }
 
 /// What the numbers of a block tell.
-void look_up(const PictureWriting& w, Work& work) {
-  work.block.mask = static_cast<std::uint32_t>((std::uint64_t{1} << work.used) - 1);
-  work.certain = 0;
-  work.contested = 0;
+void decode_triangles(const HitWriter& w, PixelBatch& batch) {
+  batch.block.mask = static_cast<std::uint32_t>((std::uint64_t{1} << batch.used) - 1);
+  batch.certain = 0;
+  batch.contested = 0;
   const bool with_corners = needs_corners(w.request.fields);
-  for (unsigned lane = 0; lane < work.used; ++lane) {
-    work.certain |= static_cast<std::uint32_t>((work.number[lane] & kCertain) != 0) << lane;
-    const Found found = w.triangles.found(work.number[lane]);
-    const bool is_contested = (work.number[lane] & kContested) != 0 || is_close(w, found);
-    work.contested |= static_cast<std::uint32_t>(is_contested) << lane;
-    work.block.instance[lane] = found.instance;
-    work.block.primitive[lane] = told(w, found);
-    w.resolver.prefetch(work.block, lane, with_corners);
+  for (unsigned lane = 0; lane < batch.used; ++lane) {
+    batch.certain |= static_cast<std::uint32_t>((batch.triangle_id[lane] & kCertainFlag) != 0)
+                     << lane;
+    const PrimitiveRef ref = w.triangles.decode(batch.triangle_id[lane]);
+    const bool is_contested = (batch.triangle_id[lane] & kContestedFlag) != 0 || is_close(w, ref);
+    batch.contested |= static_cast<std::uint32_t>(is_contested) << lane;
+    batch.block.instance[lane] = ref.instance;
+    batch.block.primitive[lane] = reported_primitive(w, ref);
+    w.resolver.prefetch(batch.block, lane, with_corners);
   }
 }
 
 /// Looks the collected hits up, asks for the corners of those before, and finishes those before
 /// them.
-void go_on(const PictureWriting& w, Works& works) {
-  look_up(w, works.filling());
-  Work& before = works.before();
+void advance(const HitWriter& w, PixelBatchRing& ring) {
+  decode_triangles(w, ring.filling());
+  PixelBatch& before = ring.before();
   HitFieldMask fields = w.request.fields;
   // For their doubts.
   fields.barycentrics = fields.barycentrics || (before.block.mask & ~before.certain) != 0;
   w.resolver.prefetch_corners(before.block, fields);
-  ++works.started;
-  finish(w, works.filling());
+  ++ring.started;
+  finish(w, ring.filling());
 }
 
 /// Lists the columns of a piece of a row where something was drawn; returns how many.
-std::uint32_t list_drawn(const std::uint32_t* numbers, std::uint32_t begin, std::uint32_t end,
-                         std::array<std::uint32_t, kColumnsAtOnce>& cols) {
+std::uint32_t list_filled(const std::uint32_t* triangle_ids, std::uint32_t begin, std::uint32_t end,
+                          std::array<std::uint32_t, kColumnsPerStep>& cols) {
   std::uint32_t count = 0;
   for (std::uint32_t col = begin; col < end; ++col) {  // a branch would often be mistaken
     cols[count] = col;
-    count += numbers[col] != kNoNumber ? 1U : 0U;
+    count += triangle_ids[col] != kNoTriangleId ? 1U : 0U;
   }
   return count;
 }
 
-void collect(const PictureWriting& w, std::uint32_t row, std::uint32_t col, std::uint32_t number,
-             Work& work) {
-  const std::uint32_t picture_row = w.drawn.first_row + row;
-  const std::uint32_t picture_col = w.drawn.first_col + col;
-  const unsigned lane = work.used++;
-  work.number[lane] = number;
-  work.x[lane] = w.points.x[picture_col];
-  work.y[lane] = w.points.y[picture_row];
-  work.block.beam[lane] = std::size_t{picture_row} * w.request.beams.cols + picture_col;
+void collect(const HitWriter& w, std::uint32_t row, std::uint32_t col, std::uint32_t triangle_id,
+             PixelBatch& batch) {
+  const std::uint32_t image_row = w.drawn.first_row + row;
+  const std::uint32_t image_col = w.drawn.first_col + col;
+  const unsigned lane = batch.used++;
+  batch.triangle_id[lane] = triangle_id;
+  batch.x[lane] = w.points.x[image_col];
+  batch.y[lane] = w.points.y[image_row];
+  batch.block.beam[lane] = std::size_t{image_row} * w.request.beams.cols + image_col;
 }
 
 /// The beams of a row of the part.
-BeamRange beams_of(const PictureWriting& w, std::uint32_t row) {
+BeamRange beams_of(const HitWriter& w, std::uint32_t row) {
   const std::size_t first =
-      std::size_t{w.part.first_row + row} * w.request.beams.cols + w.part.first_col;
-  return {first, first + w.part.cols};
+      std::size_t{w.written.first_row + row} * w.request.beams.cols + w.written.first_col;
+  return {first, first + w.written.cols};
 }
 
-void collect_row(const PictureWriting& w, std::uint32_t row, Works& works) {
+void collect_row(const HitWriter& w, std::uint32_t row, PixelBatchRing& ring) {
   const std::size_t first = beams_of(w, row).begin;
-  const std::uint32_t drawn_row = w.part.first_row - w.drawn.first_row + row;
-  const std::uint32_t drawn_col = w.part.first_col - w.drawn.first_col;
-  const std::uint32_t* numbers =
-      w.numbers.data() + std::size_t{drawn_row} * w.drawn.cols + drawn_col;
-  std::array<std::uint32_t, kColumnsAtOnce> cols;
-  for (std::uint32_t begin = 0; begin < w.part.cols; begin += kColumnsAtOnce) {
-    const std::uint32_t end = std::min(begin + kColumnsAtOnce, w.part.cols);
-    const std::uint32_t count = list_drawn(numbers, begin, end, cols);
+  const std::uint32_t drawn_row = w.written.first_row - w.drawn.first_row + row;
+  const std::uint32_t drawn_col = w.written.first_col - w.drawn.first_col;
+  const std::uint32_t* triangle_ids =
+      w.triangle_ids.data() + std::size_t{drawn_row} * w.drawn.cols + drawn_col;
+  std::array<std::uint32_t, kColumnsPerStep> cols;
+  for (std::uint32_t begin = 0; begin < w.written.cols; begin += kColumnsPerStep) {
+    const std::uint32_t end = std::min(begin + kColumnsPerStep, w.written.cols);
+    const std::uint32_t count = list_filled(triangle_ids, begin, end, cols);
     // In long strokes, hits being written over them; only where all are hits there is no need.
     if (count < end - begin) write_misses(w.request.fields, first + begin, end - begin, w.hits);
-    Work* work = &works.filling();
+    PixelBatch* batch = &ring.filling();
     for (std::uint32_t i = 0; i < count; ++i) {
-      collect(w, drawn_row, drawn_col + cols[i], numbers[cols[i]], *work);
-      if (work->used < kLanes) continue;
-      go_on(w, works);
-      work = &works.filling();
+      collect(w, drawn_row, drawn_col + cols[i], triangle_ids[cols[i]], *batch);
+      if (batch->used < kLanes) continue;
+      advance(w, ring);
+      batch = &ring.filling();
     }
   }
 }
 
 /// Writes the hits that are known without the picture over what it shows. The beams in the range
 /// that belong to columns beside the part are not known.
-void write_known(const PictureWriting& w, const BeamRange& beams) {
+void write_cast_hits(const HitWriter& w, const BeamRange& beams) {
   const auto first =
-      std::lower_bound(w.known.begin(), w.known.end(), beams.begin,
-                       [](const KnownHit& hit, std::size_t beam) { return hit.beam < beam; });
-  Work work;
-  work.certain = 0xffffffffU;
-  work.block.mask = 0;
-  for (auto hit = first; hit != w.known.end() && hit->beam < beams.end; ++hit) {
-    if (hit->found.instance == kInvalidId) {
+      std::lower_bound(w.cast_hits.begin(), w.cast_hits.end(), beams.begin,
+                       [](const CastHit& hit, std::size_t beam) { return hit.beam < beam; });
+  PixelBatch batch;
+  batch.certain = 0xffffffffU;
+  batch.block.mask = 0;
+  for (auto hit = first; hit != w.cast_hits.end() && hit->beam < beams.end; ++hit) {
+    if (hit->primitive.instance == kInvalidId) {
       write_misses(w.request.fields, hit->beam, 1, w.hits);
       continue;
     }
-    const unsigned lane = work.used++;
-    work.x[lane] = w.points.x[hit->beam % w.request.beams.cols];
-    work.y[lane] = w.points.y[hit->beam / w.request.beams.cols];
-    work.block.beam[lane] = hit->beam;
-    work.block.instance[lane] = hit->found.instance;
-    work.block.primitive[lane] = told(w, hit->found);
-    work.block.mask |= 1U << lane;
-    if (work.used < kLanes) continue;
-    finish(w, work);
-    work.block.mask = 0;
+    const unsigned lane = batch.used++;
+    batch.x[lane] = w.points.x[hit->beam % w.request.beams.cols];
+    batch.y[lane] = w.points.y[hit->beam / w.request.beams.cols];
+    batch.block.beam[lane] = hit->beam;
+    batch.block.instance[lane] = hit->primitive.instance;
+    batch.block.primitive[lane] = reported_primitive(w, hit->primitive);
+    batch.block.mask |= 1U << lane;
+    if (batch.used < kLanes) continue;
+    finish(w, batch);
+    batch.block.mask = 0;
   }
-  finish(w, work);
+  finish(w, batch);
 }
 
 }  // namespace
@@ -235,28 +237,29 @@ DepthRange depths_of(const CastRequest& request, const Resolver& resolver,
     extend_depths(resolver.view(i), mesh_boxes[instances[i].mesh], nearest_m, farthest_m);
   }
   if (!(farthest_m > 0.0)) return {0.0, 0.0};
-  return hugging(nearest_m, farthest_m);
+  return tight_depth_range(nearest_m, farthest_m);
 }
 
-void write_rows(const PictureWriting& w, std::uint32_t begin, std::uint32_t end) {
-  Works works;
-  for (std::uint32_t row = begin; row < end; ++row) collect_row(w, row, works);
-  for (std::size_t i = 0; i < works.ring.size(); ++i) go_on(w, works);
-  if (!w.known.empty()) write_known(w, {beams_of(w, begin).begin, beams_of(w, end - 1).end});
+void write_rows(const HitWriter& w, std::uint32_t begin, std::uint32_t end) {
+  PixelBatchRing ring;
+  for (std::uint32_t row = begin; row < end; ++row) collect_row(w, row, ring);
+  for (std::size_t i = 0; i < ring.batches.size(); ++i) advance(w, ring);
+  if (!w.cast_hits.empty())
+    write_cast_hits(w, {beams_of(w, begin).begin, beams_of(w, end - 1).end});
   if (!w.request.on_tile_done) return;
   for (std::uint32_t row = begin; row < end; ++row) w.request.on_tile_done(beams_of(w, row));
 }
 
-void write_picture(const PictureWriting& writing, ThreadPool& thread_pool, ProgressCounter& count) {
+void write_image(const HitWriter& writer, ThreadPool& thread_pool, ProgressCounter& count) {
   constexpr std::uint32_t kBeamsPerTask = 1024;
-  const PixelRect& part = writing.part;
-  const std::uint32_t rows_per_task = std::max(1U, kBeamsPerTask / part.cols);
-  thread_pool.parallel_for(part.rows, rows_per_task, [&](std::size_t begin, std::size_t end) {
+  const PixelRect& written = writer.written;
+  const std::uint32_t rows_per_task = std::max(1U, kBeamsPerTask / written.cols);
+  thread_pool.parallel_for(written.rows, rows_per_task, [&](std::size_t begin, std::size_t end) {
     const auto last = static_cast<std::uint32_t>(end);
     for (auto row = static_cast<std::uint32_t>(begin); row < last; row += rows_per_task) {
       const std::uint32_t next = std::min(row + rows_per_task, last);
-      write_rows(writing, row, next);
-      count.add(std::size_t{next - row} * part.cols);
+      write_rows(writer, row, next);
+      count.add(std::size_t{next - row} * written.cols);
     }
   });
 }

@@ -18,28 +18,28 @@
 namespace glidar {
 
 /// What a beam meets.
-struct KnownHit {
+struct CastHit {
   std::size_t beam;
-  Found found;
+  PrimitiveRef primitive;
 };
 
 /// What turns a picture of triangle numbers, or a part of one, into hits.
-struct PictureWriting {
+struct HitWriter {
   const CastRequest& request;
   const Resolver& resolver;
-  const TriangleNumbers& triangles;
+  const TriangleIds& triangles;
   const PlanePoints& points;
-  PixelRect drawn;                         ///< the pixels whose numbers are known
-  std::span<const std::uint32_t> numbers;  ///< of these, row by row
-  PixelRect part;                          ///< those of them whose hits are written
+  PixelRect drawn;                              ///< the pixels whose numbers are known
+  std::span<const std::uint32_t> triangle_ids;  ///< of these, row by row
+  PixelRect written;                            ///< those of them whose hits are written
   Hits& hits;
   const rays::BeamSearch& search;  ///< for beams in doubt
   const Overlaps& overlaps;
   /// Beams that hit its triangles are cast, because the picture may show either sheet; nullptr:
   /// none.
-  const CloseSheets* sheets = nullptr;
+  const CloseTriangles* close_triangles = nullptr;
   /// Beams whose hits are known already, whatever was drawn, in rising order.
-  std::span<const KnownHit> known = {};
+  std::span<const CastHit> cast_hits = {};
 };
 
 /// The planes that hug all instances that are there for a cast; the resolver has its poses. One
@@ -48,9 +48,9 @@ DepthRange depths_of(const CastRequest& request, const Resolver& resolver,
                      std::span<const Eigen::AlignedBox3d> mesh_boxes);
 
 /// Writes the hits of rows [begin, end) of the part and tells the request of them.
-void write_rows(const PictureWriting& writing, std::uint32_t begin, std::uint32_t end);
+void write_rows(const HitWriter& writer, std::uint32_t begin, std::uint32_t end);
 
 /// Writes the hits of the whole part, sharing rows out among threads.
-void write_picture(const PictureWriting& writing, ThreadPool& thread_pool, ProgressCounter& count);
+void write_image(const HitWriter& writer, ThreadPool& thread_pool, ProgressCounter& count);
 
 }  // namespace glidar

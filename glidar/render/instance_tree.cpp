@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <glidar/render/instance_tree.hpp>
 
+#include <glidar/render/morton.hpp>
+
 namespace glidar {
 namespace {
 
@@ -18,12 +20,8 @@ Box box_in(const Eigen::Matrix3d& tree_from_sensor, const InstanceView& view, co
   return {middle - half, middle + half};
 }
 
-/// Two zeros before each of 16 bits.
-std::uint64_t spread(double place) {
-  const auto bits = static_cast<std::uint64_t>(place);
-  std::uint64_t result = 0;
-  for (unsigned i = 0; i < 16; ++i) result |= (bits >> i & 1U) << (3 * i);
-  return result;
+std::uint64_t spread_step(double step) {
+  return spread_bits(static_cast<std::uint64_t>(step));
 }
 
 }  // namespace
@@ -43,7 +41,7 @@ void InstanceTree::build(const CastRequest& request, const Resolver& resolver,
     tree_from_sensor_ = resolver.view(i).object_from_sensor;
   }
   boxes_.assign(instances.size(), Box());
-  for (const auto& [place, i] : order_) {
+  for (const auto& [code, i] : order_) {
     boxes_[i] = box_in(tree_from_sensor_, resolver.view(i), box_of(i));
   }
   sort_instances();
@@ -51,16 +49,16 @@ void InstanceTree::build(const CastRequest& request, const Resolver& resolver,
   find_shared();
 }
 
-/// Along G. M. Morton's curve ("A computer oriented geodetic data base", 1966).
+/// By their Morton codes.
 void InstanceTree::sort_instances() {
   constexpr double kMortonSteps = 65535.0;
   Box middles;
-  for (const auto& [place, i] : order_) middles.extend(boxes_[i].center());
+  for (const auto& [code, i] : order_) middles.extend(boxes_[i].center());
   const double size_m = order_.size() < 2 ? 0.0 : middles.sizes().maxCoeff();
   if (!(size_m > 0.0)) return;
-  for (auto& [place, i] : order_) {
+  for (auto& [code, i] : order_) {
     const Eigen::Vector3d step = kMortonSteps / size_m * (boxes_[i].center() - middles.min());
-    place = spread(step.x()) | (spread(step.y()) << 1U) | (spread(step.z()) << 2U);
+    code = spread_step(step.x()) | (spread_step(step.y()) << 1U) | (spread_step(step.z()) << 2U);
   }
   std::sort(order_.begin(), order_.end());
 }
@@ -69,7 +67,7 @@ void InstanceTree::build_nodes() {
   nodes_.clear();
   level_count_ = 0;
   if (order_.empty()) return;
-  for (const auto& [place, i] : order_) nodes_.push_back(boxes_[i]);
+  for (const auto& [code, i] : order_) nodes_.push_back(boxes_[i]);
   level_begin_[level_count_++] = 0;
   for (std::size_t begin = 0; nodes_.size() - begin > 1;) {
     const std::size_t end = nodes_.size();
@@ -86,7 +84,7 @@ void InstanceTree::build_nodes() {
 void InstanceTree::find_shared() {
   shared_.assign(boxes_.size(), Box());
   has_overlaps_ = false;
-  for (const auto& [place, i] : order_) {
+  for (const auto& [code, i] : order_) {
     Box& shared = shared_[i];
     visit_near(boxes_[i], [&, i = i](std::uint32_t other) {
       if (other != i) shared.extend(boxes_[i].intersection(boxes_[other]));

@@ -12,7 +12,7 @@ namespace {
 
 /// Single precision separates two surfaces only when they are farther apart than this part of
 /// their distance and size: 16 roundings.
-constexpr double kSinglePart = 0x1p-20;
+constexpr double kSingleRounding = 0x1p-20;
 
 /// Where a block's beams hit, in the frame of a tree over the instances.
 GLIDAR_SIMD void find_points(const BeamBlock& beams, const Lanes<double>& range_m,
@@ -115,7 +115,7 @@ std::uint32_t Overlaps::lanes_at(std::uint32_t instance, std::uint32_t lanes,
       view.object_from_sensor * instances_.tree_from_sensor().transpose() / view.scale;
   const Eigen::Vector3d middle = turn * around.center();
   const Eigen::Vector3d half = turn.cwiseAbs() * (0.5 * around.sizes());
-  const double room = kSinglePart * (middle.norm() + half.norm() + trees_.reach(instance));
+  const double room = kSingleRounding * (middle.norm() + half.norm() + trees_.reach(instance));
   const Eigen::Vector3d place = view.sensor_in_object + middle;
   if (!has_triangle_near(tree, {place - half, place + half}, room)) return 0;
   std::uint32_t found = 0;
@@ -128,7 +128,7 @@ std::uint32_t Overlaps::lanes_at(std::uint32_t instance, std::uint32_t lanes,
 }
 
 std::uint32_t Overlaps::lanes_near(const HitBlock& block, const BeamBlock& beams,
-                                   const ExactBlock& exact) const {
+                                   const ExactHits& exact) const {
   Lanes<double> range_m;
   for (unsigned i = 0; i < kLanes; ++i) {
     range_m[i] = exact.distance[i] * resolver_.view(block.instance[i]).scale;

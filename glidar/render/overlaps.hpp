@@ -25,7 +25,7 @@ class Overlaps {
 
   /// A bit for every hit lane in whose place another instance has a triangle's box.
   [[nodiscard]] std::uint32_t lanes_near(const HitBlock& block, const BeamBlock& beams,
-                                         const ExactBlock& exact) const;
+                                         const ExactHits& exact) const;
 
  private:
   [[nodiscard]] std::uint32_t lanes_at(std::uint32_t instance, std::uint32_t lanes,

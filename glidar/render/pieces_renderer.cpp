@@ -142,7 +142,7 @@ class PiecesRenderer final : public Renderer {
 
 class PiecesCamera final : public Woods2016Camera {
  public:
-  PiecesCamera(const Scene& scene, const MakePaperCamera& make)
+  PiecesCamera(const Scene& scene, const MakeWoods2016Camera& make)
       : pieces_(scene), camera_(make(pieces_.scene())) {}
 
   void draw(const CastRequest& request, const PhongHeadlight& light,
@@ -169,7 +169,7 @@ std::unique_ptr<Renderer> make_pieces_renderer(const Scene& scene, const MakeRen
 }
 
 std::unique_ptr<Woods2016Camera> make_pieces_camera(const Scene& scene,
-                                                    const MakePaperCamera& make) {
+                                                    const MakeWoods2016Camera& make) {
   return std::make_unique<PiecesCamera>(scene, make);
 }
 

@@ -14,7 +14,7 @@ namespace glidar {
 bool has_pieces(const Scene& scene);
 
 using MakeRenderer = std::function<std::unique_ptr<Renderer>(const Scene&)>;
-using MakePaperCamera = std::function<std::unique_ptr<Woods2016Camera>(const Scene&)>;
+using MakeWoods2016Camera = std::function<std::unique_ptr<Woods2016Camera>(const Scene&)>;
 
 /// Renderers know meshes of one origin only. This one gives `make` a copy of the scene in which
 /// every piece of a mesh is an instance, and turns what is found there back into the instances and
@@ -23,6 +23,6 @@ std::unique_ptr<Renderer> make_pieces_renderer(const Scene& scene, const MakeRen
 
 /// The same for a paper camera, whose pictures name no instances.
 std::unique_ptr<Woods2016Camera> make_pieces_camera(const Scene& scene,
-                                                    const MakePaperCamera& make);
+                                                    const MakeWoods2016Camera& make);
 
 }  // namespace glidar

@@ -10,7 +10,7 @@
 namespace glidar {
 
 /// Why a rasterizer cannot draw these beams; nullptr: it can.
-inline const char* why_not_drawn(const Beams& beams) {
+inline const char* rasterizer_limitation(const Beams& beams) {
   if (!beams.pinhole) return "beams that are not a pinhole's straight grid";
   if (!beams.origins_m.empty()) return "beams with origins of their own";
   if (beams.pinhole->width != beams.cols || beams.pinhole->height != beams.rows) {
@@ -21,7 +21,7 @@ inline const char* why_not_drawn(const Beams& beams) {
 
 /// Throws Error, naming the renderer that takes them, for beams that a rasterizer cannot draw.
 inline void check_pinhole(const Beams& beams, const char* renderer) {
-  const char* found = why_not_drawn(beams);
+  const char* found = rasterizer_limitation(beams);
   if (found == nullptr) return;
   throw Error({.where = std::string(renderer) + " renderer",
                .found = found,

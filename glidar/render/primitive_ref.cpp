@@ -23,8 +23,8 @@ Eigen::Vector2f weights(const Mesh& mesh, std::uint32_t triangle, const Eigen::V
 
 }  // namespace
 
-bool stops(const Resolver& resolver, const Beams& beams, std::size_t beam, bool cull_back_faces,
-           const Found& candidate) {
+bool blocks_beam(const Resolver& resolver, const Beams& beams, std::size_t beam,
+                 bool cull_back_faces, const PrimitiveRef& candidate) {
   const Instance& instance = resolver.scene().instances[candidate.instance];
   const Mesh& mesh = resolver.mesh(candidate.instance);
   const ObjectRay ray = ray_in(resolver.view(candidate.instance), beams, beam);
@@ -33,9 +33,9 @@ bool stops(const Resolver& resolver, const Beams& beams, std::size_t beam, bool 
   const std::uint16_t slot = material_slot(mesh, candidate.primitive);
   if (!(resolver.scene().materials[instance.materials[slot]].alpha_cutoff > 0.0F)) return true;
   const Eigen::Vector3d point = ray.origin + distance_to(plane, ray) * ray.direction;
-  const SurfacePlace place{mesh, instance, candidate.primitive,
-                           weights(mesh, candidate.primitive, point)};
-  return !is_cut_out(resolver.scene(), place);
+  const SurfacePoint surface_point{mesh, instance, candidate.primitive,
+                                   weights(mesh, candidate.primitive, point)};
+  return !is_cut_out(resolver.scene(), surface_point);
 }
 
 }  // namespace glidar

@@ -11,21 +11,21 @@
 namespace glidar {
 
 /// A triangle of an instance; instance kInvalidId: none.
-struct Found {
+struct PrimitiveRef {
   std::uint32_t instance = kInvalidId;
   std::uint32_t primitive = kInvalidId;
 
-  bool operator==(const Found&) const = default;
+  bool operator==(const PrimitiveRef&) const = default;
 };
 
 /// The order of triangles in a scene: by instance, then by their index in its mesh.
-inline bool is_lower(const Found& a, const Found& b) {
+inline bool is_lower(const PrimitiveRef& a, const PrimitiveRef& b) {
   return std::tie(a.instance, a.primitive) < std::tie(b.instance, b.primitive);
 }
 
 /// False where a triangle lets a beam through: by its side when back faces are culled, or by a hole
 /// of its alpha mask.
-bool stops(const Resolver& resolver, const Beams& beams, std::size_t beam, bool cull_back_faces,
-           const Found& candidate);
+bool blocks_beam(const Resolver& resolver, const Beams& beams, std::size_t beam,
+                 bool cull_back_faces, const PrimitiveRef& candidate);
 
 }  // namespace glidar

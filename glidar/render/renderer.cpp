@@ -25,7 +25,7 @@ struct Kind {
 const std::array<Kind, 4>& kinds() {
   static const std::array<Kind, 4> all = {{{"auto", make_auto_renderer},
                                            {"rays", make_rays_renderer},
-                                           {"raster", make_rasters},
+                                           {"raster", make_cpu_raster_renderer},
                                            {"opengl", make_opengl_renderer}}};
   return all;
 }

@@ -15,7 +15,7 @@ namespace glidar {
 namespace {
 
 /// The lanes that hit another instance than this.
-std::uint32_t others_than(const HitBlock& block, std::uint32_t instance) {
+std::uint32_t lanes_not_on(const HitBlock& block, std::uint32_t instance) {
   std::uint32_t others = 0;
   for (unsigned i = 0; i < kLanes; ++i) {
     others |= static_cast<std::uint32_t>(block.instance[i] != instance) << i;
@@ -24,12 +24,12 @@ std::uint32_t others_than(const HitBlock& block, std::uint32_t instance) {
 }
 
 bool is_one_instance(const HitBlock& block) {
-  return others_than(block, block.instance[0]) == 0;
+  return lanes_not_on(block, block.instance[0]) == 0;
 }
 
 /// Takes the rays of the lanes that hit the instance.
-GLIDAR_SIMD void take_rays(const HitBlock& block, std::uint32_t instance, const ExactBlock& seen,
-                           ExactBlock& exact) {
+GLIDAR_SIMD void copy_rays(const HitBlock& block, std::uint32_t instance, const ExactHits& seen,
+                           ExactHits& exact) {
   for (unsigned i = 0; i < kLanes; ++i) {
     const bool is_its = block.instance[i] == instance;
     exact.origin.x[i] = is_its ? seen.origin.x[i] : exact.origin.x[i];
@@ -42,7 +42,7 @@ GLIDAR_SIMD void take_rays(const HitBlock& block, std::uint32_t instance, const 
 }
 
 /// The same plane for all lanes.
-void repeat_plane(const TrianglePlane& plane, ExactBlock& exact) {
+void repeat_plane(const TrianglePlane& plane, ExactHits& exact) {
   exact.normal.x.at.fill(plane.normal.x());
   exact.normal.y.at.fill(plane.normal.y());
   exact.normal.z.at.fill(plane.normal.z());
@@ -50,7 +50,7 @@ void repeat_plane(const TrianglePlane& plane, ExactBlock& exact) {
 }
 
 /// cosine = n.d, distance = (offset - n.o) / (n.d), as distance_to().
-GLIDAR_SIMD void intersect_planes(ExactBlock& e) {
+GLIDAR_SIMD void intersect_planes(ExactHits& e) {
   for (unsigned i = 0; i < kLanes; ++i) {
     const double above =
         e.offset[i] - (e.normal.x[i] * e.origin.x[i] + e.normal.y[i] * e.origin.y[i] +
@@ -63,15 +63,16 @@ GLIDAR_SIMD void intersect_planes(ExactBlock& e) {
 }
 
 /// Front normals of one instance into the sensor's frame, turned towards the sensor.
-GLIDAR_SIMD void turn_to_sensor(const Eigen::Matrix3d& sensor_from_object, const Lanes3<double>& in,
-                                const Lanes<double>& cosine, Lanes3<float>& out) {
-  Lanes3<double> turned;
-  rotate(sensor_from_object, in, turned);
+GLIDAR_SIMD void orient_to_sensor(const Eigen::Matrix3d& sensor_from_object,
+                                  const Lanes3<double>& in, const Lanes<double>& cosine,
+                                  Lanes3<float>& out) {
+  Lanes3<double> in_sensor;
+  rotate(sensor_from_object, in, in_sensor);
   for (unsigned i = 0; i < kLanes; ++i) {
     const double sign = cosine[i] > 0.0 ? -1.0 : 1.0;
-    out.x[i] = static_cast<float>(sign * turned.x[i]);
-    out.y[i] = static_cast<float>(sign * turned.y[i]);
-    out.z[i] = static_cast<float>(sign * turned.z[i]);
+    out.x[i] = static_cast<float>(sign * in_sensor.x[i]);
+    out.y[i] = static_cast<float>(sign * in_sensor.y[i]);
+    out.z[i] = static_cast<float>(sign * in_sensor.z[i]);
   }
 }
 
@@ -108,9 +109,9 @@ InstanceView view_of(const Instance& instance, const Mesh& mesh, const Pose& wor
 }
 
 Eigen::Matrix<double, 3, 4> sensor_from_object(const InstanceView& view) {
-  const Eigen::Matrix3d turn = view.scale * view.object_from_sensor.transpose();
+  const Eigen::Matrix3d rotation = view.scale * view.object_from_sensor.transpose();
   Eigen::Matrix<double, 3, 4> matrix;
-  matrix << turn, -(turn * view.sensor_in_object);
+  matrix << rotation, -(rotation * view.sensor_in_object);
   return matrix;
 }
 
@@ -146,26 +147,26 @@ Resolver::Resolver(const Scene& scene) : scene_(scene), colours_(scene) {
   planes_.reserve(scene.meshes.size());
   for (const Mesh& mesh : scene.meshes) {
     planes_.push_back(triangle_planes(mesh));
-    twins_.push_back(first_twins(mesh));
-    distinct_.push_back(without_copies(mesh, twins_.back()));
+    first_coincident_.push_back(find_first_coincident(mesh));
+    distinct_.push_back(distinct_triangles(mesh, first_coincident_.back()));
   }
   for (const Instance& instance : scene.instances) {
     if (has_mask(scene, instance)) distinct_[instance.mesh].clear();  // holes of copies may differ
   }
-  known_.reserve(scene.instances.size());
+  instances_.reserve(scene.instances.size());
   for (std::size_t i = 0; i < scene.instances.size(); ++i) {
     const Instance& instance = scene.instances[i];
     const Mesh& mesh = scene.meshes[instance.mesh];
-    const std::vector<std::uint32_t>& twins = twins_[instance.mesh];
+    const std::vector<std::uint32_t>& first_coincident = first_coincident_[instance.mesh];
     // With a mask, twins may differ in their holes.
-    const bool may_swap = !twins.empty() && !has_mask(scene, instance);
-    known_.push_back(
+    const bool has_duplicates = !first_coincident.empty() && !has_mask(scene, instance);
+    instances_.push_back(
         {.mesh = &mesh,
          .triangles = mesh.triangles.data(),
          .positions_m = mesh.positions_m.data(),
          .normals = mesh.normals.empty() ? nullptr : mesh.normals.data(),
          .planes = planes_[instance.mesh].data(),
-         .twins = may_swap ? twins.data() : nullptr,
+         .first_coincident = has_duplicates ? first_coincident.data() : nullptr,
          .has_normal_map = std::any_of(instance.materials.begin(), instance.materials.end(),
                                        [&](std::uint32_t material) {
                                          return has_normal_map(scene.materials[material], mesh);
@@ -188,7 +189,7 @@ void Resolver::prefetch_corners(const HitBlock& block, const HitFieldMask& field
   if (!needs_corners(fields)) return;
   const bool with_normals = needs_normals(fields);
   for_lanes(block.mask, [&](unsigned i) {
-    const Known& of = known_[block.instance[i]];
+    const InstanceData& of = instances_[block.instance[i]];
     for (const std::uint32_t vertex : of.triangles[block.primitive[i]]) {
       __builtin_prefetch(of.positions_m + vertex);
       if (with_normals && of.normals != nullptr) __builtin_prefetch(of.normals + vertex);
@@ -196,7 +197,7 @@ void Resolver::prefetch_corners(const HitBlock& block, const HitFieldMask& field
   });
 }
 
-void Resolver::measure(const BeamBlock& beams, HitBlock& block, ExactBlock& exact) const {
+void Resolver::intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exact) const {
   const auto first = static_cast<unsigned>(std::countr_zero(block.mask));
   for (unsigned i = 0; i < kLanes; ++i) {
     if ((block.mask >> i & 1U) != 0) continue;
@@ -213,18 +214,18 @@ void Resolver::measure(const BeamBlock& beams, HitBlock& block, ExactBlock& exac
     }
   }
   rays_in(views_[block.instance[0]], beams, exact.origin, exact.direction);
-  ExactBlock seen;
-  for (std::uint32_t rest = others_than(block, block.instance[0]); rest != 0;) {
+  ExactHits seen;
+  for (std::uint32_t rest = lanes_not_on(block, block.instance[0]); rest != 0;) {
     const std::uint32_t instance = block.instance[static_cast<unsigned>(std::countr_zero(rest))];
     rays_in(views_[instance], beams, seen.origin, seen.direction);
-    take_rays(block, instance, seen, exact);
-    rest &= others_than(block, instance);
+    copy_rays(block, instance, seen, exact);
+    rest &= lanes_not_on(block, instance);
   }
   intersect_planes(exact);
-  measure_grazing(*this, block, exact);
+  intersect_grazing(*this, block, exact);
 }
 
-void Resolver::write_ranges(const HitBlock& block, const ExactBlock& exact, Hits& hits) const {
+void Resolver::write_ranges(const HitBlock& block, const ExactHits& exact, Hits& hits) const {
   if (block.is_run && is_one_instance(block)) {
     const auto first = static_cast<std::ptrdiff_t>(block.beam[0]);
     const double scale = views_[block.instance[0]].scale;
@@ -243,7 +244,7 @@ void Resolver::write_ranges(const HitBlock& block, const ExactBlock& exact, Hits
 }
 
 void Resolver::write(const Beams& beams, const HitFieldMask& fields, const HitBlock& block,
-                     const ExactBlock& exact, Hits& hits) const {
+                     const ExactHits& exact, Hits& hits) const {
   write_ranges(block, exact, hits);
   const bool has_more = fields.incidence || fields.depth || fields.object_point;
   for_lanes(has_more ? block.mask : 0, [&](unsigned i) {
@@ -265,21 +266,22 @@ void Resolver::write_directions(const HitBlock& block, const Lanes3<double>& fro
                                 const Lanes<double>& cosine,
                                 std::vector<Eigen::Vector3f>& column) const {
   if (is_one_instance(block)) {
-    Lanes3<float> turned;
-    turn_to_sensor(views_[block.instance[0]].object_from_sensor.transpose(), front, cosine, turned);
-    for_lanes(block.mask, [&](unsigned i) { column[block.beam[i]] = turned.get(i); });
+    Lanes3<float> in_sensor;
+    orient_to_sensor(views_[block.instance[0]].object_from_sensor.transpose(), front, cosine,
+                     in_sensor);
+    for_lanes(block.mask, [&](unsigned i) { column[block.beam[i]] = in_sensor.get(i); });
     return;
   }
   for_lanes(block.mask, [&](unsigned i) {
-    const Eigen::Vector3d turned =
+    const Eigen::Vector3d in_sensor =
         views_[block.instance[i]].object_from_sensor.transpose() * front.get(i);
-    column[block.beam[i]] = (cosine[i] > 0.0 ? -turned : turned).cast<float>();
+    column[block.beam[i]] = (cosine[i] > 0.0 ? -in_sensor : in_sensor).cast<float>();
   });
 }
 
 void Resolver::gather(const HitBlock& block, bool with_normals, Corners& corners) const {
   for (unsigned i = 0; i < kLanes; ++i) {
-    const Known& of = known_[block.instance[i]];
+    const InstanceData& of = instances_[block.instance[i]];
     const Triangle& triangle = of.triangles[block.primitive[i]];
     corners.position_m.set(i, of.positions_m, triangle);
     if (!with_normals) continue;
@@ -291,10 +293,10 @@ void Resolver::gather(const HitBlock& block, bool with_normals, Corners& corners
 }
 
 void Resolver::write_shading(const HitFieldMask& fields, const HitBlock& block,
-                             const ExactBlock& exact, const Weights& weights, Hits& hits) const {
+                             const ExactHits& exact, const Weights& weights, Hits& hits) const {
   Lanes3<double> smooth;
   blend_normals(weights.normals, weights.w1, weights.w2, exact.normal, smooth);
-  bend_normals(block, weights.w1, weights.w2, smooth);
+  apply_normal_maps(block, weights.w1, weights.w2, smooth);
   if (fields.shading) {
     Lanes<float> cosine;
     cosines(exact, smooth, cosine);
@@ -304,13 +306,13 @@ void Resolver::write_shading(const HitFieldMask& fields, const HitBlock& block,
 }
 
 void Resolver::write_surface(const HitFieldMask& fields, const HitBlock& block,
-                             const ExactBlock& exact, Hits& hits) const {
+                             const ExactHits& exact, Hits& hits) const {
   const bool with_normals = needs_normals(fields);
   Corners corners;
   Lanes<float> w1;
   Lanes<float> w2;
   gather(block, with_normals, corners);
-  weigh(exact, corners.position_m, w1, w2);
+  interpolate_weights(exact, corners.position_m, w1, w2);
   if (fields.barycentrics) {
     for_lanes(block.mask, [&](unsigned i) { hits.barycentrics[block.beam[i]] = {w1[i], w2[i]}; });
   }
@@ -318,20 +320,20 @@ void Resolver::write_surface(const HitFieldMask& fields, const HitBlock& block,
   if (SurfaceColours::needed(fields)) colours_.write(fields, block, w1, w2, hits);
 }
 
-SurfacePlace Resolver::place_of(const HitBlock& block, unsigned lane, const Lanes<float>& w1,
-                                const Lanes<float>& w2) const {
+SurfacePoint Resolver::surface_point_at(const HitBlock& block, unsigned lane,
+                                        const Lanes<float>& w1, const Lanes<float>& w2) const {
   return {mesh(block.instance[lane]), scene_.instances[block.instance[lane]], block.primitive[lane],
           Eigen::Vector2f(w1[lane], w2[lane])};
 }
 
-void Resolver::bend_normals(const HitBlock& block, const Lanes<float>& w1, const Lanes<float>& w2,
-                            Lanes3<double>& normals) const {
+void Resolver::apply_normal_maps(const HitBlock& block, const Lanes<float>& w1,
+                                 const Lanes<float>& w2, Lanes3<double>& normals) const {
   for_lanes(block.mask, [&](unsigned i) {
-    if (!known_[block.instance[i]].has_normal_map) return;
-    const SurfacePlace place = place_of(block, i, w1, w2);
-    if (!has_normal_map(material_at(scene_, place), place.mesh)) return;
+    if (!instances_[block.instance[i]].has_normal_map) return;
+    const SurfacePoint surface_point = surface_point_at(block, i, w1, w2);
+    if (!has_normal_map(material_at(scene_, surface_point), surface_point.mesh)) return;
     const Eigen::Vector3f smooth = normals.get(i).cast<float>();
-    normals.set(i, bent_normal(scene_, place, smooth).cast<double>());
+    normals.set(i, apply_normal_map(scene_, surface_point, smooth).cast<double>());
   });
 }
 

@@ -19,13 +19,13 @@ namespace glidar {
 /// For meshes with triangles that lie on each other, corner on corner (a sheet modelled twice): per
 /// triangle the first of its kind, so that every renderer tells the same one. Empty when all
 /// differ.
-std::vector<std::uint32_t> first_twins(const Mesh& mesh);
+std::vector<std::uint32_t> find_first_coincident(const Mesh& mesh);
 
 /// The triangles of a mesh without copies: those that an earlier triangle equals corner on corner
 /// and in its sense of rotation are left out. Rising indices; empty when there are no copies.
-/// `firsts`: first_twins(mesh).
-std::vector<std::uint32_t> without_copies(const Mesh& mesh,
-                                          const std::vector<std::uint32_t>& firsts);
+/// `firsts`: find_first_coincident(mesh).
+std::vector<std::uint32_t> distinct_triangles(const Mesh& mesh,
+                                              const std::vector<std::uint32_t>& firsts);
 
 /// True when a material of the instance has an alpha mask.
 bool has_mask(const Scene& scene, const Instance& instance);
@@ -71,7 +71,7 @@ void rays_in(const InstanceView& view, const BeamBlock& beams, Lanes3<double>& o
              Lanes3<double>& direction);
 
 /// The exact geometry of a block's hits, in the objects' frames and units.
-struct ExactBlock {
+struct ExactHits {
   Lanes3<double> normal;     ///< of the triangle's front
   Lanes3<double> origin;     ///< of the beam
   Lanes3<double> direction;  ///< of the beam
@@ -106,15 +106,18 @@ class Resolver {
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const InstanceView& view(std::uint32_t instance) const { return views_[instance]; }
   [[nodiscard]] const TrianglePlane& plane(std::uint32_t instance, std::uint32_t primitive) const {
-    return known_[instance].planes[primitive];
+    return instances_[instance].planes[primitive];
   }
-  [[nodiscard]] const Mesh& mesh(std::uint32_t instance) const { return *known_[instance].mesh; }
+  [[nodiscard]] const Mesh& mesh(std::uint32_t instance) const {
+    return *instances_[instance].mesh;
+  }
 
   /// The triangle to tell for one found: itself, or the first of those that lie on it. Sides count
   /// when back faces are culled, so then it is itself.
-  [[nodiscard]] std::uint32_t told(std::uint32_t instance, std::uint32_t primitive) const {
-    const std::uint32_t* twins = known_[instance].twins;
-    return twins == nullptr ? primitive : twins[primitive];
+  [[nodiscard]] std::uint32_t canonical_primitive(std::uint32_t instance,
+                                                  std::uint32_t primitive) const {
+    const std::uint32_t* first_coincident = instances_[instance].first_coincident;
+    return first_coincident == nullptr ? primitive : first_coincident[primitive];
   }
 
   /// The triangles of a mesh that a cast may report; empty: all of them.
@@ -123,14 +126,16 @@ class Resolver {
   }
 
   /// True when a material of the instance has an alpha mask.
-  [[nodiscard]] bool is_masked(std::uint32_t instance) const { return known_[instance].is_masked; }
+  [[nodiscard]] bool is_masked(std::uint32_t instance) const {
+    return instances_[instance].is_masked;
+  }
 
   /// Asks the memory for a lane's triangle.
   void prefetch(const HitBlock& block, unsigned lane, bool with_corners) const {
     const std::uint32_t primitive = block.primitive[lane];
     __builtin_prefetch(&plane(block.instance[lane], primitive));
     if (!with_corners) return;
-    __builtin_prefetch(known_[block.instance[lane]].triangles + primitive);
+    __builtin_prefetch(instances_[block.instance[lane]].triangles + primitive);
   }
 
   /// Asks the memory for the corners of a block's triangles, as far as the fields need them.
@@ -138,14 +143,14 @@ class Resolver {
 
   /// Exact range and incidence of a block with at least one hit. Lanes without a hit take the ids
   /// of one that has.
-  void measure(const BeamBlock& beams, HitBlock& block, ExactBlock& exact) const;
+  void intersect(const BeamBlock& beams, HitBlock& block, ExactHits& exact) const;
 
   /// Writes the columns of a measured block.
   void write(const Beams& beams, const HitFieldMask& fields, const HitBlock& block,
-             const ExactBlock& exact, Hits& hits) const;
+             const ExactHits& exact, Hits& hits) const;
 
  private:
-  void write_ranges(const HitBlock& block, const ExactBlock& exact, Hits& hits) const;
+  void write_ranges(const HitBlock& block, const ExactHits& exact, Hits& hits) const;
   void write_directions(const HitBlock& block, const Lanes3<double>& front,
                         const Lanes<double>& cosine, std::vector<Eigen::Vector3f>& column) const;
   struct Corners {
@@ -159,32 +164,32 @@ class Resolver {
     const Lanes<float>& w2;
     const CornerBlock& normals;
   };
-  void write_shading(const HitFieldMask& fields, const HitBlock& block, const ExactBlock& exact,
+  void write_shading(const HitFieldMask& fields, const HitBlock& block, const ExactHits& exact,
                      const Weights& weights, Hits& hits) const;
-  void write_surface(const HitFieldMask& fields, const HitBlock& block, const ExactBlock& exact,
+  void write_surface(const HitFieldMask& fields, const HitBlock& block, const ExactHits& exact,
                      Hits& hits) const;
-  [[nodiscard]] SurfacePlace place_of(const HitBlock& block, unsigned lane, const Lanes<float>& w1,
-                                      const Lanes<float>& w2) const;
-  void bend_normals(const HitBlock& block, const Lanes<float>& w1, const Lanes<float>& w2,
-                    Lanes3<double>& normals) const;
+  [[nodiscard]] SurfacePoint surface_point_at(const HitBlock& block, unsigned lane,
+                                              const Lanes<float>& w1, const Lanes<float>& w2) const;
+  void apply_normal_maps(const HitBlock& block, const Lanes<float>& w1, const Lanes<float>& w2,
+                         Lanes3<double>& normals) const;
 
   /// Where an instance's data lie, for few hops from a hit to its triangle.
-  struct Known {
+  struct InstanceData {
     const Mesh* mesh;
     const Triangle* triangles;
     const Eigen::Vector3f* positions_m;
     const Eigen::Vector3f* normals;  ///< nullptr: flat shading
     const TrianglePlane* planes;
-    const std::uint32_t* twins;  ///< nullptr: all triangles differ
-    bool has_normal_map;         ///< in some slot
-    bool is_masked;              ///< see Resolver::is_masked()
+    const std::uint32_t* first_coincident;  ///< nullptr: all triangles differ
+    bool has_normal_map;                    ///< in some slot
+    bool is_masked;                         ///< see Resolver::is_masked()
   };
 
   const Scene& scene_;
-  std::vector<std::vector<TrianglePlane>> planes_;    ///< per mesh
-  std::vector<std::vector<std::uint32_t>> twins_;     ///< per mesh
-  std::vector<std::vector<std::uint32_t>> distinct_;  ///< per mesh, see distinct()
-  std::vector<Known> known_;                          ///< per instance
+  std::vector<std::vector<TrianglePlane>> planes_;            ///< per mesh
+  std::vector<std::vector<std::uint32_t>> first_coincident_;  ///< per mesh
+  std::vector<std::vector<std::uint32_t>> distinct_;          ///< per mesh, see distinct()
+  std::vector<InstanceData> instances_;                       ///< per instance
   SurfaceColours colours_;
   std::vector<InstanceView> views_;  ///< per instance
 };

@@ -9,8 +9,8 @@
 
 namespace glidar {
 
-GLIDAR_SIMD void weigh(const ExactBlock& e, const CornerBlock& c, Lanes<float>& w1,
-                       Lanes<float>& w2) {
+GLIDAR_SIMD void interpolate_weights(const ExactHits& e, const CornerBlock& c, Lanes<float>& w1,
+                                     Lanes<float>& w2) {
   constexpr float kThird = 1.0F / 3.0F;
   for (unsigned i = 0; i < kLanes; ++i) {
     const CornerAreas areas = areas_around(e, c, i);
@@ -38,7 +38,7 @@ GLIDAR_SIMD void blend_normals(const CornerBlock& n, const Lanes<float>& w1, con
   }
 }
 
-GLIDAR_SIMD void cosines(const ExactBlock& e, const Lanes3<double>& normal, Lanes<float>& out) {
+GLIDAR_SIMD void cosines(const ExactHits& e, const Lanes3<double>& normal, Lanes<float>& out) {
   for (unsigned i = 0; i < kLanes; ++i) {
     const double along = normal.x[i] * e.direction.x[i] + normal.y[i] * e.direction.y[i] +
                          normal.z[i] * e.direction.z[i];

@@ -8,13 +8,14 @@
 namespace glidar {
 
 /// Weights of corners 1 and 2 of the hit point.
-void weigh(const ExactBlock& e, const CornerBlock& c, Lanes<float>& w1, Lanes<float>& w2);
+void interpolate_weights(const ExactHits& e, const CornerBlock& c, Lanes<float>& w1,
+                         Lanes<float>& w2);
 
 /// w0 a + w1 b + w2 c, normalised; `flat` where that has no length.
 void blend_normals(const CornerBlock& n, const Lanes<float>& w1, const Lanes<float>& w2,
                    const Lanes3<double>& flat, Lanes3<double>& out);
 
 /// Cosines between -beams and normals that lie on the side of the plane's, turned to the sensor.
-void cosines(const ExactBlock& e, const Lanes3<double>& normal, Lanes<float>& out);
+void cosines(const ExactHits& e, const Lanes3<double>& normal, Lanes<float>& out);
 
 }  // namespace glidar

@@ -104,10 +104,10 @@ PixelLine project(Eigen::Vector3d from, Eigen::Vector3d to, const PinholeIntrins
   return {.from = pixel(from), .to = pixel(to), .is_seen = true};
 }
 
-/// Calls found(row, column) for the pixel centres of a part within the band around a line.
-template <class Found>
+/// Calls visit(row, column) for the pixel centres of a part within the band around a line.
+template <class Visit>
 void for_pixels_by(const PixelLine& line, double band_px, const PixelRect& part,
-                   const Found& found) {
+                   const Visit& visit) {
   const Eigen::Vector2d way = line.to - line.from;
   const int along = std::abs(way.x()) >= std::abs(way.y()) ? 0 : 1;
   const int across = 1 - along;
@@ -126,7 +126,7 @@ void for_pixels_by(const PixelLine& line, double band_px, const PixelRect& part,
     if (nearest < first[across] || nearest > last[across]) continue;
     const auto a = static_cast<std::size_t>(at);
     const auto b = static_cast<std::size_t>(nearest);
-    along == 0 ? found(b, a) : found(a, b);
+    along == 0 ? visit(b, a) : visit(a, b);
   }
 }
 

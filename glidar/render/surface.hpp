@@ -10,7 +10,7 @@
 namespace glidar {
 
 /// A place on a mesh: a triangle and the weights of its corners 1 and 2.
-struct SurfacePlace {
+struct SurfacePoint {
   const Mesh& mesh;
   const Instance& instance;
   std::uint32_t triangle;
@@ -18,20 +18,20 @@ struct SurfacePlace {
 };
 
 /// The material at a place.
-const Material& material_at(const Scene& scene, const SurfacePlace& place);
+const Material& material_at(const Scene& scene, const SurfacePoint& surface_point);
 
 /// The texture coordinate at a place; zero where the mesh has none.
-Eigen::Vector2f uv_at(const SurfacePlace& place, std::uint8_t uv_set);
+Eigen::Vector2f uv_at(const SurfacePoint& surface_point, std::uint8_t uv_set);
 
 /// True when the material's alpha mask lets a beam through at the place.
-bool is_cut_out(const Scene& scene, const SurfacePlace& place);
+bool is_cut_out(const Scene& scene, const SurfacePoint& surface_point);
 
 /// True when a normal map bends the normals at a place.
 bool has_normal_map(const Material& material, const Mesh& mesh);
 
 /// The unit normal `smooth` bent by the material's normal map, in the object frame on the front
 /// side.
-Eigen::Vector3f bent_normal(const Scene& scene, const SurfacePlace& place,
-                            const Eigen::Vector3f& smooth);
+Eigen::Vector3f apply_normal_map(const Scene& scene, const SurfacePoint& surface_point,
+                                 const Eigen::Vector3f& smooth);
 
 }  // namespace glidar

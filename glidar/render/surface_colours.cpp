@@ -168,11 +168,12 @@ void SurfaceColours::write_noise_scale(const Group& group, Hits& hits) const {
     float& scale = hits.noise_scale[block.beam[i]];
     scale = material.noise_scale;
     if (!material.noise_texture.used()) return;
-    const SurfacePlace place{*group.slot.mesh,
-                             scene_.instances[block.instance[i]],
-                             block.primitive[i],
-                             {group.w1[i], group.w2[i]}};
-    scale = noise_scale_at(material, scene_.textures, uv_at(place, material.noise_texture.uv_set));
+    const SurfacePoint surface_point{*group.slot.mesh,
+                                     scene_.instances[block.instance[i]],
+                                     block.primitive[i],
+                                     {group.w1[i], group.w2[i]}};
+    scale = noise_scale_at(material, scene_.textures,
+                           uv_at(surface_point, material.noise_texture.uv_set));
   });
 }
 

@@ -8,13 +8,13 @@
 
 namespace glidar {
 
-TriangleNumbers::TriangleNumbers(const Scene& scene, const char* renderer)
+TriangleIds::TriangleIds(const Scene& scene, const char* renderer)
     : drawn_(scene.instances.size(), nullptr) {
   std::uint64_t next = 0;
   for (const Instance& instance : scene.instances) {
     first_.push_back(static_cast<std::uint32_t>(next));
     next += scene.meshes[instance.mesh].triangles.size();
-    if (next < kNoNumber) continue;
+    if (next < kNoTriangleId) continue;
     throw Error({.where = std::string(renderer) + " renderer",
                  .found = "too many triangles: " + std::to_string(next),
                  .allowed = "up to 2147483647, those of every instance counted",

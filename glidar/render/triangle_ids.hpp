@@ -19,22 +19,22 @@ struct PixelRect {
 };
 
 /// Set in the number of a triangle that the pixel's beam certainly does not pass by.
-inline constexpr std::uint32_t kCertain = std::uint32_t{1} << 31U;
+inline constexpr std::uint32_t kCertainFlag = std::uint32_t{1} << 31U;
 
 /// Set in the number of a pixel where another triangle is so close that the beam has to be cast.
-inline constexpr std::uint32_t kContested = std::uint32_t{1} << 30U;
+inline constexpr std::uint32_t kContestedFlag = std::uint32_t{1} << 30U;
 
 /// The bits of a number that are a triangle's.
-inline constexpr std::uint32_t kNumberBits = kContested - 1;
+inline constexpr std::uint32_t kTriangleIdMask = kContestedFlag - 1;
 
 /// "No triangle": nothing was drawn at the pixel. Greater than all triangles' numbers.
-inline constexpr std::uint32_t kNoNumber = kNumberBits;
+inline constexpr std::uint32_t kNoTriangleId = kTriangleIdMask;
 
 /// The triangles of all instances, numbered through, so that 30 bits hold both.
-class TriangleNumbers {
+class TriangleIds {
  public:
   /// Throws Error, naming the renderer, when the scene has more triangles than numbers.
-  TriangleNumbers(const Scene& scene, const char* renderer);
+  TriangleIds(const Scene& scene, const char* renderer);
 
   /// The number of an instance's first triangle.
   [[nodiscard]] std::uint32_t first(std::uint32_t instance) const { return first_[instance]; }
@@ -46,16 +46,16 @@ class TriangleNumbers {
   }
 
   /// What a number of the picture tells.
-  [[nodiscard]] Found found(std::uint32_t number) const {
-    if (number == kNoNumber) return {};
-    number &= kNumberBits;
+  [[nodiscard]] PrimitiveRef decode(std::uint32_t id) const {
+    if (id == kNoTriangleId) return {};
+    id &= kTriangleIdMask;
     const std::uint32_t instance =
         first_.size() == 1
             ? 0
-            : static_cast<std::uint32_t>(std::upper_bound(first_.begin(), first_.end(), number) -
+            : static_cast<std::uint32_t>(std::upper_bound(first_.begin(), first_.end(), id) -
                                          first_.begin() - 1);
-    const std::uint32_t place = number - first_[instance];
-    return {instance, drawn_[instance] == nullptr ? place : drawn_[instance][place]};
+    const std::uint32_t index = id - first_[instance];
+    return {instance, drawn_[instance] == nullptr ? index : drawn_[instance][index]};
   }
 
  private:

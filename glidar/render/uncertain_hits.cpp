@@ -12,7 +12,7 @@ namespace {
 // of the farthest corner's distance.
 constexpr float kAreaRounding = 0x1p-20F;
 
-GLIDAR_SIMD std::uint32_t outside(const ExactBlock& e, const CornerBlock& c) {
+GLIDAR_SIMD std::uint32_t outside(const ExactHits& e, const CornerBlock& c) {
   Lanes<std::uint32_t> bits;
   for (unsigned i = 0; i < kLanes; ++i) {
     const CornerAreas areas = areas_around(e, c, i);
@@ -29,7 +29,8 @@ GLIDAR_SIMD std::uint32_t outside(const ExactBlock& e, const CornerBlock& c) {
 
 }  // namespace
 
-std::uint32_t doubtful(const Resolver& resolver, const HitBlock& block, const ExactBlock& exact) {
+std::uint32_t uncertain_lanes(const Resolver& resolver, const HitBlock& block,
+                              const ExactHits& exact) {
   CornerBlock corners;
   for (unsigned i = 0; i < kLanes; ++i) {
     const Mesh& mesh = resolver.mesh(block.instance[i]);

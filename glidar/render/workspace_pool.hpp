@@ -11,16 +11,16 @@ namespace glidar {
 
 /// Work spaces that threads take and give back, so that a later cast finds them ready.
 template <class T>
-class Pool {
+class WorkspacePool {
  public:
-  std::unique_ptr<T> take() {
+  std::unique_ptr<T> acquire() {
     const std::scoped_lock lock(mutex_);
     if (free_.empty()) return std::make_unique<T>();
     std::unique_ptr<T> taken = std::move(free_.back());
     free_.pop_back();
     return taken;
   }
-  void give_back(std::unique_ptr<T> taken) {
+  void release(std::unique_ptr<T> taken) {
     const std::scoped_lock lock(mutex_);
     free_.push_back(std::move(taken));
   }

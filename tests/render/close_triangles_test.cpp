@@ -22,17 +22,17 @@ class CloseSheetsTest : public ::testing::Test {
     resolver_ = std::make_unique<Resolver>(scene_);
     const rays::SceneTrees trees(*resolver_, thread_pool_);
     const std::vector<Eigen::AlignedBox3d> boxes = {local_box(scene_.meshes[0])};
-    CloseSheets sheets(*resolver_, trees, boxes, thread_pool_);
+    CloseTriangles close_triangles(*resolver_, trees, boxes, thread_pool_);
     const Beams beams = camera_beams(100, 100, 100.0);
     const CastRequest request{
         .beams = beams,
         .world_from_sensor = look_at(distance_m * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::Zero(),
                                      Eigen::Vector3d::UnitY())};
     resolver_->set_poses(request.world_from_sensor, {});
-    sheets.prepare(request, kBand_px);
+    close_triangles.prepare(request, kBand_px);
     std::size_t close = 0;
     for (std::uint32_t i = 0; i < scene_.meshes[0].triangles.size(); ++i) {
-      close += sheets.is_close(0, i) ? 1 : 0;
+      close += close_triangles.is_close(0, i) ? 1 : 0;
     }
     return close;
   }

@@ -10,7 +10,7 @@ namespace {
 using Indices = std::vector<std::uint32_t>;
 
 Indices distinct(const Mesh& mesh) {
-  return without_copies(mesh, first_twins(mesh));
+  return distinct_triangles(mesh, find_first_coincident(mesh));
 }
 
 /// Corners of a square, each twice.

@@ -19,7 +19,7 @@ GridWindow window(const Scene& scene, const Beams& beams, const Pose& world_from
   resolver.set_poses(world_from_sensor, {});
   PlanePoints points;
   find_plane_points(beams, points);
-  return window_on(resolver, boxes, present, points);
+  return visible_window(resolver, boxes, present, points);
 }
 
 bool holds(const GridWindow& window, double row, double col) {

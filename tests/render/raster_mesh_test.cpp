@@ -27,16 +27,16 @@ TEST(RasterPackedMesh, HoldsEveryTriangleWithAreaOnceNearItsClustersMiddle) {
   const PackedMesh packed(mesh);
   EXPECT_EQ(packed.clusters, (mesh.triangles.size() - 1 + 63) / 64);
   std::multiset<std::uint32_t> found;
-  for (std::size_t i = 0; i < packed.packs.size(); ++i) {
-    const Pack& pack = packed.packs[i];
-    const Boxes& boxes = packed.boxes[i / kPacksPerCluster / kLanes];
-    const auto lane = static_cast<unsigned>(i / kPacksPerCluster % kLanes);
-    std::set<std::uint32_t> own(pack.primitive.begin(), pack.primitive.end());
+  for (std::size_t i = 0; i < packed.packets.size(); ++i) {
+    const TrianglePacket& packet = packed.packets[i];
+    const BoxPacket& boxes = packed.boxes[i / kPacketsPerCluster / kLanes];
+    const auto lane = static_cast<unsigned>(i / kPacketsPerCluster % kLanes);
+    std::set<std::uint32_t> own(packet.primitive.begin(), packet.primitive.end());
     found.insert(own.begin(), own.end());
     for (unsigned t = 0; t < kLanes; ++t) {
       const Eigen::Vector3d offset =
-          corner_of(mesh, pack.primitive[t], 2) - boxes.middle.get(lane).cast<double>();
-      EXPECT_LT((pack.corners.c2.get(t).cast<double>() - offset).norm(), 1e-7);
+          corner_of(mesh, packet.primitive[t], 2) - boxes.middle.get(lane).cast<double>();
+      EXPECT_LT((packet.corners.c2.get(t).cast<double>() - offset).norm(), 1e-7);
       EXPECT_TRUE((offset.cwiseAbs().array() <= boxes.half.get(lane).cast<double>().array()).all());
     }
   }
@@ -66,7 +66,7 @@ DepthRange depths_of(const Scene& scene, const InstanceView& view) {
   const Mesh& mesh = scene.meshes[0];
   const Eigen::AlignedBox3d box = bounds(mesh);
   extend_depths(view, {box.min() - mesh.origin_m, box.max() - mesh.origin_m}, near_m, far_m);
-  return hugging(near_m, far_m);
+  return tight_depth_range(near_m, far_m);
 }
 
 TEST(RasterSight, HoldsEveryCornerOfAClusterFromOutsideAndWithin) {
@@ -87,25 +87,25 @@ TEST(RasterSight, HoldsEveryCornerOfAClusterFromOutsideAndWithin) {
         view_of(scene.instances[0], mesh, scene.instances[0].world_from_object, pose);
     const PixelView pixels = pixel_view(view, *beams.pinhole);
     const Nearness nearness(depths_of(scene, view));
-    Sights sights;
+    ClusterBounds bounds;
     for (std::uint32_t cluster = 0; cluster < packed.clusters; ++cluster) {
       const unsigned lane = cluster % kLanes;
       if (lane == 0) {
-        look_at_boxes(pixels, nearness, window, packed.boxes[cluster / kLanes], sights);
+        bound_clusters(pixels, nearness, window, packed.boxes[cluster / kLanes], bounds);
       }
-      const Pack& pack = packed.packs[cluster * kPacksPerCluster];
-      for (const std::uint32_t triangle : pack.primitive) {
+      const TrianglePacket& packet = packed.packets[cluster * kPacketsPerCluster];
+      for (const std::uint32_t triangle : packet.primitive) {
         const Eigen::Vector3d p =
             pixels.pixel_from_object * corner_of(mesh, triangle, 0).homogeneous();
         const double col = p.x() / p.z();
         const double row = p.y() / p.z();
         if (p.z() <= 0.0 || col < 0.0 || col > 319.0 || row < 0.0 || row > 239.0) continue;
         ++within;
-        EXPECT_LE(sights.left[lane], std::ceil(col));
-        EXPECT_GE(sights.right[lane], std::floor(col));
-        EXPECT_LE(sights.top[lane], std::ceil(row));
-        EXPECT_GE(sights.bottom[lane], std::floor(row));
-        EXPECT_GE(static_cast<double>(sights.nearness[lane]), nearness.at(p.z()));
+        EXPECT_LE(bounds.left[lane], std::ceil(col));
+        EXPECT_GE(bounds.right[lane], std::floor(col));
+        EXPECT_LE(bounds.top[lane], std::ceil(row));
+        EXPECT_GE(bounds.bottom[lane], std::floor(row));
+        EXPECT_GE(static_cast<double>(bounds.nearness[lane]), nearness.at(p.z()));
       }
     }
   }
@@ -121,11 +121,12 @@ TEST(RasterSight, ClustersBehindAndBesideAreNotSeen) {
        {Eigen::Vector3d(16.0, 0.0, 0.0), Eigen::Vector3d(4.0, 8.0, 0.0)}) {
     const Pose pose = look_at({8.0, 0.0, 0.0}, target, Eigen::Vector3d::UnitZ());
     const InstanceView view = view_of(scene.instances[0], scene.meshes[0], Pose::Identity(), pose);
-    Sights sights;
-    for (const Boxes& boxes : packed.boxes) {
-      look_at_boxes(pixel_view(view, *beams.pinhole), Nearness({1.0, 10.0}), window, boxes, sights);
+    ClusterBounds bounds;
+    for (const BoxPacket& boxes : packed.boxes) {
+      bound_clusters(pixel_view(view, *beams.pinhole), Nearness({1.0, 10.0}), window, boxes,
+                     bounds);
       for (unsigned i = 0; i < kLanes; ++i) {
-        EXPECT_TRUE(sights.left[i] > sights.right[i] || sights.top[i] > sights.bottom[i]);
+        EXPECT_TRUE(bounds.left[i] > bounds.right[i] || bounds.top[i] > bounds.bottom[i]);
       }
     }
   }
@@ -134,19 +135,19 @@ TEST(RasterSight, ClustersBehindAndBesideAreNotSeen) {
 TEST(RasterParts, EveryPixelOfTheWindowIsWrittenOnceAndDrawnWithThoseAround) {
   for (const GridWindow& window : {GridWindow{0, 480, 0, 640}, GridWindow{7, 300, 33, 34},
                                    GridWindow{100, 2000, 5, 600}, GridWindow{479, 480, 639, 640}}) {
-    Parts parts;
-    parts.cut(window, 480, 640);
+    TileGrid parts;
+    parts.build(window, 480, 640);
     std::vector<int> written(480 * 640, 0);
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      const Part part = parts.part(i);
-      EXPECT_LE(part.drawn.rows, static_cast<std::uint32_t>(Canvas::kSide));
-      EXPECT_LE(part.drawn.cols, static_cast<std::uint32_t>(Canvas::kSide));
-      EXPECT_EQ(part.drawn.first_row, std::max(part.written.first_row, 1U) - 1);
-      EXPECT_EQ(part.drawn.first_col + part.drawn.cols,
-                std::min(part.written.first_col + part.written.cols + 1, 640U));
-      for (std::uint32_t row = 0; row < part.written.rows; ++row) {
-        for (std::uint32_t col = 0; col < part.written.cols; ++col) {
-          ++written[(part.written.first_row + row) * 640 + part.written.first_col + col];
+      const Tile tile = parts.tile(i);
+      EXPECT_LE(tile.drawn.rows, static_cast<std::uint32_t>(TileBuffer::kSide));
+      EXPECT_LE(tile.drawn.cols, static_cast<std::uint32_t>(TileBuffer::kSide));
+      EXPECT_EQ(tile.drawn.first_row, std::max(tile.written.first_row, 1U) - 1);
+      EXPECT_EQ(tile.drawn.first_col + tile.drawn.cols,
+                std::min(tile.written.first_col + tile.written.cols + 1, 640U));
+      for (std::uint32_t row = 0; row < tile.written.rows; ++row) {
+        for (std::uint32_t col = 0; col < tile.written.cols; ++col) {
+          ++written[(tile.written.first_row + row) * 640 + tile.written.first_col + col];
         }
       }
     }
@@ -161,27 +162,27 @@ TEST(RasterParts, EveryPixelOfTheWindowIsWrittenOnceAndDrawnWithThoseAround) {
 }
 
 TEST(RasterParts, TellEachPartWhatItSees) {
-  Parts parts;
-  parts.cut({0, 480, 0, 640}, 480, 640);
+  TileGrid parts;
+  parts.build({0, 480, 0, 640}, 480, 640);
   std::mt19937 random(2);
-  std::vector<Sighting> sightings;
+  std::vector<VisibleCluster> clusters;
   for (std::uint32_t i = 0; i < 500; ++i) {
     const auto left = static_cast<std::int32_t>(random() % 600);
     const auto top = static_cast<std::int32_t>(random() % 400);
-    sightings.push_back({.instance = 0,
-                         .cluster = i,
-                         .left = left,
-                         .right = left + static_cast<std::int32_t>(random() % 40),
-                         .top = top,
-                         .bottom = top + static_cast<std::int32_t>(random() % 80),
-                         .nearness = 0.0F});
+    clusters.push_back({.instance = 0,
+                        .cluster = i,
+                        .left = left,
+                        .right = left + static_cast<std::int32_t>(random() % 40),
+                        .top = top,
+                        .bottom = top + static_cast<std::int32_t>(random() % 80),
+                        .nearness = 0.0F});
   }
-  parts.sort(sightings);
+  parts.bin_clusters(clusters);
   for (std::size_t i = 0; i < parts.size(); ++i) {
-    const PixelRect drawn = parts.part(i).drawn;
-    const std::span<const std::uint32_t> seen = parts.seen_in(i);
-    for (std::uint32_t s = 0; s < sightings.size(); ++s) {
-      const Sighting& at = sightings[s];
+    const PixelRect drawn = parts.tile(i).drawn;
+    const std::span<const std::uint32_t> seen = parts.clusters_in(i);
+    for (std::uint32_t s = 0; s < clusters.size(); ++s) {
+      const VisibleCluster& at = clusters[s];
       const bool meets = at.left < static_cast<int>(drawn.first_col + drawn.cols) &&
                          at.right >= static_cast<int>(drawn.first_col) &&
                          at.top < static_cast<int>(drawn.first_row + drawn.rows) &&

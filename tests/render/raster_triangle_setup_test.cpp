@@ -11,7 +11,7 @@
 namespace glidar::raster {
 namespace {
 
-constexpr CanvasRect kAll{0, 59, 0, 49};
+constexpr PixelBounds kAll{0, 59, 0, 49};
 
 const Nearness& nearness() {
   static const Nearness between({.near_m = 1.0, .far_m = 20.0});
@@ -20,14 +20,14 @@ const Nearness& nearness() {
 
 /// How far a pixel lies inside a triangle, pixels; the corners in front of the sensor.
 double inside_px(const Eigen::Matrix3d& corners, int col, int row) {
-  Eigen::Matrix<double, 2, 3> spots = corners.colwise().hnormalized();
-  const Eigen::Vector2d e1 = spots.col(1) - spots.col(0);
-  const Eigen::Vector2d e2 = spots.col(2) - spots.col(0);
-  if (e1.x() * e2.y() - e1.y() * e2.x() < 0.0) spots.col(1).swap(spots.col(2));
+  Eigen::Matrix<double, 2, 3> projections = corners.colwise().hnormalized();
+  const Eigen::Vector2d e1 = projections.col(1) - projections.col(0);
+  const Eigen::Vector2d e2 = projections.col(2) - projections.col(0);
+  if (e1.x() * e2.y() - e1.y() * e2.x() < 0.0) projections.col(1).swap(projections.col(2));
   double smallest = 1e9;
   for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector2d edge = spots.col((k + 1) % 3) - spots.col(k);
-    const Eigen::Vector2d from = Eigen::Vector2d(col, row) - spots.col(k);
+    const Eigen::Vector2d edge = projections.col((k + 1) % 3) - projections.col(k);
+    const Eigen::Vector2d from = Eigen::Vector2d(col, row) - projections.col(k);
     smallest = std::min(smallest, (edge.x() * from.y() - edge.y() * from.x()) / edge.norm());
   }
   return smallest;
@@ -45,33 +45,34 @@ double nearness_at(const Eigen::Matrix3d& corners, int col, int row) {
 /// row, 1) times depth.
 std::array<Eigen::Matrix3d, kLanes> triangles(double size_px, unsigned seed) {
   std::mt19937 random(seed);
-  std::uniform_real_distribution<double> part(-1.0, 1.0);
+  std::uniform_real_distribution<double> tile(-1.0, 1.0);
   std::array<Eigen::Matrix3d, kLanes> all;
   for (Eigen::Matrix3d& corners : all) {
-    const Eigen::Vector2d middle(30.0 + 33.0 * part(random), 25.0 + 28.0 * part(random));
+    const Eigen::Vector2d middle(30.0 + 33.0 * tile(random), 25.0 + 28.0 * tile(random));
     for (int k = 0; k < 3; ++k) {
-      const Eigen::Vector2d spot = middle + size_px * Eigen::Vector2d(part(random), part(random));
-      corners.col(k) = (8.0 + part(random)) * spot.homogeneous();
+      const Eigen::Vector2d projection =
+          middle + size_px * Eigen::Vector2d(tile(random), tile(random));
+      corners.col(k) = (8.0 + tile(random)) * projection.homogeneous();
     }
   }
   return all;
 }
 
 /// The same for single precision, relative to a middle.
-Aim aim_at(const std::array<Eigen::Matrix3d, kLanes>& all, CornerBlock& corners) {
+TileTransform tile_transform(const std::array<Eigen::Matrix3d, kLanes>& all, CornerBlock& corners) {
   const Eigen::Vector3d middle(8.0 * 30.0, 8.0 * 25.0, 8.0);
   for (unsigned i = 0; i < kLanes; ++i) {
     corners.c0.set(i, (all[i].col(0) - middle).cast<float>());
     corners.c1.set(i, (all[i].col(1) - middle).cast<float>());
     corners.c2.set(i, (all[i].col(2) - middle).cast<float>());
   }
-  return {.turn = {1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F},
-          .column = static_cast<float>(middle.x()),
+  return {.matrix = {1.0F, 0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.0F, 0.0F, 1.0F},
+          .column_at_depth = static_cast<float>(middle.x()),
           .row = static_cast<float>(middle.y()),
           .depth = static_cast<float>(middle.z()),
           .before_far = static_cast<float>(nearness().far_m - middle.z()),
           .factor = static_cast<float>(nearness().factor),
-          .least_depth = 1.0F,
+          .min_depth = 1.0F,
           .last_col = static_cast<float>(kAll.right),
           .last_row = static_cast<float>(kAll.bottom),
           .cull_back_faces = false};
@@ -79,23 +80,23 @@ Aim aim_at(const std::array<Eigen::Matrix3d, kLanes>& all, CornerBlock& corners)
 
 /// What a shape tells of a pixel.
 struct Told {
-  bool covered;
+  bool coverage;
   bool certain;
   double nearness;
 };
 
-Told tell(const Shape& s, int col, int row) {
+Told tell(const TriangleSetup& s, int col, int row) {
   const auto across = static_cast<float>(col - s.rect.left);
   const auto down = static_cast<float>(row - s.rect.top);
-  Told told{.covered = col >= s.rect.left && col <= s.rect.right && row >= s.rect.top &&
-                       row <= s.rect.bottom,
+  Told told{.coverage = col >= s.rect.left && col <= s.rect.right && row >= s.rect.top &&
+                        row <= s.rect.bottom,
             .certain = true,
             .nearness = static_cast<double>(s.nearness_at_corner + s.nearness_per_col * across +
                                             s.nearness_per_row * down)};
   for (std::size_t k = 0; k < 3; ++k) {
-    const float border = s.at_corner[k] + s.per_col[k] * across + s.per_row[k] * down;
-    told.covered = told.covered && border >= 0.0F;
-    told.certain = told.certain && border >= s.certain[k];
+    const float edge = s.at_corner[k] + s.per_col[k] * across + s.per_row[k] * down;
+    told.coverage = told.coverage && edge >= 0.0F;
+    told.certain = told.certain && edge >= s.certain[k];
   }
   return told;
 }
@@ -105,14 +106,14 @@ void expect_true(const Told& told, const Eigen::Matrix3d& corners, int col, int 
   const double inside = inside_px(corners, col, row);
   // The room is along the larger of row and column, up to sqrt(2) times as wide; twice for
   // rounding.
-  constexpr double kClear_px = 3.0 * static_cast<double>(kBorderRoom_px);
+  constexpr double kClear_px = 3.0 * static_cast<double>(kEdgeMargin_px);
   if (inside >= 0.0) {
-    EXPECT_TRUE(told.covered) << inside;
+    EXPECT_TRUE(told.coverage) << inside;
   }
   if (inside < -kClear_px) {
-    EXPECT_FALSE(told.covered) << inside;
+    EXPECT_FALSE(told.coverage) << inside;
   }
-  if (!told.covered) return;
+  if (!told.coverage) return;
   if (told.certain) {
     EXPECT_GE(inside, 0.0);
   }
@@ -126,29 +127,29 @@ TEST(RasterFootprints, CoverThePixelsWhoseBeamsMeetTheTriangles) {
     for (unsigned seed = 0; seed < 40; ++seed) {
       const auto all = triangles(size_px, seed);
       CornerBlock corners;
-      const Aim aim = aim_at(all, corners);
-      Footprints footprints;
-      find_footprints(aim, corners, footprints);
-      Lanes<std::uint32_t> covered;
-      const std::uint32_t due = cover(footprints, covered);
+      const TileTransform transform = tile_transform(all, corners);
+      TriangleSetups footprints;
+      set_up_triangles(transform, corners, footprints);
+      Lanes<std::uint32_t> coverage;
+      const std::uint32_t pending = coverage_masks(footprints, coverage);
       for (unsigned lane = 0; lane < kLanes; ++lane) {
-        const auto size = static_cast<Size>(footprints.size[lane]);
-        ASSERT_NE(size, Size::large);
-        const Shape shape = footprints.shape(lane, 0);
+        const auto size = static_cast<SizeClass>(footprints.size[lane]);
+        ASSERT_NE(size, SizeClass::large);
+        const TriangleSetup setup = footprints.setup(lane, 0);
         for (int row = 0; row <= kAll.bottom; ++row) {
           for (int col = 0; col <= kAll.right; ++col) {
-            Told told = size == Size::nothing ? Told{} : tell(shape, col, row);
-            if (size == Size::small) {
-              const int bit = (row - shape.rect.top) * kSmall + col - shape.rect.left;
-              const bool is_in = told.covered;
-              told.covered = is_in && (covered[lane] >> bit & 1U) != 0;
-              told.certain = is_in && (covered[lane] >> (bit + 16) & 1U) != 0;
-              EXPECT_EQ(told.covered, is_in);
+            Told told = size == SizeClass::none ? Told{} : tell(setup, col, row);
+            if (size == SizeClass::small) {
+              const int bit = (row - setup.rect.top) * kSmall + col - setup.rect.left;
+              const bool is_in = told.coverage;
+              told.coverage = is_in && (coverage[lane] >> bit & 1U) != 0;
+              told.certain = is_in && (coverage[lane] >> (bit + 16) & 1U) != 0;
+              EXPECT_EQ(told.coverage, is_in);
             }
             expect_true(told, all[lane], col, row);
-            if (told.covered) {
+            if (told.coverage) {
               ++covered_pixels;
-              EXPECT_NE(due >> lane & 1U, 0U);
+              EXPECT_NE(pending >> lane & 1U, 0U);
             }
           }
         }
@@ -161,10 +162,10 @@ TEST(RasterFootprints, CoverThePixelsWhoseBeamsMeetTheTriangles) {
 TEST(RasterFootprints, DoublePrecisionCoversTheSamePixels) {
   for (const double size_px : {5.0, 20.0, 400.0}) {
     for (const Eigen::Matrix3d& corners : triangles(size_px, 9)) {
-      const std::optional<Shape> shape = shape_of(corners, nearness(), kAll, false);
+      const std::optional<TriangleSetup> setup = set_up_triangle(corners, nearness(), kAll, false);
       for (int row = 0; row <= kAll.bottom; ++row) {
         for (int col = 0; col <= kAll.right; ++col) {
-          expect_true(shape ? tell(*shape, col, row) : Told{}, corners, col, row);
+          expect_true(setup ? tell(*setup, col, row) : Told{}, corners, col, row);
         }
       }
     }
@@ -181,16 +182,16 @@ TEST(RasterFootprints, CornersBehindTheSensorAreWelcome) {
   };
   Eigen::Matrix3d corners;
   corners << pixel({-90.0, 1.0, -30.0}), pixel({90.0, 1.0, -30.0}), pixel({0.0, 1.0, 40.0});
-  const std::optional<Shape> shape = shape_of(corners, nearness(), kAll, false);
-  ASSERT_TRUE(shape);
+  const std::optional<TriangleSetup> setup = set_up_triangle(corners, nearness(), kAll, false);
+  ASSERT_TRUE(setup);
   for (int row = 0; row <= kAll.bottom; ++row) {
     for (int col = 0; col <= kAll.right; ++col) {
       const double depth = focal_px / (row - centre.y());  // where the beam meets the floor
       const double x = (col - centre.x()) / focal_px * depth;
       const double half_width = 90.0 * (40.0 - depth) / 70.0;
       const bool hits = depth > 0.0 && std::abs(x) < half_width;
-      const Told told = tell(*shape, col, row);
-      EXPECT_EQ(told.covered, hits) << col << ' ' << row;
+      const Told told = tell(*setup, col, row);
+      EXPECT_EQ(told.coverage, hits) << col << ' ' << row;
       if (hits) {
         EXPECT_NEAR(told.nearness, nearness().at(depth), 1e-5);
       }
@@ -201,20 +202,20 @@ TEST(RasterFootprints, CornersBehindTheSensorAreWelcome) {
 TEST(RasterFootprints, CullBacksWhenAsked) {
   const auto all = triangles(6.0, 1);
   CornerBlock corners;
-  Aim aim = aim_at(all, corners);
-  Footprints both;
-  Footprints culled;
-  find_footprints(aim, corners, both);
-  aim.cull_back_faces = true;
-  find_footprints(aim, corners, culled);
+  TileTransform transform = tile_transform(all, corners);
+  TriangleSetups both;
+  TriangleSetups culled;
+  set_up_triangles(transform, corners, both);
+  transform.cull_back_faces = true;
+  set_up_triangles(transform, corners, culled);
   std::size_t dropped = 0;
   for (unsigned lane = 0; lane < kLanes; ++lane) {
     const bool is_back = all[lane].determinant() > 0.0;
-    const bool was_there = both.size[lane] != static_cast<int>(Size::nothing);
-    EXPECT_EQ(culled.size[lane] != static_cast<int>(Size::nothing), was_there && !is_back);
+    const bool was_there = both.size[lane] != static_cast<int>(SizeClass::none);
+    EXPECT_EQ(culled.size[lane] != static_cast<int>(SizeClass::none), was_there && !is_back);
     dropped += static_cast<std::size_t>(was_there && is_back);
     if (is_back) {
-      EXPECT_FALSE(shape_of(all[lane], nearness(), kAll, true));
+      EXPECT_FALSE(set_up_triangle(all[lane], nearness(), kAll, true));
     }
   }
   EXPECT_GT(dropped, 2U);
@@ -227,11 +228,11 @@ TEST(RasterFootprints, LeaveToDoublePrecisionWhatSinglePrecisionCannotTell) {
   all[1].col(0) = 8.0 * Eigen::Vector3d(20.0, 20.0, 1.0);
   all[2].col(0) = 0.5 * Eigen::Vector3d(30.0, 20.0, 1.0);  // nearer than its cluster allows
   CornerBlock corners;
-  const Aim aim = aim_at(all, corners);
-  Footprints footprints;
-  find_footprints(aim, corners, footprints);
+  const TileTransform transform = tile_transform(all, corners);
+  TriangleSetups footprints;
+  set_up_triangles(transform, corners, footprints);
   for (unsigned lane = 0; lane < 3; ++lane) {
-    EXPECT_EQ(footprints.size[lane], static_cast<int>(Size::large)) << lane;
+    EXPECT_EQ(footprints.size[lane], static_cast<int>(SizeClass::large)) << lane;
   }
 }
 

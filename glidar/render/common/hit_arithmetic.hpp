@@ -45,7 +45,7 @@ double determinant(const Sheared& p, const Sheared& q) {
 
 /// What the rounding of two corners may change of their determinant, in roundings: each coordinate
 /// is wrong by less than 2^-52 of |x| + |y| + |z|.
-inline double determinant_room(const Sheared& p, const Sheared& q) {
+inline double determinant_margin(const Sheared& p, const Sheared& q) {
   const double width_p = std::abs(p.x) + std::abs(p.y);
   const double width_q = std::abs(q.x) + std::abs(q.y);
   return width_p * (width_q + std::abs(q.z)) + width_q * (width_p + std::abs(p.z));
@@ -89,12 +89,12 @@ inline double largest(double a, double b, double c) {
 /// is then within kTouchingHeight of the corners' size.
 inline bool is_touching(const Sheared& a, const Sheared& b, const Sheared& c, double volume) {
   if (std::min(std::min(a.z, b.z), c.z) > 0.0 || largest(a.z, b.z, c.z) < 0.0) return false;
-  const double room = sum_in_any_order(determinant_room(c, b) * std::abs(a.z),
-                                       determinant_room(a, c) * std::abs(b.z),
-                                       determinant_room(b, a) * std::abs(c.z));
+  const double margin = sum_in_any_order(determinant_margin(c, b) * std::abs(a.z),
+                                         determinant_margin(a, c) * std::abs(b.z),
+                                         determinant_margin(b, a) * std::abs(c.z));
   const auto size = [](const Sheared& p) { return std::abs(p.x) + std::abs(p.y) + std::abs(p.z); };
   const double area = largest(area_at(a, b, c), area_at(b, c, a), area_at(c, a, b));
-  return std::abs(volume) <= kTouching * room &&
+  return std::abs(volume) <= kTouching * margin &&
          std::abs(volume) <= kTouchingHeight * largest(size(a), size(b), size(c)) * area;
 }
 

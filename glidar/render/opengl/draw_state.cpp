@@ -26,7 +26,7 @@ void set_pixel_store() {
 }
 
 /// What this program never changes, but whoever else has the context may have.
-void forget_others() {
+void reset_state() {
   for (const GLenum feature : {GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_BLEND, GL_COLOR_LOGIC_OP,
                                GL_RASTERIZER_DISCARD, GL_POLYGON_OFFSET_FILL, GL_PRIMITIVE_RESTART,
                                GL_DEPTH_CLAMP, GL_FRAMEBUFFER_SRGB, GL_DITHER}) {
@@ -42,7 +42,7 @@ void forget_others() {
 
 }  // namespace
 
-FreshState::FreshState(Context& context) : use_(context) {
+ScopedDrawState::ScopedDrawState(Context& context) : use_(context) {
   if (epoxy_gl_version() < kMinVersion) {
     throw Error({.where = "OpenGL",
                  .found = "a context of version " + std::to_string(epoxy_gl_version() / 10) + "." +
@@ -50,10 +50,10 @@ FreshState::FreshState(Context& context) : use_(context) {
                  .allowed = "3.3 or later",
                  .remedy = ""});
   }
-  forget_others();
+  reset_state();
 }
 
-FreshState::~FreshState() {
+ScopedDrawState::~ScopedDrawState() {
   glBindFramebuffer(GL_FRAMEBUFFER, 0);
   glBindVertexArray(0);
   glUseProgram(0);

@@ -17,12 +17,12 @@ bool has_clip_control();
 
 /// A context is current in this thread while this lives, and its state is that of a new one as far
 /// as drawing and reading depend on it; so is it afterwards where drawing changes it.
-class FreshState {
+class ScopedDrawState {
  public:
-  explicit FreshState(Context& context);
-  ~FreshState();
-  FreshState(const FreshState&) = delete;
-  FreshState& operator=(const FreshState&) = delete;
+  explicit ScopedDrawState(Context& context);
+  ~ScopedDrawState();
+  ScopedDrawState(const ScopedDrawState&) = delete;
+  ScopedDrawState& operator=(const ScopedDrawState&) = delete;
 
  private:
   ScopedContext use_;

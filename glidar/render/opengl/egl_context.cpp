@@ -53,7 +53,7 @@ bool has_libraries() {
   return can_open("libEGL.so.1") && (can_open("libOpenGL.so.0") || can_open("libGL.so.1"));
 }
 
-bool names(const char* extensions, std::string_view wanted) {
+bool has_extension(const char* extensions, std::string_view wanted) {
   const std::string padded = " " + std::string(extensions == nullptr ? "" : extensions) + " ";
   return padded.find(" " + std::string(wanted) + " ") != std::string::npos;
 }
@@ -63,18 +63,18 @@ std::vector<EGLDeviceEXT> devices() {
   std::vector<EGLDeviceEXT> found(kMax);
   EGLint count = 0;
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
-  const bool can_list =
-      names(extensions, "EGL_EXT_platform_device") &&
-      (names(extensions, "EGL_EXT_device_enumeration") || names(extensions, "EGL_EXT_device_base"));
+  const bool can_list = has_extension(extensions, "EGL_EXT_platform_device") &&
+                        (has_extension(extensions, "EGL_EXT_device_enumeration") ||
+                         has_extension(extensions, "EGL_EXT_device_base"));
   if (!can_list || eglQueryDevicesEXT(kMax, found.data(), &count) == EGL_FALSE) count = 0;
   found.resize(static_cast<std::size_t>(count));
   return found;
 }
 
-std::string in_words(EGLDeviceEXT device) {
+std::string describe(EGLDeviceEXT device) {
   const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
-  if (names(extensions, "EGL_MESA_device_software")) return "drawing in software";
-  if (names(extensions, "EGL_EXT_device_drm")) {
+  if (has_extension(extensions, "EGL_MESA_device_software")) return "drawing in software";
+  if (has_extension(extensions, "EGL_EXT_device_drm")) {
     const char* file = eglQueryDeviceStringEXT(device, EGL_DRM_DEVICE_FILE_EXT);
     if (file != nullptr) return file;
   }
@@ -87,7 +87,7 @@ EGLDisplay display_of(EGLDeviceEXT device) {
     return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr);
   }
   const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
-  if (!names(extensions, "EGL_MESA_platform_surfaceless")) return EGL_NO_DISPLAY;
+  if (!has_extension(extensions, "EGL_MESA_platform_surfaceless")) return EGL_NO_DISPLAY;
   return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr);
 }
 
@@ -122,9 +122,9 @@ EGLContext make_context(EGLDisplay display) {
     return EGL_NO_CONTEXT;
   }
   const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
-  if (!names(extensions, "EGL_KHR_surfaceless_context") ||
-      !(names(extensions, "EGL_KHR_no_config_context") ||
-        names(extensions, "EGL_MESA_configless_context"))) {
+  if (!has_extension(extensions, "EGL_KHR_surfaceless_context") ||
+      !(has_extension(extensions, "EGL_KHR_no_config_context") ||
+        has_extension(extensions, "EGL_MESA_configless_context"))) {
     return EGL_NO_CONTEXT;
   }
   const EGLenum api_before = eglQueryAPI();
@@ -160,7 +160,7 @@ std::vector<EGLDeviceEXT> candidates(std::optional<std::uint32_t> chosen) {
 std::vector<std::string> graphics_devices() {
   std::vector<std::string> all;
   if (!has_libraries()) return all;
-  for (EGLDeviceEXT device : devices()) all.push_back(in_words(device));
+  for (EGLDeviceEXT device : devices()) all.push_back(describe(device));
   return all;
 }
 

@@ -41,14 +41,14 @@ class OpenglRenderer final : public Renderer {
       boxes_.push_back(local_box(mesh));
       edges_.push_back(mesh_edges(mesh));
     }
-    sheets_.emplace(resolver_, search_.trees(), boxes_, thread_pool_);
-    const opengl::FreshState state(*context_);
-    gpu_ = std::make_unique<OnDevice>(scene);
-    silhouettes_.emplace(doubt_px());
+    close_triangles_.emplace(resolver_, search_.trees(), boxes_, thread_pool_);
+    const opengl::ScopedDrawState state(*context_);
+    gpu_ = std::make_unique<GpuResources>(scene);
+    silhouettes_.emplace(edge_uncertainty_px());
   }
 
   ~OpenglRenderer() override {
-    const opengl::FreshState state(*context_);
+    const opengl::ScopedDrawState state(*context_);
     gpu_.reset();
   }
 
@@ -66,18 +66,18 @@ class OpenglRenderer final : public Renderer {
       check(request, resolver_.scene());
       check_pinhole(request.beams, "opengl");
     }
-    pictures_.clear();
+    tiles_.clear();
     for (std::size_t i = 0; i < requests.size(); ++i) plan(requests[i], i, *hits[i]);
-    opengl::group(pictures_, groups_);
-    if (!groups_.empty()) draw_and_write(requests, hits);
+    opengl::group_tiles(tiles_, batches_);
+    if (!batches_.empty()) draw_and_write(requests, hits);
   }
 
  private:
   /// What lives in the graphics device's memory.
-  struct OnDevice {
-    explicit OnDevice(const Scene& scene) : drawing(scene) {}
-    opengl::TriangleDrawing drawing;
-    std::array<opengl::NumberTarget, kTargets> targets;
+  struct GpuResources {
+    explicit GpuResources(const Scene& scene) : drawing(scene) {}
+    opengl::TriangleIdDrawing drawing;
+    std::array<opengl::TriangleIdTarget, kTargets> targets;
   };
 
   /// Makes room for a cast's hits and adds its pictures, if there is anything to draw.
@@ -86,7 +86,7 @@ class OpenglRenderer final : public Renderer {
     resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
     const DepthRange depths = depths_of(request, resolver_, boxes_);
     if (!depths.is_empty() && request.beams.size() > 0) {
-      opengl::add_parts(request.beams, cast, depths, pictures_);
+      opengl::add_tiles(request.beams, cast, depths, tiles_);
       return;
     }
     write_misses(request.fields, 0, request.beams.size(), hits);
@@ -98,72 +98,72 @@ class OpenglRenderer final : public Renderer {
   /// is drawn. A driver in software draws behind our back but copies before our eyes: so each is
   /// copied only after the next was given to draw.
   void draw_and_write(std::span<const CastRequest> requests, std::span<Hits* const> hits) {
-    const opengl::FreshState state(*context_);
-    for (std::size_t step = 0; step < groups_.size() + 2; ++step) {
-      if (step < groups_.size()) draw(requests, groups_[step], target(step));
-      if (step >= 1 && step - 1 < groups_.size()) target(step - 1).start_reading();
+    const opengl::ScopedDrawState state(*context_);
+    for (std::size_t step = 0; step < batches_.size() + 2; ++step) {
+      if (step < batches_.size()) draw(requests, batches_[step], target(step));
+      if (step >= 1 && step - 1 < batches_.size()) target(step - 1).start_reading();
       if (step < 2) continue;
-      opengl::NumberTarget& done = target(step - 2);
-      write(requests, groups_[step - 2], done.numbers(), hits);
+      opengl::TriangleIdTarget& done = target(step - 2);
+      write(requests, batches_[step - 2], done.triangle_ids(), hits);
       done.end_reading();
     }
     count_.reset();
   }
 
-  opengl::NumberTarget& target(std::size_t group) { return gpu_->targets[group % kTargets]; }
+  opengl::TriangleIdTarget& target(std::size_t batch) { return gpu_->targets[batch % kTargets]; }
 
-  void draw(std::span<const CastRequest> requests, const opengl::PictureGroup& group,
-            opengl::NumberTarget& target) {
-    target.begin(opengl::size_of(pictures_, group));
-    for (std::uint32_t i = 0; i < group.count; ++i) {
-      const opengl::Picture& picture = pictures_[group.first + i];
-      const CastRequest& request = requests[picture.cast];
+  void draw(std::span<const CastRequest> requests, const opengl::TileBatch& batch,
+            opengl::TriangleIdTarget& target) {
+    target.begin(opengl::size_of(tiles_, batch));
+    for (std::uint32_t i = 0; i < batch.count; ++i) {
+      const opengl::RenderTile& tile = tiles_[batch.first + i];
+      const CastRequest& request = requests[tile.cast];
       resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
       target.draw_into(i);
-      gpu_->drawing.draw(request, resolver_, picture.rect, picture.depths);
+      gpu_->drawing.draw(request, resolver_, tile.rect, tile.depths);
     }
     glFlush();
   }
 
-  void write(std::span<const CastRequest> requests, const opengl::PictureGroup& group,
-             std::span<const std::uint32_t> numbers, std::span<Hits* const> hits) {
-    const std::size_t pixels = opengl::size_of(pictures_, group).pixels();
-    for (std::size_t i = 0; i < group.count; ++i) {
-      const opengl::Picture& picture = pictures_[group.first + i];
-      const CastRequest& request = requests[picture.cast];
+  void write(std::span<const CastRequest> requests, const opengl::TileBatch& batch,
+             std::span<const std::uint32_t> triangle_ids, std::span<Hits* const> hits) {
+    const std::size_t pixels = opengl::size_of(tiles_, batch).pixels();
+    for (std::size_t i = 0; i < batch.count; ++i) {
+      const opengl::RenderTile& tile = tiles_[batch.first + i];
+      const CastRequest& request = requests[tile.cast];
       resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
       find_plane_points(request.beams, points_);
-      const bool is_first_part = picture.rect.first_row == 0 && picture.rect.first_col == 0;
+      const bool is_first_part = tile.rect.first_row == 0 && tile.rect.first_col == 0;
       if (is_first_part) count_.emplace(request.progress, request.beams.size());
       search_.prepare(request);
       if (!overlaps_) overlaps_.emplace(resolver_, search_.trees());
       overlaps_->prepare(request);
-      sheets_->prepare(request, silhouettes_->band_px());
-      search_known(request, picture);
-      write_picture({.request = request,
-                     .resolver = resolver_,
-                     .triangles = gpu_->drawing.numbers(),
-                     .points = points_,
-                     .drawn = picture.rect,
-                     .numbers = numbers.subspan(i * pixels, pixels),
-                     .part = picture.rect,
-                     .hits = *hits[picture.cast],
-                     .search = search_.beams(),
-                     .overlaps = *overlaps_,
-                     .sheets = &*sheets_,
-                     .known = known_},
-                    thread_pool_, *count_);
-      const bool is_last_part = picture.rect.first_row + picture.rect.rows == request.beams.rows &&
-                                picture.rect.first_col + picture.rect.cols == request.beams.cols;
+      close_triangles_->prepare(request, silhouettes_->band_px());
+      cast_uncertain_beams(request, tile);
+      write_image({.request = request,
+                   .resolver = resolver_,
+                   .triangles = gpu_->drawing.triangle_ids(),
+                   .points = points_,
+                   .drawn = tile.rect,
+                   .triangle_ids = triangle_ids.subspan(i * pixels, pixels),
+                   .written = tile.rect,
+                   .hits = *hits[tile.cast],
+                   .search = search_.beams(),
+                   .overlaps = *overlaps_,
+                   .close_triangles = &*close_triangles_,
+                   .cast_hits = cast_hits_},
+                  thread_pool_, *count_);
+      const bool is_last_part = tile.rect.first_row + tile.rect.rows == request.beams.rows &&
+                                tile.rect.first_col + tile.rect.cols == request.beams.cols;
       if (is_last_part) count_->finish();
     }
   }
 
   /// True when surfaces may be so near to the sensor that the picture's nearest plane cuts them
   /// off, or that rounding moves them to the other side of the sensor.
-  [[nodiscard]] bool is_something_at_sensor(const CastRequest& request,
-                                            const DepthRange& depths) const {
-    constexpr double kNearPart = 0x1p-19;  // some times hugging()'s least part
+  [[nodiscard]] bool is_surface_at_sensor(const CastRequest& request,
+                                          const DepthRange& depths) const {
+    constexpr double kNearPart = 0x1p-19;  // some times tight_depth_range()'s least part
     const double slope = std::max({std::abs(points_.x.front()), std::abs(points_.x.back()),
                                    std::abs(points_.y.front()), std::abs(points_.y.back())});
     if (depths.near_m > kNearPart * depths.far_m) return false;
@@ -182,38 +182,38 @@ class OpenglRenderer final : public Renderer {
   /// Decides the beams for which the picture does not do: those that pass a silhouette so closely
   /// that the driver's rounding may have moved it over them, or all where something is right at the
   /// sensor.
-  void search_known(const CastRequest& request, const opengl::Picture& picture) {
-    if (is_something_at_sensor(request, picture.depths)) {
-      list_beams(request.beams, picture.rect);
-      search_beams(all_beams_);
+  void cast_uncertain_beams(const CastRequest& request, const opengl::RenderTile& tile) {
+    if (is_surface_at_sensor(request, tile.depths)) {
+      list_beams(request.beams, tile.rect);
+      cast_beams(all_beams_);
     } else {
-      search_beams(silhouettes_->find(request, resolver_, edges_, picture.rect, thread_pool_));
+      cast_beams(silhouettes_->find(request, resolver_, edges_, tile.rect, thread_pool_));
     }
   }
 
   /// All of a part of the picture.
-  void list_beams(const Beams& beams, const PixelRect& part) {
+  void list_beams(const Beams& beams, const PixelRect& rect) {
     all_beams_.clear();
-    for (std::size_t row = part.first_row; row < part.first_row + part.rows; ++row) {
-      for (std::size_t col = part.first_col; col < part.first_col + part.cols; ++col) {
+    for (std::size_t row = rect.first_row; row < rect.first_row + rect.rows; ++row) {
+      for (std::size_t col = rect.first_col; col < rect.first_col + rect.cols; ++col) {
         all_beams_.push_back(row * beams.cols + col);
       }
     }
   }
 
-  void search_beams(const std::vector<std::size_t>& beams) {
-    known_.resize(beams.size());
+  void cast_beams(const std::vector<std::size_t>& beams) {
+    cast_hits_.resize(beams.size());
     constexpr std::size_t kBeamsPerTask = 16;
     thread_pool_.parallel_for(beams.size(), kBeamsPerTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
-        known_[i] = {beams[i], search_.beams().find(beams[i])};
+        cast_hits_[i] = {beams[i], search_.beams().find(beams[i])};
       }
     });
   }
 
   /// How far a driver may move a border: corners are rounded to its grid, both across and along,
   /// and rounded in single precision before.
-  static double doubt_px() {
+  static double edge_uncertainty_px() {
     constexpr double kMinSilhouette_px = 1.0 / 128.0;
     GLint bits = 0;
     glGetIntegerv(GL_SUBPIXEL_BITS, &bits);
@@ -224,16 +224,16 @@ class OpenglRenderer final : public Renderer {
   Resolver resolver_;
   rays::SceneSearch search_;
   std::optional<Overlaps> overlaps_;
-  std::optional<CloseSheets> sheets_;
+  std::optional<CloseTriangles> close_triangles_;
   std::vector<Eigen::AlignedBox3d> boxes_;    ///< per mesh, relative to its origin
   std::vector<std::vector<MeshEdge>> edges_;  ///< per mesh
   std::unique_ptr<opengl::Context> context_;
-  std::unique_ptr<OnDevice> gpu_;
-  std::vector<opengl::Picture> pictures_;  ///< of the batch under way
-  std::vector<opengl::PictureGroup> groups_;
+  std::unique_ptr<GpuResources> gpu_;
+  std::vector<opengl::RenderTile> tiles_;  ///< of the batch under way
+  std::vector<opengl::TileBatch> batches_;
   std::optional<SilhouettePixels> silhouettes_;
   std::vector<std::size_t> all_beams_;
-  std::vector<KnownHit> known_;           ///< of the picture whose hits are written
+  std::vector<CastHit> cast_hits_;        ///< of the picture whose hits are written
   PlanePoints points_;                    ///< of the picture whose hits are written
   std::optional<ProgressCounter> count_;  ///< of its cast
 };

@@ -31,20 +31,20 @@ const Scene& checked(const Scene& scene) {
 
 }  // namespace
 
-TriangleDrawing::Drawer TriangleDrawing::make_drawer(const char* mask_macro,
-                                                     const char* depth_macro) {
+TriangleIdDrawing::Drawer TriangleIdDrawing::make_drawer(const char* mask_macro,
+                                                         const char* depth_macro) {
   Drawer drawer{.program = make_program(
                     {.vertex = {shader_text("triangles.vert.glsl")},
                      .fragment = {shader_text("texel.glsl"), shader_text("triangle_ids.frag.glsl")},
                      .macros = {mask_macro, depth_macro}}),
                 .clip_from_object = 0,
-                .first_number = 0};
+                .first_id = 0};
   drawer.clip_from_object = glGetUniformLocation(drawer.program.name(), "clip_from_object");
-  drawer.first_number = glGetUniformLocation(drawer.program.name(), "first_number");
+  drawer.first_id = glGetUniformLocation(drawer.program.name(), "first_id");
   return drawer;
 }
 
-TriangleDrawing::MaskDrawer TriangleDrawing::make_mask_drawer(const char* depth_macro) {
+TriangleIdDrawing::MaskDrawer TriangleIdDrawing::make_mask_drawer(const char* depth_macro) {
   Drawer base = make_drawer("HAS_MASK", depth_macro);
   const GLuint name = base.program.name();
   return {.base = std::move(base),
@@ -56,20 +56,20 @@ TriangleDrawing::MaskDrawer TriangleDrawing::make_mask_drawer(const char* depth_
           .cutoff = glGetUniformLocation(name, "cutoff")};
 }
 
-TriangleDrawing::TriangleDrawing(const Scene& scene)
+TriangleIdDrawing::TriangleIdDrawing(const Scene& scene)
     : scene_(scene),
       has_clip_control_(has_clip_control()),
       buffers_(upload(checked(scene))),
       solid_(make_drawer("IS_SOLID", has_clip_control_ ? "HAS_CLIP_CONTROL" : "WRITES_DEPTH")),
       masked_(make_mask_drawer(has_clip_control_ ? "HAS_CLIP_CONTROL" : "WRITES_DEPTH")),
-      numbers_(scene, "opengl") {
+      triangle_ids_(scene, "opengl") {
   for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
-    numbers_.set_order(i, buffers_.meshes[scene.instances[i].mesh].drawn);
+    triangle_ids_.set_order(i, buffers_.meshes[scene.instances[i].mesh].drawn);
   }
 }
 
-void TriangleDrawing::draw(const CastRequest& request, const Resolver& resolver,
-                           const PixelRect& rect, const DepthRange& depths) const {
+void TriangleIdDrawing::draw(const CastRequest& request, const Resolver& resolver,
+                             const PixelRect& rect, const DepthRange& depths) const {
   set_draw_state(has_clip_control_, request.cull_back_faces);
   for (std::uint32_t i = 0; i < scene_.instances.size(); ++i) {
     if (!is_enabled(request, i)) continue;
@@ -79,8 +79,8 @@ void TriangleDrawing::draw(const CastRequest& request, const Resolver& resolver,
   check_gl("drawing");
 }
 
-void TriangleDrawing::draw_instance(std::uint32_t instance,
-                                    const Eigen::Matrix4f& clip_from_object) const {
+void TriangleIdDrawing::draw_instance(std::uint32_t instance,
+                                      const Eigen::Matrix4f& clip_from_object) const {
   const Instance& placed = scene_.instances[instance];
   const MeshBuffers& mesh = buffers_.meshes[placed.mesh];
   glBindVertexArray(mesh.arrays.name());
@@ -90,13 +90,13 @@ void TriangleDrawing::draw_instance(std::uint32_t instance,
     const Drawer& drawer = is_masked ? masked_.base : solid_;
     glUseProgram(drawer.program.name());
     glUniformMatrix4fv(drawer.clip_from_object, 1, GL_FALSE, clip_from_object.data());
-    glUniform1ui(drawer.first_number, numbers_.first(instance) + range.first);
+    glUniform1ui(drawer.first_id, triangle_ids_.first(instance) + range.first);
     if (is_masked) use_mask(material, mesh);
     draw_triangles(range);
   }
 }
 
-void TriangleDrawing::use_mask(std::uint32_t material, const MeshBuffers& mesh) const {
+void TriangleIdDrawing::use_mask(std::uint32_t material, const MeshBuffers& mesh) const {
   const Material& look = scene_.materials[material];
   const TextureUse& use = look.alpha_texture;
   glUniformMatrix2fv(masked_.uv_scale_rotate, 1, GL_FALSE, use.uv_scale_rotate.data());

@@ -14,24 +14,24 @@
 namespace glidar::opengl {
 
 /// Draws the number of each triangle of a scene where it is seen.
-class TriangleDrawing {
+class TriangleIdDrawing {
  public:
   /// Needs a current context, as everything here does. Throws Error when the scene has more
   /// triangles than numbers.
-  explicit TriangleDrawing(const Scene& scene);
+  explicit TriangleIdDrawing(const Scene& scene);
 
   /// Draws one part of a pinhole's picture into the current target.
   void draw(const CastRequest& request, const Resolver& resolver, const PixelRect& rect,
             const DepthRange& depths) const;
 
-  [[nodiscard]] const TriangleNumbers& numbers() const { return numbers_; }
+  [[nodiscard]] const TriangleIds& triangle_ids() const { return triangle_ids_; }
 
  private:
   /// A program and where its uniforms are.
   struct Drawer {
     Program program;
     GLint clip_from_object;
-    GLint first_number;
+    GLint first_id;
   };
   struct MaskDrawer {
     Drawer base;
@@ -53,7 +53,7 @@ class TriangleDrawing {
   SceneBuffers buffers_;
   Drawer solid_;
   MaskDrawer masked_;
-  TriangleNumbers numbers_;  ///< in the order of MeshBuffers::drawn
+  TriangleIds triangle_ids_;  ///< in the order of MeshBuffers::drawn
 };
 
 }  // namespace glidar::opengl

@@ -16,13 +16,13 @@ GLsizei signed_size(std::uint32_t size) {
 
 }  // namespace
 
-bool NumberTarget::has_room(const PictureSize& size) const {
+bool TriangleIdTarget::has_room(const TileSize& size) const {
   return size.rows <= room_.rows && size.cols <= room_.cols && size.count <= room_.count;
 }
 
-void NumberTarget::make_room(const PictureSize& size) {
+void TriangleIdTarget::make_room(const TileSize& size) {
   room_ = size;
-  glBindTexture(GL_TEXTURE_2D_ARRAY, numbers_.name());
+  glBindTexture(GL_TEXTURE_2D_ARRAY, triangle_ids_.name());
   glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R32UI, signed_size(size.cols), signed_size(size.rows),
                signed_size(size.count), 0, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_MAX_LEVEL, 0);
@@ -33,7 +33,7 @@ void NumberTarget::make_room(const PictureSize& size) {
   frames_.resize(std::max<std::size_t>(frames_.size(), size.count));
   for (std::uint32_t i = 0; i < size.count; ++i) {
     glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frames_[i].name());
-    glFramebufferTextureLayer(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, numbers_.name(), 0,
+    glFramebufferTextureLayer(GL_DRAW_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, triangle_ids_.name(), 0,
                               signed_size(i));
     glFramebufferRenderbuffer(GL_DRAW_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_RENDERBUFFER,
                               depths_.name());
@@ -47,7 +47,7 @@ void NumberTarget::make_room(const PictureSize& size) {
   }
 }
 
-void NumberTarget::begin(const PictureSize& size) {
+void TriangleIdTarget::begin(const TileSize& size) {
   if (is_mapped_) end_reading();  // a cast was broken off
   size_ = size;
   if (!has_room(size)) make_room(size);
@@ -60,16 +60,16 @@ void NumberTarget::begin(const PictureSize& size) {
   check_gl("making room for a picture");
 }
 
-void NumberTarget::draw_into(std::uint32_t picture) {
-  constexpr GLuint kNoNumberYet = kNoNumber;
+void TriangleIdTarget::draw_into(std::uint32_t tile) {
+  constexpr GLuint kEmptyPixel = kNoTriangleId;
   constexpr GLfloat kFarthest = 0.0F;
-  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frames_[picture].name());
+  glBindFramebuffer(GL_DRAW_FRAMEBUFFER, frames_[tile].name());
   glViewport(0, 0, signed_size(size_.cols), signed_size(size_.rows));
-  glClearBufferuiv(GL_COLOR, 0, &kNoNumberYet);
+  glClearBufferuiv(GL_COLOR, 0, &kEmptyPixel);
   glClearBufferfv(GL_DEPTH, 0, &kFarthest);
 }
 
-void NumberTarget::start_reading() {
+void TriangleIdTarget::start_reading() {
   glBindBuffer(GL_PIXEL_PACK_BUFFER, read_.name());
   for (std::size_t i = 0; i < size_.count; ++i) {
     glBindFramebuffer(GL_READ_FRAMEBUFFER, frames_[i].name());
@@ -80,7 +80,7 @@ void NumberTarget::start_reading() {
   glFlush();
 }
 
-std::span<const std::uint32_t> NumberTarget::numbers() {
+std::span<const std::uint32_t> TriangleIdTarget::triangle_ids() {
   const std::size_t count = size_.pixels() * size_.count;
   glBindBuffer(GL_PIXEL_PACK_BUFFER, read_.name());
   const void* start =
@@ -92,7 +92,7 @@ std::span<const std::uint32_t> NumberTarget::numbers() {
   return {static_cast<const std::uint32_t*>(start), count};
 }
 
-void NumberTarget::end_reading() {
+void TriangleIdTarget::end_reading() {
   glBindBuffer(GL_PIXEL_PACK_BUFFER, read_.name());
   glUnmapBuffer(GL_PIXEL_PACK_BUFFER);
   is_mapped_ = false;

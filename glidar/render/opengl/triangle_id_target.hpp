@@ -12,7 +12,7 @@
 namespace glidar::opengl {
 
 /// Pictures of one size.
-struct PictureSize {
+struct TileSize {
   std::uint32_t rows;
   std::uint32_t cols;
   std::uint32_t count;
@@ -23,34 +23,34 @@ struct PictureSize {
 /// Pictures of 32-bit numbers, one per layer of a texture, with depths, and the memory through
 /// which they are read back together. Each lies at the corner of its layer: elsewhere a driver
 /// would round its corners otherwise. No multisampling: a number cannot be averaged.
-class NumberTarget {
+class TriangleIdTarget {
  public:
   /// Makes room for so many pictures.
-  void begin(const PictureSize& size);
+  void begin(const TileSize& size);
 
-  /// Draws into this picture from now on; all its numbers are kNoNumber.
-  void draw_into(std::uint32_t picture);
+  /// Draws into this picture from now on; all its numbers are kNoTriangleId.
+  void draw_into(std::uint32_t tile);
 
   /// Starts to copy the pictures to where the processor reads them. A GPU's driver does not wait.
   void start_reading();
 
   /// Waits for the copy. The numbers, picture by picture and row by row, stay readable until
   /// end_reading().
-  std::span<const std::uint32_t> numbers();
+  std::span<const std::uint32_t> triangle_ids();
   void end_reading();
 
  private:
-  [[nodiscard]] bool has_room(const PictureSize& size) const;
-  void make_room(const PictureSize& size);
+  [[nodiscard]] bool has_room(const TileSize& size) const;
+  void make_room(const TileSize& size);
 
-  GlTexture numbers_;
+  GlTexture triangle_ids_;
   Renderbuffer depths_;  ///< of all pictures in turn
   std::vector<Framebuffer> frames_;
   Buffer read_;
   GLsizeiptr read_bytes_ = 0;
   bool is_mapped_ = false;
-  PictureSize room_{};
-  PictureSize size_{};
+  TileSize room_{};
+  TileSize size_{};
 };
 
 }  // namespace glidar::opengl

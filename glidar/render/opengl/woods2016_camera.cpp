@@ -17,17 +17,17 @@
 namespace glidar {
 namespace {
 
-class OpenglPaperCamera final : public Woods2016Camera {
+class OpenglWoods2016Camera final : public Woods2016Camera {
  public:
-  OpenglPaperCamera(const Scene& scene, const RendererOptions& options,
-                    std::unique_ptr<opengl::Context> context)
+  OpenglWoods2016Camera(const Scene& scene, const RendererOptions& options,
+                        std::unique_ptr<opengl::Context> context)
       : thread_pool_(options.threads), resolver_(scene), context_(std::move(context)) {
-    const opengl::FreshState state(*context_);
-    gpu_ = std::make_unique<OnDevice>(scene);
+    const opengl::ScopedDrawState state(*context_);
+    gpu_ = std::make_unique<GpuResources>(scene);
   }
 
-  ~OpenglPaperCamera() override {
-    const opengl::FreshState state(*context_);
+  ~OpenglWoods2016Camera() override {
+    const opengl::ScopedDrawState state(*context_);
     gpu_.reset();
   }
 
@@ -39,33 +39,33 @@ class OpenglPaperCamera final : public Woods2016Camera {
     resolver_.set_poses(request.world_from_sensor, request.world_from_instance);
     picture.rows = request.beams.rows;
     picture.cols = request.beams.cols;
-    const Woods2016DepthPlanes used = planes ? *planes : hugging_planes(request);
+    const Woods2016DepthPlanes used = planes ? *planes : tight_depth_planes(request);
     picture.near_m = used.near_m;
     picture.far_m = used.far_m;
     if (!(used.far_m > used.near_m)) {
       picture.rgba.assign(std::size_t{4} * picture.rows * picture.cols, 0);
       return;
     }
-    const opengl::FreshState state(*context_);
+    const opengl::ScopedDrawState state(*context_);
     gpu_->target.begin(picture.rows, picture.cols);
     gpu_->drawing.draw(request, resolver_,
                        {.pinhole = *request.beams.pinhole,
                         .light = light,
                         .planes = used,
-                        .depths = hugging(used.near_m, used.far_m)});
+                        .depths = tight_depth_range(used.near_m, used.far_m)});
     gpu_->target.read(picture.rgba);
   }
 
  private:
   /// What lives in the graphics device's memory.
-  struct OnDevice {
-    explicit OnDevice(const Scene& scene) : drawing(scene) {}
+  struct GpuResources {
+    explicit GpuResources(const Scene& scene) : drawing(scene) {}
     opengl::Woods2016Drawing drawing;
     opengl::Woods2016Target target;
   };
 
   /// Section 2.3 of the paper: as tight as possible around what is in view.
-  [[nodiscard]] Woods2016DepthPlanes hugging_planes(const CastRequest& request) {
+  [[nodiscard]] Woods2016DepthPlanes tight_depth_planes(const CastRequest& request) {
     const Scene& scene = resolver_.scene();
     DepthSpan span;
     for (std::uint32_t i = 0; i < scene.instances.size(); ++i) {
@@ -84,7 +84,7 @@ class OpenglPaperCamera final : public Woods2016Camera {
   Resolver resolver_;
   VisibleDepths visible_depths_;
   std::unique_ptr<opengl::Context> context_;
-  std::unique_ptr<OnDevice> gpu_;
+  std::unique_ptr<GpuResources> gpu_;
 };
 
 }  // namespace
@@ -101,7 +101,7 @@ std::unique_ptr<Woods2016Camera> make_paper_camera(const Scene& scene,
                                                    std::unique_ptr<opengl::Context> context) {
   validate(scene);
   const auto make = [&](const Scene& whole) -> std::unique_ptr<Woods2016Camera> {
-    return std::make_unique<OpenglPaperCamera>(whole, options, std::move(context));
+    return std::make_unique<OpenglWoods2016Camera>(whole, options, std::move(context));
   };
   return has_pieces(scene) ? make_pieces_camera(scene, make) : make(scene);
 }

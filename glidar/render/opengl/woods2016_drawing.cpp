@@ -29,7 +29,7 @@ bool last_is_alpha(const Scene& scene, const TextureUse& use) {
 }
 
 /// True unless interpolated normals and the material's own colours are all there is to it.
-bool needs_all(const Material& material, const Mesh& mesh, const DrawRange& range) {
+bool needs_textures(const Material& material, const Mesh& mesh, const DrawRange& range) {
   return !is_smooth(range) || material.diffuse_texture.used() || material.specular_texture.used() ||
          has_mask(material) || !mesh.colours.empty() ||
          (material.normal_texture.used() && !mesh.tangents.empty());
@@ -45,9 +45,9 @@ Woods2016Drawing::Woods2016Drawing(const Scene& scene)
     : scene_(scene),
       has_clip_control_(has_clip_control()),
       shaded_(upload_shaded(scene)),
-      matt_(make_shader("IS_PLAIN", "IS_MATT")),
+      diffuse_(make_shader("IS_PLAIN", "IS_DIFFUSE")),
       shiny_(make_shader("IS_PLAIN", "IS_SHINY")),
-      rich_(make_shader("HAS_ALL", "IS_SHINY")) {}
+      textured_(make_shader("HAS_TEXTURES", "IS_SHINY")) {}
 
 Woods2016Drawing::Shader Woods2016Drawing::make_shader(const char* surface_macro,
                                                        const char* shine_macro) const {
@@ -58,9 +58,9 @@ Woods2016Drawing::Shader Woods2016Drawing::make_shader(const char* surface_macro
 }
 
 void Woods2016Drawing::draw(const CastRequest& request, const Resolver& resolver,
-                            const PaperScope& scope) const {
+                            const Woods2016View& scope) const {
   set_draw_state(has_clip_control_, request.cull_back_faces);
-  for (const Shader* shader : {&matt_, &shiny_, &rich_}) {
+  for (const Shader* shader : {&diffuse_, &shiny_, &textured_}) {
     glUseProgram(shader->program.name());
     set_scope(*shader, scope);
   }
@@ -72,7 +72,7 @@ void Woods2016Drawing::draw(const CastRequest& request, const Resolver& resolver
   check_gl("drawing");
 }
 
-void Woods2016Drawing::set_scope(const Shader& shader, const PaperScope& scope) const {
+void Woods2016Drawing::set_scope(const Shader& shader, const Woods2016View& scope) const {
   const PhongHeadlight& light = scope.light;
   glUniform3f(shader.at("attenuation"), single(light.attenuation_constant),
               single(light.attenuation_linear_per_m), single(light.attenuation_quadratic_per_m2));
@@ -80,7 +80,7 @@ void Woods2016Drawing::set_scope(const Shader& shader, const PaperScope& scope) 
 }
 
 void Woods2016Drawing::draw_instance(std::uint32_t instance, const InstanceView& view,
-                                     const PaperScope& scope) const {
+                                     const Woods2016View& scope) const {
   const Instance& placed = scene_.instances[instance];
   const Mesh& mesh = scene_.meshes[placed.mesh];
   const ShadedMesh& shaded = shaded_.meshes[placed.mesh];
@@ -89,12 +89,12 @@ void Woods2016Drawing::draw_instance(std::uint32_t instance, const InstanceView&
   glBindTexture(GL_TEXTURE_BUFFER, shaded.flat_normals_view.name());
   for (const DrawRange& range : shaded.ranges) {
     const Material& material = scene_.materials[placed.materials[slot_of(range)]];
-    const bool is_rich = needs_all(material, mesh, range);
-    const Shader& shader = shader_for(material, is_rich);
+    const bool is_textured = needs_textures(material, mesh, range);
+    const Shader& shader = shader_for(material, is_textured);
     glUseProgram(shader.program.name());
     set_instance(shader, view, scope);
     glUniform1f(shader.at("shininess"), material.shininess);
-    if (is_rich) {
+    if (is_textured) {
       set_colours(shader, material, scope.light);
       set_textures(shader, material, mesh);
     } else {
@@ -106,7 +106,7 @@ void Woods2016Drawing::draw_instance(std::uint32_t instance, const InstanceView&
 }
 
 void Woods2016Drawing::set_instance(const Shader& shader, const InstanceView& view,
-                                    const PaperScope& scope) const {
+                                    const Woods2016View& scope) const {
   const PinholeIntrinsics& k = scope.pinhole;
   const Eigen::Matrix4f clip = clip_from_object(view, k, {0, 0, k.height, k.width}, scope.depths);
   const Eigen::Vector4f steps = steps_from_object(view, scope.planes);
@@ -118,9 +118,9 @@ void Woods2016Drawing::set_instance(const Shader& shader, const InstanceView& vi
 }
 
 const Woods2016Drawing::Shader& Woods2016Drawing::shader_for(const Material& material,
-                                                             bool is_rich) const {
-  if (is_rich) return rich_;
-  return luminance(material.specular) > 0.0F ? shiny_ : matt_;
+                                                             bool is_textured) const {
+  if (is_textured) return textured_;
+  return luminance(material.specular) > 0.0F ? shiny_ : diffuse_;
 }
 
 void Woods2016Drawing::set_shares(const Shader& shader, const Material& material,

@@ -13,7 +13,7 @@
 namespace glidar::opengl {
 
 /// What of one picture is the same for all that is drawn.
-struct PaperScope {
+struct Woods2016View {
   const PinholeIntrinsics& pinhole;
   const PhongHeadlight& light;
   Woods2016DepthPlanes planes;  ///< of equation (8)
@@ -27,7 +27,7 @@ class Woods2016Drawing {
   explicit Woods2016Drawing(const Scene& scene);
 
   /// Draws what is there into the current target.
-  void draw(const CastRequest& request, const Resolver& resolver, const PaperScope& scope) const;
+  void draw(const CastRequest& request, const Resolver& resolver, const Woods2016View& scope) const;
 
  private:
   /// One compiled program; what a surface does not need costs much time in software.
@@ -40,9 +40,10 @@ class Woods2016Drawing {
   };
 
   [[nodiscard]] Shader make_shader(const char* surface_macro, const char* shine_macro) const;
-  [[nodiscard]] const Shader& shader_for(const Material& material, bool is_rich) const;
-  void set_scope(const Shader& shader, const PaperScope& scope) const;
-  void set_instance(const Shader& shader, const InstanceView& view, const PaperScope& scope) const;
+  [[nodiscard]] const Shader& shader_for(const Material& material, bool is_textured) const;
+  void set_scope(const Shader& shader, const Woods2016View& scope) const;
+  void set_instance(const Shader& shader, const InstanceView& view,
+                    const Woods2016View& scope) const;
   static void set_shares(const Shader& shader, const Material& material,
                          const PhongHeadlight& light);
   static void set_colours(const Shader& shader, const Material& material,
@@ -51,14 +52,14 @@ class Woods2016Drawing {
   void set_texture(const Shader& shader, GLenum unit, const std::string& name,
                    const TextureUse& use) const;
   void draw_instance(std::uint32_t instance, const InstanceView& view,
-                     const PaperScope& scope) const;
+                     const Woods2016View& scope) const;
 
   const Scene& scene_;
   bool has_clip_control_;
   ShadedScene shaded_;
-  Shader matt_;   ///< without specular light, textures and such
-  Shader shiny_;  ///< with specular light
-  Shader rich_;   ///< with all
+  Shader diffuse_;   ///< without specular light, textures and such
+  Shader shiny_;     ///< with specular light
+  Shader textured_;  ///< with all
 };
 
 }  // namespace glidar::opengl

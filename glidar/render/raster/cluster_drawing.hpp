@@ -15,27 +15,27 @@
 namespace glidar::raster {
 
 /// What one cast hands to every canvas.
-struct Drawing {
+struct DrawContext {
   const CastRequest& request;
   const Resolver& resolver;
   const std::vector<PackedMesh>& meshes;
   const std::vector<PixelView>& views;  ///< per instance
-  const TriangleNumbers& triangles;
+  const TriangleIds& triangles;
   const std::vector<std::uint8_t>& has_mask;  ///< per instance
   Nearness nearness;
 };
 
 /// Asks the memory for a cluster.
-void prefetch(const Drawing& drawing, const Sighting& sighting);
+void prefetch(const DrawContext& context, const VisibleCluster& cluster);
 
 /// A pixel of the picture, or where a canvas has its first one there.
-struct PixelPlace {
+struct PixelPosition {
   std::int32_t col;
   std::int32_t row;
 };
 
 /// Draws one cluster onto a canvas whose first pixel is this of the picture.
-void draw_cluster(const Drawing& drawing, const Sighting& sighting, const PixelPlace& first,
-                  Canvas& canvas);
+void draw_cluster(const DrawContext& context, const VisibleCluster& cluster,
+                  const PixelPosition& first, TileBuffer& buffer);
 
 }  // namespace glidar::raster

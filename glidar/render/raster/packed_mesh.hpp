@@ -12,15 +12,15 @@
 namespace glidar::raster {
 
 /// Triangles that are worked on together, lane by lane. Unused lanes repeat the last triangle.
-struct Pack {
+struct TrianglePacket {
   CornerBlock corners;  ///< relative to the cluster's middle, object units
   std::array<std::uint32_t, kLanes> primitive;
 };
 
-inline constexpr std::size_t kPacksPerCluster = 4;
+inline constexpr std::size_t kPacketsPerCluster = 4;
 
-/// Boxes around kLanes clusters, object units; unused lanes are points.
-struct Boxes {
+/// BoxPacket around kLanes clusters, object units; unused lanes are points.
+struct BoxPacket {
   Lanes3<float> middle;  ///< relative to the mesh's origin
   Lanes3<float> half;    ///< of their sizes
 };
@@ -31,9 +31,9 @@ struct PackedMesh {
   /// `chosen`: indices of the triangles that count; empty: all do.
   explicit PackedMesh(const Mesh& mesh, std::span<const std::uint32_t> chosen = {});
 
-  std::vector<Pack> packs;  ///< kPacksPerCluster per cluster, fewer in the last
+  std::vector<TrianglePacket> packets;  ///< kPacketsPerCluster per cluster, fewer in the last
   std::size_t clusters = 0;
-  std::vector<Boxes> boxes;  ///< per kLanes clusters
+  std::vector<BoxPacket> boxes;  ///< per kLanes clusters
 };
 
 }  // namespace glidar::raster

@@ -24,37 +24,37 @@
 namespace glidar {
 namespace {
 
-using raster::Drawing;
-using raster::Sighting;
+using raster::DrawContext;
+using raster::VisibleCluster;
 
 /// What one thread draws with.
-struct Desk {
-  raster::Canvas canvas;
-  std::vector<std::uint32_t> numbers;
+struct TileScratch {
+  raster::TileBuffer buffer;
+  std::vector<std::uint32_t> triangle_ids;
   std::vector<std::uint64_t> order;  ///< of the clusters: the nearest first
 };
 
-constexpr std::size_t kAhead = 3;  // clusters on their way from memory
+constexpr std::size_t kPrefetchDistance = 3;  // clusters on their way from memory
 
-/// The part of a sighting that lies on a canvas.
-raster::CanvasRect rect_on(const PixelRect& drawn, const Sighting& sighting) {
+/// The part of a cluster that lies on a canvas.
+raster::PixelBounds bounds_in(const PixelRect& drawn, const VisibleCluster& cluster) {
   const auto first_col = static_cast<int>(drawn.first_col);
   const auto first_row = static_cast<int>(drawn.first_row);
-  return {.left = std::max(sighting.left - first_col, 0),
-          .right = std::min(sighting.right - first_col, static_cast<int>(drawn.cols) - 1),
-          .top = std::max(sighting.top - first_row, 0),
-          .bottom = std::min(sighting.bottom - first_row, static_cast<int>(drawn.rows) - 1)};
+  return {.left = std::max(cluster.left - first_col, 0),
+          .right = std::min(cluster.right - first_col, static_cast<int>(drawn.cols) - 1),
+          .top = std::max(cluster.top - first_row, 0),
+          .bottom = std::min(cluster.bottom - first_row, static_cast<int>(drawn.rows) - 1)};
 }
 
-raster::PixelPlace first_of(const raster::Part& part) {
-  return {.col = static_cast<std::int32_t>(part.drawn.first_col),
-          .row = static_cast<std::int32_t>(part.drawn.first_row)};
+raster::PixelPosition first_of(const raster::Tile& tile) {
+  return {.col = static_cast<std::int32_t>(tile.drawn.first_col),
+          .row = static_cast<std::int32_t>(tile.drawn.first_row)};
 }
 
 /// The nearest first; of equals the first.
-std::uint64_t key(const Sighting& sighting, std::uint32_t index) {
+std::uint64_t key(const VisibleCluster& cluster, std::uint32_t index) {
   // The bits of positive numbers rise with them.
-  const std::uint32_t nearness = std::bit_cast<std::uint32_t>(std::max(sighting.nearness, 0.0F));
+  const std::uint32_t nearness = std::bit_cast<std::uint32_t>(std::max(cluster.nearness, 0.0F));
   return std::uint64_t{~nearness} << 32U | index;
 }
 
@@ -69,7 +69,7 @@ class RasterRenderer final : public Renderer {
       local_boxes_.push_back(local_box(mesh));
     }
     for (const Instance& instance : scene().instances) {
-      has_mask_.push_back(static_cast<std::uint8_t>(has_mask(scene(), instance)));
+      has_alpha_mask_.push_back(static_cast<std::uint8_t>(has_mask(scene(), instance)));
     }
   }
 
@@ -87,9 +87,9 @@ class RasterRenderer final : public Renderer {
     find_plane_points(request.beams, points_);
     ProgressCounter count(request.progress, request.beams.size());
     const DepthRange depths = depths_of(request, base_->resolver, local_boxes_);
-    const GridWindow window =
-        depths.is_empty() ? GridWindow{.end_row = 0, .end_col = 0}
-                          : window_on(base_->resolver, boxes_, request.instance_enabled, points_);
+    const GridWindow window = depths.is_empty() ? GridWindow{.end_row = 0, .end_col = 0}
+                                                : visible_window(base_->resolver, boxes_,
+                                                                 request.instance_enabled, points_);
     write_around(request, window, count, hits);
     if (!depths.is_empty() && window.first_row < window.end_row &&
         window.first_col < window.end_col) {
@@ -116,10 +116,10 @@ class RasterRenderer final : public Renderer {
       count.add(end - begin);
     };
     const auto miss_row = [&](std::size_t row) {
-      const bool is_beside = row >= window.first_row && row < window.end_row;
+      const bool is_outside = row >= window.first_row && row < window.end_row;
       const std::size_t first = row * cols;
-      miss(first, first + (is_beside ? std::min(window.first_col, cols) : cols));
-      if (is_beside) miss(first + std::min(window.end_col, cols), first + cols);
+      miss(first, first + (is_outside ? std::min(window.first_col, cols) : cols));
+      if (is_outside) miss(first + std::min(window.end_col, cols), first + cols);
     };
     constexpr std::size_t kRowsPerTask = 4;
     base_->thread_pool.parallel_for(request.beams.rows, kRowsPerTask,
@@ -128,8 +128,8 @@ class RasterRenderer final : public Renderer {
                                     });
   }
 
-  void find_sightings(const CastRequest& request, const GridWindow& window,
-                      const raster::Nearness& nearness) {
+  void find_visible_clusters(const CastRequest& request, const GridWindow& window,
+                             const raster::Nearness& nearness) {
     constexpr std::uint32_t kClustersPerPiece = 1024;
     views_.clear();
     pieces_.clear();
@@ -146,13 +146,13 @@ class RasterRenderer final : public Renderer {
       for (std::size_t i = begin; i < end; ++i) {
         const raster::ClusterRange& piece = pieces_[i];
         found_[i].clear();
-        raster::add_sightings(views_[piece.instance], nearness, window, packed_of(piece.instance),
-                              piece, found_[i]);
+        raster::add_visible_clusters(views_[piece.instance], nearness, window,
+                                     packed_of(piece.instance), piece, found_[i]);
       }
     });
-    sightings_.clear();
+    visible_clusters_.clear();
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
-      sightings_.insert(sightings_.end(), found_[i].begin(), found_[i].end());
+      visible_clusters_.insert(visible_clusters_.end(), found_[i].begin(), found_[i].end());
     }
   }
 
@@ -161,106 +161,108 @@ class RasterRenderer final : public Renderer {
     window.end_row = std::min(window.end_row, request.beams.rows);
     window.end_col = std::min(window.end_col, request.beams.cols);
     const raster::Nearness nearness(depths);
-    find_sightings(request, window, nearness);
-    parts_.cut(window, request.beams.rows, request.beams.cols);
-    parts_.sort(sightings_);
-    const Drawing drawing{.request = request,
-                          .resolver = base_->resolver,
-                          .meshes = packed_,
-                          .views = views_,
-                          .triangles = triangles_,
-                          .has_mask = has_mask_,
-                          .nearness = nearness};
-    base_->thread_pool.parallel_for(parts_.size(), 1, [&](std::size_t begin, std::size_t end) {
-      std::unique_ptr<Desk> desk = desks_.take();
+    find_visible_clusters(request, window, nearness);
+    tiles_.build(window, request.beams.rows, request.beams.cols);
+    tiles_.bin_clusters(visible_clusters_);
+    const DrawContext context{.request = request,
+                              .resolver = base_->resolver,
+                              .meshes = packed_,
+                              .views = views_,
+                              .triangles = triangles_,
+                              .has_mask = has_alpha_mask_,
+                              .nearness = nearness};
+    base_->thread_pool.parallel_for(tiles_.size(), 1, [&](std::size_t begin, std::size_t end) {
+      std::unique_ptr<TileScratch> scratch = scratch_pool_.acquire();
       for (std::size_t i = begin; i < end; ++i) {
-        const raster::Part part = parts_.part(i);
-        draw_part(drawing, part, parts_.seen_in(i), *desk);
-        write_part(drawing, part, *desk, hits);
-        count.add(std::size_t{part.written.rows} * part.written.cols);
+        const raster::Tile tile = tiles_.tile(i);
+        draw_tile(context, tile, tiles_.clusters_in(i), *scratch);
+        write_tile(context, tile, *scratch, hits);
+        count.add(std::size_t{tile.written.rows} * tile.written.cols);
       }
-      desks_.give_back(std::move(desk));
+      scratch_pool_.release(std::move(scratch));
     });
   }
 
   /// Writes the hits of what was drawn.
-  void write_part(const Drawing& drawing, const raster::Part& part, const Desk& desk,
+  void write_tile(const DrawContext& context, const raster::Tile& tile, const TileScratch& scratch,
                   Hits& hits) const {
-    write_rows({.request = drawing.request,
+    write_rows({.request = context.request,
                 .resolver = base_->resolver,
                 .triangles = triangles_,
                 .points = points_,
-                .drawn = part.drawn,
-                .numbers = desk.numbers,
-                .part = part.written,
+                .drawn = tile.drawn,
+                .triangle_ids = scratch.triangle_ids,
+                .written = tile.written,
                 .hits = hits,
                 .search = base_->search.beams(),
                 .overlaps = *overlaps_},
-               0, part.written.rows);
+               0, tile.written.rows);
   }
 
-  /// For clusters that reach to the sensor's plane, of which sightings do not tell where.
-  [[nodiscard]] bool is_beside(const Sighting& sighting, const PixelRect& drawn) const {
-    if (!std::isinf(sighting.nearness)) return false;
+  /// For clusters that reach to the sensor's plane, of which clusters do not tell where.
+  [[nodiscard]] bool is_outside(const VisibleCluster& cluster, const PixelRect& drawn) const {
+    if (!std::isinf(cluster.nearness)) return false;
     const auto left = static_cast<int>(drawn.first_col);
     const auto top = static_cast<int>(drawn.first_row);
-    return raster::is_beside(views_[sighting.instance],
-                             packed_of(sighting.instance).boxes[sighting.cluster / kLanes],
-                             sighting.cluster % kLanes,
-                             {left, left + static_cast<int>(drawn.cols) - 1, top,
-                              top + static_cast<int>(drawn.rows) - 1});
+    return raster::is_outside(views_[cluster.instance],
+                              packed_of(cluster.instance).boxes[cluster.cluster / kLanes],
+                              cluster.cluster % kLanes,
+                              {left, left + static_cast<int>(drawn.cols) - 1, top,
+                               top + static_cast<int>(drawn.rows) - 1});
   }
 
-  [[nodiscard]] const Sighting& sighting_at(std::uint64_t key) const {
-    return sightings_[static_cast<std::uint32_t>(key)];
+  [[nodiscard]] const VisibleCluster& cluster_at(std::uint64_t key) const {
+    return visible_clusters_[static_cast<std::uint32_t>(key)];
   }
 
   /// Draws the clusters that are seen in a part, the nearest first, but for those found hidden.
-  void draw_part(const Drawing& drawing, const raster::Part& part,
-                 std::span<const std::uint32_t> seen, Desk& desk) const {
-    const auto cols = static_cast<int>(part.drawn.cols);
-    const auto rows = static_cast<int>(part.drawn.rows);
-    desk.canvas.clear(cols, rows, static_cast<float>(drawing.nearness.factor));
-    desk.order.clear();
-    for (const std::uint32_t index : seen) desk.order.push_back(key(sightings_[index], index));
-    std::sort(desk.order.begin(), desk.order.end());
+  void draw_tile(const DrawContext& context, const raster::Tile& tile,
+                 std::span<const std::uint32_t> seen, TileScratch& scratch) const {
+    const auto cols = static_cast<int>(tile.drawn.cols);
+    const auto rows = static_cast<int>(tile.drawn.rows);
+    scratch.buffer.clear(cols, rows, static_cast<float>(context.nearness.factor));
+    scratch.order.clear();
+    for (const std::uint32_t index : seen)
+      scratch.order.push_back(key(visible_clusters_[index], index));
+    std::sort(scratch.order.begin(), scratch.order.end());
     // What comes lies anywhere in memory: it is asked for in time, unless it is hidden already.
-    std::array<const Sighting*, kAhead> coming{};
-    for (std::size_t i = 0; i < desk.order.size() + kAhead; ++i) {
-      const Sighting*& slot = coming[i % kAhead];
+    std::array<const VisibleCluster*, kPrefetchDistance> coming{};
+    for (std::size_t i = 0; i < scratch.order.size() + kPrefetchDistance; ++i) {
+      const VisibleCluster*& slot = coming[i % kPrefetchDistance];
       if (slot != nullptr) {
-        raster::draw_cluster(drawing, *slot, first_of(part), desk.canvas);
-        desk.canvas.mark_drawn(rect_on(part.drawn, *slot));
+        raster::draw_cluster(context, *slot, first_of(tile), scratch.buffer);
+        scratch.buffer.mark_stale(bounds_in(tile.drawn, *slot));
       }
       slot = nullptr;
-      if (i >= desk.order.size()) continue;
-      if (i + kAhead < desk.order.size()) {
-        __builtin_prefetch(&sighting_at(desk.order[i + kAhead]));
+      if (i >= scratch.order.size()) continue;
+      if (i + kPrefetchDistance < scratch.order.size()) {
+        __builtin_prefetch(&cluster_at(scratch.order[i + kPrefetchDistance]));
       }
-      const Sighting& sighting = sighting_at(desk.order[i]);
-      const raster::CanvasRect rect = rect_on(part.drawn, sighting);
+      const VisibleCluster& cluster = cluster_at(scratch.order[i]);
+      const raster::PixelBounds rect = bounds_in(tile.drawn, cluster);
       if (rect.left > rect.right || rect.top > rect.bottom) continue;
-      if (desk.canvas.hides(rect, sighting.nearness) || is_beside(sighting, part.drawn)) continue;
-      raster::prefetch(drawing, sighting);
-      slot = &sighting;
+      if (scratch.buffer.is_occluded(rect, cluster.nearness) || is_outside(cluster, tile.drawn))
+        continue;
+      raster::prefetch(context, cluster);
+      slot = &cluster;
     }
-    desk.canvas.copy_numbers(desk.numbers);
+    scratch.buffer.copy_triangle_ids(scratch.triangle_ids);
   }
 
   std::shared_ptr<CpuBase> base_;
   std::vector<raster::PackedMesh> packed_;
-  TriangleNumbers triangles_;
+  TriangleIds triangles_;
   std::vector<Eigen::AlignedBox3d> boxes_;        ///< per mesh, in the object's frame
   std::vector<Eigen::AlignedBox3d> local_boxes_;  ///< per mesh, relative to its origin
   std::optional<Overlaps> overlaps_;
-  std::vector<std::uint8_t> has_mask_;  ///< per instance
+  std::vector<std::uint8_t> has_alpha_mask_;  ///< per instance
   PlanePoints points_;
   std::vector<raster::PixelView> views_;  ///< per instance
   std::vector<raster::ClusterRange> pieces_;
-  std::vector<std::vector<Sighting>> found_;  ///< per piece
-  std::vector<Sighting> sightings_;           ///< all of them
-  raster::Parts parts_;
-  Pool<Desk> desks_;
+  std::vector<std::vector<VisibleCluster>> found_;  ///< per piece
+  std::vector<VisibleCluster> visible_clusters_;    ///< all of them
+  raster::TileGrid tiles_;
+  WorkspacePool<TileScratch> scratch_pool_;
 };
 
 }  // namespace

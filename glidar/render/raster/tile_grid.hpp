@@ -15,32 +15,32 @@ namespace glidar::raster {
 
 /// A part of a picture that fits a canvas. A pixel more is drawn on each side than is written: a
 /// beam in doubt looks at the pixels around it.
-struct Part {
+struct Tile {
   PixelRect drawn;
   PixelRect written;
 };
 
 /// The part of a picture that is of interest, cut into parts, and the clusters seen in each. It
 /// depends on the picture alone and not on who draws it.
-class Parts {
+class TileGrid {
  public:
   /// Cuts the window, which is not empty, out of a picture of so many rows and columns.
-  void cut(const GridWindow& window, std::uint32_t rows, std::uint32_t cols);
+  void build(const GridWindow& window, std::uint32_t rows, std::uint32_t cols);
 
-  /// Shares the sightings out among the parts.
-  void sort(std::span<const Sighting> sightings);
+  /// Shares the clusters out among the parts.
+  void bin_clusters(std::span<const VisibleCluster> clusters);
 
   [[nodiscard]] std::size_t size() const { return std::size_t{across_} * down_; }
-  [[nodiscard]] Part part(std::size_t index) const;
+  [[nodiscard]] Tile tile(std::size_t index) const;
 
-  /// Which of the sightings the part sees.
-  [[nodiscard]] std::span<const std::uint32_t> seen_in(std::size_t index) const {
+  /// Which of the clusters the part sees.
+  [[nodiscard]] std::span<const std::uint32_t> clusters_in(std::size_t index) const {
     return {seen_.data() + first_[index], first_[index + 1] - first_[index]};
   }
 
  private:
   template <class Body>
-  void for_parts_of(const Sighting& sighting, const Body& body) const;
+  void for_tiles_of(const VisibleCluster& cluster, const Body& body) const;
 
   GridWindow window_;
   std::uint32_t rows_ = 0;  ///< of the picture
@@ -50,7 +50,7 @@ class Parts {
   std::uint32_t across_ = 0;  ///< parts
   std::uint32_t down_ = 0;
   std::vector<std::size_t> first_;   ///< per part and one more, into seen_
-  std::vector<std::uint32_t> seen_;  ///< sightings, part by part
+  std::vector<std::uint32_t> seen_;  ///< clusters, part by part
 };
 
 }  // namespace glidar::raster

@@ -20,42 +20,43 @@ constexpr float kMax_px = 192.0F;
 constexpr float kInterpolation = 0x1p-21F;
 
 /// A corner of each triangle on the canvas.
-struct Spot {
+struct CornerProjection {
   Lanes<float> col;
   Lanes<float> row;
   Lanes<float> nearness;
   Lanes<float> depth;
 };
 
-[[gnu::always_inline]] inline void find_spot(const Aim& aim, const Lanes3<float>& corner,
-                                             Spot& spot) {
-  const float* m = aim.turn.data();
+[[gnu::always_inline]] inline void project_corners(const TileTransform& transform,
+                                                   const Lanes3<float>& corner,
+                                                   CornerProjection& projection) {
+  const float* m = transform.matrix.data();
   for (unsigned i = 0; i < kLanes; ++i) {
     const float x = corner.x[i];
     const float y = corner.y[i];
     const float z = corner.z[i];
     const float deeper = m[2] * x + m[5] * y + m[8] * z;
-    const float depth = aim.depth + deeper;
+    const float depth = transform.depth + deeper;
     const float inverse = 1.0F / depth;
-    spot.col[i] = (aim.column + (m[0] * x + m[3] * y + m[6] * z)) * inverse;
-    spot.row[i] = (aim.row + (m[1] * x + m[4] * y + m[7] * z)) * inverse;
-    spot.nearness[i] = (aim.before_far - deeper) * aim.factor * inverse;
-    spot.depth[i] = depth;
+    projection.col[i] = (transform.column_at_depth + (m[0] * x + m[3] * y + m[6] * z)) * inverse;
+    projection.row[i] = (transform.row + (m[1] * x + m[4] * y + m[7] * z)) * inverse;
+    projection.nearness[i] = (transform.before_far - deeper) * transform.factor * inverse;
+    projection.depth[i] = depth;
   }
 }
 
 [[gnu::always_inline]] inline float size_of(float value) {
   return value < 0.0F ? -value : value;
 }
-[[gnu::always_inline]] inline float least(float a, float b, float c) {
+[[gnu::always_inline]] inline float min_of_three(float a, float b, float c) {
   const float ab = a < b ? a : b;
   return ab < c ? ab : c;
 }
-[[gnu::always_inline]] inline float most(float a, float b, float c) {
+[[gnu::always_inline]] inline float max_of(float a, float b, float c) {
   const float ab = a > b ? a : b;
   return ab > c ? ab : c;
 }
-[[gnu::always_inline]] inline float held(float value, float low, float high) {
+[[gnu::always_inline]] inline float clamped(float value, float low, float high) {
   const float above = value > low ? value : low;  // low where it is not a number
   return above < high ? above : high;
 }
@@ -69,25 +70,30 @@ struct Spot {
 }
 
 [[gnu::always_inline]] inline std::int32_t largest(const Lanes<std::int32_t>& values) {
-  std::int32_t most = values[0];
-  for (unsigned i = 0; i < kLanes; ++i) most = values[i] > most ? values[i] : most;
-  return most;
+  std::int32_t max_of = values[0];
+  for (unsigned i = 0; i < kLanes; ++i) max_of = values[i] > max_of ? values[i] : max_of;
+  return max_of;
 }
 
 /// The pixels that a triangle may cover, and what is to be done about it.
-[[gnu::always_inline]] inline void bound(const Aim& aim, const std::array<Spot, 3>& spots,
-                                         Footprints& f) {
+[[gnu::always_inline]] inline void bound(const TileTransform& transform,
+                                         const std::array<CornerProjection, 3>& projections,
+                                         TriangleSetups& f) {
   for (unsigned i = 0; i < kLanes; ++i) {
-    const float left = least(spots[0].col[i], spots[1].col[i], spots[2].col[i]);
-    const float right = most(spots[0].col[i], spots[1].col[i], spots[2].col[i]);
-    const float top = least(spots[0].row[i], spots[1].row[i], spots[2].row[i]);
-    const float bottom = most(spots[0].row[i], spots[1].row[i], spots[2].row[i]);
-    const float depth = least(spots[0].depth[i], spots[1].depth[i], spots[2].depth[i]);
-    f.left[i] = rounded_up(held(left - kBorderRoom_px, 0.0F, aim.last_col + 1.0F));
-    f.right[i] = rounded_down(held(right + kBorderRoom_px, -1.0F, aim.last_col));
-    f.top[i] = rounded_up(held(top - kBorderRoom_px, 0.0F, aim.last_row + 1.0F));
-    f.bottom[i] = rounded_down(held(bottom + kBorderRoom_px, -1.0F, aim.last_row));
-    const int is_clear = static_cast<int>(depth > aim.least_depth);
+    const float left =
+        min_of_three(projections[0].col[i], projections[1].col[i], projections[2].col[i]);
+    const float right = max_of(projections[0].col[i], projections[1].col[i], projections[2].col[i]);
+    const float top =
+        min_of_three(projections[0].row[i], projections[1].row[i], projections[2].row[i]);
+    const float bottom =
+        max_of(projections[0].row[i], projections[1].row[i], projections[2].row[i]);
+    const float depth =
+        min_of_three(projections[0].depth[i], projections[1].depth[i], projections[2].depth[i]);
+    f.left[i] = rounded_up(clamped(left - kEdgeMargin_px, 0.0F, transform.last_col + 1.0F));
+    f.right[i] = rounded_down(clamped(right + kEdgeMargin_px, -1.0F, transform.last_col));
+    f.top[i] = rounded_up(clamped(top - kEdgeMargin_px, 0.0F, transform.last_row + 1.0F));
+    f.bottom[i] = rounded_down(clamped(bottom + kEdgeMargin_px, -1.0F, transform.last_row));
+    const int is_clear = static_cast<int>(depth > transform.min_depth);
     const int is_near = static_cast<int>(left > kMin_px) & static_cast<int>(right < kMax_px) &
                         static_cast<int>(top > kMin_px) & static_cast<int>(bottom < kMax_px);
     const int is_empty =
@@ -101,9 +107,9 @@ struct Spot {
 }
 
 /// A border from corner a to b of all triangles, positive on the side of `sign`.
-[[gnu::always_inline]] inline void find_border(const Spot& a, const Spot& b,
-                                               const Lanes<float>& sign, std::size_t k,
-                                               Footprints& f) {
+[[gnu::always_inline]] inline void find_edge(const CornerProjection& a, const CornerProjection& b,
+                                             const Lanes<float>& sign, std::size_t k,
+                                             TriangleSetups& f) {
   for (unsigned i = 0; i < kLanes; ++i) {
     const float per_col = sign[i] * (a.row[i] - b.row[i]);
     const float per_row = sign[i] * (b.col[i] - a.col[i]);
@@ -113,24 +119,25 @@ struct Spot {
     f.per_row[k][i] = per_row;
     f.at_corner[k][i] = per_col * (static_cast<float>(f.left[i]) - a.col[i]) +
                         per_row * (static_cast<float>(f.top[i]) - a.row[i]) +
-                        kBorderRoom_px * width;
-    f.certain[k][i] = 2.0F * kBorderRoom_px * width;
+                        kEdgeMargin_px * width;
+    f.certain[k][i] = 2.0F * kEdgeMargin_px * width;
   }
 }
 
 /// Signs of the triangles' areas, and nearness; what has no area or is culled is dropped.
-[[gnu::always_inline]] inline void find_nearness(const Aim& aim, const std::array<Spot, 3>& spots,
-                                                 Lanes<float>& sign, Footprints& f) {
+[[gnu::always_inline]] inline void find_nearness(const TileTransform& transform,
+                                                 const std::array<CornerProjection, 3>& projections,
+                                                 Lanes<float>& sign, TriangleSetups& f) {
   for (unsigned i = 0; i < kLanes; ++i) {
-    const float col = spots[0].col[i];
-    const float row = spots[0].row[i];
-    const float near = spots[0].nearness[i];
-    const float col_1 = spots[1].col[i] - col;
-    const float row_1 = spots[1].row[i] - row;
-    const float near_1 = spots[1].nearness[i] - near;
-    const float col_2 = spots[2].col[i] - col;
-    const float row_2 = spots[2].row[i] - row;
-    const float near_2 = spots[2].nearness[i] - near;
+    const float col = projections[0].col[i];
+    const float row = projections[0].row[i];
+    const float near = projections[0].nearness[i];
+    const float col_1 = projections[1].col[i] - col;
+    const float row_1 = projections[1].row[i] - row;
+    const float near_1 = projections[1].nearness[i] - near;
+    const float col_2 = projections[2].col[i] - col;
+    const float row_2 = projections[2].row[i] - row;
+    const float near_2 = projections[2].nearness[i] - near;
     const float area = col_1 * row_2 - col_2 * row_1;  // positive: seen from behind
     const float inverse = 1.0F / area;
     sign[i] = area < 0.0F ? -1.0F : 1.0F;
@@ -138,8 +145,8 @@ struct Spot {
     f.nearness_per_row[i] = (near_2 * col_1 - near_1 * col_2) * inverse;
     f.nearness_at_corner[i] = near + f.nearness_per_col[i] * (static_cast<float>(f.left[i]) - col) +
                               f.nearness_per_row[i] * (static_cast<float>(f.top[i]) - row);
-    f.farthest[i] = least(near, spots[1].nearness[i], spots[2].nearness[i]);
-    f.nearest[i] = most(near, spots[1].nearness[i], spots[2].nearness[i]);
+    f.farthest[i] = min_of_three(near, projections[1].nearness[i], projections[2].nearness[i]);
+    f.nearest[i] = max_of(near, projections[1].nearness[i], projections[2].nearness[i]);
     // Sizes of the terms of the area and of the gradient: their roundings count as many times more
     // as the terms cancel out.
     const float area_terms = size_of(col_1 * row_2) + size_of(col_2 * row_1);
@@ -150,12 +157,13 @@ struct Spot {
     const float farther_row =
         static_cast<float>(f.bottom[i] - f.top[i]) + size_of(static_cast<float>(f.top[i]) - row);
     const float steepness = (across * farther_col + down * farther_row) * size_of(inverse);
-    const float room = kInterpolation * (1.0F + area_terms * size_of(inverse)) * steepness;
+    const float margin = kInterpolation * (1.0F + area_terms * size_of(inverse)) * steepness;
     const float whole = f.nearest[i] - f.farthest[i];  // nearness is held within it
-    f.room[i] = room < whole ? room : whole;
-    const int is_culled = static_cast<int>(aim.cull_back_faces) & static_cast<int>(area > 0.0F);
+    f.margin[i] = margin < whole ? margin : whole;
+    const int is_culled =
+        static_cast<int>(transform.cull_back_faces) & static_cast<int>(area > 0.0F);
     const int is_gone = (is_culled | static_cast<int>(area == 0.0F)) &
-                        static_cast<int>(f.size[i] != static_cast<int>(Size::large));
+                        static_cast<int>(f.size[i] != static_cast<int>(SizeClass::large));
     f.size[i] = is_gone != 0 ? 0 : f.size[i];
   }
 }
@@ -167,9 +175,9 @@ struct SmallRects {
 };
 
 /// Looks at one pixel of each small triangle's rectangle.
-[[gnu::always_inline]] inline void cover_pixel(const Footprints& f, const SmallRects& rects,
-                                               std::int32_t col, std::int32_t row,
-                                               Lanes<std::uint32_t>& covered) {
+[[gnu::always_inline]] inline void test_pixel(const TriangleSetups& f, const SmallRects& rects,
+                                              std::int32_t col, std::int32_t row,
+                                              Lanes<std::uint32_t>& coverage) {
   const auto across = static_cast<float>(col);
   const auto down = static_cast<float>(row);
   const std::int32_t shift = kSmall * row + col;
@@ -179,19 +187,19 @@ struct SmallRects {
     const float b2 = f.at_corner[2][i] + f.per_col[2][i] * across + f.per_row[2][i] * down;
     const int is_in_rect =
         static_cast<int>(col < rects.cols[i]) & static_cast<int>(row < rects.rows[i]);
-    const int is_inside = static_cast<int>(least(b0, b1, b2) >= 0.0F) & is_in_rect;
+    const int is_inside = static_cast<int>(min_of_three(b0, b1, b2) >= 0.0F) & is_in_rect;
     const int is_certain = static_cast<int>(b0 >= f.certain[0][i]) &
                            static_cast<int>(b1 >= f.certain[1][i]) &
                            static_cast<int>(b2 >= f.certain[2][i]);
     const auto bits = static_cast<std::uint32_t>(is_inside) |
                       static_cast<std::uint32_t>(is_inside & is_certain) << kCertainShift;
-    covered[i] |= bits << shift;
+    coverage[i] |= bits << shift;
   }
 }
 
 }  // namespace
 
-Shape Footprints::shape(unsigned lane, std::uint32_t number) const {
+TriangleSetup TriangleSetups::setup(unsigned lane, std::uint32_t triangle_id) const {
   return {.per_col = {per_col[0][lane], per_col[1][lane], per_col[2][lane]},
           .per_row = {per_row[0][lane], per_row[1][lane], per_row[2][lane]},
           .at_corner = {at_corner[0][lane], at_corner[1][lane], at_corner[2][lane]},
@@ -201,47 +209,47 @@ Shape Footprints::shape(unsigned lane, std::uint32_t number) const {
           .nearness_at_corner = nearness_at_corner[lane],
           .farthest = farthest[lane],
           .nearest = nearest[lane],
-          .room = room[lane],
-          .number = number,
+          .margin = margin[lane],
+          .triangle_id = triangle_id,
           .rect = {left[lane], right[lane], top[lane], bottom[lane]}};
 }
 
-GLIDAR_SIMD void find_footprints(const Aim& aim, const CornerBlock& corners,
-                                 Footprints& footprints) {
-  std::array<Spot, 3> spots;
+GLIDAR_SIMD void set_up_triangles(const TileTransform& transform, const CornerBlock& corners,
+                                  TriangleSetups& footprints) {
+  std::array<CornerProjection, 3> projections;
   Lanes<float> sign;
-  find_spot(aim, corners.c0, spots[0]);
-  find_spot(aim, corners.c1, spots[1]);
-  find_spot(aim, corners.c2, spots[2]);
-  bound(aim, spots, footprints);
-  find_nearness(aim, spots, sign, footprints);
-  find_border(spots[0], spots[1], sign, 0, footprints);
-  find_border(spots[1], spots[2], sign, 1, footprints);
-  find_border(spots[2], spots[0], sign, 2, footprints);
+  project_corners(transform, corners.c0, projections[0]);
+  project_corners(transform, corners.c1, projections[1]);
+  project_corners(transform, corners.c2, projections[2]);
+  bound(transform, projections, footprints);
+  find_nearness(transform, projections, sign, footprints);
+  find_edge(projections[0], projections[1], sign, 0, footprints);
+  find_edge(projections[1], projections[2], sign, 1, footprints);
+  find_edge(projections[2], projections[0], sign, 2, footprints);
 }
 
-GLIDAR_SIMD std::uint32_t cover(const Footprints& f, Lanes<std::uint32_t>& covered) {
+GLIDAR_SIMD std::uint32_t coverage_masks(const TriangleSetups& f, Lanes<std::uint32_t>& coverage) {
   SmallRects rects;
   for (unsigned i = 0; i < kLanes; ++i) {
-    const bool is_small = f.size[i] == static_cast<int>(Size::small);
+    const bool is_small = f.size[i] == static_cast<int>(SizeClass::small);
     rects.cols[i] = is_small ? f.right[i] - f.left[i] + 1 : 0;
     rects.rows[i] = is_small ? f.bottom[i] - f.top[i] + 1 : 0;
-    covered[i] = 0;
+    coverage[i] = 0;
   }
   const std::int32_t cols = largest(rects.cols);
   const std::int32_t rows = largest(rects.rows);
   for (std::int32_t row = 0; row < rows; ++row) {
-    for (std::int32_t col = 0; col < cols; ++col) cover_pixel(f, rects, col, row, covered);
+    for (std::int32_t col = 0; col < cols; ++col) test_pixel(f, rects, col, row, coverage);
   }
   Lanes<std::uint32_t> bits;
   for (unsigned i = 0; i < kLanes; ++i) {
-    const int is_larger = static_cast<int>(f.size[i] > static_cast<int>(Size::small));
-    const int is_due = is_larger | static_cast<int>(covered[i] != 0);
+    const int is_larger = static_cast<int>(f.size[i] > static_cast<int>(SizeClass::small));
+    const int is_due = is_larger | static_cast<int>(coverage[i] != 0);
     bits[i] = static_cast<std::uint32_t>(is_due) << i;
   }
-  std::uint32_t due = 0;
-  for (unsigned i = 0; i < kLanes; ++i) due |= bits[i];
-  return due;
+  std::uint32_t pending = 0;
+  for (unsigned i = 0; i < kLanes; ++i) pending |= bits[i];
+  return pending;
 }
 
 namespace {
@@ -264,75 +272,75 @@ double volume_of(const Eigen::Matrix3d& corners) {
 }
 
 /// The part of the canvas that a triangle in front of the sensor may cover; all of it for others.
-CanvasRect around(const Eigen::Matrix3d& corners, const CanvasRect& canvas) {
-  constexpr double kFootprintRoom_px = 1e-3;
-  if (!(corners.row(2).minCoeff() > 0.0)) return canvas;
+PixelBounds around(const Eigen::Matrix3d& corners, const PixelBounds& tile) {
+  constexpr double kRectMargin_px = 1e-3;
+  if (!(corners.row(2).minCoeff() > 0.0)) return tile;
   const Eigen::Array3d cols = corners.row(0).array() / corners.row(2).array();
   const Eigen::Array3d rows = corners.row(1).array() / corners.row(2).array();
-  const auto first = [](double low, int least, int most) {
+  const auto first = [](double low, int min_of_three, int max_of) {
     return static_cast<int>(
-        std::ceil(std::clamp(low - kFootprintRoom_px, double(least), double(most))));
+        std::ceil(std::clamp(low - kRectMargin_px, double(min_of_three), double(max_of))));
   };
-  const auto last = [](double high, int least, int most) {
+  const auto last = [](double high, int min_of_three, int max_of) {
     return static_cast<int>(
-        std::floor(std::clamp(high + kFootprintRoom_px, double(least), double(most))));
+        std::floor(std::clamp(high + kRectMargin_px, double(min_of_three), double(max_of))));
   };
-  return {.left = first(cols.minCoeff(), canvas.left, canvas.right + 1),
-          .right = last(cols.maxCoeff(), canvas.left - 1, canvas.right),
-          .top = first(rows.minCoeff(), canvas.top, canvas.bottom + 1),
-          .bottom = last(rows.maxCoeff(), canvas.top - 1, canvas.bottom)};
+  return {.left = first(cols.minCoeff(), tile.left, tile.right + 1),
+          .right = last(cols.maxCoeff(), tile.left - 1, tile.right),
+          .top = first(rows.minCoeff(), tile.top, tile.bottom + 1),
+          .bottom = last(rows.maxCoeff(), tile.top - 1, tile.bottom)};
 }
 
 }  // namespace
 
-std::optional<Shape> shape_of(const Eigen::Matrix3d& corners, const Nearness& nearness,
-                              const CanvasRect& canvas, bool cull_back_faces) {
+std::optional<TriangleSetup> set_up_triangle(const Eigen::Matrix3d& corners,
+                                             const Nearness& nearness, const PixelBounds& tile,
+                                             bool cull_back_faces) {
   const double volume = volume_of(corners);
   const double depth = corners.row(2).maxCoeff();
   if (!(depth > 0.0) || volume == 0.0 || (cull_back_faces && volume > 0.0)) {
     return std::nullopt;
   }
-  Shape shape{};
-  shape.rect = around(corners, canvas);
-  if (shape.rect.left > shape.rect.right || shape.rect.top > shape.rect.bottom) return std::nullopt;
-  const Eigen::Vector3d first_pixel(shape.rect.left, shape.rect.top, 1.0);
+  TriangleSetup setup{};
+  setup.rect = around(corners, tile);
+  if (setup.rect.left > setup.rect.right || setup.rect.top > setup.rect.bottom) return std::nullopt;
+  const Eigen::Vector3d first_pixel(setup.rect.left, setup.rect.top, 1.0);
   const double sign = volume > 0.0 ? 1.0 : -1.0;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (int k = 0; k < 3; ++k) {
-    const Eigen::Vector3d border = corners.col(k).cross(corners.col((k + 1) % 3));
-    sum += border;
-    const double width = border.head<2>().lpNorm<1>();
+    const Eigen::Vector3d edge = corners.col(k).cross(corners.col((k + 1) % 3));
+    sum += edge;
+    const double width = edge.head<2>().lpNorm<1>();
     if (!(width > 0.0)) return std::nullopt;
     const auto at = static_cast<std::size_t>(k);
-    shape.per_col[at] = static_cast<float>(sign * border.x() / width);
-    shape.per_row[at] = static_cast<float>(sign * border.y() / width);
-    shape.at_corner[at] =
-        static_cast<float>(sign * border.dot(first_pixel) / width) + kBorderRoom_px;
-    shape.certain[at] = 2.0F * kBorderRoom_px;
+    setup.per_col[at] = static_cast<float>(sign * edge.x() / width);
+    setup.per_row[at] = static_cast<float>(sign * edge.y() / width);
+    setup.at_corner[at] = static_cast<float>(sign * edge.dot(first_pixel) / width) + kEdgeMargin_px;
+    setup.certain[at] = 2.0F * kEdgeMargin_px;
     // All pixels beyond one border: nothing is covered.
     const float across =
-        std::max(0.0F, shape.per_col[at]) * static_cast<float>(shape.rect.right - shape.rect.left);
+        std::max(0.0F, setup.per_col[at]) * static_cast<float>(setup.rect.right - setup.rect.left);
     const float down =
-        std::max(0.0F, shape.per_row[at]) * static_cast<float>(shape.rect.bottom - shape.rect.top);
-    if (shape.at_corner[at] + across + down < 0.0F) return std::nullopt;
+        std::max(0.0F, setup.per_row[at]) * static_cast<float>(setup.rect.bottom - setup.rect.top);
+    if (setup.at_corner[at] + across + down < 0.0F) return std::nullopt;
   }
   // 1 / depth = (sum . (column, row, 1)) / volume
   const double scale = nearness.factor * nearness.far_m;
   const Eigen::Vector3d inverse = sum / volume;
-  shape.nearness_per_col = static_cast<float>(scale * inverse.x());
-  shape.nearness_per_row = static_cast<float>(scale * inverse.y());
-  shape.nearness_at_corner = static_cast<float>(scale * inverse.dot(first_pixel) - nearness.factor);
-  const double least_depth = corners.row(2).minCoeff();
-  shape.farthest = static_cast<float>(nearness.at(depth));
-  shape.nearest = least_depth > 0.0 ? static_cast<float>(nearness.at(least_depth))
-                                    : std::numeric_limits<float>::max();
-  const auto cols = static_cast<float>(shape.rect.right - shape.rect.left + kSmall);
-  const auto rows = static_cast<float>(shape.rect.bottom - shape.rect.top + kSmall);
-  shape.room = std::min(
-      shape.nearest - shape.farthest,
-      kInterpolation * (size_of(shape.nearness_at_corner) + size_of(shape.nearness_per_col) * cols +
-                        size_of(shape.nearness_per_row) * rows));
-  return shape;
+  setup.nearness_per_col = static_cast<float>(scale * inverse.x());
+  setup.nearness_per_row = static_cast<float>(scale * inverse.y());
+  setup.nearness_at_corner = static_cast<float>(scale * inverse.dot(first_pixel) - nearness.factor);
+  const double min_depth = corners.row(2).minCoeff();
+  setup.farthest = static_cast<float>(nearness.at(depth));
+  setup.nearest = min_depth > 0.0 ? static_cast<float>(nearness.at(min_depth))
+                                  : std::numeric_limits<float>::max();
+  const auto cols = static_cast<float>(setup.rect.right - setup.rect.left + kSmall);
+  const auto rows = static_cast<float>(setup.rect.bottom - setup.rect.top + kSmall);
+  setup.margin = std::min(
+      setup.nearest - setup.farthest,
+      kInterpolation * (size_of(setup.nearness_at_corner) + size_of(setup.nearness_per_col) * cols +
+                        size_of(setup.nearness_per_row) * rows));
+  return setup;
 }
 
 }  // namespace glidar::raster

@@ -14,24 +14,24 @@ namespace glidar::raster {
 
 /// How one cluster's corners come onto one canvas, in single precision: the large numbers are gone,
 /// as corners are relative to the cluster's middle and pixels to the canvas.
-struct Aim {
-  std::array<float, 9> turn;  ///< column by column: to (column, row, 1) times depth
-  float column, row, depth;   ///< of the middle, the first two times its depth
-  float before_far;           ///< from the middle to the far plane, m
-  float factor;               ///< Nearness::factor
-  float least_depth;          ///< of corners that single precision suits
-  float last_col, last_row;   ///< of the canvas
+struct TileTransform {
+  std::array<float, 9> matrix;        ///< column by column: to (column, row, 1) times depth
+  float column_at_depth, row, depth;  ///< of the middle, the first two times its depth
+  float before_far;                   ///< from the middle to the far plane, m
+  float factor;                       ///< Nearness::factor
+  float min_depth;                    ///< of corners that single precision suits
+  float last_col, last_row;           ///< of the canvas
   bool cull_back_faces;
 };
 
 /// Borders are drawn this far outside of where they are, pixels: more than rounding moves them, so
 /// that no beam falls between two triangles. Who gets one falsely is found out afterwards.
-inline constexpr float kBorderRoom_px = 0x1p-13F;
+inline constexpr float kEdgeMargin_px = 0x1p-13F;
 
 /// What there is to do about a triangle.
-enum class Size : std::int32_t {
-  nothing,  ///< it covers no pixel of the canvas
-  small,    ///< it covers some of kSmall x kSmall pixels
+enum class SizeClass : std::int32_t {
+  none,   ///< it covers no pixel of the canvas
+  small,  ///< it covers some of kSmall x kSmall pixels
   medium,
   large  ///< for double precision, perhaps of no pixel
 };
@@ -39,7 +39,7 @@ enum class Size : std::int32_t {
 inline constexpr int kSmall = 4;
 
 /// The triangles of a pack on a canvas, see Shape.
-struct Footprints {
+struct TriangleSetups {
   std::array<Lanes<float>, 3> per_col;
   std::array<Lanes<float>, 3> per_row;
   std::array<Lanes<float>, 3> at_corner;
@@ -49,7 +49,7 @@ struct Footprints {
   Lanes<float> nearness_at_corner;
   Lanes<float> farthest;
   Lanes<float> nearest;
-  Lanes<float> room;
+  Lanes<float> margin;
   Lanes<std::int32_t> left;
   Lanes<std::int32_t> right;
   Lanes<std::int32_t> top;
@@ -57,21 +57,23 @@ struct Footprints {
   Lanes<std::int32_t> size;  ///< a Size
 
   /// One of the triangles; of a size other than large.
-  [[nodiscard]] Shape shape(unsigned lane, std::uint32_t number) const;
+  [[nodiscard]] TriangleSetup setup(unsigned lane, std::uint32_t triangle_id) const;
 };
 
-void find_footprints(const Aim& aim, const CornerBlock& corners, Footprints& footprints);
+void set_up_triangles(const TileTransform& transform, const CornerBlock& corners,
+                      TriangleSetups& footprints);
 
 /// Per small triangle, bits for pixels of its rectangle: bit kSmall * row + column where it covers
 /// one, and kCertainShift bits further up where that is certain. Returns a bit for every lane where
 /// there is something to draw.
 inline constexpr int kCertainShift = kSmall * kSmall;
-std::uint32_t cover(const Footprints& footprints, Lanes<std::uint32_t>& covered);
+std::uint32_t coverage_masks(const TriangleSetups& footprints, Lanes<std::uint32_t>& coverage);
 
 /// The shape of any triangle, worked out in double from its corners as (column, row, 1) times depth
 /// on the canvas; none when it covers nothing there. Corners behind the sensor are welcome: M.
 /// Olano and T. Greer, "Triangle scan conversion using 2D homogeneous coordinates" (1997).
-std::optional<Shape> shape_of(const Eigen::Matrix3d& corners, const Nearness& nearness,
-                              const CanvasRect& canvas, bool cull_back_faces);
+std::optional<TriangleSetup> set_up_triangle(const Eigen::Matrix3d& corners,
+                                             const Nearness& nearness, const PixelBounds& tile,
+                                             bool cull_back_faces);
 
 }  // namespace glidar::raster

@@ -12,8 +12,8 @@ namespace glidar::raster {
 namespace {
 
 // Room for rounding, above that of all single precision here: part of a length, and pixels.
-constexpr double kSightRoom = 1e-5;
-constexpr double kRoom_px = 0.01;
+constexpr double kBoundMargin = 1e-5;
+constexpr double kPixelMargin_px = 0.01;
 
 /// The eight corners of each box, as (column, row, 1) times depth.
 struct Corners {
@@ -21,8 +21,8 @@ struct Corners {
   std::array<Lanes3<double>, 3> half;  ///< along the box's axes
 };
 
-[[gnu::always_inline]] inline void find_corners(const PixelView& view, const Boxes& boxes,
-                                                Corners& corners) {
+[[gnu::always_inline]] inline void project_boxes(const PixelView& view, const BoxPacket& boxes,
+                                                 Corners& corners) {
   const double* m = view.pixel_from_object.data();  // column by column
   for (unsigned i = 0; i < kLanes; ++i) {
     const auto x = static_cast<double>(boxes.middle.x[i]);
@@ -76,14 +76,14 @@ struct Span {
 
 /// The first whole number that is not below, and the last that is not above, within borders.
 [[gnu::always_inline]] inline std::int32_t first_from(double low, double first, double last) {
-  const double held = low < first ? first : (low > last + 1.0 ? last + 1.0 : low);
-  const auto whole = static_cast<std::int32_t>(held);
-  return whole + static_cast<std::int32_t>(static_cast<double>(whole) < held);
+  const double clamped = low < first ? first : (low > last + 1.0 ? last + 1.0 : low);
+  const auto whole = static_cast<std::int32_t>(clamped);
+  return whole + static_cast<std::int32_t>(static_cast<double>(whole) < clamped);
 }
 [[gnu::always_inline]] inline std::int32_t last_to(double high, double first, double last) {
-  const double held = high > last ? last : (high < first - 1.0 ? first - 1.0 : high);
-  const auto whole = static_cast<std::int32_t>(held);
-  return whole - static_cast<std::int32_t>(static_cast<double>(whole) > held);
+  const double clamped = high > last ? last : (high < first - 1.0 ? first - 1.0 : high);
+  const auto whole = static_cast<std::int32_t>(clamped);
+  return whole - static_cast<std::int32_t>(static_cast<double>(whole) > clamped);
 }
 
 }  // namespace
@@ -97,10 +97,11 @@ PixelView pixel_view(const InstanceView& view, const PinholeIntrinsics& k) {
   return result;
 }
 
-GLIDAR_SIMD void look_at_boxes(const PixelView& view, const Nearness& nearness,
-                               const GridWindow& window, const Boxes& boxes, Sights& sights) {
+GLIDAR_SIMD void bound_clusters(const PixelView& view, const Nearness& nearness,
+                                const GridWindow& window, const BoxPacket& boxes,
+                                ClusterBounds& bounds) {
   Corners corners;
-  find_corners(view, boxes, corners);
+  project_boxes(view, boxes, corners);
   constexpr double kFar = std::numeric_limits<double>::infinity();
   Span span;
   for (unsigned i = 0; i < kLanes; ++i) {
@@ -119,23 +120,24 @@ GLIDAR_SIMD void look_at_boxes(const PixelView& view, const Nearness& nearness,
   for (unsigned i = 0; i < kLanes; ++i) {
     const double near = span.near[i];
     const bool is_ahead = span.far[i] > 0.0;
-    const bool is_around = near <= kSightRoom * span.far[i];  // or behind: then it may cover all
-    const double left = is_around ? first_col : span.left[i] - kRoom_px;
-    const double right = is_around ? last_col : span.right[i] + kRoom_px;
-    const double top = is_around ? first_row : span.top[i] - kRoom_px;
-    const double bottom = is_around ? last_row : span.bottom[i] + kRoom_px;
-    sights.left[i] = first_from(left, first_col, last_col);
-    sights.right[i] = is_ahead ? last_to(right, first_col, last_col) : -1;
-    sights.top[i] = first_from(top, first_row, last_row);
-    sights.bottom[i] = is_ahead ? last_to(bottom, first_row, last_row) : -1;
+    const bool is_around = near <= kBoundMargin * span.far[i];  // or behind: then it may cover all
+    const double left = is_around ? first_col : span.left[i] - kPixelMargin_px;
+    const double right = is_around ? last_col : span.right[i] + kPixelMargin_px;
+    const double top = is_around ? first_row : span.top[i] - kPixelMargin_px;
+    const double bottom = is_around ? last_row : span.bottom[i] + kPixelMargin_px;
+    bounds.left[i] = first_from(left, first_col, last_col);
+    bounds.right[i] = is_ahead ? last_to(right, first_col, last_col) : -1;
+    bounds.top[i] = first_from(top, first_row, last_row);
+    bounds.bottom[i] = is_ahead ? last_to(bottom, first_row, last_row) : -1;
     const double depth = is_around ? 1.0 : near;
     const double closest = nearness.factor * (nearness.far_m - depth) / depth;
-    const double bound = closest * (1.0 + kSightRoom) + kSightRoom * nearness.factor;
-    sights.nearness[i] = static_cast<float>(is_around ? kFar : bound);
+    const double bound = closest * (1.0 + kBoundMargin) + kBoundMargin * nearness.factor;
+    bounds.nearness[i] = static_cast<float>(is_around ? kFar : bound);
   }
 }
 
-bool is_beside(const PixelView& view, const Boxes& boxes, unsigned lane, const CanvasRect& pixels) {
+bool is_outside(const PixelView& view, const BoxPacket& boxes, unsigned lane,
+                const PixelBounds& pixels) {
   using Row = Eigen::Matrix<double, 1, 4>;
   const Eigen::Matrix<double, 3, 4>& pixel = view.pixel_from_object;
   const Eigen::Vector3d middle = boxes.middle.get(lane).cast<double>();
@@ -143,38 +145,38 @@ bool is_beside(const PixelView& view, const Boxes& boxes, unsigned lane, const C
   // Linear, and not negative in what is seen: so it must be for some point of the box.
   const auto is_beyond = [&](const Row& inside) {
     const double size = inside.head<3>().cwiseAbs().dot(half);
-    const double most = inside.head<3>().dot(middle) + inside[3] + size;
-    return most < -kSightRoom * (size + std::abs(inside[3]));
+    const double max_of = inside.head<3>().dot(middle) + inside[3] + size;
+    return max_of < -kBoundMargin * (size + std::abs(inside[3]));
   };
-  return is_beyond(pixel.row(0) - (pixels.left - kRoom_px) * pixel.row(2)) ||
-         is_beyond((pixels.right + kRoom_px) * pixel.row(2) - pixel.row(0)) ||
-         is_beyond(pixel.row(1) - (pixels.top - kRoom_px) * pixel.row(2)) ||
-         is_beyond((pixels.bottom + kRoom_px) * pixel.row(2) - pixel.row(1));
+  return is_beyond(pixel.row(0) - (pixels.left - kPixelMargin_px) * pixel.row(2)) ||
+         is_beyond((pixels.right + kPixelMargin_px) * pixel.row(2) - pixel.row(0)) ||
+         is_beyond(pixel.row(1) - (pixels.top - kPixelMargin_px) * pixel.row(2)) ||
+         is_beyond((pixels.bottom + kPixelMargin_px) * pixel.row(2) - pixel.row(1));
 }
 
-void add_sightings(const PixelView& view, const Nearness& nearness, const GridWindow& window,
-                   const PackedMesh& mesh, const ClusterRange& range,
-                   std::vector<Sighting>& sightings) {
-  const CanvasRect all{.left = static_cast<int>(window.first_col),
-                       .right = static_cast<int>(window.end_col) - 1,
-                       .top = static_cast<int>(window.first_row),
-                       .bottom = static_cast<int>(window.end_row) - 1};
-  Sights sights;
+void add_visible_clusters(const PixelView& view, const Nearness& nearness, const GridWindow& window,
+                          const PackedMesh& mesh, const ClusterRange& range,
+                          std::vector<VisibleCluster>& clusters) {
+  const PixelBounds all{.left = static_cast<int>(window.first_col),
+                        .right = static_cast<int>(window.end_col) - 1,
+                        .top = static_cast<int>(window.first_row),
+                        .bottom = static_cast<int>(window.end_row) - 1};
+  ClusterBounds bounds;
   for (std::uint32_t cluster = range.first; cluster < range.end; ++cluster) {
     const unsigned lane = cluster % kLanes;
-    if (lane == 0) look_at_boxes(view, nearness, window, mesh.boxes[cluster / kLanes], sights);
-    if (sights.left[lane] > sights.right[lane] || sights.top[lane] > sights.bottom[lane]) continue;
-    if (std::isinf(sights.nearness[lane]) &&
-        is_beside(view, mesh.boxes[cluster / kLanes], lane, all)) {
+    if (lane == 0) bound_clusters(view, nearness, window, mesh.boxes[cluster / kLanes], bounds);
+    if (bounds.left[lane] > bounds.right[lane] || bounds.top[lane] > bounds.bottom[lane]) continue;
+    if (std::isinf(bounds.nearness[lane]) &&
+        is_outside(view, mesh.boxes[cluster / kLanes], lane, all)) {
       continue;
     }
-    sightings.push_back({.instance = range.instance,
-                         .cluster = cluster,
-                         .left = sights.left[lane],
-                         .right = sights.right[lane],
-                         .top = sights.top[lane],
-                         .bottom = sights.bottom[lane],
-                         .nearness = sights.nearness[lane]});
+    clusters.push_back({.instance = range.instance,
+                        .cluster = cluster,
+                        .left = bounds.left[lane],
+                        .right = bounds.right[lane],
+                        .top = bounds.top[lane],
+                        .bottom = bounds.bottom[lane],
+                        .nearness = bounds.nearness[lane]});
   }
 }
 

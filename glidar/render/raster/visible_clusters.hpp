@@ -36,7 +36,7 @@ struct Nearness {
 
 /// Where kLanes clusters may be seen: columns and rows, both ends included, and how near they may
 /// come. An empty range of columns: nowhere.
-struct Sights {
+struct ClusterBounds {
   Lanes<std::int32_t> left;
   Lanes<std::int32_t> right;
   Lanes<std::int32_t> top;
@@ -45,8 +45,8 @@ struct Sights {
 };
 
 /// Of boxes around clusters, in the part of a picture that is of interest.
-void look_at_boxes(const PixelView& view, const Nearness& nearness, const GridWindow& window,
-                   const Boxes& boxes, Sights& sights);
+void bound_clusters(const PixelView& view, const Nearness& nearness, const GridWindow& window,
+                    const BoxPacket& boxes, ClusterBounds& bounds);
 
 /// Some clusters of an instance.
 struct ClusterRange {
@@ -56,7 +56,7 @@ struct ClusterRange {
 };
 
 /// A cluster that may be seen, and where: columns and rows of the picture, both ends included.
-struct Sighting {
+struct VisibleCluster {
   std::uint32_t instance;
   std::uint32_t cluster;
   std::int32_t left;
@@ -68,11 +68,12 @@ struct Sighting {
 
 /// True when nothing of a cluster's box, which may reach behind the sensor, is seen in the
 /// rectangle of pixels, both ends included.
-bool is_beside(const PixelView& view, const Boxes& boxes, unsigned lane, const CanvasRect& pixels);
+bool is_outside(const PixelView& view, const BoxPacket& boxes, unsigned lane,
+                const PixelBounds& pixels);
 
 /// Adds those of the range that may be seen; its first is a multiple of kLanes.
-void add_sightings(const PixelView& view, const Nearness& nearness, const GridWindow& window,
-                   const PackedMesh& mesh, const ClusterRange& range,
-                   std::vector<Sighting>& sightings);
+void add_visible_clusters(const PixelView& view, const Nearness& nearness, const GridWindow& window,
+                          const PackedMesh& mesh, const ClusterRange& range,
+                          std::vector<VisibleCluster>& clusters);
 
 }  // namespace glidar::raster

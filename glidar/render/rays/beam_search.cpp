@@ -38,16 +38,16 @@ std::uint32_t usable_lanes(const BeamBlock& beams) {
   return lanes;
 }
 
-/// What a triangle's filter functions need to know, see RayPacket::stops.
-struct StopContext {
+/// What a triangle's filter functions need to know, see RayPacket::accepts_hit.
+struct HitFilterContext {
   const CastView& cast;
   const HitBlock& block;
   std::uint32_t instance;
 
-  static bool stops(const void* context, unsigned lane, std::uint32_t primitive) {
-    const auto& self = *static_cast<const StopContext*>(context);
-    return glidar::stops(self.cast.resolver, self.cast.request.beams, self.block.beam[lane],
-                         self.cast.request.cull_back_faces, {self.instance, primitive});
+  static bool accepts(const void* context, unsigned lane, std::uint32_t primitive) {
+    const auto& self = *static_cast<const HitFilterContext*>(context);
+    return glidar::blocks_beam(self.cast.resolver, self.cast.request.beams, self.block.beam[lane],
+                               self.cast.request.cull_back_faces, {self.instance, primitive});
   }
 };
 
@@ -68,8 +68,8 @@ class InstanceTrace {
     set_rays(origin, direction, packet);
     stop_.instance = instance;
     packet.tie_reach = cast_.trees.largest_reach_m() / view.scale;
-    const bool asks = cast_.request.cull_back_faces || cast_.resolver.is_masked(instance);
-    packet.stops = asks ? StopContext::stops : nullptr;
+    const bool filters_hits = cast_.request.cull_back_faces || cast_.resolver.is_masked(instance);
+    packet.accepts_hit = filters_hits ? HitFilterContext::accepts : nullptr;
     packet.context = &stop_;
     kernel_.start(packet, cast_.trees.of_instance(instance).sphere, lanes);
   }
@@ -85,12 +85,12 @@ class InstanceTrace {
 
   const CastView& cast_;
   const Kernel& kernel_;
-  StopContext stop_;
+  HitFilterContext stop_;
 };
 
 /// What a lane has found in all instances so far.
 struct Nearest {
-  Found found;
+  PrimitiveRef primitive;
   double low_m = kInfinity;  ///< bounds of the distance
   double high_m = kInfinity;
 };
@@ -121,7 +121,7 @@ class SceneTrace {
     return tied_;
   }
 
-  [[nodiscard]] const Found& found(unsigned lane) const { return nearest_[lane].found; }
+  [[nodiscard]] const PrimitiveRef& found(unsigned lane) const { return nearest_[lane].primitive; }
 
  private:
   void visit(std::uint32_t leaf, RayPacket& outer, std::uint32_t lanes) {
@@ -130,7 +130,7 @@ class SceneTrace {
     RayPacket& p = inner_.packet;
     inner_.start(instance, beams_, lanes);
     for_lanes(lanes, [&](unsigned i) {
-      if (nearest_[i].found.instance == kInvalidId) return;
+      if (nearest_[i].primitive.instance == kInvalidId) return;
       const double end = nearest_[i].high_m / scale;
       p.high[i] = well_above(end - p.shift[i] + 0x1p-50 * end);
     });
@@ -138,27 +138,27 @@ class SceneTrace {
     tied_ |= p.tied;
     for_lanes(lanes, [&](unsigned i) {
       if (p.slot[i] == kNoTriangle) return;
-      take(i, {instance, inner_.primitive(i)}, scale);
+      update_nearest(i, {instance, inner_.primitive(i)}, scale);
       outer.high[i] =
           well_above(nearest_[i].high_m - outer.shift[i] + 0x1p-50 * nearest_[i].high_m);
     });
   }
 
   /// Keeps the nearer of what a lane has found and what the inner packet found.
-  void take(unsigned lane, const Found& found, double scale) {
+  void update_nearest(unsigned lane, const PrimitiveRef& found, double scale) {
     const RayPacket& p = inner_.packet;
-    const double room = 0x1p-50 * p.shift[lane];
+    const double margin = 0x1p-50 * p.shift[lane];
     Nearest& nearest = nearest_[lane];
-    const Nearest other{found, scale * (p.shift[lane] + double{p.low[lane]} - room),
-                        scale * (p.shift[lane] + double{p.high[lane]} + room)};
-    const bool is_first = nearest.found.instance == kInvalidId;
+    const Nearest other{found, scale * (p.shift[lane] + double{p.low[lane]} - margin),
+                        scale * (p.shift[lane] + double{p.high[lane]} + margin)};
+    const bool is_first = nearest.primitive.instance == kInvalidId;
     if (!is_first && other.low_m > nearest.high_m) return;
-    if (is_first || other.high_m < nearest.low_m || decide(lane, found)) nearest = other;
+    if (is_first || other.high_m < nearest.low_m || retest_exactly(lane, found)) nearest = other;
   }
 
   /// True when the beam meets this one before the nearest so far.
-  bool decide(unsigned lane, const Found& found) {
-    const HitOrder order = order_of_hits(cast_, block_.beam[lane], found, nearest_[lane].found);
+  bool retest_exactly(unsigned lane, const PrimitiveRef& found) {
+    const HitOrder order = order_of_hits(cast_, block_.beam[lane], found, nearest_[lane].primitive);
     if (order.ties) tied_ |= 1U << lane;
     return order.is_nearer;
   }
@@ -180,7 +180,7 @@ void BeamSearch::find(const BeamBlock& beams, HitBlock& block) const {
   block.mask = 0;
   if (lanes == 0 || instances.empty()) return;
   std::uint32_t tied = 0;
-  const auto set = [&](unsigned lane, const Found& found) {
+  const auto set = [&](unsigned lane, const PrimitiveRef& found) {
     if (found.instance == kInvalidId) return;
     block.mask |= 1U << lane;
     block.instance[lane] = found.instance;
@@ -205,7 +205,7 @@ void BeamSearch::find(const BeamBlock& beams, HitBlock& block) const {
   });
 }
 
-Found BeamSearch::find(std::size_t beam) const {
+PrimitiveRef BeamSearch::find(std::size_t beam) const {
   const Beams& all = cast_.request.beams;
   BeamBlock beams;
   HitBlock block;

@@ -23,7 +23,7 @@ class BeamSearch {
   void find(const BeamBlock& beams, HitBlock& block) const;
 
   /// What one beam hits; instance kInvalidId: nothing.
-  [[nodiscard]] Found find(std::size_t beam) const;
+  [[nodiscard]] PrimitiveRef find(std::size_t beam) const;
 
  private:
   CastView cast_;

@@ -29,30 +29,30 @@ void BoxTree::build(std::span<BoxReference> boxes, std::size_t count, ThreadPool
   collapse_tree(split.get(), nodes_, leaves);
   index_of_leaf_.clear();
   for (const LeafRange& leaf : leaves) index_of_leaf_.push_back(boxes[leaf.first].index);
-  find_places(count);
+  find_slots(count);
   area_ = 0.0;
   for (const TreeNode& node : nodes_) area_ += half_area(box_around(node));
   built_area_ = area_;
 }
 
-BoxTree::Place& BoxTree::place_of(std::int32_t child) {
-  if (child >= 0) return place_of_node_[static_cast<std::uint32_t>(child)];
-  return place_of_box_[index_of_leaf_[static_cast<std::uint32_t>(~child)]];
+BoxTree::ChildSlot& BoxTree::slot_of(std::int32_t child) {
+  if (child >= 0) return slot_of_node_[static_cast<std::uint32_t>(child)];
+  return slot_of_box_[index_of_leaf_[static_cast<std::uint32_t>(~child)]];
 }
 
-void BoxTree::find_places(std::size_t count) {
-  place_of_node_.resize(nodes_.size());
-  place_of_box_.resize(count);
+void BoxTree::find_slots(std::size_t count) {
+  slot_of_node_.resize(nodes_.size());
+  slot_of_box_.resize(count);
   for (std::uint32_t node = 0; node < nodes_.size(); ++node) {
     for (std::uint32_t i = 0; i < 8; ++i) {
       const std::int32_t child = nodes_[node].child[i];
-      if (child != kNoChild) place_of(child) = {node, i};
+      if (child != kNoChild) slot_of(child) = {node, i};
     }
   }
 }
 
 void BoxTree::move(const BoxReference& box) {
-  Place place = place_of_box_[box.index];
+  ChildSlot place = slot_of_box_[box.index];
   const float* low = box.low;
   const float* high = box.high;
   SplitNode around{};
@@ -68,7 +68,7 @@ void BoxTree::move(const BoxReference& box) {
     if (place.node == 0) break;
     low = around.low;
     high = around.high;
-    place = place_of_node_[place.node];
+    place = slot_of_node_[place.node];
   }
   sphere_ = sphere_of(around);
 }

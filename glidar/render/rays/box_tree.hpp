@@ -24,7 +24,7 @@ class BoxTree {
 
   /// True when boxes have moved so that the tree should be built again: the areas of its nodes'
   /// boxes, by which the time of a search grows, have doubled.
-  [[nodiscard]] bool is_worn() const { return area_ > 2.0 * built_area_; }
+  [[nodiscard]] bool needs_rebuild() const { return area_ > 2.0 * built_area_; }
 
   [[nodiscard]] const std::vector<TreeNode>& nodes() const { return nodes_; }
   /// The index of the box in a leaf.
@@ -34,16 +34,16 @@ class BoxTree {
 
  private:
   /// A child of a node.
-  struct Place {
+  struct ChildSlot {
     std::uint32_t node;
     std::uint32_t child;
   };
-  Place& place_of(std::int32_t child);
-  void find_places(std::size_t count);
+  ChildSlot& slot_of(std::int32_t child);
+  void find_slots(std::size_t count);
 
   std::vector<TreeNode> nodes_;
-  std::vector<Place> place_of_node_;  ///< of the root: not used
-  std::vector<Place> place_of_box_;   ///< by index
+  std::vector<ChildSlot> slot_of_node_;  ///< of the root: not used
+  std::vector<ChildSlot> slot_of_box_;   ///< by index
   std::vector<std::uint32_t> index_of_leaf_;
   MeshSphere sphere_;
   double area_ = 0.0;  ///< of the boxes around the nodes, added up

@@ -23,7 +23,7 @@ const HitRay& rule_of(RayPacket& packet, unsigned lane) {
 
 double distance_to(const TriangleBlock* blocks, RayPacket& packet, unsigned lane,
                    std::uint32_t slot) {
-  ++packet.decisions;
+  ++packet.exact_tests;
   return hit_distance(rule_of(packet, lane), triangle_at(blocks, slot));
 }
 
@@ -54,7 +54,7 @@ double dot(const Vector& a, const Vector& b) {
 }
 
 /// How much farther a triangle may be that ties with this one.
-double tie_room(const RayPacket& packet, unsigned lane, const HitTriangle& triangle) {
+double tie_margin(const RayPacket& packet, unsigned lane, const HitTriangle& triangle) {
   if (packet.tie_reach == 0.0) return 0.0;
   const auto& d = packet.exact_direction;
   return tie_window(packet.tie_reach, triangle, {d[0][lane], d[1][lane], d[2][lane]});
@@ -62,10 +62,10 @@ double tie_room(const RayPacket& packet, unsigned lane, const HitTriangle& trian
 
 /// True where the triangle has the corners of the ray's nearest one, in any order: by the rule
 /// their distances are equal, so that the lower one is kept.
-bool decide_by_corners(const TriangleBlock* blocks, RayPacket& packet, unsigned lane,
-                       std::uint32_t slot) {
+bool keep_lower_duplicate(const TriangleBlock* blocks, RayPacket& packet, unsigned lane,
+                          std::uint32_t slot) {
   const std::uint32_t before = packet.slot[lane];
-  if (before == kNoTriangle || packet.stops != nullptr) return false;
+  if (before == kNoTriangle || packet.accepts_hit != nullptr) return false;
   if (!have_same_corners(blocks, before, slot)) return false;
   if (primitive_at(blocks, slot) < primitive_at(blocks, before)) packet.slot[lane] = slot;
   return true;
@@ -92,19 +92,20 @@ double tie_window(double reach, const HitTriangle& triangle, const Vector& direc
   return kTiePart * reach * across;
 }
 
-void decide(const TriangleBlock* blocks, RayPacket& packet, unsigned lane, std::uint32_t slot) {
-  if (decide_by_corners(blocks, packet, lane, slot)) return;
+void retest_exactly(const TriangleBlock* blocks, RayPacket& packet, unsigned lane,
+                    std::uint32_t slot) {
+  if (keep_lower_duplicate(blocks, packet, lane, slot)) return;
   const double distance = distance_to(blocks, packet, lane, slot);
   if (distance == 0.0) return;
   const std::uint32_t primitive = primitive_at(blocks, slot);
-  if (packet.stops != nullptr && !packet.stops(packet.context, lane, primitive)) return;
-  const double tie = tie_room(packet, lane, triangle_at(blocks, slot));
+  if (packet.accepts_hit != nullptr && !packet.accepts_hit(packet.context, lane, primitive)) return;
+  const double tie = tie_margin(packet, lane, triangle_at(blocks, slot));
   if (packet.slot[lane] != kNoTriangle) {
     complete_distance(blocks, packet, lane);
     const HitCandidate nearest{packet.distance[lane], 0, primitive_at(blocks, packet.slot[lane])};
     const double apart = std::abs(distance - nearest.distance);
     const HitTriangle before = triangle_at(blocks, packet.slot[lane]);
-    const double widest = std::max(tie, tie_room(packet, lane, before));
+    const double widest = std::max(tie, tie_margin(packet, lane, before));
     if (apart > 0.0 && !(apart > widest)) packet.tied |= 1U << lane;
     if (!is_nearer({distance, 0, primitive}, nearest)) return;
   }
@@ -112,9 +113,9 @@ void decide(const TriangleBlock* blocks, RayPacket& packet, unsigned lane, std::
   packet.distance[lane] = distance;
   packet.known |= 1U << lane;
   const auto rounded = static_cast<float>(distance - packet.shift[lane]);
-  const float room = 0x1p-22F * std::abs(rounded) + 0x1p-120F + static_cast<float>(1.01 * tie);
-  packet.low[lane] = rounded - room;
-  packet.high[lane] = rounded + room;
+  const float margin = 0x1p-22F * std::abs(rounded) + 0x1p-120F + static_cast<float>(1.01 * tie);
+  packet.low[lane] = rounded - margin;
+  packet.high[lane] = rounded + margin;
 }
 
 void complete_distances(const TriangleBlock* blocks, RayPacket& packet) {

@@ -12,7 +12,8 @@ namespace glidar::rays {
 
 /// Applies the hit rule to a triangle that single precision left in doubt, and to the ray's nearest
 /// one if its distance is not known yet; keeps the nearer.
-void decide(const TriangleBlock* blocks, RayPacket& packet, unsigned lane, std::uint32_t slot);
+void retest_exactly(const TriangleBlock* blocks, RayPacket& packet, unsigned lane,
+                    std::uint32_t slot);
 
 /// True for two triangles with the same corners in any order: by the rule, their distances are
 /// equal.

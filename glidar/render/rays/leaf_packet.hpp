@@ -27,7 +27,7 @@ struct DirectionBox {
 /// of a triangle that is hit are positive.
 GLIDAR_INLINE Float8 largest_edge(const DirectionBox& box, const Vector<Float8>& q1,
                                   const Vector<Float8>& q2, const Vector<Float8>& n) {
-  return least(least(box.largest(q1), box.largest(q2)), box.largest(n - q1 - q2));
+  return min(min(box.largest(q1), box.largest(q2)), box.largest(n - q1 - q2));
 }
 
 /// Numbers of eight triangles, to be read one triangle at a time.
@@ -72,24 +72,24 @@ struct LaneGroup {
 
 /// Weighs one triangle for some rays, keeps it where it is surely nearer, and applies the rule
 /// where that is in doubt.
-GLIDAR_INLINE void take(const TreeView& tree, RayPacket& p, const LaneGroup& group,
-                        const EdgeTest<LaneFloat>& edges, LaneFloat det,
-                        const ErrorBounds<LaneFloat>& bounds) {
+GLIDAR_INLINE void update_nearest(const TreeView& tree, RayPacket& p, const LaneGroup& group,
+                                  const EdgeTest<LaneFloat>& edges, LaneFloat det,
+                                  const ErrorBounds<LaneFloat>& bounds) {
   const unsigned first = group.first;
   const Interval<LaneFloat> best = {LaneFloat::load(p.low + first), LaneFloat::load(p.high + first),
                                     LaneFloat::load(p.near_low + first),
                                     LaneFloat::load(p.near_high + first)};
-  const Verdict<LaneFloat> verdict = weigh(edges, group.lanes, det, bounds, best);
-  const std::uint32_t inside = bits(verdict.accepted);
-  const std::uint32_t accepted = p.stops == nullptr ? inside : 0;
+  const FilterResult<LaneFloat> result = classify(edges, group.lanes, det, bounds, best);
+  const std::uint32_t inside = bits(result.accepted);
+  const std::uint32_t accepted = p.accepts_hit == nullptr ? inside : 0;
   if (accepted != 0) {
-    store(p.low + first, select(verdict.accepted, verdict.low, best.low));
-    store(p.high + first, select(verdict.accepted, verdict.high, best.high));
+    store(p.low + first, select(result.accepted, result.low, best.low));
+    store(p.high + first, select(result.accepted, result.high, best.high));
     p.known &= ~(accepted << first);
     for_bits(accepted, [&](unsigned i) { p.slot[first + i] = group.slot; });
   }
-  for_bits((inside & ~accepted) | bits(verdict.doubtful),
-           [&](unsigned i) { decide(tree.blocks, p, first + i, group.slot); });
+  for_bits((inside & ~accepted) | bits(result.uncertain),
+           [&](unsigned i) { retest_exactly(tree.blocks, p, first + i, group.slot); });
 }
 
 /// Some rays with a common origin against one triangle. Rows: q1, q2, n, det, bounds, all turned so
@@ -106,7 +106,7 @@ GLIDAR_INLINE void test_common_triangle(const TreeView& tree, RayPacket& p, std:
     const EdgeTest<LaneFloat> edges(dot(d, q2), dot(d, q1), dot(d, n));
     const auto left = ~(edges.lowest < -bounds.edge) & LaneFloat::mask(lanes >> first);
     if (bits(left) == 0) continue;
-    take(tree, p, {first, left, slot}, edges, rows.all(9, i), bounds);
+    update_nearest(tree, p, {first, left, slot}, edges, rows.all(9, i), bounds);
   }
 }
 
@@ -137,7 +137,7 @@ inline void test_common(const TreeView& tree, const TriangleCluster& cluster, Ra
       test_common_triangle(tree, p, lanes, rows, block * kBlockSize + i);
     });
     for_bits(left & ~facing,
-             [&](unsigned i) { decide_lanes(tree, p, lanes, block * kBlockSize + i); });
+             [&](unsigned i) { retest_lanes(tree, p, lanes, block * kBlockSize + i); });
   }
 }
 
@@ -162,7 +162,7 @@ GLIDAR_INLINE void test_spread_triangle(const TreeView& tree, RayPacket& p, std:
     const auto left = ~outside & LaneFloat::mask(lanes >> first);
     if (bits(left) == 0) continue;
     const LaneFloat det = rows.all(9, i) - dot(lanes_of(p.offset, first), n);
-    take(tree, p, {first, left, slot}, edges, det, bounds);
+    update_nearest(tree, p, {first, left, slot}, edges, det, bounds);
   }
 }
 
@@ -173,17 +173,17 @@ inline void test_spread(const TreeView& tree, const TriangleCluster& cluster, Ra
                         std::uint32_t lanes, const LocalOrigin& origin) {
   const float scaled = scaled_reach(origin.reach);
   const auto spread = static_cast<float>(p.spread);
-  const Float8 edge_room =
+  const Float8 edge_margin =
       Float8::all(-(2.0F + 1.81F * spread / scaled));  // bounds.edge > scaled (s1 + s2)
-  const Float8 det_room = Float8::all(spread * (1.01F / (10.0F * 0x1p-24F)));
+  const Float8 det_margin = Float8::all(spread * (1.01F / (10.0F * 0x1p-24F)));
   const DirectionBox box(p);
   for (std::uint32_t b = 0; b < block_count(cluster.count); ++b) {
     const std::uint32_t block = cluster.first_block + b;
     const BlockSetup s = set_up(tree.blocks[block], cluster, origin.at, scaled);
     const Float8 largest =
         largest_edge(box, flip_sign(s.q1, s.det), flip_sign(s.q2, s.det), flip_sign(s.n, s.det));
-    const Mask8 faces = magnitude(s.det) > multiply_add(s.bounds.den, det_room, s.bounds.det);
-    const Mask8 outside = largest < s.bounds.edge * edge_room;
+    const Mask8 faces = magnitude(s.det) > multiply_add(s.bounds.den, det_margin, s.bounds.det);
+    const Mask8 outside = largest < s.bounds.edge * edge_margin;
     const std::uint32_t left = ~bits(outside & faces) & present(cluster, b);
     if (left == 0) continue;
     Rows<19> rows;
@@ -211,7 +211,7 @@ inline void test_leaf(const TreeView& tree, std::uint32_t index, RayPacket& p,
   }
   LocalOrigin origin = local_origin(p.middle_origin, cluster, p.rounding);
   origin.reach += p.spread;
-  if (!(origin.reach < kMaxReach)) return decide_all(tree, cluster, p, lanes);
+  if (!(origin.reach < kMaxReach)) return retest_all(tree, cluster, p, lanes);
   if (p.has_common_origin) return test_common(tree, cluster, p, lanes, origin);
   test_spread(tree, cluster, p, lanes, origin);
 }

@@ -52,16 +52,16 @@ GLIDAR_INLINE LocalOrigin local_origin(const RayPacket& p, unsigned lane,
 }
 
 /// The rule for one triangle and some rays.
-inline void decide_lanes(const TreeView& tree, RayPacket& p, std::uint32_t lanes,
+inline void retest_lanes(const TreeView& tree, RayPacket& p, std::uint32_t lanes,
                          std::uint32_t slot) {
-  for_bits(lanes, [&](unsigned lane) { decide(tree.blocks, p, lane, slot); });
+  for_bits(lanes, [&](unsigned lane) { retest_exactly(tree.blocks, p, lane, slot); });
 }
 
 /// The rule for all triangles, where single precision has no bounds.
-inline void decide_all(const TreeView& tree, const TriangleCluster& cluster, RayPacket& p,
+inline void retest_all(const TreeView& tree, const TriangleCluster& cluster, RayPacket& p,
                        std::uint32_t lanes) {
   const std::uint32_t first = cluster.first_block * kBlockSize;
-  for (std::uint32_t i = 0; i < cluster.count; ++i) decide_lanes(tree, p, lanes, first + i);
+  for (std::uint32_t i = 0; i < cluster.count; ++i) retest_lanes(tree, p, lanes, first + i);
 }
 
 /// Takes the triangle as a ray's nearest.
@@ -83,7 +83,7 @@ GLIDAR_INLINE EdgeTest<Float8> edges_of(const RayPacket& p, unsigned lane, const
 inline void test_ray(const TreeView& tree, const TriangleCluster& cluster, RayPacket& p,
                      unsigned lane) {
   const LocalOrigin origin = local_origin(p, lane, cluster);
-  if (!(origin.reach < kMaxReach)) return decide_all(tree, cluster, p, 1U << lane);
+  if (!(origin.reach < kMaxReach)) return retest_all(tree, cluster, p, 1U << lane);
   const float scaled = scaled_reach(origin.reach);
   for (std::uint32_t b = 0; b < block_count(cluster.count); ++b) {
     const std::uint32_t block = cluster.first_block + b;
@@ -94,18 +94,19 @@ inline void test_ray(const TreeView& tree, const TriangleCluster& cluster, RayPa
     if (candidates == 0) continue;
     const Interval<Float8> best = {Float8::all(p.low[lane]), Float8::all(p.high[lane]),
                                    Float8::all(p.near_low[lane]), Float8::all(p.near_high[lane])};
-    const Verdict<Float8> verdict = weigh(edges, Float8::mask(candidates), s.det, s.bounds, best);
-    const std::uint32_t accepted = p.stops == nullptr ? bits(verdict.accepted) : 0;
+    const FilterResult<Float8> result =
+        classify(edges, Float8::mask(candidates), s.det, s.bounds, best);
+    const std::uint32_t accepted = p.accepts_hit == nullptr ? bits(result.accepted) : 0;
     alignas(32) float low[kBlockSize];
     alignas(32) float high[kBlockSize];
-    store(low, verdict.low);
-    store(high, verdict.high);
-    for_bits(bits(verdict.accepted) | bits(verdict.doubtful), [&](unsigned i) {
+    store(low, result.low);
+    store(high, result.high);
+    for_bits(bits(result.accepted) | bits(result.uncertain), [&](unsigned i) {
       const std::uint32_t slot = block * kBlockSize + i;
       const bool is_sure = (accepted >> i & 1U) != 0;
       if (is_sure && high[i] < p.low[lane]) return accept(p, lane, slot, low[i], high[i]);
       if (is_sure && low[i] > p.high[lane]) return;  // a triangle before it is nearer
-      decide(tree.blocks, p, lane, slot);
+      retest_exactly(tree.blocks, p, lane, slot);
     });
   }
 }

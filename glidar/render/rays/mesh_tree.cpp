@@ -131,8 +131,8 @@ Eigen::AlignedBox3d box_of(const MeshTree& tree) {
 }
 
 bool has_triangle_near(const MeshTree& tree, const Eigen::AlignedBox3d& box, double margin) {
-  const Eigen::Vector3d room = Eigen::Vector3d::Constant(margin);
-  return !tree.nodes.empty() && has_triangle_in(tree, 0, {box.min() - room, box.max() + room});
+  const Eigen::Vector3d growth = Eigen::Vector3d::Constant(margin);
+  return !tree.nodes.empty() && has_triangle_in(tree, 0, {box.min() - growth, box.max() + growth});
 }
 
 std::size_t MeshTree::bytes() const {

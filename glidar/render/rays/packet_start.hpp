@@ -14,20 +14,20 @@ GLIDAR_INLINE double larger(double a, double b) {
 }
 
 /// The lowest of sixteen numbers.
-GLIDAR_INLINE float lowest_lane(const float* of_lane) {
+GLIDAR_INLINE float min_lane(const float* of_lane) {
   LaneFloat lowest = LaneFloat::load(of_lane);
   for (unsigned i = LaneFloat::kWidth; i < kPacketSize; i += LaneFloat::kWidth) {
-    lowest = least(lowest, LaneFloat::load(of_lane + i));
+    lowest = min(lowest, LaneFloat::load(of_lane + i));
   }
-  return lowest_of(lowest);
+  return min_of(lowest);
 }
 
-GLIDAR_INLINE float highest_lane(const float* of_lane) {
+GLIDAR_INLINE float max_lane(const float* of_lane) {
   LaneFloat highest = LaneFloat::load(of_lane);
   for (unsigned i = LaneFloat::kWidth; i < kPacketSize; i += LaneFloat::kWidth) {
-    highest = greatest(highest, LaneFloat::load(of_lane + i));
+    highest = max(highest, LaneFloat::load(of_lane + i));
   }
-  return -lowest_of(-highest);
+  return -min_of(-highest);
 }
 
 /// How far along each ray the mesh's sphere begins, for rays that start far from it; otherwise 0.
@@ -90,14 +90,14 @@ GLIDAR_INLINE void round_rays(RayPacket& p, const double* padding) {
 /// The middle and half width of the directions, with room for their rounding and its own.
 GLIDAR_INLINE void bound_directions(RayPacket& p) {
   for (unsigned axis = 0; axis < 3; ++axis) {
-    const float low = lowest_lane(p.direction[axis]);
-    const float high = highest_lane(p.direction[axis]);
+    const float low = min_lane(p.direction[axis]);
+    const float high = max_lane(p.direction[axis]);
     p.middle[axis] = 0.5F * (low + high);
     p.half[axis] = 0.5F * (high - low) + 0x1p-22F;
   }
 }
 
-GLIDAR_INLINE bool all_start_alike(const RayPacket& p) {
+GLIDAR_INLINE bool have_common_origin(const RayPacket& p) {
   unsigned others = 0;
   for (unsigned i = 0; i < kPacketSize; ++i) {
     others += static_cast<unsigned>(p.exact_origin[0][i] != p.exact_origin[0][0]) |
@@ -164,7 +164,7 @@ inline void start(RayPacket& p, const MeshSphere& sphere, std::uint32_t active) 
   p.active = active;
   p.known = 0;
   p.prepared = 0;
-  p.decisions = 0;
+  p.exact_tests = 0;
   p.tied = 0;
   alignas(64) double padding[kPacketSize];
   alignas(64) double rounding[kPacketSize];
@@ -173,7 +173,7 @@ inline void start(RayPacket& p, const MeshSphere& sphere, std::uint32_t active) 
   round_rays(p, padding);
   p.rounding = 0.0;
   for (const double r : rounding) p.rounding = larger(p.rounding, r);
-  p.has_common_origin = all_start_alike(p);
+  p.has_common_origin = have_common_origin(p);
   find_offsets(p);
   bound_directions(p);
 }

@@ -49,7 +49,7 @@ struct alignas(64) RayPacket {
   std::uint32_t known;     ///< bit i: distance[i] is computed
   std::uint32_t prepared;  ///< bit i: rule[i] is set
   HitRay rule[kPacketSize];
-  std::uint32_t decisions;  ///< how often the rule was applied
+  std::uint32_t exact_tests;  ///< how often the rule was applied
 
   /// Set before start(). Distances of two triangles tie where they differ by at most
   /// kTiePart * tie_reach / |cos| (cos: of either normal and the ray); 0: only equal distances tie.
@@ -57,8 +57,8 @@ struct alignas(64) RayPacket {
   /// Bit i: ray i met two triangles whose distances tie without being equal.
   std::uint32_t tied;
   /// Set before start(): false where a triangle lets a ray through. nullptr: none does.
-  bool (*stops)(const void* context, unsigned lane, std::uint32_t primitive) = nullptr;
-  const void* context = nullptr;  ///< the first argument of stops()
+  bool (*accepts_hit)(const void* context, unsigned lane, std::uint32_t primitive) = nullptr;
+  const void* context = nullptr;  ///< the first argument of accepts_hit()
 };
 
 /// 512 roundings of a coordinate: those of two surfaces.

@@ -31,7 +31,7 @@ struct Job {
 struct TileWork {
   HitBlock block;
   BeamBlock beams;
-  ExactBlock exact;
+  ExactHits exact;
 };
 
 /// Collects the beams of a tile that lies wholly in a pinhole's grid.
@@ -85,7 +85,7 @@ void prefetch(const Beams& beams, const rays::Tile& tile) {
 /// Writes the hits of a traced tile over the misses that stand there.
 void finish(const Job& job, TileWork& work) {
   if (work.block.mask == 0) return;
-  job.resolver.measure(work.beams, work.block, work.exact);
+  job.resolver.intersect(work.beams, work.block, work.exact);
   job.resolver.write(job.beams, job.fields, work.block, work.exact, job.hits);
 }
 
@@ -145,14 +145,15 @@ class RaysRenderer final : public Renderer {
     resolver.set_poses(request.world_from_sensor, request.world_from_instance);
     base_->search.prepare(request);
     find_plane_points(request.beams, points_);
-    const Job job{.beams = request.beams,
-                  .points = points_,
-                  .window = window_on(resolver, mesh_boxes_, request.instance_enabled, points_),
-                  .fields = request.fields,
-                  .resolver = resolver,
-                  .search = base_->search.beams(),
-                  .with_corners = needs_corners(request.fields),
-                  .hits = hits};
+    const Job job{
+        .beams = request.beams,
+        .points = points_,
+        .window = visible_window(resolver, mesh_boxes_, request.instance_enabled, points_),
+        .fields = request.fields,
+        .resolver = resolver,
+        .search = base_->search.beams(),
+        .with_corners = needs_corners(request.fields),
+        .hits = hits};
     const rays::Tiling tiling(request.beams);
     ProgressCounter count(request.progress, tiling.size());
     thread_pool().parallel_for(

@@ -12,12 +12,12 @@ namespace glidar::rays {
 namespace {
 
 /// Sizes of coordinates times this bound what double precision may be wrong by, some 256 roundings.
-constexpr double kRoom = 0x1p-44;
+constexpr double kMargin = 0x1p-44;
 /// The tree is rebuilt when the sensor moves by this part of its size: then boxes near the
 /// sensor, which single precision rounds by 2^-24 of their distance from the origin, stay small.
 constexpr double kMoved = 0x1p-8;
 /// It is rebuilt when more than this part of the instances moved in one step.
-constexpr std::size_t kFew = 8;
+constexpr std::size_t kMovedDivisor = 8;
 
 const Pose& pose_of(const Scene& scene, const CastRequest& request, std::size_t instance) {
   return request.world_from_instance.empty() ? scene.instances[instance].world_from_object
@@ -41,8 +41,8 @@ SceneTrees::SceneTrees(const Resolver& resolver, ThreadPool& thread_pool)
 
 void SceneTrees::place(const CastRequest& request, const Resolver& resolver,
                        ThreadPool& thread_pool) {
-  if (!follow(request)) {
-    keep_poses(request);
+  if (!refit(request)) {
+    store_poses(request);
     origin_m_ = request.world_from_sensor.translation();
     if (instances_.size() > 1) build_instance_tree(thread_pool);
   }
@@ -61,24 +61,24 @@ void SceneTrees::find_reaches(const Resolver& resolver) {
   }
 }
 
-bool SceneTrees::follow(const CastRequest& request) {
+bool SceneTrees::refit(const CastRequest& request) {
   if (!has_same_instances(request) || !is_sensor_near(request)) return false;
   moved_.clear();
-  for (std::uint32_t i = 0; i < placed_.size(); ++i) {
-    if (placed_[i].matrix() != pose_of(scene_, request, i).matrix()) moved_.push_back(i);
+  for (std::uint32_t i = 0; i < poses_.size(); ++i) {
+    if (poses_[i].matrix() != pose_of(scene_, request, i).matrix()) moved_.push_back(i);
   }
-  if (kFew * moved_.size() > instances_.size()) return false;
+  if (kMovedDivisor * moved_.size() > instances_.size()) return false;
   for (const std::uint32_t i : moved_) {
-    placed_[i] = pose_of(scene_, request, i);
-    if (present_[i] != 0 && !of_instance(i).nodes.empty()) boxes_.move(reference_of(i));
+    poses_[i] = pose_of(scene_, request, i);
+    if (enabled_[i] != 0 && !of_instance(i).nodes.empty()) boxes_.move(reference_of(i));
   }
-  return moved_.empty() || !boxes_.is_worn();
+  return moved_.empty() || !boxes_.needs_rebuild();
 }
 
 bool SceneTrees::has_same_instances(const CastRequest& request) const {
-  if (placed_.size() != scene_.instances.size()) return false;
-  for (std::size_t i = 0; i < present_.size(); ++i) {
-    if ((present_[i] != 0) != is_enabled(request, i)) return false;
+  if (poses_.size() != scene_.instances.size()) return false;
+  for (std::size_t i = 0; i < enabled_.size(); ++i) {
+    if ((enabled_[i] != 0) != is_enabled(request, i)) return false;
   }
   return true;
 }
@@ -88,20 +88,20 @@ bool SceneTrees::is_sensor_near(const CastRequest& request) const {
   return instances_.size() < 2 || moved_m <= kMoved * boxes_.sphere().radius;
 }
 
-void SceneTrees::keep_poses(const CastRequest& request) {
-  placed_.resize(scene_.instances.size());
-  present_.resize(scene_.instances.size());
+void SceneTrees::store_poses(const CastRequest& request) {
+  poses_.resize(scene_.instances.size());
+  enabled_.resize(scene_.instances.size());
   instances_.clear();
   double largest_m = -1.0;
-  for (std::uint32_t i = 0; i < placed_.size(); ++i) {
-    placed_[i] = pose_of(scene_, request, i);
-    present_[i] = static_cast<std::uint8_t>(is_enabled(request, i));
-    if (present_[i] == 0 || of_instance(i).nodes.empty()) continue;
+  for (std::uint32_t i = 0; i < poses_.size(); ++i) {
+    poses_[i] = pose_of(scene_, request, i);
+    enabled_[i] = static_cast<std::uint8_t>(is_enabled(request, i));
+    if (enabled_[i] == 0 || of_instance(i).nodes.empty()) continue;
     instances_.push_back(i);
     const double size_m = scene_.instances[i].scale * of_instance(i).sphere.radius;
     if (!(size_m > largest_m)) continue;
     largest_m = size_m;
-    tree_from_world_ = placed_[i].linear().transpose();
+    tree_from_world_ = poses_[i].linear().transpose();
   }
 }
 
@@ -109,14 +109,14 @@ BoxReference SceneTrees::reference_of(std::uint32_t instance) const {
   const double scale = scene_.instances[instance].scale;
   const Eigen::Vector3d& mesh_origin = scene_.meshes[scene_.instances[instance].mesh].origin_m;
   const Eigen::AlignedBox3d box = box_of(of_instance(instance));
-  const Eigen::Matrix3d turn = tree_from_world_ * placed_[instance].linear();
-  const Eigen::Vector3d shift = placed_[instance].translation() - origin_m_;
+  const Eigen::Matrix3d turn = tree_from_world_ * poses_[instance].linear();
+  const Eigen::Vector3d shift = poses_[instance].translation() - origin_m_;
   const Eigen::Vector3d in_object = scale * (mesh_origin + box.center());
   const Eigen::Vector3d middle = tree_from_world_ * shift + turn * in_object;
-  const double size = placed_[instance].translation().norm() + origin_m_.norm() +
+  const double size = poses_[instance].translation().norm() + origin_m_.norm() +
                       scale * (mesh_origin.norm() + mesh_reach_[scene_.instances[instance].mesh]);
   const Eigen::Vector3d half =
-      (turn.cwiseAbs() * (0.5 * scale * box.sizes())).array() + kRoom * size;
+      (turn.cwiseAbs() * (0.5 * scale * box.sizes())).array() + kMargin * size;
   BoxReference reference{};
   for (int axis = 0; axis < 3; ++axis) {
     reference.low[axis] = next_below(middle[axis] - half[axis]);

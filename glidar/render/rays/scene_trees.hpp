@@ -60,10 +60,10 @@ class SceneTrees {
  private:
   void find_reaches(const Resolver& resolver);
   /// Follows the instances that moved; false: the tree has to be rebuilt.
-  [[nodiscard]] bool follow(const CastRequest& request);
+  [[nodiscard]] bool refit(const CastRequest& request);
   [[nodiscard]] bool has_same_instances(const CastRequest& request) const;
   [[nodiscard]] bool is_sensor_near(const CastRequest& request) const;
-  void keep_poses(const CastRequest& request);
+  void store_poses(const CastRequest& request);
   void build_instance_tree(ThreadPool& thread_pool);
   [[nodiscard]] BoxReference reference_of(std::uint32_t instance) const;
 
@@ -74,8 +74,8 @@ class SceneTrees {
   std::vector<double> reach_m_;  ///< per instance
   double largest_reach_m_ = 0.0;
 
-  std::vector<Pose> placed_;                            ///< per instance, as the tree has them
-  std::vector<std::uint8_t> present_;                   ///< likewise
+  std::vector<Pose> poses_;                             ///< per instance, as the tree has them
+  std::vector<std::uint8_t> enabled_;                   ///< likewise
   Eigen::Vector3d origin_m_ = Eigen::Vector3d::Zero();  ///< of the tree's frame, in the world
   Eigen::Matrix3d tree_from_world_ = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d tree_from_sensor_ = Eigen::Matrix3d::Identity();

@@ -79,10 +79,10 @@ GLIDAR_INLINE Mask8 operator~(Mask8 a) {
 GLIDAR_INLINE Float8 select(Mask8 m, Float8 a, Float8 b) {
   return {_mm256_blendv_ps(b.v, a.v, m.v)};
 }
-GLIDAR_INLINE Float8 least(Float8 a, Float8 b) {
+GLIDAR_INLINE Float8 min(Float8 a, Float8 b) {
   return {_mm256_min_ps(a.v, b.v)};
 }
-GLIDAR_INLINE Float8 greatest(Float8 a, Float8 b) {
+GLIDAR_INLINE Float8 max(Float8 a, Float8 b) {
   return {_mm256_max_ps(a.v, b.v)};
 }
 GLIDAR_INLINE Float8 magnitude(Float8 a) {
@@ -95,7 +95,7 @@ GLIDAR_INLINE std::uint32_t bits(Mask8 m) {
   return static_cast<std::uint32_t>(_mm256_movemask_ps(m.v));
 }
 
-GLIDAR_INLINE float lowest_of(Float8 a) {
+GLIDAR_INLINE float min_of(Float8 a) {
   __m128 x = _mm_min_ps(_mm256_castps256_ps128(a.v), _mm256_extractf128_ps(a.v, 1));
   x = _mm_min_ps(x, _mm_movehl_ps(x, x));
   return _mm_cvtss_f32(_mm_min_ss(x, _mm_shuffle_ps(x, x, 1)));

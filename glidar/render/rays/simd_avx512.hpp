@@ -68,10 +68,10 @@ GLIDAR_INLINE Mask16 operator~(Mask16 a) {
 GLIDAR_INLINE Float16 select(Mask16 m, Float16 a, Float16 b) {
   return {_mm512_mask_blend_ps(m.v, b.v, a.v)};
 }
-GLIDAR_INLINE Float16 least(Float16 a, Float16 b) {
+GLIDAR_INLINE Float16 min(Float16 a, Float16 b) {
   return {_mm512_min_ps(a.v, b.v)};
 }
-GLIDAR_INLINE Float16 greatest(Float16 a, Float16 b) {
+GLIDAR_INLINE Float16 max(Float16 a, Float16 b) {
   return {_mm512_max_ps(a.v, b.v)};
 }
 GLIDAR_INLINE Float16 magnitude(Float16 a) {
@@ -84,9 +84,8 @@ GLIDAR_INLINE std::uint32_t bits(Mask16 m) {
   return m.v;
 }
 
-GLIDAR_INLINE float lowest_of(Float16 a) {
-  return lowest_of(
-      Float8{_mm256_min_ps(_mm512_castps512_ps256(a.v), _mm512_extractf32x8_ps(a.v, 1))});
+GLIDAR_INLINE float min_of(Float16 a) {
+  return min_of(Float8{_mm256_min_ps(_mm512_castps512_ps256(a.v), _mm512_extractf32x8_ps(a.v, 1))});
 }
 
 using LaneFloat = Float16;

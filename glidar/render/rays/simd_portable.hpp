@@ -98,14 +98,14 @@ GLIDAR_INLINE Mask8 operator~(Mask8 a) {
 GLIDAR_INLINE Float8 select(Mask8 m, Float8 a, Float8 b) {
   return {m.low ? a.low : b.low, m.high ? a.high : b.high};
 }
-GLIDAR_INLINE Float8 least(Float8 a, Float8 b) {
+GLIDAR_INLINE Float8 min(Float8 a, Float8 b) {
   return select(a < b, a, b);
 }
-GLIDAR_INLINE Float8 greatest(Float8 a, Float8 b) {
+GLIDAR_INLINE Float8 max(Float8 a, Float8 b) {
   return select(a > b, a, b);
 }
 
-GLIDAR_INLINE float lowest_of(Float8 a) {
+GLIDAR_INLINE float min_of(Float8 a) {
   const Quad x = a.low < a.high ? a.low : a.high;
   const float p = x[0] < x[1] ? x[0] : x[1];
   const float q = x[2] < x[3] ? x[2] : x[3];

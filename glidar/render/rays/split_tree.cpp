@@ -34,10 +34,10 @@ Quad high_of(const BoxReference& r) {
 Quad all(float x) {
   return Quad{x, x, x, x};
 }
-Quad least(Quad a, Quad b) {
+Quad min(Quad a, Quad b) {
   return a < b ? a : b;
 }
-Quad greatest(Quad a, Quad b) {
+Quad max(Quad a, Quad b) {
   return a > b ? a : b;
 }
 
@@ -47,8 +47,8 @@ struct Box {
   Quad high = all(-kInfinityf);
 
   void extend(Quad other_low, Quad other_high) {
-    low = least(low, other_low);
-    high = greatest(high, other_high);
+    low = min(low, other_low);
+    high = max(high, other_high);
   }
   void extend(const Box& other) { extend(other.low, other.high); }
   /// Half its surface; 0 for an empty box.
@@ -146,7 +146,7 @@ void find_split_along(const Bins& bins, std::uint32_t bin_count, std::size_t axi
 }
 
 /// Builds the nodes of the subtrees. The subtree of n references has up to 2 n - 1 nodes, which
-/// follow its root; so every place is known beforehand, and threads need not agree on any.
+/// refit its root; so every place is known beforehand, and threads need not agree on any.
 class Builder {
  public:
   Builder(std::span<BoxReference> references, const SplitOptions& options, SplitNode* nodes)

@@ -63,14 +63,14 @@ class Candidates {
   void visit_all(const Visit& visit) const {
     const std::vector<std::uint32_t>& instances = cast_.trees.instances();
     if (instances.size() == 1) return visit_instance(instances[0], visit);
-    const Segment segment{ray_in_tree(), kTieRoom * cast_.trees.largest_reach_m(), end_m_};
+    const Segment segment{ray_in_tree(), kTieMargin * cast_.trees.largest_reach_m(), end_m_};
     for_leaves_on(cast_.trees.instance_nodes().data(), 0, segment, [&](std::uint32_t leaf) {
       visit_instance(cast_.trees.instance_in(leaf), visit);
     });
   }
 
  private:
-  static constexpr double kTieRoom = 0x1p-40;  // many roundings of a coordinate
+  static constexpr double kTieMargin = 0x1p-40;  // many roundings of a coordinate
 
   [[nodiscard]] ObjectRay ray_in_tree() const {
     const Beams& beams = cast_.request.beams;
@@ -85,7 +85,7 @@ class Candidates {
     const InstanceView& view = cast_.resolver.view(instance);
     const MeshTree& tree = cast_.trees.of_instance(instance);
     const ObjectRay ray = ray_in(view, cast_.request.beams, beam_);
-    const Segment segment{ray, kTieRoom * cast_.trees.reach_m(instance) / view.scale,
+    const Segment segment{ray, kTieMargin * cast_.trees.reach_m(instance) / view.scale,
                           end_m_ / view.scale};
     const HitRay rule = make_hit_ray(ray.origin, ray.direction);
     for_leaves_on(tree.nodes.data(), 0, segment, [&](std::uint32_t leaf) {
@@ -94,14 +94,16 @@ class Candidates {
       for (std::uint32_t slot = first; slot < first + cluster.count; ++slot) {
         const double distance = hit_distance(rule, triangle_at(tree.blocks.data(), slot));
         if (distance == 0.0) continue;
-        const Found found{instance, tree.blocks[slot / kBlockSize].primitive[slot % kBlockSize]};
-        if (does_stop(found)) visit(found, distance * view.scale);
+        const PrimitiveRef found{instance,
+                                 tree.blocks[slot / kBlockSize].primitive[slot % kBlockSize]};
+        if (blocks(found)) visit(found, distance * view.scale);
       }
     });
   }
 
-  [[nodiscard]] bool does_stop(const Found& found) const {
-    return stops(cast_.resolver, cast_.request.beams, beam_, cast_.request.cull_back_faces, found);
+  [[nodiscard]] bool blocks(const PrimitiveRef& found) const {
+    return blocks_beam(cast_.resolver, cast_.request.beams, beam_, cast_.request.cull_back_faces,
+                       found);
   }
 
   const CastView& cast_;
@@ -111,21 +113,22 @@ class Candidates {
 
 }  // namespace
 
-double hit_distance_m(const CastView& cast, std::size_t beam, const Found& triangle) {
+double hit_distance_m(const CastView& cast, std::size_t beam, const PrimitiveRef& triangle) {
   const InstanceView& view = cast.resolver.view(triangle.instance);
   const ObjectRay ray = ray_in(view, cast.request.beams, beam);
   const HitTriangle corners = corners_of(cast.resolver.mesh(triangle.instance), triangle.primitive);
   return view.scale * hit_distance(make_hit_ray(ray.origin, ray.direction), corners);
 }
 
-double tie_window_m(const CastView& cast, std::size_t beam, const Found& triangle, double reach_m) {
+double tie_window_m(const CastView& cast, std::size_t beam, const PrimitiveRef& triangle,
+                    double reach_m) {
   const ObjectRay ray = ray_in(cast.resolver.view(triangle.instance), cast.request.beams, beam);
   const HitTriangle corners = corners_of(cast.resolver.mesh(triangle.instance), triangle.primitive);
   return tie_window(reach_m, corners, {ray.direction.x(), ray.direction.y(), ray.direction.z()});
 }
 
-HitOrder order_of_hits(const CastView& cast, std::size_t beam, const Found& found,
-                       const Found& before) {
+HitOrder order_of_hits(const CastView& cast, std::size_t beam, const PrimitiveRef& found,
+                       const PrimitiveRef& before) {
   const double before_m = hit_distance_m(cast, beam, before);
   const double found_m = hit_distance_m(cast, beam, found);
   const double apart_m = std::abs(found_m - before_m);
@@ -137,12 +140,12 @@ HitOrder order_of_hits(const CastView& cast, std::size_t beam, const Found& foun
           .ties = apart_m > 0.0 && !(apart_m > window_m)};
 }
 
-Found lowest_of_ties(const CastView& cast, std::size_t beam, const Found& nearest) {
+PrimitiveRef lowest_of_ties(const CastView& cast, std::size_t beam, const PrimitiveRef& nearest) {
   const double nearest_m = hit_distance_m(cast, beam, nearest);
   const double reach_m = cast.trees.reach_m(nearest.instance);
   const double end_m = nearest_m + tie_window_m(cast, beam, nearest, cast.trees.largest_reach_m());
-  Found lowest = nearest;
-  Candidates(cast, beam, end_m).visit_all([&](const Found& found, double distance_m) {
+  PrimitiveRef lowest = nearest;
+  Candidates(cast, beam, end_m).visit_all([&](const PrimitiveRef& found, double distance_m) {
     if (!is_lower(found, lowest)) return;
     const double both_m = 0.5 * (reach_m + cast.trees.reach_m(found.instance));
     const double window_m = std::min(tie_window_m(cast, beam, found, both_m),

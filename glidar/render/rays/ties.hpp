@@ -17,13 +17,14 @@ struct CastView {
 };
 
 /// The distance at which a beam meets a triangle by the hit rule, metres; 0: it does not.
-double hit_distance_m(const CastView& cast, std::size_t beam, const Found& triangle);
+double hit_distance_m(const CastView& cast, std::size_t beam, const PrimitiveRef& triangle);
 
 /// How much farther a triangle may be that ties with this one, metres: surfaces of two instances
 /// that lie on each other are apart by the rounding of their coordinates, kTiePart / 2 of each
 /// reach, measured across the one that the beam meets more steeply. `reach_m`: the sum of both
 /// reaches, halved, or a bound of it.
-double tie_window_m(const CastView& cast, std::size_t beam, const Found& triangle, double reach_m);
+double tie_window_m(const CastView& cast, std::size_t beam, const PrimitiveRef& triangle,
+                    double reach_m);
 
 /// How a triangle compares with another that the same beam hits, of another instance.
 struct HitOrder {
@@ -31,10 +32,10 @@ struct HitOrder {
   bool ties;       ///< their distances differ, but by no more than tie_window_m()
 };
 
-HitOrder order_of_hits(const CastView& cast, std::size_t beam, const Found& found,
-                       const Found& before);
+HitOrder order_of_hits(const CastView& cast, std::size_t beam, const PrimitiveRef& found,
+                       const PrimitiveRef& before);
 
 /// The lowest instance and triangle of those that tie with the nearest one, see tie_window_m().
-Found lowest_of_ties(const CastView& cast, std::size_t beam, const Found& nearest);
+PrimitiveRef lowest_of_ties(const CastView& cast, std::size_t beam, const PrimitiveRef& nearest);
 
 }  // namespace glidar::rays

@@ -9,10 +9,10 @@
 // visits in vain costs time, no result depends on it.
 namespace glidar::rays::GLIDAR_KERNEL {
 
-/// Slabs are computed with three roundings: a box is entered where near <= far * kSlabRoom.
-inline constexpr float kSlabRoom = 1.0F + 6.0F * 0x1p-23F;
+/// Slabs are computed with three roundings: a box is entered where near <= far * kSlabMargin.
+inline constexpr float kSlabMargin = 1.0F + 6.0F * 0x1p-23F;
 /// An entry distance is at most this part of the computed one closer.
-inline constexpr float kEntryRoom = 1.0F - 0x1p-20F;
+inline constexpr float kEntryMargin = 1.0F - 0x1p-20F;
 /// Components below it are replaced: that moves a ray by less than its padding.
 inline constexpr float kMinComponent = 1e-18F;
 inline constexpr unsigned kStackSize = 7 * kMaxTreeDepth + 8;
@@ -52,7 +52,7 @@ struct Stack {
       const std::int32_t child = tree.nodes[node].child[i];
       if (child == kNoChild) return;
       prefetch(tree, child);
-      const float entry = entries[i] * kEntryRoom;
+      const float entry = entries[i] * kEntryMargin;
       unsigned place = size++;
       for (; place > bottom && near[place - 1] < entry; --place) {
         put(place, near[place - 1], visit[place - 1]);
@@ -106,11 +106,11 @@ struct RaySlabs {
     for (unsigned axis = 0; axis < 3; ++axis) {
       const float* near_bound = is_negative[axis] ? node.high[axis] : node.low[axis];
       const float* far_bound = is_negative[axis] ? node.low[axis] : node.high[axis];
-      first = greatest((Float8::load(near_bound) - near_origin[axis]) * inverse[axis], first);
-      last = least((Float8::load(far_bound) - far_origin[axis]) * inverse[axis], last);
+      first = max((Float8::load(near_bound) - near_origin[axis]) * inverse[axis], first);
+      last = min((Float8::load(far_bound) - far_origin[axis]) * inverse[axis], last);
     }
     store(near, first);
-    return bits(first <= last * Float8::all(kSlabRoom));
+    return bits(first <= last * Float8::all(kSlabMargin));
   }
 };
 
@@ -156,7 +156,7 @@ void trace_below(const TreeView& tree, RayPacket& p, const Leaves& leaves, unsig
 
 /// All rays of a packet as one beam: intervals of origins and of reciprocal directions. An axis
 /// along which directions change sign rejects nothing.
-struct Beam {
+struct RayInterval {
   enum class Sign { mixed, positive, negative };
   Sign sign[3];
   Float8 origin_low[3];
@@ -164,22 +164,22 @@ struct Beam {
   Float8 inverse_low[3];  ///< of the components' sizes
   Float8 inverse_high[3];
 
-  explicit Beam(const RayPacket& p) {
+  explicit RayInterval(const RayPacket& p) {
     for (unsigned axis = 0; axis < 3; ++axis) {
-      origin_low[axis] = Float8::all(lowest_lane(p.origin_low[axis]));
-      origin_high[axis] = Float8::all(highest_lane(p.origin_high[axis]));
+      origin_low[axis] = Float8::all(min_lane(p.origin_low[axis]));
+      origin_high[axis] = Float8::all(max_lane(p.origin_high[axis]));
       set_directions(axis, p.middle[axis] - p.half[axis], p.middle[axis] + p.half[axis]);
     }
   }
 
   void set_directions(unsigned axis, float low, float high) {
-    constexpr float kRoom = 0x1p-21F;
+    constexpr float kMargin = 0x1p-21F;
     sign[axis] = low > 0.0F ? Sign::positive : high < 0.0F ? Sign::negative : Sign::mixed;
     if (sign[axis] == Sign::mixed) return;
     const float least_size = low > 0.0F ? low : -high;
     const float largest_size = low > 0.0F ? high : -low;
-    inverse_low[axis] = Float8::all((1.0F - kRoom) / largest_size);
-    inverse_high[axis] = Float8::all((1.0F + kRoom) / least_size);
+    inverse_low[axis] = Float8::all((1.0F - kMargin) / largest_size);
+    inverse_high[axis] = Float8::all((1.0F + kMargin) / least_size);
   }
 
   /// Bits of the children that some ray may enter before `end`, and bounds of where.
@@ -195,11 +195,11 @@ struct Beam {
       const Float8 to_far = is_positive ? high - origin_low[axis] : origin_high[axis] - low;
       const Float8 a = inverse_low[axis];
       const Float8 b = inverse_high[axis];
-      first = greatest(least(to_near * a, to_near * b), first);
-      last = least(greatest(to_far * a, to_far * b), last);
+      first = max(min(to_near * a, to_near * b), first);
+      last = min(max(to_far * a, to_far * b), last);
     }
     store(near, first);
-    return bits(first <= last * Float8::all(kSlabRoom));
+    return bits(first <= last * Float8::all(kSlabMargin));
   }
 };
 
@@ -231,10 +231,10 @@ struct PacketSlabs {
             (LaneFloat::all(node.low[axis][child]) - LaneFloat::load(p.origin_high[axis] + i)) * r;
         const LaneFloat y =
             (LaneFloat::all(node.high[axis][child]) - LaneFloat::load(p.origin_low[axis] + i)) * r;
-        first = greatest(least(x, y), first);
-        last = least(greatest(x, y), last);
+        first = max(min(x, y), first);
+        last = min(max(x, y), last);
       }
-      entering |= bits(first <= last * LaneFloat::all(kSlabRoom)) << i;
+      entering |= bits(first <= last * LaneFloat::all(kSlabMargin)) << i;
     }
     return entering & p.active;
   }
@@ -242,7 +242,7 @@ struct PacketSlabs {
 
 /// The largest distance at which some ray still looks for something nearer.
 GLIDAR_INLINE float farthest(const RayPacket& p) {
-  return highest_lane(p.high);
+  return max_lane(p.high);
 }
 
 /// What is left of a walk when few rays, or a leaf, are reached. True when there was something.
@@ -261,8 +261,8 @@ GLIDAR_INLINE bool finish(const TreeView& tree, RayPacket& p, const Leaves& leav
 
 /// All rays of a packet together, few of them one by one.
 template <class Leaves>
-void walk(const TreeView& tree, RayPacket& p, const Leaves& leaves) {
-  const Beam beam(p);
+void traverse(const TreeView& tree, RayPacket& p, const Leaves& leaves) {
+  const RayInterval beam(p);
   const PacketSlabs slabs(p);
   Stack stack(0);
   float end = kFloatInfinity;
@@ -286,7 +286,7 @@ void walk(const TreeView& tree, RayPacket& p, const Leaves& leaves) {
 }
 
 inline void trace(const TreeView& tree, RayPacket& p) {
-  walk(tree, p, TriangleLeaves{tree});
+  traverse(tree, p, TriangleLeaves{tree});
 }
 
 inline void trace_single(const TreeView& tree, RayPacket& p) {
@@ -295,7 +295,7 @@ inline void trace_single(const TreeView& tree, RayPacket& p) {
 }
 
 inline void visit_leaves(const TreeView& tree, RayPacket& p, VisitLeaf visit, void* context) {
-  walk(tree, p, VisitedLeaves{visit, context});
+  traverse(tree, p, VisitedLeaves{visit, context});
 }
 
 }  // namespace glidar::rays::GLIDAR_KERNEL

@@ -56,12 +56,12 @@ GLIDAR_INLINE F sum_of_sizes(const Vector<F>& a) {
 inline constexpr double kMaxReach = 0x1p36;
 /// What is added to distances and areas so that their bounds also cover underflow. A triangle below
 /// some nanometres is in doubt more often.
-inline constexpr double kReachRoom = 0x1p-40;
-inline constexpr float kAreaRoom = 0x1p-60F;
+inline constexpr double kReachMargin = 0x1p-40;
+inline constexpr float kAreaMargin = 0x1p-60F;
 
 /// 24 u L, with room for rounding; L: the largest distance of a corner, in the largest coordinate.
 GLIDAR_INLINE float scaled_reach(double reach) {
-  return static_cast<float>(24.01 * 0x1p-24 * (reach + kReachRoom));
+  return static_cast<float>(24.01 * 0x1p-24 * (reach + kReachMargin));
 }
 
 /// Corners of triangles relative to their cluster's centre.
@@ -110,8 +110,8 @@ struct EdgeTest {
 
   GLIDAR_INLINE EdgeTest(F u, F v, F d) : den(d) {
     const F w = d - u - v;
-    lowest = least(least(u, v), w);
-    highest = greatest(greatest(u, v), w);
+    lowest = min(min(u, v), w);
+    highest = max(max(u, v), w);
   }
 
  private:
@@ -141,7 +141,7 @@ GLIDAR_INLINE BlockSetup set_up(const Corners<Float8>& corners, const Vector<Flo
   s.det = dot(a, s.n);
   const Float8 s1 = sum_of_sizes(s.corners.e1);
   const Float8 s2 = sum_of_sizes(s.corners.e2);
-  const Float8 area = multiply_add(s1, s2, Float8::all(kAreaRoom));
+  const Float8 area = multiply_add(s1, s2, Float8::all(kAreaMargin));
   const Float8 reach = Float8::all(scaled);
   s.bounds.edge = multiply_add(reach, s1 + s2, Float8::all(24.0F * 0x1p-24F) * area);
   s.bounds.det = reach * area * Float8::all(0.5F);
@@ -168,16 +168,16 @@ struct Interval {
 
 /// What becomes of rays and triangles that are not surely outside.
 template <class F>
-struct Verdict {
-  typename F::Mask accepted;  ///< surely hit, and surely nearer
-  typename F::Mask doubtful;  ///< for the rule
-  F low;                      ///< bounds of the distance
+struct FilterResult {
+  typename F::Mask accepted;   ///< surely hit, and surely nearer
+  typename F::Mask uncertain;  ///< for the rule
+  F low;                       ///< bounds of the distance
   F high;
 };
 
 template <class F>
-GLIDAR_INLINE Verdict<F> weigh(const EdgeTest<F>& edges, typename F::Mask candidates, F det,
-                               const ErrorBounds<F>& bounds, const Interval<F>& best) {
+GLIDAR_INLINE FilterResult<F> classify(const EdgeTest<F>& edges, typename F::Mask candidates, F det,
+                                       const ErrorBounds<F>& bounds, const Interval<F>& best) {
   const F den = magnitude(edges.den);
   const auto is_known = den > bounds.den * F::all(4.0F);
   const F inverse = F::all(1.0F) / edges.den;
@@ -185,16 +185,16 @@ GLIDAR_INLINE Verdict<F> weigh(const EdgeTest<F>& edges, typename F::Mask candid
   const F size = magnitude(t);
   F error = multiply_add(size, bounds.den, bounds.det) * F::all(1.5F) * magnitude(inverse);
   error = multiply_add(size, F::all(0x1p-21F), error);
-  Verdict<F> verdict;
-  verdict.low = t - error;
-  verdict.high = t + error;
-  const auto is_beside = (verdict.low > best.high) | (verdict.high < best.near_low);
-  const auto rest = candidates & ~(is_known & is_beside);
+  FilterResult<F> result;
+  result.low = t - error;
+  result.high = t + error;
+  const auto is_farther = (result.low > best.high) | (result.high < best.near_low);
+  const auto rest = candidates & ~(is_known & is_farther);
   const auto is_inside = (edges.lowest > bounds.edge) | (edges.highest < -bounds.edge);
-  const auto is_nearer = (verdict.high < best.low) & (verdict.low > best.near_high);
-  verdict.accepted = rest & is_known & is_inside & is_nearer;
-  verdict.doubtful = rest & ~verdict.accepted;
-  return verdict;
+  const auto is_nearer = (result.high < best.low) & (result.low > best.near_high);
+  result.accepted = rest & is_known & is_inside & is_nearer;
+  result.uncertain = rest & ~result.accepted;
+  return result;
 }
 
 }  // namespace glidar::rays::GLIDAR_KERNEL

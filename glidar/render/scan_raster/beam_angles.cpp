@@ -14,7 +14,7 @@
 namespace glidar::scan_raster {
 namespace {
 
-constexpr double kTurn_rad = 2.0 * std::numbers::pi;
+constexpr double kFullTurn_rad = 2.0 * std::numbers::pi;
 /// Tangent of 80 degrees: the sector's frame has no room for steeper beams.
 constexpr double kMaxTangent = 5.67;
 /// A sector is at least eight columns wide and must be below 57 degrees.
@@ -24,7 +24,7 @@ constexpr double kMinStep_rad = 1e-6;
 constexpr double kAnyStep_rad = 0.01;
 
 double wrapped(double angle_rad) {
-  return angle_rad - kTurn_rad * std::floor(angle_rad / kTurn_rad + 0.5);
+  return angle_rad - kFullTurn_rad * std::floor(angle_rad / kFullTurn_rad + 0.5);
 }
 
 /// The row's azimuths, NaN where there is no beam.
@@ -87,7 +87,7 @@ RowAngles place_row(const RawRow& raw, std::uint32_t source, const BeamAngles& g
   row.source = source;
   if (raw.beams == 0) return row;
   const double offset = wrapped(raw.phase_rad - grid.phase_rad) / grid.step_rad;
-  const double half = 0.5 * raw.spread_rad / std::abs(grid.step_rad) + kDeviationRoom;
+  const double half = 0.5 * raw.spread_rad / std::abs(grid.step_rad) + kDeviationMargin;
   row.shift = static_cast<std::int32_t>(std::floor(offset + 0.5));
   row.low_tangent = raw.low_tangent;
   row.high_tangent = raw.high_tangent;

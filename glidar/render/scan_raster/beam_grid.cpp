@@ -22,7 +22,7 @@ bool are_same_bytes(const std::vector<T>& a, const std::vector<T>& b, ThreadPool
 }  // namespace
 
 bool may_form_grid(const Beams& beams) {
-  return looks_along_z(beams) ? may_form_picture(beams) : may_form_scan(beams);
+  return looks_along_z(beams) ? may_form_image(beams) : may_form_scan(beams);
 }
 
 bool BeamGrid::has_measured(const Beams& beams, ThreadPool& thread_pool) const {

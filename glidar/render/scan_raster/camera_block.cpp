@@ -89,15 +89,15 @@ class Bounds {
     const double row = 0.5 / map_.rows_per_slope;
     view.columns_per_unit = static_cast<float>(map_.columns_per_slope);
     view.middle_column = static_cast<float>(map_.middle_column);
-    view.column_room = static_cast<float>(kCellRoom);
+    view.column_margin = static_cast<float>(kCellMargin);
     view.max_slope = next_above(std::max(-side_.low, side_.high) + column);
     view.lowest_slope = next_below(up_.low - row);
     view.highest_slope = next_above(up_.high + row);
     view.has_slopes = true;
-    const double room = kCellRoom + kDeviationRoom;
+    const double margin = kCellMargin + kDeviationMargin;
     view.slopes = {.rows_per_slope = static_cast<float>(map_.rows_per_slope),
-                   .first_row = next_below(map_.middle_row - row_offsets_.high - room),
-                   .last_row = next_above(map_.middle_row - row_offsets_.low + room)};
+                   .first_row = next_below(map_.middle_row - row_offsets_.high - margin),
+                   .last_row = next_above(map_.middle_row - row_offsets_.low + margin)};
   }
 
  private:
@@ -113,7 +113,7 @@ class Bounds {
 
 }  // namespace
 
-Eigen::Vector2d picture_point(const Eigen::Vector3d& direction) {
+Eigen::Vector2d stereographic_point(const Eigen::Vector3d& direction) {
   return direction.head<2>() / (direction.norm() + direction.z());
 }
 
@@ -142,7 +142,7 @@ bool CameraBlock::fit(const Beams& beams) {
   for (std::uint32_t row = rect_.first_row; row < rect_.end_row; row += row_step) {
     for_row(beams, rect_, row, column_step, [&](const PlacedBeam& beam) {
       samples.push_back(beam);
-      points_.extend(picture_point(beam.direction));
+      points_.extend(stereographic_point(beam.direction));
     });
   }
   const std::optional<ProjectiveMap> map = fit_projective_map(samples);
@@ -158,8 +158,8 @@ void CameraBlock::bound(const Beams& beams) {
     for_row(beams, rect_, row, 1, [&](const PlacedBeam& beam) { bounds.take(beam); });
     const Range deviations = bounds.end_row();
     if (deviations.is_empty()) continue;
-    low_deviation_[row - rect_.first_row] = next_below(deviations.low - kDeviationRoom);
-    high_deviation_[row - rect_.first_row] = next_above(deviations.high + kDeviationRoom);
+    low_deviation_[row - rect_.first_row] = next_below(deviations.low - kDeviationMargin);
+    high_deviation_[row - rect_.first_row] = next_above(deviations.high + kDeviationMargin);
   }
   bounds.write(view_);
   is_rough_ = !bounds.are_within(kMaxSmooth);

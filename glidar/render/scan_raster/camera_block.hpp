@@ -22,7 +22,7 @@ struct BeamRect {
 
 /// The point of a plane that stands for a direction, which need not be a unit vector: its
 /// stereographic projection from -z.
-Eigen::Vector2d picture_point(const Eigen::Vector3d& direction);
+Eigen::Vector2d stereographic_point(const Eigen::Vector3d& direction);
 
 /// A block of a camera's picture: nearly that of a pinhole with axes of its own, and how far its
 /// beams deviate from that.
@@ -44,7 +44,7 @@ class CameraBlock {
   /// False where the beams deviate too much: they are cast as rays.
   [[nodiscard]] bool is_drawn() const { return is_drawn_; }
   [[nodiscard]] GridView view() const;
-  /// Around the points of a sample of the beams, see picture_point().
+  /// Around the points of a sample of the beams, see stereographic_point().
   [[nodiscard]] const Eigen::AlignedBox2d& points() const { return points_; }
 
  private:

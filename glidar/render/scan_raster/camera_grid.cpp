@@ -60,7 +60,7 @@ void add_blocks(const BeamRect& rect, std::uint32_t rows, std::uint32_t columns,
 }
 
 /// No block has rows of two returns.
-std::vector<CameraBlock> cut_picture(const Beams& beams) {
+std::vector<CameraBlock> cut_image(const Beams& beams) {
   std::vector<CameraBlock> blocks;
   const std::uint32_t rows = std::max(beams.rows / beams.returns, 1U);
   for (std::uint32_t first = 0; first < beams.rows; first += rows) {
@@ -90,20 +90,20 @@ void measure_blocks(const Beams& beams, ThreadPool& thread_pool, std::vector<Cam
 
 }  // namespace
 
-bool may_form_picture(const Beams& beams) {
-  constexpr std::size_t kPlaces = 64;
+bool may_form_image(const Beams& beams) {
+  constexpr std::size_t kProbes = 64;
   if (beams.rows < kMinSide || beams.cols < kMinSide || !beams.origins_m.empty()) return false;
   std::size_t known = 0;
   std::size_t even = 0;
-  for (std::size_t k = 0; k < kPlaces; ++k) {
-    const std::size_t row = 1 + k * (beams.rows - 2) / kPlaces;
+  for (std::size_t k = 0; k < kProbes; ++k) {
+    const std::size_t row = 1 + k * (beams.rows - 2) / kProbes;
     // Spread over the columns, and not in step with anything.
     const std::size_t column = 1 + k * 7919 % (beams.cols - 2);
     const Cross cross(beams, row * beams.cols + column);
     known += cross.is_known() ? 1 : 0;
     even += cross.is_known() && cross.is_even() ? 1 : 0;
   }
-  return 4 * known >= kPlaces && 4 * even >= 3 * known;
+  return 4 * known >= kProbes && 4 * even >= 3 * known;
 }
 
 void CameraGrid::measure(const Beams& beams, ThreadPool& thread_pool) {
@@ -130,7 +130,7 @@ void CameraGrid::find_misfit(const Beams& beams) {
 
 /// Blocks in which beams deviate much are cut again.
 void CameraGrid::find_blocks(const Beams& beams, ThreadPool& thread_pool) {
-  std::vector<CameraBlock> blocks = cut_picture(beams);
+  std::vector<CameraBlock> blocks = cut_image(beams);
   while (!blocks.empty()) {
     measure_blocks(beams, thread_pool, blocks);
     std::vector<CameraBlock> smaller;

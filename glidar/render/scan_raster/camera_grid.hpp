@@ -13,7 +13,7 @@ namespace glidar::scan_raster {
 
 /// False where some neighbours show at once that the beams are not those of a picture, or most are
 /// missing.
-bool may_form_picture(const Beams& beams);
+bool may_form_image(const Beams& beams);
 
 /// Beams of a camera with any lens: their directions vary smoothly over rows and columns. Sectors
 /// are blocks of columns and rows.
@@ -28,7 +28,7 @@ class CameraGrid {
   /// One per sector.
   [[nodiscard]] const std::vector<CameraBlock>& blocks() const { return blocks_; }
 
-  /// Around the points of a sample of the beams, see picture_point().
+  /// Around the points of a sample of the beams, see stereographic_point().
   [[nodiscard]] const Eigen::AlignedBox2d& points() const { return points_; }
 
  private:

@@ -69,7 +69,7 @@ struct CellRects {
 };
 
 GLIDAR_INLINE Float8 clamp(Float8 x, float low, float high) {
-  return greatest(least(x, Float8::all(high)), Float8::all(low));
+  return max(min(x, Float8::all(high)), Float8::all(low));
 }
 
 /// Within 1e-5 for |x| <= 1: M. Abramowitz, I. Stegun, "Handbook of Mathematical
@@ -110,18 +110,18 @@ struct AngleCells {
     const Float8 low = clamp(s.side_low, -limit, limit);
     const Float8 high = clamp(s.side_high, -limit, limit);
     const Float8 scale = Float8::all(grid.columns_per_unit);
-    const Float8 first = Float8::all(grid.middle_column - grid.column_room);
-    const Float8 last = Float8::all(grid.middle_column + grid.column_room);
+    const Float8 first = Float8::all(grid.middle_column - grid.column_margin);
+    const Float8 last = Float8::all(grid.middle_column + grid.column_margin);
     store(rects.first, multiply_add(arc_tangent(low), scale, first));
     store(rects.last, multiply_add(arc_tangent(high), scale, last));
     // The tangent of the elevation is up / forward times the cosine of the azimuth.
     const Float8 zero = Float8::all(0.0F);
-    const Float8 widest = greatest(magnitude(low), magnitude(high));
-    const Float8 narrowest = greatest(greatest(low, -high), zero);
+    const Float8 widest = max(magnitude(low), magnitude(high));
+    const Float8 narrowest = max(max(low, -high), zero);
     const Float8 low_cos = low_cosine(widest);
     const Float8 high_cos = high_cosine(narrowest);
-    const Float8 bottom = least(s.up_low * low_cos, s.up_low * high_cos);
-    const Float8 top = greatest(s.up_high * low_cos, s.up_high * high_cos);
+    const Float8 bottom = min(s.up_low * low_cos, s.up_low * high_cos);
+    const Float8 top = max(s.up_high * low_cos, s.up_high * high_cos);
     const ElevationRows& rows = grid.elevations;
     meets = meets & (bottom <= Float8::all(rows.highest_tangent)) &
             (Float8::all(rows.lowest_tangent) <= top);
@@ -153,9 +153,9 @@ struct SlopeCells {
                        (Float8::all(grid.lowest_slope) <= s.up_high);
     const Float8 columns = Float8::all(grid.columns_per_unit);
     store(rects.first, multiply_add(clamp(s.side_low, -limit, limit), columns,
-                                    Float8::all(grid.middle_column - grid.column_room)));
+                                    Float8::all(grid.middle_column - grid.column_margin)));
     store(rects.last, multiply_add(clamp(s.side_high, -limit, limit), columns,
-                                   Float8::all(grid.middle_column + grid.column_room)));
+                                   Float8::all(grid.middle_column + grid.column_margin)));
     const Float8 rows = Float8::all(grid.slopes.rows_per_slope);
     const Float8 bottom = clamp(s.up_low, grid.lowest_slope, grid.highest_slope);
     const Float8 top = clamp(s.up_high, grid.lowest_slope, grid.highest_slope);
@@ -176,12 +176,12 @@ struct SlopeCells {
 };
 
 /// From an instance's frame into the sector's, or for vectors of any unit.
-struct Turn {
+struct FrameTransform {
   Vector<Float8> forward;
   Vector<Float8> side;
   Vector<Float8> up;
 
-  GLIDAR_INLINE explicit Turn(const float (&m)[3][3])
+  GLIDAR_INLINE explicit FrameTransform(const float (&m)[3][3])
       : forward(row(m[0])), side(row(m[1])), up(row(m[2])) {}
 
   GLIDAR_INLINE static Vector<Float8> row(const float (&r)[3]) {

@@ -8,38 +8,38 @@
 namespace glidar::rays::GLIDAR_KERNEL {
 
 using scan_raster::Placement;
-using scan_raster::SectorPicture;
+using scan_raster::SectorBuffer;
 using scan_raster::SectorView;
 
 /// All that drawing an instance needs.
-struct Drawing {
+struct DrawContext {
   const GridView& grid;
   const SectorView& sector;
   const Placement& placement;
-  const SectorPicture& picture;
-  Turn turn;
-  Turn slopes;  ///< into the frame of slopes
+  const SectorBuffer& buffer;
+  FrameTransform turn;
+  FrameTransform slopes;  ///< into the frame of slopes
 
-  GLIDAR_INLINE Drawing(const GridView& g, const SectorView& s, const Placement& p,
-                        const SectorPicture& c)
+  GLIDAR_INLINE DrawContext(const GridView& g, const SectorView& s, const Placement& p,
+                            const SectorBuffer& c)
       : grid(g),
         sector(s),
         placement(p),
-        picture(c),
+        buffer(c),
         turn(p.sector_from_object),
         slopes(p.slopes_from_object) {}
 };
 
 /// Into the frame in which these cells have their slopes.
 template <class Cells>
-GLIDAR_INLINE const Turn& slopes_frame(const Drawing& drawing) {
-  return Cells::kIsTurned ? drawing.turn : drawing.slopes;
+GLIDAR_INLINE const FrameTransform& slopes_frame(const DrawContext& context) {
+  return Cells::kIsTurned ? context.turn : context.slopes;
 }
 
 /// Bounds of edge functions and of den, where their vectors were turned into the sector's frame: a
 /// product of three terms with a rounded matrix adds 4 u |q|_1 <= 8 u L s to the 20 u L s of
 /// rays/triangle_filter.hpp, whose bounds are 24 u L s; and 4 u s1 s2 to 8.2 u s1 s2 (10).
-inline constexpr float kTurnRoom = 1.5F;
+inline constexpr float kTransformMargin = 1.5F;
 
 /// Numbers of eight triangles, to be read one triangle at a time. Distances det / den are in
 /// metres.
@@ -95,52 +95,53 @@ GLIDAR_INLINE float bits_of_number(std::uint32_t number) {
 
 /// Keeps the triangle in the cells where it is surely nearer, and applies the rule where that is in
 /// doubt.
-GLIDAR_INLINE void keep_nearer(const Drawing& drawing, const RowTriangle& triangle,
+GLIDAR_INLINE void keep_nearer(const DrawContext& context, const RowTriangle& triangle,
                                std::size_t cell, const EdgeTest<Float8>& edges, Mask8 candidates,
                                Float8 det) {
-  const SectorPicture& picture = drawing.picture;
-  const Placement& placement = drawing.placement;
+  const SectorBuffer& buffer = context.buffer;
+  const Placement& placement = context.placement;
   const Float8 zero = Float8::all(0.0F);
-  const Interval<Float8> best = {Float8::load_unaligned(picture.low + cell),
-                                 Float8::load_unaligned(picture.high + cell), zero, zero};
-  const Verdict<Float8> verdict =
-      weigh(edges, candidates, det, triangle.rows.bounds(triangle.index), best);
-  std::uint32_t doubtful = bits(verdict.doubtful);
-  const std::uint32_t accepted = bits(verdict.accepted);
-  if (placement.asks) {
-    doubtful |= accepted;
+  const Interval<Float8> best = {Float8::load_unaligned(buffer.low + cell),
+                                 Float8::load_unaligned(buffer.high + cell), zero, zero};
+  const FilterResult<Float8> result =
+      classify(edges, candidates, det, triangle.rows.bounds(triangle.index), best);
+  std::uint32_t uncertain = bits(result.uncertain);
+  const std::uint32_t accepted = bits(result.accepted);
+  if (placement.always_retests) {
+    uncertain |= accepted;
   } else if (accepted != 0) {
     const Float8 number = Float8::all(bits_of_number(placement.first_number + triangle.slot));
-    store_unaligned(picture.low + cell, select(verdict.accepted, verdict.low, best.low));
-    store_unaligned(picture.high + cell, select(verdict.accepted, verdict.high, best.high));
-    const Float8 before = Float8::load_unaligned(picture.number + cell);
-    store_unaligned(picture.number + cell, select(verdict.accepted, number, before));
+    store_unaligned(buffer.low + cell, select(result.accepted, result.low, best.low));
+    store_unaligned(buffer.high + cell, select(result.accepted, result.high, best.high));
+    const Float8 before = Float8::load_unaligned(buffer.number + cell);
+    store_unaligned(buffer.number + cell, select(result.accepted, number, before));
   }
-  for (; doubtful != 0; doubtful &= doubtful - 1) {
-    const auto lane = static_cast<std::uint32_t>(__builtin_ctz(doubtful));
-    placement.decide(placement.context, static_cast<std::uint32_t>(cell) + lane, triangle.slot);
+  for (; uncertain != 0; uncertain &= uncertain - 1) {
+    const auto lane = static_cast<std::uint32_t>(__builtin_ctz(uncertain));
+    placement.retest_exactly(placement.context, static_cast<std::uint32_t>(cell) + lane,
+                             triangle.slot);
   }
 }
 
 /// det of the cells' beams: the origin's, less that of their offsets.
 template <bool kOwnOrigins>
-GLIDAR_INLINE Float8 det_at(const Drawing& drawing, const RowTriangle& t, std::size_t cell) {
+GLIDAR_INLINE Float8 det_at(const DrawContext& context, const RowTriangle& t, std::size_t cell) {
   const Float8 det = t.rows.all(TriangleRows::kDet, t.index);
   if constexpr (kOwnOrigins) {
-    return det - dot(load3(drawing.sector.offset, cell), t.rows.all3(TriangleRows::kN, t.index));
+    return det - dot(load3(context.sector.offset, cell), t.rows.all3(TriangleRows::kN, t.index));
   }
   return det;
 }
 
 /// Cells [cell, cell + 8). A beam beside the sector's last column is tested in vain.
 template <bool kOwnOrigins>
-GLIDAR_INLINE void test_cells(const Drawing& drawing, const RowTriangle& t, std::size_t cell) {
-  const Vector<Float8> d = load3(drawing.sector.direction, cell);
+GLIDAR_INLINE void test_cells(const DrawContext& context, const RowTriangle& t, std::size_t cell) {
+  const Vector<Float8> d = load3(context.sector.direction, cell);
   const Float8 den = dot(d, t.rows.all3(TriangleRows::kN, t.index));
   Float8 v = dot(d, t.rows.all3(TriangleRows::kQ1, t.index));
   Float8 u = dot(d, t.rows.all3(TriangleRows::kQ2, t.index));
   if constexpr (kOwnOrigins) {  // d.((A - o) x e1) = d.q1 - (d x o).e1
-    const Vector<Float8> m = load3(drawing.sector.moment, cell);
+    const Vector<Float8> m = load3(context.sector.moment, cell);
     v = v - dot(m, t.rows.all3(TriangleRows::kE1, t.index));
     u = u + dot(m, t.rows.all3(TriangleRows::kE2, t.index));
   }
@@ -150,16 +151,16 @@ GLIDAR_INLINE void test_cells(const Drawing& drawing, const RowTriangle& t, std:
   if (!t.faces) outside = outside & (edges.highest > bound);
   const Mask8 candidates = ~outside;
   if (bits(candidates) == 0) return;
-  keep_nearer(drawing, t, cell, edges, candidates, det_at<kOwnOrigins>(drawing, t, cell));
+  keep_nearer(context, t, cell, edges, candidates, det_at<kOwnOrigins>(context, t, cell));
 }
 
 /// The same where all beams surely pass inside of the edges.
 template <bool kOwnOrigins>
-GLIDAR_INLINE void test_inside(const Drawing& drawing, const RowTriangle& t, std::size_t cell) {
-  const Vector<Float8> d = load3(drawing.sector.direction, cell);
+GLIDAR_INLINE void test_inside(const DrawContext& context, const RowTriangle& t, std::size_t cell) {
+  const Vector<Float8> d = load3(context.sector.direction, cell);
   const EdgeTest<Float8> edges =
       EdgeTest<Float8>::inside(dot(d, t.rows.all3(TriangleRows::kN, t.index)));
-  keep_nearer(drawing, t, cell, edges, Float8::mask(0xFF), det_at<kOwnOrigins>(drawing, t, cell));
+  keep_nearer(context, t, cell, edges, Float8::mask(0xFF), det_at<kOwnOrigins>(context, t, cell));
 }
 
 }  // namespace glidar::rays::GLIDAR_KERNEL

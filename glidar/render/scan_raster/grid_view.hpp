@@ -11,9 +11,9 @@
 namespace glidar::scan_raster {
 
 /// What the kernels' rounding may do to a column or a row.
-inline constexpr double kCellRoom = 2e-3;
+inline constexpr double kCellMargin = 2e-3;
 /// Added to measured deviations on each side, columns or rows.
-inline constexpr double kDeviationRoom = 1e-3;
+inline constexpr double kDeviationMargin = 1e-3;
 /// Beams of a row, or of a sector, that deviate from their cells by a wider interval are not in the
 /// grid, columns or rows.
 inline constexpr double kMaxSpread = 4.0;

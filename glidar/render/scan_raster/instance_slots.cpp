@@ -18,7 +18,7 @@ constexpr double kMaxSlotScale = 0x1p20;
 /// What a rotation may lack, far below the kernels' rounding.
 constexpr double kRotationTolerance = 0x1p-30;
 /// Boxes in single precision: some 20 roundings of 2^-24.
-constexpr double kBoxRoom = 0x1p-19;
+constexpr double kBoxMargin = 0x1p-19;
 
 double largest(const double (&values)[3]) {
   return std::max({std::abs(values[0]), std::abs(values[1]), std::abs(values[2])});
@@ -58,19 +58,19 @@ bool InstanceSlots::prepare(const rays::SceneTrees& trees, const Resolver& resol
     const double b_m = distance_m(resolver.view(b), trees.of_instance(b).sphere);
     return a_m != b_m ? a_m < b_m : a < b;
   });
-  return give_numbers();
+  return assign_slot_numbers();
 }
 
-bool InstanceSlots::give_numbers() {
+bool InstanceSlots::assign_slot_numbers() {
   std::uint64_t next = 0;
   starts_.clear();
   first_number_.clear();
   for (const std::uint32_t i : trees_->instances()) {
-    first_number_.resize(i + 1, kNoNumber);
+    first_number_.resize(i + 1, kNoSlotNumber);
     first_number_[i] = static_cast<std::uint32_t>(next);
     starts_.push_back(first_number_[i]);
     next += std::uint64_t{kBlockSize} * trees_->of_instance(i).blocks.size();
-    if (next >= kNoNumber) return false;
+    if (next >= kNoSlotNumber) return false;
   }
   return true;
 }
@@ -81,16 +81,16 @@ std::uint32_t InstanceSlots::instance_of(std::uint32_t number) const {
   return trees_->instances()[static_cast<std::size_t>(after - starts_.begin()) - 1];
 }
 
-Found InstanceSlots::found(std::uint32_t number) const {
-  if (number == kNoNumber) return {};
+PrimitiveRef InstanceSlots::decode(std::uint32_t number) const {
+  if (number == kNoSlotNumber) return {};
   const std::uint32_t instance = instance_of(number);
   const std::uint32_t slot = number - first_number_[instance];
   const TriangleBlock& block = trees_->of_instance(instance).blocks[slot / kBlockSize];
   return {instance, block.primitive[slot % kBlockSize]};
 }
 
-Placement place(const rays::SceneTrees& trees, const InstanceView& view, std::uint32_t instance,
-                const SectorTable& sector) {
+Placement make_placement(const rays::SceneTrees& trees, const InstanceView& view,
+                         std::uint32_t instance, const SectorTable& sector) {
   const rays::MeshTree& tree = trees.of_instance(instance);
   const Eigen::Matrix3d& turn = view.object_from_sensor;
   const Eigen::Vector3d origin = view.sensor_in_object + turn * sector.origin_m() / view.scale;
@@ -115,7 +115,7 @@ Placement place(const rays::SceneTrees& trees, const InstanceView& view, std::ui
   // As in packet_start.hpp.
   p.rounding = origin.lpNorm<1>() + 2.0 * sector.distance_m() / view.scale +
                0x1p4 * trees.largest_reach_m() / view.scale;
-  p.room = next_above(kBoxRoom * size_of(tree.sphere, origin));
+  p.margin = next_above(kBoxMargin * size_of(tree.sphere, origin));
   return p;
 }
 

@@ -26,11 +26,11 @@ class InstanceSlots {
 
   /// The instance of a number.
   [[nodiscard]] std::uint32_t instance_of(std::uint32_t number) const;
-  /// The triangle of a number; kNoNumber: none.
-  [[nodiscard]] Found found(std::uint32_t number) const;
+  /// The triangle of a number; kNoSlotNumber: none.
+  [[nodiscard]] PrimitiveRef decode(std::uint32_t number) const;
 
  private:
-  bool give_numbers();
+  bool assign_slot_numbers();
 
   const rays::SceneTrees* trees_ = nullptr;
   std::vector<std::uint32_t> order_;         ///< about the nearest first
@@ -39,7 +39,7 @@ class InstanceSlots {
 };
 
 /// An instance as a sector sees it, but for what decides hits.
-Placement place(const rays::SceneTrees& trees, const InstanceView& view, std::uint32_t instance,
-                const SectorTable& sector);
+Placement make_placement(const rays::SceneTrees& trees, const InstanceView& view,
+                         std::uint32_t instance, const SectorTable& sector);
 
 }  // namespace glidar::scan_raster

@@ -11,7 +11,7 @@ struct Kernel {
   const char* name;  ///< as rays::Kernel::name
   /// Draws an instance into a sector's picture.
   void (*draw)(const GridView& grid, const SectorView& sector, const Placement& placement,
-               const SectorPicture& picture);
+               const SectorBuffer& buffer);
 };
 
 }  // namespace glidar::scan_raster

@@ -30,19 +30,20 @@ struct LeafOrigin {
                          placement.rounding * 0x1p-26;
     scaled = scaled_reach(reach);
     // Some 24 roundings of 2^-24: of the corner, of its edges, and of turning both.
-    const auto room = static_cast<float>(0x1p-19 * (reach + kReachRoom));
-    for (unsigned axis = 0; axis < 3; ++axis) foot[axis] = placement.foot[axis] + room;
+    const auto margin = static_cast<float>(0x1p-19 * (reach + kReachMargin));
+    for (unsigned axis = 0; axis < 3; ++axis) foot[axis] = placement.foot[axis] + margin;
     behind = placement.behind + foot[0];
   }
 };
 
 /// Eight triangles in the frame of slopes.
-struct SeenBlock {
+struct ProjectedBlock {
   Vector<Float8> corner[3];
   Vector<Float8> e1;
   Vector<Float8> e2;
 
-  GLIDAR_INLINE SeenBlock(const Turn& turn, const Vector<Float8>& a, const Corners<Float8>& corners)
+  GLIDAR_INLINE ProjectedBlock(const FrameTransform& turn, const Vector<Float8>& a,
+                               const Corners<Float8>& corners)
       : e1(turn(corners.e1)), e2(turn(corners.e2)) {
     corner[0] = turn(a);
     corner[1] = sum(corner[0], e1);
@@ -54,54 +55,55 @@ struct SeenBlock {
   }
   template <class Of>
   [[nodiscard]] GLIDAR_INLINE Float8 lowest(const Of& of) const {
-    return least(least(of(corner[0]), of(corner[1])), of(corner[2]));
+    return min(min(of(corner[0]), of(corner[1])), of(corner[2]));
   }
   template <class Of>
   [[nodiscard]] GLIDAR_INLINE Float8 highest(const Of& of) const {
-    return greatest(greatest(of(corner[0]), of(corner[1])), of(corner[2]));
+    return max(max(of(corner[0]), of(corner[1])), of(corner[2]));
   }
 };
 
 /// Bits of the triangles that are beside the sector, above or below it: for those of which a corner
 /// is not in front.
-GLIDAR_INLINE std::uint32_t find_beside(const GridView& grid, const SeenBlock& seen,
-                                        const LeafOrigin& origin) {
+GLIDAR_INLINE std::uint32_t find_outside(const GridView& grid, const ProjectedBlock& seen,
+                                         const LeafOrigin& origin) {
   using V = Vector<Float8>;
   const Float8 side = Float8::all(grid.max_slope);
   const Float8 high = Float8::all(grid.highest_slope);
   const Float8 low = Float8::all(grid.lowest_slope);
-  const auto room_of = [&](float foot, float slope) {
+  const auto margin_at = [&](float foot, float slope) {
     const float size = slope < 0.0F ? -slope : slope;
     return Float8::all(foot + size * origin.foot[0] + (1.0F + size) * origin.behind);
   };
-  const Float8 side_room = room_of(origin.foot[1], grid.max_slope);
-  return bits((seen.lowest([&](const V& p) { return p.y - side * p.x; }) > side_room) |
-              (seen.highest([&](const V& p) { return p.y + side * p.x; }) < -side_room) |
+  const Float8 side_margin = margin_at(origin.foot[1], grid.max_slope);
+  return bits((seen.lowest([&](const V& p) { return p.y - side * p.x; }) > side_margin) |
+              (seen.highest([&](const V& p) { return p.y + side * p.x; }) < -side_margin) |
               (seen.lowest([&](const V& p) { return p.z - high * p.x; }) >
-               room_of(origin.foot[2], grid.highest_slope)) |
+               margin_at(origin.foot[2], grid.highest_slope)) |
               (seen.highest([&](const V& p) { return p.z - low * p.x; }) <
-               -room_of(origin.foot[2], grid.lowest_slope)));
+               -margin_at(origin.foot[2], grid.lowest_slope)));
 }
 
 /// The slopes of triangles whose corners are all in front by twice the foot's depth. A corner seen
 /// from h beside the origin has another slope s, by at most (h_side + |s| h_forward) / (z - h).
-GLIDAR_INLINE Slopes slopes_of(const SeenBlock& seen, const LeafOrigin& origin, Float8 forward) {
+GLIDAR_INLINE Slopes slopes_of(const ProjectedBlock& seen, const LeafOrigin& origin,
+                               Float8 forward) {
   const Float8 one = Float8::all(1.0F);
   const Float8 least_forward = Float8::all(2.0F * origin.foot[0]);
   Float8 side[3];
   Float8 up[3];
   for (unsigned k = 0; k < 3; ++k) {
-    const Float8 inverse = one / greatest(seen.corner[k].x, least_forward);
+    const Float8 inverse = one / max(seen.corner[k].x, least_forward);
     side[k] = seen.corner[k].y * inverse;
     up[k] = seen.corner[k].z * inverse;
   }
-  const Float8 inverse = one / greatest(forward, least_forward);
+  const Float8 inverse = one / max(forward, least_forward);
   const Float8 nearness = inverse * multiply_add(inverse, least_forward, one);
-  const auto low = [](const Float8(&s)[3]) { return least(least(s[0], s[1]), s[2]); };
-  const auto high = [](const Float8(&s)[3]) { return greatest(greatest(s[0], s[1]), s[2]); };
+  const auto low = [](const Float8(&s)[3]) { return min(min(s[0], s[1]), s[2]); };
+  const auto high = [](const Float8(&s)[3]) { return max(max(s[0], s[1]), s[2]); };
   Slopes slopes = {low(side), high(side), low(up), high(up)};
   const auto widen = [&](float foot, Float8& first, Float8& last) {
-    const Float8 largest = greatest(magnitude(first), magnitude(last));
+    const Float8 largest = max(magnitude(first), magnitude(last));
     const Float8 by =
         nearness * multiply_add(largest, Float8::all(origin.foot[0]), Float8::all(foot));
     first = first - by;
@@ -119,7 +121,7 @@ struct BlockCells {
   CellRects rects;
 
   template <class Cells>
-  GLIDAR_INLINE static BlockCells find(const Drawing& drawing, const SeenBlock& seen,
+  GLIDAR_INLINE static BlockCells find(const DrawContext& context, const ProjectedBlock& seen,
                                        const LeafOrigin& origin, std::uint32_t existing) {
     BlockCells cells;
     const auto forward = [](const Vector<Float8>& p) { return p.x; };
@@ -128,13 +130,13 @@ struct BlockCells {
     cells.left = existing & ~behind;
     cells.around = bits(nearest < Float8::all(2.0F * origin.foot[0])) & cells.left;
     if (cells.around != 0) {
-      const std::uint32_t beside = find_beside(drawing.grid, seen, origin) & cells.around;
+      const std::uint32_t beside = find_outside(context.grid, seen, origin) & cells.around;
       cells.around &= ~beside;
       cells.left &= ~beside;
     }
     if (cells.left == 0) return cells;
     const Slopes slopes = slopes_of(seen, origin, nearest);
-    cells.left &= cells.around | Cells::find(drawing.grid, slopes, cells.rects);
+    cells.left &= cells.around | Cells::find(context.grid, slopes, cells.rects);
     return cells;
   }
 };
@@ -142,16 +144,16 @@ struct BlockCells {
 /// The rows of the triangles, turned so that det is positive. With origins of their own, `seen` is
 /// in the sector's frame.
 template <bool kOwnOrigins>
-GLIDAR_INLINE void fill_rows(const Drawing& drawing, const BlockSetup& s, const SeenBlock& seen,
-                             TriangleRows& rows) {
-  const auto metres = static_cast<float>(drawing.placement.metres);
+GLIDAR_INLINE void fill_rows(const DrawContext& context, const BlockSetup& s,
+                             const ProjectedBlock& seen, TriangleRows& rows) {
+  const auto metres = static_cast<float>(context.placement.metres);
   const Float8 scale = Float8::all(metres);
-  rows.set(TriangleRows::kQ1, flip_sign(drawing.turn(s.q1), s.det));
-  rows.set(TriangleRows::kQ2, flip_sign(drawing.turn(s.q2), s.det));
-  rows.set(TriangleRows::kN, flip_sign(drawing.turn(s.n), s.det));
+  rows.set(TriangleRows::kQ1, flip_sign(context.turn(s.q1), s.det));
+  rows.set(TriangleRows::kQ2, flip_sign(context.turn(s.q2), s.det));
+  rows.set(TriangleRows::kN, flip_sign(context.turn(s.n), s.det));
   const Float8 det = magnitude(s.det) * scale;
   rows.set(TriangleRows::kDet, det);
-  const Float8 turned = Float8::all(kTurnRoom);
+  const Float8 turned = Float8::all(kTransformMargin);
   rows.set(TriangleRows::kEdgeBound, s.bounds.edge * turned);
   rows.set(TriangleRows::kDetBound,
            multiply_add(s.bounds.det, Float8::all(1.001F * metres), det * Float8::all(0x1p-22F)));
@@ -169,77 +171,78 @@ GLIDAR_INLINE void fill_rows(const Drawing& drawing, const BlockSetup& s, const 
 
 /// Bits of the triangles that all beams see from the same side.
 template <bool kOwnOrigins>
-GLIDAR_INLINE std::uint32_t find_facing(const Drawing& drawing, const TriangleRows& rows) {
+GLIDAR_INLINE std::uint32_t find_facing(const DrawContext& context, const TriangleRows& rows) {
   Float8 bound = Float8::load(rows.at[TriangleRows::kDetBound]);
   if constexpr (kOwnOrigins) {
-    constexpr float kRoom = 1.001F;
+    constexpr float kMargin = 1.001F;
     const Vector<Float8> n = {Float8::load(rows.at[TriangleRows::kN]),
                               Float8::load(rows.at[TriangleRows::kN + 1]),
                               Float8::load(rows.at[TriangleRows::kN + 2])};
-    bound = multiply_add(largest_product(drawing.sector.max_offset, n), Float8::all(kRoom), bound);
+    bound =
+        multiply_add(largest_product(context.sector.max_offset, n), Float8::all(kMargin), bound);
   }
   return bits(Float8::load(rows.at[TriangleRows::kDet]) > bound);
 }
 
 /// A triangle of few cells: eight columns at a time of each row.
 template <bool kOwnOrigins>
-GLIDAR_INLINE void draw_small(const Drawing& drawing, const RowTriangle& t, const CellRects& rects,
-                              CellRect rect) {
-  const GridView& grid = drawing.grid;
+GLIDAR_INLINE void draw_small(const DrawContext& context, const RowTriangle& t,
+                              const CellRects& rects, CellRect rect) {
+  const GridView& grid = context.grid;
   const std::uint32_t last_tile = grid.columns / kTileColumns - 1;
   for (std::int32_t row = rect.first_row; row <= rect.last_row; ++row) {
     rects.cut(grid, t.index, grid.low_deviation[row], grid.high_deviation[row], rect);
-    std::uint32_t* stale = drawing.picture.is_stale +
+    std::uint32_t* stale = context.buffer.is_stale +
                            static_cast<std::size_t>(row) / kTileRows * std::size_t{grid.tile_pitch};
     for (auto column = static_cast<std::uint32_t>(rect.first_column);
          static_cast<std::int32_t>(column) <= rect.last_column; column += kTileColumns) {
       const std::uint32_t next = column / kTileColumns + 1;
       stale[column / kTileColumns] = 1;
       stale[next < last_tile ? next : last_tile] = 1;
-      test_cells<kOwnOrigins>(drawing, t, static_cast<std::size_t>(row) * grid.pitch + column);
+      test_cells<kOwnOrigins>(context, t, static_cast<std::size_t>(row) * grid.pitch + column);
     }
   }
 }
 
 template <class Cells, bool kOwnOrigins>
-GLIDAR_INLINE void draw_triangle(const Drawing& drawing, const RowTriangle& t,
+GLIDAR_INLINE void draw_triangle(const DrawContext& context, const RowTriangle& t,
                                  const BlockCells& cells) {
   if ((cells.around >> t.index & 1U) != 0) {
-    draw_large<kOwnOrigins>(drawing, t, whole_sector(drawing.grid));
+    draw_large<kOwnOrigins>(context, t, whole_sector(context.grid));
     return;
   }
-  const CellRect rect = cells.rects.at<Cells>(drawing.grid, t.index);
+  const CellRect rect = cells.rects.at<Cells>(context.grid, t.index);
   if (rect.is_empty()) return;
   const std::int32_t rows = rect.last_row - rect.first_row + 1;
   const std::int32_t vectors = (rect.last_column - rect.first_column) / 8 + 1;
   if (rows * vectors <= kSmallTriangle) {
-    draw_small<kOwnOrigins>(drawing, t, cells.rects, rect);
+    draw_small<kOwnOrigins>(context, t, cells.rects, rect);
   } else {
-    draw_large<kOwnOrigins>(drawing, t, rect);
+    draw_large<kOwnOrigins>(context, t, rect);
   }
 }
 
 template <class Cells, bool kOwnOrigins>
-void draw_leaf(const Drawing& drawing, std::uint32_t index) {
-  const TreeView& tree = drawing.placement.tree;
+void draw_leaf(const DrawContext& context, std::uint32_t index) {
+  const TreeView& tree = context.placement.tree;
   const TriangleCluster& cluster = tree.clusters[index];
-  const LeafOrigin origin(drawing.placement, cluster);
+  const LeafOrigin origin(context.placement, cluster);
   for (std::uint32_t b = 0; b < block_count(cluster.count); ++b) {
     const std::uint32_t block = cluster.first_block + b;
     const Corners<Float8> corners = corners_in(tree.blocks[block], cluster);
     const Vector<Float8> a =
         corners.a - Vector<Float8>{Float8::all(origin.at[0]), Float8::all(origin.at[1]),
                                    Float8::all(origin.at[2])};
-    const SeenBlock seen(slopes_frame<Cells>(drawing), a, corners);
-    const auto cells = BlockCells::find<Cells>(drawing, seen, origin, present(cluster, b));
+    const ProjectedBlock seen(slopes_frame<Cells>(context), a, corners);
+    const auto cells = BlockCells::find<Cells>(context, seen, origin, present(cluster, b));
     if (cells.left == 0) continue;
     const BlockSetup s = set_up(corners, a, origin.scaled);
     TriangleRows rows;
-    fill_rows<kOwnOrigins>(drawing, s, seen, rows);
-    const std::uint32_t faces = find_facing<kOwnOrigins>(drawing, rows);
+    fill_rows<kOwnOrigins>(context, s, seen, rows);
+    const std::uint32_t faces = find_facing<kOwnOrigins>(context, rows);
     for_bits(cells.left, [&](unsigned i) {
       draw_triangle<Cells, kOwnOrigins>(
-          drawing, {rows, i, block * kBlockSize + i, (faces >> i & 1U) != 0}, cells);
+          context, {rows, i, block * kBlockSize + i, (faces >> i & 1U) != 0}, cells);
     });
   }
 }

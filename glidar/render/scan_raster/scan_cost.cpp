@@ -17,7 +17,7 @@ constexpr std::size_t kMinSamples = 8;
 constexpr double kTrianglesPerInstance = 15.0;
 
 /// Where a point is in a view, each from 0 up to 1; elsewhere beside the view.
-struct Place {
+struct ViewPosition {
   double across;
   double up;
 };
@@ -28,7 +28,7 @@ class ScannerView {
   ScannerView(const ScannerGrid& grid, const Beams& beams)
       : axes_(axes_of(beams)), columns_(grid.columns()), tangents_(grid.tangents()) {}
 
-  [[nodiscard]] Place operator()(const Eigen::Vector3d& point) const {
+  [[nodiscard]] ViewPosition operator()(const Eigen::Vector3d& point) const {
     const double x = axes_.ahead.dot(point);
     const double y = axes_.left.dot(point);
     const double tangent = axes_.up.dot(point) / std::sqrt(x * x + y * y);
@@ -52,9 +52,9 @@ class CameraView {
  public:
   explicit CameraView(const CameraGrid& grid) : points_(grid.points()) {}
 
-  [[nodiscard]] Place operator()(const Eigen::Vector3d& point) const {
+  [[nodiscard]] ViewPosition operator()(const Eigen::Vector3d& point) const {
     const Eigen::Vector2d part =
-        (picture_point(point) - points_.min()).cwiseQuotient(points_.sizes());
+        (stereographic_point(point) - points_.min()).cwiseQuotient(points_.sizes());
     return {part.x(), part.y()};
   }
 
@@ -63,15 +63,16 @@ class CameraView {
 };
 
 /// The parts of a view in which something was seen.
-class SeenParts {
+class ViewCoverage {
  public:
   /// True when the place is in view.
-  bool take(const Place& place) {
-    if (!(place.across >= 0.0 && place.across < 1.0 && place.up >= 0.0 && place.up <= 1.0)) {
+  bool take(const ViewPosition& position) {
+    if (!(position.across >= 0.0 && position.across < 1.0 && position.up >= 0.0 &&
+          position.up <= 1.0)) {
       return false;
     }
-    const auto row = std::min(static_cast<std::size_t>(place.up * kRows), kRows - 1);
-    const auto col = std::min(static_cast<std::size_t>(place.across * kCols), kCols - 1);
+    const auto row = std::min(static_cast<std::size_t>(position.up * kRows), kRows - 1);
+    const auto col = std::min(static_cast<std::size_t>(position.across * kCols), kCols - 1);
     seen_.set(row * kCols + col);
     return true;
   }
@@ -90,7 +91,7 @@ class SeenParts {
 /// The instance's triangles in view.
 template <class View>
 double count_triangles(const rays::MeshTree& tree, const InstanceView& from, std::size_t samples,
-                       const View& view, SeenParts& parts) {
+                       const View& view, ViewCoverage& parts) {
   const std::size_t clusters = tree.clusters.size();
   const std::size_t stride = std::max<std::size_t>(1, clusters / samples);
   std::size_t seen = 0;
@@ -108,11 +109,11 @@ double count_triangles(const rays::MeshTree& tree, const InstanceView& from, std
 }
 
 template <class View>
-SeenTriangles count_in(const View& view, const BeamGrid& grid, std::size_t beams,
+VisibleCounts count_in(const View& view, const BeamGrid& grid, std::size_t beams,
                        const CpuBase& base) {
   const rays::SceneTrees& trees = base.search.trees();
   const std::vector<std::uint32_t>& instances = trees.instances();
-  SeenParts parts;
+  ViewCoverage parts;
   const std::size_t samples = kSamples / std::max<std::size_t>(instances.size(), 1);
   double triangles = kTrianglesPerInstance * static_cast<double>(instances.size()) *
                      static_cast<double>(grid.sectors().size());
@@ -125,7 +126,7 @@ SeenTriangles count_in(const View& view, const BeamGrid& grid, std::size_t beams
 
 }  // namespace
 
-SeenTriangles count_seen(const BeamGrid& grid, const Beams& beams, const CpuBase& base) {
+VisibleCounts estimate_visible(const BeamGrid& grid, const Beams& beams, const CpuBase& base) {
   return grid.is_camera() ? count_in(CameraView(grid.camera()), grid, beams.size(), base)
                           : count_in(ScannerView(grid.scanner(), beams), grid, beams.size(), base);
 }

@@ -8,13 +8,13 @@
 namespace glidar::scan_raster {
 
 /// What a grid sees.
-struct SeenTriangles {
+struct VisibleCounts {
   double triangles;  ///< in the grid's view
   double beams;      ///< that may hit some
 };
 
 /// About that. It follows from the scene, the beams and the poses; the resolver and the trees have
 /// those of the cast. A sample of clusters is looked at.
-SeenTriangles count_seen(const BeamGrid& grid, const Beams& beams, const CpuBase& base);
+VisibleCounts estimate_visible(const BeamGrid& grid, const Beams& beams, const CpuBase& base);
 
 }  // namespace glidar::scan_raster

@@ -16,18 +16,18 @@
 namespace glidar::scan_raster {
 
 /// What one thread draws a sector with.
-struct Desk {
+struct SectorScratch {
   std::vector<float> low;
   std::vector<float> high;
   std::vector<float> number;
   std::vector<float> farthest;
   std::vector<std::uint32_t> is_stale;
-  std::vector<std::size_t> handed_over;
+  std::vector<std::size_t> deferred_beams;
 
-  SectorPicture clear(const SectorTable& sector) {
+  SectorBuffer clear(const SectorTable& sector) {
     low.assign(sector.start().begin(), sector.start().end());
     high = low;
-    number.assign(low.size(), std::bit_cast<float>(kNoNumber));
+    number.assign(low.size(), std::bit_cast<float>(kNoSlotNumber));
     farthest.assign(sector.tile_start().begin(), sector.tile_start().end());
     is_stale.assign(farthest.size(), 0);
     return {low.data(), high.data(), number.data(), farthest.data(), is_stale.data()};
@@ -47,29 +47,30 @@ struct Job {
   const bool has_bounds;  ///< otherwise all beams are cast as rays
 };
 
-void draw_sector(const Job& job, std::size_t index, Desk& desk) {
+void draw_sector(const Job& job, std::size_t index, SectorScratch& scratch) {
   const SectorTable& sector = job.grid.sectors()[index];
   const GridView view = job.grid.view(index);
-  const SectorPicture picture = desk.clear(sector);
+  const SectorBuffer buffer = scratch.clear(sector);
   const SectorView beams = sector.view();
-  desk.handed_over.clear();
-  SectorDecision decision(job.cast, job.slots, sector, picture, desk.handed_over);
+  scratch.deferred_beams.clear();
+  SectorExactTest decision(job.cast, job.slots, sector, buffer, scratch.deferred_beams);
   for (const std::uint32_t instance : job.slots.order()) {
-    Placement placement = place(job.cast.trees, job.cast.resolver.view(instance), instance, sector);
+    Placement placement =
+        make_placement(job.cast.trees, job.cast.resolver.view(instance), instance, sector);
     decision.set_instance(instance, placement);
-    job.kernel.draw(view, beams, placement, picture);
+    job.kernel.draw(view, beams, placement, buffer);
   }
   SectorWriter writer(job.target);
-  writer.write_rows(sector, picture, job.slots);
-  writer.cast_rays(desk.handed_over);
+  writer.write_rows(sector, buffer, job.slots);
+  writer.cast_rays(scratch.deferred_beams);
 }
 
 /// A run of beams, cast as rays.
-void cast_run(const HitTarget& target, BeamRange run, Desk& desk) {
+void cast_run(const HitTarget& target, BeamRange run, SectorScratch& scratch) {
   write_misses(target.request.fields, run.begin, run.end - run.begin, target.hits);
-  desk.handed_over.resize(run.end - run.begin);
-  std::iota(desk.handed_over.begin(), desk.handed_over.end(), run.begin);
-  SectorWriter(target).cast_rays(desk.handed_over);
+  scratch.deferred_beams.resize(run.end - run.begin);
+  std::iota(scratch.deferred_beams.begin(), scratch.deferred_beams.end(), run.begin);
+  SectorWriter(target).cast_rays(scratch.deferred_beams);
 }
 
 /// Calls visit(range) for the beams of every row of a sector.
@@ -80,18 +81,18 @@ void for_runs(const SectorTable& sector, const Visit& visit) {
   }
 }
 
-void cast_sector(const Job& job, std::size_t index, Desk& desk) {
-  if (job.has_bounds && job.grid.is_drawn(index)) return draw_sector(job, index, desk);
-  for_runs(job.grid.sectors()[index], [&](BeamRange run) { cast_run(job.target, run, desk); });
+void cast_sector(const Job& job, std::size_t index, SectorScratch& scratch) {
+  if (job.has_bounds && job.grid.is_drawn(index)) return draw_sector(job, index, scratch);
+  for_runs(job.grid.sectors()[index], [&](BeamRange run) { cast_run(job.target, run, scratch); });
 }
 
 }  // namespace
 
 /// Desks that threads take and give back, so that a later cast finds them ready.
-class ScanRenderer::Desks : public Pool<Desk> {};
+class ScanRenderer::SectorScratchPool : public WorkspacePool<SectorScratch> {};
 
 ScanRenderer::ScanRenderer(std::shared_ptr<CpuBase> base)
-    : base_(std::move(base)), desks_(std::make_unique<Desks>()) {}
+    : base_(std::move(base)), scratch_pool_(std::make_unique<SectorScratchPool>()) {}
 ScanRenderer::~ScanRenderer() = default;
 
 const BeamGrid& ScanRenderer::grid_of(const Beams& beams) {
@@ -136,14 +137,14 @@ void ScanRenderer::cast_prepared(const CastRequest& request, Hits& hits) {
     if (request.on_tile_done) request.on_tile_done(run);
     count.add(run.end - run.begin);
   };
-  for_each(grid_->sectors().size(), [&](std::size_t i, Desk& desk) {
-    cast_sector(job, i, desk);
+  for_each(grid_->sectors().size(), [&](std::size_t i, SectorScratch& scratch) {
+    cast_sector(job, i, scratch);
     for_runs(grid_->sectors()[i], finish);
   });
-  for_each(grid_->other_rows().size(), [&](std::size_t i, Desk& desk) {
+  for_each(grid_->other_rows().size(), [&](std::size_t i, SectorScratch& scratch) {
     const std::size_t first = std::size_t{grid_->other_rows()[i]} * request.beams.cols;
     const BeamRange row{first, first + request.beams.cols};
-    cast_run(job.target, row, desk);
+    cast_run(job.target, row, scratch);
     finish(row);
   });
   count.finish();
@@ -152,9 +153,9 @@ void ScanRenderer::cast_prepared(const CastRequest& request, Hits& hits) {
 template <class Body>
 void ScanRenderer::for_each(std::size_t pieces, const Body& body) {
   base_->thread_pool.parallel_for(pieces, 1, [&](std::size_t begin, std::size_t end) {
-    std::unique_ptr<Desk> desk = desks_->take();
-    for (std::size_t i = begin; i < end; ++i) body(i, *desk);
-    desks_->give_back(std::move(desk));
+    std::unique_ptr<SectorScratch> scratch = scratch_pool_->acquire();
+    for (std::size_t i = begin; i < end; ++i) body(i, *scratch);
+    scratch_pool_->release(std::move(scratch));
   });
 }
 

@@ -31,7 +31,7 @@ class ScanRenderer final : public Renderer {
   const BeamGrid& grid_of(const Beams& beams);
 
  private:
-  class Desks;
+  class SectorScratchPool;
 
   /// Calls body(i, desk) for each piece, on all threads.
   template <class Body>
@@ -42,7 +42,7 @@ class ScanRenderer final : public Renderer {
   BeamGrids grids_;
   const BeamGrid* grid_ = nullptr;  ///< of the beams taken last
   InstanceSlots slots_;
-  std::unique_ptr<Desks> desks_;
+  std::unique_ptr<SectorScratchPool> scratch_pool_;
 };
 
 }  // namespace glidar::scan_raster

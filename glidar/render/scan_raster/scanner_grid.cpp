@@ -18,11 +18,11 @@ constexpr std::uint32_t kMaxSectorColumns = 128;
 constexpr double kMaxCrowding = 4.0;
 /// Of cells without a beam where rows begin at different azimuths: this part of all, and some.
 constexpr double kMaxShifted = 0.5;
-constexpr std::uint32_t kShiftedRoom = 64;
+constexpr std::uint32_t kShiftedMargin = 64;
 /// What the kernels' tangents of elevations may be wrong by: some roundings of numbers up to 6.
-constexpr double kTangentRoom = 0x1p-19;
+constexpr double kTangentMargin = 0x1p-19;
 /// What their arc tangent may be wrong by, see arc_tangent().
-constexpr double kAzimuthRoom_rad = 2e-5;
+constexpr double kAzimuthMargin_rad = 2e-5;
 
 /// Padding in a sector on each side of its columns, columns.
 double margin_of(const std::vector<RowAngles>& rows) {
@@ -101,7 +101,7 @@ void ScannerGrid::find_misfit(const Beams& beams) {
   const auto [least, greatest] = std::minmax_element(rows_.begin(), rows_.end(), by_shift);
   columns_.first = least->shift;
   columns_.count = beams.cols + static_cast<std::uint32_t>(greatest->shift - least->shift);
-  if (columns_.count - beams.cols > kMaxShifted * beams.cols + kShiftedRoom) {
+  if (columns_.count - beams.cols > kMaxShifted * beams.cols + kShiftedMargin) {
     angles_.misfit = "rows that begin at very different azimuths";
   }
 }
@@ -130,10 +130,10 @@ void ScannerGrid::find_bins() {
   const double width = (highest_tangent_ - lowest_tangent_) / kElevationBins;
   first_row_.resize(kElevationBins + 1);
   last_row_.resize(kElevationBins + 1);
-  const double room = kTangentRoom + 0.02 * width;
+  const double margin = kTangentMargin + 0.02 * width;
   for (std::uint32_t bin = 0; bin <= kElevationBins; ++bin) {
-    const double bottom = lowest_tangent_ + bin * width - room;
-    const double top = lowest_tangent_ + (bin + 1) * width + room;
+    const double bottom = lowest_tangent_ + bin * width - margin;
+    const double top = lowest_tangent_ + (bin + 1) * width + margin;
     const auto first = std::partition_point(
         rows_.begin(), rows_.end(), [&](const RowAngles& r) { return r.high_tangent < bottom; });
     const auto end = std::partition_point(rows_.begin(), rows_.end(),
@@ -167,7 +167,7 @@ GridView ScannerGrid::view() const {
   const double step_rad = std::abs(columns_.step_rad);
   view.columns_per_unit = static_cast<float>(1.0 / step_rad);
   view.middle_column = 0.5F * static_cast<float>(shape_.columns) - 0.5F;
-  view.column_room = static_cast<float>(kCellRoom + kAzimuthRoom_rad / step_rad);
+  view.column_margin = static_cast<float>(kCellMargin + kAzimuthMargin_rad / step_rad);
   const double half_rad = (0.5 * shape_.columns + margin_of(rows_)) * step_rad;
   view.max_slope = next_above(std::tan(half_rad));
   const double secant = 1.0001 / std::cos(half_rad);

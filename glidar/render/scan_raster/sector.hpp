@@ -16,7 +16,7 @@ inline constexpr std::uint32_t kTileColumns = 8;
 inline constexpr std::uint32_t kTileRows = 4;
 /// The table from elevations to rows has this many bins.
 inline constexpr std::uint32_t kElevationBins = 4096;
-inline constexpr std::uint32_t kNoNumber = std::numeric_limits<std::uint32_t>::max();
+inline constexpr std::uint32_t kNoSlotNumber = std::numeric_limits<std::uint32_t>::max();
 
 /// Rows of equal elevation, found by a table.
 struct ElevationRows {
@@ -44,7 +44,7 @@ struct GridView {
   std::uint32_t tile_pitch;  ///< tiles from row to row of tiles, a multiple of 8
   float columns_per_unit;    ///< of azimuth (rad) or of slope
   float middle_column;       ///< where the forward axis points
-  float column_room;         ///< what the kernels' columns may be wrong by
+  float column_margin;       ///< what the kernels' columns may be wrong by
   float max_slope;           ///< of side / forward, with room
   float lowest_slope;        ///< of up / forward, with room
   float highest_slope;
@@ -71,10 +71,10 @@ struct SectorView {
 };
 
 /// What the cells of a sector have found so far.
-struct SectorPicture {
+struct SectorBuffer {
   float* low;  ///< per cell: bounds of the distance, metres; infinite: no hit; -1: no beam
   float* high;
-  float* number;            ///< per cell: bits of the number of its triangle, or of kNoNumber
+  float* number;            ///< per cell: bits of the number of its triangle, or of kNoSlotNumber
   float* farthest;          ///< per tile: at least the largest `high`
   std::uint32_t* is_stale;  ///< per tile: `farthest` may be larger than that
 };
@@ -90,16 +90,16 @@ struct Placement {
   double metres;  ///< per object unit
   /// As RayPacket::rounding.
   double rounding;
-  float room;  ///< what boxes in the sector's frame may be wrong by, object units
+  float margin;  ///< what boxes in the sector's frame may be wrong by, object units
   /// Half sizes of a box around the sector's origin that all beams' lines cross, object units; zero
   /// where beams start at the origin. Likewise below.
   float foot[3];
   float behind;                ///< how far behind that crossing a beam may start
   float distance;              ///< from the origin to where a beam starts, at most
   std::uint32_t first_number;  ///< of slot 0
-  bool asks;                   ///< every triangle that is not surely missed goes to decide()
+  bool always_retests;  ///< every triangle that is not surely missed goes to retest_exactly()
   /// Applies the hit rule to a cell and a slot.
-  void (*decide)(void* context, std::uint32_t cell, std::uint32_t slot);
+  void (*retest_exactly)(void* context, std::uint32_t cell, std::uint32_t slot);
   void* context;
 };
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr float kNoBeam = -1.0F;
 /// What single precision may add to a bound.
-constexpr double kSectorRoom = 1.0 + 0x1p-20;
+constexpr double kSectorMargin = 1.0 + 0x1p-20;
 
 /// Others hit nothing, see rays::BeamSearch.
 bool is_beam(const Beams& beams, std::size_t i) {
@@ -127,9 +127,9 @@ void SectorTable::set_origins(const Beams& beams) {
     max_moment_ = max_moment_.cwiseMax(moment.cwiseAbs());
     max_offset_ = max_offset_.cwiseMax(rounded.cwiseAbs());
     const Eigen::Vector3d foot = frame_.sector_from_sensor * foot_from(origin_m_, i);
-    foot_m_ = foot_m_.cwiseMax(kSectorRoom * foot.cwiseAbs());
-    behind_m_ = std::max(behind_m_, -kSectorRoom * offset.dot(direction));
-    distance_m_ = std::max(distance_m_, kSectorRoom * offset.norm());
+    foot_m_ = foot_m_.cwiseMax(kSectorMargin * foot.cwiseAbs());
+    behind_m_ = std::max(behind_m_, -kSectorMargin * offset.dot(direction));
+    distance_m_ = std::max(distance_m_, kSectorMargin * offset.norm());
   });
 }
 

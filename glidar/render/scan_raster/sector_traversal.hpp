@@ -16,13 +16,14 @@ struct NodeVisit {
 };
 
 /// Eight boxes in the frame of slopes, grown by the foot of the beams.
-struct SeenBoxes {
+struct ProjectedBoxes {
   Vector<Float8> middle;
   Vector<Float8> half;
   Float8 squared_distance;  ///< from the origin, object units
 
-  GLIDAR_INLINE SeenBoxes(const Drawing& drawing, const Turn& turn, const TreeNode& node) {
-    const Placement& p = drawing.placement;
+  GLIDAR_INLINE ProjectedBoxes(const DrawContext& context, const FrameTransform& turn,
+                               const TreeNode& node) {
+    const Placement& p = context.placement;
     Float8 centre[3];
     Float8 size[3];
     squared_distance = Float8::all(0.0F);
@@ -30,22 +31,22 @@ struct SeenBoxes {
       const Float8 o = Float8::all(static_cast<float>(p.origin[axis]));
       const Float8 low = Float8::load(node.low[axis]) - o;
       const Float8 high = Float8::load(node.high[axis]) - o;
-      const Float8 beside = greatest(greatest(low, -high), Float8::all(0.0F));
+      const Float8 beside = max(max(low, -high), Float8::all(0.0F));
       squared_distance = multiply_add(beside, beside, squared_distance);
       centre[axis] = (low + high) * Float8::all(0.5F);
       size[axis] = (high - low) * Float8::all(0.5F);
     }
     middle = turn({centre[0], centre[1], centre[2]});
     const Vector<Float8> sizes = {size[0], size[1], size[2]};
-    half = {dot(magnitude(turn.forward), sizes) + Float8::all(p.room + p.foot[0]),
-            dot(magnitude(turn.side), sizes) + Float8::all(p.room + p.foot[1]),
-            dot(magnitude(turn.up), sizes) + Float8::all(p.room + p.foot[2])};
+    half = {dot(magnitude(turn.forward), sizes) + Float8::all(p.margin + p.foot[0]),
+            dot(magnitude(turn.side), sizes) + Float8::all(p.margin + p.foot[1]),
+            dot(magnitude(turn.up), sizes) + Float8::all(p.margin + p.foot[2])};
   }
 
   /// Bits of the boxes that are behind the sector, beside, above or below it.
-  [[nodiscard]] GLIDAR_INLINE std::uint32_t find_outside(const Drawing& drawing) const {
-    const GridView& grid = drawing.grid;
-    const float behind = drawing.placement.behind;
+  [[nodiscard]] GLIDAR_INLINE std::uint32_t find_outside(const DrawContext& context) const {
+    const GridView& grid = context.grid;
+    const float behind = context.placement.behind;
     const auto slope_of = [](float slope) { return slope < 0.0F ? -slope : slope; };
     const auto above = [&](Float8 value, Float8 size, float slope) {
       const Float8 steep = Float8::all(slope_of(slope));
@@ -66,8 +67,8 @@ struct SeenBoxes {
     const Float8 one = Float8::all(1.0F);
     const Float8 near = one / nearest;
     const Float8 far = one / (middle.x + half.x);
-    const auto low = [&](Float8 value) { return least(value * near, value * far); };
-    const auto high = [&](Float8 value) { return greatest(value * near, value * far); };
+    const auto low = [&](Float8 value) { return min(value * near, value * far); };
+    const auto high = [&](Float8 value) { return max(value * near, value * far); };
     return {low(middle.y - half.y), high(middle.y + half.y), low(middle.z - half.z),
             high(middle.z + half.z)};
   }
@@ -100,52 +101,53 @@ class VisitStack {
 
 /// Adds the children of a node that the sector may see.
 template <class Cells>
-void push_children(const Drawing& drawing, const TreeNode& node, VisitStack& stack) {
-  const Placement& p = drawing.placement;
-  const SeenBoxes boxes(drawing, slopes_frame<Cells>(drawing), node);
+void push_children(const DrawContext& context, const TreeNode& node, VisitStack& stack) {
+  const Placement& p = context.placement;
+  const ProjectedBoxes boxes(context, slopes_frame<Cells>(context), node);
   const Float8 nearest = boxes.middle.x - boxes.half.x;
-  const std::uint32_t around = bits(nearest <= Float8::all(p.room));
+  const std::uint32_t around = bits(nearest <= Float8::all(p.margin));
   CellRects rects;
-  const std::uint32_t seen = Cells::find(drawing.grid, boxes.slopes(nearest), rects);
+  const std::uint32_t seen = Cells::find(context.grid, boxes.slopes(nearest), rects);
   alignas(32) float squared_distance[8];
   store(squared_distance, boxes.squared_distance);
   const unsigned bottom = stack.size();
-  for_bits((seen | around) & ~boxes.find_outside(drawing), [&](unsigned i) {
+  for_bits((seen | around) & ~boxes.find_outside(context), [&](unsigned i) {
     const std::int32_t child = node.child[i];
     if (child == kNoChild) return;
     const bool is_around = (around >> i & 1U) != 0;
-    const CellRect rect = is_around ? whole_sector(drawing.grid) : rects.at<Cells>(drawing.grid, i);
+    const CellRect rect = is_around ? whole_sector(context.grid) : rects.at<Cells>(context.grid, i);
     if (rect.is_empty()) return;
     Stack::prefetch(p.tree, child);
-    const float distance = __builtin_sqrtf(squared_distance[i]) * kEntryRoom - p.room - p.distance;
+    const float distance =
+        __builtin_sqrtf(squared_distance[i]) * kEntryMargin - p.margin - p.distance;
     stack.push(bottom,
-               {distance * static_cast<float>(p.metres) * kEntryRoom, child, tiles_of(rect)});
+               {distance * static_cast<float>(p.metres) * kEntryMargin, child, tiles_of(rect)});
   });
 }
 
 template <class Cells, bool kOwnOrigins>
-void draw_tree(const Drawing& drawing) {
-  VisitStack stack(tiles_of(whole_sector(drawing.grid)));
+void draw_tree(const DrawContext& context) {
+  VisitStack stack(tiles_of(whole_sector(context.grid)));
   while (!stack.is_empty()) {
     const NodeVisit visit = stack.pop();
-    if (!is_visible(drawing, visit.tiles, visit.near)) continue;
+    if (!is_visible(context, visit.tiles, visit.near)) continue;
     if (visit.child < 0) {
-      draw_leaf<Cells, kOwnOrigins>(drawing, static_cast<std::uint32_t>(~visit.child));
+      draw_leaf<Cells, kOwnOrigins>(context, static_cast<std::uint32_t>(~visit.child));
     } else {
-      push_children<Cells>(drawing, drawing.placement.tree.nodes[visit.child], stack);
+      push_children<Cells>(context, context.placement.tree.nodes[visit.child], stack);
     }
   }
 }
 
 inline void draw_instance(const GridView& grid, const SectorView& sector,
-                          const Placement& placement, const SectorPicture& picture) {
-  const Drawing drawing(grid, sector, placement, picture);
+                          const Placement& placement, const SectorBuffer& buffer) {
+  const DrawContext context(grid, sector, placement, buffer);
   if (grid.has_slopes) {
-    draw_tree<SlopeCells, false>(drawing);
+    draw_tree<SlopeCells, false>(context);
   } else if (sector.moment[0] == nullptr) {
-    draw_tree<AngleCells, false>(drawing);
+    draw_tree<AngleCells, false>(context);
   } else {
-    draw_tree<AngleCells, true>(drawing);
+    draw_tree<AngleCells, true>(context);
   }
 }
 

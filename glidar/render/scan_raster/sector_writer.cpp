@@ -38,7 +38,7 @@ void SectorWriter::find_cells(const float* numbers, const InstanceSlots& slots, 
     const bool is_new = number != last_number_;
     if (is_new) {
       last_number_ = number;
-      last_found_ = slots.found(number);
+      last_found_ = slots.decode(number);
     }
     block.instance[lane] = last_found_.instance;
     block.primitive[lane] = last_found_.primitive;
@@ -48,13 +48,13 @@ void SectorWriter::find_cells(const float* numbers, const InstanceSlots& slots, 
   block.is_one_triangle = !differs;
 }
 
-void SectorWriter::write_rows(const SectorTable& sector, const SectorPicture& picture,
+void SectorWriter::write_rows(const SectorTable& sector, const SectorBuffer& buffer,
                               const InstanceSlots& slots) {
   begun_ = 0;
-  last_number_ = kNoNumber;
+  last_number_ = kNoSlotNumber;
   for (const SectorRow& row : sector.rows()) {
     for (std::uint32_t done = 0; done < row.count; done += kLanes) {
-      write_run(sector, picture, slots,
+      write_run(sector, buffer, slots,
                 {row.first_beam + done, row.first_cell + done,
                  std::min(row.count - done, std::uint32_t{kLanes})});
     }
@@ -62,13 +62,13 @@ void SectorWriter::write_rows(const SectorTable& sector, const SectorPicture& pi
   finish();
 }
 
-void SectorWriter::write_run(const SectorTable& sector, const SectorPicture& picture,
+void SectorWriter::write_run(const SectorTable& sector, const SectorBuffer& buffer,
                              const InstanceSlots& slots, const RowRun& run) {
-  const float* numbers = picture.number + run.first_cell;
+  const float* numbers = buffer.number + run.first_cell;
   Work& work = next();
   work.block.mask = 0;
   for (unsigned lane = 0; lane < run.count; ++lane) {
-    const bool is_hit = std::bit_cast<std::uint32_t>(numbers[lane]) != kNoNumber;
+    const bool is_hit = std::bit_cast<std::uint32_t>(numbers[lane]) != kNoSlotNumber;
     work.block.mask |= static_cast<std::uint32_t>(is_hit) << lane;
   }
   if (work.block.mask != (1U << run.count) - 1U) {
@@ -79,7 +79,7 @@ void SectorWriter::write_run(const SectorTable& sector, const SectorPicture& pic
     take_beams(sector, run, work);
     find_cells(numbers, slots, work);
   }
-  pass_on();
+  advance();
 }
 
 void SectorWriter::cast_rays(std::span<const std::size_t> some) {
@@ -99,13 +99,13 @@ void SectorWriter::cast_rays(std::span<const std::size_t> some) {
     }
     work.block.mask = (1U << count) - 1U;
     target_.search.find(work.beams, work.block);
-    pass_on();
+    advance();
   }
   finish();
 }
 
 /// The block begun last is ready; the one before it goes a step on, the oldest is written.
-void SectorWriter::pass_on() {
+void SectorWriter::advance() {
   if (begun_ >= 2) {
     target_.resolver.prefetch_corners(ring_[(begun_ - 2) % ring_.size()].block,
                                       target_.request.fields);
@@ -119,7 +119,7 @@ void SectorWriter::finish() {
 
 void SectorWriter::write(Work& work) const {
   if (work.block.mask == 0) return;
-  target_.resolver.measure(work.beams, work.block, work.exact);
+  target_.resolver.intersect(work.beams, work.block, work.exact);
   target_.resolver.write(target_.request.beams, target_.request.fields, work.block, work.exact,
                          target_.hits);
 }

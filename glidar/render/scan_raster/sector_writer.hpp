@@ -28,7 +28,7 @@ class SectorWriter {
       : target_(target), with_corners_(needs_corners(target.request.fields)) {}
 
   /// Hits and misses of all beams of a sector's rows. Cells handed over count as misses.
-  void write_rows(const SectorTable& sector, const SectorPicture& picture,
+  void write_rows(const SectorTable& sector, const SectorBuffer& buffer,
                   const InstanceSlots& slots);
 
   /// Hits of beams, cast as rays, over misses.
@@ -38,7 +38,7 @@ class SectorWriter {
   struct Work {
     HitBlock block;
     BeamBlock beams;
-    ExactBlock exact;
+    ExactHits exact;
   };
 
   /// Up to kLanes beams of a row.
@@ -48,19 +48,19 @@ class SectorWriter {
     std::uint32_t count;
   };
 
-  void write_run(const SectorTable& sector, const SectorPicture& picture,
-                 const InstanceSlots& slots, const RowRun& run);
+  void write_run(const SectorTable& sector, const SectorBuffer& buffer, const InstanceSlots& slots,
+                 const RowRun& run);
   void take_beams(const SectorTable& sector, const RowRun& run, Work& work) const;
   void find_cells(const float* numbers, const InstanceSlots& slots, Work& work);
   Work& next() { return ring_[begun_++ % ring_.size()]; }
-  void pass_on();
+  void advance();
   void finish();
   void write(Work& work) const;
 
   HitTarget target_;
   bool with_corners_;
-  std::uint32_t last_number_ = kNoNumber;  ///< the cell before found this
-  Found last_found_;
+  std::uint32_t last_number_ = kNoSlotNumber;  ///< the cell before found this
+  PrimitiveRef last_found_;
   std::array<Work, 3> ring_;
   std::size_t begun_ = 0;
 };

@@ -26,27 +26,27 @@ GLIDAR_INLINE TileRect tiles_of(const CellRect& rect) {
 }
 
 /// The largest distance in a tile.
-inline float farthest_in(const Drawing& drawing, std::uint32_t row, std::uint32_t column) {
-  const std::size_t pitch = drawing.grid.pitch;
-  const float* high = drawing.picture.high + std::size_t{row} * kTileRows * pitch +
+inline float farthest_in(const DrawContext& context, std::uint32_t row, std::uint32_t column) {
+  const std::size_t pitch = context.grid.pitch;
+  const float* high = context.buffer.high + std::size_t{row} * kTileRows * pitch +
                       std::size_t{column} * kTileColumns;
   Float8 largest = Float8::load_unaligned(high);
   for (unsigned i = 1; i < kTileRows; ++i)
-    largest = greatest(largest, Float8::load_unaligned(high + i * pitch));
-  return -lowest_of(-largest);
+    largest = max(largest, Float8::load_unaligned(high + i * pitch));
+  return -min_of(-largest);
 }
 
 /// True where some tile still looks for something at this distance.
-inline bool is_visible(const Drawing& drawing, const TileRect& rect, float distance) {
-  const SectorPicture& picture = drawing.picture;
+inline bool is_visible(const DrawContext& context, const TileRect& rect, float distance) {
+  const SectorBuffer& buffer = context.buffer;
   for (std::uint32_t row = rect.first_row; row <= rect.last_row; ++row) {
     for (std::uint32_t column = rect.first_column; column <= rect.last_column; ++column) {
-      const std::size_t tile = std::size_t{row} * drawing.grid.tile_pitch + column;
-      if (picture.farthest[tile] < distance) continue;
-      if (picture.is_stale[tile] == 0) return true;
-      picture.is_stale[tile] = 0;
-      picture.farthest[tile] = farthest_in(drawing, row, column);
-      if (!(picture.farthest[tile] < distance)) return true;
+      const std::size_t tile = std::size_t{row} * context.grid.tile_pitch + column;
+      if (buffer.farthest[tile] < distance) continue;
+      if (buffer.is_stale[tile] == 0) return true;
+      buffer.is_stale[tile] = 0;
+      buffer.farthest[tile] = farthest_in(context, row, column);
+      if (!(buffer.farthest[tile] < distance)) return true;
     }
   }
   return false;

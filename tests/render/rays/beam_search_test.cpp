@@ -38,9 +38,9 @@ class Stage {
         search_(resolver_, thread_pool_) {}
 
   /// Searches all beams, 16 at a time and one by one; expects no difference.
-  std::vector<Found> search() {
+  std::vector<PrimitiveRef> search() {
     prepare();
-    std::vector<Found> found(beams.size());
+    std::vector<PrimitiveRef> found(beams.size());
     for (std::size_t first = 0; first < beams.size(); first += kLanes) find(first, found);
     for (std::size_t i = 0; i < beams.size(); ++i) {
       EXPECT_EQ(search_.beams().find(i), found[i]) << "beam " << i;
@@ -49,15 +49,16 @@ class Stage {
   }
 
   /// The same by the rule alone: the least distance, then the lowest of those that tie with it.
-  std::vector<Found> search_by_rule() {
+  std::vector<PrimitiveRef> search_by_rule() {
     prepare();
-    std::vector<Found> found(beams.size());
+    std::vector<PrimitiveRef> found(beams.size());
     for (std::size_t i = 0; i < beams.size(); ++i) found[i] = nearest_of_all(i);
     return found;
   }
 
-  std::size_t hits(const std::vector<Found>& found) const {
-    return found.size() - static_cast<std::size_t>(std::count(found.begin(), found.end(), Found{}));
+  std::size_t hits(const std::vector<PrimitiveRef>& found) const {
+    return found.size() -
+           static_cast<std::size_t>(std::count(found.begin(), found.end(), PrimitiveRef{}));
   }
 
  private:
@@ -70,7 +71,7 @@ class Stage {
     search_.prepare(*request_);
   }
 
-  void find(std::size_t first, std::vector<Found>& found) const {
+  void find(std::size_t first, std::vector<PrimitiveRef>& found) const {
     HitBlock block;
     BeamBlock lanes;
     lanes.has_origins = !beams.origins_m.empty();
@@ -90,11 +91,11 @@ class Stage {
   }
 
   struct Candidate {
-    Found found;
+    PrimitiveRef found;
     double distance_m;
   };
 
-  [[nodiscard]] Found nearest_of_all(std::size_t beam) const {
+  [[nodiscard]] PrimitiveRef nearest_of_all(std::size_t beam) const {
     const rays::CastView cast{search_.trees(), resolver_, *request_};
     std::vector<Candidate> all;
     for (const std::uint32_t instance : search_.trees().instances()) {
@@ -102,7 +103,7 @@ class Stage {
       for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
         const double distance_m = rays::hit_distance_m(cast, beam, {instance, t});
         if (!(distance_m > 0.0)) continue;
-        if (!stops(resolver_, beams, beam, cull_back_faces, {instance, t})) continue;
+        if (!blocks_beam(resolver_, beams, beam, cull_back_faces, {instance, t})) continue;
         all.push_back({{instance, t}, distance_m});
       }
     }
@@ -112,7 +113,7 @@ class Stage {
                        {b.distance_m, b.found.instance, b.found.primitive});
     };
     const Candidate nearest = *std::min_element(all.begin(), all.end(), is_before);
-    Found lowest = nearest.found;
+    PrimitiveRef lowest = nearest.found;
     for (const Candidate& c : all) {
       const double reach_m = 0.5 * (search_.trees().reach_m(nearest.found.instance) +
                                     search_.trees().reach_m(c.found.instance));
@@ -169,7 +170,7 @@ TEST(BeamSearch, FindsWhatTheRuleFindsAmongManyInstances) {
       const std::uint64_t seed = 2 * static_cast<unsigned>(has_origins) + 1;
       Stage stage(crowd(40, seed, Eigen::Vector3d::Zero()),
                   some_beams(320, has_origins, is_coherent, seed), Pose::Identity());
-      const std::vector<Found> found = stage.search();
+      const std::vector<PrimitiveRef> found = stage.search();
       EXPECT_GT(stage.hits(found), 30U);
       EXPECT_EQ(found, stage.search_by_rule());
     }
@@ -180,7 +181,7 @@ TEST(BeamSearch, IsExactAMillionKilometresFromTheWorldsOrigin) {
   const Eigen::Vector3d far_m(1e9, -2e9, 5e8);
   Stage stage(crowd(60, 3, far_m), some_beams(400, true, true, 4),
               turned(0.3, {1, 2, 3}, far_m + Eigen::Vector3d(1.0, 2.0, 3.0)));
-  const std::vector<Found> found = stage.search();
+  const std::vector<PrimitiveRef> found = stage.search();
   EXPECT_GT(stage.hits(found), 80U);
   EXPECT_EQ(found, stage.search_by_rule());
 }
@@ -194,7 +195,7 @@ TEST(BeamSearch, FindsTheFarAmongTheNearAndTheSmallAmongTheVast) {
     scene.instances.push_back(instance);
   }
   Stage stage(scene, camera_beams(32, 32, 24.0), Pose::Identity());
-  const std::vector<Found> found = stage.search();
+  const std::vector<PrimitiveRef> found = stage.search();
   EXPECT_GT(stage.hits(found), 500U);
   EXPECT_EQ(found, stage.search_by_rule());
 }
@@ -205,8 +206,9 @@ TEST(BeamSearch, SkipsWhatIsAbsentAndCullsBackFaces) {
                 Pose::Identity(), culls);
     stage.present.assign(40, 1);
     for (std::size_t i = 0; i < 40; i += 3) stage.present[i] = 0;
-    const std::vector<Found> found = stage.search();
-    for (const Found& f : found) EXPECT_TRUE(f.instance == kInvalidId || f.instance % 3 != 0);
+    const std::vector<PrimitiveRef> found = stage.search();
+    for (const PrimitiveRef& f : found)
+      EXPECT_TRUE(f.instance == kInvalidId || f.instance % 3 != 0);
     EXPECT_EQ(found, stage.search_by_rule());
   }
 }
@@ -227,9 +229,9 @@ TEST(BeamSearch, OfTilesOnEachOtherItReportsTheLowest) {
   const Eigen::Vector3d eye = {5.0, 2.0, 7.0};
   Stage stage(scene, camera_beams(50, 50, 60.0),
               look_at(eye, {3.0, 1.0, 2.0}, Eigen::Vector3d::UnitZ()));
-  const std::vector<Found> found = stage.search();
+  const std::vector<PrimitiveRef> found = stage.search();
   EXPECT_GT(stage.hits(found), 400U);
-  for (const Found& f : found) EXPECT_TRUE(f.instance == 0 || f.instance == kInvalidId);
+  for (const PrimitiveRef& f : found) EXPECT_TRUE(f.instance == 0 || f.instance == kInvalidId);
   EXPECT_EQ(found, stage.search_by_rule());
 }
 
@@ -256,7 +258,7 @@ TEST(BeamSearch, NoneLeaksWhereATriangleWithoutWidthStitchesOthers) {
       directions.push_back((target - origins.back()).normalized());
     }
     Stage stage(stitched_square(width), loose_beams(directions, origins), Pose::Identity());
-    const std::vector<Found> found = stage.search();
+    const std::vector<PrimitiveRef> found = stage.search();
     EXPECT_EQ(stage.hits(found), found.size()) << width;
     EXPECT_EQ(found, stage.search_by_rule()) << width;
   }
@@ -298,8 +300,8 @@ TEST(BeamSearch, FindsNothingInAnEmptySceneAndAlongBeamsThatAreNotNumbers) {
   beams.origins_m[20].y() = 1e200;
   Scene around = builtin_scene("box");
   Stage inside(around, beams, Pose::Identity());
-  const std::vector<Found> found = inside.search();
-  for (const std::size_t i : {5U, 9U, 20U}) EXPECT_EQ(found[i], Found{}) << i;
+  const std::vector<PrimitiveRef> found = inside.search();
+  for (const std::size_t i : {5U, 9U, 20U}) EXPECT_EQ(found[i], PrimitiveRef{}) << i;
   EXPECT_EQ(inside.hits(found), 29U);
 }
 

@@ -106,13 +106,13 @@ TEST_F(BoxTreeTest, FitsBoxesThatMove) {
 TEST_F(BoxTreeTest, IsWornWhenBoxesHaveMovedFar) {
   for (std::uint32_t i = 0; i < kBoxes; ++i) boxes.push_back(cube_at({3.0 * i, 0.0, 0.0}, i));
   build();
-  EXPECT_FALSE(tree.is_worn());
+  EXPECT_FALSE(tree.needs_rebuild());
   move(0, {1.0, 0.0, 0.0});
-  EXPECT_FALSE(tree.is_worn());
+  EXPECT_FALSE(tree.needs_rebuild());
   move(0, {0.0, 1e4, 0.0});
-  EXPECT_TRUE(tree.is_worn());
+  EXPECT_TRUE(tree.needs_rebuild());
   move(0, {1.0, 0.0, 0.0});
-  EXPECT_FALSE(tree.is_worn());
+  EXPECT_FALSE(tree.needs_rebuild());
 }
 
 TEST_F(BoxTreeTest, HoldsASingleBox) {

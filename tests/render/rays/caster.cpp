@@ -36,7 +36,7 @@ Traced trace_packets(std::span<const TestRay> rays, unsigned size, const Tracer&
     }
     tracer.kernel.start(packet, tracer.sphere, (1U << count) - 1U);
     tracer.trace(packet);
-    traced.decisions += packet.decisions;
+    traced.exact_tests += packet.exact_tests;
     complete_distances(tracer.tree.blocks, packet);
     for (unsigned i = 0; i < count; ++i) {
       const std::uint32_t primitive = primitive_of(tracer.tree.blocks, packet, i);

@@ -36,7 +36,7 @@ struct FlatClusters {
 /// What traced rays hit.
 struct Traced {
   std::vector<HitCandidate> hits;  ///< one per ray; primitive kNoTriangle: nothing, at distance 0
-  std::size_t decisions = 0;       ///< how often the rule was applied
+  std::size_t exact_tests = 0;     ///< how often the rule was applied
 };
 
 /// What is traced through, and how.

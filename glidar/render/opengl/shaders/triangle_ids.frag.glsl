@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Writes which triangle is seen.
 
-uniform uint first_number;  // that of the draw's first triangle
-layout(location = 0) out uint number;
+uniform uint first_id;  // that of the draw's first triangle
+layout(location = 0) out uint triangle_id;
 
 #ifdef HAS_MASK
 in vec2 mask_uv;
@@ -23,5 +23,5 @@ void main() {
 #ifdef WRITES_DEPTH
   gl_FragDepth = clip_depth * gl_FragCoord.w;
 #endif
-  number = first_number + uint(gl_PrimitiveID);
+  triangle_id = first_id + uint(gl_PrimitiveID);
 }

@@ -21,7 +21,7 @@ struct Shares {
 };
 uniform float shininess;
 
-#ifdef HAS_ALL
+#ifdef HAS_TEXTURES
 const float kShortest = 1e-6;
 
 uniform float scene_ambient;
@@ -119,7 +119,7 @@ Shares shares() {
 #endif
 
 void main() {
-#ifdef HAS_ALL
+#ifdef HAS_TEXTURES
   if (is_cut_out()) discard;
 #endif
   float steps = clamp(depth_steps, 0.0, 65535.0);

@@ -15,7 +15,7 @@ invariant gl_Position;
 out vec3 at_normal;
 out float depth_steps;  // D of equation (8)
 out vec3 ray;           // from the sensor, metres
-#ifdef HAS_ALL
+#ifdef HAS_TEXTURES
 layout(location = 1) in vec2 uv_0;
 layout(location = 2) in vec2 uv_1;
 layout(location = 4) in vec4 tangent;
@@ -35,7 +35,7 @@ void main() {
   depth_steps = dot(steps_from_object, place);
   ray = metres_per_unit * (position - sensor);
   at_normal = normal;
-#ifdef HAS_ALL
+#ifdef HAS_TEXTURES
   at_uv_0 = uv_0;
   at_uv_1 = uv_1;
   at_tangent = tangent;
